@@ -1,0 +1,140 @@
+#include "model/board/board.h"
+
+#include <algorithm>
+
+namespace fovea::board {
+
+Board::Board(sc_core::sc_module_name name, const BoardParams& params,
+             video::PictureSource& source, std::uint32_t entry, bool strict)
+    : sc_module(name),
+      dm365("dm365", params.soc, entry, strict),
+      decoder("tvp5146", params.decoder, source),
+      params_(params),
+      wanted_(params.run.frames()) {
+  dm365.osc(osc_);
+  dm365.display.bind(sink.lines);
+  decoder.clock(decoder_clk_);
+  decoder.video.bind(dm365.isif.video);
+  dm365.i2c.targets.bind(decoder.i2c);
+  set_switches();
+
+  dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
+    uart_.push_back(static_cast<char>(byte));
+  };
+  dm365.gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds at) {
+    if (bank == 2) log.pins(out, at);
+  };
+  dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
+    if (f.complete) log.capture(f.index, f.start, f.end);
+  };
+  dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
+  sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
+}
+
+void Board::set_switches() {
+  std::uint32_t dip = 0;
+  dip |= static_cast<std::uint32_t>(params_.video.standard.index());
+  dip |= (params_.lens.paper_literal_focal() ? 1u : 0u) << 5;
+  dip |= static_cast<std::uint32_t>(params_.firmware.kernel.index()) << 6;
+  dip |= (params_.firmware.flow.is("serial") ? 1u : 0u) << 8;
+  dip |= (params_.lens.pair.is("B") ? 1u : 0u) << 9;
+  dip |= (params_.firmware.overlay() ? 1u : 0u) << 10;
+  dip |= (params_.firmware.patch() ? 1u : 0u) << 11;
+  dip |= static_cast<std::uint32_t>(params_.clocks.preset.index()) << 12;
+  for (unsigned pin = 0; pin < 16; ++pin) dm365.gpio.set_pin(pin, (dip >> pin & 1u) != 0);
+}
+
+void Board::load(const LoadImage& image) {
+  const std::size_t n = image.bytes.size();
+  if (n == 0) return;
+  if (image.address >= 0x8000'0000u)
+    std::copy(image.bytes.begin(), image.bytes.end(),
+              dm365.ddr.store().at(image.address - 0x8000'0000u));
+  else
+    std::copy(image.bytes.begin(), image.bytes.end(),
+              dm365.internal_ram.begin() + (image.address & 0x7FFFu));
+}
+
+std::vector<std::uint8_t> Board::peek(std::uint32_t address, std::size_t bytes) {
+  dm365.scr.settle();
+  const std::uint8_t* p = address >= 0x8000'0000u
+                              ? dm365.ddr.store().at(address - 0x8000'0000u)
+                              : dm365.internal_ram.data() + (address & 0x7FFFu);
+  return {p, p + bytes};
+}
+
+/// The window opens with the first displayed frame that the firmware has flipped to, and closes
+/// when the last wanted one is out, which is the instant the next one begins.
+void Board::latched(const video::Osd::Latch& latch) {
+  const bool shows = latch.window && log.latch(latch.address, latch.time);
+  if (latch.f) return;  // frames begin with the first field
+  if (shows && !window_start_ && !opening_) {
+    opening_ = true;
+    dm365.quiet.at(kernel_time(), kMasterCount, [this] {
+      dm365.scr.settle();
+      window_start_ = kernel_time();
+      first_record_ = log.records().size();
+      if (on_window_open) on_window_open();
+    });
+  } else if (window_open() && frames_in_window_ >= wanted_) {
+    close_window_now();
+  }
+}
+
+void Board::close_window_now() {
+  if (window_end_) return;
+  dm365.quiet.at(kernel_time(), kMasterCount, [this] {
+    if (window_end_) return;
+    dm365.scr.settle();
+    window_end_ = kernel_time();
+    if (on_window_close) on_window_close();
+  });
+}
+
+void Board::frame_shown(const video::DisplayFrame& frame) {
+  if (!window_open() || frame.start < *window_start_) return;
+  const FrameRecord& r = log.shown(frame.start, frame.end);
+  ++frames_in_window_;
+  if (on_frame) on_frame(frame, r);
+}
+
+FrameStats Board::frame_stats() const {
+  FrameStats s;
+  if (!window_start_) return s;
+  const Picoseconds from = *window_start_;
+  const Picoseconds to = window_end_ ? *window_end_ : kernel_time();
+  std::uint64_t fresh = 0;
+  double latency_sum = 0, remap_sum = 0;
+  for (const FrameRecord& r : log.records()) {
+    ++s.displayed;
+    if (r.repeated || !r.captured) {
+      ++s.repeated;
+      continue;
+    }
+    ++fresh;
+    s.dropped += r.dropped;
+    if (!r.capture_start) continue;
+    const Picoseconds latency = r.display_start - *r.capture_start;
+    s.latency_min = s.latencies ? std::min(s.latency_min, latency) : latency;
+    s.latency_max = std::max(s.latency_max, latency);
+    latency_sum += static_cast<double>(latency);
+    ++s.latencies;
+  }
+  for (const auto& m : log.remaps()) {
+    if (m.end <= from || m.end > to) continue;
+    const Picoseconds t = m.end - m.start;
+    s.remap_min = s.remaps ? std::min(s.remap_min, t) : t;
+    s.remap_max = std::max(s.remap_max, t);
+    remap_sum += static_cast<double>(t);
+    ++s.remaps;
+  }
+  s.remapped = s.remaps;
+  for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
+  s.window = static_cast<double>(to - from) * 1e-12;
+  s.rate = s.window > 0 ? static_cast<double>(fresh) / s.window : 0;
+  s.latency_mean = s.latencies ? latency_sum / static_cast<double>(s.latencies) : 0;
+  s.remap_mean = s.remaps ? remap_sum / static_cast<double>(s.remaps) : 0;
+  return s;
+}
+
+}  // namespace fovea::board

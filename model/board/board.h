@@ -1,0 +1,82 @@
+// The board: DM365, SDRAM, decoder and camera, monitor, DIP switches, and what a loader puts into
+// memory before the core starts.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "model/board/board_params.h"
+#include "model/board/frame_log.h"
+#include "model/soc/dm365.h"
+#include "model/video/display_sink.h"
+#include "model/video/tvp5146.h"
+
+namespace fovea::board {
+
+/// A piece of memory to be filled before the start.
+struct LoadImage {
+  std::uint32_t address = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Statistics of the measured window that come from the frame log.
+struct FrameStats {
+  double rate = 0, window = 0;
+  std::uint64_t captured = 0, remapped = 0, displayed = 0, dropped = 0, repeated = 0;
+  Picoseconds latency_min = 0, latency_max = 0, remap_min = 0, remap_max = 0;
+  double latency_mean = 0, remap_mean = 0;  // ps
+  std::uint64_t latencies = 0, remaps = 0;
+};
+
+class Board : public sc_core::sc_module {
+ public:
+  /// @param entry first instruction; stands in for the ROM boot loader
+  Board(sc_core::sc_module_name name, const BoardParams& params, video::PictureSource& source,
+        std::uint32_t entry, bool strict);
+
+  /// Puts bytes into internal RAM (0 or 0x10000) or SDRAM. The caller has checked the address.
+  void load(const LoadImage& image);
+  /// Reads memory as the bus sees it now (not through the caches).
+  std::vector<std::uint8_t> peek(std::uint32_t address, std::size_t bytes);
+
+  /// Called for each frame shown inside the window, in order.
+  std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
+  /// Called when the window opens and when it closes (quiet phase: everything of that instant has
+  /// happened).
+  std::function<void()> on_window_open, on_window_close;
+
+  bool window_open() const { return window_start_.has_value() && !window_end_; }
+  std::optional<Picoseconds> window_start() const { return window_start_; }
+  std::optional<Picoseconds> window_end() const { return window_end_; }
+  /// Ends the window now instead of at its last frame (a run that is stopped).
+  void close_window_now();
+  FrameStats frame_stats() const;
+  std::uint64_t frames_in_window() const { return frames_in_window_; }
+  const std::string& uart_text() const { return uart_; }
+
+  FrameLog log;
+  soc::Dm365 dm365;
+  video::Tvp5146 decoder;
+  video::DisplaySink sink{"sink"};
+
+ private:
+  void set_switches();
+  void latched(const video::Osd::Latch& latch);
+  void frame_shown(const video::DisplayFrame& frame);
+
+  const BoardParams& params_;
+  ClockSignal osc_{"osc", Frequency(24'000'000)};
+  ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
+  std::string uart_;
+  std::uint64_t wanted_;
+  std::uint64_t frames_in_window_ = 0;
+  bool opening_ = false;
+  std::optional<Picoseconds> window_start_, window_end_;
+  std::size_t first_record_ = 0;
+};
+
+}  // namespace fovea::board

@@ -1,0 +1,135 @@
+// Parameters of the board: what is soldered, switched and loaded.
+#pragma once
+#include "model/soc/dm365.h"
+#include "model/video/params.h"
+#include "model/video/scene/scene_params.h"
+
+namespace fovea::board {
+
+struct RunParams : ParamGroup {
+  using U = IntParam::Unit;
+  IntParam frames{*this, "frames", U::kCount, 25, 1, 100'000,
+                  "frames displayed in the measured window", Origin::kChoice, ""};
+  IntParam start_limit{*this, "start_limit", U::kTime, 30 * kPsPerSecond, kPsPerMs,
+                       3600 * kPsPerSecond,
+                       "simulated time within which the first frame must be shown",
+                       Origin::kChoice, ""};
+  RunParams() : ParamGroup("run") {}
+};
+
+struct ClockParams : ParamGroup {
+  EnumParam preset{*this, "preset", "297/243",
+                   {"297/243", "297/270", "270/216", "216/172", "432/340"},
+                   "MHz of core / DDR clock that the firmware programs (DIP 12..14)",
+                   Origin::kSourced, "TI boot loader presets, dm365.md 1.2"};
+  ClockParams() : ParamGroup("clocks") {}
+};
+
+struct VideoParams : ParamGroup {
+  using U = IntParam::Unit;
+  EnumParam standard{*this, "standard", "pal", {"pal", "ntsc", "vga"},
+                     "720x576 625/50, 720x480 525/60, or a 640x480 window in 525/60 (DIP 0..1)",
+                     Origin::kChoice, ""};
+  IntParam width{*this, "width", U::kCount, 0, 0, 720,
+                 "pixels of a centred region that is captured, corrected and shown; 0: all",
+                 Origin::kChoice, ""};
+  IntParam height{*this, "height", U::kCount, 0, 0, 576, "lines of that region; 0: all",
+                  Origin::kChoice, ""};
+  VideoParams() : ParamGroup("video") {}
+};
+
+struct FirmwareParams : ParamGroup {
+  TextParam elf{*this, "elf", "",
+                "program to run; empty: the firmware that was built with Fovea"};
+  EnumParam kernel{*this, "kernel", "plain", {"plain", "ldm"},
+                   "remap loop: the paper's load/load/store, or LDM/STM (DIP 6..7)",
+                   Origin::kChoice, ""};
+  EnumParam flow{*this, "flow", "double", {"double", "serial"},
+                 "double buffering, or the paper's capture, remap, show in turn (DIP 8)",
+                 Origin::kChoice, ""};
+  BoolParam overlay{*this, "overlay", false,
+                    "a blinking box blended onto the picture through the cache (DIP 10)",
+                    Origin::kChoice, ""};
+  BoolParam patch{*this, "patch", false, "the program patches its own code once (DIP 11)",
+                  Origin::kChoice, ""};
+  FirmwareParams() : ParamGroup("firmware") {}
+};
+
+/// The lens description that the loader puts into the parameter page (sw/lens/README.md).
+struct LensParams : ParamGroup {
+  EnumParam mapping{*this, "mapping", "equisolid",
+                    {"none", "rectilinear", "linear", "orthographic", "equisolid",
+                     "stereographic", "kannala_brandt"},
+                    "mapping function the firmware corrects; kannala_brandt goes in as a table",
+                    Origin::kChoice, ""};
+  RealParam fov{*this, "fov", "deg", 180, 10, 359, "full horizontal field of view",
+                Origin::kChoice, ""};
+  RealParam focal{*this, "focal", "px", 0, 0, 10'000, "lens focal length; 0: from the field of view",
+                  Origin::kChoice, ""};
+  RealParam out_focal{*this, "out_focal", "px", 0, 0, 10'000,
+                      "focal length of the corrected view; 0: that of the lens", Origin::kChoice,
+                      ""};
+  RealParam centre_x{*this, "centre_x", "px", 0, -720, 720,
+                     "optical centre right of the picture's centre", Origin::kChoice, ""};
+  RealParam centre_y{*this, "centre_y", "px", 0, -576, 576,
+                     "optical centre below the picture's centre", Origin::kChoice, ""};
+  RealParam shift_x{*this, "shift_x", "px", 0, -720, 720, "shift of the corrected view",
+                    Origin::kChoice, ""};
+  RealParam shift_y{*this, "shift_y", "px", 0, -576, 576, "shift of the corrected view",
+                    Origin::kChoice, ""};
+  RealParam in_aspect{*this, "in_aspect", "", 1, 0.1, 10, "y scale / x scale of the lens image",
+                      Origin::kChoice, ""};
+  RealParam out_aspect{*this, "out_aspect", "", 1, 0.1, 10,
+                       "y scale / x scale of the corrected view", Origin::kChoice, ""};
+  ListParam kb{*this, "kb", {302.453, 320.746, 496.640, 331.200, -0.0437356, 0.0216925,
+                             -0.0263888, 0.0084123}, {8},
+               "kannala_brandt: fx, fy, cx, cy in pixels of lens.kb_width x lens.kb_height, k1..k4",
+               Origin::kSourced, "front camera of traces/footage/neozhaoliang-surround"};
+  RealParam kb_width{*this, "kb_width", "px", 960, 16, 8192, "picture width of the calibration",
+                     Origin::kChoice, ""};
+  RealParam kb_height{*this, "kb_height", "px", 640, 16, 8192, "picture height of the calibration",
+                      Origin::kChoice, ""};
+  RealParam theta_max{*this, "theta_max", "deg", 95, 1, 120,
+                      "kannala_brandt: largest angle of the table; beyond it the view is black",
+                      Origin::kChoice, ""};
+  BoolParam paper_literal_focal{*this, "paper_literal_focal", false,
+                                "equation (10) as the paper prints it (DIP 5)", Origin::kChoice,
+                                ""};
+  EnumParam pair{*this, "pair", "A", {"A", "B"},
+                 "pair method: first pixel's source word (the paper), or the pair's centre (DIP 9)",
+                 Origin::kChoice, ""};
+  LensParams() : ParamGroup("lens") {}
+};
+
+struct BoardParams {
+  RunParams run;
+  ClockParams clocks;
+  VideoParams video;
+  FirmwareParams firmware;
+  LensParams lens;
+  video::SceneParams camera;
+  video::Tvp5146Params decoder;
+  soc::Dm365Params soc;
+  void declare(ParamSet& set) {
+    set.add(run);
+    set.add(clocks);
+    set.add(video);
+    set.add(firmware);
+    set.add(lens);
+    set.add(camera);
+    set.add(decoder);
+    soc.declare(set);
+  }
+  /// Size of the standard's picture, and of what is corrected and shown.
+  unsigned raster_width() const { return 720; }
+  unsigned raster_height() const { return video.standard.is("pal") ? 576 : 480; }
+  unsigned width() const {
+    if (video.width()) return static_cast<unsigned>(video.width());
+    return video.standard.is("vga") ? 640 : 720;
+  }
+  unsigned height() const {
+    return video.height() ? static_cast<unsigned>(video.height()) : raster_height();
+  }
+};
+
+}  // namespace fovea::board

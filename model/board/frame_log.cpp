@@ -1,0 +1,86 @@
+#include "model/board/frame_log.h"
+
+namespace fovea::board {
+
+void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end) {
+  captured_[index] = {start, end};
+  latest_capture_ = index;
+  capture_ends_.push_back(end);
+  // Only the recent past can still be shown; the history is in records_.
+  while (captured_.size() > 128) captured_.erase(captured_.begin());
+  while (remapped_.size() > 128) remapped_.erase(remapped_.begin());
+}
+
+/// The firmware may be a frame ahead of the record of the capture (its interrupt comes with the
+/// last line, the record with the last write), never more than half the range behind.
+std::optional<std::uint64_t> FrameLog::unroll(unsigned sequence) const {
+  const std::uint64_t next = latest_capture_ ? *latest_capture_ + 1 : 0;
+  const std::uint64_t base = next & ~std::uint64_t{255};
+  std::uint64_t value = base + sequence;
+  if (value > next) {
+    if (value < 256) return std::nullopt;  // ahead of all captures: not a frame of ours
+    value -= 256;
+  }
+  return value;
+}
+
+void FrameLog::pins(std::uint32_t levels, Picoseconds at) {
+  const auto phase = static_cast<Phase>(levels & 15u);
+  const unsigned sequence = (levels >> 4) & 255u;
+  phase_ = phase;
+  auto& first = first_[levels & 15u];
+  if (!first) first = at;
+  switch (phase) {
+    case Phase::kRemapStart:
+      running_ = unroll(sequence);
+      remap_start_ = at;
+      break;
+    case Phase::kRemapEnd:
+      if (running_) {
+        const Remap r{*running_, remap_start_, at};
+        remapped_[*running_] = r;
+        remaps_.push_back(r);
+        running_.reset();
+      }
+      break;
+    case Phase::kFlip:
+      flipped_ = unroll(sequence);
+      break;
+    default:
+      break;
+  }
+}
+
+bool FrameLog::latch(std::uint32_t address, Picoseconds) {
+  if (flipped_ && address_ != address) {
+    // The address changed since the last field: what was flipped last is on show now.
+    showing_ = flipped_;
+    address_ = address;
+  }
+  return showing_.has_value();
+}
+
+const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
+  FrameRecord r;
+  r.index = records_.size();
+  r.captured = showing_;
+  r.display_start = start;
+  r.display_end = end;
+  if (showing_) {
+    if (auto c = captured_.find(*showing_); c != captured_.end()) {
+      r.capture_start = c->second.start;
+      r.capture_end = c->second.end;
+    }
+    if (auto m = remapped_.find(*showing_); m != remapped_.end()) {
+      r.remap_start = m->second.start;
+      r.remap_end = m->second.end;
+    }
+    r.repeated = last_shown_ == showing_;
+    if (last_shown_ && *showing_ > *last_shown_ + 1) r.dropped = *showing_ - *last_shown_ - 1;
+    last_shown_ = showing_;
+  }
+  records_.push_back(r);
+  return records_.back();
+}
+
+}  // namespace fovea::board

@@ -1,0 +1,74 @@
+// Which captured frame was remapped when and shown when: put together from what the pins show.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "model/common/units.h"
+
+namespace fovea::board {
+
+/// Phases that firmware shows on GPIO 64..95 as (phase | sequence << 4), as one would for a scope.
+enum class Phase : std::uint8_t {
+  kReset = 0, kBoot = 1, kLut = 2, kIdle = 3, kRemapStart = 4, kRemapEnd = 5, kFlip = 6,
+  kFailed = 7
+};
+
+/// One displayed frame and the way of the captured frame that it shows.
+struct FrameRecord {
+  std::uint64_t index = 0;                       ///< displayed frame since the first corrected one
+  std::optional<std::uint64_t> captured;         ///< number of the captured frame
+  std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
+  Picoseconds display_start = 0, display_end = 0;
+  std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
+  bool repeated = false;
+};
+
+/// A sequence number is the count of complete captures modulo 256; it is unrolled against the
+/// captures that the model has seen.
+class FrameLog {
+ public:
+  void capture(std::uint64_t index, Picoseconds start, Picoseconds end);
+  void pins(std::uint32_t levels, Picoseconds at);
+  /// The display begins a frame and will show this buffer. True if it shows a frame that the
+  /// firmware has flipped to.
+  bool latch(std::uint32_t address, Picoseconds at);
+  /// The frame whose latch was the last one is out.
+  const FrameRecord& shown(Picoseconds start, Picoseconds end);
+
+  Phase phase() const { return phase_; }
+  /// When a phase was entered first; nothing if it was not.
+  std::optional<Picoseconds> first(Phase phase) const {
+    return first_[static_cast<std::size_t>(phase)];
+  }
+  const std::vector<FrameRecord>& records() const { return records_; }
+  /// Remaps that ended, and how long each took, in order.
+  struct Remap {
+    std::uint64_t captured;
+    Picoseconds start, end;
+  };
+  const std::vector<Remap>& remaps() const { return remaps_; }
+  /// Ends of complete captures, in order.
+  const std::vector<Picoseconds>& captures() const { return capture_ends_; }
+
+ private:
+  struct Capture {
+    Picoseconds start, end;
+  };
+  std::optional<std::uint64_t> unroll(unsigned sequence) const;
+
+  Phase phase_ = Phase::kReset;
+  std::array<std::optional<Picoseconds>, 16> first_{};
+  std::map<std::uint64_t, Capture> captured_;
+  std::map<std::uint64_t, Remap> remapped_;
+  std::vector<Remap> remaps_;
+  std::vector<Picoseconds> capture_ends_;
+  std::optional<std::uint64_t> latest_capture_, running_, flipped_, showing_, last_shown_;
+  std::optional<std::uint32_t> address_;
+  Picoseconds remap_start_ = 0;
+  std::vector<FrameRecord> records_;
+};
+
+}  // namespace fovea::board

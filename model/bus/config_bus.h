@@ -1,0 +1,74 @@
+// The configuration bus: register accesses at their exact time.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "model/common/mem_request.h"
+#include "model/common/param.h"
+#include "model/common/quiet.h"
+#include "model/common/stats.h"
+
+namespace fovea::bus {
+
+struct ConfigBusParams : ParamGroup {
+  using U = IntParam::Unit;
+  IntParam fast_latency{*this, "fast_latency", U::kTime, 40 * kPsPerNs, 1, kPsPerUs,
+                        "crossbar to register, blocks on the bus clock (VPSS, EDMA, PSC, AINTC)",
+                        Origin::kAssumed, "by analogy with OMAP-L138, dm365.md 6.2: about 40 ns"};
+  IntParam slow_latency{*this, "slow_latency", U::kTime, 120 * kPsPerNs, 1, 2 * kPsPerUs,
+                        "crossbar to register, blocks on the 24 MHz AUXCLK (timers, UART0, I2C)",
+                        Origin::kAssumed,
+                        "by analogy with OMAP-L138, dm365.md 6.2: in the order of 100 ns"};
+  ConfigBusParams() : ParamGroup("bus.config") {}
+};
+
+struct ConfigBusStats : StatGroup {
+  Counter reads{*this, "reads", "1", "register reads"};
+  Counter writes{*this, "writes", "1", "register writes"};
+  Counter errors{*this, "errors", "1", "accesses to addresses where nothing answers"};
+  ConfigBusStats() : StatGroup("bus.config") {}
+};
+
+/// Decodes register addresses, waits the latency of the block's class, and makes the access in the
+/// quiet phase of its instant, so that the register is seen after everything else that happens at
+/// that time. One access at a time per master port; several masters' accesses of one instant go by
+/// master number.
+class ConfigBus : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
+ public:
+  enum class Speed { kFast, kSlow };
+  tlm::tlm_target_socket<32> socket{"socket"};
+  ConfigBusStats stats;
+
+  struct BlockSpec {
+    std::string name;
+    std::uint32_t base, size;
+    Speed speed;
+  };
+  ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params, QuietPhase& quiet,
+            const std::vector<BlockSpec>& blocks);
+  ~ConfigBus() override;
+
+  /// The socket towards the block of that name.
+  tlm::tlm_initiator_socket<32>& to(const std::string& name);
+
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
+                                     sc_core::sc_time&) override;
+  void b_transport(tlm::tlm_generic_payload&, sc_core::sc_time&) override;
+  unsigned transport_dbg(tlm::tlm_generic_payload&) override;
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+
+ private:
+  struct Block;
+  const Block* find(std::uint64_t address) const;
+  void access(tlm::tlm_generic_payload& gp);
+
+  const ConfigBusParams& params_;
+  QuietPhase& quiet_;
+  std::vector<std::unique_ptr<Block>> blocks_;
+};
+
+}  // namespace fovea::bus

@@ -1,0 +1,144 @@
+#include "model/bus/core/crossbar.h"
+
+#include <bit>
+
+#include "model/common/check.h"
+
+namespace fovea::bus {
+
+Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
+    : host_(host), interval_(params.timeline_interval()) {
+  for (std::size_t i = 0; i < kMasterCount; ++i) {
+    stats[i] = std::make_unique<MasterStats>(static_cast<Master>(i));
+    ports_[i].request_latency = static_cast<std::uint8_t>(params.ports[i]->request_latency());
+    ports_[i].response_latency = static_cast<std::uint8_t>(params.ports[i]->response_latency());
+  }
+}
+
+void Crossbar::set_clock(Frequency scr, Picoseconds at) {
+  if (scr == scr_.frequency()) return;
+  scr_.restart(scr, at);
+  plan();
+}
+
+void Crossbar::set_priority(Master m, unsigned priority) {
+  Port& p = ports_[index(m)];
+  if (p.priority == (priority & 7u)) return;
+  p.priority = static_cast<std::uint8_t>(priority & 7u);
+  plan();  // the winner chosen for the next edge may be another one now
+}
+
+void Crossbar::submit(const XbarRequest& request, Picoseconds at) {
+  FOVEA_CHECK(scr_.running(), "request to a crossbar without a clock");
+  Port& p = ports_[index(request.master)];
+  FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
+  const bool head = p.empty();
+  const std::uint32_t slot = p.tail++ % kQueue;
+  p.queue[slot] = request;
+  p.queue[slot].issued = at;
+  p.visible[slot] = scr_.edge_after(at) + p.request_latency;
+  if (!head) return;  // competes when those before it are gone
+  const std::uint32_t others = waiting_;
+  waiting_ |= 1u << index(request.master);
+  const SlaveState& s = slaves_[static_cast<std::size_t>(request.slave)];
+  if (s.blocked) return;
+  // An arbitration planned for an earlier edge stands; at an equal one the winner may change.
+  const std::uint64_t edge = std::max(p.visible[slot], s.free);
+  if (next_ != kNever && edge > next_edge_) return;
+  if (others && next_ != kNever && edge == next_edge_) return plan();
+  next_edge_ = edge;
+  next_port_ = static_cast<std::uint8_t>(index(request.master));
+  next_ = scr_.edge(edge);
+}
+
+/// Finds the earliest arbitration and its winner: highest priority, then round robin. Only heads of
+/// queues compete; the winner depends on arrivals strictly before the edge.
+void Crossbar::plan() {
+  next_ = kNever;
+  if (waiting_ == 0 || !scr_.running()) return;
+  std::uint64_t edge = ~std::uint64_t{0};
+  for (std::uint32_t set = waiting_; set; set &= set - 1) {
+    const auto m = static_cast<unsigned>(std::countr_zero(set));
+    const Port& p = ports_[m];
+    const SlaveState& s = slaves_[static_cast<std::size_t>(p.queue[p.head % kQueue].slave)];
+    if (s.blocked) continue;
+    edge = std::min(edge, std::max(p.visible[p.head % kQueue], s.free));
+  }
+  if (edge == ~std::uint64_t{0}) return;
+  int best = -1;
+  unsigned best_rank = 0;
+  for (std::uint32_t set = waiting_; set; set &= set - 1) {
+    const auto m = static_cast<unsigned>(std::countr_zero(set));
+    const Port& p = ports_[m];
+    const SlaveState& s = slaves_[static_cast<std::size_t>(p.queue[p.head % kQueue].slave)];
+    if (s.blocked || std::max(p.visible[p.head % kQueue], s.free) > edge) continue;
+    const unsigned turn = (m + kMasterCount - s.last - 1) % kMasterCount;
+    const unsigned rank = p.priority * 64u + turn;
+    if (best < 0 || rank < best_rank) {
+      best = static_cast<int>(m);
+      best_rank = rank;
+    }
+  }
+  next_edge_ = edge;
+  next_port_ = static_cast<std::uint8_t>(best);
+  next_ = scr_.edge(edge);
+}
+
+void Crossbar::step() {
+  Port& p = ports_[next_port_];
+  XbarRequest r = p.queue[p.head % kQueue];
+  if (++p.head == p.tail) {
+    waiting_ &= ~(1u << next_port_);
+  } else {  // the next in line shows itself one clock later
+    auto& visible = p.visible[p.head % kQueue];
+    visible = std::max(visible, next_edge_ + 1);
+  }
+  r.priority = p.priority;
+  SlaveState& s = slaves_[static_cast<std::size_t>(r.slave)];
+  const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
+  s.free = next_edge_ + cycles;
+  s.last = next_port_;
+
+  MasterStats& st = *stats[next_port_];
+  ++st.transactions;
+  (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
+  if (r.slave == Slave::kDdr) (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
+  if (next_ >= bin_end_ || timeline_.empty()) {
+    timeline_.resize(next_ / interval_ + 1);
+    bin_end_ = (next_ / interval_ + 1) * interval_;
+  }
+  (r.write ? timeline_.back().write : timeline_.back().read)[next_port_] += r.bytes;
+
+  const std::uint64_t arrival = next_edge_ + cycles;
+  if (host_.forward(r, scr_.edge(arrival))) {
+    if (r.write && r.slave == Slave::kDdr) acknowledge_write(r, arrival);
+  } else {
+    s.blocked = true;
+  }
+  plan();
+}
+
+void Crossbar::acknowledge_write(const XbarRequest& request, std::uint64_t edge) {
+  const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
+  host_.respond(request, at, at, false);
+}
+
+void Crossbar::slave_accepted(const XbarRequest& request, Picoseconds at) {
+  SlaveState& s = slaves_[static_cast<std::size_t>(request.slave)];
+  s.blocked = false;
+  // s.free is when the request's last beat is at the slave: it is not acknowledged before.
+  s.free = std::max(s.free, scr_.edge_after(at));
+  if (request.write && request.slave == Slave::kDdr) acknowledge_write(request, s.free);
+  plan();
+}
+
+void Crossbar::slave_done(const XbarRequest& request, Picoseconds first, Picoseconds last,
+                          bool error) {
+  const std::uint64_t latency = ports_[index(request.master)].response_latency;
+  const Picoseconds f = scr_.edge(scr_.edge_at_or_after(first) + latency);
+  const Picoseconds l =
+      last == first ? f : scr_.edge(scr_.edge_at_or_after(last) + latency);
+  host_.respond(request, f, l, error);
+}
+
+}  // namespace fovea::bus

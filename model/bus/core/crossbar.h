@@ -1,0 +1,110 @@
+// The switched central resource: queues per master, arbitration per slave, at the edges of its own
+// clock. A passive state machine like the controllers behind it.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/bus/core/crossbar_params.h"
+#include "model/common/clock.h"
+#include "model/common/masters.h"
+#include "model/common/stats.h"
+
+namespace fovea::bus {
+
+enum class Slave : std::uint8_t { kDdr, kConfig, kCount };
+inline constexpr std::size_t kSlaveCount = static_cast<std::size_t>(Slave::kCount);
+
+struct XbarRequest {
+  void* cookie = nullptr;
+  Master master = Master::kArmD;
+  Slave slave = Slave::kDdr;
+  bool write = false;
+  std::uint8_t bytes = 0;
+  std::uint8_t priority = 0;   ///< filled in at the grant
+  Picoseconds issued = 0;
+};
+
+/// What the crossbar moves requests and outcomes through.
+class XbarHost {
+ public:
+  virtual ~XbarHost() = default;
+  /// Sends a granted request; it is at the slave at `arrival`. True: the slave took it; false: it
+  /// waits there and Crossbar::slave_accepted follows.
+  virtual bool forward(const XbarRequest& request, Picoseconds arrival) = 0;
+  virtual void respond(const XbarRequest& request, Picoseconds first, Picoseconds last,
+                       bool error) = 0;
+};
+
+struct MasterStats : StatGroup {
+  Counter read_bytes{*this, "read_bytes", "B", "bytes read by this master"};
+  Counter write_bytes{*this, "write_bytes", "B", "bytes written by this master"};
+  Counter transactions{*this, "transactions", "1", "bursts and single accesses of this master"};
+  /// The part that goes to the SDRAM, for the balance against ddr.*_bytes; not printed itself.
+  std::uint64_t ddr_read_bytes = 0, ddr_write_bytes = 0;
+  explicit MasterStats(Master m) : StatGroup("bus." + std::string(kMasterNames[index(m)])) {}
+
+ protected:
+  void on_reset() override { ddr_read_bytes = ddr_write_bytes = 0; }
+};
+
+class Crossbar {
+ public:
+  Crossbar(const CrossbarParams& params, XbarHost& host);
+  void set_clock(Frequency scr, Picoseconds at);
+  /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
+  void set_priority(Master m, unsigned priority);
+
+  /// Puts a request on a master's port at `at` (not before the master's earlier ones).
+  void submit(const XbarRequest& request, Picoseconds at);
+  /// The next arbitration, kNever if there is nothing to arbitrate.
+  Picoseconds next_decision() const { return next_; }
+  void step();
+
+  /// Slave side: the request waiting at the slave was taken at `at`.
+  void slave_accepted(const XbarRequest& request, Picoseconds at);
+  /// Slave side: read data on the crossbar from first to last; or a register access that ended.
+  void slave_done(const XbarRequest& request, Picoseconds first, Picoseconds last, bool error);
+
+  std::array<std::unique_ptr<MasterStats>, kMasterCount> stats;
+  /// Bytes granted, per interval of simulated time since the start of the run.
+  struct TimelineBin {
+    std::array<std::uint64_t, kMasterCount> read{}, write{};
+  };
+  const std::vector<TimelineBin>& timeline() const { return timeline_; }
+  Picoseconds timeline_interval() const { return interval_; }
+
+ private:
+  static constexpr std::size_t kQueue = 16;  // deeper than any master's outstanding limit
+  struct Port {
+    std::array<XbarRequest, kQueue> queue;
+    std::array<std::uint64_t, kQueue> visible;  // edge from which the arbiter sees it
+    std::uint32_t head = 0, tail = 0;
+    std::uint8_t priority = 7;
+    std::uint8_t request_latency = 0, response_latency = 0;
+    bool empty() const { return head == tail; }
+  };
+  struct SlaveState {
+    std::uint64_t free = 0;      // first edge at which its command lane is free
+    bool blocked = false;        // a request waits at its door
+    std::uint8_t last = 0;       // round robin: last master granted
+  };
+
+  void plan();
+  void acknowledge_write(const XbarRequest& request, std::uint64_t edge);
+
+  XbarHost& host_;
+  Clock scr_;
+  std::array<Port, kMasterCount> ports_;
+  std::array<SlaveState, kSlaveCount> slaves_;
+  std::uint32_t waiting_ = 0;  // ports with a queue
+  std::uint64_t next_edge_ = 0;
+  std::uint8_t next_port_ = 0;
+  Picoseconds next_ = kNever;
+  Picoseconds interval_;
+  Picoseconds bin_end_ = 0;
+  std::vector<TimelineBin> timeline_;
+};
+
+}  // namespace fovea::bus

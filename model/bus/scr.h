@@ -1,0 +1,128 @@
+// The switched central resource on its sockets: one target socket per master, one initiator socket
+// per slave. Head of the memory path.
+#pragma once
+#include <array>
+#include <memory>
+#include <systemc>
+#include <tlm>
+
+#include "model/bus/core/crossbar.h"
+#include "model/common/lookahead.h"
+#include "model/common/mem_request.h"
+#include "model/common/sc_ports.h"
+#include "model/common/stats.h"
+
+namespace fovea::bus {
+
+/// Where the crossbar sends an address.
+struct AddressMap {
+  std::uint32_t ddr_base = 0x8000'0000;
+  std::uint64_t ddr_size = 128ull << 20;
+};
+
+/// Read latency at the master's port, for the reports.
+struct LatencyStats : StatGroup {
+  Histogram histogram;
+  Formula mean{*this, "mean", "s", "mean read latency, request to first beat at the port",
+               [this] { return StatBase::Value(histogram.mean() * 1e-12); }};
+  Formula p50{*this, "p50", "s", "median read latency", [this] { return quantile(0.50); }};
+  Formula p95{*this, "p95", "s", "95th percentile of read latency",
+              [this] { return quantile(0.95); }};
+  Formula p99{*this, "p99", "s", "99th percentile of read latency",
+              [this] { return quantile(0.99); }};
+  Formula max{*this, "max", "s", "largest read latency",
+              [this] { return StatBase::Value(static_cast<double>(histogram.max()) * 1e-12); }};
+  explicit LatencyStats(Master m)
+      : StatGroup("ddr." + std::string(kMasterNames[index(m)]) + ".latency") {}
+
+ private:
+  StatBase::Value quantile(double q) const {
+    return StatBase::Value(static_cast<double>(histogram.quantile(q)) * 1e-12);
+  }
+  void on_reset() override { histogram.reset(); }
+};
+
+class Scr : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
+ public:
+  /// A port without a master stays unbound.
+  using TargetSocket = tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
+                                              sc_core::SC_ZERO_OR_MORE_BOUND>;
+  template <class T>
+  using PerMaster = std::array<std::unique_ptr<T>, kMasterCount>;
+  PerMaster<TargetSocket> target;            ///< indexed by Master
+  tlm::tlm_initiator_socket<64> ddr_socket{"ddr_socket"};
+  tlm::tlm_initiator_socket<32> config_socket{"config_socket"};
+  sc_core::sc_port<PassiveIf> ddr_lookahead{"ddr_lookahead"};
+  sc_core::sc_export<MemoryPathIf> path{"path"};
+  ClockIn clk{"clk"};
+  /// Priority of each master, 0 highest; the SoC drives them from MSTPRI, QUEPRI and BCR.
+  sc_core::sc_vector<sc_core::sc_in<std::uint32_t>> priority{"priority", kMasterCount};
+
+  Scr(sc_core::sc_module_name name, const CrossbarParams& params, const AddressMap& map,
+      bool strict);
+
+  Crossbar& crossbar() { return crossbar_; }
+  std::array<std::unique_ptr<LatencyStats>, kMasterCount> latency;
+  /// SDRAM and register accesses whose outcome was decided ahead of the kernel / by a kernel event.
+  std::uint64_t direct_accesses() const { return direct_; }
+  std::uint64_t queued_accesses() const { return queued_; }
+  /// Takes all decisions at or before now, so that statistics and memory are those of `now`.
+  void settle();
+
+  Picoseconds next_decision() const override;
+  void step() override;
+  void hold() override;
+  void release() override;
+  bool strict() const override { return strict_; }
+  unsigned undecided() const override { return undecided_; }
+
+ private:
+  struct Target : tlm::tlm_fw_transport_if<> {
+    Scr* owner = nullptr;
+    Master master = Master::kArmI;
+    tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) override {
+      return owner->request(master, gp, phase, delay);
+    }
+    void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) override {
+      gp.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
+    }
+    unsigned transport_dbg(tlm::tlm_generic_payload& gp) override { return owner->debug(gp); }
+    bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+  };
+  struct SlavePort : tlm::tlm_bw_transport_if<> {
+    Scr* owner = nullptr;
+    Slave slave = Slave::kDdr;
+    tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) override {
+      return owner->response(slave, gp, phase, delay);
+    }
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
+  };
+
+  tlm::tlm_sync_enum request(Master m, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+                             sc_core::sc_time& delay);
+  tlm::tlm_sync_enum response(Slave s, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+                              sc_core::sc_time& delay);
+  unsigned debug(tlm::tlm_generic_payload& gp);
+  bool forward(const XbarRequest& request, Picoseconds arrival) override;
+  void respond(const XbarRequest& request, Picoseconds first, Picoseconds last,
+               bool error) override;
+  XbarRequest describe(tlm::tlm_generic_payload& gp, const MemExtension& ext, Slave slave) const;
+  void play();
+  void arm();
+  void inputs_changed();
+
+  AddressMap map_;
+  bool strict_;
+  Crossbar crossbar_;
+  std::array<Target, kMasterCount> targets_;
+  std::array<SlavePort, kSlaveCount> slave_ports_;
+  sc_core::sc_event due_;
+  bool held_ = false;
+  unsigned undecided_ = 0;
+  Picoseconds deciding_ = 0;  // time of the decision being taken
+  std::uint64_t direct_ = 0, queued_ = 0;
+};
+
+}  // namespace fovea::bus

@@ -1,0 +1,71 @@
+// Registers behind a TLM target socket.
+#pragma once
+#include <tlm_utils/simple_target_socket.h>
+
+#include <cstring>
+#include <systemc>
+#include <tlm>
+
+#include "model/common/check.h"
+#include "model/common/regbank.h"
+
+namespace fovea {
+
+/// Base of every peripheral: b_transport on the block's registers. Called by the configuration bus
+/// with kernel time = local time (its latency is modelled there), so it never waits. The payload's
+/// address is the offset in the block. transport_dbg reads without side effects.
+class BusTarget : public sc_core::sc_module {
+ public:
+  tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
+
+ protected:
+  BusTarget(sc_core::sc_module_name name, RegBank& regs) : sc_module(name), bank_(regs) {
+    reg_socket.register_b_transport(this, &BusTarget::b_transport);
+    reg_socket.register_transport_dbg(this, &BusTarget::transport_dbg);
+  }
+  /// False while the block's clock is gated: reads give 0 and writes are lost, both counted.
+  virtual bool clocked() const { return true; }
+
+ private:
+  void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
+    const auto offset = static_cast<std::uint32_t>(gp.get_address());
+    const unsigned bytes = gp.get_data_length();
+    std::uint32_t word = 0;
+    if (!clocked()) {
+      Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated");
+      if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
+      gp.set_response_status(tlm::TLM_OK_RESPONSE);
+      return;
+    }
+    Access a;
+    if (gp.is_write()) {
+      std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
+      a = bank_.write(offset, bytes, word);
+    } else {
+      a = bank_.read(offset, bytes, word);
+      std::memcpy(gp.get_data_ptr(), &word, bytes <= 4 ? bytes : 4);
+    }
+    if (a == Access::kNoRegister) {
+      // The chip's peripherals answer holes with 0; only the configuration bus reports errors.
+      char where[16];
+      std::snprintf(where, sizeof where, "0x%x", offset);
+      Diagnostics::instance().not_modelled(bank_.name() + " register at offset " + where);
+      if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
+      a = Access::kOk;
+    }
+    gp.set_response_status(a == Access::kOk ? tlm::TLM_OK_RESPONSE : tlm::TLM_BURST_ERROR_RESPONSE);
+  }
+
+  unsigned transport_dbg(tlm::tlm_generic_payload& gp) {
+    std::uint32_t word = 0;
+    if (!gp.is_read() || gp.get_data_length() != 4 ||
+        bank_.peek(static_cast<std::uint32_t>(gp.get_address()), word) != Access::kOk)
+      return 0;
+    std::memcpy(gp.get_data_ptr(), &word, 4);
+    return 4;
+  }
+
+  RegBank& bank_;
+};
+
+}  // namespace fovea

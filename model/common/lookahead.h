@@ -1,0 +1,46 @@
+// How far a block may run ahead of the kernel, and who plays the memory path meanwhile.
+#pragma once
+#include <systemc>
+
+#include "model/common/units.h"
+
+namespace fovea {
+
+inline Picoseconds kernel_time() { return sc_core::sc_time_stamp().value(); }
+inline sc_core::sc_time ps_time(Picoseconds ps) { return sc_core::sc_time::from_value(ps); }
+
+/// For the test that shows the strict/default comparison can fail: makes every horizon late by this
+/// much. 0 in production; nothing but that test sets it.
+inline Picoseconds planted_late_horizon = 0;
+
+/// Time of the next pending kernel event; `now` while anything is runnable now. Nobody else acts
+/// before it.
+inline Picoseconds kernel_horizon() {
+  if (sc_core::sc_pending_activity_at_current_time()) return kernel_time() + planted_late_horizon;
+  if (!sc_core::sc_pending_activity_at_future_time()) return kNever;
+  return kernel_time() + sc_core::sc_time_to_pending_activity().value() + planted_late_horizon;
+}
+
+/// A passive state machine: it decides at times of its own but acts only when told to.
+class PassiveIf : public virtual sc_core::sc_interface {
+ public:
+  /// Time of its next decision; kNever if it waits for a request.
+  virtual Picoseconds next_decision() const = 0;
+  /// Takes that decision. The caller knows all arrivals strictly before it.
+  virtual void step() = 0;
+};
+
+/// The head of the memory path. While a running agent holds it, the agent plays its decisions;
+/// otherwise the path keeps a kernel event pending at its next decision.
+class MemoryPathIf : public PassiveIf {
+ public:
+  virtual void hold() = 0;
+  virtual void release() = 0;
+  /// Requests whose outcome is not decided yet, of all masters. Deciding one may let its master
+  /// act.
+  virtual unsigned undecided() const = 0;
+  /// --sync=strict: every bus access waits for the kernel; nobody steps ahead of it.
+  virtual bool strict() const = 0;
+};
+
+}  // namespace fovea

@@ -1,0 +1,200 @@
+// Parameters: each declared once with key, unit, default, range, sentence and origin.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/common/check.h"
+#include "model/common/units.h"
+
+namespace fovea {
+
+/// Where a number comes from. kSourced: a public document; kCalibrated: fitted; kAssumed: no public
+/// source, see the range; kChoice: the user's free choice, nothing to source.
+enum class Origin { kSourced, kCalibrated, kAssumed, kChoice };
+std::string_view to_string(Origin origin);
+
+class ParamGroup;
+
+class ParamBase {
+ public:
+  ParamBase(ParamGroup& group, std::string name, std::string sentence, Origin origin,
+            std::string source);
+  virtual ~ParamBase() = default;
+  ParamBase(const ParamBase&) = delete;
+  ParamBase& operator=(const ParamBase&) = delete;
+
+  const std::string& key() const { return key_; }
+  const std::string& sentence() const { return sentence_; }
+  Origin origin() const { return origin_; }
+  const std::string& source() const { return source_; }
+  /// True once parse() was called: the value is the user's, not the default.
+  bool user_set() const { return user_set_; }
+  /// Sets the value. @throws UserError that says what is allowed (key not included)
+  void set(std::string_view text) {
+    parse(text);
+    user_set_ = true;
+  }
+  virtual std::string text() const = 0;          ///< value with unit, parseable again
+  virtual std::string default_text() const = 0;
+  virtual std::string unit() const = 0;
+  virtual std::string allowed() const = 0;       ///< range or list of words
+
+ protected:
+  virtual void parse(std::string_view text) = 0;
+
+ private:
+  std::string key_, sentence_, source_;
+  Origin origin_;
+  bool user_set_ = false;
+};
+
+/// Integers with a unit. Time is kept in ps, sizes in bytes, frequencies in Hz.
+class IntParam : public ParamBase {
+ public:
+  enum class Unit { kCount, kCycles, kBytes, kTime, kHertz };
+  IntParam(ParamGroup& group, std::string name, Unit unit, std::uint64_t def, std::uint64_t min,
+           std::uint64_t max, std::string sentence, Origin origin, std::string source);
+  std::uint64_t operator()() const { return value_; }
+  operator std::uint64_t() const { return value_; }
+  std::string text() const override { return format(value_); }
+  std::string default_text() const override { return format(default_); }
+  std::string unit() const override;
+  std::string allowed() const override;
+
+ protected:
+  void parse(std::string_view text) override;
+
+ private:
+  std::string format(std::uint64_t v) const;
+  Unit unit_;
+  std::uint64_t value_, default_, min_, max_;
+};
+
+/// Real numbers; unit "" (a plain number), "deg", "px", ...: the unit is written behind the number.
+class RealParam : public ParamBase {
+ public:
+  RealParam(ParamGroup& group, std::string name, std::string unit, double def, double min,
+            double max, std::string sentence, Origin origin, std::string source);
+  double operator()() const { return value_; }
+  std::string text() const override;
+  std::string default_text() const override;
+  std::string unit() const override { return unit_; }
+  std::string allowed() const override;
+
+ protected:
+  void parse(std::string_view text) override;
+
+ private:
+  std::string unit_;
+  double value_, default_, min_, max_;
+};
+
+/// A list of plain numbers, written `[a, b, c]`; the count must be one of `sizes`.
+class ListParam : public ParamBase {
+ public:
+  ListParam(ParamGroup& group, std::string name, std::vector<double> def,
+            std::vector<std::size_t> sizes, std::string sentence, Origin origin,
+            std::string source);
+  const std::vector<double>& operator()() const { return value_; }
+  std::string text() const override;
+  std::string default_text() const override;
+  std::string unit() const override { return "list"; }
+  std::string allowed() const override;
+
+ protected:
+  void parse(std::string_view text) override;
+
+ private:
+  std::vector<double> value_, default_;
+  std::vector<std::size_t> sizes_;
+};
+
+class BoolParam : public ParamBase {
+ public:
+  BoolParam(ParamGroup& group, std::string name, bool def, std::string sentence, Origin origin,
+            std::string source);
+  bool operator()() const { return value_; }
+  std::string text() const override { return value_ ? "true" : "false"; }
+  std::string default_text() const override { return default_ ? "true" : "false"; }
+  std::string unit() const override { return "bool"; }
+  std::string allowed() const override { return "true, false"; }
+
+ protected:
+  void parse(std::string_view text) override;
+
+ private:
+  bool value_, default_;
+};
+
+/// One of a list of words.
+class EnumParam : public ParamBase {
+ public:
+  EnumParam(ParamGroup& group, std::string name, std::string def, std::vector<std::string> words,
+            std::string sentence, Origin origin, std::string source);
+  const std::string& operator()() const { return value_; }
+  bool is(std::string_view word) const { return value_ == word; }
+  std::size_t index() const;
+  std::string text() const override { return value_; }
+  std::string default_text() const override { return default_; }
+  std::string unit() const override { return "word"; }
+  std::string allowed() const override;
+
+ protected:
+  void parse(std::string_view text) override;
+
+ private:
+  std::string value_, default_;
+  std::vector<std::string> words_;
+};
+
+/// Free text, such as a file name.
+class TextParam : public ParamBase {
+ public:
+  TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence);
+  const std::string& operator()() const { return value_; }
+  std::string text() const override { return value_; }
+  std::string default_text() const override { return default_; }
+  std::string unit() const override { return "text"; }
+  std::string allowed() const override { return "text"; }
+
+ protected:
+  void parse(std::string_view text) override { value_ = text; }
+
+ private:
+  std::string value_, default_;
+};
+
+/// A block's parameters; `prefix` is the block's dotted name ("ddr", "cpu.dcache").
+class ParamGroup {
+ public:
+  explicit ParamGroup(std::string prefix) : prefix_(std::move(prefix)) {}
+  ParamGroup(const ParamGroup&) = delete;
+  ParamGroup& operator=(const ParamGroup&) = delete;
+  const std::string& prefix() const { return prefix_; }
+  const std::vector<ParamBase*>& params() const { return params_; }
+
+ private:
+  friend class ParamBase;
+  std::string prefix_;
+  std::vector<ParamBase*> params_;
+};
+
+/// All parameters of a run, found by key.
+class ParamSet {
+ public:
+  void add(ParamGroup& group);
+  const std::vector<ParamBase*>& all() const { return all_; }
+  ParamBase* find(std::string_view key) const;
+  /// The known key nearest to `key` by edit distance, empty if none is near.
+  std::string nearest(std::string_view key) const;
+  /// @throws UserError naming the key, what is allowed and a suggestion
+  void set(std::string_view key, std::string_view text);
+
+ private:
+  std::vector<ParamBase*> all_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,59 @@
+// Acts that must see everything else that happens at the same instant.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <systemc>
+#include <utility>
+
+#include "model/common/lookahead.h"
+
+namespace fovea {
+
+/// Runs callbacks at a time T after all other activity of T, in the order given by `order`, then by
+/// request. One such object serves a whole simulation: two would wait for each other. Register
+/// accesses and the edges of the measured window use it, so that they see the same state whatever
+/// the order of processes within T.
+class QuietPhase : public sc_core::sc_module {
+ public:
+  explicit QuietPhase(sc_core::sc_module_name name) : sc_module(name) {
+    SC_HAS_PROCESS(QuietPhase);
+    SC_METHOD(run);
+    sensitive << due_;
+    dont_initialize();
+  }
+
+  /// `at` >= now.
+  void at(Picoseconds at, unsigned order, std::function<void()> f) {
+    queue_.emplace(Key{at, order, ++serial_}, std::move(f));
+    due_.notify(ps_time(queue_.begin()->first.at - kernel_time()));
+  }
+
+ private:
+  struct Key {
+    Picoseconds at;
+    unsigned order;
+    std::uint64_t serial;
+    auto operator<=>(const Key&) const = default;
+  };
+
+  void run() {
+    if (sc_core::sc_pending_activity_at_current_time()) {
+      next_trigger(sc_core::SC_ZERO_TIME);
+      return;
+    }
+    const Picoseconds now = kernel_time();
+    while (!queue_.empty() && queue_.begin()->first.at <= now) {
+      auto f = std::move(queue_.begin()->second);
+      queue_.erase(queue_.begin());
+      f();
+    }
+    if (!queue_.empty()) due_.notify(ps_time(queue_.begin()->first.at - now));
+  }
+
+  std::multimap<Key, std::function<void()>> queue_;
+  std::uint64_t serial_ = 0;
+  sc_core::sc_event due_;
+};
+
+}  // namespace fovea

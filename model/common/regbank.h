@@ -1,0 +1,110 @@
+// Memory-mapped registers: declared once with offset, fields, modes, reset value and sentence.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fovea {
+
+class Reg;
+class RegBank;
+
+enum class Mode : std::uint8_t {
+  kRw,   ///< keeps what is written
+  kRo,   ///< writes are lost, as in hardware
+  kW1c,  ///< writing 1 clears
+  kWo,   ///< reads as 0; the write reaches on_write
+};
+
+class Field {
+ public:
+  Field(Reg& reg, std::string name, unsigned lsb, unsigned width, Mode mode, std::string sentence);
+  Field(const Field&) = delete;
+  Field& operator=(const Field&) = delete;
+  std::uint32_t get() const;
+  void set(std::uint32_t value);  ///< from the hardware side, whatever the mode
+  explicit operator bool() const { return get() != 0; }
+  const std::string& name() const { return name_; }
+  const std::string& sentence() const { return sentence_; }
+  unsigned lsb() const { return lsb_; }
+  unsigned width() const { return width_; }
+  Mode mode() const { return mode_; }
+  std::uint32_t mask() const { return mask_; }
+
+ private:
+  Reg& reg_;
+  std::string name_, sentence_;
+  unsigned lsb_, width_;
+  Mode mode_;
+  std::uint32_t mask_;
+};
+
+class Reg {
+ public:
+  /// A register with fields.
+  Reg(RegBank& bank, std::string name, std::uint32_t offset, std::string sentence,
+      std::uint32_t reset = 0);
+  /// A register that is one 32-bit field of `mode`.
+  Reg(RegBank& bank, std::string name, std::uint32_t offset, Mode mode, std::string sentence,
+      std::uint32_t reset = 0);
+  Reg(const Reg&) = delete;
+  Reg& operator=(const Reg&) = delete;
+
+  std::uint32_t get() const { return value_; }
+  void set(std::uint32_t value) { value_ = value; }  ///< from the hardware side
+  /// Runs before a read; may set() the value (counters, entry registers).
+  void on_read(std::function<void()> f) { on_read_ = std::move(f); }
+  /// Runs after a write has taken effect, with the word as written (lanes not written are 0).
+  void on_write(std::function<void(std::uint32_t)> f) { on_write_ = std::move(f); }
+
+  const std::string& name() const { return name_; }
+  const std::string& sentence() const { return sentence_; }
+  std::uint32_t offset() const { return offset_; }
+  std::uint32_t reset_value() const { return reset_; }
+  const std::vector<Field*>& fields() const { return fields_; }
+
+ private:
+  friend class Field;
+  friend class RegBank;
+  void add(Field& field);
+  RegBank& bank_;
+  std::string name_, sentence_;
+  std::uint32_t offset_, reset_, value_;
+  std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0;
+  std::vector<Field*> fields_;
+  std::function<void()> on_read_;
+  std::function<void(std::uint32_t)> on_write_;
+};
+
+enum class Access { kOk, kNoRegister, kMisaligned };
+
+/// A block's registers. Reads and writes of 1, 2 or 4 bytes; byte lanes are merged on a write.
+/// Writes to read-only and uncovered bits are lost and counted; uncovered bits read as their reset
+/// value.
+class RegBank {
+ public:
+  explicit RegBank(std::string name) : name_(std::move(name)) {}
+  RegBank(const RegBank&) = delete;
+  RegBank& operator=(const RegBank&) = delete;
+
+  Access read(std::uint32_t offset, unsigned bytes, std::uint32_t& value);
+  Access write(std::uint32_t offset, unsigned bytes, std::uint32_t value);
+  /// As read, without side effects; for debuggers and tests.
+  Access peek(std::uint32_t offset, std::uint32_t& value) const;
+  void reset();
+  const std::string& name() const { return name_; }
+  const std::vector<Reg*>& regs() const { return regs_; }
+  std::uint64_t lost_writes() const { return lost_writes_; }
+
+ private:
+  friend class Reg;
+  void add(Reg& reg);
+  Reg* find(std::uint32_t offset) const;
+  std::string name_;
+  std::vector<Reg*> regs_;
+  std::vector<Reg*> by_word_;
+  std::uint64_t lost_writes_ = 0;
+};
+
+}  // namespace fovea

@@ -1,0 +1,92 @@
+#include "model/cpu/arm926.h"
+
+namespace fovea::cpu {
+
+Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
+               std::span<std::uint8_t> tcm, std::uint32_t entry)
+    : Agent(name, 2), core_(params, *this, tcm), entry_(entry) {
+  SC_HAS_PROCESS(Arm926);
+  tx_[kInstructionPort].port = kInstructionPort;
+  tx_[kDataPort].port = kDataPort;
+  SC_METHOD(clock_changed);
+  sensitive << clk;
+  SC_METHOD(interrupt_changed);
+  sensitive << irq << fiq;
+  SC_THREAD(run);
+  set_stack_size(1 << 20);
+}
+
+void Arm926::run() {
+  while (clk.read().stopped()) sc_core::wait(clock_runs_);
+  enter();
+  try {
+    core_.reset(entry_, kernel_time());
+    core_.run();
+  } catch (const GuestFailure& e) {
+    failure_ = e.what();
+  } catch (const NotModelled& e) {
+    failure_ = e.what();
+  }
+  leave();
+  sc_core::sc_stop();
+}
+
+void Arm926::clock_changed() {
+  core_.set_clock(clk.read(), kernel_time());
+  if (!clk.read().stopped()) clock_runs_.notify();
+}
+
+/// The core samples the lines at instruction boundaries strictly after now.
+void Arm926::interrupt_changed() {
+  const Picoseconds now = kernel_time();
+  if (irq.read() != irq_) core_.set_irq(irq_ = irq.read(), now);
+  if (fiq.read() != fiq_) core_.set_fiq(fiq_ = fiq.read(), now);
+  if (irq_ || fiq_) {
+    asserted_ = now;
+    interrupt_.notify(sc_core::SC_ZERO_TIME);
+  }
+}
+
+Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
+  while (!irq_ && !fiq_) wait_for(interrupt_);
+  return asserted_;
+}
+
+void Arm926::submit(BusAccess& a, Picoseconds at) {
+  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
+  Transaction& tx = tx_[port];
+  access_[port] = &a;
+  a.done = a.error = false;
+  tx.gp.set_command(a.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+  if (a.kind == BusAccess::Kind::kWrap8) {
+    tx.gp.set_address(a.address & ~31u);
+    tx.ext.critical = a.address & 31u;
+  } else {
+    tx.gp.set_address(a.address);
+    tx.ext.critical = 0;
+  }
+  tx.gp.set_data_ptr(a.data);
+  tx.gp.set_data_length(a.bytes);
+  tx.gp.set_streaming_width(a.bytes);
+  Agent::submit(tx, at);
+}
+
+void Arm926::completed(Transaction& tx) {
+  BusAccess& a = *access_[tx.port];
+  a.error = tx.error();
+  a.first = tx.ext.first;
+  a.last = tx.ext.last;
+  a.done = true;
+}
+
+bool Arm926::poll(BusAccess& a, Picoseconds until) {
+  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
+  return Agent::poll(tx_[port], until) && a.done && a.last <= until;
+}
+
+void Arm926::finish(BusAccess& a) {
+  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
+  Agent::finish(tx_[port]);
+}
+
+}  // namespace fovea::cpu

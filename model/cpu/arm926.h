@@ -1,0 +1,55 @@
+// The ARM926EJ-S on its two AHB sockets.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <systemc>
+
+#include "model/bus/agent.h"
+#include "model/common/sc_ports.h"
+#include "model/cpu/core/bus_port.h"
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+/// Thin wrapper: the core runs on an SC_THREAD, so its blocking calls suspend it at any bus access
+/// and resume it there; the rules of time are those of bus::Agent.
+class Arm926 : public bus::Agent, private BusPort {
+ public:
+  static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
+  ClockIn clk{"clk"};
+  sc_core::sc_in<bool> irq{"irq"}, fiq{"fiq"};
+
+  Arm926(sc_core::sc_module_name name, const CpuParams& params, std::span<std::uint8_t> tcm,
+         std::uint32_t entry);
+  Core& core() { return core_; }
+  const Core& core() const { return core_; }
+  /// Not empty once the core has ended by a guest failure; the simulation is stopped then.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  void run();
+  void clock_changed();
+  void interrupt_changed();
+
+  void submit(BusAccess& access, Picoseconds at) override;
+  bool poll(BusAccess& access, Picoseconds until) override;
+  void finish(BusAccess& access) override;
+  Picoseconds horizon() override { return Agent::horizon(); }
+  void sleep_until(Picoseconds until) override { Agent::sleep_until(until); }
+  Picoseconds wait_for_interrupt(Picoseconds from) override;
+  Picoseconds background_next() const override { return core_.next_act(); }
+  void background_act() override { core_.act(); }
+  void completed(Transaction& tx) override;
+
+  Core core_;
+  std::uint32_t entry_;
+  std::array<Transaction, 2> tx_;
+  std::array<BusAccess*, 2> access_{};
+  sc_core::sc_event interrupt_, clock_runs_;
+  bool irq_ = false, fiq_ = false;
+  Picoseconds asserted_ = 0;  // since when IRQ or FIQ is asserted
+  std::string failure_;
+};
+
+}  // namespace fovea::cpu

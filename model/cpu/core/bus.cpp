@@ -1,0 +1,184 @@
+// The D-AHB with its write and victim buffers, and the reads that wait for it.
+#include <cstring>
+
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+Picoseconds Core::next_act() const {
+  if (read_waiting_) return kNever;
+  if (write_in_flight_)
+    return write_access_.done ? time(ahb(clock_.edge_at_or_after(write_access_.last))) : kNever;
+  if (writes_.empty() && writes_.victim_bytes == 0) return kNever;
+  return time(ahb(std::max(next_write_cycle_, data_port_free_)));
+}
+
+void Core::act() {
+  std::uint64_t c = ahb(std::max(next_write_cycle_, data_port_free_));
+  if (write_in_flight_) {
+    c = ahb(clock_.edge_at_or_after(write_access_.last));
+    retire_write();
+  }
+  if (!writes_.empty() || writes_.victim_bytes) start_write(c);
+}
+
+void Core::retire_write() {
+  write_in_flight_ = false;
+  if (write_is_victim_)
+    writes_.victim_bytes = 0;
+  else
+    writes_.acknowledge(write_access_.bytes);
+}
+
+void Core::start_write(std::uint64_t cycle) {
+  write_is_victim_ = writes_.victim_bytes != 0;
+  BusAccess& a = write_access_;
+  a.port = BusAccess::Port::kData;
+  a.write = a.buffered = true;
+  a.locked = false;
+  if (write_is_victim_) {
+    a.address = writes_.victim_address;
+    a.bytes = static_cast<std::uint8_t>(writes_.victim_bytes);
+    std::memcpy(a.data, writes_.victim.data(), a.bytes);
+  } else {
+    const WriteBuffer::Entry& e = writes_.front();
+    a.bytes = static_cast<std::uint8_t>(WriteBuffer::next_burst(e));
+    a.address = e.address + e.sent;
+    std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
+  }
+  a.kind = a.bytes == 32   ? BusAccess::Kind::kIncr8
+           : a.bytes == 16 ? BusAccess::Kind::kIncr4
+                           : BusAccess::Kind::kSingle;
+  write_in_flight_ = true;
+  data_port_free_ = cycle;
+  port_.submit(a, time(cycle));
+}
+
+/// Plays the buffers up to a clock, in time order.
+void Core::play(std::uint64_t cycle) {
+  if (!write_in_flight_ && writes_.empty() && writes_.victim_bytes == 0) return;
+  const Picoseconds t = time(cycle);
+  for (;;) {
+    if (write_in_flight_ && !write_access_.done) {
+      // While the port waits the buffers may move on by themselves: look again afterwards.
+      if (!port_.poll(write_access_, t) && !(write_in_flight_ && write_access_.done)) return;
+    }
+    if (next_act() > t) return;
+    act();
+  }
+}
+
+/// Waits for the write under way; the next one does not start by itself meanwhile.
+void Core::finish_write(Cause cause) {
+  read_waiting_ = true;
+  port_.finish(write_access_);
+  read_waiting_ = false;
+  stall_to(ahb(clock_.edge_at_or_after(write_access_.last)), cause);
+  next_write_cycle_ = std::max(next_write_cycle_, cycle_);
+  retire_write();
+}
+
+void Core::drain(Cause cause) {
+  play(cycle_);
+  while (write_in_flight_ || !writes_.empty() || writes_.victim_bytes) {
+    if (!write_in_flight_) {
+      const std::uint64_t c = ahb(std::max(next_write_cycle_, data_port_free_));
+      stall_to(c, cause);
+      start_write(ahb(cycle_));
+    }
+    finish_write(cause);
+  }
+}
+
+void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count) {
+  play(cycle_);
+  while (!writes_.room(count)) {
+    if (!write_in_flight_) {
+      stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), Cause::kWriteBuffer);
+      start_write(ahb(cycle_));
+    }
+    finish_write(Cause::kWriteBuffer);
+    play(cycle_);
+  }
+  if (writes_.empty()) next_write_cycle_ = cycle_;
+  writes_.push(pa, bytes, count);
+  // The port may be idle: then the write goes out at once.
+  if (!write_in_flight_ && data_port_free_ <= cycle_) start_write(ahb(cycle_));
+}
+
+/// A read on the data port: goes before waiting writes unless it touches one of them.
+void Core::bus_read(BusAccess& a, Cause cause) {
+  const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
+  if (writes_.overlaps(start, a.bytes) || a.locked) drain(cause);
+  if (!filling_) play(cycle_);
+  if (write_in_flight_) finish_write(cause);
+  stall_to(data_port_free_, cause);
+  sync_to_ahb();
+  read_waiting_ = true;
+  port_.submit(a, time(cycle_));
+  port_.finish(a);
+  read_waiting_ = false;
+  stall_to(clock_.edge_at_or_after(a.first) + (a.error ? 0 : fill_latency_), cause);
+  data_port_free_ = clock_.edge_at_or_after(a.last);
+}
+
+bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value) {
+  BusAccess& a = data_access_;
+  a.port = BusAccess::Port::kData;
+  a.kind = BusAccess::Kind::kSingle;
+  a.write = a.buffered = false;
+  a.address = pa;
+  a.bytes = static_cast<std::uint8_t>(bytes);
+  // Device order: what was written before is out before.
+  drain(Cause::kUncached);
+  bus_read(a, Cause::kUncached);
+  value = 0;
+  std::memcpy(&value, a.data, bytes);
+  return !a.error;
+}
+
+bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t value) {
+  drain(Cause::kUncached);
+  stall_to(data_port_free_, Cause::kUncached);
+  sync_to_ahb();
+  BusAccess& a = data_access_;
+  a.port = BusAccess::Port::kData;
+  a.kind = BusAccess::Kind::kSingle;
+  a.write = true;
+  a.buffered = false;
+  a.address = pa;
+  a.bytes = static_cast<std::uint8_t>(bytes);
+  std::memcpy(a.data, &value, bytes);
+  read_waiting_ = true;
+  port_.submit(a, time(cycle_));
+  port_.finish(a);
+  read_waiting_ = false;
+  stall_to(clock_.edge_at_or_after(a.last), Cause::kUncached);
+  data_port_free_ = cycle_;
+  return !a.error;
+}
+
+/// Moves the dirty halves of a line to the victim buffer.
+void Core::write_back(unsigned index, Cause cause) {
+  Cache::Line& l = dcache_.line(index);
+  if (l.dirty == 0) return;
+  if (!filling_) play(cycle_);
+  while (writes_.victim_bytes) {
+    if (!write_in_flight_) {
+      stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), cause);
+      start_write(ahb(cycle_));
+    }
+    finish_write(cause);
+  }
+  const unsigned from = l.dirty == 2 ? 16 : 0, n = l.dirty == 3 ? 32 : 16;
+  if (writes_.empty() && !write_in_flight_) next_write_cycle_ = cycle_;
+  writes_.victim_address = l.pa + from;
+  writes_.victim_bytes = n;
+  std::memcpy(writes_.victim.data(), dcache_.data(index) + from, n);
+  l.dirty = 0;
+  ++counts_.dcache_writebacks;
+  if (!read_waiting_ && !write_in_flight_ && data_port_free_ <= cycle_ && !filling_)
+    start_write(ahb(cycle_));
+}
+
+}  // namespace fovea::cpu

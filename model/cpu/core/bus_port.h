@@ -1,0 +1,74 @@
+// What the ARM926 core needs from the outside: two AHB masters, time and interrupts.
+#pragma once
+#include <cstdint>
+
+#include "model/common/units.h"
+
+namespace fovea::cpu {
+
+/// One AHB transaction. Owned by the core; must stay where it is from submit() until done.
+struct BusAccess {
+  enum class Port : std::uint8_t { kInstruction, kData };
+  enum class Kind : std::uint8_t { kSingle, kWrap8, kIncr4, kIncr8 };
+
+  std::uint32_t address = 0;  ///< physical; kWrap8: address of the critical word
+  std::uint8_t bytes = 4;     ///< 1, 2, 4 (single), 16 (INCR4), 32 (WRAP8, INCR8)
+  bool write = false;
+  bool buffered = false;      ///< write from the write or victim buffer: the core does not wait
+  bool locked = false;        ///< SWP
+  Port port = Port::kData;
+  Kind kind = Kind::kSingle;
+  /// In address order from the aligned start of the burst (for kWrap8: the start of the line, not
+  /// the critical word). Valid for a read once done.
+  alignas(8) std::uint8_t data[32] = {};
+
+  bool done = false;   ///< set by the port as soon as the outcome is decided; times may lie ahead
+  bool error = false;  ///< the bus answered with an error
+  Picoseconds first = 0;  ///< read: first (critical) word is at the core's AHB port
+  Picoseconds last = 0;   ///< read: last word; write: the write is acknowledged
+};
+
+/// The outside of the core. Times are absolute. One rule orders everything that happens between
+/// agents: what happens at time t is seen strictly after t.
+///
+/// The core calls in non-decreasing time order across both AHB ports. Between calls it may run
+/// instructions ahead of everyone else up to horizon().
+class BusPort {
+ public:
+  virtual ~BusPort() = default;
+
+  /// Puts one transaction on its AHB port at time `at`. At most one is under way per port. Does
+  /// not wait for its outcome. May let other agents act before `at`.
+  virtual void submit(BusAccess& access, Picoseconds at) = 0;
+
+  /// True if `access` is done with last <= until. Lets the bus act only before `until`, and not
+  /// beyond the point at which `access` is decided, so that the core may still submit at its
+  /// `last` or later.
+  virtual bool poll(BusAccess& access, Picoseconds until) = 0;
+
+  /// Returns when access.done. While it waits it plays the core's background work (write buffer)
+  /// in time order through Background.
+  virtual void finish(BusAccess& access) = 0;
+
+  /// Instructions that begin at or before the returned time may run without asking again.
+  virtual Picoseconds horizon() = 0;
+
+  /// Lets all others act up to `until` (playing the core's background work); horizon() is new.
+  virtual void sleep_until(Picoseconds until) = 0;
+
+  /// Wait-for-interrupt: returns the time at which IRQ or FIQ was asserted (maybe before `from`).
+  virtual Picoseconds wait_for_interrupt(Picoseconds from) = 0;
+};
+
+/// What the core has to do on its own while it is blocked: the next write of the write buffer.
+class Background {
+ public:
+  virtual ~Background() = default;
+  /// Time of the next submission of buffered writes, kNever if there is none or if it hangs on a
+  /// transaction whose outcome is not decided yet.
+  virtual Picoseconds next_act() const = 0;
+  /// Does it (calls BusPort::submit with that time). Never blocks.
+  virtual void act() = 0;
+};
+
+}  // namespace fovea::cpu

@@ -1,0 +1,68 @@
+// A 4-way virtually tagged cache that holds its data.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace fovea::cpu {
+
+class Cache {
+ public:
+  static constexpr unsigned kWays = 4, kLineBytes = 32;
+  explicit Cache(std::uint64_t size)
+      : sets_(static_cast<unsigned>(size / (kWays * kLineBytes))),
+        lines_(sets_ * kWays),
+        data_(static_cast<std::size_t>(size)) {}
+  struct Line {
+    std::uint32_t tag = 1;   // MVA of the line; 1: invalid
+    std::uint32_t pa = 0;    // where it came from, for write-backs
+    std::uint8_t dirty = 0;  // one bit per half
+    bool write_back = false;
+  };
+  unsigned sets() const { return sets_; }
+  unsigned lines() const { return sets_ * kWays; }
+  unsigned set_of(std::uint32_t mva) const { return (mva >> 5) & (sets_ - 1); }
+  /// Index of the line that holds this MVA (low five bits ignored); -1 if none.
+  int find(std::uint32_t mva) const {
+    const std::uint32_t line = mva & ~31u;
+    const unsigned base = set_of(mva) * kWays;
+    for (unsigned w = 0; w < kWays; ++w)
+      if (lines_[base + w].tag == line) return static_cast<int>(base + w);
+    return -1;
+  }
+  Line& line(unsigned i) { return lines_[i]; }
+  const Line& line(unsigned i) const { return lines_[i]; }
+  std::uint8_t* data(unsigned i) { return data_.data() + std::size_t{i} * kLineBytes; }
+  const std::uint8_t* data(unsigned i) const { return data_.data() + std::size_t{i} * kLineBytes; }
+  void invalidate(unsigned i) { lines_[i].tag = 1; lines_[i].dirty = 0; }
+  void invalidate_all() {
+    for (unsigned i = 0; i < lines(); ++i) invalidate(i);
+  }
+  /// The way to replace in a set: an invalid one first, else by the counter; locked ways (format C,
+  /// bit set) are passed over. Round robin or a 16-bit Galois LFSR (assumed: the chip's generator
+  /// is not documented).
+  unsigned victim(unsigned set, bool round_robin, std::uint32_t locked) {
+    for (unsigned w = 0; w < kWays; ++w)
+      if (lines_[set * kWays + w].tag == 1 && !(locked >> w & 1u)) return set * kWays + w;
+    for (unsigned tries = 0; tries < 64; ++tries) {
+      unsigned w;
+      if (round_robin) {
+        w = counter_++ & 3u;
+      } else {
+        lfsr_ = static_cast<std::uint16_t>((lfsr_ >> 1) ^ ((lfsr_ & 1u) ? 0xB400u : 0u));
+        w = lfsr_ & 3u;
+      }
+      if (!(locked >> w & 1u)) return set * kWays + w;
+    }
+    return set * kWays + 3;
+  }
+
+ private:
+  unsigned sets_;
+  std::vector<Line> lines_;
+  std::vector<std::uint8_t> data_;
+  unsigned counter_ = 0;
+  std::uint16_t lfsr_ = 0xACE1;
+};
+
+}  // namespace fovea::cpu

@@ -1,0 +1,137 @@
+// Modes, banks and exceptions (ARM ARM A2.6; aborts restore the base).
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
+    : port_(port),
+      tcm_(tcm),
+      ratio_(static_cast<unsigned>(params.ahb_ratio())),
+      fill_latency_(static_cast<unsigned>(params.fill_latency())),
+      walk_cycles_(static_cast<unsigned>(params.walk_cycles())),
+      cache_op_cycles_(static_cast<unsigned>(params.cache_op_cycles())),
+      test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
+      invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
+      tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
+      shifted_cycle_(params.shifted_address_cycle()),
+      decoded_(params.icache.size() / Cache::kLineBytes),
+      tcm_decoded_(tcm.size() / Cache::kLineBytes),
+      icache_(params.icache.size()),
+      dcache_(params.dcache.size()),
+      params_(params) {
+  flat_.mask = ~0u;
+}
+
+void Core::set_clock(Frequency f, Picoseconds at) {
+  clock_.restart(f, at);
+  attention_ = true;
+}
+
+void Core::reset(std::uint32_t entry, Picoseconds now) {
+  cpsr_ = 0xD3u | ((entry & 1u) << 5);
+  pc_ = next_pc_ = entry & ~1u;
+  control_ = 0x0005'0078;
+  // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
+  itcm_region_ = 6u << 2 | 1u;
+  dtcm_region_ = kDtcmBase | 6u << 2 | 1u;
+  itcm_size_ = dtcm_size_ = 32 * 1024;
+  cycle_ = clock_.running() ? clock_.edge_after(now) : 0;
+  attention_ = true;
+  flush_memos();
+}
+
+unsigned Core::bank(std::uint32_t mode) {
+  switch (mode & 31u) {
+    case 0x11: return 1;
+    case 0x12: return 2;
+    case 0x13: return 3;
+    case 0x17: return 4;
+    case 0x1B: return 5;
+    default: return 0;  // user and system
+  }
+}
+
+void Core::switch_mode(std::uint32_t mode) {
+  const unsigned from = bank(cpsr_), to = bank(mode);
+  if (from != to) {
+    banked_[from][0] = r_[13];
+    banked_[from][1] = r_[14];
+    if (from == 1 || to == 1) {
+      auto& keep = from == 1 ? fiq_high_ : user_high_;
+      auto& bring = to == 1 ? fiq_high_ : user_high_;
+      for (unsigned k = 0; k < 5; ++k) {
+        keep[k] = r_[8 + k];
+        r_[8 + k] = bring[k];
+      }
+    }
+    r_[13] = banked_[to][0];
+    r_[14] = banked_[to][1];
+  }
+  cpsr_ = (cpsr_ & ~31u) | (mode & 31u);
+}
+
+void Core::set_cpsr(std::uint32_t value) {
+  const bool was_privileged = privileged();
+  switch_mode(value);
+  cpsr_ = value;
+  if (was_privileged != privileged()) flush_memos();
+  attention_ = true;  // masks may have opened
+}
+
+void Core::take(Exception e, std::uint32_t return_address) {
+  struct Entry {
+    std::uint32_t vector, mode;
+  };
+  constexpr Entry kEntries[] = {{0x00, 0x13}, {0x04, 0x1B}, {0x08, 0x13}, {0x0C, 0x17},
+                                {0x10, 0x17}, {0x18, 0x12}, {0x1C, 0x11}};
+  constexpr const char* kNames[] = {"reset", "undefined instruction", "SWI", "prefetch abort",
+                                    "data abort", "IRQ", "FIQ"};
+  if (chain_ == 0) failed_pc_ = pc_;
+  // A vector that itself faults without one instruction completed will do so for ever.
+  if (++chain_ > 3) {
+    failing_ = true;
+    throw GuestFailure(std::string(kNames[static_cast<unsigned>(e)]) +
+                       " with no handler: its vector faults again");
+  }
+  const Entry& entry = kEntries[static_cast<unsigned>(e)];
+  const std::uint32_t saved = cpsr_;
+  const bool was_privileged = privileged();
+  switch_mode(entry.mode);
+  spsr_[bank(entry.mode)] = saved;
+  cpsr_ = (cpsr_ & ~0x20u) | 0x80u;
+  if (e == Exception::kFiq || e == Exception::kReset) cpsr_ |= 0x40u;
+  r_[14] = return_address;
+  branch_to(entry.vector | ((control_ >> 13 & 1u) ? 0xFFFF0000u : 0u));
+  fetch_branched_ = true;
+  if (!was_privileged) flush_memos();
+  aborted_ = true;
+  ++counts_.exceptions;
+  spend(3);
+}
+
+void Core::data_abort() { take(Exception::kDataAbort, pc_ + 8); }
+
+void Core::undefined() {
+  take(Exception::kUndefined, pc_ + ((cpsr_ & 0x20u) ? 2u : 4u));
+}
+
+void Core::unpredictable(const char* what) {
+  ++counts_.unpredictable;
+  Diagnostics::instance().guest(std::string("UNPREDICTABLE: ") + what);
+}
+
+void Core::mark_window(Picoseconds t) {
+  mark_pending_ = true;
+  mark_at_ = t;
+  attention_ = true;
+}
+
+void Core::snapshot() {
+  mark_pending_ = false;
+  counts_.cycles = cycle_;
+  (first_mark_ ? window_.from : window_.to) = counts_;
+  if (first_mark_) window_.to = counts_;
+  first_mark_ = false;
+}
+
+}  // namespace fovea::cpu

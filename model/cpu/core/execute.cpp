@@ -1,0 +1,625 @@
+// Instructions. Cycle counts: ARM DDI 0222B chapter 8 (arm926.md 1.1), interlocks 1.3.
+#include <bit>
+
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+namespace {
+
+constexpr std::uint32_t kN = 1u << 31, kZ = 1u << 30, kC = 1u << 29, kV = 1u << 28, kQ = 1u << 27;
+
+/// Bit cond*16 + NZCV: the condition holds.
+constexpr std::array<std::uint16_t, 16> make_conditions() {
+  std::array<std::uint16_t, 16> out{};
+  for (unsigned f = 0; f < 16; ++f) {
+    const bool n = f & 8, z = f & 4, c = f & 2, v = f & 1;
+    const bool pass[16] = {z, !z, c, !c, n, !n, v, !v, c && !z, !c || z,
+                           n == v, n != v, !z && n == v, z || n != v, true, false};
+    for (unsigned k = 0; k < 16; ++k)
+      if (pass[k]) out[k] = static_cast<std::uint16_t>(out[k] | (1u << f));
+  }
+  return out;
+}
+constexpr auto kConditions = make_conditions();
+
+std::int32_t half(std::uint32_t v, bool top) {
+  return static_cast<std::int16_t>(top ? v >> 16 : v);
+}
+
+std::uint32_t saturate(std::int64_t v, bool& q) {
+  if (v > INT32_MAX) {
+    q = true;
+    return INT32_MAX;
+  }
+  if (v < INT32_MIN) {
+    q = true;
+    return 0x80000000u;
+  }
+  return static_cast<std::uint32_t>(v);
+}
+
+}  // namespace
+
+void Core::run() {
+  while (!stop_requested_) {
+    if (cycle_ >= stop_cycle_ || attention_) step_attention();
+    const Instruction* i = fetch();
+    if (!i) {
+      pc_ = next_pc_;
+      aborted_ = false;
+      continue;
+    }
+    next_pc_ = pc_ + ((i->flags & kThumbInsn) ? 2u : 4u);
+    if (i->cond != 14 && !(kConditions[i->cond] >> (cpsr_ >> 28) & 1u)) {
+      spend(1);
+      ++counts_.instructions;
+      pc_ = next_pc_;
+      continue;
+    }
+    if (cycle_ < busy_until_) interlock(*i);
+    if (i->flags & kReadsPc)
+      r_[15] = (pc_ + ((i->flags & kThumbInsn) ? 4u : 8u)) & ((i->flags & kAlignPc) ? ~3u : ~0u);
+    execute(*i);
+    if (aborted_) {
+      aborted_ = false;
+    } else {
+      ++counts_.instructions;
+      chain_ = 0;
+    }
+    if (branched_) {
+      branched_ = false;
+      fetch_branched_ = true;
+    }
+    pc_ = next_pc_;
+  }
+}
+
+/// Instruction boundary that needs a look: horizon reached, an interrupt line or a mask changed, or
+/// the edge of the window.
+void Core::step_attention() {
+  for (;;) {
+    attention_ = false;
+    const Picoseconds t = time(cycle_);
+    if (mark_pending_ && t > mark_at_) snapshot();
+    const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
+    if (fiq_open && fiq_.at(t)) {
+      take(Exception::kFiq, pc_ + 4);
+      pc_ = next_pc_;
+      aborted_ = false;
+      chain_ = 0;
+      continue;
+    }
+    if (irq_open && irq_.at(t)) {
+      take(Exception::kIrq, pc_ + 4);
+      pc_ = next_pc_;
+      aborted_ = false;
+      chain_ = 0;
+      continue;
+    }
+    const Picoseconds h = port_.horizon();
+    const std::uint64_t stop = h == kNever ? ~std::uint64_t{0} : clock_.edge_after(h);
+    if (cycle_ >= stop) {
+      play(cycle_);
+      port_.sleep_until(t);
+      // At t itself everybody may act once more: run this instruction, then look again.
+      if (!attention_ && !mark_pending_) {
+        const Picoseconds again = port_.horizon();
+        stop_cycle_ = again <= t ? cycle_ + 1
+                      : again == kNever ? ~std::uint64_t{0} : clock_.edge_after(again);
+        if ((fiq_open && fiq_.level) || (irq_open && irq_.level)) stop_cycle_ = cycle_ + 1;
+        return;
+      }
+      const Picoseconds now = time(cycle_);
+      if (mark_pending_ && now > mark_at_) snapshot();
+      if ((fiq_open && fiq_.at(now)) || (irq_open && irq_.at(now))) continue;
+      attention_ = false;
+      stop_cycle_ = cycle_ + 1;
+      return;
+    }
+    stop_cycle_ = stop;
+    // Raised but not yet visible, or a mark not yet passed: look at the next boundary.
+    if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || mark_pending_)
+      stop_cycle_ = cycle_ + 1;
+    return;
+  }
+}
+
+/// Waits for operands that are still on their way (ARM DDI 0222B 8.3): ready counts from the end of
+/// the producer's issue; store data and accumulators are read a cycle later.
+void Core::interlock(const Instruction& i) {
+  std::uint64_t need = cycle_;
+  for (std::uint32_t s = i.sources; s; s &= s - 1)
+    need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))]);
+  for (std::uint32_t s = i.stored; s; s &= s - 1) {
+    const unsigned r = static_cast<unsigned>(std::countr_zero(s));
+    // Read a cycle later, but loads have no forwarding to this port (their latency is one more),
+    // and of a multiply only the accumulator input is forwarded, not store data.
+    const bool late = producer_[r] == Producer::kLoad ||
+                      (producer_[r] == Producer::kMultiply && i.op >= Op::kLdr);
+    need = std::max(need, late || ready_[r] == 0 ? ready_[r] : ready_[r] - 1);
+  }
+  stall_to(need, Cause::kInterlock);
+}
+
+std::uint32_t Core::operand(const Instruction& i, bool& carry) const {
+  switch (i.operand) {
+    case Operand::kImm:
+      if (i.flags & kImmCarry) carry = i.imm >> 31;
+      return i.imm;
+    case Operand::kReg:
+      return r_[i.rm];
+    case Operand::kShiftImm: {
+      const std::uint32_t v = r_[i.rm];
+      const unsigned n = i.amount;
+      switch (i.shift) {
+        case 0:
+          carry = n ? v >> (32 - n) & 1u : carry;
+          return n ? v << n : v;
+        case 1:
+          carry = n ? v >> (n - 1) & 1u : v >> 31;
+          return n ? v >> n : 0;
+        case 2:
+          carry = n ? v >> (n - 1) & 1u : v >> 31;
+          return static_cast<std::uint32_t>(static_cast<std::int32_t>(v) >> (n ? n : 31));
+        default:
+          if (n == 0) {  // RRX
+            const std::uint32_t out = v >> 1 | (cpsr_ & kC) << 2;
+            carry = v & 1u;
+            return out;
+          }
+          carry = v >> (n - 1) & 1u;
+          return std::rotr(v, static_cast<int>(n));
+      }
+    }
+    default: {
+      // Register-specified: the pc reads 12 ahead (one cycle later).
+      const std::uint32_t v = i.rm == 15 ? r_[15] + 4 : r_[i.rm];
+      const unsigned n = r_[i.rs] & 0xFFu;
+      if (n == 0) return v;
+      switch (i.shift) {
+        case 0:
+          carry = n < 32 ? v >> (32 - n) & 1u : n == 32 ? v & 1u : 0;
+          return n < 32 ? v << n : 0;
+        case 1:
+          carry = n < 32 ? v >> (n - 1) & 1u : n == 32 ? v >> 31 : 0;
+          return n < 32 ? v >> n : 0;
+        case 2:
+          carry = n < 32 ? v >> (n - 1) & 1u : v >> 31;
+          return static_cast<std::uint32_t>(static_cast<std::int32_t>(v) >> (n < 32 ? n : 31));
+        default:
+          carry = v >> ((n - 1) & 31u) & 1u;
+          return std::rotr(v, static_cast<int>(n & 31u));
+      }
+    }
+  }
+}
+
+void Core::data_processing(const Instruction& i) {
+  const bool set = i.flags & kSetFlags;
+  bool carry = cpsr_ & kC;
+  const bool carry_in = carry;
+  const std::uint32_t b = operand(i, carry);
+  const bool late = i.operand == Operand::kShiftReg;
+  const std::uint32_t a = i.rn == 15 && late ? r_[15] + 4 : r_[i.rn];
+  std::uint32_t result = 0;
+  bool overflow = cpsr_ & kV, logical = false, writes = true;
+  const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t c) {
+    const std::uint64_t sum = std::uint64_t{x} + y + c;
+    result = static_cast<std::uint32_t>(sum);
+    carry = sum >> 32;
+    overflow = (~(x ^ y) & (x ^ result)) >> 31;
+  };
+  switch (i.op) {
+    case Op::kAnd: result = a & b; logical = true; break;
+    case Op::kEor: result = a ^ b; logical = true; break;
+    case Op::kSub: add(a, ~b, 1); break;
+    case Op::kRsb: add(b, ~a, 1); break;
+    case Op::kAdd: add(a, b, 0); break;
+    case Op::kAdc: add(a, b, carry_in); break;
+    case Op::kSbc: add(a, ~b, carry_in); break;
+    case Op::kRsc: add(b, ~a, carry_in); logical = true; break;
+    case Op::kTst: result = a & b; writes = false; break;
+    case Op::kTeq: result = a ^ b; writes = false; break;
+    case Op::kCmp: add(a, ~b, 1); writes = false; break;
+    case Op::kCmn: add(a, b, 0); writes = false; break;
+    case Op::kOrr: result = a | b; logical = true; break;
+    case Op::kMov: result = b; logical = true; break;
+    case Op::kBic: result = a & ~b; logical = true; break;
+    default: result = ~b; logical = true; break;
+  }
+  const bool shifted = i.operand == Operand::kShiftImm || late;
+  if (writes && i.rd == 15) [[unlikely]] {
+    spend(logical || shifted ? 4 : 3);
+    if (set && !(i.flags & kThumbInsn)) {
+      const std::uint32_t saved = spsr_[bank(cpsr_)];
+      set_cpsr(saved);
+      branch_to(result & ((cpsr_ & 0x20u) ? ~1u : ~3u));
+      return;
+    }
+    branch_to(result & ((i.flags & kThumbInsn) ? ~1u : ~3u));
+    return;
+  }
+  if (set)
+    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (result & kN) | (result ? 0 : kZ) | (carry ? kC : 0) |
+            (overflow ? kV : 0);
+  if (writes) r_[i.rd] = result;
+  spend(late ? 2 : 1);
+}
+
+void Core::multiply(const Instruction& i) {
+  const bool set = i.flags & kSetFlags;
+  if (i.op == Op::kMul || i.op == Op::kMla) {
+    // Rd is in 19:16, the accumulator in 15:12.
+    const std::uint32_t v = r_[i.rm] * r_[i.rs] + (i.op == Op::kMla ? r_[i.rd] : 0);
+    r_[i.rn] = v;
+    if (set) cpsr_ = (cpsr_ & ~(kN | kZ)) | (v & kN) | (v ? 0 : kZ);
+    spend(set ? 4 : 2);
+    if (!set) multiplied(i.rn, 1);
+    return;
+  }
+  std::uint64_t v;
+  if (i.op == Op::kUmull || i.op == Op::kUmlal)
+    v = std::uint64_t{r_[i.rm]} * r_[i.rs];
+  else
+    v = static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(r_[i.rm])} *
+                                   static_cast<std::int32_t>(r_[i.rs]));
+  if (i.op == Op::kUmlal || i.op == Op::kSmlal)
+    v += std::uint64_t{r_[i.rn]} << 32 | r_[i.rd];
+  r_[i.rd] = static_cast<std::uint32_t>(v);
+  r_[i.rn] = static_cast<std::uint32_t>(v >> 32);
+  if (set) cpsr_ = (cpsr_ & ~(kN | kZ)) | (r_[i.rn] & kN) | (v ? 0 : kZ);
+  spend(set ? 5 : 3);
+  if (!set) multiplied(i.rn, 1);
+}
+
+void Core::dsp(const Instruction& i) {
+  bool q = false;
+  const auto s = [this](unsigned r) { return std::int64_t{static_cast<std::int32_t>(r_[r])}; };
+  unsigned cycles = 1;
+  switch (i.op) {
+    case Op::kSmulxy:
+      r_[i.rn] = static_cast<std::uint32_t>(half(r_[i.rm], i.flags & kTop1) *
+                                            half(r_[i.rs], i.flags & kTop2));
+      multiplied(i.rn, 2);
+      break;
+    case Op::kSmlaxy: {
+      const std::int64_t v = std::int64_t{half(r_[i.rm], i.flags & kTop1)} *
+                                 half(r_[i.rs], i.flags & kTop2) + s(i.rd);
+      if (v != static_cast<std::int32_t>(v)) q = true;
+      r_[i.rn] = static_cast<std::uint32_t>(v);
+      multiplied(i.rn, 2);
+      break;
+    }
+    case Op::kSmulwy:
+      r_[i.rn] = static_cast<std::uint32_t>((s(i.rm) * half(r_[i.rs], i.flags & kTop2)) >> 16);
+      multiplied(i.rn, 2);
+      break;
+    case Op::kSmlawy: {
+      const std::int64_t v = ((s(i.rm) * half(r_[i.rs], i.flags & kTop2)) >> 16) + s(i.rd);
+      if (v != static_cast<std::int32_t>(v)) q = true;
+      r_[i.rn] = static_cast<std::uint32_t>(v);
+      multiplied(i.rn, 2);
+      break;
+    }
+    case Op::kSmlalxy: {
+      std::uint64_t v = std::uint64_t{r_[i.rn]} << 32 | r_[i.rd];
+      v += static_cast<std::uint64_t>(std::int64_t{half(r_[i.rm], i.flags & kTop1)} *
+                                      half(r_[i.rs], i.flags & kTop2));
+      r_[i.rd] = static_cast<std::uint32_t>(v);
+      r_[i.rn] = static_cast<std::uint32_t>(v >> 32);
+      cycles = 2;
+      break;
+    }
+    case Op::kQadd: r_[i.rd] = saturate(s(i.rm) + s(i.rn), q); produce(i.rd, 2); break;
+    case Op::kQsub: r_[i.rd] = saturate(s(i.rm) - s(i.rn), q); produce(i.rd, 2); break;
+    case Op::kQdadd: {
+      const std::uint32_t twice = saturate(2 * s(i.rn), q);
+      r_[i.rd] = saturate(s(i.rm) + static_cast<std::int32_t>(twice), q);
+      produce(i.rd, 2);
+      break;
+    }
+    default: {
+      const std::uint32_t twice = saturate(2 * s(i.rn), q);
+      r_[i.rd] = saturate(s(i.rm) - static_cast<std::int32_t>(twice), q);
+      produce(i.rd, 2);
+      break;
+    }
+  }
+  if (q) cpsr_ |= kQ;
+  spend(cycles);
+}
+
+void Core::interwork(std::uint32_t target) {
+  if ((target & 1u) && !(control_ >> 15 & 1u)) {
+    cpsr_ |= 0x20u;
+    branch_to(target & ~1u);
+  } else {
+    if (!(control_ >> 15 & 1u)) cpsr_ &= ~0x20u;
+    branch_to(target & ((cpsr_ & 0x20u) ? ~1u : ~3u));
+  }
+}
+
+void Core::load_store(const Instruction& i) {
+  const bool user = i.flags & kUserBank;
+  bool ignored = false;
+  const std::uint32_t offset = operand(i, ignored);
+  const std::uint32_t base = r_[i.rn];
+  const std::uint32_t moved = (i.flags & kUp) ? base + offset : base - offset;
+  const std::uint32_t address = (i.flags & kPre) ? moved : base;
+  unsigned cycles = i.operand == Operand::kShiftImm && shifted_cycle_ ? 2 : 1;
+  std::uint32_t value = 0;
+  const auto write_back = [&] {
+    if ((i.flags & kWriteBack) && i.rn != 15) r_[i.rn] = moved;
+  };
+  switch (i.op) {
+    case Op::kStr:
+    case Op::kStrb:
+    case Op::kStrh: {
+      const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
+      value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];
+      if (store(address, bytes, value, user) != Result::kOk) return data_abort();
+      write_back();
+      spend(cycles);
+      return;
+    }
+    case Op::kLdr:
+      if (load(address, 4, value, user) != Result::kOk) return data_abort();
+      write_back();
+      if (address & 3u) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
+      if (i.rd == 15) [[unlikely]] {
+        spend(cycles + 4);
+        return interwork(value);
+      }
+      r_[i.rd] = value;
+      spend(cycles);
+      loaded(i.rd, (address & 3u) ? 2 : 1);
+      return;
+    case Op::kLdrb:
+      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      break;
+    case Op::kLdrh:
+      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      break;
+    case Op::kLdrsb:
+      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      value = static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
+      break;
+    case Op::kLdrsh:
+      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      value = static_cast<std::uint32_t>(static_cast<std::int16_t>(value));
+      break;
+    case Op::kLdrd: {
+      std::uint32_t second = 0;
+      if (load(address & ~3u, 4, value, false) != Result::kOk) return data_abort();
+      spend(1);
+      if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort();
+      write_back();
+      r_[i.rd] = value;
+      if (i.rd + 1u == 15) {
+        spend(5);
+        return interwork(second);
+      }
+      r_[i.rd + 1u] = second;
+      spend(1);
+      loaded(i.rd + 1u, 1);
+      return;
+    }
+    default: {  // STRD
+      const std::uint32_t words[2] = {r_[i.rd], i.rd + 1u == 15 ? r_[15] + 4 : r_[i.rd + 1u]};
+      if (store_words(address & ~3u, words, 2, false) != Result::kOk) return data_abort();
+      write_back();
+      return;
+    }
+  }
+  write_back();
+  if (i.rd == 15) {
+    unpredictable("narrow load to the pc");
+    spend(cycles);
+    return;
+  }
+  r_[i.rd] = value;
+  spend(cycles);
+  loaded(i.rd, 2);
+}
+
+void Core::load_multiple(const Instruction& i) {
+  const std::uint32_t base = r_[i.rn];
+  const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
+  if (n == 0) {  // no register: the base moves by sixteen words
+    unpredictable("LDM without registers");
+    if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
+    spend(1);
+    return;
+  }
+  const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
+  std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
+                                          : ((i.flags & kPre) ? end : end + 4);
+  std::array<std::uint32_t, 16> values;
+  for (unsigned k = 0; k < n; ++k) {
+    if (load((address + 4 * k) & ~3u, 4, values[k]) != Result::kOk) return data_abort();
+    spend(1);
+  }
+  if (n == 1 && !(i.imm & 0x8000u)) spend(1);
+  const bool user_bank = (i.flags & kUserBank) && !(i.imm & 0x8000u);
+  const std::uint32_t mode = cpsr_ & 31u;
+  // Write-back wins, unless the base is the last of several registers.
+  const bool base_listed = i.imm >> i.rn & 1u;
+  const bool base_last = base_listed && (i.imm >> i.rn) == 1u && n > 1;
+  if (user_bank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
+  unsigned k = 0, last = 0;
+  std::uint32_t target = 0;
+  for (std::uint32_t set = i.imm; set; set &= set - 1, ++k) {
+    const auto r = static_cast<unsigned>(std::countr_zero(set));
+    last = r;
+    if (r == 15) target = values[k];
+    else r_[r] = values[k];
+  }
+  if (user_bank) switch_mode(mode);
+  if ((i.flags & kWriteBack) && !(base_listed && base_last)) r_[i.rn] = end;
+  if (i.imm & 0x8000u) {
+    spend(4);
+    if (i.flags & kUserBank) {
+      set_cpsr(spsr_[bank(cpsr_)]);
+      branch_to(target & ((cpsr_ & 0x20u) ? ~1u : ~3u));
+    } else {
+      interwork(target);
+    }
+    return;
+  }
+  if (n > 1) loaded(last, 1);
+}
+
+void Core::store_multiple(const Instruction& i) {
+  const std::uint32_t base = r_[i.rn];
+  const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
+  if (n == 0) {
+    unpredictable("STM without registers");
+    if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
+    spend(1);
+    return;
+  }
+  const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
+  const std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
+                                                : ((i.flags & kPre) ? end : end + 4);
+  std::array<std::uint32_t, 16> values;
+  const std::uint32_t mode = cpsr_ & 31u;
+  if (i.flags & kUserBank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
+  unsigned k = 0;
+  for (std::uint32_t set = i.imm; set; set &= set - 1, ++k) {
+    const auto r = static_cast<unsigned>(std::countr_zero(set));
+    values[k] = r == 15 ? pc_ + 12 : r == i.rn ? base : r_[r];
+  }
+  if (i.flags & kUserBank) switch_mode(mode);
+  if (store_words(address & ~3u, values.data(), n, false) != Result::kOk) return data_abort();
+  if (n == 1) spend(1);
+  if (i.flags & kWriteBack) r_[i.rn] = end;
+}
+
+void Core::swap(const Instruction& i) {
+  const unsigned bytes = i.op == Op::kSwpb ? 1 : 4;
+  const std::uint32_t address = r_[i.rn], out = r_[i.rm];
+  std::uint32_t value = 0;
+  if (load(address, bytes, value) != Result::kOk) return data_abort();
+  if (store(address, bytes, out) != Result::kOk) return data_abort();
+  if (bytes == 4 && (address & 3u)) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
+  r_[i.rd] = value;
+  spend(2);
+  if (bytes == 1 || (address & 3u)) loaded(i.rd, 1);
+}
+
+void Core::status(const Instruction& i) {
+  if (i.op == Op::kMrs) {
+    r_[i.rd] = (i.flags & kSpsr) ? spsr_[bank(cpsr_)] : cpsr_;
+    spend(2);
+    return;
+  }
+  const std::uint32_t v = i.operand == Operand::kReg ? r_[i.rm] : i.imm;
+  std::uint32_t fields = 0;
+  for (unsigned f = 0; f < 4; ++f)
+    if (i.rs >> f & 1u) fields |= 0xFFu << (8 * f);
+  fields &= 0xF80000FFu;
+  if (i.flags & kSpsr) {
+    auto& s = spsr_[bank(cpsr_)];
+    s = (s & ~fields) | (v & fields);
+  } else {
+    if (!privileged()) fields &= 0xF8000000u;
+    // T is not for MSR to change.
+    set_cpsr((cpsr_ & ~fields) | (v & fields & ~0x20u) | (cpsr_ & 0x20u));
+  }
+  spend(i.rs == 8 && !(i.flags & kSpsr) ? 1 : 3);
+}
+
+void Core::execute(const Instruction& i) {
+  if (i.op <= Op::kMvn) return data_processing(i);
+  switch (i.op) {
+    case Op::kLdr: case Op::kLdrb: case Op::kStr: case Op::kStrb: case Op::kLdrh:
+    case Op::kLdrsb: case Op::kLdrsh: case Op::kStrh: case Op::kLdrd: case Op::kStrd:
+      return load_store(i);
+    case Op::kB:
+      branch_to(r_[15] + i.imm);
+      spend(3);
+      return;
+    case Op::kBl:
+      r_[14] = pc_ + 4;
+      branch_to(r_[15] + i.imm);
+      spend(3);
+      return;
+    case Op::kLdm: return load_multiple(i);
+    case Op::kStm: return store_multiple(i);
+    case Op::kBxReg: {
+      const std::uint32_t target = r_[i.rm];
+      cpsr_ = (cpsr_ & ~0x20u) | ((target & 1u) << 5);
+      branch_to(target & ((target & 1u) ? ~1u : ~3u));
+      spend(3);
+      return;
+    }
+    case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull:
+    case Op::kSmlal:
+      return multiply(i);
+    default:
+      return execute_rare(i);
+  }
+}
+
+void Core::execute_rare(const Instruction& i) {
+  switch (i.op) {
+    case Op::kSmulxy: case Op::kSmlaxy: case Op::kSmulwy: case Op::kSmlawy: case Op::kSmlalxy:
+    case Op::kQadd: case Op::kQsub: case Op::kQdadd: case Op::kQdsub:
+      return dsp(i);
+    case Op::kClz:
+      r_[i.rd] = static_cast<std::uint32_t>(std::countl_zero(r_[i.rm]));
+      spend(1);
+      return;
+    case Op::kSwp: case Op::kSwpb: return swap(i);
+    case Op::kPld: spend(1); return;
+    case Op::kBlxReg: {
+      const std::uint32_t target = r_[i.rm];
+      r_[14] = (i.flags & kThumbInsn) ? (pc_ + 2) | 1u : pc_ + 4;
+      cpsr_ = (cpsr_ & ~0x20u) | ((target & 1u) << 5);
+      branch_to(target & ((target & 1u) ? ~1u : ~3u));
+      spend(3);
+      return;
+    }
+    case Op::kBlxImm:
+      r_[14] = pc_ + 4;
+      cpsr_ |= 0x20u;
+      branch_to(r_[15] + i.imm);
+      spend(3);
+      return;
+    case Op::kThumbBlPrefix:
+      r_[14] = r_[15] + i.imm;
+      spend(1);
+      return;
+    case Op::kThumbBlSuffix: {
+      const std::uint32_t target = r_[14] + i.imm;
+      r_[14] = (pc_ + 2) | 1u;
+      if (i.flags & kSpsr) {
+        cpsr_ &= ~0x20u;
+        branch_to(target & ~3u);
+      } else {
+        branch_to(target & ~1u);
+      }
+      spend(3);
+      return;
+    }
+    case Op::kMrs: case Op::kMsr: return status(i);
+    case Op::kSwi: {
+      const std::uint32_t number = (i.flags & kThumbInsn) ? i.raw & 0xFFu : i.raw & 0xFFFFFFu;
+      if (swi_hook && swi_hook(*this, number)) {
+        spend(3);
+        return;
+      }
+      take(Exception::kSwi, next_pc_);
+      aborted_ = false;
+      return;
+    }
+    case Op::kBkpt:
+      fault(true, 0x2, 0, pc_);
+      take(Exception::kPrefetchAbort, pc_ + 4);
+      return;
+    case Op::kMcr: case Op::kMrc: return coprocessor_move(i);
+    default: return undefined();
+  }
+}
+
+}  // namespace fovea::cpu

@@ -1,0 +1,483 @@
+// Loads, stores and fetches: TCM, translation, caches.
+#include <cstring>
+
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+void Core::flush_memos() {
+  for (auto& m : dmemo_) m.page = ~0u;
+  imemo_page_ = ~0u;
+  line_va_ = 1;
+}
+
+void Core::record(std::uint32_t va, unsigned bytes, bool write) {
+  ring_[ring_count_++ % ring_.size()] = {pc_, va, static_cast<std::uint8_t>(bytes), write};
+}
+
+std::vector<AccessRecord> Core::last_accesses() const {
+  std::vector<AccessRecord> out;
+  const std::uint64_t n = std::min<std::uint64_t>(ring_count_, ring_.size());
+  for (std::uint64_t i = ring_count_ - n; i < ring_count_; ++i)
+    out.push_back(ring_[i % ring_.size()]);
+  return out;
+}
+
+void Core::fault(bool instruction, unsigned status, unsigned domain, std::uint32_t address) {
+  const std::uint32_t fsr = domain << 4 | status;
+  if (instruction) {
+    ifsr_ = fsr;
+  } else {
+    dfsr_ = fsr;
+    far_ = address;
+  }
+}
+
+bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
+  BusAccess& a = data_access_;
+  a.port = BusAccess::Port::kData;
+  a.kind = BusAccess::Kind::kSingle;
+  a.write = a.buffered = false;
+  a.address = address;
+  a.bytes = 4;
+  bus_read(a, Cause::kTlb);
+  std::memcpy(&word, a.data, 4);
+  return !a.error;
+}
+
+bool Core::walk(std::uint32_t mva, bool instruction, TlbEntry& out) {
+  stall_to(cycle_ + walk_cycles_, Cause::kTlb);
+  std::uint32_t d = 0;
+  if (!walk_read((ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2, d)) {
+    fault(instruction, 0xC, 0, mva);
+    return false;
+  }
+  const unsigned domain = (d >> 5) & 15u;
+  out.valid = true;
+  out.domain = static_cast<std::uint8_t>(domain);
+  const auto same = [&out](unsigned ap) { out.ap.fill(static_cast<std::uint8_t>(ap)); };
+  const auto page = [&](std::uint32_t word, std::uint32_t mask) {
+    out.mask = mask;
+    out.base_va = mva & ~mask;
+    out.base_pa = word & ~mask;
+    out.cacheable = (word >> 3) & 1u;
+    out.bufferable = (word >> 2) & 1u;
+  };
+  if ((d & 3u) == 2) {
+    page(d, 0xFFFFFu);
+    out.section = true;
+    same((d >> 10) & 3u);
+    return true;
+  }
+  if ((d & 3u) == 0) {
+    fault(instruction, 0x5, 0, mva);
+    return false;
+  }
+  const std::uint32_t table = (d & 3u) == 1
+                                  ? (d & 0xFFFFFC00u) | ((mva >> 12) & 0xFFu) << 2
+                                  : (d & 0xFFFFF000u) | ((mva >> 10) & 0x3FFu) << 2;
+  std::uint32_t p = 0;
+  if (!walk_read(table, p)) {
+    fault(instruction, 0xE, domain, mva);
+    return false;
+  }
+  switch (p & 3u) {
+    case 1: page(p, 0xFFFFu); break;
+    case 2: page(p, 0xFFFu); break;
+    case 3:
+      if ((d & 3u) == 3) {
+        page(p, 0x3FFu);
+        same((p >> 4) & 3u);
+        return true;
+      }
+      [[fallthrough]];
+    default:
+      fault(instruction, 0x7, domain, mva);
+      return false;
+  }
+  for (unsigned q = 0; q < 4; ++q) out.ap[q] = static_cast<std::uint8_t>((p >> (4 + 2 * q)) & 3u);
+  return true;
+}
+
+bool Core::permitted(const Translation& t, bool write, bool user, unsigned& status) const {
+  if (!t.checked) return true;
+  const unsigned access = (dacr_ >> (2 * t.domain)) & 3u;
+  if (access == 3) return true;
+  if (access != 1) {
+    status = t.section ? 0x9 : 0xB;
+    return false;
+  }
+  status = t.section ? 0xD : 0xF;
+  switch (t.ap) {
+    case 0: {
+      const bool s = control_ >> 8 & 1u, r = control_ >> 9 & 1u;
+      if (write) return false;
+      return s && !r ? !user : r && !s;
+    }
+    case 1: return !user;
+    case 2: return !user || !write;
+    default: return true;
+  }
+}
+
+/// @return nullptr: a fault was noted
+const Translation* Core::translate(std::uint32_t mva, bool write, bool user, bool instruction) {
+  if (!(control_ & 1u)) return &flat_;
+  const bool as_user = user || !privileged();
+  const std::uint32_t key = (mva >> 10) | (as_user ? 1u << 22 : 0u);
+  Memo* memo = nullptr;
+  if (instruction) {
+    if (imemo_page_ == key) return &imemo_;
+  } else {
+    memo = &dmemo_[(mva >> 10) % kMemos];
+    if (memo->page == key && (write ? memo->write_ok : memo->read_ok)) return &memo->translation;
+  }
+  const TlbEntry* e = tlb_.find(mva);
+  TlbEntry fresh;
+  if (!e) {
+    if (!walk(mva, instruction, fresh)) return nullptr;
+    const bool lock = tlb_lock_ & 1u;
+    tlb_.insert(fresh, lock, (tlb_lock_ >> 26) & 7u);
+    if (lock) tlb_lock_ = (tlb_lock_ & ~(7u << 26)) | (((tlb_lock_ >> 26) + 1) & 7u) << 26;
+    // An entry may have been replaced: what was remembered of it goes too.
+    flush_memos();
+    e = &fresh;
+  }
+  Translation t;
+  t.base_va = e->base_va;
+  t.base_pa = e->base_pa;
+  t.mask = e->mask;
+  t.domain = e->domain;
+  t.section = e->section;
+  t.cacheable = e->cacheable;
+  t.bufferable = e->bufferable;
+  t.checked = true;
+  // Quarters of a small or large page have permissions of their own.
+  t.ap = e->ap[e->mask == 0xFFFu ? (mva >> 10) & 3u : e->mask == 0xFFFFu ? (mva >> 14) & 3u : 0];
+  unsigned status = 0;
+  if (!permitted(t, write, as_user, status)) {
+    fault(instruction, status, t.domain, mva);
+    return nullptr;
+  }
+  if (instruction) {
+    imemo_page_ = key;
+    imemo_ = t;
+    return &imemo_;
+  }
+  memo = &dmemo_[(mva >> 10) % kMemos];
+  if (memo->page != key) memo->read_ok = memo->write_ok = false;
+  memo->page = key;
+  memo->translation = t;
+  (write ? memo->write_ok : memo->read_ok) = true;
+  return &memo->translation;
+}
+
+/// While a line is filled its words can be used as they arrive; everything else waits for its end.
+void Core::dcache_wait(std::uint32_t mva) {
+  const std::uint64_t c =
+      (mva & ~31u) == dfill_.line ? dfill_.word((mva >> 2) & 7u) : dfill_.last;
+  stall_to(c, Cause::kDcache);
+}
+
+/// @return index of the line; an error leaves it invalid
+int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line) {
+  stall_to(dfill_.last, Cause::kDcache);
+  const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
+  play(cycle_);
+  filling_ = true;  // from here on the read goes before the victim
+  write_back(index, Cause::kWriteBuffer);
+  BusAccess& a = data_access_;
+  a.port = BusAccess::Port::kData;
+  a.kind = BusAccess::Kind::kWrap8;
+  a.write = a.buffered = false;
+  a.address = pa & ~3u;
+  a.bytes = 32;
+  bus_read(a, Cause::kDcache);
+  filling_ = false;
+  ++counts_.dcache_read_fills;
+  Cache::Line& l = dcache_.line(index);
+  if (a.error) {  // linefills cannot abort on this core: the line is simply not kept
+    dcache_.invalidate(index);
+    Diagnostics::instance().guest("bus error on a D-cache line fill");
+    std::memset(dcache_.data(index), 0, 32);
+    return static_cast<int>(index);
+  }
+  std::memcpy(dcache_.data(index), a.data, 32);
+  l.tag = mva & ~31u;
+  l.pa = pa & ~31u;
+  l.dirty = 0;
+  l.write_back = write_back_line;
+  dfill_ = {mva & ~31u, (pa >> 2) & 7u, cycle_,
+            std::max(cycle_, clock_.edge_at_or_after(a.last) + fill_latency_)};
+  return static_cast<int>(index);
+}
+
+Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user) {
+  const std::uint32_t mva = modified(va);
+  if ((control_ & 2u) && (mva & (bytes - 1))) {
+    fault(false, 0x1, 0, mva);
+    return Result::kAbort;
+  }
+  const std::uint32_t a = mva & ~(bytes - 1u);
+  record(va, bytes, false);
+  value = 0;
+  if (in_tcm(a)) {
+    std::memcpy(&value, tcm(a), bytes);
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    return Result::kOk;
+  }
+  const Translation* t = translate(a, false, user, false);
+  if (!t) return Result::kAbort;
+  const std::uint32_t pa = t->physical(a);
+  if (t->cacheable && (control_ & 5u) == 5u) {
+    ++counts_.dcache_reads;
+    if (cycle_ < dfill_.last) dcache_wait(a);
+    int i = dcache_.find(a);
+    if (i < 0) i = dcache_fill(a, pa, t->bufferable);
+    std::memcpy(&value, dcache_.data(static_cast<unsigned>(i)) + (a & 31u), bytes);
+    return Result::kOk;
+  }
+  if (!uncached_read(pa, bytes, value)) {
+    fault(false, t->section ? 0x8 : 0xA, t->domain, mva);
+    return Result::kAbort;
+  }
+  return Result::kOk;
+}
+
+Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user) {
+  const std::uint32_t mva = modified(va);
+  if ((control_ & 2u) && (mva & (bytes - 1))) {
+    fault(false, 0x1, 0, mva);
+    return Result::kAbort;
+  }
+  const std::uint32_t a = mva & ~(bytes - 1u);
+  record(va, bytes, true);
+  if (in_tcm(a)) {
+    std::memcpy(tcm(a), &value, bytes);
+    tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    return Result::kOk;
+  }
+  const Translation* t = translate(a, true, user, false);
+  if (!t) return Result::kAbort;
+  const std::uint32_t pa = t->physical(a);
+  const bool section = t->section, bufferable = t->bufferable;
+  const unsigned domain = t->domain;
+  if (t->cacheable && (control_ & 5u) == 5u) {
+    ++counts_.dcache_writes;
+    if (cycle_ < dfill_.last) dcache_wait(a);
+    const int i = dcache_.find(a);
+    if (i >= 0) {
+      std::memcpy(dcache_.data(static_cast<unsigned>(i)) + (a & 31u), &value, bytes);
+      if (bufferable && !(cache_debug_ & 4u)) {
+        dcache_.line(static_cast<unsigned>(i)).dirty |=
+            static_cast<std::uint8_t>(1u << ((a >> 4) & 1u));
+        return Result::kOk;
+      }
+    } else {
+      ++counts_.dcache_write_misses;
+    }
+    std::uint8_t data[4];
+    std::memcpy(data, &value, 4);
+    enqueue_write(pa, data, bytes);
+    return Result::kOk;
+  }
+  if (bufferable && (control_ & 1u)) {
+    std::uint8_t data[4];
+    std::memcpy(data, &value, 4);
+    enqueue_write(pa, data, bytes);
+    return Result::kOk;
+  }
+  if (!unbuffered_write(pa, bytes, value)) {
+    fault(false, section ? 0x8 : 0xA, domain, mva);
+    return Result::kAbort;
+  }
+  return Result::kOk;
+}
+
+/// Words of an STM or STRD. Those that go to the write buffer and follow each other share an entry.
+Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, unsigned count,
+                               bool user) {
+  std::array<std::uint8_t, 64> run;
+  std::uint32_t run_pa = 0;
+  unsigned run_bytes = 0;
+  const auto flush = [&] {
+    if (run_bytes) enqueue_write(run_pa, run.data(), run_bytes);
+    run_bytes = 0;
+  };
+  for (unsigned k = 0; k < count; ++k) {
+    const std::uint32_t mva = modified(va + 4 * k) & ~3u;
+    if (!in_tcm(mva)) {
+      const Translation* t = translate(mva, true, user, false);
+      if (!t) {
+        flush();
+        return Result::kAbort;
+      }
+      const bool cached = t->cacheable && (control_ & 5u) == 5u;
+      const bool buffered = t->bufferable && (control_ & 1u);
+      const std::uint32_t pa = t->physical(mva);
+      if ((cached && dcache_.find(mva) < 0) || (!cached && buffered)) {
+        record(va + 4 * k, 4, true);
+        if (cached) {
+          ++counts_.dcache_writes;
+          ++counts_.dcache_write_misses;
+          if (cycle_ < dfill_.last) dcache_wait(mva);
+        }
+        if (run_bytes && pa != run_pa + run_bytes) flush();
+        if (!run_bytes) run_pa = pa;
+        std::memcpy(run.data() + run_bytes, &words[k], 4);
+        run_bytes += 4;
+        spend(1);
+        continue;
+      }
+    }
+    flush();
+    if (store(va + 4 * k, 4, words[k], user) != Result::kOk) return Result::kAbort;
+    spend(1);
+  }
+  flush();
+  return Result::kOk;
+}
+
+void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
+  stall_to(ifill_.last, Cause::kIcache);
+  const unsigned index = icache_.victim(icache_.set_of(mva), control_ >> 14 & 1u, ilock_ & 15u);
+  icache_.invalidate(index);
+  decoded_[index].valid = 0;
+  play(cycle_);
+  sync_to_ahb();
+  BusAccess& a = fetch_access_;
+  a.port = BusAccess::Port::kInstruction;
+  a.kind = BusAccess::Kind::kWrap8;
+  a.write = a.buffered = false;
+  a.address = pa & ~3u;
+  a.bytes = 32;
+  port_.submit(a, time(cycle_));
+  port_.finish(a);
+  ++counts_.icache_fills;
+  stall_to(clock_.edge_at_or_after(a.first) + fill_latency_, Cause::kIcache);
+  if (a.error) return;
+  std::memcpy(icache_.data(index), a.data, 32);
+  icache_.line(index).tag = mva & ~31u;
+  ifill_ = {mva & ~31u, (pa >> 2) & 7u, cycle_,
+            std::max(cycle_, clock_.edge_at_or_after(a.last) + fill_latency_)};
+}
+
+const Instruction* Core::fetch() {
+  const std::uint32_t thumb = cpsr_ & 0x20u;
+  if ((pc_ & ~31u) == line_va_ && thumb == line_thumb_) {
+    if (cycle_ < ifill_.last && ifill_.line == (modified(pc_) & ~31u))
+      stall_to(ifill_.word((pc_ >> 2) & 7u), Cause::kIcache);
+    const unsigned at = (pc_ >> 1) & 15u;
+    if (current_line_->valid >> at & 1u) return &current_line_->records[at];
+  }
+  return fetch_slow();
+}
+
+const Instruction* Core::fetch_slow() {
+  const bool thumb = cpsr_ & 0x20u;
+  const std::uint32_t mva = modified(pc_) & (thumb ? ~1u : ~3u);
+  const unsigned at = (mva >> 1) & 15u;
+  const auto decode_into = [&](DecodedLine& d, const std::uint8_t* bytes) -> const Instruction* {
+    if (d.thumb != thumb) {
+      d.valid = 0;
+      d.thumb = thumb;
+    }
+    if (!(d.valid >> at & 1u)) {
+      if (thumb) {
+        std::uint16_t h;
+        std::memcpy(&h, bytes + (mva & 31u), 2);
+        d.records[at] = decode_thumb(h);
+      } else {
+        std::uint32_t w;
+        std::memcpy(&w, bytes + (mva & 31u), 4);
+        d.records[at] = decode_arm(w);
+      }
+      d.valid |= 1u << at;
+    }
+    line_va_ = pc_ & ~31u;
+    line_thumb_ = thumb ? 0x20u : 0u;
+    current_line_ = &d;
+    return &d.records[at];
+  };
+  if (in_tcm(mva)) {
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    const Instruction* i =
+        decode_into(tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5], tcm(mva & ~31u));
+    if (tcm_wait_) line_va_ = 1;  // every fetch pays
+    return i;
+  }
+  const Translation* t = translate(mva, false, false, true);
+  if (!t) {
+    take(Exception::kPrefetchAbort, pc_ + 4);
+    return nullptr;
+  }
+  const std::uint32_t pa = t->physical(mva);
+  // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
+  const bool cached = (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u));
+  if (cached) {
+    ++counts_.icache_accesses;
+    if (cycle_ < ifill_.last && ifill_.line != (mva & ~31u))
+      stall_to(ifill_.last, Cause::kIcache);
+    int index = icache_.find(mva);
+    if (index < 0) {
+      icache_fill(mva, pa);
+      index = icache_.find(mva);
+    }
+    if (index < 0) {
+      fault(true, t->section ? 0x8 : 0xA, t->domain, mva);
+      take(Exception::kPrefetchAbort, pc_ + 4);
+      return nullptr;
+    }
+    return decode_into(decoded_[static_cast<unsigned>(index)],
+                       icache_.data(static_cast<unsigned>(index)));
+  }
+  // Uncached: four words ahead, kept until the flow leaves them.
+  const unsigned domain = t->domain;
+  const bool section = t->section;
+  if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_) {
+    play(cycle_);
+    sync_to_ahb();
+    BusAccess& a = fetch_access_;
+    a.port = BusAccess::Port::kInstruction;
+    a.kind = BusAccess::Kind::kIncr4;
+    a.write = a.buffered = false;
+    a.address = pa & ~15u;
+    a.bytes = 16;
+    port_.submit(a, time(cycle_));
+    port_.finish(a);
+    stall_to(clock_.edge_at_or_after(a.last) + fill_latency_, Cause::kIcache);
+    if (a.error) {
+      fetch_buffer_pa_ = 1;
+      fault(true, section ? 0x8 : 0xA, domain, mva);
+      take(Exception::kPrefetchAbort, pc_ + 4);
+      return nullptr;
+    }
+    std::memcpy(fetch_words_, a.data, 16);
+    fetch_buffer_pa_ = pa & ~15u;
+  }
+  fetch_branched_ = false;
+  line_va_ = 1;
+  if (thumb) {
+    std::uint16_t h;
+    std::memcpy(&h, reinterpret_cast<const std::uint8_t*>(fetch_words_) + (pa & 15u), 2);
+    uncached_record_ = decode_thumb(h);
+  } else {
+    uncached_record_ = decode_arm(fetch_words_[(pa >> 2) & 3u]);
+  }
+  return &uncached_record_;
+}
+
+bool Core::peek(std::uint32_t address, std::uint8_t& byte) const {
+  const std::uint32_t mva = modified(address);
+  if (in_tcm(mva)) {
+    byte = tcm_[mva & (tcm_.size() - 1)];
+    return true;
+  }
+  const int i = dcache_.find(mva);
+  if (i < 0) return false;
+  byte = dcache_.data(static_cast<unsigned>(i))[mva & 31u];
+  return true;
+}
+
+}  // namespace fovea::cpu

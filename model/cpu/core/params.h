@@ -1,0 +1,52 @@
+// Parameters of the ARM926EJ-S.
+#pragma once
+#include "model/common/param.h"
+
+namespace fovea::cpu {
+
+using ParamUnit = IntParam::Unit;
+
+struct CacheParams : ParamGroup {
+  IntParam size;
+  CacheParams(std::string prefix, std::uint64_t def, const char* source)
+      : ParamGroup(std::move(prefix)),
+        size(*this, "size", ParamUnit::kBytes, def, 4096, 131072,
+             "size, a power of two; 4 ways of 32-byte lines", Origin::kSourced, source) {}
+};
+
+struct CpuParams : ParamGroup {
+  using U = ParamUnit;
+  CacheParams icache{"cpu.icache", 16384, "DM646x ARM subsystem guide; DM365: 16 KB"};
+  CacheParams dcache{"cpu.dcache", 8192, "DM646x ARM subsystem guide; DM365: 8 KB"};
+  IntParam ahb_ratio{*this, "ahb_ratio", U::kCount, 2, 1, 8, "core clocks in an AHB clock",
+                     Origin::kAssumed, "no public figure; dm365.md 12 #4"};
+  IntParam fill_latency{*this, "fill_latency", U::kCycles, 1, 0, 8,
+                        "core clocks from the critical word on the AHB to the core",
+                        Origin::kAssumed, "arm926.md 3: 1 to 2"};
+  IntParam walk_cycles{*this, "walk_cycles", U::kCycles, 3, 0, 16,
+                       "core clocks of a page walk beyond its bus reads", Origin::kAssumed,
+                       "arm926.md 2.5: 2 to 4"};
+  IntParam cache_op_cycles{*this, "cache_op_cycles", U::kCycles, 1, 0, 16,
+                           "extra core clocks of a cache operation by MVA or set/way",
+                           Origin::kAssumed, "arm926.md 2.7: 1 to 2 in all"};
+  IntParam test_clean_cycles{*this, "test_clean_cycles", U::kCycles, 2, 0, 16,
+                             "extra core clocks of one test-and-clean step", Origin::kAssumed,
+                             "arm926.md 2.7: 2 to 4 in all"};
+  IntParam invalidate_all_cycles{*this, "invalidate_all_cycles", U::kCycles, 4, 0, 1024,
+                                 "extra core clocks to invalidate a whole cache",
+                                 Origin::kAssumed, "arm926.md 2.7: a few"};
+  IntParam tcm_wait_states{*this, "tcm.wait_states", U::kCycles, 0, 0, 3,
+                           "extra core clocks of an access to internal RAM", Origin::kSourced,
+                           "MISC.ARM_WAITST is 1 (none) out of reset"};
+  BoolParam shifted_address_cycle{*this, "shifted_address_cycle", true,
+                                  "a shifted register offset costs a cycle", Origin::kSourced,
+                                  "ARM DDI 0222B table 8.2"};
+  CpuParams() : ParamGroup("cpu") {}
+  void declare(ParamSet& set) {
+    set.add(*this);
+    set.add(icache);
+    set.add(dcache);
+  }
+};
+
+}  // namespace fovea::cpu

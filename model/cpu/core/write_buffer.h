@@ -1,0 +1,72 @@
+// The main write buffer (16 words, 4 addresses) and the victim buffer (8 words, 1 address).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+namespace fovea::cpu {
+
+/// Entries leave in order. Bursts of a multi-word entry: eights, then fours, then singles, none
+/// across 1 KB.
+class WriteBuffer {
+ public:
+  static constexpr unsigned kAddresses = 4, kWords = 16;
+  struct Entry {
+    std::uint32_t address = 0;
+    unsigned bytes = 0;  // 1, 2 or a multiple of 4
+    unsigned sent = 0;
+    std::array<std::uint8_t, 64> data{};
+  };
+  bool empty() const { return count_ == 0; }
+  bool room(unsigned bytes) const {
+    return count_ < kAddresses && words_ + (bytes + 3) / 4 <= kWords;
+  }
+  void push(std::uint32_t address, const std::uint8_t* data, unsigned bytes) {
+    Entry& e = entries_[(head_ + count_++) % kAddresses];
+    e.address = address;
+    e.bytes = bytes;
+    e.sent = 0;
+    std::memcpy(e.data.data(), data, bytes);
+    words_ += (bytes + 3) / 4;
+  }
+  Entry& front() { return entries_[head_]; }
+  const Entry& front() const { return entries_[head_]; }
+  /// Bytes of the next burst of an entry.
+  static unsigned next_burst(const Entry& e) {
+    const unsigned left = e.bytes - e.sent;
+    if (left < 4) return left;
+    const unsigned to_boundary = 1024 - ((e.address + e.sent) & 1023u);
+    if (left >= 32 && to_boundary >= 32) return 32;
+    if (left >= 16 && to_boundary >= 16) return 16;
+    return 4;
+  }
+  /// A burst of this many bytes was acknowledged.
+  void acknowledge(unsigned bytes) {
+    words_ -= (bytes + 3) / 4;
+    Entry& e = entries_[head_];
+    e.sent += bytes;
+    if (e.sent >= e.bytes) {
+      head_ = (head_ + 1) % kAddresses;
+      --count_;
+    }
+  }
+  /// True if bytes [address, address + n) overlap a pending write.
+  bool overlaps(std::uint32_t address, unsigned n) const {
+    for (unsigned i = 0; i < count_; ++i) {
+      const Entry& e = entries_[(head_ + i) % kAddresses];
+      if (address < e.address + e.bytes && e.address < address + n) return true;
+    }
+    return victim_bytes && address < victim_address + victim_bytes &&
+           victim_address < address + n;
+  }
+
+  std::uint32_t victim_address = 0;
+  unsigned victim_bytes = 0;  // 0: empty
+  std::array<std::uint8_t, 32> victim{};
+
+ private:
+  std::array<Entry, kAddresses> entries_{};
+  unsigned head_ = 0, count_ = 0, words_ = 0;
+};
+
+}  // namespace fovea::cpu

@@ -1,0 +1,45 @@
+// Parameters of the DDR2 controller and of the memory behind it.
+#pragma once
+#include "model/common/param.h"
+
+namespace fovea::mem {
+
+struct DdrParams : ParamGroup {
+  using U = IntParam::Unit;
+  EnumParam part{*this, "part", "mt47h64m16", {"mt47h32m16", "mt47h64m16", "mt47h128m16"},
+                 "DDR2 x16 part: 64, 128 or 256 MiB (4, 8, 8 banks; 2 KiB page)", Origin::kChoice,
+                 "Micron module data sheets, dram.md 1"};
+  IntParam command_fifo{*this, "command_fifo", U::kCount, 7, 1, 16,
+                        "entries of the controller's command FIFO", Origin::kSourced,
+                        "SPRU986B, SPRUEM4A, SPRUH82C (same controller)"};
+  IntParam write_fifo{*this, "write_fifo", U::kBytes, 88, 64, 512,
+                      "write data the controller holds: 11 x 64 bit", Origin::kSourced,
+                      "SPRU986B, SPRUEM4A, SPRUH82C"};
+  IntParam read_fifo{*this, "read_fifo", U::kBytes, 136, 64, 512,
+                     "read data the controller holds: 17 x 64 bit", Origin::kSourced,
+                     "SPRU986B, SPRUEM4A, SPRUH82C"};
+  IntParam request_latency{*this, "request_latency", U::kCycles, 8, 0, 32,
+                           "DDR clocks from the request's arrival to its first DRAM command",
+                           Origin::kAssumed, "no public figure; dm365.md 12 #13 suggests 6 to 10"};
+  IntParam return_latency{*this, "return_latency", U::kCycles, 2, 0, 16,
+                          "DDR clocks from the last data beat at the PHY to the crossbar",
+                          Origin::kAssumed, "no public figure; dm365.md 12 #12"};
+  IntParam refresh_release{*this, "refresh.release", U::kCount, 3, 0, 16,
+                           "refresh backlog above which the controller leaves power-saving states",
+                           Origin::kAssumed, "family values, dm365.md 5.4"};
+  IntParam refresh_need{*this, "refresh.need", U::kCount, 7, 0, 32,
+                        "refresh backlog above which refresh goes before writes", Origin::kAssumed,
+                        "family values, dm365.md 5.4"};
+  IntParam refresh_must{*this, "refresh.must", U::kCount, 11, 0, 64,
+                        "refresh backlog above which refresh goes before everything",
+                        Origin::kAssumed, "family values, dm365.md 5.4"};
+  IntParam refresh_gap{*this, "refresh.gap", U::kCount, 7, 1, 64,
+                       "refresh intervals without a REF above which four are issued before requests",
+                       Origin::kSourced, "same controller in sibling devices, dm365.md 5.4"};
+  DdrParams() : ParamGroup("ddr") {}
+
+  std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index(); }
+  unsigned banks() const { return part.index() == 0 ? 4 : 8; }
+};
+
+}  // namespace fovea::mem

@@ -1,0 +1,56 @@
+// The DDR2 controller on its sockets: data from the crossbar, registers from the configuration bus.
+#pragma once
+#include <systemc>
+#include <tlm>
+
+#include "model/common/bus_target.h"
+#include "model/common/lookahead.h"
+#include "model/common/mem_request.h"
+#include "model/common/sc_ports.h"
+#include "model/mem/core/ddr_controller.h"
+#include "model/mem/ddr_regs.h"
+
+namespace fovea::mem {
+
+/// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDTIMR,
+/// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
+/// while LPSC 13 is off, end in a bus error (assumed: the chip's reaction is not documented).
+class DdrModule : public BusTarget, public PassiveIf, public tlm::tlm_fw_transport_if<>,
+                  private DdrClient {
+ public:
+  tlm::tlm_target_socket<64> socket{"socket"};
+  sc_core::sc_export<PassiveIf> lookahead{"lookahead"};
+  ClockIn ddr_clk{"ddr_clk"};
+  ClockIn scr_clk{"scr_clk"};
+  sc_core::sc_in<bool> enabled{"enabled"};  ///< LPSC 13
+
+  DdrModule(sc_core::sc_module_name name, const DdrParams& params);
+
+  DdrController& controller() { return controller_; }
+  BackingStore& store() { return store_; }
+  DdrRegs regs;
+
+  /// Time-ordered access to the state: takes all decisions at or before `now` first.
+  void settle(Picoseconds now);
+
+  Picoseconds next_decision() const override { return controller_.next_decision(); }
+  void step() override { controller_.step(); }
+
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
+                                     sc_core::sc_time&) override;
+  void b_transport(tlm::tlm_generic_payload&, sc_core::sc_time&) override;
+  unsigned transport_dbg(tlm::tlm_generic_payload&) override;
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+
+ private:
+  void ddr_accepted(void* cookie, Picoseconds at) override;
+  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
+  void clocks_changed();
+  void reconfigure();
+
+  BackingStore store_;
+  DdrController controller_;
+  bool ready_ = false;  // initialised by the firmware
+};
+
+}  // namespace fovea::mem

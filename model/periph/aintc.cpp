@@ -1,0 +1,22 @@
+#include "model/periph/aintc.h"
+
+namespace fovea::periph {
+
+Aintc::Aintc(sc_core::sc_module_name name, const AintcParams& params)
+    : WithRegs(params.capture.is("level")), BusTarget(name, regs.regs) {
+  regs.on_change = [this] { written_.notify(sc_core::SC_ZERO_TIME); };
+  SC_METHOD(update);
+  sensitive << written_;
+  for (auto& s : source) sensitive << s;
+}
+
+void Aintc::update() {
+  std::uint64_t levels = 0;
+  for (unsigned n = 0; n < kInterruptCount; ++n)
+    levels |= static_cast<std::uint64_t>(source[n].read()) << n;
+  regs.set_sources(levels);
+  irq.write(regs.irq());
+  fiq.write(regs.fiq());
+}
+
+}  // namespace fovea::periph

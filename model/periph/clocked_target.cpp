@@ -1,0 +1,36 @@
+#include "model/periph/clocked_target.h"
+
+namespace fovea::periph {
+
+void notify_at(sc_core::sc_event& event, Picoseconds at) {
+  event.cancel();
+  if (at == kNever) return;
+  const Picoseconds now = now_ps();
+  FOVEA_CHECK(at >= now, "event in the past");
+  event.notify(sc_core::sc_time::from_value(at - now));
+}
+
+ClockedTarget::ClockedTarget(sc_core::sc_module_name name, RegBank& bank) : BusTarget(name, bank) {
+  SC_METHOD(take_clock);
+  sensitive << clk << lpsc;
+}
+
+bool ClockedTarget::clocked() const { return lpsc.size() == 0 || lpsc->read(); }
+
+std::uint64_t ClockedTarget::ticks() const {
+  return clock_.running() ? clock_.edge_after(now_ps()) - 1 : stopped_at_;
+}
+
+Picoseconds ClockedTarget::time_of(std::uint64_t tick) const {
+  return tick == kNever || !clock_.running() ? kNever : clock_.edge(tick);
+}
+
+void ClockedTarget::take_clock() {
+  const Frequency wanted = clocked() ? clk.read() : Frequency{};
+  if (wanted == clock_.frequency()) return;
+  stopped_at_ = ticks();
+  clock_.restart(wanted, now_ps());
+  clock_changed();
+}
+
+}  // namespace fovea::periph

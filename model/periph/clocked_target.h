@@ -1,0 +1,64 @@
+// What the clocked peripherals share: registers that exist before the bus socket, and a clock that
+// numbers its edges and stops while the module is gated.
+#pragma once
+#include <systemc>
+
+#include "model/common/bus_target.h"
+#include "model/common/clock.h"
+#include "model/common/sc_ports.h"
+
+namespace fovea::periph {
+
+/// Holds a block's registers as a base class, so that they are built before BusTarget refers to
+/// them.
+template <class Regs>
+struct WithRegs {
+  template <class... Args>
+  explicit WithRegs(Args&&... args) : regs(std::forward<Args>(args)...) {}
+  Regs regs;
+};
+
+/// An output that need not be bound: a board without the consumer leaves it open.
+template <class T>
+class OptionalOut
+    : public sc_core::sc_port<sc_core::sc_signal_inout_if<T>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> {
+ public:
+  using sc_core::sc_port<sc_core::sc_signal_inout_if<T>, 1,
+                         sc_core::SC_ZERO_OR_MORE_BOUND>::sc_port;
+  void write(const T& value) {
+    if (this->size()) (*this)->write(value);
+  }
+};
+
+inline Picoseconds now_ps() { return sc_core::sc_time_stamp().value(); }
+/// (Re)schedules a timed event at the absolute time `at` (kNever: cancels it).
+void notify_at(sc_core::sc_event& event, Picoseconds at);
+
+/// A peripheral with one functional clock. Time is counted in ticks: tick n ends at clock edge n,
+/// and ticks() is the number of edges at or before now since the start of the run (edges while the
+/// clock was stopped do not exist). What software starts at t counts from the first edge after t.
+class ClockedTarget : public BusTarget {
+ public:
+  SC_HAS_PROCESS(ClockedTarget);
+  ClockIn clk{"clk"};
+  /// The module's clock gate from the PSC; left unbound the module is always clocked.
+  sc_core::sc_port<sc_core::sc_signal_in_if<bool>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> lpsc{"lpsc"};
+
+ protected:
+  ClockedTarget(sc_core::sc_module_name name, RegBank& bank);
+  bool clocked() const override;
+
+  bool running() const { return clock_.running(); }
+  std::uint64_t ticks() const;
+  /// When tick n (> ticks()) ends; kNever while the clock stands or when n is kNever.
+  Picoseconds time_of(std::uint64_t tick) const;
+  /// Called after the frequency or the gate has changed; pending events must be set again.
+  virtual void clock_changed() = 0;
+
+ private:
+  void take_clock();
+  Clock clock_;
+  std::uint64_t stopped_at_ = 0;
+};
+
+}  // namespace fovea::periph

@@ -1,0 +1,88 @@
+// Interrupt controller: latches, priorities, pins and entry registers. No SystemC.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "model/common/regbank.h"
+
+namespace fovea::periph {
+
+inline constexpr unsigned kInterruptCount = 64;
+
+/// Registers of the AINTC at 0x01C48000 (Linux irq-davinci-aintc.c, TI register header).
+/// Status bits: 0 = pending, 1 = idle.
+struct AintcRegs : RegBank {
+  Reg fiq0{*this, "FIQ0", 0x00, Mode::kW1c, "FIQ sources 0-31: 0 pending; write 1 acknowledges",
+           ~0u};
+  Reg fiq1{*this, "FIQ1", 0x04, Mode::kW1c, "FIQ sources 32-63", ~0u};
+  Reg irq0{*this, "IRQ0", 0x08, Mode::kW1c, "IRQ sources 0-31: 0 pending; write 1 acknowledges",
+           ~0u};
+  Reg irq1{*this, "IRQ1", 0x0C, Mode::kW1c, "IRQ sources 32-63", ~0u};
+  Reg fiqentry{*this, "FIQENTRY", 0x10, Mode::kRo, "entry address of the most urgent FIQ"};
+  Reg irqentry{*this, "IRQENTRY", 0x14, Mode::kRo, "entry address of the most urgent IRQ"};
+  Reg eint0{*this, "EINT0", 0x18, Mode::kRw, "enables of sources 0-31"};
+  Reg eint1{*this, "EINT1", 0x1C, Mode::kRw, "enables of sources 32-63"};
+  struct Intctl : Reg {
+    using Reg::Reg;
+    Field feraw{*this, "FERAW", 0, 1, Mode::kRw, "FIQENTRY also shows disabled sources"};
+    Field ieraw{*this, "IERAW", 1, 1, Mode::kRw, "IRQENTRY also shows disabled sources"};
+    Field idmode{*this, "IDMODE", 2, 1, Mode::kRw, "1: a disable waits for the acknowledge"};
+  } intctl{*this, "INTCTL", 0x20, "control"};
+  struct Eabase : Reg {
+    using Reg::Reg;
+    Field size{*this, "SIZE", 0, 2, Mode::kRw, "bytes of an entry: 4 << SIZE"};
+    Field base{*this, "EABASE", 3, 26, Mode::kRw, "bits 28:3 of the table's address"};
+  } eabase{*this, "EABASE", 0x24, "interrupt entry table"};
+  std::array<Reg, 8> intpri{Reg{*this, "INTPRI0", 0x30, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI1", 0x34, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI2", 0x38, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI3", 0x3C, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI4", 0x40, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI5", 0x44, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI6", 0x48, Mode::kRw, kPri, 0x77777777},
+                            Reg{*this, "INTPRI7", 0x4C, Mode::kRw, kPri, 0x77777777}};
+
+  AintcRegs() : RegBank("AINTC") {}
+
+ private:
+  static constexpr const char* kPri = "3 bits a source on a 4-bit pitch: 0-1 FIQ, 2-7 IRQ, 2 first";
+};
+
+/// Rules: a rising edge latches, also while its source is disabled; the enable gates pin and entry;
+/// writing 1 to the status clears the latch; a source that stays high does not latch again (edge
+/// capture) or does at once (level capture). One latch a source; its priority decides whether it
+/// shows as FIQ or IRQ. Among equal priorities the lower number wins.
+class AintcCore {
+ public:
+  /// @param level_capture true: a latch follows its source while that is high
+  explicit AintcCore(bool level_capture);
+  AintcRegs regs;
+  std::function<void()> on_change;  ///< after a register write that may move a pin
+
+  /// Takes the 64 source levels, bit n = source n.
+  void set_sources(std::uint64_t levels);
+  bool irq() const { return (active() & ~fiq_map_) != 0; }
+  bool fiq() const { return (active() & fiq_map_) != 0; }
+  std::uint64_t pending() const { return pending_; }
+
+ private:
+  std::uint64_t enabled() const { return std::uint64_t{regs.eint1.get()} << 32 | regs.eint0.get(); }
+  std::uint64_t active() const { return pending_ & (enabled() | held_); }
+  void changed() {
+    if (on_change) on_change();
+  }
+  void acknowledge(std::uint64_t mask);
+  void enable_written();
+  void remap();
+  std::uint32_t entry(bool fiq) const;
+
+  bool level_capture_;
+  std::uint64_t levels_ = 0, pending_ = 0;
+  std::uint64_t fiq_map_ = 0;  // sources of priority 0 and 1
+  std::uint64_t held_ = 0;     // IDMODE: disabled while active, kept until acknowledged
+  std::uint64_t was_enabled_ = 0;
+  std::array<std::uint8_t, kInterruptCount> priority_{};
+};
+
+}  // namespace fovea::periph

@@ -1,0 +1,100 @@
+#include "model/periph/pll_controller.h"
+
+#include <algorithm>
+
+namespace fovea::periph {
+
+namespace {
+constexpr std::uint32_t kEnabledRatio1 = 0x8000;
+std::uint32_t plldiv_offset(unsigned n) {
+  return n <= 3 ? 0x118 + 4 * (n - 1) : 0x160 + 4 * (n - 4);
+}
+}  // namespace
+
+PllRegs::PllRegs(const char* name, unsigned sysclks, std::uint32_t reset_type)
+    : RegBank(name),
+      rstype(*this, "RSTYPE", 0x0E4, Mode::kRo, "1 power-on, 2 warm, 4 watchdog reset",
+             reset_type) {
+  for (unsigned n = 1; n <= sysclks; ++n)
+    plldiv.emplace_back(*this, "PLLDIV" + std::to_string(n), plldiv_offset(n), Mode::kRw,
+                        "bits 4:0 ratio - 1, bit 15 enable; acts with GOSET", kEnabledRatio1);
+}
+
+PllController::PllController(sc_core::sc_module_name name, const char* bank, unsigned sysclks,
+                             const PllParams& params)
+    : WithRegs(bank, sysclks, static_cast<std::uint32_t>(params.reset_type())),
+      BusTarget(name, regs),
+      sysclk("sysclk", sysclks),
+      lock_time_(params.lock_time()),
+      go_time_(params.go_time()) {
+  FOVEA_CHECK(sysclks <= kMaxSysclks, "too many SYSCLKs");
+  ratio_.fill(kEnabledRatio1);
+  regs.pllctl.on_write([this](std::uint32_t) { control_written(); });
+  for (Reg* r : {&regs.pllm, &regs.prediv, &regs.secctl})
+    r->on_write([this](std::uint32_t) { relock(); });
+  regs.postdiv.on_write([this](std::uint32_t) { wake_.notify(sc_core::SC_ZERO_TIME); });
+  for (unsigned n = 0; n < sysclks; ++n) {
+    regs.plldiv[n].on_write([this, n](std::uint32_t) {
+      const bool differs = (regs.plldiv[n].get() ^ ratio_[n]) & 0x801F;
+      regs.dchange.set((regs.dchange.get() & ~(1u << n)) | std::uint32_t{differs} << n);
+    });
+  }
+  regs.pllcmd.on_write([this](std::uint32_t word) {
+    if (!(word & 1)) return;
+    regs.pllstat.gostat.set(1);
+    go_at_ = now_ps() + go_time_;
+    wake_.notify(sc_core::SC_ZERO_TIME);
+  });
+  regs.cken.on_write([this](std::uint32_t) { regs.ckstat.set(regs.cken.get() & 3); });
+  regs.systat.on_read([this] {
+    std::uint32_t on = 0;
+    for (unsigned n = 0; n < regs.plldiv.size(); ++n) on |= (ratio_[n] >> 15 & 1) << n;
+    regs.systat.set(on);
+  });
+  SC_METHOD(update);
+  sensitive << wake_ << osc;
+}
+
+void PllController::control_written() {
+  const bool on = !regs.pllctl.pllpwrdn && !regs.pllctl.pllrst;
+  if (on != pll_on_) {
+    pll_on_ = on;
+    relock();
+  }
+  if (regs.pllctl.pllen && !regs.pllctl.pllensrc && !locked_)
+    Diagnostics::instance().guest(regs.name() + ": PLLEN set before the PLL has locked");
+  wake_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void PllController::relock() {
+  locked_ = false;
+  lock_at_ = pll_on_ ? now_ps() + lock_time_ : kNever;
+  wake_.notify(sc_core::SC_ZERO_TIME);
+}
+
+Frequency PllController::source() const {
+  if (!regs.pllctl.pllen || regs.pllctl.pllensrc || !locked_) return osc.read();
+  return divided(vco(osc.read(), regs.pllm.get(), regs.prediv.get()), regs.postdiv.get());
+}
+
+void PllController::update() {
+  const Picoseconds now = now_ps();
+  if (now >= lock_at_) {
+    lock_at_ = kNever;
+    locked_ = !vco(osc.read(), regs.pllm.get(), regs.prediv.get()).stopped();
+  }
+  if (now >= go_at_) {
+    go_at_ = kNever;
+    for (unsigned n = 0; n < regs.plldiv.size(); ++n) ratio_[n] = regs.plldiv[n].get();
+    regs.dchange.set(0);
+    regs.pllstat.gostat.set(0);
+    regs.pllcmd.set(0);
+  }
+  regs.pllstat.lock.set(locked_);
+  const Frequency f = source();
+  for (unsigned n = 0; n < sysclk.size(); ++n) sysclk[n].write(divided(f, ratio_[n]));
+  locked.write(locked_);
+  notify_at(wake_, std::min(lock_at_, go_at_));
+}
+
+}  // namespace fovea::periph

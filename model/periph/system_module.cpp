@@ -1,0 +1,51 @@
+#include "model/periph/system_module.h"
+
+namespace fovea::periph {
+
+SystemRegs::SystemRegs(std::uint32_t bootcfg_pins)
+    : RegBank("SYSTEM"),
+      bootcfg(*this, "BOOTCFG", 0x14, Mode::kRo, "boot configuration pins", bootcfg_pins) {
+  for (unsigned n = 0; n < 5; ++n)
+    pinmux.emplace_back(*this, "PINMUX" + std::to_string(n), 4 * n, Mode::kRw,
+                        "pin functions; kept");
+  for (unsigned n = 0; n < 8; ++n)
+    debounce.emplace_back(*this, "DEBOUNCE" + std::to_string(n), 0x54 + 4 * n, Mode::kRw,
+                          "GPIO debounce; kept");
+}
+
+SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& params)
+    : WithRegs(static_cast<std::uint32_t>(params.bootcfg())),
+      BusTarget(name, regs),
+      vtp_time_(params.vtp_time()) {
+  for (Reg* r : std::initializer_list<Reg*>{&regs.mstpri0, &regs.mstpri1, &regs.vpss_clk_ctrl,
+                                            &regs.peri_clk_ctrl, &regs.misc, &regs.edma_evtmux,
+                                            &regs.arm_intmux})
+    r->on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
+  regs.deepsleep.on_write([](std::uint32_t word) {
+    if (word >> 31) Diagnostics::instance().not_modelled("deep sleep");
+  });
+  regs.vtpiocr.on_write([this](std::uint32_t) {
+    const bool clrz = regs.vtpiocr.clrz.get();
+    if (clrz && !vtp_clrz_) vtp_ready_at_ = now_ps() + vtp_time_;
+    vtp_clrz_ = clrz;
+  });
+  regs.vtpiocr.on_read([this] { regs.vtpiocr.ready.set(vtp_clrz_ && now_ps() >= vtp_ready_at_); });
+  // LOCK, LOCK123 and LOOPLOCK rise together; boot code waits for bits 26:24.
+  constexpr std::uint32_t kLockFlags = 0x1F000000;
+  regs.pll0_config.on_read([this] { regs.pll0_config.set(pll1_locked.read() ? kLockFlags : 0); });
+  regs.pll1_config.on_read([this] { regs.pll1_config.set(pll2_locked.read() ? kLockFlags : 0); });
+  SC_METHOD(update);
+  sensitive << written_;
+}
+
+void SystemModule::update() {
+  mstpri0.write(regs.mstpri0.get());
+  mstpri1.write(regs.mstpri1.get());
+  vpss_clk_ctrl.write(regs.vpss_clk_ctrl.get());
+  peri_clk_ctrl.write(regs.peri_clk_ctrl.get());
+  misc.write(regs.misc.get());
+  edma_evtmux.write(regs.edma_evtmux.get());
+  arm_intmux.write(regs.arm_intmux.get());
+}
+
+}  // namespace fovea::periph

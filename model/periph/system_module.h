@@ -1,0 +1,127 @@
+// System module: pin and interrupt multiplexers, priorities, clock selection, I/O calibration.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <systemc>
+
+#include "model/common/bus_target.h"
+#include "model/common/param.h"
+#include "model/periph/clocked_target.h"
+
+namespace fovea::periph {
+
+struct SystemParams : ParamGroup {
+  IntParam vtp_time{*this,
+                    "vtp_time",
+                    IntParam::Unit::kTime,
+                    2 * kPsPerUs,
+                    10 * kPsPerNs,
+                    kPsPerMs,
+                    "from CLRZ = 1 to READY of the DDR I/O calibration",
+                    Origin::kAssumed,
+                    "no figure published; software polls READY once at start-up"};
+  IntParam bootcfg{*this,
+                   "bootcfg",
+                   IntParam::Unit::kCount,
+                   0,
+                   0,
+                   255,
+                   "BOOTCFG pins: 7:5 boot mode (0 NAND ... 3 UART), 2 AEMIF width",
+                   Origin::kChoice,
+                   "board straps"};
+  SystemParams() : ParamGroup("system") {}
+};
+
+/// Offsets and reset values: TI register header (CSL) and TI boot loader, which agree. BOOTCFG,
+/// DDR_SLEW's CMOS bit and the debounce registers are kept without effect, as are all multiplexers
+/// that select a block which is not modelled.
+struct SystemRegs : RegBank {
+  explicit SystemRegs(std::uint32_t bootcfg_pins);
+  std::deque<Reg> pinmux;
+  Reg bootcfg;
+  Reg arm_intmux{*this, "ARM_INTMUX", 0x18, Mode::kRw, "alternative interrupt sources"};
+  Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw, "alternative EDMA events"};
+  Reg ddr_slew{*this, "DDR_SLEW", 0x20, Mode::kRw, "DDR pad slew; bit 4 CMOS levels", 0x700};
+  Reg uhpi_ctl{*this, "UHPI_CTL", 0x24, Mode::kRw, "host port; kept"};
+  Reg device_id{*this, "DEVICE_ID", 0x28, Mode::kRo, "JTAG identification", 0x0B83E02F};
+  Reg vdac_config{*this, "VDAC_CONFIG", 0x2C, Mode::kRw, "video DAC; kept", 0x00115500};
+  Reg timer64_ctl{*this, "TIMER64_CTL", 0x30, Mode::kRw, "timer input pins; kept"};
+  Reg usbphy_ctl{*this, "USBPHY_CTL", 0x34, Mode::kRw, "USB PHY; kept", 0xC7};
+  struct Misc : Reg {
+    using Reg::Reg;
+    Field arm_waitst{*this, "ARM_WAITST", 0, 1, Mode::kRw, "1: internal RAM without wait state"};
+    Field efuse{*this, "EFUSE_BIT", 2, 2, Mode::kRo, "0"};
+    Field timer2_wdt{*this, "TIMER2_WDT", 4, 1, Mode::kRw, "TIMER2 is the watchdog; kept"};
+    Field clkstp{*this, "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass; kept"};
+    Field tptc1_bst{*this, "TPTC1_BST", 7, 1, Mode::kRw, "burst of TPTC1: 0 32 bytes, 1 64"};
+    Field bootst{*this, "BOOTST", 8, 2, Mode::kRw, "boot status; kept"};
+  } misc{*this, "MISC", 0x38, "miscellaneous", 0x13};
+  struct Mstpri0 : Reg {
+    using Reg::Reg;
+    Field arm_dma{*this, "ARM_DMAP", 0, 3, Mode::kRw, "priority of the ARM's DMA port"};
+    Field arm_cfg{*this, "ARM_CFGP", 4, 3, Mode::kRw, "priority of the ARM's configuration port"};
+    Field mjcp{*this, "IMCOPP", 16, 3, Mode::kRw, "priority of MJCP"};
+    Field hdvicp{*this, "KALEIDOP", 20, 3, Mode::kRw, "priority of HDVICP"};
+  } mstpri0{*this, "MSTPRI0", 0x3C, "master priorities, 0 highest", 0x00550011};
+  struct Mstpri1 : Reg {
+    using Reg::Reg;
+    Field emac{*this, "EMACP", 0, 3, Mode::kRw, "priority of the EMAC"};
+    Field uhpi{*this, "UHPIP", 4, 3, Mode::kRw, "priority of the host port"};
+    Field usb{*this, "USBP", 8, 3, Mode::kRw, "priority of USB"};
+  } mstpri1{*this, "MSTPRI1", 0x40, "master priorities, 0 highest", 0x00000444};
+  struct VpssClkCtrl : Reg {
+    using Reg::Reg;
+    Field muxsel{*this, "VPSS_MUXSEL", 0, 2, Mode::kRw, "VENC clock: 0, 1 internal, 3 PCLK"};
+    Field pclk_inv{*this, "PCLK_INV", 2, 1, Mode::kRw, "inverts PCLK; kept"};
+    Field venclken{*this, "VENCLKEN", 3, 1, Mode::kRw, "VENC clock on"};
+    Field dacclken{*this, "DACCLKEN", 4, 1, Mode::kRw, "DAC clock on; kept"};
+    Field venc_src{*this, "VENC_CLK_SRC", 5, 2, Mode::kRw, "0 PLL1, 1 PLL2, 2, 3 crystal"};
+    Field clkmd{*this, "VPSS_CLKMD", 7, 1, Mode::kRw, "DMA : VPSS 0 1:2, 1 1:1; kept"};
+  } vpss_clk_ctrl{*this, "VPSS_CLK_CTRL", 0x44, "VPSS clocks", 0x10};
+  /// The header gives DDRCLKS a reset of 1 but the whole register 0x003F0FF8; the latter is taken.
+  Reg peri_clk_ctrl{
+      *this,     "PERI_CLK_CTRL", 0x48, Mode::kRw, "29 ARM from PLL2, 27 DDR from PLL2, dividers",
+      0x003F0FF8};
+  Reg deepsleep{*this, "DEEPSLEEP", 0x4C, Mode::kRw, "deep sleep; not modelled"};
+  Reg dft_enable{*this, "DFT_ENABLE", 0x50, Mode::kRw, "test; kept"};
+  std::deque<Reg> debounce;
+  struct Vtpiocr : Reg {
+    using Reg::Reg;
+    Field code{*this, "DRIVE", 0, 6, Mode::kRw, "drive and filter settings; kept"};
+    Field pwrdn{*this, "PWRDN", 6, 1, Mode::kRw, "calibration off; kept"};
+    Field lock{*this, "LOCK", 7, 1, Mode::kRw, "holds the calibration"};
+    Field pwrsave{*this, "PWRSAVE", 8, 1, Mode::kRw, "kept"};
+    Field force{*this, "FORCE", 9, 4, Mode::kRw, "kept"};
+    Field clrz{*this, "CLRZ", 13, 1, Mode::kRw, "0 clears, a rise starts the calibration"};
+    Field iopwrdn{*this, "IOPWRDN", 14, 1, Mode::kRw, "kept"};
+    Field ready{*this, "READY", 15, 1, Mode::kRo, "calibration is complete"};
+    Field vref{*this, "VREF", 16, 5, Mode::kRw, "reference; kept"};
+  } vtpiocr{*this, "VTPIOCR", 0x74, "DDR I/O calibration", 0x00182077};
+  Reg pupdctl0{*this, "PUPDCTL0", 0x78, Mode::kRw, "pull resistors; kept", ~0u};
+  Reg pupdctl1{*this, "PUPDCTL1", 0x7C, Mode::kRw, "pull resistors; kept", ~0u};
+  Reg hdimcopbt{*this, "HDIMCOPBT", 0x80, Mode::kRw, "coprocessor boot; kept", 0x1};
+  Reg pll0_config{*this, "PLL0_CONFIG", 0x84, Mode::kRo, "PLLC1 lock flags: 24, 27:25, 28"};
+  Reg pll1_config{*this, "PLL1_CONFIG", 0x88, Mode::kRo, "PLLC2 lock flags: 24, 27:25, 28"};
+};
+
+/// System module at 0x01C40000. Its steering registers leave as ports and change in the instant of
+/// the write.
+class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
+ public:
+  SC_HAS_PROCESS(SystemModule);
+  sc_core::sc_in<bool> pll1_locked{"pll1_locked"}, pll2_locked{"pll2_locked"};
+  OptionalOut<std::uint32_t> mstpri0{"mstpri0"}, mstpri1{"mstpri1"};
+  OptionalOut<std::uint32_t> vpss_clk_ctrl{"vpss_clk_ctrl"}, peri_clk_ctrl{"peri_clk_ctrl"};
+  OptionalOut<std::uint32_t> misc{"misc"}, edma_evtmux{"edma_evtmux"}, arm_intmux{"arm_intmux"};
+
+  SystemModule(sc_core::sc_module_name name, const SystemParams& params);
+
+ private:
+  void update();
+  Picoseconds vtp_time_;
+  Picoseconds vtp_ready_at_ = 0;
+  bool vtp_clrz_ = true;
+  sc_core::sc_event written_;
+};
+
+}  // namespace fovea::periph

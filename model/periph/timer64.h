@@ -1,0 +1,107 @@
+// 64-bit timer: one 64-bit, two 32-bit, chained, or watchdog.
+#pragma once
+#include <array>
+#include <systemc>
+
+#include "model/periph/clocked_target.h"
+#include "model/periph/core/timer_counter.h"
+
+namespace fovea::periph {
+
+struct TimerRegs : RegBank {
+  Reg pid12{*this, "PID12", 0x00, Mode::kRo, "peripheral identification (value not public)"};
+  Reg emumgt{*this, "EMUMGT_CLKSPD", 0x04, Mode::kRw, "emulation; kept, no effect"};
+  Reg gpint_gpen{*this, "GPINT_GPEN", 0x08, Mode::kRw, "bit 17: the timer pin is an output pin"};
+  Reg gpdat_gpdir{*this, "GPDAT_GPDIR", 0x0C, Mode::kRw, "bits 17, 1: direction and level of it"};
+  Reg tim12{*this, "TIM12", 0x10, Mode::kRw, "counter, lower half"};
+  Reg tim34{*this, "TIM34", 0x14, Mode::kRw, "counter, upper half"};
+  Reg prd12{*this, "PRD12", 0x18, Mode::kRw, "period, lower half"};
+  Reg prd34{*this, "PRD34", 0x1C, Mode::kRw, "period, upper half; chained: prescaler of TIM12"};
+  struct Tcr : Reg {
+    using Reg::Reg;
+    Field enamode12{*this, "ENAMODE12", 6, 2, Mode::kRw, "0 off, 1 once, 2 periodic, 3 reloading"};
+    Field clksrc12{*this, "CLKSRC12", 8, 1, Mode::kRw, "1: clock from the pin (not modelled)"};
+    Field enamode34{*this, "ENAMODE34", 22, 2, Mode::kRw, "as ENAMODE12, for TIM34 unchained"};
+  } tcr{*this, "TCR", 0x20, "control"};
+  struct Tgcr : Reg {
+    using Reg::Reg;
+    Field tim12rs{*this, "TIM12RS", 0, 1, Mode::kRw, "1: TIM12 is out of reset"};
+    Field tim34rs{*this, "TIM34RS", 1, 1, Mode::kRw, "1: TIM34 is out of reset"};
+    Field timmode{*this, "TIMMODE", 2, 2, Mode::kRw, "0 64-bit, 1 2x32, 2 watchdog, 3 chained"};
+    Field plusen{*this, "PLUSEN", 4, 1, Mode::kRw, "kept, no effect"};
+    Field psc34{*this, "PSC34", 8, 4, Mode::kRw, "unchained: TIM34 counts every PSC34 + 1 ticks"};
+    Field tddr34{*this, "TDDR34", 12, 4, Mode::kRw, "prescaler count at start"};
+  } tgcr{*this, "TGCR", 0x24, "global control"};
+  struct Wdtcr : Reg {
+    using Reg::Reg;
+    Field wden{*this, "WDEN", 14, 1, Mode::kRw, "watchdog enable, taken with the second key"};
+    Field wdflag{*this, "WDFLAG", 15, 1, Mode::kRo, "the watchdog has expired"};
+    Field wdkey{*this, "WDKEY", 16, 16, Mode::kWo, "0xA5C6 then 0xDA7E"};
+  } wdtcr{*this, "WDTCR", 0x28, "watchdog control"};
+  Reg rel12{*this, "REL12", 0x34, Mode::kRw, "ENAMODE12 = 3: next PRD12, taken at a match"};
+  Reg rel34{*this, "REL34", 0x38, Mode::kRw, "ENAMODE34 = 3: next PRD34"};
+  Reg cap12{*this, "CAP12", 0x3C, Mode::kRo, "TIM12 at the last match"};
+  Reg cap34{*this, "CAP34", 0x40, Mode::kRo, "TIM34 at the last match"};
+  struct IntctlStat : Reg {
+    using Reg::Reg;
+    Field en12{*this, "PRDINTEN12", 0, 1, Mode::kRw, "kept; interrupts come without it"};
+    Field stat12{*this, "PRDINTSTAT12", 1, 1, Mode::kW1c, "TIM12 has matched"};
+    Field en34{*this, "PRDINTEN34", 16, 1, Mode::kRw, "kept; interrupts come without it"};
+    Field stat34{*this, "PRDINTSTAT34", 17, 1, Mode::kW1c, "TIM34 has matched"};
+  } intctl_stat{*this, "INTCTL_STAT", 0x44, "interrupt control and status"};
+
+  TimerRegs() : RegBank("TIMER64") {}
+};
+
+/// Timer64 (SPRUH82C ch. 30 is the family's public text; offsets: TI boot loader, Linux).
+/// A match raises tint12/tint34 for one clock period (the AINTC takes the edge). Counters are
+/// computed when read; the one pending event is the next match or the end of its pulse.
+/// Interrupts do not depend on INTCTL_STAT: Linux gets them without writing it.
+/// A counter in reset (TIMxxRS = 0) holds its value (assumed).
+/// Watchdog: keys 0xA5C6, 0xDA7E (with WDEN) activate and later serve it; a wrong key or the match
+/// expires it; it then stays expired.
+/// Not modelled: pin as clock or gate, compare registers, external-event capture.
+class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
+ public:
+  SC_HAS_PROCESS(Timer64);
+  OptionalOut<bool> tint12{"tint12"}, tint34{"tint34"};
+  /// Resets the board: watchdog expired, or the timer pin was driven high by software as the
+  /// boot loaders do to reset the chip (GPINT_GPEN = 0x20000, GPDAT_GPDIR = 0x20002).
+  OptionalOut<bool> expired{"expired"};
+
+  explicit Timer64(sc_core::sc_module_name name);
+
+ private:
+  enum TimerMode : std::uint32_t { k64 = 0, kUnchained = 1, kWatchdog = 2, kChained = 3 };
+  enum class Watchdog { kIdle, kPreActive, kActive, kServing, kExpired };
+  struct Half {
+    TimerCounter counter{32};
+    bool run = false, once = false;
+    std::uint64_t prescale = 1;
+    std::uint64_t due = kNever, off = kNever;  // ticks: next match, end of the pulse
+    bool level = false;
+  };
+
+  bool wide() const { return mode_ == k64 || mode_ == kWatchdog; }
+  std::uint64_t count(unsigned half) const;
+  void set_count(unsigned half, std::uint32_t value);
+  void load_periods();
+  void reconfigure();
+  void apply(Half& half, bool run, bool once, std::uint64_t prescale, std::uint64_t phase);
+  void reschedule();
+  void matched(unsigned half);
+  void reload(unsigned half);
+  void watchdog_key(std::uint32_t word);
+  void clock_changed() override { reschedule(); }
+  void update();
+
+  std::array<Half, 2> half_;  // TIM12 and TIM34; in the 64-bit modes [0] is both
+  std::uint32_t mode_ = k64;
+  Watchdog watchdog_ = Watchdog::kIdle;
+  bool pin_reset_ = false;
+  std::uint32_t shadow34_ = 0;  // upper half, taken when the lower is read
+  bool shadow_valid_ = false;
+  sc_core::sc_event wake_;
+};
+
+}  // namespace fovea::periph

@@ -1,0 +1,89 @@
+// UART with 16-byte FIFOs, word-spaced registers.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <systemc>
+
+#include "model/periph/clocked_target.h"
+
+namespace fovea::periph {
+
+/// Registers of UART0/UART1 (16550 at a 4-byte pitch plus the DaVinci additions; TI boot loader,
+/// Linux 8250). DLL and DLH also answer at 0x20/0x24 without DLAB.
+struct UartRegs : RegBank {
+  Reg rbr{*this, "RBR_THR", 0x00, Mode::kRw, "receive / transmit data; DLL while LCR.DLAB"};
+  Reg ier{*this, "IER", 0x04, Mode::kRw, "1 RX data, 2 TX empty, 4 line status; DLH under DLAB"};
+  Reg iir{*this, "IIR_FCR", 0x08, Mode::kRw, "interrupt identification / FIFO control", 0x01};
+  struct Lcr : Reg {
+    using Reg::Reg;
+    Field wls{*this, "WLS", 0, 2, Mode::kRw, "data bits - 5"};
+    Field stb{*this, "STB", 2, 1, Mode::kRw, "1: 2 stop bits (1.5 with 5 data bits)"};
+    Field pen{*this, "PEN", 3, 1, Mode::kRw, "parity bit"};
+    Field eps{*this, "EPS_SP_BC", 4, 3, Mode::kRw, "parity kind and break; kept, no effect"};
+    Field dlab{*this, "DLAB", 7, 1, Mode::kRw, "divisor latch at offsets 0 and 4"};
+  } lcr{*this, "LCR", 0x0C, "line control"};
+  struct Mcr : Reg {
+    using Reg::Reg;
+    Field rts{*this, "DTR_RTS_OUT", 0, 4, Mode::kRw, "modem outputs; kept, no effect"};
+    Field loop{*this, "LOOP", 4, 1, Mode::kRw, "transmitter feeds the receiver"};
+    Field afe{*this, "AFE", 5, 1, Mode::kRw, "automatic flow control; kept, no effect"};
+  } mcr{*this, "MCR", 0x10, "modem control"};
+  Reg lsr{*this, "LSR", 0x14, Mode::kRo, "1 DR, 2 OE, 0x20 THRE, 0x40 TEMT", 0x60};
+  Reg msr{*this, "MSR", 0x18, Mode::kRo, "modem status; inputs are not wired"};
+  Reg scr{*this, "SCR", 0x1C, Mode::kRw, "scratch"};
+  Reg dll{*this, "DLL", 0x20, Mode::kRw, "divisor, low byte"};
+  Reg dlh{*this, "DLH", 0x24, Mode::kRw, "divisor, high byte"};
+  Reg pid1{*this, "PID1", 0x28, Mode::kRo, "peripheral identification (value not public)"};
+  Reg pid2{*this, "PID2", 0x2C, Mode::kRo, "peripheral identification (value not public)"};
+  struct Pwremu : Reg {
+    using Reg::Reg;
+    Field free{*this, "FREE", 0, 1, Mode::kRw, "emulation; kept, no effect"};
+    Field urrst{*this, "URRST", 13, 1, Mode::kRw, "1: receiver runs"};
+    Field utrst{*this, "UTRST", 14, 1, Mode::kRw, "1: transmitter runs"};
+  } pwremu{*this, "PWREMU_MGMT", 0x30, "both halves are in reset until set"};
+  Reg mdr{*this, "MDR", 0x34, Mode::kRw, "bit 0: 13 samples a bit instead of 16"};
+
+  UartRegs() : RegBank("UART") {}
+};
+
+/// A byte leaves in real time: start, data, parity and stop bits of 16 (13) x divisor clock
+/// periods, the first from the first clock edge after the write; the next byte follows without a
+/// gap. The baud generator starts with the byte (its free-running phase is not public). The
+/// interrupt output is a level. Not modelled: parity and framing errors, break, modem lines.
+class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
+ public:
+  SC_HAS_PROCESS(Uart16550);
+  OptionalOut<bool> irq{"irq"};
+  /// Each transmitted byte with the end of its last stop bit. Set by the board.
+  std::function<void(std::uint8_t, Picoseconds)> sink;
+
+  explicit Uart16550(sc_core::sc_module_name name);
+  /// A byte has arrived completely (kernel time). Lost, with OE, when there is no room.
+  void receive(std::uint8_t byte);
+  std::uint64_t transmitted() const { return transmitted_; }
+
+ private:
+  static constexpr unsigned kFifoBytes = 16;
+  bool fifo_mode() const { return fcr_ & 1; }
+  unsigned capacity() const { return fifo_mode() ? kFifoBytes : 1; }
+  std::uint32_t divisor() const { return (regs.dlh.get() & 0xFF) << 8 | (regs.dll.get() & 0xFF); }
+  std::uint64_t character_ticks() const;
+  void data_written(std::uint8_t byte);
+  void read_data();
+  void fcr_written(std::uint32_t word);
+  void refresh();
+  std::uint32_t interrupt_id() const;
+  void start_next(std::uint64_t first_tick);
+  void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
+  void update();
+
+  std::deque<std::uint8_t> tx_, rx_;
+  std::uint8_t shift_ = 0, ier_ = 0, fcr_ = 0, last_rx_ = 0;
+  bool shifting_ = false, overrun_ = false, thre_event_ = true, rx_timeout_ = false;
+  std::uint64_t done_tick_ = kNever, timeout_tick_ = kNever;
+  std::uint64_t transmitted_ = 0;
+  sc_core::sc_event wake_;
+};
+
+}  // namespace fovea::periph

@@ -1,0 +1,98 @@
+// The TMS320DM365: wiring only. The constructor reads like the block diagram.
+#pragma once
+#include <array>
+#include <memory>
+#include <systemc>
+#include <vector>
+
+#include "model/bus/config_bus.h"
+#include "model/bus/load_generator.h"
+#include "model/bus/scr.h"
+#include "model/common/quiet.h"
+#include "model/cpu/arm926.h"
+#include "model/mem/ddr_module.h"
+#include "model/periph/aintc.h"
+#include "model/periph/clock_tree.h"
+#include "model/periph/gpio.h"
+#include "model/periph/i2c_controller.h"
+#include "model/periph/pll_controller.h"
+#include "model/periph/psc.h"
+#include "model/periph/system_module.h"
+#include "model/periph/timer64.h"
+#include "model/periph/uart16550.h"
+#include "model/video/isif.h"
+#include "model/video/osd.h"
+#include "model/video/venc.h"
+#include "model/video/vpss_top.h"
+
+namespace fovea::soc {
+
+struct Dm365Params {
+  cpu::CpuParams cpu;
+  bus::CrossbarParams crossbar;
+  bus::ConfigBusParams config_bus;
+  bus::LoadParams load;
+  mem::DdrParams ddr;
+  periph::PllParams pll;
+  periph::PscParams psc;
+  periph::SystemParams system;
+  periph::AintcParams aintc;
+  video::VpssParams vpss;
+  void declare(ParamSet& set);
+};
+
+/// Outside pins: osc, the decoder's video input, the display output, I2C, UART0, GPIO.
+class Dm365 : public sc_core::sc_module {
+ public:
+  /// @param entry where the core starts: the ROM boot loader's work is done by whoever loads it
+  Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict);
+
+  ClockIn osc{"osc"};                                  ///< 24 MHz oscillator
+  sc_core::sc_port<video::DisplayLineIf> display{"display"};
+
+  /// The 32 KB internal RAM behind both TCM ports.
+  std::array<std::uint8_t, 32 * 1024> internal_ram{};
+
+  QuietPhase quiet{"quiet"};
+  cpu::Arm926 arm;
+  bus::Scr scr;
+  bus::ConfigBus config;
+  mem::DdrModule ddr;
+  periph::PllController pll1, pll2;
+  periph::ClockTree clocks{"clocks"};
+  periph::Psc psc;
+  periph::SystemModule system;
+  periph::Aintc aintc;
+  std::array<std::unique_ptr<periph::Timer64>, 4> timers;
+  periph::Uart16550 uart0{"uart0"}, uart1{"uart1"};
+  periph::Gpio gpio{"gpio"};
+  periph::I2cController i2c{"i2c"};
+  video::VpssTop vpss{"vpss"};
+  video::Isif isif;
+  video::Osd osd;
+  video::Venc venc;
+  std::unique_ptr<bus::LoadGenerator> load;
+
+ private:
+  void route_priorities();
+  void wire_clocks();
+  void wire_registers();
+  void wire_memory();
+  void wire_interrupts();
+  void wire_video();
+
+  template <class T>
+  using Signals = sc_core::sc_vector<sc_core::sc_signal<T>>;
+  Signals<Frequency> pll1_clk_{"pll1_clk", 9}, pll2_clk_{"pll2_clk", 5};
+  ClockSignal arm_clk_, ddr_clk_, edma_clk_, vpss_clk_, venc_clk_, aux_clk_, uart1_clk_;
+  Signals<bool> lpsc_{"lpsc", periph::kLpscCount};
+  Signals<bool> irq_{"irq", 64};
+  Signals<bool> vdint_{"vdint", 3};
+  Signals<std::uint32_t> priority_{"priority", kMasterCount};
+  sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_;
+  sc_core::sc_signal<bool> isif_gate_, vpbe_gate_, venc_gate_;
+  sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_;
+  std::uint32_t load_priority_;
+};
+
+}  // namespace fovea::soc

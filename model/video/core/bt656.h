@@ -1,0 +1,134 @@
+// ITU-R BT.656: line and field structure of both standards as data, timing reference codes, lines.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "model/common/units.h"
+
+namespace fovea::video {
+
+inline constexpr unsigned kActiveBytes = 1440;  ///< 720 Y, 360 Cb, 360 Cr
+inline constexpr unsigned kActivePixels = 720;
+inline constexpr unsigned kCodeBytes = 4;  ///< FF 00 00 XY
+inline constexpr unsigned kMaxLineBytes = 1728;
+/// 27 MHz, the byte clock of both standards [ITU-R BT.656].
+inline constexpr Frequency kByteClock{27'000'000};
+
+/// One interlaced standard. Lines are numbered from 1 as in the standard; a line starts with EAV,
+/// so that its active samples are the last kActiveBytes of it. Source: SPRU629 table 4-2, BT.601.
+struct Standard {
+  struct Lines {
+    unsigned first, last;
+    bool f, v;
+  };
+  std::string_view name;
+  unsigned lines;                        ///< per frame
+  unsigned line_bytes;                   ///< samples of the byte clock per line
+  std::array<Lines, 6> fv;               ///< F and V by line
+  std::array<unsigned, 2> field_start;   ///< line at which F becomes 0, 1
+  std::array<unsigned, 2> active_first;  ///< first line with V = 0, by F
+  std::array<unsigned, 2> active_count;  ///< lines with V = 0, by F
+  unsigned rows;                         ///< rows of the usual picture (576, 480)
+  unsigned sync_line[2];                 ///< first line after the start of the vertical sync, by F
+
+  constexpr unsigned active_offset() const { return line_bytes - kActiveBytes; }
+  constexpr unsigned frame_bytes() const { return lines * line_bytes; }
+  /// 25 or 30000/1001 Hz when the byte clock is 27 MHz.
+  constexpr Frequency frame_rate() const { return kByteClock / frame_bytes(); }
+  /// The F/V entry of a line (1 ... lines).
+  constexpr const Lines& at(unsigned line) const {
+    for (const Lines& l : fv)
+      if (line >= l.first && line <= l.last) return l;
+    return fv.back();
+  }
+};
+
+inline constexpr Standard k625{"625/50",
+                               625,
+                               1728,
+                               {{{1, 22, false, true},
+                                 {23, 310, false, false},
+                                 {311, 312, false, true},
+                                 {313, 335, true, true},
+                                 {336, 623, true, false},
+                                 {624, 625, true, true}}},
+                               {1, 313},
+                               {23, 336},
+                               {288, 288},
+                               576,
+                               {1, 314}};
+inline constexpr Standard k525{"525/60",
+                               525,
+                               1716,
+                               {{{1, 3, true, true},
+                                 {4, 19, false, true},
+                                 {20, 263, false, false},
+                                 {264, 265, false, true},
+                                 {266, 282, true, true},
+                                 {283, 525, true, false}}},
+                               {4, 266},
+                               {20, 283},
+                               {244, 243},
+                               480,
+                               {4, 267}};
+
+/// The standard a register value or a picture height stands for.
+constexpr const Standard& standard_of(bool is_625) { return is_625 ? k625 : k525; }
+
+/// Fourth byte of a timing reference code: 1 F V H P3 P2 P1 P0.
+constexpr std::uint8_t encode_xy(bool f, bool v, bool h) {
+  return static_cast<std::uint8_t>(0x80 | f << 6 | v << 5 | h << 4 | (v != h) << 3 | (f != h) << 2 |
+                                   (f != v) << 1 | ((f != v) != h));
+}
+
+struct XyCode {
+  enum class Quality { kGood, kCorrected, kBad } quality;
+  bool f, v, h;
+};
+/// Decodes with correction of any single wrong bit; two wrong bits are kBad (F, V, H as received).
+XyCode decode_xy(std::uint8_t byte);
+
+/// Counts lines without end from the start of a field 1 (F = 0): where line index n lies.
+struct LinePosition {
+  std::uint64_t field;  ///< running number; even fields have F = 0
+  unsigned line;        ///< number in the standard, 1 ... lines
+};
+constexpr LinePosition locate(const Standard& s, std::uint64_t n) {
+  const unsigned pos = static_cast<unsigned>(n % s.lines);
+  const unsigned first_field = s.field_start[1] - s.field_start[0];
+  return {2 * (n / s.lines) + (pos >= first_field), (s.field_start[0] - 1 + pos) % s.lines + 1};
+}
+/// Index of the first line of a running field number.
+constexpr std::uint64_t first_line_of_field(const Standard& s, std::uint64_t field) {
+  return field / 2 * s.lines + (field % 2 ? s.field_start[1] - s.field_start[0] : 0);
+}
+
+/// Which lines carry which rows of a picture: line first_line[F] + i carries row first_row[F] + 2
+/// i.
+struct Placement {
+  std::array<unsigned, 2> first_line, first_row;
+  unsigned rows;
+  /// The row on a line of field F, or -1.
+  constexpr int row(bool f, unsigned line) const {
+    if (line < first_line[f]) return -1;
+    const unsigned r = first_row[f] + 2 * (line - first_line[f]);
+    return r < rows ? static_cast<int>(r) : -1;
+  }
+};
+/// 625/50: row 0 on line 23, row 1 on line 336.
+inline constexpr Placement kPlacement625{{23, 336}, {0, 1}, 576};
+/// 525/60 from the first active line of each field: row 0 on line 20, row 1 on line 283. This is
+/// what a capture with equal first lines (SLV0 = SLV1) weaves.
+inline constexpr Placement kPlacement525{{20, 283}, {0, 1}, 480};
+/// 525/60, the studio's 480 lines: row 0 on line 285 (field 2), row 1 on line 23: the field that
+/// comes first in time holds the lower rows.
+inline constexpr Placement kPlacement525Studio{{23, 285}, {1, 0}, 480};
+
+/// Writes a whole line: EAV, blanking 80 10, SAV, then `active` (kActiveBytes) or blanking.
+/// `out` has standard.line_bytes bytes.
+void compose_line(const Standard& standard, std::uint8_t eav_xy, std::uint8_t sav_xy,
+                  const std::uint8_t* active, std::span<std::uint8_t> out);
+
+}  // namespace fovea::video

@@ -1,0 +1,42 @@
+// A 4:2:2 picture and where it comes from: the seam between camera optics and camera wire.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace fovea::video {
+
+/// 4:2:2 picture, 8 bit, bytes Cb Y0 Cr Y1 (UYVY), rows top to bottom, no padding.
+struct Picture {
+  unsigned width = 0;   ///< pixels, even
+  unsigned height = 0;  ///< rows
+  std::vector<std::uint8_t> uyvy;
+
+  Picture() = default;
+  /// A picture of one colour; black by default (Y 16, C 128).
+  Picture(unsigned w, unsigned h, std::uint8_t y = 16, std::uint8_t cb = 128, std::uint8_t cr = 128)
+      : width(w), height(h), uyvy(std::size_t{w} * h * 2) {
+    for (std::size_t i = 0; i + 3 < uyvy.size(); i += 4) {
+      uyvy[i] = cb;
+      uyvy[i + 1] = y;
+      uyvy[i + 2] = cr;
+      uyvy[i + 3] = y;
+    }
+  }
+  unsigned row_bytes() const { return width * 2; }
+  const std::uint8_t* row(unsigned y) const { return uyvy.data() + std::size_t{y} * row_bytes(); }
+  std::uint8_t* row(unsigned y) { return uyvy.data() + std::size_t{y} * row_bytes(); }
+  friend bool operator==(const Picture&, const Picture&) = default;
+};
+
+/// What the camera sees. Field k starts at k field periods after power-up; field() returns a
+/// full-height picture of that instant, of which the encoder sends the rows of the field's parity.
+/// Must be a pure function of k; the reference is valid until the next call.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+  virtual unsigned width() const = 0;
+  virtual unsigned height() const = 0;
+  virtual const Picture& field(std::uint64_t k) = 0;
+};
+
+}  // namespace fovea::video

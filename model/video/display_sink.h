@@ -1,0 +1,57 @@
+// The monitor on the board's video output.
+#pragma once
+#include <systemc>
+
+#include "model/common/stats.h"
+#include "model/video/core/frame_assembler.h"
+#include "model/video/wire.h"
+
+namespace fovea::video {
+
+struct DisplayStats : StatGroup {
+  Counter frames{*this, "frames", "count", "complete frames displayed"};
+  Counter repeated{*this, "repeated", "count",
+                   "frames with the same buffer address and the same pixels as the one before"};
+  Counter underflows{*this, "underflows", "count",
+                     "bursts of picture data that came after their first pixel was due"};
+  Counter broken_frames{*this, "broken_frames", "count", "frames that ended early"};
+  Counter violations{*this, "violations", "count",
+                     "lines at a wrong time, out of order or of wrong length"};
+  DisplayStats() : StatGroup("display") {}
+};
+
+/// Takes the encoder's lines, checks them and hands out frames.
+class DisplaySink : public sc_core::sc_module, public DisplayLineIf {
+ public:
+  sc_core::sc_export<DisplayLineIf> lines{"lines"};
+  DisplayStats stats;
+  FrameAssembler assembler;  ///< set assembler.on_frame for a callback per displayed frame
+
+  explicit DisplaySink(sc_core::sc_module_name name) : sc_module(name) { lines.bind(*this); }
+  void line(const DisplayLine& l) override {
+    assembler.line(l);
+    count();
+  }
+  void raster_off() override {
+    assembler.raster_off();
+    count();
+  }
+
+ private:
+  // The assembler counts over the whole run; the statistics only in the measured window.
+  void count() {
+    const Totals now{assembler.frames(), assembler.repeated(), assembler.underflows(),
+                     assembler.broken_frames(), assembler.violations()};
+    stats.frames += now.frames - seen_.frames;
+    stats.repeated += now.repeated - seen_.repeated;
+    stats.underflows += now.underflows - seen_.underflows;
+    stats.broken_frames += now.broken - seen_.broken;
+    stats.violations += now.violations - seen_.violations;
+    seen_ = now;
+  }
+  struct Totals {
+    std::uint64_t frames = 0, repeated = 0, underflows = 0, broken = 0, violations = 0;
+  } seen_;
+};
+
+}  // namespace fovea::video

@@ -1,0 +1,213 @@
+#include "model/video/isif.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "model/video/core/burst_split.h"
+
+namespace fovea::video {
+
+Isif::Isif(sc_core::sc_module_name name, const VpssParams& params)
+    : BusTarget(name, regs),
+      memory("memory", Master::kVpfe, static_cast<unsigned>(params.write_buffer_bursts())),
+      params_(params) {
+  if (params.burst() & (params.burst() - 1)) throw UserError("vpss.burst must be 32B or 64B");
+  video.bind(*this);
+  memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
+  regs.syncen.on_write([this](std::uint32_t) { write_syncen(); });
+  SC_METHOD(issue_due);
+  sensitive << burst_event_;
+  dont_initialize();
+}
+
+void Isif::write_syncen() {
+  if (!regs.syncen.vdhden) {
+    synced_ = false;
+    line_ = 0;
+    frame_open_ = false;
+    last_row_ = false;  // a row under way is still written, but ends no frame
+    frame_index_ = 0;
+    setup_.write = false;
+    return;
+  }
+  Diagnostics& d = Diagnostics::instance();
+  if (!regs.rec656if.r656on) d.not_modelled("ISIF without BT.656 embedded syncs");
+  if (regs.modeset.inpmod.get() != 2) d.not_modelled("ISIF input other than 8-bit YC");
+  if (regs.ccdcfg.sdrpack.get() != 2) d.not_modelled("ISIF packing other than 8 bit");
+  if (regs.culh.get() != 0xFFFF || regs.culv.get() != 0xFF) d.not_modelled("ISIF culling");
+  if (regs.hsize.adcr) d.not_modelled("ISIF addresses going down");
+  if (regs.modeset.hdvdd) d.not_modelled("ISIF as HD/VD master");
+}
+
+void Isif::latch() {
+  setup_.write = regs.syncen.wen && regs.rec656if.r656on && regs.modeset.inpmod.get() == 2;
+  setup_.interlaced = regs.modeset.ccdmd.get();
+  setup_.fiinv = regs.sdofst.fiinv.get();
+  // On the wire: Cb Y Cr Y. Linux's UYVY settings (YCINSWP = Y8POS = 1) keep that order; each of
+  // the four swap bits toggles it.
+  setup_.swap = ((regs.ccdcfg.y8pos.get() ^ regs.ccdcfg.ycinswp.get() ^ regs.ccdcfg.ycoutswp.get() ^
+                  regs.ccdcfg.bswd.get()) &
+                 1) != 0;
+  setup_.sph = regs.sph.value.get();
+  setup_.bytes = regs.lnh.value.get() + 1;
+  if (setup_.sph >= kActiveBytes || setup_.sph + setup_.bytes > kActiveBytes) {
+    Diagnostics::instance().guest("ISIF window leaves the active part of the line; cut");
+    setup_.sph = std::min(setup_.sph, kActiveBytes);
+    setup_.bytes = std::min(setup_.bytes, kActiveBytes - setup_.sph);
+  }
+  setup_.bytes &= ~3u;
+  setup_.first_line[0] = regs.slv0.value.get();
+  setup_.first_line[1] = regs.slv1.value.get();
+  setup_.lines = regs.lnv.value.get() + 1;
+  setup_.address = regs.address();
+  setup_.pitch = regs.hsize.lofst.get() * 32;
+}
+
+void Isif::line(const Bt656Line& l) {
+  if (!clocked() || !regs.syncen.vdhden) {
+    synced_ = false;
+    line_ = 0;
+    return;
+  }
+  issue_due();  // the last burst of the previous line is due at this very time
+
+  const XyCode code = decode_xy(l.eav_xy);
+  bool f = (l.eav_xy & 0x40) != 0, v = (l.eav_xy & 0x20) != 0;
+  if (code.quality != XyCode::Quality::kGood && regs.rec656if.eccfvh) {
+    const bool corrected = code.quality == XyCode::Quality::kCorrected;
+    ++(corrected ? stats.corrected_codes : stats.bad_codes);
+    f = corrected ? code.f : f_;
+    v = corrected ? code.v : v_;
+  }
+  const bool vd = synced_ && v_ && !v;
+  synced_ = true;
+  f_ = f;
+  v_ = v;
+  if (vd) {
+    line_ = 1;
+    begin_field(l);
+  } else if (line_ != 0) {
+    ++line_;
+  }
+  if (line_ == 0) return;
+
+  const IsifRegs::Number15* const lines[] = {&regs.vdint0, &regs.vdint1, &regs.vdint2};
+  for (unsigned i = 0; i < 3; ++i)
+    if (lines[i]->value.get() == line_ || (vd && lines[i]->value.get() == 0)) vdint[i].raise();
+
+  if (regs.ccdcfg.vdlc) latch();
+  const unsigned first = setup_.first_line[field_];
+  if (setup_.write && line_ >= first && line_ - first < setup_.lines) begin_row(l, line_ - first);
+}
+
+void Isif::begin_field(const Bt656Line& l) {
+  field_ = f_ != (regs.modeset.fipol.get() != 0);
+  regs.modeset.mdfs.set(field_);
+  latch();
+  if (!setup_.write) frame_open_ = false;  // a first field whose second is not captured
+}
+
+void Isif::begin_row(const Bt656Line& l, unsigned index) {
+  if (setup_.bytes == 0) return;
+  const bool place = field_ != setup_.fiinv;
+  if (index == 0)
+    row_offset_ = setup_.interlaced && place ? static_cast<int>(regs.sdofst.fofst.get()) + 1 : 0;
+  else
+    row_offset_ += regs.sdofst.step(place, index - 1);
+  row_address_ = setup_.address + static_cast<std::uint32_t>(row_offset_) * setup_.pitch;
+  row_first_sample_ = l.first_sample + l.standard->active_offset() + setup_.sph;
+  row_clock_ = l.clock;
+  row_bytes_ = setup_.bytes;
+  row_pos_ = 0;
+  last_row_ = index + 1 == setup_.lines;
+
+  const std::uint8_t* from = l.bytes().data() + l.standard->active_offset() + setup_.sph;
+  if (setup_.swap) {
+    for (unsigned i = 0; i < row_bytes_; i += 2) {
+      row_[i] = from[i + 1];
+      row_[i + 1] = from[i];
+    }
+  } else {
+    std::memcpy(row_.data(), from, row_bytes_);
+  }
+
+  if (index == 0) {
+    if (!field_ || !frame_open_) {
+      frame_ = CaptureFrame{};
+      frame_.index = frame_index_;
+      frame_.start = row_clock_->edge(row_first_sample_);
+      frame_.complete = !field_;
+      frame_open_ = true;
+    }
+    frame_.address[field_] = setup_.address;
+    frame_.source_field[field_] = l.field_index;
+    if (!field_ || !frame_.complete) {
+      if (on_frame_start) on_frame_start(frame_);
+    }
+  }
+  issue_due();
+}
+
+bool Isif::place_free() {
+  // A completion delivered at this very time may or may not have run before us: its place counts as
+  // taken until later, so that the order of processes does not matter.
+  const unsigned freed = freed_at_ == kernel_now() ? freed_now_ : 0;
+  return memory.outstanding() + freed < params_.write_buffer_bursts();
+}
+
+void Isif::issue_due() {
+  const Picoseconds now = kernel_now();
+  while (row_pos_ < row_bytes_) {
+    const unsigned bytes = first_burst(row_address_ + row_pos_, row_bytes_ - row_pos_,
+                                       static_cast<unsigned>(params_.burst()));
+    const Picoseconds due = row_clock_->edge(row_first_sample_ + row_pos_ + bytes);
+    if (due > now) {
+      burst_event_.notify(to_sc_time(due - now));
+      return;
+    }
+    if (place_free()) {
+      memory.write(row_address_ + row_pos_, {row_.data() + row_pos_, bytes}, ++tag_);
+      ++stats.bursts;
+    } else {
+      overflow_sticky_ = true;
+      ++stats.overflows;
+      ++frame_.overflows;
+    }
+    row_pos_ += bytes;
+    if (row_pos_ == row_bytes_ && last_row_) end_field();
+  }
+}
+
+void Isif::end_field() {
+  ends_.push_back({tag_, field_, frame_});
+  if (field_) {
+    if (frame_.complete) ++frame_index_;
+    frame_open_ = false;
+  }
+  close_fields();
+}
+
+void Isif::close_fields() {
+  while (!ends_.empty() && ends_.front().last_tag <= done_tag_) {
+    FieldEnd e = ends_.front();
+    ends_.pop_front();
+    ++stats.fields;
+    if (!e.second) continue;
+    e.frame.end = kernel_now();
+    if (e.frame.complete) ++stats.frames;
+    if (on_frame_end) on_frame_end(e.frame);
+  }
+}
+
+void Isif::done(const BurstMaster::Completion& c) {
+  if (c.error) Diagnostics::instance().guest("capture writes to an address without memory");
+  if (freed_at_ != kernel_now()) {
+    freed_at_ = kernel_now();
+    freed_now_ = 0;
+  }
+  ++freed_now_;
+  done_tag_ = c.tag;
+  close_fields();
+}
+
+}  // namespace fovea::video

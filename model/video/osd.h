@@ -1,0 +1,102 @@
+// On-screen display block: fetches video window 0 from memory and composes lines.
+#pragma once
+#include <array>
+#include <functional>
+#include <systemc>
+#include <vector>
+
+#include "model/common/burst_master.h"
+#include "model/common/bus_target.h"
+#include "model/video/osd_regs.h"
+#include "model/video/params.h"
+#include "model/video/wire.h"
+
+namespace fovea::video {
+
+/// What the encoder's raster asks of the OSD. All calls come at a line's start, in time order.
+class OsdLineIf : public virtual sc_core::sc_interface {
+ public:
+  struct Timing {
+    const Standard* standard;
+    const Clock* clock;
+    std::uint64_t first_active;  ///< clock edge of the line's first active sample
+    unsigned number;             ///< line number in the standard
+    bool f;
+  };
+  /// Window registers take effect for the field that starts now.
+  virtual void field_start(const Standard& standard, bool f) = 0;
+  /// Starts fetching the line that will be shown with this timing.
+  virtual void fetch(const Timing& timing) = 0;
+  /// The line fetched first of those not yet finished is out: its pixels and what came too late.
+  virtual DisplayLine finish() = 0;
+  /// Forgets all lines under way.
+  virtual void stop() = 0;
+};
+
+/// OSD with video window 0 in 4:2:2 (Cb Y Cr Y in memory; Cr first with MODE.CS). Window registers
+/// latch at each field start (`vpss.osd_latch`), so a frame mixes two buffers when the address
+/// changes between its fields. A line is fetched `vpss.read_ahead_lines` lines before it is shown,
+/// in bursts of at most `vpss.burst` bytes. A burst whose data did not arrive strictly before its
+/// first pixel is due shows black and counts as an underflow; it is not shown later.
+/// Not modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, background other than black.
+class Osd : public BusTarget, public OsdLineIf {
+ public:
+  struct Latch {
+    Picoseconds time;
+    bool f;
+    bool window;  ///< window 0 is on
+    std::uint32_t address;
+  };
+  sc_core::sc_export<OsdLineIf> lines{"lines"};
+  BurstMaster memory;  ///< bind memory.socket
+  sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
+  OsdRegs regs;
+  /// Called at each field start with what will be shown.
+  std::function<void(const Latch&)> on_latch;
+
+  Osd(sc_core::sc_module_name name, const VpssParams& params);
+
+  void field_start(const Standard& standard, bool f) override;
+  void fetch(const Timing& timing) override;
+  DisplayLine finish() override;
+  void stop() override;
+
+ protected:
+  bool clocked() const override { return psc_enabled.read() && gate.read(); }
+
+ private:
+  struct Window {
+    bool on = false, field_mode = false, upper = true, swap_chroma = false;
+    std::uint32_t address = 0, pitch = 0;
+    int x = 0, y = 0;  // pixels, lines of a field from the first active line
+    int width = 0, height = 0;
+  };
+  struct Burst {
+    std::uint32_t address;
+    std::uint16_t at, bytes;  // place in the active line
+    Picoseconds due, arrived;
+  };
+  struct Line {
+    Timing timing{};
+    Picoseconds start = 0, end = 0;  // of its active part, by the clock at the fetch
+    bool window = false;
+    bool swap_chroma = false;
+    std::uint32_t address = 0;
+    std::vector<Burst> bursts;
+    unsigned next = 0;  // first burst not yet issued
+    std::array<std::uint8_t, kActiveBytes> bytes{};
+  };
+
+  Line& at(std::uint64_t n) { return ring_[n % ring_.size()]; }
+  void plan(Line& line);
+  void issue();
+  void done(const BurstMaster::Completion& c);
+
+  const VpssParams& params_;
+  Window window_;
+  std::vector<Line> ring_;
+  std::uint64_t fetched_ = 0, finished_ = 0;  // lines begun, lines shown
+  std::array<std::uint8_t, kActiveBytes> out_{};
+};
+
+}  // namespace fovea::video

@@ -1,0 +1,145 @@
+// Parameters of the video blocks.
+#pragma once
+#include "model/common/param.h"
+
+namespace fovea::video {
+
+struct VpssParams : ParamGroup {
+  using Unit = IntParam::Unit;
+  VpssParams() : ParamGroup("vpss") {}
+
+  IntParam burst{*this,
+                 "burst",
+                 Unit::kBytes,
+                 64,
+                 32,
+                 64,
+                 "largest memory burst of capture and display, 32 B or 64 B",
+                 Origin::kAssumed,
+                 "registers use units of 32 B; no public figure"};
+  IntParam write_buffer_bursts{*this,
+                               "write_buffer_bursts",
+                               Unit::kCount,
+                               4,
+                               1,
+                               32,
+                               "bursts of captured data that may wait for memory",
+                               Origin::kAssumed,
+                               "no public figure; watch capture.overflows"};
+  IntParam read_ahead_lines{*this,
+                            "read_ahead_lines",
+                            Unit::kCount,
+                            1,
+                            1,
+                            4,
+                            "lines fetched before the line on display",
+                            Origin::kAssumed,
+                            "no public figure; watch display.underflows"};
+  IntParam read_outstanding{*this,
+                            "read_outstanding",
+                            Unit::kCount,
+                            4,
+                            1,
+                            16,
+                            "display reads that may be under way at once",
+                            Origin::kAssumed,
+                            "no public figure"};
+  EnumParam osd_latch{*this,
+                      "osd_latch",
+                      "field",
+                      {"field", "frame"},
+                      "when a new window address takes effect: at each field start, or only at "
+                      "the start of the field with F = 0",
+                      Origin::kAssumed,
+                      "the manual was not readable"};
+  IntParam base_px_625{*this,
+                       "base_px_625",
+                       Unit::kCount,
+                       0x7E,
+                       0,
+                       1023,
+                       "BASEPX that puts the window's left edge on the first active pixel, 625/50",
+                       Origin::kAssumed,
+                       "the value that Linux programs"};
+  IntParam base_px_525{*this,
+                       "base_px_525",
+                       Unit::kCount,
+                       0x79,
+                       0,
+                       1023,
+                       "BASEPX that puts the window's left edge on the first active pixel, 525/60",
+                       Origin::kAssumed,
+                       "the value that Linux programs"};
+  IntParam base_py_625{*this,
+                       "base_py_625",
+                       Unit::kCount,
+                       0x16,
+                       0,
+                       511,
+                       "BASEPY that puts the window's top on the first active line, 625/50",
+                       Origin::kAssumed,
+                       "the value that Linux programs: line 23 is 22 after the vertical sync"};
+  IntParam base_py_525{*this,
+                       "base_py_525",
+                       Unit::kCount,
+                       0x10,
+                       0,
+                       511,
+                       "BASEPY that puts the window's top on the first active line, 525/60",
+                       Origin::kAssumed,
+                       "the value that Linux programs: line 20 is 16 after the vertical sync"};
+};
+
+struct Tvp5146Params : ParamGroup {
+  using Unit = IntParam::Unit;
+  Tvp5146Params() : ParamGroup("tvp5146") {}
+
+  EnumParam standard{*this,
+                     "standard",
+                     "625/50",
+                     {"625/50", "525/60"},
+                     "what the camera on the decoder's input sends",
+                     Origin::kChoice,
+                     ""};
+  IntParam i2c_address{*this,
+                       "i2c_address",
+                       Unit::kCount,
+                       0x5D,
+                       0x5C,
+                       0x5D,
+                       "7-bit I2C address, set by a pin",
+                       Origin::kSourced,
+                       "SLES084C; the EVM uses 0x5D"};
+  IntParam relock_fields{*this,
+                         "relock_fields",
+                         Unit::kCount,
+                         10,
+                         2,
+                         100,
+                         "fields until the decoder locks after power-up or a change of its input",
+                         Origin::kAssumed,
+                         "Linux waits 200 ms; no figure in the data manual"};
+  BoolParam output_at_reset{
+      *this,           "output_at_reset",
+      false,           "data and clock outputs are on before anyone writes register 34",
+      Origin::kChoice, ""};
+  EnumParam crop_525{*this,
+                     "crop_525",
+                     "first_lines",
+                     {"first_lines", "studio"},
+                     "lines that carry the 480 rows in 525/60: from 20 and 283 (upper field "
+                     "first), or the studio's 285 and 23 (lower field first)",
+                     Origin::kChoice,
+                     ""};
+  IntParam phase{*this,
+                 "phase",
+                 Unit::kTime,
+                 0,
+                 0,
+                 40 * kPsPerMs,
+                 "start of the camera's first field after power-up",
+                 Origin::kChoice,
+                 ""};
+};
+
+}  // namespace fovea::video

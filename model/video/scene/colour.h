@@ -1,0 +1,70 @@
+// Colour conversion and sampling of scene pictures, integer arithmetic throughout.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "model/video/core/picture.h"
+#include "model/video/scene/rgb_image.h"
+
+namespace fovea::video {
+
+struct YCbCr {
+  std::uint8_t y = 16, cb = 128, cr = 128;
+  friend bool operator==(const YCbCr&, const YCbCr&) = default;
+};
+
+/// BT.601, limited range (Y 16–235, C 16–240), the usual 8-bit integer form:
+/// Y = 16 + (66 R + 129 G + 25 B + 128 >> 8), Cb = 128 + (-38 R - 74 G + 112 B + 128 >> 8),
+/// Cr = 128 + (112 R - 94 G - 18 B + 128 >> 8).
+YCbCr to_ycbcr(std::uint8_t r, std::uint8_t g, std::uint8_t b);
+
+/// A 4:4:4 picture that can be sampled between pixels. One pixel is one word with Y, Cb, Cr in
+/// 16-bit lanes 0, 1, 2, so that one multiplication interpolates all three.
+class SampledImage {
+ public:
+  /// Converts an RGB picture. @throws UserError when it is empty or its size and data disagree
+  explicit SampledImage(const RgbImage& image);
+
+  unsigned width() const { return width_; }
+  unsigned height() const { return height_; }
+
+  /// Bilinear sample at (x, y) in pixels, pixel centres at integers, weights of 1/256. Positions up
+  /// to half a pixel outside repeat the edge; beyond, black.
+  std::uint64_t sample(float x, float y) const {
+    // Also false for NaN. The comparison comes first: a float outside int's range must not be cast.
+    if (!(x >= -0.5f && y >= -0.5f && x <= max_x_ && y <= max_y_)) return kBlackLanes;
+    const int fx = static_cast<int>((x + 1.0f) * 256.0f);
+    const int fy = static_cast<int>((y + 1.0f) * 256.0f);
+    const std::uint64_t* p =
+        lanes_.data() + static_cast<std::size_t>(fy >> 8) * stride_ + (fx >> 8);
+    const std::uint64_t upper = lerp(p[0], p[1], fx & 255);
+    const std::uint64_t lower = lerp(p[stride_], p[stride_ + 1], fx & 255);
+    return lerp(upper, lower, fy & 255);
+  }
+
+  static std::uint64_t lanes(const YCbCr& c) {
+    return c.y | std::uint64_t{c.cb} << 16 | std::uint64_t{c.cr} << 32;
+  }
+  static constexpr std::uint64_t kBlackLanes = 16 | 128ull << 16 | 128ull << 32;
+
+ private:
+  static std::uint64_t lerp(std::uint64_t a, std::uint64_t b, unsigned weight) {
+    constexpr std::uint64_t kHalf = 0x0000'0080'0080'0080;
+    constexpr std::uint64_t kMask = 0x0000'00ff'00ff'00ff;
+    return (a * (256 - weight) + b * weight + kHalf) >> 8 & kMask;
+  }
+
+  unsigned width_, height_;
+  std::size_t stride_;  ///< width + 2: the edge is repeated once on each side
+  float max_x_, max_y_;
+  std::vector<std::uint64_t> lanes_;
+};
+
+/// Writes one row of 4:4:4 samples as UYVY. Chroma sits on the even pixels, filtered 1-2-1 over its
+/// neighbours (the row's ends repeat). `width` is even.
+void pack_row(const std::uint64_t* lanes, unsigned width, std::uint8_t* uyvy);
+
+/// Converts a picture of the raster's own size. @throws UserError as SampledImage, or odd width
+Picture to_picture(const RgbImage& image);
+
+}  // namespace fovea::video

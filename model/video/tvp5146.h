@@ -1,0 +1,81 @@
+// Camera and TVP5146 video decoder: a picture source in, BT.656 out, I2C registers.
+#pragma once
+#include <array>
+#include <systemc>
+
+#include "model/common/sc_ports.h"
+#include "model/video/core/picture.h"
+#include "model/video/params.h"
+#include "model/video/wire.h"
+
+namespace fovea::video {
+
+/// The analogue camera and the decoder behind it, as one block. The camera runs from power-up
+/// (time 0 plus `phase`): field k begins k field periods later, whatever the decoder does. While
+/// its outputs are enabled the decoder announces every line at its first sample.
+/// Register subset: dm365 reference, SLES084C. Not modelled: picture controls (kept, no effect),
+/// the 10-bit output's two low bits, square pixels, VBI data, the time of the I2C patch. Not locked
+/// (after power-up, a change of register 00 or 02, or the wrong standard in 02): the raster goes on
+/// with black pictures; this is an assumption.
+class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
+ public:
+  ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz
+  sc_core::sc_port<Bt656If> video{"video"};
+  sc_core::sc_export<I2cTargetIf> i2c{"i2c"};
+
+  SC_HAS_PROCESS(Tvp5146);
+  Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, PictureSource& source);
+
+  bool i2c_start(std::uint8_t address7, bool read) override;
+  bool i2c_write(std::uint8_t byte) override;
+  std::uint8_t i2c_read() override;
+  void i2c_stop() override {}
+
+  const Standard& standard() const { return standard_; }
+  const Placement& placement() const { return placement_; }
+  /// Start of field k of the camera (its first line); k must not lie before the last change of the
+  /// clock, and the simulation must have started.
+  Picoseconds field_time(std::uint64_t k) const;
+  /// First field from which the decoder is locked, if 02 holds the right standard.
+  std::uint64_t locked_from_field() const { return locked_from_; }
+  std::uint64_t lines_sent() const { return lines_sent_; }
+
+ private:
+  std::span<const std::uint8_t> render() override;
+  void clock_changed();
+  void send_line();
+  void schedule();
+  bool enabled() const;
+  bool standard_ok() const;
+  bool locked(std::uint64_t field) const { return standard_ok() && field >= locked_from_; }
+  std::uint64_t present_field() const;
+  void write_register(std::uint8_t index, std::uint8_t value);
+  std::uint8_t read_register(std::uint8_t index) const;
+  void relock();
+
+  const Tvp5146Params& params_;
+  PictureSource& source_;
+  const Standard& standard_;
+  const Placement& placement_;
+  Clock clock_;
+  std::uint64_t origin_ = 0;  // clock edge at which line index 0 begins
+  bool started_ = false;
+  std::uint64_t next_line_ = 0;      // line index to announce next
+  std::uint64_t stopped_field_ = 0;  // the camera's field when the clock stopped
+  std::uint64_t locked_from_;
+  std::uint64_t lines_sent_ = 0;
+  sc_core::sc_event line_event_;
+
+  std::array<std::uint8_t, 256> regs_{};
+  std::uint8_t pointer_ = 0;
+  bool expect_pointer_ = false;
+
+  const Picture* picture_ = nullptr;  // of picture_field_; the source is asked once per field
+  std::uint64_t picture_field_ = 0;
+  LinePosition position_{};
+  Standard::Lines fv_{};
+  std::array<std::uint8_t, kActiveBytes> row_{};
+  std::array<std::uint8_t, kMaxLineBytes> bytes_{};
+};
+
+}  // namespace fovea::video

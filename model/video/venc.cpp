@@ -1,0 +1,76 @@
+#include "model/video/venc.h"
+
+#include "model/common/burst_master.h"
+
+namespace fovea::video {
+
+Venc::Venc(sc_core::sc_module_name name, const VpssParams& params)
+    : BusTarget(name, regs), params_(params) {
+  regs.vmod.on_write([this](std::uint32_t) { reconsider_event_.notify(sc_core::SC_ZERO_TIME); });
+  SC_METHOD(reconsider);
+  sensitive << clock << psc_enabled << vpbe_gate << venc_gate << reconsider_event_;
+  SC_METHOD(tick);
+  sensitive << line_event_;
+  dont_initialize();
+}
+
+bool Venc::wanted() const {
+  return regs.vmod.venc && clock_.running() && clocked() && venc_gate.read();
+}
+
+void Venc::reconsider() {
+  if (clock.read() != clock_.frequency()) {
+    clock_.restart(clock.read(), kernel_now());
+    if (standard_ && clock_.running()) schedule();
+  }
+  if (regs.vmod.venc && (regs.vmod.vmd || regs.vmod.slave || regs.vmod.hdmd || regs.vmod.nsit ||
+                         regs.vmod.tvtyp.get() > 1))
+    Diagnostics::instance().not_modelled("VENC mode other than standard 525/60 or 625/50");
+  const bool on = wanted();
+  if (standard_ && (!on || standard_ != &chosen())) {
+    standard_ = nullptr;
+    line_event_.cancel();
+    osd->stop();
+    display->raster_off();
+  }
+  if (on && !standard_) {
+    standard_ = &chosen();
+    origin_ = clock_.edge_after(kernel_now());
+    next_line_ = 0;
+    line_out_ = false;
+    schedule();
+  }
+}
+
+void Venc::schedule() {
+  line_event_.cancel();
+  const Picoseconds at = clock_.edge(origin_ + next_line_ * standard_->line_bytes);
+  line_event_.notify(to_sc_time(at - kernel_now()));
+}
+
+void Venc::tick() {
+  const Standard& s = *standard_;
+  if (line_out_) {
+    DisplayLine out = osd->finish();
+    if (regs.vmod.blnk) out.uyvy = nullptr;
+    display->line(out);
+  }
+  const LinePosition now = locate(s, next_line_);
+  const bool f = now.field % 2 != 0;
+  if (now.line == s.field_start[f]) {
+    regs.vstat.fidst.set(f);
+    osd->field_start(s, f);
+    interrupt.raise();
+  }
+  line_out_ = !s.at(now.line).v;
+  // Blanking is longer than the look-ahead, so a fetched line belongs to the field that has begun.
+  const std::uint64_t ahead = next_line_ + params_.read_ahead_lines();
+  const LinePosition then = locate(s, ahead);
+  const Standard::Lines& fv = s.at(then.line);
+  if (!fv.v)
+    osd->fetch({&s, &clock_, origin_ + ahead * s.line_bytes + s.active_offset(), then.line, fv.f});
+  ++next_line_;
+  schedule();
+}
+
+}  // namespace fovea::video

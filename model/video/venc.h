@@ -1,0 +1,51 @@
+// Video encoder: the display raster.
+#pragma once
+#include <systemc>
+
+#include "model/common/bus_target.h"
+#include "model/common/sc_ports.h"
+#include "model/video/osd.h"
+#include "model/video/pulse.h"
+#include "model/video/venc_regs.h"
+#include "model/video/wire.h"
+
+namespace fovea::video {
+
+/// VENC in standard interlaced timing: 625/50 or 525/60 by VMOD.TVTYP, on its own clock (27 MHz for
+/// true rates). The raster starts with a field 1 (F = 0) at the clock edge after the encoder is
+/// switched on. At the start of each field (where F changes: lines 1 and 313, 4 and 266) VSTAT
+/// changes, the OSD latches its window and the interrupt fires. Lines go to the display when
+/// their last sample is out; no process runs more often than once a line.
+class Venc : public BusTarget {
+ public:
+  ClockIn clock{"clock"};
+  sc_core::sc_port<OsdLineIf> osd{"osd"};
+  sc_core::sc_port<DisplayLineIf> display{"display"};
+  Pulse interrupt{"interrupt"};  ///< bind interrupt.out
+  sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
+  sc_core::sc_in<bool> vpbe_gate{"vpbe_gate"}, venc_gate{"venc_gate"};
+  VencRegs regs;
+
+  SC_HAS_PROCESS(Venc);
+  Venc(sc_core::sc_module_name name, const VpssParams& params);
+
+ protected:
+  bool clocked() const override { return psc_enabled.read() && vpbe_gate.read(); }
+
+ private:
+  void reconsider();
+  void tick();
+  void schedule();
+  bool wanted() const;
+  const Standard& chosen() const { return standard_of(regs.vmod.tvtyp.get() == 1); }
+
+  const VpssParams& params_;
+  Clock clock_;
+  const Standard* standard_ = nullptr;  // null: the raster is off
+  std::uint64_t origin_ = 0;            // clock edge of line index 0
+  std::uint64_t next_line_ = 0;
+  bool line_out_ = false;  // the line before next_line_ is active
+  sc_core::sc_event line_event_, reconsider_event_;
+};
+
+}  // namespace fovea::video

@@ -1,0 +1,39 @@
+#include "model/video/vpss_top.h"
+
+namespace fovea::video {
+
+VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
+  // Outputs are driven by processes of this block only: register writes come from several others.
+  for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})
+    r->on_write([this](std::uint32_t) { selection_.notify(sc_core::SC_ZERO_TIME); });
+  const auto controls = [this](std::uint32_t) { controls_.notify(sc_core::SC_ZERO_TIME); };
+  regs.pccr.on_write(controls);
+  regs.bcr.on_write(controls);
+  regs.clkctrl.on_write(controls);
+  SC_METHOD(route);
+  for (auto& i : isif_int) sensitive << i;
+  sensitive << venc_int << selection_;
+  SC_METHOD(drive_controls);
+  sensitive << controls_;
+}
+
+void VpssTop::route() {
+  std::uint32_t level = 0;
+  for (unsigned i = 0; i < isif_int.size(); ++i) level |= std::uint32_t{isif_int[i].read()} << i;
+  level |= std::uint32_t{venc_int.read()} << kVencSource;
+  regs.intstat.set(regs.intstat.get() | (level & ~level_));
+  level_ = level;
+  const VpssRegs::Select* const selects[] = {&regs.intsel1, &regs.intsel2, &regs.intsel3};
+  for (unsigned k = 0; k < kOutputs; ++k)
+    vpssint[k].write((level >> selects[k / 4]->fields()[k % 4]->get() & 1) != 0);
+}
+
+void VpssTop::drive_controls() {
+  isif_gate.write(regs.pccr.isif.get() != 0);
+  vpbe_gate.write(regs.clkctrl.vpbe.get() != 0);
+  venc_gate.write(regs.clkctrl.venc.get() != 0);
+  read_priority.write(regs.bcr.rd_pri.get());
+  write_priority.write(regs.bcr.wr_pri.get());
+}
+
+}  // namespace fovea::video

@@ -1,0 +1,85 @@
+// Top level of the video processing subsystem: interrupt routing, clock gates, priorities.
+#pragma once
+#include <systemc>
+
+#include "model/common/bus_target.h"
+
+namespace fovea::video {
+
+/// ISP5 registers at offset 0 (0x01C70000) and the VPSS clock control at offset 0x200: decode the
+/// block with a size of 0x400. Source: TI's register header for the DM36x, Linux vpss.c.
+struct VpssRegs : RegBank {
+  Reg pid{*this, "PID", 0x00, Mode::kRo, "peripheral identification; value not known"};
+  struct Pccr : Reg {
+    using Reg::Reg;
+    Field bl{*this, "BL", 0, 1, Mode::kRw, "buffer logic clock"};
+    Field isif{*this, "ISIF", 1, 1, Mode::kRw, "ISIF clock"};
+    Field h3a{*this, "H3A", 2, 1, Mode::kRw, "H3A clock; block not modelled"};
+    Field rsz{*this, "RSZ", 3, 1, Mode::kRw, "resizer clock; block not modelled"};
+    Field ipipe{*this, "IPIPE", 4, 1, Mode::kRw, "IPIPE clock; block not modelled"};
+    Field ipipeif{*this, "IPIPEIF", 5, 1, Mode::kRw, "IPIPEIF clock; block not modelled"};
+    Field sync{*this, "SYNC", 6, 1, Mode::kRw, "sync module clock"};
+  } pccr{*this, "PCCR", 0x04, "clock gates of the front end", 0x7F};
+  struct Bcr : Reg {
+    using Reg::Reg;
+    Field ldc_ipipe{*this, "SRC_SEL_RB", 0, 1, Mode::kRw, "read buffer: IPIPE or LDC; kept"};
+    Field isif_wb{*this, "SRC_SEL_WB", 1, 1, Mode::kRw, "write buffer belongs to the ISIF; kept"};
+    Field rd_pri{*this, "RD_PRI", 2, 3, Mode::kRw, "priority of VPSS reads, 0 highest"};
+    Field wr_pri{*this, "WR_PRI", 5, 3, Mode::kRw, "priority of VPSS writes, 0 highest"};
+  } bcr{*this, "BCR", 0x08, "buffer control", 0x2};
+  Reg intstat{*this, "INTSTAT", 0x0C, Mode::kW1c, "events seen, one bit per source"};
+  struct Select : Reg {
+    using Reg::Reg;
+    Field n0{*this, "N0", 0, 5, Mode::kRw, "source of the first output"};
+    Field n1{*this, "N1", 8, 5, Mode::kRw, "source of the second output"};
+    Field n2{*this, "N2", 16, 5, Mode::kRw, "source of the third output"};
+    Field n3{*this, "N3", 24, 5, Mode::kRw, "source of the fourth output"};
+  };
+  // Reset values are not known; 0x1F (no source) is assumed.
+  Select intsel1{*this, "INTSEL1", 0x10, "sources of VPSSINT0 ... 3", 0x1F1F1F1F};
+  Select intsel2{*this, "INTSEL2", 0x14, "sources of VPSSINT4 ... 7", 0x1F1F1F1F};
+  Select intsel3{*this, "INTSEL3", 0x18, "source of VPSSINT8", 0x1F1F1F1F};
+  Select evtsel{*this, "EVTSEL", 0x1C, "sources of the EDMA events; kept", 0x1F1F1F1F};
+  Reg ccdcmux{*this, "CCDCMUX", 0x20, Mode::kRw, "input multiplexer; kept"};
+  Reg mpsr{*this, "MPSR", 0x2C, Mode::kRw, "memory access of the blocks' tables; kept"};
+  struct Clkctrl : Reg {
+    using Reg::Reg;
+    Field vpbe{*this, "VPBE_CLK", 0, 1, Mode::kRw, "OSD and VENC register clock"};
+    Field reserved1{*this, "RSV1", 1, 1, Mode::kRw, "kept"};
+    Field venc{*this, "VENC_CLK", 2, 1, Mode::kRw, "VENC raster clock"};
+    Field ldc{*this, "LDC_CLK", 3, 1, Mode::kRw, "LDC clock; block not modelled"};
+    Field fdif{*this, "FDIF_CLK", 4, 1, Mode::kRw, "face detection clock; block not modelled"};
+  } clkctrl{*this, "VPSS_CLK_CTRL", 0x200, "clock gates of the back end", 0x19};
+  VpssRegs() : RegBank("VPSS") {}
+};
+
+/// Routes events: each VPSSINT output follows the input that its INTSEL field names, so an input's
+/// pulse is a rising edge at the interrupt controller; INTSTAT records rising inputs and gates
+/// nothing (Linux never clears it). Events modelled: 0-2 VDINT0-2, 21 VENC.
+class VpssTop : public BusTarget {
+ public:
+  static constexpr unsigned kOutputs = 9;
+  sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
+  sc_core::sc_vector<sc_core::sc_in<bool>> isif_int{"isif_int", 3};
+  sc_core::sc_in<bool> venc_int{"venc_int"};
+  sc_core::sc_vector<sc_core::sc_out<bool>> vpssint{"vpssint", kOutputs};  ///< AINTC 0 ... 8
+  sc_core::sc_out<bool> isif_gate{"isif_gate"};
+  sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_gate{"venc_gate"};
+  sc_core::sc_out<std::uint32_t> read_priority{"read_priority"}, write_priority{"write_priority"};
+  VpssRegs regs;
+
+  SC_HAS_PROCESS(VpssTop);
+  explicit VpssTop(sc_core::sc_module_name name);
+
+ protected:
+  bool clocked() const override { return psc_enabled.read(); }
+
+ private:
+  static constexpr unsigned kVencSource = 21;
+  void route();
+  void drive_controls();
+  sc_core::sc_event selection_, controls_;
+  std::uint32_t level_ = 0;
+};
+
+}  // namespace fovea::video

@@ -1,0 +1,69 @@
+# Flags, packages and helper functions shared by every folder.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
+set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+if(FOVEA_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+find_package(PkgConfig REQUIRED)
+find_package(GTest)
+pkg_check_modules(SYSTEMC REQUIRED IMPORTED_TARGET systemc>=2.3.4)
+
+add_library(fovea_warnings INTERFACE)
+target_compile_options(fovea_warnings INTERFACE -Wall -Wextra -Wshadow -Wno-unused-parameter)
+target_include_directories(fovea_warnings INTERFACE ${PROJECT_SOURCE_DIR})
+
+# SystemC for model code: the packaged library was built as C++17; SC_CPLUSPLUS is its own override.
+# System include keeps its warnings out; the main headers are precompiled once per target.
+add_library(fovea_systemc INTERFACE)
+target_link_libraries(fovea_systemc INTERFACE PkgConfig::SYSTEMC fovea_warnings)
+target_compile_definitions(fovea_systemc INTERFACE SC_CPLUSPLUS=201703L SC_ALLOW_DEPRECATED_IEEE_API)
+
+# Adds a source folder, unless FOVEA_ONLY asks for others.
+function(fovea_add_folder folder)
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${folder}/CMakeLists.txt)
+    return()
+  endif()
+  if(FOVEA_ONLY AND NOT folder IN_LIST FOVEA_ONLY AND NOT folder STREQUAL "model/common"
+     AND NOT folder STREQUAL "tb")
+    return()
+  endif()
+  add_subdirectory(${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/${folder})
+endfunction()
+
+# fovea_library(NAME sources...): a model library; those that use SystemC add fovea_systemc themselves.
+function(fovea_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_link_libraries(${name} PUBLIC fovea_warnings)
+endfunction()
+
+# fovea_test(layer.subject SOURCES ... LIBS ... [TIMEOUT s] [LABELS extra...] [DEFINES ...])
+# One process per program; the layer (text before the first dot) becomes a label.
+function(fovea_test name)
+  cmake_parse_arguments(A "" "TIMEOUT" "SOURCES;LIBS;LABELS;DEFINES" ${ARGN})
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT 120)
+  endif()
+  string(REGEX REPLACE "\\..*" "" layer ${name})
+  string(REPLACE "." "_" target test_${name})
+  add_executable(${target} ${A_SOURCES})
+  target_link_libraries(${target} PRIVATE ${A_LIBS} GTest::gmock GTest::gtest fovea_warnings)
+  target_compile_definitions(${target} PRIVATE ${A_DEFINES})
+  add_test(NAME ${name} COMMAND ${target})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${layer};${A_LABELS}")
+endfunction()

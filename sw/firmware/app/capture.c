@@ -1,0 +1,44 @@
+#include "capture.h"
+
+void capture_init(capture_t *capture, uint32_t buffer_count) {
+  *capture = (capture_t){.buffer_count = buffer_count, .filling = 0, .ready = CAPTURE_NONE};
+}
+
+static int32_t find_free(const capture_t *c, int32_t also_used) {
+  for (uint32_t n = 0; n < c->buffer_count; ++n)
+    if ((int32_t)n != also_used && (c->busy >> n & 1u) == 0) return (int32_t)n;
+  return CAPTURE_NONE;
+}
+
+int32_t capture_frame_done(capture_t *c) {
+  const uint32_t sequence = c->next_sequence++;
+  if (c->ready != CAPTURE_NONE) {
+    ++c->dropped;
+    c->ready = CAPTURE_NONE;
+  }
+  const int32_t next = find_free(c, c->filling);
+  if (next == CAPTURE_NONE) {
+    ++c->dropped;
+    return CAPTURE_NONE;
+  }
+  c->ready = c->filling;
+  c->ready_sequence = sequence;
+  c->filling = next;
+  return next;
+}
+
+void capture_single_done(capture_t *c) {
+  c->ready = c->filling;
+  c->ready_sequence = c->next_sequence++;
+}
+
+int32_t capture_take(capture_t *c, uint32_t *sequence) {
+  const int32_t buffer = c->ready;
+  if (buffer == CAPTURE_NONE) return CAPTURE_NONE;
+  *sequence = c->ready_sequence;
+  c->ready = CAPTURE_NONE;
+  c->busy |= 1u << buffer;
+  return buffer;
+}
+
+void capture_release(capture_t *c, int32_t buffer) { c->busy &= ~(1u << buffer); }

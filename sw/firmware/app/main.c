@@ -1,0 +1,145 @@
+/* The fish-eye correction: builds the table at start, then captures, remaps and shows frames. */
+#include "../boot/boot.h"
+#include "../drivers/cp15.h"
+#include "../drivers/gpio.h"
+#include "../drivers/intc.h"
+#include "../drivers/timer.h"
+#include "../drivers/uart.h"
+#include "../kernels/remap.h"
+#include "../memory_map.h"
+#include "config.h"
+#include "overlay.h"
+#include "pipeline.h"
+#include "state.h"
+
+static config_t config;
+static uint8_t overlay_value;
+
+static void print_config(void) {
+  static const char *const kMappings[] = {"none",      "rectilinear",   "linear", "orthographic",
+                                          "equisolid", "stereographic", "table"};
+  uart_puts(config.page_valid ? "page: lens as given\n" : "page: not valid, defaults\n");
+  uart_puts("picture ");
+  uart_put_uint(config.width);
+  uart_puts("x");
+  uart_put_uint(config.height);
+  uart_puts(config.is_625 ? " in 625/50, " : " in 525/60, ");
+  uart_puts(kMappings[config.page.mapping <= LENS_TABLE ? config.page.mapping : 0]);
+  uart_puts(config.kernel == KERNEL_LDM ? ", LDM/STM kernel" : ", plain kernel");
+  uart_puts(config.serial ? ", serial flow\n" : ", double buffering\n");
+}
+
+static void build_lut(void) {
+  lens_t lens;
+  const lens_result_t result = lens_init(&lens, &config.page, config.width, config.height);
+  if (result != LENS_OK) fail("lens", lens_result_text(result));
+  phase_mark(PHASE_LUT, 0);
+  const uint32_t start = timer_ticks();
+  lens_build_lut(&lens, lut, config.pitch_bytes);
+  fw_state.lut_time_ticks = timer_ticks() - start;
+  fw_state.lut_entries = lens_lut_entries(config.width, config.height);
+  uart_puts("LUT: ");
+  uart_put_uint(fw_state.lut_entries);
+  uart_puts(" entries in ");
+  uart_put_uint(fw_state.lut_time_ticks / TIMER_TICKS_PER_MS);
+  uart_puts(" ms\n");
+}
+
+static void init_frames(uint32_t in_count) {
+  frame_stride =
+      (lens_black_offset(config.height, config.pitch_bytes) + CACHE_LINE_BYTES + 4095u) & ~4095u;
+  for (uint32_t n = 0; n < in_count; ++n) {
+    uint8_t *black =
+        frame_in + n * frame_stride + lens_black_offset(config.height, config.pitch_bytes);
+    for (uint32_t i = 0; i < CACHE_LINE_BYTES; i += 4) *(uint32_t *)(black + i) = LENS_BLACK_WORD;
+  }
+}
+
+/* Sum over the source words of the first output row. Equal before and after the remap unless the
+ * camera wrote into the frame meanwhile. */
+static uint32_t first_row_sum(const uint8_t *in) {
+  uint32_t sum = 0;
+  for (uint32_t i = 0; i < config.width / 2u; ++i)
+    sum = sum * 31u + *(const volatile uint32_t *)(in + lut[i]);
+  return sum;
+}
+
+static void remap_frame(const uint8_t *in, uint8_t *out) {
+  remap_kernel_t *kernel = config.kernel == KERNEL_LDM ? remap_ldm : remap_plain;
+  const uint32_t pairs = config.width / 2u;
+  if (config.pitch_bytes == config.width * 2u) {
+    kernel((uint32_t *)out, in, lut, pairs * config.height);
+    return;
+  }
+  for (uint32_t v = 0; v < config.height; ++v)
+    kernel((uint32_t *)(out + v * config.pitch_bytes), in, lut + v * pairs, pairs);
+}
+
+static void process(const uint8_t *in, uint8_t *out, uint32_t sequence) {
+  phase_mark(PHASE_REMAP_START, sequence);
+#ifndef OMIT_D_INVALIDATE
+  dcache_invalidate_range(in, config.height * config.pitch_bytes);
+#endif
+  const uint32_t before = first_row_sum(in);
+  remap_frame(in, out);
+  if (first_row_sum(in) != before) ++fw_state.torn;
+  if (config.overlay && overlay_visible(sequence))
+    overlay_draw(out, config.pitch_bytes, overlay_value);
+#ifndef OMIT_D_CLEAN
+  dcache_clean_range(out, config.height * config.pitch_bytes);
+#endif
+  write_buffer_drain();
+  phase_mark(PHASE_REMAP_END, sequence);
+  ++fw_state.remapped;
+  pipeline_done();
+}
+
+int main(void) {
+  timer_start();
+  intc_init();
+  uart_puts("Fovea firmware\n");
+  const uint32_t dip = dip_read();
+  fw_state.dip = dip;
+  const config_result_t result = config_read(&config, dip, (const param_page_t *)PARAM_PAGE_BASE);
+  if (result != CONFIG_OK) fail("configuration", config_result_text(result));
+  print_config();
+  pipeline_prepare(&config);
+
+  overlay_value = OVERLAY_LUMA;
+  if (config.self_patch) {
+    overlay_value = (uint8_t)overlay_patch(OVERLAY_LUMA_PATCHED);
+    fw_state.patched_value = overlay_value;
+  }
+  build_lut();
+
+  const uint32_t in_count = config.serial ? 1u : IN_COUNT;
+  const uint32_t out_count = config.serial ? 2u : OUT_COUNT;
+  init_frames(in_count);
+  dcache_clean_all();
+  fw_state.version = FW_STATE_VERSION;
+  fw_state.width = config.width;
+  fw_state.height = config.height;
+  fw_state.pitch_bytes = config.pitch_bytes;
+  fw_state.in_count = in_count;
+  fw_state.out_count = out_count;
+  fw_state.magic = FW_STATE_MAGIC;
+  uart_puts("running\n");
+  uart_drain();
+  pipeline_start(&config, in_count, out_count);
+
+  for (;;) {
+    const uint8_t *in;
+    uint8_t *out;
+    uint32_t sequence;
+    /* Looked at with interrupts masked: one that comes after the look still ends the sleep, and is
+     * served when they are unmasked. */
+    const uint32_t cpsr = irq_mask();
+    const int work = pipeline_take(&in, &out, &sequence);
+    if (!work) {
+      phase_mark(PHASE_IDLE, pipeline_last_sequence());
+      wait_for_interrupt();
+    }
+    irq_restore(cpsr);
+    if (work) process(in, out, sequence);
+  }
+}

@@ -1,0 +1,194 @@
+#include "pipeline.h"
+
+#include "../boot/boot.h"
+#include "../drivers/cp15.h"
+#include "../drivers/display.h"
+#include "../drivers/gpio.h"
+#include "../drivers/intc.h"
+#include "../drivers/isif.h"
+#include "../drivers/timer.h"
+#include "../drivers/tvp5146.h"
+#include "../drivers/uart.h"
+#include "../drivers/vpss.h"
+#include "capture.h"
+#include "output.h"
+#include "state.h"
+
+/* Time kept free before a field's start when the main loop moves the display by itself. */
+#define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
+
+/* Everything here belongs to the interrupt handler; the main loop touches it with IRQ masked. */
+static struct {
+  capture_t capture;
+  output_t output;
+  uint32_t pitch_bytes;
+  uint32_t field_ticks;
+  int serial;
+  int passthrough;
+  int capturing;       /* data of the current frame go to memory */
+  int capture_wanted;  /* start with the next frame */
+  int in_second_field; /* of the display, since second_field_start */
+  uint32_t second_field_start;
+  int window_on;
+  int32_t taken_in, taken_out;
+  uint32_t taken_sequence;
+} pipe;
+
+void fail(const char *what, const char *why) {
+  phase_mark(PHASE_FAILED, 0);
+  uart_puts("failed: ");
+  uart_puts(what);
+  uart_puts(": ");
+  uart_puts(why);
+  uart_puts("\n");
+  uart_drain();
+  stop();
+}
+
+static uint8_t *in_buffer(int32_t n) { return frame_in + (uint32_t)n * frame_stride; }
+
+static uint8_t *shown_buffer(int32_t n) {
+  return pipe.passthrough ? in_buffer(n) : frame_out + (uint32_t)n * frame_stride;
+}
+
+/* Points the display at the next finished frame. During a second field only. */
+static void flip(void) {
+  uint32_t sequence;
+  const int32_t buffer = output_next(&pipe.output, &sequence);
+  if (buffer == OUTPUT_NONE) return;
+  phase_mark(PHASE_FLIP, sequence);
+  if (display_set_address((uint32_t)shown_buffer(buffer), pipe.pitch_bytes) != DISPLAY_OK)
+    fail("display", "buffer address");
+  if (!pipe.window_on) {
+    display_enable_window();
+    pipe.window_on = 1;
+  }
+  ++fw_state.flipped;
+}
+
+static void captured_frame_done(void) {
+  ++fw_state.captured;
+  if (pipe.serial) {
+    capture_single_done(&pipe.capture);
+    isif_watch();
+    pipe.capturing = 0;
+    return;
+  }
+  const int32_t next = capture_frame_done(&pipe.capture);
+  fw_state.dropped = pipe.capture.dropped;
+  if (next == CAPTURE_NONE) return;
+  if (isif_set_address((uint32_t)in_buffer(next)) != ISIF_OK) fail("ISIF", "buffer address");
+  if (pipe.passthrough) {
+    uint32_t sequence;
+    const int32_t buffer = capture_take(&pipe.capture, &sequence);
+    output_queue(&pipe.output, buffer, sequence);
+  }
+}
+
+/* VDINT0, after the last line of a field. Capture is switched on and off only here, after a second
+ * field, so that frames are whole and are counted from a first field. */
+static void capture_field_end(void) {
+  if (!isif_second_field()) return;
+  if (pipe.capturing) captured_frame_done();
+  if (!pipe.capturing && pipe.capture_wanted) {
+    pipe.capture_wanted = 0;
+    pipe.capturing = 1;
+    isif_capture();
+  }
+}
+
+static void display_field_start(void) {
+  pipe.in_second_field = display_second_field();
+  if (pipe.in_second_field) {
+    pipe.second_field_start = timer_ticks();
+    flip();
+    return;
+  }
+  int32_t released;
+  if (!output_first_field(&pipe.output, &released)) return;
+  if (pipe.passthrough && released != OUTPUT_NONE) capture_release(&pipe.capture, released);
+  if (pipe.serial) pipe.capture_wanted = 1;
+}
+
+/* Called by the IRQ entry. Acknowledges first, serves then: an edge in between is latched anew. */
+void irq_dispatch(void);
+void irq_dispatch(void) {
+  const uint32_t source = intc_pending();
+  if (source == INTC_NONE) {
+    ++fw_state.spurious;
+    return;
+  }
+  intc_acknowledge(source);
+  if (source == IRQ_VPSSINT0)
+    capture_field_end();
+  else if (source == IRQ_VPSSINT8)
+    display_field_start();
+}
+
+void pipeline_prepare(const config_t *config) {
+  vpss_init(boot_vpss_clk_ctrl(boot_clock_preset(config->dip)));
+  i2c_init();
+  uint32_t id;
+  switch (tvp5146_start(config->is_625, &id)) {
+    case I2C_OK:
+      uart_puts("decoder: id ");
+      uart_put_hex(id);
+      uart_puts(", output on\n");
+      break;
+    case I2C_NACK:
+      uart_puts("decoder: no answer on I2C, going on\n");
+      break;
+    case I2C_TIMEOUT:
+      uart_puts("decoder: I2C timeout, going on\n");
+      break;
+  }
+}
+
+void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count) {
+  pipe.pitch_bytes = config->pitch_bytes;
+  pipe.serial = config->serial;
+  pipe.passthrough = out_count == 0;
+  pipe.field_ticks = config->is_625 ? 480000u : 400400u; /* 24 MHz / (50, 60000/1001) */
+  pipe.taken_in = pipe.taken_out = -1;
+  capture_init(&pipe.capture, in_count);
+  output_init(&pipe.output, out_count);
+
+  const display_mode_t mode = {config->is_625, config->left,   config->top,
+                               config->width,  config->height, config->pitch_bytes};
+  const isif_window_t window = {config->left, config->top, config->width, config->height,
+                                config->pitch_bytes};
+  if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
+  if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
+  if (display_start(&mode) != DISPLAY_OK) fail("display", "mode");
+
+  pipe.capture_wanted = 1;
+  intc_enable(IRQ_VPSSINT0, 2);
+  intc_enable(IRQ_VPSSINT8, 3);
+  isif_watch();
+  irq_unmask();
+}
+
+int pipeline_take(const uint8_t **in, uint8_t **out, uint32_t *sequence) {
+  if (pipe.capture.ready == CAPTURE_NONE) return 0;
+  const int32_t out_buffer = output_take(&pipe.output);
+  if (out_buffer == OUTPUT_NONE) return 0;
+  pipe.taken_out = out_buffer;
+  pipe.taken_in = capture_take(&pipe.capture, &pipe.taken_sequence);
+  *in = in_buffer(pipe.taken_in);
+  *out = shown_buffer(out_buffer);
+  *sequence = pipe.taken_sequence;
+  return 1;
+}
+
+void pipeline_done(void) {
+  const uint32_t cpsr = irq_mask();
+  capture_release(&pipe.capture, pipe.taken_in);
+  output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
+  /* Sooner than the handler would, if enough of a second field is left. */
+  if (pipe.in_second_field &&
+      timer_ticks() - pipe.second_field_start < pipe.field_ticks - FLIP_MARGIN_TICKS)
+    flip();
+  irq_restore(cpsr);
+}
+
+uint32_t pipeline_last_sequence(void) { return pipe.taken_sequence; }

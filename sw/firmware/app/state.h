@@ -1,0 +1,48 @@
+/* What the firmware shows to a host that reads target memory by symbol. */
+#ifndef FOVEA_FIRMWARE_STATE_H
+#define FOVEA_FIRMWARE_STATE_H
+
+#include <stdint.h>
+
+#define FW_STATE_MAGIC 0x53574656u /* bytes "VFWS" */
+#define FW_STATE_VERSION 1u
+
+#define FRAME_WIDTH_MAX 720u
+#define FRAME_HEIGHT_MAX 576u
+#define LUT_ENTRIES_MAX (FRAME_WIDTH_MAX / 2u * FRAME_HEIGHT_MAX)
+/* A frame, one cache line with the black word behind it, rounded up to whole pages. */
+#define FRAME_STRIDE_MAX ((FRAME_WIDTH_MAX * 2u * FRAME_HEIGHT_MAX + 32u + 4095u) & ~4095u)
+
+#ifndef IN_COUNT
+#define IN_COUNT 3u
+#endif
+#ifndef OUT_COUNT
+#define OUT_COUNT 4u
+#endif
+
+/** All words; lies in uncached memory, so that memory always holds the current values. */
+typedef struct fw_state {
+  uint32_t magic;   /* FW_STATE_MAGIC, written last during start-up */
+  uint32_t version; /* FW_STATE_VERSION */
+  uint32_t width, height, pitch_bytes;
+  uint32_t lut_entries;
+  uint32_t in_count, out_count; /* frame buffers in use */
+  uint32_t lut_time_ticks;      /* 24 MHz */
+  uint32_t captured, remapped;  /* frames */
+  uint32_t flipped;             /* times the display was pointed at a new frame */
+  uint32_t dropped;             /* captured frames that were never remapped */
+  uint32_t patched_value;       /* what position 11 of the switches demonstrates; 0: not run */
+  uint32_t dip;                 /* switches as read */
+  uint32_t torn;                /* frames whose first source row changed during the remap */
+  uint32_t spurious;            /* interrupts without a pending source */
+} fw_state_t;
+
+extern fw_state_t fw_state;
+extern uint32_t frame_stride; /* bytes from one buffer to the next, in frame_in and frame_out */
+extern uint32_t lut[LUT_ENTRIES_MAX];
+extern uint8_t frame_in[IN_COUNT * FRAME_STRIDE_MAX];
+#if OUT_COUNT > 0
+extern uint8_t frame_out[OUT_COUNT * FRAME_STRIDE_MAX];
+#endif
+
+#endif

@@ -1,0 +1,135 @@
+/* Vectors, reset, stacks and the entries of exceptions. Lies in internal RAM (see firmware.ld). */
+    .syntax unified
+    .arm
+
+    .section .vectors, "ax", %progbits
+    .global _start
+    .type _start, %function
+_start:
+vectors:
+    ldr pc, reset_address
+    ldr pc, undefined_address
+    ldr pc, swi_address
+    ldr pc, prefetch_address
+    ldr pc, data_address
+    nop
+    ldr pc, irq_address
+    ldr pc, fiq_address
+reset_address:     .word reset_handler
+undefined_address: .word undefined_entry
+swi_address:       .word swi_entry
+prefetch_address:  .word prefetch_entry
+data_address:      .word data_entry
+irq_address:       .word irq_entry
+fiq_address:       .word fiq_entry
+    .size _start, . - _start
+
+    .section .boot, "ax", %progbits
+    .equ MODE_FIQ, 0x11
+    .equ MODE_IRQ, 0x12
+    .equ MODE_SVC, 0x13
+    .equ MODE_ABT, 0x17
+    .equ MODE_UND, 0x1B
+    .equ NO_INTERRUPTS, 0xC0
+
+    .global reset_handler
+    .type reset_handler, %function
+reset_handler:
+    msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
+    /* A debugger may start a warm core: caches and MMU off, both caches and the TLB empty. */
+    mrc p15, 0, r0, c1, c0, 0
+    bic r0, r0, #0x00002000          /* V: vectors at 0 */
+    bic r0, r0, #0x00001000          /* I */
+    bic r0, r0, #0x00000007          /* C, A, M */
+    mcr p15, 0, r0, c1, c0, 0
+    mov r0, #0
+    mcr p15, 0, r0, c7, c7, 0
+    mcr p15, 0, r0, c8, c7, 0
+    mcr p15, 0, r0, c7, c10, 4
+
+    ldr sp, =__boot_stack_top
+    bl boot_init                     /* clocks, UART0, DDR2: only internal RAM so far */
+
+    /* From here on DDR2 works. */
+    msr cpsr_c, #(MODE_FIQ | NO_INTERRUPTS)
+    ldr sp, =__exception_stack_top
+    msr cpsr_c, #(MODE_ABT | NO_INTERRUPTS)
+    ldr sp, =__exception_stack_top
+    msr cpsr_c, #(MODE_UND | NO_INTERRUPTS)
+    ldr sp, =__exception_stack_top
+    msr cpsr_c, #(MODE_IRQ | NO_INTERRUPTS)
+    ldr sp, =__irq_stack_top
+    msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
+    ldr sp, =__svc_stack_top
+
+    bl mmu_enable                    /* page table, both caches: clearing memory is quick then */
+
+    mov r2, #0
+    ldr r0, =__bss_start
+    ldr r1, =__bss_end
+1:  cmp r0, r1
+    strlo r2, [r0], #4
+    blo 1b
+    ldr r0, =__uncached_start
+    ldr r1, =__uncached_end
+2:  cmp r0, r1
+    strlo r2, [r0], #4
+    blo 2b
+
+    bl main
+    b stop
+    .size reset_handler, . - reset_handler
+
+    .global stop
+    .type stop, %function
+/* Sleeps for good: interrupts stay masked, so each wake-up only returns to the sleep. */
+stop:
+    msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
+    mov r0, #0
+1:  mcr p15, 0, r0, c7, c0, 4
+    b 1b
+    .size stop, . - stop
+
+    .type irq_entry, %function
+irq_entry:
+    sub lr, lr, #4
+    stmfd sp!, {r0-r3, r12, lr}
+    bl irq_dispatch
+    ldmfd sp!, {r0-r3, r12, pc}^
+    .size irq_entry, . - irq_entry
+
+/* fatal_exception(kind, pc of the culprit) prints and stops. */
+    .type undefined_entry, %function
+undefined_entry:
+    sub r1, lr, #4
+    mov r0, #0
+    b fatal_exception
+    .type swi_entry, %function
+swi_entry:
+    sub r1, lr, #4
+    mov r0, #1
+    b fatal_exception
+    .type prefetch_entry, %function
+prefetch_entry:
+    sub r1, lr, #4
+    mov r0, #2
+    b fatal_exception
+    .type data_entry, %function
+data_entry:
+    sub r1, lr, #8
+    mov r0, #3
+    b fatal_exception
+    .type fiq_entry, %function
+fiq_entry:
+    sub r1, lr, #4
+    mov r0, #4
+    b fatal_exception
+    .ltorg
+
+/* Programs that take no interrupts need not bring a dispatcher. */
+    .weak irq_dispatch
+    .type irq_dispatch, %function
+irq_dispatch:
+    mov r0, #5
+    mov r1, lr
+    b fatal_exception

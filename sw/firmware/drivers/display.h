@@ -1,0 +1,34 @@
+/* Display: OSD video window 0 and the encoder in its standard interlaced timings. */
+#ifndef FOVEA_FIRMWARE_DISPLAY_H
+#define FOVEA_FIRMWARE_DISPLAY_H
+
+#include <stdint.h>
+
+typedef struct display_mode {
+  int is_625;             /* 1: 625/50 (720 x 576), 0: 525/60 (720 x 480) */
+  uint32_t left, top;     /* of the window in the raster, pixels and frame lines; top even */
+  uint32_t width, height; /* of the window */
+  uint32_t pitch_bytes;   /* multiple of 32, below 16 KiB */
+} display_mode_t;
+
+typedef enum display_result {
+  DISPLAY_OK = 0,
+  DISPLAY_BAD_MODE,
+  DISPLAY_BAD_ADDRESS
+} display_result_t;
+
+/** Starts the raster with the window off: the background colour shows. */
+__attribute__((warn_unused_result)) display_result_t display_start(const display_mode_t *mode);
+
+/** Points the window at a UYVY frame (32-byte aligned, in DDR2); taken at the next field. Three
+ * registers change one after the other: do not call around a field's start. */
+__attribute__((warn_unused_result)) display_result_t display_set_address(uint32_t address,
+                                                                         uint32_t pitch_bytes);
+
+/** Turns the window on. */
+void display_enable_window(void);
+
+/** 1 while the second field of a frame is sent. */
+int display_second_field(void);
+
+#endif

@@ -1,0 +1,29 @@
+#include "intc.h"
+
+#include "../mmio.h"
+#include "../regs.h"
+
+void intc_init(void) {
+  mmio_write32(AINTC_EINT0, 0);
+  mmio_write32(AINTC_EINT1, 0);
+  mmio_write32(AINTC_INTCTL, 0);
+  mmio_write32(AINTC_EABASE, 0);
+  mmio_write32(AINTC_FIQ0, 0xFFFFFFFFu);
+  mmio_write32(AINTC_FIQ1, 0xFFFFFFFFu);
+  mmio_write32(AINTC_IRQ0, 0xFFFFFFFFu);
+  mmio_write32(AINTC_IRQ1, 0xFFFFFFFFu);
+}
+
+void intc_enable(uint32_t source, uint32_t priority) {
+  const uint32_t shift = source % 8u * 4u;
+  mmio_modify32(AINTC_INTPRI(source / 8u), 7u << shift, priority << shift);
+  intc_acknowledge(source);
+  mmio_modify32(AINTC_EINT0, 0, 1u << source);
+}
+
+uint32_t intc_pending(void) {
+  const uint32_t entry = mmio_read32(AINTC_IRQENTRY);
+  return entry == 0 ? INTC_NONE : (entry >> 2) - 1u;
+}
+
+void intc_acknowledge(uint32_t source) { mmio_write32(AINTC_IRQ0, 1u << source); }

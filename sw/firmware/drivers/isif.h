@@ -1,0 +1,40 @@
+/* Capture of BT.656 by the ISIF: both fields woven into one UYVY frame. */
+#ifndef FOVEA_FIRMWARE_ISIF_H
+#define FOVEA_FIRMWARE_ISIF_H
+
+#include <stdint.h>
+
+typedef struct isif_window {
+  uint32_t left, top;     /* pixels, lines of the frame; top even */
+  uint32_t width, height; /* pixels, lines of the frame; both even */
+  uint32_t pitch_bytes;   /* multiple of 32 */
+} isif_window_t;
+
+typedef enum isif_result { ISIF_OK = 0, ISIF_BAD_WINDOW, ISIF_BAD_ADDRESS } isif_result_t;
+
+/** Bytes from one line to the next: the line rounded up to the ISIF's 32-byte units. */
+static inline uint32_t isif_pitch(uint32_t width) { return (width * 2u + 31u) & ~31u; }
+
+/** Line of VDINT0. The public drivers use LNV, two lines before the end of the captured area
+ * because counting starts at the VD and the first captured line is SLV. Here the frame is used at
+ * once, so the interrupt comes two lines after its last line: its last burst has left by then. */
+static inline uint32_t isif_end_of_field_line(const isif_window_t *w) {
+  return w->top / 2u + 1u + w->height / 2u + 1u;
+}
+
+/** Programs the window; capture stays off. Nothing is written when the window is refused. */
+__attribute__((warn_unused_result)) isif_result_t isif_configure(const isif_window_t *window);
+
+/** Sets the address of the frame (32-byte aligned); taken at the next VD. */
+__attribute__((warn_unused_result)) isif_result_t isif_set_address(uint32_t address);
+
+/** Syncs only: VDINT0 comes every field, nothing is written to memory. */
+void isif_watch(void);
+
+/** Syncs and data from the next VD on. */
+void isif_capture(void);
+
+/** 1 while the second field of a frame arrives. */
+int isif_second_field(void);
+
+#endif

@@ -1,0 +1,30 @@
+#include "tvp5146.h"
+
+/* Registers, fisheye-video.md 3.5. */
+#define REG_INPUT_SELECT 0x00
+#define REG_VIDEO_STANDARD 0x02
+#define REG_OPERATION_MODE 0x03
+#define REG_FORMATTER1 0x33
+#define REG_FORMATTER2 0x34
+#define REG_ID_MSB 0x80
+#define REG_ID_LSB 0x81
+
+i2c_result_t tvp5146_start(int is_625, uint32_t *id) {
+  static const struct {
+    uint8_t sub_address, value;
+  } kSetup[] = {
+      {REG_INPUT_SELECT, 0x05},   /* composite on VI_2_B, as on the evaluation module */
+      {REG_FORMATTER1, 0x00},     /* 4:2:2 with embedded syncs */
+      {REG_OPERATION_MODE, 0x00}, /* run */
+      {REG_FORMATTER2, 0x11},     /* drive data and clock pins */
+  };
+  uint8_t msb = 0, lsb = 0;
+  i2c_result_t result = i2c_read_register(TVP5146_ADDRESS, REG_ID_MSB, &msb);
+  if (result == I2C_OK) result = i2c_read_register(TVP5146_ADDRESS, REG_ID_LSB, &lsb);
+  *id = (uint32_t)msb << 8 | lsb;
+  if (result == I2C_OK)
+    result = i2c_write_register(TVP5146_ADDRESS, REG_VIDEO_STANDARD, is_625 ? 2 : 1);
+  for (unsigned i = 0; i < sizeof kSetup / sizeof *kSetup && result == I2C_OK; ++i)
+    result = i2c_write_register(TVP5146_ADDRESS, kSetup[i].sub_address, kSetup[i].value);
+  return result;
+}

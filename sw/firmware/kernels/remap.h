@@ -1,0 +1,18 @@
+/* Remap loops: out[n] = *(in + lut[n]) for whole 32-bit pixel pairs. */
+#ifndef FOVEA_FIRMWARE_REMAP_H
+#define FOVEA_FIRMWARE_REMAP_H
+
+#include <stdint.h>
+
+/** Copies `pairs` words to `out`; lut[n] is the byte offset of a source word from `in`. */
+typedef void remap_kernel_t(uint32_t *restrict out, const void *in, const uint32_t *restrict lut,
+                            uint32_t pairs);
+
+/** The paper's loop, as the compiler makes it: load entry, load pair, store pair. */
+remap_kernel_t remap_plain;
+
+/** Eight pairs a turn: entries by LDM, results by one STM of 32 bytes, which leaves the write
+ * buffer as one burst. Best with `out` on a 32-byte boundary; any word boundary works. */
+remap_kernel_t remap_ldm;
+
+#endif

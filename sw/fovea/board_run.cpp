@@ -1,0 +1,277 @@
+// `fovea run` on the board: loads footage and program, runs the window, gathers the figures.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "model/board/board.h"
+#include "sw/fovea/elf_image.h"
+#include "sw/fovea/ffmpeg.h"
+#include "sw/fovea/loader.h"
+#include "sw/fovea/simulation.h"
+
+namespace fovea::app {
+namespace {
+
+using Wall = std::chrono::steady_clock;
+
+double seconds_since(Wall::time_point t) {
+  return std::chrono::duration<double>(Wall::now() - t).count();
+}
+
+StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
+  return {std::move(name), value, std::move(unit), std::move(sentence)};
+}
+
+double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
+
+class BoardSimulation : public Simulation {
+ public:
+  void declare(ParamSet& set) override { params_.declare(set); }
+  RunResult run(const RunRequest& request) override;
+
+ private:
+  void open_window();
+  void close_window();
+  void collect_all(std::vector<StatRow>& rows);
+  void add_frame_stats(std::vector<StatRow>& rows) const;
+  void add_host(RunResult& result, bool strict) const;
+  [[noreturn]] void guest_failed(const std::string& what, const ElfImage& elf) const;
+  std::string failure_text(const std::string& what, const ElfImage& elf) const;
+
+  board::BoardParams params_;
+  std::unique_ptr<board::Board> board_;
+  std::vector<StatRow> stats_;
+  std::vector<FrameRow> frames_;
+  Wall::time_point started_, window_wall_;
+  double window_wall_s_ = 0;
+  std::uint64_t window_instructions_ = 0, direct_at_open_ = 0, queued_at_open_ = 0;
+  std::uint64_t direct_ = 0, queued_ = 0;
+  bool closed_ = false;
+};
+
+void BoardSimulation::open_window() {
+  auto& soc = board_->dm365;
+  for (auto& s : soc.scr.crossbar().stats) s->reset();
+  for (auto& s : soc.scr.latency) s->reset();
+  soc.ddr.controller().stats.reset();
+  soc.config.stats.reset();
+  soc.isif.stats.reset();
+  board_->sink.stats.reset();
+  soc.arm.core().mark_window(kernel_time());
+  window_wall_ = Wall::now();
+  direct_at_open_ = soc.scr.direct_accesses();
+  queued_at_open_ = soc.scr.queued_accesses();
+}
+
+void BoardSimulation::close_window() {
+  if (closed_) return;
+  closed_ = true;
+  auto& soc = board_->dm365;
+  window_wall_s_ = seconds_since(window_wall_);
+  direct_ = soc.scr.direct_accesses() - direct_at_open_;
+  queued_ = soc.scr.queued_accesses() - queued_at_open_;
+  for (auto& s : soc.scr.crossbar().stats) collect(*s, stats_);
+  for (auto& s : soc.scr.latency) collect(*s, stats_);
+  collect(soc.ddr.controller().stats, stats_);
+  collect(soc.config.stats, stats_);
+  collect(soc.isif.stats, stats_);
+  collect(board_->sink.stats, stats_);
+  // The SDRAM's data bus: clocks with data over clocks of the window.
+  const auto from = board_->window_start(), to = board_->window_end();
+  if (from && to && *to > *from) {
+    const double clocks =
+        to_s(*to - *from) * soc.ddr.controller().ddr_clock().frequency().hertz();
+    stats_.push_back(row("ddr.utilisation",
+                         static_cast<double>(soc.ddr.controller().busy_clocks()) / clocks, "ratio",
+                         "share of the window in which the SDRAM's data bus moves data"));
+  }
+  soc.arm.core().mark_window(kernel_time());
+}
+
+void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
+  const board::FrameStats f = board_->frame_stats();
+  const std::string shown = "new frames displayed / window";
+  rows.push_back(row("frame.rate", f.rate, "1/s", shown));
+  rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
+  rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured"));
+  rows.push_back(row("frame.remapped", f.remapped, "1", "frames whose remap ended"));
+  rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed"));
+  rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never shown"));
+  rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show an old one"));
+  if (f.latencies) {
+    const std::string what = "first captured sample to first displayed sample, ";
+    rows.push_back(row("frame.latency.min", to_s(f.latency_min), "s", what + "shortest"));
+    rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
+    rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
+  }
+  if (f.remaps) {
+    const std::string what = "remap of one frame, ";
+    rows.push_back(row("frame.remap_time.min", to_s(f.remap_min), "s", what + "shortest"));
+    rows.push_back(row("frame.remap_time.mean", f.remap_mean * 1e-12, "s", what + "mean"));
+    rows.push_back(row("frame.remap_time.max", to_s(f.remap_max), "s", what + "longest"));
+  }
+  const auto lut = board_->log.first(board::Phase::kLut);
+  const auto idle = board_->log.first(board::Phase::kIdle);
+  if (lut && idle && *idle > *lut)
+    rows.push_back(row("startup.lut_time", to_s(*idle - *lut), "s",
+                       "building the look-up table, from phase pins 2 to 3"));
+  if (board_->window_start())
+    rows.push_back(row("startup.first_frame", to_s(*board_->window_start()), "s",
+                       "power-up to the start of the first corrected frame on the display"));
+}
+
+void BoardSimulation::add_host(RunResult& result, bool strict) const {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  auto& h = result.host;
+  const double window = board_->frame_stats().window;
+  h.push_back(row("wall_time", seconds_since(started_), "s", "host time of the whole run"));
+  h.push_back(row("peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "B",
+                  "largest resident memory of the process"));
+  if (window_wall_s_ > 0 && window > 0) {
+    h.push_back(row("realtime_factor", window / window_wall_s_, "ratio",
+                    "simulated / host time in the measured window"));
+    h.push_back(row("seconds_per_second", window_wall_s_ / window, "ratio",
+                    "host / simulated time in the measured window"));
+  }
+  if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
+    h.push_back(row("mips",
+                    static_cast<double>(std::get<std::uint64_t>(n->value)) / window_wall_s_ * 1e-6,
+                    "1e6/s", "guest instructions per host second in the window"));
+  h.push_back(row("sync.direct", direct_, "1",
+                  "SDRAM accesses decided ahead of the kernel, in the window"));
+  h.push_back(row("sync.queued", queued_, "1",
+                  "SDRAM accesses decided by a kernel event, in the window"));
+  if (direct_ + queued_ > 0)
+    h.push_back(row("sync.direct_share",
+                    static_cast<double>(direct_) / static_cast<double>(direct_ + queued_), "ratio",
+                    "share of the direct path"));
+  h.push_back(row("sync.strict", std::uint64_t{strict ? 1u : 0u}, "1", "--sync=strict"));
+}
+
+std::string BoardSimulation::failure_text(const std::string& what, const ElfImage& elf) const {
+  const auto& core = board_->dm365.arm.core();
+  const std::uint32_t pc = core.current_pc();
+  std::string text = fmt::format("guest failed: {} at pc 0x{:08x}", what, pc);
+  if (const std::string where = elf.describe(pc); !where.empty()) text += " (" + where + ")";
+  text += fmt::format(", {:.6f} s after power-up", to_s(kernel_time()));
+  for (const auto& a : core.last_accesses()) {
+    text += fmt::format("\n  {} {} bytes at 0x{:08x} from pc 0x{:08x}", a.write ? "wrote" : "read",
+                        a.bytes, a.address, a.pc);
+    if (const std::string where = elf.describe(a.pc); !where.empty()) text += " (" + where + ")";
+  }
+  return text;
+}
+
+RunResult BoardSimulation::run(const RunRequest& request) {
+  started_ = Wall::now();
+  const ElfImage elf = ElfImage::load(program_file(params_));
+  check_fits(elf, memory_regions(params_));
+  auto source = video::make_picture_source(params_.camera, load_footage(params_),
+                                           params_.raster_width(), params_.raster_height());
+  complete_params(params_);
+
+  board_ = std::make_unique<board::Board>("board", params_, *source, elf.entry(),
+                                          request.strict_sync);
+  for (const auto& s : elf.segments()) {
+    board::LoadImage image{s.address, s.data};
+    image.bytes.resize(s.memory_size);
+    board_->load(image);
+  }
+  board_->load({0x8000'0000u, parameter_page(params_, *source)});
+
+  std::exception_ptr failure;
+  board_->on_window_open = [this] { open_window(); };
+  board_->on_window_close = [this] { close_window(); };
+  board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    FrameRow out;
+    out.index = r.index;
+    out.captured = r.captured;
+    out.capture_start = r.capture_start;
+    out.capture_end = r.capture_end;
+    out.remap_start = r.remap_start;
+    out.remap_end = r.remap_end;
+    out.display_start = r.display_start;
+    out.display_end = r.display_end;
+    out.dropped = r.dropped;
+    out.repeated = r.repeated;
+    frames_.push_back(out);
+    // An error of the writer must not unwind through the kernel: keep it and stop.
+    if (request.frame && !failure) {
+      try {
+        request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    }
+  };
+
+  RunResult result;
+  auto& arm = board_->dm365.arm;
+  // Slices only let the host look in; nothing in the model depends on where they end.
+  const Picoseconds slice = 5 * kPsPerMs;
+  std::string guest;
+  for (;;) {
+    sc_core::sc_start(ps_time(slice));
+    request.progress.update({kernel_time(), board_->frames_in_window(), params_.run.frames(),
+                             arm.core().instructions_executed()});
+    if (!arm.failure().empty()) {
+      guest = failure_text(arm.failure(), elf);
+      break;
+    }
+    if (closed_ && arm.core().mark_done()) break;
+    if (failure || request.stop.load()) {
+      result.complete = false;
+      break;
+    }
+    if (!board_->window_start() && kernel_time() > params_.run.start_limit()) {
+      guest = failure_text(
+          fmt::format("no corrected frame within run.start_limit = {}",
+                      params_.run.start_limit.text()),
+          elf);
+      break;
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  if (!closed_) {
+    result.complete = false;
+    // A stopped run closes its window where it is; the core's own part follows at its next
+    // boundary, which a failed core does not reach any more.
+    if (board_->window_start()) {
+      board_->close_window_now();
+      for (int i = 0; i < 20 && guest.empty() && !(closed_ && arm.core().mark_done()); ++i)
+        sc_core::sc_start(ps_time(slice));
+    }
+    if (!closed_) close_window();
+  }
+  collect(arm.core().window_stats(), stats_);
+  add_frame_stats(stats_);
+  result.guest_failure = guest;
+  result.stats = std::move(stats_);
+  result.frames = std::move(frames_);
+  const auto& xbar = board_->dm365.scr.crossbar();
+  for (auto n : kMasterNames) result.timeline_masters.emplace_back(n);
+  for (std::size_t i = 0; i < xbar.timeline().size(); ++i) {
+    TimelineRow t;
+    t.start = i * xbar.timeline_interval();
+    t.end = t.start + xbar.timeline_interval();
+    const auto& bin = xbar.timeline()[i];
+    t.read_bytes.assign(bin.read.begin(), bin.read.end());
+    t.write_bytes.assign(bin.write.begin(), bin.write.end());
+    result.timeline.push_back(std::move(t));
+  }
+  result.uart = board_->uart_text();
+  add_host(result, request.strict_sync);
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> make_simulation() { return std::make_unique<BoardSimulation>(); }
+
+}  // namespace fovea::app

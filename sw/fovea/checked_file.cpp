@@ -1,0 +1,133 @@
+#include "sw/fovea/checked_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "model/common/check.h"
+
+namespace fovea::app {
+namespace {
+constexpr std::size_t kBufferBytes = 64 * 1024;
+
+/// Closes a descriptor at the end of a scope.
+struct Descriptor {
+  int fd;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+}  // namespace
+
+CheckedFile::CheckedFile(std::filesystem::path path) : path_(std::move(path)) {
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0) fail(errno);
+}
+
+CheckedFile::~CheckedFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void CheckedFile::write(std::string_view text) {
+  FOVEA_CHECK(fd_ >= 0, "write to the closed file " + path_.string());
+  if (buffer_.size() + text.size() > kBufferBytes) flush();
+  if (text.size() >= kBufferBytes)
+    put(text.data(), text.size());
+  else
+    buffer_ += text;
+}
+
+void CheckedFile::write(std::span<const std::uint8_t> bytes) {
+  write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void CheckedFile::close() {
+  if (fd_ < 0) return;
+  flush();
+  // Network file systems report a full disk only here.
+  const int fd = std::exchange(fd_, -1);
+  if (::close(fd) != 0) fail(errno);
+}
+
+void CheckedFile::flush() {
+  put(buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void CheckedFile::put(const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t n = ::write(fd_, data, size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) fail(n < 0 ? errno : ENOSPC);
+    data += n;
+    size -= static_cast<std::size_t>(n);
+  }
+}
+
+void CheckedFile::fail(int error) {
+  buffer_.clear();
+  throw UserError(
+      fmt::format("cannot write '{}': {}", one_line(path_.string()), std::strerror(error)));
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  CheckedFile file(path);
+  file.write(text);
+  file.close();
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  CheckedFile file(path);
+  file.write(bytes);
+  file.close();
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) {
+  const auto fail = [&](const std::string& why) {
+    throw UserError(fmt::format("cannot read '{}': {}", one_line(path.string()), why));
+  };
+  // O_NONBLOCK: opening a pipe that nobody writes must not hang before the check below.
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  if (file.fd < 0) fail(std::strerror(errno));
+  struct stat info {};
+  if (::fstat(file.fd, &info) != 0) fail(std::strerror(errno));
+  if (S_ISDIR(info.st_mode)) fail("it is a folder; a file is needed");
+  if (!S_ISREG(info.st_mode)) fail("it is not a regular file");
+  const std::string limit = fmt::format("it is larger than the {} bytes allowed", max_bytes);
+  if (static_cast<std::uint64_t>(info.st_size) > max_bytes) fail(limit);
+  std::string text(static_cast<std::size_t>(info.st_size), '\0');
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t n = ::read(file.fd, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(std::strerror(errno));
+    if (n == 0) break;
+    done += static_cast<std::size_t>(n);
+  }
+  text.resize(done);
+  return text;
+}
+
+std::string one_line(std::string_view text, std::size_t max_chars) {
+  std::string out;
+  for (const char c : text) {
+    if (out.size() >= max_chars) return out + "...";
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += ' ';
+    else if (byte < 0x20 || byte == 0x7f)
+      out += fmt::format("\\x{:02x}", byte);
+    else
+      out += c;
+  }
+  return out;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,189 @@
+#include "sw/fovea/elf_image.h"
+
+#include <fmt/format.h>
+#include <gelf.h>
+#include <libelf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <tuple>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr std::size_t kMaxElfBytes = 256u << 20;
+constexpr const char* kAllowed = "allowed: an ELF32 little-endian executable for ARM";
+
+struct ElfEnd {
+  void operator()(Elf* elf) const { elf_end(elf); }
+};
+
+std::string machine_name(unsigned machine) {
+  switch (machine) {
+    case EM_X86_64:
+      return "x86-64";
+    case EM_386:
+      return "x86";
+    case EM_AARCH64:
+      return "AArch64";
+    case EM_MIPS:
+      return "MIPS";
+    case EM_PPC:
+      return "PowerPC";
+    case EM_RISCV:
+      return "RISC-V";
+    default:
+      return fmt::format("machine number {}", machine);
+  }
+}
+
+std::string range(std::uint64_t base, std::uint64_t size) {
+  return fmt::format("0x{:08x}..0x{:08x}", base, base + size - 1);
+}
+
+}  // namespace
+
+ElfImage ElfImage::load(const std::filesystem::path& path) {
+  ElfImage image;
+  image.file_ = path.string();
+  const std::string name = one_line(image.file_);
+  const auto fail = [&](const std::string& why) {
+    throw UserError(fmt::format("program '{}': {}", name, why));
+  };
+  std::string bytes = read_file(path, kMaxElfBytes);
+  if (bytes.size() < EI_NIDENT || std::memcmp(bytes.data(), ELFMAG, SELFMAG) != 0)
+    fail(fmt::format("it is not an ELF file; {}", kAllowed));
+
+  FOVEA_CHECK(elf_version(EV_CURRENT) != EV_NONE, "libelf knows the current ELF version");
+  const std::unique_ptr<Elf, ElfEnd> elf(elf_memory(bytes.data(), bytes.size()));
+  const std::string cut = "the ELF file is damaged or cut short";
+  if (!elf || elf_kind(elf.get()) != ELF_K_ELF) fail(cut);
+  GElf_Ehdr header{};
+  if (!gelf_getehdr(elf.get(), &header)) fail(cut);
+  // The machine first: "ELF64" would be a poor answer to a program for the host.
+  if (header.e_machine != EM_ARM)
+    fail(fmt::format("it is for {}; {}", machine_name(header.e_machine), kAllowed));
+  if (header.e_ident[EI_CLASS] != ELFCLASS32)
+    fail(fmt::format("it is no ELF32 file; {}", kAllowed));
+  if (header.e_ident[EI_DATA] != ELFDATA2LSB) fail(fmt::format("it is big-endian; {}", kAllowed));
+  if (header.e_type != ET_EXEC)
+    fail(fmt::format("it is {}, not linked to fixed addresses; {}",
+                     header.e_type == ET_REL ? "an object file" : "no executable", kAllowed));
+  image.entry_ = static_cast<std::uint32_t>(header.e_entry);
+
+  std::size_t count = 0;
+  if (elf_getphdrnum(elf.get(), &count) != 0) fail(cut);
+  for (std::size_t i = 0; i < count; ++i) {
+    GElf_Phdr p{};
+    if (!gelf_getphdr(elf.get(), static_cast<int>(i), &p)) fail(cut);
+    if (p.p_type != PT_LOAD || p.p_memsz == 0) continue;
+    if (p.p_filesz > p.p_memsz) fail(fmt::format("segment {} is longer in file than in memory", i));
+    if (p.p_offset > bytes.size() || p.p_filesz > bytes.size() - p.p_offset)
+      fail(fmt::format("{}: segment {} ends behind the end of the file", cut, i));
+    if (p.p_paddr + p.p_memsz > (std::uint64_t{1} << 32))
+      fail(fmt::format("segment {} runs over the end of the 32-bit addresses", i));
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data()) + p.p_offset;
+    image.segments_.push_back({static_cast<unsigned>(i),
+                               static_cast<std::uint32_t>(p.p_paddr),
+                               static_cast<std::uint32_t>(p.p_vaddr),
+                               static_cast<std::uint32_t>(p.p_memsz),
+                               {data, data + p.p_filesz}});
+  }
+  if (image.segments_.empty()) fail("it has no segments to load");
+  auto sorted = image.segments_;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const auto& a, const auto& b) { return a.address < b.address; });
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (std::uint64_t{sorted[i - 1].address} + sorted[i - 1].memory_size > sorted[i].address)
+      fail(fmt::format("segments {} and {} overlap", sorted[i - 1].index, sorted[i].index));
+
+  for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf.get(), section));) {
+    GElf_Shdr table{};
+    if (!gelf_getshdr(section, &table) || table.sh_type != SHT_SYMTAB) continue;
+    Elf_Data* data = elf_getdata(section, nullptr);
+    if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", cut));
+    for (std::size_t i = 0; i < table.sh_size / table.sh_entsize; ++i) {
+      GElf_Sym s{};
+      if (!gelf_getsym(data, static_cast<int>(i), &s)) fail(fmt::format("{}: symbol {}", cut, i));
+      const char* text = elf_strptr(elf.get(), table.sh_link, s.st_name);
+      const unsigned type = GELF_ST_TYPE(s.st_info);
+      // '$a', '$t', '$d' mark instruction sets and data inside a section; they are no names.
+      if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
+      if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
+      bool function = type == STT_FUNC;
+      if (type == STT_NOTYPE && s.st_shndx < SHN_LORESERVE) {
+        GElf_Shdr home{};
+        Elf_Scn* where = elf_getscn(elf.get(), s.st_shndx);
+        function = where && gelf_getshdr(where, &home) && (home.sh_flags & SHF_EXECINSTR) != 0;
+      }
+      const auto address = static_cast<std::uint32_t>(s.st_value);
+      image.symbols_.push_back({text, type == STT_FUNC ? address & ~1u : address,
+                                static_cast<std::uint32_t>(s.st_size), function});
+    }
+  }
+  std::sort(image.symbols_.begin(), image.symbols_.end(), [](const auto& a, const auto& b) {
+    // At one address the name with a size is the better one; then by name, for determinism.
+    return std::tuple(a.address, b.size, std::string_view(a.name)) <
+           std::tuple(b.address, a.size, std::string_view(b.name));
+  });
+  for (std::size_t i = 0; i < image.symbols_.size(); ++i)
+    if (image.symbols_[i].function) image.functions_.push_back(i);
+  return image;
+}
+
+const ElfSymbol* ElfImage::find(std::string_view name) const {
+  const auto found = std::find_if(symbols_.begin(), symbols_.end(),
+                                  [&](const ElfSymbol& s) { return s.name == name; });
+  return found == symbols_.end() ? nullptr : &*found;
+}
+
+const ElfSymbol* ElfImage::function_at(std::uint32_t address) const {
+  auto above =
+      std::upper_bound(functions_.begin(), functions_.end(), address,
+                       [&](std::uint32_t a, std::size_t i) { return a < symbols_[i].address; });
+  const ElfSymbol* label = nullptr;
+  while (above != functions_.begin()) {
+    const ElfSymbol& s = symbols_[*--above];
+    if (s.size != 0) {
+      if (address - s.address < s.size) return &s;
+      // A label behind the end of the last sized function covers up to the next symbol.
+      return label;
+    }
+    if (!label || s.address == label->address) label = &s;
+  }
+  if (!label) return nullptr;
+  // A label without size reaches at most to the end of its segment.
+  for (const auto& segment : segments_)
+    if (address - segment.virtual_address < segment.memory_size &&
+        label->address >= segment.virtual_address)
+      return label;
+  return nullptr;
+}
+
+std::string ElfImage::describe(std::uint32_t address) const {
+  const ElfSymbol* s = function_at(address);
+  if (!s) return "";
+  return address == s->address ? s->name : fmt::format("{}+0x{:x}", s->name, address - s->address);
+}
+
+void check_fits(const ElfImage& image, std::span<const MemoryRegion> regions) {
+  for (const auto& s : image.segments()) {
+    const bool inside = std::any_of(regions.begin(), regions.end(), [&](const MemoryRegion& r) {
+      return s.address >= r.base && std::uint64_t{s.address} + s.memory_size <= r.base + r.size;
+    });
+    if (inside) continue;
+    std::string allowed;
+    for (const auto& r : regions)
+      allowed += fmt::format("{}{} {}", allowed.empty() ? "" : ", ", r.name, range(r.base, r.size));
+    throw UserError(fmt::format(
+        "program '{}': segment {} ({}, {} bytes) lies outside memory; "
+        "allowed: {}",
+        one_line(image.file()), s.index, range(s.address, s.memory_size), s.memory_size, allowed));
+  }
+}
+
+}  // namespace fovea::app

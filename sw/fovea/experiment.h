@@ -1,0 +1,61 @@
+// Experiments: parameters from a YAML file and from the command line, each with its origin.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/common/param.h"
+
+namespace fovea::app {
+
+/// Where the value of a parameter was written.
+struct ValueOrigin {
+  enum class Kind { kDefault, kFile, kCommandLine };
+  Kind kind = Kind::kDefault;
+  std::string file;   ///< as the user named it; empty unless kFile
+  unsigned line = 0;  ///< from 1; 0 unless kFile
+  /// "default", "command line" or "file:line".
+  std::string text() const;
+};
+
+/// Fills a ParamSet. Order of precedence: defaults, included files, the file itself, `-s`.
+///
+/// The file is YAML: dotted keys, nested maps or both (`lens: {mapping: equisolid}` is
+/// `lens.mapping: equisolid`); a sequence becomes the text `[a, b]`; `include: other.yaml` (or a
+/// list) at the top level is relative to the including file and read first, wherever it stands.
+/// Not part of the format: aliases and anchors (a small file could expand without limit), tags,
+/// several documents, files above 1 MiB, nesting deeper than 8. A key written twice in one file is
+/// an error. Every error is a UserError of one line: file:line, key, what is allowed, suggestion.
+class Experiment {
+ public:
+  explicit Experiment(ParamSet& params) : params_(params) {}
+
+  /// Reads the experiment file. @throws UserError
+  void load(const std::filesystem::path& file);
+  /// Applies one `key=value` of the command line. @throws UserError
+  void override_with(std::string_view assignment);
+
+  /// Origin of a key's value, also of keys that nobody set.
+  const ValueOrigin& origin(std::string_view key) const;
+  /// The experiment file's name without folder and extension; empty before load().
+  const std::string& name() const { return name_; }
+  /// All files read, in order of reading, as the user named them.
+  const std::vector<std::string>& files() const { return files_; }
+
+ private:
+  void load(const std::filesystem::path& file, std::vector<std::filesystem::path>& chain);
+  void set(std::string_view key, std::string value, const std::filesystem::path& folder);
+  ParamSet& params_;
+  std::map<std::string, ValueOrigin, std::less<>> origins_;
+  std::vector<std::string> files_;
+  std::string name_;
+};
+
+/// True for text parameters that name a file (key ends in `.file`, `.elf` or `.source`): a relative
+/// name in an experiment file means relative to that file's folder, on the command line relative
+/// to the working folder.
+bool is_path_key(const ParamBase& param);
+
+}  // namespace fovea::app

@@ -1,0 +1,303 @@
+#include "sw/fovea/ffmpeg.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/png.h"
+
+extern char** environ;
+
+namespace fovea::app {
+namespace {
+
+constexpr std::size_t kMaxMessageBytes = 4096;
+
+void close_fd(int& fd) {
+  if (fd >= 0) ::close(std::exchange(fd, -1));
+}
+
+/// What ffmpeg said, as part of a one-line error: its last line, which names the cause.
+std::string last_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  const std::size_t newline = text.find_last_of("\r\n");
+  return one_line(newline == std::string::npos ? text : text.substr(newline + 1), 200);
+}
+
+/// Reads a frame of the portable pixmap stream ("P6\nW H\n255\n" and the pixels) from the front of
+/// `buffer`; nullopt if it is not complete yet. @throws std::runtime_error for anything else
+std::optional<RgbImage> take_frame(std::string& buffer) {
+  std::array<unsigned, 3> header{};  // width, height, largest value
+  const std::string_view text(buffer);
+  if (text.size() < 2) return std::nullopt;
+  if (text.substr(0, 2) != "P6") throw std::runtime_error("ffmpeg wrote no pixmap");
+  std::size_t at = 2;
+  for (auto& number : header) {
+    while (at < text.size() && (text[at] == '\n' || text[at] == ' ')) ++at;
+    const auto [end, ec] = std::from_chars(text.data() + at, text.data() + text.size(), number);
+    if (end == text.data() + text.size()) return std::nullopt;
+    if (ec != std::errc()) throw std::runtime_error("ffmpeg wrote a damaged pixmap");
+    at = static_cast<std::size_t>(end - text.data());
+  }
+  const auto [width, height, largest] = header;
+  if (largest != 255) throw std::runtime_error("ffmpeg wrote a pixmap of another depth");
+  if (width > kMaxPictureSide || height > kMaxPictureSide)
+    throw std::runtime_error("the picture is too large");
+  const std::size_t size = std::size_t{3} * width * height;
+  const std::size_t begin = at + 1;  // one separator behind the last number
+  if (text.size() < begin + size) {
+    buffer.reserve(begin + size);
+    return std::nullopt;
+  }
+  RgbImage image{width, height, {}};
+  const auto* pixels = reinterpret_cast<const std::uint8_t*>(text.data()) + begin;
+  image.rgb.assign(pixels, pixels + size);
+  buffer.erase(0, begin + size);
+  return image;
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
+                           const std::string& purpose) {
+  std::vector<char*> argv;
+  for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  // A socket and not a pipe: send() can be told not to raise SIGPIPE, a pipe cannot.
+  std::array<int, 2> stream{}, errors{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, stream.data()) != 0)
+    throw UserError(fmt::format("{}: {}", purpose, std::strerror(errno)));
+  if (::pipe2(errors.data(), O_CLOEXEC) != 0) {
+    const int reason = errno;
+    ::close(stream[0]);
+    ::close(stream[1]);
+    throw UserError(fmt::format("{}: {}", purpose, std::strerror(reason)));
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  const bool input = data == Stream::kInput;
+  posix_spawn_file_actions_addopen(&actions, input ? 1 : 0, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions, stream[1], input ? 0 : 1);
+  posix_spawn_file_actions_adddup2(&actions, errors[1], 2);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t defaults, mask;
+  sigemptyset(&mask);
+  sigemptyset(&defaults);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM}) sigaddset(&defaults, signal);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setsigmask(&attributes, &mask);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+  const int result = ::posix_spawnp(&pid_, argv[0], &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(stream[1]);
+  ::close(errors[1]);
+  data_ = stream[0];
+  error_ = errors[0];
+  if (result != 0) {
+    pid_ = -1;
+    close_fd(data_);
+    close_fd(error_);
+    throw UserError(fmt::format(
+        "{}: the program '{}' {}", purpose, one_line(command[0]),
+        result == ENOENT ? "was not found; install it (package ffmpeg), or use PNG pictures"
+                         : std::string("cannot be started: ") + std::strerror(result)));
+  }
+  // Messages are read while data flows; neither stream may block on the other.
+  ::fcntl(error_, F_SETFL, O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+  if (pid_ > 0) {
+    kill();
+    finish();
+  }
+}
+
+void ChildProcess::kill() {
+  if (pid_ > 0) ::kill(pid_, SIGKILL);
+}
+
+void ChildProcess::read_messages() {
+  std::array<char, 1024> chunk{};
+  while (error_ >= 0) {
+    const ssize_t n = ::read(error_, chunk.data(), chunk.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) return;
+    if (n <= 0) {
+      close_fd(error_);
+      return;
+    }
+    const std::size_t room = kMaxMessageBytes - std::min(kMaxMessageBytes, messages_.size());
+    messages_.append(chunk.data(), std::min(room, static_cast<std::size_t>(n)));
+  }
+}
+
+bool ChildProcess::read_some(std::string& buffer) {
+  std::array<char, 64 * 1024> chunk;
+  for (;;) {
+    std::array<pollfd, 2> fds{{{data_, POLLIN, 0}, {error_, POLLIN, 0}}};
+    if (::poll(fds.data(), fds.size(), -1) < 0 && errno != EINTR) return false;
+    if (fds[1].revents != 0) read_messages();
+    if (fds[0].revents == 0) continue;
+    const ssize_t n = ::recv(data_, chunk.data(), chunk.size(), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    buffer.append(chunk.data(), static_cast<std::size_t>(n));
+    return true;
+  }
+}
+
+bool ChildProcess::write_all(const std::uint8_t* bytes, std::size_t size) {
+  while (size > 0) {
+    std::array<pollfd, 2> fds{{{data_, POLLOUT, 0}, {error_, POLLIN, 0}}};
+    if (::poll(fds.data(), fds.size(), -1) < 0 && errno != EINTR) return false;
+    if (fds[1].revents != 0) read_messages();
+    if (fds[0].revents == 0) continue;
+    const ssize_t n = ::send(data_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (n < 0) return false;
+    bytes += n;
+    size -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+int ChildProcess::finish() {
+  close_fd(data_);
+  // Until the child closes its standard error; so it never blocks on a message nobody reads.
+  while (error_ >= 0) {
+    pollfd fd{error_, POLLIN, 0};
+    if (::poll(&fd, 1, -1) < 0 && errno != EINTR) break;
+    read_messages();
+  }
+  int status = 0;
+  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
+                                    const DecodeOptions& options) {
+  const std::string name = one_line(file.string());
+  const auto fail = [&](const std::string& why) {
+    throw UserError(fmt::format("cannot read the footage '{}': {}", name, why));
+  };
+  // ffmpeg's own message about a missing file is long; ours is the same for all readers.
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) fail("no such file");
+  if (!std::filesystem::is_regular_file(file, error)) fail("it is not a regular file");
+  // The prefix keeps names such as "-i", "http:..." or "concat:..." names of files. Errors in the
+  // data end the decoding (-xerror) instead of being painted over.
+  std::vector<std::string> command = {options.program,
+                                      "-nostdin",
+                                      "-hide_banner",
+                                      "-v",
+                                      "error",
+                                      "-xerror",
+                                      "-protocol_whitelist",
+                                      "file,pipe",
+                                      "-threads",
+                                      "1",
+                                      "-i",
+                                      "file:" + file.string(),
+                                      "-map",
+                                      "0:v:0",
+                                      "-frames:v",
+                                      std::to_string(options.max_frames)};
+  if (options.width != 0) {
+    command.push_back("-vf");
+    command.push_back(fmt::format("scale={}:{}:flags=bicubic+accurate_rnd+full_chroma_int+bitexact",
+                                  options.width, options.height));
+  }
+  for (const char* word : {"-vsync", "passthrough", "-f", "image2pipe", "-c:v", "ppm", "pipe:1"})
+    command.push_back(word);
+
+  ChildProcess child(command, ChildProcess::Stream::kOutput,
+                     fmt::format("cannot read the footage '{}'", name));
+  std::vector<RgbImage> frames;
+  std::string buffer;
+  try {
+    while (child.read_some(buffer))
+      while (auto frame = take_frame(buffer)) frames.push_back(std::move(*frame));
+  } catch (const std::runtime_error& e) {
+    fail(e.what());
+  }
+  const int status = child.finish();
+  const std::string words = last_line(child.messages());
+  if (status != 0)
+    fail(fmt::format("ffmpeg ended with status {}{}", status, words.empty() ? "" : ": " + words));
+  if (!buffer.empty()) fail("ffmpeg's output ends within a frame");
+  if (!child.messages().empty()) fail("it is damaged or cut short: " + words);
+  if (frames.empty()) fail("it has no frames");
+  for (const auto& f : frames)
+    if (f.width != frames[0].width || f.height != frames[0].height)
+      fail("its frames differ in size");
+  return frames;
+}
+
+RgbImage load_still(const std::filesystem::path& file) {
+  static constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t kMaxStillBytes = 256u << 20;
+  // Also a file that only claims to be a PNG by its name goes to the PNG reader: its message fits.
+  if (file.extension() == ".png" || read_file(file, kMaxStillBytes).starts_with(kPngSignature))
+    return read_png(file);
+  return std::move(decode_frames(file, {}).front());
+}
+
+Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate,
+                     const std::string& program)
+    : file_(std::move(file)),
+      width_(width),
+      height_(height),
+      child_({program,        "-nostdin",
+              "-hide_banner", "-v",
+              "error",        "-y",
+              "-f",           "rawvideo",
+              "-pix_fmt",     "rgb24",
+              "-s",           fmt::format("{}x{}", width, height),
+              "-r",           fmt::format("{}/{}", rate.num, rate.den),
+              "-i",           "pipe:0",
+              "-c:v",         "libx264",
+              "-preset",      "veryfast",
+              "-crf",         "18",
+              "-pix_fmt",     "yuv420p",
+              "-threads",     "1",
+              "-bitexact",    "-f",
+              "mp4",          "file:" + file_.string()},
+             ChildProcess::Stream::kInput,
+             fmt::format("cannot write '{}'", one_line(file_.string()))) {}
+
+void Mp4Writer::write(const RgbImage& image) {
+  FOVEA_CHECK(image.width == width_ && image.height == height_, "a film's frames are of one size");
+  if (!child_.write_all(image.rgb.data(), image.rgb.size())) fail(child_.finish());
+}
+
+void Mp4Writer::close() {
+  if (const int status = child_.finish(); status != 0) fail(status);
+}
+
+void Mp4Writer::fail(int status) {
+  const std::string words = last_line(child_.messages());
+  throw UserError(fmt::format("cannot write '{}': ffmpeg ended with status {}{}",
+                              one_line(file_.string()), status, words.empty() ? "" : ": " + words));
+}
+
+}  // namespace fovea::app

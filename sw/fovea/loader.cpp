@@ -1,0 +1,86 @@
+#include "sw/fovea/loader.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "sw/fovea/ffmpeg.h"
+#include "sw/lens/param_page.h"
+
+namespace fovea::app {
+
+std::filesystem::path program_file(const board::BoardParams& params) {
+  if (!params.firmware.elf().empty()) return params.firmware.elf();
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return self.parent_path() / "sw/firmware/fovea_firmware.elf";
+}
+
+std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
+  return {{"internal RAM (instruction side)", 0x0000'0000, 0x8000},
+          {"internal RAM (data side)", 0x0001'0000, 0x8000},
+          {"SDRAM (ddr.part = " + params.soc.ddr.part() + ")", 0x8000'0000,
+           params.soc.ddr.size_bytes()}};
+}
+
+std::vector<RgbImage> load_footage(const board::BoardParams& params) {
+  const auto& camera = params.camera;
+  if (camera.kind.is("chart")) return {};
+  if (camera.file().empty())
+    throw UserError("key 'camera.file': a picture or film is needed for camera.kind = " +
+                    camera.kind() + "; allowed: a file name, or camera.kind: chart");
+  if (camera.kind.is("sphere")) return {load_still(camera.file())};
+  DecodeOptions options;
+  // Two fields a frame; some frames more for start-up. Films repeat when they end.
+  options.max_frames = 250;
+  return decode_frames(camera.file(), options);
+}
+
+void complete_params(board::BoardParams& params) {
+  if (!params.decoder.standard.user_set())
+    params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
+}
+
+std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
+                                         const video::StampedSource&) {
+  const board::LensParams& lens = params.lens;
+  param_page_t page;
+  param_page_default(&page);
+  page.flags = (lens.paper_literal_focal() ? PARAM_PAPER_LITERAL_FOCAL : 0u) |
+               (lens.pair.is("B") ? PARAM_PAIR_METHOD_B : 0u);
+  page.width = static_cast<std::uint32_t>(params.video.width());
+  page.height = static_cast<std::uint32_t>(params.video.height());
+  page.fov_deg = lens.fov();
+  page.focal_px = lens.focal();
+  page.out_focal_px = lens.out_focal();
+  page.centre_x = lens.centre_x();
+  page.centre_y = lens.centre_y();
+  page.shift_x = lens.shift_x();
+  page.shift_y = lens.shift_y();
+  page.in_aspect = lens.in_aspect();
+  page.out_aspect = lens.out_aspect();
+  page.mapping = static_cast<std::uint32_t>(lens.mapping.index());
+  if (lens.mapping.is("kannala_brandt")) {
+    // The calibration in pixels of the raster that the camera sends.
+    const auto& kb = lens.kb();
+    const double w = params.raster_width(), h = params.raster_height();
+    const auto model = video::LensModel::kannala_brandt(kb[0], kb[1], kb[2], kb[3],
+                                                        {kb[4], kb[5], kb[6], kb[7]})
+                           .scaled(w / lens.kb_width(), h / lens.kb_height());
+    const double theta_max = lens.theta_max() * M_PI / 180;
+    const auto table = model.table(PARAM_TABLE_MAX, theta_max);
+    page.mapping = LENS_TABLE;
+    page.table_count = PARAM_TABLE_MAX;
+    page.theta_max = theta_max;
+    std::copy(table.begin(), table.end(), page.table_r);
+    page.focal_px = model.fx();
+    page.in_aspect = model.fy() / model.fx();
+    page.centre_x = model.cx() - (w - 1) / 2 + lens.centre_x();
+    page.centre_y = model.cy() - (h - 1) / 2 + lens.centre_y();
+  }
+  param_page_seal(&page);
+  std::vector<std::uint8_t> bytes(sizeof page);
+  std::memcpy(bytes.data(), &page, sizeof page);
+  return bytes;
+}
+
+}  // namespace fovea::app

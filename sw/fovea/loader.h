@@ -1,0 +1,27 @@
+// What a boot loader and the person at the board do before the start: program, footage, switches,
+// parameter page.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "model/board/board_params.h"
+#include "model/video/scene/sources.h"
+#include "sw/fovea/elf_image.h"
+#include "sw/fovea/rgb_image.h"
+
+namespace fovea::app {
+
+/// firmware.elf, or the program built with Fovea, which lies beside the `fovea` program.
+std::filesystem::path program_file(const board::BoardParams& params);
+/// Where a program's segments may lie.
+std::vector<MemoryRegion> memory_regions(const board::BoardParams& params);
+/// Decodes camera.file; nothing for a chart. @throws UserError naming the file
+std::vector<RgbImage> load_footage(const board::BoardParams& params);
+/// Sets what follows from other keys and was not set itself (the decoder's standard).
+void complete_params(board::BoardParams& params);
+/// The bytes of the parameter page (sw/lens/README.md).
+std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
+                                         const video::StampedSource& source);
+
+}  // namespace fovea::app

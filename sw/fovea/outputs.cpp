@@ -1,0 +1,215 @@
+#include "sw/fovea/outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "sw/fovea/run_dir.h"
+
+namespace fovea::app {
+namespace {
+
+/// A JSON string; bytes that are no UTF-8 become the replacement character.
+std::string js(std::string_view text) {
+  return nlohmann::json(std::string(text))
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void append_rows(std::string& out, std::vector<StatRow> rows) {
+  std::sort(rows.begin(), rows.end(),
+            [](const StatRow& a, const StatRow& b) { return a.name < b.name; });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const StatRow& r = rows[i];
+    FOVEA_CHECK(i == 0 || rows[i - 1].name != r.name, "two statistics are called " + r.name);
+    out += fmt::format(",\n  {}: {{\"value\": {}, \"unit\": {}, \"description\": {}}}", js(r.name),
+                       number_text(r.value), js(r.unit), js(r.description));
+  }
+}
+
+/// A field of a CSV file, quoted when it must be (RFC 4180).
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string cell(const std::optional<Picoseconds>& time) { return time ? ns_text(*time) : ""; }
+
+}  // namespace
+
+void collect(const StatGroup& group, std::vector<StatRow>& rows) {
+  for (const auto* s : group.stats())
+    rows.push_back({s->name(), s->value(), s->unit(), s->sentence()});
+}
+
+const StatRow* find(std::span<const StatRow> rows, std::string_view name) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const StatRow& row) { return row.name == name; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return "null";
+  if (value == 0) value = 0;  // no "-0.0"
+  std::array<char, 40> buffer{};
+  const auto [end, ec] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  FOVEA_CHECK(ec == std::errc(), "a double fits 40 characters");
+  std::string text(buffer.data(), end);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string number_text(const StatBase::Value& value) {
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+  return number_text(std::get<double>(value));
+}
+
+std::string ns_text(Picoseconds ps) {
+  return fmt::format("{}.{:03}", ps / kPsPerNs, ps % kPsPerNs);
+}
+
+std::string config_json(const ParamSet& params, const Experiment& experiment,
+                        std::string_view version) {
+  std::string out =
+      fmt::format("{{\n  \"format\": {},\n  \"version\": {},\n  \"experiment\": {},\n",
+                  js(kRunFormat), js(version), js(experiment.name()));
+  std::vector<const ParamBase*> sorted(params.all().begin(), params.all().end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
+  out += "  \"params\": {";
+  const char* separator = "\n";
+  for (const auto* p : sorted) {
+    out += fmt::format(
+        "{}    {}: {{\"value\": {}, \"unit\": {}, \"origin\": {}, \"default\": {}, "
+        "\"allowed\": {}, \"tag\": {}, \"source\": {}, \"description\": {}}}",
+        separator, js(p->key()), js(p->text()), js(p->unit()),
+        js(experiment.origin(p->key()).text()), js(p->default_text()), js(p->allowed()),
+        js(to_string(p->origin())), js(p->source()), js(p->sentence()));
+    separator = ",\n";
+  }
+  return out + "\n  }\n}\n";
+}
+
+std::vector<Remark> collect_remarks(const Diagnostics& diagnostics) {
+  std::vector<Remark> out;
+  for (const auto& [key, count] : diagnostics.counts())
+    out.push_back(
+        {key.first == Diagnostics::Kind::kGuest ? "guest" : "not modelled", key.second, count});
+  return out;
+}
+
+std::string stats_json(std::vector<StatRow> rows, bool complete,
+                       const std::vector<Remark>& remarks) {
+  std::string out = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\"", complete);
+  out += ",\n  \"remarks\": [";
+  for (std::size_t i = 0; i < remarks.size(); ++i)
+    out += fmt::format("{}\n    {{\"kind\": {}, \"what\": {}, \"count\": {}}}", i ? "," : "",
+                       js(remarks[i].kind), js(remarks[i].what), remarks[i].count);
+  out += remarks.empty() ? "]" : "\n  ]";
+  append_rows(out, std::move(rows));
+  return out + "\n}\n";
+}
+
+std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
+                      std::string_view version) {
+  std::string out = fmt::format("{{\n  \"version\": {},\n  \"command\": [", js(version));
+  for (std::size_t i = 0; i < command.size(); ++i) out += (i ? ", " : "") + js(command[i]);
+  out += "]";
+  append_rows(out, std::move(rows));
+  return out + "\n}\n";
+}
+
+std::string frames_csv(std::span<const FrameRow> rows) {
+  std::string out =
+      "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+      "display_start_ns,display_end_ns,dropped,repeated\n";
+  for (const auto& r : rows)
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.camera,
+                       r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
+                       cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
+                       cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0);
+  return out;
+}
+
+std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows) {
+  std::string out = "start_ns,end_ns";
+  for (const auto& m : masters)
+    out += "," + csv_field(m + ".read_bytes") + "," + csv_field(m + ".write_bytes");
+  out += "\n";
+  for (const auto& r : rows) {
+    FOVEA_CHECK(r.read_bytes.size() == masters.size() && r.write_bytes.size() == masters.size(),
+                "timeline row and header differ in the number of masters");
+    out += ns_text(r.start) + "," + ns_text(r.end);
+    for (std::size_t m = 0; m < masters.size(); ++m)
+      out += fmt::format(",{},{}", r.read_bytes[m], r.write_bytes[m]);
+    out += "\n";
+  }
+  return out;
+}
+
+std::string human_text(const StatBase::Value& value, std::string_view unit) {
+  const bool whole = std::holds_alternative<std::uint64_t>(value);
+  const double v =
+      whole ? static_cast<double>(std::get<std::uint64_t>(value)) : std::get<double>(value);
+  if (!std::isfinite(v)) return "-";
+  struct Prefix {
+    double scale;
+    const char* text;
+  };
+  static constexpr std::array<Prefix, 7> kPrefixes{
+      {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}}};
+  const bool seconds = unit == "s", bytes = unit == "B" || unit == "bytes", watts = unit == "W";
+  if (v != 0 && (seconds || bytes || watts)) {
+    for (const auto& p : kPrefixes) {
+      if (std::abs(v) < p.scale && &p != &kPrefixes.back()) continue;
+      if ((seconds && p.scale > 1) || (bytes && p.scale < 1)) continue;
+      return fmt::format("{:.4g} {}{}", v / p.scale, p.text, bytes ? "B" : unit);
+    }
+  }
+  if (unit == "ratio") return fmt::format("{:.1f} %", 100 * v);
+  const std::string number =
+      whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
+  // "count", "frames" and the like are said by the name.
+  return unit.empty() || unit == "count" ? number : fmt::format("{} {}", number, unit);
+}
+
+std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host) {
+  static constexpr std::array kStats{
+      "frame.rate",        "frame.captured",       "frame.remapped",        "frame.displayed",
+      "frame.dropped",     "frame.remap_time.min", "frame.remap_time.mean", "frame.remap_time.max",
+      "frame.latency.min", "frame.latency.mean",   "frame.latency.max",     "startup.lut_time",
+      "capture.overflows", "display.underflows",   "ddr.utilisation",       "ddr.read_bytes",
+      "ddr.write_bytes"};
+  static constexpr std::array kHost{"realtime_factor", "mips", "wall_time", "peak_rss"};
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const char* name : kStats)
+    if (const auto* row = find(stats, name))
+      lines.emplace_back(name, human_text(row->value, row->unit));
+  // Bytes of the masters that moved any.
+  std::vector<std::string> masters;
+  for (const auto& row : stats) {
+    const bool bytes = row.name.starts_with("bus.") &&
+                       (row.name.ends_with(".read_bytes") || row.name.ends_with(".write_bytes"));
+    if (bytes && row.value != StatBase::Value{std::uint64_t{0}}) masters.push_back(row.name);
+  }
+  std::sort(masters.begin(), masters.end());
+  for (const auto& name : masters) {
+    const auto* row = find(stats, name);
+    lines.emplace_back(name, human_text(row->value, row->unit));
+  }
+  for (const char* name : kHost)
+    if (const auto* row = find(host, name))
+      lines.emplace_back(name, human_text(row->value, row->unit));
+  std::size_t width = 0;
+  for (const auto& line : lines) width = std::max(width, line.first.size());
+  std::string out;
+  for (const auto& [name, text] : lines) out += fmt::format("  {:<{}}  {}\n", name, width, text);
+  return out;
+}
+
+}  // namespace fovea::app

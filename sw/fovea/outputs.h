@@ -1,0 +1,83 @@
+// The files of a run that are text: config.json, stats.json, host.json, frames.csv, timeline.csv.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/common/check.h"
+#include "model/common/stats.h"
+#include "sw/fovea/experiment.h"
+
+namespace fovea::app {
+
+/// One figure as a file shows it.
+struct StatRow {
+  std::string name;
+  StatBase::Value value;
+  std::string unit;
+  std::string description;
+};
+
+/// Appends the present values of a group.
+void collect(const StatGroup& group, std::vector<StatRow>& rows);
+/// The row called `name`, or nullptr.
+const StatRow* find(std::span<const StatRow> rows, std::string_view name);
+
+/// A frame as it was displayed. Times in ps since the start of the run; absent if unknown (a frame
+/// shown without remap has no remap times).
+struct FrameRow {
+  std::uint64_t index = 0;  ///< displayed frame, from 0
+  unsigned camera = 0;
+  std::optional<std::uint64_t> captured;  ///< number of the captured frame that it shows
+  std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
+  std::optional<Picoseconds> display_start, display_end;
+  std::uint64_t dropped = 0;  ///< captured frames skipped between the previous row and this one
+  bool repeated = false;      ///< shows the same captured frame as the row before
+};
+
+/// Bytes moved in [start, end), by master in the order of the timeline's names.
+struct TimelineRow {
+  Picoseconds start = 0, end = 0;
+  std::vector<std::uint64_t> read_bytes, write_bytes;
+};
+
+/// Shortest text that reads back as the same double; always with '.' or exponent, "null" for
+/// infinities and NaN (a mean of nothing), since JSON has neither.
+std::string number_text(double value);
+std::string number_text(const StatBase::Value& value);
+
+/// Picoseconds as nanoseconds with exactly three decimals (no rounding).
+std::string ns_text(Picoseconds ps);
+
+/// Every parameter: value, unit, where the value was written, what kind of number the default is.
+std::string config_json(const ParamSet& params, const Experiment& experiment,
+                        std::string_view version);
+
+/// Diagnostics of the run as stats.json lists them.
+struct Remark {
+  std::string kind, what;
+  std::uint64_t count = 0;
+};
+std::vector<Remark> collect_remarks(const Diagnostics& diagnostics);
+
+/// Sorted by name, one figure per line: two equal runs give equal bytes. `complete` is false for a
+/// run that was stopped before its end. A name that occurs twice is a defect (FOVEA_CHECK).
+std::string stats_json(std::vector<StatRow> rows, bool complete,
+                       const std::vector<Remark>& remarks = {});
+/// As stats.json without the run's state; for figures that differ from run to run.
+std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
+                      std::string_view version);
+
+std::string frames_csv(std::span<const FrameRow> rows);
+/// `masters` names the entries of each row's vectors; columns are bytes per interval.
+std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);
+
+/// A figure for people: three to five digits and a fitting prefix ("40.2 ms", "165.9 MB").
+std::string human_text(const StatBase::Value& value, std::string_view unit);
+/// The headline figures that are among `rows`, aligned, one per line.
+std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host);
+
+}  // namespace fovea::app

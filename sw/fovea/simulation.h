@@ -1,0 +1,79 @@
+// The seam between the host program and the board: what a run is asked for and what it answers.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/common/param.h"
+#include "sw/fovea/outputs.h"
+
+namespace fovea::app {
+
+/// How far a run is; all counts since the start of the run.
+struct Progress {
+  Picoseconds simulated = 0;
+  std::uint64_t frames_shown = 0;   ///< corrected frames displayed
+  std::uint64_t frames_wanted = 0;  ///< 0: unknown
+  std::uint64_t instructions = 0;   ///< executed by the core
+};
+
+/// Takes progress; cheap enough to be called at every field (it decides when to print).
+class ProgressSink {
+ public:
+  virtual ~ProgressSink() = default;
+  virtual void update(const Progress& progress) = 0;
+};
+
+/// A displayed frame: 4:2:2, bytes Cb Y0 Cr Y1, no padding. Valid during the call only.
+struct DisplayedFrame {
+  std::uint64_t index = 0;
+  unsigned width = 0, height = 0;
+  std::span<const std::uint8_t> uyvy;
+};
+
+/// What `fovea run` asks of the board.
+struct RunRequest {
+  const ParamSet& params;
+  /// Folder of the run (still DIR.tmp) for files that the board writes itself, such as traces.
+  std::filesystem::path folder;
+  bool strict_sync = false;  ///< --sync=strict
+  /// Set by a signal: the board ends the run soon and returns what it has with complete = false.
+  const std::atomic<bool>& stop;
+  ProgressSink& progress;
+  /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
+  /// full), which the board lets through.
+  std::function<void(const DisplayedFrame&)> frame;
+};
+
+/// What the board answers.
+struct RunResult {
+  bool complete = true;        ///< false: stopped before the wanted frames were shown
+  std::string guest_failure;   ///< not empty: the guest failed (exit 3); may have several lines
+  std::vector<StatRow> stats;  ///< stats.json, in any order
+  std::vector<StatRow> host;   ///< host.json, in any order (direct and queued accesses, ...)
+  std::vector<FrameRow> frames;
+  std::vector<std::string> timeline_masters;
+  std::vector<TimelineRow> timeline;
+  std::string uart;  ///< all that the firmware printed
+};
+
+/// A board that can be run once.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  /// Adds all parameters of the board; called once, first.
+  virtual void declare(ParamSet& params) = 0;
+  /// Runs to the end. @throws UserError for input that only the board can judge (footage, program),
+  ///   GuestFailure, NotModelled
+  virtual RunResult run(const RunRequest& request) = 0;
+};
+
+/// The DM365 board; defined by the board library, not by this one.
+std::unique_ptr<Simulation> make_simulation();
+
+}  // namespace fovea::app

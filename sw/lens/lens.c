@@ -1,0 +1,284 @@
+#include "sw/lens/lens.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+#define RADIANS(deg) ((deg) * (PI / 180.0))
+#define SIDE_MAX 4096u
+/* Below this tan(theta) squared the ratio R / tan(theta) is taken at its limit: no 0 / 0 on the
+ * axis. */
+#define NEAR_AXIS 1e-18
+
+static int positive(double x) { return x > 0.0 && x < HUGE_VAL; }
+
+double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int paper_literal) {
+  const double fov = RADIANS(fov_deg);
+  if (!positive(fov)) return 0.0;
+  switch (mapping) {
+    case LENS_RECTILINEAR:
+      return fov_deg < 180.0 ? width / (2.0 * tan(fov / 2.0)) : 0.0;
+    case LENS_LINEAR:
+      return fov_deg < 360.0 ? width / fov : 0.0;
+    case LENS_ORTHOGRAPHIC:
+      return fov_deg <= 180.0 ? width / (2.0 * sin(fov / 2.0)) : 0.0;
+    case LENS_EQUISOLID:
+      if (fov_deg >= 360.0) return 0.0;
+      return width / (4.0 * sin(paper_literal ? fov / 2.0 : fov / 4.0));
+    case LENS_STEREOGRAPHIC:
+      return fov_deg < 360.0 ? width / (4.0 * tan(fov / 4.0)) : 0.0;
+    default:
+      return 0.0;
+  }
+}
+
+static lens_result_t init_table(lens_t *lens, const param_page_t *page) {
+  if (page->table_count < 2 || page->table_count > PARAM_TABLE_MAX || !positive(page->theta_max))
+    return LENS_BAD_TABLE;
+  if (page->table_r[0] != 0.0) return LENS_BAD_TABLE;
+  for (uint32_t i = 1; i < page->table_count; ++i)
+    if (!(page->table_r[i] > page->table_r[i - 1]) || !positive(page->table_r[i]))
+      return LENS_BAD_TABLE;
+  lens->table_r = page->table_r;
+  lens->table_count = page->table_count;
+  lens->table_scale = (double)(page->table_count - 1) / page->theta_max;
+  return LENS_OK;
+}
+
+lens_result_t lens_init(lens_t *lens, const param_page_t *page, uint32_t width, uint32_t height) {
+  if (width == 0 || width % 2 != 0 || width > SIDE_MAX || height == 0 || height > SIDE_MAX)
+    return LENS_BAD_SIZE;
+  if (page->mapping > LENS_TABLE) return LENS_BAD_MAPPING;
+
+  *lens = (lens_t){.mapping = page->mapping,
+                   .width = width,
+                   .height = height,
+                   .pair_method_b = (page->flags & PARAM_PAIR_METHOD_B) != 0,
+                   .centre_x = page->centre_x,
+                   .centre_y = page->centre_y,
+                   .shift_x = page->shift_x,
+                   .shift_y = page->shift_y,
+                   .in_aspect = page->in_aspect,
+                   .out_aspect = page->out_aspect,
+                   .tan_limit_squared = HUGE_VAL};
+  if (page->theta_max > 0.0 && page->theta_max < PI / 2.0)
+    lens->tan_limit_squared = tan(page->theta_max) * tan(page->theta_max);
+
+  if (page->mapping == LENS_NONE) {
+    lens->focal = lens->out_focal = 1.0;
+    return LENS_OK;
+  }
+  if (!positive(page->in_aspect) || !positive(page->out_aspect)) return LENS_BAD_FOCAL;
+  if (page->mapping == LENS_TABLE) {
+    const lens_result_t result = init_table(lens, page);
+    if (result != LENS_OK) return result;
+    lens->focal = page->focal_px != 0.0 ? page->focal_px : page->table_r[1] * lens->table_scale;
+  } else if (page->focal_px != 0.0) {
+    lens->focal = page->focal_px;
+  } else {
+    lens->focal = lens_focal_from_fov(page->mapping, (double)width, page->fov_deg,
+                                      (page->flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
+    if (!positive(lens->focal)) return LENS_BAD_FOV;
+  }
+  lens->out_focal = page->out_focal_px != 0.0 ? page->out_focal_px : lens->focal;
+  if (!positive(lens->focal) || !positive(lens->out_focal)) return LENS_BAD_FOCAL;
+  lens->scale_x = 1.0 / lens->out_focal;
+  lens->scale_y = 1.0 / (lens->out_focal * lens->out_aspect);
+  return LENS_OK;
+}
+
+const char *lens_result_text(lens_result_t result) {
+  switch (result) {
+    case LENS_OK:
+      return "ok";
+    case LENS_BAD_SIZE:
+      return "width must be even, sides 1 to 4096";
+    case LENS_BAD_MAPPING:
+      return "mapping must be 0 to 6";
+    case LENS_BAD_FOV:
+      return "field of view outside what the mapping can show";
+    case LENS_BAD_FOCAL:
+      return "focal lengths and aspects must be positive";
+    case LENS_BAD_TABLE:
+      return "table needs 2 to 129 entries rising from 0, and theta_max";
+  }
+  return "unknown";
+}
+
+static double table_radius(const lens_t *lens, double theta) {
+  const double position = theta * lens->table_scale;
+  uint32_t i = (uint32_t)position;
+  if (i > lens->table_count - 2) i = lens->table_count - 2;
+  return lens->table_r[i] + (lens->table_r[i + 1] - lens->table_r[i]) * (position - (double)i);
+}
+
+double lens_radius(const lens_t *lens, double theta) {
+  const double f = lens->focal;
+  switch (lens->mapping) {
+    case LENS_RECTILINEAR:
+      return f * tan(theta);
+    case LENS_LINEAR:
+      return f * theta;
+    case LENS_ORTHOGRAPHIC:
+      return f * sin(theta);
+    case LENS_EQUISOLID:
+      return 2.0 * f * sin(theta / 2.0);
+    case LENS_STEREOGRAPHIC:
+      return 2.0 * f * tan(theta / 2.0);
+    case LENS_TABLE:
+      return table_radius(lens, theta);
+    default:
+      return 0.0;
+  }
+}
+
+double lens_sqrt(double x) {
+  union {
+    double value;
+    uint64_t bits;
+  } in = {x}, start = {0}, slope = {0};
+  const int32_t exponent = (int32_t)(in.bits >> 52);
+  if (exponent <= 0 || exponent >= 0x7FF) return sqrt(x);
+  /* x = a * 4^half with 1 <= a < 4; `a` and the inverse root `y` (1/2 < y <= 1) in units of 2^-30.
+   */
+  const int32_t odd = (exponent - 1023) & 1;
+  const int32_t half_exponent = (exponent - 1023 - odd) / 2;
+  const uint64_t mantissa = (in.bits & 0xFFFFFFFFFFFFFull) | 1ull << 52;
+  const uint64_t a = (mantissa << odd) >> 22;
+  /* 1.0664 - a * 39 / 256 is within 9 % of the inverse root; each turn squares the relative error
+   * (times 1.5): 0.086, 0.012, 2e-4, 6e-8, then the arithmetic's 2^-28. */
+  uint64_t y = 1145038281u - (a * 39u >> 8);
+  for (int i = 0; i < 4; ++i) {
+    const uint64_t ay = a * y >> 30;
+    const uint64_t residue = (3ull << 30) - (ay * y >> 30);
+    y = y * residue >> 31;
+  }
+  const uint64_t root = a * y >> 30; /* 1 <= root < 2, or just below 1 for a = 1 */
+  /* One step in double: root + (x - root^2) * y / 2, error about 2^-53. */
+  start.value = (double)(uint32_t)root;
+  slope.value = (double)(uint32_t)y;
+  start.bits += (uint64_t)((int64_t)(half_exponent - 30)) << 52;
+  slope.bits += (uint64_t)((int64_t)(-half_exponent - 31)) << 52;
+  return start.value + (x - start.value * start.value) * slope.value;
+}
+
+static double linear_gain(double f, double r) { return f * atan(r) / r; }
+
+static double table_gain(const lens_t *lens, double r) { return table_radius(lens, atan(r)) / r; }
+
+double lens_gain(const lens_t *lens, double r_squared) {
+  const double f = lens->focal;
+  switch (lens->mapping) {
+    case LENS_RECTILINEAR:
+      return f;
+    case LENS_LINEAR:
+      return r_squared < NEAR_AXIS ? f : linear_gain(f, lens_sqrt(r_squared));
+    case LENS_ORTHOGRAPHIC:
+      return f / lens_sqrt(1.0 + r_squared);
+    case LENS_EQUISOLID: {
+      /* The textbook form f * sqrt(2 * (1 - 1 / h)) / r loses digits near the axis; this one
+       * does not (fisheye-video.md 1.3). */
+      const double h = lens_sqrt(1.0 + r_squared);
+      return f * lens_sqrt(2.0 / (h * (h + 1.0)));
+    }
+    case LENS_STEREOGRAPHIC:
+      return 2.0 * f / (1.0 + lens_sqrt(1.0 + r_squared));
+    case LENS_TABLE:
+      return r_squared < NEAR_AXIS ? lens->table_r[1] * lens->table_scale
+                                   : table_gain(lens, lens_sqrt(r_squared));
+    default:
+      return 0.0;
+  }
+}
+
+/* What the four mirror images of an output position share: the offset of the source from the
+ * optical centre, or "beyond theta_max". */
+static int source_offset(const lens_t *lens, double x, double y, double *dx, double *dy) {
+  const double r_squared = x * x + y * y;
+  /* The last table entry belongs to the lens: not visible only beyond the limit. */
+  if (!(r_squared <= lens->tan_limit_squared)) return 0;
+  const double gain = lens_gain(lens, r_squared);
+  *dx = gain * x;
+  *dy = lens->in_aspect * gain * y;
+  return 1;
+}
+
+static double half(uint32_t side) { return ((double)side - 1.0) / 2.0; }
+
+static double output_x(const lens_t *lens, double u) {
+  return (u - half(lens->width) + lens->shift_x) * lens->scale_x;
+}
+
+static double output_y(const lens_t *lens, double v) {
+  return (v - half(lens->height) + lens->shift_y) * lens->scale_y;
+}
+
+lens_point_t lens_source(const lens_t *lens, double u, double v) {
+  if (lens->mapping == LENS_NONE) return (lens_point_t){u + lens->shift_x, v + lens->shift_y, 1};
+  double dx, dy;
+  if (!source_offset(lens, output_x(lens, u), output_y(lens, v), &dx, &dy))
+    return (lens_point_t){0.0, 0.0, 0};
+  return (lens_point_t){half(lens->width) + lens->centre_x + dx,
+                        half(lens->height) + lens->centre_y + dy, 1};
+}
+
+/* floor(x + 0.5) for a position that may be far outside; -1 stands for everything below. */
+static int32_t nearest(double x) {
+  if (!(x >= -0.5)) return -1;
+  if (x > 1e6) return 1000000;
+  return (int32_t)(x + 0.5);
+}
+
+uint32_t lens_lut_entry(const lens_t *lens, lens_point_t source, uint32_t pitch_bytes,
+                        uint32_t black_offset) {
+  if (!source.visible) return black_offset;
+  const int32_t column = nearest(source.column);
+  const int32_t row = nearest(source.row);
+  if (column < 0 || row < 0 || column >= (int32_t)lens->width || row >= (int32_t)lens->height)
+    return black_offset;
+  return (uint32_t)row * pitch_bytes + ((uint32_t)column & ~1u) * 2u;
+}
+
+void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
+  const uint32_t pairs = lens->width / 2;
+  const uint32_t black = lens_black_offset(lens->height, pitch_bytes);
+  const double first = lens->pair_method_b ? 0.5 : 0.0;
+  /* Mirror images: rows v and H-1-v when the view is not shifted vertically. Columns only with
+   * method B, whose positions 2i + 0.5 are symmetric; the mirror image of a first pixel (even) is
+   * a second one (odd). */
+  const int mirror_rows = lens->mapping != LENS_NONE && lens->shift_y == 0.0;
+  const int mirror_columns =
+      lens->mapping != LENS_NONE && lens->shift_x == 0.0 && lens->pair_method_b;
+  const uint32_t rows = mirror_rows ? (lens->height + 1) / 2 : lens->height;
+  const uint32_t columns = mirror_columns ? (pairs + 1) / 2 : pairs;
+  const double centre_column = half(lens->width) + lens->centre_x;
+  const double centre_row = half(lens->height) + lens->centre_y;
+
+  for (uint32_t v = 0; v < rows; ++v) {
+    uint32_t *upper = lut + v * pairs;
+    uint32_t *lower = lut + (lens->height - 1 - v) * pairs;
+    const double y = output_y(lens, (double)v);
+    for (uint32_t i = 0; i < columns; ++i) {
+      const double u = 2.0 * (double)i + first;
+      if (lens->mapping == LENS_NONE) {
+        upper[i] = lens_lut_entry(lens, lens_source(lens, u, (double)v), pitch_bytes, black);
+        continue;
+      }
+      double dx = 0.0, dy = 0.0;
+      const int visible = source_offset(lens, output_x(lens, u), y, &dx, &dy);
+      const lens_point_t p = {centre_column + dx, centre_row + dy, visible};
+      upper[i] = lens_lut_entry(lens, p, pitch_bytes, black);
+      if (mirror_rows) {
+        const lens_point_t q = {p.column, centre_row - dy, visible};
+        lower[i] = lens_lut_entry(lens, q, pitch_bytes, black);
+      }
+      if (mirror_columns) {
+        const lens_point_t q = {centre_column - dx, p.row, visible};
+        upper[pairs - 1 - i] = lens_lut_entry(lens, q, pitch_bytes, black);
+        if (mirror_rows) {
+          const lens_point_t s = {centre_column - dx, centre_row - dy, visible};
+          lower[pairs - 1 - i] = lens_lut_entry(lens, s, pitch_bytes, black);
+        }
+      }
+    }
+  }
+}

@@ -1,0 +1,152 @@
+// The checker complains at n - 1 and is silent at n, for each rule; numbers typed in from dram.md 2.
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <vector>
+
+#include "tb/dram/command_checker.h"
+
+namespace fovea::dram {
+namespace {
+
+struct Step {
+  Command command;
+  unsigned bank;
+  std::uint32_t row;
+  std::uint64_t clock;
+};
+
+/// A command history whose last command is exactly at the limit of one rule.
+struct Limit {
+  const char* rule;
+  std::vector<Step> steps;
+};
+std::ostream& operator<<(std::ostream& os, const Limit& l) { return os << l.rule; }
+
+// Every rule here binds alone: the sheet's other numbers are small.
+DataSheet sheet() {
+  DataSheet s;
+  s.CL = 5;
+  s.tRCD = 5;
+  s.tRP = 6;
+  s.tRAS = 20;
+  s.tRC = 40;
+  s.tRRD = 7;
+  s.tWR = 8;
+  s.tWTR = 4;
+  s.tRTP = 3;
+  s.tRFC = 50;
+  s.tFAW = 35;
+  s.banks = 8;
+  return s;
+}
+
+using enum Command;
+
+class CheckerTest : public testing::TestWithParam<Limit> {};
+
+TEST_P(CheckerTest, ComplainsOneClockEarlyAndNotAtTheLimit) {
+  for (const std::uint64_t early : {0u, 1u, 3u}) {
+    CommandChecker checker(sheet());
+    const auto& steps = GetParam().steps;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      checker.command(steps[i].command, steps[i].bank, steps[i].row,
+                      steps[i].clock - (i + 1 == steps.size() ? early : 0));
+    if (early == 0) {
+      EXPECT_EQ(checker.total(), 0u) << checker.text();
+      continue;
+    }
+    ASSERT_EQ(checker.total(), 1u) << checker.text();
+    EXPECT_EQ(checker.complaints()[0].rule, GetParam().rule);
+    EXPECT_EQ(checker.complaints()[0].missing, early);
+    EXPECT_EQ(checker.complaints()[0].clock, steps.back().clock - early);
+  }
+}
+
+// WL = CL - 1 = 4; a burst holds the data bus 4 clocks.
+INSTANTIATE_TEST_SUITE_P(
+    Rules, CheckerTest,
+    testing::Values(
+        Limit{"tRCD", {{kAct, 0, 1, 100}, {kRd, 0, 1, 105}}},
+        Limit{"tRCD", {{kAct, 0, 1, 100}, {kWr, 0, 1, 105}}},
+        Limit{"tRAS", {{kAct, 0, 1, 100}, {kPre, 0, 0, 120}}},
+        Limit{"tRAS", {{kAct, 3, 1, 100}, {kPreAll, 0, 0, 120}}},
+        Limit{"tRC", {{kAct, 0, 1, 100}, {kPre, 0, 0, 125}, {kAct, 0, 2, 140}}},
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kPre, 0, 0, 150}, {kAct, 0, 2, 156}}},
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kPre, 0, 0, 150}, {kRef, 0, 0, 156}}},
+        Limit{"tRPA", {{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kAct, 1, 2, 157}}},
+        Limit{"tRPA", {{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 157}}},
+        Limit{"tRRD", {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}}},
+        Limit{"tFAW",
+              {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}, {kAct, 2, 1, 114}, {kAct, 3, 1, 121},
+               {kAct, 4, 1, 135}}},
+        Limit{"RD to RD", {{kAct, 0, 1, 100}, {kRd, 0, 1, 110}, {kRd, 0, 1, 114}}},
+        Limit{"WR to WR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 110}, {kWr, 0, 1, 114}}},
+        // RL + BL/2 + 1 - WL = 5 + 4 + 1 - 4 = 6
+        Limit{"RD to WR", {{kAct, 0, 1, 100}, {kRd, 0, 1, 110}, {kWr, 0, 1, 116}}},
+        // WL + BL/2 + tWTR = 4 + 4 + 4 = 12, also to another bank
+        Limit{"tWTR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 110}, {kRd, 0, 1, 122}}},
+        Limit{"tWTR",
+              {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}, {kWr, 0, 1, 120}, {kRd, 1, 1, 132}}},
+        // BL/2 + max(tRTP, 2) - 2 = 4 + 3 - 2 = 5
+        Limit{"tRTP", {{kAct, 0, 1, 100}, {kRd, 0, 1, 130}, {kPre, 0, 0, 135}}},
+        // WL + BL/2 + tWR = 4 + 4 + 8 = 16
+        Limit{"tWR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 130}, {kPre, 0, 0, 146}}},
+        Limit{"tWR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 130}, {kPreAll, 0, 0, 146}}},
+        Limit{"tRFC", {{kRef, 0, 0, 100}, {kAct, 0, 1, 150}}},
+        Limit{"tRFC", {{kRef, 0, 0, 100}, {kRef, 0, 0, 150}}}));
+
+/// The complaint about one illegal last command; empty if there is none.
+std::string rule_of(const std::vector<Step>& steps, DataSheet s = sheet()) {
+  CommandChecker checker(s);
+  for (const Step& x : steps) checker.command(x.command, x.bank, x.row, x.clock);
+  return checker.complaints().empty() ? "" : checker.complaints().back().rule;
+}
+
+TEST(CheckerStateTest, RowStatesAreEnforced) {
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 0, 2, 200}}), "ACT on open bank");
+  EXPECT_EQ(rule_of({{kRd, 0, 1, 100}}), "RD on closed bank");
+  EXPECT_EQ(rule_of({{kWr, 0, 1, 100}}), "WR on closed bank");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kRd, 0, 2, 200}}), "RD on wrong row");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kWr, 0, 2, 200}}), "WR on wrong row");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kRd, 1, 1, 200}}), "RD on closed bank");
+  EXPECT_EQ(rule_of({{kAct, 5, 1, 100}, {kRef, 0, 0, 200}}), "REF with open bank");
+  EXPECT_EQ(rule_of({{kPre, 0, 0, 100}}), "PRE on closed bank");
+  EXPECT_EQ(rule_of({{kAct, 8, 0, 100}}), "no such bank");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRd, 0, 1, 200}}),
+            "RD on closed bank");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPre, 0, 0, 150}, {kAct, 0, 2, 200}, {kRd, 0, 2, 210}}),
+            "");
+}
+
+TEST(CheckerStateTest, OneCommandAClock) {
+  DataSheet loose;
+  loose.tRRD = 0;
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 1, 1, 100}}, loose), "one command a clock");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 1, 1, 101}}, loose), "");
+}
+
+TEST(CheckerStateTest, FourBanksPrechargeAllWithoutTheExtraClock) {
+  DataSheet four = sheet();
+  four.banks = 4;
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 156}}, four), "");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 155}}, four), "tRPA");
+}
+
+// Eight refreshes may be postponed, so two are at most nine intervals apart (JESD79-2).
+TEST(CheckerStateTest, RefreshIsNeverMoreThanNineIntervalsLate) {
+  DataSheet s = sheet();
+  s.tREFI = 100;
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 900}}, s), "");
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 901}}, s), "tREFI");
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 500}, {kRef, 0, 0, 1400}}, s), "");
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 500}, {kRef, 0, 0, 1401}}, s), "tREFI");
+  CommandChecker none(s);
+  none.finish(900);
+  EXPECT_EQ(none.total(), 0u);
+  none.finish(901);
+  EXPECT_EQ(none.total(), 1u);
+}
+
+}  // namespace
+}  // namespace fovea::dram

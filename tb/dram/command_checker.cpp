@@ -1,0 +1,125 @@
+#include "tb/dram/command_checker.h"
+
+#include <algorithm>
+
+namespace fovea::dram {
+
+void CommandChecker::complain(const char* rule, std::uint64_t clock, unsigned bank,
+                              std::int64_t missing) {
+  ++total_;
+  if (complaints_.size() < 100)
+    complaints_.push_back({rule, clock, bank, static_cast<std::uint64_t>(missing)});
+}
+
+void CommandChecker::apart(const char* rule, std::int64_t before, std::int64_t now,
+                           unsigned clocks, unsigned bank) {
+  const std::int64_t legal = before + static_cast<std::int64_t>(clocks);
+  if (now < legal) complain(rule, static_cast<std::uint64_t>(now), bank, legal - now);
+}
+
+void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+  ++commands_;
+  const auto now = static_cast<std::int64_t>(clock);
+  if (now <= previous_) complain("one command a clock", clock, bank, previous_ + 1 - now);
+  previous_ = now;
+  const bool whole_rank = c == Command::kPreAll || c == Command::kRef;
+  if (!whole_rank && bank >= sheet_.banks) {
+    complain("no such bank", clock, bank, 0);
+    return;
+  }
+  // The device answers to nothing while it refreshes.
+  apart("tRFC", ref_, now, sheet_.tRFC, bank);
+  switch (c) {
+    case Command::kAct: activate(bank, row, now); break;
+    case Command::kRd: column(false, bank, row, now); break;
+    case Command::kWr: column(true, bank, row, now); break;
+    case Command::kRef: refresh(now); break;
+    case Command::kPre:
+      if (!banks_[bank].open) complain("PRE on closed bank", clock, bank, 0);
+      precharge(bank, now);
+      banks_[bank].pre = pre_ = now;
+      break;
+    case Command::kPreAll:
+      for (unsigned b = 0; b < sheet_.banks; ++b)
+        if (banks_[b].open) precharge(b, now);
+      prea_ = now;
+      break;
+  }
+}
+
+void CommandChecker::activate(unsigned b, std::uint32_t row, std::int64_t now) {
+  Bank& k = banks_[b];
+  if (k.open) complain("ACT on open bank", static_cast<std::uint64_t>(now), b, 0);
+  apart("tRC", k.act, now, sheet_.tRC, b);
+  apart("tRP", k.pre, now, sheet_.tRP, b);
+  // Precharging all of eight banks takes a clock more.
+  apart("tRPA", prea_, now, sheet_.tRP + (sheet_.banks == 8 ? 1 : 0), b);
+  apart("tRRD", acts_[0], now, sheet_.tRRD, b);
+  if (sheet_.tFAW) apart("tFAW", acts_[3], now, sheet_.tFAW, b);
+  std::rotate(acts_.begin(), acts_.end() - 1, acts_.end());
+  acts_[0] = now;
+  k.open = true;
+  k.row = row;
+  k.act = now;
+}
+
+void CommandChecker::precharge(unsigned b, std::int64_t now) {
+  Bank& k = banks_[b];
+  apart("tRAS", k.act, now, sheet_.tRAS, b);
+  apart("tRTP", k.rd, now, 4 + std::max(sheet_.tRTP, 2u) - 2, b);
+  apart("tWR", k.wr, now, (sheet_.CL - 1) + 4 + sheet_.tWR, b);
+  k.open = false;
+}
+
+void CommandChecker::column(bool write, unsigned b, std::uint32_t row, std::int64_t now) {
+  Bank& k = banks_[b];
+  const auto clock = static_cast<std::uint64_t>(now);
+  if (!k.open)
+    complain(write ? "WR on closed bank" : "RD on closed bank", clock, b, 0);
+  else if (k.row != row)
+    complain(write ? "WR on wrong row" : "RD on wrong row", clock, b, 0);
+  apart("tRCD", k.act, now, sheet_.tRCD, b);
+  const unsigned WL = sheet_.CL - 1;
+  if (write) {
+    apart("WR to WR", wr_, now, 4, b);
+    apart("RD to WR", rd_, now, sheet_.CL + 4 + 1 - WL, b);
+    k.wr = wr_ = now;
+  } else {
+    apart("RD to RD", rd_, now, 4, b);
+    apart("tWTR", wr_, now, WL + 4 + sheet_.tWTR, b);
+    k.rd = rd_ = now;
+  }
+}
+
+void CommandChecker::refresh(std::int64_t now) {
+  const auto clock = static_cast<std::uint64_t>(now);
+  for (unsigned b = 0; b < sheet_.banks; ++b)
+    if (banks_[b].open) complain("REF with open bank", clock, b, 0);
+  apart("tRP", pre_, now, sheet_.tRP, 0);
+  apart("tRPA", prea_, now, sheet_.tRP + (sheet_.banks == 8 ? 1 : 0), 0);
+  check_refresh_gap(clock);
+  last_ref_ = clock;
+  ref_ = now;
+}
+
+void CommandChecker::check_refresh_gap(std::uint64_t clock) {
+  if (sheet_.tREFI == 0) return;
+  const std::uint64_t gap = clock - last_ref_;
+  largest_gap_ = std::max(largest_gap_, gap);
+  const std::uint64_t allowed = std::uint64_t{sheet_.postponed_max + 1} * sheet_.tREFI;
+  if (gap > allowed)
+    complain("tREFI", clock, 0, static_cast<std::int64_t>(gap - allowed));
+}
+
+std::string CommandChecker::text() const {
+  std::string out;
+  for (std::size_t i = 0; i < complaints_.size() && i < 10; ++i) {
+    const Complaint& c = complaints_[i];
+    out += c.rule + " at clock " + std::to_string(c.clock) + ", bank " + std::to_string(c.bank) +
+           ", off by " + std::to_string(c.missing) + "\n";
+  }
+  return out + std::to_string(total_) + " complaints in " + std::to_string(commands_) +
+         " commands\n";
+}
+
+}  // namespace fovea::dram

@@ -1,0 +1,77 @@
+// A DDR2 command-bus checker that shares nothing with the model: its rules are the data-sheet
+// relations of dram.md 2 (JESD79-2, BL8, AL 0), checked backwards from each command to those before
+// it. It knows the device only by its command stream.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fovea::dram {
+
+enum class Command : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+
+/// The numbers of one part at one clock, in clocks.
+struct DataSheet {
+  unsigned CL = 5;
+  unsigned tRCD = 5, tRP = 5, tRAS = 11, tRC = 16, tRRD = 3;
+  unsigned tWR = 4, tWTR = 3, tRTP = 2, tRFC = 31;
+  unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
+  unsigned tREFI = 0;  ///< 0: refresh not checked
+  unsigned banks = 8;
+  unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
+};
+
+struct Complaint {
+  std::string rule;           ///< "tRCD", ...
+  std::uint64_t clock = 0;    ///< of the offending command
+  unsigned bank = 0;
+  std::uint64_t missing = 0;  ///< clocks too early (or, for refresh, too late); 0: a state rule
+};
+
+class CommandChecker {
+ public:
+  explicit CommandChecker(const DataSheet& sheet) : sheet_(sheet), banks_(sheet.banks) {}
+
+  void command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock);
+  /// End of the stream: refreshes owed by then are late too.
+  void finish(std::uint64_t clock) { check_refresh_gap(clock); }
+  /// The interval counter restarted here (SDRCR written): gaps count from this clock.
+  void refresh_counts_from(std::uint64_t clock) { last_ref_ = clock; }
+
+  /// The first complaints, at most 100; `total` counts all.
+  const std::vector<Complaint>& complaints() const { return complaints_; }
+  std::uint64_t total() const { return total_; }
+  std::uint64_t commands() const { return commands_; }
+  /// Largest distance of two REF seen, clocks.
+  std::uint64_t largest_refresh_gap() const { return largest_gap_; }
+  std::string text() const;
+
+ private:
+  static constexpr std::int64_t kLongAgo = -1'000'000;
+  struct Bank {
+    bool open = false;
+    std::uint32_t row = 0;
+    std::int64_t act = kLongAgo, pre = kLongAgo, rd = kLongAgo, wr = kLongAgo;
+  };
+  void complain(const char* rule, std::uint64_t clock, unsigned bank, std::int64_t missing);
+  /// Complains unless `now` is at least `clocks` after `before`.
+  void apart(const char* rule, std::int64_t before, std::int64_t now, unsigned clocks,
+             unsigned bank);
+  void activate(unsigned b, std::uint32_t row, std::int64_t now);
+  void precharge(unsigned b, std::int64_t now);
+  void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
+  void refresh(std::int64_t now);
+  void check_refresh_gap(std::uint64_t clock);
+
+  DataSheet sheet_;
+  std::vector<Bank> banks_;
+  std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
+  std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo,
+               prea_ = kLongAgo, previous_ = kLongAgo;
+  std::uint64_t last_ref_ = 0, largest_gap_ = 0;
+  std::vector<Complaint> complaints_;
+  std::uint64_t total_ = 0, commands_ = 0;
+};
+
+}  // namespace fovea::dram

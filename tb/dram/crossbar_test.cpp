@@ -1,0 +1,319 @@
+// The crossbar core: arbitration and latencies in edges of its clock, computed by hand; then with the
+// DDR controller behind it, where bytes and requests are conserved.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tb/dram/bench.h"
+#include "tb/dram/path.h"
+
+namespace fovea::dram {
+namespace {
+
+using bus::Slave;
+using bus::XbarRequest;
+constexpr Picoseconds kEdge = 10'000;  // 100 MHz: edge k at k * kEdge
+constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1, kC = Master::kVpfe;
+
+struct Event {
+  Master master;
+  Slave slave;
+  std::uint64_t granted, arrival;  // edges
+};
+struct Answer {
+  Master master;
+  std::uint64_t first, last;  // edges
+  bool error;
+};
+
+class XbarBench : private bus::XbarHost {
+ public:
+  explicit XbarBench(std::vector<std::pair<std::string, std::string>> params = {})
+      : params_(params), xbar(params_, *this) {
+    xbar.set_clock(Frequency(100'000'000), 0);
+  }
+  /// On the port's wires at edge `edge`: the crossbar's next edge is the first to see it.
+  void submit(Master m, std::uint64_t edge, bool write = false, unsigned bytes = 8,
+              Slave slave = Slave::kDdr) {
+    XbarRequest r;
+    r.master = m;
+    r.slave = slave;
+    r.write = write;
+    r.bytes = static_cast<std::uint8_t>(bytes);
+    xbar.submit(r, edge * kEdge);
+  }
+  void run(std::uint64_t until = ~std::uint64_t{0} / kEdge) {
+    while (xbar.next_decision() < until * kEdge) {
+      granted_ = xbar.next_decision();
+      xbar.step();
+    }
+  }
+  std::string winners() const {
+    std::string s;
+    for (const Event& e : events) s += e.master == kA ? 'A' : e.master == kB ? 'B' : 'C';
+    return s;
+  }
+  std::vector<Event> events;
+  std::vector<Answer> answers;
+  std::vector<XbarRequest> sent;
+  bool ddr_accepts = true;
+
+ private:
+  struct Params : bus::CrossbarParams {
+    explicit Params(const std::vector<std::pair<std::string, std::string>>& list) {
+      ParamSet set;
+      set.add(*this);
+      for (auto& p : ports) set.add(*p);
+      for (const auto& [key, value] : list) set.set(key, value);
+    }
+  };
+  bool forward(const XbarRequest& r, Picoseconds arrival) override {
+    EXPECT_EQ(arrival % kEdge, 0u);
+    events.push_back({r.master, r.slave, granted_ / kEdge, arrival / kEdge});
+    sent.push_back(r);
+    return r.slave != Slave::kDdr || ddr_accepts;
+  }
+  void respond(const XbarRequest& r, Picoseconds first, Picoseconds last, bool error) override {
+    answers.push_back({r.master, first / kEdge, last / kEdge, error});
+  }
+  Params params_;
+  Picoseconds granted_ = 0;
+
+ public:
+  bus::Crossbar xbar;
+};
+
+// Put on the port at edge 5, seen at 6, through the bridge in 2: arbitrated at 8. A read's command
+// takes one edge.
+TEST(CrossbarTest, RequestLatencyMovesTheGrantByItsEdges) {
+  for (const unsigned latency : {0u, 2u, 3u, 16u}) {
+    XbarBench b({{"bus.edma_tc0.request_latency", std::to_string(latency) + " cycles"}});
+    b.submit(kA, 5);
+    b.run();
+    ASSERT_EQ(b.events.size(), 1u);
+    EXPECT_EQ(b.events[0].granted, 6 + latency);
+    EXPECT_EQ(b.events[0].arrival, 7 + latency);
+  }
+}
+
+TEST(CrossbarTest, ResponseLatencyMovesReadDataAndAcknowledgeByItsEdges) {
+  for (const unsigned latency : {0u, 2u, 3u}) {
+    XbarBench b({{"bus.edma_tc0.response_latency", std::to_string(latency) + " cycles"}});
+    b.submit(kA, 5);
+    b.submit(kB, 5, true, 64);
+    b.run();
+    b.xbar.slave_done(b.sent[0], 30 * kEdge, 37 * kEdge, false);
+    b.xbar.slave_done(b.sent[0], 40 * kEdge + 1, 40 * kEdge + 1, true);
+    ASSERT_EQ(b.answers.size(), 3u);
+    EXPECT_EQ(b.answers[1].first, 30 + latency);
+    EXPECT_EQ(b.answers[1].last, 37 + latency);
+    EXPECT_FALSE(b.answers[1].error);
+    EXPECT_EQ(b.answers[2].first, 41 + latency) << "between two edges: the next one";
+    EXPECT_TRUE(b.answers[2].error);
+    // The write of master B keeps its own latency of 2: granted at 9, after A; its eight words are
+    // there at 17, acknowledged at 19.
+    EXPECT_EQ(b.answers[0].first, 19u);
+  }
+}
+
+TEST(CrossbarTest, WriteOccupiesTheSlaveForItsWordsAndReadForOne) {
+  for (const unsigned bytes : {4u, 8u, 16u, 64u}) {
+    XbarBench b;
+    b.submit(kA, 5, true, bytes);
+    b.submit(kB, 5);
+    b.submit(kC, 5);
+    b.run();
+    const std::uint64_t words = (bytes + 7) / 8;
+    EXPECT_EQ(b.winners(), "ABC");
+    EXPECT_EQ(b.events[0].granted, 8u);
+    EXPECT_EQ(b.events[0].arrival, 8 + words);
+    EXPECT_EQ(b.events[1].granted, 8 + words);
+    EXPECT_EQ(b.events[2].granted, 8 + words + 1);
+  }
+}
+
+TEST(CrossbarTest, PriorityWinsWhateverTheOrderOfArrivalInTheInstant) {
+  for (const bool a_first : {true, false}) {
+    XbarBench b;
+    b.xbar.set_priority(kA, 4);
+    b.xbar.set_priority(kB, 1);
+    if (a_first) b.submit(kA, 5);
+    b.submit(kB, 5);
+    if (!a_first) b.submit(kA, 5);
+    b.run();
+    EXPECT_EQ(b.winners(), "BA");
+    EXPECT_EQ(b.sent[0].priority, 1) << "the slave is told";
+    EXPECT_EQ(b.sent[1].priority, 4);
+  }
+}
+
+// A burst is not broken up: the more urgent request waits for its end.
+TEST(CrossbarTest, MoreUrgentRequestWaitsForTheBurstUnderWay) {
+  XbarBench b;
+  b.xbar.set_priority(kB, 0);
+  b.submit(kA, 5, true, 64);
+  b.submit(kA, 5, true, 64);
+  b.run(9);
+  b.submit(kB, 9);
+  b.run();
+  EXPECT_EQ(b.winners(), "ABA");
+  EXPECT_EQ(b.events[1].granted, 16u);
+}
+
+TEST(CrossbarTest, EqualPrioritiesTakeTurns) {
+  XbarBench b;
+  for (unsigned i = 0; i < 3; ++i)
+    for (const Master m : {kA, kB, kC}) b.submit(m, 5);
+  b.run();
+  EXPECT_EQ(b.winners(), "ABCABCABC");
+  XbarBench c;  // starts behind the last one served
+  c.submit(kB, 1);
+  c.run();
+  for (const Master m : {kA, kB, kC}) c.submit(m, 20);
+  c.run();
+  EXPECT_EQ(c.winners(), "BCAB");
+}
+
+TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
+  for (const bool change_first : {true, false}) {
+    XbarBench b;
+    if (change_first) b.xbar.set_priority(kB, 0);
+    b.submit(kA, 5);
+    b.submit(kB, 5);
+    if (!change_first) b.xbar.set_priority(kB, 0);
+    b.run();
+    EXPECT_EQ(b.winners(), "BA");
+  }
+}
+
+TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
+  XbarBench b;
+  b.ddr_accepts = false;
+  b.submit(kA, 5, true, 8);                    // taken to the door of the DDR: 8, there at 9
+  b.submit(kB, 5, false, 8);                   // waits for the DDR
+  b.submit(kB, 5, false, 4, Slave::kConfig);   // waits behind its master's own head
+  b.submit(kC, 5, false, 4, Slave::kConfig);   // goes
+  b.run(50);
+  ASSERT_EQ(b.events.size(), 2u);
+  EXPECT_EQ(b.winners(), "AC");
+  EXPECT_EQ(b.events[1].slave, Slave::kConfig);
+  EXPECT_TRUE(b.answers.empty()) << "no acknowledge before the slave has the write";
+  b.ddr_accepts = true;
+  b.xbar.slave_accepted(b.sent[0], 49 * kEdge + 3);
+  b.run();
+  ASSERT_EQ(b.answers.size(), 1u);
+  EXPECT_EQ(b.answers[0].first, 52u) << "taken before edge 50, two edges back";
+  ASSERT_EQ(b.events.size(), 4u);
+  EXPECT_EQ(b.events[2].granted, 50u);
+  EXPECT_EQ(b.events[3].slave, Slave::kConfig);
+  EXPECT_EQ(b.events[3].granted, 51u) << "the next in line shows itself one edge later";
+}
+
+// The DDR's decision that makes room may come before the write's last beat is there.
+TEST(CrossbarTest, WriteIsNotAcknowledgedBeforeItsLastBeat) {
+  XbarBench b;
+  b.ddr_accepts = false;
+  b.submit(kA, 5, true, 64);
+  b.run();
+  b.xbar.slave_accepted(b.sent[0], 10 * kEdge);
+  ASSERT_EQ(b.answers.size(), 1u);
+  EXPECT_EQ(b.answers[0].first, 8u + 8u + 2u);
+}
+
+TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
+  XbarBench b;
+  b.submit(kA, 5);
+  b.xbar.set_clock(Frequency{}, 6 * kEdge);
+  EXPECT_EQ(b.xbar.next_decision(), kNever);
+  b.xbar.set_clock(Frequency(100'000'000), 100 * kEdge);
+  EXPECT_EQ(b.xbar.next_decision(), (100 + 2) * kEdge) << "edge 6 comes at 100, 8 at 102";
+}
+
+// A lone 32-byte read through both cores. DDR 250 MHz, crossbar 125 MHz (8 ns): submitted at 0, seen
+// at edge 1, arbitrated at 3, at the controller at edge 4 = 32 ns = DDR edge 8; seen at 9, ACT at 17,
+// RD at 22; first 8 bytes at 22 + 5 + 2 + 2 = 31 = 124 ns, so crossbar edge 16; last beat at
+// 22 + 4 + 7 + 4 = 37 = 148 ns: edge 19; two edges back to the port.
+TEST(PathTest, UnloadedReadLatency) {
+  Path path;
+  std::array<std::uint8_t, 32> data;
+  PathRequest r;
+  r.bus.master = kA;
+  r.bus.bytes = 32;
+  r.data = data.data();
+  path.submit(r, 0);
+  path.drain();
+  EXPECT_EQ(r.first, (16 + 2) * 8'000u);
+  EXPECT_EQ(r.last, (19 + 2) * 8'000u);
+}
+
+TEST(PathTest, RequestsAndBytesAreConserved) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    Path path;
+    Rng rng(seed);
+    for (std::size_t m = 0; m < kMasterCount; ++m)
+      path.xbar.set_priority(static_cast<Master>(m), static_cast<unsigned>(rng.below(8)));
+    struct Item {
+      PathRequest r;
+      std::array<std::uint8_t, 64> data{};
+      Picoseconds at = 0;
+    };
+    std::vector<std::unique_ptr<Item>> all;
+    std::array<std::vector<Item*>, kMasterCount> open;
+    Picoseconds now = 0;
+    for (unsigned i = 0; i < 8000; ++i) {
+      auto item = std::make_unique<Item>();
+      const auto m = static_cast<std::size_t>(rng.below(kMasterCount));
+      item->r.bus.master = static_cast<Master>(m);
+      item->r.bus.write = rng.below(2) != 0;
+      item->r.bus.bytes = static_cast<std::uint8_t>(4u << rng.below(5));
+      item->r.address = at(static_cast<std::uint32_t>(rng.below(64)),
+                           static_cast<unsigned>(rng.below(8)),
+                           static_cast<std::uint32_t>(rng.below(32)) * 64u);
+      item->r.data = item->data.data();
+      if (rng.below(4) == 0) now += rng.below(60) * 1'000;
+      path.run_before(now);
+      // At most four outstanding of one master.
+      for (;;) {
+        std::erase_if(open[m], [](Item* x) { return x->r.responses != 0; });
+        if (open[m].size() < 4) break;
+        now = std::max(now, path.next_decision());
+        path.step();
+      }
+      item->at = now;
+      path.submit(item->r, now);
+      open[m].push_back(item.get());
+      all.push_back(std::move(item));
+    }
+    path.drain();
+    std::uint64_t read = 0, written = 0;
+    for (const auto& item : all) {
+      EXPECT_EQ(item->r.responses, 1u);
+      EXPECT_GT(item->r.first, item->at);
+      EXPECT_GE(item->r.last, item->r.first);
+      (item->r.bus.write ? written : read) += item->r.bus.bytes;
+    }
+    std::uint64_t bus_read = 0, bus_written = 0, transactions = 0;
+    for (const auto& s : path.xbar.stats) {
+      bus_read += s->ddr_read_bytes;
+      bus_written += s->ddr_write_bytes;
+      transactions += s->transactions.count();
+    }
+    std::uint64_t timeline_read = 0, timeline_written = 0;
+    for (const auto& row : path.xbar.timeline()) {
+      for (const std::uint64_t bytes : row.read) timeline_read += bytes;
+      for (const std::uint64_t bytes : row.write) timeline_written += bytes;
+    }
+    EXPECT_EQ(bus_read, read);
+    EXPECT_EQ(bus_written, written);
+    EXPECT_EQ(path.ddr.stats.read_bytes.count(), read);
+    EXPECT_EQ(path.ddr.stats.write_bytes.count(), written);
+    EXPECT_EQ(timeline_read, read);
+    EXPECT_EQ(timeline_written, written);
+    EXPECT_EQ(transactions, all.size());
+  }
+}
+
+}  // namespace
+}  // namespace fovea::dram

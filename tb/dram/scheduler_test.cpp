@@ -1,0 +1,276 @@
+// The scheduling rules of dram.md 7, one smallest scenario each, always with its counterpart: the
+// same requests where the rule does not apply come out the other way round.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tb/dram/bench.h"
+
+namespace fovea::dram {
+namespace {
+
+using mem::Cmd;
+constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1, kC = Master::kVpfe;
+
+Request make(Master m, bool write, std::uint32_t address, unsigned priority = 3,
+             unsigned bytes = 16) {
+  Request r;
+  r.master = m;
+  r.write = write;
+  r.address = address;
+  r.priority = priority;
+  r.bytes = bytes;
+  return r;
+}
+Request read(Master m, std::uint32_t address, unsigned priority = 3, unsigned bytes = 16) {
+  return make(m, false, address, priority, bytes);
+}
+Request write(Master m, std::uint32_t address, unsigned priority = 3, unsigned bytes = 16) {
+  return make(m, true, address, priority, bytes);
+}
+
+BenchOptions options() {
+  BenchOptions o;
+  o.config.refresh_interval = 0;
+  o.params = {{"command_fifo", "16"}, {"write_fifo", "512B"}};
+  return o;
+}
+
+/// Hands all requests over at one clock, oldest first, and serves them.
+class Scenario {
+ public:
+  explicit Scenario(std::vector<Request> requests, BenchOptions o = options(),
+                    std::vector<Request> before = {})
+      : requests_(std::move(requests)), before_(std::move(before)), bench(o) {
+    for (Request& r : before_) EXPECT_TRUE(bench.submit(r, 9));
+    if (!before_.empty()) bench.drain();
+    bench.log.clear();
+    for (Request& r : requests_) EXPECT_TRUE(bench.submit(r, 300));
+    bench.drain();
+    EXPECT_EQ(bench.checker.total(), 0u) << bench.checker.text();
+  }
+
+ private:
+  std::vector<Request> requests_, before_;
+
+ public:
+  DdrBench bench;
+  /// Column commands as text: R or W and the bank.
+  std::string columns() const {
+    std::string s;
+    for (const Logged& l : bench.log)
+      if (l.cmd == Cmd::kRd || l.cmd == Cmd::kWr)
+        s += std::string(s.empty() ? "" : " ") + (l.cmd == Cmd::kRd ? "R" : "W") +
+             std::to_string(l.bank);
+    return s;
+  }
+};
+
+TEST(SchedulerTest, OpenRowGoesBeforeOlderAndMoreUrgent) {
+  const std::vector<Request> two = {read(kA, at(1, 1), 0), read(kB, at(1, 0), 7)};
+  EXPECT_EQ(Scenario(two, options(), {read(kC, at(1, 0))}).columns(), "R0 R1");
+  EXPECT_EQ(Scenario(two).columns(), "R1 R0") << "no row open";
+  EXPECT_EQ(Scenario(two, options(), {read(kC, at(2, 0))}).columns(), "R1 R0") << "another row";
+}
+
+TEST(SchedulerTest, OpenRowGoesFirstAmongWritesToo) {
+  const std::vector<Request> two = {write(kA, at(1, 1), 0), write(kB, at(1, 0), 7)};
+  EXPECT_EQ(Scenario(two, options(), {read(kC, at(1, 0))}).columns(), "W0 W1");
+  EXPECT_EQ(Scenario(two).columns(), "W1 W0");
+}
+
+TEST(SchedulerTest, PriorityDecidesBetweenEqualRows) {
+  EXPECT_EQ(Scenario({read(kA, at(1, 0), 2), read(kB, at(1, 1), 1)}).columns(), "R1 R0");
+  EXPECT_EQ(Scenario({read(kA, at(1, 0), 1), read(kB, at(1, 1), 2)}).columns(), "R0 R1");
+  EXPECT_EQ(Scenario({write(kA, at(1, 0), 2), write(kB, at(1, 1), 1)}).columns(), "W1 W0");
+}
+
+TEST(SchedulerTest, AgeDecidesAtEqualPriority) {
+  EXPECT_EQ(Scenario({read(kA, at(1, 0)), read(kB, at(1, 1)), read(kC, at(1, 2))}).columns(),
+            "R0 R1 R2");
+  EXPECT_EQ(Scenario({read(kC, at(1, 2)), read(kB, at(1, 1)), read(kA, at(1, 0))}).columns(),
+            "R2 R1 R0");
+}
+
+TEST(SchedulerTest, ReadGoesBeforeWrite) {
+  EXPECT_EQ(Scenario({write(kA, at(1, 0), 0), read(kB, at(1, 1), 7)}).columns(), "R1 W0");
+}
+
+TEST(SchedulerTest, ReadsOfOneMasterStayInOrder) {
+  const std::vector<Request> opened = {read(kC, at(1, 0))};
+  EXPECT_EQ(Scenario({read(kA, at(1, 1)), read(kA, at(1, 0))}, options(), opened).columns(),
+            "R1 R0")
+      << "although the younger one's row is open";
+  EXPECT_EQ(Scenario({read(kA, at(1, 1)), read(kB, at(1, 0))}, options(), opened).columns(),
+            "R0 R1");
+}
+
+TEST(SchedulerTest, WritesOfOneMasterStayInOrder) {
+  const std::vector<Request> opened = {read(kC, at(1, 0))};
+  EXPECT_EQ(Scenario({write(kA, at(1, 1)), write(kA, at(1, 0))}, options(), opened).columns(),
+            "W1 W0");
+}
+
+TEST(SchedulerTest, WriteNeverPassesOlderReadOfItsMaster) {
+  EXPECT_EQ(Scenario({read(kA, at(1, 1)), write(kA, at(1, 0), 0)}, options(),
+                     {read(kC, at(1, 0))}).columns(),
+            "R1 W0");
+}
+
+TEST(SchedulerTest, ReadPassesOlderWriteOutsideTwoKiBOnly) {
+  EXPECT_EQ(Scenario({write(kA, at(1, 0)), read(kA, at(1, 1))}).columns(), "R1 W0");
+  EXPECT_EQ(Scenario({write(kA, at(1, 0, 0)), read(kA, at(1, 0, 1984))}).columns(), "W0 R0")
+      << "first and last line of a 2048-byte block";
+  EXPECT_EQ(Scenario({write(kA, at(1, 0, 1984)), read(kA, at(1, 0, 2048))}).columns(), "R1 W0")
+      << "neighbours across the boundary";
+}
+
+TEST(SchedulerTest, ReadDoesNotPassOlderWriteOfHigherPriority) {
+  EXPECT_EQ(Scenario({write(kA, at(1, 0), 2), read(kA, at(1, 1), 3)}).columns(), "W0 R1");
+  EXPECT_EQ(Scenario({write(kA, at(1, 0), 3), read(kA, at(1, 1), 3)}).columns(), "R1 W0");
+  EXPECT_EQ(Scenario({write(kA, at(1, 0), 3), read(kA, at(1, 1), 2)}).columns(), "R1 W0");
+}
+
+// A write waits behind a queue of reads. PR_OLD_COUNT = n: after n + 1 transfers it goes first.
+TEST(SchedulerTest, OldCountPromotesTheOldestCommand) {
+  const auto reads_before_write = [](unsigned old_count, unsigned bytes) {
+    BenchOptions o = options();
+    o.config.old_count = old_count;
+    std::vector<Request> all = {write(kA, at(1, 0))};
+    for (unsigned i = 0; i < 12; ++i) all.push_back(read(kB, at(1, 1, i * 64), 3, bytes));
+    const std::string s = Scenario(all, o).columns();
+    return static_cast<unsigned>(s.find('W') / 3);  // "R1 " is one command
+  };
+  EXPECT_EQ(reads_before_write(0xFF, 16), 12u) << "off";
+  EXPECT_EQ(reads_before_write(0xFE, 16), 12u);
+  EXPECT_EQ(reads_before_write(0, 16), 1u);
+  EXPECT_EQ(reads_before_write(4, 16), 5u);
+  EXPECT_EQ(reads_before_write(5, 16), 6u);
+  EXPECT_EQ(reads_before_write(4, 64), 8u) << "64 bytes are four transfers, never cut short";
+  EXPECT_EQ(reads_before_write(7, 64), 8u);
+  EXPECT_EQ(reads_before_write(8, 64), 12u);
+}
+
+// The read FIFO is 17 words; a lane of 8 clocks a word empties it slower than the DDR fills it.
+TEST(SchedulerTest, WriteGoesFirstWhileTheReadFifoIsFull) {
+  const auto reads_before_write = [](Frequency scr) {
+    BenchOptions o = options();
+    o.scr = scr;
+    std::vector<Request> all = {write(kA, at(1, 0))};
+    for (unsigned i = 0; i < 5; ++i) all.push_back(read(kB, at(1, 1, i * 64), 3, 64));
+    return static_cast<unsigned>(Scenario(all, o).columns().find('W') / 3);
+  };
+  EXPECT_EQ(reads_before_write(Frequency(250'000'000)), 20u) << "as fast as the bus: never full";
+  EXPECT_EQ(reads_before_write(Frequency(125'000'000)), 20u);
+  // The first two reads' 16 words fit; the third must wait for the lane.
+  EXPECT_EQ(reads_before_write(Frequency(31'250'000)), 8u);
+}
+
+// Latency on the way is not occupancy: a fast lane never lets the FIFO fill.
+TEST(SchedulerTest, ReturnLatencyDoesNotThrottleReads) {
+  for (const char* latency : {"0 cycles", "16 cycles"}) {
+    BenchOptions o = options();
+    o.scr = Frequency(125'000'000);
+    o.params.emplace_back("return_latency", latency);
+    std::vector<Request> all;
+    for (unsigned i = 0; i < 16; ++i) all.push_back(read(kB, at(1, 1, i * 64), 3, 64));
+    Scenario s(all, o);
+    EXPECT_EQ(s.bench.clock_of(Cmd::kRd, 1, 63) - s.bench.clock_of(Cmd::kRd, 1, 0), 63u * 4u);
+  }
+}
+
+// Refresh against requests. Thresholds of 0 make one owed refresh urgent; 64 is out of reach here.
+class RefreshTest : public testing::Test {
+ protected:
+  static BenchOptions with(const char* need, const char* must, const char* gap) {
+    BenchOptions o = options();
+    o.config.refresh_interval = 350;  // due once, while the requests of clock 300 are served
+    o.params.insert(o.params.end(),
+                    {{"refresh.need", need}, {"refresh.must", must}, {"refresh.gap", gap}});
+    return o;
+  }
+  /// Commands RD/WR before the first REF; all if there is none.
+  static unsigned columns_before_refresh(const Scenario& s) {
+    unsigned n = 0;
+    for (const Logged& l : s.bench.log) {
+      if (l.cmd == Cmd::kRef) break;
+      n += l.cmd == Cmd::kRd || l.cmd == Cmd::kWr;
+    }
+    return n;
+  }
+  static std::vector<Request> eight(bool write) {
+    std::vector<Request> all;
+    for (unsigned i = 0; i < 8; ++i) all.push_back(make(kA, write, at(1, 0, i * 64), 3, 64));
+    return all;
+  }
+  // From clock 309 + tRCD a column every 4 clocks: 314, ... The interval ends at 351, in the third
+  // request (column clocks 346, 350, 354, 358): that is finished, then comes the refresh.
+  static constexpr unsigned kUntilDue = 12;
+};
+
+TEST_F(RefreshTest, NeededRefreshGoesBeforeWrites) {
+  EXPECT_EQ(columns_before_refresh(Scenario(eight(true), with("0", "64", "64"))), kUntilDue);
+  EXPECT_EQ(columns_before_refresh(Scenario(eight(true), with("1", "64", "64"))), 32u)
+      << "one owed is not above 1";
+}
+
+TEST_F(RefreshTest, NeededRefreshWaitsForReads) {
+  EXPECT_EQ(columns_before_refresh(Scenario(eight(false), with("0", "64", "64"))), 32u);
+}
+
+TEST_F(RefreshTest, NeededRefreshGoesBeforeReadsThatHaveAMoreUrgentWrite) {
+  for (const unsigned priority : {2u, 3u}) {
+    auto all = eight(false);
+    all.push_back(write(kB, at(1, 1), priority));
+    EXPECT_EQ(columns_before_refresh(Scenario(all, with("0", "64", "64"))),
+              priority < 3 ? kUntilDue : 32u);
+  }
+}
+
+TEST_F(RefreshTest, MustGoesBeforeReads) {
+  EXPECT_EQ(columns_before_refresh(Scenario(eight(false), with("0", "0", "64"))), kUntilDue);
+  EXPECT_EQ(columns_before_refresh(Scenario(eight(false), with("0", "1", "64"))), 32u);
+}
+
+TEST_F(RefreshTest, FourRefreshesInARowAfterTooManyIntervalsWithout) {
+  const auto refreshes = [](const char* gap) {
+    BenchOptions o = with("32", "64", gap);
+    o.config.refresh_interval = 100;  // due at 301, 401, 501, ...; served from 314 to 566
+    std::vector<Request> all;
+    for (unsigned i = 0; i < 16; ++i) all.push_back(read(kA, at(1, 0, i * 64), 3, 64));
+    Scenario s(all, o);
+    unsigned run = 0, longest = 0;
+    for (const Logged& l : s.bench.log) {
+      if (l.clock < 309) continue;
+      run = l.cmd == Cmd::kRef ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+    return longest;
+  };
+  EXPECT_EQ(refreshes("2"), 4u);
+  EXPECT_EQ(refreshes("64"), 0u);
+}
+
+// The family's thresholds under a stream of reads that never ends: refresh is late, but two are
+// never further apart than the nine intervals of the standard, and none is lost.
+TEST(RefreshRateTest, SaturatingReadsDelayRefreshWithinTheStandard) {
+  BenchOptions o;
+  o.config.refresh_interval = 300;
+  DdrBench b(o);
+  std::vector<std::unique_ptr<Request>> all;
+  for (unsigned i = 0; i < 5000; ++i) {
+    all.push_back(std::make_unique<Request>(read(kA, (i % 32) * 64, 3, 64)));
+    while (b.door_taken()) b.step();
+    b.submit_at(*all.back(), std::max<Picoseconds>(b.now(), kTck));
+  }
+  const std::uint64_t clock = b.now() / kTck;
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  EXPECT_GT(b.checker.largest_refresh_gap(), 8u * 300u) << "reads do go first";
+  const std::uint64_t due = (clock - 1) / 300;
+  EXPECT_GE(b.count(Cmd::kRef) + 12u, due) << "never more than must + 1 owed";
+  EXPECT_LE(b.count(Cmd::kRef), due);
+}
+
+}  // namespace
+}  // namespace fovea::dram

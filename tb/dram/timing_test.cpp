@@ -1,0 +1,349 @@
+// Cause and effect: each timing moves the time it should by exactly the clocks it should. All times
+// are computed by hand from the relations of dram.md 2; the bench's DDR and crossbar clocks are one.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <ostream>
+
+#include "tb/dram/bench.h"
+
+namespace fovea::dram {
+namespace {
+
+using mem::Cmd;
+
+// Handed over at clock 9: seen at 10, scheduled from 10 + request_latency (8).
+constexpr std::uint64_t kSubmit = 9;
+constexpr std::uint64_t kStart = 18;
+
+Request read(Master m, std::uint32_t address, unsigned bytes = 16) {
+  Request r;
+  r.master = m;
+  r.address = address;
+  r.bytes = bytes;
+  return r;
+}
+Request write(Master m, std::uint32_t address, unsigned bytes = 16) {
+  Request r = read(m, address, bytes);
+  r.write = true;
+  return r;
+}
+constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1;
+
+/// A scenario gives the clock of its last act.
+struct Effect {
+  const char* name;
+  std::function<void(BenchOptions&, unsigned)> enlarge;  // by n clocks
+  std::function<std::uint64_t(DdrBench&)> run;
+  std::uint64_t expected;  // with the base configuration
+};
+std::ostream& operator<<(std::ostream& os, const Effect& e) { return os << e.name; }
+
+BenchOptions base() {
+  BenchOptions o;
+  auto& t = o.config.timing;
+  t.CL = 5;
+  t.nRCD = 6;
+  t.nRP = 7;
+  t.nRAS = 20;
+  t.nRC = 20;  // below tRAS + tRP: enlarged where it shall bind
+  t.nRRD = 5;
+  t.nWR = 9;
+  t.nWTR = 4;
+  t.nRTP = 3;
+  t.nRFC = 40;
+  t.banks = 8;
+  o.config.read_latency = 7;
+  o.config.refresh_interval = 100'000;
+  return o;
+}
+
+std::uint64_t read_first_beat(DdrBench& b) {
+  Request r = read(kA, at(1, 0));
+  b.submit(r, kSubmit);
+  b.drain();
+  return r.first / kTck;
+}
+std::uint64_t read_last_beat(DdrBench& b) {
+  Request r = read(kA, at(1, 0), 32);
+  b.submit(r, kSubmit);
+  b.drain();
+  return r.last / kTck;
+}
+/// One access, then a row conflict in its bank: clock of the PRE.
+std::uint64_t conflict_precharge(DdrBench& b, bool first_write) {
+  Request first = first_write ? write(kA, at(1, 0)) : read(kA, at(1, 0));
+  Request second = first_write ? write(kA, at(2, 0)) : read(kA, at(2, 0));
+  b.submit(first, kSubmit);
+  b.submit(second, kSubmit);
+  b.drain();
+  return b.clock_of(Cmd::kPre);
+}
+std::uint64_t column_after(DdrBench& b, Cmd first, Cmd second) {
+  Request one = first == Cmd::kWr ? write(kA, at(1, 0)) : read(kA, at(1, 0));
+  Request two = second == Cmd::kWr ? write(kB, at(1, 0, 64)) : read(kB, at(1, 0, 64));
+  b.submit(one, kSubmit);
+  // After the first has its column command, so that read-before-write does not turn them around.
+  b.submit(two, kStart + 7);
+  b.drain();
+  return b.clock_of(second, -1, first == second ? 1 : 0);
+}
+
+class EffectTest : public testing::TestWithParam<Effect> {};
+
+TEST_P(EffectTest, MovesTheTimeByExactlyItsClocks) {
+  for (const unsigned n : {0u, 1u, 2u, 7u}) {
+    BenchOptions o = base();
+    GetParam().enlarge(o, n);
+    DdrBench b(o);
+    EXPECT_EQ(GetParam().run(b), GetParam().expected + n) << "enlarged by " << n;
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  }
+}
+
+// A lone read: ACT at 18, RD at 18 + tRCD = 24, first 8 bytes at the pins after max(RL, CL) = 7 and
+// 2 clocks of beats, 2 clocks of return path; on the crossbar at the next edge: 24 + 7 + 2 + 2 + 1.
+constexpr std::uint64_t kFirstBeat = kStart + 6 + 7 + 2 + 2 + 1;
+
+INSTANTIATE_TEST_SUITE_P(
+    Timings, EffectTest,
+    testing::Values(
+        Effect{"request_latency",
+               [](BenchOptions& o, unsigned n) {
+                 o.params.emplace_back("request_latency", std::to_string(8 + n) + " cycles");
+               },
+               read_first_beat, kFirstBeat},
+        Effect{"return_latency",
+               [](BenchOptions& o, unsigned n) {
+                 o.params.emplace_back("return_latency", std::to_string(2 + n) + " cycles");
+               },
+               read_first_beat, kFirstBeat},
+        Effect{"RL", [](BenchOptions& o, unsigned n) { o.config.read_latency += n; },
+               read_first_beat, kFirstBeat},
+        // CL is the floor of RL: with RL = 0 it is what counts.
+        Effect{"CL",
+               [](BenchOptions& o, unsigned n) {
+                 o.config.read_latency = 0;
+                 o.config.timing.CL += n;
+               },
+               read_first_beat, kFirstBeat - 2},
+        // 32 bytes: the last beat of the second burst is at RD + 4 + latency + 4.
+        Effect{"RL, last beat", [](BenchOptions& o, unsigned n) { o.config.read_latency += n; },
+               read_last_beat, kStart + 6 + 4 + 7 + 2 + 4 + 1},
+        Effect{"CL, as write latency + 1",
+               [](BenchOptions& o, unsigned n) { o.config.timing.CL += n; },
+               // WR at 24; WL + 4 + tWTR = 4 + 4 + 4
+               [](DdrBench& b) { return column_after(b, Cmd::kWr, Cmd::kRd); }, 24 + 12},
+        Effect{"tRCD before RD", [](BenchOptions& o, unsigned n) { o.config.timing.nRCD += n; },
+               [](DdrBench& b) {
+                 read_first_beat(b);
+                 return b.clock_of(Cmd::kRd);
+               },
+               kStart + 6},
+        Effect{"tRCD before WR", [](BenchOptions& o, unsigned n) { o.config.timing.nRCD += n; },
+               [](DdrBench& b) {
+                 Request w = write(kA, at(1, 0));
+                 b.submit(w, kSubmit);
+                 b.drain();
+                 return b.clock_of(Cmd::kWr);
+               },
+               kStart + 6},
+        // RD at 24; PRE when tRAS is over: 18 + 20 = 38, after RD + 5.
+        Effect{"tRAS", [](BenchOptions& o, unsigned n) { o.config.timing.nRAS += n; },
+               [](DdrBench& b) { return conflict_precharge(b, false); }, kStart + 20},
+        Effect{"tRP", [](BenchOptions& o, unsigned n) { o.config.timing.nRP += n; },
+               [](DdrBench& b) {
+                 conflict_precharge(b, false);
+                 return b.clock_of(Cmd::kAct, 0, 1);
+               },
+               kStart + 20 + 7},
+        // Enlarged to tRAS + tRP = 27 and beyond it binds.
+        Effect{"tRC", [](BenchOptions& o, unsigned n) { o.config.timing.nRC = 27 + n; },
+               [](DdrBench& b) {
+                 conflict_precharge(b, false);
+                 return b.clock_of(Cmd::kAct, 0, 1);
+               },
+               kStart + 27},
+        Effect{"tRRD",
+               [](BenchOptions& o, unsigned n) {
+                 o.config.timing.nRCD = 30;  // keeps the first RD off the command bus
+                 o.config.timing.nRRD += n;
+               },
+               [](DdrBench& b) {
+                 Request one = read(kA, at(1, 0)), two = read(kB, at(1, 1));
+                 b.submit(one, kSubmit);
+                 b.submit(two, kSubmit);
+                 b.drain();
+                 return b.clock_of(Cmd::kAct, 1);
+               },
+               kStart + 5},
+        // WR at 24; PRE at WR + WL + 4 + tWR = 24 + 4 + 4 + 9.
+        Effect{"tWR", [](BenchOptions& o, unsigned n) { o.config.timing.nWR += n; },
+               [](DdrBench& b) { return conflict_precharge(b, true); }, 24 + 17},
+        Effect{"tWTR", [](BenchOptions& o, unsigned n) { o.config.timing.nWTR += n; },
+               [](DdrBench& b) { return column_after(b, Cmd::kWr, Cmd::kRd); }, 24 + 12},
+        // With tRAS out of the way: PRE at RD + 4 + max(tRTP, 2) - 2 = 24 + 5.
+        Effect{"tRTP",
+               [](BenchOptions& o, unsigned n) {
+                 o.config.timing.nRAS = 1;
+                 o.config.timing.nRTP += n;
+               },
+               [](DdrBench& b) { return conflict_precharge(b, false); }, 24 + 5},
+        // The refresh due at clock 100 is under way when the read of clock 101 comes: ACT waits.
+        Effect{"tRFC",
+               [](BenchOptions& o, unsigned n) {
+                 o.config.refresh_interval = 99;
+                 o.config.timing.nRFC += n;
+               },
+               [](DdrBench& b) {
+                 Request r = read(kA, at(1, 0));
+                 b.submit(r, 101);
+                 b.drain();
+                 EXPECT_EQ(b.clock_of(Cmd::kRef), 100u);
+                 return b.clock_of(Cmd::kAct);
+               },
+               100 + 40},
+        // The interval counts from clock 1, the first after the registers were written.
+        Effect{"RR", [](BenchOptions& o, unsigned n) { o.config.refresh_interval = 99 + n; },
+               [](DdrBench& b) {
+                 Request r = read(kA, at(1, 0));
+                 b.submit(r, 110);
+                 b.drain();
+                 return b.clock_of(Cmd::kAct);
+               },
+               100 + 40}));
+
+// What does not bind does not move anything.
+TEST(TimingTest, ShortTrtpIsTwoClocks) {
+  for (const unsigned nRTP : {1u, 2u}) {
+    BenchOptions o = base();
+    o.config.timing.nRAS = 1;
+    o.config.timing.nRTP = nRTP;
+    DdrBench b(o);
+    EXPECT_EQ(conflict_precharge(b, false), 24u + 4u);
+  }
+}
+
+TEST(TimingTest, TrcBelowTrasPlusTrpDoesNotBind) {
+  for (const unsigned nRC : {1u, 26u, 27u}) {
+    BenchOptions o = base();
+    o.config.timing.nRC = nRC;
+    DdrBench b(o);
+    conflict_precharge(b, false);
+    EXPECT_EQ(b.clock_of(Cmd::kAct, 0, 1), kStart + 27);
+  }
+}
+
+TEST(TimingTest, ReadLatencyBelowClChangesNothing) {
+  for (const unsigned rl : {0u, 4u, 5u}) {
+    BenchOptions o = base();
+    o.config.read_latency = rl;
+    DdrBench b(o);
+    EXPECT_EQ(read_first_beat(b), kFirstBeat - 2);
+  }
+}
+
+// Bursts of one direction follow each other every 4 clocks; RD to WR takes CL + 4 + 1 - WL = 6.
+TEST(TimingTest, DataBusTurnaround) {
+  Request a = read(kA, at(1, 0), 64);
+  BenchOptions o = base();
+  DdrBench b(o);
+  b.submit(a, kSubmit);
+  b.drain();
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(b.clock_of(Cmd::kRd, 0, i), 24u + 4u * i);
+  Request w = write(kA, at(1, 0), 64);
+  DdrBench c(o);
+  c.submit(w, kSubmit);
+  c.drain();
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(c.clock_of(Cmd::kWr, 0, i), 24u + 4u * i);
+  Request r = read(kA, at(1, 0)), then = write(kB, at(1, 0, 64));
+  DdrBench d(o);
+  d.submit(r, kSubmit);
+  d.submit(then, kSubmit);
+  d.drain();
+  EXPECT_EQ(d.clock_of(Cmd::kWr), 24u + 6u);
+}
+
+// Precharging all of eight banks takes tRP + 1 before REF, of four tRP.
+TEST(TimingTest, PrechargeAllBeforeRefresh) {
+  for (const unsigned banks : {4u, 8u}) {
+    BenchOptions o = base();
+    o.config.timing.banks = banks;
+    o.config.refresh_interval = 99;
+    DdrBench b(o);
+    Request open = read(kA, 0), later = read(kA, 0);
+    b.submit(open, kSubmit);
+    b.submit(later, 150);
+    b.drain();
+    EXPECT_EQ(b.clock_of(Cmd::kPreAll), 100u);
+    EXPECT_EQ(b.clock_of(Cmd::kRef), 100u + 7u + (banks == 8 ? 1u : 0u));
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  }
+}
+
+// A read is announced before its first beat, whatever the latencies: nobody can be told too late.
+TEST(TimingTest, ReadsAreAnnouncedBeforeTheirFirstBeat) {
+  BenchOptions o = base();
+  o.config.timing.CL = 2;
+  o.config.read_latency = 0;
+  o.params.emplace_back("return_latency", "0 cycles");
+  DdrBench b(o);
+  Request r = read(kA, at(1, 0), 64);
+  b.submit(r, kSubmit);
+  while (b.read_order.empty()) b.step();
+  EXPECT_EQ(b.now() / kTck, 24u) << "with the first column command";
+  EXPECT_EQ(r.first / kTck, 24u + 2u + 2u + 1u);
+  EXPECT_EQ(r.last / kTck, 24u + 2u + 16u + 1u);
+}
+
+// Address maps: a run of addresses goes to the next bank after 2 KiB, or stays in its bank.
+TEST(AddressMapTest, BankFollowsThePageOrLiesOnTop) {
+  BenchOptions o = base();
+  DdrBench low(o);
+  Request a = read(kA, 2048 * 3 + 100 * 16), b = read(kB, 2048 * 8);
+  low.submit(a, kSubmit);
+  low.submit(b, kSubmit);
+  low.drain();
+  EXPECT_EQ(low.log[0], (Logged{Cmd::kAct, 3, 0, kStart}));
+  EXPECT_EQ(low.clock_of(Cmd::kAct, 0), low.log[0].clock + 5) << "next row, bank 0, after tRRD";
+  o.config.bank_on_top = true;
+  DdrBench top(o);
+  const std::uint32_t eighth = 16u << 20;  // 128 MiB / 8 banks
+  Request c = read(kA, 2048 * 3), d = read(kB, eighth * 5 + 2048 * 2);
+  top.submit(c, kSubmit);
+  top.submit(d, kSubmit);
+  top.drain();
+  EXPECT_EQ(top.log[0], (Logged{Cmd::kAct, 0, 3, kStart}));
+  EXPECT_EQ(top.log[1], (Logged{Cmd::kAct, 5, 2, kStart + 5}));
+}
+
+// The clock stops and comes back while a request waits: it is served then, not lost.
+TEST(ClockTest, RequestSurvivesAStoppedClock) {
+  DdrBench b(base());
+  Request r = read(kA, at(1, 0));
+  b.submit(r, kSubmit);
+  b.ddr.set_clocks(Frequency{}, kDdr, 12 * kTck);
+  EXPECT_EQ(b.ddr.next_decision(), kNever);
+  b.ddr.set_clocks(kDdr, kDdr, 1000 * kTck);
+  b.drain();
+  EXPECT_EQ(r.done, 1u);
+  // Edge 12 would have come next when it stopped and comes at clock time 1000: ACT at edge 18.
+  EXPECT_EQ(r.first, (1000 + kFirstBeat - 12) * kTck);
+}
+
+// New timing takes effect after its write; refreshes that were due before it were done before it.
+TEST(ClockTest, ReconfigurationDoesNotUndoThePast) {
+  BenchOptions o = base();
+  o.config.refresh_interval = 99;
+  DdrBench b(o);
+  o.config.refresh_interval = 1000;
+  b.ddr.configure(o.config, 500 * kTck);
+  EXPECT_EQ(b.count(Cmd::kRef), 5u) << "at 100, 199, 298, 397, 496";
+  b.ddr.catch_up(1500 * kTck);
+  EXPECT_EQ(b.count(Cmd::kRef), 5u);
+  b.ddr.catch_up(1501 * kTck);
+  EXPECT_EQ(b.clock_of(Cmd::kRef, -1, 5), 1501u) << "the new interval counts from edge 501";
+}
+
+}  // namespace
+}  // namespace fovea::dram

@@ -1,0 +1,120 @@
+#include "tb/e2e/rig.h"
+
+#include <cstring>
+#include <stdexcept>
+
+#include "model/video/core/bt656.h"
+#include "sw/fovea/loader.h"
+
+namespace fovea::e2e {
+
+oracle::Frame crop(const video::Picture& p, unsigned x, unsigned y, unsigned width,
+                   unsigned height) {
+  oracle::Frame f{width, height, {}};
+  for (unsigned r = 0; r < height; ++r) {
+    const std::uint8_t* row = p.row(y + r) + std::size_t{x} * 2;
+    f.uyvy.insert(f.uyvy.end(), row, row + std::size_t{width} * 2);
+  }
+  return f;
+}
+
+Rig::Rig(std::string elf)
+    : elf_(app::ElfImage::load(std::string(FOVEA_FIRMWARE_DIR) + "/" + elf)) {
+  params.declare(set_);
+  set("camera.kind", "chart");
+}
+
+Rig::~Rig() = default;
+
+Rig& Rig::set(const std::string& key, const std::string& value) {
+  set_.set(key, value);
+  return *this;
+}
+
+board::Board& Rig::build() {
+  app::check_fits(elf_, app::memory_regions(params));
+  const auto make = [this] {
+    return video::make_picture_source(params.camera, app::load_footage(params),
+                                      params.raster_width(), params.raster_height());
+  };
+  source_ = make();
+  reference_ = make();
+  app::complete_params(params);
+  board_ = std::make_unique<board::Board>("board", params, *source_, elf_.entry(), strict_);
+  for (const auto& s : elf_.segments()) {
+    board::LoadImage image{s.address, s.data};
+    image.bytes.resize(s.memory_size);
+    board_->load(image);
+  }
+  board_->load({0x8000'0000u, app::parameter_page(params, *source_)});
+  board_->on_frame = [this](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    const unsigned w = params.width(), h = params.height();
+    shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h),
+                      r, f.underflows});
+  };
+  return *board_;
+}
+
+void Rig::advance(Picoseconds duration) { sc_core::sc_start(ps_time(duration)); }
+
+void Rig::run(Picoseconds limit) {
+  if (!board_) build();
+  while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
+    advance(kPsPerMs);
+}
+
+oracle::Frame Rig::sent(std::uint64_t n) {
+  const unsigned w = params.width(), h = params.height();
+  const video::Picture even = reference_->field(2 * n);
+  const video::Picture odd = reference_->field(2 * n + 1);
+  const unsigned x = (even.width - w) / 2, y = (even.height - h) / 2;
+  oracle::Frame f = crop(even, x, y, w, h);
+  const oracle::Frame second = crop(odd, x, y, w, h);
+  // Row r of the picture is in the first field if r is even (both standards, first_lines crop).
+  for (unsigned r = 0; r < h; ++r)
+    if ((y + r) % 2 == 1)
+      std::memcpy(f.uyvy.data() + std::size_t{r} * w * 2,
+                  second.uyvy.data() + std::size_t{r} * w * 2, std::size_t{w} * 2);
+  return f;
+}
+
+FwState Rig::state() {
+  const auto* s = elf_.find("fw_state");
+  if (!s) throw std::runtime_error("no fw_state");
+  const auto bytes = board_->peek(s->address, sizeof(FwState));
+  FwState out;
+  std::memcpy(&out, bytes.data(), sizeof out);
+  return out;
+}
+
+std::vector<std::uint32_t> Rig::lut() {
+  const auto* s = elf_.find("lut");
+  if (!s) throw std::runtime_error("no lut");
+  std::vector<std::uint32_t> out(state().lut_entries);
+  const auto bytes = board_->peek(s->address, out.size() * 4);
+  std::memcpy(out.data(), bytes.data(), bytes.size());
+  return out;
+}
+
+oracle::Geometry Rig::geometry() const {
+  oracle::Geometry g;
+  const auto& l = params.lens;
+  g.width = params.width();
+  g.height = params.height();
+  g.pitch_bytes = (g.width * 2 + 31) / 32 * 32;
+  g.mapping = static_cast<oracle::Mapping>(l.mapping.index());
+  g.method = l.pair.is("B") ? oracle::PairMethod::kPairCentre : oracle::PairMethod::kFirstPixel;
+  g.paper_literal_focal = l.paper_literal_focal();
+  g.fov_deg = l.fov();
+  g.focal_px = l.focal();
+  g.out_focal_px = l.out_focal();
+  g.centre_x = l.centre_x();
+  g.centre_y = l.centre_y();
+  g.shift_x = l.shift_x();
+  g.shift_y = l.shift_y();
+  g.in_aspect = l.in_aspect();
+  g.out_aspect = l.out_aspect();
+  return g;
+}
+
+}  // namespace fovea::e2e

@@ -1,0 +1,237 @@
+// Buffer hand-over, switches, overlay and the plain kernel, without hardware.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <numeric>
+#include <set>
+
+extern "C" {
+#include "sw/firmware/app/capture.h"
+#include "sw/firmware/app/config.h"
+#include "sw/firmware/app/output.h"
+#include "sw/firmware/app/overlay.h"
+// C99's restrict is no C++ word.
+#define restrict __restrict
+#include "sw/firmware/kernels/remap.h"
+#undef restrict
+
+uint32_t mmio_read32(uint32_t) { return 0; }
+void mmio_write32(uint32_t, uint32_t) {}
+}
+
+namespace {
+
+TEST(CaptureTest, FramesTakenInTimeAreNeverDropped) {
+  capture_t c;
+  capture_init(&c, 3);
+  std::uint32_t sequence = 99;
+  EXPECT_EQ(capture_take(&c, &sequence), CAPTURE_NONE);
+  for (std::uint32_t n = 0; n < 10; ++n) {
+    const int filled = c.filling;
+    const int next = capture_frame_done(&c);
+    ASSERT_NE(next, CAPTURE_NONE);
+    EXPECT_NE(next, filled);
+    EXPECT_EQ(capture_take(&c, &sequence), filled);
+    EXPECT_EQ(sequence, n);
+    capture_release(&c, filled);
+  }
+  EXPECT_EQ(c.dropped, 0u);
+}
+
+TEST(CaptureTest, ABufferInWorkIsNeverFilled) {
+  capture_t c;
+  capture_init(&c, 3);
+  std::uint32_t sequence;
+  capture_frame_done(&c);
+  const int busy = capture_take(&c, &sequence);
+  for (int n = 0; n < 7; ++n) {
+    const int next = capture_frame_done(&c);
+    ASSERT_NE(next, CAPTURE_NONE);
+    EXPECT_NE(next, busy);
+    EXPECT_NE(next, c.ready);
+  }
+  EXPECT_EQ(c.dropped, 6u);  // seven waited, the newest still does
+  EXPECT_NE(capture_take(&c, &sequence), CAPTURE_NONE);
+  EXPECT_EQ(sequence, 7u);
+}
+
+TEST(CaptureTest, WithoutAFreeBufferTheNewFrameIsDropped) {
+  capture_t c;
+  capture_init(&c, 2);
+  std::uint32_t sequence;
+  capture_frame_done(&c);
+  capture_take(&c, &sequence);
+  EXPECT_EQ(capture_frame_done(&c), CAPTURE_NONE);
+  EXPECT_EQ(c.dropped, 1u);
+  EXPECT_EQ(c.ready, CAPTURE_NONE);
+}
+
+TEST(CaptureTest, SerialFlowReusesTheOneBuffer) {
+  capture_t c;
+  capture_init(&c, 1);
+  std::uint32_t sequence;
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    capture_single_done(&c);
+    EXPECT_EQ(capture_take(&c, &sequence), 0);
+    EXPECT_EQ(sequence, n);
+    capture_release(&c, 0);
+  }
+  EXPECT_EQ(c.dropped, 0u);
+}
+
+TEST(OutputTest, ABufferIsNeverWrittenWhileItMayBeShown) {
+  output_t o;
+  output_init(&o, 4);
+  std::uint32_t sequence, expected = 0;
+  std::set<int> seen;
+  int released;
+  for (std::uint32_t n = 0; n < 20; ++n) {
+    const int buffer = output_take(&o);
+    ASSERT_NE(buffer, OUTPUT_NONE);
+    EXPECT_NE(buffer, o.shown);
+    EXPECT_NE(buffer, o.pending);
+    output_queue(&o, buffer, n);
+    const int next = output_next(&o, &sequence);  // second field
+    EXPECT_EQ(next, buffer);
+    EXPECT_EQ(sequence, expected++);
+    EXPECT_EQ(output_next(&o, &sequence), OUTPUT_NONE) << "the display has not taken the last one";
+    EXPECT_TRUE(output_first_field(&o, &released));
+    EXPECT_EQ(o.shown, buffer);
+    EXPECT_FALSE(output_first_field(&o, &released));
+    seen.insert(buffer);
+  }
+  EXPECT_GE(seen.size(), 2u);
+}
+
+TEST(OutputTest, AQueueKeepsItsOrderAndBlocksWritersWhenFull) {
+  output_t o;
+  output_init(&o, 3);
+  const int a = output_take(&o), b = output_take(&o), c = output_take(&o);
+  EXPECT_EQ(output_take(&o), OUTPUT_NONE);
+  output_queue(&o, b, 10);
+  output_queue(&o, c, 11);
+  output_queue(&o, a, 12);
+  EXPECT_EQ(output_take(&o), OUTPUT_NONE);
+  std::uint32_t sequence;
+  int released;
+  EXPECT_EQ(output_next(&o, &sequence), b);
+  EXPECT_TRUE(output_first_field(&o, &released));
+  EXPECT_EQ(released, OUTPUT_NONE);
+  EXPECT_EQ(output_next(&o, &sequence), c);
+  EXPECT_EQ(output_take(&o), OUTPUT_NONE) << "b is still shown until the next first field";
+  EXPECT_TRUE(output_first_field(&o, &released));
+  EXPECT_EQ(released, b);
+  EXPECT_EQ(output_take(&o), b);
+}
+
+class ConfigTest : public testing::Test {
+ protected:
+  ConfigTest() { param_page_default(&page); }
+  config_result_t read(std::uint32_t dip) { return config_read(&config, dip, &page); }
+  param_page_t page;
+  config_t config;
+};
+
+TEST_F(ConfigTest, StandardsGiveTheirPictures) {
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_TRUE(config.is_625);
+  EXPECT_EQ(config.width, 720u);
+  EXPECT_EQ(config.height, 576u);
+  EXPECT_EQ(config.pitch_bytes, 1440u);
+  ASSERT_EQ(read(1), CONFIG_OK);
+  EXPECT_FALSE(config.is_625);
+  EXPECT_EQ(config.height, 480u);
+  ASSERT_EQ(read(2), CONFIG_OK);
+  EXPECT_EQ(config.width, 640u);
+  EXPECT_EQ(config.left, 40u);
+  EXPECT_EQ(config.pitch_bytes, 1280u);
+}
+
+TEST_F(ConfigTest, EachSwitchActs) {
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_EQUISOLID});
+  EXPECT_FALSE(config.serial || config.overlay || config.self_patch || config.kernel);
+  EXPECT_EQ(config.page.flags, 0u);
+  ASSERT_EQ(read(2 << 2), CONFIG_OK);
+  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_LINEAR});
+  ASSERT_EQ(read(1 << 5), CONFIG_OK);
+  EXPECT_EQ(config.page.flags, PARAM_PAPER_LITERAL_FOCAL);
+  ASSERT_EQ(read(1 << 6), CONFIG_OK);
+  EXPECT_EQ(config.kernel, KERNEL_LDM);
+  ASSERT_EQ(read(1 << 8), CONFIG_OK);
+  EXPECT_TRUE(config.serial);
+  ASSERT_EQ(read(1 << 9), CONFIG_OK);
+  EXPECT_EQ(config.page.flags, PARAM_PAIR_METHOD_B);
+  ASSERT_EQ(read(1 << 10), CONFIG_OK);
+  EXPECT_TRUE(config.overlay);
+  ASSERT_EQ(read(1 << 11), CONFIG_OK);
+  EXPECT_TRUE(config.self_patch);
+}
+
+TEST_F(ConfigTest, UnusedCodesAreRefused) {
+  EXPECT_EQ(read(3), CONFIG_BAD_STANDARD);
+  EXPECT_EQ(read(2 << 6), CONFIG_BAD_KERNEL);
+  EXPECT_EQ(read(7 << 2), CONFIG_BAD_MAPPING);
+}
+
+TEST_F(ConfigTest, APageWithARegionIsCentred) {
+  page.width = 352;
+  page.height = 288;
+  param_page_seal(&page);
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_TRUE(config.page_valid);
+  EXPECT_EQ(config.left, 184u);
+  EXPECT_EQ(config.top, 144u);
+  EXPECT_EQ(config.pitch_bytes, 704u);
+}
+
+TEST_F(ConfigTest, ARegionThatDoesNotFitIsRefused) {
+  page.height = 576;
+  param_page_seal(&page);
+  EXPECT_EQ(read(1), CONFIG_BAD_SIZE);
+  page.height = 0;
+  page.width = 722;
+  param_page_seal(&page);
+  EXPECT_EQ(read(0), CONFIG_BAD_SIZE);
+  page.width = 358;
+  param_page_seal(&page);
+  EXPECT_EQ(read(0), CONFIG_BAD_SIZE);
+}
+
+TEST_F(ConfigTest, ADamagedPageIsReplacedByDefaults) {
+  page.mapping = LENS_LINEAR;  // without a new checksum
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_FALSE(config.page_valid);
+  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_EQUISOLID});
+  EXPECT_EQ(config.page.fov_deg, 180.0);
+}
+
+TEST(OverlayTest, HalvesTowardsItsLumaInsideTheBoxOnly) {
+  std::vector<std::uint8_t> frame(1440 * 64);
+  std::iota(frame.begin(), frame.end(), std::uint8_t{0});
+  const std::vector<std::uint8_t> before = frame;
+  overlay_draw(frame.data(), 1440, 0xC0);
+  for (unsigned v = 0; v < 64; ++v)
+    for (unsigned i = 0; i < 1440; ++i) {
+      const bool luma = i % 2 == 1, inside = v >= 32 && v < 48 && i >= 64 && i < 192;
+      const unsigned old = before[v * 1440 + i];
+      ASSERT_EQ(frame[v * 1440 + i], luma && inside ? (old + 0xC0) / 2 : old) << v << ' ' << i;
+    }
+}
+
+TEST(OverlayTest, BlinksEightFramesOnEightOff) {
+  for (std::uint32_t n = 0; n < 64; ++n) EXPECT_EQ(overlay_visible(n) != 0, n / 8 % 2 == 0);
+}
+
+TEST(RemapTest, CopiesTheWordAtEachOffset) {
+  const std::array<std::uint32_t, 6> in{10, 11, 12, 13, 14, 15};
+  const std::array<std::uint32_t, 5> lut{20, 0, 4, 4, 16};
+  std::array<std::uint32_t, 6> out{};
+  remap_plain(out.data(), in.data(), lut.data(), 5);
+  EXPECT_EQ(out, (std::array<std::uint32_t, 6>{15, 10, 11, 11, 14, 0}));
+  remap_plain(out.data() + 5, in.data(), lut.data(), 0);
+  EXPECT_EQ(out[5], 0u);
+}
+
+}  // namespace

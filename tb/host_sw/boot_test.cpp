@@ -1,0 +1,153 @@
+// The boot loader's register sequences, judged by what the chip makes of the values: clocks in MHz
+// and DRAM timings in clocks (dm365.md 1.2, 5.6, 5.8).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "register_recorder.h"
+
+extern "C" {
+#include "sw/firmware/boot/boot.h"
+
+uint32_t mmio_read32(uint32_t address) { return RegisterRecorder::current()->read(address); }
+void mmio_write32(uint32_t address, uint32_t value) {
+  RegisterRecorder::current()->write(address, value);
+}
+}
+
+namespace {
+
+constexpr std::uint32_t kPllc1 = 0x01C40800, kPllc2 = 0x01C40C00;
+
+// A chip on which every request succeeds at once.
+class BootTest : public testing::Test {
+ protected:
+  void boot(unsigned preset, std::uint32_t other_switches = 0) {
+    values.clear();
+    recorder.accesses.clear();
+    values[0x01C67020] = preset << 12 | other_switches;
+    values[0x01C40084] = values[0x01C40088] = 0x07000000;
+    values[0x01C20014] = 0x60;
+    recorder.on_write = [this](std::uint32_t address, std::uint32_t value) {
+      values[address] = value;
+      if (address == 0x01C41120)  // PTCMD: modules reach the state asked for
+        for (unsigned n = 0; n < 52; ++n)
+          values[0x01C41800 + 4 * n] = values[0x01C41A00 + 4 * n] & 0x1F;
+      if (address == 0x01C40074 && (value & 0x2000)) values[address] |= 0x8000;  // VTP ready
+    };
+    recorder.on_read = [this](std::uint32_t address) { return values[address]; };
+    boot_init();
+  }
+  double sysclk(std::uint32_t base, unsigned n) {
+    const auto divider = [&](std::uint32_t offset) {
+      EXPECT_TRUE(values[base + offset] & 0x8000);
+      return (values[base + offset] & 0x1F) + 1.0;
+    };
+    return 24.0 * 2 * values[base + 0x110] / divider(0x114) / divider(0x128) /
+           divider(n <= 3 ? 0x118 + 4 * (n - 1) : 0x160 + 4 * (n - 4));
+  }
+  unsigned field(std::uint32_t address, unsigned low, unsigned bits) {
+    return (values[address] >> low) & ((1u << bits) - 1);
+  }
+  std::size_t index_of_write(std::uint32_t address, std::uint32_t value, std::size_t from = 0) {
+    for (std::size_t i = from; i < recorder.accesses.size(); ++i)
+      if (recorder.accesses[i] == RegisterAccess{'w', address, value}) return i;
+    ADD_FAILURE() << std::hex << "no write of " << value << " to " << address;
+    return 0;
+  }
+  RegisterRecorder recorder;
+  std::map<std::uint32_t, std::uint32_t> values;
+};
+
+TEST_F(BootTest, EachPresetGivesItsClocks) {
+  struct {
+    double arm, ddr, vpss, edma;
+  } const expected[] = {{297, 243, 243, 121.5},
+                        {297, 270, 270, 135},
+                        {270, 216, 216, 108},
+                        {216, 172.5, 172.5, 86.25},
+                        {432, 340, 340, 170}};
+  for (unsigned preset = 0; preset < 5; ++preset) {
+    SCOPED_TRACE(preset);
+    boot(preset);
+    EXPECT_DOUBLE_EQ(sysclk(kPllc2, 2), expected[preset].arm);
+    EXPECT_DOUBLE_EQ(sysclk(kPllc1, 7) / 2, expected[preset].ddr);
+    EXPECT_DOUBLE_EQ(sysclk(kPllc1, 5), expected[preset].vpss);
+    EXPECT_DOUBLE_EQ(sysclk(kPllc1, 4), expected[preset].edma);
+    EXPECT_EQ(values[0x01C40048], 0x243F04FCu);
+    EXPECT_TRUE(values[kPllc1 + 0x100] & 1);  // PLLEN
+    EXPECT_TRUE(values[kPllc2 + 0x100] & 1);
+    // The encoder gets 27 MHz from the PLL that VPSS_CLK_CTRL will name.
+    const auto source = boot_vpss_clk_ctrl(static_cast<clock_preset>(preset)) >> 5 & 3;
+    EXPECT_DOUBLE_EQ(source == 0 ? sysclk(kPllc1, 6) : sysclk(kPllc2, 5), 27.0);
+  }
+}
+
+TEST_F(BootTest, AnUnusedPresetMeansTheDefault) {
+  for (unsigned preset = 5; preset < 8; ++preset) {
+    boot(preset);
+    EXPECT_DOUBLE_EQ(sysclk(kPllc1, 7) / 2, 243.0);
+  }
+}
+
+TEST_F(BootTest, DramTimingsAreThoseOfTheTable) {
+  struct {
+    unsigned preset, rfc, rp, rcd, wr, ras, rc, rrd, wtr, xsnr;
+  } const rows[] = {{2, 28, 5, 5, 4, 10, 15, 3, 3, 30},
+                    {0, 31, 5, 5, 4, 11, 16, 3, 3, 34},
+                    {1, 35, 6, 6, 5, 13, 18, 3, 3, 38}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.preset);
+    boot(row.preset);
+    const std::uint32_t sdtimr = 0x20000010, sdtimr2 = 0x20000014;
+    EXPECT_EQ(field(sdtimr, 25, 7) + 1, row.rfc);
+    EXPECT_EQ(field(sdtimr, 22, 3) + 1, row.rp);
+    EXPECT_EQ(field(sdtimr, 19, 3) + 1, row.rcd);
+    EXPECT_EQ(field(sdtimr, 16, 3) + 1, row.wr);
+    EXPECT_EQ(field(sdtimr, 11, 5) + 1, row.ras);
+    EXPECT_EQ(field(sdtimr, 6, 5) + 1, row.rc);
+    EXPECT_EQ(field(sdtimr, 3, 3) + 1, row.rrd);
+    EXPECT_EQ(field(sdtimr, 0, 3) + 1, row.wtr);
+    EXPECT_EQ(field(sdtimr2, 16, 7) + 1, row.xsnr);
+    EXPECT_EQ(field(sdtimr2, 8, 8), 199u);
+  }
+  boot(0);
+  EXPECT_EQ(values[0x2000000C], 1895u);  // refresh, 7.8 us at 243 MHz
+  EXPECT_EQ(values[0x20000008], 0x00534A32u);
+  EXPECT_EQ(values[0x200000E4], 0xC5u);
+  EXPECT_EQ(values[0x20000020], 0xFEu);
+}
+
+TEST_F(BootTest, TheSequenceIsTheLoaders) {
+  boot(0);
+  const std::size_t pll1 = index_of_write(kPllc1 + 0x138, 1);
+  const std::size_t pll2 = index_of_write(kPllc2 + 0x138, 1);
+  const std::size_t mux = index_of_write(0x01C40048, 0x243F04FC);
+  const std::size_t vtp = index_of_write(0x01C40074, 0x2000);
+  const std::size_t reset = index_of_write(0x01C41A00 + 4 * 13, 1);
+  const std::size_t phy = index_of_write(0x200000E4, 0xC5);
+  const std::size_t unlock = index_of_write(0x20000008, 0x0053C832);
+  const std::size_t timing = index_of_write(0x20000010, values[0x20000010]);
+  const std::size_t final_bank = index_of_write(0x20000008, 0x00534A32);
+  const std::size_t refresh = index_of_write(0x2000000C, 1895);
+  const std::size_t second_reset = index_of_write(0x01C41A00 + 4 * 13, 1, refresh);
+  EXPECT_TRUE(pll1 < pll2 && pll2 < mux && mux < vtp && vtp < reset && reset < phy &&
+              phy < unlock && unlock < timing && timing < final_bank && final_bank < refresh &&
+              refresh < second_reset);
+  EXPECT_EQ(values[0x01C41800 + 4 * 13], 3u) << "DDR2 enabled at the end";
+}
+
+TEST_F(BootTest, NothingTouchesDdrItself) {
+  boot(4);
+  for (const RegisterAccess& a : recorder.accesses) EXPECT_LT(a.address, 0x80000000u);
+}
+
+TEST_F(BootTest, ModulesThatTheFirmwareUsesAreOn) {
+  boot(0);
+  for (unsigned module : {13, 18, 19, 26, 27, 47}) EXPECT_EQ(values[0x01C41800 + 4 * module], 3u);
+  EXPECT_EQ(values[0x01C40000], 0x00FD0000u) << "video input pins";
+  EXPECT_EQ(values[0x01C40004], 0x00145555u) << "video output pins";
+  EXPECT_EQ(values[0x01C67064], 1u) << "phase pins: boot";
+  EXPECT_EQ(values[0x01C67060] & 0xFFFu, 0u) << "phase pins: outputs";
+}
+
+}  // namespace

@@ -1,0 +1,303 @@
+// Drivers against a recorder. Addresses and values are literals of reference/dm365.md.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "register_recorder.h"
+
+extern "C" {
+#include "sw/firmware/drivers/display.h"
+#include "sw/firmware/drivers/i2c.h"
+#include "sw/firmware/drivers/intc.h"
+#include "sw/firmware/drivers/isif.h"
+#include "sw/firmware/drivers/psc.h"
+#include "sw/firmware/drivers/timer.h"
+#include "sw/firmware/drivers/tvp5146.h"
+#include "sw/firmware/drivers/uart.h"
+#include "sw/firmware/drivers/vpss.h"
+
+uint32_t mmio_read32(uint32_t address) { return RegisterRecorder::current()->read(address); }
+void mmio_write32(uint32_t address, uint32_t value) {
+  RegisterRecorder::current()->write(address, value);
+}
+}
+
+namespace {
+
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+using testing::IsEmpty;
+using A = RegisterAccess;
+
+TEST(IsifTest, PalFrameIsProgrammedAsTheLinuxDriverDoes) {
+  RegisterRecorder chip;
+  const isif_window_t window = {0, 0, 720, 576, isif_pitch(720)};
+  ASSERT_EQ(isif_configure(&window), ISIF_OK);
+  EXPECT_THAT(chip.accesses,
+              ElementsAreArray<A>({{'w', 0x01C71000, 0},       // SYNCEN: off while changing
+                                   {'w', 0x01C71084, 3},       // REC656IF
+                                   {'w', 0x01C71004, 0x2084},  // YC 8 bit, interlaced, VD negative
+                                   {'w', 0x01C71088, 0x0812},  // 8-bit packing, swap, UYVY order
+                                   {'w', 0x01C7102C, 0xFFFF},
+                                   {'w', 0x01C71030, 0xFF},
+                                   {'w', 0x01C71018, 0},
+                                   {'w', 0x01C7101C, 1439},
+                                   {'w', 0x01C71020, 1},
+                                   {'w', 0x01C71024, 1},
+                                   {'w', 0x01C71028, 287},
+                                   {'w', 0x01C71070, 290},  // two lines after line 288
+                                   {'w', 0x01C71034, 45},
+                                   {'w', 0x01C71038, 0x249}}));
+}
+
+TEST(IsifTest, VgaWindowStartsInTheMiddleOfTheRaster) {
+  RegisterRecorder chip;
+  const isif_window_t window = {40, 20, 640, 440, isif_pitch(640)};
+  ASSERT_EQ(isif_configure(&window), ISIF_OK);
+  EXPECT_EQ(chip.values[0x01C71018], 80u);
+  EXPECT_EQ(chip.values[0x01C7101C], 1279u);
+  EXPECT_EQ(chip.values[0x01C71020], 11u);
+  EXPECT_EQ(chip.values[0x01C71028], 219u);
+  EXPECT_EQ(chip.values[0x01C71034], 40u);
+}
+
+TEST(IsifTest, PitchIsRoundedUpTo32Bytes) {
+  EXPECT_EQ(isif_pitch(720), 1440u);
+  EXPECT_EQ(isif_pitch(640), 1280u);
+  EXPECT_EQ(isif_pitch(644), 1312u);
+}
+
+TEST(IsifTest, ABadWindowWritesNothing) {
+  RegisterRecorder chip;
+  const isif_window_t bad[] = {{0, 0, 721, 576, 1472}, {0, 0, 720, 575, 1440},
+                               {0, 0, 720, 576, 1439}, {0, 0, 720, 576, 1408},
+                               {0, 1, 720, 576, 1440}, {0, 0, 0, 576, 1440}};
+  for (const isif_window_t& window : bad) EXPECT_EQ(isif_configure(&window), ISIF_BAD_WINDOW);
+  EXPECT_EQ(isif_set_address(0x80123450), ISIF_BAD_ADDRESS);
+  EXPECT_THAT(chip.accesses, IsEmpty());
+}
+
+TEST(IsifTest, AddressIsSplitInto32ByteUnits) {
+  RegisterRecorder chip;
+  ASSERT_EQ(isif_set_address(0x80ABCDE0), ISIF_OK);
+  EXPECT_THAT(chip.accesses, ElementsAre(A{'w', 0x01C7103C, 0x80ABCDE0u >> 21},
+                                         A{'w', 0x01C71040, (0x80ABCDE0u >> 5) & 0xFFFF}));
+  EXPECT_EQ(chip.values[0x01C7103C] << 21 | chip.values[0x01C71040] << 5, 0x80ABCDE0u);
+}
+
+TEST(IsifTest, SyncsComeFirstThenData) {
+  RegisterRecorder chip;
+  isif_watch();
+  isif_capture();
+  EXPECT_THAT(chip.accesses, ElementsAre(A{'w', 0x01C71000, 1}, A{'w', 0x01C71000, 3}));
+  chip.values[0x01C71004] = 0x2084;
+  EXPECT_FALSE(isif_second_field());
+  chip.values[0x01C71004] = 0xA084;
+  EXPECT_TRUE(isif_second_field());
+}
+
+TEST(DisplayTest, PalStartsWithTheWindowOff) {
+  RegisterRecorder chip;
+  const display_mode_t mode = {1, 0, 0, 720, 576, 1440};
+  ASSERT_EQ(display_start(&mode), DISPLAY_OK);
+  EXPECT_THAT(chip.accesses, ElementsAreArray<A>({{'w', 0x01C71E00, 0},
+                                                  {'w', 0x01C4002C, 0x081141CF},
+                                                  {'w', 0x01C71F40, 1},
+                                                  {'w', 0x01C71E04, 0},
+                                                  {'w', 0x01C71F2C, 1},
+                                                  {'w', 0x01C71F30, 2},
+                                                  {'w', 0x01C71C00, 0},
+                                                  {'w', 0x01C71C04, 0},
+                                                  {'w', 0x01C71C08, 0},
+                                                  {'w', 0x01C71C0C, 0},
+                                                  {'w', 0x01C71C10, 0},
+                                                  {'w', 0x01C71C40, 0x7E},
+                                                  {'w', 0x01C71C44, 0x16},
+                                                  {'w', 0x01C71C48, 0},
+                                                  {'w', 0x01C71C4C, 0},
+                                                  {'w', 0x01C71C50, 720},
+                                                  {'w', 0x01C71C54, 288},  // lines of a field
+                                                  {'w', 0x01C71E00, 0x43}}));
+}
+
+TEST(DisplayTest, VgaWindowIsCentredInThe525Raster) {
+  RegisterRecorder chip;
+  const display_mode_t mode = {0, 40, 0, 640, 480, 1280};
+  ASSERT_EQ(display_start(&mode), DISPLAY_OK);
+  EXPECT_EQ(chip.values[0x01C71C40], 0x79u);
+  EXPECT_EQ(chip.values[0x01C71C44], 0x10u);
+  EXPECT_EQ(chip.values[0x01C71C48], 40u);
+  EXPECT_EQ(chip.values[0x01C71C50], 640u);
+  EXPECT_EQ(chip.values[0x01C71C54], 240u);
+  EXPECT_EQ(chip.values[0x01C71E00], 0x03u);
+}
+
+TEST(DisplayTest, AddressFollowsTheOsdEncoding) {
+  RegisterRecorder chip;
+  ASSERT_EQ(display_set_address(0x80A5C3E0, 1440), DISPLAY_OK);
+  const std::uint32_t units = 0xA5C3E0 / 32;  // 0x52E1F
+  EXPECT_THAT(chip.accesses,
+              ElementsAre(A{'w', 0x01C71C18, 0x1000 | 45}, A{'w', 0x01C71C28, units >> 16},
+                          A{'w', 0x01C71C2C, units & 0xFFFF}));
+}
+
+TEST(DisplayTest, WindowIsSwitchedOnInFieldMode) {
+  RegisterRecorder chip;
+  display_enable_window();
+  EXPECT_THAT(chip.accesses, ElementsAre(A{'w', 0x01C71C04, 3}));
+}
+
+TEST(DisplayTest, ABadModeOrAddressWritesNothing) {
+  RegisterRecorder chip;
+  const display_mode_t bad[] = {{1, 0, 0, 724, 576, 1472},
+                                {0, 0, 0, 720, 576, 1440},
+                                {1, 0, 1, 720, 574, 1440},
+                                {1, 0, 0, 720, 576, 1430},
+                                {1, 0, 0, 720, 576, 512 * 32}};
+  for (const display_mode_t& mode : bad) EXPECT_EQ(display_start(&mode), DISPLAY_BAD_MODE);
+  EXPECT_EQ(display_set_address(0x80000010, 1440), DISPLAY_BAD_ADDRESS);
+  EXPECT_EQ(display_set_address(0x00010000, 1440), DISPLAY_BAD_ADDRESS);
+  EXPECT_THAT(chip.accesses, IsEmpty());
+}
+
+TEST(DisplayTest, FieldComesFromVstatBit4) {
+  RegisterRecorder chip;
+  EXPECT_FALSE(display_second_field());
+  chip.values[0x01C71EB8] = 0x10;
+  EXPECT_TRUE(display_second_field());
+}
+
+TEST(VpssTest, RoutesLikeLinuxAndOpensTheGates) {
+  RegisterRecorder chip;
+  chip.values[0x01C70200] = 0x18;
+  vpss_init(0x38);
+  EXPECT_EQ(chip.values[0x01C40044], 0x38u);
+  EXPECT_EQ(chip.values[0x01C70200], 0x1Du);
+  EXPECT_EQ(chip.values[0x01C70004] & 0x63u, 0x63u);
+  EXPECT_EQ(chip.values[0x01C70010], 0x0B1F0100u);
+  EXPECT_EQ(chip.values[0x01C70014], 0x1F0A0F1Fu);
+  EXPECT_EQ(chip.values[0x01C70018], 0x15u);
+}
+
+TEST(IntcTest, EnableSetsPriorityDropsOldEdgesAndOpensTheSource) {
+  RegisterRecorder chip;
+  chip.values[0x01C48034] = 0x77777777;  // INTPRI1: sources 8 to 15
+  intc_enable(8, 3);
+  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', 0x01C48034, 0x77777773}, A{'w', 0x01C48008, 0x100},
+                                         A{'w', 0x01C48018, 0x100}));
+}
+
+TEST(IntcTest, EntryIsDecodedToASourceNumber) {
+  RegisterRecorder chip;
+  chip.values[0x01C48014] = (8 + 1) * 4;
+  EXPECT_EQ(intc_pending(), 8u);
+  chip.values[0x01C48014] = 4;
+  EXPECT_EQ(intc_pending(), 0u);
+  chip.values[0x01C48014] = 0;
+  EXPECT_EQ(intc_pending(), INTC_NONE);
+}
+
+TEST(TimerTest, Timer0CountsFreelyIn32Bits) {
+  RegisterRecorder chip;
+  timer_start();
+  EXPECT_EQ(chip.values[0x01C21418], 0xFFFFFFFFu);
+  EXPECT_EQ(chip.values[0x01C21420], 0x80u);  // TIM12 continuous
+  EXPECT_EQ(chip.values[0x01C21424], 0x05u);  // two timers, unchained; TIM12 out of reset
+}
+
+TEST(UartTest, DivisorFormatAndText) {
+  RegisterRecorder chip;
+  uart_init();
+  EXPECT_EQ(chip.values[0x01C20020], 13u);  // 24 MHz / 16 / 13 = 115385
+  EXPECT_EQ(chip.values[0x01C2000C], 3u);
+  EXPECT_EQ(chip.values[0x01C20030], 0xE001u);
+  chip.values[0x01C20014] = 0x60;
+  std::string text;
+  chip.on_write = [&](std::uint32_t address, std::uint32_t value) {
+    if (address == 0x01C20000) text += static_cast<char>(value);
+  };
+  uart_puts("a\n");
+  uart_put_uint(0);
+  uart_putc(' ');
+  uart_put_uint(4294967295u);
+  uart_putc(' ');
+  uart_put_uint(1090);
+  uart_putc(' ');
+  uart_put_hex(0xC0FFEE);
+  EXPECT_EQ(text, "a\r\n0 4294967295 1090 0x00c0ffee");
+}
+
+TEST(UartTest, WaitsForTheTransmitter) {
+  RegisterRecorder chip;
+  int polls = 0;
+  chip.on_read = [&](std::uint32_t) { return ++polls < 5 ? 0u : 0x20u; };
+  uart_putc('x');
+  EXPECT_EQ(polls, 5);
+  EXPECT_EQ(chip.accesses.back(), (A{'w', 0x01C20000, 'x'}));
+}
+
+TEST(PscTest, TransitionIsRequestedAndAwaited) {
+  RegisterRecorder chip;
+  int stat_polls = 0;
+  chip.on_read = [&](std::uint32_t address) -> std::uint32_t {
+    if (address == 0x01C41800 + 4 * 26) return ++stat_polls < 4 ? 0 : 3;
+    return address == 0x01C41A00 + 4 * 26 ? 0x100 : 0;
+  };
+  psc_transition(26, 3);
+  EXPECT_THAT(chip.writes(),
+              ElementsAre(A{'w', 0x01C41A00 + 4 * 26, 0x103}, A{'w', 0x01C41120, 1}));
+  EXPECT_EQ(stat_polls, 4);
+}
+
+TEST(PscTest, AModuleAlreadyThereIsLeftAlone) {
+  RegisterRecorder chip;
+  chip.values[0x01C41800 + 4 * 13] = 0x1E03;
+  psc_transition(13, 3);
+  EXPECT_THAT(chip.writes(), IsEmpty());
+}
+
+// An I2C controller that always accepts, or whose device does not answer.
+struct FakeI2c {
+  explicit FakeI2c(RegisterRecorder& chip, bool present) {
+    chip.on_read = [this, present](std::uint32_t address) -> std::uint32_t {
+      if (address == 0x01C21008) return present ? 0x38u : 0x02u;
+      if (address == 0x01C21018) return reads.at(next_read++);
+      return 0;
+    };
+    chip.on_write = [this](std::uint32_t address, std::uint32_t value) {
+      if (address == 0x01C21020) sent.push_back(static_cast<std::uint8_t>(value));
+      if (address == 0x01C2101C) device = value;
+    };
+  }
+  std::vector<std::uint8_t> sent, reads{0x51, 0x46};
+  std::size_t next_read = 0;
+  std::uint32_t device = 0;
+};
+
+TEST(Tvp5146Test, OutputIsEnabledAfterTheStandard) {
+  RegisterRecorder chip;
+  FakeI2c bus(chip, true);
+  std::uint32_t id = 0;
+  EXPECT_EQ(tvp5146_start(1, &id), I2C_OK);
+  EXPECT_EQ(id, 0x5146u);
+  EXPECT_EQ(bus.device, 0x5Du);
+  EXPECT_THAT(bus.sent, ElementsAre(0x80, 0x81, 0x02, 2, 0x00, 5, 0x33, 0, 0x03, 0, 0x34, 0x11));
+}
+
+TEST(Tvp5146Test, AnAbsentDecoderIsReported) {
+  RegisterRecorder chip;
+  FakeI2c bus(chip, false);
+  std::uint32_t id = 0;
+  EXPECT_EQ(tvp5146_start(0, &id), I2C_NACK);
+  EXPECT_THAT(bus.sent, IsEmpty());
+}
+
+TEST(I2cTest, ADeadBusTimesOut) {
+  RegisterRecorder chip;
+  std::uint32_t ticks = 0;
+  chip.on_read = [&](std::uint32_t address) -> std::uint32_t {
+    return address == 0x01C21410 ? ticks += 1000 : 0;
+  };
+  EXPECT_EQ(i2c_write_register(0x5D, 1, 2), I2C_TIMEOUT);
+}
+
+}  // namespace

@@ -1,0 +1,318 @@
+// Lens formulas against the printed figures of reference/fisheye-video.md and the definitions.
+#include "sw/lens/lens.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+param_page_t page_of(std::uint32_t mapping, double fov_deg) {
+  param_page_t page;
+  param_page_default(&page);
+  page.mapping = mapping;
+  page.fov_deg = fov_deg;
+  param_page_seal(&page);
+  return page;
+}
+
+lens_t lens_of(const param_page_t& page, unsigned width = 720, unsigned height = 576) {
+  lens_t lens;
+  EXPECT_EQ(lens_init(&lens, &page, width, height), LENS_OK);
+  return lens;
+}
+
+lens_t lens_of(param_page_t&&, unsigned = 0, unsigned = 0) = delete;  // the page must live
+
+struct FocalRow {
+  double fov, printed, equisolid, linear, ortho, stereo;
+};
+// Table of section 1.9, W = 720; 0: the mapping cannot.
+constexpr FocalRow kFocals[] = {
+    {100, 234.97, 425.92, 412.53, 469.95, 386.01}, {120, 207.85, 360.00, 343.77, 415.69, 311.77},
+    {150, 186.35, 295.68, 275.02, 372.70, 234.58}, {170, 180.69, 266.43, 242.66, 361.38, 196.44},
+    {180, 180.00, 254.56, 229.18, 360.00, 180.00}, {190, 180.69, 244.14, 217.12, 0, 164.94},
+    {220, 191.55, 219.74, 187.51, 0, 126.04}};
+
+TEST(LensFocalTest, MatchesTheTableOfFocalLengths) {
+  for (const FocalRow& row : kFocals) {
+    SCOPED_TRACE(row.fov);
+    EXPECT_NEAR(lens_focal_from_fov(LENS_EQUISOLID, 720, row.fov, 1), row.printed, 0.005);
+    EXPECT_NEAR(lens_focal_from_fov(LENS_EQUISOLID, 720, row.fov, 0), row.equisolid, 0.005);
+    EXPECT_NEAR(lens_focal_from_fov(LENS_LINEAR, 720, row.fov, 0), row.linear, 0.005);
+    EXPECT_NEAR(lens_focal_from_fov(LENS_ORTHOGRAPHIC, 720, row.fov, 0), row.ortho, 0.005);
+    EXPECT_NEAR(lens_focal_from_fov(LENS_STEREOGRAPHIC, 720, row.fov, 0), row.stereo, 0.005);
+  }
+}
+
+TEST(LensFocalTest, PaperLiteralTouchesOnlyTheEquisolidMapping) {
+  for (std::uint32_t mapping :
+       {LENS_RECTILINEAR, LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_STEREOGRAPHIC})
+    EXPECT_EQ(lens_focal_from_fov(mapping, 720, 120, 1), lens_focal_from_fov(mapping, 720, 120, 0));
+}
+
+TEST(LensFocalTest, ImpossibleFieldsOfViewGiveNone) {
+  EXPECT_EQ(lens_focal_from_fov(LENS_RECTILINEAR, 720, 180, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_ORTHOGRAPHIC, 720, 180.1, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_EQUISOLID, 720, 360, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, 0, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, -10, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, std::nan(""), 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_TABLE, 720, 180, 0), 0);
+}
+
+TEST(LensFocalTest, HalfTheFieldOfViewLandsOnThePictureEdge) {
+  for (std::uint32_t mapping :
+       {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC, LENS_RECTILINEAR}) {
+    const param_page_t page = page_of(mapping, 140);
+    const lens_t lens = lens_of(page);
+    EXPECT_NEAR(lens_radius(&lens, 70 * kPi / 180), 360.0, 1e-9) << mapping;
+  }
+}
+
+struct EdgeRow {
+  std::uint32_t mapping;
+  double right_edge, corner;
+};
+// Table of section 1.3: FOV 180, F = f, radii of the source at the output's right edge and corner.
+constexpr EdgeRow kEdges[] = {{LENS_LINEAR, 230.1, 254.3},
+                              {LENS_ORTHOGRAPHIC, 254.6, 283.7},
+                              {LENS_EQUISOLID, 234.0, 258.8},
+                              {LENS_STEREOGRAPHIC, 222.5, 245.9}};
+
+TEST(LensSourceTest, RadiiAtEdgeAndCornerMatchTheTable) {
+  for (const EdgeRow& row : kEdges) {
+    SCOPED_TRACE(row.mapping);
+    const param_page_t page = page_of(row.mapping, 180);
+    const lens_t lens = lens_of(page);
+    // The table's edge is W/2 and its corner (W/2, H/2) from the centre: half a pixel outside.
+    const lens_point_t edge = lens_source(&lens, 719.5, 287.5);
+    EXPECT_NEAR(edge.column - 359.5, row.right_edge, 0.06);
+    EXPECT_DOUBLE_EQ(edge.row, 287.5);
+    const lens_point_t corner = lens_source(&lens, 719.5, 575.5);
+    EXPECT_NEAR(std::hypot(corner.column - 359.5, corner.row - 287.5), row.corner, 0.06);
+  }
+}
+
+TEST(LensSourceTest, TrigFreeFormsEqualTheDefinitions) {
+  for (std::uint32_t mapping :
+       {LENS_RECTILINEAR, LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
+    const param_page_t page = page_of(mapping, 130);
+    const lens_t lens = lens_of(page);
+    for (double r = 1e-6; r < 20; r *= 1.7)
+      EXPECT_NEAR(lens_gain(&lens, r * r) * r, lens_radius(&lens, std::atan(r)),
+                  1e-9 * (1 + 300 * r))
+          << mapping << " r " << r;
+  }
+}
+
+TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {  // R6, R7, R8
+  const param_page_t page = page_of(LENS_EQUISOLID, 170);
+  const lens_t lens = lens_of(page);
+  const double f = lens.focal;
+  for (double radius = 0.5; radius < 430; radius += 13.7) {
+    const double source = lens_gain(&lens, radius / f * (radius / f)) * radius / f;
+    EXPECT_NEAR(f * std::tan(2 * std::asin(source / (2 * f))), radius, 1e-8);
+  }
+}
+
+TEST(LensSourceTest, PointsStayOnTheirRadius) {  // R10
+  const param_page_t page = page_of(LENS_STEREOGRAPHIC, 160);
+  const lens_t lens = lens_of(page);
+  for (double u = 3; u < 720; u += 101)
+    for (double v = 1; v < 576; v += 97) {
+      const lens_point_t p = lens_source(&lens, u, v);
+      EXPECT_NEAR((p.column - 359.5) * (v - 287.5), (p.row - 287.5) * (u - 359.5), 1e-7);
+    }
+}
+
+TEST(LensSourceTest, WiderThan180DegreesIsSafe) {  // R13
+  for (std::uint32_t mapping : {LENS_LINEAR, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
+    const param_page_t page = page_of(mapping, 190);
+    const lens_t lens = lens_of(page);
+    for (double u : {0.0, 359.5, 719.0}) {
+      const lens_point_t p = lens_source(&lens, u, 0);
+      EXPECT_TRUE(p.visible);
+      EXPECT_TRUE(std::isfinite(p.column) && std::isfinite(p.row));
+      EXPECT_LT(std::hypot(p.column - 359.5, p.row - 287.5), 360.0);
+    }
+  }
+}
+
+TEST(LensSourceTest, OnTheAxisTheSourceIsTheOpticalCentre) {
+  for (std::uint32_t mapping :
+       {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC, LENS_RECTILINEAR}) {
+    param_page_t page = page_of(mapping, 120);
+    page.centre_x = 7.25;
+    page.centre_y = -3.5;
+    page.shift_x = 0.5;  // brings pixel (359, 287) onto the axis
+    page.shift_y = 0.5;
+    const lens_t lens = lens_of(page);
+    const lens_point_t p = lens_source(&lens, 359, 287);
+    EXPECT_DOUBLE_EQ(p.column, 359.5 + 7.25);
+    EXPECT_DOUBLE_EQ(p.row, 287.5 - 3.5);
+  }
+}
+
+TEST(LensSourceTest, AspectsScaleTheVerticalDirections) {
+  param_page_t page = page_of(LENS_RECTILINEAR, 90);
+  page.in_aspect = 1.25;
+  page.out_aspect = 0.8;
+  page.out_focal_px = 2 * 360.0;  // lens focal is 720 / (2 tan 45) = 360: zoom 2
+  const lens_t lens = lens_of(page);
+  const lens_point_t p = lens_source(&lens, 359.5 + 100, 287.5 + 40);
+  EXPECT_NEAR(p.column, 359.5 + 50, 1e-9);
+  EXPECT_NEAR(p.row, 287.5 + 1.25 * 40 / (2 * 0.8), 1e-9);
+}
+
+TEST(LensSourceTest, ThetaMaxHidesWhatLiesBeyond) {
+  param_page_t page = page_of(LENS_LINEAR, 180);
+  page.theta_max = 45 * kPi / 180;
+  const lens_t lens = lens_of(page);
+  const double reach = lens.out_focal;  // tan 45 = 1
+  EXPECT_TRUE(lens_source(&lens, 359.5 + reach - 1e-6, 287.5).visible);
+  EXPECT_FALSE(lens_source(&lens, 359.5 + reach + 1e-6, 287.5).visible);
+}
+
+TEST(LensSourceTest, NoneShowsThePictureShifted) {
+  param_page_t page = page_of(LENS_NONE, 0);
+  page.shift_x = 6;
+  page.shift_y = -2;
+  page.centre_x = 99;  // no effect
+  const lens_t lens = lens_of(page);
+  const lens_point_t p = lens_source(&lens, 100, 200);
+  EXPECT_EQ(p.column, 106);
+  EXPECT_EQ(p.row, 198);
+}
+
+TEST(LensSqrtTest, IsWithinTwoUnitsInTheLastPlace) {
+  double worst = 0;
+  const auto check = [&](double x) {
+    const double exact = std::sqrt(x), unit = std::nextafter(exact, HUGE_VAL) - exact;
+    worst = std::max(worst, std::abs(lens_sqrt(x) - exact) / unit);
+  };
+  for (double x = 1e-12; x < 1e12; x *= 1.00037) check(x);
+  for (double edge : {0.25, 0.5, 1.0, 2.0, 4.0, 1e-300, 1e300})
+    for (double x : {std::nextafter(edge, 0.0), edge, std::nextafter(edge, HUGE_VAL)}) check(x);
+  EXPECT_LE(worst, 2.0);
+  EXPECT_EQ(lens_sqrt(0.0), 0.0);
+}
+
+TEST(LensTableTest, ReproducesAClosedForm) {
+  param_page_t page = page_of(LENS_TABLE, 0);
+  page.table_count = PARAM_TABLE_MAX;
+  page.theta_max = 95 * kPi / 180;
+  const double f = 254.56;
+  for (unsigned i = 0; i < page.table_count; ++i)
+    page.table_r[i] = 2 * f * std::sin(i * page.theta_max / (page.table_count - 1) / 2);
+  const lens_t lens = lens_of(page);
+  // Linear interpolation errs by at most step^2 / 8 * |R''| = (95 deg / 128)^2 / 8 * f / 2 * sin.
+  const double step = page.theta_max / 128, bound = step * step / 8 * f / 2;
+  for (double theta = 0.01; theta < page.theta_max; theta += 0.013)
+    EXPECT_NEAR(lens_radius(&lens, theta), 2 * f * std::sin(theta / 2), bound);
+  EXPECT_DOUBLE_EQ(lens_radius(&lens, page.theta_max), page.table_r[page.table_count - 1]);
+  EXPECT_DOUBLE_EQ(lens.focal, page.table_r[1] / step);
+}
+
+TEST(LensTableTest, EachFaultIsRefused) {
+  param_page_t page = page_of(LENS_TABLE, 0);
+  lens_t lens;
+  page.table_count = 3;
+  page.theta_max = 1;
+  page.table_r[1] = 100;
+  page.table_r[2] = 200;
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_OK);
+  param_page_t bad = page;
+  bad.table_count = 1;
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+  bad = page;
+  bad.table_count = PARAM_TABLE_MAX + 1;
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+  bad = page;
+  bad.theta_max = 0;
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+  bad = page;
+  bad.table_r[2] = 100;
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+  bad = page;
+  bad.table_r[2] = std::nan("");
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+  bad = page;
+  bad.table_r[0] = 1;
+  EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
+}
+
+TEST(LensInitTest, EachFaultIsRefused) {
+  lens_t lens;
+  param_page_t page = page_of(LENS_EQUISOLID, 180);
+  EXPECT_EQ(lens_init(&lens, &page, 719, 576), LENS_BAD_SIZE);
+  EXPECT_EQ(lens_init(&lens, &page, 0, 576), LENS_BAD_SIZE);
+  EXPECT_EQ(lens_init(&lens, &page, 720, 5000), LENS_BAD_SIZE);
+  page.mapping = 7;
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_MAPPING);
+  page = page_of(LENS_ORTHOGRAPHIC, 190);
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOV);
+  page = page_of(LENS_EQUISOLID, 180);
+  page.out_focal_px = -1;
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
+  page = page_of(LENS_EQUISOLID, 180);
+  page.in_aspect = 0;
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
+  page = page_of(LENS_EQUISOLID, 180);
+  page.focal_px = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
+  for (int r = LENS_OK; r <= LENS_BAD_TABLE; ++r)
+    EXPECT_NE(std::string(lens_result_text(static_cast<lens_result_t>(r))), "unknown");
+}
+
+TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
+  EXPECT_EQ(sizeof(param_page_t), 1152u);
+  EXPECT_EQ(offsetof(param_page_t, fov_deg), 40u);
+  EXPECT_EQ(offsetof(param_page_t, table_r), 120u);
+  param_page_t page;
+  param_page_default(&page);
+  EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
+}
+
+TEST(ParamPageTest, ASealedPageIsAcceptedAndEachFlippedBitRefused) {
+  param_page_t page = page_of(LENS_LINEAR, 123.456);
+  ASSERT_TRUE(param_page_valid(&page));
+  auto* bytes = reinterpret_cast<unsigned char*>(&page);
+  for (unsigned i = 0; i < sizeof page; ++i)
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      bytes[i] ^= 1u << bit;
+      EXPECT_FALSE(param_page_valid(&page)) << "byte " << i << " bit " << bit;
+      bytes[i] ^= 1u << bit;
+    }
+  EXPECT_TRUE(param_page_valid(&page));
+}
+
+TEST(ParamPageTest, WrongMagicVersionOrSizeIsRefusedThoughTheSumFits) {
+  const auto with_sum = [](param_page_t page) {
+    const auto* words = reinterpret_cast<const std::uint32_t*>(&page);
+    page.checksum = 0;
+    std::uint32_t sum = 0;
+    for (unsigned i = 0; i < sizeof page / 4; ++i) sum += words[i];
+    page.checksum = 0 - sum;
+    return page;
+  };
+  param_page_t page;
+  param_page_default(&page);
+  param_page_t changed = page;
+  EXPECT_TRUE(param_page_valid(&(changed = with_sum(page))));
+  changed = page;
+  changed.magic ^= 1;
+  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
+  changed = page;
+  changed.version = 2;
+  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
+  changed = page;
+  changed.bytes = 1024;
+  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
+}
+
+}  // namespace

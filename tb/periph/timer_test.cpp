@@ -1,0 +1,308 @@
+// Timer64 with the AINTC, in time.
+#include "model/periph/aintc.h"
+#include "model/periph/timer64.h"
+#include "tb/periph/bench.h"
+
+namespace fovea::periph {
+namespace {
+using test::now;
+using test::run_until;
+
+constexpr unsigned kMhz24 = 24'000'000;
+/// Edge k of 24 MHz: 125000/3 ps apart, rounded down from the start.
+Picoseconds edge(std::uint64_t k) { return k * 125'000 / 3; }
+
+struct System {
+  ClockSignal clk{"clk", Frequency(kMhz24)};
+  sc_core::sc_signal<bool> gate{"gate", true};
+  sc_core::sc_signal<bool> tint12{"tint12"}, tint34{"tint34"}, expired{"expired"};
+  sc_core::sc_vector<sc_core::sc_signal<bool>> sources{"sources", kInterruptCount};
+  sc_core::sc_signal<bool> irq{"irq"}, fiq{"fiq"};
+  Timer64 timer{"timer"};
+  AintcParams params;
+  Aintc aintc{"aintc", params};
+  Timer64 watchdog{"watchdog"}, pin_timer{"pin_timer"};
+  sc_core::sc_signal<bool> bitten{"bitten"}, pin_reset{"pin_reset"};
+  test::Bus bus{"bus"}, aintc_bus{"aintc_bus"}, wdt_bus{"wdt_bus"}, pin_bus{"pin_bus"};
+  test::Probe probe12{"probe12"}, probe34{"probe34"}, probe_irq{"probe_irq"};
+  System() {
+    timer.clk(clk);
+    timer.lpsc(gate);
+    timer.tint12(tint12);
+    timer.tint34(tint34);
+    timer.expired(expired);
+    bus.socket.bind(timer.reg_socket);
+    aintc_bus.socket.bind(aintc.reg_socket);
+    for (unsigned n = 0; n < kInterruptCount; ++n)
+      if (n == 32)
+        aintc.source[n](tint12);
+      else if (n == 33)
+        aintc.source[n](tint34);
+      else
+        aintc.source[n](sources[n]);
+    watchdog.clk(clk);
+    watchdog.expired(bitten);
+    wdt_bus.socket.bind(watchdog.reg_socket);
+    pin_timer.clk(clk);
+    pin_timer.expired(pin_reset);
+    pin_bus.socket.bind(pin_timer.reg_socket);
+    aintc.irq(irq);
+    aintc.fiq(fiq);
+    probe12.in(tint12);
+    probe34.in(tint34);
+    probe_irq.in(irq);
+  }
+};
+
+enum : std::uint32_t {
+  kTim12 = 0x10,
+  kTim34 = 0x14,
+  kPrd12 = 0x18,
+  kPrd34 = 0x1C,
+  kTcr = 0x20,
+  kTgcr = 0x24,
+  kWdtcr = 0x28,
+  kRel12 = 0x34,
+  kStat = 0x44
+};
+
+struct TimerTest : testing::Test {
+  static System& system() {
+    static System* s = new System;
+    return *s;
+  }
+  System& s = system();
+  test::Bus& bus = s.bus;
+
+  void SetUp() override {
+    run_until(now());
+    bus.write(kTcr, 0);
+    bus.write(kTgcr, 0);
+    for (std::uint32_t r : {kTim12, kTim34, kPrd12, kPrd34}) bus.write(r, 0);
+    run_until(now() + 1'000'000);  // ends any pulse
+    s.probe12.rises = s.probe12.falls = s.probe34.rises = s.probe34.falls = 0;
+    s.probe_irq.rises = 0;
+  }
+  /// The number of edges up to now: counting starts with the next one.
+  std::uint64_t edges() const {
+    std::uint64_t k = now() * 3 / 125'000;
+    while (edge(k + 1) <= now()) ++k;
+    return k;
+  }
+};
+
+TEST_F(TimerTest, OneShotExpiresAtTheExactPicosecond) {
+  bus.write(kPrd12, 1000);
+  bus.write(kTgcr, 0x5);  // unchained, TIM12 out of reset
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 1u << 6);
+  run_until(edge(k + 999));
+  EXPECT_EQ(bus.read(kTim12), 999u);
+  run_until(edge(k + 1000) - 1);
+  EXPECT_EQ(bus.read(kTim12), 999u);
+  EXPECT_FALSE(s.tint12.read());
+  run_until(edge(k + 1000));
+  EXPECT_EQ(bus.read(kTim12), 1000u);
+  EXPECT_TRUE(s.tint12.read());
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 1000));
+  EXPECT_EQ(bus.read(kStat) & 2, 2u);
+  run_until(edge(k + 1001));
+  EXPECT_FALSE(s.tint12.read());
+  run_until(edge(k + 5000));
+  EXPECT_EQ(s.probe12.rises, 1u);
+  EXPECT_EQ(s.probe12.last_fall, edge(k + 1001));
+}
+
+TEST_F(TimerTest, OneMoreInThePeriodIsOneClockLater) {
+  Picoseconds at[2];
+  std::uint64_t k[2];
+  for (unsigned n = 0; n < 2; ++n) {
+    bus.write(kTim12, 0);
+    bus.write(kPrd12, 500 + n);
+    bus.write(kTgcr, 0x5);
+    k[n] = edges();
+    bus.write(kTcr, 1u << 6);
+    run_until(now() + 30'000'000);
+    at[n] = s.probe12.last_rise;
+    bus.write(kTcr, 0);
+  }
+  EXPECT_EQ(at[0], edge(k[0] + 500));
+  EXPECT_EQ(at[1], edge(k[1] + 501));
+}
+
+TEST_F(TimerTest, PeriodicTimerDoesNotDrift) {
+  bus.write(kPrd34, 6);  // every 7 clocks
+  bus.write(kTgcr, 0x6);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 2u << 22);
+  run_until(edge(k + 7 * 1000));
+  EXPECT_EQ(s.probe34.rises, 1000u);  // matches at 6, 13, ..., 6999
+  EXPECT_EQ(s.probe34.last_rise, edge(k + 6999));
+  EXPECT_EQ(s.probe12.rises, 0u);
+}
+
+TEST_F(TimerTest, HalvesRunIndependentlyAndLinuxStyleRestartKeepsTheOther) {
+  bus.write(kPrd34, 0xFFFFFFFF);
+  bus.write(kTgcr, 0x7);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 2u << 22 | 1u << 6);
+  run_until(edge(k + 40));
+  bus.write(kTcr, 2u << 22);  // stop TIM12 only
+  bus.write(kTim12, 0);
+  bus.write(kPrd12, 100);
+  bus.write(kTcr, 2u << 22 | 1u << 6);
+  run_until(edge(k + 140));
+  EXPECT_EQ(bus.read(kTim34), 140u);
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 140));
+}
+
+TEST_F(TimerTest, SixtyFourBitModeCarriesAndLatchesTheUpperHalf) {
+  bus.write(kTim12, 0xFFFFFFF0);
+  bus.write(kTim34, 2);
+  bus.write(kPrd12, 5);
+  bus.write(kPrd34, 3);
+  bus.write(kTgcr, 0x3);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 1u << 6);
+  run_until(edge(k + 15));
+  EXPECT_EQ(bus.read(kTim12), 0xFFFFFFFFu);
+  run_until(edge(k + 16));
+  EXPECT_EQ(bus.read(kTim34), 2u);  // as latched with the lower half
+  EXPECT_EQ(bus.read(kTim34), 3u);
+  run_until(edge(k + 100));
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 21));
+}
+
+TEST_F(TimerTest, ChainedModeDividesByPrd34PlusOne) {
+  bus.write(kPrd34, 9);
+  bus.write(kPrd12, 4);
+  bus.write(kTgcr, 0xF);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 1u << 6);
+  run_until(edge(k + 23));
+  EXPECT_EQ(bus.read(kTim12), 2u);
+  EXPECT_EQ(bus.read(kTim34), 3u);
+  run_until(edge(k + 100));
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 40));
+}
+
+TEST_F(TimerTest, Psc34PrescalesTim34) {
+  bus.write(kPrd34, 10);
+  bus.write(kTgcr, 0x6 | 3u << 8);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 1u << 22);
+  run_until(edge(k + 100));
+  EXPECT_EQ(s.probe34.last_rise, edge(k + 40));
+}
+
+TEST_F(TimerTest, ReloadModeTakesTheNextPeriodAfterTheMatch) {
+  bus.write(kPrd12, 10);
+  bus.write(kRel12, 20);
+  bus.write(kTgcr, 0x5);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 3u << 6);
+  run_until(edge(k + 12));
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 10));
+  EXPECT_EQ(bus.read(kPrd12), 20u);
+  run_until(edge(k + 40));
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 11 + 20));  // 0 at k + 11
+}
+
+TEST_F(TimerTest, GatedClockStopsTheCountAndClosesTheRegisters) {
+  bus.write(kPrd12, 0xFFFF);
+  bus.write(kTgcr, 0x5);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 2u << 6);
+  run_until(edge(k + 50));
+  s.gate.write(false);
+  run_until(now() + 1'000'000);
+  EXPECT_EQ(bus.read(kTim12), 0u);  // no answer while gated
+  s.gate.write(true);
+  test::settle();
+  const std::uint32_t resumed = bus.read(kTim12);
+  EXPECT_GE(resumed, 50u);
+  EXPECT_LE(resumed, 51u);  // the interrupted period ends with the restart
+  const Picoseconds restart = now();
+  run_until(restart + edge(10));
+  EXPECT_EQ(bus.read(kTim12), resumed + 10);
+}
+
+TEST_F(TimerTest, HalfTheClockIsTwiceTheTime) {
+  bus.write(kPrd12, 100);
+  bus.write(kTgcr, 0x5);
+  s.clk.write(Frequency(12'000'000));
+  test::settle();
+  const Picoseconds start = now();  // an edge: the clock restarts with the change
+  bus.write(kTcr, 1u << 6);
+  run_until(start + 20'000'000);
+  EXPECT_EQ(s.probe12.last_rise, start + 100 * 250'000 / 3);
+  s.clk.write(Frequency(kMhz24));
+  test::settle();
+}
+
+TEST(AintcPinTest, TimerPulseReachesThePinInTheSameInstantAndStaysUntilAcknowledged) {
+  System& s = TimerTest::system();
+  s.aintc_bus.write(0x0C, ~0u);
+  s.aintc_bus.write(0x1C, 1);  // source 32
+  s.bus.write(kTcr, 0);
+  s.bus.write(kTim12, 0);
+  s.bus.write(kPrd12, 10);
+  s.bus.write(kTgcr, 0x5);
+  const unsigned before = s.probe_irq.rises;
+  s.bus.write(kTcr, 1u << 6);
+  run_until(now() + 10'000'000);
+  EXPECT_EQ(s.probe_irq.rises, before + 1);
+  EXPECT_EQ(s.probe_irq.last_rise, s.probe12.last_rise);
+  EXPECT_FALSE(s.tint12.read());
+  EXPECT_TRUE(s.irq.read());
+  EXPECT_EQ(s.aintc_bus.read(0x14), 33u * 4);
+  s.aintc_bus.write(0x0C, 1);
+  EXPECT_FALSE(s.irq.read());
+  EXPECT_EQ(s.aintc_bus.read(0x14), 0u);
+}
+
+TEST_F(TimerTest, WrongKeyExpiresAnActiveWatchdogAtOnce) {
+  s.wdt_bus.write(kWdtcr, 0x1234'4000);  // before activation a wrong key is only ignored
+  EXPECT_FALSE(s.bitten.read());
+  s.wdt_bus.write(kWdtcr, 0xA5C6'4000);
+  s.wdt_bus.write(kWdtcr, 0xDA7E'4000);
+  EXPECT_FALSE(s.bitten.read());
+  s.wdt_bus.write(kWdtcr, 0xDA7E'4000);
+  EXPECT_TRUE(s.bitten.read());
+}
+
+TEST_F(TimerTest, TimerPinAsBootLoadersUseItResetsTheBoard) {
+  s.pin_bus.write(0x08, 0x00020000);
+  EXPECT_FALSE(s.pin_reset.read());
+  s.pin_bus.write(0x0C, 0x00020002);
+  EXPECT_TRUE(s.pin_reset.read());
+}
+
+// Last: an expired watchdog stays so.
+TEST_F(TimerTest, ZWatchdogIsServedAndThenExpiresAtItsPeriod) {
+  bus.write(kPrd12, 1000);
+  bus.write(kTgcr, 0xB);  // watchdog mode
+  bus.write(kTcr, 2u << 6);
+  run_until(now() + 100'000'000);
+  EXPECT_FALSE(s.expired.read());  // not active yet: it does not count
+  bus.write(kWdtcr, 0xA5C6'4000);
+  bus.write(kWdtcr, 0xDA7E'4000);
+  for (int n = 0; n < 5; ++n) {
+    run_until(now() + 30'000'000);  // 720 clocks
+    EXPECT_FALSE(s.expired.read());
+    bus.write(kWdtcr, 0xA5C6'4000);
+    bus.write(kWdtcr, 0xDA7E'4000);
+  }
+  EXPECT_EQ(bus.read(kTim12), 0u);
+  const std::uint64_t base = now();
+  run_until(base + 41'600'000);  // 998 clocks
+  EXPECT_FALSE(s.expired.read());
+  run_until(base + 41'750'000);
+  EXPECT_TRUE(s.expired.read());
+  EXPECT_EQ(bus.read(kWdtcr) & 0x8000, 0x8000u);
+}
+
+}  // namespace
+}  // namespace fovea::periph
+
+FOVEA_SC_TEST_MAIN

@@ -1,0 +1,256 @@
+#include "tb/sync/traffic.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace fovea::sync {
+namespace {
+
+std::uint64_t hash(const std::uint8_t* p, std::size_t n) {
+  std::uint64_t h = 0xcbf29ce484222325ull;
+  for (std::size_t i = 0; i < n; ++i) h = (h ^ p[i]) * 0x100000001b3ull;
+  return h;
+}
+
+std::string text(const char* format, auto... values) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+constexpr std::uint32_t kRegs = 0x01C0'0000;
+constexpr std::uint32_t kDdr = 0x8000'0000;
+constexpr Picoseconds kSlot = 60 * kPsPerUs;  // time set aside for one program
+
+}  // namespace
+
+std::string Log::sorted() const {
+  auto lines = lines_;
+  std::sort(lines.begin(), lines.end());
+  std::string out;
+  for (const auto& l : lines) out += l + "\n";
+  return out;
+}
+
+TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, regs), log_(log) {
+  SC_HAS_PROCESS(TestBlock);
+  SC_METHOD(expire);
+  sensitive << due_;
+  dont_initialize();
+  regs.timer.on_write([this](std::uint32_t ns) {
+    due_.cancel();
+    due_.notify(ps_time((ns & 0xFFF) * kPsPerNs + 1));
+  });
+  regs.copy.on_write([this](std::uint32_t address) {
+    if (dma.can_issue()) dma.read(address & ~63u, 64, address & ~63u);
+  });
+  regs.priority.on_write([this](std::uint32_t w) {
+    priority[(w >> 8) % kMasterCount].write(w & 7);
+  });
+  dma.on_done = [this](const BurstMaster::Completion& c) {
+    log_.add(text("%015llu dma %s %08x %016llx", static_cast<unsigned long long>(c.last),
+                  c.write ? "w" : "r", c.address,
+                  static_cast<unsigned long long>(hash(c.data.data(), c.data.size()))));
+    if (!c.write)
+      dma.write(c.address + 4096, c.data);
+    else
+      raise();
+  };
+}
+
+void TestBlock::expire() {
+  regs.count.set(regs.count.get() + 1);
+  raise();
+}
+
+void TestBlock::raise() {
+  const Picoseconds now = kernel_time();
+  if (irq_at != now) irq_before = irq_at;
+  irq_at = now;
+  log_.add(text("%015llu irq", static_cast<unsigned long long>(now)));
+}
+
+TrafficMaster::TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports,
+                             Log& log, TestBlock& block)
+    : Agent(name, ports), number_(number), ports_(ports), log_(log), block_(block) {
+  SC_HAS_PROCESS(TrafficMaster);
+  SC_THREAD(run);
+}
+
+void TrafficMaster::run() {
+  enter();
+  for (const Program& p : programs) {
+    sleep_until(p.start);
+    execute(p);
+  }
+  finished = true;
+  leave();
+}
+
+void TrafficMaster::retire(Op& op, std::uint64_t seed, Picoseconds& now) {
+  finish(op.tx);
+  now = std::max(now, op.tx.ext.last);
+  op.used = false;
+  log_.add(text("%015llu seed %llu master %u op %u %s%s %08x first %llu data %016llx",
+                static_cast<unsigned long long>(op.tx.ext.last),
+                static_cast<unsigned long long>(seed), number_, op.serial,
+                op.tx.gp.is_write() ? "w" : "r", op.tx.error() ? "!" : "",
+                static_cast<unsigned>(op.tx.gp.get_address()),
+                static_cast<unsigned long long>(op.tx.ext.first),
+                static_cast<unsigned long long>(
+                    hash(op.data.data(), op.tx.gp.get_data_length()))));
+}
+
+void TrafficMaster::execute(const Program& p) {
+  Rng rng(p.seed * 16 + number_);
+  Picoseconds now = p.start;
+  const Picoseconds end = p.start + kSlot - 10 * kPsPerUs;
+  const unsigned window = 1 + static_cast<unsigned>(rng.below(kSlots));
+  Picoseconds seen_irq = p.start;
+  for (unsigned i = 0; i < p.operations && now < end; ++i) {
+    // Gaps: often none, so that masters meet at equal times; sometimes a clock or a long wait.
+    switch (rng.below(6)) {
+      case 0: break;
+      case 1: break;
+      case 2: now += 8230; break;
+      case 3: now += rng.below(50) * kPsPerNs; break;
+      case 4: now += 1; break;
+      default: now += (now % 8230 == 0) ? 0 : 8230 - now % 8230; break;
+    }
+    // An interrupt is seen strictly after its time, and changes what comes next.
+    if (now >= horizon()) sleep_until(now);
+    const Picoseconds irq = block_.irq_at < now ? block_.irq_at : block_.irq_before;
+    if (irq > seen_irq && irq < now) {
+      seen_irq = irq;
+      log_.add(text("%015llu seed %llu master %u takes irq of %llu",
+                    static_cast<unsigned long long>(now), static_cast<unsigned long long>(p.seed),
+                    number_, static_cast<unsigned long long>(irq)));
+      now += 100 * kPsPerNs;
+    }
+    unsigned busy = 0;
+    for (Op& o : ops_) busy += o.used;
+    while (busy >= window) {
+      Op* oldest = nullptr;
+      for (Op& o : ops_)
+        if (o.used && (!oldest || o.serial < oldest->serial)) oldest = &o;
+      retire(*oldest, p.seed, now);
+      --busy;
+    }
+    Op* op = nullptr;
+    for (Op& o : ops_)
+      if (!o.used) { op = &o; break; }
+    op->used = true;
+    op->serial = i;
+    auto& gp = op->tx.gp;
+    op->tx.port = static_cast<unsigned>(rng.below(ports_));
+    const bool reg = rng.below(12) == 0;
+    unsigned bytes = 4;
+    std::uint32_t address;
+    if (reg) {
+      address = kRegs + 4 * static_cast<std::uint32_t>(rng.below(4));
+      gp.set_command(rng.below(3) ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+    } else {
+      bytes = 4u << rng.below(5);
+      // A few rows in a few banks, shared by all masters: hits, conflicts and true sharing.
+      address = kDdr + static_cast<std::uint32_t>(rng.below(3)) * 0x4000 +
+                static_cast<std::uint32_t>(rng.below(3)) * 0x800 +
+                static_cast<std::uint32_t>(rng.below(512 / bytes)) * bytes;
+      gp.set_command(rng.below(2) ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+    }
+    for (unsigned k = 0; k < bytes; ++k) op->data[k] = static_cast<std::uint8_t>(rng.next());
+    if (reg && address == kRegs + 4) {  // COPY wants an address inside the SDRAM
+      const std::uint32_t target = kDdr + static_cast<std::uint32_t>(rng.below(8)) * 64;
+      std::memcpy(op->data.data(), &target, 4);
+    }
+    gp.set_address(address);
+    gp.set_data_ptr(op->data.data());
+    gp.set_data_length(bytes);
+    gp.set_streaming_width(bytes);
+    op->tx.ext.critical = 0;
+    submit(op->tx, now);
+    if (rng.below(4) == 0) {
+      // A look without waiting, as the core does with its write buffer. A transaction whose outcome
+      // is known may be taken back now; one that is not stays out.
+      const Picoseconds until = now + rng.below(200) * kPsPerNs;
+      const bool done = poll(op->tx, until);
+      log_.add(text("%015llu seed %llu master %u op %u poll %d",
+                    static_cast<unsigned long long>(until),
+                    static_cast<unsigned long long>(p.seed), number_, i, done ? 1 : 0));
+      now = until;
+    }
+  }
+  for (Op& o : ops_)
+    if (o.used) retire(o, p.seed, now);
+}
+
+Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
+                     Picoseconds planted_late) {
+  planted_late_horizon = planted_late;
+  Log log;
+  QuietPhase quiet("quiet");
+  bus::CrossbarParams xp;
+  bus::ConfigBusParams cp;
+  mem::DdrParams dp;
+  bus::Scr scr("scr", xp, {}, strict);
+  using Speed = bus::ConfigBus::Speed;
+  bus::ConfigBus config("config", cp, quiet,
+                        {{"block", kRegs, 0x1000, Speed::kFast},
+                         {"ddr", 0x2000'0000, 0x8000, Speed::kFast}});
+  mem::DdrModule ddr("ddr", dp);
+  TestBlock block("block", log);
+  ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
+  ClockSignal scr_clk{"scr_clk", Frequency(121'500'000)};
+  sc_core::sc_signal<bool> on{"on", true};
+  scr.clk(scr_clk);
+  scr.ddr_socket.bind(ddr.socket);
+  scr.ddr_lookahead.bind(ddr.lookahead);
+  scr.config_socket.bind(config.socket);
+  ddr.ddr_clk(ddr_clk);
+  ddr.scr_clk(scr_clk);
+  ddr.enabled(on);
+  config.to("block").bind(block.reg_socket);
+  config.to("ddr").bind(ddr.reg_socket);
+  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](block.priority[i]);
+  block.dma.socket.bind(*scr.target[index(Master::kEdmaTc0)]);
+
+  // Six masters on the remaining ports; the first has two ports, as the core does.
+  std::vector<std::unique_ptr<TrafficMaster>> masters;
+  const std::vector<std::vector<Master>> ports = {
+      {Master::kArmI, Master::kArmD}, {Master::kEdmaTc1}, {Master::kEdmaTc2},
+      {Master::kVpfe}, {Master::kVpbe}, {Master::kRemapEngine}};
+  for (unsigned i = 0; i < ports.size(); ++i) {
+    masters.push_back(std::make_unique<TrafficMaster>(
+        ("master" + std::to_string(i)).c_str(), i, static_cast<unsigned>(ports[i].size()), log,
+        block));
+    masters[i]->path(scr.path);
+    for (unsigned k = 0; k < ports[i].size(); ++k)
+      masters[i]->sockets[k]->bind(*scr.target[index(ports[i][k])]);
+  }
+  Picoseconds start = kPsPerUs;
+  for (unsigned n = 0; n < programs; ++n, start += kSlot) {
+    Rng rng(first_seed + n);
+    const unsigned count = 2 + static_cast<unsigned>(rng.below(5));
+    const unsigned operations = 10 + static_cast<unsigned>(rng.below(50));
+    for (unsigned i = 0; i < count; ++i)
+      masters[i]->programs.push_back({first_seed + n, start, operations});
+  }
+  // The registers as a boot loader leaves them (UBL values for 243 MHz).
+  ddr.regs.write(0x10, 4, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 |
+                              2u << 3 | 2u);
+  ddr.regs.write(0x14, 4, 1u << 5 | 33u << 16);
+  ddr.regs.write(0x0C, 4, 1895);
+  ddr.regs.write(0xE4, 4, 5);
+  ddr.regs.write(0x20, 4, 0xFE);
+  ddr.regs.write(0x08, 4, 0x00534A32);
+  sc_core::sc_start(ps_time(start + kSlot));
+  scr.settle();
+  for (auto& m : masters)
+    if (!m->finished) log.add("a master did not finish");
+  for (auto* s : ddr.controller().stats.stats())
+    log.add(text("stat %s %llu", s->name().c_str(),
+                 static_cast<unsigned long long>(std::get<std::uint64_t>(s->value()))));
+  log.add(text("memory %016llx", static_cast<unsigned long long>(hash(ddr.store().at(0), 0x20000))));
+  return {log.sorted(), scr.direct_accesses(), scr.queued_accesses()};
+}
+
+}  // namespace fovea::sync

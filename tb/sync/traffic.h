@@ -1,0 +1,113 @@
+// Random traffic for the proof of the time rule: masters that run ahead, a register block that
+// starts timers and transfers, interrupts that change what a master does next.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "model/bus/agent.h"
+#include "model/bus/config_bus.h"
+#include "model/bus/scr.h"
+#include "model/common/burst_master.h"
+#include "model/common/bus_target.h"
+#include "model/common/quiet.h"
+#include "model/mem/ddr_module.h"
+
+namespace fovea::sync {
+
+/// Own generator: results must not depend on a library's distribution.
+class Rng {
+ public:
+  explicit Rng(std::uint64_t seed) : s_(seed * 0x9E3779B97F4A7C15ull + 0x1234567) { next(); }
+  std::uint64_t next() {
+    s_ ^= s_ << 13;
+    s_ ^= s_ >> 7;
+    s_ ^= s_ << 17;
+    return s_;
+  }
+  std::uint64_t below(std::uint64_t n) { return (next() >> 11) % n; }
+
+ private:
+  std::uint64_t s_;
+};
+
+/// The record of everything observable; compared as text.
+class Log {
+ public:
+  void add(const std::string& line) { lines_.push_back(line); }
+  std::string sorted() const;
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+/// Registers: TIMER (write n: interrupt after n ns), COPY (write address: a DMA master reads 64
+/// bytes there and writes them 4 KiB further, then interrupts), COUNT (reads: expiries so far),
+/// PRIORITY (write master<<8|level: a crossbar priority changes).
+struct TestRegs : RegBank {
+  Reg timer{*this, "TIMER", 0x0, Mode::kRw, "ns until the interrupt"};
+  Reg copy{*this, "COPY", 0x4, Mode::kRw, "address"};
+  Reg count{*this, "COUNT", 0x8, Mode::kRo, "expiries"};
+  Reg priority{*this, "PRIORITY", 0xC, Mode::kRw, "master<<8|level"};
+  TestRegs() : RegBank("TEST") {}
+};
+
+class TestBlock : public BusTarget {
+ public:
+  TestRegs regs;
+  BurstMaster dma{"dma", Master::kEdmaTc0, 4};
+  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
+  sc_core::sc_event irq;
+  Picoseconds irq_at = 0, irq_before = 0;  // last and last-but-one interrupt
+
+  TestBlock(sc_core::sc_module_name name, Log& log);
+
+ private:
+  void expire();
+  void raise();
+  Log& log_;
+  sc_core::sc_event due_;
+};
+
+/// One master of a random program. Sleeps until its program starts, runs it, reports.
+class TrafficMaster : public bus::Agent {
+ public:
+  TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports, Log& log,
+                TestBlock& block);
+  struct Program {
+    std::uint64_t seed = 0;
+    Picoseconds start = 0;
+    unsigned operations = 0;
+  };
+  std::vector<Program> programs;
+  bool finished = false;
+
+ private:
+  static constexpr unsigned kSlots = 6;
+  struct Op {
+    Transaction tx;
+    std::array<std::uint8_t, kMaxBurstBytes> data{};
+    bool used = false;
+    unsigned serial = 0;
+  };
+  void run();
+  void execute(const Program& p);
+  void retire(Op& op, std::uint64_t seed, Picoseconds& now);
+
+  unsigned number_, ports_;
+  Log& log_;
+  TestBlock& block_;
+  std::array<Op, kSlots> ops_;
+};
+
+/// Runs `programs` random programs and returns the record. One call per process.
+struct Outcome {
+  std::string record;
+  std::uint64_t direct = 0, queued = 0;
+};
+Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
+                     Picoseconds planted_late);
+
+}  // namespace fovea::sync

@@ -1,0 +1,251 @@
+// sw/fovea/cli.h over a stand-in board: files, exit statuses, messages; and the real program's
+// reaction to signals and a full disk.
+#include "sw/fovea/cli.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "sw/fovea/png.h"
+#include "tb/unit/fake_board.h"
+#include "tb/unit/support.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::read_text;
+using test::TempDir;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CliTest : public testing::Test {
+ protected:
+  CliTest() { experiment = dir.write("exp.yaml", "run.frames: 4\n").string(); }
+  int cli(std::vector<std::string> args) {
+    out.str("");
+    err.str("");
+    return run_cli(args, {.out = out,
+                          .err = err,
+                          .make_simulation = [] { return std::make_unique<test::FakeBoard>(); },
+                          .signal = &signal,
+                          .stop = &stop});
+  }
+  /// `fovea run` of the experiment into r, with more arguments.
+  int run(std::vector<std::string> more = {}) {
+    std::vector<std::string> args{"run", experiment, "-o", result.string()};
+    args.insert(args.end(), more.begin(), more.end());
+    return cli(args);
+  }
+  json stats() { return json::parse(read_text(result / "stats.json")); }
+
+  TempDir dir;
+  std::string experiment;
+  fs::path result = dir / "r";
+  std::ostringstream out, err;
+  std::atomic<int> signal{0};
+  std::atomic<bool> stop{false};
+};
+
+TEST_F(CliTest, RunLeavesAllFilesOfTheContract) {
+  ASSERT_EQ(run(), 0) << err.str();
+  for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
+                           "uart.log", "frames/frame_000000.png", "frames/frame_000003.png"})
+    EXPECT_TRUE(fs::is_regular_file(result / name)) << name;
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+  EXPECT_EQ(stats()["complete"], true);
+  EXPECT_EQ(stats()["frame.displayed"]["value"], 4);
+  EXPECT_EQ(read_text(result / "uart.log"), "hello from the guest\n");
+  EXPECT_EQ(read_png(result / "frames/frame_000003.png").width, 32u);
+  const auto host = json::parse(read_text(result / "host.json"));
+  EXPECT_GT(host["wall_time"]["value"], 0.0);
+  EXPECT_GT(host["realtime_factor"]["value"], 0.0);
+  EXPECT_EQ(host["command"][0], "run");
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("frame.displayed"), HasSubstr("frames")));
+}
+
+TEST_F(CliTest, TwoRunsAreEqualInAllButHostJson) {
+  ASSERT_EQ(run(), 0);
+  std::vector<std::string> first;
+  const auto names = {"config.json", "stats.json", "frames.csv", "timeline.csv",
+                      "frames/frame_000002.png"};
+  for (const char* name : names) first.push_back(read_text(result / name));
+  ASSERT_EQ(run(), 0);
+  std::size_t i = 0;
+  for (const char* name : names) EXPECT_EQ(read_text(result / name), first[i++]) << name;
+}
+
+TEST_F(CliTest, CommandLineWinsAndIsRecorded) {
+  ASSERT_EQ(run({"-s", "run.frames=2", "-s", "run.mode=slow", "--sync=strict"}), 0) << err.str();
+  EXPECT_EQ(stats()["frame.displayed"]["value"], 2);
+  EXPECT_EQ(stats()["sync.strict"]["value"], 1);
+  const auto config = json::parse(read_text(result / "config.json"));
+  EXPECT_EQ(config["params"]["run.frames"]["origin"], "command line");
+  ASSERT_EQ(run({"-s", "run.list=[1.5, -2]"}), 0) << err.str();
+  EXPECT_EQ(json::parse(read_text(result / "config.json"))["params"]["run.list"]["value"],
+            "[1.5, -2]");
+}
+
+TEST_F(CliTest, SetMayStandBeforeTheExperiment) {
+  EXPECT_EQ(cli({"run", "-s", "run.frames=1", experiment, "-o", result.string()}), 0) << err.str();
+  EXPECT_EQ(stats()["frame.displayed"]["value"], 1);
+}
+
+TEST_F(CliTest, NoFramesWritesNoPictures) {
+  ASSERT_EQ(run({"--no-frames"}), 0);
+  EXPECT_TRUE(fs::is_empty(result / "frames"));
+}
+
+TEST_F(CliTest, WrongInputIsOneLineAndStatusTwo) {
+  const auto expect = [&](int status, const std::string& part) {
+    EXPECT_EQ(status, 2);
+    EXPECT_THAT(err.str(), HasSubstr(part));
+    const std::string text = err.str();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  };
+  expect(run({"-s", "run.frmes=2"}), "did you mean 'run.frames'?");
+  expect(run({"-s", "run.frames=0"}), "1 .. 100000");
+  expect(run({"--sync=loose"}), "strict");
+  expect(run({"--nonsense"}), "--nonsense");
+  expect(cli({"run"}), "experiment");
+  expect(cli({"run", (dir / "none.yaml").string()}), "none.yaml");
+  expect(cli({}), "fovea --help");
+  expect(cli({"fly"}), "'fly'");
+  expect(run({"-s", "run.list=[1, x]"}), "2 plain numbers");
+  expect(run({"-s", "run.mode=user_error"}), "footage 'x'");
+  dir.write("file", "");
+  expect(cli({"run", experiment, "-o", (dir / "file/r").string()}), "file/r");
+}
+
+TEST_F(CliTest, BadInputLeavesAnOlderResultAlone) {
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(run({"-s", "run.mode=user_error"}), 2);
+  EXPECT_EQ(stats()["complete"], true);
+}
+
+TEST_F(CliTest, GuestFailureIsStatusThreeAndADefectFour) {
+  EXPECT_EQ(run({"-s", "run.mode=guest_failure"}), 3);
+  EXPECT_THAT(err.str(), HasSubstr("PC 0x0"));
+  EXPECT_EQ(run({"-s", "run.mode=defect"}), 4);
+  EXPECT_THAT(err.str(), HasSubstr("own defect: broken"));
+}
+
+TEST_F(CliTest, GuestFailureWithFiguresKeepsThem) {
+  EXPECT_EQ(run({"-s", "run.mode=late_failure"}), 3);
+  EXPECT_EQ(stats()["complete"], false);
+  EXPECT_THAT(err.str(), HasSubstr("last access: 0x0"));
+}
+
+TEST_F(CliTest, MissingFeatureIsARemarkAndUnderStrictAnError) {
+  EXPECT_EQ(run({"-s", "run.mode=not_modelled"}), 0);
+  EXPECT_THAT(err.str(), HasSubstr("not modelled: field X of Y"));
+  EXPECT_EQ(stats()["remarks"][0]["what"], "field X of Y");
+  EXPECT_EQ(run({"-s", "run.mode=not_modelled", "--strict"}), 3);
+}
+
+TEST_F(CliTest, StoppedRunLeavesAValidPartialResult) {
+  stop = true;
+  signal = SIGINT;
+  EXPECT_EQ(run(), 130);
+  EXPECT_EQ(stats()["complete"], false);
+  EXPECT_EQ(stats()["frame.displayed"]["value"], 0);
+}
+
+TEST_F(CliTest, ParamsListsAndFilters) {
+  EXPECT_EQ(cli({"params"}), 0);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("run.frames"), HasSubstr("run.mode"), HasSubstr("assumed"),
+                               HasSubstr("1 .. 100000")));
+  EXPECT_EQ(cli({"params", "*.mode"}), 0);
+  EXPECT_THAT(out.str(), Not(HasSubstr("run.frames")));
+  EXPECT_EQ(cli({"params", "mode", "--markdown"}), 0);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("|---|"), HasSubstr("how it ends \\| or not")));
+  EXPECT_EQ(cli({"params", "run.frame_"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("did you mean 'run.frames'?"));
+}
+
+TEST_F(CliTest, VersionAndHelp) {
+  EXPECT_EQ(cli({"version"}), 0);
+  EXPECT_EQ(out.str(), "fovea " + version_text() + "\n");
+  EXPECT_EQ(cli({"--help"}), 0);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("run"), HasSubstr("params"), HasSubstr("Exit status")));
+  EXPECT_EQ(cli({"run", "--help"}), 0);
+  EXPECT_THAT(out.str(), HasSubstr("--set"));
+}
+
+/// The program itself (main.cpp over the stand-in board), as a process.
+class ProgramTest : public testing::Test {
+ protected:
+  struct Ended {
+    int status;
+    std::string err;
+  };
+  /// Starts it; `after` acts on the running process.
+  Ended start(std::vector<std::string> args, const std::function<void(pid_t)>& after = {},
+              rlim_t file_limit = RLIM_INFINITY) {
+    args.insert(args.begin(), FAKE_PROGRAM);
+    std::vector<char*> argv;
+    for (auto& a : args) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    const std::string err = (dir / "err").string();
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+      if (!std::freopen(err.c_str(), "w", stderr) || !std::freopen("/dev/null", "w", stdout))
+        ::_exit(99);
+      const rlimit limit{file_limit, file_limit};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      ::execv(argv[0], argv.data());
+      ::_exit(98);
+    }
+    if (after) after(pid);
+    int status = 0;
+    ::waitpid(pid, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_text(err)};
+  }
+  TempDir dir;
+  std::string experiment = dir.write("exp.yaml", "run: {frames: 100000, mode: slow}\n").string();
+};
+
+TEST_F(ProgramTest, SignalsEndTheRunWithAPartialResult) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path result = dir / ("r" + std::to_string(signal));
+    const fs::path third = result.string() + ".tmp/frames/frame_000002.png";
+    const auto ended = start({"run", experiment, "-o", result.string()}, [&](pid_t pid) {
+      for (int i = 0; i < 500 && !fs::exists(third); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      ::kill(pid, signal);
+    });
+    EXPECT_EQ(ended.status, 128 + signal) << ended.err;
+    const auto stats = json::parse(read_text(result / "stats.json"));
+    EXPECT_EQ(stats["complete"], false);
+    const auto frames = stats["frame.displayed"]["value"].get<std::uint64_t>();
+    EXPECT_GE(frames, 3u);
+    EXPECT_TRUE(fs::exists(result / "frames" / FrameWriter::file_name(frames - 1)));
+    EXPECT_FALSE(fs::exists(result / "frames" / FrameWriter::file_name(frames)));
+  }
+}
+
+TEST_F(ProgramTest, FullDiskIsOneLineAndStatusTwo) {
+  // 200 bytes per file: config.json is the first that is longer.
+  const auto ended = start({"run", experiment, "-o", (dir / "r").string()}, {}, 200);
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("config.json"), HasSubstr("File too large")));
+  EXPECT_FALSE(fs::exists(dir / "r"));
+  EXPECT_TRUE(fs::exists(dir / "r.tmp"));
+}
+
+TEST_F(ProgramTest, StatusOfWrongInputReachesTheShell) {
+  EXPECT_EQ(start({"run", (dir / "none.yaml").string()}).status, 2);
+  EXPECT_EQ(start({"version"}).status, 0);
+  EXPECT_EQ(
+      start({"run", experiment, "-s", "run.mode=guest_failure", "-o", (dir / "r").string()}).status,
+      3);
+}
+
+}  // namespace
+}  // namespace fovea::app

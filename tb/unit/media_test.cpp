@@ -1,0 +1,332 @@
+// sw/fovea/png.h and ffmpeg.h: pictures survive, damage is said in one line.
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <cstdlib>
+
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/ffmpeg.h"
+#include "sw/fovea/png.h"
+#include "tb/unit/support.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_text;
+using test::TempDir;
+using test::user_error;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+RgbImage pattern(unsigned width, unsigned height) {
+  RgbImage image{width, height, {}};
+  for (unsigned y = 0; y < height; ++y)
+    for (unsigned x = 0; x < width; ++x)
+      for (const unsigned v : {x * 7 + y, x * y, x ^ (y * 3)})
+        image.rgb.push_back(static_cast<std::uint8_t>(v));
+  return image;
+}
+
+std::string as_text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+TEST(PngTest, PicturesSurviveAtEveryLevel) {
+  TempDir dir;
+  const RgbImage image = pattern(33, 17);
+  for (const int level : {0, 1, 3, 6, 9}) {
+    write_png(dir / "p.png", image, level);
+    const RgbImage back = read_png(dir / "p.png");
+    EXPECT_EQ(back.width, 33u);
+    EXPECT_EQ(back.height, 17u);
+    EXPECT_EQ(back.rgb, image.rgb) << level;
+  }
+}
+
+TEST(PngTest, EqualPicturesGiveEqualBytes) {
+  EXPECT_EQ(encode_png(pattern(64, 48), 1), encode_png(pattern(64, 48), 1));
+}
+
+/// The 1x1 PNGs below are written out by hand: signature, IHDR, IDAT with one zlib block, IEND.
+std::string png_1x1(char depth, char colour, const std::string& idat, const std::string& idat_crc,
+                    const std::string& ihdr_crc) {
+  using namespace std::string_literals;
+  return "\x89PNG\r\n\x1a\n"s + "\0\0\0\x0dIHDR\0\0\0\x01\0\0\0\x01"s + depth + colour + "\0\0\0"s +
+         ihdr_crc + std::string("\0\0\0"s) + static_cast<char>(idat.size()) + "IDAT" + idat +
+         idat_crc + "\0\0\0\0IEND\xae\x42\x60\x82"s;
+}
+
+TEST(PngTest, GreyAndAlphaBecomeRgb) {
+  using namespace std::string_literals;
+  TempDir dir;
+  // zlib: 78 01, one stored block (01 len nlen), the row (filter 0 and the samples), Adler-32.
+  // 8-bit grey 0x50: row 00 50, Adler-32 = (0x52 << 16 | 0x51).
+  const std::string grey = png_1x1(8, 0, "\x78\x01\x01\x02\x00\xfd\xff\x00\x50\x00\x52\x00\x51"s,
+                                   "\x8c\x04\x9c\xda"s, "\x3a\x7e\x9b\x55"s);
+  const auto file = dir.write("grey.png", grey);
+  // The checksums come from the reader's view of the file: patch them with the true CRCs.
+  const auto crc = [](std::string_view data) {
+    std::uint32_t c = ~0u;
+    for (const char ch : data) {
+      c ^= static_cast<std::uint8_t>(ch);
+      for (int k = 0; k < 8; ++k) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    }
+    c = ~c;
+    return std::string{static_cast<char>(c >> 24), static_cast<char>(c >> 16),
+                       static_cast<char>(c >> 8), static_cast<char>(c)};
+  };
+  const auto sealed = [&](std::string png) {
+    png.replace(8 + 8 + 13, 4, crc(std::string_view(png).substr(12, 17)));
+    const std::size_t size = static_cast<std::uint8_t>(png[8 + 25 + 3]);
+    png.replace(8 + 25 + 8 + size, 4, crc(std::string_view(png).substr(8 + 25 + 4, 4 + size)));
+    return png;
+  };
+  dir.write("grey.png", sealed(grey));
+  EXPECT_EQ(read_png(file).rgb, (std::vector<std::uint8_t>{0x50, 0x50, 0x50}));
+  // RGBA 10 20 30 40: row 00 10 20 30 40; Adler a = 1+0xa0 = 0xa1, b = 1+0x11+0x31+0x61+0xa1 =
+  // 0x145.
+  dir.write(
+      "rgba.png",
+      sealed(png_1x1(8, 6, "\x78\x01\x01\x05\x00\xfa\xff\x00\x10\x20\x30\x40\x01\x45\x00\xa1"s,
+                     "\0\0\0\0"s, "\0\0\0\0"s)));
+  EXPECT_EQ(read_png(dir / "rgba.png").rgb, (std::vector<std::uint8_t>{0x10, 0x20, 0x30}));
+}
+
+TEST(PngTest, EveryCutOfAFileIsAnErrorThatNamesIt) {
+  TempDir dir;
+  const std::string whole = as_text(encode_png(pattern(16, 16), 1));
+  for (std::size_t size = 0; size < whole.size(); size += size < 64 ? 1 : 37) {
+    const auto file = dir.write("cut.png", whole.substr(0, size));
+    EXPECT_THAT(user_error([&] { read_png(file); }), HasSubstr("cut.png")) << size;
+  }
+  const auto file = dir.write("cut.png", whole.substr(0, whole.size() - 1));
+  EXPECT_THAT(user_error([&] { read_png(file); }), HasSubstr("cut short"));
+}
+
+TEST(PngTest, OneFlippedBitInThePixelsIsFound) {
+  TempDir dir;
+  std::string bytes = as_text(encode_png(pattern(16, 16), 1));
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
+  const auto file = dir.write("flip.png", bytes);
+  EXPECT_THAT(user_error([&] { read_png(file); }), HasSubstr("flip.png"));
+}
+
+TEST(PngTest, MissingFileGarbageAndFolderAreOneLine) {
+  TempDir dir;
+  EXPECT_THAT(user_error([&] { read_png(dir / "no.png"); }),
+              AllOf(HasSubstr("no.png"), HasSubstr("No such file")));
+  const auto garbage = dir.write("g.png", "this is a text, not a picture");
+  EXPECT_THAT(user_error([&] { read_png(garbage); }),
+              AllOf(HasSubstr("g.png"), HasSubstr("not a PNG")));
+  EXPECT_THAT(user_error([&] { read_png(dir.path()); }), HasSubstr("folder"));
+}
+
+TEST(PngTest, HeaderThatClaimsAHugePictureIsRefused) {
+  TempDir dir;
+  RgbImage wide{kMaxPictureSide + 1, 1, {}};
+  wide.rgb.resize(std::size_t{3} * wide.width);
+  write_png(dir / "wide.png", wide);
+  EXPECT_THAT(user_error([&] { read_png(dir / "wide.png"); }), HasSubstr("too large"));
+}
+
+TEST(UyvyToRgbTest, ReferenceColoursOfBt601) {
+  // EBU 75 % bars, 8-bit limited range (Y Cb Cr) and their R'G'B' (0 or 0.75 * 255 = 191), +-1 for
+  // the rounding of the tabulated bars.
+  struct Bar {
+    int y, cb, cr, r, g, b;
+  };
+  constexpr Bar kBars[] = {
+      {180, 128, 128, 191, 191, 191}, {162, 44, 142, 191, 191, 0}, {131, 156, 44, 0, 191, 191},
+      {112, 72, 58, 0, 191, 0},       {84, 184, 198, 191, 0, 191}, {65, 100, 212, 191, 0, 0},
+      {35, 212, 114, 0, 0, 191},      {16, 128, 128, 0, 0, 0},     {235, 128, 128, 255, 255, 255}};
+  for (const auto& bar : kBars) {
+    const std::vector<std::uint8_t> uyvy{
+        static_cast<std::uint8_t>(bar.cb), static_cast<std::uint8_t>(bar.y),
+        static_cast<std::uint8_t>(bar.cr), static_cast<std::uint8_t>(bar.y)};
+    const auto rgb = uyvy_to_rgb(2, 1, uyvy).rgb;
+    EXPECT_NEAR(rgb[0], bar.r, 1) << bar.y;
+    EXPECT_NEAR(rgb[1], bar.g, 1) << bar.y;
+    EXPECT_NEAR(rgb[2], bar.b, 1) << bar.y;
+    EXPECT_EQ(rgb[0], rgb[3]);
+  }
+}
+
+TEST(UyvyToRgbTest, EveryValueIsWithinOneOfTheRealFormula) {
+  for (int y = 0; y < 256; y += 5)
+    for (int cb = 0; cb < 256; cb += 15)
+      for (int cr = 0; cr < 256; cr += 15) {
+        const std::vector<std::uint8_t> in{
+            static_cast<std::uint8_t>(cb), static_cast<std::uint8_t>(y),
+            static_cast<std::uint8_t>(cr), static_cast<std::uint8_t>(y)};
+        const auto rgb = uyvy_to_rgb(2, 1, in).rgb;
+        const double l = (y - 16) / 219.0, b = (cb - 128) / 224.0, r = (cr - 128) / 224.0;
+        const double expected[3] = {
+            l + 1.402 * r, l - (0.114 * 1.772 * b + 0.299 * 1.402 * r) / 0.587, l + 1.772 * b};
+        for (int i = 0; i < 3; ++i)
+          ASSERT_NEAR(rgb[static_cast<std::size_t>(i)],
+                      std::min(255.0, std::max(0.0, 255 * expected[i])), 0.51)
+              << y << " " << cb << " " << cr;
+      }
+}
+
+std::vector<std::uint8_t> grey_frame(unsigned width, unsigned height, std::uint8_t y) {
+  std::vector<std::uint8_t> uyvy;
+  for (unsigned i = 0; i < width * height / 2; ++i) uyvy.insert(uyvy.end(), {128, y, 128, y});
+  return uyvy;
+}
+
+TEST(FrameWriterTest, WritesEveryFrameUnderItsNumber) {
+  TempDir dir;
+  FrameWriter writer({.folder = dir.path(), .queue_frames = 2});
+  for (std::uint64_t i = 0; i < 20; ++i)
+    writer.push(i, 32, 16, grey_frame(32, 16, static_cast<std::uint8_t>(16 + 10 * i)));
+  writer.close();
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const auto image = read_png(dir / FrameWriter::file_name(i));
+    // Y = 16 + 10 i is grey 255 * 10 i / 219.
+    EXPECT_NEAR(image.rgb[0], 2550.0 * static_cast<double>(i) / 219, 0.51) << i;
+  }
+  EXPECT_EQ(FrameWriter::file_name(7), "frame_000007.png");
+}
+
+TEST(FrameWriterTest, ErrorOfTheThreadReachesTheCaller) {
+  TempDir dir;
+  FrameWriter writer({.folder = dir / "missing", .queue_frames = 1});
+  const std::string error = user_error([&] {
+    for (std::uint64_t i = 0; i < 1000; ++i) writer.push(i, 2, 2, grey_frame(2, 2, 16));
+  });
+  EXPECT_THAT(error, HasSubstr("missing/frame_000000.png"));
+  EXPECT_THAT(user_error([&] { writer.close(); }), HasSubstr("frame_000000.png"));
+}
+
+TEST(FrameWriterTest, ErrorOfTheLastFrameShowsAtClose) {
+  TempDir dir;
+  FrameWriter writer({.folder = dir / "missing"});
+  writer.push(0, 2, 2, grey_frame(2, 2, 16));
+  EXPECT_THAT(user_error([&] { writer.close(); }), HasSubstr("missing"));
+}
+
+/// Decodes and encodes for real: the program is part of the documented set-up.
+class FfmpegTest : public testing::Test {
+ protected:
+  /// An MP4 of `count` frames of 64x48, frame i grey of luma 40 + 20 i.
+  fs::path clip(unsigned count) {
+    const fs::path file = dir / "clip.mp4";
+    FrameWriter writer({.folder = "", .mp4 = file, .mp4_rate = {25}});
+    for (unsigned i = 0; i < count; ++i)
+      writer.push(i, 64, 48, grey_frame(64, 48, static_cast<std::uint8_t>(40 + 20 * i)));
+    writer.close();
+    return file;
+  }
+  TempDir dir;
+};
+
+TEST_F(FfmpegTest, FilmGivesItsFramesInOrder) {
+  const auto file = clip(8);
+  const auto frames = decode_frames(file, {.max_frames = 5});
+  ASSERT_EQ(frames.size(), 5u);
+  for (unsigned i = 0; i < 5; ++i) {
+    EXPECT_EQ(frames[i].width, 64u);
+    EXPECT_EQ(frames[i].height, 48u);
+    EXPECT_NEAR(frames[i].rgb[3 * (64 * 24 + 32)], 255.0 * (24 + 20 * i) / 219, 4) << i;
+  }
+  EXPECT_EQ(decode_frames(file, {.max_frames = 100}).size(), 8u);
+}
+
+TEST_F(FfmpegTest, FramesAreScaledToTheSizeAskedFor) {
+  const auto frames = decode_frames(clip(1), {.width = 720, .height = 576, .max_frames = 1});
+  EXPECT_EQ(frames[0].width, 720u);
+  EXPECT_EQ(frames[0].height, 576u);
+  EXPECT_EQ(frames[0].rgb.size(), 720u * 576 * 3);
+}
+
+TEST_F(FfmpegTest, GarbageIsAnErrorThatNamesTheFile) {
+  const auto file = dir.write("garbage.mp4", std::string(5000, 'z'));
+  EXPECT_THAT(user_error([&] { decode_frames(file, {}); }),
+              AllOf(HasSubstr("garbage.mp4"), HasSubstr("ffmpeg")));
+}
+
+TEST_F(FfmpegTest, CutFilmIsAnError) {
+  const std::string whole = read_text(clip(20));
+  for (const double part : {0.3, 0.6, 0.9}) {
+    const auto file = dir.write(
+        "cut.mp4",
+        whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    EXPECT_THAT(user_error([&] { decode_frames(file, {.max_frames = 100}); }),
+                HasSubstr("cut.mp4"));
+  }
+}
+
+TEST_F(FfmpegTest, CutJpegIsAnErrorAndAWholeOneIsRead) {
+  write_png(dir / "p.png", pattern(320, 240));
+  const std::string jpg = (dir / "p.jpg").string();
+  ASSERT_EQ(
+      std::system(("ffmpeg -v error -i '" + (dir / "p.png").string() + "' '" + jpg + "'").c_str()),
+      0);
+  EXPECT_EQ(load_still(jpg).width, 320u);
+  const std::string whole = read_text(jpg);
+  const auto cut = dir.write("cut.jpg", whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(user_error([&] { load_still(cut); }), HasSubstr("cut.jpg"));
+}
+
+TEST_F(FfmpegTest, FileWithoutVideoIsAnError) {
+  const std::string wav = (dir / "tone.wav").string();
+  ASSERT_EQ(std::system(("ffmpeg -v error -f lavfi -i sine=d=0.1 '" + wav + "'").c_str()), 0);
+  EXPECT_THAT(user_error([&] { decode_frames(wav, {}); }), HasSubstr("tone.wav"));
+}
+
+TEST_F(FfmpegTest, MissingFileAndMissingProgramSayWhat) {
+  EXPECT_THAT(user_error([&] { decode_frames(dir / "no.mp4", {}); }),
+              AllOf(HasSubstr("no.mp4"), HasSubstr("no such file")));
+  const auto file = dir.write("x.mp4", "x");
+  EXPECT_THAT(user_error([&] { decode_frames(file, {.program = "no-such-ffmpeg"}); }),
+              AllOf(HasSubstr("x.mp4"), HasSubstr("no-such-ffmpeg"), HasSubstr("install")));
+}
+
+TEST_F(FfmpegTest, ProgramThatWritesNothingOrHalfAFrameIsNotedAsSuch) {
+  const auto file = dir.write("x.mp4", "x");
+  const auto fake = [&](const std::string& body) {
+    const auto program = dir.write("fake", "#!/bin/sh\n" + body + "\n");
+    fs::permissions(program, fs::perms::owner_all);
+    return user_error([&] { decode_frames(file, {.program = program.string()}); });
+  };
+  EXPECT_THAT(fake("exit 0"), HasSubstr("no frames"));
+  EXPECT_THAT(fake("printf 'P6\\n2 2\\n255\\nabc'"), HasSubstr("within a frame"));
+  EXPECT_THAT(fake("printf 'hello'"), HasSubstr("no pixmap"));
+  EXPECT_THAT(fake("echo first >&2; echo the reason >&2; exit 7"),
+              AllOf(HasSubstr("status 7"), HasSubstr("the reason")));
+  EXPECT_THAT(fake("kill -9 $$"), HasSubstr("status 137"));
+  // More messages than a pipe holds must not block the child.
+  EXPECT_THAT(fake("head -c 300000 /dev/zero | tr '\\0' e >&2; exit 3"), HasSubstr("status 3"));
+}
+
+TEST_F(FfmpegTest, NamesThatLookLikeOptionsOrProtocolsAreFiles) {
+  const auto file = clip(1);
+  const auto old = fs::current_path();
+  fs::current_path(dir.path());
+  for (const char* name : {"-i", "http:x", "concat:a|b", "a 'b' $(c).mp4"}) {
+    fs::copy_file(file, name);
+    EXPECT_EQ(decode_frames(name, {}).size(), 1u) << name;
+  }
+  fs::current_path(old);
+}
+
+TEST_F(FfmpegTest, FilmThatCannotBeWrittenIsAnErrorNotASignal) {
+  Mp4Writer writer(dir / "missing/f.mp4", 64, 48, {25});
+  const RgbImage image = pattern(64, 48);
+  EXPECT_THAT(user_error([&] {
+                for (int i = 0; i < 1000; ++i) writer.write(image);
+                writer.close();
+              }),
+              AllOf(HasSubstr("missing/f.mp4"), HasSubstr("No such file")));
+}
+
+TEST_F(FfmpegTest, StillIsReadByItsSignatureNotItsName) {
+  write_png(dir / "p.dat", pattern(5, 4));
+  EXPECT_EQ(load_still(dir / "p.dat").rgb, pattern(5, 4).rgb);
+  const auto text = dir.write("p.png", "no picture");
+  EXPECT_THAT(user_error([&] { load_still(text); }), HasSubstr("not a PNG"));
+}
+
+}  // namespace
+}  // namespace fovea::app

@@ -1,0 +1,244 @@
+// sw/fovea/outputs.h: what the text files of a run hold, byte by byte where tools rely on it.
+#include "sw/fovea/outputs.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "sw/fovea/progress.h"
+#include "tb/unit/support.h"
+
+namespace fovea::app {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+TEST(NumberTextTest, IsShortestAndReadsBackAsTheSameDouble) {
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(25.0), "25.0");
+  EXPECT_EQ(number_text(30000.0 / 1001.0), "29.97002997002997");
+  EXPECT_EQ(number_text(5e-324), "5e-324");
+  EXPECT_EQ(number_text(-0.0), "0.0");
+  for (const double v : {1.0 / 3, 1e22, 123456789.123456789, -2.5e-9})
+    EXPECT_EQ(json::parse(number_text(v)).get<double>(), v);
+}
+
+TEST(NumberTextTest, CountsStayIntegersUpToTheLargest) {
+  EXPECT_EQ(number_text(StatBase::Value{~std::uint64_t{0}}), "18446744073709551615");
+}
+
+TEST(NumberTextTest, NotANumberBecomesNull) {
+  EXPECT_EQ(number_text(std::nan("")), "null");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "null");
+}
+
+TEST(NsTextTest, KeepsEveryPicosecond) {
+  EXPECT_EQ(ns_text(0), "0.000");
+  EXPECT_EQ(ns_text(1), "0.001");
+  EXPECT_EQ(ns_text(40'000'000'123'456), "40000000123.456");
+}
+
+std::vector<StatRow> some_rows() {
+  return {{"frame.rate", 25.0, "1/s", "new frames"},
+          {"cpu.cycles", std::uint64_t{297}, "cycles", "a \"quoted\" \xff sentence"}};
+}
+
+TEST(StatsJsonTest, HoldsValueUnitAndSentenceUnderTheName) {
+  const auto j = json::parse(stats_json(some_rows(), true));
+  EXPECT_EQ(j["complete"], true);
+  EXPECT_EQ(j["band"], "not run");
+  EXPECT_EQ(j["frame.rate"]["value"], 25.0);
+  EXPECT_TRUE(j["frame.rate"]["value"].is_number_float());
+  EXPECT_TRUE(j["cpu.cycles"]["value"].is_number_unsigned());
+  EXPECT_EQ(j["frame.rate"]["unit"], "1/s");
+  EXPECT_EQ(j["frame.rate"]["description"], "new frames");
+}
+
+TEST(StatsJsonTest, OrderOfRowsDoesNotShow) {
+  auto rows = some_rows();
+  const std::string a = stats_json(rows, true);
+  std::swap(rows[0], rows[1]);
+  EXPECT_EQ(stats_json(rows, true), a);
+  EXPECT_LT(a.find("cpu.cycles"), a.find("frame.rate"));
+}
+
+TEST(StatsJsonTest, AMeanOfNothingIsNullAndStillJson) {
+  const auto j = json::parse(stats_json({{"x", std::nan(""), "s", ""}}, false));
+  EXPECT_TRUE(j["x"]["value"].is_null());
+  EXPECT_EQ(j["complete"], false);
+}
+
+TEST(StatsJsonTest, ListsRemarksWithTheirCounts) {
+  auto& d = Diagnostics::instance();
+  d.clear();
+  d.guest("odd write");
+  d.guest("odd write");
+  d.not_modelled("field X");
+  const auto j = json::parse(stats_json({}, true, collect_remarks(d)));
+  d.clear();
+  ASSERT_EQ(j["remarks"].size(), 2u);
+  EXPECT_EQ(j["remarks"][0]["what"], "odd write");
+  EXPECT_EQ(j["remarks"][0]["count"], 2);
+  EXPECT_EQ(j["remarks"][1]["kind"], "not modelled");
+}
+
+TEST(StatsJsonDeathTest, OneNameTwiceIsADefect) {
+  EXPECT_EXIT(stats_json({{"x", 1.0, "", ""}, {"x", 2.0, "", ""}}, true),
+              testing::ExitedWithCode(4), "called x");
+}
+
+TEST(CollectTest, TakesNamesAndValuesFromTheGroup) {
+  struct Group : StatGroup {
+    Group() : StatGroup("g") {}
+    Counter n{*this, "n", "count", "things"};
+  } group;
+  group.n += 5;
+  std::vector<StatRow> rows;
+  collect(group, rows);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].name, "g.n");
+  EXPECT_EQ(rows[0].value, StatBase::Value{std::uint64_t{5}});
+  EXPECT_EQ(find(rows, "g.m"), nullptr);
+}
+
+TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
+  struct Group : ParamGroup {
+    Group() : ParamGroup("ddr") {}
+    IntParam tRCD{*this,  "tRCD",      IntParam::Unit::kTime, 15'000,       5'000,
+                  60'000, "ACT to RD", Origin::kSourced,      "[DDR2] p. 1"};
+    IntParam depth{*this, "depth",   IntParam::Unit::kCount, 4, 1,
+                   16,    "entries", Origin::kAssumed,       ""};
+  } group;
+  ParamSet params;
+  params.add(group);
+  Experiment experiment(params);
+  test::TempDir dir;
+  const auto file = dir.write("e.yaml", "ddr.depth: 8\n");
+  experiment.load(file);
+  const auto j = json::parse(config_json(params, experiment, "1.2.3"));
+  EXPECT_EQ(j["version"], "1.2.3");
+  EXPECT_EQ(j["experiment"], "e");
+  EXPECT_EQ(j["params"]["ddr.tRCD"]["value"], "15ns");
+  EXPECT_EQ(j["params"]["ddr.tRCD"]["origin"], "default");
+  EXPECT_EQ(j["params"]["ddr.tRCD"]["tag"], "sourced");
+  EXPECT_EQ(j["params"]["ddr.tRCD"]["source"], "[DDR2] p. 1");
+  EXPECT_EQ(j["params"]["ddr.depth"]["value"], "8");
+  EXPECT_EQ(j["params"]["ddr.depth"]["default"], "4");
+  EXPECT_EQ(j["params"]["ddr.depth"]["origin"], file.string() + ":1");
+  EXPECT_EQ(j["params"]["ddr.depth"]["allowed"], "1 .. 16");
+}
+
+TEST(FramesCsvTest, UnknownTimesAreEmptyCells) {
+  FrameRow a;
+  a.index = 3;
+  a.camera = 1;
+  a.captured = 7;
+  a.capture_start = 1'500;
+  a.display_start = 40'000'000;
+  a.dropped = 2;
+  a.repeated = true;
+  const std::vector<FrameRow> rows{a};
+  const std::string csv = frames_csv(rows);
+  EXPECT_EQ(csv.substr(csv.find('\n') + 1), "3,1,7,1.500,,,,40000.000,,2,1\n");
+  const std::string header = csv.substr(0, csv.find('\n'));
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), 10);
+}
+
+TEST(TimelineCsvTest, HasAPairOfColumnsPerMaster) {
+  const std::vector<std::string> masters{"arm_d", "vpfe"};
+  const std::vector<TimelineRow> rows{{0, kPsPerMs, {1, 0}, {2, 64}}};
+  EXPECT_EQ(timeline_csv(masters, rows),
+            "start_ns,end_ns,arm_d.read_bytes,arm_d.write_bytes,vpfe.read_bytes,vpfe.write_bytes\n"
+            "0.000,1000000.000,1,2,0,64\n");
+}
+
+TEST(TimelineCsvDeathTest, RowOfAnotherWidthIsADefect) {
+  const std::vector<std::string> masters{"arm_d"};
+  const std::vector<TimelineRow> rows{{0, 1, {1, 2}, {1, 2}}};
+  EXPECT_EXIT(timeline_csv(masters, rows), testing::ExitedWithCode(4), "timeline");
+}
+
+TEST(HumanTextTest, PicksAFittingPrefix) {
+  EXPECT_EQ(human_text(0.0402, "s"), "40.2 ms");
+  EXPECT_EQ(human_text(1.5, "s"), "1.5 s");
+  EXPECT_EQ(human_text(123.0, "s"), "123 s") << "no kiloseconds";
+  EXPECT_EQ(human_text(std::uint64_t{165'888'000}, "bytes"), "165.9 MB");
+  EXPECT_EQ(human_text(std::uint64_t{0}, "bytes"), "0 bytes");
+  EXPECT_EQ(human_text(0.337, "ratio"), "33.7 %");
+  EXPECT_EQ(human_text(25.0, "1/s"), "25 1/s");
+  EXPECT_EQ(human_text(std::uint64_t{26}, "count"), "26");
+  EXPECT_EQ(human_text(std::nan(""), "s"), "-");
+}
+
+TEST(SummaryTableTest, ShowsWhatExistsAndMastersThatMovedBytes) {
+  const std::vector<StatRow> stats{{"frame.rate", 25.0, "1/s", ""},
+                                   {"bus.vpfe.write_bytes", std::uint64_t{829'440}, "bytes", ""},
+                                   {"bus.edma_tc0.read_bytes", std::uint64_t{0}, "bytes", ""},
+                                   {"cpu.cycles", std::uint64_t{9}, "cycles", ""}};
+  const std::string table = summary_table(stats, {});
+  EXPECT_THAT(table, HasSubstr("frame.rate"));
+  EXPECT_THAT(table, HasSubstr("829.4 kB"));
+  EXPECT_THAT(table, Not(HasSubstr("edma")));
+  EXPECT_THAT(table, Not(HasSubstr("cpu.cycles")));
+}
+
+/// A wall clock that the test moves.
+struct FakeClock {
+  ProgressMeter::Clock::time_point now{};
+  ProgressMeter::Now reader() {
+    return [this] { return now; };
+  }
+};
+
+TEST(ProgressMeterTest, PrintsALineAboutEveryTenSecondsWithoutATerminal) {
+  FakeClock clock;
+  std::ostringstream out;
+  ProgressMeter meter(out, false, clock.reader());
+  for (int i = 1; i <= 50; ++i) {
+    clock.now += std::chrono::milliseconds(500);
+    // Half real time; the first frame after 5 s of wall time.
+    meter.update({i * kPsPerSecond / 4, i > 10 ? static_cast<std::uint64_t>(i - 10) : 0, 80, 0});
+  }
+  meter.finish();
+  // 25 s: lines at 10 s and 20 s.
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  EXPECT_THAT(text, HasSubstr("simulated 5.000 s, frame 10/80, 0.500 s/s"));
+  // At 20 s 50 frames remain at 0.5 s each.
+  EXPECT_THAT(text, HasSubstr("frame 30/80, 0.500 s/s, ETA 25 s"));
+}
+
+TEST(ProgressMeterTest, RewritesOneLineOnATerminal) {
+  FakeClock clock;
+  std::ostringstream out;
+  ProgressMeter meter(out, true, clock.reader());
+  for (int i = 1; i <= 4; ++i) {
+    clock.now += std::chrono::milliseconds(250);
+    meter.update({static_cast<Picoseconds>(i) * kPsPerMs, 0, 0, 0});
+  }
+  const std::string text = out.str();
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 4);
+  meter.finish();
+  EXPECT_EQ(out.str().back(), '\n');
+}
+
+TEST(ProgressMeterTest, SpeedIsMeasuredFromTheFirstFrameOn) {
+  FakeClock clock;
+  std::ostringstream out;
+  ProgressMeter meter(out, false, clock.reader());
+  clock.now += std::chrono::seconds(100);  // a slow start
+  meter.update({kPsPerSecond, 1, 0, 1'000'000});
+  clock.now += std::chrono::seconds(4);
+  meter.update({3 * kPsPerSecond, 51, 0, 401'000'000});
+  std::vector<StatRow> rows{{"mips", 1.0, "", "the board's own"}};
+  meter.add_host_rows(rows);
+  EXPECT_EQ(std::get<double>(find(rows, "realtime_factor")->value), 0.5);
+  EXPECT_EQ(std::get<double>(find(rows, "wall_time")->value), 104.0);
+  EXPECT_EQ(std::get<double>(find(rows, "mips")->value), 1.0);
+  EXPECT_GT(std::get<std::uint64_t>(find(rows, "peak_rss")->value), 1'000'000u);
+}
+
+}  // namespace
+}  // namespace fovea::app

@@ -1,0 +1,131 @@
+// model/common/param.h: units, ranges, suggestions.
+#include "model/common/param.h"
+
+#include "tb/unit/support.h"
+
+namespace fovea {
+namespace {
+
+using test::user_error;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Params : ParamGroup {
+  Params() : ParamGroup("block") {}
+  IntParam time{*this,  "time",   IntParam::Unit::kTime, 15'000,    5'000,
+                60'000, "a time", Origin::kSourced,      "[X] p. 1"};
+  IntParam size{*this,   "size",   IntParam::Unit::kBytes, 16 << 10, 1 << 10,
+                1 << 20, "a size", Origin::kAssumed,       ""};
+  IntParam clock{*this,         "clock",   IntParam::Unit::kHertz, 297'000'000, 1,
+                 1'000'000'000, "a clock", Origin::kChoice,        ""};
+  IntParam cycles{*this, "cycles", IntParam::Unit::kCycles, 4, 0,
+                  100,   "cycles", Origin::kAssumed,        ""};
+  IntParam count{*this, "count", IntParam::Unit::kCount, 3, 0, 10, "a count", Origin::kChoice, ""};
+  RealParam angle{*this, "angle", "deg", 180, 1, 220, "an angle", Origin::kChoice, ""};
+  ListParam list{*this, "list", {1, 2}, {2, 3}, "a list", Origin::kChoice, ""};
+  BoolParam flag{*this, "flag", false, "a flag", Origin::kChoice, ""};
+  EnumParam mode{*this, "mode", "none", {"none", "tlm", "rtl"}, "a word", Origin::kChoice, ""};
+  TextParam file{*this, "file", "", "a name"};
+};
+
+class ParamTest : public testing::Test {
+ protected:
+  ParamTest() { set.add(params); }
+  Params params;
+  ParamSet set;
+};
+
+TEST_F(ParamTest, TimeIsKeptInPicoseconds) {
+  set.set("block.time", "12.5ns");
+  EXPECT_EQ(params.time(), 12'500u);
+  set.set("block.time", "12500 ps");
+  EXPECT_EQ(params.time(), 12'500u);
+  set.set("block.time", "0.02us");
+  EXPECT_EQ(params.time(), 20'000u);
+}
+
+TEST_F(ParamTest, SizesAreBinaryAndClocksDecimal) {
+  set.set("block.size", "4KiB");
+  EXPECT_EQ(params.size(), 4096u);
+  set.set("block.clock", "243MHz");
+  EXPECT_EQ(params.clock(), 243'000'000u);
+  EXPECT_THAT(user_error([&] { set.set("block.size", "4KB"); }), HasSubstr("KiB"));
+}
+
+TEST_F(ParamTest, MissingUnitIsRefused) {
+  EXPECT_THAT(user_error([&] { set.set("block.time", "12"); }),
+              AllOf(HasSubstr("block.time"), HasSubstr("'12'"), HasSubstr("5ns"), HasSubstr("60ns"),
+                    HasSubstr("unit")));
+  EXPECT_THAT(user_error([&] { set.set("block.cycles", "12"); }), HasSubstr("cycles"));
+  EXPECT_THAT(user_error([&] { set.set("block.angle", "90"); }), HasSubstr("deg"));
+}
+
+TEST_F(ParamTest, RangeIsTightAtBothEnds) {
+  for (const char* good : {"5ns", "60ns"}) EXPECT_NO_THROW(set.set("block.time", good)) << good;
+  for (const char* bad : {"4999ps", "60001ps", "-5ns", "nan", "infns", "1e99s", ""})
+    EXPECT_THROW(set.set("block.time", bad), UserError) << bad;
+  EXPECT_EQ(params.time(), 60'000u) << "a refused value changes nothing";
+}
+
+TEST_F(ParamTest, FractionOfSmallestUnitIsRefusedNotRounded) {
+  EXPECT_THROW(set.set("block.time", "5000.5ps"), UserError);
+  EXPECT_THROW(set.set("block.count", "2.5"), UserError);
+}
+
+TEST_F(ParamTest, ValueTextReadsBackAsTheSameValue) {
+  const auto check = [&](const char* key, const char* text) {
+    set.set(key, text);
+    const std::string printed = set.find(key)->text();
+    set.set(key, printed);
+    EXPECT_EQ(set.find(key)->text(), printed) << key;
+    return printed;
+  };
+  EXPECT_EQ(check("block.time", "12.5ns"), "12500ps");
+  EXPECT_EQ(check("block.size", "64KiB"), "64KiB");
+  EXPECT_EQ(check("block.cycles", "0 cycles"), "0 cycles");
+  EXPECT_EQ(check("block.angle", "0.1e2deg"), "10deg");
+  EXPECT_EQ(check("block.list", "[1.5, -2, 3e-3]"), "[1.5, -2, 0.003]");
+  EXPECT_EQ(check("block.clock", "13500kHz"), "13500kHz");
+}
+
+TEST_F(ParamTest, ListChecksItsCount) {
+  set.set("block.list", "[3, 4, 5]");
+  EXPECT_EQ(params.list(), (std::vector<double>{3, 4, 5}));
+  for (const char* bad : {"[1]", "[1,2,3,4]", "1, 2", "[1, x]", "[]", "["})
+    EXPECT_THAT(user_error([&] { set.set("block.list", bad); }), HasSubstr("2 or 3")) << bad;
+}
+
+TEST_F(ParamTest, WordsAndFlagsNameWhatIsAllowed) {
+  EXPECT_THAT(user_error([&] { set.set("block.mode", "tml"); }), HasSubstr("none, tlm, rtl"));
+  EXPECT_THAT(user_error([&] { set.set("block.flag", "yes"); }), HasSubstr("true, false"));
+  set.set("block.mode", "rtl");
+  EXPECT_EQ(params.mode.index(), 2u);
+}
+
+TEST_F(ParamTest, UnknownKeySuggestsTheNearest) {
+  EXPECT_THAT(user_error([&] { set.set("block.anlge", "90deg"); }),
+              HasSubstr("did you mean 'block.angle'?"));
+  EXPECT_THAT(user_error([&] { set.set("zzzzzzzzzzzzzzzz", "1"); }), HasSubstr("fovea params"));
+}
+
+TEST_F(ParamTest, RemembersWhetherTheUserSetIt) {
+  EXPECT_FALSE(params.count.user_set());
+  set.set("block.count", "3");
+  EXPECT_TRUE(params.count.user_set());
+}
+
+TEST(ParamDeathTest, DeclaringAKeyTwiceIsADefect) {
+  Params a, b;
+  ParamSet set;
+  set.add(a);
+  EXPECT_EXIT(set.add(b), testing::ExitedWithCode(4), "declared twice");
+}
+
+TEST(ParamDeathTest, DefaultOutOfItsRangeIsADefect) {
+  ParamGroup group("g");
+  EXPECT_EXIT(IntParam(group, "p", IntParam::Unit::kCount, 11, 0, 10, "", Origin::kChoice, ""),
+              testing::ExitedWithCode(4), "out of its own range");
+}
+
+}  // namespace
+}  // namespace fovea

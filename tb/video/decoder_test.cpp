@@ -1,0 +1,229 @@
+// Decoder and ISIF at full size: I2C, lock, rates, every byte of captured frames.
+#include <gtest/gtest.h>
+
+#include "model/video/isif.h"
+#include "model/video/tvp5146.h"
+#include "tb/video/bench.h"
+
+#ifndef FOVEA_STANDARD
+#define FOVEA_STANDARD "625/50"
+#endif
+#ifndef FOVEA_WIDTH
+#define FOVEA_WIDTH 720
+#endif
+#ifndef FOVEA_RELOCK
+#define FOVEA_RELOCK 10
+#endif
+#ifndef FOVEA_PHASE
+#define FOVEA_PHASE "0s"
+#endif
+#ifndef FOVEA_CROP
+#define FOVEA_CROP "first_lines"
+#endif
+
+namespace fovea::video {
+namespace {
+
+constexpr bool k625Here = std::string_view(FOVEA_STANDARD) == "625/50";
+constexpr bool kStudio = std::string_view(FOVEA_CROP) == "studio";
+constexpr const Standard& kStd = standard_of(k625Here);
+constexpr unsigned kWidth = FOVEA_WIDTH, kHeight = kStd.rows;
+constexpr std::uint32_t kBuffer = 0x8010'0000;
+
+std::uint8_t pattern(std::uint64_t k, unsigned row, unsigned i) {
+  return static_cast<std::uint8_t>(1 + (k * 91 + row * 37 + i * 5 + (row * i >> 4)) % 254);
+}
+
+class Chart : public PictureSource {
+ public:
+  unsigned width() const override { return kWidth; }
+  unsigned height() const override { return kHeight; }
+  const Picture& field(std::uint64_t k) override {
+    ++asked;
+    for (unsigned y = 0; y < kHeight; ++y)
+      for (unsigned i = 0; i < picture_.row_bytes(); ++i) picture_.row(y)[i] = pattern(k, y, i);
+    return picture_;
+  }
+  unsigned asked = 0;
+
+ private:
+  Picture picture_{kWidth, kHeight};
+};
+
+struct Bench {
+  VpssParams vpss;
+  Tvp5146Params tvp_params;
+  Chart chart;
+  sc_core::sc_signal<bool> on{"on", true};
+  ClockSignal clock{"clock", kByteClock};
+  sc_core::sc_vector<sc_core::sc_signal<bool>> event{"event", 3};
+  std::unique_ptr<Tvp5146> tvp;
+  Isif isif{"isif", vpss};
+  FakeMemory memory{"memory"};
+  RegisterPort regs{"regs"};
+  sc_core::sc_vector<EdgeLog> edges{"edges", 3};
+  std::vector<CaptureFrame> ended;
+
+  Bench() {
+    tvp_params.standard.set(FOVEA_STANDARD);
+    tvp_params.crop_525.set(FOVEA_CROP);
+    tvp_params.relock_fields.set(std::to_string(FOVEA_RELOCK));
+    tvp_params.phase.set(FOVEA_PHASE);
+    tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
+    tvp->clock(clock);
+    tvp->video.bind(isif.video);
+    isif.memory.socket.bind(memory.socket);
+    regs.socket.bind(isif.reg_socket);
+    isif.psc_enabled(on);
+    isif.gate(on);
+    for (unsigned i = 0; i < 3; ++i) {
+      isif.vdint[i].out(event[i]);
+      edges[i].in(event[i]);
+    }
+    isif.on_frame_end = [this](const CaptureFrame& f) { ended.push_back(f); };
+  }
+  void i2c_write(std::uint8_t reg, std::uint8_t value) {
+    ASSERT_TRUE(tvp->i2c_start(0x5D, false));
+    tvp->i2c_write(reg);
+    tvp->i2c_write(value);
+    tvp->i2c_stop();
+  }
+  std::uint8_t i2c_read(std::uint8_t reg) {
+    EXPECT_TRUE(tvp->i2c_start(0x5D, false));
+    tvp->i2c_write(reg);
+    EXPECT_TRUE(tvp->i2c_start(0x5D, true));
+    const std::uint8_t v = tvp->i2c_read();
+    tvp->i2c_stop();
+    return v;
+  }
+};
+Bench* bench = nullptr;
+
+TEST(DecoderTest, PictureThatDoesNotFitIsAUserError) {
+  struct Wide : Chart {
+    unsigned width() const override { return 800; }
+  } wide;
+  EXPECT_THROW(Tvp5146("wide", bench->tvp_params, wide), UserError);
+}
+
+// One story in one process: the cases build on each other and run in this order.
+TEST(DecoderTest, NobodyElseAnswersOnI2cAndIdsAreRight) {
+  run_for(kPsPerNs);
+  EXPECT_FALSE(bench->tvp->i2c_start(0x5C, false));
+  EXPECT_EQ(bench->i2c_read(0x80), 0x51);
+  EXPECT_EQ(bench->i2c_read(0x81), 0x46);
+}
+
+TEST(DecoderTest, CameraRunsFromPowerUpPlusItsPhase) {
+  const Clock clock(kByteClock);
+  const std::uint64_t first = clock.edge_at_or_after(bench->tvp_params.phase());
+  EXPECT_EQ(bench->tvp->field_time(0), clock.edge(first));
+  EXPECT_EQ(bench->tvp->field_time(2), clock.edge(first + kStd.frame_bytes()));
+}
+
+TEST(DecoderTest, NothingIsSentBeforeTheOutputsAreEnabled) {
+  run_until(bench->tvp->field_time(4));
+  EXPECT_EQ(bench->tvp->lines_sent(), 0u);
+  EXPECT_EQ(bench->chart.asked, 0u);
+  bench->i2c_write(0x34, 0x10);  // data without clock
+  run_until(bench->tvp->field_time(6));
+  EXPECT_EQ(bench->tvp->lines_sent(), 0u);
+  bench->i2c_write(0x34, 0x11);
+  run_until(bench->tvp->field_time(8));
+  // Two fields hold all lines of a frame, less the line that began at the very time of the write.
+  run_for(kPsPerUs);
+  EXPECT_EQ(bench->tvp->lines_sent(), kStd.lines) << "the first line of field 8 is out already";
+}
+
+TEST(DecoderTest, LocksAfterTheConfiguredFields) {
+  Bench& b = *bench;
+  const std::uint64_t from = b.tvp->locked_from_field();
+  EXPECT_EQ(from, std::uint64_t{FOVEA_RELOCK});
+  run_until(b.tvp->field_time(from) - kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
+  EXPECT_EQ(b.i2c_read(0x3F), 0);
+  run_until(b.tvp->field_time(from) + kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), k625Here ? 0x2E : 0x0E);
+  EXPECT_EQ(b.i2c_read(0x3F), k625Here ? 2 : 1);
+}
+
+TEST(DecoderTest, CapturedFrameIsByteExactAndFieldsCarryTheirInstants) {
+  Bench& b = *bench;
+  b.regs.write(0x84, 3);
+  b.regs.write(0x04, 2u << 12 | 1u << 7 | 1u << 2);
+  b.regs.write(0x88, 0x812);
+  b.regs.write(0x18, (720 - kWidth) / 2 * 2);
+  b.regs.write(0x1C, kWidth * 2 - 1);
+  // Studio crop: row 1 is on line 23, three lines below the first active one; row 0 on line 285.
+  b.regs.write(0x20, kStudio ? 4 : 1);
+  b.regs.write(0x24, kStudio ? 3 : 1);
+  b.regs.write(0x28, kHeight / 2 - 1);
+  b.regs.write(0x34, (kWidth * 2 + 31) / 32);
+  b.regs.write(0x38, 0x249 | (kStudio ? 1u << 14 : 0u));
+  b.regs.write(0x3C, kBuffer >> 21);
+  b.regs.write(0x40, kBuffer >> 5 & 0xFFFF);
+  b.regs.write(0x00, 3);
+  const unsigned asked = b.chart.asked;
+  while (b.ended.size() < 3) run_for(kPsPerMs);
+  const CaptureFrame& f = b.ended[2];
+  ASSERT_TRUE(f.complete);
+  EXPECT_EQ(f.overflows, 0u);
+  EXPECT_EQ(f.source_field[1], f.source_field[0] + 1);
+  unsigned wrong = 0;
+  const unsigned pitch = (kWidth * 2 + 31) / 32 * 32;
+  for (unsigned r = 0; r < kHeight; ++r) {
+    const bool second = (r % 2 != 0) != kStudio;
+    for (unsigned i = 0; i < kWidth * 2; ++i)
+      wrong += b.memory.at(kBuffer + r * pitch)[i] != pattern(f.source_field[second], r, i);
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_LE(b.chart.asked - asked, 2 * b.ended.size() + 4) << "the source is asked once per field";
+}
+
+TEST(DecoderTest, FrameRateIsExact) {
+  Bench& b = *bench;
+  b.regs.write(0x00, 0);
+  b.regs.write(0x00, 3);
+  b.ended.clear();
+  while (b.ended.size() < 31) run_for(kPsPerMs);
+  // 30 frames of 30000/1001 Hz last 1.001 s, 25 frames of 25 Hz one second; edges round down.
+  const unsigned n = k625Here ? 25 : 30;
+  const Picoseconds expected = k625Here ? kPsPerSecond : 1'001'000'000'000;
+  const Picoseconds measured =
+      b.ended[n + (b.ended[0].complete ? 0 : 1)].start - b.ended[b.ended[0].complete ? 0 : 1].start;
+  EXPECT_LE(measured > expected ? measured - expected : expected - measured, 1u);
+}
+
+TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
+  Bench& b = *bench;
+  b.i2c_write(0x02, k625Here ? 1 : 2);  // the other standard: never locks
+  b.ended.clear();
+  while (b.ended.size() < 2) run_for(kPsPerMs);
+  EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
+  EXPECT_EQ(b.memory.at(kBuffer)[0], 0x80);
+  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  b.i2c_write(0x02, 0);
+  const std::uint64_t from = b.tvp->locked_from_field();
+  run_until(b.tvp->field_time(from) - kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
+  run_until(b.tvp->field_time(from) + kPsPerUs);
+  EXPECT_NE(b.i2c_read(0x3A) & 0x0E, 0);
+}
+
+TEST(DecoderTest, PowerDownStopsTheStream) {
+  Bench& b = *bench;
+  b.i2c_write(0x03, 1);
+  const std::uint64_t sent = b.tvp->lines_sent();
+  run_for(50 * kPsPerMs);
+  EXPECT_EQ(b.tvp->lines_sent(), sent);
+}
+
+}  // namespace
+}  // namespace fovea::video
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  fovea::video::Bench bench;
+  fovea::video::bench = &bench;
+  return RUN_ALL_TESTS();
+}

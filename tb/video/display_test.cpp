@@ -1,0 +1,375 @@
+// OSD, VENC and display at full size: what is in memory is what the display gets, when it is due.
+#include <gtest/gtest.h>
+
+#include "model/video/display_sink.h"
+#include "model/video/osd.h"
+#include "model/video/venc.h"
+#include "tb/video/bench.h"
+
+#ifndef FOVEA_AHEAD
+#define FOVEA_AHEAD 1
+#endif
+#ifndef FOVEA_OUTSTANDING
+#define FOVEA_OUTSTANDING 4
+#endif
+#ifndef FOVEA_625
+#define FOVEA_625 1
+#endif
+
+namespace fovea::video {
+namespace {
+
+constexpr const Standard& kStd = standard_of(FOVEA_625);
+constexpr unsigned kRows = kStd.rows, kPitch = 1440;
+constexpr std::uint32_t kBuffer = 0x8010'0000, kOther = 0x8020'0000;
+
+std::uint8_t pattern(unsigned row, unsigned i) {
+  return static_cast<std::uint8_t>(1 + (row * 37 + i * 5 + (row * i >> 4)) % 254);
+}
+
+/// Passes lines on and keeps the first of each field.
+class Tap : public sc_core::sc_module, public DisplayLineIf {
+ public:
+  sc_core::sc_export<DisplayLineIf> in{"in"};
+  sc_core::sc_port<DisplayLineIf> out{"out"};
+  struct First {
+    unsigned number;
+    bool f;
+    std::uint8_t byte;
+    Picoseconds start;
+  };
+  std::vector<First> firsts;
+  explicit Tap(sc_core::sc_module_name name) : sc_module(name) { in.bind(*this); }
+  void line(const DisplayLine& l) override {
+    if (l.number == l.standard->active_first[l.f])
+      firsts.push_back({l.number, l.f, l.uyvy ? l.uyvy[0] : std::uint8_t{0}, l.start});
+    out->line(l);
+  }
+  void raster_off() override { out->raster_off(); }
+};
+
+struct Params : VpssParams {
+  Params() {
+    read_ahead_lines.set(std::to_string(FOVEA_AHEAD));
+    read_outstanding.set(std::to_string(FOVEA_OUTSTANDING));
+  }
+};
+
+struct Bench {
+  Params params;
+  sc_core::sc_signal<bool> on{"on", true}, gate{"gate", true}, event{"event"};
+  ClockSignal clock{"clock", kByteClock};
+  Osd osd{"osd", params};
+  Venc venc{"venc", params};
+  Tap tap{"tap"};
+  DisplaySink sink{"sink"};
+  FakeMemory memory{"memory"};
+  RegisterPort osd_regs{"osd_regs"}, venc_regs{"venc_regs"};
+  EdgeLog edges{"edges"};
+  std::vector<DisplayFrame> frames;
+  std::vector<Osd::Latch> latches;
+
+  Bench() {
+    osd.memory.socket.bind(memory.socket);
+    osd_regs.socket.bind(osd.reg_socket);
+    venc_regs.socket.bind(venc.reg_socket);
+    osd.psc_enabled(on);
+    osd.gate(on);
+    venc.psc_enabled(on);
+    venc.vpbe_gate(on);
+    venc.venc_gate(gate);
+    venc.clock(clock);
+    venc.osd.bind(osd.lines);
+    venc.display.bind(tap.in);
+    tap.out.bind(sink.lines);
+    venc.interrupt.out(event);
+    edges.in(event);
+    sink.assembler.on_frame = [this](const DisplayFrame& f) { frames.push_back(f); };
+    osd.on_latch = [this](const Osd::Latch& l) { latches.push_back(l); };
+  }
+};
+Bench* bench = nullptr;
+
+enum : std::uint32_t {
+  MODE = 0x00,
+  VIDWINMD = 0x04,
+  VIDWIN0OFST = 0x18,
+  VIDWINADH = 0x28,
+  VIDWIN0ADL = 0x2C,
+  BASEPX = 0x40,
+  BASEPY = 0x44,
+  XP = 0x48,
+  YP = 0x4C,
+  XL = 0x50,
+  YL = 0x54,
+  VMOD = 0x00,
+  VSTAT = 0xB8
+};
+constexpr std::uint32_t kOn = FOVEA_625 ? 0x43 : 0x03;
+constexpr Picoseconds kField = kPsPerSecond / (FOVEA_625 ? 50 : 59);
+
+class DisplayTest : public testing::Test {
+ protected:
+  Bench& b = *bench;
+  void SetUp() override {
+    b.venc_regs.write(VMOD, 0);
+    b.memory.latency = 100 * kPsPerNs;
+    run_for(kPsPerMs);
+    for (unsigned r = 0; r < kRows; ++r)
+      for (unsigned i = 0; i < kPitch; ++i) b.memory.at(kBuffer + r * kPitch)[i] = pattern(r, i);
+    b.osd_regs.write(MODE, 0);
+    b.osd_regs.write(VIDWINMD, 3);
+    b.osd_regs.write(VIDWIN0OFST, 0x1000 | kPitch / 32);
+    set_address(kBuffer);
+    b.osd_regs.write(BASEPX, FOVEA_625 ? 0x7E : 0x79);
+    b.osd_regs.write(BASEPY, FOVEA_625 ? 0x16 : 0x10);
+    b.osd_regs.write(XP, 0);
+    b.osd_regs.write(YP, 0);
+    b.osd_regs.write(XL, 720);
+    b.osd_regs.write(YL, kRows / 2);
+    b.frames.clear();
+    b.latches.clear();
+    b.tap.firsts.clear();
+    b.edges.rises.clear();
+    b.memory.log.clear();
+    violations_ = b.sink.stats.violations.count();
+    underflows_ = b.sink.stats.underflows.count();
+  }
+  void TearDown() override { EXPECT_EQ(b.sink.stats.violations.count(), violations_); }
+  void set_address(std::uint32_t a) {
+    const std::uint32_t units = (a - 0x8000'0000u) >> 5;
+    b.osd_regs.write(VIDWINADH, units >> 16 & 0x7F);
+    b.osd_regs.write(VIDWIN0ADL, units & 0xFFFF);
+  }
+  void show(std::size_t frames) {
+    b.venc_regs.write(VMOD, kOn);
+    const std::size_t want = b.frames.size() + frames;
+    while (b.frames.size() < want) run_for(kPsPerMs);
+  }
+  unsigned wrong(const Picture& p) {
+    unsigned n = 0;
+    for (unsigned r = 0; r < kRows; ++r)
+      for (unsigned i = 0; i < kPitch; ++i) n += p.row(r)[i] != pattern(r, i);
+    return n;
+  }
+  std::uint64_t underflows() const { return b.sink.stats.underflows.count() - underflows_; }
+  std::uint64_t violations_ = 0, underflows_ = 0;
+};
+
+TEST_F(DisplayTest, MemoryPictureEqualsWhatTheDisplayReceives) {
+  show(2);
+  EXPECT_EQ(wrong(b.frames[0].picture), 0u);
+  EXPECT_EQ(b.frames[0].address[0], kBuffer);
+  EXPECT_EQ(b.frames[0].address[1], kBuffer);
+  EXPECT_FALSE(b.frames[0].repeated);
+  EXPECT_TRUE(b.frames[1].repeated);
+  EXPECT_EQ(underflows(), 0u);
+}
+
+TEST_F(DisplayTest, FirstFieldShowsTheUpperRows) {
+  show(1);
+  ASSERT_GE(b.tap.firsts.size(), 2u);
+  EXPECT_EQ(b.tap.firsts[0].number, FOVEA_625 ? 23u : 20u);
+  EXPECT_EQ(b.tap.firsts[0].byte, pattern(0, 0));
+  EXPECT_EQ(b.tap.firsts[1].number, FOVEA_625 ? 336u : 283u);
+  EXPECT_EQ(b.tap.firsts[1].byte, pattern(1, 0));
+}
+
+TEST_F(DisplayTest, FieldInversionShowsTheLowerRowsFirst) {
+  b.osd_regs.write(MODE, 1u << 9);
+  show(1);
+  EXPECT_EQ(b.tap.firsts[0].byte, pattern(1, 0));
+  EXPECT_EQ(b.tap.firsts[1].byte, pattern(0, 0));
+}
+
+TEST_F(DisplayTest, WithoutFieldModeBothFieldsShowTheSameRows) {
+  b.osd_regs.write(VIDWINMD, 1);
+  show(1);
+  EXPECT_EQ(b.frames[0].picture.row(2)[0], pattern(1, 0));
+  EXPECT_EQ(b.frames[0].picture.row(3)[0], pattern(1, 0));
+}
+
+TEST_F(DisplayTest, FrameRateIsExact) {
+  const unsigned n = FOVEA_625 ? 25 : 30;
+  show(n + 1);
+  const Picoseconds expected = FOVEA_625 ? kPsPerSecond : 1'001'000'000'000;
+  const Picoseconds measured = b.frames[n].start - b.frames[0].start;
+  EXPECT_LE(measured > expected ? measured - expected : expected - measured, 1u);
+}
+
+TEST_F(DisplayTest, RasterInterruptsAndStatusComeAtTheFieldStarts) {
+  const Clock clock(kByteClock);
+  const std::uint64_t origin = clock.edge_after(kernel_now());
+  show(1);
+  // Field 1 of the raster begins with the raster; field 2 where F changes.
+  const unsigned lines = FOVEA_625 ? 312 : 262;
+  ASSERT_GE(b.edges.rises.size(), 2u);
+  EXPECT_EQ(b.edges.rises[0], clock.edge(origin));
+  EXPECT_EQ(b.edges.rises[1], clock.edge(origin + std::uint64_t{lines} * kStd.line_bytes));
+  EXPECT_EQ(b.frames[0].start,
+            clock.edge(origin + (FOVEA_625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
+  b.edges.rises.clear();
+  while (b.edges.rises.size() < 1) run_for(kPsPerUs);
+  EXPECT_EQ(b.venc_regs.read(VSTAT) >> 4 & 1, b.latches.back().f ? 1u : 0u);
+}
+
+TEST_F(DisplayTest, NewAddressTakesEffectAtTheNextFieldStart) {
+  for (unsigned i = 0; i < kRows * kPitch; ++i) b.memory.at(kOther)[i] = 0x55;
+  b.venc_regs.write(VMOD, kOn);
+  run_for(kField / 2);  // in the first field's picture
+  set_address(kOther);
+  while (b.frames.empty()) run_for(kPsPerMs);
+  EXPECT_EQ(b.frames[0].address[0], kBuffer);
+  EXPECT_EQ(b.frames[0].address[1], kOther);
+  EXPECT_EQ(b.frames[0].picture.row(kRows - 2)[7], pattern(kRows - 2, 7));
+  EXPECT_EQ(b.frames[0].picture.row(kRows - 1)[7], 0x55);
+  ASSERT_GE(b.latches.size(), 2u);
+  EXPECT_EQ(b.latches[0].address, kBuffer);
+  EXPECT_EQ(b.latches[1].address, kOther);
+}
+
+TEST_F(DisplayTest, WithFrameLatchTheWholeFrameKeepsItsAddress) {
+  b.params.osd_latch.set("frame");
+  b.venc_regs.write(VMOD, kOn);
+  run_for(kField / 2);
+  set_address(kOther);
+  while (b.frames.size() < 2) run_for(kPsPerMs);
+  b.params.osd_latch.set("field");
+  EXPECT_EQ(b.frames[0].address[1], kBuffer);
+  EXPECT_EQ(wrong(b.frames[0].picture), 0u);
+  EXPECT_EQ(b.frames[1].address[0], kOther);
+}
+
+TEST_F(DisplayTest, WindowOriginMovesThePictureByItsPixelsAndLines) {
+  b.osd_regs.write(XP, 40);
+  b.osd_regs.write(XL, 640);
+  b.osd_regs.write(YP, 8);
+  b.osd_regs.write(YL, 100);
+  show(1);
+  const Picture& p = b.frames[0].picture;
+  EXPECT_EQ(p.row(16)[80], pattern(0, 0));
+  EXPECT_EQ(p.row(17)[80], pattern(1, 0));
+  EXPECT_EQ(p.row(16)[79], 0x10) << "black left of it";
+  EXPECT_EQ(p.row(16)[80 + 1279], pattern(0, 1279));
+  EXPECT_EQ(p.row(16)[80 + 1280], 0x80);
+  EXPECT_EQ(p.row(15)[80], 0x80);
+  EXPECT_EQ(p.row(16 + 199)[80], pattern(199, 0));
+  EXPECT_EQ(p.row(16 + 200)[80], 0x80);
+}
+
+TEST_F(DisplayTest, BasepxOnePairFurtherMovesThePictureByOnePair) {
+  b.osd_regs.write(BASEPX, (FOVEA_625 ? 0x7E : 0x79) + 2);
+  show(1);
+  EXPECT_EQ(b.frames[0].picture.row(0)[0], 0x80);
+  EXPECT_EQ(b.frames[0].picture.row(0)[4], pattern(0, 0));
+}
+
+TEST_F(DisplayTest, WrongPitchShears) {
+  b.osd_regs.write(VIDWIN0OFST, 0x1000 | (kPitch / 32 - 1));
+  show(1);
+  for (unsigned r : {1u, 2u, 100u}) {
+    const unsigned at = r * (kPitch - 32);
+    EXPECT_EQ(b.frames[0].picture.row(r)[0], pattern(at / kPitch, at % kPitch)) << "row " << r;
+  }
+}
+
+TEST_F(DisplayTest, ChromaSwapExchangesCbAndCr) {
+  b.osd_regs.write(MODE, 1u << 15);
+  show(1);
+  EXPECT_EQ(b.frames[0].picture.row(0)[0], pattern(0, 2));
+  EXPECT_EQ(b.frames[0].picture.row(0)[1], pattern(0, 1));
+  EXPECT_EQ(b.frames[0].picture.row(0)[2], pattern(0, 0));
+}
+
+TEST_F(DisplayTest, WindowOffIsBlackAndReadsNothing) {
+  b.osd_regs.write(VIDWINMD, 2);
+  show(1);
+  EXPECT_TRUE(b.memory.log.empty());
+  EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
+  EXPECT_FALSE(b.frames[0].window);
+  EXPECT_FALSE(b.frames[0].repeated);
+}
+
+TEST_F(DisplayTest, BlankedEncoderIsBlack) {
+  b.venc_regs.write(VMOD, kOn | 1u << 3);
+  while (b.frames.empty()) run_for(kPsPerMs);
+  EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
+}
+
+TEST_F(DisplayTest, GatedEncoderShowsNothing) {
+  b.gate.write(false);
+  run_for(kPsPerUs);
+  b.venc_regs.write(VMOD, kOn);
+  run_for(3 * kField);
+  EXPECT_TRUE(b.edges.rises.empty());
+  EXPECT_TRUE(b.frames.empty());
+  b.gate.write(true);
+  run_for(3 * kField);
+  EXPECT_FALSE(b.frames.empty());
+}
+
+TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
+  const Clock clock(kByteClock);
+  const std::uint64_t origin = clock.edge_after(kernel_now());
+  show(1);
+  ASSERT_GE(b.memory.log.size(), std::size_t{23} * kRows);
+  const Picoseconds ahead =
+      clock.edge(origin + ((FOVEA_625 ? 22u : 16u) - FOVEA_AHEAD) * kStd.line_bytes);
+  EXPECT_EQ(b.memory.log[0].time, ahead);
+  constexpr unsigned kAtOnce = FOVEA_OUTSTANDING;
+  EXPECT_EQ(b.memory.log[kAtOnce - 1].time, ahead);
+  EXPECT_EQ(b.memory.log[kAtOnce].time, ahead + b.memory.latency);
+  EXPECT_EQ(b.memory.log[0].bytes, 64u);
+  EXPECT_EQ(b.memory.log[0].address, kBuffer);
+}
+
+TEST_F(DisplayTest, DataDueAtTheirArrivalAreTooLateAndOnePicosecondEarlierAreNot) {
+  // 64 bytes a line, read FOVEA_AHEAD lines before its own start: due after these and the blanking.
+  // Rows of 1440 bytes: the upper field's are one burst of 64, the lower field's two of 32.
+  b.osd_regs.write(XL, 32);
+  const Clock clock(kByteClock);
+  const Picoseconds due = clock.edge(FOVEA_AHEAD * kStd.line_bytes + kStd.active_offset());
+  b.memory.latency = due - 2;  // edges round down: the interval may be shorter by 1 ps
+  show(1);
+  EXPECT_EQ(underflows(), 0u);
+  EXPECT_EQ(b.frames[0].picture.row(100)[0], pattern(100, 0));
+  b.venc_regs.write(VMOD, 0);
+  run_for(kPsPerMs);
+  b.memory.latency = due + 1;
+  show(1);
+  EXPECT_EQ(underflows(), kRows) << "the first burst of each line; the second is due later";
+  EXPECT_EQ(b.frames[1].picture.row(100)[0], 0x80);
+  EXPECT_EQ(b.frames[1].picture.row(101)[31], 0x10);
+  EXPECT_EQ(b.frames[1].picture.row(101)[32], pattern(101, 32));
+  EXPECT_EQ(b.frames[1].underflows, kRows);
+}
+
+TEST_F(DisplayTest, HopelessMemoryGivesBlackAndCountsEveryBurst) {
+  b.memory.latency = 5 * kPsPerMs;
+  show(1);
+  EXPECT_EQ(underflows(), std::uint64_t{23} * kRows);
+  EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
+  b.venc_regs.write(VMOD, 0);
+  run_for(25 * kPsPerMs);  // late answers come to nobody
+}
+
+TEST_F(DisplayTest, WrongClockIsCaughtByTheDisplay) {
+  b.clock.write(Frequency(26'538'461));
+  b.venc_regs.write(VMOD, kOn);
+  run_for(2 * kField);
+  EXPECT_GT(b.sink.stats.violations.count(), violations_ + 100);
+  b.venc_regs.write(VMOD, 0);
+  b.clock.write(kByteClock);
+  run_for(kPsPerUs);
+  violations_ = b.sink.stats.violations.count();
+}
+
+}  // namespace
+}  // namespace fovea::video
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  fovea::video::Bench bench;
+  fovea::video::bench = &bench;
+  return RUN_ALL_TESTS();
+}

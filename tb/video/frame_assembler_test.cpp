@@ -1,0 +1,155 @@
+// The display's checker: right frames from right lines, and a complaint for each way to be wrong.
+#include "model/video/core/frame_assembler.h"
+
+#include <gtest/gtest.h>
+
+#include "model/common/clock.h"
+
+namespace fovea::video {
+namespace {
+
+/// Feeds a raster like an encoder's, with one fault where asked.
+struct Feed {
+  explicit Feed(const Standard& standard, Frequency f = kByteClock, Picoseconds start = 12'345)
+      : s(standard), clock(f, start) {
+    sink.on_frame = [this](const DisplayFrame& fr) { frames.push_back(fr); };
+  }
+  DisplayLine make(std::uint64_t n) {
+    const LinePosition p = locate(s, n);
+    const std::uint64_t first = n * s.line_bytes + s.active_offset();
+    for (unsigned i = 0; i < kActiveBytes; ++i)
+      bytes[i] = static_cast<std::uint8_t>(p.line * 7 + i * 3 + salt);
+    return {&s,
+            p.line,
+            p.field % 2 != 0,
+            clock.edge(first),
+            clock.edge(first + kActiveBytes),
+            bytes.data(),
+            true,
+            address,
+            0};
+  }
+  /// Sends the active lines of whole frames [from, to).
+  template <typename Fault>
+  void frames_from_to(unsigned from, unsigned to, Fault fault) {
+    for (std::uint64_t n = std::uint64_t{from} * s.lines; n < std::uint64_t{to} * s.lines; ++n) {
+      DisplayLine l = make(n);
+      if (s.at(l.number).v) continue;
+      if (fault(l)) sink.line(l);
+    }
+  }
+  void run(unsigned frame_count) {
+    frames_from_to(0, frame_count, [](DisplayLine&) { return true; });
+  }
+  const Standard& s;
+  Clock clock;
+  std::array<std::uint8_t, kActiveBytes> bytes{};
+  std::uint8_t salt = 0;
+  std::uint32_t address = 0x80100000;
+  FrameAssembler sink;
+  std::vector<DisplayFrame> frames;
+};
+
+class BothStandards : public testing::TestWithParam<const Standard*> {};
+INSTANTIATE_TEST_SUITE_P(Standards, BothStandards, testing::Values(&k625, &k525));
+
+TEST_P(BothStandards, CleanRasterGivesFramesWithoutComplaint) {
+  Feed feed(*GetParam());
+  feed.run(3);
+  EXPECT_EQ(feed.sink.violations(), 0u);
+  ASSERT_EQ(feed.frames.size(), 3u);
+  EXPECT_EQ(feed.frames[0].picture.height, GetParam()->rows);
+  EXPECT_FALSE(feed.frames[0].repeated);
+  EXPECT_TRUE(feed.frames[1].repeated);
+  // Row 1 is the first line of the second field.
+  EXPECT_EQ(feed.frames[0].picture.row(1)[0],
+            static_cast<std::uint8_t>(GetParam()->active_first[1] * 7));
+  EXPECT_EQ(feed.frames[0].picture.row(2)[0],
+            static_cast<std::uint8_t>((GetParam()->active_first[0] + 1) * 7));
+}
+
+TEST_P(BothStandards, MissingLineIsReportedAndBreaksTheFrame) {
+  Feed feed(*GetParam());
+  const unsigned lost = GetParam()->active_first[0] + 5;
+  feed.frames_from_to(0, 1, [lost](DisplayLine& l) { return l.number != lost; });
+  EXPECT_EQ(feed.sink.violations(), 1u);
+  EXPECT_EQ(feed.sink.frames(), 0u);
+  EXPECT_EQ(feed.sink.broken_frames(), 1u);
+}
+
+TEST_P(BothStandards, LateLineIsReported) {
+  Feed feed(*GetParam());
+  const unsigned late = GetParam()->active_first[1] + 9;
+  feed.frames_from_to(0, 1, [late](DisplayLine& l) {
+    if (l.number == late) l.start += 1000, l.end += 1000;
+    return true;
+  });
+  EXPECT_EQ(feed.sink.violations(), 2u);  // late, and the next one early against it
+}
+
+TEST_P(BothStandards, WrongClockIsReportedOnEveryLine) {
+  Feed feed(*GetParam(), Frequency(26'538'461));
+  feed.run(1);
+  EXPECT_GE(feed.sink.violations(), std::uint64_t{GetParam()->active_count[0]});
+}
+
+TEST_P(BothStandards, SlowDriftBelowOnePicosecondALineIsReported) {
+  // 10 ppb off: 0.64 ps a line; only the unbroken count can see it.
+  Feed feed(*GetParam(), Frequency(2'700'000'027, 100));
+  feed.run(1);
+  EXPECT_GT(feed.sink.violations(), 0u);
+}
+
+TEST_P(BothStandards, SwappedFieldsAreReported) {
+  Feed feed(*GetParam());
+  feed.frames_from_to(0, 1, [](DisplayLine& l) {
+    l.f = !l.f;
+    return true;
+  });
+  EXPECT_EQ(feed.sink.violations(), GetParam()->active_count[0] + GetParam()->active_count[1]);
+}
+
+TEST_P(BothStandards, ShortLineIsReported) {
+  Feed feed(*GetParam());
+  const unsigned number = GetParam()->active_first[0];
+  feed.frames_from_to(0, 1, [number](DisplayLine& l) {
+    if (l.number == number) l.end -= 37'037;
+    return true;
+  });
+  EXPECT_EQ(feed.sink.violations(), 1u);
+}
+
+TEST(FrameAssemblerTest, BlankingLineIsReported) {
+  Feed feed(k625);
+  DisplayLine l = feed.make(0);  // line 1
+  feed.sink.line(l);
+  EXPECT_EQ(feed.sink.violations(), 1u);
+}
+
+TEST(FrameAssemblerTest, OtherPixelsOrOtherAddressAreNoRepeat) {
+  Feed feed(k625);
+  feed.run(1);
+  feed.salt = 1;
+  feed.frames_from_to(1, 2, [](DisplayLine&) { return true; });
+  feed.address += 0x1000;
+  feed.frames_from_to(2, 3, [](DisplayLine&) { return true; });
+  EXPECT_EQ(feed.sink.frames(), 3u);
+  EXPECT_EQ(feed.sink.repeated(), 0u);
+}
+
+TEST(FrameAssemblerTest, RasterOffDropsTheFrameAndAllowsANewStart) {
+  Feed feed(k625);
+  feed.frames_from_to(0, 1, [](DisplayLine& l) { return l.number < 100; });
+  feed.sink.raster_off();
+  EXPECT_EQ(feed.sink.broken_frames(), 1u);
+  Feed later(k625, kByteClock, 987'654'321);
+  later.frames_from_to(0, 1, [&feed](DisplayLine& l) {
+    feed.sink.line(l);
+    return false;
+  });
+  EXPECT_EQ(feed.sink.violations(), 0u);
+  EXPECT_EQ(feed.sink.frames(), 1u);
+}
+
+}  // namespace
+}  // namespace fovea::video
