@@ -81,10 +81,30 @@ inline DataSheet sheet_of(const mem::DdrConfig& c) {
   return s;
 }
 
+/// The controller's command in the checker's words.
+inline Command translate(mem::Cmd c) {
+  switch (c) {
+    case mem::Cmd::kAct:
+      return Command::kAct;
+    case mem::Cmd::kPre:
+      return Command::kPre;
+    case mem::Cmd::kPreAll:
+      return Command::kPreAll;
+    case mem::Cmd::kRd:
+      return Command::kRd;
+    case mem::Cmd::kWr:
+      return Command::kWr;
+    default:
+      return Command::kRef;
+  }
+}
+
 class DdrBench : private mem::DdrClient {
  public:
   explicit DdrBench(const BenchOptions& o = {})
-      : params_(o), store_(params_.size_bytes()), ddr(params_, store_, *this),
+      : params_(o),
+        store_(params_.size_bytes()),
+        ddr(params_, store_, *this),
         checker(with_faw(sheet_of(o.config), o.tFAW)) {
     ddr.set_command_hook(&DdrBench::hook, this);
     ddr.set_clocks(o.ddr, o.scr, 0);
@@ -159,16 +179,6 @@ class DdrBench : private mem::DdrClient {
   static DataSheet with_faw(DataSheet s, unsigned tFAW) {
     s.tFAW = tFAW;
     return s;
-  }
-  static Command translate(mem::Cmd c) {
-    switch (c) {
-      case mem::Cmd::kAct: return Command::kAct;
-      case mem::Cmd::kPre: return Command::kPre;
-      case mem::Cmd::kPreAll: return Command::kPreAll;
-      case mem::Cmd::kRd: return Command::kRd;
-      case mem::Cmd::kWr: return Command::kWr;
-      default: return Command::kRef;
-    }
   }
   static void hook(void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
     auto& b = *static_cast<DdrBench*>(self);

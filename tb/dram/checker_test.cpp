@@ -1,4 +1,5 @@
-// The checker complains at n - 1 and is silent at n, for each rule; numbers typed in from dram.md 2.
+// The checker complains at n - 1 and is silent at n, for each rule; numbers typed in from
+// dram.md 2.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -78,7 +79,10 @@ INSTANTIATE_TEST_SUITE_P(
         Limit{"tRPA", {{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 157}}},
         Limit{"tRRD", {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}}},
         Limit{"tFAW",
-              {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}, {kAct, 2, 1, 114}, {kAct, 3, 1, 121},
+              {{kAct, 0, 1, 100},
+               {kAct, 1, 1, 107},
+               {kAct, 2, 1, 114},
+               {kAct, 3, 1, 121},
                {kAct, 4, 1, 135}}},
         Limit{"RD to RD", {{kAct, 0, 1, 100}, {kRd, 0, 1, 110}, {kRd, 0, 1, 114}}},
         Limit{"WR to WR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 110}, {kWr, 0, 1, 114}}},
@@ -86,8 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
         Limit{"RD to WR", {{kAct, 0, 1, 100}, {kRd, 0, 1, 110}, {kWr, 0, 1, 116}}},
         // WL + BL/2 + tWTR = 4 + 4 + 4 = 12, also to another bank
         Limit{"tWTR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 110}, {kRd, 0, 1, 122}}},
-        Limit{"tWTR",
-              {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}, {kWr, 0, 1, 120}, {kRd, 1, 1, 132}}},
+        Limit{"tWTR", {{kAct, 0, 1, 100}, {kAct, 1, 1, 107}, {kWr, 0, 1, 120}, {kRd, 1, 1, 132}}},
         // BL/2 + max(tRTP, 2) - 2 = 4 + 3 - 2 = 5
         Limit{"tRTP", {{kAct, 0, 1, 100}, {kRd, 0, 1, 130}, {kPre, 0, 0, 135}}},
         // WL + BL/2 + tWR = 4 + 4 + 8 = 16

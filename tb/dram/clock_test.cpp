@@ -1,7 +1,8 @@
 // Clock edges against plain wide arithmetic: the clock's division by reciprocal must be exact.
+#include "model/common/clock.h"
+
 #include <gtest/gtest.h>
 
-#include "model/common/clock.h"
 #include "tb/dram/bench.h"
 
 namespace fovea::dram {

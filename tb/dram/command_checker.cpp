@@ -11,8 +11,8 @@ void CommandChecker::complain(const char* rule, std::uint64_t clock, unsigned ba
     complaints_.push_back({rule, clock, bank, static_cast<std::uint64_t>(missing)});
 }
 
-void CommandChecker::apart(const char* rule, std::int64_t before, std::int64_t now,
-                           unsigned clocks, unsigned bank) {
+void CommandChecker::apart(const char* rule, std::int64_t before, std::int64_t now, unsigned clocks,
+                           unsigned bank) {
   const std::int64_t legal = before + static_cast<std::int64_t>(clocks);
   if (now < legal) complain(rule, static_cast<std::uint64_t>(now), bank, legal - now);
 }
@@ -30,10 +30,18 @@ void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::u
   // The device answers to nothing while it refreshes.
   apart("tRFC", ref_, now, sheet_.tRFC, bank);
   switch (c) {
-    case Command::kAct: activate(bank, row, now); break;
-    case Command::kRd: column(false, bank, row, now); break;
-    case Command::kWr: column(true, bank, row, now); break;
-    case Command::kRef: refresh(now); break;
+    case Command::kAct:
+      activate(bank, row, now);
+      break;
+    case Command::kRd:
+      column(false, bank, row, now);
+      break;
+    case Command::kWr:
+      column(true, bank, row, now);
+      break;
+    case Command::kRef:
+      refresh(now);
+      break;
     case Command::kPre:
       if (!banks_[bank].open) complain("PRE on closed bank", clock, bank, 0);
       precharge(bank, now);
@@ -107,8 +115,7 @@ void CommandChecker::check_refresh_gap(std::uint64_t clock) {
   const std::uint64_t gap = clock - last_ref_;
   largest_gap_ = std::max(largest_gap_, gap);
   const std::uint64_t allowed = std::uint64_t{sheet_.postponed_max + 1} * sheet_.tREFI;
-  if (gap > allowed)
-    complain("tREFI", clock, 0, static_cast<std::int64_t>(gap - allowed));
+  if (gap > allowed) complain("tREFI", clock, 0, static_cast<std::int64_t>(gap - allowed));
 }
 
 std::string CommandChecker::text() const {

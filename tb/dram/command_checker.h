@@ -23,8 +23,8 @@ struct DataSheet {
 };
 
 struct Complaint {
-  std::string rule;           ///< "tRCD", ...
-  std::uint64_t clock = 0;    ///< of the offending command
+  std::string rule;         ///< "tRCD", ...
+  std::uint64_t clock = 0;  ///< of the offending command
   unsigned bank = 0;
   std::uint64_t missing = 0;  ///< clocks too early (or, for refresh, too late); 0: a state rule
 };
@@ -67,8 +67,8 @@ class CommandChecker {
   DataSheet sheet_;
   std::vector<Bank> banks_;
   std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
-  std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo,
-               prea_ = kLongAgo, previous_ = kLongAgo;
+  std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo, prea_ = kLongAgo,
+               previous_ = kLongAgo;
   std::uint64_t last_ref_ = 0, largest_gap_ = 0;
   std::vector<Complaint> complaints_;
   std::uint64_t total_ = 0, commands_ = 0;

@@ -1,5 +1,5 @@
-// The crossbar core: arbitration and latencies in edges of its clock, computed by hand; then with the
-// DDR controller behind it, where bytes and requests are conserved.
+// The crossbar core: arbitration and latencies in edges of its clock, computed by hand; then with
+// the DDR controller behind it, where bytes and requests are conserved.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -191,10 +191,10 @@ TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
 TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
   XbarBench b;
   b.ddr_accepts = false;
-  b.submit(kA, 5, true, 8);                    // taken to the door of the DDR: 8, there at 9
-  b.submit(kB, 5, false, 8);                   // waits for the DDR
-  b.submit(kB, 5, false, 4, Slave::kConfig);   // waits behind its master's own head
-  b.submit(kC, 5, false, 4, Slave::kConfig);   // goes
+  b.submit(kA, 5, true, 8);                   // taken to the door of the DDR: 8, there at 9
+  b.submit(kB, 5, false, 8);                  // waits for the DDR
+  b.submit(kB, 5, false, 4, Slave::kConfig);  // waits behind its master's own head
+  b.submit(kC, 5, false, 4, Slave::kConfig);  // goes
   b.run(50);
   ASSERT_EQ(b.events.size(), 2u);
   EXPECT_EQ(b.winners(), "AC");
@@ -231,9 +231,9 @@ TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
   EXPECT_EQ(b.xbar.next_decision(), (100 + 2) * kEdge) << "edge 6 comes at 100, 8 at 102";
 }
 
-// A lone 32-byte read through both cores. DDR 250 MHz, crossbar 125 MHz (8 ns): submitted at 0, seen
-// at edge 1, arbitrated at 3, at the controller at edge 4 = 32 ns = DDR edge 8; seen at 9, ACT at 17,
-// RD at 22; first 8 bytes at 22 + 5 + 2 + 2 = 31 = 124 ns, so crossbar edge 16; last beat at
+// A lone 32-byte read through both cores. DDR 250 MHz, crossbar 125 MHz (8 ns): submitted at 0,
+// seen at edge 1, arbitrated at 3, at the controller at edge 4 = 32 ns = DDR edge 8; seen at 9, ACT
+// at 17, RD at 22; first 8 bytes at 22 + 5 + 2 + 2 = 31 = 124 ns, so crossbar edge 16; last beat at
 // 22 + 4 + 7 + 4 = 37 = 148 ns: edge 19; two edges back to the port.
 TEST(PathTest, UnloadedReadLatency) {
   Path path;
@@ -251,6 +251,12 @@ TEST(PathTest, UnloadedReadLatency) {
 TEST(PathTest, RequestsAndBytesAreConserved) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Path path;
+    CommandChecker checker(sheet_of(mem::DdrConfig{}));
+    path.ddr.set_command_hook(
+        [](void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+          static_cast<CommandChecker*>(self)->command(translate(c), bank, row, clock);
+        },
+        &checker);
     Rng rng(seed);
     for (std::size_t m = 0; m < kMasterCount; ++m)
       path.xbar.set_priority(static_cast<Master>(m), static_cast<unsigned>(rng.below(8)));
@@ -268,9 +274,9 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
       item->r.bus.master = static_cast<Master>(m);
       item->r.bus.write = rng.below(2) != 0;
       item->r.bus.bytes = static_cast<std::uint8_t>(4u << rng.below(5));
-      item->r.address = at(static_cast<std::uint32_t>(rng.below(64)),
-                           static_cast<unsigned>(rng.below(8)),
-                           static_cast<std::uint32_t>(rng.below(32)) * 64u);
+      item->r.address =
+          at(static_cast<std::uint32_t>(rng.below(64)), static_cast<unsigned>(rng.below(8)),
+             static_cast<std::uint32_t>(rng.below(32)) * 64u);
       item->r.data = item->data.data();
       if (rng.below(4) == 0) now += rng.below(60) * 1'000;
       path.run_before(now);
@@ -305,6 +311,8 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
       for (const std::uint64_t bytes : row.read) timeline_read += bytes;
       for (const std::uint64_t bytes : row.write) timeline_written += bytes;
     }
+    EXPECT_EQ(checker.total(), 0u) << checker.text();
+    EXPECT_GT(checker.commands(), all.size());
     EXPECT_EQ(bus_read, read);
     EXPECT_EQ(bus_written, written);
     EXPECT_EQ(path.ddr.stats.read_bytes.count(), read);

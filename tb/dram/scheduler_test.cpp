@@ -113,8 +113,8 @@ TEST(SchedulerTest, WritesOfOneMasterStayInOrder) {
 }
 
 TEST(SchedulerTest, WriteNeverPassesOlderReadOfItsMaster) {
-  EXPECT_EQ(Scenario({read(kA, at(1, 1)), write(kA, at(1, 0), 0)}, options(),
-                     {read(kC, at(1, 0))}).columns(),
+  EXPECT_EQ(Scenario({read(kA, at(1, 1)), write(kA, at(1, 0), 0)}, options(), {read(kC, at(1, 0))})
+                .columns(),
             "R1 W0");
 }
 

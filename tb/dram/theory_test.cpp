@@ -80,11 +80,10 @@ TEST(TheoryTest, RandomRowsOfOneBankAreBoundByTrc) {
   for (const unsigned nRC : {16u, 30u}) {
     BenchOptions o = no_refresh();
     o.config.timing.nRC = nRC;  // tRAS + tRP = 16
-    expect_within_one_percent(clocks_per_request(o, 5'000,
-                                                 [](Request& r, unsigned i) {
-                                                   r.address = at(i * 7919 % 8192, 3);
-                                                 }),
-                              nRC);
+    expect_within_one_percent(
+        clocks_per_request(o, 5'000,
+                           [](Request& r, unsigned i) { r.address = at(i * 7919 % 8192, 3); }),
+        nRC);
   }
 }
 
@@ -92,8 +91,8 @@ TEST(TheoryTest, RefreshTakesItsShare) {
   for (const unsigned interval : {400u, 1000u, 1895u}) {
     BenchOptions o;
     o.config.refresh_interval = interval;
-    const double measured = clocks_per_request(
-        o, 60'000, [](Request& r, unsigned i) { r.address = i % 128 * 16; });
+    const double measured =
+        clocks_per_request(o, 60'000, [](Request& r, unsigned i) { r.address = i % 128 * 16; });
     expect_within_one_percent(measured, 4 / (1 - refresh_loss(o.config) / interval));
   }
 }

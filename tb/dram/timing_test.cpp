@@ -1,5 +1,6 @@
 // Cause and effect: each timing moves the time it should by exactly the clocks it should. All times
-// are computed by hand from the relations of dram.md 2; the bench's DDR and crossbar clocks are one.
+// are computed by hand from the relations of dram.md 2; the bench's DDR and crossbar clocks are
+// one.
 #include <gtest/gtest.h>
 
 #include <functional>

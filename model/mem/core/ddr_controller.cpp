@@ -83,11 +83,9 @@ void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   Entry& e = slots_[static_cast<std::size_t>(slot)];
   e.request = request;
   e.ready = arrived + request_latency_;
-  e.bank = static_cast<std::uint8_t>((request.address >> bank_shift_) &
-                                     (config_.timing.banks - 1));
-  e.row = config_.bank_on_top
-              ? (request.address & ((1u << bank_shift_) - 1)) >> row_shift_
-              : request.address >> row_shift_;
+  e.bank = static_cast<std::uint8_t>((request.address >> bank_shift_) & (config_.timing.banks - 1));
+  e.row = config_.bank_on_top ? (request.address & ((1u << bank_shift_) - 1)) >> row_shift_
+                              : request.address >> row_shift_;
   e.chunks = static_cast<std::uint8_t>(((request.address & 15u) + request.bytes + 15u) / 16u);
   e.issued = 0;
   e.classified = false;
@@ -174,9 +172,9 @@ DdrController::Choice DdrController::choose(std::uint64_t edge, std::size_t read
     if (!offered) continue;
     const bool miss = device_.row(e.bank) != e.row;
     const std::uint32_t kind = e.request.write ? 2u : room ? 1u : 3u;
-    const std::uint32_t rank =
-        kind << 17 | std::uint32_t{miss} << 16 | std::uint32_t{e.request.priority} << 8 |
-        static_cast<std::uint32_t>(i);
+    const std::uint32_t rank = kind << 17 | std::uint32_t{miss} << 16 |
+                               std::uint32_t{e.request.priority} << 8 |
+                               static_cast<std::uint32_t>(i);
     (e.request.write ? best_write : best_read) =
         std::min(e.request.write ? best_write : best_read, rank);
     std::size_t at = n++;

@@ -19,7 +19,7 @@ struct DdrRequest {
   Master master = Master::kArmD;
   std::uint8_t priority = 0;
   bool write = false;
-  std::uint8_t bytes = 0;        ///< 1..64, inside one aligned 64-byte block
+  std::uint8_t bytes = 0;  ///< 1..64, inside one aligned 64-byte block
   std::uint32_t address = 0;
   std::uint32_t critical = 0;    ///< offset wanted first; the 16 bytes around it are read first
   std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
@@ -74,7 +74,10 @@ class DdrController {
   /// Called with each DRAM command, for checkers and traces. Null in production.
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
                                std::uint64_t clock);
-  void set_command_hook(CommandHook hook, void* self) { hook_ = hook; hook_self_ = self; }
+  void set_command_hook(CommandHook hook, void* self) {
+    hook_ = hook;
+    hook_self_ = self;
+  }
 
  private:
   static constexpr std::size_t kMaxEntries = 16;
@@ -138,17 +141,17 @@ class DdrController {
   std::uint64_t command_free_ = 0;  // edge after the last command
   Choice choice_;
   Picoseconds next_ = kNever;
-  int in_service_ = -1;             // slot whose columns are being issued
+  int in_service_ = -1;  // slot whose columns are being issued
   std::uint64_t served_while_oldest_ = 0;
 
-  std::uint64_t next_expiry_ = 0;   // edge at which the refresh interval runs out next
+  std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
   unsigned owed_ = 0, forced_ = 0;
-  unsigned gap_ = 0;                // intervals that ended since the last REF
+  unsigned gap_ = 0;  // intervals that ended since the last REF
   std::uint64_t idle_since_ = 0;
-  std::uint64_t lane_free_ = 0;     // first free crossbar edge of the read return lane
+  std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
   std::uint64_t start_of_lane_ = 0;
-  std::uint64_t read_room_ = 0;     // first clock at which the read FIFO has room
-  std::uint64_t floor_ = 0;         // no command before this edge: configuration changed there
+  std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
+  std::uint64_t floor_ = 0;      // no command before this edge: configuration changed there
 
   CommandHook hook_ = nullptr;
   void* hook_self_ = nullptr;

@@ -34,7 +34,7 @@ struct DdrParams : ParamGroup {
                         "refresh backlog above which refresh goes before everything",
                         Origin::kAssumed, "family values, dm365.md 5.4"};
   IntParam refresh_gap{*this, "refresh.gap", U::kCount, 7, 1, 64,
-                       "refresh intervals without a REF above which four are issued before requests",
+                       "intervals without a REF above which four are issued before requests",
                        Origin::kSourced, "same controller in sibling devices, dm365.md 5.4"};
   DdrParams() : ParamGroup("ddr") {}
 
