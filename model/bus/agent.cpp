@@ -20,7 +20,10 @@ Agent::Agent(sc_core::sc_module_name name, unsigned ports) : sc_module(name) {
 
 void Agent::enter() {
   running_ = true;
+  strict_ = path->strict();
+  now_ = kernel_time();
   background_due_.cancel();
+  ++horizon_epoch;
   path->hold();
 }
 
@@ -44,14 +47,14 @@ void Agent::background() {
 }
 
 void Agent::sleep_until(Picoseconds until) {
-  const Picoseconds now = kernel_time();
+  const Picoseconds now = now_;
   if (until <= now) return;
-  if (!path->strict()) {
+  if (!strict_) {
     // No process switch if all that lies before `until` is in the path and can be played here.
     for (;;) {
       const Picoseconds t = path->next_decision();
       const Picoseconds b = background_next();
-      const Picoseconds h = kernel_horizon();
+      const Picoseconds h = next_event();
       if (std::min({t, b, h}) >= until) return;
       if (std::min(t, b) >= h) break;
       if (b <= t)
@@ -72,26 +75,26 @@ void Agent::wait_for(sc_core::sc_event& event) {
 }
 
 void Agent::submit(Transaction& tx, Picoseconds at) {
-  const Picoseconds now = kernel_time();
+  const Picoseconds now = running_ ? now_ : kernel_time();
   // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
-  if (at > now && (path->strict() || at >= kernel_horizon())) sleep_until(at);
+  if (at > now && (strict_ || at >= next_event())) sleep_until(at);
   tx.done = false;
   ++own_undecided_;
   tx.gp.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   tlm::tlm_phase phase = tlm::BEGIN_REQ;
-  sc_core::sc_time delay = ps_time(at - kernel_time());
+  sc_core::sc_time delay = ps_time(at - (running_ ? now_ : now));
   (*sockets[tx.port])->nb_transport_fw(tx.gp, phase, delay);
 }
 
 bool Agent::poll(Transaction& tx, Picoseconds until) {
-  if (path->strict()) {
+  if (strict_) {
     sleep_until(until);
     return tx.done && tx.ext.last <= until;
   }
   for (;;) {
     if (tx.done) return tx.ext.last <= until;
     const Picoseconds t = path->next_decision();
-    const Picoseconds h = kernel_horizon();
+    const Picoseconds h = next_event();
     if (std::min(t, h) >= until) return false;
     if (t >= h) {
       // Somebody else may still act before `until`: let the kernel get there.
@@ -104,11 +107,11 @@ bool Agent::poll(Transaction& tx, Picoseconds until) {
 
 void Agent::finish(Transaction& tx) {
   while (!tx.done) {
-    if (!path->strict()) {
+    if (!strict_) {
       const Picoseconds t = path->next_decision();
       const Picoseconds b = background_next();
       const Picoseconds first = std::min(t, b);
-      if (first < kernel_horizon()) {
+      if (first < next_event()) {
         if (b <= t)
           background_act();
         else
@@ -132,6 +135,7 @@ tlm::tlm_sync_enum Agent::nb_transport_bw(tlm::tlm_generic_payload& gp, tlm::tlm
   --own_undecided_;
   completed(tx);
   if (!running_) {
+    ++horizon_epoch;  // another agent plays the path: it must see what is notified here
     if (waiting_ == &tx) {
       const Picoseconds now = kernel_time();
       done_.notify(ps_time(ext->first > now ? ext->first - now : 0));

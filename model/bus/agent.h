@@ -49,8 +49,8 @@ class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
   void sleep_until(Picoseconds until);
   /// Nobody else acts before this time: no kernel event, and no decision of the path about a
   /// request of somebody else.
-  Picoseconds horizon() const {
-    const Picoseconds h = kernel_horizon();
+  Picoseconds horizon() {
+    const Picoseconds h = next_event();
     return path->undecided() > own_undecided_ ? std::min(h, path->next_decision()) : h;
   }
   /// Thread body brackets: the path is the agent's between enter() and leave().
@@ -67,11 +67,23 @@ class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
   void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
   void background();
   void arm_background();
+  /// kernel_horizon(), asked again only when something was notified since.
+  Picoseconds next_event() {
+    if (seen_epoch_ != horizon_epoch) {
+      seen_epoch_ = horizon_epoch;
+      next_event_ = kernel_horizon();
+    }
+    return next_event_;
+  }
 
   sc_core::sc_event done_, background_due_;
   Transaction* waiting_ = nullptr;
   bool running_ = false;
   unsigned own_undecided_ = 0;
+  std::uint64_t seen_epoch_ = ~std::uint64_t{0};
+  Picoseconds next_event_ = 0;
+  Picoseconds now_ = 0;  // kernel time of the present activation
+  bool strict_ = false;
 };
 
 }  // namespace fovea::bus

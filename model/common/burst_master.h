@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/common/check.h"
+#include "model/common/lookahead.h"
 #include "model/common/mem_request.h"
 
 namespace fovea {
@@ -121,6 +122,7 @@ class BurstMaster : public sc_core::sc_module {
     if (Slot* s = next_due()) {
       const Picoseconds now = kernel_now();
       due_.notify(to_sc_time(s->ext.last > now ? s->ext.last - now : 0));
+      ++horizon_epoch;
     }
   }
 

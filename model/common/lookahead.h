@@ -1,5 +1,6 @@
 // How far a block may run ahead of the kernel, and who plays the memory path meanwhile.
 #pragma once
+#include <cstdint>
 #include <systemc>
 
 #include "model/common/units.h"
@@ -20,6 +21,12 @@ inline Picoseconds kernel_horizon() {
   if (!sc_core::sc_pending_activity_at_future_time()) return kNever;
   return kernel_time() + sc_core::sc_time_to_pending_activity().value() + planted_late_horizon;
 }
+
+/// Counts notifications that blocks make while somebody plays the path for them (a completion, a
+/// register access to come). As long as it stands still, the horizon of the present activation stands
+/// still too, so it need not be asked from the kernel again. Whoever calls notify() from within a call
+/// of the memory path counts it here.
+inline std::uint64_t horizon_epoch = 0;
 
 /// A passive state machine: it decides at times of its own but acts only when told to.
 class PassiveIf : public virtual sc_core::sc_interface {

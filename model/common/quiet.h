@@ -27,6 +27,7 @@ class QuietPhase : public sc_core::sc_module {
   void at(Picoseconds at, unsigned order, std::function<void()> f) {
     queue_.emplace(Key{at, order, ++serial_}, std::move(f));
     due_.notify(ps_time(queue_.begin()->first.at - kernel_time()));
+    ++horizon_epoch;
   }
 
  private:

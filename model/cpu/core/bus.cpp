@@ -7,8 +7,12 @@ namespace fovea::cpu {
 
 Picoseconds Core::next_act() const {
   if (read_waiting_) return kNever;
-  if (write_in_flight_)
-    return write_access_.done ? time(ahb(clock_.edge_at_or_after(write_access_.last))) : kNever;
+  if (write_in_flight_) {
+    if (!write_access_.done) return kNever;
+    if (write_over_ == 0)
+      write_over_ = time(ahb(clock_.edge_at_or_after(write_access_.last)));
+    return write_over_;
+  }
   if (writes_.empty() && writes_.victim_bytes == 0) return kNever;
   return time(ahb(std::max(next_write_cycle_, data_port_free_)));
 }
@@ -50,6 +54,7 @@ void Core::start_write(std::uint64_t cycle) {
            : a.bytes == 16 ? BusAccess::Kind::kIncr4
                            : BusAccess::Kind::kSingle;
   write_in_flight_ = true;
+  write_over_ = 0;
   data_port_free_ = cycle;
   port_.submit(a, time(cycle));
 }

@@ -256,6 +256,7 @@ class Core : public Background {
   BusAccess write_access_;
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
+  mutable Picoseconds write_over_ = 0;  // when the write under way can be retired; 0: not yet known
   bool filling_ = false;             // the victim waits until the fill has read
   std::uint64_t next_write_cycle_ = 0;
   bool read_waiting_ = false;

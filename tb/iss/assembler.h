@@ -1,0 +1,23 @@
+// Turns a piece of assembly text into words, by the cross assembler of the build.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fovea::cpu::test {
+
+struct Program {
+  std::vector<std::uint8_t> bytes;
+  std::map<std::string, std::uint32_t> symbols;
+  std::uint32_t base = 0;
+};
+
+/// Assembles for ARMv5TE at `base`. @throws std::runtime_error with the assembler's words
+Program assemble(const std::string& text, std::uint32_t base);
+/// Runs a command and returns what it printed. @throws std::runtime_error unless it exits with 0
+std::string output_of(const std::string& command);
+/// A file's bytes. @throws std::runtime_error
+std::vector<std::uint8_t> read_file(const std::string& path);
+
+}  // namespace fovea::cpu::test

@@ -1,0 +1,1 @@
+#include "tb/iss/machine.h"

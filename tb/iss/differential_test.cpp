@@ -1,0 +1,50 @@
+// Compiled programs print the same here and under qemu-arm, with and without caches.
+#include <chrono>
+#include <iostream>
+
+#include "tb/iss/machine.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+struct Run {
+  std::string program, state;
+};
+
+class DifferentialTest : public testing::TestWithParam<std::string> {};
+
+void run_here(Machine& m, const std::string& name, bool caches) {
+  const auto image = read_file(std::string(PROGRAM_DIR "/") + name + ".bin");
+  std::memcpy(m.port.at(kMemory), image.data(), image.size());
+  Program boot = assemble(std::string(caches ? kCachesOn : "") +
+                              " ldr r0, =0x100000\n bx r0\n .ltorg\n", 0);
+  m.load(boot);
+  const auto begin = std::chrono::steady_clock::now();
+  m.run();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  std::cout << name << (caches ? " cached " : " uncached ") << m.core.counts().instructions
+            << " instructions, " << m.core.clock_count() << " clocks, "
+            << static_cast<double>(m.core.counts().instructions) / wall.count() / 1e6 << " MIPS\n";
+}
+
+TEST_P(DifferentialTest, PrintsWhatQemuPrints) {
+  const std::string want = output_of(QEMU_ARM " -cpu arm926 " PROGRAM_DIR "/" + GetParam() + ".elf");
+  ASSERT_GT(want.size(), 100u);
+  for (const bool caches : {true, false}) {
+    if (!caches && GetParam().ends_with("O0")) continue;  // slow, and the same instructions
+    Machine m;
+    run_here(m, GetParam(), caches);
+    EXPECT_EQ(m.exit_status, 0);
+    EXPECT_EQ(m.output, want);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Programs, DifferentialTest,
+    testing::Values("floats_arm_O0", "floats_arm_O2", "floats_thumb_O1", "floats_thumb_Os",
+                    "integers_arm_O0", "integers_arm_O2", "integers_thumb_O1", "integers_thumb_Os",
+                    "compress_arm_O0", "compress_arm_O2", "compress_thumb_O1",
+                    "compress_thumb_Os"),
+    [](const auto& row) { return row.param; });
+
+}  // namespace
+}  // namespace fovea::cpu::test

@@ -1,0 +1,159 @@
+// A BusPort over flat memory with fixed latencies, and a list of things that happen at given times.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "model/common/clock.h"
+#include "model/cpu/core/bus_port.h"
+
+namespace fovea::cpu::test {
+
+/// One access as it was put on the bus.
+struct BusRecord {
+  BusAccess::Port port;
+  BusAccess::Kind kind;
+  std::uint32_t address;
+  unsigned bytes;
+  bool write, buffered, locked;
+  Picoseconds at, last;
+};
+
+/// Reads deliver their first word `read_latency` after submission and one more word each `beat`;
+/// a read samples memory, and a write changes it, at its last beat. Checks the core's side of the
+/// contract of bus_port.h and throws std::logic_error when it is broken.
+class FlatPort : public BusPort {
+ public:
+  Picoseconds read_latency = 80'000, beat = 8'000, write_latency = 40'000;
+  Picoseconds ahb_period = 8'000;  ///< every submission must lie on a multiple of it; 0: unchecked
+  std::vector<BusRecord> log;
+  Picoseconds now = 0;
+
+  FlatPort(std::uint32_t base, std::size_t bytes) : base_(base), memory_(bytes) {}
+  void attach(Background* background) { background_ = background; }
+
+  std::uint8_t* at(std::uint32_t address) { return memory_.data() + (address - base_); }
+  bool mapped(std::uint32_t address, unsigned bytes) const {
+    return address >= base_ && address - base_ + bytes <= memory_.size();
+  }
+  std::uint32_t word(std::uint32_t address) {
+    std::uint32_t v;
+    std::memcpy(&v, at(address), 4);
+    return v;
+  }
+  void set_word(std::uint32_t address, std::uint32_t v) { std::memcpy(at(address), &v, 4); }
+  void schedule(Picoseconds t, std::function<void()> what) { events_.emplace(t, std::move(what)); }
+  /// Marks the time of an interrupt edge for wait_for_interrupt().
+  void interrupt_at(Picoseconds t) { asserted_ = t; }
+
+  void submit(BusAccess& a, Picoseconds t) override {
+    require(t >= now, "submission in the past");
+    require(t >= last_submit_, "submissions out of order");
+    require(ahb_period == 0 || t % ahb_period == 0, "submission off the AHB clock");
+    require(a.bytes <= 4 || a.kind == BusAccess::Kind::kWrap8 ||
+                (a.address % 1024) + a.bytes <= 1024,
+            "burst across 1 KB");
+    BusAccess*& slot = under_way_[a.port == BusAccess::Port::kData];
+    require(!slot || (slot->done && slot->last <= t), "two transactions on one AHB port");
+    last_submit_ = t;
+    run_events(t, false);
+    slot = &a;
+    a.done = a.error = false;
+    const unsigned beats = std::max(1u, a.bytes / 4u);
+    a.first = t + (a.write ? write_latency : read_latency);
+    a.last = a.first + (beats - 1) * beat;
+    log.push_back({a.port, a.kind, a.address, a.bytes, a.write, a.buffered, a.locked, t, a.last});
+    // If nobody else acts before its end the outcome is certain at once, as on the real bus.
+    if (events_.empty() || events_.begin()->first > a.last) {
+      if (!other_under_way(a)) return carry_out(a);
+    }
+    events_.emplace(a.last, [this, p = &a] { carry_out(*p); });
+  }
+
+  bool poll(BusAccess& a, Picoseconds until) override {
+    if (!a.done) run_events(until, false, &a);
+    return a.done && a.last <= until;
+  }
+
+  void finish(BusAccess& a) override {
+    if (!a.done) run_events(a.last, true, &a);
+    require(a.done, "an access was never carried out");
+  }
+
+  Picoseconds horizon() override {
+    return events_.empty() ? kNever : std::max(now, events_.begin()->first);
+  }
+
+  void sleep_until(Picoseconds t) override { run_events(t, true); }
+
+  Picoseconds wait_for_interrupt(Picoseconds) override {
+    while (asserted_ == kNever && !events_.empty()) run_events(events_.begin()->first, true);
+    require(asserted_ != kNever, "wait-for-interrupt with nothing to come");
+    return asserted_;
+  }
+
+  unsigned count(bool write, BusAccess::Kind kind) const {
+    return static_cast<unsigned>(std::count_if(log.begin(), log.end(), [&](const BusRecord& r) {
+      return r.write == write && r.kind == kind;
+    }));
+  }
+  std::vector<BusRecord> data_log() const {
+    std::vector<BusRecord> out;
+    for (const auto& r : log)
+      if (r.port == BusAccess::Port::kData) out.push_back(r);
+    return out;
+  }
+
+ private:
+  static void require(bool ok, const char* what) {
+    if (!ok) throw std::logic_error(what);
+  }
+  bool other_under_way(const BusAccess& a) const {
+    const BusAccess* other = under_way_[a.port != BusAccess::Port::kData];
+    return other && !other->done;
+  }
+  void carry_out(BusAccess& a) {
+    const std::uint32_t start =
+        a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
+    if (!mapped(start, a.bytes)) {
+      a.error = true;
+    } else if (a.write) {
+      std::memcpy(at(start), a.data, a.bytes);
+    } else {
+      std::memcpy(a.data, at(start), a.bytes);
+    }
+    a.done = true;
+  }
+  /// Plays events, and the core's buffers if it is blocked, in time order up to t or until `a` is
+  /// decided.
+  void run_events(Picoseconds t, bool blocked, const BusAccess* a = nullptr) {
+    while (!(a && a->done)) {
+      const Picoseconds event = events_.empty() ? kNever : events_.begin()->first;
+      const Picoseconds act = blocked && background_ ? background_->next_act() : kNever;
+      if (act != kNever && act <= event && act <= t) {
+        background_->act();
+      } else if (event <= t && event != kNever) {
+        auto node = events_.extract(events_.begin());
+        now = std::max(now, event);
+        node.mapped()();
+      } else {
+        break;
+      }
+    }
+    if (!a && t != kNever) now = std::max(now, t);
+  }
+
+  std::uint32_t base_;
+  std::vector<std::uint8_t> memory_;
+  std::multimap<Picoseconds, std::function<void()>> events_;
+  Background* background_ = nullptr;
+  BusAccess* under_way_[2] = {};
+  Picoseconds last_submit_ = 0, asserted_ = kNever;
+};
+
+}  // namespace fovea::cpu::test

@@ -1,0 +1,107 @@
+// A core, 32 KB of internal RAM and flat memory: enough to run a program.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "model/cpu/core/core.h"
+#include "tb/iss/assembler.h"
+#include "tb/iss/flat_port.h"
+
+namespace fovea::cpu::test {
+
+inline constexpr std::uint32_t kMemory = 0x0010'0000;  ///< flat memory begins
+inline constexpr std::size_t kMemoryBytes = 16u << 20;
+inline constexpr std::uint32_t kTables = kMemory + 0x00F0'0000;  ///< room for page tables
+
+/// Assembly that turns on MMU (tables at kTables), I- and D-cache; r0 is lost.
+inline const char* const kCachesOn = R"(
+  ldr r0, =0x01000000
+  mcr p15, 0, r0, c2, c0, 0
+  mvn r0, #0
+  mcr p15, 0, r0, c3, c0, 0
+  ldr r0, =0x0005107d
+  mcr p15, 0, r0, c1, c0, 0
+)";
+static_assert(kTables == 0x0100'0000);
+
+/// At 250 MHz a core clock is 4 ns and an AHB clock (ratio 2) 8 ns.
+class Machine {
+ public:
+  static constexpr Picoseconds kClock = 4'000;
+  CpuParams params;
+  FlatPort port{kMemory, kMemoryBytes};
+  std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
+  Core core;
+  std::vector<std::uint64_t> marks;  ///< clock at each `svc #1`
+  std::string output;                ///< what the program wrote by Linux' write()
+  int exit_status = -1;
+
+  Machine() : core(params, port, tcm) {
+    port.attach(&core);
+    core.set_clock(Frequency(250'000'000), 0);
+    core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
+    identity_map();
+  }
+  /// `svc #0` with r7: Linux write and exit; #1 notes the clock; #2 ends the run; others are real.
+  bool swi(Core& c, std::uint32_t number) {
+    if (number == 1) {
+      marks.push_back(c.clock_count());
+      return true;
+    }
+    if (number == 2) {
+      c.request_stop();
+      return true;
+    }
+    if (number != 0) return false;
+    if (c.reg(7) == 4) {
+      for (std::uint32_t k = 0; k < c.reg(2); ++k) output += static_cast<char>(virtual_byte(c.reg(1) + k));
+      c.set_reg(0, c.reg(2));
+    } else {
+      exit_status = static_cast<int>(c.reg(0));
+      c.request_stop();
+    }
+    return true;
+  }
+  std::uint8_t virtual_byte(std::uint32_t a) {
+    std::uint8_t b = 0;
+    return core.peek(a, b) ? b : *port.at(a);
+  }
+  void load(const Program& p) {
+    std::uint8_t* to = p.base < tcm.size() ? tcm.data() + p.base : port.at(p.base);
+    std::memcpy(to, p.bytes.data(), p.bytes.size());
+  }
+  /// Sections, VA = PA, all domains 0, write-back over the flat memory, the rest uncached.
+  void identity_map() {
+    for (std::uint32_t s = 0; s < 4096; ++s) {
+      const bool cached = s >= kMemory >> 20 && s < (kMemory + kMemoryBytes) >> 20;
+      port.set_word(kTables + 4 * s, s << 20 | 0xC00u | 0x12u | (cached ? 0xCu : 0u));
+    }
+  }
+  void run(std::uint32_t entry = 0) {
+    core.reset(entry, port.now);
+    core.run();
+    // Every clock since the start has exactly one cause.
+    const Counts& c = core.counts();
+    const std::uint64_t sum =
+        c.issue + c.idle + std::accumulate(c.stall.begin(), c.stall.end(), std::uint64_t{0});
+    EXPECT_EQ(core.clock_count() - first_clock, sum);
+  }
+  std::uint64_t first_clock = 1;  ///< the first edge after time 0
+  /// Assembles at `base`, runs from there to `svc #2`.
+  const Program& execute(const std::string& text, std::uint32_t base = 0) {
+    program = assemble(text + "\n svc #2\n .ltorg\n", base);
+    load(program);
+    run(base);
+    return program;
+  }
+  /// Clocks between mark n and mark n+1, less the three of the mark itself.
+  std::uint64_t between(unsigned n = 0) const { return marks.at(n + 1) - marks.at(n) - 3; }
+  std::uint64_t stall(Cause c) const { return core.counts().stall[static_cast<std::size_t>(c)]; }
+  Program program;
+};
+
+}  // namespace fovea::cpu::test

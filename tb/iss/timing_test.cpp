@@ -1,0 +1,120 @@
+// Issue clocks and interlocks, counted by hand from ARM DDI 0222B chapter 8.
+#include "tb/iss/machine.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::uint64_t clocks;
+  const char* text;
+};
+
+/// All from zero-wait internal RAM: r4 points to data there, r5 = 3, r6 = 7.
+constexpr Case kCases[] = {
+    {"Alu", 1, "add r0, r5, r6"},
+    {"AluShiftedByImmediate", 1, "add r0, r5, r6, lsl #3"},
+    {"AluShiftedByRegister", 2, "add r0, r5, r6, lsl r5"},
+    {"AluChainHasNoInterlock", 3, "add r0, r5, r6\n add r0, r0, r5\n add r0, r0, r6, lsl #2"},
+    {"FailedConditionIsOneClock", 1, "cmp r5, r5\n svc #1\n ldmne r4, {r0-r3}"},
+    {"FailedConditionDoesNotInterlock", 2, "cmp r5, r5\n svc #1\n ldr r0, [r4]\n addne r0, r0, r0"},
+    {"AddToPc", 3, "add pc, pc, #0\n nop"},
+    {"MovToPc", 4, "adr r0, 1f\n svc #1\n mov pc, r0\n1:"},
+    {"AddShiftedToPc", 4, "mov r0, #0\n svc #1\n add pc, pc, r0, lsl #2\n nop"},
+    {"BranchTaken", 3, "b 1f\n nop\n1:"},
+    {"BranchNotTaken", 1, "cmp r5, r5\n svc #1\n bne 1f\n1:"},
+    {"BranchAndLink", 3, "bl 1f\n nop\n1:"},
+    {"BranchExchange", 3, "adr r0, 1f\n svc #1\n bx r0\n nop\n1:"},
+    {"BranchLinkExchange", 3, "adr r0, 1f\n svc #1\n blx r0\n nop\n1:"},
+    {"SubsBhiLoopIsFourClocks", 400 - 2, "mov r0, #100\n svc #1\n1: subs r0, r0, #1\n bhi 1b"},
+    {"LoadWord", 1, "ldr r0, [r4]"},
+    {"LoadWordShiftedOffset", 2, "ldr r0, [r4, r5, lsl #2]"},
+    {"LoadWordRegisterOffset", 1, "mov r1, #4\n svc #1\n ldr r0, [r4, r1]"},
+    {"LoadUse", 3, "ldr r0, [r4]\n add r0, r0, r5"},
+    {"LoadOneApartUse", 3, "ldr r0, [r4]\n mov r3, r3\n add r0, r0, r5"},
+    {"LoadByteUse", 4, "ldrb r0, [r4]\n add r0, r0, r5"},
+    {"LoadByteOneApartUse", 4, "ldrb r0, [r4]\n mov r3, r3\n add r0, r0, r5"},
+    {"LoadByteTwoApartUse", 4, "ldrb r0, [r4]\n mov r3, r3\n mov r3, r3\n add r0, r0, r5"},
+    {"LoadHalfUse", 4, "ldrh r0, [r4]\n add r0, r0, r5"},
+    {"LoadSignedByteUse", 4, "ldrsb r0, [r4]\n add r0, r0, r5"},
+    {"LoadRotatedUse", 4, "ldr r0, [r4, #1]\n add r0, r0, r5"},
+    {"StallIsPaidOnce", 5, "ldrb r0, [r4]\n add r1, r0, r5\n add r2, r0, r5"},
+    {"LoadToAddress", 3, "str r4, [r4]\n svc #1\n ldr r0, [r4]\n ldr r1, [r0]"},
+    {"LoadToStoreData", 3, "ldr r0, [r4]\n str r0, [r4, #4]"},
+    {"LoadByteToStoreData", 4, "ldrb r0, [r4]\n str r0, [r4, #4]"},
+    {"LoadToAccumulator", 4, "ldr r0, [r4]\n mla r1, r5, r6, r0"},
+    {"LoadPc", 5, "adr r0, 1f\n str r0, [r4]\n svc #1\n ldr pc, [r4]\n nop\n1:"},
+    {"LoadPcShifted", 6,
+     "adr r0, 1f\n str r0, [r4]\n mov r1, #0\n svc #1\n ldr pc, [r4, r1, lsl #2]\n nop\n1:"},
+    {"LoadDouble", 2, "ldrd r0, r1, [r4]"},
+    {"LoadDoubleUseFirst", 3, "ldrd r0, r1, [r4]\n add r2, r0, r5"},
+    {"LoadDoubleUseLast", 4, "ldrd r0, r1, [r4]\n add r2, r1, r5"},
+    {"Store", 1, "str r0, [r4]"},
+    {"StoreShiftedOffset", 2, "str r0, [r4, r5, lsl #2]"},
+    {"StoreDouble", 2, "strd r0, r1, [r4]"},
+    {"LoadMultipleOne", 2, "ldmia r4, {r0}"},
+    {"LoadMultipleFour", 4, "ldmia r4, {r0-r3}"},
+    {"LoadMultipleUseLast", 6, "ldmia r4, {r0-r3}\n add r7, r3, r5"},
+    {"LoadMultipleUseFirst", 5, "ldmia r4, {r0-r3}\n add r7, r0, r5"},
+    {"LoadMultiplePc", 4 + 4, "adr r3, 1f\n stmia r4, {r0-r3}\n svc #1\n ldmia r4, {r0-r2, pc}\n nop\n1:"},
+    {"StoreMultipleOne", 2, "stmia r4, {r0}"},
+    {"StoreMultipleFour", 4, "stmia r4, {r0-r3}"},
+    {"Swap", 2, "mov r1, r4\n svc #1\n swp r0, r5, [r1]"},
+    {"SwapUse", 3, "swp r0, r5, [r4]\n add r0, r0, r5"},
+    {"SwapByteUse", 4, "swpb r0, r5, [r4]\n add r0, r0, r5"},
+    {"Mul", 2, "mul r0, r5, r6"},
+    {"MulUse", 4, "mul r0, r5, r6\n add r0, r0, r5"},
+    {"MulStore", 4, "mul r0, r5, r6\n str r0, [r4]"},
+    {"MulAccumulate", 4, "mul r0, r5, r6\n mla r1, r5, r6, r0"},
+    {"MulToMultiplier", 5, "mul r0, r5, r6\n mla r1, r0, r6, r5"},
+    {"Mla", 2, "mla r0, r5, r6, r1"},
+    {"Muls", 4, "muls r0, r5, r6"},
+    {"MulsUse", 5, "muls r0, r5, r6\n add r0, r0, r5"},
+    {"Umull", 3, "umull r0, r1, r5, r6"},
+    {"UmullUseLow", 4, "umull r0, r1, r5, r6\n add r2, r0, r5"},
+    {"UmullUseHigh", 5, "umull r0, r1, r5, r6\n add r2, r1, r5"},
+    {"Smlals", 5, "smlals r0, r1, r5, r6"},
+    {"Smulbb", 1, "smulbb r0, r5, r6"},
+    {"SmulbbUse", 3, "smulbb r0, r5, r6\n add r0, r0, r5"},
+    {"SmlabbAccumulateChain", 2, "smlabb r0, r5, r6, r0\n smlabb r0, r5, r6, r0"},
+    {"Smlawt", 1, "smlawt r0, r5, r6, r1"},
+    {"Smlalbb", 2, "smlalbb r0, r1, r5, r6"},
+    {"Qadd", 1, "qadd r0, r5, r6"},
+    {"QaddUse", 3, "qadd r0, r5, r6\n add r0, r0, r5"},
+    {"QaddStore", 2, "qadd r0, r5, r6\n str r0, [r4]"},
+    {"QaddAccumulate", 3, "qadd r0, r5, r6\n mla r1, r5, r6, r0"},
+    {"Clz", 1, "clz r0, r5"},
+    {"ClzUse", 2, "clz r0, r5\n add r0, r0, r5"},
+    {"Pld", 1, "pld [r4]"},
+    {"Mrs", 2, "mrs r0, cpsr"},
+    {"MsrFlags", 1, "mov r0, #0\n svc #1\n msr cpsr_f, r0"},
+    {"MsrControl", 3, "mrs r0, cpsr\n svc #1\n msr cpsr_c, r0"},
+    {"MrcUse", 3, "mrc p15, 0, r0, c0, c0, 0\n add r0, r0, r5"},
+    {"MrcOneApart", 3, "mrc p15, 0, r0, c0, c0, 0\n mov r3, r3\n add r0, r0, r5"},
+    {"ThumbBranchLinkPair", 1 + 3, ".thumb\n bl 1f\n nop\n1:"},
+    {"ThumbPopPc", 1 + 4 + 0, ".thumb\n adr r0, 1f\n adds r0, #1\n push {r0}\n svc #1\n pop {pc}\n nop\n.align 2\n1:"},
+    {"ThumbShiftByRegister", 2, ".thumb\n lsls r0, r5"},
+    {"ThumbMulIsMuls", 4, ".thumb\n muls r0, r5"},
+};
+
+class TimingTest : public testing::TestWithParam<Case> {};
+
+/// Each case runs between two marks; what comes before an `svc #1` of its own is not counted.
+TEST_P(TimingTest, TakesThePublishedClocks) {
+  const Case& c = GetParam();
+  const std::string text = c.text;
+  const bool thumb = text.starts_with(".thumb"), own = text.find("svc") != std::string::npos;
+  std::string program = "ldr r4, =0x4000\n ldr sp, =0x6000\n mov r5, #3\n mov r6, #7\n b 2f\n .ltorg\n2:\n";
+  if (thumb) program += "adr r0, 3f + 1\n bx r0\n .thumb\n.align 2\n3:\n";
+  if (!own) program += "svc #1\n";
+  program += (thumb ? text.substr(7) : text) + "\n svc #1\n";
+  Machine m;
+  m.execute(program);
+  ASSERT_EQ(m.marks.size(), 2u);
+  EXPECT_EQ(m.between(), c.clocks) << c.text;
+}
+INSTANTIATE_TEST_SUITE_P(Rows, TimingTest, testing::ValuesIn(kCases),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+}  // namespace
+}  // namespace fovea::cpu::test
