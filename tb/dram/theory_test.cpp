@@ -167,5 +167,42 @@ TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
   EXPECT_EQ(all[3].accepted_at, 35 * kTck);
 }
 
+// The crossbar hands a request over when it grants it, its last beat still on the way. If the FIFO
+// is full then and has room before the beat is there, the request counts from its own arrival.
+TEST(FifoTest, RequestAtTheDoorIsNotSeenBeforeItsArrival) {
+  BenchOptions o = no_refresh();
+  o.params.emplace_back("command_fifo", "1");
+  DdrBench b(o);
+  Request one, two;
+  two.address = 64;
+  b.submit(one, 9);
+  mem::DdrRequest q;
+  q.cookie = &two;
+  q.bytes = 16;
+  q.address = two.address;
+  q.data = two.data.data();
+  EXPECT_FALSE(b.ddr.submit(q, 40 * kTck)) << "the first is served at 23 only";
+  b.drain();
+  EXPECT_EQ(two.accepted_at, 23 * kTck);
+  EXPECT_EQ(b.clock_of(Cmd::kRd, 0, 1), 40u + 1u + 8u);
+}
+
+// Two reads share the return lane: one word an edge, the second behind the first.
+TEST(FifoTest, ReturnLaneCarriesOneWordAnEdge) {
+  BenchOptions o = no_refresh();
+  o.scr = Frequency(31'250'000);  // an edge every 8 DDR clocks: the lane is the bottleneck
+  const Picoseconds edge = 8 * kTck;
+  DdrBench b(o);
+  Request one, two;
+  one.bytes = two.bytes = 64;
+  two.address = 64;
+  b.submit(one, 9);
+  b.submit(two, 9);
+  b.drain();
+  EXPECT_EQ(one.last - one.first, 7 * edge);
+  EXPECT_EQ(two.first - one.last, edge);
+  EXPECT_EQ(two.last - two.first, 7 * edge);
+}
+
 }  // namespace
 }  // namespace fovea::dram

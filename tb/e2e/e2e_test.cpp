@@ -2,6 +2,8 @@
 // since a simulation elaborates once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tb/e2e/rig.h"
 
 namespace fovea::e2e {
@@ -12,7 +14,8 @@ constexpr Picoseconds kLimit = 20 * kPsPerSecond;
 /// A small centred region: the LUT is built in milliseconds and the caches hold all of it.
 void small(Rig& rig, unsigned width = 64, unsigned height = 16) {
   rig.set("video.width", std::to_string(width)).set("video.height", std::to_string(height));
-  rig.set("camera.stamp", "false").set("run.frames", "4");
+  // The firmware starts before a decoder with the default lock time sends pictures.
+  rig.set("camera.stamp", "false").set("run.frames", "4").set("tvp5146.relock_fields", "2");
 }
 
 /// Half (a): every entry of the table in target memory is the oracle's.
@@ -140,40 +143,43 @@ TEST(EndToEndTest, SerialFlowShowsCorrectFramesAtALowerRate) {
 
 // Caches: an omitted operation shows as it would on the board.
 
+/// Bytes in which a frame differs from the nearest remap of what the camera sent around its capture.
+std::size_t bytes_off(Rig& rig, const Shown& s) {
+  const auto lut = rig.lut();
+  const auto guess =
+      static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 / 0.04);
+  std::size_t best = ~std::size_t{0};
+  for (std::uint64_t n = guess > 2 ? guess - 3 : 0; n <= guess + 2; ++n) {
+    const auto d = oracle::compare(
+        oracle::remap(rig.sent(n), lut, rig.geometry().pitch_bytes), s.frame);
+    best = std::min(best, d ? d->count : 0);
+  }
+  return best;
+}
+
 TEST(CoherencyTest, WithoutInvalidateAfterCaptureThePictureIsStale) {
   Rig rig("omit_d_invalidate.elf");
   small(rig);
-  rig.set("firmware.flow", "serial").set("run.frames", "6");
+  rig.set("firmware.flow", "serial").set("run.frames", "8");
   rig.run(kLimit);
-  ASSERT_EQ(rig.shown().size(), 6u) << rig.board().uart_text();
-  // The region's source and table fit the cache: words read once stay. A later frame repeats
-  // words of an earlier one although the camera sent others.
-  const auto lut = rig.lut();
-  const std::uint32_t pitch = rig.geometry().pitch_bytes;
+  ASSERT_EQ(rig.shown().size(), 8u) << rig.board().uart_text();
+  // Source and table of this region fit the cache and nothing else evicts them: the words that the
+  // first remap read are read again from the cache, whatever the camera has sent since.
   unsigned stale = 0;
-  for (const Shown& s : rig.shown()) {
-    bool exact = false;
-    for (std::uint64_t n = 0; n < 400 && !exact; ++n)
-      exact = !oracle::compare(oracle::remap(rig.sent(n), lut, pitch), s.frame);
-    stale += !exact;
-  }
-  EXPECT_GE(stale, 1u);
+  for (const Shown& s : rig.shown()) stale += bytes_off(rig, s) > 0;
+  EXPECT_GE(stale, 6u);
+  const auto same = oracle::compare(rig.shown()[2].frame, rig.shown()[6].frame);
+  EXPECT_LT(same ? same->count : 0, rig.shown()[2].frame.uyvy.size() / 2)
+      << "the picture should hardly move";
 }
 
 TEST(CoherencyTest, WithInvalidateTheSameRunIsExact) {
   Rig rig;
   small(rig);
-  rig.set("firmware.flow", "serial").set("run.frames", "6");
+  rig.set("firmware.flow", "serial").set("run.frames", "8");
   rig.run(kLimit);
-  ASSERT_EQ(rig.shown().size(), 6u);
-  const auto lut = rig.lut();
-  for (const Shown& s : rig.shown()) {
-    bool exact = false;
-    for (std::uint64_t n = 0; n < 400 && !exact; ++n)
-      exact = !oracle::compare(oracle::remap(rig.sent(n), lut, rig.geometry().pitch_bytes),
-                               s.frame);
-    EXPECT_TRUE(exact) << "frame " << s.record.index;
-  }
+  ASSERT_EQ(rig.shown().size(), 8u);
+  for (const Shown& s : rig.shown()) EXPECT_EQ(bytes_off(rig, s), 0u) << s.record.index;
 }
 
 TEST(CoherencyTest, PatchedCodeRunsOnlyAfterInstructionInvalidate) {
@@ -192,62 +198,54 @@ TEST(CoherencyTest, WithoutInstructionInvalidateTheOldInstructionRuns) {
   EXPECT_EQ(rig.state().patched_value, 0x50u);
 }
 
-/// Words of the overlay box: luma halfway to a fixed level, so the frame is no plain remap.
-unsigned frames_with_box(Rig& rig) {
-  const auto lut = rig.lut();
-  unsigned n = 0;
-  for (const Shown& s : rig.shown()) {
-    bool plain = false;
-    for (std::uint64_t k = 0; k < 400 && !plain; ++k)
-      plain = !oracle::compare(oracle::remap(rig.sent(k), lut, rig.geometry().pitch_bytes),
-                               s.frame);
-    n += !plain;
-  }
-  return n;
-}
-
-TEST(CoherencyTest, OverlayIsShownWithCleanAndMissingWithout) {
-  Rig rig("omit_d_clean.elf");
-  small(rig, 128, 64);
-  rig.set("firmware.flow", "serial").set("firmware.overlay", "true").set("run.frames", "4");
-  rig.run(kLimit);
-  ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
-  EXPECT_LT(frames_with_box(rig), 4u) << "the box reached memory without a clean";
-}
+// The overlay halves the luma distance of a 64x16 box to a fixed level: 1,024 bytes of luma, of which
+// only those that were at that level already stay as they are.
 
 TEST(CoherencyTest, OverlayIsShownWithClean) {
   Rig rig;
   small(rig, 128, 64);
-  rig.set("firmware.flow", "serial").set("firmware.overlay", "true").set("run.frames", "4");
+  rig.set("firmware.flow", "serial").set("firmware.overlay", "true");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
-  EXPECT_EQ(frames_with_box(rig), 4u);
+  for (const Shown& s : rig.shown()) {
+    EXPECT_GT(bytes_off(rig, s), 950u);
+    EXPECT_LE(bytes_off(rig, s), 1024u);
+  }
+}
+
+TEST(CoherencyTest, WithoutCleanTheOverlayIsMissingOnTheDisplay) {
+  Rig rig("omit_d_clean.elf");
+  small(rig, 128, 64);
+  rig.set("firmware.flow", "serial").set("firmware.overlay", "true");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
+  // Lines of the box that later reads evict do reach memory; most of the box does not.
+  for (const Shown& s : rig.shown()) EXPECT_LT(bytes_off(rig, s), 700u) << s.record.index;
+}
+
+/// A display that runs, then a load of random reads with or above the display's priority.
+std::uint64_t underflows_under_load(unsigned vpss_read_priority, const std::string& load_priority) {
+  Rig rig;
+  small(rig, 320, 64);
+  rig.set("run.frames", "1000").set("load.start", "400ms");
+  rig.set("load.outstanding", "16").set("load.pattern", "random").set("load.kind", "read");
+  rig.set("load.priority", load_priority);
+  auto& board = rig.build();
+  rig.advance(390 * kPsPerMs);
+  EXPECT_TRUE(board.window_start()) << "the display does not run yet";
+  EXPECT_EQ(board.sink.assembler.underflows(), 0u);
+  // Register BCR, as the firmware would write it.
+  board.dm365.vpss.regs.write(0x08, 4, 0x2u | vpss_read_priority << 2);
+  rig.advance(60 * kPsPerMs);
+  return board.sink.assembler.underflows();
 }
 
 TEST(EndToEndTest, VpssAtLowestPriorityUnderHeavyTrafficUnderflows) {
-  // The firmware leaves BCR at its reset value; the test turns the priority by hand after start.
-  Rig rig;
-  small(rig, 320, 64);
-  rig.set("load.outstanding", "16").set("load.pattern", "random").set("load.kind", "read");
-  rig.set("load.priority", "0").set("load.start", "20ms").set("vpss.read_outstanding", "1");
-  auto& board = rig.build();
-  rig.advance(10 * kPsPerMs);
-  board.dm365.vpss.regs.bcr.rd_pri.set(7);
-  std::uint32_t ignored = 0;
-  board.dm365.vpss.regs.read(0x08, 4, ignored);
-  board.dm365.vpss.regs.write(0x08, 4, ignored);
-  rig.run(3 * kPsPerSecond);
-  EXPECT_GT(board.sink.assembler.underflows(), 0u);
+  EXPECT_GT(underflows_under_load(7, "4"), 100u);
 }
 
 TEST(EndToEndTest, SameLoadWithVpssAtHighestPriorityDoesNotUnderflow) {
-  Rig rig;
-  small(rig, 320, 64);
-  rig.set("load.outstanding", "16").set("load.pattern", "random").set("load.kind", "read");
-  rig.set("load.priority", "7").set("load.start", "20ms");
-  rig.run(3 * kPsPerSecond);
-  ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
-  EXPECT_EQ(rig.board().sink.assembler.underflows(), 0u);
+  EXPECT_EQ(underflows_under_load(0, "4"), 0u);
 }
 
 TEST(EndToEndTest, GatedIsifGivesNoFrame) {
