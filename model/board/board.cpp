@@ -72,6 +72,7 @@ void Board::latched(const video::Osd::Latch& latch) {
     opening_ = true;
     dm365.quiet.at(kernel_time(), kMasterCount, [this] {
       dm365.scr.settle();
+      dm365.ddr.settle(kernel_time());
       window_start_ = kernel_time();
       first_record_ = log.records().size();
       if (on_window_open) on_window_open();
@@ -86,6 +87,7 @@ void Board::close_window_now() {
   dm365.quiet.at(kernel_time(), kMasterCount, [this] {
     if (window_end_) return;
     dm365.scr.settle();
+    dm365.ddr.settle(kernel_time());
     window_end_ = kernel_time();
     if (on_window_close) on_window_close();
   });

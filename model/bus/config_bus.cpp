@@ -50,6 +50,9 @@ const ConfigBus::Block* ConfigBus::find(std::uint64_t address) const {
 tlm::tlm_sync_enum ConfigBus::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
                                               sc_core::sc_time& delay) {
   if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
+  // Counted at the request, as the crossbar does, so that both sums agree at any instant.
+  ++(gp.is_write() ? stats.writes : stats.reads);
+  (gp.is_write() ? stats.write_bytes : stats.read_bytes) += gp.get_data_length();
   const Block* b = find(gp.get_address());
   const Picoseconds latency = b && b->speed == Speed::kSlow ? params_.slow_latency()
                                                             : params_.fast_latency();
@@ -62,7 +65,6 @@ tlm::tlm_sync_enum ConfigBus::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm:
 }
 
 void ConfigBus::access(tlm::tlm_generic_payload& gp) {
-  ++(gp.is_write() ? stats.writes : stats.reads);
   const std::uint64_t address = gp.get_address();
   const Block* b = find(address);
   // Bursts to registers do not exist on this bus.

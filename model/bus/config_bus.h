@@ -29,6 +29,8 @@ struct ConfigBusParams : ParamGroup {
 struct ConfigBusStats : StatGroup {
   Counter reads{*this, "reads", "1", "register reads"};
   Counter writes{*this, "writes", "1", "register writes"};
+  Counter read_bytes{*this, "read_bytes", "B", "bytes of those reads"};
+  Counter write_bytes{*this, "write_bytes", "B", "bytes of those writes"};
   Counter errors{*this, "errors", "1", "accesses to addresses where nothing answers"};
   ConfigBusStats() : StatGroup("bus.config") {}
 };

@@ -1,6 +1,7 @@
 // How far a block may run ahead of the kernel, and who plays the memory path meanwhile.
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <systemc>
 
 #include "model/common/units.h"
@@ -8,7 +9,14 @@
 namespace fovea {
 
 inline Picoseconds kernel_time() { return sc_core::sc_time_stamp().value(); }
-inline sc_core::sc_time ps_time(Picoseconds ps) { return sc_core::sc_time::from_value(ps); }
+/// Exact: the kernel's resolution is 1 ps. sc_time is one 64-bit number, but its from_value() is a
+/// call into the library, too dear for the memory path.
+inline sc_core::sc_time ps_time(Picoseconds ps) {
+  static_assert(sizeof(sc_core::sc_time) == sizeof ps);
+  sc_core::sc_time t;
+  std::memcpy(static_cast<void*>(&t), &ps, sizeof ps);
+  return t;
+}
 
 /// For the test that shows the strict/default comparison can fail: makes every horizon late by this
 /// much. 0 in production; nothing but that test sets it.
@@ -35,6 +43,8 @@ class PassiveIf : public virtual sc_core::sc_interface {
   virtual Picoseconds next_decision() const = 0;
   /// Takes that decision. The caller knows all arrivals strictly before it.
   virtual void step() = 0;
+  /// Where the block keeps the value of next_decision(), for whoever asks often; nullptr: nowhere.
+  virtual const Picoseconds* next_decision_place() const { return nullptr; }
 };
 
 /// The head of the memory path. While a running agent holds it, the agent plays its decisions;
@@ -43,6 +53,9 @@ class MemoryPathIf : public PassiveIf {
  public:
   virtual void hold() = 0;
   virtual void release() = 0;
+  /// Takes the next decision, which is before `limit`, and goes on with those before `limit` until
+  /// one lets a master act or notifies the kernel: the caller's limit may be another one then.
+  virtual void step_before(Picoseconds limit) = 0;
   /// Requests whose outcome is not decided yet, of all masters. Deciding one may let its master
   /// act.
   virtual unsigned undecided() const = 0;

@@ -14,6 +14,7 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
 
 void DdrModule::settle(Picoseconds now) {
   while (controller_.next_decision() <= now) controller_.step();
+  controller_.catch_up(now);
 }
 
 void DdrModule::clocks_changed() {

@@ -25,9 +25,15 @@ class Cache {
   /// Index of the line that holds this MVA (low five bits ignored); -1 if none.
   int find(std::uint32_t mva) const {
     const std::uint32_t line = mva & ~31u;
+    // The whole MVA is the tag, so a line that carries it is the one, wherever the hint came from.
+    std::uint16_t& hint = hints_[(mva >> 5) % kHints];
+    if (lines_[hint].tag == line) return hint;
     const unsigned base = set_of(mva) * kWays;
     for (unsigned w = 0; w < kWays; ++w)
-      if (lines_[base + w].tag == line) return static_cast<int>(base + w);
+      if (lines_[base + w].tag == line) {
+        hint = static_cast<std::uint16_t>(base + w);
+        return static_cast<int>(base + w);
+      }
     return -1;
   }
   Line& line(unsigned i) { return lines_[i]; }
@@ -63,6 +69,8 @@ class Cache {
   std::vector<std::uint8_t> data_;
   unsigned counter_ = 0;
   std::uint16_t lfsr_ = 0xACE1;
+  static constexpr unsigned kHints = 64;
+  mutable std::array<std::uint16_t, kHints> hints_{};  // where lines were found last
 };
 
 }  // namespace fovea::cpu

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/common/check.h"
@@ -92,8 +93,18 @@ class Core : public Background {
   void step_attention();
   void execute(const Instruction& i);
   void execute_rare(const Instruction& i);
-  std::uint32_t operand(const Instruction& i, bool& carry) const;
-  void data_processing(const Instruction& i);
+  std::uint32_t offset(const Instruction& i) const;
+  /// One function per operation, operand form and S bit (data_processing.cpp).
+  using DataHandler = void (*)(Core&, const Instruction&);
+  template <Op kOp, Operand kOperand, bool kSet>
+  static void data_op(Core& c, const Instruction& i);
+  template <std::size_t... k>
+  static constexpr std::array<DataHandler, 128> make_data_handlers(std::index_sequence<k...>);
+  static const std::array<DataHandler, 128> kDataHandlers;
+  void data_processing(const Instruction& i) {
+    kDataHandlers[static_cast<unsigned>(i.op) | static_cast<unsigned>(i.operand) << 4 |
+                  (i.flags & kSetFlags) << 6](*this, i);
+  }
   void multiply(const Instruction& i);
   void dsp(const Instruction& i);
   void load_store(const Instruction& i);
@@ -142,6 +153,12 @@ class Core : public Background {
   // memory.cpp
   const Instruction* fetch();
   const Instruction* fetch_slow();
+  /// Hits in internal RAM or the D-cache, without alignment or permission to think about. False:
+  /// nothing was done, load() or store() decide.
+  template <unsigned kBytes>
+  bool load_hit(std::uint32_t va, std::uint32_t& value, bool user);
+  template <unsigned kBytes>
+  bool store_hit(std::uint32_t va, std::uint32_t value, bool user);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
@@ -153,6 +170,10 @@ class Core : public Background {
     return va < 0x0200'0000u ? va | fcse_pid_ : va;
   }
   const Translation* translate(std::uint32_t mva, bool write, bool user, bool instruction);
+  const Translation* translate_slow(std::uint32_t mva, bool write, bool user, bool instruction);
+  std::uint32_t memo_key(std::uint32_t mva, bool user) const {
+    return (mva >> 10) | (user || !privileged() ? 1u << 22 : 0u);
+  }
   bool walk(std::uint32_t mva, bool instruction, TlbEntry& out);
   bool walk_read(std::uint32_t address, std::uint32_t& word);
   bool permitted(const Translation& t, bool write, bool user, unsigned& fault) const;
@@ -246,9 +267,7 @@ class Core : public Background {
     bool read_ok = false, write_ok = false;
   };
   static constexpr unsigned kMemos = 64;
-  std::array<Memo, kMemos> dmemo_{};
-  std::uint32_t imemo_page_ = ~0u;
-  Translation imemo_;
+  std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
   Translation flat_;          // MMU off
   BusAccess data_access_;

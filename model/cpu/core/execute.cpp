@@ -1,12 +1,11 @@
 // Instructions. Cycle counts: ARM DDI 0222B chapter 8 (arm926.md 1.1), interlocks 1.3.
 #include <bit>
 
-#include "model/cpu/core/core.h"
+#include "model/cpu/core/fast_path.h"
+#include "model/cpu/core/shifter.h"
 
 namespace fovea::cpu {
 namespace {
-
-constexpr std::uint32_t kN = 1u << 31, kZ = 1u << 30, kC = 1u << 29, kV = 1u << 28, kQ = 1u << 27;
 
 /// Bit cond*16 + NZCV: the condition holds.
 constexpr std::array<std::uint16_t, 16> make_conditions() {
@@ -141,111 +140,6 @@ void Core::interlock(const Instruction& i) {
   stall_to(need, Cause::kInterlock);
 }
 
-std::uint32_t Core::operand(const Instruction& i, bool& carry) const {
-  switch (i.operand) {
-    case Operand::kImm:
-      if (i.flags & kImmCarry) carry = i.imm >> 31;
-      return i.imm;
-    case Operand::kReg:
-      return r_[i.rm];
-    case Operand::kShiftImm: {
-      const std::uint32_t v = r_[i.rm];
-      const unsigned n = i.amount;
-      switch (i.shift) {
-        case 0:
-          carry = n ? v >> (32 - n) & 1u : carry;
-          return n ? v << n : v;
-        case 1:
-          carry = n ? v >> (n - 1) & 1u : v >> 31;
-          return n ? v >> n : 0;
-        case 2:
-          carry = n ? v >> (n - 1) & 1u : v >> 31;
-          return static_cast<std::uint32_t>(static_cast<std::int32_t>(v) >> (n ? n : 31));
-        default:
-          if (n == 0) {  // RRX
-            const std::uint32_t out = v >> 1 | (cpsr_ & kC) << 2;
-            carry = v & 1u;
-            return out;
-          }
-          carry = v >> (n - 1) & 1u;
-          return std::rotr(v, static_cast<int>(n));
-      }
-    }
-    default: {
-      // Register-specified: the pc reads 12 ahead (one cycle later).
-      const std::uint32_t v = i.rm == 15 ? r_[15] + 4 : r_[i.rm];
-      const unsigned n = r_[i.rs] & 0xFFu;
-      if (n == 0) return v;
-      switch (i.shift) {
-        case 0:
-          carry = n < 32 ? v >> (32 - n) & 1u : n == 32 ? v & 1u : 0;
-          return n < 32 ? v << n : 0;
-        case 1:
-          carry = n < 32 ? v >> (n - 1) & 1u : n == 32 ? v >> 31 : 0;
-          return n < 32 ? v >> n : 0;
-        case 2:
-          carry = n < 32 ? v >> (n - 1) & 1u : v >> 31;
-          return static_cast<std::uint32_t>(static_cast<std::int32_t>(v) >> (n < 32 ? n : 31));
-        default:
-          carry = v >> ((n - 1) & 31u) & 1u;
-          return std::rotr(v, static_cast<int>(n & 31u));
-      }
-    }
-  }
-}
-
-void Core::data_processing(const Instruction& i) {
-  const bool set = i.flags & kSetFlags;
-  bool carry = cpsr_ & kC;
-  const bool carry_in = carry;
-  const std::uint32_t b = operand(i, carry);
-  const bool late = i.operand == Operand::kShiftReg;
-  const std::uint32_t a = i.rn == 15 && late ? r_[15] + 4 : r_[i.rn];
-  std::uint32_t result = 0;
-  bool overflow = cpsr_ & kV, logical = false, writes = true;
-  const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t c) {
-    const std::uint64_t sum = std::uint64_t{x} + y + c;
-    result = static_cast<std::uint32_t>(sum);
-    carry = sum >> 32;
-    overflow = (~(x ^ y) & (x ^ result)) >> 31;
-  };
-  switch (i.op) {
-    case Op::kAnd: result = a & b; logical = true; break;
-    case Op::kEor: result = a ^ b; logical = true; break;
-    case Op::kSub: add(a, ~b, 1); break;
-    case Op::kRsb: add(b, ~a, 1); break;
-    case Op::kAdd: add(a, b, 0); break;
-    case Op::kAdc: add(a, b, carry_in); break;
-    case Op::kSbc: add(a, ~b, carry_in); break;
-    case Op::kRsc: add(b, ~a, carry_in); logical = true; break;
-    case Op::kTst: result = a & b; writes = false; break;
-    case Op::kTeq: result = a ^ b; writes = false; break;
-    case Op::kCmp: add(a, ~b, 1); writes = false; break;
-    case Op::kCmn: add(a, b, 0); writes = false; break;
-    case Op::kOrr: result = a | b; logical = true; break;
-    case Op::kMov: result = b; logical = true; break;
-    case Op::kBic: result = a & ~b; logical = true; break;
-    default: result = ~b; logical = true; break;
-  }
-  const bool shifted = i.operand == Operand::kShiftImm || late;
-  if (writes && i.rd == 15) [[unlikely]] {
-    spend(logical || shifted ? 4 : 3);
-    if (set && !(i.flags & kThumbInsn)) {
-      const std::uint32_t saved = spsr_[bank(cpsr_)];
-      set_cpsr(saved);
-      branch_to(result & ((cpsr_ & 0x20u) ? ~1u : ~3u));
-      return;
-    }
-    branch_to(result & ((i.flags & kThumbInsn) ? ~1u : ~3u));
-    return;
-  }
-  if (set)
-    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (result & kN) | (result ? 0 : kZ) | (carry ? kC : 0) |
-            (overflow ? kV : 0);
-  if (writes) r_[i.rd] = result;
-  spend(late ? 2 : 1);
-}
-
 void Core::multiply(const Instruction& i) {
   const bool set = i.flags & kSetFlags;
   if (i.op == Op::kMul || i.op == Op::kMla) {
@@ -339,12 +233,19 @@ void Core::interwork(std::uint32_t target) {
   }
 }
 
+/// Offset of a load or store: no form of it is shifted by a register.
+std::uint32_t Core::offset(const Instruction& i) const {
+  bool ignored = false;
+  if (i.operand == Operand::kImm) return i.imm;
+  if (i.operand == Operand::kReg) return r_[i.rm];
+  return shifter_operand<Operand::kShiftImm>(i, r_, cpsr_, ignored);
+}
+
 void Core::load_store(const Instruction& i) {
   const bool user = i.flags & kUserBank;
-  bool ignored = false;
-  const std::uint32_t offset = operand(i, ignored);
+  const std::uint32_t by = offset(i);
   const std::uint32_t base = r_[i.rn];
-  const std::uint32_t moved = (i.flags & kUp) ? base + offset : base - offset;
+  const std::uint32_t moved = (i.flags & kUp) ? base + by : base - by;
   const std::uint32_t address = (i.flags & kPre) ? moved : base;
   unsigned cycles = i.operand == Operand::kShiftImm && shifted_cycle_ ? 2 : 1;
   std::uint32_t value = 0;
@@ -355,15 +256,20 @@ void Core::load_store(const Instruction& i) {
     case Op::kStr:
     case Op::kStrb:
     case Op::kStrh: {
-      const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
       value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];
-      if (store(address, bytes, value, user) != Result::kOk) return data_abort();
+      const bool hit = i.op == Op::kStr    ? store_hit<4>(address, value, user)
+                       : i.op == Op::kStrb ? store_hit<1>(address, value, user)
+                                           : store_hit<2>(address, value, user);
+      const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
+      if (!hit && store(address, bytes, value, user) != Result::kOk) return data_abort();
       write_back();
       spend(cycles);
       return;
     }
     case Op::kLdr:
-      if (load(address, 4, value, user) != Result::kOk) return data_abort();
+      if (!load_hit<4>(address, value, user) &&
+          load(address, 4, value, user) != Result::kOk)
+        return data_abort();
       write_back();
       if (address & 3u) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
       if (i.rd == 15) [[unlikely]] {
@@ -375,17 +281,25 @@ void Core::load_store(const Instruction& i) {
       loaded(i.rd, (address & 3u) ? 2 : 1);
       return;
     case Op::kLdrb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      if (!load_hit<1>(address, value, user) &&
+          load(address, 1, value, user) != Result::kOk)
+        return data_abort();
       break;
     case Op::kLdrh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      if (!load_hit<2>(address, value, user) &&
+          load(address, 2, value, user) != Result::kOk)
+        return data_abort();
       break;
     case Op::kLdrsb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      if (!load_hit<1>(address, value, user) &&
+          load(address, 1, value, user) != Result::kOk)
+        return data_abort();
       value = static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
       break;
     case Op::kLdrsh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      if (!load_hit<2>(address, value, user) &&
+          load(address, 2, value, user) != Result::kOk)
+        return data_abort();
       value = static_cast<std::uint32_t>(static_cast<std::int16_t>(value));
       break;
     case Op::kLdrd: {
@@ -436,7 +350,9 @@ void Core::load_multiple(const Instruction& i) {
                                           : ((i.flags & kPre) ? end : end + 4);
   std::array<std::uint32_t, 16> values;
   for (unsigned k = 0; k < n; ++k) {
-    if (load((address + 4 * k) & ~3u, 4, values[k]) != Result::kOk) return data_abort();
+    const std::uint32_t at = (address + 4 * k) & ~3u;
+    if (!load_hit<4>(at, values[k], false) && load(at, 4, values[k]) != Result::kOk)
+      return data_abort();
     spend(1);
   }
   if (n == 1 && !(i.imm & 0x8000u)) spend(1);

@@ -1,18 +1,14 @@
 // Loads, stores and fetches: TCM, translation, caches.
 #include <cstring>
 
-#include "model/cpu/core/core.h"
+#include "model/cpu/core/fast_path.h"
 
 namespace fovea::cpu {
 
 void Core::flush_memos() {
   for (auto& m : dmemo_) m.page = ~0u;
-  imemo_page_ = ~0u;
+  for (auto& m : imemo_) m.page = ~0u;
   line_va_ = 1;
-}
-
-void Core::record(std::uint32_t va, unsigned bytes, bool write) {
-  ring_[ring_count_++ % ring_.size()] = {pc_, va, static_cast<std::uint8_t>(bytes), write};
 }
 
 std::vector<AccessRecord> Core::last_accesses() const {
@@ -120,18 +116,11 @@ bool Core::permitted(const Translation& t, bool write, bool user, unsigned& stat
   }
 }
 
+/// The way through the TLB; what it finds is remembered for translate().
 /// @return nullptr: a fault was noted
-const Translation* Core::translate(std::uint32_t mva, bool write, bool user, bool instruction) {
-  if (!(control_ & 1u)) return &flat_;
+const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user,
+                                        bool instruction) {
   const bool as_user = user || !privileged();
-  const std::uint32_t key = (mva >> 10) | (as_user ? 1u << 22 : 0u);
-  Memo* memo = nullptr;
-  if (instruction) {
-    if (imemo_page_ == key) return &imemo_;
-  } else {
-    memo = &dmemo_[(mva >> 10) % kMemos];
-    if (memo->page == key && (write ? memo->write_ok : memo->read_ok)) return &memo->translation;
-  }
   const TlbEntry* e = tlb_.find(mva);
   TlbEntry fresh;
   if (!e) {
@@ -159,17 +148,13 @@ const Translation* Core::translate(std::uint32_t mva, bool write, bool user, boo
     fault(instruction, status, t.domain, mva);
     return nullptr;
   }
-  if (instruction) {
-    imemo_page_ = key;
-    imemo_ = t;
-    return &imemo_;
-  }
-  memo = &dmemo_[(mva >> 10) % kMemos];
-  if (memo->page != key) memo->read_ok = memo->write_ok = false;
-  memo->page = key;
-  memo->translation = t;
-  (write ? memo->write_ok : memo->read_ok) = true;
-  return &memo->translation;
+  Memo& memo = (instruction ? imemo_ : dmemo_)[(mva >> 10) % kMemos];
+  const std::uint32_t key = memo_key(mva, user);
+  if (memo.page != key) memo.read_ok = memo.write_ok = false;
+  memo.page = key;
+  memo.translation = t;
+  (write ? memo.write_ok : memo.read_ok) = true;
+  return &memo.translation;
 }
 
 /// While a line is filled its words can be used as they arrive; everything else waits for its end.
@@ -361,17 +346,6 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
   icache_.line(index).tag = mva & ~31u;
   ifill_ = {mva & ~31u, (pa >> 2) & 7u, cycle_,
             std::max(cycle_, clock_.edge_at_or_after(a.last) + fill_latency_)};
-}
-
-const Instruction* Core::fetch() {
-  const std::uint32_t thumb = cpsr_ & 0x20u;
-  if ((pc_ & ~31u) == line_va_ && thumb == line_thumb_) {
-    if (cycle_ < ifill_.last && ifill_.line == (modified(pc_) & ~31u))
-      stall_to(ifill_.word((pc_ >> 2) & 7u), Cause::kIcache);
-    const unsigned at = (pc_ >> 1) & 15u;
-    if (current_line_->valid >> at & 1u) return &current_line_->records[at];
-  }
-  return fetch_slow();
 }
 
 const Instruction* Core::fetch_slow() {

@@ -60,6 +60,8 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   FOVEA_CHECK(!door_full_, "request to a DDR controller whose door is taken");
   FOVEA_CHECK(request.address + request.bytes <= store_.size() && request.bytes <= 64,
               "request outside the SDRAM reached the controller");
+  // Counted at the request, as the crossbar does, so that both sums agree at any instant.
+  (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
   if (count_ == 0 && (owed_ != 0 || next_expiry_ < arrived)) refresh_while_idle(arrived);
   if (count_ >= fifo_entries_ ||
@@ -311,10 +313,8 @@ void DdrController::column(std::size_t slot, std::uint64_t clock) {
     const DdrRequest& r = e.request;
     if (r.write) {
       std::memcpy(store_.at(r.address), e.data.data(), r.bytes);
-      stats.write_bytes += r.bytes;
     } else {
       std::memcpy(r.data, store_.at(r.address), r.bytes);
-      stats.read_bytes += r.bytes;
       answer_read(e, clock);
     }
   }

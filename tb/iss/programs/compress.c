@@ -4,7 +4,7 @@
 
 #include "support.h"
 
-static uint8_t text[6000], packed[9000], again[6000];
+static uint8_t text[6000], packed[13000], again[6000];
 static uint16_t head[1024];
 
 static unsigned pack(const uint8_t *in, unsigned n, uint8_t *out) {

@@ -2,6 +2,12 @@
   .syntax unified
   .arm
   .global _start, _exit, host_write
+  .type _start, %function
+  .type _exit, %function
+  .type host_write, %function
+  .type _start, %function
+  .type _exit, %function
+  .type host_write, %function
 _start:
   ldr sp, =stack_top
   bl run_program

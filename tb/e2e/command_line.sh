@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# Wrong input, a failing guest and Ctrl-C, on the real program.
+# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT
+set -uo pipefail
+fovea=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+firmware=$(dirname "$fovea")/sw/firmware
+failures=0
+
+# expect NAME STATUS 'pattern'... -- command...
+expect() {
+  local name=$1 status=$2 got text
+  shift 2
+  local patterns=()
+  while [ "$1" != -- ]; do patterns+=("$1"); shift; done
+  shift
+  text=$("$@" 2>&1)
+  got=$?
+  if [ "$got" != "$status" ]; then
+    echo "$name: exit status $got, expected $status: $text"
+    failures=$((failures + 1))
+  fi
+  for p in "${patterns[@]}"; do
+    if ! grep -qE "$p" <<<"$text"; then
+      echo "$name: no '$p' in: $text"
+      failures=$((failures + 1))
+    fi
+  done
+}
+
+cat >"$out/small.yaml" <<'Y'
+run: {frames: 2, start_limit: 2s}
+camera: {kind: chart, stamp: false}
+video: {width: 64, height: 16}
+Y
+printf 'run:\n  frame: 3\n' >"$out/key.yaml"
+printf 'ddr:\n  request_latency: 9\n' >"$out/unit.yaml"
+printf 'video:\n  width: 4000\n' >"$out/range.yaml"
+head -c 3000 "$source/traces/footage/neozhaoliang-surround/front.png" >"$out/cut.png"
+printf 'not an ELF' >"$out/text.elf"
+head -c 600 "$firmware/hello.elf" >"$out/cut.elf"
+# The entry's segment address moved out of memory: p_vaddr, p_paddr of the first program header.
+cp "$firmware/hello.elf" "$out/outside.elf"
+printf '\x00\x00\x00\x50\x00\x00\x00\x50' |
+  dd of="$out/outside.elf" bs=1 seek=$((52 + 8)) conv=notrunc status=none
+
+run() { "$fovea" run "$@" -o "$out/run"; }
+expect good 0 'frame.rate' -- run "$out/small.yaml"
+expect unknown_key 2 'key.yaml:2' 'frame' 'did you mean .run.frames' -- run "$out/key.yaml"
+expect missing_unit 2 'unit.yaml:2' 'request_latency' 'cycles' -- run "$out/unit.yaml"
+expect out_of_range 2 'range.yaml:2' 'video.width' '720' -- run "$out/range.yaml"
+expect bad_override 2 'run.frames' -- run "$out/small.yaml" -s run.frames=none
+expect no_experiment 2 'nowhere.yaml' -- run "$out/nowhere.yaml"
+expect no_footage 2 'missing.png' -- run "$out/small.yaml" -s camera.kind=sphere \
+  -s camera.file="$out/missing.png"
+expect corrupt_footage 2 'cut.png' -- run "$out/small.yaml" -s camera.kind=sphere \
+  -s camera.file="$out/cut.png"
+expect not_an_elf 2 'text.elf' 'ELF' -- run "$out/small.yaml" -s firmware.elf="$out/text.elf"
+expect cut_elf 2 'cut.elf' -- run "$out/small.yaml" -s firmware.elf="$out/cut.elf"
+expect other_machine 2 'ARM|class|32' -- run "$out/small.yaml" -s firmware.elf="$fovea"
+expect outside_memory 2 '0x50000000' -- run "$out/small.yaml" -s firmware.elf="$out/outside.elf"
+expect unwritable 2 '/proc' -- "$fovea" run "$out/small.yaml" -o /proc/fovea_out
+expect jump_nowhere 3 '0x70000000' 'prefetch abort' 'at 0x' -- run "$out/small.yaml" \
+  -s firmware.elf="$firmware/jump_nowhere.elf"
+expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \
+  -s firmware.elf="$firmware/hello.elf" -s run.start_limit=60ms
+expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
+
+# Ctrl-C: a valid partial result.
+"$fovea" run "$out/small.yaml" -s run.frames=100000 -o "$out/stopped" >/dev/null 2>&1 &
+pid=$!
+sleep 3
+kill -INT "$pid"
+wait "$pid"
+status=$?
+if [ "$status" != 130 ] || ! grep -q '"complete": false' "$out/stopped/stats.json" ||
+  ! grep -q '"cpu.cycles"' "$out/stopped/stats.json"; then
+  echo "Ctrl-C: exit status $status, or no partial result"
+  failures=$((failures + 1))
+fi
+echo "$failures failures"
+[ "$failures" = 0 ]
