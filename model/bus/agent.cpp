@@ -21,7 +21,8 @@ Agent::Agent(sc_core::sc_module_name name, unsigned ports) : sc_module(name) {
 void Agent::enter() {
   running_ = true;
   strict_ = path->strict();
-  now_ = kernel_time();
+  now_ = kernel_();
+  path_ = path.operator->();
   background_due_.cancel();
   ++horizon_epoch;
   path->hold();
@@ -52,7 +53,7 @@ void Agent::sleep_until(Picoseconds until) {
   if (!strict_) {
     // No process switch if all that lies before `until` is in the path and can be played here.
     for (;;) {
-      const Picoseconds t = path->next_decision();
+      const Picoseconds t = path_->next_decision();
       const Picoseconds b = background_next();
       const Picoseconds h = next_event();
       if (std::min({t, b, h}) >= until) return;
@@ -60,7 +61,7 @@ void Agent::sleep_until(Picoseconds until) {
       if (b <= t)
         background_act();
       else
-        path->step();
+        path_->step_before(std::min({until, b, h}));
     }
   }
   leave();
@@ -75,7 +76,7 @@ void Agent::wait_for(sc_core::sc_event& event) {
 }
 
 void Agent::submit(Transaction& tx, Picoseconds at) {
-  const Picoseconds now = running_ ? now_ : kernel_time();
+  const Picoseconds now = running_ ? now_ : kernel_();
   // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
   if (at > now && (strict_ || at >= next_event())) sleep_until(at);
   tx.done = false;
@@ -93,7 +94,7 @@ bool Agent::poll(Transaction& tx, Picoseconds until) {
   }
   for (;;) {
     if (tx.done) return tx.ext.last <= until;
-    const Picoseconds t = path->next_decision();
+    const Picoseconds t = path_->next_decision();
     const Picoseconds h = next_event();
     if (std::min(t, h) >= until) return false;
     if (t >= h) {
@@ -101,21 +102,21 @@ bool Agent::poll(Transaction& tx, Picoseconds until) {
       sleep_until(until);
       return tx.done && tx.ext.last <= until;
     }
-    path->step();
+    path_->step_before(std::min(until, h));
   }
 }
 
 void Agent::finish(Transaction& tx) {
   while (!tx.done) {
     if (!strict_) {
-      const Picoseconds t = path->next_decision();
+      const Picoseconds t = path_->next_decision();
       const Picoseconds b = background_next();
-      const Picoseconds first = std::min(t, b);
-      if (first < next_event()) {
+      const Picoseconds h = next_event();
+      if (std::min(t, b) < h) {
         if (b <= t)
           background_act();
         else
-          path->step();
+          path_->step_before(std::min(b, h));
         continue;
       }
     }

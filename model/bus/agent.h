@@ -51,7 +51,7 @@ class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
   /// request of somebody else.
   Picoseconds horizon() {
     const Picoseconds h = next_event();
-    return path->undecided() > own_undecided_ ? std::min(h, path->next_decision()) : h;
+    return path_->undecided() > own_undecided_ ? std::min(h, path_->next_decision()) : h;
   }
   /// Thread body brackets: the path is the agent's between enter() and leave().
   void enter();
@@ -77,6 +77,8 @@ class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
   }
 
   sc_core::sc_event done_, background_due_;
+  KernelNow kernel_;
+  MemoryPathIf* path_ = nullptr;  // behind `path`
   Transaction* waiting_ = nullptr;
   bool running_ = false;
   unsigned own_undecided_ = 0;

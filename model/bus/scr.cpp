@@ -32,19 +32,31 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
   dont_initialize();
 }
 
+void Scr::end_of_elaboration() {
+  ddr_ = ddr_lookahead.operator->();
+  ddr_next_ = ddr_->next_decision_place();
+}
+
 Picoseconds Scr::next_decision() const {
-  return std::min(crossbar_.next_decision(), ddr_lookahead->next_decision());
+  return std::min(crossbar_.next_decision(), *ddr_next_);
 }
 
 void Scr::step() {
   const Picoseconds own = crossbar_.next_decision();
-  const Picoseconds ddr = ddr_lookahead->next_decision();
+  const Picoseconds ddr = *ddr_next_;
   // At equal times the order does not matter: each sees the other's acts strictly later.
   deciding_ = std::min(own, ddr);
   if (own < ddr)
-    crossbar_.step();
+    crossbar_.step(*this);
   else
-    ddr_lookahead->step();
+    ddr_->step();
+}
+
+void Scr::step_before(Picoseconds limit) {
+  const std::uint64_t epoch = horizon_epoch, responses = responses_;
+  do {
+    step();
+  } while (Scr::next_decision() < limit && horizon_epoch == epoch && responses_ == responses);
 }
 
 void Scr::settle() {
@@ -74,11 +86,19 @@ void Scr::arm() {
 /// event of anybody else.
 void Scr::play() {
   if (held_) return;
-  const Picoseconds now = kernel_time();
-  for (;;) {
+  const Picoseconds now = now_();
+  Picoseconds horizon = now;
+  for (std::uint64_t epoch = ~std::uint64_t{0};;) {
     const Picoseconds t = next_decision();
     if (t == kNever) return;
-    if (t > now && (strict_ || t >= kernel_horizon())) break;
+    if (t > now) {
+      if (strict_) break;
+      if (epoch != horizon_epoch) {
+        epoch = horizon_epoch;
+        horizon = kernel_horizon();
+      }
+      if (t >= horizon) break;
+    }
     step();
   }
   arm();
@@ -94,10 +114,10 @@ void Scr::inputs_changed() {
   if (!held_) arm();
 }
 
-XbarRequest Scr::describe(tlm::tlm_generic_payload& gp, const MemExtension& ext,
-                          Slave slave) const {
+XbarRequest Scr::describe(MemExtension& ext, Slave slave) {
+  const tlm::tlm_generic_payload& gp = *ext.payload;
   XbarRequest r;
-  r.cookie = &gp;
+  r.cookie = &ext;
   r.master = ext.master;
   r.slave = slave;
   r.write = gp.is_write();
@@ -113,24 +133,24 @@ tlm::tlm_sync_enum Scr::request(Master m, tlm::tlm_generic_payload& gp, tlm::tlm
   gp.get_extension(ext);
   FOVEA_CHECK(ext != nullptr && gp.get_data_length() <= kMaxBurstBytes, "bad memory request");
   ext->master = m;
+  ext->payload = &gp;
   const std::uint64_t a = gp.get_address();
   const Slave s = a >= map_.ddr_base ? Slave::kDdr : Slave::kConfig;
-  const Picoseconds at = kernel_time() + delay.value();
+  const Picoseconds at = now_() + delay.value();
   ext->issued = at;
   ++undecided_;
-  crossbar_.submit(describe(gp, *ext, s), at);
+  crossbar_.submit(describe(*ext, s), at);
   if (!held_) arm();
   phase = tlm::END_REQ;
   return tlm::TLM_UPDATED;
 }
 
 bool Scr::forward(const XbarRequest& request, Picoseconds arrival) {
-  auto& gp = *static_cast<tlm::tlm_generic_payload*>(request.cookie);
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
+  auto* ext = static_cast<MemExtension*>(request.cookie);
+  tlm::tlm_generic_payload& gp = *ext->payload;
   ext->priority = request.priority;
   tlm::tlm_phase phase = tlm::BEGIN_REQ;
-  const Picoseconds now = kernel_time();
+  const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(arrival > now ? arrival - now : 0);
   tlm::tlm_sync_enum status;
   const bool ddr = request.slave == Slave::kDdr;
@@ -152,15 +172,15 @@ tlm::tlm_sync_enum Scr::response(Slave slave, tlm::tlm_generic_payload& gp, tlm:
                                  sc_core::sc_time& delay) {
   MemExtension* ext = nullptr;
   gp.get_extension(ext);
-  const XbarRequest r = describe(gp, *ext, slave);
+  const XbarRequest r = describe(*ext, slave);
   if (phase == tlm::END_REQ) {
-    crossbar_.slave_accepted(r, kernel_time() + delay.value());
+    crossbar_.slave_accepted(r, now_() + delay.value());
     if (!held_) arm();
     return tlm::TLM_ACCEPTED;
   }
   if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
   if (slave == Slave::kConfig) {
-    const Picoseconds t = kernel_time() + delay.value();
+    const Picoseconds t = now_() + delay.value();
     deciding_ = t;
     crossbar_.slave_done(r, t, t, gp.is_response_error());
   } else {
@@ -170,14 +190,14 @@ tlm::tlm_sync_enum Scr::response(Slave slave, tlm::tlm_generic_payload& gp, tlm:
 }
 
 void Scr::respond(const XbarRequest& request, Picoseconds first, Picoseconds last, bool error) {
-  auto& gp = *static_cast<tlm::tlm_generic_payload*>(request.cookie);
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
+  auto* ext = static_cast<MemExtension*>(request.cookie);
+  tlm::tlm_generic_payload& gp = *ext->payload;
   ext->first = first;
   ext->last = last;
   gp.set_response_status(error ? tlm::TLM_ADDRESS_ERROR_RESPONSE : tlm::TLM_OK_RESPONSE);
-  const Picoseconds now = kernel_time();
+  const Picoseconds now = now_();
   --undecided_;
+  ++responses_;
   if (request.slave == Slave::kDdr) {
     ++(deciding_ > now ? direct_ : queued_);
     if (!request.write) latency[index(request.master)]->histogram.add(first - ext->issued);

@@ -42,7 +42,7 @@ struct LatencyStats : StatGroup {
   void on_reset() override { histogram.reset(); }
 };
 
-class Scr : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
+class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
  public:
   /// A port without a master stays unbound.
   using TargetSocket = tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
@@ -70,13 +70,14 @@ class Scr : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
   void settle();
 
   Picoseconds next_decision() const override;
-  void step() override;
   void hold() override;
   void release() override;
+  void step_before(Picoseconds limit) override;
   bool strict() const override { return strict_; }
   unsigned undecided() const override { return undecided_; }
 
  private:
+  friend class Crossbar;
   struct Target : tlm::tlm_fw_transport_if<> {
     Scr* owner = nullptr;
     Master master = Master::kArmI;
@@ -108,9 +109,11 @@ class Scr : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
   bool forward(const XbarRequest& request, Picoseconds arrival) override;
   void respond(const XbarRequest& request, Picoseconds first, Picoseconds last,
                bool error) override;
-  XbarRequest describe(tlm::tlm_generic_payload& gp, const MemExtension& ext, Slave slave) const;
+  static XbarRequest describe(MemExtension& ext, Slave slave);
   void play();
   void arm();
+  void end_of_elaboration() override;
+  void step();
   void inputs_changed();
 
   AddressMap map_;
@@ -119,9 +122,13 @@ class Scr : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
   std::array<Target, kMasterCount> targets_;
   std::array<SlavePort, kSlaveCount> slave_ports_;
   sc_core::sc_event due_;
+  KernelNow now_;
+  PassiveIf* ddr_ = nullptr;  // behind `ddr_lookahead`
+  const Picoseconds* ddr_next_ = nullptr;
   bool held_ = false;
   unsigned undecided_ = 0;
   Picoseconds deciding_ = 0;  // time of the decision being taken
+  std::uint64_t responses_ = 0;
   std::uint64_t direct_ = 0, queued_ = 0;
 };
 

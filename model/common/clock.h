@@ -40,11 +40,11 @@ class Clock {
   Picoseconds start() const { return start_; }
 
   /// Time of edge k (k >= the index at the last restart).
-  Picoseconds edge(std::uint64_t k) const {
+  [[gnu::always_inline]] Picoseconds edge(std::uint64_t k) const {
     return start_ + scale(k - k0_, ps_, edges_, edges_reciprocal_, 0);
   }
   /// Index of the first edge at or after t.
-  std::uint64_t edge_at_or_after(Picoseconds t) const {
+  [[gnu::always_inline]] std::uint64_t edge_at_or_after(Picoseconds t) const {
     if (t <= start_) return k0_;
     // smallest k with floor(k*ps/edges) >= d  <=>  k*ps >= d*edges
     return k0_ + scale(t - start_, edges_, ps_, ps_reciprocal_, ps_ - 1);
@@ -61,15 +61,21 @@ class Clock {
  private:
   /// (n * mul + add) / div, exactly; reciprocal is (2^64 - 1) / div. A division instruction here
   /// took half of the memory path's host time; the product with the reciprocal is at most 2 short.
-  std::uint64_t scale(std::uint64_t n, std::uint64_t mul, std::uint64_t div,
+  [[gnu::always_inline]] std::uint64_t scale(std::uint64_t n, std::uint64_t mul, std::uint64_t div,
                       std::uint64_t reciprocal, std::uint64_t add) const {
-    if (wide_) [[unlikely]]
-      return static_cast<std::uint64_t>((static_cast<unsigned __int128>(n) * mul + add) / div);
+    if (wide_) [[unlikely]] return scale_wide(n, mul, div, add);
     const std::uint64_t product = n * mul + add;
     auto quotient =
         static_cast<std::uint64_t>(static_cast<unsigned __int128>(product) * reciprocal >> 64);
-    for (std::uint64_t rest = product - quotient * div; rest >= div; rest -= div) ++quotient;
-    return quotient;
+    // Two conditional additions rather than a loop: no branch to mispredict.
+    std::uint64_t rest = product - quotient * div;
+    quotient += rest >= div;
+    rest -= rest >= div ? div : 0;
+    return quotient + (rest >= div);
+  }
+  [[gnu::noinline]] static std::uint64_t scale_wide(std::uint64_t n, std::uint64_t mul,
+                                                    std::uint64_t div, std::uint64_t add) {
+    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(n) * mul + add) / div);
   }
 
   Frequency frequency_;

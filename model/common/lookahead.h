@@ -18,6 +18,16 @@ inline sc_core::sc_time ps_time(Picoseconds ps) {
   return t;
 }
 
+/// kernel_time() without a call: sc_time_stamp() refers to the kernel's own present time. For
+/// objects of the simulation, which are made after its kernel.
+class KernelNow {
+ public:
+  Picoseconds operator()() const { return now_.value(); }
+
+ private:
+  const sc_core::sc_time& now_ = sc_core::sc_time_stamp();
+};
+
 /// For the test that shows the strict/default comparison can fail: makes every horizon late by this
 /// much. 0 in production; nothing but that test sets it.
 inline Picoseconds planted_late_horizon = 0;
@@ -43,14 +53,16 @@ class PassiveIf : public virtual sc_core::sc_interface {
   virtual Picoseconds next_decision() const = 0;
   /// Takes that decision. The caller knows all arrivals strictly before it.
   virtual void step() = 0;
-  /// Where the block keeps the value of next_decision(), for whoever asks often; nullptr: nowhere.
-  virtual const Picoseconds* next_decision_place() const { return nullptr; }
+  /// Where the block keeps the value of next_decision(), for whoever asks often.
+  virtual const Picoseconds* next_decision_place() const = 0;
 };
 
 /// The head of the memory path. While a running agent holds it, the agent plays its decisions;
 /// otherwise the path keeps a kernel event pending at its next decision.
-class MemoryPathIf : public PassiveIf {
+class MemoryPathIf : public virtual sc_core::sc_interface {
  public:
+  /// As in PassiveIf.
+  virtual Picoseconds next_decision() const = 0;
   virtual void hold() = 0;
   virtual void release() = 0;
   /// Takes the next decision, which is before `limit`, and goes on with those before `limit` until

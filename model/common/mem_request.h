@@ -22,6 +22,9 @@ struct MemExtension : tlm::tlm_extension<MemExtension> {
   Picoseconds first = 0;            ///< outcome: first beat at the master's port
   Picoseconds last = 0;             ///< outcome: last beat; a write's acknowledgement
   void* owner = nullptr;            ///< the master's own record of the transaction
+  /// The payload this belongs to; set by the crossbar, so that neither it nor the controller has to
+  /// look up the extension again on the way back.
+  tlm::tlm_generic_payload* payload = nullptr;
 
   tlm::tlm_extension_base* clone() const override { return new MemExtension(*this); }
   void copy_from(const tlm::tlm_extension_base& other) override {

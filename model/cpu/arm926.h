@@ -14,7 +14,7 @@ namespace fovea::cpu {
 
 /// Thin wrapper: the core runs on an SC_THREAD, so its blocking calls suspend it at any bus access
 /// and resume it there; the rules of time are those of bus::Agent.
-class Arm926 : public bus::Agent, private BusPort {
+class Arm926 final : public bus::Agent, private BusPort {
  public:
   static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
   ClockIn clk{"clk"};

@@ -63,7 +63,8 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm:
   MemExtension* ext = nullptr;
   gp.get_extension(ext);
   DdrRequest r;
-  r.cookie = &gp;
+  ext->payload = &gp;
+  r.cookie = ext;
   r.master = ext->master;
   r.priority = ext->priority;
   r.write = gp.is_write();
@@ -71,27 +72,27 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm:
   r.address = static_cast<std::uint32_t>(gp.get_address());
   r.critical = ext->critical;
   r.data = gp.get_data_ptr();
-  if (!controller_.submit(r, kernel_time() + delay.value())) return tlm::TLM_ACCEPTED;
+  if (!controller_.submit(r, now_() + delay.value())) return tlm::TLM_ACCEPTED;
   phase = tlm::END_REQ;
   return tlm::TLM_UPDATED;
 }
 
 void DdrModule::ddr_accepted(void* cookie, Picoseconds at) {
-  auto& gp = *static_cast<tlm::tlm_generic_payload*>(cookie);
+  auto& gp = *static_cast<MemExtension*>(cookie)->payload;
   tlm::tlm_phase phase = tlm::END_REQ;
-  sc_core::sc_time delay = ps_time(at > kernel_time() ? at - kernel_time() : 0);
+  const Picoseconds now = now_();
+  sc_core::sc_time delay = ps_time(at > now ? at - now : 0);
   socket->nb_transport_bw(gp, phase, delay);
 }
 
 void DdrModule::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) {
-  auto& gp = *static_cast<tlm::tlm_generic_payload*>(cookie);
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
+  auto* ext = static_cast<MemExtension*>(cookie);
+  tlm::tlm_generic_payload& gp = *ext->payload;
   ext->first = first;
   ext->last = last;
   gp.set_response_status(tlm::TLM_OK_RESPONSE);
   tlm::tlm_phase phase = tlm::BEGIN_RESP;
-  sc_core::sc_time delay = ps_time(first - kernel_time());
+  sc_core::sc_time delay = ps_time(first - now_());
   socket->nb_transport_bw(gp, phase, delay);
 }
 

@@ -15,7 +15,7 @@ namespace fovea::mem {
 /// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDTIMR,
 /// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
 /// while LPSC 13 is off, end in a bus error (assumed: the chip's reaction is not documented).
-class DdrModule : public BusTarget, public PassiveIf, public tlm::tlm_fw_transport_if<>,
+class DdrModule final : public BusTarget, public PassiveIf, public tlm::tlm_fw_transport_if<>,
                   private DdrClient {
  public:
   tlm::tlm_target_socket<64> socket{"socket"};
@@ -35,6 +35,9 @@ class DdrModule : public BusTarget, public PassiveIf, public tlm::tlm_fw_transpo
 
   Picoseconds next_decision() const override { return controller_.next_decision(); }
   void step() override { controller_.step(); }
+  const Picoseconds* next_decision_place() const override {
+    return controller_.next_decision_place();
+  }
 
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
                                      sc_core::sc_time&) override;
@@ -50,6 +53,7 @@ class DdrModule : public BusTarget, public PassiveIf, public tlm::tlm_fw_transpo
 
   BackingStore store_;
   DdrController controller_;
+  KernelNow now_;
   bool ready_ = false;  // initialised by the firmware
 };
 

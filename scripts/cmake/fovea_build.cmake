@@ -9,6 +9,13 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
 set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
 
+# Optimisation across the files of the hot libraries (fovea_hot).
+set(FOVEA_LTO OFF)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release"
+   AND NOT FOVEA_SANITIZE)
+  set(FOVEA_LTO ON)
+endif()
+
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
@@ -52,6 +59,14 @@ function(fovea_library name)
   target_link_libraries(${name} PUBLIC fovea_warnings)
 endfunction()
 
+# fovea_hot(NAME): a library on the path of every instruction or memory access. The program `fovea`
+# is optimised across these as a whole; tests link their ordinary code, which is quicker to build.
+function(fovea_hot name)
+  if(FOVEA_LTO)
+    target_compile_options(${name} PRIVATE -O3 -fno-plt -flto=auto -ffat-lto-objects)
+  endif()
+endfunction()
+
 # fovea_test(layer.subject SOURCES ... LIBS ... [TIMEOUT s] [LABELS extra...] [DEFINES ...])
 # One process per program; the layer (text before the first dot) becomes a label.
 function(fovea_test name)
@@ -63,6 +78,9 @@ function(fovea_test name)
   string(REPLACE "." "_" target test_${name})
   add_executable(${target} ${A_SOURCES})
   target_link_libraries(${target} PRIVATE ${A_LIBS} GTest::gmock GTest::gtest fovea_warnings)
+  if(FOVEA_LTO)
+    target_link_options(${target} PRIVATE -fno-lto)
+  endif()
   target_compile_definitions(${target} PRIVATE ${A_DEFINES})
   add_test(NAME ${name} COMMAND ${target})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${layer};${A_LABELS}")

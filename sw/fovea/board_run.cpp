@@ -256,7 +256,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   result.frames = std::move(frames_);
   const auto& xbar = board_->dm365.scr.crossbar();
   for (auto n : kMasterNames) result.timeline_masters.emplace_back(n);
+  // Only whole intervals before the window's end: how far the path has decided beyond it depends on
+  // who played it.
+  const Picoseconds last = board_->window_end().value_or(kernel_time());
   for (std::size_t i = 0; i < xbar.timeline().size(); ++i) {
+    if ((i + 1) * xbar.timeline_interval() > last) break;
     TimelineRow t;
     t.start = i * xbar.timeline_interval();
     t.end = t.start + xbar.timeline_interval();

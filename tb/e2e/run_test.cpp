@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
+#include <systemc>
 
 #include "model/common/masters.h"
 #include "sw/fovea/simulation.h"

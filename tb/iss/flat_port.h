@@ -30,6 +30,8 @@ struct BusRecord {
 class FlatPort : public BusPort {
  public:
   Picoseconds read_latency = 80'000, beat = 8'000, write_latency = 40'000;
+  bool decide_late = false;  ///< an outcome is known at its time, not as soon as it is certain
+  std::function<Picoseconds()> extra;  ///< added to each access's latency
   Picoseconds ahb_period = 8'000;  ///< every submission must lie on a multiple of it; 0: unchecked
   std::vector<BusRecord> log;
   Picoseconds now = 0;
@@ -65,11 +67,11 @@ class FlatPort : public BusPort {
     slot = &a;
     a.done = a.error = false;
     const unsigned beats = std::max(1u, a.bytes / 4u);
-    a.first = t + (a.write ? write_latency : read_latency);
+    a.first = t + (a.write ? write_latency : read_latency) + (extra ? extra() : 0);
     a.last = a.first + (beats - 1) * beat;
     log.push_back({a.port, a.kind, a.address, a.bytes, a.write, a.buffered, a.locked, t, a.last});
     // If nobody else acts before its end the outcome is certain at once, as on the real bus.
-    if (events_.empty() || events_.begin()->first > a.last) {
+    if (!decide_late && (events_.empty() || events_.begin()->first > a.last)) {
       if (!other_under_way(a)) return carry_out(a);
     }
     events_.emplace(a.last, [this, p = &a] { carry_out(*p); });

@@ -46,7 +46,8 @@ class Machine {
     core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
     identity_map();
   }
-  /// `svc #0` with r7: Linux write and exit; #1 notes the clock; #2 ends the run; others are real.
+  std::function<void(std::uint32_t)> on_svc;  ///< gets `svc #3` to `svc #15`
+  /// `svc #0` with r7: Linux write and exit; #1 notes the clock; #2 ends the run; from 16 on real.
   bool swi(Core& c, std::uint32_t number) {
     if (number == 1) {
       marks.push_back(c.clock_count());
@@ -54,6 +55,10 @@ class Machine {
     }
     if (number == 2) {
       c.request_stop();
+      return true;
+    }
+    if (number >= 3 && number < 16 && on_svc) {
+      on_svc(number);
       return true;
     }
     if (number != 0) return false;
@@ -83,13 +88,19 @@ class Machine {
   }
   void run(std::uint32_t entry = 0) {
     core.reset(entry, port.now);
+    port.schedule(port.now + limit, [this, run = ++runs] {
+      if (run == runs) throw std::runtime_error("the program does not end");
+    });
     core.run();
+    ++runs;
     // Every clock since the start has exactly one cause.
     const Counts& c = core.counts();
     const std::uint64_t sum =
         c.issue + c.idle + std::accumulate(c.stall.begin(), c.stall.end(), std::uint64_t{0});
     EXPECT_EQ(core.clock_count() - first_clock, sum);
   }
+  Picoseconds limit = 500 * kPsPerMs;  ///< simulated time a program may take
+  unsigned runs = 0;
   std::uint64_t first_clock = 1;  ///< the first edge after time 0
   /// Assembles at `base`, runs from there to `svc #2`.
   const Program& execute(const std::string& text, std::uint32_t base = 0) {
@@ -100,6 +111,18 @@ class Machine {
   }
   /// Clocks between mark n and mark n+1, less the three of the mark itself.
   std::uint64_t between(unsigned n = 0) const { return marks.at(n + 1) - marks.at(n) - 3; }
+  Picoseconds time() const { return core.clock_count() * kClock; }
+  std::uint32_t tcm_word(std::uint32_t address) const {
+    std::uint32_t v;
+    std::memcpy(&v, tcm.data() + address, 4);
+    return v;
+  }
+  /// First-level descriptor of the section that holds `va`: maps it to `pa`.
+  void section(std::uint32_t va, std::uint32_t pa, unsigned c, unsigned b, unsigned ap = 3,
+               unsigned domain = 0) {
+    port.set_word(kTables + 4 * (va >> 20),
+                  (pa & 0xFFF00000u) | ap << 10 | domain << 5 | 0x12u | c << 3 | b << 2);
+  }
   std::uint64_t stall(Cause c) const { return core.counts().stall[static_cast<std::size_t>(c)]; }
   Program program;
 };

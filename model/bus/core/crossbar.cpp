@@ -84,51 +84,12 @@ void Crossbar::plan() {
   next_ = scr_.edge(edge);
 }
 
-void Crossbar::step() {
-  Port& p = ports_[next_port_];
-  XbarRequest r = p.queue[p.head % kQueue];
-  if (++p.head == p.tail) {
-    waiting_ &= ~(1u << next_port_);
-  } else {  // the next in line shows itself one clock later
-    auto& visible = p.visible[p.head % kQueue];
-    visible = std::max(visible, next_edge_ + 1);
-  }
-  r.priority = p.priority;
-  SlaveState& s = slaves_[static_cast<std::size_t>(r.slave)];
-  const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
-  s.free = next_edge_ + cycles;
-  s.last = next_port_;
-
-  MasterStats& st = *stats[next_port_];
-  ++st.transactions;
-  (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
-  if (r.slave == Slave::kDdr) (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
-  if (next_ >= bin_end_ || timeline_.empty()) {
-    timeline_.resize(next_ / interval_ + 1);
-    bin_end_ = (next_ / interval_ + 1) * interval_;
-  }
-  (r.write ? timeline_.back().write : timeline_.back().read)[next_port_] += r.bytes;
-
-  const std::uint64_t arrival = next_edge_ + cycles;
-  if (host_.forward(r, scr_.edge(arrival))) {
-    if (r.write && r.slave == Slave::kDdr) acknowledge_write(r, arrival);
-  } else {
-    s.blocked = true;
-  }
-  plan();
-}
-
-void Crossbar::acknowledge_write(const XbarRequest& request, std::uint64_t edge) {
-  const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
-  host_.respond(request, at, at, false);
-}
-
 void Crossbar::slave_accepted(const XbarRequest& request, Picoseconds at) {
   SlaveState& s = slaves_[static_cast<std::size_t>(request.slave)];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   s.free = std::max(s.free, scr_.edge_after(at));
-  if (request.write && request.slave == Slave::kDdr) acknowledge_write(request, s.free);
+  if (request.write && request.slave == Slave::kDdr) acknowledge_write(host_, request, s.free);
   plan();
 }
 

@@ -60,7 +60,10 @@ class Crossbar {
   void submit(const XbarRequest& request, Picoseconds at);
   /// The next arbitration, kNever if there is nothing to arbitrate.
   Picoseconds next_decision() const { return next_; }
-  void step();
+  void step() { step(host_); }
+  /// The same for a host of known type: its forward() and respond() are called directly.
+  template <class Host>
+  void step(Host& host);
 
   /// Slave side: the request waiting at the slave was taken at `at`.
   void slave_accepted(const XbarRequest& request, Picoseconds at);
@@ -92,7 +95,12 @@ class Crossbar {
   };
 
   void plan();
-  void acknowledge_write(const XbarRequest& request, std::uint64_t edge);
+  template <class Host>
+  void acknowledge_write(Host& host, const XbarRequest& request, std::uint64_t edge) {
+    const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
+    host.respond(request, at, at, false);
+  }
+  void count(const XbarRequest& r);
 
   XbarHost& host_;
   Clock scr_;
@@ -106,5 +114,45 @@ class Crossbar {
   Picoseconds bin_end_ = 0;
   std::vector<TimelineBin> timeline_;
 };
+
+/// What a grant adds to the statistics.
+inline void Crossbar::count(const XbarRequest& r) {
+  MasterStats& st = *stats[next_port_];
+  ++st.transactions;
+  (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
+  if (r.slave == Slave::kDdr) (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
+  if (next_ >= bin_end_ || timeline_.empty()) [[unlikely]] {
+    timeline_.resize(next_ / interval_ + 1);
+    bin_end_ = (next_ / interval_ + 1) * interval_;
+  }
+  (r.write ? timeline_.back().write : timeline_.back().read)[next_port_] += r.bytes;
+}
+
+template <class Host>
+void Crossbar::step(Host& host) {
+  Port& p = ports_[next_port_];
+  // The place is not taken again before the queue is full once more.
+  XbarRequest& r = p.queue[p.head % kQueue];
+  if (++p.head == p.tail) {
+    waiting_ &= ~(1u << next_port_);
+  } else {  // the next in line shows itself one clock later
+    auto& visible = p.visible[p.head % kQueue];
+    visible = std::max(visible, next_edge_ + 1);
+  }
+  r.priority = p.priority;
+  SlaveState& s = slaves_[static_cast<std::size_t>(r.slave)];
+  const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
+  s.free = next_edge_ + cycles;
+  s.last = next_port_;
+  count(r);
+
+  const std::uint64_t arrival = next_edge_ + cycles;
+  if (host.forward(r, scr_.edge(arrival))) {
+    if (r.write && r.slave == Slave::kDdr) acknowledge_write(host, r, arrival);
+  } else {
+    s.blocked = true;
+  }
+  plan();
+}
 
 }  // namespace fovea::bus

@@ -6,22 +6,35 @@
 namespace fovea::cpu {
 
 Picoseconds Core::next_act() const {
-  if (read_waiting_) return kNever;
-  if (write_in_flight_) {
-    if (!write_access_.done) return kNever;
-    if (write_over_ == 0)
-      write_over_ = time(ahb(clock_.edge_at_or_after(write_access_.last)));
-    return write_over_;
+  const std::uint64_t c = next_act_cycle();
+  if (c == kNoCycle) return kNever;
+  if (act_time_cycle_ != c) {
+    act_time_cycle_ = c;
+    act_time_ = time(c);
   }
-  if (writes_.empty() && writes_.victim_bytes == 0) return kNever;
-  return time(ahb(std::max(next_write_cycle_, data_port_free_)));
+  return act_time_;
+}
+
+std::uint64_t Core::next_act_cycle() const {
+  if (read_waiting_) return kNoCycle;
+  if (write_in_flight_) return write_access_.done ? write_over() : kNoCycle;
+  if (writes_.empty() && writes_.victim_bytes == 0) return kNoCycle;
+  return ahb(std::max(next_write_cycle_, data_port_free_));
+}
+
+/// AHB clock at which the write under way, which is done, leaves the port.
+std::uint64_t Core::write_over() const {
+  if (write_over_ == 0) write_over_ = ahb(clock_.edge_at_or_after(write_access_.last));
+  return write_over_;
 }
 
 void Core::act() {
-  std::uint64_t c = ahb(std::max(next_write_cycle_, data_port_free_));
+  std::uint64_t c;
   if (write_in_flight_) {
-    c = ahb(clock_.edge_at_or_after(write_access_.last));
+    c = write_over();
     retire_write();
+  } else {
+    c = ahb(std::max(next_write_cycle_, data_port_free_));
   }
   if (!writes_.empty() || writes_.victim_bytes) start_write(c);
 }
@@ -48,7 +61,10 @@ void Core::start_write(std::uint64_t cycle) {
     const WriteBuffer::Entry& e = writes_.front();
     a.bytes = static_cast<std::uint8_t>(WriteBuffer::next_burst(e));
     a.address = e.address + e.sent;
-    std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
+    if (a.bytes == 4)
+      std::memcpy(a.data, e.data.data() + e.sent, 4);
+    else
+      std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
   }
   a.kind = a.bytes == 32   ? BusAccess::Kind::kIncr8
            : a.bytes == 16 ? BusAccess::Kind::kIncr4
@@ -62,13 +78,13 @@ void Core::start_write(std::uint64_t cycle) {
 /// Plays the buffers up to a clock, in time order.
 void Core::play(std::uint64_t cycle) {
   if (!write_in_flight_ && writes_.empty() && writes_.victim_bytes == 0) return;
-  const Picoseconds t = time(cycle);
   for (;;) {
     if (write_in_flight_ && !write_access_.done) {
       // While the port waits the buffers may move on by themselves: look again afterwards.
-      if (!port_.poll(write_access_, t) && !(write_in_flight_ && write_access_.done)) return;
+      if (!port_.poll(write_access_, time(cycle)) && !(write_in_flight_ && write_access_.done))
+        return;
     }
-    if (next_act() > t) return;
+    if (next_act_cycle() > cycle) return;
     act();
   }
 }
@@ -78,7 +94,7 @@ void Core::finish_write(Cause cause) {
   read_waiting_ = true;
   port_.finish(write_access_);
   read_waiting_ = false;
-  stall_to(ahb(clock_.edge_at_or_after(write_access_.last)), cause);
+  stall_to(write_over(), cause);
   next_write_cycle_ = std::max(next_write_cycle_, cycle_);
   retire_write();
 }

@@ -23,7 +23,7 @@ class Cache {
   unsigned lines() const { return sets_ * kWays; }
   unsigned set_of(std::uint32_t mva) const { return (mva >> 5) & (sets_ - 1); }
   /// Index of the line that holds this MVA (low five bits ignored); -1 if none.
-  int find(std::uint32_t mva) const {
+  [[gnu::always_inline]] int find(std::uint32_t mva) const {
     const std::uint32_t line = mva & ~31u;
     // The whole MVA is the tag, so a line that carries it is the one, wherever the hint came from.
     std::uint16_t& hint = hints_[(mva >> 5) % kHints];

@@ -71,7 +71,8 @@ class Core : public Background {
   std::vector<AccessRecord> last_accesses() const;
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
-  /// Reads through the caches without any effect; false if nothing is mapped there.
+  /// Reads internal RAM, the D-cache and the buffers without any effect; false if the address is in
+  /// none of them (memory has it then).
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
 
  private:
@@ -178,6 +179,12 @@ class Core : public Background {
   bool walk_read(std::uint32_t address, std::uint32_t& word);
   bool permitted(const Translation& t, bool write, bool user, unsigned& fault) const;
   void fault(bool instruction, unsigned status, unsigned domain, std::uint32_t address);
+  /// Several words at an address that is not a word's: notes a fault if alignment is checked.
+  bool misaligned(std::uint32_t va) {
+    if (!(control_ & 2u) || !(va & 3u)) return false;
+    fault(false, 0x1, 0, modified(va));
+    return true;
+  }
   int dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line);
   void dcache_wait(std::uint32_t mva);
   bool uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value);
@@ -196,6 +203,8 @@ class Core : public Background {
   }
   void sync_to_ahb() { stall_to(ahb(cycle_), Cause::kBusSync); }
   void play(std::uint64_t cycle);
+  std::uint64_t next_act_cycle() const;
+  std::uint64_t write_over() const;
   void bus_read(BusAccess& a, Cause cause);
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
   void finish_write(Cause cause);
@@ -275,7 +284,10 @@ class Core : public Background {
   BusAccess write_access_;
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
-  mutable Picoseconds write_over_ = 0;  // when the write under way can be retired; 0: not yet known
+  mutable std::uint64_t write_over_ = 0;  // clock at which it can be retired; 0: not yet known
+  static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};
+  mutable std::uint64_t act_time_cycle_ = kNoCycle;  // next_act(): last clock and its time
+  mutable Picoseconds act_time_ = 0;
   bool filling_ = false;             // the victim waits until the fill has read
   std::uint64_t next_write_cycle_ = 0;
   bool read_waiting_ = false;

@@ -1,5 +1,5 @@
 // CP15: control, MMU and cache registers, cache operations, wait-for-interrupt.
-#include "model/cpu/core/core.h"
+#include "model/cpu/core/fast_path.h"
 
 namespace fovea::cpu {
 namespace {

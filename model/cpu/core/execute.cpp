@@ -304,6 +304,7 @@ void Core::load_store(const Instruction& i) {
       break;
     case Op::kLdrd: {
       std::uint32_t second = 0;
+      if (misaligned(address)) return data_abort();
       if (load(address & ~3u, 4, value, false) != Result::kOk) return data_abort();
       spend(1);
       if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort();
@@ -320,7 +321,8 @@ void Core::load_store(const Instruction& i) {
     }
     default: {  // STRD
       const std::uint32_t words[2] = {r_[i.rd], i.rd + 1u == 15 ? r_[15] + 4 : r_[i.rd + 1u]};
-      if (store_words(address & ~3u, words, 2, false) != Result::kOk) return data_abort();
+      if (misaligned(address) || store_words(address & ~3u, words, 2, false) != Result::kOk)
+        return data_abort();
       write_back();
       return;
     }
@@ -348,6 +350,7 @@ void Core::load_multiple(const Instruction& i) {
   const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
   std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
                                           : ((i.flags & kPre) ? end : end + 4);
+  if (misaligned(address)) return data_abort();
   std::array<std::uint32_t, 16> values;
   for (unsigned k = 0; k < n; ++k) {
     const std::uint32_t at = (address + 4 * k) & ~3u;
@@ -397,6 +400,7 @@ void Core::store_multiple(const Instruction& i) {
   const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
   const std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
                                                 : ((i.flags & kPre) ? end : end + 4);
+  if (misaligned(address)) return data_abort();
   std::array<std::uint32_t, 16> values;
   const std::uint32_t mode = cpsr_ & 31u;
   if (i.flags & kUserBank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));

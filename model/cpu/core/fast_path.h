@@ -56,6 +56,7 @@ inline bool Core::load_hit(std::uint32_t va, std::uint32_t& value, bool user) {
   return true;
 }
 
+/// Also takes the write that misses a cacheable, bufferable page.
 template <unsigned kBytes>
 inline bool Core::store_hit(std::uint32_t va, std::uint32_t value, bool user) {
   const std::uint32_t mva = modified(va);
@@ -65,9 +66,15 @@ inline bool Core::store_hit(std::uint32_t va, std::uint32_t value, bool user) {
       !memo.translation.bufferable || (control_ & 5u) != 5u || (cache_debug_ & 4u) || in_tcm(mva))
     return false;
   const int i = dcache_.find(mva);
-  if (i < 0) return false;
   record(va, kBytes, true);
   ++counts_.dcache_writes;
+  if (i < 0) {  // no allocation on a write: to the write buffer
+    if (cycle_ < dfill_.last) dcache_wait(mva);
+    ++counts_.dcache_write_misses;
+    enqueue_write(memo.translation.physical(mva), reinterpret_cast<const std::uint8_t*>(&value),
+                  kBytes);
+    return true;
+  }
   if (cycle_ < dfill_.last) dcache_wait(mva);
   std::memcpy(dcache_.data(static_cast<unsigned>(i)) + (mva & 31u), &value, kBytes);
   dcache_.line(static_cast<unsigned>(i)).dirty |= static_cast<std::uint8_t>(1u << (mva >> 4 & 1u));

@@ -449,7 +449,15 @@ bool Core::peek(std::uint32_t address, std::uint8_t& byte) const {
     return true;
   }
   const int i = dcache_.find(mva);
-  if (i < 0) return false;
+  if (i < 0) {  // on its way to memory, where the address is the physical one
+    std::uint32_t pa = mva;
+    if (control_ & 1u) {
+      const TlbEntry* e = tlb_.find(mva);
+      if (!e) return false;
+      pa = e->base_pa | (mva & e->mask);
+    }
+    return writes_.find(pa, byte);
+  }
   byte = dcache_.data(static_cast<unsigned>(i))[mva & 31u];
   return true;
 }

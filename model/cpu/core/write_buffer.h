@@ -26,7 +26,10 @@ class WriteBuffer {
     e.address = address;
     e.bytes = bytes;
     e.sent = 0;
-    std::memcpy(e.data.data(), data, bytes);
+    if (bytes == 4)
+      std::memcpy(e.data.data(), data, 4);
+    else
+      std::memcpy(e.data.data(), data, bytes);
     words_ += (bytes + 3) / 4;
   }
   Entry& front() { return entries_[head_]; }
@@ -58,6 +61,19 @@ class WriteBuffer {
     }
     return victim_bytes && address < victim_address + victim_bytes &&
            victim_address < address + n;
+  }
+
+  /// The byte at an address as the youngest pending write leaves it; false if there is none.
+  bool find(std::uint32_t address, std::uint8_t& byte) const {
+    for (unsigned i = count_; i-- > 0;) {
+      const Entry& e = entries_[(head_ + i) % kAddresses];
+      if (address - e.address >= e.bytes) continue;
+      byte = e.data[address - e.address];
+      return true;
+    }
+    if (address - victim_address >= victim_bytes) return false;
+    byte = victim[address - victim_address];
+    return true;
   }
 
   std::uint32_t victim_address = 0;

@@ -6,6 +6,19 @@
 #include "model/common/check.h"
 
 namespace fovea::mem {
+namespace {
+
+/// The usual lengths in line; memcpy() of a length not known is a call.
+void move_bytes(std::uint8_t* to, const std::uint8_t* from, unsigned bytes) {
+  switch (bytes) {
+    case 4: std::memcpy(to, from, 4); return;
+    case 32: std::memcpy(to, from, 32); return;
+    case 64: std::memcpy(to, from, 64); return;
+    default: std::memcpy(to, from, bytes);
+  }
+}
+
+}  // namespace
 
 DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
     : params_(params),
@@ -82,6 +95,7 @@ void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   free_slots_ &= free_slots_ - 1;
   order_[count_++] = static_cast<std::uint8_t>(slot);
   last_arrival_ = arrived;
+  __builtin_prefetch(store_.at(request.address));  // the host's own memory is slow as well
   Entry& e = slots_[static_cast<std::size_t>(slot)];
   e.request = request;
   e.ready = arrived + request_latency_;
@@ -93,7 +107,7 @@ void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   e.classified = false;
   if (request.write) {
     write_bytes_held_ += request.bytes;
-    std::memcpy(e.data.data(), request.data, request.bytes);
+    move_bytes(e.data.data(), request.data, request.bytes);
   }
 }
 
@@ -312,9 +326,9 @@ void DdrController::column(std::size_t slot, std::uint64_t clock) {
     in_service_ = static_cast<int>(slot);
     const DdrRequest& r = e.request;
     if (r.write) {
-      std::memcpy(store_.at(r.address), e.data.data(), r.bytes);
+      move_bytes(store_.at(r.address), e.data.data(), r.bytes);
     } else {
-      std::memcpy(r.data, store_.at(r.address), r.bytes);
+      move_bytes(r.data, store_.at(r.address), r.bytes);
       answer_read(e, clock);
     }
   }

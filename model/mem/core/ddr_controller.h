@@ -65,6 +65,7 @@ class DdrController {
   /// Time of the next DRAM command, kNever if nothing is queued. Depends only on arrivals strictly
   /// before it.
   Picoseconds next_decision() const { return next_; }
+  const Picoseconds* next_decision_place() const { return &next_; }
   void step();
 
   DdrStats stats;

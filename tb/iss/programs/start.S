@@ -5,9 +5,6 @@
   .type _start, %function
   .type _exit, %function
   .type host_write, %function
-  .type _start, %function
-  .type _exit, %function
-  .type host_write, %function
 _start:
   ldr sp, =stack_top
   bl run_program
