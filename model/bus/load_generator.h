@@ -1,5 +1,6 @@
 // Synthetic traffic on a crossbar port of its own, to load the memory in experiments.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <systemc>
@@ -47,7 +48,10 @@ class LoadGenerator : public sc_core::sc_module {
     SC_METHOD(fill);
     sensitive << wake_;
     dont_initialize();
-    if (params.outstanding() > 0) wake_.notify(to_sc_time(params.start()));
+    if (params.outstanding() > 0) {
+      // Not at power-up itself: the clocks get their first values in that instant.
+      wake_.notify(to_sc_time(std::max<Picoseconds>(params.start(), kPsPerNs)));
+    }
   }
 
  private:

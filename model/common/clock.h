@@ -50,7 +50,7 @@ class Clock {
     return k0_ + scale(t - start_, edges_, ps_, ps_reciprocal_, ps_ - 1);
   }
   /// Index of the first edge strictly after t.
-  std::uint64_t edge_after(Picoseconds t) const {
+  [[gnu::always_inline]] std::uint64_t edge_after(Picoseconds t) const {
     return t < start_ ? k0_ : edge_at_or_after(t + 1);
   }
   Picoseconds next_edge_after(Picoseconds t) const { return edge(edge_after(t)); }
@@ -61,8 +61,9 @@ class Clock {
  private:
   /// (n * mul + add) / div, exactly; reciprocal is (2^64 - 1) / div. A division instruction here
   /// took half of the memory path's host time; the product with the reciprocal is at most 2 short.
-  [[gnu::always_inline]] std::uint64_t scale(std::uint64_t n, std::uint64_t mul, std::uint64_t div,
-                      std::uint64_t reciprocal, std::uint64_t add) const {
+  [[gnu::always_inline]] std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
+                                             std::uint64_t div, std::uint64_t reciprocal,
+                                             std::uint64_t add) const {
     if (wide_) [[unlikely]] return scale_wide(n, mul, div, add);
     const std::uint64_t product = n * mul + add;
     auto quotient =

@@ -172,9 +172,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   started_ = Wall::now();
   const ElfImage elf = ElfImage::load(program_file(params_));
   check_fits(elf, memory_regions(params_));
+  complete_params(params_);
   auto source = video::make_picture_source(params_.camera, load_footage(params_),
                                            params_.raster_width(), params_.raster_height());
-  complete_params(params_);
 
   board_ = std::make_unique<board::Board>("board", params_, *source, elf.entry(),
                                           request.strict_sync);
@@ -247,7 +247,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       for (int i = 0; i < 20 && guest.empty() && !(closed_ && arm.core().mark_done()); ++i)
         sc_core::sc_start(ps_time(slice));
     }
-    if (!closed_) close_window();
+    // Without a window there is nothing to report but the guest's own words.
+    if (!closed_ && board_->window_start()) close_window();
   }
   collect(arm.core().window_stats(), stats_);
   add_frame_stats(stats_);

@@ -1,5 +1,6 @@
 #include "sw/fovea/loader.h"
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -35,7 +36,31 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params) {
   return decode_frames(camera.file(), options);
 }
 
+namespace {
+
+void require(bool ok, const std::string& key, const std::string& value,
+             const std::string& allowed) {
+  if (!ok) throw UserError("key '" + key + "': '" + value + "' is not allowed; allowed: " + allowed);
+}
+
+}  // namespace
+
 void complete_params(board::BoardParams& params) {
+  const auto& v = params.video;
+  require(v.width() % 4 == 0, v.width.key(), v.width.text(), "multiples of 4, 0 for all");
+  require(v.height() % 4 == 0 && v.height() <= params.raster_height(), v.height.key(),
+          v.height.text(),
+          "multiples of 4 up to " + std::to_string(params.raster_height()) + ", 0 for all");
+  for (const auto* cache : {&params.soc.cpu.icache, &params.soc.cpu.dcache})
+    require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
+            "powers of two");
+  const auto& load = params.soc.load;
+  require(std::has_single_bit(load.bytes()), load.bytes.key(), load.bytes.text(),
+          "powers of two from 4 B");
+  require(load.outstanding() == 0 || (load.base() % 64 == 0 &&
+                                      load.base() + load.size() <= params.soc.ddr.size_bytes()),
+          load.base.key(), load.base.text(),
+          "multiples of 64 B with load.base + load.size inside the SDRAM");
   if (!params.decoder.standard.user_set())
     params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
 }

@@ -1,6 +1,7 @@
 #include "tb/e2e/rig.h"
 
 #include <cstring>
+#include <numbers>
 #include <stdexcept>
 
 #include "model/video/core/bt656.h"
@@ -114,6 +115,23 @@ oracle::Geometry Rig::geometry() const {
   g.shift_y = l.shift_y();
   g.in_aspect = l.in_aspect();
   g.out_aspect = l.out_aspect();
+  if (l.mapping.is("kannala_brandt")) {
+    // The calibration stretched to the raster; pixel centres are at integers.
+    const auto& kb = l.kb();
+    const double sx = params.raster_width() / l.kb_width();
+    const double sy = params.raster_height() / l.kb_height();
+    const double fx = kb[0] * sx, fy = kb[1] * sy;
+    g.theta_max = l.theta_max() * std::numbers::pi / 180;
+    for (int i = 0; i <= 128; ++i) {
+      const double t = g.theta_max * i / 128, t2 = t * t;
+      g.table_r.push_back(
+          fx * t * (1 + t2 * (kb[4] + t2 * (kb[5] + t2 * (kb[6] + t2 * kb[7])))));
+    }
+    g.focal_px = fx;
+    g.in_aspect = fy / fx;
+    g.centre_x = (kb[2] + 0.5) * sx - 0.5 - (params.raster_width() - 1) / 2.0;
+    g.centre_y = (kb[3] + 0.5) * sy - 0.5 - (params.raster_height() - 1) / 2.0;
+  }
   return g;
 }
 

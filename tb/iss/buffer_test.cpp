@@ -21,8 +21,8 @@ class BufferTest : public testing::Test {
     bool begun = false;
     for (const auto& r : m.port.data_log()) {
       if (begun)
-        out += std::string(out.empty() ? "" : " ") + (r.write ? "W" : "R") + std::to_string(r.bytes) + "@" +
-               std::to_string(r.address - kBlock);
+        out += std::string(out.empty() ? "" : " ") + (r.write ? "W" : "R") +
+               std::to_string(r.bytes) + "@" + std::to_string(r.address - kBlock);
       begun |= r.kind == Kind::kWrap8;  // the prologue's load
     }
     return out;
@@ -30,8 +30,10 @@ class BufferTest : public testing::Test {
 };
 
 TEST_F(BufferTest, FourScatteredStoresDoNotStall) {
-  m.execute(kStart + "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n str r0, [r4, #192]\n"
-                     "svc #1\n" + kDrain);
+  m.execute(kStart +
+            "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n str r0, [r4, #192]\n"
+            "svc #1\n" +
+            kDrain);
   EXPECT_EQ(m.between(), 4u);
   EXPECT_EQ(m.stall(Cause::kWriteBuffer), 0u);
   EXPECT_EQ(traffic(), "W4@0 W4@64 W4@128 W4@192");
@@ -39,8 +41,10 @@ TEST_F(BufferTest, FourScatteredStoresDoNotStall) {
 
 /// The first write is acknowledged ten clocks after it went out at the AHB edge.
 TEST_F(BufferTest, FifthScatteredStoreWaitsForTheFirstAcknowledge) {
-  m.execute(kStart + "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n str r0, [r4, #192]\n"
-                     "str r0, [r4, #256]\n svc #1\n" + kDrain);
+  m.execute(kStart +
+            "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n str r0, [r4, #192]\n"
+            "str r0, [r4, #256]\n svc #1\n" +
+            kDrain);
   const std::uint64_t first = m.marks[0] + 3, out = first + (first & 1u);
   EXPECT_EQ(m.between(), out + 10 + 1 - first);
   EXPECT_EQ(m.stall(Cause::kWriteBuffer), out + 10 - (first + 4));
@@ -48,8 +52,10 @@ TEST_F(BufferTest, FifthScatteredStoreWaitsForTheFirstAcknowledge) {
 
 TEST_F(BufferTest, SixteenWordsFillIt) {
   // Two STM of eight words fit, a third store waits although addresses are free.
-  m.execute(kStart + "svc #1\n stmia r4, {r0-r3, r5-r8}\n add r4, r4, #64\n stmia r4, {r0-r3, r5-r8}\n"
-                     "svc #1\n str r0, [r4, #64]\n svc #1\n" + kDrain);
+  m.execute(kStart +
+            "svc #1\n stmia r4, {r0-r3, r5-r8}\n add r4, r4, #64\n stmia r4, {r0-r3, r5-r8}\n"
+            "svc #1\n str r0, [r4, #64]\n svc #1\n" +
+            kDrain);
   EXPECT_EQ(m.between(0), 17u);
   EXPECT_GT(m.between(1), 1u);
 }
@@ -65,26 +71,31 @@ TEST_F(BufferTest, StmDoesNotCrossAKilobyteInOneBurst) {
 }
 
 TEST_F(BufferTest, AdjacentStoresAreNotMerged) {
-  m.execute(kStart + "str r0, [r4]\n str r0, [r4, #4]\n strb r0, [r4, #8]\n strh r0, [r4, #10]\n" + kDrain);
+  m.execute(kStart + "str r0, [r4]\n str r0, [r4, #4]\n strb r0, [r4, #8]\n strh r0, [r4, #10]\n" +
+            kDrain);
   EXPECT_EQ(traffic(), "W4@0 W4@4 W1@8 W2@10");
 }
 
 TEST_F(BufferTest, ReadOfAPendingWriteDrainsFirst) {
-  m.execute(kStart + "mov r1, #7\n mov r2, #8\n str r2, [r4, #0x100]\n str r1, [r4]\n str r2, [r4, #0x200]\n"
-                     "ldr r3, [r4, #4]\n ldr r5, [r4]\n");
+  m.execute(kStart +
+            "mov r1, #7\n mov r2, #8\n str r2, [r4, #0x100]\n str r1, [r4]\n str r2, [r4, #0x200]\n"
+            "ldr r3, [r4, #4]\n ldr r5, [r4]\n");
   EXPECT_EQ(traffic(), "W4@256 W4@0 W4@512 R32@4");
   EXPECT_EQ(m.core.reg(5), 7u);
 }
 
 TEST_F(BufferTest, OtherReadsPassQueuedWritesButNotTheOneUnderWay) {
-  m.execute(kStart + "str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n ldr r1, [r4, #0x400]\n" + kDrain);
+  m.execute(kStart +
+            "str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n ldr r1, [r4, #0x400]\n" +
+            kDrain);
   EXPECT_EQ(traffic(), "W4@0 R32@1024 W4@64 W4@128");
 }
 
 TEST_F(BufferTest, UncachedReadKeepsDeviceOrder) {
   m.section(0x0030'0000, 0x0030'0000, 0, 0);
-  m.execute(kStart + "ldr r6, =0x00300000\n ldr r1, [r6]\n svc #1\n str r0, [r4]\n str r0, [r4, #64]\n"
-                     "ldr r1, [r6, #4]\n");
+  m.execute(kStart +
+            "ldr r6, =0x00300000\n ldr r1, [r6]\n svc #1\n str r0, [r4]\n str r0, [r4, #64]\n"
+            "ldr r1, [r6, #4]\n");
   const auto log = m.port.data_log();
   ASSERT_GE(log.size(), 3u);
   EXPECT_TRUE(log[log.size() - 3].write);
@@ -93,8 +104,9 @@ TEST_F(BufferTest, UncachedReadKeepsDeviceOrder) {
 }
 
 TEST_F(BufferTest, DrainWaitsForEveryAcknowledge) {
-  m.execute(kStart + "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n mov r12, #0\n"
-                     "mcr p15, 0, r12, c7, c10, 4\n svc #1\n");
+  m.execute(kStart +
+            "svc #1\n str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n mov r12, #0\n"
+            "mcr p15, 0, r12, c7, c10, 4\n svc #1\n");
   // Three writes one after the other, ten clocks each from the first one's AHB edge, then the MCR.
   const std::uint64_t first = m.marks[0] + 3, out = first + (first & 1u);
   EXPECT_EQ(m.marks[1], out + 30);
@@ -107,7 +119,8 @@ TEST_F(BufferTest, VictimIsWrittenAfterTheFill) {
             "mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #0x4000\n mcr p15, 0, r0, c1, c0, 0\n"
             "ldr r4, =0x00200000\n mov r5, #0x800\n add r6, r4, r5\n ldr r0, [r4]\n ldr r0, [r6]\n"
             "ldr r0, [r4, r5, lsl #1]\n ldr r0, [r6, r5, lsl #1]\n mov r1, #5\n str r1, [r4]\n"
-            "str r1, [r4, #16]\n ldr r0, [r4, r5, lsl #2]\n svc #1\n" + kDrain);
+            "str r1, [r4, #16]\n ldr r0, [r4, r5, lsl #2]\n svc #1\n" +
+            kDrain);
   const auto log = m.port.data_log();
   const auto& fill = log[log.size() - 2];
   const auto& victim = log.back();
@@ -135,8 +148,10 @@ TEST_F(BufferTest, ReadOfTheVictimDrainsIt) {
 
 /// While the buffers empty by themselves the core runs on: nothing is sent late.
 TEST_F(BufferTest, QueuedWritesFollowEachOtherWithoutAGap) {
-  m.execute(kStart + "str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n mov r7, #100\n"
-                     "1: subs r7, r7, #1\n bne 1b\n" + kDrain);
+  m.execute(kStart +
+            "str r0, [r4]\n str r0, [r4, #64]\n str r0, [r4, #128]\n mov r7, #100\n"
+            "1: subs r7, r7, #1\n bne 1b\n" +
+            kDrain);
   EXPECT_EQ(m.stall(Cause::kDrain), 0u) << "they are long gone";
   std::vector<BusRecord> writes;
   for (const auto& r : m.port.data_log())

@@ -60,10 +60,12 @@ struct Worker : Machine {
   explicit Worker(bool sleeps) {
     section(0x0040'0000, 0x0040'0000, 0, 0);
     std::mt19937 random(1);
-    for (std::uint32_t k = 0; k < 65536; k += 4) port.set_word(0x0020'0000 + k, static_cast<std::uint32_t>(random()));
+    for (std::uint32_t k = 0; k < 65536; k += 4)
+      port.set_word(0x0020'0000 + k, static_cast<std::uint32_t>(random()));
     static const Program work = assemble(kWork, kCode);
     static const Program boot = assemble(
-        kVectors + kCachesOn + "cmp r11, #0\n ldr r0, =0x00140000\n mov pc, r0\n .ltorg\n", 0);
+        kVectors + kCachesOn + "msr cpsr_c, #0x1f\n ldr r0, =0x00140000\n mov pc, r0\n .ltorg\n",
+        0);
     load(work);
     load(boot);
     core.set_reg(11, sleeps);
@@ -136,6 +138,8 @@ TEST(ConservationTest, EarlyAndLateOutcomesGiveTheSameTimes) {
     }
     EXPECT_EQ(early.core.clock_count(), late.core.clock_count());
     EXPECT_EQ(early.core.counts().idle, late.core.counts().idle);
+    EXPECT_EQ(early.core.counts().idle > 0, sleeps);
+    EXPECT_GT(taken(early).size(), 10u);
     EXPECT_EQ(early.core.counts().stall, late.core.counts().stall);
     EXPECT_EQ(early.memory(), late.memory());
     ASSERT_EQ(early.port.log.size(), late.port.log.size());
@@ -147,7 +151,8 @@ TEST(ConservationTest, EarlyAndLateOutcomesGiveTheSameTimes) {
 }
 
 TEST(ConservationTest, WindowsAtRandomTimesAddUp) {
-  const std::uint64_t seed = std::getenv("FOVEA_SEED") ? std::strtoull(std::getenv("FOVEA_SEED"), nullptr, 0) : 31;
+  const std::uint64_t seed =
+      std::getenv("FOVEA_SEED") ? std::strtoull(std::getenv("FOVEA_SEED"), nullptr, 0) : 31;
   std::cout << "seed " << seed << "\n";
   std::mt19937_64 random(seed);
   unsigned within_sleep = 0;
@@ -155,7 +160,8 @@ TEST(ConservationTest, WindowsAtRandomTimesAddUp) {
     Worker w(true);
     w.port.decide_late = n & 1u;
     w.tick(1'000'000 + random() % 1000, 7'000'000 + random() % 10'000'000);
-    const Picoseconds first = random() % 60'000'000, second = first + 100'000 + random() % 60'000'000;
+    const Picoseconds first = random() % 60'000'000,
+                      second = first + 100'000 + random() % 60'000'000;
     w.port.schedule(first, [&] { w.core.mark_window(first); });
     w.port.schedule(second, [&] { w.core.mark_window(second); });
     w.run();
@@ -169,7 +175,8 @@ TEST(ConservationTest, WindowsAtRandomTimesAddUp) {
     EXPECT_LE(from.cycles, first / Machine::kClock + 1 + 400);
     EXPECT_LE(to.cycles, second / Machine::kClock + 1 + 400);
     EXPECT_GT(to.cycles, from.cycles);
-    within_sleep += from.idle && w.core.counts().idle > from.idle && from.cycles == first / Machine::kClock + 1;
+    within_sleep +=
+        from.idle && w.core.counts().idle > from.idle && from.cycles == first / Machine::kClock + 1;
   }
   EXPECT_GT(within_sleep, 0u) << "some marks must fall into a sleep";
 }

@@ -15,8 +15,9 @@ void run_here(Machine& m, const std::string& name, bool caches) {
   const auto elf = read_file(std::string(PROGRAM_DIR "/") + name + ".elf");
   std::uint32_t entry = 0;
   std::memcpy(&entry, elf.data() + 24, 4);  // e_entry
-  const Program boot = assemble(std::string(caches ? kCachesOn : "") + " ldr r0, =" +
-                                    std::to_string(entry) + "\n bx r0\n .ltorg\n", 0);
+  const Program boot = assemble(std::string(caches ? kCachesOn : "") +
+                                    " ldr r0, =" + std::to_string(entry) + "\n bx r0\n .ltorg\n",
+                                0);
   m.load(boot);
   const auto begin = std::chrono::steady_clock::now();
   m.run();
@@ -25,16 +26,17 @@ void run_here(Machine& m, const std::string& name, bool caches) {
             << " instructions, " << m.core.clock_count() << " clocks, "
             << static_cast<double>(m.core.counts().instructions) / wall.count() / 1e6 << " MIPS;";
   const Counts& n = m.core.counts();
-  for (const std::uint64_t v : {n.issue, n.stall[0], n.stall[1], n.stall[2], n.stall[3], n.stall[4],
-                                n.stall[5], n.stall[9], n.icache_fills, n.dcache_reads,
-                                n.dcache_read_fills, n.dcache_writes, n.dcache_write_misses,
-                                n.dcache_writebacks})
+  for (const std::uint64_t v :
+       {n.issue, n.stall[0], n.stall[1], n.stall[2], n.stall[3], n.stall[4], n.stall[5], n.stall[9],
+        n.icache_fills, n.dcache_reads, n.dcache_read_fills, n.dcache_writes, n.dcache_write_misses,
+        n.dcache_writebacks})
     std::cout << ' ' << v;
   std::cout << '\n';
 }
 
 TEST_P(DifferentialTest, PrintsWhatQemuPrints) {
-  const std::string want = output_of(QEMU_ARM " -cpu arm926 " PROGRAM_DIR "/" + GetParam() + ".elf");
+  const std::string want =
+      output_of(QEMU_ARM " -cpu arm926 " PROGRAM_DIR "/" + GetParam() + ".elf");
   ASSERT_GT(want.size(), 90u);
   for (const bool caches : {true, false}) {
     if (!caches && GetParam().ends_with("O0")) continue;  // slow, and the same instructions
@@ -44,13 +46,14 @@ TEST_P(DifferentialTest, PrintsWhatQemuPrints) {
     EXPECT_EQ(m.output, want);
   }
 }
-INSTANTIATE_TEST_SUITE_P(
-    Programs, DifferentialTest,
-    testing::Values("floats_arm_O0", "floats_arm_O2", "floats_thumb_O1", "floats_thumb_Os",
-                    "integers_arm_O0", "integers_arm_O2", "integers_thumb_O1", "integers_thumb_Os",
-                    "compress_arm_O0", "compress_arm_O2", "compress_thumb_O1",
-                    "compress_thumb_Os"),
-    [](const auto& row) { return row.param; });
+INSTANTIATE_TEST_SUITE_P(Programs, DifferentialTest,
+                         testing::Values("floats_arm_O0", "floats_arm_O2", "floats_arm_Os",
+                                         "floats_thumb_O1", "floats_thumb_Os", "integers_arm_O0",
+                                         "integers_arm_O2", "integers_arm_Os", "integers_thumb_O1",
+                                         "integers_thumb_Os", "compress_arm_O0", "compress_arm_O2",
+                                         "compress_arm_Os", "compress_thumb_O1",
+                                         "compress_thumb_Os"),
+                         [](const auto& row) { return row.param; });
 
 }  // namespace
 }  // namespace fovea::cpu::test

@@ -24,9 +24,10 @@ struct BusRecord {
   Picoseconds at, last;
 };
 
-/// Reads deliver their first word `read_latency` after submission and one more word each `beat`;
-/// a read samples memory, and a write changes it, at its last beat. Checks the core's side of the
-/// contract of bus_port.h and throws std::logic_error when it is broken.
+/// Reads deliver their first word `read_latency` after submission and one more word each `beat`. A
+/// read samples memory at its first word, at which the core goes on; a write changes it when it is
+/// acknowledged. Checks the core's side of the contract of bus_port.h and throws std::logic_error
+/// when it is broken.
 class FlatPort : public BusPort {
  public:
   Picoseconds read_latency = 80'000, beat = 8'000, write_latency = 40'000;
@@ -57,9 +58,9 @@ class FlatPort : public BusPort {
     require(t >= now, "submission in the past");
     require(t >= last_submit_, "submissions out of order");
     require(ahb_period == 0 || t % ahb_period == 0, "submission off the AHB clock");
-    require(a.bytes <= 4 || a.kind == BusAccess::Kind::kWrap8 ||
-                (a.address % 1024) + a.bytes <= 1024,
-            "burst across 1 KB");
+    require(
+        a.bytes <= 4 || a.kind == BusAccess::Kind::kWrap8 || (a.address % 1024) + a.bytes <= 1024,
+        "burst across 1 KB");
     BusAccess*& slot = under_way_[a.port == BusAccess::Port::kData];
     require(!slot || (slot->done && slot->last <= t), "two transactions on one AHB port");
     last_submit_ = t;
@@ -74,7 +75,7 @@ class FlatPort : public BusPort {
     if (!decide_late && (events_.empty() || events_.begin()->first > a.last)) {
       if (!other_under_way(a)) return carry_out(a);
     }
-    events_.emplace(a.last, [this, p = &a] { carry_out(*p); });
+    events_.emplace(a.write ? a.last : a.first, [this, p = &a] { carry_out(*p); });
   }
 
   bool poll(BusAccess& a, Picoseconds until) override {
@@ -83,7 +84,7 @@ class FlatPort : public BusPort {
   }
 
   void finish(BusAccess& a) override {
-    if (!a.done) run_events(a.last, true, &a);
+    if (!a.done) run_events(a.write ? a.last : a.first, true, &a);
     require(a.done, "an access was never carried out");
   }
 
@@ -120,8 +121,7 @@ class FlatPort : public BusPort {
     return other && !other->done;
   }
   void carry_out(BusAccess& a) {
-    const std::uint32_t start =
-        a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
+    const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
     if (!mapped(start, a.bytes)) {
       a.error = true;
     } else if (a.write) {

@@ -38,8 +38,8 @@ TEST_F(InterruptTest, EdgeIsSeenStrictlyAfterIt) {
     Picoseconds offset;
     unsigned instruction;
   };
-  for (const Row& row : {Row{0, 1}, Row{1, 1}, Row{3999, 1}, Row{4000, 2}, Row{4001, 2}, Row{39'999, 10},
-                         Row{40'000, 11}, Row{80'000 - 1, 20}, Row{80'000, 21}}) {
+  for (const Row& row : {Row{0, 1}, Row{1, 1}, Row{3999, 1}, Row{4000, 2}, Row{4001, 2},
+                         Row{39'999, 10}, Row{40'000, 11}, Row{80'000 - 1, 20}, Row{80'000, 21}}) {
     for (const bool fiq : {false, true}) {
       Machine each;
       lower_on_service(each);
@@ -71,15 +71,18 @@ TEST_F(InterruptTest, LongInstructionIsNotBrokenOff) {
 
 TEST_F(InterruptTest, MasksHoldTheLineBack) {
   raise(m, 0);
-  m.execute(kVectors + "msr cpsr_c, #0xdf\n mov r0, #1\n mov r0, #2\n msr cpsr_c, #0x9f\n mov r0, #3\n"
-                       "msr cpsr_c, #0x1f\n open: mov r0, #4\n");
+  m.execute(kVectors +
+            "msr cpsr_c, #0xdf\n mov r0, #1\n mov r0, #2\n msr cpsr_c, #0x9f\n mov r0, #3\n"
+            "msr cpsr_c, #0x1f\n open: mov r0, #4\n");
   const auto t = taken(m);
   ASSERT_EQ(t.size(), 1u);
   EXPECT_EQ(t[0].lr - 4, m.program.symbols.at("open"));
   Machine fast;
   lower_on_service(fast);
   raise(fast, 0, true);
-  fast.execute(kVectors + "msr cpsr_c, #0x5f\n mov r0, #1\n mov r0, #2\n msr cpsr_c, #0x9f\n open: mov r0, #3\n");
+  fast.execute(
+      kVectors +
+      "msr cpsr_c, #0x5f\n mov r0, #1\n mov r0, #2\n msr cpsr_c, #0x9f\n open: mov r0, #3\n");
   const auto f = taken(fast);
   ASSERT_EQ(f.size(), 1u);
   EXPECT_EQ(f[0].kind, 7u);
@@ -109,8 +112,10 @@ TEST_F(InterruptTest, PulseThatEndsBeforeABoundaryIsLost) {
 }
 
 TEST_F(InterruptTest, ThumbProgramIsInterruptedAndResumed) {
-  const std::string text = kOpen + "svc #1\n adr r0, 2f + 1\n bx r0\n .thumb\n .align 2\n2:\n movs r1, #50\n"
-                                   "1: adds r2, #1\n subs r1, #1\n bne 1b\n bx pc\n nop\n .arm\n";
+  const std::string text =
+      kOpen +
+      "svc #1\n adr r0, 2f + 1\n bx r0\n .thumb\n .align 2\n2:\n movs r1, #50\n"
+      "1: adds r2, #1\n subs r1, #1\n bne 1b\n bx pc\n nop\n .arm\n";
   m.execute(text);
   for (unsigned k = 20; k < 30; ++k) {
     Machine each;
@@ -128,8 +133,10 @@ TEST_F(InterruptTest, ThumbProgramIsInterruptedAndResumed) {
 }
 
 TEST_F(InterruptTest, SoftwareAndUndefined) {
-  m.execute(kOpen + "1: svc #0x123456\n 2: .word 0xe7f000f0\n 3: mcr p14, 0, r0, c0, c0, 0\n adr r0, 1b\n"
-                    "adr r1, 2b\n adr r2, 3b\n msr cpsr_c, #0x10\n mrc p15, 0, r3, c0, c0, 0\n mov r4, #4\n");
+  m.execute(
+      kOpen +
+      "1: svc #0x123456\n 2: .word 0xe7f000f0\n 3: mcr p14, 0, r0, c0, c0, 0\n adr r0, 1b\n"
+      "adr r1, 2b\n adr r2, 3b\n msr cpsr_c, #0x10\n mrc p15, 0, r3, c0, c0, 0\n mov r4, #4\n");
   const auto t = taken(m);
   ASSERT_EQ(t.size(), 4u);
   EXPECT_EQ(t[0].kind, 2u);
@@ -147,8 +154,10 @@ TEST_F(InterruptTest, SoftwareAndUndefined) {
 }
 
 TEST_F(InterruptTest, OddRegisterPairAndThumbUndefined) {
-  m.execute(kOpen + "ldr r4, =0x6000\n .word 0xe1c410d0 @ ldrd r1\n adr r0, 1f + 1\n bx r0\n .thumb\n .align 2\n"
-                    "1: .short 0xde00\n movs r7, #7\n bx pc\n nop\n .arm\n");
+  m.execute(
+      kOpen +
+      "ldr r4, =0x6000\n .word 0xe1c410d0 @ ldrd r1\n adr r0, 1f + 1\n bx r0\n .thumb\n .align 2\n"
+      "1: .short 0xde00\n movs r7, #7\n bx pc\n nop\n .arm\n");
   const auto t = taken(m);
   ASSERT_EQ(t.size(), 2u);
   EXPECT_EQ(t[0].kind, 1u);
@@ -164,31 +173,42 @@ TEST_F(InterruptTest, HighVectors) {
   m.load(there);
   m.port.set_word(0x002F'0008, 0xE3A0904Du);  // mov r9, #77 at the SWI vector
   m.port.set_word(0x002F'000C, 0xE1B0F00Eu);  // movs pc, lr
-  m.execute(std::string(kCachesOn) + "mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #0x2000\n"
+  m.execute(std::string(kCachesOn) +
+            "mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #0x2000\n"
             "mcr p15, 0, r0, c1, c0, 0\n msr cpsr_c, #0xdf\n svc #0x99\n mov r8, #8\n");
   EXPECT_EQ(m.core.reg(9), 77u);
   EXPECT_EQ(m.core.reg(8), 8u);
 }
 
 TEST_F(InterruptTest, BankedRegisters) {
-  m.execute(kVectors +
-            "msr cpsr_c, #0xd1\n mov r8, #18\n mov r12, #22\n mov sp, #1\n mov lr, #2\n"
-            "msr cpsr_c, #0xd2\n mov sp, #3\n mov lr, #4\n mov r8, #8\n mov r12, #12\n"
-            "msr cpsr_c, #0xd3\n mov sp, #5\n mov lr, #6\n msr cpsr_c, #0xd7\n mov sp, #7\n mov lr, #9\n"
-            "msr cpsr_c, #0xdb\n mov sp, #10\n mov lr, #11\n msr cpsr_c, #0xdf\n mov sp, #13\n mov lr, #14\n"
-            "ldr r0, =0x6000\n"
-            "msr cpsr_c, #0xd1\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xd2\n stmia r0!, {r8, r12, sp, lr}\n"
-            "msr cpsr_c, #0xd3\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xd7\n stmia r0!, {r8, r12, sp, lr}\n"
-            "msr cpsr_c, #0xdb\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xdf\n stmia r0!, {r8, r12, sp, lr}\n");
-  const std::uint32_t want[] = {18, 22, 1, 2, 8, 12, 3, 4, 8, 12, 5, 6, 8, 12, 7, 9, 8, 12, 10, 11, 8, 12, 13, 14};
-  for (unsigned k = 0; k < std::size(want); ++k) EXPECT_EQ(m.tcm_word(0x6000 + 4 * k), want[k]) << k;
+  m.execute(
+      kVectors +
+      "msr cpsr_c, #0xd1\n mov r8, #18\n mov r12, #22\n mov sp, #1\n mov lr, #2\n"
+      "msr cpsr_c, #0xd2\n mov sp, #3\n mov lr, #4\n mov r8, #8\n mov r12, #12\n"
+      "msr cpsr_c, #0xd3\n mov sp, #5\n mov lr, #6\n msr cpsr_c, #0xd7\n mov sp, #7\n mov lr, #9\n"
+      "msr cpsr_c, #0xdb\n mov sp, #10\n mov lr, #11\n msr cpsr_c, #0xdf\n mov sp, #13\n mov lr, "
+      "#14\n"
+      "ldr r0, =0x6000\n"
+      "msr cpsr_c, #0xd1\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xd2\n stmia r0!, {r8, r12, "
+      "sp, lr}\n"
+      "msr cpsr_c, #0xd3\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xd7\n stmia r0!, {r8, r12, "
+      "sp, lr}\n"
+      "msr cpsr_c, #0xdb\n stmia r0!, {r8, r12, sp, lr}\n msr cpsr_c, #0xdf\n stmia r0!, {r8, r12, "
+      "sp, lr}\n");
+  const std::uint32_t want[] = {18, 22, 1, 2, 8, 12, 3,  4,  8, 12, 5,  6,
+                                8,  12, 7, 9, 8, 12, 10, 11, 8, 12, 13, 14};
+  for (unsigned k = 0; k < std::size(want); ++k)
+    EXPECT_EQ(m.tcm_word(0x6000 + 4 * k), want[k]) << k;
 }
 
 TEST_F(InterruptTest, UserBankTransfers) {
-  m.execute(kVectors + "msr cpsr_c, #0xdf\n mov sp, #13\n mov lr, #14\n msr cpsr_c, #0xd3\n mov sp, #33\n mov lr, #34\n"
-                       "ldr r0, =0x6000\n stmia r0, {r13, r14}^\n ldr r1, =0x6100\n mov r2, #50\n mov r3, #51\n"
-                       "stmia r1, {r2, r3}\n ldmia r1, {r13, r14}^\n nop\n mov r4, sp\n mov r5, lr\n"
-                       "msr cpsr_c, #0xdf\n mov r6, sp\n mov r7, lr\n");
+  m.execute(
+      kVectors +
+      "msr cpsr_c, #0xdf\n mov sp, #13\n mov lr, #14\n msr cpsr_c, #0xd3\n mov sp, #33\n mov lr, "
+      "#34\n"
+      "ldr r0, =0x6000\n stmia r0, {r13, r14}^\n ldr r1, =0x6100\n mov r2, #50\n mov r3, #51\n"
+      "stmia r1, {r2, r3}\n ldmia r1, {r13, r14}^\n nop\n mov r4, sp\n mov r5, lr\n"
+      "msr cpsr_c, #0xdf\n mov r6, sp\n mov r7, lr\n");
   EXPECT_EQ(m.tcm_word(0x6000), 13u);
   EXPECT_EQ(m.tcm_word(0x6004), 14u);
   EXPECT_EQ(m.core.reg(4), 33u);
@@ -198,18 +218,23 @@ TEST_F(InterruptTest, UserBankTransfers) {
 }
 
 TEST_F(InterruptTest, LdmWithPcAndCaretRestoresTheState) {
-  m.execute(kVectors + "msr cpsr_c, #0xd3\n ldr r0, =0xf0000010\n msr spsr_cf, r0\n adr r2, 1f\n ldr r1, =0x6000\n"
-                       "str r2, [r1]\n ldmia r1, {pc}^\n nop\n1: mrs r3, cpsr\n");
+  m.execute(
+      kVectors +
+      "msr cpsr_c, #0xd3\n ldr r0, =0xf0000010\n msr spsr_cf, r0\n adr r2, 1f\n ldr r1, =0x6000\n"
+      "str r2, [r1]\n ldmia r1, {pc}^\n nop\n1: mrs r3, cpsr\n");
   EXPECT_EQ(m.core.reg(3) & 0xF00000DFu, 0xF0000010u);
 }
 
 TEST_F(InterruptTest, UserModeCannotChangeItsMode) {
-  m.execute(kVectors + "msr cpsr_c, #0x10\n msr cpsr_c, #0x13\n ldr r0, =0xf00000d3\n msr cpsr_cf, r0\n mrs r1, cpsr\n");
+  m.execute(kVectors +
+            "msr cpsr_c, #0x10\n msr cpsr_c, #0x13\n ldr r0, =0xf00000d3\n msr cpsr_cf, r0\n mrs "
+            "r1, cpsr\n");
   EXPECT_EQ(m.core.reg(1) & 0xF00000FFu, 0xF0000010u);
 }
 
 TEST_F(InterruptTest, WaitForInterruptSleepsAndWakesAtTheNextClock) {
-  const std::string text = kVectors + "msr cpsr_c, #0xdf\n mov r0, #0\n svc #1\n mcr p15, 0, r0, c7, c0, 4\n svc #1\n";
+  const std::string text =
+      kVectors + "msr cpsr_c, #0xdf\n mov r0, #0\n svc #1\n mcr p15, 0, r0, c7, c0, 4\n svc #1\n";
   raise(m, 1'000'001);  // masked, and it wakes all the same
   m.execute(text);
   EXPECT_EQ(m.marks[1], 251u) << "clock 250 begins at 1 us, the edge is just after it";

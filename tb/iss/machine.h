@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/cpu/core/core.h"
@@ -32,7 +33,14 @@ static_assert(kTables == 0x0100'0000);
 class Machine {
  public:
   static constexpr Picoseconds kClock = 4'000;
-  CpuParams params;
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+  struct Params : CpuParams {
+    explicit Params(const Settings& settings) {
+      ParamSet set;
+      declare(set);
+      for (const auto& [key, text] : settings) set.set(key, text);
+    }
+  } params;
   FlatPort port{kMemory, kMemoryBytes};
   std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
   Core core;
@@ -40,7 +48,7 @@ class Machine {
   std::string output;                ///< what the program wrote by Linux' write()
   int exit_status = -1;
 
-  Machine() : core(params, port, tcm) {
+  explicit Machine(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);
     core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
@@ -63,7 +71,8 @@ class Machine {
     }
     if (number != 0) return false;
     if (c.reg(7) == 4) {
-      for (std::uint32_t k = 0; k < c.reg(2); ++k) output += static_cast<char>(virtual_byte(c.reg(1) + k));
+      for (std::uint32_t k = 0; k < c.reg(2); ++k)
+        output += static_cast<char>(virtual_byte(c.reg(1) + k));
       c.set_reg(0, c.reg(2));
     } else {
       exit_status = static_cast<int>(c.reg(0));

@@ -28,7 +28,8 @@ TEST_F(MmuTest, Section) {
 
 TEST_F(MmuTest, LargePage) {
   coarse();
-  for (unsigned k = 0; k < 16; ++k) m.port.set_word(kCoarse + 4 * (0x10 + k), (kPa + 0x20000) | 0xFF1u);
+  for (unsigned k = 0; k < 16; ++k)
+    m.port.set_word(kCoarse + 4 * (0x10 + k), (kPa + 0x20000) | 0xFF1u);
   m.port.set_word(kPa + 0x2F004, 77);
   go("ldr r0, =0x0801f004\n ldr r0, [r0]");
   EXPECT_EQ(m.core.reg(0), 77u);
@@ -54,7 +55,8 @@ TEST_F(MmuTest, SmallPageHasFourPermissions) {
   coarse();
   // Quarters: AP 3, 2, 1, 0 from the lowest; user mode reads each and writes the first two.
   m.port.set_word(kCoarse, (kPa + 0x5000) | 0u << 10 | 1u << 8 | 2u << 6 | 3u << 4 | 2u);
-  go("ldr r0, =0x55555555\n mcr p15, 0, r0, c3, c0, 0\n msr cpsr_c, #0x10\n ldr r0, [r4]\n str r0, [r4]\n ldr r0, [r4, #0x400]\n str r0, [r4, #0x400]\n"
+  go("ldr r0, =0x55555555\n mcr p15, 0, r0, c3, c0, 0\n msr cpsr_c, #0x10\n ldr r0, [r4]\n str r0, "
+     "[r4]\n ldr r0, [r4, #0x400]\n str r0, [r4, #0x400]\n"
      "add r4, r4, #0x800\n ldr r0, [r4]\n ldr r0, [r4, #0x400]\n");
   const auto f = faults();
   ASSERT_EQ(f.size(), 3u);
@@ -64,19 +66,21 @@ TEST_F(MmuTest, SmallPageHasFourPermissions) {
   for (const auto& each : f) EXPECT_EQ(each.dfsr, 0xFu) << "permission, page";
 }
 
-/// AP, S and R bits: who may do what (ARM ARM table B4-1). Bits: privileged read, write, user read, write.
+/// AP, S and R bits: who may do what (ARM ARM table B4-1). Bits: privileged read, write, user read,
+/// write.
 TEST_F(MmuTest, PermissionTable) {
   struct Row {
     unsigned ap, s, r, allowed;
   };
-  for (const Row& row : {Row{0, 0, 0, 0b0000}, Row{0, 1, 0, 0b1000}, Row{0, 0, 1, 0b1010}, Row{1, 0, 0, 0b1100},
-                         Row{2, 0, 0, 0b1110}, Row{3, 0, 0, 0b1111}}) {
+  for (const Row& row : {Row{0, 0, 0, 0b0000}, Row{0, 1, 0, 0b1000}, Row{0, 0, 1, 0b1010},
+                         Row{1, 0, 0, 0b1100}, Row{2, 0, 0, 0b1110}, Row{3, 0, 0, 0b1111}}) {
     Machine each;
     each.section(kVa, kPa, 0, 0, row.ap, 3);
     each.execute(kStart + "mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #" +
                  std::to_string(row.s << 8 | row.r << 9) +
                  "\n mcr p15, 0, r0, c1, c0, 0\n ldr r0, =0x55555555\n mcr p15, 0, r0, c3, c0, 0\n"
-                 "ldr r1, [r4]\n str r1, [r4, #4]\n msr cpsr_c, #0x10\n ldr r1, [r4, #8]\n str r1, [r4, #12]\n");
+                 "ldr r1, [r4]\n str r1, [r4, #4]\n msr cpsr_c, #0x10\n ldr r1, [r4, #8]\n str r1, "
+                 "[r4, #12]\n");
     unsigned refused = 0;
     for (const auto& f : taken(each)) {
       EXPECT_EQ(f.dfsr, 0x3Du) << "permission, section, domain 3";
@@ -90,7 +94,8 @@ TEST_F(MmuTest, DomainFaults) {
   m.section(kVa, kPa, 0, 0, 3, 5);
   m.port.set_word(kTables + 4 * (kVa >> 20) + 4, kCoarse | 6u << 5 | 0x11u);
   m.port.set_word(kCoarse, kPa | 0xFF2u);
-  go("ldr r0, =0x00000001\n mcr p15, 0, r0, c3, c0, 0\n ldr r0, [r4]\n add r4, r4, #0x100000\n ldr r0, [r4]");
+  go("ldr r0, =0x00000001\n mcr p15, 0, r0, c3, c0, 0\n ldr r0, [r4]\n add r4, r4, #0x100000\n ldr "
+     "r0, [r4]");
   const auto f = faults();
   ASSERT_EQ(f.size(), 2u);
   EXPECT_EQ(f[0].dfsr, 0x59u);
@@ -107,7 +112,8 @@ TEST_F(MmuTest, TranslationFaultsAndTheReturn) {
   m.port.set_word(kTables + 4 * (kVa >> 20), 0);
   m.port.set_word(kTables + 4 * (kVa >> 20) + 4, kCoarse | 0x51u);
   m.port.set_word(kCoarse, 0);
-  go("mov r0, #1\n1: ldr r0, [r4, #8]\n add r6, r4, #0x100000\n str r0, [r6]\n adr r7, 1b\n mov r8, #3");
+  go("mov r0, #1\n1: ldr r0, [r4, #8]\n add r6, r4, #0x100000\n str r0, [r6]\n adr r7, 1b\n mov "
+     "r8, #3");
   const auto f = faults();
   ASSERT_EQ(f.size(), 2u);
   EXPECT_EQ(f[0].kind, 4u);
@@ -125,7 +131,8 @@ TEST_F(MmuTest, TranslationFaultsAndTheReturn) {
 TEST_F(MmuTest, BaseIsRestored) {
   m.port.set_word(kTables + 4 * (kVa >> 20), 0);
   m.section(kVa - 0x100000, kPa, 0, 0);
-  go("mov r0, #1\n mov r1, #2\n ldr r6, [r4], #4\n ldr r6, [r4, #8]!\n str r0, [r4], #4\n strh r0, [r4, #2]!\n"
+  go("mov r0, #1\n mov r1, #2\n ldr r6, [r4], #4\n ldr r6, [r4, #8]!\n str r0, [r4], #4\n strh r0, "
+     "[r4, #2]!\n"
      "ldmia r4!, {r0, r1}\n stmia r4!, {r0, r1}\n ldrd r0, r1, [r4], #8\n"
      "sub r7, r4, #8\n ldmia r7!, {r0, r1, r2, r3}\n sub r8, r4, r7\n");
   EXPECT_EQ(faults().size(), 8u);
@@ -157,7 +164,8 @@ TEST_F(MmuTest, LockedTlbEntrySurvivesInvalidateAll) {
   m.port.set_word(kPa, 1);
   m.port.set_word(kPa + 0x100000, 2);
   m.on_svc = [this](std::uint32_t) { m.section(kVa, kPa + 0x100000, 0, 0); };
-  go("mov r0, #1\n mcr p15, 0, r0, c10, c0, 0\n ldr r0, [r4]\n mov r0, #0\n mcr p15, 0, r0, c10, c0, 0\n svc #3\n"
+  go("mov r0, #1\n mcr p15, 0, r0, c10, c0, 0\n ldr r0, [r4]\n mov r0, #0\n mcr p15, 0, r0, c10, "
+     "c0, 0\n svc #3\n"
      "mcr p15, 0, r0, c8, c7, 0\n ldr r1, [r4]\n mcr p15, 0, r4, c8, c7, 1\n ldr r2, [r4]");
   EXPECT_EQ(m.core.reg(1), 1u);
   EXPECT_EQ(m.core.reg(2), 2u) << "by address it goes";
@@ -168,7 +176,8 @@ TEST_F(MmuTest, WalkIsOneReadForASectionAndTwoForAPage) {
   m.port.set_word(kTables + 4 * (kVa >> 20) + 4, kCoarse | 0x11u);
   m.port.set_word(kCoarse, kPa | 0xFF2u);
   m.on_svc = [this](std::uint32_t) { m.marks.push_back(m.port.data_log().size()); };
-  go("svc #3\n ldr r0, [r4]\n svc #3\n add r6, r4, #0x100000\n ldr r0, [r6]\n svc #3\n ldr r0, [r6]\n svc #3\n");
+  go("svc #3\n ldr r0, [r4]\n svc #3\n add r6, r4, #0x100000\n ldr r0, [r6]\n svc #3\n ldr r0, "
+     "[r6]\n svc #3\n");
   ASSERT_EQ(m.marks.size(), 4u);
   EXPECT_EQ(m.marks[1] - m.marks[0], 2u);
   EXPECT_EQ(m.marks[2] - m.marks[1], 3u);
@@ -182,13 +191,15 @@ TEST_F(MmuTest, WalkIsOneReadForASectionAndTwoForAPage) {
 /// FCSE: addresses below 32 MB move by the process number.
 TEST_F(MmuTest, FastContextSwitchMovesLowAddresses) {
   m.section(0x0810'0000, kPa, 0, 0);
-  m.section(0x0800'0000, 0, 0, 0);  // the code itself: internal RAM is found by the modified address
+  m.section(0x0800'0000, 0, 0,
+            0);  // the code itself: internal RAM is found by the modified address
   m.port.set_word(kPa + 8, 0x99);
   // Code above 32 MB is not moved: it runs from there.
   m.section(0x0a00'0000, 0x0020'0000, 1, 0);
-  const Program there = assemble("ldr r1, =0x00100008\n ldr r0, =0x08000000\n mcr p15, 0, r0, c13, c0, 0\n"
-                                 "ldr r2, [r1]\n mov r0, #0\n mcr p15, 0, r0, c13, c0, 0\n mov pc, lr\n .ltorg\n",
-                                 0x0020'0000);
+  const Program there = assemble(
+      "ldr r1, =0x00100008\n ldr r0, =0x08000000\n mcr p15, 0, r0, c13, c0, 0\n"
+      "ldr r2, [r1]\n mov r0, #0\n mcr p15, 0, r0, c13, c0, 0\n mov pc, lr\n .ltorg\n",
+      0x0020'0000);
   m.load(there);
   go("ldr r0, =0x0a000000\n blx r0\n");
   EXPECT_EQ(m.core.reg(2), 0x99u);
@@ -198,8 +209,10 @@ TEST_F(MmuTest, FastContextSwitchMovesLowAddresses) {
 TEST_F(MmuTest, AlignmentFaults) {
   m.section(kVa, kPa, 0, 0);
   go("mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #2\n mcr p15, 0, r0, c1, c0, 0\n ldr r0, [r4, #1]\n"
-     "ldrh r0, [r4, #3]\n str r0, [r4, #2]\n strh r0, [r4, #5]\n ldrb r0, [r4, #7]\n add r6, r4, #2\n"
-     "ldmia r6, {r0, r1}\n stmia r6, {r0, r1}\n ldrd r0, r1, [r6]\n strd r0, r1, [r6]\n ldr r0, [r4, #4]\n");
+     "ldrh r0, [r4, #3]\n str r0, [r4, #2]\n strh r0, [r4, #5]\n ldrb r0, [r4, #7]\n add r6, r4, "
+     "#2\n"
+     "ldmia r6, {r0, r1}\n stmia r6, {r0, r1}\n ldrd r0, r1, [r6]\n strd r0, r1, [r6]\n ldr r0, "
+     "[r4, #4]\n");
   const auto f = faults();
   ASSERT_EQ(f.size(), 8u);
   const std::uint32_t far[] = {1, 3, 2, 5, 2, 2, 2, 2};
@@ -210,8 +223,8 @@ TEST_F(MmuTest, AlignmentFaults) {
 }
 
 TEST_F(MmuTest, ExternalAborts) {
-  m.section(kVa, 0x7000'0000, 0, 0);                   // nothing there: uncached
-  m.section(kVa + 0x100000, 0x7000'0000, 1, 1);        // write-back
+  m.section(kVa, 0x7000'0000, 0, 0);                             // nothing there: uncached
+  m.section(kVa + 0x100000, 0x7000'0000, 1, 1);                  // write-back
   m.port.set_word(kTables + 4 * (kVa >> 20) + 8, 0x7000'0011u);  // its page table is nowhere
   go("mov r0, #1\n ldr r0, [r4]\n str r0, [r4, #4]\n add r6, r4, #0x200000\n ldr r0, [r6]\n"
      "add r6, r4, #0x100000\n str r0, [r6]\n mov r12, #0\n mcr p15, 0, r12, c7, c10, 4\n");
@@ -235,7 +248,8 @@ TEST_F(MmuTest, PrefetchAborts) {
   m.port.set_word(kTables + 4 * (kVa >> 20), 0);
   m.section(kVa + 0x100000, kPa, 0, 0, 1, 0);
   go("adr r12, 1f\n mov pc, r4\n1: adr r12, 2f\n ldr r0, =0x55555555\n mcr p15, 0, r0, c3, c0, 0\n"
-     "add r6, r4, #0x100000\n msr cpsr_c, #0x10\n mov pc, r6\n2: adr r12, 3f\n bkpt #7\n3: mov r9, #9");
+     "add r6, r4, #0x100000\n msr cpsr_c, #0x10\n mov pc, r6\n2: adr r12, 3f\n bkpt #7\n3: mov r9, "
+     "#9");
   const auto f = faults();
   ASSERT_EQ(f.size(), 3u);
   EXPECT_EQ(f[0].kind, 3u);

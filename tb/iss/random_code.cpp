@@ -59,9 +59,10 @@ class Generator {
   }
   std::uint32_t condition() { return one_in(2) ? kAlways : r(14) << 28; }
   std::uint32_t value() {
-    constexpr std::uint32_t kEdges[] = {0, 1, 2, 31, 32, 33, 255, 0x7FFF, 0x8000, 0xFFFF,
-                                        0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF,
-                                        0xFFFF8000, 0x80008000, 0x7FFF7FFF};
+    constexpr std::uint32_t kEdges[] = {0,          1,          2,          31,         32,
+                                        33,         255,        0x7FFF,     0x8000,     0xFFFF,
+                                        0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF, 0xFFFF8000,
+                                        0x80008000, 0x7FFF7FFF};
     return one_in(3) ? kEdges[r(std::size(kEdges))] : static_cast<std::uint32_t>(random_());
   }
   void load_word(std::uint32_t reg, std::uint32_t v) {  // ldr reg, [pc, #0]; b +4; .word
@@ -103,16 +104,23 @@ class Generator {
   std::uint32_t shifter_operand(bool& by_register) {
     by_register = false;
     switch (r(3)) {
-      case 0: return 1u << 25 | r(4096);
-      case 1: return r(32) << 7 | r(4) << 5 | source();
-      default: by_register = true; return source() << 8 | r(4) << 5 | 1u << 4 | source();
+      case 0:
+        return 1u << 25 | r(4096);
+      case 1:
+        return r(32) << 7 | r(4) << 5 | source();
+      default:
+        by_register = true;
+        return source() << 8 | r(4) << 5 | 1u << 4 | source();
     }
   }
 
   void arm_step() {
     const std::uint32_t c = condition();
     switch (r(18)) {
-      case 0: case 1: case 2: case 3: {
+      case 0:
+      case 1:
+      case 2:
+      case 3: {
         bool late;
         const std::uint32_t b = shifter_operand(late);
         const std::uint32_t op = r(16);
@@ -138,11 +146,12 @@ class Generator {
         std::uint32_t hi = dest(), m = source();
         while (hi == lo) hi = dest();
         while (m == lo || m == hi) m = source();
-        arm(Class::kLongMultiply, c | (4u + r(4)) << 21 | r(2) << 20 | hi << 16 | lo << 12 |
-                                      source() << 8 | 0x90u | m);
+        arm(Class::kLongMultiply,
+            c | (4u + r(4)) << 21 | r(2) << 20 | hi << 16 | lo << 12 | source() << 8 | 0x90u | m);
         break;
       }
-      case 6: case 7: {
+      case 6:
+      case 7: {
         const std::uint32_t op = r(4), x = r(2), y = r(2), n = source(), s = source(), m = source();
         if (op == 2) {  // SMLALxy
           const std::uint32_t lo = dest();
@@ -157,9 +166,12 @@ class Generator {
         break;
       }
       case 8:
-        arm(Class::kSaturate, c | 0x01000050u | r(4) << 21 | source() << 16 | dest() << 12 | source());
+        arm(Class::kSaturate,
+            c | 0x01000050u | r(4) << 21 | source() << 16 | dest() << 12 | source());
         break;
-      case 9: arm(Class::kClz, c | 0x016F0F10u | dest() << 12 | source()); break;
+      case 9:
+        arm(Class::kClz, c | 0x016F0F10u | dest() << 12 | source());
+        break;
       case 10:
         if (one_in(2)) {
           arm(Class::kStatus, c | 0x0128F000u | source());  // msr cpsr_f
@@ -169,8 +181,14 @@ class Generator {
           word(0xE20004FFu | d << 16 | d << 12);
         }
         break;
-      case 11: case 12: case 13: memory_step(c); break;
-      case 14: block_step(c); break;
+      case 11:
+      case 12:
+      case 13:
+        memory_step(c);
+        break;
+      case 14:
+        block_step(c);
+        break;
       case 15: {  // swp: Rn is not Rd or Rm
         word(0xE28DC000u | 4 * r(32));
         arm(Class::kSwap, c | 0x010C0090u | r(2) << 22 | dest() << 12 | dest());
@@ -242,10 +260,18 @@ class Generator {
   void thumb_step() {
     const std::uint32_t d = r(8), m = r(8), n = r(8);
     switch (r(12)) {
-      case 0: thumb(Class::kThumbShift, r(3) << 11 | r(32) << 6 | m << 3 | d); break;
-      case 1: thumb(Class::kThumbAlu, 0x1800u | r(4) << 9 | n << 6 | m << 3 | d); break;
-      case 2: thumb(Class::kThumbAlu, 0x2000u | r(4) << 11 | d << 8 | r(256)); break;
-      case 3: case 4: case 5: {
+      case 0:
+        thumb(Class::kThumbShift, r(3) << 11 | r(32) << 6 | m << 3 | d);
+        break;
+      case 1:
+        thumb(Class::kThumbAlu, 0x1800u | r(4) << 9 | n << 6 | m << 3 | d);
+        break;
+      case 2:
+        thumb(Class::kThumbAlu, 0x2000u | r(4) << 11 | d << 8 | r(256));
+        break;
+      case 3:
+      case 4:
+      case 5: {
         std::uint32_t op = r(16);
         if (op == 13 && d == m) op = 12;  // MUL: Rd and Rm differ
         const bool shift = (op >= 2 && op <= 4) || op == 7;
@@ -259,7 +285,10 @@ class Generator {
         thumb(Class::kThumbHigh, 0x4400u | op << 8 | (rd & 8u) << 4 | rm << 3 | (rd & 7u));
         break;
       }
-      case 7: case 8: thumb_memory(d, m, n); break;
+      case 7:
+      case 8:
+        thumb_memory(d, m, n);
+        break;
       case 9:
         if (one_in(2)) {  // add rd, pc or sp, #imm (sp: an address inside the data)
           thumb(Class::kThumbAlu, (one_in(2) ? 0xA000u : 0xA800u) | d << 8 | r(32));
@@ -307,9 +336,15 @@ class Generator {
         thumb(Class::kThumbMemory, 0x5000u | r(8) << 9 | n << 6 | m << 3 | d);
         break;
       }
-      case 1: thumb(Class::kThumbMemory, 0x6000u | r(4) << 11 | r(32) << 6 | m << 3 | d); break;
-      case 2: thumb(Class::kThumbMemory, 0x8000u | r(2) << 11 | r(32) << 6 | m << 3 | d); break;
-      default: thumb(Class::kThumbMemory, 0x9000u | r(2) << 11 | d << 8 | r(32)); break;
+      case 1:
+        thumb(Class::kThumbMemory, 0x6000u | r(4) << 11 | r(32) << 6 | m << 3 | d);
+        break;
+      case 2:
+        thumb(Class::kThumbMemory, 0x8000u | r(2) << 11 | r(32) << 6 | m << 3 | d);
+        break;
+      default:
+        thumb(Class::kThumbMemory, 0x9000u | r(2) << 11 | d << 8 | r(32));
+        break;
     }
   }
 
@@ -348,12 +383,12 @@ std::vector<std::uint8_t> as_elf(const std::vector<std::uint8_t>& image, std::ui
   };
   const std::uint8_t ident[] = {0x7F, 'E', 'L', 'F', 1, 1, 1};
   std::memcpy(out.data(), ident, sizeof ident);
-  put(16, 2, 2);            // executable
-  put(18, 40, 2);           // ARM
+  put(16, 2, 2);   // executable
+  put(18, 40, 2);  // ARM
   put(20, 1, 4);
-  put(24, base, 4);         // entry
-  put(28, 52, 4);           // program headers
-  put(36, 0x0500'0000u, 4); // EABI 5
+  put(24, base, 4);          // entry
+  put(28, 52, 4);            // program headers
+  put(36, 0x0500'0000u, 4);  // EABI 5
   put(40, 52, 2);
   put(42, 32, 2);
   put(44, 1, 2);

@@ -20,8 +20,8 @@ std::string by_qemu(const RandomProgram& p) {
   ::close(fd);
   {
     const auto elf = as_elf(p.image, kMemory);
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(elf.data()),
-                                                static_cast<std::streamsize>(elf.size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(elf.data()), static_cast<std::streamsize>(elf.size()));
   }
   if (::system((std::string("chmod +x ") + path).c_str()) != 0) throw std::runtime_error("chmod");
   std::string out;
@@ -40,12 +40,12 @@ struct Here {
   std::uint64_t instructions = 0;
 };
 
-Here by_core(const RandomProgram& p) {
+Here by_core(const RandomProgram& p, bool caches = true) {
   Machine m;
   std::memcpy(m.port.at(kMemory), p.image.data(), p.image.size());
-  static const Program boot =
-      assemble(std::string(kCachesOn) + " msr cpsr_c, #0x10\n ldr r0, =0x100000\n bx r0\n", 0);
-  m.load(boot);
+  static const std::string user = " msr cpsr_c, #0x10\n ldr r0, =0x100000\n bx r0\n";
+  static const Program cached = assemble(kCachesOn + user, 0), plain = assemble(user, 0);
+  m.load(caches ? cached : plain);
   m.run();
   return {m.output, m.core.counts().instructions};
 }
@@ -64,9 +64,12 @@ std::vector<std::string> differences(const RandomProgram& p, const std::string& 
       if (x == y) continue;
       std::ostringstream s;
       s << std::hex << "sequence at " << p.begin[k] << ".." << p.end[k] << ": ";
-      if (n < 13 * 4) s << "r" << std::dec << n / 4 << std::hex;
-      else if (n < kLeftBytes) s << (n == 13 * 4 ? "lr" : "cpsr");
-      else s << "data+" << n - kLeftBytes;
+      if (n < 13 * 4)
+        s << "r" << std::dec << n / 4 << std::hex;
+      else if (n < kLeftBytes)
+        s << (n == 13 * 4 ? "lr" : "cpsr");
+      else
+        s << "data+" << n - kLeftBytes;
       s << " core " << x << " qemu " << y;
       out.push_back(s.str());
       break;
@@ -91,6 +94,7 @@ TEST(RandomTest, SequencesLeaveWhatQemuLeaves) {
     const auto wrong = differences(p, here.output, by_qemu(p));
     EXPECT_TRUE(wrong.empty()) << "seed " << seed << ": " << wrong.size() << " sequences, first "
                                << wrong.front();
+    EXPECT_EQ(by_core(p, false).output, here.output) << "without caches, seed " << seed;
     instructions += here.instructions;
     for (std::size_t k = 0; k < counts.size(); ++k) counts[k] += p.counts[k];
   }
@@ -113,18 +117,17 @@ TEST(RandomTest, ComparisonComplainsAboutOneWrongInstruction) {
     std::uint32_t flip;
     const char* what;
   };
-  const Plant plants[] = {
-      {Class::kData, 1u << 20, "flags set or not"},
-      {Class::kDataShiftReg, 1u << 5, "other kind of shift"},
-      {Class::kCompare, 1u << 21, "other comparison"},
-      {Class::kLongMultiply, 1u << 22, "signed or unsigned"},
-      {Class::kDsp, 1u << 6, "other half"},
-      {Class::kSaturate, 1u << 21, "difference for sum"},
-      {Class::kNarrow, 1u << 23, "up or down"},
-      {Class::kBlock, 1u << 24, "before or after"},
-      {Class::kThumbShift, 1u << 6, "another distance"},
-      {Class::kThumbAlu, 1u << 0, "another register"},
-      {Class::kThumbMemory, 1u << 11, "load or store"}};
+  const Plant plants[] = {{Class::kData, 1u << 20, "flags set or not"},
+                          {Class::kDataShiftReg, 1u << 5, "other kind of shift"},
+                          {Class::kCompare, 1u << 21, "other comparison"},
+                          {Class::kLongMultiply, 1u << 22, "signed or unsigned"},
+                          {Class::kDsp, 1u << 6, "other half"},
+                          {Class::kSaturate, 1u << 21, "difference for sum"},
+                          {Class::kNarrow, 1u << 23, "up or down"},
+                          {Class::kBlock, 1u << 24, "before or after"},
+                          {Class::kThumbShift, 1u << 6, "another distance"},
+                          {Class::kThumbAlu, 1u << 0, "another register"},
+                          {Class::kThumbMemory, 1u << 11, "load or store"}};
   for (const Plant& plant : plants) {
     unsigned tried = 0, noticed = 0;
     for (std::size_t k = 0; k < p.spots.size() && tried < 16; ++k) {

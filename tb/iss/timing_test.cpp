@@ -43,6 +43,15 @@ constexpr Case kCases[] = {
     {"LoadToStoreData", 3, "ldr r0, [r4]\n str r0, [r4, #4]"},
     {"LoadByteToStoreData", 4, "ldrb r0, [r4]\n str r0, [r4, #4]"},
     {"LoadToAccumulator", 4, "ldr r0, [r4]\n mla r1, r5, r6, r0"},
+    {"LoadOneApartToStoreData", 3, "ldr r0, [r4]\n mov r3, r3\n str r0, [r4, #4]"},
+    {"LoadToBaseOfLdm", 5, "str r4, [r4]\n svc #1\n ldr r0, [r4]\n ldmia r0, {r1-r3}"},
+    {"LoadToBaseOfStm", 4, "str r4, [r4]\n svc #1\n ldr r0, [r4]\n stmia r0, {r1, r2}"},
+    {"LoadToFirstStored", 4, "ldr r0, [r4]\n stmia r4, {r0, r1}"},
+    {"LoadToSecondStored", 3, "ldr r1, [r4]\n stmia r4, {r0, r1}"},
+    {"LoadToBranchRegister", 5, "adr r1, 1f\n str r1, [r4]\n svc #1\n ldr r0, [r4]\n bx r0\n1:"},
+    {"LoadUnderMultiply", 4, "ldr r0, [r4]\n mul r1, r5, r6\n add r2, r0, r5"},
+    {"LoadByteUnderMultiply", 4, "ldrb r0, [r4]\n mul r1, r5, r6\n add r2, r0, r5"},
+    {"LoadWriteBackIsFree", 3, "ldr r0, [r4], #4\n ldr r1, [r4], #4\n add r2, r4, #4"},
     {"LoadPc", 5, "adr r0, 1f\n str r0, [r4]\n svc #1\n ldr pc, [r4]\n nop\n1:"},
     {"LoadPcShifted", 6,
      "adr r0, 1f\n str r0, [r4]\n mov r1, #0\n svc #1\n ldr pc, [r4, r1, lsl #2]\n nop\n1:"},
@@ -56,7 +65,9 @@ constexpr Case kCases[] = {
     {"LoadMultipleFour", 4, "ldmia r4, {r0-r3}"},
     {"LoadMultipleUseLast", 6, "ldmia r4, {r0-r3}\n add r7, r3, r5"},
     {"LoadMultipleUseFirst", 5, "ldmia r4, {r0-r3}\n add r7, r0, r5"},
-    {"LoadMultiplePc", 4 + 4, "adr r3, 1f\n stmia r4, {r0-r3}\n svc #1\n ldmia r4, {r0-r2, pc}\n nop\n1:"},
+    {"LoadMultiplePc", 4 + 4,
+     "adr r3, 1f\n stmia r4, {r0-r3}\n svc #1\n ldmia r4, {r0-r2, pc}\n nop\n1:"},
+    {"LoadMultiplePcAlone", 1 + 4, "adr r3, 1f\n str r3, [r4]\n svc #1\n ldmia r4, {pc}\n nop\n1:"},
     {"StoreMultipleOne", 2, "stmia r4, {r0}"},
     {"StoreMultipleFour", 4, "stmia r4, {r0-r3}"},
     {"Swap", 2, "mov r1, r4\n svc #1\n swp r0, r5, [r1]"},
@@ -67,6 +78,8 @@ constexpr Case kCases[] = {
     {"MulStore", 4, "mul r0, r5, r6\n str r0, [r4]"},
     {"MulAccumulate", 4, "mul r0, r5, r6\n mla r1, r5, r6, r0"},
     {"MulToMultiplier", 5, "mul r0, r5, r6\n mla r1, r0, r6, r5"},
+    {"MulOneApartUse", 4, "mul r0, r5, r6\n mov r3, r3\n add r0, r0, r5"},
+    {"MlaChainThroughAccumulator", 4, "mla r0, r5, r6, r1\n mla r0, r5, r6, r0"},
     {"Mla", 2, "mla r0, r5, r6, r1"},
     {"Muls", 4, "muls r0, r5, r6"},
     {"MulsUse", 5, "muls r0, r5, r6\n add r0, r0, r5"},
@@ -85,6 +98,15 @@ constexpr Case kCases[] = {
     {"QaddAccumulate", 3, "qadd r0, r5, r6\n mla r1, r5, r6, r0"},
     {"Clz", 1, "clz r0, r5"},
     {"ClzUse", 2, "clz r0, r5\n add r0, r0, r5"},
+    {"QaddToOperandOneApart", 3, "qadd r0, r5, r6\n mov r3, r3\n add r0, r0, r5"},
+    {"SmulbbStore", 3, "smulbb r0, r5, r6\n str r0, [r4]"},
+    {"SubsBneLoopIsFourClocks", 400 - 2, "mov r0, #100\n svc #1\n1: subs r0, r0, #1\n bne 1b"},
+    {"SubToPcIsArithmetic", 3, "mov r0, #4\n svc #1\n sub pc, pc, r0\n1:"},
+    {"OrrToPcIsLogical", 4, "adr r0, 1f\n svc #1\n orr pc, r0, #0\n1:"},
+    {"MsrSaved", 3, "mov r0, #0\n svc #1\n msr spsr_cxsf, r0"},
+    {"Mcr", 1, "mcr p15, 0, r5, c13, c0, 1"},
+    {"Mrc", 1, "mrc p15, 0, r0, c13, c0, 1"},
+    {"MrcToPcIsThreeAndItsOwnTwo", 3 + 2, "mrc p15, 0, r15, c7, c10, 3"},
     {"Pld", 1, "pld [r4]"},
     {"Mrs", 2, "mrs r0, cpsr"},
     {"MsrFlags", 1, "mov r0, #0\n svc #1\n msr cpsr_f, r0"},
@@ -92,7 +114,17 @@ constexpr Case kCases[] = {
     {"MrcUse", 3, "mrc p15, 0, r0, c0, c0, 0\n add r0, r0, r5"},
     {"MrcOneApart", 3, "mrc p15, 0, r0, c0, c0, 0\n mov r3, r3\n add r0, r0, r5"},
     {"ThumbBranchLinkPair", 1 + 3, ".thumb\n bl 1f\n nop\n1:"},
-    {"ThumbPopPc", 1 + 4 + 0, ".thumb\n adr r0, 1f\n adds r0, #1\n push {r0}\n svc #1\n pop {pc}\n nop\n.align 2\n1:"},
+    {"ThumbPopPc", 1 + 4 + 0,
+     ".thumb\n adr r0, 1f\n adds r0, #1\n push {r0}\n svc #1\n pop {pc}\n nop\n.align 2\n1:"},
+    {"ThumbBranchTaken", 3, ".thumb\n b 1f\n nop\n1:"},
+    {"ThumbConditionalNotTaken", 2, ".thumb\n cmp r5, r5\n bne 1f\n1:"},
+    {"ThumbConditionalTaken", 4, ".thumb\n cmp r5, r5\n beq 1f\n nop\n1:"},
+    {"ThumbLoadUse", 3, ".thumb\n ldr r0, [r4]\n adds r0, r0, r5"},
+    {"ThumbLoadByteUse", 4, ".thumb\n ldrb r0, [r4]\n adds r0, r0, r5"},
+    {"ThumbPushOne", 2, ".thumb\n push {r0}"},
+    {"ThumbPushThree", 3, ".thumb\n push {r0-r2}"},
+    {"ThumbMovToPc", 4, ".thumb\n adr r0, 1f\n svc #1\n mov pc, r0\n nop\n.align 2\n1:"},
+    {"ThumbAddToPc", 3, ".thumb\n movs r0, #0\n svc #1\n add pc, r0\n nop"},
     {"ThumbShiftByRegister", 2, ".thumb\n lsls r0, r5"},
     {"ThumbMulIsMuls", 4, ".thumb\n muls r0, r5"},
 };
@@ -104,7 +136,8 @@ TEST_P(TimingTest, TakesThePublishedClocks) {
   const Case& c = GetParam();
   const std::string text = c.text;
   const bool thumb = text.starts_with(".thumb"), own = text.find("svc") != std::string::npos;
-  std::string program = "ldr r4, =0x4000\n ldr sp, =0x6000\n mov r5, #3\n mov r6, #7\n b 2f\n .ltorg\n2:\n";
+  std::string program =
+      "ldr r4, =0x4000\n ldr sp, =0x6000\n mov r5, #3\n mov r6, #7\n b 2f\n .ltorg\n2:\n";
   if (thumb) program += "adr r0, 3f + 1\n bx r0\n .thumb\n.align 2\n3:\n";
   if (!own) program += "svc #1\n";
   program += (thumb ? text.substr(7) : text) + "\n svc #1\n";
@@ -115,6 +148,21 @@ TEST_P(TimingTest, TakesThePublishedClocks) {
 }
 INSTANTIATE_TEST_SUITE_P(Rows, TimingTest, testing::ValuesIn(kCases),
                          [](const auto& row) { return std::string(row.param.name); });
+
+/// Parameters that move the table's rows.
+TEST(TimingParameterTest, ShiftedAddressAndTcmWaitStates) {
+  const auto clocks = [](const Machine::Settings& settings, const char* text) {
+    Machine m(settings);
+    m.execute(std::string("ldr r4, =0x4000\n mov r5, #3\n svc #1\n") + text + "\n svc #1\n");
+    return m.marks[1] - m.marks[0];
+  };
+  const char* const shifted = "ldr r0, [r4, r5, lsl #2]";
+  EXPECT_EQ(clocks({}, shifted), 3u + 2);
+  EXPECT_EQ(clocks({{"cpu.shifted_address_cycle", "false"}}, shifted), 3u + 1);
+  // One wait state: each fetch and the load pay it.
+  EXPECT_EQ(clocks({{"cpu.tcm.wait_states", "1 cycles"}}, "nop\n ldr r0, [r4]"),
+            3u + 1 + 1 + (2 + 1) + 1);
+}
 
 }  // namespace
 }  // namespace fovea::cpu::test

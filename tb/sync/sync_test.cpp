@@ -100,6 +100,7 @@ TEST(TimeRuleTest, PlantedLateHorizonIsFound) {
   const Outcome strict = in_child(1, 100, true, 0);
   ASSERT_GT(strict.record.size(), 1000u);
   const Outcome late = in_child(1, 100, false, 200 * kPsPerNs);
+  ASSERT_GT(late.record.size(), 1000u) << "the late run must run";
   EXPECT_FALSE(strict.record == late.record) << "the comparison cannot fail";
 }
 

@@ -152,7 +152,10 @@ void Crossbar::step(Host& host) {
   } else {
     s.blocked = true;
   }
-  plan();
+  if (waiting_)
+    plan();
+  else
+    next_ = kNever;
 }
 
 }  // namespace fovea::bus

@@ -148,6 +148,7 @@ bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value)
   a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
   a.write = a.buffered = false;
+  a.locked = swapping_;
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
   // Device order: what was written before is out before.
@@ -167,6 +168,7 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   a.kind = BusAccess::Kind::kSingle;
   a.write = true;
   a.buffered = false;
+  a.locked = swapping_;
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
   std::memcpy(a.data, &value, bytes);

@@ -131,6 +131,7 @@ class Core : public Background {
     producer_[r] = Producer::kMultiply;
   }
   void snapshot();
+  bool mark_due(Picoseconds boundary) const { return mark_pending_ && boundary > mark_at_; }
   void spend(unsigned n) { cycle_ += n; counts_.issue += n; }
 
   // exceptions.cpp
@@ -244,9 +245,10 @@ class Core : public Background {
   // Fetch.
   std::uint32_t line_va_ = 1;               // line of the current records; 1: none
   std::uint32_t line_thumb_ = 0;
+  unsigned line_shift_ = 2;                 // instruction size there, as a power of two
   struct DecodedLine {
     std::array<Instruction, 16> records;
-    std::uint32_t valid = 0;                // bit per halfword
+    std::uint32_t valid = 0;                // bit per record
     bool thumb = false;
   };
   std::vector<DecodedLine> decoded_;        // one per I-cache line
@@ -303,10 +305,11 @@ class Core : public Background {
 
   Line irq_, fiq_;
   bool stop_requested_ = false;
+  bool swapping_ = false;             // the two accesses of an SWP are locked
   bool aborted_ = false;              // set by a failed access of this instruction
   bool mark_pending_ = false;
   bool first_mark_ = true;
-  Picoseconds mark_at_ = 0;
+  Picoseconds mark_at_ = 0, mark_next_ = kNever;  // the second may come before the first is taken
   unsigned chain_ = 0;                // exceptions since the last completed instruction
   bool failing_ = false;
   std::uint32_t failed_pc_ = 0;

@@ -196,14 +196,13 @@ void Core::wait_for_interrupt() {
   if (!((irq_.level && irq_.since < time(cycle_)) || (fiq_.level && fiq_.since < time(cycle_)))) {
     const Picoseconds at = port_.wait_for_interrupt(time(cycle_));
     const std::uint64_t wake = std::max(begin, clock_.edge_after(at));
-    if (mark_pending_) {
-      // The window's edge falls into the sleep: split the idle time there.
+    while (mark_pending_) {
+      // A window's edge falls into the sleep: split the idle time there.
       const std::uint64_t split = std::max(begin, clock_.edge_after(mark_at_));
-      if (split <= wake) {
-        counts_.idle += split - cycle_;
-        cycle_ = split;
-        snapshot();
-      }
+      if (split > wake) break;
+      counts_.idle += split - cycle_;
+      cycle_ = split;
+      snapshot();
     }
     counts_.idle += wake - cycle_;
     cycle_ = wake;

@@ -123,13 +123,15 @@ void Core::unpredictable(const char* what) {
 }
 
 void Core::mark_window(Picoseconds t) {
+  (mark_pending_ ? mark_next_ : mark_at_) = t;
   mark_pending_ = true;
-  mark_at_ = t;
   attention_ = true;
 }
 
 void Core::snapshot() {
-  mark_pending_ = false;
+  mark_pending_ = mark_next_ != kNever;
+  mark_at_ = mark_next_;
+  mark_next_ = kNever;
   counts_.cycles = cycle_;
   (first_mark_ ? window_.from : window_.to) = counts_;
   if (first_mark_) window_.to = counts_;

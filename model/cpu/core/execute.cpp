@@ -79,7 +79,7 @@ void Core::step_attention() {
   for (;;) {
     attention_ = false;
     const Picoseconds t = time(cycle_);
-    if (mark_pending_ && t > mark_at_) snapshot();
+    while (mark_due(t)) snapshot();
     const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
     if (fiq_open && fiq_.at(t)) {
       take(Exception::kFiq, pc_ + 4);
@@ -109,7 +109,7 @@ void Core::step_attention() {
         return;
       }
       const Picoseconds now = time(cycle_);
-      if (mark_pending_ && now > mark_at_) snapshot();
+      while (mark_due(now)) snapshot();
       if ((fiq_open && fiq_.at(now)) || (irq_open && irq_.at(now))) continue;
       attention_ = false;
       stop_cycle_ = cycle_ + 1;
@@ -419,8 +419,11 @@ void Core::swap(const Instruction& i) {
   const unsigned bytes = i.op == Op::kSwpb ? 1 : 4;
   const std::uint32_t address = r_[i.rn], out = r_[i.rm];
   std::uint32_t value = 0;
-  if (load(address, bytes, value) != Result::kOk) return data_abort();
-  if (store(address, bytes, out) != Result::kOk) return data_abort();
+  swapping_ = true;
+  const bool ok = load(address, bytes, value) == Result::kOk &&
+                  store(address, bytes, out) == Result::kOk;
+  swapping_ = false;
+  if (!ok) return data_abort();
   if (bytes == 4 && (address & 3u)) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
   r_[i.rd] = value;
   spend(2);

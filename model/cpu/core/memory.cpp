@@ -33,7 +33,7 @@ bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
   BusAccess& a = data_access_;
   a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
-  a.write = a.buffered = false;
+  a.write = a.buffered = a.locked = false;
   a.address = address;
   a.bytes = 4;
   bus_read(a, Cause::kTlb);
@@ -174,7 +174,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   BusAccess& a = data_access_;
   a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kWrap8;
-  a.write = a.buffered = false;
+  a.write = a.buffered = a.locked = false;
   a.address = pa & ~3u;
   a.bytes = 32;
   bus_read(a, Cause::kDcache);
@@ -351,7 +351,8 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
 const Instruction* Core::fetch_slow() {
   const bool thumb = cpsr_ & 0x20u;
   const std::uint32_t mva = modified(pc_) & (thumb ? ~1u : ~3u);
-  const unsigned at = (mva >> 1) & 15u;
+  const unsigned shift = thumb ? 1 : 2;
+  const unsigned at = (mva & 31u) >> shift;
   const auto decode_into = [&](DecodedLine& d, const std::uint8_t* bytes) -> const Instruction* {
     if (d.thumb != thumb) {
       d.valid = 0;
@@ -371,6 +372,7 @@ const Instruction* Core::fetch_slow() {
     }
     line_va_ = pc_ & ~31u;
     line_thumb_ = thumb ? 0x20u : 0u;
+    line_shift_ = shift;
     current_line_ = &d;
     return &d.records[at];
   };

@@ -24,9 +24,6 @@ struct DdrParams : ParamGroup {
   IntParam return_latency{*this, "return_latency", U::kCycles, 2, 0, 16,
                           "DDR clocks from the last data beat at the PHY to the crossbar",
                           Origin::kAssumed, "no public figure; dm365.md 12 #12"};
-  IntParam refresh_release{*this, "refresh.release", U::kCount, 3, 0, 16,
-                           "refresh backlog above which the controller leaves power-saving states",
-                           Origin::kAssumed, "family values, dm365.md 5.4"};
   IntParam refresh_need{*this, "refresh.need", U::kCount, 7, 0, 32,
                         "refresh backlog above which refresh goes before writes", Origin::kAssumed,
                         "family values, dm365.md 5.4"};

@@ -24,13 +24,13 @@ YCbCr to_ycbcr(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
           static_cast<std::uint8_t>(cr)};
 }
 
-SampledImage::SampledImage(const RgbImage& image)
-    : width_(image.width),
-      height_(image.height),
-      stride_(std::size_t{image.width} + 2),
-      max_x_(static_cast<float>(image.width) - 0.5f),
-      max_y_(static_cast<float>(image.height) - 0.5f) {
+void SampledImage::assign(const RgbImage& image) {
   check_image(image);
+  width_ = image.width;
+  height_ = image.height;
+  stride_ = std::size_t{image.width} + 2;
+  max_x_ = static_cast<float>(image.width) - 0.5f;
+  max_y_ = static_cast<float>(image.height) - 0.5f;
   lanes_.resize(stride_ * (std::size_t{height_} + 2));
   for (unsigned row = 0; row < height_ + 2; ++row) {
     const unsigned y = row == 0 ? 0 : row > height_ ? height_ - 1 : row - 1;

@@ -23,7 +23,9 @@ YCbCr to_ycbcr(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 class SampledImage {
  public:
   /// Converts an RGB picture. @throws UserError when it is empty or its size and data disagree
-  explicit SampledImage(const RgbImage& image);
+  explicit SampledImage(const RgbImage& image) { assign(image); }
+  /// The same again for another picture, in the same memory.
+  void assign(const RgbImage& image);
 
   unsigned width() const { return width_; }
   unsigned height() const { return height_; }
@@ -54,9 +56,9 @@ class SampledImage {
     return (a * (256 - weight) + b * weight + kHalf) >> 8 & kMask;
   }
 
-  unsigned width_, height_;
-  std::size_t stride_;  ///< width + 2: the edge is repeated once on each side
-  float max_x_, max_y_;
+  unsigned width_ = 0, height_ = 0;
+  std::size_t stride_ = 0;  ///< width + 2: the edge is repeated once on each side
+  float max_x_ = 0, max_y_ = 0;
   std::vector<std::uint64_t> lanes_;
 };
 

@@ -165,7 +165,11 @@ const Picture& VideoSource::view(std::uint64_t k) {
     current_ = to_picture(frames_[index]);
     return current_;
   }
-  const SampledImage frame(frames_[index]);
+  if (sampled_)
+    sampled_->assign(frames_[index]);
+  else
+    sampled_.emplace(frames_[index]);
+  const SampledImage& frame = *sampled_;
   const std::pair<float, float>* p = positions_.data();
   for (unsigned y = 0; y < height(); ++y) {
     for (unsigned x = 0; x < width(); ++x, ++p) row_[x] = frame.sample(p->first, p->second);

@@ -103,6 +103,7 @@ class VideoSource : public StampedSource {
   std::vector<RgbImage> frames_;
   std::vector<std::pair<float, float>> positions_;  ///< empty: frames have the raster's size
   std::vector<std::uint64_t> row_;
+  std::optional<SampledImage> sampled_;  ///< the frame being drawn
   Picture current_;
   std::optional<std::size_t> current_index_;
 };
