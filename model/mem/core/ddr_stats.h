@@ -1,13 +1,7 @@
 // What the DDR controller counts. Hit, miss and conflict classify a request when its first column
 // access is prepared: its row was open, its bank was closed, another row was open.
 #pragma once
-#include <array>
-#include <memory>
-#include <string>
-
-#include "model/common/masters.h"
 #include "model/common/stats.h"
-#include "model/common/units.h"
 
 namespace fovea::mem {
 
@@ -24,27 +18,6 @@ struct DdrStats : StatGroup {
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
   using Value = StatBase::Value;
   DdrStats() : StatGroup("ddr") {}
-};
-
-/// Latency of one master's reads: request on its port to first beat at its port.
-struct DdrLatencyStats : StatGroup {
-  Histogram histogram;
-  static double seconds(std::uint64_t ps) { return static_cast<double>(ps) * 1e-12; }
-  Formula mean{*this, "mean", "s", "mean read latency, port to first beat",
-               [this] { return StatBase::Value(histogram.mean() * 1e-12); }};
-  Formula p50{*this, "p50", "s", "median read latency",
-              [this] { return StatBase::Value(seconds(histogram.quantile(0.50))); }};
-  Formula p95{*this, "p95", "s", "95th percentile of read latency",
-              [this] { return StatBase::Value(seconds(histogram.quantile(0.95))); }};
-  Formula p99{*this, "p99", "s", "99th percentile of read latency",
-              [this] { return StatBase::Value(seconds(histogram.quantile(0.99))); }};
-  Formula max{*this, "max", "s", "largest read latency",
-              [this] { return StatBase::Value(seconds(histogram.max())); }};
-  explicit DdrLatencyStats(Master m)
-      : StatGroup("ddr." + std::string(kMasterNames[index(m)]) + ".latency") {}
-
- protected:
-  void on_reset() override { histogram.reset(); }
 };
 
 }  // namespace fovea::mem
