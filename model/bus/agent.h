@@ -1,72 +1,191 @@
 // A master that may run ahead of the kernel: the ARM core, and the traffic of the time tests.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <string>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/common/lookahead.h"
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 
 namespace fovea::bus {
 
 /// Runs on one SC_THREAD with a local time at or after the kernel's. It works ahead strictly before
 /// the horizon H, the next event pending in the kernel; while it works it holds the memory path and
 /// plays the path's decisions itself. Whatever lies at or beyond H waits for the kernel.
-class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
+///
+/// A class template for its own work beside the path, called at every step: Self may hide
+/// background_next(), background_act() and completed().
+template <class Self>
+class Agent : public sc_core::sc_module, private MemInitiatorIf {
  public:
-  struct Transaction {
-    tlm::tlm_generic_payload gp;
-    MemExtension ext;
+  struct Transaction : MemRequest {
     unsigned port = 0;
     bool done = true;
-    Transaction() {
-      gp.set_extension(&ext);
-      ext.owner = this;
-    }
-    ~Transaction() { gp.clear_extension(&ext); }
+    Transaction() { owner = this; }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
-    bool error() const { return gp.is_response_error(); }
   };
-  std::vector<std::unique_ptr<tlm::tlm_initiator_socket<32>>> sockets;
+  std::vector<std::unique_ptr<MemInitiatorSocket<32>>> sockets;
   sc_core::sc_port<MemoryPathIf> path{"path"};
 
-  Agent(sc_core::sc_module_name name, unsigned ports);
+  Agent(sc_core::sc_module_name name, unsigned ports) : sc_module(name) {
+    for (unsigned i = 0; i < ports; ++i) {
+      sockets.push_back(
+          std::make_unique<MemInitiatorSocket<32>>(("socket_" + std::to_string(i)).c_str()));
+      sockets.back()->bind(*this);
+    }
+    SC_HAS_PROCESS(Agent);
+    SC_METHOD(background);
+    sensitive << background_due_;
+    dont_initialize();
+  }
 
  protected:
-  /// Puts tx on its port at time `at` (not before earlier submissions of this agent). The payload's
-  /// command, address, data and length are set by the caller.
-  void submit(Transaction& tx, Picoseconds at);
+  /// Puts tx on its port at time `at` (not before earlier submissions of this agent). The caller has
+  /// set what a master sets in a MemRequest.
+  void submit(Transaction& tx, Picoseconds at) {
+    const Picoseconds now = running_ ? now_ : kernel_();
+    // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
+    if (at > now && (strict_ || at >= next_event())) sleep_until(at);
+    tx.done = tx.error = false;
+    tx.issued = at;
+    ++own_undecided_;
+    MemPhase phase = MemPhase::kRequest;
+    sc_core::sc_time delay = ps_time(at - (running_ ? now_ : now));
+    (*sockets[tx.port])->nb_transport_fw(tx, phase, delay);
+  }
   /// See cpu::BusPort::poll.
-  bool poll(Transaction& tx, Picoseconds until);
+  bool poll(Transaction& tx, Picoseconds until) {
+    if (strict_) {
+      sleep_until(until);
+      return tx.done && tx.last <= until;
+    }
+    for (;;) {
+      if (tx.done) return tx.last <= until;
+      const Picoseconds t = next_decision();
+      const Picoseconds h = next_event();
+      if (std::min(t, h) >= until) return false;
+      if (t >= h) {
+        // Somebody else may still act before `until`: let the kernel get there.
+        sleep_until(until);
+        return tx.done && tx.last <= until;
+      }
+      path_->step_before(std::min(until, h));
+    }
+  }
   /// Returns when tx is done; plays background work in time order meanwhile.
-  void finish(Transaction& tx);
+  void finish(Transaction& tx) {
+    while (!tx.done) {
+      if (!strict_) {
+        const Picoseconds t = next_decision();
+        const Picoseconds b = self().background_next();
+        const Picoseconds h = next_event();
+        if (std::min(t, b) < h) {
+          if (b <= t)
+            self().background_act();
+          else
+            path_->step_before(std::min(b, h));
+          continue;
+        }
+      }
+      waiting_ = &tx;
+      wait_for(done_);
+      waiting_ = nullptr;
+    }
+  }
   /// Returns when `event` fires in the kernel.
-  void wait_for(sc_core::sc_event& event);
+  void wait_for(sc_core::sc_event& event) {
+    leave();
+    sc_core::wait(event);
+    enter();
+  }
   /// Lets everybody else act before `until`; afterwards nothing is pending before it.
-  void sleep_until(Picoseconds until);
+  void sleep_until(Picoseconds until) {
+    const Picoseconds now = now_;
+    if (until <= now) return;
+    if (!strict_) {
+      // No process switch if all that lies before `until` is in the path and can be played here.
+      for (;;) {
+        const Picoseconds t = next_decision();
+        const Picoseconds b = self().background_next();
+        const Picoseconds h = next_event();
+        if (std::min({t, b, h}) >= until) return;
+        if (std::min(t, b) >= h) break;
+        if (b <= t)
+          self().background_act();
+        else
+          path_->step_before(std::min({until, b, h}));
+      }
+    }
+    leave();
+    sc_core::wait(ps_time(until - now));
+    enter();
+  }
   /// Nobody else acts before this time: no kernel event, and no decision of the path about a
-  /// request of somebody else.
+  /// request of somebody else that may let it act.
   Picoseconds horizon() {
     const Picoseconds h = next_event();
-    return path_->undecided() > own_undecided_ ? std::min(h, path_->next_decision()) : h;
+    return path_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
   }
   /// Thread body brackets: the path is the agent's between enter() and leave().
-  void enter();
-  void leave();
+  void enter() {
+    running_ = true;
+    if (!path_) {
+      path_ = path.operator->();
+      strict_ = path_->strict();
+      decisions_ = path_->decision_places();
+    }
+    now_ = kernel_();
+    background_due_.cancel();
+    ++horizon_epoch;
+    path_->hold();
+  }
+  void leave() {
+    running_ = false;
+    arm_background();
+    path_->release();
+  }
 
-  virtual Picoseconds background_next() const { return kNever; }
-  virtual void background_act() {}
-  virtual void completed(Transaction&) {}
+  Picoseconds background_next() const { return kNever; }
+  void background_act() {}
+  void completed(Transaction&) {}
 
  private:
-  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
-                                     sc_core::sc_time&) override;
-  void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
-  void background();
-  void arm_background();
+  Self& self() { return static_cast<Self&>(*this); }
+  Picoseconds next_decision() const { return std::min(*decisions_[0], *decisions_[1]); }
+
+  tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
+    if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
+    auto& tx = static_cast<Transaction&>(r);
+    tx.done = true;
+    --own_undecided_;
+    self().completed(tx);
+    if (!running_) {
+      ++horizon_epoch;  // another agent plays the path: it must see what is notified here
+      if (waiting_ == &tx) {
+        const Picoseconds now = kernel_time();
+        done_.notify(ps_time(tx.first > now ? tx.first - now : 0));
+      }
+      arm_background();
+    }
+    return tlm::TLM_COMPLETED;
+  }
+  void background() {
+    if (running_) return;
+    while (self().background_next() <= kernel_time()) self().background_act();
+    arm_background();
+  }
+  void arm_background() {
+    const Picoseconds t = self().background_next();
+    if (t == kNever) return;
+    const Picoseconds now = kernel_time();
+    background_due_.notify(ps_time(t > now ? t - now : 0));
+  }
   /// kernel_horizon(), asked again only when something was notified since.
   Picoseconds next_event() {
     if (seen_epoch_ != horizon_epoch) {
@@ -79,6 +198,7 @@ class Agent : public sc_core::sc_module, private tlm::tlm_bw_transport_if<> {
   sc_core::sc_event done_, background_due_;
   KernelNow kernel_;
   MemoryPathIf* path_ = nullptr;  // behind `path`
+  std::array<const Picoseconds*, 2> decisions_{};
   Transaction* waiting_ = nullptr;
   bool running_ = false;
   unsigned own_undecided_ = 0;

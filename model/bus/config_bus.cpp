@@ -47,57 +47,56 @@ const ConfigBus::Block* ConfigBus::find(std::uint64_t address) const {
   return nullptr;
 }
 
-tlm::tlm_sync_enum ConfigBus::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
                                               sc_core::sc_time& delay) {
-  if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
+  if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
-  ++(gp.is_write() ? stats.writes : stats.reads);
-  (gp.is_write() ? stats.write_bytes : stats.read_bytes) += gp.get_data_length();
-  const Block* b = find(gp.get_address());
+  ++(r.write ? stats.writes : stats.reads);
+  (r.write ? stats.write_bytes : stats.read_bytes) += r.bytes;
+  const Block* b = find(r.address);
   const Picoseconds latency = b && b->speed == Speed::kSlow ? params_.slow_latency()
                                                             : params_.fast_latency();
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
-  quiet_.at(kernel_time() + delay.value() + latency, static_cast<unsigned>(index(ext->master)),
-            [this, &gp] { access(gp); });
-  phase = tlm::END_REQ;
+  quiet_.at(kernel_time() + delay.value() + latency, static_cast<unsigned>(index(r.master)),
+            [this, &r] { access(r); });
   return tlm::TLM_UPDATED;
 }
 
-void ConfigBus::access(tlm::tlm_generic_payload& gp) {
-  const std::uint64_t address = gp.get_address();
-  const Block* b = find(address);
+/// The register blocks speak the base protocol.
+void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base) {
+  gp.set_command(r.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+  gp.set_address(r.address - base);
+  gp.set_data_ptr(r.data);
+  gp.set_data_length(r.bytes);
+  gp.set_streaming_width(r.bytes);
+}
+
+void ConfigBus::access(MemRequest& r) {
+  const Block* b = find(r.address);
   // Bursts to registers do not exist on this bus.
-  if (!b || gp.get_data_length() > 4) {
+  if (!b || r.bytes > 4) {
     ++stats.errors;
     char text[64];
-    std::snprintf(text, sizeof text, "bus error at 0x%08x",
-                  static_cast<unsigned>(address));
+    std::snprintf(text, sizeof text, "bus error at 0x%08x", r.address);
     Diagnostics::instance().guest(text);
-    gp.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    r.error = true;
   } else {
-    gp.set_address(address - b->base);
+    tlm::tlm_generic_payload gp;
+    fill(gp, r, b->base);
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
     const_cast<Block*>(b)->initiator->b_transport(gp, delay);
-    gp.set_address(address);
+    r.error = gp.is_response_error();
   }
-  tlm::tlm_phase phase = tlm::BEGIN_RESP;
+  MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-  socket->nb_transport_bw(gp, phase, delay);
+  socket->nb_transport_bw(r, phase, delay);
 }
 
-void ConfigBus::b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
-  gp.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-}
-
-unsigned ConfigBus::transport_dbg(tlm::tlm_generic_payload& gp) {
-  const std::uint64_t address = gp.get_address();
-  const Block* b = find(address);
+unsigned ConfigBus::transport_dbg(MemRequest& r) {
+  const Block* b = find(r.address);
   if (!b) return 0;
-  gp.set_address(address - b->base);
-  const unsigned n = const_cast<Block*>(b)->initiator->transport_dbg(gp);
-  gp.set_address(address);
-  return n;
+  tlm::tlm_generic_payload gp;
+  fill(gp, r, b->base);
+  return const_cast<Block*>(b)->initiator->transport_dbg(gp);
 }
 
 }  // namespace fovea::bus

@@ -7,7 +7,7 @@
 #include <tlm>
 #include <vector>
 
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 #include "model/common/param.h"
 #include "model/common/quiet.h"
 #include "model/common/stats.h"
@@ -39,10 +39,10 @@ struct ConfigBusStats : StatGroup {
 /// quiet phase of its instant, so that the register is seen after everything else that happens at
 /// that time. One access at a time per master port; several masters' accesses of one instant go by
 /// master number.
-class ConfigBus : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
+class ConfigBus : public sc_core::sc_module, public MemTargetIf {
  public:
   enum class Speed { kFast, kSlow };
-  tlm::tlm_target_socket<32> socket{"socket"};
+  MemTargetSocket<32> socket{"socket"};
   ConfigBusStats stats;
 
   struct BlockSpec {
@@ -57,16 +57,14 @@ class ConfigBus : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
   /// The socket towards the block of that name.
   tlm::tlm_initiator_socket<32>& to(const std::string& name);
 
-  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
-                                     sc_core::sc_time&) override;
-  void b_transport(tlm::tlm_generic_payload&, sc_core::sc_time&) override;
-  unsigned transport_dbg(tlm::tlm_generic_payload&) override;
-  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+  tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
+  unsigned transport_dbg(MemRequest&) override;
 
  private:
   struct Block;
   const Block* find(std::uint64_t address) const;
-  void access(tlm::tlm_generic_payload& gp);
+  void access(MemRequest& r);
+  static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base);
 
   const ConfigBusParams& params_;
   QuietPhase& quiet_;

@@ -43,14 +43,14 @@ class LoadGenerator : public sc_core::sc_module {
       : sc_module(name), memory("memory", Master::kLoad, 16), params_(params),
         pause_(params.gap()) {
     memory.on_done = [this](const BurstMaster::Completion& c) {
-      wake_.notify(to_sc_time(c.error ? 10 * kPsPerUs : pause_));
+      wake_.notify(ps_time(c.error ? 10 * kPsPerUs : pause_));
     };
     SC_METHOD(fill);
     sensitive << wake_;
     dont_initialize();
     if (params.outstanding() > 0) {
       // Not at power-up itself: the clocks get their first values in that instant.
-      wake_.notify(to_sc_time(std::max<Picoseconds>(params.start(), kPsPerNs)));
+      wake_.notify(ps_time(std::max<Picoseconds>(params.start(), kPsPerNs)));
     }
   }
 

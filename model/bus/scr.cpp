@@ -37,10 +37,6 @@ void Scr::end_of_elaboration() {
   ddr_next_ = ddr_->next_decision_place();
 }
 
-Picoseconds Scr::next_decision() const {
-  return std::min(crossbar_.next_decision(), *ddr_next_);
-}
-
 void Scr::step() {
   const Picoseconds own = crossbar_.next_decision();
   const Picoseconds ddr = *ddr_next_;
@@ -56,7 +52,7 @@ void Scr::step_before(Picoseconds limit) {
   const std::uint64_t epoch = horizon_epoch, responses = responses_;
   do {
     step();
-  } while (Scr::next_decision() < limit && horizon_epoch == epoch && responses_ == responses);
+  } while (next_decision() < limit && horizon_epoch == epoch && responses_ == responses);
 }
 
 void Scr::settle() {
@@ -114,105 +110,65 @@ void Scr::inputs_changed() {
   if (!held_) arm();
 }
 
-XbarRequest Scr::describe(MemExtension& ext, Slave slave) {
-  const tlm::tlm_generic_payload& gp = *ext.payload;
-  XbarRequest r;
-  r.cookie = &ext;
-  r.master = ext.master;
-  r.slave = slave;
-  r.write = gp.is_write();
-  r.bytes = static_cast<std::uint8_t>(gp.get_data_length());
-  r.issued = ext.issued;
-  return r;
-}
-
-tlm::tlm_sync_enum Scr::request(Master m, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                                sc_core::sc_time& delay) {
-  if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
-  FOVEA_CHECK(ext != nullptr && gp.get_data_length() <= kMaxBurstBytes, "bad memory request");
-  ext->master = m;
-  ext->payload = &gp;
-  const std::uint64_t a = gp.get_address();
-  const Slave s = a >= map_.ddr_base ? Slave::kDdr : Slave::kConfig;
-  const Picoseconds at = now_() + delay.value();
-  ext->issued = at;
-  ++undecided_;
-  crossbar_.submit(describe(*ext, s), at);
+void Scr::request(MemRequest& r) {
+  FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
+  undecided_ += !r.passive;
+  crossbar_.submit(r, r.address >= map_.ddr_base ? Slave::kDdr : Slave::kConfig);
   if (!held_) arm();
-  phase = tlm::END_REQ;
-  return tlm::TLM_UPDATED;
 }
 
-bool Scr::forward(const XbarRequest& request, Picoseconds arrival) {
-  auto* ext = static_cast<MemExtension*>(request.cookie);
-  tlm::tlm_generic_payload& gp = *ext->payload;
-  ext->priority = request.priority;
-  tlm::tlm_phase phase = tlm::BEGIN_REQ;
+Scr::Taken Scr::forward(MemRequest& r, Picoseconds arrival) {
+  MemPhase phase = MemPhase::kRequest;
   const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(arrival > now ? arrival - now : 0);
   tlm::tlm_sync_enum status;
-  const bool ddr = request.slave == Slave::kDdr;
-  if (ddr) {
-    gp.set_address(gp.get_address() - map_.ddr_base);
-    status = ddr_socket->nb_transport_fw(gp, phase, delay);
-    gp.set_address(gp.get_address() + map_.ddr_base);
+  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
+    r.address -= map_.ddr_base;  // a slave sees offsets
+    status = ddr_socket->nb_transport_fw(r, phase, delay);
+    r.address += map_.ddr_base;
   } else {
-    status = config_socket->nb_transport_fw(gp, phase, delay);
+    status = config_socket->nb_transport_fw(r, phase, delay);
   }
-  if (status == tlm::TLM_COMPLETED) {  // refused: the error goes back to the master
-    crossbar_.slave_done(request, arrival, arrival, true);
-    return true;
-  }
-  return phase == tlm::END_REQ;
+  return status == tlm::TLM_UPDATED    ? Taken::kYes
+         : status == tlm::TLM_ACCEPTED ? Taken::kWaits
+                                       : Taken::kRefused;
 }
 
-tlm::tlm_sync_enum Scr::response(Slave slave, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
                                  sc_core::sc_time& delay) {
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
-  const XbarRequest r = describe(*ext, slave);
-  if (phase == tlm::END_REQ) {
+  if (phase == MemPhase::kAccepted) {
     crossbar_.slave_accepted(r, now_() + delay.value());
     if (!held_) arm();
     return tlm::TLM_ACCEPTED;
   }
-  if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
   if (slave == Slave::kConfig) {
     const Picoseconds t = now_() + delay.value();
     deciding_ = t;
-    crossbar_.slave_done(r, t, t, gp.is_response_error());
+    crossbar_.slave_done(r, t, t, r.error);
   } else {
-    crossbar_.slave_done(r, ext->first, ext->last, false);
+    crossbar_.slave_done(r, r.first, r.last, false);
   }
   return tlm::TLM_COMPLETED;
 }
 
-void Scr::respond(const XbarRequest& request, Picoseconds first, Picoseconds last, bool error) {
-  auto* ext = static_cast<MemExtension*>(request.cookie);
-  tlm::tlm_generic_payload& gp = *ext->payload;
-  ext->first = first;
-  ext->last = last;
-  gp.set_response_status(error ? tlm::TLM_ADDRESS_ERROR_RESPONSE : tlm::TLM_OK_RESPONSE);
+void Scr::respond(MemRequest& r) {
   const Picoseconds now = now_();
-  --undecided_;
+  undecided_ -= !r.passive;
   ++responses_;
-  if (request.slave == Slave::kDdr) {
+  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     ++(deciding_ > now ? direct_ : queued_);
-    if (!request.write) latency[index(request.master)]->histogram.add(first - ext->issued);
+    if (!r.write) latency[index(r.master)]->histogram.add(r.first - r.issued);
   }
-  tlm::tlm_phase phase = tlm::BEGIN_RESP;
-  sc_core::sc_time delay = ps_time(first > now ? first - now : 0);
-  (*target[index(request.master)])->nb_transport_bw(gp, phase, delay);
+  MemPhase phase = MemPhase::kResponse;
+  sc_core::sc_time delay = ps_time(r.first > now ? r.first - now : 0);
+  (*target[index(r.master)])->nb_transport_bw(r, phase, delay);
 }
 
-unsigned Scr::debug(tlm::tlm_generic_payload& gp) {
-  const std::uint64_t a = gp.get_address();
-  if (a < map_.ddr_base) return config_socket->transport_dbg(gp);
-  gp.set_address(a - map_.ddr_base);
-  const unsigned n = ddr_socket->transport_dbg(gp);
-  gp.set_address(a);
+unsigned Scr::debug(MemRequest& r) {
+  if (r.address < map_.ddr_base) return config_socket->transport_dbg(r);
+  r.address -= map_.ddr_base;
+  const unsigned n = ddr_socket->transport_dbg(r);
+  r.address += map_.ddr_base;
   return n;
 }
 

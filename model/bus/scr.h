@@ -8,7 +8,7 @@
 
 #include "model/bus/core/crossbar.h"
 #include "model/common/lookahead.h"
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
 #include "model/common/stats.h"
 
@@ -44,14 +44,12 @@ struct LatencyStats : StatGroup {
 
 class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
  public:
-  /// A port without a master stays unbound.
-  using TargetSocket = tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
-                                              sc_core::SC_ZERO_OR_MORE_BOUND>;
+  using TargetSocket = MemTargetSocket<32>;
   template <class T>
   using PerMaster = std::array<std::unique_ptr<T>, kMasterCount>;
   PerMaster<TargetSocket> target;            ///< indexed by Master
-  tlm::tlm_initiator_socket<64> ddr_socket{"ddr_socket"};
-  tlm::tlm_initiator_socket<32> config_socket{"config_socket"};
+  MemInitiatorSocket<64> ddr_socket{"ddr_socket"};
+  MemInitiatorSocket<32> config_socket{"config_socket"};
   sc_core::sc_port<PassiveIf> ddr_lookahead{"ddr_lookahead"};
   sc_core::sc_export<MemoryPathIf> path{"path"};
   ClockIn clk{"clk"};
@@ -63,13 +61,16 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
 
   Crossbar& crossbar() { return crossbar_; }
   std::array<std::unique_ptr<LatencyStats>, kMasterCount> latency;
-  /// SDRAM and register accesses whose outcome was decided ahead of the kernel / by a kernel event.
+  /// SDRAM accesses whose outcome was decided ahead of the kernel / by a kernel event.
   std::uint64_t direct_accesses() const { return direct_; }
   std::uint64_t queued_accesses() const { return queued_; }
   /// Takes all decisions at or before now, so that statistics and memory are those of `now`.
   void settle();
 
-  Picoseconds next_decision() const override;
+  Picoseconds next_decision() const { return std::min(crossbar_.next_decision(), *ddr_next_); }
+  std::array<const Picoseconds*, 2> decision_places() const override {
+    return {crossbar_.next_decision_place(), ddr_next_};
+  }
   void hold() override;
   void release() override;
   void step_before(Picoseconds limit) override;
@@ -78,38 +79,32 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
 
  private:
   friend class Crossbar;
-  struct Target : tlm::tlm_fw_transport_if<> {
+  struct Target : MemTargetIf {
     Scr* owner = nullptr;
     Master master = Master::kArmI;
-    tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay) override {
-      return owner->request(master, gp, phase, delay);
+    tlm::tlm_sync_enum nb_transport_fw(MemRequest& r, MemPhase& phase,
+                                       sc_core::sc_time&) override {
+      if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
+      r.master = master;
+      owner->request(r);
+      return tlm::TLM_ACCEPTED;
     }
-    void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) override {
-      gp.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-    }
-    unsigned transport_dbg(tlm::tlm_generic_payload& gp) override { return owner->debug(gp); }
-    bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+    unsigned transport_dbg(MemRequest& r) override { return owner->debug(r); }
   };
-  struct SlavePort : tlm::tlm_bw_transport_if<> {
+  struct SlavePort : MemInitiatorIf {
     Scr* owner = nullptr;
     Slave slave = Slave::kDdr;
-    tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+    tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase,
                                        sc_core::sc_time& delay) override {
-      return owner->response(slave, gp, phase, delay);
+      return owner->response(slave, r, phase, delay);
     }
-    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
   };
 
-  tlm::tlm_sync_enum request(Master m, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                             sc_core::sc_time& delay);
-  tlm::tlm_sync_enum response(Slave s, tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                              sc_core::sc_time& delay);
-  unsigned debug(tlm::tlm_generic_payload& gp);
-  bool forward(const XbarRequest& request, Picoseconds arrival) override;
-  void respond(const XbarRequest& request, Picoseconds first, Picoseconds last,
-               bool error) override;
-  static XbarRequest describe(MemExtension& ext, Slave slave);
+  void request(MemRequest& r);
+  tlm::tlm_sync_enum response(Slave s, MemRequest& r, MemPhase phase, sc_core::sc_time& delay);
+  unsigned debug(MemRequest& r);
+  Taken forward(MemRequest& request, Picoseconds arrival) override;
+  void respond(MemRequest& request) override;
   void play();
   void arm();
   void end_of_elaboration() override;

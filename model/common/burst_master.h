@@ -1,30 +1,23 @@
-// A memory master that lives in kernel time: video DMA ports, traffic generators.
+// A memory master without a thread: video DMA ports, traffic generators.
 #pragma once
-#include <tlm_utils/simple_initiator_socket.h>
-
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
-#include <memory>
 #include <span>
 #include <systemc>
-#include <tlm>
 #include <vector>
 
 #include "model/common/check.h"
 #include "model/common/lookahead.h"
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 
 namespace fovea {
 
-inline Picoseconds kernel_now() { return sc_core::sc_time_stamp().value(); }
-/// Exact: the kernel resolution is 1 ps (checked at elaboration).
-inline sc_core::sc_time to_sc_time(Picoseconds ps) { return sc_core::sc_time::from_value(ps); }
-
 /// Issues bursts of at most kMaxBurstBytes (each aligned to its size, so that none crosses a
-/// multiple of it) on one memory master, at the current kernel time, and reports each completion
-/// in kernel time at its last beat. Completions of one direction come in order.
-class BurstMaster : public sc_core::sc_module {
+/// multiple of it) on one memory master, and reports their completions, in order within a
+/// direction.
+class BurstMaster : public sc_core::sc_module, private MemInitiatorIf {
  public:
   struct Completion {
     std::uint64_t tag;
@@ -33,120 +26,150 @@ class BurstMaster : public sc_core::sc_module {
     std::span<const std::uint8_t> data;  ///< read data; valid during the call
     Picoseconds issued, first, last;
   };
-  tlm_utils::simple_initiator_socket<BurstMaster> socket{"socket"};
+  enum class Report {
+    kAtLastBeat,   ///< on_done is called in kernel time, at the burst's last beat
+    /// on_done is called within the memory path, when the outcome is decided; its times may lie
+    /// ahead. It may issue bursts from `last` on, but notify nothing: no kernel event is spent on
+    /// the burst.
+    kWhenDecided,
+  };
+  MemInitiatorSocket<32> socket{"socket"};
   std::function<void(const Completion&)> on_done;
 
-  BurstMaster(sc_core::sc_module_name name, Master id, unsigned max_outstanding)
-      : sc_module(name), id_(id), slots_(max_outstanding) {
+  BurstMaster(sc_core::sc_module_name name, Master id, unsigned max_outstanding,
+              Report report = Report::kAtLastBeat)
+      : sc_module(name), id_(id), report_(report), slots_(max_outstanding) {
     SC_HAS_PROCESS(BurstMaster);
-    socket.register_nb_transport_bw(this, &BurstMaster::nb_transport_bw);
-    for (auto& s : slots_) {
-      s = std::make_unique<Slot>();
-      s->gp.set_extension(&s->ext);
-      s->gp.set_byte_enable_ptr(nullptr);
-      s->gp.set_dmi_allowed(false);
-    }
+    socket.bind(*this);
     SC_METHOD(deliver);
     sensitive << due_;
     dont_initialize();
   }
-  ~BurstMaster() override {
-    for (auto& s : slots_) s->gp.clear_extension(&s->ext);
-  }
 
+  /// From when on a place for a burst is free; kNever while that is not known. A place is free
+  /// again at the last beat of its burst.
+  Picoseconds free_from() const {
+    Picoseconds t = kNever;
+    for (const Slot& s : slots_) t = std::min(t, s.free);
+    return t;
+  }
+  bool can_issue() const { return free_from() <= kernel_time(); }
+  /// Places not free strictly before t, as far as is known.
+  unsigned taken_at(Picoseconds t) const {
+    unsigned n = 0;
+    for (const Slot& s : slots_) n += s.free >= t;
+    return n;
+  }
+  /// Bursts not yet reported; with kWhenDecided those undecided.
   unsigned outstanding() const { return busy_; }
-  bool can_issue() const { return busy_ < slots_.size(); }
+
+  /// `at`: when the burst is put on the port, now or later; a place must be free from then on. The
+  /// port keeps the order of the calls. `passive`: see MemRequest.
+  void write(std::uint32_t address, std::span<const std::uint8_t> data, std::uint64_t tag,
+             Picoseconds at, bool passive) {
+    issue(address, static_cast<unsigned>(data.size()), data.data(), tag, at, passive);
+  }
+  void read(std::uint32_t address, unsigned bytes, std::uint64_t tag, Picoseconds at,
+            bool passive) {
+    issue(address, bytes, nullptr, tag, at, passive);
+  }
   void write(std::uint32_t address, std::span<const std::uint8_t> data, std::uint64_t tag = 0) {
-    issue(address, static_cast<unsigned>(data.size()), data.data(), tag);
+    write(address, data, tag, kernel_time(), false);
   }
   void read(std::uint32_t address, unsigned bytes, std::uint64_t tag = 0) {
-    issue(address, bytes, nullptr, tag);
+    read(address, bytes, tag, kernel_time(), false);
   }
 
  private:
-  struct Slot {
-    tlm::tlm_generic_payload gp;
-    MemExtension ext;
-    std::array<std::uint8_t, kMaxBurstBytes> data{};
+  struct Slot : MemRequest {
+    alignas(16) std::array<std::uint8_t, kMaxBurstBytes> bytes_{};
     std::uint64_t tag = 0;
-    bool used = false, decided = false;
+    Picoseconds free = 0;  // from when on it can be taken; kNever: not known
+    bool due = false;      // decided, but not yet reported
     std::uint64_t order = 0;
   };
 
-  void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag) {
+  void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag,
+             Picoseconds at, bool passive) {
     FOVEA_CHECK(bytes > 0 && bytes <= kMaxBurstBytes && address % 4 == 0, "bad burst");
     Slot* s = nullptr;
-    for (auto& c : slots_)
-      if (!c->used) { s = c.get(); break; }
+    for (Slot& c : slots_)
+      if (c.free <= at && (!s || c.free < s->free)) s = &c;
     FOVEA_CHECK(s, "burst issued beyond the outstanding limit");
-    s->used = true;
-    s->decided = false;
+    newest_ = at = std::max(at, newest_);
+    s->free = kNever;
     s->tag = tag;
     s->order = ++issued_count_;
     ++busy_;
-    if (data) std::memcpy(s->data.data(), data, bytes);
-    s->ext.master = id_;
-    s->ext.critical = 0;
-    s->ext.issued = kernel_now();
-    s->gp.set_command(data ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-    s->gp.set_address(address);
-    s->gp.set_data_ptr(s->data.data());
-    s->gp.set_data_length(bytes);
-    s->gp.set_streaming_width(bytes);
-    s->gp.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    tlm::tlm_phase phase = tlm::BEGIN_REQ;
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    socket->nb_transport_fw(s->gp, phase, delay);
+    if (data) std::memcpy(s->bytes_.data(), data, bytes);
+    s->address = address;
+    s->data = s->bytes_.data();
+    s->bytes = static_cast<std::uint8_t>(bytes);
+    s->write = data != nullptr;
+    s->master = id_;
+    s->passive = passive;
+    s->error = false;
+    s->issued = at;
+    MemPhase phase = MemPhase::kRequest;
+    const Picoseconds now = kernel_();
+    sc_core::sc_time delay = ps_time(at > now ? at - now : 0);
+    socket->nb_transport_fw(*s, phase, delay);
   }
 
-  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                                     sc_core::sc_time&) {
-    if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
-    for (auto& s : slots_)
-      if (&s->gp == &gp) s->decided = true;
-    schedule();
+  tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
+    if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
+    auto& s = static_cast<Slot&>(r);
+    if (report_ == Report::kWhenDecided) {
+      report(s);
+    } else {
+      s.due = true;
+      schedule();
+    }
     return tlm::TLM_COMPLETED;
+  }
+
+  void report(Slot& s) {
+    // The slot may be taken again inside the call: hand out a copy of the data.
+    const auto data = s.bytes_;
+    const Completion c{s.tag,    s.write, s.error, s.address, {data.data(), s.bytes},
+                       s.issued, s.first, s.last};
+    --busy_;
+    s.due = false;
+    s.free = s.last;
+    if (on_done) on_done(c);
   }
 
   Slot* next_due() {
     Slot* best = nullptr;
-    for (auto& s : slots_)
-      if (s->used && s->decided &&
-          (!best || s->ext.last < best->ext.last ||
-           (s->ext.last == best->ext.last && s->order < best->order)))
-        best = s.get();
+    for (Slot& s : slots_)
+      if (s.due &&
+          (!best || s.last < best->last || (s.last == best->last && s.order < best->order)))
+        best = &s;
     return best;
   }
 
   void schedule() {
     if (Slot* s = next_due()) {
-      const Picoseconds now = kernel_now();
-      due_.notify(to_sc_time(s->ext.last > now ? s->ext.last - now : 0));
+      const Picoseconds now = kernel_();
+      due_.notify(ps_time(s->last > now ? s->last - now : 0));
       ++horizon_epoch;
     }
   }
 
   void deliver() {
     while (Slot* s = next_due()) {
-      if (s->ext.last > kernel_now()) break;
-      const Completion c{s->tag, s->gp.is_write(), s->gp.is_response_error(),
-                         static_cast<std::uint32_t>(s->gp.get_address()),
-                         {s->data.data(), s->gp.get_data_length()},
-                         s->ext.issued, s->ext.first, s->ext.last};
-      s->used = s->decided = false;
-      --busy_;
-      // The slot may be taken again inside the call: hand out a copy of the data.
-      const auto data = s->data;
-      Completion out = c;
-      out.data = {data.data(), c.data.size()};
-      if (on_done) on_done(out);
+      if (s->last > kernel_()) break;
+      report(*s);
     }
     schedule();
   }
 
   Master id_;
-  std::vector<std::unique_ptr<Slot>> slots_;
+  Report report_;
+  KernelNow kernel_;
+  std::vector<Slot> slots_;
   sc_core::sc_event due_;
+  Picoseconds newest_ = 0;  // when the latest burst is put on the port
   unsigned busy_ = 0;
   std::uint64_t issued_count_ = 0;
 };

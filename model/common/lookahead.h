@@ -1,5 +1,6 @@
 // How far a block may run ahead of the kernel, and who plays the memory path meanwhile.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <systemc>
@@ -61,15 +62,15 @@ class PassiveIf : public virtual sc_core::sc_interface {
 /// otherwise the path keeps a kernel event pending at its next decision.
 class MemoryPathIf : public virtual sc_core::sc_interface {
  public:
-  /// As in PassiveIf.
-  virtual Picoseconds next_decision() const = 0;
+  /// As in PassiveIf; the next decision is the earlier of these two.
+  virtual std::array<const Picoseconds*, 2> decision_places() const = 0;
   virtual void hold() = 0;
   virtual void release() = 0;
   /// Takes the next decision, which is before `limit`, and goes on with those before `limit` until
   /// one lets a master act or notifies the kernel: the caller's limit may be another one then.
   virtual void step_before(Picoseconds limit) = 0;
-  /// Requests whose outcome is not decided yet, of all masters. Deciding one may let its master
-  /// act.
+  /// Requests whose outcome is not decided yet, of all masters, without the passive ones. Deciding
+  /// one may let its master act.
   virtual unsigned undecided() const = 0;
   /// --sync=strict: every bus access waits for the kernel; nobody steps ahead of it.
   virtual bool strict() const = 0;

@@ -1,7 +1,6 @@
-// A memory transaction on its way through crossbar and controller: the TLM payload's extension.
+// A memory transaction on its way through crossbar and controller, and back.
 #pragma once
 #include <cstdint>
-#include <tlm>
 
 #include "model/common/masters.h"
 #include "model/common/units.h"
@@ -11,25 +10,28 @@ namespace fovea {
 /// Largest burst a master may ask for; a burst never crosses a multiple of its size.
 inline constexpr unsigned kMaxBurstBytes = 64;
 
-/// The project's one extension. The payload carries command, address, length and data; this
-/// carries who asks, how urgent it is, and the outcome's times. Owned by the master, which keeps
-/// payload, data and extension alive until the response.
-struct MemExtension : tlm::tlm_extension<MemExtension> {
+/// Owned by the master, which keeps it and the data alive until the response. Knows no SystemC:
+/// crossbar and controller cores pass it by reference.
+struct MemRequest {
+  // Set by the master.
+  std::uint32_t address = 0;
+  std::uint32_t critical = 0;      ///< byte offset in the burst that must come first (WRAP8)
+  std::uint8_t* data = nullptr;    ///< `bytes` bytes, in address order
+  void* owner = nullptr;           ///< the master's own record of the transaction
+  Picoseconds issued = 0;          ///< when the master puts it on its port
   Master master = Master::kArmD;
-  std::uint8_t priority = 0;        ///< 0 highest ... 7 lowest; set by the crossbar
-  std::uint32_t critical = 0;       ///< byte offset in the burst that must come first (WRAP8)
-  Picoseconds issued = 0;           ///< when the master put it on its port
-  Picoseconds first = 0;            ///< outcome: first beat at the master's port
-  Picoseconds last = 0;             ///< outcome: last beat; a write's acknowledgement
-  void* owner = nullptr;            ///< the master's own record of the transaction
-  /// The payload this belongs to; set by the crossbar, so that neither it nor the controller has to
-  /// look up the extension again on the way back.
-  tlm::tlm_generic_payload* payload = nullptr;
+  bool write = false;
+  std::uint8_t bytes = 0;          ///< 1 .. kMaxBurstBytes
+  /// The outcome makes nobody but the memory path act: whoever runs ahead need not stop where it is
+  /// decided.
+  bool passive = false;
 
-  tlm::tlm_extension_base* clone() const override { return new MemExtension(*this); }
-  void copy_from(const tlm::tlm_extension_base& other) override {
-    *this = static_cast<const MemExtension&>(other);
-  }
+  // Set by the memory path.
+  std::uint8_t priority = 0;       ///< 0 highest ... 7 lowest; as of the grant
+  std::uint8_t slave = 0;          ///< bus::Slave
+  bool error = false;              ///< outcome: nobody answered
+  Picoseconds first = 0;           ///< outcome: first beat at the master's port
+  Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
 };
 
 }  // namespace fovea

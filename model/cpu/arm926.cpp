@@ -57,25 +57,19 @@ void Arm926::submit(BusAccess& a, Picoseconds at) {
   Transaction& tx = tx_[port];
   access_[port] = &a;
   a.done = a.error = false;
-  tx.gp.set_command(a.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-  if (a.kind == BusAccess::Kind::kWrap8) {
-    tx.gp.set_address(a.address & ~31u);
-    tx.ext.critical = a.address & 31u;
-  } else {
-    tx.gp.set_address(a.address);
-    tx.ext.critical = 0;
-  }
-  tx.gp.set_data_ptr(a.data);
-  tx.gp.set_data_length(a.bytes);
-  tx.gp.set_streaming_width(a.bytes);
+  tx.write = a.write;
+  tx.critical = a.kind == BusAccess::Kind::kWrap8 ? a.address & 31u : 0;
+  tx.address = a.address - tx.critical;
+  tx.data = a.data;
+  tx.bytes = a.bytes;
   Agent::submit(tx, at);
 }
 
 void Arm926::completed(Transaction& tx) {
   BusAccess& a = *access_[tx.port];
-  a.error = tx.error();
-  a.first = tx.ext.first;
-  a.last = tx.ext.last;
+  a.error = tx.error;
+  a.first = tx.first;
+  a.last = tx.last;
   a.done = true;
 }
 

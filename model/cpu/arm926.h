@@ -14,7 +14,7 @@ namespace fovea::cpu {
 
 /// Thin wrapper: the core runs on an SC_THREAD, so its blocking calls suspend it at any bus access
 /// and resume it there; the rules of time are those of bus::Agent.
-class Arm926 final : public bus::Agent, private BusPort {
+class Arm926 final : public bus::Agent<Arm926>, private BusPort {
  public:
   static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
   ClockIn clk{"clk"};
@@ -28,6 +28,7 @@ class Arm926 final : public bus::Agent, private BusPort {
   const std::string& failure() const { return failure_; }
 
  private:
+  friend bus::Agent<Arm926>;
   void run();
   void clock_changed();
   void interrupt_changed();
@@ -38,9 +39,9 @@ class Arm926 final : public bus::Agent, private BusPort {
   Picoseconds horizon() override { return Agent::horizon(); }
   void sleep_until(Picoseconds until) override { Agent::sleep_until(until); }
   Picoseconds wait_for_interrupt(Picoseconds from) override;
-  Picoseconds background_next() const override { return core_.next_act(); }
-  void background_act() override { core_.act(); }
-  void completed(Transaction& tx) override;
+  Picoseconds background_next() const { return core_.next_act(); }
+  void background_act() { core_.act(); }
+  void completed(Transaction& tx);
 
   Core core_;
   std::uint32_t entry_;

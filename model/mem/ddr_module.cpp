@@ -9,6 +9,8 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
   lookahead.bind(*this);
   SC_METHOD(clocks_changed);
   sensitive << ddr_clk << scr_clk;
+  SC_METHOD(enabled_changed);
+  sensitive << enabled;
   for (Reg* r : regs.regs()) r->on_write([this](std::uint32_t) { reconfigure(); });
 }
 
@@ -16,6 +18,8 @@ void DdrModule::settle(Picoseconds now) {
   while (controller_.next_decision() <= now) controller_.step();
   controller_.catch_up(now);
 }
+
+void DdrModule::enabled_changed() { enabled_ = enabled.read(); }
 
 void DdrModule::clocks_changed() {
   settle(kernel_time());
@@ -50,66 +54,51 @@ void DdrModule::reconfigure() {
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
 }
 
-tlm::tlm_sync_enum DdrModule::nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
                                               sc_core::sc_time& delay) {
-  if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
-  if (!ready_ || !enabled.read() || gp.get_address() + gp.get_data_length() > store_.size()) {
-    Diagnostics::instance().guest(gp.get_address() + gp.get_data_length() > store_.size()
-                                      ? "access beyond the end of the SDRAM"
-                                      : "access to the SDRAM before its controller runs");
-    gp.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
+  const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
+  if (!ready_ || !enabled_ || outside) [[unlikely]] {
+    Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
+                                          : "access to the SDRAM before its controller runs");
     return tlm::TLM_COMPLETED;
   }
-  MemExtension* ext = nullptr;
-  gp.get_extension(ext);
   DdrRequest r;
-  ext->payload = &gp;
-  r.cookie = ext;
-  r.master = ext->master;
-  r.priority = ext->priority;
-  r.write = gp.is_write();
-  r.bytes = static_cast<std::uint8_t>(gp.get_data_length());
-  r.address = static_cast<std::uint32_t>(gp.get_address());
-  r.critical = ext->critical;
-  r.data = gp.get_data_ptr();
-  if (!controller_.submit(r, now_() + delay.value())) return tlm::TLM_ACCEPTED;
-  phase = tlm::END_REQ;
-  return tlm::TLM_UPDATED;
+  r.cookie = &m;
+  r.master = m.master;
+  r.priority = m.priority;
+  r.write = m.write;
+  r.bytes = m.bytes;
+  r.address = m.address;
+  r.critical = m.critical;
+  r.data = m.data;
+  return controller_.submit(r, now_() + delay.value()) ? tlm::TLM_UPDATED : tlm::TLM_ACCEPTED;
 }
 
 void DdrModule::ddr_accepted(void* cookie, Picoseconds at) {
-  auto& gp = *static_cast<MemExtension*>(cookie)->payload;
-  tlm::tlm_phase phase = tlm::END_REQ;
+  MemPhase phase = MemPhase::kAccepted;
   const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(at > now ? at - now : 0);
-  socket->nb_transport_bw(gp, phase, delay);
+  socket->nb_transport_bw(*static_cast<MemRequest*>(cookie), phase, delay);
 }
 
 void DdrModule::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) {
-  auto* ext = static_cast<MemExtension*>(cookie);
-  tlm::tlm_generic_payload& gp = *ext->payload;
-  ext->first = first;
-  ext->last = last;
-  gp.set_response_status(tlm::TLM_OK_RESPONSE);
-  tlm::tlm_phase phase = tlm::BEGIN_RESP;
+  auto& r = *static_cast<MemRequest*>(cookie);
+  r.first = first;
+  r.last = last;
+  MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(first - now_());
-  socket->nb_transport_bw(gp, phase, delay);
+  socket->nb_transport_bw(r, phase, delay);
 }
 
-void DdrModule::b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
-  // Untimed access would bypass the order of the path.
-  gp.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-}
-
-unsigned DdrModule::transport_dbg(tlm::tlm_generic_payload& gp) {
-  const std::uint64_t a = gp.get_address();
-  if (a >= store_.size()) return 0;
-  const auto n = static_cast<unsigned>(
-      std::min<std::uint64_t>(gp.get_data_length(), store_.size() - a));
-  if (gp.is_write())
-    std::memcpy(store_.at(a), gp.get_data_ptr(), n);
+unsigned DdrModule::transport_dbg(MemRequest& r) {
+  if (r.address >= store_.size()) return 0;
+  const auto n =
+      static_cast<unsigned>(std::min<std::uint64_t>(r.bytes, store_.size() - r.address));
+  if (r.write)
+    std::memcpy(store_.at(r.address), r.data, n);
   else
-    std::memcpy(gp.get_data_ptr(), store_.at(a), n);
+    std::memcpy(r.data, store_.at(r.address), n);
   return n;
 }
 

@@ -5,7 +5,7 @@
 
 #include "model/common/bus_target.h"
 #include "model/common/lookahead.h"
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
 #include "model/mem/core/ddr_controller.h"
 #include "model/mem/ddr_regs.h"
@@ -15,10 +15,10 @@ namespace fovea::mem {
 /// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDTIMR,
 /// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
 /// while LPSC 13 is off, end in a bus error (assumed: the chip's reaction is not documented).
-class DdrModule final : public BusTarget, public PassiveIf, public tlm::tlm_fw_transport_if<>,
-                  private DdrClient {
+class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
+                        private DdrClient {
  public:
-  tlm::tlm_target_socket<64> socket{"socket"};
+  MemTargetSocket<64> socket{"socket"};
   sc_core::sc_export<PassiveIf> lookahead{"lookahead"};
   ClockIn ddr_clk{"ddr_clk"};
   ClockIn scr_clk{"scr_clk"};
@@ -39,22 +39,21 @@ class DdrModule final : public BusTarget, public PassiveIf, public tlm::tlm_fw_t
     return controller_.next_decision_place();
   }
 
-  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&,
-                                     sc_core::sc_time&) override;
-  void b_transport(tlm::tlm_generic_payload&, sc_core::sc_time&) override;
-  unsigned transport_dbg(tlm::tlm_generic_payload&) override;
-  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+  tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
+  unsigned transport_dbg(MemRequest&) override;
 
  private:
   void ddr_accepted(void* cookie, Picoseconds at) override;
   void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
   void clocks_changed();
+  void enabled_changed();
   void reconfigure();
 
   BackingStore store_;
   DdrController controller_;
   KernelNow now_;
-  bool ready_ = false;  // initialised by the firmware
+  bool ready_ = false;    // initialised by the firmware
+  bool enabled_ = false;  // of `enabled`, without a call
 };
 
 }  // namespace fovea::mem

@@ -9,14 +9,15 @@ namespace fovea::video {
 
 Isif::Isif(sc_core::sc_module_name name, const VpssParams& params)
     : BusTarget(name, regs),
-      memory("memory", Master::kVpfe, static_cast<unsigned>(params.write_buffer_bursts())),
+      memory("memory", Master::kVpfe, static_cast<unsigned>(params.write_buffer_bursts()),
+             BurstMaster::Report::kWhenDecided),
       params_(params) {
   if (params.burst() & (params.burst() - 1)) throw UserError("vpss.burst must be 32B or 64B");
   video.bind(*this);
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
   regs.syncen.on_write([this](std::uint32_t) { write_syncen(); });
-  SC_METHOD(issue_due);
-  sensitive << burst_event_;
+  SC_METHOD(close_fields);
+  sensitive << end_event_;
   dont_initialize();
 }
 
@@ -69,7 +70,7 @@ void Isif::line(const Bt656Line& l) {
     line_ = 0;
     return;
   }
-  issue_due();  // the last burst of the previous line is due at this very time
+  issue(kernel_time());  // the last burst of the previous line is due at this very time
 
   const XyCode code = decode_xy(l.eav_xy);
   bool f = (l.eav_xy & 0x40) != 0, v = (l.eav_xy & 0x20) != 0;
@@ -145,69 +146,79 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
       if (on_frame_start) on_frame_start(frame_);
     }
   }
-  issue_due();
+  issue(kernel_time());
 }
 
-bool Isif::place_free() {
-  // A completion delivered at this very time may or may not have run before us: its place counts as
-  // taken until later, so that the order of processes does not matter.
-  const unsigned freed = freed_at_ == kernel_now() ? freed_now_ : 0;
-  return memory.outstanding() + freed < params_.write_buffer_bursts();
-}
-
-void Isif::issue_due() {
-  const Picoseconds now = kernel_now();
+/// Hands to the port every burst of the row of which it is certain that a place is free when its
+/// last byte arrives, ahead of that time; and counts as lost those of which the contrary is
+/// certain. A place freed at a time serves bursts strictly later. What is uncertain hangs on a burst
+/// whose outcome is not decided: done() comes back to it. At `now` all is certain that was due.
+void Isif::issue(Picoseconds now) {
   while (row_pos_ < row_bytes_) {
     const unsigned bytes = first_burst(row_address_ + row_pos_, row_bytes_ - row_pos_,
                                        static_cast<unsigned>(params_.burst()));
     const Picoseconds due = row_clock_->edge(row_first_sample_ + row_pos_ + bytes);
-    if (due > now) {
-      burst_event_.notify(to_sc_time(due - now));
-      return;
-    }
-    if (place_free()) {
-      memory.write(row_address_ + row_pos_, {row_.data() + row_pos_, bytes}, ++tag_);
+    const bool last = row_pos_ + bytes == row_bytes_ && last_row_;
+    if (memory.taken_at(due) < params_.write_buffer_bursts()) {
+      const unsigned at = row_pos_;
+      row_pos_ += bytes;
       ++stats.bursts;
-    } else {
+      ++tag_;
+      if (last) end_field(due);
+      // A field's last burst is followed by a kernel event of ours.
+      memory.write(row_address_ + at, {row_.data() + at, bytes}, tag_, due, !last);
+    } else if (due <= now || memory.outstanding() == 0) {
       overflow_sticky_ = true;
       ++stats.overflows;
       ++frame_.overflows;
+      row_pos_ += bytes;
+      if (last) end_field(due);
+    } else {
+      return;
     }
-    row_pos_ += bytes;
-    if (row_pos_ == row_bytes_ && last_row_) end_field();
   }
 }
 
-void Isif::end_field() {
-  ends_.push_back({tag_, field_, frame_});
+/// `due`: when the field's last burst is, or was lost.
+void Isif::end_field(Picoseconds due) {
+  const Picoseconds at = tag_ <= done_tag_ ? std::max(due, done_at_) : kNever;
+  ends_.push_back({tag_, at, field_, frame_});
   if (field_) {
     if (frame_.complete) ++frame_index_;
     frame_open_ = false;
   }
-  close_fields();
+  arm_end();
+}
+
+void Isif::arm_end() {
+  if (ends_.empty() || ends_.front().at == kNever) return;
+  const Picoseconds now = kernel_time(), at = ends_.front().at;
+  end_event_.notify(ps_time(at > now ? at - now : 0));
+  ++horizon_epoch;
 }
 
 void Isif::close_fields() {
-  while (!ends_.empty() && ends_.front().last_tag <= done_tag_) {
+  while (!ends_.empty() && ends_.front().at <= kernel_time()) {
     FieldEnd e = ends_.front();
     ends_.pop_front();
     ++stats.fields;
     if (!e.second) continue;
-    e.frame.end = kernel_now();
+    e.frame.end = e.at;
     if (e.frame.complete) ++stats.frames;
     if (on_frame_end) on_frame_end(e.frame);
   }
+  arm_end();
 }
 
+/// Called ahead of c.last: nothing here may depend on, or change, what others see before then.
 void Isif::done(const BurstMaster::Completion& c) {
   if (c.error) Diagnostics::instance().guest("capture writes to an address without memory");
-  if (freed_at_ != kernel_now()) {
-    freed_at_ = kernel_now();
-    freed_now_ = 0;
-  }
-  ++freed_now_;
   done_tag_ = c.tag;
-  close_fields();
+  done_at_ = c.last;
+  for (FieldEnd& e : ends_)
+    if (e.at == kNever && e.last_tag <= c.tag) e.at = c.last;
+  arm_end();
+  issue(0);
 }
 
 }  // namespace fovea::video

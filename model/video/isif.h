@@ -78,6 +78,7 @@ class Isif : public BusTarget, public Bt656If {
   };
   struct FieldEnd {
     std::uint64_t last_tag;
+    Picoseconds at;  // all its data are in memory; kNever: not known
     bool second;
     CaptureFrame frame;
   };
@@ -86,10 +87,10 @@ class Isif : public BusTarget, public Bt656If {
   void latch();
   void begin_field(const Bt656Line& line);
   void begin_row(const Bt656Line& line, unsigned index);
-  void issue_due();
-  void end_field();
+  void issue(Picoseconds now);
+  void end_field(Picoseconds due);
+  void arm_end();
   void close_fields();
-  bool place_free();
   void done(const BurstMaster::Completion& c);
 
   const VpssParams& params_;
@@ -106,11 +107,10 @@ class Isif : public BusTarget, public Bt656If {
   std::uint64_t row_first_sample_ = 0;
   const Clock* row_clock_ = nullptr;
   bool last_row_ = false;
-  sc_core::sc_event burst_event_;
+  sc_core::sc_event end_event_;
 
   std::uint64_t tag_ = 0, done_tag_ = 0;
-  unsigned freed_now_ = 0;
-  Picoseconds freed_at_ = kNever;
+  Picoseconds done_at_ = 0;
   bool overflow_sticky_ = false;
 
   std::uint64_t frame_index_ = 0;

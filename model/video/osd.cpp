@@ -19,7 +19,8 @@ void fill_black(std::uint8_t* bytes, unsigned count) {
 
 Osd::Osd(sc_core::sc_module_name name, const VpssParams& params)
     : BusTarget(name, regs),
-      memory("memory", Master::kVpbe, static_cast<unsigned>(params.read_outstanding())),
+      memory("memory", Master::kVpbe, static_cast<unsigned>(params.read_outstanding()),
+             BurstMaster::Report::kWhenDecided),
       params_(params),
       ring_(params.read_ahead_lines() + 2) {
   lines.bind(*this);
@@ -64,7 +65,7 @@ void Osd::field_start(const Standard& standard, bool f) {
     if (regs.mode.cabg) d.not_modelled("OSD background colour other than index 0");
     window_ = w;
   }
-  if (on_latch) on_latch({kernel_now(), f, window_.on, window_.address});
+  if (on_latch) on_latch({kernel_time(), f, window_.on, window_.address});
 }
 
 void Osd::fetch(const Timing& timing) {
@@ -73,6 +74,7 @@ void Osd::fetch(const Timing& timing) {
   line.timing = timing;
   line.start = timing.clock->edge(timing.first_active);
   line.end = timing.clock->edge(timing.first_active + kActiveBytes);
+  line.fetched = kernel_time();
   line.window = window_.on;
   line.swap_chroma = window_.swap_chroma;
   line.address = window_.on ? window_.address : 0;
@@ -105,27 +107,32 @@ void Osd::plan(Line& line) {
   }
 }
 
+/// Puts on the port what is known to get a place there: a burst follows the last beat of the one
+/// whose place it takes.
 void Osd::issue() {
   for (std::uint64_t n = finished_; n < fetched_; ++n) {
     Line& line = at(n);
-    for (; line.next < line.bursts.size(); ++line.next) {
-      const Burst& b = line.bursts[line.next];
+    while (line.next < line.bursts.size()) {
+      const Picoseconds place = memory.free_from();
+      if (place == kNever) return;
+      const Picoseconds when = std::max(line.fetched, place);
+      const unsigned i = line.next++;
+      const Burst& b = line.bursts[i];
       // What is late already is not read. This also keeps the order of a completion and a line's
       // end at the same time from mattering.
-      if (b.due <= kernel_now()) continue;
-      if (!memory.can_issue()) return;
-      memory.read(b.address, b.bytes, n << kBurstIndexBits | line.next);
+      if (b.due > when) memory.read(b.address, b.bytes, n << kBurstIndexBits | i, when, true);
     }
   }
 }
 
+/// Called ahead of c.last: nothing here may depend on, or change, what others see before then.
 void Osd::done(const BurstMaster::Completion& c) {
   if (c.error) Diagnostics::instance().guest("display reads an address without memory");
   const std::uint64_t n = c.tag >> kBurstIndexBits;
   if (n >= finished_ && n < fetched_) {  // else the line is out already
     Line& line = at(n);
     Burst& b = line.bursts[c.tag & ((1u << kBurstIndexBits) - 1)];
-    b.arrived = kernel_now();
+    b.arrived = c.last;
     std::memcpy(line.bytes.data() + b.at, c.data.data(), b.bytes);
   }
   issue();

@@ -78,6 +78,7 @@ class Osd : public BusTarget, public OsdLineIf {
   };
   struct Line {
     Timing timing{};
+    Picoseconds fetched = 0;         // when its reads begin
     Picoseconds start = 0, end = 0;  // of its active part, by the clock at the fetch
     bool window = false;
     bool swap_chroma = false;

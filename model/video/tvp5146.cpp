@@ -44,11 +44,11 @@ Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, Pict
 void Tvp5146::clock_changed() {
   if (clock.read() == clock_.frequency()) return;
   stopped_field_ = present_field();
-  clock_.restart(clock.read(), kernel_now());
+  clock_.restart(clock.read(), kernel_time());
   if (!clock_.running()) return line_event_.cancel();
   if (!started_) {
     started_ = true;
-    origin_ = clock_.edge_at_or_after(kernel_now() + params_.phase());
+    origin_ = clock_.edge_at_or_after(kernel_time() + params_.phase());
   }
   schedule();
 }
@@ -65,7 +65,7 @@ bool Tvp5146::standard_ok() const {
 
 std::uint64_t Tvp5146::present_field() const {
   if (!started_ || !clock_.running()) return stopped_field_;
-  const std::uint64_t edge = clock_.edge_after(kernel_now());  // the sample on the wire is edge - 1
+  const std::uint64_t edge = clock_.edge_after(kernel_time());  // the sample on the wire is edge - 1
   return edge <= origin_ ? 0 : locate(standard_, (edge - 1 - origin_) / standard_.line_bytes).field;
 }
 
@@ -77,12 +77,12 @@ Picoseconds Tvp5146::field_time(std::uint64_t k) const {
 void Tvp5146::schedule() {
   line_event_.cancel();
   if (!started_ || !clock_.running() || !enabled()) return;
-  const Picoseconds now = kernel_now();
+  const Picoseconds now = kernel_time();
   // Outputs enabled in mid-line start with the next whole line, strictly later.
   const std::uint64_t edge = clock_.edge_after(now);
   const std::uint64_t line = standard_.line_bytes;
   next_line_ = edge <= origin_ ? 0 : (edge - origin_ + line - 1) / line;
-  line_event_.notify(to_sc_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - now));
+  line_event_.notify(ps_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - now));
 }
 
 void Tvp5146::send_line() {
@@ -101,7 +101,7 @@ void Tvp5146::send_line() {
   ++lines_sent_;
   ++next_line_;
   line_event_.notify(
-      to_sc_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - kernel_now()));
+      ps_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - kernel_time()));
   video->line(line);
 }
 

@@ -20,7 +20,7 @@ bool Venc::wanted() const {
 
 void Venc::reconsider() {
   if (clock.read() != clock_.frequency()) {
-    clock_.restart(clock.read(), kernel_now());
+    clock_.restart(clock.read(), kernel_time());
     if (standard_ && clock_.running()) schedule();
   }
   if (regs.vmod.venc && (regs.vmod.vmd || regs.vmod.slave || regs.vmod.hdmd || regs.vmod.nsit ||
@@ -35,7 +35,7 @@ void Venc::reconsider() {
   }
   if (on && !standard_) {
     standard_ = &chosen();
-    origin_ = clock_.edge_after(kernel_now());
+    origin_ = clock_.edge_after(kernel_time());
     next_line_ = 0;
     line_out_ = false;
     schedule();
@@ -45,7 +45,7 @@ void Venc::reconsider() {
 void Venc::schedule() {
   line_event_.cancel();
   const Picoseconds at = clock_.edge(origin_ + next_line_ * standard_->line_bytes);
-  line_event_.notify(to_sc_time(at - kernel_now()));
+  line_event_.notify(ps_time(at - kernel_time()));
 }
 
 void Venc::tick() {

@@ -47,8 +47,8 @@ void path(benchmark::State& state, bool write, unsigned bytes) {
   Path p(Frequency(243'000'000), Frequency(121'500'000));
   std::array<std::uint8_t, 64> data{};
   PathRequest r;
-  r.bus.write = write;
-  r.bus.bytes = static_cast<std::uint8_t>(bytes);
+  r.write = write;
+  r.bytes = static_cast<std::uint8_t>(bytes);
   r.data = data.data();
   Picoseconds now = 1'000;
   std::uint32_t address = 0;

@@ -13,7 +13,6 @@ namespace fovea::dram {
 namespace {
 
 using bus::Slave;
-using bus::XbarRequest;
 constexpr Picoseconds kEdge = 10'000;  // 100 MHz: edge k at k * kEdge
 constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1, kC = Master::kVpfe;
 
@@ -37,12 +36,13 @@ class XbarBench : private bus::XbarHost {
   /// On the port's wires at edge `edge`: the crossbar's next edge is the first to see it.
   void submit(Master m, std::uint64_t edge, bool write = false, unsigned bytes = 8,
               Slave slave = Slave::kDdr) {
-    XbarRequest r;
+    requests_.push_back(std::make_unique<MemRequest>());
+    MemRequest& r = *requests_.back();
     r.master = m;
-    r.slave = slave;
     r.write = write;
     r.bytes = static_cast<std::uint8_t>(bytes);
-    xbar.submit(r, edge * kEdge);
+    r.issued = edge * kEdge;
+    xbar.submit(r, slave);
   }
   void run(std::uint64_t until = ~std::uint64_t{0} / kEdge) {
     while (xbar.next_decision() < until * kEdge) {
@@ -57,8 +57,8 @@ class XbarBench : private bus::XbarHost {
   }
   std::vector<Event> events;
   std::vector<Answer> answers;
-  std::vector<XbarRequest> sent;
-  bool ddr_accepts = true;
+  std::vector<MemRequest*> sent;
+  bool ddr_accepts = true, refuses = false;
 
  private:
   struct Params : bus::CrossbarParams {
@@ -69,15 +69,18 @@ class XbarBench : private bus::XbarHost {
       for (const auto& [key, value] : list) set.set(key, value);
     }
   };
-  bool forward(const XbarRequest& r, Picoseconds arrival) override {
+  Taken forward(MemRequest& r, Picoseconds arrival) override {
     EXPECT_EQ(arrival % kEdge, 0u);
-    events.push_back({r.master, r.slave, granted_ / kEdge, arrival / kEdge});
-    sent.push_back(r);
-    return r.slave != Slave::kDdr || ddr_accepts;
+    const auto slave = static_cast<Slave>(r.slave);
+    events.push_back({r.master, slave, granted_ / kEdge, arrival / kEdge});
+    sent.push_back(&r);
+    if (refuses) return Taken::kRefused;
+    return slave != Slave::kDdr || ddr_accepts ? Taken::kYes : Taken::kWaits;
   }
-  void respond(const XbarRequest& r, Picoseconds first, Picoseconds last, bool error) override {
-    answers.push_back({r.master, first / kEdge, last / kEdge, error});
+  void respond(MemRequest& r) override {
+    answers.push_back({r.master, r.first / kEdge, r.last / kEdge, r.error});
   }
+  std::vector<std::unique_ptr<MemRequest>> requests_;
   Params params_;
   Picoseconds granted_ = 0;
 
@@ -104,8 +107,8 @@ TEST(CrossbarTest, ResponseLatencyMovesReadDataAndAcknowledgeByItsEdges) {
     b.submit(kA, 5);
     b.submit(kB, 5, true, 64);
     b.run();
-    b.xbar.slave_done(b.sent[0], 30 * kEdge, 37 * kEdge, false);
-    b.xbar.slave_done(b.sent[0], 40 * kEdge + 1, 40 * kEdge + 1, true);
+    b.xbar.slave_done(*b.sent[0], 30 * kEdge, 37 * kEdge, false);
+    b.xbar.slave_done(*b.sent[0], 40 * kEdge + 1, 40 * kEdge + 1, true);
     ASSERT_EQ(b.answers.size(), 3u);
     EXPECT_EQ(b.answers[1].first, 30 + latency);
     EXPECT_EQ(b.answers[1].last, 37 + latency);
@@ -144,8 +147,8 @@ TEST(CrossbarTest, PriorityWinsWhateverTheOrderOfArrivalInTheInstant) {
     if (!a_first) b.submit(kA, 5);
     b.run();
     EXPECT_EQ(b.winners(), "BA");
-    EXPECT_EQ(b.sent[0].priority, 1) << "the slave is told";
-    EXPECT_EQ(b.sent[1].priority, 4);
+    EXPECT_EQ(b.sent[0]->priority, 1) << "the slave is told";
+    EXPECT_EQ(b.sent[1]->priority, 4);
   }
 }
 
@@ -201,7 +204,7 @@ TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
   EXPECT_EQ(b.events[1].slave, Slave::kConfig);
   EXPECT_TRUE(b.answers.empty()) << "no acknowledge before the slave has the write";
   b.ddr_accepts = true;
-  b.xbar.slave_accepted(b.sent[0], 49 * kEdge + 3);
+  b.xbar.slave_accepted(*b.sent[0], 49 * kEdge + 3);
   b.run();
   ASSERT_EQ(b.answers.size(), 1u);
   EXPECT_EQ(b.answers[0].first, 52u) << "taken before edge 50, two edges back";
@@ -217,9 +220,36 @@ TEST(CrossbarTest, WriteIsNotAcknowledgedBeforeItsLastBeat) {
   b.ddr_accepts = false;
   b.submit(kA, 5, true, 64);
   b.run();
-  b.xbar.slave_accepted(b.sent[0], 10 * kEdge);
+  b.xbar.slave_accepted(*b.sent[0], 10 * kEdge);
   ASSERT_EQ(b.answers.size(), 1u);
   EXPECT_EQ(b.answers[0].first, 8u + 8u + 2u);
+}
+
+TEST(CrossbarTest, RefusedRequestIsAnsweredOnceWithAnError) {
+  for (const bool write : {false, true}) {
+    XbarBench b;
+    b.refuses = true;
+    b.submit(kA, 5, write, 8);
+    b.run();
+    ASSERT_EQ(b.answers.size(), 1u);
+    EXPECT_TRUE(b.answers[0].error);
+    EXPECT_EQ(b.answers[0].last, 8u + 1 + 2) << "granted at 8, there at 9, back in 2";
+    b.refuses = false;
+    b.submit(kA, 20, write, 8);
+    b.run();
+    ASSERT_EQ(b.events.size(), 2u) << "the slave is not blocked";
+    EXPECT_EQ(b.events[1].granted, 23u);
+  }
+}
+
+// Video ports put requests on their port ahead of time; the clock may change before.
+TEST(CrossbarTest, RequestToComeSeesTheEdgesAfterAClockChange) {
+  XbarBench b;
+  b.submit(kA, 50);  // 500 ns
+  b.xbar.set_clock(Frequency(50'000'000), 10 * kEdge);  // edges every 20 ns from 100 ns on
+  b.run();
+  ASSERT_EQ(b.events.size(), 1u);
+  EXPECT_EQ(b.events[0].granted, 56u) << "seen at 520, through the bridge in 2: 560 ns";
 }
 
 TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
@@ -239,8 +269,8 @@ TEST(PathTest, UnloadedReadLatency) {
   Path path;
   std::array<std::uint8_t, 32> data;
   PathRequest r;
-  r.bus.master = kA;
-  r.bus.bytes = 32;
+  r.master = kA;
+  r.bytes = 32;
   r.data = data.data();
   path.submit(r, 0);
   path.drain();
@@ -271,9 +301,9 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
     for (unsigned i = 0; i < 8000; ++i) {
       auto item = std::make_unique<Item>();
       const auto m = static_cast<std::size_t>(rng.below(kMasterCount));
-      item->r.bus.master = static_cast<Master>(m);
-      item->r.bus.write = rng.below(2) != 0;
-      item->r.bus.bytes = static_cast<std::uint8_t>(4u << rng.below(5));
+      item->r.master = static_cast<Master>(m);
+      item->r.write = rng.below(2) != 0;
+      item->r.bytes = static_cast<std::uint8_t>(4u << rng.below(5));
       item->r.address =
           at(static_cast<std::uint32_t>(rng.below(64)), static_cast<unsigned>(rng.below(8)),
              static_cast<std::uint32_t>(rng.below(32)) * 64u);
@@ -298,7 +328,7 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
       EXPECT_EQ(item->r.responses, 1u);
       EXPECT_GT(item->r.first, item->at);
       EXPECT_GE(item->r.last, item->r.first);
-      (item->r.bus.write ? written : read) += item->r.bus.bytes;
+      (item->r.write ? written : read) += item->r.bytes;
     }
     std::uint64_t bus_read = 0, bus_written = 0, transactions = 0;
     for (const auto& s : path.xbar.stats) {

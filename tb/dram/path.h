@@ -10,12 +10,8 @@
 
 namespace fovea::dram {
 
-struct PathRequest {
-  bus::XbarRequest bus;
-  std::uint32_t address = 0;
-  std::uint8_t* data = nullptr;
+struct PathRequest : MemRequest {
   unsigned responses = 0;
-  Picoseconds first = 0, last = 0;
 };
 
 class Path : private bus::XbarHost, private mem::DdrClient {
@@ -27,8 +23,8 @@ class Path : private bus::XbarHost, private mem::DdrClient {
     ddr.set_clocks(ddr_clock, scr_clock, 0);
   }
   void submit(PathRequest& r, Picoseconds at) {
-    r.bus.cookie = &r;
-    xbar.submit(r.bus, at);
+    r.issued = at;
+    xbar.submit(r, bus::Slave::kDdr);
   }
   Picoseconds next_decision() const { return std::min(xbar.next_decision(), ddr.next_decision()); }
   void step() {
@@ -43,29 +39,23 @@ class Path : private bus::XbarHost, private mem::DdrClient {
   void drain() { run_before(kNever); }
 
  private:
-  bool forward(const bus::XbarRequest& r, Picoseconds arrival) override {
-    auto& p = *static_cast<PathRequest*>(r.cookie);
+  Taken forward(MemRequest& r, Picoseconds arrival) override {
     mem::DdrRequest q;
-    q.cookie = &p;
+    q.cookie = &r;
     q.master = r.master;
     q.priority = r.priority;
     q.write = r.write;
     q.bytes = r.bytes;
-    q.address = p.address;
-    q.data = p.data;
-    return ddr.submit(q, arrival);
+    q.address = r.address;
+    q.data = r.data;
+    return ddr.submit(q, arrival) ? Taken::kYes : Taken::kWaits;
   }
-  void respond(const bus::XbarRequest& r, Picoseconds first, Picoseconds last, bool) override {
-    auto& p = *static_cast<PathRequest*>(r.cookie);
-    ++p.responses;
-    p.first = first;
-    p.last = last;
-  }
+  void respond(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }
   void ddr_accepted(void* cookie, Picoseconds at) override {
-    xbar.slave_accepted(static_cast<PathRequest*>(cookie)->bus, at);
+    xbar.slave_accepted(*static_cast<MemRequest*>(cookie), at);
   }
   void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override {
-    xbar.slave_done(static_cast<PathRequest*>(cookie)->bus, first, last, false);
+    xbar.slave_done(*static_cast<MemRequest*>(cookie), first, last, false);
   }
   bus::CrossbarParams xbar_params_;
   mem::DdrParams ddr_params_;

@@ -47,6 +47,26 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
   regs.priority.on_write([this](std::uint32_t w) {
     priority[(w >> 8) % kMasterCount].write(w & 7);
   });
+  regs.stream.on_write([this](std::uint32_t address) {
+    if (stream_left_ > 0 || stream.outstanding() > 0) return;
+    stream_left_ = 12;
+    stream_address_ = address & ~63u;
+    stream_start_ = kernel_time();
+    move_stream();
+  });
+  stream.on_done = [this](const BurstMaster::Completion& c) {
+    log_.add(text("%015llu stream %s %08x %llu %016llx", static_cast<unsigned long long>(c.last),
+                  c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
+                  static_cast<unsigned long long>(hash(c.data.data(), c.data.size()))));
+    if (c.tag == 0) {
+      stream_end_.notify(ps_time(c.last > kernel_time() ? c.last - kernel_time() : 0));
+      ++horizon_epoch;
+    }
+    move_stream();
+  };
+  SC_METHOD(raise);
+  sensitive << stream_end_;
+  dont_initialize();
   dma.on_done = [this](const BurstMaster::Completion& c) {
     log_.add(text("%015llu dma %s %08x %016llx", static_cast<unsigned long long>(c.last),
                   c.write ? "w" : "r", c.address,
@@ -56,6 +76,24 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     else
       raise();
   };
+}
+
+/// Bursts follow each other's last beats; every third waits for a time of its own, as captured data
+/// wait for their last byte.
+void TestBlock::move_stream() {
+  static constexpr std::array<std::uint8_t, 64> kData{1, 2, 3};
+  while (stream_left_ > 0) {
+    const Picoseconds place = stream.free_from();
+    if (place == kNever) return;
+    const unsigned n = --stream_left_;
+    Picoseconds at = std::max(stream_start_, place);
+    if (n % 3 == 0) at = std::max(at, stream_start_ + (12 - n) * 150 * kPsPerNs);
+    const std::uint32_t address = stream_address_ + n * 64;
+    if (n % 2)
+      stream.write(address, kData, n, at, n != 0);
+    else
+      stream.read(address, 64, n, at, n != 0);
+  }
 }
 
 void TestBlock::expire() {
@@ -89,16 +127,14 @@ void TrafficMaster::run() {
 
 void TrafficMaster::retire(Op& op, std::uint64_t seed, Picoseconds& now) {
   finish(op.tx);
-  now = std::max(now, op.tx.ext.last);
+  now = std::max(now, op.tx.last);
   op.used = false;
   log_.add(text("%015llu seed %llu master %u op %u %s%s %08x first %llu data %016llx",
-                static_cast<unsigned long long>(op.tx.ext.last),
+                static_cast<unsigned long long>(op.tx.last),
                 static_cast<unsigned long long>(seed), number_, op.serial,
-                op.tx.gp.is_write() ? "w" : "r", op.tx.error() ? "!" : "",
-                static_cast<unsigned>(op.tx.gp.get_address()),
-                static_cast<unsigned long long>(op.tx.ext.first),
-                static_cast<unsigned long long>(
-                    hash(op.data.data(), op.tx.gp.get_data_length()))));
+                op.tx.write ? "w" : "r", op.tx.error ? "!" : "", op.tx.address,
+                static_cast<unsigned long long>(op.tx.first),
+                static_cast<unsigned long long>(hash(op.data.data(), op.tx.bytes))));
 }
 
 void TrafficMaster::execute(const Program& p) {
@@ -141,32 +177,31 @@ void TrafficMaster::execute(const Program& p) {
       if (!o.used) { op = &o; break; }
     op->used = true;
     op->serial = i;
-    auto& gp = op->tx.gp;
     op->tx.port = static_cast<unsigned>(rng.below(ports_));
     const bool reg = rng.below(12) == 0;
     unsigned bytes = 4;
     std::uint32_t address;
     if (reg) {
-      address = kRegs + 4 * static_cast<std::uint32_t>(rng.below(4));
-      gp.set_command(rng.below(3) ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+      address = kRegs + 4 * static_cast<std::uint32_t>(rng.below(5));
+      op->tx.write = rng.below(3) != 0;
     } else {
       bytes = 4u << rng.below(5);
       // A few rows in a few banks, shared by all masters: hits, conflicts and true sharing.
       address = kDdr + static_cast<std::uint32_t>(rng.below(3)) * 0x4000 +
                 static_cast<std::uint32_t>(rng.below(3)) * 0x800 +
                 static_cast<std::uint32_t>(rng.below(512 / bytes)) * bytes;
-      gp.set_command(rng.below(2) ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+      op->tx.write = rng.below(2) != 0;
     }
     for (unsigned k = 0; k < bytes; ++k) op->data[k] = static_cast<std::uint8_t>(rng.next());
-    if (reg && address == kRegs + 4) {  // COPY wants an address inside the SDRAM
+    if (reg && (address == kRegs + 4 || address == kRegs + 16)) {
+      // COPY and STREAM want an address inside the SDRAM.
       const std::uint32_t target = kDdr + static_cast<std::uint32_t>(rng.below(8)) * 64;
       std::memcpy(op->data.data(), &target, 4);
     }
-    gp.set_address(address);
-    gp.set_data_ptr(op->data.data());
-    gp.set_data_length(bytes);
-    gp.set_streaming_width(bytes);
-    op->tx.ext.critical = 0;
+    op->tx.address = address;
+    op->tx.data = op->data.data();
+    op->tx.bytes = static_cast<std::uint8_t>(bytes);
+    op->tx.critical = 0;
     submit(op->tx, now);
     if (rng.below(4) == 0) {
       // A look without waiting, as the core does with its write buffer. A transaction whose outcome
@@ -212,6 +247,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
   config.to("ddr").bind(ddr.reg_socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](block.priority[i]);
   block.dma.socket.bind(*scr.target[index(Master::kEdmaTc0)]);
+  block.stream.socket.bind(*scr.target[index(Master::kLoad)]);
 
   // Six masters on the remaining ports; the first has two ports, as the core does.
   std::vector<std::unique_ptr<TrafficMaster>> masters;

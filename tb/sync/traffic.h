@@ -45,12 +45,15 @@ class Log {
 
 /// Registers: TIMER (write n: interrupt after n ns), COPY (write address: a DMA master reads 64
 /// bytes there and writes them 4 KiB further, then interrupts), COUNT (reads: expiries so far),
-/// PRIORITY (write master<<8|level: a crossbar priority changes).
+/// PRIORITY (write master<<8|level: a crossbar priority changes), STREAM (write address: a passive
+/// DMA master, which reacts to outcomes ahead of the kernel as the video ports do, moves twelve
+/// bursts in places of three, then interrupts).
 struct TestRegs : RegBank {
   Reg timer{*this, "TIMER", 0x0, Mode::kRw, "ns until the interrupt"};
   Reg copy{*this, "COPY", 0x4, Mode::kRw, "address"};
   Reg count{*this, "COUNT", 0x8, Mode::kRo, "expiries"};
   Reg priority{*this, "PRIORITY", 0xC, Mode::kRw, "master<<8|level"};
+  Reg stream{*this, "STREAM", 0x10, Mode::kRw, "address"};
   TestRegs() : RegBank("TEST") {}
 };
 
@@ -58,6 +61,7 @@ class TestBlock : public BusTarget {
  public:
   TestRegs regs;
   BurstMaster dma{"dma", Master::kEdmaTc0, 4};
+  BurstMaster stream{"stream", Master::kLoad, 3, BurstMaster::Report::kWhenDecided};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
   sc_core::sc_event irq;
   Picoseconds irq_at = 0, irq_before = 0;  // last and last-but-one interrupt
@@ -67,12 +71,16 @@ class TestBlock : public BusTarget {
  private:
   void expire();
   void raise();
+  void move_stream();
   Log& log_;
-  sc_core::sc_event due_;
+  sc_core::sc_event due_, stream_end_;
+  unsigned stream_left_ = 0;
+  std::uint32_t stream_address_ = 0;
+  Picoseconds stream_start_ = 0;
 };
 
 /// One master of a random program. Sleeps until its program starts, runs it, reports.
-class TrafficMaster : public bus::Agent {
+class TrafficMaster : public bus::Agent<TrafficMaster> {
  public:
   TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports, Log& log,
                 TestBlock& block);
@@ -85,6 +93,7 @@ class TrafficMaster : public bus::Agent {
   bool finished = false;
 
  private:
+  friend bus::Agent<TrafficMaster>;
   static constexpr unsigned kSlots = 6;
   struct Op {
     Transaction tx;

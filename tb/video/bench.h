@@ -1,21 +1,22 @@
 // Pieces that the SystemC tests of the video blocks share.
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
-#include <tlm_utils/simple_target_socket.h>
 
 #include <cstring>
+#include <deque>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
 #include "model/common/burst_master.h"
 #include "model/common/clock.h"
-#include "model/common/mem_request.h"
+#include "model/common/mem_sockets.h"
 
 namespace fovea::video {
 
-/// A memory that answers every burst after a fixed time, in order.
-class FakeMemory : public sc_core::sc_module {
+/// A memory that answers every burst after a fixed time, in order. It decides on a burst when that
+/// is put on the port.
+class FakeMemory : public sc_core::sc_module, private MemTargetIf {
  public:
   static constexpr std::uint32_t kBase = 0x8000'0000;
   struct Request {
@@ -23,42 +24,53 @@ class FakeMemory : public sc_core::sc_module {
     std::uint32_t address;
     unsigned bytes;
   };
-  tlm_utils::simple_target_socket<FakeMemory> socket{"socket"};
+  MemTargetSocket<32> socket{"socket"};
   std::vector<std::uint8_t> bytes;
   Picoseconds latency = 100 * kPsPerNs;
   std::vector<Request> log;
 
+  SC_HAS_PROCESS(FakeMemory);
   explicit FakeMemory(sc_core::sc_module_name name, std::size_t size = 4 << 20)
       : sc_module(name), bytes(size) {
-    socket.register_nb_transport_fw(this, &FakeMemory::nb_transport_fw);
+    socket.bind(*this);
+    SC_METHOD(decide);
+    sensitive << due_;
+    dont_initialize();
   }
   std::uint8_t* at(std::uint32_t address) { return bytes.data() + (address - kBase); }
 
  private:
-  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& gp, tlm::tlm_phase& phase,
-                                     sc_core::sc_time&) {
-    if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
-    const auto address = static_cast<std::uint32_t>(gp.get_address());
-    const unsigned n = gp.get_data_length();
-    log.push_back({kernel_now(), address, n});
-    MemExtension* ext = nullptr;
-    gp.get_extension(ext);
-    last_ = std::max(last_, kernel_now() + latency);
-    ext->first = ext->last = last_;
-    if (address >= kBase && address - kBase + n <= bytes.size()) {
-      if (gp.is_write())
-        std::memcpy(at(address), gp.get_data_ptr(), n);
-      else
-        std::memcpy(gp.get_data_ptr(), at(address), n);
-      gp.set_response_status(tlm::TLM_OK_RESPONSE);
-    } else {
-      gp.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    }
-    tlm::tlm_phase response = tlm::BEGIN_RESP;
-    sc_core::sc_time zero = sc_core::SC_ZERO_TIME;
-    socket->nb_transport_bw(gp, response, zero);
+  tlm::tlm_sync_enum nb_transport_fw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
+    if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
+    requests_.push_back(&r);
+    decide();
     return tlm::TLM_ACCEPTED;
   }
+  void decide() {
+    while (!requests_.empty() && requests_.front()->issued <= kernel_time()) {
+      MemRequest& r = *requests_.front();
+      requests_.pop_front();
+      answer(r);
+    }
+    if (!requests_.empty()) due_.notify(ps_time(requests_.front()->issued - kernel_time()));
+  }
+  void answer(MemRequest& r) {
+    log.push_back({r.issued, r.address, r.bytes});
+    last_ = std::max(last_, r.issued + latency);
+    r.first = r.last = last_;
+    r.error = r.address < kBase || r.address - kBase + r.bytes > bytes.size();
+    if (!r.error) {
+      if (r.write)
+        std::memcpy(at(r.address), r.data, r.bytes);
+      else
+        std::memcpy(r.data, at(r.address), r.bytes);
+    }
+    MemPhase response = MemPhase::kResponse;
+    sc_core::sc_time zero = sc_core::SC_ZERO_TIME;
+    socket->nb_transport_bw(r, response, zero);
+  }
+  std::deque<MemRequest*> requests_;
+  sc_core::sc_event due_;
   Picoseconds last_ = 0;
 };
 
@@ -100,12 +112,12 @@ class EdgeLog : public sc_core::sc_module {
   }
 
  private:
-  void note() { rises.push_back(kernel_now()); }
+  void note() { rises.push_back(kernel_time()); }
 };
 
-inline void run_for(Picoseconds ps) { sc_core::sc_start(to_sc_time(ps)); }
+inline void run_for(Picoseconds ps) { sc_core::sc_start(ps_time(ps)); }
 inline void run_until(Picoseconds t) {
-  if (t > kernel_now()) run_for(t - kernel_now());
+  if (t > kernel_time()) run_for(t - kernel_time());
 }
 
 }  // namespace fovea::video

@@ -43,7 +43,7 @@ class Wire : public sc_core::sc_module, private Bt656Renderer {
   explicit Wire(sc_core::sc_module_name name) : sc_module(name) { SC_METHOD(tick); }
   /// Start of the next line 1 strictly after now.
   Picoseconds next_frame() const {
-    return clock.edge((kernel_now() / kFrame + 1) * kSmall.frame_bytes());
+    return clock.edge((kernel_time() / kFrame + 1) * kSmall.frame_bytes());
   }
 
  private:
@@ -54,7 +54,7 @@ class Wire : public sc_core::sc_module, private Bt656Renderer {
     if (damage) xy = damage(line_, xy);
     const std::uint64_t first = n_ * kSmall.line_bytes;
     ++n_;
-    next_trigger(to_sc_time(clock.edge(n_ * kSmall.line_bytes) - kernel_now()));
+    next_trigger(ps_time(clock.edge(n_ * kSmall.line_bytes) - kernel_time()));
     video->line({&kSmall, &clock, clock.edge(first), first, locate(kSmall, n_ - 1).field, line_, xy,
                  encode_xy(fv.f, fv.v, false), this});
   }

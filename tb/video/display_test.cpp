@@ -199,7 +199,7 @@ TEST_F(DisplayTest, FrameRateIsExact) {
 
 TEST_F(DisplayTest, RasterInterruptsAndStatusComeAtTheFieldStarts) {
   const Clock clock(kByteClock);
-  const std::uint64_t origin = clock.edge_after(kernel_now());
+  const std::uint64_t origin = clock.edge_after(kernel_time());
   show(1);
   // Field 1 of the raster begins with the raster; field 2 where F changes.
   const unsigned lines = FOVEA_625 ? 312 : 262;
@@ -310,7 +310,7 @@ TEST_F(DisplayTest, GatedEncoderShowsNothing) {
 
 TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
   const Clock clock(kByteClock);
-  const std::uint64_t origin = clock.edge_after(kernel_now());
+  const std::uint64_t origin = clock.edge_after(kernel_time());
   show(1);
   ASSERT_GE(b.memory.log.size(), std::size_t{23} * kRows);
   const Picoseconds ahead =

@@ -18,6 +18,13 @@ Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
 void Crossbar::set_clock(Frequency scr, Picoseconds at) {
   if (scr == scr_.frequency()) return;
   scr_.restart(scr, at);
+  // Requests that come after the change see the new edges.
+  for (Port& p : ports_)
+    for (std::uint32_t i = p.head; i != p.tail; ++i) {
+      Port::Item& item = p.queue[i % kQueue];
+      if (item.request->issued > at && scr_.running())
+        item.visible = scr_.edge_after(item.request->issued) + p.request_latency;
+    }
   plan();
 }
 
@@ -28,22 +35,21 @@ void Crossbar::set_priority(Master m, unsigned priority) {
   plan();  // the winner chosen for the next edge may be another one now
 }
 
-void Crossbar::submit(const XbarRequest& request, Picoseconds at) {
+void Crossbar::submit(MemRequest& request, Slave slave) {
   FOVEA_CHECK(scr_.running(), "request to a crossbar without a clock");
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
+  request.slave = static_cast<std::uint8_t>(slave);
   const bool head = p.empty();
-  const std::uint32_t slot = p.tail++ % kQueue;
-  p.queue[slot] = request;
-  p.queue[slot].issued = at;
-  p.visible[slot] = scr_.edge_after(at) + p.request_latency;
+  Port::Item& item = p.queue[p.tail++ % kQueue];
+  item = {&request, scr_.edge_after(request.issued) + p.request_latency};
   if (!head) return;  // competes when those before it are gone
   const std::uint32_t others = waiting_;
   waiting_ |= 1u << index(request.master);
-  const SlaveState& s = slaves_[static_cast<std::size_t>(request.slave)];
+  const SlaveState& s = slave_of(request);
   if (s.blocked) return;
   // An arbitration planned for an earlier edge stands; at an equal one the winner may change.
-  const std::uint64_t edge = std::max(p.visible[slot], s.free);
+  const std::uint64_t edge = std::max(item.visible, s.free);
   if (next_ != kNever && edge > next_edge_) return;
   if (others && next_ != kNever && edge == next_edge_) return plan();
   next_edge_ = edge;
@@ -57,12 +63,20 @@ void Crossbar::plan() {
   next_ = kNever;
   if (waiting_ == 0 || !scr_.running()) return;
   std::uint64_t edge = ~std::uint64_t{0};
+  if ((waiting_ & (waiting_ - 1)) == 0) {  // nobody competes
+    const auto m = static_cast<unsigned>(std::countr_zero(waiting_));
+    const Port::Item& item = ports_[m].front();
+    const SlaveState& s = slave_of(*item.request);
+    if (s.blocked) return;
+    next_edge_ = std::max(item.visible, s.free);
+    next_port_ = static_cast<std::uint8_t>(m);
+    next_ = scr_.edge(next_edge_);
+    return;
+  }
   for (std::uint32_t set = waiting_; set; set &= set - 1) {
-    const auto m = static_cast<unsigned>(std::countr_zero(set));
-    const Port& p = ports_[m];
-    const SlaveState& s = slaves_[static_cast<std::size_t>(p.queue[p.head % kQueue].slave)];
-    if (s.blocked) continue;
-    edge = std::min(edge, std::max(p.visible[p.head % kQueue], s.free));
+    const Port::Item& item = ports_[static_cast<unsigned>(std::countr_zero(set))].front();
+    const SlaveState& s = slave_of(*item.request);
+    if (!s.blocked) edge = std::min(edge, std::max(item.visible, s.free));
   }
   if (edge == ~std::uint64_t{0}) return;
   int best = -1;
@@ -70,8 +84,8 @@ void Crossbar::plan() {
   for (std::uint32_t set = waiting_; set; set &= set - 1) {
     const auto m = static_cast<unsigned>(std::countr_zero(set));
     const Port& p = ports_[m];
-    const SlaveState& s = slaves_[static_cast<std::size_t>(p.queue[p.head % kQueue].slave)];
-    if (s.blocked || std::max(p.visible[p.head % kQueue], s.free) > edge) continue;
+    const SlaveState& s = slave_of(*p.front().request);
+    if (s.blocked || std::max(p.front().visible, s.free) > edge) continue;
     const unsigned turn = (m + kMasterCount - s.last - 1) % kMasterCount;
     const unsigned rank = p.priority * 64u + turn;
     if (best < 0 || rank < best_rank) {
@@ -84,22 +98,23 @@ void Crossbar::plan() {
   next_ = scr_.edge(edge);
 }
 
-void Crossbar::slave_accepted(const XbarRequest& request, Picoseconds at) {
-  SlaveState& s = slaves_[static_cast<std::size_t>(request.slave)];
+void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
+  SlaveState& s = slaves_[request.slave];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   s.free = std::max(s.free, scr_.edge_after(at));
-  if (request.write && request.slave == Slave::kDdr) acknowledge_write(host_, request, s.free);
+  if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    acknowledge_write(host_, request, s.free);
   plan();
 }
 
-void Crossbar::slave_done(const XbarRequest& request, Picoseconds first, Picoseconds last,
-                          bool error) {
+void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {
   const std::uint64_t latency = ports_[index(request.master)].response_latency;
-  const Picoseconds f = scr_.edge(scr_.edge_at_or_after(first) + latency);
-  const Picoseconds l =
-      last == first ? f : scr_.edge(scr_.edge_at_or_after(last) + latency);
-  host_.respond(request, f, l, error);
+  request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);
+  request.last =
+      last == first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
+  request.error = error;
+  host_.respond(request);
 }
 
 }  // namespace fovea::bus

@@ -8,7 +8,7 @@
 
 #include "model/bus/core/crossbar_params.h"
 #include "model/common/clock.h"
-#include "model/common/masters.h"
+#include "model/common/mem_request.h"
 #include "model/common/stats.h"
 
 namespace fovea::bus {
@@ -16,25 +16,19 @@ namespace fovea::bus {
 enum class Slave : std::uint8_t { kDdr, kConfig, kCount };
 inline constexpr std::size_t kSlaveCount = static_cast<std::size_t>(Slave::kCount);
 
-struct XbarRequest {
-  void* cookie = nullptr;
-  Master master = Master::kArmD;
-  Slave slave = Slave::kDdr;
-  bool write = false;
-  std::uint8_t bytes = 0;
-  std::uint8_t priority = 0;   ///< filled in at the grant
-  Picoseconds issued = 0;
-};
-
 /// What the crossbar moves requests and outcomes through.
 class XbarHost {
  public:
   virtual ~XbarHost() = default;
-  /// Sends a granted request; it is at the slave at `arrival`. True: the slave took it; false: it
-  /// waits there and Crossbar::slave_accepted follows.
-  virtual bool forward(const XbarRequest& request, Picoseconds arrival) = 0;
-  virtual void respond(const XbarRequest& request, Picoseconds first, Picoseconds last,
-                       bool error) = 0;
+  enum class Taken {
+    kYes,
+    kWaits,    ///< at the slave's door; Crossbar::slave_accepted follows
+    kRefused,  ///< nobody answers: a bus error
+  };
+  /// Sends a granted request; it is at the slave at `arrival`.
+  virtual Taken forward(MemRequest& request, Picoseconds arrival) = 0;
+  /// The outcome is in the request.
+  virtual void respond(MemRequest& request) = 0;
 };
 
 struct MasterStats : StatGroup {
@@ -56,19 +50,21 @@ class Crossbar {
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
 
-  /// Puts a request on a master's port at `at` (not before the master's earlier ones).
-  void submit(const XbarRequest& request, Picoseconds at);
+  /// Puts a request on its master's port at request.issued: not before the master's earlier ones,
+  /// and before any decision later than that was taken. It stays where it is until its response.
+  void submit(MemRequest& request, Slave slave);
   /// The next arbitration, kNever if there is nothing to arbitrate.
   Picoseconds next_decision() const { return next_; }
+  const Picoseconds* next_decision_place() const { return &next_; }
   void step() { step(host_); }
   /// The same for a host of known type: its forward() and respond() are called directly.
   template <class Host>
   void step(Host& host);
 
   /// Slave side: the request waiting at the slave was taken at `at`.
-  void slave_accepted(const XbarRequest& request, Picoseconds at);
+  void slave_accepted(MemRequest& request, Picoseconds at);
   /// Slave side: read data on the crossbar from first to last; or a register access that ended.
-  void slave_done(const XbarRequest& request, Picoseconds first, Picoseconds last, bool error);
+  void slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error);
 
   std::array<std::unique_ptr<MasterStats>, kMasterCount> stats;
   /// Bytes granted, per interval of simulated time since the start of the run.
@@ -79,11 +75,16 @@ class Crossbar {
   Picoseconds timeline_interval() const { return interval_; }
 
  private:
-  static constexpr std::size_t kQueue = 16;  // deeper than any master's outstanding limit
+  static constexpr std::size_t kQueue = 32;  // as deep as any master's outstanding limit
   struct Port {
-    std::array<XbarRequest, kQueue> queue;
-    std::array<std::uint64_t, kQueue> visible;  // edge from which the arbiter sees it
+    struct Item {
+      MemRequest* request;
+      std::uint64_t visible;  // edge from which the arbiter sees it
+    };
+    std::array<Item, kQueue> queue;
     std::uint32_t head = 0, tail = 0;
+    Item& front() { return queue[head % kQueue]; }
+    const Item& front() const { return queue[head % kQueue]; }
     std::uint8_t priority = 7;
     std::uint8_t request_latency = 0, response_latency = 0;
     bool empty() const { return head == tail; }
@@ -95,12 +96,15 @@ class Crossbar {
   };
 
   void plan();
+  const SlaveState& slave_of(const MemRequest& r) const { return slaves_[r.slave]; }
   template <class Host>
-  void acknowledge_write(Host& host, const XbarRequest& request, std::uint64_t edge) {
-    const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
-    host.respond(request, at, at, false);
+  void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
+    request.first = request.last =
+        scr_.edge(edge + ports_[index(request.master)].response_latency);
+    request.error = false;
+    host.respond(request);
   }
-  void count(const XbarRequest& r);
+  void count(const MemRequest& r);
 
   XbarHost& host_;
   Clock scr_;
@@ -116,11 +120,12 @@ class Crossbar {
 };
 
 /// What a grant adds to the statistics.
-inline void Crossbar::count(const XbarRequest& r) {
+inline void Crossbar::count(const MemRequest& r) {
   MasterStats& st = *stats[next_port_];
   ++st.transactions;
   (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
-  if (r.slave == Slave::kDdr) (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
+  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
   if (next_ >= bin_end_ || timeline_.empty()) [[unlikely]] {
     timeline_.resize(next_ / interval_ + 1);
     bin_end_ = (next_ / interval_ + 1) * interval_;
@@ -131,27 +136,29 @@ inline void Crossbar::count(const XbarRequest& r) {
 template <class Host>
 void Crossbar::step(Host& host) {
   Port& p = ports_[next_port_];
-  // The place is not taken again before the queue is full once more.
-  XbarRequest& r = p.queue[p.head % kQueue];
+  MemRequest& r = *p.front().request;
   if (++p.head == p.tail) {
     waiting_ &= ~(1u << next_port_);
   } else {  // the next in line shows itself one clock later
-    auto& visible = p.visible[p.head % kQueue];
+    auto& visible = p.front().visible;
     visible = std::max(visible, next_edge_ + 1);
   }
   r.priority = p.priority;
-  SlaveState& s = slaves_[static_cast<std::size_t>(r.slave)];
+  SlaveState& s = slaves_[r.slave];
   const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
   s.free = next_edge_ + cycles;
   s.last = next_port_;
   count(r);
 
   const std::uint64_t arrival = next_edge_ + cycles;
-  if (host.forward(r, scr_.edge(arrival))) {
-    if (r.write && r.slave == Slave::kDdr) acknowledge_write(host, r, arrival);
-  } else {
+  const Picoseconds at = scr_.edge(arrival);
+  const XbarHost::Taken taken = host.forward(r, at);
+  if (taken == XbarHost::Taken::kWaits)
     s.blocked = true;
-  }
+  else if (taken == XbarHost::Taken::kRefused)
+    slave_done(r, at, at, true);
+  else if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    acknowledge_write(host, r, arrival);
   if (waiting_)
     plan();
   else
