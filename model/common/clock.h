@@ -1,5 +1,6 @@
 // Clock edges of a rational frequency, without accumulated rounding.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "model/common/units.h"
@@ -9,8 +10,8 @@ namespace fovea {
 /// Numbers the edges of a clock. Edge k is floor((k - k0) * 10^12 * den / num) ps after the last
 /// start; periods are never added up. A frequency change restarts the clock: the edge that would
 /// have come next comes at the time of the change, and numbering goes on.
-/// Ratios with small terms (all of the chip's) use 64-bit arithmetic, valid for hours of simulated
-/// time; others use 128 bits.
+/// Ratios with small terms (all of the chip's) are converted by a multiplication, exactly, for hours
+/// of simulated time after the last start; others, and later times, by a division.
 class Clock {
  public:
   Clock() = default;
@@ -21,7 +22,7 @@ class Clock {
     start_ = at;
     frequency_ = f;
     if (f.stopped()) {
-      ps_ = edges_ = 0;
+      ps_ = edges_ = edges_limit_ = ps_limit_ = 0;
       return;
     }
     const std::uint64_t g = std::gcd(kPsPerSecond, f.num);
@@ -30,9 +31,7 @@ class Clock {
     const std::uint64_t h = std::gcd(ps_, edges_);
     ps_ /= h;
     edges_ /= h;
-    ps_reciprocal_ = ~std::uint64_t{0} / ps_;
-    edges_reciprocal_ = ~std::uint64_t{0} / edges_;
-    wide_ = ps_ > (1u << 21) || edges_ > (1u << 10);
+    prepare();
   }
 
   bool running() const { return edges_ != 0; }
@@ -41,13 +40,17 @@ class Clock {
 
   /// Time of edge k (k >= the index at the last restart).
   [[gnu::always_inline]] Picoseconds edge(std::uint64_t k) const {
-    return start_ + scale(k - k0_, ps_, edges_, edges_reciprocal_, 0);
+    const std::uint64_t n = k - k0_;
+    if (n > edges_limit_) [[unlikely]] return start_ + scale(n, ps_, edges_, 0);
+    return start_ + static_cast<std::uint64_t>((Wide{n} * period_) >> period_shift_);
   }
   /// Index of the first edge at or after t.
   [[gnu::always_inline]] std::uint64_t edge_at_or_after(Picoseconds t) const {
     if (t <= start_) return k0_;
     // smallest k with floor(k*ps/edges) >= d  <=>  k*ps >= d*edges
-    return k0_ + scale(t - start_, edges_, ps_, ps_reciprocal_, ps_ - 1);
+    const std::uint64_t d = t - start_;
+    if (d > ps_limit_) [[unlikely]] return k0_ + scale(d, edges_, ps_, ps_ - 1);
+    return k0_ + (static_cast<std::uint64_t>((Wide{d} * rate_ + round_up_) >> 64) >> rate_shift_);
   }
   /// Index of the first edge strictly after t.
   [[gnu::always_inline]] std::uint64_t edge_after(Picoseconds t) const {
@@ -56,36 +59,49 @@ class Clock {
   Picoseconds next_edge_after(Picoseconds t) const { return edge(edge_after(t)); }
   Picoseconds next_edge_at_or_after(Picoseconds t) const { return edge(edge_at_or_after(t)); }
   /// Duration of n periods from edge 0, rounded down; for reports, not for scheduling.
-  Picoseconds periods(std::uint64_t n) const { return scale(n, ps_, edges_, edges_reciprocal_, 0); }
+  Picoseconds periods(std::uint64_t n) const { return scale(n, ps_, edges_, 0); }
 
  private:
-  /// (n * mul + add) / div, exactly; reciprocal is (2^64 - 1) / div. A division instruction here
-  /// took half of the memory path's host time; the product with the reciprocal is at most 2 short.
-  [[gnu::always_inline]] std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
-                                             std::uint64_t div, std::uint64_t reciprocal,
-                                             std::uint64_t add) const {
-    if (wide_) [[unlikely]] return scale_wide(n, mul, div, add);
-    const std::uint64_t product = n * mul + add;
-    auto quotient =
-        static_cast<std::uint64_t>(static_cast<unsigned __int128>(product) * reciprocal >> 64);
-    // Two conditional additions rather than a loop: no branch to mispredict.
-    std::uint64_t rest = product - quotient * div;
-    quotient += rest >= div;
-    rest -= rest >= div ? div : 0;
-    return quotient + (rest >= div);
+  using Wide = unsigned __int128;
+
+  /// (n * mul + add) / div.
+  [[gnu::noinline]] static std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
+                                               std::uint64_t div, std::uint64_t add) {
+    return static_cast<std::uint64_t>((Wide{n} * mul + add) / div);
   }
-  [[gnu::noinline]] static std::uint64_t scale_wide(std::uint64_t n, std::uint64_t mul,
-                                                    std::uint64_t div, std::uint64_t add) {
-    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(n) * mul + add) / div);
+
+  /// Fixed-point factors of both directions. Exact results are multiples of 1/edges_ and of 1/ps_, so
+  /// an error below half of that cannot carry a result over a whole number.
+  void prepare() {
+    edges_limit_ = ps_limit_ = 0;  // 0: divide
+    if (ps_ > (1u << 21) || edges_ > (1u << 10)) return;
+    const auto log2 = [](std::uint64_t v) { return 63u - static_cast<unsigned>(__builtin_clzll(v)); };
+    // edge: period * 2^s rounded up, at most 63 bits; n edges are too long by less than n / 2^s.
+    const unsigned s = 62 - log2(ps_ / edges_ + 1);
+    period_shift_ = s;
+    period_ = static_cast<std::uint64_t>(((Wide{ps_} << s) + edges_ - 1) / edges_);
+    edges_limit_ = s > log2(edges_) + 1 ? std::uint64_t{1} << (s - log2(edges_) - 1) : 0;
+    // edge_at_or_after: edges a ps * 2^(64 + r) rounded down, d of them too small by less than
+    // d / 2^(64 + r). Rounding up adds 1 - 1/(2 ps_).
+    if (edges_ >= ps_) return;
+    unsigned r = log2(ps_ / edges_);
+    if (edges_ << r == ps_) --r;  // the rate would need one bit more
+    rate_shift_ = r;
+    rate_ = static_cast<std::uint64_t>((Wide{edges_} << 64 << r) / ps_);
+    const Wide one = Wide{1} << 64 << r;
+    round_up_ = one - one / (2 * ps_);
+    ps_limit_ = std::uint64_t{1} << (61 + r - log2(ps_));
   }
 
   Frequency frequency_;
-  bool wide_ = false;
   Picoseconds start_ = 0;
   std::uint64_t k0_ = 0;
   std::uint64_t ps_ = 0;     // ps_ picoseconds hold exactly edges_ periods
   std::uint64_t edges_ = 0;  // 0: stopped
-  std::uint64_t ps_reciprocal_ = 0, edges_reciprocal_ = 0;
+  std::uint64_t period_ = 0, edges_limit_ = 0;
+  std::uint64_t rate_ = 0, ps_limit_ = 0;
+  Wide round_up_ = 0;
+  unsigned period_shift_ = 0, rate_shift_ = 0;
 };
 
 }  // namespace fovea

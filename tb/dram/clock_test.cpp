@@ -1,4 +1,4 @@
-// Clock edges against plain wide arithmetic: the clock's division by reciprocal must be exact.
+// Clock edges against plain wide arithmetic: the clock's fixed-point factors must be exact.
 #include "model/common/clock.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +16,18 @@ TEST(ClockArithmeticTest, EdgesEqualWideDivision) {
                               Frequency(86'250'000),      Frequency(27'000'000),
                               Frequency(24'000'000),      Frequency(1),
                               Frequency(432'000'000),     Frequency(1'000'000'000),
-                              Frequency(345'000'000, 16), Frequency(1'000'000'000'000)};
+                              Frequency(345'000'000, 16), Frequency(1'000'000'000'000),
+                              Frequency(250'000'000),     Frequency(500'000'000'000),
+                              Frequency(297'000'000),     Frequency(148'500'000),
+                              Frequency(7'812'500),       Frequency(1'023'000'000)};
   Rng rng(1);
   for (const Frequency f : clocks) {
     const Clock clock(f, 1'234);
     const Wide num = f.num, den = f.den;
     for (unsigned i = 0; i < 20'000; ++i) {
-      // Up to one simulated hour; every fourth time next to an edge, where rounding decides.
-      Picoseconds t = rng.below(Picoseconds{3'600} * kPsPerSecond);
+      // Up to ten simulated hours, beyond what the factors serve; every fourth time next to an
+      // edge, where rounding decides.
+      Picoseconds t = rng.below(Picoseconds{i % 3 ? 60u : 36'000u} * kPsPerSecond);
       const auto k = static_cast<std::uint64_t>(Wide{t} * num / (Wide{kPsPerSecond} * den));
       const auto edge = static_cast<Picoseconds>(Wide{k} * kPsPerSecond * den / num);
       ASSERT_EQ(clock.edge(k), 1'234 + edge) << f << " edge " << k;
