@@ -61,6 +61,11 @@ expect cut_elf 2 'cut.elf' -- run "$out/small.yaml" -s firmware.elf="$out/cut.el
 expect other_machine 2 'ARM|class|32' -- run "$out/small.yaml" -s firmware.elf="$fovea"
 expect outside_memory 2 '0x50000000' -- run "$out/small.yaml" -s firmware.elf="$out/outside.elf"
 expect unwritable 2 '/proc' -- "$fovea" run "$out/small.yaml" -o /proc/fovea_out
+if [ -e "$out/run.tmp" ]; then
+  echo "a run with wrong input left $out/run.tmp"
+  failures=$((failures + 1))
+fi
+expect empty_out 2 "output folder ''" -- "$fovea" run "$out/small.yaml" -o ''
 expect jump_nowhere 3 '0x70000000' 'prefetch abort' 'at 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/jump_nowhere.elf"
 expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \
