@@ -95,8 +95,9 @@ void BoardSimulation::close_window() {
 
 void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
   const board::FrameStats f = board_->frame_stats();
-  const std::string shown = "new frames displayed / window";
-  rows.push_back(row("frame.rate", f.rate, "1/s", shown));
+  if (f.rate)
+    rows.push_back(row("frame.rate", *f.rate, "1/s",
+                       "new frames displayed / time, over the whole display frames in the window"));
   rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
   rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured"));
   rows.push_back(row("frame.remapped", f.remapped, "1", "frames whose remap ended"));
@@ -240,11 +241,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (failure) std::rethrow_exception(failure);
   if (!closed_) {
     result.complete = false;
-    // A stopped run closes its window where it is; the core's own part follows at its next
-    // boundary, which a failed core does not reach any more.
-    if (board_->window_start()) {
-      board_->close_window_now();
-      for (int i = 0; i < 20 && guest.empty() && !(closed_ && arm.core().mark_done()); ++i)
+    // A stopped run closes its window a slice from here: the masters may have worked ahead of this
+    // time, but not past the display's next line. The core's own part follows at its next boundary,
+    // which a failed core does not reach any more.
+    if (board_->window_start() && guest.empty()) {
+      board_->close_window(kernel_time() + slice);
+      for (int i = 0; i < 20 && !(closed_ && arm.core().mark_done()); ++i)
         sc_core::sc_start(ps_time(slice));
     }
     // Without a window there is nothing to report but the guest's own words.

@@ -86,8 +86,9 @@ kill -INT "$pid"
 wait "$pid"
 status=$?
 if [ "$status" != 130 ] || ! grep -q '"complete": false' "$out/stopped/stats.json" ||
-  ! grep -q '"cpu.cycles"' "$out/stopped/stats.json"; then
-  echo "Ctrl-C: exit status $status, or no partial result"
+  ! grep -q '"cpu.cycles"' "$out/stopped/stats.json" ||
+  ! grep -qE '"frame.rate": \{"value": 25(\.0)?,' "$out/stopped/stats.json"; then
+  echo "Ctrl-C: exit status $status, or no partial result with the rate of its whole frames"
   failures=$((failures + 1))
 fi
 echo "$failures failures"
