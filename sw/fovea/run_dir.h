@@ -10,8 +10,8 @@ namespace fovea::app {
 
 /// Files of a run go to `DIR.tmp`; commit() renames it to `DIR`. An existing `DIR` is replaced if
 /// it is a Fovea run folder (its config.json says so), at the moment of commit() and not before;
-/// anything else is refused. Without commit() (an error, a broken invariant) `DIR.tmp` is removed and
-/// `DIR` is as it was; after a crash `DIR.tmp` stays, until the next run into `DIR`.
+/// anything else is refused. Without commit() (an error, a broken invariant) `DIR.tmp` is removed
+/// and `DIR` is as it was; after a crash `DIR.tmp` stays, until the next run into `DIR`.
 class RunDir {
  public:
   /// Creates `DIR.tmp` and `DIR.tmp/frames`, so that an output that cannot be written shows before

@@ -134,8 +134,8 @@ TEST_P(CameraPhaseTest, DisplayIsInStepWithTheCameraWhateverItsPhase) {
   for (const Shown& s : rig.shown()) {
     EXPECT_FALSE(s.record.repeated);
     ASSERT_TRUE(s.record.capture_end);
-    // Next display frame but one millisecond earlier; 22 lines to the first active one; the camera's
-    // frame ends for the firmware two lines after the last line.
+    // Next display frame but one millisecond earlier; 22 lines to the first active one; the
+    // camera's frame ends for the firmware two lines after the last line.
     const double ms = static_cast<double>(s.record.display_start - *s.record.capture_end) * 1e-9;
     EXPECT_NEAR(ms, 40 - 1 + (22 + 2) * 0.064, 0.15);
   }

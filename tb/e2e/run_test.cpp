@@ -136,8 +136,9 @@ TEST_P(StoppedRunTest, StrictAndDefaultLeaveTheSame) {
   EXPECT_NE(strict.find("\"bus.load.read_bytes\""), std::string::npos);
   const auto differ = std::mismatch(strict.begin(), strict.end(), ahead.begin(), ahead.end());
   const auto from = static_cast<std::size_t>(differ.first - strict.begin());
-  EXPECT_TRUE(strict == ahead) << "strict: ..." << strict.substr(from - std::min(from, 60ul), 120)
-                               << "\ndefault: ..." << ahead.substr(from - std::min(from, 60ul), 120);
+  const std::size_t begin = from - std::min<std::size_t>(from, 60);
+  EXPECT_TRUE(strict == ahead) << "strict: ..." << strict.substr(begin, 120) << "\ndefault: ..."
+                               << ahead.substr(begin, 120);
 }
 // Frames are shown every 40 ms from about 0.35 s.
 INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 415));

@@ -1,4 +1,5 @@
-/* TIMER0 at 24 MHz (AUXCLK): TIM12 counts up freely, 32 bit, wraps after 179 s; TIM34 is an alarm. */
+/* TIMER0 at 24 MHz (AUXCLK): TIM12 counts up freely, 32 bit, wraps after 179 s; TIM34 is an
+ * alarm. */
 #ifndef FOVEA_FIRMWARE_TIMER_H
 #define FOVEA_FIRMWARE_TIMER_H
 

@@ -12,7 +12,7 @@
 #define REG_ID_MSB 0x80
 #define REG_ID_LSB 0x81
 
-/* Horizontal and vertical lock. Colour lock is not asked for: a monochrome camera never gives it. */
+/* Horizontal and vertical lock. A monochrome camera never gives colour lock. */
 #define STATUS1_LOCKED 0x06u
 
 i2c_result_t tvp5146_start(int is_625, uint32_t *id) {
