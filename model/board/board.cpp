@@ -73,18 +73,19 @@ void Board::latched(const video::Osd::Latch& latch) {
     dm365.quiet.at(kernel_time(), kMasterCount, [this] {
       dm365.scr.settle();
       dm365.ddr.settle(kernel_time());
-      window_start_ = kernel_time();
+      window_start_ = whole_until_ = kernel_time();
       first_record_ = log.records().size();
       if (on_window_open) on_window_open();
     });
-  } else if (window_open() && frames_in_window_ >= wanted_) {
-    close_window_now();
+  } else if (window_open()) {
+    whole_until_ = kernel_time();
+    if (frames_in_window_ >= wanted_) close_window(kernel_time());
   }
 }
 
-void Board::close_window_now() {
+void Board::close_window(Picoseconds at) {
   if (window_end_) return;
-  dm365.quiet.at(kernel_time(), kMasterCount, [this] {
+  dm365.quiet.at(at, kMasterCount, [this] {
     if (window_end_) return;
     dm365.scr.settle();
     dm365.ddr.settle(kernel_time());
@@ -113,7 +114,7 @@ FrameStats Board::frame_stats() const {
       ++s.repeated;
       continue;
     }
-    ++fresh;
+    fresh += r.display_start < whole_until_;
     s.dropped += r.dropped;
     if (!r.capture_start) continue;
     const Picoseconds latency = r.display_start - *r.capture_start;
@@ -133,7 +134,8 @@ FrameStats Board::frame_stats() const {
   s.remapped = s.remaps;
   for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
   s.window = static_cast<double>(to - from) * 1e-12;
-  s.rate = s.window > 0 ? static_cast<double>(fresh) / s.window : 0;
+  if (whole_until_ > from)
+    s.rate = static_cast<double>(fresh) / (static_cast<double>(whole_until_ - from) * 1e-12);
   s.latency_mean = s.latencies ? latency_sum / static_cast<double>(s.latencies) : 0;
   s.remap_mean = s.remaps ? remap_sum / static_cast<double>(s.remaps) : 0;
   return s;

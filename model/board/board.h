@@ -25,7 +25,10 @@ struct LoadImage {
 
 /// Statistics of the measured window that come from the frame log.
 struct FrameStats {
-  double rate = 0, window = 0;
+  /// New frames of the whole display frames from the window's start, over their time; nothing if no
+  /// display frame was out. A complete window holds whole frames only.
+  std::optional<double> rate;
+  double window = 0;
   std::uint64_t captured = 0, remapped = 0, displayed = 0, dropped = 0, repeated = 0;
   Picoseconds latency_min = 0, latency_max = 0, remap_min = 0, remap_max = 0;
   double latency_mean = 0, remap_mean = 0;  // ps
@@ -52,8 +55,9 @@ class Board : public sc_core::sc_module {
   bool window_open() const { return window_start_.has_value() && !window_end_; }
   std::optional<Picoseconds> window_start() const { return window_start_; }
   std::optional<Picoseconds> window_end() const { return window_end_; }
-  /// Ends the window now instead of at its last frame (a run that is stopped).
-  void close_window_now();
+  /// Ends the window at `at` instead of at its last frame (a run that is stopped). Masters may have
+  /// worked ahead of the present time, so `at` must lie beyond the next kernel event.
+  void close_window(Picoseconds at);
   FrameStats frame_stats() const;
   std::uint64_t frames_in_window() const { return frames_in_window_; }
   const std::string& uart_text() const { return uart_; }
@@ -76,6 +80,7 @@ class Board : public sc_core::sc_module {
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
   std::optional<Picoseconds> window_start_, window_end_;
+  Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
   std::size_t first_record_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "model/soc/dm365.h"
 
+#include <algorithm>
+
 namespace fovea::soc {
 namespace {
 
@@ -29,6 +31,12 @@ const std::vector<ConfigBus::BlockSpec> kRegisterMap = {
     {"venc", 0x01C7'1E00, 0x200, kFast},
 };
 
+/// Masters of the chip that no model drives yet: ports without traffic, keys without effect.
+constexpr std::array kAbsent = {Master::kEdmaTc0, Master::kEdmaTc1, Master::kEdmaTc2,
+                                Master::kEdmaTc3, Master::kRemapEngine};
+
+bool absent(Master m) { return std::find(kAbsent.begin(), kAbsent.end(), m) != kAbsent.end(); }
+
 bus::AddressMap address_map(const mem::DdrParams& ddr) {
   bus::AddressMap map;
   map.ddr_size = ddr.size_bytes();
@@ -40,7 +48,8 @@ bus::AddressMap address_map(const mem::DdrParams& ddr) {
 void Dm365Params::declare(ParamSet& set) {
   cpu.declare(set);
   set.add(crossbar);
-  for (auto& p : crossbar.ports) set.add(*p);
+  for (std::size_t i = 0; i < kMasterCount; ++i)
+    if (!absent(static_cast<Master>(i))) set.add(*crossbar.ports[i]);
   set.add(config_bus);
   set.add(load);
   set.add(ddr);
@@ -211,9 +220,7 @@ void Dm365::route_priorities() {
   const std::uint32_t arm_priority = mstpri0_.read() & 7u;
   priority_[index(Master::kArmI)].write(arm_priority);
   priority_[index(Master::kArmD)].write(arm_priority);
-  for (auto m : {Master::kEdmaTc0, Master::kEdmaTc1, Master::kEdmaTc2, Master::kEdmaTc3,
-                 Master::kRemapEngine})
-    priority_[index(m)].write(7);
+  for (auto m : kAbsent) priority_[index(m)].write(7);
   priority_[index(Master::kLoad)].write(load_priority_);
 }
 

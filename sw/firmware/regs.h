@@ -80,6 +80,7 @@
 
 #define IRQ_VPSSINT0 0u
 #define IRQ_VPSSINT8 8u
+#define IRQ_TINT0_34 33u
 
 /* TIMER0, 9.1 */
 #define TIMER0_TIM12 0x01C21410u

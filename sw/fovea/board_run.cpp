@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "model/board/board.h"
+#include "model/video/scene/ahead.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/loader.h"
@@ -95,8 +96,9 @@ void BoardSimulation::close_window() {
 
 void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
   const board::FrameStats f = board_->frame_stats();
-  const std::string shown = "new frames displayed / window";
-  rows.push_back(row("frame.rate", f.rate, "1/s", shown));
+  if (f.rate)
+    rows.push_back(row("frame.rate", *f.rate, "1/s",
+                       "new frames displayed / time, over the whole display frames in the window"));
   rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
   rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured"));
   rows.push_back(row("frame.remapped", f.remapped, "1", "frames whose remap ended"));
@@ -176,7 +178,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   auto source = video::make_picture_source(params_.camera, load_footage(params_),
                                            params_.raster_width(), params_.raster_height());
 
-  board_ = std::make_unique<board::Board>("board", params_, *source, elf.entry(),
+  video::AheadSource camera(*source);
+  board_ = std::make_unique<board::Board>("board", params_, camera, elf.entry(),
                                           request.strict_sync);
   for (const auto& s : elf.segments()) {
     board::LoadImage image{s.address, s.data};
@@ -240,11 +243,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (failure) std::rethrow_exception(failure);
   if (!closed_) {
     result.complete = false;
-    // A stopped run closes its window where it is; the core's own part follows at its next
-    // boundary, which a failed core does not reach any more.
-    if (board_->window_start()) {
-      board_->close_window_now();
-      for (int i = 0; i < 20 && guest.empty() && !(closed_ && arm.core().mark_done()); ++i)
+    // A stopped run closes its window a slice from here: the masters may have worked ahead of this
+    // time, but not past the display's next line. The core's own part follows at its next boundary,
+    // which a failed core does not reach any more.
+    if (board_->window_start() && guest.empty()) {
+      board_->close_window(kernel_time() + slice);
+      for (int i = 0; i < 20 && !(closed_ && arm.core().mark_done()); ++i)
         sc_core::sc_start(ps_time(slice));
     }
     // Without a window there is nothing to report but the guest's own words.

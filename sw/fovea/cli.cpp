@@ -23,6 +23,7 @@ struct RunOptions {
   std::string experiment;
   std::vector<std::string> sets;
   std::string out_dir;
+  bool out_given = false;
   std::string sync = "default";
   bool strict = false;
   bool no_frames = false;
@@ -70,8 +71,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   experiment.load(options.experiment);
   for (const auto& set : options.sets) experiment.override_with(set);
 
-  RunDir dir(options.out_dir.empty() ? fs::path("out") / experiment.name()
-                                     : fs::path(options.out_dir));
+  RunDir dir(options.out_given ? fs::path(options.out_dir)
+                               : fs::path("out") / experiment.name());
   // First, so that an unfinished folder is known as ours and says what was tried.
   dir.write("config.json", config_json(params, experiment, version_text()));
 
@@ -219,7 +220,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   // One value per -s: the experiment's name may follow it.
   run_command->add_option("-s,--set", run.sets, "Set a parameter, key=value; may be repeated")
       ->allow_extra_args(false);
-  run_command->add_option("-o,--out", run.out_dir, "Folder for the results (out/EXPERIMENT)");
+  const CLI::Option* out_option =
+      run_command->add_option("-o,--out", run.out_dir, "Folder for the results (out/EXPERIMENT)");
   run_command
       ->add_option("--sync", run.sync,
                    "strict: every bus access goes through the queue and the kernel")
@@ -251,6 +253,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
       throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
     }
+    run.out_given = out_option->count() > 0;
     if (*run_command) return command_run(run, args, context);
     if (*params_command) return command_params(pattern, markdown, context);
     if (*version_command) context.out << "fovea " << version_text() << std::endl;

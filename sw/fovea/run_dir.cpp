@@ -8,8 +8,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "model/common/check.h"
 
@@ -34,6 +36,17 @@ bool is_empty_start(const fs::path& dir) {
     if (!entry.is_directory() || !fs::is_empty(entry.path())) return false;
   }
   return !error;
+}
+
+/// Folders to be removed also when the program ends without destructors: at a broken invariant
+/// (FOVEA_CHECK).
+std::vector<fs::path>& abandoned_at_exit() {
+  static std::vector<fs::path> folders;
+  [[maybe_unused]] static const int registered = std::at_quick_exit([] {
+    std::error_code ignored;
+    for (const fs::path& folder : abandoned_at_exit()) fs::remove_all(folder, ignored);
+  });
+  return folders;
 }
 
 }  // namespace
@@ -72,26 +85,43 @@ RunDir::RunDir(const fs::path& dir) {
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) fail(working_, "another run is writing it");
     if (!is_run_folder(working_) && !is_empty_start(working_))
       fail(working_, "it exists and is not left by a Fovea run; remove it or choose another name");
+    set_remove(true);
     for (const auto& entry : fs::directory_iterator(working_)) fs::remove_all(entry.path());
     if (::mkdir(frames().c_str(), 0777) != 0) fail(frames(), std::strerror(errno));
     // A folder may exist on a full or read-only file system: a file is the proof.
     write_file(frames() / ".probe", "x");
     fs::remove(frames() / ".probe");
   } catch (const fs::filesystem_error& e) {
-    ::close(lock_);
+    abandon();
     fail(working_, e.code().message());
   } catch (...) {
-    ::close(lock_);
+    abandon();
     throw;
   }
 }
 
-RunDir::~RunDir() {
+RunDir::~RunDir() { abandon(); }
+
+void RunDir::set_remove(bool remove) {
+  remove_ = remove;
+  auto& folders = abandoned_at_exit();
+  std::erase(folders, working_);
+  if (remove) folders.push_back(working_);
+}
+
+/// Removed under the lock: no other run can have begun in it.
+void RunDir::abandon() {
+  std::error_code ignored;
+  if (remove_) {
+    set_remove(false);
+    fs::remove_all(working_, ignored);
+  }
   if (lock_ >= 0) ::close(lock_);
 }
 
 void RunDir::commit() {
   FOVEA_CHECK(!committed_, "run folder committed twice");
+  set_remove(false);
   std::error_code error;
   const bool replace = fs::exists(fs::symlink_status(final_, error));
   if (replace && !is_run_folder(final_) && !is_empty_start(final_))

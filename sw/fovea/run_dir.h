@@ -10,8 +10,8 @@ namespace fovea::app {
 
 /// Files of a run go to `DIR.tmp`; commit() renames it to `DIR`. An existing `DIR` is replaced if
 /// it is a Fovea run folder (its config.json says so), at the moment of commit() and not before;
-/// anything else is refused. Without commit() (an error, a crash) `DIR.tmp` stays for inspection
-/// and `DIR` is as it was.
+/// anything else is refused. Without commit() (an error, a broken invariant) `DIR.tmp` is removed
+/// and `DIR` is as it was; after a crash `DIR.tmp` stays, until the next run into `DIR`.
 class RunDir {
  public:
   /// Creates `DIR.tmp` and `DIR.tmp/frames`, so that an output that cannot be written shows before
@@ -28,13 +28,16 @@ class RunDir {
   /// Where the files are now: DIR.tmp, after commit() DIR.
   const std::filesystem::path& folder() const { return committed_ ? final_ : working_; }
   void write(std::string_view name, std::string_view text) { write_file(file(name), text); }
-  /// Renames DIR.tmp to DIR. @throws UserError
+  /// Renames DIR.tmp to DIR. @throws UserError; the results are then in DIR.tmp, which stays
   void commit();
 
  private:
+  void abandon();
+  void set_remove(bool remove);
   std::filesystem::path final_, working_;
   int lock_ = -1;
   bool committed_ = false;
+  bool remove_ = false;  ///< DIR.tmp is ours, and nobody needs what is in it
 };
 
 /// What config.json of a run folder has under "format".

@@ -61,11 +61,22 @@ expect cut_elf 2 'cut.elf' -- run "$out/small.yaml" -s firmware.elf="$out/cut.el
 expect other_machine 2 'ARM|class|32' -- run "$out/small.yaml" -s firmware.elf="$fovea"
 expect outside_memory 2 '0x50000000' -- run "$out/small.yaml" -s firmware.elf="$out/outside.elf"
 expect unwritable 2 '/proc' -- "$fovea" run "$out/small.yaml" -o /proc/fovea_out
+if [ -e "$out/run.tmp" ]; then
+  echo "a run with wrong input left $out/run.tmp"
+  failures=$((failures + 1))
+fi
+expect empty_out 2 "output folder ''" -- "$fovea" run "$out/small.yaml" -o ''
 expect jump_nowhere 3 '0x70000000' 'prefetch abort' 'at 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/jump_nowhere.elf"
 expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/hello.elf" -s run.start_limit=60ms
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
+# Ports of masters that exist have keys, ports of the others have none.
+expect params_of_masters 0 'bus.arm_d.request_latency' 'bus.vpbe' 'bus.load' -- "$fovea" params 'bus.*'
+for absent in edma_tc0 edma_tc3 remap_engine; do
+  expect "params_$absent" 2 "no parameter matches 'bus.$absent'" -- "$fovea" params "bus.$absent"
+  expect "set_$absent" 2 "bus.$absent" -- run "$out/small.yaml" -s "bus.$absent.request_latency=2cycles"
+done
 
 # Ctrl-C: a valid partial result.
 "$fovea" run "$out/small.yaml" -s run.frames=100000 -o "$out/stopped" >/dev/null 2>&1 &
@@ -75,8 +86,9 @@ kill -INT "$pid"
 wait "$pid"
 status=$?
 if [ "$status" != 130 ] || ! grep -q '"complete": false' "$out/stopped/stats.json" ||
-  ! grep -q '"cpu.cycles"' "$out/stopped/stats.json"; then
-  echo "Ctrl-C: exit status $status, or no partial result"
+  ! grep -q '"cpu.cycles"' "$out/stopped/stats.json" ||
+  ! grep -qE '"frame.rate": \{"value": 25(\.0)?,' "$out/stopped/stats.json"; then
+  echo "Ctrl-C: exit status $status, or no partial result with the rate of its whole frames"
   failures=$((failures + 1))
 fi
 echo "$failures failures"

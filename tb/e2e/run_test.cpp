@@ -1,9 +1,11 @@
 // Figures of a run as `fovea run` reports them: conservation, arithmetic of the video streams.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <fstream>
 #include <systemc>
 
 #include "model/common/masters.h"
@@ -12,12 +14,20 @@
 namespace fovea::e2e {
 namespace {
 
-class Quiet : public app::ProgressSink {
-  void update(const app::Progress&) override {}
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+/// Asks for the end of the run as Ctrl-C does, but at a given simulated time.
+class StopAt : public app::ProgressSink {
+ public:
+  explicit StopAt(Picoseconds at) : at_(at) {}
+  void update(const app::Progress& p) override { stop = p.simulated >= at_; }
+  std::atomic<bool> stop{false};
+
+ private:
+  Picoseconds at_;
 };
 
-app::RunResult run(const std::vector<std::pair<std::string, std::string>>& keys,
-                   bool strict = false) {
+app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever) {
   static auto simulation = app::make_simulation();
   static ParamSet set;
   simulation->declare(set);
@@ -25,9 +35,8 @@ app::RunResult run(const std::vector<std::pair<std::string, std::string>>& keys,
   set.set("camera.stamp", "false");
   set.set("firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_firmware.elf");
   for (const auto& [key, value] : keys) set.set(key, value);
-  static std::atomic<bool> stop{false};
-  static Quiet progress;
-  app::RunRequest request{set, {}, strict, stop, progress, {}};
+  StopAt progress(stop_at);
+  app::RunRequest request{set, {}, strict, progress.stop, progress, {}};
   return simulation->run(request);
 }
 
@@ -83,6 +92,83 @@ TEST(RunTest, NtscWindowHasTheTelevisionRate) {
   expect_conservation(r);
   EXPECT_NEAR(real(r, "frame.rate"), 30000.0 / 1001, 1e-6);
   EXPECT_EQ(count(r, "bus.vpfe.write_bytes"), 160u * 48 * 2 * 10);
+}
+
+// A stopped run. Each of the two is a process of its own: a simulation elaborates once.
+
+/// What a run stopped at `stop_at` leaves in its files, from a child process.
+std::string stopped(const Keys& keys, bool strict, Picoseconds stop_at) {
+  int ends[2];
+  EXPECT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto r = run(keys, strict, stop_at);
+    const std::string text = app::stats_json(r.stats, r.complete, {}) + app::frames_csv(r.frames) +
+                             app::timeline_csv(r.timeline_masters, r.timeline) + r.uart;
+    for (std::size_t done = 0; done < text.size();) {
+      const auto n = ::write(ends[1], text.data() + done, text.size() - done);
+      if (n <= 0) ::_exit(1);
+      done += static_cast<std::size_t>(n);
+    }
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  std::string text;
+  char chunk[4096];
+  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;)
+    text.append(chunk, static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  return text;
+}
+
+class StoppedRunTest : public testing::TestWithParam<int> {};
+TEST_P(StoppedRunTest, StrictAndDefaultLeaveTheSame) {
+  const Picoseconds at = static_cast<Picoseconds>(GetParam()) * kPsPerMs;
+  // The synthetic master is under way at every instant.
+  const Keys keys{{"video.width", "320"},     {"video.height", "64"}, {"run.frames", "1000"},
+                  {"load.outstanding", "2"}, {"load.pattern", "random"},
+                  {"load.start", "395ms"}};
+  const std::string strict = stopped(keys, true, at), ahead = stopped(keys, false, at);
+  EXPECT_NE(strict.find("\"complete\": false"), std::string::npos);
+  EXPECT_NE(strict.find("\"bus.load.read_bytes\""), std::string::npos);
+  const auto differ = std::mismatch(strict.begin(), strict.end(), ahead.begin(), ahead.end());
+  const auto from = static_cast<std::size_t>(differ.first - strict.begin());
+  const std::size_t begin = from - std::min<std::size_t>(from, 60);
+  EXPECT_TRUE(strict == ahead) << "strict: ..." << strict.substr(begin, 120) << "\ndefault: ..."
+                               << ahead.substr(begin, 120);
+}
+// Frames are shown every 40 ms from about 0.35 s.
+INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 415));
+
+TEST(RunTest, StoppedRunHasTheRateOfItsWholeFrames) {
+  const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "1000"}}, false,
+                     510 * kPsPerMs);
+  ASSERT_FALSE(r.complete);
+  expect_conservation(r);
+  const std::uint64_t shown = count(r, "frame.displayed");
+  EXPECT_GE(shown, 2u);
+  // The window ends in the middle of a frame, so frames / window would be less than the rate.
+  const double frames = real(r, "frame.window") / 0.04;
+  EXPECT_GT(frames - static_cast<double>(shown), 0.05);
+  EXPECT_LT(frames - static_cast<double>(shown), 1.0);
+  EXPECT_DOUBLE_EQ(real(r, "frame.rate"), 25.0);
+}
+
+TEST(RunTest, StoppedRunWithoutAWholeFrameHasNoRate) {
+  const Keys keys{{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "1000"}};
+  const std::string before = stopped(keys, false, 600 * kPsPerMs);
+  const std::string name = "\"startup.first_frame\": {\"value\": ";
+  ASSERT_NE(before.find(name), std::string::npos);
+  const double start = std::stod(before.substr(before.find(name) + name.size()));
+  const auto r = run(keys, false, static_cast<Picoseconds>(start * 1e12));
+  ASSERT_FALSE(r.complete);
+  EXPECT_GT(real(r, "frame.window"), 0.0);
+  EXPECT_LT(real(r, "frame.window"), 0.04);
+  EXPECT_EQ(count(r, "frame.displayed"), 0u);
+  EXPECT_EQ(app::find(r.stats, "frame.rate"), nullptr);
 }
 
 }  // namespace

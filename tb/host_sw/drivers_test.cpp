@@ -186,6 +186,18 @@ TEST(IntcTest, EnableSetsPriorityDropsOldEdgesAndOpensTheSource) {
                                          A{'w', 0x01C48018, 0x100}));
 }
 
+TEST(IntcTest, SourcesAbove31UseTheSecondRegisters) {
+  RegisterRecorder chip;
+  chip.values[0x01C48040] = 0x77777777;  // INTPRI4: sources 32 to 39
+  intc_enable(33, 7);
+  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', 0x01C48040, 0x77777777}, A{'w', 0x01C4800C, 2},
+                                         A{'w', 0x01C4801C, 2}));
+  chip.accesses.clear();
+  chip.values[0x01C4801C] = 0x12;
+  intc_disable(33);
+  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', 0x01C4801C, 0x10}, A{'w', 0x01C4800C, 2}));
+}
+
 TEST(IntcTest, EntryIsDecodedToASourceNumber) {
   RegisterRecorder chip;
   chip.values[0x01C48014] = (8 + 1) * 4;
@@ -202,6 +214,16 @@ TEST(TimerTest, Timer0CountsFreelyIn32Bits) {
   EXPECT_EQ(chip.values[0x01C21418], 0xFFFFFFFFu);
   EXPECT_EQ(chip.values[0x01C21420], 0x80u);  // TIM12 continuous
   EXPECT_EQ(chip.values[0x01C21424], 0x05u);  // two timers, unchained; TIM12 out of reset
+}
+
+TEST(TimerTest, TheAlarmIsTim34OnceAndLeavesTim12Running) {
+  RegisterRecorder chip;
+  timer_start();
+  chip.accesses.clear();
+  timer_alarm(240'000);
+  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', 0x01C21420, 0x80}, A{'w', 0x01C21414, 0},
+                                         A{'w', 0x01C2141C, 240'000}, A{'w', 0x01C21424, 0x07},
+                                         A{'w', 0x01C21420, 0x00400080}));
 }
 
 TEST(UartTest, DivisorFormatAndText) {
@@ -289,6 +311,62 @@ TEST(Tvp5146Test, AnAbsentDecoderIsReported) {
   std::uint32_t id = 0;
   EXPECT_EQ(tvp5146_start(0, &id), I2C_NACK);
   EXPECT_THAT(bus.sent, IsEmpty());
+}
+
+// Status 1 at 0x3A: bit 1 horizontal lock, bit 2 vertical lock (fisheye-video.md 3.5). Every pause
+// takes 10 ms of the 24 MHz timer at 0x01C21410.
+class LockTest : public testing::Test {
+ protected:
+  LockTest() : bus_(chip_, true) {
+    bus_.reads.clear();
+    pauses() = 0;
+    auto i2c = chip_.on_read;
+    chip_.on_read = [i2c](std::uint32_t address) -> std::uint32_t {
+      return address == 0x01C21410 ? 0xFFFFFF00u + pauses() * 240'000u : i2c(address);
+    };
+  }
+  i2c_result_t wait(std::uint32_t timeout_ms) {
+    return tvp5146_wait_lock(timeout_ms * 24'000u, [] { ++pauses(); });
+  }
+  static unsigned& pauses() {
+    static unsigned count;
+    return count;
+  }
+  RegisterRecorder chip_;
+  FakeI2c bus_;
+};
+
+TEST_F(LockTest, ALockedDecoderCostsOneLook) {
+  bus_.reads = {0x0E};
+  EXPECT_EQ(wait(1000), I2C_OK);
+  EXPECT_EQ(pauses(), 0u);
+  EXPECT_EQ(bus_.device, 0x5Du);
+  EXPECT_THAT(bus_.sent, ElementsAre(0x3A));
+}
+
+TEST_F(LockTest, BothSyncsMustBeLocked) {
+  bus_.reads = {0x00, 0x02, 0x04, 0xF9, 0x06};
+  EXPECT_EQ(wait(1000), I2C_OK);
+  EXPECT_EQ(pauses(), 4u);
+  EXPECT_THAT(bus_.sent, ElementsAre(0x3A, 0x3A, 0x3A, 0x3A, 0x3A));
+}
+
+TEST_F(LockTest, ADecoderThatNeverLocksEndsTheWaitAtItsTime) {
+  bus_.reads.assign(200, 0x80);
+  EXPECT_EQ(wait(1000), I2C_TIMEOUT);
+  EXPECT_EQ(pauses(), 100u);  // the timer wraps on the way
+}
+
+TEST_F(LockTest, LockAtTheLastLookCounts) {
+  bus_.reads.assign(100, 0);
+  bus_.reads.push_back(0x06);
+  EXPECT_EQ(wait(1000), I2C_OK);
+}
+
+TEST(Tvp5146Test, AnAbsentDecoderIsNotWaitedFor) {
+  RegisterRecorder chip;
+  FakeI2c bus(chip, false);
+  EXPECT_EQ(tvp5146_wait_lock(24'000'000, [] { FAIL() << "a pause"; }), I2C_NACK);
 }
 
 TEST(I2cTest, ADeadBusTimesOut) {

@@ -4,12 +4,24 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
 
 namespace fovea::cpu::test {
+
+TempFolder::TempFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "fovea_iss_XXXXXX").string();
+  if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder: " + name);
+  path_ = name;
+}
+
+TempFolder::~TempFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
 
 std::string output_of(const std::string& command) {
   std::FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
@@ -28,32 +40,25 @@ std::vector<std::uint8_t> read_file(const std::string& path) {
 }
 
 Program assemble(const std::string& text, std::uint32_t base) {
-  char folder[] = "/tmp/fovea_iss_XXXXXX";
-  if (!::mkdtemp(folder)) throw std::runtime_error("no temporary folder");
-  const std::string stem = std::string(folder) + "/p";
+  const TempFolder folder;
+  const std::string source = folder.quoted("p.s"), object = folder.quoted("p.o"),
+                    elf = folder.quoted("p.elf"), binary = folder.quoted("p.bin");
   {
-    std::ofstream s(stem + ".s");
+    std::ofstream s(folder.path() / "p.s");
     s << ".syntax unified\n.arm\n.global _start\n_start:\n" << text << "\n";
   }
   std::ostringstream at;
   at << "0x" << std::hex << base;
   Program out;
   out.base = base;
-  try {
-    output_of(ARM_PREFIX "as -mcpu=arm926ej-s -o " + stem + ".o " + stem + ".s");
-    output_of(ARM_PREFIX "ld -Ttext=" + at.str() + " -o " + stem + ".elf " + stem + ".o");
-    output_of(ARM_PREFIX "objcopy -O binary " + stem + ".elf " + stem + ".bin");
-    std::istringstream names(output_of(ARM_PREFIX "nm " + stem + ".elf"));
-    std::string value, kind, name;
-    while (names >> value >> kind >> name)
-      out.symbols[name] = static_cast<std::uint32_t>(std::stoul(value, nullptr, 16));
-    out.bytes = read_file(stem + ".bin");
-  } catch (...) {
-    std::system(("rm -rf " + std::string(folder)).c_str());
-    throw;
-  }
-  if (std::system(("rm -rf " + std::string(folder)).c_str()) != 0)
-    throw std::runtime_error("cannot remove the temporary folder");
+  output_of(ARM_PREFIX "as -mcpu=arm926ej-s -o " + object + " " + source);
+  output_of(ARM_PREFIX "ld -Ttext=" + at.str() + " -o " + elf + " " + object);
+  output_of(ARM_PREFIX "objcopy -O binary " + elf + " " + binary);
+  std::istringstream names(output_of(ARM_PREFIX "nm " + elf));
+  std::string value, kind, name;
+  while (names >> value >> kind >> name)
+    out.symbols[name] = static_cast<std::uint32_t>(std::stoul(value, nullptr, 16));
+  out.bytes = read_file(folder.path() / "p.bin");
   return out;
 }
 

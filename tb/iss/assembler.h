@@ -1,6 +1,7 @@
 // Turns a piece of assembly text into words, by the cross assembler of the build.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,6 +12,23 @@ struct Program {
   std::vector<std::uint8_t> bytes;
   std::map<std::string, std::uint32_t> symbols;
   std::uint32_t base = 0;
+};
+
+/// A folder of its own below TMPDIR, removed at the end.
+class TempFolder {
+ public:
+  TempFolder();
+  ~TempFolder();
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  /// A file in it as a word of a shell command; TMPDIR may hold spaces.
+  std::string quoted(const std::string& name) const {
+    return "'" + (path_ / name).string() + "'";
+  }
+
+ private:
+  std::filesystem::path path_;
 };
 
 /// Assembles for ARMv5TE at `base`. @throws std::runtime_error with the assembler's words

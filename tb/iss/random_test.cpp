@@ -1,7 +1,6 @@
 // Random sequences of instructions leave the same registers, flags and memory here and under qemu.
-#include <unistd.h>
-
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -14,25 +13,16 @@ namespace fovea::cpu::test {
 namespace {
 
 std::string by_qemu(const RandomProgram& p) {
-  char path[] = "/tmp/fovea_random_XXXXXX";
-  const int fd = ::mkstemp(path);
-  if (fd < 0) throw std::runtime_error("no temporary file");
-  ::close(fd);
+  const TempFolder folder;
+  const auto path = folder.path() / "p.elf";
   {
     const auto elf = as_elf(p.image, kMemory);
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(elf.data()), static_cast<std::streamsize>(elf.size()));
   }
-  if (::system((std::string("chmod +x ") + path).c_str()) != 0) throw std::runtime_error("chmod");
-  std::string out;
-  try {
-    out = output_of(std::string(QEMU_ARM " -cpu arm926 ") + path);
-  } catch (...) {
-    std::remove(path);
-    throw;
-  }
-  std::remove(path);
-  return out;
+  std::filesystem::permissions(path, std::filesystem::perms::owner_exec,
+                               std::filesystem::perm_options::add);
+  return output_of(QEMU_ARM " -cpu arm926 " + folder.quoted("p.elf"));
 }
 
 struct Here {

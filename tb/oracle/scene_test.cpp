@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "model/common/check.h"
+#include "model/video/scene/ahead.h"
 #include "model/video/scene/scene_params.h"
 
 namespace fovea::video {
@@ -313,6 +314,38 @@ TEST(SceneParamsTest, ComplainsOfWhatCannotBe) {
   EXPECT_THROW(make_picture_source(params, {gradient(64, 48)}, 720, 576), UserError);
   EXPECT_THROW(params.kb.set("[1, 2, 3]"), UserError);
   EXPECT_THROW(params.motion_amplitude.set("3"), UserError);
+}
+
+TEST(AheadSourceTest, GivesTheSamePicturesInAnyOrder) {
+  ChartSource direct({64, 48, true}), drawn({64, 48, true});
+  AheadSource ahead(drawn);
+  for (const std::uint64_t k : {0, 1, 2, 3, 7, 8, 4, 4, 5, 0}) {
+    const Picture& shown = ahead.field(k);
+    EXPECT_EQ(shown, direct.field(k)) << k;
+  }
+  EXPECT_EQ(ahead.width(), 64u);
+  EXPECT_EQ(ahead.height(), 48u);
+}
+
+struct FailingSource : PictureSource {
+  Picture picture{4, 2};
+  unsigned width() const override { return 4; }
+  unsigned height() const override { return 2; }
+  const Picture& field(std::uint64_t k) override {
+    if (k == 2) throw UserError("field 2 cannot be drawn");
+    return picture;
+  }
+};
+
+TEST(AheadSourceTest, ErrorComesWithTheFieldThatIsWanted) {
+  FailingSource failing;
+  AheadSource ahead(failing);
+  EXPECT_NO_THROW(ahead.field(0));
+  EXPECT_NO_THROW(ahead.field(1));  // draws 2 meanwhile
+  EXPECT_THROW(ahead.field(2), UserError);
+  EXPECT_NO_THROW(ahead.field(3));
+  EXPECT_NO_THROW(ahead.field(1));
+  EXPECT_NO_THROW(ahead.field(4)) << "field 2 was never asked for";
 }
 
 /// Not a test of the clock: prints what a picture costs, fails only when it is absurd.

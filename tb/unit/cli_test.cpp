@@ -119,6 +119,8 @@ TEST_F(CliTest, WrongInputIsOneLineAndStatusTwo) {
   expect(cli({"fly"}), "'fly'");
   expect(run({"-s", "run.list=[1, x]"}), "2 plain numbers");
   expect(run({"-s", "run.mode=user_error"}), "footage 'x'");
+  expect(cli({"run", experiment, "-o", ""}), "output folder ''");
+  expect(cli({"run", experiment, "--out="}), "--out");
   dir.write("file", "");
   expect(cli({"run", experiment, "-o", (dir / "file/r").string()}), "file/r");
 }
@@ -127,6 +129,15 @@ TEST_F(CliTest, BadInputLeavesAnOlderResultAlone) {
   ASSERT_EQ(run(), 0);
   EXPECT_EQ(run({"-s", "run.mode=user_error"}), 2);
   EXPECT_EQ(stats()["complete"], true);
+}
+
+TEST_F(CliTest, ARunWithoutAResultLeavesNoFolder) {
+  for (const auto& [mode, status] : std::vector<std::pair<std::string, int>>{
+           {"user_error", 2}, {"guest_failure", 3}, {"defect", 4}}) {
+    EXPECT_EQ(run({"-s", "run.mode=" + mode}), status);
+    EXPECT_FALSE(fs::exists(result)) << mode;
+    EXPECT_FALSE(fs::exists(dir / "r.tmp")) << mode;
+  }
 }
 
 TEST_F(CliTest, GuestFailureIsStatusThreeAndADefectFour) {
@@ -236,7 +247,16 @@ TEST_F(ProgramTest, FullDiskIsOneLineAndStatusTwo) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, AllOf(HasSubstr("config.json"), HasSubstr("File too large")));
   EXPECT_FALSE(fs::exists(dir / "r"));
-  EXPECT_TRUE(fs::exists(dir / "r.tmp"));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+}
+
+TEST_F(ProgramTest, ABrokenInvariantIsStatusFourAndLeavesNoFolder) {
+  const auto ended =
+      start({"run", experiment, "-s", "run.mode=broken_check", "-o", (dir / "r").string()});
+  EXPECT_EQ(ended.status, 4);
+  EXPECT_THAT(ended.err, HasSubstr("own defect: planted"));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+  EXPECT_FALSE(fs::exists(dir / "r"));
 }
 
 TEST_F(ProgramTest, StatusOfWrongInputReachesTheShell) {

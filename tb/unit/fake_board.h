@@ -17,6 +17,7 @@ class FakeBoard : public app::Simulation {
   app::RunResult run(const app::RunRequest& request) override {
     if (params_.mode.is("guest_failure")) throw GuestFailure("PC 0x0 in nowhere");
     if (params_.mode.is("defect")) throw std::logic_error("broken");
+    if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
     if (params_.mode.is("user_error")) throw UserError("footage 'x' is missing");
     if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
     app::RunResult result;
@@ -54,7 +55,8 @@ class FakeBoard : public app::Simulation {
         *this,
         "mode",
         "good",
-        {"good", "slow", "guest_failure", "late_failure", "defect", "user_error", "not_modelled"},
+        {"good", "slow", "guest_failure", "late_failure", "defect", "broken_check", "user_error",
+         "not_modelled"},
         "how it ends | or not",
         Origin::kAssumed,
         ""};

@@ -31,7 +31,7 @@ TEST(RunDirTest, FilesAppearUnderTheNameOnlyWhenComplete) {
   EXPECT_EQ(run.folder(), fs::canonical(dir / "r"));
 }
 
-TEST(RunDirTest, AbandonedRunKeepsTmpAndTheOldResult) {
+TEST(RunDirTest, AbandonedRunLeavesNothingButTheOldResult) {
   TempDir dir;
   dir.write("r/config.json", kConfig);
   dir.write("r/old", "1");
@@ -40,6 +40,14 @@ TEST(RunDirTest, AbandonedRunKeepsTmpAndTheOldResult) {
     run.write("new", "2");
   }
   EXPECT_EQ(read_text(dir / "r/old"), "1");
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+}
+
+TEST(RunDirTest, TmpOfARefusedRunIsRemovedOnlyByTheRunThatHasIt) {
+  TempDir dir;
+  RunDir first(dir / "r");
+  first.write("new", "2");
+  EXPECT_THAT(user_error([&] { RunDir second(dir / "r"); }), HasSubstr("another run"));
   EXPECT_EQ(read_text(dir / "r.tmp/new"), "2");
 }
 
@@ -83,10 +91,14 @@ TEST(RunDirTest, ForeignFoldersAndFilesAreRefusedUntouched) {
 
 TEST(RunDirTest, FolderThatBecameForeignDuringTheRunIsNotReplaced) {
   TempDir dir;
-  RunDir run(dir / "r");
-  dir.write("r/letter.txt", "dear");
-  EXPECT_THAT(user_error([&] { run.commit(); }), HasSubstr("r.tmp"));
+  {
+    RunDir run(dir / "r");
+    run.write("new", "2");
+    dir.write("r/letter.txt", "dear");
+    EXPECT_THAT(user_error([&] { run.commit(); }), HasSubstr("r.tmp"));
+  }
   EXPECT_EQ(read_text(dir / "r/letter.txt"), "dear");
+  EXPECT_EQ(read_text(dir / "r.tmp/new"), "2");  // the message says that the results are here
 }
 
 TEST(RunDirTest, TwoRunsIntoOneFolderAtATimeAreRefused) {

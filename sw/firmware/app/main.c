@@ -37,6 +37,7 @@ static void build_lut(void) {
   const uint32_t start = timer_ticks();
   lens_build_lut(&lens, lut, config.pitch_bytes);
   fw_state.lut_time_ticks = timer_ticks() - start;
+  phase_mark(PHASE_IDLE, 0);
   fw_state.lut_entries = lens_lut_entries(config.width, config.height);
   uart_puts("LUT: ");
   uart_put_uint(fw_state.lut_entries);

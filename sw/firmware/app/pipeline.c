@@ -17,6 +17,14 @@
 /* Time kept free before a field's start when the main loop moves the display by itself. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
 
+/* Public drivers allow the decoder up to five times 200 ms to lock. */
+#define LOCK_TIMEOUT_TICKS (1000u * TIMER_TICKS_PER_MS)
+#define LOCK_POLL_TICKS (10u * TIMER_TICKS_PER_MS)
+
+/* How long before the end of a camera's frame the display's frames begin. In the serial flow the
+ * result of one frame is then on show when the capture of the next may start. */
+#define DISPLAY_LEAD_TICKS TIMER_TICKS_PER_MS
+
 /* Everything here belongs to the interrupt handler; the main loop touches it with IRQ masked. */
 static struct {
   capture_t capture;
@@ -144,6 +152,35 @@ void pipeline_prepare(const config_t *config) {
   }
 }
 
+/* Sleeps until an enabled source is pending, at most `ticks`. Interrupts are masked in the core.
+ * @return what was pending, IRQ_TINT0_34 if nothing else came. */
+static uint32_t sleep_at_most(uint32_t ticks) {
+  intc_enable(IRQ_TINT0_34, 7);
+  timer_alarm(ticks);
+  wait_for_interrupt();
+  const uint32_t source = intc_pending();
+  intc_disable(IRQ_TINT0_34);
+  return source;
+}
+
+static void sleep_between_looks(void) { (void)sleep_at_most(LOCK_POLL_TICKS); }
+
+/* Returns DISPLAY_LEAD_TICKS before the end of a camera's frame, or soon if there are no syncs.
+ * A display started now has its second field, in which it may be pointed at a new frame, while the
+ * remap of a frame ends: as far as can be from the moment at which a late result would be shown a
+ * frame later, and with the shortest way from camera to display. */
+static void wait_for_frame_end(void) {
+  isif_watch();
+  intc_enable(IRQ_VPSSINT0, 2);
+  while (sleep_at_most(2u * pipe.field_ticks) == IRQ_VPSSINT0) {
+    intc_acknowledge(IRQ_VPSSINT0);
+    if (!isif_second_field()) {
+      (void)sleep_at_most(pipe.field_ticks - DISPLAY_LEAD_TICKS);
+      return;
+    }
+  }
+}
+
 void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count) {
   pipe.pitch_bytes = config->pitch_bytes;
   pipe.serial = config->serial;
@@ -159,12 +196,13 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
                                 config->pitch_bytes};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
+  if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
+    uart_puts("decoder: no lock, going on\n");
+  wait_for_frame_end();
   if (display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 
   pipe.capture_wanted = 1;
-  intc_enable(IRQ_VPSSINT0, 2);
   intc_enable(IRQ_VPSSINT8, 3);
-  isif_watch();
   irq_unmask();
 }
 

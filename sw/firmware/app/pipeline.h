@@ -10,8 +10,10 @@
  * answer is reported and otherwise ignored. Early, since the decoder needs time to lock. */
 void pipeline_prepare(const config_t *config);
 
-/** Starts display, capture and interrupts. `out_count` 0: captured frames are shown as they are,
- * from `in_count` (at least 5) buffers. Stops the program if a driver refuses. */
+/** Waits for the decoder's lock (at most a second; a failure is reported and otherwise ignored), so
+ * that black frames before it are not captured. Then starts the display in step with the camera,
+ * capture and interrupts. `out_count` 0: captured frames are shown as they are, from `in_count` (at
+ * least 5) buffers. Stops the program if a driver refuses. */
 void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count);
 
 /** Next frame and a buffer for its result, or 0. Call with interrupts masked. */

@@ -1,4 +1,5 @@
-/* TIMER0 counting up at 24 MHz (AUXCLK), 32 bit, wraps after 179 s. */
+/* TIMER0 at 24 MHz (AUXCLK): TIM12 counts up freely, 32 bit, wraps after 179 s; TIM34 is an
+ * alarm. */
 #ifndef FOVEA_FIRMWARE_TIMER_H
 #define FOVEA_FIRMWARE_TIMER_H
 
@@ -8,5 +9,8 @@
 
 void timer_start(void);
 uint32_t timer_ticks(void);
+
+/** Raises the interrupt of TIM34 once, `ticks` (not 0) from now. */
+void timer_alarm(uint32_t ticks);
 
 #endif

@@ -10,4 +10,10 @@
  * `id`: the two identification bytes, 0x5146 for this chip. */
 __attribute__((warn_unused_result)) i2c_result_t tvp5146_start(int is_625, uint32_t *id);
 
+/** Polls until the decoder follows the camera's line and field syncs; until then it sends black.
+ * Looks at least once; `pause` is called between two looks.
+ * @return I2C_TIMEOUT: no lock within `timeout_ticks` (24 MHz), or the bus hangs. */
+__attribute__((warn_unused_result)) i2c_result_t tvp5146_wait_lock(uint32_t timeout_ticks,
+                                                                   void (*pause)(void));
+
 #endif
