@@ -317,14 +317,14 @@ TEST(SceneParamsTest, ComplainsOfWhatCannotBe) {
 }
 
 TEST(AheadSourceTest, GivesTheSamePicturesInAnyOrder) {
-  ChartSource direct({64, 48, true}), drawn({64, 48, true});
+  ChartSource direct({320, 240, true}), drawn({320, 240, true});
   AheadSource ahead(drawn);
   for (const std::uint64_t k : {0, 1, 2, 3, 7, 8, 4, 4, 5, 0}) {
     const Picture& shown = ahead.field(k);
-    EXPECT_EQ(shown, direct.field(k)) << k;
+    EXPECT_TRUE(shown == direct.field(k)) << k;
   }
-  EXPECT_EQ(ahead.width(), 64u);
-  EXPECT_EQ(ahead.height(), 48u);
+  EXPECT_EQ(ahead.width(), 320u);
+  EXPECT_EQ(ahead.height(), 240u);
 }
 
 struct FailingSource : PictureSource {
