@@ -52,6 +52,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     const Picoseconds now = running_ ? now_ : kernel_();
     // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
     if (at > now && (strict_ || at >= next_event())) sleep_until(at);
+    FOVEA_CHECK(at >= now, "a request in the past");
     tx.done = tx.error = false;
     tx.issued = at;
     ++own_undecided_;

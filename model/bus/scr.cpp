@@ -48,7 +48,7 @@ void Scr::step() {
     ddr_->step();
 }
 
-void Scr::step_before(Picoseconds limit) {
+[[gnu::flatten]] void Scr::step_before(Picoseconds limit) {
   const std::uint64_t epoch = horizon_epoch, responses = responses_;
   do {
     step();
@@ -110,7 +110,7 @@ void Scr::inputs_changed() {
   if (!held_) arm();
 }
 
-void Scr::request(MemRequest& r) {
+[[gnu::flatten]] void Scr::request(MemRequest& r) {
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
   undecided_ += !r.passive;
   crossbar_.submit(r, r.address >= map_.ddr_base ? Slave::kDdr : Slave::kConfig);

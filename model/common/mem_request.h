@@ -21,6 +21,7 @@ struct MemRequest {
   Picoseconds issued = 0;          ///< when the master puts it on its port
   Master master = Master::kArmD;
   bool write = false;
+  bool locked = false;             ///< nobody else reaches the slave before this master's next request
   std::uint8_t bytes = 0;          ///< 1 .. kMaxBurstBytes
   /// The outcome makes nobody but the memory path act: whoever runs ahead need not stop where it is
   /// decided.

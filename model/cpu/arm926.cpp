@@ -52,12 +52,13 @@ Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
   return asserted_;
 }
 
-void Arm926::submit(BusAccess& a, Picoseconds at) {
+[[gnu::flatten]] void Arm926::submit(BusAccess& a, Picoseconds at) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   Transaction& tx = tx_[port];
   access_[port] = &a;
   a.done = a.error = false;
   tx.write = a.write;
+  tx.locked = a.locked;
   tx.critical = a.kind == BusAccess::Kind::kWrap8 ? a.address & 31u : 0;
   tx.address = a.address - tx.critical;
   tx.data = a.data;
@@ -73,12 +74,12 @@ void Arm926::completed(Transaction& tx) {
   a.done = true;
 }
 
-bool Arm926::poll(BusAccess& a, Picoseconds until) {
+[[gnu::flatten]] bool Arm926::poll(BusAccess& a, Picoseconds until) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   return Agent::poll(tx_[port], until) && a.done && a.last <= until;
 }
 
-void Arm926::finish(BusAccess& a) {
+[[gnu::flatten]] void Arm926::finish(BusAccess& a) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   Agent::finish(tx_[port]);
 }

@@ -35,13 +35,14 @@ class XbarBench : private bus::XbarHost {
   }
   /// On the port's wires at edge `edge`: the crossbar's next edge is the first to see it.
   void submit(Master m, std::uint64_t edge, bool write = false, unsigned bytes = 8,
-              Slave slave = Slave::kDdr) {
+              Slave slave = Slave::kDdr, bool locked = false) {
     requests_.push_back(std::make_unique<MemRequest>());
     MemRequest& r = *requests_.back();
     r.master = m;
     r.write = write;
     r.bytes = static_cast<std::uint8_t>(bytes);
     r.issued = edge * kEdge;
+    r.locked = locked;
     xbar.submit(r, slave);
   }
   void run(std::uint64_t until = ~std::uint64_t{0} / kEdge) {
@@ -239,6 +240,22 @@ TEST(CrossbarTest, RefusedRequestIsAnsweredOnceWithAnError) {
     b.run();
     ASSERT_EQ(b.events.size(), 2u) << "the slave is not blocked";
     EXPECT_EQ(b.events[1].granted, 23u);
+  }
+}
+
+TEST(CrossbarTest, LockedReadKeepsTheSlaveUntilItsMastersNextRequest) {
+  for (const bool locked : {false, true}) {
+    XbarBench b;
+    b.submit(kA, 5, false, 4, Slave::kDdr, locked);
+    b.submit(kB, 5);
+    b.submit(kC, 5, false, 4, Slave::kConfig);
+    b.run();
+    EXPECT_EQ(b.winners(), locked ? "AC" : "ACB") << "the lock is the slave's own";
+    b.submit(kA, 40, true, 4, Slave::kDdr, locked);
+    b.submit(kA, 41);
+    b.run();
+    EXPECT_EQ(b.winners(), locked ? "ACABA" : "ACBAA");
+    if (locked) EXPECT_EQ(b.events[3].granted, b.events[2].arrival) << "as soon as it is free";
   }
 }
 

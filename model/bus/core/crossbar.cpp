@@ -47,7 +47,7 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   const std::uint32_t others = waiting_;
   waiting_ |= 1u << index(request.master);
   const SlaveState& s = slave_of(request);
-  if (s.blocked) return;
+  if (barred(s, static_cast<unsigned>(index(request.master)))) return;
   // An arbitration planned for an earlier edge stands; at an equal one the winner may change.
   const std::uint64_t edge = std::max(item.visible, s.free);
   if (next_ != kNever && edge > next_edge_) return;
@@ -67,16 +67,17 @@ void Crossbar::plan() {
     const auto m = static_cast<unsigned>(std::countr_zero(waiting_));
     const Port::Item& item = ports_[m].front();
     const SlaveState& s = slave_of(*item.request);
-    if (s.blocked) return;
+    if (barred(s, m)) return;
     next_edge_ = std::max(item.visible, s.free);
     next_port_ = static_cast<std::uint8_t>(m);
     next_ = scr_.edge(next_edge_);
     return;
   }
   for (std::uint32_t set = waiting_; set; set &= set - 1) {
-    const Port::Item& item = ports_[static_cast<unsigned>(std::countr_zero(set))].front();
+    const auto m = static_cast<unsigned>(std::countr_zero(set));
+    const Port::Item& item = ports_[m].front();
     const SlaveState& s = slave_of(*item.request);
-    if (!s.blocked) edge = std::min(edge, std::max(item.visible, s.free));
+    if (!barred(s, m)) edge = std::min(edge, std::max(item.visible, s.free));
   }
   if (edge == ~std::uint64_t{0}) return;
   int best = -1;
@@ -85,7 +86,7 @@ void Crossbar::plan() {
     const auto m = static_cast<unsigned>(std::countr_zero(set));
     const Port& p = ports_[m];
     const SlaveState& s = slave_of(*p.front().request);
-    if (s.blocked || std::max(p.front().visible, s.free) > edge) continue;
+    if (barred(s, m) || std::max(p.front().visible, s.free) > edge) continue;
     const unsigned turn = (m + kMasterCount - s.last - 1) % kMasterCount;
     const unsigned rank = p.priority * 64u + turn;
     if (best < 0 || rank < best_rank) {
@@ -96,6 +97,13 @@ void Crossbar::plan() {
   next_edge_ = edge;
   next_port_ = static_cast<std::uint8_t>(best);
   next_ = scr_.edge(edge);
+}
+
+/// A locked request keeps the slave for its master until that one's next request is granted (the
+/// read and the write of an SWP).
+void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
+  const bool second = s.open_to != ~0u;
+  s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
@@ -114,6 +122,10 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
   request.last =
       last == first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
   request.error = error;
+  if (error && request.locked) {  // its master gives up
+    slaves_[request.slave].open_to = ~0u;
+    plan();
+  }
   host_.respond(request);
 }
 

@@ -93,10 +93,15 @@ class Crossbar {
     std::uint64_t free = 0;      // first edge at which its command lane is free
     bool blocked = false;        // a request waits at its door
     std::uint8_t last = 0;       // round robin: last master granted
+    std::uint32_t open_to = ~0u; // masters it serves: all, or the one that locked it
   };
 
   void plan();
+  void set_lock(SlaveState& s, const MemRequest& r);
   const SlaveState& slave_of(const MemRequest& r) const { return slaves_[r.slave]; }
+  bool barred(const SlaveState& s, unsigned master) const {
+    return s.blocked || !(s.open_to >> master & 1u);
+  }
   template <class Host>
   void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
     request.first = request.last =
@@ -148,6 +153,7 @@ void Crossbar::step(Host& host) {
   const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
   s.free = next_edge_ + cycles;
   s.last = next_port_;
+  if (r.locked || s.open_to != ~0u) [[unlikely]] set_lock(s, r);
   count(r);
 
   const std::uint64_t arrival = next_edge_ + cycles;

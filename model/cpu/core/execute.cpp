@@ -419,6 +419,10 @@ void Core::swap(const Instruction& i) {
   const unsigned bytes = i.op == Op::kSwpb ? 1 : 4;
   const std::uint32_t address = r_[i.rn], out = r_[i.rm];
   std::uint32_t value = 0;
+  // What its write may not do stops it before the read locks the bus.
+  const std::uint32_t mva = modified(address) & ~(bytes - 1u);
+  const bool aligned = !(control_ & 2u) || !(address & (bytes - 1u));
+  if (aligned && !in_tcm(mva) && !translate(mva, true, false, false)) return data_abort();
   swapping_ = true;
   const bool ok = load(address, bytes, value) == Result::kOk &&
                   store(address, bytes, out) == Result::kOk;
