@@ -59,6 +59,7 @@ class Clock {
   Picoseconds periods(std::uint64_t n) const { return scale(n, ps_, edges_, edges_reciprocal_, 0); }
 
  private:
+  friend class EdgeCursor;
   /// (n * mul + add) / div, exactly; reciprocal is (2^64 - 1) / div. A division instruction here
   /// took half of the memory path's host time; the product with the reciprocal is at most 2 short.
   [[gnu::always_inline]] std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
