@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "model/common/clock.h"
+#include "model/common/edge_cursor.h"
 #include "model/common/masters.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_params.h"
@@ -52,18 +53,20 @@ class DdrController {
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at);
   /// New timing from the registers; takes effect for commands after the call's time.
   void configure(const DdrConfig& config, Picoseconds at);
-  bool running() const { return ddr_.running() && scr_.running(); }
+  bool running() const { return running_; }
 
-  /// Catches up the refreshes done while nothing was queued, up to `at`. They change nothing that a
-  /// master can see before its next request; whoever reads the statistics calls this first.
+  /// Catches up to `at` what needs no decision: refreshes while nothing is queued, and the columns
+  /// inside a burst. They change nothing that a master can see before the next decision or request;
+  /// whoever reads the statistics calls this first.
   void catch_up(Picoseconds at);
 
   /// A request arrives at time `at`; true: taken at once. False: it waits at the door until
   /// ddr_accepted; the caller sends no other one before.
   bool submit(const DdrRequest& request, Picoseconds at);
 
-  /// Time of the next DRAM command, kNever if nothing is queued. Depends only on arrivals strictly
-  /// before it.
+  /// Time of the next decision, kNever if nothing is queued: a DRAM command, but of a burst's
+  /// columns only the first and the last, as nothing can come between. Depends only on arrivals
+  /// strictly before it.
   Picoseconds next_decision() const { return next_; }
   const Picoseconds* next_decision_place() const { return &next_; }
   void step();
@@ -83,46 +86,72 @@ class DdrController {
  private:
   static constexpr std::size_t kMaxEntries = 16;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  struct Entry {
+  /// A command's rank among others, low first: kind, row not open, priority, age, slot.
+  using Rank = std::uint64_t;
+  static constexpr unsigned kKindBit = 62, kMissBit = 61, kPriorityBit = 53, kAgeBit = 4;
+  static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
+  static constexpr Rank kNoRank = ~Rank{0};
+  struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
+    Rank rank = 0;            // while its row is open and there is room for its data
     std::uint32_t row = 0;
     std::uint8_t bank = 0;
-    std::uint8_t chunks = 0, issued = 0;  // column commands: needed, given
+    std::uint8_t chunks = 0;  // column commands it needs
     bool classified = false;
     std::array<std::uint8_t, 64> data;
   };
+  /// PREA and REF are refresh's; the others belong to a request.
   struct Choice {
-    int slot = -1;  // kRefresh: not for a request
-    Cmd cmd = Cmd::kAct;
+    Entry* entry = nullptr;
     std::uint64_t at = 0;
+    Cmd cmd = Cmd::kAct;
   };
-  static constexpr int kRefresh = -2;
 
+  [[noreturn]] void refuse(const DdrRequest& request) const;
+  void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
+  void join_queue();
   void take(const DdrRequest& request, std::uint64_t arrived);
   void plan();
-  Choice choose(std::uint64_t edge, std::size_t ready) const;
-  Choice choose_refresh(std::uint64_t edge) const;
+  void plan_anew();
+  void plan_one(Entry& e);
+  void plan_many();
+  void choose(std::uint64_t edge, std::size_t ready);
+  void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const;
+  void force_refresh();
+  void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
-  bool passes_older(std::size_t i) const;
+  bool passes_older(const Entry& e) const;
   void refresh_while_idle(std::uint64_t until);
   void count_owed(std::uint64_t clock);
-  void issue(Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock);
+  template <Cmd kCmd>
+  void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
   void issue_refresh(std::uint64_t clock);
-  void column(std::size_t slot, std::uint64_t clock);
-  void finish(std::size_t slot, std::uint64_t clock);
+  template <Cmd kCmd>
+  void first_column();
+  template <Cmd kCmd>
+  void last_column();
+  void columns_before(std::uint64_t until);
+  void finish(std::uint64_t clock);
+  void leave_queue(const Entry& e);
+  void open_door(std::uint64_t clock);
   void answer_read(const Entry& e, std::uint64_t clock);
 
-  const DdrParams& params_;
   BackingStore& store_;
   DdrClient& client_;
   Clock ddr_, scr_;
+  EdgeCursor ddr_edges_, scr_edges_;  // of these clocks
+  bool running_ = false;
+  bool shut_ = true;  // stopped, or the door taken: no request may come
   DdrDevice device_;
   DdrConfig config_;
+  // The address map in effect.
+  std::uint64_t size_;
   unsigned bank_shift_ = 11, row_shift_ = 14;
+  std::uint32_t bank_mask_ = 7, row_mask_ = ~0u;
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
@@ -133,26 +162,33 @@ class DdrController {
   std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
   std::size_t count_ = 0;
+  // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
+  // the order, masks and sums of the queue do not know it until join_queue().
+  bool alone_ = false;
+  std::uint32_t offered_ = 0;  // slots whose command its master offers (rule 1)
+  std::array<std::uint32_t, kMasterCount> of_master_{};  // slots in use, by master
+  Rank age_ = 0;
   std::uint64_t last_arrival_ = 0;
   unsigned write_bytes_held_ = 0;
   bool door_full_ = false;
   DdrRequest door_;
   std::uint64_t door_arrived_ = 0;
 
-  std::uint64_t command_free_ = 0;  // edge after the last command
+  std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
   Picoseconds next_ = kNever;
-  int in_service_ = -1;  // slot whose columns are being issued
+  bool in_burst_ = false;  // choice_ is the last column of a burst under way
+  std::uint64_t next_column_ = 0;
+  unsigned columns_left_ = 0;
   std::uint64_t served_while_oldest_ = 0;
 
   std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
+  std::uint64_t calm_until_ = 0;   // no refresh is urgent before this edge
   unsigned owed_ = 0, forced_ = 0;
-  unsigned gap_ = 0;  // intervals that ended since the last REF
-  std::uint64_t idle_since_ = 0;
+  unsigned gap_ = 0;             // intervals that ended since the last REF
   std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
   std::uint64_t start_of_lane_ = 0;
   std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
-  std::uint64_t floor_ = 0;      // no command before this edge: configuration changed there
 
   CommandHook hook_ = nullptr;
   void* hook_self_ = nullptr;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 namespace fovea::mem {
 
@@ -66,67 +67,65 @@ class DdrDevice {
 
   void configure(const DdrTiming& timing) {
     timing_ = timing;
-    for (Effects& e : effects_) e.count = 0;
-    for (const DdrRule& r : kDdrRules) {
-      Effects& e = effects_[static_cast<std::size_t>(r.from)];
-      e.list[e.count++] = {r.level, r.to, r.clocks(timing)};
-    }
+    for (std::size_t i = 0; i < kDdrRules.size(); ++i) clocks_[i] = kDdrRules[i].clocks(timing);
   }
   const DdrTiming& timing() const { return timing_; }
   std::uint32_t row(unsigned bank) const { return banks_[bank].row; }
   bool all_closed() const { return open_ == 0; }
 
-  /// First clock at which the command is legal. PREA needs PRE to be legal in every open bank.
+  /// First clock at which the command to this bank is legal.
   std::uint64_t earliest(Cmd cmd, unsigned bank) const {
     const auto c = static_cast<std::size_t>(cmd);
-    if (cmd == Cmd::kPreAll) {
-      std::uint64_t e = rank_[static_cast<std::size_t>(Cmd::kPre)];
-      for (const Bank& b : banks_)
-        if (b.row != kClosed) e = std::max(e, b.next[static_cast<std::size_t>(Cmd::kPre)]);
-      return e;
-    }
-    if (cmd == Cmd::kRef) return rank_[c];
     return std::max(rank_[c], banks_[bank].next[c]);
   }
+  /// PREA needs PRE to be legal in every open bank.
+  std::uint64_t earliest_pre_all() const {
+    std::uint64_t e = rank_[static_cast<std::size_t>(Cmd::kPre)];
+    for (const Bank& b : banks_)
+      if (b.row != kClosed) e = std::max(e, b.next[static_cast<std::size_t>(Cmd::kPre)]);
+    return e;
+  }
+  std::uint64_t earliest_refresh() const { return rank_[static_cast<std::size_t>(Cmd::kRef)]; }
 
-  void issue(Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
-    const Effects& effects = effects_[static_cast<std::size_t>(cmd)];
-    for (unsigned i = 0; i < effects.count; ++i) {
-      const Effect& x = effects.list[i];
-      auto& next = x.level == Level::kRank ? rank_ : banks_[bank].next;
-      auto& slot = next[static_cast<std::size_t>(x.to)];
-      slot = std::max(slot, clock + x.clocks);
-    }
-    if (cmd == Cmd::kAct) {
+  template <Cmd kCmd>
+  void issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
+    start_rules<kCmd>(bank, clock, std::make_index_sequence<kDdrRules.size()>());
+    if constexpr (kCmd == Cmd::kAct) {
       banks_[bank].row = row;
       open_ |= 1u << bank;
-    } else if (cmd == Cmd::kPre) {
+    } else if constexpr (kCmd == Cmd::kPre) {
       banks_[bank].row = kClosed;
       open_ &= ~(1u << bank);
-    } else if (cmd == Cmd::kPreAll) {
+    } else if constexpr (kCmd == Cmd::kPreAll) {
       for (auto& b : banks_) b.row = kClosed;
       open_ = 0;
     }
   }
 
  private:
-  struct Bank {
+  struct alignas(64) Bank {
     std::array<std::uint64_t, kCmdCount> next{};
     std::uint32_t row = kClosed;
   };
-  // The rules in effect, by the command that starts them.
-  struct Effect {
-    Level level;
-    Cmd to;
-    unsigned clocks;
-  };
-  struct Effects {
-    std::array<Effect, 6> list;
-    unsigned count = 0;
-  };
+  template <Cmd kCmd, std::size_t... kRule>
+  void start_rules(unsigned bank, std::uint64_t clock, std::index_sequence<kRule...>) {
+    (start_rule<kCmd, kRule>(bank, clock), ...);
+  }
+  template <Cmd kCmd, std::size_t kRule>
+  void start_rule(unsigned bank, std::uint64_t clock) {
+    if constexpr (kDdrRules[kRule].from == kCmd) {
+      constexpr bool kRank = kDdrRules[kRule].level == Level::kRank;
+      constexpr Cmd kTo = kDdrRules[kRule].to;
+      auto& slot = (kRank ? rank_ : banks_[bank].next)[static_cast<std::size_t>(kTo)];
+      const std::uint64_t legal = clock + clocks_[kRule];
+      // The command itself was legal now, so what it puts off for its own kind lies ahead.
+      slot = kTo == kCmd ? legal : std::max(slot, legal);
+    }
+  }
+
   DdrTiming timing_;
-  std::array<Effects, kCmdCount> effects_{};
-  std::uint32_t open_ = 0;  // banks with an open row
+  std::array<std::uint32_t, kDdrRules.size()> clocks_{};  // each rule's number in effect
+  std::uint32_t open_ = 0;                                // banks with an open row
   std::array<Bank, kMaxBanks> banks_{};
   std::array<std::uint64_t, kCmdCount> rank_{};
 };
