@@ -162,6 +162,8 @@ constexpr IsaKind kAbsent{C::kCoprocessor, "", "", "", "", "3: undefined on this
                           k9ejsUnread};
 constexpr IsaKind kAbsentMove{C::kCoprocessor, "", "", "", "d != 15, n != 15",
                               "3: undefined on this chip", k9ejsUnread};
+constexpr IsaKind kAbsentMrrc{C::kCoprocessor, "", "", "", "d != 15, n != 15, n != d",
+                              "3: undefined on this chip", k9ejsUnread};
 constexpr IsaKind kAbsentPre{C::kCoprocessor, "", "", "", "W: n != 15",
                              "3: undefined on this chip", k9ejsUnread};
 constexpr IsaKind kAbsentPost{C::kCoprocessor, "", "", "", "n != 15",
@@ -232,24 +234,24 @@ constexpr IsaKind kTTrap{C::kThumbException, "", "", "", "", "3", k9ejsUnread};
   {NAME " shift reg", "cccc 000" BITS "1 nnnn ---- ssss 0tt1 mmmm", NAME "<c> <n>, <m>, <t> <s>", OP, kCompareLate}
 #define FOVEA_TRANSFER(NAME, B, L, OP, KIND) \
   {NAME " imm pre", "cccc 0101 U" B "W" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n><pre>]<W>", OP, KIND.pre}, \
-  {NAME " imm post", "cccc 0100 U" B "0" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n>], <post>", OP, KIND.post}, \
-  {NAME "t imm", "cccc 0100 U" B "1" L " nnnn dddd iiii iiii iiii", NAME "t<c> <d>, [<n>], <post>", OP, KIND.user}, \
+  {NAME " imm post", "cccc 0100 U" B "0" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n>], <offset>", OP, KIND.post}, \
+  {NAME "t imm", "cccc 0100 U" B "1" L " nnnn dddd iiii iiii iiii", NAME "t<c> <d>, [<n>], <offset>", OP, KIND.user}, \
   {NAME " reg pre", "cccc 0111 U" B "W" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", OP, KIND.pre_reg}, \
   {NAME " reg post", "cccc 0110 U" B "0" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>], <reg>", OP, KIND.post_reg}, \
   {NAME "t reg", "cccc 0110 U" B "1" L " nnnn dddd aaaa att0 mmmm", NAME "t<c> <d>, [<n>], <reg>", OP, KIND.user_reg}
 #define FOVEA_NARROW(NAME, L, SH, RD, OP, KIND) \
   {NAME " imm pre", "cccc 0001 U1W" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n><pre>]<W>", OP, KIND.pre}, \
-  {NAME " imm post", "cccc 0000 U1-" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n>], <post>", OP, KIND.post}, \
+  {NAME " imm post", "cccc 0000 U1-" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n>], <offset>", OP, KIND.post}, \
   {NAME " reg pre", "cccc 0001 U0W" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", OP, KIND.pre_reg}, \
   {NAME " reg post", "cccc 0000 U0-" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>], <reg>", OP, KIND.post_reg}
 // Transfers of coprocessors, none of which this chip has; CC is the condition or 1111.
 #define FOVEA_ABSENT(NAME, CC, COND) \
-  {"cdp" NAME, CC " 1110 oooo CCCC DDDD pppp qqq0 MMMM", "cdp" NAME COND " <p>, <o>, <D>, <C>, <M>, {<q>}", Op::kCoprocessor, kAbsent}, \
+  {"cdp" NAME, CC " 1110 oooo CCCC DDDD pppp qqq0 MMMM", "cdp" NAME COND " <p>, <o>, <D>, <C>, <M>, <q>", Op::kCoprocessor, kAbsent}, \
   {"ldc" NAME " pre", CC " 1101 ULW1 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
-  {"ldc" NAME " post", CC " 1100 UL11 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], <post>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
+  {"ldc" NAME " post", CC " 1100 UL11 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
   {"ldc" NAME " option", CC " 1100 1L01 nnnn DDDD pppp kkkk kkkk", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", Op::kCoprocessor, kAbsent}, \
   {"stc" NAME " pre", CC " 1101 ULW0 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
-  {"stc" NAME " post", CC " 1100 UL10 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n>], <post>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
+  {"stc" NAME " post", CC " 1100 UL10 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
   {"stc" NAME " option", CC " 1100 1L00 nnnn DDDD pppp kkkk kkkk", "stc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", Op::kCoprocessor, kAbsent}
 
 constexpr IsaRow kRows[] = {
@@ -325,16 +327,16 @@ constexpr IsaRow kRows[] = {
   // Exceptions.
   {"svc", "cccc 1111 kkkk kkkk kkkk kkkk kkkk kkkk", "svc<c> <k>", Op::kSwi, kTrap},
   {"bkpt", "cccc 0001 0010 kkkk kkkk kkkk 0111 kkkk", "bkpt <k>", Op::kBkpt, kTrapAlways},
-  {"udf", "cccc 0111 1111 kkkk kkkk kkkk 1111 kkkk", "udf <k>", Op::kUndefined, kTrapAlways},
+  {"udf", "cccc 0111 1111 kkkk kkkk kkkk 1111 kkkk", "udf #<k>", Op::kUndefined, kTrapAlways},
   // Coprocessors. Of the moves only those of CP15 do something.
-  {"mcr", "cccc 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr<c> <p>, <o>, <d>, <C>, <M>, {<q>}", Op::kMcr, kMcrKind},
-  {"mrc", "cccc 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc<c> <p>, <o>, <dflags>, <C>, <M>, {<q>}", Op::kMrc, kMrcKind},
+  {"mcr", "cccc 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr<c> <p>, <o>, <d>, <C>, <M>, <q>", Op::kMcr, kMcrKind},
+  {"mrc", "cccc 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc<c> <p>, <o>, <dflags>, <C>, <M>, <q>", Op::kMrc, kMrcKind},
   {"mcrr", "cccc 1100 0100 nnnn dddd pppp oooo MMMM", "mcrr<c> <p>, <o>, <d>, <n>, <M>", Op::kCoprocessor, kAbsentMove},
-  {"mrrc", "cccc 1100 0101 nnnn dddd pppp oooo MMMM", "mrrc<c> <p>, <o>, <d>, <n>, <M>", Op::kCoprocessor, kAbsentMove},
+  {"mrrc", "cccc 1100 0101 nnnn dddd pppp oooo MMMM", "mrrc<c> <p>, <o>, <d>, <n>, <M>", Op::kCoprocessor, kAbsentMrrc},
   FOVEA_ABSENT("", "cccc", "<c>"),
   FOVEA_ABSENT("2", "1111", ""),
-  {"mcr2", "1111 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr2 <p>, <o>, <d>, <C>, <M>, {<q>}", Op::kCoprocessor, kAbsentMove},
-  {"mrc2", "1111 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc2 <p>, <o>, <dflags>, <C>, <M>, {<q>}", Op::kCoprocessor, kAbsent},
+  {"mcr2", "1111 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr2 <p>, <o>, <d>, <C>, <M>, <q>", Op::kCoprocessor, kAbsentMove},
+  {"mrc2", "1111 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc2 <p>, <o>, <d>, <C>, <M>, <q>", Op::kCoprocessor, kAbsent},
 
   // Thumb.
   {"t lsl imm", "0000 0aaa aamm mddd", "lsls <d>, <m>, #<a>", Op::kMov, kTShiftImm, 0, "t=0"},
@@ -369,7 +371,7 @@ constexpr IsaRow kRows[] = {
   {"t mov high", "0100 0110 dmmm mddd", "mov <d>, <m>", Op::kMov, kTHigh},
   {"t bx", "0100 0111 0mmm m---", "bx <m>", Op::kBxReg, kTBranchReg},
   {"t blx reg", "0100 0111 1mmm m---", "blx <m>", Op::kBlxReg, kTBranchRegNoPc},
-  {"t ldr pc", "0100 1ddd iiii iiii", "ldr <d>, [pc<pre>]", Op::kLdr, kTLoad, kAlignPc, "n=15", 2},
+  {"t ldr pc", "0100 1ddd iiii iiii", "ldr <d>, [pc, <offset>]", Op::kLdr, kTLoad, kAlignPc, "n=15", 2},
   {"t str reg", "0101 000m mmnn nddd", "str <d>, [<n>, <m>]", Op::kStr, kTStoreReg},
   {"t strh reg", "0101 001m mmnn nddd", "strh <d>, [<n>, <m>]", Op::kStrh, kTStoreReg},
   {"t strb reg", "0101 010m mmnn nddd", "strb <d>, [<n>, <m>]", Op::kStrb, kTStoreReg},
@@ -378,14 +380,14 @@ constexpr IsaRow kRows[] = {
   {"t ldrh reg", "0101 101m mmnn nddd", "ldrh <d>, [<n>, <m>]", Op::kLdrh, kTLoadNarrowReg},
   {"t ldrb reg", "0101 110m mmnn nddd", "ldrb <d>, [<n>, <m>]", Op::kLdrb, kTLoadNarrowReg},
   {"t ldrsh reg", "0101 111m mmnn nddd", "ldrsh <d>, [<n>, <m>]", Op::kLdrsh, kTLoadNarrowReg},
-  {"t str imm", "0110 0iii iinn nddd", "str <d>, [<n><pre>]", Op::kStr, kTStore, 0, "", 2},
-  {"t ldr imm", "0110 1iii iinn nddd", "ldr <d>, [<n><pre>]", Op::kLdr, kTLoad, 0, "", 2},
-  {"t strb imm", "0111 0iii iinn nddd", "strb <d>, [<n><pre>]", Op::kStrb, kTStore},
-  {"t ldrb imm", "0111 1iii iinn nddd", "ldrb <d>, [<n><pre>]", Op::kLdrb, kTLoadNarrow},
-  {"t strh imm", "1000 0iii iinn nddd", "strh <d>, [<n><pre>]", Op::kStrh, kTStore, 0, "", 1},
-  {"t ldrh imm", "1000 1iii iinn nddd", "ldrh <d>, [<n><pre>]", Op::kLdrh, kTLoadNarrow, 0, "", 1},
-  {"t str sp", "1001 0ddd iiii iiii", "str <d>, [sp<pre>]", Op::kStr, kTStore, 0, "n=13", 2},
-  {"t ldr sp", "1001 1ddd iiii iiii", "ldr <d>, [sp<pre>]", Op::kLdr, kTLoad, 0, "n=13", 2},
+  {"t str imm", "0110 0iii iinn nddd", "str <d>, [<n>, <offset>]", Op::kStr, kTStore, 0, "", 2},
+  {"t ldr imm", "0110 1iii iinn nddd", "ldr <d>, [<n>, <offset>]", Op::kLdr, kTLoad, 0, "", 2},
+  {"t strb imm", "0111 0iii iinn nddd", "strb <d>, [<n>, <offset>]", Op::kStrb, kTStore},
+  {"t ldrb imm", "0111 1iii iinn nddd", "ldrb <d>, [<n>, <offset>]", Op::kLdrb, kTLoadNarrow},
+  {"t strh imm", "1000 0iii iinn nddd", "strh <d>, [<n>, <offset>]", Op::kStrh, kTStore, 0, "", 1},
+  {"t ldrh imm", "1000 1iii iinn nddd", "ldrh <d>, [<n>, <offset>]", Op::kLdrh, kTLoadNarrow, 0, "", 1},
+  {"t str sp", "1001 0ddd iiii iiii", "str <d>, [sp, <offset>]", Op::kStr, kTStore, 0, "n=13", 2},
+  {"t ldr sp", "1001 1ddd iiii iiii", "ldr <d>, [sp, <offset>]", Op::kLdr, kTLoad, 0, "n=13", 2},
   {"t add pc", "1010 0ddd iiii iiii", "add <d>, pc, #<i>", Op::kAdd, kTAddress, kAlignPc, "n=15", 2},
   {"t add rd sp", "1010 1ddd iiii iiii", "add <d>, sp, #<i>", Op::kAdd, kTAddress, 0, "n=13", 2},
   {"t add sp", "1011 0000 0iii iiii", "add sp, #<i>", Op::kAdd, kTAddress, 0, "d=13 n=13", 2},
@@ -397,7 +399,7 @@ constexpr IsaRow kRows[] = {
   {"t bkpt", "1011 1110 kkkk kkkk", "bkpt <k>", Op::kBkpt, kTTrap},
   {"t stmia", "1100 0nnn llll llll", "stmia <n>!, <l>", Op::kStm, kTStm},
   {"t ldmia", "1100 1nnn llll llll", "ldmia <n><W>, <l>", Op::kLdm, kTLdm},
-  {"t udf", "1101 1110 kkkk kkkk", "udf <k>", Op::kUndefined, kTTrap},
+  {"t udf", "1101 1110 kkkk kkkk", "udf #<k>", Op::kUndefined, kTTrap},
   {"t svc", "1101 1111 kkkk kkkk", "svc <k>", Op::kSwi, kTTrap},
   {"t b cond", "1101 cccc iiii iiii", "b<c> <target>", Op::kB, kTBranch, 0, "", 1},
   {"t b", "1110 0iii iiii iiii", "b <target>", Op::kB, kTBranch, 0, "", 1},
