@@ -111,8 +111,8 @@ struct Sample {
 };
 constexpr std::uint32_t kBase = 0x0200'0000;
 
-/// The assembler takes "#value, rotation" for data operations, but has no way to say it for MSR; and
-/// it refuses the pc as second operand of a Thumb CMP. Where a Thumb sum has two encodings it takes
+/// The assembler takes "#value, rotation" for data operations, but has no way to say it for MSR;
+/// and it refuses the pc as second operand of a Thumb CMP. Where a Thumb sum has two encodings it takes
 /// that with 8 bits. Transfers of coprocessor 9 are halfwords of a floating-point unit to it.
 bool writable(int row, std::uint32_t w) {
   const IsaFields f = isa_fields(row, w);

@@ -1,5 +1,5 @@
-// The instructions of ARMv5TE as the ARM926EJ-S executes them: one row each, ARM and Thumb. Decoder,
-// disassembler, INSTRUCTIONS.md and the random programs of the tests read these rows.
+// The instructions of ARMv5TE as the ARM926EJ-S executes them: one row each, ARM and Thumb.
+// Decoder, disassembler, INSTRUCTIONS.md and the random programs of the tests read these rows.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,8 +44,8 @@ struct IsaKind {
 /// One instruction. The pattern is read from the top bit down: 0 and 1 are fixed, `-` should be
 /// zero and `+` should be one (both ignored), letters are fields:
 ///   c condition  S sets flags  n d m s registers  e Rd / 2  a shift distance  t kind of shift
-///   r i immediate  l register list  P U W indexing  f PSR fields  x y halves of SMULxy  h half of BLX
-///   k number left to software  p o q C D M L coprocessor number, opcodes, registers, length
+///   r i immediate  l register list  P U W indexing  f PSR fields  x y halves of SMULxy
+///   h half of BLX  k number left to software  p o q C D M L of coprocessors
 /// n is bits 19:16 and d bits 15:12 in ARM state, as in the record: the result of a multiply is n.
 struct IsaRow {
   const char* name;
@@ -90,7 +90,7 @@ class IsaFields {
 IsaFields isa_fields(int row, std::uint32_t word);
 /// The row's pattern or implied operands have this letter.
 bool isa_has(int row, char letter);
-/// The pattern with these fields. Bits that should be zero or one are; implied operands are ignored.
+/// The pattern with these fields; bits that should be zero or one are. Ignores implied operands.
 std::uint32_t isa_encode(int row, const IsaFields& fields);
 /// The word's row defines its result: no clause of `defined_if` is broken, no ignored bit is wrong.
 bool isa_defined(int row, std::uint32_t word);
