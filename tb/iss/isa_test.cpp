@@ -2,7 +2,6 @@
 #include "model/cpu/core/isa.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <cstring>
@@ -112,15 +111,14 @@ struct Sample {
 constexpr std::uint32_t kBase = 0x0200'0000;
 
 /// The assembler takes "#value, rotation" for data operations, but has no way to say it for MSR;
-/// and it refuses the pc as second operand of a Thumb CMP. Where a Thumb sum has two encodings it takes
-/// that with 8 bits. Transfers of coprocessor 9 are halfwords of a floating-point unit to it.
+/// and it refuses the pc as second operand of a Thumb CMP. Where a Thumb sum has two encodings it
+/// takes that with 8 bits. Transfers of coprocessor 9 are halfwords of a floating-point unit to it.
 bool writable(int row, std::uint32_t w) {
   const IsaFields f = isa_fields(row, w);
   const std::string name = row_at(row).name;
   if (f['p'] == 9 && isa_has(row, 'D') && isa_has(row, 'n')) return false;
   if (name.ends_with("imm3") && f['n'] == f['d']) return false;
-  if (row_at(row).thumb() && row_at(row).op == Op::kCmp && f['m'] == 15)
-    return false;
+  if (row_at(row).thumb() && row_at(row).op == Op::kCmp && f['m'] == 15) return false;
   return row_at(row).op != Op::kMsr || !isa_has(row, 'r') ||
          disassemble(w, false, 0).find(", ") == disassemble(w, false, 0).rfind(", ");
 }
@@ -176,9 +174,8 @@ std::vector<std::string> misread(const std::vector<Sample>& samples, bool thumb)
 }
 
 class IsaTextTest : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(States, IsaTextTest, testing::Bool(), [](const auto& state) {
-  return state.param ? "Thumb" : "Arm";
-});
+INSTANTIATE_TEST_SUITE_P(States, IsaTextTest, testing::Bool(),
+                         [](const auto& state) { return state.param ? "Thumb" : "Arm"; });
 
 TEST_P(IsaTextTest, AssemblerReadsBackEveryRow) {
   const auto wrong = misread(samples(GetParam(), 60, 2), GetParam());
@@ -247,8 +244,8 @@ TEST_P(IsaTextTest, ObjdumpPrintsTheSame) {
     // Coprocessors of other chips have instructions of their own for objdump.
     if (isa_has(all[k].row, 'p') && (f['p'] != 15 || theirs[k].ends_with(']'))) continue;
     // Other names for a move to itself and for one register on the stack.
-    if (theirs[k] == "nop" || (theirs[k].find('{') != std::string::npos &&
-                               all[k].text.find('{') == std::string::npos))
+    if (theirs[k] == "nop" ||
+        (theirs[k].find('{') != std::string::npos && all[k].text.find('{') == std::string::npos))
       continue;
     ++compared;
     EXPECT_EQ(all[k].text, theirs[k]) << row_at(all[k].row).name << std::hex << " " << all[k].word;

@@ -6,9 +6,10 @@ namespace {
 
 // Where cycle counts come from.
 constexpr const char* k9ejs = "ARM DDI 0222B table 8-2";
-constexpr const char* k9ejsUnread = "ARM DDI 0222B ch. 8 (row not seen; same as ARM DDI 0165B)";
+constexpr const char* k9ejsUnread = "ARM DDI 0222B ch. 8 (row not seen)";
 constexpr const char* k7ejs = "ARM DDI 0214B ch. 9 (same pipeline)";
 constexpr const char* k9es = "ARM DDI 0165B 8.5";
+constexpr const char* k926 = "ARM DDI 0198D 4.1 (no operation)";
 constexpr const char* kAssumed = "assumed";
 
 constexpr const char* kNoPc = "d != 15, n != 15, m != 15, s != 15";
@@ -46,11 +47,15 @@ constexpr IsaKind kSaturateKind{C::kSaturate, "nm", "", "d", kNoPc, "1, then 1",
 constexpr IsaKind kClzKind{C::kClz, "m", "", "d", kNoPc, "1", k9ejs};
 
 constexpr IsaKind kMrsKind{C::kStatus, "", "", "d", kNoPc, "2", k7ejs};
-constexpr const char* kMsrCycles = "1 (CPSR_f) or 3";
+constexpr const char* kMsrCycles = "1 (field f alone) or 3";
 constexpr IsaKind kMsrReg{C::kStatus, "m", "", "", "m != 15, f != 0", kMsrCycles, k9ejsUnread,
                           Operand::kReg};
 constexpr IsaKind kMsrImm{C::kStatus, "", "", "", "f != 0", kMsrCycles, k9ejsUnread, Operand::kImm,
                           Immediate::kRotated};
+constexpr IsaKind kMsrSpsrReg{C::kStatus, "m", "", "", "m != 15, f != 0", "3", k9ejsUnread,
+                              Operand::kReg};
+constexpr IsaKind kMsrSpsrImm{C::kStatus, "", "", "", "f != 0", "3", k9ejsUnread, Operand::kImm,
+                              Immediate::kRotated};
 
 // Words and bytes: before, after, as user. Only a word may be loaded into the pc.
 constexpr const char* kWordPre = "W: n != 15, W: n != d";
@@ -144,8 +149,8 @@ constexpr IsaKind kSwpKind{C::kSwap, "nm", "", "d", "n != 15, m != 15, d != 15, 
                            "2", k9ejsUnread};
 constexpr IsaKind kSwpbKind{C::kSwap, "nm", "", "d", "n != 15, m != 15, d != 15, n != m, n != d",
                             "2, then 1", k9ejsUnread};
-constexpr IsaKind kPldImm{C::kPreload, "", "", "", "", "1", kAssumed};
-constexpr IsaKind kPldReg{C::kPreload, "", "", "", "m != 15", "1", kAssumed};
+constexpr IsaKind kPldImm{C::kPreload, "", "", "", "", "1", k926};
+constexpr IsaKind kPldReg{C::kPreload, "", "", "", "m != 15", "1", k926};
 
 constexpr const char* kBranchCycles = "3";
 constexpr IsaKind kBranchKind{C::kBranch, "", "", "", "", kBranchCycles, k9es, Operand::kImm,
@@ -158,16 +163,15 @@ constexpr IsaKind kMcrKind{C::kCoprocessor, "d", "", "", "d != 15", "1 and the w
                            k9ejsUnread};
 constexpr IsaKind kMrcKind{C::kCoprocessor, "", "", "d", "",
                            "1 and the wait of the target, then 1; flags: 3", k9ejsUnread};
-constexpr IsaKind kAbsent{C::kCoprocessor, "", "", "", "", "3: undefined on this chip",
-                          k9ejsUnread};
+constexpr IsaKind kAbsent{C::kCoprocessor, "", "", "", "", "3: undefined on this chip", kAssumed};
 constexpr IsaKind kAbsentMove{C::kCoprocessor, "", "", "", "d != 15, n != 15",
-                              "3: undefined on this chip", k9ejsUnread};
+                              "3: undefined on this chip", kAssumed};
 constexpr IsaKind kAbsentMrrc{C::kCoprocessor, "", "", "", "d != 15, n != 15, n != d",
-                              "3: undefined on this chip", k9ejsUnread};
+                              "3: undefined on this chip", kAssumed};
 constexpr IsaKind kAbsentPre{C::kCoprocessor, "", "", "", "W: n != 15",
-                             "3: undefined on this chip", k9ejsUnread};
+                             "3: undefined on this chip", kAssumed};
 constexpr IsaKind kAbsentPost{C::kCoprocessor, "", "", "", "n != 15",
-                              "3: undefined on this chip", k9ejsUnread};
+                              "3: undefined on this chip", kAssumed};
 
 // Thumb instructions take the cycles of their ARM equivalents (ARM DDI 0222B ch. 8).
 constexpr IsaKind kTReg{C::kThumbAlu, "nm", "", "d", "", "1", k9ejs, Operand::kReg,
@@ -293,9 +297,9 @@ constexpr IsaRow kRows[] = {
   {"mrs cpsr", "cccc 0001 0000 ++++ dddd ---- 0000 ----", "mrs<c> <d>, CPSR", Op::kMrs, kMrsKind},
   {"mrs spsr", "cccc 0001 0100 ++++ dddd ---- 0000 ----", "mrs<c> <d>, SPSR", Op::kMrs, kMrsKind, kSpsr},
   {"msr cpsr reg", "cccc 0001 0010 ffff ++++ ---- 0000 mmmm", "msr<c> CPSR_<f>, <m>", Op::kMsr, kMsrReg},
-  {"msr spsr reg", "cccc 0001 0110 ffff ++++ ---- 0000 mmmm", "msr<c> SPSR_<f>, <m>", Op::kMsr, kMsrReg, kSpsr},
+  {"msr spsr reg", "cccc 0001 0110 ffff ++++ ---- 0000 mmmm", "msr<c> SPSR_<f>, <m>", Op::kMsr, kMsrSpsrReg, kSpsr},
   {"msr cpsr imm", "cccc 0011 0010 ffff ++++ rrrr iiii iiii", "msr<c> CPSR_<f>, #<i>", Op::kMsr, kMsrImm},
-  {"msr spsr imm", "cccc 0011 0110 ffff ++++ rrrr iiii iiii", "msr<c> SPSR_<f>, #<i>", Op::kMsr, kMsrImm, kSpsr},
+  {"msr spsr imm", "cccc 0011 0110 ffff ++++ rrrr iiii iiii", "msr<c> SPSR_<f>, #<i>", Op::kMsr, kMsrSpsrImm, kSpsr},
   // Loads and stores.
   FOVEA_TRANSFER("ldr", "0", "1", Op::kLdr, kLoadWord),
   FOVEA_TRANSFER("ldrb", "1", "1", Op::kLdrb, kLoadByte),
