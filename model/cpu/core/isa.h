@@ -72,6 +72,19 @@ inline constexpr int kNoRow = -1;
 /// Row of an instruction word (or of a Thumb halfword); kNoRow: an undefined instruction.
 int isa_row(std::uint32_t word, bool thumb);
 
+/// Some bits of a field: `width` bits from bit `from` on, below those of the piece before.
+struct IsaPiece {
+  char letter;
+  std::uint8_t from, width;
+};
+std::span<const IsaPiece> isa_pieces(int row);
+/// An operand without a field: another one's value, or a number if `from` is 0.
+struct IsaImplied {
+  char letter, from;
+  std::uint32_t number;
+};
+std::span<const IsaImplied> isa_implied(int row);
+
 struct IsaBits {
   std::uint32_t mask = 0, value = 0;  ///< fixed bits
   std::uint32_t zeros = 0, ones = 0;  ///< should be zero, should be one
@@ -93,6 +106,7 @@ bool isa_has(int row, char letter);
 /// The pattern with these fields; bits that should be zero or one are. Ignores implied operands.
 std::uint32_t isa_encode(int row, const IsaFields& fields);
 /// The word's row defines its result: no clause of `defined_if` is broken, no ignored bit is wrong.
+/// False for kNoRow; the functions above want a row.
 bool isa_defined(int row, std::uint32_t word);
 
 }  // namespace fovea::cpu

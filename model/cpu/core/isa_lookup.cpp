@@ -11,12 +11,6 @@
 namespace fovea::cpu {
 namespace {
 
-/// Some bits of a field: `width` bits from `from` go to the lower end of the field.
-struct Piece {
-  char letter;
-  std::uint8_t from, width;
-};
-
 /// "a != b", "a = b", "a not in l", "a or b > number", perhaps behind "W:".
 struct Clause {
   enum class Relation { kDiffers, kEquals, kNotIn, kAbove } relation = Relation::kDiffers;
@@ -25,15 +19,10 @@ struct Clause {
   std::uint32_t number = 0;    ///< of b, or added to b
 };
 
-struct Implied {
-  char letter, from;  ///< from: 0 if a number
-  std::uint32_t number;
-};
-
 struct Form {
   IsaBits bits;
-  std::vector<Piece> pieces;
-  std::vector<Implied> implied;
+  std::vector<IsaPiece> pieces;
+  std::vector<IsaImplied> implied;
   std::vector<Clause> clauses;
   std::uint64_t letters = 0;
 };
@@ -114,7 +103,7 @@ Form parse(const IsaRow& row) {
       f.pieces.push_back({c, at, 1});
     }
   }
-  for (const Piece& p : f.pieces) f.letters |= letter_bit(p.letter);
+  for (const IsaPiece& p : f.pieces) f.letters |= letter_bit(p.letter);
   if (f.letters & letter_bit('e')) f.letters |= letter_bit('d');
   for (const std::string& s : split(row.implied, " ")) {
     FOVEA_CHECK(s.size() > 2 && s[1] == '=', "table of instructions: cannot read " + s);
@@ -195,15 +184,17 @@ bool holds(const Clause& c, const IsaFields& f) {
 
 int isa_row(std::uint32_t word, bool thumb) { return lookup().find(word, thumb); }
 const IsaBits& isa_bits(int row) { return form(row).bits; }
+std::span<const IsaPiece> isa_pieces(int row) { return form(row).pieces; }
+std::span<const IsaImplied> isa_implied(int row) { return form(row).implied; }
 bool isa_has(int row, char letter) { return form(row).letters & letter_bit(letter); }
 
 IsaFields isa_fields(int row, std::uint32_t word) {
   const Form& f = form(row);
   IsaFields out;
-  for (const Piece& p : f.pieces)
+  for (const IsaPiece& p : f.pieces)
     out[p.letter] = out[p.letter] << p.width | (word >> p.from & ((1u << p.width) - 1u));
   if (f.letters & letter_bit('e')) out['d'] = 2 * out['e'];
-  for (const Implied& i : f.implied) out[i.letter] = i.from ? out[i.from] : i.number;
+  for (const IsaImplied& i : f.implied) out[i.letter] = i.from ? out[i.from] : i.number;
   return out;
 }
 
@@ -219,6 +210,7 @@ std::uint32_t isa_encode(int row, const IsaFields& fields) {
 }
 
 bool isa_defined(int row, std::uint32_t word) {
+  if (row == kNoRow) return false;
   const Form& f = form(row);
   if ((word & f.bits.zeros) || (~word & f.bits.ones)) return false;
   const IsaFields v = isa_fields(row, word);
