@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -28,9 +29,9 @@ std::vector<std::uint8_t> read_file(const std::string& path) {
 }
 
 Program assemble(const std::string& text, std::uint32_t base) {
-  char folder[] = "/tmp/fovea_iss_XXXXXX";
-  if (!::mkdtemp(folder)) throw std::runtime_error("no temporary folder");
-  const std::string stem = std::string(folder) + "/p";
+  std::string folder = (std::filesystem::temp_directory_path() / "fovea_iss_XXXXXX").string();
+  if (!::mkdtemp(folder.data())) throw std::runtime_error("no temporary folder");
+  const std::string stem = folder + "/p";
   {
     std::ofstream s(stem + ".s");
     s << ".syntax unified\n.arm\n.global _start\n_start:\n" << text << "\n";
@@ -49,11 +50,10 @@ Program assemble(const std::string& text, std::uint32_t base) {
       out.symbols[name] = static_cast<std::uint32_t>(std::stoul(value, nullptr, 16));
     out.bytes = read_file(stem + ".bin");
   } catch (...) {
-    std::system(("rm -rf " + std::string(folder)).c_str());
+    std::filesystem::remove_all(folder);
     throw;
   }
-  if (std::system(("rm -rf " + std::string(folder)).c_str()) != 0)
-    throw std::runtime_error("cannot remove the temporary folder");
+  std::filesystem::remove_all(folder);
   return out;
 }
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -140,12 +139,10 @@ std::vector<Sample> samples(bool thumb, unsigned each, unsigned seed) {
 
 /// Branch targets relative to the place: the assembler then needs no linker.
 std::string relative(const std::string& text, std::uint32_t pc) {
-  static const std::regex target("^(bl?x?[a-z]{0,2}) 0x([0-9a-f]+)$");
-  std::smatch m;
-  if (!std::regex_match(text, m, target)) return text;
-  const auto by =
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(std::stoul(m[2], nullptr, 16)) - pc);
-  return m[1].str() + " . + " + std::to_string(by);
+  const std::size_t at = text.find(" 0x");
+  if (text[0] != 'b' || at == std::string::npos) return text;
+  const auto target = static_cast<std::uint32_t>(std::stoul(text.substr(at + 1), nullptr, 16));
+  return text.substr(0, at) + " . + " + std::to_string(static_cast<std::int32_t>(target - pc));
 }
 
 /// Samples that the assembler turns into another word.
@@ -204,18 +201,23 @@ std::vector<std::string> by_objdump(const std::vector<Sample>& samples, bool thu
           << (thumb ? " -M force-thumb " : " ") << path;
   std::istringstream lines(output_of(command.str()));
   std::filesystem::remove(path);
-  static const std::regex line("^ *[0-9a-f]+:\\t[0-9a-f ]+\\t([^@]*)(@.*)?$"), space("[ \\t]+"),
-      number("(svc[a-z]*|bkpt) 0x([0-9a-f]+)"), last("\\{([0-7])\\}$"), narrow("^(b[a-z]*)\\.n ");
   std::vector<std::string> out;
-  for (std::string s; std::getline(lines, s);) {
-    std::smatch m;
-    if (!std::regex_match(s, m, line)) continue;
-    std::string text = std::regex_replace(m[1].str(), space, " ");
-    while (text.ends_with(' ')) text.pop_back();
-    if (std::regex_match(text, m, number))
-      text = m[1].str() + " " + std::to_string(std::stoul(m[2], nullptr, 16));
-    text = std::regex_replace(text, last, "$1");
-    out.push_back(std::regex_replace(text, narrow, "$1 "));
+  for (std::string s; std::getline(lines, s);) {  // address:, word, text @ comment
+    const std::size_t word = s.find(":\t"),
+                      at = word == std::string::npos ? word : s.find('\t', word + 2);
+    if (at == std::string::npos) continue;
+    std::istringstream parts(s.substr(at + 1, s.find('@') - at - 1));
+    std::string text;
+    for (std::string part; parts >> part;) text += (text.empty() ? "" : " ") + part;
+    // Numbers of SVC and BKPT are hexadecimal there, the last of a coprocessor's is in braces.
+    if (const std::size_t hex = text.find(" 0x");
+        hex != std::string::npos && (text.starts_with("svc") || text.starts_with("bkpt")))
+      text = text.substr(0, hex + 1) + std::to_string(std::stoul(text.substr(hex), nullptr, 16));
+    if (text.ends_with('}') && text[text.size() - 3] == '{')
+      text = text.substr(0, text.size() - 3) + text[text.size() - 2];
+    if (const std::size_t narrow = text.find(".n "); narrow != std::string::npos)
+      text.erase(narrow, 2);
+    out.push_back(text);
   }
   return out;
 }
