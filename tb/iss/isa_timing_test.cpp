@@ -1,0 +1,111 @@
+// The clocks that the table of instructions states are those that the core takes.
+#include <charconv>
+#include <map>
+
+#include "model/cpu/core/isa.h"
+#include "tb/iss/machine.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+constexpr std::uint32_t kCode = 0x100, kData = 0x4000, kStack = 0x4800;
+constexpr std::uint32_t kMark = 0xEF000001u, kStop = 0xEF000002u;
+constexpr std::uint32_t kThumbMark = 0xDF01u, kThumbStop = 0xDF02u;
+constexpr unsigned kListed = 2;  ///< registers in a list, without pc or lr
+
+/// The first figure of a text: a number, "n" or "n + number".
+unsigned stated(const IsaRow& row) {
+  std::string_view text = row.kind.cycles;
+  unsigned sum = 0;
+  if (text.starts_with("n")) {
+    sum = kListed + (row.also != 0);
+    text.remove_prefix(1);
+    if (!text.starts_with(" + ")) return sum;
+    text.remove_prefix(3);
+  }
+  unsigned number = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+  EXPECT_EQ(end.ec, std::errc{}) << row.name << ": " << row.kind.cycles;
+  return sum + number;
+}
+
+/// Plain operands: no shift, no flags, addresses in internal RAM, branches to what follows.
+std::uint32_t plain(int row) {
+  const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
+  IsaFields f;
+  f['c'] = form.thumb() ? 0 : 14;  // eq; Z is set
+  f['n'] = 4;
+  f['d'] = 2;
+  f['e'] = 1;
+  f['m'] = 5;
+  f['s'] = 6;
+  f['U'] = 1;
+  f['i'] = form.kind.immediate == Immediate::kSigned ? ~0u : 8;
+  if (std::string(form.name) == "t bl prefix" || form.op == Op::kThumbBlSuffix) f['i'] = 0;
+  f['l'] = 0x3;
+  f['f'] = 8;
+  f['k'] = 64;
+  f['p'] = form.op == Op::kMcr || form.op == Op::kMrc ? 15 : 5;
+  f['C'] = 2;
+  return isa_encode(row, f);
+}
+
+struct Taken {
+  std::uint64_t clocks;
+  std::uint32_t mode;  ///< afterwards
+};
+
+Taken taken(int row) {
+  const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
+  Machine m;
+  const auto put = [&m](std::uint32_t at, std::uint32_t w, unsigned bytes = 4) {
+    std::memcpy(m.tcm.data() + at, &w, bytes);
+  };
+  // Exceptions come to the same end as everything else; then the run stops.
+  for (std::uint32_t vector = 4; vector < 16; vector += 4) put(vector, kMark);
+  put(16, kStop);
+  const bool thumb = form.thumb();
+  const std::uint32_t at = 0x200, next = at + (thumb ? 2 : 4);
+  const bool to_thumb =
+      thumb ? form.op != Op::kThumbBlSuffix || !(form.flags & kSpsr) : form.op == Op::kBlxImm;
+  const std::uint32_t target = to_thumb ? next | 1u : thumb ? at + 8 : next;
+  const std::string text =
+      " mrs r0, cpsr\n msr spsr_cxsf, r0\n ldr r4, =" + std::to_string(kData) +
+      "\n ldr sp, =" + std::to_string(kStack) + "\n ldr r14, =" + std::to_string(target) +
+      "\n mov r6, #0\n mov r2, #0\n ldr r0, =" + std::to_string(thumb ? at - 1 : at - 4) +
+      "\n cmp r0, r0\n mov r5, #0\n" +
+      (form.op == Op::kBxReg || form.op == Op::kBlxReg ? " mov r5, lr\n" : "") +
+      " bx r0\n .ltorg\n";
+  static std::map<std::string, Program> starts;
+  if (!starts.contains(text)) starts[text] = assemble(text, kCode);
+  m.load(starts[text]);
+  for (const std::uint32_t base : {kData, kStack}) put(base + 4 * kListed, target);
+  put(at - (thumb ? 2 : 4), thumb ? kThumbMark : kMark, thumb ? 2 : 4);
+  put(at, plain(row), thumb ? 2 : 4);
+  if (to_thumb || thumb) {
+    put(next, kThumbMark, 2);
+    put(next + 2, kThumbStop, 2);
+    put(at + 8, kMark);
+    put(at + 12, kStop);
+  } else {
+    put(next, kMark);
+    put(next + 4, kStop);
+  }
+  m.run(kCode);
+  return {m.between(), m.core.cpsr() & 31u};
+}
+
+TEST(IsaTimingTest, CoreTakesTheStatedClocks) {
+  for (int row = 0; row < static_cast<int>(isa_rows().size()); ++row) {
+    const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
+    ASSERT_EQ(isa_row(plain(row), form.thumb()), row) << form.name;
+    const Taken t = taken(row);
+    EXPECT_EQ(t.clocks, stated(form)) << form.name << ": " << form.kind.cycles;
+    // Undefined instructions, and those of absent coprocessors, come to the undefined vector.
+    const bool undefined = form.op == Op::kUndefined || form.op == Op::kCoprocessor;
+    EXPECT_EQ(t.mode, undefined ? 0x1Bu : form.op == Op::kBkpt ? 0x17u : 0x13u) << form.name;
+  }
+}
+
+}  // namespace
+}  // namespace fovea::cpu::test
