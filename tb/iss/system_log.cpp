@@ -23,7 +23,8 @@ std::string register_name(const char* mode, unsigned r) {
 
 }  // namespace
 
-std::vector<LogCase> parse_log(const std::string& bytes, const std::vector<std::uint8_t>& image) {
+std::vector<LogCase> parse_log(const std::string& bytes,
+                               const std::function<std::uint8_t(std::uint32_t)>& memory) {
   if (bytes.size() % 4) throw std::runtime_error("a log is whole words");
   std::vector<std::uint32_t> w(bytes.size() / 4);
   if (!w.empty()) std::memcpy(w.data(), bytes.data(), bytes.size());
@@ -39,8 +40,8 @@ std::vector<LogCase> parse_log(const std::string& bytes, const std::vector<std::
     if (!e.dump && (e.kind() < 1 || e.kind() > 7)) throw std::runtime_error("no log");
     if (!e.dump && e.kind() == 2 && e.swi() == kNameOfCase) {
       std::string name;
-      for (std::uint32_t a = e.words[7]; a < image.size() && image[a]; ++a)
-        name += static_cast<char>(image[a]);
+      for (std::uint32_t a = e.words[7]; memory(a) && name.size() < 100; ++a)
+        name += static_cast<char>(memory(a));
       out.push_back({name, {}});
     }
     out.back().entries.push_back(std::move(e));

@@ -20,9 +20,10 @@ struct LogCase {
   std::vector<LogEntry> entries;
 };
 
-/// @param image memory from address 0, where the names are
+/// @param memory a byte of the memory that the program left, where the names are
 /// @throws std::runtime_error if it is no log
-std::vector<LogCase> parse_log(const std::string& bytes, const std::vector<std::uint8_t>& image);
+std::vector<LogCase> parse_log(const std::string& bytes,
+                               const std::function<std::uint8_t(std::uint32_t)>& memory);
 
 /// Name of a word of an entry: "lr", "spsr", "irq r13".
 std::string field_name(const LogEntry& e, unsigned word);

@@ -94,6 +94,10 @@ class SystemMachine {
     core.run();
     return output;
   }
+  std::uint8_t byte(std::uint32_t a) {
+    std::uint8_t b = 0;
+    return core.peek(a, b) ? b : *port.at(a);
+  }
 
  private:
   /// SYS_OPEN, SYS_WRITE, SYS_EXIT. @return false: an ordinary SWI
@@ -119,10 +123,6 @@ class SystemMachine {
       default: throw std::runtime_error("no such semihosting operation");
     }
     return true;
-  }
-  std::uint8_t byte(std::uint32_t a) {
-    std::uint8_t b = 0;
-    return core.peek(a, b) ? b : *port.at(a);
   }
 };
 

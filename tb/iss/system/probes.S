@@ -89,14 +89,21 @@ function \name
   run run_there, 0
   run run_thumb_there, 1
 
-@ Known values in r0-r12.
+@ Known values in r0-r12; r1 is *base, r2 is 8.
 function fill_registers
   ldr r12, =register_values
+  ldr r0, =base
+  ldr r1, [r0]
+  str r1, [r12, #4]
   ldmia r12, {r0-r12}
-  mov pc, lr
+  bx lr
   .ltorg
-  .section .rodata
+  .data
+  .global base
+base:
+  .word 0
 register_values:
-  .irp k, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12
+  .word 0x10203040, 0, 8
+  .irp k, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12
   .word 0x10000000 + 0x01010101 * \k
   .endr
