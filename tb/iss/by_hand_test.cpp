@@ -66,20 +66,22 @@ TEST_F(ByHandTest, NoPageGoesBeforeNoAccess) {
 }
 
 TEST_F(ByHandTest, FaultAddressIsTheModifiedOne) {
-  // Code above 32 MB is not moved: it runs from there, under process 4. The handlers are found where
-  // the process has them: internal RAM lies at the modified address, so they get a section.
+  // Code above 32 MB is not moved: it runs from there, under process 4. The handlers are found
+  // where the process has them: internal RAM lies at the modified address, so they get a section.
   m.section(0x0a00'0000, 0x0020'0000, 1, 0);
   m.section(0x0800'0000, 0x0010'0000, 0, 0);
   m.port.set_word(kTables + 4 * (0x0810'0000u >> 20), 0);
   // The data abort vector of process 4 puts what it sees into registers and leaves the process.
   const Program vector = assemble(
       ".space 0x10\n mrc p15, 0, r7, c6, c0, 0\n mrc p15, 0, r8, c5, c0, 0\n mov r9, #9\n"
-      "mcr p15, 0, r6, c13, c0, 0\n mov pc, r10\n", 0x0010'0000);
+      "mcr p15, 0, r6, c13, c0, 0\n mov pc, r10\n",
+      0x0010'0000);
   m.load(vector);
   const Program there = assemble(
       "mov r6, #0\n ldr r10, =0x0a000040\n ldr r1, =0x00100008\n ldr r0, =0x08000000\n"
       "mcr p15, 0, r0, c13, c0, 0\n ldrb r2, [r1, #3]\n b .\n .ltorg\n"
-      ".org 0x40\n mov pc, r11\n", 0x0020'0000);
+      ".org 0x40\n mov pc, r11\n",
+      0x0020'0000);
   m.load(there);
   go("ldr r0, =0x0a000000\n adr r11, 1f\n mov pc, r0\n1:\n");
   EXPECT_EQ(m.core.reg(7), 0x0810'000Bu);

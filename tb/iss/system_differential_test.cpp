@@ -26,8 +26,7 @@ bool is_word(const Difference& d, const char* instruction) {
 /// The ARM instruction that a data abort's record is about.
 std::uint32_t aborted_word(const LogEntry& e, SystemMachine& m) {
   std::uint32_t word = 0;
-  for (unsigned k = 0; k < 4; ++k)
-    word |= std::uint32_t{m.byte(e.words[1] - 8 + k)} << (8 * k);
+  for (unsigned k = 0; k < 4; ++k) word |= std::uint32_t{m.byte(e.words[1] - 8 + k)} << (8 * k);
   return word;
 }
 
@@ -39,9 +38,10 @@ const Excuse kExcuses[] = {
        if (d.context.dump || d.context.kind() != 4 || d.field[0] != 'r') return false;
        const std::uint32_t word = aborted_word(d.context, m);
        const unsigned r = static_cast<unsigned>(std::stoul(d.field.substr(1)));
-       return (word & 0x0E100000u) == 0x08100000u && (word >> r & 1u) &&
-              r != (word >> 16 & 15u) &&
-              d.core == (r == 0 ? 0x10203040u : r == 2 ? 8u : 0x10000000u + 0x01010101u * r);
+       return (word & 0x0E100000u) == 0x08100000u && (word >> r & 1u) && r != (word >> 16 & 15u) &&
+              d.core == (r == 0   ? 0x10203040u
+                         : r == 2 ? 8u
+                                  : 0x10000000u + 0x01010101u * r);
      }},
     {"faults",
      "the domain of a translation fault without a second level is not valid (ARM ARM table of "
@@ -102,8 +102,10 @@ TEST_P(SystemDifferentialTest, LeavesWhatQemuLeaves) {
       const Excuse* found = nullptr;
       for (const Excuse& e : kExcuses)
         if (e.program == GetParam() && e.expected(d, m)) found = &e;
-      if (found) ++used[found];
-      else if (++wrong <= 20) ADD_FAILURE() << d.text();
+      if (found)
+        ++used[found];
+      else if (++wrong <= 20)
+        ADD_FAILURE() << d.text();
     }
     EXPECT_EQ(wrong, 0u) << "differences" << (caches ? " with caches" : "");
     std::cout << GetParam() << (caches ? " cached: " : " uncached: ") << got.size() - 1

@@ -67,8 +67,8 @@ std::string Difference::text() const {
   s << "'" << where << "' entry " << entry << " " << field << std::hex << ": core " << core
     << " qemu " << qemu;
   if (!context.words.empty() && !context.dump)
-    s << " (kind " << context.words[0] << " lr " << context.words[1] << " dfsr "
-      << context.words[4] << " far " << context.words[6] << ")";
+    s << " (kind " << context.words[0] << " lr " << context.words[1] << " dfsr " << context.words[4]
+      << " far " << context.words[6] << ")";
   return s.str();
 }
 
@@ -77,9 +77,12 @@ std::vector<Difference> compare_logs(const std::vector<LogCase>& core,
   std::vector<Difference> out;
   for (std::size_t c = 0; c < std::max(core.size(), qemu.size()); ++c) {
     if (c >= core.size() || c >= qemu.size() || core[c].name != qemu[c].name) {
-      out.push_back({c < core.size() ? core[c].name : "end", 0, "cases",
+      out.push_back({c < core.size() ? core[c].name : "end",
+                     0,
+                     "cases",
                      static_cast<std::uint32_t>(core.size()),
-                     static_cast<std::uint32_t>(qemu.size()), {}});
+                     static_cast<std::uint32_t>(qemu.size()),
+                     {}});
       return out;
     }
     const auto& a = core[c].entries;

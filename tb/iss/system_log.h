@@ -9,8 +9,8 @@
 namespace fovea::cpu::test {
 
 struct LogEntry {
-  bool dump = false;                  ///< a dump of all banks, else a record of an exception
-  std::vector<std::uint32_t> words;   ///< without a dump's tag
+  bool dump = false;                 ///< a dump of all banks, else a record of an exception
+  std::vector<std::uint32_t> words;  ///< without a dump's tag
   std::uint32_t kind() const { return dump ? 0 : words[0] & 15u; }
   std::uint32_t swi() const { return words[0] >> 8; }
 };
@@ -29,11 +29,11 @@ std::vector<LogCase> parse_log(const std::string& bytes,
 std::string field_name(const LogEntry& e, unsigned word);
 
 struct Difference {
-  std::string where;   ///< case
-  std::size_t entry;   ///< its number in the case
-  std::string field;   ///< or "entries" when their number or kinds differ
+  std::string where;  ///< case
+  std::size_t entry;  ///< its number in the case
+  std::string field;  ///< or "entries" when their number or kinds differ
   std::uint32_t core, qemu;
-  LogEntry context;    ///< as the core left it
+  LogEntry context;  ///< as the core left it
   std::string text() const;
 };
 

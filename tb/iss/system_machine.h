@@ -1,5 +1,5 @@
-// A core and flat memory from address 0 that run the programs of system/: what QEMU's versatilepb is
-// to them (RAM, two lines of the interrupt controller, semihosting).
+// A core and flat memory from address 0 that run the programs of system/: what QEMU's versatilepb
+// is to them (RAM, two lines of the interrupt controller, semihosting).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,11 +40,20 @@ class SystemPort : public FlatPort {
     std::uint32_t v = 0;
     std::memcpy(&v, a.data, 4);
     switch (a.address & 0xFFFu) {
-      case 0x0C: select_ = v; break;
-      case 0x10: enable_ |= v; break;
-      case 0x18: raised_ |= v; break;
-      case 0x1C: raised_ &= ~v; break;
-      default: throw std::logic_error("no such register of the interrupt controller");
+      case 0x0C:
+        select_ = v;
+        break;
+      case 0x10:
+        enable_ |= v;
+        break;
+      case 0x18:
+        raised_ |= v;
+        break;
+      case 0x1C:
+        raised_ &= ~v;
+        break;
+      default:
+        throw std::logic_error("no such register of the interrupt controller");
     }
     core->set_irq(raised_ & enable_ & ~select_, a.last);
     core->set_fiq(raised_ & enable_ & select_, a.last);
@@ -56,8 +65,8 @@ class SystemPort : public FlatPort {
 
 class SystemMachine {
  public:
-  static constexpr std::size_t kBytes = 64u << 20;
-  static constexpr std::uint32_t kPrelude = 0x03F0'0000, kOptions = 0x40;
+  static constexpr std::size_t kBytes = 32u << 20;
+  static constexpr std::uint32_t kPrelude = 0x01F0'0000, kOptions = 0x40;
   struct Params : CpuParams {
     Params() {
       ParamSet set;
@@ -109,7 +118,9 @@ class SystemMachine {
       return v;
     };
     switch (c.reg(0)) {
-      case 0x01: c.set_reg(0, 1); break;
+      case 0x01:
+        c.set_reg(0, 1);
+        break;
       case 0x05: {
         const std::uint32_t from = word(c.reg(1) + 4), bytes = word(c.reg(1) + 8);
         for (std::uint32_t k = 0; k < bytes; ++k) output += static_cast<char>(byte(from + k));
@@ -120,7 +131,8 @@ class SystemMachine {
         exit_status = c.reg(1) == 0x20026 ? 0 : 1;
         c.request_stop();
         break;
-      default: throw std::runtime_error("no such semihosting operation");
+      default:
+        throw std::runtime_error("no such semihosting operation");
     }
     return true;
   }

@@ -1,20 +1,20 @@
 // CP15 and other coprocessors: what reads back, what is undefined, and what user mode may not do.
 #include "support.h"
 
-#define READ(op1, n, m, op2)                                                                    \
-  do {                                                                                          \
-    uint32_t v = 0xDEADBEEF;                                                                    \
+#define READ(op1, n, m, op2)                                                                      \
+  do {                                                                                            \
+    uint32_t v = 0xDEADBEEF;                                                                      \
     __asm__ volatile("mrc p15, " #op1 ", %0, c" #n ", c" #m ", " #op2 : "+r"(v)::"lr", "memory"); \
-    note(v, 0, 0, 0);                                                                           \
+    note(v, 0, 0, 0);                                                                             \
   } while (0)
-#define WRITE(op1, n, m, op2, value)                                                          \
+#define WRITE(op1, n, m, op2, value) \
   __asm__ volatile("mcr p15, " #op1 ", %0, c" #n ", c" #m ", " #op2 ::"r"(value) : "lr", "memory")
 
-#define READ_THEN(op1, n, m, op2, mask)                                                       \
-  do {                                                                                        \
-    uint32_t v;                                                                               \
+#define READ_THEN(op1, n, m, op2, mask)                                                           \
+  do {                                                                                            \
+    uint32_t v;                                                                                   \
     __asm__ volatile("mrc p15, " #op1 ", %0, c" #n ", c" #m ", " #op2 : "=r"(v)::"lr", "memory"); \
-    note(v & (mask), 0, 0, 0);                                                                \
+    note(v &(mask), 0, 0, 0);                                                                     \
   } while (0)
 
 fragment user_reads_id, user_reads_control, user_writes_domains, user_drains, user_invalidates,

@@ -44,8 +44,8 @@ void program(void) {
             continue;
           }
           for (uint32_t page = 0; page < 4; ++page) {
-            static const char *const kCoarse[] = {"coarse, no page", "coarse, large", "coarse, small",
-                                                  "coarse, reserved"};
+            static const char *const kCoarse[] = {"coarse, no page", "coarse, large",
+                                                  "coarse, small", "coarse, reserved"};
             static const char *const kFine[] = {"fine, no page", "fine, large", "fine, small",
                                                 "fine, tiny"};
             named(name3((type == 1 ? kCoarse : kFine)[page], domain, mode, ap));

@@ -8,14 +8,18 @@ void switch_process(uint32_t pid);
 enum { kLow = 0x01C00000, kMegabyte = 0x100000 };
 
 static void accesses(void) {
-  static const uint32_t kAt[] = {kLow,     kLow + kMegabyte,       kLow + 2 * kMegabyte,
-                                 kTestVa,  kLow + 3 * kMegabyte,   0x04C00000u,
-                                 kTestVa + kMegabyte};
-  static fragment *const kSome[] = {read_word, write_byte, run_there, write_many, read_word_as_user};
+  static const uint32_t kAt[] = {
+      kLow,        kLow + kMegabyte,   kLow + 2 * kMegabyte, kTestVa, kLow + 3 * kMegabyte,
+      0x04C00000u, kTestVa + kMegabyte};
+  static fragment *const kSome[] = {read_word, write_byte, run_there, write_many,
+                                    read_word_as_user};
   for (unsigned n = 0; n < sizeof kAt / sizeof *kAt; ++n)
     for (int user = 0; user < 2; ++user)
       for (unsigned k = 0; k < sizeof kSome / sizeof *kSome; ++k)
-        note(probe(kSome[k], kAt[n] + (kSome[k] == run_there ? 0x100 : kSome[k] == write_byte ? 9 : 64),
+        note(probe(kSome[k],
+                   kAt[n] + (kSome[k] == run_there    ? 0x100
+                             : kSome[k] == write_byte ? 9
+                                                      : 64),
                    user),
              n, k, (uint32_t)user);
 }

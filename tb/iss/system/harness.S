@@ -15,7 +15,7 @@
   .set kAdpExit, 0x20026
 
   .section .vectors, "ax"
-  .global _start, resume, options, log_at, finish, high_vectors, slots
+  .global _start, resume, options, log_at, finish, high_vectors, slots, stack_top
 _start:
   .rept 8
   ldr pc, [pc, #24]

@@ -11,7 +11,9 @@ static const char *const kKindNames[] = {"section", "large page", "small page", 
 static void map(unsigned kind, unsigned ap) {
   const uint32_t quarters = ap | ((ap + 1) & 3) << 2 | ((ap + 2) & 3) << 4 | ((ap + 3) & 3) << 6;
   switch (kind) {
-    case kSection: *level1(kTestVa) = kTestPa | ap << 10 | 1u << 5 | 0x12u | cached(); break;
+    case kSection:
+      *level1(kTestVa) = kTestPa | ap << 10 | 1u << 5 | 0x12u | cached();
+      break;
     case kLarge:
       for (unsigned k = 0; k < 16; ++k) coarse[k] = kTestPa | quarters << 4 | 1u | cached();
       *level1(kTestVa) = (uint32_t)coarse | 1u << 5 | 0x11u;
@@ -28,9 +30,10 @@ static void map(unsigned kind, unsigned ap) {
 }
 
 static fragment *const kAll[] = {
-    read_word, read_byte, read_half, write_word, write_byte, write_half, run_there,
-    run_thumb_there, read_double, write_double, read_many, write_many, swap_word, swap_byte,
-    read_word_as_user, write_word_as_user, read_byte_as_user, write_byte_as_user};
+    read_word,          read_byte,         read_half,         write_word,  write_byte,
+    write_half,         run_there,         run_thumb_there,   read_double, write_double,
+    read_many,          write_many,        swap_word,         swap_byte,   read_word_as_user,
+    write_word_as_user, read_byte_as_user, write_byte_as_user};
 
 static volatile uint32_t *const plain = (uint32_t *)kTestPa;
 

@@ -19,7 +19,8 @@ void refresh(void);
 uint32_t cached(void);  ///< C and B bits that test pages get: 0, or write-back if caches are on
 
 typedef void fragment(void);
-/// Runs a fragment with r1 = va in user mode or in supervisor mode; what it leaves in r0 comes back.
+/// Runs a fragment with r1 = va in user mode or in supervisor mode; what it leaves in r0 comes
+/// back.
 uint32_t probe(fragment *what, uint32_t va, int user);
 fragment read_word, read_byte, read_half, write_word, write_byte, write_half, run_there,
     run_thumb_there, read_double, write_double, read_many, write_many, swap_word, swap_byte,
