@@ -352,14 +352,16 @@ class Writer {
     maybe(kWrites[pick(7)] | r << 12);
   }
 
-  /// S, R and A; the register is cleared behind, as caches differ from run to run.
+  /// S, R, A and V; the register is cleared behind, as caches differ from run to run.
   void control() {
-    const Word r = low(), sr = pick(3), a = pick(2);
+    const Word r = low(), sr = pick(3), a = pick(2), v = one_in(3);
     put(0xEE110F10u | r << 12);
     put(0xE3C00C03u | r << 16 | r << 12);
     put(0xE3C00002u | r << 16 | r << 12);
     put(0xE3800C00u | sr | r << 16 | r << 12);
     if (a) put(0xE3800002u | r << 16 | r << 12);
+    put(0xE3C00A02u | r << 16 | r << 12);
+    if (v) put(0xE3800A02u | r << 16 | r << 12);
     put(0xEE010F10u | r << 12);
     put(0xE3A00000u | r << 12);
     if (privileged()) aligned_ = a;

@@ -312,7 +312,7 @@ const WalkPlant kInWalks[] = {
     {"another domain",
      [](SystemMachine& m) {
        m.port.after = [](BusAccess& a) {
-         if (first_level(a) && a.address >= kTables + 0x1000u) a.data[0] ^= 0x40;
+         if (a.address - (kTables + 0x1000u) < 0x28u && first_level(a)) a.data[0] ^= 0x40;
        };
      }},
     {"no access counts as client",
