@@ -16,6 +16,11 @@ static unsigned bytes(unsigned region) { return region == 5 ? 0x21000u : 0x9000u
 /// AP of a page's quarter: all four values, none of them always beside the same.
 static uint32_t ap_of(unsigned page, unsigned quarter) { return (page * 5 / 2 + quarter * 3) & 3; }
 
+/// C and B of a page: every kind if caches are on. What is fetched from is cached.
+static uint32_t kind_of(unsigned region, unsigned page) {
+  return region == 8 ? cached() : ((region + page) << 2) & cached();
+}
+
 void random_prepare(void) {
   mmu_on();
   uint32_t *coarse = (uint32_t *)(kTables + 0x5000), *fine = (uint32_t *)(kTables + 0x8000);
@@ -24,12 +29,12 @@ void random_prepare(void) {
     uint32_t *l1 = level1(kTestVa + k * 0x100000u);
     if (k == 7) continue;  // absent
     if (k < 4) {
-      *l1 = pa | (3 - k) << 10 | domain | 0x12u | cached();
+      *l1 = pa | (3 - k) << 10 | domain | 0x12u | kind_of(k, 0);
       continue;
     }
     if (k == 6) {
       for (unsigned n = 0; n < 1024; ++n)
-        fine[n] = (pa + n * 0x400u) | ap_of(n, n >> 4) << 4 | 3u | cached();
+        fine[n] = (pa + n * 0x400u) | ap_of(n, n >> 4) << 4 | 3u | kind_of(k, n);
       *l1 = (uint32_t)fine | domain | 0x13u;
       continue;
     }
@@ -37,11 +42,11 @@ void random_prepare(void) {
       uint32_t ap = 0;
       for (unsigned q = 0; q < 4; ++q) ap |= ap_of(k == 5 ? n >> 4 : n, q) << (4 + 2 * q);
       if (k == 5)
-        coarse[n] = (pa + (n & ~15u) * 0x1000u) | ap | 1u | cached();
+        coarse[n] = (pa + (n & ~15u) * 0x1000u) | ap | 1u | kind_of(k, n >> 4);
       else if (k == 9 && n % 3 == 1)  // domain 15 stays client: QEMU checks it first
         coarse[n] = 0;
       else
-        coarse[n] = (pa + n * 0x1000u) | ap | 2u | cached();
+        coarse[n] = (pa + n * 0x1000u) | ap | 2u | kind_of(k, n);
     }
     *l1 = (uint32_t)coarse | (k == 9 ? 15u << 5 : domain) | 0x11u;
     coarse += 256;
