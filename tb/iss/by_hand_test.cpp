@@ -89,6 +89,23 @@ TEST_F(ByHandTest, FaultAddressIsTheModifiedOne) {
   EXPECT_EQ(m.core.reg(9), 9u);
 }
 
+/// L4, bit 15 of the control register: loads of the pc do as in ARMv4, bit 0 changes no state.
+/// QEMU keeps the bit without effect.
+TEST_F(ByHandTest, LoadsOfThePcKeepTheStateUnderL4) {
+  go("ldr r6, =0x4800\n mov r7, #0\n mov r9, #0\n mrc p15, 0, r0, c1, c0, 0\n"
+     "orr r0, r0, #0x8000\n mcr p15, 0, r0, c1, c0, 0\n"
+     "adr r1, 1f\n orr r1, r1, #1\n str r1, [r6]\n ldr pc, [r6]\n mov r9, #1\n"
+     "1: orr r7, r7, #1\n adr r1, 2f\n orr r1, r1, #1\n str r1, [r6, #4]\n mov r2, r6\n"
+     "ldmia r2!, {r3, pc}\n mov r9, #2\n"
+     "2: orr r7, r7, #2\n mov sp, r6\n adr r1, 3f\n str r1, [r6]\n adr r0, 4f + 1\n bx r0\n"
+     ".thumb\n 4: pop {pc}\n .balign 4\n"
+     "3: movs r5, #7\n mov r10, r5\n .balign 4\n bx pc\n nop\n .arm\n");
+  EXPECT_TRUE(faults().empty());
+  EXPECT_EQ(m.core.reg(9), 0u);
+  EXPECT_EQ(m.core.reg(7), 3u) << "LDR and LDM stayed in ARM state";
+  EXPECT_EQ(m.core.reg(10), 7u) << "POP stayed in Thumb state at an even address";
+}
+
 /// The second half of BLX has bit 0 clear; QEMU takes it as a branch all the same.
 TEST_F(ByHandTest, OddSecondHalfOfBlxIsUndefined) {
   go("adr r0, 1f + 1\n bx r0\n .thumb\n1:\n .inst.n 0xe801\n .balign 4\n bx pc\n nop\n .arm\n");
