@@ -92,7 +92,8 @@ TEST_P(SystemDifferentialTest, LeavesWhatQemuLeaves) {
   const std::string stem = SYSTEM_DIR "/system_" + GetParam();
   const auto image = read_file(stem + ".bin");
   const std::string by_qemu = by_qemu_system(stem + ".elf");
-  for (const bool caches : {false, true}) {
+  for (const Caches caches : {Caches::kNone, Caches::kBoth}) {
+    const char* with = kCacheNames[static_cast<unsigned>(caches)];
     SystemMachine m;
     m.load(0, image);
     m.run(caches);
@@ -110,10 +111,10 @@ TEST_P(SystemDifferentialTest, LeavesWhatQemuLeaves) {
       else if (++wrong <= 20)
         ADD_FAILURE() << d.text();
     }
-    EXPECT_EQ(wrong, 0u) << "differences" << (caches ? " with caches" : "");
-    std::cout << GetParam() << (caches ? " cached: " : " uncached: ") << got.size() - 1
-              << " cases, " << entries << " entries, " << m.core.counts().instructions
-              << " instructions\n";
+    EXPECT_EQ(wrong, 0u) << "differences"
+                         << ", " << with;
+    std::cout << GetParam() << ", " << with << ": " << got.size() - 1 << " cases, " << entries
+              << " entries, " << m.core.counts().instructions << " instructions\n";
     for (const Excuse& e : kExcuses) {
       if (e.program != GetParam()) continue;
       std::cout << "  " << used[&e] << " excused: " << e.why << "\n";
@@ -130,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Programs, SystemDifferentialTest,
 TEST(SystemTest, AllOperationsReturnFromExceptionsAlike) {
   SystemMachine m;
   m.load(0, read_file(SYSTEM_DIR "/system_returns.bin"));
-  m.run(true);
+  m.run(Caches::kBoth);
   const auto log = parse_log(m.output, [&m](std::uint32_t a) { return m.byte(a); });
   std::map<std::string, const LogCase*> by_name;
   for (const LogCase& c : log) by_name[c.name] = &c;

@@ -63,6 +63,9 @@ class SystemPort : public FlatPort {
   std::uint32_t raised_ = 0, enable_ = 0, select_ = 0;
 };
 
+enum class Caches : std::uint32_t { kNone, kI, kD, kBoth };
+inline constexpr const char* kCacheNames[] = {"no caches", "I-cache", "D-cache", "both caches"};
+
 class SystemMachine {
  public:
   static constexpr std::size_t kBytes = 32u << 20;
@@ -91,13 +94,13 @@ class SystemMachine {
     std::memcpy(port.at(address), bytes.data(), bytes.size());
   }
   /// Runs what lies at 0, with internal RAM out of the way, until it exits. @return its output
-  const std::string& run(bool caches) {
+  const std::string& run(Caches caches) {
     static const Program prelude = assemble(
         " mov r0, #0x18\n mcr p15, 0, r0, c9, c1, 1\n orr r0, r0, #0x10000\n"
         " mcr p15, 0, r0, c9, c1, 0\n mov pc, #0\n",
         kPrelude);
     load(kPrelude, prelude.bytes);
-    port.set_word(kOptions, caches);
+    port.set_word(kOptions, static_cast<std::uint32_t>(caches));
     port.schedule(2'000 * kPsPerMs, [] { throw std::runtime_error("the program does not end"); });
     core.reset(kPrelude, 0);
     core.run();

@@ -64,7 +64,7 @@ struct Here {
 };
 
 /// @param plant what imitates a defect, if any
-Here by_core(const SystemCode& code, bool caches,
+Here by_core(const SystemCode& code, Caches caches,
              const std::function<void(SystemMachine&)>& plant = {}) {
   static const auto image = read_file(SYSTEM_DIR "/system_random.bin");
   SystemMachine m;
@@ -106,11 +106,13 @@ TEST(SystemRandomTest, SequencesLeaveWhatQemuLeaves) {
   std::map<std::uint32_t, unsigned> kinds, statuses;
   for (std::uint64_t seed = first_seed(); seed < first_seed() + 6; ++seed) {
     const SystemCode code = generate_system(seed, 250, 40, symbol("resume"));
-    const Here plain = by_core(code, false), cached = by_core(code, true);
+    const Here plain = by_core(code, Caches::kNone);
     const Log want = by_qemu(code, plain.log);
-    for (const Here* here : {&plain, &cached}) {
-      const auto wrong = compare_logs(here->log, want, aborted_load(code));
-      EXPECT_TRUE(wrong.empty()) << "seed " << seed << (here == &cached ? " with caches: " : ": ")
+    for (const Caches caches : {Caches::kNone, Caches::kI, Caches::kD, Caches::kBoth}) {
+      const Here here = caches == Caches::kNone ? plain : by_core(code, caches);
+      const auto wrong = compare_logs(here.log, want, aborted_load(code));
+      EXPECT_TRUE(wrong.empty()) << "seed " << seed << ", "
+                                 << kCacheNames[static_cast<unsigned>(caches)] << ": "
                                  << wrong.size() << ", first " << wrong.front().text();
     }
     std::cout << "seed " << seed << ": " << code.instructions << " instructions, "
@@ -348,11 +350,12 @@ void plant(SystemMachine& m, const Plant& p, bool at_return, std::uint64_t from,
 
 TEST(SystemRandomTest, ComparisonComplainsAboutPlantedDefects) {
   const SystemCode code = generate_system(4711, 120, 40, symbol("resume"));
-  const Log right = by_core(code, false).log, want = by_qemu(code, right);
+  const Log right = by_core(code, Caches::kNone).log, want = by_qemu(code, right);
   ASSERT_TRUE(compare_logs(right, want, aborted_load(code)).empty());
   const auto look_for = [&](const char* what, const std::function<void(SystemMachine&)>& set) {
     try {
-      const auto wrong = compare_logs(by_core(code, false, set).log, want, aborted_load(code));
+      const auto wrong =
+          compare_logs(by_core(code, Caches::kNone, set).log, want, aborted_load(code));
       EXPECT_FALSE(wrong.empty()) << what;
       if (!wrong.empty())
         std::cout << what << ": " << wrong.size() << ", first " << wrong.front().text() << "\n";

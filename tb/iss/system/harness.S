@@ -22,7 +22,7 @@ _start:
   .endr
   .word boot, low_1, low_2, low_3, low_4, low_5, low_6, low_7
 options:
-  .word 0  @ bit 0: caches on; the host may set it
+  .word 0  @ bit 0: I-cache on, bit 1: D-cache; the host may set them
 
 .macro stub set, kind, code
 \set\()_\kind:

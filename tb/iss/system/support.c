@@ -7,7 +7,7 @@ void program(void);
 
 uint32_t *level1(uint32_t va) { return (uint32_t *)kTables + (va >> 20); }
 
-uint32_t cached(void) { return options & 1 ? 0xC : 0; }
+uint32_t cached(void) { return options ? 0xC : 0; }
 
 uint32_t control(void) {
   uint32_t v;
@@ -45,7 +45,7 @@ void mmu_on(void) {
   set_table(kTables);
   set_domains(1);
   refresh();
-  set_control(control() | 1u | (options & 1 ? 0x1004u : 0));
+  set_control(control() | 1u | (options & 1 ? 0x1000u : 0) | (options & 2 ? 4u : 0));
 }
 
 /// Text of a name with up to three hexadecimal numbers; each text has a place of its own.
