@@ -1,6 +1,8 @@
 // Compiled programs print the same here and under qemu-arm, with and without caches.
 #include <chrono>
 #include <iostream>
+#include <iterator>
+#include <sstream>
 
 #include "tb/iss/machine.h"
 
@@ -46,13 +48,11 @@ TEST_P(DifferentialTest, PrintsWhatQemuPrints) {
     EXPECT_EQ(m.output, want);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Programs, DifferentialTest,
-                         testing::Values("floats_arm_O0", "floats_arm_O2", "floats_arm_Os",
-                                         "floats_thumb_O1", "floats_thumb_Os", "integers_arm_O0",
-                                         "integers_arm_O2", "integers_arm_Os", "integers_thumb_O1",
-                                         "integers_thumb_Os", "compress_arm_O0", "compress_arm_O2",
-                                         "compress_arm_Os", "compress_thumb_O1",
-                                         "compress_thumb_Os"),
+std::vector<std::string> programs() {
+  std::istringstream in(PROGRAMS);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+INSTANTIATE_TEST_SUITE_P(Programs, DifferentialTest, testing::ValuesIn(programs()),
                          [](const auto& row) { return row.param; });
 
 }  // namespace

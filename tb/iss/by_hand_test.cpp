@@ -1,0 +1,119 @@
+// System behaviour in which QEMU is no oracle, with expectations from the architecture manual.
+#include "tb/iss/vectors.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+constexpr std::uint32_t kCoarse = kTables + 0x8000, kOther = kTables + 0x1'0000;
+constexpr std::uint32_t kVa = 0x0800'0000, kPa = 0x0030'0000;
+const std::string kStart = kVectors + kCachesOn + " ldr r4, =0x08000000\n ldr r5, =0x01010000\n";
+static_assert(kOther == 0x0101'0000);
+
+class ByHandTest : public testing::Test {
+ protected:
+  Machine m;
+  void go(const std::string& text) { m.execute(kStart + text); }
+  std::vector<Taken> faults() const { return taken(m); }
+  /// A second set of tables, equal but for kVa, which it maps a megabyte further.
+  void second_tables() {
+    m.section(kVa, kPa, 0, 0);
+    for (unsigned s = 0; s < 4096; ++s)
+      m.port.set_word(kOther + 4 * s, m.port.word(kTables + 4 * s));
+    m.port.set_word(kOther + 4 * (kVa >> 20), (kPa + 0x100000) | 0xC12u);
+    m.port.set_word(kPa, 1);
+    m.port.set_word(kPa + 0x100000, 2);
+  }
+};
+
+/// QEMU's TLB holds another number of entries, so what is stale there says nothing.
+TEST_F(ByHandTest, TableBaseChangeLeavesKnownEntriesAsTheyAre) {
+  second_tables();
+  go("ldr r0, [r4]\n mcr p15, 0, r5, c2, c0, 0\n ldr r1, [r4]\n mov r3, #0\n"
+     "mcr p15, 0, r3, c8, c7, 0\n ldr r2, [r4]\n mrc p15, 0, r6, c2, c0, 0\n");
+  EXPECT_EQ(m.core.reg(0), 1u);
+  EXPECT_EQ(m.core.reg(1), 1u) << "from the TLB";
+  EXPECT_EQ(m.core.reg(2), 2u) << "from the new tables";
+  EXPECT_EQ(m.core.reg(6), kOther);
+}
+
+TEST_F(ByHandTest, TableBaseChangeHoldsForUnknownPagesAtOnce) {
+  second_tables();
+  go("mcr p15, 0, r5, c2, c0, 0\n ldr r1, [r4]\n");
+  EXPECT_EQ(m.core.reg(1), 2u);
+}
+
+TEST_F(ByHandTest, MmuOffAndOnKeepsTheTlb) {
+  m.section(kVa, kPa, 0, 0);
+  m.port.set_word(kPa, 1);
+  m.port.set_word(kPa + 0x100000, 2);
+  m.on_svc = [this](std::uint32_t) { m.section(kVa, kPa + 0x100000, 0, 0); };
+  go("ldr r0, [r4]\n mrc p15, 0, r6, c1, c0, 0\n bic r7, r6, #1\n mcr p15, 0, r7, c1, c0, 0\n"
+     "svc #3\n mcr p15, 0, r6, c1, c0, 0\n ldr r1, [r4]\n mcr p15, 0, r4, c8, c7, 1\n"
+     "ldr r2, [r4]\n");
+  EXPECT_EQ(m.core.reg(0), 1u);
+  EXPECT_EQ(m.core.reg(1), 1u);
+  EXPECT_EQ(m.core.reg(2), 2u);
+}
+
+/// ARM ARM, sequence for checking faults: both descriptors are read before the domain is checked.
+TEST_F(ByHandTest, NoPageGoesBeforeNoAccess) {
+  m.port.set_word(kTables + 4 * (kVa >> 20), kCoarse | 6u << 5 | 0x11u);
+  m.port.set_word(kCoarse, 0);
+  go("mov r0, #1\n mcr p15, 0, r0, c3, c0, 0\n ldr r0, [r4]\n");
+  const auto f = faults();
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].dfsr, 0x67u);
+}
+
+TEST_F(ByHandTest, FaultAddressIsTheModifiedOne) {
+  // Code above 32 MB is not moved: it runs from there, under process 4. The handlers are found
+  // where the process has them: internal RAM lies at the modified address, so they get a section.
+  m.section(0x0a00'0000, 0x0020'0000, 1, 0);
+  m.section(0x0800'0000, 0x0010'0000, 0, 0);
+  m.port.set_word(kTables + 4 * (0x0810'0000u >> 20), 0);
+  // The data abort vector of process 4 puts what it sees into registers and leaves the process.
+  const Program vector = assemble(
+      ".space 0x10\n mrc p15, 0, r7, c6, c0, 0\n mrc p15, 0, r8, c5, c0, 0\n mov r9, #9\n"
+      "mcr p15, 0, r6, c13, c0, 0\n mov pc, r10\n",
+      0x0010'0000);
+  m.load(vector);
+  const Program there = assemble(
+      "mov r6, #0\n ldr r10, =0x0a000040\n ldr r1, =0x00100008\n ldr r0, =0x08000000\n"
+      "mcr p15, 0, r0, c13, c0, 0\n ldrb r2, [r1, #3]\n b .\n .ltorg\n"
+      ".org 0x40\n mov pc, r11\n",
+      0x0020'0000);
+  m.load(there);
+  go("ldr r0, =0x0a000000\n adr r11, 1f\n mov pc, r0\n1:\n");
+  EXPECT_EQ(m.core.reg(7), 0x0810'000Bu);
+  EXPECT_EQ(m.core.reg(8) & 15u, 5u);
+  EXPECT_EQ(m.core.reg(9), 9u);
+}
+
+/// L4, bit 15 of the control register: loads of the pc do as in ARMv4, bit 0 changes no state.
+/// QEMU keeps the bit without effect.
+TEST_F(ByHandTest, LoadsOfThePcKeepTheStateUnderL4) {
+  go("ldr r6, =0x4800\n mov r7, #0\n mov r9, #0\n mrc p15, 0, r0, c1, c0, 0\n"
+     "orr r0, r0, #0x8000\n mcr p15, 0, r0, c1, c0, 0\n"
+     "adr r1, 1f\n orr r1, r1, #1\n str r1, [r6]\n ldr pc, [r6]\n mov r9, #1\n"
+     "1: orr r7, r7, #1\n adr r1, 2f\n orr r1, r1, #1\n str r1, [r6, #4]\n mov r2, r6\n"
+     "ldmia r2!, {r3, pc}\n mov r9, #2\n"
+     "2: orr r7, r7, #2\n mov sp, r6\n adr r1, 3f\n str r1, [r6]\n adr r0, 4f + 1\n bx r0\n"
+     ".thumb\n 4: pop {pc}\n .balign 4\n"
+     "3: movs r5, #7\n mov r10, r5\n .balign 4\n bx pc\n nop\n .arm\n");
+  EXPECT_TRUE(faults().empty());
+  EXPECT_EQ(m.core.reg(9), 0u);
+  EXPECT_EQ(m.core.reg(7), 3u) << "LDR and LDM stayed in ARM state";
+  EXPECT_EQ(m.core.reg(10), 7u) << "POP stayed in Thumb state at an even address";
+}
+
+/// The second half of BLX has bit 0 clear; QEMU takes it as a branch all the same.
+TEST_F(ByHandTest, OddSecondHalfOfBlxIsUndefined) {
+  go("adr r0, 1f + 1\n bx r0\n .thumb\n1:\n .inst.n 0xe801\n .balign 4\n bx pc\n nop\n .arm\n");
+  const auto f = faults();
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].kind, 1u);
+  EXPECT_EQ(f[0].spsr & 0x20u, 0x20u);
+}
+
+}  // namespace
+}  // namespace fovea::cpu::test
