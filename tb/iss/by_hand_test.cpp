@@ -89,6 +89,25 @@ TEST_F(ByHandTest, FaultAddressIsTheModifiedOne) {
   EXPECT_EQ(m.core.reg(9), 9u);
 }
 
+/// ARM DDI 0198, FCSE PID register: operations by address take the address as the modified one.
+TEST_F(ByHandTest, CacheOperationsByAddressAreNotMoved) {
+  m.section(0x0a00'0000, 0x0020'0000, 1, 0);
+  m.section(0x0800'0000, 0x0010'0000, 1, 1);
+  m.port.set_word(0x0040'0000, 1);
+  m.port.set_word(0x0040'0020, 1);
+  // Dirty lines of process 0, cleaned (r1) or thrown away (r2) while process 4 is on.
+  m.load(
+      assemble("ldr r0, =0x08000000\n mov r6, #0\n mcr p15, 0, r0, c13, c0, 0\n"
+               "mcr p15, 0, r1, c7, c10, 1\n mcr p15, 0, r2, c7, c6, 1\n"
+               "mcr p15, 0, r6, c7, c10, 4\n mcr p15, 0, r6, c13, c0, 0\n mov pc, lr\n .ltorg\n",
+               0x0020'0000));
+  go("ldr r1, =0x00400000\n add r2, r1, #32\n ldr r0, [r1]\n ldr r0, [r2]\n mov r0, #2\n"
+     "str r0, [r1]\n str r0, [r2]\n ldr r0, =0x0a000000\n blx r0\n ldr r7, [r2]\n");
+  EXPECT_TRUE(faults().empty());
+  EXPECT_EQ(m.port.word(0x0040'0000), 2u) << "cleaned";
+  EXPECT_EQ(m.core.reg(7), 1u) << "invalidated, read again";
+}
+
 /// L4, bit 15 of the control register: loads of the pc do as in ARMv4, bit 0 changes no state.
 /// QEMU keeps the bit without effect.
 TEST_F(ByHandTest, LoadsOfThePcKeepTheStateUnderL4) {

@@ -46,8 +46,8 @@ const Excuse kExcuses[] = {
                                   : 0x10000000u + 0x01010101u * r);
      }},
     {"faults",
-     "the domain of a translation fault without a second level is not valid (ARM ARM table of "
-     "fault status codes): 0 here, that of the descriptor in QEMU",
+     "the domain of a translation fault without a second level is not valid (ARM DDI 0198D "
+     "table 3-9): 0 here, that of the descriptor in QEMU",
      [](const Difference& d, SystemMachine&) {
        return (d.field == "dfsr" || d.field == "ifsr") && d.core == 5 && (d.qemu & 15u) == 5 &&
               d.where.starts_with("no section");

@@ -155,8 +155,8 @@ bool Core::cache_operation(unsigned crm, unsigned op2, std::uint32_t v) {
     line_va_ = 1;
     fetch_buffer_pa_ = 1;
   };
-  // Lines are found by MVA: the D-side register holds a virtual address that FCSE modifies.
-  const std::uint32_t mva = modified(v & ~31u);
+  // The register holds the modified address: FCSE does not apply here (ARM DDI 0198D 2-34).
+  const std::uint32_t mva = v & ~31u;
   switch (crm << 4 | op2) {
     case 0x04: wait_for_interrupt(); return true;
     case 0x50: all(); invalidate_all_i(); return true;

@@ -18,19 +18,17 @@
 int main(void) {
   static const int kInts[] = {0, 1, -1, 42, -12345, INT_MAX, INT_MIN};
   static const long long kLongs[] = {0, -1, 1234567890123456789LL, LLONG_MAX, LLONG_MIN};
-  static const double kDoubles[] = {0.0,     -0.0,    1.0,     -1.5,    0.1,          123456.789,
-                                    1e-10,   -9.9e22, DBL_MAX, DBL_MIN, 4.9406565e-324, 0.5,
-                                    999999.5, 2.5,    1e15,    INFINITY, -INFINITY};
-  static const char *const kIntFormats[] = {"[%d]",   "[%5d]",   "[%-8d]", "[%08d]", "[%+d]",
-                                            "[% d]",  "[%.4d]",  "[%10.6d]", "[%i]", "[%u]",
-                                            "[%x]",   "[%X]",    "[%#x]",  "[%#o]",  "[%o]",
-                                            "[%-#12x]", "[%+.0d]", "[%hd]", "[%hhd]", "[%hu]",
-                                            "[%hhx]"};
-  static const char *const kDoubleFormats[] = {"[%f]",    "[%.0f]",  "[%10.3f]", "[%-12.2f]",
-                                               "[%+e]",   "[%.0e]",  "[%#.0e]",  "[%12.4E]",
-                                               "[%g]",    "[%.3g]",  "[%#g]",    "[%G]",
-                                               "[%.17g]", "[%a]",    "[%.2a]",   "[%A]",
-                                               "[%020.5f]", "[% f]"};
+  static const double kDoubles[] = {
+      0.0,     -0.0,           1.0, -1.5,     0.1, 123456.789, 1e-10,    -9.9e22,  DBL_MAX,
+      DBL_MIN, 4.9406565e-324, 0.5, 999999.5, 2.5, 1e15,       INFINITY, -INFINITY};
+  static const char *const kIntFormats[] = {
+      "[%d]",     "[%5d]",    "[%-8d]",  "[%08d]", "[%+d]",  "[% d]", "[%.4d]",
+      "[%10.6d]", "[%i]",     "[%u]",    "[%x]",   "[%X]",   "[%#x]", "[%#o]",
+      "[%o]",     "[%-#12x]", "[%+.0d]", "[%hd]",  "[%hhd]", "[%hu]", "[%hhx]"};
+  static const char *const kDoubleFormats[] = {
+      "[%f]",    "[%.0f]",   "[%10.3f]", "[%-12.2f]", "[%+e]",     "[%.0e]",
+      "[%#.0e]", "[%12.4E]", "[%g]",     "[%.3g]",    "[%#g]",     "[%G]",
+      "[%.17g]", "[%a]",     "[%.2a]",   "[%A]",      "[%020.5f]", "[% f]"};
   char line[400];
   for (unsigned f = 0; f < sizeof kIntFormats / sizeof *kIntFormats; ++f) {
     for (unsigned k = 0; k < sizeof kInts / sizeof *kInts; ++k) {
@@ -41,8 +39,8 @@ int main(void) {
   }
   for (unsigned k = 0; k < sizeof kLongs / sizeof *kLongs; ++k)
     say("%lld|%llu|%llx|%#llo|%+25lld|%-25lld|%025lld|%ld|%jd|%zu|%td\n", kLongs[k], kLongs[k],
-        kLongs[k], kLongs[k], kLongs[k], kLongs[k], kLongs[k], (long)kLongs[k],
-        (intmax_t)kLongs[k], (size_t)kLongs[k], (ptrdiff_t)kLongs[k]);
+        kLongs[k], kLongs[k], kLongs[k], kLongs[k], kLongs[k], (long)kLongs[k], (intmax_t)kLongs[k],
+        (size_t)kLongs[k], (ptrdiff_t)kLongs[k]);
   for (unsigned f = 0; f < sizeof kDoubleFormats / sizeof *kDoubleFormats; ++f) {
     for (unsigned k = 0; k < sizeof kDoubles / sizeof *kDoubles; ++k) {
       const int n = snprintf(line, sizeof line, kDoubleFormats[f], kDoubles[k]);
@@ -68,11 +66,13 @@ int main(void) {
   float e = 0;
   char word[16] = "", set[16] = "";
   long long l = 0;
-  n = sscanf("  -17 0x1f 077 3.25e2 word:abc123 99999999999 7.5", "%d %i %o %lf %[a-z]:%15s %lld %f",
-             &a, &b, &u, &d, set, word, &l, &e);
+  n = sscanf("  -17 0x1f 077 3.25e2 word:abc123 99999999999 7.5",
+             "%d %i %o %lf %[a-z]:%15s %lld %f", &a, &b, &u, &d, set, word, &l, &e);
   say("%d: %d %d %u %g %s %s %lld %g\n", n, a, b, u, d, set, word, l, (double)e);
-  static const char *const kTexts[] = {"0", "-0x1p-3", "1e400", "-1e-400", "nan", "inf", "12abc",
-                                       " 2147483648", "-9223372036854775809", "0777", "zz", ""};
+  static const char *const kTexts[] = {"0",       "-0x1p-3",     "1e400",
+                                       "-1e-400", "nan",         "inf",
+                                       "12abc",   " 2147483648", "-9223372036854775809",
+                                       "0777",    "zz",          ""};
   for (unsigned k = 0; k < sizeof kTexts / sizeof *kTexts; ++k) {
     char *end;
     errno = 0;
@@ -88,7 +88,8 @@ int main(void) {
   }
   static char text[] = "one,two;;three four";
   for (char *t = strtok(text, ",; "); t; t = strtok(NULL, ",; ")) say("<%s>", t);
-  say("\n%d %d %s\n", (int)strspn("aabbc", "ab"), (int)strcspn("hello", "l"), strrchr("a/b/c", '/'));
+  say("\n%d %d %s\n", (int)strspn("aabbc", "ab"), (int)strcspn("hello", "l"),
+      strrchr("a/b/c", '/'));
   const div_t q = div(-17, 5);
   const lldiv_t r = lldiv(-1234567890123LL, 1000);
   say("%d %d %lld %lld %d %ld\n", q.quot, q.rem, r.quot, r.rem, abs(-3), labs(-4));

@@ -39,8 +39,10 @@ static uint32_t root_fraction(uint32_t p, unsigned r) {
     }
     int above = limbs[r] >= p;
     for (unsigned i = r + 1; i < 5; ++i) above |= limbs[i] != 0;
-    if (above) high = x;
-    else low = x;
+    if (above)
+      high = x;
+    else
+      low = x;
   }
   return (uint32_t)low;
 }
@@ -60,8 +62,8 @@ static void block(sha256 *s) {
     const uint32_t e = v[4], a = v[0];
     const uint32_t t = v[7] + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) +
                        ((e & v[5]) ^ (~e & v[6])) + constants[k] + w[k];
-    const uint32_t u = (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) +
-                       ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
+    const uint32_t u =
+        (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
     memmove(v + 1, v, 7 * sizeof *v);
     v[4] += t;
     v[0] = t + u;

@@ -67,20 +67,29 @@ int dive(int depth, int how) {
   std::vector<Counted> some(static_cast<std::size_t>(depth % 3), here);
   if (depth == 0) {
     switch (how) {
-      case 0: throw Odd("odd", 5);
-      case 1: throw std::out_of_range("range");
-      case 2: throw 42;
-      case 3: throw std::string("a string");
-      case 4: return static_cast<int>(std::vector<int>(3).at(static_cast<std::size_t>(how)));
-      case 5: return std::stoi("no number");
-      case 6: return static_cast<int>(std::string("abc").substr(9).size());
+      case 0:
+        throw Odd("odd", 5);
+      case 1:
+        throw std::out_of_range("range");
+      case 2:
+        throw 42;
+      case 3:
+        throw std::string("a string");
+      case 4:
+        return static_cast<int>(std::vector<int>(3).at(static_cast<std::size_t>(how)));
+      case 5:
+        return std::stoi("no number");
+      case 6:
+        return static_cast<int>(std::string("abc").substr(9).size());
       case 7: {
         Shape* s = new Square(1);
         std::unique_ptr<Shape> owner(s);
         return dynamic_cast<Tagged&>(*s).tag();
       }
-      case 8: return *new int[1u << 26];
-      default: return how;
+      case 8:
+        return *new int[1u << 26];
+      default:
+        return how;
     }
   }
   try {
@@ -108,7 +117,9 @@ std::string joined(const T& items) {
 
 struct Greater {
   template <typename T>
-  bool operator()(const T& a, const T& b) const { return b < a; }
+  bool operator()(const T& a, const T& b) const {
+    return b < a;
+  }
 };
 
 int calls = 0;
@@ -161,7 +172,8 @@ int main() {
   for (auto& n : numbers) n = static_cast<int>(next() >> 20) - 2048;
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  say("%d %d\n", static_cast<int>(numbers.size()), std::accumulate(numbers.begin(), numbers.end(), 0));
+  say("%d %d\n", static_cast<int>(numbers.size()),
+      std::accumulate(numbers.begin(), numbers.end(), 0));
   std::stable_sort(numbers.begin(), numbers.end(), [](int a, int b) { return a % 10 < b % 10; });
   numbers.resize(20);
   say("%s\n", joined(numbers).c_str());
@@ -188,7 +200,8 @@ int main() {
   std::weak_ptr<Counted> weak = shared;
   std::vector<std::function<int(int)>> steps;
   for (int k = 1; k < 5; ++k)
-    steps.emplace_back([k, shared](int v) { return v * k + static_cast<int>(shared->name.size()); });
+    steps.emplace_back(
+        [k, shared](int v) { return v * k + static_cast<int>(shared->name.size()); });
   int v = 1;
   for (const auto& s : steps) v = s(v);
   say("%d %ld ", v, shared.use_count());

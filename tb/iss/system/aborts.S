@@ -198,7 +198,8 @@
   \op r3, [r1], #4
   svc #0x91
   .endr
-  .irp op, "ldmia r1!, {r3, r4}", "stmia r1!, {r3, r4}", "ldmdb r1, {r3}", "swp r3, r4, [r1]", "swpb r3, r4, [r1]"
+  .irp op, "ldmia r1!, {r3, r4}", "stmia r1!, {r3, r4}", "ldmdb r1, {r3}", \
+           "swp r3, r4, [r1]", "swpb r3, r4, [r1]"
   bl fill_registers
   add r1, r1, #\bits
   \op

@@ -6,7 +6,8 @@
 @ spsr of irq, svc, abt, und.
 @
 @ SWI numbers: 0x50 + m goes on in mode 0x10 + m; 0x60 + m with I and F clear; 0x70 + m with I
-@ clear; 0xB0 + m with F clear (0xAB is semihosting); 0x80 dumps the banks; 0x90 names a case (r0); others only record.
+@ clear; 0xB0 + m with F clear (0xAB is semihosting); 0x80 dumps the banks; 0x90 names a case (r0);
+@ others only record.
   .syntax unified
   .arm
   .set kLog, 0x01000000

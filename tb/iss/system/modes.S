@@ -83,7 +83,7 @@
   set_banks \mode
   svc #(0x40 | \mode)
   ldr r1, =memory
-  .irp list, "{r0, r8, r9, r10, r11, r12, r13, r14}", "{r13}", "{r14}", "{r8, r12, r14}", "{r2, r3, r13}"
+  .irp list, "{r0, r8-r14}", "{r13}", "{r14}", "{r8, r12, r14}", "{r2, r3, r13}"
   stmia r1, \list ^
   stmia r1, \list ^
   ldmia r1, {r2-r7}
@@ -93,7 +93,7 @@
   stmda r1, \list ^
   .endr
   ldr r1, =words
-  .irp list, "{r0, r8, r9, r10, r11, r12, r13, r14}", "{r13}", "{r2, r14}", "{r8, r12, r14}", "{r2, r3, r13}"
+  .irp list, "{r0, r8-r14}", "{r13}", "{r2, r14}", "{r8, r12, r14}", "{r2, r3, r13}"
   add r1, r1, #4
   ldmia r1, \list ^
   nop
