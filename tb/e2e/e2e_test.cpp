@@ -53,7 +53,9 @@ void expect_frames_right(Rig& rig, std::uint64_t step = 1) {
     }
     ASSERT_TRUE(found) << "frame " << s.record.index << " is no remap of a sent frame: "
                        << difference;
-    if (s.record.index > 0) EXPECT_EQ(*found, last + step) << "order of frames";
+    if (s.record.index > 0) {
+      EXPECT_EQ(*found, last + step) << "order of frames";
+    }
     last = *found;
   }
 }
@@ -110,7 +112,7 @@ TEST_P(LockTimeTest, CaptureStartsWithTheFirstWholeFramesAfterTheLock) {
   EXPECT_EQ(rig.board().uart_text().find("no lock"), std::string::npos);
 }
 INSTANTIATE_TEST_SUITE_P(Fields, LockTimeTest, testing::Values("10", "23", "40"),
-                         [](const auto& info) { return std::string("Of") + info.param; });
+                         [](const auto& i) { return std::string("Of") + i.param; });
 
 TEST(EndToEndTest, ADecoderThatDoesNotLockIsReportedAndShownAsItIs) {
   Rig rig;
@@ -141,7 +143,7 @@ TEST_P(CameraPhaseTest, DisplayIsInStepWithTheCameraWhateverItsPhase) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Phases, CameraPhaseTest, testing::Values("0ms", "9ms", "21ms", "33ms"),
-                         [](const auto& info) { return std::string("At") + info.param; });
+                         [](const auto& i) { return std::string("At") + i.param; });
 
 class MappingTest : public testing::TestWithParam<const char*> {};
 TEST_P(MappingTest, LutAndPictureAreExact) {
@@ -157,7 +159,7 @@ TEST_P(MappingTest, LutAndPictureAreExact) {
 INSTANTIATE_TEST_SUITE_P(All, MappingTest,
                          testing::Values("none", "rectilinear", "linear", "orthographic",
                                          "equisolid", "stereographic", "kannala_brandt"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST(EndToEndTest, LdmKernelIsExact) {
   Rig rig;
