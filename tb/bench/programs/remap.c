@@ -1,7 +1,7 @@
 // The remap loop: a pair of pixels by table, from one picture to another that is never read.
 #include <stdint.h>
 
-enum { kWidth = 720, kHeight = 288, kPairs = kWidth * kHeight / 2 };
+enum { kWidth = 360, kHeight = 144, kPairs = kWidth * kHeight / 2 };
 static uint32_t in[kPairs], out[kPairs], lut[kPairs];
 
 static __attribute__((noinline)) void remap(uint32_t *restrict to, const void *from,
