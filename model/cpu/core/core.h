@@ -96,7 +96,8 @@ class Core : public Background {
   // execute.cpp
   void step_attention();
   void execute_alone(const Instruction& i);
-  void execute_one(const Instruction& i);
+  [[gnu::noinline]] void execute_one(const Instruction& i);
+  bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
   void execute_rare(const Instruction& i);
   std::uint32_t offset(const Instruction& i) const;
@@ -184,6 +185,8 @@ class Core : public Background {
   // memory.cpp
   const Instruction* fetch();
   const Instruction* fetch_slow();
+  template <unsigned kBytes>
+  [[gnu::noinline]] bool store_beside_cache(std::uint32_t va, std::uint32_t value);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
@@ -262,8 +265,12 @@ class Core : public Background {
   std::array<std::uint32_t, 6> spsr_{};
   bool branched_ = false;
 
-  std::uint32_t n_ = 0, z_ = 1;  // results: bit 31 is N; zero is Z
-  std::uint8_t c_ = 0, v_ = 0;
+  // Results: bit 31 is N; zero is Z. Laid out so that compilers do not join the stores of two flags
+  // (that takes longer than the stores).
+  std::uint32_t n_ = 0;
+  std::uint8_t c_ = 0;
+  std::uint32_t z_ = 1;
+  std::uint8_t v_ = 0;
   bool flags_live_ = false;
 
   // Time.
@@ -383,7 +390,9 @@ class Core : public Background {
   Counts counts_;
   CoreStats window_;
   struct alignas(16) Access {
-    std::uint32_t pc = 0, address = 0, what = 0, unused = 0;  // what: bytes, kWritten; 0: none yet
+    std::uint32_t pc = 0, address = 0;
+    std::uint32_t what = 0;  // bytes, kWritten, how many more words follow << 16; 0: none yet
+    std::uint32_t unused = 0;
   };
   static constexpr std::uint32_t kWritten = 1u << 8;
   std::array<Access, 16> ring_{};

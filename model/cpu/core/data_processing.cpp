@@ -22,6 +22,14 @@ struct Sum {
   const auto value = static_cast<std::uint32_t>(sum);
   return {value, (sum >> 32) != 0, ((~(x ^ y) & (x ^ value)) >> 31) != 0};
 }
+/// x + y.
+[[gnu::always_inline]] inline Sum add(std::uint32_t x, std::uint32_t y) {
+  std::int32_t value;
+  const bool overflow = __builtin_add_overflow(static_cast<std::int32_t>(x),
+                                               static_cast<std::int32_t>(y), &value);
+  const auto sum = static_cast<std::uint32_t>(value);
+  return {sum, sum < x, overflow};
+}
 /// x - y; the carry is the borrow's complement.
 [[gnu::always_inline]] inline Sum subtract(std::uint32_t x, std::uint32_t y) {
   std::int32_t value;
@@ -41,7 +49,7 @@ template <Op kOp>
     case Op::kEor: case Op::kTeq: return plain(a ^ b, carry);
     case Op::kSub: case Op::kCmp: return subtract(a, b);
     case Op::kRsb: return subtract(b, a);
-    case Op::kAdd: case Op::kCmn: return add(a, b, 0);
+    case Op::kAdd: case Op::kCmn: return add(a, b);
     case Op::kAdc: return add(a, b, c);
     case Op::kSbc: return add(a, ~b, c);
     case Op::kRsc: return add(b, ~a, c);

@@ -185,6 +185,13 @@ std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cycle) co
   return need;
 }
 
+/// The chain that was left for one instruction still holds, and `next` follows it.
+bool Core::chain_goes_on(const Instruction* next) const {
+  return cycle_ < chain_stop_ && cycle_ < stop_cycle_ && !attention_ &&
+         pc_ == run_va_ + next->at && line_va_ == run_va_ && line_thumb_ == (cpsr_ & 0x20u) &&
+         current_line_->valid && cycle_ >= ifill_.last && chain_ == 0;
+}
+
 void Core::dsp(const Instruction& i) {
   bool q = false;
   const auto s = [this](unsigned r) { return std::int64_t{static_cast<std::int32_t>(r_[r])}; };

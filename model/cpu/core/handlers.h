@@ -3,7 +3,9 @@
 // what is not quick is a tail call too, and its own work needs no stack frame.
 //
 // Within a chain the clock travels in a register; cycle_, pc_ and the counters stand where the chain
-// began until settle(). A chain begins with nothing under way that could hold up a record (operands,
+// began until settle(). Whoever calls something out of line before it goes on must have no variable
+// whose address is taken: the compiler would keep its frame, and the stack would grow with the chain
+// (iss.chain measures that). A chain begins with nothing under way that could hold up a record (operands,
 // an instruction fill) and ends at chain_stop_, at a record or line not known yet, and after any
 // instruction that may have called the outside.
 #pragma once
@@ -54,12 +56,29 @@ struct Core::Ops {
     c.pc_ = target;
     return nullptr;
   }
-  /// Executes i with the chain ended: the way of all that is rare or touches the outside.
+  /// Executes i with all state settled: the way of all that is rare or touches the outside.
   [[gnu::noinline]] static Next generic(Core& c, Next i, Cycle cycle) {
     c.settle(i, cycle);
     c.execute_one(*i);
-    return nullptr;
+    return resume(c, i + 1);
   }
+  /// Goes on with record i after its neighbour was executed with all state settled.
+  [[gnu::always_inline]] static Next resume(Core& c, Next i) {
+    if (!c.chain_goes_on(i)) return nullptr;
+    c.run_first_ = reinterpret_cast<std::intptr_t>(i);
+    // Behind the last record of a line line_end() takes care of results on their way.
+    if (c.cycle_ < c.busy_until_ && i->at < 32) {
+      const Cycle start = held_until(c, i, c.cycle_);
+      if (start == kNoCycle) return nullptr;
+      Cycle cycle = c.cycle_;
+      if (start > cycle) stall(c, cycle, start);
+      return go(c, i, cycle);
+    }
+    return go(c, i, c.cycle_);
+  }
+  /// For records that do not know what was executed before them: the clock at which the first has
+  /// its operands. kNoCycle: they have to be executed alone.
+  static Cycle held_until(const Core& c, Next i, Cycle cycle);
 
   /// Branch i is taken, state kept. Only another line counts as looked up.
   template <bool kThumb, bool kMaybeSameLine>
@@ -153,6 +172,8 @@ struct Core::Ops {
   static Next load(Core& c, Next i, Cycle cycle);
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store(Core& c, Next i, Cycle cycle);
+  template <Op kOp, Address kAddress, Indexed kIndexed>
+  static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
   template <bool kPc, bool kThumb>
   static Next load_block(Core& c, Next i, Cycle cycle);

@@ -71,13 +71,27 @@ Core::Ops::Next Core::Ops::store(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
   const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
   if (hint.key != (va & ~(kWriteSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
-    return generic(c, i, cycle);
+    return store_out<kOp, kAddress, kIndexed>(c, i, cycle);
   c.counts_.dcache_writes += hint.counted;
   c.record(c.run_va_ + i->at, va, kBytes | kWritten);
   const std::uint32_t value = c.r_[i->rd];
   std::memcpy(host(hint.bias, va), &value, kBytes);
   if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
   return next(c, i + 1, cycle + (kAddress == Address::kLsl ? 1u + i->rs : 1u));
+}
+
+/// A store that no hint knows: perhaps to the write buffer.
+template <Op kOp, Address kAddress, Indexed kIndexed>
+[[gnu::noinline]] Core::Ops::Next Core::Ops::store_out(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t end = moved<kAddress>(c.r_, *i);
+  const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
+  c.settle(i, cycle);
+  if (!c.store_beside_cache<width(kOp)>(va, c.r_[i->rd])) return generic(c, i, cycle);
+  if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
+  c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
+  ++c.counts_.instructions;
+  c.pc_ = c.run_va_ + i[1].at;
+  return resume(c, i + 1);
 }
 
 /// A word relative to the pc; imm: from the first byte of the line.
@@ -174,17 +188,23 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
       return generic(c, i, cycle);
     if (line == (last & ~(kReadSpan - 1))) break;
   }
-  const std::uint32_t pc = c.run_va_ + i->at;
-  std::uint32_t target = 0;
+  c.record(c.run_va_ + i->at, va, 4 | (i->amount - 1u) << 16);
+  std::uint32_t target = 0, set = i->imm;
   unsigned r = 0;
-  for (std::uint32_t set = i->imm; set; set &= set - 1, va += 4) {
+  for (unsigned left = i->amount; left;) {
     const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
-    c.counts_.dcache_reads += hint.counted;
-    c.record(pc, va, 4);
-    const std::uint32_t value = read<Op::kLdr>(host(hint.bias, va));
-    r = static_cast<unsigned>(std::countr_zero(set));
-    if (kPc && r == 15) target = value;
-    else c.r_[r] = value;
+    const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
+    c.counts_.dcache_reads += here * hint.counted;
+    const std::uint8_t* from = host(hint.bias, va);
+    for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
+      const std::uint32_t value = read<Op::kLdr>(from);
+      r = static_cast<unsigned>(std::countr_zero(set));
+      set &= set - 1;
+      if (kPc && r == 15) target = value;
+      else c.r_[r] = value;
+    }
+    va += 4 * here;
+    left -= here;
   }
   if (i->flags & kWriteBack)
     c.r_[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
@@ -205,13 +225,19 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
       return generic(c, i, cycle);
     if (half == (last & ~(kWriteSpan - 1))) break;
   }
-  const std::uint32_t pc = c.run_va_ + i->at;
-  for (std::uint32_t set = i->imm; set; set &= set - 1, va += 4) {
+  c.record(c.run_va_ + i->at, va, 4 | kWritten | (i->amount - 1u) << 16);
+  std::uint32_t set = i->imm;
+  for (unsigned left = i->amount; left;) {
     const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
-    c.counts_.dcache_writes += hint.counted;
-    c.record(pc, va, 4 | kWritten);
-    const std::uint32_t value = c.r_[static_cast<unsigned>(std::countr_zero(set))];
-    std::memcpy(host(hint.bias, va), &value, 4);
+    const unsigned here = std::min(left, (kWriteSpan - va % kWriteSpan) / 4);
+    c.counts_.dcache_writes += here * hint.counted;
+    std::uint8_t* to = host(hint.bias, va);
+    for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
+      std::memcpy(to, &c.r_[static_cast<unsigned>(std::countr_zero(set))], 4);
+      set &= set - 1;
+    }
+    va += 4 * here;
+    left -= here;
   }
   if (i->flags & kWriteBack)
     c.r_[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));

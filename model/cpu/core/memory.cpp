@@ -49,14 +49,16 @@ void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, b
 }
 
 std::vector<AccessRecord> Core::last_accesses() const {
-  constexpr unsigned kShown = 8;
+  constexpr std::size_t kShown = 8;
   std::vector<AccessRecord> out;
-  const std::size_t end = ring_at_ / sizeof(Access) + ring_.size();
-  for (std::size_t n = end - kShown; n < end; ++n) {
+  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
+  for (std::size_t n = first; n < first + ring_.size(); ++n) {
     const Access& a = ring_[n % ring_.size()];
-    if (a.what)
-      out.push_back({a.pc, a.address, static_cast<std::uint8_t>(a.what), (a.what & kWritten) != 0});
+    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
+      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
+                     (a.what & kWritten) != 0});
   }
+  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
   return out;
 }
 
@@ -326,6 +328,27 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   }
   return Result::kOk;
 }
+
+/// The store that misses the cache and goes to the write buffer. False: it is another kind, and
+/// nothing was done.
+template <unsigned kBytes>
+bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
+  const std::uint32_t mva = modified(va);
+  const Memo& memo = dmemo_[(mva >> 10) % kMemos];
+  if (memo.page != memo_key(mva, false) || !memo.write_ok || !memo.translation.cacheable ||
+      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva) || dcache_.find(mva) >= 0)
+    return false;
+  record(pc_, va, kBytes | kWritten);
+  ++counts_.dcache_writes;
+  if (cycle_ < dfill_.last) dcache_wait(mva);
+  ++counts_.dcache_write_misses;
+  enqueue_write(memo.translation.physical(mva), reinterpret_cast<const std::uint8_t*>(&value),
+                kBytes);
+  return true;
+}
+template bool Core::store_beside_cache<1>(std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<2>(std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<4>(std::uint32_t, std::uint32_t);
 
 /// Words of an STM or STRD. Those that go to the write buffer and follow each other share an entry.
 Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, unsigned count,

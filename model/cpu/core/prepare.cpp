@@ -174,14 +174,23 @@ Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
   return enter_line<kThumb>(c, i, cycle, *d);
 }
 
-/// The records of a line know nothing of the line before: if the first two wait for a result they
-/// are executed alone.
+/// The records of a line know nothing of the line before.
 template <bool kThumb>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle) {
   DecodedLine* d = c.jumps_[(c.run_va_ + 32) / 32 % kJumps];
-  for (std::uint32_t s = operands(d->records[0]) | operands(d->records[1]); s; s &= s - 1)
-    if (c.ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2 > cycle) return leave(c, i, cycle);
+  if (!d->records[0].body) return leave(c, i, cycle);
+  const Cycle start = held_until(c, &d->records[0], cycle);
+  if (start == kNoCycle) return leave(c, i, cycle);
+  if (start > cycle) stall(c, cycle, start);
   return enter_line<kThumb>(c, i, cycle, *d);
+}
+
+[[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {
+  const Cycle start = c.operands_ready(*i, cycle);
+  if (start > cycle && i->cond != 14) return kNoCycle;
+  for (std::uint32_t s = operands(i[1]); s; s &= s - 1)
+    if (c.ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2 > start + 1) return kNoCycle;
+  return start;
 }
 
 }  // namespace fovea::cpu
