@@ -187,6 +187,8 @@ class Core : public Background {
   const Instruction* fetch_slow();
   template <unsigned kBytes>
   [[gnu::noinline]] bool store_beside_cache(std::uint32_t va, std::uint32_t value);
+  template <unsigned kBytes>
+  [[gnu::noinline]] void store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
@@ -348,6 +350,11 @@ class Core : public Background {
   static constexpr std::uint32_t kNoHint = 4;  // no masked address has this bit
   static constexpr unsigned kHints = 256, kReadSpan = 32, kWriteSpan = 16;
   std::array<Hint, kHints> read_hints_{}, write_hints_{};
+  /// A writable line that the D-cache does not hold, as for the read hints: stores to it go to the
+  /// write buffer.
+  struct {
+    std::uint32_t key = kNoHint, pa = 0;
+  } absent_;
   bool hints_used_ = false;
   void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, bool counted);
   void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, bool counted);

@@ -31,6 +31,11 @@ template <Op kOp>
   return reinterpret_cast<std::uint8_t*>(bias + va);
 }
 
+/// Number of the lowest bit set; there is one.
+[[gnu::always_inline]] inline unsigned lowest(std::uint32_t set) {
+  return static_cast<unsigned>(__builtin_ctz(set));
+}
+
 /// Base plus offset; immediates are signed (memory_body()).
 template <Address kAddress>
 [[gnu::always_inline]] inline std::uint32_t moved(const std::array<std::uint32_t, 16>& r,
@@ -86,7 +91,10 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   const std::uint32_t end = moved<kAddress>(c.r_, *i);
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
   c.settle(i, cycle);
-  if (!c.store_beside_cache<width(kOp)>(va, c.r_[i->rd])) return generic(c, i, cycle);
+  if (c.absent_.key == (va & ~(kReadSpan - width(kOp))))
+    c.store_absent<width(kOp)>(va, c.absent_.pa | va % kReadSpan, c.r_[i->rd]);
+  else if (!c.store_beside_cache<width(kOp)>(va, c.r_[i->rd]))
+    return generic(c, i, cycle);
   if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
   c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
   ++c.counts_.instructions;
@@ -198,7 +206,7 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
     const std::uint8_t* from = host(hint.bias, va);
     for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
       const std::uint32_t value = read<Op::kLdr>(from);
-      r = static_cast<unsigned>(std::countr_zero(set));
+      r = lowest(set);
       set &= set - 1;
       if (kPc && r == 15) target = value;
       else c.r_[r] = value;
@@ -228,12 +236,13 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   c.record(c.run_va_ + i->at, va, 4 | kWritten | (i->amount - 1u) << 16);
   std::uint32_t set = i->imm;
   for (unsigned left = i->amount; left;) {
+    // Both halves of a line lie side by side on the host.
     const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
-    const unsigned here = std::min(left, (kWriteSpan - va % kWriteSpan) / 4);
+    const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
     c.counts_.dcache_writes += here * hint.counted;
     std::uint8_t* to = host(hint.bias, va);
     for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
-      std::memcpy(to, &c.r_[static_cast<unsigned>(std::countr_zero(set))], 4);
+      std::memcpy(to, &c.r_[lowest(set)], 4);
       set &= set - 1;
     }
     va += 4 * here;

@@ -24,6 +24,7 @@ void Core::flush_hints() {
   hints_used_ = false;
   for (auto* hints : {&read_hints_, &write_hints_})
     for (auto& h : *hints) h.key = kNoHint;
+  absent_.key = kNoHint;
 }
 
 /// A line of the D-cache gets other contents.
@@ -232,6 +233,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
     return static_cast<int>(index);
   }
   std::memcpy(dcache_.data(index), a.data, 32);
+  absent_.key = kNoHint;
   l.tag = mva & ~31u;
   l.pa = pa & ~31u;
   l.dirty = 0;
@@ -329,6 +331,19 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   return Result::kOk;
 }
 
+/// A store to a line that is not in the cache and may be written.
+template <unsigned kBytes>
+void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
+  record(pc_, va, kBytes | kWritten);
+  ++counts_.dcache_writes;
+  if (cycle_ < dfill_.last) dcache_wait(modified(va));
+  ++counts_.dcache_write_misses;
+  enqueue_write(pa, reinterpret_cast<const std::uint8_t*>(&value), kBytes);
+}
+template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
+
 /// The store that misses the cache and goes to the write buffer. False: it is another kind, and
 /// nothing was done.
 template <unsigned kBytes>
@@ -338,12 +353,11 @@ bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
   if (memo.page != memo_key(mva, false) || !memo.write_ok || !memo.translation.cacheable ||
       (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva) || dcache_.find(mva) >= 0)
     return false;
-  record(pc_, va, kBytes | kWritten);
-  ++counts_.dcache_writes;
-  if (cycle_ < dfill_.last) dcache_wait(mva);
-  ++counts_.dcache_write_misses;
-  enqueue_write(memo.translation.physical(mva), reinterpret_cast<const std::uint8_t*>(&value),
-                kBytes);
+  const std::uint32_t pa = memo.translation.physical(mva);
+  absent_.key = va & ~(kReadSpan - 1);
+  absent_.pa = pa & ~(kReadSpan - 1);
+  hints_used_ = true;
+  store_absent<kBytes>(va, pa, value);
   return true;
 }
 template bool Core::store_beside_cache<1>(std::uint32_t, std::uint32_t);

@@ -186,10 +186,18 @@ template <bool kThumb>
 }
 
 [[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {
-  const Cycle start = c.operands_ready(*i, cycle);
-  if (start > cycle && i->cond != 14) return kNoCycle;
-  for (std::uint32_t s = operands(i[1]); s; s &= s - 1)
-    if (c.ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2 > start + 1) return kNoCycle;
+  const auto late = [&c](std::uint32_t set, Cycle than) {
+    for (; set; set &= set - 1)
+      if (c.ready_[static_cast<unsigned>(__builtin_ctz(set))] >> 2 > than) return true;
+    return false;
+  };
+  Cycle start = cycle;
+  if (late(operands(*i), cycle)) {
+    if (i->cond != 14) return kNoCycle;
+    start = c.operands_ready(*i, cycle);
+  }
+  // No result is later than two clocks.
+  if (c.busy_until_ > start + 1 && late(operands(i[1]), start + 1)) return kNoCycle;
   return start;
 }
 
