@@ -309,7 +309,8 @@ DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const 
   unsigned expired = 0;
   if (config_.refresh_interval && edge >= next_expiry_)
     expired = 1 + static_cast<unsigned>((edge - next_expiry_) / config_.refresh_interval);
-  if (forced_ > 0 || owed_ + expired > must_ || gap_ + expired > gap_limit_) return Urgency::kMust;
+  if (forced_ > 0 || closing_ || owed_ + expired > must_ || gap_ + expired > gap_limit_)
+    return Urgency::kMust;
   return owed_ + expired > need_ ? Urgency::kNeed : Urgency::kMay;
 }
 
@@ -322,7 +323,8 @@ void DdrController::force_refresh() {
 }
 
 void DdrController::urgency_changed() {
-  const bool urgent = forced_ > 0 || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
+  const bool urgent =
+      forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   calm_until_ = urgent ? 0 : next_expiry_;
 }
 
@@ -351,6 +353,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
   gap_ = 0;
   if (owed_) --owed_;
   if (forced_) --forced_;
+  closing_ = false;
   urgency_changed();
 }
 
@@ -400,6 +403,8 @@ void DdrController::step() {
     case Cmd::kPreAll:
       force_refresh();
       issue<Cmd::kPreAll>(0, 0, clock);
+      closing_ = true;
+      urgency_changed();
       break;
     default:
       force_refresh();

@@ -185,7 +185,11 @@ class DdrController {
   std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
   std::uint64_t calm_until_ = 0;   // no refresh is urgent before this edge
   unsigned owed_ = 0, forced_ = 0;
-  unsigned gap_ = 0;             // intervals that ended since the last REF
+  unsigned gap_ = 0;  // intervals that ended since the last REF
+  // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
+  // read that ranks first only while all rows are closed and one that does only while its row is
+  // open could take turns in putting it off, and none of them be served.
+  bool closing_ = false;
   std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
   std::uint64_t start_of_lane_ = 0;
   std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
