@@ -116,7 +116,8 @@ class DdrController {
   void plan_anew();
   void plan_one(Entry& e);
   void plan_many();
-  void choose(std::uint64_t edge, std::size_t ready);
+  void choose(std::uint64_t edge, std::uint32_t ready);
+  bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const;
@@ -136,6 +137,7 @@ class DdrController {
   void last_column();
   void columns_before(std::uint64_t until);
   void finish(std::uint64_t clock);
+  void finish_queued(std::uint64_t clock);
   void leave_queue(const Entry& e);
   void open_door(std::uint64_t clock);
   void answer_read(const Entry& e, std::uint64_t clock);
