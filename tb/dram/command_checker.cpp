@@ -7,6 +7,7 @@ namespace fovea::dram {
 void CommandChecker::complain(const char* rule, std::uint64_t clock, unsigned bank,
                               std::int64_t missing) {
   ++total_;
+  if (on_complaint) on_complaint({rule, clock, bank, static_cast<std::uint64_t>(missing)});
   if (complaints_.size() < 100)
     complaints_.push_back({rule, clock, bank, static_cast<std::uint64_t>(missing)});
 }
@@ -74,8 +75,8 @@ void CommandChecker::activate(unsigned b, std::uint32_t row, std::int64_t now) {
 void CommandChecker::precharge(unsigned b, std::int64_t now) {
   Bank& k = banks_[b];
   apart("tRAS", k.act, now, sheet_.tRAS, b);
-  apart("tRTP", k.rd, now, 4 + std::max(sheet_.tRTP, 2u) - 2, b);
-  apart("tWR", k.wr, now, (sheet_.CL - 1) + 4 + sheet_.tWR, b);
+  apart("tRTP", k.rd, now, sheet_.mobile ? 4 : 4 + std::max(sheet_.tRTP, 2u) - 2, b);
+  apart("tWR", k.wr, now, WL() + 4 + sheet_.tWR, b);
   k.open = false;
 }
 
@@ -87,14 +88,13 @@ void CommandChecker::column(bool write, unsigned b, std::uint32_t row, std::int6
   else if (k.row != row)
     complain(write ? "WR on wrong row" : "RD on wrong row", clock, b, 0);
   apart("tRCD", k.act, now, sheet_.tRCD, b);
-  const unsigned WL = sheet_.CL - 1;
   if (write) {
     apart("WR to WR", wr_, now, 4, b);
-    apart("RD to WR", rd_, now, sheet_.CL + 4 + 1 - WL, b);
+    apart("RD to WR", rd_, now, sheet_.mobile ? sheet_.CL + 4 : sheet_.CL + 4 + 1 - WL(), b);
     k.wr = wr_ = now;
   } else {
     apart("RD to RD", rd_, now, 4, b);
-    apart("tWTR", wr_, now, WL + 4 + sheet_.tWTR, b);
+    apart("tWTR", wr_, now, WL() + 4 + sheet_.tWTR, b);
     k.rd = rd_ = now;
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct DataSheet {
   unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
   unsigned tREFI = 0;  ///< 0: refresh not checked
   unsigned banks = 8;
+  bool mobile = false;  ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
   unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
 };
 
@@ -46,6 +48,8 @@ class CommandChecker {
   /// Largest distance of two REF seen, clocks.
   std::uint64_t largest_refresh_gap() const { return largest_gap_; }
   std::string text() const;
+  /// Called with each complaint, beyond the first hundred too.
+  std::function<void(const Complaint&)> on_complaint;
 
  private:
   static constexpr std::int64_t kLongAgo = -1'000'000;
@@ -63,6 +67,7 @@ class CommandChecker {
   void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
   void refresh(std::int64_t now);
   void check_refresh_gap(std::uint64_t clock);
+  unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }
 
   DataSheet sheet_;
   std::vector<Bank> banks_;

@@ -252,6 +252,26 @@ TEST_F(RefreshTest, FourRefreshesInARowAfterTooManyIntervalsWithout) {
   EXPECT_EQ(refreshes("64"), 0u);
 }
 
+// With all rows closed the most urgent read ranks before the write, so no refresh; the raised
+// oldest then opens its row, and now its own read ranks first, behind the write: refresh closes the
+// rows. A refresh that gives way after its PREA would go round like this for ever.
+TEST(RefreshRateTest, UrgentRefreshIsCarriedOutOnceItHasClosedTheRows) {
+  for (std::uint64_t start = 100; start < 300; start += 5) {  // against the expiry at clock 201
+    BenchOptions o = options();
+    o.config.old_count = 0;
+    o.config.refresh_interval = 200;
+    o.params.insert(o.params.end(),
+                    {{"refresh.need", "0"}, {"refresh.must", "64"}, {"refresh.gap", "64"}});
+    DdrBench b(o);
+    std::vector<Request> all = {read(kA, at(0, 0), 5), read(kB, at(3, 0), 0),
+                                write(kC, at(1, 0), 1), read(Master::kEdmaTc2, at(2, 0), 0)};
+    for (Request& r : all) ASSERT_TRUE(b.submit(r, start));
+    for (unsigned i = 0; i < 40 && b.ddr.next_decision() != kNever; ++i) b.step();
+    EXPECT_EQ(b.ddr.next_decision(), kNever) << "start " << start << ": served in few commands";
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  }
+}
+
 // The family's thresholds under a stream of reads that never ends: refresh is late, but two are
 // never further apart than the nine intervals of the standard, and none is lost.
 TEST(RefreshRateTest, SaturatingReadsDelayRefreshWithinTheStandard) {

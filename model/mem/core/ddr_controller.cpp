@@ -228,74 +228,88 @@ inline void DdrController::plan_one(Entry& e) {
     next_ = ddr_.edge(choice_.at);
     return;
   }
-  std::size_t ready = 1;
   std::uint64_t edge = std::max(first, slots_[order_[0]].ready);
+  std::uint32_t ready = ~free_slots_;
+  std::size_t not_ready = count_;  // place in order_ of the first that the scheduler does not see
+  if (slots_[order_[count_ - 1]].ready > edge) {
+    ready = 0;
+    for (not_ready = 0; slots_[order_[not_ready]].ready <= edge; ++not_ready)
+      ready |= 1u << order_[not_ready];
+  }
   for (;;) {
-    while (ready < count_ && slots_[order_[ready]].ready <= edge) ++ready;
-    std::uint64_t wake = ready < count_ ? slots_[order_[ready]].ready : kNoClock;
+    std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
     if (read_room_ > edge) wake = std::min(wake, read_room_);
     choose(edge, ready);
     if (choice_.at < wake) break;
     edge = wake;
+    for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
+      ready |= 1u << order_[not_ready];
   }
   next_ = ddr_edges_.edge(choice_.at);
 }
 
-/// The command to give if only the `ready` oldest requests are there.
-inline void DdrController::choose(std::uint64_t edge, std::size_t ready) {
-  const Urgency refresh = edge < calm_until_ ? Urgency::kMay : refresh_urgency(edge);
-  if (refresh == Urgency::kMust) return choose_refresh(edge);
+/// The command to give if only the requests in the slots `ready` are there.
+inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
+  ready &= offered_;
+  if (edge >= calm_until_) [[unlikely]] {
+    const Urgency refresh = refresh_urgency(edge);
+    if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
+      return choose_refresh(edge);
+  }
   // Rank: reads, then writes; among each open rows first, then priority, then age (rules 2 and 3).
   // With the read FIFO full, writes go before reads.
   const Rank no_room = read_room_ <= edge ? 0 : Rank{3} << kKindBit;
   std::array<Rank, DdrDevice::kMaxBanks> first_of_bank;
-  std::uint32_t banks = 0;
-  Rank first = kNoRank, first_read = kNoRank, first_write = kNoRank;
-  for (std::size_t i = 0; i < ready; ++i) {
-    const unsigned slot = order_[i];
-    if (!(offered_ >> slot & 1u)) continue;
-    const Entry& e = slots_[slot];
-    const bool miss = device_.row(e.bank) != e.row;
-    Rank rank = e.rank | Rank{miss} << kMissBit;
-    if (e.request.write) {
-      first_write = std::min(first_write, rank);
-    } else {
+  first_of_bank.fill(kNoRank);
+  Rank first = kNoRank;
+  for (std::uint32_t set = ready; set; set &= set - 1) {
+    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
+    Rank rank = e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit;
+    if (no_room && !e.request.write) [[unlikely]]
       rank |= no_room;
-      first_read = std::min(first_read, rank);
-    }
-    // Rule 5: the oldest command, passed by too often, is raised.
-    if (i == 0 && config_.old_count != 0xFF && served_while_oldest_ > config_.old_count)
-      rank = slot;
-    if (!(banks >> e.bank & 1u) || rank < first_of_bank[e.bank]) first_of_bank[e.bank] = rank;
-    banks |= 1u << e.bank;
+    first_of_bank[e.bank] = std::min(first_of_bank[e.bank], rank);
     first = std::min(first, rank);
   }
-  // Rule 4: a needed refresh goes before writes and before a read that has a more urgent write.
-  if (refresh == Urgency::kNeed) {
-    const auto priority = [](Rank rank) { return rank >> kPriorityBit & 0xFFu; };
-    if (first_read == kNoRank ||
-        (first_write != kNoRank && priority(first_write) < priority(first_read)))
-      return choose_refresh(edge);
+  // Rule 5: the oldest command, passed by too often, is raised.
+  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) {
+    first = order_[0];
+    first_of_bank[slots_[order_[0]].bank] = first;
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
-  const auto slot_of = [](Rank rank) { return static_cast<unsigned>(rank % kMaxEntries); };
-  Entry& top = slots_[slot_of(first)];
-  const Cmd cmd = needed(top);
-  choice_ = {&top, earliest(top, cmd, edge), cmd};
+  const auto entry_of = [&](Rank rank) {
+    return &slots_[static_cast<unsigned>(rank % kMaxEntries)];
+  };
+  Entry* const top = entry_of(first);
+  const Cmd cmd = needed(*top);
+  choice_ = {top, earliest(*top, cmd, edge), cmd};
   if (choice_.at == edge) return;
+  first_of_bank[top->bank] = kNoRank;
   Rank best = first;
-  for (std::uint32_t set = banks & ~(1u << top.bank); set; set &= set - 1) {
-    const Rank rank = first_of_bank[static_cast<unsigned>(std::countr_zero(set))];
-    Entry& e = slots_[slot_of(rank)];
-    const std::uint32_t open = device_.row(e.bank);
-    if (open == e.row) continue;
+  for (const Rank rank : first_of_bank) {
+    if (rank == kNoRank) continue;
+    Entry* const e = entry_of(rank);
+    const std::uint32_t open = device_.row(e->bank);
+    if (open == e->row) continue;
     const Cmd prepare = open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-    const std::uint64_t at = std::max(edge, device_.earliest(prepare, e.bank));
+    const std::uint64_t at = std::max(edge, device_.earliest(prepare, e->bank));
     if (at < choice_.at || (at == choice_.at && rank < best)) {
-      choice_ = {&e, at, prepare};
+      choice_ = {e, at, prepare};
       best = rank;
     }
   }
+}
+
+/// Rule 4: a needed refresh goes before writes and before a read that has a more urgent write. Each
+/// is the first of its kind among the slots `set`.
+bool DdrController::refresh_goes_first(std::uint32_t set) const {
+  Rank read = kNoRank, write = kNoRank;
+  for (; set; set &= set - 1) {
+    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
+    Rank& first = e.request.write ? write : read;
+    first = std::min(first, e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit);
+  }
+  const auto priority = [](Rank rank) { return rank >> kPriorityBit & 0xFFu; };
+  return read == kNoRank || (write != kNoRank && priority(write) < priority(read));
 }
 
 void DdrController::choose_refresh(std::uint64_t edge) {
@@ -309,7 +323,8 @@ DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const 
   unsigned expired = 0;
   if (config_.refresh_interval && edge >= next_expiry_)
     expired = 1 + static_cast<unsigned>((edge - next_expiry_) / config_.refresh_interval);
-  if (forced_ > 0 || owed_ + expired > must_ || gap_ + expired > gap_limit_) return Urgency::kMust;
+  if (forced_ > 0 || closing_ || owed_ + expired > must_ || gap_ + expired > gap_limit_)
+    return Urgency::kMust;
   return owed_ + expired > need_ ? Urgency::kNeed : Urgency::kMay;
 }
 
@@ -322,7 +337,8 @@ void DdrController::force_refresh() {
 }
 
 void DdrController::urgency_changed() {
-  const bool urgent = forced_ > 0 || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
+  const bool urgent =
+      forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   calm_until_ = urgent ? 0 : next_expiry_;
 }
 
@@ -351,6 +367,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
   gap_ = 0;
   if (owed_) --owed_;
   if (forced_) --forced_;
+  closing_ = false;
   urgency_changed();
 }
 
@@ -400,6 +417,8 @@ void DdrController::step() {
     case Cmd::kPreAll:
       force_refresh();
       issue<Cmd::kPreAll>(0, 0, clock);
+      closing_ = true;
+      urgency_changed();
       break;
     default:
       force_refresh();
@@ -464,14 +483,15 @@ void DdrController::columns_before(std::uint64_t until) {
 }
 
 /// The last column command is given: the entry is free, and the request at the door may come in.
-inline void DdrController::finish(std::uint64_t clock) {
-  if (alone_) {
-    alone_ = false;
-    served_while_oldest_ = 0;
-    count_ = 0;
-    next_ = kNever;
-    return;
-  }
+[[gnu::always_inline]] inline void DdrController::finish(std::uint64_t clock) {
+  if (!alone_) return finish_queued(clock);
+  alone_ = false;
+  served_while_oldest_ = 0;
+  count_ = 0;
+  next_ = kNever;
+}
+
+void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue(*choice_.entry);
   if (door_full_) open_door(clock);
   plan();

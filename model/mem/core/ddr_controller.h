@@ -116,7 +116,8 @@ class DdrController {
   void plan_anew();
   void plan_one(Entry& e);
   void plan_many();
-  void choose(std::uint64_t edge, std::size_t ready);
+  void choose(std::uint64_t edge, std::uint32_t ready);
+  bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const;
@@ -136,6 +137,7 @@ class DdrController {
   void last_column();
   void columns_before(std::uint64_t until);
   void finish(std::uint64_t clock);
+  void finish_queued(std::uint64_t clock);
   void leave_queue(const Entry& e);
   void open_door(std::uint64_t clock);
   void answer_read(const Entry& e, std::uint64_t clock);
@@ -185,7 +187,11 @@ class DdrController {
   std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
   std::uint64_t calm_until_ = 0;   // no refresh is urgent before this edge
   unsigned owed_ = 0, forced_ = 0;
-  unsigned gap_ = 0;             // intervals that ended since the last REF
+  unsigned gap_ = 0;  // intervals that ended since the last REF
+  // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
+  // read that ranks first only while all rows are closed and one that does only while its row is
+  // open could take turns in putting it off, and none of them be served.
+  bool closing_ = false;
   std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
   std::uint64_t start_of_lane_ = 0;
   std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room

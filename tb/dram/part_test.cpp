@@ -1,0 +1,131 @@
+// The data sheets of the parts in clocks, and the warnings about software that programs less.
+#include <gtest/gtest.h>
+
+#include "tb/dram/bench.h"
+#include "tb/dram/part_checker.h"
+
+namespace fovea::dram {
+namespace {
+
+// dram.md 3 and the end of 4, where the clocks of some grades are worked out.
+TEST(PartTest, NumbersInClocksAsWorkedOutByHand) {
+  const DataSheet a = in_clocks(part("MT47H64M16-3"), Frequency(243'000'000), 4);
+  EXPECT_EQ(a.tRCD, 4u);
+  EXPECT_EQ(a.tRP, 4u);
+  EXPECT_EQ(a.tRRD, 3u);
+  EXPECT_EQ(a.tFAW, 13u);
+  EXPECT_EQ(a.tWR, 4u);
+  EXPECT_EQ(a.tWTR, 2u);
+  EXPECT_EQ(a.tRTP, 2u);
+  EXPECT_EQ(a.tRFC, 31u);
+  EXPECT_EQ(a.tREFI, 1895u);
+  const DataSheet b = in_clocks(part("MT47H128M16-25E"), Frequency(340'000'000), 5);
+  EXPECT_EQ(b.tRCD, 5u);
+  EXPECT_EQ(b.tRRD, 4u);
+  EXPECT_EQ(b.tFAW, 16u);
+  EXPECT_EQ(b.tWR, 6u);
+  EXPECT_EQ(b.tRFC, 67u);
+  EXPECT_EQ(b.tREFI, 2652u);
+  EXPECT_EQ(in_clocks(part("MT47H32M16-37E"), Frequency(243'000'000), 4).tRFC, 26u);
+  EXPECT_EQ(in_clocks(part("MT47H32M16-37E"), Frequency(243'000'000), 4).tFAW, 0u);
+  const DataSheet m = in_clocks(part("MT46H64M16LF-6"), Frequency(500'000'000, 3), 3);
+  EXPECT_EQ(m.tRCD, 3u);
+  EXPECT_EQ(m.tRP, 3u);
+  EXPECT_EQ(m.tRAS, 7u);
+  EXPECT_EQ(m.tRC, 10u);
+  EXPECT_EQ(m.tRRD, 2u);
+  EXPECT_EQ(m.tWR, 3u);
+  EXPECT_EQ(m.tWTR, 1u);
+  EXPECT_EQ(m.tRFC, 21u);
+  EXPECT_EQ(m.tREFI, 1300u);
+}
+
+TEST(PartTest, TooFastAClockIsAWarning) {
+  EXPECT_EQ(PartChecker(part("MT47H64M16-3"), Frequency(340'000'000), 5).warnings().count("tCK"),
+            1u);
+  EXPECT_EQ(PartChecker(part("MT47H64M16-3"), Frequency(270'000'000), 4).warnings().count("tCK"),
+            1u);
+  EXPECT_EQ(PartChecker(part("MT47H64M16-3"), Frequency(270'000'000), 5).warnings().count("tCK"),
+            0u);
+  EXPECT_EQ(PartChecker(part("MT46H64M16LF-6"), Frequency(216'000'000), 3).warnings().count("tCK"),
+            1u);
+}
+
+/// Reads that open eight banks one after the other, on a controller programmed so.
+PartChecker::Warning warning(const mem::DdrConfig& programmed, const Part& p, const char* rule,
+                             std::string* text = nullptr) {
+  const Frequency clock(340'000'000);
+  BenchOptions o;
+  o.ddr = o.scr = clock;
+  o.config = programmed;
+  o.params = {{"command_fifo", "16"}};
+  DdrBench b(o);
+  std::array<Request, 8> all;
+  for (unsigned i = 0; i < 8; ++i) {
+    all[i].master = static_cast<Master>(i);
+    all[i].address = at(0, i);
+    EXPECT_TRUE(b.submit_at(all[i], 100'000));
+  }
+  b.drain();
+  EXPECT_EQ(b.checker.total(), 0u) << "as programmed it is right\n" << b.checker.text();
+  PartChecker checker(p, clock, programmed.timing.CL);
+  for (const Logged& l : b.log) checker.command(translate(l.cmd), l.bank, l.row, l.clock);
+  if (text) *text = checker.text();
+  const auto found = checker.warnings().find(rule);
+  return found == checker.warnings().end() ? PartChecker::Warning{} : found->second;
+}
+
+/// What a DM368 board ships with at 340 MHz (dram.md 3, last table).
+mem::DdrConfig shipped() {
+  mem::DdrConfig c;
+  c.timing.CL = 5;
+  c.timing.nRFC = 67;
+  c.timing.nRP = c.timing.nRCD = 5;
+  c.timing.nWR = 6;
+  c.timing.nRAS = 15;
+  c.timing.nRC = 20;
+  c.timing.nRRD = c.timing.nWTR = c.timing.nRTP = 3;
+  c.read_latency = 7;
+  c.refresh_interval = 1896;
+  return c;
+}
+
+TEST(PartTest, ShippedProgrammingIsShortOfTheSheetInTrrdAndTfaw) {
+  std::string text;
+  const Part& p = part("MT47H128M16-25E");
+  const auto tRRD = warning(shipped(), p, "tRRD", &text);
+  // The first read is due five clocks after its ACT, the others each four later, and take the
+  // command bus: ACTs at 0, 3, 6, 10 (for 9), 14, 18, 22, 26.
+  EXPECT_EQ(tRRD.count, 2u);
+  EXPECT_EQ(tRRD.worst_clocks, 1u);
+  const auto tFAW = warning(shipped(), p, "tFAW");
+  EXPECT_EQ(tFAW.count, 2u) << "14 - 0 and 18 - 3 are below 16";
+  EXPECT_EQ(tFAW.worst_clocks, 2u);
+  EXPECT_NE(text.find("tRRD: 2 times, at worst 1 clocks (2.94 ns) short of MT47H128M16-25E"),
+            std::string::npos)
+      << text;
+}
+
+TEST(PartTest, ProgrammingByTheSheetLeavesNoWarning) {
+  mem::DdrConfig c = shipped();
+  c.timing.nRRD = 4;  // four times four clocks are tFAW too
+  std::string text;
+  EXPECT_EQ(warning(c, part("MT47H128M16-25E"), "tRRD", &text).count, 0u);
+  EXPECT_EQ(text, "");
+}
+
+TEST(PartTest, EachNumberOneClockShortIsNamed) {
+  unsigned mem::DdrTiming::*const numbers[] = {&mem::DdrTiming::nRCD, &mem::DdrTiming::nRRD};
+  const char* names[] = {"tRCD", "tRRD"};
+  for (unsigned i = 0; i < 2; ++i) {
+    mem::DdrConfig c = shipped();
+    c.timing.nRRD = 4;
+    c.timing.*numbers[i] -= 1;
+    const auto w = warning(c, part("MT47H128M16-25E"), names[i]);
+    EXPECT_GT(w.count, 0u) << names[i];
+    EXPECT_EQ(w.worst_clocks, 1u) << names[i];
+  }
+}
+
+}  // namespace
+}  // namespace fovea::dram

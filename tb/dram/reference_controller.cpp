@@ -1,0 +1,360 @@
+#include "tb/dram/reference_controller.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace fovea::dram {
+
+namespace {
+constexpr unsigned kBurst = 4;          // clocks of a BL8 on the data bus
+constexpr unsigned kLongestRule = 400;  // no rule reaches further back than this, in clocks
+unsigned log2_of(std::uint64_t n) {
+  unsigned bits = 0;
+  while (n > 1) n /= 2, ++bits;
+  return bits;
+}
+}  // namespace
+
+ReferenceController::ReferenceController(const ReferenceLimits& limits)
+    : limits_(limits), configs_(1), expiry_(configs_.back().refresh_interval) {}
+
+void ReferenceController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
+  if (ddr_.running()) idle_until(at);
+  if (!(ddr == ddr_.frequency())) ddr_.restart(ddr, at);
+  if (!(scr == scr_.frequency())) scr_.restart(scr, at);
+  not_before_ = ddr_.edge_after(at);
+  lane_start_ = scr_.edge_at_or_after(scr_.start());
+}
+
+void ReferenceController::configure(const ReferenceConfig& config, Picoseconds at) {
+  idle_until(at);
+  not_before_ = ddr_.edge_after(at);
+  // A new interval starts to count at once.
+  if (config.refresh_interval != configs_.back().refresh_interval)
+    expiry_ = not_before_ + config.refresh_interval;
+  configs_.push_back(config);
+}
+
+// ---- addresses and banks
+
+unsigned ReferenceController::bank_of(const ReferenceRequest& r) const {
+  const ReferenceConfig& c = config();
+  if (c.bank_on_top) return static_cast<unsigned>(r.address / (limits_.size / c.banks));
+  return (r.address >> c.page_log2) % c.banks;
+}
+
+std::uint32_t ReferenceController::row_of(const ReferenceRequest& r) const {
+  const ReferenceConfig& c = config();
+  if (c.bank_on_top)
+    return static_cast<std::uint32_t>(r.address % (limits_.size / c.banks)) >> c.page_log2;
+  return r.address >> (c.page_log2 + log2_of(c.banks));
+}
+
+unsigned ReferenceController::columns_of(const ReferenceRequest& r) {
+  return (r.address + r.bytes - 1) / 16 - r.address / 16 + 1;
+}
+
+std::optional<std::uint32_t> ReferenceController::open_row(unsigned bank) const {
+  for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
+    if (c->kind == Kind::kPreAll || c->kind == Kind::kRef) return std::nullopt;
+    if (c->bank != bank) continue;
+    if (c->kind == Kind::kPre) return std::nullopt;
+    return c->row;
+  }
+  return std::nullopt;
+}
+
+bool ReferenceController::all_closed() const {
+  for (unsigned b = 0; b < 8; ++b)
+    if (open_row(b)) return false;
+  return true;
+}
+
+// ---- what the part allows
+
+/// Clocks that must lie between `before` and a `kind` to this bank.
+unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned bank) const {
+  const ReferenceConfig& c = configs_[before.config];
+  const bool same = before.bank == bank;
+  const bool closes = kind == Kind::kPre;
+  const unsigned WL = c.CL - 1;
+  switch (before.kind) {
+    case Kind::kAct:
+      if (kind == Kind::kAct) return same ? std::max(c.tRC, c.tRRD) : c.tRRD;
+      if (!same) return 0;
+      return closes ? c.tRAS : kind == Kind::kRd || kind == Kind::kWr ? c.tRCD : 0;
+    case Kind::kPre:
+      return kind == Kind::kRef || (kind == Kind::kAct && same) ? c.tRP : 0;
+    case Kind::kPreAll:
+      return kind == Kind::kRef || kind == Kind::kAct ? c.tRP + (c.banks == 8 ? 1 : 0) : 0;
+    case Kind::kRd:
+      if (kind == Kind::kRd) return kBurst;
+      if (kind == Kind::kWr) return c.CL + kBurst + 1 - WL;
+      return closes && same ? kBurst + std::max(c.tRTP, 2u) - 2 : 0;
+    case Kind::kWr:
+      if (kind == Kind::kWr) return kBurst;
+      if (kind == Kind::kRd) return WL + kBurst + c.tWTR;
+      return closes && same ? WL + kBurst + c.tWR : 0;
+    case Kind::kRef:
+      return kind == Kind::kRef || kind == Kind::kAct ? c.tRFC : 0;
+  }
+  return 0;
+}
+
+std::uint64_t ReferenceController::legal_from(Kind kind, unsigned bank,
+                                              std::uint64_t not_before) const {
+  if (kind == Kind::kPreAll) {
+    std::uint64_t from = not_before;
+    for (unsigned b = 0; b < 8; ++b)
+      if (open_row(b)) from = std::max(from, legal_from(Kind::kPre, b, not_before));
+    return from;
+  }
+  std::uint64_t from = not_before;
+  for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
+    if (c->clock + kLongestRule < not_before) break;
+    if (const unsigned n = apart(*c, kind, bank)) from = std::max(from, c->clock + n);
+  }
+  return from;
+}
+
+std::uint64_t ReferenceController::clock_after_last() const {
+  return std::max(not_before_, commands.empty() ? 0 : commands.back().clock + 1);
+}
+
+// ---- the queue
+
+bool ReferenceController::fits(const ReferenceRequest& r) const {
+  if (queue_.size() >= limits_.command_fifo) return false;
+  unsigned held = 0;
+  for (const Queued& q : queue_) held += q.request.write ? q.request.bytes : 0;
+  return !r.write || held + r.bytes <= limits_.write_fifo;
+}
+
+bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at) {
+  const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
+  if (queue_.empty()) idle_until(ddr_.edge(arrived - 1));
+  if (!fits(request)) {
+    door_ = request;
+    door_arrived_ = arrived;
+    return false;
+  }
+  last_arrival_ = arrived;
+  queue_.push_back({request, arrived + limits_.request_latency});
+  return true;
+}
+
+/// Each master offers its oldest request; a read passes older writes of its master to other
+/// 2048-byte blocks that are not more urgent.
+bool ReferenceController::offered(std::size_t place) const {
+  const ReferenceRequest& r = queue_[place].request;
+  return std::all_of(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(place),
+                     [&](const Queued& q) {
+                       const ReferenceRequest& o = q.request;
+                       if (o.master != r.master) return true;
+                       return !r.write && o.write && o.address / 2048 != r.address / 2048 &&
+                              r.priority <= o.priority;
+                     });
+}
+
+ReferenceController::Kind ReferenceController::wanted(const Queued& q) const {
+  const auto open = open_row(bank_of(q.request));
+  if (!open) return Kind::kAct;
+  if (*open != row_of(q.request)) return Kind::kPre;
+  return q.request.write ? Kind::kWr : Kind::kRd;
+}
+
+// ---- refresh
+
+ReferenceController::Refresh ReferenceController::refresh_level(std::uint64_t edge) const {
+  std::uint64_t more = 0;
+  if (config().refresh_interval)
+    for (std::uint64_t e = expiry_; e <= edge; e += config().refresh_interval) ++more;
+  if (forced_ || closed_for_refresh_ || owed_ + more > limits_.must ||
+      since_refresh_ + more > limits_.gap)
+    return Refresh::kMust;
+  return owed_ + more > limits_.need ? Refresh::kNeed : Refresh::kMay;
+}
+
+void ReferenceController::expire(std::uint64_t clock) {
+  if (!config().refresh_interval) return;
+  for (; expiry_ <= clock; expiry_ += config().refresh_interval) ++owed_, ++since_refresh_;
+}
+
+void ReferenceController::give_refresh(std::uint64_t clock) {
+  give(Kind::kRef, 0, 0, clock);
+  since_refresh_ = 0;
+  closed_for_refresh_ = false;
+  owed_ -= owed_ ? 1 : 0;
+  forced_ -= forced_ ? 1 : 0;
+}
+
+/// Clock by clock: an owed refresh, or the PREA before it, is given when it is legal.
+void ReferenceController::idle_until(Picoseconds at) {
+  if (!queue_.empty() || !config().refresh_interval) return;
+  const std::uint64_t end = ddr_.edge_after(at);
+  std::uint64_t clock = clock_after_last();
+  if (owed_ == 0) clock = std::max(clock, expiry_);
+  while (clock < end) {
+    expire(clock);
+    if (owed_ == 0) {
+      clock = expiry_;
+      continue;
+    }
+    if (!all_closed()) {
+      if (legal_from(Kind::kPreAll, 0, clock) == clock) give(Kind::kPreAll, 0, 0, clock);
+    } else if (legal_from(Kind::kRef, 0, clock) == clock) {
+      give_refresh(clock);
+    }
+    ++clock;
+  }
+}
+
+// ---- scheduling
+
+Picoseconds ReferenceController::next() const {
+  return queue_.empty() ? kNever : ddr_.edge(plan().clock);
+}
+
+ReferenceController::Plan ReferenceController::plan() const {
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const Queued& q = queue_[i];
+    if (q.columns_given == 0) continue;
+    // Nothing comes between the columns of a request.
+    const Kind kind = q.request.write ? Kind::kWr : Kind::kRd;
+    return {kind, legal_from(kind, bank_of(q.request), clock_after_last()), i};
+  }
+  // The decision of an edge stands if its command can be given before anything else wants a say.
+  std::uint64_t edge = std::max(clock_after_last(), queue_.front().ready);
+  for (;;) {
+    const Plan p = plan_at(edge);
+    std::uint64_t wake = ~std::uint64_t{0};
+    for (const Queued& q : queue_)
+      if (q.ready > edge) wake = std::min(wake, q.ready);
+    if (read_room_ > edge) wake = std::min(wake, read_room_);
+    if (p.clock < wake) return p;
+    edge = wake;
+  }
+}
+
+ReferenceController::Plan ReferenceController::refresh_at(std::uint64_t edge) const {
+  const Kind kind = all_closed() ? Kind::kRef : Kind::kPreAll;
+  return {kind, legal_from(kind, 0, edge), std::nullopt};
+}
+
+ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const {
+  const Refresh level = refresh_level(edge);
+  if (level == Refresh::kMust) return refresh_at(edge);
+
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < queue_.size(); ++i)
+    if (queue_[i].ready <= edge && offered(i)) list.push_back(i);
+  const bool raise = config().old_count != 0xFF && passed_ > config().old_count;
+  const auto order = [&](std::size_t i) {
+    const ReferenceRequest& r = queue_[i].request;
+    const bool reads_wait = read_room_ > edge;
+    const int kind = r.write ? 1 : reads_wait ? 2 : 0;
+    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r), r.priority,
+                           i);
+  };
+  std::sort(list.begin(), list.end(),
+            [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
+
+  if (level == Refresh::kNeed) {
+    // Before writes, and before a read if the write that would come first is more urgent.
+    std::optional<std::size_t> read, write;
+    for (const std::size_t i : list) {
+      auto& first = queue_[i].request.write ? write : read;
+      const auto natural = [&](std::size_t k) {
+        const ReferenceRequest& r = queue_[k].request;
+        return std::make_tuple(open_row(bank_of(r)) != row_of(r), r.priority, k);
+      };
+      if (!first || natural(i) < natural(*first)) first = i;
+    }
+    if (!read || (write && queue_[*write].request.priority < queue_[*read].request.priority))
+      return refresh_at(edge);
+  }
+
+  // The first gets what it wants; the others may prepare a bank that nobody before them needs.
+  std::optional<Plan> best;
+  std::vector<unsigned> taken;
+  for (const std::size_t i : list) {
+    const unsigned bank = bank_of(queue_[i].request);
+    if (std::find(taken.begin(), taken.end(), bank) != taken.end()) continue;
+    taken.push_back(bank);
+    const Kind kind = wanted(queue_[i]);
+    if (best && (kind == Kind::kRd || kind == Kind::kWr)) continue;
+    std::uint64_t clock = legal_from(kind, bank, edge);
+    if (kind == Kind::kRd) clock = std::max(clock, read_room_);
+    if (!best || clock < best->clock) best = Plan{kind, clock, i};
+  }
+  return *best;
+}
+
+void ReferenceController::give(Kind kind, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+  commands.push_back({kind, bank, row, clock, configs_.size() - 1});
+}
+
+void ReferenceController::step() {
+  const Plan p = plan();
+  expire(p.clock);
+  if (!p.of) {
+    // More than the allowed intervals without a refresh: four before anything new.
+    if (since_refresh_ > limits_.gap && forced_ == 0) forced_ = 4;
+    if (p.kind == Kind::kRef) {
+      give_refresh(p.clock);
+    } else {
+      give(p.kind, 0, 0, p.clock);
+      closed_for_refresh_ = true;
+    }
+    return;
+  }
+  Queued& q = queue_[*p.of];
+  const ReferenceRequest r = q.request;
+  if (!q.classified) {
+    q.classified = true;
+    ++(p.kind == Kind::kAct ? misses : p.kind == Kind::kPre ? conflicts : hits);
+  }
+  give(p.kind, bank_of(r), row_of(r), p.clock);
+  if (p.kind == Kind::kAct || p.kind == Kind::kPre) return;
+  if (q.columns_given++ == 0 && !r.write) answer(r, p.clock);
+  if (q.columns_given == columns_of(r)) leave(*p.of, p.clock);
+}
+
+void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
+  passed_ = place == 0 ? 0 : passed_ + columns_of(queue_[place].request);
+  queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
+  if (!door_ || !fits(*door_)) return;
+  last_arrival_ = std::max(door_arrived_, clock + 1);
+  queue_.push_back({*door_, last_arrival_ + limits_.request_latency});
+  accepted.push_back({door_->id, ddr_.edge(clock)});
+  door_.reset();
+}
+
+/// The way of a read's data: PHY, read FIFO, and a lane of 8 bytes a crossbar clock.
+void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock) {
+  const std::uint64_t latency =
+      std::max(config().read_latency, config().CL) + limits_.return_latency;
+  const std::uint64_t head = latency + kBurst / 2;  // 8 bytes are 4 beats
+  const std::uint64_t words = (r.bytes + 7) / 8;
+  const std::uint64_t here = scr_.edge_after(ddr_.edge(clock + head));
+  const std::uint64_t all_here =
+      scr_.edge_after(ddr_.edge(clock + latency + columns_of(r) * kBurst));
+  const std::uint64_t start = std::max(here, lane_free_);
+  std::uint64_t end = start;
+  if (words > 1 || columns_of(r) > 1) end = std::max(start + words - 1, all_here);
+  lane_free_ = end + 1;
+  // With more than this many words before the lane, 64 bytes of another read find no room.
+  const std::uint64_t held = limits_.read_fifo / 8 - 8;
+  if (lane_free_ > lane_start_ + held && lane_free_ - held >= here) {
+    const std::uint64_t room = ddr_.edge_at_or_after(scr_.edge(lane_free_ - held));
+    read_room_ = room > head ? room - head : 0;
+  }
+  reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
+}
+
+std::uint64_t ReferenceController::count(Kind kind) const {
+  return static_cast<std::uint64_t>(std::count_if(commands.begin(), commands.end(),
+                                                  [&](const Given& g) { return g.kind == kind; }));
+}
+
+}  // namespace fovea::dram

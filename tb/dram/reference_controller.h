@@ -1,0 +1,125 @@
+// The DDR controller once more, as an oracle: a slow, stepwise scheduler that keeps nothing but its
+// queue and the list of commands given, and derives every answer from them when asked. It shares no
+// header with model/mem; the rules are dm365.md 5.3 and 5.4 and the relations of dram.md 2.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "model/common/clock.h"
+
+namespace fovea::dram {
+
+struct ReferenceConfig {
+  // clocks
+  unsigned CL = 5, tRFC = 31, tRP = 5, tRCD = 5, tWR = 4, tRAS = 11, tRC = 16, tRRD = 3, tWTR = 3;
+  unsigned tRTP = 2;
+  unsigned banks = 8, page_log2 = 11, read_latency = 5;
+  unsigned refresh_interval = 1895;  ///< 0: none
+  unsigned old_count = 0xFF;         ///< 0xFF: never
+  bool bank_on_top = false;
+};
+
+/// What the silicon fixes.
+struct ReferenceLimits {
+  unsigned command_fifo = 7, write_fifo = 88, read_fifo = 136;  // entries, bytes, bytes
+  unsigned request_latency = 8, return_latency = 2;             // DDR clocks
+  unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
+  std::uint64_t size = 128u << 20;
+};
+
+struct ReferenceRequest {
+  std::size_t id = 0;
+  unsigned master = 0, priority = 0;
+  bool write = false;
+  unsigned bytes = 0;
+  std::uint32_t address = 0;
+};
+
+class ReferenceController {
+ public:
+  enum class Kind : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+  struct Given {
+    Kind kind;
+    unsigned bank;
+    std::uint32_t row;
+    std::uint64_t clock;
+    std::size_t config;  // in force then: it decides what the command puts off
+  };
+  struct Read {
+    std::size_t id;
+    Picoseconds first, last;
+  };
+  struct Accepted {
+    std::size_t id;
+    Picoseconds at;
+  };
+
+  /// Starts with the defaults of ReferenceConfig.
+  explicit ReferenceController(const ReferenceLimits& limits);
+  void set_clocks(Frequency ddr, Frequency scr, Picoseconds at);
+  void configure(const ReferenceConfig& config, Picoseconds at);
+  bool submit(const ReferenceRequest& request, Picoseconds at);
+  /// Time of the next command for a request or an urgent refresh; kNever if nothing is queued.
+  Picoseconds next() const;
+  void step();
+  /// Refreshes of an idle controller up to `at`.
+  void idle_until(Picoseconds at);
+
+  // What it did.
+  std::vector<Given> commands;
+  std::vector<Read> reads;
+  std::vector<Accepted> accepted;  // from the door
+  std::uint64_t hits = 0, misses = 0, conflicts = 0;
+  std::uint64_t count(Kind kind) const;
+
+ private:
+  struct Queued {
+    ReferenceRequest request;
+    std::uint64_t ready;
+    unsigned columns_given = 0;
+    bool classified = false;
+  };
+  struct Plan {
+    Kind kind;
+    std::uint64_t clock;
+    std::optional<std::size_t> of;  // place in queue_; none: refresh
+  };
+  enum class Refresh { kMay, kNeed, kMust };
+
+  const ReferenceConfig& config() const { return configs_.back(); }
+  unsigned bank_of(const ReferenceRequest& r) const;
+  std::uint32_t row_of(const ReferenceRequest& r) const;
+  static unsigned columns_of(const ReferenceRequest& r);
+  std::optional<std::uint32_t> open_row(unsigned bank) const;
+  bool all_closed() const;
+  std::uint64_t legal_from(Kind kind, unsigned bank, std::uint64_t not_before) const;
+  unsigned apart(const Given& before, Kind kind, unsigned bank) const;
+  bool offered(std::size_t place) const;
+  Kind wanted(const Queued& q) const;
+  Plan plan() const;
+  Plan plan_at(std::uint64_t edge) const;
+  Plan refresh_at(std::uint64_t edge) const;
+  Refresh refresh_level(std::uint64_t edge) const;
+  std::uint64_t clock_after_last() const;
+  void expire(std::uint64_t clock);
+  void give(Kind kind, unsigned bank, std::uint32_t row, std::uint64_t clock);
+  void give_refresh(std::uint64_t clock);
+  void answer(const ReferenceRequest& r, std::uint64_t clock);
+  void leave(std::size_t place, std::uint64_t clock);
+  bool fits(const ReferenceRequest& r) const;
+
+  ReferenceLimits limits_;
+  std::vector<ReferenceConfig> configs_;
+  Clock ddr_, scr_;
+  std::vector<Queued> queue_;  // oldest first
+  std::optional<ReferenceRequest> door_;
+  std::uint64_t door_arrived_ = 0, last_arrival_ = 0;
+  std::uint64_t not_before_ = 0;  // the last change of clocks or configuration
+  std::uint64_t passed_ = 0;      // transfers served while the oldest request waited
+  std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
+  bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
+  std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
+};
+
+}  // namespace fovea::dram
