@@ -31,6 +31,7 @@ struct MemRequest {
   std::uint8_t priority = 0;       ///< 0 highest ... 7 lowest; as of the grant
   std::uint8_t slave = 0;          ///< bus::Slave
   bool error = false;              ///< outcome: nobody answered
+  Picoseconds taken = 0;           ///< in the slave's hands
   Picoseconds first = 0;           ///< outcome: first beat at the master's port
   Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
 };

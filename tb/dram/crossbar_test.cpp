@@ -269,6 +269,57 @@ TEST(CrossbarTest, RequestToComeSeesTheEdgesAfterAClockChange) {
   EXPECT_EQ(b.events[0].granted, 56u) << "seen at 520, through the bridge in 2: 560 ns";
 }
 
+// All on their ports at 5, through the bridge at 8. A's write has the lane from 8 to 16, B's read goes at
+// 16, C's at 17, A's second request at 18: it is through the bridge at 8 as well.
+TEST(CrossbarTest, WaitsAreTaggedWithTheMasterThatHadTheLane) {
+  XbarBench b;
+  b.xbar.set_priority(kB, 1);
+  b.xbar.set_priority(kA, 0);
+  b.submit(kA, 5, true, 64);
+  b.xbar.set_priority(kC, 2);
+  b.submit(kB, 5);
+  b.submit(kC, 5);
+  b.run(9);
+  b.xbar.set_priority(kA, 3);
+  b.submit(kA, 10, false, 8);
+  b.run();
+  ASSERT_EQ(b.winners(), "ABCA");
+  for (const Event& e : b.events) EXPECT_EQ(e.slave, Slave::kDdr);
+  const auto edges = [](const Waits& w, Culprit c) { return w.ps[index(c)] / kEdge; };
+  const auto sum = [](const Waits& w) {
+    std::uint64_t t = 0;
+    for (const auto ps : w.ps) t += ps;
+    return t / kEdge;
+  };
+  const Waits& write = b.xbar.waits[index(kA)].write;
+  EXPECT_EQ(edges(write, Culprit::kBridge), 3u + 2u) << "5 to 8, and the acknowledgement's 2";
+  EXPECT_EQ(edges(write, Culprit::kService), 8u);
+  EXPECT_EQ(sum(write), 18u - 5u);
+  const Waits& first = b.xbar.waits[index(kB)].read;
+  EXPECT_EQ(edges(first, Culprit::kBridge), 3u);
+  EXPECT_EQ(edges(first, culprit(kA)), 8u);
+  EXPECT_EQ(edges(first, Culprit::kService), 1u);
+  EXPECT_EQ(sum(first), 17u - 5u);
+  const Waits& second = b.xbar.waits[index(kC)].read;
+  EXPECT_EQ(edges(second, culprit(kA)), 8u);
+  EXPECT_EQ(edges(second, culprit(kB)), 1u);
+  EXPECT_EQ(sum(second), 18u - 5u);
+  const Waits& own = b.xbar.waits[index(kA)].read;  // through the bridge at 13
+  EXPECT_EQ(edges(own, culprit(kA)), 3u) << "its own write, to 16";
+  EXPECT_EQ(edges(own, culprit(kB)), 1u);
+  EXPECT_EQ(edges(own, culprit(kC)), 1u);
+  EXPECT_EQ(sum(own), 19u - 10u);
+}
+
+TEST(CrossbarTest, WaitsBehindOnesOwnRequestAreOnesOwn) {
+  XbarBench b;
+  b.submit(kA, 5, true, 16);
+  b.submit(kA, 5, true, 8);
+  b.run();
+  const Waits& w = b.xbar.waits[index(kA)].write;
+  EXPECT_EQ(w.ps[index(culprit(kA))] / kEdge, 2u) << "8 to 10, where the lane is free again";
+}
+
 TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
   XbarBench b;
   b.submit(kA, 5);

@@ -18,13 +18,18 @@ Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
 void Crossbar::set_clock(Frequency scr, Picoseconds at) {
   if (scr == scr_.frequency()) return;
   scr_.restart(scr, at);
-  // Requests that come after the change see the new edges.
-  for (Port& p : ports_)
-    for (std::uint32_t i = p.head; i != p.tail; ++i) {
-      Port::Item& item = p.queue[i % kQueue];
-      if (item.request->issued > at && scr_.running())
-        item.visible = scr_.edge_after(item.request->issued) + p.request_latency;
-    }
+  if (scr_.running()) {
+    const std::uint64_t first = scr_.edge_at_or_after(at);  // edges before have no times any more
+    for (SlaveState& s : slaves_) s.grants_made = 0;
+    for (Port& p : ports_)
+      for (std::uint32_t i = p.head; i != p.tail; ++i) {
+        Port::Item& item = p.queue[i % kQueue];
+        // Requests that come after the change see the new edges.
+        if (item.request->issued > at)
+          item.visible = item.crossed = scr_.edge_after(item.request->issued) + p.request_latency;
+        item.crossed = std::max(item.crossed, first);
+      }
+  }
   plan();
 }
 
@@ -42,7 +47,8 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   request.slave = static_cast<std::uint8_t>(slave);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
-  item = {&request, scr_.edge_after(request.issued) + p.request_latency};
+  const std::uint64_t crossed = scr_.edge_after(request.issued) + p.request_latency;
+  item = {&request, crossed, crossed};
   if (!head) return;  // competes when those before it are gone
   const std::uint32_t others = waiting_;
   waiting_ |= 1u << index(request.master);
@@ -106,11 +112,39 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
   s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
+void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed,
+                         std::uint64_t edge) {
+  Waits& w = waits_of(r);
+  const Picoseconds start = scr_.edge(crossed);
+  w.add(Culprit::kBridge, start - r.issued);
+  // From the newest grant back. Where nobody had the lane the request stood behind its own master's
+  // last one.
+  Picoseconds until = next_;
+  std::uint64_t at = edge;
+  const auto take = [&](std::uint64_t from, Culprit c) {
+    if (from >= at) return;
+    const Picoseconds t = from <= crossed ? start : scr_.edge(from);
+    w.add(c, until - t);
+    until = t;
+    at = from;
+  };
+  const std::uint32_t oldest =
+      s.grants_made > SlaveState::kGrants ? s.grants_made - SlaveState::kGrants : 0;
+  for (std::uint32_t n = s.grants_made; n-- > oldest && at > crossed;) {
+    const Grant& g = s.grant(n);
+    take(std::max(g.end, crossed), culprit(r.master));
+    take(std::max(g.start, crossed), static_cast<Culprit>(g.master));
+  }
+  take(crossed, culprit(r.master));
+}
+
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   SlaveState& s = slaves_[request.slave];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   s.free = std::max(s.free, scr_.edge_after(at));
+  if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
+  request.taken = scr_.edge(s.free);
   if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host_, request, s.free);
   plan();
@@ -122,6 +156,8 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
   request.last =
       last == first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
   request.error = error;
+  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    waits_of(request).add(Culprit::kBridge, request.first - first);
   if (error && request.locked) {  // its master gives up
     slaves_[request.slave].open_to = ~0u;
     plan();

@@ -10,6 +10,7 @@
 #include "model/common/clock.h"
 #include "model/common/mem_request.h"
 #include "model/common/stats.h"
+#include "model/common/waits.h"
 
 namespace fovea::bus {
 
@@ -73,6 +74,8 @@ class Crossbar {
   };
   const std::vector<TimelineBin>& timeline() const { return timeline_; }
   Picoseconds timeline_interval() const { return interval_; }
+  /// Time between issue and arrival at the SDRAM, and from there back to the port.
+  WaitTable waits;
 
  private:
   static constexpr std::size_t kQueue = 32;  // as deep as any master's outstanding limit
@@ -80,6 +83,7 @@ class Crossbar {
     struct Item {
       MemRequest* request;
       std::uint64_t visible;  // edge from which the arbiter sees it
+      std::uint64_t crossed;  // edge at which it is through the bridge
     };
     std::array<Item, kQueue> queue;
     std::uint32_t head = 0, tail = 0;
@@ -89,8 +93,17 @@ class Crossbar {
     std::uint8_t request_latency = 0, response_latency = 0;
     bool empty() const { return head == tail; }
   };
+  /// The lane was the master's from `start` on, up to the next one's start or `end`.
+  struct Grant {
+    std::uint64_t start = 0, end = 0;
+    std::uint8_t master = 0;
+  };
   struct SlaveState {
+    static constexpr std::size_t kGrants = 64;
     std::uint64_t free = 0;      // first edge at which its command lane is free
+    std::uint32_t grants_made = 0;
+    std::array<Grant, kGrants> grants;  // the last ones, to say who was waited for
+    Grant& grant(std::uint32_t n) { return grants[n % kGrants]; }
     bool blocked = false;        // a request waits at its door
     std::uint8_t last = 0;       // round robin: last master granted
     std::uint32_t open_to = ~0u; // masters it serves: all, or the one that locked it
@@ -107,9 +120,16 @@ class Crossbar {
     request.first = request.last =
         scr_.edge(edge + ports_[index(request.master)].response_latency);
     request.error = false;
+    waits_of(request).add(Culprit::kBridge, request.first - request.taken);
     host.respond(request);
   }
   void count(const MemRequest& r);
+  /// The parts of request.issued .. grant at `edge`.
+  void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint64_t edge);
+  Waits& waits_of(const MemRequest& r) {
+    MasterWaits& w = waits[index(r.master)];
+    return r.write ? w.write : w.read;
+  }
 
   XbarHost& host_;
   Clock scr_;
@@ -142,6 +162,7 @@ template <class Host>
 void Crossbar::step(Host& host) {
   Port& p = ports_[next_port_];
   MemRequest& r = *p.front().request;
+  const std::uint64_t crossed = p.front().crossed;
   if (++p.head == p.tail) {
     waiting_ &= ~(1u << next_port_);
   } else {  // the next in line shows itself one clock later
@@ -158,6 +179,15 @@ void Crossbar::step(Host& host) {
 
   const std::uint64_t arrival = next_edge_ + cycles;
   const Picoseconds at = scr_.edge(arrival);
+  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
+    if (crossed == next_edge_)
+      waits_of(r).add(Culprit::kBridge, next_ - r.issued);
+    else
+      attribute(s, r, crossed, next_edge_);
+    waits_of(r).add(Culprit::kService, at - next_);
+  }
+  s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
+  r.taken = at;
   const XbarHost::Taken taken = host.forward(r, at);
   if (taken == XbarHost::Taken::kWaits)
     s.blocked = true;
