@@ -316,6 +316,15 @@ TEST_P(SameAsReferenceTest, EveryCommandOutcomeAndStatistic) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SameAsReferenceTest, testing::Range(0u, 8u));
 
+// What the streams must contain for the comparison to mean something.
+TEST(SameAsReferencesTest, StreamsReachEveryCommand) {
+  std::array<std::uint64_t, 8> commands{};
+  for (std::uint64_t seed = 1; seed <= 40; ++seed)
+    for (const Event& e : play<Production>(seed, 400))
+      if (e.what == kCommand) ++commands[e.a];
+  for (const std::uint64_t n : commands) EXPECT_GT(n, 100u);
+}
+
 // The comparison can fail: a reference that is one clock slower in one number is found.
 TEST(SameAsReferencesTest, OneClockMoreIsADifference) {
   EXPECT_FALSE(play<Production>(3, 400) == play<Oracle>(3, 400, 1));
