@@ -78,6 +78,7 @@ inline DataSheet sheet_of(const mem::DdrConfig& c) {
   s.tRFC = c.timing.nRFC;
   s.tREFI = c.refresh_interval;
   s.banks = c.timing.banks;
+  s.mobile = c.timing.mobile;
   return s;
 }
 
@@ -94,6 +95,10 @@ inline Command translate(mem::Cmd c) {
       return Command::kRd;
     case mem::Cmd::kWr:
       return Command::kWr;
+    case mem::Cmd::kRda:
+      return Command::kRda;
+    case mem::Cmd::kWra:
+      return Command::kWra;
     default:
       return Command::kRef;
   }

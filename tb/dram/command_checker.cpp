@@ -40,13 +40,22 @@ void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::u
     case Command::kWr:
       column(true, bank, row, now);
       break;
+    case Command::kRda:
+      column(false, bank, row, now);
+      close_by_itself(bank);
+      break;
+    case Command::kWra:
+      column(true, bank, row, now);
+      close_by_itself(bank);
+      break;
     case Command::kRef:
       refresh(now);
       break;
     case Command::kPre:
       if (!banks_[bank].open) complain("PRE on closed bank", clock, bank, 0);
       precharge(bank, now);
-      banks_[bank].pre = pre_ = now;
+      banks_[bank].pre = now;
+      pre_ = std::max(pre_, now);
       break;
     case Command::kPreAll:
       for (unsigned b = 0; b < sheet_.banks; ++b)
@@ -97,6 +106,15 @@ void CommandChecker::column(bool write, unsigned b, std::uint32_t row, std::int6
     apart("tWTR", wr_, now, WL() + 4 + sheet_.tWTR, b);
     k.rd = rd_ = now;
   }
+}
+
+/// The part precharges as soon as tRAS, tRTP and tWR allow it.
+void CommandChecker::close_by_itself(unsigned b) {
+  Bank& k = banks_[b];
+  const std::int64_t after_read = k.rd + (sheet_.mobile ? 4 : 4 + std::max(sheet_.tRTP, 2u) - 2);
+  k.pre = std::max({k.act + sheet_.tRAS, after_read, k.wr + WL() + 4 + sheet_.tWR});
+  pre_ = std::max(pre_, k.pre);
+  k.open = false;
 }
 
 void CommandChecker::refresh(std::int64_t now) {

@@ -10,7 +10,8 @@
 
 namespace fovea::dram {
 
-enum class Command : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+/// kRda, kWra: with auto-precharge.
+enum class Command : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef, kRda, kWra };
 
 /// The numbers of one part at one clock, in clocks.
 struct DataSheet {
@@ -20,7 +21,7 @@ struct DataSheet {
   unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
   unsigned tREFI = 0;  ///< 0: refresh not checked
   unsigned banks = 8;
-  bool mobile = false;  ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
+  bool mobile = false;         ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
   unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
 };
 
@@ -65,6 +66,7 @@ class CommandChecker {
   void activate(unsigned b, std::uint32_t row, std::int64_t now);
   void precharge(unsigned b, std::int64_t now);
   void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
+  void close_by_itself(unsigned b);
   void refresh(std::int64_t now);
   void check_refresh_gap(std::uint64_t clock);
   unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }

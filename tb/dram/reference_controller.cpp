@@ -58,7 +58,8 @@ std::optional<std::uint32_t> ReferenceController::open_row(unsigned bank) const 
   for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
     if (c->kind == Kind::kPreAll || c->kind == Kind::kRef) return std::nullopt;
     if (c->bank != bank) continue;
-    if (c->kind == Kind::kPre) return std::nullopt;
+    if (c->kind == Kind::kPre || c->kind == Kind::kRda || c->kind == Kind::kWra)
+      return std::nullopt;
     return c->row;
   }
   return std::nullopt;
@@ -77,7 +78,7 @@ unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned ban
   const ReferenceConfig& c = configs_[before.config];
   const bool same = before.bank == bank;
   const bool closes = kind == Kind::kPre;
-  const unsigned WL = c.CL - 1;
+  const unsigned WL = c.mobile ? 1 : c.CL - 1;
   switch (before.kind) {
     case Kind::kAct:
       if (kind == Kind::kAct) return same ? std::max(c.tRC, c.tRRD) : c.tRRD;
@@ -88,10 +89,13 @@ unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned ban
     case Kind::kPreAll:
       return kind == Kind::kRef || kind == Kind::kAct ? c.tRP + (c.banks == 8 ? 1 : 0) : 0;
     case Kind::kRd:
+    case Kind::kRda:
       if (kind == Kind::kRd) return kBurst;
-      if (kind == Kind::kWr) return c.CL + kBurst + 1 - WL;
-      return closes && same ? kBurst + std::max(c.tRTP, 2u) - 2 : 0;
+      if (kind == Kind::kWr) return c.mobile ? c.CL + kBurst : c.CL + kBurst + 1 - WL;
+      if (!closes || !same) return 0;
+      return c.mobile ? kBurst : kBurst + std::max(c.tRTP, 2u) - 2;
     case Kind::kWr:
+    case Kind::kWra:
       if (kind == Kind::kWr) return kBurst;
       if (kind == Kind::kRd) return WL + kBurst + c.tWTR;
       return closes && same ? WL + kBurst + c.tWR : 0;
@@ -113,6 +117,8 @@ std::uint64_t ReferenceController::legal_from(Kind kind, unsigned bank,
   for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
     if (c->clock + kLongestRule < not_before) break;
     if (const unsigned n = apart(*c, kind, bank)) from = std::max(from, c->clock + n);
+    if (c->closes && (kind == Kind::kRef || (kind == Kind::kAct && c->bank == bank)))
+      from = std::max(from, c->closes + configs_[c->config].tRP);
   }
   return from;
 }
@@ -248,13 +254,15 @@ ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < queue_.size(); ++i)
     if (queue_[i].ready <= edge && offered(i)) list.push_back(i);
+  if (limits_.order == ReferenceLimits::Order::kFcfs) list = {0};
   const bool raise = config().old_count != 0xFF && passed_ > config().old_count;
   const auto order = [&](std::size_t i) {
     const ReferenceRequest& r = queue_[i].request;
     const bool reads_wait = read_room_ > edge;
-    const int kind = r.write ? 1 : reads_wait ? 2 : 0;
-    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r), r.priority,
-                           i);
+    const bool plain = limits_.order == ReferenceLimits::Order::kFrFcfs;
+    const int kind = !r.write && reads_wait ? 2 : r.write && !plain ? 1 : 0;
+    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r),
+                           plain ? 0 : r.priority, i);
   };
   std::sort(list.begin(), list.end(),
             [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
@@ -314,7 +322,20 @@ void ReferenceController::step() {
     q.classified = true;
     ++(p.kind == Kind::kAct ? misses : p.kind == Kind::kPre ? conflicts : hits);
   }
-  give(p.kind, bank_of(r), row_of(r), p.clock);
+  Kind kind = p.kind;
+  const bool column = kind == Kind::kRd || kind == Kind::kWr;
+  if (column && q.columns_given + 1 == columns_of(r) &&
+      limits_.order == ReferenceLimits::Order::kClosedPage) {
+    // The row closes unless another request in the queue wants it.
+    bool wanted = false;
+    for (const Queued& o : queue_)
+      wanted = wanted ||
+               (&o != &q && bank_of(o.request) == bank_of(r) && row_of(o.request) == row_of(r));
+    if (!wanted) kind = kind == Kind::kRd ? Kind::kRda : Kind::kWra;
+  }
+  give(kind, bank_of(r), row_of(r), p.clock);
+  if (kind == Kind::kRda || kind == Kind::kWra)
+    commands.back().closes = legal_from(Kind::kPre, bank_of(r), p.clock);
   if (p.kind == Kind::kAct || p.kind == Kind::kPre) return;
   if (q.columns_given++ == 0 && !r.write) answer(r, p.clock);
   if (q.columns_given == columns_of(r)) leave(*p.of, p.clock);

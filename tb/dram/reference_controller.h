@@ -18,6 +18,7 @@ struct ReferenceConfig {
   unsigned refresh_interval = 1895;  ///< 0: none
   unsigned old_count = 0xFF;         ///< 0xFF: never
   bool bank_on_top = false;
+  bool mobile = false;
 };
 
 /// What the silicon fixes.
@@ -26,6 +27,7 @@ struct ReferenceLimits {
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
   unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
   std::uint64_t size = 128u << 20;
+  enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
 };
 
 struct ReferenceRequest {
@@ -38,13 +40,14 @@ struct ReferenceRequest {
 
 class ReferenceController {
  public:
-  enum class Kind : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+  enum class Kind : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef, kRda, kWra };
   struct Given {
     Kind kind;
     unsigned bank;
     std::uint32_t row;
     std::uint64_t clock;
-    std::size_t config;  // in force then: it decides what the command puts off
+    std::size_t config;        // in force then: it decides what the command puts off
+    std::uint64_t closes = 0;  // kRda, kWra: clock of the precharge that the part gives itself
   };
   struct Read {
     std::size_t id;

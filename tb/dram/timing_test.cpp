@@ -282,6 +282,45 @@ TEST(TimingTest, PrechargeAllBeforeRefresh) {
   }
 }
 
+// Mobile DDR: WL = 1; RD to WR takes CL + BL/2, RD to PRE BL/2 whatever tRTP.
+TEST(TimingTest, MobilePartsHaveTheirOwnRelations) {
+  const auto run = [](bool mobile, auto scenario) {
+    BenchOptions o = base();
+    o.config.timing.banks = 4;
+    o.config.timing.nRAS = 1;
+    o.config.timing.nRTP = 5;
+    o.config.timing.mobile = mobile;
+    DdrBench b(o);
+    const std::uint64_t clock = scenario(b);
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+    return clock;
+  };
+  const auto read_write = [](DdrBench& b) {
+    Request one = read(kA, at(1, 0)), two = write(kB, at(1, 0, 64));
+    b.submit(one, kSubmit);
+    b.submit(two, kSubmit);
+    b.drain();
+    return b.clock_of(Cmd::kWr);
+  };
+  const auto write_read = [](DdrBench& b) {
+    Request one = write(kA, at(1, 0)), two = read(kB, at(1, 0, 64));
+    b.submit(one, kSubmit);
+    b.submit(two, kSubmit + 7);  // ready at 25, when the write has its column
+    b.drain();
+    return b.clock_of(Cmd::kRd);
+  };
+  const auto read_close = [](DdrBench& b) { return conflict_precharge(b, false); };
+  const auto write_close = [](DdrBench& b) { return conflict_precharge(b, true); };
+  EXPECT_EQ(run(false, read_write), 24u + 5 + 4 + 1 - 4);
+  EXPECT_EQ(run(true, read_write), 24u + 5 + 4);
+  EXPECT_EQ(run(false, write_read), 24u + 4 + 4 + 4);
+  EXPECT_EQ(run(true, write_read), 24u + 1 + 4 + 4);
+  EXPECT_EQ(run(false, read_close), 24u + 4 + 5 - 2);
+  EXPECT_EQ(run(true, read_close), 24u + 4);
+  EXPECT_EQ(run(false, write_close), 24u + 4 + 4 + 9);
+  EXPECT_EQ(run(true, write_close), 24u + 1 + 4 + 9);
+}
+
 // A read is announced before its first beat, whatever the latencies: nobody can be told too late.
 TEST(TimingTest, ReadsAreAnnouncedBeforeTheirFirstBeat) {
   BenchOptions o = base();

@@ -34,7 +34,10 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       return_latency_(static_cast<unsigned>(params.return_latency())),
       need_(static_cast<unsigned>(params.refresh_need())),
       must_(static_cast<unsigned>(params.refresh_must())),
-      gap_limit_(static_cast<unsigned>(params.refresh_gap())) {
+      gap_limit_(static_cast<unsigned>(params.refresh_gap())),
+      in_order_(params.scheduler.is("fcfs")),
+      closes_rows_(params.scheduler.is("closed_page")),
+      rank_mask_(params.scheduler.is("frfcfs") ? ~(kKinds | kPriorities) : kNoRank) {
   configure(DdrConfig{}, 0);
 }
 
@@ -250,7 +253,7 @@ inline void DdrController::plan_one(Entry& e) {
 
 /// The command to give if only the requests in the slots `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
-  ready &= offered_;
+  ready &= in_order_ ? 1u << order_[0] : offered_;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
@@ -264,7 +267,7 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   Rank first = kNoRank;
   for (std::uint32_t set = ready; set; set &= set - 1) {
     const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank rank = e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit;
+    Rank rank = (e.rank & rank_mask_) | Rank{device_.row(e.bank) != e.row} << kMissBit;
     if (no_room && !e.request.write) [[unlikely]]
       rank |= no_room;
     first_of_bank[e.bank] = std::min(first_of_bank[e.bank], rank);
@@ -428,6 +431,25 @@ void DdrController::step() {
   plan();
 }
 
+bool DdrController::row_wanted(const Entry& by_others) const {
+  if (alone_) return false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Entry& o = slots_[order_[i]];
+    if (&o != &by_others && o.bank == by_others.bank && o.row == by_others.row) return true;
+  }
+  return false;
+}
+
+/// The last column of a request under the closed-page rule.
+template <Cmd kCmd>
+[[gnu::noinline]] void DdrController::give_closing_column(const Entry& e, std::uint64_t clock) {
+  if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock);
+  device_.issue<kCmd>(e.bank, e.row, clock);
+  device_.close_when_legal(e.bank);
+  command_free_ = clock + 1;
+  if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
+}
+
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
 /// between its bursts; for the same reason the next decision is its last column.
 template <Cmd kCmd>
@@ -436,7 +458,10 @@ inline void DdrController::first_column() {
   const DdrRequest& r = e.request;
   const std::uint64_t clock = choice_.at;
   if (!e.classified) ++stats.row_hits;
-  issue<kCmd>(e.bank, e.row, clock);
+  if (closes_rows_ && e.chunks == 1) [[unlikely]]
+    give_closing_column<kCmd>(e, clock);
+  else
+    issue<kCmd>(e.bank, e.row, clock);
   ++stats.bursts;
   if constexpr (kCmd == Cmd::kWr) {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
@@ -464,7 +489,10 @@ inline void DdrController::last_column() {
     for (; columns_left_ > 1; --columns_left_, next_column_ += DdrTiming::kBurstClocks)
       hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
   }
-  issue<kCmd>(e.bank, e.row, clock);
+  if (closes_rows_) [[unlikely]]
+    give_closing_column<kCmd>(e, clock);
+  else
+    issue<kCmd>(e.bank, e.row, clock);
   finish(clock);
 }
 

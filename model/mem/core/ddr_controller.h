@@ -90,6 +90,7 @@ class DdrController {
   using Rank = std::uint64_t;
   static constexpr unsigned kKindBit = 62, kMissBit = 61, kPriorityBit = 53, kAgeBit = 4;
   static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
+  static constexpr Rank kKinds = Rank{3} << kKindBit, kPriorities = Rank{0xFF} << kPriorityBit;
   static constexpr Rank kNoRank = ~Rank{0};
   struct alignas(64) Entry {
     DdrRequest request;
@@ -131,6 +132,9 @@ class DdrController {
   template <Cmd kCmd>
   void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
   void issue_refresh(std::uint64_t clock);
+  bool row_wanted(const Entry& by_others) const;
+  template <Cmd kCmd>
+  void give_closing_column(const Entry& e, std::uint64_t clock);
   template <Cmd kCmd>
   void first_column();
   template <Cmd kCmd>
@@ -159,6 +163,10 @@ class DdrController {
   std::size_t fifo_entries_;
   unsigned write_fifo_bytes_, read_fifo_bytes_, request_latency_, return_latency_;
   unsigned need_, must_, gap_limit_;
+  // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
+  // nobody waits for is closed after its access; what of an entry's rank counts.
+  bool in_order_, closes_rows_;
+  Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
