@@ -117,7 +117,7 @@ TEST(ChainTest, OtherHalfOfALineIsCleanUntilWritten) {
 }
 
 /// Lines of one set by turns with one that is pushed out now and then, at each a quarter of the
-/// chances. What was remembered of it must then not be read, nor written.
+/// chances. What was remembered of it must then not be read, nor written, long after the fill.
 TEST(ChainTest, LineThatWasReplacedIsNotReadOrWritten) {
   constexpr std::uint32_t kLines = 12, kTurns = 8;
   Cached m(R"(
@@ -127,6 +127,9 @@ TEST(ChainTest, LineThatWasReplacedIsNotReadOrWritten) {
     ldr r0, [r5]
     add r0, r0, r8
     str r0, [r5]
+    mov r2, #100
+  5: subs r2, r2, #1
+    bne 5b
     mov r2, #0
   3: ldr r1, [r4, #2052]
     add r1, r1, #1
