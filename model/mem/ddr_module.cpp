@@ -77,6 +77,7 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
 
 void DdrModule::ddr_accepted(void* cookie, Picoseconds at) {
   MemPhase phase = MemPhase::kAccepted;
+  static_cast<MemRequest*>(cookie)->door_opener = controller_.door_opener();
   const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(at > now ? at - now : 0);
   socket->nb_transport_bw(*static_cast<MemRequest*>(cookie), phase, delay);
@@ -86,6 +87,7 @@ void DdrModule::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last)
   auto& r = *static_cast<MemRequest*>(cookie);
   r.first = first;
   r.last = last;
+  r.slave_waited = controller_.read_waited();
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(first - now_());
   socket->nb_transport_bw(r, phase, delay);

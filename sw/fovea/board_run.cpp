@@ -59,6 +59,7 @@ void BoardSimulation::open_window() {
   auto& soc = board_->dm365;
   for (auto& s : soc.scr.crossbar().stats) s->reset();
   for (auto& s : soc.scr.latency) s->reset();
+  for (auto& s : soc.waits) s->reset();
   soc.ddr.controller().stats.reset();
   soc.config.stats.reset();
   soc.isif.stats.reset();
@@ -78,6 +79,7 @@ void BoardSimulation::close_window() {
   queued_ = soc.scr.queued_accesses() - queued_at_open_;
   for (auto& s : soc.scr.crossbar().stats) collect(*s, stats_);
   for (auto& s : soc.scr.latency) collect(*s, stats_);
+  for (auto& s : soc.waits) collect(*s, stats_);
   collect(soc.ddr.controller().stats, stats_);
   collect(soc.config.stats, stats_);
   collect(soc.isif.stats, stats_);

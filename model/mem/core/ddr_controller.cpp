@@ -357,9 +357,21 @@ inline void DdrController::count_owed(std::uint64_t clock) {
 }
 
 template <Cmd kCmd>
+inline void DdrController::note(std::uint64_t clock) {
+  Given& g = given_[given_count_++ % kGiven];
+  g.clock = clock;
+  g.cmd = kCmd;
+  if constexpr (kCmd != Cmd::kRef && kCmd != Cmd::kPreAll) {
+    g.entry = choice_.entry;
+    g.master = static_cast<std::uint8_t>(index(choice_.entry->request.master));
+  }
+}
+
+template <Cmd kCmd>
 inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
   device_.issue<kCmd>(bank, row, clock);
   command_free_ = clock + 1;
+  note<kCmd>(clock);
   if (hook_) [[unlikely]]
     hook_(hook_self_, kCmd, bank, row, clock);
 }
@@ -447,7 +459,57 @@ template <Cmd kCmd>
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
   command_free_ = clock + 1;
+  note<kCmd>(clock);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
+}
+
+/// The waits of a read whose first column command, already noted, is given at `clock`. From the
+/// newest command before it back to the time it became ready.
+void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+  Waits& w = waits[index(e.request.master)].read;
+  const Picoseconds end = ddr_edges_.edge(clock), start = ddr_.edge(e.ready);
+  Picoseconds until = end;
+  std::uint64_t at = clock;
+  const auto take = [&](std::uint64_t from, Culprit c) {
+    if (from >= at) return;
+    const Picoseconds t = from <= e.ready ? start : ddr_.edge(from);
+    w.add(c, until - t);
+    until = t;
+    at = std::max(from, e.ready);
+  };
+  bool closed_other = false;  // its own PRE is known only further back
+  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0; --left) {
+    const Given& g = given_[--n % kGiven];
+    if (g.clock < e.ready) break;
+    closed_other |= g.cmd == Cmd::kPre && g.entry == &e;
+  }
+  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0 && at > e.ready;
+       --left) {
+    const Given& g = given_[--n % kGiven];
+    const bool own = g.entry == &e && g.clock >= e.ready;
+    switch (g.cmd) {
+      case Cmd::kPreAll:
+      case Cmd::kRef: take(g.clock, Culprit::kRefresh); break;
+      case Cmd::kAct:
+        if (own) {
+          take(g.clock, closed_other ? Culprit::kRowConflict : Culprit::kRowMiss);
+          break;
+        }
+        [[fallthrough]];
+      case Cmd::kPre:
+        if (own)
+          take(g.clock, Culprit::kRowConflict);
+        else
+          take(g.clock, static_cast<Culprit>(g.master));
+        break;
+      case Cmd::kWr:
+        take(g.clock + config_.timing.WL() + DdrTiming::kBurstClocks, Culprit::kTurnaround);
+        [[fallthrough]];
+      default: take(g.clock, static_cast<Culprit>(g.master)); break;
+    }
+  }
+  take(e.ready, culprit(e.request.master));
+  read_waited_ = end - start;
 }
 
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
@@ -467,6 +529,8 @@ inline void DdrController::first_column() {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
+    read_waited_ = 0;
+    if (clock > e.ready) attribute(e, clock);
     answer_read(e, clock);
   }
   if (e.chunks == 1) return finish(clock);

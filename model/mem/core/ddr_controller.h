@@ -7,6 +7,7 @@
 #include "model/common/clock.h"
 #include "model/common/edge_cursor.h"
 #include "model/common/masters.h"
+#include "model/common/waits.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
@@ -72,6 +73,14 @@ class DdrController {
   void step();
 
   DdrStats stats;
+  /// What reads waited for here, between the pipeline's end and their first column command: each
+  /// clock is blamed on the last command before it, a master's for others, or the read's own ACT and
+  /// PRE. From the end of a write burst on it is the turnaround.
+  WaitTable waits;
+  /// Within ddr_read_done: the sum of that read's waits.
+  Picoseconds read_waited() const { return read_waited_; }
+  /// Within ddr_accepted: whose command left the FIFO and made room.
+  Master door_opener() const { return choice_.entry->request.master; }
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
   const Clock& ddr_clock() const { return ddr_; }
@@ -109,6 +118,15 @@ class DdrController {
     Cmd cmd = Cmd::kAct;
   };
 
+  struct Given {
+    std::uint64_t clock = 0;
+    Cmd cmd = Cmd::kRef;
+    std::uint8_t master = 0;
+    const Entry* entry = nullptr;
+  };
+  static constexpr std::size_t kGiven = 64;
+  void attribute(const Entry& e, std::uint64_t clock);
+
   [[noreturn]] void refuse(const DdrRequest& request) const;
   void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
   void join_queue();
@@ -129,6 +147,8 @@ class DdrController {
   bool passes_older(const Entry& e) const;
   void refresh_while_idle(std::uint64_t until);
   void count_owed(std::uint64_t clock);
+  template <Cmd kCmd>
+  void note(std::uint64_t clock);
   template <Cmd kCmd>
   void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
   void issue_refresh(std::uint64_t clock);
@@ -203,6 +223,10 @@ class DdrController {
   std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
   std::uint64_t start_of_lane_ = 0;
   std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
+
+  std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
+  std::uint32_t given_count_ = 0;
+  Picoseconds read_waited_ = 0;
 
   CommandHook hook_ = nullptr;
   void* hook_self_ = nullptr;
