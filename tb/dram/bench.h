@@ -77,6 +77,10 @@ inline DataSheet sheet_of(const mem::DdrConfig& c) {
   s.tRTP = c.timing.nRTP;
   s.tRFC = c.timing.nRFC;
   s.tREFI = c.refresh_interval;
+  s.tXP = c.timing.nXP;
+  s.tXSNR = c.timing.nXSNR;
+  s.tXSRD = c.timing.nXSRD;
+  s.tCKE = c.timing.nCKE;
   s.banks = c.timing.banks;
   s.mobile = c.timing.mobile;
   return s;
@@ -99,6 +103,14 @@ inline Command translate(mem::Cmd c) {
       return Command::kRda;
     case mem::Cmd::kWra:
       return Command::kWra;
+    case mem::Cmd::kPde:
+      return Command::kPde;
+    case mem::Cmd::kPdx:
+      return Command::kPdx;
+    case mem::Cmd::kSre:
+      return Command::kSre;
+    case mem::Cmd::kSrx:
+      return Command::kSrx;
     default:
       return Command::kRef;
   }

@@ -10,14 +10,28 @@
 
 namespace fovea::dram {
 
-/// kRda, kWra: with auto-precharge.
-enum class Command : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef, kRda, kWra };
+/// kRda, kWra: with auto-precharge. The last four: power-down and self-refresh, entry and exit.
+enum class Command : std::uint8_t {
+  kAct,
+  kPre,
+  kPreAll,
+  kRd,
+  kWr,
+  kRef,
+  kRda,
+  kWra,
+  kPde,
+  kPdx,
+  kSre,
+  kSrx
+};
 
 /// The numbers of one part at one clock, in clocks.
 struct DataSheet {
   unsigned CL = 5;
   unsigned tRCD = 5, tRP = 5, tRAS = 11, tRC = 16, tRRD = 3;
   unsigned tWR = 4, tWTR = 3, tRTP = 2, tRFC = 31;
+  unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
   unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
   unsigned tREFI = 0;  ///< 0: refresh not checked
   unsigned banks = 8;
@@ -67,6 +81,8 @@ class CommandChecker {
   void precharge(unsigned b, std::int64_t now);
   void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
   void close_by_itself(unsigned b);
+  void sleep(bool self_refresh, std::int64_t now);
+  void wake(bool self_refresh, std::int64_t now);
   void refresh(std::int64_t now);
   void check_refresh_gap(std::uint64_t clock);
   unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }
@@ -75,7 +91,8 @@ class CommandChecker {
   std::vector<Bank> banks_;
   std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
   std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo, prea_ = kLongAgo,
-               previous_ = kLongAgo;
+               previous_ = kLongAgo, cke_ = kLongAgo, pdx_ = kLongAgo, srx_ = kLongAgo;
+  enum class Cke { kHigh, kPowerDown, kSelfRefresh } state_ = Cke::kHigh;
   std::uint64_t last_ref_ = 0, largest_gap_ = 0;
   std::vector<Complaint> complaints_;
   std::uint64_t total_ = 0, commands_ = 0;

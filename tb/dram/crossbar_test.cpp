@@ -506,6 +506,19 @@ TEST_F(WaitsTest, ReadAfterAnothersWriteWaitsForBurstAndTurnaround) {
   EXPECT_EQ(clocks(path, kB, Culprit::kTurnaround), t.nWTR);
 }
 
+TEST_F(WaitsTest, ReadOfASleepingMemoryWaitsForItsWaking) {
+  mem::DdrConfig c;
+  c.low_power = mem::LowPower::kSelfRefresh;
+  path.ddr.configure(c, 0);
+  go(kA, false, at(1, 0, 0), 16, kLater);
+  path.drain();
+  // CKE rises at the arrival; the pipeline's clocks run meanwhile.
+  const mem::DdrParams p;
+  EXPECT_EQ(clocks(path, kA, Culprit::kPowerDown) + clocks(path, kA, Culprit::kRowMiss),
+            std::max(c.timing.nXSNR + c.timing.nRCD, c.timing.nXSRD) - p.request_latency());
+  EXPECT_GE(clocks(path, kA, Culprit::kPowerDown), c.timing.nXSNR - p.request_latency());
+}
+
 TEST_F(WaitsTest, ReadDuringARefreshWaitsForIt) {
   mem::DdrConfig c;
   c.refresh_interval = 500;

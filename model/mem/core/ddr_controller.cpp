@@ -1,27 +1,11 @@
 #include "model/mem/core/ddr_controller.h"
 
 #include <bit>
-#include <cstring>
 
 #include "model/common/check.h"
+#include "model/mem/core/move_bytes.h"
 
 namespace fovea::mem {
-namespace {
-
-/// The usual lengths in line; memcpy() of a length not known is a call.
-[[gnu::always_inline]] inline void move_bytes(std::uint8_t* to, const std::uint8_t* from,
-                                              unsigned bytes) {
-  if (bytes == 4)
-    std::memcpy(to, from, 4);
-  else if (bytes == 32)
-    std::memcpy(to, from, 32);
-  else if (bytes == 64)
-    std::memcpy(to, from, 64);
-  else
-    std::memcpy(to, from, bytes);
-}
-
-}  // namespace
 
 DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
     : store_(store),
@@ -29,7 +13,6 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       size_(store.size()),
       fifo_entries_(params.command_fifo()),
       write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
-      read_fifo_bytes_(static_cast<unsigned>(params.read_fifo())),
       request_latency_(static_cast<unsigned>(params.request_latency())),
       return_latency_(static_cast<unsigned>(params.return_latency())),
       need_(static_cast<unsigned>(params.refresh_need())),
@@ -38,6 +21,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
       rank_mask_(params.scheduler.is("frfcfs") ? ~(kKinds | kPriorities) : kNoRank) {
+  lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }
 
@@ -46,7 +30,7 @@ void DdrController::catch_up(Picoseconds at) {
   if (in_burst_)
     columns_before(ddr_.edge_after(at));
   else if (count_ == 0)
-    refresh_while_idle(ddr_.edge_after(at));
+    idle(ddr_.edge_after(at));
 }
 
 void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
@@ -58,19 +42,21 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   running_ = ddr_.running() && scr_.running();
   shut_ = !running_ || door_full_;
   if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
-  if (scr_.running()) start_of_lane_ = scr_.edge_at_or_after(scr_.start());
+  if (scr_.running()) lane_.start(scr_.edge_at_or_after(scr_.start()));
   plan_anew();
 }
 
 void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   catch_up(at);
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
+  if (config.low_power != config_.low_power) wake(now);
   // Refresh keeps its phase when only timing changes; a new interval starts to count now.
   if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
     next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
   command_free_ = std::max(command_free_, now);
   config_ = config;
   device_.configure(config.timing);
+  lane_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
   const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
   bank_mask_ = config.timing.banks - 1;
   if (config.bank_on_top) {
@@ -99,8 +85,10 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_edges_.edge_after(at), last_arrival_);
   if (count_ == 0) {
-    if (owed_ != 0 || next_expiry_ < arrived) [[unlikely]]
-      refresh_while_idle(arrived);
+    if (idle_calm_ < arrived) [[unlikely]] {
+      idle(arrived);
+      wake(arrived);
+    }
     last_arrival_ = arrived;
     count_ = 1;
     alone_ = true;
@@ -173,7 +161,7 @@ inline Cmd DdrController::needed(const Entry& e) const {
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {
   const std::uint64_t at = std::max(edge, device_.earliest(cmd, e.bank));
-  return cmd == Cmd::kRd ? std::max(at, read_room_) : at;
+  return cmd == Cmd::kRd ? std::max(at, lane_.room()) : at;
 }
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
@@ -210,7 +198,7 @@ void DdrController::plan_anew() {
 /// The usual case: one request, nothing to choose from, and no refresh that is urgent.
 inline void DdrController::plan_one(Entry& e) {
   const std::uint64_t edge = std::max(command_free_, e.ready);
-  if (edge >= calm_until_ || read_room_ >= calm_until_) [[unlikely]]
+  if (edge >= calm_until_ || lane_.room() >= calm_until_) [[unlikely]]
     return plan_many();
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
@@ -241,7 +229,7 @@ inline void DdrController::plan_one(Entry& e) {
   }
   for (;;) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
-    if (read_room_ > edge) wake = std::min(wake, read_room_);
+    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
     if (choice_.at < wake) break;
     edge = wake;
@@ -261,7 +249,7 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   }
   // Rank: reads, then writes; among each open rows first, then priority, then age (rules 2 and 3).
   // With the read FIFO full, writes go before reads.
-  const Rank no_room = read_room_ <= edge ? 0 : Rank{3} << kKindBit;
+  const Rank no_room = lane_.room() <= edge ? 0 : Rank{3} << kKindBit;
   std::array<Rank, DdrDevice::kMaxBanks> first_of_bank;
   first_of_bank.fill(kNoRank);
   Rank first = kNoRank;
@@ -343,6 +331,7 @@ void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   calm_until_ = urgent ? 0 : next_expiry_;
+  idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
 inline void DdrController::count_owed(std::uint64_t clock) {
@@ -386,17 +375,26 @@ void DdrController::issue_refresh(std::uint64_t clock) {
   urgency_changed();
 }
 
-/// Refreshes that fell into the time without requests: at the "may" level each is done as soon as
-/// it is owed. They cannot cause anything but later row misses, so they are caught up lazily.
-void DdrController::refresh_while_idle(std::uint64_t until) {
-  if (!config_.refresh_interval) return;
+/// What falls into the time without requests: at the "may" level each refresh is done as soon as it
+/// is owed; then the part goes to sleep, if software allows it. This cannot cause anything but
+/// later row misses and waiting, so it is caught up lazily.
+void DdrController::idle(std::uint64_t until) {
   for (;;) {
+    if (asleep_ == LowPower::kSelfRefresh) return;  // the part refreshes itself
+    if (asleep_ == LowPower::kPowerDown) {
+      const std::uint64_t at = std::max(next_expiry_, cke_free_);
+      if (at >= until) return;
+      wake(at);
+    }
     std::uint64_t from = command_free_;
     if (owed_ == 0) {
+      if (config_.low_power != LowPower::kOff && fall_asleep(std::min(until, next_expiry_)))
+        continue;
       if (next_expiry_ >= until) return;
-      from = std::max(from, next_expiry_);
+      from = std::max(command_free_, next_expiry_);
       count_owed(from);
     }
+    if (!config_.refresh_interval) return;  // owed from before it was switched off
     if (!device_.all_closed()) {
       const std::uint64_t at = std::max(from, device_.earliest_pre_all());
       if (at >= until) return;
@@ -408,6 +406,51 @@ void DdrController::refresh_while_idle(std::uint64_t until) {
     count_owed(at);
     issue_refresh(at);
   }
+}
+
+/// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs
+/// them closed. Entry at once, rather than after some time without requests, is assumed.
+bool DdrController::fall_asleep(std::uint64_t until) {
+  const bool self_refresh = config_.low_power == LowPower::kSelfRefresh;
+  if (self_refresh && !device_.all_closed()) {
+    const std::uint64_t at = std::max(command_free_, device_.earliest_pre_all());
+    if (at >= until) return false;
+    issue<Cmd::kPreAll>(0, 0, at);
+  }
+  std::uint64_t at = std::max({command_free_, device_.quiet(), cke_free_});
+  if (self_refresh) at = std::max(at, device_.earliest_refresh());
+  if (at >= until) return false;
+  asleep_ = config_.low_power;
+  cke_free_ = at + config_.timing.nCKE;
+  ++(self_refresh ? stats.self_refreshes : stats.power_downs);
+  mark(self_refresh ? Cmd::kSre : Cmd::kPde, at);
+  return true;
+}
+
+/// CKE rises for what comes at `clock`; commands follow tXP later, or tXSNR and for reads tXSRD.
+/// After self-refresh the refresh interval starts anew (assumed).
+void DdrController::wake(std::uint64_t clock) {
+  if (asleep_ == LowPower::kOff) return;
+  const DdrTiming& t = config_.timing;
+  const bool self_refresh = asleep_ == LowPower::kSelfRefresh;
+  const std::uint64_t at = std::max(clock, cke_free_);
+  asleep_ = LowPower::kOff;
+  cke_free_ = at + t.nCKE;
+  mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
+  command_free_ = at + (self_refresh ? t.nXSNR : t.nXP);
+  if (!self_refresh) return;
+  device_.put_off_reads(at + t.nXSRD);
+  owed_ = gap_ = 0;
+  if (config_.refresh_interval) next_expiry_ = at + config_.refresh_interval;
+  urgency_changed();
+}
+
+void DdrController::mark(Cmd cmd, std::uint64_t clock) {
+  command_free_ = std::max(command_free_, clock + 1);
+  Given& g = given_[given_count_++ % kGiven];
+  g.clock = clock;
+  g.cmd = cmd;
+  if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
 void DdrController::step() {
@@ -477,7 +520,7 @@ void DdrController::attribute(const Entry& e, std::uint64_t clock) {
     until = t;
     at = std::max(from, e.ready);
   };
-  bool closed_other = false;  // its own PRE is known only further back
+  bool closed_other = false;  // its ACT followed a PRE of its own
   for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0; --left) {
     const Given& g = given_[--n % kGiven];
     if (g.clock < e.ready) break;
@@ -490,6 +533,10 @@ void DdrController::attribute(const Entry& e, std::uint64_t clock) {
     switch (g.cmd) {
       case Cmd::kPreAll:
       case Cmd::kRef: take(g.clock, Culprit::kRefresh); break;
+      case Cmd::kPde:
+      case Cmd::kPdx:
+      case Cmd::kSre:
+      case Cmd::kSrx: take(g.clock, Culprit::kPowerDown); break;
       case Cmd::kAct:
         if (own) {
           take(g.clock, closed_other ? Culprit::kRowConflict : Culprit::kRowMiss);
@@ -531,7 +578,8 @@ inline void DdrController::first_column() {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     read_waited_ = 0;
     if (clock > e.ready) attribute(e, clock);
-    answer_read(e, clock);
+    const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_edges_, scr_edges_);
+    client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
   in_burst_ = true;
@@ -614,31 +662,6 @@ void DdrController::open_door(std::uint64_t clock) {
   door_full_ = shut_ = false;
   take(door_, std::max(door_arrived_, clock + 1));
   client_.ddr_accepted(door_.cookie, ddr_edges_.edge(clock));
-}
-
-/// The return lane to the crossbar is 64 bits wide and serves reads in the order of their data.
-/// `clock`: the first column command; the others follow each other without a gap.
-void DdrController::answer_read(const Entry& e, std::uint64_t clock) {
-  constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
-  const unsigned latency = std::max(config_.read_latency, config_.timing.CL) + return_latency_;
-  const std::uint64_t tail_clock = clock + latency + e.chunks * DdrTiming::kBurstClocks;
-  const std::uint64_t arrival = scr_edges_.edge_after(ddr_edges_.edge(clock + latency + kHead));
-  const std::uint64_t words = (e.request.bytes + 7u) / 8u;
-  const std::uint64_t start = std::max(arrival, lane_free_);
-  std::uint64_t end = start;
-  if (words > 1 || e.chunks > 1)
-    end = std::max(start + words - 1, scr_edges_.edge_after(ddr_edges_.edge(tail_clock)));
-  lane_free_ = end + 1;
-  // Rule 3: the read FIFO is full while another 64 bytes would not fit beside the words that wait
-  // for the lane when their data comes. It can only fill if the lane is slower than the DDR bus.
-  // Words that the lane has taken by the next read's data, at or after `arrival`, do not count.
-  const std::uint64_t held = read_fifo_bytes_ / 8u - 8u;
-  if (lane_free_ > start_of_lane_ + held && lane_free_ - held >= arrival) {
-    const std::uint64_t room = ddr_edges_.edge_at_or_after(scr_edges_.edge(lane_free_ - held));
-    const std::uint64_t lead = latency + kHead;  // from a RD to its data
-    read_room_ = room > lead ? room - lead : 0;
-  }
-  client_.ddr_read_done(e.request.cookie, scr_edges_.edge(start), scr_edges_.edge(end));
 }
 
 }  // namespace fovea::mem

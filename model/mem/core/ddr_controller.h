@@ -12,6 +12,7 @@
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
 #include "model/mem/core/ddr_timing.h"
+#include "model/mem/core/read_lane.h"
 
 namespace fovea::mem {
 
@@ -27,6 +28,9 @@ struct DdrRequest {
   std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
 };
 
+/// What an idle controller does with the part (SDRCR.LPMODEN and SR_PD).
+enum class LowPower : std::uint8_t { kOff, kSelfRefresh, kPowerDown };
+
 /// What the registers say (SDBCR, SDTIMR, SDTIMR2, SDRCR, PBBPR, DDRPHYCR), decoded.
 struct DdrConfig {
   DdrTiming timing;
@@ -35,6 +39,7 @@ struct DdrConfig {
   unsigned old_count = 0xFF;         ///< PBBPR.PR_OLD_COUNT; 0xFF: never
   unsigned page_log2 = 11;           ///< bytes of a row on the 16-bit bus
   bool bank_on_top = false;          ///< SDBCR.IBANK_POS: row stays in its bank
+  LowPower low_power = LowPower::kOff;
 };
 
 class DdrClient {
@@ -56,9 +61,9 @@ class DdrController {
   void configure(const DdrConfig& config, Picoseconds at);
   bool running() const { return running_; }
 
-  /// Catches up to `at` what needs no decision: refreshes while nothing is queued, and the columns
-  /// inside a burst. They change nothing that a master can see before the next decision or request;
-  /// whoever reads the statistics calls this first.
+  /// Catches up to `at` what needs no decision: refreshes and sleep while nothing is queued, and
+  /// the columns inside a burst. They change nothing that a master can see before the next decision
+  /// or request; whoever reads the statistics calls this first.
   void catch_up(Picoseconds at);
 
   /// A request arrives at time `at`; true: taken at once. False: it waits at the door until
@@ -145,7 +150,10 @@ class DdrController {
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
   bool passes_older(const Entry& e) const;
-  void refresh_while_idle(std::uint64_t until);
+  void idle(std::uint64_t until);
+  bool fall_asleep(std::uint64_t until);
+  void wake(std::uint64_t clock);
+  void mark(Cmd cmd, std::uint64_t clock);
   void count_owed(std::uint64_t clock);
   template <Cmd kCmd>
   void note(std::uint64_t clock);
@@ -164,7 +172,6 @@ class DdrController {
   void finish_queued(std::uint64_t clock);
   void leave_queue(const Entry& e);
   void open_door(std::uint64_t clock);
-  void answer_read(const Entry& e, std::uint64_t clock);
 
   BackingStore& store_;
   DdrClient& client_;
@@ -181,7 +188,7 @@ class DdrController {
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
-  unsigned write_fifo_bytes_, read_fifo_bytes_, request_latency_, return_latency_;
+  unsigned write_fifo_bytes_, request_latency_, return_latency_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
   // nobody waits for is closed after its access; what of an entry's rank counts.
@@ -212,17 +219,18 @@ class DdrController {
   unsigned columns_left_ = 0;
   std::uint64_t served_while_oldest_ = 0;
 
-  std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
-  std::uint64_t calm_until_ = 0;   // no refresh is urgent before this edge
+  std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
+  std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
+  std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
+  LowPower asleep_ = LowPower::kOff;  // CKE is low
+  std::uint64_t cke_free_ = 0;        // edge from which CKE may move again
   unsigned owed_ = 0, forced_ = 0;
   unsigned gap_ = 0;  // intervals that ended since the last REF
   // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
   // read that ranks first only while all rows are closed and one that does only while its row is
   // open could take turns in putting it off, and none of them be served.
   bool closing_ = false;
-  std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
-  std::uint64_t start_of_lane_ = 0;
-  std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
+  ReadLane lane_;
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
   std::uint32_t given_count_ = 0;

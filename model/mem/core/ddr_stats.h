@@ -16,6 +16,8 @@ struct DdrStats : StatGroup {
   Counter row_conflicts{*this, "row_conflicts", "1", "requests that found another row open"};
   Counter activates{*this, "activates", "1", "ACT commands"};
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
+  Counter power_downs{*this, "power_downs", "1", "entries into power-down"};
+  Counter self_refreshes{*this, "self_refreshes", "1", "entries into self-refresh"};
   using Value = StatBase::Value;
   DdrStats() : StatGroup("ddr") {}
 };
