@@ -166,7 +166,7 @@ TEST(ChainTest, StoreBesideTheCacheEndsWithTheFill) {
     svc #3
     mcr p15, 0, r4, c7, c10, 1
     mcr p15, 0, r2, c7, c10, 4
-  )", [](Machine& m, std::uint32_t) { EXPECT_EQ(m.port.word(kDataPhysical + 12), 0u); });
+  )", [](Machine& n, std::uint32_t) { EXPECT_EQ(n.port.word(kDataPhysical + 12), 0u); });
   EXPECT_EQ(m.core.counts().dcache_write_misses, 2u);
   EXPECT_EQ(m.port.word(kDataPhysical + 12), 1u);
 }
