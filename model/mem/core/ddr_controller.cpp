@@ -320,11 +320,10 @@ DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const 
 }
 
 /// Too long without a refresh: four in a row before anything new.
-void DdrController::force_refresh() {
-  if (gap_ > gap_limit_ && forced_ == 0) {
-    forced_ = 4;
-    urgency_changed();
-  }
+void DdrController::begin_refresh() {
+  if (gap_ > gap_limit_ && forced_ == 0) forced_ = 4;
+  closing_ = true;
+  urgency_changed();
 }
 
 void DdrController::urgency_changed() {
@@ -454,32 +453,37 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
 }
 
 void DdrController::step() {
+  count_owed(choice_.at);
+  if (choice_.cmd == Cmd::kWr)
+    in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
+  else if (choice_.cmd == Cmd::kRd)
+    in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
+  else
+    prepare();
+}
+
+/// Whatever is no column command.
+void DdrController::prepare() {
   const std::uint64_t clock = choice_.at;
-  count_owed(clock);
+  Entry* const e = choice_.entry;
   switch (choice_.cmd) {
-    case Cmd::kWr:
-      return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
-    case Cmd::kRd:
-      return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
     case Cmd::kAct:
-      if (!choice_.entry->classified) ++stats.row_misses;
-      choice_.entry->classified = true;
+      if (!e->classified) ++stats.row_misses;
+      e->classified = true;
       ++stats.activates;
-      issue<Cmd::kAct>(choice_.entry->bank, choice_.entry->row, clock);
+      issue<Cmd::kAct>(e->bank, e->row, clock);
       break;
     case Cmd::kPre:
-      if (!choice_.entry->classified) ++stats.row_conflicts;
-      choice_.entry->classified = true;
-      issue<Cmd::kPre>(choice_.entry->bank, choice_.entry->row, clock);
+      if (!e->classified) ++stats.row_conflicts;
+      e->classified = true;
+      issue<Cmd::kPre>(e->bank, e->row, clock);
       break;
     case Cmd::kPreAll:
-      force_refresh();
+      begin_refresh();
       issue<Cmd::kPreAll>(0, 0, clock);
-      closing_ = true;
-      urgency_changed();
       break;
     default:
-      force_refresh();
+      begin_refresh();
       issue_refresh(clock);
       break;
   }

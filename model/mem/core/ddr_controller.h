@@ -145,7 +145,7 @@ class DdrController {
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const;
-  void force_refresh();
+  void begin_refresh();
   void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
@@ -160,6 +160,7 @@ class DdrController {
   template <Cmd kCmd>
   void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
   void issue_refresh(std::uint64_t clock);
+  void prepare();
   bool row_wanted(const Entry& by_others) const;
   template <Cmd kCmd>
   void give_closing_column(const Entry& e, std::uint64_t clock);
