@@ -7,24 +7,6 @@
 
 namespace fovea::mem {
 
-DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
-    : store_(store),
-      client_(client),
-      size_(store.size()),
-      fifo_entries_(params.command_fifo()),
-      write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
-      request_latency_(static_cast<unsigned>(params.request_latency())),
-      return_latency_(static_cast<unsigned>(params.return_latency())),
-      need_(static_cast<unsigned>(params.refresh_need())),
-      must_(static_cast<unsigned>(params.refresh_must())),
-      gap_limit_(static_cast<unsigned>(params.refresh_gap())),
-      in_order_(params.scheduler.is("fcfs")),
-      closes_rows_(params.scheduler.is("closed_page")),
-      rank_mask_(params.scheduler.is("frfcfs") ? ~(kKinds | kPriorities) : kNoRank) {
-  lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
-  configure(DdrConfig{}, 0);
-}
-
 void DdrController::catch_up(Picoseconds at) {
   if (!running_) return;
   if (in_burst_)
@@ -33,57 +15,12 @@ void DdrController::catch_up(Picoseconds at) {
     idle(ddr_.edge_after(at));
 }
 
-void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
-  catch_up(at);
-  if (!(ddr == ddr_.frequency())) ddr_.restart(ddr, at);
-  if (!(scr == scr_.frequency())) scr_.restart(scr, at);
-  ddr_edges_.follow(ddr_);
-  scr_edges_.follow(scr_);
-  running_ = ddr_.running() && scr_.running();
-  shut_ = !running_ || door_full_;
-  if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
-  if (scr_.running()) lane_.start(scr_.edge_at_or_after(scr_.start()));
-  plan_anew();
-}
-
-void DdrController::configure(const DdrConfig& config, Picoseconds at) {
-  catch_up(at);
-  const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
-  if (config.low_power != config_.low_power) wake(now);
-  // Refresh keeps its phase when only timing changes; a new interval starts to count now.
-  if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
-    next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
-  command_free_ = std::max(command_free_, now);
-  config_ = config;
-  device_.configure(config.timing);
-  lane_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
-  const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
-  bank_mask_ = config.timing.banks - 1;
-  if (config.bank_on_top) {
-    bank_shift_ = static_cast<unsigned>(std::bit_width(store_.size())) - 1 - bank_bits;
-    row_shift_ = config.page_log2;
-    row_mask_ = (1u << bank_shift_) - 1;
-  } else {
-    bank_shift_ = config.page_log2;
-    row_shift_ = config.page_log2 + bank_bits;
-    row_mask_ = ~0u;
-  }
-  urgency_changed();
-  plan_anew();
-}
-
-void DdrController::refuse(const DdrRequest& request) const {
-  FOVEA_CHECK(running_, "request to a DDR controller without a clock");
-  FOVEA_CHECK(!door_full_, "request to a DDR controller whose door is taken");
-  FOVEA_CHECK(false, "request outside the SDRAM reached the controller");
-}
-
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
     refuse(request);
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
-  const std::uint64_t arrived = std::max(ddr_edges_.edge_after(at), last_arrival_);
+  const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
   if (count_ == 0) {
     if (idle_calm_ < arrived) [[unlikely]] {
       idle(arrived);
@@ -203,7 +140,7 @@ inline void DdrController::plan_one(Entry& e) {
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
   choice_ = {&e, at, cmd};
-  next_ = ddr_edges_.edge(at);
+  next_ = ddr_.edge(at);
 }
 
 /// A decision is taken at the first edge at which something is ready; if its command can only be
@@ -236,7 +173,7 @@ inline void DdrController::plan_one(Entry& e) {
     for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
       ready |= 1u << order_[not_ready];
   }
-  next_ = ddr_edges_.edge(choice_.at);
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The command to give if only the requests in the slots `ready` are there.
@@ -510,59 +447,6 @@ template <Cmd kCmd>
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
 }
 
-/// The waits of a read whose first column command, already noted, is given at `clock`. From the
-/// newest command before it back to the time it became ready.
-void DdrController::attribute(const Entry& e, std::uint64_t clock) {
-  Waits& w = waits[index(e.request.master)].read;
-  const Picoseconds end = ddr_edges_.edge(clock), start = ddr_.edge(e.ready);
-  Picoseconds until = end;
-  std::uint64_t at = clock;
-  const auto take = [&](std::uint64_t from, Culprit c) {
-    if (from >= at) return;
-    const Picoseconds t = from <= e.ready ? start : ddr_.edge(from);
-    w.add(c, until - t);
-    until = t;
-    at = std::max(from, e.ready);
-  };
-  bool closed_other = false;  // its ACT followed a PRE of its own
-  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0; --left) {
-    const Given& g = given_[--n % kGiven];
-    if (g.clock < e.ready) break;
-    closed_other |= g.cmd == Cmd::kPre && g.entry == &e;
-  }
-  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0 && at > e.ready;
-       --left) {
-    const Given& g = given_[--n % kGiven];
-    const bool own = g.entry == &e && g.clock >= e.ready;
-    switch (g.cmd) {
-      case Cmd::kPreAll:
-      case Cmd::kRef: take(g.clock, Culprit::kRefresh); break;
-      case Cmd::kPde:
-      case Cmd::kPdx:
-      case Cmd::kSre:
-      case Cmd::kSrx: take(g.clock, Culprit::kPowerDown); break;
-      case Cmd::kAct:
-        if (own) {
-          take(g.clock, closed_other ? Culprit::kRowConflict : Culprit::kRowMiss);
-          break;
-        }
-        [[fallthrough]];
-      case Cmd::kPre:
-        if (own)
-          take(g.clock, Culprit::kRowConflict);
-        else
-          take(g.clock, static_cast<Culprit>(g.master));
-        break;
-      case Cmd::kWr:
-        take(g.clock + config_.timing.WL() + DdrTiming::kBurstClocks, Culprit::kTurnaround);
-        [[fallthrough]];
-      default: take(g.clock, static_cast<Culprit>(g.master)); break;
-    }
-  }
-  take(e.ready, culprit(e.request.master));
-  read_waited_ = end - start;
-}
-
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
 /// between its bursts; for the same reason the next decision is its last column.
 template <Cmd kCmd>
@@ -582,7 +466,7 @@ inline void DdrController::first_column() {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     read_waited_ = 0;
     if (clock > e.ready) attribute(e, clock);
-    const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_edges_, scr_edges_);
+    const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
     client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
@@ -590,7 +474,7 @@ inline void DdrController::first_column() {
   columns_left_ = e.chunks - 1u;
   next_column_ = clock + DdrTiming::kBurstClocks;
   choice_.at = clock + columns_left_ * DdrTiming::kBurstClocks;
-  next_ = ddr_edges_.edge(choice_.at);
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The last column command, and the ones inside the burst that nobody asked about. What those put
@@ -665,7 +549,7 @@ void DdrController::open_door(std::uint64_t clock) {
     return;
   door_full_ = shut_ = false;
   take(door_, std::max(door_arrived_, clock + 1));
-  client_.ddr_accepted(door_.cookie, ddr_edges_.edge(clock));
+  client_.ddr_accepted(door_.cookie, ddr_.edge(clock));
 }
 
 }  // namespace fovea::mem

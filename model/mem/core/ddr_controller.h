@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "model/common/clock.h"
-#include "model/common/edge_cursor.h"
 #include "model/common/masters.h"
 #include "model/common/waits.h"
 #include "model/mem/core/backing_store.h"
@@ -177,7 +176,7 @@ class DdrController {
   BackingStore& store_;
   DdrClient& client_;
   Clock ddr_, scr_;
-  EdgeCursor ddr_edges_, scr_edges_;  // of these clocks
+  std::uint64_t first_edge_ = 0;  // of the DDR clock since its last restart
   bool running_ = false;
   bool shut_ = true;  // stopped, or the door taken: no request may come
   DdrDevice device_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "model/common/edge_cursor.h"
+#include "model/common/clock.h"
 #include "model/mem/core/ddr_timing.h"
 
 namespace fovea::mem {
@@ -23,8 +23,8 @@ class ReadLane {
     Picoseconds first, last;
   };
   /// A read whose first column command is given at `clock`; the others follow without a gap.
-  Span take(unsigned bytes, unsigned chunks, std::uint64_t clock, EdgeCursor& ddr,
-            EdgeCursor& crossbar) {
+  Span take(unsigned bytes, unsigned chunks, std::uint64_t clock, const Clock& ddr,
+            const Clock& crossbar) {
     constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
     const std::uint64_t arrival = crossbar.edge_after(ddr.edge(clock + latency_ + kHead));
     const std::uint64_t words = (bytes + 7u) / 8u;
