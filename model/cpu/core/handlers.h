@@ -175,8 +175,9 @@ struct Core::Ops {
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
-  template <bool kPc, bool kThumb>
+  template <bool kPc, bool kThumb, bool kLong>
   static Next load_block(Core& c, Next i, Cycle cycle);
+  template <bool kLong>
   static Next store_block(Core& c, Next i, Cycle cycle);
 
   // Body of a record, nullptr where no quick one exists. They may rewrite the record's operands.
