@@ -123,8 +123,8 @@ class Core : public Background {
     ready_[r] = ready << 2 | by;
     busy_until_ = ready;
   }
-  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first, and
-  /// unpacks what may have changed them there.
+  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first,
+  /// and unpacks what may have changed them there.
   std::uint32_t packed_cpsr() const {
     return (cpsr_ & 0x0FFF'FFFFu) | (n_ & 1u << 31) | (z_ ? 0 : 1u << 30) |
            std::uint32_t{c_} << 29 | std::uint32_t{v_} << 28;
@@ -339,9 +339,9 @@ class Core : public Background {
   static constexpr unsigned kMemos = 64;
   std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
-  /// A place where the core reads or writes without a further look: translation, permission and tag
-  /// held when it was noted, and what could change that takes the note away. For writes a hint covers
-  /// half a line whose dirty bit is set.
+  /// A place where the core reads or writes without a further look: translation, permission and
+  /// tag held when it was noted, and what could change that takes the note away. For writes a hint
+  /// covers half a line whose dirty bit is set.
   struct Hint {
     std::uint32_t key = kNoHint;  // address of its first byte
     std::uint32_t counted = 0;    // what an access adds to the cache's statistics
