@@ -1,5 +1,5 @@
-// What the core remembers to be quick: records that follow each other, lines found last, places that
-// may be read or written without a look. Each must be forgotten in time, and none may show.
+// What the core remembers to be quick: records that follow each other, lines found last, places
+// that may be read or written without a look. Each must be forgotten in time, and none may show.
 #include <limits>
 
 #include "tb/iss/vectors.h"
@@ -22,8 +22,8 @@ struct Cached : Machine {
   }
 };
 
-/// A chain is made of tail calls. Where the compiler makes one a real call the stack grows with every
-/// turn of this loop, which takes all ways out of a chain and back into it.
+/// A chain is made of tail calls. Where the compiler makes one a real call the stack grows with
+/// every turn of this loop, which takes all ways out of a chain and back into it.
 TEST(ChainTest, StackDoesNotGrow) {
   Machine m;
   std::uintptr_t low = std::numeric_limits<std::uintptr_t>::max(), high = 0;
@@ -238,8 +238,8 @@ TEST(ChainTest, PrivilegedPageIsNotReadInUserMode) {
   for (const Taken& t : seen) EXPECT_EQ(t.dfsr, 0xDu);
 }
 
-/// Internal RAM is one memory for data and code: a store is seen by the next fetch, also of the line
-/// that is being executed, and also when stores to that line were remembered before.
+/// Internal RAM is one memory for data and code: a store is seen by the next fetch, also of the
+/// line that is being executed, and also when stores to that line were remembered before.
 TEST(ChainTest, StoreToRunningCodeInInternalRam) {
   Machine m;
   m.execute(R"(
@@ -269,8 +269,8 @@ TEST(ChainTest, StoreToRunningCodeInInternalRam) {
   EXPECT_EQ(m.core.reg(2), 9u);
 }
 
-/// Lines looked up, by hand: the record after a taken branch or a line's end, unless the branch stays
-/// in its line; each record once more when it is decoded.
+/// Lines looked up, by hand: the record after a taken branch or a line's end, unless the branch
+/// stays in its line; each record once more when it is decoded.
 TEST(ChainTest, LinesLookedUp) {
   struct Row {
     const char* what;

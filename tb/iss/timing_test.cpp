@@ -146,8 +146,8 @@ TEST_P(TimingTest, TakesThePublishedClocks) {
   ASSERT_EQ(m.marks.size(), 2u);
   EXPECT_EQ(m.between(), c.clocks) << c.text;
 }
-/// The same rows from the I-cache, beginning at each word of a line: what the core knows of a record
-/// from its neighbours must not move a clock. The second of two turns counts, with all lines there.
+/// The same rows from the I-cache, beginning at each word of a line: what the core knows of a
+/// record from its neighbours must not move a clock. The second of two turns counts, with all lines there.
 TEST_P(TimingTest, TakesThemFromEachPlaceInACachedLine) {
   const Case& c = GetParam();
   const std::string text = c.text;
