@@ -92,6 +92,14 @@ void BoardSimulation::close_window() {
     stats_.push_back(row("ddr.utilisation",
                          static_cast<double>(soc.ddr.controller().busy_clocks()) / clocks, "ratio",
                          "share of the window in which the SDRAM's data bus moves data"));
+    const auto queued =
+        static_cast<double>(soc.ddr.controller().stats.queued_clocks.count());
+    stats_.push_back(row("ddr.headroom", 1 - queued / clocks, "ratio",
+                         "share of the window in which no request is queued at the SDRAM"));
+    if (queued > 0)
+      stats_.push_back(row("ddr.efficiency",
+                           static_cast<double>(soc.ddr.controller().busy_clocks()) / queued,
+                           "ratio", "data clocks / clocks in which a request is queued"));
   }
   soc.arm.core().mark_window(kernel_time());
 }

@@ -466,6 +466,38 @@ class WaitsTest : public testing::Test {
   std::vector<std::unique_ptr<PathRequest>> requests_;
 };
 
+TEST_F(WaitsTest, QueuedClocksAndBanksOfLoneReads) {
+  const mem::DdrParams p;
+  const std::uint64_t hit = p.request_latency() + 1;  // from its arrival to behind its column
+  go(kA, false, at(1, 0, 0), 16, 0);
+  path.drain();
+  EXPECT_EQ(path.ddr.stats.queued_clocks.count(), hit + t.nRCD);
+  go(kA, false, at(1, 0, 16), 16, kLater);
+  path.drain();
+  EXPECT_EQ(path.ddr.stats.queued_clocks.count(), 2 * hit + t.nRCD);
+  go(kA, false, at(2, 3, 16), 16, 2 * kLater);
+  go(kA, false, at(2, 0, 16), 16, 3 * kLater);
+  path.drain();
+  const auto& bank = path.ddr.stats.bank;
+  EXPECT_EQ(bank[0].row_misses, 1u);
+  EXPECT_EQ(bank[0].row_hits, 1u);
+  EXPECT_EQ(bank[0].row_conflicts, 1u);
+  EXPECT_EQ(bank[3].row_misses, 1u);
+}
+
+TEST_F(WaitsTest, SleepIsCountedUpToWhereSomebodyLooks) {
+  mem::DdrConfig c;
+  c.refresh_interval = 0;
+  c.low_power = mem::LowPower::kPowerDown;
+  path.ddr.configure(c, 0);
+  path.ddr.catch_up(kLater);
+  const std::uint64_t first = path.ddr.stats.power_down_clocks.count();
+  EXPECT_GT(first, kLater / 4'000 - 10);
+  path.ddr.catch_up(2 * kLater);
+  EXPECT_EQ(path.ddr.stats.power_down_clocks.count() - first, kLater / 4'000);
+  EXPECT_EQ(path.ddr.stats.self_refresh_clocks.count(), 0u);
+}
+
 TEST_F(WaitsTest, ClosedBankCostsTheActivation) {
   go(kA, false, at(1, 0, 0), 32, 0);
   path.drain();

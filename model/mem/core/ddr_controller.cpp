@@ -9,10 +9,27 @@ namespace fovea::mem {
 
 void DdrController::catch_up(Picoseconds at) {
   if (!running_) return;
+  const std::uint64_t until = ddr_.edge_after(at);
   if (in_burst_)
-    columns_before(ddr_.edge_after(at));
+    columns_before(until);
   else if (count_ == 0)
-    idle(ddr_.edge_after(at));
+    idle(until);
+  if (count_) count_queued(until);
+  count_asleep(until);
+}
+
+/// Clocks since the queue filled, or since these were counted last.
+inline void DdrController::count_queued(std::uint64_t until) {
+  if (until <= queued_since_) return;
+  stats.queued_clocks += until - queued_since_;
+  queued_since_ = until;
+}
+
+void DdrController::count_asleep(std::uint64_t until) {
+  if (asleep_ == LowPower::kOff || until <= asleep_since_) return;
+  (asleep_ == LowPower::kSelfRefresh ? stats.self_refresh_clocks : stats.power_down_clocks) +=
+      until - asleep_since_;
+  asleep_since_ = until;
 }
 
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
@@ -26,7 +43,7 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
       idle(arrived);
       wake(arrived);
     }
-    last_arrival_ = arrived;
+    last_arrival_ = queued_since_ = arrived;
     count_ = 1;
     alone_ = true;
     order_[0] = 0;
@@ -357,6 +374,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
   if (self_refresh) at = std::max(at, device_.earliest_refresh());
   if (at >= until) return false;
   asleep_ = config_.low_power;
+  asleep_since_ = at;
   cke_free_ = at + config_.timing.nCKE;
   ++(self_refresh ? stats.self_refreshes : stats.power_downs);
   mark(self_refresh ? Cmd::kSre : Cmd::kPde, at);
@@ -370,6 +388,7 @@ void DdrController::wake(std::uint64_t clock) {
   const DdrTiming& t = config_.timing;
   const bool self_refresh = asleep_ == LowPower::kSelfRefresh;
   const std::uint64_t at = std::max(clock, cke_free_);
+  count_asleep(at);
   asleep_ = LowPower::kOff;
   cke_free_ = at + t.nCKE;
   mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
@@ -405,13 +424,19 @@ void DdrController::prepare() {
   Entry* const e = choice_.entry;
   switch (choice_.cmd) {
     case Cmd::kAct:
-      if (!e->classified) ++stats.row_misses;
+      if (!e->classified) {
+        ++stats.row_misses;
+        ++stats.bank[e->bank].row_misses;
+      }
       e->classified = true;
       ++stats.activates;
       issue<Cmd::kAct>(e->bank, e->row, clock);
       break;
     case Cmd::kPre:
-      if (!e->classified) ++stats.row_conflicts;
+      if (!e->classified) {
+        ++stats.row_conflicts;
+        ++stats.bank[e->bank].row_conflicts;
+      }
       e->classified = true;
       issue<Cmd::kPre>(e->bank, e->row, clock);
       break;
@@ -454,7 +479,10 @@ inline void DdrController::first_column() {
   const Entry& e = *choice_.entry;
   const DdrRequest& r = e.request;
   const std::uint64_t clock = choice_.at;
-  if (!e.classified) ++stats.row_hits;
+  if (!e.classified) {
+    ++stats.row_hits;
+    ++stats.bank[e.bank].row_hits;
+  }
   if (closes_rows_ && e.chunks == 1) [[unlikely]]
     give_closing_column<kCmd>(e, clock);
   else
@@ -516,12 +544,14 @@ void DdrController::columns_before(std::uint64_t until) {
   alone_ = false;
   served_while_oldest_ = 0;
   count_ = 0;
+  count_queued(clock + 1);
   next_ = kNever;
 }
 
 void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue(*choice_.entry);
   if (door_full_) open_door(clock);
+  if (count_ == 0) count_queued(clock + 1);
   plan();
 }
 

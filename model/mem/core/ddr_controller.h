@@ -153,6 +153,8 @@ class DdrController {
   bool fall_asleep(std::uint64_t until);
   void wake(std::uint64_t clock);
   void mark(Cmd cmd, std::uint64_t clock);
+  void count_queued(std::uint64_t until);
+  void count_asleep(std::uint64_t until);
   void count_owed(std::uint64_t clock);
   template <Cmd kCmd>
   void note(std::uint64_t clock);
@@ -223,6 +225,7 @@ class DdrController {
   std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
   std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
   LowPower asleep_ = LowPower::kOff;  // CKE is low
+  std::uint64_t queued_since_ = 0, asleep_since_ = 0;  // edges up to which that time is counted
   std::uint64_t cke_free_ = 0;        // edge from which CKE may move again
   unsigned owed_ = 0, forced_ = 0;
   unsigned gap_ = 0;  // intervals that ended since the last REF
