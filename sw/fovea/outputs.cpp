@@ -183,7 +183,8 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
       "frame.rate",        "frame.captured",       "frame.remapped",        "frame.displayed",
       "frame.dropped",     "frame.remap_time.min", "frame.remap_time.mean", "frame.remap_time.max",
       "frame.latency.min", "frame.latency.mean",   "frame.latency.max",     "startup.lut_time",
-      "capture.overflows", "display.underflows",   "ddr.utilisation",       "ddr.read_bytes",
+      "capture.overflows", "display.underflows",   "ddr.utilisation",
+      "ddr.efficiency",    "ddr.headroom",         "ddr.read_bytes",
       "ddr.write_bytes"};
   static constexpr std::array kHost{"realtime_factor", "mips", "wall_time", "peak_rss"};
   std::vector<std::pair<std::string, std::string>> lines;
