@@ -32,6 +32,13 @@ void DdrModule::clocks_changed() {
 void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
+  const DdrConfig c = programmed();
+  if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
+  controller_.configure(c, now);
+  if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
+}
+
+DdrConfig DdrModule::programmed() const {
   DdrConfig c;
   c.timing.CL = regs.sdbcr.cl.get();
   c.timing.banks = std::min(1u << regs.sdbcr.ibank.get(), DdrDevice::kMaxBanks);
@@ -49,9 +56,7 @@ void DdrModule::reconfigure() {
   c.old_count = regs.pbbpr.pr_old_count.get();
   c.page_log2 = 9 + regs.sdbcr.pagesize.get();  // 256 words of 2 bytes
   c.bank_on_top = regs.sdbcr.ibank_pos.get() != 0;
-  if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
-  controller_.configure(c, now);
-  if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
+  return c;
 }
 
 tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
