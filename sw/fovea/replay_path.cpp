@@ -141,6 +141,7 @@ void ReplayPath::prepare(unsigned stream) {
       return;
     }
     marks_.push_back({s.record.address, at});
+    if (on_issue) on_issue(stream, at);
     s.history[s.number++ % kHistory] = {at, at};
     s.valid = source_.next(stream, s.record);
     if (s.valid && !s.record.mark) check(s.record, s);
@@ -170,6 +171,8 @@ void ReplayPath::issue() {
   slot.bytes = r.bytes;
   s.history[s.number++ % kHistory] = {kNever, kNever};
   s.earliest = next_time_;
+  if (on_issue) [[unlikely]]
+    on_issue(stream, next_time_);
   ++requests_;
   ++m.transactions;
   bytes_ += r.bytes;

@@ -1,6 +1,7 @@
 // Crossbar and DDR controller played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,7 +39,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// From the recording's start to the last completion.
   Picoseconds duration() const { return last_ > start_ ? last_ - start_ : 0; }
   bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
-  mem::DdrController& controller() { return ddr_; }
+  /// Called with each record as it goes out; empty in production.
+  std::function<void(unsigned stream, Picoseconds at)> on_issue;
 
  private:
   friend class bus::Crossbar;
