@@ -7,7 +7,7 @@
 namespace fovea::app {
 
 void ReplayParams::declare(ParamSet& set) {
-  set.add(crossbar);
+  crossbar.timeline_interval.set("1s");  // a replay has no timeline
   for (auto& port : crossbar.ports) set.add(*port);
   set.add(clocks);
   set.add(ddr);
@@ -47,7 +47,8 @@ void ReplayParams::check() const {
     if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
   };
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
-  if (!std::has_single_bit(r.banks())) refuse(r.banks, "powers of two");
+  if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
+    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
   at_least(r.tRAS, r.tRCD(), "ddr.tRCD: a row is open when its columns are read");
   // Each of the three was rounded up to clocks by itself.
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");

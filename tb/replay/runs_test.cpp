@@ -193,9 +193,10 @@ TEST_P(RunsTest, ReplayFollowsTheRun) {
        {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 3}, Change{0, 7}}) {
     const Figures real = run_board(GetParam(), change, "");
     EXPECT_LE(worst(real, replay(file(), change), change.text()), 0.03);
-    // CL changes the paper's loop by less than the bound: there the loss need not show.
+    // The loss shows when memory gets faster; with slower memory the core's one port is always taken,
+    // and that alone keeps its requests apart.
     const double lost = worst(real, replay(file(), change, false), "unchained " + change.text());
-    if (change.ddr_hertz) {
+    if (change.ddr_hertz > 243'000'000) {
       EXPECT_GT(lost, 0.03);
     }
   }

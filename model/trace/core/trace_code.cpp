@@ -107,7 +107,6 @@ void decode(ByteReader& in, CodeState& s, Record& r) {
   if (back > kMaxBack) throw BadTrace("a reference too far back");
   r.back = static_cast<std::uint32_t>(back);
   r.gap = in.number();
-  if (r.gap > kPsPerSecond * 1000) throw BadTrace("a gap too long");
   if (r.release == Release::kWhen) {
     const std::uint64_t interrupt = s.interrupt + unzigzag(in.number()), gap = in.number();
     if (interrupt > ~std::uint32_t{0} || gap > ~std::uint32_t{0})

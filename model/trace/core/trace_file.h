@@ -53,7 +53,7 @@ class TraceFile : public RecordSource {
     std::vector<Block> blocks;
     std::size_t next_block = 0;
     std::uint32_t left = 0;
-    std::uint64_t read = 0;
+    std::uint64_t read = 0, longest_gap = 0;
     std::vector<std::uint8_t> raw;
     ByteReader in;
     CodeState state;
