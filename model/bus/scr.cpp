@@ -15,7 +15,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
     targets_[i].owner = this;
     targets_[i].master = m;
     target[i]->bind(targets_[i]);
-    latency[i] = std::make_unique<LatencyStats>(m);
+    latency[i] = std::make_unique<LatencyStats>(std::string(kMasterNames[i]));
   }
   for (std::size_t i = 0; i < kSlaveCount; ++i) {
     slave_ports_[i].owner = this;

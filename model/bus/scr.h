@@ -7,6 +7,7 @@
 #include <tlm>
 
 #include "model/bus/core/crossbar.h"
+#include "model/bus/core/latency_stats.h"
 #include "model/common/lookahead.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
@@ -18,28 +19,6 @@ namespace fovea::bus {
 struct AddressMap {
   std::uint32_t ddr_base = 0x8000'0000;
   std::uint64_t ddr_size = 128ull << 20;
-};
-
-/// Read latency at the master's port, for the reports.
-struct LatencyStats : StatGroup {
-  Histogram histogram;
-  Formula mean{*this, "mean", "s", "mean read latency, request to first beat at the port",
-               [this] { return StatBase::Value(histogram.mean() * 1e-12); }};
-  Formula p50{*this, "p50", "s", "median read latency", [this] { return quantile(0.50); }};
-  Formula p95{*this, "p95", "s", "95th percentile of read latency",
-              [this] { return quantile(0.95); }};
-  Formula p99{*this, "p99", "s", "99th percentile of read latency",
-              [this] { return quantile(0.99); }};
-  Formula max{*this, "max", "s", "largest read latency",
-              [this] { return StatBase::Value(static_cast<double>(histogram.max()) * 1e-12); }};
-  explicit LatencyStats(Master m)
-      : StatGroup("ddr." + std::string(kMasterNames[index(m)]) + ".latency") {}
-
- private:
-  StatBase::Value quantile(double q) const {
-    return StatBase::Value(static_cast<double>(histogram.quantile(q)) * 1e-12);
-  }
-  void on_reset() override { histogram.reset(); }
 };
 
 class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHost {

@@ -34,11 +34,13 @@ void DdrModule::clocks_changed() {
 void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
-  const DdrConfig c = decode(regs);
+  const DdrConfig c = programmed();
   if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
   controller_.configure(c, now);
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
 }
+
+DdrConfig DdrModule::programmed() const { return decode(regs); }
 
 tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
                                               sc_core::sc_time& delay) {

@@ -29,6 +29,8 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   DdrController& controller() { return controller_; }
   BackingStore& store() { return store_; }
   DdrRegs regs;
+  /// What the registers say now.
+  DdrConfig programmed() const;
 
   /// Time-ordered access to the state: takes all decisions at or before `now` first.
   void settle(Picoseconds now);

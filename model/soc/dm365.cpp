@@ -75,7 +75,8 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       isif("isif", params.vpss),
       osd("osd", params.vpss),
       venc("venc", params.vpss),
-      load_priority_(static_cast<std::uint32_t>(params.load.priority())) {
+      load_priority_(static_cast<std::uint32_t>(params.load.priority())),
+      params_(params) {
   SC_HAS_PROCESS(Dm365);
   for (unsigned i = 0; i < timers.size(); ++i)
     timers[i] = std::make_unique<periph::Timer64>(("timer" + std::to_string(i)).c_str());
@@ -122,6 +123,9 @@ void Dm365::wire_clocks() {
   clocks.aux_clk(aux_clk_);
   clocks.uart1_clk(uart1_clk_);
   arm.clk(arm_clk_);
+  tap.core_clk(arm_clk_);
+  tap.scr_clk(edma_clk_);
+  tap.ddr_clk(ddr_clk_);
   scr.clk(edma_clk_);
   ddr.ddr_clk(ddr_clk_);
   ddr.scr_clk(edma_clk_);
@@ -191,6 +195,8 @@ void Dm365::wire_interrupts() {
   aintc.fiq(arm_fiq_);
   arm.irq(arm_irq_);
   arm.fiq(arm_fiq_);
+  tap.irq(arm_irq_);
+  tap.fiq(arm_fiq_);
   for (unsigned i = 0; i < video::VpssTop::kOutputs; ++i) vpss.vpssint[i](irq_[i]);
   timers[0]->tint12(irq_[32]);
   timers[0]->tint34(irq_[33]);
@@ -218,6 +224,29 @@ void Dm365::wire_video() {
   venc.venc_gate(venc_gate_);
   venc.osd.bind(osd.lines);
   venc.display(display);
+}
+
+std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
+  using trace::Pace;
+  const auto places = [](const IntParam& p) { return static_cast<unsigned>(p()); };
+  const unsigned captured = places(params_.vpss.write_buffer_bursts);
+  const unsigned shown = places(params_.vpss.read_outstanding);
+  std::vector<trace::BusRecorder::MasterSetup> masters = {
+      {Master::kArmI, Pace::kCore, 1, 1, true},
+      {Master::kArmD, Pace::kCore, 1, 1, true},
+      {Master::kVpfe, Pace::kSampled, captured, captured, true},
+      {Master::kVpbe, Pace::kLines, shown, shown, true}};
+  if (const unsigned n = places(params_.load.outstanding))
+    masters.push_back({Master::kLoad, Pace::kRepeating, n, n, true});
+  auto recorder = std::make_unique<trace::BusRecorder>(
+      masters, places(params_.cpu.ahb_ratio), [this] {
+        const cpu::Counts& c = arm.core().counts();
+        const auto writes = static_cast<std::size_t>(cpu::Cause::kWriteBuffer);
+        return trace::CoreState{c.idle, c.stall[writes]};
+      });
+  scr.crossbar().observe(recorder.get());
+  tap.attach(recorder.get());
+  return recorder;
 }
 
 /// MSTPRI0.2:0 is the ARM's memory priority; EDMA and engine keep the lowest until they exist.

@@ -21,6 +21,7 @@
 #include "model/periph/system_module.h"
 #include "model/periph/timer64.h"
 #include "model/periph/uart16550.h"
+#include "model/trace/bus_tap.h"
 #include "model/video/isif.h"
 #include "model/video/osd.h"
 #include "model/video/venc.h"
@@ -73,6 +74,11 @@ class Dm365 : public sc_core::sc_module {
   video::Osd osd;
   video::Venc venc;
   std::unique_ptr<bus::LoadGenerator> load;
+  trace::BusTap tap{"tap"};
+
+  /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
+  /// chip.
+  std::unique_ptr<trace::BusRecorder> make_recorder();
 
   /// Of the masters that are there.
   std::vector<std::unique_ptr<bus::WaitStats>> waits;
@@ -97,6 +103,7 @@ class Dm365 : public sc_core::sc_module {
   sc_core::sc_signal<bool> isif_gate_, vpbe_gate_, venc_gate_;
   sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_;
   std::uint32_t load_priority_;
+  const Dm365Params& params_;
 };
 
 }  // namespace fovea::soc

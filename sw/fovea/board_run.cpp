@@ -10,6 +10,7 @@
 
 #include "model/board/board.h"
 #include "model/video/scene/ahead.h"
+#include "sw/fovea/bus_trace_run.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/loader.h"
@@ -46,6 +47,7 @@ class BoardSimulation : public Simulation {
 
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
+  std::unique_ptr<BusTraceRun> trace_;
   std::vector<StatRow> stats_;
   std::vector<FrameRow> frames_;
   Wall::time_point started_, window_wall_;
@@ -65,6 +67,7 @@ void BoardSimulation::open_window() {
   soc.isif.stats.reset();
   board_->sink.stats.reset();
   soc.arm.core().mark_window(kernel_time());
+  if (trace_) trace_->open();
   window_wall_ = Wall::now();
   direct_at_open_ = soc.scr.direct_accesses();
   queued_at_open_ = soc.scr.queued_accesses();
@@ -74,6 +77,7 @@ void BoardSimulation::close_window() {
   if (closed_) return;
   closed_ = true;
   auto& soc = board_->dm365;
+  if (trace_) trace_->close();
   window_wall_s_ = seconds_since(window_wall_);
   direct_ = soc.scr.direct_accesses() - direct_at_open_;
   queued_ = soc.scr.queued_accesses() - queued_at_open_;
@@ -198,6 +202,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   }
   board_->load({0x8000'0000u, parameter_page(params_, *source)});
 
+  if (!request.bus_trace.empty())
+    trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
@@ -264,6 +270,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     // Without a window there is nothing to report but the guest's own words.
     if (!closed_ && board_->window_start()) close_window();
   }
+  if (trace_) trace_->finish();
   collect(arm.core().window_stats(), stats_);
   add_frame_stats(stats_);
   result.guest_failure = guest;

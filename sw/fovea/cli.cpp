@@ -12,6 +12,7 @@
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
+#include "sw/fovea/replay_command.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -28,6 +29,7 @@ struct RunOptions {
   bool strict = false;
   bool no_frames = false;
   bool mp4 = false;
+  std::string bus_trace;
 };
 
 /// Counts remarks about the guest for one run and shows each once.
@@ -87,7 +89,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .strict_sync = options.sync == "strict",
                      .stop = context.stop ? *context.stop : kNeverStops,
                      .progress = meter,
-                     .frame = {}};
+                     .frame = {},
+                     .bus_trace = options.bus_trace};
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
@@ -231,6 +234,23 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   run_command->add_flag("--no-frames", run.no_frames, "Write no pictures");
   run_command->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
 
+  const CLI::Option* trace_option = run_command->add_option(
+      "--bus-trace", run.bus_trace, "Write all requests to the SDRAM in the window to this file");
+
+  ReplayOptions replay;
+  CLI::App* replay_command =
+      app.add_subcommand("replay", "Play a bus trace on crossbar and SDRAM, without the core");
+  replay_command
+      ->add_option("trace", replay.trace, "File of 'run --bus-trace', or text ('# dramtrace 1')")
+      ->required();
+  replay_command
+      ->add_option("-s,--set", replay.sets,
+                   "Set a parameter of crossbar or SDRAM, key=value; may be repeated")
+      ->allow_extra_args(false);
+  const CLI::Option* replay_out = replay_command->add_option(
+      "-o,--out", replay.out_dir, "Folder for the results (out/TRACE)");
+  replay_command->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
+
   std::string pattern;
   bool markdown = false;
   CLI::App* params_command =
@@ -246,7 +266,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
         std::none_of(commands.begin(), commands.end(),
                      [&](CLI::App* c) { return c->check_name(args[0]); }))
       throw UserError(
-          fmt::format("unknown command '{}'; allowed: run, params, version", one_line(args[0])));
+          fmt::format("unknown command '{}'; allowed: run, replay, params, version", one_line(args[0])));
     try {
       app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
     } catch (const CLI::ParseError& e) {
@@ -254,6 +274,10 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
     }
     run.out_given = out_option->count() > 0;
+    replay.out_given = replay_out->count() > 0;
+    if (trace_option->count() > 0 && run.bus_trace.empty())
+      throw UserError("--bus-trace '': a file name is needed");
+    if (*replay_command) return command_replay(replay, args, context);
     if (*run_command) return command_run(run, args, context);
     if (*params_command) return command_params(pattern, markdown, context);
     if (*version_command) context.out << "fovea " << version_text() << std::endl;

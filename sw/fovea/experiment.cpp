@@ -191,7 +191,7 @@ std::string group_hint(const ParamSet& params, std::string_view key) {
 std::string ValueOrigin::text() const {
   switch (kind) {
     case Kind::kFile:
-      return at(file, line);
+      return line ? at(file, line) : one_line(file);
     case Kind::kCommandLine:
       return "command line";
     case Kind::kDefault:
@@ -264,6 +264,15 @@ void Experiment::load(const fs::path& file, std::vector<fs::path>& chain) {
     origins_[e.key] = {ValueOrigin::Kind::kFile, file.string(), e.line};
   }
   chain.pop_back();
+}
+
+void Experiment::preset(std::string_view key, std::string_view value, const std::string& file) {
+  try {
+    set(key, std::string(value), "");
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("'{}': {}", one_line(file), one_line(error.what())));
+  }
+  origins_[std::string(key)] = {ValueOrigin::Kind::kFile, file, 0};
 }
 
 void Experiment::override_with(std::string_view assignment) {

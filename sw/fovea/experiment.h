@@ -15,8 +15,8 @@ struct ValueOrigin {
   enum class Kind { kDefault, kFile, kCommandLine };
   Kind kind = Kind::kDefault;
   std::string file;   ///< as the user named it; empty unless kFile
-  unsigned line = 0;  ///< from 1; 0 unless kFile
-  /// "default", "command line" or "file:line".
+  unsigned line = 0;  ///< from 1; 0 unless kFile, and for files without lines
+  /// "default", "command line", "file:line" or "file".
   std::string text() const;
 };
 
@@ -34,6 +34,8 @@ class Experiment {
 
   /// Reads the experiment file. @throws UserError
   void load(const std::filesystem::path& file);
+  /// Sets a key that a file without lines brings with it. @throws UserError
+  void preset(std::string_view key, std::string_view value, const std::string& file);
   /// Applies one `key=value` of the command line. @throws UserError
   void override_with(std::string_view assignment);
 

@@ -185,8 +185,9 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
       "frame.latency.min", "frame.latency.mean",   "frame.latency.max",     "startup.lut_time",
       "capture.overflows", "display.underflows",   "ddr.utilisation",
       "ddr.efficiency",    "ddr.headroom",         "ddr.read_bytes",
-      "ddr.write_bytes"};
-  static constexpr std::array kHost{"realtime_factor", "mips", "wall_time", "peak_rss"};
+      "ddr.write_bytes",   "replay.time",          "replay.bandwidth"};
+  static constexpr std::array kHost{"realtime_factor", "mips", "requests_per_second", "wall_time",
+                                    "peak_rss"};
   std::vector<std::pair<std::string, std::string>> lines;
   for (const char* name : kStats)
     if (const auto* row = find(stats, name))

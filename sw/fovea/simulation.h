@@ -48,6 +48,7 @@ struct RunRequest {
   /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
   /// full), which the board lets through.
   std::function<void(const DisplayedFrame&)> frame;
+  std::filesystem::path bus_trace;  ///< file for the bus trace of the window; empty: none
 };
 
 /// What the board answers.

@@ -46,6 +46,8 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.slave = static_cast<std::uint8_t>(slave);
   request.slave_waited = 0;
+  if (observer_) [[unlikely]]
+    observer_->submitted(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
   const std::uint64_t crossed = scr_.edge_after(request.issued) + p.request_latency;
@@ -168,6 +170,8 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
     slaves_[request.slave].open_to = ~0u;
     plan();
   }
+  if (observer_ && request.slave == static_cast<std::uint8_t>(Slave::kDdr)) [[unlikely]]
+    observer_->responded(request);
   host_.respond(request);
 }
 

@@ -8,6 +8,7 @@
 
 #include "model/bus/core/crossbar_params.h"
 #include "model/common/clock.h"
+#include "model/common/mem_observer.h"
 #include "model/common/mem_request.h"
 #include "model/common/stats.h"
 #include "model/common/waits.h"
@@ -50,6 +51,9 @@ class Crossbar {
   void set_clock(Frequency scr, Picoseconds at);
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
+
+  /// Looks on at all requests; null: nobody.
+  void observe(MemObserver* observer) { observer_ = observer; }
 
   /// Puts a request on its master's port at request.issued: not before the master's earlier ones,
   /// and before any decision later than that was taken. It stays where it is until its response.
@@ -121,6 +125,8 @@ class Crossbar {
         scr_.edge(edge + ports_[index(request.master)].response_latency);
     request.error = false;
     waits_of(request).add(Culprit::kBridge, request.first - request.taken);
+    if (observer_) [[unlikely]]
+      observer_->responded(request);
     host.respond(request);
   }
   void count(const MemRequest& r);
@@ -132,6 +138,7 @@ class Crossbar {
   }
 
   XbarHost& host_;
+  MemObserver* observer_ = nullptr;
   Clock scr_;
   std::array<Port, kMasterCount> ports_;
   std::array<SlaveState, kSlaveCount> slaves_;

@@ -1,0 +1,268 @@
+#include "model/trace/core/recorder.h"
+
+#include <algorithm>
+
+#include "model/common/check.h"
+
+namespace fovea::trace {
+namespace {
+
+constexpr unsigned kNoStream = ~0u;
+constexpr unsigned kSdramBase = 0x8000'0000u;  // the masters' view
+
+unsigned count_streams(const std::vector<BusRecorder::MasterSetup>& masters) {
+  unsigned n = 1;
+  for (const auto& m : masters) n += m.pace != Pace::kCore;
+  return n;
+}
+
+}  // namespace
+
+BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
+                         std::function<CoreState()> core)
+    : masters_(masters),
+      streams_(count_streams(masters)),
+      core_(std::move(core)),
+      align_(core_align),
+      writer_(count_streams(masters)) {
+  stream_of_.fill(kNoStream);
+  unsigned next = 1;
+  for (const auto& m : masters_) {
+    const unsigned s = m.pace == Pace::kCore ? 0 : next++;
+    stream_of_[index(m.id)] = s;
+    streams_[s].pace = m.pace;
+    streams_[s].reads = m.reads;
+  }
+  for (Stream& s : streams_) s.history.resize(kHistory);
+}
+
+void BusRecorder::open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start) {
+  start_ = start;
+  open_ = true;
+  interrupts_.clear();
+  clock_ = Clock(core_clock, core_clock_start);
+  core_info_ = {core_clock, core_clock_start, align_, 0};
+  core_before_ = core_();
+  for (Stream& s : streams_) drop_early(s);
+}
+
+void BusRecorder::close(Picoseconds end) { end_ = end; }
+
+/// What was issued before the recording's start is left out.
+void BusRecorder::drop_early(Stream& s) {
+  while (!s.pending.empty() && (!open_ || s.pending.front().issued < start_)) s.pending.pop_front();
+}
+
+BusRecorder::Pending& BusRecorder::append(Stream& s, Picoseconds issued) {
+  const std::uint64_t number = s.next++;
+  s.history[number % kHistory] = {number, kNone, 0, 0, false, false};
+  s.pending.push_back({});
+  Pending& p = s.pending.back();
+  p.issued = issued;
+  p.record.at = issued;
+  if (!open_ && s.pending.size() > kHeldBack) s.pending.pop_front();
+  return s.pending.back();
+}
+
+void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
+  const unsigned stream = stream_of_[index(r.master)];
+  if (stream == kNoStream) return;
+  if (!to_sdram) {
+    register_access_ |= stream == 0;
+    return;
+  }
+  Stream& s = streams_[stream];
+  const std::uint64_t number = s.next;
+  Pending& p = append(s, r.issued);
+  p.record.write = r.write;
+  p.record.locked = r.locked;
+  p.record.bytes = r.bytes;
+  p.record.critical = static_cast<std::uint8_t>(r.critical);
+  p.record.master = r.master;
+  p.record.address = r.address - kSdramBase;
+  s.history[number % kHistory].write = r.write;
+  flights_[index(r.master)].push_back({&r, number});
+  if (!open_ || r.issued < start_) return;
+  switch (s.pace) {
+    case Pace::kCore:
+      return release_core(s, p, r.issued, r.master == Master::kArmD);
+    case Pace::kLines:
+      return release_line(s, p, r.issued);
+    case Pace::kRepeating:
+      return release_repeating(s, p, r.issued);
+    case Pace::kSampled:
+      return;
+  }
+}
+
+void BusRecorder::after(Pending& p, std::uint64_t number, bool first, std::uint64_t from,
+                        std::uint64_t to) {
+  p.record.release = Release::kAfter;
+  p.record.from_first = first;
+  p.reference = number;
+  // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
+  p.record.gap = (to - std::min(from, to)) / align_ * align_;
+}
+
+/// See decision 0006. Port: 0 instruction, 1 data.
+void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_t port) {
+  const std::uint64_t to = clock_.edge_at_or_after(at);
+  if (!phase_known_) {
+    phase_known_ = true;
+    core_info_.phase = static_cast<unsigned>(to % align_);
+  } else if (to % align_ != core_info_.phase) {
+    align_ = core_info_.align = 1;
+    core_info_.phase = 0;
+  }
+  const auto round_up = [&](std::uint64_t k) {
+    return k + (core_info_.phase + align_ - k % align_) % align_;
+  };
+  const CoreState now = core_();
+  const std::uint64_t idle = now.idle - core_before_.idle;
+  const bool waited_for_writes =
+      now.write_stalls != core_before_.write_stalls || register_access_;
+  core_before_ = now;
+  register_access_ = false;
+
+  const Outcome* before = outcome(s, s.previous_of_port[port]);
+  const Outcome* read = outcome(s, s.blocking_read);
+  const Outcome* latest = outcome(s, s.latest);
+  const std::uint64_t number = s.next - 1;
+  // The core's last sign of life: the word that it waited for, or the write that it had to see out.
+  const Outcome* anchor = waited_for_writes || !read ? latest : read;
+  const bool first = anchor && !anchor->write;
+  const std::uint64_t from =
+      anchor ? clock_.edge_at_or_after(first ? anchor->first : anchor->last) : 0;
+
+  if (idle > 0 && !interrupts_.empty() && interrupts_.back() <= at) {
+    const std::uint64_t wake = clock_.edge_at_or_after(interrupts_.back());
+    p.record.release = Release::kWhen;
+    p.record.interrupt = static_cast<std::uint32_t>(interrupts_.size() - 1);
+    p.record.wake_gap = static_cast<std::uint32_t>((to - std::min(wake, to)) / align_ * align_);
+    if (anchor) {
+      p.reference = anchor->number;
+      p.record.from_first = first;
+      const std::uint64_t work = idle + (to - std::min(wake, to));
+      p.record.gap = to - from > work ? to - from - work : 0;
+    }
+  } else if (before && before->done &&
+             to <= round_up(clock_.edge_at_or_after(before->last)) + align_) {
+    after(p, before->number, false, clock_.edge_at_or_after(before->last), to);  // the port was taken
+  } else if (anchor && anchor->done) {
+    after(p, anchor->number, first, from, to);
+  }
+  s.previous_of_port[port] = s.latest = number;
+  if (!p.record.write) s.blocking_read = number;
+}
+
+/// A display puts as many bursts of a line on its port as there are places, and each further one in
+/// the place of one that ends.
+void BusRecorder::release_line(Stream& s, Pending& p, Picoseconds at) {
+  const std::uint64_t number = s.next - 1;
+  for (std::uint64_t n = number > 2 * s.reads ? number - 2 * s.reads : 0; n < number; ++n) {
+    const Outcome* o = outcome(s, n);
+    if (!o || !o->done || o->last != at || (s.taken_place != kNone && n <= s.taken_place)) continue;
+    s.taken_place = n;
+    p.record.release = Release::kAfter;
+    p.reference = n;
+    return;
+  }
+}
+
+/// After the latest completion; the pause is in picoseconds.
+void BusRecorder::release_repeating(Stream& s, Pending& p, Picoseconds at) {
+  const Outcome* best = nullptr;
+  const std::uint64_t number = s.next - 1;
+  for (std::uint64_t n = number > 64 ? number - 64 : 0; n < number; ++n) {
+    const Outcome* o = outcome(s, n);
+    if (o && o->done && o->last <= at && (!best || o->last > best->last)) best = o;
+  }
+  if (!best) return;
+  p.record.release = Release::kAfter;
+  p.reference = best->number;
+  p.record.gap = at - best->last;
+}
+
+void BusRecorder::responded(const MemRequest& r) {
+  auto& flights = flights_[index(r.master)];
+  const auto found = std::find_if(flights.begin(), flights.end(),
+                                  [&](const Flight& f) { return f.request == &r; });
+  if (found == flights.end()) return;
+  const unsigned stream = stream_of_[index(r.master)];
+  Stream& s = streams_[stream];
+  if (Outcome* o = outcome(s, found->number)) {
+    o->first = r.first;
+    o->last = r.last;
+    o->done = true;
+  }
+  const std::uint64_t first_pending = s.next - s.pending.size();
+  if (found->number >= first_pending) {
+    Pending& p = s.pending[found->number - first_pending];
+    p.done = true;
+    p.failed = r.error;
+    p.record.priority = r.priority;
+  }
+  flights.erase(found);
+  if (open_) write_out(s, stream, kHeldBack);
+}
+
+void BusRecorder::mark(std::uint32_t value, Picoseconds at) {
+  if (!open_ || at < start_) return;
+  Stream& s = streams_[0];
+  Pending& p = append(s, at);
+  p.done = true;
+  p.record.mark = true;
+  p.record.address = value;
+  // The core has seen out all before it touches a pin.
+  if (const Outcome* o = outcome(s, s.latest); o && o->done) {
+    const bool first = !o->write;
+    after(p, o->number, first, clock_.edge_at_or_after(first ? o->first : o->last),
+          clock_.edge_at_or_after(at));
+  }
+}
+
+void BusRecorder::write_out(Stream& s, unsigned index, std::size_t keep) {
+  while (s.pending.size() > keep && s.pending.front().done) write_one(s, index);
+}
+
+void BusRecorder::write_one(Stream& s, unsigned index) {
+  Pending p = std::move(s.pending.front());
+  const std::uint64_t number = s.next - s.pending.size();
+  s.pending.pop_front();
+  if (!p.done || p.failed || p.issued < start_ || p.issued >= end_) return;
+  Record& r = p.record;
+  if (r.release != Release::kAt) {
+    const Outcome* o = outcome(s, p.reference);
+    const bool usable = o && o->place != kNone && s.written - o->place <= kMaxBack;
+    if (usable) {
+      r.back = static_cast<std::uint32_t>(s.written - o->place);
+    } else {  // what it waited for is not in the recording
+      if (r.release == Release::kAfter) r.release = Release::kAt;
+      r.from_first = false;
+      r.gap = 0;
+    }
+  }
+  r.at = r.release == Release::kAt ? p.issued : 0;
+  if (Outcome* o = outcome(s, number)) o->place = s.written;
+  ++s.written;
+  writer_.add(index, r);
+}
+
+void BusRecorder::finish(TraceInfo info,
+                         const std::function<void(std::string_view)>& put) {
+  FOVEA_CHECK(open_ && end_ != kNever, "a recording that was not opened and closed");
+  info.start = start_;
+  info.end = end_;
+  for (const Picoseconds t : interrupts_)
+    if (t < end_) info.interrupts.push_back(t);
+  info.streams.resize(streams_.size());
+  info.streams[0] = core_info_;
+  for (const auto& m : masters_)
+    info.masters.push_back({m.id, std::string(kMasterNames[index(m.id)]),
+                            stream_of_[index(m.id)], m.reads, m.writes, m.shared});
+  for (unsigned i = 0; i < streams_.size(); ++i)
+    while (!streams_[i].pending.empty()) write_one(streams_[i], i);
+  writer_.finish(info, put);
+}
+
+}  // namespace fovea::trace

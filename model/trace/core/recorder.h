@@ -1,0 +1,120 @@
+// Makes a bus trace of what passes the crossbar: derives from times and outcomes what released each
+// request. The rules and their reasons: model/decisions/0006-trace.md.
+#pragma once
+#include <array>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "model/common/clock.h"
+#include "model/common/mem_observer.h"
+#include "model/trace/core/trace_file.h"
+
+namespace fovea::trace {
+
+/// What the core tells of itself, in core clocks since its start.
+struct CoreState {
+  std::uint64_t idle = 0;           ///< asleep, waiting for an interrupt
+  std::uint64_t write_stalls = 0;   ///< waiting for room in the write buffer
+};
+
+/// How a master's requests are released.
+enum class Pace : std::uint8_t {
+  kCore,       ///< program order, one request a port
+  kSampled,    ///< each at its time
+  kLines,      ///< bursts of a line at a time, those without a place after the burst they replace
+  kRepeating,  ///< after a completion
+};
+
+class BusRecorder : public MemObserver {
+ public:
+  struct MasterSetup {
+    Master id;
+    Pace pace;
+    unsigned reads, writes;
+    bool shared;
+  };
+  /// @param core asked at each of the core's requests
+  BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
+              std::function<CoreState()> core);
+
+  /// Recording covers [start, end): requests put on their port in it. The clock is the core's.
+  void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start);
+  void close(Picoseconds end);
+  /// An interrupt line of the core rises.
+  void interrupt(Picoseconds at) { interrupts_.push_back(at); }
+  /// The program shows a phase.
+  void mark(std::uint32_t value, Picoseconds at);
+
+  void submitted(const MemRequest& r, bool to_sdram) override;
+  void responded(const MemRequest& r) override;
+
+  /// After close(). `info` has the parameters and the clocks of crossbar and SDRAM; the rest is
+  /// filled in.
+  void finish(TraceInfo info, const std::function<void(std::string_view)>& put);
+  std::uint64_t records() const { return writer_.records(); }
+
+ private:
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  static constexpr std::size_t kHistory = kMaxBack + 1;
+  // More than any master hands over ahead of the kernel.
+  static constexpr std::size_t kHeldBack = 256;
+
+  struct Pending {
+    Record record;
+    Picoseconds issued = 0;
+    std::uint64_t reference = kNone;  // number of the record that releases it
+    bool done = false, failed = false;
+  };
+  struct Outcome {
+    std::uint64_t number = kNone, place = kNone;  // place: among those written
+    Picoseconds first = 0, last = 0;
+    bool done = false, write = false;
+  };
+  struct Stream {
+    std::deque<Pending> pending;
+    std::uint64_t next = 0;     // number of the next record
+    std::uint64_t written = 0;
+    std::vector<Outcome> history;
+    std::array<std::uint64_t, 2> previous_of_port{kNone, kNone};
+    std::uint64_t blocking_read = kNone, latest = kNone, taken_place = kNone;
+    Pace pace = Pace::kSampled;
+    unsigned reads = 1;
+  };
+  struct Flight {
+    const MemRequest* request;
+    std::uint64_t number;
+  };
+
+  Outcome* outcome(Stream& s, std::uint64_t number) {
+    if (number == kNone) return nullptr;
+    Outcome& o = s.history[number % kHistory];
+    return o.number == number ? &o : nullptr;
+  }
+  Pending& append(Stream& s, Picoseconds issued);
+  void release_core(Stream& s, Pending& p, Picoseconds at, std::size_t port);
+  void release_line(Stream& s, Pending& p, Picoseconds at);
+  void release_repeating(Stream& s, Pending& p, Picoseconds at);
+  void after(Pending& p, std::uint64_t number, bool first, std::uint64_t from, std::uint64_t to);
+  void drop_early(Stream& s);
+  void write_out(Stream& s, unsigned index, std::size_t keep);
+  void write_one(Stream& s, unsigned index);
+
+  std::vector<MasterSetup> masters_;
+  std::array<unsigned, kMasterCount> stream_of_{};
+  std::vector<Stream> streams_;
+  std::array<std::vector<Flight>, kMasterCount> flights_;
+  std::function<CoreState()> core_;
+  CoreState core_before_;
+  bool register_access_ = false;  // of the core since its last request here
+  Clock clock_;
+  StreamInfo core_info_;
+  unsigned align_;
+  bool phase_known_ = false;
+  std::vector<Picoseconds> interrupts_;
+  bool open_ = false;
+  Picoseconds start_ = 0, end_ = kNever;
+  TraceWriter writer_;
+};
+
+}  // namespace fovea::trace

@@ -1,0 +1,88 @@
+// What a bus trace holds: requests of the masters to the SDRAM, and what releases each of them.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/common/masters.h"
+#include "model/common/mem_request.h"
+#include "model/common/units.h"
+
+namespace fovea::trace {
+
+/// What a record waits for, besides a place among its master's outstanding requests and the records
+/// before it in its stream.
+enum class Release : std::uint8_t {
+  kAt,     ///< a time: sample clock of a camera or display
+  kAfter,  ///< an earlier record of its stream is done, and a gap in the stream's clock
+  kWhen,   ///< an interrupt that its master slept for, and a gap after it
+};
+
+struct Record {
+  Release release = Release::kAt;
+  bool mark = false;        ///< no request: the program shows `address` on its phase pins
+  bool write = false, locked = false;
+  bool from_first = false;  ///< kAfter, kWhen: from the first beat of that record, else from the last
+  std::uint8_t bytes = 0;
+  std::uint8_t critical = 0;
+  std::uint8_t priority = 0;
+  Master master = Master::kArmD;
+  std::uint32_t address = 0;    ///< byte offset in the SDRAM, start of the burst
+  std::uint32_t back = 0;       ///< kAfter, kWhen: that many records before this one; 0: none
+  std::uint64_t gap = 0;        ///< kAfter: clocks; kWhen: clocks of work before the sleep
+  std::uint32_t interrupt = 0;  ///< kWhen: its number in TraceInfo::interrupts
+  std::uint32_t wake_gap = 0;   ///< kWhen: clocks from the interrupt to the request
+  Picoseconds at = 0;           ///< kAt
+  friend bool operator==(const Record&, const Record&) = default;
+};
+
+/// Furthest reference to an earlier record.
+inline constexpr std::uint32_t kMaxBack = 4095;
+/// Deepest window of a master; as many requests as a port of the crossbar queues.
+inline constexpr unsigned kMaxWindow = 32;
+
+/// One agent whose records are in program order: the core with both of its ports, a video port.
+struct StreamInfo {
+  Frequency clock{kPsPerSecond};
+  Picoseconds clock_start = 0;  ///< time of an edge of that clock
+  /// Requests go out at edges n with n % align == phase, counted from clock_start: the AHB.
+  unsigned align = 1, phase = 0;
+  friend bool operator==(const StreamInfo&, const StreamInfo&) = default;
+};
+
+struct MasterInfo {
+  Master id = Master::kArmD;
+  std::string label;
+  unsigned stream = 0;
+  unsigned reads = 1;   ///< reads it may have outstanding
+  unsigned writes = 1;  ///< writes it may have unacknowledged
+  bool shared = false;  ///< `reads` is the limit of both together
+  friend bool operator==(const MasterInfo&, const MasterInfo&) = default;
+};
+
+struct ClockInfo {
+  Frequency frequency;
+  Picoseconds start = 0;  ///< when it last started
+  friend bool operator==(const ClockInfo&, const ClockInfo&) = default;
+};
+
+struct TraceInfo {
+  Picoseconds start = 0, end = 0;  ///< of what was recorded
+  /// Parameters in force, as `key value`; keys of `fovea params`.
+  std::vector<std::pair<std::string, std::string>> params;
+  ClockInfo scr, ddr;  ///< crossbar, SDRAM; a stopped one is the parameters' matter
+  std::vector<StreamInfo> streams;
+  std::vector<MasterInfo> masters;
+  std::vector<Picoseconds> interrupts;
+};
+
+/// Records of several streams, each read from its beginning to its end.
+class RecordSource {
+ public:
+  virtual ~RecordSource() = default;
+  /// False at the end of the stream. @throws UserError
+  virtual bool next(unsigned stream, Record& record) = 0;
+};
+
+}  // namespace fovea::trace

@@ -1,0 +1,70 @@
+// How records become bytes: see README.md.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "model/trace/core/trace.h"
+
+namespace fovea::trace {
+
+/// Bytes that are no trace; the reader of the file says where.
+struct BadTrace : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void put_number(std::string& out, std::uint64_t v);
+inline std::uint64_t zigzag(std::uint64_t difference) {
+  return difference << 1 ^ (0 - (difference >> 63));
+}
+inline std::uint64_t unzigzag(std::uint64_t v) { return v >> 1 ^ (0 - (v & 1)); }
+
+/// Reads what put_number() wrote. @throws BadTrace at the end of the bytes
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::uint8_t> bytes = {})
+      : at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+  bool empty() const { return at_ == end_; }
+  std::uint8_t byte() {
+    if (at_ == end_) ended();
+    return *at_++;
+  }
+  std::uint64_t number() {
+    std::uint64_t v = byte();
+    if (v < 0x80) return v;
+    v &= 0x7F;
+    for (unsigned shift = 7; shift < 64; shift += 7) {
+      const std::uint64_t b = byte();
+      v |= (b & 0x7F) << shift;
+      if (b < 0x80) return v;
+    }
+    throw BadTrace("a number is too long");
+  }
+
+ private:
+  [[noreturn]] static void ended() { throw BadTrace("a record is cut off"); }
+  const std::uint8_t* at_;
+  const std::uint8_t* end_;
+};
+
+/// What both sides remember from one record to the next of a stream.
+struct CodeState {
+  struct Kind {
+    std::uint32_t address = 0;
+    std::uint8_t bytes = 0, priority = 0;
+    bool locked = false;
+  };
+  std::array<std::array<Kind, 2>, kMasterCount> kinds{};  // by master; read, write
+  Master master = Master::kArmI;
+  Picoseconds at = 0;
+  std::uint32_t interrupt = 0;
+};
+
+void encode(const Record& record, CodeState& state, std::string& out);
+/// @throws BadTrace
+void decode(ByteReader& in, CodeState& state, Record& record);
+
+}  // namespace fovea::trace

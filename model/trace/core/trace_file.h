@@ -1,0 +1,79 @@
+// The file of a bus trace: blocks of compressed records, see README.md.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/trace/core/trace.h"
+#include "model/trace/core/trace_code.h"
+
+namespace fovea::trace {
+
+/// Takes records of all streams and gives the file's bytes at the end. Keeps the compressed blocks:
+/// their order in the file must not depend on when they were filled.
+class TraceWriter {
+ public:
+  explicit TraceWriter(unsigned streams) : streams_(streams) {}
+  void add(unsigned stream, const Record& record);
+  std::uint64_t records() const { return records_; }
+  /// Hands the file's bytes over, piece by piece.
+  void finish(const TraceInfo& info, const std::function<void(std::string_view)>& put);
+
+ private:
+  struct Stream {
+    CodeState state;
+    std::string raw;
+    std::uint32_t count = 0;
+    std::vector<std::string> blocks;
+  };
+  void close_block(Stream& s, unsigned index);
+  std::vector<Stream> streams_;
+  std::uint64_t records_ = 0;
+};
+
+/// A trace read from memory. Every defect is a UserError of one line.
+class TraceFile : public RecordSource {
+ public:
+  /// `name` is for messages. Checks the structure of the whole file, and its records as they are read.
+  TraceFile(std::string name, std::string bytes);
+  /// True if the bytes begin as a trace does, of whatever version.
+  static bool recognises(std::string_view bytes);
+  const TraceInfo& info() const { return info_; }
+  std::uint64_t records() const { return records_; }
+  bool next(unsigned stream, Record& record) override;
+
+ private:
+  struct Block {
+    std::uint64_t offset = 0;  // of its packed bytes
+    std::uint32_t packed = 0, raw = 0, count = 0, crc = 0;
+  };
+  struct Stream {
+    std::vector<Block> blocks;
+    std::size_t next_block = 0;
+    std::uint32_t left = 0;
+    std::uint64_t read = 0, longest_gap = 0;
+    std::vector<std::uint8_t> raw;
+    ByteReader in;
+    CodeState state;
+  };
+  [[noreturn]] void bad(const std::string& what) const;
+  std::vector<std::uint8_t> unpack(const Block& b) const;
+  void read_info(std::string_view text);
+  void info_line(const std::string& key, std::string_view rest);
+  void check_info();
+  void open_block(Stream& s);
+
+  std::string name_, bytes_;
+  TraceInfo info_;
+  std::vector<Stream> streams_;
+  std::array<unsigned, kMasterCount> stream_of_ = [] {
+    std::array<unsigned, kMasterCount> none;
+    none.fill(~0u);
+    return none;
+  }();
+  std::uint64_t records_ = 0;
+};
+
+}  // namespace fovea::trace

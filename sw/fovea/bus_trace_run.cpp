@@ -1,0 +1,54 @@
+#include "sw/fovea/bus_trace_run.h"
+
+#include "sw/fovea/replay_params.h"
+
+namespace fovea::app {
+
+BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& params,
+                         board::Board& board)
+    : file_(file), params_(params), board_(board), recorder_(board.dm365.make_recorder()) {
+  const auto pins = board.dm365.gpio.on_output;
+  board.dm365.gpio.on_output = [this, pins](unsigned bank, std::uint32_t out, Picoseconds at) {
+    pins(bank, out, at);
+    if (bank == 2) recorder_->mark(out, at);
+  };
+}
+
+BusTraceRun::~BusTraceRun() {
+  board_.dm365.scr.crossbar().observe(nullptr);
+  board_.dm365.tap.attach(nullptr);
+  if (complete_) return;
+  std::error_code ignored;
+  std::filesystem::remove(file_.path(), ignored);
+}
+
+void BusTraceRun::open() {
+  const trace::BusTap& tap = board_.dm365.tap;
+  core_ = tap.core();
+  scr_ = tap.scr();
+  ddr_ = tap.ddr();
+  recorder_->open(kernel_time(), core_.frequency, core_.start);
+  opened_ = true;
+}
+
+void BusTraceRun::close() {
+  const trace::BusTap& tap = board_.dm365.tap;
+  if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
+    Diagnostics::instance().not_modelled("a clock that changes inside a bus trace");
+  recorder_->close(kernel_time());
+  closed_ = true;
+}
+
+void BusTraceRun::finish() {
+  if (!opened_ || !closed_) return;
+  trace::TraceInfo info;
+  info.scr = scr_;
+  info.ddr = ddr_;
+  info.params = replay_keys(params_, board_.dm365.ddr.programmed(), scr_.frequency,
+                            ddr_.frequency);
+  recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
+  file_.close();
+  complete_ = true;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,32 @@
+// `fovea run --bus-trace`: records the measured window of a board.
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "model/board/board.h"
+#include "sw/fovea/checked_file.h"
+#include "model/trace/core/recorder.h"
+
+namespace fovea::app {
+
+/// Made before the run, so that a file that cannot be written shows at once. open() and close() are
+/// the window's edges; without both, finish() removes the file.
+class BusTraceRun {
+ public:
+  BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
+  ~BusTraceRun();
+  void open();
+  void close();
+  /// @throws UserError when the file cannot be written
+  void finish();
+
+ private:
+  CheckedFile file_;
+  const ParamSet& params_;
+  board::Board& board_;
+  std::unique_ptr<trace::BusRecorder> recorder_;
+  trace::ClockInfo core_, scr_, ddr_;
+  bool opened_ = false, closed_ = false, complete_ = false;
+};
+
+}  // namespace fovea::app

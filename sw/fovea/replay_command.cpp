@@ -1,0 +1,112 @@
+#include "sw/fovea/replay_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <ostream>
+
+#include "model/trace/core/text_trace.h"
+#include "model/trace/core/trace_file.h"
+#include "sw/fovea/experiment.h"
+#include "sw/fovea/replay_path.h"
+#include "sw/fovea/run_dir.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Wall = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxTraceBytes = std::size_t{2} << 30;
+
+struct OpenTrace {
+  std::unique_ptr<trace::RecordSource> source;
+  const trace::TraceInfo* info = nullptr;
+};
+
+OpenTrace open_trace(const std::string& file) {
+  std::string bytes = read_file(file, kMaxTraceBytes);
+  const std::string name = one_line(file);
+  OpenTrace out;
+  if (trace::TraceFile::recognises(bytes)) {
+    auto t = std::make_unique<trace::TraceFile>(name, std::move(bytes));
+    out.info = &t->info();
+    out.source = std::move(t);
+  } else if (trace::TextTrace::recognises(bytes)) {
+    auto t = std::make_unique<trace::TextTrace>(name, bytes);
+    out.info = &t->info();
+    out.source = std::move(t);
+  } else {
+    throw UserError(fmt::format(
+        "'{}' is no bus trace; allowed: a file of 'fovea run --bus-trace', or text that begins "
+        "with '{}'",
+        name, trace::TextTrace::kHeader));
+  }
+  return out;
+}
+
+/// As `fovea run` has them, from the phases that the trace keeps.
+void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
+  const auto times = path.remap_times();
+  if (times.empty()) return;
+  double sum = 0;
+  for (const Picoseconds t : times) sum += static_cast<double>(t) * 1e-12;
+  const auto [min, max] = std::minmax_element(times.begin(), times.end());
+  const std::string what = "remap of one frame, ";
+  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1", "frames whose remap ended"});
+  rows.push_back({"frame.remap_time.min", static_cast<double>(*min) * 1e-12, "s", what + "shortest"});
+  rows.push_back({"frame.remap_time.mean", sum / static_cast<double>(times.size()), "s",
+                  what + "mean"});
+  rows.push_back({"frame.remap_time.max", static_cast<double>(*max) * 1e-12, "s", what + "longest"});
+}
+
+}  // namespace
+
+int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
+                   const CliContext& context) {
+  const auto started = Wall::now();
+  OpenTrace trace = open_trace(options.trace);
+  ReplayParams params;
+  ParamSet set;
+  params.declare(set);
+  Experiment experiment(set);
+  for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
+  for (const auto& s : options.sets) experiment.override_with(s);
+  params.check();
+
+  RunDir dir(options.out_given ? fs::path(options.out_dir)
+                               : fs::path("out") / fs::path(options.trace).stem());
+  dir.write("config.json", config_json(set, experiment, version_text()));
+
+  ReplayPath path(one_line(options.trace), *trace.info, *trace.source, params,
+                  options.memory_only);
+  // Slices only let a signal in.
+  const Picoseconds slice = 10 * kPsPerMs;
+  bool complete = true;
+  for (Picoseconds until = trace.info->start + slice; !path.run_before(until); until += slice) {
+    if (context.stop && context.stop->load()) {
+      complete = false;
+      break;
+    }
+  }
+  path.finish();
+  const double wall = std::chrono::duration<double>(Wall::now() - started).count();
+
+  std::vector<StatRow> stats = path.stats();
+  add_remap_rows(path, stats);
+  const std::vector<StatRow> host = {
+      {"wall_time", wall, "s", "host time of the whole replay"},
+      {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
+       "requests played per host second"}};
+  dir.write("host.json", host_json(host, args, version_text()));
+  dir.write("stats.json", stats_json(stats, complete));
+  dir.commit();
+  context.out << summary_table(stats, host);
+  context.out << fmt::format("  results in {}\n", dir.folder().string()) << std::flush;
+  if (complete) return kExitDone;
+  const int signal = context.signal ? context.signal->load() : 0;
+  context.err << "fovea: stopped before the end; the figures cover what was replayed\n";
+  return signal ? 128 + signal : kExitGuestFailed;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,21 @@
+// `fovea replay`: a bus trace played on crossbar and SDRAM.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sw/fovea/cli.h"
+
+namespace fovea::app {
+
+struct ReplayOptions {
+  std::string trace;
+  std::vector<std::string> sets;
+  std::string out_dir;
+  bool out_given = false;
+  bool memory_only = false;
+};
+
+int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
+                   const CliContext& context);
+
+}  // namespace fovea::app

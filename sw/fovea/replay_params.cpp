@@ -1,0 +1,95 @@
+#include "sw/fovea/replay_params.h"
+
+#include <bit>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace fovea::app {
+
+void ReplayParams::declare(ParamSet& set) {
+  crossbar.timeline_interval.set("1s");  // a replay has no timeline
+  for (auto& port : crossbar.ports) set.add(*port);
+  set.add(clocks);
+  set.add(ddr);
+  set.add(registers);
+}
+
+mem::DdrConfig ReplayParams::config() const {
+  const auto value = [](const IntParam& p) { return static_cast<unsigned>(p()); };
+  const DdrRegisterParams& r = registers;
+  mem::DdrConfig c;
+  c.timing.CL = value(r.CL);
+  c.timing.nRFC = value(r.tRFC);
+  c.timing.nRP = value(r.tRP);
+  c.timing.nRCD = value(r.tRCD);
+  c.timing.nWR = value(r.tWR);
+  c.timing.nRAS = value(r.tRAS);
+  c.timing.nRC = value(r.tRC);
+  c.timing.nRRD = value(r.tRRD);
+  c.timing.nWTR = value(r.tWTR);
+  c.timing.nRTP = value(r.tRTP);
+  c.timing.banks = value(r.banks);
+  c.read_latency = value(r.RL);
+  c.refresh_interval = value(r.tREFI);
+  c.old_count = value(r.old_count);
+  c.page_log2 = static_cast<unsigned>(std::bit_width(r.page())) - 1;
+  c.bank_on_top = r.bank_on_top();
+  return c;
+}
+
+void ReplayParams::check() const {
+  const DdrRegisterParams& r = registers;
+  const auto refuse = [](const IntParam& p, const std::string& allowed) {
+    throw UserError(fmt::format("key '{}': {} is not allowed; allowed: {}", p.key(), p.text(),
+                                allowed));
+  };
+  const auto at_least = [&](const IntParam& p, std::uint64_t least, const char* what) {
+    if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
+  };
+  if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
+  if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
+    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
+  at_least(r.tRAS, r.tRCD(), "ddr.tRCD: a row is open when its columns are read");
+  // Each of the three was rounded up to clocks by itself.
+  at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");
+  at_least(r.tRFC, r.tRP() + 1, "more than ddr.tRP: a refresh opens and closes a row");
+  if (r.tREFI() != 0) at_least(r.tREFI, 2 * r.tRFC(), "twice ddr.tRFC, or 0 for no refresh");
+}
+
+std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run,
+                                                             const mem::DdrConfig& c,
+                                                             Frequency scr, Frequency ddr) {
+  ReplayParams known;
+  ParamSet set;
+  known.declare(set);
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const ParamBase* p : run.all())
+    if (set.find(p->key())) out.emplace_back(p->key(), p->text());
+  const auto hertz = [](Frequency f) {
+    return fmt::format("{}Hz", static_cast<std::uint64_t>(std::llround(f.hertz())));
+  };
+  const auto cycles = [&](const char* name, std::uint64_t n) {
+    out.emplace_back(std::string("ddr.") + name, fmt::format("{}cycles", n));
+  };
+  out.emplace_back("bus.clock", hertz(scr));
+  out.emplace_back("ddr.clock", hertz(ddr));
+  cycles("CL", c.timing.CL);
+  cycles("RL", c.read_latency);
+  cycles("tRFC", c.timing.nRFC);
+  cycles("tRP", c.timing.nRP);
+  cycles("tRCD", c.timing.nRCD);
+  cycles("tWR", c.timing.nWR);
+  cycles("tRAS", c.timing.nRAS);
+  cycles("tRC", c.timing.nRC);
+  cycles("tRRD", c.timing.nRRD);
+  cycles("tWTR", c.timing.nWTR);
+  cycles("tRTP", c.timing.nRTP);
+  cycles("tREFI", c.refresh_interval);
+  out.emplace_back("ddr.old_count", std::to_string(c.old_count));
+  out.emplace_back("ddr.page", fmt::format("{}B", 1u << c.page_log2));
+  out.emplace_back("ddr.banks", std::to_string(c.timing.banks));
+  out.emplace_back("ddr.bank_on_top", c.bank_on_top ? "true" : "false");
+  return out;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,75 @@
+// What `fovea replay` can change: the parameters of crossbar and controller as in a run, and what the
+// firmware programs there.
+#pragma once
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/bus/core/crossbar_params.h"
+#include "model/mem/core/ddr_controller.h"
+#include "model/trace/core/trace.h"
+
+namespace fovea::app {
+
+/// Clocks of the path.
+struct PathClocks : ParamGroup {
+  using U = IntParam::Unit;
+  IntParam clock{*this, "clock", U::kHertz, 121'500'000, 1'000'000, 1'000'000'000,
+                 "crossbar clock (SYSCLK4)", Origin::kChoice, ""};
+  PathClocks() : ParamGroup("bus") {}
+};
+
+/// The controller's registers, in clocks and decoded; defaults are what the firmware writes at 243 MHz.
+struct DdrRegisterParams : ParamGroup {
+  using U = IntParam::Unit;
+  // JESD79-2: tCK(avg) 1.875 to 8 ns.
+  IntParam clock{*this, "clock", U::kHertz, 243'000'000, 125'000'000, 533'333'333,
+                 "SDRAM clock", Origin::kChoice, ""};
+  IntParam CL = timing("CL", 5, 3, 7, "CAS latency");
+  IntParam RL = timing("RL", 5, 1, 15, "DDRPHYCR.RL, read latency of the PHY; at least CL counts");
+  IntParam tRFC = timing("tRFC", 31, 1, 128, "REF to REF or ACT");
+  IntParam tRP = timing("tRP", 5, 1, 8, "PRE to ACT");
+  IntParam tRCD = timing("tRCD", 5, 1, 8, "ACT to RD or WR");
+  IntParam tWR = timing("tWR", 4, 1, 8, "write recovery to PRE");
+  IntParam tRAS = timing("tRAS", 11, 1, 32, "ACT to PRE");
+  IntParam tRC = timing("tRC", 16, 1, 32, "ACT to ACT, same bank");
+  IntParam tRRD = timing("tRRD", 3, 1, 8, "ACT to ACT, other bank");
+  IntParam tWTR = timing("tWTR", 3, 1, 8, "write to read");
+  IntParam tRTP = timing("tRTP", 2, 1, 8, "RD to PRE");
+  IntParam tREFI = timing("tREFI", 1895, 0, 65535, "SDRCR.RR, refresh interval; 0: no refresh");
+  IntParam old_count{*this, "old_count", U::kCount, 0xFF, 0, 0xFF,
+                     "PBBPR.PR_OLD_COUNT, transfers after which the oldest command is raised; 255 "
+                     "never",
+                     Origin::kChoice, ""};
+  IntParam page{*this, "page", U::kBytes, 2048, 512, 4096, "bytes of a row", Origin::kChoice, ""};
+  IntParam banks{*this, "banks", U::kCount, 8, 1, 8, "banks that the controller uses",
+                 Origin::kChoice, ""};
+  BoolParam bank_on_top{*this, "bank_on_top", false,
+                        "SDBCR.IBANK_POS: bank address above the row address", Origin::kChoice, ""};
+  DdrRegisterParams() : ParamGroup("ddr") {}
+
+ private:
+  IntParam timing(const char* name, std::uint64_t def, std::uint64_t min, std::uint64_t max,
+                  const char* sentence) {
+    return {*this, name, U::kCycles, def, min, max, sentence, Origin::kChoice, ""};
+  }
+};
+
+struct ReplayParams {
+  bus::CrossbarParams crossbar;
+  PathClocks clocks;
+  mem::DdrParams ddr;
+  DdrRegisterParams registers;
+
+  void declare(ParamSet& set);
+  mem::DdrConfig config() const;
+  /// @throws UserError for a set of timings that no part allows
+  void check() const;
+};
+
+/// What a run has in force, as keys of ReplayParams.
+std::vector<std::pair<std::string, std::string>> replay_keys(
+    const ParamSet& run, const mem::DdrConfig& programmed, Frequency scr, Frequency ddr);
+
+}  // namespace fovea::app

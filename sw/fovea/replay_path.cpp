@@ -1,0 +1,343 @@
+#include "sw/fovea/replay_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "model/board/frame_log.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr Picoseconds kLatest = 7200 * kPsPerSecond;
+
+/// An edge of the clock less than `den` seconds before t, which is exact: nothing needs to be played
+/// from power-up.
+Picoseconds start_near(const trace::ClockInfo& c, Picoseconds t) {
+  const Picoseconds whole = c.frequency.den * kPsPerSecond;
+  return t > c.start ? c.start + (t - c.start) / whole * whole : c.start;
+}
+
+}  // namespace
+
+ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::RecordSource& source,
+                       const ReplayParams& params, bool memory_only)
+    : name_(std::move(name)),
+      info_(info),
+      source_(source),
+      memory_only_(memory_only),
+      start_(info.start),
+      last_(info.start),
+      store_(params.ddr.size_bytes()),
+      xbar_(params.crossbar, *this),
+      ddr_(params.ddr, store_, *this) {
+  // The file's clock is exact, a parameter's in whole hertz: it counts only if it was changed.
+  const auto clock = [](const trace::ClockInfo& file, const IntParam& param) {
+    const Frequency wanted(param());
+    const bool same = !file.frequency.stopped() &&
+                      std::abs(file.frequency.hertz() - wanted.hertz()) < 1.0;
+    return same ? file.frequency : wanted;
+  };
+  const Frequency scr = clock(info.scr, params.clocks.clock);
+  const Picoseconds scr_start = start_near(info.scr, info.start);
+  xbar_.set_clock(scr, scr_start);
+  ddr_.set_clocks({}, scr, scr_start);
+  ddr_.set_clocks(clock(info.ddr, params.registers.clock), scr, start_near(info.ddr, info.start));
+  ddr_.configure(params.config(), info.start);
+  ddr_.catch_up(info.start);  // the refreshes before
+  ddr_.stats.reset();
+
+  streams_.resize(info.streams.size());
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const trace::StreamInfo& from = info.streams[i];
+    streams_[i].clock = Clock(from.clock, from.clock_start);
+    streams_[i].align = from.align;
+    streams_[i].phase = from.phase;
+    streams_[i].earliest = info.start;
+    streams_[i].history.resize(kHistory);
+  }
+  for (const trace::MasterInfo& from : info.masters) {
+    MasterState& m = masters_[index(from.id)];
+    m.label = from.label;
+    m.stream = from.stream;
+    m.slots = std::vector<Slot>(from.shared ? from.reads : from.reads + from.writes);
+    m.read_slots_to = from.reads;
+    m.write_slots_from = from.shared ? 0 : from.reads;
+    m.latency = std::make_unique<bus::LatencyStats>(from.label);
+    for (Slot& s : m.slots) {
+      s.owner = &m;
+      s.master = from.id;
+      s.data = s.bytes_.data();
+    }
+  }
+  time_.fill(kNever);
+  for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
+  find_next();
+}
+
+void ReplayPath::check(const trace::Record& r, const Stream& s) const {
+  const auto refuse = [&](const std::string& why) {
+    throw UserError(fmt::format("trace '{}': record {} of {}: {} bytes at 0x{:08x}: {}", name_,
+                                s.number, masters_[index(r.master)].label, r.bytes, r.address,
+                                why));
+  };
+  if (std::uint64_t{r.address} + r.bytes > store_.size())
+    refuse(fmt::format("outside the SDRAM of {} MiB (ddr.part)", store_.size() >> 20));
+  if (r.address % 1024 + r.bytes > 1024) refuse("a burst stays inside 1024 aligned bytes (AHB)");
+}
+
+/// Takes the stream's next record; marks are noted on the way.
+void ReplayPath::fetch(unsigned stream) {
+  Stream& s = streams_[stream];
+  s.valid = source_.next(stream, s.record);
+  if (s.valid && !s.record.mark) check(s.record, s);
+  prepare(stream);
+}
+
+ReplayPath::Slot* ReplayPath::place(MasterState& m, bool write, Picoseconds& free) {
+  const std::size_t from = write ? m.write_slots_from : 0;
+  const std::size_t to = write ? m.slots.size() : m.read_slots_to;
+  Slot* best = &m.slots[from];
+  for (std::size_t i = from + 1; i < to; ++i)
+    if (m.slots[i].free < best->free) best = &m.slots[i];
+  free = best->free;
+  return best;
+}
+
+/// When the record's release lets it go; kNever while that is not known.
+Picoseconds ReplayPath::released(const Stream& s) const {
+  const trace::Record& r = s.record;
+  if (r.release == trace::Release::kAt) return r.at;
+  Picoseconds from = start_;
+  if (r.back != 0) {
+    const Outcome& o = s.history[(s.number - r.back) % kHistory];
+    from = r.from_first ? o.first : o.last;
+    if (from == kNever) return kNever;
+  }
+  std::uint64_t edge = s.clock.edge_at_or_after(from) + r.gap;
+  if (r.release == trace::Release::kWhen) {
+    const Picoseconds risen = info_.interrupts[r.interrupt];
+    edge = std::max(edge, s.clock.edge_at_or_after(risen)) + r.wake_gap;
+  }
+  edge += (s.align + s.phase - edge % s.align) % s.align;
+  return s.clock.edge(edge);
+}
+
+/// The time of the stream's next request, if it is known.
+void ReplayPath::prepare(unsigned stream) {
+  Stream& s = streams_[stream];
+  time_[stream] = kNever;
+  for (;;) {
+    if (!s.valid) return;
+    Picoseconds at = released(s);
+    if (at == kNever) return;
+    at = std::max(at, s.earliest);
+    if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
+    if (!s.record.mark) {
+      Picoseconds free;
+      s.slot = place(masters_[index(s.record.master)], s.record.write, free);
+      if (free == kNever) return;
+      if (free > at) {
+        at = free;
+        if (s.align > 1) {
+          std::uint64_t edge = s.clock.edge_at_or_after(at);
+          edge += (s.align + s.phase - edge % s.align) % s.align;
+          at = s.clock.edge(edge);
+        }
+      }
+      time_[stream] = at;
+      return;
+    }
+    marks_.push_back({s.record.address, at});
+    if (on_issue) on_issue(stream, at);
+    s.history[s.number++ % kHistory] = {at, at};
+    s.valid = source_.next(stream, s.record);
+    if (s.valid && !s.record.mark) check(s.record, s);
+  }
+}
+
+void ReplayPath::find_next() {
+  next_stream_ = 0;
+  for (unsigned i = 1; i < streams_.size(); ++i)
+    if (time_[i] < time_[next_stream_]) next_stream_ = i;
+  next_time_ = time_[next_stream_];
+}
+
+void ReplayPath::issue() {
+  const unsigned stream = next_stream_;
+  Stream& s = streams_[stream];
+  const trace::Record& r = s.record;
+  Slot& slot = *s.slot;
+  MasterState& m = masters_[index(r.master)];
+  slot.free = kNever;
+  slot.number = s.number;
+  slot.address = r.address;
+  slot.critical = r.critical;
+  slot.issued = next_time_;
+  slot.write = r.write;
+  slot.locked = r.locked;
+  slot.bytes = r.bytes;
+  s.history[s.number++ % kHistory] = {kNever, kNever};
+  s.earliest = next_time_;
+  if (on_issue) [[unlikely]]
+    on_issue(stream, next_time_);
+  ++requests_;
+  ++m.transactions;
+  bytes_ += r.bytes;
+  (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
+  if (m.priority != r.priority) {
+    m.priority = r.priority;
+    if (!memory_only_) xbar_.set_priority(r.master, r.priority);
+  }
+  slot.priority = r.priority;
+  if (memory_only_)
+    send(slot, slot.issued);
+  else
+    xbar_.submit(slot, bus::Slave::kDdr);
+  fetch(stream);
+  find_next();
+}
+
+void ReplayPath::step() {
+  if (!memory_only_ && xbar_.next_decision() < ddr_.next_decision())
+    xbar_.step(*this);
+  else
+    ddr_.step();
+  if (door_opened_) send_waiting();
+}
+
+bool ReplayPath::run_before(Picoseconds until) {
+  for (;;) {
+    const Picoseconds decision = std::min(xbar_.next_decision(), ddr_.next_decision());
+    const Picoseconds next = std::min(decision, next_time_);
+    if (next == kNever) {
+      for (const Stream& s : streams_)
+        if (s.valid)  // a locked read without its write keeps all others out
+          throw UserError(fmt::format("trace '{}': it stops before its end", name_));
+      return true;
+    }
+    if (next >= until) return false;
+    if (next_time_ <= decision)
+      issue();
+    else
+      step();
+  }
+}
+
+std::vector<Picoseconds> ReplayPath::remap_times() const {
+  std::vector<Picoseconds> out;
+  const auto phase = [](const Mark& m) { return static_cast<board::Phase>(m.value & 15u); };
+  const Mark* begun = nullptr;
+  for (const Mark& m : marks_) {
+    if (phase(m) == board::Phase::kRemapStart) begun = &m;
+    if (phase(m) != board::Phase::kRemapEnd || !begun) continue;
+    if (m.value >> 4 == begun->value >> 4) out.push_back(m.at - begun->at);
+    begun = nullptr;
+  }
+  return out;
+}
+
+/// The outcome is in the slot.
+void ReplayPath::complete(Slot& slot) {
+  MasterState& m = *static_cast<MasterState*>(slot.owner);
+  if (!slot.write) m.latency->histogram.add(slot.first - slot.issued);
+  last_ = std::max(last_, slot.last);
+  slot.free = slot.last;
+  streams_[m.stream].history[slot.number % kHistory] = {slot.first, slot.last};
+  if (time_[m.stream] == kNever) {
+    prepare(m.stream);
+    if (time_[m.stream] < next_time_) {
+      next_stream_ = m.stream;
+      next_time_ = time_[m.stream];
+    }
+  }
+}
+
+mem::DdrRequest ReplayPath::to_controller(MemRequest& r) const {
+  mem::DdrRequest q;
+  q.cookie = &r;
+  q.master = r.master;
+  q.priority = r.priority;
+  q.write = r.write;
+  q.bytes = r.bytes;
+  q.address = r.address;
+  q.critical = r.critical;
+  q.data = r.data;
+  return q;
+}
+
+ReplayPath::Taken ReplayPath::forward(MemRequest& r, Picoseconds arrival) {
+  return ddr_.submit(to_controller(r), arrival) ? Taken::kYes : Taken::kWaits;
+}
+
+void ReplayPath::ddr_accepted(void* cookie, Picoseconds at) {
+  auto& r = *static_cast<MemRequest*>(cookie);
+  r.door_opener = ddr_.door_opener();
+  if (!memory_only_) return xbar_.slave_accepted(r, at);
+  door_taken_ = false;
+  door_opened_ = true;  // the next one goes when the controller has decided
+  opened_at_ = at;
+  if (r.write) acknowledge(r, at);
+}
+
+void ReplayPath::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) {
+  auto& r = *static_cast<MemRequest*>(cookie);
+  r.slave_waited = ddr_.read_waited();
+  if (!memory_only_) return xbar_.slave_done(r, first, last, false);
+  r.first = first;
+  r.last = last;
+  complete(static_cast<Slot&>(r));
+}
+
+void ReplayPath::acknowledge(MemRequest& r, Picoseconds at) {
+  r.first = r.last = at;
+  complete(static_cast<Slot&>(r));
+}
+
+void ReplayPath::send(MemRequest& r, Picoseconds at) {
+  if (door_taken_) {
+    waiting_.push_back(&r);
+    return;
+  }
+  door_taken_ = !ddr_.submit(to_controller(r), at);
+  if (!door_taken_ && r.write) acknowledge(r, at);
+}
+
+/// The most urgent of those that wait, the oldest among equals.
+void ReplayPath::send_waiting() {
+  door_opened_ = false;
+  while (!door_taken_ && !waiting_.empty()) {
+    auto first = std::min_element(
+        waiting_.begin(), waiting_.end(),
+        [](const MemRequest* a, const MemRequest* b) { return a->priority < b->priority; });
+    MemRequest* r = *first;
+    waiting_.erase(first);
+    send(*r, std::max(r->issued, opened_at_));
+  }
+}
+
+std::vector<StatRow> ReplayPath::stats() {
+  std::vector<StatRow> rows;
+  collect(ddr_.stats, rows);
+  const double seconds = static_cast<double>(duration()) * 1e-12;
+  rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion"});
+  rows.push_back({"replay.requests", requests_, "1", "requests played"});
+  if (seconds > 0) {
+    rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
+                    "bytes moved / replay.time"});
+    const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
+    rows.push_back({"ddr.utilisation", static_cast<double>(ddr_.busy_clocks()) / clocks, "ratio",
+                    "share of replay.time in which the SDRAM's data bus moves data"});
+  }
+  for (const MasterState& m : masters_) {
+    if (m.label.empty()) continue;
+    const std::string bus = "bus." + m.label + ".";
+    rows.push_back({bus + "read_bytes", m.read_bytes, "B", "bytes read by this master"});
+    rows.push_back({bus + "write_bytes", m.write_bytes, "B", "bytes written by this master"});
+    rows.push_back({bus + "transactions", m.transactions, "1", "requests of this master"});
+    collect(*m.latency, rows);
+  }
+  return rows;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,117 @@
+// Crossbar and DDR controller played from a trace, without core, video and SystemC.
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/bus/core/crossbar.h"
+#include "model/bus/core/latency_stats.h"
+#include "model/mem/core/ddr_controller.h"
+#include "model/trace/core/trace.h"
+#include "sw/fovea/outputs.h"
+#include "sw/fovea/replay_params.h"
+
+namespace fovea::app {
+
+class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
+ public:
+  struct Mark {
+    std::uint32_t value;
+    Picoseconds at;
+  };
+  /// `name` is the trace's, for messages. Clocks: those of `info`, unless `params` say otherwise.
+  ReplayPath(std::string name, const trace::TraceInfo& info, trace::RecordSource& source,
+             const ReplayParams& params, bool memory_only);
+
+  /// Plays what comes before `until`; true: all is played. @throws UserError for a record that this
+  /// memory cannot have
+  bool run_before(Picoseconds until);
+  /// To be called before the figures are read.
+  void finish() { ddr_.catch_up(last_); }
+
+  std::vector<StatRow> stats();
+  const std::vector<Mark>& marks() const { return marks_; }
+  /// Of the frames whose remap began and ended in the trace, by its marks.
+  std::vector<Picoseconds> remap_times() const;
+  std::uint64_t requests() const { return requests_; }
+  /// From the recording's start to the last completion.
+  Picoseconds duration() const { return last_ > start_ ? last_ - start_ : 0; }
+  bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
+  const mem::DdrStats& memory() const { return ddr_.stats; }
+  /// Called with each record as it goes out; empty in production.
+  std::function<void(unsigned stream, Picoseconds at)> on_issue;
+
+ private:
+  friend class bus::Crossbar;
+  static constexpr std::size_t kHistory = trace::kMaxBack + 1;
+  struct Slot : MemRequest {
+    Picoseconds free = 0;  // kNever: taken, and its end is not known
+    std::uint64_t number = 0;
+    alignas(16) std::array<std::uint8_t, kMaxBurstBytes> bytes_{};
+  };
+  struct MasterState {
+    std::string label;
+    std::vector<Slot> slots;
+    unsigned write_slots_from = 0, read_slots_to = 0;
+    unsigned stream = 0;
+    std::uint8_t priority = 0xFF;
+    std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
+    std::unique_ptr<bus::LatencyStats> latency;
+  };
+  struct Outcome {
+    Picoseconds first, last;
+  };
+  struct Stream {
+    trace::Record record;
+    bool valid = false;     // `record` is the next one
+    std::uint64_t number = 0;
+    Picoseconds earliest = 0;
+    Clock clock;
+    unsigned align = 1, phase = 0;
+    Slot* slot = nullptr;   // for it
+    std::vector<Outcome> history;
+  };
+
+  void fetch(unsigned stream);
+  void prepare(unsigned stream);
+  Picoseconds released(const Stream& s) const;
+  Slot* place(MasterState& m, bool write, Picoseconds& free);
+  void find_next();
+  void issue();
+  void step();
+  void check(const trace::Record& r, const Stream& s) const;
+  void complete(Slot& slot);
+
+  Taken forward(MemRequest& r, Picoseconds arrival) override;
+  void respond(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
+  void ddr_accepted(void* cookie, Picoseconds at) override;
+  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
+  mem::DdrRequest to_controller(MemRequest& r) const;
+  // Without the crossbar.
+  void send(MemRequest& r, Picoseconds at);
+  void acknowledge(MemRequest& r, Picoseconds at);
+  void send_waiting();
+
+  std::string name_;
+  const trace::TraceInfo& info_;
+  trace::RecordSource& source_;
+  bool memory_only_;
+  std::array<MasterState, kMasterCount> masters_;
+  std::vector<Stream> streams_;
+  std::array<Picoseconds, kMasterCount> time_{};  // of each stream's next request
+  unsigned next_stream_ = 0;
+  Picoseconds next_time_ = kNever;
+  Picoseconds start_ = 0, last_ = 0;
+  std::uint64_t requests_ = 0, bytes_ = 0;
+  std::vector<Mark> marks_;
+  std::vector<MemRequest*> waiting_;  // without the crossbar: behind the one at the door
+  bool door_taken_ = false, door_opened_ = false;
+  Picoseconds opened_at_ = 0;
+  mem::BackingStore store_;
+  bus::Crossbar xbar_;
+  mem::DdrController ddr_;
+};
+
+}  // namespace fovea::app

@@ -1,0 +1,135 @@
+// The file of a bus trace: what goes in comes out, and nothing broken comes in.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "model/common/check.h"
+#include "tb/replay/support.h"
+
+namespace fovea::replay {
+namespace {
+
+using trace::Record;
+using trace::TraceFile;
+
+std::vector<Record> read_all(TraceFile& file, unsigned stream) {
+  std::vector<Record> out;
+  for (Record r; file.next(stream, r);) out.push_back(r);
+  return out;
+}
+
+TEST(TraceFileTest, GivesBackWhatWasWritten) {
+  const MadeTrace made = make_trace(1, 20'000);  // several blocks a stream
+  TraceFile file("t", made.bytes);
+  EXPECT_EQ(file.records(), 60'000u);
+  const trace::TraceInfo& info = file.info();
+  EXPECT_EQ(info.start, made.info.start);
+  EXPECT_EQ(info.end, made.info.end);
+  EXPECT_EQ(info.scr, made.info.scr);
+  EXPECT_EQ(info.ddr, made.info.ddr);
+  EXPECT_EQ(info.params, made.info.params);
+  EXPECT_EQ(info.streams, made.info.streams);
+  EXPECT_EQ(info.masters, made.info.masters);
+  EXPECT_EQ(info.interrupts, made.info.interrupts);
+  for (unsigned s = 0; s < 3; ++s) EXPECT_EQ(read_all(file, s), made.records[s]) << s;
+}
+
+TEST(TraceFileTest, StreamsCanBeReadInAnyOrder) {
+  const MadeTrace made = make_trace(2, 9'000);
+  TraceFile file("t", made.bytes);
+  Rng rng(3);
+  std::vector<std::size_t> next(3);
+  Record r;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto s = static_cast<unsigned>(rng.below(3));
+    if (file.next(s, r)) {
+      ASSERT_EQ(r, made.records[s][next[s]++]);
+    }
+  }
+}
+
+/// The message of the error that reading all of it gives; empty if there is none.
+std::string error_of(const std::string& bytes) {
+  try {
+    TraceFile file("t", bytes);
+    for (unsigned s = 0; s < file.info().streams.size(); ++s) read_all(file, s);
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(TraceFileTest, EveryTruncationIsFound) {
+  const MadeTrace made = make_trace(4, 100);
+  ASSERT_EQ(error_of(made.bytes), "");
+  for (std::size_t n = 0; n < made.bytes.size(); ++n)
+    EXPECT_THAT(error_of(made.bytes.substr(0, n)), testing::StartsWith("bus trace 't': ")) << n;
+}
+
+TEST(TraceFileTest, EveryFlippedBitIsFound) {
+  const MadeTrace made = make_trace(5, 60);
+  std::string bytes = made.bytes;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    for (int bit = 0; bit < 8; ++bit) {
+      bytes[i] = static_cast<char>(bytes[i] ^ 1 << bit);
+      EXPECT_THAT(error_of(bytes), testing::StartsWith("bus trace 't': ")) << i << '.' << bit;
+      bytes[i] = made.bytes[i];
+    }
+}
+
+TEST(TraceFileTest, OtherVersionsAndFilesAreNamed) {
+  std::string bytes = make_trace(6, 10).bytes;
+  bytes[bytes.find('\n') - 1] = '2';
+  EXPECT_THAT(error_of(bytes), testing::HasSubstr("allowed: version 1"));
+  EXPECT_THAT(error_of("PNG"), testing::HasSubstr("not a bus trace"));
+  EXPECT_THAT(error_of(make_trace(6, 10).bytes + "x"), testing::HasSubstr("follows its end"));
+}
+
+TEST(TraceFileTest, RecordsThatRefuteThemselvesAreFound) {
+  const auto error_with = [](const Record& r, unsigned stream = 0) {
+    trace::TraceWriter writer(3);
+    writer.add(stream, r);
+    std::string bytes;
+    writer.finish(board_info(), [&](std::string_view piece) { bytes += piece; });
+    return error_of(bytes);
+  };
+  Record good;
+  good.bytes = 4;
+  good.at = 2'000'000;
+  EXPECT_EQ(error_with(good), "");
+  Record r = good;
+  r.release = trace::Release::kAfter;
+  r.back = 1;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("before the first record"));
+  r = good;
+  r.release = trace::Release::kWhen;
+  r.interrupt = 3;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("interrupt"));
+  r = good;
+  r.master = Master::kVpfe;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("another's stream"));
+  r = good;
+  r.at = board_info().end + 2 * kPsPerSecond;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("after its end"));
+}
+
+TEST(TraceFileTest, TheOrderOfStreamsDoesNotShow) {
+  const auto written = [](bool swapped) {
+    Rng rng(7);
+    std::vector<Record> a, b;
+    for (unsigned n = 0; n < 10'000; ++n) {
+      a.push_back(random_record(rng, 1, n));
+      b.push_back(random_record(rng, 2, n));
+    }
+    trace::TraceWriter writer(3);
+    std::string bytes;
+    for (unsigned pass = 0; pass < 2; ++pass)
+      for (const Record& r : (pass == 0) != swapped ? a : b)
+        writer.add((pass == 0) != swapped ? 1 : 2, r);
+    writer.finish(board_info(), [&](std::string_view piece) { bytes += piece; });
+    return bytes;
+  };
+  EXPECT_EQ(written(false), written(true));
+}
+
+}  // namespace
+}  // namespace fovea::replay

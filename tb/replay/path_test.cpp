@@ -1,0 +1,298 @@
+// The player of bus traces: releases, windows, and the same times as the cores driven by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <map>
+
+#include "model/trace/core/text_trace.h"
+#include "sw/fovea/replay_path.h"
+#include "tb/dram/path.h"
+#include "tb/replay/support.h"
+
+namespace fovea::replay {
+namespace {
+
+using trace::Record;
+using trace::Release;
+
+/// Plays a source and keeps when each record went out.
+struct Played {
+  std::vector<std::vector<Picoseconds>> issued{kMasterCount};
+  std::unique_ptr<app::ReplayParams> params = std::make_unique<app::ReplayParams>();
+  std::unique_ptr<app::ReplayPath> path;
+
+  Played(const trace::TraceInfo& info, trace::RecordSource& source, bool memory_only = false,
+         const std::vector<std::pair<std::string, std::string>>& keys = {}) {
+    ParamSet set;
+    params->declare(set);
+    for (const auto& [key, value] : keys) set.set(key, value);
+    params->check();
+    path = std::make_unique<app::ReplayPath>("t", info, source, *params, memory_only);
+    path->on_issue = [this](unsigned stream, Picoseconds at) { issued[stream].push_back(at); };
+    EXPECT_TRUE(path->run_before(kNever));
+    path->finish();
+  }
+  explicit Played(trace::TextTrace& t, bool memory_only = false) : Played(t.info(), t, memory_only) {}
+};
+
+std::string master_lines(unsigned masters, unsigned window) {
+  std::string text = "# dramtrace 1\n";
+  for (unsigned m = 0; m < masters; ++m)
+    text += fmt::format("# master {} window {} m{}\n", m, window, m);
+  return text;
+}
+
+TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
+  Rng rng(1);
+  std::string text = master_lines(3, 16);
+  dram::Path hand(Frequency(243'000'000), Frequency(121'500'000));
+  struct Sent {
+    dram::PathRequest request;
+    std::array<std::uint8_t, 64> data;
+  };
+  std::deque<Sent> sent;
+  Picoseconds at = 1'000;
+  for (int n = 0; n < 3000; ++n) {
+    at += 20'000 + rng.below(300'000);  // seldom more than a few under way
+    Sent& s = sent.emplace_back();
+    dram::PathRequest& r = s.request;
+    r.data = s.data.data();
+    r.master = static_cast<Master>(rng.below(3));
+    r.write = rng.below(3) == 0;
+    r.bytes = static_cast<std::uint8_t>(8u << rng.below(4));
+    r.address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
+    text += fmt::format("{} {} {} 0x{:x} {}\n", at, index(r.master), r.write ? 'W' : 'R', r.address,
+                        r.bytes);
+    hand.run_before(at);
+    hand.submit(r, at);
+  }
+  hand.drain();
+  trace::TextTrace trace("t", text);
+  // The hand-driven cores have the bench's parameters: those of masters are the crossbar's defaults.
+  Played played(trace);
+  std::array<Histogram, 3> expected;
+  Picoseconds last = 0;
+  for (const Sent& s : sent) {
+    if (!s.request.write) expected[index(s.request.master)].add(s.request.first - s.request.issued);
+    last = std::max(last, s.request.last);
+  }
+  for (unsigned m = 0; m < 3; ++m) {
+    const Histogram& got = played.path->latency(static_cast<Master>(m)).histogram;
+    EXPECT_EQ(got.count(), expected[m].count());
+    EXPECT_EQ(got.mean(), expected[m].mean());
+    EXPECT_EQ(got.min(), expected[m].min());
+    EXPECT_EQ(got.max(), expected[m].max());
+  }
+  EXPECT_EQ(played.path->duration(), last);
+}
+
+std::string random_reads(unsigned masters, unsigned window, int count, unsigned bytes) {
+  Rng rng(2);
+  std::string text = master_lines(masters, window);
+  for (int n = 0; n < count; ++n)
+    text += fmt::format("0 {} R 0x{:x} {}\n", rng.below(masters), rng.below(1u << 20) * 64, bytes);
+  return text;
+}
+
+class WindowTest : public testing::TestWithParam<bool> {};
+TEST_P(WindowTest, OneReadAtATimeTakesTheSumOfItsLatencies) {
+  trace::TextTrace one("t", random_reads(1, 1, 500, 8));
+  const Played alone(one, GetParam());
+  const Histogram& h = alone.path->latency(Master::kArmI).histogram;
+  EXPECT_EQ(h.count(), 500u);
+  // Eight bytes: the first beat is the last, and the next read goes out with it.
+  EXPECT_NEAR(static_cast<double>(alone.path->duration()), h.mean() * 500, 1);
+  trace::TextTrace four("t", random_reads(1, 4, 500, 8));
+  const Played many(four, GetParam());
+  EXPECT_LT(many.path->duration(), alone.path->duration() * 3 / 4);
+}
+TEST_P(WindowTest, AllBytesAreMoved) {
+  Rng rng(3);
+  std::string text = master_lines(10, 5);
+  std::uint64_t read = 0, written = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const bool write = rng.below(2);
+    const std::uint64_t bytes = 1 + rng.below(200);
+    (write ? written : read) += bytes;
+    text += fmt::format("0 {} {} 0x{:x} {}\n", rng.below(10), write ? 'W' : 'R',
+                        rng.below(100'000'000), bytes);
+  }
+  trace::TextTrace t("t", text);
+  Played p(t, GetParam());
+  EXPECT_EQ(p.path->memory().read_bytes.count(), read);
+  EXPECT_EQ(p.path->memory().write_bytes.count(), written);
+}
+INSTANTIATE_TEST_SUITE_P(MemoryOnly, WindowTest, testing::Bool());
+
+TEST(ReplayPathTest, TheCrossbarCostsTime) {
+  trace::TextTrace a("t", random_reads(1, 1, 500, 32)), b("t", random_reads(1, 1, 500, 32));
+  EXPECT_GT(Played(a).path->duration(), Played(b, true).path->duration());
+}
+
+/// Records of a core with an AHB at half its clock, as given.
+struct Listed : trace::RecordSource {
+  std::vector<std::vector<Record>> records{3};
+  std::vector<std::size_t> at = std::vector<std::size_t>(3);
+  bool next(unsigned stream, Record& r) override {
+    if (at[stream] == records[stream].size()) return false;
+    r = records[stream][at[stream]++];
+    return true;
+  }
+};
+
+Record read_at(Picoseconds at, std::uint32_t address) {
+  Record r;
+  r.bytes = 32;
+  r.address = address;
+  r.at = at;
+  return r;
+}
+Record after(std::uint32_t back, bool first, std::uint64_t gap, std::uint32_t address) {
+  Record r = read_at(0, address);
+  r.release = Release::kAfter;
+  r.back = back;
+  r.from_first = first;
+  r.gap = gap;
+  return r;
+}
+
+TEST(ReplayPathTest, AGapCountsInTheStreamsClock) {
+  const trace::TraceInfo info = board_info();
+  const Clock core(info.streams[0].clock, info.streams[0].clock_start);
+  std::map<std::uint64_t, Picoseconds> second;
+  for (const std::uint64_t gap : {400u, 402u, 440u}) {
+    Listed l;
+    l.records[0] = {read_at(2'000'000, 0x1000), after(1, true, gap, 0x9000)};
+    second[gap] = Played(info, l).issued[0].at(1);
+    EXPECT_EQ(core.edge_at_or_after(second[gap]) % 2, 1u) << "an AHB edge";
+    EXPECT_EQ(core.edge(core.edge_at_or_after(second[gap])), second[gap]);
+  }
+  EXPECT_EQ(core.edge_at_or_after(second[402]), core.edge_at_or_after(second[400]) + 2);
+  EXPECT_EQ(core.edge_at_or_after(second[440]), core.edge_at_or_after(second[400]) + 40);
+}
+
+TEST(ReplayPathTest, AnInterruptReleasesASleeper) {
+  const trace::TraceInfo info = board_info();
+  const Clock core(info.streams[0].clock, info.streams[0].clock_start);
+  const auto issued = [&](std::uint64_t work) {
+    Listed l;
+    Record r = after(1, true, work, 0x9000);
+    r.release = Release::kWhen;
+    r.interrupt = 1;  // at 5 us
+    r.wake_gap = 20;
+    l.records[0] = {read_at(2'000'000, 0x1000), r};
+    return core.edge_at_or_after(Played(info, l).issued[0].at(1));
+  };
+  const std::uint64_t wake = core.edge_at_or_after(info.interrupts[1]) + 20;
+  EXPECT_EQ(issued(10), wake + (wake % 2 == 0));  // asleep long before
+  EXPECT_GT(issued(2'000), wake + 1'000);         // still at work when it came
+}
+
+TEST(ReplayPathTest, MarksKeepTheirPlace) {
+  const trace::TraceInfo info = board_info();
+  Listed l;
+  Record begin = after(1, true, 100, 0x4 | 7 << 4), end = after(2, true, 100, 0x5 | 7 << 4);
+  begin.mark = end.mark = true;
+  end.back = 1;
+  l.records[0] = {read_at(2'000'000, 0x1000), begin, after(2, false, 200, 0x9000), end};
+  const Played p(info, l);
+  ASSERT_EQ(p.path->remap_times().size(), 1u);
+  const Picoseconds read_done = p.issued[0].at(2);
+  EXPECT_GT(p.path->marks()[1].at, read_done);
+  EXPECT_EQ(p.path->remap_times()[0], p.path->marks()[1].at - p.path->marks()[0].at);
+}
+
+TEST(ReplayPathTest, TheUrgentMasterWaitsLess) {
+  const auto means = [](std::uint8_t first, std::uint8_t second) {
+    trace::TraceInfo info = board_info();
+    Listed l;
+    Rng rng(5);
+    for (int n = 0; n < 600; ++n)
+      for (const unsigned s : {1u, 2u}) {
+        Record r = read_at(1'000'000, static_cast<std::uint32_t>(rng.below(1u << 20) * 64));
+        r.master = s == 1 ? Master::kVpfe : Master::kVpbe;
+        r.priority = s == 1 ? first : second;
+        l.records[s].push_back(r);
+      }
+    const Played p(info, l);
+    return std::pair(p.path->latency(Master::kVpfe).histogram.mean(),
+                     p.path->latency(Master::kVpbe).histogram.mean());
+  };
+  const auto one = means(0, 7), two = means(7, 0);
+  EXPECT_LT(one.first * 1.1, one.second);
+  EXPECT_LT(two.second * 1.1, two.first);
+}
+
+std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
+  using testing::HasSubstr;
+  const auto play = [](const char* line, std::vector<std::pair<std::string, std::string>> keys) {
+    return error_of([&] {
+      trace::TextTrace t("t", std::string("# dramtrace 1\n# master 0 window 1 a\n") + line);
+      Played(t.info(), t, false, keys);
+    });
+  };
+  EXPECT_EQ(play("0 0 R 0x7FFFFC0 64\n", {}), "");
+  EXPECT_THAT(play("0 0 R 0x8000000 4\n", {}), HasSubstr("outside the SDRAM of 128 MiB"));
+  EXPECT_EQ(play("0 0 R 0x8000000 4\n", {{"ddr.part", "mt47h128m16"}}), "");
+  EXPECT_THAT(play("", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
+  EXPECT_THAT(play("", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));
+  EXPECT_THAT(play("", {{"ddr.CL", "9 cycles"}}), HasSubstr("7"));
+  EXPECT_THAT(play("", {{"ddr.clock", "90MHz"}}), HasSubstr("125"));
+  EXPECT_THAT(play("", {{"ddr.banks", "6"}}), HasSubstr("powers of two"));
+  EXPECT_THAT(play("", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
+}
+
+/// A trace whose content is spoilt but whose checksums are right again: plays, or one line says why
+/// it cannot.
+TEST(ReplayPathTest, NoTraceCrashesIt) {
+  Rng rng(9);
+  unsigned played = 0, refused = 0;
+  for (int n = 0; n < 1500; ++n) {
+    trace::TraceInfo info = board_info();
+    trace::TraceWriter writer(3);
+    for (std::uint64_t k = 0; k < 40; ++k)
+      for (unsigned s = 0; s < 3; ++s) {
+        Record r = random_record(rng, s, k);
+        if (rng.below(60) == 0) {  // a wild field
+          switch (rng.below(8)) {
+            case 0: r.address = static_cast<std::uint32_t>(rng.next()); break;
+            case 1: r.bytes = static_cast<std::uint8_t>(rng.next()); break;
+            case 2: r.gap = rng.next() >> rng.below(64); break;
+            case 3: r.at = rng.next() >> rng.below(64); break;
+            case 4: r.back = static_cast<std::uint32_t>(rng.below(60)); break;
+            case 5: r.interrupt = static_cast<std::uint32_t>(rng.next()); break;
+            case 6: r.locked = true; break;
+            default: r.critical = static_cast<std::uint8_t>(rng.next()); break;
+          }
+        }
+        writer.add(s, r);
+      }
+    if (rng.below(10) == 0) info.streams[0].clock = Frequency(1 + rng.next() % 2'000'000'000'000);
+    if (rng.below(10) == 0) info.masters[rng.below(4)].reads = static_cast<unsigned>(rng.below(40));
+    if (rng.below(10) == 0) info.start = rng.next() >> rng.below(64);
+    std::string bytes;
+    writer.finish(info, [&](std::string_view piece) { bytes += piece; });
+    const std::string error = error_of([&] {
+      trace::TraceFile file("t", bytes);
+      Played(file.info(), file, rng.below(2));
+    });
+    ++(error.empty() ? played : refused);
+  }
+  EXPECT_GT(played, 300u);
+  EXPECT_GT(refused, 300u);
+}
+
+}  // namespace
+}  // namespace fovea::replay

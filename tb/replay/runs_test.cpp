@@ -1,0 +1,212 @@
+// A recorded run against its replay, and a replay with other memory against a real run with it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <systemc>
+
+#include "model/trace/core/trace_file.h"
+#include "sw/fovea/bus_trace_run.h"
+#include "sw/fovea/replay_path.h"
+#include "tb/e2e/rig.h"
+
+namespace fovea::replay {
+namespace {
+
+using Figures = std::map<std::string, double>;
+
+/// What is changed against the firmware's settings, for the whole window. 0: nothing.
+struct Change {
+  std::uint64_t ddr_hertz = 0;
+  unsigned CL = 0;
+  std::string text() const {
+    return ddr_hertz ? "DDR clock " + std::to_string(ddr_hertz) : "CL " + std::to_string(CL);
+  }
+};
+
+constexpr unsigned kFrames = 2;
+/// Masters with enough reads for a 99th percentile.
+constexpr std::array kReaders = {Master::kArmD, Master::kVpbe};
+
+template <class Latency>
+void add_latency(Figures& f, Master m, const Latency& latency) {
+  const std::string name(kMasterNames[index(m)]);
+  f[name + ".mean"] = latency.histogram.mean() * 1e-12;
+  f[name + ".p99"] = static_cast<double>(latency.histogram.quantile(0.99)) * 1e-12;
+}
+
+/// A run of the whole board, in a process of its own: a simulation elaborates once.
+Figures run_board(const std::string& kernel, const Change& change, const std::string& trace) {
+  int ends[2];
+  EXPECT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    e2e::Rig rig;
+    rig.set("run.frames", std::to_string(kFrames)).set("camera.stamp", "false");
+    rig.set("firmware.kernel", kernel);
+    auto& board = rig.build();
+    auto& soc = board.dm365;
+    ParamSet keys;
+    rig.params.declare(keys);
+    std::unique_ptr<app::BusTraceRun> recording;
+    if (!trace.empty()) recording = std::make_unique<app::BusTraceRun>(trace, keys, board);
+    Figures f;
+    board.on_window_open = [&] {
+      for (auto& s : soc.scr.latency) s->reset();
+      mem::DdrConfig c = soc.ddr.programmed();
+      if (change.CL) {
+        c.timing.CL = c.read_latency = change.CL;
+        soc.ddr.controller().configure(c, kernel_time());
+      }
+      if (change.ddr_hertz)
+        soc.ddr.controller().set_clocks(Frequency(change.ddr_hertz), soc.scr.clk.read(),
+                                        kernel_time());
+      if (recording) recording->open();
+    };
+    board.on_window_close = [&] {
+      if (recording) recording->close();
+      for (const Master m : kReaders) add_latency(f, m, *soc.scr.latency[index(m)]);
+    };
+    rig.run(10 * kPsPerSecond);
+    if (recording) recording->finish();
+    f["remap"] = board.frame_stats().remap_mean * 1e-12;
+    f["remaps"] = static_cast<double>(board.frame_stats().remaps);
+    std::ostringstream out;
+    out.precision(17);
+    for (const auto& [name, value] : f) out << name << ' ' << value << '\n';
+    const std::string text = out.str();
+    const bool ok = ::write(ends[1], text.data(), text.size()) ==
+                    static_cast<ssize_t>(text.size());
+    ::_exit(ok ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string text;
+  char chunk[4096];
+  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;)
+    text.append(chunk, static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  Figures f;
+  std::istringstream in(text);
+  std::string name;
+  double value = 0;
+  while (in >> name >> value) f[name] = value;
+  return f;
+}
+
+/// A trace whose records have lost what they depend on: each goes at the time it went when it was
+/// recorded.
+class Unchained : public trace::RecordSource {
+ public:
+  Unchained(trace::RecordSource& from, std::vector<std::vector<Picoseconds>> times)
+      : from_(from), times_(std::move(times)), next_(times_.size()) {}
+  bool next(unsigned stream, trace::Record& r) override {
+    if (!from_.next(stream, r)) return false;
+    r.release = trace::Release::kAt;
+    r.at = times_[stream][next_[stream]++];
+    return true;
+  }
+
+ private:
+  trace::RecordSource& from_;
+  std::vector<std::vector<Picoseconds>> times_;
+  std::vector<std::size_t> next_;
+};
+
+std::string file_bytes(const std::string& file) { return app::read_file(file, 1u << 30); }
+
+app::ReplayParams& configure(app::ReplayParams& params, const trace::TraceInfo& info,
+                             const Change& change) {
+  ParamSet set;
+  params.declare(set);
+  for (const auto& [key, value] : info.params) set.set(key, value);
+  if (change.ddr_hertz) set.set("ddr.clock", std::to_string(change.ddr_hertz) + "Hz");
+  if (change.CL) {
+    set.set("ddr.CL", std::to_string(change.CL) + "cycles");
+    set.set("ddr.RL", std::to_string(change.CL) + "cycles");
+  }
+  return params;
+}
+
+Figures replay(const std::string& file, const Change& change, bool chained = true) {
+  trace::TraceFile source("trace", file_bytes(file));
+  app::ReplayParams params;
+  configure(params, source.info(), change);
+  std::vector<std::vector<Picoseconds>> times(source.info().streams.size());
+  std::unique_ptr<Unchained> unchained;
+  trace::TraceFile again("trace", file_bytes(file));
+  if (!chained) {  // the times of the recorded configuration, from a replay of it
+    app::ReplayParams same;
+    configure(same, again.info(), {});
+    app::ReplayPath path("trace", again.info(), again, same, false);
+    path.on_issue = [&](unsigned stream, Picoseconds at) { times[stream].push_back(at); };
+    path.run_before(kNever);
+    unchained = std::make_unique<Unchained>(source, times);
+  }
+  trace::RecordSource& records = chained ? static_cast<trace::RecordSource&>(source) : *unchained;
+  app::ReplayPath path("trace", source.info(), records, params, false);
+  path.run_before(kNever);
+  path.finish();
+  Figures f;
+  for (const Master m : kReaders) add_latency(f, m, path.latency(m));
+  double sum = 0;
+  for (const Picoseconds t : path.remap_times()) sum += static_cast<double>(t) * 1e-12;
+  f["remaps"] = static_cast<double>(path.remap_times().size());
+  f["remap"] = sum / f["remaps"];
+  return f;
+}
+
+/// The largest relative difference; prints all.
+double worst(const Figures& real, const Figures& replayed, const std::string& what) {
+  double largest = 0;
+  for (const auto& [name, value] : real) {
+    const double d = replayed.at(name) / value - 1;
+    std::printf("  %-18s %-10s real %.6g  replay %.6g  %+.3f %%\n", what.c_str(), name.c_str(),
+                value, replayed.at(name), 100 * d);
+    largest = std::max(largest, std::abs(d));
+  }
+  return largest;
+}
+
+class RunsTest : public testing::TestWithParam<const char*> {
+ protected:
+  std::string file() const {
+    return (std::filesystem::temp_directory_path() /
+            ("fovea_replay_" + std::to_string(::getpid()) + ".trace"))
+        .string();
+  }
+  ~RunsTest() override { std::filesystem::remove(file()); }
+};
+
+TEST_P(RunsTest, ReplayFollowsTheRun) {
+  const Figures recorded = run_board(GetParam(), {}, file());
+  ASSERT_GE(recorded.at("remaps"), 2);
+  EXPECT_LE(worst(recorded, replay(file(), {}), "same"), 0.01);
+  for (const Change change :
+       {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 3}, Change{0, 7}}) {
+    const Figures real = run_board(GetParam(), change, "");
+    EXPECT_LE(worst(real, replay(file(), change), change.text()), 0.03);
+    // The loss shows when memory gets faster; with slower memory the core's one port is always taken,
+    // and that alone keeps its requests apart.
+    const double lost = worst(real, replay(file(), change, false), "unchained " + change.text());
+    if (change.ddr_hertz > 243'000'000) {
+      EXPECT_GT(lost, 0.03);
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Kernels, RunsTest, testing::Values("plain", "ldm"));
+
+}  // namespace
+}  // namespace fovea::replay
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,100 @@
+// Traces made by hand.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/trace/core/trace_file.h"
+
+namespace fovea::replay {
+
+/// Own generator: results must not depend on a library's distribution.
+class Rng {
+ public:
+  explicit Rng(std::uint64_t seed) : s_(seed * 0x9E3779B97F4A7C15ull + 0x1234567) { next(); }
+  std::uint64_t next() {
+    s_ ^= s_ << 13;
+    s_ ^= s_ >> 7;
+    s_ ^= s_ << 17;
+    return s_;
+  }
+  std::uint64_t below(std::uint64_t n) { return (next() >> 11) % n; }
+
+ private:
+  std::uint64_t s_;
+};
+
+/// A core of two ports and two video masters, as the board's traces have them.
+inline trace::TraceInfo board_info() {
+  trace::TraceInfo info;
+  info.start = 1'000'000;
+  info.end = 900'000'000;
+  info.scr = {Frequency(121'500'000), 500};
+  info.ddr = {Frequency(243'000'000), 500};
+  info.streams = {{Frequency(297'000'000), 300, 2, 1}, {}, {}};
+  info.masters = {{Master::kArmI, "arm_i", 0, 1, 1, true},
+                  {Master::kArmD, "arm_d", 0, 1, 1, true},
+                  {Master::kVpfe, "vpfe", 1, 4, 4, true},
+                  {Master::kVpbe, "vpbe", 2, 4, 4, true}};
+  info.interrupts = {2'000'000, 5'000'000, 90'000'000};
+  info.params = {{"ddr.CL", "4 cycles"}};
+  return info;
+}
+
+/// A random record of a stream, valid as the `number`-th.
+inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t number) {
+  using trace::Release;
+  trace::Record r;
+  const std::uint64_t kind = rng.below(10);
+  r.mark = stream == 0 && rng.below(20) == 0;
+  r.master = stream == 0 ? static_cast<Master>(rng.below(2))
+                         : (stream == 1 ? Master::kVpfe : Master::kVpbe);
+  if (r.mark) {
+    r.master = Master::kArmD;
+    r.address = static_cast<std::uint32_t>(rng.below(256));
+  } else {
+    r.write = stream == 1 || (stream == 0 && rng.below(2));
+    r.bytes = static_cast<std::uint8_t>(4u << rng.below(stream == 0 ? 4 : 5));
+    r.address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
+    if (!r.write && r.bytes == 32) r.critical = static_cast<std::uint8_t>(4 * rng.below(8));
+    r.priority = static_cast<std::uint8_t>(rng.below(8));
+  }
+  r.release = number == 0 || kind < 2 ? Release::kAt
+              : kind == 2 && stream == 0 ? Release::kWhen
+                                         : Release::kAfter;
+  if (r.release == Release::kAt) {
+    r.at = 1'000'000 + number * 10'000 + rng.below(10'000);
+    return r;
+  }
+  r.back = static_cast<std::uint32_t>(1 + rng.below(std::min<std::uint64_t>(number, 9)));
+  r.from_first = rng.below(2);
+  r.gap = rng.below(40);
+  if (r.release == Release::kWhen) {
+    r.interrupt = static_cast<std::uint32_t>(rng.below(3));
+    r.wake_gap = static_cast<std::uint32_t>(rng.below(100));
+  }
+  return r;
+}
+
+struct MadeTrace {
+  trace::TraceInfo info = board_info();
+  std::vector<std::vector<trace::Record>> records{3};
+  std::string bytes;
+};
+
+inline MadeTrace make_trace(std::uint64_t seed, std::size_t per_stream) {
+  MadeTrace t;
+  Rng rng(seed);
+  trace::TraceWriter writer(3);
+  for (std::size_t n = 0; n < per_stream; ++n)
+    for (unsigned s = 0; s < 3; ++s) {
+      t.records[s].push_back(random_record(rng, s, n));
+      writer.add(s, t.records[s].back());
+    }
+  writer.finish(t.info, [&](std::string_view piece) { t.bytes += piece; });
+  return t;
+}
+
+}  // namespace fovea::replay

@@ -1,0 +1,119 @@
+// Bus traces as plain text.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "model/common/check.h"
+#include "model/trace/core/text_trace.h"
+#include "tb/replay/support.h"
+
+namespace fovea::replay {
+namespace {
+
+using testing::HasSubstr;
+using trace::Record;
+using trace::TextTrace;
+
+constexpr const char* kGood =
+    "# dramtrace 1\n"
+    "# master 3 window 2 cpu\n"
+    "# master 0 window 4 video\n"
+    "# any other remark\n"
+    "\n"
+    "0 3 R 0x1000 32\n"
+    "5000 0 W 0x2000 64\n"
+    "70 3 W 0x1FF0 40\n";
+
+std::string error_of(const std::string& text) {
+  try {
+    TextTrace t("t", text);
+    Record r;
+    for (unsigned s = 0; s < t.info().streams.size(); ++s)
+      while (t.next(s, r)) {
+      }
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(TextTraceTest, MastersAndRecordsAreRead) {
+  TextTrace t("t", kGood);
+  ASSERT_EQ(t.info().masters.size(), 2u);
+  EXPECT_EQ(t.info().masters[0].label, "cpu");
+  EXPECT_EQ(t.info().masters[0].reads, 2u);
+  EXPECT_EQ(t.info().masters[1].label, "video");
+  EXPECT_EQ(t.info().masters[1].reads, 4u);
+  Record r;
+  ASSERT_TRUE(t.next(0, r));
+  EXPECT_EQ(r.at, 0u);
+  EXPECT_EQ(r.address, 0x1000u);
+  EXPECT_EQ(r.bytes, 32u);
+  EXPECT_FALSE(r.write);
+  ASSERT_TRUE(t.next(1, r));
+  EXPECT_EQ(r.at, 5000u);
+  EXPECT_TRUE(r.write);
+  EXPECT_FALSE(t.next(1, r));
+}
+
+TEST(TextTraceTest, BurstsAreCutAtSixtyFourBytes) {
+  TextTrace t("t", kGood);
+  Record r;
+  t.next(0, r);
+  ASSERT_TRUE(t.next(0, r));  // 40 bytes at 0x1FF0: 16 before the border, 24 behind it
+  EXPECT_EQ(r.address, 0x1FF0u);
+  EXPECT_EQ(r.bytes, 16u);
+  ASSERT_TRUE(t.next(0, r));
+  EXPECT_EQ(r.address, 0x2000u);
+  EXPECT_EQ(r.bytes, 24u);
+  EXPECT_FALSE(t.next(0, r));
+
+  TextTrace big("t", "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x20 4096\n");
+  unsigned pieces = 0, bytes = 0;
+  for (; big.next(0, r); ++pieces) bytes += r.bytes;
+  EXPECT_EQ(pieces, 65u);
+  EXPECT_EQ(bytes, 4096u);
+}
+
+TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
+  const std::string head = "# dramtrace 1\n# master 0 window 1 a\n";
+  EXPECT_THAT(error_of("# dramtrace 2\n"), HasSubstr("'t':1: "));
+  EXPECT_THAT(error_of("# dramtrace 1\n"), HasSubstr("no master"));
+  EXPECT_THAT(error_of(head + "0 1 R 0x0 4\n"), HasSubstr("'t':3: master 1 was not declared"));
+  EXPECT_THAT(error_of(head + "0 0 X 0x0 4\n"), HasSubstr("allowed: R, W"));
+  EXPECT_THAT(error_of(head + "0 0 R 100 4\n"), HasSubstr("hexadecimal"));
+  EXPECT_THAT(error_of(head + "0 0 R 0x0 0\n"), HasSubstr("allowed: 1 to 4096"));
+  EXPECT_THAT(error_of(head + "0 0 R 0x0 5000\n"), HasSubstr("allowed: 1 to 4096"));
+  EXPECT_THAT(error_of(head + "-1 0 R 0x0 4\n"), HasSubstr("time in ps '-1'"));
+  EXPECT_THAT(error_of(head + "0 0 R 0x0\n"), HasSubstr("a record is"));
+  EXPECT_THAT(error_of(head + "0 0 R 0xFFFFFFFF 2\n"), HasSubstr("beyond 4 GiB"));
+  EXPECT_THAT(error_of(head + "# master 0 window 1 b\n"), HasSubstr("declared twice"));
+  EXPECT_THAT(error_of(head + "# master 1 window 1 a\n"), HasSubstr("same label"));
+  EXPECT_THAT(error_of(head + "# master 1 window 0 b\n"), HasSubstr("allowed: 1 to 16"));
+  EXPECT_THAT(error_of(head + "# master 1 window 1 B/c\n"), HasSubstr("a master is declared as"));
+}
+
+TEST(TextTraceTest, NoTextCrashesIt) {
+  Rng rng(11);
+  for (int n = 0; n < 20'000; ++n) {
+    std::string text = kGood;
+    for (std::uint64_t k = 1 + rng.below(4); k-- > 0;) {
+      const std::size_t at = rng.below(text.size());
+      switch (rng.below(3)) {
+        case 0:
+          text[at] = static_cast<char>(rng.below(256));
+          break;
+        case 1:
+          text.erase(at, 1 + rng.below(8));
+          break;
+        default:
+          text.insert(at, text.substr(rng.below(text.size()), rng.below(20)));
+      }
+      if (text.empty()) text = "#";
+    }
+    const std::string error = error_of(text);
+    EXPECT_TRUE(error.empty() || error.starts_with("trace 't':")) << error;
+  }
+}
+
+}  // namespace
+}  // namespace fovea::replay
