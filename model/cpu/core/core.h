@@ -77,6 +77,7 @@ class Core : public Background {
 
  private:
   friend class CoreTest;
+  friend class CoreDebug;
   static constexpr unsigned kPcDelayArm = 8;
   enum class Result : std::uint8_t { kOk, kAbort };
   struct Line {

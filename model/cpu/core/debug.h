@@ -1,0 +1,51 @@
+// What a debugger sees of the core: memory through its caches and buffers, without time or effect.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+/// Memory behind the core's ports, by physical address; accesses take no time.
+class DebugMemory {
+ public:
+  virtual ~DebugMemory() = default;
+  /// False: nobody answers at one of these addresses.
+  virtual bool debug_read(std::uint32_t pa, std::span<std::uint8_t> to) = 0;
+  virtual bool debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) = 0;
+};
+
+/// Not for use while the core is inside an instruction other than an SWI.
+class CoreDebug {
+ public:
+  CoreDebug(Core& core, DebugMemory& memory) : core_(core), memory_(memory) {}
+
+  /// Bytes as loads of the core would return them now. Permissions are not asked.
+  /// @return false: an address is not mapped or nobody answers; `to` is then undefined
+  bool read(std::uint32_t va, std::span<std::uint8_t> to);
+  /// Changes every copy: TCM, D-cache, buffers, memory, I-cache, decoded instructions. No line
+  /// becomes dirty and none moves, so the program's timing stays what it was.
+  bool write(std::uint32_t va, std::span<const std::uint8_t> from);
+  /// Physical address by the TLB, or by the tables without filling the TLB.
+  std::optional<std::uint32_t> physical(std::uint32_t va);
+
+  /// Switches both TCM windows off, as for a core that has none behind its ports.
+  void disable_tcm();
+
+ private:
+  struct Place {
+    std::uint32_t pa = 0;
+    bool cached = false;  // by the D-cache
+  };
+  std::optional<Place> place(std::uint32_t mva);
+  std::optional<std::uint32_t> table_word(std::uint32_t pa);
+  bool read_memory(std::uint32_t pa, std::span<std::uint8_t> to);
+  void patch_instructions(std::uint32_t mva, std::uint32_t pa, std::span<const std::uint8_t> from);
+
+  Core& core_;
+  DebugMemory& memory_;
+};
+
+}  // namespace fovea::cpu

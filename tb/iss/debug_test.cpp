@@ -1,0 +1,182 @@
+// What a debugger reads and writes is what the program loads, stores and executes.
+#include "model/cpu/core/debug.h"
+
+#include <array>
+#include <cstring>
+
+#include "tb/iss/machine.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+constexpr std::uint32_t kData = kMemory + 0x1000, kCode = kMemory + 0x2000;
+
+struct DebugMachine : Machine, DebugMemory {
+  CoreDebug debug{core, *this};
+  bool debug_read(std::uint32_t pa, std::span<std::uint8_t> to) override {
+    if (!port.mapped(pa, static_cast<unsigned>(to.size()))) return false;
+    std::memcpy(to.data(), port.at(pa), to.size());
+    return true;
+  }
+  bool debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) override {
+    if (!port.mapped(pa, static_cast<unsigned>(from.size()))) return false;
+    std::memcpy(port.at(pa), from.data(), from.size());
+    return true;
+  }
+  std::uint32_t get(std::uint32_t va) {
+    std::array<std::uint8_t, 4> b{};
+    EXPECT_TRUE(debug.read(va, b));
+    std::uint32_t v;
+    std::memcpy(&v, b.data(), 4);
+    return v;
+  }
+  void put(std::uint32_t va, std::uint32_t v) {
+    std::array<std::uint8_t, 4> b;
+    std::memcpy(b.data(), &v, 4);
+    EXPECT_TRUE(debug.write(va, b));
+  }
+};
+
+TEST(CoreDebugTest, SeesDirtyLineAndChangesItForTheProgram) {
+  DebugMachine m;
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(m.get(kData), 0x11u);
+    EXPECT_EQ(m.port.word(kData), 0u);  // still in the cache
+    m.put(kData, 0x22);
+  };
+  m.execute(std::string(kCachesOn) + R"(
+    ldr r1, =0x00101000
+    ldr r2, [r1]
+    mov r2, #0x11
+    str r2, [r1]
+    svc #3
+    ldr r4, [r1]
+    mcr p15, 0, r1, c7, c10, 1
+    mcr p15, 0, r1, c7, c10, 4
+  )");
+  EXPECT_EQ(m.core.reg(4), 0x22u);
+  EXPECT_EQ(m.port.word(kData), 0x22u);  // what the clean wrote back
+}
+
+TEST(CoreDebugTest, SeesPendingWriteAndIsNotUndoneByIt) {
+  DebugMachine m;
+  m.port.write_latency = 4'000'000;
+  m.port.decide_late = true;
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(m.get(kData), 0x11u);
+    EXPECT_EQ(m.get(kData + 64), 0x11u);
+    EXPECT_EQ(m.port.word(kData), 0u);  // the first is on the bus, the second in the buffer
+    m.put(kData, 0x22);
+    m.put(kData + 64, 0x33);
+  };
+  m.execute(std::string(kCachesOn) + R"(
+    ldr r1, =0x00101000
+    mov r2, #0x11
+    str r2, [r1]
+    str r2, [r1, #64]
+    svc #3
+    mcr p15, 0, r1, c7, c10, 4
+  )");
+  EXPECT_EQ(m.port.word(kData), 0x22u);
+  EXPECT_EQ(m.port.word(kData + 64), 0x33u);
+}
+
+/// Replaces an instruction that has already run from where it is kept.
+void expect_patched(const std::string& start, std::uint32_t base) {
+  DebugMachine m;
+  std::uint32_t patched = 0;
+  m.on_svc = [&](std::uint32_t) { m.put(patched, 0xE3A05002u); };  // mov r5, #2
+  const std::string text = start + R"(
+    mov r6, #2
+    again:
+    mov r5, #1
+    cmp r6, #1
+    beq done
+    svc #3
+    sub r6, r6, #1
+    b again
+    done:
+  )";
+  patched = assemble(text + "\n svc #2\n .ltorg\n", base).symbols.at("again");
+  m.execute(text, base);
+  EXPECT_EQ(m.core.reg(5), 2u);
+}
+
+TEST(CoreDebugTest, PatchesCodeInTcmInCacheAndInMemory) {
+  expect_patched("", 0);
+  expect_patched(kCachesOn, kCode);
+  expect_patched("", kCode);
+}
+
+TEST(CoreDebugTest, TranslatesByTlbAndByTables) {
+  DebugMachine m;
+  m.section(0x4000'0000, kMemory, 1, 1);
+  m.section(0x5000'0000, kMemory, 0, 0);
+  m.port.set_word(kData, 0x1234);
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(m.get(0x4000'1000), 0x1234u);  // the program was there
+    EXPECT_EQ(m.get(0x5000'1000), 0x1234u);  // nobody was
+    EXPECT_EQ(m.debug.physical(0x5000'1004), kData + 4);
+    m.section(0x6000'0000, 0, 0, 0);
+    m.port.set_word(kTables + 4 * 0x600, 0);
+    EXPECT_FALSE(m.debug.physical(0x6000'0000));
+    std::array<std::uint8_t, 1> b;
+    EXPECT_FALSE(m.debug.read(0x6000'0000, b));
+    EXPECT_FALSE(m.debug.write(0x7000'0000, b));  // mapped, but nobody answers
+  };
+  m.execute(std::string(kCachesOn) + " ldr r1, =0x40001000\n ldr r2, [r1]\n svc #3\n");
+}
+
+/// Small, large and tiny pages, through second-level tables in memory.
+TEST(CoreDebugTest, WalksSecondLevelTables) {
+  DebugMachine m;
+  const std::uint32_t coarse = kTables + 0x4000, fine = kTables + 0x5000;
+  m.port.set_word(kTables + 4 * 0x400, coarse | 0x11u);
+  m.port.set_word(kTables + 4 * 0x401, fine | 0x13u);
+  m.port.set_word(coarse + 4 * 1, kMemory | 0xFF2u);           // small page at 0x40001000
+  for (unsigned k = 16; k < 32; ++k) m.port.set_word(coarse + 4 * k, kMemory | 0xFF1u);
+  m.port.set_word(fine + 4 * 3, (kMemory + 0x400) | 0x33u);    // tiny page at 0x40100C00
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(m.debug.physical(0x4000'1234), kMemory + 0x234);
+    EXPECT_EQ(m.debug.physical(0x4001'2345), kMemory + 0x2345);
+    EXPECT_EQ(m.debug.physical(0x4010'0C08), kMemory + 0x408);
+    EXPECT_FALSE(m.debug.physical(0x4000'2000));
+  };
+  m.execute(std::string(kCachesOn) + " svc #3\n");
+}
+
+TEST(CoreDebugTest, LooksAndWritesTakeNoTime) {
+  const std::string text = std::string(kCachesOn) + R"(
+    ldr r1, =0x00101000
+    mov r3, #20
+    loop:
+    ldr r2, [r1], #36
+    str r2, [r1]
+    svc #3
+    subs r3, r3, #1
+    bne loop
+  )";
+  std::uint64_t clocks[2];
+  for (const bool look : {false, true}) {
+    DebugMachine m;
+    m.on_svc = [&](std::uint32_t) {
+      if (!look) return;
+      for (std::uint32_t a = kMemory; a < kMemory + 0x2000; a += 4) m.put(a, m.get(a));
+    };
+    m.execute(text);
+    clocks[look] = m.core.clock_count();
+  }
+  EXPECT_EQ(clocks[0], clocks[1]);
+}
+
+TEST(CoreDebugTest, WithoutTcmItsWindowsAreMemory) {
+  DebugMachine m;
+  m.debug.disable_tcm();
+  std::array<std::uint8_t, 4> b;
+  EXPECT_FALSE(m.debug.read(0x1'0000, b));  // nothing answers in this machine
+  m.put(kData, 1);
+  EXPECT_EQ(m.get(kData), 1u);
+}
+
+}  // namespace
+}  // namespace fovea::cpu::test
