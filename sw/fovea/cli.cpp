@@ -9,9 +9,11 @@
 #include <array>
 #include <ostream>
 
+#include "sw/fovea/cli_exec.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
+#include "sw/fovea/remarks.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -28,24 +30,6 @@ struct RunOptions {
   bool strict = false;
   bool no_frames = false;
   bool mp4 = false;
-};
-
-/// Counts remarks about the guest for one run and shows each once.
-class RemarkScope {
- public:
-  RemarkScope(std::ostream& err, bool strict) {
-    auto& d = Diagnostics::instance();
-    d.clear();
-    d.set_strict(strict);
-    d.set_sink([&err](Diagnostics::Kind kind, const std::string& what) {
-      err << "fovea: " << (kind == Diagnostics::Kind::kGuest ? "guest: " : "not modelled: ")
-          << one_line(what) << "\n";
-    });
-  }
-  ~RemarkScope() {
-    Diagnostics::instance().set_sink({});
-    Diagnostics::instance().set_strict(false);
-  }
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
@@ -207,6 +191,8 @@ void install_signals(CliContext& context) {
 }
 
 int run_cli(const std::vector<std::string>& args, const CliContext& context) {
+  std::vector<std::string> own = args;
+  ExecOptions exec;
   CLI::App app("Co-simulation of a fish-eye correction system: DM365 board and its firmware.",
                "fovea");
   app.require_subcommand(1);
@@ -231,6 +217,9 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   run_command->add_flag("--no-frames", run.no_frames, "Write no pictures");
   run_command->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
 
+  CLI::App* exec_command = add_exec_command(app, exec);
+  if (!own.empty() && own[0] == "exec") exec.arguments = take_program_arguments(own);
+
   std::string pattern;
   bool markdown = false;
   CLI::App* params_command =
@@ -246,15 +235,16 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
         std::none_of(commands.begin(), commands.end(),
                      [&](CLI::App* c) { return c->check_name(args[0]); }))
       throw UserError(
-          fmt::format("unknown command '{}'; allowed: run, params, version", one_line(args[0])));
+          fmt::format("unknown command '{}'; allowed: run, exec, params, version", one_line(args[0])));
     try {
-      app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+      app.parse(std::vector<std::string>(own.rbegin(), own.rend()));
     } catch (const CLI::ParseError& e) {
       if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
       throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
     }
     run.out_given = out_option->count() > 0;
     if (*run_command) return command_run(run, args, context);
+    if (*exec_command) return command_exec(exec, args, context);
     if (*params_command) return command_params(pattern, markdown, context);
     if (*version_command) context.out << "fovea " << version_text() << std::endl;
     return kExitDone;

@@ -94,8 +94,8 @@ class Semihosting {
   std::optional<int> exit_code_;
 };
 
-/// The command line that newlib's start-up code splits into `arguments` again: those with blanks are
-/// quoted.
+/// The command line that newlib's start-up code splits into `arguments` again: those with blanks
+/// are quoted.
 /// @throws UserError for an argument that it cannot express
 std::string guest_command_line(std::span<const std::string> arguments);
 

@@ -169,13 +169,36 @@ TEST(CoreDebugTest, LooksAndWritesTakeNoTime) {
   EXPECT_EQ(clocks[0], clocks[1]);
 }
 
+/// A core without TCMs: their addresses go to the bus, and CP15 says so.
 TEST(CoreDebugTest, WithoutTcmItsWindowsAreMemory) {
-  DebugMachine m;
-  m.debug.disable_tcm();
-  std::array<std::uint8_t, 4> b;
-  EXPECT_FALSE(m.debug.read(0x1'0000, b));  // nothing answers in this machine
-  m.put(kData, 1);
-  EXPECT_EQ(m.get(kData), 1u);
+  const Machine::Params params({});
+  FlatPort port(0, 0x20000);
+  Core core(params, port, {});
+  port.attach(&core);
+  core.set_clock(Frequency(250'000'000), 0);
+  core.swi_hook = [](Core& c, std::uint32_t) {
+    c.request_stop();
+    return true;
+  };
+  const Program p = assemble(R"(
+    ldr r0, =0x10000
+    mov r1, #7
+    str r1, [r0]
+    mrc p15, 0, r2, c0, c0, 2
+    mov r3, #0x19
+    mcr p15, 0, r3, c9, c1, 1
+    mrc p15, 0, r3, c9, c1, 1
+    ldr r4, [r0]
+    svc #0
+    .ltorg
+  )", 0);
+  std::memcpy(port.at(0), p.bytes.data(), p.bytes.size());
+  core.reset(0, 0);
+  core.run();
+  EXPECT_EQ(port.word(0x1'0000), 7u);
+  EXPECT_EQ(core.reg(2), 0u);
+  EXPECT_EQ(core.reg(3), 0u);
+  EXPECT_EQ(core.reg(4), 7u);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ struct AccessRecord {
 /// the bus. An instruction boundary at clock c has the time of edge c.
 class Core : public Background {
  public:
-  /// @param tcm the 32 KB RAM behind both TCM windows (0x0 and 0x10000); a power of two of bytes
+  /// @param tcm the 32 KB RAM behind both TCM windows (0x0 and 0x10000), a power of two of bytes;
+  ///   empty: a core without TCMs
   Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm);
 
   void set_clock(Frequency f, Picoseconds at);

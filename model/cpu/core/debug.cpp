@@ -129,11 +129,4 @@ void CoreDebug::patch_instructions(std::uint32_t mva, std::uint32_t pa,
       words[d] = from[k];
 }
 
-void CoreDebug::disable_tcm() {
-  core_.itcm_region_ &= ~1u;
-  core_.dtcm_region_ &= ~1u;
-  core_.itcm_size_ = core_.dtcm_size_ = 0;
-  core_.flush_memos();
-}
-
 }  // namespace fovea::cpu

@@ -30,9 +30,8 @@ class CoreDebug {
   bool write(std::uint32_t va, std::span<const std::uint8_t> from);
   /// Physical address by the TLB, or by the tables without filling the TLB.
   std::optional<std::uint32_t> physical(std::uint32_t va);
-
-  /// Switches both TCM windows off, as for a core that has none behind its ports.
-  void disable_tcm();
+  /// The core's own time, which may lie ahead of everybody else's.
+  Picoseconds now() const { return core_.time(core_.cycle_); }
 
  private:
   struct Place {
