@@ -65,7 +65,7 @@ class Core : public Background {
 
   std::uint32_t reg(unsigned i) const { return i == 15 ? pc_ : r_[i]; }
   void set_reg(unsigned i, std::uint32_t v) { r_[i] = v; }
-  std::uint32_t cpsr() const { return cpsr_; }
+  std::uint32_t cpsr() const { return flags_live_ ? packed_cpsr() : cpsr_; }
   /// The instruction being executed; after a guest failure, where its chain of exceptions began.
   std::uint32_t current_pc() const { return failing_ ? failed_pc_ : pc_; }
   std::uint64_t clock_count() const { return cycle_; }
@@ -92,23 +92,18 @@ class Core : public Background {
     bool at(Picoseconds boundary) const { return since < boundary ? level : before; }
   };
 
+  /// The handlers of decoded records (handlers.h).
+  struct Ops;
+
   // execute.cpp
   void step_attention();
+  void execute_alone(const Instruction& i);
+  [[gnu::noinline]] void execute_one(const Instruction& i);
+  bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
   void execute_rare(const Instruction& i);
   std::uint32_t offset(const Instruction& i) const;
-  /// One function per operation, operand form and S bit (data_processing.cpp).
-  using DataHandler = void (*)(Core&, const Instruction&);
-  template <Op kOp, Operand kOperand, bool kSet>
-  static void data_op(Core& c, const Instruction& i);
-  template <std::size_t... k>
-  static constexpr std::array<DataHandler, 128> make_data_handlers(std::index_sequence<k...>);
-  static const std::array<DataHandler, 128> kDataHandlers;
-  void data_processing(const Instruction& i) {
-    kDataHandlers[static_cast<unsigned>(i.op) | static_cast<unsigned>(i.operand) << 4 |
-                  (i.flags & kSetFlags) << 6](*this, i);
-  }
-  void multiply(const Instruction& i);
+  void data_processing(const Instruction& i);
   void dsp(const Instruction& i);
   void load_store(const Instruction& i);
   void load_multiple(const Instruction& i);
@@ -118,19 +113,40 @@ class Core : public Background {
   void branch_to(std::uint32_t target) { next_pc_ = target; branched_ = true; }
   void interwork(std::uint32_t target);
   void interlock(const Instruction& i);
+  std::uint64_t operands_ready(const Instruction& i, std::uint64_t cycle) const;
+  enum Producer : std::uint8_t { kOther, kLoad, kMultiply };
   /// The result of an instruction whose issue ends now is usable `latency` clocks later.
-  void produce(unsigned r, unsigned latency) {
-    ready_[r] = cycle_ + latency;
-    producer_[r] = Producer::kOther;
-    busy_until_ = std::max(busy_until_, ready_[r] + 1);
+  void produce(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kOther); }
+  void loaded(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kLoad); }
+  void multiplied(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kMultiply); }
+  /// Latencies are two clocks at most and an instruction takes one at least: the youngest result is
+  /// never ready before an older one.
+  void produced(unsigned r, std::uint64_t ready, Producer by) {
+    ready_[r] = ready << 2 | by;
+    busy_until_ = ready;
   }
-  void loaded(unsigned r, unsigned latency) {
-    produce(r, latency);
-    producer_[r] = Producer::kLoad;
+  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first,
+  /// and unpacks what may have changed them there.
+  std::uint32_t packed_cpsr() const {
+    return (cpsr_ & 0x0FFF'FFFFu) | (n_ & 1u << 31) | (z_ ? 0 : 1u << 30) |
+           std::uint32_t{c_} << 29 | std::uint32_t{v_} << 28;
   }
-  void multiplied(unsigned r, unsigned latency) {
-    produce(r, latency);
-    producer_[r] = Producer::kMultiply;
+  void pack_flags() { cpsr_ = packed_cpsr(); }
+  void unpack_flags() {
+    n_ = cpsr_;
+    z_ = ~cpsr_ & 1u << 30;
+    c_ = cpsr_ >> 29 & 1u;
+    v_ = cpsr_ >> 28 & 1u;
+  }
+  /// What a chain of records did up to record `i` becomes part of the counters.
+  void settle(const Instruction* i, std::uint64_t cycle) {
+    pc_ = run_va_ + i->at;
+    counts_.issue += cycle - cycle_;
+    cycle_ = cycle;
+    const auto place = reinterpret_cast<std::intptr_t>(i);
+    counts_.instructions += static_cast<std::uint64_t>(
+        (place - run_first_) / static_cast<std::intptr_t>(sizeof(Instruction)));
+    run_first_ = place;
   }
   void snapshot();
   bool mark_due(Picoseconds boundary) const { return mark_pending_ && boundary > mark_at_; }
@@ -154,15 +170,27 @@ class Core : public Background {
   bool cache_operation(unsigned crm, unsigned op2, std::uint32_t value);
   void wait_for_interrupt();
 
+  // prepare.cpp
+  struct DecodedLine;
+  /// What the neighbours in a line say about a record; as it stands here it is right anywhere.
+  struct Place {
+    enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
+    bool track = true;    // somebody may have to wait for its result
+    bool in_line = false;  // lies in a line with all its records
+  };
+  void prepare(Instruction& i, unsigned at, Place place) const;
+  static void clear_line(DecodedLine& d, bool thumb);
+  static Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb);
+  static Place look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
+                           bool thumb);
+
   // memory.cpp
   const Instruction* fetch();
   const Instruction* fetch_slow();
-  /// Hits in internal RAM or the D-cache, without alignment or permission to think about. False:
-  /// nothing was done, load() or store() decide.
   template <unsigned kBytes>
-  bool load_hit(std::uint32_t va, std::uint32_t& value, bool user);
+  [[gnu::noinline]] bool store_beside_cache(std::uint32_t va, std::uint32_t value);
   template <unsigned kBytes>
-  bool store_hit(std::uint32_t va, std::uint32_t value, bool user);
+  [[gnu::noinline]] void store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
@@ -193,7 +221,13 @@ class Core : public Background {
   bool uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value);
   bool unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t value);
   void icache_fill(std::uint32_t mva, std::uint32_t pa);
-  void record(std::uint32_t va, unsigned bytes, bool write);
+  void record(std::uint32_t pc, std::uint32_t va, std::uint32_t what) {
+    auto* const a = reinterpret_cast<Access*>(reinterpret_cast<char*>(ring_.data()) + ring_at_);
+    ring_at_ = static_cast<std::uint8_t>(ring_at_ + sizeof(Access));
+    a->pc = pc;
+    a->address = va;
+    a->what = what;
+  }
 
   // bus.cpp
   Picoseconds time(std::uint64_t cycle) const { return clock_.edge(cycle); }
@@ -235,28 +269,53 @@ class Core : public Background {
   std::array<std::uint32_t, 6> spsr_{};
   bool branched_ = false;
 
+  // Results: bit 31 is N; zero is Z. Laid out so that compilers do not join the stores of two flags
+  // (that takes longer than the stores).
+  std::uint32_t n_ = 0;
+  std::uint8_t c_ = 0;
+  std::uint32_t z_ = 1;
+  std::uint8_t v_ = 0;
+  bool flags_live_ = false;
+
   // Time.
   std::uint64_t cycle_ = 0;
   std::uint64_t stop_cycle_ = 0;  // first clock that needs step_attention()
   bool attention_ = true;
-  std::array<std::uint64_t, 16> ready_{};
-  enum class Producer : std::uint8_t { kOther, kLoad, kMultiply };
-  std::array<Producer, 16> producer_{};
-  std::uint64_t busy_until_ = 0;
+  std::uint64_t chain_stop_ = 0;  // first clock at which a chain of records ends
+  std::uint64_t chain_cycle_ = 0;  // between two records (build without tail calls)
+  std::array<std::uint64_t, 16> ready_{};  // clock << 2 | Producer
+  std::uint64_t busy_until_ = 0;           // the latest of them
 
   // Fetch.
   std::uint32_t line_va_ = 1;               // line of the current records; 1: none
   std::uint32_t line_thumb_ = 0;
   unsigned line_shift_ = 2;                 // instruction size there, as a power of two
+  std::uint32_t run_va_ = 0;                // line of the running chain
+  std::intptr_t run_first_ = 0;             // place of a record: those from here on are not counted
+  /// One more record than a line can hold: the one behind the last leads to the next line.
   struct DecodedLine {
-    std::array<Instruction, 16> records;
-    std::uint32_t valid = 0;                // bit per record
-    bool thumb = false;
+    std::uint64_t valid = 0;                // line_key() of its last lookup; 0: nothing decoded
+    std::uint64_t lookups = 0;              // what reaching it adds to icache_accesses
+    std::array<Instruction, 17> records;
   };
+  /// Says where and under which translation a line was found; never 0. Bit 0 is the Thumb state.
+  std::uint64_t line_key(std::uint32_t va) const {
+    return line_epoch_ | (va & ~31u) | (cpsr_ >> 5 & 1u);
+  }
+  static constexpr std::uint64_t kEpoch = std::uint64_t{1} << 32;
+  std::uint64_t line_epoch_ = kEpoch | 2u;  // a new one at each flush_memos()
   std::vector<DecodedLine> decoded_;        // one per I-cache line
   DecodedLine* current_line_ = nullptr;
   std::vector<DecodedLine> tcm_decoded_;
-  Instruction uncached_record_;
+  DecodedLine no_line_;
+  static constexpr unsigned kJumps = 1024;
+  static std::array<DecodedLine*, kJumps> all_to(DecodedLine* line) {
+    std::array<DecodedLine*, kJumps> out;
+    out.fill(line);
+    return out;
+  }
+  std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
+  std::array<Instruction, 2> uncached_record_;
   bool fetch_branched_ = false;
   std::uint32_t fetch_buffer_pa_ = 1, fetch_words_[4] = {};
   BusAccess fetch_access_;
@@ -282,6 +341,27 @@ class Core : public Background {
   static constexpr unsigned kMemos = 64;
   std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
+  /// A place where the core reads or writes without a further look: translation, permission and
+  /// tag held when it was noted, and what could change that takes the note away. For writes a hint
+  /// covers half a line whose dirty bit is set.
+  struct Hint {
+    std::uint32_t key = kNoHint;  // address of its first byte
+    std::uint32_t counted = 0;    // what an access adds to the cache's statistics
+    std::uintptr_t bias = 0;      // host address of the byte at VA is bias + VA
+  };
+  static constexpr std::uint32_t kNoHint = 4;  // no masked address has this bit
+  static constexpr unsigned kHints = 256, kReadSpan = 32, kWriteSpan = 16;
+  std::array<Hint, kHints> read_hints_{}, write_hints_{};
+  /// A writable line that the D-cache does not hold, as for the read hints: stores to it go to the
+  /// write buffer.
+  struct {
+    std::uint32_t key = kNoHint, pa = 0;
+  } absent_;
+  bool hints_used_ = false;
+  void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, bool counted);
+  void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, bool counted);
+  void flush_hints();
+  void drop_hints(std::uint32_t line_mva);
   Translation flat_;          // MMU off
   BusAccess data_access_;
   WriteBuffer writes_;
@@ -318,8 +398,14 @@ class Core : public Background {
 
   Counts counts_;
   CoreStats window_;
-  std::array<AccessRecord, 8> ring_{};
-  std::uint64_t ring_count_ = 0;
+  struct alignas(16) Access {
+    std::uint32_t pc = 0, address = 0;
+    std::uint32_t what = 0;  // bytes, kWritten, how many more words follow << 16; 0: none yet
+    std::uint32_t unused = 0;
+  };
+  static constexpr std::uint32_t kWritten = 1u << 8;
+  std::array<Access, 16> ring_{};
+  std::uint8_t ring_at_ = 0;  // in bytes: wraps with the ring
   const CpuParams& params_;
 };
 

@@ -1,72 +1,137 @@
-// Data processing instructions: a function for each operation, operand form and S bit, so that what
+// Data processing instructions: a handler for each operation, operand form and S bit, so that what
 // an instruction does not need (carry out, flags) costs nothing. Cycle counts: arm926.md 1.1.
-#include <bit>
-
-#include "model/cpu/core/fast_path.h"
+#include "model/cpu/core/handlers.h"
 #include "model/cpu/core/shifter.h"
 
 namespace fovea::cpu {
+namespace {
 
-template <Op kOp, Operand kOperand, bool kSet>
-void Core::data_op(Core& c, const Instruction& i) {
-  constexpr bool kLate = kOperand == Operand::kShiftReg;  // operands read a cycle later
-  constexpr bool kLogical = kOp == Op::kAnd || kOp == Op::kEor || kOp == Op::kRsc ||
-                            kOp == Op::kOrr || kOp == Op::kMov || kOp == Op::kBic ||
-                            kOp == Op::kMvn;
-  constexpr bool kWrites = kOp < Op::kTst || kOp > Op::kCmn;
-  const bool carry_in = c.cpsr_ & kC;
-  bool carry = carry_in;
-  const std::uint32_t b = shifter_operand<kOperand>(i, c.r_, c.cpsr_, carry);
-  const std::uint32_t a = kLate && i.rn == 15 ? c.r_[15] + 4 : c.r_[i.rn];
-  std::uint32_t result = 0;
-  bool overflow = c.cpsr_ & kV;
-  const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t in) {
-    const std::uint64_t sum = std::uint64_t{x} + y + in;
-    result = static_cast<std::uint32_t>(sum);
-    carry = sum >> 32;
-    overflow = (~(x ^ y) & (x ^ result)) >> 31;
-  };
+constexpr bool logical(Op op) {
+  return op == Op::kAnd || op == Op::kEor || op == Op::kTst || op == Op::kTeq || op == Op::kOrr ||
+         op == Op::kMov || op == Op::kBic || op == Op::kMvn;
+}
+constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
+
+// The flags are results of their own and not members beside the value: compilers pack such members
+// into one register, which takes longer than the addition.
+
+/// x + y + in, with the flags of the adder.
+[[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool in,
+                                                bool& carry, bool& overflow) {
+  const std::uint64_t sum = std::uint64_t{x} + y + in;
+  const auto value = static_cast<std::uint32_t>(sum);
+  carry = (sum >> 32) != 0;
+  overflow = ((~(x ^ y) & (x ^ value)) >> 31) != 0;
+  return value;
+}
+/// x + y.
+[[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool& carry,
+                                                bool& overflow) {
+  std::int32_t value;
+  overflow = __builtin_add_overflow(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                    &value);
+  carry = static_cast<std::uint32_t>(value) < x;
+  return static_cast<std::uint32_t>(value);
+}
+/// x - y; the carry is the borrow's complement.
+[[gnu::always_inline]] inline std::uint32_t subtract(std::uint32_t x, std::uint32_t y, bool& carry,
+                                                     bool& overflow) {
+  std::int32_t value;
+  overflow = __builtin_sub_overflow(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                    &value);
+  carry = x >= y;
+  return static_cast<std::uint32_t>(value);
+}
+
+/// @param carry in: the shifter's carry out, which logical operations keep
+template <Op kOp>
+[[gnu::always_inline]] inline std::uint32_t compute(std::uint32_t a, std::uint32_t b, bool c,
+                                                    bool& carry, bool& overflow) {
   switch (kOp) {
-    case Op::kAnd: case Op::kTst: result = a & b; break;
-    case Op::kEor: case Op::kTeq: result = a ^ b; break;
-    case Op::kSub: case Op::kCmp: add(a, ~b, 1); break;
-    case Op::kRsb: add(b, ~a, 1); break;
-    case Op::kAdd: case Op::kCmn: add(a, b, 0); break;
-    case Op::kAdc: add(a, b, carry_in); break;
-    case Op::kSbc: add(a, ~b, carry_in); break;
-    case Op::kRsc: add(b, ~a, carry_in); break;
-    case Op::kOrr: result = a | b; break;
-    case Op::kMov: result = b; break;
-    case Op::kBic: result = a & ~b; break;
-    default: result = ~b; break;
+    case Op::kAnd: case Op::kTst: return a & b;
+    case Op::kEor: case Op::kTeq: return a ^ b;
+    case Op::kSub: case Op::kCmp: return subtract(a, b, carry, overflow);
+    case Op::kRsb: return subtract(b, a, carry, overflow);
+    case Op::kAdd: case Op::kCmn: return add(a, b, carry, overflow);
+    case Op::kAdc: return add(a, b, c, carry, overflow);
+    case Op::kSbc: return add(a, ~b, c, carry, overflow);
+    case Op::kRsc: return add(b, ~a, c, carry, overflow);
+    case Op::kOrr: return a | b;
+    case Op::kMov: return b;
+    case Op::kBic: return a & ~b;
+    default: return ~b;
   }
-  if constexpr (kWrites) {
-    if (i.rd == 15) [[unlikely]] {
-      constexpr bool kShifted = kOperand == Operand::kShiftImm || kLate;
-      c.spend(kLogical || kShifted ? 4 : 3);
-      if (kSet && !(i.flags & kThumbInsn)) {
-        c.set_cpsr(c.spsr_[bank(c.cpsr_)]);
-        c.branch_to(result & ((c.cpsr_ & 0x20u) ? ~1u : ~3u));
-        return;
-      }
-      c.branch_to(result & ((i.flags & kThumbInsn) ? ~1u : ~3u));
+}
+
+constexpr unsigned kForms = static_cast<unsigned>(Form::kCount);
+
+}  // namespace
+
+template <Op kOp, Form kForm, bool kSet>
+Core::Ops::Next Core::Ops::data(Core& c, Next i, Cycle cycle) {
+  // Immediates and plain registers leave the carry of a logical operation alone.
+  constexpr bool kSetsCarry = !logical(kOp) || (kForm != Form::kImm && kForm != Form::kReg);
+  bool carry = c.c_, overflow = false;
+  const std::uint32_t b = second_operand<kForm>(*i, c.r_, carry);
+  const std::uint32_t value = compute<kOp>(c.r_[i->rn], b, c.c_, carry, overflow);
+  if constexpr (kSet) {
+    c.n_ = c.z_ = value;
+    if constexpr (kSetsCarry) c.c_ = carry;
+    if constexpr (!logical(kOp)) c.v_ = overflow;
+  }
+  if constexpr (writes(kOp)) c.r_[i->rd] = value;
+  return next(c, i + 1, cycle + (kForm >= Form::kLslReg ? 2 : 1));
+}
+
+/// Place of a handler: operation, form * 16, S * 16 * kForms.
+template <std::size_t... k>
+constexpr std::array<Handler, sizeof...(k)> Core::Ops::data_table(std::index_sequence<k...>) {
+  return {&data<static_cast<Op>(k % 16), static_cast<Form>(k / 16 % kForms),
+                (k / 16 / kForms) != 0>...};
+}
+
+Handler Core::Ops::data_body(Instruction& i) {
+  static constexpr auto kTable = data_table(std::make_index_sequence<32 * kForms>{});
+  if (writes(i.op) && i.rd == 15) return nullptr;
+  // Register-specified: the pc reads 12 ahead (one cycle later).
+  if (i.operand == Operand::kShiftReg && (i.flags & kReadsPc)) return nullptr;
+  const auto form = static_cast<unsigned>(form_of(i));
+  return kTable[static_cast<unsigned>(i.op) + 16 * (form + kForms * (i.flags & kSetFlags))];
+}
+
+/// What has no handler: writes to the pc, and operands that read the pc a cycle later. The CPSR is
+/// packed.
+void Core::data_processing(const Instruction& decoded) {
+  Instruction i = decoded;
+  const bool late = i.operand == Operand::kShiftReg;
+  const bool shifted_operand = late || i.operand == Operand::kShiftImm;
+  auto r = r_;
+  if (late) r[15] += 4;
+  bool carry = cpsr_ & kC, overflow = cpsr_ & kV;
+  const std::uint32_t b = select(
+      static_cast<unsigned>(form_of(i)),
+      [](auto form) { return &second_operand<static_cast<Form>(decltype(form)::value)>; },
+      std::make_index_sequence<kForms>{})(i, r, carry);
+  const std::uint32_t value = select(
+      static_cast<unsigned>(i.op),
+      [](auto op) { return &compute<static_cast<Op>(decltype(op)::value)>; },
+      std::make_index_sequence<16>{})(r[i.rn], b, (cpsr_ & kC) != 0, carry, overflow);
+  if (writes(i.op) && i.rd == 15) {
+    // RSC counts with the logical ones here.
+    spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);
+    if ((i.flags & kSetFlags) && !(i.flags & kThumbInsn)) {
+      set_cpsr(spsr_[bank(cpsr_)]);
+      branch_to(value & ((cpsr_ & 0x20u) ? ~1u : ~3u));
       return;
     }
+    branch_to(value & ((i.flags & kThumbInsn) ? ~1u : ~3u));
+    return;
   }
-  if constexpr (kSet)
-    c.cpsr_ = (c.cpsr_ & 0x0FFFFFFFu) | (result & kN) | (result ? 0 : kZ) | (carry ? kC : 0) |
-              (overflow ? kV : 0);
-  if constexpr (kWrites) c.r_[i.rd] = result;
-  c.spend(kLate ? 2 : 1);
+  if (i.flags & kSetFlags)
+    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (value & kN) | (value ? 0 : kZ) | (carry ? kC : 0) |
+            (overflow ? kV : 0);
+  if (writes(i.op)) r_[i.rd] = value;
+  spend(late ? 2 : 1);
 }
-
-/// Place of a function: operation, operand form << 4, S << 6.
-template <std::size_t... k>
-constexpr std::array<Core::DataHandler, 128> Core::make_data_handlers(std::index_sequence<k...>) {
-  return {&data_op<static_cast<Op>(k & 15u), static_cast<Operand>(k >> 4 & 3u), (k >> 6) != 0>...};
-}
-
-const std::array<Core::DataHandler, 128> Core::kDataHandlers =
-    Core::make_data_handlers(std::make_index_sequence<128>{});
 
 }  // namespace fovea::cpu

@@ -1,8 +1,7 @@
 // Instructions. Cycle counts: ARM DDI 0222B chapter 8 (arm926.md 1.1), interlocks 1.3.
 #include <bit>
 
-#include "model/cpu/core/fast_path.h"
-#include "model/cpu/core/shifter.h"
+#include "model/cpu/core/handlers.h"
 
 namespace fovea::cpu {
 namespace {
@@ -40,37 +39,82 @@ std::uint32_t saturate(std::int64_t v, bool& q) {
 }  // namespace
 
 void Core::run() {
-  while (!stop_requested_) {
-    if (cycle_ >= stop_cycle_ || attention_) step_attention();
+  unpack_flags();
+  struct Live {
+    Core& core;
+    explicit Live(Core& c) : core(c) { core.flags_live_ = true; }
+    ~Live() {
+      core.pack_flags();
+      core.flags_live_ = false;
+    }
+  } live(*this);
+  for (;;) {
+    if (cycle_ >= stop_cycle_ || attention_) {
+      if (stop_requested_) return;
+      pack_flags();
+      step_attention();
+      if (stop_requested_) stop_cycle_ = 0;  // one more instruction
+    }
     const Instruction* i = fetch();
     if (!i) {
       pc_ = next_pc_;
       aborted_ = false;
       continue;
     }
-    next_pc_ = pc_ + ((i->flags & kThumbInsn) ? 2u : 4u);
-    if (i->cond != 14 && !(kConditions[i->cond] >> (cpsr_ >> 28) & 1u)) {
-      spend(1);
-      ++counts_.instructions;
-      pc_ = next_pc_;
+    run_va_ = pc_ & ~31u;
+    run_first_ = reinterpret_cast<std::intptr_t>(i);
+    const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&
+                       chain_ == 0 && !branched_;
+    if (!chain) {
+      execute_alone(*i);
       continue;
     }
-    if (cycle_ < busy_until_) interlock(*i);
-    if (i->flags & kReadsPc)
-      r_[15] = (pc_ + ((i->flags & kThumbInsn) ? 4u : 8u)) & ((i->flags & kAlignPc) ? ~3u : ~0u);
-    execute(*i);
-    if (aborted_) {
-      aborted_ = false;
-    } else {
-      ++counts_.instructions;
-      chain_ = 0;
-    }
-    if (branched_) {
-      branched_ = false;
-      fetch_branched_ = true;
-    }
-    pc_ = next_pc_;
+    chain_stop_ = stop_cycle_;
+    i = i->handler(*this, i, cycle_);
+    while (i) i = i->handler(*this, i, chain_cycle_);
   }
+}
+
+/// One instruction whose beginning or end may depend on what happened before it.
+void Core::execute_alone(const Instruction& i) {
+  if (i.cond != 14 && !(kConditions[i.cond] >> (packed_cpsr() >> 28) & 1u)) {
+    spend(1);
+    ++counts_.instructions;
+    pc_ += (i.flags & kThumbInsn) ? 2u : 4u;
+    return;
+  }
+  if (cycle_ < busy_until_) stall_to(operands_ready(i, cycle_), Cause::kInterlock);
+  if (i.flags & kReadsPc)
+    r_[15] = (pc_ + ((i.flags & kThumbInsn) ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
+  chain_stop_ = 0;
+  const std::uint64_t exceptions = counts_.exceptions;
+  i.body(*this, &i, cycle_);
+  if (counts_.exceptions == exceptions) chain_ = 0;
+  if (branched_) {
+    branched_ = false;
+    fetch_branched_ = true;
+  }
+}
+
+/// An instruction without a quick handler, or one whose access is no plain hit. State is settled.
+void Core::execute_one(const Instruction& i) {
+  next_pc_ = pc_ + ((i.flags & kThumbInsn) ? 2u : 4u);
+  if (i.flags & kReadsPc)
+    r_[15] = (pc_ + ((i.flags & kThumbInsn) ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
+  pack_flags();
+  execute(i);
+  unpack_flags();
+  if (aborted_) {
+    aborted_ = false;
+  } else {
+    ++counts_.instructions;
+    chain_ = 0;
+  }
+  if (branched_) {
+    branched_ = false;
+    fetch_branched_ = true;
+  }
+  pc_ = next_pc_;
 }
 
 /// Instruction boundary that needs a look: horizon reached, an interrupt line or a mask changed, or
@@ -123,47 +167,29 @@ void Core::step_attention() {
   }
 }
 
-/// Waits for operands that are still on their way (ARM DDI 0222B 8.3): ready counts from the end of
-/// the producer's issue; store data and accumulators are read a cycle later.
-void Core::interlock(const Instruction& i) {
-  std::uint64_t need = cycle_;
+/// Clock at which operands that are still on their way are there (ARM DDI 0222B 8.3): ready counts
+/// from the end of the producer's issue; store data and accumulators are read a cycle later.
+std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cycle) const {
+  std::uint64_t need = cycle;
   for (std::uint32_t s = i.sources; s; s &= s - 1)
-    need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))]);
+    need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2);
   for (std::uint32_t s = i.stored; s; s &= s - 1) {
-    const unsigned r = static_cast<unsigned>(std::countr_zero(s));
+    const std::uint64_t entry = ready_[static_cast<unsigned>(std::countr_zero(s))];
+    const std::uint64_t ready = entry >> 2;
+    const auto by = static_cast<Producer>(entry & 3u);
     // Read a cycle later, but loads have no forwarding to this port (their latency is one more),
     // and of a multiply only the accumulator input is forwarded, not store data.
-    const bool late = producer_[r] == Producer::kLoad ||
-                      (producer_[r] == Producer::kMultiply && i.op >= Op::kLdr);
-    need = std::max(need, late || ready_[r] == 0 ? ready_[r] : ready_[r] - 1);
+    const bool late = by == kLoad || (by == kMultiply && i.op >= Op::kLdr);
+    need = std::max(need, late || ready == 0 ? ready : ready - 1);
   }
-  stall_to(need, Cause::kInterlock);
+  return need;
 }
 
-void Core::multiply(const Instruction& i) {
-  const bool set = i.flags & kSetFlags;
-  if (i.op == Op::kMul || i.op == Op::kMla) {
-    // Rd is in 19:16, the accumulator in 15:12.
-    const std::uint32_t v = r_[i.rm] * r_[i.rs] + (i.op == Op::kMla ? r_[i.rd] : 0);
-    r_[i.rn] = v;
-    if (set) cpsr_ = (cpsr_ & ~(kN | kZ)) | (v & kN) | (v ? 0 : kZ);
-    spend(set ? 4 : 2);
-    if (!set) multiplied(i.rn, 1);
-    return;
-  }
-  std::uint64_t v;
-  if (i.op == Op::kUmull || i.op == Op::kUmlal)
-    v = std::uint64_t{r_[i.rm]} * r_[i.rs];
-  else
-    v = static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(r_[i.rm])} *
-                                   static_cast<std::int32_t>(r_[i.rs]));
-  if (i.op == Op::kUmlal || i.op == Op::kSmlal)
-    v += std::uint64_t{r_[i.rn]} << 32 | r_[i.rd];
-  r_[i.rd] = static_cast<std::uint32_t>(v);
-  r_[i.rn] = static_cast<std::uint32_t>(v >> 32);
-  if (set) cpsr_ = (cpsr_ & ~(kN | kZ)) | (r_[i.rn] & kN) | (v ? 0 : kZ);
-  spend(set ? 5 : 3);
-  if (!set) multiplied(i.rn, 1);
+/// The chain that was left for one instruction still holds, and `next` follows it.
+bool Core::chain_goes_on(const Instruction* next) const {
+  return cycle_ < chain_stop_ && cycle_ < stop_cycle_ && !attention_ &&
+         pc_ == run_va_ + next->at && line_va_ == run_va_ && line_thumb_ == (cpsr_ & 0x20u) &&
+         current_line_->valid && cycle_ >= ifill_.last && chain_ == 0;
 }
 
 void Core::dsp(const Instruction& i) {
@@ -234,11 +260,18 @@ void Core::interwork(std::uint32_t target) {
 }
 
 /// Offset of a load or store: no form of it is shifted by a register.
-std::uint32_t Core::offset(const Instruction& i) const {
-  bool ignored = false;
-  if (i.operand == Operand::kImm) return i.imm;
-  if (i.operand == Operand::kReg) return r_[i.rm];
-  return shifter_operand<Operand::kShiftImm>(i, r_, cpsr_, ignored);
+std::uint32_t Core::offset(const Instruction& decoded) const {
+  if (decoded.operand == Operand::kImm) return decoded.imm;
+  Instruction i = decoded;
+  bool carry = cpsr_ & kC;
+  switch (form_of(i)) {
+    case Form::kReg: return r_[i.rm];
+    case Form::kLsl: return shifted<Form::kLsl>(r_[i.rm], i.amount, carry);
+    case Form::kLsr: return shifted<Form::kLsr>(r_[i.rm], i.amount, carry);
+    case Form::kAsr: return shifted<Form::kAsr>(r_[i.rm], i.amount, carry);
+    case Form::kRor: return shifted<Form::kRor>(r_[i.rm], i.amount, carry);
+    default: return shifted<Form::kRrx>(r_[i.rm], i.amount, carry);
+  }
 }
 
 void Core::load_store(const Instruction& i) {
@@ -257,19 +290,14 @@ void Core::load_store(const Instruction& i) {
     case Op::kStrb:
     case Op::kStrh: {
       value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];
-      const bool hit = i.op == Op::kStr    ? store_hit<4>(address, value, user)
-                       : i.op == Op::kStrb ? store_hit<1>(address, value, user)
-                                           : store_hit<2>(address, value, user);
       const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
-      if (!hit && store(address, bytes, value, user) != Result::kOk) return data_abort();
+      if (store(address, bytes, value, user) != Result::kOk) return data_abort();
       write_back();
       spend(cycles);
       return;
     }
     case Op::kLdr:
-      if (!load_hit<4>(address, value, user) &&
-          load(address, 4, value, user) != Result::kOk)
-        return data_abort();
+      if (load(address, 4, value, user) != Result::kOk) return data_abort();
       write_back();
       if (address & 3u) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
       if (i.rd == 15) [[unlikely]] {
@@ -281,25 +309,17 @@ void Core::load_store(const Instruction& i) {
       loaded(i.rd, (address & 3u) ? 2 : 1);
       return;
     case Op::kLdrb:
-      if (!load_hit<1>(address, value, user) &&
-          load(address, 1, value, user) != Result::kOk)
-        return data_abort();
+      if (load(address, 1, value, user) != Result::kOk) return data_abort();
       break;
     case Op::kLdrh:
-      if (!load_hit<2>(address, value, user) &&
-          load(address, 2, value, user) != Result::kOk)
-        return data_abort();
+      if (load(address, 2, value, user) != Result::kOk) return data_abort();
       break;
     case Op::kLdrsb:
-      if (!load_hit<1>(address, value, user) &&
-          load(address, 1, value, user) != Result::kOk)
-        return data_abort();
+      if (load(address, 1, value, user) != Result::kOk) return data_abort();
       value = static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
       break;
     case Op::kLdrsh:
-      if (!load_hit<2>(address, value, user) &&
-          load(address, 2, value, user) != Result::kOk)
-        return data_abort();
+      if (load(address, 2, value, user) != Result::kOk) return data_abort();
       value = static_cast<std::uint32_t>(static_cast<std::int16_t>(value));
       break;
     case Op::kLdrd: {
@@ -354,8 +374,7 @@ void Core::load_multiple(const Instruction& i) {
   std::array<std::uint32_t, 16> values;
   for (unsigned k = 0; k < n; ++k) {
     const std::uint32_t at = (address + 4 * k) & ~3u;
-    if (!load_hit<4>(at, values[k], false) && load(at, 4, values[k]) != Result::kOk)
-      return data_abort();
+    if (load(at, 4, values[k]) != Result::kOk) return data_abort();
     spend(1);
   }
   if (n == 1 && !(i.imm & 0x8000u)) spend(1);
@@ -462,27 +481,8 @@ void Core::execute(const Instruction& i) {
     case Op::kLdr: case Op::kLdrb: case Op::kStr: case Op::kStrb: case Op::kLdrh:
     case Op::kLdrsb: case Op::kLdrsh: case Op::kStrh: case Op::kLdrd: case Op::kStrd:
       return load_store(i);
-    case Op::kB:
-      branch_to(r_[15] + i.imm);
-      spend(3);
-      return;
-    case Op::kBl:
-      r_[14] = pc_ + 4;
-      branch_to(r_[15] + i.imm);
-      spend(3);
-      return;
     case Op::kLdm: return load_multiple(i);
     case Op::kStm: return store_multiple(i);
-    case Op::kBxReg: {
-      const std::uint32_t target = r_[i.rm];
-      cpsr_ = (cpsr_ & ~0x20u) | ((target & 1u) << 5);
-      branch_to(target & ((target & 1u) ? ~1u : ~3u));
-      spend(3);
-      return;
-    }
-    case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull:
-    case Op::kSmlal:
-      return multiply(i);
     default:
       return execute_rare(i);
   }
@@ -493,39 +493,19 @@ void Core::execute_rare(const Instruction& i) {
     case Op::kSmulxy: case Op::kSmlaxy: case Op::kSmulwy: case Op::kSmlawy: case Op::kSmlalxy:
     case Op::kQadd: case Op::kQsub: case Op::kQdadd: case Op::kQdsub:
       return dsp(i);
-    case Op::kClz:
-      r_[i.rd] = static_cast<std::uint32_t>(std::countl_zero(r_[i.rm]));
-      spend(1);
-      return;
     case Op::kSwp: case Op::kSwpb: return swap(i);
     case Op::kPld: spend(1); return;
-    case Op::kBlxReg: {
-      const std::uint32_t target = r_[i.rm];
-      r_[14] = (i.flags & kThumbInsn) ? (pc_ + 2) | 1u : pc_ + 4;
-      cpsr_ = (cpsr_ & ~0x20u) | ((target & 1u) << 5);
-      branch_to(target & ((target & 1u) ? ~1u : ~3u));
-      spend(3);
-      return;
-    }
     case Op::kBlxImm:
       r_[14] = pc_ + 4;
       cpsr_ |= 0x20u;
       branch_to(r_[15] + i.imm);
       spend(3);
       return;
-    case Op::kThumbBlPrefix:
-      r_[14] = r_[15] + i.imm;
-      spend(1);
-      return;
-    case Op::kThumbBlSuffix: {
+    case Op::kThumbBlSuffix: {  // the one that goes to ARM state
       const std::uint32_t target = r_[14] + i.imm;
       r_[14] = (pc_ + 2) | 1u;
-      if (i.flags & kSpsr) {
-        cpsr_ &= ~0x20u;
-        branch_to(target & ~3u);
-      } else {
-        branch_to(target & ~1u);
-      }
+      cpsr_ &= ~0x20u;
+      branch_to(target & ~3u);
       spend(3);
       return;
     }
@@ -544,7 +524,10 @@ void Core::execute_rare(const Instruction& i) {
       fault(true, 0x2, 0, pc_);
       take(Exception::kPrefetchAbort, pc_ + 4);
       return;
-    case Op::kMcr: case Op::kMrc: return coprocessor_move(i);
+    case Op::kMcr: case Op::kMrc:
+      coprocessor_move(i);
+      flush_hints();  // lines may be clean or gone
+      return;
     default: return undefined();
   }
 }

@@ -34,7 +34,17 @@ enum InsnFlags : std::uint16_t {
   kImmCarry = 1 << 11,  // rotated immediate gives the carry
 };
 
+class Core;
+struct Instruction;
+/// Executes a record that starts at a core clock and goes on with the next one. @return the record
+/// to go on with (build without tail calls), nullptr: the core's state is settled, run() decides
+using Handler = const Instruction* (*)(Core&, const Instruction*, std::uint64_t cycle);
+
+/// The decoder fills all but handler, body and at; Core::prepare() fills those, and rewrites
+/// offsets and shift amounts into the form that the handlers expect.
 struct Instruction {
+  Handler handler = nullptr;  // condition and interlock where there are any, then body
+  Handler body = nullptr;     // nullptr: not entered yet
   Op op = Op::kUndefined;
   std::uint8_t cond = 14;
   Operand operand = Operand::kImm;
@@ -44,9 +54,11 @@ struct Instruction {
   std::uint16_t sources = 0;  // registers read as operands or address
   std::uint16_t stored = 0;   // registers read as store data or accumulator (port C)
   std::uint8_t amount = 0;    // immediate shift
+  std::uint8_t at = 0;        // offset in its line
   std::uint32_t imm = 0;      // immediate, offset, register list, branch offset
   std::uint32_t raw = 0;
 };
+static_assert(sizeof(Instruction) == 40);
 
 Instruction decode_arm(std::uint32_t word);
 Instruction decode_thumb(std::uint16_t half);

@@ -9,13 +9,57 @@ void Core::flush_memos() {
   for (auto& m : dmemo_) m.page = ~0u;
   for (auto& m : imemo_) m.page = ~0u;
   line_va_ = 1;
+  line_epoch_ += kEpoch;
+  if (line_epoch_ < kEpoch) [[unlikely]] {  // numbers begin again: no line may carry an old one
+    line_epoch_ += kEpoch;
+    for (auto* lines : {&decoded_, &tcm_decoded_})
+      for (auto& d : *lines)
+        if (d.valid) d.valid = 2u | (d.valid & 1u);
+  }
+  flush_hints();
+}
+
+void Core::flush_hints() {
+  if (!hints_used_) return;
+  hints_used_ = false;
+  for (auto* hints : {&read_hints_, &write_hints_})
+    for (auto& h : *hints) h.key = kNoHint;
+  absent_.key = kNoHint;
+}
+
+/// A line of the D-cache gets other contents.
+void Core::drop_hints(std::uint32_t line_mva) {
+  // FCSE changes only bits that do not choose the place.
+  read_hints_[line_mva / kReadSpan % kHints].key = kNoHint;
+  for (unsigned half = 0; half < 2; ++half)
+    write_hints_[(line_mva / kWriteSpan + half) % kHints].key = kNoHint;
+}
+
+/// @param line where the line that holds `va` lies on the host
+void Core::note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, bool counted) {
+  const std::uint32_t key = va & ~(kReadSpan - 1);
+  read_hints_[mva / kReadSpan % kHints] = {key, counted,
+                                           reinterpret_cast<std::uintptr_t>(line) - key};
+  hints_used_ = true;
+}
+void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, bool counted) {
+  const std::uint32_t key = va & ~(kWriteSpan - 1);
+  write_hints_[mva / kWriteSpan % kHints] = {key, counted,
+                                             reinterpret_cast<std::uintptr_t>(half) - key};
+  hints_used_ = true;
 }
 
 std::vector<AccessRecord> Core::last_accesses() const {
+  constexpr std::size_t kShown = 8;
   std::vector<AccessRecord> out;
-  const std::uint64_t n = std::min<std::uint64_t>(ring_count_, ring_.size());
-  for (std::uint64_t i = ring_count_ - n; i < ring_count_; ++i)
-    out.push_back(ring_[i % ring_.size()]);
+  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
+  for (std::size_t n = first; n < first + ring_.size(); ++n) {
+    const Access& a = ring_[n % ring_.size()];
+    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
+      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
+                     (a.what & kWritten) != 0});
+  }
+  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
   return out;
 }
 
@@ -168,6 +212,7 @@ void Core::dcache_wait(std::uint32_t mva) {
 int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line) {
   stall_to(dfill_.last, Cause::kDcache);
   const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
+  if (dcache_.line(index).tag != 1) drop_hints(dcache_.line(index).tag);
   play(cycle_);
   filling_ = true;  // from here on the read goes before the victim
   write_back(index, Cause::kWriteBuffer);
@@ -188,6 +233,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
     return static_cast<int>(index);
   }
   std::memcpy(dcache_.data(index), a.data, 32);
+  absent_.key = kNoHint;
   l.tag = mva & ~31u;
   l.pa = pa & ~31u;
   l.dirty = 0;
@@ -204,10 +250,11 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     return Result::kAbort;
   }
   const std::uint32_t a = mva & ~(bytes - 1u);
-  record(va, bytes, false);
+  record(pc_, va, bytes);
   value = 0;
   if (in_tcm(a)) {
     std::memcpy(&value, tcm(a), bytes);
+    if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), false);
     if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
     return Result::kOk;
   }
@@ -219,6 +266,8 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     if (cycle_ < dfill_.last) dcache_wait(a);
     int i = dcache_.find(a);
     if (i < 0) i = dcache_fill(a, pa, t->bufferable);
+    if (dcache_.line(static_cast<unsigned>(i)).tag == (a & ~31u))
+      note_read(va, mva, dcache_.data(static_cast<unsigned>(i)), true);
     std::memcpy(&value, dcache_.data(static_cast<unsigned>(i)) + (a & 31u), bytes);
     return Result::kOk;
   }
@@ -236,10 +285,11 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
     return Result::kAbort;
   }
   const std::uint32_t a = mva & ~(bytes - 1u);
-  record(va, bytes, true);
+  record(pc_, va, bytes | kWritten);
   if (in_tcm(a)) {
     std::memcpy(tcm(a), &value, bytes);
     tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
+    if (!tcm_wait_) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), false);
     if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
     return Result::kOk;
   }
@@ -257,6 +307,7 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
       if (bufferable && !(cache_debug_ & 4u)) {
         dcache_.line(static_cast<unsigned>(i)).dirty |=
             static_cast<std::uint8_t>(1u << ((a >> 4) & 1u));
+        note_write(va, mva, dcache_.data(static_cast<unsigned>(i)) + (a & 16u), true);
         return Result::kOk;
       }
     } else {
@@ -280,6 +331,39 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   return Result::kOk;
 }
 
+/// A store to a line that is not in the cache and may be written.
+template <unsigned kBytes>
+void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
+  record(pc_, va, kBytes | kWritten);
+  ++counts_.dcache_writes;
+  if (cycle_ < dfill_.last) dcache_wait(modified(va));
+  ++counts_.dcache_write_misses;
+  enqueue_write(pa, reinterpret_cast<const std::uint8_t*>(&value), kBytes);
+}
+template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
+
+/// The store that misses the cache and goes to the write buffer. False: it is another kind, and
+/// nothing was done.
+template <unsigned kBytes>
+bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
+  const std::uint32_t mva = modified(va);
+  const Memo& memo = dmemo_[(mva >> 10) % kMemos];
+  if (memo.page != memo_key(mva, false) || !memo.write_ok || !memo.translation.cacheable ||
+      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva) || dcache_.find(mva) >= 0)
+    return false;
+  const std::uint32_t pa = memo.translation.physical(mva);
+  absent_.key = va & ~(kReadSpan - 1);
+  absent_.pa = pa & ~(kReadSpan - 1);
+  hints_used_ = true;
+  store_absent<kBytes>(va, pa, value);
+  return true;
+}
+template bool Core::store_beside_cache<1>(std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<2>(std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<4>(std::uint32_t, std::uint32_t);
+
 /// Words of an STM or STRD. Those that go to the write buffer and follow each other share an entry.
 Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, unsigned count,
                                bool user) {
@@ -302,7 +386,7 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
       const bool buffered = t->bufferable && (control_ & 1u);
       const std::uint32_t pa = t->physical(mva);
       if ((cached && dcache_.find(mva) < 0) || (!cached && buffered)) {
-        record(va + 4 * k, 4, true);
+        record(pc_, va + 4 * k, 4 | kWritten);
         if (cached) {
           ++counts_.dcache_writes;
           ++counts_.dcache_write_misses;
@@ -349,38 +433,42 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
 }
 
 const Instruction* Core::fetch_slow() {
+  pack_flags();  // for an abort
   const bool thumb = cpsr_ & 0x20u;
   const std::uint32_t mva = modified(pc_) & (thumb ? ~1u : ~3u);
   const unsigned shift = thumb ? 1 : 2;
   const unsigned at = (mva & 31u) >> shift;
+  const bool in_ram = in_tcm(mva);
   const auto decode_into = [&](DecodedLine& d, const std::uint8_t* bytes) -> const Instruction* {
-    if (d.thumb != thumb) {
-      d.valid = 0;
-      d.thumb = thumb;
+    if (d.valid == 0 || (d.valid & 1u) != thumb) {
+      clear_line(d, thumb);
+      if (in_ram) flush_hints();  // stores to this line must be seen
     }
-    if (!(d.valid >> at & 1u)) {
-      if (thumb) {
-        std::uint16_t h;
-        std::memcpy(&h, bytes + (mva & 31u), 2);
-        d.records[at] = decode_thumb(h);
-      } else {
-        std::uint32_t w;
-        std::memcpy(&w, bytes + (mva & 31u), 4);
-        d.records[at] = decode_arm(w);
-      }
-      d.valid |= 1u << at;
+    d.valid = line_key(pc_);
+    d.lookups = !in_ram;
+    Instruction& i = d.records[at];
+    if (!i.body) {
+      i = decode_at(bytes, at, thumb);
+      // Internal RAM may be written from outside: its records say nothing about each other.
+      Place place = in_ram ? Place{} : look_around(d, at, bytes, thumb);
+      place.in_line = true;
+      prepare(i, at << shift, place);
     }
     line_va_ = pc_ & ~31u;
     line_thumb_ = thumb ? 0x20u : 0u;
     line_shift_ = shift;
     current_line_ = &d;
-    return &d.records[at];
+    jumps_[pc_ / 32 % kJumps] = &d;
+    return &i;
   };
-  if (in_tcm(mva)) {
+  if (in_ram) {
     if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
-    const Instruction* i =
-        decode_into(tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5], tcm(mva & ~31u));
-    if (tcm_wait_) line_va_ = 1;  // every fetch pays
+    DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
+    const Instruction* i = decode_into(d, tcm(mva & ~31u));
+    if (tcm_wait_) {  // every fetch pays
+      line_va_ = 1;
+      d.valid = 2u | (d.valid & 1u);
+    }
     return i;
   }
   const Translation* t = translate(mva, false, false, true);
@@ -434,14 +522,11 @@ const Instruction* Core::fetch_slow() {
   }
   fetch_branched_ = false;
   line_va_ = 1;
-  if (thumb) {
-    std::uint16_t h;
-    std::memcpy(&h, reinterpret_cast<const std::uint8_t*>(fetch_words_) + (pa & 15u), 2);
-    uncached_record_ = decode_thumb(h);
-  } else {
-    uncached_record_ = decode_arm(fetch_words_[(pa >> 2) & 3u]);
-  }
-  return &uncached_record_;
+  Instruction& i = uncached_record_[0];
+  i = decode_at(reinterpret_cast<const std::uint8_t*>(fetch_words_), (pa & 15u) >> shift, thumb);
+  prepare(i, mva & 31u, Place{});
+  uncached_record_[1].at = static_cast<std::uint8_t>(i.at + (1u << shift));
+  return &i;
 }
 
 bool Core::peek(std::uint32_t address, std::uint8_t& byte) const {

@@ -1,0 +1,118 @@
+// Branches, multiplies and CLZ as handlers. Cycle counts: arm926.md 1.1.
+#include "model/cpu/core/handlers.h"
+
+namespace fovea::cpu {
+
+template <Op kOp, bool kSet>
+Core::Ops::Next Core::Ops::multiply(Core& c, Next i, Cycle cycle) {
+  if constexpr (kOp == Op::kMul || kOp == Op::kMla) {
+    // Rd is in 19:16, the accumulator in 15:12.
+    const std::uint32_t v = c.r_[i->rm] * c.r_[i->rs] + (kOp == Op::kMla ? c.r_[i->rd] : 0);
+    c.r_[i->rn] = v;
+    if constexpr (kSet) {
+      c.n_ = c.z_ = v;
+      return next(c, i + 1, cycle + 4);
+    }
+    track(c, i->rn, cycle + 3, kMultiply);
+    return next(c, i + 1, cycle + 2);
+  } else {
+    std::uint64_t v;
+    if constexpr (kOp == Op::kUmull || kOp == Op::kUmlal)
+      v = std::uint64_t{c.r_[i->rm]} * c.r_[i->rs];
+    else
+      v = static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(c.r_[i->rm])} *
+                                     static_cast<std::int32_t>(c.r_[i->rs]));
+    if constexpr (kOp == Op::kUmlal || kOp == Op::kSmlal)
+      v += std::uint64_t{c.r_[i->rn]} << 32 | c.r_[i->rd];
+    c.r_[i->rd] = static_cast<std::uint32_t>(v);
+    c.r_[i->rn] = static_cast<std::uint32_t>(v >> 32);
+    if constexpr (kSet) {
+      c.n_ = c.r_[i->rn];
+      c.z_ = v != 0;
+      return next(c, i + 1, cycle + 5);
+    }
+    track(c, i->rn, cycle + 4, kMultiply);
+    return next(c, i + 1, cycle + 3);
+  }
+}
+
+Handler Core::Ops::multiply_body(Instruction& i) {
+  const bool set = i.flags & kSetFlags;
+  switch (i.op) {
+    case Op::kMul: return set ? &multiply<Op::kMul, true> : &multiply<Op::kMul, false>;
+    case Op::kMla: return set ? &multiply<Op::kMla, true> : &multiply<Op::kMla, false>;
+    case Op::kUmull: return set ? &multiply<Op::kUmull, true> : &multiply<Op::kUmull, false>;
+    case Op::kUmlal: return set ? &multiply<Op::kUmlal, true> : &multiply<Op::kUmlal, false>;
+    case Op::kSmull: return set ? &multiply<Op::kSmull, true> : &multiply<Op::kSmull, false>;
+    default: return set ? &multiply<Op::kSmlal, true> : &multiply<Op::kSmlal, false>;
+  }
+}
+
+Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
+  c.r_[i->rd] = static_cast<std::uint32_t>(std::countl_zero(c.r_[i->rm]));
+  return next(c, i + 1, cycle + 1);
+}
+
+/// B and BL. imm: distance from the first byte of the line; near: raw is that of the records.
+template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
+Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
+  if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
+  if constexpr (kLink) c.r_[14] = c.run_va_ + i->at + 4;
+  if constexpr (kNear) {
+    c.fetch_branched_ = true;
+    const std::intptr_t distance = static_cast<std::int32_t>(i->raw);
+    c.run_first_ += distance - static_cast<std::intptr_t>(sizeof(Instruction));
+    return next(c, reinterpret_cast<Next>(reinterpret_cast<const char*>(i) + distance), cycle + 3);
+  } else {
+    return jump<kThumb, false>(c, i, cycle + 3, c.run_va_ + i->imm);
+  }
+}
+
+template <bool kThumb, bool kLink>
+Core::Ops::Next Core::Ops::branch_exchange(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t target = c.r_[i->rm];
+  if constexpr (kLink) {
+    const std::uint32_t pc = c.run_va_ + i->at;
+    c.r_[14] = kThumb ? (pc + 2) | 1u : pc + 4;
+  }
+  return exchange<kThumb>(c, i, cycle + 3, target);
+}
+
+/// imm: from the line's first byte.
+Core::Ops::Next Core::Ops::thumb_link_prefix(Core& c, Next i, Cycle cycle) {
+  c.r_[14] = c.run_va_ + i->imm;
+  return next(c, i + 1, cycle + 1);
+}
+Core::Ops::Next Core::Ops::thumb_link_suffix(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t target = c.r_[14] + i->imm;
+  c.r_[14] = (c.run_va_ + i->at + 2) | 1u;
+  return jump<true, true>(c, i, cycle + 3, target & ~1u);
+}
+
+Handler Core::Ops::branch_body(Instruction& i, Place place) {
+  const bool thumb = i.flags & kThumbInsn;
+  if (i.op == Op::kBxReg)
+    return thumb ? &branch_exchange<true, false> : &branch_exchange<false, false>;
+  if (i.op == Op::kBlxReg)
+    return thumb ? &branch_exchange<true, true> : &branch_exchange<false, true>;
+  if (i.op == Op::kThumbBlSuffix) return (i.flags & kSpsr) ? nullptr : &thumb_link_suffix;
+  // From here on: relative to the pc, and told from the beginning of the line.
+  i.imm += i.at + (thumb ? 4u : kPcDelayArm);
+  i.flags = static_cast<std::uint16_t>(i.flags & ~kReadsPc);
+  if (i.op == Op::kThumbBlPrefix) return &thumb_link_prefix;
+  const bool near = place.in_line && i.imm < 32;
+  if (near) {
+    const auto from = static_cast<std::int32_t>(i.at), to = static_cast<std::int32_t>(i.imm);
+    i.raw = static_cast<std::uint32_t>((to - from) / (thumb ? 2 : 4) *
+                                       static_cast<std::int32_t>(sizeof(Instruction)));
+  }
+  const bool link = i.op == Op::kBl;
+  return select(i.cond, [&](auto k) -> Handler {
+    constexpr auto kCond = static_cast<unsigned>(decltype(k)::value);
+    if (link) return near ? &branch<kCond, true, false, true> : &branch<kCond, true, false, false>;
+    if (thumb) return near ? &branch<kCond, false, true, true> : &branch<kCond, false, true, false>;
+    return near ? &branch<kCond, false, false, true> : &branch<kCond, false, false, false>;
+  }, std::make_index_sequence<15>{});
+}
+
+}  // namespace fovea::cpu

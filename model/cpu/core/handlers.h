@@ -1,0 +1,191 @@
+// How records follow each other: each handler executes one and calls the next by a tail call, so
+// that a chain of records runs without a loop around it. A handler calls nothing else in the
+// middle: what is not quick is a tail call too, and its own work needs no stack frame.
+//
+// Within a chain the clock travels in a register; cycle_, pc_ and the counters stand where the
+// chain began until settle(). Whoever calls something out of line before it goes on must have no
+// variable whose address is taken: the compiler would keep its frame, and the stack would grow with
+// the chain (iss.chain measures that). A chain begins with nothing under way that could hold up a
+// record (operands, an instruction fill) and ends at chain_stop_, at a record or line not known yet,
+// and where an instruction that may have called the outside leaves something to look at.
+#pragma once
+#include <utility>
+
+#include "model/cpu/core/fast_path.h"
+#include "model/cpu/core/shifter.h"
+
+namespace fovea::cpu {
+
+/// Address of a load or store: base register and what is added to it.
+enum class Address : std::uint8_t { kImm, kRegUp, kRegDown, kLsl };
+enum class Indexed : std::uint8_t { kOffset, kPre, kPost };
+
+/// What `f` gives for the constant k that equals n; f's results have one type.
+template <class F, std::size_t... k>
+auto select(unsigned n, F f, std::index_sequence<k...>) {
+  decltype(f(std::integral_constant<std::size_t, 0>{})) out{};
+  ((n == k ? void(out = f(std::integral_constant<std::size_t, k>{})) : void()), ...);
+  return out;
+}
+
+struct Core::Ops {
+  using Next = const Instruction*;
+  using Cycle = std::uint64_t;
+
+  [[gnu::always_inline]] static Next go(Core& c, Next i, Cycle cycle) {
+#if defined(FOVEA_TAIL_CALLS)
+    return i->handler(c, i, cycle);
+#else
+    c.chain_cycle_ = cycle;
+    return i;
+#endif
+  }
+  /// To record i at an instruction boundary.
+  [[gnu::always_inline]] static Next next(Core& c, Next i, Cycle cycle) {
+    if (cycle >= c.chain_stop_) [[unlikely]] return leave(c, i, cycle);
+    return go(c, i, cycle);
+  }
+  /// Ends the chain before record i.
+  [[gnu::noinline]] static Next leave(Core& c, Next i, Cycle cycle) {
+    c.settle(i, cycle);
+    return nullptr;
+  }
+  /// Ends the chain behind branch i.
+  [[gnu::noinline]] static Next leave_to(Core& c, Next i, Cycle cycle, std::uint32_t target) {
+    c.settle(i + 1, cycle);
+    c.pc_ = target;
+    return nullptr;
+  }
+  /// Executes i with all state settled: the way of all that is rare or touches the outside.
+  [[gnu::noinline]] static Next generic(Core& c, Next i, Cycle cycle) {
+    c.settle(i, cycle);
+    c.execute_one(*i);
+    return resume(c, i + 1);
+  }
+  /// Goes on with record i after its neighbour was executed with all state settled.
+  [[gnu::always_inline]] static Next resume(Core& c, Next i) {
+    if (!c.chain_goes_on(i)) return nullptr;
+    c.run_first_ = reinterpret_cast<std::intptr_t>(i);
+    // Behind the last record of a line line_end() takes care of results on their way.
+    if (c.cycle_ < c.busy_until_ && i->at < 32) {
+      const Cycle start = held_until(c, i, c.cycle_);
+      if (start == kNoCycle) return nullptr;
+      Cycle cycle = c.cycle_;
+      if (start > cycle) stall(c, cycle, start);
+      return go(c, i, cycle);
+    }
+    return go(c, i, c.cycle_);
+  }
+  /// For records that do not know what was executed before them: the clock at which the first has
+  /// its operands. kNoCycle: they have to be executed alone.
+  static Cycle held_until(const Core& c, Next i, Cycle cycle);
+
+  /// Branch i is taken, state kept. Only another line counts as looked up.
+  template <bool kThumb, bool kMaybeSameLine>
+  [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
+    c.fetch_branched_ = true;
+    if (cycle >= c.chain_stop_) [[unlikely]] return leave_to(c, i, cycle, target);
+    DecodedLine* d = c.jumps_[target / 32 % kJumps];
+    if (d->valid != (c.line_epoch_ | (target & ~31u) | kThumb)) [[unlikely]]
+      return leave_to(c, i, cycle, target);
+    Next to = &d->records[target % 32 / (kThumb ? 2 : 4)];
+    if (!to->body) [[unlikely]] return leave_to(c, i, cycle, target);
+    if (!kMaybeSameLine || c.run_va_ != (target & ~31u)) {
+      c.line_va_ = c.run_va_ = target & ~31u;
+      c.current_line_ = d;
+      c.counts_.icache_accesses += d->lookups;
+    }
+    c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
+    return go(c, to, cycle);
+  }
+  /// To an address whose bit 0 is the Thumb state to come.
+  template <bool kThumb>
+  [[gnu::always_inline]] static Next exchange(Core& c, Next i, Cycle cycle, std::uint32_t target) {
+    if ((target & 1u) == kThumb) [[likely]]
+      return jump<kThumb, true>(c, i, cycle, target & (kThumb ? ~1u : ~3u));
+    c.cpsr_ ^= 0x20u;
+    c.fetch_branched_ = true;
+    return leave_to(c, i, cycle, target & (kThumb ? ~3u : ~1u));
+  }
+
+  template <unsigned kCond>
+  [[gnu::always_inline]] static bool passes(const Core& c) {
+    const bool n = c.n_ >> 31, z = c.z_ == 0;
+    switch (kCond) {
+      case 0: return z;
+      case 1: return !z;
+      case 2: return c.c_;
+      case 3: return !c.c_;
+      case 4: return n;
+      case 5: return !n;
+      case 6: return c.v_;
+      case 7: return !c.v_;
+      case 8: return c.c_ && !z;
+      case 9: return !c.c_ || z;
+      case 10: return n == (c.v_ != 0);
+      case 11: return n != (c.v_ != 0);
+      case 12: return !z && n == (c.v_ != 0);
+      case 13: return z || n != (c.v_ != 0);
+      default: return true;
+    }
+  }
+
+  [[gnu::always_inline]] static void stall(Core& c, Cycle& cycle, Cycle until) {
+    c.counts_.stall[static_cast<std::size_t>(Cause::kInterlock)] += until - cycle;
+    c.counts_.issue -= until - cycle;  // settle() takes the whole distance for issue
+    cycle = until;
+  }
+  /// What a record needs that has a condition, operands to wait for, or r15 to read.
+  template <unsigned kCond, Place::Check kCheck, bool kPc>
+  static Next before(Core& c, Next i, Cycle cycle);
+  template <std::size_t... k>
+  static constexpr std::array<Handler, sizeof...(k)> before_table(std::index_sequence<k...>);
+
+  /// A result that is still on its way when the next record starts.
+  [[gnu::always_inline]] static void track(Core& c, unsigned r, Cycle ready, Producer by) {
+    c.ready_[r] = ready * 4 + by;
+    c.busy_until_ = ready;
+  }
+
+  /// Stands behind the last record of a line.
+  template <bool kThumb>
+  static Next line_end(Core& c, Next i, Cycle cycle);
+  template <bool kThumb>
+  static Next line_end_busy(Core& c, Next i, Cycle cycle);
+  template <bool kThumb>
+  static Next enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d);
+
+  template <Op kOp, Form kForm, bool kSet>
+  static Next data(Core& c, Next i, Cycle cycle);
+  template <std::size_t... k>
+  static constexpr std::array<Handler, sizeof...(k)> data_table(std::index_sequence<k...>);
+  template <Op kOp, bool kSet>
+  static Next multiply(Core& c, Next i, Cycle cycle);
+  static Next count_zeros(Core& c, Next i, Cycle cycle);
+  template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
+  static Next branch(Core& c, Next i, Cycle cycle);
+  template <bool kThumb, bool kLink>
+  static Next branch_exchange(Core& c, Next i, Cycle cycle);
+  static Next thumb_link_prefix(Core& c, Next i, Cycle cycle);
+  static Next thumb_link_suffix(Core& c, Next i, Cycle cycle);
+  template <Op kOp, Address kAddress, Indexed kIndexed, bool kTrack>
+  static Next load(Core& c, Next i, Cycle cycle);
+  template <Op kOp, Address kAddress, Indexed kIndexed>
+  static Next store(Core& c, Next i, Cycle cycle);
+  template <Op kOp, Address kAddress, Indexed kIndexed>
+  static Next store_out(Core& c, Next i, Cycle cycle);
+  static Next load_literal(Core& c, Next i, Cycle cycle);
+  template <bool kPc, bool kThumb, bool kLong>
+  static Next load_block(Core& c, Next i, Cycle cycle);
+  template <bool kLong>
+  static Next store_block(Core& c, Next i, Cycle cycle);
+
+  // Body of a record, nullptr where no quick one exists. They may rewrite the record's operands.
+  static Handler data_body(Instruction& i);                  // data_processing.cpp
+  static Handler multiply_body(Instruction& i);              // branch_multiply.cpp
+  static Handler branch_body(Instruction& i, Place place);   // branch_multiply.cpp
+  static Handler memory_body(Instruction& i, Place place);   // load_store.cpp
+  static Handler block_body(Instruction& i);                 // load_store.cpp
+};
+
+}  // namespace fovea::cpu

@@ -1,0 +1,280 @@
+// Loads and stores as handlers: hits that a hint knows of. All else goes the general way, with the
+// chain ended. Cycle counts: arm926.md 1.1, interlocks 1.3.
+#include <bit>
+
+#include "model/cpu/core/handlers.h"
+
+namespace fovea::cpu {
+namespace {
+
+constexpr unsigned width(Op op) {
+  return op == Op::kLdr || op == Op::kStr ? 4
+         : op == Op::kLdrh || op == Op::kLdrsh || op == Op::kStrh ? 2 : 1;
+}
+
+template <Op kOp>
+[[gnu::always_inline]] inline std::uint32_t read(const std::uint8_t* from) {
+  if constexpr (kOp == Op::kLdr) {
+    std::uint32_t v;
+    std::memcpy(&v, from, 4);
+    return v;
+  } else if constexpr (width(kOp) == 2) {
+    std::uint16_t v;
+    std::memcpy(&v, from, 2);
+    return kOp == Op::kLdrh ? v : static_cast<std::uint32_t>(static_cast<std::int16_t>(v));
+  } else {
+    return kOp == Op::kLdrb ? *from : static_cast<std::uint32_t>(static_cast<std::int8_t>(*from));
+  }
+}
+
+[[gnu::always_inline]] inline std::uint8_t* host(std::uintptr_t bias, std::uint32_t va) {
+  return reinterpret_cast<std::uint8_t*>(bias + va);
+}
+
+/// Number of the lowest bit set; there is one.
+[[gnu::always_inline]] inline unsigned lowest(std::uint32_t set) {
+  return static_cast<unsigned>(__builtin_ctz(set));
+}
+
+/// Base plus offset; immediates are signed (memory_body()).
+template <Address kAddress>
+[[gnu::always_inline]] inline std::uint32_t moved(const std::array<std::uint32_t, 16>& r,
+                                                  const Instruction& i) {
+  switch (kAddress) {
+    case Address::kImm: return r[i.rn] + i.imm;
+    case Address::kRegUp: return r[i.rn] + r[i.rm];
+    case Address::kRegDown: return r[i.rn] - r[i.rm];
+    default: return r[i.rn] + (r[i.rm] << i.amount);
+  }
+}
+
+}  // namespace
+
+template <Op kOp, Address kAddress, Indexed kIndexed, bool kTrack>
+Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
+  constexpr unsigned kBytes = width(kOp);
+  const std::uint32_t end = moved<kAddress>(c.r_, *i);
+  const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
+  const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
+  if (hint.key != (va & ~(kReadSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
+    return generic(c, i, cycle);
+  c.counts_.dcache_reads += hint.counted;
+  c.record(c.run_va_ + i->at, va, kBytes);
+  const std::uint32_t value = read<kOp>(host(hint.bias, va));
+  if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
+  c.r_[i->rd] = value;
+  // rs: the extra clock of a shifted offset.
+  cycle += kAddress == Address::kLsl ? 1u + i->rs : 1u;
+  if constexpr (kTrack) track(c, i->rd, cycle + (kOp == Op::kLdr ? 1 : 2), kLoad);
+  return next(c, i + 1, cycle);
+}
+
+template <Op kOp, Address kAddress, Indexed kIndexed>
+Core::Ops::Next Core::Ops::store(Core& c, Next i, Cycle cycle) {
+  constexpr unsigned kBytes = width(kOp);
+  const std::uint32_t end = moved<kAddress>(c.r_, *i);
+  const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
+  const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
+  if (hint.key != (va & ~(kWriteSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
+    return store_out<kOp, kAddress, kIndexed>(c, i, cycle);
+  c.counts_.dcache_writes += hint.counted;
+  c.record(c.run_va_ + i->at, va, kBytes | kWritten);
+  const std::uint32_t value = c.r_[i->rd];
+  std::memcpy(host(hint.bias, va), &value, kBytes);
+  if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
+  return next(c, i + 1, cycle + (kAddress == Address::kLsl ? 1u + i->rs : 1u));
+}
+
+/// A store that no hint knows: perhaps to the write buffer.
+template <Op kOp, Address kAddress, Indexed kIndexed>
+[[gnu::noinline]] Core::Ops::Next Core::Ops::store_out(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t end = moved<kAddress>(c.r_, *i);
+  const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
+  c.settle(i, cycle);
+  if (c.absent_.key == (va & ~(kReadSpan - width(kOp))))
+    c.store_absent<width(kOp)>(va, c.absent_.pa | va % kReadSpan, c.r_[i->rd]);
+  else if (!c.store_beside_cache<width(kOp)>(va, c.r_[i->rd]))
+    return generic(c, i, cycle);
+  if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
+  c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
+  ++c.counts_.instructions;
+  c.pc_ = c.run_va_ + i[1].at;
+  return resume(c, i + 1);
+}
+
+/// A word relative to the pc; imm: from the first byte of the line.
+Core::Ops::Next Core::Ops::load_literal(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t va = c.run_va_ + i->imm;
+  const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
+  if (hint.key != (va & ~(kReadSpan - 4)) || cycle < c.dfill_.last) [[unlikely]] {
+    c.r_[15] = c.run_va_;  // what the general way adds the offset to
+    return generic(c, i, cycle);
+  }
+  c.counts_.dcache_reads += hint.counted;
+  c.record(c.run_va_ + i->at, va, 4);
+  c.r_[i->rd] = read<Op::kLdr>(host(hint.bias, va));
+  track(c, i->rd, cycle + 2, kLoad);
+  return next(c, i + 1, cycle + 1);
+}
+
+Handler Core::Ops::memory_body(Instruction& i, Place place) {
+  if (i.op == Op::kLdrd || i.op == Op::kStrd || (i.flags & kUserBank) || i.rd == 15)
+    return nullptr;
+  if (i.rn == 15 && (i.flags & kWriteBack)) return nullptr;
+  const bool up = i.flags & kUp;
+  Address address;
+  if (i.operand == Operand::kImm) {
+    if (!up) {
+      i.imm = 0u - i.imm;
+      i.flags |= kUp;
+    }
+    if (i.rn == 15 && i.op == Op::kLdr) {
+      const std::uint32_t pc = i.at + ((i.flags & kThumbInsn) ? 4u : kPcDelayArm);
+      i.imm += (i.flags & kAlignPc) ? pc & ~3u : pc;
+      i.flags = static_cast<std::uint16_t>(i.flags & ~(kReadsPc | kAlignPc));
+      return &load_literal;
+    }
+    address = Address::kImm;
+  } else if (i.operand == Operand::kReg) {
+    address = up ? Address::kRegUp : Address::kRegDown;
+  } else if (i.shift == 0 && up) {
+    address = Address::kLsl;
+  } else {
+    return nullptr;
+  }
+  const Indexed indexed = !(i.flags & kPre)       ? Indexed::kPost
+                          : (i.flags & kWriteBack) ? Indexed::kPre
+                                                   : Indexed::kOffset;
+  // One step for each thing that is chosen.
+  const auto by_index = [&]<Op kOp, Address kAddress, bool kTrack>() -> Handler {
+    const auto one = []<Indexed kIndexed>() -> Handler {
+      if constexpr (kOp == Op::kStr || kOp == Op::kStrb || kOp == Op::kStrh)
+        return &store<kOp, kAddress, kIndexed>;
+      else
+        return &load<kOp, kAddress, kIndexed, kTrack>;
+    };
+    switch (indexed) {
+      case Indexed::kOffset: return one.template operator()<Indexed::kOffset>();
+      case Indexed::kPre: return one.template operator()<Indexed::kPre>();
+      default: return one.template operator()<Indexed::kPost>();
+    }
+  };
+  const auto by_address = [&]<Op kOp, bool kTrack>() -> Handler {
+    switch (address) {
+      case Address::kImm: return by_index.template operator()<kOp, Address::kImm, kTrack>();
+      case Address::kRegUp: return by_index.template operator()<kOp, Address::kRegUp, kTrack>();
+      case Address::kRegDown: return by_index.template operator()<kOp, Address::kRegDown, kTrack>();
+      default: return by_index.template operator()<kOp, Address::kLsl, kTrack>();
+    }
+  };
+  const auto a_load = [&]<Op kOp>() -> Handler {
+    return place.track ? by_address.template operator()<kOp, true>()
+                       : by_address.template operator()<kOp, false>();
+  };
+  switch (i.op) {
+    case Op::kLdr: return a_load.template operator()<Op::kLdr>();
+    case Op::kLdrb: return a_load.template operator()<Op::kLdrb>();
+    case Op::kLdrh: return a_load.template operator()<Op::kLdrh>();
+    case Op::kLdrsb: return a_load.template operator()<Op::kLdrsb>();
+    case Op::kLdrsh: return a_load.template operator()<Op::kLdrsh>();
+    case Op::kStr: return by_address.template operator()<Op::kStr, false>();
+    case Op::kStrb: return by_address.template operator()<Op::kStrb, false>();
+    default: return by_address.template operator()<Op::kStrh, false>();
+  }
+}
+
+/// LDM. rm, rs: first address and new base, in words from the base, signed; amount: registers.
+/// Most lie in one line; those that do not take the second way.
+template <bool kPc, bool kThumb, bool kLong>
+Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t base = c.r_[i->rn];
+  std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
+  const std::uint32_t last = va + 4u * i->amount - 4;
+  if ((va & 3u) || cycle < c.dfill_.last) [[unlikely]] return generic(c, i, cycle);
+  if (kPc && (c.control_ & 1u << 15)) [[unlikely]] return generic(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return load_block<kPc, kThumb, true>(c, i, cycle);
+  for (std::uint32_t line = va & ~(kReadSpan - 1);; line += kReadSpan) {
+    if (c.read_hints_[line / kReadSpan % kHints].key != line) [[unlikely]]
+      return generic(c, i, cycle);
+    if (!kLong || line == (last & ~(kReadSpan - 1))) break;
+  }
+  c.record(c.run_va_ + i->at, va, 4 | (i->amount - 1u) << 16);
+  std::uint32_t target = 0, set = i->imm;
+  unsigned r = 0;
+  for (unsigned left = i->amount; left;) {
+    const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
+    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+    c.counts_.dcache_reads += here * hint.counted;
+    const std::uint8_t* from = host(hint.bias, va);
+    for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
+      const std::uint32_t value = read<Op::kLdr>(from);
+      r = lowest(set);
+      set &= set - 1;
+      if (kPc && r == 15) target = value;
+      else c.r_[r] = value;
+    }
+    if (!kLong) break;
+    va += 4 * here;
+    left -= here;
+  }
+  if (i->flags & kWriteBack)
+    c.r_[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
+  if constexpr (kPc) return exchange<kThumb>(c, i, cycle + i->amount + 4, target);
+  if (i->amount == 1) return next(c, i + 1, cycle + 2);
+  cycle += i->amount;
+  track(c, r, cycle + 1, kLoad);
+  return next(c, i + 1, cycle);
+}
+
+template <bool kLong>
+Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t base = c.r_[i->rn];
+  std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
+  const std::uint32_t last = va + 4u * i->amount - 4;
+  if ((va & 3u) || cycle < c.dfill_.last) [[unlikely]] return generic(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return store_block<true>(c, i, cycle);
+  for (std::uint32_t half = va & ~(kWriteSpan - 1);; half += kWriteSpan) {
+    if (c.write_hints_[half / kWriteSpan % kHints].key != half) [[unlikely]]
+      return generic(c, i, cycle);
+    if (half == (last & ~(kWriteSpan - 1))) break;
+  }
+  c.record(c.run_va_ + i->at, va, 4 | kWritten | (i->amount - 1u) << 16);
+  std::uint32_t set = i->imm;
+  for (unsigned left = i->amount; left;) {
+    // Both halves of a line lie side by side on the host.
+    const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
+    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+    c.counts_.dcache_writes += here * hint.counted;
+    std::uint8_t* to = host(hint.bias, va);
+    for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
+      std::memcpy(to, &c.r_[lowest(set)], 4);
+      set &= set - 1;
+    }
+    if (!kLong) break;
+    va += 4 * here;
+    left -= here;
+  }
+  if (i->flags & kWriteBack)
+    c.r_[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
+  return next(c, i + 1, cycle + i->amount + (i->amount == 1 ? 1u : 0u));
+}
+
+Handler Core::Ops::block_body(Instruction& i) {
+  if ((i.flags & kUserBank) || i.imm == 0 || i.rn == 15) return nullptr;
+  const bool pc = i.imm & 0x8000u;
+  if (i.op == Op::kStm && pc) return nullptr;
+  const int n = std::popcount(i.imm);
+  const bool up = i.flags & kUp, pre = i.flags & kPre;
+  const int first = up ? (pre ? 1 : 0) : (pre ? -n : 1 - n);
+  i.amount = static_cast<std::uint8_t>(n);
+  i.rm = static_cast<std::uint8_t>(first);
+  i.rs = static_cast<std::uint8_t>(up ? n : -n);
+  if (i.op == Op::kStm) return &store_block<false>;
+  // Write-back wins, unless the base is the last of several registers.
+  if (n > 1 && i.imm >> i.rn == 1u) i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
+  const bool thumb = i.flags & kThumbInsn;
+  if (!pc) return &load_block<false, false, false>;
+  return thumb ? &load_block<true, true, false> : &load_block<true, false, false>;
+}
+
+}  // namespace fovea::cpu

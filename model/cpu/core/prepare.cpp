@@ -1,0 +1,204 @@
+// Decoded records become runnable: which handler, and what its neighbours let it leave out.
+#include "model/cpu/core/handlers.h"
+
+namespace fovea::cpu {
+namespace {
+
+/// Registers whose value comes later than the end of the instruction's issue, and by how much at
+/// most on the quick ways. (A rotated word takes the general way.)
+struct Late {
+  std::uint32_t registers = 0;
+  unsigned latency = 0;
+  bool load = false;
+};
+
+Late late_results(const Instruction& i) {
+  switch (i.op) {
+    case Op::kLdr: return {1u << i.rd, 1, true};
+    case Op::kLdrb: case Op::kLdrh: case Op::kLdrsb: case Op::kLdrsh: return {1u << i.rd, 2, true};
+    case Op::kLdm: {
+      if (i.imm == 0) return {};
+      return {1u << (31 - std::countl_zero(i.imm)), 1, true};
+    }
+    case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull:
+    case Op::kSmlal:
+      return {1u << i.rn, 1, false};
+    default: return {};  // others end the chain: what comes next is executed alone
+  }
+}
+
+std::uint32_t operands(const Instruction& i) {
+  return static_cast<std::uint32_t>(i.sources) | i.stored;
+}
+
+}  // namespace
+
+Instruction Core::decode_at(const std::uint8_t* bytes, unsigned index, bool thumb) {
+  if (thumb) {
+    std::uint16_t half;
+    std::memcpy(&half, bytes + 2 * index, 2);
+    return decode_thumb(half);
+  }
+  std::uint32_t word;
+  std::memcpy(&word, bytes + 4 * index, 4);
+  return decode_arm(word);
+}
+
+/// Within a chain only the two records before can hold up a record, and a taken branch takes longer
+/// than any result.
+Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
+                              bool thumb) {
+  const unsigned count = thumb ? 16 : 8;
+  const auto at = [&](unsigned k) {
+    return d.records[k].body ? d.records[k] : decode_at(bytes, k, thumb);
+  };
+  const Instruction& i = d.records[index];
+  Place place;
+  place.check = Place::Check::kNone;
+  const std::uint32_t needs = operands(i);
+  if (needs && index >= 1) {
+    const Instruction before = at(index - 1);
+    const Late young = late_results(before);
+    const Late old = index >= 2 ? late_results(at(index - 2)) : Late{};
+    const bool waits_for_young = young.registers & needs;
+    const bool waits_for_old = old.latency == 2 && (old.registers & needs);
+    // Where the record before is always executed, its result is the last one on its way.
+    const bool in_full = (young.registers & i.sources) || young.load;
+    if (waits_for_young && in_full && before.cond == 14)
+      place.check = Place::Check::kYoungest;
+    else if (waits_for_young || waits_for_old)
+      place.check = Place::Check::kAll;
+  }
+  const Late mine = late_results(i);
+  if (mine.registers) {
+    place.track = index + mine.latency >= count;  // line_end() looks at the next line
+    for (unsigned k = 1; k <= mine.latency && index + k < count; ++k)
+      if (operands(at(index + k)) & mine.registers) place.track = true;
+  }
+  return place;
+}
+
+void Core::clear_line(DecodedLine& d, bool thumb) {
+  const unsigned count = thumb ? 16 : 8;
+  for (unsigned k = 0; k < count; ++k) {
+    d.records[k] = Instruction{};
+    d.records[k].handler = &Ops::leave;
+    d.records[k].at = static_cast<std::uint8_t>(k * 32 / count);
+  }
+  d.records[count] = Instruction{};
+  d.records[count].handler = thumb ? &Ops::line_end<true> : &Ops::line_end<false>;
+  d.records[count].at = 32;
+}
+
+template <unsigned kCond, Core::Place::Check kCheck, bool kPc>
+Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
+  if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
+  if constexpr (kCheck == Place::Check::kYoungest) {
+    if (cycle < c.busy_until_) stall(c, cycle, c.busy_until_);
+  } else if constexpr (kCheck == Place::Check::kAll) {
+    if (cycle < c.busy_until_) stall(c, cycle, c.operands_ready(*i, cycle));
+  }
+  if constexpr (kPc)
+    c.r_[15] = (c.run_va_ + i->at + ((i->flags & kThumbInsn) ? 4u : kPcDelayArm)) &
+               ((i->flags & kAlignPc) ? ~3u : ~0u);
+  return i->body(c, i, cycle);
+}
+
+/// Place of a handler: condition, check * 15, pc * 45.
+template <std::size_t... k>
+constexpr std::array<Handler, sizeof...(k)> Core::Ops::before_table(std::index_sequence<k...>) {
+  return {&before<k % 15, static_cast<Place::Check>(k / 15 % 3), (k / 45) != 0>...};
+}
+
+void Core::prepare(Instruction& i, unsigned at, Place place) const {
+  i.at = static_cast<std::uint8_t>(at);
+  Handler body = nullptr;
+  bool own_condition = false;
+  if (i.op <= Op::kMvn) {
+    body = Ops::data_body(i);
+  } else {
+    switch (i.op) {
+      case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull:
+      case Op::kSmlal:
+        body = Ops::multiply_body(i);
+        break;
+      case Op::kLdr: case Op::kLdrb: case Op::kLdrh: case Op::kLdrsb: case Op::kLdrsh:
+      case Op::kStr: case Op::kStrb: case Op::kStrh:
+        if (i.operand == Operand::kShiftImm) i.rs = shifted_cycle_;
+        body = Ops::memory_body(i, place);
+        break;
+      case Op::kLdm: case Op::kStm:
+        body = Ops::block_body(i);
+        break;
+      case Op::kB: case Op::kBl:
+        own_condition = true;
+        [[fallthrough]];
+      case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlPrefix: case Op::kThumbBlSuffix:
+        body = Ops::branch_body(i, place);
+        break;
+      case Op::kClz:
+        body = &Ops::count_zeros;
+        break;
+      default: break;
+    }
+  }
+  i.body = body ? body : &Ops::generic;
+  const unsigned cond = own_condition ? 14u : i.cond;
+  const auto check = operands(i) ? place.check : Place::Check::kNone;
+  const bool pc = body && (i.flags & kReadsPc);
+  if (cond == 14 && check == Place::Check::kNone && !pc) {
+    i.handler = i.body;
+    return;
+  }
+  static constexpr auto kTable = Ops::before_table(std::make_index_sequence<90>{});
+  i.handler = kTable[cond + 15 * (static_cast<unsigned>(check) + 3 * unsigned{pc})];
+}
+
+template <bool kThumb>
+Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d) {
+  Next to = &d.records[0];
+  if (!to->body) [[unlikely]] return leave(c, i, cycle);
+  c.line_va_ = c.run_va_ += 32;
+  c.current_line_ = &d;
+  c.counts_.icache_accesses += d.lookups;
+  c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
+  return go(c, to, cycle);
+}
+
+template <bool kThumb>
+Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t va = c.run_va_ + 32;
+  DecodedLine* d = c.jumps_[va / 32 % kJumps];
+  if (d->valid != (c.line_epoch_ | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
+  if (cycle < c.busy_until_) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle);
+  return enter_line<kThumb>(c, i, cycle, *d);
+}
+
+/// The records of a line know nothing of the line before.
+template <bool kThumb>
+[[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle) {
+  DecodedLine* d = c.jumps_[(c.run_va_ + 32) / 32 % kJumps];
+  if (!d->records[0].body) return leave(c, i, cycle);
+  const Cycle start = held_until(c, &d->records[0], cycle);
+  if (start == kNoCycle) return leave(c, i, cycle);
+  if (start > cycle) stall(c, cycle, start);
+  return enter_line<kThumb>(c, i, cycle, *d);
+}
+
+[[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {
+  const auto late = [&c](std::uint32_t set, Cycle than) {
+    for (; set; set &= set - 1)
+      if (c.ready_[static_cast<unsigned>(__builtin_ctz(set))] >> 2 > than) return true;
+    return false;
+  };
+  Cycle start = cycle;
+  if (late(operands(*i), cycle)) {
+    if (i->cond != 14) return kNoCycle;
+    start = c.operands_ready(*i, cycle);
+  }
+  // No result is later than two clocks.
+  if (c.busy_until_ > start + 1 && late(operands(i[1]), start + 1)) return kNoCycle;
+  return start;
+}
+
+}  // namespace fovea::cpu
