@@ -12,14 +12,15 @@
 #include <ostream>
 
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/gdb_server.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
 namespace {
 
-constexpr std::array<std::string_view, 7> kWithValue = {"-s",     "--set",   "-o",    "--out",
-                                                        "--load", "--entry", "--root"};
+constexpr std::array<std::string_view, 8> kWithValue = {"-s",     "--set",   "-o",    "--out",
+                                                        "--load", "--entry", "--root", "--gdb"};
 constexpr std::array<std::string_view, 5> kFlags = {"--thumb", "--fast-memory", "--strict",
                                                     "--help", "-h"};
 
@@ -92,6 +93,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_option("-s,--set", o.sets, "Set a parameter, key=value; may be repeated")
       ->allow_extra_args(false);
   c->add_option("-o,--out", o.out_dir, "Folder for stats.json, config.json and host.json");
+  c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
   c->add_flag("--strict", o.strict,
               "A feature that the guest uses and the model lacks is an error");
   c->footer(kMemoryHelp);
@@ -163,6 +165,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   Experiment experiment(params);
   for (const auto& set : o.sets) experiment.override_with(set);
   const ExecProgram program = program_of(o);
+  std::optional<std::uint16_t> gdb_port;
+  if (!o.gdb.empty()) gdb_port = parse_gdb_port(o.gdb);
 
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
@@ -174,6 +178,9 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   const ExecResult result = executor->run({.program = program,
                                            .arguments = o.arguments,
                                            .root = o.root,
+                                           .params = params,
+                                           .gdb_port = gdb_port,
+                                           .notes = context.err,
                                            .fast_memory = o.fast_memory,
                                            .console = console,
                                            .stop = context.stop ? *context.stop : kNeverStops});
@@ -188,8 +195,9 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   }
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (result.complete) return result.exit_code;
-  context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
   const int signal = context.signal ? context.signal->load() : 0;
+  context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
+                             result.killed && !signal ? "by the debugger" : "before the end");
   return signal ? 128 + signal : kExitGuestFailed;
 }
 

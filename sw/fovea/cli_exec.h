@@ -15,7 +15,7 @@ struct ExecOptions {
   std::string program;
   std::vector<std::string> arguments;  ///< of the program
   std::vector<std::string> sets;
-  std::string load, entry, root, out_dir;
+  std::string load, entry, root, out_dir, gdb;
   bool thumb = false, fast_memory = false, strict = false;
 };
 

@@ -47,6 +47,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
                                           sc_core::SC_DO_NOTHING);
   ExecSession session(arm.core(), *board_, request, map);
   session.load(board_->ram(), board_->tcm());
+  session.attach(*board_, {{"ddr", &board_->ddr.regs}});
   // Slices only let the host look in. No instruction takes as long as one.
   const Picoseconds slice = 10 * kPsPerMs;
   std::string failure;
@@ -54,7 +55,10 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
     sc_core::sc_start(ps_time(slice));
     failure = arm.failure();
     if (!failure.empty() || session.ended() || request.stop.load()) break;
+    GdbSession* const gdb = session.gdb();
+    if (gdb && gdb->killed()) break;
     const std::uint64_t now = arm.core().instructions_executed();
+    if (gdb) gdb->look();
     if (now == before) {
       failure = "the program waits for an interrupt, and none can come";
       break;

@@ -44,6 +44,7 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
                          const ExecMap& map)
     : core_(core),
       debug_(core, memory),
+      request_(request),
       program_(request.program),
       map_(map),
       semihosting_(settings(request, map), request.console) {
@@ -87,19 +88,40 @@ std::string ExecSession::failure_text(const std::string& what) const {
   return text;
 }
 
-ExecResult ExecSession::result(const std::string& failure) const {
-  ExecResult out;
-  out.complete = ended();
-  out.exit_code = semihosting_.exit_code().value_or(0);
-  if (!failure.empty()) out.guest_failure = failure_text(failure);
+std::vector<StatRow> ExecSession::core_stats() const {
   cpu::CoreStats stats;
   stats.to = core_.counts();
   // The clock's first edge after time 0 is number 1; whoever has not run has no clocks either.
   stats.to.cycles = core_.clock_count() ? core_.clock_count() - 1 : 0;
-  const std::uint64_t causes =
-      std::accumulate(stats.to.stall.begin(), stats.to.stall.end(), stats.to.issue + stats.to.idle);
-  FOVEA_CHECK(causes == stats.to.cycles, "every clock of the core has one cause");
-  collect(stats, out.stats);
+  std::vector<StatRow> rows;
+  collect(stats, rows);
+  return rows;
+}
+
+void ExecSession::attach(cpu::DebugMemory& memory,
+                         std::vector<std::pair<std::string, const RegBank*>> blocks) {
+  if (!request_.gdb_port) return;
+  GdbViews views;
+  views.params = &request_.params;
+  views.stats = [this] { return core_stats(); };
+  views.blocks = std::move(blocks);
+  views.memory = {{map_.ram_base, map_.ram_base + map_.ram_size}};
+  gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
+                                      request_.stop, request_.notes);
+}
+
+ExecResult ExecSession::result(const std::string& failure) {
+  ExecResult out;
+  out.complete = ended();
+  out.exit_code = semihosting_.exit_code().value_or(0);
+  if (!failure.empty()) out.guest_failure = failure_text(failure);
+  out.killed = gdb_ && gdb_->killed();
+  if (gdb_) gdb_->exited(failure.empty() ? out.exit_code : 3);
+  out.stats = core_stats();
+  const cpu::Counts& c = core_.counts();
+  FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==
+                  std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
+              "every clock of the core has one cause");
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,9 @@ struct ExecRequest {
   const ExecProgram& program;
   std::vector<std::string> arguments;  ///< argv[1] and on
   std::filesystem::path root;          ///< folder of the program's files; empty: none
+  const ParamSet& params;
+  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before it starts
+  std::ostream& notes;                 ///< for whoever watches
   bool fast_memory = false;            ///< flat memory without wait states; no bus, no SDRAM
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
@@ -25,6 +30,7 @@ struct ExecRequest {
 
 struct ExecResult {
   bool complete = false;      ///< the program ended by itself
+  bool killed = false;        ///< by the debugger
   int exit_code = 0;          ///< its own
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;

@@ -129,4 +129,44 @@ void CoreDebug::patch_instructions(std::uint32_t mva, std::uint32_t pa,
       words[d] = from[k];
 }
 
+void CoreDebug::set_reg(unsigned i, std::uint32_t value) {
+  if (i != 15) return core_.set_reg(i, value);
+  core_.pc_ = core_.next_pc_ = value & ((core_.cpsr_ & 0x20u) ? ~1u : ~3u);
+  core_.fetch_branched_ = true;
+}
+
+void CoreDebug::set_cpsr(std::uint32_t value) {
+  core_.set_cpsr(value);
+  core_.line_va_ = 1;
+}
+
+std::span<const CoreDebug::SystemRegister> CoreDebug::system_registers() {
+  static constexpr std::array<SystemRegister, 8> kRegisters = {{
+      {"control", [](const Core& c) { return c.control_; }},
+      {"ttbr", [](const Core& c) { return c.ttbr_; }},
+      {"dacr", [](const Core& c) { return c.dacr_; }},
+      {"dfsr", [](const Core& c) { return c.dfsr_; }},
+      {"ifsr", [](const Core& c) { return c.ifsr_; }},
+      {"far", [](const Core& c) { return c.far_; }},
+      {"fcse_pid", [](const Core& c) { return c.fcse_pid_; }},
+      {"context_id", [](const Core& c) { return c.context_id_; }},
+  }};
+  return kRegisters;
+}
+
+std::optional<Instruction> CoreDebug::instruction(std::uint32_t va) {
+  const bool thumb = core_.cpsr() & 0x20u;
+  std::array<std::uint8_t, 4> bytes{};
+  const auto piece = std::span(bytes).first(thumb ? 2 : 4);
+  const std::uint32_t mva = core_.modified(va);
+  if (const int i = core_.in_tcm(mva) ? -1 : core_.icache_.find(mva); i >= 0)
+    std::memcpy(bytes.data(), core_.icache_.data(static_cast<unsigned>(i)) + (mva & kLineMask),
+                piece.size());
+  else if (!read(va, piece))
+    return std::nullopt;
+  std::uint32_t word;
+  std::memcpy(&word, bytes.data(), 4);
+  return thumb ? decode_thumb(static_cast<std::uint16_t>(word)) : decode_arm(word);
+}
+
 }  // namespace fovea::cpu

@@ -30,6 +30,24 @@ class CoreDebug {
   bool write(std::uint32_t va, std::span<const std::uint8_t> from);
   /// Physical address by the TLB, or by the tables without filling the TLB.
   std::optional<std::uint32_t> physical(std::uint32_t va);
+  std::uint32_t reg(unsigned i) const { return core_.reg(i); }
+  /// r15 moves the next instruction; bit 0 of its value is not the state.
+  void set_reg(unsigned i, std::uint32_t value);
+  std::uint32_t cpsr() const { return core_.cpsr(); }
+  /// Changes mode and state as well.
+  void set_cpsr(std::uint32_t value);
+  std::uint32_t spsr() const { return core_.spsr_[Core::bank(core_.cpsr())]; }
+  /// A CP15 register that can be read without effect.
+  struct SystemRegister {
+    const char* name;
+    std::uint32_t (*get)(const Core&);
+  };
+  static std::span<const SystemRegister> system_registers();
+  std::uint32_t system_register(const SystemRegister& r) const { return r.get(core_); }
+
+  /// The instruction word or half-word that the core would fetch at `va`.
+  std::optional<Instruction> instruction(std::uint32_t va);
+
   /// The core's own time, which may lie ahead of everybody else's.
   Picoseconds now() const { return core_.time(core_.cycle_); }
 
