@@ -11,6 +11,7 @@
 
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/gdb_server.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/remarks.h"
@@ -30,6 +31,7 @@ struct RunOptions {
   bool strict = false;
   bool no_frames = false;
   bool mp4 = false;
+  std::string gdb;
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
@@ -71,11 +73,16 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .strict_sync = options.sync == "strict",
                      .stop = context.stop ? *context.stop : kNeverStops,
                      .progress = meter,
-                     .frame = {}};
+                     .frame = {},
+                     .gdb_port = {}};
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
     };
+  if (!options.gdb.empty()) {
+    request.gdb_port = parse_gdb_port(options.gdb);
+    request.notes = &context.err;
+  }
   RunResult result;
   try {
     result = simulation->run(request);
@@ -217,6 +224,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   run_command->add_flag("--no-frames", run.no_frames, "Write no pictures");
   run_command->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
 
+  run_command->add_option("--gdb", run.gdb,
+                          "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
   CLI::App* exec_command = add_exec_command(app, exec);
   if (!own.empty() && own[0] == "exec") exec.arguments = take_program_arguments(own);
 

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +50,8 @@ struct RunRequest {
   /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
   /// full), which the board lets through.
   std::function<void(const DisplayedFrame&)> frame;
+  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before the core starts
+  std::ostream* notes = nullptr;          ///< says where; not null with gdb_port
 };
 
 /// What the board answers.

@@ -1,5 +1,5 @@
 // What a debugger reads and writes is what the program loads, stores and executes.
-#include "model/cpu/core/debug.h"
+#include "model/cpu/core/debug_control.h"
 
 #include <array>
 #include <cstring>
@@ -199,6 +199,160 @@ TEST(CoreDebugTest, WithoutTcmItsWindowsAreMemory) {
   EXPECT_EQ(core.reg(2), 0u);
   EXPECT_EQ(core.reg(3), 0u);
   EXPECT_EQ(core.reg(4), 7u);
+}
+
+/// A debugger that answers each stop and runs on.
+struct ControlledMachine : DebugMachine {
+  CoreControl control{core, debug};
+  std::vector<std::uint32_t> pcs, addresses;
+  ControlledMachine() {
+    control.on_stop = [this](const CoreControl::Stop& s) {
+      pcs.push_back(core.reg(15));
+      addresses.push_back(s.address);
+    };
+  }
+};
+
+const char* const kLoop = R"(
+    mov r3, #3
+    ldr r1, =0x00101000
+    loop:
+    ldr r2, [r1], #4
+    add r2, r2, r3, lsl #1
+    cmp r2, #4
+    streq r2, [r1, #60]
+    here:
+    subs r3, r3, #1
+    bne loop
+)";
+
+TEST(CoreControlTest, BreakpointStopsEachTimeAndCostsNoTime) {
+  std::uint64_t clocks[2];
+  Counts counts[2];
+  for (const bool debugged : {false, true}) {
+    ControlledMachine m;
+    const std::string text = std::string(kCachesOn) + kLoop;
+    const auto here = assemble(text + "\n svc #2\n .ltorg\n", 0).symbols.at("here");
+    if (debugged) m.control.set_breakpoint(here);
+    m.execute(text);
+    EXPECT_EQ(m.pcs, std::vector<std::uint32_t>(debugged ? 3 : 0, here));
+    clocks[debugged] = m.core.clock_count();
+    counts[debugged] = m.core.counts();
+  }
+  EXPECT_EQ(clocks[0], clocks[1]);
+  EXPECT_EQ(counts[0].instructions, counts[1].instructions);
+  EXPECT_EQ(counts[0].stall, counts[1].stall);
+  EXPECT_EQ(counts[0].icache_accesses, counts[1].icache_accesses);
+}
+
+TEST(CoreControlTest, StepsGoInstructionByInstructionAndRangesAsOne) {
+  ControlledMachine m;
+  const auto p = assemble(std::string(kLoop) + "\n svc #2\n .ltorg\n", 0);
+  const std::uint32_t loop = p.symbols.at("loop"), here = p.symbols.at("here");
+  m.control.on_stop = [&](const CoreControl::Stop& s) {
+    const std::uint32_t pc = m.core.reg(15);
+    m.pcs.push_back(pc);
+    if (pc == loop) return m.control.step(loop, here);
+    if (m.pcs.size() < 4) m.control.step();
+  };
+  m.control.request_halt();
+  m.execute(kLoop);
+  EXPECT_EQ(m.pcs, (std::vector<std::uint32_t>{0, 4, loop, here}));
+}
+
+/// Stops come before the access, with its lowest address; each address is worked out by hand.
+TEST(CoreControlTest, WatchpointsKnowEveryFormOfAccess) {
+  ControlledMachine m;
+  m.control.set_watch(0, 0xFFFF'FFFFu, CoreControl::Watch::kAccess);
+  m.execute(R"(
+    mov r1, #0x1000
+    mov r2, #0x10
+    movs r3, #3, 2
+    mov sp, #0x2000
+    str r2, [r1]
+    ldr r4, [r1, #4]!
+    ldrb r4, [r1], #-4
+    strh r2, [r1, #-2]
+    ldrsh r4, [r1, r2]
+    ldrsb r4, [r1, -r2]!
+    str r2, [r1, r2, lsl #2]
+    ldrd r4, [r1, #8]
+    strd r4, [r1, #16]
+    ldrne r4, [r1]
+    cmp r1, r1
+    ldrne r4, [r1]
+    stmia r1, {r2, r3}
+    ldmib r1!, {r4, r5, r6}
+    stmdb sp!, {r4-r7, lr}
+    ldmda r1, {r4, r5}
+    swp r4, r2, [r1]
+    swpb r4, r2, [r1]
+    ldr r4, lit
+    add r0, pc, #1
+    bx r0
+    .thumb
+    push {r4, r5}
+    ldr r4, [sp, #4]
+    strb r4, [r1, #3]
+    ldmia r1!, {r4, r5}
+    pop {r4, r5}
+    ldr r4, lit2
+    adr r0, back
+    bx r0
+    .align 2
+    lit2: .word 0
+    .arm
+    back: b over
+    lit: .word 0
+    over:
+  )");
+  const std::uint32_t lit = m.program.symbols.at("lit"), lit2 = m.program.symbols.at("lit2");
+  EXPECT_EQ(m.addresses,
+            (std::vector<std::uint32_t>{0x1000, 0x1004, 0x1004, 0xFFE, 0x1010, 0xFF0, 0x1030, 0xFF8,
+                                        0x1000, 0xFF0, 0xFF0, 0xFF4, 0x1FEC, 0xFF8, 0xFFC, 0xFFC, lit,
+                                        0x1FE4, 0x1FE8, 0xFFF, 0xFFC, 0x1FE4, lit2}));
+}
+
+TEST(CoreControlTest, WatchpointsMindKindAndBytes) {
+  using Watch = CoreControl::Watch;
+  const std::string text = R"(
+    mov r1, #0x1000
+    ldrb r2, [r1, #3]
+    ldrb r2, [r1, #4]
+    strh r2, [r1, #6]
+    strb r2, [r1, #8]
+    str r2, [r1, #0]
+  )";
+  const std::pair<Watch, std::vector<std::uint32_t>> expected[] = {
+      {Watch::kRead, {8}}, {Watch::kWrite, {12}}, {Watch::kAccess, {8, 12}}};
+  for (const auto& [kind, pcs] : expected) {
+    ControlledMachine m;
+    m.control.set_watch(0x1004, 4, kind);
+    m.execute(text);
+    EXPECT_EQ(m.pcs, pcs);
+  }
+  ControlledMachine none;
+  none.control.set_watch(0x1004, 4, Watch::kAccess);
+  none.control.clear_watch(0x1004, 4, Watch::kAccess);
+  none.execute(text);
+  EXPECT_TRUE(none.pcs.empty());
+}
+
+/// A debugger may change where and in which state the program goes on.
+TEST(CoreControlTest, RegistersAreChangedInAStop) {
+  ControlledMachine m;
+  const std::string text = "mov r0, #1\n mov r1, #1\n mov r2, #1\n";
+  m.control.set_breakpoint(4);
+  m.control.on_stop = [&](const CoreControl::Stop&) {
+    m.debug.set_reg(0, 7);
+    m.debug.set_reg(15, 8);
+    m.debug.set_cpsr(m.debug.cpsr() | 0x4000'0000u);
+  };
+  m.execute(text);
+  EXPECT_EQ(m.core.reg(0), 7u);
+  EXPECT_EQ(m.core.reg(1), 0u);
+  EXPECT_EQ(m.core.reg(2), 1u);
+  EXPECT_TRUE(m.core.cpsr() & 0x4000'0000u);
 }
 
 }  // namespace
