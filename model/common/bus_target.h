@@ -17,6 +17,7 @@ namespace fovea {
 class BusTarget : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
+  const RegBank& bank() const { return bank_; }
 
  protected:
   BusTarget(sc_core::sc_module_name name, RegBank& regs) : sc_module(name), bank_(regs) {

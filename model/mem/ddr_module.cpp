@@ -86,9 +86,9 @@ unsigned DdrModule::transport_dbg(MemRequest& r) {
   const auto n =
       static_cast<unsigned>(std::min<std::uint64_t>(r.bytes, store_.size() - r.address));
   if (r.write)
-    std::memcpy(store_.at(r.address), r.data, n);
+    controller_.debug_write(r.address, r.data, n);
   else
-    std::memcpy(r.data, store_.at(r.address), n);
+    controller_.debug_read(r.address, r.data, n);
   return n;
 }
 

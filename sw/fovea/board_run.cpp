@@ -10,6 +10,7 @@
 
 #include "model/board/board.h"
 #include "model/video/scene/ahead.h"
+#include "sw/fovea/board_debug.h"
 #include "sw/fovea/bus_trace_run.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/ffmpeg.h"
@@ -232,6 +233,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
 
   RunResult result;
   auto& arm = board_->dm365.arm;
+  BoardDebugMemory debug_memory(board_->dm365);
+  std::unique_ptr<GdbSession> gdb;
+  if (request.gdb_port)
+    gdb = std::make_unique<GdbSession>(*request.gdb_port, arm.core(), debug_memory,
+                                       board_views(*board_, request.params), request.stop,
+                                       *request.notes);
   // Slices only let the host look in; nothing in the model depends on where they end.
   const Picoseconds slice = 5 * kPsPerMs;
   std::string guest;
@@ -244,9 +251,14 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       break;
     }
     if (closed_ && arm.core().mark_done()) break;
-    if (failure || request.stop.load()) {
+    if (failure || request.stop.load() || (gdb && gdb->killed())) {
       result.complete = false;
       break;
+    }
+    if (gdb) {
+      // A whole slice without an instruction boundary: the core waits for an interrupt.
+      if (gdb->halt_pending()) gdb->serve_asleep();
+      gdb->look();
     }
     if (!board_->window_start() && kernel_time() > params_.run.start_limit()) {
       guest = failure_text(
@@ -262,7 +274,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     // A stopped run closes its window a slice from here: the masters may have worked ahead of this
     // time, but not past the display's next line. The core's own part follows at its next boundary,
     // which a failed core does not reach any more.
-    if (board_->window_start() && guest.empty()) {
+    if (board_->window_start() && guest.empty() && !(gdb && gdb->killed())) {
       board_->close_window(kernel_time() + slice);
       for (int i = 0; i < 20 && !(closed_ && arm.core().mark_done()); ++i)
         sc_core::sc_start(ps_time(slice));
@@ -293,6 +305,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   }
   result.uart = board_->uart_text();
   add_host(result, request.strict_sync);
+  if (gdb) gdb->exited(guest.empty() ? 0 : 3);
   return result;
 }
 

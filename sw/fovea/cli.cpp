@@ -9,9 +9,12 @@
 #include <array>
 #include <ostream>
 
+#include "sw/fovea/cli_exec.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/gdb_server.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
+#include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/run_dir.h"
 
@@ -30,24 +33,7 @@ struct RunOptions {
   bool no_frames = false;
   bool mp4 = false;
   std::string bus_trace;
-};
-
-/// Counts remarks about the guest for one run and shows each once.
-class RemarkScope {
- public:
-  RemarkScope(std::ostream& err, bool strict) {
-    auto& d = Diagnostics::instance();
-    d.clear();
-    d.set_strict(strict);
-    d.set_sink([&err](Diagnostics::Kind kind, const std::string& what) {
-      err << "fovea: " << (kind == Diagnostics::Kind::kGuest ? "guest: " : "not modelled: ")
-          << one_line(what) << "\n";
-    });
-  }
-  ~RemarkScope() {
-    Diagnostics::instance().set_sink({});
-    Diagnostics::instance().set_strict(false);
-  }
+  std::string gdb;
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
@@ -90,11 +76,16 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .stop = context.stop ? *context.stop : kNeverStops,
                      .progress = meter,
                      .frame = {},
-                     .bus_trace = options.bus_trace};
+                     .bus_trace = options.bus_trace,
+                     .gdb_port = {}};
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
     };
+  if (!options.gdb.empty()) {
+    request.gdb_port = parse_gdb_port(options.gdb);
+    request.notes = &context.err;
+  }
   RunResult result;
   try {
     result = simulation->run(request);
@@ -210,6 +201,8 @@ void install_signals(CliContext& context) {
 }
 
 int run_cli(const std::vector<std::string>& args, const CliContext& context) {
+  std::vector<std::string> own = args;
+  ExecOptions exec;
   CLI::App app("Co-simulation of a fish-eye correction system: DM365 board and its firmware.",
                "fovea");
   app.require_subcommand(1);
@@ -250,6 +243,10 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   const CLI::Option* replay_out = replay_command->add_option(
       "-o,--out", replay.out_dir, "Folder for the results (out/TRACE)");
   replay_command->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
+  run_command->add_option("--gdb", run.gdb,
+                          "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
+  CLI::App* exec_command = add_exec_command(app, exec);
+  if (!own.empty() && own[0] == "exec") exec.arguments = take_program_arguments(own);
 
   std::string pattern;
   bool markdown = false;
@@ -266,9 +263,10 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
         std::none_of(commands.begin(), commands.end(),
                      [&](CLI::App* c) { return c->check_name(args[0]); }))
       throw UserError(
-          fmt::format("unknown command '{}'; allowed: run, replay, params, version", one_line(args[0])));
+          fmt::format("unknown command '{}'; allowed: run, exec, replay, params, version",
+                      one_line(args[0])));
     try {
-      app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+      app.parse(std::vector<std::string>(own.rbegin(), own.rend()));
     } catch (const CLI::ParseError& e) {
       if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
       throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
@@ -279,6 +277,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       throw UserError("--bus-trace '': a file name is needed");
     if (*replay_command) return command_replay(replay, args, context);
     if (*run_command) return command_run(run, args, context);
+    if (*exec_command) return command_exec(exec, args, context);
     if (*params_command) return command_params(pattern, markdown, context);
     if (*version_command) context.out << "fovea " << version_text() << std::endl;
     return kExitDone;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/executor.h"
 #include "sw/fovea/simulation.h"
 
 namespace fovea::app {
@@ -27,6 +28,7 @@ struct CliContext {
   std::ostream& err;
   bool terminal = false;  ///< err is a terminal
   std::function<std::unique_ptr<Simulation>()> make_simulation;
+  std::function<std::unique_ptr<Executor>()> make_executor = nullptr;
   const std::atomic<int>* signal = nullptr;  ///< the signal that asked to stop; 0: none
   const std::atomic<bool>* stop = nullptr;   ///< set together with it
 };

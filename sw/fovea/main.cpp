@@ -12,7 +12,8 @@ int sc_main(int argc, char** argv) {
   CliContext context{.out = std::cout,
                      .err = std::cerr,
                      .terminal = ::isatty(STDERR_FILENO) == 1,
-                     .make_simulation = make_simulation};
+                     .make_simulation = make_simulation,
+                     .make_executor = make_executor};
   install_signals(context);
   const int status = run_cli({argv + 1, argv + argc}, context);
   // Without destructors: the kernel's own state must not outlive or predecease ours in an order

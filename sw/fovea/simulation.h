@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +51,8 @@ struct RunRequest {
   /// full), which the board lets through.
   std::function<void(const DisplayedFrame&)> frame;
   std::filesystem::path bus_trace;  ///< file for the bus trace of the window; empty: none
+  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before the core starts
+  std::ostream* notes = nullptr;          ///< says where; not null with gdb_port
 };
 
 /// What the board answers.

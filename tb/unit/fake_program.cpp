@@ -1,6 +1,8 @@
-// Gives main.cpp the stand-in board.
+// Gives main.cpp the stand-in board, which runs no foreign programs.
+#include "sw/fovea/executor.h"
 #include "tb/unit/fake_board.h"
 
 namespace fovea::app {
 std::unique_ptr<Simulation> make_simulation() { return std::make_unique<test::FakeBoard>(); }
+std::unique_ptr<Executor> make_executor() { throw UserError("no machine for exec"); }
 }  // namespace fovea::app

@@ -20,6 +20,8 @@
 
 namespace fovea::cpu {
 
+class CoreControl;
+
 enum class CpuMode : std::uint32_t {
   kUsr = 0x10, kFiq = 0x11, kIrq = 0x12, kSvc = 0x13, kAbt = 0x17, kUnd = 0x1B, kSys = 0x1F
 };
@@ -35,7 +37,8 @@ struct AccessRecord {
 /// the bus. An instruction boundary at clock c has the time of edge c.
 class Core : public Background {
  public:
-  /// @param tcm the 32 KB RAM behind both TCM windows (0x0 and 0x10000); a power of two of bytes
+  /// @param tcm the 32 KB RAM behind both TCM windows (0x0 and 0x10000), a power of two of bytes;
+  ///   empty: a core without TCMs
   Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm);
 
   void set_clock(Frequency f, Picoseconds at);
@@ -77,6 +80,8 @@ class Core : public Background {
 
  private:
   friend class CoreTest;
+  friend class CoreDebug;
+  friend class CoreControl;
   static constexpr unsigned kPcDelayArm = 8;
   enum class Result : std::uint8_t { kOk, kAbort };
   struct Line {
@@ -395,6 +400,9 @@ class Core : public Background {
   unsigned chain_ = 0;                // exceptions since the last completed instruction
   bool failing_ = false;
   std::uint32_t failed_pc_ = 0;
+
+  CoreControl* debugger_ = nullptr;   // looks at every instruction boundary while a debugger wants to
+  void control_boundary();             // debug_control.cpp
 
   Counts counts_;
   CoreStats window_;

@@ -47,7 +47,7 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
       v = 0x1D000000u | size_field(params_.dcache.size()) << 12 |
           size_field(params_.icache.size());
       return true;
-    case id(0, 0, 0, 2): v = 0x00010001u; return true;
+    case id(0, 0, 0, 2): v = tcm_.empty() ? 0 : 0x00010001u; return true;
     case id(0, 1, 0, 0): v = control_; return true;
     case id(0, 2, 0, 0): v = ttbr_; return true;
     case id(0, 3, 0, 0): v = dacr_; return true;
@@ -102,6 +102,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(0, 9, 0, 1): ilock_ = v & 15u; return true;
     case id(0, 9, 1, 0):
     case id(0, 9, 1, 1): {
+      if (tcm_.empty()) return true;
       // The regions are soldered on this chip; only the enable bit moves.
       auto& region = reg == id(0, 9, 1, 0) ? dtcm_region_ : itcm_region_;
       auto& size = reg == id(0, 9, 1, 0) ? dtcm_size_ : itcm_size_;

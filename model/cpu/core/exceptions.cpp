@@ -36,9 +36,10 @@ void Core::reset(std::uint32_t entry, Picoseconds now) {
   fcse_pid_ = process_ = 0;
   stop_requested_ = false;
   // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
-  itcm_region_ = 6u << 2 | 1u;
-  dtcm_region_ = kDtcmBase | 6u << 2 | 1u;
-  itcm_size_ = dtcm_size_ = 32 * 1024;
+  const bool tcm = !tcm_.empty();
+  itcm_region_ = tcm ? 6u << 2 | 1u : 0;
+  dtcm_region_ = tcm ? kDtcmBase | 6u << 2 | 1u : 0;
+  itcm_size_ = dtcm_size_ = tcm ? 32 * 1024 : 0;
   cycle_ = clock_.running() ? clock_.edge_after(now) : 0;
   attention_ = true;
   flush_memos();

@@ -55,6 +55,7 @@ void Core::run() {
       step_attention();
       if (stop_requested_) stop_cycle_ = 0;  // one more instruction
     }
+    if (debugger_) [[unlikely]] control_boundary();
     const Instruction* i = fetch();
     if (!i) {
       pc_ = next_pc_;
@@ -68,7 +69,7 @@ void Core::run() {
     run_va_ = pc_ & ~31u;
     run_first_ = reinterpret_cast<std::intptr_t>(i);
     const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&
-                       chain_ == 0 && !branched_;
+                       chain_ == 0 && !branched_ && !debugger_;
     if (!chain) {
       execute_alone(*i);
       continue;

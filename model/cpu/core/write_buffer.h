@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 namespace fovea::cpu {
 
@@ -74,6 +75,18 @@ class WriteBuffer {
     if (address - victim_address >= victim_bytes) return false;
     byte = victim[address - victim_address];
     return true;
+  }
+
+  /// Changes pending bytes from `address` on where they are (a debugger's write).
+  void patch(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+    for (std::size_t k = 0; k < bytes.size(); ++k) {
+      const std::uint32_t at = address + static_cast<std::uint32_t>(k);
+      for (unsigned i = 0; i < count_; ++i) {
+        Entry& e = entries_[(head_ + i) % kAddresses];
+        if (at - e.address < e.bytes) e.data[at - e.address] = bytes[k];
+      }
+      if (at - victim_address < victim_bytes) victim[at - victim_address] = bytes[k];
+    }
   }
 
   std::uint32_t victim_address = 0;

@@ -76,6 +76,11 @@ class DdrController {
   const Picoseconds* next_decision_place() const { return &next_; }
   void step();
 
+  /// A debugger's access, without time: memory with the write data that wait in the FIFO. The caller
+  /// checks address + bytes against the SDRAM's size.
+  void debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const;
+  void debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes);
+
   DdrStats stats;
   /// What reads waited for here, between the pipeline's end and their first column command: each
   /// clock is blamed on the last command before it, a master's for others, or the read's own ACT and

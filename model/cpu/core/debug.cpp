@@ -1,0 +1,172 @@
+#include "model/cpu/core/debug.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace fovea::cpu {
+namespace {
+
+constexpr std::uint32_t kLineMask = Cache::kLineBytes - 1;
+
+/// Calls f(va, offset, count) for each piece inside one cache line, until one answers false.
+template <class F>
+bool by_lines(std::uint32_t va, std::size_t bytes, F f) {
+  for (std::size_t done = 0; done < bytes;) {
+    const std::uint32_t at = va + static_cast<std::uint32_t>(done);
+    const std::size_t n = std::min<std::size_t>(bytes - done, Cache::kLineBytes - (at & kLineMask));
+    if (!f(at, done, n)) return false;
+    done += n;
+  }
+  return true;
+}
+
+}  // namespace
+
+/// Memory with what the write and victim buffers still hold.
+bool CoreDebug::read_memory(std::uint32_t pa, std::span<std::uint8_t> to) {
+  if (!memory_.debug_read(pa, to)) return false;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    core_.writes_.find(pa + static_cast<std::uint32_t>(k), to[k]);
+  return true;
+}
+
+std::optional<std::uint32_t> CoreDebug::table_word(std::uint32_t pa) {
+  std::array<std::uint8_t, 4> bytes;
+  if (!read_memory(pa, bytes)) return std::nullopt;
+  std::uint32_t word;
+  std::memcpy(&word, bytes.data(), 4);
+  return word;
+}
+
+std::optional<CoreDebug::Place> CoreDebug::place(std::uint32_t mva) {
+  if (!(core_.control_ & 1u)) return Place{mva, false};
+  const bool cache_on = core_.control_ & 4u;
+  if (const TlbEntry* e = core_.tlb_.find(mva))
+    return Place{e->base_pa | (mva & e->mask), e->cacheable && cache_on};
+  // The walk of Core::walk() without its time, faults and TLB.
+  const auto first = table_word((core_.ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2);
+  if (!first) return std::nullopt;
+  const auto page = [&](std::uint32_t d, std::uint32_t mask) {
+    return Place{(d & ~mask) | (mva & mask), (d >> 3 & 1u) && cache_on};
+  };
+  if ((*first & 3u) == 2) return page(*first, 0xFFFFFu);
+  if ((*first & 3u) == 0) return std::nullopt;
+  const bool fine = (*first & 3u) == 3;
+  const auto second = table_word(fine ? (*first & 0xFFFFF000u) | ((mva >> 10) & 0x3FFu) << 2
+                                      : (*first & 0xFFFFFC00u) | ((mva >> 12) & 0xFFu) << 2);
+  if (!second) return std::nullopt;
+  switch (*second & 3u) {
+    case 1: return page(*second, 0xFFFFu);
+    case 2: return page(*second, 0xFFFu);
+    case 3: return fine ? std::optional(page(*second, 0x3FFu)) : std::nullopt;
+    default: return std::nullopt;
+  }
+}
+
+std::optional<std::uint32_t> CoreDebug::physical(std::uint32_t va) {
+  const auto p = place(core_.modified(va));
+  return p ? std::optional(p->pa) : std::nullopt;
+}
+
+bool CoreDebug::read(std::uint32_t va, std::span<std::uint8_t> to) {
+  return by_lines(va, to.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
+    const std::uint32_t mva = core_.modified(at);
+    const auto piece = to.subspan(offset, n);
+    if (core_.in_tcm(mva)) {
+      std::memcpy(piece.data(), core_.tcm(mva), n);
+      return true;
+    }
+    const auto p = place(mva);
+    if (!p) return false;
+    if (const int i = p->cached ? core_.dcache_.find(mva) : -1; i >= 0) {
+      std::memcpy(piece.data(), core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), n);
+      return true;
+    }
+    return read_memory(p->pa, piece);
+  });
+}
+
+bool CoreDebug::write(std::uint32_t va, std::span<const std::uint8_t> from) {
+  return by_lines(va, from.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
+    const std::uint32_t mva = core_.modified(at);
+    const auto piece = from.subspan(offset, n);
+    if (core_.in_tcm(mva)) {
+      std::memcpy(core_.tcm(mva), piece.data(), n);
+      core_.tcm_decoded_[(mva & (core_.tcm_.size() - 1)) >> 5].valid = 0;
+      core_.line_va_ = 1;
+      return true;
+    }
+    const auto p = place(mva);
+    if (!p || !memory_.debug_write(p->pa, piece)) return false;
+    // Older data on their way to memory must not win later.
+    core_.writes_.patch(p->pa, piece);
+    if (core_.write_in_flight_) {
+      BusAccess& a = core_.write_access_;
+      for (std::size_t k = 0; k < n; ++k)
+        if (const std::uint32_t d = p->pa + static_cast<std::uint32_t>(k) - a.address; d < a.bytes)
+          a.data[d] = piece[k];
+    }
+    if (const int i = core_.dcache_.find(mva); i >= 0)
+      std::memcpy(core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), piece.data(), n);
+    patch_instructions(mva, p->pa, piece);
+    return true;
+  });
+}
+
+void CoreDebug::patch_instructions(std::uint32_t mva, std::uint32_t pa,
+                                   std::span<const std::uint8_t> from) {
+  if (const int i = core_.icache_.find(mva); i >= 0) {
+    const auto n = static_cast<unsigned>(i);
+    std::memcpy(core_.icache_.data(n) + (mva & kLineMask), from.data(), from.size());
+    core_.decoded_[n].valid = 0;
+    core_.line_va_ = 1;
+  }
+  auto* const words = reinterpret_cast<std::uint8_t*>(core_.fetch_words_);
+  for (std::size_t k = 0; k < from.size(); ++k)
+    if (const std::uint32_t d = pa + static_cast<std::uint32_t>(k) - core_.fetch_buffer_pa_;
+        core_.fetch_buffer_pa_ != 1 && d < sizeof core_.fetch_words_)
+      words[d] = from[k];
+}
+
+void CoreDebug::set_reg(unsigned i, std::uint32_t value) {
+  if (i != 15) return core_.set_reg(i, value);
+  core_.pc_ = core_.next_pc_ = value & ((core_.cpsr_ & 0x20u) ? ~1u : ~3u);
+  core_.fetch_branched_ = true;
+}
+
+void CoreDebug::set_cpsr(std::uint32_t value) {
+  core_.set_cpsr(value);
+  core_.line_va_ = 1;
+}
+
+std::span<const CoreDebug::SystemRegister> CoreDebug::system_registers() {
+  static constexpr std::array<SystemRegister, 8> kRegisters = {{
+      {"control", [](const Core& c) { return c.control_; }},
+      {"ttbr", [](const Core& c) { return c.ttbr_; }},
+      {"dacr", [](const Core& c) { return c.dacr_; }},
+      {"dfsr", [](const Core& c) { return c.dfsr_; }},
+      {"ifsr", [](const Core& c) { return c.ifsr_; }},
+      {"far", [](const Core& c) { return c.far_; }},
+      {"fcse_pid", [](const Core& c) { return c.fcse_pid_; }},
+      {"context_id", [](const Core& c) { return c.context_id_; }},
+  }};
+  return kRegisters;
+}
+
+std::optional<Instruction> CoreDebug::instruction(std::uint32_t va) {
+  const bool thumb = core_.cpsr() & 0x20u;
+  std::array<std::uint8_t, 4> bytes{};
+  const auto piece = std::span(bytes).first(thumb ? 2 : 4);
+  const std::uint32_t mva = core_.modified(va);
+  if (const int i = core_.in_tcm(mva) ? -1 : core_.icache_.find(mva); i >= 0)
+    std::memcpy(bytes.data(), core_.icache_.data(static_cast<unsigned>(i)) + (mva & kLineMask),
+                piece.size());
+  else if (!read(va, piece))
+    return std::nullopt;
+  std::uint32_t word;
+  std::memcpy(&word, bytes.data(), 4);
+  return thumb ? decode_thumb(static_cast<std::uint16_t>(word)) : decode_arm(word);
+}
+
+}  // namespace fovea::cpu

@@ -1,0 +1,138 @@
+#include "model/cpu/core/debug_control.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fovea::cpu {
+namespace {
+
+bool holds(unsigned cond, std::uint32_t cpsr) {
+  const bool n = cpsr >> 31 & 1u, z = cpsr >> 30 & 1u, c = cpsr >> 29 & 1u, v = cpsr >> 28 & 1u;
+  switch (cond >> 1) {
+    case 0: return z != (cond & 1u);
+    case 1: return c != (cond & 1u);
+    case 2: return n != (cond & 1u);
+    case 3: return v != (cond & 1u);
+    case 4: return (c && !z) != (cond & 1u);
+    case 5: return (n == v) != (cond & 1u);
+    case 6: return (!z && n == v) != (cond & 1u);
+    default: return !(cond & 1u);
+  }
+}
+
+/// What an instruction will touch.
+struct Touch {
+  std::uint32_t va = 0, bytes = 0;
+  bool reads = false, writes = false;
+};
+
+}  // namespace
+
+/// Flags travel apart while the core runs; debuggers see them in the CPSR.
+void Core::control_boundary() {
+  pack_flags();
+  debugger_->boundary();
+  unpack_flags();
+}
+
+void CoreControl::update() {
+  const bool active = halt_ || step_ || !breakpoints_.empty() || !watches_.empty();
+  core_.debugger_ = active ? this : nullptr;
+  if (active) core_.attention_ = true;  // a chain under way ends
+}
+
+void CoreControl::set_watch(std::uint32_t va, std::uint32_t bytes, Watch kind) {
+  watches_.push_back({va, bytes, kind});
+  update();
+}
+
+void CoreControl::clear_watch(std::uint32_t va, std::uint32_t bytes, Watch kind) {
+  const auto found = std::find(watches_.begin(), watches_.end(), Range{va, bytes, kind});
+  if (found != watches_.end()) watches_.erase(found);
+  update();
+}
+
+void CoreControl::step(std::uint32_t from, std::uint32_t to) {
+  step_ = true;
+  step_from_ = from;
+  step_to_ = to;
+  update();
+}
+
+void CoreControl::clear() {
+  breakpoints_.clear();
+  watches_.clear();
+  halt_ = step_ = false;
+  update();
+}
+
+void CoreControl::boundary() {
+  const std::uint32_t pc = core_.pc_;
+  std::optional<Stop> stop;
+  if (breakpoints_.contains(pc))
+    stop = Stop{Stop::Reason::kBreakpoint};
+  else if (step_ && (pc < step_from_ || pc >= step_to_))
+    stop = Stop{Stop::Reason::kStep};
+  else if (halt_)
+    stop = Stop{Stop::Reason::kRequest};
+  else if (!watches_.empty())
+    stop = watched(pc);
+  if (!stop) return;
+  halt_ = step_ = false;
+  update();
+  if (on_stop) on_stop(*stop);
+}
+
+/// A watchpoint stops before the access, as the core's own breakpoint unit does.
+std::optional<CoreControl::Stop> CoreControl::watched(std::uint32_t pc) {
+  const auto decoded = debug_.instruction(pc);
+  if (!decoded || decoded->op < Op::kLdr || decoded->op > Op::kSwpb) return std::nullopt;
+  const Instruction& i = *decoded;
+  if (!holds(i.cond, core_.cpsr())) return std::nullopt;
+  const bool thumb = i.flags & kThumbInsn;
+  const std::uint32_t seen_pc = (pc + (thumb ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
+  const std::uint32_t base = i.rn == 15 ? seen_pc : core_.reg(i.rn);
+  Touch t;
+  switch (i.op) {
+    case Op::kLdm:
+    case Op::kStm: {
+      t.bytes = 4 * static_cast<std::uint32_t>(std::popcount(i.imm));
+      const bool pre = i.flags & kPre;
+      t.va = (i.flags & kUp) ? base + (pre ? 4 : 0) : base - t.bytes + (pre ? 0 : 4);
+      t.va &= ~3u;
+      break;
+    }
+    case Op::kSwp:
+    case Op::kSwpb:
+      t.va = base;
+      t.bytes = i.op == Op::kSwp ? 4 : 1;
+      t.reads = t.writes = true;
+      break;
+    default: {
+      const std::uint32_t by = core_.offset(i);
+      t.va = !(i.flags & kPre) ? base : (i.flags & kUp) ? base + by : base - by;
+      switch (i.op) {
+        case Op::kLdrb: case Op::kStrb: case Op::kLdrsb: t.bytes = 1; break;
+        case Op::kLdrh: case Op::kStrh: case Op::kLdrsh: t.bytes = 2; break;
+        case Op::kLdrd: case Op::kStrd: t.bytes = 8; break;
+        default: t.bytes = 4; break;
+      }
+    }
+  }
+  switch (i.op) {
+    case Op::kStr: case Op::kStrb: case Op::kStrh: case Op::kStrd: case Op::kStm:
+      t.writes = true;
+      break;
+    default: t.reads = true; break;
+  }
+  for (const Range& w : watches_) {
+    if (w.kind == Watch::kWrite ? !t.writes : w.kind == Watch::kRead ? !t.reads : false) continue;
+    const std::uint64_t from = std::max(t.va, w.va);
+    const std::uint64_t to = std::min(std::uint64_t{t.va} + t.bytes, std::uint64_t{w.va} + w.bytes);
+    if (from < to)
+      return Stop{Stop::Reason::kWatch, w.kind, static_cast<std::uint32_t>(from)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace fovea::cpu

@@ -1,0 +1,65 @@
+// Stops the core at instruction boundaries: breakpoints, watchpoints, steps, requests.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "model/cpu/core/debug.h"
+
+namespace fovea::cpu {
+
+/// While nothing is set the core does not know of it; with anything set it looks at every boundary
+/// and runs slower on the host, with the same simulated time.
+class CoreControl {
+ public:
+  enum class Watch : std::uint8_t { kWrite, kRead, kAccess };
+  struct Stop {
+    enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch } reason;
+    Watch watch = Watch::kAccess;   ///< kWatch: which kind of watchpoint
+    std::uint32_t address = 0;      ///< kWatch: first watched address that will be touched
+  };
+
+  CoreControl(Core& core, CoreDebug& debug) : core_(core), debug_(debug) {}
+  ~CoreControl() { clear(); core_.debugger_ = nullptr; }
+  CoreControl(const CoreControl&) = delete;
+  CoreControl& operator=(const CoreControl&) = delete;
+
+  /// Called at a boundary, on the core's own stack, before the instruction at the pc; the core goes
+  /// on with that instruction when it returns.
+  std::function<void(const Stop&)> on_stop;
+
+  void set_breakpoint(std::uint32_t va) { breakpoints_.insert(va), update(); }
+  void clear_breakpoint(std::uint32_t va) { breakpoints_.erase(va), update(); }
+  void set_watch(std::uint32_t va, std::uint32_t bytes, Watch kind);
+  void clear_watch(std::uint32_t va, std::uint32_t bytes, Watch kind);
+  /// Stops at the next boundary. Not from another thread.
+  void request_halt() { halt_ = true, update(); }
+  bool halt_pending() const { return halt_; }
+  void cancel_halt() { halt_ = false, update(); }
+  /// Stops at the next boundary whose pc lies outside [from, to).
+  void step(std::uint32_t from = 0, std::uint32_t to = 0);
+  /// Forgets all of it.
+  void clear();
+
+ private:
+  friend class Core;
+  struct Range {
+    std::uint32_t va, bytes;
+    Watch kind;
+    friend bool operator==(const Range&, const Range&) = default;
+  };
+  void boundary();
+  void update();
+  std::optional<Stop> watched(std::uint32_t pc);
+
+  Core& core_;
+  CoreDebug& debug_;
+  std::set<std::uint32_t> breakpoints_;
+  std::vector<Range> watches_;
+  bool halt_ = false, step_ = false;
+  std::uint32_t step_from_ = 0, step_to_ = 0;
+};
+
+}  // namespace fovea::cpu

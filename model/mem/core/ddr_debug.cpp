@@ -1,0 +1,41 @@
+// What a debugger sees: writes are acknowledged when they are taken into the FIFO, so their data are
+// part of memory for whoever looks.
+#include <algorithm>
+#include <cstring>
+
+#include "model/mem/core/ddr_controller.h"
+
+namespace fovea::mem {
+namespace {
+
+struct Overlap {
+  std::uint32_t from, to;  // addresses
+};
+
+Overlap overlap(std::uint32_t a, std::uint32_t a_bytes, std::uint32_t b, std::uint32_t b_bytes) {
+  return {std::max(a, b), std::min(a + a_bytes, b + b_bytes)};
+}
+
+}  // namespace
+
+void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const {
+  std::memcpy(to, store_.at(address), bytes);
+  for (std::size_t i = 0; i < count_; ++i) {  // oldest first
+    const Entry& e = slots_[order_[i]];
+    const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
+    if (e.request.write && a < b)
+      std::memcpy(to + (a - address), e.data.data() + (a - e.request.address), b - a);
+  }
+}
+
+void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes) {
+  std::memcpy(store_.at(address), from, bytes);
+  for (std::size_t i = 0; i < count_; ++i) {
+    Entry& e = slots_[order_[i]];
+    const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
+    if (e.request.write && a < b)
+      std::memcpy(e.data.data() + (a - e.request.address), from + (a - address), b - a);
+  }
+}
+
+}  // namespace fovea::mem

@@ -1,0 +1,75 @@
+#include "sw/fovea/board_debug.h"
+
+#include <cstring>
+
+namespace fovea::app {
+namespace {
+
+constexpr std::uint32_t kSdram = 0x8000'0000;
+constexpr std::uint64_t kInternal = 0x8000, kDataWindow = 0x1'0000;
+
+}  // namespace
+
+bool BoardDebugMemory::in_sdram(std::uint32_t pa, std::size_t bytes) const {
+  return pa >= kSdram && pa - kSdram + std::uint64_t{bytes} <= soc_.ddr.store().size();
+}
+
+bool BoardDebugMemory::debug_read(std::uint32_t pa, std::span<std::uint8_t> to) {
+  if (in_sdram(pa, to.size())) {
+    soc_.ddr.controller().debug_read(pa - kSdram, to.data(), static_cast<unsigned>(to.size()));
+    return true;
+  }
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    const std::uint32_t at = pa + static_cast<std::uint32_t>(k);
+    if (at >= kSdram) return false;
+    std::array<std::uint8_t, 4> word{};
+    MemRequest r;
+    r.address = at & ~3u;
+    r.bytes = 4;
+    r.data = word.data();
+    if (soc_.config.transport_dbg(r) != 4) return false;
+    to[k] = word[at & 3u];
+  }
+  return true;
+}
+
+bool BoardDebugMemory::debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) {
+  if (!in_sdram(pa, from.size())) return false;
+  soc_.ddr.controller().debug_write(pa - kSdram, from.data(), static_cast<unsigned>(from.size()));
+  return true;
+}
+
+GdbViews board_views(board::Board& board, const ParamSet& params) {
+  auto& soc = board.dm365;
+  GdbViews v;
+  v.params = &params;
+  v.memory = {{0, kInternal},
+              {kDataWindow, kDataWindow + kInternal},
+              {kSdram, kSdram + soc.ddr.store().size()}};
+  const std::vector<std::pair<std::string, const BusTarget*>> blocks = {
+      {"ddr", &soc.ddr},   {"uart0", &soc.uart0}, {"uart1", &soc.uart1}, {"i2c", &soc.i2c},
+      {"system", &soc.system}, {"pll1", &soc.pll1}, {"pll2", &soc.pll2}, {"psc", &soc.psc},
+      {"aintc", &soc.aintc},   {"gpio", &soc.gpio}, {"vpss", &soc.vpss}, {"isif", &soc.isif},
+      {"osd", &soc.osd},       {"venc", &soc.venc}};
+  for (const auto& [name, block] : blocks) v.blocks.emplace_back(name, &block->bank());
+  for (std::size_t i = 0; i < soc.timers.size(); ++i)
+    v.blocks.emplace_back("timer" + std::to_string(i), &soc.timers[i]->bank());
+  v.stats = [&board] {
+    auto& chip = board.dm365;
+    std::vector<StatRow> rows;
+    cpu::CoreStats core;
+    core.to = chip.arm.core().counts();
+    core.to.cycles = chip.arm.core().clock_count();
+    collect(core, rows);
+    for (auto& s : chip.scr.crossbar().stats) collect(*s, rows);
+    for (auto& s : chip.scr.latency) collect(*s, rows);
+    collect(chip.ddr.controller().stats, rows);
+    collect(chip.config.stats, rows);
+    collect(chip.isif.stats, rows);
+    collect(board.sink.stats, rows);
+    return rows;
+  };
+  return v;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,24 @@
+// The board as a debugger sees it.
+#pragma once
+#include "model/board/board.h"
+#include "sw/fovea/gdb_session.h"
+
+namespace fovea::app {
+
+/// SDRAM with what waits in the controller's FIFO; registers for reading, whole words or parts, without
+/// their side effects. Writing registers is refused: it would be an act at no simulated time.
+class BoardDebugMemory : public cpu::DebugMemory {
+ public:
+  explicit BoardDebugMemory(soc::Dm365& soc) : soc_(soc) {}
+  bool debug_read(std::uint32_t pa, std::span<std::uint8_t> to) override;
+  bool debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) override;
+
+ private:
+  bool in_sdram(std::uint32_t pa, std::size_t bytes) const;
+  soc::Dm365& soc_;
+};
+
+/// Blocks, memory, statistics and parameters for `monitor`. `board` and `params` outlive it.
+GdbViews board_views(board::Board& board, const ParamSet& params);
+
+}  // namespace fovea::app

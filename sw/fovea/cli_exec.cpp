@@ -1,0 +1,204 @@
+#include "sw/fovea/cli_exec.h"
+
+#include <errno.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <ostream>
+
+#include "sw/fovea/experiment.h"
+#include "sw/fovea/gdb_server.h"
+#include "sw/fovea/remarks.h"
+#include "sw/fovea/run_dir.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr std::array<std::string_view, 8> kWithValue = {"-s",     "--set",   "-o",    "--out",
+                                                        "--load", "--entry", "--root", "--gdb"};
+constexpr std::array<std::string_view, 5> kFlags = {"--thumb", "--fast-memory", "--strict",
+                                                    "--help", "-h"};
+
+constexpr const char* kMemoryHelp =
+    "Memory: RAM of the SDRAM's size (ddr.part) from the multiple of that size below the program's\n"
+    "lowest address, which is 0 for newlib's default link; then there is no internal RAM. Programs\n"
+    "from that size up find the chip's internal RAM at 0x0 and 0x10000 as well. Heap and stack take\n"
+    "the largest piece the program leaves free, the stack from its top. Nothing else answers but\n"
+    "the SDRAM controller's registers. Options may stand before or behind the program; what is no\n"
+    "option of exec, and all behind --, belongs to the program.\n"
+    "Exit status: the program's own; 2 wrong input, 3 the guest failed, 4 a defect of fovea, each\n"
+    "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
+
+std::size_t read_input(std::span<std::uint8_t> to, const std::atomic<bool>* stop) {
+  for (;;) {
+    pollfd p{STDIN_FILENO, POLLIN, 0};
+    const int ready = ::poll(&p, 1, 100);
+    if (stop && stop->load()) return 0;
+    if (ready <= 0) continue;
+    const ssize_t n = ::read(STDIN_FILENO, to.data(), to.size());
+    if (n < 0 && errno == EINTR) continue;
+    return n < 0 ? 0 : static_cast<std::size_t>(n);
+  }
+}
+
+class HostConsole : public SemihostingConsole {
+ public:
+  explicit HostConsole(const CliContext& context) : context_(context) {}
+  std::size_t read(std::span<std::uint8_t> to) override {
+    context_.out.flush();
+    return read_input(to, context_.stop);
+  }
+  void write(bool error_stream, std::string_view text) override {
+    if (error_stream) {
+      context_.out.flush();
+      context_.err << text << std::flush;
+      return;
+    }
+    context_.out << text;
+    if (text.find('\n') != std::string_view::npos) context_.out.flush();
+  }
+
+ private:
+  const CliContext& context_;
+};
+
+ExecProgram program_of(const ExecOptions& o) {
+  const bool flat = !o.load.empty() || !o.entry.empty() || o.thumb;
+  if (!flat) return ExecProgram::elf(o.program);
+  if (o.load.empty() || o.entry.empty())
+    throw UserError("a flat binary needs both --load ADDR and --entry ADDR; an ELF file none");
+  const std::uint32_t entry = parse_address("--entry", o.entry);
+  if (entry & (o.thumb ? 1u : 3u))
+    throw UserError(fmt::format("--entry '{}' is not aligned; allowed: multiples of {}", o.entry,
+                                o.thumb ? 2 : 4));
+  return ExecProgram::flat(o.program, parse_address("--load", o.load), entry | (o.thumb ? 1u : 0u));
+}
+
+}  // namespace
+
+CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
+  CLI::App* c = app.add_subcommand("exec", "Run a program on core and memory, with semihosting");
+  c->add_option("program", o.program, "ELF file, or a flat binary with --load and --entry")
+      ->required();
+  c->add_option("--load", o.load, "Address of a flat binary's first byte");
+  c->add_option("--entry", o.entry, "Address of a flat binary's first instruction");
+  c->add_flag("--thumb", o.thumb, "A flat binary begins in Thumb state");
+  c->add_flag("--fast-memory", o.fast_memory, "Memory without wait states; no bus and no SDRAM");
+  c->add_option("--root", o.root, "Folder of the program's files; without it there are none");
+  c->add_option("-s,--set", o.sets, "Set a parameter, key=value; may be repeated")
+      ->allow_extra_args(false);
+  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, config.json and host.json");
+  c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
+  c->add_flag("--strict", o.strict,
+              "A feature that the guest uses and the model lacks is an error");
+  c->footer(kMemoryHelp);
+  return c;
+}
+
+std::vector<std::string> take_program_arguments(std::vector<std::string>& args) {
+  const auto among = [](const auto& list, std::string_view a) {
+    return std::find(list.begin(), list.end(), a) != list.end();
+  };
+  std::vector<std::string> own, guest;
+  bool program = false, value = false, all = false;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const std::string& a = args[i];
+    const std::string_view name = std::string_view(a).substr(0, a.find('='));
+    if (i == 0 || value) {  // the command; an option's value
+      own.push_back(a);
+      value = false;
+    } else if (all) {
+      guest.push_back(a);
+    } else if (a == "--" && program) {
+      all = true;
+    } else if (among(kWithValue, a)) {
+      own.push_back(a);
+      value = true;
+    } else if (among(kFlags, a) || (a.starts_with("--") && among(kWithValue, name))) {
+      own.push_back(a);
+    } else if (!program) {
+      own.push_back(a);
+      program = !a.starts_with('-');
+    } else {
+      guest.push_back(a);
+    }
+  }
+  args = std::move(own);
+  return guest;
+}
+
+std::string core_table(std::span<const StatRow> stats) {
+  const auto count = [&](const std::string& name) {
+    const StatRow* row = find(stats, name);
+    return row ? std::get<std::uint64_t>(row->value) : 0;
+  };
+  const std::uint64_t cycles = count("cpu.cycles"), instructions = count("cpu.instructions");
+  std::string out = fmt::format("  {:<24} {:>14}\n  {:<24} {:>14}", "cpu.instructions",
+                                instructions, "cpu.cycles", cycles);
+  if (instructions)
+    out += fmt::format("  {:.2f} an instruction",
+                       static_cast<double>(cycles) / static_cast<double>(instructions));
+  out += "\n";
+  for (const auto& row : stats) {
+    const bool share = row.name == "cpu.issue" || row.name == "cpu.idle" ||
+                       row.name.starts_with("cpu.stall.");
+    if (!share || !std::holds_alternative<std::uint64_t>(row.value)) continue;
+    const auto n = std::get<std::uint64_t>(row.value);
+    if (n == 0) continue;
+    out += fmt::format("  {:<24} {:>14}  {:.1f} %\n", row.name, n,
+                       100 * static_cast<double>(n) / static_cast<double>(cycles));
+  }
+  return out;
+}
+
+int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
+                 const CliContext& context) {
+  static const std::atomic<bool> kNeverStops{false};
+  const auto executor = context.make_executor();
+  ParamSet params;
+  executor->declare(params);
+  Experiment experiment(params);
+  for (const auto& set : o.sets) experiment.override_with(set);
+  const ExecProgram program = program_of(o);
+  std::optional<std::uint16_t> gdb_port;
+  if (!o.gdb.empty()) gdb_port = parse_gdb_port(o.gdb);
+
+  std::optional<RunDir> dir;
+  if (!o.out_dir.empty()) {
+    dir.emplace(o.out_dir);
+    dir->write("config.json", config_json(params, experiment, version_text()));
+  }
+  const RemarkScope remarks(context.err, o.strict);
+  HostConsole console(context);
+  const ExecResult result = executor->run({.program = program,
+                                           .arguments = o.arguments,
+                                           .root = o.root,
+                                           .params = params,
+                                           .gdb_port = gdb_port,
+                                           .notes = context.err,
+                                           .fast_memory = o.fast_memory,
+                                           .console = console,
+                                           .stop = context.stop ? *context.stop : kNeverStops});
+  context.out.flush();
+  context.err << core_table(result.stats) << std::flush;
+  if (dir) {
+    dir->write("host.json", host_json(result.host, args, version_text()));
+    dir->write("stats.json",
+               stats_json(result.stats, result.complete && result.guest_failure.empty(),
+                          collect_remarks(Diagnostics::instance())));
+    dir->commit();
+  }
+  if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (result.complete) return result.exit_code;
+  const int signal = context.signal ? context.signal->load() : 0;
+  context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
+                             result.killed && !signal ? "by the debugger" : "before the end");
+  return signal ? 128 + signal : kExitGuestFailed;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,35 @@
+// `fovea exec` on the command line.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sw/fovea/cli.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fovea::app {
+
+struct ExecOptions {
+  std::string program;
+  std::vector<std::string> arguments;  ///< of the program
+  std::vector<std::string> sets;
+  std::string load, entry, root, out_dir, gdb;
+  bool thumb = false, fast_memory = false, strict = false;
+};
+
+/// Adds the subcommand; its options go to `options`.
+CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);
+
+/// Takes the program's own arguments out of a command line that begins with `exec`: whatever follows
+/// the program and is no option of this command, and all behind `--`.
+std::vector<std::string> take_program_arguments(std::vector<std::string>& args);
+
+int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
+                 const CliContext& context);
+
+/// Instructions, clocks and where they went, aligned, one per line.
+std::string core_table(std::span<const StatRow> stats);
+
+}  // namespace fovea::app

@@ -1,0 +1,86 @@
+#include "sw/fovea/exec_board.h"
+
+#include <algorithm>
+
+namespace fovea::app {
+namespace {
+
+/// How far the core may run without the host looking in.
+constexpr Picoseconds kBeat = kPsPerMs;
+
+}  // namespace
+
+ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params,
+                     const ExecMap& map, const ExecClocks& clocks, std::uint32_t entry)
+    : sc_module(name),
+      tcm_(std::span(internal_ram_).first(map.tcm ? internal_ram_.size() : 0)),
+      ram_base_(map.ram_base),
+      arm("arm", params.cpu, tcm_, entry),
+      scr("scr", params.crossbar, {map.ram_base, map.ram_size}, false),
+      config("config", params.config_bus, quiet,
+             {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
+      ddr("ddr", params.ddr),
+      ddr_size_(map.ram_size),
+      arm_clk_("arm_clk", clocks.core),
+      ddr_clk_("ddr_clk", clocks.ddr),
+      scr_clk_("scr_clk", clocks.scr) {
+  SC_HAS_PROCESS(ExecBoard);
+  arm.clk(arm_clk_);
+  arm.irq(irq_);
+  arm.fiq(fiq_);
+  scr.clk(scr_clk_);
+  ddr.ddr_clk(ddr_clk_);
+  ddr.scr_clk(scr_clk_);
+  ddr.enabled(on_);
+  arm.path(scr.path);
+  arm.sockets[cpu::Arm926::kInstructionPort]->bind(*scr.target[index(Master::kArmI)]);
+  arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
+  scr.ddr_socket.bind(ddr.socket);
+  scr.ddr_lookahead.bind(ddr.lookahead);
+  scr.config_socket.bind(config.socket);
+  config.to("ddr").bind(ddr.reg_socket);
+  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
+  program_controller(clocks.ddr);
+  SC_METHOD(beat);
+}
+
+/// JEDEC times of the DDR2-667 part in clocks of this frequency; CL, latency and priority raise are
+/// those of the boot loader. The write to SDBCR ends the initialisation.
+void ExecBoard::program_controller(Frequency ddr_clock) {
+  const auto clocks = [&](std::uint64_t tenths_of_ns) {
+    const std::uint64_t den = ddr_clock.den * 10'000'000'000ull;
+    return static_cast<std::uint32_t>((tenths_of_ns * ddr_clock.num + den - 1) / den);
+  };
+  auto& r = ddr.regs;
+  const std::uint32_t sdtimr = (clocks(1275) - 1) << 25 | (clocks(200) - 1) << 22 |
+                               (clocks(200) - 1) << 19 | (clocks(150) - 1) << 16 |
+                               (clocks(450) - 1) << 11 | (clocks(650) - 1) << 6 |
+                               (clocks(100) - 1) << 3 | (clocks(100) - 1);
+  constexpr std::uint32_t kRasMax = 7, kXp = 2, kXsrd = 199, kCke = 3;
+  const std::uint32_t sdtimr2 = kRasMax << 27 | kXp << 25 | (clocks(1375) - 1) << 16 | kXsrd << 8 |
+                                (clocks(75) - 1) << 5 | kCke;
+  const auto refresh = static_cast<std::uint32_t>(ddr_clock.hertz() * 7.8e-6);
+  r.write(0x10, 4, sdtimr);
+  r.write(0x14, 4, sdtimr2);
+  r.write(0x0C, 4, refresh);
+  r.write(0xE4, 4, 0xC5);
+  r.write(0x20, 4, 0xFE);
+  r.write(0x08, 4, 0x0053'4A32);
+}
+
+/// A pending event bounds how far the core runs ahead; a program in a loop would never come back.
+void ExecBoard::beat() { next_trigger(ps_time(kBeat)); }
+
+bool ExecBoard::debug_read(std::uint32_t pa, std::span<std::uint8_t> to) {
+  if (!holds(pa, to.size())) return false;
+  ddr.controller().debug_read(pa - ram_base_, to.data(), static_cast<unsigned>(to.size()));
+  return true;
+}
+
+bool ExecBoard::debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) {
+  if (!holds(pa, from.size())) return false;
+  ddr.controller().debug_write(pa - ram_base_, from.data(), static_cast<unsigned>(from.size()));
+  return true;
+}
+
+}  // namespace fovea::app

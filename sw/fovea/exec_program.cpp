@@ -1,0 +1,114 @@
+#include "sw/fovea/exec_program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr std::uint32_t kInternalBytes = 0x8000, kDataWindow = 0x1'0000;
+constexpr std::uint32_t kChipSdram = 0x8000'0000;
+constexpr std::uint32_t kVectorBytes = 0x20;
+constexpr std::uint32_t kHeapAlignment = 64;
+
+std::uint64_t end_of(const ElfSegment& s) { return std::uint64_t{s.address} + s.memory_size; }
+
+bool inside(const ElfSegment& s, std::uint64_t base, std::uint64_t size) {
+  return s.address >= base && end_of(s) <= base + size;
+}
+
+bool in_internal_ram(const ElfSegment& s) {
+  return inside(s, 0, kInternalBytes) || inside(s, kDataWindow, kInternalBytes);
+}
+
+}  // namespace
+
+std::uint32_t parse_address(const std::string& option, const std::string& text) {
+  const bool hex = text.starts_with("0x") || text.starts_with("0X");
+  const char* begin = text.data() + (hex ? 2 : 0);
+  const char* end = text.data() + text.size();
+  std::uint32_t value = 0;
+  const auto [stopped, error] = std::from_chars(begin, end, value, hex ? 16 : 10);
+  if (error != std::errc() || stopped != end || begin == end)
+    throw UserError(fmt::format("{} '{}' is no address; allowed: 0 to 0xffffffff", option,
+                                one_line(text)));
+  return value;
+}
+
+ExecProgram ExecProgram::elf(const std::filesystem::path& file) {
+  ExecProgram p;
+  p.name_ = file.filename().string();
+  p.image_ = ElfImage::load(file);
+  p.entry_ = p.image_->entry();
+  p.segments_ = p.image_->segments();
+  return p;
+}
+
+ExecProgram ExecProgram::flat(const std::filesystem::path& file, std::uint32_t load,
+                              std::uint32_t entry) {
+  constexpr std::uintmax_t kMaxBytes = 256u << 20;
+  const std::string bytes = read_file(file, kMaxBytes);
+  if (bytes.empty())
+    throw UserError(fmt::format("program '{}' is empty", one_line(file.string())));
+  if (load + std::uint64_t{bytes.size()} > std::uint64_t{1} << 32)
+    throw UserError(fmt::format("--load 0x{:08x}: {} bytes run over the end of the addresses", load,
+                                bytes.size()));
+  ExecProgram p;
+  p.name_ = file.filename().string();
+  p.entry_ = entry;
+  p.segments_.push_back({0, load, load, static_cast<std::uint32_t>(bytes.size()),
+                         {bytes.begin(), bytes.end()}});
+  return p;
+}
+
+ExecMap ExecProgram::map(std::uint64_t ram_size) const {
+  ExecMap m;
+  m.ram_size = ram_size;
+  // The lowest segment that is no guest of the internal RAM chooses the window.
+  const ElfSegment* lowest = nullptr;
+  for (const auto& s : segments_)
+    if (!in_internal_ram(s) && (!lowest || s.address < lowest->address)) lowest = &s;
+  m.ram_base = lowest ? static_cast<std::uint32_t>(lowest->address / ram_size * ram_size)
+                      : kChipSdram;
+  m.tcm = m.ram_base != 0;
+  for (const auto& s : segments_) {
+    if (inside(s, m.ram_base, ram_size) || (m.tcm && in_internal_ram(s))) continue;
+    throw UserError(fmt::format(
+        "program '{}': segment {} (0x{:08x}, {} bytes) lies outside memory; allowed: RAM from "
+        "0x{:08x} to 0x{:08x}{}; 'ddr.part' sets its size",
+        one_line(name_), s.index, s.address, s.memory_size, m.ram_base,
+        m.ram_base + (ram_size - 1), m.tcm ? ", or internal RAM at 0x0 and 0x10000" : ""));
+  }
+  // The largest gap between the segments in the window.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> used = {
+      {m.ram_base, m.ram_base + (m.ram_base == 0 ? kVectorBytes : 0)}};
+  for (const auto& s : segments_)
+    if (inside(s, m.ram_base, ram_size)) used.emplace_back(s.address, end_of(s));
+  std::sort(used.begin(), used.end());
+  // The last address of the address space cannot be the end of a stack.
+  const std::uint64_t top =
+      std::min<std::uint64_t>(m.ram_base + ram_size, (std::uint64_t{1} << 32) - kHeapAlignment);
+  used.emplace_back(top, top);
+  std::uint64_t free_from = used.front().second, best = 0;
+  for (const auto& [from, to] : used) {
+    const std::uint64_t aligned = (free_from + kHeapAlignment - 1) / kHeapAlignment * kHeapAlignment;
+    const std::uint64_t end = from / 8 * 8;
+    if (end > aligned && end - aligned > best) {
+      best = end - aligned;
+      m.free_base = static_cast<std::uint32_t>(aligned);
+      m.free_end = static_cast<std::uint32_t>(end);
+    }
+    free_from = std::max(free_from, to);
+  }
+  if (best == 0)
+    throw UserError(fmt::format("program '{}' leaves no memory for a stack; 'ddr.part' sets its "
+                                "size", one_line(name_)));
+  return m;
+}
+
+}  // namespace fovea::app

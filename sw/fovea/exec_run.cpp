@@ -1,0 +1,102 @@
+// `fovea exec`: parameters, the choice of the machine, and its figures.
+#include <sys/resource.h>
+
+#include <bit>
+#include <chrono>
+
+#include "model/board/board_params.h"
+#include "sw/fovea/exec_board.h"
+#include "sw/fovea/flat_machine.h"
+
+namespace fovea::app {
+namespace {
+
+using Wall = std::chrono::steady_clock;
+
+class BoardExecutor final : public Executor {
+ public:
+  void declare(ParamSet& set) override {
+    cpu_.declare(set);
+    set.add(crossbar_);
+    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[index(m)]);
+    set.add(config_bus_);
+    set.add(ddr_);
+    set.add(clocks_);
+  }
+  std::uint64_t memory_bytes() const override { return ddr_.size_bytes(); }
+  ExecResult run(const ExecRequest& request) override;
+
+ private:
+  ExecResult run_board(const ExecRequest& request, const ExecMap& map, const ExecClocks& clocks);
+
+  cpu::CpuParams cpu_;
+  bus::CrossbarParams crossbar_;
+  bus::ConfigBusParams config_bus_;
+  mem::DdrParams ddr_;
+  board::ClockParams clocks_;
+  std::unique_ptr<ExecBoard> board_;
+};
+
+ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& map,
+                                    const ExecClocks& clocks) {
+  board_ = std::make_unique<ExecBoard>("exec", ExecBoardParams{cpu_, crossbar_, config_bus_, ddr_},
+                                       map, clocks, request.program.entry());
+  auto& arm = board_->arm;
+  // The console is the program's: no remark of the kernel about the end.
+  sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
+                                          sc_core::SC_DO_NOTHING);
+  ExecSession session(arm.core(), *board_, request, map);
+  session.load(board_->ram(), board_->tcm());
+  session.attach(*board_, {{"ddr", &board_->ddr.regs}});
+  // Slices only let the host look in. No instruction takes as long as one.
+  const Picoseconds slice = 10 * kPsPerMs;
+  std::string failure;
+  for (std::uint64_t before = ~std::uint64_t{0};;) {
+    sc_core::sc_start(ps_time(slice));
+    failure = arm.failure();
+    if (!failure.empty() || session.ended() || request.stop.load()) break;
+    GdbSession* const gdb = session.gdb();
+    if (gdb && gdb->killed()) break;
+    const std::uint64_t now = arm.core().instructions_executed();
+    if (gdb) gdb->look();
+    if (now == before) {
+      failure = "the program waits for an interrupt, and none can come";
+      break;
+    }
+    before = now;
+  }
+  ExecResult result = session.result(failure);
+  board_->scr.settle();
+  board_->ddr.settle(kernel_time());
+  for (const auto m : {Master::kArmI, Master::kArmD}) {
+    collect(*board_->scr.crossbar().stats[index(m)], result.stats);
+    collect(*board_->scr.latency[index(m)], result.stats);
+  }
+  collect(board_->ddr.controller().stats, result.stats);
+  return result;
+}
+
+ExecResult BoardExecutor::run(const ExecRequest& request) {
+  const auto started = Wall::now();
+  for (const auto* cache : {&cpu_.icache, &cpu_.dcache})
+    if (!std::has_single_bit(cache->size()))
+      throw UserError("key '" + cache->size.key() + "': '" + cache->size.text() +
+                      "' is not allowed; allowed: powers of two");
+  const ExecMap map = request.program.map(memory_bytes());
+  const ExecClocks clocks = ExecClocks::preset(clocks_.preset());
+  ExecResult result = request.fast_memory ? run_flat(request, cpu_, map, clocks.core)
+                                          : run_board(request, map, clocks);
+  const std::chrono::duration<double> wall = Wall::now() - started;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  result.host.push_back({"wall_time", wall.count(), "s", "host time of the run"});
+  result.host.push_back({"peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "B",
+                         "largest resident memory of the process"});
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<Executor> make_executor() { return std::make_unique<BoardExecutor>(); }
+
+}  // namespace fovea::app

@@ -1,0 +1,128 @@
+#include "sw/fovea/exec_session.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <numeric>
+
+namespace fovea::app {
+namespace {
+
+/// UDF #0: undefined in every version. An exception without a handler ends the run there.
+constexpr std::uint32_t kUndefinedWord = 0xE7F000F0u;
+constexpr unsigned kVectors = 8;
+
+SemihostingSettings settings(const ExecRequest& request, const ExecMap& map) {
+  SemihostingSettings s;
+  s.root = request.root;
+  std::vector<std::string> line = {request.program.name()};
+  line.insert(line.end(), request.arguments.begin(), request.arguments.end());
+  s.command_line = guest_command_line(line);
+  s.heap_base = map.free_base;
+  s.heap_limit = s.stack_limit = map.heap_limit();
+  s.stack_base = map.free_end;
+  return s;
+}
+
+}  // namespace
+
+ExecClocks ExecClocks::preset(std::string_view name) {
+  // SYSCLK4, the crossbar's clock, is half the DDR clock in each of them.
+  const auto of = [](std::uint64_t core_mhz, std::uint64_t ddr_khz) {
+    return ExecClocks{Frequency(core_mhz * 1'000'000), Frequency(ddr_khz * 1'000),
+                      Frequency(ddr_khz * 1'000, 2)};
+  };
+  if (name == "297/270") return of(297, 270'000);
+  if (name == "270/216") return of(270, 216'000);
+  if (name == "216/172") return of(216, 172'500);
+  if (name == "432/340") return of(432, 340'000);
+  return of(297, 243'000);
+}
+
+ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
+                         const ExecMap& map)
+    : core_(core),
+      debug_(core, memory),
+      request_(request),
+      program_(request.program),
+      map_(map),
+      semihosting_(settings(request, map), request.console) {
+  core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
+}
+
+bool ExecSession::swi(std::uint32_t number) {
+  if (!Semihosting::is_call(number, core_.cpsr() & 0x20u)) return false;
+  semihosting_.call(*this);
+  if (ended()) core_.request_stop();
+  return true;
+}
+
+void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm) {
+  const auto put = [&](std::uint32_t address, std::span<const std::uint8_t> bytes) {
+    std::uint8_t* to = address - map_.ram_base < ram.size() ? &ram[address - map_.ram_base]
+                                                            : &tcm[address & (tcm.size() - 1)];
+    std::memcpy(to, bytes.data(), bytes.size());
+  };
+  std::array<std::uint8_t, 4> word;
+  std::memcpy(word.data(), &kUndefinedWord, 4);
+  for (std::uint32_t k = 0; k < kVectors; ++k) put(4 * k, word);
+  for (const auto& s : program_.segments()) {
+    put(s.address, s.data);
+    put(s.address + static_cast<std::uint32_t>(s.data.size()),
+        std::vector<std::uint8_t>(s.memory_size - s.data.size()));
+  }
+  core_.set_reg(13, map_.free_end);
+}
+
+std::string ExecSession::failure_text(const std::string& what) const {
+  const auto at = [this](std::uint32_t pc) {
+    const std::string where = program_.describe(pc);
+    return fmt::format("pc 0x{:08x}{}", pc, where.empty() ? "" : " (" + where + ")");
+  };
+  std::string text = fmt::format("{} at {}, {:.6f} s after the start", what,
+                                 at(core_.current_pc()), static_cast<double>(now()) * 1e-12);
+  for (const auto& a : core_.last_accesses())
+    text += fmt::format("\n  {} {} bytes at 0x{:08x} from {}", a.write ? "wrote" : "read", a.bytes,
+                        a.address, at(a.pc));
+  return text;
+}
+
+std::vector<StatRow> ExecSession::core_stats() const {
+  cpu::CoreStats stats;
+  stats.to = core_.counts();
+  // The clock's first edge after time 0 is number 1; whoever has not run has no clocks either.
+  stats.to.cycles = core_.clock_count() ? core_.clock_count() - 1 : 0;
+  std::vector<StatRow> rows;
+  collect(stats, rows);
+  return rows;
+}
+
+void ExecSession::attach(cpu::DebugMemory& memory,
+                         std::vector<std::pair<std::string, const RegBank*>> blocks) {
+  if (!request_.gdb_port) return;
+  GdbViews views;
+  views.params = &request_.params;
+  views.stats = [this] { return core_stats(); };
+  views.blocks = std::move(blocks);
+  views.memory = {{map_.ram_base, map_.ram_base + map_.ram_size}};
+  gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
+                                      request_.stop, request_.notes);
+}
+
+ExecResult ExecSession::result(const std::string& failure) {
+  ExecResult out;
+  out.complete = ended();
+  out.exit_code = semihosting_.exit_code().value_or(0);
+  if (!failure.empty()) out.guest_failure = failure_text(failure);
+  out.killed = gdb_ && gdb_->killed();
+  if (gdb_) gdb_->exited(failure.empty() ? out.exit_code : 3);
+  out.stats = core_stats();
+  const cpu::Counts& c = core_.counts();
+  FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==
+                  std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
+              "every clock of the core has one cause");
+  return out;
+}
+
+}  // namespace fovea::app

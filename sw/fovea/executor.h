@@ -1,0 +1,53 @@
+// The seam between `fovea exec` and the machines that run a foreign program.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "model/common/param.h"
+#include "sw/fovea/exec_program.h"
+#include "sw/fovea/outputs.h"
+#include "sw/fovea/semihosting.h"
+
+namespace fovea::app {
+
+struct ExecRequest {
+  const ExecProgram& program;
+  std::vector<std::string> arguments;  ///< argv[1] and on
+  std::filesystem::path root;          ///< folder of the program's files; empty: none
+  const ParamSet& params;
+  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before it starts
+  std::ostream& notes;                 ///< for whoever watches
+  bool fast_memory = false;            ///< flat memory without wait states; no bus, no SDRAM
+  SemihostingConsole& console;
+  const std::atomic<bool>& stop;       ///< set by a signal
+};
+
+struct ExecResult {
+  bool complete = false;      ///< the program ended by itself
+  bool killed = false;        ///< by the debugger
+  int exit_code = 0;          ///< its own
+  std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
+  std::vector<StatRow> stats, host;
+};
+
+/// A machine that runs one program.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  /// Adds all parameters; called once, first.
+  virtual void declare(ParamSet& params) = 0;
+  /// Bytes of the machine's memory, by the parameters.
+  virtual std::uint64_t memory_bytes() const = 0;
+  virtual ExecResult run(const ExecRequest& request) = 0;
+};
+
+/// Defined beside make_simulation().
+std::unique_ptr<Executor> make_executor();
+
+}  // namespace fovea::app

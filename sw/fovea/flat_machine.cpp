@@ -1,0 +1,71 @@
+#include "sw/fovea/flat_machine.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "sw/fovea/exec_session.h"
+
+namespace fovea::app {
+
+void FlatMemoryPort::submit(cpu::BusAccess& a, Picoseconds at) {
+  const std::uint32_t start =
+      a.kind == cpu::BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
+  a.done = true;
+  a.first = a.last = at;
+  a.error = !holds(start, a.bytes);
+  if (a.error) return;
+  std::uint8_t* const memory = store_.at(start - base_);
+  if (a.write)
+    std::memcpy(memory, a.data, a.bytes);
+  else
+    std::memcpy(a.data, memory, a.bytes);
+}
+
+void FlatMemoryPort::sleep_until(Picoseconds until) {
+  if (until < slice_end_) return;
+  slice_end_ = until + kSlice;
+  if (on_slice) on_slice();
+}
+
+Picoseconds FlatMemoryPort::wait_for_interrupt(Picoseconds) {
+  throw GuestFailure("the program waits for an interrupt, and none can come");
+}
+
+bool FlatMemoryPort::debug_read(std::uint32_t pa, std::span<std::uint8_t> to) {
+  if (!holds(pa, to.size())) return false;
+  std::memcpy(to.data(), store_.at(pa - base_), to.size());
+  return true;
+}
+
+bool FlatMemoryPort::debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) {
+  if (!holds(pa, from.size())) return false;
+  std::memcpy(store_.at(pa - base_), from.data(), from.size());
+  return true;
+}
+
+ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, const ExecMap& map,
+                    Frequency core_clock) {
+  std::array<std::uint8_t, 32 * 1024> internal_ram{};
+  const auto tcm = std::span(internal_ram).first(map.tcm ? internal_ram.size() : 0);
+  FlatMemoryPort port(map.ram_base, map.ram_size);
+  cpu::Core core(params, port, tcm);
+  ExecSession session(core, port, request, map);
+  session.load(port.ram(), tcm);
+  session.attach(port, {});
+  port.on_slice = [&] {
+    if (request.stop.load()) core.request_stop();
+    if (session.gdb()) session.gdb()->look();
+  };
+  core.set_clock(core_clock, 0);
+  std::string failure;
+  try {
+    core.reset(request.program.entry(), 0);
+    core.run();
+  } catch (const GuestFailure& e) {
+    failure = e.what();
+  }
+  return session.result(failure);
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# `fovea exec` towards people: flat binaries, wrong input, failing programs, Ctrl-C, result folders.
+# Usage: command_line.sh FOVEA PROGRAMS
+set -uo pipefail
+fovea=$(realpath "$1") programs=$(realpath "$2")
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+failures=0
+
+# expect NAME STATUS 'pattern'... -- command...
+expect() {
+  local name=$1 status=$2 got text
+  shift 2
+  local patterns=()
+  while [ "$1" != -- ]; do patterns+=("$1"); shift; done
+  shift
+  text=$("$@" 2>&1 </dev/null)
+  got=$?
+  if [ "$got" != "$status" ]; then
+    echo "$name: exit status $got, expected $status: $text"
+    failures=$((failures + 1))
+  fi
+  for p in "${patterns[@]}"; do
+    grep -qE -- "$p" <<<"$text" || {
+      echo "$name: no '$p' in: $text"
+      failures=$((failures + 1))
+    }
+  done
+}
+
+run() { "$fovea" exec "$@"; }
+fails=$programs/fails_arm_O2.elf
+expect help 0 'Memory:' '--fast-memory' 'belongs to the program' -- run --help
+expect arm 5 '^flat$' 'cpu.cycles' -- run "$programs/flat_arm.bin" --load 0x8000 --entry 0x8000
+expect thumb 5 '^flat$' -- run "$programs/flat_thumb.bin" --load 0x80000000 --entry 0x80000000 --thumb
+expect fast 5 '^flat$' -- run --fast-memory --load=0 --entry=0 "$programs/flat_arm.bin"
+expect no_entry 2 '--entry' -- run "$programs/flat_arm.bin" --load 0x8000
+expect odd_entry 2 'aligned' -- run "$programs/flat_arm.bin" --load 0x8000 --entry 0x8002
+expect bad_address 2 '8000h' 'ffffffff' -- run "$programs/flat_arm.bin" --load 8000h --entry 0
+expect no_program 2 'program' -- run
+expect missing 2 'nowhere.elf' -- run "$out/nowhere.elf"
+expect not_an_elf 2 'ELF' -- run "$programs/flat_arm.bin"
+expect bad_root 2 'folder' -- run --root "$out/nowhere" "$fails"
+expect bad_key 2 'ddr.part' -- run -s ddr.prat=x "$fails"
+expect bad_cache 2 'powers of two' -- run -s cpu.icache.size=5000B "$fails"
+expect quotes 2 'quotes' -- run "$fails" "a \"'"
+expect long_line 0 'command line of' -- run "$fails" "$(printf 'x%.0s' {1..300})"
+for memory in '' --fast-memory; do
+  expect "load$memory" 3 '^load$' 'the guest failed' 'main' 'read 4 bytes at 0x50000000' \
+    -- run $memory "$fails" load
+  expect "jump$memory" 3 'the guest failed' -- run $memory "$fails" jump
+  expect "sleep$memory" 3 'waits for an interrupt' 'main' -- run $memory "$fails" sleep
+  expect "file$memory" 7 -- run $memory --root "$out" "$fails" file
+  "$fovea" exec $memory "$fails" loop -o "$out/loop" >"$out/loop.txt" 2>&1 &
+  pid=$!
+  sleep 1
+  kill -INT $pid
+  wait $pid
+  got=$?
+  [ $got = 130 ] || { echo "loop$memory: exit status $got: $(cat "$out/loop.txt")"; failures=$((failures + 1)); }
+  grep -q '"complete": false' "$out/loop/stats.json" || failures=$((failures + 1))
+done
+
+# Equal runs, equal bytes; a slower SDRAM, more clocks.
+for n in 1 2 slow; do
+  slower=()
+  [ $n = slow ] && slower=(-s ddr.request_latency=16cycles)
+  expect "time_$n" 0 '^0 s' -- run "$programs/time_arm_O2.elf" -o "$out/$n" "${slower[@]}"
+done
+cmp "$out/1/stats.json" "$out/2/stats.json" || failures=$((failures + 1))
+cycles() { sed -n 's/.*"cpu.cycles": {"value": \([0-9]*\).*/\1/p' "$1/stats.json"; }
+instructions() { sed -n 's/.*"cpu.instructions": {"value": \([0-9]*\).*/\1/p' "$1/stats.json"; }
+# The program counts turns of a fixed time: with a slower memory there are fewer.
+[ "$(instructions "$out/slow")" -lt "$(instructions "$out/1")" ] || {
+  echo "slow: $(instructions "$out/slow") instructions, not fewer than $(instructions "$out/1")"
+  failures=$((failures + 1))
+}
+[ "$(cycles "$out/1")" -gt 5900000 ] || {  # 20 ms at 297 MHz
+  echo "time: $(cycles "$out/1") clocks"
+  failures=$((failures + 1))
+}
+exit $((failures > 0))

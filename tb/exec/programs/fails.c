@@ -1,0 +1,16 @@
+/* Programs that do not end well, by the first argument. */
+#include <stdio.h>
+#include <string.h>
+
+int main(int argc, char **argv) {
+  const char *how = argc > 1 ? argv[1] : "";
+  printf("%s\n", how);
+  fflush(stdout);
+  if (strcmp(how, "load") == 0) return *(volatile int *)0x50000000;
+  if (strcmp(how, "jump") == 0) ((void (*)(void))0x50000000)();
+  if (strcmp(how, "sleep") == 0) __asm__ volatile("mcr p15, 0, %0, c7, c0, 4" ::"r"(0));
+  if (strcmp(how, "loop") == 0)
+    for (;;) __asm__ volatile("");
+  if (strcmp(how, "file") == 0) return fopen("../up", "w") || fopen("/tmp/up", "w") ? 1 : 7;
+  return 0;
+}

@@ -1,0 +1,263 @@
+// GDB's framing and packets against a fake target; malformed input in every piece.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "sw/fovea/gdb_server.h"
+
+namespace fovea::app {
+namespace {
+
+using Kind = GdbFramer::Event::Kind;
+
+struct Target : GdbTarget {
+  std::vector<unsigned> numbers = {0, 1, 15, 25};
+  std::map<unsigned, std::uint32_t> values = {{0, 0x11223344}, {1, 1}, {15, 0x8000}, {25, 0xD3}};
+  std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(256);
+  std::vector<std::string> points;
+  std::string asked;
+  std::span<const unsigned> registers() const override { return numbers; }
+  std::optional<std::uint32_t> read_register(unsigned n) const override {
+    const auto found = values.find(n);
+    return found == values.end() ? std::nullopt : std::optional(found->second);
+  }
+  bool write_register(unsigned n, std::uint32_t v) override {
+    if (!values.contains(n) || n == 25) return false;
+    values[n] = v;
+    return true;
+  }
+  bool inside(std::uint32_t a, std::size_t n) const {
+    return a >= 0x1000 && a - 0x1000 + n <= memory.size();
+  }
+  bool read_memory(std::uint32_t a, std::span<std::uint8_t> to) override {
+    if (!inside(a, to.size())) return false;
+    std::copy_n(memory.begin() + (a - 0x1000), to.size(), to.begin());
+    return true;
+  }
+  bool write_memory(std::uint32_t a, std::span<const std::uint8_t> from) override {
+    if (!inside(a, from.size())) return false;
+    std::copy(from.begin(), from.end(), memory.begin() + (a - 0x1000));
+    return true;
+  }
+  bool set_point(Point k, std::uint32_t a, std::uint32_t n) override {
+    points.push_back(std::to_string(static_cast<int>(k)) + ":" + std::to_string(a) + ":" +
+                     std::to_string(n));
+    return true;
+  }
+  bool clear_point(Point, std::uint32_t, std::uint32_t) override {
+    if (!points.empty()) points.pop_back();
+    return true;
+  }
+  void clear_all_points() override { points.clear(); }
+  std::string target_xml() const override { return std::string(10'000, 't') + "}#$*end"; }
+  std::string memory_map_xml() const override { return "map"; }
+  std::string monitor(const std::string& command) override {
+    asked = command;
+    return std::string(2500, 'm');
+  }
+};
+
+std::vector<GdbFramer::Event> events(std::string_view bytes, std::size_t piece = ~std::size_t{0}) {
+  GdbFramer f;
+  std::vector<GdbFramer::Event> out;
+  for (std::size_t i = 0; i < bytes.size(); i += std::min(piece, bytes.size())) {
+    f.feed(bytes.substr(i, piece));
+    while (auto e = f.next()) out.push_back(*e);
+  }
+  return out;
+}
+
+TEST(GdbFramerTest, PacketsComeBackInAnyPieces) {
+  std::string payload;
+  for (int c = 0; c < 256; ++c) payload += static_cast<char>(c);
+  const std::string bytes = "+" + gdb_frame(payload) + "\x03" + gdb_frame("") + "-";
+  for (const std::size_t piece : {1u, 2u, 7u, 1000u}) {
+    const auto e = events(bytes, piece);
+    ASSERT_EQ(e.size(), 5u);
+    EXPECT_EQ(e[0].kind, Kind::kAck);
+    EXPECT_EQ(e[1].payload, payload);
+    EXPECT_EQ(e[2].kind, Kind::kInterrupt);
+    EXPECT_EQ(e[3].payload, "");
+    EXPECT_EQ(e[4].kind, Kind::kNak);
+  }
+}
+
+TEST(GdbFramerTest, KnownFrames) {
+  EXPECT_EQ(gdb_frame("OK"), "$OK#9a");
+  EXPECT_EQ(gdb_frame(""), "$#00");
+  EXPECT_EQ(gdb_frame("a#b"), "$a}\x03" "b#43");
+}
+
+TEST(GdbFramerTest, DamageIsBrokenAndTheNextPacketIsNot) {
+  const std::string damaged[] = {"$OK#9b", "$OK#zz", "$O#K#9a", "$a}#7d#de", "$}#7d"};
+  for (const auto& d : damaged) {
+    const auto e = events(d + "+" + gdb_frame("after"));
+    ASSERT_FALSE(e.empty()) << d;
+    EXPECT_EQ(e.front().kind, Kind::kBroken) << d;
+    EXPECT_EQ(e.back().kind, Kind::kPacket) << d;
+    EXPECT_EQ(e.back().payload, "after") << d;
+  }
+  const auto cut = events("$half" + gdb_frame("whole"));
+  ASSERT_EQ(cut.size(), 1u);
+  EXPECT_EQ(cut[0].payload, "whole");
+}
+
+TEST(GdbFramerTest, LongestPacketIsTakenAndALongerOneIsNot) {
+  EXPECT_EQ(events(gdb_frame(std::string(kGdbPacketBytes, 'x')))[0].kind, Kind::kPacket);
+  const auto e = events(gdb_frame(std::string(kGdbPacketBytes + 1, 'x')) + gdb_frame("after"));
+  ASSERT_EQ(e.size(), 2u);
+  EXPECT_EQ(e[0].kind, Kind::kBroken);
+  EXPECT_EQ(e[1].payload, "after");
+}
+
+struct GdbProtocolTest : testing::Test {
+  Target target;
+  GdbProtocol protocol{target};
+  std::string ask(std::string_view packet) {
+    const auto a = protocol.handle(packet);
+    return a.payload.value_or("(none)");
+  }
+};
+
+TEST_F(GdbProtocolTest, Registers) {
+  EXPECT_EQ(ask("g"), "443322110100000000800000d3000000");
+  EXPECT_EQ(ask("p0"), "44332211");
+  EXPECT_EQ(ask("p2"), "E16");
+  EXPECT_EQ(ask("P1=efbeadde"), "OK");
+  EXPECT_EQ(target.values[1], 0xDEADBEEFu);
+  EXPECT_EQ(ask("P19=00000000"), "E16");  // 25 cannot be written here
+  EXPECT_EQ(ask("G" + ask("g")), "OK");   // what does not change is not written
+  EXPECT_EQ(ask("G00"), "E16");
+}
+
+TEST_F(GdbProtocolTest, Memory) {
+  EXPECT_EQ(ask("M1004,3:a1b2c3"), "OK");
+  EXPECT_EQ(ask("m1003,5"), "00a1b2c300");
+  EXPECT_EQ(ask("X1000,2:#}"), "OK");
+  EXPECT_EQ(ask("m1000,2"), "237d");
+  EXPECT_EQ(ask("m10fe,8"), "0000");  // up to the end
+  EXPECT_EQ(ask("m1100,4"), "E0e");
+  EXPECT_EQ(ask("M10ff,2:0000"), "E0e");
+  EXPECT_EQ(ask("M1000,2:00"), "E16");
+  EXPECT_EQ(ask("X1000,2:0"), "E16");
+  EXPECT_EQ(ask("X1000,0:"), "OK");
+  EXPECT_EQ(ask("mffffffff,ffffffff"), "E0e");
+}
+
+TEST_F(GdbProtocolTest, PointsAndResumption) {
+  EXPECT_EQ(ask("Z0,8000,4"), "OK");
+  EXPECT_EQ(ask("Z3,1000,8;X1,00"), "OK");
+  EXPECT_EQ(target.points, (std::vector<std::string>{"0:32768:4", "3:4096:8"}));
+  EXPECT_EQ(ask("z3,1000,8"), "OK");
+  EXPECT_EQ(ask("Z5,0,0"), "");
+  EXPECT_EQ(ask("Z0,8000"), "E16");
+  EXPECT_EQ(protocol.handle("c").resume->kind, GdbResume::Kind::kContinue);
+  EXPECT_EQ(protocol.handle("vCont;c").resume->kind, GdbResume::Kind::kContinue);
+  EXPECT_EQ(protocol.handle("vCont;s:1;c").resume->kind, GdbResume::Kind::kStep);
+  const auto r = protocol.handle("vCont;r8000,8010:1");
+  EXPECT_EQ(r.resume->from, 0x8000u);
+  EXPECT_EQ(r.resume->to, 0x8010u);
+  EXPECT_EQ(protocol.handle("s9000").resume->kind, GdbResume::Kind::kStep);
+  EXPECT_EQ(target.values[15], 0x9000u);
+  EXPECT_EQ(ask("cxyz"), "E16");
+  EXPECT_EQ(ask("vCont;"), "E16");
+  EXPECT_EQ(protocol.handle("k").resume->kind, GdbResume::Kind::kKill);
+  const auto d = protocol.handle("D");
+  EXPECT_TRUE(d.detached);
+  EXPECT_EQ(d.payload, "OK");
+  EXPECT_TRUE(target.points.empty());
+}
+
+TEST_F(GdbProtocolTest, StopsSayWhy) {
+  protocol.stopped({GdbStop::Reason::kWrite, 0x1234});
+  EXPECT_EQ(ask("?"), "T05watch:1234;thread:1;");
+  protocol.stopped({GdbStop::Reason::kSoftware, 0});
+  EXPECT_EQ(ask("?"), "T05thread:1;");  // not before GDB says that it knows
+  EXPECT_NE(ask("qSupported:multiprocess+;swbreak+;hwbreak+").find("PacketSize=4000"),
+            std::string::npos);
+  EXPECT_EQ(ask("?"), "T05swbreak:;thread:1;");
+  protocol.stopped({});
+  EXPECT_EQ(ask("?"), "T02thread:1;");
+}
+
+TEST_F(GdbProtocolTest, DescriptionsComeInPieces) {
+  std::string text;
+  for (bool more = true; more;) {
+    char packet[80];
+    std::snprintf(packet, sizeof packet, "qXfer:features:read:target.xml:%zx,1000", text.size());
+    const std::string piece = ask(packet);
+    more = piece.at(0) == 'm';
+    text += piece.substr(1);
+  }
+  EXPECT_EQ(text, target.target_xml());
+  EXPECT_EQ(ask("qXfer:memory-map:read::0,fff"), "lmap");
+  EXPECT_EQ(ask("qXfer:memory-map:read::3,fff"), "l");
+  EXPECT_EQ(ask("qXfer:memory-map:read::4,fff"), "E16");
+  EXPECT_EQ(ask("qXfer:features:read:other.xml:0,fff"), "E00");
+  EXPECT_EQ(ask("qXfer:auxv:read::0,fff"), "");
+}
+
+TEST_F(GdbProtocolTest, MonitorTextComesInPackets) {
+  const auto a = protocol.handle("qRcmd,68656c70");
+  EXPECT_EQ(target.asked, "help");
+  ASSERT_EQ(a.output.size(), 3u);
+  EXPECT_EQ(a.output[2].size(), 1u + 2 * 500);
+  EXPECT_EQ(a.payload, "OK");
+  EXPECT_EQ(ask("qRcmd,6"), "E16");
+}
+
+TEST_F(GdbProtocolTest, UnknownIsEmpty) {
+  for (const char* packet : {"", "!", "vMustReplyEmpty", "qTStatus", "QNonStop:1", "~", "R00"})
+    EXPECT_EQ(ask(packet), "") << packet;
+}
+
+/// Every packet of a session, cut off and changed at every place, and random bytes: an answer or none.
+TEST_F(GdbProtocolTest, MalformedPacketsNeverCrash) {
+  const std::vector<std::string> corpus = {
+      "g", "G44332211", "p19", "P1=efbeadde", "m1000,100", "M1004,3:a1b2c3", "X1000,2:#}",
+      "Z0,8000,4", "z4,1000,ffffffff", "Z2,,", "c8000", "C05;8000", "s", "S05", "D;1", "k", "H g-1",
+      "T1", "?", "vCont?", "vCont;r8000,8010:1;c", "vKill;1", "qSupported:swbreak+;hwbreak+;xml=arm",
+      "qXfer:features:read:target.xml:0,ffffffff", "qXfer:memory-map:read::ffffffff,1",
+      "qRcmd,73746174", "qC", "QStartNoAckMode", "qfThreadInfo", "mffffffff,ffffffff"};
+  std::mt19937 rng(7);
+  unsigned answered = 0;
+  const auto try_one = [&](const std::string& packet) {
+    const auto a = protocol.handle(packet);
+    answered += a.payload.has_value() || a.resume.has_value();
+    for (const auto& e : events(gdb_frame(packet))) EXPECT_EQ(e.payload, packet);
+    GdbFramer f;
+    f.feed(packet + "#" + packet + "$" + packet);
+    while (f.next()) {
+    }
+  };
+  unsigned tried = 0;
+  for (const auto& p : corpus) {
+    for (std::size_t n = 0; n <= p.size(); ++n, ++tried) try_one(p.substr(0, n));
+    for (std::size_t n = 0; n < p.size(); ++n)
+      for (const char c : {'\0', ',', ':', ';', '=', '-', 'f', 'g', '\x7f', '\xff'}) {
+        std::string changed = p;
+        changed[n] = c;
+        try_one(changed);
+        ++tried;
+      }
+  }
+  for (unsigned k = 0; k < 20'000; ++k, ++tried) {
+    std::string noise(rng() % 40, ' ');
+    for (char& c : noise) c = static_cast<char>(rng());
+    if (k % 2 && !noise.empty()) noise[0] = "gGpPmMXZzcsvqQ"[rng() % 14];
+    try_one(noise);
+  }
+  EXPECT_EQ(answered, tried);
+  EXPECT_EQ(ask("m1000,1").size(), 2u);  // it still works
+}
+
+TEST(GdbPortTest, TakesPortsOnly) {
+  EXPECT_EQ(parse_gdb_port(":1234"), 1234);
+  EXPECT_EQ(parse_gdb_port("0"), 0);
+  for (const char* text : {"", ":", ":65536", "host:1", ":-1", ":1x"})
+    EXPECT_THROW(parse_gdb_port(text), std::runtime_error) << text;
+}
+
+}  // namespace
+}  // namespace fovea::app
