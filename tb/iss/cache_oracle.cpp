@@ -1,6 +1,7 @@
 #include "tb/iss/cache_oracle.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 namespace fovea::cpu::test {
@@ -239,22 +240,31 @@ std::string difference(const Traffic& expected, const Traffic& seen) {
         compare("read", expected.reads, seen.reads),
         compare("unbuffered write", expected.unbuffered, seen.unbuffered)})
     if (!out.empty()) return out;
-  // Two buffers share the bus: each write must be the next of one of them.
-  std::size_t victim = 0, main = 0;
+  // Two buffers share the bus: each write must be the next of one of them. Where both would write
+  // the same, both ways are followed: so many of the writes so far were write-backs.
+  std::set<std::size_t> ways = {0};
   for (std::size_t k = 0; k < seen.buffered.size(); ++k) {
-    if (victim < expected.write_backs.size() && seen.buffered[k] == expected.write_backs[victim])
-      ++victim;
-    else if (main < expected.buffered.size() && seen.buffered[k] == expected.buffered[main])
-      ++main;
-    else
+    std::set<std::size_t> next;
+    for (const std::size_t v : ways) {
+      const std::size_t m = k - v;
+      if (v < expected.write_backs.size() && seen.buffered[k] == expected.write_backs[v])
+        next.insert(v + 1);
+      if (m < expected.buffered.size() && seen.buffered[k] == expected.buffered[m]) next.insert(v);
+    }
+    if (next.empty()) {
+      const std::size_t v = *ways.begin(), m = k - v;
       return "write " + std::to_string(k) + ": expected " +
-             (victim < expected.write_backs.size() ? text(expected.write_backs[victim]) : "none") +
-             " or " + (main < expected.buffered.size() ? text(expected.buffered[main]) : "none") +
-             ", seen " + text(seen.buffered[k]);
+             (v < expected.write_backs.size() ? text(expected.write_backs[v]) : "none") + " or " +
+             (m < expected.buffered.size() ? text(expected.buffered[m]) : "none") + ", seen " +
+             text(seen.buffered[k]);
+    }
+    ways = std::move(next);
   }
-  if (victim < expected.write_backs.size())
-    return "write-back missing: " + text(expected.write_backs[victim]);
-  if (main < expected.buffered.size()) return "write missing: " + text(expected.buffered[main]);
+  if (!ways.contains(expected.write_backs.size()) ||
+      seen.buffered.size() != expected.write_backs.size() + expected.buffered.size())
+    return "expected " + std::to_string(expected.write_backs.size()) + " write-backs and " +
+           std::to_string(expected.buffered.size()) + " other buffered writes, seen " +
+           std::to_string(seen.buffered.size()) + " in all";
   return {};
 }
 
