@@ -53,7 +53,8 @@ constexpr Loop kLoops[] = {
   qadd r9, r9, r8         @ 1
   subs r3, r3, #1         @ 1
   bne 1b                  @ 3
-)", 0, 0xC56C4A10},
+)",
+     0, 0xC56C4A10},
     {"CopyWords", 15, 4, "mov r2, #4\n", R"(
   ldr r3, [r1], #4        @ 1
   ldr r4, [r1], #4        @ 1
@@ -67,7 +68,8 @@ constexpr Loop kLoops[] = {
   str r3, [r0], #4        @ 1 + 1  store data just loaded
   subs r2, r2, #1         @ 1
   bne 1b                  @ 3
-)", 3, 0x40000000},
+)",
+     3, 0x40000000},
     // Words, halves and bytes added with end-around carry.
     {"Checksum", 19, 9, "mov r0, r1\n mov r1, #0\n mov r6, #0\n mov r2, #9\n", R"(
   ldr r3, [r0], #4        @ 1
@@ -84,7 +86,8 @@ constexpr Loop kLoops[] = {
   add r6, r6, r5          @ 1 + 2  a byte, used at once
   teq r2, #0              @ 1
   bne 1b                  @ 3
-)", 1, 0xA5818316},
+)",
+     1, 0xA5818316},
     {"SaturatedAdd", 18, 5,
      "add r2, r1, #40\n mov r7, #0\n mov r8, #0\n mov r12, #5\n ldr r10, =0x5000\n", R"(
   ldmia r1!, {r3, r4}     @ 2
@@ -99,7 +102,8 @@ constexpr Loop kLoops[] = {
   strh r9, [r10], #2      @ 1
   subs r12, r12, #1       @ 1
   bne 1b                  @ 3
-)", 7, 0x7FFFFFFF},
+)",
+     7, 0x7FFFFFFF},
     {"LongAddAndMultiply", 25, 5, "add r2, r1, #40\n mov r8, #0\n mov r9, #0\n mov r12, #5\n", R"(
   ldrd r4, r5, [r1], #8   @ 2
   ldrd r6, r7, [r2], #8   @ 2
@@ -114,10 +118,12 @@ constexpr Loop kLoops[] = {
   add r9, r9, r11         @ 1 + 1  the high word at once
   subs r12, r12, #1       @ 1
   bne 1b                  @ 3
-)", 9, 0x4CE7BF3B},
+)",
+     9, 0x4CE7BF3B},
     {"BitCount", 20, 7,
      "mov r0, r1\n mov r7, #0\n mov r9, #0\n mov r8, #31\n mov r12, #7\n ldr r3, =0x55555555\n"
-     "ldr r4, =0x33333333\n ldr r5, =0x0f0f0f0f\n ldr r6, =0x01010101\n b 8f\n .ltorg\n8:\n", R"(
+     "ldr r4, =0x33333333\n ldr r5, =0x0f0f0f0f\n ldr r6, =0x01010101\n b 8f\n .ltorg\n8:\n",
+     R"(
   ldr r1, [r0], #4        @ 1
   and r2, r3, r1, lsr #1  @ 1 + 1  a word at once, through the shifter
   sub r1, r1, r2          @ 1
@@ -132,9 +138,9 @@ constexpr Loop kLoops[] = {
   addne r9, r9, #1        @ 1      passed or failed
   subs r12, r12, #1       @ 1
   bne 1b                  @ 3
-)", 7, 84},
-    {"TableLookup", 20, 8,
-     "mov r0, #0\n add r2, r1, #32\n ldr r6, =0x4000\n mov r12, #8\n", R"(
+)",
+     7, 84},
+    {"TableLookup", 20, 8, "mov r0, #0\n add r2, r1, #32\n ldr r6, =0x4000\n mov r12, #8\n", R"(
   ldrb r3, [r1], #1            @ 1
   sub r12, r12, #1             @ 1
   and r3, r3, #15              @ 1 + 1  a byte, one instruction between
@@ -147,10 +153,12 @@ constexpr Loop kLoops[] = {
   str r0, [r6, r3, lsl #2]     @ 2
   cmp r12, #0                  @ 1
   bgt 1b                       @ 3
-)", 0, 0x9106BC95},
+)",
+     0, 0x9106BC95},
     {"ThumbMixedLoop", 22, 7,
      "mov r0, r1\n mov r1, #0\n mov r2, #3\n ldr sp, =0x5000\n add r8, r0, #28\n adr r7, 2f + 1\n"
-     "bx r7\n .thumb\n .align 2\n2:\n", R"(
+     "bx r7\n .thumb\n .align 2\n2:\n",
+     R"(
   ldrh r3, [r0, #0]       @ 1
   ldrb r4, [r0, #2]       @ 1
   adds r0, #4             @ 1
@@ -164,9 +172,10 @@ constexpr Loop kLoops[] = {
   adds r2, r2, r7         @ 1 + 1  last of the list, at once
   cmp r0, r8              @ 1
   bne 1b                  @ 3
-)", 1, 0x0864F704},
-    {"BlockTransfers", 33, 2,
-     "mov r2, r0\n mov r0, r1\n mov r1, r2\n mov r2, #0\n mov r12, #2\n", R"(
+)",
+     1, 0x0864F704},
+    {"BlockTransfers", 33, 2, "mov r2, r0\n mov r0, r1\n mov r1, r2\n mov r2, #0\n mov r12, #2\n",
+     R"(
   ldmia r0!, {r3-r6}      @ 4
   add r2, r2, r3          @ 1      not the last
   eor r2, r2, r6          @ 1      the last, one instruction between
@@ -179,12 +188,14 @@ constexpr Loop kLoops[] = {
   add r2, r2, r10         @ 1      one instruction between
   stmia r1, {r2}          @ 2      a list of one
   bne 1b                  @ 3
-)", 2, 0xD2141416},
+)",
+     2, 0xD2141416},
     // The firmware's two loops over pixel pairs: eight pairs a turn, one pair a turn.
     {"RemapEightPairs", 28, 2,
      "mov r2, r1\n ldr r5, =0x4100\n mov r6, #16\n mov r7, r5\n"
      "7: sub r6, r6, #1\n mov r8, r6, lsl #2\n str r8, [r7], #4\n cmp r6, #0\n bne 7b\n"
-     "mov r2, r5\n mov r3, #8\n b 8f\n .ltorg\n8:\n", R"(
+     "mov r2, r5\n mov r3, #8\n b 8f\n .ltorg\n8:\n",
+     R"(
   ldmia r2!, {r4-r11}     @ 8
   ldr r4, [r1, r4]        @ 1      not the last
   ldr r5, [r1, r5]        @ 1
@@ -197,17 +208,20 @@ constexpr Loop kLoops[] = {
   subs r3, r3, #8         @ 1
   stmia r0!, {r4-r11}     @ 8
   bhs 1b                  @ 3
-)", 11, 0x00010002},
+)",
+     11, 0x00010002},
     {"RemapOnePair", 9, 16,
      "mov r2, r1\n ldr r5, =0x4100\n mov r6, #16\n mov r7, r5\n"
      "7: sub r6, r6, #1\n mov r8, r6, lsl #2\n str r8, [r7], #4\n cmp r6, #0\n bne 7b\n"
-     "mov r2, r5\n add r3, r0, #64\n b 8f\n .ltorg\n8:\n", R"(
+     "mov r2, r5\n add r3, r0, #64\n b 8f\n .ltorg\n8:\n",
+     R"(
   ldr r12, [r2], #4       @ 1
   ldr r12, [r1, r12]      @ 1 + 1  an address just loaded
   str r12, [r0], #4       @ 1 + 1  store data just loaded
   cmp r3, r0              @ 1
   bne 1b                  @ 3
-)", 12, 0x00010002},
+)",
+     12, 0x00010002},
 };
 
 /// Adds up the figures behind the @ of each line.
