@@ -62,7 +62,6 @@ class Clock {
   Picoseconds periods(std::uint64_t n) const { return scale(n, ps_, edges_, 0); }
 
  private:
-  friend class EdgeCursor;
   using Wide = unsigned __int128;
 
   /// (n * mul + add) / div.

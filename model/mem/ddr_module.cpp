@@ -1,5 +1,7 @@
 #include "model/mem/ddr_module.h"
 
+#include "model/mem/ddr_decode.h"
+
 namespace fovea::mem {
 
 DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
@@ -32,23 +34,7 @@ void DdrModule::clocks_changed() {
 void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
-  DdrConfig c;
-  c.timing.CL = regs.sdbcr.cl.get();
-  c.timing.banks = std::min(1u << regs.sdbcr.ibank.get(), DdrDevice::kMaxBanks);
-  c.timing.nRFC = regs.sdtimr.rfc.get() + 1;
-  c.timing.nRP = regs.sdtimr.rp.get() + 1;
-  c.timing.nRCD = regs.sdtimr.rcd.get() + 1;
-  c.timing.nWR = regs.sdtimr.wr.get() + 1;
-  c.timing.nRAS = regs.sdtimr.ras.get() + 1;
-  c.timing.nRC = regs.sdtimr.rc.get() + 1;
-  c.timing.nRRD = regs.sdtimr.rrd.get() + 1;
-  c.timing.nWTR = regs.sdtimr.wtr.get() + 1;
-  c.timing.nRTP = regs.sdtimr2.rtp.get() + 1;
-  c.read_latency = regs.ddrphycr.rl.get();
-  c.refresh_interval = regs.sdrcr.rr.get();
-  c.old_count = regs.pbbpr.pr_old_count.get();
-  c.page_log2 = 9 + regs.sdbcr.pagesize.get();  // 256 words of 2 bytes
-  c.bank_on_top = regs.sdbcr.ibank_pos.get() != 0;
+  const DdrConfig c = decode(regs);
   if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
   controller_.configure(c, now);
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
@@ -77,6 +63,7 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
 
 void DdrModule::ddr_accepted(void* cookie, Picoseconds at) {
   MemPhase phase = MemPhase::kAccepted;
+  static_cast<MemRequest*>(cookie)->door_opener = controller_.door_opener();
   const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(at > now ? at - now : 0);
   socket->nb_transport_bw(*static_cast<MemRequest*>(cookie), phase, delay);
@@ -86,6 +73,7 @@ void DdrModule::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last)
   auto& r = *static_cast<MemRequest*>(cookie);
   r.first = first;
   r.last = last;
+  r.slave_waited = controller_.read_waited();
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(first - now_());
   socket->nb_transport_bw(r, phase, delay);

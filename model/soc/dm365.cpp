@@ -153,6 +153,11 @@ void Dm365::wire_memory() {
   isif.memory.socket.bind(*scr.target[index(Master::kVpfe)]);
   osd.memory.socket.bind(*scr.target[index(Master::kVpbe)]);
   if (load) load->memory.socket.bind(*scr.target[index(Master::kLoad)]);
+  std::vector<Master> masters{Master::kArmI, Master::kArmD, Master::kVpfe, Master::kVpbe};
+  if (load) masters.push_back(Master::kLoad);
+  for (const Master m : masters)
+    waits.push_back(std::make_unique<bus::WaitStats>(
+        m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
   scr.ddr_socket.bind(ddr.socket);
   scr.ddr_lookahead.bind(ddr.lookahead);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);

@@ -8,6 +8,7 @@
 #include "model/bus/config_bus.h"
 #include "model/bus/load_generator.h"
 #include "model/bus/scr.h"
+#include "model/bus/wait_stats.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
 #include "model/mem/ddr_module.h"
@@ -72,6 +73,9 @@ class Dm365 : public sc_core::sc_module {
   video::Osd osd;
   video::Venc venc;
   std::unique_ptr<bus::LoadGenerator> load;
+
+  /// Of the masters that are there.
+  std::vector<std::unique_ptr<bus::WaitStats>> waits;
 
  private:
   void route_priorities();

@@ -59,6 +59,7 @@ void BoardSimulation::open_window() {
   auto& soc = board_->dm365;
   for (auto& s : soc.scr.crossbar().stats) s->reset();
   for (auto& s : soc.scr.latency) s->reset();
+  for (auto& s : soc.waits) s->reset();
   soc.ddr.controller().stats.reset();
   soc.config.stats.reset();
   soc.isif.stats.reset();
@@ -78,6 +79,7 @@ void BoardSimulation::close_window() {
   queued_ = soc.scr.queued_accesses() - queued_at_open_;
   for (auto& s : soc.scr.crossbar().stats) collect(*s, stats_);
   for (auto& s : soc.scr.latency) collect(*s, stats_);
+  for (auto& s : soc.waits) collect(*s, stats_);
   collect(soc.ddr.controller().stats, stats_);
   collect(soc.config.stats, stats_);
   collect(soc.isif.stats, stats_);
@@ -90,6 +92,14 @@ void BoardSimulation::close_window() {
     stats_.push_back(row("ddr.utilisation",
                          static_cast<double>(soc.ddr.controller().busy_clocks()) / clocks, "ratio",
                          "share of the window in which the SDRAM's data bus moves data"));
+    const auto queued =
+        static_cast<double>(soc.ddr.controller().stats.queued_clocks.count());
+    stats_.push_back(row("ddr.headroom", 1 - queued / clocks, "ratio",
+                         "share of the window in which no request is queued at the SDRAM"));
+    if (queued > 0)
+      stats_.push_back(row("ddr.efficiency",
+                           static_cast<double>(soc.ddr.controller().busy_clocks()) / queued,
+                           "ratio", "data clocks / clocks in which a request is queued"));
   }
   soc.arm.core().mark_window(kernel_time());
 }

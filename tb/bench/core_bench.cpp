@@ -25,10 +25,10 @@ void program(benchmark::State& state, const char* file) {
   state.counters["CPI"] = static_cast<double>(clocks) / static_cast<double>(instructions);
 }
 
-BENCHMARK_CAPTURE(program, soft_float, PROGRAM_DIR "/soft_float.elf")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(program, integer, PROGRAM_DIR "/integer.elf")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(program, block_copy, PROGRAM_DIR "/block_copy.elf")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(program, remap, PROGRAM_DIR "/remap.elf")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(program, soft_float, PROGRAM_DIR "/soft_float.elf");
+BENCHMARK_CAPTURE(program, integer, PROGRAM_DIR "/integer.elf");
+BENCHMARK_CAPTURE(program, block_copy, PROGRAM_DIR "/block_copy.elf");
+BENCHMARK_CAPTURE(program, remap, PROGRAM_DIR "/remap.elf");
 
 }  // namespace
 }  // namespace fovea::cpu

@@ -1,4 +1,4 @@
-// core_run FILE [CLOCKS]: runs a program on the core alone; says instructions, clocks, host seconds.
+// core_run FILE [CLOCKS]: runs a program on the core alone; says instructions, clocks, seconds.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

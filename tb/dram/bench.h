@@ -77,7 +77,12 @@ inline DataSheet sheet_of(const mem::DdrConfig& c) {
   s.tRTP = c.timing.nRTP;
   s.tRFC = c.timing.nRFC;
   s.tREFI = c.refresh_interval;
+  s.tXP = c.timing.nXP;
+  s.tXSNR = c.timing.nXSNR;
+  s.tXSRD = c.timing.nXSRD;
+  s.tCKE = c.timing.nCKE;
   s.banks = c.timing.banks;
+  s.mobile = c.timing.mobile;
   return s;
 }
 
@@ -94,6 +99,18 @@ inline Command translate(mem::Cmd c) {
       return Command::kRd;
     case mem::Cmd::kWr:
       return Command::kWr;
+    case mem::Cmd::kRda:
+      return Command::kRda;
+    case mem::Cmd::kWra:
+      return Command::kWra;
+    case mem::Cmd::kPde:
+      return Command::kPde;
+    case mem::Cmd::kPdx:
+      return Command::kPdx;
+    case mem::Cmd::kSre:
+      return Command::kSre;
+    case mem::Cmd::kSrx:
+      return Command::kSrx;
     default:
       return Command::kRef;
   }

@@ -38,6 +38,10 @@ DataSheet sheet() {
   s.tRTP = 3;
   s.tRFC = 50;
   s.tFAW = 35;
+  s.tXP = 6;
+  s.tXSNR = 60;
+  s.tXSRD = 90;
+  s.tCKE = 5;
   s.banks = 8;
   return s;
 }
@@ -96,6 +100,22 @@ INSTANTIATE_TEST_SUITE_P(
         // WL + BL/2 + tWR = 4 + 4 + 8 = 16
         Limit{"tWR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 130}, {kPre, 0, 0, 146}}},
         Limit{"tWR", {{kAct, 0, 1, 100}, {kWr, 0, 1, 130}, {kPreAll, 0, 0, 146}}},
+        Limit{"tXP", {{kPde, 0, 0, 100}, {kPdx, 0, 0, 110}, {kAct, 0, 1, 116}}},
+        Limit{"tXSNR", {{kSre, 0, 0, 100}, {kSrx, 0, 0, 110}, {kAct, 0, 1, 170}}},
+        Limit{"tXSRD", {{kSre, 0, 0, 100}, {kSrx, 0, 0, 110}, {kAct, 0, 1, 175}, {kRd, 0, 1, 200}}},
+        Limit{"tCKE", {{kPde, 0, 0, 100}, {kPdx, 0, 0, 105}}},
+        Limit{"tCKE", {{kPde, 0, 0, 100}, {kPdx, 0, 0, 110}, {kPde, 0, 0, 115}}},
+        // CL + BL/2 + 1 = 10; WL + BL/2 + tWTR = 12
+        Limit{"RD to CKE low", {{kAct, 0, 1, 100}, {kRd, 0, 1, 110}, {kPde, 0, 0, 120}}},
+        Limit{"WR to CKE low", {{kAct, 0, 1, 100}, {kWr, 0, 1, 110}, {kPde, 0, 0, 122}}},
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kPre, 0, 0, 150}, {kSre, 0, 0, 156}}},
+        Limit{"tRPA", {{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kSre, 0, 0, 157}}},
+        Limit{"tRFC", {{kRef, 0, 0, 100}, {kSre, 0, 0, 150}}},
+        // The part precharges by itself at RD + 5, tRP later it takes an ACT or REF.
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kRda, 0, 1, 140}, {kAct, 0, 2, 151}}},
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kRda, 0, 1, 130}, {kRef, 0, 0, 141}}},
+        // At WR + WL + BL/2 + tWR = 146.
+        Limit{"tRP", {{kAct, 0, 1, 100}, {kWra, 0, 1, 130}, {kAct, 0, 2, 152}}},
         Limit{"tRFC", {{kRef, 0, 0, 100}, {kAct, 0, 1, 150}}},
         Limit{"tRFC", {{kRef, 0, 0, 100}, {kRef, 0, 0, 150}}}));
 
@@ -116,6 +136,13 @@ TEST(CheckerStateTest, RowStatesAreEnforced) {
   EXPECT_EQ(rule_of({{kAct, 5, 1, 100}, {kRef, 0, 0, 200}}), "REF with open bank");
   EXPECT_EQ(rule_of({{kPre, 0, 0, 100}}), "PRE on closed bank");
   EXPECT_EQ(rule_of({{kAct, 8, 0, 100}}), "no such bank");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kRda, 0, 1, 130}, {kRd, 0, 1, 200}}), "RD on closed bank");
+  EXPECT_EQ(rule_of({{kPde, 0, 0, 100}, {kAct, 0, 1, 200}}), "command while CKE is low");
+  EXPECT_EQ(rule_of({{kSre, 0, 0, 100}, {kRef, 0, 0, 200}}), "command while CKE is low");
+  EXPECT_EQ(rule_of({{kPdx, 0, 0, 100}}), "exit without entry");
+  EXPECT_EQ(rule_of({{kPde, 0, 0, 100}, {kSrx, 0, 0, 200}}), "exit without entry");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kSre, 0, 0, 200}}), "self-refresh with open bank");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPde, 0, 0, 200}}), "") << "power-down keeps rows";
   EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRd, 0, 1, 200}}),
             "RD on closed bank");
   EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPre, 0, 0, 150}, {kAct, 0, 2, 200}, {kRd, 0, 2, 210}}),

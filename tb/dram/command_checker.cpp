@@ -23,6 +23,12 @@ void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::u
   const auto now = static_cast<std::int64_t>(clock);
   if (now <= previous_) complain("one command a clock", clock, bank, previous_ + 1 - now);
   previous_ = now;
+  const bool exits = c == Command::kPdx || c == Command::kSrx;
+  if (state_ != Cke::kHigh && !exits) complain("command while CKE is low", clock, bank, 0);
+  if (exits) return wake(c == Command::kSrx, now);
+  if (c == Command::kPde || c == Command::kSre) return sleep(c == Command::kSre, now);
+  apart("tXP", pdx_, now, sheet_.tXP, bank);
+  apart("tXSNR", srx_, now, sheet_.tXSNR, bank);
   const bool whole_rank = c == Command::kPreAll || c == Command::kRef;
   if (!whole_rank && bank >= sheet_.banks) {
     complain("no such bank", clock, bank, 0);
@@ -40,13 +46,24 @@ void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::u
     case Command::kWr:
       column(true, bank, row, now);
       break;
+    case Command::kRda:
+      column(false, bank, row, now);
+      close_by_itself(bank);
+      break;
+    case Command::kWra:
+      column(true, bank, row, now);
+      close_by_itself(bank);
+      break;
     case Command::kRef:
       refresh(now);
+      break;
+    default:  // CKE: above
       break;
     case Command::kPre:
       if (!banks_[bank].open) complain("PRE on closed bank", clock, bank, 0);
       precharge(bank, now);
-      banks_[bank].pre = pre_ = now;
+      banks_[bank].pre = now;
+      pre_ = std::max(pre_, now);
       break;
     case Command::kPreAll:
       for (unsigned b = 0; b < sheet_.banks; ++b)
@@ -94,9 +111,45 @@ void CommandChecker::column(bool write, unsigned b, std::uint32_t row, std::int6
     k.wr = wr_ = now;
   } else {
     apart("RD to RD", rd_, now, 4, b);
+    apart("tXSRD", srx_, now, sheet_.tXSRD, b);
     apart("tWTR", wr_, now, WL() + 4 + sheet_.tWTR, b);
     k.rd = rd_ = now;
   }
+}
+
+/// The part precharges as soon as tRAS, tRTP and tWR allow it.
+void CommandChecker::close_by_itself(unsigned b) {
+  Bank& k = banks_[b];
+  const std::int64_t after_read = k.rd + (sheet_.mobile ? 4 : 4 + std::max(sheet_.tRTP, 2u) - 2);
+  k.pre = std::max({k.act + sheet_.tRAS, after_read, k.wr + WL() + 4 + sheet_.tWR});
+  pre_ = std::max(pre_, k.pre);
+  k.open = false;
+}
+
+void CommandChecker::sleep(bool self_refresh, std::int64_t now) {
+  apart("tCKE", cke_, now, sheet_.tCKE, 0);
+  apart("RD to CKE low", rd_, now, sheet_.CL + 4 + 1, 0);
+  apart("WR to CKE low", wr_, now, WL() + 4 + sheet_.tWTR, 0);
+  if (self_refresh) {
+    for (unsigned b = 0; b < sheet_.banks; ++b)
+      if (banks_[b].open)
+        complain("self-refresh with open bank", static_cast<std::uint64_t>(now), b, 0);
+    apart("tRP", pre_, now, sheet_.tRP, 0);
+    apart("tRPA", prea_, now, sheet_.tRP + (sheet_.banks == 8 ? 1 : 0), 0);
+    apart("tRFC", ref_, now, sheet_.tRFC, 0);
+    check_refresh_gap(static_cast<std::uint64_t>(now));
+  }
+  state_ = self_refresh ? Cke::kSelfRefresh : Cke::kPowerDown;
+  cke_ = now;
+}
+
+void CommandChecker::wake(bool self_refresh, std::int64_t now) {
+  if (state_ != (self_refresh ? Cke::kSelfRefresh : Cke::kPowerDown))
+    complain("exit without entry", static_cast<std::uint64_t>(now), 0, 0);
+  apart("tCKE", cke_, now, sheet_.tCKE, 0);
+  (self_refresh ? srx_ : pdx_) = cke_ = now;
+  if (self_refresh) last_ref_ = static_cast<std::uint64_t>(now);  // it refreshed itself
+  state_ = Cke::kHigh;
 }
 
 void CommandChecker::refresh(std::int64_t now) {

@@ -10,17 +10,32 @@
 
 namespace fovea::dram {
 
-enum class Command : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+/// kRda, kWra: with auto-precharge. The last four: power-down and self-refresh, entry and exit.
+enum class Command : std::uint8_t {
+  kAct,
+  kPre,
+  kPreAll,
+  kRd,
+  kWr,
+  kRef,
+  kRda,
+  kWra,
+  kPde,
+  kPdx,
+  kSre,
+  kSrx
+};
 
 /// The numbers of one part at one clock, in clocks.
 struct DataSheet {
   unsigned CL = 5;
   unsigned tRCD = 5, tRP = 5, tRAS = 11, tRC = 16, tRRD = 3;
   unsigned tWR = 4, tWTR = 3, tRTP = 2, tRFC = 31;
+  unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
   unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
   unsigned tREFI = 0;  ///< 0: refresh not checked
   unsigned banks = 8;
-  bool mobile = false;  ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
+  bool mobile = false;         ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
   unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
 };
 
@@ -65,6 +80,9 @@ class CommandChecker {
   void activate(unsigned b, std::uint32_t row, std::int64_t now);
   void precharge(unsigned b, std::int64_t now);
   void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
+  void close_by_itself(unsigned b);
+  void sleep(bool self_refresh, std::int64_t now);
+  void wake(bool self_refresh, std::int64_t now);
   void refresh(std::int64_t now);
   void check_refresh_gap(std::uint64_t clock);
   unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }
@@ -73,7 +91,8 @@ class CommandChecker {
   std::vector<Bank> banks_;
   std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
   std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo, prea_ = kLongAgo,
-               previous_ = kLongAgo;
+               previous_ = kLongAgo, cke_ = kLongAgo, pdx_ = kLongAgo, srx_ = kLongAgo;
+  enum class Cke { kHigh, kPowerDown, kSelfRefresh } state_ = Cke::kHigh;
   std::uint64_t last_ref_ = 0, largest_gap_ = 0;
   std::vector<Complaint> complaints_;
   std::uint64_t total_ = 0, commands_ = 0;

@@ -52,9 +52,11 @@ class Path : private bus::XbarHost, private mem::DdrClient {
   }
   void respond(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }
   void ddr_accepted(void* cookie, Picoseconds at) override {
+    static_cast<MemRequest*>(cookie)->door_opener = ddr.door_opener();
     xbar.slave_accepted(*static_cast<MemRequest*>(cookie), at);
   }
   void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override {
+    static_cast<MemRequest*>(cookie)->slave_waited = ddr.read_waited();
     xbar.slave_done(*static_cast<MemRequest*>(cookie), first, last, false);
   }
   bus::CrossbarParams xbar_params_;

@@ -28,6 +28,7 @@ void ReferenceController::set_clocks(Frequency ddr, Frequency scr, Picoseconds a
 
 void ReferenceController::configure(const ReferenceConfig& config, Picoseconds at) {
   idle_until(at);
+  if (config.sleep != configs_.back().sleep) wake(ddr_.edge_after(at));
   not_before_ = ddr_.edge_after(at);
   // A new interval starts to count at once.
   if (config.refresh_interval != configs_.back().refresh_interval)
@@ -57,8 +58,10 @@ unsigned ReferenceController::columns_of(const ReferenceRequest& r) {
 std::optional<std::uint32_t> ReferenceController::open_row(unsigned bank) const {
   for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
     if (c->kind == Kind::kPreAll || c->kind == Kind::kRef) return std::nullopt;
+    if (c->kind >= Kind::kPde) continue;
     if (c->bank != bank) continue;
-    if (c->kind == Kind::kPre) return std::nullopt;
+    if (c->kind == Kind::kPre || c->kind == Kind::kRda || c->kind == Kind::kWra)
+      return std::nullopt;
     return c->row;
   }
   return std::nullopt;
@@ -77,7 +80,7 @@ unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned ban
   const ReferenceConfig& c = configs_[before.config];
   const bool same = before.bank == bank;
   const bool closes = kind == Kind::kPre;
-  const unsigned WL = c.CL - 1;
+  const unsigned WL = c.mobile ? 1 : c.CL - 1;
   switch (before.kind) {
     case Kind::kAct:
       if (kind == Kind::kAct) return same ? std::max(c.tRC, c.tRRD) : c.tRRD;
@@ -88,15 +91,24 @@ unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned ban
     case Kind::kPreAll:
       return kind == Kind::kRef || kind == Kind::kAct ? c.tRP + (c.banks == 8 ? 1 : 0) : 0;
     case Kind::kRd:
+    case Kind::kRda:
       if (kind == Kind::kRd) return kBurst;
-      if (kind == Kind::kWr) return c.CL + kBurst + 1 - WL;
-      return closes && same ? kBurst + std::max(c.tRTP, 2u) - 2 : 0;
+      if (kind == Kind::kWr) return c.mobile ? c.CL + kBurst : c.CL + kBurst + 1 - WL;
+      if (!closes || !same) return 0;
+      return c.mobile ? kBurst : kBurst + std::max(c.tRTP, 2u) - 2;
     case Kind::kWr:
+    case Kind::kWra:
       if (kind == Kind::kWr) return kBurst;
       if (kind == Kind::kRd) return WL + kBurst + c.tWTR;
       return closes && same ? WL + kBurst + c.tWR : 0;
     case Kind::kRef:
       return kind == Kind::kRef || kind == Kind::kAct ? c.tRFC : 0;
+    case Kind::kPdx:
+      return c.tXP;
+    case Kind::kSrx:
+      return kind == Kind::kRd ? std::max(c.tXSRD, c.tXSNR) : c.tXSNR;
+    default:
+      return 0;
   }
   return 0;
 }
@@ -113,12 +125,17 @@ std::uint64_t ReferenceController::legal_from(Kind kind, unsigned bank,
   for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
     if (c->clock + kLongestRule < not_before) break;
     if (const unsigned n = apart(*c, kind, bank)) from = std::max(from, c->clock + n);
+    if (c->closes && (kind == Kind::kRef || (kind == Kind::kAct && c->bank == bank)))
+      from = std::max(from, c->closes + configs_[c->config].tRP);
   }
   return from;
 }
 
 std::uint64_t ReferenceController::clock_after_last() const {
-  return std::max(not_before_, commands.empty() ? 0 : commands.back().clock + 1);
+  if (commands.empty()) return not_before_;
+  const Given& last = commands.back();
+  const bool woke = last.kind == Kind::kPdx || last.kind == Kind::kSrx;
+  return std::max(not_before_, last.clock + (woke ? apart(last, Kind::kAct, 0) : 1));
 }
 
 // ---- the queue
@@ -132,7 +149,10 @@ bool ReferenceController::fits(const ReferenceRequest& r) const {
 
 bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at) {
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
-  if (queue_.empty()) idle_until(ddr_.edge(arrived - 1));
+  if (queue_.empty()) {
+    idle_until(ddr_.edge(arrived - 1));
+    wake(arrived);
+  }
   if (!fits(request)) {
     door_ = request;
     door_arrived_ = arrived;
@@ -188,25 +208,80 @@ void ReferenceController::give_refresh(std::uint64_t clock) {
   forced_ -= forced_ ? 1 : 0;
 }
 
-/// Clock by clock: an owed refresh, or the PREA before it, is given when it is legal.
-void ReferenceController::idle_until(Picoseconds at) {
-  if (!queue_.empty() || !config().refresh_interval) return;
-  const std::uint64_t end = ddr_.edge_after(at);
-  std::uint64_t clock = clock_after_last();
-  if (owed_ == 0) clock = std::max(clock, expiry_);
-  while (clock < end) {
-    expire(clock);
-    if (owed_ == 0) {
-      clock = expiry_;
-      continue;
-    }
+/// From when on the part takes commands of this kind after its last sleep.
+std::uint64_t ReferenceController::awake_from(Kind kind, std::uint64_t clock) const {
+  for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
+    if (c->kind == Kind::kPdx || c->kind == Kind::kSrx) return c->clock + apart(*c, kind, 0);
+    if (c->clock + kLongestRule < clock) break;
+  }
+  return 0;
+}
+
+/// The data of the last bursts is over and CKE has been high for long enough.
+bool ReferenceController::may_sleep(std::uint64_t clock) const {
+  for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
+    if (c->clock + kLongestRule < clock) break;
+    const ReferenceConfig& then = configs_[c->config];
+    const unsigned WL = then.mobile ? 1 : then.CL - 1;
+    unsigned n = 0;
+    if (c->kind == Kind::kRd || c->kind == Kind::kRda) n = then.CL + kBurst + 1;
+    if (c->kind == Kind::kWr || c->kind == Kind::kWra) n = WL + kBurst + then.tWTR;
+    if (c->kind == Kind::kPdx || c->kind == Kind::kSrx)
+      n = std::max(then.tCKE, apart(*c, Kind::kRd, 0));
+    if (c->clock + n > clock) return false;
+  }
+  return true;
+}
+
+void ReferenceController::wake(std::uint64_t clock) {
+  using Sleep = ReferenceConfig::Sleep;
+  if (asleep_ == Sleep::kNever) return;
+  clock = std::max(clock, commands.back().clock + configs_[commands.back().config].tCKE);
+  give(asleep_ == Sleep::kPowerDown ? Kind::kPdx : Kind::kSrx, 0, 0, clock);
+  if (asleep_ == Sleep::kSelfRefresh) {  // it refreshed itself until now
+    owed_ = since_refresh_ = 0;
+    expiry_ = clock + config().refresh_interval;
+  }
+  asleep_ = Sleep::kNever;
+}
+
+/// What an idle controller does in one clock: an owed refresh, the PREA before it, or sleep.
+void ReferenceController::idle_at(std::uint64_t clock) {
+  using Sleep = ReferenceConfig::Sleep;
+  const bool refreshes = config().refresh_interval != 0;
+  if (asleep_ == Sleep::kSelfRefresh) return;
+  if (asleep_ == Sleep::kPowerDown) {
+    const Given& entry = commands.back();
+    if (refreshes && expiry_ <= clock && entry.clock + configs_[entry.config].tCKE <= clock)
+      wake(clock);
+    return;
+  }
+  expire(clock);
+  if (clock < awake_from(Kind::kRef, clock)) return;
+  if (owed_ && !refreshes) return;
+  const Sleep sleep = config().sleep;
+  if (owed_ || sleep == Sleep::kSelfRefresh) {
     if (!all_closed()) {
       if (legal_from(Kind::kPreAll, 0, clock) == clock) give(Kind::kPreAll, 0, 0, clock);
-    } else if (legal_from(Kind::kRef, 0, clock) == clock) {
-      give_refresh(clock);
+      return;
     }
-    ++clock;
+    if (legal_from(Kind::kRef, 0, clock) != clock) return;
   }
+  if (owed_) return give_refresh(clock);
+  if (sleep == Sleep::kNever || !may_sleep(clock)) return;
+  give(sleep == Sleep::kPowerDown ? Kind::kPde : Kind::kSre, 0, 0, clock);
+  asleep_ = sleep;
+}
+
+void ReferenceController::idle_until(Picoseconds at) {
+  if (!queue_.empty()) return;
+  const std::uint64_t end = ddr_.edge_after(at);
+  // Clocks in which nothing can fall due are passed over.
+  std::uint64_t clock = clock_after_last();
+  const bool calm = config().sleep == ReferenceConfig::Sleep::kNever && owed_ == 0;
+  if (calm && !config().refresh_interval) return;
+  if (calm) clock = std::max(clock, expiry_);
+  for (; clock < end; ++clock) idle_at(clock);
 }
 
 // ---- scheduling
@@ -248,13 +323,15 @@ ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < queue_.size(); ++i)
     if (queue_[i].ready <= edge && offered(i)) list.push_back(i);
+  if (limits_.order == ReferenceLimits::Order::kFcfs) list = {0};
   const bool raise = config().old_count != 0xFF && passed_ > config().old_count;
   const auto order = [&](std::size_t i) {
     const ReferenceRequest& r = queue_[i].request;
     const bool reads_wait = read_room_ > edge;
-    const int kind = r.write ? 1 : reads_wait ? 2 : 0;
-    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r), r.priority,
-                           i);
+    const bool plain = limits_.order == ReferenceLimits::Order::kFrFcfs;
+    const int kind = !r.write && reads_wait ? 2 : r.write && !plain ? 1 : 0;
+    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r),
+                           plain ? 0 : r.priority, i);
   };
   std::sort(list.begin(), list.end(),
             [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
@@ -314,7 +391,20 @@ void ReferenceController::step() {
     q.classified = true;
     ++(p.kind == Kind::kAct ? misses : p.kind == Kind::kPre ? conflicts : hits);
   }
-  give(p.kind, bank_of(r), row_of(r), p.clock);
+  Kind kind = p.kind;
+  const bool column = kind == Kind::kRd || kind == Kind::kWr;
+  if (column && q.columns_given + 1 == columns_of(r) &&
+      limits_.order == ReferenceLimits::Order::kClosedPage) {
+    // The row closes unless another request in the queue wants it.
+    bool wanted = false;
+    for (const Queued& o : queue_)
+      wanted = wanted ||
+               (&o != &q && bank_of(o.request) == bank_of(r) && row_of(o.request) == row_of(r));
+    if (!wanted) kind = kind == Kind::kRd ? Kind::kRda : Kind::kWra;
+  }
+  give(kind, bank_of(r), row_of(r), p.clock);
+  if (kind == Kind::kRda || kind == Kind::kWra)
+    commands.back().closes = legal_from(Kind::kPre, bank_of(r), p.clock);
   if (p.kind == Kind::kAct || p.kind == Kind::kPre) return;
   if (q.columns_given++ == 0 && !r.write) answer(r, p.clock);
   if (q.columns_given == columns_of(r)) leave(*p.of, p.clock);

@@ -18,6 +18,9 @@ struct ReferenceConfig {
   unsigned refresh_interval = 1895;  ///< 0: none
   unsigned old_count = 0xFF;         ///< 0xFF: never
   bool bank_on_top = false;
+  bool mobile = false;
+  unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
+  enum class Sleep { kNever, kSelfRefresh, kPowerDown } sleep = Sleep::kNever;
 };
 
 /// What the silicon fixes.
@@ -26,6 +29,7 @@ struct ReferenceLimits {
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
   unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
   std::uint64_t size = 128u << 20;
+  enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
 };
 
 struct ReferenceRequest {
@@ -38,13 +42,27 @@ struct ReferenceRequest {
 
 class ReferenceController {
  public:
-  enum class Kind : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef };
+  enum class Kind : std::uint8_t {
+    kAct,
+    kPre,
+    kPreAll,
+    kRd,
+    kWr,
+    kRef,
+    kRda,
+    kWra,
+    kPde,
+    kPdx,
+    kSre,
+    kSrx
+  };
   struct Given {
     Kind kind;
     unsigned bank;
     std::uint32_t row;
     std::uint64_t clock;
-    std::size_t config;  // in force then: it decides what the command puts off
+    std::size_t config;        // in force then: it decides what the command puts off
+    std::uint64_t closes = 0;  // kRda, kWra: clock of the precharge that the part gives itself
   };
   struct Read {
     std::size_t id;
@@ -105,6 +123,10 @@ class ReferenceController {
   void expire(std::uint64_t clock);
   void give(Kind kind, unsigned bank, std::uint32_t row, std::uint64_t clock);
   void give_refresh(std::uint64_t clock);
+  std::uint64_t awake_from(Kind kind, std::uint64_t clock) const;
+  void idle_at(std::uint64_t clock);
+  bool may_sleep(std::uint64_t clock) const;
+  void wake(std::uint64_t clock);
   void answer(const ReferenceRequest& r, std::uint64_t clock);
   void leave(std::size_t place, std::uint64_t clock);
   bool fits(const ReferenceRequest& r) const;
@@ -118,6 +140,7 @@ class ReferenceController {
   std::uint64_t not_before_ = 0;  // the last change of clocks or configuration
   std::uint64_t passed_ = 0;      // transfers served while the oldest request waited
   std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
+  ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
   bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
   std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
 };

@@ -57,6 +57,12 @@ class Production : private mem::DdrClient {
     d.refresh_interval = c.refresh_interval;
     d.old_count = c.old_count;
     d.bank_on_top = c.bank_on_top;
+    d.timing.mobile = c.mobile;
+    d.timing.nXP = c.tXP;
+    d.timing.nXSNR = c.tXSNR;
+    d.timing.nXSRD = c.tXSRD;
+    d.timing.nCKE = c.tCKE;
+    d.low_power = static_cast<mem::LowPower>(c.sleep);
     ddr_.configure(d, at);
   }
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at) { ddr_.set_clocks(ddr, scr, at); }
@@ -91,6 +97,8 @@ class Production : private mem::DdrClient {
         set.set(std::string("ddr.") + key, std::to_string(value) + unit);
       };
       set.set("ddr.part", l.size == 64u << 20 ? "mt47h32m16" : "mt47h64m16");
+      constexpr const char* kOrders[] = {"ti", "fcfs", "frfcfs", "closed_page"};
+      set.set("ddr.scheduler", kOrders[static_cast<std::size_t>(l.order)]);
       give("command_fifo", l.command_fifo);
       give("write_fifo", l.write_fifo, " B");
       give("read_fifo", l.read_fifo, " B");
@@ -102,8 +110,9 @@ class Production : private mem::DdrClient {
     }
   };
   void command(mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
-    constexpr Kind kKinds[] = {Kind::kAct, Kind::kPre, Kind::kPreAll,
-                               Kind::kRd,  Kind::kWr,  Kind::kRef};
+    constexpr Kind kKinds[] = {Kind::kAct, Kind::kPre, Kind::kPreAll, Kind::kRd,
+                               Kind::kWr,  Kind::kRef, Kind::kRda,    Kind::kWra,
+                               Kind::kPde, Kind::kPdx, Kind::kSre,    Kind::kSrx};
     commands.push_back({kCommand, static_cast<std::uint64_t>(kKinds[static_cast<std::size_t>(c)]),
                         std::uint64_t{bank} << 32 | row, clock});
   }
@@ -145,8 +154,12 @@ class Oracle {
   }
   std::array<std::uint64_t, 6> statistics() const {
     const auto n = [&](Kind k) { return count_[static_cast<std::size_t>(k)]; };
-    return {n(Kind::kRd) + n(Kind::kWr), controller_.hits, controller_.misses,
-            controller_.conflicts,       n(Kind::kAct),    n(Kind::kRef)};
+    return {n(Kind::kRd) + n(Kind::kRda) + n(Kind::kWr) + n(Kind::kWra),
+            controller_.hits,
+            controller_.misses,
+            controller_.conflicts,
+            n(Kind::kAct),
+            n(Kind::kRef)};
   }
   std::vector<Event> commands, accepted, reads;
 
@@ -165,7 +178,7 @@ class Oracle {
   }
   ReferenceController controller_;
   std::size_t seen_ = 0;
-  std::array<std::uint64_t, 6> count_{};
+  std::array<std::uint64_t, 12> count_{};
 };
 
 Setup random_setup(Rng& rng) {
@@ -176,6 +189,13 @@ Setup random_setup(Rng& rng) {
   c.banks = below(3) ? 8 : 4;
   s.limits.size = c.banks == 8 ? 128u << 20 : 64u << 20;
   c.bank_on_top = below(3) == 0;
+  c.mobile = c.banks == 4 && below(2);
+  c.tXP = 1 + below(6);
+  c.tXSNR = 20 + below(40);
+  c.tXSRD = 20 + below(200);
+  c.tCKE = 1 + below(8);
+  if (below(2)) c.sleep = static_cast<ReferenceConfig::Sleep>(1 + below(2));
+  if (below(3) == 0) s.limits.order = static_cast<ReferenceLimits::Order>(1 + below(3));
   c.read_latency = below(8);
   c.refresh_interval = below(8) == 0 ? 0 : 300 + below(2000);
   constexpr unsigned kOldCounts[] = {0xFF, 0xFE, 0x20, 4, 0};
@@ -254,6 +274,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
       if (reconfigure) {
         config.old_count = choice & 1 ? 3 : 0xFF;
         config.refresh_interval = choice & 6 ? setup.config.refresh_interval : 300 + choice % 1000;
+        if (choice & 64) config.sleep = static_cast<ReferenceConfig::Sleep>(choice / 128 % 3);
         config.tRP = used.config.tRP + choice % 3;
         config.tWTR = setup.config.tWTR + choice / 8 % 3;
         c.configure(config, now);
@@ -306,6 +327,15 @@ TEST_P(SameAsReferenceTest, EveryCommandOutcomeAndStatistic) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SameAsReferenceTest, testing::Range(0u, 8u));
+
+// What the streams must contain for the comparison to mean something.
+TEST(SameAsReferencesTest, StreamsReachEveryCommand) {
+  std::array<std::uint64_t, 12> commands{};
+  for (std::uint64_t seed = 1; seed <= 80; ++seed)
+    for (const Event& e : play<Production>(seed, 400))
+      if (e.what == kCommand) ++commands[e.a];
+  for (const std::uint64_t n : commands) EXPECT_GT(n, 100u);
+}
 
 // The comparison can fail: a reference that is one clock slower in one number is found.
 TEST(SameAsReferencesTest, OneClockMoreIsADifference) {

@@ -59,10 +59,11 @@ class Scenario {
   /// Column commands as text: R or W and the bank.
   std::string columns() const {
     std::string s;
-    for (const Logged& l : bench.log)
-      if (l.cmd == Cmd::kRd || l.cmd == Cmd::kWr)
-        s += std::string(s.empty() ? "" : " ") + (l.cmd == Cmd::kRd ? "R" : "W") +
-             std::to_string(l.bank);
+    for (const Logged& l : bench.log) {
+      const bool read = l.cmd == Cmd::kRd || l.cmd == Cmd::kRda;
+      if (read || l.cmd == Cmd::kWr || l.cmd == Cmd::kWra)
+        s += std::string(s.empty() ? "" : " ") + (read ? "R" : "W") + std::to_string(l.bank);
+    }
     return s;
   }
 };
@@ -250,6 +251,68 @@ TEST_F(RefreshTest, FourRefreshesInARowAfterTooManyIntervalsWithout) {
   };
   EXPECT_EQ(refreshes("2"), 4u);
   EXPECT_EQ(refreshes("64"), 0u);
+}
+
+BenchOptions with(const char* scheduler) {
+  BenchOptions o = options();
+  o.params.emplace_back("scheduler", scheduler);
+  return o;
+}
+/// Handed over at clock 300, so seen at 301 and scheduled from here on.
+constexpr std::uint64_t kFrom = 301 + 8;
+
+// tRCD = 5, tRRD = 3, WR to RD takes WL + 4 + tWTR = 4 + 4 + 3.
+TEST(OtherSchedulersTest, FcfsServesByAgeAndPreparesNothing) {
+  const std::vector<Request> two = {write(kA, at(1, 0), 7), read(kB, at(1, 1), 0)};
+  EXPECT_EQ(Scenario(two, with("ti")).columns(), "R1 W0");
+  Scenario s(two, with("fcfs"));
+  EXPECT_EQ(s.columns(), "W0 R1");
+  EXPECT_EQ(s.bench.clock_of(Cmd::kWr), kFrom + 5);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 1), kFrom + 5 + 1) << "not before the write has its column";
+  EXPECT_EQ(s.bench.clock_of(Cmd::kRd), kFrom + 5 + 11);
+  // An open row does not help the younger one.
+  const std::vector<Request> hit = {read(kA, at(1, 1)), read(kB, at(1, 0))};
+  EXPECT_EQ(Scenario(hit, with("fcfs"), {read(kC, at(1, 0))}).columns(), "R1 R0");
+  EXPECT_EQ(Scenario(hit, with("ti"), {read(kC, at(1, 0))}).columns(), "R0 R1");
+}
+
+TEST(OtherSchedulersTest, FrfcfsTakesOpenRowsFirstWhateverKindAndPriority) {
+  const std::vector<Request> two = {read(kA, at(1, 1), 0), write(kB, at(1, 0), 7)};
+  EXPECT_EQ(Scenario(two, with("ti"), {read(kC, at(1, 0))}).columns(), "R1 W0");
+  Scenario s(two, with("frfcfs"), {read(kC, at(1, 0))});
+  EXPECT_EQ(s.columns(), "W0 R1");
+  EXPECT_EQ(s.bench.clock_of(Cmd::kWr), kFrom);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 1), kFrom + 1) << "the other bank is prepared";
+  EXPECT_EQ(s.bench.clock_of(Cmd::kRd), kFrom + 11);
+  EXPECT_EQ(Scenario(two, with("frfcfs")).columns(), "R1 W0") << "no row open: by age";
+  const std::vector<Request> turned = {write(kB, at(1, 0), 7), read(kA, at(1, 1), 0)};
+  EXPECT_EQ(Scenario(turned, with("frfcfs")).columns(), "W0 R1");
+}
+
+TEST(OtherSchedulersTest, ClosedPageSavesTrpOnAnotherRowAndCostsTrcdOnTheSame) {
+  const auto column = [](const char* scheduler, std::uint32_t row) {
+    Scenario s({read(kA, at(row, 0))}, with(scheduler), {read(kC, at(1, 0))});
+    return std::min(s.bench.clock_of(Cmd::kRd), s.bench.clock_of(Cmd::kRda));
+  };
+  EXPECT_EQ(column("ti", 2), kFrom + 5 + 5) << "tRP + tRCD";
+  EXPECT_EQ(column("closed_page", 2), kFrom + 5) << "tRCD";
+  EXPECT_EQ(column("ti", 1), kFrom);
+  EXPECT_EQ(column("closed_page", 1), kFrom + 5);
+}
+
+TEST(OtherSchedulersTest, ClosedPageKeepsARowThatAnotherRequestWaitsFor) {
+  Scenario s({read(kA, at(1, 0)), read(kB, at(1, 0), 3, 64)}, with("closed_page"));
+  EXPECT_EQ(s.bench.count(Cmd::kAct), 1u);
+  EXPECT_EQ(s.bench.count(Cmd::kRd), 4u);
+  EXPECT_EQ(s.bench.count(Cmd::kRda), 1u);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kRda), kFrom + 5 + 4 * 4);
+}
+
+// The part precharges by itself when tRAS allows: ACT, RD at 5, so at tRAS = 11, not at 5 + 4.
+TEST(OtherSchedulersTest, AutoPrechargeWaitsForTras) {
+  Scenario s({read(kA, at(1, 0)), read(kB, at(2, 0))}, with("closed_page"));
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 0, 1), kFrom + 11 + 5);
+  EXPECT_EQ(s.bench.count(Cmd::kPre), 0u);
 }
 
 // With all rows closed the most urgent read ranks before the write, so no refresh; the raised

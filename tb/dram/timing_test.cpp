@@ -214,6 +214,121 @@ INSTANTIATE_TEST_SUITE_P(
                },
                100 + 40}));
 
+BenchOptions asleep(mem::LowPower mode) {
+  BenchOptions o = base();
+  o.config.low_power = mode;
+  o.params.emplace_back("request_latency", "0 cycles");
+  return o;
+}
+/// Handed over at 100: seen, and CKE raised, at 101.
+std::uint64_t wakes_at(const mem::DdrConfig& c, Cmd cmd) {
+  BenchOptions o = asleep(c.low_power);
+  o.config = c;
+  DdrBench b(o);
+  Request r = read(kA, at(1, 0));
+  b.submit(r, 100);
+  b.drain();
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  return b.clock_of(cmd);
+}
+
+TEST(LowPowerTest, ExitCostsTxpOrTxsnrAndTxsrd) {
+  for (const unsigned n : {0u, 1u, 7u}) {
+    mem::DdrConfig c = asleep(mem::LowPower::kOff).config;
+    EXPECT_EQ(wakes_at(c, Cmd::kAct), 101u);
+    c.low_power = mem::LowPower::kPowerDown;
+    c.timing.nXP = 3 + n;
+    EXPECT_EQ(wakes_at(c, Cmd::kPdx), 101u);
+    EXPECT_EQ(wakes_at(c, Cmd::kAct), 101u + 3 + n);
+    c.low_power = mem::LowPower::kSelfRefresh;
+    c.timing.nXSNR = 34 + n;
+    EXPECT_EQ(wakes_at(c, Cmd::kSrx), 101u);
+    EXPECT_EQ(wakes_at(c, Cmd::kAct), 101u + 34 + n);
+    EXPECT_EQ(wakes_at(c, Cmd::kRd), 101u + 200) << "tXSRD, not tXSNR + tRCD";
+    c.timing.nXSRD = 200 + n;
+    EXPECT_EQ(wakes_at(c, Cmd::kRd), 101u + 200 + n);
+  }
+}
+
+// The controller's own pipeline hides a short exit: it knows of the request before it can serve it.
+TEST(LowPowerTest, PowerDownExitHidesBehindTheRequestLatency) {
+  for (const unsigned latency : {0u, 2u, 3u, 8u}) {
+    BenchOptions o = asleep(mem::LowPower::kPowerDown);
+    o.params.back().second = std::to_string(latency) + " cycles";
+    DdrBench b(o);
+    Request r = read(kA, at(1, 0));
+    b.submit(r, 100);
+    b.drain();
+    EXPECT_EQ(b.clock_of(Cmd::kAct), 101u + std::max(latency, 3u));
+  }
+}
+
+// RD at 101 + 3 + 6 = 110, its data over at 110 + CL + 4 + 1 = 120: there CKE falls. The next
+// request is seen at 121; CKE stays low for tCKE. Power-down kept the row.
+TEST(LowPowerTest, CkeStaysLowForTckeAndTheRowStaysOpen) {
+  for (const unsigned n : {0u, 1u, 7u}) {
+    BenchOptions o = asleep(mem::LowPower::kPowerDown);
+    o.config.timing.nCKE += n;
+    DdrBench b(o);
+    Request one = read(kA, at(1, 0)), two = read(kB, at(1, 0, 64));
+    b.submit(one, 100);
+    b.drain();
+    b.submit(two, 120);
+    b.drain();
+    EXPECT_EQ(b.clock_of(Cmd::kPde, -1, 1), 120u);
+    EXPECT_EQ(b.clock_of(Cmd::kRd, -1, 1), 120u + 3 + n + 3);
+    EXPECT_EQ(b.count(Cmd::kAct), 1u);
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+    EXPECT_EQ(b.ddr.stats.power_downs.count(), 2u);
+  }
+}
+
+TEST(LowPowerTest, SelfRefreshClosesTheRowsAndNeedsNoRefresh) {
+  BenchOptions o = asleep(mem::LowPower::kSelfRefresh);
+  o.config.refresh_interval = 300;
+  DdrBench b(o);
+  Request r = read(kA, at(1, 0));
+  b.submit(r, 100);
+  b.drain();
+  const std::uint64_t rd = b.clock_of(Cmd::kRd);
+  b.ddr.catch_up(20'000 * kTck);
+  // PRE is legal at RD + 5; CKE falls tRP + 1 later.
+  EXPECT_EQ(b.clock_of(Cmd::kPreAll), rd + 5);
+  EXPECT_EQ(b.clock_of(Cmd::kSre, -1, 1), rd + 5 + 8);
+  EXPECT_EQ(b.count(Cmd::kRef), 0u);
+  EXPECT_EQ(b.ddr.stats.self_refreshes.count(), 2u);
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+}
+
+// Power-down is left for each refresh: 3 for tXP, and CKE falls with the next clock after REF.
+TEST(LowPowerTest, PowerDownIsLeftForRefresh) {
+  BenchOptions o = asleep(mem::LowPower::kPowerDown);
+  o.config.refresh_interval = 99;
+  DdrBench b(o);
+  b.ddr.catch_up(1'000 * kTck);
+  EXPECT_EQ(b.clock_of(Cmd::kPdx), 100u);
+  EXPECT_EQ(b.clock_of(Cmd::kRef), 103u);
+  EXPECT_EQ(b.clock_of(Cmd::kPde, -1, 1), 104u);
+  EXPECT_EQ(b.count(Cmd::kRef), 10u);
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+}
+
+TEST(LowPowerTest, ClearingTheBitWakesThePart) {
+  BenchOptions o = asleep(mem::LowPower::kSelfRefresh);
+  DdrBench b(o);
+  b.ddr.catch_up(50 * kTck);
+  EXPECT_EQ(b.count(Cmd::kSre), 1u);
+  o.config.low_power = mem::LowPower::kOff;
+  b.ddr.configure(o.config, 50 * kTck);
+  EXPECT_EQ(b.clock_of(Cmd::kSrx), 51u);
+  Request r = read(kA, at(1, 0));
+  b.submit(r, 100);
+  b.drain();
+  EXPECT_EQ(b.clock_of(Cmd::kAct), 101u) << "51 + 34 is past";
+  EXPECT_EQ(b.clock_of(Cmd::kRd), 251u) << "tXSRD is not";
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+}
+
 // What does not bind does not move anything.
 TEST(TimingTest, ShortTrtpIsTwoClocks) {
   for (const unsigned nRTP : {1u, 2u}) {
@@ -280,6 +395,45 @@ TEST(TimingTest, PrechargeAllBeforeRefresh) {
     EXPECT_EQ(b.clock_of(Cmd::kRef), 100u + 7u + (banks == 8 ? 1u : 0u));
     EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
   }
+}
+
+// Mobile DDR: WL = 1; RD to WR takes CL + BL/2, RD to PRE BL/2 whatever tRTP.
+TEST(TimingTest, MobilePartsHaveTheirOwnRelations) {
+  const auto run = [](bool mobile, auto scenario) {
+    BenchOptions o = base();
+    o.config.timing.banks = 4;
+    o.config.timing.nRAS = 1;
+    o.config.timing.nRTP = 5;
+    o.config.timing.mobile = mobile;
+    DdrBench b(o);
+    const std::uint64_t clock = scenario(b);
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+    return clock;
+  };
+  const auto read_write = [](DdrBench& b) {
+    Request one = read(kA, at(1, 0)), two = write(kB, at(1, 0, 64));
+    b.submit(one, kSubmit);
+    b.submit(two, kSubmit);
+    b.drain();
+    return b.clock_of(Cmd::kWr);
+  };
+  const auto write_read = [](DdrBench& b) {
+    Request one = write(kA, at(1, 0)), two = read(kB, at(1, 0, 64));
+    b.submit(one, kSubmit);
+    b.submit(two, kSubmit + 7);  // ready at 25, when the write has its column
+    b.drain();
+    return b.clock_of(Cmd::kRd);
+  };
+  const auto read_close = [](DdrBench& b) { return conflict_precharge(b, false); };
+  const auto write_close = [](DdrBench& b) { return conflict_precharge(b, true); };
+  EXPECT_EQ(run(false, read_write), 24u + 5 + 4 + 1 - 4);
+  EXPECT_EQ(run(true, read_write), 24u + 5 + 4);
+  EXPECT_EQ(run(false, write_read), 24u + 4 + 4 + 4);
+  EXPECT_EQ(run(true, write_read), 24u + 1 + 4 + 4);
+  EXPECT_EQ(run(false, read_close), 24u + 4 + 5 - 2);
+  EXPECT_EQ(run(true, read_close), 24u + 4);
+  EXPECT_EQ(run(false, write_close), 24u + 4 + 4 + 9);
+  EXPECT_EQ(run(true, write_close), 24u + 1 + 4 + 9);
 }
 
 // A read is announced before its first beat, whatever the latencies: nobody can be told too late.

@@ -27,11 +27,13 @@ void AccessStream::check() {
 }
 
 void AccessStream::boundary() {
+  // The core also looks around while an instruction is still being fetched.
+  if (core_.instructions_executed() == executed_) return;
+  executed_ = core_.instructions_executed();
   check();
   pc_ = core_.reg(15);
   cpsr_ = core_.cpsr();
   thumb_ = bit(cpsr_, 5);
-  ++instructions_;
   std::uint32_t w = 0;
   if (internal(pc_))
     std::memcpy(&w, tcm_.data() + (pc_ & 0x7FFCu), 4);

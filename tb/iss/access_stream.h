@@ -18,13 +18,12 @@ class AccessStream {
  public:
   AccessStream(const Core& core, std::span<const std::uint8_t> tcm, CacheOracle& oracle)
       : core_(core), tcm_(tcm), oracle_(oracle) {}
-  /// Call at each instruction boundary.
+  /// Call at each instruction boundary, once or more. No instruction may cause an exception.
   void boundary();
   /// Call after the last: looks at what the instruction before loaded.
   void check();
   /// Data accesses that reached the oracle.
   std::uint64_t accesses() const { return accesses_; }
-  std::uint64_t instructions() const { return instructions_; }
   /// First loaded value that differs from the oracle's; empty: none.
   const std::string& complaint() const { return complaint_; }
 
@@ -52,7 +51,8 @@ class AccessStream {
   std::uint32_t pc_ = 0, cpsr_ = 0;
   bool thumb_ = false;
   std::vector<Loaded> loaded_;
-  std::uint64_t accesses_ = 0, instructions_ = 0;
+  std::uint64_t executed_ = ~std::uint64_t{0};  ///< instructions before the one told last
+  std::uint64_t accesses_ = 0;
   std::string complaint_;
 };
 

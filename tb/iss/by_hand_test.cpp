@@ -55,6 +55,23 @@ TEST_F(ByHandTest, MmuOffAndOnKeepsTheTlb) {
   EXPECT_EQ(m.core.reg(2), 2u);
 }
 
+/// Two transactions on one AHB port would break its contract, which the flat port checks.
+TEST_F(ByHandTest, UncachedFetchWaitsForTheFillThatStillStreams) {
+  m.section(kVa, kPa, 0, 0);
+  m.load(assemble("mov pc, r4\n", 0x200000));
+  m.load(assemble("mov r9, #9\n mov pc, lr\n", kPa));
+  go("ldr r0, =0x00200000\n blx r0\n mov r1, #0\n mcr p15, 0, r1, c7, c5, 0\n blx r0\n");
+  EXPECT_EQ(m.core.reg(9), 9u);
+}
+
+/// ARM DDI 0198D 2-34: without the MMU addresses are not modified.
+TEST_F(ByHandTest, ProcessMovesNothingWhileTheMmuIsOff) {
+  m.port.set_word(0x0040'0000, 7);
+  m.execute("ldr r4, =0x00400000\n ldr r0, =0x08000000\n mcr p15, 0, r0, c13, c0, 0\n"
+            "ldr r1, [r4]\n mov r0, #0\n mcr p15, 0, r0, c13, c0, 0\n");
+  EXPECT_EQ(m.core.reg(1), 7u);
+}
+
 /// ARM ARM, sequence for checking faults: both descriptors are read before the domain is checked.
 TEST_F(ByHandTest, NoPageGoesBeforeNoAccess) {
   m.port.set_word(kTables + 4 * (kVa >> 20), kCoarse | 6u << 5 | 0x11u);

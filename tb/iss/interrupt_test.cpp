@@ -57,6 +57,30 @@ TEST_F(InterruptTest, EdgeIsSeenStrictlyAfterIt) {
   }
 }
 
+/// The instruction whose line is on its way has not begun.
+TEST_F(InterruptTest, EdgeDuringALineFillGoesBeforeTheInstructionThatWaits) {
+  constexpr std::uint32_t kFar = 0x0020'0000;
+  const Program far = assemble("svc #1\n mov pc, lr\n", kFar);
+  m.load(far);
+  m.execute(kVectors + kCachesOn +
+            " msr cpsr_c, #0x1f\n ldr r8, =0x00200000\n svc #1\n blx r8\n");
+  ASSERT_EQ(m.marks.size(), 2u);
+  const std::uint64_t from = m.marks[0] + 3 + 3, to = m.marks[1];  // after svc and branch
+  ASSERT_GT(to, from + 8) << "the fill takes time";
+  for (const std::uint64_t clock : {from + 2, (from + to) / 2, to - 2}) {
+    Machine each;
+    lower_on_service(each);
+    raise(each, clock * Machine::kClock + 1);
+    each.load(far);
+    each.load(m.program);
+    each.run();
+    const auto t = taken(each);
+    ASSERT_FALSE(t.empty()) << clock;
+    EXPECT_EQ(t[0].kind, 6u);
+    EXPECT_EQ(t[0].lr - 4, kFar) << clock << " of " << from << ".." << to;
+  }
+}
+
 TEST_F(InterruptTest, LongInstructionIsNotBrokenOff) {
   m.execute(kOpen + "ldr r4, =0x6000\n svc #1\n sled: ldmia r4, {r0-r3, r5-r12}\n nop\n nop\n");
   Machine each;

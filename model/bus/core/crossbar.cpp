@@ -45,6 +45,7 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.slave = static_cast<std::uint8_t>(slave);
+  request.slave_waited = 0;
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
   const std::uint64_t crossed = scr_.edge_after(request.issued) + p.request_latency;
@@ -144,7 +145,10 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   s.free = std::max(s.free, scr_.edge_after(at));
   if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
-  request.taken = scr_.edge(s.free);
+  const Picoseconds taken = scr_.edge(s.free);
+  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    waits_of(request).add(culprit(request.door_opener), taken - request.taken);
+  request.taken = taken;
   if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host_, request, s.free);
   plan();
@@ -156,8 +160,10 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
   request.last =
       last == first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
   request.error = error;
-  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
+  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     waits_of(request).add(Culprit::kBridge, request.first - first);
+    waits_of(request).add(Culprit::kService, first - request.taken - request.slave_waited);
+  }
   if (error && request.locked) {  // its master gives up
     slaves_[request.slave].open_to = ~0u;
     plan();

@@ -53,7 +53,7 @@ Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + 1);
 }
 
-/// B and BL. imm: distance from the first byte of the line; near: raw is the one between the records.
+/// B and BL. imm: distance from the first byte of the line; near: raw is that of the records.
 template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);

@@ -123,8 +123,8 @@ class Core : public Background {
     ready_[r] = ready << 2 | by;
     busy_until_ = ready;
   }
-  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first, and
-  /// unpacks what may have changed them there.
+  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first,
+  /// and unpacks what may have changed them there.
   std::uint32_t packed_cpsr() const {
     return (cpsr_ & 0x0FFF'FFFFu) | (n_ & 1u << 31) | (z_ ? 0 : 1u << 30) |
            std::uint32_t{c_} << 29 | std::uint32_t{v_} << 28;
@@ -197,7 +197,7 @@ class Core : public Background {
   }
   std::uint8_t* tcm(std::uint32_t mva) { return tcm_.data() + (mva & (tcm_.size() - 1)); }
   std::uint32_t modified(std::uint32_t va) const {
-    return va < 0x0200'0000u ? va | fcse_pid_ : va;
+    return va < 0x0200'0000u ? va | process_ : va;
   }
   const Translation* translate(std::uint32_t mva, bool write, bool user, bool instruction);
   const Translation* translate_slow(std::uint32_t mva, bool write, bool user, bool instruction);
@@ -315,6 +315,7 @@ class Core : public Background {
   std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
   std::array<Instruction, 2> uncached_record_;
   bool fetch_branched_ = false;
+  bool bus_fetch_ = false;  // the last fetch went to the bus: time has passed since the boundary
   std::uint32_t fetch_buffer_pa_ = 1, fetch_words_[4] = {};
   BusAccess fetch_access_;
   struct Fill {
@@ -339,9 +340,9 @@ class Core : public Background {
   static constexpr unsigned kMemos = 64;
   std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
-  /// A place where the core reads or writes without a further look: translation, permission and tag
-  /// held when it was noted, and what could change that takes the note away. For writes a hint covers
-  /// half a line whose dirty bit is set.
+  /// A place where the core reads or writes without a further look: translation, permission and
+  /// tag held when it was noted, and what could change that takes the note away. For writes a hint
+  /// covers half a line whose dirty bit is set.
   struct Hint {
     std::uint32_t key = kNoHint;  // address of its first byte
     std::uint32_t counted = 0;    // what an access adds to the cache's statistics
@@ -379,6 +380,7 @@ class Core : public Background {
   std::uint32_t control_ = 0x0005'0078;
   std::uint32_t ttbr_ = 0, dacr_ = 0, dfsr_ = 0, ifsr_ = 0, far_ = 0;
   std::uint32_t fcse_pid_ = 0, context_id_ = 0;
+  std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on (ARM DDI 0198D 2-34)
   std::uint32_t dlock_ = 0, ilock_ = 0, tlb_lock_ = 0;
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;

@@ -89,6 +89,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
   switch (reg) {
     case id(0, 1, 0, 0):
       control_ = (v & 0x0000F387u) | 0x0005'0078u;
+      process_ = control_ & 1u ? fcse_pid_ : 0;
       flush_memos();
       fetch_buffer_pa_ = 1;
       return true;
@@ -112,7 +113,11 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
       return true;
     }
     case id(0, 10, 0, 0): tlb_lock_ = v & 0x1C000001u; return true;
-    case id(0, 13, 0, 0): fcse_pid_ = v & 0xFE000000u; flush_memos(); return true;
+    case id(0, 13, 0, 0):
+      fcse_pid_ = v & 0xFE000000u;
+      process_ = control_ & 1u ? fcse_pid_ : 0;
+      flush_memos();
+      return true;
     case id(0, 13, 0, 1): context_id_ = v; return true;
     case id(0, 15, 0, 0): debug_override_ = v; return true;
     case id(7, 15, 0, 0): cache_debug_ = v & 7u; return true;

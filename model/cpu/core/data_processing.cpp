@@ -12,51 +12,54 @@ constexpr bool logical(Op op) {
 }
 constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
 
-struct Sum {
-  std::uint32_t value;
-  bool carry, overflow;
-};
+// The flags are results of their own and not members beside the value: compilers pack such members
+// into one register, which takes longer than the addition.
+
 /// x + y + in, with the flags of the adder.
-[[gnu::always_inline]] inline Sum add(std::uint32_t x, std::uint32_t y, std::uint32_t in) {
+[[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool in,
+                                                bool& carry, bool& overflow) {
   const std::uint64_t sum = std::uint64_t{x} + y + in;
   const auto value = static_cast<std::uint32_t>(sum);
-  return {value, (sum >> 32) != 0, ((~(x ^ y) & (x ^ value)) >> 31) != 0};
+  carry = (sum >> 32) != 0;
+  overflow = ((~(x ^ y) & (x ^ value)) >> 31) != 0;
+  return value;
 }
 /// x + y.
-[[gnu::always_inline]] inline Sum add(std::uint32_t x, std::uint32_t y) {
+[[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool& carry,
+                                                bool& overflow) {
   std::int32_t value;
-  const bool overflow = __builtin_add_overflow(static_cast<std::int32_t>(x),
-                                               static_cast<std::int32_t>(y), &value);
-  const auto sum = static_cast<std::uint32_t>(value);
-  return {sum, sum < x, overflow};
+  overflow = __builtin_add_overflow(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                    &value);
+  carry = static_cast<std::uint32_t>(value) < x;
+  return static_cast<std::uint32_t>(value);
 }
 /// x - y; the carry is the borrow's complement.
-[[gnu::always_inline]] inline Sum subtract(std::uint32_t x, std::uint32_t y) {
+[[gnu::always_inline]] inline std::uint32_t subtract(std::uint32_t x, std::uint32_t y, bool& carry,
+                                                     bool& overflow) {
   std::int32_t value;
-  const bool overflow = __builtin_sub_overflow(static_cast<std::int32_t>(x),
-                                               static_cast<std::int32_t>(y), &value);
-  return {static_cast<std::uint32_t>(value), x >= y, overflow};
-}
-[[gnu::always_inline]] inline Sum plain(std::uint32_t value, bool carry) {
-  return {value, carry, false};
+  overflow = __builtin_sub_overflow(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                    &value);
+  carry = x >= y;
+  return static_cast<std::uint32_t>(value);
 }
 
-/// @param carry in: the shifter's carry out, for logical operations
+/// @param carry in: the shifter's carry out, which logical operations keep
 template <Op kOp>
-[[gnu::always_inline]] inline Sum compute(std::uint32_t a, std::uint32_t b, bool c, bool carry) {
+[[gnu::always_inline]] inline std::uint32_t compute(std::uint32_t a, std::uint32_t b, bool c,
+                                                    bool& carry, bool& overflow) {
   switch (kOp) {
-    case Op::kAnd: case Op::kTst: return plain(a & b, carry);
-    case Op::kEor: case Op::kTeq: return plain(a ^ b, carry);
-    case Op::kSub: case Op::kCmp: return subtract(a, b);
-    case Op::kRsb: return subtract(b, a);
-    case Op::kAdd: case Op::kCmn: return add(a, b);
-    case Op::kAdc: return add(a, b, c);
-    case Op::kSbc: return add(a, ~b, c);
-    case Op::kRsc: return add(b, ~a, c);
-    case Op::kOrr: return plain(a | b, carry);
-    case Op::kMov: return plain(b, carry);
-    case Op::kBic: return plain(a & ~b, carry);
-    default: return plain(~b, carry);
+    case Op::kAnd: case Op::kTst: return a & b;
+    case Op::kEor: case Op::kTeq: return a ^ b;
+    case Op::kSub: case Op::kCmp: return subtract(a, b, carry, overflow);
+    case Op::kRsb: return subtract(b, a, carry, overflow);
+    case Op::kAdd: case Op::kCmn: return add(a, b, carry, overflow);
+    case Op::kAdc: return add(a, b, c, carry, overflow);
+    case Op::kSbc: return add(a, ~b, c, carry, overflow);
+    case Op::kRsc: return add(b, ~a, c, carry, overflow);
+    case Op::kOrr: return a | b;
+    case Op::kMov: return b;
+    case Op::kBic: return a & ~b;
+    default: return ~b;
   }
 }
 
@@ -68,15 +71,15 @@ template <Op kOp, Form kForm, bool kSet>
 Core::Ops::Next Core::Ops::data(Core& c, Next i, Cycle cycle) {
   // Immediates and plain registers leave the carry of a logical operation alone.
   constexpr bool kSetsCarry = !logical(kOp) || (kForm != Form::kImm && kForm != Form::kReg);
-  bool carry = c.c_;
+  bool carry = c.c_, overflow = false;
   const std::uint32_t b = second_operand<kForm>(*i, c.r_, carry);
-  const Sum s = compute<kOp>(c.r_[i->rn], b, c.c_, carry);
+  const std::uint32_t value = compute<kOp>(c.r_[i->rn], b, c.c_, carry, overflow);
   if constexpr (kSet) {
-    c.n_ = c.z_ = s.value;
-    if constexpr (kSetsCarry) c.c_ = s.carry;
-    if constexpr (!logical(kOp)) c.v_ = s.overflow;
+    c.n_ = c.z_ = value;
+    if constexpr (kSetsCarry) c.c_ = carry;
+    if constexpr (!logical(kOp)) c.v_ = overflow;
   }
-  if constexpr (writes(kOp)) c.r_[i->rd] = s.value;
+  if constexpr (writes(kOp)) c.r_[i->rd] = value;
   return next(c, i + 1, cycle + (kForm >= Form::kLslReg ? 2 : 1));
 }
 
@@ -104,30 +107,30 @@ void Core::data_processing(const Instruction& decoded) {
   const bool shifted_operand = late || i.operand == Operand::kShiftImm;
   auto r = r_;
   if (late) r[15] += 4;
-  bool carry = cpsr_ & kC;
+  bool carry = cpsr_ & kC, overflow = cpsr_ & kV;
   const std::uint32_t b = select(
       static_cast<unsigned>(form_of(i)),
       [](auto form) { return &second_operand<static_cast<Form>(decltype(form)::value)>; },
       std::make_index_sequence<kForms>{})(i, r, carry);
-  const Sum s = select(
+  const std::uint32_t value = select(
       static_cast<unsigned>(i.op),
       [](auto op) { return &compute<static_cast<Op>(decltype(op)::value)>; },
-      std::make_index_sequence<16>{})(r[i.rn], b, (cpsr_ & kC) != 0, carry);
+      std::make_index_sequence<16>{})(r[i.rn], b, (cpsr_ & kC) != 0, carry, overflow);
   if (writes(i.op) && i.rd == 15) {
     // RSC counts with the logical ones here.
     spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);
     if ((i.flags & kSetFlags) && !(i.flags & kThumbInsn)) {
       set_cpsr(spsr_[bank(cpsr_)]);
-      branch_to(s.value & ((cpsr_ & 0x20u) ? ~1u : ~3u));
+      branch_to(value & ((cpsr_ & 0x20u) ? ~1u : ~3u));
       return;
     }
-    branch_to(s.value & ((i.flags & kThumbInsn) ? ~1u : ~3u));
+    branch_to(value & ((i.flags & kThumbInsn) ? ~1u : ~3u));
     return;
   }
   if (i.flags & kSetFlags)
-    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (s.value & kN) | (s.value ? 0 : kZ) | (s.carry ? kC : 0) |
-            (logical(i.op) ? cpsr_ & kV : s.overflow ? kV : 0);
-  if (writes(i.op)) r_[i.rd] = s.value;
+    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (value & kN) | (value ? 0 : kZ) | (carry ? kC : 0) |
+            (overflow ? kV : 0);
+  if (writes(i.op)) r_[i.rd] = value;
   spend(late ? 2 : 1);
 }
 

@@ -61,6 +61,10 @@ void Core::run() {
       aborted_ = false;
       continue;
     }
+    if (bus_fetch_) {  // an interrupt that came meanwhile goes first
+      bus_fetch_ = false;
+      if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) continue;
+    }
     run_va_ = pc_ & ~31u;
     run_first_ = reinterpret_cast<std::intptr_t>(i);
     const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&

@@ -1,13 +1,13 @@
 // How records follow each other: each handler executes one and calls the next by a tail call, so
-// that a chain of records runs without a loop around it. A handler calls nothing else in the middle:
-// what is not quick is a tail call too, and its own work needs no stack frame.
+// that a chain of records runs without a loop around it. A handler calls nothing else in the
+// middle: what is not quick is a tail call too, and its own work needs no stack frame.
 //
-// Within a chain the clock travels in a register; cycle_, pc_ and the counters stand where the chain
-// began until settle(). Whoever calls something out of line before it goes on must have no variable
-// whose address is taken: the compiler would keep its frame, and the stack would grow with the chain
-// (iss.chain measures that). A chain begins with nothing under way that could hold up a record (operands,
-// an instruction fill) and ends at chain_stop_, at a record or line not known yet, and after any
-// instruction that may have called the outside.
+// Within a chain the clock travels in a register; cycle_, pc_ and the counters stand where the
+// chain began until settle(). Whoever calls something out of line before it goes on must have no
+// variable whose address is taken: the compiler would keep its frame, and the stack would grow with
+// the chain (iss.chain measures that). A chain begins with nothing under way that could hold up a
+// record (operands, an instruction fill) and ends at chain_stop_, at a record or line not known yet,
+// and where an instruction that may have called the outside leaves something to look at.
 #pragma once
 #include <utility>
 
@@ -175,8 +175,9 @@ struct Core::Ops {
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
-  template <bool kPc, bool kThumb>
+  template <bool kPc, bool kThumb, bool kLong>
   static Next load_block(Core& c, Next i, Cycle cycle);
+  template <bool kLong>
   static Next store_block(Core& c, Next i, Cycle cycle);
 
   // Body of a record, nullptr where no quick one exists. They may rewrite the record's operands.

@@ -36,12 +36,12 @@ enum InsnFlags : std::uint16_t {
 
 class Core;
 struct Instruction;
-/// Executes a record that starts at a core clock and goes on with the next one. @return the record to
-/// go on with (build without tail calls), nullptr: the core's state is settled, run() decides
+/// Executes a record that starts at a core clock and goes on with the next one. @return the record
+/// to go on with (build without tail calls), nullptr: the core's state is settled, run() decides
 using Handler = const Instruction* (*)(Core&, const Instruction*, std::uint64_t cycle);
 
-/// The decoder fills all but handler, body and at; Core::prepare() fills those, and rewrites offsets
-/// and shift amounts into the form that the handlers expect.
+/// The decoder fills all but handler, body and at; Core::prepare() fills those, and rewrites
+/// offsets and shift amounts into the form that the handlers expect.
 struct Instruction {
   Handler handler = nullptr;  // condition and interlock where there are any, then body
   Handler body = nullptr;     // nullptr: not entered yet

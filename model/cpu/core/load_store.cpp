@@ -184,24 +184,26 @@ Handler Core::Ops::memory_body(Instruction& i, Place place) {
 }
 
 /// LDM. rm, rs: first address and new base, in words from the base, signed; amount: registers.
-template <bool kPc, bool kThumb>
+/// Most lie in one line; those that do not take the second way.
+template <bool kPc, bool kThumb, bool kLong>
 Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.r_[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.dfill_.last) [[unlikely]] return generic(c, i, cycle);
   if (kPc && (c.control_ & 1u << 15)) [[unlikely]] return generic(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return load_block<kPc, kThumb, true>(c, i, cycle);
   for (std::uint32_t line = va & ~(kReadSpan - 1);; line += kReadSpan) {
     if (c.read_hints_[line / kReadSpan % kHints].key != line) [[unlikely]]
       return generic(c, i, cycle);
-    if (line == (last & ~(kReadSpan - 1))) break;
+    if (!kLong || line == (last & ~(kReadSpan - 1))) break;
   }
   c.record(c.run_va_ + i->at, va, 4 | (i->amount - 1u) << 16);
   std::uint32_t target = 0, set = i->imm;
   unsigned r = 0;
   for (unsigned left = i->amount; left;) {
     const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
-    const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
+    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
     c.counts_.dcache_reads += here * hint.counted;
     const std::uint8_t* from = host(hint.bias, va);
     for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
@@ -211,6 +213,7 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
       if (kPc && r == 15) target = value;
       else c.r_[r] = value;
     }
+    if (!kLong) break;
     va += 4 * here;
     left -= here;
   }
@@ -223,11 +226,13 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle);
 }
 
+template <bool kLong>
 Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.r_[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.dfill_.last) [[unlikely]] return generic(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return store_block<true>(c, i, cycle);
   for (std::uint32_t half = va & ~(kWriteSpan - 1);; half += kWriteSpan) {
     if (c.write_hints_[half / kWriteSpan % kHints].key != half) [[unlikely]]
       return generic(c, i, cycle);
@@ -238,13 +243,14 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   for (unsigned left = i->amount; left;) {
     // Both halves of a line lie side by side on the host.
     const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
-    const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
+    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
     c.counts_.dcache_writes += here * hint.counted;
     std::uint8_t* to = host(hint.bias, va);
     for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
       std::memcpy(to, &c.r_[lowest(set)], 4);
       set &= set - 1;
     }
+    if (!kLong) break;
     va += 4 * here;
     left -= here;
   }
@@ -263,12 +269,12 @@ Handler Core::Ops::block_body(Instruction& i) {
   i.amount = static_cast<std::uint8_t>(n);
   i.rm = static_cast<std::uint8_t>(first);
   i.rs = static_cast<std::uint8_t>(up ? n : -n);
-  if (i.op == Op::kStm) return &store_block;
+  if (i.op == Op::kStm) return &store_block<false>;
   // Write-back wins, unless the base is the last of several registers.
   if (n > 1 && i.imm >> i.rn == 1u) i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
   const bool thumb = i.flags & kThumbInsn;
-  if (!pc) return &load_block<false, false>;
-  return thumb ? &load_block<true, true> : &load_block<true, false>;
+  if (!pc) return &load_block<false, false, false>;
+  return thumb ? &load_block<true, true, false> : &load_block<true, false, false>;
 }
 
 }  // namespace fovea::cpu

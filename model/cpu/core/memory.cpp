@@ -413,6 +413,7 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
   const unsigned index = icache_.victim(icache_.set_of(mva), control_ >> 14 & 1u, ilock_ & 15u);
   icache_.invalidate(index);
   decoded_[index].valid = 0;
+  bus_fetch_ = true;
   play(cycle_);
   sync_to_ahb();
   BusAccess& a = fetch_access_;
@@ -500,6 +501,8 @@ const Instruction* Core::fetch_slow() {
   const unsigned domain = t->domain;
   const bool section = t->section;
   if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_) {
+    stall_to(ifill_.last, Cause::kIcache);  // one transaction at a time on the port
+    bus_fetch_ = true;
     play(cycle_);
     sync_to_ahb();
     BusAccess& a = fetch_access_;

@@ -53,7 +53,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
   FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge");
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses,
-                 "instruction words looked up in the I-cache, by line and branch");
+                 "look-ups of the I-cache: by line, by branch, and by a word decoded first");
   FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read");
   FOVEA_CPU_STAT(dcache_reads, "dcache.reads", "1", dcache_reads, "cacheable loads looked up");
   FOVEA_CPU_STAT(dcache_fills, "dcache.read_line_fills", "1", dcache_read_fills, "lines read");

@@ -1,92 +1,35 @@
 #include "model/mem/core/ddr_controller.h"
 
 #include <bit>
-#include <cstring>
 
 #include "model/common/check.h"
+#include "model/mem/core/move_bytes.h"
 
 namespace fovea::mem {
-namespace {
-
-/// The usual lengths in line; memcpy() of a length not known is a call.
-[[gnu::always_inline]] inline void move_bytes(std::uint8_t* to, const std::uint8_t* from,
-                                              unsigned bytes) {
-  if (bytes == 4)
-    std::memcpy(to, from, 4);
-  else if (bytes == 32)
-    std::memcpy(to, from, 32);
-  else if (bytes == 64)
-    std::memcpy(to, from, 64);
-  else
-    std::memcpy(to, from, bytes);
-}
-
-}  // namespace
-
-DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
-    : store_(store),
-      client_(client),
-      size_(store.size()),
-      fifo_entries_(params.command_fifo()),
-      write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
-      read_fifo_bytes_(static_cast<unsigned>(params.read_fifo())),
-      request_latency_(static_cast<unsigned>(params.request_latency())),
-      return_latency_(static_cast<unsigned>(params.return_latency())),
-      need_(static_cast<unsigned>(params.refresh_need())),
-      must_(static_cast<unsigned>(params.refresh_must())),
-      gap_limit_(static_cast<unsigned>(params.refresh_gap())) {
-  configure(DdrConfig{}, 0);
-}
 
 void DdrController::catch_up(Picoseconds at) {
   if (!running_) return;
+  const std::uint64_t until = ddr_.edge_after(at);
   if (in_burst_)
-    columns_before(ddr_.edge_after(at));
+    columns_before(until);
   else if (count_ == 0)
-    refresh_while_idle(ddr_.edge_after(at));
+    idle(until);
+  if (count_) count_queued(until);
+  count_asleep(until);
 }
 
-void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
-  catch_up(at);
-  if (!(ddr == ddr_.frequency())) ddr_.restart(ddr, at);
-  if (!(scr == scr_.frequency())) scr_.restart(scr, at);
-  ddr_edges_.follow(ddr_);
-  scr_edges_.follow(scr_);
-  running_ = ddr_.running() && scr_.running();
-  shut_ = !running_ || door_full_;
-  if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
-  if (scr_.running()) start_of_lane_ = scr_.edge_at_or_after(scr_.start());
-  plan_anew();
+/// Clocks since the queue filled, or since these were counted last.
+inline void DdrController::count_queued(std::uint64_t until) {
+  if (until <= queued_since_) return;
+  stats.queued_clocks += until - queued_since_;
+  queued_since_ = until;
 }
 
-void DdrController::configure(const DdrConfig& config, Picoseconds at) {
-  catch_up(at);
-  const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
-  // Refresh keeps its phase when only timing changes; a new interval starts to count now.
-  if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
-    next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
-  command_free_ = std::max(command_free_, now);
-  config_ = config;
-  device_.configure(config.timing);
-  const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
-  bank_mask_ = config.timing.banks - 1;
-  if (config.bank_on_top) {
-    bank_shift_ = static_cast<unsigned>(std::bit_width(store_.size())) - 1 - bank_bits;
-    row_shift_ = config.page_log2;
-    row_mask_ = (1u << bank_shift_) - 1;
-  } else {
-    bank_shift_ = config.page_log2;
-    row_shift_ = config.page_log2 + bank_bits;
-    row_mask_ = ~0u;
-  }
-  urgency_changed();
-  plan_anew();
-}
-
-void DdrController::refuse(const DdrRequest& request) const {
-  FOVEA_CHECK(running_, "request to a DDR controller without a clock");
-  FOVEA_CHECK(!door_full_, "request to a DDR controller whose door is taken");
-  FOVEA_CHECK(false, "request outside the SDRAM reached the controller");
+void DdrController::count_asleep(std::uint64_t until) {
+  if (asleep_ == LowPower::kOff || until <= asleep_since_) return;
+  (asleep_ == LowPower::kSelfRefresh ? stats.self_refresh_clocks : stats.power_down_clocks) +=
+      until - asleep_since_;
+  asleep_since_ = until;
 }
 
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
@@ -94,11 +37,13 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     refuse(request);
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
-  const std::uint64_t arrived = std::max(ddr_edges_.edge_after(at), last_arrival_);
+  const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
   if (count_ == 0) {
-    if (owed_ != 0 || next_expiry_ < arrived) [[unlikely]]
-      refresh_while_idle(arrived);
-    last_arrival_ = arrived;
+    if (idle_calm_ < arrived) [[unlikely]] {
+      idle(arrived);
+      wake(arrived);
+    }
+    last_arrival_ = queued_since_ = arrived;
     count_ = 1;
     alone_ = true;
     order_[0] = 0;
@@ -170,7 +115,7 @@ inline Cmd DdrController::needed(const Entry& e) const {
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {
   const std::uint64_t at = std::max(edge, device_.earliest(cmd, e.bank));
-  return cmd == Cmd::kRd ? std::max(at, read_room_) : at;
+  return cmd == Cmd::kRd ? std::max(at, lane_.room()) : at;
 }
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
@@ -207,12 +152,12 @@ void DdrController::plan_anew() {
 /// The usual case: one request, nothing to choose from, and no refresh that is urgent.
 inline void DdrController::plan_one(Entry& e) {
   const std::uint64_t edge = std::max(command_free_, e.ready);
-  if (edge >= calm_until_ || read_room_ >= calm_until_) [[unlikely]]
+  if (edge >= calm_until_ || lane_.room() >= calm_until_) [[unlikely]]
     return plan_many();
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
   choice_ = {&e, at, cmd};
-  next_ = ddr_edges_.edge(at);
+  next_ = ddr_.edge(at);
 }
 
 /// A decision is taken at the first edge at which something is ready; if its command can only be
@@ -238,19 +183,19 @@ inline void DdrController::plan_one(Entry& e) {
   }
   for (;;) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
-    if (read_room_ > edge) wake = std::min(wake, read_room_);
+    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
     if (choice_.at < wake) break;
     edge = wake;
     for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
       ready |= 1u << order_[not_ready];
   }
-  next_ = ddr_edges_.edge(choice_.at);
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The command to give if only the requests in the slots `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
-  ready &= offered_;
+  ready &= in_order_ ? 1u << order_[0] : offered_;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
@@ -258,13 +203,13 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   }
   // Rank: reads, then writes; among each open rows first, then priority, then age (rules 2 and 3).
   // With the read FIFO full, writes go before reads.
-  const Rank no_room = read_room_ <= edge ? 0 : Rank{3} << kKindBit;
+  const Rank no_room = lane_.room() <= edge ? 0 : Rank{3} << kKindBit;
   std::array<Rank, DdrDevice::kMaxBanks> first_of_bank;
   first_of_bank.fill(kNoRank);
   Rank first = kNoRank;
   for (std::uint32_t set = ready; set; set &= set - 1) {
     const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank rank = e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit;
+    Rank rank = (e.rank & rank_mask_) | Rank{device_.row(e.bank) != e.row} << kMissBit;
     if (no_room && !e.request.write) [[unlikely]]
       rank |= no_room;
     first_of_bank[e.bank] = std::min(first_of_bank[e.bank], rank);
@@ -329,17 +274,17 @@ DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const 
 }
 
 /// Too long without a refresh: four in a row before anything new.
-void DdrController::force_refresh() {
-  if (gap_ > gap_limit_ && forced_ == 0) {
-    forced_ = 4;
-    urgency_changed();
-  }
+void DdrController::begin_refresh() {
+  if (gap_ > gap_limit_ && forced_ == 0) forced_ = 4;
+  closing_ = true;
+  urgency_changed();
 }
 
 void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   calm_until_ = urgent ? 0 : next_expiry_;
+  idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
 inline void DdrController::count_owed(std::uint64_t clock) {
@@ -354,9 +299,21 @@ inline void DdrController::count_owed(std::uint64_t clock) {
 }
 
 template <Cmd kCmd>
+inline void DdrController::note(std::uint64_t clock) {
+  Given& g = given_[given_count_++ % kGiven];
+  g.clock = clock;
+  g.cmd = kCmd;
+  if constexpr (kCmd != Cmd::kRef && kCmd != Cmd::kPreAll) {
+    g.entry = choice_.entry;
+    g.master = static_cast<std::uint8_t>(index(choice_.entry->request.master));
+  }
+}
+
+template <Cmd kCmd>
 inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
   device_.issue<kCmd>(bank, row, clock);
   command_free_ = clock + 1;
+  note<kCmd>(clock);
   if (hook_) [[unlikely]]
     hook_(hook_self_, kCmd, bank, row, clock);
 }
@@ -371,17 +328,26 @@ void DdrController::issue_refresh(std::uint64_t clock) {
   urgency_changed();
 }
 
-/// Refreshes that fell into the time without requests: at the "may" level each is done as soon as
-/// it is owed. They cannot cause anything but later row misses, so they are caught up lazily.
-void DdrController::refresh_while_idle(std::uint64_t until) {
-  if (!config_.refresh_interval) return;
+/// What falls into the time without requests: at the "may" level each refresh is done as soon as it
+/// is owed; then the part goes to sleep, if software allows it. This cannot cause anything but
+/// later row misses and waiting, so it is caught up lazily.
+void DdrController::idle(std::uint64_t until) {
   for (;;) {
+    if (asleep_ == LowPower::kSelfRefresh) return;  // the part refreshes itself
+    if (asleep_ == LowPower::kPowerDown) {
+      const std::uint64_t at = std::max(next_expiry_, cke_free_);
+      if (at >= until) return;
+      wake(at);
+    }
     std::uint64_t from = command_free_;
     if (owed_ == 0) {
+      if (config_.low_power != LowPower::kOff && fall_asleep(std::min(until, next_expiry_)))
+        continue;
       if (next_expiry_ >= until) return;
-      from = std::max(from, next_expiry_);
+      from = std::max(command_free_, next_expiry_);
       count_owed(from);
     }
+    if (!config_.refresh_interval) return;  // owed from before it was switched off
     if (!device_.all_closed()) {
       const std::uint64_t at = std::max(from, device_.earliest_pre_all());
       if (at >= until) return;
@@ -395,37 +361,115 @@ void DdrController::refresh_while_idle(std::uint64_t until) {
   }
 }
 
+/// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs
+/// them closed. Entry at once, rather than after some time without requests, is assumed.
+bool DdrController::fall_asleep(std::uint64_t until) {
+  const bool self_refresh = config_.low_power == LowPower::kSelfRefresh;
+  if (self_refresh && !device_.all_closed()) {
+    const std::uint64_t at = std::max(command_free_, device_.earliest_pre_all());
+    if (at >= until) return false;
+    issue<Cmd::kPreAll>(0, 0, at);
+  }
+  std::uint64_t at = std::max({command_free_, device_.quiet(), cke_free_});
+  if (self_refresh) at = std::max(at, device_.earliest_refresh());
+  if (at >= until) return false;
+  asleep_ = config_.low_power;
+  asleep_since_ = at;
+  cke_free_ = at + config_.timing.nCKE;
+  ++(self_refresh ? stats.self_refreshes : stats.power_downs);
+  mark(self_refresh ? Cmd::kSre : Cmd::kPde, at);
+  return true;
+}
+
+/// CKE rises for what comes at `clock`; commands follow tXP later, or tXSNR and for reads tXSRD.
+/// After self-refresh the refresh interval starts anew (assumed).
+void DdrController::wake(std::uint64_t clock) {
+  if (asleep_ == LowPower::kOff) return;
+  const DdrTiming& t = config_.timing;
+  const bool self_refresh = asleep_ == LowPower::kSelfRefresh;
+  const std::uint64_t at = std::max(clock, cke_free_);
+  count_asleep(at);
+  asleep_ = LowPower::kOff;
+  cke_free_ = at + t.nCKE;
+  mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
+  command_free_ = at + (self_refresh ? t.nXSNR : t.nXP);
+  if (!self_refresh) return;
+  device_.put_off_reads(at + t.nXSRD);
+  owed_ = gap_ = 0;
+  if (config_.refresh_interval) next_expiry_ = at + config_.refresh_interval;
+  urgency_changed();
+}
+
+void DdrController::mark(Cmd cmd, std::uint64_t clock) {
+  command_free_ = std::max(command_free_, clock + 1);
+  Given& g = given_[given_count_++ % kGiven];
+  g.clock = clock;
+  g.cmd = cmd;
+  if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
+}
+
 void DdrController::step() {
+  count_owed(choice_.at);
+  if (choice_.cmd == Cmd::kWr)
+    in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
+  else if (choice_.cmd == Cmd::kRd)
+    in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
+  else
+    prepare();
+}
+
+/// Whatever is no column command.
+void DdrController::prepare() {
   const std::uint64_t clock = choice_.at;
-  count_owed(clock);
+  Entry* const e = choice_.entry;
   switch (choice_.cmd) {
-    case Cmd::kWr:
-      return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
-    case Cmd::kRd:
-      return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
     case Cmd::kAct:
-      if (!choice_.entry->classified) ++stats.row_misses;
-      choice_.entry->classified = true;
+      if (!e->classified) {
+        ++stats.row_misses;
+        ++stats.bank[e->bank].row_misses;
+      }
+      e->classified = true;
       ++stats.activates;
-      issue<Cmd::kAct>(choice_.entry->bank, choice_.entry->row, clock);
+      issue<Cmd::kAct>(e->bank, e->row, clock);
       break;
     case Cmd::kPre:
-      if (!choice_.entry->classified) ++stats.row_conflicts;
-      choice_.entry->classified = true;
-      issue<Cmd::kPre>(choice_.entry->bank, choice_.entry->row, clock);
+      if (!e->classified) {
+        ++stats.row_conflicts;
+        ++stats.bank[e->bank].row_conflicts;
+      }
+      e->classified = true;
+      issue<Cmd::kPre>(e->bank, e->row, clock);
       break;
     case Cmd::kPreAll:
-      force_refresh();
+      begin_refresh();
       issue<Cmd::kPreAll>(0, 0, clock);
-      closing_ = true;
-      urgency_changed();
       break;
     default:
-      force_refresh();
+      begin_refresh();
       issue_refresh(clock);
       break;
   }
   plan();
+}
+
+bool DdrController::row_wanted(const Entry& by_others) const {
+  if (alone_) return false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Entry& o = slots_[order_[i]];
+    if (&o != &by_others && o.bank == by_others.bank && o.row == by_others.row) return true;
+  }
+  return false;
+}
+
+/// The last column of a request under the closed-page rule.
+template <Cmd kCmd>
+[[gnu::noinline]] void DdrController::give_closing_column(const Entry& e, std::uint64_t clock) {
+  if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock);
+  device_.issue<kCmd>(e.bank, e.row, clock);
+  device_.close_when_legal(e.bank);
+  command_free_ = clock + 1;
+  note<kCmd>(clock);
+  if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
 }
 
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
@@ -435,21 +479,30 @@ inline void DdrController::first_column() {
   const Entry& e = *choice_.entry;
   const DdrRequest& r = e.request;
   const std::uint64_t clock = choice_.at;
-  if (!e.classified) ++stats.row_hits;
-  issue<kCmd>(e.bank, e.row, clock);
+  if (!e.classified) {
+    ++stats.row_hits;
+    ++stats.bank[e.bank].row_hits;
+  }
+  if (closes_rows_ && e.chunks == 1) [[unlikely]]
+    give_closing_column<kCmd>(e, clock);
+  else
+    issue<kCmd>(e.bank, e.row, clock);
   ++stats.bursts;
   if constexpr (kCmd == Cmd::kWr) {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
-    answer_read(e, clock);
+    read_waited_ = 0;
+    if (clock > e.ready) attribute(e, clock);
+    const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
+    client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
   in_burst_ = true;
   columns_left_ = e.chunks - 1u;
   next_column_ = clock + DdrTiming::kBurstClocks;
   choice_.at = clock + columns_left_ * DdrTiming::kBurstClocks;
-  next_ = ddr_edges_.edge(choice_.at);
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The last column command, and the ones inside the burst that nobody asked about. What those put
@@ -464,7 +517,10 @@ inline void DdrController::last_column() {
     for (; columns_left_ > 1; --columns_left_, next_column_ += DdrTiming::kBurstClocks)
       hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
   }
-  issue<kCmd>(e.bank, e.row, clock);
+  if (closes_rows_) [[unlikely]]
+    give_closing_column<kCmd>(e, clock);
+  else
+    issue<kCmd>(e.bank, e.row, clock);
   finish(clock);
 }
 
@@ -488,12 +544,14 @@ void DdrController::columns_before(std::uint64_t until) {
   alone_ = false;
   served_while_oldest_ = 0;
   count_ = 0;
+  count_queued(clock + 1);
   next_ = kNever;
 }
 
 void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue(*choice_.entry);
   if (door_full_) open_door(clock);
+  if (count_ == 0) count_queued(clock + 1);
   plan();
 }
 
@@ -521,32 +579,7 @@ void DdrController::open_door(std::uint64_t clock) {
     return;
   door_full_ = shut_ = false;
   take(door_, std::max(door_arrived_, clock + 1));
-  client_.ddr_accepted(door_.cookie, ddr_edges_.edge(clock));
-}
-
-/// The return lane to the crossbar is 64 bits wide and serves reads in the order of their data.
-/// `clock`: the first column command; the others follow each other without a gap.
-void DdrController::answer_read(const Entry& e, std::uint64_t clock) {
-  constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
-  const unsigned latency = std::max(config_.read_latency, config_.timing.CL) + return_latency_;
-  const std::uint64_t tail_clock = clock + latency + e.chunks * DdrTiming::kBurstClocks;
-  const std::uint64_t arrival = scr_edges_.edge_after(ddr_edges_.edge(clock + latency + kHead));
-  const std::uint64_t words = (e.request.bytes + 7u) / 8u;
-  const std::uint64_t start = std::max(arrival, lane_free_);
-  std::uint64_t end = start;
-  if (words > 1 || e.chunks > 1)
-    end = std::max(start + words - 1, scr_edges_.edge_after(ddr_edges_.edge(tail_clock)));
-  lane_free_ = end + 1;
-  // Rule 3: the read FIFO is full while another 64 bytes would not fit beside the words that wait
-  // for the lane when their data comes. It can only fill if the lane is slower than the DDR bus.
-  // Words that the lane has taken by the next read's data, at or after `arrival`, do not count.
-  const std::uint64_t held = read_fifo_bytes_ / 8u - 8u;
-  if (lane_free_ > start_of_lane_ + held && lane_free_ - held >= arrival) {
-    const std::uint64_t room = ddr_edges_.edge_at_or_after(scr_edges_.edge(lane_free_ - held));
-    const std::uint64_t lead = latency + kHead;  // from a RD to its data
-    read_room_ = room > lead ? room - lead : 0;
-  }
-  client_.ddr_read_done(e.request.cookie, scr_edges_.edge(start), scr_edges_.edge(end));
+  client_.ddr_accepted(door_.cookie, ddr_.edge(clock));
 }
 
 }  // namespace fovea::mem

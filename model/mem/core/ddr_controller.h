@@ -5,12 +5,13 @@
 #include <cstdint>
 
 #include "model/common/clock.h"
-#include "model/common/edge_cursor.h"
 #include "model/common/masters.h"
+#include "model/common/waits.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
 #include "model/mem/core/ddr_timing.h"
+#include "model/mem/core/read_lane.h"
 
 namespace fovea::mem {
 
@@ -26,6 +27,9 @@ struct DdrRequest {
   std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
 };
 
+/// What an idle controller does with the part (SDRCR.LPMODEN and SR_PD).
+enum class LowPower : std::uint8_t { kOff, kSelfRefresh, kPowerDown };
+
 /// What the registers say (SDBCR, SDTIMR, SDTIMR2, SDRCR, PBBPR, DDRPHYCR), decoded.
 struct DdrConfig {
   DdrTiming timing;
@@ -34,6 +38,7 @@ struct DdrConfig {
   unsigned old_count = 0xFF;         ///< PBBPR.PR_OLD_COUNT; 0xFF: never
   unsigned page_log2 = 11;           ///< bytes of a row on the 16-bit bus
   bool bank_on_top = false;          ///< SDBCR.IBANK_POS: row stays in its bank
+  LowPower low_power = LowPower::kOff;
 };
 
 class DdrClient {
@@ -55,9 +60,9 @@ class DdrController {
   void configure(const DdrConfig& config, Picoseconds at);
   bool running() const { return running_; }
 
-  /// Catches up to `at` what needs no decision: refreshes while nothing is queued, and the columns
-  /// inside a burst. They change nothing that a master can see before the next decision or request;
-  /// whoever reads the statistics calls this first.
+  /// Catches up to `at` what needs no decision: refreshes and sleep while nothing is queued, and
+  /// the columns inside a burst. They change nothing that a master can see before the next decision
+  /// or request; whoever reads the statistics calls this first.
   void catch_up(Picoseconds at);
 
   /// A request arrives at time `at`; true: taken at once. False: it waits at the door until
@@ -72,6 +77,14 @@ class DdrController {
   void step();
 
   DdrStats stats;
+  /// What reads waited for here, between the pipeline's end and their first column command: each
+  /// clock is blamed on the last command before it, a master's for others, or the read's own ACT and
+  /// PRE. From the end of a write burst on it is the turnaround.
+  WaitTable waits;
+  /// Within ddr_read_done: the sum of that read's waits.
+  Picoseconds read_waited() const { return read_waited_; }
+  /// Within ddr_accepted: whose command left the FIFO and made room.
+  Master door_opener() const { return choice_.entry->request.master; }
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
   const Clock& ddr_clock() const { return ddr_; }
@@ -90,6 +103,7 @@ class DdrController {
   using Rank = std::uint64_t;
   static constexpr unsigned kKindBit = 62, kMissBit = 61, kPriorityBit = 53, kAgeBit = 4;
   static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
+  static constexpr Rank kKinds = Rank{3} << kKindBit, kPriorities = Rank{0xFF} << kPriorityBit;
   static constexpr Rank kNoRank = ~Rank{0};
   struct alignas(64) Entry {
     DdrRequest request;
@@ -108,6 +122,15 @@ class DdrController {
     Cmd cmd = Cmd::kAct;
   };
 
+  struct Given {
+    std::uint64_t clock = 0;
+    Cmd cmd = Cmd::kRef;
+    std::uint8_t master = 0;
+    const Entry* entry = nullptr;
+  };
+  static constexpr std::size_t kGiven = 64;
+  void attribute(const Entry& e, std::uint64_t clock);
+
   [[noreturn]] void refuse(const DdrRequest& request) const;
   void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
   void join_queue();
@@ -121,16 +144,27 @@ class DdrController {
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const;
-  void force_refresh();
+  void begin_refresh();
   void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
   bool passes_older(const Entry& e) const;
-  void refresh_while_idle(std::uint64_t until);
+  void idle(std::uint64_t until);
+  bool fall_asleep(std::uint64_t until);
+  void wake(std::uint64_t clock);
+  void mark(Cmd cmd, std::uint64_t clock);
+  void count_queued(std::uint64_t until);
+  void count_asleep(std::uint64_t until);
   void count_owed(std::uint64_t clock);
+  template <Cmd kCmd>
+  void note(std::uint64_t clock);
   template <Cmd kCmd>
   void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
   void issue_refresh(std::uint64_t clock);
+  void prepare();
+  bool row_wanted(const Entry& by_others) const;
+  template <Cmd kCmd>
+  void give_closing_column(const Entry& e, std::uint64_t clock);
   template <Cmd kCmd>
   void first_column();
   template <Cmd kCmd>
@@ -140,12 +174,11 @@ class DdrController {
   void finish_queued(std::uint64_t clock);
   void leave_queue(const Entry& e);
   void open_door(std::uint64_t clock);
-  void answer_read(const Entry& e, std::uint64_t clock);
 
   BackingStore& store_;
   DdrClient& client_;
   Clock ddr_, scr_;
-  EdgeCursor ddr_edges_, scr_edges_;  // of these clocks
+  std::uint64_t first_edge_ = 0;  // of the DDR clock since its last restart
   bool running_ = false;
   bool shut_ = true;  // stopped, or the door taken: no request may come
   DdrDevice device_;
@@ -157,8 +190,12 @@ class DdrController {
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
-  unsigned write_fifo_bytes_, read_fifo_bytes_, request_latency_, return_latency_;
+  unsigned write_fifo_bytes_, request_latency_, return_latency_;
   unsigned need_, must_, gap_limit_;
+  // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
+  // nobody waits for is closed after its access; what of an entry's rank counts.
+  bool in_order_, closes_rows_;
+  Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
@@ -184,17 +221,23 @@ class DdrController {
   unsigned columns_left_ = 0;
   std::uint64_t served_while_oldest_ = 0;
 
-  std::uint64_t next_expiry_ = 0;  // edge at which the refresh interval runs out next
-  std::uint64_t calm_until_ = 0;   // no refresh is urgent before this edge
+  std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
+  std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
+  std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
+  LowPower asleep_ = LowPower::kOff;  // CKE is low
+  std::uint64_t queued_since_ = 0, asleep_since_ = 0;  // edges up to which that time is counted
+  std::uint64_t cke_free_ = 0;        // edge from which CKE may move again
   unsigned owed_ = 0, forced_ = 0;
   unsigned gap_ = 0;  // intervals that ended since the last REF
   // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
   // read that ranks first only while all rows are closed and one that does only while its row is
   // open could take turns in putting it off, and none of them be served.
   bool closing_ = false;
-  std::uint64_t lane_free_ = 0;  // first free crossbar edge of the read return lane
-  std::uint64_t start_of_lane_ = 0;
-  std::uint64_t read_room_ = 0;  // first clock at which the read FIFO has room
+  ReadLane lane_;
+
+  std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
+  std::uint32_t given_count_ = 0;
+  Picoseconds read_waited_ = 0;
 
   CommandHook hook_ = nullptr;
   void* hook_self_ = nullptr;

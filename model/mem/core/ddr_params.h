@@ -6,9 +6,11 @@ namespace fovea::mem {
 
 struct DdrParams : ParamGroup {
   using U = IntParam::Unit;
-  EnumParam part{*this, "part", "mt47h64m16", {"mt47h32m16", "mt47h64m16", "mt47h128m16"},
-                 "DDR2 x16 part: 64, 128 or 256 MiB (4, 8, 8 banks; 2 KiB page)", Origin::kChoice,
-                 "Micron module data sheets, dram.md 1"};
+  EnumParam part{*this, "part", "mt47h64m16", {"mt47h32m16", "mt47h64m16", "mt47h128m16",
+                                                "mt46h32m16lf", "mt46h64m16lf"},
+                 "x16 part, 2 KiB page: DDR2 of 64, 128, 256 MiB (4, 8, 8 banks) or mobile DDR of "
+                 "64, 128 MiB (4 banks)",
+                 Origin::kChoice, "Micron data sheets, dram.md 1 and 4"};
   IntParam command_fifo{*this, "command_fifo", U::kCount, 7, 1, 16,
                         "entries of the controller's command FIFO", Origin::kSourced,
                         "SPRU986B, SPRUEM4A, SPRUH82C (same controller)"};
@@ -33,10 +35,15 @@ struct DdrParams : ParamGroup {
   IntParam refresh_gap{*this, "refresh.gap", U::kCount, 7, 1, 64,
                        "intervals without a REF above which four are issued before requests",
                        Origin::kSourced, "same controller in sibling devices, dm365.md 5.4"};
+  EnumParam scheduler{*this, "scheduler", "ti", {"ti", "fcfs", "frfcfs", "closed_page"},
+                      "ti: the chip's; fcfs: strictly by age; frfcfs: open rows, then age; "
+                      "closed_page: ti, but a row nobody waits for is closed after its access",
+                      Origin::kChoice, ""};
   DdrParams() : ParamGroup("ddr") {}
 
-  std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index(); }
-  unsigned banks() const { return part.index() == 0 ? 4 : 8; }
+  std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index() % 3; }
+  bool mobile() const { return part.index() >= 3; }
+  unsigned banks() const { return mobile() || part.index() == 0 ? 4 : 8; }
 };
 
 }  // namespace fovea::mem

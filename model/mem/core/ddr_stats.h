@@ -1,7 +1,13 @@
 // What the DDR controller counts. Hit, miss and conflict classify a request when its first column
 // access is prepared: its row was open, its bank was closed, another row was open.
 #pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "model/common/stats.h"
+#include "model/mem/core/ddr_timing.h"
 
 namespace fovea::mem {
 
@@ -16,8 +22,35 @@ struct DdrStats : StatGroup {
   Counter row_conflicts{*this, "row_conflicts", "1", "requests that found another row open"};
   Counter activates{*this, "activates", "1", "ACT commands"};
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
+  Counter power_downs{*this, "power_downs", "1", "entries into power-down"};
+  Counter self_refreshes{*this, "self_refreshes", "1", "entries into self-refresh"};
+  Counter queued_clocks{*this, "queued_clocks", "cycles", "DDR clocks with a request queued"};
+  Counter power_down_clocks{*this, "power_down_clocks", "cycles", "DDR clocks in power-down"};
+  Counter self_refresh_clocks{*this, "self_refresh_clocks", "cycles",
+                              "DDR clocks in self-refresh"};
+  /// Of the requests to each bank, as above.
+  struct Bank {
+    std::uint64_t row_hits = 0, row_misses = 0, row_conflicts = 0;
+  };
+  std::array<Bank, DdrDevice::kMaxBanks> bank{};
   using Value = StatBase::Value;
-  DdrStats() : StatGroup("ddr") {}
+
+  DdrStats() : StatGroup("ddr") {
+    for (std::size_t i = 0; i < bank.size(); ++i) {
+      const auto add = [&](const char* name, std::uint64_t Bank::*count, const char* sentence) {
+        of_banks_.push_back(std::make_unique<Formula>(
+            *this, "bank" + std::to_string(i) + "." + name, "1", sentence,
+            [this, i, count] { return Value(bank[i].*count); }));
+      };
+      add("row_hits", &Bank::row_hits, "of them in this bank");
+      add("row_misses", &Bank::row_misses, "of them in this bank");
+      add("row_conflicts", &Bank::row_conflicts, "of them in this bank");
+    }
+  }
+
+ private:
+  void on_reset() override { bank.fill({}); }
+  std::vector<std::unique_ptr<Formula>> of_banks_;
 };
 
 }  // namespace fovea::mem

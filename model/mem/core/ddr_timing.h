@@ -7,17 +7,37 @@
 
 namespace fovea::mem {
 
-enum class Cmd : std::uint8_t { kAct, kPre, kPreAll, kRd, kWr, kRef, kCount };
+/// Up to kRef each has its own place in the timing; a column command with auto-precharge is timed
+/// as the plain one, followed by the PRE that the part gives itself. The last four move CKE:
+/// power-down and self-refresh, entry and exit.
+enum class Cmd : std::uint8_t {
+  kAct,
+  kPre,
+  kPreAll,
+  kRd,
+  kWr,
+  kRef,
+  kCount,
+  kRda = kCount,
+  kWra,
+  kPde,
+  kPdx,
+  kSre,
+  kSrx
+};
 inline constexpr std::size_t kCmdCount = static_cast<std::size_t>(Cmd::kCount);
 
 /// Timing in DDR clocks, as the controller's registers hold it (SDTIMR, SDTIMR2, SDBCR) plus what
-/// TI's controller fixes: BL8 and WL = CL - 1. BL8 moves 16 bytes on the 16-bit bus.
+/// TI's controller fixes: BL8, which moves 16 bytes on the 16-bit bus, and what the kind of part
+/// fixes: WL = CL - 1 for DDR2, 1 for mobile DDR.
 struct DdrTiming {
   unsigned CL = 5;
   unsigned nRFC = 31, nRP = 5, nRCD = 5, nWR = 4, nRAS = 11, nRC = 16, nRRD = 3, nWTR = 3;
   unsigned nRTP = 2;
+  unsigned nXP = 3, nXSNR = 34, nXSRD = 200, nCKE = 3;
   unsigned banks = 8;
-  unsigned WL() const { return CL - 1; }
+  bool mobile = false;  // mobile DDR
+  unsigned WL() const { return mobile ? 1 : CL - 1; }
   static constexpr unsigned kBurstClocks = 4;  // BL8 / 2
 };
 
@@ -30,8 +50,8 @@ struct DdrRule {
 };
 
 using T = const DdrTiming&;
-/// From JESD79-2 relations (AL = 0, BL8). A PREA is a PRE to every bank; on 8-bank parts it takes
-/// one clock more.
+/// From the relations of JESD79-2 (AL = 0, BL8) and, for mobile parts, JESD209. A PREA is a PRE to
+/// every bank; on 8-bank parts it takes one clock more.
 inline constexpr std::array kDdrRules = {
     DdrRule{Level::kBank, Cmd::kAct, Cmd::kRd, [](T t) { return t.nRCD; }},
     DdrRule{Level::kBank, Cmd::kAct, Cmd::kWr, [](T t) { return t.nRCD; }},
@@ -47,11 +67,12 @@ inline constexpr std::array kDdrRules = {
     DdrRule{Level::kRank, Cmd::kRd, Cmd::kRd, [](T) { return DdrTiming::kBurstClocks; }},
     DdrRule{Level::kRank, Cmd::kWr, Cmd::kWr, [](T) { return DdrTiming::kBurstClocks; }},
     DdrRule{Level::kRank, Cmd::kRd, Cmd::kWr,
-            [](T t) { return t.CL + DdrTiming::kBurstClocks + 1 - t.WL(); }},
+            [](T t) { return t.CL + DdrTiming::kBurstClocks + (t.mobile ? 0u : 1u - t.WL()); }},
     DdrRule{Level::kRank, Cmd::kWr, Cmd::kRd,
             [](T t) { return t.WL() + DdrTiming::kBurstClocks + t.nWTR; }},
-    DdrRule{Level::kBank, Cmd::kRd, Cmd::kPre,
-            [](T t) { return DdrTiming::kBurstClocks - 2 + std::max(t.nRTP, 2u); }},
+    DdrRule{
+        Level::kBank, Cmd::kRd, Cmd::kPre,
+        [](T t) { return DdrTiming::kBurstClocks + (t.mobile ? 0u : std::max(t.nRTP, 2u) - 2); }},
     DdrRule{Level::kBank, Cmd::kWr, Cmd::kPre,
             [](T t) { return t.WL() + DdrTiming::kBurstClocks + t.nWR; }},
     DdrRule{Level::kRank, Cmd::kRef, Cmd::kAct, [](T t) { return t.nRFC; }},
@@ -100,6 +121,26 @@ class DdrDevice {
       for (auto& b : banks_) b.row = kClosed;
       open_ = 0;
     }
+  }
+
+  /// First clock at which CKE may fall, the last burst's data being over: after a RD at c that is
+  /// c + CL + BL/2 + 1, after a WR c + WL + BL/2 + tWTR. Both follow from what they put off
+  /// already.
+  std::uint64_t quiet() const {
+    const std::uint64_t write = rank_[static_cast<std::size_t>(Cmd::kWr)];
+    return std::max(rank_[static_cast<std::size_t>(Cmd::kRd)], write ? write + timing_.WL() : 0);
+  }
+  void put_off_reads(std::uint64_t until) {
+    auto& slot = rank_[static_cast<std::size_t>(Cmd::kRd)];
+    slot = std::max(slot, until);
+  }
+  /// The row closes by itself, as soon as a PRE would be legal.
+  void close_when_legal(unsigned bank) {
+    Bank& b = banks_[bank];
+    start_rules<Cmd::kPre>(bank, b.next[static_cast<std::size_t>(Cmd::kPre)],
+                           std::make_index_sequence<kDdrRules.size()>());
+    b.row = kClosed;
+    open_ &= ~(1u << bank);
   }
 
  private:

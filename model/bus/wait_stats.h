@@ -1,0 +1,72 @@
+// What each master's SDRAM requests waited for, from the tables of those who made them wait.
+#pragma once
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/common/waits.h"
+
+namespace fovea::bus {
+
+/// `ddr.<master>.wait.<read|write>.<culprit>`: sums over the requests of the window. All culprits of a
+/// direction together are the time from issue to first beat (read) or acknowledgement (write).
+class WaitStats : public StatGroup {
+ public:
+  /// `tables`: the parts, to be added; they outlive this.
+  WaitStats(Master m, std::vector<WaitTable*> tables)
+      : StatGroup("ddr." + std::string(kMasterNames[index(m)]) + ".wait"),
+        master_(m),
+        tables_(std::move(tables)) {
+    add("read.", &MasterWaits::read);
+    add("write.", &MasterWaits::write);
+  }
+  std::uint64_t total(Waits MasterWaits::*direction, Culprit c) const {
+    std::uint64_t t = 0;
+    for (const WaitTable* w : tables_) t += ((*w)[index(master_)].*direction).ps[index(c)];
+    return t;
+  }
+
+ private:
+  struct Named {
+    Culprit culprit;
+    const char *name, *sentence;
+  };
+  static constexpr Named kNamed[] = {
+      {Culprit::kBridge, "bridge", "between port and crossbar, both ways"},
+      {Culprit::kService, "service", "the requests' own way through crossbar and controller"},
+      {Culprit::kRowMiss, "row_miss", "opening rows of closed banks"},
+      {Culprit::kRowConflict, "row_conflict", "closing other rows and opening the wanted ones"},
+      {Culprit::kTurnaround, "turnaround", "the data bus turning between reads and writes"},
+      {Culprit::kRefresh, "refresh", "refresh"},
+      {Culprit::kPowerDown, "power_down", "the memory asleep or waking up"},
+  };
+
+  void add(const std::string& prefix, Waits MasterWaits::*direction) {
+    const auto entry = [&](const std::string& name, Culprit c, const std::string& sentence) {
+      formulas_.push_back(std::make_unique<Formula>(
+          *this, prefix + name, "s", "time of its requests: " + sentence,
+          [this, direction, c] {
+            return StatBase::Value(static_cast<double>(total(direction, c)) * 1e-12);
+          }));
+    };
+    for (const Named& n : kNamed) entry(n.name, n.culprit, n.sentence);
+    for (std::size_t i = 0; i < kMasterCount; ++i) {
+      const auto m = static_cast<Master>(i);
+      if (m == master_)
+        entry("own", culprit(m), "behind its own earlier requests");
+      else
+        entry(std::string(kMasterNames[i]), culprit(m),
+              "while " + std::string(kMasterNames[i]) + " was served");
+    }
+  }
+  void on_reset() override {
+    for (WaitTable* w : tables_) (*w)[index(master_)] = {};
+  }
+
+  Master master_;
+  std::vector<WaitTable*> tables_;
+  std::vector<std::unique_ptr<Formula>> formulas_;
+};
+
+}  // namespace fovea::bus

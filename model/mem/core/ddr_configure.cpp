@@ -1,0 +1,73 @@
+// What the controller takes from its parameters, registers and clocks.
+#include <bit>
+
+#include "model/common/check.h"
+#include "model/mem/core/ddr_controller.h"
+
+namespace fovea::mem {
+
+DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
+    : store_(store),
+      client_(client),
+      size_(store.size()),
+      fifo_entries_(params.command_fifo()),
+      write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
+      request_latency_(static_cast<unsigned>(params.request_latency())),
+      return_latency_(static_cast<unsigned>(params.return_latency())),
+      need_(static_cast<unsigned>(params.refresh_need())),
+      must_(static_cast<unsigned>(params.refresh_must())),
+      gap_limit_(static_cast<unsigned>(params.refresh_gap())),
+      in_order_(params.scheduler.is("fcfs")),
+      closes_rows_(params.scheduler.is("closed_page")),
+      rank_mask_(params.scheduler.is("frfcfs") ? ~(kKinds | kPriorities) : kNoRank) {
+  lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
+  configure(DdrConfig{}, 0);
+}
+
+void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
+  catch_up(at);
+  if (!(ddr == ddr_.frequency())) {
+    ddr_.restart(ddr, at);
+    if (ddr_.running()) first_edge_ = ddr_.edge_at_or_after(at);
+  }
+  if (!(scr == scr_.frequency())) scr_.restart(scr, at);
+  running_ = ddr_.running() && scr_.running();
+  shut_ = !running_ || door_full_;
+  if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
+  if (scr_.running()) lane_.start(scr_.edge_at_or_after(scr_.start()));
+  plan_anew();
+}
+
+void DdrController::configure(const DdrConfig& config, Picoseconds at) {
+  catch_up(at);
+  const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
+  if (config.low_power != config_.low_power) wake(now);
+  // Refresh keeps its phase when only timing changes; a new interval starts to count now.
+  if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
+    next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
+  command_free_ = std::max(command_free_, now);
+  config_ = config;
+  device_.configure(config.timing);
+  lane_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
+  const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
+  bank_mask_ = config.timing.banks - 1;
+  if (config.bank_on_top) {
+    bank_shift_ = static_cast<unsigned>(std::bit_width(store_.size())) - 1 - bank_bits;
+    row_shift_ = config.page_log2;
+    row_mask_ = (1u << bank_shift_) - 1;
+  } else {
+    bank_shift_ = config.page_log2;
+    row_shift_ = config.page_log2 + bank_bits;
+    row_mask_ = ~0u;
+  }
+  urgency_changed();
+  plan_anew();
+}
+
+void DdrController::refuse(const DdrRequest& request) const {
+  FOVEA_CHECK(running_, "request to a DDR controller without a clock");
+  FOVEA_CHECK(!door_full_, "request to a DDR controller whose door is taken");
+  FOVEA_CHECK(false, "request outside the SDRAM reached the controller");
+}
+
+}  // namespace fovea::mem
