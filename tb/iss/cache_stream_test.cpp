@@ -180,7 +180,7 @@ class Stream {
     // Which of two buffers is first decides what two names of a byte leave in memory: the second
     // name only reads.
     if (stores && a >= kAlias) a -= kAlias - kBack;
-    // Words of one instruction that hit and are written through: a test of their own.
+    // Words of one instruction that hit and are written through: see CacheWriteThroughTest.
     const bool several = name.starts_with("stm") || name == "str_double";
     if (several && (through_ || a - kThrough < 0x10'0000u)) return put("ldr_word", a, 0);
     put(routine, a, name == "read_add_write" ? below(5) : static_cast<std::uint32_t>(random_()));
