@@ -30,7 +30,9 @@ inline const char* const kCachesOn = R"(
 static_assert(kTables == 0x0100'0000);
 
 /// At 250 MHz a core clock is 4 ns and an AHB clock (ratio 2) 8 ns.
-class Machine {
+/// @tparam Port a FlatPort, or what is derived from it
+template <class Port>
+class MachineWith {
  public:
   static constexpr Picoseconds kClock = 4'000;
   using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -41,14 +43,14 @@ class Machine {
       for (const auto& [key, text] : settings) set.set(key, text);
     }
   } params;
-  FlatPort port{kMemory, kMemoryBytes};
+  Port port{kMemory, kMemoryBytes};
   std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
   Core core;
   std::vector<std::uint64_t> marks;  ///< clock at each `svc #1`
   std::string output;                ///< what the program wrote by Linux' write()
   int exit_status = -1;
 
-  explicit Machine(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
+  explicit MachineWith(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);
     core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
@@ -135,5 +137,6 @@ class Machine {
   std::uint64_t stall(Cause c) const { return core.counts().stall[static_cast<std::size_t>(c)]; }
   Program program;
 };
+using Machine = MachineWith<FlatPort>;
 
 }  // namespace fovea::cpu::test
