@@ -8,6 +8,7 @@
 #include <tlm>
 #include <vector>
 
+#include "model/bus/core/crossbar.h"
 #include "model/common/check.h"
 #include "model/common/lookahead.h"
 #include "model/common/mem_sockets.h"
@@ -55,10 +56,10 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     FOVEA_CHECK(at >= now, "a request in the past");
     tx.done = tx.error = false;
     tx.issued = at;
-    ++own_undecided_;
     MemPhase phase = MemPhase::kRequest;
     sc_core::sc_time delay = ps_time(at - (running_ ? now_ : now));
     (*sockets[tx.port])->nb_transport_fw(tx, phase, delay);
+    own_undecided_ += to_memory(tx);
   }
   /// See cpu::BusPort::poll.
   bool poll(Transaction& tx, Picoseconds until) {
@@ -128,7 +129,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     enter();
   }
   /// Nobody else acts before this time: no kernel event, and no decision of the path about a
-  /// request of somebody else that may let it act.
+  /// request of somebody else that may let it act, or about an own one that may let a register block
+  /// act.
   Picoseconds horizon() {
     const Picoseconds h = next_event();
     return path_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
@@ -158,13 +160,17 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
 
  private:
   Self& self() { return static_cast<Self&>(*this); }
+  /// Known once the request is on its port.
+  static bool to_memory(const MemRequest& r) {
+    return r.slave == static_cast<std::uint8_t>(Slave::kDdr);
+  }
   Picoseconds next_decision() const { return std::min(*decisions_[0], *decisions_[1]); }
 
   tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
     if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
     auto& tx = static_cast<Transaction&>(r);
     tx.done = true;
-    --own_undecided_;
+    own_undecided_ -= to_memory(tx);
     self().completed(tx);
     if (!running_) {
       ++horizon_epoch;  // another agent plays the path: it must see what is notified here
@@ -202,7 +208,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   std::array<const Picoseconds*, 2> decisions_{};
   Transaction* waiting_ = nullptr;
   bool running_ = false;
-  unsigned own_undecided_ = 0;
+  unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act
   std::uint64_t seen_epoch_ = ~std::uint64_t{0};
   Picoseconds next_event_ = 0;
   Picoseconds now_ = 0;  // kernel time of the present activation

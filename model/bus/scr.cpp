@@ -35,6 +35,10 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
 void Scr::end_of_elaboration() {
   ddr_ = ddr_lookahead.operator->();
   ddr_next_ = ddr_->next_decision_place();
+  SC_HAS_PROCESS(Scr);
+  SC_METHOD(replanned);
+  sensitive << ddr_->replanned();
+  dont_initialize();
 }
 
 void Scr::step() {
@@ -107,6 +111,10 @@ void Scr::inputs_changed() {
   crossbar_.set_clock(clk.read(), kernel_time());
   for (std::size_t i = 0; i < kMasterCount; ++i)
     crossbar_.set_priority(static_cast<Master>(i), priority[i].read());
+  if (!held_) arm();
+}
+
+void Scr::replanned() {
   if (!held_) arm();
 }
 

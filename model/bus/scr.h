@@ -89,6 +89,7 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
   void end_of_elaboration() override;
   void step();
   void inputs_changed();
+  void replanned();
 
   AddressMap map_;
   bool strict_;

@@ -56,6 +56,8 @@ class PassiveIf : public virtual sc_core::sc_interface {
   virtual void step() = 0;
   /// Where the block keeps the value of next_decision(), for whoever asks often.
   virtual const Picoseconds* next_decision_place() const = 0;
+  /// Notified when clocks or registers have moved the next decision, unasked by any request.
+  virtual const sc_core::sc_event& replanned() const = 0;
 };
 
 /// The head of the memory path. While a running agent holds it, the agent plays its decisions;

@@ -23,8 +23,9 @@ struct MemRequest {
   bool write = false;
   bool locked = false;             ///< nobody else reaches the slave before this master's next request
   std::uint8_t bytes = 0;          ///< 1 .. kMaxBurstBytes
-  /// The outcome makes nobody but the memory path act: whoever runs ahead need not stop where it is
-  /// decided.
+  /// The outcome makes nobody but the memory path act, nor do the requests that follow from it:
+  /// whoever runs ahead need not stop where it is decided. An interrupt at the end of a chain of
+  /// requests makes all of them not passive.
   bool passive = false;
 
   // Set by the memory path.

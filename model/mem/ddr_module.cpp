@@ -26,6 +26,7 @@ void DdrModule::enabled_changed() { enabled_ = enabled.read(); }
 void DdrModule::clocks_changed() {
   settle(kernel_time());
   controller_.set_clocks(ddr_clk.read(), scr_clk.read(), kernel_time());
+  replanned_.notify(sc_core::SC_ZERO_TIME);
 }
 
 /// SDBCR is written with TIMUNLOCK to load CL and the timing; the write that locks it again ends
@@ -37,6 +38,7 @@ void DdrModule::reconfigure() {
   const DdrConfig c = programmed();
   if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
   controller_.configure(c, now);
+  replanned_.notify(sc_core::SC_ZERO_TIME);
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
 }
 
@@ -46,7 +48,7 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
                                               sc_core::sc_time& delay) {
   if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
-  if (!ready_ || !enabled_ || outside) [[unlikely]] {
+  if (!ready_ || !enabled_ || outside || !controller_.running()) [[unlikely]] {
     Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
                                           : "access to the SDRAM before its controller runs");
     return tlm::TLM_COMPLETED;

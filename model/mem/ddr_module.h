@@ -14,7 +14,8 @@ namespace fovea::mem {
 
 /// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDTIMR,
 /// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
-/// while LPSC 13 is off, end in a bus error (assumed: the chip's reaction is not documented).
+/// while LPSC 13 or the clock is off, end in a bus error (assumed: the chip's reaction is not
+/// documented).
 class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
                         private DdrClient {
  public:
@@ -40,6 +41,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   const Picoseconds* next_decision_place() const override {
     return controller_.next_decision_place();
   }
+  const sc_core::sc_event& replanned() const override { return replanned_; }
 
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
   unsigned transport_dbg(MemRequest&) override;
@@ -53,6 +55,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
 
   BackingStore store_;
   DdrController controller_;
+  sc_core::sc_event replanned_;
   KernelNow now_;
   bool ready_ = false;    // initialised by the firmware
   bool enabled_ = false;  // of `enabled`, without a call

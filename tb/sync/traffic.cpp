@@ -51,6 +51,7 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     if (stream_left_ > 0 || stream.outstanding() > 0) return;
     stream_left_ = 12;
     stream_address_ = address & ~63u;
+    stream_passive_ = (address & 64u) != 0;
     stream_start_ = kernel_time();
     move_stream();
   });
@@ -58,7 +59,7 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     log_.add(text("%015llu stream %s %08x %llu %016llx", static_cast<unsigned long long>(c.last),
                   c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
                   static_cast<unsigned long long>(hash(c.data.data(), c.data.size()))));
-    if (c.tag == 0) {
+    if (c.tag == 0 && !stream_passive_) {
       stream_end_.notify(ps_time(c.last > kernel_time() ? c.last - kernel_time() : 0));
       ++horizon_epoch;
     }
@@ -90,9 +91,9 @@ void TestBlock::move_stream() {
     if (n % 3 == 0) at = std::max(at, stream_start_ + (12 - n) * 150 * kPsPerNs);
     const std::uint32_t address = stream_address_ + n * 64;
     if (n % 2)
-      stream.write(address, kData, n, at, n != 0);
+      stream.write(address, kData, n, at, stream_passive_);
     else
-      stream.read(address, 64, n, at, n != 0);
+      stream.read(address, 64, n, at, stream_passive_);
   }
 }
 
@@ -144,12 +145,13 @@ void TrafficMaster::execute(const Program& p) {
   const unsigned window = 1 + static_cast<unsigned>(rng.below(kSlots));
   Picoseconds seen_irq = p.start;
   for (unsigned i = 0; i < p.operations && now < end; ++i) {
-    // Gaps: often none, so that masters meet at equal times; sometimes a clock or a long wait.
+    // Gaps: often none, so that masters meet at equal times; sometimes a clock, or longer than a
+    // register access and what follows from it take.
     switch (rng.below(6)) {
       case 0: break;
       case 1: break;
       case 2: now += 8230; break;
-      case 3: now += rng.below(50) * kPsPerNs; break;
+      case 3: now += rng.below(p.seed % 2 ? 50 : 3000) * kPsPerNs; break;
       case 4: now += 1; break;
       default: now += (now % 8230 == 0) ? 0 : 8230 - now % 8230; break;
     }

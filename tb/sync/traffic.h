@@ -47,7 +47,8 @@ class Log {
 /// bytes there and writes them 4 KiB further, then interrupts), COUNT (reads: expiries so far),
 /// PRIORITY (write master<<8|level: a crossbar priority changes), STREAM (write address: a passive
 /// DMA master, which reacts to outcomes ahead of the kernel as the video ports do, moves twelve
-/// bursts in places of three, then interrupts).
+/// bursts in places of three; unless address bit 6 is set, it then interrupts: no burst of such a
+/// stream is passive, as each lets the next one follow).
 struct TestRegs : RegBank {
   Reg timer{*this, "TIMER", 0x0, Mode::kRw, "ns until the interrupt"};
   Reg copy{*this, "COPY", 0x4, Mode::kRw, "address"};
@@ -75,6 +76,7 @@ class TestBlock : public BusTarget {
   Log& log_;
   sc_core::sc_event due_, stream_end_;
   unsigned stream_left_ = 0;
+  bool stream_passive_ = false;
   std::uint32_t stream_address_ = 0;
   Picoseconds stream_start_ = 0;
 };

@@ -17,6 +17,7 @@ Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
 
 void Crossbar::set_clock(Frequency scr, Picoseconds at) {
   if (scr == scr_.frequency()) return;
+  const bool stood = !scr_.running();
   scr_.restart(scr, at);
   if (scr_.running()) {
     const std::uint64_t first = scr_.edge_at_or_after(at);  // edges before have no times any more
@@ -27,6 +28,11 @@ void Crossbar::set_clock(Frequency scr, Picoseconds at) {
         // Requests that come after the change see the new edges.
         if (item.request->issued > at)
           item.visible = item.crossed = scr_.edge_after(item.request->issued) + p.request_latency;
+        else if (stood) {  // not later than if it came with the restart
+          const std::uint64_t limit = scr_.edge_after(at) + p.request_latency;
+          item.visible = std::min(item.visible, limit);
+          item.crossed = std::min(item.crossed, limit);
+        }
         item.crossed = std::max(item.crossed, first);
       }
   }
@@ -41,7 +47,6 @@ void Crossbar::set_priority(Master m, unsigned priority) {
 }
 
 void Crossbar::submit(MemRequest& request, Slave slave) {
-  FOVEA_CHECK(scr_.running(), "request to a crossbar without a clock");
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.slave = static_cast<std::uint8_t>(slave);
@@ -50,6 +55,11 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
     observer_->submitted(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
+  if (!scr_.running()) {  // set_clock() says when
+    item = {&request, kNotYet, kNotYet};
+    waiting_ |= 1u << index(request.master);
+    return;
+  }
   const std::uint64_t crossed = scr_.edge_after(request.issued) + p.request_latency;
   item = {&request, crossed, crossed};
   if (!head) return;  // competes when those before it are gone
@@ -145,7 +155,8 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   SlaveState& s = slaves_[request.slave];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
-  s.free = std::max(s.free, scr_.edge_after(at));
+  // A faster clock since the grant does not bring it there before the time that was announced.
+  s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.taken)});
   if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
   const Picoseconds taken = scr_.edge(s.free);
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
@@ -158,13 +169,20 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
 
 void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {
   const std::uint64_t latency = ports_[index(request.master)].response_latency;
-  request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);
-  request.last =
-      last == first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
+  const bool ddr = request.slave == static_cast<std::uint8_t>(Slave::kDdr);
+  // Nor does a faster clock bring data before the command was there.
+  if (ddr) first = std::max(first, request.taken + request.slave_waited);
+  const Picoseconds begin = scr_.edge(scr_.edge_at_or_after(first) + latency);
+  const Picoseconds end =
+      last <= first ? begin : scr_.edge(scr_.edge_at_or_after(last) + latency);
   request.error = error;
-  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
+  if (ddr) {
+    set_outcome(request, begin, end);
     waits_of(request).add(Culprit::kBridge, request.first - first);
     waits_of(request).add(Culprit::kService, first - request.taken - request.slave_waited);
+  } else {
+    request.first = begin;
+    request.last = end;
   }
   if (error && request.locked) {  // its master gives up
     slaves_[request.slave].open_to = ~0u;

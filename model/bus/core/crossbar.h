@@ -82,6 +82,7 @@ class Crossbar {
   WaitTable waits;
 
  private:
+  static constexpr std::uint64_t kNotYet = ~std::uint64_t{0};  // the clock stands
   static constexpr std::size_t kQueue = 32;  // as deep as any master's outstanding limit
   struct Port {
     struct Item {
@@ -95,6 +96,7 @@ class Crossbar {
     const Item& front() const { return queue[head % kQueue]; }
     std::uint8_t priority = 7;
     std::uint8_t request_latency = 0, response_latency = 0;
+    std::array<Picoseconds, 2> answered{};  // last beat of the newest outcome; reads, writes
     bool empty() const { return head == tail; }
   };
   /// The lane was the master's from `start` on, up to the next one's start or `end`.
@@ -121,13 +123,20 @@ class Crossbar {
   }
   template <class Host>
   void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
-    request.first = request.last =
-        scr_.edge(edge + ports_[index(request.master)].response_latency);
+    const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
+    set_outcome(request, at, at);
     request.error = false;
     waits_of(request).add(Culprit::kBridge, request.first - request.taken);
     if (observer_) [[unlikely]]
       observer_->responded(request);
     host.respond(request);
+  }
+  /// A master sees its outcomes in order, also when a faster clock would have the later one pass an
+  /// earlier one that was decided before the change.
+  void set_outcome(MemRequest& r, Picoseconds first, Picoseconds last) {
+    Picoseconds& newest = ports_[index(r.master)].answered[r.write];
+    r.first = std::max(first, newest);
+    r.last = newest = std::max(last, r.first);
   }
   void count(const MemRequest& r);
   /// The parts of request.issued .. grant at `edge`.
