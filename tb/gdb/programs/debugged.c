@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-volatile int watched, limit = 5, waiting;
+volatile int watched, limit = 5, waiting, released;
 
 __attribute__((noinline)) int leaf(int n) {
   int result = n * 3 + 1;
@@ -18,7 +18,7 @@ __attribute__((noinline)) int branch(int n) {
 
 int main(int argc, char **argv) {
   if (argc > 1 && strcmp(argv[1], "wait") == 0)
-    for (waiting = 1; waiting; ++waiting) __asm__ volatile("");
+    while (!released) ++waiting;
   const int sum = branch(limit);
   watched = sum;
   watched += 100;
