@@ -67,6 +67,7 @@ class Clock {
   /// (n * mul + add) / div.
   [[gnu::noinline]] static std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
                                                std::uint64_t div, std::uint64_t add) {
+    if (div == 0) return 0;  // a stopped clock stays at its last edge
     return static_cast<std::uint64_t>((Wide{n} * mul + add) / div);
   }
 

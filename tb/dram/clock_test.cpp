@@ -43,7 +43,12 @@ TEST(ClockArithmeticTest, EdgesEqualWideDivision) {
   }
 }
 
-// Walks as the memory path does: mostly small steps on, some back, now and then a leap past the
-// reach; and a restart of the clock in between.
+TEST(ClockArithmeticTest, AStoppedClockStaysAtItsLastEdge) {
+  Clock clock(Frequency(100'000'000), 0);
+  clock.restart(Frequency{}, 1'000'000);
+  EXPECT_EQ(clock.edge_at_or_after(5'000'000), 100u);
+  EXPECT_EQ(clock.edge(100), 1'000'000u);
+}
+
 }  // namespace
 }  // namespace fovea::dram

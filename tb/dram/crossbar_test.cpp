@@ -255,7 +255,9 @@ TEST(CrossbarTest, LockedReadKeepsTheSlaveUntilItsMastersNextRequest) {
     b.submit(kA, 41);
     b.run();
     EXPECT_EQ(b.winners(), locked ? "ACABA" : "ACBAA");
-    if (locked) EXPECT_EQ(b.events[3].granted, b.events[2].arrival) << "as soon as it is free";
+    if (locked) {
+      EXPECT_EQ(b.events[3].granted, b.events[2].arrival) << "as soon as it is free";
+    }
   }
 }
 

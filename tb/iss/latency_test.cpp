@@ -58,16 +58,15 @@ const std::string kAbortingLdm =
 
 /// Sixteen clocks of LDM, one in which the last word comes with its abort, one that finds it, three
 /// of entry (prepare, fetch, decode) for the abort and three for FIQ: 24, and the handler's first
-/// instruction executes in the 25th. Disabled, as the next: the core enters the abort with the word
-/// that fails, three clocks early.
-TEST_F(LatencyTest, DISABLED_FastWorstCaseIsTwentyFourClocks) {
+/// instruction executes in the 25th.
+TEST_F(LatencyTest, FastWorstCaseIsTwentyFourClocks) {
   Machine m;
   raised(m, kAbortingLdm, true);
   EXPECT_EQ(m.between(), 16u + 1 + 1 + 3 + 3);
 }
 
 /// The same without FIQ, for LDM and for a single load; three clocks more are the vector's branch.
-TEST_F(LatencyTest, DISABLED_AbortIsTakenWhenTheLastWordWasDue) {
+TEST_F(LatencyTest, AbortIsTakenWhenTheLastWordWasDue) {
   Machine several;
   prepare(several);
   several.execute(kAbortingLdm);

@@ -158,7 +158,7 @@ class Core : public Background {
   // exceptions.cpp
   enum class Exception { kReset, kUndefined, kSwi, kPrefetchAbort, kDataAbort, kIrq, kFiq };
   void take(Exception e, std::uint32_t return_address);
-  void data_abort();
+  void data_abort(unsigned left);
   void undefined();
   void set_cpsr(std::uint32_t value);
   void switch_mode(std::uint32_t mode);

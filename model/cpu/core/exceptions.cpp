@@ -114,7 +114,12 @@ void Core::take(Exception e, std::uint32_t return_address) {
   spend(3);
 }
 
-void Core::data_abort() { take(Exception::kDataAbort, pc_ + 8); }
+/// An aborted instruction runs to its end, `left` clocks more; in the next the last word comes with its
+/// abort, and the one behind it finds that (ARM DDI 0165B 5.3). Then the entry begins.
+void Core::data_abort(unsigned left) {
+  spend(left + 2);
+  take(Exception::kDataAbort, pc_ + 8);
+}
 
 void Core::undefined() {
   take(Exception::kUndefined, pc_ + ((cpsr_ & 0x20u) ? 2u : 4u));

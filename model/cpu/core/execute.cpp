@@ -296,13 +296,13 @@ void Core::load_store(const Instruction& i) {
     case Op::kStrh: {
       value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];
       const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
-      if (store(address, bytes, value, user) != Result::kOk) return data_abort();
+      if (store(address, bytes, value, user) != Result::kOk) return data_abort(cycles);
       write_back();
       spend(cycles);
       return;
     }
     case Op::kLdr:
-      if (load(address, 4, value, user) != Result::kOk) return data_abort();
+      if (load(address, 4, value, user) != Result::kOk) return data_abort(cycles);
       write_back();
       if (address & 3u) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
       if (i.rd == 15) [[unlikely]] {
@@ -314,25 +314,25 @@ void Core::load_store(const Instruction& i) {
       loaded(i.rd, (address & 3u) ? 2 : 1);
       return;
     case Op::kLdrb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      if (load(address, 1, value, user) != Result::kOk) return data_abort(cycles);
       break;
     case Op::kLdrh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      if (load(address, 2, value, user) != Result::kOk) return data_abort(cycles);
       break;
     case Op::kLdrsb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort();
+      if (load(address, 1, value, user) != Result::kOk) return data_abort(cycles);
       value = static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
       break;
     case Op::kLdrsh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort();
+      if (load(address, 2, value, user) != Result::kOk) return data_abort(cycles);
       value = static_cast<std::uint32_t>(static_cast<std::int16_t>(value));
       break;
     case Op::kLdrd: {
       std::uint32_t second = 0;
-      if (misaligned(address)) return data_abort();
-      if (load(address & ~3u, 4, value, false) != Result::kOk) return data_abort();
+      if (misaligned(address)) return data_abort(2);
+      if (load(address & ~3u, 4, value, false) != Result::kOk) return data_abort(2);
       spend(1);
-      if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort();
+      if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort(1);
       write_back();
       r_[i.rd] = value;
       if (i.rd + 1u == 15) {
@@ -346,8 +346,9 @@ void Core::load_store(const Instruction& i) {
     }
     default: {  // STRD
       const std::uint32_t words[2] = {r_[i.rd], i.rd + 1u == 15 ? r_[15] + 4 : r_[i.rd + 1u]};
+      const std::uint64_t begun = counts_.issue;
       if (misaligned(address) || store_words(address & ~3u, words, 2, false) != Result::kOk)
-        return data_abort();
+        return data_abort(2 - static_cast<unsigned>(counts_.issue - begun));
       write_back();
       return;
     }
@@ -375,11 +376,11 @@ void Core::load_multiple(const Instruction& i) {
   const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
   std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
                                           : ((i.flags & kPre) ? end : end + 4);
-  if (misaligned(address)) return data_abort();
+  if (misaligned(address)) return data_abort(n);
   std::array<std::uint32_t, 16> values;
   for (unsigned k = 0; k < n; ++k) {
     const std::uint32_t at = (address + 4 * k) & ~3u;
-    if (load(at, 4, values[k]) != Result::kOk) return data_abort();
+    if (load(at, 4, values[k]) != Result::kOk) return data_abort(n - k);
     spend(1);
   }
   if (n == 1 && !(i.imm & 0x8000u)) spend(1);
@@ -424,7 +425,7 @@ void Core::store_multiple(const Instruction& i) {
   const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
   const std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
                                                 : ((i.flags & kPre) ? end : end + 4);
-  if (misaligned(address)) return data_abort();
+  if (misaligned(address)) return data_abort(n);
   std::array<std::uint32_t, 16> values;
   const std::uint32_t mode = cpsr_ & 31u;
   if (i.flags & kUserBank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
@@ -434,7 +435,9 @@ void Core::store_multiple(const Instruction& i) {
     values[k] = r == 15 ? pc_ + 12 : r == i.rn ? base : r_[r];
   }
   if (i.flags & kUserBank) switch_mode(mode);
-  if (store_words(address & ~3u, values.data(), n, false) != Result::kOk) return data_abort();
+  const std::uint64_t begun = counts_.issue;
+  if (store_words(address & ~3u, values.data(), n, false) != Result::kOk)
+    return data_abort(n - static_cast<unsigned>(counts_.issue - begun));
   if (n == 1) spend(1);
   if (i.flags & kWriteBack) r_[i.rn] = end;
 }
@@ -446,12 +449,12 @@ void Core::swap(const Instruction& i) {
   // What its write may not do stops it before the read locks the bus.
   const std::uint32_t mva = modified(address) & ~(bytes - 1u);
   const bool aligned = !(control_ & 2u) || !(address & (bytes - 1u));
-  if (aligned && !in_tcm(mva) && !translate(mva, true, false, false)) return data_abort();
+  if (aligned && !in_tcm(mva) && !translate(mva, true, false, false)) return data_abort(2);
   swapping_ = true;
   const bool ok = load(address, bytes, value) == Result::kOk &&
                   store(address, bytes, out) == Result::kOk;
   swapping_ = false;
-  if (!ok) return data_abort();
+  if (!ok) return data_abort(2);
   if (bytes == 4 && (address & 3u)) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
   r_[i.rd] = value;
   spend(2);

@@ -385,12 +385,17 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
       const bool cached = t->cacheable && (control_ & 5u) == 5u;
       const bool buffered = t->bufferable && (control_ & 1u);
       const std::uint32_t pa = t->physical(mva);
-      if ((cached && dcache_.find(mva) < 0) || (!cached && buffered)) {
+      const int line = cached ? dcache_.find(mva) : -1;
+      const bool keeps = line >= 0 && buffered && !(cache_debug_ & 4u);
+      if (cached ? !keeps : buffered) {
         record(pc_, va + 4 * k, 4 | kWritten);
         if (cached) {
           ++counts_.dcache_writes;
-          ++counts_.dcache_write_misses;
           if (cycle_ < dfill_.last) dcache_wait(mva);
+          if (line < 0)
+            ++counts_.dcache_write_misses;
+          else
+            std::memcpy(dcache_.data(static_cast<unsigned>(line)) + (mva & 31u), &words[k], 4);
         }
         if (run_bytes && pa != run_pa + run_bytes) flush();
         if (!run_bytes) run_pa = pa;
