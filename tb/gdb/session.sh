@@ -29,7 +29,7 @@ debug() {
   local commands=(-ex 'set pagination off' -ex 'set confirm off')
   commands+=(-ex "target remote 127.0.0.1:$port")
   while IFS= read -r line; do commands+=(-ex "$line"); done
-  timeout -s INT -k 20 "${2:-20}" "$gdb" -nx -batch "${commands[@]}" "$1" >>"$name.gdb" 2>&1
+  timeout --foreground -s INT -k 20 "${2:-20}" "$gdb" -nx -batch "${commands[@]}" "$1" >>"$name.gdb" 2>&1
 }
 # end STATUS 'pattern'...: how fovea ends, and what gdb must have said.
 end() {
