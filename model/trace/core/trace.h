@@ -69,6 +69,7 @@ struct ClockInfo {
 
 struct TraceInfo {
   Picoseconds start = 0, end = 0;  ///< of what was recorded
+  Picoseconds refresh = 0;  ///< when a refresh interval of the SDRAM began, before start; 0: not known
   /// Parameters in force, as `key value`; keys of `fovea params`.
   std::vector<std::pair<std::string, std::string>> params;
   ClockInfo scr, ddr;  ///< crossbar, SDRAM; a stopped one is the parameters' matter
