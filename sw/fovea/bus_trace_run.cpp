@@ -23,8 +23,8 @@ void BusTraceRun::command(void* self, mem::Cmd cmd, unsigned, std::uint32_t, std
     run.refreshes_[run.refresh_count_++ % run.refreshes_.size()] = clock;
 }
 
-/// Refreshes come when an interval ends, or later when the memory is busy: the phase that most of the
-/// last ones share is the interval's.
+/// Refreshes come when an interval ends, or later when the memory is busy: the phase that most of
+/// the last ones share is the interval's.
 Picoseconds BusTraceRun::refresh_phase() const {
   const std::uint64_t interval = board_.dm365.ddr.programmed().refresh_interval;
   if (interval == 0 || refresh_count_ < refreshes_.size()) return 0;

@@ -274,7 +274,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
         std::none_of(commands.begin(), commands.end(),
                      [&](CLI::App* c) { return c->check_name(args[0]); }))
       throw UserError(
-          fmt::format("unknown command '{}'; allowed: run, replay, params, version", one_line(args[0])));
+          fmt::format("unknown command '{}'; allowed: run, replay, params, version",
+                      one_line(args[0])));
     try {
       app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
     } catch (const CLI::ParseError& e) {

@@ -236,7 +236,8 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
 void TraceFile::check_info() {
   constexpr Picoseconds kLatest = 3600 * kPsPerSecond;
   const auto time_ok = [](Picoseconds t) { return t <= kLatest; };
-  bool ok = info_.start <= info_.end && info_.refresh <= info_.start && time_ok(info_.end) && !info_.streams.empty() &&
+  bool ok = info_.start <= info_.end && info_.refresh <= info_.start &&
+            time_ok(info_.end) && !info_.streams.empty() &&
             info_.streams.size() <= kMasterCount && !info_.masters.empty();
   for (const auto& c : {info_.scr, info_.ddr})
     ok = ok && time_ok(c.start) && c.frequency.den <= 100 && c.frequency.hertz() <= 1e10;
