@@ -16,6 +16,7 @@
 #include "sw/fovea/progress.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_command.h"
+#include "sw/fovea/replay_params.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -111,10 +112,15 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   return signal ? 128 + signal : kExitGuestFailed;
 }
 
-int command_params(const std::string& pattern, bool markdown, const CliContext& context) {
-  const auto simulation = context.make_simulation();
+int command_params(const std::string& pattern, bool markdown, bool of_replay,
+                   const CliContext& context) {
   ParamSet params;
-  simulation->declare(params);
+  ReplayParams replay;
+  const auto simulation = context.make_simulation();
+  if (of_replay)
+    replay.declare(params);
+  else
+    simulation->declare(params);
   context.out << params_table(params, pattern, markdown) << std::flush;
   return kExitDone;
 }
@@ -254,6 +260,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       app.add_subcommand("params", "List parameters: default, allowed values, source");
   params_command->add_option("pattern", pattern, "Part of a key, or a pattern with * and ?");
   params_command->add_flag("--markdown", markdown, "As a Markdown table");
+  bool of_replay = false;
+  params_command->add_flag("--replay", of_replay, "Those of 'fovea replay'");
   CLI::App* version_command = app.add_subcommand("version", "Print the version");
 
   try {
@@ -278,7 +286,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
     if (*replay_command) return command_replay(replay, args, context);
     if (*run_command) return command_run(run, args, context);
     if (*exec_command) return command_exec(exec, args, context);
-    if (*params_command) return command_params(pattern, markdown, context);
+    if (*params_command) return command_params(pattern, markdown, of_replay, context);
     if (*version_command) context.out << "fovea " << version_text() << std::endl;
     return kExitDone;
   } catch (const UserError& e) {

@@ -54,10 +54,12 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
   const auto [min, max] = std::minmax_element(times.begin(), times.end());
   const std::string what = "remap of one frame, ";
   rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1", "frames whose remap ended"});
-  rows.push_back({"frame.remap_time.min", static_cast<double>(*min) * 1e-12, "s", what + "shortest"});
+  rows.push_back({"frame.remap_time.min", static_cast<double>(*min) * 1e-12, "s",
+                  what + "shortest"});
   rows.push_back({"frame.remap_time.mean", sum / static_cast<double>(times.size()), "s",
                   what + "mean"});
-  rows.push_back({"frame.remap_time.max", static_cast<double>(*max) * 1e-12, "s", what + "longest"});
+  rows.push_back({"frame.remap_time.max", static_cast<double>(*max) * 1e-12, "s",
+                  what + "longest"});
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ mem::DdrConfig ReplayParams::config() const {
   c.timing.nWTR = value(r.tWTR);
   c.timing.nRTP = value(r.tRTP);
   c.timing.banks = value(r.banks);
+  c.timing.mobile = ddr.mobile();
   c.read_latency = value(r.RL);
   c.refresh_interval = value(r.tREFI);
   c.old_count = value(r.old_count);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "model/board/frame_log.h"
 
@@ -43,7 +44,11 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   xbar_.set_clock(scr, scr_start);
   ddr_.set_clocks({}, scr, scr_start);
   ddr_.set_clocks(clock(info.ddr, params.registers.clock), scr, start_near(info.ddr, info.start));
-  ddr_.configure(params.config(), info.start);
+  mem::DdrConfig config = params.config();
+  const unsigned interval = std::exchange(config.refresh_interval, 0);
+  ddr_.configure(config, 0);
+  config.refresh_interval = interval;  // counts from here
+  ddr_.configure(config, info.refresh ? info.refresh : info.start);
   ddr_.catch_up(info.start);  // the refreshes before
   ddr_.stats.reset();
 
@@ -314,30 +319,6 @@ void ReplayPath::send_waiting() {
     waiting_.erase(first);
     send(*r, std::max(r->issued, opened_at_));
   }
-}
-
-std::vector<StatRow> ReplayPath::stats() {
-  std::vector<StatRow> rows;
-  collect(ddr_.stats, rows);
-  const double seconds = static_cast<double>(duration()) * 1e-12;
-  rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion"});
-  rows.push_back({"replay.requests", requests_, "1", "requests played"});
-  if (seconds > 0) {
-    rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
-                    "bytes moved / replay.time"});
-    const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
-    rows.push_back({"ddr.utilisation", static_cast<double>(ddr_.busy_clocks()) / clocks, "ratio",
-                    "share of replay.time in which the SDRAM's data bus moves data"});
-  }
-  for (const MasterState& m : masters_) {
-    if (m.label.empty()) continue;
-    const std::string bus = "bus." + m.label + ".";
-    rows.push_back({bus + "read_bytes", m.read_bytes, "B", "bytes read by this master"});
-    rows.push_back({bus + "write_bytes", m.write_bytes, "B", "bytes written by this master"});
-    rows.push_back({bus + "transactions", m.transactions, "1", "requests of this master"});
-    collect(*m.latency, rows);
-  }
-  return rows;
 }
 
 }  // namespace fovea::app

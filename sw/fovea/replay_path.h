@@ -39,6 +39,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// From the recording's start to the last completion.
   Picoseconds duration() const { return last_ > start_ ? last_ - start_ : 0; }
   bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
+  /// Who looks on at the crossbar.
+  void observe(MemObserver* observer) { xbar_.observe(observer); }
   const mem::DdrStats& memory() const { return ddr_.stats; }
   /// Called with each record as it goes out; empty in production.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;

@@ -24,6 +24,7 @@ TEST(TraceFileTest, GivesBackWhatWasWritten) {
   const trace::TraceInfo& info = file.info();
   EXPECT_EQ(info.start, made.info.start);
   EXPECT_EQ(info.end, made.info.end);
+  EXPECT_EQ(info.refresh, made.info.refresh);
   EXPECT_EQ(info.scr, made.info.scr);
   EXPECT_EQ(info.ddr, made.info.ddr);
   EXPECT_EQ(info.params, made.info.params);

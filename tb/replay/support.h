@@ -31,6 +31,7 @@ inline trace::TraceInfo board_info() {
   trace::TraceInfo info;
   info.start = 1'000'000;
   info.end = 900'000'000;
+  info.refresh = 700'000;
   info.scr = {Frequency(121'500'000), 500};
   info.ddr = {Frequency(243'000'000), 500};
   info.streams = {{Frequency(297'000'000), 300, 2, 1}, {}, {}};

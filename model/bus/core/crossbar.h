@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/bus/core/crossbar_params.h"
@@ -52,8 +53,8 @@ class Crossbar {
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
 
-  /// Looks on at all requests; null: nobody.
-  void observe(MemObserver* observer) { observer_ = observer; }
+  /// Looks on at all requests; null: nobody. Gives back who did before.
+  MemObserver* observe(MemObserver* observer) { return std::exchange(observer_, observer); }
 
   /// Puts a request on its master's port at request.issued: not before the master's earlier ones,
   /// and before any decision later than that was taken. It stays where it is until its response.

@@ -147,7 +147,8 @@ void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_
     }
   } else if (before && before->done &&
              to <= round_up(clock_.edge_at_or_after(before->last)) + align_) {
-    after(p, before->number, false, clock_.edge_at_or_after(before->last), to);  // the port was taken
+    // The port was taken.
+    after(p, before->number, false, clock_.edge_at_or_after(before->last), to);
   } else if (anchor && anchor->done) {
     after(p, anchor->number, first, from, to);
   }

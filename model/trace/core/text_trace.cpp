@@ -95,14 +95,16 @@ void TextTrace::read_record(const std::vector<std::string_view>& words) {
   const std::uint64_t id = number(words[1], "master", 0, 65535);
   const auto found = std::find(ids_.begin(), ids_.end(), id);
   if (found == ids_.end())
-    bad("master " + std::string(words[1]) + " was not declared above; '# master ID window W label'");
+    bad("master " + std::string(words[1]) +
+        " was not declared above; '# master ID window W label'");
   if (words[2] != "R" && words[2] != "W")
     bad("direction '" + std::string(words[2].substr(0, 40)) + "' is not allowed; allowed: R, W");
   l.write = words[2] == "W";
   if (!words[3].starts_with("0x")) bad("the address is hexadecimal, 0x...");
   l.address = static_cast<std::uint32_t>(number(words[3], "address", 0, ~std::uint32_t{0}));
   l.bytes = static_cast<std::uint16_t>(number(words[4], "bytes", 1, kMaxBytes));
-  if (std::uint64_t{l.address} + l.bytes > std::uint64_t{1} << 32) bad("the burst ends beyond 4 GiB");
+  if (std::uint64_t{l.address} + l.bytes > std::uint64_t{1} << 32)
+    bad("the burst ends beyond 4 GiB");
   streams_[static_cast<std::size_t>(found - ids_.begin())].lines.push_back(l);
 }
 

@@ -23,7 +23,7 @@ struct Record {
   Release release = Release::kAt;
   bool mark = false;        ///< no request: the program shows `address` on its phase pins
   bool write = false, locked = false;
-  bool from_first = false;  ///< kAfter, kWhen: from the first beat of that record, else from the last
+  bool from_first = false;  ///< kAfter, kWhen: from that record's first beat, else from its last
   std::uint8_t bytes = 0;
   std::uint8_t critical = 0;
   std::uint8_t priority = 0;
@@ -69,6 +69,7 @@ struct ClockInfo {
 
 struct TraceInfo {
   Picoseconds start = 0, end = 0;  ///< of what was recorded
+  Picoseconds refresh = 0;  ///< a refresh interval began then, before start; 0: not known
   /// Parameters in force, as `key value`; keys of `fovea params`.
   std::vector<std::pair<std::string, std::string>> params;
   ClockInfo scr, ddr;  ///< crossbar, SDRAM; a stopped one is the parameters' matter

@@ -53,7 +53,8 @@ std::string make_block(Kind kind, unsigned stream, std::uint32_t count, std::str
 
 std::string info_text(const TraceInfo& info) {
   std::ostringstream out;
-  out << "start " << info.start << "\nend " << info.end << "\n";
+  out << "start " << info.start << "\nend " << info.end << "\nrefresh " << info.refresh
+      << "\n";
   for (const auto* c : {&info.scr, &info.ddr})
     out << (c == &info.scr ? "scr " : "ddr ") << c->frequency.num << ' ' << c->frequency.den << ' '
         << c->start << "\n";
@@ -197,9 +198,9 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
     for (std::size_t i = 0; i < n; ++i)
       if (!take_number(rest, v[i])) bad("it is corrupted: '" + key + "' in its description");
   };
-  if (key == "start" || key == "end") {
+  if (key == "start" || key == "end" || key == "refresh") {
     numbers(1);
-    (key == "start" ? info_.start : info_.end) = v[0];
+    (key == "start" ? info_.start : key == "end" ? info_.end : info_.refresh) = v[0];
   } else if (key == "scr" || key == "ddr") {
     numbers(3);
     if (v[1] == 0) bad("it is corrupted: a clock without a frequency");
@@ -235,7 +236,8 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
 void TraceFile::check_info() {
   constexpr Picoseconds kLatest = 3600 * kPsPerSecond;
   const auto time_ok = [](Picoseconds t) { return t <= kLatest; };
-  bool ok = info_.start <= info_.end && time_ok(info_.end) && !info_.streams.empty() &&
+  bool ok = info_.start <= info_.end && info_.refresh <= info_.start &&
+            time_ok(info_.end) && !info_.streams.empty() &&
             info_.streams.size() <= kMasterCount && !info_.masters.empty();
   for (const auto& c : {info_.scr, info_.ddr})
     ok = ok && time_ok(c.start) && c.frequency.den <= 100 && c.frequency.hertz() <= 1e10;

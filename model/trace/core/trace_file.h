@@ -36,7 +36,8 @@ class TraceWriter {
 /// A trace read from memory. Every defect is a UserError of one line.
 class TraceFile : public RecordSource {
  public:
-  /// `name` is for messages. Checks the structure of the whole file, and its records as they are read.
+  /// `name` is for messages. Checks the whole file, and its records as they
+  /// are read.
   TraceFile(std::string name, std::string bytes);
   /// True if the bytes begin as a trace does, of whatever version.
   static bool recognises(std::string_view bytes);

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# `fovea replay` and `--bus-trace` towards people: results and wrong input, on the real program.
+# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT
+set -uo pipefail
+fovea=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
+
+# expect NAME STATUS 'pattern'... -- command...
+expect() {
+  local name=$1 status=$2 got text
+  shift 2
+  local patterns=()
+  while [ "$1" != -- ]; do patterns+=("$1"); shift; done
+  shift
+  text=$("$@" 2>&1)
+  got=$?
+  [ "$got" = "$status" ] || fail "$name: exit status $got, expected $status: $text"
+  if [ "$status" = 2 ] && [ "$(wc -l <<<"$text")" != 1 ]; then fail "$name: not one line: $text"; fi
+  for p in "${patterns[@]}"; do
+    grep -qE "$p" <<<"$text" || fail "$name: no '$p' in: $text"
+  done
+}
+
+cat >"$out/small.yaml" <<'Y'
+run: {frames: 2, start_limit: 2s}
+camera: {kind: chart, stamp: false}
+video: {width: 64, height: 16}
+Y
+trace=$out/small.trace
+run() { "$fovea" run "$out/small.yaml" --no-frames "$@"; }
+replay() { "$fovea" replay "$@" -o "$out/replay"; }
+expect record 0 -- run -o "$out/run" --bus-trace "$trace"
+expect without 0 -- run -o "$out/without"
+cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
+expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
+cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
+expect replay 0 'replay.time' 'frame.remap_time.mean' -- replay "$trace"
+for key in replay.time replay.bandwidth replay.requests ddr.row_hits ddr.utilisation \
+  bus.arm_d.write_bytes ddr.vpbe.latency.p99; do
+  grep -q "\"$key\": {\"value\": [0-9]" "$out/replay/stats.json" || fail "no $key"
+done
+expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
+cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
+expect memory_only 0 -- replay "$trace" --memory-only
+expect other 0 -- replay "$trace" -s ddr.clock=270MHz -s ddr.tRCD=6cycles -s bus.arm_d.request_latency=1cycles
+grep -q '"ddr.clock": {"value": "270MHz"' "$out/replay/config.json" || fail 'config.json: ddr.clock'
+grep -q '"ddr.tRP": {.*"origin": ".*small.trace"' "$out/replay/config.json" || fail 'config.json: origin'
+
+printf '# dramtrace 1\n# master 5 window 4 left\n# master 6 window 2 right\n0 5 R 0x0 256\n0 6 W 0x40000 64\n' >"$out/good.txt"
+expect text 0 'replay.time' -- replay "$out/good.txt"
+grep -q '"bus.left.read_bytes": {"value": 256,' "$out/replay/stats.json" || fail 'no bus.left'
+grep -q '"ddr.right.latency.mean": {"value": 0' "$out/replay/stats.json" || fail 'no ddr.right'
+
+expect empty_name 2 -- run -o "$out/run" --bus-trace ''
+expect unwritable 2 '/nowhere/a.trace' -- run -o "$out/run" --bus-trace /nowhere/a.trace
+expect no_file 2 'missing.trace' -- replay "$out/missing.trace"
+expect not_a_trace 2 'is no bus trace' -- replay "$out/small.yaml"
+head -c 900 "$trace" >"$out/cut.trace"
+expect truncated 2 'cut off' -- replay "$out/cut.trace"
+{ head -c 700 "$trace"; printf 'XXXX'; tail -c +705 "$trace"; } >"$out/bad.trace"
+expect corrupted 2 'corrupted' -- replay "$out/bad.trace"
+sed '1s/1$/9/' "$trace" >"$out/version.trace"
+expect version 2 'allowed: version 1' -- replay "$out/version.trace"
+printf '# dramtrace 7\n' >"$out/version.txt"
+expect text_version 2 'version.txt.:1' '# dramtrace 1' -- replay "$out/version.txt"
+printf '# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x8000000 4\n' >"$out/outside.txt"
+expect outside 2 'outside the SDRAM of 128 MiB' -- replay "$out/outside.txt"
+expect timing 2 'ddr.tRC' 'ddr.tRAS' -- replay "$trace" -s ddr.tRC=12cycles
+expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
+expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
+expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1
+expect params 0 'ddr.tRCD' 'bus.clock' -- "$fovea" params --replay
+[ -e "$out/replay.tmp" ] && fail 'a replay with wrong input left a folder'
+echo "$failures failures"
+[ "$failures" = 0 ]
