@@ -48,6 +48,7 @@ void Core::run() {
       core.flags_live_ = false;
     }
   } live(*this);
+  std::uint32_t looked_at = 1;  // pc of a boundary at which the debugger has had its look
   for (;;) {
     if (cycle_ >= stop_cycle_ || attention_) {
       if (stop_requested_) return;
@@ -55,7 +56,8 @@ void Core::run() {
       step_attention();
       if (stop_requested_) stop_cycle_ = 0;  // one more instruction
     }
-    if (debugger_) [[unlikely]] control_boundary();
+    if (debugger_ && pc_ != looked_at) [[unlikely]] control_boundary();
+    looked_at = 1;
     const Instruction* i = fetch();
     if (!i) {
       pc_ = next_pc_;
@@ -64,7 +66,10 @@ void Core::run() {
     }
     if (bus_fetch_) {  // an interrupt that came meanwhile goes first
       bus_fetch_ = false;
-      if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) continue;
+      if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) {
+        looked_at = pc_;
+        continue;
+      }
     }
     run_va_ = pc_ & ~31u;
     run_first_ = reinterpret_cast<std::intptr_t>(i);
