@@ -50,9 +50,10 @@ struct RunRequest {
   /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
   /// full), which the board lets through.
   std::function<void(const DisplayedFrame&)> frame;
-  std::filesystem::path bus_trace;  ///< file for the bus trace of the window; empty: none
-  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before the core starts
-  std::ostream* notes = nullptr;          ///< says where; not null with gdb_port
+  std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
+  /// Waits for a debugger there before the core starts.
+  std::optional<std::uint16_t> gdb_port = {};
+  std::ostream* notes = nullptr;  ///< says where; not null with gdb_port
 };
 
 /// What the board answers.
