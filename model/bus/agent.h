@@ -6,6 +6,7 @@
 #include <string>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "model/bus/core/crossbar.h"
@@ -40,6 +41,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
           std::make_unique<MemInitiatorSocket<32>>(("socket_" + std::to_string(i)).c_str()));
       sockets.back()->bind(*this);
     }
+    ports_.resize(ports);
     SC_HAS_PROCESS(Agent);
     SC_METHOD(background);
     sensitive << background_due_;
@@ -56,10 +58,12 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     FOVEA_CHECK(at >= now, "a request in the past");
     tx.done = tx.error = false;
     tx.issued = at;
-    MemPhase phase = MemPhase::kRequest;
-    sc_core::sc_time delay = ps_time(at - (running_ ? now_ : now));
-    (*sockets[tx.port])->nb_transport_fw(tx, phase, delay);
-    own_undecided_ += to_memory(tx);
+    put_out();
+    if (running_ && own_undecided_ == 0 && tx.address >= memory_base_ && ports_[tx.port].known) {
+      held_ = &tx;
+      return;
+    }
+    put_on_port(tx);
   }
   /// See cpu::BusPort::poll.
   bool poll(Transaction& tx, Picoseconds until) {
@@ -69,6 +73,11 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     }
     for (;;) {
       if (tx.done) return tx.last <= until;
+      if (held_ == &tx) {
+        if (until < tx.issued + ports_[tx.port].least_latency) return false;
+        play_held(until);
+        continue;
+      }
       const Picoseconds t = next_decision();
       const Picoseconds h = next_event();
       if (std::min(t, h) >= until) return false;
@@ -83,6 +92,10 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   /// Returns when tx is done; plays background work in time order meanwhile.
   void finish(Transaction& tx) {
     while (!tx.done) {
+      if (held_) {
+        play_held(self().background_next());
+        continue;
+      }
       if (!strict_) {
         const Picoseconds t = next_decision();
         const Picoseconds b = self().background_next();
@@ -110,6 +123,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   void sleep_until(Picoseconds until) {
     const Picoseconds now = now_;
     if (until <= now) return;
+    put_out();
     if (!strict_) {
       // No process switch if all that lies before `until` is in the path and can be played here.
       for (;;) {
@@ -143,12 +157,17 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
       strict_ = path_->strict();
       decisions_ = path_->decision_places();
     }
+    if (!strict_) {
+      memory_base_ = path_->memory_base();
+      for (Port& p : ports_) p.least_latency = path_->least_latency(p.master);
+    }
     now_ = kernel_();
     background_due_.cancel();
     ++horizon_epoch;
     path_->hold();
   }
   void leave() {
+    put_out();
     running_ = false;
     arm_background();
     path_->release();
@@ -159,7 +178,43 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   void completed(Transaction&) {}
 
  private:
+  struct Port {
+    bool known = false;  // `master`, once a request has gone through it
+    Master master = Master::kArmD;
+    Picoseconds least_latency = 0;
+  };
+
   Self& self() { return static_cast<Self&>(*this); }
+  void put_on_port(Transaction& tx) {
+    MemPhase phase = MemPhase::kRequest;
+    const Picoseconds now = running_ ? now_ : kernel_();
+    sc_core::sc_time delay = ps_time(tx.issued > now ? tx.issued - now : 0);
+    (*sockets[tx.port])->nb_transport_fw(tx, phase, delay);
+    own_undecided_ += to_memory(tx);
+    ports_[tx.port].known = true;
+    ports_[tx.port].master = tx.master;
+  }
+  /// A request held back goes the usual way: others may come in between.
+  void put_out() {
+    if (held_) put_on_port(*std::exchange(held_, nullptr));
+  }
+  void play_held(Picoseconds limit) {
+    Transaction& tx = *std::exchange(held_, nullptr);
+    tx.master = ports_[tx.port].master;
+    ++own_undecided_;
+    switch (path_->play_alone(tx, std::min(limit, next_event()))) {
+      case MemoryPathIf::Alone::kDone:
+        --own_undecided_;
+        tx.done = true;
+        self().completed(tx);
+        break;
+      case MemoryPathIf::Alone::kNo:
+        --own_undecided_;
+        put_on_port(tx);
+        break;
+      case MemoryPathIf::Alone::kUnder: break;
+    }
+  }
   /// Known once the request is on its port.
   static bool to_memory(const MemRequest& r) {
     return r.slave == static_cast<std::uint8_t>(Slave::kDdr);
@@ -207,6 +262,11 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   MemoryPathIf* path_ = nullptr;  // behind `path`
   std::array<const Picoseconds*, 2> decisions_{};
   Transaction* waiting_ = nullptr;
+  /// The newest request, alone on its way: most often its master waits for it next and nobody comes
+  /// between, so that it need not go through the queues.
+  Transaction* held_ = nullptr;
+  std::vector<Port> ports_;
+  std::uint64_t memory_base_ = kNever;
   bool running_ = false;
   unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act
   std::uint64_t seen_epoch_ = ~std::uint64_t{0};

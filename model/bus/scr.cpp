@@ -125,7 +125,45 @@ void Scr::replanned() {
   if (!held_) arm();
 }
 
-Scr::Taken Scr::forward(MemRequest& r, Picoseconds arrival) {
+inline Taken Scr::AloneHost::forward(MemRequest& r, Picoseconds arrival) {
+  r.address -= scr.map_.ddr_base;
+  const Taken taken = scr.ddr_->arrive(r, arrival);
+  r.address += scr.map_.ddr_base;
+  return taken;
+}
+
+inline void Scr::AloneHost::respond(MemRequest& r) {
+  scr.count_outcome(r, scr.now_());
+  done = true;
+}
+
+/// Only the controller has decisions of its own meanwhile: those up to the grant come first, as they
+/// may make room; one that answers somebody changes what the caller knows.
+[[gnu::flatten]] Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
+  const Crossbar::AloneGrant g = crossbar_.grant_if_alone(r);
+  if (g.at >= limit) return Alone::kNo;
+  const std::uint64_t epoch = horizon_epoch, responses = responses_;
+  while (*ddr_next_ <= g.at) {
+    deciding_ = *ddr_next_;
+    ddr_->step();
+    if (horizon_epoch != epoch || responses_ != responses) return Alone::kNo;
+  }
+  FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
+  undecided_ += !r.passive;
+  r.slave = static_cast<std::uint8_t>(Slave::kDdr);
+  deciding_ = g.at;
+  AloneHost host{*this};
+  crossbar_.grant_alone(host, r, g);
+  if (host.done) return Alone::kDone;
+  while (responses_ == responses && horizon_epoch == epoch && *ddr_next_ < limit &&
+         *ddr_next_ < crossbar_.next_decision()) {
+    deciding_ = *ddr_next_;
+    ddr_->step();
+  }
+  return Alone::kUnder;
+}
+
+Taken Scr::forward(MemRequest& r, Picoseconds arrival) {
   MemPhase phase = MemPhase::kRequest;
   const Picoseconds now = now_();
   sc_core::sc_time delay = ps_time(arrival > now ? arrival - now : 0);
@@ -159,14 +197,18 @@ tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
   return tlm::TLM_COMPLETED;
 }
 
-void Scr::respond(MemRequest& r) {
-  const Picoseconds now = now_();
+inline void Scr::count_outcome(const MemRequest& r, Picoseconds now) {
   undecided_ -= !r.passive;
-  ++responses_;
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     ++(deciding_ > now ? direct_ : queued_);
     if (!r.write) latency[index(r.master)]->histogram.add(r.first - r.issued);
   }
+}
+
+void Scr::respond(MemRequest& r) {
+  const Picoseconds now = now_();
+  ++responses_;
+  count_outcome(r, now);
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(r.first > now ? r.first - now : 0);
   (*target[index(r.master)])->nb_transport_bw(r, phase, delay);

@@ -53,6 +53,11 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
   void hold() override;
   void release() override;
   void step_before(Picoseconds limit) override;
+  Alone play_alone(MemRequest& r, Picoseconds limit) override;
+  std::uint64_t memory_base() const override {
+    return crossbar_.observed() ? kNever : map_.ddr_base;  // who looks on sees requests when they come
+  }
+  Picoseconds least_latency(Master m) const override { return crossbar_.least_latency(m); }
   bool strict() const override { return strict_; }
   unsigned undecided() const override { return undecided_; }
 
@@ -79,7 +84,15 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
     }
   };
 
+  /// Host of a grant whose master is at hand: its port need not be called.
+  struct AloneHost {
+    Scr& scr;
+    bool done = false;
+    Taken forward(MemRequest& r, Picoseconds arrival);
+    void respond(MemRequest& r);
+  };
   void request(MemRequest& r);
+  void count_outcome(const MemRequest& r, Picoseconds now);
   tlm::tlm_sync_enum response(Slave s, MemRequest& r, MemPhase phase, sc_core::sc_time& delay);
   unsigned debug(MemRequest& r);
   Taken forward(MemRequest& request, Picoseconds arrival) override;

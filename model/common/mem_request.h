@@ -39,4 +39,11 @@ struct MemRequest {
   Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
 };
 
+/// What a slave does with a request.
+enum class Taken : std::uint8_t {
+  kYes,
+  kWaits,    ///< it stays at the slave's door
+  kRefused,  ///< nobody answers: a bus error
+};
+
 }  // namespace fovea

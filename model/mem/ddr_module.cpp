@@ -44,14 +44,12 @@ void DdrModule::reconfigure() {
 
 DdrConfig DdrModule::programmed() const { return decode(regs); }
 
-tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
-                                              sc_core::sc_time& delay) {
-  if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
+Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
   if (!ready_ || !enabled_ || outside || !controller_.running()) [[unlikely]] {
     Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
                                           : "access to the SDRAM before its controller runs");
-    return tlm::TLM_COMPLETED;
+    return Taken::kRefused;
   }
   DdrRequest r;
   r.cookie = &m;
@@ -62,7 +60,17 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
   r.address = m.address;
   r.critical = m.critical;
   r.data = m.data;
-  return controller_.submit(r, now_() + delay.value()) ? tlm::TLM_UPDATED : tlm::TLM_ACCEPTED;
+  return controller_.submit(r, at) ? Taken::kYes : Taken::kWaits;
+}
+
+tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
+                                              sc_core::sc_time& delay) {
+  if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
+  switch (arrive(m, now_() + delay.value())) {
+    case Taken::kYes: return tlm::TLM_UPDATED;
+    case Taken::kWaits: return tlm::TLM_ACCEPTED;
+    default: return tlm::TLM_COMPLETED;
+  }
 }
 
 void DdrModule::ddr_accepted(void* cookie, Picoseconds at) {

@@ -43,6 +43,8 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   }
   const sc_core::sc_event& replanned() const override { return replanned_; }
 
+  Taken arrive(MemRequest& request, Picoseconds at) override;
+
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
   unsigned transport_dbg(MemRequest&) override;
 

@@ -23,12 +23,9 @@ inline constexpr std::size_t kSlaveCount = static_cast<std::size_t>(Slave::kCoun
 class XbarHost {
  public:
   virtual ~XbarHost() = default;
-  enum class Taken {
-    kYes,
-    kWaits,    ///< at the slave's door; Crossbar::slave_accepted follows
-    kRefused,  ///< nobody answers: a bus error
-  };
-  /// Sends a granted request; it is at the slave at `arrival`.
+  using Taken = fovea::Taken;
+  /// Sends a granted request; it is at the slave at `arrival`. If it waits there slave_accepted()
+  /// follows.
   virtual Taken forward(MemRequest& request, Picoseconds arrival) = 0;
   /// The outcome is in the request.
   virtual void respond(MemRequest& request) = 0;
@@ -66,6 +63,34 @@ class Crossbar {
   /// The same for a host of known type: its forward() and respond() are called directly.
   template <class Host>
   void step(Host& host);
+
+  bool observed() const { return observer_; }
+  /// The grant of a request to the SDRAM whose port has not been called, if it comes before the
+  /// next one planned: its time is known at once. `at` is kNever if somebody else has a say.
+  struct AloneGrant {
+    std::uint64_t crossed = 0, edge = 0;
+    Picoseconds at = kNever;
+  };
+  AloneGrant grant_if_alone(const MemRequest& r) const {
+    const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
+    AloneGrant g;
+    if (waiting_ >> index(r.master) & 1u || observer_ || r.locked || s.blocked ||
+        s.open_to != ~0u || !scr_.running())
+      return g;
+    g.crossed = scr_.edge_after(r.issued) + ports_[index(r.master)].request_latency;
+    g.edge = std::max(g.crossed, s.free);
+    if (next_ == kNever || g.edge < next_edge_) g.at = scr_.edge(g.edge);
+    return g;
+  }
+  /// submit() and step() in one, for the present grant_if_alone().
+  template <class Host>
+  void grant_alone(Host& host, MemRequest& request, const AloneGrant& grant);
+  /// A write: from its issue to its acknowledgement, with one beat and nobody in the way.
+  Picoseconds least_latency(Master m) const {
+    const Port& p = ports_[index(m)];
+    const Picoseconds t = scr_.periods(p.request_latency + 1u + p.response_latency);
+    return t > 2 ? t - 2 : 0;  // two times may have been rounded down
+  }
 
   /// Slave side: the request waiting at the slave was taken at `at`.
   void slave_accepted(MemRequest& request, Picoseconds at);
@@ -117,6 +142,8 @@ class Crossbar {
   };
 
   void plan();
+  template <class Host>
+  void grant(Host& host, MemRequest& request, std::uint64_t crossed);
   void set_lock(SlaveState& s, const MemRequest& r);
   const SlaveState& slave_of(const MemRequest& r) const { return slaves_[r.slave]; }
   bool barred(const SlaveState& s, unsigned master) const {
@@ -186,7 +213,18 @@ void Crossbar::step(Host& host) {
     auto& visible = p.front().visible;
     visible = std::max(visible, next_edge_ + 1);
   }
-  r.priority = p.priority;
+  grant(host, r, crossed);
+  if (waiting_)
+    plan();
+  else
+    next_ = kNever;
+}
+
+/// The slave's lane is the request's at next_edge_.
+template <class Host>
+[[gnu::always_inline]] inline void Crossbar::grant(Host& host, MemRequest& r,
+                                                   std::uint64_t crossed) {
+  r.priority = ports_[next_port_].priority;
   SlaveState& s = slaves_[r.slave];
   const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
   s.free = next_edge_ + cycles;
@@ -205,17 +243,35 @@ void Crossbar::step(Host& host) {
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
   r.taken = at;
-  const XbarHost::Taken taken = host.forward(r, at);
-  if (taken == XbarHost::Taken::kWaits)
+  const Taken taken = host.forward(r, at);
+  if (taken == Taken::kWaits)
     s.blocked = true;
-  else if (taken == XbarHost::Taken::kRefused)
+  else if (taken == Taken::kRefused)
     slave_done(r, at, at, true);
   else if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host, r, arrival);
-  if (waiting_)
+}
+
+template <class Host>
+[[gnu::always_inline]] inline void Crossbar::grant_alone(Host& host, MemRequest& r,
+                                                         const AloneGrant& g) {
+  const std::uint64_t others_edge = next_edge_;
+  const std::uint8_t others_port = next_port_;
+  const Picoseconds others = next_;
+  next_edge_ = g.edge;
+  next_port_ = static_cast<std::uint8_t>(index(r.master));
+  next_ = g.at;
+  r.slave_waited = 0;
+  grant(host, r, g.crossed);
+  // What was planned for the others stands, unless the lane is not free then or their turn changed.
+  const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
+  if (waiting_ & (waiting_ - 1) || (waiting_ && others_edge < s.free) || s.blocked) {
     plan();
-  else
-    next_ = kNever;
+  } else {
+    next_edge_ = others_edge;
+    next_port_ = others_port;
+    next_ = others;
+  }
 }
 
 }  // namespace fovea::bus
