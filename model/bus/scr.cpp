@@ -52,7 +52,7 @@ void Scr::step() {
     ddr_->step();
 }
 
-[[gnu::flatten]] void Scr::step_before(Picoseconds limit) {
+[[gnu::noinline]] void Scr::step_before(Picoseconds limit) {
   const std::uint64_t epoch = horizon_epoch, responses = responses_;
   do {
     step();
@@ -118,7 +118,7 @@ void Scr::replanned() {
   if (!held_) arm();
 }
 
-[[gnu::flatten]] void Scr::request(MemRequest& r) {
+void Scr::request(MemRequest& r) {
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
   undecided_ += !r.passive;
   crossbar_.submit(r, r.address >= map_.ddr_base ? Slave::kDdr : Slave::kConfig);
@@ -139,7 +139,7 @@ inline void Scr::AloneHost::respond(MemRequest& r) {
 
 /// Only the controller has decisions of its own meanwhile: those up to the grant come first, as they
 /// may make room; one that answers somebody changes what the caller knows.
-[[gnu::flatten]] Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
+[[gnu::noinline]] Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
   const Crossbar::AloneGrant g = crossbar_.grant_if_alone(r);
   if (g.at >= limit) return Alone::kNo;
   const std::uint64_t epoch = horizon_epoch, responses = responses_;

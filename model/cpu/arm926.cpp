@@ -52,7 +52,7 @@ Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
   return asserted_;
 }
 
-[[gnu::flatten]] void Arm926::submit(BusAccess& a, Picoseconds at) {
+void Arm926::submit(BusAccess& a, Picoseconds at) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   Transaction& tx = tx_[port];
   access_[port] = &a;
@@ -74,12 +74,12 @@ void Arm926::completed(Transaction& tx) {
   a.done = true;
 }
 
-[[gnu::flatten]] bool Arm926::poll(BusAccess& a, Picoseconds until) {
+bool Arm926::poll(BusAccess& a, Picoseconds until) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   return Agent::poll(tx_[port], until) && a.done && a.last <= until;
 }
 
-[[gnu::flatten]] void Arm926::finish(BusAccess& a) {
+void Arm926::finish(BusAccess& a) {
   const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
   Agent::finish(tx_[port]);
 }

@@ -78,7 +78,7 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
 
 /// Finds the earliest arbitration and its winner: highest priority, then round robin. Only heads of
 /// queues compete; the winner depends on arrivals strictly before the edge.
-void Crossbar::plan() {
+[[gnu::noinline]] void Crossbar::plan() {
   next_ = kNever;
   if (waiting_ == 0 || !scr_.running()) return;
   std::uint64_t edge = ~std::uint64_t{0};
@@ -125,7 +125,7 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
   s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
-void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed,
+[[gnu::noinline]] void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed,
                          std::uint64_t edge) {
   Waits& w = waits_of(r);
   const Picoseconds start = scr_.edge(crossed);

@@ -32,7 +32,7 @@ void DdrController::count_asleep(std::uint64_t until) {
   asleep_since_ = until;
 }
 
-bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
+[[gnu::noinline]] bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
     refuse(request);
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
@@ -90,7 +90,7 @@ void DdrController::join_queue() {
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
 }
 
-void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
+[[gnu::noinline]] void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   const auto slot = static_cast<unsigned>(std::countr_zero(free_slots_));
   const std::uint32_t bit = 1u << slot;
   free_slots_ ^= bit;
@@ -331,7 +331,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
 /// What falls into the time without requests: at the "may" level each refresh is done as soon as it
 /// is owed; then the part goes to sleep, if software allows it. This cannot cause anything but
 /// later row misses and waiting, so it is caught up lazily.
-void DdrController::idle(std::uint64_t until) {
+[[gnu::noinline]] void DdrController::idle(std::uint64_t until) {
   for (;;) {
     if (asleep_ == LowPower::kSelfRefresh) return;  // the part refreshes itself
     if (asleep_ == LowPower::kPowerDown) {
@@ -408,7 +408,7 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
-void DdrController::step() {
+[[gnu::noinline]] void DdrController::step() {
   count_owed(choice_.at);
   if (choice_.cmd == Cmd::kWr)
     in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
@@ -419,7 +419,7 @@ void DdrController::step() {
 }
 
 /// Whatever is no column command.
-void DdrController::prepare() {
+[[gnu::noinline]] void DdrController::prepare() {
   const std::uint64_t clock = choice_.at;
   Entry* const e = choice_.entry;
   switch (choice_.cmd) {
@@ -525,7 +525,7 @@ inline void DdrController::last_column() {
 }
 
 /// Gives the columns inside the burst under way that come before `until`.
-void DdrController::columns_before(std::uint64_t until) {
+[[gnu::noinline]] void DdrController::columns_before(std::uint64_t until) {
   const Entry& e = *choice_.entry;
   for (; columns_left_ > 1 && next_column_ < until; --columns_left_) {
     count_owed(next_column_);
@@ -548,7 +548,7 @@ void DdrController::columns_before(std::uint64_t until) {
   next_ = kNever;
 }
 
-void DdrController::finish_queued(std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue(*choice_.entry);
   if (door_full_) open_door(clock);
   if (count_ == 0) count_queued(clock + 1);

@@ -5,7 +5,7 @@ namespace fovea::mem {
 
 /// The waits of a read whose first column command, already noted, is given at `clock`. From the
 /// newest command before it back to the time it became ready.
-void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
   Waits& w = waits[index(e.request.master)].read;
   // Edges before a clock's restart have no times any more.
   const std::uint64_t ready = std::max(e.ready, first_edge_);
