@@ -42,7 +42,7 @@ class Clock {
   [[gnu::always_inline]] Picoseconds edge(std::uint64_t k) const {
     const std::uint64_t n = k - k0_;
     if (n > edges_limit_) [[unlikely]] return start_ + scale(n, ps_, edges_, 0);
-    return start_ + static_cast<std::uint64_t>((Wide{n} * period_) >> period_shift_);
+    return start_ + n * period_ + static_cast<std::uint64_t>((Wide{n} * fraction_) >> 64);
   }
   /// Index of the first edge at or after t.
   [[gnu::always_inline]] std::uint64_t edge_at_or_after(Picoseconds t) const {
@@ -77,11 +77,11 @@ class Clock {
     edges_limit_ = ps_limit_ = 0;  // 0: divide
     if (ps_ > (1u << 21) || edges_ > (1u << 10)) return;
     const auto log2 = [](std::uint64_t v) { return 63u - static_cast<unsigned>(__builtin_clzll(v)); };
-    // edge: period * 2^s rounded up, at most 63 bits; n edges are too long by less than n / 2^s.
-    const unsigned s = 62 - log2(ps_ / edges_ + 1);
-    period_shift_ = s;
-    period_ = static_cast<std::uint64_t>(((Wide{ps_} << s) + edges_ - 1) / edges_);
-    edges_limit_ = s > log2(edges_) + 1 ? std::uint64_t{1} << (s - log2(edges_) - 1) : 0;
+    // edge: whole picoseconds of a period, and the rest * 2^64 rounded up; n of these are too long by
+    // less than n / 2^64.
+    period_ = ps_ / edges_;
+    fraction_ = static_cast<std::uint64_t>(((Wide{ps_ % edges_} << 64) + edges_ - 1) / edges_);
+    edges_limit_ = std::uint64_t{1} << (63 - log2(ps_) - 1);
     // edge_at_or_after: edges a ps * 2^(64 + r) rounded down, d of them too small by less than
     // d / 2^(64 + r). Rounding up adds 1 - 1/(2 ps_).
     if (edges_ >= ps_) return;
@@ -99,10 +99,10 @@ class Clock {
   std::uint64_t k0_ = 0;
   std::uint64_t ps_ = 0;     // ps_ picoseconds hold exactly edges_ periods
   std::uint64_t edges_ = 0;  // 0: stopped
-  std::uint64_t period_ = 0, edges_limit_ = 0;
+  std::uint64_t period_ = 0, fraction_ = 0, edges_limit_ = 0;
   std::uint64_t rate_ = 0, ps_limit_ = 0;
   Wide round_up_ = 0;
-  unsigned period_shift_ = 0, rate_shift_ = 0;
+  unsigned rate_shift_ = 0;
 };
 
 }  // namespace fovea

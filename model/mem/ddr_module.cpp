@@ -44,7 +44,7 @@ void DdrModule::reconfigure() {
 
 DdrConfig DdrModule::programmed() const { return decode(regs); }
 
-Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
+[[gnu::flatten]] Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
   if (!ready_ || !enabled_ || outside || !controller_.running()) [[unlikely]] {
     Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"

@@ -234,7 +234,10 @@ class Core : public Background {
 
   // bus.cpp
   Picoseconds time(std::uint64_t cycle) const { return clock_.edge(cycle); }
-  std::uint64_t ahb(std::uint64_t cycle) const { return (cycle + ratio_ - 1) / ratio_ * ratio_; }
+  std::uint64_t ahb(std::uint64_t cycle) const {
+    const std::uint64_t n = cycle + ratio_ - 1;
+    return ratio_ & (ratio_ - 1) ? n / ratio_ * ratio_ : n & ~std::uint64_t{ratio_ - 1};
+  }
   void stall_to(std::uint64_t cycle, Cause cause) {
     if (cycle > cycle_) {
       counts_.stall[static_cast<std::size_t>(cause)] += cycle - cycle_;

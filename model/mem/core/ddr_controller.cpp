@@ -32,7 +32,7 @@ void DdrController::count_asleep(std::uint64_t until) {
   asleep_since_ = until;
 }
 
-[[gnu::noinline]] bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
+bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
     refuse(request);
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
