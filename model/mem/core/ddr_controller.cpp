@@ -1,6 +1,7 @@
 #include "model/mem/core/ddr_controller.h"
 
 #include <bit>
+#include <utility>
 
 #include "model/common/check.h"
 #include "model/mem/core/move_bytes.h"
@@ -74,6 +75,8 @@ inline void DdrController::fill(Entry& e, const DdrRequest& request, std::uint64
   e.row = (r.address & row_mask_) >> row_shift_;
   e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
   e.classified = false;
+  e.given = given_count_;
+  e.prepared = 0;
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
 
@@ -300,13 +303,15 @@ inline void DdrController::count_owed(std::uint64_t clock) {
 
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock) {
-  Given& g = given_[given_count_++ % kGiven];
+  Given& g = given(given_count_++);
   g.clock = clock;
   g.cmd = kCmd;
-  if constexpr (kCmd != Cmd::kRef && kCmd != Cmd::kPreAll) {
-    g.entry = choice_.entry;
-    g.master = static_cast<std::uint8_t>(index(choice_.entry->request.master));
-  }
+  if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
+    g.culprit = Culprit::kRefresh;
+  else
+    g.culprit = culprit(choice_.entry->request.master);
+  if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
+    g.before = std::exchange(choice_.entry->prepared, given_count_);
 }
 
 template <Cmd kCmd>
@@ -402,9 +407,10 @@ void DdrController::wake(std::uint64_t clock) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = given_[given_count_++ % kGiven];
+  Given& g = given(given_count_++);
   g.clock = clock;
   g.cmd = cmd;
+  g.culprit = Culprit::kPowerDown;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 

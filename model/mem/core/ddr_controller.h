@@ -118,6 +118,8 @@ class DdrController {
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
     bool classified = false;
+    std::uint64_t given = 0;     // commands before it came
+    std::uint64_t prepared = 0;  // number of its newest ACT or PRE, from 1; 0: none
     std::array<std::uint8_t, 64> data;
   };
   /// PREA and REF are refresh's; the others belong to a request.
@@ -127,14 +129,21 @@ class DdrController {
     Cmd cmd = Cmd::kAct;
   };
 
+  /// A command that was given. The time up to the next one is blamed on its culprit, after the data
+  /// of a write on the turnaround, and an ACT or PRE of the read itself on its row.
   struct Given {
     std::uint64_t clock = 0;
+    std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
-    std::uint8_t master = 0;
-    const Entry* entry = nullptr;
+    Culprit culprit = Culprit::kRefresh;
   };
   static constexpr std::size_t kGiven = 64;
+  /// What the commands so far are to blame for, in ps: masters, then these, kAll for all of them.
+  enum : std::size_t { kTurned = kMasterCount, kRefreshed, kAsleep, kAll, kBlames };
+  using Blames = std::array<Picoseconds, kBlames>;
+  Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
+  void sum_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
   void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
@@ -241,7 +250,10 @@ class DdrController {
   ReadLane lane_;
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
-  std::uint32_t given_count_ = 0;
+  std::uint64_t given_count_ = 0;
+  std::uint64_t summed_ = 0;  // commands that are in blames_; the newest one is not
+  Blames blames_{};
+  std::array<Blames, kGiven> blames_before_;  // blames_ at each summed command
   Picoseconds read_waited_ = 0;
 
   CommandHook hook_ = nullptr;
