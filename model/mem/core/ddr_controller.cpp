@@ -61,8 +61,10 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     return false;
   }
   take(request, arrived);
-  // A choice for a clock before the newcomer is ready stands.
-  if (!in_burst_ && slots_[order_[count_ - 1]].ready <= choice_.at) plan_many();
+  // A choice for a clock before the newcomer is ready stands; so does, that nothing can be given
+  // before it.
+  const std::uint64_t ready = slots_[order_[count_ - 1]].ready;
+  if (!in_burst_ && ready <= choice_.at) plan_from(std::max(command_free_, ready));
   return true;
 }
 
@@ -87,9 +89,11 @@ void DdrController::join_queue() {
   free_slots_ ^= 1u;
   offered_ = 1u;
   of_master_[index(e.request.master)] = 1u;
-  e.rank = Rank{e.request.write ? 2u : 1u} << kKindBit | static_cast<Rank>(e.request.priority)
-                                                             << kPriorityBit;
+  e.rank = Rank{e.request.priority} << kPriorityBit;
   age_ = 0;  // nobody else is there
+  of_bank_[e.bank] = 1u;
+  hits_ = device_.row(e.bank) == e.row;
+  writes_ = e.request.write;
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
 }
 
@@ -102,9 +106,13 @@ void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   Entry& e = slots_[slot];
   fill(e, request, arrived);
   age_ += Rank{1} << kAgeBit;
-  e.rank = Rank{request.write ? 2u : 1u} << kKindBit |
-           static_cast<Rank>(request.priority) << kPriorityBit | age_ | slot;
-  if (request.write) write_bytes_held_ += request.bytes;
+  e.rank = Rank{request.priority} << kPriorityBit | age_ | slot;
+  of_bank_[e.bank] |= bit;
+  if (device_.row(e.bank) == e.row) hits_ |= bit;
+  if (request.write) {
+    writes_ |= bit;
+    write_bytes_held_ += request.bytes;
+  }
   std::uint32_t& same_master = of_master_[index(request.master)];
   if (same_master == 0 || passes_older(e)) offered_ |= bit;
   same_master |= bit;
@@ -176,14 +184,14 @@ inline void DdrController::plan_one(Entry& e) {
     next_ = ddr_.edge(choice_.at);
     return;
   }
-  std::uint64_t edge = std::max(first, slots_[order_[0]].ready);
+  plan_from(std::max(first, slots_[order_[0]].ready));
+}
+
+/// The same from an edge on before which nothing can be given.
+void DdrController::plan_from(std::uint64_t edge) {
   std::uint32_t ready = ~free_slots_;
   std::size_t not_ready = count_;  // place in order_ of the first that the scheduler does not see
-  if (slots_[order_[count_ - 1]].ready > edge) {
-    ready = 0;
-    for (not_ready = 0; slots_[order_[not_ready]].ready <= edge; ++not_ready)
-      ready |= 1u << order_[not_ready];
-  }
+  while (slots_[order_[not_ready - 1]].ready > edge) ready ^= 1u << order_[--not_ready];
   for (;;) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
     if (lane_.room() > edge) wake = std::min(wake, lane_.room());
@@ -196,6 +204,25 @@ inline void DdrController::plan_one(Entry& e) {
   next_ = ddr_.edge(choice_.at);
 }
 
+/// The slot whose request has the lowest rank.
+inline unsigned DdrController::first_of(std::uint32_t slots) const {
+  auto first = static_cast<unsigned>(std::countr_zero(slots));
+  if ((slots &= slots - 1) == 0) return first;
+  Rank lowest = slots_[first].rank & rank_mask_;
+  for (; slots; slots &= slots - 1) {
+    const Rank rank = slots_[static_cast<unsigned>(std::countr_zero(slots))].rank & rank_mask_;
+    lowest = std::min(lowest, rank);
+  }
+  return static_cast<unsigned>(lowest % kMaxEntries);
+}
+
+/// Rules 2 and 3: reads, then writes; with the read FIFO full, writes before reads.
+inline std::uint32_t DdrController::best_kind(std::uint32_t slots, bool room) const {
+  if (room && !kinds_count_) return slots;
+  const std::uint32_t kind = slots & (room ? ~writes_ : writes_);
+  return kind ? kind : slots;
+}
+
 /// The command to give if only the requests in the slots `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   ready &= in_order_ ? 1u << order_[0] : offered_;
@@ -204,60 +231,56 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
       return choose_refresh(edge);
   }
-  // Rank: reads, then writes; among each open rows first, then priority, then age (rules 2 and 3).
-  // With the read FIFO full, writes go before reads.
-  const Rank no_room = lane_.room() <= edge ? 0 : Rank{3} << kKindBit;
-  std::array<Rank, DdrDevice::kMaxBanks> first_of_bank;
-  first_of_bank.fill(kNoRank);
-  Rank first = kNoRank;
-  for (std::uint32_t set = ready; set; set &= set - 1) {
-    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank rank = (e.rank & rank_mask_) | Rank{device_.row(e.bank) != e.row} << kMissBit;
-    if (no_room && !e.request.write) [[unlikely]]
-      rank |= no_room;
-    first_of_bank[e.bank] = std::min(first_of_bank[e.bank], rank);
-    first = std::min(first, rank);
-  }
+  // By kind; in each open rows first, then priority, then age (rules 2 and 3).
+  const bool room = lane_.room() <= edge;
+  unsigned first;
   // Rule 5: the oldest command, passed by too often, is raised.
-  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) {
+  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) [[unlikely]] {
     first = order_[0];
-    first_of_bank[slots_[order_[0]].bank] = first;
+  } else {
+    const std::uint32_t kind = best_kind(ready, room), open = kind & hits_;
+    first = first_of(open ? open : kind);
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
-  const auto entry_of = [&](Rank rank) {
-    return &slots_[static_cast<unsigned>(rank % kMaxEntries)];
-  };
-  Entry* const top = entry_of(first);
+  Entry* const top = &slots_[first];
   const Cmd cmd = needed(*top);
   choice_ = {top, earliest(*top, cmd, edge), cmd};
   if (choice_.at == edge) return;
-  first_of_bank[top->bank] = kNoRank;
-  Rank best = first;
-  for (const Rank rank : first_of_bank) {
-    if (rank == kNoRank) continue;
-    Entry* const e = entry_of(rank);
-    const std::uint32_t open = device_.row(e->bank);
-    if (open == e->row) continue;
-    const Cmd prepare = open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-    const std::uint64_t at = std::max(edge, device_.earliest(prepare, e->bank));
-    if (at < choice_.at || (at == choice_.at && rank < best)) {
-      choice_ = {e, at, prepare};
-      best = rank;
+  std::uint32_t best = 0;  // others of the same clock
+  ready &= ~of_bank_[top->bank];
+  while (ready) {
+    const unsigned bank = slots_[static_cast<unsigned>(std::countr_zero(ready))].bank;
+    const std::uint32_t kind = best_kind(ready & of_bank_[bank], room);
+    ready &= ~of_bank_[bank];
+    if (kind & hits_) continue;
+    const Cmd prepare = device_.row(bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+    const std::uint64_t at = std::max(edge, device_.earliest(prepare, bank));
+    if (at > choice_.at || (at == choice_.at && best == 0)) continue;
+    Entry* const e = &slots_[first_of(kind)];
+    const std::uint32_t bit = 1u << (e - slots_.data());
+    if (at < choice_.at) {
+      best = 0;
+    } else {
+      const std::uint32_t both = best_kind(best | bit, room);
+      if (first_of(both) != static_cast<unsigned>(e - slots_.data())) continue;
     }
+    choice_ = {e, at, prepare};
+    best = bit;
   }
 }
 
 /// Rule 4: a needed refresh goes before writes and before a read that has a more urgent write. Each
 /// is the first of its kind among the slots `set`.
 bool DdrController::refresh_goes_first(std::uint32_t set) const {
-  Rank read = kNoRank, write = kNoRank;
-  for (; set; set &= set - 1) {
-    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank& first = e.request.write ? write : read;
-    first = std::min(first, e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit);
-  }
-  const auto priority = [](Rank rank) { return rank >> kPriorityBit & 0xFFu; };
-  return read == kNoRank || (write != kNoRank && priority(write) < priority(read));
+  const auto priority = [&](std::uint32_t kind) {
+    const std::uint32_t open = kind & hits_;
+    Rank first = ~Rank{0};
+    for (kind = open ? open : kind; kind; kind &= kind - 1)
+      first = std::min(first, slots_[static_cast<unsigned>(std::countr_zero(kind))].rank);
+    return first >> kPriorityBit;
+  };
+  const std::uint32_t reads = set & ~writes_, writes = set & writes_;
+  return !reads || (writes && priority(writes) < priority(reads));
 }
 
 void DdrController::choose_refresh(std::uint64_t edge) {
@@ -317,6 +340,14 @@ inline void DdrController::note(std::uint64_t clock) {
 template <Cmd kCmd>
 inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
   device_.issue<kCmd>(bank, row, clock);
+  if constexpr (kCmd == Cmd::kAct) {
+    for (std::uint32_t set = of_bank_[bank]; set; set &= set - 1)
+      if (slots_[static_cast<unsigned>(std::countr_zero(set))].row == row) hits_ |= set & -set;
+  } else if constexpr (kCmd == Cmd::kPre) {
+    hits_ &= ~of_bank_[bank];
+  } else if constexpr (kCmd == Cmd::kPreAll) {
+    hits_ = 0;
+  }
   command_free_ = clock + 1;
   note<kCmd>(clock);
   if (hook_) [[unlikely]]
@@ -473,6 +504,7 @@ template <Cmd kCmd>
   if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock);
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
+  hits_ &= ~of_bank_[e.bank];
   command_free_ = clock + 1;
   note<kCmd>(clock);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
@@ -567,6 +599,9 @@ void DdrController::leave_queue(const Entry& e) {
   const std::uint32_t bit = 1u << slot;
   free_slots_ |= bit;
   offered_ &= ~bit;
+  of_bank_[e.bank] &= ~bit;
+  writes_ &= ~bit;
+  hits_ &= ~bit;
   std::uint32_t& same_master = of_master_[index(e.request.master)];
   same_master &= ~bit;
   --count_;

@@ -104,16 +104,14 @@ class DdrController {
  private:
   static constexpr std::size_t kMaxEntries = 16;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  /// A command's rank among others, low first: kind, row not open, priority, age, slot.
+  /// A request's rank among those of its kind, low first: priority, age, slot.
   using Rank = std::uint64_t;
-  static constexpr unsigned kKindBit = 62, kMissBit = 61, kPriorityBit = 53, kAgeBit = 4;
+  static constexpr unsigned kPriorityBit = 56, kAgeBit = 4;
   static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
-  static constexpr Rank kKinds = Rank{3} << kKindBit, kPriorities = Rank{0xFF} << kPriorityBit;
-  static constexpr Rank kNoRank = ~Rank{0};
   struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
-    Rank rank = 0;            // while its row is open and there is room for its data
+    Rank rank = 0;
     std::uint32_t row = 0;
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
@@ -153,6 +151,9 @@ class DdrController {
   void plan_anew();
   void plan_one(Entry& e);
   void plan_many();
+  void plan_from(std::uint64_t edge);
+  unsigned first_of(std::uint32_t slots) const;
+  std::uint32_t best_kind(std::uint32_t slots, bool room) const;
   void choose(std::uint64_t edge, std::uint32_t ready);
   bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
@@ -207,8 +208,8 @@ class DdrController {
   unsigned write_fifo_bytes_, request_latency_, return_latency_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
-  // nobody waits for is closed after its access; what of an entry's rank counts.
-  bool in_order_, closes_rows_;
+  // nobody waits for is closed after its access; reads before writes, and priorities, count.
+  bool in_order_, closes_rows_, kinds_count_;
   Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
@@ -220,6 +221,9 @@ class DdrController {
   bool alone_ = false;
   std::uint32_t offered_ = 0;  // slots whose command its master offers (rule 1)
   std::array<std::uint32_t, kMasterCount> of_master_{};  // slots in use, by master
+  std::array<std::uint32_t, DdrDevice::kMaxBanks> of_bank_{};
+  std::uint32_t writes_ = 0;
+  std::uint32_t hits_ = 0;  // slots whose row is open
   Rank age_ = 0;
   std::uint64_t last_arrival_ = 0;
   unsigned write_bytes_held_ = 0;
