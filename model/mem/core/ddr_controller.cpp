@@ -52,7 +52,8 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     plan_one(slots_[0]);
     return true;
   }
-  if (alone_) join_queue();
+  const bool was_alone = alone_;
+  if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
       (request.write && write_bytes_held_ + request.bytes > write_fifo_bytes_)) {
     door_full_ = shut_ = true;
@@ -61,10 +62,14 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     return false;
   }
   take(request, arrived);
-  // A choice for a clock before the newcomer is ready stands; so does, that nothing can be given
-  // before it.
-  const std::uint64_t ready = slots_[order_[count_ - 1]].ready;
-  if (!in_burst_ && ready <= choice_.at) plan_from(std::max(command_free_, ready));
+  // A choice for a clock before the newcomer is ready stands; else nothing can be given before then.
+  const unsigned slot = order_[count_ - 1];
+  if (in_burst_ || slots_[slot].ready > choice_.at) return true;
+  const std::uint64_t edge = std::max(command_free_, slots_[slot].ready);
+  if (!was_alone && stands_with(slot, edge, ~free_slots_ ^ 1u << slot))
+    next_ = ddr_.edge(choice_.at);
+  else
+    plan_from(edge);
   return true;
 }
 
@@ -89,7 +94,7 @@ void DdrController::join_queue() {
   free_slots_ ^= 1u;
   offered_ = 1u;
   of_master_[index(e.request.master)] = 1u;
-  e.rank = Rank{e.request.priority} << kPriorityBit;
+  ranks_[0] = Rank{e.request.priority} << kPriorityBit;
   age_ = 0;  // nobody else is there
   of_bank_[e.bank] = 1u;
   hits_ = device_.row(e.bank) == e.row;
@@ -106,7 +111,7 @@ void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
   Entry& e = slots_[slot];
   fill(e, request, arrived);
   age_ += Rank{1} << kAgeBit;
-  e.rank = Rank{request.priority} << kPriorityBit | age_ | slot;
+  ranks_[slot] = Rank{request.priority} << kPriorityBit | age_ | slot;
   of_bank_[e.bank] |= bit;
   if (device_.row(e.bank) == e.row) hits_ |= bit;
   if (request.write) {
@@ -133,10 +138,11 @@ inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint6
 /// that is in another 2048-byte block and not more urgent.
 bool DdrController::passes_older(const Entry& e) const {
   const DdrRequest& r = e.request;
+  const Rank age = ranks_[static_cast<unsigned>(&e - slots_.data())] & kAgeMask;
   for (std::uint32_t set = of_master_[index(r.master)]; set; set &= set - 1) {
-    const Entry& older = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    if ((older.rank & kAgeMask) >= (e.rank & kAgeMask)) continue;
-    const DdrRequest& o = older.request;
+    const auto older = static_cast<unsigned>(std::countr_zero(set));
+    if ((ranks_[older] & kAgeMask) >= age) continue;
+    const DdrRequest& o = slots_[older].request;
     if (r.write || !o.write || (o.address >> 11) == (r.address >> 11) || o.priority < r.priority)
       return false;
   }
@@ -148,10 +154,11 @@ bool DdrController::passes_older(const Entry& e) const {
 inline void DdrController::plan() {
   if (count_ == 0)
     next_ = kNever;
-  else if (count_ == 1)
-    plan_one(slots_[order_[0]]);
+  else if (count_ > 1)
+    return plan_many();
   else
-    plan_many();
+    plan_one(slots_[order_[0]]);
+  plain_ = false;
 }
 
 /// The same after a change from outside: a burst may be under way or the clock stopped.
@@ -197,6 +204,7 @@ void DdrController::plan_from(std::uint64_t edge) {
     if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
     if (choice_.at < wake) break;
+    if (not_ready + 1 == count_ && stands_with(order_[not_ready], wake, ready)) break;
     edge = wake;
     for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
       ready |= 1u << order_[not_ready];
@@ -204,15 +212,41 @@ void DdrController::plan_from(std::uint64_t edge) {
   next_ = ddr_.edge(choice_.at);
 }
 
+/// True if choice_, made with the slots `ready`, need not be made again when the one in `slot`, the
+/// newest, is seen at `edge`: it changes nothing, or it prepares its own bank first.
+inline bool DdrController::stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready) {
+  if (!plain_ || edge >= next_expiry_) return false;
+  const std::uint32_t bit = 1u << slot;
+  if (in_order_ || !(offered_ & bit)) return true;
+  const bool write = writes_ & bit;
+  if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
+  // It must rank below the first.
+  const std::uint32_t first = 1u << first_;
+  const bool first_writes = writes_ & first;
+  if (kinds_count_ && first_writes && !write) return false;
+  if (!kinds_count_ || first_writes == write) {
+    const bool hits_first = (hits_ & bit) && !(hits_ & first);
+    if (hits_first || (ranks_[slot] & rank_mask_) < (ranks_[first_] & rank_mask_)) return false;
+  }
+  const Entry& e = slots_[slot];
+  if (e.bank == slots_[first_].bank) return true;
+  if (e.bank == choice_.entry->bank) return false;
+  if (hits_ & bit) return true;
+  const Cmd prepare = device_.row(e.bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+  const std::uint64_t at = std::max(edge, device_.earliest(prepare, e.bank));
+  if (at > choice_.at || (at == choice_.at && choice_.entry == &slots_[first_])) return true;
+  if (at == choice_.at || (ready & offered_ & of_bank_[e.bank])) return false;
+  choice_ = {&slots_[slot], at, prepare};
+  return true;
+}
+
 /// The slot whose request has the lowest rank.
 inline unsigned DdrController::first_of(std::uint32_t slots) const {
   auto first = static_cast<unsigned>(std::countr_zero(slots));
   if ((slots &= slots - 1) == 0) return first;
-  Rank lowest = slots_[first].rank & rank_mask_;
-  for (; slots; slots &= slots - 1) {
-    const Rank rank = slots_[static_cast<unsigned>(std::countr_zero(slots))].rank & rank_mask_;
-    lowest = std::min(lowest, rank);
-  }
+  Rank lowest = ranks_[first] & rank_mask_;
+  for (; slots; slots &= slots - 1)
+    lowest = std::min(lowest, ranks_[static_cast<unsigned>(std::countr_zero(slots))] & rank_mask_);
   return static_cast<unsigned>(lowest % kMaxEntries);
 }
 
@@ -226,6 +260,7 @@ inline std::uint32_t DdrController::best_kind(std::uint32_t slots, bool room) co
 /// The command to give if only the requests in the slots `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   ready &= in_order_ ? 1u << order_[0] : offered_;
+  plain_ = false;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
@@ -238,10 +273,12 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) [[unlikely]] {
     first = order_[0];
   } else {
+    plain_ = room;
     const std::uint32_t kind = best_kind(ready, room), open = kind & hits_;
     first = first_of(open ? open : kind);
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
+  first_ = first;
   Entry* const top = &slots_[first];
   const Cmd cmd = needed(*top);
   choice_ = {top, earliest(*top, cmd, edge), cmd};
@@ -276,7 +313,7 @@ bool DdrController::refresh_goes_first(std::uint32_t set) const {
     const std::uint32_t open = kind & hits_;
     Rank first = ~Rank{0};
     for (kind = open ? open : kind; kind; kind &= kind - 1)
-      first = std::min(first, slots_[static_cast<unsigned>(std::countr_zero(kind))].rank);
+      first = std::min(first, ranks_[static_cast<unsigned>(std::countr_zero(kind))]);
     return first >> kPriorityBit;
   };
   const std::uint32_t reads = set & ~writes_, writes = set & writes_;
@@ -290,7 +327,8 @@ void DdrController::choose_refresh(std::uint64_t edge) {
     choice_ = {nullptr, std::max(edge, device_.earliest_pre_all()), Cmd::kPreAll};
 }
 
-DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const {
+/// At an edge after which an interval may have run out.
+DdrController::Urgency DdrController::refresh_urgency_after(std::uint64_t edge) const {
   unsigned expired = 0;
   if (config_.refresh_interval && edge >= next_expiry_)
     expired = 1 + static_cast<unsigned>((edge - next_expiry_) / config_.refresh_interval);
@@ -309,6 +347,7 @@ void DdrController::begin_refresh() {
 void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
+  urgency_ = refresh_urgency_after(0);
   calm_until_ = urgent ? 0 : next_expiry_;
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }

@@ -111,7 +111,6 @@ class DdrController {
   struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
-    Rank rank = 0;
     std::uint32_t row = 0;
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
@@ -155,10 +154,14 @@ class DdrController {
   unsigned first_of(std::uint32_t slots) const;
   std::uint32_t best_kind(std::uint32_t slots, bool room) const;
   void choose(std::uint64_t edge, std::uint32_t ready);
+  bool stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready);
   bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
-  Urgency refresh_urgency(std::uint64_t edge) const;
+  Urgency refresh_urgency(std::uint64_t edge) const {
+    return edge < next_expiry_ ? urgency_ : refresh_urgency_after(edge);
+  }
+  Urgency refresh_urgency_after(std::uint64_t edge) const;
   void begin_refresh();
   void urgency_changed();
   Cmd needed(const Entry& e) const;
@@ -214,6 +217,7 @@ class DdrController {
 
   std::array<Entry, kMaxEntries> slots_;
   std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
+  std::array<Rank, kMaxEntries> ranks_{};          // by slot
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
   std::size_t count_ = 0;
   // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
@@ -233,6 +237,8 @@ class DdrController {
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
+  unsigned first_ = 0;     // slot of the first in rank when choice_ was made
+  bool plain_ = false;     // by rank, with room for read data
   Picoseconds next_ = kNever;
   bool in_burst_ = false;  // choice_ is the last column of a burst under way
   std::uint64_t next_column_ = 0;
@@ -240,6 +246,7 @@ class DdrController {
   std::uint64_t served_while_oldest_ = 0;
 
   std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
+  Urgency urgency_ = Urgency::kMay;   // before next_expiry_
   std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
   std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
   LowPower asleep_ = LowPower::kOff;  // CKE is low
