@@ -1,6 +1,7 @@
 #include "sw/fovea/replay_path.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <utility>
@@ -68,6 +69,8 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     m.slots = std::vector<Slot>(from.shared ? from.reads : from.reads + from.writes);
     m.read_slots_to = from.reads;
     m.write_slots_from = from.shared ? 0 : from.reads;
+    m.in_turn = !from.shared && !memory_only;
+    m.turn = {0, from.reads};
     m.latency = std::make_unique<bus::LatencyStats>(from.label);
     for (Slot& s : m.slots) {
       s.owner = &m;
@@ -99,18 +102,19 @@ void ReplayPath::fetch(unsigned stream) {
   prepare(stream);
 }
 
-ReplayPath::Slot* ReplayPath::place(MasterState& m, bool write, Picoseconds& free) {
+/// The slot that is free first.
+inline ReplayPath::Slot* ReplayPath::place(MasterState& m, bool write) {
+  if (m.in_turn) return &m.slots[m.turn[write]];
   const std::size_t from = write ? m.write_slots_from : 0;
   const std::size_t to = write ? m.slots.size() : m.read_slots_to;
   Slot* best = &m.slots[from];
   for (std::size_t i = from + 1; i < to; ++i)
     if (m.slots[i].free < best->free) best = &m.slots[i];
-  free = best->free;
   return best;
 }
 
 /// When the record's release lets it go; kNever while that is not known.
-Picoseconds ReplayPath::released(const Stream& s) const {
+inline Picoseconds ReplayPath::released(const Stream& s) const {
   const trace::Record& r = s.record;
   if (r.release == trace::Release::kAt) return r.at;
   Picoseconds from = start_;
@@ -131,7 +135,7 @@ Picoseconds ReplayPath::released(const Stream& s) const {
 /// The time of the stream's next request, if it is known.
 void ReplayPath::prepare(unsigned stream) {
   Stream& s = streams_[stream];
-  time_[stream] = kNever;
+  set_time(stream, kNever);
   for (;;) {
     if (!s.valid) return;
     Picoseconds at = released(s);
@@ -139,8 +143,8 @@ void ReplayPath::prepare(unsigned stream) {
     at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
     if (!s.record.mark) {
-      Picoseconds free;
-      s.slot = place(masters_[index(s.record.master)], s.record.write, free);
+      s.slot = place(masters_[index(s.record.master)], s.record.write);
+      const Picoseconds free = s.slot->free;
       if (free == kNever) return;
       if (free > at) {
         at = free;
@@ -150,7 +154,7 @@ void ReplayPath::prepare(unsigned stream) {
           at = s.clock.edge(edge);
         }
       }
-      time_[stream] = at;
+      set_time(stream, at);
       return;
     }
     marks_.push_back({s.record.address, at});
@@ -162,10 +166,14 @@ void ReplayPath::prepare(unsigned stream) {
 }
 
 void ReplayPath::find_next() {
-  next_stream_ = 0;
-  for (unsigned i = 1; i < streams_.size(); ++i)
-    if (time_[i] < time_[next_stream_]) next_stream_ = i;
-  next_time_ = time_[next_stream_];
+  next_time_ = kNever;
+  for (std::uint32_t set = due_; set; set &= set - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(set));
+    if (time_[i] < next_time_) {
+      next_stream_ = i;
+      next_time_ = time_[i];
+    }
+  }
 }
 
 void ReplayPath::issue() {
@@ -174,6 +182,11 @@ void ReplayPath::issue() {
   const trace::Record& r = s.record;
   Slot& slot = *s.slot;
   MasterState& m = masters_[index(r.master)];
+  if (m.in_turn) {
+    unsigned& turn = m.turn[r.write];
+    if (++turn == (r.write ? m.slots.size() : m.read_slots_to))
+      turn = r.write ? m.write_slots_from : 0;
+  }
   slot.free = kNever;
   slot.number = s.number;
   slot.address = r.address;

@@ -57,6 +57,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
     std::string label;
     std::vector<Slot> slots;
     unsigned write_slots_from = 0, read_slots_to = 0;
+    bool in_turn = false;  // each direction has slots of its own, and they end in order
+    std::array<unsigned, 2> turn{};  // reads, writes: the slot that ended first, or will
     unsigned stream = 0;
     std::uint8_t priority = 0xFF;
     std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
@@ -79,7 +81,12 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void fetch(unsigned stream);
   void prepare(unsigned stream);
   Picoseconds released(const Stream& s) const;
-  Slot* place(MasterState& m, bool write, Picoseconds& free);
+  Slot* place(MasterState& m, bool write);
+  void set_time(unsigned stream, Picoseconds at) {
+    time_[stream] = at;
+    const std::uint32_t bit = 1u << stream;
+    due_ = at == kNever ? due_ & ~bit : due_ | bit;
+  }
   void find_next();
   void issue();
   void step();
@@ -103,6 +110,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   std::array<MasterState, kMasterCount> masters_;
   std::vector<Stream> streams_;
   std::array<Picoseconds, kMasterCount> time_{};  // of each stream's next request
+  std::uint32_t due_ = 0;                         // streams whose time is known
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;

@@ -13,6 +13,8 @@ Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
     ports_[i].request_latency = static_cast<std::uint8_t>(params.ports[i]->request_latency());
     ports_[i].response_latency = static_cast<std::uint8_t>(params.ports[i]->response_latency());
   }
+  of_priority_[Port().priority] = (1u << kMasterCount) - 1;
+  priorities_ = 1u << Port().priority;
 }
 
 void Crossbar::set_clock(Frequency scr, Picoseconds at) {
@@ -21,10 +23,13 @@ void Crossbar::set_clock(Frequency scr, Picoseconds at) {
   scr_.restart(scr, at);
   if (scr_.running()) {
     const std::uint64_t first = scr_.edge_at_or_after(at);  // edges before have no times any more
-    for (SlaveState& s : slaves_) s.grants_made = 0;
-    for (Port& p : ports_)
+    for (SlaveState& s : slaves_) s.grants_made = s.summed = s.shown = 0;
+    for (std::size_t m = 0; m < kMasterCount; ++m) {
+      Port& p = ports_[m];
       for (std::uint32_t i = p.head; i != p.tail; ++i) {
         Port::Item& item = p.queue[i % kQueue];
+        item.grants = 0;
+        if (i == p.head) item.visible = visible_[m];
         // Requests that come after the change see the new edges.
         if (item.request->issued > at)
           item.visible = item.crossed = scr_.edge_after(item.request->issued) + p.request_latency;
@@ -34,7 +39,9 @@ void Crossbar::set_clock(Frequency scr, Picoseconds at) {
           item.crossed = std::min(item.crossed, limit);
         }
         item.crossed = std::max(item.crossed, first);
+        if (i == p.head) visible_[m] = item.visible;
       }
+    }
   }
   plan();
 }
@@ -42,7 +49,12 @@ void Crossbar::set_clock(Frequency scr, Picoseconds at) {
 void Crossbar::set_priority(Master m, unsigned priority) {
   Port& p = ports_[index(m)];
   if (p.priority == (priority & 7u)) return;
+  const std::uint32_t bit = 1u << index(m);
+  of_priority_[p.priority] &= ~bit;
+  if (of_priority_[p.priority] == 0) priorities_ &= ~(1u << p.priority);
   p.priority = static_cast<std::uint8_t>(priority & 7u);
+  of_priority_[p.priority] |= bit;
+  priorities_ |= 1u << p.priority;
   plan();  // the winner chosen for the next edge may be another one now
 }
 
@@ -55,20 +67,20 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
     observer_->submitted(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
-  if (!scr_.running()) {  // set_clock() says when
-    item = {&request, kNotYet, kNotYet};
-    waiting_ |= 1u << index(request.master);
-    return;
-  }
-  const std::uint64_t crossed = scr_.edge_after(request.issued) + p.request_latency;
-  item = {&request, crossed, crossed};
+  SlaveState& s = slaves_[request.slave];
+  const std::uint32_t bit = 1u << index(request.master);
+  const bool running = scr_.running();  // else set_clock() says when
+  const std::uint64_t crossed =
+      running ? scr_.edge_after(request.issued) + p.request_latency : kNotYet;
+  item = {&request, crossed, crossed, s.grants_made ? s.grants_made - 1 : 0};
   if (!head) return;  // competes when those before it are gone
   const std::uint32_t others = waiting_;
-  waiting_ |= 1u << index(request.master);
-  const SlaveState& s = slave_of(request);
-  if (barred(s, static_cast<unsigned>(index(request.master)))) return;
+  waiting_ |= bit;
+  s.heads |= bit;
+  visible_[index(request.master)] = crossed;
+  if (!running || s.blocked || !(s.open_to & bit)) return;
   // An arbitration planned for an earlier edge stands; at an equal one the winner may change.
-  const std::uint64_t edge = std::max(item.visible, s.free);
+  const std::uint64_t edge = std::max(crossed, s.free);
   if (next_ != kNever && edge > next_edge_) return;
   if (others && next_ != kNever && edge == next_edge_) return plan();
   next_edge_ = edge;
@@ -76,46 +88,52 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   next_ = scr_.edge(edge);
 }
 
+/// Of the ports in `set` the one of the highest priority, then the next one after the last winner.
+inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
+  std::uint32_t equals = 0;
+  for (std::uint32_t left = priorities_; equals == 0; left &= left - 1)
+    equals = set & of_priority_[static_cast<unsigned>(std::countr_zero(left))];
+  const std::uint32_t after = equals & (~1u << s.last);
+  return static_cast<unsigned>(std::countr_zero(after ? after : equals));
+}
+
 /// Finds the earliest arbitration and its winner: highest priority, then round robin. Only heads of
 /// queues compete; the winner depends on arrivals strictly before the edge.
 [[gnu::noinline]] void Crossbar::plan() {
   next_ = kNever;
-  if (waiting_ == 0 || !scr_.running()) return;
-  std::uint64_t edge = ~std::uint64_t{0};
-  if ((waiting_ & (waiting_ - 1)) == 0) {  // nobody competes
-    const auto m = static_cast<unsigned>(std::countr_zero(waiting_));
-    const Port::Item& item = ports_[m].front();
-    const SlaveState& s = slave_of(*item.request);
-    if (barred(s, m)) return;
-    next_edge_ = std::max(item.visible, s.free);
-    next_port_ = static_cast<std::uint8_t>(m);
-    next_ = scr_.edge(next_edge_);
-    return;
-  }
-  for (std::uint32_t set = waiting_; set; set &= set - 1) {
-    const auto m = static_cast<unsigned>(std::countr_zero(set));
-    const Port::Item& item = ports_[m].front();
-    const SlaveState& s = slave_of(*item.request);
-    if (!barred(s, m)) edge = std::min(edge, std::max(item.visible, s.free));
-  }
-  if (edge == ~std::uint64_t{0}) return;
-  int best = -1;
+  if (!scr_.running()) return;
+  std::uint64_t best = kNotYet;
   unsigned best_rank = 0;
-  for (std::uint32_t set = waiting_; set; set &= set - 1) {
-    const auto m = static_cast<unsigned>(std::countr_zero(set));
-    const Port& p = ports_[m];
-    const SlaveState& s = slave_of(*p.front().request);
-    if (barred(s, m) || std::max(p.front().visible, s.free) > edge) continue;
-    const unsigned turn = (m + kMasterCount - s.last - 1) % kMasterCount;
-    const unsigned rank = p.priority * 64u + turn;
-    if (best < 0 || rank < best_rank) {
-      best = static_cast<int>(m);
-      best_rank = rank;
+  for (SlaveState& s : slaves_) {
+    const std::uint32_t candidates = s.candidates();
+    if (candidates == 0) continue;
+    std::uint64_t edge = kNotYet;
+    for (std::uint32_t set = candidates & ~s.shown; set; set &= set - 1) {
+      const auto m = static_cast<unsigned>(std::countr_zero(set));
+      if (visible_[m] <= s.free)
+        s.shown |= set & -set;
+      else
+        edge = std::min(edge, visible_[m]);
     }
+    std::uint32_t competing = candidates & s.shown;
+    if (competing) {
+      edge = s.free;
+    } else {
+      for (std::uint32_t set = candidates; set; set &= set - 1)
+        if (visible_[static_cast<unsigned>(std::countr_zero(set))] == edge) competing |= set & -set;
+    }
+    if (edge > best) continue;
+    const unsigned m = winner(s, competing);
+    const auto turn = static_cast<unsigned>((m + kMasterCount - s.last - 1) % kMasterCount);
+    const unsigned rank = (ports_[m].priority * 64u + turn) * 64u + m;
+    if (edge == best && rank > best_rank) continue;
+    best = edge;
+    best_rank = rank;
+    next_port_ = static_cast<std::uint8_t>(m);
   }
-  next_edge_ = edge;
-  next_port_ = static_cast<std::uint8_t>(best);
-  next_ = scr_.edge(edge);
+  if (best == kNotYet) return;
+  next_edge_ = best;
+  next_ = scr_.edge(best);
 }
 
 /// A locked request keeps the slave for its master until that one's next request is granted (the
@@ -125,30 +143,42 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
   s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
-[[gnu::noinline]] void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed,
-                         std::uint64_t edge) {
-  Waits& w = waits_of(r);
-  const Picoseconds start = scr_.edge(crossed);
-  w.add(Culprit::kBridge, start - r.issued);
-  // From the newest grant back. Where nobody had the lane the request stood behind its own master's
-  // last one.
-  Picoseconds until = next_;
-  std::uint64_t at = edge;
-  const auto take = [&](std::uint64_t from, Culprit c) {
-    if (from >= at) return;
-    const Picoseconds t = from <= crossed ? start : scr_.edge(from);
-    w.add(c, until - t);
-    until = t;
-    at = from;
-  };
-  const std::uint32_t oldest =
-      s.grants_made > SlaveState::kGrants ? s.grants_made - SlaveState::kGrants : 0;
-  for (std::uint32_t n = s.grants_made; n-- > oldest && at > crossed;) {
-    const Grant& g = s.grant(n);
-    take(std::max(g.end, crossed), culprit(r.master));
-    take(std::max(g.start, crossed), static_cast<Culprit>(g.master));
+/// Brings `lane` and `before` up to the last grant, which is over.
+inline void Crossbar::sum_grants(SlaveState& s) {
+  const std::uint32_t made = s.grants_made;
+  if (made - s.summed > SlaveState::kGrants)
+    s.summed = made - static_cast<std::uint32_t>(SlaveState::kGrants);
+  for (; s.summed != made; ++s.summed) {
+    const Grant& g = s.grant(s.summed);
+    s.before[s.summed % SlaveState::kGrants] = s.lane;
+    const Picoseconds t = scr_.edge(g.end) - scr_.edge(g.start);
+    s.lane[g.master] += t;
+    s.lane[kMasterCount] += t;
   }
-  take(crossed, culprit(r.master));
+}
+
+[[gnu::noinline]] void Crossbar::attribute(SlaveState& s, const MemRequest& r,
+                                           std::uint64_t crossed, std::uint32_t grants) {
+  Waits& w = waits_of(r);
+  const Picoseconds start = scr_.edge(crossed), waited = next_ - start;
+  w.add(Culprit::kBridge, start - r.issued);
+  // Where nobody had the lane the request stood behind its own master's last one.
+  sum_grants(s);
+  const std::uint32_t made = s.grants_made;
+  std::uint32_t n = std::min(made - grants, static_cast<std::uint32_t>(SlaveState::kGrants));
+  while (n > 0 && s.grant(made - n).end <= crossed) --n;
+  if (n == 0) return w.add(culprit(r.master), waited);
+  const Grant& first = s.grant(made - n);
+  const Picoseconds passed = first.start < crossed ? start - scr_.edge(first.start) : 0;
+  const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
+  Picoseconds of_lane = s.lane[kMasterCount] - before[kMasterCount];
+  if (n == 1)
+    w.add(static_cast<Culprit>(first.master), of_lane);
+  else
+    for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] += s.lane[m] - before[m];
+  w.ps[first.master] -= passed;
+  of_lane -= passed;
+  w.add(culprit(r.master), waited - of_lane);
 }
 
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {

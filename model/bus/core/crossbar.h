@@ -113,8 +113,9 @@ class Crossbar {
   struct Port {
     struct Item {
       MemRequest* request;
-      std::uint64_t visible;  // edge from which the arbiter sees it
+      std::uint64_t visible;  // edge from which the arbiter sees it, at the earliest
       std::uint64_t crossed;  // edge at which it is through the bridge
+      std::uint32_t grants;   // of its slave, when it came; all but the last ended before `crossed`
     };
     std::array<Item, kQueue> queue;
     std::uint32_t head = 0, tail = 0;
@@ -130,25 +131,31 @@ class Crossbar {
     std::uint64_t start = 0, end = 0;
     std::uint8_t master = 0;
   };
+  /// How long each master had a lane, and all of them together, in ps.
+  using LaneTimes = std::array<Picoseconds, kMasterCount + 1>;
   struct SlaveState {
     static constexpr std::size_t kGrants = 64;
     std::uint64_t free = 0;      // first edge at which its command lane is free
+    std::uint32_t heads = 0;     // ports whose first request is for it
+    std::uint32_t shown = 0;     // those of them that are visible at `free`
     std::uint32_t grants_made = 0;
     std::array<Grant, kGrants> grants;  // the last ones, to say who was waited for
     Grant& grant(std::uint32_t n) { return grants[n % kGrants]; }
+    std::uint32_t summed = 0;    // grants that are in `lane`
+    LaneTimes lane{};
+    std::array<LaneTimes, kGrants> before;  // `lane` at the start of each summed grant
     bool blocked = false;        // a request waits at its door
     std::uint8_t last = 0;       // round robin: last master granted
     std::uint32_t open_to = ~0u; // masters it serves: all, or the one that locked it
+    std::uint32_t candidates() const { return blocked ? 0 : heads & open_to; }
   };
 
   void plan();
   template <class Host>
-  void grant(Host& host, MemRequest& request, std::uint64_t crossed);
+  void grant(Host& host, MemRequest& request, std::uint64_t crossed, std::uint32_t grants);
+  unsigned winner(const SlaveState& s, std::uint32_t set) const;
+  void sum_grants(SlaveState& s);
   void set_lock(SlaveState& s, const MemRequest& r);
-  const SlaveState& slave_of(const MemRequest& r) const { return slaves_[r.slave]; }
-  bool barred(const SlaveState& s, unsigned master) const {
-    return s.blocked || !(s.open_to >> master & 1u);
-  }
   template <class Host>
   void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
@@ -166,9 +173,13 @@ class Crossbar {
     r.first = std::max(first, newest);
     r.last = newest = std::max(last, r.first);
   }
+  void new_head(unsigned port, std::uint64_t visible) {
+    visible_[port] = visible;
+    slaves_[ports_[port].front().request->slave].heads |= 1u << port;
+  }
   void count(const MemRequest& r);
-  /// The parts of request.issued .. grant at `edge`.
-  void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint64_t edge);
+  /// The parts of request.issued .. next_, its grant.
+  void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants);
   Waits& waits_of(const MemRequest& r) {
     MasterWaits& w = waits[index(r.master)];
     return r.write ? w.write : w.read;
@@ -180,6 +191,9 @@ class Crossbar {
   std::array<Port, kMasterCount> ports_;
   std::array<SlaveState, kSlaveCount> slaves_;
   std::uint32_t waiting_ = 0;  // ports with a queue
+  std::array<std::uint64_t, kMasterCount> visible_{};  // of their first requests
+  std::array<std::uint32_t, 8> of_priority_{};         // ports
+  std::uint32_t priorities_ = 0;                       // those in use
   std::uint64_t next_edge_ = 0;
   std::uint8_t next_port_ = 0;
   Picoseconds next_ = kNever;
@@ -205,15 +219,19 @@ inline void Crossbar::count(const MemRequest& r) {
 template <class Host>
 void Crossbar::step(Host& host) {
   Port& p = ports_[next_port_];
-  MemRequest& r = *p.front().request;
-  const std::uint64_t crossed = p.front().crossed;
-  if (++p.head == p.tail) {
-    waiting_ &= ~(1u << next_port_);
-  } else {  // the next in line shows itself one clock later
-    auto& visible = p.front().visible;
-    visible = std::max(visible, next_edge_ + 1);
-  }
-  grant(host, r, crossed);
+  const Port::Item& item = p.front();
+  MemRequest& r = *item.request;
+  const std::uint64_t crossed = item.crossed;
+  const std::uint32_t grants = item.grants;
+  SlaveState& s = slaves_[r.slave];
+  const std::uint32_t bit = 1u << next_port_;
+  s.heads &= ~bit;
+  s.shown &= ~bit;
+  if (++p.head == p.tail)
+    waiting_ &= ~bit;
+  else  // the next in line shows itself one clock later
+    new_head(next_port_, std::max(p.front().visible, next_edge_ + 1));
+  grant(host, r, crossed, grants);
   if (waiting_)
     plan();
   else
@@ -223,9 +241,10 @@ void Crossbar::step(Host& host) {
 /// The slave's lane is the request's at next_edge_.
 template <class Host>
 [[gnu::always_inline]] inline void Crossbar::grant(Host& host, MemRequest& r,
-                                                   std::uint64_t crossed) {
-  r.priority = ports_[next_port_].priority;
+                                                   std::uint64_t crossed, std::uint32_t grants) {
+  const Port& p = ports_[next_port_];
   SlaveState& s = slaves_[r.slave];
+  r.priority = p.priority;
   const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
   s.free = next_edge_ + cycles;
   s.last = next_port_;
@@ -238,7 +257,7 @@ template <class Host>
     if (crossed == next_edge_)
       waits_of(r).add(Culprit::kBridge, next_ - r.issued);
     else
-      attribute(s, r, crossed, next_edge_);
+      attribute(s, r, crossed, grants);
     waits_of(r).add(Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
@@ -262,9 +281,9 @@ template <class Host>
   next_port_ = static_cast<std::uint8_t>(index(r.master));
   next_ = g.at;
   r.slave_waited = 0;
-  grant(host, r, g.crossed);
-  // What was planned for the others stands, unless the lane is not free then or their turn changed.
   const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
+  grant(host, r, g.crossed, s.grants_made ? s.grants_made - 1 : 0);
+  // What was planned for the others stands, unless the lane is not free then or their turn changed.
   if (waiting_ & (waiting_ - 1) || (waiting_ && others_edge < s.free) || s.blocked) {
     plan();
   } else {

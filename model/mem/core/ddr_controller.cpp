@@ -1,6 +1,7 @@
 #include "model/mem/core/ddr_controller.h"
 
 #include <bit>
+#include <utility>
 
 #include "model/common/check.h"
 #include "model/mem/core/move_bytes.h"
@@ -51,7 +52,8 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     plan_one(slots_[0]);
     return true;
   }
-  if (alone_) join_queue();
+  const bool was_alone = alone_;
+  if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
       (request.write && write_bytes_held_ + request.bytes > write_fifo_bytes_)) {
     door_full_ = shut_ = true;
@@ -60,8 +62,14 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     return false;
   }
   take(request, arrived);
-  // A choice for a clock before the newcomer is ready stands.
-  if (!in_burst_ && slots_[order_[count_ - 1]].ready <= choice_.at) plan_many();
+  // A choice for a clock before the newcomer is ready stands; else nothing can be given before then.
+  const unsigned slot = order_[count_ - 1];
+  if (in_burst_ || slots_[slot].ready > choice_.at) return true;
+  const std::uint64_t edge = std::max(command_free_, slots_[slot].ready);
+  if (!was_alone && stands_with(slot, edge, ~free_slots_ ^ 1u << slot))
+    next_ = ddr_.edge(choice_.at);
+  else
+    plan_from(edge);
   return true;
 }
 
@@ -74,6 +82,8 @@ inline void DdrController::fill(Entry& e, const DdrRequest& request, std::uint64
   e.row = (r.address & row_mask_) >> row_shift_;
   e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
   e.classified = false;
+  e.given = given_count_;
+  e.prepared = 0;
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
 
@@ -84,9 +94,11 @@ void DdrController::join_queue() {
   free_slots_ ^= 1u;
   offered_ = 1u;
   of_master_[index(e.request.master)] = 1u;
-  e.rank = Rank{e.request.write ? 2u : 1u} << kKindBit | static_cast<Rank>(e.request.priority)
-                                                             << kPriorityBit;
+  ranks_[0] = Rank{e.request.priority} << kPriorityBit;
   age_ = 0;  // nobody else is there
+  of_bank_[e.bank] = 1u;
+  hits_ = device_.row(e.bank) == e.row;
+  writes_ = e.request.write;
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
 }
 
@@ -99,9 +111,13 @@ void DdrController::join_queue() {
   Entry& e = slots_[slot];
   fill(e, request, arrived);
   age_ += Rank{1} << kAgeBit;
-  e.rank = Rank{request.write ? 2u : 1u} << kKindBit |
-           static_cast<Rank>(request.priority) << kPriorityBit | age_ | slot;
-  if (request.write) write_bytes_held_ += request.bytes;
+  ranks_[slot] = Rank{request.priority} << kPriorityBit | age_ | slot;
+  of_bank_[e.bank] |= bit;
+  if (device_.row(e.bank) == e.row) hits_ |= bit;
+  if (request.write) {
+    writes_ |= bit;
+    write_bytes_held_ += request.bytes;
+  }
   std::uint32_t& same_master = of_master_[index(request.master)];
   if (same_master == 0 || passes_older(e)) offered_ |= bit;
   same_master |= bit;
@@ -122,10 +138,11 @@ inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint6
 /// that is in another 2048-byte block and not more urgent.
 bool DdrController::passes_older(const Entry& e) const {
   const DdrRequest& r = e.request;
+  const Rank age = ranks_[static_cast<unsigned>(&e - slots_.data())] & kAgeMask;
   for (std::uint32_t set = of_master_[index(r.master)]; set; set &= set - 1) {
-    const Entry& older = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    if ((older.rank & kAgeMask) >= (e.rank & kAgeMask)) continue;
-    const DdrRequest& o = older.request;
+    const auto older = static_cast<unsigned>(std::countr_zero(set));
+    if ((ranks_[older] & kAgeMask) >= age) continue;
+    const DdrRequest& o = slots_[older].request;
     if (r.write || !o.write || (o.address >> 11) == (r.address >> 11) || o.priority < r.priority)
       return false;
   }
@@ -137,10 +154,11 @@ bool DdrController::passes_older(const Entry& e) const {
 inline void DdrController::plan() {
   if (count_ == 0)
     next_ = kNever;
-  else if (count_ == 1)
-    plan_one(slots_[order_[0]]);
+  else if (count_ > 1)
+    return plan_many();
   else
-    plan_many();
+    plan_one(slots_[order_[0]]);
+  plain_ = false;
 }
 
 /// The same after a change from outside: a burst may be under way or the clock stopped.
@@ -173,19 +191,20 @@ inline void DdrController::plan_one(Entry& e) {
     next_ = ddr_.edge(choice_.at);
     return;
   }
-  std::uint64_t edge = std::max(first, slots_[order_[0]].ready);
+  plan_from(std::max(first, slots_[order_[0]].ready));
+}
+
+/// The same from an edge on before which nothing can be given.
+void DdrController::plan_from(std::uint64_t edge) {
   std::uint32_t ready = ~free_slots_;
   std::size_t not_ready = count_;  // place in order_ of the first that the scheduler does not see
-  if (slots_[order_[count_ - 1]].ready > edge) {
-    ready = 0;
-    for (not_ready = 0; slots_[order_[not_ready]].ready <= edge; ++not_ready)
-      ready |= 1u << order_[not_ready];
-  }
+  while (slots_[order_[not_ready - 1]].ready > edge) ready ^= 1u << order_[--not_ready];
   for (;;) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
     if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
     if (choice_.at < wake) break;
+    if (not_ready + 1 == count_ && stands_with(order_[not_ready], wake, ready)) break;
     edge = wake;
     for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
       ready |= 1u << order_[not_ready];
@@ -193,68 +212,112 @@ inline void DdrController::plan_one(Entry& e) {
   next_ = ddr_.edge(choice_.at);
 }
 
+/// True if choice_, made with the slots `ready`, need not be made again when the one in `slot`, the
+/// newest, is seen at `edge`: it changes nothing, or it prepares its own bank first.
+inline bool DdrController::stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready) {
+  if (!plain_ || edge >= next_expiry_) return false;
+  const std::uint32_t bit = 1u << slot;
+  if (in_order_ || !(offered_ & bit)) return true;
+  const bool write = writes_ & bit;
+  if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
+  // It must rank below the first.
+  const std::uint32_t first = 1u << first_;
+  const bool first_writes = writes_ & first;
+  if (kinds_count_ && first_writes && !write) return false;
+  if (!kinds_count_ || first_writes == write) {
+    const bool hits_first = (hits_ & bit) && !(hits_ & first);
+    if (hits_first || (ranks_[slot] & rank_mask_) < (ranks_[first_] & rank_mask_)) return false;
+  }
+  const Entry& e = slots_[slot];
+  if (e.bank == slots_[first_].bank) return true;
+  if (e.bank == choice_.entry->bank) return false;
+  if (hits_ & bit) return true;
+  const Cmd prepare = device_.row(e.bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+  const std::uint64_t at = std::max(edge, device_.earliest(prepare, e.bank));
+  if (at > choice_.at || (at == choice_.at && choice_.entry == &slots_[first_])) return true;
+  if (at == choice_.at || (ready & offered_ & of_bank_[e.bank])) return false;
+  choice_ = {&slots_[slot], at, prepare};
+  return true;
+}
+
+/// The slot whose request has the lowest rank.
+inline unsigned DdrController::first_of(std::uint32_t slots) const {
+  auto first = static_cast<unsigned>(std::countr_zero(slots));
+  if ((slots &= slots - 1) == 0) return first;
+  Rank lowest = ranks_[first] & rank_mask_;
+  for (; slots; slots &= slots - 1)
+    lowest = std::min(lowest, ranks_[static_cast<unsigned>(std::countr_zero(slots))] & rank_mask_);
+  return static_cast<unsigned>(lowest % kMaxEntries);
+}
+
+/// Rules 2 and 3: reads, then writes; with the read FIFO full, writes before reads.
+inline std::uint32_t DdrController::best_kind(std::uint32_t slots, bool room) const {
+  if (room && !kinds_count_) return slots;
+  const std::uint32_t kind = slots & (room ? ~writes_ : writes_);
+  return kind ? kind : slots;
+}
+
 /// The command to give if only the requests in the slots `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   ready &= in_order_ ? 1u << order_[0] : offered_;
+  plain_ = false;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
       return choose_refresh(edge);
   }
-  // Rank: reads, then writes; among each open rows first, then priority, then age (rules 2 and 3).
-  // With the read FIFO full, writes go before reads.
-  const Rank no_room = lane_.room() <= edge ? 0 : Rank{3} << kKindBit;
-  std::array<Rank, DdrDevice::kMaxBanks> first_of_bank;
-  first_of_bank.fill(kNoRank);
-  Rank first = kNoRank;
-  for (std::uint32_t set = ready; set; set &= set - 1) {
-    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank rank = (e.rank & rank_mask_) | Rank{device_.row(e.bank) != e.row} << kMissBit;
-    if (no_room && !e.request.write) [[unlikely]]
-      rank |= no_room;
-    first_of_bank[e.bank] = std::min(first_of_bank[e.bank], rank);
-    first = std::min(first, rank);
-  }
+  // By kind; in each open rows first, then priority, then age (rules 2 and 3).
+  const bool room = lane_.room() <= edge;
+  unsigned first;
   // Rule 5: the oldest command, passed by too often, is raised.
-  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) {
+  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) [[unlikely]] {
     first = order_[0];
-    first_of_bank[slots_[order_[0]].bank] = first;
+  } else {
+    plain_ = room;
+    const std::uint32_t kind = best_kind(ready, room), open = kind & hits_;
+    first = first_of(open ? open : kind);
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
-  const auto entry_of = [&](Rank rank) {
-    return &slots_[static_cast<unsigned>(rank % kMaxEntries)];
-  };
-  Entry* const top = entry_of(first);
+  first_ = first;
+  Entry* const top = &slots_[first];
   const Cmd cmd = needed(*top);
   choice_ = {top, earliest(*top, cmd, edge), cmd};
   if (choice_.at == edge) return;
-  first_of_bank[top->bank] = kNoRank;
-  Rank best = first;
-  for (const Rank rank : first_of_bank) {
-    if (rank == kNoRank) continue;
-    Entry* const e = entry_of(rank);
-    const std::uint32_t open = device_.row(e->bank);
-    if (open == e->row) continue;
-    const Cmd prepare = open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-    const std::uint64_t at = std::max(edge, device_.earliest(prepare, e->bank));
-    if (at < choice_.at || (at == choice_.at && rank < best)) {
-      choice_ = {e, at, prepare};
-      best = rank;
+  std::uint32_t best = 0;  // others of the same clock
+  ready &= ~of_bank_[top->bank];
+  while (ready) {
+    const unsigned bank = slots_[static_cast<unsigned>(std::countr_zero(ready))].bank;
+    const std::uint32_t kind = best_kind(ready & of_bank_[bank], room);
+    ready &= ~of_bank_[bank];
+    if (kind & hits_) continue;
+    const Cmd prepare = device_.row(bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+    const std::uint64_t at = std::max(edge, device_.earliest(prepare, bank));
+    if (at > choice_.at || (at == choice_.at && best == 0)) continue;
+    Entry* const e = &slots_[first_of(kind)];
+    const std::uint32_t bit = 1u << (e - slots_.data());
+    if (at < choice_.at) {
+      best = 0;
+    } else {
+      const std::uint32_t both = best_kind(best | bit, room);
+      if (first_of(both) != static_cast<unsigned>(e - slots_.data())) continue;
     }
+    choice_ = {e, at, prepare};
+    best = bit;
   }
 }
 
 /// Rule 4: a needed refresh goes before writes and before a read that has a more urgent write. Each
 /// is the first of its kind among the slots `set`.
 bool DdrController::refresh_goes_first(std::uint32_t set) const {
-  Rank read = kNoRank, write = kNoRank;
-  for (; set; set &= set - 1) {
-    const Entry& e = slots_[static_cast<unsigned>(std::countr_zero(set))];
-    Rank& first = e.request.write ? write : read;
-    first = std::min(first, e.rank | Rank{device_.row(e.bank) != e.row} << kMissBit);
-  }
-  const auto priority = [](Rank rank) { return rank >> kPriorityBit & 0xFFu; };
-  return read == kNoRank || (write != kNoRank && priority(write) < priority(read));
+  const auto priority = [&](std::uint32_t kind) {
+    const std::uint32_t open = kind & hits_;
+    Rank first = ~Rank{0};
+    for (kind = open ? open : kind; kind; kind &= kind - 1)
+      first = std::min(first, ranks_[static_cast<unsigned>(std::countr_zero(kind))]);
+    return first >> kPriorityBit;
+  };
+  const std::uint32_t reads = set & ~writes_, writes = set & writes_;
+  return !reads || (writes && priority(writes) < priority(reads));
 }
 
 void DdrController::choose_refresh(std::uint64_t edge) {
@@ -264,7 +327,8 @@ void DdrController::choose_refresh(std::uint64_t edge) {
     choice_ = {nullptr, std::max(edge, device_.earliest_pre_all()), Cmd::kPreAll};
 }
 
-DdrController::Urgency DdrController::refresh_urgency(std::uint64_t edge) const {
+/// At an edge after which an interval may have run out.
+DdrController::Urgency DdrController::refresh_urgency_after(std::uint64_t edge) const {
   unsigned expired = 0;
   if (config_.refresh_interval && edge >= next_expiry_)
     expired = 1 + static_cast<unsigned>((edge - next_expiry_) / config_.refresh_interval);
@@ -283,6 +347,7 @@ void DdrController::begin_refresh() {
 void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
+  urgency_ = refresh_urgency_after(0);
   calm_until_ = urgent ? 0 : next_expiry_;
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
@@ -300,18 +365,28 @@ inline void DdrController::count_owed(std::uint64_t clock) {
 
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock) {
-  Given& g = given_[given_count_++ % kGiven];
+  Given& g = given(given_count_++);
   g.clock = clock;
   g.cmd = kCmd;
-  if constexpr (kCmd != Cmd::kRef && kCmd != Cmd::kPreAll) {
-    g.entry = choice_.entry;
-    g.master = static_cast<std::uint8_t>(index(choice_.entry->request.master));
-  }
+  if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
+    g.culprit = Culprit::kRefresh;
+  else
+    g.culprit = culprit(choice_.entry->request.master);
+  if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
+    g.before = std::exchange(choice_.entry->prepared, given_count_);
 }
 
 template <Cmd kCmd>
 inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
   device_.issue<kCmd>(bank, row, clock);
+  if constexpr (kCmd == Cmd::kAct) {
+    for (std::uint32_t set = of_bank_[bank]; set; set &= set - 1)
+      if (slots_[static_cast<unsigned>(std::countr_zero(set))].row == row) hits_ |= set & -set;
+  } else if constexpr (kCmd == Cmd::kPre) {
+    hits_ &= ~of_bank_[bank];
+  } else if constexpr (kCmd == Cmd::kPreAll) {
+    hits_ = 0;
+  }
   command_free_ = clock + 1;
   note<kCmd>(clock);
   if (hook_) [[unlikely]]
@@ -402,9 +477,10 @@ void DdrController::wake(std::uint64_t clock) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = given_[given_count_++ % kGiven];
+  Given& g = given(given_count_++);
   g.clock = clock;
   g.cmd = cmd;
+  g.culprit = Culprit::kPowerDown;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
@@ -467,6 +543,7 @@ template <Cmd kCmd>
   if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock);
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
+  hits_ &= ~of_bank_[e.bank];
   command_free_ = clock + 1;
   note<kCmd>(clock);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
@@ -561,6 +638,9 @@ void DdrController::leave_queue(const Entry& e) {
   const std::uint32_t bit = 1u << slot;
   free_slots_ |= bit;
   offered_ &= ~bit;
+  of_bank_[e.bank] &= ~bit;
+  writes_ &= ~bit;
+  hits_ &= ~bit;
   std::uint32_t& same_master = of_master_[index(e.request.master)];
   same_master &= ~bit;
   --count_;

@@ -104,20 +104,19 @@ class DdrController {
  private:
   static constexpr std::size_t kMaxEntries = 16;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  /// A command's rank among others, low first: kind, row not open, priority, age, slot.
+  /// A request's rank among those of its kind, low first: priority, age, slot.
   using Rank = std::uint64_t;
-  static constexpr unsigned kKindBit = 62, kMissBit = 61, kPriorityBit = 53, kAgeBit = 4;
+  static constexpr unsigned kPriorityBit = 56, kAgeBit = 4;
   static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
-  static constexpr Rank kKinds = Rank{3} << kKindBit, kPriorities = Rank{0xFF} << kPriorityBit;
-  static constexpr Rank kNoRank = ~Rank{0};
   struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
-    Rank rank = 0;            // while its row is open and there is room for its data
     std::uint32_t row = 0;
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
     bool classified = false;
+    std::uint64_t given = 0;     // commands before it came
+    std::uint64_t prepared = 0;  // number of its newest ACT or PRE, from 1; 0: none
     std::array<std::uint8_t, 64> data;
   };
   /// PREA and REF are refresh's; the others belong to a request.
@@ -127,14 +126,21 @@ class DdrController {
     Cmd cmd = Cmd::kAct;
   };
 
+  /// A command that was given. The time up to the next one is blamed on its culprit, after the data
+  /// of a write on the turnaround, and an ACT or PRE of the read itself on its row.
   struct Given {
     std::uint64_t clock = 0;
+    std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
-    std::uint8_t master = 0;
-    const Entry* entry = nullptr;
+    Culprit culprit = Culprit::kRefresh;
   };
   static constexpr std::size_t kGiven = 64;
+  /// What the commands so far are to blame for, in ps: masters, then these, kAll for all of them.
+  enum : std::size_t { kTurned = kMasterCount, kRefreshed, kAsleep, kAll, kBlames };
+  using Blames = std::array<Picoseconds, kBlames>;
+  Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
+  void sum_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
   void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
@@ -144,11 +150,18 @@ class DdrController {
   void plan_anew();
   void plan_one(Entry& e);
   void plan_many();
+  void plan_from(std::uint64_t edge);
+  unsigned first_of(std::uint32_t slots) const;
+  std::uint32_t best_kind(std::uint32_t slots, bool room) const;
   void choose(std::uint64_t edge, std::uint32_t ready);
+  bool stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready);
   bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
   enum class Urgency { kMay, kNeed, kMust };
-  Urgency refresh_urgency(std::uint64_t edge) const;
+  Urgency refresh_urgency(std::uint64_t edge) const {
+    return edge < next_expiry_ ? urgency_ : refresh_urgency_after(edge);
+  }
+  Urgency refresh_urgency_after(std::uint64_t edge) const;
   void begin_refresh();
   void urgency_changed();
   Cmd needed(const Entry& e) const;
@@ -198,12 +211,13 @@ class DdrController {
   unsigned write_fifo_bytes_, request_latency_, return_latency_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
-  // nobody waits for is closed after its access; what of an entry's rank counts.
-  bool in_order_, closes_rows_;
+  // nobody waits for is closed after its access; reads before writes, and priorities, count.
+  bool in_order_, closes_rows_, kinds_count_;
   Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
+  std::array<Rank, kMaxEntries> ranks_{};          // by slot
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
   std::size_t count_ = 0;
   // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
@@ -211,6 +225,9 @@ class DdrController {
   bool alone_ = false;
   std::uint32_t offered_ = 0;  // slots whose command its master offers (rule 1)
   std::array<std::uint32_t, kMasterCount> of_master_{};  // slots in use, by master
+  std::array<std::uint32_t, DdrDevice::kMaxBanks> of_bank_{};
+  std::uint32_t writes_ = 0;
+  std::uint32_t hits_ = 0;  // slots whose row is open
   Rank age_ = 0;
   std::uint64_t last_arrival_ = 0;
   unsigned write_bytes_held_ = 0;
@@ -220,6 +237,8 @@ class DdrController {
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
+  unsigned first_ = 0;     // slot of the first in rank when choice_ was made
+  bool plain_ = false;     // by rank, with room for read data
   Picoseconds next_ = kNever;
   bool in_burst_ = false;  // choice_ is the last column of a burst under way
   std::uint64_t next_column_ = 0;
@@ -227,6 +246,7 @@ class DdrController {
   std::uint64_t served_while_oldest_ = 0;
 
   std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
+  Urgency urgency_ = Urgency::kMay;   // before next_expiry_
   std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
   std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
   LowPower asleep_ = LowPower::kOff;  // CKE is low
@@ -241,7 +261,10 @@ class DdrController {
   ReadLane lane_;
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
-  std::uint32_t given_count_ = 0;
+  std::uint64_t given_count_ = 0;
+  std::uint64_t summed_ = 0;  // commands that are in blames_; the newest one is not
+  Blames blames_{};
+  std::array<Blames, kGiven> blames_before_;  // blames_ at each summed command
   Picoseconds read_waited_ = 0;
 
   CommandHook hook_ = nullptr;

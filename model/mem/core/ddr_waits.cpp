@@ -3,59 +3,83 @@
 
 namespace fovea::mem {
 
-/// The waits of a read whose first column command, already noted, is given at `clock`. From the
-/// newest command before it back to the time it became ready.
+/// Brings blames_ up to the newest command.
+void DdrController::sum_given() {
+  if (given_count_ - summed_ > kGiven) summed_ = given_count_ - kGiven;
+  // Edges before a clock's restart have no times any more.
+  const auto time = [this](std::uint64_t clock) { return ddr_.edge(std::max(clock, first_edge_)); };
+  if (summed_ + 1 >= given_count_) return;
+  const std::uint64_t write = config_.timing.WL() + DdrTiming::kBurstClocks;
+  for (Picoseconds from = time(given(summed_).clock); summed_ + 1 < given_count_; ++summed_) {
+    const Given& g = given(summed_);
+    const std::uint64_t until = given(summed_ + 1).clock;
+    const Picoseconds to = time(until);
+    blames_before_[summed_ % kGiven] = blames_;
+    blames_[kAll] += to - from;
+    if (g.cmd == Cmd::kWr && g.clock + write < until) {
+      const Picoseconds over = time(g.clock + write);
+      blames_[kTurned] += to - over;
+      blames_[index(g.culprit)] += over - from;
+    } else {
+      const std::size_t of = g.culprit == Culprit::kRefresh     ? std::size_t{kRefreshed}
+                             : g.culprit == Culprit::kPowerDown ? std::size_t{kAsleep}
+                                                                : index(g.culprit);
+      blames_[of] += to - from;
+    }
+    from = to;
+  }
+}
+
+/// The waits of a read whose first column command, already noted, is given at `clock`, since it
+/// became ready.
 [[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
   Waits& w = waits[index(e.request.master)].read;
-  // Edges before a clock's restart have no times any more.
+  const Culprit own = culprit(e.request.master);
   const std::uint64_t ready = std::max(e.ready, first_edge_);
-  const Picoseconds end = ddr_.edge(clock), start = ddr_.edge(ready);
-  Picoseconds until = end;
-  std::uint64_t at = clock;
-  const auto take = [&](std::uint64_t from, Culprit c) {
-    if (from >= at) return;
-    const Picoseconds t = from <= ready ? start : ddr_.edge(from);
-    w.add(c, until - t);
-    until = t;
-    at = std::max(from, ready);
-  };
-  bool closed_other = false;  // its ACT followed a PRE of its own
-  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0; --left) {
-    const Given& g = given_[--n % kGiven];
-    if (g.clock < ready) break;
-    closed_other |= g.cmd == Cmd::kPre && g.entry == &e;
-  }
-  for (std::uint32_t n = given_count_ - 1, left = kGiven - 1; left > 0 && n > 0 && at > ready;
-       --left) {
-    const Given& g = given_[--n % kGiven];
-    const bool own = g.entry == &e && g.clock >= ready;
-    switch (g.cmd) {
-      case Cmd::kPreAll:
-      case Cmd::kRef: take(g.clock, Culprit::kRefresh); break;
-      case Cmd::kPde:
-      case Cmd::kPdx:
-      case Cmd::kSre:
-      case Cmd::kSrx: take(g.clock, Culprit::kPowerDown); break;
-      case Cmd::kAct:
-        if (own) {
-          take(g.clock, closed_other ? Culprit::kRowConflict : Culprit::kRowMiss);
-          break;
-        }
-        [[fallthrough]];
-      case Cmd::kPre:
-        if (own)
-          take(g.clock, Culprit::kRowConflict);
-        else
-          take(g.clock, static_cast<Culprit>(g.master));
-        break;
-      case Cmd::kWr:
-        take(g.clock + config_.timing.WL() + DdrTiming::kBurstClocks, Culprit::kTurnaround);
-        [[fallthrough]];
-      default: take(g.clock, static_cast<Culprit>(g.master)); break;
+  const Picoseconds start = ddr_.edge(ready);
+  read_waited_ = ddr_.edge(clock) - start;
+  // The last command at or before `ready`, or the oldest one that is known.
+  const std::uint64_t last = given_count_ - 1;
+  const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
+  std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
+  while (n > oldest && given(n).clock > ready) --n;
+  while (n + 1 < last && given(n + 1).clock <= ready) ++n;
+  if (n == last) return w.add(own, read_waited_);  // nothing was given before it
+
+  if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
+  sum_given();
+  const Blames& before = blames_before_[n % kGiven];
+  for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] += blames_[m] - before[m];
+  w.add(Culprit::kTurnaround, blames_[kTurned] - before[kTurned]);
+  w.add(Culprit::kRefresh, blames_[kRefreshed] - before[kRefreshed]);
+  w.add(Culprit::kPowerDown, blames_[kAsleep] - before[kAsleep]);
+  Picoseconds all = blames_[kAll] - before[kAll];
+  const Given& first = given(n);
+  if (first.clock < ready) {  // the part before `ready`
+    const Picoseconds from = ddr_.edge(std::max(first.clock, first_edge_));
+    Picoseconds until = start;
+    if (first.cmd == Cmd::kWr) {
+      const std::uint64_t over = first.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
+      if (over < ready) {
+        until = ddr_.edge(std::max(over, first_edge_));
+        w.ps[index(Culprit::kTurnaround)] -= start - until;
+      }
     }
+    w.ps[index(first.culprit)] -= until - from;
+    all -= start - from;
   }
-  take(ready, culprit(e.request.master));
-  read_waited_ = end - start;
+  w.add(own, read_waited_ - all);  // what is not known is its own
+  // Its own ACT and PRE are no wait behind an earlier request.
+  Picoseconds row = 0;
+  bool closed_other = false;
+  for (std::uint64_t p = e.prepared; p > oldest; p = given(p - 1).before) {
+    const Given& g = given(p - 1);
+    if (g.clock < ready) break;
+    row += ddr_.edge(given(p).clock) - ddr_.edge(g.clock);
+    closed_other |= g.cmd == Cmd::kPre;
+  }
+  w.ps[index(own)] -= row;
+  w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
 }
 
 }  // namespace fovea::mem

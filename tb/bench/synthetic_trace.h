@@ -1,0 +1,44 @@
+// Requests without a file, for the speed of the player and the path.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "model/trace/core/trace.h"
+
+namespace fovea::app {
+
+/// `count` requests of 32 bytes in all, as fast as windows of 8 reads and 8 writes let them go. Not
+/// random: each master reads on through a megabyte of its own. Random: three reads to a write,
+/// anywhere in 64 MiB.
+class SyntheticTrace final : public trace::RecordSource {
+ public:
+  SyntheticTrace(unsigned masters, std::uint64_t count, bool random) : random_(random) {
+    for (unsigned m = 0; m < masters; ++m) {
+      info.streams.emplace_back();
+      info.masters.push_back({static_cast<Master>(m), std::string(kMasterNames[m]), m, 8, 8, false});
+      left_.push_back(count / masters);
+      seeds_.push_back(m * 77 + 1);
+    }
+  }
+  bool next(unsigned stream, trace::Record& r) override {
+    if (left_[stream] == 0) return false;
+    const std::uint64_t n = left_[stream]--;
+    r = trace::Record{};
+    r.master = static_cast<Master>(stream);
+    r.bytes = 32;
+    std::uint32_t& seed = seeds_[stream];
+    seed = seed * 1664525u + 1013904223u;
+    r.write = random_ && seed >> 30 == 0;
+    r.address = random_ ? (seed >> 8 & 0x1F'FFFFu) * 32u
+                        : stream << 20 | static_cast<std::uint32_t>(n * 32 & 0xF'FFFFu);
+    return true;
+  }
+  trace::TraceInfo info;
+
+ private:
+  bool random_;
+  std::vector<std::uint64_t> left_;
+  std::vector<std::uint32_t> seeds_;
+};
+
+}  // namespace fovea::app
