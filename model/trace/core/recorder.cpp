@@ -259,7 +259,7 @@ void BusRecorder::finish(TraceInfo info,
   info.streams.resize(streams_.size());
   info.streams[0] = core_info_;
   for (const auto& m : masters_)
-    info.masters.push_back({m.id, std::string(kMasterNames[index(m.id)]),
+    info.masters.push_back({m.id, std::string(stat_name(m.id)),
                             stream_of_[index(m.id)], m.reads, m.writes, m.shared});
   for (unsigned i = 0; i < streams_.size(); ++i)
     while (!streams_[i].pending.empty()) write_one(streams_[i], i);
