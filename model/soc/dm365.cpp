@@ -242,7 +242,20 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   for (const auto& load : params_.loads) {
     if (!load.active()) continue;
     const unsigned n = places(load.outstanding);
-    masters.push_back({load.reader(), Pace::kRepeating, n, n, true});
+    if (load.reader() == load.writer()) {
+      masters.push_back({load.reader(), Pace::kRepeating, n, n, true});
+    } else {
+      // Both sides: a copy's wait for each other, a mixture's take each other's places.
+      if (load.reads())
+        masters.push_back({load.reader(), Pace::kRepeating, n, n, true, {}});
+      if (load.writes())
+        masters.push_back({load.writer(), load.copies() ? Pace::kData : Pace::kRepeating, n, n,
+                           true, {}});
+      if (load.reads() && load.writes()) {
+        masters[masters.size() - 2].partner = load.writer();
+        masters.back().partner = load.reader();
+      }
+    }
   }
   auto recorder = std::make_unique<trace::BusRecorder>(
       masters, places(params_.cpu.ahb_ratio), [this] {

