@@ -15,8 +15,9 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
     targets_[i].owner = this;
     targets_[i].master = m;
     target[i]->bind(targets_[i]);
-    latency[i] = std::make_unique<LatencyStats>(std::string(kMasterNames[i]));
   }
+  for (std::size_t i = 0; i < kStatCount; ++i)
+    latency[i] = std::make_unique<LatencyStats>(std::string(kStatNames[i]));
   for (std::size_t i = 0; i < kSlaveCount; ++i) {
     slave_ports_[i].owner = this;
     slave_ports_[i].slave = static_cast<Slave>(i);
@@ -201,7 +202,7 @@ inline void Scr::count_outcome(const MemRequest& r, Picoseconds now) {
   undecided_ -= !r.passive;
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     ++(deciding_ > now ? direct_ : queued_);
-    if (!r.write) latency[index(r.master)]->histogram.add(r.first - r.issued);
+    if (!r.write) latency[stat_index(r.master)]->histogram.add(r.first - r.issued);
   }
 }
 

@@ -39,7 +39,7 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
       bool strict);
 
   Crossbar& crossbar() { return crossbar_; }
-  std::array<std::unique_ptr<LatencyStats>, kMasterCount> latency;
+  std::array<std::unique_ptr<LatencyStats>, kStatCount> latency;  ///< by stat_index()
   /// SDRAM accesses whose outcome was decided ahead of the kernel / by a kernel event.
   std::uint64_t direct_accesses() const { return direct_; }
   std::uint64_t queued_accesses() const { return queued_; }

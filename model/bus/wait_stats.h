@@ -13,9 +13,10 @@ namespace fovea::bus {
 /// direction together are the time from issue to first beat (read) or acknowledgement (write).
 class WaitStats : public StatGroup {
  public:
-  /// `tables`: the parts, to be added; they outlive this.
+  /// `tables`: the parts, to be added; they outlive this. A transfer controller's two sides, named by
+  /// either, are one.
   WaitStats(Master m, std::vector<WaitTable*> tables)
-      : StatGroup("ddr." + std::string(kMasterNames[index(m)]) + ".wait"),
+      : StatGroup("ddr." + std::string(stat_name(m)) + ".wait"),
         master_(m),
         tables_(std::move(tables)) {
     add("read.", &MasterWaits::read);
@@ -23,7 +24,9 @@ class WaitStats : public StatGroup {
   }
   std::uint64_t total(Waits MasterWaits::*direction, Culprit c) const {
     std::uint64_t t = 0;
-    for (const WaitTable* w : tables_) t += ((*w)[index(master_)].*direction).ps[index(c)];
+    for (const WaitTable* w : tables_)
+      for (std::size_t i = 0; i < kMasterCount; ++i)
+        if (same(i)) t += ((*w)[i].*direction).ps[index(c)];
     return t;
   }
 
@@ -43,25 +46,36 @@ class WaitStats : public StatGroup {
   };
 
   void add(const std::string& prefix, Waits MasterWaits::*direction) {
-    const auto entry = [&](const std::string& name, Culprit c, const std::string& sentence) {
+    const auto entry = [&](const std::string& name, std::vector<Culprit> culprits,
+                           const std::string& sentence) {
       formulas_.push_back(std::make_unique<Formula>(
           *this, prefix + name, "s", "time of its requests: " + sentence,
-          [this, direction, c] {
-            return StatBase::Value(static_cast<double>(total(direction, c)) * 1e-12);
+          [this, direction, culprits] {
+            std::uint64_t t = 0;
+            for (const Culprit c : culprits) t += total(direction, c);
+            return StatBase::Value(static_cast<double>(t) * 1e-12);
           }));
     };
-    for (const Named& n : kNamed) entry(n.name, n.culprit, n.sentence);
-    for (std::size_t i = 0; i < kMasterCount; ++i) {
-      const auto m = static_cast<Master>(i);
-      if (m == master_)
-        entry("own", culprit(m), "behind its own earlier requests");
+    for (const Named& n : kNamed) entry(n.name, {n.culprit}, n.sentence);
+    for (std::size_t i = 0; i < kStatCount; ++i) {
+      std::vector<Culprit> ports;
+      for (std::size_t k = 0; k < kMasterCount; ++k)
+        if (stat_index(static_cast<Master>(k)) == i)
+          ports.push_back(culprit(static_cast<Master>(k)));
+      if (same(i))
+        entry("own", ports, "behind its own earlier requests");
       else
-        entry(std::string(kMasterNames[i]), culprit(m),
-              "while " + std::string(kMasterNames[i]) + " was served");
+        entry(std::string(kStatNames[i]), ports,
+              "while " + std::string(kStatNames[i]) + " was served");
     }
   }
+  bool same(std::size_t i) const {
+    return stat_index(static_cast<Master>(i)) == stat_index(master_);
+  }
   void on_reset() override {
-    for (WaitTable* w : tables_) (*w)[index(master_)] = {};
+    for (WaitTable* w : tables_)
+      for (std::size_t i = 0; i < kMasterCount; ++i)
+        if (same(i)) (*w)[i] = {};
   }
 
   Master master_;

@@ -12,6 +12,7 @@ constexpr auto kSlow = ConfigBus::Speed::kSlow;
 /// Register blocks (dm365.md 2.1). Slow: blocks on the 24 MHz AUXCLK.
 const std::vector<ConfigBus::BlockSpec> kRegisterMap = {
     {"ddr", 0x2000'0000, 0x8000, kFast},
+    {"edma", 0x01C0'0000, 0x1'0000, kFast},
     {"uart0", 0x01C2'0000, 0x400, kSlow},
     {"uart1", 0x01D0'6000, 0x400, kFast},
     {"timer0", 0x01C2'1400, 0x400, kSlow},
@@ -31,12 +32,6 @@ const std::vector<ConfigBus::BlockSpec> kRegisterMap = {
     {"venc", 0x01C7'1E00, 0x200, kFast},
 };
 
-/// Masters of the chip that no model drives yet: ports without traffic, keys without effect.
-constexpr std::array kAbsent = {Master::kEdmaTc0, Master::kEdmaTc1, Master::kEdmaTc2,
-                                Master::kEdmaTc3, Master::kRemapEngine};
-
-bool absent(Master m) { return std::find(kAbsent.begin(), kAbsent.end(), m) != kAbsent.end(); }
-
 bus::AddressMap address_map(const mem::DdrParams& ddr) {
   bus::AddressMap map;
   map.ddr_size = ddr.size_bytes();
@@ -48,11 +43,11 @@ bus::AddressMap address_map(const mem::DdrParams& ddr) {
 void Dm365Params::declare(ParamSet& set) {
   cpu.declare(set);
   set.add(crossbar);
-  for (std::size_t i = 0; i < kMasterCount; ++i)
-    if (!absent(static_cast<Master>(i))) set.add(*crossbar.ports[i]);
+  for (auto& port : crossbar.ports) set.add(*port);
   set.add(config_bus);
-  set.add(load);
+  for (auto& load : loads) set.add(load);
   set.add(ddr);
+  set.add(edma);
   set.add(pll);
   set.add(psc);
   set.add(system);
@@ -67,6 +62,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       scr("scr", params.crossbar, address_map(params.ddr), strict),
       config("config", params.config_bus, quiet, kRegisterMap),
       ddr("ddr", params.ddr),
+      edma("edma", params.edma),
       pll1("pll1", "PLLC1", 9, params.pll),
       pll2("pll2", "PLLC2", 5, params.pll),
       psc("psc", params.psc),
@@ -75,13 +71,14 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       isif("isif", params.vpss),
       osd("osd", params.vpss),
       venc("venc", params.vpss),
-      load_priority_(static_cast<std::uint32_t>(params.load.priority())),
       params_(params) {
   SC_HAS_PROCESS(Dm365);
   for (unsigned i = 0; i < timers.size(); ++i)
     timers[i] = std::make_unique<periph::Timer64>(("timer" + std::to_string(i)).c_str());
-  if (params.load.outstanding() > 0)
-    load = std::make_unique<bus::LoadGenerator>("load", params.load);
+  for (std::size_t i = 0; i < params.loads.size(); ++i)
+    if (params.loads[i].active())
+      loads.push_back(std::make_unique<bus::LoadGenerator>(
+          i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
   wire_clocks();
   wire_memory();
   wire_registers();
@@ -89,6 +86,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   wire_video();
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
+  for (auto& level : tc_priority_) sensitive << level;
 }
 
 void Dm365::wire_clocks() {
@@ -138,6 +136,7 @@ void Dm365::wire_clocks() {
 
   for (unsigned i = 0; i < periph::kLpscCount; ++i) psc.enabled[i](lpsc_[i]);
   ddr.enabled(lpsc_[periph::kLpscDdr]);
+  edma.lpsc(lpsc_[periph::kLpscTpcc]);
   uart0.lpsc(lpsc_[periph::kLpscUart0]);
   uart1.lpsc(lpsc_[periph::kLpscUart1]);
   i2c.lpsc(lpsc_[periph::kLpscI2c]);
@@ -156,9 +155,11 @@ void Dm365::wire_memory() {
   arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
   isif.memory.socket.bind(*scr.target[index(Master::kVpfe)]);
   osd.memory.socket.bind(*scr.target[index(Master::kVpbe)]);
-  if (load) load->memory.socket.bind(*scr.target[index(Master::kLoad)]);
+  for (auto& load : loads)
+    load->bind_ports([this](auto& socket, Master m) { socket.bind(*scr.target[index(m)]); });
   std::vector<Master> masters{Master::kArmI, Master::kArmD, Master::kVpfe, Master::kVpbe};
-  if (load) masters.push_back(Master::kLoad);
+  for (const auto& load : params_.loads)
+    if (load.active()) masters.push_back(load.reader());
   for (const Master m : masters)
     waits.push_back(std::make_unique<bus::WaitStats>(
         m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
@@ -167,11 +168,13 @@ void Dm365::wire_memory() {
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(Master::kVpfe)]);
   vpss.read_priority(priority_[index(Master::kVpbe)]);
+  for (unsigned tc = 0; tc < kTransferControllers; ++tc) edma.priority[tc](tc_priority_[tc]);
 }
 
 void Dm365::wire_registers() {
   scr.config_socket.bind(config.socket);
   config.to("ddr").bind(ddr.reg_socket);
+  config.to("edma").bind(edma.reg_socket);
   config.to("uart0").bind(uart0.reg_socket);
   config.to("uart1").bind(uart1.reg_socket);
   for (unsigned i = 0; i < timers.size(); ++i)
@@ -236,8 +239,24 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
       {Master::kArmD, Pace::kCore, 1, 1, true},
       {Master::kVpfe, Pace::kSampled, captured, captured, true},
       {Master::kVpbe, Pace::kLines, shown, shown, true}};
-  if (const unsigned n = places(params_.load.outstanding))
-    masters.push_back({Master::kLoad, Pace::kRepeating, n, n, true});
+  for (const auto& load : params_.loads) {
+    if (!load.active()) continue;
+    const unsigned n = places(load.outstanding);
+    if (load.reader() == load.writer()) {
+      masters.push_back({load.reader(), Pace::kRepeating, n, n, true});
+    } else {
+      // Both sides: a copy's wait for each other, a mixture's take each other's places.
+      if (load.reads())
+        masters.push_back({load.reader(), Pace::kRepeating, n, n, true, {}});
+      if (load.writes())
+        masters.push_back({load.writer(), load.copies() ? Pace::kData : Pace::kRepeating, n, n,
+                           true, {}});
+      if (load.reads() && load.writes()) {
+        masters[masters.size() - 2].partner = load.writer();
+        masters.back().partner = load.reader();
+      }
+    }
+  }
   auto recorder = std::make_unique<trace::BusRecorder>(
       masters, places(params_.cpu.ahb_ratio), [this] {
         const cpu::Counts& c = arm.core().counts();
@@ -249,13 +268,22 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   return recorder;
 }
 
-/// MSTPRI0.2:0 is the ARM's memory priority; EDMA and engine keep the lowest until they exist.
+/// MSTPRI0.2:0 is the ARM's memory priority. The remap engine is no part of the chip: it takes MJCP's
+/// place, the imaging coprocessor's (assumed). A transfer controller has one priority for both sides.
 void Dm365::route_priorities() {
-  const std::uint32_t arm_priority = mstpri0_.read() & 7u;
-  priority_[index(Master::kArmI)].write(arm_priority);
-  priority_[index(Master::kArmD)].write(arm_priority);
-  for (auto m : kAbsent) priority_[index(m)].write(7);
-  priority_[index(Master::kLoad)].write(load_priority_);
+  const std::uint32_t mstpri0 = mstpri0_.read();
+  priority_[index(Master::kArmI)].write(mstpri0 & 7u);
+  priority_[index(Master::kArmD)].write(mstpri0 & 7u);
+  priority_[index(Master::kRemapEngine)].write(mstpri0 >> 16 & 7u);
+  for (unsigned tc = 0; tc < kTransferControllers; ++tc) {
+    priority_[index(edma_read(tc))].write(tc_priority_[tc].read());
+    priority_[index(edma_write(tc))].write(tc_priority_[tc].read());
+  }
+  std::uint32_t load = 7;
+  for (const auto& l : params_.loads)
+    if (l.active() && l.reader() == Master::kLoad)
+      load = static_cast<std::uint32_t>(l.priority());
+  priority_[index(Master::kLoad)].write(load);
 }
 
 }  // namespace fovea::soc

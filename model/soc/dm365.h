@@ -11,6 +11,7 @@
 #include "model/bus/wait_stats.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
+#include "model/dma/edma_cc.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
 #include "model/periph/clock_tree.h"
@@ -33,7 +34,9 @@ struct Dm365Params {
   cpu::CpuParams cpu;
   bus::CrossbarParams crossbar;
   bus::ConfigBusParams config_bus;
-  bus::LoadParams load;
+  dma::EdmaParams edma;
+  std::array<bus::LoadParams, 4> loads{{bus::LoadParams("load"), bus::LoadParams("load.1"),
+                                        bus::LoadParams("load.2"), bus::LoadParams("load.3")}};
   mem::DdrParams ddr;
   periph::PllParams pll;
   periph::PscParams psc;
@@ -60,6 +63,7 @@ class Dm365 : public sc_core::sc_module {
   bus::Scr scr;
   bus::ConfigBus config;
   mem::DdrModule ddr;
+  dma::EdmaCc edma;
   periph::PllController pll1, pll2;
   periph::ClockTree clocks{"clocks"};
   periph::Psc psc;
@@ -73,7 +77,7 @@ class Dm365 : public sc_core::sc_module {
   video::Isif isif;
   video::Osd osd;
   video::Venc venc;
-  std::unique_ptr<bus::LoadGenerator> load;
+  std::vector<std::unique_ptr<bus::LoadGenerator>> loads;
   trace::BusTap tap{"tap"};
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
@@ -99,10 +103,10 @@ class Dm365 : public sc_core::sc_module {
   Signals<bool> irq_{"irq", 64};
   Signals<bool> vdint_{"vdint", 3};
   Signals<std::uint32_t> priority_{"priority", kMasterCount};
+  Signals<std::uint32_t> tc_priority_{"tc_priority", kTransferControllers};
   sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_;
   sc_core::sc_signal<bool> isif_gate_, vpbe_gate_, venc_gate_;
   sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_;
-  std::uint32_t load_priority_;
   const Dm365Params& params_;
 };
 

@@ -289,18 +289,19 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   result.stats = std::move(stats_);
   result.frames = std::move(frames_);
   const auto& xbar = board_->dm365.scr.crossbar();
-  for (auto n : kMasterNames) result.timeline_masters.emplace_back(n);
+  for (auto n : kStatNames) result.timeline_masters.emplace_back(n);
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on
   // who played it.
   const Picoseconds last = board_->window_end().value_or(kernel_time());
-  for (std::size_t i = 0; i < xbar.timeline().size(); ++i) {
-    if ((i + 1) * xbar.timeline_interval() > last) break;
-    TimelineRow t;
-    t.start = i * xbar.timeline_interval();
-    t.end = t.start + xbar.timeline_interval();
-    const auto& bin = xbar.timeline()[i];
-    t.read_bytes.assign(bin.read.begin(), bin.read.end());
-    t.write_bytes.assign(bin.write.begin(), bin.write.end());
+  const auto& rows = xbar.timeline.rows();
+  for (std::size_t i = 0; i < rows.size() && xbar.timeline.start(i + 1) <= last; ++i) {
+    TimelineRow t{xbar.timeline.start(i), xbar.timeline.start(i + 1), {}, {}};
+    t.read_bytes.resize(kStatCount);
+    t.write_bytes.resize(kStatCount);
+    for (std::size_t m = 0; m < kMasterCount; ++m) {
+      t.read_bytes[stat_index(static_cast<Master>(m))] += rows[i].read[m];
+      t.write_bytes[stat_index(static_cast<Master>(m))] += rows[i].write[m];
+    }
     result.timeline.push_back(std::move(t));
   }
   result.uart = board_->uart_text();

@@ -43,6 +43,27 @@ void require(bool ok, const std::string& key, const std::string& value,
   if (!ok) throw UserError("key '" + key + "': '" + value + "' is not allowed; allowed: " + allowed);
 }
 
+void check_loads(const board::BoardParams& params) {
+  const auto& loads = params.soc.loads;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const auto& load = loads[i];
+    if (!load.active()) continue;
+    require(std::has_single_bit(load.bytes()), load.bytes.key(), load.bytes.text(),
+            "powers of two from 4 B");
+    require(load.base() % 64 == 0 && load.base() + load.size() <= params.soc.ddr.size_bytes(),
+            load.base.key(), load.base.text(),
+            "multiples of 64 B with base + size of the load inside the SDRAM");
+    require(!load.copies() || load.size() % 128 == 0, load.size.key(), load.size.text(),
+            "multiples of 128 B for a copy");
+    require(load.port.is("load") || !load.priority.user_set(), load.priority.key(),
+            load.priority.text(), "only with port load; " + load.port() +
+            " has the priority of " + (load.port.is("remap_engine") ? "MSTPRI0" : "QUEPRI"));
+    for (std::size_t k = 0; k < i; ++k)
+      require(!loads[k].active() || loads[k].port() != load.port(), load.port.key(), load.port(),
+              "a port that no other load drives");
+  }
+}
+
 }  // namespace
 
 void complete_params(board::BoardParams& params) {
@@ -54,13 +75,7 @@ void complete_params(board::BoardParams& params) {
   for (const auto* cache : {&params.soc.cpu.icache, &params.soc.cpu.dcache})
     require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
             "powers of two");
-  const auto& load = params.soc.load;
-  require(std::has_single_bit(load.bytes()), load.bytes.key(), load.bytes.text(),
-          "powers of two from 4 B");
-  require(load.outstanding() == 0 || (load.base() % 64 == 0 &&
-                                      load.base() + load.size() <= params.soc.ddr.size_bytes()),
-          load.base.key(), load.base.text(),
-          "multiples of 64 B with load.base + load.size inside the SDRAM");
+  check_loads(params);
   if (!params.decoder.standard.user_set())
     params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
 }

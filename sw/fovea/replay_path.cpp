@@ -79,6 +79,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     }
   }
   time_.fill(kNever);
+  waits_for_.fill(trace::kInterrupt);
   for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
   find_next();
 }
@@ -113,6 +114,15 @@ inline ReplayPath::Slot* ReplayPath::place(MasterState& m, bool write) {
   return best;
 }
 
+/// When what a record waits for outside its stream comes; kNever while that is not known.
+Picoseconds ReplayPath::event(const trace::Record& r) const {
+  if (r.source == trace::kInterrupt) return info_.interrupts[r.event];
+  const Stream& other = streams_[r.source];
+  if (r.event >= other.number) return kNever;
+  if (r.event + kHistory <= other.number) return start_;  // long done
+  return other.history[r.event % kHistory].last;
+}
+
 /// When the record's release lets it go; kNever while that is not known.
 inline Picoseconds ReplayPath::released(const Stream& s) const {
   const trace::Record& r = s.record;
@@ -125,7 +135,8 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
   }
   std::uint64_t edge = s.clock.edge_at_or_after(from) + r.gap;
   if (r.release == trace::Release::kWhen) {
-    const Picoseconds risen = info_.interrupts[r.interrupt];
+    const Picoseconds risen = event(r);
+    if (risen == kNever) return kNever;
     edge = std::max(edge, s.clock.edge_at_or_after(risen)) + r.wake_gap;
   }
   edge += (s.align + s.phase - edge % s.align) % s.align;
@@ -139,6 +150,10 @@ void ReplayPath::prepare(unsigned stream) {
   for (;;) {
     if (!s.valid) return;
     Picoseconds at = released(s);
+    waits_for_[stream] = at == kNever && s.record.release == trace::Release::kWhen
+                             ? s.record.source
+                             : trace::kInterrupt;
+    cross_ |= waits_for_[stream] != trace::kInterrupt;
     if (at == kNever) return;
     at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
@@ -262,12 +277,17 @@ void ReplayPath::complete(Slot& slot) {
   last_ = std::max(last_, slot.last);
   slot.free = slot.last;
   streams_[m.stream].history[slot.number % kHistory] = {slot.first, slot.last};
-  if (time_[m.stream] == kNever) {
-    prepare(m.stream);
-    if (time_[m.stream] < next_time_) {
-      next_stream_ = m.stream;
-      next_time_ = time_[m.stream];
-    }
+  if (time_[m.stream] == kNever) wake(m.stream);
+  if (cross_) [[unlikely]]
+    for (unsigned i = 0; i < streams_.size(); ++i)
+      if (waits_for_[i] == m.stream) wake(i);
+}
+
+void ReplayPath::wake(unsigned stream) {
+  prepare(stream);
+  if (time_[stream] < next_time_) {
+    next_stream_ = stream;
+    next_time_ = time_[stream];
   }
 }
 

@@ -80,7 +80,9 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
 
   void fetch(unsigned stream);
   void prepare(unsigned stream);
+  Picoseconds event(const trace::Record& r) const;
   Picoseconds released(const Stream& s) const;
+  void wake(unsigned stream);
   Slot* place(MasterState& m, bool write);
   void set_time(unsigned stream, Picoseconds at) {
     time_[stream] = at;
@@ -111,6 +113,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   std::vector<Stream> streams_;
   std::array<Picoseconds, kMasterCount> time_{};  // of each stream's next request
   std::uint32_t due_ = 0;                         // streams whose time is known
+  std::array<std::uint8_t, kMasterCount> waits_for_{};  // stream that holds up each, by kWhen
+  bool cross_ = false;  // a record of one stream has waited for another
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;

@@ -15,7 +15,8 @@ class SyntheticTrace final : public trace::RecordSource {
   SyntheticTrace(unsigned masters, std::uint64_t count, bool random) : random_(random) {
     for (unsigned m = 0; m < masters; ++m) {
       info.streams.emplace_back();
-      info.masters.push_back({static_cast<Master>(m), std::string(kMasterNames[m]), m, 8, 8, false});
+      info.masters.push_back(
+          {port(m), std::string(kMasterNames[index(port(m))]), m, 8, 8, false});
       left_.push_back(count / masters);
       seeds_.push_back(m * 77 + 1);
     }
@@ -24,7 +25,7 @@ class SyntheticTrace final : public trace::RecordSource {
     if (left_[stream] == 0) return false;
     const std::uint64_t n = left_[stream]--;
     r = trace::Record{};
-    r.master = static_cast<Master>(stream);
+    r.master = port(stream);
     r.bytes = 32;
     std::uint32_t& seed = seeds_[stream];
     seed = seed * 1664525u + 1013904223u;
@@ -36,6 +37,8 @@ class SyntheticTrace final : public trace::RecordSource {
   trace::TraceInfo info;
 
  private:
+  /// Behind the core's: those of 64 bits.
+  static Master port(unsigned n) { return static_cast<Master>(index(Master::kEdmaTc0Read) + n); }
   bool random_;
   std::vector<std::uint64_t> left_;
   std::vector<std::uint32_t> seeds_;

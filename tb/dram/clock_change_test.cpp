@@ -11,7 +11,7 @@
 namespace fovea::dram {
 namespace {
 
-constexpr Master kA = Master::kEdmaTc0, kB = Master::kVpfe, kC = Master::kVpbe;
+constexpr Master kA = Master::kVpfe, kB = Master::kVpbe, kC = Master::kRemapEngine;
 using Tables = std::array<WaitTable, 2>;
 
 std::uint64_t sum(const Tables& tables, std::size_t m, Waits MasterWaits::*direction) {

@@ -8,92 +8,24 @@
 
 #include "tb/dram/bench.h"
 #include "tb/dram/path.h"
+#include "tb/dram/xbar_bench.h"
 
 namespace fovea::dram {
 namespace {
 
-using bus::Slave;
-constexpr Picoseconds kEdge = 10'000;  // 100 MHz: edge k at k * kEdge
-constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1, kC = Master::kVpfe;
+constexpr Master kA = Master::kVpfe, kB = Master::kVpbe, kC = Master::kRemapEngine;
 
-struct Event {
-  Master master;
-  Slave slave;
-  std::uint64_t granted, arrival;  // edges
-};
-struct Answer {
-  Master master;
-  std::uint64_t first, last;  // edges
-  bool error;
-};
-
-class XbarBench : private bus::XbarHost {
- public:
-  explicit XbarBench(std::vector<std::pair<std::string, std::string>> params = {})
-      : params_(params), xbar(params_, *this) {
-    xbar.set_clock(Frequency(100'000'000), 0);
-  }
-  /// On the port's wires at edge `edge`: the crossbar's next edge is the first to see it.
-  void submit(Master m, std::uint64_t edge, bool write = false, unsigned bytes = 8,
-              Slave slave = Slave::kDdr, bool locked = false) {
-    requests_.push_back(std::make_unique<MemRequest>());
-    MemRequest& r = *requests_.back();
-    r.master = m;
-    r.write = write;
-    r.bytes = static_cast<std::uint8_t>(bytes);
-    r.issued = edge * kEdge;
-    r.locked = locked;
-    xbar.submit(r, slave);
-  }
-  void run(std::uint64_t until = ~std::uint64_t{0} / kEdge) {
-    while (xbar.next_decision() < until * kEdge) {
-      granted_ = xbar.next_decision();
-      xbar.step();
-    }
-  }
-  std::string winners() const {
-    std::string s;
-    for (const Event& e : events) s += e.master == kA ? 'A' : e.master == kB ? 'B' : 'C';
-    return s;
-  }
-  std::vector<Event> events;
-  std::vector<Answer> answers;
-  std::vector<MemRequest*> sent;
-  bool ddr_accepts = true, refuses = false;
-
- private:
-  struct Params : bus::CrossbarParams {
-    explicit Params(const std::vector<std::pair<std::string, std::string>>& list) {
-      ParamSet set;
-      set.add(*this);
-      for (auto& p : ports) set.add(*p);
-      for (const auto& [key, value] : list) set.set(key, value);
-    }
-  };
-  Taken forward(MemRequest& r, Picoseconds arrival) override {
-    EXPECT_EQ(arrival % kEdge, 0u);
-    const auto slave = static_cast<Slave>(r.slave);
-    events.push_back({r.master, slave, granted_ / kEdge, arrival / kEdge});
-    sent.push_back(&r);
-    if (refuses) return Taken::kRefused;
-    return slave != Slave::kDdr || ddr_accepts ? Taken::kYes : Taken::kWaits;
-  }
-  void respond(MemRequest& r) override {
-    answers.push_back({r.master, r.first / kEdge, r.last / kEdge, r.error});
-  }
-  std::vector<std::unique_ptr<MemRequest>> requests_;
-  Params params_;
-  Picoseconds granted_ = 0;
-
- public:
-  bus::Crossbar xbar;
-};
+std::string winners(const XbarBench& b) {
+  std::string s;
+  for (const Event& e : b.events) s += e.master == kA ? 'A' : e.master == kB ? 'B' : 'C';
+  return s;
+}
 
 // Put on the port at edge 5, seen at 6, through the bridge in 2: arbitrated at 8. A read's command
 // takes one edge.
 TEST(CrossbarTest, RequestLatencyMovesTheGrantByItsEdges) {
   for (const unsigned latency : {0u, 2u, 3u, 16u}) {
-    XbarBench b({{"bus.edma_tc0.request_latency", std::to_string(latency) + " cycles"}});
+    XbarBench b({{"bus.vpfe.request_latency", std::to_string(latency) + " cycles"}});
     b.submit(kA, 5);
     b.run();
     ASSERT_EQ(b.events.size(), 1u);
@@ -104,7 +36,7 @@ TEST(CrossbarTest, RequestLatencyMovesTheGrantByItsEdges) {
 
 TEST(CrossbarTest, ResponseLatencyMovesReadDataAndAcknowledgeByItsEdges) {
   for (const unsigned latency : {0u, 2u, 3u}) {
-    XbarBench b({{"bus.edma_tc0.response_latency", std::to_string(latency) + " cycles"}});
+    XbarBench b({{"bus.vpfe.response_latency", std::to_string(latency) + " cycles"}});
     b.submit(kA, 5);
     b.submit(kB, 5, true, 64);
     b.run();
@@ -130,7 +62,7 @@ TEST(CrossbarTest, WriteOccupiesTheSlaveForItsWordsAndReadForOne) {
     b.submit(kC, 5);
     b.run();
     const std::uint64_t words = (bytes + 7) / 8;
-    EXPECT_EQ(b.winners(), "ABC");
+    EXPECT_EQ(winners(b), "ABC");
     EXPECT_EQ(b.events[0].granted, 8u);
     EXPECT_EQ(b.events[0].arrival, 8 + words);
     EXPECT_EQ(b.events[1].granted, 8 + words);
@@ -147,7 +79,7 @@ TEST(CrossbarTest, PriorityWinsWhateverTheOrderOfArrivalInTheInstant) {
     b.submit(kB, 5);
     if (!a_first) b.submit(kA, 5);
     b.run();
-    EXPECT_EQ(b.winners(), "BA");
+    EXPECT_EQ(winners(b), "BA");
     EXPECT_EQ(b.sent[0]->priority, 1) << "the slave is told";
     EXPECT_EQ(b.sent[1]->priority, 4);
   }
@@ -162,7 +94,7 @@ TEST(CrossbarTest, MoreUrgentRequestWaitsForTheBurstUnderWay) {
   b.run(9);
   b.submit(kB, 9);
   b.run();
-  EXPECT_EQ(b.winners(), "ABA");
+  EXPECT_EQ(winners(b), "ABA");
   EXPECT_EQ(b.events[1].granted, 16u);
 }
 
@@ -171,13 +103,13 @@ TEST(CrossbarTest, EqualPrioritiesTakeTurns) {
   for (unsigned i = 0; i < 3; ++i)
     for (const Master m : {kA, kB, kC}) b.submit(m, 5);
   b.run();
-  EXPECT_EQ(b.winners(), "ABCABCABC");
+  EXPECT_EQ(winners(b), "ABCABCABC");
   XbarBench c;  // starts behind the last one served
   c.submit(kB, 1);
   c.run();
   for (const Master m : {kA, kB, kC}) c.submit(m, 20);
   c.run();
-  EXPECT_EQ(c.winners(), "BCAB");
+  EXPECT_EQ(winners(c), "BCAB");
 }
 
 TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
@@ -188,7 +120,7 @@ TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
     b.submit(kB, 5);
     if (!change_first) b.xbar.set_priority(kB, 0);
     b.run();
-    EXPECT_EQ(b.winners(), "BA");
+    EXPECT_EQ(winners(b), "BA");
   }
 }
 
@@ -201,7 +133,7 @@ TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
   b.submit(kC, 5, false, 4, Slave::kConfig);  // goes
   b.run(50);
   ASSERT_EQ(b.events.size(), 2u);
-  EXPECT_EQ(b.winners(), "AC");
+  EXPECT_EQ(winners(b), "AC");
   EXPECT_EQ(b.events[1].slave, Slave::kConfig);
   EXPECT_TRUE(b.answers.empty()) << "no acknowledge before the slave has the write";
   b.ddr_accepts = true;
@@ -250,11 +182,11 @@ TEST(CrossbarTest, LockedReadKeepsTheSlaveUntilItsMastersNextRequest) {
     b.submit(kB, 5);
     b.submit(kC, 5, false, 4, Slave::kConfig);
     b.run();
-    EXPECT_EQ(b.winners(), locked ? "AC" : "ACB") << "the lock is the slave's own";
+    EXPECT_EQ(winners(b), locked ? "AC" : "ACB") << "the lock is the slave's own";
     b.submit(kA, 40, true, 4, Slave::kDdr, locked);
     b.submit(kA, 41);
     b.run();
-    EXPECT_EQ(b.winners(), locked ? "ACABA" : "ACBAA");
+    EXPECT_EQ(winners(b), locked ? "ACABA" : "ACBAA");
     if (locked) {
       EXPECT_EQ(b.events[3].granted, b.events[2].arrival) << "as soon as it is free";
     }
@@ -285,7 +217,7 @@ TEST(CrossbarTest, WaitsAreTaggedWithTheMasterThatHadTheLane) {
   b.xbar.set_priority(kA, 3);
   b.submit(kA, 10, false, 8);
   b.run();
-  ASSERT_EQ(b.winners(), "ABCA");
+  ASSERT_EQ(winners(b), "ABCA");
   for (const Event& e : b.events) EXPECT_EQ(e.slave, Slave::kDdr);
   const auto edges = [](const Waits& w, Culprit c) { return w.ps[index(c)] / kEdge; };
   const auto sum = [](const Waits& w) {
@@ -407,7 +339,7 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
       transactions += s->transactions.count();
     }
     std::uint64_t timeline_read = 0, timeline_written = 0;
-    for (const auto& row : path.xbar.timeline()) {
+    for (const auto& row : path.xbar.timeline.rows()) {
       for (const std::uint64_t bytes : row.read) timeline_read += bytes;
       for (const std::uint64_t bytes : row.write) timeline_written += bytes;
     }

@@ -11,7 +11,7 @@ namespace fovea::dram {
 namespace {
 
 using mem::Cmd;
-constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1, kC = Master::kVpfe;
+constexpr Master kA = Master::kRemapEngine, kB = Master::kLoad, kC = Master::kVpfe;
 
 Request make(Master m, bool write, std::uint32_t address, unsigned priority = 3,
              unsigned bytes = 16) {
@@ -327,7 +327,7 @@ TEST(RefreshRateTest, UrgentRefreshIsCarriedOutOnceItHasClosedTheRows) {
                     {{"refresh.need", "0"}, {"refresh.must", "64"}, {"refresh.gap", "64"}});
     DdrBench b(o);
     std::vector<Request> all = {read(kA, at(0, 0), 5), read(kB, at(3, 0), 0),
-                                write(kC, at(1, 0), 1), read(Master::kEdmaTc2, at(2, 0), 0)};
+                                write(kC, at(1, 0), 1), read(Master::kVpbe, at(2, 0), 0)};
     for (Request& r : all) ASSERT_TRUE(b.submit(r, start));
     for (unsigned i = 0; i < 40 && b.ddr.next_decision() != kNever; ++i) b.step();
     EXPECT_EQ(b.ddr.next_decision(), kNever) << "start " << start << ": served in few commands";

@@ -29,7 +29,7 @@ Request write(Master m, std::uint32_t address, unsigned bytes = 16) {
   r.write = true;
   return r;
 }
-constexpr Master kA = Master::kEdmaTc0, kB = Master::kEdmaTc1;
+constexpr Master kA = Master::kRemapEngine, kB = Master::kLoad;
 
 /// A scenario gives the clock of its last act.
 struct Effect {

@@ -71,12 +71,13 @@ expect jump_nowhere 3 '0x70000000' 'prefetch abort' 'at 0x' -- run "$out/small.y
 expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/hello.elf" -s run.start_limit=60ms
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
-# Ports of masters that exist have keys, ports of the others have none.
-expect params_of_masters 0 'bus.arm_d.request_latency' 'bus.vpbe' 'bus.load' -- "$fovea" params 'bus.*'
-for absent in edma_tc0 edma_tc3 remap_engine; do
-  expect "params_$absent" 2 "no parameter matches 'bus.$absent'" -- "$fovea" params "bus.$absent"
-  expect "set_$absent" 2 "bus.$absent" -- run "$out/small.yaml" -s "bus.$absent.request_latency=2cycles"
-done
+expect params_of_masters 0 'bus.arm_d.request_latency' 'bus.vpbe' 'bus.edma_tc3.width' -- "$fovea" params 'bus.*'
+expect load_priority 2 "load.1.priority" 'QUEPRI' -- run "$out/small.yaml" -s load.1.outstanding=1 \
+  -s load.1.port=edma_tc2 -s load.1.priority=0
+expect load_port 2 "load.2.port" 'no other load' -- run "$out/small.yaml" -s load.1.outstanding=1 \
+  -s load.1.port=edma_tc2 -s load.2.outstanding=1 -s load.2.port=edma_tc2
+expect load_size 2 "load.size" '128' -- run "$out/small.yaml" -s load.outstanding=1 -s load.kind=copy \
+  -s load.size=8256B
 
 # Ctrl-C: a valid partial result.
 "$fovea" run "$out/small.yaml" -s run.frames=100000 -o "$out/stopped" >/dev/null 2>&1 &

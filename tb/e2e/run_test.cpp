@@ -59,7 +59,7 @@ void expect_conservation(const app::RunResult& r) {
     causes += count(r, std::string("cpu.stall.") + cause);
   EXPECT_EQ(count(r, "cpu.cycles"), causes);
   std::uint64_t read = 0, write = 0;
-  for (auto name : kMasterNames) {
+  for (auto name : kStatNames) {
     read += count(r, "bus." + std::string(name) + ".read_bytes");
     write += count(r, "bus." + std::string(name) + ".write_bytes");
   }

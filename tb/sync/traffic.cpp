@@ -248,13 +248,13 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
   config.to("block").bind(block.reg_socket);
   config.to("ddr").bind(ddr.reg_socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](block.priority[i]);
-  block.dma.socket.bind(*scr.target[index(Master::kEdmaTc0)]);
+  block.dma.socket.bind(*scr.target[index(Master::kEdmaTc0Read)]);
   block.stream.socket.bind(*scr.target[index(Master::kLoad)]);
 
   // Six masters on the remaining ports; the first has two ports, as the core does.
   std::vector<std::unique_ptr<TrafficMaster>> masters;
   const std::vector<std::vector<Master>> ports = {
-      {Master::kArmI, Master::kArmD}, {Master::kEdmaTc1}, {Master::kEdmaTc2},
+      {Master::kArmI, Master::kArmD}, {Master::kEdmaTc1Read}, {Master::kEdmaTc2Read},
       {Master::kVpfe}, {Master::kVpbe}, {Master::kRemapEngine}};
   for (unsigned i = 0; i < ports.size(); ++i) {
     masters.push_back(std::make_unique<TrafficMaster>(

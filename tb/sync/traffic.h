@@ -61,7 +61,7 @@ struct TestRegs : RegBank {
 class TestBlock : public BusTarget {
  public:
   TestRegs regs;
-  BurstMaster dma{"dma", Master::kEdmaTc0, 4};
+  BurstMaster dma{"dma", Master::kEdmaTc0Read, 4};
   BurstMaster stream{"stream", Master::kLoad, 3, BurstMaster::Report::kWhenDecided};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
   sc_core::sc_event irq;

@@ -7,11 +7,17 @@
 namespace fovea::bus {
 
 Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
-    : host_(host), interval_(params.timeline_interval()) {
-  for (std::size_t i = 0; i < kMasterCount; ++i) {
+    : timeline(params.timeline_interval()), host_(host) {
+  for (std::size_t i = 0; i < kStatCount; ++i)
     stats[i] = std::make_unique<MasterStats>(static_cast<Master>(i));
-    ports_[i].request_latency = static_cast<std::uint8_t>(params.ports[i]->request_latency());
-    ports_[i].response_latency = static_cast<std::uint8_t>(params.ports[i]->response_latency());
+  for (std::size_t i = 0; i < kMasterCount; ++i) {
+    const auto m = static_cast<Master>(i);
+    const MasterPortParams& from = params.port(m);
+    Port& p = ports_[i];
+    p.request_latency = static_cast<std::uint8_t>(from.request_latency());
+    p.response_latency = static_cast<std::uint8_t>(from.response_latency());
+    p.beat_log2 = static_cast<std::uint8_t>(from.beat_log2());
+    p.stats = stats[stat_index(m)].get();
   }
   of_priority_[Port().priority] = (1u << kMasterCount) - 1;
   priorities_ = 1u << Port().priority;
@@ -197,22 +203,38 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   plan();
 }
 
+/// Data from the lane to the port. A port narrower than the lane takes longer for each word, and
+/// begins with the next burst when it is through with the one before.
+void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last) {
+  const Port& p = ports_[index(r.master)];
+  const std::uint64_t seen = scr_.edge_at_or_after(first) + p.response_latency;
+  std::uint64_t begin = seen;
+  std::uint64_t end =
+      last <= first ? begin : scr_.edge_at_or_after(last) + p.response_latency;
+  if (p.beat_log2 < kLaneLog2 && scr_.running()) {
+    if (p.answered[0]) begin = std::max(begin, scr_.edge_after(p.answered[0]));
+    const unsigned last_word = std::min<unsigned>(r.bytes, 1u << kLaneLog2);
+    end = std::max(end + p.beats(last_word), begin + p.beats(r.bytes)) - 1;
+  }
+  set_outcome(r, scr_.edge(begin), scr_.edge(end));
+  Waits& w = waits_of(r);
+  const Picoseconds free = begin == seen ? r.first : scr_.edge(seen);
+  w.add(Culprit::kBridge, free - first);
+  w.add(culprit(r.master), r.first - free);
+  w.add(Culprit::kService, first - r.taken - r.slave_waited);
+}
+
 void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {
-  const std::uint64_t latency = ports_[index(request.master)].response_latency;
   const bool ddr = request.slave == static_cast<std::uint8_t>(Slave::kDdr);
-  // Nor does a faster clock bring data before the command was there.
-  if (ddr) first = std::max(first, request.taken + request.slave_waited);
-  const Picoseconds begin = scr_.edge(scr_.edge_at_or_after(first) + latency);
-  const Picoseconds end =
-      last <= first ? begin : scr_.edge(scr_.edge_at_or_after(last) + latency);
   request.error = error;
   if (ddr) {
-    set_outcome(request, begin, end);
-    waits_of(request).add(Culprit::kBridge, request.first - first);
-    waits_of(request).add(Culprit::kService, first - request.taken - request.slave_waited);
+    // Nor does a faster clock bring data before the command was there.
+    return_read(request, std::max(first, request.taken + request.slave_waited), last);
   } else {
-    request.first = begin;
-    request.last = end;
+    const std::uint64_t latency = ports_[index(request.master)].response_latency;
+    request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);
+    request.last =
+        last <= first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
   }
   if (error && request.locked) {  // its master gives up
     slaves_[request.slave].open_to = ~0u;

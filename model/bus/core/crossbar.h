@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/bus/core/crossbar_params.h"
+#include "model/bus/core/timeline.h"
 #include "model/common/clock.h"
 #include "model/common/mem_observer.h"
 #include "model/common/mem_request.h"
@@ -37,7 +38,7 @@ struct MasterStats : StatGroup {
   Counter transactions{*this, "transactions", "1", "bursts and single accesses of this master"};
   /// The part that goes to the SDRAM, for the balance against ddr.*_bytes; not printed itself.
   std::uint64_t ddr_read_bytes = 0, ddr_write_bytes = 0;
-  explicit MasterStats(Master m) : StatGroup("bus." + std::string(kMasterNames[index(m)])) {}
+  explicit MasterStats(Master m) : StatGroup("bus." + std::string(stat_name(m))) {}
 
  protected:
   void on_reset() override { ddr_read_bytes = ddr_write_bytes = 0; }
@@ -97,18 +98,16 @@ class Crossbar {
   /// Slave side: read data on the crossbar from first to last; or a register access that ended.
   void slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error);
 
-  std::array<std::unique_ptr<MasterStats>, kMasterCount> stats;
-  /// Bytes granted, per interval of simulated time since the start of the run.
-  struct TimelineBin {
-    std::array<std::uint64_t, kMasterCount> read{}, write{};
-  };
-  const std::vector<TimelineBin>& timeline() const { return timeline_; }
-  Picoseconds timeline_interval() const { return interval_; }
+  /// By stat_index().
+  std::array<std::unique_ptr<MasterStats>, kStatCount> stats;
+  /// Bytes granted.
+  Timeline timeline;
   /// Time between issue and arrival at the SDRAM, and from there back to the port.
   WaitTable waits;
 
  private:
   static constexpr std::uint64_t kNotYet = ~std::uint64_t{0};  // the clock stands
+  static constexpr unsigned kLaneLog2 = 3;  // bytes of a slave's lane
   static constexpr std::size_t kQueue = 32;  // as deep as any master's outstanding limit
   struct Port {
     struct Item {
@@ -123,6 +122,9 @@ class Crossbar {
     const Item& front() const { return queue[head % kQueue]; }
     std::uint8_t priority = 7;
     std::uint8_t request_latency = 0, response_latency = 0;
+    std::uint8_t beat_log2 = kLaneLog2;  // bytes that cross the port in a clock
+    MasterStats* stats = nullptr;
+    unsigned beats(unsigned bytes) const { return (bytes + (1u << beat_log2) - 1) >> beat_log2; }
     std::array<Picoseconds, 2> answered{};  // last beat of the newest outcome; reads, writes
     bool empty() const { return head == tail; }
   };
@@ -177,7 +179,8 @@ class Crossbar {
     visible_[port] = visible;
     slaves_[ports_[port].front().request->slave].heads |= 1u << port;
   }
-  void count(const MemRequest& r);
+  void count(const Port& p, const MemRequest& r);
+  void return_read(MemRequest& r, Picoseconds first, Picoseconds last);
   /// The parts of request.issued .. next_, its grant.
   void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants);
   Waits& waits_of(const MemRequest& r) {
@@ -197,23 +200,16 @@ class Crossbar {
   std::uint64_t next_edge_ = 0;
   std::uint8_t next_port_ = 0;
   Picoseconds next_ = kNever;
-  Picoseconds interval_;
-  Picoseconds bin_end_ = 0;
-  std::vector<TimelineBin> timeline_;
 };
 
 /// What a grant adds to the statistics.
-inline void Crossbar::count(const MemRequest& r) {
-  MasterStats& st = *stats[next_port_];
+inline void Crossbar::count(const Port& p, const MemRequest& r) {
+  MasterStats& st = *p.stats;
   ++st.transactions;
   (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr))
     (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
-  if (next_ >= bin_end_ || timeline_.empty()) [[unlikely]] {
-    timeline_.resize(next_ / interval_ + 1);
-    bin_end_ = (next_ / interval_ + 1) * interval_;
-  }
-  (r.write ? timeline_.back().write : timeline_.back().read)[next_port_] += r.bytes;
+  timeline.add(next_port_, r.write, r.bytes, next_);
 }
 
 template <class Host>
@@ -245,11 +241,11 @@ template <class Host>
   const Port& p = ports_[next_port_];
   SlaveState& s = slaves_[r.slave];
   r.priority = p.priority;
-  const unsigned cycles = r.write ? (r.bytes + 7u) / 8u : 1u;
+  const unsigned cycles = r.write ? p.beats(r.bytes) : 1u;
   s.free = next_edge_ + cycles;
   s.last = next_port_;
   if (r.locked || s.open_to != ~0u) [[unlikely]] set_lock(s, r);
-  count(r);
+  count(p, r);
 
   const std::uint64_t arrival = next_edge_ + cycles;
   const Picoseconds at = scr_.edge(arrival);

@@ -33,6 +33,10 @@ BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_
     streams_[s].pace = m.pace;
     streams_[s].reads = m.reads;
   }
+  for (const auto& m : masters_)
+    if (m.partner)
+      streams_[stream_of_[index(m.id)]].partner =
+          static_cast<std::uint8_t>(stream_of_[index(*m.partner)]);
   for (Stream& s : streams_) s.history.resize(kHistory);
 }
 
@@ -90,6 +94,8 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
       return release_line(s, p, r.issued);
     case Pace::kRepeating:
       return release_repeating(s, p, r.issued);
+    case Pace::kData:
+      return release_by_data(s, p, r.issued);
     case Pace::kSampled:
       return;
   }
@@ -137,7 +143,7 @@ void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_
   if (idle > 0 && !interrupts_.empty() && interrupts_.back() <= at) {
     const std::uint64_t wake = clock_.edge_at_or_after(interrupts_.back());
     p.record.release = Release::kWhen;
-    p.record.interrupt = static_cast<std::uint32_t>(interrupts_.size() - 1);
+    p.record.event = interrupts_.size() - 1;
     p.record.wake_gap = static_cast<std::uint32_t>((to - std::min(wake, to)) / align_ * align_);
     if (anchor) {
       p.reference = anchor->number;
@@ -170,18 +176,45 @@ void BusRecorder::release_line(Stream& s, Pending& p, Picoseconds at) {
   }
 }
 
-/// After the latest completion; the pause is in picoseconds.
-void BusRecorder::release_repeating(Stream& s, Pending& p, Picoseconds at) {
+/// Of the stream's last records, the one that ended last at or before `at`.
+const BusRecorder::Outcome* BusRecorder::latest_done(Stream& s, Picoseconds at) {
   const Outcome* best = nullptr;
-  const std::uint64_t number = s.next - 1;
-  for (std::uint64_t n = number > 64 ? number - 64 : 0; n < number; ++n) {
+  for (std::uint64_t n = s.next > 64 ? s.next - 64 : 0; n < s.next; ++n) {
     const Outcome* o = outcome(s, n);
     if (o && o->done && o->last <= at && (!best || o->last > best->last)) best = o;
   }
-  if (!best) return;
-  p.record.release = Release::kAfter;
-  p.reference = best->number;
-  p.record.gap = at - best->last;
+  return best;
+}
+
+/// After the latest completion; the pause is in picoseconds.
+void BusRecorder::release_repeating(Stream& s, Pending& p, Picoseconds at) {
+  const Outcome* own = latest_done(s, at);
+  const Outcome* other =
+      s.partner == kInterrupt ? nullptr : latest_done(streams_[s.partner], at);
+  if (other && (!own || other->last >= own->last)) {
+    p.record.release = Release::kWhen;
+    p.record.source = s.partner;
+    p.event = other->number;
+    p.record.wake_gap = static_cast<std::uint32_t>(at - other->last);
+  } else if (own) {
+    p.record.release = Release::kAfter;
+    p.reference = own->number;
+    p.record.gap = at - own->last;
+  }
+}
+
+/// What is written was read: it goes out when the next of the partner's reads is there.
+void BusRecorder::release_by_data(Stream& s, Pending& p, Picoseconds at) {
+  Stream& from = streams_[s.partner];
+  for (std::uint64_t n = s.taken_place == kNone ? 0 : s.taken_place + 1; n < from.next; ++n) {
+    const Outcome* o = outcome(from, n);
+    if (!o || !o->done || o->last != at) continue;
+    s.taken_place = n;
+    p.record.release = Release::kWhen;
+    p.record.source = s.partner;
+    p.event = n;
+    return;
+  }
 }
 
 void BusRecorder::responded(const MemRequest& r) {
@@ -226,13 +259,30 @@ void BusRecorder::write_out(Stream& s, unsigned index, std::size_t keep) {
   while (s.pending.size() > keep && s.pending.front().done) write_one(s, index);
 }
 
+/// Brings the records of a stream up to that one into the trace, where its place is known then.
+bool BusRecorder::write_up_to(std::uint8_t index, std::uint64_t number) {
+  Stream& s = streams_[index];
+  while (!s.pending.empty() && s.pending.front().done && s.next - s.pending.size() <= number)
+    write_one(s, index);
+  const Outcome* o = outcome(s, number);
+  return o && o->place != kNone;
+}
+
 void BusRecorder::write_one(Stream& s, unsigned index) {
   Pending p = std::move(s.pending.front());
   const std::uint64_t number = s.next - s.pending.size();
   s.pending.pop_front();
   if (!p.done || p.failed || p.issued < start_ || p.issued >= end_) return;
   Record& r = p.record;
-  if (r.release != Release::kAt) {
+  if (p.event != kNone) {
+    if (write_up_to(r.source, p.event)) {
+      r.event = outcome(streams_[r.source], p.event)->place;
+    } else {
+      r.release = Release::kAt;
+      r.source = kInterrupt;
+      r.wake_gap = 0;
+    }
+  } else if (r.release != Release::kAt) {
     const Outcome* o = outcome(s, p.reference);
     const bool usable = o && o->place != kNone && s.written - o->place <= kMaxBack;
     if (usable) {
@@ -259,7 +309,7 @@ void BusRecorder::finish(TraceInfo info,
   info.streams.resize(streams_.size());
   info.streams[0] = core_info_;
   for (const auto& m : masters_)
-    info.masters.push_back({m.id, std::string(kMasterNames[index(m.id)]),
+    info.masters.push_back({m.id, std::string(stat_name(m.id)),
                             stream_of_[index(m.id)], m.reads, m.writes, m.shared});
   for (unsigned i = 0; i < streams_.size(); ++i)
     while (!streams_[i].pending.empty()) write_one(streams_[i], i);

@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "model/common/clock.h"
@@ -23,7 +24,8 @@ enum class Pace : std::uint8_t {
   kCore,       ///< program order, one request a port
   kSampled,    ///< each at its time
   kLines,      ///< bursts of a line at a time, those without a place after the burst they replace
-  kRepeating,  ///< after a completion
+  kRepeating,  ///< after a completion, of its own or of the partner's records
+  kData,       ///< each with the last beat of a read of its partner, in order
 };
 
 class BusRecorder : public MemObserver {
@@ -33,6 +35,7 @@ class BusRecorder : public MemObserver {
     Pace pace;
     unsigned reads, writes;
     bool shared;
+    std::optional<Master> partner = {};  ///< whose completions it waits for as well
   };
   /// @param core asked at each of the core's requests
   BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
@@ -64,6 +67,7 @@ class BusRecorder : public MemObserver {
     Record record;
     Picoseconds issued = 0;
     std::uint64_t reference = kNone;  // number of the record that releases it
+    std::uint64_t event = kNone;      // kWhen of another stream: number of the record there
     bool done = false, failed = false;
   };
   struct Outcome {
@@ -80,6 +84,7 @@ class BusRecorder : public MemObserver {
     std::uint64_t blocking_read = kNone, latest = kNone, taken_place = kNone;
     Pace pace = Pace::kSampled;
     unsigned reads = 1;
+    std::uint8_t partner = kInterrupt;  // its stream
   };
   struct Flight {
     const MemRequest* request;
@@ -95,6 +100,9 @@ class BusRecorder : public MemObserver {
   void release_core(Stream& s, Pending& p, Picoseconds at, std::size_t port);
   void release_line(Stream& s, Pending& p, Picoseconds at);
   void release_repeating(Stream& s, Pending& p, Picoseconds at);
+  void release_by_data(Stream& s, Pending& p, Picoseconds at);
+  const Outcome* latest_done(Stream& s, Picoseconds at);
+  bool write_up_to(std::uint8_t index, std::uint64_t number);
   void after(Pending& p, std::uint64_t number, bool first, std::uint64_t from, std::uint64_t to);
   void drop_early(Stream& s);
   void write_out(Stream& s, unsigned index, std::size_t keep);

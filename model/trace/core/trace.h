@@ -16,8 +16,11 @@ namespace fovea::trace {
 enum class Release : std::uint8_t {
   kAt,     ///< a time: sample clock of a camera or display
   kAfter,  ///< an earlier record of its stream is done, and a gap in the stream's clock
-  kWhen,   ///< an interrupt that its master slept for, and a gap after it
+  kWhen,   ///< an event that its master slept or waited for, and a gap after it
 };
+
+/// What kWhen waits for: an interrupt of the core, or the last beat of a record of another stream.
+inline constexpr std::uint8_t kInterrupt = 0xFF;
 
 struct Record {
   Release release = Release::kAt;
@@ -31,8 +34,9 @@ struct Record {
   std::uint32_t address = 0;    ///< byte offset in the SDRAM, start of the burst
   std::uint32_t back = 0;       ///< kAfter, kWhen: that many records before this one; 0: none
   std::uint64_t gap = 0;        ///< kAfter: clocks; kWhen: clocks of work before the sleep
-  std::uint32_t interrupt = 0;  ///< kWhen: its number in TraceInfo::interrupts
-  std::uint32_t wake_gap = 0;   ///< kWhen: clocks from the interrupt to the request
+  std::uint8_t source = kInterrupt;  ///< kWhen: that, or the number of the stream
+  std::uint64_t event = 0;      ///< kWhen: number in TraceInfo::interrupts, or of the record there
+  std::uint32_t wake_gap = 0;   ///< kWhen: clocks from the event to the request
   Picoseconds at = 0;           ///< kAt
   friend bool operator==(const Record&, const Record&) = default;
 };

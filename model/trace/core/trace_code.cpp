@@ -50,13 +50,15 @@ void encode(const Record& r, CodeState& s, std::string& out) {
   if (r.back != 1) put_number(out, r.back);
   put_number(out, r.gap);
   if (r.release == Release::kWhen) {
-    put_number(out, zigzag(std::uint64_t{r.interrupt} - s.interrupt));
+    put_number(out, r.source == kInterrupt ? 0 : r.source + 1u);
+    std::uint64_t& last = s.event(r.source);
+    put_number(out, zigzag(r.event - last));
     put_number(out, r.wake_gap);
-    s.interrupt = r.interrupt;
+    last = r.event;
   }
 }
 
-void decode(ByteReader& in, CodeState& s, Record& r) {
+void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   r = Record{};
   const std::uint8_t head = in.byte();
   r.write = head & kWrite;
@@ -108,10 +110,14 @@ void decode(ByteReader& in, CodeState& s, Record& r) {
   r.back = static_cast<std::uint32_t>(back);
   r.gap = in.number();
   if (r.release == Release::kWhen) {
-    const std::uint64_t interrupt = s.interrupt + unzigzag(in.number()), gap = in.number();
-    if (interrupt > ~std::uint32_t{0} || gap > ~std::uint32_t{0})
-      throw BadTrace("an interrupt too far");
-    r.interrupt = s.interrupt = static_cast<std::uint32_t>(interrupt);
+    const std::uint64_t source = version == 1 ? 0 : in.number();
+    if (source > kMasterCount) throw BadTrace("an unknown stream");
+    r.source = source == 0 ? kInterrupt : static_cast<std::uint8_t>(source - 1);
+    std::uint64_t& last = s.event(r.source);
+    last += unzigzag(in.number());
+    const std::uint64_t gap = in.number();
+    if (last >> 40 || gap > ~std::uint32_t{0}) throw BadTrace("an event too far");
+    r.event = last;
     r.wake_gap = static_cast<std::uint32_t>(gap);
   }
 }

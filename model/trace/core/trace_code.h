@@ -60,11 +60,15 @@ struct CodeState {
   std::array<std::array<Kind, 2>, kMasterCount> kinds{};  // by master; read, write
   Master master = Master::kArmI;
   Picoseconds at = 0;
-  std::uint32_t interrupt = 0;
+  std::uint64_t interrupt = 0;
+  std::array<std::uint64_t, kMasterCount> completion{};  // by stream
+  std::uint64_t& event(std::uint8_t source) {
+    return source == kInterrupt ? interrupt : completion[source];
+  }
 };
 
 void encode(const Record& record, CodeState& state, std::string& out);
-/// @throws BadTrace
-void decode(ByteReader& in, CodeState& state, Record& record);
+/// `version` is the file's: in 1, each `when` is an interrupt. @throws BadTrace
+void decode(ByteReader& in, CodeState& state, Record& record, unsigned version);
 
 }  // namespace fovea::trace

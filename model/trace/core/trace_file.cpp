@@ -12,7 +12,7 @@
 namespace fovea::trace {
 namespace {
 
-constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersion = "1\n";
+constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n"};
 constexpr std::uint32_t kBlockRecords = 8192;
 // No record needs more; a block that claims more is not ours.
 constexpr std::uint32_t kMaxRecordBytes = 64, kMaxInfoBytes = 64u << 20;
@@ -100,7 +100,7 @@ void TraceWriter::add(unsigned stream, const Record& record) {
 }
 
 void TraceWriter::finish(const TraceInfo& info, const std::function<void(std::string_view)>& put) {
-  put(std::string(kMagic) + std::string(kVersion));
+  put(std::string(kMagic) + std::string(kVersions[1]));
   put(make_block(kInfo, 0, 0, info_text(info)));
   for (unsigned i = 0; i < streams_.size(); ++i) {
     close_block(streams_[i], i);
@@ -121,9 +121,10 @@ TraceFile::TraceFile(std::string name, std::string bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
   const std::string_view all = bytes_;
   if (!recognises(all)) bad("it is not a bus trace");
-  if (!all.substr(kMagic.size()).starts_with(kVersion))
-    bad("its version is not known; allowed: version 1");
-  std::size_t at = kMagic.size() + kVersion.size();
+  for (unsigned v = 0; v < 2; ++v)
+    if (all.substr(kMagic.size()).starts_with(kVersions[v])) version_ = v + 1;
+  if (version_ == 0) bad("its version is not known; allowed: versions 1 and 2");
+  std::size_t at = kMagic.size() + kVersions[0].size();
   bool ended = false, informed = false;
   while (at < all.size()) {
     const std::string where = " at byte " + std::to_string(at);
@@ -152,6 +153,7 @@ TraceFile::TraceFile(std::string name, std::string bytes)
       informed = true;
     } else if (kind == kRecords && stream < streams_.size()) {
       streams_[stream].blocks.push_back(b);
+      streams_[stream].records += b.count;
       records_ += b.count;
     } else if (kind == kEnd) {
       try {
@@ -271,14 +273,20 @@ bool TraceFile::next(unsigned stream, Record& record) {
   }
   --s.left;
   try {
-    decode(s.in, s.state, record);
+    decode(s.in, s.state, record, version_);
     if (!record.mark && stream_of_[index(record.master)] != stream)
       throw BadTrace("a master in another's stream");
     if (record.gap > s.longest_gap || record.wake_gap > s.longest_gap)
       throw BadTrace("a gap of hours");
     if (record.back > s.read) throw BadTrace("a reference to before the first record");
-    if (record.release == Release::kWhen && record.interrupt >= info_.interrupts.size())
-      throw BadTrace("an interrupt that never came");
+    if (record.release == Release::kWhen) {
+      const bool interrupt = record.source == kInterrupt;
+      if (!interrupt && (record.source >= streams_.size() || record.source == stream))
+        throw BadTrace("an unknown stream");
+      if (record.event >=
+          (interrupt ? info_.interrupts.size() : streams_[record.source].records))
+        throw BadTrace("an event that never came");
+    }
     if (record.release == Release::kAt && record.at > info_.end + kPsPerSecond)
       throw BadTrace("a time after its end");
   } catch (const BadTrace& e) {

@@ -54,7 +54,7 @@ class TraceFile : public RecordSource {
     std::vector<Block> blocks;
     std::size_t next_block = 0;
     std::uint32_t left = 0;
-    std::uint64_t read = 0, longest_gap = 0;
+    std::uint64_t records = 0, read = 0, longest_gap = 0;
     std::vector<std::uint8_t> raw;
     ByteReader in;
     CodeState state;
@@ -74,6 +74,7 @@ class TraceFile : public RecordSource {
     none.fill(~0u);
     return none;
   }();
+  unsigned version_ = 0;
   std::uint64_t records_ = 0;
 };
 

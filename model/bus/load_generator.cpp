@@ -1,0 +1,74 @@
+#include "model/bus/load_generator.h"
+
+#include <algorithm>
+
+namespace fovea::bus {
+namespace {
+
+constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
+constexpr std::uint32_t kSdram = 0x8000'0000u;
+
+/// Words of LoadParams::port: load, the transfer controllers, the engine.
+Master port_of(std::size_t word, bool write) {
+  if (word == 0) return Master::kLoad;
+  if (word > kTransferControllers) return Master::kRemapEngine;
+  const auto tc = static_cast<unsigned>(word - 1);
+  return write ? edma_write(tc) : edma_read(tc);
+}
+
+}  // namespace
+
+Master LoadParams::reader() const { return port_of(port.index(), false); }
+Master LoadParams::writer() const { return port_of(port.index(), true); }
+
+LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& params)
+    : sc_module(name),
+      params_(params),
+      reads_("memory", params.reader(), kPlaces),
+      pause_(params.gap()) {
+  if (params.writer() != params.reader())
+    other_side_ = std::make_unique<BurstMaster>("writes", params.writer(), kPlaces);
+  const auto report = [this](const BurstMaster::Completion& c) { done(c); };
+  reads_.on_done = report;
+  if (other_side_) other_side_->on_done = report;
+  SC_METHOD(fill);
+  sensitive << wake_;
+  dont_initialize();
+  // Not at power-up itself: the clocks get their first values in that instant.
+  if (params.active()) wake_.notify(ps_time(std::max<Picoseconds>(params.start(), kPsPerNs)));
+}
+
+unsigned LoadGenerator::under_way() const {
+  if (params_.copies()) return copies_;
+  return reads_.outstanding() + (other_side_ ? other_side_->outstanding() : 0);
+}
+
+void LoadGenerator::fill() {
+  while (under_way() < params_.outstanding()) {
+    const std::uint64_t n = serial_++;
+    const std::uint64_t slots = region() / params_.bytes();
+    // A fixed generator: the same load in every run.
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    const std::uint64_t slot = params_.pattern.is("random") ? (state_ >> 33) % slots : n % slots;
+    const auto address =
+        static_cast<std::uint32_t>(kSdram + params_.base() + slot * params_.bytes());
+    const auto bytes = static_cast<unsigned>(params_.bytes());
+    if (params_.kind.is("write") || (params_.kind.is("mixed") && n % 2 == 1)) {
+      writes().write(address, {data_.data(), bytes});
+    } else {
+      copies_ += params_.copies();
+      reads_.read(address, bytes);
+    }
+  }
+}
+
+void LoadGenerator::done(const BurstMaster::Completion& c) {
+  if (params_.copies()) {
+    if (!c.write && !c.error)
+      return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
+    --copies_;
+  }
+  wake_.notify(ps_time(c.error ? 10 * kPsPerUs : pause_));
+}
+
+}  // namespace fovea::bus

@@ -1,0 +1,64 @@
+// EDMA3 channel controller: the registers that set the priorities of the transfer controllers.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <systemc>
+
+#include "model/common/bus_target.h"
+#include "model/common/masters.h"
+#include "model/common/param.h"
+
+namespace fovea::dma {
+
+struct EdmaParams : ParamGroup {
+  IntParam reset_priority{*this,
+                          "reset_priority",
+                          IntParam::Unit::kCount,
+                          7,
+                          0,
+                          7,
+                          "QUEPRI out of reset, for each queue; 0 highest",
+                          Origin::kAssumed,
+                          "no public figure; Linux writes 7, 7, 7, 0 (dm365.md 4)"};
+  EdmaParams() : ParamGroup("edma") {}
+};
+
+/// Offsets: Linux dma.c. Fields of 3 bits on a pitch of 4, one for each queue.
+struct EdmaRegs : RegBank {
+  struct PerQueue : Reg {
+    using Reg::Reg;
+    Field q0{*this, "Q0", 0, 3, Mode::kRw, "of queue 0"};
+    Field q1{*this, "Q1", 4, 3, Mode::kRw, "of queue 1"};
+    Field q2{*this, "Q2", 8, 3, Mode::kRw, "of queue 2"};
+    Field q3{*this, "Q3", 12, 3, Mode::kRw, "of queue 3"};
+  };
+  PerQueue quetcmap{*this, "QUETCMAP", 0x280, "number of the queue's transfer controller", 0x3210};
+  PerQueue quepri;
+  explicit EdmaRegs(unsigned reset_priority)
+      : RegBank("EDMACC"),
+        quepri(*this, "QUEPRI", 0x284, "priority on the crossbar, 0 highest",
+               0x1111u * reset_priority) {}
+};
+
+/// At 0x01C00000. A transfer controller has the priority of the queue that is mapped to it, of several
+/// the most urgent one; without a queue it keeps the lowest.
+class EdmaCc : public BusTarget {
+ public:
+  SC_HAS_PROCESS(EdmaCc);
+  static constexpr unsigned kQueues = 4;
+  EdmaRegs regs;
+  sc_core::sc_in<bool> lpsc{"lpsc"};
+  /// Of both of its ports.
+  sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
+
+  EdmaCc(sc_core::sc_module_name name, const EdmaParams& params);
+
+ protected:
+  bool clocked() const override { return lpsc.read(); }
+
+ private:
+  void update();
+  sc_core::sc_event written_;
+};
+
+}  // namespace fovea::dma
