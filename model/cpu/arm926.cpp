@@ -63,6 +63,7 @@ Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
   tx.address = a.address - tx.critical;
   tx.data = a.data;
   tx.bytes = a.bytes;
+  tx.parts = &a.parts;
   Agent::submit(tx, at);
 }
 

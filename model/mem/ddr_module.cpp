@@ -62,6 +62,7 @@ tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,
   r.address = m.address;
   r.critical = m.critical;
   r.data = m.data;
+  r.parts = m.parts;
   return controller_.submit(r, now_() + delay.value()) ? tlm::TLM_UPDATED : tlm::TLM_ACCEPTED;
 }
 

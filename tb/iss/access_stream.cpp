@@ -35,10 +35,12 @@ void AccessStream::boundary() {
   cpsr_ = core_.cpsr();
   thumb_ = bit(cpsr_, 5);
   std::uint32_t w = 0;
-  if (internal(pc_))
+  if (internal(pc_)) {
     std::memcpy(&w, tcm_.data() + (pc_ & 0x7FFCu), 4);
-  else
-    w = oracle_.fetch(pc_);
+    oracle_.fetched_elsewhere();
+  } else {
+    w = oracle_.fetch(pc_, thumb_);
+  }
   if (!thumb_) return arm(w);
   thumb(bit(pc_, 1) ? w >> 16 : w & 0xFFFFu);
 }

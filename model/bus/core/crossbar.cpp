@@ -127,9 +127,8 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
 
 void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed,
                          std::uint64_t edge) {
-  Waits& w = waits_of(r);
   const Picoseconds start = scr_.edge(crossed);
-  w.add(Culprit::kBridge, start - r.issued);
+  charge(r, Culprit::kBridge, start - r.issued);
   // From the newest grant back. Where nobody had the lane the request stood behind its own master's
   // last one.
   Picoseconds until = next_;
@@ -137,7 +136,7 @@ void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t cross
   const auto take = [&](std::uint64_t from, Culprit c) {
     if (from >= at) return;
     const Picoseconds t = from <= crossed ? start : scr_.edge(from);
-    w.add(c, until - t);
+    charge(r, c, until - t);
     until = t;
     at = from;
   };
@@ -160,7 +159,7 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
   const Picoseconds taken = scr_.edge(s.free);
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    waits_of(request).add(culprit(request.door_opener), taken - request.taken);
+    charge(request, culprit(request.door_opener), taken - request.taken);
   request.taken = taken;
   if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host_, request, s.free);
@@ -178,8 +177,8 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
   request.error = error;
   if (ddr) {
     set_outcome(request, begin, end);
-    waits_of(request).add(Culprit::kBridge, request.first - first);
-    waits_of(request).add(Culprit::kService, first - request.taken - request.slave_waited);
+    charge(request, Culprit::kBridge, request.first - first);
+    charge(request, Culprit::kService, first - request.taken - request.slave_waited);
   } else {
     request.first = begin;
     request.last = end;

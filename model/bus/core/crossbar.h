@@ -127,7 +127,7 @@ class Crossbar {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
     set_outcome(request, at, at);
     request.error = false;
-    waits_of(request).add(Culprit::kBridge, request.first - request.taken);
+    charge(request, Culprit::kBridge, request.first - request.taken);
     if (observer_) [[unlikely]]
       observer_->responded(request);
     host.respond(request);
@@ -142,9 +142,10 @@ class Crossbar {
   void count(const MemRequest& r);
   /// The parts of request.issued .. grant at `edge`.
   void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint64_t edge);
-  Waits& waits_of(const MemRequest& r) {
+  void charge(const MemRequest& r, Culprit c, Picoseconds t) {
     MasterWaits& w = waits[index(r.master)];
-    return r.write ? w.write : w.read;
+    (r.write ? w.write : w.read).add(c, t);
+    if (r.parts) r.parts->add(c, t);
   }
 
   XbarHost& host_;
@@ -198,10 +199,10 @@ void Crossbar::step(Host& host) {
   const Picoseconds at = scr_.edge(arrival);
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     if (crossed == next_edge_)
-      waits_of(r).add(Culprit::kBridge, next_ - r.issued);
+      charge(r, Culprit::kBridge, next_ - r.issued);
     else
       attribute(s, r, crossed, next_edge_);
-    waits_of(r).add(Culprit::kService, at - next_);
+    charge(r, Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
   r.taken = at;

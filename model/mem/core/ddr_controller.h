@@ -25,6 +25,7 @@ struct DdrRequest {
   std::uint32_t address = 0;
   std::uint32_t critical = 0;    ///< offset wanted first; the 16 bytes around it are read first
   std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
+  RequestWaits* parts = nullptr;  ///< read: gets its share of `waits` as well; null: nobody asks
 };
 
 /// What an idle controller does with the part (SDRCR.LPMODEN and SR_PD).

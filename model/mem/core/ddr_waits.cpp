@@ -16,6 +16,7 @@ void DdrController::attribute(const Entry& e, std::uint64_t clock) {
     if (from >= at) return;
     const Picoseconds t = from <= ready ? start : ddr_.edge(from);
     w.add(c, until - t);
+    if (e.request.parts) e.request.parts->add(c, until - t);
     until = t;
     at = std::max(from, ready);
   };
