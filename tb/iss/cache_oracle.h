@@ -73,8 +73,8 @@ class CacheOracle {
 
   /// The aligned word at an address, as the instruction side sees it.
   std::uint32_t fetch(std::uint32_t mva, bool thumb = false);
-  /// The program goes on at an address that is not fetched from here.
-  void fetched_elsewhere() { end_run(); }
+  /// The program does not go on behind the last instruction, or not from here.
+  void flow_changes() { end_run(); }
   std::uint32_t load(std::uint32_t mva, unsigned bytes);
   /// A store of 1, 2 or 4 bytes, or consecutive words of an STM or STRD.
   void store(std::uint32_t mva, unsigned bytes, const std::vector<std::uint32_t>& values);

@@ -4,6 +4,11 @@
 #include "model/cpu/core/core.h"
 
 namespace fovea::cpu {
+namespace {
+
+std::uint64_t beats(unsigned bytes) { return bytes < 4 ? 1 : bytes / 4; }
+
+}  // namespace
 
 void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
   counts_.stall[index(cause)] += cycle - cycle_;
@@ -36,10 +41,9 @@ void Core::stall_for_port(Cause cause) {
 
 /// Puts an access on its port.
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
-  const unsigned beats = a.bytes < 4 ? 1 : a.bytes / 4u;
-  (a.port == BusAccess::Port::kInstruction ? counts_.i_read_beats
-   : a.write                               ? counts_.d_write_beats
-                                           : counts_.d_read_beats) += beats;
+  if (!a.write)
+    (a.port == BusAccess::Port::kInstruction ? counts_.i_read_beats : counts_.d_read_beats) +=
+        beats(a.bytes);
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
@@ -162,6 +166,7 @@ void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned c
   }
   if (writes_.empty()) next_write_cycle_ = cycle_;
   writes_.push(pa, bytes, count);
+  counts_.d_write_beats += beats(count);
   // The port may be idle: then the write goes out at once.
   if (!write_in_flight_ && data_port_free_ <= cycle_) start_write(ahb(cycle_));
 }
@@ -212,6 +217,7 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
   std::memcpy(a.data, &value, bytes);
+  counts_.d_write_beats += beats(bytes);
   read_waiting_ = true;
   submit(a, cycle_);
   port_.finish(a);
@@ -241,6 +247,7 @@ void Core::write_back(unsigned index, Cause cause) {
   l.dirty = 0;
   ++counts_.dcache_writebacks;
   counts_.writeback_words += n / 4;
+  counts_.d_write_beats += beats(n);
   if (!read_waiting_ && !write_in_flight_ && data_port_free_ <= cycle_ && !filling_)
     start_write(ahb(cycle_));
 }

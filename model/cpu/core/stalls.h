@@ -36,6 +36,7 @@ constexpr bool waits_for_bus(Cause c) {
 /// Interlocks, which the running chain of instructions counts by itself, are not in here.
 class StallTable {
  public:
+  bool operator==(const StallTable&) const = default;
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit) const {
     return clocks_[index(cause) * kOfCause + region * kStallCulprits + culprit];
   }

@@ -33,6 +33,7 @@ struct Counts {
   std::uint64_t exceptions = 0, unpredictable = 0;
   StallTable stalls;
 
+  bool operator==(const Counts&) const = default;
   /// The next instructions are of that kind.
   void fetch_from(std::size_t kind) {
     if (kind == kind_) return;
@@ -146,7 +147,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(d_read_beats, "activity.ahb_d_read_beats", "1", d_read_beats,
                  "beats of reads asked for on the data AHB");
   FOVEA_CPU_STAT(d_write_beats, "activity.ahb_d_write_beats", "1", d_write_beats,
-                 "beats of writes put on the data AHB");
+                 "beats of writes: as they enter the write or victim buffer, or pass them");
   FOVEA_CPU_STAT(multiplies, "activity.multiplies", "1", multiplies,
                  "instructions that use the multiplier");
   FOVEA_CPU_STAT(coprocessor, "activity.coprocessor", "1", coprocessor,
