@@ -43,6 +43,16 @@ bus::AddressMap address_map(const mem::DdrParams& ddr) {
   return map;
 }
 
+/// Names for the core's stalls. All register blocks are one.
+cpu::RegionMap regions(const bus::AddressMap& map, std::size_t internal_bytes) {
+  cpu::RegionMap out;
+  out.add("itcm", 0, internal_bytes);
+  out.add("dtcm", 0x1'0000, internal_bytes);
+  out.add("sdram", map.ddr_base, map.ddr_size);
+  for (const auto& block : kRegisterMap) out.add("registers", block.base, block.size);
+  return out;
+}
+
 }  // namespace
 
 void Dm365Params::declare(ParamSet& set) {
@@ -82,6 +92,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
     timers[i] = std::make_unique<periph::Timer64>(("timer" + std::to_string(i)).c_str());
   if (params.load.outstanding() > 0)
     load = std::make_unique<bus::LoadGenerator>("load", params.load);
+  arm.core().set_regions(regions(address_map(params.ddr), internal_ram.size()));
   wire_clocks();
   wire_memory();
   wire_registers();
