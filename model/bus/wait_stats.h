@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/common/stats.h"
 #include "model/common/waits.h"
 
 namespace fovea::bus {
@@ -33,16 +34,16 @@ class WaitStats : public StatGroup {
  private:
   struct Named {
     Culprit culprit;
-    const char *name, *sentence;
+    const char* sentence;
   };
   static constexpr Named kNamed[] = {
-      {Culprit::kBridge, "bridge", "between port and crossbar, both ways"},
-      {Culprit::kService, "service", "the requests' own way through crossbar and controller"},
-      {Culprit::kRowMiss, "row_miss", "opening rows of closed banks"},
-      {Culprit::kRowConflict, "row_conflict", "closing other rows and opening the wanted ones"},
-      {Culprit::kTurnaround, "turnaround", "the data bus turning between reads and writes"},
-      {Culprit::kRefresh, "refresh", "refresh"},
-      {Culprit::kPowerDown, "power_down", "the memory asleep or waking up"},
+      {Culprit::kBridge, "between port and crossbar, both ways"},
+      {Culprit::kService, "the requests' own way through crossbar and controller"},
+      {Culprit::kRowMiss, "opening rows of closed banks"},
+      {Culprit::kRowConflict, "closing other rows and opening the wanted ones"},
+      {Culprit::kTurnaround, "the data bus turning between reads and writes"},
+      {Culprit::kRefresh, "refresh"},
+      {Culprit::kPowerDown, "the memory asleep or waking up"},
   };
 
   void add(const std::string& prefix, Waits MasterWaits::*direction) {
@@ -56,7 +57,8 @@ class WaitStats : public StatGroup {
             return StatBase::Value(static_cast<double>(t) * 1e-12);
           }));
     };
-    for (const Named& n : kNamed) entry(n.name, {n.culprit}, n.sentence);
+    for (const Named& n : kNamed)
+      entry(std::string(culprit_name(n.culprit)), {n.culprit}, n.sentence);
     for (std::size_t i = 0; i < kStatCount; ++i) {
       std::vector<Culprit> ports;
       for (std::size_t k = 0; k < kMasterCount; ++k)

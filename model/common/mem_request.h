@@ -7,6 +7,8 @@
 
 namespace fovea {
 
+class RequestWaits;
+
 /// Largest burst a master may ask for; a burst never crosses a multiple of its size.
 inline constexpr unsigned kMaxBurstBytes = 64;
 
@@ -18,6 +20,7 @@ struct MemRequest {
   std::uint32_t critical = 0;      ///< byte offset in the burst that must come first (WRAP8)
   std::uint8_t* data = nullptr;    ///< `bytes` bytes, in address order
   void* owner = nullptr;           ///< the master's own record of the transaction
+  RequestWaits* parts = nullptr;   ///< gets what an SDRAM request waits for; null: nobody asks
   Picoseconds issued = 0;          ///< when the master puts it on its port
   Master master = Master::kArmD;
   bool write = false;

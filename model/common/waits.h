@@ -1,11 +1,11 @@
 // Who or what a memory request waited for: every picosecond from its issue to its outcome.
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 #include "model/common/masters.h"
-#include "model/common/stats.h"
 
 namespace fovea {
 
@@ -24,6 +24,13 @@ enum class Culprit : std::uint8_t {
 inline constexpr std::size_t kCulprits = static_cast<std::size_t>(Culprit::kCount);
 constexpr Culprit culprit(Master m) { return static_cast<Culprit>(index(m)); }
 constexpr std::size_t index(Culprit c) { return static_cast<std::size_t>(c); }
+/// Names as they appear in statistics; masters have theirs.
+constexpr std::string_view culprit_name(Culprit c) {
+  constexpr std::string_view kNames[] = {"bridge",     "service", "row_miss",  "row_conflict",
+                                         "turnaround", "refresh", "power_down"};
+  static_assert(kMasterCount + std::size(kNames) == kCulprits);
+  return index(c) < kMasterCount ? kMasterNames[index(c)] : kNames[index(c) - kMasterCount];
+}
 
 /// Picoseconds by culprit, of the requests of one master and direction.
 struct Waits {
@@ -32,6 +39,30 @@ struct Waits {
 };
 struct MasterWaits {
   Waits read, write;
+};
+/// The same of one request, for a master that asks (MemRequest::parts).
+class RequestWaits {
+ public:
+  void clear() { used_ = 0; }
+  void add(Culprit c, std::uint64_t t) {
+    const std::uint32_t bit = 1u << index(c);
+    ps_[index(c)] = (used_ & bit ? ps_[index(c)] : 0) + t;
+    used_ |= bit;
+  }
+  std::uint64_t ps(Culprit c) const { return used_ >> index(c) & 1u ? ps_[index(c)] : 0; }
+  /// Calls f(culprit, picoseconds) for those that were added, in their order.
+  template <class F>
+  void each(F f) const {
+    for (std::uint32_t set = used_; set; set &= set - 1) {
+      const auto c = static_cast<std::size_t>(std::countr_zero(set));
+      f(static_cast<Culprit>(c), ps_[c]);
+    }
+  }
+
+ private:
+  std::uint32_t used_ = 0;  // one bit per culprit; the others' entries mean nothing
+  std::array<std::uint64_t, kCulprits> ps_;
+  static_assert(kCulprits <= 32);
 };
 using WaitTable = std::array<MasterWaits, kMasterCount>;
 

@@ -63,6 +63,7 @@ void Arm926::submit(BusAccess& a, Picoseconds at) {
   tx.address = a.address - tx.critical;
   tx.data = a.data;
   tx.bytes = a.bytes;
+  tx.parts = &a.parts;
   Agent::submit(tx, at);
 }
 

@@ -60,6 +60,7 @@ DdrConfig DdrModule::programmed() const { return decode(regs); }
   r.address = m.address;
   r.critical = m.critical;
   r.data = m.data;
+  r.parts = m.parts;
   return controller_.submit(r, at) ? Taken::kYes : Taken::kWaits;
 }
 

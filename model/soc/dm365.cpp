@@ -38,6 +38,16 @@ bus::AddressMap address_map(const mem::DdrParams& ddr) {
   return map;
 }
 
+/// Names for the core's stalls. All register blocks are one.
+cpu::RegionMap regions(const bus::AddressMap& map, std::size_t internal_bytes) {
+  cpu::RegionMap out;
+  out.add("itcm", 0, internal_bytes);
+  out.add("dtcm", 0x1'0000, internal_bytes);
+  out.add("sdram", map.ddr_base, map.ddr_size);
+  for (const auto& block : kRegisterMap) out.add("registers", block.base, block.size);
+  return out;
+}
+
 }  // namespace
 
 void Dm365Params::declare(ParamSet& set) {
@@ -79,6 +89,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
     if (params.loads[i].active())
       loads.push_back(std::make_unique<bus::LoadGenerator>(
           i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
+  arm.core().set_regions(regions(address_map(params.ddr), internal_ram.size()));
   wire_clocks();
   wire_memory();
   wire_registers();

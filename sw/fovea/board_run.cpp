@@ -16,6 +16,7 @@
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/simulation.h"
+#include "sw/fovea/stall_regions.h"
 
 namespace fovea::app {
 namespace {
@@ -201,6 +202,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     image.bytes.resize(s.memory_size);
     board_->load(image);
   }
+  cpu::RegionMap regions = board_->dm365.arm.core().regions();
+  add_program_regions(regions, elf, memory_regions(params_));
+  board_->dm365.arm.core().set_regions(std::move(regions));
   board_->load({0x8000'0000u, parameter_page(params_, *source)});
 
   if (!request.bus_trace.empty())
@@ -283,7 +287,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (!closed_ && board_->window_start()) close_window();
   }
   if (trace_) trace_->finish();
-  collect(arm.core().window_stats(), stats_);
+  const cpu::CoreStats& core = arm.core().window_stats();
+  collect(core, stats_);
+  result.stalls = stall_rows(core.from, core.to, arm.core().regions());
   add_frame_stats(stats_);
   result.guest_failure = guest;
   result.stats = std::move(stats_);

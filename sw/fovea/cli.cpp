@@ -43,6 +43,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   meter.add_host_rows(host);
   dir.write("frames.csv", frames_csv(result.frames));
   dir.write("timeline.csv", timeline_csv(result.timeline_masters, result.timeline));
+  dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("uart.log", result.uart);
   dir.write("host.json", host_json(host, args, version_text()));
   // Last: who finds stats.json finds all the rest.

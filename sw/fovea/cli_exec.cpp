@@ -92,7 +92,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_option("--root", o.root, "Folder of the program's files; without it there are none");
   c->add_option("-s,--set", o.sets, "Set a parameter, key=value; may be repeated")
       ->allow_extra_args(false);
-  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, config.json and host.json");
+  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, stalls.csv, config.json and host.json");
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
   c->add_flag("--strict", o.strict,
               "A feature that the guest uses and the model lacks is an error");
@@ -144,9 +144,11 @@ std::string core_table(std::span<const StatRow> stats) {
     out += fmt::format("  {:.2f} an instruction",
                        static_cast<double>(cycles) / static_cast<double>(instructions));
   out += "\n";
+  constexpr std::string_view kStall = "cpu.stall.";
   for (const auto& row : stats) {
-    const bool share = row.name == "cpu.issue" || row.name == "cpu.idle" ||
-                       row.name.starts_with("cpu.stall.");
+    const bool cause = row.name.starts_with(kStall) &&
+                       row.name.find('.', kStall.size()) == std::string::npos;
+    const bool share = row.name == "cpu.issue" || row.name == "cpu.idle" || cause;
     if (!share || !std::holds_alternative<std::uint64_t>(row.value)) continue;
     const auto n = std::get<std::uint64_t>(row.value);
     if (n == 0) continue;
@@ -187,6 +189,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   context.out.flush();
   context.err << core_table(result.stats) << std::flush;
   if (dir) {
+    dir->write("stalls.csv", stalls_csv(result.stalls));
     dir->write("host.json", host_json(result.host, args, version_text()));
     dir->write("stats.json",
                stats_json(result.stats, result.complete && result.guest_failure.empty(),

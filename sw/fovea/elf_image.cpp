@@ -101,9 +101,18 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     if (std::uint64_t{sorted[i - 1].address} + sorted[i - 1].memory_size > sorted[i].address)
       fail(fmt::format("segments {} and {} overlap", sorted[i - 1].index, sorted[i].index));
 
+  std::size_t section_names = 0;
+  const bool named = elf_getshdrstrndx(elf.get(), &section_names) == 0;
   for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf.get(), section));) {
     GElf_Shdr table{};
-    if (!gelf_getshdr(section, &table) || table.sh_type != SHT_SYMTAB) continue;
+    if (!gelf_getshdr(section, &table)) continue;
+    if ((table.sh_flags & SHF_ALLOC) != 0 && table.sh_size > 0 && named) {
+      const char* text = elf_strptr(elf.get(), section_names, table.sh_name);
+      if (text && *text)
+        image.sections_.push_back({text, static_cast<std::uint32_t>(table.sh_addr),
+                                   static_cast<std::uint32_t>(table.sh_size)});
+    }
+    if (table.sh_type != SHT_SYMTAB) continue;
     Elf_Data* data = elf_getdata(section, nullptr);
     if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", cut));
     for (std::size_t i = 0; i < table.sh_size / table.sh_entsize; ++i) {

@@ -25,6 +25,12 @@ struct ElfSymbol {
   bool function = false;      ///< declared as function, or a label in code
 };
 
+/// A named part of the program that takes memory when it runs.
+struct ElfSection {
+  std::string name;
+  std::uint32_t address = 0, size = 0;
+};
+
 /// A checked ELF32 little-endian ARM executable.
 class ElfImage {
  public:
@@ -36,6 +42,8 @@ class ElfImage {
   /// First instruction; bit 0 set means Thumb.
   std::uint32_t entry() const { return entry_; }
   const std::vector<ElfSegment>& segments() const { return segments_; }
+  /// In the file's order.
+  const std::vector<ElfSection>& sections() const { return sections_; }
   /// All named symbols, sorted by address.
   const std::vector<ElfSymbol>& symbols() const { return symbols_; }
 
@@ -50,6 +58,7 @@ class ElfImage {
   std::string file_;
   std::uint32_t entry_ = 0;
   std::vector<ElfSegment> segments_;
+  std::vector<ElfSection> sections_;
   std::vector<ElfSymbol> symbols_;
   std::vector<std::size_t> functions_;  // indices of symbols_, sorted by address
 };

@@ -33,6 +33,8 @@ class ExecProgram {
   const std::string& name() const { return name_; }  ///< argv[0]: without the folder
   std::uint32_t entry() const { return entry_; }
   const std::vector<ElfSegment>& segments() const { return segments_; }
+  /// Null for a flat binary.
+  const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
   /// "name+0x12" if symbols are known, else "".
   std::string describe(std::uint32_t address) const {
     return image_ ? image_->describe(address) : "";

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "sw/fovea/stall_regions.h"
+
 namespace fovea::app {
 namespace {
 
@@ -48,6 +50,7 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
       program_(request.program),
       map_(map),
       semihosting_(settings(request, map), request.console) {
+  core_.set_regions(exec_regions(program_, map_));
   core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
 }
 
@@ -122,6 +125,7 @@ ExecResult ExecSession::result(const std::string& failure) {
   FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==
                   std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
               "every clock of the core has one cause");
+  out.stalls = stall_rows({}, c, core_.regions());
   return out;
 }
 

@@ -34,6 +34,7 @@ struct ExecResult {
   int exit_code = 0;          ///< its own
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;
+  std::vector<StallRow> stalls;
 };
 
 /// A machine that runs one program.

@@ -152,6 +152,14 @@ std::string timeline_csv(std::span<const std::string> masters, std::span<const T
   return out;
 }
 
+std::string stalls_csv(std::span<const StallRow> rows) {
+  std::string out = "cause,region,culprit,cycles\n";
+  for (const auto& r : rows)
+    out += fmt::format("{},{},{},{}\n", csv_field(r.cause), csv_field(r.region),
+                       csv_field(r.culprit), r.cycles);
+  return out;
+}
+
 std::string human_text(const StatBase::Value& value, std::string_view unit) {
   const bool whole = std::holds_alternative<std::uint64_t>(value);
   const double v =

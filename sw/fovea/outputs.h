@@ -44,6 +44,12 @@ struct TimelineRow {
   std::vector<std::uint64_t> read_bytes, write_bytes;
 };
 
+/// Clocks of a cause, by region of the address and culprit.
+struct StallRow {
+  std::string cause, region, culprit;
+  std::uint64_t cycles = 0;
+};
+
 /// Shortest text that reads back as the same double; always with '.' or exponent, "null" for
 /// infinities and NaN (a mean of nothing), since JSON has neither.
 std::string number_text(double value);
@@ -74,6 +80,8 @@ std::string host_json(std::vector<StatRow> rows, std::span<const std::string> co
 std::string frames_csv(std::span<const FrameRow> rows);
 /// `masters` names the entries of each row's vectors; columns are bytes per interval.
 std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);
+
+std::string stalls_csv(std::span<const StallRow> rows);
 
 /// A figure for people: three to five digits and a fitting prefix ("40.2 ms", "165.9 MB").
 std::string human_text(const StatBase::Value& value, std::string_view unit);

@@ -65,6 +65,7 @@ struct RunResult {
   std::vector<FrameRow> frames;
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
+  std::vector<StallRow> stalls;
   std::string uart;  ///< all that the firmware printed
 };
 

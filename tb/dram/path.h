@@ -48,6 +48,7 @@ class Path : private bus::XbarHost, private mem::DdrClient {
     q.bytes = r.bytes;
     q.address = r.address;
     q.data = r.data;
+    q.parts = r.parts;
     return ddr.submit(q, arrival) ? Taken::kYes : Taken::kWaits;
   }
   void respond(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }

@@ -35,12 +35,24 @@ void AccessStream::boundary() {
   cpsr_ = core_.cpsr();
   thumb_ = bit(cpsr_, 5);
   std::uint32_t w = 0;
-  if (internal(pc_))
+  if (internal(pc_)) {
     std::memcpy(&w, tcm_.data() + (pc_ & 0x7FFCu), 4);
-  else
-    w = oracle_.fetch(pc_);
-  if (!thumb_) return arm(w);
-  thumb(bit(pc_, 1) ? w >> 16 : w & 0xFFFFu);
+    oracle_.flow_changes();
+  } else {
+    w = oracle_.fetch(pc_, thumb_);
+  }
+  if (thumb_) w = bit(pc_, 1) ? w >> 16 : w & 0xFFFFu;
+  if (may_go_to_next(w)) oracle_.flow_changes();
+  if (thumb_) return thumb(w);
+  arm(w);
+}
+
+/// Branches to the next instruction, which cannot be told from where the program goes on. A Thumb
+/// MOV to the pc is one wherever it goes, and counted once.
+bool AccessStream::may_go_to_next(std::uint32_t w) const {
+  if (!thumb_) return bits(w, 27, 0) == 0xAFF'FFFFu && passes(bits(w, 31, 28));
+  return w == 0xE7FFu || (w & 0xFF87u) == 0x4687u ||
+         (bits(w, 15, 12) == 13 && bits(w, 7, 0) == 0xFFu && passes(bits(w, 11, 8)));
 }
 
 bool AccessStream::passes(unsigned condition) const {

@@ -36,6 +36,7 @@ class AccessStream {
   std::uint32_t reg(unsigned n) const { return n == 15 ? pc_ + (thumb_ ? 4 : 8) : core_.reg(n); }
   static bool internal(std::uint32_t a) { return a < 0x8000u || (a >= 0x1'0000u && a < 0x1'8000u); }
   bool passes(unsigned condition) const;
+  bool may_go_to_next(std::uint32_t w) const;
   void arm(std::uint32_t w);
   void thumb(std::uint32_t w);
   void coprocessor(std::uint32_t w);

@@ -1,7 +1,6 @@
 #include "tb/iss/cache_bench.h"
 
 #include <array>
-#include <bit>
 #include <cstring>
 #include <iostream>
 #include <random>
@@ -26,6 +25,7 @@ std::string compare_counts(const NotingMachine& m, const CacheOracle& o) {
   const Counts& is = m.core.counts();
   const CacheCounts& want = o.counts();
   const std::pair<const char*, std::array<std::uint64_t, 2>> rows[] = {
+      {"icache.accesses", {o.words(), is.icache_accesses()}},
       {"icache.line_fills", {want.icache_fills, is.icache_fills}},
       {"dcache.reads", {want.dcache_reads, is.dcache_reads}},
       {"dcache.read_line_fills", {want.dcache_fills, is.dcache_read_fills}},
@@ -36,10 +36,6 @@ std::string compare_counts(const NotingMachine& m, const CacheOracle& o) {
     if (value[0] != value[1])
       return std::string(name) + ": expected " + std::to_string(value[0]) + ", is " +
              std::to_string(value[1]);
-  // The core looks up a line when it comes to it, and words that it has not decoded yet.
-  if (is.icache_accesses < o.line_changes() || is.icache_accesses > o.fetches())
-    return "icache.accesses " + std::to_string(is.icache_accesses) + " is not from " +
-           std::to_string(o.line_changes()) + " to " + std::to_string(o.fetches());
   return {};
 }
 
@@ -74,8 +70,7 @@ std::string compare_visible(NotingMachine& m, CacheOracle& o) {
 
 /// Who stops the core on its way changes nothing that it counts.
 std::string compare_runs(const Counts& a, const Counts& b) {
-  using Words = std::array<std::uint64_t, sizeof(Counts) / sizeof(std::uint64_t)>;
-  if (std::bit_cast<Words>(a) != std::bit_cast<Words>(b))
+  if (!(a == b))
     return "counters differ between a stepped and a free run";
   return {};
 }

@@ -64,13 +64,23 @@ OracleCache::Line& CacheOracle::fill(OracleCache& cache, std::uint32_t mva, std:
   return line;
 }
 
-std::uint32_t CacheOracle::fetch(std::uint32_t mva) {
+/// What follows is not behind the last instruction fetched here.
+void CacheOracle::end_run() {
+  if (run_end_ && run_cached_) (run_thumb_ ? half_words_ : words_) += run_thumb_ ? 3 : 2;
+  run_end_.reset();
+}
+
+std::uint32_t CacheOracle::fetch(std::uint32_t mva, bool thumb) {
   const std::uint32_t word = mva / 4 * 4;
   const Page page = mmu() ? pages_(word) : Page{word, true, true};
+  if (run_end_ && (*run_end_ != mva || run_thumb_ != thumb)) end_run();
+  run_end_ = mva + (thumb ? 2 : 4);
+  run_thumb_ = thumb;
+  run_cached_ = page.cacheable && (control >> 12 & 1u);
   std::uint32_t out = 0;
   const std::uint8_t* from = at(page.pa);
   if (page.cacheable && (control >> 12 & 1u)) {
-    ++fetches_;
+    (thumb ? half_words_ : words_) += 1;
     if (fetch_line_ != mva / 32) ++line_changes_;
     fetch_line_ = mva / 32;
     OracleCache::Line* line = icache_.find(word);

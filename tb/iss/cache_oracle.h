@@ -72,7 +72,9 @@ class CacheOracle {
   std::uint32_t cache_debug = 0;        ///< CP15 c15: bit 2 forces write-through
 
   /// The aligned word at an address, as the instruction side sees it.
-  std::uint32_t fetch(std::uint32_t mva);
+  std::uint32_t fetch(std::uint32_t mva, bool thumb = false);
+  /// The program does not go on behind the last instruction, or not from here.
+  void flow_changes() { end_run(); }
   std::uint32_t load(std::uint32_t mva, unsigned bytes);
   /// A store of 1, 2 or 4 bytes, or consecutive words of an STM or STRD.
   void store(std::uint32_t mva, unsigned bytes, const std::vector<std::uint32_t>& values);
@@ -87,12 +89,15 @@ class CacheOracle {
   const Traffic& traffic() const { return traffic_; }
   const CacheCounts& counts() const { return counts_; }
   std::uint64_t line_changes() const { return line_changes_; }
-  std::uint64_t fetches() const { return fetches_; }
+  /// Words asked of the I-cache: one an ARM instruction, one for two Thumb instructions; behind each
+  /// change of flow two words that are not executed, or one and a half on average.
+  std::uint64_t words() const { return words_ + half_words_ / 2; }
   std::uint64_t operations() const { return operations_; }
   const std::vector<std::uint8_t>& memory() const { return memory_; }
   OracleCache& dcache() { return dcache_; }
 
  private:
+  void end_run();
   bool mmu() const { return control & 1u; }
   bool data_cached(const Page& p) const { return p.cacheable && (control & 5u) == 5u; }
   std::uint8_t* at(std::uint32_t pa) { return memory_.data() + (pa - base_); }
@@ -107,8 +112,11 @@ class CacheOracle {
   OracleCache icache_, dcache_;
   Traffic traffic_;
   CacheCounts counts_;
-  std::uint64_t line_changes_ = 0, fetches_ = 0, operations_ = 0, invalidates_ = 0;
+  std::uint64_t line_changes_ = 0, words_ = 0, half_words_ = 0, operations_ = 0,
+                invalidates_ = 0;
   std::optional<std::uint32_t> fetch_line_;
+  std::optional<std::uint32_t> run_end_;  ///< address behind the last instruction fetched here
+  bool run_cached_ = false, run_thumb_ = false;
 };
 
 /// @return the first difference in words; empty: none. `buffered` of what was seen holds everything

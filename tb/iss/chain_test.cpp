@@ -269,21 +269,20 @@ TEST(ChainTest, StoreToRunningCodeInInternalRam) {
   EXPECT_EQ(m.core.reg(2), 9u);
 }
 
-/// Lines looked up, by hand: the record after a taken branch or a line's end, unless the branch
-/// stays in its line; each record once more when it is decoded.
-TEST(ChainTest, LinesLookedUp) {
+/// Words looked up in the I-cache, by hand: one an instruction and two behind a taken branch.
+TEST(ChainTest, WordsLookedUp) {
   struct Row {
     const char* what;
     unsigned each_turn;
     const char* text;
   };
   const Row rows[] = {
-      {"a loop within a line", 0, "1: subs r8, r8, #1\n nop\n bne 1b\n"},
-      {"a loop over two lines", 2,
+      {"a loop within a line", 3 + 2, "1: subs r8, r8, #1\n nop\n bne 1b\n"},
+      {"a loop over two lines", 10 + 2,
        "1: nop\n nop\n nop\n nop\n nop\n nop\n nop\n nop\n subs r8, r8, #1\n bne 1b\n"},
-      {"call and return within a line", 0,
+      {"call and return within a line", 4 + 3 * 2,
        "1: bl 2f\n subs r8, r8, #1\n bne 1b\n b 3f\n2: bx lr\n3:\n"},
-      {"call and return to another line", 2,
+      {"call and return to another line", 4 + 3 * 2,
        "1: bl 2f\n subs r8, r8, #1\n bne 1b\n b 3f\n.balign 32\n2: bx lr\n3:\n"},
   };
   for (const Row& row : rows) {
@@ -292,7 +291,7 @@ TEST(ChainTest, LinesLookedUp) {
       std::vector<std::uint64_t> at;
       Cached m("mov r8, #" + std::to_string(k ? 110 : 10) + "\n svc #3\n b 4f\n.balign 32\n4:\n" +
                    row.text + "svc #3\n",
-               [&](Machine& n, std::uint32_t) { at.push_back(n.core.counts().icache_accesses); });
+               [&](Machine& n, std::uint32_t) { at.push_back(n.core.counts().icache_accesses()); });
       ASSERT_EQ(at.size(), 2u);
       per_run[k] = at[1] - at[0];
     }

@@ -242,7 +242,7 @@ TEST(CoreControlTest, BreakpointStopsEachTimeAndCostsNoTime) {
   EXPECT_EQ(clocks[0], clocks[1]);
   EXPECT_EQ(counts[0].instructions, counts[1].instructions);
   EXPECT_EQ(counts[0].stall, counts[1].stall);
-  EXPECT_EQ(counts[0].icache_accesses, counts[1].icache_accesses);
+  EXPECT_EQ(counts[0].icache_accesses(), counts[1].icache_accesses());
 }
 
 TEST(CoreControlTest, StepsGoInstructionByInstructionAndRangesAsOne) {

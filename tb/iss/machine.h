@@ -109,6 +109,8 @@ class MachineWith {
     const std::uint64_t sum =
         c.issue + c.idle + std::accumulate(c.stall.begin(), c.stall.end(), std::uint64_t{0});
     EXPECT_EQ(core.clock_count() - first_clock, sum);
+    // And each stalled one a region and a culprit.
+    EXPECT_EQ(c.unexplained(), Cause::kCount);
   }
   Picoseconds limit = 500 * kPsPerMs;  ///< simulated time a program may take
   unsigned runs = 0;

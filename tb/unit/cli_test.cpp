@@ -56,7 +56,7 @@ class CliTest : public testing::Test {
 TEST_F(CliTest, RunLeavesAllFilesOfTheContract) {
   ASSERT_EQ(run(), 0) << err.str();
   for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
-                           "uart.log", "frames/frame_000000.png", "frames/frame_000003.png"})
+                           "stalls.csv", "uart.log", "frames/frame_000000.png", "frames/frame_000003.png"})
     EXPECT_TRUE(fs::is_regular_file(result / name)) << name;
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
   EXPECT_EQ(stats()["complete"], true);
@@ -74,7 +74,7 @@ TEST_F(CliTest, TwoRunsAreEqualInAllButHostJson) {
   ASSERT_EQ(run(), 0);
   std::vector<std::string> first;
   const auto names = {"config.json", "stats.json", "frames.csv", "timeline.csv",
-                      "frames/frame_000002.png"};
+                      "stalls.csv", "frames/frame_000002.png"};
   for (const char* name : names) first.push_back(read_text(result / name));
   ASSERT_EQ(run(), 0);
   std::size_t i = 0;

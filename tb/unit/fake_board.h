@@ -41,6 +41,7 @@ class FakeBoard : public app::Simulation {
         {"sync.strict", std::uint64_t{request.strict_sync ? 1u : 0u}, "count", "asked for"});
     result.timeline_masters = {"arm_d"};
     result.timeline = {{0, kPsPerMs, {64}, {0}}};
+    result.stalls = {{"dcache", "lut", "vpbe", 7}};
     result.uart = "hello from the guest\n";
     return result;
   }

@@ -159,6 +159,11 @@ TEST(TimelineCsvDeathTest, RowOfAnotherWidthIsADefect) {
   EXPECT_EXIT(timeline_csv(masters, rows), testing::ExitedWithCode(4), "timeline");
 }
 
+TEST(StallsCsvTest, NamesAreQuotedWhereTheyMustBe) {
+  const std::vector<StallRow> rows{{"dcache", "a,b", "vpbe", 3}};
+  EXPECT_EQ(stalls_csv(rows), "cause,region,culprit,cycles\ndcache,\"a,b\",vpbe,3\n");
+}
+
 TEST(HumanTextTest, PicksAFittingPrefix) {
   EXPECT_EQ(human_text(0.0402, "s"), "40.2 ms");
   EXPECT_EQ(human_text(1.5, "s"), "1.5 s");

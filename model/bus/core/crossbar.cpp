@@ -165,26 +165,28 @@ inline void Crossbar::sum_grants(SlaveState& s) {
 
 [[gnu::noinline]] void Crossbar::attribute(SlaveState& s, const MemRequest& r,
                                            std::uint64_t crossed, std::uint32_t grants) {
-  Waits& w = waits_of(r);
   const Picoseconds start = scr_.edge(crossed), waited = next_ - start;
-  w.add(Culprit::kBridge, start - r.issued);
+  charge(r, Culprit::kBridge, start - r.issued);
   // Where nobody had the lane the request stood behind its own master's last one.
   sum_grants(s);
   const std::uint32_t made = s.grants_made;
   std::uint32_t n = std::min(made - grants, static_cast<std::uint32_t>(SlaveState::kGrants));
   while (n > 0 && s.grant(made - n).end <= crossed) --n;
-  if (n == 0) return w.add(culprit(r.master), waited);
+  if (n == 0) return charge(r, culprit(r.master), waited);
   const Grant& first = s.grant(made - n);
   const Picoseconds passed = first.start < crossed ? start - scr_.edge(first.start) : 0;
   const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
   Picoseconds of_lane = s.lane[kMasterCount] - before[kMasterCount];
+  Waits w;
   if (n == 1)
     w.add(static_cast<Culprit>(first.master), of_lane);
   else
-    for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] += s.lane[m] - before[m];
+    for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] = s.lane[m] - before[m];
   w.ps[first.master] -= passed;
   of_lane -= passed;
   w.add(culprit(r.master), waited - of_lane);
+  for (std::size_t m = 0; m < kMasterCount; ++m)
+    if (w.ps[m]) charge(r, static_cast<Culprit>(m), w.ps[m]);
 }
 
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
@@ -196,7 +198,7 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
   const Picoseconds taken = scr_.edge(s.free);
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    waits_of(request).add(culprit(request.door_opener), taken - request.taken);
+    charge(request, culprit(request.door_opener), taken - request.taken);
   request.taken = taken;
   if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host_, request, s.free);
@@ -217,11 +219,10 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last) {
     end = std::max(end + p.beats(last_word), begin + p.beats(r.bytes)) - 1;
   }
   set_outcome(r, scr_.edge(begin), scr_.edge(end));
-  Waits& w = waits_of(r);
   const Picoseconds free = begin == seen ? r.first : scr_.edge(seen);
-  w.add(Culprit::kBridge, free - first);
-  w.add(culprit(r.master), r.first - free);
-  w.add(Culprit::kService, first - r.taken - r.slave_waited);
+  charge(r, Culprit::kBridge, free - first);
+  charge(r, culprit(r.master), r.first - free);
+  charge(r, Culprit::kService, first - r.taken - r.slave_waited);
 }
 
 void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {

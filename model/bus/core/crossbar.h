@@ -163,7 +163,7 @@ class Crossbar {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
     set_outcome(request, at, at);
     request.error = false;
-    waits_of(request).add(Culprit::kBridge, request.first - request.taken);
+    charge(request, Culprit::kBridge, request.first - request.taken);
     if (observer_) [[unlikely]]
       observer_->responded(request);
     host.respond(request);
@@ -183,9 +183,10 @@ class Crossbar {
   void return_read(MemRequest& r, Picoseconds first, Picoseconds last);
   /// The parts of request.issued .. next_, its grant.
   void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants);
-  Waits& waits_of(const MemRequest& r) {
+  void charge(const MemRequest& r, Culprit c, Picoseconds t) {
     MasterWaits& w = waits[index(r.master)];
-    return r.write ? w.write : w.read;
+    (r.write ? w.write : w.read).add(c, t);
+    if (r.parts) r.parts->add(c, t);
   }
 
   XbarHost& host_;
@@ -251,10 +252,10 @@ template <class Host>
   const Picoseconds at = scr_.edge(arrival);
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     if (crossed == next_edge_)
-      waits_of(r).add(Culprit::kBridge, next_ - r.issued);
+      charge(r, Culprit::kBridge, next_ - r.issued);
     else
       attribute(s, r, crossed, grants);
-    waits_of(r).add(Culprit::kService, at - next_);
+    charge(r, Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
   r.taken = at;

@@ -5,6 +5,7 @@ namespace fovea::cpu {
 
 template <Op kOp, bool kSet>
 Core::Ops::Next Core::Ops::multiply(Core& c, Next i, Cycle cycle) {
+  ++c.counts_.multiplies;
   if constexpr (kOp == Op::kMul || kOp == Op::kMla) {
     // Rd is in 19:16, the accumulator in 15:12.
     const std::uint32_t v = c.r_[i->rm] * c.r_[i->rs] + (kOp == Op::kMla ? c.r_[i->rd] : 0);
@@ -59,7 +60,7 @@ Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
   if constexpr (kLink) c.r_[14] = c.run_va_ + i->at + 4;
   if constexpr (kNear) {
-    c.fetch_branched_ = true;
+    ++c.counts_.redirects;
     const std::intptr_t distance = static_cast<std::int32_t>(i->raw);
     c.run_first_ += distance - static_cast<std::intptr_t>(sizeof(Instruction));
     return next(c, reinterpret_cast<Next>(reinterpret_cast<const char*>(i) + distance), cycle + 3);

@@ -4,6 +4,50 @@
 #include "model/cpu/core/core.h"
 
 namespace fovea::cpu {
+namespace {
+
+std::uint64_t beats(unsigned bytes) { return bytes < 4 ? 1 : bytes / 4; }
+
+}  // namespace
+
+void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
+  counts_.stall[index(cause)] += cycle - cycle_;
+  counts_.stalls.add(cause, regions_.find(pa), culprit, cycle - cycle_);
+  cycle_ = cycle;
+}
+
+/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`: what
+/// the access waited for is to blame in proportion, also where the core began to wait later. The
+/// clocks behind the outcome are the core's own.
+void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t cycle, Cause cause) {
+  if (cycle <= cycle_) return;
+  const std::uint8_t region = regions_.find(a.address);
+  const std::uint64_t bus = std::clamp(clock_.edge_at_or_after(outcome), cycle_, cycle);
+  split_clocks(bus - cycle_, a.parts, outcome - a.issued, [&](std::size_t culprit, std::uint64_t n) {
+    counts_.stalls.add(cause, region, culprit, n);
+  });
+  counts_.stalls.add(cause, region, kCore, cycle - bus);
+  counts_.stall[index(cause)] += cycle - cycle_;
+  cycle_ = cycle;
+}
+
+/// Waits until the next buffered write can go out: a read's last words hold the port, then it is the
+/// AHB clock.
+void Core::stall_for_port(Cause cause) {
+  stall_to(data_port_free_, cause, data_port_pa_, kService);
+  stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), cause,
+           writes_.victim_bytes ? writes_.victim_address : writes_.front().address, kCore);
+}
+
+/// Puts an access on its port.
+void Core::submit(BusAccess& a, std::uint64_t cycle) {
+  if (!a.write)
+    (a.port == BusAccess::Port::kInstruction ? counts_.i_read_beats : counts_.d_read_beats) +=
+        beats(a.bytes);
+  a.parts.clear();
+  a.issued = time(cycle);
+  port_.submit(a, a.issued);
+}
 
 Picoseconds Core::next_act() const {
   const std::uint64_t c = next_act_cycle();
@@ -72,7 +116,7 @@ void Core::start_write(std::uint64_t cycle) {
   write_in_flight_ = true;
   write_over_ = 0;
   data_port_free_ = cycle;
-  port_.submit(a, time(cycle));
+  submit(a, cycle);
 }
 
 /// Plays the buffers up to a clock, in time order.
@@ -94,7 +138,7 @@ void Core::finish_write(Cause cause) {
   read_waiting_ = true;
   port_.finish(write_access_);
   read_waiting_ = false;
-  stall_to(write_over(), cause);
+  stall_on(write_access_, write_access_.last, write_over(), cause);
   next_write_cycle_ = std::max(next_write_cycle_, cycle_);
   retire_write();
 }
@@ -103,8 +147,7 @@ void Core::drain(Cause cause) {
   play(cycle_);
   while (write_in_flight_ || !writes_.empty() || writes_.victim_bytes) {
     if (!write_in_flight_) {
-      const std::uint64_t c = ahb(std::max(next_write_cycle_, data_port_free_));
-      stall_to(c, cause);
+      stall_for_port(cause);
       start_write(ahb(cycle_));
     }
     finish_write(cause);
@@ -115,7 +158,7 @@ void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned c
   play(cycle_);
   while (!writes_.room(count)) {
     if (!write_in_flight_) {
-      stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), Cause::kWriteBuffer);
+      stall_for_port(Cause::kWriteBuffer);
       start_write(ahb(cycle_));
     }
     finish_write(Cause::kWriteBuffer);
@@ -123,6 +166,7 @@ void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned c
   }
   if (writes_.empty()) next_write_cycle_ = cycle_;
   writes_.push(pa, bytes, count);
+  counts_.d_write_beats += beats(count);
   // The port may be idle: then the write goes out at once.
   if (!write_in_flight_ && data_port_free_ <= cycle_) start_write(ahb(cycle_));
 }
@@ -133,14 +177,15 @@ void Core::bus_read(BusAccess& a, Cause cause) {
   if (writes_.overlaps(start, a.bytes) || a.locked) drain(cause);
   if (!filling_) play(cycle_);
   if (write_in_flight_) finish_write(cause);
-  stall_to(data_port_free_, cause);
-  sync_to_ahb();
+  stall_to(data_port_free_, cause, data_port_pa_, kService);
+  sync_to_ahb(a.address);
   read_waiting_ = true;
-  port_.submit(a, time(cycle_));
+  submit(a, cycle_);
   port_.finish(a);
   read_waiting_ = false;
-  stall_to(clock_.edge_at_or_after(a.first) + (a.error ? 0 : fill_latency_), cause);
+  stall_on(a, a.first, clock_.edge_at_or_after(a.first) + (a.error ? 0 : fill_latency_), cause);
   data_port_free_ = clock_.edge_at_or_after(a.last);
+  data_port_pa_ = a.address;
 }
 
 bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value) {
@@ -161,8 +206,8 @@ bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value)
 
 bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t value) {
   drain(Cause::kUncached);
-  stall_to(data_port_free_, Cause::kUncached);
-  sync_to_ahb();
+  stall_to(data_port_free_, Cause::kUncached, data_port_pa_, kService);
+  sync_to_ahb(pa);
   BusAccess& a = data_access_;
   a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
@@ -172,11 +217,12 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
   std::memcpy(a.data, &value, bytes);
+  counts_.d_write_beats += beats(bytes);
   read_waiting_ = true;
-  port_.submit(a, time(cycle_));
+  submit(a, cycle_);
   port_.finish(a);
   read_waiting_ = false;
-  stall_to(clock_.edge_at_or_after(a.last), Cause::kUncached);
+  stall_on(a, a.last, clock_.edge_at_or_after(a.last), Cause::kUncached);
   data_port_free_ = cycle_;
   return !a.error;
 }
@@ -188,7 +234,7 @@ void Core::write_back(unsigned index, Cause cause) {
   if (!filling_) play(cycle_);
   while (writes_.victim_bytes) {
     if (!write_in_flight_) {
-      stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), cause);
+      stall_for_port(cause);
       start_write(ahb(cycle_));
     }
     finish_write(cause);
@@ -200,6 +246,8 @@ void Core::write_back(unsigned index, Cause cause) {
   std::memcpy(writes_.victim.data(), dcache_.data(index) + from, n);
   l.dirty = 0;
   ++counts_.dcache_writebacks;
+  counts_.writeback_words += n / 4;
+  counts_.d_write_beats += beats(n);
   if (!read_waiting_ && !write_in_flight_ && data_port_free_ <= cycle_ && !filling_)
     start_write(ahb(cycle_));
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "model/common/units.h"
+#include "model/common/waits.h"
 
 namespace fovea::cpu {
 
@@ -26,6 +27,10 @@ struct BusAccess {
   bool error = false;  ///< the bus answered with an error
   Picoseconds first = 0;  ///< read: first (critical) word is at the core's AHB port
   Picoseconds last = 0;   ///< read: last word; write: the write is acknowledged
+  Picoseconds issued = 0;  ///< when it was submitted
+  /// Who was waited for from `issued` to a read's `first` or a write's `last`, as far as the port
+  /// knows. Empty at the submission.
+  RequestWaits parts;
 };
 
 /// The outside of the core. Times are absolute. One rule orders everything that happens between

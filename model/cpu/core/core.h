@@ -63,6 +63,9 @@ class Core : public Background {
   bool mark_done() const { return !mark_pending_; }
   const CoreStats& window_stats() const { return window_; }
   const Counts& counts() const { return counts_; }
+  /// Names for the addresses of stalls; set before the first instruction.
+  void set_regions(RegionMap regions) { regions_ = std::move(regions); }
+  const RegionMap& regions() const { return regions_; }
   std::uint64_t instructions_executed() const { return counts_.instructions; }
 
   std::uint32_t reg(unsigned i) const { return i == 15 ? pc_ : r_[i]; }
@@ -113,7 +116,11 @@ class Core : public Background {
   void store_multiple(const Instruction& i);
   void swap(const Instruction& i);
   void status(const Instruction& i);
-  void branch_to(std::uint32_t target) { next_pc_ = target; branched_ = true; }
+  void branch_to(std::uint32_t target) {
+    next_pc_ = target;
+    branched_ = true;
+    ++counts_.redirects;
+  }
   void interwork(std::uint32_t target);
   void interlock(const Instruction& i);
   std::uint64_t operands_ready(const Instruction& i, std::uint64_t cycle) const;
@@ -238,13 +245,24 @@ class Core : public Background {
     const std::uint64_t n = cycle + ratio_ - 1;
     return ratio_ & (ratio_ - 1) ? n / ratio_ * ratio_ : n & ~std::uint64_t{ratio_ - 1};
   }
+  /// A stall of the core's own that has no address.
   void stall_to(std::uint64_t cycle, Cause cause) {
     if (cycle > cycle_) {
-      counts_.stall[static_cast<std::size_t>(cause)] += cycle - cycle_;
+      counts_.stall[index(cause)] += cycle - cycle_;
+      if (cause != Cause::kInterlock)
+        counts_.stalls.add(cause, RegionMap::kNone, kCore, cycle - cycle_);
       cycle_ = cycle;
     }
   }
-  void sync_to_ahb() { stall_to(ahb(cycle_), Cause::kBusSync); }
+  /// A stall for the sake of a physical address. The culprit is one of kStallCulprits.
+  void stall_to(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
+    if (cycle > cycle_) charge_stall(cycle, cause, pa, culprit);
+  }
+  void charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit);
+  void stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t cycle, Cause cause);
+  void stall_for_port(Cause cause);
+  void sync_to_ahb(std::uint32_t pa) { stall_to(ahb(cycle_), Cause::kBusSync, pa, kCore); }
+  void submit(BusAccess& a, std::uint64_t cycle);
   void play(std::uint64_t cycle);
   std::uint64_t next_act_cycle() const;
   std::uint64_t write_over() const;
@@ -301,14 +319,15 @@ class Core : public Background {
   /// One more record than a line can hold: the one behind the last leads to the next line.
   struct DecodedLine {
     std::uint64_t valid = 0;                // line_key() of its last lookup; 0: nothing decoded
-    std::uint64_t lookups = 0;              // what reaching it adds to icache_accesses
     std::array<Instruction, 17> records;
   };
-  /// Says where and under which translation a line was found; never 0. Bit 0 is the Thumb state.
+  /// Says where and under which translation a line was found; never 0. Bit 0 is the Thumb state,
+  /// bit 2 internal RAM: a chain stays in one of them (Counts::fetch_from).
   std::uint64_t line_key(std::uint32_t va) const {
     return line_epoch_ | (va & ~31u) | (cpsr_ >> 5 & 1u);
   }
   static constexpr std::uint64_t kEpoch = std::uint64_t{1} << 32;
+  static constexpr std::uint64_t kLineInRam = 4;
   std::uint64_t line_epoch_ = kEpoch | 2u;  // a new one at each flush_memos()
   std::vector<DecodedLine> decoded_;        // one per I-cache line
   DecodedLine* current_line_ = nullptr;
@@ -323,12 +342,14 @@ class Core : public Background {
   std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
   std::array<Instruction, 2> uncached_record_;
   bool fetch_branched_ = false;
+  std::uint64_t redirects_seen_ = 0;  // by the last fetch past the caches
   bool bus_fetch_ = false;  // the last fetch went to the bus: time has passed since the boundary
   std::uint32_t fetch_buffer_pa_ = 1, fetch_words_[4] = {};
   BusAccess fetch_access_;
   struct Fill {
     std::uint32_t line = 1;                 // MVA of the line under fill, 1: none
     std::uint32_t critical = 0;             // word that came first
+    std::uint32_t pa = 0;
     std::uint64_t first = 0, last = 0;      // clocks
     std::uint64_t word(std::uint32_t index) const {
       const std::uint32_t order = (index - critical) & 7u;
@@ -353,7 +374,7 @@ class Core : public Background {
   /// covers half a line whose dirty bit is set.
   struct Hint {
     std::uint32_t key = kNoHint;  // address of its first byte
-    std::uint32_t counted = 0;    // what an access adds to the cache's statistics
+    std::uint32_t counter = 0;    // where in counts_ an access is counted, in bytes
     std::uintptr_t bias = 0;      // host address of the byte at VA is bias + VA
   };
   static constexpr std::uint32_t kNoHint = 4;  // no masked address has this bit
@@ -365,8 +386,21 @@ class Core : public Background {
     std::uint32_t key = kNoHint, pa = 0;
   } absent_;
   bool hints_used_ = false;
-  void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, bool counted);
-  void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, bool counted);
+  std::uint64_t& counter(const Hint& h) {
+    return *reinterpret_cast<std::uint64_t*>(reinterpret_cast<char*>(&counts_) + h.counter);
+  }
+  std::uint64_t& reads_of(std::uint32_t tcm_mva) {
+    return tcm_mva < itcm_size_ ? counts_.itcm_reads : counts_.dtcm_reads;
+  }
+  std::uint64_t& writes_of(std::uint32_t tcm_mva) {
+    return tcm_mva < itcm_size_ ? counts_.itcm_writes : counts_.dtcm_writes;
+  }
+  void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, std::uint64_t& counter);
+  void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, std::uint64_t& counter);
+  std::uint32_t place(const std::uint64_t& counter) const {
+    return static_cast<std::uint32_t>(reinterpret_cast<const char*>(&counter) -
+                                      reinterpret_cast<const char*>(&counts_));
+  }
   void flush_hints();
   void drop_hints(std::uint32_t line_mva);
   Translation flat_;          // MMU off
@@ -383,6 +417,7 @@ class Core : public Background {
   std::uint64_t next_write_cycle_ = 0;
   bool read_waiting_ = false;
   std::uint64_t data_port_free_ = 0;  // clock
+  std::uint32_t data_port_pa_ = 0;    // whose last word holds it until then
 
   // CP15.
   std::uint32_t control_ = 0x0005'0078;
@@ -408,6 +443,7 @@ class Core : public Background {
   void control_boundary();             // debug_control.cpp
 
   Counts counts_;
+  RegionMap regions_;
   CoreStats window_;
   struct alignas(16) Access {
     std::uint32_t pc = 0, address = 0;

@@ -25,6 +25,7 @@ void Core::coprocessor_move(const Instruction& i) {
   if (!privileged()) return undefined();
   const std::uint32_t reg = id(op1, crn, crm, op2);
   spend(1);
+  ++counts_.coprocessor;
   if (i.op == Op::kMrc) {
     std::uint32_t value = 0;
     if (!cp15_read(reg, value)) return undefined();

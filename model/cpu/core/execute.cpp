@@ -204,6 +204,7 @@ bool Core::chain_goes_on(const Instruction* next) const {
 
 void Core::dsp(const Instruction& i) {
   bool q = false;
+  if (i.op <= Op::kSmlalxy) ++counts_.multiplies;
   const auto s = [this](unsigned r) { return std::int64_t{static_cast<std::int32_t>(r_[r])}; };
   unsigned cycles = 1;
   switch (i.op) {

@@ -80,10 +80,10 @@ struct Core::Ops {
   /// its operands. kNoCycle: they have to be executed alone.
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
 
-  /// Branch i is taken, state kept. Only another line counts as looked up.
+  /// Branch i is taken, state kept.
   template <bool kThumb, bool kMaybeSameLine>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
-    c.fetch_branched_ = true;
+    ++c.counts_.redirects;
     if (cycle >= c.chain_stop_) [[unlikely]] return leave_to(c, i, cycle, target);
     DecodedLine* d = c.jumps_[target / 32 % kJumps];
     if (d->valid != (c.line_epoch_ | (target & ~31u) | kThumb)) [[unlikely]]
@@ -93,7 +93,6 @@ struct Core::Ops {
     if (!kMaybeSameLine || c.run_va_ != (target & ~31u)) {
       c.line_va_ = c.run_va_ = target & ~31u;
       c.current_line_ = d;
-      c.counts_.icache_accesses += d->lookups;
     }
     c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
     return go(c, to, cycle);
@@ -104,7 +103,7 @@ struct Core::Ops {
     if ((target & 1u) == kThumb) [[likely]]
       return jump<kThumb, true>(c, i, cycle, target & (kThumb ? ~1u : ~3u));
     c.cpsr_ ^= 0x20u;
-    c.fetch_branched_ = true;
+    ++c.counts_.redirects;
     return leave_to(c, i, cycle, target & (kThumb ? ~3u : ~1u));
   }
 

@@ -58,7 +58,7 @@ Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
   const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
   if (hint.key != (va & ~(kReadSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
     return generic(c, i, cycle);
-  c.counts_.dcache_reads += hint.counted;
+  ++c.counter(hint);
   c.record(c.run_va_ + i->at, va, kBytes);
   const std::uint32_t value = read<kOp>(host(hint.bias, va));
   if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
@@ -77,7 +77,7 @@ Core::Ops::Next Core::Ops::store(Core& c, Next i, Cycle cycle) {
   const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
   if (hint.key != (va & ~(kWriteSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
     return store_out<kOp, kAddress, kIndexed>(c, i, cycle);
-  c.counts_.dcache_writes += hint.counted;
+  ++c.counter(hint);
   c.record(c.run_va_ + i->at, va, kBytes | kWritten);
   const std::uint32_t value = c.r_[i->rd];
   std::memcpy(host(hint.bias, va), &value, kBytes);
@@ -110,7 +110,7 @@ Core::Ops::Next Core::Ops::load_literal(Core& c, Next i, Cycle cycle) {
     c.r_[15] = c.run_va_;  // what the general way adds the offset to
     return generic(c, i, cycle);
   }
-  c.counts_.dcache_reads += hint.counted;
+  ++c.counter(hint);
   c.record(c.run_va_ + i->at, va, 4);
   c.r_[i->rd] = read<Op::kLdr>(host(hint.bias, va));
   track(c, i->rd, cycle + 2, kLoad);
@@ -204,7 +204,7 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   for (unsigned left = i->amount; left;) {
     const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
     const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
-    c.counts_.dcache_reads += here * hint.counted;
+    c.counter(hint) += here;
     const std::uint8_t* from = host(hint.bias, va);
     for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
       const std::uint32_t value = read<Op::kLdr>(from);
@@ -244,7 +244,7 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
     // Both halves of a line lie side by side on the host.
     const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
     const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
-    c.counts_.dcache_writes += here * hint.counted;
+    c.counter(hint) += here;
     std::uint8_t* to = host(hint.bias, va);
     for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
       std::memcpy(to, &c.r_[lowest(set)], 4);

@@ -36,15 +36,18 @@ void Core::drop_hints(std::uint32_t line_mva) {
 }
 
 /// @param line where the line that holds `va` lies on the host
-void Core::note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, bool counted) {
+/// @param counter of counts_: counts accesses to it
+void Core::note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line,
+                     std::uint64_t& counter) {
   const std::uint32_t key = va & ~(kReadSpan - 1);
-  read_hints_[mva / kReadSpan % kHints] = {key, counted,
+  read_hints_[mva / kReadSpan % kHints] = {key, place(counter),
                                            reinterpret_cast<std::uintptr_t>(line) - key};
   hints_used_ = true;
 }
-void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, bool counted) {
+void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half,
+                      std::uint64_t& counter) {
   const std::uint32_t key = va & ~(kWriteSpan - 1);
-  write_hints_[mva / kWriteSpan % kHints] = {key, counted,
+  write_hints_[mva / kWriteSpan % kHints] = {key, place(counter),
                                              reinterpret_cast<std::uintptr_t>(half) - key};
   hints_used_ = true;
 }
@@ -86,9 +89,11 @@ bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
 }
 
 bool Core::walk(std::uint32_t mva, bool instruction, TlbEntry& out) {
-  stall_to(cycle_ + walk_cycles_, Cause::kTlb);
+  const std::uint32_t first_level = (ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2;
+  ++counts_.tlb_walks;
+  stall_to(cycle_ + walk_cycles_, Cause::kTlb, first_level, kCore);
   std::uint32_t d = 0;
-  if (!walk_read((ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2, d)) {
+  if (!walk_read(first_level, d)) {
     fault(instruction, 0xC, 0, mva);
     return false;
   }
@@ -205,12 +210,12 @@ const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user
 void Core::dcache_wait(std::uint32_t mva) {
   const std::uint64_t c =
       (mva & ~31u) == dfill_.line ? dfill_.word((mva >> 2) & 7u) : dfill_.last;
-  stall_to(c, Cause::kDcache);
+  stall_to(c, Cause::kDcache, dfill_.pa, kService);
 }
 
 /// @return index of the line; an error leaves it invalid
 int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line) {
-  stall_to(dfill_.last, Cause::kDcache);
+  stall_to(dfill_.last, Cause::kDcache, dfill_.pa, kService);
   const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
   if (dcache_.line(index).tag != 1) drop_hints(dcache_.line(index).tag);
   play(cycle_);
@@ -238,7 +243,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   l.pa = pa & ~31u;
   l.dirty = 0;
   l.write_back = write_back_line;
-  dfill_ = {mva & ~31u, (pa >> 2) & 7u, cycle_,
+  dfill_ = {mva & ~31u, (pa >> 2) & 7u, pa, cycle_,
             std::max(cycle_, clock_.edge_at_or_after(a.last) + fill_latency_)};
   return static_cast<int>(index);
 }
@@ -254,8 +259,9 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   value = 0;
   if (in_tcm(a)) {
     std::memcpy(&value, tcm(a), bytes);
-    if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), false);
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    ++reads_of(a);
+    if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
     return Result::kOk;
   }
   const Translation* t = translate(a, false, user, false);
@@ -267,10 +273,11 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     int i = dcache_.find(a);
     if (i < 0) i = dcache_fill(a, pa, t->bufferable);
     if (dcache_.line(static_cast<unsigned>(i)).tag == (a & ~31u))
-      note_read(va, mva, dcache_.data(static_cast<unsigned>(i)), true);
+      note_read(va, mva, dcache_.data(static_cast<unsigned>(i)), counts_.dcache_reads);
     std::memcpy(&value, dcache_.data(static_cast<unsigned>(i)) + (a & 31u), bytes);
     return Result::kOk;
   }
+  counts_.translated_uncached += control_ & 1u;
   if (!uncached_read(pa, bytes, value)) {
     fault(false, t->section ? 0x8 : 0xA, t->domain, mva);
     return Result::kAbort;
@@ -289,8 +296,9 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   if (in_tcm(a)) {
     std::memcpy(tcm(a), &value, bytes);
     tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
-    if (!tcm_wait_) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), false);
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    ++writes_of(a);
+    if (!tcm_wait_) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
     return Result::kOk;
   }
   const Translation* t = translate(a, true, user, false);
@@ -307,7 +315,8 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
       if (bufferable && !(cache_debug_ & 4u)) {
         dcache_.line(static_cast<unsigned>(i)).dirty |=
             static_cast<std::uint8_t>(1u << ((a >> 4) & 1u));
-        note_write(va, mva, dcache_.data(static_cast<unsigned>(i)) + (a & 16u), true);
+        note_write(va, mva, dcache_.data(static_cast<unsigned>(i)) + (a & 16u),
+                   counts_.dcache_writes);
         return Result::kOk;
       }
     } else {
@@ -318,6 +327,7 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
     enqueue_write(pa, data, bytes);
     return Result::kOk;
   }
+  counts_.translated_uncached += control_ & 1u;
   if (bufferable && (control_ & 1u)) {
     std::uint8_t data[4];
     std::memcpy(data, &value, 4);
@@ -396,6 +406,8 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
             ++counts_.dcache_write_misses;
           else
             std::memcpy(dcache_.data(static_cast<unsigned>(line)) + (mva & 31u), &words[k], 4);
+        } else {
+          ++counts_.translated_uncached;
         }
         if (run_bytes && pa != run_pa + run_bytes) flush();
         if (!run_bytes) run_pa = pa;
@@ -414,27 +426,27 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
 }
 
 void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
-  stall_to(ifill_.last, Cause::kIcache);
+  stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
   const unsigned index = icache_.victim(icache_.set_of(mva), control_ >> 14 & 1u, ilock_ & 15u);
   icache_.invalidate(index);
   decoded_[index].valid = 0;
   bus_fetch_ = true;
   play(cycle_);
-  sync_to_ahb();
+  sync_to_ahb(pa);
   BusAccess& a = fetch_access_;
   a.port = BusAccess::Port::kInstruction;
   a.kind = BusAccess::Kind::kWrap8;
   a.write = a.buffered = false;
   a.address = pa & ~3u;
   a.bytes = 32;
-  port_.submit(a, time(cycle_));
+  submit(a, cycle_);
   port_.finish(a);
   ++counts_.icache_fills;
-  stall_to(clock_.edge_at_or_after(a.first) + fill_latency_, Cause::kIcache);
+  stall_on(a, a.first, clock_.edge_at_or_after(a.first) + fill_latency_, Cause::kIcache);
   if (a.error) return;
   std::memcpy(icache_.data(index), a.data, 32);
   icache_.line(index).tag = mva & ~31u;
-  ifill_ = {mva & ~31u, (pa >> 2) & 7u, cycle_,
+  ifill_ = {mva & ~31u, (pa >> 2) & 7u, pa, cycle_,
             std::max(cycle_, clock_.edge_at_or_after(a.last) + fill_latency_)};
 }
 
@@ -451,7 +463,6 @@ const Instruction* Core::fetch_slow() {
       if (in_ram) flush_hints();  // stores to this line must be seen
     }
     d.valid = line_key(pc_);
-    d.lookups = !in_ram;
     Instruction& i = d.records[at];
     if (!i.body) {
       i = decode_at(bytes, at, thumb);
@@ -467,8 +478,10 @@ const Instruction* Core::fetch_slow() {
     jumps_[pc_ / 32 % kJumps] = &d;
     return &i;
   };
+  line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm);
+    counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, control_ & 1u));
+    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, mva, kCore);
     DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
     const Instruction* i = decode_into(d, tcm(mva & ~31u));
     if (tcm_wait_) {  // every fetch pays
@@ -485,10 +498,11 @@ const Instruction* Core::fetch_slow() {
   const std::uint32_t pa = t->physical(mva);
   // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
   const bool cached = (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u));
+  counts_.fetch_from(
+      fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, control_ & 1u));
   if (cached) {
-    ++counts_.icache_accesses;
     if (cycle_ < ifill_.last && ifill_.line != (mva & ~31u))
-      stall_to(ifill_.last, Cause::kIcache);
+      stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
     int index = icache_.find(mva);
     if (index < 0) {
       icache_fill(mva, pa);
@@ -505,20 +519,22 @@ const Instruction* Core::fetch_slow() {
   // Uncached: four words ahead, kept until the flow leaves them.
   const unsigned domain = t->domain;
   const bool section = t->section;
-  if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_) {
-    stall_to(ifill_.last, Cause::kIcache);  // one transaction at a time on the port
+  if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_ ||
+      redirects_seen_ != counts_.redirects) {
+    // One transaction at a time on the port.
+    stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
     bus_fetch_ = true;
     play(cycle_);
-    sync_to_ahb();
+    sync_to_ahb(pa);
     BusAccess& a = fetch_access_;
     a.port = BusAccess::Port::kInstruction;
     a.kind = BusAccess::Kind::kIncr4;
     a.write = a.buffered = false;
     a.address = pa & ~15u;
     a.bytes = 16;
-    port_.submit(a, time(cycle_));
+    submit(a, cycle_);
     port_.finish(a);
-    stall_to(clock_.edge_at_or_after(a.last) + fill_latency_, Cause::kIcache);
+    stall_on(a, a.last, clock_.edge_at_or_after(a.last) + fill_latency_, Cause::kIcache);
     if (a.error) {
       fetch_buffer_pa_ = 1;
       fault(true, section ? 0x8 : 0xA, domain, mva);
@@ -529,6 +545,7 @@ const Instruction* Core::fetch_slow() {
     fetch_buffer_pa_ = pa & ~15u;
   }
   fetch_branched_ = false;
+  redirects_seen_ = counts_.redirects;
   line_va_ = 1;
   Instruction& i = uncached_record_[0];
   i = decode_at(reinterpret_cast<const std::uint8_t*>(fetch_words_), (pa & 15u) >> shift, thumb);

@@ -160,7 +160,6 @@ Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine&
   if (!to->body) [[unlikely]] return leave(c, i, cycle);
   c.line_va_ = c.run_va_ += 32;
   c.current_line_ = &d;
-  c.counts_.icache_accesses += d.lookups;
   c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
   return go(c, to, cycle);
 }

@@ -2,25 +2,86 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "model/common/stats.h"
+#include "model/cpu/core/stalls.h"
 
 namespace fovea::cpu {
 
-enum class Cause : std::uint8_t {
-  kInterlock, kIcache, kDcache, kWriteBuffer, kUncached, kTlb, kTcm, kCacheOp, kDrain, kBusSync,
-  kCount
-};
-inline constexpr std::size_t kCauses = static_cast<std::size_t>(Cause::kCount);
+/// Instruction set, memory and MMU of executed code: Thumb, 2 * FetchFrom, 8 with the MMU on.
+enum class FetchFrom : std::uint8_t { kCache, kTcm, kBus };
+inline constexpr std::size_t kFetchKinds = 16;
+constexpr std::size_t fetch_kind(bool thumb, FetchFrom from, bool mmu) {
+  return static_cast<std::size_t>(from) * 2 + thumb + (mmu ? 8 : 0);
+}
 
 /// Plain numbers, counted since reset; the window is a difference of two copies.
 struct Counts {
   std::uint64_t instructions = 0, cycles = 0, issue = 0, idle = 0;
   std::array<std::uint64_t, kCauses> stall{};
-  std::uint64_t icache_accesses = 0, icache_fills = 0;
+  std::uint64_t redirects = 0;  // branches taken, writes to the pc, exceptions
+  std::uint64_t icache_fills = 0;
   std::uint64_t dcache_reads = 0, dcache_read_fills = 0, dcache_writes = 0,
                 dcache_write_misses = 0, dcache_writebacks = 0;
+  std::uint64_t itcm_reads = 0, itcm_writes = 0, dtcm_reads = 0, dtcm_writes = 0;
+  std::uint64_t translated_uncached = 0;  // data accesses beside the D-cache, MMU on
+  std::uint64_t tlb_walks = 0, writeback_words = 0, multiplies = 0, coprocessor = 0;
+  std::uint64_t i_read_beats = 0, d_read_beats = 0, d_write_beats = 0;
   std::uint64_t exceptions = 0, unpredictable = 0;
+  StallTable stalls;
+
+  bool operator==(const Counts&) const = default;
+  /// The next instructions are of that kind.
+  void fetch_from(std::size_t kind) {
+    if (kind == kind_) return;
+    executed_[kind_] += instructions;
+    redirected_[kind_] += redirects;
+    kind_ = kind;
+    executed_[kind_] -= instructions;
+    redirected_[kind_] -= redirects;
+  }
+  /// Words fetched for executed instructions, with the two behind each change of flow that the
+  /// pipeline drops. A word holds two Thumb instructions; that one of the two ends of each run of
+  /// them is in the middle of a word is assumed, as an average.
+  std::uint64_t words_fetched(FetchFrom from, bool mmu) const {
+    const std::size_t arm = fetch_kind(false, from, mmu), thumb = fetch_kind(true, from, mmu);
+    return executed(arm) + 2 * redirected(arm) + (executed(thumb) + 3 * redirected(thumb)) / 2;
+  }
+  std::uint64_t words_fetched(FetchFrom from) const {
+    return words_fetched(from, false) + words_fetched(from, true);
+  }
+  std::uint64_t icache_accesses() const { return words_fetched(FetchFrom::kCache); }
+  std::uint64_t tlb_lookups() const {
+    return words_fetched(FetchFrom::kCache, true) + words_fetched(FetchFrom::kBus, true) +
+           dcache_reads + dcache_writes + translated_uncached;
+  }
+
+  std::uint64_t stalled(Cause cause, std::size_t region, std::size_t culprit) const {
+    if (cause != Cause::kInterlock) return stalls.at(cause, region, culprit);
+    return region == RegionMap::kNone && culprit == kCore ? stall[index(cause)] : 0;
+  }
+  /// The first cause whose clocks are not those of its regions and culprits; kCount: none.
+  Cause unexplained() const {
+    for (std::size_t k = 0; k < kCauses; ++k) {
+      const auto cause = static_cast<Cause>(k);
+      if (cause != Cause::kInterlock && stalls.total(cause) != stall[k]) return cause;
+    }
+    return Cause::kCount;
+  }
+
+ private:
+  // Of each kind so far; of the present one less what instructions and redirects say.
+  std::array<std::uint64_t, kFetchKinds> executed_{}, redirected_{};
+  std::size_t kind_ = 0;
+  std::uint64_t executed(std::size_t kind) const {
+    return executed_[kind] + (kind == kind_ ? instructions : 0);
+  }
+  std::uint64_t redirected(std::size_t kind) const {
+    return redirected_[kind] + (kind == kind_ ? redirects : 0);
+  }
 };
 
 /// The window's figures under their public names.
@@ -52,8 +113,8 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "cache maintenance");
   FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
   FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge");
-  FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses,
-                 "look-ups of the I-cache: by line, by branch, and by a word decoded first");
+  FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
+                 "words looked up in the I-cache, with two dropped behind each change of flow");
   FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read");
   FOVEA_CPU_STAT(dcache_reads, "dcache.reads", "1", dcache_reads, "cacheable loads looked up");
   FOVEA_CPU_STAT(dcache_fills, "dcache.read_line_fills", "1", dcache_read_fills, "lines read");
@@ -65,8 +126,51 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(exceptions, "exceptions", "1", exceptions, "exceptions taken");
   FOVEA_CPU_STAT(unpredictable, "unpredictable", "1", unpredictable,
                  "instructions with an UNPREDICTABLE encoding");
+  // What else a power model needs; issue, idle, the caches' look-ups and fills are above.
+  FOVEA_CPU_STAT(itcm_fetches, "activity.itcm_fetches", "1", words_fetched(FetchFrom::kTcm),
+                 "words fetched from internal RAM, with two dropped behind each change of flow");
+  FOVEA_CPU_STAT(itcm_reads, "activity.itcm_reads", "1", itcm_reads,
+                 "loads of a word or less through the ITCM window");
+  FOVEA_CPU_STAT(itcm_writes, "activity.itcm_writes", "1", itcm_writes,
+                 "stores of a word or less through the ITCM window");
+  FOVEA_CPU_STAT(dtcm_reads, "activity.dtcm_reads", "1", dtcm_reads,
+                 "loads of a word or less through the DTCM window");
+  FOVEA_CPU_STAT(dtcm_writes, "activity.dtcm_writes", "1", dtcm_writes,
+                 "stores of a word or less through the DTCM window");
+  FOVEA_CPU_STAT(writeback_words, "activity.writeback_words", "1", writeback_words,
+                 "words of dirty lines moved to the victim buffer");
+  FOVEA_CPU_STAT(tlb_lookups, "activity.tlb_lookups", "1", tlb_lookups(),
+                 "words fetched and data accesses outside internal RAM with the MMU on");
+  FOVEA_CPU_STAT(tlb_walks, "activity.tlb_walks", "1", tlb_walks, "page walks begun");
+  FOVEA_CPU_STAT(i_read_beats, "activity.ahb_i_read_beats", "1", i_read_beats,
+                 "beats asked for on the instruction AHB");
+  FOVEA_CPU_STAT(d_read_beats, "activity.ahb_d_read_beats", "1", d_read_beats,
+                 "beats of reads asked for on the data AHB");
+  FOVEA_CPU_STAT(d_write_beats, "activity.ahb_d_write_beats", "1", d_write_beats,
+                 "beats of writes: as they enter the write or victim buffer, or pass them");
+  FOVEA_CPU_STAT(multiplies, "activity.multiplies", "1", multiplies,
+                 "instructions that use the multiplier");
+  FOVEA_CPU_STAT(coprocessor, "activity.coprocessor", "1", coprocessor,
+                 "transfers to and from CP15");
+  FOVEA_CPU_STAT(redirects, "activity.redirects", "1", redirects,
+                 "changes of flow: branches taken, writes to the pc, exceptions");
 #undef FOVEA_CPU_STAT
-  CoreStats() : StatGroup("cpu") {}
+  CoreStats() : StatGroup("cpu") {
+    for (std::size_t k = 0; k < kCauses; ++k) {
+      const auto cause = static_cast<Cause>(k);
+      if (!waits_for_bus(cause)) continue;
+      for (std::size_t c = 0; c < kStallCulprits; ++c) {
+        const std::string culprit(stall_culprit_name(c));
+        by_culprit_.push_back(std::make_unique<Formula>(
+            *this, "stall." + std::string(kCauseNames[k]) + ".by." + culprit, "cycles",
+            "of stall." + std::string(kCauseNames[k]) + ": culprit " + culprit,
+            [this, cause, c] { return V(to.stalls.by(cause, c) - from.stalls.by(cause, c)); }));
+      }
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<Formula>> by_culprit_;
 };
 
 }  // namespace fovea::cpu

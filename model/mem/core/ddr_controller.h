@@ -25,6 +25,7 @@ struct DdrRequest {
   std::uint32_t address = 0;
   std::uint32_t critical = 0;    ///< offset wanted first; the 16 bytes around it are read first
   std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
+  RequestWaits* parts = nullptr;  ///< read: gets its share of `waits` as well; null: nobody asks
 };
 
 /// What an idle controller does with the part (SDRCR.LPMODEN and SR_PD).
@@ -140,6 +141,7 @@ class DdrController {
   using Blames = std::array<Picoseconds, kBlames>;
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
+  void charge_read(const Entry& e, const Waits& w);
   void sum_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;

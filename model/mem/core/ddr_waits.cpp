@@ -30,10 +30,17 @@ void DdrController::sum_given() {
   }
 }
 
+inline void DdrController::charge_read(const Entry& e, const Waits& w) {
+  Waits& all = waits[index(e.request.master)].read;
+  for (std::size_t c = 0; c < kCulprits; ++c) all.ps[c] += w.ps[c];
+  if (!e.request.parts) return;
+  for (std::size_t c = 0; c < kCulprits; ++c)
+    if (w.ps[c]) e.request.parts->add(static_cast<Culprit>(c), w.ps[c]);
+}
+
 /// The waits of a read whose first column command, already noted, is given at `clock`, since it
 /// became ready.
 [[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
-  Waits& w = waits[index(e.request.master)].read;
   const Culprit own = culprit(e.request.master);
   const std::uint64_t ready = std::max(e.ready, first_edge_);
   const Picoseconds start = ddr_.edge(ready);
@@ -44,12 +51,16 @@ void DdrController::sum_given() {
   std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
   while (n > oldest && given(n).clock > ready) --n;
   while (n + 1 < last && given(n + 1).clock <= ready) ++n;
-  if (n == last) return w.add(own, read_waited_);  // nothing was given before it
+  Waits w;
+  if (n == last) {  // nothing was given before it
+    w.add(own, read_waited_);
+    return charge_read(e, w);
+  }
 
   if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
   sum_given();
   const Blames& before = blames_before_[n % kGiven];
-  for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] += blames_[m] - before[m];
+  for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] = blames_[m] - before[m];
   w.add(Culprit::kTurnaround, blames_[kTurned] - before[kTurned]);
   w.add(Culprit::kRefresh, blames_[kRefreshed] - before[kRefreshed]);
   w.add(Culprit::kPowerDown, blames_[kAsleep] - before[kAsleep]);
@@ -80,6 +91,7 @@ void DdrController::sum_given() {
   }
   w.ps[index(own)] -= row;
   w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
+  charge_read(e, w);
 }
 
 }  // namespace fovea::mem
