@@ -20,7 +20,8 @@ struct ReferenceConfig {
   bool bank_on_top = false;
   bool mobile = false;
   unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
-  enum class Sleep { kNever, kSelfRefresh, kPowerDown } sleep = Sleep::kNever;
+  enum class Sleep { kNever, kSelfRefresh, kPowerDown, kClockStop } sleep = Sleep::kNever;
+  unsigned row_intervals = 16;  ///< refresh intervals that a row may be open
 };
 
 /// What the silicon fixes.
@@ -28,6 +29,7 @@ struct ReferenceLimits {
   unsigned command_fifo = 7, write_fifo = 88, read_fifo = 136;  // entries, bytes, bytes
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
   unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
+  unsigned clock_restart = 1;                                   // DDR clocks
   std::uint64_t size = 128u << 20;
   enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
 };
@@ -101,7 +103,8 @@ class ReferenceController {
   struct Plan {
     Kind kind;
     std::uint64_t clock;
-    std::optional<std::size_t> of;  // place in queue_; none: refresh
+    std::optional<std::size_t> of;  // place in queue_; none: refresh, or PRE of an overdue row
+    unsigned bank = 0;              // of that row
   };
   enum class Refresh { kMay, kNeed, kMust };
 
@@ -118,6 +121,7 @@ class ReferenceController {
   Plan plan() const;
   Plan plan_at(std::uint64_t edge) const;
   Plan refresh_at(std::uint64_t edge) const;
+  std::optional<Plan> overdue_at(std::uint64_t edge) const;
   Refresh refresh_level(std::uint64_t edge) const;
   std::uint64_t clock_after_last() const;
   void expire(std::uint64_t clock);
@@ -142,6 +146,7 @@ class ReferenceController {
   std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
   ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
   bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
+  std::uint64_t clock_runs_from_ = 0;  // again, after a stop
   std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
 };
 
