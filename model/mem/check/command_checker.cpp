@@ -21,11 +21,7 @@ void CommandChecker::apart(const char* rule, std::int64_t before, std::int64_t n
 void CommandChecker::change(const DataSheet& sheet, std::uint64_t clock) {
   sheet_ = sheet;
   banks_.resize(std::max<std::size_t>(banks_.size(), sheet.banks));
-  const auto now = static_cast<std::int64_t>(clock);
-  for (Bank& b : banks_) {
-    b.pre = b.rd = b.wr = kLongAgo;
-    b.act = b.open ? std::min(b.act, now) : kLongAgo;
-  }
+  for (Bank& b : banks_) b.act = b.pre = b.rd = b.wr = kLongAgo;
   acts_.fill(kLongAgo);
   rd_ = wr_ = ref_ = pre_ = prea_ = cke_ = pdx_ = srx_ = kLongAgo;
   last_ref_ = clock;
@@ -99,7 +95,7 @@ void CommandChecker::activate(unsigned b, std::uint32_t row, std::int64_t now) {
   acts_[0] = now;
   k.open = true;
   k.row = row;
-  k.act = now;
+  k.act = k.opened = now;
 }
 
 void CommandChecker::precharge(unsigned b, std::int64_t now) {
@@ -113,7 +109,7 @@ void CommandChecker::precharge(unsigned b, std::int64_t now) {
 
 void CommandChecker::check_open_time(unsigned b, std::int64_t closed) {
   const auto limit = static_cast<std::int64_t>(sheet_.tRASmax);
-  const std::int64_t open = closed - banks_[b].act;
+  const std::int64_t open = closed - banks_[b].opened;
   if (limit && banks_[b].open && open > limit)
     complain("tRASmax", static_cast<std::uint64_t>(closed), b, open - limit);
 }

@@ -63,7 +63,7 @@ class CommandChecker {
   struct Bank {
     bool open = false;
     std::uint32_t row = 0;
-    std::int64_t act = kLongAgo, pre = kLongAgo, rd = kLongAgo, wr = kLongAgo;
+    std::int64_t opened = 0, act = kLongAgo, pre = kLongAgo, rd = kLongAgo, wr = kLongAgo;
   };
   void complain(const char* rule, std::uint64_t clock, unsigned bank, std::int64_t missing);
   /// Complains unless `now` is at least `clocks` after `before`.
