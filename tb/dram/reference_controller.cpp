@@ -474,6 +474,44 @@ void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock)
   reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
 }
 
+std::array<std::uint64_t, 4> ReferenceController::residency(Picoseconds at) const {
+  const std::uint64_t now = ddr_.edge_after(at);
+  using Span = std::pair<std::uint64_t, std::uint64_t>;
+  std::vector<Span> open;  // rows
+  std::array<std::uint64_t, 8> act{};
+  std::uint32_t rows = 0;  // banks with one
+  const auto close = [&](unsigned bank, std::uint64_t clock) {
+    if (rows >> bank & 1u) open.emplace_back(act[bank], clock);
+    rows &= ~(1u << bank);
+  };
+  std::array<std::uint64_t, 4> out{};
+  const Given* sleep = nullptr;
+  const auto wake = [&](std::uint64_t clock) {
+    if (!sleep || clock <= sleep->clock) return;
+    const std::uint64_t n = clock - sleep->clock;
+    if (sleep->kind == Kind::kPde && rows) out[1] += n;
+    out[sleep->kind == Kind::kPde ? 2 : 3] += n;
+  };
+  for (const Given& g : commands) {
+    if (g.kind == Kind::kAct) act[g.bank] = g.clock, rows |= 1u << g.bank;
+    if (g.kind == Kind::kPre) close(g.bank, g.clock);
+    if (g.kind == Kind::kRda || g.kind == Kind::kWra) close(g.bank, g.closes);
+    for (unsigned b = 0; b < 8 && g.kind == Kind::kPreAll; ++b) close(b, g.clock);
+    if (g.kind == Kind::kPde || g.kind == Kind::kSre) sleep = &g;
+    if (g.kind == Kind::kPdx || g.kind == Kind::kSrx) wake(g.clock), sleep = nullptr;
+  }
+  wake(now);
+  for (unsigned b = 0; b < 8; ++b) close(b, std::max(now, act[b]));
+  std::sort(open.begin(), open.end());
+  std::uint64_t counted = 0;  // up to here
+  for (const auto& [from, to] : open) {
+    const std::uint64_t first = std::max(from, counted), end = std::min(to, now);
+    if (end > first) out[0] += end - first;
+    counted = std::max(counted, end);
+  }
+  return out;
+}
+
 std::uint64_t ReferenceController::count(Kind kind) const {
   return static_cast<std::uint64_t>(std::count_if(commands.begin(), commands.end(),
                                                   [&](const Given& g) { return g.kind == kind; }));

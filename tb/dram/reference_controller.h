@@ -2,6 +2,7 @@
 // queue and the list of commands given, and derives every answer from them when asked. It shares no
 // header with model/mem; the rules are dm365.md 5.3 and 5.4 and the relations of dram.md 2.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -92,6 +93,8 @@ class ReferenceController {
   std::vector<Accepted> accepted;  // from the door
   std::uint64_t hits = 0, misses = 0, conflicts = 0;
   std::uint64_t count(Kind kind) const;
+  /// Clocks with a row open, asleep with a row open, in power-down and in self-refresh, up to `at`.
+  std::array<std::uint64_t, 4> residency(Picoseconds at) const;
 
  private:
   struct Queued {

@@ -86,6 +86,12 @@ class Production : private mem::DdrClient {
     return {s.bursts.count(),        s.row_hits.count(),  s.row_misses.count(),
             s.row_conflicts.count(), s.activates.count(), s.refreshes.count()};
   }
+  std::array<std::uint64_t, 4> residency(Picoseconds) const {
+    const mem::DdrStats& s = ddr_.stats;
+    return {s.row_open_clocks.count(), s.active_power_down_clocks.count(),
+            s.power_down_clocks.count(), s.self_refresh_clocks.count()};
+  }
+  std::uint64_t overdue_rows() const { return ddr_.stats.overdue_rows.count(); }
   std::vector<Event> commands, accepted, reads;
 
  private:
@@ -163,6 +169,7 @@ class Oracle {
             n(Kind::kAct),
             n(Kind::kRef)};
   }
+  std::array<std::uint64_t, 4> residency(Picoseconds at) const { return controller_.residency(at); }
   std::vector<Event> commands, accepted, reads;
 
  private:
@@ -278,6 +285,8 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
       const auto s = c.statistics();
       taken.push_back({kSample, s[0], s[1], s[2]});
       taken.push_back({kSample, s[3], s[4], s[5]});
+      const auto t = c.residency(now);
+      taken.push_back({kSample, t[0], t[1], t[2] << 32 | t[3]});
       if (reconfigure) {
         config.old_count = choice & 1 ? 3 : 0xFF;
         config.refresh_interval = choice & 6 ? setup.config.refresh_interval : 300 + choice % 1000;

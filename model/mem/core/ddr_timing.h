@@ -120,7 +120,8 @@ class DdrDevice {
       close(bank, clock);
     } else if constexpr (kCmd == Cmd::kPreAll) {
       for (auto& b : banks_) b.row = kClosed;
-      if (open_ != 0) all_closed_at(clock);
+      last_close_ = std::max(last_close_, clock);
+      if (open_ != 0) all_closed_at(last_close_);
       open_ = 0;
     }
   }
@@ -150,7 +151,10 @@ class DdrDevice {
       open_clocks_ += until - open_since_;
       open_since_ = until;
     }
-    return std::exchange(open_clocks_, 0);
+    // A row that closes by itself was counted to its end when that was known.
+    const std::uint64_t ahead =
+        std::min(open_clocks_, counted_to_ > until ? counted_to_ - until : 0);
+    return std::exchange(open_clocks_, ahead) - ahead;
   }
 
  private:
@@ -161,14 +165,16 @@ class DdrDevice {
   };
   void close(unsigned bank, std::uint64_t clock) {
     banks_[bank].row = kClosed;
-    if (open_ == 1u << bank) all_closed_at(clock);
+    last_close_ = std::max(last_close_, clock);
+    if (open_ == 1u << bank) all_closed_at(last_close_);
     open_ &= ~(1u << bank);
   }
-  /// A row that closes by itself may do so after the next ACT: open_since_ then lies ahead of it.
+  /// A row that closes by itself may do so after another PRE or the next ACT: open_since_ then lies
+  /// ahead of that.
   void all_closed_at(std::uint64_t clock) {
     if (clock <= open_since_) return;
     open_clocks_ += clock - open_since_;
-    open_since_ = clock;
+    open_since_ = counted_to_ = clock;
   }
   template <Cmd kCmd, std::size_t... kRule>
   void start_rules(unsigned bank, std::uint64_t clock, std::index_sequence<kRule...>) {
@@ -190,6 +196,7 @@ class DdrDevice {
   std::array<std::uint32_t, kDdrRules.size()> clocks_{};  // each rule's number in effect
   std::uint32_t open_ = 0;                                // banks with an open row
   std::uint64_t open_clocks_ = 0, open_since_ = 0;        // with any row open: counted up to here
+  std::uint64_t last_close_ = 0, counted_to_ = 0;
   std::array<Bank, kMaxBanks> banks_{};
   std::array<std::uint64_t, kCmdCount> rank_{};
 };
