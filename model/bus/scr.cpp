@@ -193,7 +193,7 @@ tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
     deciding_ = t;
     crossbar_.slave_done(r, t, t, r.error);
   } else {
-    crossbar_.slave_done(r, r.first, r.last, false);
+    crossbar_.slave_done(r, r.first, r.last, phase == MemPhase::kRefused);
   }
   return tlm::TLM_COMPLETED;
 }

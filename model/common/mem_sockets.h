@@ -12,6 +12,7 @@ enum class MemPhase : std::uint8_t {
   kRequest,   ///< forward: the request is on the port at MemRequest::issued
   kAccepted,  ///< backward, between crossbar and slave: taken from the door
   kResponse,  ///< backward: the outcome is decided; its times may lie ahead
+  kRefused,   ///< backward, from a slave: the same, and the outcome is that nobody answers
 };
 
 struct MemProtocol {

@@ -1,11 +1,19 @@
 #include "model/mem/ddr_module.h"
 
+#include <algorithm>
+
 #include "model/mem/ddr_decode.h"
 
 namespace fovea::mem {
 
 DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
-    : BusTarget(name, regs), store_(params.size_bytes()), controller_(params, store_, *this) {
+    : BusTarget(name, regs),
+      params_(params),
+      store_(params.size_bytes()),
+      controller_(params, store_, *this),
+      check_(params, controller_),
+      sdtimr_(regs.sdtimr.get()),
+      sdtimr2_(regs.sdtimr2.get()) {
   SC_HAS_PROCESS(DdrModule);
   socket.bind(*this);
   lookahead.bind(*this);
@@ -14,6 +22,12 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
   SC_METHOD(enabled_changed);
   sensitive << enabled;
   for (Reg* r : regs.regs()) r->on_write([this](std::uint32_t) { reconfigure(); });
+  regs.sdtimr.on_write([this](std::uint32_t) { keep_while_locked(regs.sdtimr, sdtimr_); });
+  regs.sdtimr2.on_write([this](std::uint32_t) { keep_while_locked(regs.sdtimr2, sdtimr2_); });
+  regs.sdrstat.on_read([this] {
+    settle(kernel_time());
+    regs.sdrstat.phyrdy.set(controller_.asleep() != LowPower::kClockStop);
+  });
 }
 
 void DdrModule::settle(Picoseconds now) {
@@ -21,12 +35,32 @@ void DdrModule::settle(Picoseconds now) {
   controller_.catch_up(now);
 }
 
-void DdrModule::enabled_changed() { enabled_ = enabled.read(); }
+void DdrModule::enabled_changed() {
+  enabled_ = enabled.read();
+  open_ = ready_ && enabled_ && examined_;
+}
 
 void DdrModule::clocks_changed() {
-  settle(kernel_time());
-  controller_.set_clocks(ddr_clk.read(), scr_clk.read(), kernel_time());
+  const Picoseconds now = kernel_time();
+  settle(now);
+  if (ready_ && ddr_clk.read().stopped() && !refreshes_itself(controller_.asleep()))
+    Diagnostics::instance().guest(
+        "the SDRAM's clock stops outside self-refresh: nothing refreshes it; the model keeps its data");
+  controller_.set_clocks(ddr_clk.read(), scr_clk.read(), now);
+  check_.changed(programmed(), ddr_clk.read(), now);
+  examined_ = open_ = false;
   replanned_.notify(sc_core::SC_ZERO_TIME);
+}
+
+/// SDTIMR and SDTIMR2 can be written while SDBCR.TIMUNLOCK is set.
+void DdrModule::keep_while_locked(Reg& timing, std::uint32_t& kept) {
+  if (regs.sdbcr.timunlock) {
+    kept = timing.get();
+  } else if (timing.get() != kept) {
+    Diagnostics::instance().guest(timing.name() + " written without SDBCR TIMUNLOCK: write lost");
+    timing.set(kept);
+  }
+  reconfigure();
 }
 
 /// SDBCR is written with TIMUNLOCK to load CL and the timing; the write that locks it again ends
@@ -36,20 +70,33 @@ void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
   const DdrConfig c = programmed();
-  if (c.timing.CL < 2) return;  // reset pattern of a half-written register: keep the old timing
   controller_.configure(c, now);
+  check_.changed(c, ddr_clk.read(), now);
   replanned_.notify(sc_core::SC_ZERO_TIME);
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
+  examined_ = open_ = false;
 }
 
 DdrConfig DdrModule::programmed() const { return decode(regs); }
 
+/// The seldom side of a request. False: nobody answers it.
+[[gnu::noinline]] bool DdrModule::admit(const MemRequest& m) {
+  const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
+  if (!outside && ready_ && enabled_ && controller_.running()) {
+    examined_ = open_ = true;
+    for (const std::string& line : nonsense(regs, params_)) Diagnostics::instance().guest(line);
+    check_.remark(programmed(), ddr_clk.read());
+    return true;
+  }
+  Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
+                                        : "access to the SDRAM before its controller runs");
+  return false;
+}
+
 [[gnu::flatten]] Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
-  if (!ready_ || !enabled_ || outside || !controller_.running()) [[unlikely]] {
-    Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
-                                          : "access to the SDRAM before its controller runs");
-    return Taken::kRefused;
+  if (!open_ || outside || !controller_.running()) [[unlikely]] {
+    if (!admit(m)) return refuse_in_order(m, at);
   }
   DdrRequest r;
   r.cookie = &m;
@@ -90,6 +137,33 @@ void DdrModule::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last)
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(first - now_());
   socket->nb_transport_bw(r, phase, delay);
+  if (!refused_.empty()) [[unlikely]]
+    refuse_after(cookie, last);
+}
+
+/// A refusal takes no time here, so it waits for the older reads of its master: a master's reads end
+/// in their order.
+[[gnu::noinline]] Taken DdrModule::refuse_in_order(MemRequest& m, Picoseconds at) {
+  const void* older = m.write ? nullptr : controller_.newest_read(m.master);
+  if (!older) return Taken::kRefused;
+  refused_.push_back({&m, older, at});
+  return Taken::kYes;
+}
+
+void DdrModule::refuse_after(const void* read, Picoseconds last) {
+  const auto begin =
+      std::stable_partition(refused_.begin(), refused_.end(),
+                            [&](const Refused& r) { return r.behind != read; });
+  const std::vector<Refused> now(begin, refused_.end());
+  refused_.erase(begin, refused_.end());
+  for (const Refused& refused : now) {
+    MemRequest& r = *refused.request;
+    r.first = r.last = std::max(refused.at, last);
+    r.slave_waited = 0;
+    MemPhase phase = MemPhase::kRefused;
+    sc_core::sc_time delay = ps_time(r.first - now_());
+    socket->nb_transport_bw(r, phase, delay);
+  }
 }
 
 unsigned DdrModule::transport_dbg(MemRequest& r) {

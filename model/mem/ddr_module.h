@@ -2,20 +2,24 @@
 #pragma once
 #include <systemc>
 #include <tlm>
+#include <vector>
 
 #include "model/common/bus_target.h"
 #include "model/common/lookahead.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
 #include "model/mem/core/ddr_controller.h"
+#include "model/mem/ddr_check.h"
 #include "model/mem/ddr_regs.h"
 
 namespace fovea::mem {
 
-/// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDTIMR,
+/// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDBCR2, SDTIMR,
 /// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
 /// while LPSC 13 or the clock is off, end in a bus error (assumed: the chip's reaction is not
-/// documented).
+/// documented). With the first access after a change of registers or clock, when all of it is
+/// written, what was programmed is looked at: nonsense and times below the part's data sheet are
+/// remarks about the guest.
 class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
                         private DdrClient {
  public:
@@ -54,13 +58,29 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   void clocks_changed();
   void enabled_changed();
   void reconfigure();
+  void keep_while_locked(Reg& timing, std::uint32_t& kept);
+  bool admit(const MemRequest& m);
+  Taken refuse_in_order(MemRequest& m, Picoseconds at);
+  void refuse_after(const void* read, Picoseconds last);
 
+  const DdrParams& params_;
   BackingStore store_;
   DdrController controller_;
+  DdrCheck check_;
   sc_core::sc_event replanned_;
   KernelNow now_;
-  bool ready_ = false;    // initialised by the firmware
-  bool enabled_ = false;  // of `enabled`, without a call
+  bool ready_ = false;      // initialised by the firmware
+  bool enabled_ = false;    // of `enabled`, without a call
+  bool examined_ = false;   // what is programmed now
+  bool open_ = false;       // all three
+  std::uint32_t sdtimr_, sdtimr2_;  // as last written with TIMUNLOCK
+  /// Reads that nobody answers, behind older ones of their master that are still to be served.
+  struct Refused {
+    MemRequest* request;
+    const void* behind;
+    Picoseconds at;
+  };
+  std::vector<Refused> refused_;
 };
 
 }  // namespace fovea::mem

@@ -5,7 +5,10 @@
 namespace fovea::mem {
 
 struct DdrRegs : RegBank {
-  Reg sdrstat{*this, "SDRSTAT", 0x04, Mode::kRo, "status; bit 2 PHY ready", 0x4};
+  struct Sdrstat : Reg {
+    using Reg::Reg;
+    Field phyrdy{*this, "PHYRDY", 2, 1, Mode::kRo, "0: the memory's clock stands"};
+  } sdrstat{*this, "SDRSTAT", 0x04, "status", 0x4};
 
   struct Sdbcr : Reg {
     using Reg::Reg;
@@ -31,7 +34,8 @@ struct DdrRegs : RegBank {
     using Reg::Reg;
     Field rr{*this, "RR", 0, 16, Mode::kRw, "refresh interval in DDR clocks"};
     Field sr_pd{*this, "SR_PD", 23, 1, Mode::kRw, "power-down instead of self-refresh"};
-    Field mclkstopen{*this, "MCLKSTOPEN", 30, 1, Mode::kRw, "clock stop"};
+    Field mclkstopen{*this, "MCLKSTOPEN", 30, 1, Mode::kRw,
+                     "with LPMODEN: the memory's clock stands in self-refresh"};
     Field lpmoden{*this, "LPMODEN", 31, 1, Mode::kRw, "low power"};
   } sdrcr{*this, "SDRCR", 0x0C, "refresh control", 0x00000535};
 
@@ -58,7 +62,13 @@ struct DdrRegs : RegBank {
     Field rasmax{*this, "T_RASMAX", 27, 4, Mode::kRw, "refresh intervals - 1"};
   } sdtimr2{*this, "SDTIMR2", 0x14, "timing, second word", 0x7FFFFFFF};
 
-  Reg sdbcr2{*this, "SDBCR2", 0x1C, Mode::kRw, "row size and partial refresh; no effect here"};
+  struct Sdbcr2 : Reg {
+    using Reg::Reg;
+    Field rowsize{*this, "ROWSIZE", 0, 3, Mode::kRw,
+                  "9 + n row address bits, with IBANK_POS; the model takes the part's"};
+    Field pasr{*this, "PASR", 16, 3, Mode::kRw,
+               "self-refresh of a mobile part keeps 0: 4 banks, 1: 2, 2: 1, 5: 1/2, 6: 1/4 of one"};
+  } sdbcr2{*this, "SDBCR2", 0x1C, "row size and partial-array self-refresh"};
   struct Pbbpr : Reg {
     using Reg::Reg;
     Field pr_old_count{*this, "PR_OLD_COUNT", 0, 8, Mode::kRw,

@@ -40,7 +40,7 @@ Picoseconds BusTraceRun::refresh_phase() const {
 BusTraceRun::~BusTraceRun() {
   board_.dm365.scr.crossbar().observe(nullptr);
   board_.dm365.tap.attach(nullptr);
-  board_.dm365.ddr.controller().set_command_hook(nullptr, nullptr);
+  board_.dm365.ddr.controller().set_command_hook(nullptr, this);
   if (complete_) return;
   std::error_code ignored;
   std::filesystem::remove(file_.path(), ignored);

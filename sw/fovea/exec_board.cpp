@@ -60,6 +60,7 @@ void ExecBoard::program_controller(Frequency ddr_clock) {
   const std::uint32_t sdtimr2 = kRasMax << 27 | kXp << 25 | (clocks(1375) - 1) << 16 | kXsrd << 8 |
                                 (clocks(75) - 1) << 5 | kCke;
   const auto refresh = static_cast<std::uint32_t>(ddr_clock.hertz() * 7.8e-6);
+  r.write(0x08, 4, 0x0053'CA32);  // TIMUNLOCK
   r.write(0x10, 4, sdtimr);
   r.write(0x14, 4, sdtimr2);
   r.write(0x0C, 4, refresh);

@@ -1,101 +1,16 @@
-// A DDR2 command-bus checker that shares nothing with the model: its rules are the data-sheet
-// relations of dram.md 2 (JESD79-2, BL8, AL 0), checked backwards from each command to those before
-// it. It knows the device only by its command stream.
+// The product's command checker and data sheets by the names that these tests use.
 #pragma once
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
+#include "model/mem/check/command_checker.h"
+#include "model/mem/check/data_sheet.h"
+#include "model/mem/check/part_checker.h"
 
 namespace fovea::dram {
-
-/// kRda, kWra: with auto-precharge. The last four: power-down and self-refresh, entry and exit.
-enum class Command : std::uint8_t {
-  kAct,
-  kPre,
-  kPreAll,
-  kRd,
-  kWr,
-  kRef,
-  kRda,
-  kWra,
-  kPde,
-  kPdx,
-  kSre,
-  kSrx
-};
-
-/// The numbers of one part at one clock, in clocks.
-struct DataSheet {
-  unsigned CL = 5;
-  unsigned tRCD = 5, tRP = 5, tRAS = 11, tRC = 16, tRRD = 3;
-  unsigned tWR = 4, tWTR = 3, tRTP = 2, tRFC = 31;
-  unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
-  unsigned tFAW = 0;   ///< 0: not checked. TI's controller has no such field.
-  unsigned tREFI = 0;  ///< 0: refresh not checked
-  unsigned banks = 8;
-  bool mobile = false;         ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
-  unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
-};
-
-struct Complaint {
-  std::string rule;         ///< "tRCD", ...
-  std::uint64_t clock = 0;  ///< of the offending command
-  unsigned bank = 0;
-  std::uint64_t missing = 0;  ///< clocks too early (or, for refresh, too late); 0: a state rule
-};
-
-class CommandChecker {
- public:
-  explicit CommandChecker(const DataSheet& sheet) : sheet_(sheet), banks_(sheet.banks) {}
-
-  void command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock);
-  /// End of the stream: refreshes owed by then are late too.
-  void finish(std::uint64_t clock) { check_refresh_gap(clock); }
-  /// The interval counter restarted here (SDRCR written): gaps count from this clock.
-  void refresh_counts_from(std::uint64_t clock) { last_ref_ = clock; }
-
-  /// The first complaints, at most 100; `total` counts all.
-  const std::vector<Complaint>& complaints() const { return complaints_; }
-  std::uint64_t total() const { return total_; }
-  std::uint64_t commands() const { return commands_; }
-  /// Largest distance of two REF seen, clocks.
-  std::uint64_t largest_refresh_gap() const { return largest_gap_; }
-  std::string text() const;
-  /// Called with each complaint, beyond the first hundred too.
-  std::function<void(const Complaint&)> on_complaint;
-
- private:
-  static constexpr std::int64_t kLongAgo = -1'000'000;
-  struct Bank {
-    bool open = false;
-    std::uint32_t row = 0;
-    std::int64_t act = kLongAgo, pre = kLongAgo, rd = kLongAgo, wr = kLongAgo;
-  };
-  void complain(const char* rule, std::uint64_t clock, unsigned bank, std::int64_t missing);
-  /// Complains unless `now` is at least `clocks` after `before`.
-  void apart(const char* rule, std::int64_t before, std::int64_t now, unsigned clocks,
-             unsigned bank);
-  void activate(unsigned b, std::uint32_t row, std::int64_t now);
-  void precharge(unsigned b, std::int64_t now);
-  void column(bool write, unsigned b, std::uint32_t row, std::int64_t now);
-  void close_by_itself(unsigned b);
-  void sleep(bool self_refresh, std::int64_t now);
-  void wake(bool self_refresh, std::int64_t now);
-  void refresh(std::int64_t now);
-  void check_refresh_gap(std::uint64_t clock);
-  unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }
-
-  DataSheet sheet_;
-  std::vector<Bank> banks_;
-  std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
-  std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo, prea_ = kLongAgo,
-               previous_ = kLongAgo, cke_ = kLongAgo, pdx_ = kLongAgo, srx_ = kLongAgo;
-  enum class Cke { kHigh, kPowerDown, kSelfRefresh } state_ = Cke::kHigh;
-  std::uint64_t last_ref_ = 0, largest_gap_ = 0;
-  std::vector<Complaint> complaints_;
-  std::uint64_t total_ = 0, commands_ = 0;
-};
-
+using mem::check::Command;
+using mem::check::CommandChecker;
+using mem::check::Complaint;
+using mem::check::DataSheet;
+using mem::check::find_part;
+using mem::check::in_clocks;
+using mem::check::Part;
+using mem::check::PartChecker;
 }  // namespace fovea::dram

@@ -112,6 +112,128 @@ TEST_F(ModuleTest, RequestWhileTheSdramClockStandsEndsInABusError) {
   EXPECT_TRUE(b.done[0].error);
 }
 
+// A refusal takes no time at the controller; the master sees it behind the data it asked for before.
+TEST_F(ModuleTest, RefusedReadDoesNotOvertakeAnOlderOneOfItsMaster) {
+  const std::uint32_t end = kDdr + (128u << 20);
+  b.master.read(kDdr + 0x20000, 64);
+  b.master.read(kDdr + 0x40000, 64);
+  b.master.read(end, 64);
+  b.master.read(end + 64, 64);
+  run_for(10 * kPsPerUs);
+  ASSERT_EQ(b.done.size(), 4u);
+  for (unsigned i = 0; i < 4; ++i) {
+    EXPECT_EQ(b.done[i].error, i >= 2) << i;
+    EXPECT_EQ(b.done[i].seen, b.done[i].last);
+    if (i > 0) {
+      EXPECT_GE(b.done[i].first, b.done[i - 1].last) << i;
+    }
+  }
+  EXPECT_GT(b.done[1].last - b.done[1].first, 0u);
+}
+
+TEST_F(ModuleTest, RefusedReadAloneEndsAtOnce) {
+  b.master.read(kDdr + (128u << 20), 64);
+  b.master.read(kDdr + 0x20000, 64);
+  run_for(10 * kPsPerUs);
+  ASSERT_EQ(b.done.size(), 2u);
+  EXPECT_TRUE(b.done[0].error);
+  EXPECT_FALSE(b.done[1].error);
+  EXPECT_LT(b.done[0].last, b.done[1].first);
+}
+
+/// Remarks that contain this text.
+std::uint64_t remarks(const std::string& text) {
+  std::uint64_t n = 0;
+  for (const auto& [what, count] : Diagnostics::instance().counts())
+    if (what.second.find(text) != std::string::npos) n += count;
+  return n;
+}
+
+// The registers hold their reset pattern but for SDRCR: all times are long, T_RC is not above T_RAS.
+TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
+  Diagnostics::instance().clear();
+  const auto write = [&](std::uint32_t offset, std::uint32_t value) {
+    EXPECT_EQ(b.ddr.regs.write(offset, 4, value), Access::kOk);
+  };
+  const auto read_some = [&] {
+    b.master.read(kDdr, 64);
+    run_for(5 * kPsPerUs);
+    b.master.read(kDdr + 64, 64);
+    run_for(5 * kPsPerUs);
+  };
+  write(0x0C, 1896);
+  EXPECT_EQ(Diagnostics::instance().counts().size(), 0u) << "others may be written still";
+  read_some();
+  EXPECT_EQ(remarks("SDRCR RR: 1896 clocks programmed, MT47H64M16-3 needs tREFI at most 7800 ns = "
+                    "1895 at 243 MHz: 1 over"),
+            1u);
+  EXPECT_EQ(remarks("SDTIMR T_RC not above T_RAS"), 1u);
+  write(0x0C, 1895);
+  read_some();
+  EXPECT_EQ(remarks("SDRCR"), 1u) << "no more of them";
+  EXPECT_EQ(remarks("SDTIMR T_RC not above T_RAS"), 2u) << "once for each change";
+  b.ddr_clk.write(Frequency(216'000'000));
+  run_for(kPsPerUs);
+  read_some();
+  EXPECT_EQ(remarks("needs tREFI at most 7800 ns = 1684 at 216 MHz: 211 over"), 1u);
+}
+
+TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
+  Diagnostics::instance().clear();
+  auto& r = b.ddr.regs;
+  const std::uint32_t was = r.sdtimr.get(), was2 = r.sdtimr2.get();
+  r.write(0x10, 4, 0x12345678);
+  r.write(0x14, 4, 0x02345678);
+  EXPECT_EQ(r.sdtimr.get(), was);
+  EXPECT_EQ(r.sdtimr2.get(), was2);
+  EXPECT_EQ(remarks("SDTIMR written without SDBCR TIMUNLOCK: write lost"), 1u);
+  EXPECT_EQ(remarks("SDTIMR2 written without SDBCR TIMUNLOCK: write lost"), 1u);
+  r.write(0x08, 4, 0x0053CA32);
+  r.write(0x10, 4, 0x12345678);
+  r.write(0x14, 4, 0x02345678);
+  EXPECT_EQ(r.sdtimr.get(), 0x12345678u);
+  EXPECT_EQ(r.sdtimr2.get(), 0x02345678u);
+  r.write(0x10, 4, was);
+  r.write(0x14, 4, was2);
+  r.write(0x08, 4, 0x00534A32);
+  EXPECT_EQ(remarks("write lost"), 2u);
+}
+
+// LPMODEN, then MCLKSTOPEN: PHYRDY goes low; an access brings the clock back.
+TEST_F(ModuleTest, PhyIsNotReadyWhileTheMemorysClockStands) {
+  auto& r = b.ddr.regs;
+  const auto phy = [&] {
+    std::uint32_t word = 0;
+    EXPECT_EQ(r.read(0x04, 4, word), Access::kOk);
+    return word >> 2 & 1u;
+  };
+  EXPECT_EQ(phy(), 1u);
+  r.write(0x0C, 4, 1u << 31 | 1895);
+  run_for(10 * kPsPerUs);
+  EXPECT_EQ(phy(), 1u) << "self-refresh with the clock";
+  r.write(0x0C, 4, 3u << 30 | 1895);
+  run_for(kPsPerUs);
+  EXPECT_EQ(phy(), 0u);
+  b.master.read(kDdr, 64);
+  run_for(600 * kPsPerNs);  // tXSRD is longer
+  EXPECT_EQ(phy(), 1u);
+  run_for(10 * kPsPerUs);
+  EXPECT_EQ(b.done.size(), 1u);
+  EXPECT_EQ(phy(), 0u) << "asleep again";
+  Diagnostics::instance().clear();
+  b.ddr_clk.write(Frequency());
+  run_for(kPsPerMs);
+  EXPECT_EQ(remarks("outside self-refresh"), 0u);
+  b.ddr_clk.write(kFast);
+  run_for(kPsPerUs);
+  r.write(0x0C, 4, 1895);
+  run_for(10 * kPsPerUs);
+  EXPECT_EQ(phy(), 1u);
+  b.ddr_clk.write(Frequency());
+  run_for(kPsPerUs);
+  EXPECT_EQ(remarks("outside self-refresh"), 1u);
+}
+
 }  // namespace
 }  // namespace fovea::dram
 

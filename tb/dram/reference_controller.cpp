@@ -27,8 +27,18 @@ void ReferenceController::set_clocks(Frequency ddr, Frequency scr, Picoseconds a
 }
 
 void ReferenceController::configure(const ReferenceConfig& config, Picoseconds at) {
+  using Sleep = ReferenceConfig::Sleep;
   idle_until(at);
-  if (config.sleep != configs_.back().sleep) wake(ddr_.edge_after(at));
+  const auto refreshes_itself = [](Sleep s) {
+    return s == Sleep::kSelfRefresh || s == Sleep::kClockStop;
+  };
+  if (refreshes_itself(asleep_) && refreshes_itself(config.sleep)) {
+    if (asleep_ == Sleep::kClockStop && config.sleep == Sleep::kSelfRefresh)
+      clock_runs_from_ = ddr_.edge_after(at) + limits_.clock_restart;
+    asleep_ = config.sleep;
+  } else if (config.sleep != configs_.back().sleep) {
+    wake(ddr_.edge_after(at));
+  }
   not_before_ = ddr_.edge_after(at);
   // A new interval starts to count at once.
   if (config.refresh_interval != configs_.back().refresh_interval)
@@ -236,9 +246,12 @@ bool ReferenceController::may_sleep(std::uint64_t clock) const {
 void ReferenceController::wake(std::uint64_t clock) {
   using Sleep = ReferenceConfig::Sleep;
   if (asleep_ == Sleep::kNever) return;
+  if (asleep_ == Sleep::kClockStop) clock += limits_.clock_restart;
   clock = std::max(clock, commands.back().clock + configs_[commands.back().config].tCKE);
+  clock = std::max(clock, clock_runs_from_);
+  clock_runs_from_ = 0;
   give(asleep_ == Sleep::kPowerDown ? Kind::kPdx : Kind::kSrx, 0, 0, clock);
-  if (asleep_ == Sleep::kSelfRefresh) {  // it refreshed itself until now
+  if (asleep_ != Sleep::kPowerDown) {  // it refreshed itself until now
     owed_ = since_refresh_ = 0;
     expiry_ = clock + config().refresh_interval;
   }
@@ -249,7 +262,7 @@ void ReferenceController::wake(std::uint64_t clock) {
 void ReferenceController::idle_at(std::uint64_t clock) {
   using Sleep = ReferenceConfig::Sleep;
   const bool refreshes = config().refresh_interval != 0;
-  if (asleep_ == Sleep::kSelfRefresh) return;
+  if (asleep_ == Sleep::kSelfRefresh || asleep_ == Sleep::kClockStop) return;
   if (asleep_ == Sleep::kPowerDown) {
     const Given& entry = commands.back();
     if (refreshes && expiry_ <= clock && entry.clock + configs_[entry.config].tCKE <= clock)
@@ -260,7 +273,7 @@ void ReferenceController::idle_at(std::uint64_t clock) {
   if (clock < awake_from(Kind::kRef, clock)) return;
   if (owed_ && !refreshes) return;
   const Sleep sleep = config().sleep;
-  if (owed_ || sleep == Sleep::kSelfRefresh) {
+  if (owed_ || sleep == Sleep::kSelfRefresh || sleep == Sleep::kClockStop) {
     if (!all_closed()) {
       if (legal_from(Kind::kPreAll, 0, clock) == clock) give(Kind::kPreAll, 0, 0, clock);
       return;
@@ -316,6 +329,22 @@ ReferenceController::Plan ReferenceController::refresh_at(std::uint64_t edge) co
   return {kind, legal_from(kind, 0, edge), std::nullopt};
 }
 
+/// A row that has been open for its number of intervals is closed, the oldest first.
+std::optional<ReferenceController::Plan> ReferenceController::overdue_at(std::uint64_t edge) const {
+  std::optional<Plan> plan;
+  std::uint64_t oldest = ~std::uint64_t{0};
+  const std::uint64_t allowed = std::uint64_t{config().row_intervals} * config().refresh_interval;
+  for (unsigned bank = 0; bank < 8 && config().refresh_interval; ++bank) {
+    if (!open_row(bank)) continue;
+    auto act = commands.rbegin();
+    while (act->kind != Kind::kAct || act->bank != bank) ++act;
+    if (act->clock + allowed > edge || act->clock >= oldest) continue;
+    oldest = act->clock;
+    plan = Plan{Kind::kPre, legal_from(Kind::kPre, bank, edge), std::nullopt, bank};
+  }
+  return plan;
+}
+
 ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const {
   const Refresh level = refresh_level(edge);
   if (level == Refresh::kMust) return refresh_at(edge);
@@ -351,6 +380,8 @@ ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const
       return refresh_at(edge);
   }
 
+  if (const auto overdue = overdue_at(edge)) return *overdue;
+
   // The first gets what it wants; the others may prepare a bank that nobody before them needs.
   std::optional<Plan> best;
   std::vector<unsigned> taken;
@@ -374,6 +405,7 @@ void ReferenceController::give(Kind kind, unsigned bank, std::uint32_t row, std:
 void ReferenceController::step() {
   const Plan p = plan();
   expire(p.clock);
+  if (!p.of && p.kind == Kind::kPre) return give(p.kind, p.bank, 0, p.clock);
   if (!p.of) {
     // More than the allowed intervals without a refresh: four before anything new.
     if (since_refresh_ > limits_.gap && forced_ == 0) forced_ = 4;
@@ -440,6 +472,44 @@ void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock)
     read_room_ = room > head ? room - head : 0;
   }
   reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
+}
+
+std::array<std::uint64_t, 4> ReferenceController::residency(Picoseconds at) const {
+  const std::uint64_t now = ddr_.edge_after(at);
+  using Span = std::pair<std::uint64_t, std::uint64_t>;
+  std::vector<Span> open;  // rows
+  std::array<std::uint64_t, 8> act{};
+  std::uint32_t rows = 0;  // banks with one
+  const auto close = [&](unsigned bank, std::uint64_t clock) {
+    if (rows >> bank & 1u) open.emplace_back(act[bank], clock);
+    rows &= ~(1u << bank);
+  };
+  std::array<std::uint64_t, 4> out{};
+  const Given* sleep = nullptr;
+  const auto wake = [&](std::uint64_t clock) {
+    if (!sleep || clock <= sleep->clock) return;
+    const std::uint64_t n = clock - sleep->clock;
+    if (sleep->kind == Kind::kPde && rows) out[1] += n;
+    out[sleep->kind == Kind::kPde ? 2 : 3] += n;
+  };
+  for (const Given& g : commands) {
+    if (g.kind == Kind::kAct) act[g.bank] = g.clock, rows |= 1u << g.bank;
+    if (g.kind == Kind::kPre) close(g.bank, g.clock);
+    if (g.kind == Kind::kRda || g.kind == Kind::kWra) close(g.bank, g.closes);
+    for (unsigned b = 0; b < 8 && g.kind == Kind::kPreAll; ++b) close(b, g.clock);
+    if (g.kind == Kind::kPde || g.kind == Kind::kSre) sleep = &g;
+    if (g.kind == Kind::kPdx || g.kind == Kind::kSrx) wake(g.clock), sleep = nullptr;
+  }
+  wake(now);
+  for (unsigned b = 0; b < 8; ++b) close(b, std::max(now, act[b]));
+  std::sort(open.begin(), open.end());
+  std::uint64_t counted = 0;  // up to here
+  for (const auto& [from, to] : open) {
+    const std::uint64_t first = std::max(from, counted), end = std::min(to, now);
+    if (end > first) out[0] += end - first;
+    counted = std::max(counted, end);
+  }
+  return out;
 }
 
 std::uint64_t ReferenceController::count(Kind kind) const {

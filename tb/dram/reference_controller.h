@@ -2,6 +2,7 @@
 // queue and the list of commands given, and derives every answer from them when asked. It shares no
 // header with model/mem; the rules are dm365.md 5.3 and 5.4 and the relations of dram.md 2.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -20,7 +21,8 @@ struct ReferenceConfig {
   bool bank_on_top = false;
   bool mobile = false;
   unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
-  enum class Sleep { kNever, kSelfRefresh, kPowerDown } sleep = Sleep::kNever;
+  enum class Sleep { kNever, kSelfRefresh, kPowerDown, kClockStop } sleep = Sleep::kNever;
+  unsigned row_intervals = 16;  ///< refresh intervals that a row may be open
 };
 
 /// What the silicon fixes.
@@ -28,6 +30,7 @@ struct ReferenceLimits {
   unsigned command_fifo = 7, write_fifo = 88, read_fifo = 136;  // entries, bytes, bytes
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
   unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
+  unsigned clock_restart = 1;                                   // DDR clocks
   std::uint64_t size = 128u << 20;
   enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
 };
@@ -90,6 +93,8 @@ class ReferenceController {
   std::vector<Accepted> accepted;  // from the door
   std::uint64_t hits = 0, misses = 0, conflicts = 0;
   std::uint64_t count(Kind kind) const;
+  /// Clocks with a row open, asleep with a row open, in power-down and in self-refresh, up to `at`.
+  std::array<std::uint64_t, 4> residency(Picoseconds at) const;
 
  private:
   struct Queued {
@@ -101,7 +106,8 @@ class ReferenceController {
   struct Plan {
     Kind kind;
     std::uint64_t clock;
-    std::optional<std::size_t> of;  // place in queue_; none: refresh
+    std::optional<std::size_t> of;  // place in queue_; none: refresh, or PRE of an overdue row
+    unsigned bank = 0;              // of that row
   };
   enum class Refresh { kMay, kNeed, kMust };
 
@@ -118,6 +124,7 @@ class ReferenceController {
   Plan plan() const;
   Plan plan_at(std::uint64_t edge) const;
   Plan refresh_at(std::uint64_t edge) const;
+  std::optional<Plan> overdue_at(std::uint64_t edge) const;
   Refresh refresh_level(std::uint64_t edge) const;
   std::uint64_t clock_after_last() const;
   void expire(std::uint64_t clock);
@@ -142,6 +149,7 @@ class ReferenceController {
   std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
   ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
   bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
+  std::uint64_t clock_runs_from_ = 0;  // again, after a stop
   std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
 };
 

@@ -63,6 +63,7 @@ class Production : private mem::DdrClient {
     d.timing.nXSRD = c.tXSRD;
     d.timing.nCKE = c.tCKE;
     d.low_power = static_cast<mem::LowPower>(c.sleep);
+    d.row_intervals = c.row_intervals;
     ddr_.configure(d, at);
   }
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at) { ddr_.set_clocks(ddr, scr, at); }
@@ -85,6 +86,12 @@ class Production : private mem::DdrClient {
     return {s.bursts.count(),        s.row_hits.count(),  s.row_misses.count(),
             s.row_conflicts.count(), s.activates.count(), s.refreshes.count()};
   }
+  std::array<std::uint64_t, 4> residency(Picoseconds) const {
+    const mem::DdrStats& s = ddr_.stats;
+    return {s.row_open_clocks.count(), s.active_power_down_clocks.count(),
+            s.power_down_clocks.count(), s.self_refresh_clocks.count()};
+  }
+  std::uint64_t overdue_rows() const { return ddr_.stats.overdue_rows.count(); }
   std::vector<Event> commands, accepted, reads;
 
  private:
@@ -104,6 +111,7 @@ class Production : private mem::DdrClient {
       give("read_fifo", l.read_fifo, " B");
       give("request_latency", l.request_latency, " cycles");
       give("return_latency", l.return_latency, " cycles");
+      give("clock_restart", l.clock_restart, " cycles");
       give("refresh.need", l.need);
       give("refresh.must", l.must);
       give("refresh.gap", l.gap);
@@ -161,6 +169,7 @@ class Oracle {
             n(Kind::kAct),
             n(Kind::kRef)};
   }
+  std::array<std::uint64_t, 4> residency(Picoseconds at) const { return controller_.residency(at); }
   std::vector<Event> commands, accepted, reads;
 
  private:
@@ -188,13 +197,16 @@ Setup random_setup(Rng& rng) {
   c.CL = 2 + below(5);
   c.banks = below(3) ? 8 : 4;
   s.limits.size = c.banks == 8 ? 128u << 20 : 64u << 20;
+  if (below(6) == 0) c.banks = 1u << below(2);
   c.bank_on_top = below(3) == 0;
   c.mobile = c.banks == 4 && below(2);
   c.tXP = 1 + below(6);
   c.tXSNR = 20 + below(40);
   c.tXSRD = 20 + below(200);
   c.tCKE = 1 + below(8);
-  if (below(2)) c.sleep = static_cast<ReferenceConfig::Sleep>(1 + below(2));
+  if (below(2)) c.sleep = static_cast<ReferenceConfig::Sleep>(1 + below(3));
+  if (below(3) == 0) c.row_intervals = 1 + below(4);
+  c.page_log2 = 9 + below(4);
   if (below(3) == 0) s.limits.order = static_cast<ReferenceLimits::Order>(1 + below(3));
   c.read_latency = below(8);
   c.refresh_interval = below(8) == 0 ? 0 : 300 + below(2000);
@@ -207,6 +219,7 @@ Setup random_setup(Rng& rng) {
   s.limits.read_fifo = 64 + 8 * below(12);
   s.limits.request_latency = below(12);
   s.limits.return_latency = below(17);
+  s.limits.clock_restart = below(20);
   s.limits.need = 1 + below(8);
   s.limits.must = s.limits.need + below(6);
   s.limits.gap = 4 + below(7);  // fewer, and the four refreshes that follow leave time for nothing
@@ -245,12 +258,13 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
     r.priority = below(4) ? r.master % 3 : below(8);
     r.write = below(5) < 2;
     r.bytes = below(6) == 0 ? 1u << below(2) : 4u << below(5);
-    const std::uint32_t row = below(rows), bank = below(banks);
+    const std::uint32_t row = below(rows), bank = below(banks) % config.banks;
+    const std::uint32_t page = 1u << config.page_log2;
     const std::uint32_t block =
         config.bank_on_top
-            ? bank * static_cast<std::uint32_t>(setup.limits.size / config.banks) + row * 2048u
-            : (row * config.banks + bank) * 2048u;
-    r.address = block + below(32) * 64u + below(64 / r.bytes) * r.bytes;
+            ? bank * static_cast<std::uint32_t>(setup.limits.size / config.banks) + row * page
+            : (row * config.banks + bank) * page;
+    r.address = block + below(page / 64) * 64u + below(64 / r.bytes) * r.bytes;
     if (crowd == 0 || below(3) == 0) now += below(crowd == 3 ? 400'000 : 60'000);
     if (below(100) == 0) now += below(3 * 1895) * Picoseconds{4'000};
     const bool sample = below(16) == 0, reconfigure = below(150) == 0, reclock = below(400) == 0;
@@ -271,10 +285,13 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
       const auto s = c.statistics();
       taken.push_back({kSample, s[0], s[1], s[2]});
       taken.push_back({kSample, s[3], s[4], s[5]});
+      const auto t = c.residency(now);
+      taken.push_back({kSample, t[0], t[1], t[2] << 32 | t[3]});
       if (reconfigure) {
         config.old_count = choice & 1 ? 3 : 0xFF;
         config.refresh_interval = choice & 6 ? setup.config.refresh_interval : 300 + choice % 1000;
-        if (choice & 64) config.sleep = static_cast<ReferenceConfig::Sleep>(choice / 128 % 3);
+        if (choice & 64) config.sleep = static_cast<ReferenceConfig::Sleep>(choice / 128 % 4);
+        if (choice & 512) config.row_intervals = 1 + choice / 1024 % 4;
         config.tRP = used.config.tRP + choice % 3;
         config.tWTR = setup.config.tWTR + choice / 8 % 3;
         c.configure(config, now);

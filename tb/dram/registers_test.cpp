@@ -1,4 +1,5 @@
 // From the words that boot code writes to the time of a command: each field changes what it should.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "model/mem/ddr_decode.h"
@@ -8,8 +9,13 @@ namespace fovea::dram {
 namespace {
 
 using mem::Cmd;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 constexpr std::uint32_t kSdbcr = 0x08, kSdrcr = 0x0C, kSdtimr = 0x10, kSdtimr2 = 0x14,
-                        kPbbpr = 0x20, kDdrphycr = 0xE4;
+                        kPbbpr = 0x20, kDdrphycr = 0xE4,
+                        kSdbcr2 = 0x1C;
 
 /// The words of a shipped DM368 board (dram.md 3, last table), field by field as the manual has
 /// them.
@@ -19,17 +25,29 @@ struct Words {
   std::uint32_t sdtimr =
       66u << 25 | 4u << 22 | 4u << 19 | 5u << 16 | 14u << 11 | 19u << 6 | 2u << 3 | 2u;
   std::uint32_t sdtimr2 = 8u << 27 | 2u << 25 | 69u << 16 | 199u << 8 | 2u << 5 | 2u;
-  std::uint32_t pbbpr = 0xFE, ddrphycr = 0xC7;
+  std::uint32_t pbbpr = 0xFE, ddrphycr = 0xC7, sdbcr2 = 0;
 };
 
-mem::DdrConfig decoded(const Words& w) {
-  mem::DdrRegs regs;
+void write(mem::DdrRegs& regs, const Words& w) {
   const std::pair<std::uint32_t, std::uint32_t> writes[] = {
       {kSdbcr, w.sdbcr},     {kSdrcr, w.sdrcr}, {kSdtimr, w.sdtimr},
-      {kSdtimr2, w.sdtimr2}, {kPbbpr, w.pbbpr}, {kDdrphycr, w.ddrphycr}};
+      {kSdtimr2, w.sdtimr2}, {kPbbpr, w.pbbpr}, {kDdrphycr, w.ddrphycr},
+      {kSdbcr2, w.sdbcr2}};
   for (const auto& [offset, value] : writes)
     EXPECT_EQ(regs.write(offset, 4, value), Access::kOk) << offset;
+}
+mem::DdrConfig decoded(const Words& w) {
+  mem::DdrRegs regs;
+  write(regs, w);
   return mem::decode(regs);
+}
+/// What is said about these words with this part.
+std::vector<std::string> nonsense(const Words& w, const char* part = "mt47h64m16") {
+  mem::DdrRegs regs;
+  write(regs, w);
+  mem::DdrParams params;
+  params.part.set(part);
+  return mem::nonsense(regs, params);
 }
 
 TEST(DdrRegistersTest, ShippedWordsMeanTheirClocks) {
@@ -57,6 +75,180 @@ TEST(DdrRegistersTest, ShippedWordsMeanTheirClocks) {
   EXPECT_EQ(c.page_log2, 11u);
   EXPECT_FALSE(c.bank_on_top);
   EXPECT_EQ(c.low_power, mem::LowPower::kOff);
+  EXPECT_EQ(c.row_intervals, 9u);
+  EXPECT_EQ(c.refreshed_log2, 0u);
+  EXPECT_THAT(nonsense({}), IsEmpty());
+}
+
+/// The words with a field of a register set to `value`.
+Words with(std::uint32_t Words::*word, unsigned lsb, unsigned width, std::uint32_t value,
+           Words w = {}) {
+  const std::uint32_t mask = ((1u << width) - 1u) << lsb;
+  w.*word = (w.*word & ~mask) | value << lsb;
+  return w;
+}
+
+TEST(DdrRegistersTest, ReservedValuesAreNamedAndTakenAsOthers) {
+  for (unsigned cl = 0; cl < 8; ++cl) {
+    const Words w = with(&Words::sdbcr, 9, 3, cl);
+    const bool reserved = cl < 2 || cl > 5;
+    EXPECT_EQ(decoded(w).timing.CL, reserved ? 5 : cl);
+    if (reserved) {
+      EXPECT_THAT(nonsense(w), ElementsAre("SDBCR CL = " + std::to_string(cl) +
+                                           " is reserved; taken as 5"));
+    } else {
+      EXPECT_THAT(nonsense(w), IsEmpty()) << cl;
+    }
+  }
+  for (unsigned n = 0; n < 8; ++n) {
+    const Words banks = with(&Words::sdbcr, 4, 3, n), page = with(&Words::sdbcr, 0, 3, n);
+    EXPECT_EQ(decoded(banks).timing.banks, n > 3 ? 8u : 1u << n);
+    EXPECT_EQ(decoded(page).page_log2, n > 3 ? 12u : 9 + n);
+    const std::string value = std::to_string(n);
+    if (n > 3) {
+      EXPECT_THAT(nonsense(banks),
+                  ElementsAre("SDBCR IBANK = " + value + " is reserved; taken as 3, 8 banks"));
+      EXPECT_THAT(nonsense(page),
+                  Contains("SDBCR PAGESIZE = " + value + " is reserved; taken as 3, 2048 words"));
+    }
+  }
+}
+
+TEST(DdrRegistersTest, NonsenseOfSdbcrIsNamed) {
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 14, 1, 0)),
+              ElementsAre("SDBCR NM = 0: a 32-bit bus, but the chip has 16 bits; taken as 16"));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 20, 1, 0)),
+              ElementsAre(HasSubstr("SDBCR DDR2EN = 0: not the type of ddr.part = mt47h64m16")));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 17, 1, 0)), ElementsAre(HasSubstr("SDBCR DDREN = 0")));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 25, 1, 1)),
+              ElementsAre("SDBCR MSDRAMEN = 1, but ddr.part = mt47h64m16 is DDR2; timed as "
+                          "programmed"));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 4, 3, 2), "mt46h64m16lf"),
+              ElementsAre("SDBCR MSDRAMEN = 0, but ddr.part = mt46h64m16lf is mobile DDR; timed as "
+                          "programmed"));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 4, 3, 2)),
+              ElementsAre(HasSubstr("SDBCR IBANK: 4 banks, but ddr.part = mt47h64m16 has 8")));
+  EXPECT_THAT(nonsense({}, "mt47h32m16"), ElementsAre(HasSubstr("8 banks, but ddr.part = mt47h32m16 "
+                                                                "has 4")));
+  EXPECT_THAT(nonsense(with(&Words::sdbcr, 0, 3, 1)),
+              ElementsAre(HasSubstr("SDBCR PAGESIZE: rows of 512 words, but ddr.part = mt47h64m16")));
+}
+
+TEST(DdrRegistersTest, RowsOfTheOtherAddressMapComeFromThePart) {
+  // 8192 rows: 13 address bits are ROWSIZE 4. The part of 256 MiB has 16384.
+  for (unsigned size = 0; size < 8; ++size) {
+    Words w = with(&Words::sdbcr, 26, 1, 1);
+    w.sdbcr2 = size;
+    EXPECT_EQ(nonsense(w).empty(), size == 4) << size;
+    EXPECT_EQ(nonsense(w, "mt47h128m16").empty(), size == 5) << size;
+    w.sdbcr = Words{}.sdbcr;
+    EXPECT_THAT(nonsense(w), IsEmpty()) << "not looked at without IBANK_POS";
+  }
+  Words w = with(&Words::sdbcr, 26, 1, 1);
+  EXPECT_THAT(nonsense(w), ElementsAre("SDBCR2 ROWSIZE = 0 with IBANK_POS, but ddr.part = "
+                                       "mt47h64m16 has 13 row address bits; taken as 4"));
+}
+
+TEST(DdrRegistersTest, PartialArrayOfMobilePartsOnly) {
+  constexpr unsigned kKept[] = {0, 1, 2, 0, 0, 3, 4, 0};  // log2; 3, 4, 7 are reserved
+  Words mobile = with(&Words::sdbcr, 25, 1, 1);
+  mobile = with(&Words::sdbcr, 4, 3, 2, mobile);
+  mobile = with(&Words::sdbcr, 20, 1, 0, mobile);
+  EXPECT_THAT(nonsense(mobile, "mt46h64m16lf"), IsEmpty());
+  for (unsigned pasr = 0; pasr < 8; ++pasr) {
+    mobile.sdbcr2 = pasr << 16;
+    const bool reserved = pasr == 3 || pasr == 4 || pasr == 7;
+    EXPECT_EQ(decoded(mobile).refreshed_log2, kKept[pasr]) << pasr;
+    EXPECT_EQ(nonsense(mobile, "mt46h64m16lf").size(), reserved ? 1u : 0u) << pasr;
+    Words w;
+    w.sdbcr2 = pasr << 16;
+    EXPECT_EQ(decoded(w).refreshed_log2, 0u);
+    if (pasr) {
+      EXPECT_THAT(nonsense(w), Contains(HasSubstr("without MSDRAMEN; all banks are refreshed")));
+    }
+  }
+}
+
+TEST(DdrRegistersTest, TimesThatContradictEachOtherAreNamed) {
+  const auto ras = [](unsigned n) { return with(&Words::sdtimr, 11, 5, n); };
+  EXPECT_THAT(nonsense(ras(4)), IsEmpty()) << "T_RCD is 4";
+  EXPECT_THAT(nonsense(ras(3)), ElementsAre(HasSubstr("SDTIMR T_RAS below T_RCD")));
+  EXPECT_THAT(nonsense(ras(18)), IsEmpty()) << "T_RC is 19";
+  EXPECT_THAT(nonsense(ras(19)), ElementsAre(HasSubstr("SDTIMR T_RC not above T_RAS")));
+  const auto rfc = [](unsigned n) { return with(&Words::sdtimr, 25, 7, n); };
+  EXPECT_THAT(nonsense(rfc(5)), IsEmpty()) << "T_RP is 4";
+  EXPECT_THAT(nonsense(rfc(4)), ElementsAre(HasSubstr("SDTIMR T_RFC not above T_RP")));
+  Words sleep = with(&Words::sdrcr, 31, 1, 1);
+  EXPECT_THAT(nonsense(with(&Words::sdtimr2, 8, 8, 69, sleep)), IsEmpty()) << "T_XSNR is 69";
+  EXPECT_THAT(nonsense(with(&Words::sdtimr2, 8, 8, 68, sleep)),
+              ElementsAre(HasSubstr("SDTIMR2 T_XSRD below T_XSNR")));
+}
+
+// T_RFC is 67 clocks: two of them are the least that leaves time for anything else.
+TEST(DdrRegistersTest, RefreshIntervalLeavesTimeForRequests) {
+  const auto rr = [](unsigned n) { return with(&Words::sdrcr, 0, 16, n); };
+  EXPECT_EQ(decoded(rr(134)).refresh_interval, 134u);
+  EXPECT_THAT(nonsense(rr(134)), IsEmpty());
+  for (const unsigned n : {1u, 133u}) {
+    EXPECT_EQ(decoded(rr(n)).refresh_interval, 134u);
+    EXPECT_THAT(nonsense(rr(n)), ElementsAre("SDRCR RR = " + std::to_string(n) +
+                                             " leaves no time between refreshes of 67 clocks; taken "
+                                             "as 134"));
+  }
+  EXPECT_EQ(decoded(rr(0)).refresh_interval, 0u);
+  EXPECT_THAT(nonsense(rr(0)), ElementsAre(HasSubstr("SDRCR RR = 0: the SDRAM is never refreshed")));
+  // The least interval does leave it: a stream of reads ends.
+  BenchOptions o;
+  o.config = decoded(rr(1));
+  DdrBench b(o);
+  std::vector<Request> all(500);
+  for (unsigned i = 0; i < all.size(); ++i) {
+    all[i].address = i * 16;
+    while (b.door_taken()) b.step();
+    b.submit_at(all[i], std::max<Picoseconds>(b.now(), kTck));
+  }
+  b.drain();
+  for (const Request& r : all) EXPECT_EQ(r.done, 1u);
+  EXPECT_LT(b.now() / kTck, 500u * 4 * 12);
+}
+
+TEST(DdrRegistersTest, ClockStopsInSelfRefreshOnly) {
+  const auto sdrcr = [](unsigned lpmoden, unsigned mclkstopen, unsigned sr_pd) {
+    Words w;
+    w.sdrcr |= lpmoden << 31 | mclkstopen << 30 | sr_pd << 23;
+    return w;
+  };
+  using enum mem::LowPower;
+  EXPECT_EQ(decoded(sdrcr(0, 1, 0)).low_power, kOff);
+  EXPECT_EQ(decoded(sdrcr(1, 0, 0)).low_power, kSelfRefresh);
+  EXPECT_EQ(decoded(sdrcr(1, 1, 0)).low_power, kClockStop);
+  EXPECT_EQ(decoded(sdrcr(1, 0, 1)).low_power, kPowerDown);
+  EXPECT_EQ(decoded(sdrcr(1, 1, 1)).low_power, kPowerDown);
+  EXPECT_THAT(nonsense(sdrcr(0, 1, 0)), IsEmpty());
+  EXPECT_THAT(nonsense(sdrcr(1, 1, 0)), IsEmpty());
+  EXPECT_THAT(nonsense(sdrcr(1, 1, 1)),
+              ElementsAre(HasSubstr("SDRCR MCLKSTOPEN with SR_PD: the clock must not stop")));
+}
+
+TEST(DdrRegistersTest, ReadLatencyBelowClIsNamed) {
+  const auto rl = [](unsigned n) { return with(&Words::ddrphycr, 0, 3, n); };
+  EXPECT_THAT(nonsense(rl(5)), IsEmpty());
+  EXPECT_THAT(nonsense(rl(4)), ElementsAre("DDRPHYCR RL = 4 below CL = 5: read data would be "
+                                           "missed; taken as CL"));
+}
+
+TEST(DdrRegistersTest, EveryOldCountIsAllowed) {
+  for (const unsigned n : {0u, 1u, 0xFEu, 0xFFu}) {
+    Words w;
+    w.pbbpr = n;
+    EXPECT_EQ(decoded(w).old_count, n);
+    EXPECT_THAT(nonsense(w), IsEmpty());
+  }
+}
+
+TEST(DdrRegistersTest, RowsMayBeOpenForTheProgrammedIntervals) {
+  for (const unsigned n : {0u, 7u, 15u})
+    EXPECT_EQ(decoded(with(&Words::sdtimr2, 27, 4, n)).row_intervals, n + 1);
 }
 
 /// Clock of the first command of this kind for a read that an idle controller sees at clock 501.

@@ -1,6 +1,7 @@
 // Throughput against closed formulas, within 1 %. Formulas from the command distances of dram.md 2.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -112,17 +113,63 @@ TEST(TheoryTest, AlternatingReadAndWritePayBothTurnarounds) {
   }
 }
 
+/// Eight masters, each always in another row of a bank of its own.
+double eight_banks(unsigned nRRD) {
+  BenchOptions o = no_refresh();
+  o.config.timing.nRRD = nRRD;
+  o.tFAW = 4 * nRRD;  // the checker holds it against the stream
+  return clocks_per_request(o, 8'000, [](Request& r, unsigned i) {
+    r.master = static_cast<Master>(i % 8);
+    r.address = at(i / 8 % 8192, i % 8);
+  });
+}
+
+// max(BL/2, tRRD): up to four clocks the data bus binds. Where tRCD is a multiple of tRRD each RD wants
+// the clock of a later ACT, which then comes a clock after it.
 TEST(TheoryTest, EightMastersWithABankEachAreBoundByTrrd) {
-  for (const unsigned nRRD : {10u, 12u}) {
-    BenchOptions o = no_refresh();
-    o.config.timing.nRRD = nRRD;
-    expect_within_one_percent(clocks_per_request(o, 8'000,
-                                                 [](Request& r, unsigned i) {
-                                                   r.master = static_cast<Master>(i % 8);
-                                                   r.address = at(i / 8 % 8192, i % 8);
-                                                 }),
-                              nRRD);
+  constexpr unsigned nRCD = 5;
+  for (const unsigned nRRD : {1u, 3u, 4u, 5u, 6u, 8u, 10u, 12u, 16u}) {
+    const unsigned collides = nRRD > 4 && nRCD % nRRD == 0;
+    expect_within_one_percent(eight_banks(nRRD), std::max(4u, nRRD + collides));
   }
+}
+
+// TI folds tFAW into T_RRD: at least a quarter of it, rounded up. So a part with tFAW of 45 clocks is
+// used at 12 clocks a row, not at 11.25.
+TEST(TheoryTest, FourActivatesInTfawAreFoldedIntoTrrd) {
+  for (const unsigned tFAW : {13u, 16u, 24u, 40u, 45u}) {
+    const unsigned nRRD = (tFAW + 3) / 4;
+    const double measured = eight_banks(nRRD);
+    expect_within_one_percent(measured, std::max(4u, nRRD));
+    EXPECT_GE(measured * 4, tFAW);
+  }
+}
+
+// One master's reads stay in order: each pays its row. From ACT to the next ACT of the bank that is
+// max(tRC, tRAS + tRP, tRCD + 4 (n - 1) + BL/2 + max(tRTP, 2) - 2 + tRP) for n columns.
+TEST(TheoryTest, PingPongOfOneMasterIsAtTheInOrderBound) {
+  const auto ping_pong = [](unsigned bytes, unsigned masters, unsigned nRC = 16) {
+    BenchOptions o = no_refresh();
+    o.config.timing.nRC = nRC;
+    return clocks_per_request(o, 8'000, [=](Request& r, unsigned i) {
+      r.master = static_cast<Master>(i % masters);
+      r.bytes = bytes;
+      r.address = at(i % 2, 0, i / 2 * bytes % 2048);
+    });
+  };
+  const mem::DdrTiming t;
+  for (const unsigned bytes : {16u, 32u, 64u})
+    for (const unsigned nRC : {16u, 17u, 31u}) {
+      const unsigned columns = bytes / 16;
+      const unsigned by_columns =
+          t.nRCD + 4 * (columns - 1) + 4 + std::max(t.nRTP, 2u) - 2 + t.nRP;
+      expect_within_one_percent(ping_pong(bytes, 1, nRC),
+                                std::max({nRC, t.nRAS + t.nRP, by_columns}));
+    }
+  // The same requests of two masters may be put in order of their rows: twice as many are served.
+  const double in_order = ping_pong(32, 1), by_rows = ping_pong(32, 2);
+  EXPECT_GT(in_order / by_rows, 1.8);
+  EXPECT_LT(in_order / by_rows, 2.3);
 }
 
 // An entry is held from acceptance to its column command: request_latency + 1 clocks at least, so n

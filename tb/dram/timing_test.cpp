@@ -472,6 +472,34 @@ TEST(AddressMapTest, BankFollowsThePageOrLiesOnTop) {
   EXPECT_EQ(top.log[1], (Logged{Cmd::kAct, 5, 2, kStart + 5}));
 }
 
+// All page sizes, one to eight banks, both maps: bank and row of the ACT against plain division.
+TEST(AddressMapTest, BanksAndRowsOfEveryGeometry) {
+  Rng rng(11);
+  constexpr std::uint64_t kSize = 128u << 20;
+  for (unsigned page_log2 = 9; page_log2 <= 12; ++page_log2)
+    for (unsigned banks = 1; banks <= 8; banks *= 2)
+      for (const bool top : {false, true}) {
+        BenchOptions o = base();
+        o.config.page_log2 = page_log2;
+        o.config.timing.banks = banks;
+        o.config.bank_on_top = top;
+        const std::uint64_t page = std::uint64_t{1} << page_log2, part = kSize / banks;
+        for (unsigned i = 0; i < 6; ++i) {
+          const std::uint32_t a =
+              i == 0 ? 0 : i == 1 ? kSize - 16 : static_cast<std::uint32_t>(rng.below(kSize / 16)) * 16;
+          DdrBench b(o);
+          Request r = read(kA, a);
+          b.submit(r, kSubmit);
+          b.drain();
+          const auto bank = static_cast<unsigned>(top ? a / part : a / page % banks);
+          const auto row = static_cast<std::uint32_t>(top ? a % part / page : a / page / banks);
+          EXPECT_EQ(b.log[0], (Logged{Cmd::kAct, bank, row, kStart}))
+              << page << " bytes, " << banks << " banks, top " << top << ", address " << a;
+          EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+        }
+      }
+}
+
 // The clock stops and comes back while a request waits: it is served then, not lost.
 TEST(ClockTest, RequestSurvivesAStoppedClock) {
   DdrBench b(base());

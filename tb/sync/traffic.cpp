@@ -273,6 +273,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
       masters[i]->programs.push_back({first_seed + n, start, operations});
   }
   // The registers as a boot loader leaves them (UBL values for 243 MHz).
+  ddr.regs.write(0x08, 4, 0x0053CA32);  // TIMUNLOCK
   ddr.regs.write(0x10, 4, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 |
                               2u << 3 | 2u);
   ddr.regs.write(0x14, 4, 1u << 5 | 33u << 16);

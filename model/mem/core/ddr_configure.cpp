@@ -1,5 +1,6 @@
 // What the controller takes from its parameters, registers and clocks.
 #include <bit>
+#include <tuple>
 
 #include "model/common/check.h"
 #include "model/mem/core/ddr_controller.h"
@@ -14,6 +15,8 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
       request_latency_(static_cast<unsigned>(params.request_latency())),
       return_latency_(static_cast<unsigned>(params.return_latency())),
+      clock_restart_(static_cast<unsigned>(params.clock_restart())),
+      retention_(params.retention()),
       need_(static_cast<unsigned>(params.refresh_need())),
       must_(static_cast<unsigned>(params.refresh_must())),
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
@@ -43,7 +46,7 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   catch_up(at);
   sum_given();  // with the timing they were given with
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
-  if (config.low_power != config_.low_power) wake(now);
+  if (config.low_power != config_.low_power) sleep_changes(config.low_power, now);
   // Refresh keeps its phase when only timing changes; a new interval starts to count now.
   if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
     next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
@@ -64,6 +67,19 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   }
   urgency_changed();
   plan_anew();
+}
+
+void DdrController::set_command_hook(CommandHook hook, void* self) {
+  std::erase_if(listeners_, [&](const auto& l) { return l.second == self; });
+  if (hook) listeners_.emplace_back(hook, self);
+  hook_ = nullptr;
+  hook_self_ = this;
+  if (listeners_.size() == 1) std::tie(hook_, hook_self_) = listeners_.front();
+  if (listeners_.size() < 2) return;
+  hook_ = [](void* all, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+    for (const auto& [one, its_self] : static_cast<DdrController*>(all)->listeners_)
+      one(its_self, cmd, bank, row, clock);
+  };
 }
 
 void DdrController::refuse(const DdrRequest& request) const {

@@ -17,6 +17,7 @@ void DdrController::catch_up(Picoseconds at) {
     idle(until);
   if (count_) count_queued(until);
   count_asleep(until);
+  stats.row_open_clocks += device_.take_open_clocks(until);
 }
 
 /// Clocks since the queue filled, or since these were counted last.
@@ -28,9 +29,12 @@ inline void DdrController::count_queued(std::uint64_t until) {
 
 void DdrController::count_asleep(std::uint64_t until) {
   if (asleep_ == LowPower::kOff || until <= asleep_since_) return;
-  (asleep_ == LowPower::kSelfRefresh ? stats.self_refresh_clocks : stats.power_down_clocks) +=
-      until - asleep_since_;
+  const std::uint64_t clocks = until - asleep_since_;
   asleep_since_ = until;
+  (refreshes_itself(asleep_) ? stats.self_refresh_clocks : stats.power_down_clocks) += clocks;
+  if (asleep_ == LowPower::kClockStop) stats.clock_stop_clocks += clocks;
+  if (asleep_ == LowPower::kPowerDown && !device_.all_closed())
+    stats.active_power_down_clocks += clocks;
 }
 
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
@@ -265,6 +269,7 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
       return choose_refresh(edge);
+    if (choose_overdue_row(edge)) return;
   }
   // By kind; in each open rows first, then priority, then age (rules 2 and 3).
   const bool room = lane_.room() <= edge;
@@ -348,7 +353,7 @@ void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   urgency_ = refresh_urgency_after(0);
-  calm_until_ = urgent ? 0 : next_expiry_;
+  calm_until_ = urgent ? 0 : std::min(next_expiry_, first_overdue());
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
@@ -408,7 +413,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
 /// later row misses and waiting, so it is caught up lazily.
 [[gnu::noinline]] void DdrController::idle(std::uint64_t until) {
   for (;;) {
-    if (asleep_ == LowPower::kSelfRefresh) return;  // the part refreshes itself
+    if (refreshes_itself(asleep_)) return;
     if (asleep_ == LowPower::kPowerDown) {
       const std::uint64_t at = std::max(next_expiry_, cke_free_);
       if (at >= until) return;
@@ -439,7 +444,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
 /// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs
 /// them closed. Entry at once, rather than after some time without requests, is assumed.
 bool DdrController::fall_asleep(std::uint64_t until) {
-  const bool self_refresh = config_.low_power == LowPower::kSelfRefresh;
+  const bool self_refresh = refreshes_itself(config_.low_power);
   if (self_refresh && !device_.all_closed()) {
     const std::uint64_t at = std::max(command_free_, device_.earliest_pre_all());
     if (at >= until) return false;
@@ -450,6 +455,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
   if (at >= until) return false;
   asleep_ = config_.low_power;
   asleep_since_ = at;
+  asleep_at_ = ddr_.edge(at);
   cke_free_ = at + config_.timing.nCKE;
   ++(self_refresh ? stats.self_refreshes : stats.power_downs);
   mark(self_refresh ? Cmd::kSre : Cmd::kPde, at);
@@ -461,7 +467,8 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 void DdrController::wake(std::uint64_t clock) {
   if (asleep_ == LowPower::kOff) return;
   const DdrTiming& t = config_.timing;
-  const bool self_refresh = asleep_ == LowPower::kSelfRefresh;
+  const bool self_refresh = refreshes_itself(asleep_);
+  if (asleep_ == LowPower::kClockStop) clock += clock_restart_;
   const std::uint64_t at = std::max(clock, cke_free_);
   count_asleep(at);
   asleep_ = LowPower::kOff;
@@ -469,6 +476,7 @@ void DdrController::wake(std::uint64_t clock) {
   mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
   command_free_ = at + (self_refresh ? t.nXSNR : t.nXP);
   if (!self_refresh) return;
+  lose_unrefreshed(ddr_.edge(at) - asleep_at_);
   device_.put_off_reads(at + t.nXSRD);
   owed_ = gap_ = 0;
   if (config_.refresh_interval) next_expiry_ = at + config_.refresh_interval;
@@ -509,6 +517,10 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
       issue<Cmd::kAct>(e->bank, e->row, clock);
       break;
     case Cmd::kPre:
+      if (!e) {
+        close_overdue_row(clock);
+        break;
+      }
       if (!e->classified) {
         ++stats.row_conflicts;
         ++stats.bank[e->bank].row_conflicts;

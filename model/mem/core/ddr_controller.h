@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "model/common/clock.h"
 #include "model/common/masters.h"
@@ -28,10 +30,14 @@ struct DdrRequest {
   RequestWaits* parts = nullptr;  ///< read: gets its share of `waits` as well; null: nobody asks
 };
 
-/// What an idle controller does with the part (SDRCR.LPMODEN and SR_PD).
-enum class LowPower : std::uint8_t { kOff, kSelfRefresh, kPowerDown };
+/// What an idle controller does with the part (SDRCR.LPMODEN, SR_PD and MCLKSTOPEN). kClockStop:
+/// self-refresh, and the memory's clock stands.
+enum class LowPower : std::uint8_t { kOff, kSelfRefresh, kPowerDown, kClockStop };
+constexpr bool refreshes_itself(LowPower p) {
+  return p == LowPower::kSelfRefresh || p == LowPower::kClockStop;
+}
 
-/// What the registers say (SDBCR, SDTIMR, SDTIMR2, SDRCR, PBBPR, DDRPHYCR), decoded.
+/// What the registers say (SDBCR, SDBCR2, SDTIMR, SDTIMR2, SDRCR, PBBPR, DDRPHYCR), decoded.
 struct DdrConfig {
   DdrTiming timing;
   unsigned read_latency = 5;         ///< DDRPHYCR.RL, clocks; CL is the floor
@@ -40,6 +46,9 @@ struct DdrConfig {
   unsigned page_log2 = 11;           ///< bytes of a row on the 16-bit bus
   bool bank_on_top = false;          ///< SDBCR.IBANK_POS: row stays in its bank
   LowPower low_power = LowPower::kOff;
+  unsigned row_intervals = 16;  ///< SDTIMR2.T_RASMAX + 1: refresh intervals that a row may be open
+  /// SDBCR2.PASR of a mobile part: self-refresh keeps the first 1/2^n of the array.
+  unsigned refreshed_log2 = 0;
 };
 
 class DdrClient {
@@ -77,6 +86,9 @@ class DdrController {
   const Picoseconds* next_decision_place() const { return &next_; }
   void step();
 
+  /// Cookie of a master's newest read that has no outcome yet; null: there is none.
+  const void* newest_read(Master master) const;
+
   /// A debugger's access, without time: memory with the write data that wait in the FIFO. The caller
   /// checks address + bytes against the SDRAM's size.
   void debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const;
@@ -93,14 +105,14 @@ class DdrController {
   Master door_opener() const { return choice_.entry->request.master; }
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
+  /// What the part does now; catch_up() first.
+  LowPower asleep() const { return asleep_; }
   const Clock& ddr_clock() const { return ddr_; }
-  /// Called with each DRAM command, for checkers and traces. Null in production.
+  /// Called with each DRAM command, for checkers and traces. Several may listen, each with its own
+  /// `self`; null: this one no more.
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
                                std::uint64_t clock);
-  void set_command_hook(CommandHook hook, void* self) {
-    hook_ = hook;
-    hook_self_ = self;
-  }
+  void set_command_hook(CommandHook hook, void* self);
 
  private:
   static constexpr std::size_t kMaxEntries = 16;
@@ -125,6 +137,7 @@ class DdrController {
     Entry* entry = nullptr;
     std::uint64_t at = 0;
     Cmd cmd = Cmd::kAct;
+    std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
   /// A command that was given. The time up to the next one is blamed on its culprit, after the data
@@ -159,6 +172,10 @@ class DdrController {
   bool stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready);
   bool refresh_goes_first(std::uint32_t set) const;
   void choose_refresh(std::uint64_t edge);
+  bool choose_overdue_row(std::uint64_t edge);
+  void close_overdue_row(std::uint64_t clock);
+  std::uint64_t first_overdue() const;
+  void lose_unrefreshed(Picoseconds slept);
   enum class Urgency { kMay, kNeed, kMust };
   Urgency refresh_urgency(std::uint64_t edge) const {
     return edge < next_expiry_ ? urgency_ : refresh_urgency_after(edge);
@@ -171,6 +188,7 @@ class DdrController {
   bool passes_older(const Entry& e) const;
   void idle(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
+  void sleep_changes(LowPower to, std::uint64_t clock);
   void wake(std::uint64_t clock);
   void mark(Cmd cmd, std::uint64_t clock);
   void count_queued(std::uint64_t until);
@@ -210,7 +228,8 @@ class DdrController {
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
-  unsigned write_fifo_bytes_, request_latency_, return_latency_;
+  unsigned write_fifo_bytes_, request_latency_, return_latency_, clock_restart_;
+  Picoseconds retention_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
   // nobody waits for is closed after its access; reads before writes, and priorities, count.
@@ -254,6 +273,7 @@ class DdrController {
   LowPower asleep_ = LowPower::kOff;  // CKE is low
   std::uint64_t queued_since_ = 0, asleep_since_ = 0;  // edges up to which that time is counted
   std::uint64_t cke_free_ = 0;        // edge from which CKE may move again
+  Picoseconds asleep_at_ = 0;         // when it fell asleep
   unsigned owed_ = 0, forced_ = 0;
   unsigned gap_ = 0;  // intervals that ended since the last REF
   // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
@@ -269,7 +289,8 @@ class DdrController {
   std::array<Blames, kGiven> blames_before_;  // blames_ at each summed command
   Picoseconds read_waited_ = 0;
 
-  CommandHook hook_ = nullptr;
+  std::vector<std::pair<CommandHook, void*>> listeners_;
+  CommandHook hook_ = nullptr;  // the only listener, or one that calls all
   void* hook_self_ = nullptr;
 };
 

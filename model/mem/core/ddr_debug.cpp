@@ -1,4 +1,4 @@
-// What a debugger sees: writes are acknowledged when they are taken into the FIFO, so their data are
+// What others see of the queue. For a debugger, writes are acknowledged when they are taken into the FIFO, so their data are
 // part of memory for whoever looks.
 #include <algorithm>
 #include <cstring>
@@ -17,6 +17,15 @@ Overlap overlap(std::uint32_t a, std::uint32_t a_bytes, std::uint32_t b, std::ui
 }
 
 }  // namespace
+
+const void* DdrController::newest_read(Master master) const {
+  for (std::size_t i = count_; i-- > 0;) {
+    const Entry& e = slots_[order_[i]];
+    const bool answered = in_burst_ && &e == choice_.entry;
+    if (!e.request.write && e.request.master == master && !answered) return e.request.cookie;
+  }
+  return nullptr;
+}
 
 void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const {
   std::memcpy(to, store_.at(address), bytes);

@@ -11,6 +11,14 @@ struct DdrParams : ParamGroup {
                  "x16 part, 2 KiB page: DDR2 of 64, 128, 256 MiB (4, 8, 8 banks) or mobile DDR of "
                  "64, 128 MiB (4 banks)",
                  Origin::kChoice, "Micron data sheets, dram.md 1 and 4"};
+  EnumParam grade{*this, "grade", "default", {"default", "37e", "3", "25e", "25", "5", "6", "75"},
+                  "speed grade of the part in remarks against its data sheet; default: 37e, 3, 25e, "
+                  "6, 6 for the parts in their order",
+                  Origin::kChoice, "JESD79-2, JESD209, dram.md 2 and 4"};
+  EnumParam check{*this, "check", "none", {"none", "commands"},
+                  "commands: independent checkers read the SDRAM's command bus; what the part's data "
+                  "sheet forbids is a counted remark",
+                  Origin::kChoice, ""};
   IntParam command_fifo{*this, "command_fifo", U::kCount, 7, 1, 16,
                         "entries of the controller's command FIFO", Origin::kSourced,
                         "SPRU986B, SPRUEM4A, SPRUH82C (same controller)"};
@@ -26,6 +34,12 @@ struct DdrParams : ParamGroup {
   IntParam return_latency{*this, "return_latency", U::kCycles, 2, 0, 16,
                           "DDR clocks from the last data beat at the PHY to the crossbar",
                           Origin::kAssumed, "no public figure; dm365.md 12 #12"};
+  IntParam clock_restart{*this, "clock_restart", U::kCycles, 1, 0, 64,
+                         "DDR clocks from the restart of a stopped memory clock (MCLKSTOPEN) to CKE",
+                         Origin::kAssumed, "no public figure; the clock is stable before CKE rises"};
+  IntParam retention{*this, "retention", U::kTime, 64 * kPsPerMs, 1, 3600 * kPsPerSecond,
+                     "self-refresh longer than this loses what partial-array self-refresh leaves out",
+                     Origin::kAssumed, "rows are refreshed every 64 ms (JESD209); cells may last longer"};
   IntParam refresh_need{*this, "refresh.need", U::kCount, 7, 0, 32,
                         "refresh backlog above which refresh goes before writes", Origin::kAssumed,
                         "family values, dm365.md 5.4"};

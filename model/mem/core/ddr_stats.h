@@ -22,12 +22,19 @@ struct DdrStats : StatGroup {
   Counter row_conflicts{*this, "row_conflicts", "1", "requests that found another row open"};
   Counter activates{*this, "activates", "1", "ACT commands"};
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
+  Counter overdue_rows{*this, "overdue_rows", "1", "PRE of a row that was open for T_RASMAX"};
   Counter power_downs{*this, "power_downs", "1", "entries into power-down"};
   Counter self_refreshes{*this, "self_refreshes", "1", "entries into self-refresh"};
   Counter queued_clocks{*this, "queued_clocks", "cycles", "DDR clocks with a request queued"};
+  Counter row_open_clocks{*this, "row_open_clocks", "cycles",
+                          "DDR clocks with a row open in any bank"};
   Counter power_down_clocks{*this, "power_down_clocks", "cycles", "DDR clocks in power-down"};
+  Counter active_power_down_clocks{*this, "active_power_down_clocks", "cycles",
+                                   "of them with a row open"};
   Counter self_refresh_clocks{*this, "self_refresh_clocks", "cycles",
                               "DDR clocks in self-refresh"};
+  Counter clock_stop_clocks{*this, "clock_stop_clocks", "cycles",
+                            "of them with the memory's clock stopped (MCLKSTOPEN)"};
   /// Of the requests to each bank, as above.
   struct Bank {
     std::uint64_t row_hits = 0, row_misses = 0, row_conflicts = 0;

@@ -113,12 +113,15 @@ class DdrDevice {
     start_rules<kCmd>(bank, clock, std::make_index_sequence<kDdrRules.size()>());
     if constexpr (kCmd == Cmd::kAct) {
       banks_[bank].row = row;
+      banks_[bank].opened = clock;
+      if (open_ == 0) open_since_ = std::max(open_since_, clock);
       open_ |= 1u << bank;
     } else if constexpr (kCmd == Cmd::kPre) {
-      banks_[bank].row = kClosed;
-      open_ &= ~(1u << bank);
+      close(bank, clock);
     } else if constexpr (kCmd == Cmd::kPreAll) {
       for (auto& b : banks_) b.row = kClosed;
+      last_close_ = std::max(last_close_, clock);
+      if (open_ != 0) all_closed_at(last_close_);
       open_ = 0;
     }
   }
@@ -136,18 +139,43 @@ class DdrDevice {
   }
   /// The row closes by itself, as soon as a PRE would be legal.
   void close_when_legal(unsigned bank) {
-    Bank& b = banks_[bank];
-    start_rules<Cmd::kPre>(bank, b.next[static_cast<std::size_t>(Cmd::kPre)],
-                           std::make_index_sequence<kDdrRules.size()>());
-    b.row = kClosed;
-    open_ &= ~(1u << bank);
+    const std::uint64_t at = banks_[bank].next[static_cast<std::size_t>(Cmd::kPre)];
+    start_rules<Cmd::kPre>(bank, at, std::make_index_sequence<kDdrRules.size()>());
+    close(bank, at);
+  }
+  /// Clock of the ACT of a bank's open row.
+  std::uint64_t opened(unsigned bank) const { return banks_[bank].opened; }
+  /// Clocks with a row open before `until`, since this was asked last.
+  std::uint64_t take_open_clocks(std::uint64_t until) {
+    if (open_ != 0 && until > open_since_) {
+      open_clocks_ += until - open_since_;
+      open_since_ = until;
+    }
+    // A row that closes by itself was counted to its end when that was known.
+    const std::uint64_t ahead =
+        std::min(open_clocks_, counted_to_ > until ? counted_to_ - until : 0);
+    return std::exchange(open_clocks_, ahead) - ahead;
   }
 
  private:
   struct alignas(64) Bank {
     std::array<std::uint64_t, kCmdCount> next{};
+    std::uint64_t opened = 0;
     std::uint32_t row = kClosed;
   };
+  void close(unsigned bank, std::uint64_t clock) {
+    banks_[bank].row = kClosed;
+    last_close_ = std::max(last_close_, clock);
+    if (open_ == 1u << bank) all_closed_at(last_close_);
+    open_ &= ~(1u << bank);
+  }
+  /// A row that closes by itself may do so after another PRE or the next ACT: open_since_ then lies
+  /// ahead of that.
+  void all_closed_at(std::uint64_t clock) {
+    if (clock <= open_since_) return;
+    open_clocks_ += clock - open_since_;
+    open_since_ = counted_to_ = clock;
+  }
   template <Cmd kCmd, std::size_t... kRule>
   void start_rules(unsigned bank, std::uint64_t clock, std::index_sequence<kRule...>) {
     (start_rule<kCmd, kRule>(bank, clock), ...);
@@ -167,6 +195,8 @@ class DdrDevice {
   DdrTiming timing_;
   std::array<std::uint32_t, kDdrRules.size()> clocks_{};  // each rule's number in effect
   std::uint32_t open_ = 0;                                // banks with an open row
+  std::uint64_t open_clocks_ = 0, open_since_ = 0;        // with any row open: counted up to here
+  std::uint64_t last_close_ = 0, counted_to_ = 0;
   std::array<Bank, kMaxBanks> banks_{};
   std::array<std::uint64_t, kCmdCount> rank_{};
 };

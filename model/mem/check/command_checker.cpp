@@ -1,8 +1,8 @@
-#include "tb/dram/command_checker.h"
+#include "model/mem/check/command_checker.h"
 
 #include <algorithm>
 
-namespace fovea::dram {
+namespace fovea::mem::check {
 
 void CommandChecker::complain(const char* rule, std::uint64_t clock, unsigned bank,
                               std::int64_t missing) {
@@ -16,6 +16,15 @@ void CommandChecker::apart(const char* rule, std::int64_t before, std::int64_t n
                            unsigned bank) {
   const std::int64_t legal = before + static_cast<std::int64_t>(clocks);
   if (now < legal) complain(rule, static_cast<std::uint64_t>(now), bank, legal - now);
+}
+
+void CommandChecker::change(const DataSheet& sheet, std::uint64_t clock) {
+  sheet_ = sheet;
+  banks_.resize(std::max<std::size_t>(banks_.size(), sheet.banks));
+  for (Bank& b : banks_) b.act = b.pre = b.rd = b.wr = kLongAgo;
+  acts_.fill(kLongAgo);
+  rd_ = wr_ = ref_ = pre_ = prea_ = cke_ = pdx_ = srx_ = kLongAgo;
+  last_ref_ = clock;
 }
 
 void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
@@ -86,7 +95,7 @@ void CommandChecker::activate(unsigned b, std::uint32_t row, std::int64_t now) {
   acts_[0] = now;
   k.open = true;
   k.row = row;
-  k.act = now;
+  k.act = k.opened = now;
 }
 
 void CommandChecker::precharge(unsigned b, std::int64_t now) {
@@ -94,7 +103,15 @@ void CommandChecker::precharge(unsigned b, std::int64_t now) {
   apart("tRAS", k.act, now, sheet_.tRAS, b);
   apart("tRTP", k.rd, now, sheet_.mobile ? 4 : 4 + std::max(sheet_.tRTP, 2u) - 2, b);
   apart("tWR", k.wr, now, WL() + 4 + sheet_.tWR, b);
+  check_open_time(b, now);
   k.open = false;
+}
+
+void CommandChecker::check_open_time(unsigned b, std::int64_t closed) {
+  const auto limit = static_cast<std::int64_t>(sheet_.tRASmax);
+  const std::int64_t open = closed - banks_[b].opened;
+  if (limit && banks_[b].open && open > limit)
+    complain("tRASmax", static_cast<std::uint64_t>(closed), b, open - limit);
 }
 
 void CommandChecker::column(bool write, unsigned b, std::uint32_t row, std::int64_t now) {
@@ -123,6 +140,7 @@ void CommandChecker::close_by_itself(unsigned b) {
   const std::int64_t after_read = k.rd + (sheet_.mobile ? 4 : 4 + std::max(sheet_.tRTP, 2u) - 2);
   k.pre = std::max({k.act + sheet_.tRAS, after_read, k.wr + WL() + 4 + sheet_.tWR});
   pre_ = std::max(pre_, k.pre);
+  check_open_time(b, k.pre);
   k.open = false;
 }
 
@@ -182,4 +200,4 @@ std::string CommandChecker::text() const {
          " commands\n";
 }
 
-}  // namespace fovea::dram
+}  // namespace fovea::mem::check

@@ -1,0 +1,148 @@
+#include "model/mem/ddr_check.h"
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "model/common/check.h"
+#include "model/mem/check/command_checker.h"
+#include "model/mem/check/part_checker.h"
+#include "model/mem/check/programming.h"
+
+namespace fovea::mem {
+namespace {
+
+/// Field by field: the two sides share no type.
+check::DataSheet as_programmed(const DdrConfig& c) {
+  check::DataSheet s;
+  s.CL = c.timing.CL;
+  s.tRCD = c.timing.nRCD;
+  s.tRP = c.timing.nRP;
+  s.tRAS = c.timing.nRAS;
+  s.tRC = c.timing.nRC;
+  s.tRRD = c.timing.nRRD;
+  s.tWR = c.timing.nWR;
+  s.tWTR = c.timing.nWTR;
+  s.tRTP = c.timing.nRTP;
+  s.tRFC = c.timing.nRFC;
+  s.tXP = c.timing.nXP;
+  s.tXSNR = c.timing.nXSNR;
+  s.tXSRD = c.timing.nXSRD;
+  s.tCKE = c.timing.nCKE;
+  s.tREFI = c.refresh_interval;
+  s.tRASmax = std::uint64_t{c.row_intervals} * c.refresh_interval;
+  s.banks = c.timing.banks;
+  s.mobile = c.timing.mobile;
+  return s;
+}
+
+check::Command word(Cmd c) {
+  using enum check::Command;
+  switch (c) {
+    case Cmd::kAct: return kAct;
+    case Cmd::kPre: return kPre;
+    case Cmd::kPreAll: return kPreAll;
+    case Cmd::kRd: return kRd;
+    case Cmd::kWr: return kWr;
+    case Cmd::kRda: return kRda;
+    case Cmd::kWra: return kWra;
+    case Cmd::kPde: return kPde;
+    case Cmd::kPdx: return kPdx;
+    case Cmd::kSre: return kSre;
+    case Cmd::kSrx: return kSrx;
+    default: return kRef;
+  }
+}
+
+check::Part part_of(const DdrParams& params) {
+  try {
+    return check::find_part(params.part(), params.grade());
+  } catch (const std::out_of_range&) {
+    throw UserError("key 'ddr.grade': '" + params.grade() + "' is not allowed; ddr.part = " +
+                    params.part() + " comes in " +
+                    (params.mobile() ? "5, 6, 75" : "37e, 3, 25e, 25"));
+  }
+}
+
+std::string seconds(Picoseconds at) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9f s", static_cast<double>(at) * 1e-12);
+  return text;
+}
+
+/// With a full queue a burst under way goes on, and up to eight rows become due together.
+constexpr unsigned kClosingTime = 400;
+/// The thresholds are the user's, so the interval's programmed value bounds nothing by itself.
+constexpr unsigned kNoRefreshRule = 0;
+
+}  // namespace
+
+struct DdrCheck::Sheet {
+  check::Part part;
+};
+
+struct DdrCheck::Stream {
+  DdrController& controller;
+  check::CommandChecker programmed;
+  check::PartChecker sheet;
+  std::map<std::string, std::string> said;  // kind of warning: with the time of its first
+
+  Stream(DdrController& c, const check::Part& part)
+      : controller(c),
+        programmed(rules({})),
+        sheet(part, Frequency(243'000'000), DdrConfig{}.timing.CL) {
+    programmed.on_complaint = [this](const check::Complaint& complaint) {
+      FOVEA_CHECK(false, "SDRAM command against the programmed timing: " + complaint.rule +
+                             ", bank " + std::to_string(complaint.bank) + ", " +
+                             std::to_string(complaint.missing) + " clocks, at " +
+                             seconds(controller.ddr_clock().edge(complaint.clock)));
+    };
+    sheet.on_warning = [this](const check::Complaint& complaint, const std::string& kind) {
+      const auto [line, first] = said.try_emplace(kind);
+      if (first)
+        line->second = "SDRAM command bus: " + kind + ", first at " +
+                       seconds(controller.ddr_clock().edge(complaint.clock)) + ", bank " +
+                       std::to_string(complaint.bank);
+      Diagnostics::instance().guest(line->second);
+    };
+    controller.set_command_hook(
+        [](void* self, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+          auto& s = *static_cast<Stream*>(self);
+          s.programmed.command(word(cmd), bank, row, clock);
+          s.sheet.command(word(cmd), bank, row, clock);
+        },
+        this);
+  }
+  ~Stream() { controller.set_command_hook(nullptr, this); }
+
+  static check::DataSheet rules(const DdrConfig& config) {
+    check::DataSheet s = as_programmed(config);
+    s.tREFI = kNoRefreshRule;
+    if (s.tRASmax) s.tRASmax += kClosingTime;
+    return s;
+  }
+};
+
+DdrCheck::DdrCheck(const DdrParams& params, DdrController& controller)
+    : sheet_(new Sheet{part_of(params)}) {
+  if (params.check.is("commands")) stream_ = std::make_unique<Stream>(controller, sheet_->part);
+}
+
+DdrCheck::~DdrCheck() = default;
+
+void DdrCheck::changed(const DdrConfig& config, Frequency clock, Picoseconds at) {
+  if (!stream_ || clock.stopped()) return;
+  const std::uint64_t now = stream_->controller.ddr_clock().edge_after(at);
+  stream_->programmed.change(Stream::rules(config), now);
+  stream_->sheet.change(clock, config.timing.CL, now);
+}
+
+std::vector<std::string> DdrCheck::violations(const DdrConfig& config, Frequency clock) const {
+  return check::violations({as_programmed(config), config.low_power != LowPower::kOff},
+                           sheet_->part, clock);
+}
+
+void DdrCheck::remark(const DdrConfig& config, Frequency clock) const {
+  for (const std::string& line : violations(config, clock)) Diagnostics::instance().guest(line);
+}
+
+}  // namespace fovea::mem

@@ -1,0 +1,34 @@
+// The checkers of model/mem/check beside a controller: what was programmed against the part's data
+// sheet, always; the command bus as programmed and against the data sheet, by `ddr.check`.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/mem/core/ddr_controller.h"
+
+namespace fovea::mem {
+
+class DdrCheck {
+ public:
+  /// @throws UserError for a grade that the part does not come in
+  DdrCheck(const DdrParams& params, DdrController& controller);
+  ~DdrCheck();
+  DdrCheck(const DdrCheck&) = delete;
+
+  /// The controller was configured, or got another clock: what comes now follows these numbers.
+  void changed(const DdrConfig& config, Frequency clock, Picoseconds at);
+  /// A remark about each value that the part's data sheet does not allow.
+  void remark(const DdrConfig& config, Frequency clock) const;
+  /// The same lines, without counting them.
+  std::vector<std::string> violations(const DdrConfig& config, Frequency clock) const;
+
+ private:
+  struct Stream;
+  struct Sheet;
+  std::unique_ptr<Sheet> sheet_;
+  std::unique_ptr<Stream> stream_;  // with ddr.check = commands
+};
+
+}  // namespace fovea::mem

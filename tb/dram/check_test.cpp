@@ -1,0 +1,304 @@
+// What a run says about programming that the part's data sheet forbids: each number at n - 1 and n,
+// the words of real boot loaders, and the checkers of the command bus as a run has them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "model/common/check.h"
+#include "model/mem/ddr_check.h"
+#include "tb/dram/bench.h"
+
+namespace fovea::dram {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+struct Checked {
+  struct Params : mem::DdrParams {
+    explicit Params(const std::vector<std::pair<std::string, std::string>>& keys) {
+      ParamSet set;
+      set.add(*this);
+      for (const auto& [key, value] : keys) set.set("ddr." + key, value);
+    }
+  } params;
+  DdrBench bench;
+  mem::DdrCheck check;
+  explicit Checked(const std::vector<std::pair<std::string, std::string>>& keys,
+                   const BenchOptions& o = {})
+      : params(keys), bench(o), check(params, bench.ddr) {}
+};
+
+std::vector<std::string> violations(const mem::DdrConfig& c, const char* part, Frequency clock,
+                                    const char* grade = "default") {
+  Checked x({{"part", part}, {"grade", grade}});
+  return x.check.violations(c, clock);
+}
+
+/// Within the sheet of a -25E part of 2 Gb at 340 MHz, nothing to spare (dram.md 3).
+mem::DdrConfig tight() {
+  mem::DdrConfig c;
+  auto& t = c.timing;
+  t.CL = 5;
+  t.nRFC = 67;
+  t.nRP = t.nRCD = 5;
+  t.nWR = 6;
+  t.nRAS = 14;
+  t.nRC = 19;
+  t.nRRD = 4;
+  t.nWTR = t.nRTP = 3;
+  t.nXP = 2;
+  t.nCKE = 3;
+  t.nXSNR = 70;
+  t.nXSRD = 200;
+  c.refresh_interval = 2652;
+  c.row_intervals = 8;  // 21,216 of 23,800 clocks
+  c.low_power = mem::LowPower::kSelfRefresh;
+  return c;
+}
+const Frequency k340(340'000'000);
+
+TEST(ProgrammingTest, WithinTheSheetNothingIsSaid) {
+  EXPECT_THAT(violations(tight(), "mt47h128m16", k340), IsEmpty());
+}
+
+TEST(ProgrammingTest, EachNumberOneClockShortIsNamedWithItsMargin) {
+  const struct {
+    unsigned mem::DdrTiming::*number;
+    const char* line;
+  } cases[] = {
+      {&mem::DdrTiming::nRFC, "SDTIMR T_RFC: 66 clocks programmed, MT47H128M16-25E needs tRFC 195 ns "
+                              "= 67 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nRP, "SDTIMR T_RP: 4 clocks programmed, MT47H128M16-25E needs tRP 12.5 ns = "
+                             "5 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nRCD, "SDTIMR T_RCD: 4 clocks programmed, MT47H128M16-25E needs tRCD 12.5 ns "
+                              "= 5 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nWR, "SDTIMR T_WR: 5 clocks programmed, MT47H128M16-25E needs tWR 15 ns = 6 "
+                             "at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nRAS, "SDTIMR T_RAS: 13 clocks programmed, MT47H128M16-25E needs tRAS 40 ns "
+                              "= 14 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nRC, "SDTIMR T_RC: 18 clocks programmed, MT47H128M16-25E needs tRC 55 ns = "
+                             "19 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nWTR, "SDTIMR T_WTR: 2 clocks programmed, MT47H128M16-25E needs tWTR 7.5 ns "
+                              "= 3 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nRTP, "SDTIMR2 T_RTP: 2 clocks programmed, MT47H128M16-25E needs tRTP 7.5 ns "
+                              "= 3 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nXP, "SDTIMR2 T_XP: 1 clock programmed, MT47H128M16-25E needs tXP 2 at 340 "
+                             "MHz: 1 short"},
+      {&mem::DdrTiming::nCKE, "SDTIMR2 T_CKE: 2 clocks programmed, MT47H128M16-25E needs tCKE 3 at "
+                              "340 MHz: 1 short"},
+      {&mem::DdrTiming::nXSNR, "SDTIMR2 T_XSNR: 69 clocks programmed, MT47H128M16-25E needs tXSNR "
+                               "205 ns = 70 at 340 MHz: 1 short"},
+      {&mem::DdrTiming::nXSRD, "SDTIMR2 T_XSRD: 199 clocks programmed, MT47H128M16-25E needs tXSRD "
+                               "200 at 340 MHz: 1 short"},
+  };
+  for (const auto& x : cases) {
+    mem::DdrConfig c = tight();
+    c.timing.*x.number -= 1;
+    EXPECT_THAT(violations(c, "mt47h128m16", k340), ElementsAre(x.line));
+    c.timing.*x.number += 2;
+    EXPECT_THAT(violations(c, "mt47h128m16", k340), IsEmpty()) << x.line;
+  }
+}
+
+TEST(ProgrammingTest, TimesOfSleepCountOnlyWhereThePartSleeps) {
+  mem::DdrConfig c = tight();
+  c.timing.nXP = c.timing.nCKE = c.timing.nXSNR = c.timing.nXSRD = 1;
+  EXPECT_EQ(violations(c, "mt47h128m16", k340).size(), 4u);
+  c.low_power = mem::LowPower::kOff;
+  EXPECT_THAT(violations(c, "mt47h128m16", k340), IsEmpty());
+}
+
+TEST(ProgrammingTest, RefreshAndOpenRowsAreBoundedAbove) {
+  mem::DdrConfig c = tight();
+  c.refresh_interval = 2653;
+  EXPECT_THAT(violations(c, "mt47h128m16", k340),
+              ElementsAre("SDRCR RR: 2653 clocks programmed, MT47H128M16-25E needs tREFI at most "
+                          "7800 ns = 2652 at 340 MHz: 1 over"));
+  c.refresh_interval = 2380;
+  c.row_intervals = 10;
+  EXPECT_THAT(violations(c, "mt47h128m16", k340), IsEmpty()) << "23,800 clocks are 70 us";
+  c.refresh_interval = 2381;
+  EXPECT_THAT(violations(c, "mt47h128m16", k340),
+              ElementsAre("SDTIMR2 T_RASMAX: 10 x 2381 clocks programmed, MT47H128M16-25E needs "
+                          "tRASmax at most 70000 ns = 23800 at 340 MHz: 10 over"));
+}
+
+TEST(ProgrammingTest, ClockBeyondTheGradeIsNamed) {
+  EXPECT_THAT(violations(tight(), "mt47h128m16", Frequency(400'000'001)),
+              testing::Contains("SDBCR CL: 5 programmed at 400 MHz, MT47H128M16-25E: CL 5 has tCK "
+                                "2.5 ns at least"));
+  mem::DdrConfig c = tight();
+  c.timing.CL = 2;
+  EXPECT_THAT(violations(c, "mt47h128m16", k340),
+              ElementsAre("SDBCR CL: 2 programmed at 340 MHz, MT47H128M16-25E: CL 2 is not offered"));
+}
+
+/// What boot loaders program, in clocks (dm365.md 5.6).
+mem::DdrConfig words(unsigned RFC, unsigned RP, unsigned RCD, unsigned WR, unsigned RAS, unsigned RC,
+                     unsigned RRD, unsigned WTR, unsigned RTP, unsigned RR, unsigned intervals) {
+  mem::DdrConfig c;
+  auto& t = c.timing;
+  t.CL = 5;
+  t.nRFC = RFC, t.nRP = RP, t.nRCD = RCD, t.nWR = WR, t.nRAS = RAS, t.nRC = RC;
+  t.nRRD = RRD, t.nWTR = WTR, t.nRTP = RTP;
+  c.refresh_interval = RR;
+  c.row_intervals = intervals;
+  return c;
+}
+
+// TI's own formula has tFAW as 4 tRRD + 2 tCK, so its loader is a clock or two short of a -3 part.
+TEST(ProgrammingTest, WordsOfShippedLoaders) {
+  EXPECT_THAT(violations(words(67, 5, 5, 6, 15, 20, 3, 3, 3, 1896, 9), "mt47h128m16", k340),
+              ElementsAre("SDTIMR T_RRD: 3 clocks programmed, MT47H128M16-25E needs tRRD 10 ns = 4 "
+                          "at 340 MHz: 1 short",
+                          "SDTIMR T_RRD: 4 x 3 clocks programmed, MT47H128M16-25E needs tFAW 45 ns = "
+                          "16 at 340 MHz: 4 short"));
+  EXPECT_THAT(violations(words(31, 5, 5, 4, 11, 16, 3, 3, 2, 1895, 8), "mt47h64m16",
+                         Frequency(243'000'000)),
+              ElementsAre("SDTIMR T_RRD: 4 x 3 clocks programmed, MT47H64M16-3 needs tFAW 50 ns = "
+                          "13 at 243 MHz: 1 short"));
+  EXPECT_THAT(violations(words(28, 5, 5, 4, 10, 15, 3, 3, 2, 1684, 8), "mt47h64m16",
+                         Frequency(216'000'000)),
+              IsEmpty());
+}
+
+TEST(ProgrammingTest, MobilePartsHaveTheirOwnSheet) {
+  mem::DdrConfig c = words(21, 3, 3, 3, 7, 10, 2, 1, 1, 1300, 8);
+  c.timing.CL = 3;
+  c.timing.banks = 4;
+  c.timing.mobile = true;
+  const Frequency clock(500'000'000, 3);
+  EXPECT_THAT(violations(c, "mt46h64m16lf", clock), IsEmpty());
+  c.timing.nWTR = 1;
+  EXPECT_THAT(violations(c, "mt46h64m16lf", clock, "5"),
+              ElementsAre("SDTIMR T_WTR: 1 clock programmed, MT46H64M16LF-5 needs tWTR 2 at 166.667 "
+                          "MHz: 1 short"));
+  EXPECT_THAT(violations(c, "mt46h64m16lf", Frequency(166'000'000), "75"),
+              testing::Contains(HasSubstr("CL 3 has tCK 7.5 ns at least")));
+  try {
+    violations(c, "mt46h64m16lf", clock, "25e");
+    FAIL();
+  } catch (const UserError& e) {
+    EXPECT_STREQ(e.what(), "key 'ddr.grade': '25e' is not allowed; ddr.part = mt46h64m16lf comes in "
+                           "5, 6, 75");
+  }
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> remarks() {
+  std::vector<std::pair<std::string, std::uint64_t>> out;
+  for (const auto& [what, count] : Diagnostics::instance().counts())
+    out.emplace_back(what.second, count);
+  return out;
+}
+
+/// Reads that open eight banks one after the other on a controller at 340 MHz.
+void open_eight_banks(Checked& x) {
+  static std::array<Request, 8> all;
+  all.fill({});
+  for (unsigned i = 0; i < 8; ++i) {
+    all[i].master = static_cast<Master>(i);
+    all[i].address = at(0, i);
+    x.bench.submit_at(all[i], 100'000);
+  }
+  x.bench.drain();
+}
+mem::DdrConfig awake() {
+  mem::DdrConfig c = tight();
+  c.low_power = mem::LowPower::kOff;
+  return c;
+}
+BenchOptions at_340(const mem::DdrConfig& c) {
+  BenchOptions o;
+  o.ddr = o.scr = k340;
+  o.config = c;
+  o.params = {{"command_fifo", "16"}};
+  return o;
+}
+
+// As counted by hand in dram.part: two ACT a clock early, two fifth ACT two clocks early.
+TEST(CommandCheckTest, RunsRemarkOnTheBusWithParameterMarginAndTime) {
+  const mem::DdrConfig shipped = words(67, 5, 5, 6, 15, 20, 3, 3, 3, 1896, 9);
+  for (const char* key : {"none", "commands"}) {
+    Diagnostics::instance().clear();
+    Checked x({{"part", "mt47h128m16"}, {"check", key}}, at_340(shipped));
+    x.check.changed(shipped, k340, 0);
+    open_eight_banks(x);
+    if (std::string(key) == "none") {
+      EXPECT_THAT(remarks(), IsEmpty());
+      continue;
+    }
+    const auto said = remarks();
+    ASSERT_EQ(said.size(), 3u);
+    EXPECT_THAT(said[0].first, HasSubstr("SDRAM command bus: tFAW, 1 clock (2.94 ns) short of "
+                                         "MT47H128M16-25E at 340 MHz, first at 0.0000001"));
+    EXPECT_THAT(said[1].first, HasSubstr("tFAW, 2 clocks (5.88 ns) short of"));
+    EXPECT_THAT(said[2].first, HasSubstr("tRRD, 1 clock (2.94 ns) short of"));
+    EXPECT_EQ(said[2].second, 2u);
+    EXPECT_EQ(said[0].second + said[1].second, 2u);
+  }
+}
+
+TEST(CommandCheckTest, NothingToRemarkOnWithinTheSheet) {
+  Diagnostics::instance().clear();
+  Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
+  x.check.changed(awake(), k340, 0);
+  open_eight_banks(x);
+  EXPECT_THAT(remarks(), IsEmpty());
+}
+
+// The model's commands against numbers that it was not given: its own defect, not the guest's.
+TEST(CommandCheckDeathTest, CommandAgainstTheProgrammedTimingIsADefect) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto play = [](unsigned more) {
+    Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
+    mem::DdrConfig other = awake();
+    other.timing.nRCD += more;
+    x.check.changed(other, k340, 0);
+    open_eight_banks(x);
+  };
+  play(0);
+  EXPECT_EXIT(play(1), testing::ExitedWithCode(4),
+              "SDRAM command against the programmed timing: tRCD, bank 0, 1 clocks, at 0.0000001");
+}
+
+// Registers and clocks change under traffic: what was given before is not held against new numbers,
+// what comes after is.
+TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
+  Diagnostics::instance().clear();
+  mem::DdrConfig c = awake();
+  Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
+  x.check.changed(c, k340, 0);
+  Rng rng(7);
+  std::vector<std::unique_ptr<Request>> all;
+  Picoseconds now = 100'000;
+  for (unsigned i = 0; i < 4000; ++i) {
+    now += rng.below(40'000);
+    if (rng.below(50) == 0) {
+      while (x.bench.ddr.next_decision() <= now) x.bench.step();
+      c.timing.nRCD = 5 + static_cast<unsigned>(rng.below(6));
+      c.timing.nRP = 5 + static_cast<unsigned>(rng.below(6));
+      c.timing.nWTR = 3 + static_cast<unsigned>(rng.below(6));
+      c.timing.CL = 5 + static_cast<unsigned>(rng.below(2));
+      x.bench.ddr.configure(c, now);
+      x.check.changed(c, k340, now);
+    }
+    all.push_back(std::make_unique<Request>());
+    Request& r = *all.back();
+    r.write = rng.below(3) == 0;
+    r.master = static_cast<Master>(rng.below(4));
+    r.address = at(static_cast<unsigned>(rng.below(3)), static_cast<unsigned>(rng.below(4)));
+    while (x.bench.door_taken()) {
+      now = std::max(now, x.bench.ddr.next_decision());
+      x.bench.step();
+    }
+    x.bench.submit_at(r, now);
+  }
+  x.bench.drain();
+  EXPECT_THAT(remarks(), IsEmpty()) << "and no defect either";
+}
+
+}  // namespace
+}  // namespace fovea::dram
