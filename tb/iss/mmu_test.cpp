@@ -173,18 +173,19 @@ TEST_F(MmuTest, LockedTlbEntrySurvivesInvalidateAll) {
 
 TEST_F(MmuTest, WalkIsOneReadForASectionAndTwoForAPage) {
   m.section(kVa, kPa, 0, 0);
+  // The page goes to another set of the TLB than the sections of code and first access.
   m.port.set_word(kTables + 4 * (kVa >> 20) + 4, kCoarse | 0x11u);
-  m.port.set_word(kCoarse, kPa | 0xFF2u);
+  m.port.set_word(kCoarse + 8, kPa | 0xFF2u);
   m.on_svc = [this](std::uint32_t) { m.marks.push_back(m.port.data_log().size()); };
-  go("svc #3\n ldr r0, [r4]\n svc #3\n add r6, r4, #0x100000\n ldr r0, [r6]\n svc #3\n ldr r0, "
-     "[r6]\n svc #3\n");
+  go("svc #3\n ldr r0, [r4]\n svc #3\n add r6, r4, #0x100000\n add r6, r6, #0x2000\n"
+     "ldr r0, [r6]\n svc #3\n ldr r0, [r6]\n svc #3\n");
   ASSERT_EQ(m.marks.size(), 4u);
   EXPECT_EQ(m.marks[1] - m.marks[0], 2u);
   EXPECT_EQ(m.marks[2] - m.marks[1], 3u);
   EXPECT_EQ(m.marks[3] - m.marks[2], 1u);
   const auto log = m.port.data_log();
   EXPECT_EQ(log[m.marks[0]].address, kTables + 4 * (kVa >> 20));
-  EXPECT_EQ(log[m.marks[1] + 1].address, kCoarse);
+  EXPECT_EQ(log[m.marks[1] + 1].address, kCoarse + 8);
   EXPECT_EQ(log[m.marks[1]].kind, BusAccess::Kind::kSingle);
 }
 

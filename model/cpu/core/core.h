@@ -104,6 +104,8 @@ class Core : public Background {
   // execute.cpp
   void step_attention();
   void execute_alone(const Instruction& i);
+  void enter_exception();
+  void leave_old_process();
   [[gnu::noinline]] void execute_one(const Instruction& i);
   bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
@@ -211,6 +213,10 @@ class Core : public Background {
   std::uint32_t modified(std::uint32_t va) const {
     return va < 0x0200'0000u ? va | process_ : va;
   }
+  /// MVA of an instruction.
+  std::uint32_t fetched_at(std::uint32_t va) const {
+    return va < 0x0200'0000u ? va | fetch_process_ : va;
+  }
   const Translation* translate(std::uint32_t mva, bool write, bool user, bool instruction);
   const Translation* translate_slow(std::uint32_t mva, bool write, bool user, bool instruction);
   std::uint32_t memo_key(std::uint32_t mva, bool user) const {
@@ -220,6 +226,7 @@ class Core : public Background {
   bool walk_read(std::uint32_t address, std::uint32_t& word);
   bool permitted(const Translation& t, bool write, bool user, unsigned& fault) const;
   void fault(bool instruction, unsigned status, unsigned domain, std::uint32_t address);
+  void external_abort_at(std::uint32_t last);
   /// Several words at an address that is not a word's: notes a fault if alignment is checked.
   bool misaligned(std::uint32_t va) {
     if (!(control_ & 2u) || !(va & 3u)) return false;
@@ -424,6 +431,9 @@ class Core : public Background {
   std::uint32_t ttbr_ = 0, dacr_ = 0, dfsr_ = 0, ifsr_ = 0, far_ = 0;
   std::uint32_t fcse_pid_ = 0, context_id_ = 0;
   std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on (ARM DDI 0198D 2-34)
+  std::uint32_t fetch_process_ = 0;    // the same for fetches: an old one behind a write of the PID
+  std::uint32_t old_process_pc_ = 0;   // where the flow must be to go on with it
+  unsigned old_process_left_ = 0;      // instructions fetched with it: so many to come, and one
   std::uint32_t dlock_ = 0, ilock_ = 0, tlb_lock_ = 0;
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;

@@ -90,7 +90,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
   switch (reg) {
     case id(0, 1, 0, 0):
       control_ = (v & 0x0000F387u) | 0x0005'0078u;
-      process_ = control_ & 1u ? fcse_pid_ : 0;
+      process_ = fetch_process_ = control_ & 1u ? fcse_pid_ : 0;
       flush_memos();
       fetch_buffer_pa_ = 1;
       return true;
@@ -118,6 +118,10 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(0, 13, 0, 0):
       fcse_pid_ = v & 0xFE000000u;
       process_ = control_ & 1u ? fcse_pid_ : 0;
+      // A second write shows both at once to what comes behind it (assumed).
+      if (old_process_left_) fetch_process_ = process_;
+      old_process_left_ = process_ == fetch_process_ ? 0 : 3;
+      old_process_pc_ = next_pc_;
       flush_memos();
       return true;
     case id(0, 13, 0, 1): context_id_ = v; return true;

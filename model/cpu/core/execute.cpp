@@ -60,8 +60,7 @@ void Core::run() {
     looked_at = 1;
     const Instruction* i = fetch();
     if (!i) {
-      pc_ = next_pc_;
-      aborted_ = false;
+      enter_exception();
       continue;
     }
     if (bus_fetch_) {  // an interrupt that came meanwhile goes first
@@ -74,15 +73,35 @@ void Core::run() {
     run_va_ = pc_ & ~31u;
     run_first_ = reinterpret_cast<std::intptr_t>(i);
     const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&
-                       chain_ == 0 && !branched_ && !debugger_;
-    if (!chain) {
+                       chain_ == 0 && old_process_left_ == 0 && !debugger_;
+    if (chain) {
+      chain_stop_ = stop_cycle_;
+      i = i->handler(*this, i, cycle_);
+      while (i) i = i->handler(*this, i, chain_cycle_);
+    } else {
       execute_alone(*i);
-      continue;
     }
-    chain_stop_ = stop_cycle_;
-    i = i->handler(*this, i, cycle_);
-    while (i) i = i->handler(*this, i, chain_cycle_);
+    if (old_process_left_) [[unlikely]] leave_old_process();
   }
+}
+
+/// What is left of an exception that no instruction raised.
+void Core::enter_exception() {
+  pc_ = next_pc_;
+  branched_ = aborted_ = false;
+  if (old_process_left_) leave_old_process();
+}
+
+/// Behind an instruction: the two that follow a write of the FCSE PID were fetched before it took
+/// effect, unless the flow leaves them (ARM DDI 0198D 2-34).
+void Core::leave_old_process() {
+  if (pc_ == old_process_pc_ && --old_process_left_) {
+    old_process_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
+    return;
+  }
+  old_process_left_ = 0;
+  fetch_process_ = process_;
+  flush_memos();
 }
 
 /// One instruction whose beginning or end may depend on what happened before it.
@@ -137,15 +156,13 @@ void Core::step_attention() {
     const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
     if (fiq_open && fiq_.at(t)) {
       take(Exception::kFiq, pc_ + 4);
-      pc_ = next_pc_;
-      aborted_ = false;
+      enter_exception();
       chain_ = 0;
       continue;
     }
     if (irq_open && irq_.at(t)) {
       take(Exception::kIrq, pc_ + 4);
-      pc_ = next_pc_;
-      aborted_ = false;
+      enter_exception();
       chain_ = 0;
       continue;
     }
@@ -336,7 +353,10 @@ void Core::load_store(const Instruction& i) {
     case Op::kLdrd: {
       std::uint32_t second = 0;
       if (misaligned(address)) return data_abort(2);
-      if (load(address & ~3u, 4, value, false) != Result::kOk) return data_abort(2);
+      if (load(address & ~3u, 4, value, false) != Result::kOk) {
+        external_abort_at((address & ~3u) + 4);
+        return data_abort(2);
+      }
       spend(1);
       if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort(1);
       write_back();
@@ -386,7 +406,10 @@ void Core::load_multiple(const Instruction& i) {
   std::array<std::uint32_t, 16> values;
   for (unsigned k = 0; k < n; ++k) {
     const std::uint32_t at = (address + 4 * k) & ~3u;
-    if (load(at, 4, values[k]) != Result::kOk) return data_abort(n - k);
+    if (load(at, 4, values[k]) != Result::kOk) {
+      external_abort_at((address & ~3u) + 4 * (n - 1));
+      return data_abort(n - k);
+    }
     spend(1);
   }
   if (n == 1 && !(i.imm & 0x8000u)) spend(1);
@@ -455,7 +478,7 @@ void Core::swap(const Instruction& i) {
   // What its write may not do stops it before the read locks the bus.
   const std::uint32_t mva = modified(address) & ~(bytes - 1u);
   const bool aligned = !(control_ & 2u) || !(address & (bytes - 1u));
-  if (aligned && !in_tcm(mva) && !translate(mva, true, false, false)) return data_abort(2);
+  if (aligned && !translate(mva, true, false, false)) return data_abort(2);
   swapping_ = true;
   const bool ok = load(address, bytes, value) == Result::kOk &&
                   store(address, bytes, out) == Result::kOk;

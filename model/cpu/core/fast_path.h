@@ -9,7 +9,7 @@ namespace fovea::cpu {
 
 inline const Instruction* Core::fetch() {
   if ((pc_ & ~31u) == line_va_ && (cpsr_ & 0x20u) == line_thumb_) {
-    if (cycle_ < ifill_.last && ifill_.line == (modified(pc_) & ~31u)) [[unlikely]]
+    if (cycle_ < ifill_.last && ifill_.line == (fetched_at(pc_) & ~31u)) [[unlikely]]
       stall_to(ifill_.word((pc_ >> 2) & 7u), Cause::kIcache, ifill_.pa, kService);
     const unsigned at = (pc_ & 31u) >> line_shift_;
     if (current_line_->valid && current_line_->records[at].body) return &current_line_->records[at];

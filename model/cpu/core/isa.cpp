@@ -149,8 +149,8 @@ constexpr IsaKind kSwpKind{C::kSwap, "nm", "", "d", "n != 15, m != 15, d != 15, 
                            "2", k9ejsUnread};
 constexpr IsaKind kSwpbKind{C::kSwap, "nm", "", "d", "n != 15, m != 15, d != 15, n != m, n != d",
                             "2, then 1", k9ejsUnread};
-constexpr IsaKind kPldImm{C::kPreload, "", "", "", "", "1", k926};
-constexpr IsaKind kPldReg{C::kPreload, "", "", "", "m != 15", "1", k926};
+constexpr IsaKind kPldImm{C::kPreload, "n", "", "", "", "1", k926};
+constexpr IsaKind kPldReg{C::kPreload, "nm", "", "", "m != 15", "1", k926};
 
 constexpr const char* kBranchCycles = "3";
 constexpr IsaKind kBranchKind{C::kBranch, "", "", "", "", kBranchCycles, k9es, Operand::kImm,

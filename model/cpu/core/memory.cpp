@@ -76,6 +76,14 @@ void Core::fault(bool instruction, unsigned status, unsigned domain, std::uint32
   }
 }
 
+/// The FAR of a transfer of several words up to va `last` that aborted outside: the last word before
+/// the 1 KB boundary that follows the aborted one (ARM DDI 0198D table 3-9). The words between are
+/// not transferred (assumed).
+void Core::external_abort_at(std::uint32_t last) {
+  const std::uint32_t status = dfsr_ & 0xFu;
+  if (status == 0x8 || status == 0xA) far_ = std::min(far_ | 0x3FCu, modified(last));
+}
+
 bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
   BusAccess& a = data_access_;
   a.port = BusAccess::Port::kData;
@@ -258,6 +266,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   record(pc_, va, bytes);
   value = 0;
   if (in_tcm(a)) {
+    if (!translate(a, false, user, false)) return Result::kAbort;
     std::memcpy(&value, tcm(a), bytes);
     ++reads_of(a);
     if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
@@ -294,6 +303,7 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   const std::uint32_t a = mva & ~(bytes - 1u);
   record(pc_, va, bytes | kWritten);
   if (in_tcm(a)) {
+    if (!translate(a, true, user, false)) return Result::kAbort;
     std::memcpy(tcm(a), &value, bytes);
     tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
     ++writes_of(a);
@@ -418,7 +428,10 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
       }
     }
     flush();
-    if (store(va + 4 * k, 4, words[k], user) != Result::kOk) return Result::kAbort;
+    if (store(va + 4 * k, 4, words[k], user) != Result::kOk) {
+      external_abort_at(va + 4 * (count - 1));
+      return Result::kAbort;
+    }
     spend(1);
   }
   flush();
@@ -453,7 +466,7 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
 const Instruction* Core::fetch_slow() {
   pack_flags();  // for an abort
   const bool thumb = cpsr_ & 0x20u;
-  const std::uint32_t mva = modified(pc_) & (thumb ? ~1u : ~3u);
+  const std::uint32_t mva = fetched_at(pc_) & (thumb ? ~1u : ~3u);
   const unsigned shift = thumb ? 1 : 2;
   const unsigned at = (mva & 31u) >> shift;
   const bool in_ram = in_tcm(mva);
@@ -478,6 +491,13 @@ const Instruction* Core::fetch_slow() {
     jumps_[pc_ / 32 % kJumps] = &d;
     return &i;
   };
+  // Internal RAM is chosen by the MVA, and the MMU checks the access all the same (ARM DDI 0198D
+  // 2-34, 3-3); where its page points to and its C and B bits do not matter there.
+  const Translation* t = translate(mva, false, false, true);
+  if (!t) {
+    take(Exception::kPrefetchAbort, pc_ + 4);
+    return nullptr;
+  }
   line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
     counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, control_ & 1u));
@@ -489,11 +509,6 @@ const Instruction* Core::fetch_slow() {
       d.valid = 2u | (d.valid & 1u);
     }
     return i;
-  }
-  const Translation* t = translate(mva, false, false, true);
-  if (!t) {
-    take(Exception::kPrefetchAbort, pc_ + 4);
-    return nullptr;
   }
   const std::uint32_t pa = t->physical(mva);
   // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
