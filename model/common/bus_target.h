@@ -18,6 +18,8 @@ class BusTarget : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
   const RegBank& bank() const { return bank_; }
+  RegBank& bank() { return bank_; }
+  bool gated() const { return !clocked(); }
 
  protected:
   BusTarget(sc_core::sc_module_name name, RegBank& regs) : sc_module(name), bank_(regs) {

@@ -13,6 +13,8 @@ class MemObserver {
   virtual void submitted(const MemRequest& r, bool to_sdram) = 0;
   /// The outcome of a request to the SDRAM is decided: `first`, `last`, `error`, `priority`.
   virtual void responded(const MemRequest& r) = 0;
+  /// The access to a register has ended; its data lie in the request.
+  virtual void register_done(const MemRequest&) {}
 };
 
 }  // namespace fovea

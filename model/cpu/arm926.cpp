@@ -48,8 +48,18 @@ void Arm926::interrupt_changed() {
 }
 
 Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
+  asleep_ = true;
   while (!irq_ && !fiq_) wait_for(interrupt_);
+  asleep_ = false;
   return asserted_;
+}
+
+void Arm926::catch_up() {
+  const Picoseconds boundary = core_.boundary_time();
+  if (boundary <= kernel_time()) return;
+  leave();
+  sc_core::wait(ps_time(boundary - kernel_time()));
+  enter();
 }
 
 void Arm926::submit(BusAccess& a, Picoseconds at) {

@@ -26,6 +26,10 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   const Core& core() const { return core_; }
   /// Not empty once the core has ended by a guest failure; the simulation is stopped then.
   const std::string& failure() const { return failure_; }
+  /// The core waits for an interrupt, as of the kernel's time.
+  bool asleep() const { return asleep_; }
+  /// From the core's own stack, at an instruction boundary: the kernel comes to its time.
+  void catch_up();
 
  private:
   friend bus::Agent<Arm926>;
@@ -48,7 +52,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   std::array<Transaction, 2> tx_;
   std::array<BusAccess*, 2> access_{};
   sc_core::sc_event interrupt_, clock_runs_;
-  bool irq_ = false, fiq_ = false;
+  bool irq_ = false, fiq_ = false, asleep_ = false;
   Picoseconds asserted_ = 0;  // since when IRQ or FIQ is asserted
   std::string failure_;
 };

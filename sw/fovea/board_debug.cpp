@@ -8,6 +8,26 @@ namespace {
 constexpr std::uint32_t kSdram = 0x8000'0000;
 constexpr std::uint64_t kInternal = 0x8000, kDataWindow = 0x1'0000;
 
+/// Gives the simulation back to its caller at a time. Made before the simulation starts.
+class Pause : public sc_core::sc_module {
+ public:
+  explicit Pause(sc_core::sc_module_name name) : sc_module(name) {
+    SC_HAS_PROCESS(Pause);
+    SC_METHOD(pause);
+    sensitive << due_;
+    dont_initialize();
+  }
+  void at(Picoseconds t) {
+    const Picoseconds now = kernel_time();
+    due_.notify(ps_time(t > now ? t - now : 0));
+    ++horizon_epoch;
+  }
+
+ private:
+  void pause() { sc_core::sc_pause(); }
+  sc_core::sc_event due_;
+};
+
 }  // namespace
 
 bool BoardDebugMemory::in_sdram(std::uint32_t pa, std::size_t bytes) const {
@@ -39,6 +59,27 @@ bool BoardDebugMemory::debug_write(std::uint32_t pa, std::span<const std::uint8_
   return true;
 }
 
+GdbViews::Block debug_block(const std::string& name, BusTarget& block) {
+  return {name, &block.bank(), [&block] { return block.gated(); }};
+}
+
+void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
+              QuietPhase& quiet, std::uint32_t ddr_base) {
+  v.masters = std::make_unique<GdbMasters>(scr.crossbar(), ddr.controller(), ddr_base);
+  v.now = [] { return kernel_time(); };
+  v.settle = [&scr] { scr.settle(); };
+  v.at_next_event = [&quiet](std::function<void()> act) {
+    const Picoseconds now = kernel_time(), next = kernel_horizon();
+    const Picoseconds at = next == kNever ? now : next;
+    quiet.at(at, static_cast<unsigned>(kMasterCount), std::move(act));
+    return at;
+  };
+  v.catch_up = [&arm] { arm.catch_up(); };
+  v.pause_at = [pause = std::make_shared<Pause>("debugger_pause")](Picoseconds at) {
+    pause->at(at);
+  };
+}
+
 GdbViews board_views(board::Board& board, const ParamSet& params) {
   auto& soc = board.dm365;
   GdbViews v;
@@ -46,14 +87,15 @@ GdbViews board_views(board::Board& board, const ParamSet& params) {
   v.memory = {{0, kInternal},
               {kDataWindow, kDataWindow + kInternal},
               {kSdram, kSdram + soc.ddr.store().size()}};
-  const std::vector<std::pair<std::string, const BusTarget*>> blocks = {
+  std::vector<std::pair<std::string, BusTarget*>> blocks = {
       {"ddr", &soc.ddr},   {"uart0", &soc.uart0}, {"uart1", &soc.uart1}, {"i2c", &soc.i2c},
       {"system", &soc.system}, {"pll1", &soc.pll1}, {"pll2", &soc.pll2}, {"psc", &soc.psc},
       {"aintc", &soc.aintc},   {"gpio", &soc.gpio}, {"vpss", &soc.vpss}, {"isif", &soc.isif},
       {"osd", &soc.osd},       {"venc", &soc.venc}};
-  for (const auto& [name, block] : blocks) v.blocks.emplace_back(name, &block->bank());
   for (std::size_t i = 0; i < soc.timers.size(); ++i)
-    v.blocks.emplace_back("timer" + std::to_string(i), &soc.timers[i]->bank());
+    blocks.emplace_back("timer" + std::to_string(i), soc.timers[i].get());
+  for (const auto& [name, block] : blocks) v.blocks.push_back(debug_block(name, *block));
+  join_bus(v, soc.scr, soc.ddr, soc.arm, soc.quiet, kSdram);
   v.stats = [&board] {
     auto& chip = board.dm365;
     std::vector<StatRow> rows;

@@ -18,6 +18,11 @@ class BoardDebugMemory : public cpu::DebugMemory {
   soc::Dm365& soc_;
 };
 
+GdbViews::Block debug_block(const std::string& name, BusTarget& block);
+/// The other masters, and what changing registers from a debugger needs; before the simulation starts.
+void join_bus(GdbViews& views, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
+              QuietPhase& quiet, std::uint32_t ddr_base);
+
 /// Blocks, memory, statistics and parameters for `monitor`. `board` and `params` outlive it.
 GdbViews board_views(board::Board& board, const ParamSet& params);
 

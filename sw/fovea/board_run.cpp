@@ -191,6 +191,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   const ElfImage elf = ElfImage::load(program_file(params_));
   check_fits(elf, memory_regions(params_));
   complete_params(params_);
+  sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
+                                          sc_core::SC_DO_NOTHING);
   auto source = video::make_picture_source(params_.camera, load_footage(params_),
                                            params_.raster_width(), params_.raster_height());
 
@@ -247,7 +249,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   const Picoseconds slice = 5 * kPsPerMs;
   std::string guest;
   for (;;) {
-    sc_core::sc_start(ps_time(slice));
+    sc_core::sc_start(ps_time(gdb && gdb->hit_pending() ? kPsPerUs : slice));
     request.progress.update({kernel_time(), board_->frames_in_window(), params_.run.frames(),
                              arm.core().instructions_executed()});
     if (!arm.failure().empty()) {
@@ -259,11 +261,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       result.complete = false;
       break;
     }
-    if (gdb) {
-      // A whole slice without an instruction boundary: the core waits for an interrupt.
-      if (gdb->halt_pending()) gdb->serve_asleep();
-      gdb->look();
-    }
+    if (gdb) gdb->look(arm.asleep());
     if (!board_->window_start() && kernel_time() > params_.run.start_limit()) {
       guest = failure_text(
           fmt::format("no corrected frame within run.start_limit = {}",

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "model/board/board_params.h"
+#include "sw/fovea/board_debug.h"
 #include "sw/fovea/exec_board.h"
 #include "sw/fovea/flat_machine.h"
 
@@ -47,7 +48,10 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
                                           sc_core::SC_DO_NOTHING);
   ExecSession session(arm.core(), *board_, request, map);
   session.load(board_->ram(), board_->tcm());
-  session.attach(*board_, {{"ddr", &board_->ddr.regs}});
+  session.attach(*board_, [&](GdbViews& v) {
+    v.blocks.push_back(debug_block("ddr", board_->ddr));
+    join_bus(v, board_->scr, board_->ddr, board_->arm, board_->quiet, map.ram_base);
+  });
   // Slices only let the host look in. No instruction takes as long as one.
   const Picoseconds slice = 10 * kPsPerMs;
   std::string failure;

@@ -102,13 +102,13 @@ std::vector<StatRow> ExecSession::core_stats() const {
 }
 
 void ExecSession::attach(cpu::DebugMemory& memory,
-                         std::vector<std::pair<std::string, const RegBank*>> blocks) {
+                         const std::function<void(GdbViews&)>& add) {
   if (!request_.gdb_port) return;
   GdbViews views;
   views.params = &request_.params;
   views.stats = [this] { return core_stats(); };
-  views.blocks = std::move(blocks);
   views.memory = {{map_.ram_base, map_.ram_base + map_.ram_size}};
+  if (add) add(views);
   gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
                                       request_.stop, request_.notes);
 }

@@ -19,8 +19,8 @@ class ExecSession : private SemihostingTarget {
   /// Fills memory, the vectors that the program leaves out, and the stack pointer. `ram` begins at
   /// the map's ram_base.
   void load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm);
-  /// Waits for a debugger if the request asks for one.
-  void attach(cpu::DebugMemory& memory, std::vector<std::pair<std::string, const RegBank*>> blocks);
+  /// Waits for a debugger if the request asks for one; `add` says what it sees beside the core.
+  void attach(cpu::DebugMemory& memory, const std::function<void(GdbViews&)>& add = nullptr);
   GdbSession* gdb() { return gdb_.get(); }
   bool ended() const { return semihosting_.exit_code().has_value(); }
   /// Result and core figures; `failure` is empty if the guest did not fail.

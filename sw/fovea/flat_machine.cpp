@@ -52,7 +52,7 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   cpu::Core core(params, port, tcm);
   ExecSession session(core, port, request, map);
   session.load(port.ram(), tcm);
-  session.attach(port, {});
+  session.attach(port);
   port.on_slice = [&] {
     if (request.stop.load()) core.request_stop();
     if (session.gdb()) session.gdb()->look();

@@ -54,6 +54,10 @@ std::string GdbProtocol::stop_reply() const {
   }
 }
 
+std::string GdbProtocol::console(std::string_view text) {
+  return "O" + to_hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 GdbProtocol::Answer GdbProtocol::handle(std::string_view packet) {
   Answer a;
   if (packet.empty()) {
@@ -105,11 +109,8 @@ GdbProtocol::Answer GdbProtocol::handle(std::string_view packet) {
           break;
         }
         const std::string text = target_.monitor({command->begin(), command->end()});
-        for (std::size_t i = 0; i < text.size(); i += kOutputBytes) {
-          const std::string piece = text.substr(i, kOutputBytes);
-          a.output.push_back(
-              "O" + to_hex({reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size()}));
-        }
+        for (std::size_t i = 0; i < text.size(); i += kOutputBytes)
+          a.output.push_back(console(std::string_view(text).substr(i, kOutputBytes)));
         a.payload = kOk;
       } else {
         a.payload = query(packet);

@@ -108,7 +108,10 @@ void GdbServer::send(std::string_view payload) {
 GdbResume GdbServer::serve(const GdbStop& stop) {
   if (socket_ >= 0) {
     protocol_.stopped(stop);
-    if (running_) send(protocol_.stop_reply());
+    if (running_) {
+      if (!stop.note.empty()) send(GdbProtocol::console(stop.note));
+      send(protocol_.stop_reply());
+    }
     running_ = false;
   }
   for (;;) {

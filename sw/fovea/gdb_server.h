@@ -35,9 +35,12 @@ class GdbTarget {
 
 /// Why the target stands still.
 struct GdbStop {
-  enum class Reason : std::uint8_t { kRequest, kStep, kSoftware, kHardware, kWrite, kRead, kAccess };
+  enum class Reason : std::uint8_t {
+    kRequest, kStep, kSoftware, kHardware, kWrite, kRead, kAccess, kOther
+  };
   Reason reason = Reason::kRequest;
   std::uint32_t address = 0;  ///< of a watchpoint
+  std::string note = {};      ///< for the debugger's console, with a line end
 };
 
 /// How the target is to go on.
@@ -62,6 +65,8 @@ class GdbProtocol {
   };
   Answer handle(std::string_view packet);
   std::string stop_reply() const;
+  /// A packet that puts text on the debugger's console.
+  static std::string console(std::string_view text);
   bool no_ack() const { return no_ack_; }
 
  private:

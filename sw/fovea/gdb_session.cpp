@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace fovea::app {
 namespace {
 
 // GDB's numbers: r0 to r15, and 25 for the CPSR since the days of the FPA.
-constexpr unsigned kPc = 15, kCpsr = 25, kSpsr = 26, kSystem = 27;
+constexpr unsigned kPc = 15, kCpsr = 25, kSpsr = 26, kSystem = 27, kBanked = 64;
 
 cpu::CoreControl::Watch watch_of(GdbTarget::Point kind) {
   using W = cpu::CoreControl::Watch;
@@ -30,6 +31,10 @@ GdbSession::GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& me
   numbers_.push_back(kSpsr);
   for (unsigned k = 0; k < cpu::CoreDebug::system_registers().size(); ++k)
     numbers_.push_back(kSystem + k);
+  for (unsigned k = 0; k < cpu::CoreDebug::banked_registers().size(); ++k)
+    numbers_.push_back(kBanked + k);
+  if (views_.masters)
+    views_.masters->on_hit = [this](const GdbMasters::Hit& h) { noticed(h); };
   control_.on_stop = [this](const cpu::CoreControl::Stop& s) { stopped(s); };
   control_.request_halt();
   notes << fmt::format("fovea: waiting for gdb: target remote 127.0.0.1:{}\n", server_.port())
@@ -49,34 +54,112 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
       stop.reason = hardware ? GdbStop::Reason::kHardware : GdbStop::Reason::kSoftware;
       break;
     }
+    case Reason::kTime: stop = take_hit(); break;
     case Reason::kWatch:
       stop.reason = s.watch == cpu::CoreControl::Watch::kWrite  ? GdbStop::Reason::kWrite
                     : s.watch == cpu::CoreControl::Watch::kRead ? GdbStop::Reason::kRead
                                                                 : GdbStop::Reason::kAccess;
       break;
   }
-  go_on(server_.serve(stop));
+  go_on(serve(stop));
 }
 
-void GdbSession::serve_asleep() {
+GdbResume GdbSession::serve(const GdbStop& stop) {
+  serving_ = true;
+  const GdbResume resume = server_.serve(stop);
+  serving_ = false;
+  return resume;
+}
+
+/// A debugger that finds its watchpoint hit steps over the instruction that it takes for the cause. A
+/// sleeping core has none: that step ends where it began.
+void GdbSession::serve_asleep(const GdbStop& stop) {
+  const bool watched = stop.reason != GdbStop::Reason::kRequest;
   control_.cancel_halt();
-  go_on(server_.serve({}));
+  asleep_ = true;
+  GdbResume resume = serve(stop);
+  if (watched && resume.kind == GdbResume::Kind::kStep)
+    resume = serve({.reason = GdbStop::Reason::kStep});
+  asleep_ = false;
+  go_on(resume);
+}
+
+/// Of several accesses the first one stops.
+void GdbSession::noticed(const GdbMasters::Hit& hit) {
+  if (hit_ && hit_->at <= hit.at) return;
+  hit_ = hit;
+  control_.stop_after(hit.at);
+  views_.pause_at(hit.at);
+}
+
+GdbStop GdbSession::take_hit() {
+  const GdbMasters::Hit h = *std::exchange(hit_, std::nullopt);
+  control_.stop_after(kNever);
+  GdbStop stop{.reason = GdbStop::Reason::kOther, .address = h.va};
+  stop.note = fmt::format("{} {} 0x{:08x} at {} ns\n", kMasterNames[index(h.master)],
+                          h.write ? "wrote" : "read", h.pa, ns_text(h.at));
+  if (h.watch.packet)
+    stop.reason = h.watch.kind == GdbMasters::Kind::kWrite  ? GdbStop::Reason::kWrite
+                  : h.watch.kind == GdbMasters::Kind::kRead ? GdbStop::Reason::kRead
+                                                            : GdbStop::Reason::kAccess;
+  return stop;
+}
+
+/// Other masters know physical addresses only: a watchpoint is where its pages are when the core goes
+/// on.
+void GdbSession::arm_watches() {
+  if (!views_.masters) return;
+  auto& list = views_.masters->watches;
+  std::erase_if(list, [](const GdbMasters::Watch& w) { return w.packet; });
+  constexpr std::uint32_t kTinyPage = 1024;
+  for (const Range& r : watch_masters_ ? watched_ : std::vector<Range>()) {
+    bool extend = false;
+    for (std::uint32_t done = 0; done < r.bytes;) {
+      const std::uint32_t va = r.va + done;
+      const std::uint32_t n = std::min(r.bytes - done, kTinyPage - (va & (kTinyPage - 1)));
+      done += n;
+      const auto pa = debug_.physical(va);
+      if (!pa) {
+        extend = false;
+        continue;
+      }
+      if (extend && list.back().pa + list.back().bytes == *pa) {
+        list.back().bytes += n;
+        continue;
+      }
+      list.push_back({*pa, n, va, watch_of(r.kind), std::nullopt, true});
+      extend = true;
+    }
+  }
+  control_.follow_bus(!list.empty());
 }
 
 void GdbSession::go_on(const GdbResume& resume) {
+  arm_watches();
   switch (resume.kind) {
     case GdbResume::Kind::kContinue: break;
     case GdbResume::Kind::kStep: control_.step(resume.from, resume.to); break;
     case GdbResume::Kind::kKill:
       killed_ = true;
-      control_.clear();
+      clear_all_points();
       core_.request_stop();
       break;
   }
 }
 
-void GdbSession::look() {
+void GdbSession::look(bool asleep) {
+  if (serving_) return;  // a command lets the others catch up
+  // Also a core that comes to no boundary for a whole turn stands where it is.
+  const bool stuck = halt_seen_ && control_.halt_pending();
   if (!control_.halt_pending() && server_.wants_halt()) control_.request_halt();
+  halt_seen_ = control_.halt_pending();
+  if (asleep && hit_ && hit_->at <= views_.now())
+    serve_asleep(take_hit());
+  else if (halt_seen_ && (asleep || stuck))
+    serve_asleep({});
+  else
+    return;
+  halt_seen_ = false;
 }
 
 std::optional<std::uint32_t> GdbSession::read_register(unsigned n) const {
@@ -86,16 +169,25 @@ std::optional<std::uint32_t> GdbSession::read_register(unsigned n) const {
   const auto system = cpu::CoreDebug::system_registers();
   if (n >= kSystem && n - kSystem < system.size())
     return debug_.system_register(system[n - kSystem]);
+  const auto banked = cpu::CoreDebug::banked_registers();
+  if (n >= kBanked && n - kBanked < banked.size())
+    return debug_.banked_register(banked[n - kBanked]);
   return std::nullopt;
 }
 
-/// SPSR and CP15 are for looking: changing them behind the program's back would need its caches and
-/// TLB to follow.
 bool GdbSession::write_register(unsigned n, std::uint32_t value) {
+  const auto system = cpu::CoreDebug::system_registers();
+  const auto banked = cpu::CoreDebug::banked_registers();
   if (n <= kPc)
     debug_.set_reg(n, value);
   else if (n == kCpsr)
     debug_.set_cpsr(value);
+  else if (n == kSpsr)
+    return debug_.set_spsr(value);
+  else if (n >= kSystem && n - kSystem < system.size())
+    debug_.set_system_register(system[n - kSystem], value);
+  else if (n >= kBanked && n - kBanked < banked.size())
+    debug_.set_banked_register(banked[n - kBanked], value);
   else
     return false;
   return true;
@@ -110,6 +202,7 @@ bool GdbSession::set_point(Point kind, std::uint32_t address, std::uint32_t byte
   }
   if (bytes == 0) return false;
   control_.set_watch(address, bytes, watch_of(kind));
+  watched_.push_back({address, bytes, kind});
   return true;
 }
 
@@ -126,11 +219,16 @@ bool GdbSession::clear_point(Point kind, std::uint32_t address, std::uint32_t by
     return true;
   }
   control_.clear_watch(address, bytes, watch_of(kind));
+  const auto found = std::find(watched_.begin(), watched_.end(), Range{address, bytes, kind});
+  if (found != watched_.end()) watched_.erase(found);
   return true;
 }
 
 void GdbSession::clear_all_points() {
   breakpoints_.clear();
+  watched_.clear();
+  if (views_.masters) views_.masters->watches.clear();
+  hit_.reset();
   control_.clear();
 }
 
@@ -151,6 +249,9 @@ std::string GdbSession::target_xml() const {
   reg("spsr", kSpsr, "uint32");
   unsigned number = kSystem;
   for (const auto& r : cpu::CoreDebug::system_registers()) reg(r.name, number++, "uint32");
+  out += "</feature>\n<feature name=\"fovea.arm926.banked\">\n";
+  number = kBanked;
+  for (const auto& r : cpu::CoreDebug::banked_registers()) reg(r.name, number++, "uint32");
   return out + "</feature>\n</target>\n";
 }
 
@@ -172,58 +273,6 @@ std::string GdbSession::memory_map_xml() const {
     out += fmt::format("<memory type=\"ram\" start=\"0x{:x}\" length=\"0x{:x}\"/>\n", cuts[i],
                        cuts[i + 1] - cuts[i]);
   return out + "</memory-map>\n";
-}
-
-std::string GdbSession::show_stats(const std::string& part) const {
-  std::string out;
-  for (const auto& row : views_.stats())
-    if (row.name.find(part) != std::string::npos)
-      out += fmt::format("{} = {} {}\n", row.name, number_text(row.value), row.unit);
-  return out.empty() ? fmt::format("no statistic with '{}' in its name\n", part) : out;
-}
-
-std::string GdbSession::show_registers(const std::string& what) const {
-  const std::size_t dot = what.find('.');
-  const std::string block = what.substr(0, dot);
-  const std::string name = dot == std::string::npos ? "" : what.substr(dot + 1);
-  std::string out, known;
-  for (const auto& [called, bank] : views_.blocks) {
-    known += (known.empty() ? "" : " ") + called;
-    if (called != block) continue;
-    for (const Reg* r : bank->regs()) {
-      if (!name.empty() && r->name() != name) continue;
-      std::uint32_t value = 0;
-      if (bank->peek(r->offset(), value) != Access::kOk) continue;
-      out += fmt::format("{}.{} = 0x{:08x}", called, r->name(), value);
-      if (r->fields().size() > 1)
-        for (const Field* f : r->fields())
-          out += fmt::format(" {}={}", f->name(), (value & f->mask()) >> f->lsb());
-      out += "\n";
-    }
-  }
-  return out.empty() ? fmt::format("no such register; blocks: {}\n", known) : out;
-}
-
-std::string GdbSession::monitor(const std::string& command) {
-  const std::size_t space = command.find(' ');
-  const std::string word = command.substr(0, space);
-  std::string rest = space == std::string::npos ? "" : command.substr(space + 1);
-  rest.erase(0, rest.find_first_not_of(' '));
-  if (word == "stats") return show_stats(rest);
-  if (word == "regs") return show_registers(rest);
-  if (word == "time")
-    return fmt::format("{} ns, core clock {}\n", ns_text(debug_.now()), core_.clock_count());
-  if (word == "params") {
-    std::string out;
-    for (const ParamBase* p : views_.params->all())
-      if (p->key().find(rest) != std::string::npos)
-        out += fmt::format("{} = {}\n", p->key(), p->text());
-    return out.empty() ? fmt::format("no parameter with '{}' in its key\n", rest) : out;
-  }
-  return "monitor stats [PART]    statistics now\n"
-         "monitor params [PART]   parameters\n"
-         "monitor regs BLOCK[.REGISTER]   registers of a peripheral, with fields\n"
-         "monitor time            simulated time\n";
 }
 
 }  // namespace fovea::app

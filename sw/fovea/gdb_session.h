@@ -11,6 +11,7 @@
 #include "model/common/param.h"
 #include "model/common/regbank.h"
 #include "model/cpu/core/debug_control.h"
+#include "sw/fovea/gdb_masters.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/outputs.h"
 
@@ -20,11 +21,27 @@ namespace fovea::app {
 struct GdbViews {
   const ParamSet* params = nullptr;
   std::function<std::vector<StatRow>()> stats;  ///< present values, core included
-  std::vector<std::pair<std::string, const RegBank*>> blocks;
+  struct Block {
+    std::string name;
+    RegBank* registers = nullptr;
+    std::function<bool()> gated;  ///< its clock is off: accesses do nothing
+  };
+  std::vector<Block> blocks;
   struct Memory {
     std::uint64_t base = 0, end = 0;
   };
   std::vector<Memory> memory;  ///< physical RAM, ascending
+
+  // What a machine has only if there is more than the core; null otherwise.
+  std::unique_ptr<GdbMasters> masters;
+  std::function<Picoseconds()> now;  ///< of everybody but the core, which may be ahead
+  std::function<void()> settle;      ///< takes the bus's decisions up to now; while the core sleeps
+  /// The simulation returns to its caller at this time, or now if that is past.
+  std::function<void(Picoseconds)> pause_at;
+  /// While the core sleeps: done with the next event, before which the bus may be decided already.
+  std::function<Picoseconds(std::function<void()>)> at_next_event;
+  /// On the core's stack: the others come to the core's time, so that registers may change there.
+  std::function<void()> catch_up;
 };
 
 /// Stands between the core's control and the server. Simulated time stands still while it serves.
@@ -33,18 +50,23 @@ class GdbSession : private GdbTarget {
   /// Listens, says where on `notes`, and lets the core stop before its first instruction.
   GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& memory, GdbViews views,
              const std::atomic<bool>& stop, std::ostream& notes);
-  /// To be called now and then while the core runs, not from inside it.
-  void look();
-  /// A halt was asked for and the core does not come to a boundary: it waits for an interrupt.
-  /// Serves the debugger from outside the core.
-  void serve_asleep();
-  bool halt_pending() const { return control_.halt_pending(); }
+  /// To be called now and then, not from inside the core. `asleep`: the core waits for an interrupt;
+  /// then it is stopped where it is, if it is to stop.
+  void look(bool asleep = false);
+  /// A watched access has happened or will, and the core has not stopped for it yet: a good time to
+  /// look more often.
+  bool hit_pending() const { return hit_.has_value(); }
   bool killed() const { return killed_; }
   void exited(int status) { server_.exited(status); }
 
  private:
   void stopped(const cpu::CoreControl::Stop& stop);
   void go_on(const GdbResume& resume);
+  GdbResume serve(const GdbStop& stop);
+  void serve_asleep(const GdbStop& stop);
+  void noticed(const GdbMasters::Hit& hit);
+  GdbStop take_hit();
+  void arm_watches();
 
   std::span<const unsigned> registers() const override { return numbers_; }
   std::optional<std::uint32_t> read_register(unsigned number) const override;
@@ -63,6 +85,11 @@ class GdbSession : private GdbTarget {
   std::string monitor(const std::string& command) override;
   std::string show_stats(const std::string& part) const;
   std::string show_registers(const std::string& what) const;
+  std::string set_register(const std::string& what);
+  std::string where();
+  std::string core_line() const;
+  std::string watch(const std::string& what);
+  std::string watch_masters(const std::string& what);
 
   cpu::Core& core_;
   cpu::CoreDebug debug_;
@@ -73,6 +100,16 @@ class GdbSession : private GdbTarget {
     unsigned software = 0, hardware = 0;
   };
   std::map<std::uint32_t, Kinds> breakpoints_;
+  struct Range {
+    std::uint32_t va, bytes;
+    Point kind;
+    friend bool operator==(const Range&, const Range&) = default;
+  };
+  std::vector<Range> watched_;  // by Z packets, for the other masters
+  bool watch_masters_ = true;
+  std::optional<GdbMasters::Hit> hit_;
+  bool asleep_ = false;         // served while the core waits for an interrupt
+  bool halt_seen_ = false, serving_ = false;
   GdbServer server_;
   bool killed_ = false;
 };

@@ -93,7 +93,13 @@ delete
 awatch watched
 continue
 info registers spsr
-set var $spsr = 1
+set var $spsr = 0x10
+print/x $spsr
+set var $far = 0x1234
+print/x $far
+print/x $sp_svc == $sp
+set var $sp_irq = 0x4000
+print/x $sp_irq
 delete
 tbreak printf
 continue
@@ -102,7 +108,8 @@ print watched
 continue
 G
   # 1 + 4 + 7 + 10 + 13 + 16, and leaf(100) for leaf(6); the status is its low seven bits.
-  end 96 '\$1 = 6' '\$2 = 100' 'Old value' '\$3 = 452' 'Could not write register'
+  end 96 '\$1 = 6' '\$2 = 100' 'Old value' '\$3 = 0x10' '\$4 = 0x1234' '\$5 = 0x1' \
+    '\$6 = 0x4000' '\$7 = 452'
   grep -q 'sum 352 watched 452 limit 7' "patch$memory.out" || fail "patch: $(cat "patch$memory.out")"
 done
 
@@ -164,5 +171,48 @@ detach
 G
 end 0 'main \(\)' 'irq_dispatch \(\)' '#1 .* irq_entry' 'cpsr +0x[0-9a-f]*2 ' 'aintc.IRQ0 = 0x' \
   'Cannot access memory at address 0x1c40000' 'ddr.read_bytes = [0-9]+' 'detached'
+# Another master's access: the camera fills a buffer while the core sleeps, the display reads one.
+begin dma run small.yaml -o dma --no-frames
+debug "$firmware" <<'G'
+break main
+continue
+monitor where
+watch *(int *)&frame_in[0]
+continue
+monitor where
+delete
+monitor watch dma 0x80341000,0x200000 r vpbe
+monitor watch dma 0x80341000,0x200000 r nobody
+monitor watch
+continue
+monitor where
+monitor watch clear
+break irq_dispatch
+continue
+monitor where
+detach
+G
+end 0 'core: at the instruction at 0x8' 'no master has a request under way' \
+  'vpfe wrote 0x80015000 at [0-9]+\.[0-9]{3} ns' 'Old value = 0' 'core: waits for an interrupt' \
+  'sdram 1: write of vpfe, 64 bytes at 0x80015000, bank' 'next command ACT for vpfe' \
+  'no such master; allowed: arm_i' '0x80341000,2097152 r vpbe' 'vpbe read 0x80341[0-9a-f]* at' \
+  'vpbe: read of 64 bytes at 0x80341' 'irq_dispatch \(\)'
+cmp board_plain/stats.json dma/stats.json || fail 'dma: other figures than without a debugger'
+
+# Switched off, the debugger's watchpoints see the core alone.
+begin core run small.yaml -o core --no-frames
+debug "$firmware" <<'G'
+break main
+continue
+awatch *(int *)&frame_in[0]
+monitor watch-masters off
+monitor regs timer3
+continue
+bt 1
+detach
+G
+end 0 'do not see'
+grep -q 'vpfe wrote' core.gdb && fail "core: a master stops it: $(cat core.gdb)"
+
 cmp board_plain/stats.json board/stats.json || fail 'board: other figures than without a debugger'
 exit $((failures > 0))

@@ -241,8 +241,8 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
     slaves_[request.slave].open_to = ~0u;
     plan();
   }
-  if (observer_ && request.slave == static_cast<std::uint8_t>(Slave::kDdr)) [[unlikely]]
-    observer_->responded(request);
+  if (observer_) [[unlikely]]
+    ddr ? observer_->responded(request) : observer_->register_done(request);
   host_.respond(request);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,6 +105,27 @@ class Crossbar {
   Timeline timeline;
   /// Time between issue and arrival at the SDRAM, and from there back to the port.
   WaitTable waits;
+
+  /// What stands where at a time, for a debugger.
+  struct View {
+    struct Item {
+      const MemRequest* request;
+      Picoseconds crossed;  ///< through its bridge; kNever while the clock stands
+      bool head;            ///< of its master's queue: competes for the slave
+    };
+    struct SlaveView {
+      bool blocked = false;            ///< the last granted request waits at its door
+      Picoseconds free = 0;            ///< its command lane; 0: free already
+      std::optional<Master> granted;   ///< last
+      std::optional<Master> locked_by;
+    };
+    std::vector<Item> items;  ///< by master, oldest first
+    std::array<SlaveView, kSlaveCount> slaves;
+    std::optional<Master> next;  ///< winner of the next arbitration, as things stand
+    Picoseconds next_at = kNever;
+    std::array<unsigned, kMasterCount> priority{};
+  };
+  View view(Picoseconds at) const;
 
  private:
   static constexpr std::uint64_t kNotYet = ~std::uint64_t{0};  // the clock stands

@@ -74,6 +74,8 @@ class Core : public Background {
   /// The instruction being executed; after a guest failure, where its chain of exceptions began.
   std::uint32_t current_pc() const { return failing_ ? failed_pc_ : pc_; }
   std::uint64_t clock_count() const { return cycle_; }
+  /// Of its last instruction boundary; may lie ahead of everybody else's time.
+  Picoseconds boundary_time() const { return time(cycle_); }
   std::vector<AccessRecord> last_accesses() const;
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;

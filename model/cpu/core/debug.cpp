@@ -140,18 +140,72 @@ void CoreDebug::set_cpsr(std::uint32_t value) {
   core_.line_va_ = 1;
 }
 
+bool CoreDebug::set_spsr(std::uint32_t value) {
+  const unsigned bank = Core::bank(core_.cpsr());
+  if (bank == 0) return false;
+  core_.spsr_[bank] = value;
+  return true;
+}
+
 std::span<const CoreDebug::SystemRegister> CoreDebug::system_registers() {
   static constexpr std::array<SystemRegister, 8> kRegisters = {{
-      {"control", [](const Core& c) { return c.control_; }},
-      {"ttbr", [](const Core& c) { return c.ttbr_; }},
-      {"dacr", [](const Core& c) { return c.dacr_; }},
-      {"dfsr", [](const Core& c) { return c.dfsr_; }},
-      {"ifsr", [](const Core& c) { return c.ifsr_; }},
-      {"far", [](const Core& c) { return c.far_; }},
-      {"fcse_pid", [](const Core& c) { return c.fcse_pid_; }},
-      {"context_id", [](const Core& c) { return c.context_id_; }},
+      {"control", [](const Core& c) { return c.control_; }, 0x0100},
+      {"ttbr", [](const Core& c) { return c.ttbr_; }, 0x0200},
+      {"dacr", [](const Core& c) { return c.dacr_; }, 0x0300},
+      {"dfsr", [](const Core& c) { return c.dfsr_; }, 0x0500},
+      {"ifsr", [](const Core& c) { return c.ifsr_; }, 0x0501},
+      {"far", [](const Core& c) { return c.far_; }, 0x0600},
+      {"fcse_pid", [](const Core& c) { return c.fcse_pid_; }, 0x0D00},
+      {"context_id", [](const Core& c) { return c.context_id_; }, 0x0D01},
   }};
   return kRegisters;
+}
+
+void CoreDebug::set_system_register(const SystemRegister& r, std::uint32_t value) {
+  core_.cp15_write(r.number, value);
+}
+
+std::span<const CoreDebug::BankedRegister> CoreDebug::banked_registers() {
+  static constexpr std::array<BankedRegister, 27> kRegisters = {{
+      {"r8_usr", 0, 8},    {"r9_usr", 0, 9},    {"r10_usr", 0, 10},   {"r11_usr", 0, 11},
+      {"r12_usr", 0, 12},  {"sp_usr", 0, 13},   {"lr_usr", 0, 14},    {"r8_fiq", 1, 8},
+      {"r9_fiq", 1, 9},    {"r10_fiq", 1, 10},  {"r11_fiq", 1, 11},   {"r12_fiq", 1, 12},
+      {"sp_fiq", 1, 13},   {"lr_fiq", 1, 14},   {"spsr_fiq", 1, 16},  {"sp_irq", 2, 13},
+      {"lr_irq", 2, 14},   {"spsr_irq", 2, 16}, {"sp_svc", 3, 13},    {"lr_svc", 3, 14},
+      {"spsr_svc", 3, 16}, {"sp_abt", 4, 13},   {"lr_abt", 4, 14},    {"spsr_abt", 4, 16},
+      {"sp_und", 5, 13},   {"lr_und", 5, 14},   {"spsr_und", 5, 16},
+  }};
+  return kRegisters;
+}
+
+const std::uint32_t* CoreDebug::banked(const BankedRegister& r) const {
+  if (r.number == kSpsrNumber) return &core_.spsr_[r.bank];
+  const unsigned present = Core::bank(core_.cpsr());
+  if (r.number >= 13)
+    return r.bank == present ? &core_.r_[r.number] : &core_.banked_[r.bank][r.number - 13u];
+  const bool fiq = r.bank == 1;
+  if (fiq == (present == 1)) return &core_.r_[r.number];
+  return &(fiq ? core_.fiq_high_ : core_.user_high_)[r.number - 8u];
+}
+
+CoreDebug::Pending CoreDebug::pending() const {
+  Pending p;
+  const auto later = [this](std::uint64_t cycle) -> Picoseconds {
+    return cycle > core_.cycle_ ? core_.time(cycle) : 0;
+  };
+  p.data_fill = later(core_.dfill_.last);
+  p.instruction_fill = later(core_.ifill_.last);
+  p.operands = later(core_.busy_until_);
+  p.data_line = core_.dfill_.line;
+  p.instruction_line = core_.ifill_.line;
+  p.writes = core_.writes_.count();
+  p.victim_bytes = core_.writes_.victim_bytes;
+  p.victim = core_.writes_.victim_address;
+  p.write_on_bus = core_.write_in_flight_;
+  p.write_address = core_.write_access_.address;
+  p.irq = core_.irq_.level;
+  p.fiq = core_.fiq_.level;
+  return p;
 }
 
 std::optional<Instruction> CoreDebug::instruction(std::uint32_t va) {

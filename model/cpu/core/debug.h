@@ -37,13 +37,42 @@ class CoreDebug {
   /// Changes mode and state as well.
   void set_cpsr(std::uint32_t value);
   std::uint32_t spsr() const { return core_.spsr_[Core::bank(core_.cpsr())]; }
-  /// A CP15 register that can be read without effect.
+  /// False in user and system mode, which have none.
+  bool set_spsr(std::uint32_t value);
+  /// A CP15 register that can be read without effect; written, it has those of an MCR, without time.
   struct SystemRegister {
     const char* name;
     std::uint32_t (*get)(const Core&);
+    std::uint32_t number;  ///< opc1, CRn, CRm, opc2: a digit each
   };
   static std::span<const SystemRegister> system_registers();
   std::uint32_t system_register(const SystemRegister& r) const { return r.get(core_); }
+  void set_system_register(const SystemRegister& r, std::uint32_t value);
+  /// A register of one mode, whether or not that mode is the present one: r8 to r14 of user and FIQ
+  /// mode, r13 and r14 of the others, and each SPSR.
+  struct BankedRegister {
+    const char* name;
+    std::uint8_t bank;    ///< of Core::bank()
+    std::uint8_t number;  ///< r8 .. r14; kSpsrNumber
+  };
+  static constexpr std::uint8_t kSpsrNumber = 16;
+  static std::span<const BankedRegister> banked_registers();
+  std::uint32_t banked_register(const BankedRegister& r) const { return *banked(r); }
+  void set_banked_register(const BankedRegister& r, std::uint32_t value) {
+    *const_cast<std::uint32_t*>(banked(r)) = value;
+  }
+
+  /// What the core has under way at a boundary. Times are 0 if there is none.
+  struct Pending {
+    Picoseconds data_fill = 0, instruction_fill = 0, operands = 0;  ///< until then
+    std::uint32_t data_line = 0, instruction_line = 0;              ///< modified addresses
+    unsigned writes = 0, victim_bytes = 0;                          ///< not yet acknowledged
+    std::uint32_t victim = 0;
+    bool write_on_bus = false;
+    std::uint32_t write_address = 0;
+    bool irq = false, fiq = false;  ///< the lines
+  };
+  Pending pending() const;
 
   /// The instruction word or half-word that the core would fetch at `va`.
   std::optional<Instruction> instruction(std::uint32_t va);
@@ -59,6 +88,7 @@ class CoreDebug {
   std::optional<Place> place(std::uint32_t mva);
   std::optional<std::uint32_t> table_word(std::uint32_t pa);
   bool read_memory(std::uint32_t pa, std::span<std::uint8_t> to);
+  const std::uint32_t* banked(const BankedRegister& r) const;
   void patch_instructions(std::uint32_t mva, std::uint32_t pa, std::span<const std::uint8_t> from);
 
   Core& core_;

@@ -36,7 +36,8 @@ void Core::control_boundary() {
 }
 
 void CoreControl::update() {
-  const bool active = halt_ || step_ || !breakpoints_.empty() || !watches_.empty();
+  const bool active = halt_ || step_ || follow_ || stop_after_ != kNever ||
+                      !breakpoints_.empty() || !watches_.empty();
   core_.debugger_ = active ? this : nullptr;
   if (active) core_.attention_ = true;  // a chain under way ends
 }
@@ -62,11 +63,25 @@ void CoreControl::step(std::uint32_t from, std::uint32_t to) {
 void CoreControl::clear() {
   breakpoints_.clear();
   watches_.clear();
-  halt_ = step_ = false;
+  halt_ = step_ = follow_ = false;
+  stop_after_ = kNever;
   update();
 }
 
+/// The boundary lies at or before the next event of anybody else: nobody acts here but the core's own
+/// buffers and the bus.
+void CoreControl::settle_bus() {
+  core_.play(core_.cycle_);
+  core_.port_.sleep_until(core_.time(core_.cycle_));
+}
+
+void CoreControl::disturb() {
+  core_.attention_ = true;
+  core_.stop_cycle_ = 0;
+}
+
 void CoreControl::boundary() {
+  if (follow_) settle_bus();
   const std::uint32_t pc = core_.pc_;
   std::optional<Stop> stop;
   if (breakpoints_.contains(pc))
@@ -75,10 +90,13 @@ void CoreControl::boundary() {
     stop = Stop{Stop::Reason::kStep};
   else if (halt_)
     stop = Stop{Stop::Reason::kRequest};
+  else if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
+    stop = Stop{Stop::Reason::kTime};
   else if (!watches_.empty())
     stop = watched(pc);
   if (!stop) return;
   halt_ = step_ = false;
+  if (stop->reason == Stop::Reason::kTime) stop_after_ = kNever;
   update();
   if (on_stop) on_stop(*stop);
 }

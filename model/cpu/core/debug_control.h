@@ -16,7 +16,7 @@ class CoreControl {
  public:
   enum class Watch : std::uint8_t { kWrite, kRead, kAccess };
   struct Stop {
-    enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch } reason;
+    enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch, kTime } reason;
     Watch watch = Watch::kAccess;   ///< kWatch: which kind of watchpoint
     std::uint32_t address = 0;      ///< kWatch: first watched address that will be touched
   };
@@ -40,6 +40,15 @@ class CoreControl {
   void cancel_halt() { halt_ = false, update(); }
   /// Stops at the next boundary whose pc lies outside [from, to).
   void step(std::uint32_t from = 0, std::uint32_t to = 0);
+  /// Stops at the first boundary later than t; kNever takes that back.
+  void stop_after(Picoseconds t) { stop_after_ = t, update(); }
+  /// At each boundary the bus has decided all that it decides before: what other masters do there is
+  /// known before the core goes on.
+  void follow_bus(bool on) { follow_ = on, update(); }
+  /// The same once, for whoever looks at the bus at a stop.
+  void settle_bus();
+  /// Something outside the core has changed at this boundary: it looks for the next event anew.
+  void disturb();
   /// Forgets all of it.
   void clear();
 
@@ -58,7 +67,8 @@ class CoreControl {
   CoreDebug& debug_;
   std::set<std::uint32_t> breakpoints_;
   std::vector<Range> watches_;
-  bool halt_ = false, step_ = false;
+  bool halt_ = false, step_ = false, follow_ = false;
+  Picoseconds stop_after_ = kNever;
   std::uint32_t step_from_ = 0, step_to_ = 0;
 };
 

@@ -19,6 +19,7 @@ class WriteBuffer {
     std::array<std::uint8_t, 64> data{};
   };
   bool empty() const { return count_ == 0; }
+  unsigned count() const { return count_; }
   bool room(unsigned bytes) const {
     return count_ < kAddresses && words_ + (bytes + 3) / 4 <= kWords;
   }

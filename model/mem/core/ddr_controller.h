@@ -93,6 +93,28 @@ class DdrController {
   /// checks address + bytes against the SDRAM's size.
   void debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const;
   void debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes);
+  /// What stands here, for a debugger.
+  struct View {
+    struct Item {
+      const void* cookie;  ///< of a write that is not at the door: stale, its master has gone on
+      Master master;
+      bool write;
+      std::uint8_t bytes;
+      std::uint32_t address;  ///< offset in the SDRAM
+      bool door;              ///< waits for room in the FIFOs
+      bool moving;            ///< its burst is under way
+      Picoseconds ready;      ///< the scheduler sees it from then on
+      unsigned bank;
+      std::uint32_t row, open;  ///< open: DdrDevice::kClosed or the bank's row
+    };
+    std::vector<Item> items;  ///< oldest first
+    std::size_t next = ~std::size_t{0};  ///< item of the next command; beyond the end: a refresh's
+    Cmd cmd = Cmd::kRef;                 ///< that command
+    Picoseconds next_at = kNever;        ///< kNever: nothing to do
+    LowPower asleep = LowPower::kOff;
+    bool data_full = false;  ///< the door waits for room for write data, not for an entry
+  };
+  View view() const;
 
   DdrStats stats;
   /// What reads waited for here, between the pipeline's end and their first column command: each

@@ -47,4 +47,29 @@ void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from,
   }
 }
 
+DdrController::View DdrController::view() const {
+  View v;
+  const auto add = [&](const DdrRequest& r, std::uint64_t ready, bool door) {
+    const auto bank = (r.address >> bank_shift_) & bank_mask_;
+    v.items.push_back({r.cookie, r.master, r.write, r.bytes, r.address, door, false,
+                       running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
+                       (r.address & row_mask_) >> row_shift_, device_.row(bank)});
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Entry& e = slots_[order_[i]];
+    add(e.request, e.ready, false);
+    if (&e != choice_.entry || next_ == kNever) continue;
+    v.next = i;
+    v.items.back().moving = in_burst_;
+  }
+  if (door_full_) {
+    add(door_, door_arrived_, true);
+    v.data_full = count_ < fifo_entries_;
+  }
+  v.cmd = choice_.cmd;
+  v.next_at = next_;
+  v.asleep = asleep_;
+  return v;
+}
+
 }  // namespace fovea::mem

@@ -1,0 +1,77 @@
+// All memory masters under a debugger: who waits for whom, and watchpoints on those beside the core.
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/bus/core/crossbar.h"
+#include "model/cpu/core/debug_control.h"
+#include "model/mem/core/ddr_controller.h"
+
+namespace fovea::app {
+
+/// Looks on at the crossbar while a debugger may attach. Changes nothing there.
+class GdbMasters final : public MemObserver {
+ public:
+  using Kind = cpu::CoreControl::Watch;
+  /// Bytes from `pa` on; `va` is what the debugger calls the first of them.
+  struct Watch {
+    std::uint32_t pa = 0, bytes = 0, va = 0;
+    Kind kind = Kind::kWrite;
+    std::optional<Master> only;  ///< else any but the core
+    bool packet = false;         ///< set by a Z packet, not by `monitor watch dma`
+  };
+  struct Hit {
+    Picoseconds at = 0;  ///< acknowledgement of a write, last beat of a read
+    Master master = Master::kVpfe;
+    bool write = false;
+    std::uint32_t va = 0, pa = 0;  ///< first watched byte that it touches
+    Watch watch;
+  };
+
+  /// @param ddr_base where the crossbar puts the SDRAM
+  GdbMasters(bus::Crossbar& crossbar, const mem::DdrController& ddr, std::uint32_t ddr_base);
+  ~GdbMasters() override;
+  GdbMasters(const GdbMasters&) = delete;
+  GdbMasters& operator=(const GdbMasters&) = delete;
+
+  /// Called for each access to watched bytes as soon as its time is known; that may lie ahead.
+  std::function<void(const Hit&)> on_hit;
+  std::vector<Watch> watches;
+
+  /// A line for each master that has something under way at `now`, and the SDRAM's queue. The caller
+  /// has all decisions at or before `now` taken.
+  std::string where(Picoseconds now) const;
+  /// The outstanding request of a master that was issued first; for the core's own line.
+  bool outstanding(Master m, Picoseconds now) const;
+
+ private:
+  struct Request {
+    const MemRequest* request;  // not to be read once decided: its master may have gone on
+    std::uint32_t address;
+    std::uint8_t bytes;
+    bool write, to_sdram, decided;
+    Picoseconds issued, first, last;
+  };
+  void submitted(const MemRequest& r, bool to_sdram) override;
+  void responded(const MemRequest& r) override { done(r); }
+  void register_done(const MemRequest& r) override { done(r); }
+  void done(const MemRequest& r);
+  void look(const MemRequest& r) const;
+  std::string place(const Request& r, const bus::Crossbar::View& bus,
+                    const mem::DdrController::View& ddr, Picoseconds now) const;
+  std::string in_crossbar(const bus::Crossbar::View::Item& item, const MemRequest& r,
+                          const bus::Crossbar::View& bus, Picoseconds now) const;
+  std::string in_controller(const mem::DdrController::View& ddr, std::size_t item,
+                            Picoseconds now) const;
+
+  bus::Crossbar& crossbar_;
+  const mem::DdrController& ddr_;
+  std::uint32_t ddr_base_;
+  MemObserver* before_;
+  std::array<std::vector<Request>, kMasterCount> under_way_;
+};
+
+}  // namespace fovea::app
