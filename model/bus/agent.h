@@ -142,6 +142,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     sc_core::wait(ps_time(until - now));
     enter();
   }
+  /// From the issue of a request on this port to its outcome it takes at least this long.
+  Picoseconds least_latency(unsigned port) const { return ports_[port].least_latency; }
   /// Nobody else acts before this time: no kernel event, and no decision of the path about a
   /// request of somebody else that may let it act, or about an own one that may let a register block
   /// act.

@@ -67,6 +67,7 @@ void Arm926::submit(BusAccess& a, Picoseconds at) {
   Transaction& tx = tx_[port];
   access_[port] = &a;
   a.done = a.error = false;
+  a.least = least_latency(port);
   tx.write = a.write;
   tx.locked = a.locked;
   tx.critical = a.kind == BusAccess::Kind::kWrap8 ? a.address & 31u : 0;

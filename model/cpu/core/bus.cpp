@@ -117,6 +117,17 @@ void Core::start_write(std::uint64_t cycle) {
   write_over_ = 0;
   data_port_free_ = cycle;
   submit(a, cycle);
+  write_floor_ = cycle + whole_clocks(a.least);
+}
+
+/// Those that surely pass in this time. Ports rarely change their answer.
+std::uint64_t Core::whole_clocks(Picoseconds t) {
+  if (t != whole_of_) {
+    whole_of_ = t;
+    whole_ = 0;
+    while (clock_.periods(whole_ + 1) + 1 < t) ++whole_;  // an edge may be rounded down
+  }
+  return whole_;
 }
 
 /// Plays the buffers up to a clock, in time order.
@@ -124,6 +135,7 @@ void Core::play(std::uint64_t cycle) {
   if (!write_in_flight_ && writes_.empty() && writes_.victim_bytes == 0) return;
   for (;;) {
     if (write_in_flight_ && !write_access_.done) {
+      if (cycle < write_floor_) return;
       // While the port waits the buffers may move on by themselves: look again afterwards.
       if (!port_.poll(write_access_, time(cycle)) && !(write_in_flight_ && write_access_.done))
         return;

@@ -23,6 +23,8 @@ struct BusAccess {
   /// the critical word). Valid for a read once done.
   alignas(8) std::uint8_t data[32] = {};
 
+  /// Set by the port at submission: its outcome's last beat comes no earlier than this after it.
+  Picoseconds least = 0;
   bool done = false;   ///< set by the port as soon as the outcome is decided; times may lie ahead
   bool error = false;  ///< the bus answered with an error
   Picoseconds first = 0;  ///< read: first (critical) word is at the core's AHB port

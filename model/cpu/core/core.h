@@ -279,6 +279,7 @@ class Core : public Background {
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
   void finish_write(Cause cause);
   void retire_write();
+  std::uint64_t whole_clocks(Picoseconds t);
   void drain(Cause cause);
   void start_write(std::uint64_t ahb_cycle);
   void write_back(unsigned index, Cause cause);
@@ -418,6 +419,9 @@ class Core : public Background {
   BusAccess write_access_;
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
+  std::uint64_t write_floor_ = 0;  // clock before which the write under way is not over
+  Picoseconds whole_of_ = 0;       // whole_clocks(): last question and answer
+  std::uint64_t whole_ = 0;
   mutable std::uint64_t write_over_ = 0;  // clock at which it can be retired; 0: not yet known
   static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};
   mutable std::uint64_t act_time_cycle_ = kNoCycle;  // next_act(): last clock and its time

@@ -24,7 +24,8 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
 
 void Core::set_clock(Frequency f, Picoseconds at) {
   clock_.restart(f, at);
-  write_over_ = 0;
+  write_over_ = write_floor_ = 0;
+  whole_of_ = whole_ = 0;
   act_time_cycle_ = kNoCycle;
   attention_ = true;
 }

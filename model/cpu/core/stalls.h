@@ -69,7 +69,9 @@ void split_clocks(std::uint64_t clocks, const RequestWaits& parts, std::uint64_t
   std::uint64_t named = 0;
   parts.each([&named](Culprit, std::uint64_t ps) { named += ps; });
   const std::uint64_t whole = named > span ? named : span;
+  // Clocks in a picosecond * 2^33: what is lost in all of `whole` is less than half a clock.
   const bool small = (whole | clocks) >> 31 == 0;
+  const std::uint64_t rate = small ? (clocks << 33) / whole : 0;
   std::uint64_t passed = 0, given = 0;
   const auto give = [&](Culprit c, std::uint64_t ps) {
     if (ps == 0) return;
@@ -77,7 +79,7 @@ void split_clocks(std::uint64_t clocks, const RequestWaits& parts, std::uint64_t
     // To the nearest clock on the way, so that no part is favoured.
     using Wide = unsigned __int128;
     const std::uint64_t until =
-        small ? (2 * passed * clocks + whole) / (2 * whole)
+        small ? (passed * rate + (std::uint64_t{1} << 32)) >> 33
               : static_cast<std::uint64_t>((Wide{2} * passed * clocks + whole) / (Wide{2} * whole));
     if (until > given) f(index(c), until - given);
     given = until;
