@@ -174,8 +174,8 @@ TEST(CoreStallsTest, LongerPrechargeIsRowConflict) {
   EXPECT_EQ(slow.by(Culprit::kRowConflict) - usual.by(Culprit::kRowConflict), more);
   EXPECT_EQ(slow.by(Culprit::kBridge), usual.by(Culprit::kBridge));
   EXPECT_EQ(slow.by(Culprit::kService), usual.by(Culprit::kService));
-  Reader same_row(32);
-  EXPECT_EQ(same_row.by(Culprit::kRowConflict), 0u);
+  Reader along_rows(32);
+  EXPECT_LT(along_rows.by(Culprit::kRowConflict) * 20, usual.by(Culprit::kRowConflict));
 }
 
 }  // namespace

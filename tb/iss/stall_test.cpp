@@ -116,7 +116,7 @@ TEST(StallTest, InstructionsAndInternalRam) {
   Noting m;
   const Program code = assemble("bx lr\n", kA);
   m.load(code);
-  m.execute(kStart + "mov lr, pc\n mov pc, r5\n svc #3\n add lr, pc, #4\n mov pc, r4\n nop\n svc #3");
+  m.execute(kStart + "svc #3\n mov lr, pc\n bx r4\n svc #3");
   EXPECT_EQ(m.clocks(Cause::kIcache, "a", kService), 20u);
   EXPECT_EQ(m.clocks(Cause::kIcache, "a", kCore), 1u);
   Noting t(regions(), {{"cpu.tcm.wait_states", "1 cycles"}});
@@ -242,9 +242,9 @@ TEST(RegionMapTest, ANameTooManyIsRefused) {
 TEST(ActivityTest, LookUpsDoNotDependOnWhatWasDecodedBefore) {
   for (const bool thumb : {false, true}) {
     Noting m;
-    const Program work = assemble(std::string(thumb ? ".thumb\n" : "") + R"(
-      mov r1, #9
-    1: add r2, r2, r1
+    const Program work = assemble(std::string(thumb ? ".syntax unified\n.thumb\n" : "") + R"(
+      movs r1, #9
+    1: adds r2, r2, r1
       cmp r1, #4
       bgt 2f
       nop
@@ -256,7 +256,7 @@ TEST(ActivityTest, LookUpsDoNotDependOnWhatWasDecodedBefore) {
       nop
       nop
       nop
-    2: sub r1, r1, #1
+    2: subs r1, r1, #1
       cmp r1, #0
       bne 1b
       bx lr
