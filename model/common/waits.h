@@ -43,12 +43,14 @@ struct MasterWaits {
 /// The same of one request, for a master that asks (MemRequest::parts).
 class RequestWaits {
  public:
-  void clear() { used_ = 0; }
+  void clear() { used_ = 0, total_ = 0; }
   void add(Culprit c, std::uint64_t t) {
     const std::uint32_t bit = 1u << index(c);
     ps_[index(c)] = (used_ & bit ? ps_[index(c)] : 0) + t;
     used_ |= bit;
+    total_ += t;
   }
+  std::uint64_t total() const { return total_; }
   std::uint64_t ps(Culprit c) const { return used_ >> index(c) & 1u ? ps_[index(c)] : 0; }
   /// Calls f(culprit, picoseconds) for those that were added, in their order.
   template <class F>
@@ -61,6 +63,7 @@ class RequestWaits {
 
  private:
   std::uint32_t used_ = 0;  // one bit per culprit; the others' entries mean nothing
+  std::uint64_t total_ = 0;
   std::array<std::uint64_t, kCulprits> ps_;
   static_assert(kCulprits <= 32);
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <random>
 
 #include "tb/iss/machine.h"
@@ -191,10 +192,11 @@ TEST(SplitTest, PartsAddUpAndAreInProportion) {
     want[kService] += span - named;
     const std::uint64_t clocks = span / (1000 + random() % 9000) + random() % 3;
     std::array<std::uint64_t, kCulprits> got{};
-    split_clocks(clocks, parts, span, [&](std::size_t c, std::uint64_t k) {
-      EXPECT_GT(k, 0u);
-      got[c] += k;
-    });
+    auto table = std::make_unique<StallTable>();
+    table->split(Cause::kDcache, RegionMap::kOther, clocks, parts, span);
+    EXPECT_EQ(table->total(Cause::kDcache), clocks);
+    for (std::size_t c = 0; c < kCulprits; ++c)
+      got[c] = table->at(Cause::kDcache, RegionMap::kOther, c);
     std::uint64_t sum = 0;
     for (std::size_t c = 0; c < kCulprits; ++c) {
       sum += got[c];

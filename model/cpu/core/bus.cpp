@@ -23,10 +23,8 @@ void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t cycle
   if (cycle <= cycle_) return;
   const std::uint8_t region = regions_.find(a.address);
   const std::uint64_t bus = std::clamp(clock_.edge_at_or_after(outcome), cycle_, cycle);
-  split_clocks(bus - cycle_, a.parts, outcome - a.issued, [&](std::size_t culprit, std::uint64_t n) {
-    counts_.stalls.add(cause, region, culprit, n);
-  });
-  counts_.stalls.add(cause, region, kCore, cycle - bus);
+  counts_.stalls.split(cause, region, bus - cycle_, a.parts, outcome - a.issued);
+  if (cycle > bus) counts_.stalls.add(cause, region, kCore, cycle - bus);
   counts_.stall[index(cause)] += cycle - cycle_;
   cycle_ = cycle;
 }

@@ -1,5 +1,6 @@
 // Stalled clocks by cause, by the region of the address and by the culprit.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,15 +34,44 @@ constexpr bool waits_for_bus(Cause c) {
   return c != Cause::kInterlock && c != Cause::kTcm && c != Cause::kBusSync;
 }
 
-/// Interlocks, which the running chain of instructions counts by itself, are not in here.
+/// Interlocks, which the running chain of instructions counts by itself, are not in here. Kept in
+/// parts of a clock, so that a stall is split by one division; whole clocks are made when they are
+/// read. Good for 2^40 clocks of a cause and region.
 class StallTable {
  public:
   bool operator==(const StallTable&) const = default;
+  /// Each end of a culprit's share is rounded, so that whole clocks add up exactly.
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit) const {
-    return clocks_[index(cause) * kOfCause + region * kStallCulprits + culprit];
+    const Parts* const row = &parts_[place(cause, region, 0)];
+    const Parts before = std::accumulate(row, row + culprit, Parts{0});
+    return rounded(before + row[culprit]) - rounded(before);
   }
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
-    clocks_[index(cause) * kOfCause + region * kStallCulprits + culprit] += clocks;
+    parts_[place(cause, region, culprit)] += clocks << kFraction;
+  }
+  /// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds. What the
+  /// waits leave of `span`, and what is lost by rounding, is service.
+  void split(Cause cause, std::size_t region, std::uint64_t clocks, const RequestWaits& waits,
+             std::uint64_t span) {
+    if (clocks == 0) return;
+    Parts* const row = &parts_[place(cause, region, 0)];
+    const std::uint64_t whole = std::max(waits.total(), span);
+    const Parts all = clocks << kFraction;
+    Parts left = all;
+    if (whole >> 20 == 0) {  // a microsecond: the error stays below a tenth of a clock
+      const Parts rate = all / whole;
+      waits.each([&](Culprit c, std::uint64_t ps) {
+        row[index(c)] += ps * rate;
+        left -= ps * rate;
+      });
+    } else {
+      waits.each([&](Culprit c, std::uint64_t ps) {
+        const auto part = static_cast<Parts>(static_cast<unsigned __int128>(ps) * all / whole);
+        row[index(c)] += part;
+        left -= part;
+      });
+    }
+    row[kService] += left;
   }
   /// Over all regions.
   std::uint64_t by(Cause cause, std::size_t culprit) const {
@@ -51,41 +81,21 @@ class StallTable {
   }
   /// Over all regions and culprits.
   std::uint64_t total(Cause cause) const {
-    const auto first = clocks_.begin() + index(cause) * kOfCause;
-    return std::accumulate(first, first + kOfCause, std::uint64_t{0});
+    const auto first = parts_.begin() + place(cause, 0, 0);
+    return std::accumulate(first, first + kOfCause, Parts{0}) >> kFraction;
   }
 
  private:
+  using Parts = std::uint64_t;
+  static constexpr unsigned kFraction = 24;
   static constexpr std::size_t kOfCause = RegionMap::kMax * kStallCulprits;
-  // Aligned: g++ 12 takes the table for it when it vectorises sums.
-  alignas(16) std::array<std::uint64_t, kCauses * kOfCause> clocks_{};
-};
+  static constexpr std::size_t place(Cause cause, std::size_t region, std::size_t culprit) {
+    return index(cause) * kOfCause + region * kStallCulprits + culprit;
+  }
+  static std::uint64_t rounded(Parts p) { return (p + (Parts{1} << (kFraction - 1))) >> kFraction; }
 
-/// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds, and calls
-/// f(culprit, clocks) so that the parts add up exactly. What the parts leave of `span` is service.
-template <class F>
-void split_clocks(std::uint64_t clocks, const RequestWaits& parts, std::uint64_t span, F f) {
-  if (clocks == 0) return;
-  std::uint64_t named = 0;
-  parts.each([&named](Culprit, std::uint64_t ps) { named += ps; });
-  const std::uint64_t whole = named > span ? named : span;
-  // Clocks in a picosecond * 2^33: what is lost in all of `whole` is less than half a clock.
-  const bool small = (whole | clocks) >> 31 == 0;
-  const std::uint64_t rate = small ? (clocks << 33) / whole : 0;
-  std::uint64_t passed = 0, given = 0;
-  const auto give = [&](Culprit c, std::uint64_t ps) {
-    if (ps == 0) return;
-    passed += ps;
-    // To the nearest clock on the way, so that no part is favoured.
-    using Wide = unsigned __int128;
-    const std::uint64_t until =
-        small ? (passed * rate + (std::uint64_t{1} << 32)) >> 33
-              : static_cast<std::uint64_t>((Wide{2} * passed * clocks + whole) / (Wide{2} * whole));
-    if (until > given) f(index(c), until - given);
-    given = until;
-  };
-  parts.each(give);
-  if (given < clocks) f(index(Culprit::kService), clocks - given);
-}
+  // Aligned: g++ 12 takes the table for it when it vectorises sums.
+  alignas(16) std::array<Parts, kCauses * kOfCause> parts_{};
+};
 
 }  // namespace fovea::cpu
