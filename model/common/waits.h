@@ -29,6 +29,12 @@ constexpr std::size_t index(Culprit c) { return static_cast<std::size_t>(c); }
 struct Waits {
   std::array<std::uint64_t, kCulprits> ps{};
   void add(Culprit c, std::uint64_t t) { ps[index(c)] += t; }
+  void take_back(Culprit c, std::uint64_t t) { ps[index(c)] -= t; }
+  /// What was added to a sum of each master between two readings of it.
+  void add_masters(const std::uint64_t* after, const std::uint64_t* before) {
+    std::uint64_t* __restrict const to = ps.data();
+    for (std::size_t m = 0; m < kMasterCount; ++m) to[m] += after[m] - before[m];
+  }
 };
 struct MasterWaits {
   Waits read, write;

@@ -175,8 +175,8 @@ void Crossbar::attribute(SlaveState& s, const MemRequest& r, std::uint64_t cross
   if (n == 1)
     w.add(static_cast<Culprit>(first.master), of_lane);
   else
-    for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] += s.lane[m] - before[m];
-  w.ps[first.master] -= passed;
+    w.add_masters(s.lane.data(), before.data());
+  w.take_back(static_cast<Culprit>(first.master), passed);
   of_lane -= passed;
   w.add(culprit(r.master), waited - of_lane);
 }
