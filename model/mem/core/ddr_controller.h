@@ -137,7 +137,7 @@ class DdrController {
     std::uint8_t blame = kRefreshed;
   };
   static constexpr std::size_t kGiven = 64;
-  using Blames = std::array<Picoseconds, kBlames>;
+  using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
   void sum_given();

@@ -21,15 +21,17 @@ void DdrController::sum_given() {
     const Given& g = given(summed_);
     const std::uint64_t next = given(summed_ + 1).clock;
     const Picoseconds to = time(next);
-    const Picoseconds* const before = blames_[summed_ % kGiven].data();
-    Picoseconds* __restrict const after = blames_[(summed_ + 1) % kGiven].data();
-    const Picoseconds* const only = kOnly[g.blame].data();
+    const Blames& before = blames_[summed_ % kGiven];
+    Blames& after = blames_[(summed_ + 1) % kGiven];
+    const Blames& only = kOnly[g.blame];
     if (g.cmd == Cmd::kWr && g.clock + write < next) [[unlikely]] {
       const Picoseconds over = time(g.clock + write);
-      for (std::size_t i = 0; i < kBlames; ++i)
+      for (std::size_t i = 0; i < before.size(); ++i)
         after[i] = before[i] + (only[i] & (over - from)) + (kOnly[kTurned][i] & (to - over));
     } else {
-      for (std::size_t i = 0; i < kBlames; ++i) after[i] = before[i] + (only[i] & (to - from));
+      const PairOfSums passed = {to - from, to - from};
+      for (std::size_t i = 0; i < before.size(); i += 2)
+        pair(&after[i]) = pair(&before[i]) + (pair(&only[i]) & passed);
     }
     from = to;
   }
