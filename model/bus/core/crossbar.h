@@ -127,6 +127,7 @@ class Crossbar {
 
   void plan();
   unsigned winner(const SlaveState& s, std::uint32_t set) const;
+  bool goes_first(unsigned a, const SlaveState& of_a, unsigned b, const SlaveState& of_b) const;
   void sum_grants(SlaveState& s);
   void set_lock(SlaveState& s, const MemRequest& r);
   template <class Host>
@@ -229,10 +230,10 @@ void Crossbar::step(Host& host) {
     slave_done(r, at, at, true);
   else if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host, r, arrival);
-  if (waiting_)
-    plan();
-  else
+  if (waiting_ == 0 || (s.blocked && s.heads == waiting_))
     next_ = kNever;
+  else
+    plan();
 }
 
 }  // namespace fovea::bus
