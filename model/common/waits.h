@@ -32,10 +32,24 @@ constexpr std::string_view culprit_name(Culprit c) {
   return index(c) < kMasterCount ? kMasterNames[index(c)] : kNames[index(c) - kMasterCount];
 }
 
+/// Two neighbouring sums as one word of the host.
+using PairOfSums [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = std::uint64_t;
+inline PairOfSums& pair(std::uint64_t* first) { return *reinterpret_cast<PairOfSums*>(first); }
+inline const PairOfSums& pair(const std::uint64_t* first) {
+  return *reinterpret_cast<const PairOfSums*>(first);
+}
+
 /// Picoseconds by culprit, of the requests of one master and direction.
 struct Waits {
   std::array<std::uint64_t, kCulprits> ps{};
   void add(Culprit c, std::uint64_t t) { ps[index(c)] += t; }
+  void take_back(Culprit c, std::uint64_t t) { ps[index(c)] -= t; }
+  /// What was added to a sum of each master between two readings of it.
+  void add_masters(const std::uint64_t* after, const std::uint64_t* before) {
+    std::size_t m = 0;
+    for (; m + 2 <= kMasterCount; m += 2) pair(&ps[m]) += pair(&after[m]) - pair(&before[m]);
+    if (m < kMasterCount) ps[m] += after[m] - before[m];
+  }
 };
 struct MasterWaits {
   Waits read, write;

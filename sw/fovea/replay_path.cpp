@@ -149,6 +149,10 @@ void ReplayPath::prepare(unsigned stream) {
   set_time(stream, kNever);
   for (;;) {
     if (!s.valid) return;
+    if (!s.record.mark) {
+      s.slot = place(masters_[index(s.record.master)], s.record.write);
+      if (s.slot->free == kNever) return;
+    }
     Picoseconds at = released(s);
     waits_for_[stream] = at == kNever && s.record.release == trace::Release::kWhen
                              ? s.record.source
@@ -158,11 +162,8 @@ void ReplayPath::prepare(unsigned stream) {
     at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
     if (!s.record.mark) {
-      s.slot = place(masters_[index(s.record.master)], s.record.write);
-      const Picoseconds free = s.slot->free;
-      if (free == kNever) return;
-      if (free > at) {
-        at = free;
+      if (s.slot->free > at) {
+        at = s.slot->free;
         if (s.align > 1) {
           std::uint64_t edge = s.clock.edge_at_or_after(at);
           edge += (s.align + s.phase - edge % s.align) % s.align;

@@ -103,13 +103,23 @@ inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
   return static_cast<unsigned>(std::countr_zero(after ? after : equals));
 }
 
+/// Of two winners at the same edge, each at its own slave.
+bool Crossbar::goes_first(unsigned a, const SlaveState& of_a, unsigned b,
+                          const SlaveState& of_b) const {
+  const auto rank = [this](unsigned m, const SlaveState& s) {
+    const auto turn = static_cast<unsigned>((m + kMasterCount - s.last - 1) % kMasterCount);
+    return (ports_[m].priority * 64u + turn) * 64u + m;
+  };
+  return rank(a, of_a) < rank(b, of_b);
+}
+
 /// Finds the earliest arbitration and its winner: highest priority, then round robin. Only heads of
 /// queues compete; the winner depends on arrivals strictly before the edge.
 [[gnu::noinline]] void Crossbar::plan() {
   next_ = kNever;
   if (!scr_.running()) return;
   std::uint64_t best = kNotYet;
-  unsigned best_rank = 0;
+  const SlaveState* of_best = nullptr;
   for (SlaveState& s : slaves_) {
     const std::uint32_t candidates = s.candidates();
     if (candidates == 0) continue;
@@ -128,13 +138,11 @@ inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
       for (std::uint32_t set = candidates; set; set &= set - 1)
         if (visible_[static_cast<unsigned>(std::countr_zero(set))] == edge) competing |= set & -set;
     }
-    if (edge > best) continue;
+    if (edge > best || edge == kNotYet) continue;
     const unsigned m = winner(s, competing);
-    const auto turn = static_cast<unsigned>((m + kMasterCount - s.last - 1) % kMasterCount);
-    const unsigned rank = (ports_[m].priority * 64u + turn) * 64u + m;
-    if (edge == best && rank > best_rank) continue;
+    if (edge == best && !goes_first(m, s, next_port_, *of_best)) continue;
     best = edge;
-    best_rank = rank;
+    of_best = &s;
     next_port_ = static_cast<std::uint8_t>(m);
   }
   if (best == kNotYet) return;
@@ -181,8 +189,8 @@ inline void Crossbar::sum_grants(SlaveState& s) {
   if (n == 1)
     w.add(static_cast<Culprit>(first.master), of_lane);
   else
-    for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] = s.lane[m] - before[m];
-  w.ps[first.master] -= passed;
+    w.add_masters(s.lane.data(), before.data());
+  w.take_back(static_cast<Culprit>(first.master), passed);
   of_lane -= passed;
   w.add(culprit(r.master), waited - of_lane);
   for (std::size_t m = 0; m < kMasterCount; ++m)

@@ -178,6 +178,7 @@ class Crossbar {
   template <class Host>
   void grant(Host& host, MemRequest& request, std::uint64_t crossed, std::uint32_t grants);
   unsigned winner(const SlaveState& s, std::uint32_t set) const;
+  bool goes_first(unsigned a, const SlaveState& of_a, unsigned b, const SlaveState& of_b) const;
   void sum_grants(SlaveState& s);
   void set_lock(SlaveState& s, const MemRequest& r);
   template <class Host>
@@ -251,10 +252,10 @@ void Crossbar::step(Host& host) {
   else  // the next in line shows itself one clock later
     new_head(next_port_, std::max(p.front().visible, next_edge_ + 1));
   grant(host, r, crossed, grants);
-  if (waiting_)
-    plan();
-  else
+  if (waiting_ == 0 || (s.blocked && s.heads == waiting_))
     next_ = kNever;
+  else
+    plan();
 }
 
 /// The slave's lane is the request's at next_edge_.

@@ -58,7 +58,8 @@ class StallTable {
     const std::uint64_t whole = std::max(waits.total(), span);
     const Parts all = clocks << kFraction;
     Parts left = all;
-    if (whole >> 20 == 0) {  // a microsecond: the error stays below a tenth of a clock
+    if (whole == 0) {
+    } else if (whole >> 20 == 0) {  // a microsecond: the error stays below a tenth of a clock
       const Parts rate = all / whole;
       waits.each([&](Culprit c, std::uint64_t ps) {
         row[index(c)] += ps * rate;

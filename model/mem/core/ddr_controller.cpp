@@ -374,9 +374,9 @@ inline void DdrController::note(std::uint64_t clock) {
   g.clock = clock;
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
-    g.culprit = Culprit::kRefresh;
+    g.blame = kRefreshed;
   else
-    g.culprit = culprit(choice_.entry->request.master);
+    g.blame = static_cast<std::uint8_t>(index(choice_.entry->request.master));
   if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
     g.before = std::exchange(choice_.entry->prepared, given_count_);
 }
@@ -488,7 +488,7 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   Given& g = given(given_count_++);
   g.clock = clock;
   g.cmd = cmd;
-  g.culprit = Culprit::kPowerDown;
+  g.blame = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 

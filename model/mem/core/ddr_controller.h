@@ -162,18 +162,18 @@ class DdrController {
     std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
-  /// A command that was given. The time up to the next one is blamed on its culprit, after the data
-  /// of a write on the turnaround, and an ACT or PRE of the read itself on its row.
+  /// What commands are to blame for: masters, then these.
+  enum Blame : std::uint8_t { kTurned = kMasterCount, kRefreshed, kAsleep, kBlames };
+  /// A command that was given. The time up to the next one is blamed on it; after the data of a write
+  /// on the turnaround, and an ACT or PRE of the read itself on its row.
   struct Given {
     std::uint64_t clock = 0;
     std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
-    Culprit culprit = Culprit::kRefresh;
+    std::uint8_t blame = kRefreshed;
   };
   static constexpr std::size_t kGiven = 64;
-  /// What the commands so far are to blame for, in ps: masters, then these, kAll for all of them.
-  enum : std::size_t { kTurned = kMasterCount, kRefreshed, kAsleep, kAll, kBlames };
-  using Blames = std::array<Picoseconds, kBlames>;
+  using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
   void charge_read(const Entry& e, const Waits& w);
@@ -306,9 +306,8 @@ class DdrController {
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
   std::uint64_t given_count_ = 0;
-  std::uint64_t summed_ = 0;  // commands that are in blames_; the newest one is not
-  Blames blames_{};
-  std::array<Blames, kGiven> blames_before_;  // blames_ at each summed command
+  std::uint64_t summed_ = 0;  // commands that are in the sums; the newest one is not
+  std::array<Blames, kGiven> blames_{};  // sums over the commands before each one
   Picoseconds read_waited_ = 0;
 
   std::vector<std::pair<CommandHook, void*>> listeners_;

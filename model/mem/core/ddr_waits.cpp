@@ -5,26 +5,33 @@ namespace fovea::mem {
 
 /// Brings blames_ up to the newest command.
 void DdrController::sum_given() {
+  // A whole row is written from the one before, as masked words: one word changed and then read back
+  // with its neighbours would hold up the host.
+  static constexpr auto kOnly = [] {
+    std::array<Blames, kBlames> only{};
+    for (std::size_t i = 0; i < kBlames; ++i) only[i][i] = ~Picoseconds{0};
+    return only;
+  }();
   if (given_count_ - summed_ > kGiven) summed_ = given_count_ - kGiven;
+  if (summed_ + 1 >= given_count_) return;
   // Edges before a clock's restart have no times any more.
   const auto time = [this](std::uint64_t clock) { return ddr_.edge(std::max(clock, first_edge_)); };
-  if (summed_ + 1 >= given_count_) return;
   const std::uint64_t write = config_.timing.WL() + DdrTiming::kBurstClocks;
   for (Picoseconds from = time(given(summed_).clock); summed_ + 1 < given_count_; ++summed_) {
     const Given& g = given(summed_);
-    const std::uint64_t until = given(summed_ + 1).clock;
-    const Picoseconds to = time(until);
-    blames_before_[summed_ % kGiven] = blames_;
-    blames_[kAll] += to - from;
-    if (g.cmd == Cmd::kWr && g.clock + write < until) {
+    const std::uint64_t next = given(summed_ + 1).clock;
+    const Picoseconds to = time(next);
+    const Blames& before = blames_[summed_ % kGiven];
+    Blames& after = blames_[(summed_ + 1) % kGiven];
+    const Blames& only = kOnly[g.blame];
+    if (g.cmd == Cmd::kWr && g.clock + write < next) [[unlikely]] {
       const Picoseconds over = time(g.clock + write);
-      blames_[kTurned] += to - over;
-      blames_[index(g.culprit)] += over - from;
+      for (std::size_t i = 0; i < before.size(); ++i)
+        after[i] = before[i] + (only[i] & (over - from)) + (kOnly[kTurned][i] & (to - over));
     } else {
-      const std::size_t of = g.culprit == Culprit::kRefresh     ? std::size_t{kRefreshed}
-                             : g.culprit == Culprit::kPowerDown ? std::size_t{kAsleep}
-                                                                : index(g.culprit);
-      blames_[of] += to - from;
+      const PairOfSums passed = {to - from, to - from};
+      for (std::size_t i = 0; i < before.size(); i += 2)
+        pair(&after[i]) = pair(&before[i]) + (pair(&only[i]) & passed);
     }
     from = to;
   }
@@ -41,6 +48,11 @@ inline void DdrController::charge_read(const Entry& e, const Waits& w) {
 /// The waits of a read whose first column command, already noted, is given at `clock`, since it
 /// became ready.
 [[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+  static constexpr std::array kRest = {Culprit::kTurnaround, Culprit::kRefresh,
+                                       Culprit::kPowerDown};
+  const auto culprit_of = [](std::size_t blame) {
+    return blame < kMasterCount ? static_cast<Culprit>(blame) : kRest[blame - kMasterCount];
+  };
   const Culprit own = culprit(e.request.master);
   const std::uint64_t ready = std::max(e.ready, first_edge_);
   const Picoseconds start = ddr_.edge(ready);
@@ -59,27 +71,22 @@ inline void DdrController::charge_read(const Entry& e, const Waits& w) {
 
   if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
   sum_given();
-  const Blames& before = blames_before_[n % kGiven];
-  for (std::size_t m = 0; m < kMasterCount; ++m) w.ps[m] = blames_[m] - before[m];
-  w.add(Culprit::kTurnaround, blames_[kTurned] - before[kTurned]);
-  w.add(Culprit::kRefresh, blames_[kRefreshed] - before[kRefreshed]);
-  w.add(Culprit::kPowerDown, blames_[kAsleep] - before[kAsleep]);
-  Picoseconds all = blames_[kAll] - before[kAll];
+  const Blames &before = blames_[n % kGiven], &now = blames_[last % kGiven];
+  w.add_masters(now.data(), before.data());
+  for (std::size_t i = kMasterCount; i < kBlames; ++i) w.add(culprit_of(i), now[i] - before[i]);
   const Given& first = given(n);
-  if (first.clock < ready) {  // the part before `ready`
-    const Picoseconds from = ddr_.edge(std::max(first.clock, first_edge_));
+  if (first.clock > ready) {  // what is not known is its own
+    w.add(own, ddr_.edge(first.clock) - start);
+  } else if (first.clock < ready) {  // without the part before `ready`
     Picoseconds until = start;
     if (first.cmd == Cmd::kWr) {
       const std::uint64_t over = first.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
-      if (over < ready) {
-        until = ddr_.edge(std::max(over, first_edge_));
-        w.ps[index(Culprit::kTurnaround)] -= start - until;
-      }
+      if (over < ready) until = ddr_.edge(std::max(over, first_edge_));
+      w.take_back(Culprit::kTurnaround, start - until);
     }
-    w.ps[index(first.culprit)] -= until - from;
-    all -= start - from;
+    const Picoseconds from = ddr_.edge(std::max(first.clock, first_edge_));
+    w.take_back(culprit_of(first.blame), until - from);
   }
-  w.add(own, read_waited_ - all);  // what is not known is its own
   // Its own ACT and PRE are no wait behind an earlier request.
   Picoseconds row = 0;
   bool closed_other = false;
@@ -89,7 +96,7 @@ inline void DdrController::charge_read(const Entry& e, const Waits& w) {
     row += ddr_.edge(given(p).clock) - ddr_.edge(g.clock);
     closed_other |= g.cmd == Cmd::kPre;
   }
-  w.ps[index(own)] -= row;
+  w.take_back(own, row);
   w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
   charge_read(e, w);
 }
