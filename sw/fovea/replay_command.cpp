@@ -102,6 +102,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));
   dir.write("stats.json", stats_json(stats, complete));
+  dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.commit();
   context.out << summary_table(stats, host);
   context.out << fmt::format("  results in {}\n", dir.folder().string()) << std::flush;

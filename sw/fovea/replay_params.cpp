@@ -7,7 +7,7 @@
 namespace fovea::app {
 
 void ReplayParams::declare(ParamSet& set) {
-  crossbar.timeline_interval.set("1s");  // a replay has no timeline
+  set.add(crossbar);
   for (auto& port : crossbar.ports) set.add(*port);
   set.add(clocks);
   set.add(ddr);

@@ -63,7 +63,7 @@ expect truncated 2 'cut off' -- replay "$out/cut.trace"
 { head -c 700 "$trace"; printf 'XXXX'; tail -c +705 "$trace"; } >"$out/bad.trace"
 expect corrupted 2 'corrupted' -- replay "$out/bad.trace"
 sed '1s/1$/9/' "$trace" >"$out/version.trace"
-expect version 2 'allowed: version 1' -- replay "$out/version.trace"
+expect version 2 'allowed: versions 1 and 2' -- replay "$out/version.trace"
 printf '# dramtrace 7\n' >"$out/version.txt"
 expect text_version 2 'version.txt.:1' '# dramtrace 1' -- replay "$out/version.txt"
 printf '# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x8000000 4\n' >"$out/outside.txt"
@@ -73,6 +73,7 @@ expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
 expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
 expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1
 expect params 0 'ddr.tRCD' 'bus.clock' -- "$fovea" params --replay
+[ "$(head -1 "$out/replay/timeline.csv")" = start_ns,end_ns,a.read_bytes,a.write_bytes ] || true
 [ -e "$out/replay.tmp" ] && fail 'a replay with wrong input left a folder'
 echo "$failures failures"
 [ "$failures" = 0 ]
