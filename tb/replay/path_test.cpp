@@ -355,6 +355,35 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_THAT(play("", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
+TEST(ReplayPathTest, TimingsThatNoPartHasAreRemarked) {
+  const auto remarks = [](std::vector<std::pair<std::string, std::string>> keys) {
+    app::ReplayParams params;
+    ParamSet set;
+    params.declare(set);
+    for (const auto& [key, value] : keys) set.set(key, value);
+    std::string all;
+    for (const std::string& r : params.remarks()) all += r + "\n";
+    return all;
+  };
+  using testing::HasSubstr;
+  EXPECT_EQ(remarks({}), "") << "what the boot code programs";
+  // 243 MHz: 4.115 ns a clock.
+  for (const auto& [name, fails, holds] :
+       {std::tuple{"tRCD", 3, 4}, {"tRP", 3, 4}, {"tRAS", 9, 10}, {"tRC", 13, 14},
+        {"tRRD", 2, 3}, {"tWR", 3, 4}, {"tWTR", 1, 2}, {"tRTP", 1, 2}, {"tRFC", 30, 31}}) {
+    const std::string key = std::string("ddr.") + name;
+    EXPECT_THAT(remarks({{key, std::to_string(fails) + "cycles"}}), HasSubstr(key + " = "));
+    EXPECT_EQ(remarks({{key, std::to_string(holds) + "cycles"}}), "") << key;
+  }
+  EXPECT_THAT(remarks({{"ddr.tREFI", "1897cycles"}}), HasSubstr("more than 7800 ns"));
+  EXPECT_THAT(remarks({{"ddr.tREFI", "0cycles"}}), HasSubstr("forgets"));
+  EXPECT_THAT(remarks({{"ddr.CL", "3cycles"}}), HasSubstr("above 200 MHz"));
+  EXPECT_THAT(remarks({{"ddr.part", "mt46h32m16lf"}, {"ddr.CL", "4cycles"}}), HasSubstr("no part"));
+  EXPECT_THAT(remarks({{"ddr.part", "mt47h128m16"}}), HasSubstr("195 ns"));
+  EXPECT_THAT(remarks({{"ddr.clock", "410MHz"}, {"ddr.CL", "6cycles"}}),
+              HasSubstr("above 400 MHz"));
+}
+
 /// A trace whose content is spoilt but whose checksums are right again: plays, or one line says why
 /// it cannot.
 TEST(ReplayPathTest, NoTraceCrashesIt) {
