@@ -28,6 +28,7 @@ cat >"$out/small.yaml" <<'Y'
 run: {frames: 2, start_limit: 2s}
 camera: {kind: chart, stamp: false}
 video: {width: 64, height: 16}
+load: {port: edma_tc0, kind: copy, outstanding: 2, gap: 20us, start: 100ms, 1: {outstanding: 1, gap: 50us}}
 Y
 trace=$out/small.trace
 run() { "$fovea" run "$out/small.yaml" --no-frames "$@"; }
@@ -44,7 +45,7 @@ all=$(grep -oE '"bus\.[a-z_0-9]*\.(read|write)_bytes": \{"value": [0-9]+' "$out/
 rows=$(moved "$out/replay/timeline.csv")
 if [ "$rows" -gt "$all" ] || [ $((10 * rows)) -lt $((9 * all)) ]; then fail "timeline.csv has $rows of $all bytes"; fi
 for key in replay.time replay.bandwidth replay.requests ddr.row_hits ddr.utilisation \
-  bus.arm_d.write_bytes ddr.vpbe.latency.p99; do
+  bus.arm_d.write_bytes ddr.vpbe.latency.p99 bus.edma_tc0.write_bytes ddr.edma_tc0.latency.max; do
   grep -q "\"$key\": {\"value\": [0-9]" "$out/replay/stats.json" || fail "no $key"
 done
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
