@@ -47,6 +47,10 @@ struct FirmwareParams : ParamGroup {
   EnumParam flow{*this, "flow", "double", {"double", "serial"},
                  "double buffering, or the paper's capture, remap, show in turn (DIP 8)",
                  Origin::kChoice, ""};
+  IntParam repeat{*this, "repeat", IntParam::Unit::kCount, 1, 1, 1000,
+                  "remaps of each captured frame, back to back (parameter page); from two on a large "
+                  "frame's program never waits for the camera",
+                  Origin::kChoice, ""};
   BoolParam overlay{*this, "overlay", false,
                     "a blinking box blended onto the picture through the cache (DIP 10)",
                     Origin::kChoice, ""};

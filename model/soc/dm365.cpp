@@ -279,8 +279,9 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   return recorder;
 }
 
-/// MSTPRI0.2:0 is the ARM's memory priority. The remap engine is no part of the chip: it takes MJCP's
-/// place, the imaging coprocessor's (assumed). A transfer controller has one priority for both sides.
+/// MSTPRI0.2:0 is the ARM's memory priority. The remap engine is no part of the chip: it takes
+/// MJCP's place, the imaging coprocessor's (assumed). A transfer controller has one priority for both
+/// sides.
 void Dm365::route_priorities() {
   const std::uint32_t mstpri0 = mstpri0_.read();
   priority_[index(Master::kArmI)].write(mstpri0 & 7u);

@@ -89,6 +89,7 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                (lens.pair.is("B") ? PARAM_PAIR_METHOD_B : 0u);
   page.width = static_cast<std::uint32_t>(params.video.width());
   page.height = static_cast<std::uint32_t>(params.video.height());
+  page.repeats = static_cast<std::uint32_t>(params.firmware.repeat());
   page.fov_deg = lens.fov();
   page.focal_px = lens.focal();
   page.out_focal_px = lens.out_focal();

@@ -75,6 +75,11 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
   for (const auto& s : options.sets) experiment.override_with(s);
   params.check();
+  std::vector<Remark> remarks;
+  for (const std::string& what : params.remarks()) {
+    remarks.push_back({"timing", what, 1});
+    context.err << "fovea: timing: " << what << "\n";
+  }
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem());
@@ -101,7 +106,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete));
+  dir.write("stats.json", stats_json(stats, complete, remarks));
+  dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.commit();
   context.out << summary_table(stats, host);
   context.out << fmt::format("  results in {}\n", dir.folder().string()) << std::flush;

@@ -7,7 +7,7 @@
 namespace fovea::app {
 
 void ReplayParams::declare(ParamSet& set) {
-  crossbar.timeline_interval.set("1s");  // a replay has no timeline
+  set.add(crossbar);
   for (auto& port : crossbar.ports) set.add(*port);
   set.add(clocks);
   set.add(ddr);
@@ -55,6 +55,61 @@ void ReplayParams::check() const {
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");
   at_least(r.tRFC, r.tRP() + 1, "more than ddr.tRP: a refresh opens and closes a row");
   if (r.tREFI() != 0) at_least(r.tREFI, 2 * r.tRFC(), "twice ddr.tRFC, or 0 for no refresh");
+}
+
+namespace {
+
+/// The shortest that any speed grade has, ns: JESD79-2 with makers' tRAS and tRC, 2 KiB pages; mobile
+/// DDR-400 (JESD209).
+struct FastestPart {
+  double tRCD, tRP, tRAS, tRC, tRRD, tWR, tWTR, tRTP;
+  double tRFC[3];  // of 64, 128, 256 MiB
+  double tCK[8];   // by CL; 0: no part has it
+};
+constexpr FastestPart kDdr2 = {12.5, 12.5, 40, 55, 10, 15, 7.5, 7.5, {105, 127.5, 195},
+                               {0, 0, 0, 5, 3.75, 2.5, 2.5, 1.875}};
+constexpr FastestPart kMobile = {15, 15, 40, 55, 10, 15, 0, 0, {72, 72, 72},
+                                 {0, 0, 12, 5, 0, 0, 0, 0}};
+constexpr double kLongestInterval = 7800;  // 8192 rows in 64 ms
+
+}  // namespace
+
+std::vector<std::string> ReplayParams::remarks() const {
+  const DdrRegisterParams& r = registers;
+  const FastestPart& part = ddr.mobile() ? kMobile : kDdr2;
+  const double tck = 1e9 / static_cast<double>(r.clock());
+  std::vector<std::string> out;
+  const auto remark = [&](const IntParam& p, double is, const char* than, double allowed) {
+    out.push_back(fmt::format("{} = {} is {:.1f} ns at ddr.clock = {}; no part like {} has {} than "
+                              "{} ns",
+                              p.key(), p.text(), is, r.clock.text(), ddr.part(), than, allowed));
+  };
+  const auto at_least = [&](const IntParam& p, double least) {
+    const double is = static_cast<double>(p()) * tck;
+    if (is < least - 1e-6) remark(p, is, "less", least);
+  };
+  at_least(r.tRCD, part.tRCD);
+  at_least(r.tRP, part.tRP);
+  at_least(r.tRAS, part.tRAS);
+  at_least(r.tRC, part.tRC);
+  at_least(r.tRRD, part.tRRD);
+  at_least(r.tWR, part.tWR);
+  at_least(r.tWTR, part.tWTR);
+  at_least(r.tRTP, part.tRTP);
+  at_least(r.tRFC, part.tRFC[ddr.part.index() % 3]);
+  if (r.tREFI() == 0)
+    out.push_back(r.tREFI.key() + " = 0: without refresh a part forgets");
+  else if (static_cast<double>(r.tREFI()) * tck > kLongestInterval + tck)
+    remark(r.tREFI, static_cast<double>(r.tREFI()) * tck, "more", kLongestInterval);
+  const double shortest = part.tCK[r.CL()];
+  if (shortest == 0)
+    out.push_back(fmt::format("{} = {}: no part like {} has it", r.CL.key(), r.CL.text(),
+                              ddr.part()));
+  else if (tck < shortest - 1e-6)
+    out.push_back(fmt::format(
+        "{} = {} at ddr.clock = {}: no part like {} runs above {:.0f} MHz with it", r.CL.key(),
+        r.CL.text(), r.clock.text(), ddr.part(), 1e3 / shortest));
+  return out;
 }
 
 std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run,

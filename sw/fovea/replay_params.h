@@ -66,6 +66,9 @@ struct ReplayParams {
   mem::DdrConfig config() const;
   /// @throws UserError for a set of timings that no part allows
   void check() const;
+  /// Timings that no part of the kind and size on the board allows, each with what does: played all
+  /// the same, as the controller would.
+  std::vector<std::string> remarks() const;
 };
 
 /// What a run has in force, as keys of ReplayParams.

@@ -30,6 +30,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       memory_only_(memory_only),
       start_(info.start),
       last_(info.start),
+      memory_timeline_(params.crossbar.timeline_interval()),
       store_(params.ddr.size_bytes()),
       xbar_(params.crossbar, *this),
       ddr_(params.ddr, store_, *this) {
@@ -52,6 +53,8 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   ddr_.configure(config, info.refresh ? info.refresh : info.start);
   ddr_.catch_up(info.start);  // the refreshes before
   ddr_.stats.reset();
+  xbar_.timeline.begin(info.start);
+  memory_timeline_.begin(info.start);
 
   streams_.resize(info.streams.size());
   for (std::size_t i = 0; i < streams_.size(); ++i) {
@@ -71,7 +74,9 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     m.write_slots_from = from.shared ? 0 : from.reads;
     m.in_turn = !from.shared && !memory_only;
     m.turn = {0, from.reads};
-    m.latency = std::make_unique<bus::LatencyStats>(from.label);
+    for (const MasterState& other : masters_)
+      if (&other != &m && other.label == m.label) m.latency = other.latency;
+    if (!m.latency) m.latency = std::make_shared<bus::LatencyStats>(from.label);
     for (Slot& s : m.slots) {
       s.owner = &m;
       s.master = from.id;
@@ -338,6 +343,7 @@ void ReplayPath::send(MemRequest& r, Picoseconds at) {
     waiting_.push_back(&r);
     return;
   }
+  memory_timeline_.add(index(r.master), r.write, r.bytes, at);
   door_taken_ = !ddr_.submit(to_controller(r), at);
   if (!door_taken_ && r.write) acknowledge(r, at);
 }

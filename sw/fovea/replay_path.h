@@ -31,7 +31,11 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// To be called before the figures are read.
   void finish() { ddr_.catch_up(last_); }
 
+  /// Both sides of a transfer controller, of one label, are one.
   std::vector<StatRow> stats();
+  std::vector<std::string> labels() const;
+  /// Bytes by label, in the rows that are whole.
+  std::vector<TimelineRow> timeline() const;
   const std::vector<Mark>& marks() const { return marks_; }
   /// Of the frames whose remap began and ended in the trace, by its marks.
   std::vector<Picoseconds> remap_times() const;
@@ -62,7 +66,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
     unsigned stream = 0;
     std::uint8_t priority = 0xFF;
     std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
-    std::unique_ptr<bus::LatencyStats> latency;
+    std::shared_ptr<bus::LatencyStats> latency;  // with others of this label
   };
   struct Outcome {
     Picoseconds first, last;
@@ -123,6 +127,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   std::vector<MemRequest*> waiting_;  // without the crossbar: behind the one at the door
   bool door_taken_ = false, door_opened_ = false;
   Picoseconds opened_at_ = 0;
+  bus::Timeline memory_timeline_;     // without the crossbar
   mem::BackingStore store_;
   bus::Crossbar xbar_;
   mem::DdrController ddr_;

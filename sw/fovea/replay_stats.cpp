@@ -1,5 +1,7 @@
 #include "sw/fovea/replay_path.h"
 
+#include <algorithm>
+
 namespace fovea::app {
 
 std::vector<StatRow> ReplayPath::stats() {
@@ -15,13 +17,50 @@ std::vector<StatRow> ReplayPath::stats() {
     rows.push_back({"ddr.utilisation", static_cast<double>(ddr_.busy_clocks()) / clocks, "ratio",
                     "share of replay.time in which the SDRAM's data bus moves data"});
   }
-  for (const MasterState& m : masters_) {
-    if (m.label.empty()) continue;
-    const std::string bus = "bus." + m.label + ".";
-    rows.push_back({bus + "read_bytes", m.read_bytes, "B", "bytes read by this master"});
-    rows.push_back({bus + "write_bytes", m.write_bytes, "B", "bytes written by this master"});
-    rows.push_back({bus + "transactions", m.transactions, "1", "requests of this master"});
-    collect(*m.latency, rows);
+  for (const std::string& label : labels()) {
+    std::uint64_t read = 0, write = 0, transactions = 0;
+    const MasterState* one = nullptr;
+    for (const MasterState& m : masters_) {
+      if (m.label != label) continue;
+      read += m.read_bytes;
+      write += m.write_bytes;
+      transactions += m.transactions;
+      one = &m;
+    }
+    const std::string bus = "bus." + label + ".";
+    rows.push_back({bus + "read_bytes", read, "B", "bytes read by this master"});
+    rows.push_back({bus + "write_bytes", write, "B", "bytes written by this master"});
+    rows.push_back({bus + "transactions", transactions, "1", "requests of this master"});
+    collect(*one->latency, rows);
+  }
+  return rows;
+}
+
+std::vector<std::string> ReplayPath::labels() const {
+  std::vector<std::string> out;
+  for (const MasterState& m : masters_)
+    if (!m.label.empty() && std::find(out.begin(), out.end(), m.label) == out.end())
+      out.push_back(m.label);
+  return out;
+}
+
+std::vector<TimelineRow> ReplayPath::timeline() const {
+  const std::vector<std::string> names = labels();
+  const bus::Timeline& from = memory_only_ ? memory_timeline_ : xbar_.timeline;
+  std::vector<TimelineRow> rows;
+  for (std::size_t i = 0; i < from.rows().size() && from.start(i + 1) <= last_; ++i) {
+    TimelineRow& row = rows.emplace_back();
+    row.start = from.start(i);
+    row.end = from.start(i + 1);
+    row.read_bytes.resize(names.size());
+    row.write_bytes.resize(names.size());
+    for (std::size_t m = 0; m < kMasterCount; ++m) {
+      const auto name = std::find(names.begin(), names.end(), masters_[m].label);
+      if (name == names.end()) continue;
+      const auto column = static_cast<std::size_t>(name - names.begin());
+      row.read_bytes[column] += from.rows()[i].read[m];
+      row.write_bytes[column] += from.rows()[i].write[m];
+    }
   }
   return rows;
 }

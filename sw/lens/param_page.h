@@ -39,7 +39,7 @@ typedef struct param_page {
   uint32_t height;  /* lines; 0: the standard's */
 
   uint32_t table_count; /* entries of table_r in use, for LENS_TABLE */
-  uint32_t reserved;    /* 0 */
+  uint32_t repeats;     /* remaps of each captured frame, back to back; 0: one */
 
   double fov_deg;      /* full horizontal field of view over `width`, degrees */
   double focal_px;     /* lens focal length, px; 0: from fov_deg */

@@ -148,6 +148,15 @@ TEST_F(ConfigTest, StandardsGiveTheirPictures) {
   EXPECT_EQ(config.pitch_bytes, 1280u);
 }
 
+TEST_F(ConfigTest, RepeatsComeFromThePage) {
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.repeats, 1u) << "0, as in pages that do not know the field";
+  page.repeats = 7;
+  param_page_seal(&page);
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.repeats, 7u);
+}
+
 TEST_F(ConfigTest, EachSwitchActs) {
   ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_EQUISOLID});

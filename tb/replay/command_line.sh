@@ -28,6 +28,7 @@ cat >"$out/small.yaml" <<'Y'
 run: {frames: 2, start_limit: 2s}
 camera: {kind: chart, stamp: false}
 video: {width: 64, height: 16}
+load: {port: edma_tc0, kind: copy, outstanding: 2, gap: 20us, start: 100ms, 1: {outstanding: 1, gap: 50us}}
 Y
 trace=$out/small.trace
 run() { "$fovea" run "$out/small.yaml" --no-frames "$@"; }
@@ -38,8 +39,13 @@ cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes t
 expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
 cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
 expect replay 0 'replay.time' 'frame.remap_time.mean' -- replay "$trace"
+moved() { awk -F, 'NR > 1 { for (i = 3; i <= NF; i++) s += $i } END { print s + 0 }' "$1"; }
+# Whole rows only: more than nine tenths of what the masters moved.
+all=$(grep -oE '"bus\.[a-z_0-9]*\.(read|write)_bytes": \{"value": [0-9]+' "$out/replay/stats.json" | awk '{ s += $NF } END { print s }')
+rows=$(moved "$out/replay/timeline.csv")
+if [ "$rows" -gt "$all" ] || [ $((10 * rows)) -lt $((9 * all)) ]; then fail "timeline.csv has $rows of $all bytes"; fi
 for key in replay.time replay.bandwidth replay.requests ddr.row_hits ddr.utilisation \
-  bus.arm_d.write_bytes ddr.vpbe.latency.p99; do
+  bus.arm_d.write_bytes ddr.vpbe.latency.p99 bus.edma_tc0.write_bytes ddr.edma_tc0.latency.max; do
   grep -q "\"$key\": {\"value\": [0-9]" "$out/replay/stats.json" || fail "no $key"
 done
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
@@ -52,6 +58,8 @@ grep -q '"ddr.tRP": {.*"origin": ".*small.trace"' "$out/replay/config.json" || f
 printf '# dramtrace 1\n# master 5 window 4 left\n# master 6 window 2 right\n0 5 R 0x0 256\n0 6 W 0x40000 64\n' >"$out/good.txt"
 expect text 0 'replay.time' -- replay "$out/good.txt"
 grep -q '"bus.left.read_bytes": {"value": 256,' "$out/replay/stats.json" || fail 'no bus.left'
+[ "$(head -1 "$out/replay/timeline.csv")" = start_ns,end_ns,left.read_bytes,left.write_bytes,right.read_bytes,right.write_bytes ] ||
+  fail "timeline.csv: $(head -1 "$out/replay/timeline.csv")"
 grep -q '"ddr.right.latency.mean": {"value": 0' "$out/replay/stats.json" || fail 'no ddr.right'
 
 expect empty_name 2 -- run -o "$out/run" --bus-trace ''
@@ -63,12 +71,15 @@ expect truncated 2 'cut off' -- replay "$out/cut.trace"
 { head -c 700 "$trace"; printf 'XXXX'; tail -c +705 "$trace"; } >"$out/bad.trace"
 expect corrupted 2 'corrupted' -- replay "$out/bad.trace"
 sed '1s/1$/9/' "$trace" >"$out/version.trace"
-expect version 2 'allowed: version 1' -- replay "$out/version.trace"
+expect version 2 'allowed: versions 1 and 2' -- replay "$out/version.trace"
 printf '# dramtrace 7\n' >"$out/version.txt"
 expect text_version 2 'version.txt.:1' '# dramtrace 1' -- replay "$out/version.txt"
 printf '# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x8000000 4\n' >"$out/outside.txt"
 expect outside 2 'outside the SDRAM of 128 MiB' -- replay "$out/outside.txt"
 expect timing 2 'ddr.tRC' 'ddr.tRAS' -- replay "$trace" -s ddr.tRC=12cycles
+expect part_timing 0 'fovea: timing: ddr.tRFC = 31cycles is 91.2 ns' '127.5 ns' -- replay "$trace" -s ddr.clock=340MHz
+grep -q '"kind": "timing", "what": "ddr.tRFC = 31cycles' "$out/replay/stats.json" || fail 'no remark in stats.json'
+expect part_cl 0 'ddr.CL = 3cycles' '200 MHz' -- replay "$trace" -s ddr.CL=3cycles
 expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
 expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
 expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1

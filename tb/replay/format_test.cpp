@@ -79,10 +79,31 @@ TEST(TraceFileTest, EveryFlippedBitIsFound) {
 
 TEST(TraceFileTest, OtherVersionsAndFilesAreNamed) {
   std::string bytes = make_trace(6, 10).bytes;
-  bytes[bytes.find('\n') - 1] = '2';
-  EXPECT_THAT(error_of(bytes), testing::HasSubstr("allowed: version 1"));
+  bytes[bytes.find('\n') - 1] = '3';
+  EXPECT_THAT(error_of(bytes), testing::HasSubstr("allowed: versions 1 and 2"));
   EXPECT_THAT(error_of("PNG"), testing::HasSubstr("not a bus trace"));
   EXPECT_THAT(error_of(make_trace(6, 10).bytes + "x"), testing::HasSubstr("follows its end"));
+}
+
+// Version 1 knows no completions of others: each `when` is an interrupt.
+TEST(TraceFileTest, VersionOneIsRead) {
+  Record r;
+  r.bytes = 4;
+  r.release = trace::Release::kWhen;
+  r.gap = 7;
+  r.event = 2;
+  r.wake_gap = 9;
+  trace::CodeState out, in;
+  std::string code;
+  trace::encode(r, out, code);
+  const std::string tail = {0, 7, 0, 4, 9};  // back, gap, the interrupts' number, event, gap
+  ASSERT_TRUE(code.ends_with(tail));
+  code.erase(code.size() - 3, 1);
+  trace::ByteReader bytes({reinterpret_cast<const std::uint8_t*>(code.data()), code.size()});
+  Record read;
+  trace::decode(bytes, in, read, 1);
+  EXPECT_TRUE(bytes.empty());
+  EXPECT_EQ(read, r);
 }
 
 TEST(TraceFileTest, RecordsThatRefuteThemselvesAreFound) {
@@ -103,8 +124,15 @@ TEST(TraceFileTest, RecordsThatRefuteThemselvesAreFound) {
   EXPECT_THAT(error_with(r), testing::HasSubstr("before the first record"));
   r = good;
   r.release = trace::Release::kWhen;
-  r.interrupt = 3;
-  EXPECT_THAT(error_with(r), testing::HasSubstr("interrupt"));
+  r.event = 3;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("event that never came"));
+  r.source = 1;
+  r.event = 0;  // stream 1 is empty
+  EXPECT_THAT(error_with(r), testing::HasSubstr("event that never came"));
+  r.source = 0;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("unknown stream")) << "itself";
+  r.source = 3;
+  EXPECT_THAT(error_with(r), testing::HasSubstr("unknown stream"));
   r = good;
   r.master = Master::kVpfe;
   EXPECT_THAT(error_with(r), testing::HasSubstr("another's stream"));

@@ -65,11 +65,12 @@ TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
     Sent& s = sent.emplace_back();
     dram::PathRequest& r = s.request;
     r.data = s.data.data();
-    r.master = static_cast<Master>(rng.below(3));
+    const auto m = static_cast<unsigned>(rng.below(3));
+    r.master = trace::TextTrace::port(m);
     r.write = rng.below(3) == 0;
     r.bytes = static_cast<std::uint8_t>(8u << rng.below(4));
     r.address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
-    text += fmt::format("{} {} {} 0x{:x} {}\n", at, index(r.master), r.write ? 'W' : 'R', r.address,
+    text += fmt::format("{} {} {} 0x{:x} {}\n", at, m, r.write ? 'W' : 'R', r.address,
                         r.bytes);
     hand.run_before(at);
     hand.submit(r, at);
@@ -81,11 +82,13 @@ TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
   std::array<Histogram, 3> expected;
   Picoseconds last = 0;
   for (const Sent& s : sent) {
-    if (!s.request.write) expected[index(s.request.master)].add(s.request.first - s.request.issued);
+    if (!s.request.write)
+      expected[index(s.request.master) - index(trace::TextTrace::port(0))].add(
+          s.request.first - s.request.issued);
     last = std::max(last, s.request.last);
   }
   for (unsigned m = 0; m < 3; ++m) {
-    const Histogram& got = played.path->latency(static_cast<Master>(m)).histogram;
+    const Histogram& got = played.path->latency(trace::TextTrace::port(m)).histogram;
     EXPECT_EQ(got.count(), expected[m].count());
     EXPECT_EQ(got.mean(), expected[m].mean());
     EXPECT_EQ(got.min(), expected[m].min());
@@ -106,7 +109,7 @@ class WindowTest : public testing::TestWithParam<bool> {};
 TEST_P(WindowTest, OneReadAtATimeTakesTheSumOfItsLatencies) {
   trace::TextTrace one("t", random_reads(1, 1, 500, 8));
   const Played alone(one, GetParam());
-  const Histogram& h = alone.path->latency(Master::kArmI).histogram;
+  const Histogram& h = alone.path->latency(trace::TextTrace::port(0)).histogram;
   EXPECT_EQ(h.count(), 500u);
   // Eight bytes: the first beat is the last, and the next read goes out with it.
   EXPECT_NEAR(static_cast<double>(alone.path->duration()), h.mean() * 500, 1);
@@ -186,7 +189,7 @@ TEST(ReplayPathTest, AnInterruptReleasesASleeper) {
     Listed l;
     Record r = after(1, true, work, 0x9000);
     r.release = Release::kWhen;
-    r.interrupt = 1;  // at 5 us
+    r.event = 1;  // at 5 us
     r.wake_gap = 20;
     l.records[0] = {read_at(2'000'000, 0x1000), r};
     return core.edge_at_or_after(Played(info, l).issued[0].at(1));
@@ -194,6 +197,99 @@ TEST(ReplayPathTest, AnInterruptReleasesASleeper) {
   const std::uint64_t wake = core.edge_at_or_after(info.interrupts[1]) + 20;
   EXPECT_EQ(issued(10), wake + (wake % 2 == 0));  // asleep long before
   EXPECT_GT(issued(2'000), wake + 1'000);         // still at work when it came
+}
+
+Record when(std::uint8_t stream, std::uint64_t record, std::uint32_t gap, bool write,
+            std::uint32_t address) {
+  Record r = read_at(0, address);
+  r.master = write ? Master::kVpfe : Master::kVpbe;
+  r.write = write;
+  r.release = Release::kWhen;
+  r.source = stream;
+  r.event = record;
+  r.wake_gap = gap;
+  return r;
+}
+/// Outcomes, by direction.
+struct Outcomes : MemObserver {
+  std::array<std::vector<Picoseconds>, 2> issued, last;
+  void submitted(const MemRequest& r, bool) override { issued[r.write].push_back(r.issued); }
+  void responded(const MemRequest& r) override { last[r.write].push_back(r.last); }
+};
+
+// A copy with two places: each write waits for its read's data, each read for the write before the
+// last one, and 700 ps. Streams 1 and 2 count picoseconds.
+TEST(ReplayPathTest, ACompletionElsewhereReleasesARecord) {
+  const trace::TraceInfo info = board_info();
+  Listed l;
+  constexpr unsigned kCount = 9'000;  // more than the player remembers
+  for (unsigned n = 0; n < kCount; ++n) {
+    const std::uint32_t address = n % 1'000 * 64;
+    l.records[1].push_back(when(2, n, 0, true, address));
+    l.records[2].push_back(when(1, n < 2 ? 0 : n - 2, 700, false, 0x100'0000 + address));
+    if (n < 2) {
+      l.records[2].back().release = Release::kAt;
+      l.records[2].back().at = 2'000'000;
+    }
+  }
+  app::ReplayParams params;
+  app::ReplayPath path("t", info, l, params, false);
+  Outcomes o;
+  path.observe(&o);
+  EXPECT_TRUE(path.run_before(kNever));
+  ASSERT_EQ(o.last[1].size(), kCount);
+  for (unsigned n = 0; n < kCount; ++n) {
+    ASSERT_EQ(o.issued[1][n], o.last[0][n]) << n;
+    if (n >= 2) {
+      ASSERT_EQ(o.issued[0][n], o.last[1][n - 2] + 700) << n;
+    }
+  }
+}
+
+TEST(ReplayPathTest, ACompletionLongAgoHoldsNobodyUp) {
+  const trace::TraceInfo info = board_info();
+  Listed l;
+  for (unsigned n = 0; n < 6'000; ++n) {
+    l.records[2].push_back(read_at(1'000'000, n * 64));
+    l.records[2].back().master = Master::kVpbe;
+  }
+  l.records[1] = {read_at(800'000'000, 0), when(2, 5, 0, true, 64)};
+  l.records[1][0].master = Master::kVpfe;
+  const Played p(info, l);
+  EXPECT_EQ(p.issued[1].at(1), 800'000'000u) << "as soon as its stream comes to it";
+}
+
+TEST(ReplayPathTest, RecordsThatWaitForEachOtherAreAnError) {
+  const trace::TraceInfo info = board_info();
+  Listed l;
+  l.records[1] = {when(2, 0, 0, true, 64)};
+  l.records[2] = {when(1, 0, 0, false, 64)};
+  app::ReplayParams params;
+  app::ReplayPath path("t", info, l, params, false);
+  try {
+    path.run_before(kNever);
+    FAIL() << "a deadlock that nobody sees";
+  } catch (const UserError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("stops before its end"));
+  }
+}
+
+TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
+  for (const bool memory_only : {false, true}) {
+    trace::TextTrace t("t", "# dramtrace 1\n# master 7 window 4 left\n# master 9 window 4 right\n"
+                            "5000000 7 R 0x0 256\n2500000000 9 W 0x40000 64\n"
+                            "2600000000 7 R 0x0 64\n3000000000 9 W 0x0 4\n");
+    const Played p(t, memory_only);
+    EXPECT_EQ(p.path->labels(), (std::vector<std::string>{"left", "right"}));
+    const auto rows = p.path->timeline();  // of 1 ms; the fourth is not whole
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0].start, 0u);
+    EXPECT_EQ(rows[2].end, 3'000'000'000u);
+    EXPECT_EQ(rows[0].read_bytes, (std::vector<std::uint64_t>{256, 0}));
+    EXPECT_EQ(rows[1].read_bytes, (std::vector<std::uint64_t>{0, 0}));
+    EXPECT_EQ(rows[2].read_bytes, (std::vector<std::uint64_t>{64, 0}));
+    EXPECT_EQ(rows[2].write_bytes, (std::vector<std::uint64_t>{0, 64}));
+  }
 }
 
 TEST(ReplayPathTest, MarksKeepTheirPlace) {
@@ -259,6 +355,35 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_THAT(play("", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
+TEST(ReplayPathTest, TimingsThatNoPartHasAreRemarked) {
+  const auto remarks = [](std::vector<std::pair<std::string, std::string>> keys) {
+    app::ReplayParams params;
+    ParamSet set;
+    params.declare(set);
+    for (const auto& [key, value] : keys) set.set(key, value);
+    std::string all;
+    for (const std::string& r : params.remarks()) all += r + "\n";
+    return all;
+  };
+  using testing::HasSubstr;
+  EXPECT_EQ(remarks({}), "") << "what the boot code programs";
+  // 243 MHz: 4.115 ns a clock.
+  for (const auto& [name, fails, holds] :
+       {std::tuple{"tRCD", 3, 4}, {"tRP", 3, 4}, {"tRAS", 9, 10}, {"tRC", 13, 14},
+        {"tRRD", 2, 3}, {"tWR", 3, 4}, {"tWTR", 1, 2}, {"tRTP", 1, 2}, {"tRFC", 30, 31}}) {
+    const std::string key = std::string("ddr.") + name;
+    EXPECT_THAT(remarks({{key, std::to_string(fails) + "cycles"}}), HasSubstr(key + " = "));
+    EXPECT_EQ(remarks({{key, std::to_string(holds) + "cycles"}}), "") << key;
+  }
+  EXPECT_THAT(remarks({{"ddr.tREFI", "1897cycles"}}), HasSubstr("more than 7800 ns"));
+  EXPECT_THAT(remarks({{"ddr.tREFI", "0cycles"}}), HasSubstr("forgets"));
+  EXPECT_THAT(remarks({{"ddr.CL", "3cycles"}}), HasSubstr("above 200 MHz"));
+  EXPECT_THAT(remarks({{"ddr.part", "mt46h32m16lf"}, {"ddr.CL", "4cycles"}}), HasSubstr("no part"));
+  EXPECT_THAT(remarks({{"ddr.part", "mt47h128m16"}}), HasSubstr("195 ns"));
+  EXPECT_THAT(remarks({{"ddr.clock", "410MHz"}, {"ddr.CL", "6cycles"}}),
+              HasSubstr("above 400 MHz"));
+}
+
 /// A trace whose content is spoilt but whose checksums are right again: plays, or one line says why
 /// it cannot.
 TEST(ReplayPathTest, NoTraceCrashesIt) {
@@ -271,14 +396,15 @@ TEST(ReplayPathTest, NoTraceCrashesIt) {
       for (unsigned s = 0; s < 3; ++s) {
         Record r = random_record(rng, s, k);
         if (rng.below(60) == 0) {  // a wild field
-          switch (rng.below(8)) {
+          switch (rng.below(9)) {
             case 0: r.address = static_cast<std::uint32_t>(rng.next()); break;
             case 1: r.bytes = static_cast<std::uint8_t>(rng.next()); break;
             case 2: r.gap = rng.next() >> rng.below(64); break;
             case 3: r.at = rng.next() >> rng.below(64); break;
             case 4: r.back = static_cast<std::uint32_t>(rng.below(60)); break;
-            case 5: r.interrupt = static_cast<std::uint32_t>(rng.next()); break;
-            case 6: r.locked = true; break;
+            case 5: r.event = rng.next() >> rng.below(64); break;
+            case 6: r.source = static_cast<std::uint8_t>(rng.below(kMasterCount)); break;
+            case 7: r.locked = true; break;
             default: r.critical = static_cast<std::uint8_t>(rng.next()); break;
           }
         }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <systemc>
 
@@ -31,7 +32,17 @@ struct Change {
   }
 };
 
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+/// What is compared. In the same window a faster memory does more: times are those up to the same count.
+struct Watched {
+  bool remaps = true;          // the mean remap
+  bool latencies = true;
+  std::optional<Master> writes = {};  // when which of its writes was acknowledged
+};
 constexpr unsigned kFrames = 2;
+/// Every so many writes of Watched::writes.
+constexpr std::size_t kWritesApart = 10'000;
 /// Masters with enough reads for a 99th percentile.
 constexpr std::array kReaders = {Master::kArmD, Master::kVpbe};
 
@@ -46,6 +57,13 @@ class Latencies : public MemObserver {
   void responded(const MemRequest& r) override {
     if (before) before->responded(r);
     if (on && !r.write) all_[index(r.master)].push_back(r.first - r.issued);
+    if (on && r.write) written_[index(r.master)].push_back(r.last);
+  }
+  /// Since `start`.
+  void add_writes_to(Figures& f, Master m, Picoseconds start) {
+    const auto& v = written_[index(m)];
+    for (std::size_t n = kWritesApart; n <= v.size(); n += kWritesApart)
+      f["until." + std::to_string(n)] = static_cast<double>(v[n - 1] - start) * 1e-12;
   }
   void add_to(Figures& f) {
     for (const Master m : kReaders) {
@@ -59,18 +77,27 @@ class Latencies : public MemObserver {
   }
 
  private:
-  std::array<std::vector<Picoseconds>, kMasterCount> all_;
+  std::array<std::vector<Picoseconds>, kMasterCount> all_, written_;
 };
 
+bool ends_a_remap(std::uint32_t pins) {
+  return static_cast<board::Phase>(pins & 15u) == board::Phase::kRemapEnd;
+}
+void add_ends_to(Figures& f, const std::vector<Picoseconds>& ends, Picoseconds start) {
+  for (std::size_t n = 0; n < ends.size(); ++n)
+    f["until." + std::to_string(n + 1)] = static_cast<double>(ends[n] - start) * 1e-12;
+}
+
 /// A run of the whole board, in a process of its own: a simulation elaborates once.
-Figures run_board(const std::string& kernel, const Change& change, const std::string& trace) {
+Figures run_board(const Keys& keys_set, const Watched& watched, const Change& change,
+                  const std::string& trace) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
     e2e::Rig rig;
     rig.set("run.frames", std::to_string(kFrames)).set("camera.stamp", "false");
-    rig.set("firmware.kernel", kernel);
+    for (const auto& [key, value] : keys_set) rig.set(key, value);
     auto& board = rig.build();
     auto& soc = board.dm365;
     ParamSet keys;
@@ -80,8 +107,16 @@ Figures run_board(const std::string& kernel, const Change& change, const std::st
     Figures f;
     Latencies latencies;
     latencies.before = soc.scr.crossbar().observe(&latencies);
+    Picoseconds opened = 0;
+    std::vector<Picoseconds> ends;
+    const auto pins = soc.gpio.on_output;
+    soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+      pins(bank, out, at);
+      if (bank == 2 && latencies.on && ends_a_remap(out)) ends.push_back(at);
+    };
     board.on_window_open = [&] {
       latencies.on = true;
+      opened = kernel_time();
       mem::DdrConfig c = soc.ddr.programmed();
       if (change.CL) {
         c.timing.CL = c.read_latency = change.CL;
@@ -97,10 +132,15 @@ Figures run_board(const std::string& kernel, const Change& change, const std::st
       latencies.on = false;
     };
     rig.run(10 * kPsPerSecond);
-    latencies.add_to(f);
+    if (watched.latencies) latencies.add_to(f);
+    if (watched.writes) latencies.add_writes_to(f, *watched.writes, opened);
     if (recording) recording->finish();
-    f["remap"] = board.frame_stats().remap_mean * 1e-12;
-    f["remaps"] = static_cast<double>(board.frame_stats().remaps);
+    if (watched.remaps) {
+      f["remap"] = board.frame_stats().remap_mean * 1e-12;
+      f["remaps"] = static_cast<double>(board.frame_stats().remaps);
+    } else if (!watched.writes) {
+      add_ends_to(f, ends, opened);
+    }
     std::ostringstream out;
     out.precision(17);
     for (const auto& [name, value] : f) out << name << ' ' << value << '\n';
@@ -126,23 +166,32 @@ Figures run_board(const std::string& kernel, const Change& change, const std::st
   return f;
 }
 
-/// A trace whose records have lost what they depend on: each goes at the time it went when it was
-/// recorded.
+/// What a trace has lost: all that its records depend on, or what they depend on in other streams.
+enum class Lost { kNothing, kAll, kOthers };
+
+/// Records that have lost that go at the time they went when they were recorded.
 class Unchained : public trace::RecordSource {
  public:
-  Unchained(trace::RecordSource& from, std::vector<std::vector<Picoseconds>> times)
-      : from_(from), times_(std::move(times)), next_(times_.size()) {}
+  Unchained(trace::RecordSource& from, std::vector<std::vector<Picoseconds>> times, Lost lost)
+      : from_(from), times_(std::move(times)), next_(times_.size()), lost_(lost) {}
   bool next(unsigned stream, trace::Record& r) override {
     if (!from_.next(stream, r)) return false;
+    const Picoseconds at = times_[stream][next_[stream]++];
+    const bool other = r.release == trace::Release::kWhen && r.source != trace::kInterrupt;
+    if (lost_ == Lost::kOthers && !other) return true;
+    changed_ += lost_ == Lost::kOthers;
     r.release = trace::Release::kAt;
-    r.at = times_[stream][next_[stream]++];
+    r.at = at;
     return true;
   }
+  std::uint64_t changed() const { return changed_; }
 
  private:
   trace::RecordSource& from_;
   std::vector<std::vector<Picoseconds>> times_;
   std::vector<std::size_t> next_;
+  Lost lost_;
+  std::uint64_t changed_ = 0;
 };
 
 std::string file_bytes(const std::string& file) { return app::read_file(file, 1u << 30); }
@@ -160,22 +209,24 @@ app::ReplayParams& configure(app::ReplayParams& params, const trace::TraceInfo& 
   return params;
 }
 
-Figures replay(const std::string& file, const Change& change, bool chained = true) {
+Figures replay(const std::string& file, const Watched& watched, const Change& change,
+               Lost lost = Lost::kNothing) {
   trace::TraceFile source("trace", file_bytes(file));
   app::ReplayParams params;
   configure(params, source.info(), change);
   std::vector<std::vector<Picoseconds>> times(source.info().streams.size());
   std::unique_ptr<Unchained> unchained;
   trace::TraceFile again("trace", file_bytes(file));
-  if (!chained) {  // the times of the recorded configuration, from a replay of it
+  if (lost != Lost::kNothing) {  // the times of the recorded configuration, from a replay of it
     app::ReplayParams same;
     configure(same, again.info(), {});
     app::ReplayPath path("trace", again.info(), again, same, false);
     path.on_issue = [&](unsigned stream, Picoseconds at) { times[stream].push_back(at); };
     path.run_before(kNever);
-    unchained = std::make_unique<Unchained>(source, times);
+    unchained = std::make_unique<Unchained>(source, times, lost);
   }
-  trace::RecordSource& records = chained ? static_cast<trace::RecordSource&>(source) : *unchained;
+  trace::RecordSource& records =
+      unchained ? *unchained : static_cast<trace::RecordSource&>(source);
   app::ReplayPath path("trace", source.info(), records, params, false);
   Latencies latencies;
   latencies.on = true;
@@ -183,7 +234,18 @@ Figures replay(const std::string& file, const Change& change, bool chained = tru
   path.run_before(kNever);
   path.finish();
   Figures f;
-  latencies.add_to(f);
+  if (lost == Lost::kOthers) {
+    EXPECT_GT(unchained->changed(), 1'000u) << "nobody waits for others";
+  }
+  if (watched.latencies) latencies.add_to(f);
+  if (watched.writes) latencies.add_writes_to(f, *watched.writes, source.info().start);
+  if (!watched.remaps) {
+    std::vector<Picoseconds> ends;
+    for (const auto& m : path.marks())
+      if (ends_a_remap(m.value)) ends.push_back(m.at);
+    if (!watched.writes) add_ends_to(f, ends, source.info().start);
+    return f;
+  }
   double sum = 0;
   for (const Picoseconds t : path.remap_times()) sum += static_cast<double>(t) * 1e-12;
   f["remaps"] = static_cast<double>(path.remap_times().size());
@@ -191,10 +253,13 @@ Figures replay(const std::string& file, const Change& change, bool chained = tru
   return f;
 }
 
-/// The largest relative difference; prints all.
-double worst(const Figures& real, const Figures& replayed, const std::string& what) {
-  double largest = 0;
+/// The largest relative difference; prints all. Of the times up to a count, the longest that both have.
+double worst(Figures real, Figures replayed, const std::string& what) {
+  double largest = 0, longest = 0;
+  for (const auto& [name, value] : real)
+    if (name.starts_with("until.") && replayed.count(name)) longest = std::max(longest, value);
   for (const auto& [name, value] : real) {
+    if (name.starts_with("until.") && value != longest) continue;
     const double d = replayed.at(name) / value - 1;
     std::printf("  %-18s %-10s real %.6g  replay %.6g  %+.3f %%\n", what.c_str(), name.c_str(),
                 value, replayed.at(name), 100 * d);
@@ -203,33 +268,90 @@ double worst(const Figures& real, const Figures& replayed, const std::string& wh
   return largest;
 }
 
+std::string file() {
+  return (std::filesystem::temp_directory_path() /
+          ("fovea_replay_" + std::to_string(::getpid()) + ".trace"))
+      .string();
+}
+
 class RunsTest : public testing::TestWithParam<const char*> {
  protected:
-  std::string file() const {
-    return (std::filesystem::temp_directory_path() /
-            ("fovea_replay_" + std::to_string(::getpid()) + ".trace"))
-        .string();
-  }
   ~RunsTest() override { std::filesystem::remove(file()); }
 };
 
 TEST_P(RunsTest, ReplayFollowsTheRun) {
-  const Figures recorded = run_board(GetParam(), {}, file());
+  const Keys keys = {{"firmware.kernel", GetParam()}};
+  const Watched watched;
+  const Figures recorded = run_board(keys, watched, {}, file());
   ASSERT_GE(recorded.at("remaps"), 2);
-  EXPECT_LE(worst(recorded, replay(file(), {}), "same"), 0.01);
+  EXPECT_LE(worst(recorded, replay(file(), watched, {}), "same"), 0.01);
   for (const Change change :
        {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 3}, Change{0, 7}}) {
-    const Figures real = run_board(GetParam(), change, "");
-    EXPECT_LE(worst(real, replay(file(), change), change.text()), 0.03);
+    const Figures real = run_board(keys, watched, change, "");
+    EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
     // The loss shows when memory gets faster; with slower memory the core's one port is always taken,
     // and that alone keeps its requests apart.
-    const double lost = worst(real, replay(file(), change, false), "unchained " + change.text());
+    const double lost =
+        worst(real, replay(file(), watched, change, Lost::kAll), "unchained " + change.text());
     if (change.ddr_hertz > 243'000'000) {
       EXPECT_GT(lost, 0.03);
     }
   }
 }
 INSTANTIATE_TEST_SUITE_P(Kernels, RunsTest, testing::Values("plain", "ldm"));
+
+/// Remaps back to back, as in the experiment `throughput`: total time.
+class UnpacedTest : public RunsTest {
+ protected:
+  void follow(const std::vector<Change>& changes) {
+    const Keys keys = {{"firmware.kernel", GetParam()}, {"firmware.repeat", "10"}};
+    const Watched watched{false, false, {}};
+    const Figures recorded = run_board(keys, watched, {}, file());
+    ASSERT_GE(recorded.size(), 2u);
+    // Nothing between two remaps: the last one's end is that of so many in a row.
+    EXPECT_LE(worst(recorded, replay(file(), watched, {}), "same"), 0.01);
+    for (const Change change : changes) {
+      const Figures real = run_board(keys, watched, change, "");
+      EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
+      const double lost =
+          worst(real, replay(file(), watched, change, Lost::kAll), "unchained " + change.text());
+      if (change.ddr_hertz > 243'000'000) {
+        EXPECT_GT(lost, 0.03);
+      }
+    }
+  }
+};
+TEST_P(UnpacedTest, TotalTimeFollowsTheRun) { follow({{270'000'000, 0}}); }
+TEST_P(UnpacedTest, NightlyTotalTimeFollowsTheRun) {
+  follow({{340'000'000, 0}, {162'000'000, 0}, {0, 3}, {0, 7}});
+}
+INSTANTIATE_TEST_SUITE_P(Kernels, UnpacedTest, testing::Values("plain", "ldm"));
+
+/// A transfer controller that copies: its write side waits for its read side's data, and its read side
+/// for a place that an acknowledgement makes free.
+class CopyTest : public testing::Test {
+ protected:
+  ~CopyTest() override { std::filesystem::remove(file()); }
+};
+TEST_F(CopyTest, SidesOfATransferControllerFollowEachOther) {
+  const Keys keys = {{"video.width", "160"},     {"video.height", "32"},
+                     {"load.port", "edma_tc0"},  {"load.kind", "copy"},
+                     {"load.outstanding", "2"},  {"load.start", "300ms"},
+                     {"load.pattern", "random"}};
+  const Watched watched{false, false, edma_write(0)};
+  const Figures recorded = run_board(keys, watched, {}, file());
+  ASSERT_GE(recorded.size(), 5u);
+  EXPECT_LE(worst(recorded, replay(file(), watched, {}), "same"), 0.01);
+  for (const Change change : {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 7}}) {
+    const Figures real = run_board(keys, watched, change, "");
+    EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
+    const double lost =
+        worst(real, replay(file(), watched, change, Lost::kOthers), "lost " + change.text());
+    if (change.ddr_hertz > 243'000'000) {
+      EXPECT_GT(lost, 0.03) << "each goes when it went with slower memory";
+    }
+  }
+}
 
 }  // namespace
 }  // namespace fovea::replay

@@ -8,7 +8,7 @@ mkdir -p "$out"
 failures=0
 fail() { echo "$1"; failures=$((failures + 1)); }
 "$source/traces/bus/record" "$fovea" "$out" >/dev/null || fail 'recording failed'
-for name in paper-pal ldm-load; do
+for name in paper-pal throughput; do
   shipped=$source/traces/bus/$name.trace
   [ "$(stat -c %s "$shipped")" -le $((2 << 20)) ] || fail "$name: larger than 2 MiB"
   "$fovea" replay "$shipped" -o "$out/$name.shipped" >/dev/null || fail "$name: replay failed"

@@ -63,7 +63,7 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
     r.priority = static_cast<std::uint8_t>(rng.below(8));
   }
   r.release = number == 0 || kind < 2 ? Release::kAt
-              : kind == 2 && stream == 0 ? Release::kWhen
+              : kind == 2 ? Release::kWhen
                                          : Release::kAfter;
   if (r.release == Release::kAt) {
     r.at = 1'000'000 + number * 10'000 + rng.below(10'000);
@@ -73,7 +73,12 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   r.from_first = rng.below(2);
   r.gap = rng.below(40);
   if (r.release == Release::kWhen) {
-    r.interrupt = static_cast<std::uint32_t>(rng.below(3));
+    if (stream == 0) {
+      r.event = rng.below(3);
+    } else {  // of an earlier round
+      r.source = static_cast<std::uint8_t>((stream + 1 + rng.below(2)) % 3);
+      r.event = rng.below(number);
+    }
     r.wake_gap = static_cast<std::uint32_t>(rng.below(100));
   }
   return r;

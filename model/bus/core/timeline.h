@@ -14,13 +14,17 @@ class Timeline {
   struct Row {
     std::array<std::uint64_t, kMasterCount> read{}, write{};
   };
+  /// What comes after that many rows is in none.
+  static constexpr std::size_t kMaxRows = 1'000'000;
   explicit Timeline(Picoseconds interval) : interval_(interval) {}
   /// The first row begins at `start`, in steps of the interval from time 0; nothing was added yet.
   void begin(Picoseconds start) { origin_ = start / interval_ * interval_; }
   /// `at` never decreases, and is not before the first row.
   void add(std::size_t master, bool write, std::uint64_t bytes, Picoseconds at) {
     if (at >= end_ || rows_.empty()) [[unlikely]] {
-      rows_.resize((at - origin_) / interval_ + 1);
+      const std::uint64_t row = (at - origin_) / interval_;
+      if (row >= kMaxRows) return;
+      rows_.resize(row + 1);
       end_ = origin_ + rows_.size() * interval_;
     }
     (write ? rows_.back().write : rows_.back().read)[master] += bytes;

@@ -191,7 +191,8 @@ void BusRecorder::release_repeating(Stream& s, Pending& p, Picoseconds at) {
   const Outcome* own = latest_done(s, at);
   const Outcome* other =
       s.partner == kInterrupt ? nullptr : latest_done(streams_[s.partner], at);
-  if (other && (!own || other->last >= own->last)) {
+  const bool near = other && at - other->last <= ~std::uint32_t{0};
+  if (near && (!own || other->last >= own->last)) {
     p.record.release = Release::kWhen;
     p.record.source = s.partner;
     p.event = other->number;
@@ -206,7 +207,9 @@ void BusRecorder::release_repeating(Stream& s, Pending& p, Picoseconds at) {
 /// What is written was read: it goes out when the next of the partner's reads is there.
 void BusRecorder::release_by_data(Stream& s, Pending& p, Picoseconds at) {
   Stream& from = streams_[s.partner];
-  for (std::uint64_t n = s.taken_place == kNone ? 0 : s.taken_place + 1; n < from.next; ++n) {
+  std::uint64_t n = from.next > kHistory ? from.next - kHistory : 0;
+  if (s.taken_place != kNone) n = std::max(n, s.taken_place + 1);
+  for (; n < from.next; ++n) {
     const Outcome* o = outcome(from, n);
     if (!o || !o->done || o->last != at) continue;
     s.taken_place = n;

@@ -76,15 +76,15 @@ void TextTrace::read_master(const std::vector<std::string_view>& words) {
   const std::uint64_t id = number(words[2], "master", 0, 65535);
   const auto window = static_cast<unsigned>(number(words[4], "window", 1, kMaxReads));
   if (std::find(ids_.begin(), ids_.end(), id) != ids_.end()) bad("this master is declared twice");
-  if (ids_.size() == kMasterCount)
-    bad("more masters than the " + std::to_string(kMasterCount) + " allowed");
+  if (ids_.size() == kMaxMasters)
+    bad("more masters than the " + std::to_string(kMaxMasters) + " allowed");
   for (const auto& m : info_.masters)
     if (m.label == words[5]) bad("two masters have the same label");
   const auto n = static_cast<unsigned>(ids_.size());
   ids_.push_back(id);
   info_.streams.emplace_back();
   info_.masters.push_back(
-      {static_cast<Master>(n), std::string(words[5]), n, window, kWrites, false});
+      {port(n), std::string(words[5]), n, window, kWrites, false});
   streams_.emplace_back();
 }
 
@@ -117,7 +117,7 @@ bool TextTrace::next(unsigned stream, Record& record) {
   record.release = Release::kAt;
   record.at = l.at;
   record.write = l.write;
-  record.master = static_cast<Master>(stream);
+  record.master = port(stream);
   record.address = l.address + s.done;
   const unsigned room = kMaxBurstBytes - record.address % kMaxBurstBytes;
   record.bytes = static_cast<std::uint8_t>(std::min<unsigned>(room, l.bytes - s.done));

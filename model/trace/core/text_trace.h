@@ -15,6 +15,11 @@ class TextTrace : public RecordSource {
   static constexpr std::string_view kHeader = "# dramtrace 1";
   static constexpr unsigned kMaxReads = 16, kWrites = 16, kMaxBytes = 4096;
   static constexpr Picoseconds kLatest = 100 * kPsPerSecond;
+  static constexpr unsigned kMaxMasters = 10;
+  /// The port of the n-th master: those behind the core's, which are narrower and slower.
+  static constexpr Master port(std::size_t n) {
+    return static_cast<Master>(index(Master::kEdmaTc0Read) + n);
+  }
 
   TextTrace(std::string name, std::string_view text);
   static bool recognises(std::string_view text) { return text.starts_with("# dramtrace"); }

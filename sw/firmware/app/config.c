@@ -20,6 +20,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
   else
     param_page_default(&c->page);
   if (mapping != 0) c->page.mapping = mapping;
+  c->repeats = c->page.repeats != 0 ? c->page.repeats : 1u;
   if ((dip >> 5 & 1u) != 0) c->page.flags |= PARAM_PAPER_LITERAL_FOCAL;
   if ((dip >> 9 & 1u) != 0) c->page.flags |= PARAM_PAIR_METHOD_B;
 

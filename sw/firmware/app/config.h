@@ -18,6 +18,7 @@ typedef struct config {
   int serial; /* paper Fig. 6: capture, remap, show, then capture the next */
   int overlay;
   int self_patch;
+  uint32_t repeats; /* remaps of each captured frame, at least 1 */
   int page_valid;    /* 0: the page was refused, defaults are in use */
   param_page_t page; /* a copy, with the switches applied */
 } config_t;

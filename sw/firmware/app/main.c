@@ -26,7 +26,13 @@ static void print_config(void) {
   uart_puts(config.is_625 ? " in 625/50, " : " in 525/60, ");
   uart_puts(kMappings[config.page.mapping <= LENS_TABLE ? config.page.mapping : 0]);
   uart_puts(config.kernel == KERNEL_LDM ? ", LDM/STM kernel" : ", plain kernel");
-  uart_puts(config.serial ? ", serial flow\n" : ", double buffering\n");
+  uart_puts(config.serial ? ", serial flow" : ", double buffering");
+  if (config.repeats > 1) {
+    uart_puts(", each frame remapped ");
+    uart_put_uint(config.repeats);
+    uart_puts(" times");
+  }
+  uart_puts("\n");
 }
 
 static void build_lut(void) {
@@ -76,7 +82,7 @@ static void remap_frame(const uint8_t *in, uint8_t *out) {
     kernel((uint32_t *)(out + v * config.pitch_bytes), in, lut + v * pairs, pairs);
 }
 
-static void process(const uint8_t *in, uint8_t *out, uint32_t sequence) {
+static void correct(const uint8_t *in, uint8_t *out, uint32_t sequence) {
   phase_mark(PHASE_REMAP_START, sequence);
 #ifndef OMIT_D_INVALIDATE
   dcache_invalidate_range(in, config.height * config.pitch_bytes);
@@ -92,6 +98,10 @@ static void process(const uint8_t *in, uint8_t *out, uint32_t sequence) {
   write_buffer_drain();
   phase_mark(PHASE_REMAP_END, sequence);
   ++fw_state.remapped;
+}
+
+static void process(const uint8_t *in, uint8_t *out, uint32_t sequence) {
+  for (uint32_t n = 0; n < config.repeats; ++n) correct(in, out, sequence);
   pipeline_done();
 }
 
