@@ -8,6 +8,7 @@
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
 
@@ -67,6 +68,7 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
                    const CliContext& context) {
   const auto started = Wall::now();
+  const RemarkScope remarks(context.err, false);
   OpenTrace trace = open_trace(options.trace);
   ReplayParams params;
   ParamSet set;

@@ -32,6 +32,7 @@ mem::DdrConfig ReplayParams::config() const {
   c.timing.mobile = ddr.mobile();
   c.read_latency = value(r.RL);
   c.refresh_interval = value(r.tREFI);
+  c.row_intervals = value(r.row_intervals);
   c.old_count = value(r.old_count);
   c.page_log2 = static_cast<unsigned>(std::bit_width(r.page())) - 1;
   c.bank_on_top = r.bank_on_top();
@@ -47,6 +48,28 @@ void ReplayParams::check() const {
   const auto at_least = [&](const IntParam& p, std::uint64_t least, const char* what) {
     if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
   };
+  // What no part of this kind does at all; what a single part forbids is a remark (mem::DdrCheck).
+  const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
+                          const char* range) {
+    if (p() < least || p() > most)
+      refuse(p, fmt::format("{} (ddr.part = {})", range, ddr.part()));
+  };
+  if (ddr.mobile()) {
+    within(r.clock, 1'000'000, 200'000'000, "1MHz .. 200MHz, mobile DDR");
+    within(r.CL, 2, 3, "2 or 3 cycles, mobile DDR");
+  } else {
+    within(r.clock, 125'000'000, 533'333'333, "125MHz .. 533MHz, DDR2");
+    within(r.CL, 3, 7, "3 .. 7 cycles, DDR2");
+  }
+  // The highest clock that any speed grade has at this CL (JESD79-2, JESD209).
+  const std::uint64_t highest = ddr.mobile() && r.CL() == 2 ? 83'333'334
+                                : ddr.mobile()              ? 200'000'000
+                                : r.CL() == 3               ? 200'000'000
+                                : r.CL() == 4               ? 266'666'667
+                                : r.CL() == 5               ? 400'000'000
+                                                            : 533'333'333;
+  if (r.clock() > highest)
+    refuse(r.CL, fmt::format("more cycles at {}: no part reads so soon", r.clock.text()));
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
   if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
     refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
@@ -86,6 +109,7 @@ std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run
   cycles("tWTR", c.timing.nWTR);
   cycles("tRTP", c.timing.nRTP);
   cycles("tREFI", c.refresh_interval);
+  out.emplace_back("ddr.row_intervals", std::to_string(c.row_intervals));
   out.emplace_back("ddr.old_count", std::to_string(c.old_count));
   out.emplace_back("ddr.page", fmt::format("{}B", 1u << c.page_log2));
   out.emplace_back("ddr.banks", std::to_string(c.timing.banks));

@@ -28,6 +28,7 @@ struct Played {
          const std::vector<std::pair<std::string, std::string>>& keys = {}) {
     ParamSet set;
     params->declare(set);
+    set.set("ddr.check", "commands");
     for (const auto& [key, value] : keys) set.set(key, value);
     params->check();
     path = std::make_unique<app::ReplayPath>("t", info, source, *params, memory_only);
