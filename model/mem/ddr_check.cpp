@@ -124,12 +124,19 @@ struct DdrCheck::Stream {
 
 DdrCheck::DdrCheck(const DdrParams& params, DdrController& controller)
     : sheet_(new Sheet{part_of(params)}) {
-  if (params.check.is("commands")) stream_ = std::make_unique<Stream>(controller, sheet_->part);
+  if (!params.check.is("commands")) return;
+  stream_ = std::make_unique<Stream>(controller, sheet_->part);
+  controller.on_change = [this, &controller](Picoseconds at) {
+    expect(controller.config(), controller.ddr_clock().frequency(), at);
+  };
+  controller.on_change(0);
 }
 
-DdrCheck::~DdrCheck() = default;
+DdrCheck::~DdrCheck() {
+  if (stream_) stream_->controller.on_change = nullptr;
+}
 
-void DdrCheck::changed(const DdrConfig& config, Frequency clock, Picoseconds at) {
+void DdrCheck::expect(const DdrConfig& config, Frequency clock, Picoseconds at) {
   if (!stream_ || clock.stopped()) return;
   const std::uint64_t now = stream_->controller.ddr_clock().edge_after(at);
   stream_->programmed.change(Stream::rules(config), now);

@@ -17,8 +17,9 @@ class DdrCheck {
   ~DdrCheck();
   DdrCheck(const DdrCheck&) = delete;
 
-  /// The controller was configured, or got another clock: what comes now follows these numbers.
-  void changed(const DdrConfig& config, Frequency clock, Picoseconds at);
+  /// The commands from `at` on are held against these numbers; what the controller is told itself
+  /// needs no call.
+  void expect(const DdrConfig& config, Frequency clock, Picoseconds at);
   /// A remark about each value that the part's data sheet does not allow.
   void remark(const DdrConfig& config, Frequency clock) const;
   /// The same lines, without counting them.

@@ -76,13 +76,12 @@ std::vector<std::string> nonsense(const DdrRegs& regs, const DdrParams& params) 
           params.part() + "; no effect here");
   // The part has more or fewer lines than the controller drives: the chip's addresses would repeat.
   constexpr unsigned kPartPage = 2048;
+  const std::string repeats = "; the chip would not reach or repeat some, the model does not";
   const unsigned page = 1u << c.page_log2;
   say(page != kPartPage, "SDBCR PAGESIZE: rows of " + text(page / 2) + " words, but ddr.part = " +
-                             params.part() +
-                             " has 1024; the chip would not reach or repeat some, the model does not");
+                             params.part() + " has 1024" + repeats);
   say(t.banks != params.banks(), "SDBCR IBANK: " + text(t.banks) + " banks, but ddr.part = " +
-                                     params.part() + " has " + text(params.banks()) +
-                                     "; the chip would not reach or repeat some, the model does not");
+                                     params.part() + " has " + text(params.banks()) + repeats);
   if (c.bank_on_top) {
     std::uint64_t rows = params.size_bytes() / kPartPage / params.banks();
     unsigned bits = 0;

@@ -47,7 +47,6 @@ void DdrModule::clocks_changed() {
     Diagnostics::instance().guest(
         "the SDRAM's clock stops outside self-refresh: nothing refreshes it; the model keeps its data");
   controller_.set_clocks(ddr_clk.read(), scr_clk.read(), now);
-  check_.changed(programmed(), ddr_clk.read(), now);
   examined_ = open_ = false;
   replanned_.notify(sc_core::SC_ZERO_TIME);
 }
@@ -69,9 +68,7 @@ void DdrModule::keep_while_locked(Reg& timing, std::uint32_t& kept) {
 void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
-  const DdrConfig c = programmed();
-  controller_.configure(c, now);
-  check_.changed(c, ddr_clk.read(), now);
+  controller_.configure(programmed(), now);
   replanned_.notify(sc_core::SC_ZERO_TIME);
   if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
   examined_ = open_ = false;

@@ -51,11 +51,12 @@ void ExecBoard::program_controller(Frequency ddr_clock) {
     const std::uint64_t den = ddr_clock.den * 10'000'000'000ull;
     return static_cast<std::uint32_t>((tenths_of_ns * ddr_clock.num + den - 1) / den);
   };
+  constexpr std::uint64_t kFawQuarter = 125;  // of 50 ns, above tRRD: T_RRD stands for both
   auto& r = ddr.regs;
   const std::uint32_t sdtimr = (clocks(1275) - 1) << 25 | (clocks(200) - 1) << 22 |
                                (clocks(200) - 1) << 19 | (clocks(150) - 1) << 16 |
                                (clocks(450) - 1) << 11 | (clocks(650) - 1) << 6 |
-                               (clocks(100) - 1) << 3 | (clocks(100) - 1);
+                               (clocks(kFawQuarter) - 1) << 3 | (clocks(100) - 1);
   constexpr std::uint32_t kRasMax = 7, kXp = 2, kXsrd = 199, kCke = 3;
   const std::uint32_t sdtimr2 = kRasMax << 27 | kXp << 25 | (clocks(1375) - 1) << 16 | kXsrd << 8 |
                                 (clocks(75) - 1) << 5 | kCke;

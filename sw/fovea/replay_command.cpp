@@ -8,6 +8,7 @@
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
 
@@ -67,6 +68,7 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
                    const CliContext& context) {
   const auto started = Wall::now();
+  const RemarkScope remarks(context.err, false);
   OpenTrace trace = open_trace(options.trace);
   ReplayParams params;
   ParamSet set;
@@ -75,11 +77,6 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
   for (const auto& s : options.sets) experiment.override_with(s);
   params.check();
-  std::vector<Remark> remarks;
-  for (const std::string& what : params.remarks()) {
-    remarks.push_back({"timing", what, 1});
-    context.err << "fovea: timing: " << what << "\n";
-  }
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem());
@@ -106,7 +103,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete, remarks));
+  dir.write("stats.json", stats_json(stats, complete, collect_remarks(Diagnostics::instance())));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.commit();
   context.out << summary_table(stats, host);

@@ -32,6 +32,7 @@ mem::DdrConfig ReplayParams::config() const {
   c.timing.mobile = ddr.mobile();
   c.read_latency = value(r.RL);
   c.refresh_interval = value(r.tREFI);
+  c.row_intervals = value(r.row_intervals);
   c.old_count = value(r.old_count);
   c.page_log2 = static_cast<unsigned>(std::bit_width(r.page())) - 1;
   c.bank_on_top = r.bank_on_top();
@@ -47,6 +48,28 @@ void ReplayParams::check() const {
   const auto at_least = [&](const IntParam& p, std::uint64_t least, const char* what) {
     if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
   };
+  // What no part of this kind does at all; what a single part forbids is a remark (mem::DdrCheck).
+  const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
+                          const char* range) {
+    if (p() < least || p() > most)
+      refuse(p, fmt::format("{} (ddr.part = {})", range, ddr.part()));
+  };
+  if (ddr.mobile()) {
+    within(r.clock, 1'000'000, 200'000'000, "1MHz .. 200MHz, mobile DDR");
+    within(r.CL, 2, 3, "2 or 3 cycles, mobile DDR");
+  } else {
+    within(r.clock, 125'000'000, 533'333'333, "125MHz .. 533MHz, DDR2");
+    within(r.CL, 3, 7, "3 .. 7 cycles, DDR2");
+  }
+  // The highest clock that any speed grade has at this CL (JESD79-2, JESD209).
+  const std::uint64_t highest = ddr.mobile() && r.CL() == 2 ? 83'333'334
+                                : ddr.mobile()              ? 200'000'000
+                                : r.CL() == 3               ? 200'000'000
+                                : r.CL() == 4               ? 266'666'667
+                                : r.CL() == 5               ? 400'000'000
+                                                            : 533'333'333;
+  if (r.clock() > highest)
+    refuse(r.CL, fmt::format("more cycles at {}: no part reads so soon", r.clock.text()));
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
   if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
     refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
@@ -55,61 +78,6 @@ void ReplayParams::check() const {
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");
   at_least(r.tRFC, r.tRP() + 1, "more than ddr.tRP: a refresh opens and closes a row");
   if (r.tREFI() != 0) at_least(r.tREFI, 2 * r.tRFC(), "twice ddr.tRFC, or 0 for no refresh");
-}
-
-namespace {
-
-/// The shortest that any speed grade has, ns: JESD79-2 with makers' tRAS and tRC, 2 KiB pages; mobile
-/// DDR-400 (JESD209).
-struct FastestPart {
-  double tRCD, tRP, tRAS, tRC, tRRD, tWR, tWTR, tRTP;
-  double tRFC[3];  // of 64, 128, 256 MiB
-  double tCK[8];   // by CL; 0: no part has it
-};
-constexpr FastestPart kDdr2 = {12.5, 12.5, 40, 55, 10, 15, 7.5, 7.5, {105, 127.5, 195},
-                               {0, 0, 0, 5, 3.75, 2.5, 2.5, 1.875}};
-constexpr FastestPart kMobile = {15, 15, 40, 55, 10, 15, 0, 0, {72, 72, 72},
-                                 {0, 0, 12, 5, 0, 0, 0, 0}};
-constexpr double kLongestInterval = 7800;  // 8192 rows in 64 ms
-
-}  // namespace
-
-std::vector<std::string> ReplayParams::remarks() const {
-  const DdrRegisterParams& r = registers;
-  const FastestPart& part = ddr.mobile() ? kMobile : kDdr2;
-  const double tck = 1e9 / static_cast<double>(r.clock());
-  std::vector<std::string> out;
-  const auto remark = [&](const IntParam& p, double is, const char* than, double allowed) {
-    out.push_back(fmt::format("{} = {} is {:.1f} ns at ddr.clock = {}; no part like {} has {} than "
-                              "{} ns",
-                              p.key(), p.text(), is, r.clock.text(), ddr.part(), than, allowed));
-  };
-  const auto at_least = [&](const IntParam& p, double least) {
-    const double is = static_cast<double>(p()) * tck;
-    if (is < least - 1e-6) remark(p, is, "less", least);
-  };
-  at_least(r.tRCD, part.tRCD);
-  at_least(r.tRP, part.tRP);
-  at_least(r.tRAS, part.tRAS);
-  at_least(r.tRC, part.tRC);
-  at_least(r.tRRD, part.tRRD);
-  at_least(r.tWR, part.tWR);
-  at_least(r.tWTR, part.tWTR);
-  at_least(r.tRTP, part.tRTP);
-  at_least(r.tRFC, part.tRFC[ddr.part.index() % 3]);
-  if (r.tREFI() == 0)
-    out.push_back(r.tREFI.key() + " = 0: without refresh a part forgets");
-  else if (static_cast<double>(r.tREFI()) * tck > kLongestInterval + tck)
-    remark(r.tREFI, static_cast<double>(r.tREFI()) * tck, "more", kLongestInterval);
-  const double shortest = part.tCK[r.CL()];
-  if (shortest == 0)
-    out.push_back(fmt::format("{} = {}: no part like {} has it", r.CL.key(), r.CL.text(),
-                              ddr.part()));
-  else if (tck < shortest - 1e-6)
-    out.push_back(fmt::format(
-        "{} = {} at ddr.clock = {}: no part like {} runs above {:.0f} MHz with it", r.CL.key(),
-        r.CL.text(), r.clock.text(), ddr.part(), 1e3 / shortest));
-  return out;
 }
 
 std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run,
@@ -141,6 +109,7 @@ std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run
   cycles("tWTR", c.timing.nWTR);
   cycles("tRTP", c.timing.nRTP);
   cycles("tREFI", c.refresh_interval);
+  out.emplace_back("ddr.row_intervals", std::to_string(c.row_intervals));
   out.emplace_back("ddr.old_count", std::to_string(c.old_count));
   out.emplace_back("ddr.page", fmt::format("{}B", 1u << c.page_log2));
   out.emplace_back("ddr.banks", std::to_string(c.timing.banks));

@@ -23,10 +23,10 @@ struct PathClocks : ParamGroup {
 /// The controller's registers, in clocks and decoded; defaults are what the firmware writes at 243 MHz.
 struct DdrRegisterParams : ParamGroup {
   using U = IntParam::Unit;
-  // JESD79-2: tCK(avg) 1.875 to 8 ns.
-  IntParam clock{*this, "clock", U::kHertz, 243'000'000, 125'000'000, 533'333'333,
-                 "SDRAM clock", Origin::kChoice, ""};
-  IntParam CL = timing("CL", 5, 3, 7, "CAS latency");
+  // JESD79-2: tCK(avg) 1.875 to 8 ns. JESD209: 5 ns and more, no DLL that bounds it.
+  IntParam clock{*this, "clock", U::kHertz, 243'000'000, 1'000'000, 533'333'333,
+                 "SDRAM clock; DDR2 125 to 533 MHz, mobile DDR up to 200 MHz", Origin::kChoice, ""};
+  IntParam CL = timing("CL", 5, 2, 7, "CAS latency; DDR2 3 to 7, mobile DDR 2 or 3");
   IntParam RL = timing("RL", 5, 1, 15, "DDRPHYCR.RL, read latency of the PHY; at least CL counts");
   IntParam tRFC = timing("tRFC", 31, 1, 128, "REF to REF or ACT");
   IntParam tRP = timing("tRP", 5, 1, 8, "PRE to ACT");
@@ -38,6 +38,9 @@ struct DdrRegisterParams : ParamGroup {
   IntParam tWTR = timing("tWTR", 3, 1, 8, "write to read");
   IntParam tRTP = timing("tRTP", 2, 1, 8, "RD to PRE");
   IntParam tREFI = timing("tREFI", 1895, 0, 65535, "SDRCR.RR, refresh interval; 0: no refresh");
+  IntParam row_intervals{*this, "row_intervals", U::kCount, 8, 1, 16,
+                         "SDTIMR2.T_RASMAX + 1, refresh intervals that a row may be open",
+                         Origin::kChoice, ""};
   IntParam old_count{*this, "old_count", U::kCount, 0xFF, 0, 0xFF,
                      "PBBPR.PR_OLD_COUNT, transfers after which the oldest command is raised; 255 "
                      "never",
@@ -66,9 +69,6 @@ struct ReplayParams {
   mem::DdrConfig config() const;
   /// @throws UserError for a set of timings that no part allows
   void check() const;
-  /// Timings that no part of the kind and size on the board allows, each with what does: played all
-  /// the same, as the controller would.
-  std::vector<std::string> remarks() const;
 };
 
 /// What a run has in force, as keys of ReplayParams.

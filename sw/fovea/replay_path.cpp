@@ -33,7 +33,8 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       memory_timeline_(params.crossbar.timeline_interval()),
       store_(params.ddr.size_bytes()),
       xbar_(params.crossbar, *this),
-      ddr_(params.ddr, store_, *this) {
+      ddr_(params.ddr, store_, *this),
+      check_(params.ddr, ddr_) {
   // The file's clock is exact, a parameter's in whole hertz: it counts only if it was changed.
   const auto clock = [](const trace::ClockInfo& file, const IntParam& param) {
     const Frequency wanted(param());
@@ -51,6 +52,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   ddr_.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
   ddr_.configure(config, info.refresh ? info.refresh : info.start);
+  check_.remark(config, ddr_.ddr_clock().frequency());
   ddr_.catch_up(info.start);  // the refreshes before
   ddr_.stats.reset();
   xbar_.timeline.begin(info.start);

@@ -9,6 +9,7 @@
 #include "model/bus/core/crossbar.h"
 #include "model/bus/core/latency_stats.h"
 #include "model/mem/core/ddr_controller.h"
+#include "model/mem/ddr_check.h"
 #include "model/trace/core/trace.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_params.h"
@@ -131,6 +132,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   mem::BackingStore store_;
   bus::Crossbar xbar_;
   mem::DdrController ddr_;
+  mem::DdrCheck check_;
 };
 
 }  // namespace fovea::app

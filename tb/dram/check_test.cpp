@@ -224,7 +224,6 @@ TEST(CommandCheckTest, RunsRemarkOnTheBusWithParameterMarginAndTime) {
   for (const char* key : {"none", "commands"}) {
     Diagnostics::instance().clear();
     Checked x({{"part", "mt47h128m16"}, {"check", key}}, at_340(shipped));
-    x.check.changed(shipped, k340, 0);
     open_eight_banks(x);
     if (std::string(key) == "none") {
       EXPECT_THAT(remarks(), IsEmpty());
@@ -244,7 +243,6 @@ TEST(CommandCheckTest, RunsRemarkOnTheBusWithParameterMarginAndTime) {
 TEST(CommandCheckTest, NothingToRemarkOnWithinTheSheet) {
   Diagnostics::instance().clear();
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
-  x.check.changed(awake(), k340, 0);
   open_eight_banks(x);
   EXPECT_THAT(remarks(), IsEmpty());
 }
@@ -256,7 +254,7 @@ TEST(CommandCheckDeathTest, CommandAgainstTheProgrammedTimingIsADefect) {
     Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
     mem::DdrConfig other = awake();
     other.timing.nRCD += more;
-    x.check.changed(other, k340, 0);
+    x.check.expect(other, k340, 0);
     open_eight_banks(x);
   };
   play(0);
@@ -270,7 +268,6 @@ TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
   Diagnostics::instance().clear();
   mem::DdrConfig c = awake();
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
-  x.check.changed(c, k340, 0);
   Rng rng(7);
   std::vector<std::unique_ptr<Request>> all;
   Picoseconds now = 100'000;
@@ -283,7 +280,6 @@ TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
       c.timing.nWTR = 3 + static_cast<unsigned>(rng.below(6));
       c.timing.CL = 5 + static_cast<unsigned>(rng.below(2));
       x.bench.ddr.configure(c, now);
-      x.check.changed(c, k340, now);
     }
     all.push_back(std::make_unique<Request>());
     Request& r = *all.back();

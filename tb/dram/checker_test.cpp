@@ -163,6 +163,43 @@ TEST(CheckerStateTest, FourBanksPrechargeAllWithoutTheExtraClock) {
   EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 155}}, four), "tRPA");
 }
 
+TEST(CheckerStateTest, RowsAreOpenForTrasmaxAtMost) {
+  DataSheet s = sheet();
+  s.tRASmax = 200;
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPre, 0, 0, 300}}, s), "");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPre, 0, 0, 301}}, s), "tRASmax");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 1, 1, 200}, {kPreAll, 0, 0, 300}}, s), "");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 1, 1, 200}, {kPreAll, 0, 0, 301}}, s), "tRASmax");
+  // The part closes the row by itself five clocks after this RD.
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kRda, 0, 1, 295}}, s), "");
+  EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kRda, 0, 1, 296}}, s), "tRASmax");
+}
+
+// Other numbers count from their own clock on; open rows stay open.
+TEST(CheckerStateTest, ChangedNumbersBindLaterCommandsOnly) {
+  const auto rule = [](std::uint64_t second_act, std::uint64_t third_act) {
+    CommandChecker checker(sheet());
+    checker.command(kAct, 0, 1, 100);
+    DataSheet slower = sheet();
+    slower.tRRD = 9;
+    slower.tRASmax = 100;
+    checker.change(slower, 105);
+    checker.command(kAct, 1, 1, second_act);
+    checker.command(kAct, 2, 1, third_act);
+    checker.command(kPre, 0, 0, 200);
+    EXPECT_LE(checker.total(), 1u) << checker.text();
+    return checker.total() ? checker.complaints()[0].rule : "";
+  };
+  EXPECT_EQ(rule(106, 115), "") << "6 clocks are below both numbers, but lie across the change";
+  EXPECT_EQ(rule(106, 114), "tRRD");
+  CommandChecker checker(sheet());
+  checker.command(kAct, 0, 1, 100);
+  checker.change(sheet(), 200);
+  checker.command(kAct, 0, 2, 300);
+  EXPECT_EQ(checker.total(), 1u);
+  EXPECT_EQ(checker.complaints()[0].rule, "ACT on open bank");
+}
+
 // Eight refreshes may be postponed, so two are at most nine intervals apart (JESD79-2).
 TEST(CheckerStateTest, RefreshIsNeverMoreThanNineIntervalsLate) {
   DataSheet s = sheet();

@@ -223,12 +223,20 @@ Setup random_setup(Rng& rng) {
   s.limits.need = 1 + below(8);
   s.limits.must = s.limits.need + below(6);
   s.limits.gap = 4 + below(7);  // fewer, and the four refreshes that follow leave time for nothing
+  if (below(4) == 0) {  // refresh may wait for longer than rows
+    c.row_intervals = 1 + below(3);
+    c.refresh_interval = 200 + below(300);
+    s.limits.need = s.limits.must = 32;
+    s.limits.gap = 64;
+  }
   constexpr std::uint64_t kDdr[] = {243'000'000, 340'000'000, 250'000'000, 172'500'000};
   constexpr std::uint64_t kScr[] = {121'500'000, 60'000'000, 170'000'000, 250'000'000};
   s.ddr = Frequency(kDdr[below(4)]);
   s.scr = Frequency(kScr[below(4)]);
   return s;
 }
+
+std::uint64_t overdue_rows_seen = 0;
 
 /// Plays the stream of this seed; everything but the controller's answers comes from the seed.
 template <class Controller>
@@ -308,6 +316,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
     door = i;
   }
   while (c.next() != kNever) step();
+  if constexpr (requires { c.overdue_rows(); }) overdue_rows_seen += c.overdue_rows();
   const auto s = c.statistics();
   taken.push_back({kSample, s[0], s[1], s[2]});
   for (auto* list : {&c.commands, &c.accepted, &c.reads})
@@ -352,6 +361,7 @@ TEST(SameAsReferencesTest, StreamsReachEveryCommand) {
     for (const Event& e : play<Production>(seed, 400))
       if (e.what == kCommand) ++commands[e.a];
   for (const std::uint64_t n : commands) EXPECT_GT(n, 100u);
+  EXPECT_GT(overdue_rows_seen, 40u) << "PRE of rows open for too long";
 }
 
 // The comparison can fail: a reference that is one clock slower in one number is found.

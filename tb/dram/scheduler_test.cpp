@@ -253,6 +253,22 @@ TEST_F(RefreshTest, FourRefreshesInARowAfterTooManyIntervalsWithout) {
   EXPECT_EQ(refreshes("64"), 0u);
 }
 
+// The last two ranks of rule 5: a refresh at "may" waits for the writes, self-refresh for the refresh.
+TEST_F(RefreshTest, SelfRefreshEntryComesAfterRefreshAndRefreshAfterWrites) {
+  BenchOptions o = with("32", "64", "64");
+  o.config.low_power = mem::LowPower::kSelfRefresh;
+  o.config.timing.nXSNR = o.config.timing.nXSRD = 1;  // nothing in front of the first write
+  o.config.refresh_interval = 60;
+  Scenario s(eight(true), o);
+  s.bench.ddr.catch_up(600 * kTck);  // shorter than what is owed takes
+  std::string order;
+  for (const Logged& l : s.bench.log) {
+    const char c = l.cmd == Cmd::kWr ? 'W' : l.cmd == Cmd::kRef ? 'R' : l.cmd == Cmd::kSre ? 'S' : 0;
+    if (c && (order.empty() || order.back() != c)) order += c;
+  }
+  EXPECT_EQ(order, "SWRS") << "asleep, awake for the writes, refreshed, asleep";
+}
+
 BenchOptions with(const char* scheduler) {
   BenchOptions o = options();
   o.params.emplace_back("scheduler", scheduler);

@@ -23,6 +23,7 @@ Rig::Rig(std::string elf)
     : elf_(app::ElfImage::load(std::string(FOVEA_FIRMWARE_DIR) + "/" + elf)) {
   params.declare(set_);
   set("camera.kind", "chart");
+  set("ddr.check", "commands");
 }
 
 Rig::~Rig() = default;

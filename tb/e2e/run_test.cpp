@@ -33,6 +33,7 @@ app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = 
   simulation->declare(set);
   set.set("camera.kind", "chart");
   set.set("camera.stamp", "false");
+  set.set("ddr.check", "commands");
   set.set("firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_firmware.elf");
   for (const auto& [key, value] : keys) set.set(key, value);
   StopAt progress(stop_at);

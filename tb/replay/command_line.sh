@@ -77,9 +77,9 @@ expect text_version 2 'version.txt.:1' '# dramtrace 1' -- replay "$out/version.t
 printf '# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x8000000 4\n' >"$out/outside.txt"
 expect outside 2 'outside the SDRAM of 128 MiB' -- replay "$out/outside.txt"
 expect timing 2 'ddr.tRC' 'ddr.tRAS' -- replay "$trace" -s ddr.tRC=12cycles
-expect part_timing 0 'fovea: timing: ddr.tRFC = 31cycles is 91.2 ns' '127.5 ns' -- replay "$trace" -s ddr.clock=340MHz
-grep -q '"kind": "timing", "what": "ddr.tRFC = 31cycles' "$out/replay/stats.json" || fail 'no remark in stats.json'
-expect part_cl 0 'ddr.CL = 3cycles' '200 MHz' -- replay "$trace" -s ddr.CL=3cycles
+expect part_timing 0 'fovea: guest: SDTIMR T_RFC: 31 clocks programmed' '127.5 ns' -- replay "$trace" -s ddr.clock=340MHz
+grep -q '"kind": "guest", "what": "SDTIMR T_RFC: 31 clocks' "$out/replay/stats.json" || fail 'no remark in stats.json'
+expect part_cl 2 'ddr.CL' 'more cycles at' -- replay "$trace" -s ddr.CL=3cycles
 expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
 expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
 expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1

@@ -28,6 +28,7 @@ struct Played {
          const std::vector<std::pair<std::string, std::string>>& keys = {}) {
     ParamSet set;
     params->declare(set);
+    set.set("ddr.check", "commands");
     for (const auto& [key, value] : keys) set.set(key, value);
     params->check();
     path = std::make_unique<app::ReplayPath>("t", info, source, *params, memory_only);
@@ -355,33 +356,49 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_THAT(play("", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
-TEST(ReplayPathTest, TimingsThatNoPartHasAreRemarked) {
-  const auto remarks = [](std::vector<std::pair<std::string, std::string>> keys) {
-    app::ReplayParams params;
-    ParamSet set;
-    params.declare(set);
-    for (const auto& [key, value] : keys) set.set(key, value);
-    std::string all;
-    for (const std::string& r : params.remarks()) all += r + "\n";
-    return all;
-  };
+// What no part of its kind does is refused; what the part at hand forbids is a remark.
+TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   using testing::HasSubstr;
-  EXPECT_EQ(remarks({}), "") << "what the boot code programs";
-  // 243 MHz: 4.115 ns a clock.
-  for (const auto& [name, fails, holds] :
-       {std::tuple{"tRCD", 3, 4}, {"tRP", 3, 4}, {"tRAS", 9, 10}, {"tRC", 13, 14},
-        {"tRRD", 2, 3}, {"tWR", 3, 4}, {"tWTR", 1, 2}, {"tRTP", 1, 2}, {"tRFC", 30, 31}}) {
-    const std::string key = std::string("ddr.") + name;
-    EXPECT_THAT(remarks({{key, std::to_string(fails) + "cycles"}}), HasSubstr(key + " = "));
-    EXPECT_EQ(remarks({{key, std::to_string(holds) + "cycles"}}), "") << key;
-  }
-  EXPECT_THAT(remarks({{"ddr.tREFI", "1897cycles"}}), HasSubstr("more than 7800 ns"));
-  EXPECT_THAT(remarks({{"ddr.tREFI", "0cycles"}}), HasSubstr("forgets"));
-  EXPECT_THAT(remarks({{"ddr.CL", "3cycles"}}), HasSubstr("above 200 MHz"));
-  EXPECT_THAT(remarks({{"ddr.part", "mt46h32m16lf"}, {"ddr.CL", "4cycles"}}), HasSubstr("no part"));
-  EXPECT_THAT(remarks({{"ddr.part", "mt47h128m16"}}), HasSubstr("195 ns"));
-  EXPECT_THAT(remarks({{"ddr.clock", "410MHz"}, {"ddr.CL", "6cycles"}}),
-              HasSubstr("above 400 MHz"));
+  std::vector<std::string> said;
+  const auto play = [&](std::vector<std::pair<std::string, std::string>> keys) {
+    Diagnostics::instance().clear();
+    const std::string error = error_of([&] {
+      trace::TextTrace t("t", "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0 4\n");
+      Played(t.info(), t, false, keys);
+    });
+    said.clear();
+    for (const auto& [what, n] : Diagnostics::instance().counts()) said.push_back(what.second);
+    return error;
+  };
+  EXPECT_THAT(play({{"ddr.clock", "124MHz"}}), HasSubstr("125MHz .. 533MHz, DDR2"));
+  EXPECT_EQ(play({{"ddr.clock", "125MHz"}, {"ddr.tREFI", "975cycles"}}), "");
+  EXPECT_THAT(said, testing::IsEmpty());
+  EXPECT_THAT(play({{"ddr.CL", "2cycles"}}), HasSubstr("3 .. 7 cycles, DDR2"));
+  EXPECT_EQ(play({{"ddr.clock", "266MHz"}, {"ddr.CL", "4cycles"}}), "");
+  EXPECT_THAT(play({{"ddr.clock", "267MHz"}, {"ddr.CL", "4cycles"}}),
+              HasSubstr("'ddr.CL': 4cycles is not allowed; allowed: more cycles at 267MHz"));
+  const std::vector<std::pair<std::string, std::string>> mobile = {
+      {"ddr.part", "mt46h32m16lf"}, {"ddr.banks", "4"},      {"ddr.CL", "3cycles"},
+      {"ddr.clock", "166MHz"},      {"ddr.tREFI", "1290cycles"}};
+  const auto with = [&](const char* key, const char* value) {
+    auto keys = mobile;
+    keys.emplace_back(key, value);
+    return keys;
+  };
+  EXPECT_EQ(play(mobile), "");
+  EXPECT_THAT(said, testing::IsEmpty());
+  EXPECT_EQ(play(with("ddr.clock", "20MHz")), "") << "no DLL, no floor";
+  EXPECT_THAT(said, testing::ElementsAre(HasSubstr("SDRCR RR: 1290 clocks programmed, "
+                                                   "MT46H32M16LF-6 needs tREFI at most 7800 ns = "
+                                                   "156 at 20 MHz")));
+  EXPECT_THAT(play(with("ddr.clock", "201MHz")), HasSubstr("1MHz .. 200MHz, mobile DDR"));
+  EXPECT_THAT(play(with("ddr.CL", "4cycles")), HasSubstr("2 or 3 cycles, mobile DDR"));
+  EXPECT_THAT(play(with("ddr.CL", "2cycles")), HasSubstr("more cycles at 166MHz"));
+  EXPECT_EQ(play(with("ddr.clock", "200MHz")), "");
+  EXPECT_THAT(said, testing::Contains(HasSubstr("CL 3 has tCK 6 ns at least")));
+  EXPECT_EQ(play({{"ddr.tRRD", "2cycles"}}), "");
+  EXPECT_THAT(said, testing::Contains("SDTIMR T_RRD: 2 clocks programmed, MT47H64M16-3 needs tRRD "
+                                      "10 ns = 3 at 243 MHz: 1 short"));
 }
 
 /// A trace whose content is spoilt but whose checksums are right again: plays, or one line says why

@@ -228,6 +228,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
   bus::CrossbarParams xp;
   bus::ConfigBusParams cp;
   mem::DdrParams dp;
+  dp.check.set("commands");
   bus::Scr scr("scr", xp, {}, strict);
   using Speed = bus::ConfigBus::Speed;
   bus::ConfigBus config("config", cp, quiet,

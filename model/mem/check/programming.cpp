@@ -66,7 +66,8 @@ std::vector<std::string> violations(const Programmed& programmed, const Part& pa
           number(need.tFAW - 4 * p.tRRD) + " short");
   c.at_least("SDTIMR T_WTR", "tWTR", p.tWTR, need.tWTR, part.tWTR ? time(part.tWTR) : "");
   // tRTP below two clocks counts as two.
-  if (!part.mobile) c.at_least("SDTIMR2 T_RTP", "tRTP", std::max(p.tRTP, 2u), need.tRTP, time(part.tRTP));
+  if (!part.mobile)
+    c.at_least("SDTIMR2 T_RTP", "tRTP", std::max(p.tRTP, 2u), need.tRTP, time(part.tRTP));
   if (programmed.sleeps) {
     c.at_least("SDTIMR2 T_XP", "tXP", p.tXP, need.tXP, "");
     c.at_least("SDTIMR2 T_CKE", "tCKE", p.tCKE, need.tCKE, "");

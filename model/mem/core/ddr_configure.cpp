@@ -39,6 +39,7 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   shut_ = !running_ || door_full_;
   if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
   if (scr_.running()) lane_.start(scr_.edge_at_or_after(scr_.start()));
+  if (on_change) on_change(at);
   plan_anew();
 }
 
@@ -65,6 +66,7 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
     row_shift_ = config.page_log2 + bank_bits;
     row_mask_ = ~0u;
   }
+  if (on_change) on_change(at);
   urgency_changed();
   plan_anew();
 }

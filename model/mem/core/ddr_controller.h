@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -135,6 +136,9 @@ class DdrController {
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
                                std::uint64_t clock);
   void set_command_hook(CommandHook hook, void* self);
+  /// Called when registers or clocks have changed: the commands that follow obey config().
+  std::function<void(Picoseconds at)> on_change;
+  const DdrConfig& config() const { return config_; }
 
  private:
   static constexpr std::size_t kMaxEntries = 16;

@@ -1,5 +1,5 @@
-// What others see of the queue. For a debugger, writes are acknowledged when they are taken into the FIFO, so their data are
-// part of memory for whoever looks.
+// What others see of the queue. Writes are acknowledged when they are taken into the FIFO, so for a
+// debugger their data are part of memory.
 #include <algorithm>
 #include <cstring>
 

@@ -12,8 +12,8 @@ constexpr int kLostByte = 0xA5;
 
 }  // namespace
 
-/// T_RASMAX counts refresh intervals, so a row that opens now is due after the present interval's end:
-/// looking at the open rows when an interval ends is early enough.
+/// T_RASMAX counts refresh intervals, so a row that opens now is due after the present interval's
+/// end: looking at the open rows when an interval ends is early enough.
 std::uint64_t DdrController::first_overdue() const {
   std::uint64_t first = kNoClock;
   if (config_.refresh_interval == 0) return first;
