@@ -72,6 +72,7 @@ void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t 
 
 void ConfigBus::access(MemRequest& r) {
   const Block* b = find(r.address);
+  accessing_ = r.master;
   // Bursts to registers do not exist on this bus.
   if (!b || r.bytes > 4) {
     ++stats.errors;

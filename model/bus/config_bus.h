@@ -59,6 +59,8 @@ class ConfigBus : public sc_core::sc_module, public MemTargetIf {
 
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
   unsigned transport_dbg(MemRequest&) override;
+  /// Whose access is, or was last, at its register.
+  Master accessing() const { return accessing_; }
 
  private:
   struct Block;
@@ -68,6 +70,7 @@ class ConfigBus : public sc_core::sc_module, public MemTargetIf {
 
   const ConfigBusParams& params_;
   QuietPhase& quiet_;
+  Master accessing_ = Master::kArmD;
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 

@@ -7,6 +7,7 @@
 #include <tlm>
 
 #include "model/common/check.h"
+#include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
 
 namespace fovea {
@@ -20,6 +21,8 @@ class BusTarget : public sc_core::sc_module {
   const RegBank& bank() const { return bank_; }
   RegBank& bank() { return bank_; }
   bool gated() const { return !clocked(); }
+  /// Looks on at all accesses; null: nobody.
+  void observe(RegisterObserver* observer) { observer_ = observer; }
 
  protected:
   BusTarget(sc_core::sc_module_name name, RegBank& regs) : sc_module(name), bank_(regs) {
@@ -37,12 +40,18 @@ class BusTarget : public sc_core::sc_module {
     if (!clocked()) {
       Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated");
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
+      std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
+      if (observer_) [[unlikely]]
+        observer_->accessed({&bank_, offset, bytes, gp.is_write(), true, word});
       gp.set_response_status(tlm::TLM_OK_RESPONSE);
       return;
     }
     Access a;
     if (gp.is_write()) {
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
+      if (const Reg* r = bank_.register_at(offset);
+          r && ((word << 8 * (offset & 3u)) & r->reserved()))
+        reserved_written(*r);
       a = bank_.write(offset, bytes, word);
     } else {
       a = bank_.read(offset, bytes, word);
@@ -56,7 +65,16 @@ class BusTarget : public sc_core::sc_module {
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       a = Access::kOk;
     }
+    if (observer_ && a == Access::kOk) [[unlikely]]
+      observer_->accessed({&bank_, offset, bytes, gp.is_write(), false, word});
     gp.set_response_status(a == Access::kOk ? tlm::TLM_OK_RESPONSE : tlm::TLM_BURST_ERROR_RESPONSE);
+  }
+
+  [[gnu::noinline]] void reserved_written(const Reg& r) const {
+    char bits[16];
+    std::snprintf(bits, sizeof bits, "0x%08x", r.reserved());
+    Diagnostics::instance().guest("1 written to reserved bits of " + bank_.name() + " " + r.name() +
+                                  " (" + bits + ")");
   }
 
   unsigned transport_dbg(tlm::tlm_generic_payload& gp) {
@@ -69,6 +87,7 @@ class BusTarget : public sc_core::sc_module {
   }
 
   RegBank& bank_;
+  RegisterObserver* observer_ = nullptr;
 };
 
 }  // namespace fovea

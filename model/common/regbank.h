@@ -63,6 +63,8 @@ class Reg {
   std::uint32_t offset() const { return offset_; }
   std::uint32_t reset_value() const { return reset_; }
   const std::vector<Field*>& fields() const { return fields_; }
+  /// Bits that belong to no field and are not 1 out of reset: software writes 0 there.
+  std::uint32_t reserved() const { return ~(covered_ | reset_); }
 
  private:
   friend class Field;
@@ -95,6 +97,8 @@ class RegBank {
   void reset();
   const std::string& name() const { return name_; }
   const std::vector<Reg*>& regs() const { return regs_; }
+  /// The register at an offset in the block; null: none.
+  const Reg* register_at(std::uint32_t offset) const { return find(offset); }
   std::uint64_t lost_writes() const { return lost_writes_; }
 
  private:

@@ -19,6 +19,7 @@ class Pause : public sc_core::sc_module {
   }
   void at(Picoseconds t) {
     const Picoseconds now = kernel_time();
+    due_.cancel();  // an earlier one whose cause the core has met already
     due_.notify(ps_time(t > now ? t - now : 0));
     ++horizon_epoch;
   }
@@ -59,12 +60,35 @@ bool BoardDebugMemory::debug_write(std::uint32_t pa, std::span<const std::uint8_
   return true;
 }
 
-GdbViews::Block debug_block(const std::string& name, BusTarget& block) {
-  return {name, &block.bank(), [&block] { return block.gated(); }};
+RegisterBlock register_block(const std::string& name, BusTarget& block) {
+  return {name, &block.bank(), [&block] { return block.gated(); },
+          [&block](RegisterObserver* o) { block.observe(o); }};
 }
 
-void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
-              QuietPhase& quiet, std::uint32_t ddr_base) {
+std::vector<RegisterBlock> board_blocks(soc::Dm365& soc) {
+  std::vector<std::pair<std::string, BusTarget*>> blocks = {
+      {"ddr", &soc.ddr},       {"uart0", &soc.uart0}, {"uart1", &soc.uart1}, {"i2c", &soc.i2c},
+      {"system", &soc.system}, {"pll1", &soc.pll1},   {"pll2", &soc.pll2},   {"psc", &soc.psc},
+      {"aintc", &soc.aintc},   {"gpio", &soc.gpio},   {"vpss", &soc.vpss},   {"isif", &soc.isif},
+      {"osd", &soc.osd},       {"venc", &soc.venc}};
+  for (std::size_t i = 0; i < soc.timers.size(); ++i)
+    blocks.emplace_back("timer" + std::to_string(i), soc.timers[i].get());
+  std::vector<RegisterBlock> out;
+  for (const auto& [name, block] : blocks) out.push_back(register_block(name, *block));
+  return out;
+}
+
+std::unique_ptr<RegisterLog> register_log(std::vector<RegisterBlock> blocks, bus::ConfigBus& bus,
+                                          cpu::Core& core,
+                                          std::function<std::string(std::uint32_t)> describe) {
+  return std::make_unique<RegisterLog>(
+      std::move(blocks),
+      RegisterLog::Sources{[] { return kernel_time(); }, [&bus] { return bus.accessing(); },
+                           [&core] { return core.current_pc(); }, std::move(describe)});
+}
+
+void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm, QuietPhase& quiet,
+              std::uint32_t ddr_base) {
   v.masters = std::make_unique<GdbMasters>(scr.crossbar(), ddr.controller(), ddr_base);
   v.now = [] { return kernel_time(); };
   v.settle = [&scr] { scr.settle(); };
@@ -80,21 +104,15 @@ void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
   };
 }
 
-GdbViews board_views(board::Board& board, const ParamSet& params) {
+GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* log) {
   auto& soc = board.dm365;
   GdbViews v;
   v.params = &params;
   v.memory = {{0, kInternal},
               {kDataWindow, kDataWindow + kInternal},
               {kSdram, kSdram + soc.ddr.store().size()}};
-  std::vector<std::pair<std::string, BusTarget*>> blocks = {
-      {"ddr", &soc.ddr},   {"uart0", &soc.uart0}, {"uart1", &soc.uart1}, {"i2c", &soc.i2c},
-      {"system", &soc.system}, {"pll1", &soc.pll1}, {"pll2", &soc.pll2}, {"psc", &soc.psc},
-      {"aintc", &soc.aintc},   {"gpio", &soc.gpio}, {"vpss", &soc.vpss}, {"isif", &soc.isif},
-      {"osd", &soc.osd},       {"venc", &soc.venc}};
-  for (std::size_t i = 0; i < soc.timers.size(); ++i)
-    blocks.emplace_back("timer" + std::to_string(i), soc.timers[i].get());
-  for (const auto& [name, block] : blocks) v.blocks.push_back(debug_block(name, *block));
+  v.blocks = board_blocks(soc);
+  v.log = log;
   join_bus(v, soc.scr, soc.ddr, soc.arm, soc.quiet, kSdram);
   v.stats = [&board] {
     auto& chip = board.dm365;

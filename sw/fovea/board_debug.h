@@ -18,12 +18,19 @@ class BoardDebugMemory : public cpu::DebugMemory {
   soc::Dm365& soc_;
 };
 
-GdbViews::Block debug_block(const std::string& name, BusTarget& block);
-/// The other masters, and what changing registers from a debugger needs; before the simulation starts.
+RegisterBlock register_block(const std::string& name, BusTarget& block);
+std::vector<RegisterBlock> board_blocks(soc::Dm365& soc);
+/// Not yet started.
+std::unique_ptr<RegisterLog> register_log(std::vector<RegisterBlock> blocks, bus::ConfigBus& bus,
+                                          cpu::Core& core,
+                                          std::function<std::string(std::uint32_t)> describe);
+
+/// The other masters, and what changing registers from a debugger needs; before the simulation
+/// starts.
 void join_bus(GdbViews& views, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
               QuietPhase& quiet, std::uint32_t ddr_base);
 
-/// Blocks, memory, statistics and parameters for `monitor`. `board` and `params` outlive it.
-GdbViews board_views(board::Board& board, const ParamSet& params);
+/// Blocks, memory, statistics and parameters for `monitor`. All three outlive it.
+GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* log);
 
 }  // namespace fovea::app

@@ -240,11 +240,14 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   RunResult result;
   auto& arm = board_->dm365.arm;
   BoardDebugMemory debug_memory(board_->dm365);
+  const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
+                                [&elf](std::uint32_t pc) { return elf.describe(pc); });
+  if (!request.registers.pattern.empty()) log->start(request.registers);
   std::unique_ptr<GdbSession> gdb;
   if (request.gdb_port)
     gdb = std::make_unique<GdbSession>(*request.gdb_port, arm.core(), debug_memory,
-                                       board_views(*board_, request.params), request.stop,
-                                       *request.notes);
+                                       board_views(*board_, request.params, log.get()),
+                                       request.stop, *request.notes);
   // Slices only let the host look in; nothing in the model depends on where they end.
   const Picoseconds slice = 5 * kPsPerMs;
   std::string guest;
@@ -309,6 +312,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     result.timeline.push_back(std::move(t));
   }
   result.uart = board_->uart_text();
+  if (!request.registers.pattern.empty()) result.registers = log->text();
   add_host(result, request.strict_sync);
   if (gdb) gdb->exited(guest.empty() ? 0 : 3);
   return result;

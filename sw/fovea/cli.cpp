@@ -35,16 +35,18 @@ struct RunOptions {
   bool mp4 = false;
   std::string bus_trace;
   std::string gdb;
+  RegisterLogRequest registers;
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
-                   const std::vector<std::string>& args, std::vector<StatRow>& host) {
+                   const std::vector<std::string>& args, std::vector<StatRow>& host, bool log) {
   host = result.host;
   meter.add_host_rows(host);
   dir.write("frames.csv", frames_csv(result.frames));
   dir.write("timeline.csv", timeline_csv(result.timeline_masters, result.timeline));
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("uart.log", result.uart);
+  if (log) dir.write("registers.log", result.registers);
   dir.write("host.json", host_json(host, args, version_text()));
   // Last: who finds stats.json finds all the rest.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
@@ -79,7 +81,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .progress = meter,
                      .frame = {},
                      .bus_trace = options.bus_trace,
-                     .gdb_port = {}};
+                     .gdb_port = {},
+                     .registers = options.registers};
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
@@ -99,7 +102,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   writer.close();
 
   std::vector<StatRow> host;
-  write_results(dir, result, meter, args, host);
+  write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   dir.commit();
   context.out << summary_table(result.stats, host);
   context.out << fmt::format("  results in {}\n", dir.folder().string());
@@ -252,6 +255,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   replay_command->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
   run_command->add_option("--gdb", run.gdb,
                           "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
+  add_register_log_options(*run_command, run.registers);
   CLI::App* exec_command = add_exec_command(app, exec);
   if (!own.empty() && own[0] == "exec") exec.arguments = take_program_arguments(own);
 

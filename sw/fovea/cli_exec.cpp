@@ -19,18 +19,24 @@
 namespace fovea::app {
 namespace {
 
-constexpr std::array<std::string_view, 8> kWithValue = {"-s",     "--set",   "-o",    "--out",
-                                                        "--load", "--entry", "--root", "--gdb"};
+constexpr std::array<std::string_view, 10> kWithValue = {
+    "-s",      "--set",  "-o",    "--out",           "--load",
+    "--entry", "--root", "--gdb", "--log-registers", "--log-registers-kept"};
 constexpr std::array<std::string_view, 5> kFlags = {"--thumb", "--fast-memory", "--strict",
                                                     "--help", "-h"};
 
 constexpr const char* kMemoryHelp =
-    "Memory: RAM of the SDRAM's size (ddr.part) from the multiple of that size below the program's\n"
-    "lowest address, which is 0 for newlib's default link; then there is no internal RAM. Programs\n"
-    "from that size up find the chip's internal RAM at 0x0 and 0x10000 as well. Heap and stack take\n"
-    "the largest piece the program leaves free, the stack from its top. Nothing else answers but\n"
-    "the SDRAM controller's registers. Options may stand before or behind the program; what is no\n"
-    "option of exec, and all behind --, belongs to the program.\n"
+    "Memory: RAM of the SDRAM's size (ddr.part) from the multiple of that size below the "
+    "program's\n"
+    "lowest address, which is 0 for newlib's default link; -s exec.ram_base=ADDR puts it "
+    "elsewhere.\n"
+    "At 0 there is no internal RAM; other programs find the chip's at 0x0 and 0x10000 as well. "
+    "Heap\n"
+    "and stack take the largest piece the program leaves free, the stack from its top. Nothing "
+    "else\n"
+    "answers but the SDRAM controller's registers. Options may stand before or behind the "
+    "program;\n"
+    "what is no option of exec, and all behind --, belongs to the program.\n"
     "Exit status: the program's own; 2 wrong input, 3 the guest failed, 4 a defect of fovea, each\n"
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
@@ -81,6 +87,19 @@ ExecProgram program_of(const ExecOptions& o) {
 
 }  // namespace
 
+void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
+  command
+      .add_option("--log-registers", request.pattern,
+                  "Log accesses to registers whose BLOCK.REGISTER matches this regular expression")
+      ->check([](const std::string& s) {
+        return s.empty() ? std::string("a regular expression is needed; '.' takes all") : "";
+      });
+  command
+      .add_option("--log-registers-kept", request.kept,
+                  "How many of the last accesses are kept (4096)")
+      ->check(CLI::Range(1, 100'000'000));
+}
+
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   CLI::App* c = app.add_subcommand("exec", "Run a program on core and memory, with semihosting");
   c->add_option("program", o.program, "ELF file, or a flat binary with --load and --entry")
@@ -94,6 +113,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
       ->allow_extra_args(false);
   c->add_option("-o,--out", o.out_dir, "Folder for stats.json, stalls.csv, config.json and host.json");
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
+  add_register_log_options(*c, o.registers);
   c->add_flag("--strict", o.strict,
               "A feature that the guest uses and the model lacks is an error");
   c->footer(kMemoryHelp);
@@ -185,11 +205,14 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                                            .notes = context.err,
                                            .fast_memory = o.fast_memory,
                                            .console = console,
-                                           .stop = context.stop ? *context.stop : kNeverStops});
+                                           .stop = context.stop ? *context.stop : kNeverStops,
+                                           .registers = o.registers});
   context.out.flush();
   context.err << core_table(result.stats) << std::flush;
+  if (!dir) context.err << result.registers << std::flush;
   if (dir) {
     dir->write("stalls.csv", stalls_csv(result.stalls));
+    if (!o.registers.pattern.empty()) dir->write("registers.log", result.registers);
     dir->write("host.json", host_json(result.host, args, version_text()));
     dir->write("stats.json",
                stats_json(result.stats, result.complete && result.guest_failure.empty(),

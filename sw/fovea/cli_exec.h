@@ -16,8 +16,12 @@ struct ExecOptions {
   std::vector<std::string> arguments;  ///< of the program
   std::vector<std::string> sets;
   std::string load, entry, root, out_dir, gdb;
+  RegisterLogRequest registers;
   bool thumb = false, fast_memory = false, strict = false;
 };
+
+/// `--log-registers` and its size, of run and exec.
+void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
 
 /// Adds the subcommand; its options go to `options`.
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);

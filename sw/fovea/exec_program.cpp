@@ -66,23 +66,44 @@ ExecProgram ExecProgram::flat(const std::filesystem::path& file, std::uint32_t l
   return p;
 }
 
-ExecMap ExecProgram::map(std::uint64_t ram_size) const {
+std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64_t ram_size) {
+  if (text == "auto") return std::nullopt;
+  constexpr std::uint32_t kStep = 1u << 20;  // the internal RAM's windows lie below the first one
+  const std::uint64_t most = (std::uint64_t{1} << 32) - ram_size;
+  std::optional<std::uint32_t> base;
+  try {
+    base = parse_address("exec.ram_base", text);
+  } catch (const UserError&) {
+  }
+  if (!base || *base % kStep || *base > most)
+    throw UserError(
+        fmt::format("key 'exec.ram_base': '{}' is not allowed; allowed: auto, or a "
+                    "multiple of 0x100000 up to 0x{:08x}",
+                    one_line(text), most));
+  return base;
+}
+
+ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base) const {
   ExecMap m;
   m.ram_size = ram_size;
   // The lowest segment that is no guest of the internal RAM chooses the window.
   const ElfSegment* lowest = nullptr;
   for (const auto& s : segments_)
     if (!in_internal_ram(s) && (!lowest || s.address < lowest->address)) lowest = &s;
-  m.ram_base = lowest ? static_cast<std::uint32_t>(lowest->address / ram_size * ram_size)
-                      : kChipSdram;
+  if (ram_base)
+    m.ram_base = *ram_base;
+  else
+    m.ram_base =
+        lowest ? static_cast<std::uint32_t>(lowest->address / ram_size * ram_size) : kChipSdram;
   m.tcm = m.ram_base != 0;
   for (const auto& s : segments_) {
     if (inside(s, m.ram_base, ram_size) || (m.tcm && in_internal_ram(s))) continue;
     throw UserError(fmt::format(
         "program '{}': segment {} (0x{:08x}, {} bytes) lies outside memory; allowed: RAM from "
-        "0x{:08x} to 0x{:08x}{}; 'ddr.part' sets its size",
-        one_line(name_), s.index, s.address, s.memory_size, m.ram_base,
-        m.ram_base + (ram_size - 1), m.tcm ? ", or internal RAM at 0x0 and 0x10000" : ""));
+        "0x{:08x} to 0x{:08x}{}; 'ddr.part' sets its size, "
+        "'exec.ram_base' its place",
+        one_line(name_), s.index, s.address, s.memory_size, m.ram_base, m.ram_base + (ram_size - 1),
+        m.tcm ? ", or internal RAM at 0x0 and 0x10000" : ""));
   }
   // The largest gap between the segments in the window.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> used = {

@@ -39,8 +39,9 @@ class ExecProgram {
   std::string describe(std::uint32_t address) const {
     return image_ ? image_->describe(address) : "";
   }
+  /// @param ram_base where RAM begins; empty: the multiple of its size below the lowest segment.
   /// @throws UserError if the segments do not fit into one map
-  ExecMap map(std::uint64_t ram_size) const;
+  ExecMap map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base = {}) const;
 
  private:
   std::string name_;
@@ -48,6 +49,9 @@ class ExecProgram {
   std::vector<ElfSegment> segments_;
   std::optional<ElfImage> image_;
 };
+
+/// The text of `exec.ram_base`: "auto" is empty. @throws UserError
+std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64_t ram_size);
 
 /// "0x8000" or "32768". @throws UserError naming the option
 std::uint32_t parse_address(const std::string& option, const std::string& text);

@@ -14,6 +14,14 @@ namespace {
 
 using Wall = std::chrono::steady_clock;
 
+struct ExecParams : ParamGroup {
+  TextParam ram_base{
+      *this, "ram_base", "auto",
+      "where RAM begins, a multiple of 0x100000; auto: the multiple of its size below "
+      "the program's lowest segment"};
+  ExecParams() : ParamGroup("exec") {}
+};
+
 class BoardExecutor final : public Executor {
  public:
   void declare(ParamSet& set) override {
@@ -23,6 +31,7 @@ class BoardExecutor final : public Executor {
     set.add(config_bus_);
     set.add(ddr_);
     set.add(clocks_);
+    set.add(exec_);
   }
   std::uint64_t memory_bytes() const override { return ddr_.size_bytes(); }
   ExecResult run(const ExecRequest& request) override;
@@ -35,6 +44,7 @@ class BoardExecutor final : public Executor {
   bus::ConfigBusParams config_bus_;
   mem::DdrParams ddr_;
   board::ClockParams clocks_;
+  ExecParams exec_;
   std::unique_ptr<ExecBoard> board_;
 };
 
@@ -48,8 +58,13 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
                                           sc_core::SC_DO_NOTHING);
   ExecSession session(arm.core(), *board_, request, map);
   session.load(board_->ram(), board_->tcm());
+  const std::vector<RegisterBlock> blocks = {register_block("ddr", board_->ddr)};
+  const auto log = register_log(blocks, board_->config, arm.core(),
+                                [&](std::uint32_t pc) { return request.program.describe(pc); });
+  if (!request.registers.pattern.empty()) log->start(request.registers);
   session.attach(*board_, [&](GdbViews& v) {
-    v.blocks.push_back(debug_block("ddr", board_->ddr));
+    v.blocks = blocks;
+    v.log = log.get();
     join_bus(v, board_->scr, board_->ddr, board_->arm, board_->quiet, map.ram_base);
   });
   // Slices only let the host look in. No instruction takes as long as one.
@@ -70,6 +85,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
     before = now;
   }
   ExecResult result = session.result(failure);
+  if (!request.registers.pattern.empty()) result.registers = log->text();
   board_->scr.settle();
   board_->ddr.settle(kernel_time());
   for (const auto m : {Master::kArmI, Master::kArmD}) {
@@ -86,7 +102,8 @@ ExecResult BoardExecutor::run(const ExecRequest& request) {
     if (!std::has_single_bit(cache->size()))
       throw UserError("key '" + cache->size.key() + "': '" + cache->size.text() +
                       "' is not allowed; allowed: powers of two");
-  const ExecMap map = request.program.map(memory_bytes());
+  const ExecMap map =
+      request.program.map(memory_bytes(), parse_ram_base(exec_.ram_base(), memory_bytes()));
   const ExecClocks clocks = ExecClocks::preset(clocks_.preset());
   ExecResult result = request.fast_memory ? run_flat(request, cpu_, map, clocks.core)
                                           : run_board(request, map, clocks);

@@ -101,8 +101,7 @@ std::vector<StatRow> ExecSession::core_stats() const {
   return rows;
 }
 
-void ExecSession::attach(cpu::DebugMemory& memory,
-                         const std::function<void(GdbViews&)>& add) {
+void ExecSession::attach(cpu::DebugMemory& memory, const std::function<void(GdbViews&)>& add) {
   if (!request_.gdb_port) return;
   GdbViews views;
   views.params = &request_.params;

@@ -12,6 +12,7 @@
 #include "model/common/param.h"
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/register_log.h"
 #include "sw/fovea/semihosting.h"
 
 namespace fovea::app {
@@ -26,6 +27,7 @@ struct ExecRequest {
   bool fast_memory = false;            ///< flat memory without wait states; no bus, no SDRAM
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
+  RegisterLogRequest registers = {};
 };
 
 struct ExecResult {
@@ -35,6 +37,7 @@ struct ExecResult {
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
+  std::string registers;  ///< the log that was asked for
 };
 
 /// A machine that runs one program.

@@ -14,12 +14,18 @@ std::string_view name(Master m) { return kMasterNames[index(m)]; }
 std::string_view name(mem::Cmd cmd) {
   using mem::Cmd;
   switch (cmd) {
-    case Cmd::kAct: return "ACT";
-    case Cmd::kPre: return "PRE";
-    case Cmd::kPreAll: return "PREA";
-    case Cmd::kRd: return "RD";
-    case Cmd::kWr: return "WR";
-    default: return "REF";
+    case Cmd::kAct:
+      return "ACT";
+    case Cmd::kPre:
+      return "PRE";
+    case Cmd::kPreAll:
+      return "PREA";
+    case Cmd::kRd:
+      return "RD";
+    case Cmd::kWr:
+      return "WR";
+    default:
+      return "REF";
   }
 }
 
@@ -50,9 +56,8 @@ void GdbMasters::done(const MemRequest& r) {
   const bool to_sdram = r.slave == static_cast<std::uint8_t>(bus::Slave::kDdr);
   if (before_) to_sdram ? before_->responded(r) : before_->register_done(r);
   auto& list = under_way_[index(r.master)];
-  const auto found = std::find_if(list.rbegin(), list.rend(), [&](const Request& o) {
-    return o.request == &r && !o.decided;
-  });
+  const auto found = std::find_if(list.rbegin(), list.rend(),
+                                  [&](const Request& o) { return o.request == &r && !o.decided; });
   if (found != list.rend()) {
     found->decided = true;
     found->first = r.first;
@@ -67,49 +72,41 @@ void GdbMasters::look(const MemRequest& r) const {
     if (w.only ? *w.only != r.master : core) continue;
     if (w.kind != Kind::kAccess && (w.kind == Kind::kWrite) != r.write) continue;
     const std::uint64_t from = std::max(r.address, w.pa);
-    const std::uint64_t to = std::min(std::uint64_t{r.address} + r.bytes, std::uint64_t{w.pa} + w.bytes);
+    const std::uint64_t to =
+        std::min(std::uint64_t{r.address} + r.bytes, std::uint64_t{w.pa} + w.bytes);
     if (from >= to || !on_hit) continue;
     const auto pa = static_cast<std::uint32_t>(from);
     on_hit({r.last, r.master, r.write, w.va + (pa - w.pa), pa, w});
   }
 }
 
-bool GdbMasters::outstanding(Master m, Picoseconds now) const {
-  const auto& list = under_way_[index(m)];
-  return std::any_of(list.begin(), list.end(), [&](const Request& r) {
-    return r.issued <= now && (!r.decided || r.last > now);
-  });
-}
-
 std::string GdbMasters::where(Picoseconds now) const {
   const auto bus = crossbar_.view(now);
   const auto ddr = ddr_.view();
   std::string out;
+  constexpr std::size_t kShown = 8;
   for (std::size_t m = 0; m < kMasterCount; ++m) {
-    const Request* oldest = nullptr;
-    unsigned n = 0;
-    for (const Request& r : under_way_[m]) {
+    std::size_t n = 0;
+    for (const Request& r : under_way_[m]) {  // in the order of their issue
       if (r.issued > now || (r.decided && r.last <= now)) continue;
-      ++n;
-      if (!oldest || r.issued < oldest->issued) oldest = &r;
+      if (n++ == 0) out += fmt::format("{} (priority {}):\n", kMasterNames[m], bus.priority[m]);
+      if (n > kShown) continue;
+      out += fmt::format("    {} of {} bytes at 0x{:08x} since {} ns ({} ns): {}\n",
+                         r.write ? "write" : "read", r.bytes, r.address, ns_text(r.issued),
+                         ns_text(now - r.issued), place(r, bus, ddr, now));
     }
-    if (!oldest) continue;
-    out += fmt::format("{}: {} of {} bytes at 0x{:08x} since {} ns ({} ns), priority {}{}\n    {}\n",
-                       kMasterNames[m], oldest->write ? "write" : "read", oldest->bytes,
-                       oldest->address, ns_text(oldest->issued), ns_text(now - oldest->issued),
-                       bus.priority[m], n > 1 ? fmt::format(", {} more behind it", n - 1) : "",
-                       place(*oldest, bus, ddr, now));
+    if (n > kShown) out += fmt::format("    and {} more\n", n - kShown);
   }
   if (out.empty()) out = "no master has a request under way\n";
   for (std::size_t i = 0; i < ddr.items.size(); ++i) {
     const auto& e = ddr.items[i];
-    out += fmt::format("sdram {}: {} of {}, {} bytes at 0x{:08x}, bank {} row 0x{:x}{}{}\n", i + 1,
-                       e.write ? "write" : "read", name(e.master), e.bytes, ddr_base_ + e.address,
-                       e.bank, e.row,
-                       e.open == e.row                       ? " (open)"
-                       : e.open == mem::DdrDevice::kClosed ? " (bank closed)"
-                                                             : fmt::format(" (row 0x{:x} is open)", e.open),
-                       e.door ? ", at the door" : "");
+    out += fmt::format(
+        "sdram {}: {} of {}, {} bytes at 0x{:08x}, bank {} row 0x{:x}{}{}\n", i + 1,
+        e.write ? "write" : "read", name(e.master), e.bytes, ddr_base_ + e.address, e.bank, e.row,
+        e.open == e.row                     ? " (open)"
+        : e.open == mem::DdrDevice::kClosed ? " (bank closed)"
+                                            : fmt::format(" (row 0x{:x} is open)", e.open),
+        e.door ? ", at the door" : "");
   }
   if (ddr.next_at != kNever)
     out += fmt::format("sdram: next command {} for {} at {} ns\n", name(ddr.cmd),
@@ -151,12 +148,14 @@ std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const
                                slave.granted ? name(*slave.granted) : "another");
   if (slave.locked_by && *slave.locked_by != r.master)
     return place + fmt::format("{}, which has locked it", name(*slave.locked_by));
+  const bool loses = bus.next && *bus.next != r.master;
+  const std::string winner =
+      loses ? fmt::format("{} (priority {})", name(*bus.next), bus.priority[index(*bus.next)]) : "";
   if (slave.free > now)
-    return place + fmt::format("{}, {}", others ? name(*slave.granted) : "its own earlier request",
-                               until(slave.free));
-  if (bus.next && *bus.next != r.master)
-    return place + fmt::format("{} (priority {}), which wins at {} ns", name(*bus.next),
-                               bus.priority[index(*bus.next)], ns_text(bus.next_at));
+    return place + fmt::format("{}, {}{}",
+                               others ? name(*slave.granted) : "its own earlier request",
+                               until(slave.free), loses ? ", then for " + winner : "");
+  if (loses) return place + fmt::format("{}, which wins at {} ns", winner, ns_text(bus.next_at));
   return place + fmt::format("the clock edge at {} ns", ns_text(bus.next_at));
 }
 
@@ -174,18 +173,25 @@ std::string GdbMasters::in_controller(const mem::DdrController::View& ddr, std::
   const std::string place = "in the SDRAM queue: ";
   if (ddr.asleep != mem::LowPower::kOff) return place + "waits for the memory to wake up";
   if (e.ready > now) return place + "in the controller's pipeline " + until(e.ready);
-  if (e.moving) return place + "in service, its last column is given at " + ns_text(ddr.next_at) + " ns";
+  if (e.moving)
+    return place + "in service, its last column is given at " + ns_text(ddr.next_at) + " ns";
   if (!own) return place + "waits for " + served;
+  const std::string behind =
+      ddr.last_master ? fmt::format(", behind the {} of {}", name(ddr.last), name(*ddr.last_master))
+      : ddr.last == mem::Cmd::kRef || ddr.last == mem::Cmd::kPreAll ? ", behind a refresh"
+                                                                    : "";
   switch (ddr.cmd) {
     case mem::Cmd::kPre:
-      return place + fmt::format("row conflict in bank {}: row 0x{:x} wanted, 0x{:x} open; closed at "
-                                 "{} ns", e.bank, e.row, e.open, ns_text(ddr.next_at));
+      return place + fmt::format(
+                         "row conflict in bank {}: row 0x{:x} wanted, 0x{:x} open; closed at "
+                         "{} ns{}",
+                         e.bank, e.row, e.open, ns_text(ddr.next_at), behind);
     case mem::Cmd::kAct:
-      return place + fmt::format("row miss: row 0x{:x} of bank {} is opened at {} ns", e.row, e.bank,
-                                 ns_text(ddr.next_at));
+      return place + fmt::format("row miss: row 0x{:x} of bank {} is opened at {} ns{}", e.row,
+                                 e.bank, ns_text(ddr.next_at), behind);
     default:
-      return place + fmt::format("row 0x{:x} of bank {} is open; {} at {} ns, by the SDRAM's timing",
-                                 e.row, e.bank, name(ddr.cmd), ns_text(ddr.next_at));
+      return place + fmt::format("row 0x{:x} of bank {} is open; {} at {} ns{}", e.row, e.bank,
+                                 name(ddr.cmd), ns_text(ddr.next_at), behind);
   }
 }
 

@@ -1,4 +1,5 @@
-// All memory masters under a debugger: who waits for whom, and watchpoints on those beside the core.
+// All memory masters under a debugger: who waits for whom, and watchpoints on those beside the
+// core.
 #pragma once
 #include <array>
 #include <functional>
@@ -41,11 +42,9 @@ class GdbMasters final : public MemObserver {
   std::function<void(const Hit&)> on_hit;
   std::vector<Watch> watches;
 
-  /// A line for each master that has something under way at `now`, and the SDRAM's queue. The caller
+  /// What each master has under way at `now`, oldest first, and the SDRAM's queue. The caller
   /// has all decisions at or before `now` taken.
   std::string where(Picoseconds now) const;
-  /// The outstanding request of a master that was issued first; for the core's own line.
-  bool outstanding(Master m, Picoseconds now) const;
 
  private:
   struct Request {

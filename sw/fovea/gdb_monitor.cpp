@@ -20,7 +20,7 @@ std::optional<std::uint32_t> number(std::string_view text) {
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, value);
   return error == std::errc() && stopped == end && !text.empty() ? std::optional(value)
-                                                                  : std::nullopt;
+                                                                 : std::nullopt;
 }
 
 }  // namespace
@@ -68,7 +68,8 @@ std::string GdbSession::set_register(const std::string& what) {
                               [&](const auto& v) { return v.name == block; });
   if (b == views_.blocks.end()) return show_registers(block);
   const auto& regs = b->registers->regs();
-  const auto r = std::find_if(regs.begin(), regs.end(), [&](const Reg* x) { return x->name() == name; });
+  const auto r =
+      std::find_if(regs.begin(), regs.end(), [&](const Reg* x) { return x->name() == name; });
   if (r == regs.end()) return fmt::format("{} has no register {}\n", block, name);
   std::uint32_t word = *value;
   if (!field.empty()) {
@@ -77,8 +78,7 @@ std::string GdbSession::set_register(const std::string& what) {
                                 [&](const Field* x) { return x->name() == field; });
     if (f == fields.end()) return fmt::format("{}.{} has no field {}\n", block, name, field);
     const std::uint32_t most = (*f)->mask() >> (*f)->lsb();
-    if (*value > most)
-      return fmt::format("{}.{}.{}: allowed: 0 to {}\n", block, name, field, most);
+    if (*value > most) return fmt::format("{}.{}.{}: allowed: 0 to {}\n", block, name, field, most);
     b->registers->peek((*r)->offset(), word);
     for (const Field* x : fields)
       if (x == *f || x->mode() == Mode::kW1c || x->mode() == Mode::kWo) word &= ~x->mask();
@@ -96,21 +96,27 @@ std::string GdbSession::set_register(const std::string& what) {
     control_.disturb();
   }
   write();
-  return b->gated && b->gated() ? fmt::format("the clock of {} is gated: the write is lost\n", block)
-                                : show_registers(block + "." + name);
+  return b->gated && b->gated()
+             ? fmt::format("the clock of {} is gated: the write is lost\n", block)
+             : show_registers(block + "." + name);
 }
 
 std::string GdbSession::core_line() const {
   const auto p = debug_.pending();
-  std::string out = asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
-                            : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
+  std::string out =
+      asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
+              : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
   if (p.irq || p.fiq)
-    out += fmt::format("; {} asserted{}", p.irq && p.fiq ? "IRQ and FIQ" : p.irq ? "IRQ" : "FIQ",
-                       (p.irq && (debug_.cpsr() & 0x80u)) || (p.fiq && (debug_.cpsr() & 0x40u))
-                           ? ", masked" : "");
+    out += fmt::format(
+        "; {} asserted{}",
+        p.irq && p.fiq ? "IRQ and FIQ"
+        : p.irq        ? "IRQ"
+                       : "FIQ",
+        (p.irq && (debug_.cpsr() & 0x80u)) || (p.fiq && (debug_.cpsr() & 0x40u)) ? ", masked" : "");
   out += "\n";
   const auto line = [&out](const char* what, std::uint32_t address, Picoseconds until) {
-    out += fmt::format("    {} 0x{:08x} is being filled until {} ns\n", what, address, ns_text(until));
+    out +=
+        fmt::format("    {} 0x{:08x} is being filled until {} ns\n", what, address, ns_text(until));
   };
   if (p.instruction_fill) line("I-cache line", p.instruction_line, p.instruction_fill);
   if (p.data_fill) line("D-cache line", p.data_line, p.data_fill);
@@ -132,8 +138,30 @@ std::string GdbSession::where() {
     control_.settle_bus();
   }
   std::string out = fmt::format("at {} ns\n", ns_text(now)) + core_line();
-  return out + (views_.masters ? views_.masters->where(now)
-                               : "memory answers at once: nobody waits\n");
+  return out +
+         (views_.masters ? views_.masters->where(now) : "memory answers at once: nobody waits\n");
+}
+
+std::string GdbSession::show_log(const std::string& what) {
+  constexpr std::size_t kTail = 20;
+  if (!views_.log) return "there are no registers to log\n";
+  std::string_view rest = what;
+  const std::string_view word = take_until(rest, ' ');
+  if (word.empty() || number(word)) {
+    if (views_.log->running()) return views_.log->text(word.empty() ? kTail : *number(word));
+  } else if (word == "log" && rest == "off") {
+    views_.log->stop();
+  } else if (word == "log" && !rest.empty()) {
+    try {
+      views_.log->start({.pattern = std::string(rest)});
+    } catch (const UserError& e) {
+      return std::string(e.what()) + "\n";
+    }
+  } else {
+    return "monitor registers [COUNT]          the last accesses\n"
+           "monitor registers log REGEX|off    on BLOCK.REGISTER\n";
+  }
+  return fmt::format("the log is {}\n", views_.log->running() ? "on" : "off");
 }
 
 std::string GdbSession::watch(const std::string& what) {
@@ -160,8 +188,9 @@ std::string GdbSession::watch(const std::string& what) {
     GdbMasters::Watch w;
     w.pa = w.va = *address;
     w.bytes = *bytes;
-    w.kind = kind == "w" ? GdbMasters::Kind::kWrite
-             : kind == "r" ? GdbMasters::Kind::kRead : GdbMasters::Kind::kAccess;
+    w.kind = kind == "w"   ? GdbMasters::Kind::kWrite
+             : kind == "r" ? GdbMasters::Kind::kRead
+                           : GdbMasters::Kind::kAccess;
     if (!rest.empty()) {
       const auto found = std::find(kMasterNames.begin(), kMasterNames.end(), rest);
       if (found == kMasterNames.end())
@@ -174,8 +203,9 @@ std::string GdbSession::watch(const std::string& what) {
   for (const auto& w : list)
     if (!w.packet)
       out += fmt::format("0x{:08x},{} {} {}\n", w.pa, w.bytes,
-                         w.kind == GdbMasters::Kind::kWrite ? "w"
-                         : w.kind == GdbMasters::Kind::kRead ? "r" : "a",
+                         w.kind == GdbMasters::Kind::kWrite  ? "w"
+                         : w.kind == GdbMasters::Kind::kRead ? "r"
+                                                             : "a",
                          w.only ? kMasterNames[index(*w.only)] : "any master but the core");
   return out.empty() ? "nothing is watched\n" : out;
 }
@@ -197,6 +227,7 @@ std::string GdbSession::monitor(const std::string& command) {
   if (word == "stats") return show_stats(rest);
   if (word == "regs") return show_registers(rest);
   if (word == "set") return set_register(rest);
+  if (word == "registers") return show_log(rest);
   if (word == "where") return where();
   if (word == "watch") return watch(rest);
   if (word == "watch-masters") return watch_masters(rest);
@@ -214,6 +245,7 @@ std::string GdbSession::monitor(const std::string& command) {
          "monitor params [PART]   parameters\n"
          "monitor regs BLOCK[.REGISTER]   registers of a peripheral, with fields\n"
          "monitor set BLOCK.REGISTER[.FIELD]=VALUE   as a store of the core\n"
+         "monitor registers [COUNT], registers log REGEX|off   accesses to peripherals\n"
          "monitor where           which master waits for whom\n"
          "monitor watch dma 0xADDR[,LENGTH] w|r|a [MASTER]   stops for other masters\n"
          "monitor watch-masters [on|off]   whether watchpoints see other masters\n"

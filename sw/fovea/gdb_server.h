@@ -36,7 +36,14 @@ class GdbTarget {
 /// Why the target stands still.
 struct GdbStop {
   enum class Reason : std::uint8_t {
-    kRequest, kStep, kSoftware, kHardware, kWrite, kRead, kAccess, kOther
+    kRequest,
+    kStep,
+    kSoftware,
+    kHardware,
+    kWrite,
+    kRead,
+    kAccess,
+    kOther
   };
   Reason reason = Reason::kRequest;
   std::uint32_t address = 0;  ///< of a watchpoint

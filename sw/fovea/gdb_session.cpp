@@ -33,8 +33,7 @@ GdbSession::GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& me
     numbers_.push_back(kSystem + k);
   for (unsigned k = 0; k < cpu::CoreDebug::banked_registers().size(); ++k)
     numbers_.push_back(kBanked + k);
-  if (views_.masters)
-    views_.masters->on_hit = [this](const GdbMasters::Hit& h) { noticed(h); };
+  if (views_.masters) views_.masters->on_hit = [this](const GdbMasters::Hit& h) { noticed(h); };
   control_.on_stop = [this](const cpu::CoreControl::Stop& s) { stopped(s); };
   control_.request_halt();
   notes << fmt::format("fovea: waiting for gdb: target remote 127.0.0.1:{}\n", server_.port())
@@ -54,7 +53,9 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
       stop.reason = hardware ? GdbStop::Reason::kHardware : GdbStop::Reason::kSoftware;
       break;
     }
-    case Reason::kTime: stop = take_hit(); break;
+    case Reason::kTime:
+      stop = take_hit();
+      break;
     case Reason::kWatch:
       stop.reason = s.watch == cpu::CoreControl::Watch::kWrite  ? GdbStop::Reason::kWrite
                     : s.watch == cpu::CoreControl::Watch::kRead ? GdbStop::Reason::kRead
@@ -71,8 +72,8 @@ GdbResume GdbSession::serve(const GdbStop& stop) {
   return resume;
 }
 
-/// A debugger that finds its watchpoint hit steps over the instruction that it takes for the cause. A
-/// sleeping core has none: that step ends where it began.
+/// A debugger that finds its watchpoint hit steps over the instruction that it takes for the cause.
+/// A sleeping core has none: that step ends where it began.
 void GdbSession::serve_asleep(const GdbStop& stop) {
   const bool watched = stop.reason != GdbStop::Reason::kRequest;
   control_.cancel_halt();
@@ -105,8 +106,8 @@ GdbStop GdbSession::take_hit() {
   return stop;
 }
 
-/// Other masters know physical addresses only: a watchpoint is where its pages are when the core goes
-/// on.
+/// Other masters know physical addresses only: a watchpoint is where its pages are when the core
+/// goes on.
 void GdbSession::arm_watches() {
   if (!views_.masters) return;
   auto& list = views_.masters->watches;

@@ -14,6 +14,7 @@
 #include "sw/fovea/gdb_masters.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/register_log.h"
 
 namespace fovea::app {
 
@@ -21,12 +22,8 @@ namespace fovea::app {
 struct GdbViews {
   const ParamSet* params = nullptr;
   std::function<std::vector<StatRow>()> stats;  ///< present values, core included
-  struct Block {
-    std::string name;
-    RegBank* registers = nullptr;
-    std::function<bool()> gated;  ///< its clock is off: accesses do nothing
-  };
-  std::vector<Block> blocks;
+  std::vector<RegisterBlock> blocks;
+  RegisterLog* log = nullptr;  ///< null: there is nothing to log
   struct Memory {
     std::uint64_t base = 0, end = 0;
   };
@@ -50,8 +47,8 @@ class GdbSession : private GdbTarget {
   /// Listens, says where on `notes`, and lets the core stop before its first instruction.
   GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& memory, GdbViews views,
              const std::atomic<bool>& stop, std::ostream& notes);
-  /// To be called now and then, not from inside the core. `asleep`: the core waits for an interrupt;
-  /// then it is stopped where it is, if it is to stop.
+  /// To be called now and then, not from inside the core. `asleep`: the core waits for an
+  /// interrupt; then it is stopped where it is, if it is to stop.
   void look(bool asleep = false);
   /// A watched access has happened or will, and the core has not stopped for it yet: a good time to
   /// look more often.
@@ -86,6 +83,7 @@ class GdbSession : private GdbTarget {
   std::string show_stats(const std::string& part) const;
   std::string show_registers(const std::string& what) const;
   std::string set_register(const std::string& what);
+  std::string show_log(const std::string& what);
   std::string where();
   std::string core_line() const;
   std::string watch(const std::string& what);
@@ -108,7 +106,7 @@ class GdbSession : private GdbTarget {
   std::vector<Range> watched_;  // by Z packets, for the other masters
   bool watch_masters_ = true;
   std::optional<GdbMasters::Hit> hit_;
-  bool asleep_ = false;         // served while the core waits for an interrupt
+  bool asleep_ = false;  // served while the core waits for an interrupt
   bool halt_seen_ = false, serving_ = false;
   GdbServer server_;
   bool killed_ = false;

@@ -13,6 +13,7 @@
 
 #include "model/common/param.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/register_log.h"
 
 namespace fovea::app {
 
@@ -54,6 +55,7 @@ struct RunRequest {
   /// Waits for a debugger there before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
   std::ostream* notes = nullptr;  ///< says where; not null with gdb_port
+  RegisterLogRequest registers = {};
 };
 
 /// What the board answers.
@@ -67,6 +69,7 @@ struct RunResult {
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
   std::string uart;  ///< all that the firmware printed
+  std::string registers;  ///< the log that was asked for
 };
 
 /// A board that can be run once.

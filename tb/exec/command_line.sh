@@ -43,6 +43,10 @@ expect not_an_elf 2 'ELF' -- run "$programs/flat_arm.bin"
 expect bad_root 2 'folder' -- run --root "$out/nowhere" "$fails"
 expect bad_key 2 'ddr.part' -- run -s ddr.prat=x "$fails"
 expect bad_cache 2 'powers of two' -- run -s cpu.icache.size=5000B "$fails"
+expect ram_base 5 '^flat$' -- run -s exec.ram_base=0x40000000 --load 0x40100000 --entry 0x40100000 \
+  "$programs/flat_arm.bin"
+expect bad_ram_base 2 'exec.ram_base' 'auto' -- run -s exec.ram_base=0x1000 "$fails"
+expect other_ram_base 2 'segment' 'exec.ram_base' -- run -s exec.ram_base=0x40000000 "$fails"
 expect quotes 2 'quotes' -- run "$fails" "a \"'"
 expect long_line 0 'command line of' -- run "$fails" "$(printf 'x%.0s' {1..300})"
 for memory in '' --fast-memory; do

@@ -1,47 +1,10 @@
 #!/usr/bin/env bash
-# Scripted sessions of gdb-multiarch with `fovea exec` and `fovea run`.
-# Usage: session.sh FOVEA GDB PROGRAM.elf FIRMWARE.elf
+# Scripted sessions of gdb-multiarch with `fovea exec`.
+# Usage: session.sh FOVEA GDB PROGRAM.elf MAPPED.elf
 set -uo pipefail
-fovea=$(realpath "$1") gdb=$2 program=$(realpath "$3") firmware=$(realpath "$4")
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-cd "$out" || exit 1
-failures=0
-fail() { echo "$*"; failures=$((failures + 1)); }
-
-# begin NAME command...: starts fovea; afterwards $pid and $port are its.
-begin() {
-  name=$1
-  shift
-  "$fovea" "$@" --gdb :0 >"$name.out" 2>"$name.err" </dev/null &
-  pid=$!
-  for _ in $(seq 100); do
-    port=$(sed -n 's/.*target remote 127.0.0.1:\([0-9]*\).*/\1/p' "$name.err")
-    [ -n "$port" ] && return
-    sleep 0.05
-  done
-  port=9
-  fail "$name: fovea does not listen: $(cat "$name.err")"
-}
-# debug FILE [SECONDS]: runs gdb with the commands of standard input, also behind a command that fails;
-# Ctrl-C after so many seconds.
-debug() {
-  local commands=(-ex 'set pagination off' -ex 'set confirm off')
-  commands+=(-ex "target remote 127.0.0.1:$port")
-  while IFS= read -r line; do commands+=(-ex "$line"); done
-  timeout --foreground -s INT -k 20 "${2:-20}" "$gdb" -nx -batch "${commands[@]}" "$1" >>"$name.gdb" 2>&1
-}
-# end STATUS 'pattern'...: how fovea ends, and what gdb must have said.
-end() {
-  local want=$1 got
-  shift
-  wait $pid
-  got=$?
-  [ $got = "$want" ] || fail "$name: exit status $got, expected $want: $(cat "$name.err")"
-  for p in "$@"; do
-    grep -qE -- "$p" "$name.gdb" || fail "$name: no '$p' in: $(cat "$name.gdb")"
-  done
-}
+fovea=$(realpath "$1") gdb=$2 program=$(realpath "$3") mapped=$(realpath "$4")
+# shellcheck source=tb/gdb/session_tools.sh
+. "$(dirname "$(realpath "$0")")/session_tools.sh"
 
 # Looking: every stop, and the same figures as without a debugger.
 "$fovea" exec "$program" -o plain >plain.out 2>/dev/null
@@ -115,7 +78,7 @@ done
 
 # Ctrl-C, leaving, coming back, and an end by the debugger.
 begin stop exec "$program" wait
-debug "$program" 1 <<'G'
+debug_until '^waiting' "$program" <<'G'
 continue
 print waiting > 1000
 detach
@@ -145,74 +108,54 @@ end 130
 "$fovea" exec --gdb :70000 "$program" 2>port.err
 [ $? = 2 ] && grep -q ':65535' port.err || fail "port: $(cat port.err)"
 
-# The board: into an interrupt handler, peripherals, same figures.
-cat >small.yaml <<'Y'
-run: {frames: 2, start_limit: 2s}
-camera: {kind: chart, stamp: false}
-video: {width: 64, height: 16}
-Y
-"$fovea" run small.yaml -o board_plain --no-frames >/dev/null 2>&1
-begin board run small.yaml -o board --no-frames
-debug "$firmware" <<'G'
-break main
+# MMU and caches on: virtual addresses, code and data changed in every copy.
+"$fovea" exec "$mapped" >mapped_plain.out 2>/dev/null
+grep -q 'first 5 second 5 window 0' mapped_plain.out || fail "mapped: $(cat mapped_plain.out)"
+for memory in '' --fast-memory; do
+  begin "mapped$memory" exec $memory "$mapped" -o "mapped$memory"
+  debug "$mapped" <<'G'
+break stop_here
 continue
-delete
-break irq_dispatch
+x/wx 0x40000010
+x/wx 0x01000010
+x/wx 0x40200000
+set var *(int *)0x40000020 = 99
+x/wx 0x01000020
+set var *(int *)constant = 0xe3a00007
+watch *(int *)0x40000030
 continue
-backtrace
-info registers cpsr control
-x/4xb 0x01c40000
-set var *(int *)0x01c40000 = 1
-print/x *(unsigned *)0x80000000
-monitor regs aintc
-monitor stats ddr.read
-delete
-detach
+info registers control ttbr
+continue
 G
-end 0 'main \(\)' 'irq_dispatch \(\)' '#1 .* irq_entry' 'cpsr +0x[0-9a-f]*2 ' 'aintc.IRQ0 = 0x' \
-  'Cannot access memory at address 0x1c40000' 'ddr.read_bytes = [0-9]+' 'detached'
-# Another master's access: the camera fills a buffer while the core sleeps, the display reads one.
-begin dma run small.yaml -o dma --no-frames
-debug "$firmware" <<'G'
-break main
+  end 0 '0x40000010:.*0x12345678' '0x1000010:.*0x12345678' 'Cannot access memory at address 0x40200000' \
+    '0x1000020:.*0x00000063' 'New value = 99' 'control +0x5107d'
+  grep -q 'first 5 second 7 window 99' "mapped$memory.out" || fail "mapped: $(cat "mapped$memory.out")"
+done
+
+# Where the core stands on its own.
+begin where exec "$program"
+debug "$program" <<'G'
+break leaf
 continue
+stepi 3
 monitor where
-watch *(int *)&frame_in[0]
-continue
-monitor where
-delete
-monitor watch dma 0x80341000,0x200000 r vpbe
-monitor watch dma 0x80341000,0x200000 r nobody
 monitor watch
-continue
-monitor where
-monitor watch clear
-break irq_dispatch
-continue
-monitor where
+monitor nonsense
 detach
 G
-end 0 'core: at the instruction at 0x8' 'no master has a request under way' \
-  'vpfe wrote 0x80015000 at [0-9]+\.[0-9]{3} ns' 'Old value = 0' 'core: waits for an interrupt' \
-  'sdram 1: write of vpfe, 64 bytes at 0x80015000, bank' 'next command ACT for vpfe' \
-  'no such master; allowed: arm_i' '0x80341000,2097152 r vpbe' 'vpbe read 0x80341[0-9a-f]* at' \
-  'vpbe: read of 64 bytes at 0x80341' 'irq_dispatch \(\)'
-cmp board_plain/stats.json dma/stats.json || fail 'dma: other figures than without a debugger'
-
-# Switched off, the debugger's watchpoints see the core alone.
-begin core run small.yaml -o core --no-frames
-debug "$firmware" <<'G'
-break main
+end 35 'core: at the instruction at 0x' 'monitor watch dma 0xADDR' 'nothing is watched'
+begin where_fast exec --fast-memory "$program"
+debug "$program" <<'G'
+break leaf
 continue
-awatch *(int *)&frame_in[0]
-monitor watch-masters off
-monitor regs timer3
-continue
-bt 1
+monitor where
+monitor watch
+monitor registers
 detach
 G
-end 0 'do not see'
-grep -q 'vpfe wrote' core.gdb && fail "core: a master stops it: $(cat core.gdb)"
+end 35 'memory answers at once' 'no other masters' 'no registers to log'
 
-cmp board_plain/stats.json board/stats.json || fail 'board: other figures than without a debugger'
+# The log of an exec's only block, on the error stream or in the folder.
+"$fovea" exec --log-registers . "$program" >/dev/null 2>log.err
+[ $? = 35 ] || fail "log: $(cat log.err)"
 exit $((failures > 0))

@@ -226,6 +226,117 @@ const char* const kLoop = R"(
     bne loop
 )";
 
+/// A store or a load under a new translation, protection or mode, all set by the debugger.
+TEST(CoreDebugTest, SystemRegistersHaveTheEffectsOfTheProgramsOwnWrites) {
+  DebugMachine m;
+  const auto reg = [&](const char* name) -> const CoreDebug::SystemRegister& {
+    for (const auto& r : CoreDebug::system_registers())
+      if (std::string(r.name) == name) return r;
+    throw std::out_of_range(name);
+  };
+  m.section(0x4000'0000, kMemory, 0, 0);
+  const std::uint32_t others = kTables + 0x8000;
+  m.port.set_word(kData, 0x11);
+  m.port.set_word(kData + 0x10'0000, 0x22);
+  unsigned n = 0;
+  m.on_svc = [&](std::uint32_t) {
+    switch (n++) {
+      case 0:  // the address is looked up again: TLB entries stay, as after an MCR
+        EXPECT_EQ(m.debug.system_register(reg("ttbr")), kTables);
+        m.debug.set_system_register(reg("ttbr"), others);
+        EXPECT_EQ(m.debug.system_register(reg("ttbr")), others);
+        m.debug.set_system_register(reg("ttbr"), kTables);
+        break;
+      case 1:  // no access to any domain, then back
+        m.debug.set_system_register(reg("dacr"), 0);
+        m.debug.set_system_register(reg("dacr"), 3);
+        m.debug.set_system_register(reg("far"), 0x1234'5678);
+        break;
+      default:  // the MMU goes off: the next load is physical
+        m.debug.set_system_register(reg("control"), m.debug.system_register(reg("control")) & ~5u);
+        EXPECT_EQ(m.debug.system_register(reg("control")) & 5u, 0u);
+    }
+  };
+  m.execute(std::string(kCachesOn) + R"(
+    ldr r1, =0x40001000
+    ldr r2, [r1]
+    svc #3
+    ldr r3, [r1]
+    svc #3
+    mrc p15, 0, r4, c6, c0, 0
+    svc #3
+    ldr r1, =0x00101000
+    ldr r5, [r1]
+  )");
+  EXPECT_EQ(n, 3u);
+  EXPECT_EQ(m.core.reg(2), 0x11u);
+  EXPECT_EQ(m.core.reg(3), 0x11u);
+  EXPECT_EQ(m.core.reg(4), 0x1234'5678u);
+  EXPECT_EQ(m.core.reg(5), 0x11u);
+}
+
+TEST(CoreDebugTest, RegistersOfAllModes) {
+  DebugMachine m;
+  const auto value = [&](const char* name) {
+    for (const auto& r : CoreDebug::banked_registers())
+      if (std::string(r.name) == name) return m.debug.banked_register(r);
+    ADD_FAILURE() << name;
+    return 0u;
+  };
+  unsigned n = 0;
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(value("sp_svc"), 0x300u);
+    EXPECT_EQ(value("sp_irq"), 0x200u);
+    EXPECT_EQ(value("r8_fiq"), 0x108u);
+    EXPECT_EQ(value("r8_usr"), 0x8u);
+    EXPECT_EQ(value("spsr_irq"), 0x10u);
+    EXPECT_EQ(m.core.reg(8), 0x8u);
+    for (const auto& r : CoreDebug::banked_registers()) {
+      if (std::string(r.name) == "r8_fiq") m.debug.set_banked_register(r, 0x99);
+      if (std::string(r.name) == "r8_usr") m.debug.set_banked_register(r, 0x77);
+    }
+    EXPECT_EQ(m.core.reg(8), 0x77u) << "the present mode's own";
+    EXPECT_TRUE(m.debug.set_spsr(0x1F));
+    EXPECT_EQ(value("spsr_svc"), 0x1Fu);
+    ++n;
+  };
+  m.execute(R"(
+    mov sp, #0x300
+    mov r8, #8
+    msr cpsr_c, #0xD1
+    mov r8, #0x108
+    msr cpsr_c, #0xD2
+    mov sp, #0x200
+    mov r0, #0x10
+    msr spsr_cxsf, r0
+    msr cpsr_c, #0xD3
+    svc #3
+    msr cpsr_c, #0xD1
+    mov r0, r8
+    msr cpsr_c, #0xD3
+  )");
+  EXPECT_EQ(n, 1u);
+  EXPECT_EQ(m.core.reg(0), 0x99u);
+}
+
+TEST(CoreControlTest, StopsAtTheFirstBoundaryAfterATime) {
+  ControlledMachine m;
+  std::vector<Picoseconds> times;
+  m.control.on_stop = [&](const CoreControl::Stop& s) {
+    EXPECT_EQ(s.reason, CoreControl::Stop::Reason::kTime);
+    times.push_back(m.debug.now());
+  };
+  m.control.follow_bus(true);
+  m.control.stop_after(40'000);
+  m.execute(kLoop);
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_GT(times[0], 40'000u);
+  EXPECT_LE(times[0], 40'000u + 400'000u);
+  ControlledMachine free;
+  free.execute(kLoop);
+  EXPECT_EQ(m.core.clock_count(), free.core.clock_count());
+}
+
 TEST(CoreControlTest, BreakpointStopsEachTimeAndCostsNoTime) {
   std::uint64_t clocks[2];
   Counts counts[2];

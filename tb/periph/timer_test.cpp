@@ -227,6 +227,50 @@ TEST_F(TimerTest, GatedClockStopsTheCountAndClosesTheRegisters) {
   EXPECT_EQ(bus.read(kTim12), resumed + 10);
 }
 
+struct Watcher : RegisterObserver {
+  std::vector<RegisterAccess> seen;
+  void accessed(const RegisterAccess& a) override { seen.push_back(a); }
+};
+
+TEST_F(TimerTest, WhoLooksOnSeesAccessesAndRemarksAreCounted) {
+  auto& notes = Diagnostics::instance();
+  const auto count = [&notes](const std::string& part) {
+    std::uint64_t n = 0;
+    for (const auto& [what, times] : notes.counts())
+      if (what.second.find(part) != std::string::npos) n += times;
+    return n;
+  };
+  notes.clear();
+  Watcher watcher;
+  s.timer.observe(&watcher);
+  bus.write(kPrd12, 0x1234);
+  EXPECT_EQ(bus.read(kPrd12, 2), 0x1234u);
+  EXPECT_EQ(count("reserved bits"), 0u);
+  bus.write(kTgcr, 0x8000'0000);
+  bus.write(kTgcr, 0x8000'0000);
+  bus.write(kTgcr + 3, 0x80, 1);
+  bus.write(kTgcr, 0);
+  EXPECT_EQ(count("1 written to reserved bits of TIMER64 TGCR"), 3u);
+  s.gate.write(false);
+  test::settle();
+  bus.write(kPrd12, 7);
+  s.gate.write(true);
+  test::settle();
+  EXPECT_EQ(count("while its clock is gated"), 1u);
+  s.timer.observe(nullptr);
+  bus.read(kPrd12);
+  ASSERT_EQ(watcher.seen.size(), 7u);
+  EXPECT_EQ(watcher.seen[0].offset, kPrd12);
+  EXPECT_EQ(watcher.seen[0].value, 0x1234u);
+  EXPECT_TRUE(watcher.seen[0].write);
+  EXPECT_FALSE(watcher.seen[1].write);
+  EXPECT_EQ(watcher.seen[1].bytes, 2u);
+  EXPECT_EQ(watcher.seen[1].value, 0x1234u);
+  EXPECT_FALSE(watcher.seen[1].gated);
+  EXPECT_TRUE(watcher.seen[6].gated);
+  EXPECT_EQ(watcher.seen[6].value, 7u);
+}
+
 TEST_F(TimerTest, HalfTheClockIsTwiceTheTime) {
   bus.write(kPrd12, 100);
   bus.write(kTgcr, 0x5);

@@ -51,6 +51,22 @@ TEST_F(ExecProgramTest, AnyWindowServes) {
   EXPECT_EQ(flat(0x2745'6780).map(kSize / 2).ram_base, 0x2400'0000u);
 }
 
+TEST_F(ExecProgramTest, ARamBaseThatIsGivenCounts) {
+  const ExecMap m = flat(0x2345'6780).map(kSize, 0x2010'0000);
+  EXPECT_EQ(m.ram_base, 0x2010'0000u);
+  EXPECT_TRUE(m.tcm);
+  EXPECT_EQ(m.free_end, 0x2810'0000u);
+  const ExecMap low = flat(0x100).map(kSize, 0x4000'0000);  // in the internal RAM
+  EXPECT_EQ(low.ram_base, 0x4000'0000u);
+  EXPECT_EQ(low.free_base, 0x4000'0000u);
+  EXPECT_THROW(flat(0x2000'0000).map(kSize, 0x2010'0000), UserError);
+  EXPECT_EQ(parse_ram_base("auto", kSize), std::nullopt);
+  EXPECT_EQ(parse_ram_base("0x20100000", kSize), 0x2010'0000u);
+  EXPECT_EQ(parse_ram_base("0xf8000000", kSize), 0xF800'0000u);
+  for (const char* text : {"", "0x20100001", "0xf8100000", "0x20000000,64MiB", "here"})
+    EXPECT_THROW(parse_ram_base(text, kSize), UserError) << text;
+}
+
 TEST_F(ExecProgramTest, LargestGapIsFree) {
   const ExecMap m = flat(0x07F0'0000).map(kSize);
   EXPECT_EQ(m.free_base, 64u);  // behind the vectors

@@ -114,9 +114,9 @@ class Crossbar {
       bool head;            ///< of its master's queue: competes for the slave
     };
     struct SlaveView {
-      bool blocked = false;            ///< the last granted request waits at its door
-      Picoseconds free = 0;            ///< its command lane; 0: free already
-      std::optional<Master> granted;   ///< last
+      bool blocked = false;           ///< the last granted request waits at its door
+      Picoseconds free = 0;           ///< its command lane; 0: free already
+      std::optional<Master> granted;  ///< last
       std::optional<Master> locked_by;
     };
     std::vector<Item> items;  ///< by master, oldest first

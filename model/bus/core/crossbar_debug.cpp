@@ -23,8 +23,7 @@ Crossbar::View Crossbar::view(Picoseconds at) const {
     out.blocked = s.blocked;
     if (running && s.free > scr_.edge_at_or_after(at)) out.free = scr_.edge(s.free);
     if (s.grants_made) out.granted = static_cast<Master>(s.last);
-    if (s.open_to != ~0u)
-      out.locked_by = static_cast<Master>(std::countr_zero(s.open_to));
+    if (s.open_to != ~0u) out.locked_by = static_cast<Master>(std::countr_zero(s.open_to));
   }
   v.next_at = next_;
   if (next_ != kNever) v.next = static_cast<Master>(next_port_);

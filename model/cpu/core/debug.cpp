@@ -167,12 +167,12 @@ void CoreDebug::set_system_register(const SystemRegister& r, std::uint32_t value
 
 std::span<const CoreDebug::BankedRegister> CoreDebug::banked_registers() {
   static constexpr std::array<BankedRegister, 27> kRegisters = {{
-      {"r8_usr", 0, 8},    {"r9_usr", 0, 9},    {"r10_usr", 0, 10},   {"r11_usr", 0, 11},
-      {"r12_usr", 0, 12},  {"sp_usr", 0, 13},   {"lr_usr", 0, 14},    {"r8_fiq", 1, 8},
-      {"r9_fiq", 1, 9},    {"r10_fiq", 1, 10},  {"r11_fiq", 1, 11},   {"r12_fiq", 1, 12},
-      {"sp_fiq", 1, 13},   {"lr_fiq", 1, 14},   {"spsr_fiq", 1, 16},  {"sp_irq", 2, 13},
-      {"lr_irq", 2, 14},   {"spsr_irq", 2, 16}, {"sp_svc", 3, 13},    {"lr_svc", 3, 14},
-      {"spsr_svc", 3, 16}, {"sp_abt", 4, 13},   {"lr_abt", 4, 14},    {"spsr_abt", 4, 16},
+      {"r8_usr", 0, 8},    {"r9_usr", 0, 9},    {"r10_usr", 0, 10},  {"r11_usr", 0, 11},
+      {"r12_usr", 0, 12},  {"sp_usr", 0, 13},   {"lr_usr", 0, 14},   {"r8_fiq", 1, 8},
+      {"r9_fiq", 1, 9},    {"r10_fiq", 1, 10},  {"r11_fiq", 1, 11},  {"r12_fiq", 1, 12},
+      {"sp_fiq", 1, 13},   {"lr_fiq", 1, 14},   {"spsr_fiq", 1, 16}, {"sp_irq", 2, 13},
+      {"lr_irq", 2, 14},   {"spsr_irq", 2, 16}, {"sp_svc", 3, 13},   {"lr_svc", 3, 14},
+      {"spsr_svc", 3, 16}, {"sp_abt", 4, 13},   {"lr_abt", 4, 14},   {"spsr_abt", 4, 16},
       {"sp_und", 5, 13},   {"lr_und", 5, 14},   {"spsr_und", 5, 16},
   }};
   return kRegisters;

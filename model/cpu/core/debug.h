@@ -39,7 +39,8 @@ class CoreDebug {
   std::uint32_t spsr() const { return core_.spsr_[Core::bank(core_.cpsr())]; }
   /// False in user and system mode, which have none.
   bool set_spsr(std::uint32_t value);
-  /// A CP15 register that can be read without effect; written, it has those of an MCR, without time.
+  /// A CP15 register that can be read without effect; written, it has those of an MCR, without
+  /// time.
   struct SystemRegister {
     const char* name;
     std::uint32_t (*get)(const Core&);

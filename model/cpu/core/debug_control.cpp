@@ -36,8 +36,8 @@ void Core::control_boundary() {
 }
 
 void CoreControl::update() {
-  const bool active = halt_ || step_ || follow_ || stop_after_ != kNever ||
-                      !breakpoints_.empty() || !watches_.empty();
+  const bool active = halt_ || step_ || follow_ || stop_after_ != kNever || !breakpoints_.empty() ||
+                      !watches_.empty();
   core_.debugger_ = active ? this : nullptr;
   if (active) core_.attention_ = true;  // a chain under way ends
 }
@@ -68,8 +68,8 @@ void CoreControl::clear() {
   update();
 }
 
-/// The boundary lies at or before the next event of anybody else: nobody acts here but the core's own
-/// buffers and the bus.
+/// The boundary lies at or before the next event of anybody else: nobody acts here but the core's
+/// own buffers and the bus.
 void CoreControl::settle_bus() {
   core_.play(core_.cycle_);
   core_.port_.sleep_until(core_.time(core_.cycle_));

@@ -42,8 +42,8 @@ class CoreControl {
   void step(std::uint32_t from = 0, std::uint32_t to = 0);
   /// Stops at the first boundary later than t; kNever takes that back.
   void stop_after(Picoseconds t) { stop_after_ = t, update(); }
-  /// At each boundary the bus has decided all that it decides before: what other masters do there is
-  /// known before the core goes on.
+  /// At each boundary the bus has decided all that it decides before: what other masters do there
+  /// is known before the core goes on.
   void follow_bus(bool on) { follow_ = on, update(); }
   /// The same once, for whoever looks at the bus at a stop.
   void settle_bus();

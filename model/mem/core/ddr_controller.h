@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -108,11 +109,13 @@ class DdrController {
       unsigned bank;
       std::uint32_t row, open;  ///< open: DdrDevice::kClosed or the bank's row
     };
-    std::vector<Item> items;  ///< oldest first
+    std::vector<Item> items;             ///< oldest first
     std::size_t next = ~std::size_t{0};  ///< item of the next command; beyond the end: a refresh's
     Cmd cmd = Cmd::kRef;                 ///< that command
     Picoseconds next_at = kNever;        ///< kNever: nothing to do
     LowPower asleep = LowPower::kOff;
+    Cmd last = Cmd::kRef;               ///< the command before it
+    std::optional<Master> last_master;  ///< whose that was; none: a refresh's, or none at all
     bool data_full = false;  ///< the door waits for room for write data, not for an entry
   };
   View view() const;

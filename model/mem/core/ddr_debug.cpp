@@ -66,6 +66,12 @@ DdrController::View DdrController::view() const {
     add(door_, door_arrived_, true);
     v.data_full = count_ < fifo_entries_;
   }
+  if (given_count_) {
+    const Given& g = given_[(given_count_ - 1) % kGiven];
+    v.last = g.cmd;
+    if (g.cmd == Cmd::kAct || g.cmd == Cmd::kPre || g.cmd == Cmd::kRd || g.cmd == Cmd::kWr)
+      v.last_master = static_cast<Master>(g.master);
+  }
   v.cmd = choice_.cmd;
   v.next_at = next_;
   v.asleep = asleep_;

@@ -13,7 +13,7 @@ void uart_init(void) {
   mmio_write32(UART0_IER, 0);
   mmio_write32(UART0_LCR, 3); /* 8N1 */
   mmio_write32(UART0_MCR, 0);
-  mmio_write32(UART0_PWREMU_MGMT, 0xE001u);
+  mmio_write32(UART0_PWREMU_MGMT, 0x6001u); /* both halves run; bit 15 is reserved */
 }
 
 void uart_putc(char c) {

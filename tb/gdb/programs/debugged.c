@@ -17,8 +17,11 @@ __attribute__((noinline)) int branch(int n) {
 }
 
 int main(int argc, char **argv) {
-  if (argc > 1 && strcmp(argv[1], "wait") == 0)
+  if (argc > 1 && strcmp(argv[1], "wait") == 0) {
+    puts("waiting");
+    fflush(stdout);
     while (!released) ++waiting;
+  }
   const int sum = branch(limit);
   watched = sum;
   watched += 100;

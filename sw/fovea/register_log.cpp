@@ -1,0 +1,110 @@
+#include "sw/fovea/register_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/outputs.h"
+
+namespace fovea::app {
+
+RegisterLog::RegisterLog(std::vector<RegisterBlock> blocks, Sources sources)
+    : blocks_(std::move(blocks)), sources_(std::move(sources)) {}
+
+void RegisterLog::start(const RegisterLogRequest& request) {
+  try {
+    pattern_.emplace(request.pattern, std::regex::ECMAScript | std::regex::optimize);
+  } catch (const std::regex_error& e) {
+    throw UserError(
+        fmt::format("'{}' is no regular expression ({}); it is looked for in "
+                    "BLOCK.REGISTER, as in '^timer[01]\\.|PSC'",
+                    one_line(request.pattern), e.what()));
+  }
+  stop();
+  matches_.clear();
+  ring_.clear();
+  kept_ = request.kept;
+  count_ = 0;
+  for (const auto& b : blocks_)
+    if (b.observe) b.observe(this);
+  running_ = true;
+}
+
+void RegisterLog::stop() {
+  if (!running_) return;
+  for (const auto& b : blocks_)
+    if (b.observe) b.observe(nullptr);
+  running_ = false;
+}
+
+const std::string& RegisterLog::block_name(const RegBank* bank) const {
+  const auto found = std::find_if(blocks_.begin(), blocks_.end(),
+                                  [&](const RegisterBlock& b) { return b.registers == bank; });
+  FOVEA_CHECK(found != blocks_.end(), "an access to a block that is not observed");
+  return found->name;
+}
+
+/// Offsets without a register match by their block's name alone.
+bool RegisterLog::wanted(const RegisterAccess& access) {
+  const Reg* const reg = access.bank->register_at(access.offset);
+  if (!reg) return std::regex_search(block_name(access.bank) + ".", *pattern_);
+  const auto [place, fresh] = matches_.try_emplace(reg, false);
+  if (fresh)
+    place->second = std::regex_search(block_name(access.bank) + "." + reg->name(), *pattern_);
+  return place->second;
+}
+
+void RegisterLog::accessed(const RegisterAccess& access) {
+  if (!wanted(access)) return;
+  const Master master = sources_.master();
+  const bool core = master == Master::kArmD || master == Master::kArmI;
+  const Record r{sources_.now(), core ? sources_.pc() : 0, master, access};
+  if (ring_.size() < kept_)
+    ring_.push_back(r);
+  else if (kept_)
+    ring_[count_ % kept_] = r;
+  ++count_;
+}
+
+std::string RegisterLog::line(const Record& r) const {
+  const RegisterAccess& a = r.access;
+  const Reg* const reg = a.bank->register_at(a.offset);
+  const unsigned shift = 8 * (a.offset & 3u);
+  const std::uint32_t lanes = (a.bytes == 4 ? ~0u : (1u << 8 * a.bytes) - 1u) << shift;
+  const std::uint32_t word = (a.value << shift) & lanes;
+  std::string out = fmt::format("{} ns  ", ns_text(r.at));
+  if (r.master == Master::kArmD || r.master == Master::kArmI) {
+    out += fmt::format("pc 0x{:08x} ", r.pc);
+    const std::string where = sources_.describe ? sources_.describe(r.pc) : "";
+    if (!where.empty()) out += "(" + where + ") ";
+  }
+  out += fmt::format("{} {} {}.", kMasterNames[index(r.master)], a.write ? "wrote" : "read",
+                     block_name(a.bank));
+  out += reg ? reg->name() : fmt::format("0x{:x} (no register)", a.offset);
+  if (a.bytes != 4)
+    out += fmt::format(" byte {}{}", a.offset & 3u,
+                       a.bytes == 2 ? fmt::format("-{}", (a.offset & 3u) + 1) : "");
+  out += fmt::format(" = 0x{:0{}x}", a.value, 2 * a.bytes);
+  if (a.gated) return out + "  clock gated\n";
+  if (!reg) return out + "\n";
+  if (reg->fields().size() > 0)
+    for (const Field* f : reg->fields())
+      if (f->mask() & lanes)
+        out += fmt::format(" {}={}", f->name(), (word & f->mask()) >> f->lsb());
+  if (const std::uint32_t lost = word & reg->reserved(); a.write && lost)
+    out += fmt::format("  reserved bits 0x{:08x}", lost);
+  return out + "\n";
+}
+
+std::string RegisterLog::text(std::size_t most) const {
+  const std::size_t n = std::min(most, ring_.size());
+  std::string out;
+  if (count_ > n) out = fmt::format("({} earlier accesses are not shown)\n", count_ - n);
+  for (std::size_t i = ring_.size() - n; i < ring_.size(); ++i)
+    out += line(ring_[ring_.size() < kept_ ? i : (count_ + i) % kept_]);
+  return out;
+}
+
+}  // namespace fovea::app

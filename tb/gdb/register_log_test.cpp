@@ -1,0 +1,87 @@
+// The log of register accesses: names from the declaration, filter, ring, remarks.
+#include "sw/fovea/register_log.h"
+
+#include <gtest/gtest.h>
+
+#include "model/common/check.h"
+
+namespace fovea::app {
+namespace {
+
+struct Bank : RegBank {
+  struct Ctrl : Reg {
+    using Reg::Reg;
+    Field go{*this, "GO", 0, 1, Mode::kRw, "start"};
+    Field mode{*this, "MODE", 8, 3, Mode::kRw, "what"};
+  } ctrl{*this, "CTRL", 0x00, "control", 0x8000'0000};
+  Reg data{*this, "DATA", 0x08, Mode::kRw, "data"};
+  Bank() : RegBank("BANK") {}
+};
+
+struct RegisterLogTest : testing::Test {
+  Bank one, two;
+  RegisterObserver* seen_one = nullptr;
+  RegisterObserver* seen_two = nullptr;
+  Picoseconds now = 0;
+  Master master = Master::kArmD;
+  RegisterLog log{{{"one", &one, nullptr, [this](RegisterObserver* o) { seen_one = o; }},
+                   {"two", &two, nullptr, [this](RegisterObserver* o) { seen_two = o; }}},
+                  {[this] { return now += 1'000; }, [this] { return master; },
+                   [] { return 0x8000u; }, [](std::uint32_t) { return std::string("main+0x4"); }}};
+  void access(std::uint32_t offset, unsigned bytes, bool write, std::uint32_t value,
+              bool gated = false) {
+    seen_one->accessed({&one, offset, bytes, write, gated, value});
+  }
+};
+
+TEST_F(RegisterLogTest, NamesFieldsAndRemarks) {
+  EXPECT_EQ(seen_one, nullptr) << "nobody looks on before the start";
+  log.start({.pattern = "."});
+  access(0, 4, true, 0x8000'0701);
+  access(1, 1, true, 0x0D);
+  access(8, 4, false, 0x1234);
+  access(8, 2, true, 5, true);
+  access(0x20, 4, false, 0);
+  master = Master::kEdmaTc0;
+  access(8, 4, false, 7);
+  EXPECT_EQ(
+      log.text(),
+      "1.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.CTRL = 0x80000701 GO=1 MODE=7\n"
+      "2.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.CTRL byte 1 = 0x0d MODE=5  reserved "
+      "bits 0x00000800\n"
+      "3.000 ns  pc 0x00008000 (main+0x4) arm_d read one.DATA = 0x00001234\n"
+      "4.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA byte 0-1 = 0x0005  clock gated\n"
+      "5.000 ns  pc 0x00008000 (main+0x4) arm_d read one.0x20 (no register) = 0x00000000\n"
+      "6.000 ns  edma_tc0 read one.DATA = 0x00000007\n");
+}
+
+TEST_F(RegisterLogTest, TakesWhatMatches) {
+  log.start({.pattern = "^one\\.D|two"});
+  access(0, 4, true, 1);
+  access(8, 4, true, 2);
+  seen_two->accessed({&two, 0, 4, true, false, 3});
+  EXPECT_EQ(log.text(),
+            "1.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000002\n"
+            "2.000 ns  pc 0x00008000 (main+0x4) arm_d wrote two.CTRL = 0x00000003 GO=1 "
+            "MODE=0  reserved bits 0x00000002\n");
+  EXPECT_THROW(log.start({.pattern = "(open"}), UserError);
+  EXPECT_TRUE(log.running()) << "what ran before runs on";
+  log.stop();
+  EXPECT_EQ(seen_one, nullptr);
+}
+
+TEST_F(RegisterLogTest, TheRingKeepsTheLast) {
+  log.start({.pattern = "DATA", .kept = 3});
+  for (std::uint32_t k = 0; k < 8; ++k) access(8, 4, true, k);
+  EXPECT_EQ(log.text(),
+            "(5 earlier accesses are not shown)\n"
+            "6.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000005\n"
+            "7.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000006\n"
+            "8.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000007\n");
+  EXPECT_EQ(log.text(1),
+            "(7 earlier accesses are not shown)\n"
+            "8.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000007\n");
+}
+
+}  // namespace
+}  // namespace fovea::app
