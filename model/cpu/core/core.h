@@ -326,6 +326,7 @@ class Core : public Background {
   }
   std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
   std::array<Instruction, 2> uncached_record_;
+  std::array<Instruction, 2> apart_;        // for an UNPREDICTABLE form
   bool fetch_branched_ = false;
   bool bus_fetch_ = false;  // the last fetch went to the bus: time has passed since the boundary
   std::uint32_t fetch_buffer_pa_ = 1, fetch_words_[4] = {};
