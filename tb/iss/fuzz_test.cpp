@@ -93,13 +93,20 @@ class FuzzTest : public testing::Test {
   }
   std::uint32_t value() {
     switch (r(8)) {
-      case 0: return word();
-      case 1: return r(64);
-      case 2: return 0x10000 + r(0x8000);           // internal RAM
-      case 3: return r(0x8000);
-      case 4: return kRefused + r(0x200000);        // pages
-      case 5: return 0x7000'0000 + r(1 << 20);      // nothing there
-      default: return kMemory + 0x20000 + r(0xE0'0000 - 0x20000);
+      case 0:
+        return word();
+      case 1:
+        return r(64);
+      case 2:
+        return 0x10000 + r(0x8000);  // internal RAM
+      case 3:
+        return r(0x8000);
+      case 4:
+        return kRefused + r(0x200000);  // pages
+      case 5:
+        return 0x7000'0000 + r(1 << 20);  // nothing there
+      default:
+        return kMemory + 0x20000 + r(0xE0'0000 - 0x20000);
     }
   }
   /// Any word, or one of a row with its other bits at random.
@@ -123,7 +130,8 @@ class FuzzTest : public testing::Test {
     static constexpr std::uint32_t kModes[] = {0x10, 0x11, 0x12, 0x13, 0x17, 0x1B, 0x1F};
     const std::uint32_t at = thumb ? r(0x3FF0) * 2 : r(0x1FF0) * 4;
     const std::uint32_t pc = r(4) ? kCode + at : at;
-    const std::uint32_t status = (word() & 0xF800'0000u) | 0xC0u | (thumb ? 0x20u : 0) | kModes[r(7)];
+    const std::uint32_t status =
+        (word() & 0xF800'0000u) | 0xC0u | (thumb ? 0x20u : 0) | kModes[r(7)];
     t.begin(pc, status);
     const std::uint32_t w = code(thumb);
     std::uint8_t bytes[4];
@@ -141,8 +149,7 @@ class FuzzTest : public testing::Test {
     ASSERT_TRUE(t.flags_hold());
     ASSERT_EQ(t.pc() & ((m.core.cpsr() & 0x20u) ? 1u : 3u), 0u) << std::hex << w;
     const int row = isa_row(w, thumb);
-    const bool aborted_fetch =
-        taken && (m.core.cpsr() & 31u) == 0x17 && (t.pc() & 0xFFFFu) == 0xC;
+    const bool aborted_fetch = taken && (m.core.cpsr() & 31u) == 0x17 && (t.pc() & 0xFFFFu) == 0xC;
     if (aborted_fetch) {  // or a BKPT, which looks the same
       if (row != kNoRow && isa_rows()[static_cast<std::size_t>(row)].op == Op::kBkpt)
         ++rows[static_cast<std::size_t>(row)];
@@ -165,8 +172,9 @@ class FuzzTest : public testing::Test {
   }
   static bool passes_condition(std::uint32_t cond, std::uint32_t flags) {
     const bool n = flags >> 3 & 1u, z = flags >> 2 & 1u, c = flags >> 1 & 1u, v = flags & 1u;
-    const bool pass[16] = {z, !z, c, !c, n, !n, v, !v, c && !z, !c || z, n == v, n != v,
-                           !z && n == v, z || n != v, true, true};
+    const bool pass[16] = {z,    !z,      c,       !c,     n,      !n,           v,
+                           !v,   c && !z, !c || z, n == v, n != v, !z && n == v, z || n != v,
+                           true, true};
     return pass[cond];
   }
   struct Behind : DebugMemory {
@@ -200,9 +208,9 @@ TEST_F(FuzzTest, EveryWordHasADefinedReaction) {
     fewest = std::min(fewest, rows[row]);
     EXPECT_GE(rows[row], 100u) << isa_rows()[row].name;
   }
-  std::cout << tried << " words: " << defined << " defined, " << unpredictable
-            << " UNPREDICTABLE, " << undefined << " undefined; " << faults
-            << " exceptions; rows at least " << fewest << " each\n";
+  std::cout << tried << " words: " << defined << " defined, " << unpredictable << " UNPREDICTABLE, "
+            << undefined << " undefined; " << faults << " exceptions; rows at least " << fewest
+            << " each\n";
   const Counts& c = m.core.counts();
   EXPECT_EQ(m.core.clock_count() - m.first_clock,
             c.issue + c.idle + std::accumulate(c.stall.begin(), c.stall.end(), std::uint64_t{0}));

@@ -1,6 +1,7 @@
 // Clocks of each row of the table of instructions, counted by hand from the manuals (ARM DDI 0222B
-// chapter 8, ARM DDI 0214B chapter 9): plain operands, everything hit, two registers in a list besides
-// pc and lr, conditions that hold, branches taken. Not read from the table, which is under test.
+// chapter 8, ARM DDI 0214B chapter 9): plain operands, everything hit, two registers in a list
+// besides pc and lr, conditions that hold, branches taken. Not read from the table, which is under
+// test.
 #pragma once
 
 namespace fovea::cpu::test {
@@ -11,6 +12,7 @@ struct HandCount {
   const char* rows;  ///< names, separated by ", "
 };
 
+// clang-format off
 inline constexpr HandCount kHandCounts[] = {
     {1, 0, "and imm, eor imm, sub imm, rsb imm, add imm, adc imm, sbc imm, rsc imm, orr imm, mov imm, "
            "bic imm, mvn imm"},
@@ -67,5 +69,6 @@ inline constexpr HandCount kHandCounts[] = {
     {1, 0, "t bl prefix"},
     {3, 0, "t bkpt, t udf, t svc"},
 };
+// clang-format on
 
 }  // namespace fovea::cpu::test

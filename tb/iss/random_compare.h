@@ -29,7 +29,8 @@ struct Here {
   std::uint64_t instructions = 0;
 };
 
-inline Here by_core(const RandomProgram& p, bool caches = true, Picoseconds limit = 500 * kPsPerMs) {
+inline Here by_core(const RandomProgram& p, bool caches = true,
+                    Picoseconds limit = 500 * kPsPerMs) {
   Machine m;
   m.limit = limit;
   std::memcpy(m.port.at(kMemory), p.image.data(), p.image.size());
@@ -42,7 +43,7 @@ inline Here by_core(const RandomProgram& p, bool caches = true, Picoseconds limi
 
 /// Sequences whose results differ, with the first difference of each in words.
 inline std::vector<std::string> differences(const RandomProgram& p, const std::string& a,
-                                     const std::string& b) {
+                                            const std::string& b) {
   std::vector<std::string> out;
   if (a.size() != p.begin.size() * kSequenceBytes || b.size() != a.size())
     return {"lengths " + std::to_string(a.size()) + " and " + std::to_string(b.size())};

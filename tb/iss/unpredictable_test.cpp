@@ -37,15 +37,17 @@ struct Case {
   const char* insn_class;  ///< of the row
   const char* text;        ///< with the form at `at:`
   unsigned reg;
-  std::uint32_t value;     ///< expected in it; kAt: plus the address of the form
+  std::uint32_t value;  ///< expected in it; kAt: plus the address of the form
   bool relative = false;
 };
 constexpr bool kAt = true;
 
-// Registers: r1 to r3 hold their number, r4 and r10 0x4000, r6 0, r7 the address of 2:, r9 0. Words at
-// 0x4000: 77, 78. `skip` is `b 2f` and the words 77 and 78. By hand from the pattern of each row.
+// Registers: r1 to r3 hold their number, r4 and r10 0x4000, r6 0, r7 the address of 2:, r9 0. Words
+// at 0x4000: 77, 78. `skip` is `b 2f` and the words 77 and 78. By hand from the pattern of each
+// row.
 #define SKIP "\n b 2f\n .word 77, 78\n 2:"
 #define LOST "\n mov r9, #1\n 2:"
+// clang-format off
 constexpr Case kCases[] = {
     {"d != 15", "data shift by register", "at: .inst 0xE1A0F617" LOST, 9, 0},
     {"n != 15", "data shift by register", "at: .inst 0xE08F0211\n 2:", 0, 12 + 4, kAt},
@@ -146,6 +148,7 @@ constexpr Case kCases[] = {
     {"m != 15", "thumb branch", ".thumb\n b 1f\n .balign 4\n 1: at: .inst.n 0x47F8\n nop\n .arm\n"
      "mov r9, #1\n mov r0, lr\n b 4f\n 2: nop\n 4:", 9, 1},
 };
+// clang-format on
 
 class ReactionTest : public testing::TestWithParam<Case> {};
 
@@ -158,14 +161,18 @@ TEST_P(ReactionTest, IsWhatTheTableSays) {
   // The vector of a prefetch abort: movne pc, lr, which does not go, and the run ends there.
   if (exception) text.replace(text.find("0x1a0f000e"), 10, "0xef000002");
   std::string start =
-      "b 5f\n .space 60\n 5: ldr r4, =0x4000\n mov r10, r4\n ldr sp, =0x6000\n mov r0, #77\n str r0, [r4]\n"
-      "mov r0, #78\n str r0, [r4, #4]\n mov r0, #0\n mov r1, #1\n mov r2, #2\n mov r3, #3\n mov r6, #0\n"
+      "b 5f\n .space 60\n 5: ldr r4, =0x4000\n mov r10, r4\n ldr sp, =0x6000\n mov r0, #77\n str "
+      "r0, [r4]\n"
+      "mov r0, #78\n str r0, [r4, #4]\n mov r0, #0\n mov r1, #1\n mov r2, #2\n mov r3, #3\n mov "
+      "r6, #0\n"
       "mov r9, #0\n adr r7, 2f\n";
   if (thumb)
-    start = start.substr(0, start.find(" adr r7, 2f")) + " adr r7, 6f + 1\n bx r7\n .balign 4\n 6:\n";
-  m.execute(start + text + (thumb && text.find(".arm") == std::string::npos
-                                ? "\n .thumb\n svc #2\n nop\n .balign 4\n .arm\n"
-                                : ""));
+    start =
+        start.substr(0, start.find(" adr r7, 2f")) + " adr r7, 6f + 1\n bx r7\n .balign 4\n 6:\n";
+  m.execute(start + text +
+            (thumb && text.find(".arm") == std::string::npos
+                 ? "\n .thumb\n svc #2\n nop\n .balign 4\n .arm\n"
+                 : ""));
   const std::uint32_t at = m.program.symbols.at("at");
   std::uint32_t word = 0;
   std::memcpy(&word, m.program.bytes.data() + at, thumb ? 2 : 4);
@@ -193,9 +200,10 @@ TEST(UnpredictableTest, EachReactionIsTried) {
     if (std::string(r.reaction) == "undefined") continue;
     std::istringstream in(r.classes);
     for (std::string one; std::getline(in >> std::ws, one, ',');)
-      EXPECT_TRUE(std::any_of(std::begin(kCases), std::end(kCases), [&](const Case& c) {
-        return c.insn_class == one && covers(r, one, c.clause);
-      })) << r.clause << " of " << one;
+      EXPECT_TRUE(std::any_of(
+          std::begin(kCases), std::end(kCases),
+          [&](const Case& c) { return c.insn_class == one && covers(r, one, c.clause); }))
+          << r.clause << " of " << one;
   }
 }
 

@@ -1,5 +1,5 @@
-// UNPREDICTABLE forms: what this core does. Most of it is what falls out of a plain data path; where
-// the behaviour of ARM9E cores is known (arm926.md 6.3) it is that.
+// UNPREDICTABLE forms: what this core does. Most of it is what falls out of a plain data path;
+// where the behaviour of ARM9E cores is known (arm926.md 6.3) it is that.
 #include "model/cpu/core/isa.h"
 
 namespace fovea::cpu {
@@ -10,6 +10,7 @@ constexpr const char* kProducts = "multiply, long multiply, dsp";
 constexpr const char* kPcOperand = "an operand reads 8 ahead; a result is lost";
 constexpr const char* kOld = "uses what the registers held before";
 
+// clang-format off
 constexpr IsaReaction kReactions[] = {
     {"d != 15", "data shift by register", "branches, as without the shift"},
     {"n != 15", kShifts, "reads 12 ahead"},
@@ -60,6 +61,7 @@ constexpr IsaReaction kReactions[] = {
     {"n or m > 7", "thumb high", "as with a high register"},
     {"n != 15", "thumb high", "reads 4 ahead"},
 };
+// clang-format on
 
 }  // namespace
 
