@@ -25,7 +25,7 @@ bits 19:16 and d bits 15:12, also where the manual names them otherwise (the res
 sign, `<shift>` a shift of the last operand, if there is one.
 
 *Defined if*: otherwise the instruction is UNPREDICTABLE; `W:` only with write-back. Clauses about
-operands that a row lacks do not count.
+operands that a row lacks do not count. Such instructions have the reactions of the last section, and are counted and warned of.
 
 *Clocks*: issue with everything hit (`iss.timing` compares the first figure with the core); *then*:
 so many more before the next instruction can use the result without waiting; *n* registers. A
@@ -40,5 +40,12 @@ failed condition takes 1. Thumb instructions take the clocks of their ARM equiva
         std::printf("| %s | `%s` | `%s` | %s | %s | %s |\n", row.name, row.pattern, row.syntax,
                     row.kind.defined_if, row.kind.cycles, row.kind.source);
   }
+  std::puts("\n## UNPREDICTABLE forms\n\n"
+            "What happens where the clause is broken. Bits that should be zero or one are ignored. An\n"
+            "instruction that fails its condition is none of these. Every one that passes counts in\n"
+            "`cpu.unpredictable`, and its row is named in a warning.\n\n"
+            "| clause | classes | reaction |\n|---|---|---|");
+  for (const auto& r : fovea::cpu::isa_reactions())
+    std::printf("| %s | %s | %s |\n", r.clause, r.classes, r.reaction);
   return 0;
 }

@@ -30,8 +30,8 @@ class BoundaryTest : public testing::Test {
 };
 
 /// Dacr with domain 0 as manager and domain 1 as client.
-const std::string kClients = kVectors + kCachesOn +
-                             " ldr r0, =0x00000007\n mcr p15, 0, r0, c3, c0, 0\n ldr r4, =0x10000\n";
+const std::string kClients =
+    kVectors + kCachesOn + " ldr r0, =0x00000007\n mcr p15, 0, r0, c3, c0, 0\n ldr r4, =0x10000\n";
 
 TEST_F(BoundaryTest, InternalRamHasPermissions) {
   internal_ram_by_pages();
@@ -65,7 +65,8 @@ TEST_F(BoundaryTest, InternalRamHasADomain) {
   // The program runs from memory: internal RAM is data alone, until the handlers need it again.
   const Program there = assemble(
       "mrc p15, 0, r0, c3, c0, 0\n ldr r2, [r4]\n mov r1, #3\n mcr p15, 0, r1, c3, c0, 0\n"
-      "ldr r3, [r4]\n mcr p15, 0, r0, c3, c0, 0\n mov pc, lr\n", kPa);
+      "ldr r3, [r4]\n mcr p15, 0, r0, c3, c0, 0\n mov pc, lr\n",
+      kPa);
   m.load(there);
   // The vector of a data abort in domain 1 is in domain 1: it faults as well, for ever.
   EXPECT_THROW(m.execute(kClients + " ldr r8, =0x00300000\n blx r8\n"), GuestFailure);
@@ -76,7 +77,8 @@ TEST_F(BoundaryTest, FetchesFromInternalRamAreChecked) {
   internal_ram_by_pages();
   m.port.set_word(kCoarse + 4 * 7, 0);
   page(kCoarse, 0x6000, 0x6000, 1);
-  m.execute(kClients + "adr r12, 1f\n mov r0, #0x7000\n mov pc, r0\n"
+  m.execute(kClients +
+            "adr r12, 1f\n mov r0, #0x7000\n mov pc, r0\n"
             "1: adr r12, 2f\n mov r0, #0x6000\n msr cpsr_c, #0x10\n mov pc, r0\n 2: mov r9, #9\n");
   const auto f = faults();
   ASSERT_EQ(f.size(), 2u);
@@ -93,7 +95,8 @@ TEST_F(BoundaryTest, InternalRamIsFoundByItsModifiedAddress) {
   internal_ram_by_pages();
   m.port.set_word(kCoarse + 4 * 0x13, kPa | 0xFFEu);
   m.on_svc = [this](std::uint32_t) { m.marks.push_back(m.port.data_log().size()); };
-  m.execute(kClients + "mov r1, #77\n add r5, r4, #0x3000\n svc #3\n str r1, [r5]\n svc #3\n"
+  m.execute(kClients +
+            "mov r1, #77\n add r5, r4, #0x3000\n svc #3\n str r1, [r5]\n svc #3\n"
             "ldr r2, [r5]\n ldr r3, [r5]\n svc #3\n");
   EXPECT_EQ(m.core.reg(2), 77u);
   EXPECT_EQ(m.tcm_word(0x3000), 77u);
@@ -107,12 +110,13 @@ TEST_F(BoundaryTest, InternalRamIsFoundByItsModifiedAddress) {
 TEST_F(BoundaryTest, RevokedPermissionHoldsForKnownInternalRam) {
   internal_ram_by_pages();
   m.on_svc = [this](std::uint32_t) { m.port.set_word(kCoarse + 4 * 0x13, 0); };
-  m.execute(kClients + "add r5, r4, #0x3000\n ldr r1, [r5]\n str r1, [r5]\n ldr r1, [r5]\n svc #3\n"
+  m.execute(kClients +
+            "add r5, r4, #0x3000\n ldr r1, [r5]\n str r1, [r5]\n ldr r1, [r5]\n svc #3\n"
             "ldr r1, [r5]\n mcr p15, 0, r5, c8, c7, 1\n ldr r1, [r5]\n str r1, [r5]\n");
   EXPECT_EQ(faults().size(), 2u) << "only what follows the invalidation";
 }
 
-/// Table 3-9: an external abort of several words leaves the last address before the 1 KB boundary
+/// Chapter 3, FAR: an external abort of several words leaves the last address before the 1 KB boundary
 /// behind the word that aborted, or the last of the transfer.
 TEST_F(BoundaryTest, ExternalAbortOfSeveralWordsNamesTheEndOfItsKilobyte) {
   struct Row {
@@ -120,12 +124,10 @@ TEST_F(BoundaryTest, ExternalAbortOfSeveralWordsNamesTheEndOfItsKilobyte) {
     std::uint32_t far;
   };
   const Row rows[] = {
-      {"ldr r0, [r5]", 0x3F8},           {"str r0, [r5]", 0x3F8},
-      {"ldmia r5, {r0-r3}", 0x3FC},      {"stmia r5, {r0-r3}", 0x3FC},
-      {"ldmia r5, {r0, r1}", 0x3FC},     {"ldmia r5, {r0}", 0x3F8},
-      {"ldmdb r5, {r0-r3}", 0x3F4},      {"stmib r5!, {r0-r3}", 0x3FC},
-      {"ldrd r0, r1, [r5]", 0x3FC},      {"strd r0, r1, [r5]", 0x3FC},
-      {"ldmia r5!, {r0-r3}", 0x3FC},     {"swp r0, r1, [r5]", 0x3F8},
+      {"ldr r0, [r5]", 0x3F8},      {"str r0, [r5]", 0x3F8},       {"ldmia r5, {r0-r3}", 0x3FC},
+      {"stmia r5, {r0-r3}", 0x3FC}, {"ldmia r5, {r0, r1}", 0x3FC}, {"ldmia r5, {r0}", 0x3F8},
+      {"ldmdb r5, {r0-r3}", 0x3F4}, {"stmib r5!, {r0-r3}", 0x3FC}, {"ldrd r0, r1, [r5]", 0x3FC},
+      {"strd r0, r1, [r5]", 0x3FC}, {"ldmia r5!, {r0-r3}", 0x3FC}, {"swp r0, r1, [r5]", 0x3F8},
   };
   m.section(kVa, kNowhere, 0, 0);
   std::string text = kVectors + kCachesOn;
@@ -146,9 +148,10 @@ TEST_F(BoundaryTest, ExternalAbortBehindTheBoundaryNamesTheLastWord) {
   page(kCoarse, kVa, kPa);
   page(kCoarse, kVa + 0x1000, kNowhere);
   m.port.set_word(kPa + 0xFFC, 55);
-  m.execute(kVectors + kCachesOn +
-            " ldr r5, =0x08000ff8\n mov r6, r5\n mov r0, #1\n mov r1, #2\n mov r2, #3\n mov r3, #4\n"
-            "ldmia r5!, {r0-r3}\n stmia r5!, {r0-r3}\n ldmia r6, {r0-r3, r6}\n ldmib r5!, {r0, r1}\n");
+  m.execute(
+      kVectors + kCachesOn +
+      " ldr r5, =0x08000ff8\n mov r6, r5\n mov r0, #1\n mov r1, #2\n mov r2, #3\n mov r3, #4\n"
+      "ldmia r5!, {r0-r3}\n stmia r5!, {r0-r3}\n ldmia r6, {r0-r3, r6}\n ldmib r5!, {r0, r1}\n");
   const auto f = faults();
   ASSERT_EQ(f.size(), 4u);
   const std::uint32_t far[] = {0x1004, 0x1004, 0x1008, 0x1000};
@@ -173,7 +176,8 @@ TEST_P(SecondPageTest, FaultsBeforeTheBaseMoves) {
   page(kCoarse, kVa + 0x3000, kPa + 0x3000, 0);
   for (const std::uint32_t at : {kCoarse, kCoarse + 8, kCoarse + 12})
     m.port.set_word(at, m.port.word(at) | GetParam());
-  m.execute(kVectors + kCachesOn + " ldr r0, =0x13\n mcr p15, 0, r0, c3, c0, 0\n"
+  m.execute(kVectors + kCachesOn +
+            " ldr r0, =0x13\n mcr p15, 0, r0, c3, c0, 0\n"
             " ldr r5, =0x08000ff4\n add r6, r5, #0x2000\n mov r0, #1\n mov r1, #2\n mov r2, #3\n"
             "mov r3, #4\n stmia r5!, {r0-r3}\n ldmia r5!, {r0-r3}\n stmia r6!, {r0-r3}\n"
             "ldmia r6!, {r0-r3}\n add r8, r5, #16\n ldmda r8!, {r0-r3}\n"
@@ -210,7 +214,8 @@ class ProcessTest : public BoundaryTest, public testing::WithParamInterface<unsi
         text.replace(at, 2, std::to_string(p + 1));
       m.load(assemble(text, kPa + p * 0x100000));
     }
-    m.execute(std::string(kCachesOn) + " ldr r4, =0x02000000\n mov r5, #0\n ldr r0, =0x01c00000\n"
+    m.execute(std::string(kCachesOn) +
+              " ldr r4, =0x02000000\n mov r5, #0\n ldr r0, =0x01c00000\n"
               "blx r0\n");
   }
 };
@@ -263,12 +268,15 @@ TEST_P(ProcessTest, ExceptionEndsTheOldProcess) {
 }
 INSTANTIATE_TEST_SUITE_P(Cached, ProcessTest, testing::Values(0u, 1u));
 
-/// Both words of the handler at 0x18 lie in one piece of the prefetch buffer: one burst fetches them.
+/// Both words of the handler at 0x18 lie in one piece of the prefetch buffer: one burst fetches
+/// them.
 TEST(EntryTest, SecondInstructionOfAnUncachedHandlerIsThereAlready) {
   Machine m;
   m.section(0, kPa, 0, 0);
-  m.load(assemble(".space 0x18\n add r10, r10, #1\n add r10, r10, #1\n add r10, r10, #1\n"
-                  "subs pc, lr, #4\n", kPa));
+  m.load(
+      assemble(".space 0x18\n add r10, r10, #1\n add r10, r10, #1\n add r10, r10, #1\n"
+               "subs pc, lr, #4\n",
+               kPa));
   constexpr Picoseconds kRaised = 40'000'000;
   m.port.schedule(kRaised, [&m] { m.core.set_irq(true, kRaised); });
   m.port.schedule(kRaised + 10'000, [&m] { m.core.set_irq(false, kRaised + 10'000); });

@@ -1,8 +1,10 @@
-// The clocks that the table of instructions states are those that the core takes.
+// Each row takes the clocks counted by hand, and the table of instructions states them.
 #include <charconv>
 #include <map>
+#include <sstream>
 
 #include "model/cpu/core/isa.h"
+#include "tb/iss/hand_counts.h"
 #include "tb/iss/machine.h"
 
 namespace fovea::cpu::test {
@@ -55,7 +57,20 @@ struct Taken {
   std::uint32_t mode;  ///< afterwards
 };
 
-Taken taken(int row) {
+/// The register of plain(row) that is written last, -1: none that a following addition could read.
+int last_result(int row) {
+  const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
+  const std::string writes = form.kind.writes;
+  if (writes.empty() || form.also || form.op == Op::kBxReg) return -1;
+  if (writes == "l") return 1;
+  const IsaFields f = isa_fields(row, plain(row));
+  if (writes[0] == 'n') return static_cast<int>(f['n']);
+  if (isa_has(row, 'e')) return static_cast<int>(f['d'] + 1);
+  return f['d'] < 13 ? static_cast<int>(f['d']) : -1;
+}
+
+/// @param use a register that the next instruction adds to another one; -1: none comes
+Taken taken(int row, int use = -1) {
   const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
   Machine m;
   const auto put = [&m](std::uint32_t at, std::uint32_t w, unsigned bytes = 4) {
@@ -82,7 +97,12 @@ Taken taken(int row) {
   for (const std::uint32_t base : {kData, kStack}) put(base + 4 * kListed, target);
   put(at - (thumb ? 2 : 4), thumb ? kThumbMark : kMark, thumb ? 2 : 4);
   put(at, plain(row), thumb ? 2 : 4);
-  if (to_thumb || thumb) {
+  const auto x = static_cast<std::uint32_t>(use);
+  if (use >= 0) {  // adds r7, rX, #0 or add r7, rX, rX; then the mark
+    put(next, thumb ? 0x1C07u | x << 3 : 0xE0807000u | x << 16 | x, thumb ? 2 : 4);
+    put(next + (thumb ? 2 : 4), thumb ? kThumbMark : kMark, thumb ? 2 : 4);
+    put(next + (thumb ? 4 : 8), thumb ? kThumbStop : kStop, thumb ? 2 : 4);
+  } else if (to_thumb || thumb) {
     put(next, kThumbMark, 2);
     put(next + 2, kThumbStop, 2);
     put(at + 8, kMark);
@@ -95,16 +115,47 @@ Taken taken(int row) {
   return {m.between(), m.core.cpsr() & 31u};
 }
 
-TEST(IsaTimingTest, CoreTakesTheStatedClocks) {
+/// The hand count of a row, nullptr unless there is exactly one.
+const HandCount* hand_count(const std::string& name) {
+  const HandCount* found = nullptr;
+  for (const HandCount& h : kHandCounts) {
+    std::istringstream in(h.rows);
+    for (std::string one; std::getline(in >> std::ws, one, ',');)
+      if (one == name) {
+        if (found) return nullptr;
+        found = &h;
+      }
+  }
+  return found;
+}
+
+TEST(IsaTimingTest, EachRowTakesTheClocksCountedByHand) {
+  unsigned uses = 0;
   for (int row = 0; row < static_cast<int>(isa_rows().size()); ++row) {
     const IsaRow& form = isa_rows()[static_cast<std::size_t>(row)];
     ASSERT_EQ(isa_row(plain(row), form.thumb()), row) << form.name;
+    const HandCount* const by_hand = hand_count(form.name);
+    ASSERT_NE(by_hand, nullptr) << form.name << " is not counted, or twice";
+    EXPECT_EQ(stated(form), by_hand->clocks) << form.name << ": " << form.kind.cycles;
     const Taken t = taken(row);
-    EXPECT_EQ(t.clocks, stated(form)) << form.name << ": " << form.kind.cycles;
+    EXPECT_EQ(t.clocks, by_hand->clocks) << form.name;
     // Undefined instructions, and those of absent coprocessors, come to the undefined vector.
     const bool undefined = form.op == Op::kUndefined || form.op == Op::kCoprocessor;
     EXPECT_EQ(t.mode, undefined ? 0x1Bu : form.op == Op::kBkpt ? 0x17u : 0x13u) << form.name;
+    const int use = undefined ? -1 : last_result(row);
+    if (use < 0 || (form.thumb() && use > 7)) {
+      EXPECT_EQ(by_hand->wait, 0u) << form.name;
+      continue;
+    }
+    ++uses;
+    EXPECT_EQ(taken(row, use).clocks, by_hand->clocks + by_hand->wait + 1) << form.name << ", used";
   }
+  EXPECT_GE(uses, 120u) << "rows whose result was used";
+}
+
+TEST(IsaTimingTest, ARowWithoutAHandCountIsNoticed) {
+  EXPECT_EQ(hand_count("ldr imm"), nullptr);
+  EXPECT_NE(hand_count("ldr imm pre"), nullptr);
 }
 
 }  // namespace

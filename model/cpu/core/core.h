@@ -351,6 +351,7 @@ class Core : public Background {
   }
   std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
   std::array<Instruction, 2> uncached_record_;
+  std::array<Instruction, 2> apart_;        // for an UNPREDICTABLE form
   bool fetch_branched_ = false;
   std::uint64_t redirects_seen_ = 0;  // by the last fetch past the caches
   bool bus_fetch_ = false;  // the last fetch went to the bus: time has passed since the boundary

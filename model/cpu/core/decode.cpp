@@ -70,6 +70,7 @@ struct Plan {
   unsigned scale = 0, unused = 0;  ///< of a signed number: bits above it
   std::uint16_t also = 0;
   bool pair = false, stores_list = false, thumb_ldm = false;
+  bool always_defined = false;
 };
 
 Plan make_plan(int at) {
@@ -109,6 +110,7 @@ Plan make_plan(int at) {
   p.also = row.also;
   p.pair = isa_has(at, 'e');
   p.thumb_ldm = row.thumb() && row.op == Op::kLdm;
+  p.always_defined = isa_always_defined(at);
   return p;
 }
 
@@ -177,6 +179,7 @@ Instruction decode(std::uint32_t w, bool thumb) {
   for (const std::uint8_t slot : p.sources) sources |= 1u << v[slot];
   for (const std::uint8_t slot : p.stored) stored |= (p.pair && slot == kD ? 3u : 1u) << v[slot];
   if ((sources | stored) & 0x8000u) flags |= kReadsPc;
+  if (!p.always_defined && !isa_defined(row, w)) flags |= kUnpredictable;
   i.sources = static_cast<std::uint16_t>(sources);
   i.stored = static_cast<std::uint16_t>(stored);
   i.flags = static_cast<std::uint16_t>(flags);

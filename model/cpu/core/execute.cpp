@@ -380,11 +380,7 @@ void Core::load_store(const Instruction& i) {
     }
   }
   write_back();
-  if (i.rd == 15) {
-    unpredictable("narrow load to the pc");
-    spend(cycles);
-    return;
-  }
+  if (i.rd == 15) return spend(cycles);  // UNPREDICTABLE: the value is lost
   r_[i.rd] = value;
   spend(cycles);
   loaded(i.rd, 2);
@@ -393,8 +389,7 @@ void Core::load_store(const Instruction& i) {
 void Core::load_multiple(const Instruction& i) {
   const std::uint32_t base = r_[i.rn];
   const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
-  if (n == 0) {  // no register: the base moves by sixteen words
-    unpredictable("LDM without registers");
+  if (n == 0) {  // no register: the base moves by sixteen words (isa_reactions.cpp)
     if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
     spend(1);
     return;
@@ -446,7 +441,6 @@ void Core::store_multiple(const Instruction& i) {
   const std::uint32_t base = r_[i.rn];
   const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
   if (n == 0) {
-    unpredictable("STM without registers");
     if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
     spend(1);
     return;

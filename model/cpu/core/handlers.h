@@ -62,6 +62,8 @@ struct Core::Ops {
     c.execute_one(*i);
     return resume(c, i + 1);
   }
+  /// An UNPREDICTABLE form: warns, then executes it on a record apart.
+  [[gnu::noinline]] static Next warned(Core& c, Next i, Cycle cycle);
   /// Goes on with record i after its neighbour was executed with all state settled.
   [[gnu::always_inline]] static Next resume(Core& c, Next i) {
     if (!c.chain_goes_on(i)) return nullptr;

@@ -32,6 +32,7 @@ enum InsnFlags : std::uint16_t {
   kTop2 = 1 << 9,       // y
   kAlignPc = 1 << 10,   // Thumb literal: pc & ~3
   kImmCarry = 1 << 11,  // rotated immediate gives the carry
+  kUnpredictable = 1 << 12,
 };
 
 class Core;

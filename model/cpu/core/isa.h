@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "model/cpu/core/instruction.h"
 
@@ -108,5 +110,18 @@ std::uint32_t isa_encode(int row, const IsaFields& fields);
 /// The word's row defines its result: no clause of `defined_if` is broken, no ignored bit is wrong.
 /// False for kNoRow; the functions above want a row.
 bool isa_defined(int row, std::uint32_t word);
+/// No word of the row is UNPREDICTABLE.
+bool isa_always_defined(int row);
+
+/// What the core does where a clause of `defined_if` is broken. Each such instruction that passes its
+/// condition is counted and warned of.
+struct IsaReaction {
+  const char* clause;   ///< as in the table, without "W: "
+  const char* classes;  ///< names, separated by ", "
+  const char* reaction;
+};
+std::span<const IsaReaction> isa_reactions();
+/// Clauses of a row whose operands it has.
+std::vector<std::string> isa_clauses(int row);
 
 }  // namespace fovea::cpu

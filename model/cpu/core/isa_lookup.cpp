@@ -24,6 +24,7 @@ struct Form {
   std::vector<IsaPiece> pieces;
   std::vector<IsaImplied> implied;
   std::vector<Clause> clauses;
+  std::vector<std::string> texts;  // of the clauses
   std::uint64_t letters = 0;
 };
 
@@ -116,6 +117,7 @@ Form parse(const IsaRow& row) {
     // Clauses about operands that the row has not.
     if (!(f.letters & letter_bit(c.a)) || (c.b && !(f.letters & letter_bit(c.b)))) continue;
     f.clauses.push_back(c);
+    f.texts.push_back(s);
   }
   return f;
 }
@@ -218,5 +220,12 @@ bool isa_defined(int row, std::uint32_t word) {
     if (!holds(c, v)) return false;
   return true;
 }
+
+bool isa_always_defined(int row) {
+  const Form& f = form(row);
+  return f.bits.zeros == 0 && f.bits.ones == 0 && f.clauses.empty();
+}
+
+std::vector<std::string> isa_clauses(int row) { return form(row).texts; }
 
 }  // namespace fovea::cpu

@@ -76,8 +76,8 @@ void Core::fault(bool instruction, unsigned status, unsigned domain, std::uint32
   }
 }
 
-/// The FAR of a transfer of several words up to va `last` that aborted outside: the last word before
-/// the 1 KB boundary that follows the aborted one (ARM DDI 0198D table 3-9). The words between are
+/// The FAR of a transfer of several words up to `last` that aborted outside: the last word before
+/// the 1 KB boundary that follows the aborted one (ARM DDI 0198D ch. 3, FAR). The words between are
 /// not transferred (assumed).
 void Core::external_abort_at(std::uint32_t last) {
   const std::uint32_t status = dfsr_ & 0xFu;

@@ -1,5 +1,6 @@
 // Decoded records become runnable: which handler, and what its neighbours let it leave out.
 #include "model/cpu/core/handlers.h"
+#include "model/cpu/core/isa.h"
 
 namespace fovea::cpu {
 namespace {
@@ -114,7 +115,9 @@ void Core::prepare(Instruction& i, unsigned at, Place place) const {
   i.at = static_cast<std::uint8_t>(at);
   Handler body = nullptr;
   bool own_condition = false;
-  if (i.op <= Op::kMvn) {
+  if (i.flags & kUnpredictable) {
+    body = &Ops::warned;
+  } else if (i.op <= Op::kMvn) {
     body = Ops::data_body(i);
   } else {
     switch (i.op) {
@@ -152,6 +155,22 @@ void Core::prepare(Instruction& i, unsigned at, Place place) const {
   }
   static constexpr auto kTable = Ops::before_table(std::make_index_sequence<90>{});
   i.handler = kTable[cond + 15 * (static_cast<unsigned>(check) + 3 * unsigned{pc})];
+}
+
+Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
+  c.settle(i, cycle);
+  const bool thumb = i->flags & kThumbInsn;
+  c.unpredictable(isa_rows()[static_cast<std::size_t>(isa_row(i->raw, thumb))].name);
+  std::array<Instruction, 2>& pair = c.apart_;
+  pair[0] = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
+  pair[0].flags = static_cast<std::uint16_t>(pair[0].flags & ~kUnpredictable);
+  c.prepare(pair[0], i->at, Place{});
+  pair[1].at = static_cast<std::uint8_t>(i->at + (thumb ? 2u : 4u));
+  pair[1].handler = &leave;
+  c.chain_stop_ = 0;  // one record, and back to run()
+  c.run_first_ = reinterpret_cast<std::intptr_t>(pair.data());
+  for (Next k = pair[0].body(c, pair.data(), c.cycle_); k;) k = k->handler(c, k, c.chain_cycle_);
+  return nullptr;
 }
 
 template <bool kThumb>

@@ -69,8 +69,7 @@ DdrController::View DdrController::view() const {
   if (given_count_) {
     const Given& g = given_[(given_count_ - 1) % kGiven];
     v.last = g.cmd;
-    if (g.cmd == Cmd::kAct || g.cmd == Cmd::kPre || g.cmd == Cmd::kRd || g.cmd == Cmd::kWr)
-      v.last_master = static_cast<Master>(g.master);
+    if (g.blame < kMasterCount) v.last_master = static_cast<Master>(g.blame);
   }
   v.cmd = choice_.cmd;
   v.next_at = next_;
