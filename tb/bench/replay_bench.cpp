@@ -22,8 +22,9 @@ void replay(benchmark::State& state, bool random, bool memory_only) {
 }
 
 void arguments(benchmark::internal::Benchmark* b) {
-  for (const int masters : {1, 4, 10}) b->Args({masters, 1'000'000});
-  b->Args({4, 10'000'000})->Unit(benchmark::kMillisecond);
+  b->ArgNames({"masters", "requests"})->Unit(benchmark::kMillisecond);
+  for (const int masters : {1, 4, 10})
+    for (const int count : {1'000'000, 10'000'000}) b->Args({masters, count});
 }
 
 BENCHMARK_CAPTURE(replay, sequential, false, false)->Apply(arguments);

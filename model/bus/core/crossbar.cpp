@@ -176,22 +176,27 @@ inline void Crossbar::sum_grants(SlaveState& s) {
   const Picoseconds start = scr_.edge(crossed), waited = next_ - start;
   charge(r, Culprit::kBridge, start - r.issued);
   // Where nobody had the lane the request stood behind its own master's last one.
-  sum_grants(s);
   const std::uint32_t made = s.grants_made;
   std::uint32_t n = std::min(made - grants, static_cast<std::uint32_t>(SlaveState::kGrants));
   while (n > 0 && s.grant(made - n).end <= crossed) --n;
-  if (n == 0) return charge(r, culprit(r.master), waited);
-  const Grant& first = s.grant(made - n);
-  const Picoseconds passed = first.start < crossed ? start - scr_.edge(first.start) : 0;
-  const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
-  Picoseconds of_lane = s.lane[kMasterCount] - before[kMasterCount];
   Waits w;
-  if (n == 1)
-    w.add(static_cast<Culprit>(first.master), of_lane);
-  else
+  Picoseconds of_lane = 0;
+  if (n <= kFewGrants) {
+    for (; n > 0; --n) {
+      const Grant& g = s.grant(made - n);
+      const Picoseconds t = scr_.edge(g.end) - scr_.edge(std::max(g.start, crossed));
+      w.add(static_cast<Culprit>(g.master), t);
+      of_lane += t;
+    }
+  } else {
+    sum_grants(s);
+    const Grant& first = s.grant(made - n);
+    const Picoseconds passed = first.start < crossed ? start - scr_.edge(first.start) : 0;
+    const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
+    of_lane = s.lane[kMasterCount] - before[kMasterCount] - passed;
     w.add_masters(s.lane.data(), before.data());
-  w.take_back(static_cast<Culprit>(first.master), passed);
-  of_lane -= passed;
+    w.take_back(static_cast<Culprit>(first.master), passed);
+  }
   w.add(culprit(r.master), waited - of_lane);
   for (std::size_t m = 0; m < kMasterCount; ++m)
     if (w.ps[m]) charge(r, static_cast<Culprit>(m), w.ps[m]);

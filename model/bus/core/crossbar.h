@@ -155,6 +155,7 @@ class Crossbar {
     std::uint64_t start = 0, end = 0;
     std::uint8_t master = 0;
   };
+  static constexpr std::uint32_t kFewGrants = 6;  // so many are added up one by one
   /// How long each master had a lane, and all of them together, in ps.
   using LaneTimes = std::array<Picoseconds, kMasterCount + 1>;
   struct SlaveState {
@@ -206,7 +207,7 @@ class Crossbar {
   void return_read(MemRequest& r, Picoseconds first, Picoseconds last);
   /// The parts of request.issued .. next_, its grant.
   void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants);
-  void charge(const MemRequest& r, Culprit c, Picoseconds t) {
+  [[gnu::always_inline]] void charge(const MemRequest& r, Culprit c, Picoseconds t) {
     MasterWaits& w = waits[index(r.master)];
     (r.write ? w.write : w.read).add(c, t);
     if (r.parts) r.parts->add(c, t);

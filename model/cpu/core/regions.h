@@ -1,6 +1,7 @@
 // Named ranges of physical addresses, to say where stalls come from.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -34,9 +35,18 @@ class RegionMap {
     for (const Piece& p : pieces_)
       if (p.first > end) pieces.push_back(p);
     pieces_ = std::move(pieces);
+    found_ = {};
     return true;
   }
-  std::uint8_t find(std::uint32_t address) const { return at(address); }
+  std::uint8_t find(std::uint32_t address) const {
+    Found& f = found_[address / 0x10'0000 % found_.size()];
+    if (address - f.first >= f.bytes) [[unlikely]] {
+      const std::size_t k = piece(address);
+      const std::uint64_t end = k + 1 < pieces_.size() ? pieces_[k + 1].first : kEnd;
+      f = {pieces_[k].first, end - pieces_[k].first, pieces_[k].id};
+    }
+    return f.id;
+  }
   /// Numbers are places in here.
   const std::vector<std::string>& names() const { return names_; }
 
@@ -46,18 +56,25 @@ class RegionMap {
     std::uint64_t first;  // up to the next one's
     std::uint8_t id;
   };
-  std::uint8_t at(std::uint64_t address) const {
+  /// Found last, by megabyte: the core's streams of accesses stay in their ranges.
+  struct Found {
+    std::uint64_t first = 0, bytes = 0;
+    std::uint8_t id = kOther;
+  };
+  std::uint8_t at(std::uint64_t address) const { return pieces_[piece(address)].id; }
+  std::size_t piece(std::uint64_t address) const {
     std::size_t low = 0, count = pieces_.size();
     while (count > 1) {
       const std::size_t half = count / 2;
       if (pieces_[low + half].first <= address) low += half;
       count -= half;
     }
-    return pieces_[low].id;
+    return low;
   }
 
   std::vector<std::string> names_ = {"none", "other"};
   std::vector<Piece> pieces_ = {{0, kOther}};
+  mutable std::array<Found, 16> found_{};
 };
 
 }  // namespace fovea::cpu

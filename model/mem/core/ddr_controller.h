@@ -182,7 +182,10 @@ class DdrController {
   static constexpr std::size_t kGiven = 64;
   using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
+  const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
+  void blame_each(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own) const;
+  void blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own);
   void charge_read(const Entry& e, const Waits& w);
   void sum_given();
 

@@ -45,31 +45,43 @@ inline void DdrController::charge_read(const Entry& e, const Waits& w) {
     if (w.ps[c]) e.request.parts->add(static_cast<Culprit>(c), w.ps[c]);
 }
 
-/// The waits of a read whose first column command, already noted, is given at `clock`, since it
-/// became ready.
-[[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
-  static constexpr std::array kRest = {Culprit::kTurnaround, Culprit::kRefresh,
-                                       Culprit::kPowerDown};
-  const auto culprit_of = [](std::size_t blame) {
-    return blame < kMasterCount ? static_cast<Culprit>(blame) : kRest[blame - kMasterCount];
-  };
-  const Culprit own = culprit(e.request.master);
-  const std::uint64_t ready = std::max(e.ready, first_edge_);
-  const Picoseconds start = ddr_.edge(ready);
-  read_waited_ = ddr_.edge(clock) - start;
-  // The last command at or before `ready`, or the oldest one that is known.
-  const std::uint64_t last = given_count_ - 1;
-  const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
-  std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
-  while (n > oldest && given(n).clock > ready) --n;
-  while (n + 1 < last && given(n + 1).clock <= ready) ++n;
-  Waits w;
-  if (n == last) {  // nothing was given before it
-    w.add(own, read_waited_);
-    return charge_read(e, w);
-  }
+/// Of a DdrController::Blame.
+constexpr Culprit culprit_of(std::size_t blame) {
+  constexpr std::array kRest = {Culprit::kTurnaround, Culprit::kRefresh, Culprit::kPowerDown};
+  return blame < kMasterCount ? static_cast<Culprit>(blame) : kRest[blame - kMasterCount];
+}
 
-  if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
+/// The waits since `ready`, by the commands from the n-th on, one by one.
+inline void DdrController::blame_each(Waits& w, std::uint64_t n, std::uint64_t ready,
+                                      Culprit own) const {
+  const std::uint64_t last = given_count_ - 1;
+  std::uint64_t at = ready;
+  Picoseconds from = ddr_.edge(at);
+  const auto until = [&](std::uint64_t clock, Culprit c) {
+    if (clock <= at) return;
+    const Picoseconds to = ddr_.edge(clock);
+    w.add(c, to - from);
+    at = clock;
+    from = to;
+  };
+  until(given(n).clock, own);  // what is not known is its own
+  for (; n < last; ++n) {
+    const Given& g = given(n);
+    const std::uint64_t next = given(n + 1).clock;
+    if (g.cmd == Cmd::kWr) {
+      until(std::min(next, g.clock + config_.timing.WL() + DdrTiming::kBurstClocks),
+            culprit_of(g.blame));
+      until(next, Culprit::kTurnaround);
+    } else {
+      until(next, culprit_of(g.blame));
+    }
+  }
+}
+
+/// The same by sums, for long waits among many commands.
+inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own) {
+  const std::uint64_t last = given_count_ - 1;
+  const Picoseconds start = ddr_.edge(ready);
   sum_given();
   const Blames &before = blames_[n % kGiven], &now = blames_[last % kGiven];
   w.add_masters(now.data(), before.data());
@@ -86,6 +98,33 @@ inline void DdrController::charge_read(const Entry& e, const Waits& w) {
     }
     const Picoseconds from = ddr_.edge(std::max(first.clock, first_edge_));
     w.take_back(culprit_of(first.blame), until - from);
+  }
+}
+
+/// The waits of a read whose first column command, already noted, is given at `clock`, since it
+/// became ready.
+[[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+  const Culprit own = culprit(e.request.master);
+  const std::uint64_t ready = std::max(e.ready, first_edge_);
+  const Picoseconds start = ddr_.edge(ready);
+  read_waited_ = ddr_.edge(clock) - start;
+  // The last command at or before `ready`, or the oldest one that is known.
+  const std::uint64_t last = given_count_ - 1;
+  const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
+  std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
+  while (n > oldest && given(n).clock > ready) --n;
+  while (n + 1 < last && given(n + 1).clock <= ready) ++n;
+  Waits w;
+  if (n == last) {  // nothing was given before it
+    w.add(own, read_waited_);
+    return charge_read(e, w);
+  }
+
+  if (alone_) {
+    summed_ = std::max(summed_, n);  // later requests ask for later commands
+    blame_each(w, n, ready, own);
+  } else {
+    blame_sums(w, n, ready, own);
   }
   // Its own ACT and PRE are no wait behind an earlier request.
   Picoseconds row = 0;

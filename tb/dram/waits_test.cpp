@@ -1,0 +1,255 @@
+// Who waited for whom under load: the tables against a count clock by clock, from what can be seen
+// from outside.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "model/bus/core/crossbar.h"
+#include "model/mem/core/ddr_controller.h"
+#include "tb/dram/bench.h"
+
+namespace fovea::dram {
+namespace {
+
+void expect_equal(const WaitTable& counted, const WaitTable& table, std::uint64_t seed) {
+  for (std::size_t m = 0; m < kMasterCount; ++m)
+    for (std::size_t c = 0; c < kCulprits; ++c) {
+      EXPECT_EQ(table[m].read.ps[c], counted[m].read.ps[c])
+          << "seed " << seed << ", reads of " << kMasterNames[m] << ", culprit " << c;
+      EXPECT_EQ(table[m].write.ps[c], counted[m].write.ps[c])
+          << "seed " << seed << ", writes of " << kMasterNames[m] << ", culprit " << c;
+    }
+}
+
+/// A crossbar before a slave that is busy at times. Edges have 10 ns.
+class Lanes : private bus::XbarHost {
+ public:
+  static constexpr Picoseconds kEdge = 10'000;
+  explicit Lanes(std::uint64_t seed) : rng_(seed), xbar_(params_, *this) {
+    xbar_.set_clock(Frequency(100'000'000), 0);
+  }
+  /// Four masters in turn with up to four requests each: none waits for more grants than are kept.
+  void run(unsigned requests) {
+    for (Picoseconds now = kEdge; answered_ < requests; now += kEdge / 2) {
+      while (std::min(xbar_.next_decision(), opens_) < now) {
+        if (opens_ <= xbar_.next_decision())
+          open();
+        else
+          step();
+      }
+      const auto m = static_cast<std::size_t>(rng_.below(4) * 2);
+      if (rng_.below(3) == 0 || outstanding_[m] == 4) continue;
+      ++outstanding_[m];
+      requests_.push_back(std::make_unique<MemRequest>());
+      MemRequest& r = *requests_.back();
+      r.master = static_cast<Master>(m);
+      r.write = rng_.below(2);
+      r.bytes = static_cast<std::uint8_t>(8 << rng_.below(4));
+      r.issued = now;
+      xbar_.submit(r, bus::Slave::kDdr);
+    }
+  }
+  const WaitTable& table() const { return xbar_.waits; }
+  WaitTable counted{};
+
+ private:
+  void step() {
+    granted_ = xbar_.next_decision() / kEdge;
+    xbar_.step();
+  }
+  void count(const MemRequest& r) {
+    Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
+    const std::uint64_t latency =
+        static_cast<std::uint64_t>(params_.ports[index(r.master)]->request_latency());
+    const std::uint64_t crossed = r.issued / kEdge + 1 + latency;
+    w.add(Culprit::kBridge, crossed * kEdge - r.issued);
+    for (std::uint64_t edge = crossed; edge < granted_; ++edge) {
+      const auto lane = had_lane_.find(edge);
+      w.add(culprit(lane == had_lane_.end() ? r.master : lane->second), kEdge);
+    }
+  }
+  Taken forward(MemRequest& r, Picoseconds arrival) override {
+    count(r);
+    at_door_ = &r;
+    for (std::uint64_t edge = granted_; edge < arrival / kEdge; ++edge) had_lane_[edge] = r.master;
+    Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
+    w.add(Culprit::kService, arrival - granted_ * kEdge);
+    blocked_from_ = arrival / kEdge;
+    if (rng_.below(3) == 0) {
+      opens_ = arrival + (1 + rng_.below(12)) * kEdge - rng_.below(kEdge);
+      return Taken::kWaits;
+    }
+    finish(r, arrival);
+    return Taken::kYes;
+  }
+  void open() {
+    const Picoseconds at = std::exchange(opens_, kNever);
+    MemRequest& r = *at_door_;
+    r.door_opener = static_cast<Master>(rng_.below(kMasterCount));
+    const std::uint64_t taken = at / kEdge + 1;
+    for (std::uint64_t edge = blocked_from_; edge < taken; ++edge) had_lane_[edge] = r.master;
+    Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
+    w.add(culprit(r.door_opener), (taken - blocked_from_) * kEdge);
+    xbar_.slave_accepted(r, at);
+    finish(r, taken * kEdge);
+  }
+  /// A read's data come at once; a write is acknowledged by the crossbar.
+  void finish(MemRequest& r, Picoseconds at) {
+    const auto latency =
+        static_cast<std::uint64_t>(params_.ports[index(r.master)]->response_latency());
+    Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
+    w.add(Culprit::kBridge, latency * kEdge);
+    if (!r.write) xbar_.slave_done(r, at, at, false);
+  }
+  void respond(MemRequest& r) override {
+    ++answered_;
+    --outstanding_[index(r.master)];
+  }
+
+  Rng rng_;
+  bus::CrossbarParams params_;
+  bus::Crossbar xbar_;
+  std::vector<std::unique_ptr<MemRequest>> requests_;
+  std::map<std::uint64_t, Master> had_lane_;  // by edge
+  std::array<unsigned, kMasterCount> outstanding_{};
+  std::uint64_t granted_ = 0, blocked_from_ = 0;
+  MemRequest* at_door_ = nullptr;
+  Picoseconds opens_ = kNever;
+  unsigned answered_ = 0;
+};
+
+TEST(LoadedWaitsTest, CrossbarTagsEachEdgeWithWhoHadTheLane) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Lanes lanes(seed);
+    lanes.run(400);
+    expect_equal(lanes.counted, lanes.table(), seed);
+    EXPECT_GT(lanes.counted[0].read.ps[index(culprit(Master::kEdmaTc0))], 0u);
+  }
+}
+
+/// Eight masters, each with one request at a time in a bank of its own: a command's bank says whose
+/// it is. DDR clocks have 4 ns, the crossbar's 8 ns.
+class Banks : private mem::DdrClient {
+ public:
+  static constexpr Picoseconds kClock = 4'000;
+  explicit Banks(std::uint64_t seed)
+      : rng_(seed), store_(params_.size_bytes()), ddr_(params_, store_, *this) {
+    ddr_.set_clocks(Frequency(250'000'000), Frequency(125'000'000), 0);
+    mem::DdrConfig config;
+    config.refresh_interval = 400;
+    ddr_.configure(config, 0);
+    write_clocks_ = config.timing.WL() + mem::DdrTiming::kBurstClocks;
+    ddr_.set_command_hook(
+        [](void* self, mem::Cmd c, unsigned bank, std::uint32_t, std::uint64_t clock) {
+          static_cast<Banks*>(self)->command(c, bank, clock);
+        },
+        this);
+  }
+  void run(unsigned requests) {
+    for (Picoseconds now = kClock; done_ < requests; now += kClock * 3 / 2) {
+      while (ddr_.next_decision() < now) ddr_.step();
+      const auto m = static_cast<unsigned>(rng_.below(8));
+      Request& r = requests_[m];
+      if (r.busy || door_ != nullptr || rng_.below(4) == 0) continue;
+      r.busy = true;
+      mem::DdrRequest q;
+      q.cookie = &r;
+      q.master = static_cast<Master>(m);
+      q.priority = static_cast<std::uint8_t>(rng_.below(3));
+      q.write = rng_.below(3) == 0;
+      q.bytes = 32;
+      q.address = m << 11 | static_cast<std::uint32_t>(rng_.below(3)) << 14;
+      q.data = r.data.data();
+      r.arrived = now / kClock + 1;
+      if (!ddr_.submit(q, now)) door_ = &r;
+    }
+  }
+  const WaitTable& table() const { return ddr_.waits; }
+  WaitTable counted{};
+  std::uint64_t longest = 0;  // commands that one read waited for
+
+ private:
+  struct Request {
+    bool busy = false;
+    std::uint64_t arrived = 0;  // clock
+    unsigned columns = 0;
+    std::array<std::uint8_t, 64> data{};
+  };
+  struct Given {
+    mem::Cmd cmd;
+    unsigned bank;
+  };
+  void command(mem::Cmd c, unsigned bank, std::uint64_t clock) {
+    if (c == mem::Cmd::kRd && requests_[bank].columns == 0) count(bank, clock);
+    given_[clock] = {c, bank};
+    if (c != mem::Cmd::kRd && c != mem::Cmd::kWr) return;
+    Request& r = requests_[bank];
+    if (++r.columns < 2) return;
+    r.columns = 0;
+    r.busy = false;
+    ++done_;
+  }
+  void count(unsigned m, std::uint64_t clock) {
+    Waits& w = counted[m].read;
+    const std::uint64_t ready =
+        requests_[m].arrived + static_cast<std::uint64_t>(params_.request_latency());
+    bool closed = false;  // a row was, for this read
+    std::uint64_t commands = 0;
+    for (auto g = given_.lower_bound(ready); g != given_.end(); ++g, ++commands)
+      closed |= g->second.cmd == mem::Cmd::kPre && g->second.bank == m;
+    longest = std::max(longest, commands);
+    for (std::uint64_t k = ready; k < clock; ++k) {
+      auto g = given_.upper_bound(k);
+      if (g == given_.begin()) {
+        w.add(static_cast<Culprit>(m), kClock);
+        continue;
+      }
+      --g;
+      const auto [cmd, bank] = g->second;
+      Culprit culprit = static_cast<Culprit>(bank);
+      if (cmd == mem::Cmd::kRef || cmd == mem::Cmd::kPreAll)
+        culprit = Culprit::kRefresh;
+      else if (cmd == mem::Cmd::kWr && k >= g->first + write_clocks_)
+        culprit = Culprit::kTurnaround;
+      else if (bank == m && g->first >= ready)
+        culprit = closed ? Culprit::kRowConflict : Culprit::kRowMiss;
+      w.add(culprit, kClock);
+    }
+  }
+  void ddr_accepted(void* cookie, Picoseconds at) override {
+    EXPECT_EQ(cookie, door_);
+    door_->arrived = std::max(door_->arrived, at / kClock + 1);
+    door_ = nullptr;
+  }
+  void ddr_read_done(void*, Picoseconds, Picoseconds) override {}
+
+  Rng rng_;
+  mem::DdrParams params_;
+  mem::BackingStore store_;
+  mem::DdrController ddr_;
+  std::map<std::uint64_t, Given> given_;  // by clock
+  std::array<Request, 8> requests_;
+  Request* door_ = nullptr;
+  std::uint64_t write_clocks_ = 0;
+  unsigned done_ = 0;
+};
+
+TEST(LoadedWaitsTest, ControllerTagsEachClockWithTheCommandBefore) {
+  Picoseconds turned = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Banks banks(seed);
+    banks.run(400);
+    expect_equal(banks.counted, banks.table(), seed);
+    EXPECT_GT(banks.counted[0].read.ps[index(Culprit::kRowConflict)], 0u);
+    EXPECT_GT(banks.longest, 8u);
+    for (const MasterWaits& w : banks.counted) turned += w.read.ps[index(Culprit::kTurnaround)];
+  }
+  EXPECT_GT(turned, 0u);
+}
+
+}  // namespace
+}  // namespace fovea::dram
