@@ -120,8 +120,9 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
     return charge_read(e, w);
   }
 
-  if (alone_) {
-    summed_ = std::max(summed_, n);  // later requests ask for later commands
+  constexpr std::uint64_t kFewCommands = 8;
+  if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
+  if (last - n <= kFewCommands) {
     blame_each(w, n, ready, own);
   } else {
     blame_sums(w, n, ready, own);
