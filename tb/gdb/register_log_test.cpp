@@ -42,7 +42,7 @@ TEST_F(RegisterLogTest, NamesFieldsAndRemarks) {
   access(8, 4, false, 0x1234);
   access(8, 2, true, 5, true);
   access(0x20, 4, false, 0);
-  master = Master::kEdmaTc0;
+  master = Master::kEdmaTc0Read;
   access(8, 4, false, 7);
   EXPECT_EQ(
       log.text(),
