@@ -84,6 +84,7 @@ struct DdrCheck::Stream {
   DdrController& controller;
   check::CommandChecker programmed;
   check::PartChecker sheet;
+  bool used = false;  // before its first ACT the part holds nothing, however it is programmed
   std::map<std::string, std::string> said;  // kind of warning: with the time of its first
 
   Stream(DdrController& c, const check::Part& part)
@@ -108,6 +109,12 @@ struct DdrCheck::Stream {
         [](void* self, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           auto& s = *static_cast<Stream*>(self);
           s.programmed.command(word(cmd), bank, row, clock);
+          if (!s.used) {
+            if (cmd != Cmd::kAct) return;
+            s.used = true;
+            s.sheet.change(s.controller.ddr_clock().frequency(), s.controller.config().timing.CL,
+                           clock);
+          }
           s.sheet.command(word(cmd), bank, row, clock);
         },
         this);

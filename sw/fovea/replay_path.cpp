@@ -52,7 +52,6 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   ddr_.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
   ddr_.configure(config, info.refresh ? info.refresh : info.start);
-  check_.remark(config, ddr_.ddr_clock().frequency());
   ddr_.catch_up(info.start);  // the refreshes before
   ddr_.stats.reset();
   xbar_.timeline.begin(info.start);

@@ -30,7 +30,10 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// memory cannot have
   bool run_before(Picoseconds until);
   /// To be called before the figures are read.
-  void finish() { ddr_.catch_up(last_); }
+  void finish() {
+    ddr_.catch_up(last_);
+    check_.remark(ddr_.config(), ddr_.ddr_clock().frequency());
+  }
 
   /// Both sides of a transfer controller, of one label, are one.
   std::vector<StatRow> stats();

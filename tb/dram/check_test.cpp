@@ -247,6 +247,24 @@ TEST(CommandCheckTest, NothingToRemarkOnWithinTheSheet) {
   EXPECT_THAT(remarks(), IsEmpty());
 }
 
+// Before a boot loader has set it up the controller refreshes at a slow clock, and nothing is lost.
+TEST(CommandCheckTest, NothingIsSaidBeforeTheFirstUse) {
+  Diagnostics::instance().clear();
+  mem::DdrConfig c = awake();
+  c.refresh_interval = 40'000;  // 9 intervals of 7.8 us are 23,868 clocks
+  Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
+  x.bench.ddr.catch_up(10 * kPsPerMs);
+  EXPECT_GT(x.bench.count(mem::Cmd::kRef), 10u);
+  EXPECT_THAT(remarks(), IsEmpty());
+  Request r;
+  x.bench.submit_at(r, 10 * kPsPerMs + 1);
+  x.bench.drain();
+  EXPECT_THAT(remarks(), IsEmpty());
+  x.bench.ddr.catch_up(20 * kPsPerMs);
+  ASSERT_GT(remarks().size(), 0u);
+  EXPECT_THAT(remarks().back().first, HasSubstr("tREFI"));
+}
+
 // The model's commands against numbers that it was not given: its own defect, not the guest's.
 TEST(CommandCheckDeathTest, CommandAgainstTheProgrammedTimingIsADefect) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");

@@ -363,7 +363,7 @@ TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   const auto play = [&](std::vector<std::pair<std::string, std::string>> keys) {
     Diagnostics::instance().clear();
     const std::string error = error_of([&] {
-      trace::TextTrace t("t", "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0 4\n");
+      trace::TextTrace t("t", "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x0 4\n");
       Played(t.info(), t, false, keys);
     });
     said.clear();
@@ -376,7 +376,7 @@ TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   EXPECT_THAT(play({{"ddr.CL", "2cycles"}}), HasSubstr("3 .. 7 cycles, DDR2"));
   EXPECT_EQ(play({{"ddr.clock", "266MHz"}, {"ddr.CL", "4cycles"}}), "");
   EXPECT_THAT(play({{"ddr.clock", "267MHz"}, {"ddr.CL", "4cycles"}}),
-              HasSubstr("'ddr.CL': 4cycles is not allowed; allowed: more cycles at 267MHz"));
+              HasSubstr("'ddr.CL': 4 cycles is not allowed; allowed: more cycles at 267MHz"));
   const std::vector<std::pair<std::string, std::string>> mobile = {
       {"ddr.part", "mt46h32m16lf"}, {"ddr.banks", "4"},      {"ddr.CL", "3cycles"},
       {"ddr.clock", "166MHz"},      {"ddr.tREFI", "1290cycles"}};
@@ -390,7 +390,8 @@ TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   EXPECT_EQ(play(with("ddr.clock", "20MHz")), "") << "no DLL, no floor";
   EXPECT_THAT(said, testing::ElementsAre(HasSubstr("SDRCR RR: 1290 clocks programmed, "
                                                    "MT46H32M16LF-6 needs tREFI at most 7800 ns = "
-                                                   "156 at 20 MHz")));
+                                                   "156 at 20 MHz"),
+                                         HasSubstr("SDTIMR2 T_RASMAX: 8 x 1290 clocks")));
   EXPECT_THAT(play(with("ddr.clock", "201MHz")), HasSubstr("1MHz .. 200MHz, mobile DDR"));
   EXPECT_THAT(play(with("ddr.CL", "4cycles")), HasSubstr("2 or 3 cycles, mobile DDR"));
   EXPECT_THAT(play(with("ddr.CL", "2cycles")), HasSubstr("more cycles at 166MHz"));
@@ -434,7 +435,8 @@ TEST(ReplayPathTest, NoTraceCrashesIt) {
     writer.finish(info, [&](std::string_view piece) { bytes += piece; });
     const std::string error = error_of([&] {
       trace::TraceFile file("t", bytes);
-      Played(file.info(), file, rng.below(2));
+      // Hours of refreshes between two records are not worth their checkers.
+      Played(file.info(), file, rng.below(2), {{"ddr.check", "none"}});
     });
     ++(error.empty() ? played : refused);
   }
