@@ -80,6 +80,40 @@ detach
 G
 end 0 'load read 0x82' 'Program received signal SIGTRAP' 'core: at the instruction at'
 
+# The kernel's own pace in every access finds the same stops at the same times.
+stops() { grep -E '^(vpfe|vpbe|load) (wrote|read)|^[0-9.]+ ns, core|^pc ' "$1.gdb"; }
+for sync in default strict; do
+  begin "sync_$sync" run small.yaml --sync=$sync -o "sync_$sync" --no-frames -s load.outstanding=2
+  debug "$firmware" <<'G'
+break main
+continue
+delete
+monitor watch dma 0x82000000,0x4000000 r load
+continue
+monitor time
+info registers pc
+stepi 5000
+monitor time
+continue
+monitor time
+info registers pc
+monitor watch clear
+monitor watch dma 0x80015000,4 w vpfe
+continue
+monitor time
+info registers pc
+monitor watch clear
+monitor watch dma 0x80341000,0x200000 r vpbe
+continue
+monitor time
+detach
+G
+  end 0 'load read' 'vpfe wrote' 'vpbe read'
+done
+[ "$(stops sync_default)" = "$(stops sync_strict)" ] ||
+  fail "sync: default $(stops sync_default); strict $(stops sync_strict)"
+cmp sync_default/stats.json sync_strict/stats.json || fail 'sync: other figures'
+
 # Switched off, the debugger's watchpoints see the core alone.
 begin core run small.yaml -o core --no-frames
 debug "$firmware" <<'G'
