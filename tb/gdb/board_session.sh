@@ -92,7 +92,7 @@ monitor watch dma 0x82000000,0x4000000 r load
 continue
 monitor time
 info registers pc
-stepi 5000
+stepi 500
 monitor time
 continue
 monitor time
@@ -142,6 +142,7 @@ monitor set timer0.TCR
 monitor set nowhere.X=1
 monitor set gpio.SET_DATA01=nothing
 monitor set uart0.SCR=0x5a
+monitor set uart0.RBR_THR=0x7e
 stepi 8
 monitor registers
 monitor registers log off
@@ -152,6 +153,9 @@ end 0 'the clock of timer3 is gated' 'timer0.TCR has no field NONE' \
   'timer0.TCR.ENAMODE12: allowed: 0 to 3' 'the value is decimal or begins with 0x' \
   'no such register; blocks: ddr' 'uart0.SCR = 0x0000005a' "'\(' is no regular expression" \
   'pc 0x8[0-9a-f]* \(.*\) arm_d read aintc\.IRQ' 'the log is off'
+
+grep -q '~' set/uart.log || fail "set: the UART has not sent it: $(cat set/uart.log)"
+grep -q '~' plain/uart.log && fail 'set: the firmware sends it by itself'
 
 # Ctrl-C while the core waits for an interrupt; what is set then comes with the next event.
 begin sleep run small.yaml -o sleep --no-frames -s run.frames=100000
