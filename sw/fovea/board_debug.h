@@ -5,8 +5,9 @@
 
 namespace fovea::app {
 
-/// SDRAM with what waits in the controller's FIFO; registers for reading, whole words or parts, without
-/// their side effects. Writing registers is refused: it would be an act at no simulated time.
+/// SDRAM with what waits in the controller's FIFO; registers for reading, whole words or parts,
+/// without their side effects. Writing registers is refused: it would be an act at no simulated
+/// time.
 class BoardDebugMemory : public cpu::DebugMemory {
  public:
   explicit BoardDebugMemory(soc::Dm365& soc) : soc_(soc) {}

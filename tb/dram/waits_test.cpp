@@ -41,7 +41,7 @@ class Lanes : private bus::XbarHost {
         else
           step();
       }
-      const auto m = static_cast<std::size_t>(rng_.below(4) * 2);
+      const auto m = static_cast<std::size_t>(rng_.below(4) * 2 + 2);  // 64-bit ports
       if (rng_.below(3) == 0 || outstanding_[m] == 4) continue;
       ++outstanding_[m];
       requests_.push_back(std::make_unique<MemRequest>());

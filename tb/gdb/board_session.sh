@@ -80,6 +80,40 @@ detach
 G
 end 0 'load read 0x82' 'Program received signal SIGTRAP' 'core: at the instruction at'
 
+# The kernel's own pace in every access finds the same stops at the same times.
+stops() { grep -E '^(vpfe|vpbe|load) (wrote|read)|^[0-9.]+ ns, core|^pc ' "$1.gdb"; }
+for sync in default strict; do
+  begin "sync_$sync" run small.yaml --sync=$sync -o "sync_$sync" --no-frames -s load.outstanding=2
+  debug "$firmware" <<'G'
+break main
+continue
+delete
+monitor watch dma 0x82000000,0x4000000 r load
+continue
+monitor time
+info registers pc
+stepi 500
+monitor time
+continue
+monitor time
+info registers pc
+monitor watch clear
+monitor watch dma 0x80015000,4 w vpfe
+continue
+monitor time
+info registers pc
+monitor watch clear
+monitor watch dma 0x80341000,0x200000 r vpbe
+continue
+monitor time
+detach
+G
+  end 0 'load read' 'vpfe wrote' 'vpbe read'
+done
+[ "$(stops sync_default)" = "$(stops sync_strict)" ] ||
+  fail "sync: default $(stops sync_default); strict $(stops sync_strict)"
+cmp sync_default/stats.json sync_strict/stats.json || fail 'sync: other figures'
+
 # Switched off, the debugger's watchpoints see the core alone.
 begin core run small.yaml -o core --no-frames
 debug "$firmware" <<'G'
@@ -108,6 +142,7 @@ monitor set timer0.TCR
 monitor set nowhere.X=1
 monitor set gpio.SET_DATA01=nothing
 monitor set uart0.SCR=0x5a
+monitor set uart0.RBR_THR=0x7e
 stepi 8
 monitor registers
 monitor registers log off
@@ -118,6 +153,9 @@ end 0 'the clock of timer3 is gated' 'timer0.TCR has no field NONE' \
   'timer0.TCR.ENAMODE12: allowed: 0 to 3' 'the value is decimal or begins with 0x' \
   'no such register; blocks: ddr' 'uart0.SCR = 0x0000005a' "'\(' is no regular expression" \
   'pc 0x8[0-9a-f]* \(.*\) arm_d read aintc\.IRQ' 'the log is off'
+
+grep -q '~' set/uart.log || fail "set: the UART has not sent it: $(cat set/uart.log)"
+grep -q '~' plain/uart.log && fail 'set: the firmware sends it by itself'
 
 # Ctrl-C while the core waits for an interrupt; what is set then comes with the next event.
 begin sleep run small.yaml -o sleep --no-frames -s run.frames=100000

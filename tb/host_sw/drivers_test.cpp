@@ -231,7 +231,7 @@ TEST(UartTest, DivisorFormatAndText) {
   uart_init();
   EXPECT_EQ(chip.values[0x01C20020], 13u);  // 24 MHz / 16 / 13 = 115385
   EXPECT_EQ(chip.values[0x01C2000C], 3u);
-  EXPECT_EQ(chip.values[0x01C20030], 0xE001u);
+  EXPECT_EQ(chip.values[0x01C20030], 0x6001u);
   chip.values[0x01C20014] = 0x60;
   std::string text;
   chip.on_write = [&](std::uint32_t address, std::uint32_t value) {

@@ -6,8 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <random>
 
 #include "model/common/check.h"
 
@@ -325,6 +327,59 @@ TEST_F(SemihostingTest, BadPointersAndHandlesAreErrorsOfTheCall) {
   EXPECT_EQ(call(0x06, {open("inside", 0), 0xFFFF'0000u, 3}), kFailed);
   for (unsigned k = 0; k < 100; ++k) open("inside", 0);
   EXPECT_EQ(last_errno(), std::uint32_t{EMFILE});
+}
+
+/// Names put together from everything that could lead out of the folder, in every call that takes
+/// one, and calls of random numbers and blocks: nothing outside changes, and all of them return.
+TEST_F(SemihostingTest, NoNameAndNoCallReachesOutside) {
+  Diagnostics::instance().clear();
+  fs::create_symlink("../secret", root / "link");
+  fs::create_directory_symlink("..", root / "up");
+  ::mkfifo((root / "pipe").c_str(), 0600);
+  const std::string pieces[] = {"..",   ".",        "",      "sub",  "inside",
+                                "link", "up",       "pipe",  "secret", "root",
+                                top.string(), "\x80\xff", ":tt", "~",    std::string(300, 'n')};
+  std::mt19937 rng(11);
+  const auto name = [&] {
+    std::string out = rng() % 3 ? "" : "/";
+    for (unsigned n = 1 + rng() % 4; n > 0; --n)
+      out += pieces[rng() % std::size(pieces)] + (n > 1 ? "/" : "");
+    return out;
+  };
+  unsigned opened = 0;
+  for (unsigned k = 0; k < 6'000; ++k) {
+    const std::string a = name(), b = name();
+    switch (rng() % 3) {
+      case 0: {
+        const std::uint32_t f = open(a, rng() % 12);
+        if (f == kFailed) break;
+        ++opened;
+        write(f, "overwritten");
+        call(0x02, {f});
+        break;
+      }
+      case 1: remove(a); break;
+      default: {
+        const std::uint32_t n = put(kText, a), m = put(kData, b);
+        call(0x0F, {kText, n, kData, m});
+      }
+    }
+  }
+  EXPECT_GT(opened, 20u);
+  for (unsigned k = 0; k < 20'000; ++k) {
+    for (std::uint32_t at = kBlock; at < kBlock + 16; at += 4) {
+      const std::uint32_t w = rng() % 4 == 0 ? rng() : rng() % 4 == 0 ? rng() % 0x20000 : rng() % 600;
+      std::memcpy(machine.memory.data() + at, &w, 4);
+    }
+    const std::uint32_t operation = rng() % 8 ? rng() % 0x32 : rng();
+    call_with(operation, rng() % 8 ? kBlock : rng());
+  }
+  EXPECT_EQ(host_text(top / "secret"), "outside");
+  std::vector<std::string> there;
+  for (const auto& entry : fs::directory_iterator(top)) there.push_back(entry.path().filename());
+  std::sort(there.begin(), there.end());
+  EXPECT_EQ(there, (std::vector<std::string>{"root", "secret"}));
+  Diagnostics::instance().clear();
 }
 
 TEST_F(SemihostingTest, TemporaryNamesDifferAndFit) {
