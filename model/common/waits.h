@@ -43,13 +43,14 @@ struct MasterWaits {
 /// The same of one request, for a master that asks (MemRequest::parts).
 class RequestWaits {
  public:
-  void clear() { used_ = 0; }
-  void add(Culprit c, std::uint64_t t) {
-    const std::uint32_t bit = 1u << index(c);
-    ps_[index(c)] = (used_ & bit ? ps_[index(c)] : 0) + t;
-    used_ |= bit;
+  void clear() {
+    for (; used_; used_ &= used_ - 1) ps_[static_cast<std::size_t>(std::countr_zero(used_))] = 0;
   }
-  std::uint64_t ps(Culprit c) const { return used_ >> index(c) & 1u ? ps_[index(c)] : 0; }
+  void add(Culprit c, std::uint64_t t) {
+    ps_[index(c)] += t;
+    used_ |= 1u << index(c);
+  }
+  std::uint64_t ps(Culprit c) const { return ps_[index(c)]; }
   /// Calls f(culprit, picoseconds) for those that were added, in their order.
   template <class F>
   void each(F f) const {
@@ -60,8 +61,8 @@ class RequestWaits {
   }
 
  private:
-  std::uint32_t used_ = 0;  // one bit per culprit; the others' entries mean nothing
-  std::array<std::uint64_t, kCulprits> ps_;
+  std::uint32_t used_ = 0;  // one bit per culprit; the others' entries are 0
+  std::array<std::uint64_t, kCulprits> ps_{};
   static_assert(kCulprits <= 32);
 };
 using WaitTable = std::array<MasterWaits, kMasterCount>;

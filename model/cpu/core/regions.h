@@ -34,9 +34,13 @@ class RegionMap {
     for (const Piece& p : pieces_)
       if (p.first > end) pieces.push_back(p);
     pieces_ = std::move(pieces);
+    blocks_.assign(blocks_.size(), kUnknown);
     return true;
   }
-  std::uint8_t find(std::uint32_t address) const { return at(address); }
+  std::uint8_t find(std::uint32_t address) const {
+    const std::uint8_t known = blocks_[address >> kBlockBits];
+    return known < kMax ? known : find_slow(address);
+  }
   /// Numbers are places in here.
   const std::vector<std::string>& names() const { return names_; }
 
@@ -55,6 +59,25 @@ class RegionMap {
     }
     return pieces_[low].id;
   }
+
+  [[gnu::noinline]] std::uint8_t find_slow(std::uint32_t address) const {
+    std::uint8_t& block = blocks_[address >> kBlockBits];
+    if (block == kUnknown) {
+      const std::uint64_t first = address >> kBlockBits << kBlockBits;
+      const std::uint64_t end = first + (std::uint64_t{1} << kBlockBits);
+      const bool cut = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& p) {
+        return p.first > first && p.first < end;
+      });
+      block = cut ? kSeveral : at(first);
+    }
+    return at(address);
+  }
+
+  /// Which region a block of addresses lies in as a whole, noted when somebody asks.
+  static constexpr unsigned kBlockBits = 16;
+  static constexpr std::uint8_t kSeveral = 0xFE, kUnknown = 0xFF;
+  mutable std::vector<std::uint8_t> blocks_ =
+      std::vector<std::uint8_t>(std::size_t{1} << (32 - kBlockBits), kUnknown);
 
   std::vector<std::string> names_ = {"none", "other"};
   std::vector<Piece> pieces_ = {{0, kOther}};

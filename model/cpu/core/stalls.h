@@ -41,7 +41,11 @@ class StallTable {
     return clocks_[index(cause) * kOfCause + region * kStallCulprits + culprit];
   }
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
-    clocks_[index(cause) * kOfCause + region * kStallCulprits + culprit] += clocks;
+    row(cause, region)[culprit] += clocks;
+  }
+  /// The culprits of a cause and region.
+  std::uint64_t* row(Cause cause, std::size_t region) {
+    return &clocks_[index(cause) * kOfCause + region * kStallCulprits];
   }
   /// Over all regions.
   std::uint64_t by(Cause cause, std::size_t culprit) const {
@@ -61,29 +65,26 @@ class StallTable {
   alignas(16) std::array<std::uint64_t, kCauses * kOfCause> clocks_{};
 };
 
-/// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds, and calls
-/// f(culprit, clocks) so that the parts add up exactly. What the parts leave of `span` is service.
+/// Splits `clocks` by what a transaction waited for in `span`, in the proportion of its picoseconds,
+/// and calls f(culprit, clocks) so that the parts add up exactly. What is left of the span is
+/// service; parts beyond it count for nothing.
 template <class F>
-void split_clocks(std::uint64_t clocks, const RequestWaits& parts, std::uint64_t span, F f) {
-  if (clocks == 0) return;
-  std::uint64_t named = 0;
-  parts.each([&named](Culprit, std::uint64_t ps) { named += ps; });
-  const std::uint64_t whole = named > span ? named : span;
-  const bool small = (whole | clocks) >> 31 == 0;
+[[gnu::always_inline]] inline void split_clocks(std::uint64_t clocks, const RequestWaits& parts,
+                                                std::uint64_t span, F f) {
+  using Wide = unsigned __int128;
+  const bool small = (span | clocks) >> 31 == 0;
   std::uint64_t passed = 0, given = 0;
-  const auto give = [&](Culprit c, std::uint64_t ps) {
-    if (ps == 0) return;
-    passed += ps;
+  parts.each([&](Culprit c, std::uint64_t ps) {
+    passed = std::min(passed + ps, span);
+    if (passed == 0) return;
     // To the nearest clock on the way, so that no part is favoured.
-    using Wide = unsigned __int128;
     const std::uint64_t until =
-        small ? (2 * passed * clocks + whole) / (2 * whole)
-              : static_cast<std::uint64_t>((Wide{2} * passed * clocks + whole) / (Wide{2} * whole));
-    if (until > given) f(index(c), until - given);
+        small ? (2 * passed * clocks + span) / (2 * span)
+              : static_cast<std::uint64_t>((Wide{2} * passed * clocks + span) / (Wide{2} * span));
+    f(index(c), until - given);
     given = until;
-  };
-  parts.each(give);
-  if (given < clocks) f(index(Culprit::kService), clocks - given);
+  });
+  if (clocks != given) f(kService, clocks - given);
 }
 
 }  // namespace fovea::cpu
