@@ -16,15 +16,16 @@ void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std:
   cycle_ = cycle;
 }
 
-/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`: what
-/// the access waited for is to blame in proportion, also where the core began to wait later. The
-/// clocks behind the outcome are the core's own.
-void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t cycle, Cause cause) {
+/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`, at clock
+/// `bus`: what the access waited for is to blame in proportion, also where the core began to wait
+/// later. The clocks behind that are the core's own.
+void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t bus,
+                    std::uint64_t cycle, Cause cause) {
   if (cycle <= cycle_) return;
   const std::uint8_t region = regions_.find(a.address);
-  const std::uint64_t bus = std::clamp(clock_.edge_at_or_after(outcome), cycle_, cycle);
-  counts_.stalls.split(cause, region, bus - cycle_, a.parts, outcome - a.issued);
-  if (cycle > bus) counts_.stalls.add(cause, region, kCore, cycle - bus);
+  const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
+  counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);
+  if (cycle > end) counts_.stalls.add(cause, region, kCore, cycle - end);
   counts_.stall[index(cause)] += cycle - cycle_;
   cycle_ = cycle;
 }
@@ -148,7 +149,8 @@ void Core::finish_write(Cause cause) {
   read_waiting_ = true;
   port_.finish(write_access_);
   read_waiting_ = false;
-  stall_on(write_access_, write_access_.last, write_over(), cause);
+  stall_on(write_access_, write_access_.last, clock_.edge_at_or_after(write_access_.last),
+           write_over(), cause);
   next_write_cycle_ = std::max(next_write_cycle_, cycle_);
   retire_write();
 }
@@ -193,7 +195,8 @@ void Core::bus_read(BusAccess& a, Cause cause) {
   submit(a, cycle_);
   port_.finish(a);
   read_waiting_ = false;
-  stall_on(a, a.first, clock_.edge_at_or_after(a.first) + (a.error ? 0 : fill_latency_), cause);
+  const std::uint64_t there = clock_.edge_at_or_after(a.first);
+  stall_on(a, a.first, there, there + (a.error ? 0 : fill_latency_), cause);
   data_port_free_ = clock_.edge_at_or_after(a.last);
   data_port_pa_ = a.address;
 }
@@ -232,7 +235,8 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   submit(a, cycle_);
   port_.finish(a);
   read_waiting_ = false;
-  stall_on(a, a.last, clock_.edge_at_or_after(a.last), Cause::kUncached);
+  const std::uint64_t there = clock_.edge_at_or_after(a.last);
+  stall_on(a, a.last, there, there, Cause::kUncached);
   data_port_free_ = cycle_;
   return !a.error;
 }

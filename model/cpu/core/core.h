@@ -268,7 +268,8 @@ class Core : public Background {
     if (cycle > cycle_) charge_stall(cycle, cause, pa, culprit);
   }
   void charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit);
-  void stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t cycle, Cause cause);
+  void stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t bus, std::uint64_t cycle,
+                Cause cause);
   void stall_for_port(Cause cause);
   void sync_to_ahb(std::uint32_t pa) { stall_to(ahb(cycle_), Cause::kBusSync, pa, kCore); }
   void submit(BusAccess& a, std::uint64_t cycle);

@@ -455,7 +455,8 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
   submit(a, cycle_);
   port_.finish(a);
   ++counts_.icache_fills;
-  stall_on(a, a.first, clock_.edge_at_or_after(a.first) + fill_latency_, Cause::kIcache);
+  const std::uint64_t there = clock_.edge_at_or_after(a.first);
+  stall_on(a, a.first, there, there + fill_latency_, Cause::kIcache);
   if (a.error) return;
   std::memcpy(icache_.data(index), a.data, 32);
   icache_.line(index).tag = mva & ~31u;
@@ -549,7 +550,8 @@ const Instruction* Core::fetch_slow() {
     a.bytes = 16;
     submit(a, cycle_);
     port_.finish(a);
-    stall_on(a, a.last, clock_.edge_at_or_after(a.last) + fill_latency_, Cause::kIcache);
+    const std::uint64_t there = clock_.edge_at_or_after(a.last);
+    stall_on(a, a.last, there, there + fill_latency_, Cause::kIcache);
     if (a.error) {
       fetch_buffer_pa_ = 1;
       fault(true, section ? 0x8 : 0xA, domain, mva);
