@@ -52,7 +52,7 @@ TEST_F(RegisterLogTest, NamesFieldsAndRemarks) {
       "3.000 ns  pc 0x00008000 (main+0x4) arm_d read one.DATA = 0x00001234\n"
       "4.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA byte 0-1 = 0x0005  clock gated\n"
       "5.000 ns  pc 0x00008000 (main+0x4) arm_d read one.0x20 (no register) = 0x00000000\n"
-      "6.000 ns  edma_tc0 read one.DATA = 0x00000007\n");
+      "6.000 ns  edma_tc0_read read one.DATA = 0x00000007\n");
 }
 
 TEST_F(RegisterLogTest, TakesWhatMatches) {

@@ -121,7 +121,7 @@ constexpr Case kCases[] = {
     {"l != 0", "block", "at: .inst 0xE92A0000\n 2:", 10, 0x4000 - 64},
     {"W: n not in l", "block", "at: .inst 0xE8BA0C00\n 2:", 10, 0x4008},
     {"W: n not in l", "block", "at: .inst 0xE8BA0401\n 2:", 10, 78},
-    {"W: n not in l", "block", "at: .inst 0xE8AA0401\n 2: ldr r0, [r4, #4]", 0, 0x4000},
+    {"W: n first in l", "block", "at: .inst 0xE8AA0401\n 2: ldr r0, [r4, #4]", 0, 0x4000},
     {"W = 0", "block", "at: .inst 0xE8FA0001\n 2:", 10, 0x4004},
     {"n != 15", "swap", "at: .inst 0xE10F0092" SKIP, 0, 77},
     {"m != 15", "swap", "at: .inst 0xE104009F\n 2: ldr r0, [r4]", 0, 8, kAt},
@@ -144,7 +144,7 @@ constexpr Case kCases[] = {
     {"l != 0", "thumb block", ".thumb\n at: .inst.n 0xB400\n 2:", 13, 0x6000 - 64},
     {"l != 0", "thumb block", ".thumb\n at: .inst.n 0xBC00\n 2:", 13, 0x6000 + 64},
     {"l != 0", "thumb block", ".thumb\n mov r2, r10\n at: .inst.n 0xC200\n 2:", 2, 0x4040},
-    {"n not in l", "thumb block", ".thumb\n mov r2, r10\n at: .inst.n 0xC206\n 2: ldr r0, [r4, #4]", 0, 0x4000},
+    {"n first in l", "thumb block", ".thumb\n mov r2, r10\n at: .inst.n 0xC206\n 2: ldr r0, [r4, #4]", 0, 0x4000},
     {"m != 15", "thumb branch", ".thumb\n b 1f\n .balign 4\n 1: at: .inst.n 0x47F8\n nop\n .arm\n"
      "mov r9, #1\n mov r0, lr\n b 4f\n 2: nop\n 4:", 9, 1},
 };

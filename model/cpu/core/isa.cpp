@@ -141,7 +141,7 @@ constexpr IsaKind kLdmUser{C::kBlock, "n", "", "l", "n != 15, l != 0, W = 0", kL
                            Operand::kImm, Immediate::kList, kUserBank};
 constexpr IsaKind kLdmReturn{C::kBlock, "n", "", "l", "n != 15, W: n not in l", "n + 4",
                              k9ejsUnread, Operand::kImm, Immediate::kList, kUserBank};
-constexpr IsaKind kStmKind{C::kBlock, "n", "l", "", "n != 15, l != 0, W: n not in l",
+constexpr IsaKind kStmKind{C::kBlock, "n", "l", "", "n != 15, l != 0, W: n first in l",
                            "n; n = 1: 2", k9ejsUnread, Operand::kImm, Immediate::kList};
 constexpr IsaKind kStmUser{C::kBlock, "n", "l", "", "n != 15, l != 0, W = 0", "n; n = 1: 2",
                            k9ejsUnread, Operand::kImm, Immediate::kList, kUserBank};
@@ -207,7 +207,7 @@ constexpr IsaKind kTLdm{C::kThumbBlock, "n", "", "l", "l != 0", kLdmCycles, k9ej
                         Immediate::kList, kPopFlags};
 constexpr IsaKind kTPopPc{C::kThumbBlock, "n", "", "l", "", "n + 4", k9ejsUnread, Operand::kImm,
                           Immediate::kList, kPopFlags};
-constexpr IsaKind kTStm{C::kThumbBlock, "n", "l", "", "l != 0, n not in l", "n; n = 1: 2",
+constexpr IsaKind kTStm{C::kThumbBlock, "n", "l", "", "l != 0, n first in l", "n; n = 1: 2",
                         k9ejsUnread, Operand::kImm, Immediate::kList, kPopFlags};
 constexpr IsaKind kTPush{C::kThumbBlock, "n", "l", "", "l != 0", "n; n = 1: 2", k9ejsUnread,
                          Operand::kImm, Immediate::kList, kPushFlags};

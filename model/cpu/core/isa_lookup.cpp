@@ -11,9 +11,10 @@
 namespace fovea::cpu {
 namespace {
 
-/// "a != b", "a = b", "a not in l", "a or b > number", perhaps behind "W:".
+/// "a != b", "a = b", "a not in l", "a first in l" (if in it at all), "a or b > number", perhaps
+/// behind "W:".
 struct Clause {
-  enum class Relation { kDiffers, kEquals, kNotIn, kAbove } relation = Relation::kDiffers;
+  enum class Relation { kDiffers, kEquals, kNotIn, kFirst, kAbove } relation = Relation::kDiffers;
   bool guarded = false;
   char a = 0, b = 0;           ///< b: 0 if a number
   std::uint32_t number = 0;    ///< of b, or added to b
@@ -56,7 +57,8 @@ Clause parse_clause(const std::string& text) {
   }
   const bool above = w.size() == 5 && w[1] == "or" && w[3] == ">";
   const bool not_in = w.size() == 4 && w[1] == "not" && w[2] == "in" && w[3] == "l";
-  FOVEA_CHECK(above || not_in || (w.size() == 3 && (w[1] == "!=" || w[1] == "=")),
+  const bool first = w.size() == 4 && w[1] == "first" && w[2] == "in" && w[3] == "l";
+  FOVEA_CHECK(above || not_in || first || (w.size() == 3 && (w[1] == "!=" || w[1] == "=")),
               "table of instructions: cannot read " + text);
   c.a = w[0][0];
   if (above) {
@@ -65,6 +67,8 @@ Clause parse_clause(const std::string& text) {
     c.number = number_of(w[4]);
   } else if (not_in) {
     c.relation = Clause::Relation::kNotIn;
+  } else if (first) {
+    c.relation = Clause::Relation::kFirst;
   } else {
     c.relation = w[1] == "=" ? Clause::Relation::kEquals : Clause::Relation::kDiffers;
     if (w[2] == "d+1") {
@@ -178,6 +182,8 @@ bool holds(const Clause& c, const IsaFields& f) {
     case Clause::Relation::kDiffers: return f[c.a] != b;
     case Clause::Relation::kEquals: return f[c.a] == b;
     case Clause::Relation::kNotIn: return !(f['l'] >> f[c.a] & 1u);
+    case Clause::Relation::kFirst:
+      return !(f['l'] >> f[c.a] & 1u) || (f['l'] & ((1u << f[c.a]) - 1u)) == 0;
     default: return f[c.a] > c.number || f[c.b] > c.number;
   }
 }

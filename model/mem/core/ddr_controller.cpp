@@ -219,7 +219,7 @@ void DdrController::plan_from(std::uint64_t edge) {
 /// True if choice_, made with the slots `ready`, need not be made again when the one in `slot`, the
 /// newest, is seen at `edge`: it changes nothing, or it prepares its own bank first.
 inline bool DdrController::stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready) {
-  if (!plain_ || lane_.room() > edge || edge >= next_expiry_) return false;
+  if (!plain_ || lane_.room() > edge || edge >= calm_until_) return false;
   const std::uint32_t bit = 1u << slot;
   if (in_order_ || !(offered_ & bit)) return true;
   const bool write = writes_ & bit;

@@ -41,10 +41,13 @@ bool DdrController::choose_overdue_row(std::uint64_t edge) {
 
 void DdrController::close_overdue_row(std::uint64_t clock) {
   device_.issue<Cmd::kPre>(choice_.bank, 0, clock);
+  hits_ &= ~of_bank_[choice_.bank];
   ++stats.overdue_rows;
   command_free_ = clock + 1;
   Given& g = given_[given_count_++ % kGiven];
   g.clock = clock;
+  g.blame = kRefreshed;
+  g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh
   if (hook_) hook_(hook_self_, Cmd::kPre, choice_.bank, 0, clock);
   urgency_changed();
