@@ -108,11 +108,11 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     Latencies latencies;
     latencies.before = soc.scr.crossbar().observe(&latencies);
     Picoseconds opened = 0;
-    std::vector<Picoseconds> ends;
+    std::vector<Picoseconds> remap_ends;
     const auto pins = soc.gpio.on_output;
     soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
       pins(bank, out, at);
-      if (bank == 2 && latencies.on && ends_a_remap(out)) ends.push_back(at);
+      if (bank == 2 && latencies.on && ends_a_remap(out)) remap_ends.push_back(at);
     };
     board.on_window_open = [&] {
       latencies.on = true;
@@ -139,7 +139,7 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
       f["remap"] = board.frame_stats().remap_mean * 1e-12;
       f["remaps"] = static_cast<double>(board.frame_stats().remaps);
     } else if (!watched.writes) {
-      add_ends_to(f, ends, opened);
+      add_ends_to(f, remap_ends, opened);
     }
     std::ostringstream out;
     out.precision(17);
