@@ -49,7 +49,7 @@ expect bad_ram_base 2 'exec.ram_base' 'auto' -- run -s exec.ram_base=0x1000 "$fa
 expect other_ram_base 2 'segment' 'exec.ram_base' -- run -s exec.ram_base=0x40000000 "$fails"
 expect registers 0 'ns  pc 0x8000000[0-9a-f] \(_start\+0x[0-9a-f]+\) arm_d wrote ddr.PBBPR = 0x00000002 PR_OLD_COUNT=2$' \
   'wrote ddr.SDRCR = 0xffffffff RR=65535 .*  reserved bits 0x3f7f0000$' \
-  'read ddr.SDRSTAT = 0x00000004$' 'guest: 1 written to reserved bits of DDR SDRCR' \
+  'read ddr.SDRSTAT = 0x00000004 PHYRDY=1$' 'guest: 1 written to reserved bits of DDR SDRCR' \
   -- run --log-registers . "$programs/registers.elf"
 expect other_registers 0 '\(2 earlier accesses are not shown\)' \
   -- run --log-registers 'ddr\.' --log-registers-kept=1 "$programs/registers.elf"
