@@ -325,4 +325,15 @@ class DdrController {
   void* hook_self_ = nullptr;
 };
 
+inline Cmd DdrController::needed(const Entry& e) const {
+  const std::uint32_t open = device_.row(e.bank);
+  if (open == e.row) return e.request.write ? Cmd::kWr : Cmd::kRd;
+  return open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+}
+
+inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {
+  const std::uint64_t at = std::max(edge, device_.earliest(cmd, e.bank));
+  return cmd == Cmd::kRd ? std::max(at, lane_.room()) : at;
+}
+
 }  // namespace fovea::mem
