@@ -300,17 +300,16 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on
   // who played it.
   const Picoseconds last = board_->window_end().value_or(kernel_time());
-  const auto& rows = xbar.timeline.rows();
-  for (std::size_t i = 0; i < rows.size() && xbar.timeline.start(i + 1) <= last; ++i) {
-    TimelineRow t{xbar.timeline.start(i), xbar.timeline.start(i + 1), {}, {}};
+  xbar.timeline.list_until(last, [&](Picoseconds start, Picoseconds end, const auto& row) {
+    TimelineRow t{start, end, {}, {}};
     t.read_bytes.resize(kStatCount);
     t.write_bytes.resize(kStatCount);
     for (std::size_t m = 0; m < kMasterCount; ++m) {
-      t.read_bytes[stat_index(static_cast<Master>(m))] += rows[i].read[m];
-      t.write_bytes[stat_index(static_cast<Master>(m))] += rows[i].write[m];
+      t.read_bytes[stat_index(static_cast<Master>(m))] += row.read[m];
+      t.write_bytes[stat_index(static_cast<Master>(m))] += row.write[m];
     }
     result.timeline.push_back(std::move(t));
-  }
+  });
   result.uart = board_->uart_text();
   if (!request.registers.pattern.empty()) result.registers = log->text();
   add_host(result, request.strict_sync);

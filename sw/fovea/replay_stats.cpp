@@ -48,20 +48,20 @@ std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
   const bus::Timeline& from = memory_only_ ? memory_timeline_ : xbar_.timeline;
   std::vector<TimelineRow> rows;
-  for (std::size_t i = 0; i < from.rows().size() && from.start(i + 1) <= last_; ++i) {
+  from.list_until(last_, [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
     TimelineRow& row = rows.emplace_back();
-    row.start = from.start(i);
-    row.end = from.start(i + 1);
+    row.start = start;
+    row.end = end;
     row.read_bytes.resize(names.size());
     row.write_bytes.resize(names.size());
     for (std::size_t m = 0; m < kMasterCount; ++m) {
       const auto name = std::find(names.begin(), names.end(), masters_[m].label);
       if (name == names.end()) continue;
       const auto column = static_cast<std::size_t>(name - names.begin());
-      row.read_bytes[column] += from.rows()[i].read[m];
-      row.write_bytes[column] += from.rows()[i].write[m];
+      row.read_bytes[column] += bytes.read[m];
+      row.write_bytes[column] += bytes.write[m];
     }
-  }
+  });
   return rows;
 }
 

@@ -1,5 +1,6 @@
 // Bytes moved by master, in rows of equal simulated time.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -12,29 +13,41 @@ namespace fovea::bus {
 class Timeline {
  public:
   struct Row {
+    std::uint64_t number = 0;  // intervals since time 0
     std::array<std::uint64_t, kMasterCount> read{}, write{};
   };
-  /// What comes after that many rows is in none.
-  static constexpr std::size_t kMaxRows = 1'000'000;
+  /// As many rows are listed at most.
+  static constexpr std::uint64_t kMaxRows = 1'000'000;
+
   explicit Timeline(Picoseconds interval) : interval_(interval) {}
-  /// The first row begins at `start`, in steps of the interval from time 0; nothing was added yet.
-  void begin(Picoseconds start) { origin_ = start / interval_ * interval_; }
-  /// `at` never decreases, and is not before the first row.
+  /// The first row listed is the one with `start`; nothing comes before.
+  void begin(Picoseconds start) { first_ = start / interval_; }
+  /// `at` never decreases by a row.
   void add(std::size_t master, bool write, std::uint64_t bytes, Picoseconds at) {
-    if (at >= end_ || rows_.empty()) [[unlikely]] {
-      const std::uint64_t row = (at - origin_) / interval_;
-      if (row >= kMaxRows) return;
-      rows_.resize(row + 1);
-      end_ = origin_ + rows_.size() * interval_;
+    if (at >= end_) [[unlikely]] {
+      rows_.emplace_back().number = at / interval_;
+      end_ = (rows_.back().number + 1) * interval_;
     }
     (write ? rows_.back().write : rows_.back().read)[master] += bytes;
   }
+  /// Rows in which something moved.
   const std::vector<Row>& rows() const { return rows_; }
-  Picoseconds interval() const { return interval_; }
-  Picoseconds start(std::size_t row) const { return origin_ + row * interval_; }
+  /// Calls list(start, end, row) for each row that is over at `until`, also those without bytes
+  /// between the first and the last.
+  template <class List>
+  void list_until(Picoseconds until, List list) const {
+    std::uint64_t next = first_;
+    for (const Row& r : rows_) {
+      for (; next <= r.number; ++next) {
+        if ((next + 1) * interval_ > until || next - first_ >= kMaxRows) return;
+        list(next * interval_, (next + 1) * interval_, next == r.number ? r : Row{});
+      }
+    }
+  }
 
  private:
-  Picoseconds interval_, origin_ = 0, end_ = 0;
+  Picoseconds interval_, end_ = 0;
+  std::uint64_t first_ = 0;
   std::vector<Row> rows_;
 };
 
