@@ -74,7 +74,7 @@ class RegionMap {
   }
 
   /// Which region a block of addresses lies in as a whole, noted when somebody asks.
-  static constexpr unsigned kBlockBits = 16;
+  static constexpr unsigned kBlockBits = 12;  // linkers align large objects to pages
   static constexpr std::uint8_t kSeveral = 0xFE, kUnknown = 0xFF;
   mutable std::vector<std::uint8_t> blocks_ =
       std::vector<std::uint8_t>(std::size_t{1} << (32 - kBlockBits), kUnknown);
