@@ -68,7 +68,7 @@ DdrController::View DdrController::view() const {
   }
   if (given_count_) {
     const Given& g = given_[(given_count_ - 1) % kGiven];
-    v.last = g.cmd;
+    v.last = in_burst_ ? choice_.cmd : g.cmd;
     if (g.blame < kMasterCount) v.last_master = static_cast<Master>(g.blame);
   }
   v.cmd = choice_.cmd;
