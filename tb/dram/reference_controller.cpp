@@ -40,7 +40,8 @@ void ReferenceController::configure(const ReferenceConfig& config, Picoseconds a
     wake(ddr_.edge_after(at));
   }
   not_before_ = ddr_.edge_after(at);
-  // A new interval starts to count at once.
+  // A new interval starts to count at once; what ran out before is owed.
+  if (not_before_ != 0) expire(not_before_ - 1);
   if (config.refresh_interval != configs_.back().refresh_interval)
     expiry_ = not_before_ + config.refresh_interval;
   configs_.push_back(config);
@@ -319,6 +320,8 @@ ReferenceController::Plan ReferenceController::plan() const {
     for (const Queued& q : queue_)
       if (q.ready > edge) wake = std::min(wake, q.ready);
     if (read_room_ > edge) wake = std::min(wake, read_room_);
+    for (unsigned bank = 0; bank < 8; ++bank)
+      if (const std::uint64_t due = due_at(bank); due > edge) wake = std::min(wake, due);
     if (p.clock < wake) return p;
     edge = wake;
   }
@@ -329,17 +332,22 @@ ReferenceController::Plan ReferenceController::refresh_at(std::uint64_t edge) co
   return {kind, legal_from(kind, 0, edge), std::nullopt};
 }
 
-/// A row that has been open for its number of intervals is closed, the oldest first.
+/// When the bank's open row has been open for its number of intervals; ~0: never.
+std::uint64_t ReferenceController::due_at(unsigned bank) const {
+  if (config().refresh_interval == 0 || !open_row(bank)) return ~std::uint64_t{0};
+  auto act = commands.rbegin();
+  while (act->kind != Kind::kAct || act->bank != bank) ++act;
+  return act->clock + std::uint64_t{config().row_intervals} * config().refresh_interval;
+}
+
+/// Rows that are due are closed, the oldest first.
 std::optional<ReferenceController::Plan> ReferenceController::overdue_at(std::uint64_t edge) const {
   std::optional<Plan> plan;
   std::uint64_t oldest = ~std::uint64_t{0};
-  const std::uint64_t allowed = std::uint64_t{config().row_intervals} * config().refresh_interval;
-  for (unsigned bank = 0; bank < 8 && config().refresh_interval; ++bank) {
-    if (!open_row(bank)) continue;
-    auto act = commands.rbegin();
-    while (act->kind != Kind::kAct || act->bank != bank) ++act;
-    if (act->clock + allowed > edge || act->clock >= oldest) continue;
-    oldest = act->clock;
+  for (unsigned bank = 0; bank < 8; ++bank) {
+    const std::uint64_t due = due_at(bank);
+    if (due > edge || due >= oldest) continue;
+    oldest = due;
     plan = Plan{Kind::kPre, legal_from(Kind::kPre, bank, edge), std::nullopt, bank};
   }
   return plan;

@@ -124,6 +124,7 @@ class ReferenceController {
   Plan plan() const;
   Plan plan_at(std::uint64_t edge) const;
   Plan refresh_at(std::uint64_t edge) const;
+  std::uint64_t due_at(unsigned bank) const;
   std::optional<Plan> overdue_at(std::uint64_t edge) const;
   Refresh refresh_level(std::uint64_t edge) const;
   std::uint64_t clock_after_last() const;

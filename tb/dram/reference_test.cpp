@@ -354,6 +354,15 @@ TEST_P(SameAsReferenceTest, EveryCommandOutcomeAndStatistic) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SameAsReferenceTest, testing::Range(0u, 8u));
 
+// Seeds that found a defect. 1322, 2055: a choice outlived the moment at which the read FIFO had room
+// again. 4717, 4758, 4870: refresh intervals had run out when software set another interval.
+TEST(SameAsReferencesTest, SeedsThatFoundADefect) {
+  for (const std::uint64_t seed : {1322u, 2055u, 4717u, 4758u, 4870u}) {
+    const auto a = play<Production>(seed, 1100), b = play<Oracle>(seed, 1100);
+    EXPECT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
+  }
+}
+
 // What the streams must contain for the comparison to mean something.
 TEST(SameAsReferencesTest, StreamsReachEveryCommand) {
   std::array<std::uint64_t, 12> commands{};

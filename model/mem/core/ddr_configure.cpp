@@ -48,7 +48,9 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   sum_given();  // with the timing they were given with
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
   if (config.low_power != config_.low_power) sleep_changes(config.low_power, now);
-  // Refresh keeps its phase when only timing changes; a new interval starts to count now.
+  // Refresh keeps its phase when only timing changes; a new interval starts to count now, and those
+  // that ran out before are owed.
+  if (next_expiry_ != 0 && now != 0) count_owed(now - 1);
   if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
     next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
   command_free_ = std::max(command_free_, now);

@@ -163,10 +163,10 @@ void DdrController::plan_anew() {
 /// The usual case: one request, nothing to choose from, and no refresh that is urgent.
 inline void DdrController::plan_one(Entry& e) {
   const std::uint64_t edge = std::max(command_free_, e.ready);
-  if (edge >= calm_until_ || lane_.room() >= calm_until_) [[unlikely]]
-    return plan_many();
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
+  if (at >= calm_until_) [[unlikely]]
+    return plan_many();
   choice_ = {&e, at, cmd};
   next_ = ddr_.edge(at);
 }
@@ -186,9 +186,8 @@ void DdrController::urgency_changed() {
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
-inline void DdrController::count_owed(std::uint64_t clock) {
-  if (clock < next_expiry_) [[likely]]
-    return;
+/// Refresh intervals have run out.
+[[gnu::noinline]] void DdrController::count_expired(std::uint64_t clock) {
   while (next_expiry_ <= clock) {
     ++owed_;
     ++gap_;
@@ -254,6 +253,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
         continue;
       if (next_expiry_ >= until) return;
       from = std::max(command_free_, next_expiry_);
+      if (from >= until) return;
       count_owed(from);
     }
     if (!config_.refresh_interval) return;  // owed from before it was switched off

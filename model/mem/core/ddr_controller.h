@@ -225,7 +225,11 @@ class DdrController {
   void mark(Cmd cmd, std::uint64_t clock);
   void count_queued(std::uint64_t until);
   void count_asleep(std::uint64_t until);
-  void count_owed(std::uint64_t clock);
+  void count_owed(std::uint64_t clock) {
+    if (clock >= next_expiry_) [[unlikely]]
+      count_expired(clock);
+  }
+  void count_expired(std::uint64_t clock);
   template <Cmd kCmd>
   void note(std::uint64_t clock);
   template <Cmd kCmd>

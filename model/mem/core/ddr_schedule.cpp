@@ -6,7 +6,7 @@
 namespace fovea::mem {
 
 /// A decision is taken at the first edge at which something is ready; if its command can only be
-/// given later, whatever becomes ready before has its say.
+/// given later, whatever becomes ready before has its say, a row that is due to be closed too.
 [[gnu::noinline]] void DdrController::plan_many() {
   if (alone_) join_queue();
   const std::uint64_t first = command_free_;
@@ -30,8 +30,13 @@ void DdrController::plan_from(std::uint64_t edge) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
     if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
-    if (choice_.at < wake) break;
-    if (not_ready + 1 == count_ && stands_with(order_[not_ready], wake, ready)) break;
+    if (choice_.at >= calm_until_) [[unlikely]] {
+      if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
+      if (choice_.at < wake) break;
+    } else if (choice_.at < wake ||
+               (not_ready + 1 == count_ && stands_with(order_[not_ready], wake, ready))) {
+      break;
+    }
     edge = wake;
     for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
       ready |= 1u << order_[not_ready];
