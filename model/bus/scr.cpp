@@ -133,13 +133,13 @@ inline Taken Scr::AloneHost::forward(MemRequest& r, Picoseconds arrival) {
   return taken;
 }
 
-inline void Scr::AloneHost::respond(MemRequest& r) {
-  scr.count_outcome(r, scr.now_());
-  done = true;
-}
-
 /// Only the controller has decisions of its own meanwhile: those up to the grant come first, as they
 /// may make room; one that answers somebody changes what the caller knows.
+Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
+  return r.write ? play_alone<true>(r, limit) : play_alone<false>(r, limit);
+}
+
+template <bool kWrite>
 [[gnu::noinline]] Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
   const Crossbar::AloneGrant g = crossbar_.grant_if_alone(r);
   if (g.at >= limit) return Alone::kNo;
@@ -151,11 +151,13 @@ inline void Scr::AloneHost::respond(MemRequest& r) {
   }
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
   undecided_ += !r.passive;
-  r.slave = static_cast<std::uint8_t>(Slave::kDdr);
   deciding_ = g.at;
   AloneHost host{*this};
-  crossbar_.grant_alone(host, r, g);
-  if (host.done) return Alone::kDone;
+  if (crossbar_.grant_alone<kWrite>(host, r, g)) {
+    undecided_ -= !r.passive;
+    ++(g.at > now_() ? direct_ : queued_);
+    return Alone::kDone;
+  }
   while (responses_ == responses && horizon_epoch == epoch && *ddr_next_ < limit &&
          *ddr_next_ < crossbar_.next_decision()) {
     deciding_ = *ddr_next_;

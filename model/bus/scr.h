@@ -84,13 +84,13 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
     }
   };
 
-  /// Host of a grant whose master is at hand: its port need not be called.
+  /// Host of a grant of a request to the SDRAM.
   struct AloneHost {
     Scr& scr;
-    bool done = false;
     Taken forward(MemRequest& r, Picoseconds arrival);
-    void respond(MemRequest& r);
   };
+  template <bool kWrite>
+  Alone play_alone(MemRequest& request, Picoseconds limit);
   void request(MemRequest& r);
   void count_outcome(const MemRequest& r, Picoseconds now);
   tlm::tlm_sync_enum response(Slave s, MemRequest& r, MemPhase phase, sc_core::sc_time& delay);

@@ -64,6 +64,13 @@ class RequestWaits {
     used_ |= bit;
     total_ += t;
   }
+  /// clear(), and two different ones to begin with.
+  void begin(Culprit a, std::uint64_t of_a, Culprit b, std::uint64_t of_b) {
+    ps_[index(a)] = of_a;
+    ps_[index(b)] = of_b;
+    used_ = 1u << index(a) | 1u << index(b);
+    total_ = of_a + of_b;
+  }
   std::uint64_t total() const { return total_; }
   std::uint64_t ps(Culprit c) const { return used_ >> index(c) & 1u ? ps_[index(c)] : 0; }
   /// Calls f(culprit, picoseconds) for those that were added, in their order.

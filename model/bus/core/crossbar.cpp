@@ -172,8 +172,9 @@ inline void Crossbar::sum_grants(SlaveState& s) {
 }
 
 [[gnu::noinline]] void Crossbar::attribute(SlaveState& s, const MemRequest& r,
-                                           std::uint64_t crossed, std::uint32_t grants) {
-  const Picoseconds start = scr_.edge(crossed), waited = next_ - start;
+                                           std::uint64_t crossed, std::uint32_t grants,
+                                           Picoseconds granted) {
+  const Picoseconds start = scr_.edge(crossed), waited = granted - start;
   charge(r, Culprit::kBridge, start - r.issued);
   // Where nobody had the lane the request stood behind its own master's last one.
   const std::uint32_t made = s.grants_made;

@@ -84,9 +84,10 @@ class Crossbar {
     if (next_ == kNever || g.edge < next_edge_) g.at = scr_.edge(g.edge);
     return g;
   }
-  /// submit() and step() in one, for the present grant_if_alone().
-  template <class Host>
-  void grant_alone(Host& host, MemRequest& request, const AloneGrant& grant);
+  /// submit() and step() in one, for the present grant_if_alone() of a request of which r.parts has
+  /// nothing yet. True: it is over, and the host not called, which a write with room is at once.
+  template <bool kWrite, class Host>
+  bool grant_alone(Host& host, MemRequest& request, const AloneGrant& grant);
   /// A write: from its issue to its acknowledgement, with one beat and nobody in the way.
   Picoseconds least_latency(Master m) const {
     const Port& p = ports_[index(m)];
@@ -203,10 +204,11 @@ class Crossbar {
     visible_[port] = visible;
     slaves_[ports_[port].front().request->slave].heads |= 1u << port;
   }
-  void count(const Port& p, const MemRequest& r);
+  void count(unsigned port, bool write, const MemRequest& r, Picoseconds at);
   void return_read(MemRequest& r, Picoseconds first, Picoseconds last);
-  /// The parts of request.issued .. next_, its grant.
-  void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants);
+  /// The parts of request.issued .. `granted`.
+  void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants,
+                 Picoseconds granted);
   [[gnu::always_inline]] void charge(const MemRequest& r, Culprit c, Picoseconds t) {
     MasterWaits& w = waits[index(r.master)];
     (r.write ? w.write : w.read).add(c, t);
@@ -228,13 +230,14 @@ class Crossbar {
 };
 
 /// What a grant adds to the statistics.
-inline void Crossbar::count(const Port& p, const MemRequest& r) {
-  MasterStats& st = *p.stats;
+[[gnu::always_inline]] inline void Crossbar::count(unsigned port, bool write, const MemRequest& r,
+                                                   Picoseconds at) {
+  MasterStats& st = *ports_[port].stats;
   ++st.transactions;
-  (r.write ? st.write_bytes : st.read_bytes) += r.bytes;
+  (write ? st.write_bytes : st.read_bytes) += r.bytes;
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    (r.write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
-  timeline.add(next_port_, r.write, r.bytes, next_);
+    (write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
+  timeline.add(port, write, r.bytes, at);
 }
 
 template <class Host>
@@ -270,7 +273,7 @@ template <class Host>
   s.free = next_edge_ + cycles;
   s.last = next_port_;
   if (r.locked || s.open_to != ~0u) [[unlikely]] set_lock(s, r);
-  count(p, r);
+  count(next_port_, r.write, r, next_);
 
   const std::uint64_t arrival = next_edge_ + cycles;
   const Picoseconds at = scr_.edge(arrival);
@@ -278,7 +281,7 @@ template <class Host>
     if (crossed == next_edge_)
       charge(r, Culprit::kBridge, next_ - r.issued);
     else
-      attribute(s, r, crossed, grants);
+      attribute(s, r, crossed, grants, next_);
     charge(r, Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
@@ -292,26 +295,51 @@ template <class Host>
     acknowledge_write(host, r, arrival);
 }
 
-template <class Host>
-[[gnu::always_inline]] inline void Crossbar::grant_alone(Host& host, MemRequest& r,
+template <bool kWrite, class Host>
+[[gnu::always_inline]] inline bool Crossbar::grant_alone(Host& host, MemRequest& r,
                                                          const AloneGrant& g) {
-  const std::uint64_t others_edge = next_edge_;
-  const std::uint8_t others_port = next_port_;
-  const Picoseconds others = next_;
-  next_edge_ = g.edge;
-  next_port_ = static_cast<std::uint8_t>(index(r.master));
-  next_ = g.at;
+  constexpr auto kDdr = static_cast<std::uint8_t>(Slave::kDdr);
+  const auto m = static_cast<std::uint8_t>(index(r.master));
+  const Port& p = ports_[m];
+  SlaveState& s = slaves_[kDdr];
+  r.slave = kDdr;
   r.slave_waited = 0;
-  const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
-  grant(host, r, g.crossed, s.grants_made ? s.grants_made - 1 : 0);
-  // What was planned for the others stands, unless the lane is not free then or their turn changed.
-  if (waiting_ & (waiting_ - 1) || (waiting_ && others_edge < s.free) || s.blocked) {
-    plan();
+  r.priority = p.priority;
+  const std::uint64_t arrival = g.edge + (kWrite ? p.beats(r.bytes) : 1u);
+  const Picoseconds at = scr_.edge(arrival);
+  s.free = arrival;
+  s.last = m;
+  count(m, kWrite, r, g.at);
+  const bool at_once = g.crossed == g.edge;
+  Waits& w = kWrite ? waits[m].write : waits[m].read;
+  const Picoseconds to_grant = g.at - r.issued, service = at - g.at;
+  w.add(Culprit::kService, service);
+  if (at_once) [[likely]] {
+    w.add(Culprit::kBridge, to_grant);
+    if (r.parts) r.parts->begin(Culprit::kBridge, to_grant, Culprit::kService, service);
   } else {
-    next_edge_ = others_edge;
-    next_port_ = others_port;
-    next_ = others;
+    attribute(s, r, g.crossed, s.grants_made ? s.grants_made - 1 : 0, g.at);
+    if (r.parts) r.parts->add(Culprit::kService, service);
   }
+  s.grant(s.grants_made++) = {g.edge, arrival, m};
+  r.taken = at;
+  const Taken taken = host.forward(r, at);
+  bool over = false;
+  if (taken != Taken::kYes) [[unlikely]] {
+    if (taken == Taken::kWaits)
+      s.blocked = true;
+    else
+      slave_done(r, at, at, true);
+  } else if (kWrite) {
+    const Picoseconds acknowledged = scr_.edge(arrival + p.response_latency);
+    set_outcome(r, acknowledged, acknowledged);
+    r.error = false;
+    charge(r, Culprit::kBridge, r.first - at);
+    over = true;
+  }
+  // What was planned for the others stands, unless the lane is not free then or their turn changed.
+  if (waiting_ && (waiting_ & (waiting_ - 1) || next_edge_ < s.free || s.blocked)) plan();
+  return over;
 }
 
 }  // namespace fovea::bus

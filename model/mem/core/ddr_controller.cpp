@@ -78,9 +78,19 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
 }
 
 inline void DdrController::fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const {
-  const DdrRequest r = request;
+  // Field by field: a copy of the whole would read bytes just written as wide words, for which the
+  // host has to wait.
+  DdrRequest& r = e.request;
+  r.address = request.address;
   __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
-  e.request = r;
+  r.cookie = request.cookie;
+  r.master = request.master;
+  r.priority = request.priority;
+  r.write = request.write;
+  r.bytes = request.bytes;
+  r.critical = request.critical;
+  r.data = request.data;
+  r.parts = request.parts;
   e.ready = arrived + request_latency_;
   e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
   e.row = (r.address & row_mask_) >> row_shift_;

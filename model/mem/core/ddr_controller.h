@@ -173,7 +173,7 @@ class DdrController {
   enum Blame : std::uint8_t { kTurned = kMasterCount, kRefreshed, kAsleep, kBlames };
   /// A command that was given. The time up to the next one is blamed on it; after the data of a write
   /// on the turnaround, and an ACT or PRE of the read itself on its row.
-  struct Given {
+  struct alignas(32) Given {
     std::uint64_t clock = 0;
     std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
@@ -184,7 +184,12 @@ class DdrController {
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
   void attribute(const Entry& e, std::uint64_t clock);
-  void blame_each(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own) const;
+  void blame_each(const Entry& e, std::uint64_t n, std::uint64_t ready);
+  void blame_many(const Entry& e, std::uint64_t n, std::uint64_t ready);
+  void charge(const Entry& e, Culprit c, Picoseconds t) {
+    waits[index(e.request.master)].read.add(c, t);
+    if (e.request.parts) e.request.parts->add(c, t);
+  }
   void blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own);
   void charge_read(const Entry& e, const Waits& w);
   void sum_given();

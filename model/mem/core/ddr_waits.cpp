@@ -51,16 +51,25 @@ constexpr Culprit culprit_of(std::size_t blame) {
   return blame < kMasterCount ? static_cast<Culprit>(blame) : kRest[blame - kMasterCount];
 }
 
-/// The waits since `ready`, by the commands from the n-th on, one by one.
-inline void DdrController::blame_each(Waits& w, std::uint64_t n, std::uint64_t ready,
-                                      Culprit own) const {
+/// The waits since `ready`, by the commands from the n-th on, one by one. Its own ACT and PRE are no
+/// wait behind an earlier request.
+inline void DdrController::blame_each(const Entry& e, std::uint64_t n, std::uint64_t ready) {
+  const Culprit own = culprit(e.request.master);
   const std::uint64_t last = given_count_ - 1;
+  std::uint32_t prepared = 0;  // bit i: the command i before the newest
+  Culprit row = Culprit::kRowMiss;
+  for (std::uint64_t p = e.prepared; p > n; p = given(p - 1).before) {
+    const Given& g = given(p - 1);
+    if (g.clock < ready) break;
+    prepared |= 1u << (last - (p - 1));
+    if (g.cmd == Cmd::kPre) row = Culprit::kRowConflict;
+  }
   std::uint64_t at = ready;
   Picoseconds from = ddr_.edge(at);
   const auto until = [&](std::uint64_t clock, Culprit c) {
     if (clock <= at) return;
     const Picoseconds to = ddr_.edge(clock);
-    w.add(c, to - from);
+    charge(e, c, to - from);
     at = clock;
     from = to;
   };
@@ -73,7 +82,7 @@ inline void DdrController::blame_each(Waits& w, std::uint64_t n, std::uint64_t r
             culprit_of(g.blame));
       until(next, Culprit::kTurnaround);
     } else {
-      until(next, culprit_of(g.blame));
+      until(next, prepared >> (last - n) & 1u ? row : culprit_of(g.blame));
     }
   }
 }
@@ -101,33 +110,14 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
   }
 }
 
-/// The waits of a read whose first column command, already noted, is given at `clock`, since it
-/// became ready.
-[[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::blame_many(const Entry& e, std::uint64_t n,
+                                                 std::uint64_t ready) {
   const Culprit own = culprit(e.request.master);
-  const std::uint64_t ready = std::max(e.ready, first_edge_);
-  const Picoseconds start = ddr_.edge(ready);
-  read_waited_ = ddr_.edge(clock) - start;
-  // The last command at or before `ready`, or the oldest one that is known.
+  Waits w;
+  blame_sums(w, n, ready, own);
+  // Its own ACT and PRE are no wait behind an earlier request.
   const std::uint64_t last = given_count_ - 1;
   const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
-  std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
-  while (n > oldest && given(n).clock > ready) --n;
-  while (n + 1 < last && given(n + 1).clock <= ready) ++n;
-  Waits w;
-  if (n == last) {  // nothing was given before it
-    w.add(own, read_waited_);
-    return charge_read(e, w);
-  }
-
-  constexpr std::uint64_t kFewCommands = 8;
-  if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
-  if (last - n <= kFewCommands) {
-    blame_each(w, n, ready, own);
-  } else {
-    blame_sums(w, n, ready, own);
-  }
-  // Its own ACT and PRE are no wait behind an earlier request.
   Picoseconds row = 0;
   bool closed_other = false;
   for (std::uint64_t p = e.prepared; p > oldest; p = given(p - 1).before) {
@@ -139,6 +129,26 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
   w.take_back(own, row);
   w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
   charge_read(e, w);
+}
+
+/// The waits of a read whose first column command, already noted, is given at `clock`, since it
+/// became ready.
+[[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
+  const std::uint64_t ready = std::max(e.ready, first_edge_);
+  read_waited_ = ddr_.edge(clock) - ddr_.edge(ready);
+  // The last command at or before `ready`, or the oldest one that is known.
+  const std::uint64_t last = given_count_ - 1;
+  const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
+  std::uint64_t n = std::max(e.given - (e.given != 0), oldest);
+  while (n > oldest && given(n).clock > ready) --n;
+  while (n + 1 < last && given(n + 1).clock <= ready) ++n;
+  if (n == last) return charge(e, culprit(e.request.master), read_waited_);  // nothing before it
+  if (alone_) summed_ = std::max(summed_, n);  // later requests ask for later commands
+  constexpr std::uint64_t kFewCommands = 8;
+  if (last - n <= kFewCommands)
+    blame_each(e, n, ready);
+  else
+    blame_many(e, n, ready);
 }
 
 }  // namespace fovea::mem
