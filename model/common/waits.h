@@ -76,13 +76,23 @@ class RequestWaits {
   /// Calls f(culprit, picoseconds) for those that were added, in their order.
   template <class F>
   void each(F f) const {
-    for (std::uint32_t set = used_; set; set &= set - 1) {
+    each_of(used_, f);
+  }
+  /// The same without Culprit::kService.
+  template <class F>
+  void each_but_service(F f) const {
+    each_of(used_ & ~(1u << index(Culprit::kService)), f);
+  }
+
+ private:
+  template <class F>
+  void each_of(std::uint32_t set, F f) const {
+    for (; set; set &= set - 1) {
       const auto c = static_cast<std::size_t>(std::countr_zero(set));
       f(static_cast<Culprit>(c), ps_[c]);
     }
   }
 
- private:
   std::uint32_t used_ = 0;  // one bit per culprit; the others' entries mean nothing
   std::uint64_t total_ = 0;
   std::array<std::uint64_t, kCulprits> ps_;

@@ -1,7 +1,7 @@
 // The D-AHB with its write and victim buffers, and the reads that wait for it.
 #include <cstring>
 
-#include "model/cpu/core/core.h"
+#include "model/cpu/core/fast_path.h"
 
 namespace fovea::cpu {
 namespace {
@@ -13,20 +13,6 @@ std::uint64_t beats(unsigned bytes) { return bytes < 4 ? 1 : bytes / 4; }
 void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
   counts_.stall[index(cause)] += cycle - cycle_;
   counts_.stalls.add(cause, regions_.find(pa), culprit, cycle - cycle_);
-  cycle_ = cycle;
-}
-
-/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`, at clock
-/// `bus`: what the access waited for is to blame in proportion, also where the core began to wait
-/// later. The clocks behind that are the core's own.
-void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t bus,
-                    std::uint64_t cycle, Cause cause) {
-  if (cycle <= cycle_) return;
-  const std::uint8_t region = regions_.find(a.address);
-  const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
-  counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);
-  if (cycle > end) counts_.stalls.add(cause, region, kCore, cycle - end);
-  counts_.stall[index(cause)] += cycle - cycle_;
   cycle_ = cycle;
 }
 
@@ -129,9 +115,8 @@ std::uint64_t Core::whole_clocks(Picoseconds t) {
   return whole_;
 }
 
-/// Plays the buffers up to a clock, in time order.
-void Core::play(std::uint64_t cycle) {
-  if (!write_in_flight_ && writes_.empty() && writes_.victim_bytes == 0) return;
+/// The buffers have something, and the write under way may be over by then.
+[[gnu::noinline]] void Core::play_on(std::uint64_t cycle) {
   for (;;) {
     if (write_in_flight_ && !write_access_.done) {
       if (cycle < write_floor_) return;
@@ -149,8 +134,10 @@ void Core::finish_write(Cause cause) {
   read_waiting_ = true;
   port_.finish(write_access_);
   read_waiting_ = false;
-  stall_on(write_access_, write_access_.last, clock_.edge_at_or_after(write_access_.last),
-           write_over(), cause);
+  const Picoseconds last = write_access_.last;
+  const std::uint64_t there = clock_.edge_at_or_after(last);
+  if (write_over_ == 0) write_over_ = ahb(there);
+  stall_on(write_access_, last, there, write_over_, cause);
   next_write_cycle_ = std::max(next_write_cycle_, cycle_);
   retire_write();
 }

@@ -273,7 +273,14 @@ class Core : public Background {
   void stall_for_port(Cause cause);
   void sync_to_ahb(std::uint32_t pa) { stall_to(ahb(cycle_), Cause::kBusSync, pa, kCore); }
   void submit(BusAccess& a, std::uint64_t cycle);
-  void play(std::uint64_t cycle);
+  /// Plays the buffers up to a clock, in time order.
+  void play(std::uint64_t cycle) {
+    if (write_in_flight_ ? !write_access_.done && cycle < write_floor_
+                         : writes_.empty() && writes_.victim_bytes == 0)
+      return;
+    play_on(cycle);
+  }
+  void play_on(std::uint64_t cycle);
   std::uint64_t next_act_cycle() const;
   std::uint64_t write_over() const;
   void bus_read(BusAccess& a, Cause cause);

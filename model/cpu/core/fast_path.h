@@ -1,4 +1,4 @@
-// Fetch from the current line and translation of a known page. Inline, for the files that execute
+// Fetch from the current line, translation of a known page, the end of a bus access. Inline, for the files that execute
 // instructions.
 #pragma once
 #include <cstring>
@@ -25,6 +25,21 @@ inline const Translation* Core::translate(std::uint32_t mva, bool write, bool us
   if (memo.page == memo_key(mva, user) && (write ? memo.write_ok : memo.read_ok))
     return &memo.translation;
   return translate_slow(mva, write, user, instruction);
+}
+
+/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`, at clock
+/// `bus`: what the access waited for is to blame in proportion, also where the core began to wait
+/// later. The clocks behind that are the core's own.
+[[gnu::always_inline]] inline void Core::stall_on(const BusAccess& a, Picoseconds outcome,
+                                                  std::uint64_t bus, std::uint64_t cycle,
+                                                  Cause cause) {
+  if (cycle <= cycle_) return;
+  const std::uint8_t region = regions_.find(a.address);
+  const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
+  counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);
+  if (cycle > end) counts_.stalls.add(cause, region, kCore, cycle - end);
+  counts_.stall[index(cause)] += cycle - cycle_;
+  cycle_ = cycle;
 }
 
 }  // namespace fovea::cpu

@@ -283,7 +283,11 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     if (i < 0) i = dcache_fill(a, pa, t->bufferable);
     if (dcache_.line(static_cast<unsigned>(i)).tag == (a & ~31u))
       note_read(va, mva, dcache_.data(static_cast<unsigned>(i)), counts_.dcache_reads);
-    std::memcpy(&value, dcache_.data(static_cast<unsigned>(i)) + (a & 31u), bytes);
+    const std::uint8_t* const from = dcache_.data(static_cast<unsigned>(i)) + (a & 31u);
+    if (bytes == 4)
+      std::memcpy(&value, from, 4);
+    else
+      std::memcpy(&value, from, bytes);
     return Result::kOk;
   }
   counts_.translated_uncached += control_ & 1u;

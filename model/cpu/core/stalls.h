@@ -50,8 +50,8 @@ class StallTable {
     parts_[place(cause, region, culprit)] += clocks << kFraction;
   }
   /// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds. What the
-  /// waits leave of `span`, and what is lost by rounding, is service.
-  void split(Cause cause, std::size_t region, std::uint64_t clocks, const RequestWaits& waits,
+  /// waits leave of `span`, and what is lost by rounding, is service as well.
+  [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks, const RequestWaits& waits,
              std::uint64_t span) {
     if (clocks == 0) return;
     Parts* const row = &parts_[place(cause, region, 0)];
@@ -61,12 +61,12 @@ class StallTable {
     if (whole == 0) {
     } else if (whole >> 20 == 0) {  // a microsecond: the error stays below a tenth of a clock
       const Parts rate = all / whole;
-      waits.each([&](Culprit c, std::uint64_t ps) {
+      waits.each_but_service([&](Culprit c, std::uint64_t ps) {
         row[index(c)] += ps * rate;
         left -= ps * rate;
       });
     } else {
-      waits.each([&](Culprit c, std::uint64_t ps) {
+      waits.each_but_service([&](Culprit c, std::uint64_t ps) {
         const auto part = static_cast<Parts>(static_cast<unsigned __int128>(ps) * all / whole);
         row[index(c)] += part;
         left -= part;

@@ -56,6 +56,11 @@ bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
     plan_one(slots_[0]);
     return true;
   }
+  return submit_queued(request, arrived);
+}
+
+[[gnu::noinline]] bool DdrController::submit_queued(const DdrRequest& request,
+                                                    std::uint64_t arrived) {
   const bool was_alone = alone_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
@@ -303,7 +308,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 /// CKE rises for what comes at `clock`; commands follow tXP later, or tXSNR and for reads tXSRD.
 /// After self-refresh the refresh interval starts anew (assumed).
-void DdrController::wake(std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::wake(std::uint64_t clock) {
   if (asleep_ == LowPower::kOff) return;
   const DdrTiming& t = config_.timing;
   const bool self_refresh = refreshes_itself(asleep_);
@@ -331,14 +336,12 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
-[[gnu::noinline]] void DdrController::step() {
-  count_owed(choice_.at);
-  if (choice_.cmd == Cmd::kWr)
-    in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
-  else if (choice_.cmd == Cmd::kRd)
-    in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
-  else
-    prepare();
+void DdrController::step() {
+  if (choice_.at >= next_expiry_) [[unlikely]]
+    count_owed(choice_.at);
+  if (choice_.cmd == Cmd::kWr) return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
+  if (choice_.cmd == Cmd::kRd) return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
+  prepare();
 }
 
 /// Whatever is no column command.
@@ -403,7 +406,7 @@ template <Cmd kCmd>
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
 /// between its bursts; for the same reason the next decision is its last column.
 template <Cmd kCmd>
-inline void DdrController::first_column() {
+void DdrController::first_column() {
   const Entry& e = *choice_.entry;
   const DdrRequest& r = e.request;
   const std::uint64_t clock = choice_.at;
@@ -438,7 +441,7 @@ inline void DdrController::first_column() {
 /// The last column command, and the ones inside the burst that nobody asked about. What those put
 /// off, the last one puts off further.
 template <Cmd kCmd>
-inline void DdrController::last_column() {
+void DdrController::last_column() {
   const Entry& e = *choice_.entry;
   const std::uint64_t clock = choice_.at;
   in_burst_ = false;

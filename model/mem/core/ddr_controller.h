@@ -195,6 +195,7 @@ class DdrController {
   void sum_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
+  bool submit_queued(const DdrRequest& request, std::uint64_t arrived);
   void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
   void join_queue();
   void take(const DdrRequest& request, std::uint64_t arrived);
@@ -245,9 +246,9 @@ class DdrController {
   template <Cmd kCmd>
   void give_closing_column(const Entry& e, std::uint64_t clock);
   template <Cmd kCmd>
-  void first_column();
+  [[gnu::noinline]] void first_column();
   template <Cmd kCmd>
-  void last_column();
+  [[gnu::noinline]] void last_column();
   void columns_before(std::uint64_t until);
   void finish(std::uint64_t clock);
   void finish_queued(std::uint64_t clock);
