@@ -41,7 +41,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
           std::make_unique<MemInitiatorSocket<32>>(("socket_" + std::to_string(i)).c_str()));
       sockets.back()->bind(*this);
     }
-    ports_.resize(ports);
+    FOVEA_CHECK(ports <= ports_.size(), "an agent with too many ports");
     SC_HAS_PROCESS(Agent);
     SC_METHOD(background);
     sensitive << background_due_;
@@ -59,7 +59,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     tx.done = tx.error = false;
     tx.issued = at;
     put_out();
-    if (running_ && own_undecided_ == 0 && tx.address >= memory_base_ && ports_[tx.port].known) {
+    if (running_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from) {
       held_ = &tx;
       return;
     }
@@ -161,7 +161,10 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     }
     if (!strict_) {
       memory_base_ = path_->memory_base();
-      for (Port& p : ports_) p.least_latency = path_->least_latency(p.master);
+      for (Port& p : ports_) {
+        p.least_latency = path_->least_latency(p.master);
+        if (p.known) p.held_from = memory_base_;
+      }
     }
     now_ = kernel_();
     background_due_.cancel();
@@ -182,6 +185,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
  private:
   struct Port {
     bool known = false;  // `master`, once a request has gone through it
+    std::uint64_t held_from = kNever;  // requests to addresses from here on may be held back
     Master master = Master::kArmD;
     Picoseconds least_latency = 0;
   };
@@ -193,8 +197,10 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     sc_core::sc_time delay = ps_time(tx.issued > now ? tx.issued - now : 0);
     (*sockets[tx.port])->nb_transport_fw(tx, phase, delay);
     own_undecided_ += to_memory(tx);
-    ports_[tx.port].known = true;
-    ports_[tx.port].master = tx.master;
+    Port& p = ports_[tx.port];
+    p.known = true;
+    p.master = tx.master;
+    p.held_from = memory_base_;
   }
   /// A request held back goes the usual way: others may come in between.
   void put_out() {
@@ -267,7 +273,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   /// The newest request, alone on its way: most often its master waits for it next and nobody comes
   /// between, so that it need not go through the queues.
   Transaction* held_ = nullptr;
-  std::vector<Port> ports_;
+  std::array<Port, 8> ports_;
   std::uint64_t memory_base_ = kNever;
   bool running_ = false;
   unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act

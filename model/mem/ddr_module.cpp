@@ -92,8 +92,9 @@ DdrConfig DdrModule::programmed() const { return decode(regs); }
 
 [[gnu::flatten]] Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
-  if (!open_ || outside || !controller_.running()) [[unlikely]] {
+  if (!open_ || outside || controller_.shut()) [[unlikely]] {
     if (!admit(m)) return refuse_in_order(m, at);
+    FOVEA_CHECK(!controller_.shut(), "a request while another one waits at the door");
   }
   DdrRequest r;
   r.cookie = &m;
@@ -105,7 +106,7 @@ DdrConfig DdrModule::programmed() const { return decode(regs); }
   r.critical = m.critical;
   r.data = m.data;
   r.parts = m.parts;
-  return controller_.submit(r, at) ? Taken::kYes : Taken::kWaits;
+  return controller_.submit_inside(r, at) ? Taken::kYes : Taken::kWaits;
 }
 
 tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,

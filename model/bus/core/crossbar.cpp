@@ -234,9 +234,15 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last) {
   }
   set_outcome(r, scr_.edge(begin), scr_.edge(end));
   const Picoseconds free = begin == seen ? r.first : scr_.edge(seen);
-  charge(r, Culprit::kBridge, free - first);
-  charge(r, culprit(r.master), r.first - free);
-  charge(r, Culprit::kService, first - r.taken - r.slave_waited);
+  Waits& w = waits[index(r.master)].read;
+  RequestWaits* const parts = r.parts;
+  const auto add = [&w, parts](Culprit c, Picoseconds t) {
+    w.add(c, t);
+    if (parts) parts->add(c, t);
+  };
+  add(Culprit::kBridge, free - first);
+  if (r.first != free) add(culprit(r.master), r.first - free);
+  add(Culprit::kService, first - r.taken - r.slave_waited);
 }
 
 void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {

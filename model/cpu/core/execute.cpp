@@ -194,24 +194,6 @@ void Core::step_attention() {
   }
 }
 
-/// Clock at which operands that are still on their way are there (ARM DDI 0222B 8.3): ready counts
-/// from the end of the producer's issue; store data and accumulators are read a cycle later.
-std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cycle) const {
-  std::uint64_t need = cycle;
-  for (std::uint32_t s = i.sources; s; s &= s - 1)
-    need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2);
-  for (std::uint32_t s = i.stored; s; s &= s - 1) {
-    const std::uint64_t entry = ready_[static_cast<unsigned>(std::countr_zero(s))];
-    const std::uint64_t ready = entry >> 2;
-    const auto by = static_cast<Producer>(entry & 3u);
-    // Read a cycle later, but loads have no forwarding to this port (their latency is one more),
-    // and of a multiply only the accumulator input is forwarded, not store data.
-    const bool late = by == kLoad || (by == kMultiply && i.op >= Op::kLdr);
-    need = std::max(need, late || ready == 0 ? ready : ready - 1);
-  }
-  return need;
-}
-
 /// The chain that was left for one instruction still holds, and `next` follows it.
 bool Core::chain_goes_on(const Instruction* next) const {
   return cycle_ < chain_stop_ && cycle_ < stop_cycle_ && !attention_ &&

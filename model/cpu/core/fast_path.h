@@ -1,6 +1,7 @@
 // Fetch from the current line, translation of a known page, the end of a bus access. Inline, for the files that execute
 // instructions.
 #pragma once
+#include <bit>
 #include <cstring>
 
 #include "model/cpu/core/core.h"
@@ -40,6 +41,24 @@ inline const Translation* Core::translate(std::uint32_t mva, bool write, bool us
   if (cycle > end) counts_.stalls.add(cause, region, kCore, cycle - end);
   counts_.stall[index(cause)] += cycle - cycle_;
   cycle_ = cycle;
+}
+
+/// Clock at which operands that are still on their way are there (ARM DDI 0222B 8.3): ready counts
+/// from the end of the producer's issue; store data and accumulators are read a cycle later.
+inline std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cycle) const {
+  std::uint64_t need = cycle;
+  for (std::uint32_t s = i.sources; s; s &= s - 1)
+    need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2);
+  for (std::uint32_t s = i.stored; s; s &= s - 1) {
+    const std::uint64_t entry = ready_[static_cast<unsigned>(std::countr_zero(s))];
+    const std::uint64_t ready = entry >> 2;
+    const auto by = static_cast<Producer>(entry & 3u);
+    // Read a cycle later, but loads have no forwarding to this port (their latency is one more),
+    // and of a multiply only the accumulator input is forwarded, not store data.
+    const bool late = by == kLoad || (by == kMultiply && i.op >= Op::kLdr);
+    need = std::max(need, late || ready == 0 ? ready : ready - 1);
+  }
+  return need;
 }
 
 }  // namespace fovea::cpu

@@ -66,7 +66,9 @@ struct Core::Ops {
   [[gnu::noinline]] static Next warned(Core& c, Next i, Cycle cycle);
   /// Goes on with record i after its neighbour was executed with all state settled.
   [[gnu::always_inline]] static Next resume(Core& c, Next i) {
-    if (!c.chain_goes_on(i)) return nullptr;
+    return c.chain_goes_on(i) ? resume_here(c, i) : nullptr;
+  }
+  [[gnu::always_inline]] static Next resume_here(Core& c, Next i) {
     c.run_first_ = reinterpret_cast<std::intptr_t>(i);
     // Behind the last record of a line line_end() takes care of results on their way.
     if (c.cycle_ < c.busy_until_ && i->at < 32) {

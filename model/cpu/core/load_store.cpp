@@ -99,7 +99,11 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
   ++c.counts_.instructions;
   c.pc_ = c.run_va_ + i[1].at;
-  return resume(c, i + 1);
+  // Of what chain_goes_on() asks, a store to the write buffer leaves the place of the chain alone.
+  if (c.cycle_ >= c.chain_stop_ || c.cycle_ >= c.stop_cycle_ || c.attention_ ||
+      !c.current_line_->valid || c.cycle_ < c.ifill_.last)
+    return nullptr;
+  return resume_here(c, i + 1);
 }
 
 /// A word relative to the pc; imm: from the first byte of the line.

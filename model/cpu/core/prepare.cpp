@@ -209,11 +209,8 @@ template <bool kThumb>
       if (c.ready_[static_cast<unsigned>(__builtin_ctz(set))] >> 2 > than) return true;
     return false;
   };
-  Cycle start = cycle;
-  if (late(operands(*i), cycle)) {
-    if (i->cond != 14) return kNoCycle;
-    start = c.operands_ready(*i, cycle);
-  }
+  const Cycle start = c.operands_ready(*i, cycle);
+  if (start > cycle && i->cond != 14) return kNoCycle;
   // No result is later than two clocks.
   if (c.busy_until_ > start + 1 && late(operands(i[1]), start + 1)) return kNoCycle;
   return start;

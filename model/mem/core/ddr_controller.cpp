@@ -40,6 +40,10 @@ void DdrController::count_asleep(std::uint64_t until) {
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
     refuse(request);
+  return submit_inside(request, at);
+}
+
+bool DdrController::submit_inside(const DdrRequest& request, Picoseconds at) {
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);

@@ -80,6 +80,11 @@ class DdrController {
   /// A request arrives at time `at`; true: taken at once. False: it waits at the door until
   /// ddr_accepted; the caller sends no other one before.
   bool submit(const DdrRequest& request, Picoseconds at);
+  /// The same for a caller that knows the request to lie in the SDRAM, with no other at the door and
+  /// the clock running.
+  bool submit_inside(const DdrRequest& request, Picoseconds at);
+  /// Stopped, or the door taken: no request may come.
+  bool shut() const { return shut_; }
 
   /// Time of the next decision, kNever if nothing is queued: a DRAM command, but of a burst's
   /// columns only the first and the last, as nothing can come between. Depends only on arrivals
