@@ -91,27 +91,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   }
   /// Returns when tx is done; plays background work in time order meanwhile.
   void finish(Transaction& tx) {
-    while (!tx.done) {
-      if (held_) {
-        play_held(self().background_next());
-        continue;
-      }
-      if (!strict_) {
-        const Picoseconds t = next_decision();
-        const Picoseconds b = self().background_next();
-        const Picoseconds h = next_event();
-        if (std::min(t, b) < h) {
-          if (b <= t)
-            self().background_act();
-          else
-            path_->step_before(std::min(b, h));
-          continue;
-        }
-      }
-      waiting_ = &tx;
-      wait_for(done_);
-      waiting_ = nullptr;
-    }
+    if (held_ == &tx) play_held(self().background_next());
+    if (!tx.done) finish_queued(tx);
   }
   /// Returns when `event` fires in the kernel.
   void wait_for(sc_core::sc_event& event) {
@@ -120,7 +101,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     enter();
   }
   /// Lets everybody else act before `until`; afterwards nothing is pending before it.
-  void sleep_until(Picoseconds until) {
+  [[gnu::noinline]] void sleep_until(Picoseconds until) {
     const Picoseconds now = now_;
     if (until <= now) return;
     put_out();
@@ -191,7 +172,30 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   };
 
   Self& self() { return static_cast<Self&>(*this); }
-  void put_on_port(Transaction& tx) {
+  [[gnu::noinline]] void finish_queued(Transaction& tx) {
+    while (!tx.done) {
+      if (held_) {
+        play_held(self().background_next());
+        continue;
+      }
+      if (!strict_) {
+        const Picoseconds t = next_decision();
+        const Picoseconds b = self().background_next();
+        const Picoseconds h = next_event();
+        if (std::min(t, b) < h) {
+          if (b <= t)
+            self().background_act();
+          else
+            path_->step_before(std::min(b, h));
+          continue;
+        }
+      }
+      waiting_ = &tx;
+      wait_for(done_);
+      waiting_ = nullptr;
+    }
+  }
+  [[gnu::noinline]] void put_on_port(Transaction& tx) {
     MemPhase phase = MemPhase::kRequest;
     const Picoseconds now = running_ ? now_ : kernel_();
     sc_core::sc_time delay = ps_time(tx.issued > now ? tx.issued - now : 0);

@@ -1,6 +1,7 @@
 #include "model/video/osd.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "model/video/core/burst_split.h"
@@ -10,10 +11,11 @@ namespace {
 
 constexpr unsigned kBurstIndexBits = 8;  // of the tag; the rest is the line's running number
 
-void fill_black(std::uint8_t* bytes, unsigned count) {
-  static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
-  for (unsigned i = 0; i < count; ++i) bytes[i] = kBlack[i & 3];
-}
+constexpr auto kBlackLine = [] {
+  std::array<std::uint8_t, kActiveBytes> line{};
+  for (unsigned i = 0; i < kActiveBytes; ++i) line[i] = i & 1u ? 0x10 : 0x80;
+  return line;
+}();
 
 }  // namespace
 
@@ -143,7 +145,7 @@ DisplayLine Osd::finish() {
   Line& line = at(finished_++);
   const Timing& t = line.timing;
   unsigned underflows = 0;
-  fill_black(out_.data(), kActiveBytes);
+  std::memcpy(out_.data(), kBlackLine.data(), kActiveBytes);
   for (const Burst& b : line.bursts) {
     if (b.arrived < b.due)
       std::memcpy(out_.data() + b.at, line.bytes.data() + b.at, b.bytes);

@@ -385,7 +385,7 @@ class Core : public Background {
     Translation translation;
     bool read_ok = false, write_ok = false;
   };
-  static constexpr unsigned kMemos = 64;
+  static constexpr unsigned kMemos = 256;
   std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
   /// A place where the core reads or writes without a further look: translation, permission and
