@@ -57,15 +57,12 @@ std::uint64_t Core::write_over() const {
   return write_over_;
 }
 
-void Core::act() {
-  std::uint64_t c;
-  if (write_in_flight_) {
-    c = write_over();
-    retire_write();
-  } else {
-    c = ahb(std::max(next_write_cycle_, data_port_free_));
-  }
-  if (!writes_.empty() || writes_.victim_bytes) start_write(c);
+void Core::act() { act_at(next_act_cycle()); }
+
+/// @param cycle the present next_act_cycle()
+inline void Core::act_at(std::uint64_t cycle) {
+  if (write_in_flight_) retire_write();
+  if (!writes_.empty() || writes_.victim_bytes) start_write(cycle);
 }
 
 void Core::retire_write() {
@@ -124,8 +121,9 @@ std::uint64_t Core::whole_clocks(Picoseconds t) {
       if (!port_.poll(write_access_, time(cycle)) && !(write_in_flight_ && write_access_.done))
         return;
     }
-    if (next_act_cycle() > cycle) return;
-    act();
+    const std::uint64_t next = next_act_cycle();
+    if (next > cycle) return;
+    act_at(next);
   }
 }
 

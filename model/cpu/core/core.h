@@ -282,6 +282,7 @@ class Core : public Background {
   }
   void play_on(std::uint64_t cycle);
   std::uint64_t next_act_cycle() const;
+  void act_at(std::uint64_t cycle);
   std::uint64_t write_over() const;
   void bus_read(BusAccess& a, Cause cause);
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
