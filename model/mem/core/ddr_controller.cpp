@@ -251,6 +251,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
     if (owed_ == 0) {
       if (config_.low_power != LowPower::kOff && fall_asleep(std::min(until, next_expiry_)))
         continue;
+      pass_over_refreshes(until);
       if (next_expiry_ >= until) return;
       from = std::max(command_free_, next_expiry_);
       if (from >= until) return;
@@ -268,6 +269,19 @@ void DdrController::issue_refresh(std::uint64_t clock) {
     count_owed(at);
     issue_refresh(at);
   }
+}
+
+/// Of a long time without requests only the last refreshes are carried out one by one: all those before
+/// come as they fall due, one an interval, and leave nothing but their number.
+void DdrController::pass_over_refreshes(std::uint64_t until) {
+  const std::uint64_t interval = config_.refresh_interval;
+  if (hook_ || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
+  if (until < next_expiry_ || until - next_expiry_ < 2 * kGiven * interval) return;
+  if (!device_.all_closed() || next_expiry_ < std::max(command_free_, device_.earliest_refresh()))
+    return;
+  const std::uint64_t passed = (until - next_expiry_) / interval - kGiven;
+  stats.refreshes += passed;
+  next_expiry_ += passed * interval;
 }
 
 /// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs

@@ -219,6 +219,7 @@ class DdrController {
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
   bool passes_older(const Entry& e) const;
   void idle(std::uint64_t until);
+  void pass_over_refreshes(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
   void sleep_changes(LowPower to, std::uint64_t clock);
   void wake(std::uint64_t clock);
