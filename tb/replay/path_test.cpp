@@ -385,6 +385,8 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   };
   EXPECT_EQ(play("0 0 R 0x7FFFFC0 64\n", {}), "");
   EXPECT_THAT(play("0 0 R 0x8000000 4\n", {}), HasSubstr("outside the SDRAM of 128 MiB"));
+  EXPECT_EQ(play("0 0 R 0x0 256\n\n0 0 W 0x7fffffe 4\n", {}),
+            "trace 't': line 5 of a: 2 bytes at 0x08000000: outside the SDRAM of 128 MiB (ddr.part)");
   EXPECT_EQ(play("0 0 R 0x8000000 4\n", {{"ddr.part", "mt47h128m16"}}), "");
   EXPECT_THAT(play("", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
   EXPECT_THAT(play("", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));
