@@ -182,7 +182,8 @@ void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   urgency_ = refresh_urgency_after(0);
-  calm_until_ = urgent ? 0 : std::min(next_expiry_, first_overdue());
+  all_in_time_until_ = std::min(next_expiry_, first_overdue());
+  calm_until_ = urgent ? 0 : all_in_time_until_;
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 

@@ -305,7 +305,8 @@ class DdrController {
 
   std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
   Urgency urgency_ = Urgency::kMay;   // before next_expiry_
-  std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
+  std::uint64_t all_in_time_until_ = 0;  // no interval ends and no row is due before this edge
+  std::uint64_t calm_until_ = 0;         // and no refresh is urgent
   std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
   LowPower asleep_ = LowPower::kOff;  // CKE is low
   std::uint64_t queued_since_ = 0, asleep_since_ = 0;  // edges up to which that time is counted
