@@ -1,5 +1,6 @@
 #include "model/mem/ddr_check.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -69,8 +70,12 @@ std::string seconds(Picoseconds at) {
   return text;
 }
 
-/// With a full queue a burst under way goes on, and up to eight rows become due together.
-constexpr unsigned kClosingTime = 400;
+/// How long a row that is due may stay open: a burst under way goes on, up to eight rows become due
+/// together, the scheduler may see no request yet, and what its bank did last takes its time.
+unsigned closing_time(const check::DataSheet& s) {
+  constexpr unsigned kBurst = 16, kRows = 8, kLatency = 32;
+  return kBurst + kRows + kLatency + s.tRAS + s.CL + 4 + std::max(s.tWR, s.tRTP);
+}
 /// The thresholds are the user's, so the interval's programmed value bounds nothing by itself.
 constexpr unsigned kNoRefreshRule = 0;
 
@@ -124,7 +129,7 @@ struct DdrCheck::Stream {
   static check::DataSheet rules(const DdrConfig& config) {
     check::DataSheet s = as_programmed(config);
     s.tREFI = kNoRefreshRule;
-    if (s.tRASmax) s.tRASmax += kClosingTime;
+    if (s.tRASmax) s.tRASmax += closing_time(s);
     return s;
   }
 };

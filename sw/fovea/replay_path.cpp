@@ -92,9 +92,10 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
 
 void ReplayPath::check(const trace::Record& r, const Stream& s) const {
   const auto refuse = [&](const std::string& why) {
-    throw UserError(fmt::format("trace '{}': record {} of {}: {} bytes at 0x{:08x}: {}", name_,
-                                s.number, masters_[index(r.master)].label, r.bytes, r.address,
-                                why));
+    std::string place = source_.place(static_cast<unsigned>(&s - streams_.data()));
+    if (place.empty()) place = fmt::format("record {}", s.number);
+    throw UserError(fmt::format("trace '{}': {} of {}: {} bytes at 0x{:08x}: {}", name_, place,
+                                masters_[index(r.master)].label, r.bytes, r.address, why));
   };
   if (std::uint64_t{r.address} + r.bytes > store_.size())
     refuse(fmt::format("outside the SDRAM of {} MiB (ddr.part)", store_.size() >> 20));

@@ -86,6 +86,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
     std::vector<Outcome> history;
   };
 
+  void add_wait_rows(const std::string& label, Waits MasterWaits::*direction, const char* name,
+                     std::vector<StatRow>& rows) const;
   void fetch(unsigned stream);
   void prepare(unsigned stream);
   Picoseconds event(const trace::Record& r) const;

@@ -1,6 +1,7 @@
 #include "sw/fovea/replay_path.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace fovea::app {
 
@@ -14,8 +15,15 @@ std::vector<StatRow> ReplayPath::stats() {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
     const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
-    rows.push_back({"ddr.utilisation", static_cast<double>(ddr_.busy_clocks()) / clocks, "ratio",
+    const auto busy = static_cast<double>(ddr_.busy_clocks());
+    const auto queued = static_cast<double>(ddr_.stats.queued_clocks.count());
+    rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
                     "share of replay.time in which the SDRAM's data bus moves data"});
+    rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
+                    "share of replay.time in which no request is queued at the SDRAM"});
+    if (queued > 0)
+      rows.push_back({"ddr.efficiency", busy / queued, "ratio",
+                      "data clocks / clocks in which a request is queued"});
   }
   for (const std::string& label : labels()) {
     std::uint64_t read = 0, write = 0, transactions = 0;
@@ -32,8 +40,35 @@ std::vector<StatRow> ReplayPath::stats() {
     rows.push_back({bus + "write_bytes", write, "B", "bytes written by this master"});
     rows.push_back({bus + "transactions", transactions, "1", "requests of this master"});
     collect(*one->latency, rows);
+    if (memory_only_) continue;  // only the crossbar knows of all waits
+    add_wait_rows(label, &MasterWaits::read, "read", rows);
+    add_wait_rows(label, &MasterWaits::write, "write", rows);
   }
   return rows;
+}
+
+/// As bus::WaitStats names them, with the trace's labels. Ports that the trace does not name served
+/// nobody.
+void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*direction,
+                               const char* name, std::vector<StatRow>& rows) const {
+  Waits sum;
+  for (std::size_t m = 0; m < kMasterCount; ++m)
+    if (masters_[m].label == label)
+      for (std::size_t c = 0; c < kCulprits; ++c)
+        sum.ps[c] += (xbar_.waits[m].*direction).ps[c] + (ddr_.waits[m].*direction).ps[c];
+  const auto add = [&](std::string_view culprit, std::uint64_t ps) {
+    rows.push_back({fmt::format("ddr.{}.wait.{}.{}", label, name, culprit),
+                    static_cast<double>(ps) * 1e-12, "s",
+                    "time of its requests by who or what they waited for (own: its earlier ones)"});
+  };
+  for (std::size_t c = kMasterCount; c < kCulprits; ++c)
+    add(culprit_name(static_cast<Culprit>(c)), sum.ps[c]);
+  for (const std::string& other : labels()) {
+    std::uint64_t ps = 0;
+    for (std::size_t m = 0; m < kMasterCount; ++m)
+      if (masters_[m].label == other) ps += sum.ps[m];
+    add(other == label ? "own" : other, ps);
+  }
 }
 
 std::vector<std::string> ReplayPath::labels() const {

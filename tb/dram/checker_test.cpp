@@ -163,6 +163,29 @@ TEST(CheckerStateTest, FourBanksPrechargeAllWithoutTheExtraClock) {
   EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kPreAll, 0, 0, 150}, {kRef, 0, 0, 155}}, four), "tRPA");
 }
 
+// WL = 1, no tRTP: RD to PRE 4, RD to WR CL + 4, WR to RD 1 + 4 + tWTR, WR to PRE 1 + 4 + tWR.
+TEST(CheckerStateTest, MobilePartsHaveTheirOwnRelations) {
+  const struct {
+    const char* rule;
+    Command first, then;
+    unsigned clocks;
+  } relations[] = {{"tRTP", kRd, kPre, 4},
+                   {"RD to WR", kRd, kWr, 5 + 4},
+                   {"tWTR", kWr, kRd, 1 + 4 + 4},
+                   {"tWR", kWr, kPre, 1 + 4 + 8},
+                   {"RD to RD", kRd, kRd, 4},
+                   {"WR to WR", kWr, kWr, 4}};
+  DataSheet mobile = sheet();
+  mobile.mobile = true;
+  mobile.banks = 4;
+  mobile.tFAW = 0;
+  for (const auto& r : relations)
+    for (const unsigned early : {0u, 1u})
+      EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {r.first, 0, 1, 130}, {r.then, 0, 1, 130 + r.clocks - early}},
+                        mobile),
+                early ? r.rule : "");
+}
+
 TEST(CheckerStateTest, RowsAreOpenForTrasmaxAtMost) {
   DataSheet s = sheet();
   s.tRASmax = 200;

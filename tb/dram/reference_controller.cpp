@@ -35,6 +35,8 @@ void ReferenceController::configure(const ReferenceConfig& config, Picoseconds a
   if (refreshes_itself(asleep_) && refreshes_itself(config.sleep)) {
     if (asleep_ == Sleep::kClockStop && config.sleep == Sleep::kSelfRefresh)
       clock_runs_from_ = ddr_.edge_after(at) + limits_.clock_restart;
+    if (asleep_ != config.sleep)
+      clock_changes_.emplace_back(config.sleep == Sleep::kClockStop, ddr_.edge_after(at));
     asleep_ = config.sleep;
   } else if (config.sleep != configs_.back().sleep) {
     wake(ddr_.edge_after(at));
@@ -49,17 +51,17 @@ void ReferenceController::configure(const ReferenceConfig& config, Picoseconds a
 
 // ---- addresses and banks
 
-unsigned ReferenceController::bank_of(const ReferenceRequest& r) const {
+unsigned ReferenceController::bank_of(std::uint32_t address) const {
   const ReferenceConfig& c = config();
-  if (c.bank_on_top) return static_cast<unsigned>(r.address / (limits_.size / c.banks));
-  return (r.address >> c.page_log2) % c.banks;
+  if (c.bank_on_top) return static_cast<unsigned>(address / (limits_.size / c.banks));
+  return (address >> c.page_log2) % c.banks;
 }
 
-std::uint32_t ReferenceController::row_of(const ReferenceRequest& r) const {
+std::uint32_t ReferenceController::row_of(std::uint32_t address) const {
   const ReferenceConfig& c = config();
   if (c.bank_on_top)
-    return static_cast<std::uint32_t>(r.address % (limits_.size / c.banks)) >> c.page_log2;
-  return r.address >> (c.page_log2 + log2_of(c.banks));
+    return static_cast<std::uint32_t>(address % (limits_.size / c.banks)) >> c.page_log2;
+  return address >> (c.page_log2 + log2_of(c.banks));
 }
 
 unsigned ReferenceController::columns_of(const ReferenceRequest& r) {
@@ -253,6 +255,8 @@ void ReferenceController::wake(std::uint64_t clock) {
   clock_runs_from_ = 0;
   give(asleep_ == Sleep::kPowerDown ? Kind::kPdx : Kind::kSrx, 0, 0, clock);
   if (asleep_ != Sleep::kPowerDown) {  // it refreshed itself until now
+    if (ddr_.edge(clock) - asleep_at_ > limits_.retention)
+      losses_.push_back(config().refreshed_log2);
     owed_ = since_refresh_ = 0;
     expiry_ = clock + config().refresh_interval;
   }
@@ -284,7 +288,9 @@ void ReferenceController::idle_at(std::uint64_t clock) {
   if (owed_) return give_refresh(clock);
   if (sleep == Sleep::kNever || !may_sleep(clock)) return;
   give(sleep == Sleep::kPowerDown ? Kind::kPde : Kind::kSre, 0, 0, clock);
+  if (sleep == Sleep::kClockStop) clock_changes_.emplace_back(true, clock);
   asleep_ = sleep;
+  asleep_at_ = ddr_.edge(clock);
 }
 
 void ReferenceController::idle_until(Picoseconds at) {
@@ -482,7 +488,22 @@ void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock)
   reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
 }
 
-std::array<std::uint64_t, 4> ReferenceController::residency(Picoseconds at) const {
+/// JESD209: half of the array is without the bank's upper address bit, a quarter without both, and
+/// below that the row's uppermost bits are 0 as well.
+unsigned ReferenceController::losses(std::uint32_t address) const {
+  const unsigned bank_bits = log2_of(config().banks);
+  const unsigned row_bits = log2_of(limits_.size) - bank_bits - config().page_log2;
+  const auto bit = [](std::uint32_t n, unsigned place) { return (n >> place & 1u) != 0; };
+  unsigned n = 0;
+  for (const unsigned kept : losses_)
+    n += (kept >= 1 && bit(bank_of(address), bank_bits - 1)) ||
+         (kept >= 2 && bit(bank_of(address), bank_bits - 2)) ||
+         (kept >= 3 && bit(row_of(address), row_bits - 1)) ||
+         (kept >= 4 && bit(row_of(address), row_bits - 2));
+  return n;
+}
+
+std::array<std::uint64_t, 5> ReferenceController::residency(Picoseconds at) const {
   const std::uint64_t now = ddr_.edge_after(at);
   using Span = std::pair<std::uint64_t, std::uint64_t>;
   std::vector<Span> open;  // rows
@@ -492,13 +513,21 @@ std::array<std::uint64_t, 4> ReferenceController::residency(Picoseconds at) cons
     if (rows >> bank & 1u) open.emplace_back(act[bank], clock);
     rows &= ~(1u << bank);
   };
-  std::array<std::uint64_t, 4> out{};
+  std::array<std::uint64_t, 5> out{};
   const Given* sleep = nullptr;
   const auto wake = [&](std::uint64_t clock) {
     if (!sleep || clock <= sleep->clock) return;
     const std::uint64_t n = clock - sleep->clock;
     if (sleep->kind == Kind::kPde && rows) out[1] += n;
     out[sleep->kind == Kind::kPde ? 2 : 3] += n;
+    // Of this sleep, the spans from a stop of the clock to its start or the end.
+    for (std::size_t i = 0; i < clock_changes_.size(); ++i) {
+      const auto [stands, from] = clock_changes_[i];
+      if (!stands || from < sleep->clock || from >= clock) continue;
+      std::uint64_t to = clock;
+      if (i + 1 < clock_changes_.size()) to = std::min(to, clock_changes_[i + 1].second);
+      out[4] += to - from;
+    }
   };
   for (const Given& g : commands) {
     if (g.kind == Kind::kAct) act[g.bank] = g.clock, rows |= 1u << g.bank;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "model/common/clock.h"
@@ -23,6 +24,7 @@ struct ReferenceConfig {
   unsigned tXP = 3, tXSNR = 34, tXSRD = 200, tCKE = 3;
   enum class Sleep { kNever, kSelfRefresh, kPowerDown, kClockStop } sleep = Sleep::kNever;
   unsigned row_intervals = 16;  ///< refresh intervals that a row may be open
+  unsigned refreshed_log2 = 0;  ///< self-refresh keeps the first 1/2^n of the array, n <= 4
 };
 
 /// What the silicon fixes.
@@ -31,6 +33,7 @@ struct ReferenceLimits {
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
   unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
   unsigned clock_restart = 1;                                   // DDR clocks
+  Picoseconds retention = 64'000'000'000;                       // without refresh
   std::uint64_t size = 128u << 20;
   enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
 };
@@ -93,8 +96,11 @@ class ReferenceController {
   std::vector<Accepted> accepted;  // from the door
   std::uint64_t hits = 0, misses = 0, conflicts = 0;
   std::uint64_t count(Kind kind) const;
-  /// Clocks with a row open, asleep with a row open, in power-down and in self-refresh, up to `at`.
-  std::array<std::uint64_t, 4> residency(Picoseconds at) const;
+  /// Clocks with a row open, asleep with a row open, in power-down, in self-refresh, and of these
+  /// with the memory's clock standing, up to `at`.
+  std::array<std::uint64_t, 5> residency(Picoseconds at) const;
+  /// How often the part has lost what stood at this address.
+  unsigned losses(std::uint32_t address) const;
 
  private:
   struct Queued {
@@ -112,8 +118,10 @@ class ReferenceController {
   enum class Refresh { kMay, kNeed, kMust };
 
   const ReferenceConfig& config() const { return configs_.back(); }
-  unsigned bank_of(const ReferenceRequest& r) const;
-  std::uint32_t row_of(const ReferenceRequest& r) const;
+  unsigned bank_of(const ReferenceRequest& r) const { return bank_of(r.address); }
+  std::uint32_t row_of(const ReferenceRequest& r) const { return row_of(r.address); }
+  unsigned bank_of(std::uint32_t address) const;
+  std::uint32_t row_of(std::uint32_t address) const;
   static unsigned columns_of(const ReferenceRequest& r);
   std::optional<std::uint32_t> open_row(unsigned bank) const;
   bool all_closed() const;
@@ -148,6 +156,9 @@ class ReferenceController {
   std::uint64_t not_before_ = 0;  // the last change of clocks or configuration
   std::uint64_t passed_ = 0;      // transfers served while the oldest request waited
   std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
+  std::vector<std::pair<bool, std::uint64_t>> clock_changes_;  // in self-refresh: stands, from when
+  std::vector<unsigned> losses_;  // refreshed_log2 of each self-refresh that was too long
+  Picoseconds asleep_at_ = 0;
   ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
   bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
   std::uint64_t clock_runs_from_ = 0;  // again, after a stop

@@ -2,8 +2,11 @@
 // arbitrary instants must be the same over random streams of up to ten masters.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include "tb/dram/bench.h"
 #include "tb/dram/reference_controller.h"
@@ -64,6 +67,7 @@ class Production : private mem::DdrClient {
     d.timing.nCKE = c.tCKE;
     d.low_power = static_cast<mem::LowPower>(c.sleep);
     d.row_intervals = c.row_intervals;
+    d.refreshed_log2 = c.refreshed_log2;
     ddr_.configure(d, at);
   }
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at) { ddr_.set_clocks(ddr, scr, at); }
@@ -86,11 +90,14 @@ class Production : private mem::DdrClient {
     return {s.bursts.count(),        s.row_hits.count(),  s.row_misses.count(),
             s.row_conflicts.count(), s.activates.count(), s.refreshes.count()};
   }
-  std::array<std::uint64_t, 4> residency(Picoseconds) const {
+  std::array<std::uint64_t, 5> residency(Picoseconds) const {
     const mem::DdrStats& s = ddr_.stats;
     return {s.row_open_clocks.count(), s.active_power_down_clocks.count(),
-            s.power_down_clocks.count(), s.self_refresh_clocks.count()};
+            s.power_down_clocks.count(), s.self_refresh_clocks.count(),
+            s.clock_stop_clocks.count()};
   }
+  /// A byte that nobody writes lost its value, 0, since this was asked last.
+  bool lost(std::uint32_t address) { return std::exchange(*store_.at(address), 0) != 0; }
   std::uint64_t overdue_rows() const { return ddr_.stats.overdue_rows.count(); }
   std::vector<Event> commands, accepted, reads;
 
@@ -104,6 +111,7 @@ class Production : private mem::DdrClient {
         set.set(std::string("ddr.") + key, std::to_string(value) + unit);
       };
       set.set("ddr.part", l.size == 64u << 20 ? "mt47h32m16" : "mt47h64m16");
+      set.set("ddr.retention", std::to_string(l.retention) + "ps");
       constexpr const char* kOrders[] = {"ti", "fcfs", "frfcfs", "closed_page"};
       set.set("ddr.scheduler", kOrders[static_cast<std::size_t>(l.order)]);
       give("command_fifo", l.command_fifo);
@@ -169,7 +177,11 @@ class Oracle {
             n(Kind::kAct),
             n(Kind::kRef)};
   }
-  std::array<std::uint64_t, 4> residency(Picoseconds at) const { return controller_.residency(at); }
+  std::array<std::uint64_t, 5> residency(Picoseconds at) const { return controller_.residency(at); }
+  bool lost(std::uint32_t address) {
+    const unsigned n = controller_.losses(address);
+    return std::exchange(losses_[address], n) != n;
+  }
   std::vector<Event> commands, accepted, reads;
 
  private:
@@ -186,6 +198,7 @@ class Oracle {
     controller_.reads.clear();
   }
   ReferenceController controller_;
+  std::map<std::uint32_t, unsigned> losses_;  // those told of
   std::size_t seen_ = 0;
   std::array<std::uint64_t, 12> count_{};
 };
@@ -238,13 +251,16 @@ Setup random_setup(Rng& rng) {
 
 std::uint64_t overdue_rows_seen = 0;
 
+/// A defect planted into one side.
+using Plant = std::function<void(Setup&)>;
+
 /// Plays the stream of this seed; everything but the controller's answers comes from the seed.
 template <class Controller>
-std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tRP = 0) {
+std::vector<Event> play(std::uint64_t seed, unsigned requests, const Plant& plant = {}) {
   Rng rng(seed);
   const Setup setup = random_setup(rng);
   Setup used = setup;
-  used.config.tRP += extra_tRP;
+  if (plant) plant(used);
   Controller c(used);
   ReferenceConfig config = used.config;
   const auto below = [&](unsigned n) { return static_cast<unsigned>(rng.below(n)); };
@@ -295,6 +311,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, unsigned extra_tR
       taken.push_back({kSample, s[3], s[4], s[5]});
       const auto t = c.residency(now);
       taken.push_back({kSample, t[0], t[1], t[2] << 32 | t[3]});
+      taken.push_back({kSample, t[4], 0, 0});
       if (reconfigure) {
         config.old_count = choice & 1 ? 3 : 0xFF;
         config.refresh_interval = choice & 6 ? setup.config.refresh_interval : 300 + choice % 1000;
@@ -375,8 +392,88 @@ TEST(SameAsReferencesTest, StreamsReachEveryCommand) {
 
 // The comparison can fail: a reference that is one clock slower in one number is found.
 TEST(SameAsReferencesTest, OneClockMoreIsADifference) {
-  EXPECT_FALSE(play<Production>(3, 400) == play<Oracle>(3, 400, 1));
+  const auto slower = [](auto& s) { ++s.config.tRP; };
+  EXPECT_FALSE(play<Production>(3, 400) == play<Oracle>(3, 400, slower));
   EXPECT_TRUE(play<Production>(3, 400) == play<Oracle>(3, 400));
+}
+
+/// A part that refreshes itself between rare reads, as `refreshed_log2` says, for up to three times
+/// as long as its cells keep their charge; in between it is told to stop or to start its clock.
+template <class Controller>
+std::vector<Event> doze(std::uint64_t seed, const Plant& plant = {}) {
+  using Sleep = ReferenceConfig::Sleep;
+  Rng rng(seed);
+  const auto below = [&](std::uint64_t n) { return rng.below(n); };
+  Setup setup = random_setup(rng);
+  ReferenceConfig& config = setup.config;
+  config.mobile = true;
+  config.banks = 4;
+  config.page_log2 = 10 + static_cast<unsigned>(below(3));
+  config.bank_on_top = below(2);
+  config.sleep = below(2) ? Sleep::kSelfRefresh : Sleep::kClockStop;
+  config.refreshed_log2 = static_cast<unsigned>(seed % 5);
+  setup.limits.size = 64u << 20;
+  setup.limits.retention = 20 * kPsPerUs;
+  if (plant) plant(setup);
+  Controller c(setup);
+  // Where nobody writes: with the addresses at the edges of what is kept.
+  std::vector<std::uint32_t> cells;
+  for (unsigned i = 1; i < 64; ++i)
+    cells.insert(cells.end(), {i << 20, (i << 20) - 1, static_cast<std::uint32_t>(below(64u << 20))});
+  std::vector<Event> seen;
+  Picoseconds now = 5'000;
+  for (unsigned i = 0; i < 24; ++i) {
+    now += below(60) * kPsPerUs + below(kPsPerUs);
+    if (below(3) == 0) {
+      c.catch_up(now);
+      if (config.sleep != Sleep::kPowerDown)
+        config.sleep = config.sleep == Sleep::kClockStop ? Sleep::kSelfRefresh : Sleep::kClockStop;
+      c.configure(config, now);
+    } else {
+      ReferenceRequest r;
+      r.id = i;
+      r.bytes = 16;
+      seen.push_back({kTaken, i, c.submit(r, now), now});
+      while (c.next() != kNever) {
+        now = std::max(now, c.next());
+        c.step();
+      }
+    }
+    c.catch_up(now);
+    const auto t = c.residency(now);
+    seen.push_back({kSample, t[2], t[3], t[4]});
+    for (const std::uint32_t a : cells) seen.push_back({kSample, a, c.lost(a), 0});
+  }
+  seen.insert(seen.end(), c.commands.begin(), c.commands.end());
+  return seen;
+}
+
+TEST(DozingReferenceTest, ClockStopAndLostDataAreTheSame) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto a = doze<Production>(seed), b = doze<Oracle>(seed);
+    ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
+    unsigned lost = 0, stood = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      lost += a[i].what == kSample && a[i].a >= (1u << 20) - 1 && a[i].b == 1;
+      stood += a[i].what == kSample && a[i].c > 100;
+    }
+    EXPECT_EQ(lost > 0, seed % 5 != 0) << "seed " << seed;
+    EXPECT_GT(stood, 0u);
+  }
+}
+
+TEST(DozingReferenceTest, EachPlantedDefectIsADifference) {
+  const std::pair<const char*, Plant> defects[] = {
+      {"more is kept", [](auto& s) { --s.config.refreshed_log2; }},
+      {"less is kept", [](auto& s) { ++s.config.refreshed_log2; }},
+      {"cells hold longer", [](auto& s) { s.limits.retention *= 2; }},
+      {"the other address map", [](auto& s) { s.config.bank_on_top ^= true; }},
+      {"the clock starts later", [](auto& s) { ++s.limits.clock_restart; }},
+      {"reads come sooner", [](auto& s) { s.config.tXSRD -= 20, s.config.tXSNR -= 20; }},
+  };
+  for (const auto& [what, plant] : defects)
+    for (const std::uint64_t seed : {1u, 2u, 3u})
+      EXPECT_FALSE(doze<Production>(seed) == doze<Oracle>(seed, plant)) << what << ", " << seed;
 }
 
 }  // namespace

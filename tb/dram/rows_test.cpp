@@ -119,6 +119,48 @@ TEST(RowTimeTest, NoRowIsOpenForLongerThanProgrammed) {
   }
 }
 
+// A controller that nobody listens to passes over the refreshes of a long idle time: what follows, and
+// all that is counted, is the same.
+TEST(IdleTimeTest, LongTimesOfRefreshesEndTheSame) {
+  const auto run = [](bool listened, std::uint64_t seed) {
+    Rng rng(seed);
+    BenchOptions o;
+    o.config.refresh_interval = 200 + static_cast<unsigned>(rng.below(3000));
+    DdrBench b(o);
+    if (!listened) b.ddr.set_command_hook(nullptr, &b);
+    std::vector<std::uint64_t> seen;
+    std::vector<std::unique_ptr<Request>> all;
+    Picoseconds now = kTck;
+    for (unsigned i = 0; i < 8; ++i) {
+      now += rng.below(2) ? rng.below(kPsPerMs * 10) : rng.below(kPsPerUs);
+      if (rng.below(3) == 0) b.ddr.catch_up(now);
+      now += rng.below(kPsPerUs * 3);
+      for (unsigned k = 0; k < 3; ++k) {
+        all.push_back(std::make_unique<Request>(
+            read(k & 1 ? kA : kB, at(static_cast<std::uint32_t>(rng.below(3)), 1), 64)));
+        while (b.door_taken()) b.step();
+        b.submit_at(*all.back(), now = std::max(now, b.now()));
+      }
+      b.drain();
+      now = std::max(now, b.now());
+      const auto& s = b.ddr.stats;
+      seen.insert(seen.end(), {s.refreshes.count(), s.row_misses.count(), s.row_conflicts.count(),
+                               s.row_open_clocks.count(), s.queued_clocks.count()});
+      for (const MasterWaits& w : b.ddr.waits)
+        seen.insert(seen.end(), w.read.ps.begin(), w.read.ps.end());
+    }
+    for (const auto& r : all) seen.insert(seen.end(), {r->first, r->last});
+    return seen;
+  };
+  for (std::uint64_t seed = 1; seed <= 40; ++seed)
+    ASSERT_EQ(run(true, seed), run(false, seed)) << "seed " << seed;
+  // A whole hour takes no time.
+  DdrBench b;
+  b.ddr.set_command_hook(nullptr, &b);
+  b.ddr.catch_up(3600 * kPsPerSecond);
+  EXPECT_EQ(b.ddr.stats.refreshes.count(), (3600 * 250'000'000ull - 1) / 1895);
+}
+
 BenchOptions sleeping(LowPower mode) {
   BenchOptions o;
   o.config.low_power = mode;

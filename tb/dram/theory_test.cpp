@@ -234,6 +234,29 @@ TEST(FifoTest, RequestAtTheDoorIsNotSeenBeforeItsArrival) {
   EXPECT_EQ(b.clock_of(Cmd::kRd, 0, 1), 40u + 1u + 8u);
 }
 
+// Of n words, 8 are kept for the read that comes: its first beats are in when at most n - 8 others still
+// wait for the lane, which takes the 16 of the two reads before it one an edge.
+TEST(FifoTest, ReadDataFifoHoldsSeventeenWords) {
+  const auto third_read = [](unsigned words) {  // edges after the first word on the lane
+    BenchOptions o = no_refresh();
+    o.scr = Frequency(31'250'000);
+    if (words) o.params.emplace_back("read_fifo", std::to_string(8 * words) + " B");
+    DdrBench b(o);
+    std::vector<Request> all(3);
+    for (unsigned i = 0; i < 3; ++i) {
+      all[i].bytes = 64;
+      all[i].address = i * 64;
+      b.submit(all[i], 9);
+    }
+    b.drain();
+    const std::uint64_t beats = b.clock_of(Cmd::kRd, 0, 8) + o.config.read_latency + 2 + 2;
+    const std::uint64_t first = all[0].first / kTck;
+    return (static_cast<double>(beats) - static_cast<double>(first)) / 8;
+  };
+  EXPECT_EQ(third_read(0), 16 - (17 - 8)) << "the default";
+  for (const unsigned words : {13u, 16u, 17u, 18u}) EXPECT_EQ(third_read(words), 16.0 - (words - 8));
+}
+
 // Two reads share the return lane: one word an edge, the second behind the first.
 TEST(FifoTest, ReturnLaneCarriesOneWordAnEdge) {
   BenchOptions o = no_refresh();

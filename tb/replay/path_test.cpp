@@ -293,6 +293,44 @@ TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
   }
 }
 
+// What the reads of a master waited for is their latency, to the picosecond; what their master and the
+// bus did is in proportion.
+TEST(ReplayPathTest, TheFiguresAddUp) {
+  std::string text = master_lines(3, 4);
+  Rng rng(4);
+  std::array<unsigned, 3> reads{};
+  for (unsigned i = 0; i < 3000; ++i) {
+    const auto m = static_cast<unsigned>(rng.below(3));
+    const bool write = rng.below(3) == 0;
+    reads[m] += !write;
+    text += fmt::format("{} {} {} 0x{:x} {}\n", rng.below(2) * i * 40'000, m, write ? 'W' : 'R',
+                        rng.below(1u << 20) * 64, 4u << rng.below(5));
+  }
+  trace::TextTrace t("t", text);
+  const Played p(t);
+  std::map<std::string, double> value;
+  for (const app::StatRow& row : p.path->stats())
+    value[row.name] = std::visit([](auto v) { return static_cast<double>(v); }, row.value);
+  for (unsigned m = 0; m < 3; ++m) {
+    double waited = 0;
+    for (const auto& [name, v] : value)
+      if (name.starts_with(fmt::format("ddr.m{}.wait.read.", m))) waited += v;
+    EXPECT_NEAR(waited * 1e12, value.at(fmt::format("ddr.m{}.latency.mean", m)) * 1e12 * reads[m], 1);
+    EXPECT_GT(value.at(fmt::format("ddr.m{}.wait.read.m{}", m, (m + 1) % 3)), 0);
+    EXPECT_GT(value.at(fmt::format("ddr.m{}.wait.write.bridge", m)), 0);
+  }
+  EXPECT_NEAR(value.at("ddr.efficiency") * (1 - value.at("ddr.headroom")),
+              value.at("ddr.utilisation"), 1e-12);
+  const double bytes = value.at("ddr.read_bytes") + value.at("ddr.write_bytes");
+  EXPECT_NEAR(value.at("replay.bandwidth") * value.at("replay.time"), bytes, 1e-6);
+  double rows = 0;
+  for (unsigned b = 0; b < 8; ++b)
+    rows += value.at(fmt::format("ddr.bank{}.row_hits", b)) +
+            value.at(fmt::format("ddr.bank{}.row_misses", b)) +
+            value.at(fmt::format("ddr.bank{}.row_conflicts", b));
+  EXPECT_EQ(rows, 3000);
+}
+
 TEST(ReplayPathTest, MarksKeepTheirPlace) {
   const trace::TraceInfo info = board_info();
   Listed l;
@@ -347,6 +385,8 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   };
   EXPECT_EQ(play("0 0 R 0x7FFFFC0 64\n", {}), "");
   EXPECT_THAT(play("0 0 R 0x8000000 4\n", {}), HasSubstr("outside the SDRAM of 128 MiB"));
+  EXPECT_EQ(play("0 0 R 0x0 256\n\n0 0 W 0x7fffffe 4\n", {}),
+            "trace 't': line 5 of a: 2 bytes at 0x08000000: outside the SDRAM of 128 MiB (ddr.part)");
   EXPECT_EQ(play("0 0 R 0x8000000 4\n", {{"ddr.part", "mt47h128m16"}}), "");
   EXPECT_THAT(play("", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
   EXPECT_THAT(play("", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));

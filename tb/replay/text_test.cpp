@@ -90,6 +90,7 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
   EXPECT_THAT(error_of(head + "# master 1 window 1 a\n"), HasSubstr("same label"));
   EXPECT_THAT(error_of(head + "# master 1 window 0 b\n"), HasSubstr("allowed: 1 to 16"));
   EXPECT_THAT(error_of(head + "# master 1 window 1 B/c\n"), HasSubstr("a master is declared as"));
+  EXPECT_EQ(error_of(head + "# master 1 window 1 GPU-0\n1 1 R 0x0 4\n"), "");
 }
 
 TEST(TextTraceTest, NoTextCrashesIt) {

@@ -201,7 +201,8 @@ void DdrController::urgency_changed() {
   const bool urgent =
       forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
   urgency_ = refresh_urgency_after(0);
-  calm_until_ = urgent ? 0 : std::min(next_expiry_, first_overdue());
+  all_in_time_until_ = std::min(next_expiry_, first_overdue());
+  calm_until_ = urgent ? 0 : all_in_time_until_;
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
@@ -270,6 +271,7 @@ void DdrController::issue_refresh(std::uint64_t clock) {
     if (owed_ == 0) {
       if (config_.low_power != LowPower::kOff && fall_asleep(std::min(until, next_expiry_)))
         continue;
+      pass_over_refreshes(until);
       if (next_expiry_ >= until) return;
       from = std::max(command_free_, next_expiry_);
       if (from >= until) return;
@@ -287,6 +289,19 @@ void DdrController::issue_refresh(std::uint64_t clock) {
     count_owed(at);
     issue_refresh(at);
   }
+}
+
+/// Of a long time without requests only the last refreshes are carried out one by one: all those before
+/// come as they fall due, one an interval, and leave nothing but their number.
+void DdrController::pass_over_refreshes(std::uint64_t until) {
+  const std::uint64_t interval = config_.refresh_interval;
+  if (hook_ || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
+  if (until < next_expiry_ || until - next_expiry_ < 2 * kGiven * interval) return;
+  if (!device_.all_closed() || next_expiry_ < std::max(command_free_, device_.earliest_refresh()))
+    return;
+  const std::uint64_t passed = (until - next_expiry_) / interval - kGiven;
+  stats.refreshes += passed;
+  next_expiry_ += passed * interval;
 }
 
 /// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs

@@ -230,6 +230,7 @@ class DdrController {
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
   bool passes_older(const Entry& e) const;
   void idle(std::uint64_t until);
+  void pass_over_refreshes(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
   void sleep_changes(LowPower to, std::uint64_t clock);
   void wake(std::uint64_t clock);
@@ -315,7 +316,8 @@ class DdrController {
 
   std::uint64_t next_expiry_ = 0;     // edge at which the refresh interval runs out next
   Urgency urgency_ = Urgency::kMay;   // before next_expiry_
-  std::uint64_t calm_until_ = 0;      // no refresh is urgent before this edge
+  std::uint64_t all_in_time_until_ = 0;  // no interval ends and no row is due before this edge
+  std::uint64_t calm_until_ = 0;         // and no refresh is urgent
   std::uint64_t idle_calm_ = 0;       // nothing to do before this edge while nothing is queued
   LowPower asleep_ = LowPower::kOff;  // CKE is low
   std::uint64_t queued_since_ = 0, asleep_since_ = 0;  // edges up to which that time is counted

@@ -30,7 +30,7 @@ void DdrController::plan_from(std::uint64_t edge) {
     std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
     if (lane_.room() > edge) wake = std::min(wake, lane_.room());
     choose(edge, ready);
-    if (choice_.at >= calm_until_) [[unlikely]] {
+    if (choice_.at >= all_in_time_until_) [[unlikely]] {
       if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
       if (choice_.at < wake) break;
     } else if (choice_.at < wake ||
@@ -47,7 +47,7 @@ void DdrController::plan_from(std::uint64_t edge) {
 /// True if choice_, made with the slots `ready`, need not be made again when the one in `slot`, the
 /// newest, is seen at `edge`: it changes nothing, or it prepares its own bank first.
 bool DdrController::stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready) {
-  if (!plain_ || lane_.room() > edge || edge >= calm_until_) return false;
+  if (!plain_ || lane_.room() > edge || edge >= all_in_time_until_) return false;
   const std::uint32_t bit = 1u << slot;
   if (in_order_ || !(offered_ & bit)) return true;
   const bool write = writes_ & bit;
@@ -97,7 +97,7 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
     const Urgency refresh = refresh_urgency(edge);
     if (refresh == Urgency::kMust || (refresh == Urgency::kNeed && refresh_goes_first(ready)))
       return choose_refresh(edge);
-    if (choose_overdue_row(edge)) return;
+    if (edge >= all_in_time_until_ && choose_overdue_row(edge)) return;
   }
   // By kind; in each open rows first, then priority, then age (rules 2 and 3).
   const bool room = lane_.room() <= edge;

@@ -20,9 +20,9 @@ std::vector<std::string_view> split(std::string_view line) {
 }
 
 bool is_label(std::string_view word) {
-  return word.size() <= 32 && word[0] >= 'a' && word[0] <= 'z' &&
-         std::all_of(word.begin(), word.end(), [](char c) {
-           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  return word.size() <= 32 && std::all_of(word.begin(), word.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  c == '_' || c == '-';
          });
 }
 
@@ -72,7 +72,7 @@ void TextTrace::read_line(std::string_view line) {
 
 void TextTrace::read_master(const std::vector<std::string_view>& words) {
   if (words.size() != 6 || words[3] != "window" || !is_label(words[5]))
-    bad("a master is declared as '# master ID window W label', the label in lower case");
+    bad("a master is declared as '# master ID window W label', the label of letters, digits, _ and -");
   const std::uint64_t id = number(words[2], "master", 0, 65535);
   const auto window = static_cast<unsigned>(number(words[4], "window", 1, kMaxReads));
   if (std::find(ids_.begin(), ids_.end(), id) != ids_.end()) bad("this master is declared twice");
@@ -91,6 +91,7 @@ void TextTrace::read_master(const std::vector<std::string_view>& words) {
 void TextTrace::read_record(const std::vector<std::string_view>& words) {
   if (words.size() != 5) bad("a record is 't_ps master R|W 0xaddress bytes'");
   Line l;
+  l.number = static_cast<std::uint32_t>(line_);
   l.at = number(words[0], "time in ps", 0, kLatest);
   const std::uint64_t id = number(words[1], "master", 0, 65535);
   const auto found = std::find(ids_.begin(), ids_.end(), id);
@@ -106,6 +107,11 @@ void TextTrace::read_record(const std::vector<std::string_view>& words) {
   if (std::uint64_t{l.address} + l.bytes > std::uint64_t{1} << 32)
     bad("the burst ends beyond 4 GiB");
   streams_[static_cast<std::size_t>(found - ids_.begin())].lines.push_back(l);
+}
+
+std::string TextTrace::place(unsigned stream) const {
+  const Stream& s = streams_[stream];
+  return "line " + std::to_string(s.lines[s.next - (s.done == 0)].number);
 }
 
 /// A burst goes in pieces, each inside 64 aligned bytes.

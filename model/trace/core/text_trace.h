@@ -25,10 +25,12 @@ class TextTrace : public RecordSource {
   static bool recognises(std::string_view text) { return text.starts_with("# dramtrace"); }
   const TraceInfo& info() const { return info_; }
   bool next(unsigned stream, Record& record) override;
+  std::string place(unsigned stream) const override;
 
  private:
   struct Line {
     Picoseconds at;
+    std::uint32_t number;  // in the file
     std::uint32_t address;
     std::uint16_t bytes;
     bool write;

@@ -88,6 +88,8 @@ class RecordSource {
   virtual ~RecordSource() = default;
   /// False at the end of the stream. @throws UserError
   virtual bool next(unsigned stream, Record& record) = 0;
+  /// Where the file has the record that next() gave last, for a message; empty: its number will do.
+  virtual std::string place(unsigned) const { return {}; }
 };
 
 }  // namespace fovea::trace
