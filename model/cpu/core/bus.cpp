@@ -22,6 +22,7 @@ void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std:
 void Core::stall_on(const BusAccess& a, Picoseconds outcome, std::uint64_t bus,
                     std::uint64_t cycle, Cause cause) {
   if (cycle <= cycle_) return;
+  bus_waited_ = true;
   const std::uint8_t region = regions_.find(a.address);
   const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
   counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);

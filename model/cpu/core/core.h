@@ -15,6 +15,7 @@
 #include "model/cpu/core/instruction.h"
 #include "model/cpu/core/params.h"
 #include "model/cpu/core/stats.h"
+#include "model/cpu/core/tcm_port.h"
 #include "model/cpu/core/tlb.h"
 #include "model/cpu/core/write_buffer.h"
 
@@ -79,6 +80,12 @@ class Core : public Background {
   std::vector<AccessRecord> last_accesses() const;
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
+  /// The DMA port of internal RAM, for the kernel's side (model/cpu/tcm_dma.h): a burst arrives at
+  /// `at`; its data move at tcm_burst_over(), which the core may move back until then.
+  void tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at);
+  Picoseconds tcm_burst_over() const { return time(tcm_port_.end() - 1); }
+  void tcm_burst_ends(bool write, std::uint8_t* data);
+  const TcmPort& tcm_port() const { return tcm_port_; }
   /// Reads internal RAM, the D-cache and the buffers without any effect; false if the address is in
   /// none of them (memory has it then).
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
@@ -198,6 +205,11 @@ class Core : public Background {
   static Place look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
                            bool thumb);
 
+  // tcm.cpp
+  void tcm_access(std::uint32_t mva, TcmPort::Side side);
+  /// Nobody pays for an access or has to look at it.
+  bool tcm_quick() const { return tcm_wait_ == 0 && !tcm_port_.busy(); }
+
   // memory.cpp
   const Instruction* fetch();
   const Instruction* fetch_slow();
@@ -289,6 +301,8 @@ class Core : public Background {
 
   BusPort& port_;
   std::span<std::uint8_t> tcm_;
+  TcmPort tcm_port_;
+  bool bus_waited_ = false;  // since the last access to internal RAM that looked
   Clock clock_;
   unsigned ratio_, fill_latency_, walk_cycles_, cache_op_cycles_, test_clean_cycles_,
       invalidate_all_cycles_, tcm_wait_;

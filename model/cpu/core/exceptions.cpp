@@ -6,6 +6,10 @@ namespace fovea::cpu {
 Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
     : port_(port),
       tcm_(tcm),
+      tcm_port_({static_cast<unsigned>(params.tcm_dma_word_clocks()),
+                 static_cast<unsigned>(params.tcm_dma_latency()),
+                 static_cast<unsigned>(params.tcm_banks()), params.tcm_first.is("core")},
+                tcm.size()),
       ratio_(static_cast<unsigned>(params.ahb_ratio())),
       fill_latency_(static_cast<unsigned>(params.fill_latency())),
       walk_cycles_(static_cast<unsigned>(params.walk_cycles())),

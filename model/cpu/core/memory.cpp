@@ -267,10 +267,10 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   value = 0;
   if (in_tcm(a)) {
     if (!translate(a, false, user, false)) return Result::kAbort;
+    tcm_access(a, TcmPort::Side::kData);
     std::memcpy(&value, tcm(a), bytes);
     ++reads_of(a);
-    if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
+    if (tcm_quick()) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
     return Result::kOk;
   }
   const Translation* t = translate(a, false, user, false);
@@ -304,11 +304,11 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   record(pc_, va, bytes | kWritten);
   if (in_tcm(a)) {
     if (!translate(a, true, user, false)) return Result::kAbort;
+    tcm_access(a, TcmPort::Side::kData);
     std::memcpy(tcm(a), &value, bytes);
     tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
     ++writes_of(a);
-    if (!tcm_wait_) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
+    if (tcm_quick()) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
     return Result::kOk;
   }
   const Translation* t = translate(a, true, user, false);
@@ -427,6 +427,7 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
         continue;
       }
     }
+    if (run_bytes) bus_waited_ = true;
     flush();
     if (store(va + 4 * k, 4, words[k], user) != Result::kOk) {
       external_abort_at(va + 4 * (count - 1));
@@ -502,10 +503,10 @@ const Instruction* Core::fetch_slow() {
   line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
     counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, control_ & 1u));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, mva, kCore);
+    tcm_access(mva, TcmPort::Side::kFetch);
     DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
     const Instruction* i = decode_into(d, tcm(mva & ~31u));
-    if (tcm_wait_) {  // every fetch pays
+    if (!tcm_quick()) {  // every fetch looks
       line_va_ = 1;
       d.valid = 2u | (d.valid & 1u);
     }

@@ -109,7 +109,8 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(uncached, "stall.uncached", "cycles", stall[4],
                  "waiting for uncached reads and unbuffered writes");
   FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "waiting for page walks");
-  FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6], "wait states of internal RAM");
+  FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
+                 "wait states of internal RAM, and waiting for DMA there");
   FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "cache maintenance");
   FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
   FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge");
@@ -158,7 +159,7 @@ struct CoreStats : StatGroup {
   CoreStats() : StatGroup("cpu") {
     for (std::size_t k = 0; k < kCauses; ++k) {
       const auto cause = static_cast<Cause>(k);
-      if (!waits_for_bus(cause)) continue;
+      if (!waits_for_others(cause)) continue;
       for (std::size_t c = 0; c < kStallCulprits; ++c) {
         const std::string culprit(stall_culprit_name(c));
         by_culprit_.push_back(std::make_unique<Formula>(
