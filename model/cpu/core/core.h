@@ -114,7 +114,7 @@ class Core : public Background {
   void step_attention();
   void execute_alone(const Instruction& i);
   void enter_exception();
-  void leave_old_process();
+  void leave_old_fetch();
   [[gnu::noinline]] void execute_one(const Instruction& i);
   bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
@@ -186,6 +186,7 @@ class Core : public Background {
 
   // cp15.cpp
   void coprocessor_move(const Instruction& i);
+  void fetch_differently();
   bool cp15_read(std::uint32_t opc, std::uint32_t& value);
   bool cp15_write(std::uint32_t opc, std::uint32_t value);
   bool cache_operation(unsigned crm, unsigned op2, std::uint32_t value);
@@ -453,9 +454,11 @@ class Core : public Background {
   std::uint32_t ttbr_ = 0, dacr_ = 0, dfsr_ = 0, ifsr_ = 0, far_ = 0;
   std::uint32_t fcse_pid_ = 0, context_id_ = 0;
   std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on (ARM DDI 0198D 2-34)
-  std::uint32_t fetch_process_ = 0;    // the same for fetches: an old one behind a write of the PID
-  std::uint32_t old_process_pc_ = 0;   // where the flow must be to go on with it
-  unsigned old_process_left_ = 0;      // instructions fetched with it: so many to come, and one
+  // The same and the control register for fetches: old ones behind a change.
+  std::uint32_t fetch_process_ = 0, fetch_control_ = 0x0005'0078;
+  std::uint32_t old_fetch_pc_ = 0;     // where the flow must be to go on with them
+  unsigned old_fetch_left_ = 0;        // instructions fetched with them: so many to come, and one
+  static constexpr std::uint32_t kFetchBits = 1u << 12 | 1u;  // of the control register: I and M
   std::uint32_t dlock_ = 0, ilock_ = 0, tlb_lock_ = 0;
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;

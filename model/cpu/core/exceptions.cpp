@@ -37,9 +37,10 @@ void Core::set_clock(Frequency f, Picoseconds at) {
 void Core::reset(std::uint32_t entry, Picoseconds now) {
   cpsr_ = 0xD3u | ((entry & 1u) << 5);
   pc_ = next_pc_ = entry & ~1u;
-  control_ = 0x0005'0078;
+  control_ = fetch_control_ = 0x0005'0078;
+  counts_.translate(false);
   fcse_pid_ = process_ = fetch_process_ = 0;
-  old_process_left_ = 0;
+  old_fetch_left_ = 0;
   stop_requested_ = false;
   // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
   const bool tcm = !tcm_.empty();

@@ -495,14 +495,17 @@ const Instruction* Core::fetch_slow() {
   };
   // Internal RAM is chosen by the MVA, and the MMU checks the access all the same (ARM DDI 0198D
   // 2-34, 3-3); where its page points to and its C and B bits do not matter there.
-  const Translation* t = translate(mva, false, false, true);
+  const bool mmu = fetch_control_ & 1u;
+  const Translation* t = !mmu              ? &flat_
+                         : control_ & 1u ? translate(mva, false, false, true)
+                                         : translate_slow(mva, false, false, true);
   if (!t) {
     take(Exception::kPrefetchAbort, pc_ + 4);
     return nullptr;
   }
   line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
-    counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, control_ & 1u));
+    counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, mmu));
     tcm_access(mva, TcmPort::Side::kFetch);
     DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
     const Instruction* i = decode_into(d, tcm(mva & ~31u));
@@ -514,9 +517,9 @@ const Instruction* Core::fetch_slow() {
   }
   const std::uint32_t pa = t->physical(mva);
   // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
-  const bool cached = (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u));
+  const bool cached = (fetch_control_ >> 12 & 1u) && (t->cacheable || !mmu);
   counts_.fetch_from(
-      fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, control_ & 1u));
+      fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, mmu));
   if (cached) {
     if (cycle_ < ifill_.last && ifill_.line != (mva & ~31u))
       stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
