@@ -204,5 +204,22 @@ TEST(TcmPortTest, ANeighbourOnTheBusDoesNotMatter) {
   EXPECT_EQ(shared.core.counts().stall, alone.core.counts().stall);
 }
 
+/// The core against itself: loads and stores in the bank of the code, each word of several.
+TEST(TcmPortTest, FetchAndDataMayMeet) {
+  const auto clocks = [](const char* lost, const char* address, std::uint32_t base = 0) {
+    Shared m(Machine::Settings{{"cpu.tcm.own_conflict", lost}});
+    m.execute(std::string("ldr r2, =") + address +
+                  "\n svc #1\n ldr r0, [r2]\n strh r5, [r2]\n ldmia r2, {r0, r1, r3}\n svc #1",
+              base);
+    EXPECT_EQ(m.core.counts().stalls.by(Cause::kTcm, kCore), m.stall(Cause::kTcm));
+    return m.between();
+  };
+  const std::uint64_t usual = 1 + 1 + 3;
+  EXPECT_EQ(clocks("0cycles", "0x12000"), usual);
+  EXPECT_EQ(clocks("1cycles", "0x12000"), usual + 1 + 1 + 3);
+  EXPECT_EQ(clocks("1cycles", "0x16000"), usual) << "the other bank";
+  EXPECT_EQ(clocks("1cycles", "0x16000", 0x4000), usual + 1 + 1 + 3) << "code there as well";
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test

@@ -209,7 +209,12 @@ class Core : public Background {
   // tcm.cpp
   void tcm_access(std::uint32_t mva, TcmPort::Side side);
   /// Nobody pays for an access or has to look at it.
-  bool tcm_quick() const { return tcm_wait_ == 0 && !tcm_port_.busy(); }
+  bool tcm_quick() const {
+    return (tcm_wait_ | tcm_own_conflict_) == 0 && !tcm_port_.busy();
+  }
+  std::uint32_t tcm_offset(std::uint32_t mva) const {
+    return mva & static_cast<std::uint32_t>(tcm_.size() - 1);
+  }
 
   // memory.cpp
   const Instruction* fetch();
@@ -306,7 +311,7 @@ class Core : public Background {
   bool bus_waited_ = false;  // since the last access to internal RAM that looked
   Clock clock_;
   unsigned ratio_, fill_latency_, walk_cycles_, cache_op_cycles_, test_clean_cycles_,
-      invalidate_all_cycles_, tcm_wait_;
+      invalidate_all_cycles_, tcm_wait_, tcm_own_conflict_;
   bool shifted_cycle_;
 
   // Registers.

@@ -17,6 +17,7 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
       test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
       invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
       tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
+      tcm_own_conflict_(static_cast<unsigned>(params.tcm_own_conflict())),
       shifted_cycle_(params.shifted_address_cycle()),
       decoded_(params.icache.size() / Cache::kLineBytes),
       tcm_decoded_(tcm.size() / Cache::kLineBytes),

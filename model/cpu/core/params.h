@@ -47,6 +47,10 @@ struct CpuParams : ParamGroup {
   IntParam tcm_banks{*this, "tcm.banks", U::kCount, 2, 1, 2,
                      "banks of internal RAM; core and DMA wait for each other only in the same one",
                      Origin::kAssumed, "no public figure; two of 16 KB"};
+  IntParam tcm_own_conflict{*this, "tcm.own_conflict", U::kCycles, 0, 0, 2,
+                            "core clocks lost by a load or store in the bank that the core fetches "
+                            "from",
+                            Origin::kAssumed, "no figure for the chip; 1 on the ARM946E-S's ITCM"};
   EnumParam tcm_first{*this, "tcm.first", "core", {"core", "dma"},
                       "who goes first if both want a bank in the same clock", Origin::kAssumed,
                       "no public figure"};

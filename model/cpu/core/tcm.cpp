@@ -36,12 +36,14 @@ void Core::tcm_access(std::uint32_t mva, TcmPort::Side side) {
     bus_waited_ = false;
     port_.sleep_until(time(cycle_));
   }
+  if (tcm_own_conflict_ && side == TcmPort::Side::kData && in_tcm(fetched_at(pc_)) &&
+      tcm_port_.same_bank(tcm_offset(mva), tcm_offset(fetched_at(pc_))))
+    stall_to(cycle_ + tcm_own_conflict_, Cause::kTcm, mva, kCore);
   while (tcm_port_.busy()) [[unlikely]] {
     const std::uint64_t bursts = tcm_port_.bursts();
     const Master master = tcm_port_.burst().master;
     const std::uint64_t got =
-        tcm_port_.core_access(mva & static_cast<std::uint32_t>(tcm_.size() - 1), cycle_,
-                              1 + tcm_wait_, side);
+        tcm_port_.core_access(tcm_offset(mva), cycle_, 1 + tcm_wait_, side);
     if (got == cycle_) break;
     stall_to(got, Cause::kTcm, mva, index(culprit(master)));
     port_.sleep_until(time(cycle_));

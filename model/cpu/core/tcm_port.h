@@ -37,6 +37,9 @@ class TcmPort {
     next_ = clock + rules_.latency;
     ++bursts_;
   }
+  bool same_bank(std::uint32_t a, std::uint32_t b) const {
+    return a / bank_bytes_ == b / bank_bytes_;
+  }
   void finish() { active_ = false; }
   bool busy() const { return active_; }
   const Burst& burst() const { return burst_; }
@@ -48,7 +51,7 @@ class TcmPort {
   /// of their clocks.
   /// @return the clock at which it gets it
   std::uint64_t core_access(std::uint32_t offset, std::uint64_t clock, unsigned hold, Side side) {
-    if (!active_ || left_ == 0 || offset / bank_bytes_ != burst_.offset / bank_bytes_) return clock;
+    if (!active_ || left_ == 0 || !same_bank(offset, burst_.offset)) return clock;
     const unsigned k = rules_.word_clocks;
     // Words that begin before the core's, or in the same clock if the DMA goes first.
     const std::uint64_t limit = clock + (rules_.core_first ? 0 : 1);
