@@ -6,7 +6,7 @@ namespace fovea::bus {
 namespace {
 
 constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
-constexpr std::uint32_t kSdram = 0x8000'0000u;
+constexpr std::uint32_t kSdram = 0x8000'0000u, kInternalRam = 0x1'0000u;
 
 /// Words of LoadParams::port: load, the transfer controllers, the engine.
 Master port_of(std::size_t word, bool write) {
@@ -51,7 +51,8 @@ void LoadGenerator::fill() {
     state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
     const std::uint64_t slot = params_.pattern.is("random") ? (state_ >> 33) % slots : n % slots;
     const auto address =
-        static_cast<std::uint32_t>(kSdram + params_.base() + slot * params_.bytes());
+        static_cast<std::uint32_t>((params_.memory.is("sdram") ? kSdram : kInternalRam) +
+                                   params_.base() + slot * params_.bytes());
     const auto bytes = static_cast<unsigned>(params_.bytes());
     if (params_.kind.is("write") || (params_.kind.is("mixed") && n % 2 == 1)) {
       writes().write(address, {data_.data(), bytes});

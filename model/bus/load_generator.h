@@ -35,8 +35,10 @@ struct LoadParams : ParamGroup {
                  Origin::kChoice, ""};
   IntParam start{*this, "start", U::kTime, 0, 0, 3600 * kPsPerSecond, "when the load begins",
                  Origin::kChoice, ""};
+  EnumParam memory{*this, "memory", "sdram", {"sdram", "internal_ram"},
+                   "where its region lies", Origin::kChoice, ""};
   IntParam base{*this, "base", U::kBytes, 32u << 20, 0, 255u << 20,
-                "offset of its region in the SDRAM", Origin::kChoice, ""};
+                "offset of its region in that memory", Origin::kChoice, ""};
   IntParam size{*this, "size", U::kBytes, 8u << 20, 4096, 128u << 20, "size of its region",
                 Origin::kChoice, ""};
   explicit LoadParams(std::string prefix) : ParamGroup(std::move(prefix)) {}

@@ -24,6 +24,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
   }
   ddr_socket.bind(slave_ports_[static_cast<std::size_t>(Slave::kDdr)]);
   config_socket.bind(slave_ports_[static_cast<std::size_t>(Slave::kConfig)]);
+  ram_socket.bind(slave_ports_[static_cast<std::size_t>(Slave::kInternalRam)]);
   path.bind(*this);
   SC_METHOD(inputs_changed);
   sensitive << clk;
@@ -119,10 +120,18 @@ void Scr::replanned() {
   if (!held_) arm();
 }
 
+inline Slave Scr::slave_of(const MemRequest& r) const {
+  if (r.address >= map_.ddr_base) return Slave::kDdr;
+  const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
+  return !core && r.address - map_.ram_base < map_.ram_size ? Slave::kInternalRam : Slave::kConfig;
+}
+
 void Scr::request(MemRequest& r) {
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
+  const Slave slave = slave_of(r);
+  if (slave == Slave::kInternalRam) r.passive = false;  // the core sees what it does
   undecided_ += !r.passive;
-  crossbar_.submit(r, r.address >= map_.ddr_base ? Slave::kDdr : Slave::kConfig);
+  crossbar_.submit(r, slave);
   if (!held_) arm();
 }
 
@@ -175,6 +184,9 @@ Taken Scr::forward(MemRequest& r, Picoseconds arrival) {
     r.address -= map_.ddr_base;  // a slave sees offsets
     status = ddr_socket->nb_transport_fw(r, phase, delay);
     r.address += map_.ddr_base;
+  } else if (r.slave == static_cast<std::uint8_t>(Slave::kInternalRam)) {
+    r.address -= map_.ram_base;
+    status = ram_socket->nb_transport_fw(r, phase, delay);
   } else {
     status = config_socket->nb_transport_fw(r, phase, delay);
   }
@@ -190,7 +202,8 @@ tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
     if (!held_) arm();
     return tlm::TLM_ACCEPTED;
   }
-  if (slave == Slave::kConfig) {
+  if (slave != Slave::kDdr) {
+    if (slave == Slave::kInternalRam) r.address += map_.ram_base;
     const Picoseconds t = now_() + delay.value();
     deciding_ = t;
     crossbar_.slave_done(r, t, t, r.error);

@@ -19,6 +19,8 @@ namespace fovea::bus {
 struct AddressMap {
   std::uint32_t ddr_base = 0x8000'0000;
   std::uint64_t ddr_size = 128ull << 20;
+  /// Internal RAM for all but the core's own ports, which have another way there.
+  std::uint32_t ram_base = 0x1'0000, ram_size = 0;
 };
 
 class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
@@ -29,6 +31,9 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
   PerMaster<TargetSocket> target;            ///< indexed by Master
   MemInitiatorSocket<64> ddr_socket{"ddr_socket"};
   MemInitiatorSocket<32> config_socket{"config_socket"};
+  /// Unbound where AddressMap has no internal RAM.
+  tlm::tlm_initiator_socket<32, MemProtocol, 1, sc_core::SC_ZERO_OR_MORE_BOUND> ram_socket{
+      "ram_socket"};
   sc_core::sc_port<PassiveIf> ddr_lookahead{"ddr_lookahead"};
   sc_core::sc_export<MemoryPathIf> path{"path"};
   ClockIn clk{"clk"};
@@ -92,6 +97,7 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
   template <bool kWrite>
   Alone play_alone(MemRequest& request, Picoseconds limit);
   void request(MemRequest& r);
+  Slave slave_of(const MemRequest& r) const;
   void count_outcome(const MemRequest& r, Picoseconds now);
   tlm::tlm_sync_enum response(Slave s, MemRequest& r, MemPhase phase, sc_core::sc_time& delay);
   unsigned debug(MemRequest& r);

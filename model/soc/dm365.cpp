@@ -32,9 +32,10 @@ const std::vector<ConfigBus::BlockSpec> kRegisterMap = {
     {"venc", 0x01C7'1E00, 0x200, kFast},
 };
 
-bus::AddressMap address_map(const mem::DdrParams& ddr) {
+bus::AddressMap address_map(const mem::DdrParams& ddr, std::size_t internal_bytes) {
   bus::AddressMap map;
   map.ddr_size = ddr.size_bytes();
+  map.ram_size = static_cast<std::uint32_t>(internal_bytes);
   return map;
 }
 
@@ -69,7 +70,8 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
              bool strict)
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
-      scr("scr", params.crossbar, address_map(params.ddr), strict),
+      tcm_dma("tcm_dma", arm.core(), quiet),
+      scr("scr", params.crossbar, address_map(params.ddr, internal_ram.size()), strict),
       config("config", params.config_bus, quiet, kRegisterMap),
       ddr("ddr", params.ddr),
       edma("edma", params.edma),
@@ -89,7 +91,8 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
     if (params.loads[i].active())
       loads.push_back(std::make_unique<bus::LoadGenerator>(
           i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
-  arm.core().set_regions(regions(address_map(params.ddr), internal_ram.size()));
+  arm.core().set_regions(
+      regions(address_map(params.ddr, internal_ram.size()), internal_ram.size()));
   wire_clocks();
   wire_memory();
   wire_registers();
@@ -132,6 +135,7 @@ void Dm365::wire_clocks() {
   clocks.aux_clk(aux_clk_);
   clocks.uart1_clk(uart1_clk_);
   arm.clk(arm_clk_);
+  tcm_dma.clk(arm_clk_);
   tap.core_clk(arm_clk_);
   tap.scr_clk(edma_clk_);
   tap.ddr_clk(ddr_clk_);
@@ -175,6 +179,7 @@ void Dm365::wire_memory() {
     waits.push_back(std::make_unique<bus::WaitStats>(
         m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
   scr.ddr_socket.bind(ddr.socket);
+  scr.ram_socket.bind(tcm_dma.socket);
   scr.ddr_lookahead.bind(ddr.lookahead);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(Master::kVpfe)]);

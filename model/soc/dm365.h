@@ -11,6 +11,7 @@
 #include "model/bus/wait_stats.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
+#include "model/cpu/tcm_dma.h"
 #include "model/dma/edma_cc.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
@@ -60,6 +61,7 @@ class Dm365 : public sc_core::sc_module {
 
   QuietPhase quiet{"quiet"};
   cpu::Arm926 arm;
+  cpu::TcmDma tcm_dma;
   bus::Scr scr;
   bus::ConfigBus config;
   mem::DdrModule ddr;

@@ -125,6 +125,7 @@ GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* l
     for (auto& s : chip.scr.latency) collect(*s, rows);
     collect(chip.ddr.controller().stats, rows);
     collect(chip.config.stats, rows);
+    collect(chip.tcm_dma.stats, rows);
     collect(chip.isif.stats, rows);
     collect(board.sink.stats, rows);
     return rows;

@@ -66,6 +66,7 @@ void BoardSimulation::open_window() {
   for (auto& s : soc.waits) s->reset();
   soc.ddr.controller().stats.reset();
   soc.config.stats.reset();
+  soc.tcm_dma.stats.reset();
   soc.isif.stats.reset();
   board_->sink.stats.reset();
   soc.arm.core().mark_window(kernel_time());
@@ -88,6 +89,7 @@ void BoardSimulation::close_window() {
   for (auto& s : soc.waits) collect(*s, stats_);
   collect(soc.ddr.controller().stats, stats_);
   collect(soc.config.stats, stats_);
+  collect(soc.tcm_dma.stats, stats_);
   collect(soc.isif.stats, stats_);
   collect(board_->sink.stats, stats_);
   // The SDRAM's data bus: clocks with data over clocks of the window.

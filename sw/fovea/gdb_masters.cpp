@@ -126,7 +126,11 @@ std::string GdbMasters::place(const Request& r, const bus::Crossbar::View& bus,
   for (const auto& item : bus.items)
     if (item.request == r.request) return in_crossbar(item, *r.request, bus, now);
   if (!r.to_sdram)
-    return fmt::format("on the configuration bus; taken there at {} ns", ns_text(r.request->taken));
+    return fmt::format("{}; taken there at {} ns",
+                       r.request->slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam)
+                           ? "at internal RAM"
+                           : "on the configuration bus",
+                       ns_text(r.request->taken));
   for (std::size_t i = 0; i < ddr.items.size(); ++i)
     if (ddr.items[i].cookie == r.request && (!r.write || ddr.items[i].door))
       return in_controller(ddr, i, now);
@@ -137,7 +141,9 @@ std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const
                                     const bus::Crossbar::View& bus, Picoseconds now) const {
   const auto& slave = bus.slaves[r.slave];
   const std::string_view what =
-      r.slave == static_cast<std::uint8_t>(bus::Slave::kDdr) ? "the SDRAM" : "the registers";
+      r.slave == static_cast<std::uint8_t>(bus::Slave::kDdr)           ? "the SDRAM"
+      : r.slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam) ? "internal RAM"
+                                                                       : "the registers";
   if (item.crossed == kNever) return "on its port; the crossbar's clock stands";
   if (!item.head) return "on its port, behind the same master's earlier request";
   if (item.crossed > now) return "on its bridge to the crossbar, " + until(item.crossed);

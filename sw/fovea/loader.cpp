@@ -50,9 +50,12 @@ void check_loads(const board::BoardParams& params) {
     if (!load.active()) continue;
     require(std::has_single_bit(load.bytes()), load.bytes.key(), load.bytes.text(),
             "powers of two from 4 B");
-    require(load.base() % 64 == 0 && load.base() + load.size() <= params.soc.ddr.size_bytes(),
+    const bool sdram = load.memory.is("sdram");
+    require(load.base() % 64 == 0 &&
+                load.base() + load.size() <= (sdram ? params.soc.ddr.size_bytes() : 32u * 1024),
             load.base.key(), load.base.text(),
-            "multiples of 64 B with base + size of the load inside the SDRAM");
+            std::string("multiples of 64 B with base + size of the load inside the ") +
+                (sdram ? "SDRAM" : "internal RAM of 32 KiB"));
     require(!load.copies() || load.size() % 128 == 0, load.size.key(), load.size.text(),
             "multiples of 128 B for a copy");
     require(load.port.is("load") || !load.priority.user_set(), load.priority.key(),

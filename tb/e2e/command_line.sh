@@ -76,6 +76,8 @@ expect load_priority 2 "load.1.priority" 'QUEPRI' -- run "$out/small.yaml" -s lo
   -s load.1.port=edma_tc2 -s load.1.priority=0
 expect load_port 2 "load.2.port" 'no other load' -- run "$out/small.yaml" -s load.1.outstanding=1 \
   -s load.1.port=edma_tc2 -s load.2.outstanding=1 -s load.2.port=edma_tc2
+expect load_ram 2 "load.base" 'internal RAM of 32 KiB' -- run "$out/small.yaml" \
+  -s load.outstanding=1 -s load.memory=internal_ram
 expect load_size 2 "load.size" '128' -- run "$out/small.yaml" -s load.outstanding=1 -s load.kind=copy \
   -s load.size=8256B
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Runs an experiment in strict and in default synchronisation and compares what they leave, byte by
-# byte. Usage: strict_identity.sh FOVEA EXPERIMENT OUT
+# byte. Usage: strict_identity.sh FOVEA EXPERIMENT OUT [-s KEY=VALUE ...]
 set -euo pipefail
 fovea=$1 experiment=$2 out=$3
+shift 3
 mkdir -p "$out"
-"$fovea" run "$experiment" -s run.frames=5 -o "$out/default" >/dev/null 2>&1
-"$fovea" run "$experiment" -s run.frames=5 --sync=strict -o "$out/strict" >/dev/null 2>&1
+"$fovea" run "$experiment" -s run.frames=5 "$@" -o "$out/default" >/dev/null 2>&1
+"$fovea" run "$experiment" -s run.frames=5 "$@" --sync=strict -o "$out/strict" >/dev/null 2>&1
 for f in stats.json frames.csv timeline.csv stalls.csv uart.log; do
   cmp "$out/default/$f" "$out/strict/$f"
 done

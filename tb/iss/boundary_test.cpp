@@ -293,5 +293,95 @@ TEST(EntryTest, SecondInstructionOfAnUncachedHandlerIsThereAlready) {
   EXPECT_EQ(fetched, (std::vector<std::uint32_t>{0x10, 0x20}));
 }
 
+/// Each exception's handler is fetched in one burst, too; then the next piece of four words.
+TEST(EntryTest, HandlersOfAllExceptionsAreFetchedOnce) {
+  struct Kind {
+    const char* cause;
+    std::uint32_t vector;
+  };
+  for (const auto& [cause, vector] : {Kind{"svc #16", 0x08}, Kind{".word 0xe7f000f0", 0x04},
+                                      Kind{"ldr r0, [r9]", 0x10}}) {
+    Machine m;
+    m.section(0, kPa, 0, 0);
+    m.section(0x0700'0000, 0, 0, 0, 0);  // nobody may
+    m.load(assemble(".space " + std::to_string(vector) +
+                        "\n add r10, r10, #1\n add r10, r10, #1\n svc #2\n",
+                    kPa));
+    m.execute(std::string(kCachesOn) +
+                  "mov r0, #0\n mcr p15, 0, r0, c9, c1, 1\n mov r10, #0\n ldr r9, =0x07000000\n"
+                  "mvn r0, #2\n mcr p15, 0, r0, c3, c0, 0\n" + cause,
+              0x0040'0000);
+    EXPECT_EQ(m.core.reg(10), 2u) << cause;
+    std::vector<std::uint32_t> fetched;
+    for (const BusRecord& r : m.port.log)
+      if (r.port == BusAccess::Port::kInstruction && r.kind == BusAccess::Kind::kIncr4 &&
+          r.address >= kPa && r.address < kPa + 0x100)
+        fetched.push_back(r.address - kPa);
+    const std::uint32_t first = vector & ~15u;
+    EXPECT_EQ(fetched, vector % 16 == 8 ? (std::vector<std::uint32_t>{first, first + 16})
+                                        : (std::vector<std::uint32_t>{first}))
+        << cause;
+  }
+}
+
+/// Code at one address, flat and mapped: what turns the MMU or the I-cache on or off has two
+/// instructions behind it that were fetched before.
+class ControlTest : public testing::TestWithParam<std::uint32_t> {
+ protected:
+  Machine m;
+  static constexpr std::uint32_t kFlat = kMemory + 0x0030'0000, kMapped = kMemory + 0x0040'0000;
+  /// @param text the code, with %d for 1 (flat) and 2 (mapped); r4 turns the MMU on, r5 off
+  void run(const std::string& text) {
+    m.section(kFlat, kMapped, GetParam() & 1u, 0);
+    for (unsigned k = 0; k < 2; ++k) {
+      std::string copy = text;
+      for (std::size_t at; (at = copy.find("%d")) != std::string::npos;)
+        copy.replace(at, 2, std::to_string(k + 1));
+      m.load(assemble(copy, k ? kMapped : kFlat));
+    }
+    const std::uint32_t cache = GetParam() & 2u ? 0x1000u : 0u;
+    m.execute("ldr r0, =0x01000000\n mcr p15, 0, r0, c2, c0, 0\n mvn r0, #0\n"
+              "mcr p15, 0, r0, c3, c0, 0\n ldr r4, =" + std::to_string(0x50079u | cache) +
+              "\n bic r5, r4, #1\n mcr p15, 0, r5, c1, c0, 0\n ldr r0, =" + std::to_string(kFlat) +
+              "\n blx r0\n");
+  }
+};
+
+TEST_P(ControlTest, TwoInstructionsBehindTheSwitchAreOfBefore) {
+  // The I-cache is virtual: what it holds of one world it would give in the other.
+  run("mcr p15, 0, r4, c1, c0, 0\n mov r1, #%d\n mov r2, #%d\n b 1f\n .balign 64\n"
+      "1: mov r3, #%d\n mcr p15, 0, r5, c1, c0, 0\n mov r6, #%d\n b 2f\n .balign 64\n"
+      "2: mov r8, #%d\n mov pc, lr\n");
+  EXPECT_EQ(m.core.reg(1), 1u);
+  EXPECT_EQ(m.core.reg(2), 1u);
+  EXPECT_EQ(m.core.reg(3), 2u);
+  EXPECT_EQ(m.core.reg(6), 2u);
+  EXPECT_EQ(m.core.reg(8), 1u);
+}
+INSTANTIATE_TEST_SUITE_P(Caches, ControlTest, testing::Values(0u, 1u, 2u, 3u));
+
+/// The prefetch buffer lives on for them as well. Place of the switch in its piece of four words; then
+/// what is read: the piece, perhaps the next one, and the line of the third instruction.
+TEST(ControlFetchTest, BothComeWithoutANewFetch) {
+  for (const unsigned place : {0u, 1u, 2u, 3u}) {
+    Machine m;
+    const std::uint32_t code = kMemory + 0x0030'0000;
+    m.load(assemble(".rept " + std::to_string(place) +
+                        "\n nop\n .endr\n mcr p15, 0, r4, c1, c0, 0\n nop\n nop\n nop\n mov pc, lr\n",
+                    code));
+    m.execute("ldr r0, =0x01000000\n mcr p15, 0, r0, c2, c0, 0\n mvn r0, #0\n"
+              "mcr p15, 0, r0, c3, c0, 0\n ldr r4, =0x51079\n ldr r0, =" + std::to_string(code) +
+              "\n blx r0\n");
+    std::vector<std::pair<BusAccess::Kind, std::uint32_t>> fetched, want;
+    for (const BusRecord& r : m.port.log)
+      if (r.port == BusAccess::Port::kInstruction) fetched.emplace_back(r.kind, r.address - code);
+    want.emplace_back(BusAccess::Kind::kIncr4, 0u);
+    if (place + 2 >= 4) want.emplace_back(BusAccess::Kind::kIncr4, 16u);
+    want.emplace_back(BusAccess::Kind::kWrap8, 4 * (place + 3));
+    if (4 * (place + 4) >= 32) want.emplace_back(BusAccess::Kind::kWrap8, 4 * (place + 4));
+    EXPECT_EQ(fetched, want) << place;
+  }
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test

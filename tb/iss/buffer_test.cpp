@@ -6,9 +6,10 @@ namespace {
 
 using Kind = BusAccess::Kind;
 constexpr std::uint32_t kBlock = 0x0020'0000;
-/// Caches on, r4 = kBlock, its page in the TLB, the fill over. r12 is lost.
+/// Caches on, r4 = kBlock, its page in the TLB, the fill over. r12 is lost. The program's own page is
+/// looked up first, behind the two instructions fetched before the MMU was on.
 const std::string kStart = std::string(kCachesOn) +
-                           " ldr r4, =0x00200000\n ldr r0, [r4, #0xc00]\n mov r12, #20\n"
+                           " nop\n nop\n ldr r4, =0x00200000\n ldr r0, [r4, #0xc00]\n mov r12, #20\n"
                            "9: subs r12, r12, #1\n bne 9b\n";
 const std::string kDrain = "mov r12, #0\n mcr p15, 0, r12, c7, c10, 4\n";
 

@@ -329,7 +329,9 @@ TEST(ActivityTest, WhatEachInstructionAddsByHand) {
             10u * 21 + 9 * 2 + 1);
   EXPECT_EQ(to.redirects - from.redirects, 9u);
   EXPECT_EQ(to.icache_accesses(), from.icache_accesses());
-  EXPECT_EQ(to.tlb_lookups() - from.tlb_lookups(), 10u * (1 + 1 + 1 + 1 + 1 + 4));
+  // Each word fetched, each load and store, in internal RAM as elsewhere.
+  EXPECT_EQ(to.tlb_lookups() - from.tlb_lookups(),
+            10u * 21 + 9 * 2 + 1 + 10u * (6 + 1 + 1 + 3) + 10u * (1 + 1 + 1 + 1 + 1 + 4));
   EXPECT_EQ(to.tlb_walks, from.tlb_walks);
   EXPECT_EQ(to.d_read_beats - from.d_read_beats, 10u);
   EXPECT_EQ(to.d_write_beats - from.d_write_beats, 10u * (1 + 1 + 4));
@@ -352,6 +354,20 @@ TEST(ActivityTest, NoTranslationWithoutTheMmu) {
   m.execute("ldr r4, =0x00200000\n ldr r0, [r4]\n str r0, [r4]");
   EXPECT_EQ(m.core.counts().tlb_lookups(), 0u);
   EXPECT_EQ(m.core.counts().tlb_walks, 0u);
+}
+
+/// Loads from internal RAM count while the MMU is on: three of the five, and the words of that time.
+TEST(ActivityTest, TranslationsInInternalRamAreThoseWithTheMmuOn) {
+  Noting m;
+  m.execute("ldr r4, =0x14000\n ldr r0, [r4]\n" + kStart +
+            "ldr r4, =0x14000\n svc #3\n ldr r0, [r4]\n str r0, [r4]\n ldr r0, [r4]\n svc #3\n"
+            "mrc p15, 0, r1, c1, c0, 0\n bic r1, r1, #1\n mcr p15, 0, r1, c1, c0, 0\n"
+            "nop\n nop\n svc #3\n ldr r0, [r4]\n str r0, [r4]\n svc #3");
+  ASSERT_EQ(m.at.size(), 4u);
+  EXPECT_EQ(m.at[1].tlb_lookups() - m.at[0].tlb_lookups(), 1u + 3 + 3);
+  // The mark and three; both instructions behind the one that turns it off were fetched before.
+  EXPECT_EQ(m.at[2].tlb_lookups() - m.at[1].tlb_lookups(), 1u + 3 + 2);
+  EXPECT_EQ(m.at[3].tlb_lookups(), m.at[2].tlb_lookups());
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 
 namespace fovea::bus {
 
-enum class Slave : std::uint8_t { kDdr, kConfig, kCount };
+enum class Slave : std::uint8_t { kDdr, kConfig, kInternalRam, kCount };
 inline constexpr std::size_t kSlaveCount = static_cast<std::size_t>(Slave::kCount);
 
 /// What the crossbar moves requests and outcomes through.

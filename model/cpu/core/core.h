@@ -15,6 +15,7 @@
 #include "model/cpu/core/instruction.h"
 #include "model/cpu/core/params.h"
 #include "model/cpu/core/stats.h"
+#include "model/cpu/core/tcm_port.h"
 #include "model/cpu/core/tlb.h"
 #include "model/cpu/core/write_buffer.h"
 
@@ -79,6 +80,12 @@ class Core : public Background {
   std::vector<AccessRecord> last_accesses() const;
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
+  /// The DMA port of internal RAM, for the kernel's side (model/cpu/tcm_dma.h): a burst arrives at
+  /// `at`; its data move at tcm_burst_over(), which the core may move back until then.
+  void tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at);
+  Picoseconds tcm_burst_over() const { return time(tcm_port_.end() - 1); }
+  void tcm_burst_ends(bool write, std::uint8_t* data);
+  const TcmPort& tcm_port() const { return tcm_port_; }
   /// Reads internal RAM, the D-cache and the buffers without any effect; false if the address is in
   /// none of them (memory has it then).
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
@@ -107,7 +114,7 @@ class Core : public Background {
   void step_attention();
   void execute_alone(const Instruction& i);
   void enter_exception();
-  void leave_old_process();
+  void leave_old_fetch();
   [[gnu::noinline]] void execute_one(const Instruction& i);
   bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
@@ -179,6 +186,7 @@ class Core : public Background {
 
   // cp15.cpp
   void coprocessor_move(const Instruction& i);
+  void fetch_differently();
   bool cp15_read(std::uint32_t opc, std::uint32_t& value);
   bool cp15_write(std::uint32_t opc, std::uint32_t value);
   bool cache_operation(unsigned crm, unsigned op2, std::uint32_t value);
@@ -197,6 +205,16 @@ class Core : public Background {
   static Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb);
   static Place look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
                            bool thumb);
+
+  // tcm.cpp
+  void tcm_access(std::uint32_t mva, TcmPort::Side side);
+  /// Nobody pays for an access or has to look at it.
+  bool tcm_quick() const {
+    return (tcm_wait_ | tcm_own_conflict_) == 0 && !tcm_port_.busy();
+  }
+  std::uint32_t tcm_offset(std::uint32_t mva) const {
+    return mva & static_cast<std::uint32_t>(tcm_.size() - 1);
+  }
 
   // memory.cpp
   const Instruction* fetch();
@@ -297,9 +315,11 @@ class Core : public Background {
 
   BusPort& port_;
   std::span<std::uint8_t> tcm_;
+  TcmPort tcm_port_;
+  bool bus_waited_ = false;  // since the last access to internal RAM that looked
   Clock clock_;
   unsigned ratio_, fill_latency_, walk_cycles_, cache_op_cycles_, test_clean_cycles_,
-      invalidate_all_cycles_, tcm_wait_;
+      invalidate_all_cycles_, tcm_wait_, tcm_own_conflict_;
   bool shifted_cycle_;
 
   // Registers.
@@ -447,9 +467,11 @@ class Core : public Background {
   std::uint32_t ttbr_ = 0, dacr_ = 0, dfsr_ = 0, ifsr_ = 0, far_ = 0;
   std::uint32_t fcse_pid_ = 0, context_id_ = 0;
   std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on (ARM DDI 0198D 2-34)
-  std::uint32_t fetch_process_ = 0;    // the same for fetches: an old one behind a write of the PID
-  std::uint32_t old_process_pc_ = 0;   // where the flow must be to go on with it
-  unsigned old_process_left_ = 0;      // instructions fetched with it: so many to come, and one
+  // The same and the control register for fetches: old ones behind a change.
+  std::uint32_t fetch_process_ = 0, fetch_control_ = 0x0005'0078;
+  std::uint32_t old_fetch_pc_ = 0;     // where the flow must be to go on with them
+  unsigned old_fetch_left_ = 0;        // instructions fetched with them: so many to come, and one
+  static constexpr std::uint32_t kFetchBits = 1u << 12 | 1u;  // of the control register: I and M
   std::uint32_t dlock_ = 0, ilock_ = 0, tlb_lock_ = 0;
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;

@@ -86,13 +86,28 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
   return false;
 }
 
+/// Behind a change of the process or of the control register: the pipeline holds two instructions
+/// already. A second change shows both at once to what comes behind it (assumed).
+void Core::fetch_differently() {
+  const bool same = old_fetch_left_ || (process_ == fetch_process_ &&
+                                        !((control_ ^ fetch_control_) & kFetchBits));
+  old_fetch_left_ = same ? 0 : 3;
+  old_fetch_pc_ = next_pc_;
+  if (same) {
+    fetch_process_ = process_;
+    if (fetch_control_ != control_) fetch_buffer_pa_ = 1;
+    fetch_control_ = control_;
+  }
+  flush_memos();
+}
+
 bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
   switch (reg) {
     case id(0, 1, 0, 0):
       control_ = (v & 0x0000F387u) | 0x0005'0078u;
-      process_ = fetch_process_ = control_ & 1u ? fcse_pid_ : 0;
-      flush_memos();
-      fetch_buffer_pa_ = 1;
+      process_ = control_ & 1u ? fcse_pid_ : 0;
+      counts_.translate(control_ & 1u);
+      fetch_differently();
       return true;
     case id(0, 2, 0, 0): ttbr_ = v; return true;
     case id(0, 3, 0, 0): dacr_ = v; flush_memos(); return true;
@@ -118,11 +133,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(0, 13, 0, 0):
       fcse_pid_ = v & 0xFE000000u;
       process_ = control_ & 1u ? fcse_pid_ : 0;
-      // A second write shows both at once to what comes behind it (assumed).
-      if (old_process_left_) fetch_process_ = process_;
-      old_process_left_ = process_ == fetch_process_ ? 0 : 3;
-      old_process_pc_ = next_pc_;
-      flush_memos();
+      fetch_differently();
       return true;
     case id(0, 13, 0, 1): context_id_ = v; return true;
     case id(0, 15, 0, 0): debug_override_ = v; return true;

@@ -57,6 +57,7 @@ struct Plan {
       FOVEA_CHECK(count < kMost, "table of instructions: too many fields");
       at[count++] = t;
     }
+    bool empty() const { return count == 0; }
     const T* begin() const { return at.data(); }
     const T* end() const { return at.data() + count; }
   };
@@ -177,8 +178,10 @@ Instruction decode(std::uint32_t w, bool thumb) {
   }
   std::uint32_t sources = 0, stored = i.stored;
   for (const std::uint8_t slot : p.sources) sources |= 1u << v[slot];
-  for (const std::uint8_t slot : p.stored) stored |= (p.pair && slot == kD ? 3u : 1u) << v[slot];
-  if ((sources | stored) & 0x8000u) flags |= kReadsPc;
+  for (const std::uint8_t slot : p.stored) stored |= 1u << v[slot];
+  // The second word of STRD is read later, as those of STM are.
+  const std::uint32_t second = p.pair && !p.stored.empty() ? 2u << v[kD] : 0u;
+  if ((sources | stored | second) & 0x8000u) flags |= kReadsPc;
   if (!p.always_defined && !isa_defined(row, w)) flags |= kUnpredictable;
   i.sources = static_cast<std::uint16_t>(sources);
   i.stored = static_cast<std::uint16_t>(stored);

@@ -6,6 +6,10 @@ namespace fovea::cpu {
 Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
     : port_(port),
       tcm_(tcm),
+      tcm_port_({static_cast<unsigned>(params.tcm_dma_word_clocks()),
+                 static_cast<unsigned>(params.tcm_dma_latency()),
+                 static_cast<unsigned>(params.tcm_banks()), params.tcm_first.is("core")},
+                tcm.size()),
       ratio_(static_cast<unsigned>(params.ahb_ratio())),
       fill_latency_(static_cast<unsigned>(params.fill_latency())),
       walk_cycles_(static_cast<unsigned>(params.walk_cycles())),
@@ -13,6 +17,7 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
       test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
       invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
       tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
+      tcm_own_conflict_(static_cast<unsigned>(params.tcm_own_conflict())),
       shifted_cycle_(params.shifted_address_cycle()),
       decoded_(params.icache.size() / Cache::kLineBytes),
       tcm_decoded_(tcm.size() / Cache::kLineBytes),
@@ -33,9 +38,10 @@ void Core::set_clock(Frequency f, Picoseconds at) {
 void Core::reset(std::uint32_t entry, Picoseconds now) {
   cpsr_ = 0xD3u | ((entry & 1u) << 5);
   pc_ = next_pc_ = entry & ~1u;
-  control_ = 0x0005'0078;
+  control_ = fetch_control_ = 0x0005'0078;
+  counts_.translate(false);
   fcse_pid_ = process_ = fetch_process_ = 0;
-  old_process_left_ = 0;
+  old_fetch_left_ = 0;
   stop_requested_ = false;
   // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
   const bool tcm = !tcm_.empty();

@@ -73,7 +73,7 @@ void Core::run() {
     run_va_ = pc_ & ~31u;
     run_first_ = reinterpret_cast<std::intptr_t>(i);
     const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&
-                       chain_ == 0 && old_process_left_ == 0 && !debugger_;
+                       chain_ == 0 && old_fetch_left_ == 0 && !debugger_;
     if (chain) {
       chain_stop_ = stop_cycle_;
       i = i->handler(*this, i, cycle_);
@@ -81,7 +81,7 @@ void Core::run() {
     } else {
       execute_alone(*i);
     }
-    if (old_process_left_) [[unlikely]] leave_old_process();
+    if (old_fetch_left_) [[unlikely]] leave_old_fetch();
   }
 }
 
@@ -89,18 +89,21 @@ void Core::run() {
 void Core::enter_exception() {
   pc_ = next_pc_;
   branched_ = aborted_ = false;
-  if (old_process_left_) leave_old_process();
+  if (old_fetch_left_) leave_old_fetch();
 }
 
-/// Behind an instruction: the two that follow a write of the FCSE PID were fetched before it took
-/// effect, unless the flow leaves them (ARM DDI 0198D 2-34).
-void Core::leave_old_process() {
-  if (pc_ == old_process_pc_ && --old_process_left_) {
-    old_process_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
+/// Behind an instruction: the two that follow a write of the FCSE PID, or one that turns the MMU or the
+/// I-cache on or off, were fetched before it took effect, unless the flow leaves them (ARM DDI 0198D
+/// 2-34; for the control register two as well, by the length of the pipeline).
+void Core::leave_old_fetch() {
+  if (pc_ == old_fetch_pc_ && --old_fetch_left_) {
+    old_fetch_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
     return;
   }
-  old_process_left_ = 0;
+  old_fetch_left_ = 0;
   fetch_process_ = process_;
+  if (fetch_control_ != control_) fetch_buffer_pa_ = 1;
+  fetch_control_ = control_;
   flush_memos();
 }
 

@@ -35,6 +35,7 @@ inline const Translation* Core::translate(std::uint32_t mva, bool write, bool us
                                                   std::uint64_t bus, std::uint64_t cycle,
                                                   Cause cause) {
   if (cycle <= cycle_) return;
+  bus_waited_ = true;
   const std::uint8_t region = regions_.find(a.address);
   const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
   counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);

@@ -267,10 +267,10 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   value = 0;
   if (in_tcm(a)) {
     if (!translate(a, false, user, false)) return Result::kAbort;
+    tcm_access(a, TcmPort::Side::kData);
     std::memcpy(&value, tcm(a), bytes);
     ++reads_of(a);
-    if (!tcm_wait_) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
+    if (tcm_quick()) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
     return Result::kOk;
   }
   const Translation* t = translate(a, false, user, false);
@@ -308,11 +308,11 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   record(pc_, va, bytes | kWritten);
   if (in_tcm(a)) {
     if (!translate(a, true, user, false)) return Result::kAbort;
+    tcm_access(a, TcmPort::Side::kData);
     std::memcpy(tcm(a), &value, bytes);
     tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
     ++writes_of(a);
-    if (!tcm_wait_) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, a, kCore);
+    if (tcm_quick()) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
     return Result::kOk;
   }
   const Translation* t = translate(a, true, user, false);
@@ -431,6 +431,7 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
         continue;
       }
     }
+    if (run_bytes) bus_waited_ = true;
     flush();
     if (store(va + 4 * k, 4, words[k], user) != Result::kOk) {
       external_abort_at(va + 4 * (count - 1));
@@ -498,18 +499,21 @@ const Instruction* Core::fetch_slow() {
   };
   // Internal RAM is chosen by the MVA, and the MMU checks the access all the same (ARM DDI 0198D
   // 2-34, 3-3); where its page points to and its C and B bits do not matter there.
-  const Translation* t = translate(mva, false, false, true);
+  const bool mmu = fetch_control_ & 1u;
+  const Translation* t = !mmu              ? &flat_
+                         : control_ & 1u ? translate(mva, false, false, true)
+                                         : translate_slow(mva, false, false, true);
   if (!t) {
     take(Exception::kPrefetchAbort, pc_ + 4);
     return nullptr;
   }
   line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
-    counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, control_ & 1u));
-    if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, mva, kCore);
+    counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, mmu));
+    tcm_access(mva, TcmPort::Side::kFetch);
     DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
     const Instruction* i = decode_into(d, tcm(mva & ~31u));
-    if (tcm_wait_) {  // every fetch pays
+    if (!tcm_quick()) {  // every fetch looks
       line_va_ = 1;
       d.valid = 2u | (d.valid & 1u);
     }
@@ -517,9 +521,9 @@ const Instruction* Core::fetch_slow() {
   }
   const std::uint32_t pa = t->physical(mva);
   // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
-  const bool cached = (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u));
+  const bool cached = (fetch_control_ >> 12 & 1u) && (t->cacheable || !mmu);
   counts_.fetch_from(
-      fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, control_ & 1u));
+      fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, mmu));
   if (cached) {
     if (cycle_ < ifill_.last && ifill_.line != (mva & ~31u))
       stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);

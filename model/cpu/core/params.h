@@ -38,6 +38,22 @@ struct CpuParams : ParamGroup {
   IntParam tcm_wait_states{*this, "tcm.wait_states", U::kCycles, 0, 0, 3,
                            "extra core clocks of an access to internal RAM", Origin::kSourced,
                            "MISC.ARM_WAITST is 1 (none) out of reset"};
+  IntParam tcm_dma_word_clocks{*this, "tcm.dma_word_clocks", U::kCycles, 2, 1, 8,
+                               "core clocks for which a word of a DMA holds its bank of internal RAM",
+                               Origin::kAssumed, "no public figure; an AHB clock"};
+  IntParam tcm_dma_latency{*this, "tcm.dma_latency", U::kCycles, 2, 0, 32,
+                           "core clocks from a burst's arrival at internal RAM to its first word",
+                           Origin::kAssumed, "no public figure"};
+  IntParam tcm_banks{*this, "tcm.banks", U::kCount, 2, 1, 2,
+                     "banks of internal RAM; core and DMA wait for each other only in the same one",
+                     Origin::kAssumed, "no public figure; two of 16 KB"};
+  IntParam tcm_own_conflict{*this, "tcm.own_conflict", U::kCycles, 0, 0, 2,
+                            "core clocks lost by a load or store in the bank that the core fetches "
+                            "from",
+                            Origin::kAssumed, "no figure for the chip; 1 on the ARM946E-S's ITCM"};
+  EnumParam tcm_first{*this, "tcm.first", "core", {"core", "dma"},
+                      "who goes first if both want a bank in the same clock", Origin::kAssumed,
+                      "no public figure"};
   BoolParam shifted_address_cycle{*this, "shifted_address_cycle", true,
                                   "a shifted register offset costs a cycle", Origin::kSourced,
                                   "ARM DDI 0222B table 8.2"};

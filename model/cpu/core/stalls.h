@@ -29,9 +29,9 @@ inline constexpr std::size_t kService = index(Culprit::kService);
 constexpr std::string_view stall_culprit_name(std::size_t culprit) {
   return culprit == kCore ? "core" : culprit_name(static_cast<Culprit>(culprit));
 }
-/// Causes that wait for bus transactions; the others have but one culprit, the core.
-constexpr bool waits_for_bus(Cause c) {
-  return c != Cause::kInterlock && c != Cause::kTcm && c != Cause::kBusSync;
+/// Causes that may wait for others; the rest have but one culprit, the core.
+constexpr bool waits_for_others(Cause c) {
+  return c != Cause::kInterlock && c != Cause::kBusSync;
 }
 
 /// Interlocks, which the running chain of instructions counts by itself, are not in here. Kept in

@@ -56,7 +56,14 @@ struct Counts {
   std::uint64_t icache_accesses() const { return words_fetched(FetchFrom::kCache); }
   std::uint64_t tlb_lookups() const {
     return words_fetched(FetchFrom::kCache, true) + words_fetched(FetchFrom::kBus, true) +
-           dcache_reads + dcache_writes + translated_uncached;
+           words_fetched(FetchFrom::kTcm, true) + dcache_reads + dcache_writes +
+           translated_uncached + translated_ram();
+  }
+  /// The MMU is on or off from here on.
+  void translate(bool on) {
+    if (on == translating_) return;
+    translating_ = on;
+    translated_ram_ += on ? 0 - ram_accesses() : ram_accesses();
   }
 
   std::uint64_t stalled(Cause cause, std::size_t region, std::size_t culprit) const {
@@ -73,6 +80,15 @@ struct Counts {
   }
 
  private:
+  std::uint64_t ram_accesses() const {
+    return itcm_reads + itcm_writes + dtcm_reads + dtcm_writes;
+  }
+  /// Loads and stores in internal RAM with the MMU on. While it is on, less what the counters say.
+  std::uint64_t translated_ram() const {
+    return translated_ram_ + (translating_ ? ram_accesses() : 0);
+  }
+  std::uint64_t translated_ram_ = 0;
+  bool translating_ = false;
   // Of each kind so far; of the present one less what instructions and redirects say.
   std::array<std::uint64_t, kFetchKinds> executed_{}, redirected_{};
   std::size_t kind_ = 0;
@@ -109,7 +125,8 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(uncached, "stall.uncached", "cycles", stall[4],
                  "waiting for uncached reads and unbuffered writes");
   FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "waiting for page walks");
-  FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6], "wait states of internal RAM");
+  FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
+                 "wait states of internal RAM, and waiting for DMA there");
   FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "cache maintenance");
   FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
   FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge");
@@ -140,7 +157,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(writeback_words, "activity.writeback_words", "1", writeback_words,
                  "words of dirty lines moved to the victim buffer");
   FOVEA_CPU_STAT(tlb_lookups, "activity.tlb_lookups", "1", tlb_lookups(),
-                 "words fetched and data accesses outside internal RAM with the MMU on");
+                 "words fetched and data accesses with the MMU on");
   FOVEA_CPU_STAT(tlb_walks, "activity.tlb_walks", "1", tlb_walks, "page walks begun");
   FOVEA_CPU_STAT(i_read_beats, "activity.ahb_i_read_beats", "1", i_read_beats,
                  "beats asked for on the instruction AHB");
@@ -158,7 +175,7 @@ struct CoreStats : StatGroup {
   CoreStats() : StatGroup("cpu") {
     for (std::size_t k = 0; k < kCauses; ++k) {
       const auto cause = static_cast<Cause>(k);
-      if (!waits_for_bus(cause)) continue;
+      if (!waits_for_others(cause)) continue;
       for (std::size_t c = 0; c < kStallCulprits; ++c) {
         const std::string culprit(stall_culprit_name(c));
         by_culprit_.push_back(std::make_unique<Formula>(

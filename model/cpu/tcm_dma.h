@@ -1,0 +1,58 @@
+// The way of other masters into the core's internal RAM: a slave of the crossbar.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <systemc>
+
+#include "model/common/mem_sockets.h"
+#include "model/common/quiet.h"
+#include "model/common/sc_ports.h"
+#include "model/common/stats.h"
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+struct TcmStats : StatGroup {
+  Counter reads{*this, "dma_reads", "1", "bursts that others read from internal RAM"};
+  Counter writes{*this, "dma_writes", "1", "bursts that others write to internal RAM"};
+  Counter read_bytes{*this, "dma_read_bytes", "B", "bytes of those reads"};
+  Counter write_bytes{*this, "dma_write_bytes", "B", "bytes of those writes"};
+  Counter wait_fetch{*this, "dma_wait.arm_i", "cycles",
+                     "core clocks in which a word of a DMA waited for a fetch of the core"};
+  Counter wait_data{*this, "dma_wait.arm_d", "cycles",
+                    "core clocks in which a word of a DMA waited for a load or store of the core"};
+  TcmStats() : StatGroup("cpu.tcm") {}
+};
+
+/// One burst after the other, in the order of their arrival. Each begins and ends in the quiet phase of
+/// its instant, so that the core's own accesses of that instant come before. It stands still while the
+/// core's clock does.
+class TcmDma : public sc_core::sc_module, public MemTargetIf {
+ public:
+  MemTargetSocket<32> socket{"socket"};
+  ClockIn clk{"clk"};
+  TcmStats stats;
+
+  TcmDma(sc_core::sc_module_name name, Core& core, QuietPhase& quiet);
+
+  tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
+
+ private:
+  struct Waiting {
+    MemRequest* request;
+    Picoseconds arrival;
+  };
+  void at(Picoseconds t);
+  void act();
+  void finish(MemRequest& r);
+  void clock_changed();
+
+  Core& core_;
+  QuietPhase& quiet_;
+  std::deque<Waiting> queue_;
+  bool begun_ = false;       // the first of them
+  std::uint64_t plan_ = 0;   // the number of the only act that counts
+  std::uint64_t waited_fetch_ = 0, waited_data_ = 0;
+};
+
+}  // namespace fovea::cpu
