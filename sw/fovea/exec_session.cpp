@@ -1,6 +1,7 @@
 #include "sw/fovea/exec_session.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <array>
 #include <cstring>
@@ -117,8 +118,12 @@ ExecResult ExecSession::result(const std::string& failure) {
   out.complete = ended();
   out.exit_code = semihosting_.exit_code().value_or(0);
   if (!failure.empty()) out.guest_failure = failure_text(failure);
+  if (gdb_ && !failure.empty()) gdb_->failed(out.guest_failure);
   out.killed = gdb_ && gdb_->killed();
-  if (gdb_) gdb_->exited(failure.empty() ? out.exit_code : 3);
+  if (gdb_) {
+    const bool stopped = !out.complete && failure.empty();
+    gdb_->exited(stopped ? SIGTERM : failure.empty() ? out.exit_code : 3, stopped);
+  }
   out.stats = core_stats();
   const cpu::Counts& c = core_.counts();
   FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==

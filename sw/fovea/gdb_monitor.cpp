@@ -87,6 +87,7 @@ std::string GdbSession::set_register(const std::string& what) {
   const auto write = [registers = b->registers, gated = b->gated, offset = (*r)->offset(), word] {
     if (!gated || !gated()) registers->write(offset, 4, word);
   };
+  if (failed_) return "the program has failed: nothing is written any more\n";
   if (asleep_)
     return fmt::format("written when the simulation comes to {} ns\n",
                        ns_text(views_.at_next_event(write)));
@@ -104,8 +105,9 @@ std::string GdbSession::set_register(const std::string& what) {
 std::string GdbSession::core_line() const {
   const auto p = debug_.pending();
   std::string out =
-      asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
-              : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
+      failed_   ? fmt::format("core: has failed at 0x{:08x}", debug_.reg(kPc))
+      : asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
+                : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
   if (p.irq || p.fiq)
     out += fmt::format(
         "; {} asserted{}",

@@ -84,8 +84,19 @@ bool GdbServer::connect(int timeout_ms) {
   return true;
 }
 
+/// A second debugger would wait without a word for the first to leave.
+void GdbServer::refuse_others() {
+  if (!readable(listener_, 0)) return;
+  const int other = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  if (other >= 0) ::close(other);
+}
+
+/// Others are refused only when the one that is there has nothing to say: it may have left.
 GdbServer::Io GdbServer::receive(int timeout_ms) {
-  if (!readable(socket_, timeout_ms)) return Io::kNothing;
+  if (!readable(socket_, timeout_ms)) {
+    refuse_others();
+    return Io::kNothing;
+  }
   std::array<char, 4096> bytes;
   const ssize_t n = ::recv(socket_, bytes.data(), bytes.size(), 0);
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return Io::kNothing;
@@ -172,9 +183,9 @@ bool GdbServer::wants_halt() {
   return halt;
 }
 
-void GdbServer::exited(int status) {
+void GdbServer::exited(int status, bool by_signal) {
   if (socket_ < 0) return;
-  if (running_) send(fmt::format("W{:02x}", status & 0xFF));
+  if (running_) send(fmt::format("{}{:02x}", by_signal ? 'X' : 'W', status & 0xFF));
   // What is still on its way to the debugger would be lost by a reset of the connection.
   ::shutdown(socket_, SHUT_WR);
   for (int tries = 0; tries < 10; ++tries)
