@@ -243,6 +243,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   BoardDebugMemory debug_memory(board_->dm365);
   const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
                                 [&elf](std::uint32_t pc) { return elf.describe(pc); });
+  log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);
   std::unique_ptr<GdbSession> gdb;
   if (request.gdb_port)

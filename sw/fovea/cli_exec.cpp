@@ -96,8 +96,14 @@ void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
       });
   command
       .add_option("--log-registers-kept", request.kept,
-                  "How many of the last accesses are kept (4096)")
-      ->check(CLI::Range(1, 100'000'000));
+                  "How many of the last accesses are kept (4096); with --gdb also of a log that the "
+                  "debugger begins")
+      ->check(CLI::Range(std::size_t{1}, kRegisterLogMost));
+}
+
+void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
+  if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
+    throw UserError("--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
 }
 
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
@@ -181,6 +187,7 @@ std::string core_table(std::span<const StatRow> stats) {
 int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                  const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
+  check_register_log(o.registers, o.gdb);
   const auto executor = context.make_executor();
   ParamSet params;
   executor->declare(params);

@@ -131,10 +131,14 @@ std::string GdbSession::core_line() const {
   return out;
 }
 
+/// A core that sleeps stands behind the others, one that has failed perhaps before them.
+Picoseconds GdbSession::time_now() const {
+  return asleep_ ? std::max(views_.now(), debug_.now()) : debug_.now();
+}
+
 std::string GdbSession::where() {
-  Picoseconds now = debug_.now();
+  const Picoseconds now = time_now();
   if (asleep_) {
-    now = views_.now();
     views_.settle();
   } else if (views_.masters) {
     control_.settle_bus();
@@ -151,17 +155,24 @@ std::string GdbSession::show_log(const std::string& what) {
   const std::string_view word = take_until(rest, ' ');
   if (word.empty() || number(word)) {
     if (views_.log->running()) return views_.log->text(word.empty() ? kTail : *number(word));
+  } else if (word == "kept") {
+    const auto most = number(rest);
+    if (!most || *most == 0 || *most > kRegisterLogMost)
+      return fmt::format("monitor registers kept COUNT; allowed: 1 to {}\n", kRegisterLogMost);
+    views_.log->keep(*most);
+    return fmt::format("the last {} accesses are kept\n", *most);
   } else if (word == "log" && rest == "off") {
     views_.log->stop();
   } else if (word == "log" && !rest.empty()) {
     try {
-      views_.log->start({.pattern = std::string(rest)});
+      views_.log->start({.pattern = std::string(rest), .kept = views_.log->kept()});
     } catch (const UserError& e) {
       return std::string(e.what()) + "\n";
     }
   } else {
     return "monitor registers [COUNT]          the last accesses\n"
-           "monitor registers log REGEX|off    on BLOCK.REGISTER\n";
+           "monitor registers log REGEX|off    on BLOCK.REGISTER\n"
+           "monitor registers kept COUNT       how many are kept\n";
   }
   return fmt::format("the log is {}\n", views_.log->running() ? "on" : "off");
 }
@@ -234,8 +245,7 @@ std::string GdbSession::monitor(const std::string& command) {
   if (word == "watch") return watch(rest);
   if (word == "watch-masters") return watch_masters(rest);
   if (word == "time")
-    return fmt::format("{} ns, core clock {}\n", ns_text(asleep_ ? views_.now() : debug_.now()),
-                       core_.clock_count());
+    return fmt::format("{} ns, core clock {}\n", ns_text(time_now()), core_.clock_count());
   if (word == "params") {
     std::string out;
     for (const ParamBase* p : views_.params->all())
@@ -247,7 +257,7 @@ std::string GdbSession::monitor(const std::string& command) {
          "monitor params [PART]   parameters\n"
          "monitor regs BLOCK[.REGISTER]   registers of a peripheral, with fields\n"
          "monitor set BLOCK.REGISTER[.FIELD]=VALUE   as a store of the core\n"
-         "monitor registers [COUNT], registers log REGEX|off   accesses to peripherals\n"
+         "monitor registers [COUNT]|log REGEX|log off|kept COUNT   accesses to peripherals\n"
          "monitor where           which master waits for whom\n"
          "monitor watch dma 0xADDR[,LENGTH] w|r|a [MASTER]   stops for other masters\n"
          "monitor watch-masters [on|off]   whether watchpoints see other masters\n"

@@ -291,9 +291,11 @@ std::string GdbSession::target_xml() const {
   std::string out =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target>\n"
       "<architecture>armv5te</architecture>\n<feature name=\"org.gnu.gdb.arm.core\">\n";
-  const auto reg = [&out](const std::string& name, unsigned number, const char* type) {
-    out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"/>\n", name,
-                       number, type);
+  // A group of its own keeps a register out of GDB's plain `info registers`.
+  const auto reg = [&out](const std::string& name, unsigned number, const char* type,
+                          const char* group = nullptr) {
+    out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"{}/>\n", name,
+                       number, type, group ? fmt::format(" group=\"{}\"", group) : "");
   };
   for (unsigned r = 0; r < 13; ++r) reg(fmt::format("r{}", r), r, "uint32");
   reg("sp", 13, "data_ptr");
@@ -303,10 +305,11 @@ std::string GdbSession::target_xml() const {
   out += "</feature>\n<feature name=\"fovea.arm926.system\">\n";
   reg("spsr", kSpsr, "uint32");
   unsigned number = kSystem;
-  for (const auto& r : cpu::CoreDebug::system_registers()) reg(r.name, number++, "uint32");
+  for (const auto& r : cpu::CoreDebug::system_registers()) reg(r.name, number++, "uint32", "cp15");
   out += "</feature>\n<feature name=\"fovea.arm926.banked\">\n";
   number = kBanked;
-  for (const auto& r : cpu::CoreDebug::banked_registers()) reg(r.name, number++, "uint32");
+  for (const auto& r : cpu::CoreDebug::banked_registers())
+    reg(r.name, number++, "uint32", "banked");
   return out + "</feature>\n</target>\n";
 }
 

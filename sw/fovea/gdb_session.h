@@ -91,6 +91,7 @@ class GdbSession : private GdbTarget {
   std::string set_register(const std::string& what);
   std::string show_log(const std::string& what);
   std::string where();
+  Picoseconds time_now() const;
   std::string core_line() const;
   std::string watch(const std::string& what);
   std::string watch_masters(const std::string& what);
