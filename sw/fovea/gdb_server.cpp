@@ -52,7 +52,7 @@ GdbServer::GdbServer(std::uint16_t port, GdbTarget& target, const std::atomic<bo
   const int on = 1;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (listener_ >= 0) ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (listener_ < 0 || ::bind(listener_, a, size) != 0 || ::listen(listener_, 1) != 0 ||
+  if (listener_ < 0 || ::bind(listener_, a, size) != 0 || ::listen(listener_, 8) != 0 ||
       ::getsockname(listener_, a, &size) != 0) {
     const std::string why = ::strerror(errno);
     if (listener_ >= 0) ::close(listener_);
