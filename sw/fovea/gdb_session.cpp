@@ -133,6 +133,12 @@ GdbStop GdbSession::take_hit() {
                                       [](const auto& a, const auto& b) { return a.at < b.at; });
   const GdbMasters::Hit h = *first;
   hits_.erase(first);
+  // The debugger takes an address for all its watchpoints there.
+  if (h.watch.packet)
+    std::erase_if(hits_, [&](const GdbMasters::Hit& o) {
+      return o.watch.packet && o.at == h.at && o.master == h.master &&
+             h.va - o.watch.va < o.watch.bytes;
+    });
   control_.stop_after(kNever);
   GdbStop stop{.reason = GdbStop::Reason::kOther, .address = h.va};
   stop.note = fmt::format("{} {} 0x{:08x} at {} ns\n", kMasterNames[index(h.master)],
@@ -291,7 +297,7 @@ std::string GdbSession::target_xml() const {
   std::string out =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target>\n"
       "<architecture>armv5te</architecture>\n<feature name=\"org.gnu.gdb.arm.core\">\n";
-  // A group of its own keeps a register out of GDB's plain `info registers`.
+  // A group is what `info registers GROUP` shows.
   const auto reg = [&out](const std::string& name, unsigned number, const char* type,
                           const char* group = nullptr) {
     out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"{}/>\n", name,
