@@ -98,6 +98,9 @@ said() { sed -n '/^\$1 = /,$p' hidden.gdb |
 want='vpfe wrote 0x80015040 at NS
 the core does not see it: its D-cache or buffers hold other bytes there
 Program received signal SIGTRAP, Trace/breakpoint trap.
+Hardware access (read/write) watchpoint 4: frame_in[0x80]
+Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
+Hardware access (read/write) watchpoint 6: frame_in[0x83]
 vpfe wrote 0x80015080 at NS
 Hardware access (read/write) watchpoint 4: frame_in[0x80]
 Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
