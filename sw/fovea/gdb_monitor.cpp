@@ -253,7 +253,9 @@ std::string GdbSession::monitor(const std::string& command) {
         out += fmt::format("{} = {}\n", p->key(), p->text());
     return out.empty() ? fmt::format("no parameter with '{}' in its key\n", rest) : out;
   }
-  return "monitor stats [PART]    statistics now\n"
+  const bool asked = word.empty() || word == "help";
+  return (asked ? "" : fmt::format("no command '{}'; allowed:\n", word)) +
+         "monitor stats [PART]    statistics now\n"
          "monitor params [PART]   parameters\n"
          "monitor regs BLOCK[.REGISTER]   registers of a peripheral, with fields\n"
          "monitor set BLOCK.REGISTER[.FIELD]=VALUE   as a store of the core\n"
