@@ -79,6 +79,9 @@ done
 # Several watchpoints at one instruction, and one where a breakpoint stops already.
 begin several exec "$program"
 debug "$program" <<'G'
+set var limit = 9
+load
+compare-sections
 break store_pair
 continue
 watch pair.first
@@ -97,10 +100,11 @@ delete
 info registers banked
 detach
 G
-end 35 'pair.first$' 'New value = 11' 'New value = 12' 'New value = 13' 'New value = 22' '= 22$' \
+end 35 'Start address 0x' '"?\.text"?,.*: matched' 'pair.first$' 'New value = 11' 'New value = 12' 'New value = 13' 'New value = 22' '= 22$' \
   'sp_irq +0x'
 [ "$(grep -cE '^(Hardware|$).*watchpoint [0-9]+: pair' several.gdb)" = 8 ] ||
   fail "several: not each watchpoint once: $(cat several.gdb)"
+grep -q 'MIS-MATCHED' several.gdb && fail "several: load: $(cat several.gdb)"
 grep -q 'ttbr' several.gdb && fail "several: more than one group: $(cat several.gdb)"
 
 # A program that fails stops at the instruction that does, for whoever is there.
