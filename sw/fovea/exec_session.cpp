@@ -55,6 +55,8 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
   core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
 }
 
+ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
+
 bool ExecSession::swi(std::uint32_t number) {
   if (!Semihosting::is_call(number, core_.cpsr() & 0x20u)) return false;
   semihosting_.call(*this);
@@ -111,6 +113,10 @@ void ExecSession::attach(cpu::DebugMemory& memory, const std::function<void(GdbV
   if (add) add(views);
   gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
                                       request_.stop, request_.notes);
+  request_.console.go_on = [this] {
+    gdb_->look_at_input();
+    return !gdb_->killed();
+  };
 }
 
 ExecResult ExecSession::result(const std::string& failure) {

@@ -106,7 +106,7 @@ std::string GdbSession::core_line() const {
   const auto p = debug_.pending();
   std::string out =
       failed_   ? fmt::format("core: has failed at 0x{:08x}", debug_.reg(kPc))
-      : asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
+      : asleep_ ? fmt::format("core: waits for {} since {} ns", waits_for_, ns_text(debug_.now()))
                 : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
   if (p.irq || p.fiq)
     out += fmt::format(
@@ -133,12 +133,12 @@ std::string GdbSession::core_line() const {
 
 /// A core that sleeps stands behind the others, one that has failed perhaps before them.
 Picoseconds GdbSession::time_now() const {
-  return asleep_ ? std::max(views_.now(), debug_.now()) : debug_.now();
+  return asleep_ && views_.now ? std::max(views_.now(), debug_.now()) : debug_.now();
 }
 
 std::string GdbSession::where() {
   const Picoseconds now = time_now();
-  if (asleep_) {
+  if (asleep_ && views_.masters) {
     views_.settle();
   } else if (views_.masters) {
     control_.settle_bus();

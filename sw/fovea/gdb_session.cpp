@@ -99,8 +99,7 @@ void GdbSession::failed(const std::string& why) {
   if (!server_.attached() || killed_) return;
   control_.clear();
   debug_.back_to_failure();
-  asleep_ = views_.masters != nullptr;
-  failed_ = true;
+  asleep_ = failed_ = true;
   if (serve({.reason = GdbStop::Reason::kFailed, .note = why + "\n"}).kind ==
       GdbResume::Kind::kKill)
     killed_ = true;
@@ -214,13 +213,19 @@ void GdbSession::look(bool asleep) {
   const bool stuck = halt_seen_ && control_.halt_pending();
   if (!control_.halt_pending() && server_.wants_halt()) control_.request_halt();
   halt_seen_ = control_.halt_pending();
-  if (asleep && next_hit() <= views_.now())
+  if (asleep && !hits_.empty() && next_hit() <= views_.now())
     serve_asleep(take_hit());
   else if (halt_seen_ && (asleep || stuck))
     serve_asleep({});
   else
     return;
   halt_seen_ = false;
+}
+
+void GdbSession::look_at_input() {
+  waits_for_ = "console input";
+  look(true);
+  waits_for_ = "an interrupt";
 }
 
 std::optional<std::uint32_t> GdbSession::read_register(unsigned n) const {

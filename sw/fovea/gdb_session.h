@@ -50,6 +50,8 @@ class GdbSession : private GdbTarget {
   /// To be called now and then, not from inside the core. `asleep`: the core waits for an
   /// interrupt; then it is stopped where it is, if it is to stop.
   void look(bool asleep = false);
+  /// The same from inside a semihosting call that waits for console input.
+  void look_at_input();
   /// A watched access has happened or will, and the core has not stopped for it yet: a good time to
   /// look more often.
   bool hit_pending() const { return !hits_.empty(); }
@@ -114,7 +116,8 @@ class GdbSession : private GdbTarget {
   std::vector<Range> watched_at_stop_;
   bool watch_masters_ = true;
   std::vector<GdbMasters::Hit> hits_;  // not told yet; some may lie ahead
-  bool asleep_ = false;  // served while the core waits for an interrupt
+  bool asleep_ = false;  // served while the core waits
+  const char* waits_for_ = "an interrupt";
   bool failed_ = false;
   bool halt_seen_ = false, serving_ = false;
   GdbServer server_;

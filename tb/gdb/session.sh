@@ -127,6 +127,31 @@ detach
 G
 end 3
 
+# Ctrl-C while the program waits for console input, which comes later or not at all.
+mkfifo typed
+exec 8<>typed
+for memory in '' --fast-memory; do
+  input=typed begin "input$memory" exec $memory "$program" input
+  debug_until '^waiting' "$program" <<'G'
+continue
+backtrace
+monitor where
+monitor time
+detach
+G
+  echo 'a line' >&8
+  end 35 'Program received signal SIGINT' 'in main' 'core: waits for console input since' \
+    '^[0-9.]+ ns, core clock [0-9]+$' 'detached'
+  grep -q '^read a line' "input$memory.out" || fail "input: $(cat "input$memory.out")"
+done
+input=typed begin unfed exec "$program" input
+debug_until '^waiting' "$program" <<'G'
+continue
+kill
+G
+end 3 'SIGINT'
+exec 8>&-
+
 # A second debugger is turned away, and the first goes on.
 begin two exec "$program"
 "$gdb" -nx -batch -ex "target remote 127.0.0.1:$port" -ex 'shell sleep 3' -ex 'detach' "$program" \

@@ -34,6 +34,12 @@ __attribute__((noinline)) int load(volatile int *from) { return *from; }
 
 int main(int argc, char **argv) {
   if (argc > 1 && strcmp(argv[1], "load") == 0) return load((int *)0x50000000);
+  if (argc > 1 && strcmp(argv[1], "input") == 0) {
+    char line[20] = "";
+    puts("waiting");
+    fflush(stdout);
+    printf("read %s", fgets(line, sizeof line, stdin) ? line : "nothing\n");
+  }
   store_pair(10);
   store_pair(20);
   if (argc > 1 && strcmp(argv[1], "wait") == 0) {
