@@ -1,4 +1,5 @@
 // `fovea run` on the board: loads footage and program, runs the window, gathers the figures.
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -244,6 +245,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   BoardDebugMemory debug_memory(board_->dm365);
   const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
                                 [&elf](std::uint32_t pc) { return elf.describe(pc); });
+  log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);
   std::unique_ptr<GdbSession> gdb;
   if (request.gdb_port)
@@ -259,6 +261,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
                              arm.core().instructions_executed()});
     if (!arm.failure().empty()) {
       guest = failure_text(arm.failure(), elf);
+      if (gdb) gdb->failed(guest);
       break;
     }
     if (closed_ && arm.core().mark_done()) break;
@@ -315,7 +318,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   result.uart = board_->uart_text();
   if (!request.registers.pattern.empty()) result.registers = log->text();
   add_host(result, request.strict_sync);
-  if (gdb) gdb->exited(guest.empty() ? 0 : 3);
+  const bool stopped = !result.complete && guest.empty();
+  if (gdb) gdb->exited(stopped ? SIGTERM : guest.empty() ? 0 : 3, stopped);
   return result;
 }
 

@@ -56,6 +56,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
 int command_run(const RunOptions& options, const std::vector<std::string>& args,
                 const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
+  check_register_log(options.registers, options.gdb);
   const auto simulation = context.make_simulation();
   ParamSet params;
   simulation->declare(params);

@@ -40,12 +40,16 @@ constexpr const char* kMemoryHelp =
     "Exit status: the program's own; 2 wrong input, 3 the guest failed, 4 a defect of fovea, each\n"
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
-std::size_t read_input(std::span<std::uint8_t> to, const std::atomic<bool>* stop) {
+std::size_t read_input(std::span<std::uint8_t> to, const std::atomic<bool>* stop,
+                       const std::function<bool()>& go_on) {
   for (;;) {
     pollfd p{STDIN_FILENO, POLLIN, 0};
     const int ready = ::poll(&p, 1, 100);
     if (stop && stop->load()) return 0;
-    if (ready <= 0) continue;
+    if (ready <= 0) {
+      if (go_on && !go_on()) return 0;
+      continue;
+    }
     const ssize_t n = ::read(STDIN_FILENO, to.data(), to.size());
     if (n < 0 && errno == EINTR) continue;
     return n < 0 ? 0 : static_cast<std::size_t>(n);
@@ -57,7 +61,7 @@ class HostConsole : public SemihostingConsole {
   explicit HostConsole(const CliContext& context) : context_(context) {}
   std::size_t read(std::span<std::uint8_t> to) override {
     context_.out.flush();
-    return read_input(to, context_.stop);
+    return read_input(to, context_.stop, go_on);
   }
   void write(bool error_stream, std::string_view text) override {
     if (error_stream) {
@@ -96,8 +100,14 @@ void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
       });
   command
       .add_option("--log-registers-kept", request.kept,
-                  "How many of the last accesses are kept (4096)")
-      ->check(CLI::Range(1, 100'000'000));
+                  "How many of the last accesses are kept (4096); with --gdb also of a log that the "
+                  "debugger begins")
+      ->check(CLI::Range(std::size_t{1}, kRegisterLogMost));
+}
+
+void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
+  if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
+    throw UserError("--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
 }
 
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
@@ -181,6 +191,7 @@ std::string core_table(std::span<const StatRow> stats) {
 int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                  const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
+  check_register_log(o.registers, o.gdb);
   const auto executor = context.make_executor();
   ParamSet params;
   executor->declare(params);

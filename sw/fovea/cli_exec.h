@@ -22,6 +22,8 @@ struct ExecOptions {
 
 /// `--log-registers` and its size, of run and exec.
 void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
+/// @throws UserError: a size without anything that could begin a log
+void check_register_log(const RegisterLogRequest& request, const std::string& gdb);
 
 /// Adds the subcommand; its options go to `options`.
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);

@@ -22,6 +22,11 @@ bool inside(const ElfSegment& s, std::uint64_t base, std::uint64_t size) {
   return s.address >= base && end_of(s) <= base + size;
 }
 
+/// Where the program has it once its start-up code has moved it.
+ElfSegment as_run(const ElfSegment& s) {
+  return {s.index, s.virtual_address, s.virtual_address, s.memory_size, {}};
+}
+
 bool in_internal_ram(const ElfSegment& s) {
   return inside(s, 0, kInternalBytes) || inside(s, kDataWindow, kInternalBytes);
 }
@@ -86,15 +91,20 @@ std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64
 ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base) const {
   ExecMap m;
   m.ram_size = ram_size;
-  // The lowest segment that is no guest of the internal RAM chooses the window.
-  const ElfSegment* lowest = nullptr;
-  for (const auto& s : segments_)
-    if (!in_internal_ram(s) && (!lowest || s.address < lowest->address)) lowest = &s;
+  // The lowest segment that is no guest of the internal RAM chooses the window; if all are loaded
+  // there (flash at 0), the lowest of those that the program moves out of it.
+  std::optional<std::uint32_t> lowest, moved;
+  for (const auto& s : segments_) {
+    if (!in_internal_ram(s)) lowest = std::min(lowest.value_or(s.address), s.address);
+    if (const auto run = as_run(s); run.memory_size && !in_internal_ram(run))
+      moved = std::min(moved.value_or(run.address), run.address);
+  }
+  if (!lowest) lowest = moved;
   if (ram_base)
     m.ram_base = *ram_base;
   else
     m.ram_base =
-        lowest ? static_cast<std::uint32_t>(lowest->address / ram_size * ram_size) : kChipSdram;
+        lowest ? static_cast<std::uint32_t>(*lowest / ram_size * ram_size) : kChipSdram;
   m.tcm = m.ram_base != 0;
   for (const auto& s : segments_) {
     if (inside(s, m.ram_base, ram_size) || (m.tcm && in_internal_ram(s))) continue;
@@ -109,7 +119,9 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
   std::vector<std::pair<std::uint64_t, std::uint64_t>> used = {
       {m.ram_base, m.ram_base + (m.ram_base == 0 ? kVectorBytes : 0)}};
   for (const auto& s : segments_)
-    if (inside(s, m.ram_base, ram_size)) used.emplace_back(s.address, end_of(s));
+    for (const std::uint64_t from : {s.address, s.virtual_address})
+      if (from >= m.ram_base && from + s.memory_size <= m.ram_base + ram_size)
+        used.emplace_back(from, from + s.memory_size);
   std::sort(used.begin(), used.end());
   // The last address of the address space cannot be the end of a stack.
   const std::uint64_t top =

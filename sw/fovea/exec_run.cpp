@@ -61,6 +61,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   const std::vector<RegisterBlock> blocks = {register_block("ddr", board_->ddr)};
   const auto log = register_log(blocks, board_->config, arm.core(),
                                 [&](std::uint32_t pc) { return request.program.describe(pc); });
+  log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);
   session.attach(*board_, [&](GdbViews& v) {
     v.blocks = blocks;

@@ -1,6 +1,7 @@
 #include "sw/fovea/exec_session.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <array>
 #include <cstring>
@@ -53,6 +54,8 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
   core_.set_regions(exec_regions(program_, map_));
   core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
 }
+
+ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
 
 bool ExecSession::swi(std::uint32_t number) {
   if (!Semihosting::is_call(number, core_.cpsr() & 0x20u)) return false;
@@ -110,6 +113,10 @@ void ExecSession::attach(cpu::DebugMemory& memory, const std::function<void(GdbV
   if (add) add(views);
   gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
                                       request_.stop, request_.notes);
+  request_.console.go_on = [this] {
+    gdb_->look_at_input();
+    return !gdb_->killed();
+  };
 }
 
 ExecResult ExecSession::result(const std::string& failure) {
@@ -117,8 +124,12 @@ ExecResult ExecSession::result(const std::string& failure) {
   out.complete = ended();
   out.exit_code = semihosting_.exit_code().value_or(0);
   if (!failure.empty()) out.guest_failure = failure_text(failure);
+  if (gdb_ && !failure.empty()) gdb_->failed(out.guest_failure);
   out.killed = gdb_ && gdb_->killed();
-  if (gdb_) gdb_->exited(failure.empty() ? out.exit_code : 3);
+  if (gdb_) {
+    const bool stopped = !out.complete && failure.empty();
+    gdb_->exited(stopped ? SIGTERM : failure.empty() ? out.exit_code : 3, stopped);
+  }
   out.stats = core_stats();
   const cpu::Counts& c = core_.counts();
   FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==

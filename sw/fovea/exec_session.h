@@ -15,6 +15,9 @@ class ExecSession : private SemihostingTarget {
   /// Takes the core's SWI hook.
   ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
               const ExecMap& map);
+  ~ExecSession();
+  ExecSession(const ExecSession&) = delete;
+  ExecSession& operator=(const ExecSession&) = delete;
 
   /// Fills memory, the vectors that the program leaves out, and the stack pointer. `ram` begins at
   /// the map's ram_base.

@@ -76,7 +76,8 @@ void GdbMasters::look(const MemRequest& r) const {
         std::min(std::uint64_t{r.address} + r.bytes, std::uint64_t{w.pa} + w.bytes);
     if (from >= to || !on_hit) continue;
     const auto pa = static_cast<std::uint32_t>(from);
-    on_hit({r.last, r.master, r.write, w.va + (pa - w.pa), pa, w});
+    on_hit({r.last, r.master, r.write, w.va + (pa - w.pa), pa,
+            static_cast<std::uint32_t>(to - from), w});
   }
 }
 

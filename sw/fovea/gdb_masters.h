@@ -23,12 +23,14 @@ class GdbMasters final : public MemObserver {
     Kind kind = Kind::kWrite;
     std::optional<Master> only;  ///< else any but the core
     bool packet = false;         ///< set by a Z packet, not by `monitor watch dma`
+    friend bool operator==(const Watch&, const Watch&) = default;
   };
   struct Hit {
     Picoseconds at = 0;  ///< acknowledgement of a write, last beat of a read
     Master master = Master::kVpfe;
     bool write = false;
     std::uint32_t va = 0, pa = 0;  ///< first watched byte that it touches
+    std::uint32_t bytes = 0;       ///< so many of them
     Watch watch;
   };
 

@@ -87,6 +87,7 @@ std::string GdbSession::set_register(const std::string& what) {
   const auto write = [registers = b->registers, gated = b->gated, offset = (*r)->offset(), word] {
     if (!gated || !gated()) registers->write(offset, 4, word);
   };
+  if (failed_) return "the program has failed: nothing is written any more\n";
   if (asleep_)
     return fmt::format("written when the simulation comes to {} ns\n",
                        ns_text(views_.at_next_event(write)));
@@ -104,8 +105,9 @@ std::string GdbSession::set_register(const std::string& what) {
 std::string GdbSession::core_line() const {
   const auto p = debug_.pending();
   std::string out =
-      asleep_ ? fmt::format("core: waits for an interrupt since {} ns", ns_text(debug_.now()))
-              : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
+      failed_   ? fmt::format("core: has failed at 0x{:08x}", debug_.reg(kPc))
+      : asleep_ ? fmt::format("core: waits for {} since {} ns", waits_for_, ns_text(debug_.now()))
+                : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
   if (p.irq || p.fiq)
     out += fmt::format(
         "; {} asserted{}",
@@ -129,10 +131,14 @@ std::string GdbSession::core_line() const {
   return out;
 }
 
+/// A core that sleeps stands behind the others, one that has failed perhaps before them.
+Picoseconds GdbSession::time_now() const {
+  return asleep_ && views_.now ? std::max(views_.now(), debug_.now()) : debug_.now();
+}
+
 std::string GdbSession::where() {
-  Picoseconds now = debug_.now();
-  if (asleep_) {
-    now = views_.now();
+  const Picoseconds now = time_now();
+  if (asleep_ && views_.masters) {
     views_.settle();
   } else if (views_.masters) {
     control_.settle_bus();
@@ -149,17 +155,24 @@ std::string GdbSession::show_log(const std::string& what) {
   const std::string_view word = take_until(rest, ' ');
   if (word.empty() || number(word)) {
     if (views_.log->running()) return views_.log->text(word.empty() ? kTail : *number(word));
+  } else if (word == "kept") {
+    const auto most = number(rest);
+    if (!most || *most == 0 || *most > kRegisterLogMost)
+      return fmt::format("monitor registers kept COUNT; allowed: 1 to {}\n", kRegisterLogMost);
+    views_.log->keep(*most);
+    return fmt::format("the last {} accesses are kept\n", *most);
   } else if (word == "log" && rest == "off") {
     views_.log->stop();
   } else if (word == "log" && !rest.empty()) {
     try {
-      views_.log->start({.pattern = std::string(rest)});
+      views_.log->start({.pattern = std::string(rest), .kept = views_.log->kept()});
     } catch (const UserError& e) {
       return std::string(e.what()) + "\n";
     }
   } else {
     return "monitor registers [COUNT]          the last accesses\n"
-           "monitor registers log REGEX|off    on BLOCK.REGISTER\n";
+           "monitor registers log REGEX|off    on BLOCK.REGISTER\n"
+           "monitor registers kept COUNT       how many are kept\n";
   }
   return fmt::format("the log is {}\n", views_.log->running() ? "on" : "off");
 }
@@ -232,8 +245,7 @@ std::string GdbSession::monitor(const std::string& command) {
   if (word == "watch") return watch(rest);
   if (word == "watch-masters") return watch_masters(rest);
   if (word == "time")
-    return fmt::format("{} ns, core clock {}\n", ns_text(asleep_ ? views_.now() : debug_.now()),
-                       core_.clock_count());
+    return fmt::format("{} ns, core clock {}\n", ns_text(time_now()), core_.clock_count());
   if (word == "params") {
     std::string out;
     for (const ParamBase* p : views_.params->all())
@@ -241,11 +253,13 @@ std::string GdbSession::monitor(const std::string& command) {
         out += fmt::format("{} = {}\n", p->key(), p->text());
     return out.empty() ? fmt::format("no parameter with '{}' in its key\n", rest) : out;
   }
-  return "monitor stats [PART]    statistics now\n"
+  const bool asked = word.empty() || word == "help";
+  return (asked ? "" : fmt::format("no command '{}'; allowed:\n", word)) +
+         "monitor stats [PART]    statistics now\n"
          "monitor params [PART]   parameters\n"
          "monitor regs BLOCK[.REGISTER]   registers of a peripheral, with fields\n"
          "monitor set BLOCK.REGISTER[.FIELD]=VALUE   as a store of the core\n"
-         "monitor registers [COUNT], registers log REGEX|off   accesses to peripherals\n"
+         "monitor registers [COUNT]|log REGEX|log off|kept COUNT   accesses to peripherals\n"
          "monitor where           which master waits for whom\n"
          "monitor watch dma 0xADDR[,LENGTH] w|r|a [MASTER]   stops for other masters\n"
          "monitor watch-masters [on|off]   whether watchpoints see other masters\n"

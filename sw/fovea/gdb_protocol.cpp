@@ -50,6 +50,7 @@ std::string GdbProtocol::stop_reply() const {
     case R::kWrite: return watch("watch");
     case R::kRead: return watch("rwatch");
     case R::kAccess: return watch("awatch");
+    case R::kFailed: return "T06thread:1;";
     default: return "T05thread:1;";
   }
 }
@@ -76,8 +77,8 @@ GdbProtocol::Answer GdbProtocol::handle(std::string_view packet) {
     case 'X': a.payload = write_memory(rest, true); break;
     case 'Z': a.payload = point(rest, true); break;
     case 'z': a.payload = point(rest, false); break;
-    case 'H':
-    case 'T': a.payload = kOk; break;
+    case 'H': a.payload = kOk; break;
+    case 'T': a.payload = hex_number(rest) == 1u ? kOk : kBadPacket; break;
     case 'c':
     case 'C':
     case 's':

@@ -52,7 +52,7 @@ GdbServer::GdbServer(std::uint16_t port, GdbTarget& target, const std::atomic<bo
   const int on = 1;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (listener_ >= 0) ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (listener_ < 0 || ::bind(listener_, a, size) != 0 || ::listen(listener_, 1) != 0 ||
+  if (listener_ < 0 || ::bind(listener_, a, size) != 0 || ::listen(listener_, 8) != 0 ||
       ::getsockname(listener_, a, &size) != 0) {
     const std::string why = ::strerror(errno);
     if (listener_ >= 0) ::close(listener_);
@@ -84,8 +84,19 @@ bool GdbServer::connect(int timeout_ms) {
   return true;
 }
 
+/// A second debugger would wait without a word for the first to leave.
+void GdbServer::refuse_others() {
+  if (!readable(listener_, 0)) return;
+  const int other = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  if (other >= 0) ::close(other);
+}
+
+/// Others are refused only when the one that is there has nothing to say: it may have left.
 GdbServer::Io GdbServer::receive(int timeout_ms) {
-  if (!readable(socket_, timeout_ms)) return Io::kNothing;
+  if (!readable(socket_, timeout_ms)) {
+    refuse_others();
+    return Io::kNothing;
+  }
   std::array<char, 4096> bytes;
   const ssize_t n = ::recv(socket_, bytes.data(), bytes.size(), 0);
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return Io::kNothing;
@@ -172,9 +183,9 @@ bool GdbServer::wants_halt() {
   return halt;
 }
 
-void GdbServer::exited(int status) {
+void GdbServer::exited(int status, bool by_signal) {
   if (socket_ < 0) return;
-  if (running_) send(fmt::format("W{:02x}", status & 0xFF));
+  if (running_) send(fmt::format("{}{:02x}", by_signal ? 'X' : 'W', status & 0xFF));
   // What is still on its way to the debugger would be lost by a reset of the connection.
   ::shutdown(socket_, SHUT_WR);
   for (int tries = 0; tries < 10; ++tries)

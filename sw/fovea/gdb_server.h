@@ -43,6 +43,7 @@ struct GdbStop {
     kWrite,
     kRead,
     kAccess,
+    kFailed,
     kOther
   };
   Reason reason = Reason::kRequest;
@@ -110,13 +111,16 @@ class GdbServer {
   /// The target runs: true if it is to stop, since the debugger asks for it or a new one attaches.
   /// Never waits.
   bool wants_halt();
-  /// The target has ended with this status.
-  void exited(int status);
+  /// A debugger is there.
+  bool attached() const { return socket_ >= 0; }
+  /// The target has ended, with this status or by a signal.
+  void exited(int status, bool by_signal = false);
 
  private:
   enum class Io { kNothing, kSome, kClosed };
   bool connect(int timeout_ms);
   Io receive(int timeout_ms);
+  void refuse_others();
   void send(std::string_view payload);
   void drop();
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/common/check.h"
+
 namespace fovea::app {
 namespace {
 
@@ -62,58 +64,108 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
                                                                 : GdbStop::Reason::kAccess;
       break;
   }
-  go_on(serve(stop));
+  const bool nobody = s.reason == Reason::kTime && stop.reason != GdbStop::Reason::kOther;
+  const bool over_watched = s.reason == Reason::kWatch && !s.past;
+  GdbResume resume = serve(stop);
+  if (nobody && resume.kind == GdbResume::Kind::kStep)
+    resume = serve({.reason = GdbStop::Reason::kStep});
+  go_on(resume, over_watched && resume.kind == GdbResume::Kind::kStep);
 }
 
+/// A debugger that finds its watchpoint hit takes all of them out and steps over the instruction that
+/// it takes for the cause. Behind another master's access there is none: that step ends where it
+/// began, for a core at a boundary as for one that sleeps.
 GdbResume GdbSession::serve(const GdbStop& stop) {
   serving_ = true;
+  watched_at_stop_ = watched_;
   const GdbResume resume = server_.serve(stop);
   serving_ = false;
   return resume;
 }
 
-/// A debugger that finds its watchpoint hit steps over the instruction that it takes for the cause.
-/// A sleeping core has none: that step ends where it began.
 void GdbSession::serve_asleep(const GdbStop& stop) {
-  const bool watched = stop.reason != GdbStop::Reason::kRequest;
+  using Reason = GdbStop::Reason;
+  const bool watched = stop.reason == Reason::kWrite || stop.reason == Reason::kRead ||
+                       stop.reason == Reason::kAccess;
   control_.cancel_halt();
   asleep_ = true;
   GdbResume resume = serve(stop);
-  if (watched && resume.kind == GdbResume::Kind::kStep)
-    resume = serve({.reason = GdbStop::Reason::kStep});
+  if (watched && resume.kind == GdbResume::Kind::kStep) resume = serve({.reason = Reason::kStep});
   asleep_ = false;
   go_on(resume);
 }
 
-/// Of several accesses the first one stops.
-void GdbSession::noticed(const GdbMasters::Hit& hit) {
-  if (hit_ && hit_->at <= hit.at) return;
-  hit_ = hit;
-  control_.stop_after(hit.at);
-  views_.pause_at(hit.at);
+void GdbSession::failed(const std::string& why) {
+  if (!server_.attached() || killed_) return;
+  control_.clear();
+  debug_.back_to_failure();
+  asleep_ = failed_ = true;
+  if (serve({.reason = GdbStop::Reason::kFailed, .note = why + "\n"}).kind ==
+      GdbResume::Kind::kKill)
+    killed_ = true;
 }
 
+/// Kept until they are told: while the first stops the core, others may be known already.
+void GdbSession::noticed(const GdbMasters::Hit& hit) {
+  const bool first = hit.at < next_hit();
+  hits_.push_back(hit);
+  if (first) wait_for_hit();
+}
+
+Picoseconds GdbSession::next_hit() const {
+  Picoseconds at = kNever;
+  for (const auto& h : hits_) at = std::min(at, h.at);
+  return at;
+}
+
+void GdbSession::wait_for_hit() {
+  const Picoseconds at = next_hit();
+  control_.stop_after(at);
+  if (at != kNever) views_.pause_at(at);
+}
+
+/// The earliest. What the debugger reads is the core's view: where that does not show the write, a
+/// watchpoint would find nothing new, so the stop has another reason and the console says which.
 GdbStop GdbSession::take_hit() {
-  const GdbMasters::Hit h = *std::exchange(hit_, std::nullopt);
+  FOVEA_CHECK(!hits_.empty(), "a stop for another master's access has its access");
+  const auto first = std::min_element(hits_.begin(), hits_.end(),
+                                      [](const auto& a, const auto& b) { return a.at < b.at; });
+  const GdbMasters::Hit h = *first;
+  hits_.erase(first);
+  // The debugger takes an address for all its watchpoints there.
+  if (h.watch.packet)
+    std::erase_if(hits_, [&](const GdbMasters::Hit& o) {
+      return o.watch.packet && o.at == h.at && o.master == h.master &&
+             h.va - o.watch.va < o.watch.bytes;
+    });
   control_.stop_after(kNever);
   GdbStop stop{.reason = GdbStop::Reason::kOther, .address = h.va};
   stop.note = fmt::format("{} {} 0x{:08x} at {} ns\n", kMasterNames[index(h.master)],
                           h.write ? "wrote" : "read", h.pa, ns_text(h.at));
-  if (h.watch.packet)
+  const bool hidden = h.write && hidden_from_core(h);
+  if (hidden) stop.note += "the core does not see it: its D-cache or buffers hold other bytes there\n";
+  if (h.watch.packet && !(hidden && h.watch.kind == GdbMasters::Kind::kWrite))
     stop.reason = h.watch.kind == GdbMasters::Kind::kWrite  ? GdbStop::Reason::kWrite
                   : h.watch.kind == GdbMasters::Kind::kRead ? GdbStop::Reason::kRead
                                                             : GdbStop::Reason::kAccess;
   return stop;
 }
 
+bool GdbSession::hidden_from_core(const GdbMasters::Hit& h) {
+  if (!h.watch.packet) return false;  // a physical address
+  std::vector<std::uint8_t> seen(h.bytes), behind(h.bytes);
+  return debug_.read(h.va, seen) && debug_.read_behind(h.pa, behind) && seen != behind;
+}
+
 /// Other masters know physical addresses only: a watchpoint is where its pages are when the core
-/// goes on.
-void GdbSession::arm_watches() {
+/// goes on. While the debugger steps over one with all of them out, they stay for the others.
+void GdbSession::arm_watches(bool over_watched) {
   if (!views_.masters) return;
+  const auto& ranges = over_watched && watched_.empty() ? watched_at_stop_ : watched_;
   auto& list = views_.masters->watches;
   std::erase_if(list, [](const GdbMasters::Watch& w) { return w.packet; });
   constexpr std::uint32_t kTinyPage = 1024;
-  for (const Range& r : watch_masters_ ? watched_ : std::vector<Range>()) {
+  for (const Range& r : watch_masters_ ? ranges : std::vector<Range>()) {
     bool extend = false;
     for (std::uint32_t done = 0; done < r.bytes;) {
       const std::uint32_t va = r.va + done;
@@ -133,10 +185,13 @@ void GdbSession::arm_watches() {
     }
   }
   control_.follow_bus(!list.empty());
+  std::erase_if(hits_, [&](const GdbMasters::Hit& h) {
+    return std::find(list.begin(), list.end(), h.watch) == list.end();
+  });
 }
 
-void GdbSession::go_on(const GdbResume& resume) {
-  arm_watches();
+void GdbSession::go_on(const GdbResume& resume, bool over_watched) {
+  arm_watches(over_watched);
   switch (resume.kind) {
     case GdbResume::Kind::kContinue: break;
     case GdbResume::Kind::kStep: control_.step(resume.from, resume.to); break;
@@ -144,8 +199,12 @@ void GdbSession::go_on(const GdbResume& resume) {
       killed_ = true;
       clear_all_points();
       core_.request_stop();
-      break;
+      return;
   }
+  if (over_watched)
+    control_.stop_after(kNever);  // that step ends with the instruction; what comes is told then
+  else
+    wait_for_hit();
 }
 
 void GdbSession::look(bool asleep) {
@@ -154,13 +213,19 @@ void GdbSession::look(bool asleep) {
   const bool stuck = halt_seen_ && control_.halt_pending();
   if (!control_.halt_pending() && server_.wants_halt()) control_.request_halt();
   halt_seen_ = control_.halt_pending();
-  if (asleep && hit_ && hit_->at <= views_.now())
+  if (asleep && !hits_.empty() && next_hit() <= views_.now())
     serve_asleep(take_hit());
   else if (halt_seen_ && (asleep || stuck))
     serve_asleep({});
   else
     return;
   halt_seen_ = false;
+}
+
+void GdbSession::look_at_input() {
+  waits_for_ = "console input";
+  look(true);
+  waits_for_ = "an interrupt";
 }
 
 std::optional<std::uint32_t> GdbSession::read_register(unsigned n) const {
@@ -229,7 +294,7 @@ void GdbSession::clear_all_points() {
   breakpoints_.clear();
   watched_.clear();
   if (views_.masters) views_.masters->watches.clear();
-  hit_.reset();
+  hits_.clear();
   control_.clear();
 }
 
@@ -237,9 +302,11 @@ std::string GdbSession::target_xml() const {
   std::string out =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target>\n"
       "<architecture>armv5te</architecture>\n<feature name=\"org.gnu.gdb.arm.core\">\n";
-  const auto reg = [&out](const std::string& name, unsigned number, const char* type) {
-    out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"/>\n", name,
-                       number, type);
+  // A group is what `info registers GROUP` shows.
+  const auto reg = [&out](const std::string& name, unsigned number, const char* type,
+                          const char* group = nullptr) {
+    out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"{}/>\n", name,
+                       number, type, group ? fmt::format(" group=\"{}\"", group) : "");
   };
   for (unsigned r = 0; r < 13; ++r) reg(fmt::format("r{}", r), r, "uint32");
   reg("sp", 13, "data_ptr");
@@ -249,10 +316,11 @@ std::string GdbSession::target_xml() const {
   out += "</feature>\n<feature name=\"fovea.arm926.system\">\n";
   reg("spsr", kSpsr, "uint32");
   unsigned number = kSystem;
-  for (const auto& r : cpu::CoreDebug::system_registers()) reg(r.name, number++, "uint32");
+  for (const auto& r : cpu::CoreDebug::system_registers()) reg(r.name, number++, "uint32", "cp15");
   out += "</feature>\n<feature name=\"fovea.arm926.banked\">\n";
   number = kBanked;
-  for (const auto& r : cpu::CoreDebug::banked_registers()) reg(r.name, number++, "uint32");
+  for (const auto& r : cpu::CoreDebug::banked_registers())
+    reg(r.name, number++, "uint32", "banked");
   return out + "</feature>\n</target>\n";
 }
 

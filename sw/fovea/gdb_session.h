@@ -50,20 +50,28 @@ class GdbSession : private GdbTarget {
   /// To be called now and then, not from inside the core. `asleep`: the core waits for an
   /// interrupt; then it is stopped where it is, if it is to stop.
   void look(bool asleep = false);
+  /// The same from inside a semihosting call that waits for console input.
+  void look_at_input();
   /// A watched access has happened or will, and the core has not stopped for it yet: a good time to
   /// look more often.
-  bool hit_pending() const { return hit_.has_value(); }
+  bool hit_pending() const { return !hits_.empty(); }
   bool killed() const { return killed_; }
-  void exited(int status) { server_.exited(status); }
+  /// The program has failed, for this reason, and the core will not go on: a debugger that is there
+  /// sees it at the instruction that failed, until it wants to go on. Not from inside the core.
+  void failed(const std::string& why);
+  void exited(int status, bool by_signal = false) { server_.exited(status, by_signal); }
 
  private:
   void stopped(const cpu::CoreControl::Stop& stop);
-  void go_on(const GdbResume& resume);
+  void go_on(const GdbResume& resume, bool over_watched = false);
   GdbResume serve(const GdbStop& stop);
   void serve_asleep(const GdbStop& stop);
   void noticed(const GdbMasters::Hit& hit);
+  Picoseconds next_hit() const;
   GdbStop take_hit();
-  void arm_watches();
+  void wait_for_hit();
+  bool hidden_from_core(const GdbMasters::Hit& hit);
+  void arm_watches(bool over_watched);
 
   std::span<const unsigned> registers() const override { return numbers_; }
   std::optional<std::uint32_t> read_register(unsigned number) const override;
@@ -85,6 +93,7 @@ class GdbSession : private GdbTarget {
   std::string set_register(const std::string& what);
   std::string show_log(const std::string& what);
   std::string where();
+  Picoseconds time_now() const;
   std::string core_line() const;
   std::string watch(const std::string& what);
   std::string watch_masters(const std::string& what);
@@ -104,9 +113,12 @@ class GdbSession : private GdbTarget {
     friend bool operator==(const Range&, const Range&) = default;
   };
   std::vector<Range> watched_;  // by Z packets, for the other masters
+  std::vector<Range> watched_at_stop_;
   bool watch_masters_ = true;
-  std::optional<GdbMasters::Hit> hit_;
-  bool asleep_ = false;  // served while the core waits for an interrupt
+  std::vector<GdbMasters::Hit> hits_;  // not told yet; some may lie ahead
+  bool asleep_ = false;  // served while the core waits
+  const char* waits_for_ = "an interrupt";
+  bool failed_ = false;
   bool halt_seen_ = false, serving_ = false;
   GdbServer server_;
   bool killed_ = false;

@@ -14,6 +14,7 @@ RegisterLog::RegisterLog(std::vector<RegisterBlock> blocks, Sources sources)
     : blocks_(std::move(blocks)), sources_(std::move(sources)) {}
 
 void RegisterLog::start(const RegisterLogRequest& request) {
+  FOVEA_CHECK(request.kept > 0, "a ring has room for one access at least");
   try {
     pattern_.emplace(request.pattern, std::regex::ECMAScript | std::regex::optimize);
   } catch (const std::regex_error& e) {
@@ -26,6 +27,7 @@ void RegisterLog::start(const RegisterLogRequest& request) {
   matches_.clear();
   ring_.clear();
   kept_ = request.kept;
+  oldest_ = 0;
   count_ = 0;
   for (const auto& b : blocks_)
     if (b.observe) b.observe(this);
@@ -37,6 +39,14 @@ void RegisterLog::stop() {
   for (const auto& b : blocks_)
     if (b.observe) b.observe(nullptr);
   running_ = false;
+}
+
+void RegisterLog::keep(std::size_t most) {
+  std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(oldest_), ring_.end());
+  oldest_ = 0;
+  if (ring_.size() > most)
+    ring_.erase(ring_.begin(), ring_.end() - static_cast<std::ptrdiff_t>(most));
+  kept_ = most;
 }
 
 const std::string& RegisterLog::block_name(const RegBank* bank) const {
@@ -61,10 +71,12 @@ void RegisterLog::accessed(const RegisterAccess& access) {
   const Master master = sources_.master();
   const bool core = master == Master::kArmD || master == Master::kArmI;
   const Record r{sources_.now(), core ? sources_.pc() : 0, master, access};
-  if (ring_.size() < kept_)
+  if (ring_.size() < kept_) {
     ring_.push_back(r);
-  else if (kept_)
-    ring_[count_ % kept_] = r;
+  } else {
+    ring_[oldest_] = r;
+    oldest_ = (oldest_ + 1) % kept_;
+  }
   ++count_;
 }
 
@@ -103,7 +115,7 @@ std::string RegisterLog::text(std::size_t most) const {
   std::string out;
   if (count_ > n) out = fmt::format("({} earlier accesses are not shown)\n", count_ - n);
   for (std::size_t i = ring_.size() - n; i < ring_.size(); ++i)
-    out += line(ring_[ring_.size() < kept_ ? i : (count_ + i) % kept_]);
+    out += line(ring_[(oldest_ + i) % ring_.size()]);
   return out;
 }
 

@@ -22,11 +22,13 @@ struct RegisterBlock {
   std::function<void(RegisterObserver*)> observe;
 };
 
+inline constexpr std::size_t kRegisterLogMost = 100'000'000;
+
 /// What `--log-registers` asks for.
 struct RegisterLogRequest {
   std::string
       pattern;  ///< ECMAScript regular expression on part of "block.REGISTER"; empty: no log
-  std::size_t kept = 4096;
+  std::size_t kept = 4096;  ///< at least 1
 };
 
 class RegisterLog final : private RegisterObserver {
@@ -45,6 +47,9 @@ class RegisterLog final : private RegisterObserver {
   /// Forgets what it has and begins. @throws UserError: no regular expression
   void start(const RegisterLogRequest& request);
   void stop();
+  /// How many it keeps from now on, of those that it has too; also the default of later starts.
+  void keep(std::size_t most);
+  std::size_t kept() const { return kept_; }
   bool running() const { return running_; }
   /// The last `most` accesses, oldest first, a line each; before them how many are not there.
   std::string text(std::size_t most = ~std::size_t{0}) const;
@@ -66,7 +71,8 @@ class RegisterLog final : private RegisterObserver {
   std::optional<std::regex> pattern_;
   std::unordered_map<const Reg*, bool> matches_;
   std::vector<Record> ring_;
-  std::size_t kept_ = 0;
+  std::size_t kept_ = RegisterLogRequest{}.kept;
+  std::size_t oldest_ = 0;  // in a full ring
   std::uint64_t count_ = 0;
   bool running_ = false;
 };

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,10 @@ class SemihostingTarget {
 class SemihostingConsole {
  public:
   virtual ~SemihostingConsole() = default;
-  /// Waits for at least one byte. @return how many; 0: end of input
+  /// Waits for at least one byte. @return how many; 0: end of input, or `go_on` says no
   virtual std::size_t read(std::span<std::uint8_t> to) = 0;
+  /// Asked now and then while read() waits; may be empty.
+  std::function<bool()> go_on;
   virtual void write(bool error_stream, std::string_view text) = 0;
 };
 

@@ -47,6 +47,10 @@ expect ram_base 5 '^flat$' -- run -s exec.ram_base=0x40000000 --load 0x40100000 
   "$programs/flat_arm.bin"
 expect bad_ram_base 2 'exec.ram_base' 'auto' -- run -s exec.ram_base=0x1000 "$fails"
 expect other_ram_base 2 'segment' 'exec.ram_base' -- run -s exec.ram_base=0x40000000 "$fails"
+for memory in '' --fast-memory; do
+  expect "flash$memory" 42 '^from flash$' -- run $memory "$programs/flash.elf"
+done
+expect kept_alone 2 '--log-registers or --gdb' -- run --log-registers-kept=5 "$programs/registers.elf"
 expect registers 0 'ns  pc 0x8000000[0-9a-f] \(_start\+0x[0-9a-f]+\) arm_d wrote ddr.PBBPR = 0x00000002 PR_OLD_COUNT=2$' \
   'wrote ddr.SDRCR = 0xffffffff RR=65535 .*  reserved bits 0x3f7f0000$' \
   'read ddr.SDRSTAT = 0x00000004 PHYRDY=1$' 'guest: 1 written to reserved bits of DDR SDRCR' \
@@ -57,7 +61,7 @@ expect no_registers 2 'regular expression' -- run --log-registers '(' "$programs
 expect quotes 2 'quotes' -- run "$fails" "a \"'"
 expect long_line 0 'command line of' -- run "$fails" "$(printf 'x%.0s' {1..300})"
 for memory in '' --fast-memory; do
-  expect "load$memory" 3 '^load$' 'the guest failed' 'main' 'read 4 bytes at 0x50000000' \
+  expect "load$memory" 3 '^load$' 'the guest failed: data abort with no handler' 'main' 'read 4 bytes at 0x50000000' \
     -- run $memory "$fails" load
   expect "jump$memory" 3 'the guest failed' -- run $memory "$fails" jump
   expect "sleep$memory" 3 'waits for an interrupt' 'main' -- run $memory "$fails" sleep

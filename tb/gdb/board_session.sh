@@ -66,6 +66,50 @@ end 0 'core: at the instruction at 0x8' 'no master has a request under way' \
   'vpbe \(priority 0\):' '    read of 64 bytes at 0x80341.* ns\): ' 'irq_dispatch \(\)'
 same dma
 
+# The D-cache hides what the camera writes: no watchpoint in GDB's sense, and not silence either. Of
+# one burst's watchpoints each is told, those at one address together.
+begin hidden run small.yaml -o hidden --no-frames
+debug "$firmware" <<'G'
+break main
+continue
+tbreak pipeline_done
+continue
+set var frame_in[0x40] = ~frame_in[0x40]
+set var frame_in[0x80] = ~frame_in[0x80]
+print $before = frame_in[0x40]
+watch frame_in[0x40]
+continue
+print $before == frame_in[0x40]
+delete
+awatch frame_in[0x80]
+awatch *(short *)&frame_in[0x80]
+awatch frame_in[0x83]
+monitor watch dma 0x800150c0,4 w
+continue
+continue
+continue
+monitor watch clear
+delete
+detach
+G
+end 0 'Program received signal SIGTRAP' '= 1$'
+said() { sed -n '/^\$1 = /,$p' hidden.gdb |
+  grep -E '^(vpfe wrote|the core does not|Program received)|^Hardware access .*: '; }
+want='vpfe wrote 0x80015040 at NS
+the core does not see it: its D-cache or buffers hold other bytes there
+Program received signal SIGTRAP, Trace/breakpoint trap.
+Hardware access (read/write) watchpoint 4: frame_in[0x80]
+Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
+Hardware access (read/write) watchpoint 6: frame_in[0x83]
+vpfe wrote 0x80015080 at NS
+Hardware access (read/write) watchpoint 4: frame_in[0x80]
+Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
+vpfe wrote 0x80015083 at NS
+Hardware access (read/write) watchpoint 6: frame_in[0x83]
+vpfe wrote 0x800150c0 at NS
+Program received signal SIGTRAP, Trace/breakpoint trap.'
+[ "$(said | sed 's/ at [0-9.]* ns/ at NS/')" = "$want" ] || fail "hidden: $(cat hidden.gdb)"
+
 # Stepped through the time of the same write, the core stops at the boundary behind it.
 begin awake run small.yaml -o awake --no-frames -s load.outstanding=1
 debug "$firmware" <<'G'

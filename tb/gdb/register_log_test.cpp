@@ -83,5 +83,30 @@ TEST_F(RegisterLogTest, TheRingKeepsTheLast) {
             "8.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000007\n");
 }
 
+TEST_F(RegisterLogTest, TheRingsSizeChangesWithWhatItHolds) {
+  const auto values = [this] {
+    std::string out, text = log.text();
+    for (std::size_t at = 0; (at = text.find("= 0x0000000", at)) != std::string::npos; at += 12)
+      out += text[at + 11];
+    return out;
+  };
+  log.keep(3);
+  log.start({.pattern = "DATA", .kept = log.kept()});
+  for (std::uint32_t k = 1; k < 6; ++k) access(8, 4, true, k);
+  EXPECT_EQ(values(), "345");
+  log.keep(4);
+  EXPECT_EQ(values(), "345");
+  access(8, 4, true, 6);
+  access(8, 4, true, 7);
+  EXPECT_EQ(values(), "4567");
+  log.keep(2);
+  EXPECT_EQ(values(), "67");
+  access(8, 4, true, 8);
+  access(8, 4, true, 9);
+  access(8, 4, true, 1);
+  EXPECT_EQ(values(), "91");
+  EXPECT_EQ(log.text().find("(8 earlier accesses"), 0u) << log.text();
+}
+
 }  // namespace
 }  // namespace fovea::app

@@ -76,6 +76,95 @@ G
   grep -q 'sum 352 watched 452 limit 7' "patch$memory.out" || fail "patch: $(cat "patch$memory.out")"
 done
 
+# Several watchpoints at one instruction, and one where a breakpoint stops already.
+begin several exec "$program"
+debug "$program" <<'G'
+set var limit = 9
+load
+compare-sections
+break store_pair
+continue
+watch pair.first
+watch pair.second
+awatch pair.third
+continue
+continue
+continue
+delete
+break *store_here
+watch pair.second
+continue
+continue
+print pair.second
+delete
+info registers banked
+detach
+G
+end 35 'Start address 0x' '"?\.text"?,.*: matched' 'pair.first$' 'New value = 11' 'New value = 12' 'New value = 13' 'New value = 22' '= 22$' \
+  'sp_irq +0x'
+[ "$(grep -cE '^(Hardware|$).*watchpoint [0-9]+: pair' several.gdb)" = 8 ] ||
+  fail "several: not each watchpoint once: $(cat several.gdb)"
+grep -q 'MIS-MATCHED' several.gdb && fail "several: load: $(cat several.gdb)"
+grep -q 'ttbr' several.gdb && fail "several: more than one group: $(cat several.gdb)"
+
+# A program that fails stops at the instruction that does, for whoever is there.
+for memory in '' --fast-memory; do
+  begin "fails$memory" exec $memory "$program" load
+  debug "$program" <<'G'
+continue
+backtrace
+info registers pc cpsr
+monitor where
+monitor set ddr.PBBPR=1
+continue
+G
+  end 3 'data abort with no handler' 'Program received signal SIGABRT' '#1 .* in main' \
+    'cpsr +0x[0-9a-f]*d3 ' 'core: has failed at 0x' 'exited with code 03'
+done
+begin left exec "$program" load
+debug "$program" <<'G'
+detach
+G
+end 3
+
+# Ctrl-C while the program waits for console input, which comes later or not at all.
+mkfifo typed
+exec 8<>typed
+for memory in '' --fast-memory; do
+  input=typed begin "input$memory" exec $memory "$program" input
+  debug_until '^waiting' "$program" <<'G'
+continue
+backtrace
+monitor where
+monitor time
+detach
+G
+  echo 'a line' >&8
+  end 35 'Program received signal SIGINT' 'in main' 'core: waits for console input since' \
+    '^[0-9.]+ ns, core clock [0-9]+$' 'detached'
+  grep -q '^read a line' "input$memory.out" || fail "input: $(cat "input$memory.out")"
+done
+input=typed begin unfed exec "$program" input
+debug_until '^waiting' "$program" <<'G'
+continue
+kill
+G
+end 3 'SIGINT'
+exec 8>&-
+
+# A second debugger is turned away, and the first goes on.
+begin two exec "$program"
+"$gdb" -nx -batch -ex "target remote 127.0.0.1:$port" -ex 'shell sleep 3' -ex 'detach' "$program" \
+  >two.first 2>&1 </dev/null &
+first=$!
+sleep 1
+debug "$program" <<'G'
+info registers pc
+G
+wait $first
+end 35 'Remote connection closed|Connection (reset|closed)'
+grep -q detached two.first || fail "two: $(cat two.first)"
+
 # Ctrl-C, leaving, coming back, and an end by the debugger.
 begin stop exec "$program" wait
 debug_until '^waiting' "$program" <<'G'

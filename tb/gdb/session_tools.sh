@@ -11,7 +11,7 @@ begin() {
   name=$1
   shift
   : >"$name.err"
-  "$fovea" "$@" --gdb :0 >"$name.out" 2>"$name.err" </dev/null &
+  "$fovea" "$@" --gdb :0 >"$name.out" 2>"$name.err" <"${input:-/dev/null}" &
   pid=$!
   for _ in $(seq 100); do
     port=$(sed -n 's/.*target remote 127.0.0.1:\([0-9]*\).*/\1/p' "$name.err")

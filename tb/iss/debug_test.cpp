@@ -449,6 +449,126 @@ TEST(CoreControlTest, WatchpointsMindKindAndBytes) {
   EXPECT_TRUE(none.pcs.empty());
 }
 
+/// As debuggers do at a watchpoint: all points out, one step, all points in again.
+struct SteppingMachine : ControlledMachine {
+  using Stop = CoreControl::Stop;
+  using Watch = CoreControl::Watch;
+  struct Point {
+    std::uint32_t va, bytes;
+    Watch kind;
+  };
+  std::vector<Point> points;
+  struct Seen {
+    std::uint32_t pc, address;
+    bool past;
+    std::uint32_t r2;
+    friend bool operator==(const Seen&, const Seen&) = default;
+  };
+  std::vector<Seen> seen;
+  bool stepping_over = false;
+  std::function<void()> at_watch;
+  SteppingMachine() {
+    control.on_stop = [this](const Stop& s) {
+      if (s.reason == Stop::Reason::kWatch) {
+        seen.push_back({core.reg(15), s.address, s.past, core.reg(2)});
+        if (at_watch) at_watch();
+        for (const auto& p : points) control.clear_watch(p.va, p.bytes, p.kind);
+        control.step();
+        stepping_over = true;
+      } else if (stepping_over) {
+        stepping_over = false;
+        for (const auto& p : points) control.set_watch(p.va, p.bytes, p.kind);
+      }
+    };
+  }
+  void watch(std::uint32_t va, std::uint32_t bytes, Watch kind) {
+    points.push_back({va, bytes, kind});
+    control.set_watch(va, bytes, kind);
+  }
+};
+
+constexpr const char* kTwoAtOnce = R"(
+    mov r1, #0x1000
+    mov r2, #1
+    stmia r1, {r2, r3, r4}
+    mov r2, #2
+    mov r2, #3
+    ldr r4, [r1]
+)";
+
+TEST(CoreControlTest, EachWatchpointOfOneInstructionIsTold) {
+  SteppingMachine m;
+  m.watch(0x1000, 4, CoreControl::Watch::kWrite);
+  m.watch(0x1008, 4, CoreControl::Watch::kAccess);
+  m.watch(0x1000, 2, CoreControl::Watch::kAccess);  // the debugger finds it by the first's address
+  m.watch(0x1010, 4, CoreControl::Watch::kWrite);
+  m.execute(kTwoAtOnce);
+  // The second one behind the store, and before anything more happens.
+  EXPECT_EQ(m.seen, (std::vector<SteppingMachine::Seen>{
+                        {8, 0x1000, false, 1}, {12, 0x1008, true, 1}, {20, 0x1000, false, 3}}));
+  SteppingMachine free;
+  free.execute(kTwoAtOnce);
+  EXPECT_EQ(m.core.clock_count(), free.core.clock_count());
+}
+
+TEST(CoreControlTest, WhatWasNotTouchedInTheEndIsNotTold) {
+  SteppingMachine moved;  // the debugger goes on elsewhere
+  moved.watch(0x1000, 4, CoreControl::Watch::kWrite);
+  moved.watch(0x1004, 4, CoreControl::Watch::kWrite);
+  moved.at_watch = [&] { moved.debug.set_reg(15, 16); };
+  moved.execute(kTwoAtOnce);
+  EXPECT_EQ(moved.seen.size(), 1u);
+
+  SteppingMachine deleted;  // nobody watches it any more
+  deleted.watch(0x1000, 4, CoreControl::Watch::kWrite);
+  deleted.watch(0x1004, 4, CoreControl::Watch::kWrite);
+  deleted.at_watch = [&] {
+    deleted.control.clear_watch(0x1004, 4, CoreControl::Watch::kWrite);
+    deleted.points.resize(1);
+  };
+  deleted.execute(kTwoAtOnce);
+  EXPECT_EQ(deleted.seen.size(), 1u);
+}
+
+/// Where a debugger goes on from, for whatever reason it stood there, is looked at as well.
+TEST(CoreControlTest, WatchpointIsFoundBehindAnotherStopAtItsInstruction) {
+  for (const bool by_step : {false, true}) {
+    ControlledMachine m;
+    m.control.set_watch(0x1008, 4, CoreControl::Watch::kWrite);
+    if (!by_step) m.control.set_breakpoint(8);
+    std::vector<CoreControl::Stop::Reason> reasons;
+    m.control.on_stop = [&](const CoreControl::Stop& s) {
+      reasons.push_back(s.reason);
+      m.pcs.push_back(m.core.reg(15));
+      if (by_step && m.core.reg(15) < 8) m.control.step();
+    };
+    if (by_step) m.control.request_halt();
+    m.execute(kTwoAtOnce);
+    using R = CoreControl::Stop::Reason;
+    if (by_step) {
+      EXPECT_EQ(reasons, (std::vector<R>{R::kRequest, R::kStep, R::kStep, R::kWatch}));
+    } else {
+      EXPECT_EQ(reasons, (std::vector<R>{R::kBreakpoint, R::kWatch}));
+    }
+    EXPECT_EQ(m.pcs.back(), 8u);
+  }
+}
+
+TEST(CoreControlTest, UnalignedAddressesTouchTheWholeWordOrHalfWord) {
+  ControlledMachine m;
+  m.control.set_watch(0x1000, 1, CoreControl::Watch::kAccess);
+  m.execute(R"(
+    mov r1, #0x1000
+    ldr r2, [r1, #3]
+    ldr r2, [r1, #4]
+    strh r2, [r1, #1]
+    ldrb r2, [r1, #1]
+    add r3, r1, #2
+    swp r2, r2, [r3]
+  )");
+  EXPECT_EQ(m.pcs, (std::vector<std::uint32_t>{4, 12, 24}));
+}
+
 /// A debugger may change where and in which state the program goes on.
 TEST(CoreControlTest, RegistersAreChangedInAStop) {
   ControlledMachine m;

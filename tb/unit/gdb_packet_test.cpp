@@ -1,62 +1,14 @@
 // GDB's framing and packets against a fake target; malformed input in every piece.
 #include <gtest/gtest.h>
 
-#include <map>
 #include <random>
 
-#include "sw/fovea/gdb_server.h"
+#include "tb/unit/gdb_fake_target.h"
 
 namespace fovea::app {
 namespace {
 
 using Kind = GdbFramer::Event::Kind;
-
-struct Target : GdbTarget {
-  std::vector<unsigned> numbers = {0, 1, 15, 25};
-  std::map<unsigned, std::uint32_t> values = {{0, 0x11223344}, {1, 1}, {15, 0x8000}, {25, 0xD3}};
-  std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(256);
-  std::vector<std::string> points;
-  std::string asked;
-  std::span<const unsigned> registers() const override { return numbers; }
-  std::optional<std::uint32_t> read_register(unsigned n) const override {
-    const auto found = values.find(n);
-    return found == values.end() ? std::nullopt : std::optional(found->second);
-  }
-  bool write_register(unsigned n, std::uint32_t v) override {
-    if (!values.contains(n) || n == 25) return false;
-    values[n] = v;
-    return true;
-  }
-  bool inside(std::uint32_t a, std::size_t n) const {
-    return a >= 0x1000 && a - 0x1000 + n <= memory.size();
-  }
-  bool read_memory(std::uint32_t a, std::span<std::uint8_t> to) override {
-    if (!inside(a, to.size())) return false;
-    std::copy_n(memory.begin() + (a - 0x1000), to.size(), to.begin());
-    return true;
-  }
-  bool write_memory(std::uint32_t a, std::span<const std::uint8_t> from) override {
-    if (!inside(a, from.size())) return false;
-    std::copy(from.begin(), from.end(), memory.begin() + (a - 0x1000));
-    return true;
-  }
-  bool set_point(Point k, std::uint32_t a, std::uint32_t n) override {
-    points.push_back(std::to_string(static_cast<int>(k)) + ":" + std::to_string(a) + ":" +
-                     std::to_string(n));
-    return true;
-  }
-  bool clear_point(Point, std::uint32_t, std::uint32_t) override {
-    if (!points.empty()) points.pop_back();
-    return true;
-  }
-  void clear_all_points() override { points.clear(); }
-  std::string target_xml() const override { return std::string(10'000, 't') + "}#$*end"; }
-  std::string memory_map_xml() const override { return "map"; }
-  std::string monitor(const std::string& command) override {
-    asked = command;
-    return std::string(2500, 'm');
-  }
-};
 
 std::vector<GdbFramer::Event> events(std::string_view bytes, std::size_t piece = ~std::size_t{0}) {
   GdbFramer f;
@@ -111,8 +63,89 @@ TEST(GdbFramerTest, LongestPacketIsTakenAndALongerOneIsNot) {
   EXPECT_EQ(e[1].payload, "after");
 }
 
+/// The sum as GDB counts it, over the bytes as they travel.
+std::string framed(const std::string& bytes) {
+  unsigned sum = 0;
+  for (const char c : bytes) sum += static_cast<unsigned char>(c);
+  char end[4];
+  std::snprintf(end, sizeof end, "#%02x", sum & 0xFFu);
+  return "$" + bytes + end;
+}
+
+TEST(GdbFramerTest, OneSumOf256IsRight) {
+  unsigned good = 0;
+  for (unsigned sum = 0; sum < 256; ++sum) {
+    char packet[16];
+    std::snprintf(packet, sizeof packet, "$m0,4#%02x", sum);
+    const auto e = events(packet);
+    ASSERT_EQ(e.size(), 1u) << packet;
+    good += e[0].kind == Kind::kPacket;
+    EXPECT_EQ(e[0].kind == Kind::kPacket, framed("m0,4") == packet) << packet;
+  }
+  EXPECT_EQ(good, 1u);
+  EXPECT_EQ(events("$OK#9A")[0].kind, Kind::kPacket) << "capital digits";
+  for (const char* sum : {"#9g", "#g9", "# 9", "#+9", "#-1", "#0x"})
+    EXPECT_EQ(events(std::string("$OK") + sum)[0].kind, Kind::kBroken) << sum;
+}
+
+TEST(GdbFramerTest, EscapesOfEscapes) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"a}}b", "a]b"}, {"}}}}", "]]"}, {"}}}\x03", "]#"}, {"}]", "}"},
+      {"}\x04", "$"}, {"}\x0a", "*"}, {std::string("}") + '\0', " "}};
+  for (const auto& [bytes, payload] : cases) {
+    const auto e = events(framed(bytes));
+    ASSERT_EQ(e.size(), 1u);
+    EXPECT_EQ(e[0].kind, Kind::kPacket);
+    EXPECT_EQ(e[0].payload, payload);
+  }
+  for (const char* bytes : {"}", "a}", "}}}"}) EXPECT_EQ(events(framed(bytes))[0].kind, Kind::kBroken);
+}
+
+/// Runs are the target's right only: from GDB a star is a star. Ours never send one bare.
+TEST(GdbFramerTest, RunLengthsAreNotExpandedNorMadeByAccident) {
+  EXPECT_EQ(events(framed("0* "))[0].payload, "0* ");
+  EXPECT_EQ(gdb_frame("0*!"), framed("0}\x0a!"));
+}
+
+TEST(GdbFramerTest, AnInterruptIsOneBetweenPacketsOnly) {
+  const auto e = events(framed("X1000,1:\x03") + "\x03" + framed("?"));
+  ASSERT_EQ(e.size(), 3u);
+  EXPECT_EQ(e[0].payload, "X1000,1:\x03");
+  EXPECT_EQ(e[1].kind, Kind::kInterrupt);
+  EXPECT_EQ(e[2].payload, "?");
+}
+
+TEST(GdbFramerTest, WhatIsCutOffIsForgottenWithTheConnection) {
+  const std::string packet = framed("X1000,3:a}]b");
+  for (std::size_t n = 0; n < packet.size(); ++n) {
+    GdbFramer f;
+    f.feed(packet.substr(0, n));
+    EXPECT_FALSE(f.next().has_value()) << n;
+    f.clear();
+    f.feed(framed("?"));
+    const auto e = f.next();
+    ASSERT_TRUE(e && e->kind == Kind::kPacket) << n;
+    EXPECT_EQ(e->payload, "?");
+  }
+}
+
+TEST(GdbFramerTest, EndlessPacketsAreDroppedToTheirEnd) {
+  for (const char* filler : {"x", "}]", "}}", "*"}) {
+    std::string bytes;
+    while (bytes.size() < (1u << 20)) bytes += filler;
+    const auto e = events("$" + bytes + "#00+" + framed("?"), 4096);
+    ASSERT_EQ(e.size(), 3u) << filler;
+    EXPECT_EQ(e[0].kind, Kind::kBroken) << filler;
+    EXPECT_EQ(e[1].kind, Kind::kAck) << filler;
+    EXPECT_EQ(e[2].payload, "?") << filler;
+  }
+  const auto e = events(framed(std::string(2 * kGdbPacketBytes, 'x')));
+  ASSERT_EQ(e.size(), 1u);
+  EXPECT_EQ(e[0].kind, Kind::kBroken) << "its sum is right, and it is too long";
+}
+
 struct GdbProtocolTest : testing::Test {
-  Target target;
+  test::FakeGdbTarget target;
   GdbProtocol protocol{target};
   std::string ask(std::string_view packet) {
     const auto a = protocol.handle(packet);
@@ -143,6 +176,30 @@ TEST_F(GdbProtocolTest, Memory) {
   EXPECT_EQ(ask("X1000,2:0"), "E16");
   EXPECT_EQ(ask("X1000,0:"), "OK");
   EXPECT_EQ(ask("mffffffff,ffffffff"), "E0e");
+}
+
+/// Binary data through frame and packet: every byte value, in the order in which they are hardest.
+TEST_F(GdbProtocolTest, BinaryWritesCarryEveryByte) {
+  std::string data;
+  for (unsigned k = 0; k < 256; ++k) data += static_cast<char>(k * 167 + 0x23);
+  const auto e = events(gdb_frame("X1000,100:" + data), 3);
+  ASSERT_EQ(e.size(), 1u);
+  EXPECT_EQ(ask(e[0].payload), "OK");
+  EXPECT_TRUE(std::equal(data.begin(), data.end(), target.memory.begin(), [](char a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(a) == b;
+  }));
+  const auto before = target.memory;
+  for (const char* packet : {"X1000,3:ab", "X1000,1:ab", "X1000:ab", "X1000,2", "X,2:ab", "X1000,:",
+                             "X1000,ffffffff:ab", "X100000000,2:ab", "X-1,1:a", "X1000,2 :ab"})
+    EXPECT_EQ(ask(packet), "E16") << packet;
+  EXPECT_EQ(ask("Xffffffff,2:ab"), "E0e") << "beyond the end of the addresses";
+  EXPECT_EQ(target.memory, before);
+}
+
+TEST_F(GdbProtocolTest, ThreadsAreOne) {
+  EXPECT_EQ(ask("T1"), "OK");
+  for (const char* packet : {"T2", "T", "T0", "T-1", "Tp1.1"}) EXPECT_EQ(ask(packet), "E16") << packet;
+  EXPECT_EQ(ask("Hg0"), "OK");
 }
 
 TEST_F(GdbProtocolTest, PointsAndResumption) {
@@ -179,6 +236,8 @@ TEST_F(GdbProtocolTest, StopsSayWhy) {
   EXPECT_EQ(ask("?"), "T05swbreak:;thread:1;");
   protocol.stopped({});
   EXPECT_EQ(ask("?"), "T02thread:1;");
+  protocol.stopped({GdbStop::Reason::kFailed, 0});
+  EXPECT_EQ(ask("?"), "T06thread:1;");
 }
 
 TEST_F(GdbProtocolTest, DescriptionsComeInPieces) {

@@ -485,7 +485,8 @@ class Core : public Background {
   Picoseconds mark_at_ = 0, mark_next_ = kNever;  // the second may come before the first is taken
   unsigned chain_ = 0;                // exceptions since the last completed instruction
   bool failing_ = false;
-  std::uint32_t failed_pc_ = 0;
+  std::uint32_t failed_pc_ = 0, failed_cpsr_ = 0;
+  const char* failed_by_ = "";
 
   CoreControl* debugger_ = nullptr;   // looks at every instruction boundary while a debugger wants to
   void control_boundary();             // debug_control.cpp

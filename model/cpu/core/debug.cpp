@@ -140,6 +140,12 @@ void CoreDebug::set_cpsr(std::uint32_t value) {
   core_.line_va_ = 1;
 }
 
+void CoreDebug::back_to_failure() {
+  if (!core_.failing_) return;
+  set_cpsr(core_.failed_cpsr_);
+  core_.pc_ = core_.next_pc_ = core_.failed_pc_;
+}
+
 bool CoreDebug::set_spsr(std::uint32_t value) {
   const unsigned bank = Core::bank(core_.cpsr());
   if (bank == 0) return false;

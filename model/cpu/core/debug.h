@@ -78,6 +78,13 @@ class CoreDebug {
   /// The instruction word or half-word that the core would fetch at `va`.
   std::optional<Instruction> instruction(std::uint32_t va);
 
+  /// Memory as everybody but the core sees it: without its caches and buffers.
+  bool read_behind(std::uint32_t pa, std::span<std::uint8_t> to) {
+    return memory_.debug_read(pa, to);
+  }
+  /// Behind a GuestFailure: mode and pc are again those of the instruction with which it began.
+  void back_to_failure();
+
   /// The core's own time, which may lie ahead of everybody else's.
   Picoseconds now() const { return core_.time(core_.cycle_); }
 

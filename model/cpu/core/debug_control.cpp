@@ -63,6 +63,8 @@ void CoreControl::step(std::uint32_t from, std::uint32_t to) {
 void CoreControl::clear() {
   breakpoints_.clear();
   watches_.clear();
+  touching_.clear();
+  touched_.clear();
   halt_ = step_ = follow_ = false;
   stop_after_ = kNever;
   update();
@@ -80,33 +82,78 @@ void CoreControl::disturb() {
   core_.stop_cycle_ = 0;
 }
 
+/// A debugger takes an address for all its watchpoints there.
+void CoreControl::drop_ranges_with(std::uint32_t address, std::vector<Touched>& list) {
+  std::erase_if(list,
+                [&](const Touched& t) { return address - t.range.va < t.range.bytes; });
+}
+
+/// Whether what was about to be touched has been: an interrupt or an abort may have come instead.
+void CoreControl::note_touched() {
+  touched_.clear();
+  if (core_.counts().instructions == touching_count_ + 1) touched_.swap(touching_);
+  touching_.clear();
+}
+
 void CoreControl::boundary() {
   if (follow_) settle_bus();
-  const std::uint32_t pc = core_.pc_;
-  std::optional<Stop> stop;
-  if (breakpoints_.contains(pc))
-    stop = Stop{Stop::Reason::kBreakpoint};
-  else if (step_ && (pc < step_from_ || pc >= step_to_))
-    stop = Stop{Stop::Reason::kStep};
-  else if (halt_)
-    stop = Stop{Stop::Reason::kRequest};
-  else if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
-    stop = Stop{Stop::Reason::kTime};
-  else if (!watches_.empty())
-    stop = watched(pc);
-  if (!stop) return;
-  halt_ = step_ = false;
-  if (stop->reason == Stop::Reason::kTime) stop_after_ = kNever;
-  update();
-  if (on_stop) on_stop(*stop);
+  note_touched();
+  std::optional<Stop> stop = look(core_.pc_);
+  while (stop) {
+    const std::uint32_t pc = core_.pc_;
+    halt_ = step_ = false;
+    if (stop->reason == Stop::Reason::kTime) stop_after_ = kNever;
+    update();
+    if (on_stop) on_stop(*stop);
+    stop = look_again(*stop, pc);
+  }
+}
+
+std::optional<CoreControl::Stop> CoreControl::look(std::uint32_t pc) {
+  if (breakpoints_.contains(pc)) return Stop{Stop::Reason::kBreakpoint};
+  if (step_ && (pc < step_from_ || pc >= step_to_)) return Stop{Stop::Reason::kStep};
+  if (halt_) return Stop{Stop::Reason::kRequest};
+  if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
+    return Stop{Stop::Reason::kTime};
+  return tell(pc);
+}
+
+/// When the core is to go on: what else there is to tell at this boundary. `pc` is where it stood.
+std::optional<CoreControl::Stop> CoreControl::look_again(const Stop& last, std::uint32_t pc) {
+  if (core_.stop_requested_) return std::nullopt;
+  if (last.past && step_) return Stop{Stop::Reason::kStep};
+  while (!touched_.empty()) {
+    const Touched t = touched_.front();
+    touched_.erase(touched_.begin());
+    if (std::find(watches_.begin(), watches_.end(), t.range) == watches_.end()) continue;
+    drop_ranges_with(t.address, touched_);
+    return Stop{Stop::Reason::kWatch, t.range.kind, t.address, true};
+  }
+  if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
+    return Stop{Stop::Reason::kTime};
+  const bool told = last.reason == Stop::Reason::kWatch && !last.past && core_.pc_ == pc;
+  if (told) return std::nullopt;
+  touching_.clear();
+  return tell(core_.pc_);
+}
+
+std::optional<CoreControl::Stop> CoreControl::tell(std::uint32_t pc) {
+  if (watches_.empty()) return std::nullopt;
+  touching_ = watched(pc);
+  touching_count_ = core_.counts().instructions;
+  if (touching_.empty()) return std::nullopt;
+  const Touched first = touching_.front();
+  drop_ranges_with(first.address, touching_);
+  return Stop{Stop::Reason::kWatch, first.range.kind, first.address};
 }
 
 /// A watchpoint stops before the access, as the core's own breakpoint unit does.
-std::optional<CoreControl::Stop> CoreControl::watched(std::uint32_t pc) {
+std::vector<CoreControl::Touched> CoreControl::watched(std::uint32_t pc) const {
+  std::vector<Touched> out;
   const auto decoded = debug_.instruction(pc);
-  if (!decoded || decoded->op < Op::kLdr || decoded->op > Op::kSwpb) return std::nullopt;
+  if (!decoded || decoded->op < Op::kLdr || decoded->op > Op::kSwpb) return out;
   const Instruction& i = *decoded;
-  if (!holds(i.cond, core_.cpsr())) return std::nullopt;
+  if (!holds(i.cond, core_.cpsr())) return out;
   const bool thumb = i.flags & kThumbInsn;
   const std::uint32_t seen_pc = (pc + (thumb ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
   const std::uint32_t base = i.rn == 15 ? seen_pc : core_.reg(i.rn);
@@ -122,8 +169,8 @@ std::optional<CoreControl::Stop> CoreControl::watched(std::uint32_t pc) {
     }
     case Op::kSwp:
     case Op::kSwpb:
-      t.va = base;
       t.bytes = i.op == Op::kSwp ? 4 : 1;
+      t.va = base & ~(t.bytes - 1);
       t.reads = t.writes = true;
       break;
     default: {
@@ -135,6 +182,7 @@ std::optional<CoreControl::Stop> CoreControl::watched(std::uint32_t pc) {
         case Op::kLdrd: case Op::kStrd: t.bytes = 8; break;
         default: t.bytes = 4; break;
       }
+      t.va &= ~(std::min(t.bytes, 4u) - 1);  // the low bits of an unaligned address only rotate
     }
   }
   switch (i.op) {
@@ -147,10 +195,9 @@ std::optional<CoreControl::Stop> CoreControl::watched(std::uint32_t pc) {
     if (w.kind == Watch::kWrite ? !t.writes : w.kind == Watch::kRead ? !t.reads : false) continue;
     const std::uint64_t from = std::max(t.va, w.va);
     const std::uint64_t to = std::min(std::uint64_t{t.va} + t.bytes, std::uint64_t{w.va} + w.bytes);
-    if (from < to)
-      return Stop{Stop::Reason::kWatch, w.kind, static_cast<std::uint32_t>(from)};
+    if (from < to) out.push_back({w, static_cast<std::uint32_t>(from)});
   }
-  return std::nullopt;
+  return out;
 }
 
 }  // namespace fovea::cpu

@@ -19,6 +19,7 @@ class CoreControl {
     enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch, kTime } reason;
     Watch watch = Watch::kAccess;   ///< kWatch: which kind of watchpoint
     std::uint32_t address = 0;      ///< kWatch: first watched address that will be touched
+    bool past = false;  ///< kWatch: the instruction before this boundary has touched it
   };
 
   CoreControl(Core& core, CoreDebug& debug) : core_(core), debug_(debug) {}
@@ -27,7 +28,10 @@ class CoreControl {
   CoreControl& operator=(const CoreControl&) = delete;
 
   /// Called at a boundary, on the core's own stack, before the instruction at the pc; the core goes
-  /// on with that instruction when it returns.
+  /// on with that instruction when it returns, unless that touches what is watched by then and
+  /// nobody was told yet. Of the watched ranges that one instruction touches the first is told
+  /// before it, the others when the core is to go on behind it and they are still watched. A step
+  /// from there ends where it began: there is no instruction left to step over.
   std::function<void(const Stop&)> on_stop;
 
   void set_breakpoint(std::uint32_t va) { breakpoints_.insert(va), update(); }
@@ -59,14 +63,26 @@ class CoreControl {
     Watch kind;
     friend bool operator==(const Range&, const Range&) = default;
   };
+  struct Touched {
+    Range range;
+    std::uint32_t address;
+  };
   void boundary();
   void update();
-  std::optional<Stop> watched(std::uint32_t pc);
+  std::optional<Stop> look(std::uint32_t pc);
+  std::optional<Stop> look_again(const Stop& last, std::uint32_t pc);
+  std::vector<Touched> watched(std::uint32_t pc) const;
+  std::optional<Stop> tell(std::uint32_t pc);
+  void note_touched();
+  static void drop_ranges_with(std::uint32_t address, std::vector<Touched>& list);
 
   Core& core_;
   CoreDebug& debug_;
   std::set<std::uint32_t> breakpoints_;
   std::vector<Range> watches_;
+  std::vector<Touched> touching_;      // by the instruction at which the core stands, beside the told
+  std::uint64_t touching_count_ = 0;   // instructions that were executed before it
+  std::vector<Touched> touched_;       // by the instruction before, not yet told
   bool halt_ = false, step_ = false, follow_ = false;
   Picoseconds stop_after_ = kNever;
   std::uint32_t step_from_ = 0, step_to_ = 0;

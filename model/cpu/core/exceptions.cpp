@@ -99,12 +99,15 @@ void Core::take(Exception e, std::uint32_t return_address) {
                                 {0x10, 0x17}, {0x18, 0x12}, {0x1C, 0x11}};
   constexpr const char* kNames[] = {"reset", "undefined instruction", "SWI", "prefetch abort",
                                     "data abort", "IRQ", "FIQ"};
-  if (chain_ == 0) failed_pc_ = pc_;
+  if (chain_ == 0) {
+    failed_pc_ = pc_;
+    failed_cpsr_ = cpsr_;
+    failed_by_ = kNames[static_cast<unsigned>(e)];
+  }
   // A vector that itself faults without one instruction completed will do so for ever.
   if (++chain_ > 3) {
     failing_ = true;
-    throw GuestFailure(std::string(kNames[static_cast<unsigned>(e)]) +
-                       " with no handler: its vector faults again");
+    throw GuestFailure(std::string(failed_by_) + " with no handler: its vector faults again");
   }
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
   const std::uint32_t saved = cpsr_;

@@ -1,0 +1,143 @@
+// The server over real connections: one debugger, acknowledgements, whatever else arrives.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <random>
+#include <thread>
+
+#include "tb/unit/gdb_fake_target.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr const char* kWhy = "$?#3f";
+constexpr const char* kStopped = "$T02thread:1;#";
+
+class Client {
+ public:
+  explicit Client(std::uint16_t port) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in a{};
+    a.sin_family = AF_INET;
+    a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    a.sin_port = htons(port);
+    EXPECT_EQ(::connect(fd_, reinterpret_cast<sockaddr*>(&a), sizeof a), 0);
+  }
+  ~Client() { ::close(fd_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  void say(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t n = ::send(fd_, text.data(), text.size(), MSG_NOSIGNAL);
+      if (n <= 0) return;
+      text.remove_prefix(static_cast<std::size_t>(n));
+    }
+  }
+  /// What comes until `end` is in it, the connection ends or a second has passed.
+  std::string hear(std::string_view end) {
+    std::string out;
+    pollfd p{fd_, POLLIN, 0};
+    while (out.find(end) == std::string::npos && ::poll(&p, 1, 1000) > 0) {
+      std::array<char, 4096> bytes;
+      const ssize_t n = ::recv(fd_, bytes.data(), bytes.size(), 0);
+      if (n <= 0) {
+        closed = true;
+        break;
+      }
+      out.append(bytes.data(), static_cast<std::size_t>(n));
+    }
+    return out;
+  }
+  std::string ask(std::string_view text, std::string_view end) { return say(text), hear(end); }
+  /// Leaves, and waits until the server has seen it.
+  void leave() {
+    ::shutdown(fd_, SHUT_WR);
+    while (!closed && !hear("#").empty()) {
+    }
+  }
+  bool closed = false;
+
+ private:
+  int fd_;
+};
+
+struct GdbServerTest : testing::Test {
+  test::FakeGdbTarget target;
+  std::atomic<bool> stop{false};
+  GdbServer server{0, target, stop};
+  std::vector<GdbResume::Kind> resumed;
+  std::thread thread{[this] {
+    do resumed.push_back(server.serve({}).kind);
+    while (resumed.back() != GdbResume::Kind::kKill);
+  }};
+  /// Ends the server; `resumed` may be looked at.
+  void end() {
+    stop = true;
+    if (thread.joinable()) thread.join();
+  }
+  ~GdbServerTest() override { end(); }
+};
+
+TEST_F(GdbServerTest, ASecondDebuggerIsRefusedAndTheFirstGoesOn) {
+  Client first(server.port());
+  EXPECT_NE(first.ask(kWhy, "#").find(kStopped), std::string::npos);
+  Client second(server.port());
+  EXPECT_EQ(second.ask(kWhy, "#"), "");
+  EXPECT_TRUE(second.closed);
+  EXPECT_NE(first.ask(kWhy, "#").find(kStopped), std::string::npos);
+}
+
+TEST_F(GdbServerTest, TheNextOneComesWhenTheFirstIsGone) {
+  for (const char* last : {"", "$D#44", "$Z0,80"}) {
+    Client client(server.port());
+    EXPECT_NE(client.ask(kWhy, "#").find(kStopped), std::string::npos) << last;
+    client.say("$Z0,8000,4#de");
+    client.say(last);
+  }
+  Client client(server.port());
+  EXPECT_NE(client.ask(kWhy, "#").find(kStopped), std::string::npos);
+  client.ask("$k#6b", "#");
+  end();
+  EXPECT_EQ(resumed, (std::vector<GdbResume::Kind>{GdbResume::Kind::kContinue,
+                                                   GdbResume::Kind::kKill}));
+  EXPECT_TRUE(target.points.empty()) << "they go with their debugger";
+}
+
+TEST_F(GdbServerTest, AcknowledgementsAndRepeats) {
+  Client c(server.port());
+  const std::string answer = c.ask(kWhy, "#d4");
+  EXPECT_EQ(answer, std::string("+") + kStopped + "d4");
+  EXPECT_EQ(c.ask("-", "#d4"), answer.substr(1));
+  EXPECT_EQ(c.ask("$?#00", "-"), "-");
+  EXPECT_EQ(c.ask("$QStartNoAckMode#b0", "#9a"), "+$OK#9a");
+  EXPECT_EQ(c.ask(std::string("+-$?#00") + kWhy, "#d4"), answer.substr(1))
+      << "neither repeats nor complaints where nothing is acknowledged";
+}
+
+/// Noise, cut packets and packets that never end, each from a debugger of its own.
+TEST_F(GdbServerTest, NothingThatArrivesEndsIt) {
+  std::mt19937 rng(11);
+  const std::string pieces[] = {"$", "#", "}", "*", "\x03", "+", "-", "00", "?", "g", "m0,ffffffff",
+                                "X1000,4:", "qRcmd,", "vCont;s:1", "Z9,0,0", "qXfer:features:read:"};
+  for (unsigned k = 0; k < 200; ++k) {
+    Client c(server.port());
+    std::string text;
+    for (unsigned n = rng() % 60; n; --n) {
+      text += pieces[rng() % std::size(pieces)];
+      if (rng() % 4 == 0) text += static_cast<char>(rng());
+    }
+    if (k % 50 == 0) text = "$" + std::string(1u << 20, "x}*$"[k / 50]);
+    c.say(text);
+    c.leave();
+    EXPECT_TRUE(c.closed) << k;
+  }
+  Client c(server.port());
+  EXPECT_EQ(c.ask(kWhy, "#d4"), std::string("+") + kStopped + "d4");
+}
+
+}  // namespace
+}  // namespace fovea::app
