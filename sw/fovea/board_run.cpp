@@ -1,4 +1,5 @@
 // `fovea run` on the board: loads footage and program, runs the window, gathers the figures.
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fmt/format.h>
 
 #include "model/board/board.h"
 #include "model/video/scene/ahead.h"

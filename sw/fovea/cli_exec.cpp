@@ -99,15 +99,17 @@ void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
         return s.empty() ? std::string("a regular expression is needed; '.' takes all") : "";
       });
   command
-      .add_option("--log-registers-kept", request.kept,
-                  "How many of the last accesses are kept (4096); with --gdb also of a log that the "
-                  "debugger begins")
+      .add_option(
+          "--log-registers-kept", request.kept,
+          "How many of the last accesses are kept (4096); with --gdb also of a log that the "
+          "debugger begins")
       ->check(CLI::Range(std::size_t{1}, kRegisterLogMost));
 }
 
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
   if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
-    throw UserError("--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
+    throw UserError(
+        "--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
 }
 
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {

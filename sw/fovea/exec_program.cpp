@@ -103,8 +103,7 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
   if (ram_base)
     m.ram_base = *ram_base;
   else
-    m.ram_base =
-        lowest ? static_cast<std::uint32_t>(*lowest / ram_size * ram_size) : kChipSdram;
+    m.ram_base = lowest ? static_cast<std::uint32_t>(*lowest / ram_size * ram_size) : kChipSdram;
   m.tcm = m.ram_base != 0;
   for (const auto& s : segments_) {
     if (inside(s, m.ram_base, ram_size) || (m.tcm && in_internal_ram(s))) continue;

@@ -72,9 +72,9 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
   go_on(resume, over_watched && resume.kind == GdbResume::Kind::kStep);
 }
 
-/// A debugger that finds its watchpoint hit takes all of them out and steps over the instruction that
-/// it takes for the cause. Behind another master's access there is none: that step ends where it
-/// began, for a core at a boundary as for one that sleeps.
+/// A debugger that finds its watchpoint hit takes all of them out and steps over the instruction
+/// that it takes for the cause. Behind another master's access there is none: that step ends where
+/// it began, for a core at a boundary as for one that sleeps.
 GdbResume GdbSession::serve(const GdbStop& stop) {
   serving_ = true;
   watched_at_stop_ = watched_;
@@ -143,7 +143,8 @@ GdbStop GdbSession::take_hit() {
   stop.note = fmt::format("{} {} 0x{:08x} at {} ns\n", kMasterNames[index(h.master)],
                           h.write ? "wrote" : "read", h.pa, ns_text(h.at));
   const bool hidden = h.write && hidden_from_core(h);
-  if (hidden) stop.note += "the core does not see it: its D-cache or buffers hold other bytes there\n";
+  if (hidden)
+    stop.note += "the core does not see it: its D-cache or buffers hold other bytes there\n";
   if (h.watch.packet && !(hidden && h.watch.kind == GdbMasters::Kind::kWrite))
     stop.reason = h.watch.kind == GdbMasters::Kind::kWrite  ? GdbStop::Reason::kWrite
                   : h.watch.kind == GdbMasters::Kind::kRead ? GdbStop::Reason::kRead

@@ -116,7 +116,7 @@ class GdbSession : private GdbTarget {
   std::vector<Range> watched_at_stop_;
   bool watch_masters_ = true;
   std::vector<GdbMasters::Hit> hits_;  // not told yet; some may lie ahead
-  bool asleep_ = false;  // served while the core waits
+  bool asleep_ = false;                // served while the core waits
   const char* waits_for_ = "an interrupt";
   bool failed_ = false;
   bool halt_seen_ = false, serving_ = false;

@@ -102,8 +102,8 @@ TEST_F(GdbServerTest, TheNextOneComesWhenTheFirstIsGone) {
   EXPECT_NE(client.ask(kWhy, "#").find(kStopped), std::string::npos);
   client.ask("$k#6b", "#");
   end();
-  EXPECT_EQ(resumed, (std::vector<GdbResume::Kind>{GdbResume::Kind::kContinue,
-                                                   GdbResume::Kind::kKill}));
+  EXPECT_EQ(resumed,
+            (std::vector<GdbResume::Kind>{GdbResume::Kind::kContinue, GdbResume::Kind::kKill}));
   EXPECT_TRUE(target.points.empty()) << "they go with their debugger";
 }
 
@@ -121,8 +121,9 @@ TEST_F(GdbServerTest, AcknowledgementsAndRepeats) {
 /// Noise, cut packets and packets that never end, each from a debugger of its own.
 TEST_F(GdbServerTest, NothingThatArrivesEndsIt) {
   std::mt19937 rng(11);
-  const std::string pieces[] = {"$", "#", "}", "*", "\x03", "+", "-", "00", "?", "g", "m0,ffffffff",
-                                "X1000,4:", "qRcmd,", "vCont;s:1", "Z9,0,0", "qXfer:features:read:"};
+  const std::string pieces[] = {
+      "$", "#", "}",           "*",        "\x03",   "+",         "-",      "00",
+      "?", "g", "m0,ffffffff", "X1000,4:", "qRcmd,", "vCont;s:1", "Z9,0,0", "qXfer:features:read:"};
   for (unsigned k = 0; k < 200; ++k) {
     Client c(server.port());
     std::string text;

@@ -89,16 +89,21 @@ TEST(GdbFramerTest, OneSumOf256IsRight) {
 }
 
 TEST(GdbFramerTest, EscapesOfEscapes) {
-  const std::pair<std::string, std::string> cases[] = {
-      {"a}}b", "a]b"}, {"}}}}", "]]"}, {"}}}\x03", "]#"}, {"}]", "}"},
-      {"}\x04", "$"}, {"}\x0a", "*"}, {std::string("}") + '\0', " "}};
+  const std::pair<std::string, std::string> cases[] = {{"a}}b", "a]b"},
+                                                       {"}}}}", "]]"},
+                                                       {"}}}\x03", "]#"},
+                                                       {"}]", "}"},
+                                                       {"}\x04", "$"},
+                                                       {"}\x0a", "*"},
+                                                       {std::string("}") + '\0', " "}};
   for (const auto& [bytes, payload] : cases) {
     const auto e = events(framed(bytes));
     ASSERT_EQ(e.size(), 1u);
     EXPECT_EQ(e[0].kind, Kind::kPacket);
     EXPECT_EQ(e[0].payload, payload);
   }
-  for (const char* bytes : {"}", "a}", "}}}"}) EXPECT_EQ(events(framed(bytes))[0].kind, Kind::kBroken);
+  for (const char* bytes : {"}", "a}", "}}}"})
+    EXPECT_EQ(events(framed(bytes))[0].kind, Kind::kBroken);
 }
 
 /// Runs are the target's right only: from GDB a star is a star. Ours never send one bare.
@@ -185,9 +190,8 @@ TEST_F(GdbProtocolTest, BinaryWritesCarryEveryByte) {
   const auto e = events(gdb_frame("X1000,100:" + data), 3);
   ASSERT_EQ(e.size(), 1u);
   EXPECT_EQ(ask(e[0].payload), "OK");
-  EXPECT_TRUE(std::equal(data.begin(), data.end(), target.memory.begin(), [](char a, std::uint8_t b) {
-    return static_cast<std::uint8_t>(a) == b;
-  }));
+  EXPECT_TRUE(std::equal(data.begin(), data.end(), target.memory.begin(),
+                         [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }));
   const auto before = target.memory;
   for (const char* packet : {"X1000,3:ab", "X1000,1:ab", "X1000:ab", "X1000,2", "X,2:ab", "X1000,:",
                              "X1000,ffffffff:ab", "X100000000,2:ab", "X-1,1:a", "X1000,2 :ab"})
@@ -198,7 +202,8 @@ TEST_F(GdbProtocolTest, BinaryWritesCarryEveryByte) {
 
 TEST_F(GdbProtocolTest, ThreadsAreOne) {
   EXPECT_EQ(ask("T1"), "OK");
-  for (const char* packet : {"T2", "T", "T0", "T-1", "Tp1.1"}) EXPECT_EQ(ask(packet), "E16") << packet;
+  for (const char* packet : {"T2", "T", "T0", "T-1", "Tp1.1"})
+    EXPECT_EQ(ask(packet), "E16") << packet;
   EXPECT_EQ(ask("Hg0"), "OK");
 }
 

@@ -84,8 +84,7 @@ void CoreControl::disturb() {
 
 /// A debugger takes an address for all its watchpoints there.
 void CoreControl::drop_ranges_with(std::uint32_t address, std::vector<Touched>& list) {
-  std::erase_if(list,
-                [&](const Touched& t) { return address - t.range.va < t.range.bytes; });
+  std::erase_if(list, [&](const Touched& t) { return address - t.range.va < t.range.bytes; });
 }
 
 /// Whether what was about to be touched has been: an interrupt or an abort may have come instead.

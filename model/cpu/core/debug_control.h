@@ -19,7 +19,7 @@ class CoreControl {
     enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch, kTime } reason;
     Watch watch = Watch::kAccess;   ///< kWatch: which kind of watchpoint
     std::uint32_t address = 0;      ///< kWatch: first watched address that will be touched
-    bool past = false;  ///< kWatch: the instruction before this boundary has touched it
+    bool past = false;              ///< kWatch: the instruction before this boundary has touched it
   };
 
   CoreControl(Core& core, CoreDebug& debug) : core_(core), debug_(debug) {}
@@ -80,9 +80,9 @@ class CoreControl {
   CoreDebug& debug_;
   std::set<std::uint32_t> breakpoints_;
   std::vector<Range> watches_;
-  std::vector<Touched> touching_;      // by the instruction at which the core stands, beside the told
-  std::uint64_t touching_count_ = 0;   // instructions that were executed before it
-  std::vector<Touched> touched_;       // by the instruction before, not yet told
+  std::vector<Touched> touching_;  // by the instruction at which the core stands, beside the told
+  std::uint64_t touching_count_ = 0;  // instructions that were executed before it
+  std::vector<Touched> touched_;      // by the instruction before, not yet told
   bool halt_ = false, step_ = false, follow_ = false;
   Picoseconds stop_after_ = kNever;
   std::uint32_t step_from_ = 0, step_to_ = 0;
