@@ -19,8 +19,8 @@ inline const Instruction* Core::fetch() {
 }
 
 /// @return nullptr: a fault was noted
-inline const Translation* Core::translate(std::uint32_t mva, bool write, bool user,
-                                          bool instruction) {
+[[gnu::always_inline]] inline const Translation* Core::translate(std::uint32_t mva, bool write,
+                                                                 bool user, bool instruction) {
   if (!(control_ & 1u)) return &flat_;
   const Memo& memo = (instruction ? imemo_ : dmemo_)[(mva >> 10) % kMemos];
   if (memo.page == memo_key(mva, user) && (write ? memo.write_ok : memo.read_ok))

@@ -38,13 +38,10 @@ class RegionMap {
     found_ = {};
     return true;
   }
-  std::uint8_t find(std::uint32_t address) const {
-    Found& f = found_[address / 0x10'0000 % found_.size()];
-    if (address - f.first >= f.bytes) [[unlikely]] {
-      const std::size_t k = piece(address);
-      const std::uint64_t end = k + 1 < pieces_.size() ? pieces_[k + 1].first : kEnd;
-      f = {pieces_[k].first, end - pieces_[k].first, pieces_[k].id};
-    }
+  [[gnu::always_inline]] std::uint8_t find(std::uint32_t address) const {
+    const Found& f = found_[address / 0x10'0000 % found_.size()];
+    if (address - f.first >= f.bytes) [[unlikely]]
+      return find_anew(address);
     return f.id;
   }
   /// Numbers are places in here.
@@ -61,6 +58,13 @@ class RegionMap {
     std::uint64_t first = 0, bytes = 0;
     std::uint8_t id = kOther;
   };
+  [[gnu::noinline]] std::uint8_t find_anew(std::uint32_t address) const {
+    const std::size_t k = piece(address);
+    const std::uint64_t end = k + 1 < pieces_.size() ? pieces_[k + 1].first : kEnd;
+    found_[address / 0x10'0000 % found_.size()] = {pieces_[k].first, end - pieces_[k].first,
+                                                  pieces_[k].id};
+    return pieces_[k].id;
+  }
   std::uint8_t at(std::uint64_t address) const { return pieces_[piece(address)].id; }
   std::size_t piece(std::uint64_t address) const {
     std::size_t low = 0, count = pieces_.size();
