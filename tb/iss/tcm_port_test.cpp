@@ -196,7 +196,7 @@ TEST(TcmPortTest, AWalkBeforeTheAccessLetsTheBurstIn) {
   EXPECT_EQ(run(walk + probe->between() + 8)->core.reg(0), 0u);
 }
 
-TEST(TcmPortTest, ANeighbourOnTheBusDoesNotMatter) {
+TEST(TcmPortTest, WaitStatesAreTheCoresOwn) {
   Straight shared(Machine::Settings{{"cpu.tcm.wait_states", "1cycles"}}, 0x4000);
   Shared alone(Machine::Settings{{"cpu.tcm.wait_states", "1cycles"}});
   alone.execute("svc #1\n" + nops(200) + "svc #1\n" + nops(80));

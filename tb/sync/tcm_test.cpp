@@ -107,7 +107,8 @@ class Traffic : public sc_core::sc_module {
   void next() {
     const unsigned bytes = 4u << random(5);
     const std::uint64_t what = random(8);
-    if (what == 0) return master.read(kSdram + 0x20'0000 + static_cast<std::uint32_t>(random(64) * 64), 64);
+    if (what == 0)
+      return master.read(kSdram + 0x20'0000 + static_cast<std::uint32_t>(random(64) * 64), 64);
     std::array<std::uint8_t, 64> data;
     if (what == 1) {
       for (unsigned k = 0; k < 16; ++k) {
@@ -151,8 +152,9 @@ std::string run(const Case& s) {
   mem::DdrModule ddr("ddr", dp);
   Traffic first("first", Master::kEdmaTc0Write, s.seed * 2 + 1),
       second("second", Master::kEdmaTc1Read, s.seed * 2 + 2);
-  ClockSignal arm_clk{"arm_clk", Frequency(297'000'000)}, ddr_clk{"ddr_clk", Frequency(243'000'000)},
-      scr_clk{"scr_clk", Frequency(121'500'000)};
+  ClockSignal arm_clk{"arm_clk", Frequency(297'000'000)};
+  ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
+  ClockSignal scr_clk{"scr_clk", Frequency(121'500'000)};
   sc_core::sc_signal<bool> on{"on", true}, irq{"irq"}, fiq{"fiq"};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
