@@ -33,6 +33,7 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   if (!(ddr == ddr_.frequency())) {
     ddr_.restart(ddr, at);
     if (ddr_.running()) first_edge_ = ddr_.edge_at_or_after(at);
+    time_given();
   }
   if (!(scr == scr_.frequency())) scr_.restart(scr, at);
   running_ = ddr_.running() && scr_.running();

@@ -217,9 +217,10 @@ void DdrController::urgency_changed() {
 }
 
 template <Cmd kCmd>
-inline void DdrController::note(std::uint64_t clock) {
+inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
   Given& g = given(given_count_++);
   g.clock = clock;
+  g.at = at;
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
     g.blame = kRefreshed;
@@ -230,7 +231,8 @@ inline void DdrController::note(std::uint64_t clock) {
 }
 
 template <Cmd kCmd>
-inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock) {
+inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock,
+                                 Picoseconds at) {
   device_.issue<kCmd>(bank, row, clock);
   if constexpr (kCmd == Cmd::kAct) {
     for (std::uint32_t set = of_bank_[bank]; set; set &= set - 1)
@@ -241,13 +243,13 @@ inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t
     hits_ = 0;
   }
   command_free_ = clock + 1;
-  note<kCmd>(clock);
+  note<kCmd>(clock, at);
   if (hook_) [[unlikely]]
     hook_(hook_self_, kCmd, bank, row, clock);
 }
 
-void DdrController::issue_refresh(std::uint64_t clock) {
-  issue<Cmd::kRef>(0, 0, clock);
+void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
+  issue<Cmd::kRef>(0, 0, clock, at);
   ++stats.refreshes;
   gap_ = 0;
   if (owed_) --owed_;
@@ -281,13 +283,13 @@ void DdrController::issue_refresh(std::uint64_t clock) {
     if (!device_.all_closed()) {
       const std::uint64_t at = std::max(from, device_.earliest_pre_all());
       if (at >= until) return;
-      issue<Cmd::kPreAll>(0, 0, at);
+      issue<Cmd::kPreAll>(0, 0, at, ddr_.edge(at));
       from = at + 1;
     }
     const std::uint64_t at = std::max(from, device_.earliest_refresh());
     if (at >= until) return;
     count_owed(at);
-    issue_refresh(at);
+    issue_refresh(at, ddr_.edge(at));
   }
 }
 
@@ -311,7 +313,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
   if (self_refresh && !device_.all_closed()) {
     const std::uint64_t at = std::max(command_free_, device_.earliest_pre_all());
     if (at >= until) return false;
-    issue<Cmd::kPreAll>(0, 0, at);
+    issue<Cmd::kPreAll>(0, 0, at, ddr_.edge(at));
   }
   std::uint64_t at = std::max({command_free_, device_.quiet(), cke_free_});
   if (self_refresh) at = std::max(at, device_.earliest_refresh());
@@ -350,6 +352,7 @@ void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
   Given& g = given(given_count_++);
   g.clock = clock;
+  g.at = ddr_.edge(clock);
   g.cmd = cmd;
   g.blame = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
@@ -375,7 +378,7 @@ void DdrController::step() {
       }
       e->classified = true;
       ++stats.activates;
-      issue<Cmd::kAct>(e->bank, e->row, clock);
+      issue<Cmd::kAct>(e->bank, e->row, clock, next_);
       break;
     case Cmd::kPre:
       if (!e) {
@@ -387,15 +390,15 @@ void DdrController::step() {
         ++stats.bank[e->bank].row_conflicts;
       }
       e->classified = true;
-      issue<Cmd::kPre>(e->bank, e->row, clock);
+      issue<Cmd::kPre>(e->bank, e->row, clock, next_);
       break;
     case Cmd::kPreAll:
       begin_refresh();
-      issue<Cmd::kPreAll>(0, 0, clock);
+      issue<Cmd::kPreAll>(0, 0, clock, next_);
       break;
     default:
       begin_refresh();
-      issue_refresh(clock);
+      issue_refresh(clock, next_);
       break;
   }
   plan();
@@ -413,12 +416,12 @@ bool DdrController::row_wanted(const Entry& by_others) const {
 /// The last column of a request under the closed-page rule.
 template <Cmd kCmd>
 [[gnu::noinline]] void DdrController::give_closing_column(const Entry& e, std::uint64_t clock) {
-  if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock);
+  if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock, next_);
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
   hits_ &= ~of_bank_[e.bank];
   command_free_ = clock + 1;
-  note<kCmd>(clock);
+  note<kCmd>(clock, next_);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
 }
 
@@ -436,7 +439,7 @@ void DdrController::first_column() {
   if (closes_rows_ && e.chunks == 1) [[unlikely]]
     give_closing_column<kCmd>(e, clock);
   else
-    issue<kCmd>(e.bank, e.row, clock);
+    issue<kCmd>(e.bank, e.row, clock, next_);
   ++stats.bursts;
   if constexpr (kCmd == Cmd::kWr) {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
@@ -472,7 +475,7 @@ void DdrController::last_column() {
   if (closes_rows_) [[unlikely]]
     give_closing_column<kCmd>(e, clock);
   else
-    issue<kCmd>(e.bank, e.row, clock);
+    issue<kCmd>(e.bank, e.row, clock, next_);
   finish(clock);
 }
 

@@ -180,6 +180,7 @@ class DdrController {
   /// on the turnaround, and an ACT or PRE of the read itself on its row.
   struct alignas(32) Given {
     std::uint64_t clock = 0;
+    Picoseconds at = 0;        // of that clock; before a clock's restart: the restart
     std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
     std::uint8_t blame = kRefreshed;
@@ -198,6 +199,7 @@ class DdrController {
   void blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own);
   void charge_read(const Entry& e, const Waits& w);
   void sum_given();
+  void time_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
   bool submit_queued(const DdrRequest& request, std::uint64_t arrived);
@@ -243,10 +245,11 @@ class DdrController {
   }
   void count_expired(std::uint64_t clock);
   template <Cmd kCmd>
-  void note(std::uint64_t clock);
+  void note(std::uint64_t clock, Picoseconds at);
+  /// `at`: of the clock; a decision's is next_.
   template <Cmd kCmd>
-  void issue(unsigned bank, std::uint32_t row, std::uint64_t clock);
-  void issue_refresh(std::uint64_t clock);
+  void issue(unsigned bank, std::uint32_t row, std::uint64_t clock, Picoseconds at);
+  void issue_refresh(std::uint64_t clock, Picoseconds at);
   void prepare();
   bool row_wanted(const Entry& by_others) const;
   template <Cmd kCmd>

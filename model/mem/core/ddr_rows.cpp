@@ -46,6 +46,7 @@ void DdrController::close_overdue_row(std::uint64_t clock) {
   command_free_ = clock + 1;
   Given& g = given_[given_count_++ % kGiven];
   g.clock = clock;
+  g.at = next_;
   g.blame = kRefreshed;
   g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh

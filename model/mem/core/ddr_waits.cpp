@@ -3,6 +3,11 @@
 
 namespace fovea::mem {
 
+/// After another clock: edges before its restart have no times any more.
+void DdrController::time_given() {
+  for (Given& g : given_) g.at = ddr_.edge(std::max(g.clock, first_edge_));
+}
+
 /// Brings blames_ up to the newest command.
 void DdrController::sum_given() {
   // A whole row is written from the one before, as masked words: one word changed and then read back
@@ -14,18 +19,16 @@ void DdrController::sum_given() {
   }();
   if (given_count_ - summed_ > kGiven) summed_ = given_count_ - kGiven;
   if (summed_ + 1 >= given_count_) return;
-  // Edges before a clock's restart have no times any more.
-  const auto time = [this](std::uint64_t clock) { return ddr_.edge(std::max(clock, first_edge_)); };
   const std::uint64_t write = config_.timing.WL() + DdrTiming::kBurstClocks;
-  for (Picoseconds from = time(given(summed_).clock); summed_ + 1 < given_count_; ++summed_) {
+  for (Picoseconds from = given(summed_).at; summed_ + 1 < given_count_; ++summed_) {
     const Given& g = given(summed_);
     const std::uint64_t next = given(summed_ + 1).clock;
-    const Picoseconds to = time(next);
+    const Picoseconds to = given(summed_ + 1).at;
     const Blames& before = blames_[summed_ % kGiven];
     Blames& after = blames_[(summed_ + 1) % kGiven];
     const Blames& only = kOnly[g.blame];
     if (g.cmd == Cmd::kWr && g.clock + write < next) [[unlikely]] {
-      const Picoseconds over = time(g.clock + write);
+      const Picoseconds over = ddr_.edge(std::max(g.clock + write, first_edge_));
       for (std::size_t i = 0; i < before.size(); ++i)
         after[i] = before[i] + (only[i] & (over - from)) + (kOnly[kTurned][i] & (to - over));
     } else {
@@ -66,23 +69,23 @@ inline void DdrController::blame_each(const Entry& e, std::uint64_t n, std::uint
   }
   std::uint64_t at = ready;
   Picoseconds from = ddr_.edge(at);
-  const auto until = [&](std::uint64_t clock, Culprit c) {
+  const auto until = [&](std::uint64_t clock, Picoseconds to, Culprit c) {
     if (clock <= at) return;
-    const Picoseconds to = ddr_.edge(clock);
     charge(e, c, to - from);
     at = clock;
     from = to;
   };
-  until(given(n).clock, own);  // what is not known is its own
+  until(given(n).clock, given(n).at, own);  // what is not known is its own
   for (; n < last; ++n) {
     const Given& g = given(n);
-    const std::uint64_t next = given(n + 1).clock;
+    const Given& next = given(n + 1);
     if (g.cmd == Cmd::kWr) {
-      until(std::min(next, g.clock + config_.timing.WL() + DdrTiming::kBurstClocks),
-            culprit_of(g.blame));
-      until(next, Culprit::kTurnaround);
+      const std::uint64_t over =
+          std::min(next.clock, g.clock + config_.timing.WL() + DdrTiming::kBurstClocks);
+      if (over > at) until(over, ddr_.edge(over), culprit_of(g.blame));
+      until(next.clock, next.at, Culprit::kTurnaround);
     } else {
-      until(next, prepared >> (last - n) & 1u ? row : culprit_of(g.blame));
+      until(next.clock, next.at, prepared >> (last - n) & 1u ? row : culprit_of(g.blame));
     }
   }
 }
@@ -97,7 +100,7 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
   for (std::size_t i = kMasterCount; i < kBlames; ++i) w.add(culprit_of(i), now[i] - before[i]);
   const Given& first = given(n);
   if (first.clock > ready) {  // what is not known is its own
-    w.add(own, ddr_.edge(first.clock) - start);
+    w.add(own, first.at - start);
   } else if (first.clock < ready) {  // without the part before `ready`
     Picoseconds until = start;
     if (first.cmd == Cmd::kWr) {
@@ -105,8 +108,7 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
       if (over < ready) until = ddr_.edge(std::max(over, first_edge_));
       w.take_back(Culprit::kTurnaround, start - until);
     }
-    const Picoseconds from = ddr_.edge(std::max(first.clock, first_edge_));
-    w.take_back(culprit_of(first.blame), until - from);
+    w.take_back(culprit_of(first.blame), until - first.at);
   }
 }
 
@@ -123,7 +125,7 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
   for (std::uint64_t p = e.prepared; p > oldest; p = given(p - 1).before) {
     const Given& g = given(p - 1);
     if (g.clock < ready) break;
-    row += ddr_.edge(given(p).clock) - ddr_.edge(g.clock);
+    row += given(p).at - g.at;
     closed_other |= g.cmd == Cmd::kPre;
   }
   w.take_back(own, row);
@@ -135,7 +137,7 @@ inline void DdrController::blame_sums(Waits& w, std::uint64_t n, std::uint64_t r
 /// became ready.
 [[gnu::noinline]] void DdrController::attribute(const Entry& e, std::uint64_t clock) {
   const std::uint64_t ready = std::max(e.ready, first_edge_);
-  read_waited_ = ddr_.edge(clock) - ddr_.edge(ready);
+  read_waited_ = next_ - ddr_.edge(ready);
   // The last command at or before `ready`, or the oldest one that is known.
   const std::uint64_t last = given_count_ - 1;
   const std::uint64_t oldest = last - std::min<std::uint64_t>(last, kGiven - 1);
