@@ -96,17 +96,7 @@ DdrConfig DdrModule::programmed() const { return decode(regs); }
     if (!admit(m)) return refuse_in_order(m, at);
     FOVEA_CHECK(!controller_.shut(), "a request while another one waits at the door");
   }
-  DdrRequest r;
-  r.cookie = &m;
-  r.master = m.master;
-  r.priority = m.priority;
-  r.write = m.write;
-  r.bytes = m.bytes;
-  r.address = m.address;
-  r.critical = m.critical;
-  r.data = m.data;
-  r.parts = m.parts;
-  return controller_.submit_inside(r, at) ? Taken::kYes : Taken::kWaits;
+  return controller_.submit_inside(m, at) ? Taken::kYes : Taken::kWaits;
 }
 
 tlm::tlm_sync_enum DdrModule::nb_transport_fw(MemRequest& m, MemPhase& phase,

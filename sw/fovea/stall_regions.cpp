@@ -77,7 +77,7 @@ std::vector<StallRow> stall_rows(const cpu::Counts& from, const cpu::Counts& to,
     for (std::size_t r = 0; r < regions.names().size(); ++r)
       for (std::size_t c = 0; c < cpu::kStallCulprits; ++c) {
         const auto cause = static_cast<cpu::Cause>(k);
-        const std::uint64_t n = to.stalled(cause, r, c) - from.stalled(cause, r, c);
+        const std::uint64_t n = to.stalled(cause, r, c, from);
         if (n != 0)
           rows.push_back({cpu::kCauseNames[k], regions.names()[r],
                           std::string(cpu::stall_culprit_name(c)), n});

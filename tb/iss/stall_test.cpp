@@ -210,6 +210,32 @@ TEST(SplitTest, PartsAddUpAndAreInProportion) {
   }
 }
 
+/// What is read is the difference of two states: no share of it is below zero, and they add up.
+TEST(StallTableTest, SharesOfAWindowAreOfTheWindow) {
+  std::mt19937_64 random(5);
+  auto table = std::make_unique<StallTable>();
+  for (unsigned window = 0; window < 2000; ++window) {
+    const auto before = std::make_unique<StallTable>(*table);
+    std::uint64_t clocks = 0;
+    for (std::uint64_t n = random() % 4; n > 0; --n) {
+      RequestWaits parts;
+      parts.clear();
+      for (std::uint64_t k = random() % 5; k > 0; --k)
+        parts.add(static_cast<Culprit>(random() % kCulprits), random() % 20'000);
+      const std::uint64_t now = random() % 9;
+      table->split(Cause::kIcache, RegionMap::kOther, now, parts, parts.total());
+      clocks += now;
+    }
+    std::uint64_t sum = 0;
+    for (std::size_t c = 0; c < kStallCulprits; ++c) {
+      const std::uint64_t n = table->by(Cause::kIcache, c, *before);
+      ASSERT_LE(n, clocks) << "window " << window << ", culprit " << stall_culprit_name(c);
+      sum += n;
+    }
+    ASSERT_EQ(sum, clocks);
+  }
+}
+
 TEST(RegionMapTest, TheLastRangeWins) {
   std::mt19937 random(3);
   for (unsigned n = 0; n < 200; ++n) {

@@ -42,17 +42,25 @@ class StallTable {
   bool operator==(const StallTable&) const = default;
   /// Each end of a culprit's share is rounded, so that whole clocks add up exactly.
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit) const {
-    const Parts* const row = &parts_[place(cause, region, 0)];
-    const Parts before = std::accumulate(row, row + culprit, Parts{0});
-    return rounded(before + row[culprit]) - rounded(before);
+    return at(cause, region, culprit, StallTable());
+  }
+  /// Of what was added since the table was `from`: the difference of two rounded shares may be less
+  /// than nothing.
+  std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit,
+                   const StallTable& from) const {
+    const std::size_t first = place(cause, region, 0);
+    Parts before = 0;
+    for (std::size_t k = first; k < first + culprit; ++k) before += parts_[k] - from.parts_[k];
+    const Parts own = parts_[first + culprit] - from.parts_[first + culprit];
+    return rounded(before + own) - rounded(before);
   }
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
     parts_[place(cause, region, culprit)] += clocks << kFraction;
   }
   /// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds. What the
   /// waits leave of `span`, and what is lost by rounding, is service as well.
-  [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks, const RequestWaits& waits,
-             std::uint64_t span) {
+  [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks,
+                                    const RequestWaits& waits, std::uint64_t span) {
     if (clocks == 0) return;
     Parts* const row = &parts_[place(cause, region, 0)];
     const std::uint64_t whole = std::max(waits.total(), span);
@@ -76,8 +84,11 @@ class StallTable {
   }
   /// Over all regions.
   std::uint64_t by(Cause cause, std::size_t culprit) const {
+    return by(cause, culprit, StallTable());
+  }
+  std::uint64_t by(Cause cause, std::size_t culprit, const StallTable& from) const {
     std::uint64_t sum = 0;
-    for (std::size_t r = 0; r < RegionMap::kMax; ++r) sum += at(cause, r, culprit);
+    for (std::size_t r = 0; r < RegionMap::kMax; ++r) sum += at(cause, r, culprit, from);
     return sum;
   }
   /// Over all regions and culprits.

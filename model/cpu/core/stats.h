@@ -66,9 +66,13 @@ struct Counts {
     translated_ram_ += on ? 0 - ram_accesses() : ram_accesses();
   }
 
-  std::uint64_t stalled(Cause cause, std::size_t region, std::size_t culprit) const {
-    if (cause != Cause::kInterlock) return stalls.at(cause, region, culprit);
-    return region == RegionMap::kNone && culprit == kCore ? stall[index(cause)] : 0;
+  /// Since the counts were `from`.
+  std::uint64_t stalled(Cause cause, std::size_t region, std::size_t culprit,
+                        const Counts& from) const {
+    if (cause != Cause::kInterlock) return stalls.at(cause, region, culprit, from.stalls);
+    return region == RegionMap::kNone && culprit == kCore
+               ? stall[index(cause)] - from.stall[index(cause)]
+               : 0;
   }
   /// The first cause whose clocks are not those of its regions and culprits; kCount: none.
   Cause unexplained() const {
@@ -181,7 +185,7 @@ struct CoreStats : StatGroup {
         by_culprit_.push_back(std::make_unique<Formula>(
             *this, "stall." + std::string(kCauseNames[k]) + ".by." + culprit, "cycles",
             "of stall." + std::string(kCauseNames[k]) + ": culprit " + culprit,
-            [this, cause, c] { return V(to.stalls.by(cause, c) - from.stalls.by(cause, c)); }));
+            [this, cause, c] { return V(to.stalls.by(cause, c, from.stalls)); }));
       }
     }
   }

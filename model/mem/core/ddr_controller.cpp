@@ -37,40 +37,65 @@ void DdrController::count_asleep(std::uint64_t until) {
     stats.active_power_down_clocks += clocks;
 }
 
+namespace {
+
+void* cookie_of(const DdrRequest& r) { return r.cookie; }
+void* cookie_of(MemRequest& r) { return &r; }
+
+/// Field by field: a copy of the whole, or by way of another one, would read bytes just written as
+/// wide words, for which the host has to wait.
+template <class Request>
+[[gnu::always_inline]] inline void put(DdrRequest& r, Request& from) {
+  r.cookie = cookie_of(from);
+  r.master = from.master;
+  r.priority = from.priority;
+  r.write = from.write;
+  r.bytes = from.bytes;
+  r.address = from.address;
+  r.critical = from.critical;
+  r.data = from.data;
+  r.parts = from.parts;
+}
+
+}  // namespace
+
 bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
   if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
     refuse(request);
-  return submit_inside(request, at);
+  return take_in(request, at);
 }
 
-bool DdrController::submit_inside(const DdrRequest& request, Picoseconds at) {
+bool DdrController::submit_inside(MemRequest& request, Picoseconds at) {
+  return take_in(request, at);
+}
+
+template <class Request>
+[[gnu::always_inline]] inline bool DdrController::take_in(Request& request, Picoseconds at) {
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
-  if (count_ == 0) {
-    if (idle_calm_ < arrived) [[unlikely]] {
-      idle(arrived);
-      wake(arrived);
-    }
-    last_arrival_ = queued_since_ = arrived;
-    count_ = 1;
-    alone_ = true;
-    order_[0] = 0;
-    fill(slots_[0], request, arrived);
-    plan_one(slots_[0]);
-    return true;
+  if (count_ != 0) return queue(request, arrived);
+  if (idle_calm_ < arrived) [[unlikely]] {
+    idle(arrived);
+    wake(arrived);
   }
-  return submit_queued(request, arrived);
+  last_arrival_ = queued_since_ = arrived;
+  count_ = 1;
+  alone_ = true;
+  order_[0] = 0;
+  fill(slots_[0], request, arrived);
+  plan_one(slots_[0]);
+  return true;
 }
 
-[[gnu::noinline]] bool DdrController::submit_queued(const DdrRequest& request,
-                                                    std::uint64_t arrived) {
+template <class Request>
+bool DdrController::queue(Request& request, std::uint64_t arrived) {
   const bool was_alone = alone_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
       (request.write && write_bytes_held_ + request.bytes > write_fifo_bytes_)) {
     door_full_ = shut_ = true;
-    door_ = request;
+    put(door_, request);
     door_arrived_ = arrived;
     return false;
   }
@@ -86,20 +111,11 @@ bool DdrController::submit_inside(const DdrRequest& request, Picoseconds at) {
   return true;
 }
 
-inline void DdrController::fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const {
-  // Field by field: a copy of the whole would read bytes just written as wide words, for which the
-  // host has to wait.
+template <class Request>
+inline void DdrController::fill(Entry& e, Request& request, std::uint64_t arrived) const {
   DdrRequest& r = e.request;
-  r.address = request.address;
-  __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
-  r.cookie = request.cookie;
-  r.master = request.master;
-  r.priority = request.priority;
-  r.write = request.write;
-  r.bytes = request.bytes;
-  r.critical = request.critical;
-  r.data = request.data;
-  r.parts = request.parts;
+  __builtin_prefetch(store_.at(request.address));  // the host's own memory is slow as well
+  put(r, request);
   e.ready = arrived + request_latency_;
   e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
   e.row = (r.address & row_mask_) >> row_shift_;
@@ -125,7 +141,8 @@ void DdrController::join_queue() {
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
 }
 
-[[gnu::noinline]] void DdrController::take(const DdrRequest& request, std::uint64_t arrived) {
+template <class Request>
+void DdrController::take(Request& request, std::uint64_t arrived) {
   const auto slot = static_cast<unsigned>(std::countr_zero(free_slots_));
   const std::uint32_t bit = 1u << slot;
   free_slots_ ^= bit;

@@ -10,6 +10,7 @@
 
 #include "model/common/clock.h"
 #include "model/common/masters.h"
+#include "model/common/mem_request.h"
 #include "model/common/waits.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_params.h"
@@ -81,8 +82,8 @@ class DdrController {
   /// ddr_accepted; the caller sends no other one before.
   bool submit(const DdrRequest& request, Picoseconds at);
   /// The same for a caller that knows the request to lie in the SDRAM, with no other at the door and
-  /// the clock running.
-  bool submit_inside(const DdrRequest& request, Picoseconds at);
+  /// the clock running. Its address is an offset in the SDRAM; it is its own cookie.
+  bool submit_inside(MemRequest& request, Picoseconds at);
   /// Stopped, or the door taken: no request may come.
   bool shut() const { return shut_; }
 
@@ -202,10 +203,16 @@ class DdrController {
   void time_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
-  bool submit_queued(const DdrRequest& request, std::uint64_t arrived);
-  void fill(Entry& e, const DdrRequest& request, std::uint64_t arrived) const;
+  // Request: DdrRequest or MemRequest.
+  template <class Request>
+  bool take_in(Request& request, Picoseconds at);
+  template <class Request>
+  [[gnu::noinline]] bool queue(Request& request, std::uint64_t arrived);
+  template <class Request>
+  void fill(Entry& e, Request& request, std::uint64_t arrived) const;
   void join_queue();
-  void take(const DdrRequest& request, std::uint64_t arrived);
+  template <class Request>
+  [[gnu::noinline]] void take(Request& request, std::uint64_t arrived);
   void plan();
   void plan_anew();
   void plan_one(Entry& e);
