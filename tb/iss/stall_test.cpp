@@ -49,7 +49,7 @@ struct Counting : MachineWith<Port> {
   /// Clocks between the last two notes.
   std::uint64_t clocks(Cause cause, const std::string& name, std::size_t culprit) const {
     const std::size_t r = region(name);
-    return at.back().stalled(cause, r, culprit) - at[at.size() - 2].stalled(cause, r, culprit);
+    return at.back().stalled(cause, r, culprit, at[at.size() - 2]);
   }
   std::uint64_t of_cause(Cause cause) const {
     return at.back().stall[index(cause)] - at[at.size() - 2].stall[index(cause)];

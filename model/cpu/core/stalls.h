@@ -42,7 +42,7 @@ class StallTable {
   bool operator==(const StallTable&) const = default;
   /// Each end of a culprit's share is rounded, so that whole clocks add up exactly.
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit) const {
-    return at(cause, region, culprit, StallTable());
+    return at(cause, region, culprit, empty());
   }
   /// Of what was added since the table was `from`: the difference of two rounded shares may be less
   /// than nothing.
@@ -84,7 +84,7 @@ class StallTable {
   }
   /// Over all regions.
   std::uint64_t by(Cause cause, std::size_t culprit) const {
-    return by(cause, culprit, StallTable());
+    return by(cause, culprit, empty());
   }
   std::uint64_t by(Cause cause, std::size_t culprit, const StallTable& from) const {
     std::uint64_t sum = 0;
@@ -98,6 +98,10 @@ class StallTable {
   }
 
  private:
+  static const StallTable& empty() {
+    static const StallTable table;
+    return table;
+  }
   using Parts = std::uint64_t;
   static constexpr unsigned kFraction = 24;
   static constexpr std::size_t kOfCause = RegionMap::kMax * kStallCulprits;
