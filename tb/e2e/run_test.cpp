@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <map>
 #include <systemc>
 
 #include "model/common/masters.h"
@@ -52,8 +53,21 @@ double real(const app::RunResult& r, const std::string& name) {
   return row ? std::get<double>(row->value) : 0;
 }
 
-/// Every cycle has one cause; every byte on the SDRAM has one master.
+/// Every cycle has one cause and that one's cycles their culprits; every byte on the SDRAM has one
+/// master. No figure went below zero.
 void expect_conservation(const app::RunResult& r) {
+  std::map<std::string, std::uint64_t> by_culprit;
+  for (const app::StatRow& row : r.stats) {
+    const auto* n = std::get_if<std::uint64_t>(&row.value);
+    if (!n) continue;
+    EXPECT_LT(*n, std::uint64_t{1} << 63) << row.name;
+    const auto by = row.name.find(".by.");
+    if (row.name.starts_with("cpu.stall.") && by != std::string::npos)
+      by_culprit[row.name.substr(0, by)] += *n;
+  }
+  EXPECT_GE(by_culprit.size(), 5u);
+  for (const auto& [cause, cycles] : by_culprit) EXPECT_EQ(count(r, cause), cycles) << cause;
+
   std::uint64_t causes = count(r, "cpu.issue") + count(r, "cpu.idle");
   for (const char* cause : {"interlock", "icache", "dcache", "write_buffer", "uncached", "tlb",
                             "tcm", "cache_op", "drain", "bus_sync"})
