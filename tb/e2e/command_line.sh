@@ -84,7 +84,10 @@ expect load_size 2 "load.size" '128' -- run "$out/small.yaml" -s load.outstandin
 # Ctrl-C: a valid partial result.
 "$fovea" run "$out/small.yaml" -s run.frames=100000 -o "$out/stopped" >/dev/null 2>&1 &
 pid=$!
-sleep 3
+for _ in {1..1200}; do  # until it has shown whole frames, however slow the host
+  [ -e "$out/stopped.tmp/frames/frame_000003.png" ] && break
+  sleep 0.1
+done
 kill -INT "$pid"
 wait "$pid"
 status=$?
