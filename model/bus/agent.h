@@ -132,6 +132,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     const Picoseconds h = next_event();
     return path_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
   }
+  /// Its outcome lets nobody else act by itself.
+  bool in_memory(const Transaction& tx) const { return tx.address >= sdram_base_; }
   /// Thread body brackets: the path is the agent's between enter() and leave().
   void enter() {
     running_ = true;
@@ -139,12 +141,13 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
       path_ = path.operator->();
       strict_ = path_->strict();
       decisions_ = path_->decision_places();
+      sdram_base_ = path_->memory_base();
     }
     if (!strict_) {
-      memory_base_ = path_->memory_base();
+      held_base_ = sdram_base_;
       for (Port& p : ports_) {
         p.least_latency = path_->least_latency(p.master);
-        if (p.known) p.held_from = memory_base_;
+        if (p.known) p.held_from = held_base_;
       }
     }
     now_ = kernel_();
@@ -204,7 +207,7 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     Port& p = ports_[tx.port];
     p.known = true;
     p.master = tx.master;
-    p.held_from = memory_base_;
+    p.held_from = held_base_;
   }
   /// A request held back goes the usual way: others may come in between.
   void put_out() {
@@ -278,7 +281,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   /// between, so that it need not go through the queues.
   Transaction* held_ = nullptr;
   std::array<Port, 8> ports_;
-  std::uint64_t memory_base_ = kNever;
+  std::uint64_t sdram_base_ = kNever;
+  std::uint64_t held_base_ = kNever;  // from here on requests may be held back
   bool running_ = false;
   unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act
   std::uint64_t seen_epoch_ = ~std::uint64_t{0};

@@ -6,18 +6,19 @@
 
 namespace fovea {
 namespace {
-constexpr unsigned kSubBits = 5;  // 32 buckets per factor of two
+constexpr unsigned kSubBits = 8;  // 256 buckets per factor of two
+constexpr std::uint64_t kSubBuckets = 1u << kSubBits;
 
 std::size_t bucket_of(std::uint64_t v) {
-  if (v < (1u << kSubBits)) return v;
+  if (v < kSubBuckets) return v;
   const unsigned exponent = static_cast<unsigned>(std::bit_width(v)) - 1 - kSubBits;
-  return (static_cast<std::size_t>(exponent + 1) << kSubBits) + ((v >> exponent) & 31u);
+  return (static_cast<std::size_t>(exponent + 1) << kSubBits) + ((v >> exponent) & (kSubBuckets - 1));
 }
 
 std::uint64_t upper_edge(std::size_t bucket) {
-  if (bucket < (1u << kSubBits)) return bucket;
+  if (bucket < kSubBuckets) return bucket;
   const std::size_t exponent = (bucket >> kSubBits) - 1;
-  return ((std::uint64_t{32} + (bucket & 31u) + 1) << exponent) - 1;
+  return ((kSubBuckets + (bucket & (kSubBuckets - 1)) + 1) << exponent) - 1;
 }
 }  // namespace
 

@@ -75,6 +75,7 @@ void Arm926::submit(BusAccess& a, Picoseconds at) {
   tx.data = a.data;
   tx.bytes = a.bytes;
   tx.parts = &a.parts;
+  a.outside = !in_memory(tx);
   Agent::submit(tx, at);
 }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "model/board/board.h"
+#include "model/common/slices.h"
 #include "model/video/scene/ahead.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/bus_trace_run.h"
@@ -254,9 +255,10 @@ RunResult BoardSimulation::run(const RunRequest& request) {
                                        request.stop, *request.notes);
   // Slices only let the host look in; nothing in the model depends on where they end.
   const Picoseconds slice = 5 * kPsPerMs;
+  Slices slices;
   std::string guest;
   for (;;) {
-    sc_core::sc_start(ps_time(gdb && gdb->hit_pending() ? kPsPerUs : slice));
+    slices.run(gdb && gdb->hit_pending() ? kPsPerUs : slice);
     request.progress.update({kernel_time(), board_->frames_in_window(), params_.run.frames(),
                              arm.core().instructions_executed()});
     if (!arm.failure().empty()) {
@@ -287,7 +289,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (board_->window_start() && guest.empty() && !(gdb && gdb->killed())) {
       board_->close_window(kernel_time() + slice);
       for (int i = 0; i < 20 && !(closed_ && arm.core().mark_done()); ++i)
-        sc_core::sc_start(ps_time(slice));
+        slices.run(slice);
     }
     // Without a window there is nothing to report but the guest's own words.
     if (!closed_ && board_->window_start()) close_window();

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "model/board/board_params.h"
+#include "model/common/slices.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/exec_board.h"
 #include "sw/fovea/flat_machine.h"
@@ -70,9 +71,10 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   });
   // Slices only let the host look in. No instruction takes as long as one.
   const Picoseconds slice = 10 * kPsPerMs;
+  Slices slices;
   std::string failure;
   for (std::uint64_t before = ~std::uint64_t{0};;) {
-    sc_core::sc_start(ps_time(slice));
+    slices.run(slice);
     failure = arm.failure();
     if (!failure.empty() || session.ended() || request.stop.load()) break;
     GdbSession* const gdb = session.gdb();

@@ -1,6 +1,7 @@
 #include "tb/e2e/rig.h"
 
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 
@@ -20,7 +21,7 @@ oracle::Frame crop(const video::Picture& p, unsigned x, unsigned y, unsigned wid
 }
 
 Rig::Rig(std::string elf)
-    : elf_(app::ElfImage::load(std::string(FOVEA_FIRMWARE_DIR) + "/" + elf)) {
+    : elf_(app::ElfImage::load(std::filesystem::path(FOVEA_FIRMWARE_DIR) / elf)) {
   params.declare(set_);
   set("camera.kind", "chart");
   set("ddr.check", "commands");
@@ -57,7 +58,7 @@ board::Board& Rig::build() {
   return *board_;
 }
 
-void Rig::advance(Picoseconds duration) { sc_core::sc_start(ps_time(duration)); }
+void Rig::advance(Picoseconds duration) { slices_.run(duration); }
 
 void Rig::run(Picoseconds limit) {
   if (!board_) build();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/board/board.h"
+#include "model/common/slices.h"
 #include "sw/fovea/elf_image.h"
 #include "tb/oracle/frame_compare.h"
 #include "tb/oracle/lens_oracle.h"
@@ -27,6 +28,7 @@ struct FwState {
 
 class Rig {
  public:
+  /// `elf`: a file of the firmware's build folder, or an absolute name.
   explicit Rig(std::string elf = "fovea_firmware.elf");
   ~Rig();
   /// As `-s key=value`; before run() only.
@@ -57,6 +59,7 @@ class Rig {
   std::unique_ptr<video::StampedSource> reference_;  // for sent(): a source of its own
   std::unique_ptr<board::Board> board_;
   std::vector<Shown> shown_;
+  Slices slices_;
 };
 
 /// Bytes of a rectangle of a picture.

@@ -73,7 +73,8 @@ fast:
 start:
 )";
 
-inline std::vector<Taken> taken(const Machine& m) {
+template <class M>
+std::vector<Taken> taken(const M& m) {
   std::vector<Taken> out;
   for (std::uint32_t at = 0; at < m.tcm_word(0x4ffc); at += 32) {
     const auto w = [&](unsigned k) { return m.tcm_word(0x5000 + at + 4 * k); };

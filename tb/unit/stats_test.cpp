@@ -75,8 +75,8 @@ TEST(HistogramTest, QuantilesStayWithinABucketAboveTheSortedValues) {
     const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
     const std::uint64_t exact = values[rank - 1];
     EXPECT_GE(h.quantile(q), exact) << q;
-    // 32 buckets per factor of two: a bucket is at most 1/32 of its lower edge wide.
-    EXPECT_LE(h.quantile(q) - exact, exact / 32) << q;
+    // 256 buckets per factor of two: a bucket is at most 1/256 of its lower edge wide.
+    EXPECT_LE(h.quantile(q) - exact, exact / 256) << q;
   }
 }
 

@@ -32,6 +32,7 @@ void Core::submit(BusAccess& a, std::uint64_t cycle) {
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
+  if (a.outside) attention_ = true;  // the horizon may be nearer from its outcome on
 }
 
 Picoseconds Core::next_act() const {

@@ -25,6 +25,8 @@ struct BusAccess {
 
   /// Set by the port at submission: its outcome's last beat comes no earlier than this after it.
   Picoseconds least = 0;
+  /// Set by the port at submission: it goes to a block that may act upon it, not to memory.
+  bool outside = false;
   bool done = false;   ///< set by the port as soon as the outcome is decided; times may lie ahead
   bool error = false;  ///< the bus answered with an error
   Picoseconds first = 0;  ///< read: first (critical) word is at the core's AHB port
@@ -57,7 +59,8 @@ class BusPort {
   /// in time order through Background.
   virtual void finish(BusAccess& access) = 0;
 
-  /// Instructions that begin at or before the returned time may run without asking again.
+  /// Instructions that begin at or before the returned time may run without asking again, up to an
+  /// access of the core's own that is `outside`: the block may bring the horizon nearer.
   virtual Picoseconds horizon() = 0;
 
   /// Lets all others act up to `until` (playing the core's background work); horizon() is new.
