@@ -1,6 +1,5 @@
 // `fovea run --bus-trace`: records the measured window of a board.
 #pragma once
-#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -22,17 +21,11 @@ class BusTraceRun {
   void finish();
 
  private:
-  static void command(void* self, mem::Cmd cmd, unsigned bank, std::uint32_t row,
-                      std::uint64_t clock);
-  Picoseconds refresh_phase() const;
-
   CheckedFile file_;
   const ParamSet& params_;
   board::Board& board_;
   std::unique_ptr<trace::BusRecorder> recorder_;
   trace::ClockInfo core_, scr_, ddr_;
-  std::array<std::uint64_t, 64> refreshes_{};  // clocks of the last ones
-  std::size_t refresh_count_ = 0;
   Picoseconds refresh_ = 0;
   bool opened_ = false, closed_ = false, complete_ = false;
 };

@@ -223,6 +223,14 @@ void DdrController::urgency_changed() {
   idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
 }
 
+Picoseconds DdrController::interval_start(Picoseconds t) const {
+  const std::uint64_t interval = config_.refresh_interval;
+  if (!running_ || interval == 0 || next_expiry_ == kNoClock) return 0;
+  std::uint64_t begin = next_expiry_;
+  while (begin > interval && (begin == next_expiry_ || ddr_.edge(begin - 1) > t)) begin -= interval;
+  return begin > 0 && ddr_.edge(begin - 1) <= t ? ddr_.edge(begin - 1) : 0;
+}
+
 /// Refresh intervals have run out.
 [[gnu::noinline]] void DdrController::count_expired(std::uint64_t clock) {
   while (next_expiry_ <= clock) {

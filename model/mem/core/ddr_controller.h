@@ -140,6 +140,8 @@ class DdrController {
   /// What the part does now; catch_up() first.
   LowPower asleep() const { return asleep_; }
   const Clock& ddr_clock() const { return ddr_; }
+  /// A refresh interval counts from the first edge after this time, at or before `t`; 0: none does.
+  Picoseconds interval_start(Picoseconds t) const;
   /// Called with each DRAM command, for checkers and traces. Several may listen, each with its own
   /// `self`; null: this one no more.
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
