@@ -162,6 +162,15 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     path_->release();
   }
 
+  /// kernel_horizon(), asked again only when something was notified since.
+  Picoseconds next_event() {
+    if (seen_epoch_ != horizon_epoch) {
+      seen_epoch_ = horizon_epoch;
+      next_event_ = kernel_horizon();
+    }
+    return next_event_;
+  }
+
   Picoseconds background_next() const { return kNever; }
   void background_act() {}
   void completed(Transaction&) {}
@@ -263,15 +272,6 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     const Picoseconds now = kernel_time();
     background_due_.notify(ps_time(t > now ? t - now : 0));
   }
-  /// kernel_horizon(), asked again only when something was notified since.
-  Picoseconds next_event() {
-    if (seen_epoch_ != horizon_epoch) {
-      seen_epoch_ = horizon_epoch;
-      next_event_ = kernel_horizon();
-    }
-    return next_event_;
-  }
-
   sc_core::sc_event done_, background_due_;
   KernelNow kernel_;
   MemoryPathIf* path_ = nullptr;  // behind `path`

@@ -77,6 +77,12 @@ std::string list_text(const std::vector<double>& v) {
   throw UserError("'" + std::string(text) + "' is not allowed; allowed: " + allowed);
 }
 
+/// The commonest slip is the number alone.
+[[noreturn]] void refuse_quantity(std::string_view text, const std::string& allowed,
+                                  std::string_view unit, bool wants_unit) {
+  refuse(text, allowed + (unit.empty() && wants_unit ? "; a number alone lacks its unit" : ""));
+}
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -171,7 +177,7 @@ void IntParam::parse(std::string_view text) {
     value_ = v;
     return;
   }
-  refuse(text, allowed());
+  refuse_quantity(text, allowed(), unit, unit_ != Unit::kCount);
 }
 
 RealParam::RealParam(ParamGroup& group, std::string name, std::string unit, double def, double min,
@@ -186,7 +192,8 @@ std::string RealParam::allowed() const {
 void RealParam::parse(std::string_view text) {
   const auto [number, unit] = split(text);
   double v = 0;
-  if (unit != unit_ || !to_real(number, v) || v < min_ || v > max_) refuse(text, allowed());
+  if (unit != unit_ || !to_real(number, v) || v < min_ || v > max_)
+    refuse_quantity(text, allowed(), unit, !unit_.empty());
   value_ = v;
 }
 

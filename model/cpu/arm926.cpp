@@ -33,7 +33,18 @@ void Arm926::run() {
 
 void Arm926::clock_changed() {
   core_.set_clock(clk.read(), kernel_time());
+  ++clock_changes_;
   if (!clk.read().stopped()) clock_runs_.notify();
+}
+
+/// From event to event, as any may change the clock.
+void Arm926::sleep_until(Picoseconds until) {
+  const unsigned before = clock_changes_;
+  for (;;) {
+    const Picoseconds event = next_event();
+    Agent::sleep_until(event < until ? event + 1 : until);
+    if (event >= until || clock_changes_ != before) return;
+  }
 }
 
 /// The core samples the lines at instruction boundaries strictly after now.

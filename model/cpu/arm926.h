@@ -41,7 +41,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   bool poll(BusAccess& access, Picoseconds until) override;
   void finish(BusAccess& access) override;
   Picoseconds horizon() override { return Agent::horizon(); }
-  void sleep_until(Picoseconds until) override { Agent::sleep_until(until); }
+  void sleep_until(Picoseconds until) override;
   Picoseconds wait_for_interrupt(Picoseconds from) override;
   Picoseconds background_next() const { return core_.next_act(); }
   void background_act() { core_.act(); }
@@ -53,6 +53,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   std::array<BusAccess*, 2> access_{};
   sc_core::sc_event interrupt_, clock_runs_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
+  unsigned clock_changes_ = 0;
   Picoseconds asserted_ = 0;  // since when IRQ or FIQ is asserted
   std::string failure_;
 };

@@ -62,11 +62,12 @@ class FlatPort : public BusPort {
         a.bytes <= 4 || a.kind == BusAccess::Kind::kWrap8 || (a.address % 1024) + a.bytes <= 1024,
         "burst across 1 KB");
     BusAccess*& slot = under_way_[a.port == BusAccess::Port::kData];
-    require(!slot || (slot->done && slot->last <= t), "two transactions on one AHB port");
+    bool& decided = decided_[a.port == BusAccess::Port::kData];
+    require(!slot || (decided && slot->last <= t), "two transactions on one AHB port");
     last_submit_ = t;
     run_events(t, false);
     slot = &a;
-    a.done = a.error = false;
+    decided = a.done = a.error = false;
     const unsigned beats = std::max(1u, a.bytes / 4u);
     a.first = t + (a.write ? write_latency : read_latency) + (extra ? extra() : 0);
     a.last = a.first + (beats - 1) * beat;
@@ -117,8 +118,8 @@ class FlatPort : public BusPort {
     if (!ok) throw std::logic_error(what);
   }
   bool other_under_way(const BusAccess& a) const {
-    const BusAccess* other = under_way_[a.port != BusAccess::Port::kData];
-    return other && !other->done;
+    const bool other = a.port != BusAccess::Port::kData;
+    return under_way_[other] && !decided_[other];
   }
   void carry_out(BusAccess& a) {
     const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
@@ -129,7 +130,7 @@ class FlatPort : public BusPort {
     } else {
       std::memcpy(a.data, at(start), a.bytes);
     }
-    a.done = true;
+    a.done = decided_[a.port == BusAccess::Port::kData] = true;
   }
   /// Plays events, and the core's buffers if it is blocked, in time order up to t or until `a` is
   /// decided.
@@ -155,6 +156,7 @@ class FlatPort : public BusPort {
   std::multimap<Picoseconds, std::function<void()>> events_;
   Background* background_ = nullptr;
   BusAccess* under_way_[2] = {};
+  bool decided_[2] = {};  // not what the core makes of `done` when it uses the access again
   Picoseconds last_submit_ = 0, asserted_ = kNever;
 };
 

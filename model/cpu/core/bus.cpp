@@ -24,8 +24,20 @@ void Core::stall_for_port(Cause cause) {
            writes_.victim_bytes ? writes_.victim_address : writes_.front().address, kCore);
 }
 
+/// All others act before this clock. They may change its time.
+[[gnu::noinline]] void Core::come_to(std::uint64_t cycle) {
+  Picoseconds t;
+  do {
+    t = time(cycle);
+    if (port_.horizon() >= t) return;
+    port_.sleep_until(t);
+  } while (time(cycle) != t);
+}
+
 /// Puts an access on its port.
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
+  a.done = false;  // the buffers may look at it while others act
+  if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] come_to(cycle);
   if (!a.write)
     (a.port == BusAccess::Port::kInstruction ? counts_.i_read_beats : counts_.d_read_beats) +=
         beats(a.bytes);
@@ -58,7 +70,11 @@ std::uint64_t Core::write_over() const {
   return write_over_;
 }
 
-void Core::act() { act_at(next_act_cycle()); }
+void Core::act() {
+  played_ = true;
+  act_at(next_act_cycle());
+  played_ = false;
+}
 
 /// @param cycle the present next_act_cycle()
 inline void Core::act_at(std::uint64_t cycle) {
@@ -118,6 +134,7 @@ std::uint64_t Core::whole_clocks(Picoseconds t) {
   for (;;) {
     if (write_in_flight_ && !write_access_.done) {
       if (cycle < write_floor_) return;
+      if (cycle >= stop_cycle_ || attention_) [[unlikely]] come_to(cycle);
       // While the port waits the buffers may move on by themselves: look again afterwards.
       if (!port_.poll(write_access_, time(cycle)) && !(write_in_flight_ && write_access_.done))
         return;

@@ -63,7 +63,8 @@ class BusPort {
   /// access of the core's own that is `outside`: the block may bring the horizon nearer.
   virtual Picoseconds horizon() = 0;
 
-  /// Lets all others act up to `until` (playing the core's background work); horizon() is new.
+  /// Lets all others act up to `until` (playing the core's background work), or up to a change of
+  /// the core's clock, which moves what the core was waiting for. horizon() is new.
   virtual void sleep_until(Picoseconds until) = 0;
 
   /// Wait-for-interrupt: returns the time at which IRQ or FIQ was asserted (maybe before `from`).

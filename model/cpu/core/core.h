@@ -112,6 +112,7 @@ class Core : public Background {
 
   // execute.cpp
   void step_attention();
+  void come_to(std::uint64_t cycle);
   void execute_alone(const Instruction& i);
   void enter_exception();
   void leave_old_fetch();
@@ -343,6 +344,7 @@ class Core : public Background {
   // Time.
   std::uint64_t cycle_ = 0;
   std::uint64_t stop_cycle_ = 0;  // first clock that needs step_attention()
+  bool played_ = false;           // the port plays the buffers: it is their time
   bool attention_ = true;
   std::uint64_t chain_stop_ = 0;  // first clock at which a chain of records ends
   std::uint64_t chain_cycle_ = 0;  // between two records (build without tail calls)

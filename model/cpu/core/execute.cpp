@@ -174,6 +174,7 @@ void Core::step_attention() {
     if (cycle_ >= stop) {
       play(cycle_);
       port_.sleep_until(t);
+      if (time(cycle_) != t) continue;  // another clock since
       // At t itself everybody may act once more: run this instruction, then look again.
       if (!attention_ && !mark_pending_) {
         const Picoseconds again = port_.horizon();

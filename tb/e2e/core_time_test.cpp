@@ -1,0 +1,71 @@
+// Time on the board where the core alone goes on: a timer's interrupt, a change of its own clock.
+#include <gtest/gtest.h>
+
+#include <systemc>
+
+#include "tb/e2e/rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+TEST(AlarmTest, ItComesToTheClockWithNothingElsePending) {
+  Rig rig(PROGRAM_DIR "/alarms.elf");
+  auto& soc = rig.build().dm365;
+  std::vector<std::pair<std::uint32_t, Picoseconds>> shown;
+  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+    if (bank == 2 && out) shown.emplace_back(out, at);
+  };
+  rig.advance(kPsPerMs);
+  ASSERT_EQ(shown.size(), 4u);
+  for (unsigned k = 0; k < 4; ++k) ASSERT_EQ(shown[k].first, k + 1);
+  const Picoseconds first = shown[1].second - shown[0].second;
+  const Picoseconds second = shown[3].second - shown[2].second;
+  // 24 MHz, for the timer and, from reset, for the core; each sled instruction is one clock. 60 counts
+  // more are 2.5 us; edges are rounded down to whole picoseconds.
+  EXPECT_NEAR(static_cast<double>(second - first), 2.5e6, 1);
+  // From the start of counting to the write of the pin: the mark and the way into the handler are
+  // under 40 clocks.
+  EXPECT_GT(first, 160 * kPsPerSecond / 24'000'000);
+  EXPECT_LT(first, 240 * kPsPerSecond / 24'000'000);
+}
+
+/// The core's clock gets eight times faster some time after a command, while the core runs on or waits
+/// for the end of a long clock: its next edge comes nearer. A case a process: each elaborates a board.
+struct Faster {
+  const char* name;
+  bool strict;
+  const char* go_time;      ///< from the command to the change
+  double two_instructions;  ///< between command and pin, in ps: two clocks, as the bus runs at half
+};
+class FasterTest : public testing::TestWithParam<Faster> {};
+TEST_P(FasterTest, TheChangeComesWhenItIsDue) {
+  const Faster& c = GetParam();
+  Rig rig(PROGRAM_DIR "/faster.elf");
+  rig.set("pll.go_time", c.go_time);
+  if (c.strict) rig.strict();
+  auto& soc = rig.build().dm365;
+  std::vector<Picoseconds> shown;
+  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+    if (bank == 2 && out) shown.push_back(at);
+  };
+  rig.advance(3 * kPsPerMs);
+  EXPECT_EQ(soc.arm.failure(), "");
+  ASSERT_EQ(shown.size(), 48u);
+  const auto took = [&](unsigned n) { return static_cast<double>(shown[2 * n + 1] - shown[2 * n]); };
+  for (unsigned n = 2; n < 24; ++n) EXPECT_NEAR(took(n), took(n - 2) + c.two_instructions, 2) << n;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Clocks, FasterTest,
+    testing::Values(Faster{"before", false, "500ns", 2e12 / 24e6},
+                    Faster{"before_strict", true, "500ns", 2e12 / 24e6},
+                    Faster{"behind", false, "20us", 2e12 / 3e6},
+                    Faster{"behind_strict", true, "20us", 2e12 / 3e6}),
+    [](const auto& c) { return c.param.name; });
+
+}  // namespace
+}  // namespace fovea::e2e
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,47 @@
+/* From reset: the core's clock is divided by 8, then by 1 again while it runs on. The register access
+   that follows the command comes one instruction later each time. Pins 64..71 count before and after. */
+    .syntax unified
+    .arm
+    .equ TIMES, 24
+    .global _start
+_start:
+    ldr r0, =0x01C41A00              /* PSC: MDCTL 26 (GPIO) to Enable */
+    mov r1, #3
+    str r1, [r0, #104]
+    ldr r0, =0x01C41120              /* PTCMD, PTSTAT */
+    mov r1, #1
+    str r1, [r0]
+1:  ldr r1, [r0, #8]
+    tst r1, #1
+    bne 1b
+    ldr r4, =0x01C67060              /* GPIO, third block: DIR, OUT_DATA */
+    mov r0, #0
+    str r0, [r4]
+    ldr r5, =0x01C40900              /* PLLC1, from PLLCTL on */
+    mov r1, #1
+    mov r7, #0
+    .set n, 0
+    .rept TIMES
+    ldr r0, =0x8007                  /* PLLDIV2: by 8 */
+    str r0, [r5, #0x1c]
+    str r1, [r5, #0x38]              /* PLLCMD: GOSET */
+1:  ldr r0, [r5, #0x3c]              /* PLLSTAT */
+    tst r0, #1
+    bne 1b
+    ldr r0, =0x8000
+    str r0, [r5, #0x1c]
+    add r7, r7, #1
+    str r7, [r4, #4]
+    add r7, r7, #1
+    str r1, [r5, #0x38]
+    .rept n
+    mov r0, r0
+    .endr
+    str r7, [r4, #4]
+1:  ldr r0, [r5, #0x3c]
+    tst r0, #1
+    bne 1b
+    .set n, n + 1
+    .endr
+2:  b 2b
+    .ltorg
