@@ -38,6 +38,29 @@ end 0 'main \(\)' 'irq_dispatch \(\)' '#1 .* irq_entry' 'cpsr +0x[0-9a-f]*2 ' 'a
   'sp_irq +0x8' 'Cannot access memory at address 0x1c40000' 'ddr.read_bytes = [0-9]+' 'detached'
 same board
 
+# Stops before `main`, among writes to clocks, memory controller and timers: each makes the core look
+# around where it would not without a debugger.
+begin early run small.yaml -o early --no-frames
+debug "$firmware" <<'G'
+stepi 300
+watch *(unsigned *)0x7f00
+break pll_init
+continue
+stepi 5000
+delete
+break ddr_init
+continue
+stepi 2000
+delete
+tbreak timer_start
+continue
+stepi 40
+monitor time
+detach
+G
+end 0 'ddr_init \(' 'timer_start \(\)' ', core clock [0-9]+' 'detached'
+same early
+
 # Another master's access: the camera fills a buffer while the core sleeps, the display reads one.
 begin dma run small.yaml -o dma --no-frames
 debug "$firmware" <<'G'
