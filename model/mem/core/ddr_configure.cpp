@@ -22,8 +22,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs")),
-      rank_mask_(kinds_count_ ? ~Rank{0} : ~(~Rank{0} << kPriorityBit)) {
+      kinds_count_(!params.scheduler.is("frfcfs")) {
   lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }

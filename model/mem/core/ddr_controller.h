@@ -16,6 +16,7 @@
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
 #include "model/mem/core/ddr_timing.h"
+#include "model/mem/core/queue_places.h"
 #include "model/mem/core/read_lane.h"
 
 namespace fovea::mem {
@@ -150,12 +151,8 @@ class DdrController {
   const DdrConfig& config() const { return config_; }
 
  private:
-  static constexpr std::size_t kMaxEntries = 16;
+  static constexpr std::size_t kMaxEntries = QueuePlaces::kMost;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  /// A request's rank among those of its kind, low first: priority, age, slot.
-  using Rank = std::uint64_t;
-  static constexpr unsigned kPriorityBit = 56, kAgeBit = 4;
-  static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
   struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
@@ -172,6 +169,7 @@ class DdrController {
     Entry* entry = nullptr;
     std::uint64_t at = 0;
     Cmd cmd = Cmd::kAct;
+    std::uint8_t place = 0;  // of the entry
     std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
@@ -218,11 +216,12 @@ class DdrController {
   void plan_one(Entry& e);
   void plan_many();
   void plan_from(std::uint64_t edge);
-  unsigned first_of(std::uint32_t slots) const;
-  std::uint32_t best_kind(std::uint32_t slots, bool room) const;
-  void choose(std::uint64_t edge, std::uint32_t ready);
-  bool stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready);
-  bool refresh_goes_first(std::uint32_t set) const;
+  unsigned first_of(Places set) const;
+  Places best_kind(Places set, bool room) const;
+  void choose(std::uint64_t edge, Places ready);
+  void prepare_others(std::uint64_t edge, Places ready, bool room);
+  bool stands_with_newest(std::uint64_t edge, Places ready);
+  bool refresh_goes_first(Places set) const;
   void choose_refresh(std::uint64_t edge);
   bool choose_overdue_row(std::uint64_t edge);
   void close_overdue_row(std::uint64_t clock);
@@ -237,7 +236,10 @@ class DdrController {
   void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
-  bool passes_older(const Entry& e) const;
+  Entry& entry(unsigned place) { return slots_[places_.slot(place)]; }
+  const Entry& entry(unsigned place) const { return slots_[places_.slot(place)]; }
+  bool passes(const Entry& read, Places older) const;
+  void offer(Places of_one_master);
   void idle(std::uint64_t until);
   void pass_over_refreshes(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
@@ -268,7 +270,7 @@ class DdrController {
   void columns_before(std::uint64_t until);
   void finish(std::uint64_t clock);
   void finish_queued(std::uint64_t clock);
-  void leave_queue(const Entry& e);
+  void leave_queue();
   void open_door(std::uint64_t clock);
 
   BackingStore& store_;
@@ -292,22 +294,16 @@ class DdrController {
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
   // nobody waits for is closed after its access; reads before writes, and priorities, count.
   bool in_order_, closes_rows_, kinds_count_;
-  Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
-  std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
-  std::array<Rank, kMaxEntries> ranks_{};          // by slot
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
-  std::size_t count_ = 0;
+  unsigned count_ = 0;
   // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
-  // the order, masks and sums of the queue do not know it until join_queue().
+  // the places, sets and sums of the queue do not know it until join_queue().
   bool alone_ = false;
-  std::uint32_t offered_ = 0;  // slots whose command its master offers (rule 1)
-  std::array<std::uint32_t, kMasterCount> of_master_{};  // slots in use, by master
-  std::array<std::uint32_t, DdrDevice::kMaxBanks> of_bank_{};
-  std::uint32_t writes_ = 0;
-  std::uint32_t hits_ = 0;  // slots whose row is open
-  Rank age_ = 0;
+  QueuePlaces places_;
+  Places offered_ = 0;  // whose command its master offers (rule 1)
+  Places hits_ = 0;     // whose row is open
   std::uint64_t last_arrival_ = 0;
   unsigned write_bytes_held_ = 0;
   bool door_full_ = false;
@@ -316,7 +312,7 @@ class DdrController {
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
-  unsigned first_ = 0;     // slot of the first in rank when choice_ was made
+  unsigned first_ = 0;     // place of the first in rank when choice_ was made
   bool plain_ = false;     // by rank, with room for read data
   Picoseconds next_ = kNever;
   bool in_burst_ = false;  // choice_ is the last column of a burst under way

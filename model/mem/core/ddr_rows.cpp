@@ -35,13 +35,13 @@ bool DdrController::choose_overdue_row(std::uint64_t edge) {
     bank = b;
   }
   choice_ = {nullptr, std::max(edge, device_.earliest(Cmd::kPre, bank)), Cmd::kPre,
-             static_cast<std::uint8_t>(bank)};
+             0, static_cast<std::uint8_t>(bank)};
   return true;
 }
 
 void DdrController::close_overdue_row(std::uint64_t clock) {
   device_.issue<Cmd::kPre>(choice_.bank, 0, clock);
-  hits_ &= ~of_bank_[choice_.bank];
+  hits_ &= ~places_.of_bank(choice_.bank);
   ++stats.overdue_rows;
   command_free_ = clock + 1;
   Given& g = given_[given_count_++ % kGiven];
