@@ -45,7 +45,6 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
 
 void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   catch_up(at);
-  sum_given();  // with the timing they were given with
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
   if (config.low_power != config_.low_power) sleep_changes(config.low_power, now);
   // Refresh keeps its phase when only timing changes; a new interval starts to count now, and those

@@ -120,7 +120,6 @@ inline void DdrController::fill(Entry& e, Request& request, std::uint64_t arrive
   e.row = (r.address & row_mask_) >> row_shift_;
   e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
   e.classified = false;
-  e.given = given_count_;
   e.prepared = 0;
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
@@ -131,6 +130,9 @@ void DdrController::join_queue() {
   Entry& e = slots_[0];
   free_slots_ ^= 1u;
   places_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
+  seen_[0].newest = Seen::kNot;  // commands since then were not looked at
+  seen_count_ = 0;
+  unseen_ = e.ready;
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
@@ -145,6 +147,7 @@ void DdrController::take(Request& request, std::uint64_t arrived) {
   last_arrival_ = arrived;
   Entry& e = slots_[slot];
   fill(e, request, arrived);
+  if (seen_count_ == place) unseen_ = e.ready;
   const Places older = places_.of_master(request.master);
   places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
@@ -230,9 +233,8 @@ void DdrController::urgency_changed() {
 
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
-  Given& g = given(given_count_++);
-  g.clock = clock;
-  g.at = at;
+  constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
+  Given& g = give(clock, at, kColumn ? choice_.entry : nullptr);
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
     g.blame = kRefreshed;
@@ -362,9 +364,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = given(given_count_++);
-  g.clock = clock;
-  g.at = ddr_.edge(clock);
+  Given& g = give(clock, ddr_.edge(clock), nullptr);
   g.cmd = cmd;
   g.blame = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
@@ -448,6 +448,10 @@ void DdrController::first_column() {
     ++stats.row_hits;
     ++stats.bank[e.bank].row_hits;
   }
+  if constexpr (kCmd == Cmd::kRd) {
+    read_waited_ = 0;
+    if (clock > e.ready) attribute(e, clock);
+  }
   if (closes_rows_ && e.chunks == 1) [[unlikely]]
     give_closing_column<kCmd>(e, clock);
   else
@@ -457,8 +461,6 @@ void DdrController::first_column() {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
-    read_waited_ = 0;
-    if (clock > e.ready) attribute(e, clock);
     const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
     client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
@@ -534,6 +536,10 @@ inline void DdrController::leave_queue() {
   offered_ = QueuePlaces::without(place, offered_);
   hits_ = QueuePlaces::without(place, hits_);
   --count_;
+  if (place < seen_count_)
+    --seen_count_;
+  else
+    look_for_unseen();
   served_while_oldest_ = place == 0 ? 0 : served_while_oldest_ + e.chunks;
   offer(places_.of_master(e.request.master));
 }

@@ -160,7 +160,6 @@ class DdrController {
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
     bool classified = false;
-    std::uint64_t given = 0;     // commands before it came
     std::uint64_t prepared = 0;  // number of its newest ACT or PRE, from 1; 0: none
     std::array<std::uint8_t, 64> data;
   };
@@ -186,18 +185,31 @@ class DdrController {
   };
   static constexpr std::size_t kGiven = 64;
   using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
+  /// What the time from a command on is blamed on: itself, and the turnaround behind a write.
+  struct Blamed {
+    Picoseconds itself = 0, turned = 0;
+  };
+  /// The sums at the time a request became ready.
+  struct Seen {
+    static constexpr std::uint64_t kNot = ~std::uint64_t{0};
+    Blames blames;
+    std::uint64_t newest = kNot;  // command before; kNot: the sums are not known
+  };
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
+  Given& give(std::uint64_t clock, Picoseconds at, const Entry* served);
+  void see(std::uint64_t clock, const Entry* served);
+  void look_for_unseen() {
+    unseen_ = seen_count_ < count_ ? entry(seen_count_).ready : kNoClock;
+  }
+  Blamed blamed(const Given& g, std::uint64_t clock, Picoseconds at) const;
   void attribute(const Entry& e, std::uint64_t clock);
-  void blame_each(const Entry& e, std::uint64_t n, std::uint64_t ready);
-  void blame_many(const Entry& e, std::uint64_t n, std::uint64_t ready);
+  void blame_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
+  void blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready, const Blamed& newest);
   void charge(const Entry& e, Culprit c, Picoseconds t) {
     waits[index(e.request.master)].read.add(c, t);
     if (e.request.parts) e.request.parts->add(c, t);
   }
-  void blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own);
-  void charge_read(const Entry& e, const Waits& w);
-  void sum_given();
   void time_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
@@ -339,8 +351,14 @@ class DdrController {
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
   std::uint64_t given_count_ = 0;
-  std::uint64_t summed_ = 0;  // commands that are in the sums; the newest one is not
-  std::array<Blames, kGiven> blames_{};  // sums over the commands before each one
+  // Sums over the commands before the newest but one, and what that one adds. A sum just changed and
+  // read with its neighbours would hold up the host.
+  Blames blames_{};
+  Blamed late_;
+  std::uint8_t late_blame_ = 0;
+  std::array<Seen, kMaxEntries> seen_;  // by slot
+  unsigned seen_count_ = 0;             // places that have theirs
+  std::uint64_t unseen_ = kNoClock;     // edge at which the one after them is ready
   Picoseconds read_waited_ = 0;
 
   std::vector<std::pair<CommandHook, void*>> listeners_;
@@ -352,6 +370,34 @@ inline Cmd DdrController::needed(const Entry& e) const {
   const std::uint32_t open = device_.row(e.bank);
   if (open == e.row) return e.request.write ? Cmd::kWr : Cmd::kRd;
   return open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+}
+
+/// The place of another command among those given. `served`: whose column it is.
+inline DdrController::Given& DdrController::give(std::uint64_t clock, Picoseconds at,
+                                                 const Entry* served) {
+  if (clock > unseen_) see(clock, served);
+  blames_[late_blame_] += late_.itself;
+  blames_[kTurned] += late_.turned;
+  const Given& before = given(given_count_ - 1);
+  late_ = given_count_ ? blamed(before, clock, at) : Blamed{};
+  late_blame_ = before.blame;
+  Given& g = given(given_count_++);
+  g.clock = clock;
+  g.at = at;
+  return g;
+}
+
+/// What the time from a command up to `clock` is blamed on.
+inline DdrController::Blamed DdrController::blamed(const Given& g, std::uint64_t clock,
+                                                   Picoseconds at) const {
+  if (g.cmd == Cmd::kWr) {
+    const std::uint64_t over = g.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
+    if (over < clock) {
+      const Picoseconds end = ddr_.edge(std::max(over, first_edge_));
+      return {end - g.at, at - end};
+    }
+  }
+  return {at - g.at, 0};
 }
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {
