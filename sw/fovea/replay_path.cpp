@@ -299,21 +299,8 @@ void ReplayPath::wake(unsigned stream) {
   }
 }
 
-mem::DdrRequest ReplayPath::to_controller(MemRequest& r) const {
-  mem::DdrRequest q;
-  q.cookie = &r;
-  q.master = r.master;
-  q.priority = r.priority;
-  q.write = r.write;
-  q.bytes = r.bytes;
-  q.address = r.address;
-  q.critical = r.critical;
-  q.data = r.data;
-  return q;
-}
-
 ReplayPath::Taken ReplayPath::forward(MemRequest& r, Picoseconds arrival) {
-  return ddr_.submit(to_controller(r), arrival) ? Taken::kYes : Taken::kWaits;
+  return ddr_.submit_inside(r, arrival) ? Taken::kYes : Taken::kWaits;
 }
 
 void ReplayPath::ddr_accepted(void* cookie, Picoseconds at) {
@@ -346,7 +333,7 @@ void ReplayPath::send(MemRequest& r, Picoseconds at) {
     return;
   }
   memory_timeline_.add(index(r.master), r.write, r.bytes, at);
-  door_taken_ = !ddr_.submit(to_controller(r), at);
+  door_taken_ = !ddr_.submit_inside(r, at);
   if (!door_taken_ && r.write) acknowledge(r, at);
 }
 

@@ -109,7 +109,6 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void respond(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
   void ddr_accepted(void* cookie, Picoseconds at) override;
   void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
-  mem::DdrRequest to_controller(MemRequest& r) const;
   // Without the crossbar.
   void send(MemRequest& r, Picoseconds at);
   void acknowledge(MemRequest& r, Picoseconds at);

@@ -103,7 +103,7 @@ bool DdrController::queue(Request& request, std::uint64_t arrived) {
   const std::uint64_t seen = entry(count_ - 1).ready;
   if (in_burst_ || seen > choice_.at) return true;
   const std::uint64_t edge = std::max(command_free_, seen);
-  if (!was_alone && stands_with_newest(edge, (1u << (count_ - 1)) - 1))
+  if (!was_alone && stands_with(count_ - 1, edge, (1u << (count_ - 1)) - 1))
     next_ = ddr_.edge(choice_.at);
   else
     plan_from(edge);
@@ -364,7 +364,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = give(clock, ddr_.edge(clock), nullptr);
+  Given& g = give(clock, ddr_.edge(clock));
   g.cmd = cmd;
   g.blame = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);

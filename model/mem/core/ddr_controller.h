@@ -197,7 +197,7 @@ class DdrController {
   };
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
-  Given& give(std::uint64_t clock, Picoseconds at, const Entry* served);
+  Given& give(std::uint64_t clock, Picoseconds at, const Entry* served = nullptr);
   void see(std::uint64_t clock, const Entry* served);
   void look_for_unseen() {
     unseen_ = seen_count_ < count_ ? entry(seen_count_).ready : kNoClock;
@@ -232,7 +232,7 @@ class DdrController {
   Places best_kind(Places set, bool room) const;
   void choose(std::uint64_t edge, Places ready);
   void prepare_others(std::uint64_t edge, Places ready, bool room);
-  bool stands_with_newest(std::uint64_t edge, Places ready);
+  bool stands_with(unsigned place, std::uint64_t edge, Places ready);
   bool refresh_goes_first(Places set) const;
   void choose_refresh(std::uint64_t edge);
   bool choose_overdue_row(std::uint64_t edge);
@@ -373,22 +373,23 @@ inline Cmd DdrController::needed(const Entry& e) const {
 }
 
 /// The place of another command among those given. `served`: whose column it is.
-inline DdrController::Given& DdrController::give(std::uint64_t clock, Picoseconds at,
+[[gnu::always_inline]] inline DdrController::Given& DdrController::give(std::uint64_t clock, Picoseconds at,
                                                  const Entry* served) {
   if (clock > unseen_) see(clock, served);
+  const std::uint64_t n = given_count_++;
   blames_[late_blame_] += late_.itself;
   blames_[kTurned] += late_.turned;
-  const Given& before = given(given_count_ - 1);
-  late_ = given_count_ ? blamed(before, clock, at) : Blamed{};
+  const Given& before = given(n - 1);
+  late_ = n ? blamed(before, clock, at) : Blamed{};
   late_blame_ = before.blame;
-  Given& g = given(given_count_++);
+  Given& g = given(n);
   g.clock = clock;
   g.at = at;
   return g;
 }
 
 /// What the time from a command up to `clock` is blamed on.
-inline DdrController::Blamed DdrController::blamed(const Given& g, std::uint64_t clock,
+[[gnu::always_inline]] inline DdrController::Blamed DdrController::blamed(const Given& g, std::uint64_t clock,
                                                    Picoseconds at) const {
   if (g.cmd == Cmd::kWr) {
     const std::uint64_t over = g.clock + config_.timing.WL() + DdrTiming::kBurstClocks;

@@ -44,7 +44,7 @@ void DdrController::close_overdue_row(std::uint64_t clock) {
   hits_ &= ~places_.of_bank(choice_.bank);
   ++stats.overdue_rows;
   command_free_ = clock + 1;
-  Given& g = give(clock, next_, nullptr);
+  Given& g = give(clock, next_);
   g.blame = kRefreshed;
   g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh

@@ -24,27 +24,27 @@ void DdrController::plan_from(std::uint64_t edge) {
   unsigned seen = count_;  // by the scheduler: they come in the order of age
   while (entry(seen - 1).ready > edge) --seen;
   for (;;) {
-    std::uint64_t wake = seen < count_ ? entry(seen).ready : kNoClock;
-    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
-    const Places ready = (1u << seen) - 1;
-    choose(edge, ready);
-    if (choice_.at >= all_in_time_until_) [[unlikely]] {
-      if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
-      if (choice_.at < wake) break;
-    } else if (choice_.at < wake || (seen + 1 == count_ && stands_with_newest(wake, ready))) {
-      break;
+    choose(edge, (1u << seen) - 1);
+    std::uint64_t wake = kNoClock;
+    for (; seen < count_; ++seen) {
+      wake = entry(seen).ready;
+      if (choice_.at < wake || !stands_with(seen, wake, (1u << seen) - 1)) break;
+      wake = kNoClock;
     }
+    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
+    if (choice_.at >= all_in_time_until_) [[unlikely]]
+      if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
+    if (choice_.at < wake) break;
     edge = wake;
     while (seen < count_ && entry(seen).ready <= edge) ++seen;
   }
   next_ = ddr_.edge(choice_.at);
 }
 
-/// True if choice_, made with the places `ready`, need not be made again when the newest request is
-/// seen at `edge`: that changes nothing, or it prepares its own bank first.
-bool DdrController::stands_with_newest(std::uint64_t edge, Places ready) {
+/// True if choice_, made with the places `ready`, need not be made again when the next one is seen at
+/// `edge`: that changes nothing, or it prepares its own bank first.
+bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready) {
   if (!plain_ || lane_.room() > edge || edge >= all_in_time_until_) return false;
-  const unsigned place = count_ - 1;
   const Places bit = 1u << place;
   if (in_order_ || !(offered_ & bit)) return true;
   const bool write = places_.writes() & bit;
