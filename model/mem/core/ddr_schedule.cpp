@@ -61,7 +61,7 @@ bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready
   if (e.bank == top.bank) return true;
   if (e.bank == choice_.entry->bank) return false;
   if (hits_ & bit) return true;
-  const Cmd prepare = device_.row(e.bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+  const Cmd prepare = device_.preparation(e.bank);
   const std::uint64_t at = std::max(edge, device_.earliest(prepare, e.bank));
   if (at > choice_.at || (at == choice_.at && choice_.entry == &top)) return true;
   if (at == choice_.at || (ready & offered_ & places_.of_bank(e.bank))) return false;
@@ -110,25 +110,25 @@ inline void DdrController::choose(std::uint64_t edge, Places ready) {
   if (ready) prepare_others(edge, ready, room);
 }
 
-/// Puts the ACT or PRE of another bank before choice_, if it can be given earlier.
+/// Puts the ACT or PRE of another bank before choice_, if it can be given earlier; of several at the same
+/// clock the one that ranks first.
 inline void DdrController::prepare_others(std::uint64_t edge, Places ready, bool room) {
-  Places best = 0;  // others of the same clock
-  while (ready) {
-    const unsigned bank = entry(oldest(ready)).bank;
-    const Places kind = best_kind(ready & places_.of_bank(bank), room);
-    ready &= ~places_.of_bank(bank);
-    if (kind & hits_) continue;
-    const Cmd prepare = device_.row(bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-    const std::uint64_t at = std::max(edge, device_.earliest(prepare, bank));
-    if (at > choice_.at || (at == choice_.at && best == 0)) continue;
-    const unsigned place = first_of(kind);
-    if (at < choice_.at)
-      best = 0;
-    else if (first_of(best_kind(best | 1u << place, room)) != place)
-      continue;
-    choice_ = {&entry(place), at, prepare, static_cast<std::uint8_t>(place)};
-    best = 1u << place;
+  const Places preferred = !room ? places_.writes() : kinds_count_ ? ~places_.writes() : ~0u;
+  QueuePlaces::ByBank kinds;
+  unsigned banks = places_.by_bank(ready, preferred, hits_, kinds);
+  std::uint64_t best = choice_.at - 1;
+  Places at_best = 0;
+  for (; banks; banks &= banks - 1) {
+    const unsigned bank = oldest(banks);
+    const std::uint64_t at = std::max(edge, device_.earliest(device_.preparation(bank), bank));
+    const Places kind = kinds.places[bank];
+    at_best = at < best ? kind : at == best ? at_best | kind : at_best;
+    best = std::min(best, at);
   }
+  if (at_best == 0) return;
+  const unsigned place = first_of(best_kind(at_best, room));
+  Entry& e = entry(place);
+  choice_ = {&e, best, device_.preparation(e.bank), static_cast<std::uint8_t>(place)};
 }
 
 /// Rule 4: a needed refresh goes before writes and before a read that has a more urgent write. Each
