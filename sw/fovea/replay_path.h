@@ -101,7 +101,6 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   }
   void find_next();
   void issue();
-  void step();
   void check(const trace::Record& r, const Stream& s) const;
   void complete(Slot& slot);
 

@@ -191,7 +191,14 @@ inline void DdrController::plan() {
 /// The same after a change from outside: a burst may be under way or the clock stopped.
 void DdrController::plan_anew() {
   next_ = kNever;
-  if (count_ != 0 && running_) plan_many();
+  if (count_ == 0 || !running_) return;
+  if (alone_) join_queue();
+  if (!in_burst_) return plan_many();
+  if (next_column_ < command_free_) {  // it is finished before anything else
+    choice_.at += command_free_ - next_column_;
+    next_column_ = command_free_;
+  }
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The usual case: one request, nothing to choose from, and no refresh that is urgent.
@@ -199,8 +206,10 @@ inline void DdrController::plan_one(Entry& e) {
   const std::uint64_t edge = std::max(command_free_, e.ready);
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
-  if (at >= calm_until_) [[unlikely]]
+  if (at >= calm_until_) [[unlikely]] {
+    if (alone_) join_queue();
     return plan_many();
+  }
   choice_ = {&e, at, cmd};
   next_ = ddr_.edge(at);
 }

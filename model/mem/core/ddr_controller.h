@@ -226,7 +226,7 @@ class DdrController {
   void plan();
   void plan_anew();
   void plan_one(Entry& e);
-  void plan_many();
+  void plan_many() { plan_from(std::max(command_free_, entry(0).ready)); }
   void plan_from(std::uint64_t edge);
   unsigned first_of(Places set) const;
   Places best_kind(Places set, bool room) const;

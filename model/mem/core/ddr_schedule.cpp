@@ -5,22 +5,7 @@ namespace fovea::mem {
 
 /// A decision is taken at the first edge at which something is ready; if its command can only be
 /// given later, whatever becomes ready before has its say, a row that is due to be closed too.
-[[gnu::noinline]] void DdrController::plan_many() {
-  if (alone_) join_queue();
-  const std::uint64_t first = command_free_;
-  if (in_burst_) {  // a burst under way is finished before anything else
-    if (next_column_ < first) {
-      choice_.at += first - next_column_;
-      next_column_ = first;
-    }
-    next_ = ddr_.edge(choice_.at);
-    return;
-  }
-  plan_from(std::max(first, entry(0).ready));
-}
-
-/// The same from an edge on before which nothing can be given.
-void DdrController::plan_from(std::uint64_t edge) {
+[[gnu::noinline]] void DdrController::plan_from(std::uint64_t edge) {
   unsigned seen = count_;  // by the scheduler: they come in the order of age
   while (entry(seen - 1).ready > edge) --seen;
   for (;;) {

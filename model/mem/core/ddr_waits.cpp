@@ -84,7 +84,7 @@ void DdrController::time_given() {
 }
 
 /// The same by sums, however many commands there were. `newest`: what the newest one adds.
-inline void DdrController::blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready,
+[[gnu::always_inline]] inline void DdrController::blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready,
                                       const Blamed& newest) {
   static_assert(index(culprit_of(kTurned)) + 1 == index(culprit_of(kRefreshed)) &&
                 index(culprit_of(kTurned)) + 2 == index(culprit_of(kAsleep)));
