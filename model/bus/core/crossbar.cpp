@@ -180,34 +180,33 @@ inline void Crossbar::sum_grants(SlaveState& s) {
   const std::uint32_t made = s.grants_made;
   std::uint32_t n = std::min(made - grants, static_cast<std::uint32_t>(SlaveState::kGrants));
   while (n > 0 && s.grant(made - n).end <= crossed) --n;
-  const auto add_to = [&](Waits& w) {
-    Picoseconds of_lane = 0;
-    if (n > kFewGrants) {
-      sum_grants(s);
-      const Grant &first = s.grant(made - n), &last = s.grant(made - 1);
-      const Picoseconds passed = first.start < crossed ? start - first.start_at : 0;
-      const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
-      of_lane = s.lane[kMasterCount] - before[kMasterCount] + last.time() - passed;
-      w.add_masters(s.lane.data(), before.data());
-      w.add(static_cast<Culprit>(last.master), last.time());
-      w.take_back(static_cast<Culprit>(first.master), passed);
-    } else {
-      for (; n > 0; --n) {
-        const Grant& g = s.grant(made - n);
-        const Picoseconds t = g.end_at - (g.start < crossed ? start : g.start_at);
-        w.add(static_cast<Culprit>(g.master), t);
-        of_lane += t;
-      }
+  MasterWaits& of_master = waits[index(r.master)];
+  Waits& w = r.write ? of_master.write : of_master.read;
+  std::optional<Waits> before;
+  if (r.parts) before = w;
+  Picoseconds of_lane = 0;
+  if (n > kFewGrants) {
+    sum_grants(s);
+    const Grant &first = s.grant(made - n), &last = s.grant(made - 1);
+    const Picoseconds passed = first.start < crossed ? start - first.start_at : 0;
+    const LaneTimes& lane = s.before[(made - n) % SlaveState::kGrants];
+    of_lane = s.lane[kMasterCount] - lane[kMasterCount] + last.time() - passed;
+    w.add_masters(s.lane.data(), lane.data());
+    w.add(static_cast<Culprit>(last.master), last.time());
+    w.take_back(static_cast<Culprit>(first.master), passed);
+  } else {
+    for (; n > 0; --n) {
+      const Grant& g = s.grant(made - n);
+      const Picoseconds t = g.end_at - (g.start < crossed ? start : g.start_at);
+      w.add(static_cast<Culprit>(g.master), t);
+      of_lane += t;
     }
-    // Where nobody had the lane the request stood behind its own master's last one.
-    w.add(culprit(r.master), waited - of_lane);
-  };
-  MasterWaits& all = waits[index(r.master)];
-  if (!r.parts) return add_to(r.write ? all.write : all.read);
-  Waits w;
-  add_to(w);
+  }
+  // Where nobody had the lane the request stood behind its own master's last one.
+  w.add(culprit(r.master), waited - of_lane);
+  if (!before) return;
   for (std::size_t m = 0; m < kMasterCount; ++m)
-    if (w.ps[m]) charge(r, static_cast<Culprit>(m), w.ps[m]);
+    if (const Picoseconds t = w.ps[m] - before->ps[m]) r.parts->add(static_cast<Culprit>(m), t);
 }
 
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {

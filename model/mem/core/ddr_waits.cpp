@@ -98,23 +98,21 @@ void DdrController::time_given() {
     row += (p == end ? next_ : given(p).at) - g.at;
     closed_other |= g.cmd == Cmd::kPre;
   }
-  const auto add_to = [&](Waits& w) {
-    w.add_masters(blames_.data(), seen.blames.data());
-    constexpr std::size_t kRest = index(culprit_of(kTurned));
-    pair(&w.ps[kRest]) += pair(&blames_[kTurned]) - pair(&seen.blames[kTurned]);
-    w.ps[kRest + 2] += blames_[kAsleep] - seen.blames[kAsleep];
-    w.add(culprit_of(late_blame_), late_.itself);
-    w.add(culprit_of(given(end - 1).blame), newest.itself);
-    w.add(Culprit::kTurnaround, late_.turned + newest.turned);
-    w.take_back(culprit(e.request.master), row);
-    w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
-  };
-  Waits& all = waits[index(e.request.master)].read;
-  if (!e.request.parts) return add_to(all);
-  Waits w;
-  add_to(w);
+  Waits& w = waits[index(e.request.master)].read;
+  std::optional<Waits> before;
+  if (e.request.parts) before = w;
+  w.add_masters(blames_.data(), seen.blames.data());
+  constexpr std::size_t kRest = index(culprit_of(kTurned));
+  pair(&w.ps[kRest]) += pair(&blames_[kTurned]) - pair(&seen.blames[kTurned]);
+  w.ps[kRest + 2] += blames_[kAsleep] - seen.blames[kAsleep];
+  w.add(culprit_of(late_blame_), late_.itself);
+  w.add(culprit_of(given(end - 1).blame), newest.itself);
+  w.add(Culprit::kTurnaround, late_.turned + newest.turned);
+  w.take_back(culprit(e.request.master), row);
+  w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
+  if (!before) return;
   for (std::size_t c = 0; c < kCulprits; ++c)
-    if (w.ps[c]) charge(e, static_cast<Culprit>(c), w.ps[c]);
+    if (const Picoseconds t = w.ps[c] - before->ps[c]) e.request.parts->add(static_cast<Culprit>(c), t);
 }
 
 /// The waits of a read whose first column command is given now, at `clock`, since it became ready.
