@@ -351,8 +351,8 @@ class DdrController {
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
   std::uint64_t given_count_ = 0;
-  // Sums over the commands before the newest but one, and what that one adds. A sum just changed and
-  // read with its neighbours would hold up the host.
+  // Sums over the commands before the newest but one, and what that one adds. A sum just changed
+  // and read with its neighbours would hold up the host.
   Blames blames_{};
   Blamed late_;
   std::uint8_t late_blame_ = 0;
@@ -373,8 +373,9 @@ inline Cmd DdrController::needed(const Entry& e) const {
 }
 
 /// The place of another command among those given. `served`: whose column it is.
-[[gnu::always_inline]] inline DdrController::Given& DdrController::give(std::uint64_t clock, Picoseconds at,
-                                                 const Entry* served) {
+[[gnu::always_inline]] inline DdrController::Given& DdrController::give(std::uint64_t clock,
+                                                                        Picoseconds at,
+                                                                        const Entry* served) {
   if (clock > unseen_) see(clock, served);
   const std::uint64_t n = given_count_++;
   blames_[late_blame_] += late_.itself;
@@ -389,8 +390,9 @@ inline Cmd DdrController::needed(const Entry& e) const {
 }
 
 /// What the time from a command up to `clock` is blamed on.
-[[gnu::always_inline]] inline DdrController::Blamed DdrController::blamed(const Given& g, std::uint64_t clock,
-                                                   Picoseconds at) const {
+[[gnu::always_inline]] inline DdrController::Blamed DdrController::blamed(const Given& g,
+                                                                          std::uint64_t clock,
+                                                                          Picoseconds at) const {
   if (g.cmd == Cmd::kWr) {
     const std::uint64_t over = g.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
     if (over < clock) {

@@ -34,8 +34,8 @@ bool DdrController::choose_overdue_row(std::uint64_t edge) {
     opened = device_.opened(b);
     bank = b;
   }
-  choice_ = {nullptr, std::max(edge, device_.earliest(Cmd::kPre, bank)), Cmd::kPre,
-             0, static_cast<std::uint8_t>(bank)};
+  choice_ = {nullptr, std::max(edge, device_.earliest(Cmd::kPre, bank)), Cmd::kPre, 0,
+             static_cast<std::uint8_t>(bank)};
   return true;
 }
 

@@ -26,8 +26,8 @@ namespace fovea::mem {
   next_ = ddr_.edge(choice_.at);
 }
 
-/// True if choice_, made with the places `ready`, need not be made again when the next one is seen at
-/// `edge`: that changes nothing, or it prepares its own bank first.
+/// True if choice_, made with the places `ready`, need not be made again when the next one is seen
+/// at `edge`: that changes nothing, or it prepares its own bank first.
 bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready) {
   if (!plain_ || lane_.room() > edge || edge >= all_in_time_until_) return false;
   const Places bit = 1u << place;
@@ -95,8 +95,8 @@ inline void DdrController::choose(std::uint64_t edge, Places ready) {
   if (ready) prepare_others(edge, ready, room);
 }
 
-/// Puts the ACT or PRE of another bank before choice_, if it can be given earlier; of several at the same
-/// clock the one that ranks first.
+/// Puts the ACT or PRE of another bank before choice_, if it can be given earlier; of several at
+/// the same clock the one that ranks first.
 inline void DdrController::prepare_others(std::uint64_t edge, Places ready, bool room) {
   const Places preferred = !room ? places_.writes() : kinds_count_ ? ~places_.writes() : ~0u;
   QueuePlaces::ByBank kinds;

@@ -42,8 +42,8 @@ void DdrController::time_given() {
   look_for_unseen();
 }
 
-/// The waits since `ready`, by the commands one by one: for a few, or where the sums at `ready` are not
-/// known. Its own ACT and PRE are no wait behind an earlier request.
+/// The waits since `ready`, by the commands one by one: for a few, or where the sums at `ready` are
+/// not known. Its own ACT and PRE are no wait behind an earlier request.
 [[gnu::noinline]] void DdrController::blame_each(const Entry& e, std::uint64_t ready,
                                                  Picoseconds from, std::uint64_t clock) {
   const Culprit own = culprit(e.request.master);
@@ -84,8 +84,9 @@ void DdrController::time_given() {
 }
 
 /// The same by sums, however many commands there were. `newest`: what the newest one adds.
-[[gnu::always_inline]] inline void DdrController::blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready,
-                                      const Blamed& newest) {
+[[gnu::always_inline]] inline void DdrController::blame_sums(const Entry& e, const Seen& seen,
+                                                             std::uint64_t ready,
+                                                             const Blamed& newest) {
   static_assert(index(culprit_of(kTurned)) + 1 == index(culprit_of(kRefreshed)) &&
                 index(culprit_of(kTurned)) + 2 == index(culprit_of(kAsleep)));
   const std::uint64_t end = given_count_;
@@ -112,7 +113,8 @@ void DdrController::time_given() {
   w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
   if (!before) return;
   for (std::size_t c = 0; c < kCulprits; ++c)
-    if (const Picoseconds t = w.ps[c] - before->ps[c]) e.request.parts->add(static_cast<Culprit>(c), t);
+    if (const Picoseconds t = w.ps[c] - before->ps[c])
+      e.request.parts->add(static_cast<Culprit>(c), t);
 }
 
 /// The waits of a read whose first column command is given now, at `clock`, since it became ready.

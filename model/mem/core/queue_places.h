@@ -14,8 +14,8 @@ namespace fovea::mem {
 using Places = std::uint32_t;
 inline unsigned oldest(Places set) { return static_cast<unsigned>(std::countr_zero(set)); }
 
-/// The slots of the requests by age, and their places by what the scheduler asks for. When one leaves
-/// those behind it move up, in all sets at once.
+/// The slots of the requests by age, and their places by what the scheduler asks for. When one
+/// leaves those behind it move up, in all sets at once.
 class QueuePlaces {
   // Eight sets as one word of the host.
   using Lanes [[gnu::vector_size(16), gnu::may_alias]] = std::uint16_t;
@@ -28,8 +28,8 @@ class QueuePlaces {
   unsigned slot(unsigned place) const { return order_ >> 4 * place & 15u; }
   Places of_master(Master m) const { return sets_[kMasters + index(m)]; }
   Places of_bank(unsigned bank) const { return sets_[bank]; }
-  /// For each bank the places of a set that come first, by `preferred`: those in it, else all. None for
-  /// a bank with one of them in `open`. @return the banks with any, as bits
+  /// For each bank the places of a set that come first, by `preferred`: those in it, else all. None
+  /// for a bank with one of them in `open`. @return the banks with any, as bits
   struct ByBank {
     alignas(16) std::array<std::uint16_t, DdrDevice::kMaxBanks> places;
   };
