@@ -40,7 +40,8 @@ class QueuePlaces {
     const Lanes kind = some | (all & (some == 0));
     const Lanes closed = kind & ((kind & static_cast<std::uint16_t>(open)) == 0);
     reinterpret_cast<Lanes&>(out.places) = closed;
-    // A bit of each bank's own, from lanes of all ones or none.
+    // A bit of each bank's own, from lanes of all ones or none; lane 0 is the lowest
+    // (little-endian).
     using Halves [[gnu::vector_size(16)]] = std::uint64_t;
     const auto any = reinterpret_cast<Halves>(closed != 0);
     std::uint64_t bits = (any[0] & 0x0008'0004'0002'0001u) | (any[1] & 0x0080'0040'0020'0010u);
@@ -57,7 +58,7 @@ class QueuePlaces {
     return oldest(left);
   }
 
-  /// The newest request, behind all others.
+  /// The newest request, behind all others; `priority` is below kPriorities.
   void add(unsigned place, unsigned slot, Master m, unsigned bank, unsigned priority, bool write) {
     const auto bit = static_cast<std::uint16_t>(1u << place);
     order_ |= std::uint64_t{slot} << 4 * place;
