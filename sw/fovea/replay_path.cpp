@@ -239,30 +239,28 @@ void ReplayPath::issue() {
   find_next();
 }
 
-void ReplayPath::step() {
-  if (!memory_only_ && xbar_.next_decision() < ddr_.next_decision())
-    xbar_.step(*this);
-  else
-    ddr_.step();
-  if (door_opened_) send_waiting();
-}
-
 bool ReplayPath::run_before(Picoseconds until) {
   for (;;) {
-    const Picoseconds decision = std::min(xbar_.next_decision(), ddr_.next_decision());
-    const Picoseconds next = std::min(decision, next_time_);
-    if (next == kNever) {
-      for (const Stream& s : streams_)
-        if (s.valid)  // a locked read without its write keeps all others out
-          throw UserError(fmt::format("trace '{}': it stops before its end", name_));
-      return true;
-    }
-    if (next >= until) return false;
-    if (next_time_ <= decision)
+    // Without the crossbar nothing is ever submitted to it.
+    const Picoseconds xbar = xbar_.next_decision(), ddr = ddr_.next_decision();
+    const Picoseconds decision = std::min(xbar, ddr);
+    if (next_time_ <= decision) {
+      if (next_time_ >= until) break;
       issue();
-    else
-      step();
+    } else if (decision >= until) {
+      break;
+    } else if (xbar < ddr) {
+      xbar_.step(*this);
+    } else {
+      ddr_.step();
+      if (door_opened_) send_waiting();
+    }
   }
+  if (std::min({next_time_, xbar_.next_decision(), ddr_.next_decision()}) != kNever) return false;
+  for (const Stream& s : streams_)
+    if (s.valid)  // a locked read without its write keeps all others out
+      throw UserError(fmt::format("trace '{}': it stops before its end", name_));
+  return true;
 }
 
 std::vector<Picoseconds> ReplayPath::remap_times() const {
@@ -299,21 +297,8 @@ void ReplayPath::wake(unsigned stream) {
   }
 }
 
-mem::DdrRequest ReplayPath::to_controller(MemRequest& r) const {
-  mem::DdrRequest q;
-  q.cookie = &r;
-  q.master = r.master;
-  q.priority = r.priority;
-  q.write = r.write;
-  q.bytes = r.bytes;
-  q.address = r.address;
-  q.critical = r.critical;
-  q.data = r.data;
-  return q;
-}
-
 ReplayPath::Taken ReplayPath::forward(MemRequest& r, Picoseconds arrival) {
-  return ddr_.submit(to_controller(r), arrival) ? Taken::kYes : Taken::kWaits;
+  return ddr_.submit_inside(r, arrival) ? Taken::kYes : Taken::kWaits;
 }
 
 void ReplayPath::ddr_accepted(void* cookie, Picoseconds at) {
@@ -346,7 +331,7 @@ void ReplayPath::send(MemRequest& r, Picoseconds at) {
     return;
   }
   memory_timeline_.add(index(r.master), r.write, r.bytes, at);
-  door_taken_ = !ddr_.submit(to_controller(r), at);
+  door_taken_ = !ddr_.submit_inside(r, at);
   if (!door_taken_ && r.write) acknowledge(r, at);
 }
 

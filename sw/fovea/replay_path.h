@@ -101,7 +101,6 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   }
   void find_next();
   void issue();
-  void step();
   void check(const trace::Record& r, const Stream& s) const;
   void complete(Slot& slot);
 
@@ -109,7 +108,6 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void respond(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
   void ddr_accepted(void* cookie, Picoseconds at) override;
   void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
-  mem::DdrRequest to_controller(MemRequest& r) const;
   // Without the crossbar.
   void send(MemRequest& r, Picoseconds at);
   void acknowledge(MemRequest& r, Picoseconds at);

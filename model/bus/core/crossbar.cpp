@@ -157,17 +157,18 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
   s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
-/// Brings `lane` and `before` up to the last grant, which is over.
+/// Brings `lane` and `before` up to the last grant but one. A sum just changed and read with its
+/// neighbours would hold up the host.
 inline void Crossbar::sum_grants(SlaveState& s) {
-  const std::uint32_t made = s.grants_made;
-  if (made - s.summed > SlaveState::kGrants)
-    s.summed = made - static_cast<std::uint32_t>(SlaveState::kGrants);
-  for (; s.summed != made; ++s.summed) {
+  const std::uint32_t last = s.grants_made - 1;
+  if (last - s.summed > SlaveState::kGrants - 1)
+    s.summed = last - static_cast<std::uint32_t>(SlaveState::kGrants - 1);
+  for (; s.summed != last; ++s.summed) {
     const Grant& g = s.grant(s.summed);
-    s.before[s.summed % SlaveState::kGrants] = s.lane;
-    const Picoseconds t = scr_.edge(g.end) - scr_.edge(g.start);
-    s.lane[g.master] += t;
-    s.lane[kMasterCount] += t;
+    LaneTimes& before = s.before[s.summed % SlaveState::kGrants];
+    for (std::size_t i = 0; i < s.lane.size(); i += 2) pair(&before[i]) = pair(&s.lane[i]);
+    s.lane[g.master] += g.time();
+    s.lane[kMasterCount] += g.time();
   }
 }
 
@@ -176,31 +177,36 @@ inline void Crossbar::sum_grants(SlaveState& s) {
                                            Picoseconds granted) {
   const Picoseconds start = scr_.edge(crossed), waited = granted - start;
   charge(r, Culprit::kBridge, start - r.issued);
-  // Where nobody had the lane the request stood behind its own master's last one.
   const std::uint32_t made = s.grants_made;
   std::uint32_t n = std::min(made - grants, static_cast<std::uint32_t>(SlaveState::kGrants));
   while (n > 0 && s.grant(made - n).end <= crossed) --n;
-  Waits w;
+  MasterWaits& of_master = waits[index(r.master)];
+  Waits& w = r.write ? of_master.write : of_master.read;
+  std::optional<Waits> before;
+  if (r.parts) before = w;
   Picoseconds of_lane = 0;
-  if (n <= kFewGrants) {
+  if (n > kFewGrants) {
+    sum_grants(s);
+    const Grant &first = s.grant(made - n), &last = s.grant(made - 1);
+    const Picoseconds passed = first.start < crossed ? start - first.start_at : 0;
+    const LaneTimes& lane = s.before[(made - n) % SlaveState::kGrants];
+    of_lane = s.lane[kMasterCount] - lane[kMasterCount] + last.time() - passed;
+    w.add_masters(s.lane.data(), lane.data());
+    w.add(static_cast<Culprit>(last.master), last.time());
+    w.take_back(static_cast<Culprit>(first.master), passed);
+  } else {
     for (; n > 0; --n) {
       const Grant& g = s.grant(made - n);
-      const Picoseconds t = scr_.edge(g.end) - scr_.edge(std::max(g.start, crossed));
+      const Picoseconds t = g.end_at - (g.start < crossed ? start : g.start_at);
       w.add(static_cast<Culprit>(g.master), t);
       of_lane += t;
     }
-  } else {
-    sum_grants(s);
-    const Grant& first = s.grant(made - n);
-    const Picoseconds passed = first.start < crossed ? start - scr_.edge(first.start) : 0;
-    const LaneTimes& before = s.before[(made - n) % SlaveState::kGrants];
-    of_lane = s.lane[kMasterCount] - before[kMasterCount] - passed;
-    w.add_masters(s.lane.data(), before.data());
-    w.take_back(static_cast<Culprit>(first.master), passed);
   }
+  // Where nobody had the lane the request stood behind its own master's last one.
   w.add(culprit(r.master), waited - of_lane);
+  if (!before) return;
   for (std::size_t m = 0; m < kMasterCount; ++m)
-    if (w.ps[m]) charge(r, static_cast<Culprit>(m), w.ps[m]);
+    if (const Picoseconds t = w.ps[m] - before->ps[m]) r.parts->add(static_cast<Culprit>(m), t);
 }
 
 void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
@@ -209,8 +215,12 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   // A faster clock since the grant does not bring it there before the time that was announced.
   s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.taken)});
-  if (s.grants_made) s.grant(s.grants_made - 1).end = s.free;
   const Picoseconds taken = scr_.edge(s.free);
+  if (s.grants_made) {
+    Grant& g = s.grant(s.grants_made - 1);
+    g.end = s.free;
+    g.end_at = taken;
+  }
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
     charge(request, culprit(request.door_opener), taken - request.taken);
   request.taken = taken;

@@ -154,11 +154,13 @@ class Crossbar {
   /// The lane was the master's from `start` on, up to the next one's start or `end`.
   struct Grant {
     std::uint64_t start = 0, end = 0;
+    Picoseconds start_at = 0, end_at = 0;
     std::uint8_t master = 0;
+    Picoseconds time() const { return end_at - start_at; }
   };
-  static constexpr std::uint32_t kFewGrants = 6;  // so many are added up one by one
+  static constexpr std::uint32_t kFewGrants = 4;  // so many are added up one by one
   /// How long each master had a lane, and all of them together, in ps.
-  using LaneTimes = std::array<Picoseconds, kMasterCount + 1>;
+  using LaneTimes = std::array<Picoseconds, (kMasterCount + 2) / 2 * 2>;
   struct SlaveState {
     static constexpr std::size_t kGrants = 64;
     std::uint64_t free = 0;      // first edge at which its command lane is free
@@ -167,7 +169,7 @@ class Crossbar {
     std::uint32_t grants_made = 0;
     std::array<Grant, kGrants> grants;  // the last ones, to say who was waited for
     Grant& grant(std::uint32_t n) { return grants[n % kGrants]; }
-    std::uint32_t summed = 0;    // grants that are in `lane`
+    std::uint32_t summed = 0;    // grants that are in `lane`: not the last
     LaneTimes lane{};
     std::array<LaneTimes, kGrants> before;  // `lane` at the start of each summed grant
     bool blocked = false;        // a request waits at its door
@@ -284,7 +286,7 @@ template <class Host>
       attribute(s, r, crossed, grants, next_);
     charge(r, Culprit::kService, at - next_);
   }
-  s.grant(s.grants_made++) = {next_edge_, arrival, next_port_};
+  s.grant(s.grants_made++) = {next_edge_, arrival, next_, at, next_port_};
   r.taken = at;
   const Taken taken = host.forward(r, at);
   if (taken == Taken::kWaits)
@@ -321,7 +323,7 @@ template <bool kWrite, class Host>
     attribute(s, r, g.crossed, s.grants_made ? s.grants_made - 1 : 0, g.at);
     if (r.parts) r.parts->add(Culprit::kService, service);
   }
-  s.grant(s.grants_made++) = {g.edge, arrival, m};
+  s.grant(s.grants_made++) = {g.edge, arrival, g.at, at, m};
   r.taken = at;
   const Taken taken = host.forward(r, at);
   bool over = false;

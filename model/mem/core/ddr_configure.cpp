@@ -22,8 +22,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs")),
-      rank_mask_(kinds_count_ ? ~Rank{0} : ~(~Rank{0} << kPriorityBit)) {
+      kinds_count_(!params.scheduler.is("frfcfs")) {
   lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }
@@ -46,7 +45,6 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
 
 void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   catch_up(at);
-  sum_given();  // with the timing they were given with
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
   if (config.low_power != config_.low_power) sleep_changes(config.low_power, now);
   // Refresh keeps its phase when only timing changes; a new interval starts to count now, and those

@@ -82,7 +82,6 @@ template <class Request>
   last_arrival_ = queued_since_ = arrived;
   count_ = 1;
   alone_ = true;
-  order_[0] = 0;
   fill(slots_[0], request, arrived);
   plan_one(slots_[0]);
   return true;
@@ -101,10 +100,10 @@ bool DdrController::queue(Request& request, std::uint64_t arrived) {
   }
   take(request, arrived);
   // A choice for a clock before the newcomer is ready stands; else nothing can be given before then.
-  const unsigned slot = order_[count_ - 1];
-  if (in_burst_ || slots_[slot].ready > choice_.at) return true;
-  const std::uint64_t edge = std::max(command_free_, slots_[slot].ready);
-  if (!was_alone && stands_with(slot, edge, ~free_slots_ ^ 1u << slot))
+  const std::uint64_t seen = entry(count_ - 1).ready;
+  if (in_burst_ || seen > choice_.at) return true;
+  const std::uint64_t edge = std::max(command_free_, seen);
+  if (!was_alone && stands_with(count_ - 1, edge, (1u << (count_ - 1)) - 1))
     next_ = ddr_.edge(choice_.at);
   else
     plan_from(edge);
@@ -121,7 +120,6 @@ inline void DdrController::fill(Entry& e, Request& request, std::uint64_t arrive
   e.row = (r.address & row_mask_) >> row_shift_;
   e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
   e.classified = false;
-  e.given = given_count_;
   e.prepared = 0;
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
@@ -131,51 +129,51 @@ void DdrController::join_queue() {
   alone_ = false;
   Entry& e = slots_[0];
   free_slots_ ^= 1u;
+  places_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
+  seen_[0].newest = Seen::kNot;  // commands since then were not looked at
+  seen_count_ = 0;
+  unseen_ = e.ready;
   offered_ = 1u;
-  of_master_[index(e.request.master)] = 1u;
-  ranks_[0] = Rank{e.request.priority} << kPriorityBit;
-  age_ = 0;  // nobody else is there
-  of_bank_[e.bank] = 1u;
   hits_ = device_.row(e.bank) == e.row;
-  writes_ = e.request.write;
   write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
 }
 
 template <class Request>
 void DdrController::take(Request& request, std::uint64_t arrived) {
   const auto slot = static_cast<unsigned>(std::countr_zero(free_slots_));
-  const std::uint32_t bit = 1u << slot;
-  free_slots_ ^= bit;
-  order_[count_++] = static_cast<std::uint8_t>(slot);
+  const unsigned place = count_++;
+  const Places bit = 1u << place;
+  free_slots_ ^= 1u << slot;
   last_arrival_ = arrived;
   Entry& e = slots_[slot];
   fill(e, request, arrived);
-  age_ += Rank{1} << kAgeBit;
-  ranks_[slot] = Rank{request.priority} << kPriorityBit | age_ | slot;
-  of_bank_[e.bank] |= bit;
+  if (seen_count_ == place) unseen_ = e.ready;
+  const Places older = places_.of_master(request.master);
+  places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
-  if (request.write) {
-    writes_ |= bit;
-    write_bytes_held_ += request.bytes;
-  }
-  std::uint32_t& same_master = of_master_[index(request.master)];
-  if (same_master == 0 || passes_older(e)) offered_ |= bit;
-  same_master |= bit;
+  if (request.write) write_bytes_held_ += request.bytes;
+  if (older == 0 || (!request.write && passes(e, older))) offered_ |= bit;
 }
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
 /// that is in another 2048-byte block and not more urgent.
-bool DdrController::passes_older(const Entry& e) const {
-  const DdrRequest& r = e.request;
-  const Rank age = ranks_[static_cast<unsigned>(&e - slots_.data())] & kAgeMask;
-  for (std::uint32_t set = of_master_[index(r.master)]; set; set &= set - 1) {
-    const auto older = static_cast<unsigned>(std::countr_zero(set));
-    if ((ranks_[older] & kAgeMask) >= age) continue;
-    const DdrRequest& o = slots_[older].request;
-    if (r.write || !o.write || (o.address >> 11) == (r.address >> 11) || o.priority < r.priority)
-      return false;
+bool DdrController::passes(const Entry& read, Places older) const {
+  if (older & ~places_.writes()) return false;
+  const DdrRequest& r = read.request;
+  for (; older; older &= older - 1) {
+    const DdrRequest& o = entry(oldest(older)).request;
+    if ((o.address >> 11) == (r.address >> 11) || o.priority < r.priority) return false;
   }
   return true;
+}
+
+/// What a master offers of its requests: no more than the oldest one and the first read.
+inline void DdrController::offer(Places of_one_master) {
+  if (of_one_master == 0) return;
+  offered_ |= of_one_master & -of_one_master;
+  const Places reads = of_one_master & ~places_.writes(), first = reads & -reads;
+  if (first & ~offered_ && passes(entry(oldest(first)), of_one_master & (first - 1)))
+    offered_ |= first;
 }
 
 /// Chooses the next command and its clock from the present state alone, so it does not matter when
@@ -186,14 +184,21 @@ inline void DdrController::plan() {
   else if (count_ > 1)
     return plan_many();
   else
-    plan_one(slots_[order_[0]]);
+    plan_one(entry(0));
   plain_ = false;
 }
 
 /// The same after a change from outside: a burst may be under way or the clock stopped.
 void DdrController::plan_anew() {
   next_ = kNever;
-  if (count_ != 0 && running_) plan_many();
+  if (count_ == 0 || !running_) return;
+  if (alone_) join_queue();
+  if (!in_burst_) return plan_many();
+  if (next_column_ < command_free_) {  // it is finished before anything else
+    choice_.at += command_free_ - next_column_;
+    next_column_ = command_free_;
+  }
+  next_ = ddr_.edge(choice_.at);
 }
 
 /// The usual case: one request, nothing to choose from, and no refresh that is urgent.
@@ -201,8 +206,10 @@ inline void DdrController::plan_one(Entry& e) {
   const std::uint64_t edge = std::max(command_free_, e.ready);
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
-  if (at >= calm_until_) [[unlikely]]
+  if (at >= calm_until_) [[unlikely]] {
+    if (alone_) join_queue();
     return plan_many();
+  }
   choice_ = {&e, at, cmd};
   next_ = ddr_.edge(at);
 }
@@ -243,9 +250,8 @@ Picoseconds DdrController::interval_start(Picoseconds t) const {
 
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
-  Given& g = given(given_count_++);
-  g.clock = clock;
-  g.at = at;
+  constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
+  Given& g = give(clock, at, kColumn ? choice_.entry : nullptr);
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
     g.blame = kRefreshed;
@@ -260,10 +266,10 @@ inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t
                                  Picoseconds at) {
   device_.issue<kCmd>(bank, row, clock);
   if constexpr (kCmd == Cmd::kAct) {
-    for (std::uint32_t set = of_bank_[bank]; set; set &= set - 1)
-      if (slots_[static_cast<unsigned>(std::countr_zero(set))].row == row) hits_ |= set & -set;
+    for (Places set = places_.of_bank(bank); set; set &= set - 1)
+      if (entry(oldest(set)).row == row) hits_ |= set & -set;
   } else if constexpr (kCmd == Cmd::kPre) {
-    hits_ &= ~of_bank_[bank];
+    hits_ &= ~places_.of_bank(bank);
   } else if constexpr (kCmd == Cmd::kPreAll) {
     hits_ = 0;
   }
@@ -375,9 +381,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = given(given_count_++);
-  g.clock = clock;
-  g.at = ddr_.edge(clock);
+  Given& g = give(clock, ddr_.edge(clock));
   g.cmd = cmd;
   g.blame = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
@@ -431,8 +435,8 @@ void DdrController::step() {
 
 bool DdrController::row_wanted(const Entry& by_others) const {
   if (alone_) return false;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Entry& o = slots_[order_[i]];
+  for (unsigned i = 0; i < count_; ++i) {
+    const Entry& o = entry(i);
     if (&o != &by_others && o.bank == by_others.bank && o.row == by_others.row) return true;
   }
   return false;
@@ -444,7 +448,7 @@ template <Cmd kCmd>
   if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock, next_);
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
-  hits_ &= ~of_bank_[e.bank];
+  hits_ &= ~places_.of_bank(e.bank);
   command_free_ = clock + 1;
   note<kCmd>(clock, next_);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
@@ -461,6 +465,10 @@ void DdrController::first_column() {
     ++stats.row_hits;
     ++stats.bank[e.bank].row_hits;
   }
+  if constexpr (kCmd == Cmd::kRd) {
+    read_waited_ = 0;
+    if (clock > e.ready) attribute(e, clock);
+  }
   if (closes_rows_ && e.chunks == 1) [[unlikely]]
     give_closing_column<kCmd>(e, clock);
   else
@@ -470,8 +478,6 @@ void DdrController::first_column() {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
-    read_waited_ = 0;
-    if (clock > e.ready) attribute(e, clock);
     const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
     client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
@@ -532,31 +538,27 @@ void DdrController::last_column() {
 }
 
 [[gnu::noinline]] void DdrController::finish_queued(std::uint64_t clock) {
-  leave_queue(*choice_.entry);
+  leave_queue();
   if (door_full_) open_door(clock);
   if (count_ == 0) count_queued(clock + 1);
   plan();
 }
 
-void DdrController::leave_queue(const Entry& e) {
-  const auto slot = static_cast<unsigned>(&e - slots_.data());
+inline void DdrController::leave_queue() {
+  const Entry& e = *choice_.entry;
+  const unsigned place = choice_.place;
   if (e.request.write) write_bytes_held_ -= e.request.bytes;
-  const std::uint32_t bit = 1u << slot;
-  free_slots_ |= bit;
-  offered_ &= ~bit;
-  of_bank_[e.bank] &= ~bit;
-  writes_ &= ~bit;
-  hits_ &= ~bit;
-  std::uint32_t& same_master = of_master_[index(e.request.master)];
-  same_master &= ~bit;
+  free_slots_ |= 1u << places_.slot(place);
+  places_.leave(place, e.request.priority);
+  offered_ = QueuePlaces::without(place, offered_);
+  hits_ = QueuePlaces::without(place, hits_);
   --count_;
-  const bool oldest = order_[0] == slot;
-  served_while_oldest_ = oldest ? 0 : served_while_oldest_ + e.chunks;
-  std::size_t i = 0;
-  while (order_[i] != slot) ++i;
-  for (; i < count_; ++i) order_[i] = order_[i + 1];
-  for (std::uint32_t set = same_master & ~offered_; set; set &= set - 1)
-    if (passes_older(slots_[static_cast<unsigned>(std::countr_zero(set))])) offered_ |= set & -set;
+  if (place < seen_count_)
+    --seen_count_;
+  else
+    look_for_unseen();
+  served_while_oldest_ = place == 0 ? 0 : served_while_oldest_ + e.chunks;
+  offer(places_.of_master(e.request.master));
 }
 
 void DdrController::open_door(std::uint64_t clock) {

@@ -16,6 +16,7 @@
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
 #include "model/mem/core/ddr_timing.h"
+#include "model/mem/core/queue_places.h"
 #include "model/mem/core/read_lane.h"
 
 namespace fovea::mem {
@@ -152,12 +153,8 @@ class DdrController {
   const DdrConfig& config() const { return config_; }
 
  private:
-  static constexpr std::size_t kMaxEntries = 16;
+  static constexpr std::size_t kMaxEntries = QueuePlaces::kMost;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  /// A request's rank among those of its kind, low first: priority, age, slot.
-  using Rank = std::uint64_t;
-  static constexpr unsigned kPriorityBit = 56, kAgeBit = 4;
-  static constexpr Rank kAgeMask = (Rank{1} << kPriorityBit) - (Rank{1} << kAgeBit);
   struct alignas(64) Entry {
     DdrRequest request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
@@ -165,7 +162,6 @@ class DdrController {
     std::uint8_t bank = 0;
     std::uint8_t chunks = 0;  // column commands it needs
     bool classified = false;
-    std::uint64_t given = 0;     // commands before it came
     std::uint64_t prepared = 0;  // number of its newest ACT or PRE, from 1; 0: none
     std::array<std::uint8_t, 64> data;
   };
@@ -174,6 +170,7 @@ class DdrController {
     Entry* entry = nullptr;
     std::uint64_t at = 0;
     Cmd cmd = Cmd::kAct;
+    std::uint8_t place = 0;  // of the entry
     std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
@@ -190,18 +187,31 @@ class DdrController {
   };
   static constexpr std::size_t kGiven = 64;
   using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
+  /// What the time from a command on is blamed on: itself, and the turnaround behind a write.
+  struct Blamed {
+    Picoseconds itself = 0, turned = 0;
+  };
+  /// The sums at the time a request became ready.
+  struct Seen {
+    static constexpr std::uint64_t kNot = ~std::uint64_t{0};
+    Blames blames;
+    std::uint64_t newest = kNot;  // command before; kNot: the sums are not known
+  };
   Given& given(std::uint64_t n) { return given_[n % kGiven]; }
   const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
+  Given& give(std::uint64_t clock, Picoseconds at, const Entry* served = nullptr);
+  void see(std::uint64_t clock, const Entry* served);
+  void look_for_unseen() {
+    unseen_ = seen_count_ < count_ ? entry(seen_count_).ready : kNoClock;
+  }
+  Blamed blamed(const Given& g, std::uint64_t clock, Picoseconds at) const;
   void attribute(const Entry& e, std::uint64_t clock);
-  void blame_each(const Entry& e, std::uint64_t n, std::uint64_t ready);
-  void blame_many(const Entry& e, std::uint64_t n, std::uint64_t ready);
+  void blame_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
+  void blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready, const Blamed& newest);
   void charge(const Entry& e, Culprit c, Picoseconds t) {
     waits[index(e.request.master)].read.add(c, t);
     if (e.request.parts) e.request.parts->add(c, t);
   }
-  void blame_sums(Waits& w, std::uint64_t n, std::uint64_t ready, Culprit own);
-  void charge_read(const Entry& e, const Waits& w);
-  void sum_given();
   void time_given();
 
   [[noreturn]] void refuse(const DdrRequest& request) const;
@@ -218,13 +228,14 @@ class DdrController {
   void plan();
   void plan_anew();
   void plan_one(Entry& e);
-  void plan_many();
+  void plan_many() { plan_from(std::max(command_free_, entry(0).ready)); }
   void plan_from(std::uint64_t edge);
-  unsigned first_of(std::uint32_t slots) const;
-  std::uint32_t best_kind(std::uint32_t slots, bool room) const;
-  void choose(std::uint64_t edge, std::uint32_t ready);
-  bool stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready);
-  bool refresh_goes_first(std::uint32_t set) const;
+  unsigned first_of(Places set) const;
+  Places best_kind(Places set, bool room) const;
+  void choose(std::uint64_t edge, Places ready);
+  void prepare_others(std::uint64_t edge, Places ready, bool room);
+  bool stands_with(unsigned place, std::uint64_t edge, Places ready);
+  bool refresh_goes_first(Places set) const;
   void choose_refresh(std::uint64_t edge);
   bool choose_overdue_row(std::uint64_t edge);
   void close_overdue_row(std::uint64_t clock);
@@ -239,7 +250,10 @@ class DdrController {
   void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
-  bool passes_older(const Entry& e) const;
+  Entry& entry(unsigned place) { return slots_[places_.slot(place)]; }
+  const Entry& entry(unsigned place) const { return slots_[places_.slot(place)]; }
+  bool passes(const Entry& read, Places older) const;
+  void offer(Places of_one_master);
   void idle(std::uint64_t until);
   void pass_over_refreshes(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
@@ -270,7 +284,7 @@ class DdrController {
   void columns_before(std::uint64_t until);
   void finish(std::uint64_t clock);
   void finish_queued(std::uint64_t clock);
-  void leave_queue(const Entry& e);
+  void leave_queue();
   void open_door(std::uint64_t clock);
 
   BackingStore& store_;
@@ -294,22 +308,16 @@ class DdrController {
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
   // nobody waits for is closed after its access; reads before writes, and priorities, count.
   bool in_order_, closes_rows_, kinds_count_;
-  Rank rank_mask_;
 
   std::array<Entry, kMaxEntries> slots_;
-  std::array<std::uint8_t, kMaxEntries> order_{};  // slots in use, oldest first
-  std::array<Rank, kMaxEntries> ranks_{};          // by slot
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
-  std::size_t count_ = 0;
+  unsigned count_ = 0;
   // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
-  // the order, masks and sums of the queue do not know it until join_queue().
+  // the places, sets and sums of the queue do not know it until join_queue().
   bool alone_ = false;
-  std::uint32_t offered_ = 0;  // slots whose command its master offers (rule 1)
-  std::array<std::uint32_t, kMasterCount> of_master_{};  // slots in use, by master
-  std::array<std::uint32_t, DdrDevice::kMaxBanks> of_bank_{};
-  std::uint32_t writes_ = 0;
-  std::uint32_t hits_ = 0;  // slots whose row is open
-  Rank age_ = 0;
+  QueuePlaces places_;
+  Places offered_ = 0;  // whose command its master offers (rule 1)
+  Places hits_ = 0;     // whose row is open
   std::uint64_t last_arrival_ = 0;
   unsigned write_bytes_held_ = 0;
   bool door_full_ = false;
@@ -318,7 +326,7 @@ class DdrController {
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
-  unsigned first_ = 0;     // slot of the first in rank when choice_ was made
+  unsigned first_ = 0;     // place of the first in rank when choice_ was made
   bool plain_ = false;     // by rank, with room for read data
   Picoseconds next_ = kNever;
   bool in_burst_ = false;  // choice_ is the last column of a burst under way
@@ -345,8 +353,14 @@ class DdrController {
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
   std::uint64_t given_count_ = 0;
-  std::uint64_t summed_ = 0;  // commands that are in the sums; the newest one is not
-  std::array<Blames, kGiven> blames_{};  // sums over the commands before each one
+  // Sums over the commands before the newest but one, and what that one adds. A sum just changed
+  // and read with its neighbours would hold up the host.
+  Blames blames_{};
+  Blamed late_;
+  std::uint8_t late_blame_ = 0;
+  std::array<Seen, kMaxEntries> seen_;  // by slot
+  unsigned seen_count_ = 0;             // places that have theirs
+  std::uint64_t unseen_ = kNoClock;     // edge at which the one after them is ready
   Picoseconds read_waited_ = 0;
 
   std::vector<std::pair<CommandHook, void*>> listeners_;
@@ -358,6 +372,37 @@ inline Cmd DdrController::needed(const Entry& e) const {
   const std::uint32_t open = device_.row(e.bank);
   if (open == e.row) return e.request.write ? Cmd::kWr : Cmd::kRd;
   return open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+}
+
+/// The place of another command among those given. `served`: whose column it is.
+[[gnu::always_inline]] inline DdrController::Given& DdrController::give(std::uint64_t clock,
+                                                                        Picoseconds at,
+                                                                        const Entry* served) {
+  if (clock > unseen_) see(clock, served);
+  const std::uint64_t n = given_count_++;
+  blames_[late_blame_] += late_.itself;
+  blames_[kTurned] += late_.turned;
+  const Given& before = given(n - 1);
+  late_ = n ? blamed(before, clock, at) : Blamed{};
+  late_blame_ = before.blame;
+  Given& g = given(n);
+  g.clock = clock;
+  g.at = at;
+  return g;
+}
+
+/// What the time from a command up to `clock` is blamed on.
+[[gnu::always_inline]] inline DdrController::Blamed DdrController::blamed(const Given& g,
+                                                                          std::uint64_t clock,
+                                                                          Picoseconds at) const {
+  if (g.cmd == Cmd::kWr) {
+    const std::uint64_t over = g.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
+    if (over < clock) {
+      const Picoseconds end = ddr_.edge(std::max(over, first_edge_));
+      return {end - g.at, at - end};
+    }
+  }
+  return {at - g.at, 0};
 }
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {

@@ -19,8 +19,8 @@ Overlap overlap(std::uint32_t a, std::uint32_t a_bytes, std::uint32_t b, std::ui
 }  // namespace
 
 const void* DdrController::newest_read(Master master) const {
-  for (std::size_t i = count_; i-- > 0;) {
-    const Entry& e = slots_[order_[i]];
+  for (unsigned i = count_; i-- > 0;) {
+    const Entry& e = entry(i);
     const bool answered = in_burst_ && &e == choice_.entry;
     if (!e.request.write && e.request.master == master && !answered) return e.request.cookie;
   }
@@ -29,8 +29,8 @@ const void* DdrController::newest_read(Master master) const {
 
 void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const {
   std::memcpy(to, store_.at(address), bytes);
-  for (std::size_t i = 0; i < count_; ++i) {  // oldest first
-    const Entry& e = slots_[order_[i]];
+  for (unsigned i = 0; i < count_; ++i) {  // oldest first
+    const Entry& e = entry(i);
     const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
     if (e.request.write && a < b)
       std::memcpy(to + (a - address), e.data.data() + (a - e.request.address), b - a);
@@ -39,8 +39,8 @@ void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned
 
 void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes) {
   std::memcpy(store_.at(address), from, bytes);
-  for (std::size_t i = 0; i < count_; ++i) {
-    Entry& e = slots_[order_[i]];
+  for (unsigned i = 0; i < count_; ++i) {
+    Entry& e = entry(i);
     const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
     if (e.request.write && a < b)
       std::memcpy(e.data.data() + (a - e.request.address), from + (a - address), b - a);
@@ -55,8 +55,8 @@ DdrController::View DdrController::view() const {
                        running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
                        (r.address & row_mask_) >> row_shift_, device_.row(bank)});
   };
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Entry& e = slots_[order_[i]];
+  for (unsigned i = 0; i < count_; ++i) {
+    const Entry& e = entry(i);
     add(e.request, e.ready, false);
     if (&e != choice_.entry || next_ == kNever) continue;
     v.next = i;

@@ -34,19 +34,17 @@ bool DdrController::choose_overdue_row(std::uint64_t edge) {
     opened = device_.opened(b);
     bank = b;
   }
-  choice_ = {nullptr, std::max(edge, device_.earliest(Cmd::kPre, bank)), Cmd::kPre,
+  choice_ = {nullptr, std::max(edge, device_.earliest(Cmd::kPre, bank)), Cmd::kPre, 0,
              static_cast<std::uint8_t>(bank)};
   return true;
 }
 
 void DdrController::close_overdue_row(std::uint64_t clock) {
   device_.issue<Cmd::kPre>(choice_.bank, 0, clock);
-  hits_ &= ~of_bank_[choice_.bank];
+  hits_ &= ~places_.of_bank(choice_.bank);
   ++stats.overdue_rows;
   command_free_ = clock + 1;
-  Given& g = given_[given_count_++ % kGiven];
-  g.clock = clock;
-  g.at = next_;
+  Given& g = give(clock, next_);
   g.blame = kRefreshed;
   g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh

@@ -1,97 +1,74 @@
 // The scheduler: which command is given next, and when.
-#include <bit>
-
 #include "model/mem/core/ddr_controller.h"
 
 namespace fovea::mem {
 
 /// A decision is taken at the first edge at which something is ready; if its command can only be
 /// given later, whatever becomes ready before has its say, a row that is due to be closed too.
-[[gnu::noinline]] void DdrController::plan_many() {
-  if (alone_) join_queue();
-  const std::uint64_t first = command_free_;
-  if (in_burst_) {  // a burst under way is finished before anything else
-    if (next_column_ < first) {
-      choice_.at += first - next_column_;
-      next_column_ = first;
-    }
-    next_ = ddr_.edge(choice_.at);
-    return;
-  }
-  plan_from(std::max(first, slots_[order_[0]].ready));
-}
-
-/// The same from an edge on before which nothing can be given.
-void DdrController::plan_from(std::uint64_t edge) {
-  std::uint32_t ready = ~free_slots_;
-  std::size_t not_ready = count_;  // place in order_ of the first that the scheduler does not see
-  while (slots_[order_[not_ready - 1]].ready > edge) ready ^= 1u << order_[--not_ready];
+[[gnu::noinline]] void DdrController::plan_from(std::uint64_t edge) {
+  unsigned seen = count_;  // by the scheduler: they come in the order of age
+  while (entry(seen - 1).ready > edge) --seen;
   for (;;) {
-    std::uint64_t wake = not_ready < count_ ? slots_[order_[not_ready]].ready : kNoClock;
-    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
-    choose(edge, ready);
-    if (choice_.at >= all_in_time_until_) [[unlikely]] {
-      if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
-      if (choice_.at < wake) break;
-    } else if (choice_.at < wake ||
-               (not_ready + 1 == count_ && stands_with(order_[not_ready], wake, ready))) {
-      break;
+    choose(edge, (1u << seen) - 1);
+    std::uint64_t wake = kNoClock;
+    for (; seen < count_; ++seen) {
+      wake = entry(seen).ready;
+      if (choice_.at < wake || !stands_with(seen, wake, (1u << seen) - 1)) break;
+      wake = kNoClock;
     }
+    if (lane_.room() > edge) wake = std::min(wake, lane_.room());
+    if (choice_.at >= all_in_time_until_) [[unlikely]]
+      if (const std::uint64_t due = first_overdue(); due > edge) wake = std::min(wake, due);
+    if (choice_.at < wake) break;
     edge = wake;
-    for (; not_ready < count_ && slots_[order_[not_ready]].ready <= edge; ++not_ready)
-      ready |= 1u << order_[not_ready];
+    while (seen < count_ && entry(seen).ready <= edge) ++seen;
   }
   next_ = ddr_.edge(choice_.at);
 }
 
-/// True if choice_, made with the slots `ready`, need not be made again when the one in `slot`, the
-/// newest, is seen at `edge`: it changes nothing, or it prepares its own bank first.
-bool DdrController::stands_with(unsigned slot, std::uint64_t edge, std::uint32_t ready) {
+/// True if choice_, made with the places `ready`, need not be made again when the next one is seen
+/// at `edge`: that changes nothing, or it prepares its own bank first.
+bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready) {
   if (!plain_ || lane_.room() > edge || edge >= all_in_time_until_) return false;
-  const std::uint32_t bit = 1u << slot;
+  const Places bit = 1u << place;
   if (in_order_ || !(offered_ & bit)) return true;
-  const bool write = writes_ & bit;
+  const bool write = places_.writes() & bit;
   if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
   // It must rank below the first.
-  const std::uint32_t first = 1u << first_;
-  const bool first_writes = writes_ & first;
+  const Entry &e = entry(place), &top = entry(first_);
+  const Places first = 1u << first_;
+  const bool first_writes = places_.writes() & first;
   if (kinds_count_ && first_writes && !write) return false;
   if (!kinds_count_ || first_writes == write) {
     const bool hits_first = (hits_ & bit) && !(hits_ & first);
-    if (hits_first || (ranks_[slot] & rank_mask_) < (ranks_[first_] & rank_mask_)) return false;
+    if (hits_first || (kinds_count_ && e.request.priority < top.request.priority)) return false;
   }
-  const Entry& e = slots_[slot];
-  if (e.bank == slots_[first_].bank) return true;
+  if (e.bank == top.bank) return true;
   if (e.bank == choice_.entry->bank) return false;
   if (hits_ & bit) return true;
-  const Cmd prepare = device_.row(e.bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
+  const Cmd prepare = device_.preparation(e.bank);
   const std::uint64_t at = std::max(edge, device_.earliest(prepare, e.bank));
-  if (at > choice_.at || (at == choice_.at && choice_.entry == &slots_[first_])) return true;
-  if (at == choice_.at || (ready & offered_ & of_bank_[e.bank])) return false;
-  choice_ = {&slots_[slot], at, prepare};
+  if (at > choice_.at || (at == choice_.at && choice_.entry == &top)) return true;
+  if (at == choice_.at || (ready & offered_ & places_.of_bank(e.bank))) return false;
+  choice_ = {&entry(place), at, prepare, static_cast<std::uint8_t>(place)};
   return true;
 }
 
-/// The slot whose request has the lowest rank.
-inline unsigned DdrController::first_of(std::uint32_t slots) const {
-  auto first = static_cast<unsigned>(std::countr_zero(slots));
-  if ((slots &= slots - 1) == 0) return first;
-  Rank lowest = ranks_[first] & rank_mask_;
-  for (; slots; slots &= slots - 1)
-    lowest = std::min(lowest, ranks_[static_cast<unsigned>(std::countr_zero(slots))] & rank_mask_);
-  return static_cast<unsigned>(lowest % kMaxEntries);
+/// The place of the request that ranks first: by priority, then age.
+inline unsigned DdrController::first_of(Places set) const {
+  return oldest(kinds_count_ ? places_.most_urgent(set) : set);
 }
 
 /// Rules 2 and 3: reads, then writes; with the read FIFO full, writes before reads.
-inline std::uint32_t DdrController::best_kind(std::uint32_t slots, bool room) const {
-  if (room && !kinds_count_) return slots;
-  const std::uint32_t kind = slots & (room ? ~writes_ : writes_);
-  return kind ? kind : slots;
+inline Places DdrController::best_kind(Places set, bool room) const {
+  if (room && !kinds_count_) return set;
+  const Places writes = places_.writes(), kind = set & (room ? ~writes : writes);
+  return kind ? kind : set;
 }
 
-/// The command to give if only the requests in the slots `ready` are there.
-inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
-  ready &= in_order_ ? 1u << order_[0] : offered_;
+/// The command to give if only the requests at the places `ready` are there.
+inline void DdrController::choose(std::uint64_t edge, Places ready) {
+  ready &= in_order_ ? 1u : offered_;
   plain_ = false;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
@@ -101,56 +78,54 @@ inline void DdrController::choose(std::uint64_t edge, std::uint32_t ready) {
   }
   // By kind; in each open rows first, then priority, then age (rules 2 and 3).
   const bool room = lane_.room() <= edge;
-  unsigned first;
+  unsigned first = 0;
   // Rule 5: the oldest command, passed by too often, is raised.
-  if (served_while_oldest_ > config_.old_count && config_.old_count != 0xFF) [[unlikely]] {
-    first = order_[0];
-  } else {
+  if (served_while_oldest_ <= config_.old_count || config_.old_count == 0xFF) [[likely]] {
     plain_ = room;
-    const std::uint32_t kind = best_kind(ready, room), open = kind & hits_;
+    const Places kind = best_kind(ready, room), open = kind & hits_;
     first = first_of(open ? open : kind);
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
   first_ = first;
-  Entry* const top = &slots_[first];
-  const Cmd cmd = needed(*top);
-  choice_ = {top, earliest(*top, cmd, edge), cmd};
+  Entry& top = entry(first);
+  const Cmd cmd = needed(top);
+  choice_ = {&top, earliest(top, cmd, edge), cmd, static_cast<std::uint8_t>(first)};
   if (choice_.at == edge) return;
-  std::uint32_t best = 0;  // others of the same clock
-  ready &= ~of_bank_[top->bank];
-  while (ready) {
-    const unsigned bank = slots_[static_cast<unsigned>(std::countr_zero(ready))].bank;
-    const std::uint32_t kind = best_kind(ready & of_bank_[bank], room);
-    ready &= ~of_bank_[bank];
-    if (kind & hits_) continue;
-    const Cmd prepare = device_.row(bank) == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-    const std::uint64_t at = std::max(edge, device_.earliest(prepare, bank));
-    if (at > choice_.at || (at == choice_.at && best == 0)) continue;
-    Entry* const e = &slots_[first_of(kind)];
-    const std::uint32_t bit = 1u << (e - slots_.data());
-    if (at < choice_.at) {
-      best = 0;
-    } else {
-      const std::uint32_t both = best_kind(best | bit, room);
-      if (first_of(both) != static_cast<unsigned>(e - slots_.data())) continue;
-    }
-    choice_ = {e, at, prepare};
-    best = bit;
+  ready &= ~places_.of_bank(top.bank);
+  if (ready) prepare_others(edge, ready, room);
+}
+
+/// Puts the ACT or PRE of another bank before choice_, if it can be given earlier; of several at
+/// the same clock the one that ranks first.
+inline void DdrController::prepare_others(std::uint64_t edge, Places ready, bool room) {
+  const Places preferred = !room ? places_.writes() : kinds_count_ ? ~places_.writes() : ~0u;
+  QueuePlaces::ByBank kinds;
+  unsigned banks = places_.by_bank(ready, preferred, hits_, kinds);
+  std::uint64_t best = choice_.at - 1;
+  Places at_best = 0;
+  for (; banks; banks &= banks - 1) {
+    const unsigned bank = oldest(banks);
+    const std::uint64_t at = std::max(edge, device_.earliest(device_.preparation(bank), bank));
+    const Places kind = kinds.places[bank];
+    at_best = at < best ? kind : at == best ? at_best | kind : at_best;
+    best = std::min(best, at);
   }
+  if (at_best == 0) return;
+  const unsigned place = first_of(best_kind(at_best, room));
+  Entry& e = entry(place);
+  choice_ = {&e, best, device_.preparation(e.bank), static_cast<std::uint8_t>(place)};
 }
 
 /// Rule 4: a needed refresh goes before writes and before a read that has a more urgent write. Each
-/// is the first of its kind among the slots `set`.
-bool DdrController::refresh_goes_first(std::uint32_t set) const {
-  const auto priority = [&](std::uint32_t kind) {
-    const std::uint32_t open = kind & hits_;
-    Rank first = ~Rank{0};
-    for (kind = open ? open : kind; kind; kind &= kind - 1)
-      first = std::min(first, ranks_[static_cast<unsigned>(std::countr_zero(kind))]);
-    return first >> kPriorityBit;
+/// is the first of its kind among the places `set`.
+inline bool DdrController::refresh_goes_first(Places set) const {
+  const Places writes = set & places_.writes(), reads = set ^ writes;
+  if (!reads || !writes) return !reads;
+  const auto priority = [&](Places kind) {
+    const Places open = kind & hits_;
+    return places_.urgency(open ? open : kind);
   };
-  const std::uint32_t reads = set & ~writes_, writes = set & writes_;
-  return !reads || (writes && priority(writes) < priority(reads));
+  return priority(writes) < priority(reads);
 }
 
 void DdrController::choose_refresh(std::uint64_t edge) {

@@ -93,6 +93,8 @@ class DdrDevice {
   const DdrTiming& timing() const { return timing_; }
   std::uint32_t row(unsigned bank) const { return banks_[bank].row; }
   bool all_closed() const { return open_ == 0; }
+  /// What a request to another row than the bank's needs first.
+  Cmd preparation(unsigned bank) const { return row(bank) == kClosed ? Cmd::kAct : Cmd::kPre; }
 
   /// First clock at which the command to this bank is legal.
   std::uint64_t earliest(Cmd cmd, unsigned bank) const {
