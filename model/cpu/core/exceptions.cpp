@@ -19,12 +19,15 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
       tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
       tcm_own_conflict_(static_cast<unsigned>(params.tcm_own_conflict())),
       shifted_cycle_(params.shifted_address_cycle()),
+      ahb_mask_(ratio_ & (ratio_ - 1) ? 0 : ~std::uint64_t{ratio_ - 1}),
       decoded_(params.icache.size() / Cache::kLineBytes),
       tcm_decoded_(tcm.size() / Cache::kLineBytes),
       icache_(params.icache.size()),
       dcache_(params.dcache.size()),
       params_(params) {
   flat_.mask = ~0u;
+  fetch_access_.port = BusAccess::Port::kInstruction;
+  write_access_.write = write_access_.buffered = true;
 }
 
 void Core::set_clock(Frequency f, Picoseconds at) {
