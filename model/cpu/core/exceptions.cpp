@@ -30,6 +30,20 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
   write_access_.write = write_access_.buffered = true;
 }
 
+std::vector<AccessRecord> Core::last_accesses() const {
+  constexpr std::size_t kShown = 8;
+  std::vector<AccessRecord> out;
+  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
+  for (std::size_t n = first; n < first + ring_.size(); ++n) {
+    const Access& a = ring_[n % ring_.size()];
+    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
+      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
+                     (a.what & kWritten) != 0});
+  }
+  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
+  return out;
+}
+
 void Core::set_clock(Frequency f, Picoseconds at) {
   clock_.restart(f, at);
   write_over_ = write_floor_ = 0;
