@@ -52,18 +52,14 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   /// Puts tx on its port at time `at` (not before earlier submissions of this agent). The caller has
   /// set what a master sets in a MemRequest.
   void submit(Transaction& tx, Picoseconds at) {
-    const Picoseconds now = running_ ? now_ : kernel_();
-    // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
-    if (at > now && (strict_ || at >= next_event())) sleep_until(at);
-    FOVEA_CHECK(at >= now, "a request in the past");
     tx.done = tx.error = false;
     tx.issued = at;
-    put_out();
-    if (running_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from) {
+    // The usual case of what follows in submit_any(): nothing under way, and nobody acts before `at`.
+    if (running_ && !held_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from &&
+        at >= now_ && at < next_event()) [[likely]]
       held_ = &tx;
-      return;
-    }
-    put_on_port(tx);
+    else
+      submit_any(tx, at);
   }
   /// See cpu::BusPort::poll.
   bool poll(Transaction& tx, Picoseconds until) {
@@ -164,10 +160,8 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
 
   /// kernel_horizon(), asked again only when something was notified since.
   Picoseconds next_event() {
-    if (seen_epoch_ != horizon_epoch) {
-      seen_epoch_ = horizon_epoch;
-      next_event_ = kernel_horizon();
-    }
+    if (seen_epoch_ != horizon_epoch) [[unlikely]]
+      ask_kernel();
     return next_event_;
   }
 
@@ -184,6 +178,17 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   };
 
   Self& self() { return static_cast<Self&>(*this); }
+  [[gnu::noinline]] void submit_any(Transaction& tx, Picoseconds at) {
+    const Picoseconds now = running_ ? now_ : kernel_();
+    // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
+    if (at > now && (strict_ || at >= next_event())) sleep_until(at);
+    FOVEA_CHECK(at >= now, "a request in the past");
+    put_out();
+    if (running_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from)
+      held_ = &tx;
+    else
+      put_on_port(tx);
+  }
   [[gnu::noinline]] void finish_queued(Transaction& tx) {
     while (!tx.done) {
       if (held_) {
@@ -272,6 +277,11 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
     const Picoseconds now = kernel_time();
     background_due_.notify(ps_time(t > now ? t - now : 0));
   }
+  [[gnu::noinline]] void ask_kernel() {
+    seen_epoch_ = horizon_epoch;
+    next_event_ = kernel_horizon();
+  }
+
   sc_core::sc_event done_, background_due_;
   KernelNow kernel_;
   MemoryPathIf* path_ = nullptr;  // behind `path`

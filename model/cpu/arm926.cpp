@@ -6,8 +6,6 @@ Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
                std::span<std::uint8_t> tcm, std::uint32_t entry)
     : Agent(name, 2), core_(params, *this, tcm), entry_(entry) {
   SC_HAS_PROCESS(Arm926);
-  tx_[kInstructionPort].port = kInstructionPort;
-  tx_[kDataPort].port = kDataPort;
   SC_METHOD(clock_changed);
   sensitive << clk;
   SC_METHOD(interrupt_changed);
@@ -73,25 +71,33 @@ void Arm926::catch_up() {
   enter();
 }
 
+[[gnu::noinline]] void Arm926::take_in(BusAccess& a) {
+  FOVEA_CHECK(record_count_ < records_.size(), "the core has more accesses than it said");
+  Record& r = records_[record_count_++];
+  r.port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
+  r.data = a.data;
+  r.parts = &a.parts;
+  r.access = &a;
+  a.record = &r;
+}
+
 void Arm926::submit(BusAccess& a, Picoseconds at) {
-  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
-  Transaction& tx = tx_[port];
-  access_[port] = &a;
+  if (!a.record) [[unlikely]]
+    take_in(a);
+  Transaction& tx = record_of(a);
   a.done = a.error = false;
-  a.least = least_latency(port);
+  a.least = least_latency(tx.port);
   tx.write = a.write;
   tx.locked = a.locked;
   tx.critical = a.kind == BusAccess::Kind::kWrap8 ? a.address & 31u : 0;
   tx.address = a.address - tx.critical;
-  tx.data = a.data;
   tx.bytes = a.bytes;
-  tx.parts = &a.parts;
   a.outside = !in_memory(tx);
   Agent::submit(tx, at);
 }
 
 void Arm926::completed(Transaction& tx) {
-  BusAccess& a = *access_[tx.port];
+  BusAccess& a = *static_cast<Record&>(tx).access;
   a.error = tx.error;
   a.first = tx.first;
   a.last = tx.last;
@@ -99,13 +105,9 @@ void Arm926::completed(Transaction& tx) {
 }
 
 bool Arm926::poll(BusAccess& a, Picoseconds until) {
-  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
-  return Agent::poll(tx_[port], until) && a.done && a.last <= until;
+  return Agent::poll(record_of(a), until) && a.done && a.last <= until;
 }
 
-void Arm926::finish(BusAccess& a) {
-  const unsigned port = a.port == BusAccess::Port::kInstruction ? kInstructionPort : kDataPort;
-  Agent::finish(tx_[port]);
-}
+void Arm926::finish(BusAccess& a) { Agent::finish(record_of(a)); }
 
 }  // namespace fovea::cpu

@@ -47,10 +47,17 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   void background_act() { core_.act(); }
   void completed(Transaction& tx);
 
+  /// What of an access does not change is set once.
+  struct Record : Transaction {
+    BusAccess* access = nullptr;
+  };
+  static Transaction& record_of(const BusAccess& a) { return *static_cast<Record*>(a.record); }
+  void take_in(BusAccess& a);
+
   Core core_;
   std::uint32_t entry_;
-  std::array<Transaction, 2> tx_;
-  std::array<BusAccess*, 2> access_{};
+  std::array<Record, Core::kAccesses> records_;
+  std::size_t record_count_ = 0;
   sc_core::sc_event interrupt_, clock_runs_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
   unsigned clock_changes_ = 0;

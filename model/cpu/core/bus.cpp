@@ -4,11 +4,6 @@
 #include "model/cpu/core/fast_path.h"
 
 namespace fovea::cpu {
-namespace {
-
-std::uint64_t beats(unsigned bytes) { return bytes < 4 ? 1 : bytes / 4; }
-
-}  // namespace
 
 void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
   counts_.stall[index(cause)] += cycle - cycle_;
@@ -38,16 +33,13 @@ void Core::stall_for_port(Cause cause) {
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
   a.done = false;  // the buffers may look at it while others act
   if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] come_to(cycle);
-  if (!a.write)
-    (a.port == BusAccess::Port::kInstruction ? counts_.i_read_beats : counts_.d_read_beats) +=
-        beats(a.bytes);
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
   if (a.outside) attention_ = true;  // the horizon may be nearer from its outcome on
 }
 
-Picoseconds Core::next_act() const {
+Picoseconds Core::time_of_next_act() const {
   const std::uint64_t c = next_act_cycle();
   if (c == kNoCycle) return kNever;
   if (act_time_cycle_ != c) {
@@ -93,21 +85,18 @@ void Core::retire_write() {
 void Core::start_write(std::uint64_t cycle) {
   write_is_victim_ = writes_.victim_bytes != 0;
   BusAccess& a = write_access_;
-  a.port = BusAccess::Port::kData;
-  a.write = a.buffered = true;
-  a.locked = false;
-  if (write_is_victim_) {
+  if (const WriteBuffer::Entry& e = writes_.front(); !write_is_victim_ && e.bytes == 4) {
+    a.bytes = 4;
+    a.address = e.address;
+    std::memcpy(a.data, e.data.data(), 4);
+  } else if (write_is_victim_) {
     a.address = writes_.victim_address;
     a.bytes = static_cast<std::uint8_t>(writes_.victim_bytes);
     std::memcpy(a.data, writes_.victim.data(), a.bytes);
   } else {
-    const WriteBuffer::Entry& e = writes_.front();
     a.bytes = static_cast<std::uint8_t>(WriteBuffer::next_burst(e));
     a.address = e.address + e.sent;
-    if (a.bytes == 4)
-      std::memcpy(a.data, e.data.data() + e.sent, 4);
-    else
-      std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
+    std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
   }
   a.kind = a.bytes == 32   ? BusAccess::Kind::kIncr8
            : a.bytes == 16 ? BusAccess::Kind::kIncr4
@@ -116,37 +105,40 @@ void Core::start_write(std::uint64_t cycle) {
   write_over_ = 0;
   data_port_free_ = cycle;
   submit(a, cycle);
-  write_floor_ = cycle + whole_clocks(a.least);
+  if (a.least != whole_of_) [[unlikely]]
+    count_whole(a.least);
+  write_floor_ = cycle + whole_;
 }
 
-/// Those that surely pass in this time. Ports rarely change their answer.
-std::uint64_t Core::whole_clocks(Picoseconds t) {
-  if (t != whole_of_) {
-    whole_of_ = t;
-    whole_ = 0;
-    while (clock_.periods(whole_ + 1) + 1 < t) ++whole_;  // an edge may be rounded down
-  }
-  return whole_;
+/// Clocks that surely pass in this time. Ports rarely change their answer.
+[[gnu::noinline]] void Core::count_whole(Picoseconds t) {
+  whole_of_ = t;
+  whole_ = 0;
+  while (clock_.periods(whole_ + 1) + 1 < t) ++whole_;  // an edge may be rounded down
 }
 
 /// The buffers have something, and the write under way may be over by then.
 [[gnu::noinline]] void Core::play_on(std::uint64_t cycle) {
   for (;;) {
-    if (write_in_flight_ && !write_access_.done) {
-      if (cycle < write_floor_) return;
-      if (cycle >= stop_cycle_ || attention_) [[unlikely]] come_to(cycle);
-      // While the port waits the buffers may move on by themselves: look again afterwards.
-      if (!port_.poll(write_access_, time(cycle)) && !(write_in_flight_ && write_access_.done))
-        return;
-    }
+    if (write_in_flight_ && !write_access_.done && (cycle < write_floor_ || !write_is_over(cycle)))
+      return;
     const std::uint64_t next = next_act_cycle();
     if (next > cycle) return;
     act_at(next);
   }
 }
 
+/// Lets the write under way end by then, if it does. While the port waits the buffers may move on by
+/// themselves: look again afterwards.
+[[gnu::noinline]] bool Core::write_is_over(std::uint64_t cycle) {
+  if (cycle >= stop_cycle_ || attention_) [[unlikely]] come_to(cycle);
+  return port_.poll(write_access_, time(cycle)) || (write_in_flight_ && write_access_.done);
+}
+
 /// Waits for the write under way; the next one does not start by itself meanwhile.
-void Core::finish_write(Cause cause) {
+void Core::finish_write(Cause cause) { wait_for_write(cause); }
+
+[[gnu::always_inline]] inline void Core::wait_for_write(Cause cause) {
   read_waiting_ = true;
   port_.finish(write_access_);
   read_waiting_ = false;
@@ -169,22 +161,45 @@ void Core::drain(Cause cause) {
   }
 }
 
-void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count) {
-  play(cycle_);
-  while (!writes_.room(count)) {
+[[gnu::noinline]] void Core::make_room(unsigned count) {
+  do {
     if (!write_in_flight_) {
       stall_for_port(Cause::kWriteBuffer);
       start_write(ahb(cycle_));
     }
-    finish_write(Cause::kWriteBuffer);
+    wait_for_write(Cause::kWriteBuffer);
     play(cycle_);
-  }
+  } while (!writes_.room(count));
+}
+
+/// @param put puts `count` bytes into the write buffer
+template <class Put>
+[[gnu::always_inline]] inline void Core::enqueue(unsigned count, Put put) {
+  play(cycle_);
+  if (!writes_.room(count)) make_room(count);
   if (writes_.empty()) next_write_cycle_ = cycle_;
-  writes_.push(pa, bytes, count);
+  put();
   counts_.d_write_beats += beats(count);
   // The port may be idle: then the write goes out at once.
   if (!write_in_flight_ && data_port_free_ <= cycle_) start_write(ahb(cycle_));
 }
+
+void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count) {
+  enqueue(count, [&] { writes_.push(pa, bytes, count); });
+}
+
+/// A store to a line that is not in the cache and may be written.
+template <unsigned kBytes>
+void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
+  record(pc_, va, kBytes | kWritten);
+  ++counts_.dcache_writes;
+  if (cycle_ < dfill_.last) dcache_wait(modified(va));
+  ++counts_.dcache_write_misses;
+  enqueue(kBytes, [&] { writes_.push(pa, value, kBytes); });
+}
+template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
 
 /// A read on the data port: goes before waiting writes unless it touches one of them.
 void Core::bus_read(BusAccess& a, Cause cause) {
@@ -195,6 +210,7 @@ void Core::bus_read(BusAccess& a, Cause cause) {
   stall_to(data_port_free_, cause, data_port_pa_, kService);
   sync_to_ahb(a.address);
   read_waiting_ = true;
+  counts_.d_read_beats += beats(a.bytes);
   submit(a, cycle_);
   port_.finish(a);
   read_waiting_ = false;
@@ -206,7 +222,6 @@ void Core::bus_read(BusAccess& a, Cause cause) {
 
 bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value) {
   BusAccess& a = data_access_;
-  a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
   a.write = a.buffered = false;
   a.locked = swapping_;
@@ -225,7 +240,6 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   stall_to(data_port_free_, Cause::kUncached, data_port_pa_, kService);
   sync_to_ahb(pa);
   BusAccess& a = data_access_;
-  a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
   a.write = true;
   a.buffered = false;

@@ -14,10 +14,12 @@ struct BusAccess {
 
   std::uint32_t address = 0;  ///< physical; kWrap8: address of the critical word
   std::uint8_t bytes = 4;     ///< 1, 2, 4 (single), 16 (INCR4), 32 (WRAP8, INCR8)
+  /// The port's own, from the first submission on: the core keeps its accesses as long as the port.
+  void* record = nullptr;
   bool write = false;
   bool buffered = false;      ///< write from the write or victim buffer: the core does not wait
   bool locked = false;        ///< SWP
-  Port port = Port::kData;
+  Port port = Port::kData;    ///< does not change after the first submission
   Kind kind = Kind::kSingle;
   /// In address order from the aligned start of the burst (for kWrap8: the start of the line, not
   /// the critical word). Valid for a read once done.
@@ -36,6 +38,9 @@ struct BusAccess {
   /// knows. Empty at the submission.
   RequestWaits parts;
 };
+
+/// Words on the bus, or one transfer of less.
+constexpr std::uint64_t beats(unsigned bytes) { return bytes < 4 ? 1 : bytes / 4; }
 
 /// The outside of the core. Times are absolute. One rule orders everything that happens between
 /// agents: what happens at time t is seen strictly after t.

@@ -54,8 +54,10 @@ class Core : public Background {
   void request_stop() { stop_requested_ = true; attention_ = true; }
 
   // Background: the write and victim buffers on the D-AHB.
-  Picoseconds next_act() const override;
-  void act() override;
+  Picoseconds next_act() const final { return read_waiting_ ? kNever : time_of_next_act(); }
+  void act() final;
+  /// It has so many BusAccess of its own.
+  static constexpr std::size_t kAccesses = 3;
 
   /// Marks an edge of the measured window at time t: the core notes its counters at its first
   /// instruction boundary after t, or within a wait-for-interrupt at t exactly. First call: from,
@@ -224,6 +226,9 @@ class Core : public Background {
   [[gnu::noinline]] bool store_beside_cache(std::uint32_t va, std::uint32_t value);
   template <unsigned kBytes>
   [[gnu::noinline]] void store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value);
+  template <unsigned kBytes>
+  [[gnu::noinline]] const std::uint8_t* load_cached(std::uint32_t va);
+  const std::uint8_t* load_line(std::uint32_t va, std::uint32_t mva, const Translation& t);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
@@ -271,7 +276,7 @@ class Core : public Background {
   Picoseconds time(std::uint64_t cycle) const { return clock_.edge(cycle); }
   std::uint64_t ahb(std::uint64_t cycle) const {
     const std::uint64_t n = cycle + ratio_ - 1;
-    return ratio_ & (ratio_ - 1) ? n / ratio_ * ratio_ : n & ~std::uint64_t{ratio_ - 1};
+    return ahb_mask_ ? n & ahb_mask_ : n / ratio_ * ratio_;
   }
   /// A stall of the core's own that has no address.
   void stall_to(std::uint64_t cycle, Cause cause) {
@@ -300,14 +305,20 @@ class Core : public Background {
     play_on(cycle);
   }
   void play_on(std::uint64_t cycle);
+  Picoseconds time_of_next_act() const;
   std::uint64_t next_act_cycle() const;
   void act_at(std::uint64_t cycle);
   std::uint64_t write_over() const;
+  bool write_is_over(std::uint64_t cycle);
   void bus_read(BusAccess& a, Cause cause);
+  template <class Put>
+  void enqueue(unsigned count, Put put);
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
+  void make_room(unsigned count);
   void finish_write(Cause cause);
+  void wait_for_write(Cause cause);
   void retire_write();
-  std::uint64_t whole_clocks(Picoseconds t);
+  void count_whole(Picoseconds t);
   void drain(Cause cause);
   void start_write(std::uint64_t ahb_cycle);
   void write_back(unsigned index, Cause cause);
@@ -322,6 +333,7 @@ class Core : public Background {
   unsigned ratio_, fill_latency_, walk_cycles_, cache_op_cycles_, test_clean_cycles_,
       invalidate_all_cycles_, tcm_wait_, tcm_own_conflict_;
   bool shifted_cycle_;
+  std::uint64_t ahb_mask_;  // of the core clocks at AHB edges; 0: their ratio is no power of two
 
   // Registers.
   std::array<std::uint32_t, 16> r_{};
@@ -452,7 +464,7 @@ class Core : public Background {
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
   std::uint64_t write_floor_ = 0;  // clock before which the write under way is not over
-  Picoseconds whole_of_ = 0;       // whole_clocks(): last question and answer
+  Picoseconds whole_of_ = 0;       // count_whole(): last question and answer
   std::uint64_t whole_ = 0;
   mutable std::uint64_t write_over_ = 0;  // clock at which it can be retired; 0: not yet known
   static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};

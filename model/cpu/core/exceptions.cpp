@@ -19,12 +19,29 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
       tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
       tcm_own_conflict_(static_cast<unsigned>(params.tcm_own_conflict())),
       shifted_cycle_(params.shifted_address_cycle()),
+      ahb_mask_(ratio_ & (ratio_ - 1) ? 0 : ~std::uint64_t{ratio_ - 1}),
       decoded_(params.icache.size() / Cache::kLineBytes),
       tcm_decoded_(tcm.size() / Cache::kLineBytes),
       icache_(params.icache.size()),
       dcache_(params.dcache.size()),
       params_(params) {
   flat_.mask = ~0u;
+  fetch_access_.port = BusAccess::Port::kInstruction;
+  write_access_.write = write_access_.buffered = true;
+}
+
+std::vector<AccessRecord> Core::last_accesses() const {
+  constexpr std::size_t kShown = 8;
+  std::vector<AccessRecord> out;
+  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
+  for (std::size_t n = first; n < first + ring_.size(); ++n) {
+    const Access& a = ring_[n % ring_.size()];
+    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
+      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
+                     (a.what & kWritten) != 0});
+  }
+  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
+  return out;
 }
 
 void Core::set_clock(Frequency f, Picoseconds at) {

@@ -38,8 +38,7 @@ inline const Instruction* Core::fetch() {
   bus_waited_ = true;
   const std::uint8_t region = regions_.find(a.address);
   const std::uint64_t end = std::max(cycle_, std::min(bus, cycle));
-  counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued);
-  if (cycle > end) counts_.stalls.add(cause, region, kCore, cycle - end);
+  counts_.stalls.split(cause, region, end - cycle_, a.parts, outcome - a.issued, cycle - end);
   counts_.stall[index(cause)] += cycle - cycle_;
   cycle_ = cycle;
 }

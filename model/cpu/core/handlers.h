@@ -83,6 +83,7 @@ struct Core::Ops {
   /// For records that do not know what was executed before them: the clock at which the first has
   /// its operands. kNoCycle: they have to be executed alone.
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
+  static Cycle held(const Core& c, Next i, Cycle cycle);
 
   /// Branch i is taken, state kept.
   template <bool kThumb, bool kMaybeSameLine>
@@ -154,7 +155,7 @@ struct Core::Ops {
   template <bool kThumb>
   static Next line_end(Core& c, Next i, Cycle cycle);
   template <bool kThumb>
-  static Next line_end_busy(Core& c, Next i, Cycle cycle);
+  static Next line_end_busy(Core& c, Next i, Cycle cycle, DecodedLine& d);
   template <bool kThumb>
   static Next enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d);
 
@@ -173,6 +174,10 @@ struct Core::Ops {
   static Next thumb_link_suffix(Core& c, Next i, Cycle cycle);
   template <Op kOp, Address kAddress, Indexed kIndexed, bool kTrack>
   static Next load(Core& c, Next i, Cycle cycle);
+  template <Op kOp, Indexed kIndexed, bool kTrack>
+  static Next load_line(Core& c, Next i, Cycle cycle, std::uint32_t va, std::uint32_t end,
+                        unsigned cycles);
+  static Next over(Core& c, Next i);
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store(Core& c, Next i, Cycle cycle);
   template <Op kOp, Address kAddress, Indexed kIndexed>

@@ -57,7 +57,8 @@ Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.r_[i->rn] : end;
   const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
   if (hint.key != (va & ~(kReadSpan - kBytes)) || cycle < c.dfill_.last) [[unlikely]]
-    return generic(c, i, cycle);
+    return load_line<kOp, kIndexed, kTrack>(c, i, cycle, va, end,
+                                            kAddress == Address::kLsl ? 1u + i->rs : 1u);
   ++c.counter(hint);
   c.record(c.run_va_ + i->at, va, kBytes);
   const std::uint32_t value = read<kOp>(host(hint.bias, va));
@@ -67,6 +68,33 @@ Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
   cycle += kAddress == Address::kLsl ? 1u + i->rs : 1u;
   if constexpr (kTrack) track(c, i->rd, cycle + (kOp == Op::kLdr ? 1 : 2), kLoad);
   return next(c, i + 1, cycle);
+}
+
+/// A load that no hint knows, perhaps of a line that has to be read first; or while a line is read.
+template <Op kOp, Indexed kIndexed, bool kTrack>
+[[gnu::noinline]] Core::Ops::Next Core::Ops::load_line(Core& c, Next i, Cycle cycle,
+                                                       std::uint32_t va, std::uint32_t end,
+                                                       unsigned cycles) {
+  constexpr unsigned kBytes = width(kOp);
+  c.settle(i, cycle);
+  const std::uint8_t* from;
+  const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
+  if (hint.key == (va & ~(kReadSpan - kBytes)) &&
+      hint.counter == c.place(c.counts_.dcache_reads)) {
+    c.record(c.pc_, va, kBytes);
+    ++c.counts_.dcache_reads;
+    c.dcache_wait(c.modified(va));
+    from = host(hint.bias, va);
+  } else {
+    from = c.load_cached<kBytes>(va);
+    if (!from) return generic(c, i, cycle);
+  }
+  const std::uint32_t value = read<kOp>(from);
+  if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
+  c.r_[i->rd] = value;
+  c.spend(cycles);
+  if constexpr (kTrack) track(c, i->rd, c.cycle_ + (kOp == Op::kLdr ? 1 : 2), kLoad);
+  return over(c, i);
 }
 
 template <Op kOp, Address kAddress, Indexed kIndexed>
@@ -97,13 +125,19 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
     return generic(c, i, cycle);
   if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
   c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
+  return over(c, i);
+}
+
+/// Record i, a load or store that went to the bus, is over.
+[[gnu::always_inline]] inline Core::Ops::Next Core::Ops::over(Core& c, Next i) {
   ++c.counts_.instructions;
   c.pc_ = c.run_va_ + i[1].at;
-  // Of what chain_goes_on() asks, a store to the write buffer leaves the place of the chain alone.
+  c.run_first_ = reinterpret_cast<std::intptr_t>(i + 1);
+  // Of what chain_goes_on() asks, such an access leaves the place of the chain alone.
   if (c.cycle_ >= c.chain_stop_ || c.cycle_ >= c.stop_cycle_ || c.attention_ ||
       !c.current_line_->valid || c.cycle_ < c.ifill_.last)
     return nullptr;
-  return resume_here(c, i + 1);
+  return go(c, i + 1, c.cycle_);
 }
 
 /// A word relative to the pc; imm: from the first byte of the line.

@@ -52,20 +52,6 @@ void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half,
   hints_used_ = true;
 }
 
-std::vector<AccessRecord> Core::last_accesses() const {
-  constexpr std::size_t kShown = 8;
-  std::vector<AccessRecord> out;
-  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
-  for (std::size_t n = first; n < first + ring_.size(); ++n) {
-    const Access& a = ring_[n % ring_.size()];
-    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
-      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
-                     (a.what & kWritten) != 0});
-  }
-  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
-  return out;
-}
-
 void Core::fault(bool instruction, unsigned status, unsigned domain, std::uint32_t address) {
   const std::uint32_t fsr = domain << 4 | status;
   if (instruction) {
@@ -86,7 +72,6 @@ void Core::external_abort_at(std::uint32_t last) {
 
 bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
   BusAccess& a = data_access_;
-  a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kSingle;
   a.write = a.buffered = a.locked = false;
   a.address = address;
@@ -230,7 +215,6 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   filling_ = true;  // from here on the read goes before the victim
   write_back(index, Cause::kWriteBuffer);
   BusAccess& a = data_access_;
-  a.port = BusAccess::Port::kData;
   a.kind = BusAccess::Kind::kWrap8;
   a.write = a.buffered = a.locked = false;
   a.address = pa & ~3u;
@@ -256,6 +240,36 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   return static_cast<int>(index);
 }
 
+/// A cacheable load. @param mva of its first byte @return where that is on the host
+[[gnu::always_inline]] inline const std::uint8_t* Core::load_line(std::uint32_t va,
+                                                                  std::uint32_t mva,
+                                                                  const Translation& t) {
+  ++counts_.dcache_reads;
+  if (cycle_ < dfill_.last) dcache_wait(mva);
+  int i = dcache_.find(mva);
+  if (i < 0) i = dcache_fill(mva, t.physical(mva), t.bufferable);
+  std::uint8_t* const line = dcache_.data(static_cast<unsigned>(i));
+  if (dcache_.line(static_cast<unsigned>(i)).tag == (mva & ~31u))
+    note_read(va, mva, line, counts_.dcache_reads);
+  return line + (mva & 31u);
+}
+
+/// A load that is aligned, cacheable and known to be permitted. nullptr: it is another kind, and
+/// nothing was done.
+template <unsigned kBytes>
+const std::uint8_t* Core::load_cached(std::uint32_t va) {
+  const std::uint32_t mva = modified(va);
+  const Memo& memo = dmemo_[(mva >> 10) % kMemos];
+  if (memo.page != memo_key(mva, false) || !memo.read_ok || !memo.translation.cacheable ||
+      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva))
+    return nullptr;
+  record(pc_, va, kBytes);
+  return load_line(va, mva, memo.translation);
+}
+template const std::uint8_t* Core::load_cached<1>(std::uint32_t);
+template const std::uint8_t* Core::load_cached<2>(std::uint32_t);
+template const std::uint8_t* Core::load_cached<4>(std::uint32_t);
+
 Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user) {
   const std::uint32_t mva = modified(va);
   if ((control_ & 2u) && (mva & (bytes - 1))) {
@@ -277,13 +291,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   if (!t) return Result::kAbort;
   const std::uint32_t pa = t->physical(a);
   if (t->cacheable && (control_ & 5u) == 5u) {
-    ++counts_.dcache_reads;
-    if (cycle_ < dfill_.last) dcache_wait(a);
-    int i = dcache_.find(a);
-    if (i < 0) i = dcache_fill(a, pa, t->bufferable);
-    if (dcache_.line(static_cast<unsigned>(i)).tag == (a & ~31u))
-      note_read(va, mva, dcache_.data(static_cast<unsigned>(i)), counts_.dcache_reads);
-    const std::uint8_t* const from = dcache_.data(static_cast<unsigned>(i)) + (a & 31u);
+    const std::uint8_t* const from = load_line(va, a, *t);
     if (bytes == 4)
       std::memcpy(&value, from, 4);
     else
@@ -354,19 +362,6 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   }
   return Result::kOk;
 }
-
-/// A store to a line that is not in the cache and may be written.
-template <unsigned kBytes>
-void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
-  record(pc_, va, kBytes | kWritten);
-  ++counts_.dcache_writes;
-  if (cycle_ < dfill_.last) dcache_wait(modified(va));
-  ++counts_.dcache_write_misses;
-  enqueue_write(pa, reinterpret_cast<const std::uint8_t*>(&value), kBytes);
-}
-template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
-template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
-template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
 
 /// The store that misses the cache and goes to the write buffer. False: it is another kind, and
 /// nothing was done.
@@ -452,11 +447,11 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
   play(cycle_);
   sync_to_ahb(pa);
   BusAccess& a = fetch_access_;
-  a.port = BusAccess::Port::kInstruction;
   a.kind = BusAccess::Kind::kWrap8;
   a.write = a.buffered = false;
   a.address = pa & ~3u;
   a.bytes = 32;
+  counts_.i_read_beats += beats(a.bytes);
   submit(a, cycle_);
   port_.finish(a);
   ++counts_.icache_fills;
@@ -551,11 +546,11 @@ const Instruction* Core::fetch_slow() {
     play(cycle_);
     sync_to_ahb(pa);
     BusAccess& a = fetch_access_;
-    a.port = BusAccess::Port::kInstruction;
-    a.kind = BusAccess::Kind::kIncr4;
+      a.kind = BusAccess::Kind::kIncr4;
     a.write = a.buffered = false;
     a.address = pa & ~15u;
     a.bytes = 16;
+    counts_.i_read_beats += beats(a.bytes);
     submit(a, cycle_);
     port_.finish(a);
     const std::uint64_t there = clock_.edge_at_or_after(a.last);

@@ -188,22 +188,27 @@ Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = c.run_va_ + 32;
   DecodedLine* d = c.jumps_[va / 32 % kJumps];
   if (d->valid != (c.line_epoch_ | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
-  if (cycle < c.busy_until_) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle);
+  if (cycle < c.busy_until_) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle, *d);
   return enter_line<kThumb>(c, i, cycle, *d);
 }
 
 /// The records of a line know nothing of the line before.
 template <bool kThumb>
-[[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle) {
-  DecodedLine* d = c.jumps_[(c.run_va_ + 32) / 32 % kJumps];
-  if (!d->records[0].body) return leave(c, i, cycle);
-  const Cycle start = held_until(c, &d->records[0], cycle);
-  if (start == kNoCycle) return leave(c, i, cycle);
+[[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle,
+                                                           DecodedLine& d) {
+  if (!d.records[0].body) [[unlikely]] return leave(c, i, cycle);
+  const Cycle start = held(c, &d.records[0], cycle);
+  if (start == kNoCycle) [[unlikely]] return leave(c, i, cycle);
   if (start > cycle) stall(c, cycle, start);
-  return enter_line<kThumb>(c, i, cycle, *d);
+  return enter_line<kThumb>(c, i, cycle, d);
 }
 
 [[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {
+  return held(c, i, cycle);
+}
+
+[[gnu::always_inline]] inline Core::Ops::Cycle Core::Ops::held(const Core& c, Next i,
+                                                              Cycle cycle) {
   const auto late = [&c](std::uint32_t set, Cycle than) {
     for (; set; set &= set - 1)
       if (c.ready_[static_cast<unsigned>(__builtin_ctz(set))] >> 2 > than) return true;

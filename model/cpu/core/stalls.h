@@ -58,11 +58,14 @@ class StallTable {
     parts_[place(cause, region, culprit)] += clocks << kFraction;
   }
   /// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds. What the
-  /// waits leave of `span`, and what is lost by rounding, is service as well.
+  /// waits leave of `span`, and what is lost by rounding, is service as well. `own` clocks more are
+  /// the core's.
   [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks,
-                                    const RequestWaits& waits, std::uint64_t span) {
-    if (clocks == 0) return;
+                                    const RequestWaits& waits, std::uint64_t span,
+                                    std::uint64_t own = 0) {
     Parts* const row = &parts_[place(cause, region, 0)];
+    row[kCore] += own << kFraction;
+    if (clocks == 0) return;
     const std::uint64_t whole = std::max(waits.total(), span);
     const Parts all = clocks << kFraction;
     Parts left = all;

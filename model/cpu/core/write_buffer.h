@@ -24,15 +24,11 @@ class WriteBuffer {
     return count_ < kAddresses && words_ + (bytes + 3) / 4 <= kWords;
   }
   void push(std::uint32_t address, const std::uint8_t* data, unsigned bytes) {
-    Entry& e = entries_[(head_ + count_++) % kAddresses];
-    e.address = address;
-    e.bytes = bytes;
-    e.sent = 0;
-    if (bytes == 4)
-      std::memcpy(e.data.data(), data, 4);
-    else
-      std::memcpy(e.data.data(), data, bytes);
-    words_ += (bytes + 3) / 4;
+    std::memcpy(next(address, bytes).data.data(), data, bytes);
+  }
+  /// The same for a word or less.
+  void push(std::uint32_t address, std::uint32_t value, unsigned bytes) {
+    std::memcpy(next(address, bytes).data.data(), &value, 4);
   }
   Entry& front() { return entries_[head_]; }
   const Entry& front() const { return entries_[head_]; }
@@ -95,6 +91,15 @@ class WriteBuffer {
   std::array<std::uint8_t, 32> victim{};
 
  private:
+  Entry& next(std::uint32_t address, unsigned bytes) {
+    Entry& e = entries_[(head_ + count_++) % kAddresses];
+    e.address = address;
+    e.bytes = bytes;
+    e.sent = 0;
+    words_ += (bytes + 3) / 4;
+    return e;
+  }
+
   std::array<Entry, kAddresses> entries_{};
   unsigned head_ = 0, count_ = 0, words_ = 0;
 };
