@@ -130,6 +130,10 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
   }
   /// Its outcome lets nobody else act by itself.
   bool in_memory(const Transaction& tx) const { return tx.address >= sdram_base_; }
+  /// The time of the next background work is another one now.
+  void background_moved() {
+    if (!running_) arm_background();
+  }
   /// Thread body brackets: the path is the agent's between enter() and leave().
   void enter() {
     running_ = true;

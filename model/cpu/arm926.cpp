@@ -20,6 +20,7 @@ void Arm926::run() {
   try {
     core_.reset(entry_, kernel_time());
     core_.run();
+    catch_up();  // how far the kernel has come does not depend on who looked on
   } catch (const GuestFailure& e) {
     failure_ = e.what();
   } catch (const NotModelled& e) {
@@ -32,6 +33,7 @@ void Arm926::run() {
 void Arm926::clock_changed() {
   core_.set_clock(clk.read(), kernel_time());
   ++clock_changes_;
+  background_moved();
   if (!clk.read().stopped()) clock_runs_.notify();
 }
 

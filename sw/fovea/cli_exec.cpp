@@ -63,17 +63,21 @@ class HostConsole : public SemihostingConsole {
     context_.out.flush();
     return read_input(to, context_.stop, go_on);
   }
-  void write(bool error_stream, std::string_view text) override {
+  bool write(bool error_stream, std::string_view text) override {
     if (error_stream) {
       context_.out.flush();
       context_.err << text << std::flush;
-      return;
+    } else {
+      context_.out << text;
+      if (text.find('\n') != std::string_view::npos) context_.out.flush();
     }
-    context_.out << text;
-    if (text.find('\n') != std::string_view::npos) context_.out.flush();
+    if (!context_.out) lost_ = true;
+    return !lost_;
   }
+  bool lost() const override { return lost_; }
 
  private:
+  bool lost_ = false;
   const CliContext& context_;
 };
 
@@ -194,6 +198,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                  const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
   check_register_log(o.registers, o.gdb);
+  if (o.fast_memory && !o.registers.pattern.empty())
+    throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
   const auto executor = context.make_executor();
   ParamSet params;
   executor->declare(params);
@@ -221,6 +227,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                                            .stop = context.stop ? *context.stop : kNeverStops,
                                            .registers = o.registers});
   context.out.flush();
+  const bool lost = !context.out;
   context.err << core_table(result.stats) << std::flush;
   if (!dir) context.err << result.registers << std::flush;
   if (dir) {
@@ -233,6 +240,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     dir->commit();
   }
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (lost) throw UserError("the program's output cannot be written");
   if (result.complete) return result.exit_code;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",

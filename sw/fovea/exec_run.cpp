@@ -76,7 +76,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   for (std::uint64_t before = ~std::uint64_t{0};;) {
     slices.run(slice);
     failure = arm.failure();
-    if (!failure.empty() || session.ended() || request.stop.load()) break;
+    if (!failure.empty() || session.over()) break;
     GdbSession* const gdb = session.gdb();
     if (gdb && gdb->killed()) break;
     const std::uint64_t now = arm.core().instructions_executed();

@@ -60,7 +60,7 @@ ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
 bool ExecSession::swi(std::uint32_t number) {
   if (!Semihosting::is_call(number, core_.cpsr() & 0x20u)) return false;
   semihosting_.call(*this);
-  if (ended()) core_.request_stop();
+  if (over()) core_.request_stop();
   return true;
 }
 

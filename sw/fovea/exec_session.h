@@ -26,6 +26,8 @@ class ExecSession : private SemihostingTarget {
   void attach(cpu::DebugMemory& memory, const std::function<void(GdbViews&)>& add = nullptr);
   GdbSession* gdb() { return gdb_.get(); }
   bool ended() const { return semihosting_.exit_code().has_value(); }
+  /// Ended, or to be ended: no instruction follows.
+  bool over() const { return ended() || request_.stop.load() || request_.console.lost(); }
   /// Result and core figures; `failure` is empty if the guest did not fail.
   ExecResult result(const std::string& failure);
 

@@ -9,14 +9,27 @@
 #include "sw/fovea/outputs.h"
 
 namespace fovea::app {
+namespace {
+
+/// Long enough for any list of names; the compiler of expressions recurs for each parenthesis.
+constexpr std::size_t kLongestPattern = 400;
+
+/// With this library's executor that keeps a set of states: time is bounded by length of name times
+/// length of pattern, where the usual one tries out all ways ('(.*)*x').
+constexpr auto kSyntax = std::regex::ECMAScript | std::regex_constants::__polynomial;
+
+}  // namespace
 
 RegisterLog::RegisterLog(std::vector<RegisterBlock> blocks, Sources sources)
     : blocks_(std::move(blocks)), sources_(std::move(sources)) {}
 
 void RegisterLog::start(const RegisterLogRequest& request) {
   FOVEA_CHECK(request.kept > 0, "a ring has room for one access at least");
+  if (request.pattern.size() > kLongestPattern)
+    throw UserError(fmt::format("a regular expression of {} characters; allowed: up to {}",
+                                request.pattern.size(), kLongestPattern));
   try {
-    pattern_.emplace(request.pattern, std::regex::ECMAScript | std::regex::optimize);
+    pattern_.emplace(request.pattern, kSyntax);
   } catch (const std::regex_error& e) {
     throw UserError(
         fmt::format("'{}' is no regular expression ({}); it is looked for in "

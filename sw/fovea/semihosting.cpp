@@ -105,8 +105,7 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
     case kWriteC: {
       std::uint8_t c;
       if (!t.read(parameter, {&c, 1})) return failed(EFAULT);
-      console_.write(false, {reinterpret_cast<const char*>(&c), 1});
-      return 0;
+      return console_.write(false, {reinterpret_cast<const char*>(&c), 1}) ? 0 : failed(EIO);
     }
     case kWrite0: return write_text(t, parameter);
     case kWrite: return write(t, a);
@@ -206,9 +205,10 @@ std::int64_t Semihosting::put(File& f, std::span<const std::uint8_t> bytes) {
   switch (f.kind) {
     case File::Kind::kOutput:
     case File::Kind::kError:
-      console_.write(f.kind == File::Kind::kError,
-                     {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-      return static_cast<std::int64_t>(bytes.size());
+      return console_.write(f.kind == File::Kind::kError,
+                            {reinterpret_cast<const char*>(bytes.data()), bytes.size()})
+                 ? static_cast<std::int64_t>(bytes.size())
+                 : -EIO;
     case File::Kind::kHost: {
       ssize_t n;
       do n = ::write(f.fd, bytes.data(), bytes.size());
@@ -337,7 +337,7 @@ std::uint32_t Semihosting::write_text(SemihostingTarget& t, std::uint32_t addres
     if (!t.read(address, {&c, 1})) return failed(EFAULT);
     if (c != 0) line += static_cast<char>(c);
     if (c == 0 || line.size() == kChunk) {
-      console_.write(false, line);
+      if (!console_.write(false, line)) return failed(EIO);
       line.clear();
     }
     if (c == 0) return 0;

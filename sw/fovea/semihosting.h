@@ -35,7 +35,10 @@ class SemihostingConsole {
   virtual std::size_t read(std::span<std::uint8_t> to) = 0;
   /// Asked now and then while read() waits; may be empty.
   std::function<bool()> go_on;
-  virtual void write(bool error_stream, std::string_view text) = 0;
+  /// Output got lost: the run is to end.
+  virtual bool lost() const { return false; }
+  /// @return false: nobody takes it
+  virtual bool write(bool error_stream, std::string_view text) = 0;
 };
 
 struct SemihostingSettings {

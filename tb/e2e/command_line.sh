@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Wrong input, a failing guest and Ctrl-C, on the real program.
-# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT IDLE_LOOP.elf
+# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT IDLE_LOOP.elf STOPPED_CLOCK.elf
 set -uo pipefail
-fovea=$1 source=$2 out=$3 idle_loop=$4
+fovea=$1 source=$2 out=$3 idle_loop=$4 stopped_clock=$5
 rm -rf "$out"
 mkdir -p "$out"
 firmware=$(dirname "$fovea")/sw/firmware
@@ -72,6 +72,8 @@ expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/hello.elf" -s run.start_limit=60ms
 expect idle_loop 3 'run.start_limit' 'pc 0x00000000' -- timeout 60 "$fovea" run "$out/small.yaml" \
   -s firmware.elf="$idle_loop" -s run.start_limit=60ms -o "$out/run"
+expect stopped_clock 3 'run.start_limit' 'wrote 4 bytes at 0x01c40938' -- timeout 60 "$fovea" run \
+  "$out/small.yaml" -s firmware.elf="$stopped_clock" -s run.start_limit=60ms -o "$out/run"
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
 expect params_of_masters 0 'bus.arm_d.request_latency' 'bus.vpbe' 'bus.edma_tc3.width' -- "$fovea" params 'bus.*'
 expect load_priority 2 "load.1.priority" 'QUEPRI' -- run "$out/small.yaml" -s load.1.outstanding=1 \

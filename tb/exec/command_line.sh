@@ -58,6 +58,9 @@ expect registers 0 'ns  pc 0x8000000[0-9a-f] \(_start\+0x[0-9a-f]+\) arm_d wrote
 expect other_registers 0 '\(2 earlier accesses are not shown\)' \
   -- run --log-registers 'ddr\.' --log-registers-kept=1 "$programs/registers.elf"
 expect no_registers 2 'regular expression' -- run --log-registers '(' "$programs/registers.elf"
+expect nested 2 'up to 400' -- run --log-registers "$(printf '(%.0s' {1..9000})" "$programs/registers.elf"
+expect backtracking 0 -- timeout 20 "$fovea" exec --log-registers '(.*.*)*x$' "$programs/registers.elf"
+expect nothing_to_log 2 '--fast-memory' -- run --fast-memory --log-registers . "$programs/registers.elf"
 expect quotes 2 'quotes' -- run "$fails" "a \"'"
 expect long_line 0 'command line of' -- run "$fails" "$(printf 'x%.0s' {1..300})"
 for memory in '' --fast-memory; do
@@ -74,6 +77,37 @@ for memory in '' --fast-memory; do
   got=$?
   [ $got = 130 ] || { echo "loop$memory: exit status $got: $(cat "$out/loop.txt")"; failures=$((failures + 1)); }
   grep -q '"complete": false' "$out/loop/stats.json" || failures=$((failures + 1))
+done
+
+# Output that nobody takes: the program is told and ends, and so is the user.
+for memory in '' --fast-memory; do
+  timeout 60 "$fovea" exec $memory "$fails" talk >/dev/full 2>"$out/full.txt"
+  got=$?
+  [ $got = 2 ] && grep -q "output cannot be written" "$out/full.txt" || {
+    echo "full$memory: exit status $got: $(cat "$out/full.txt")"
+    failures=$((failures + 1))
+  }
+  timeout 60 "$fovea" exec $memory "$fails" talk 2>"$out/broken.txt" | head -1 >"$out/line.txt"
+  got=${PIPESTATUS[0]}
+  [ $got = 2 ] && [ "$(cat "$out/line.txt")" = talk ] || {
+    echo "broken pipe$memory: exit status $got: $(cat "$out/broken.txt")"
+    failures=$((failures + 1))
+  }
+  # Ctrl-C while it waits for input is no end of the input.
+  mkfifo "$out/input"
+  exec 9<>"$out/input"
+  "$fovea" exec $memory "$fails" ask <"$out/input" -o "$out/ask" >"$out/ask.txt" 2>&1 &
+  pid=$!
+  sleep 1
+  kill -INT $pid
+  wait $pid
+  got=$?
+  exec 9>&-
+  rm "$out/input"
+  [ $got = 130 ] && grep -q '"complete": false' "$out/ask/stats.json" || {
+    echo "ask$memory: exit status $got: $(cat "$out/ask.txt")"
+    failures=$((failures + 1))
+  }
 done
 
 # Equal runs, equal bytes; a slower SDRAM, more clocks.

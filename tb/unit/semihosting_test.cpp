@@ -51,8 +51,10 @@ struct Console : SemihostingConsole {
     input.erase(0, n);
     return n;
   }
-  void write(bool error_stream, std::string_view text) override {
-    (error_stream ? err : out) += text;
+  bool full = false;
+  bool write(bool error_stream, std::string_view text) override {
+    if (!full) (error_stream ? err : out) += text;
+    return !full;
   }
 };
 
@@ -155,6 +157,16 @@ TEST_F(SemihostingTest, ConsoleCarriesThreeStreams) {
   console.input = "k";
   EXPECT_EQ(call_with(0x07, 0), std::uint32_t{'k'});
   EXPECT_EQ(call_with(0x07, 0), kFailed);
+}
+
+TEST_F(SemihostingTest, OutputThatNobodyTakesIsNotWritten) {
+  const auto out = open(":tt", 4);
+  console.full = true;
+  EXPECT_EQ(write(out, "to out"), 6u);
+  machine.memory[kText] = '!';
+  EXPECT_EQ(call_with(0x03, kText), kFailed);
+  put(kText, "a line");
+  EXPECT_EQ(call_with(0x04, kText), kFailed);
 }
 
 TEST_F(SemihostingTest, FileIsWrittenReadSoughtAndMeasured) {

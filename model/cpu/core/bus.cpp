@@ -19,20 +19,28 @@ void Core::stall_for_port(Cause cause) {
            writes_.victim_bytes ? writes_.victim_address : writes_.front().address, kCore);
 }
 
-/// All others act before this clock. They may change its time.
-[[gnu::noinline]] void Core::come_to(std::uint64_t cycle) {
-  Picoseconds t;
-  do {
-    t = time(cycle);
-    if (port_.horizon() >= t) return;
+/// All others act before this clock. They may change its time, or stop it.
+/// @return that clock, or the first behind the change
+[[gnu::noinline]] std::uint64_t Core::come_to(std::uint64_t cycle) {
+  for (;;) {
+    await_clock();
+    if (cycle < clock_floor_) cycle = ahb(clock_floor_);
+    const Picoseconds t = time(cycle);
+    if (port_.horizon() >= t) return cycle;
     port_.sleep_until(t);
-  } while (time(cycle) != t);
+    if (cycle >= clock_floor_ && clock_.running() && time(cycle) == t) return cycle;
+  }
+}
+
+/// A core whose clock stands does nothing.
+void Core::await_clock() {
+  while (!clock_.running()) port_.sleep_until(kNever);
 }
 
 /// Puts an access on its port.
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
   a.done = false;  // the buffers may look at it while others act
-  if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] come_to(cycle);
+  if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] cycle = come_to(cycle);
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
@@ -44,7 +52,7 @@ Picoseconds Core::time_of_next_act() const {
   if (c == kNoCycle) return kNever;
   if (act_time_cycle_ != c) {
     act_time_cycle_ = c;
-    act_time_ = time(c);
+    act_time_ = clock_.running() ? time(c) : kNever;
   }
   return act_time_;
 }
@@ -131,7 +139,7 @@ void Core::start_write(std::uint64_t cycle) {
 /// Lets the write under way end by then, if it does. While the port waits the buffers may move on by
 /// themselves: look again afterwards.
 [[gnu::noinline]] bool Core::write_is_over(std::uint64_t cycle) {
-  if (cycle >= stop_cycle_ || attention_) [[unlikely]] come_to(cycle);
+  if (cycle >= stop_cycle_ || attention_) [[unlikely]] cycle = come_to(cycle);
   return port_.poll(write_access_, time(cycle)) || (write_in_flight_ && write_access_.done);
 }
 

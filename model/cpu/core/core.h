@@ -114,7 +114,8 @@ class Core : public Background {
 
   // execute.cpp
   void step_attention();
-  void come_to(std::uint64_t cycle);
+  std::uint64_t come_to(std::uint64_t cycle);
+  void await_clock();
   void execute_alone(const Instruction& i);
   void enter_exception();
   void leave_old_fetch();
@@ -355,6 +356,7 @@ class Core : public Background {
 
   // Time.
   std::uint64_t cycle_ = 0;
+  std::uint64_t clock_floor_ = 0;  // first edge behind the last change of the clock
   std::uint64_t stop_cycle_ = 0;  // first clock that needs step_attention()
   bool played_ = false;           // the port plays the buffers: it is their time
   bool attention_ = true;

@@ -43,6 +43,11 @@ void CoreControl::update() {
 }
 
 void CoreControl::set_watch(std::uint32_t va, std::uint32_t bytes, Watch kind) {
+  // Setting one again changes nothing, as GDB's protocol says.
+  if (std::any_of(watches_.begin(), watches_.end(), [&](const Range& r) {
+        return r.va == va && r.bytes == bytes && r.kind == kind;
+      }))
+    return;
   watches_.push_back({va, bytes, kind});
   update();
 }

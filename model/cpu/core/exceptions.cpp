@@ -45,7 +45,12 @@ std::vector<AccessRecord> Core::last_accesses() const {
 }
 
 void Core::set_clock(Frequency f, Picoseconds at) {
+  const Picoseconds port_free = clock_.running() ? time(data_port_free_) : 0;
   clock_.restart(f, at);
+  if (clock_.running()) {
+    clock_floor_ = clock_.edge_after(at);
+    if (port_free > at) data_port_free_ = clock_.edge_at_or_after(port_free);
+  }
   write_over_ = write_floor_ = 0;
   whole_of_ = whole_ = 0;
   act_time_cycle_ = kNoCycle;

@@ -154,6 +154,9 @@ void Core::execute_one(const Instruction& i) {
 void Core::step_attention() {
   for (;;) {
     attention_ = false;
+    await_clock();
+    // What happens at an edge is seen behind it, another clock as well.
+    stall_to(clock_floor_, Cause::kBusSync);
     const Picoseconds t = time(cycle_);
     while (mark_due(t)) snapshot();
     const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
@@ -174,7 +177,7 @@ void Core::step_attention() {
     if (cycle_ >= stop) {
       play(cycle_);
       port_.sleep_until(t);
-      if (time(cycle_) != t) continue;  // another clock since
+      if (time(cycle_) != t || !clock_.running()) continue;  // another clock since
       // At t itself everybody may act once more: run this instruction, then look again.
       if (!attention_ && !mark_pending_) {
         const Picoseconds again = port_.horizon();

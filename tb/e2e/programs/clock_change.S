@@ -1,4 +1,4 @@
-/* From reset: the core's clock is divided by 8, then by 1 again while it runs on. The register access
+/* From reset: the core's clock is divided as FROM says, then as TO says while the core runs on. The register access
    that follows the command comes one instruction later each time. Pins 64..71 count before and after. */
     .syntax unified
     .arm
@@ -22,13 +22,13 @@ _start:
     mov r7, #0
     .set n, 0
     .rept TIMES
-    ldr r0, =0x8007                  /* PLLDIV2: by 8 */
+    ldr r0, =FROM                    /* PLLDIV2 */
     str r0, [r5, #0x1c]
     str r1, [r5, #0x38]              /* PLLCMD: GOSET */
 1:  ldr r0, [r5, #0x3c]              /* PLLSTAT */
     tst r0, #1
     bne 1b
-    ldr r0, =0x8000
+    ldr r0, =TO
     str r0, [r5, #0x1c]
     add r7, r7, #1
     str r7, [r4, #4]
