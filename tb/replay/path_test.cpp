@@ -118,6 +118,18 @@ TEST_P(WindowTest, OneReadAtATimeTakesTheSumOfItsLatencies) {
   const Played many(four, GetParam());
   EXPECT_LT(many.path->duration(), alone.path->duration() * 3 / 4);
 }
+/// Little's law: latencies over time are how many were under way, all the time the whole window.
+TEST_P(WindowTest, TheWholeWindowIsUnderWay) {
+  for (const unsigned window : {1u, 4u, 16u, 48u}) {
+    trace::TextTrace text("t", random_reads(1, window, 5000, 32));
+    const Played p(text, GetParam());
+    const Histogram& h = p.path->latency(trace::TextTrace::port(0)).histogram;
+    // A latency ends with the first beat of the data, the place is free with the last.
+    const double under_way = h.mean() * 5000 / static_cast<double>(p.path->duration());
+    EXPECT_LE(under_way, window);
+    EXPECT_GT(under_way, window * 0.9 - 0.5) << window;
+  }
+}
 TEST_P(WindowTest, AllBytesAreMoved) {
   Rng rng(3);
   std::string text = master_lines(10, 5);

@@ -88,7 +88,9 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
   EXPECT_THAT(error_of(head + "0 0 R 0xFFFFFFFF 2\n"), HasSubstr("beyond 4 GiB"));
   EXPECT_THAT(error_of(head + "# master 0 window 1 b\n"), HasSubstr("declared twice"));
   EXPECT_THAT(error_of(head + "# master 1 window 1 a\n"), HasSubstr("same label"));
-  EXPECT_THAT(error_of(head + "# master 1 window 0 b\n"), HasSubstr("allowed: 1 to 16"));
+  EXPECT_THAT(error_of(head + "# master 1 window 0 b\n"), HasSubstr("allowed: 1 to 48"));
+  EXPECT_THAT(error_of(head + "# master 1 window 49 b\n"), HasSubstr("allowed: 1 to 48"));
+  EXPECT_EQ(error_of(head + "# master 1 window 48 b\n1 1 R 0x0 4\n"), "");
   EXPECT_THAT(error_of(head + "# master 1 window 1 B/c\n"), HasSubstr("a master is declared as"));
   EXPECT_EQ(error_of(head + "# master 1 window 1 GPU-0\n1 1 R 0x0 4\n"), "");
 }

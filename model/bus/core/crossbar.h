@@ -131,7 +131,7 @@ class Crossbar {
  private:
   static constexpr std::uint64_t kNotYet = ~std::uint64_t{0};  // the clock stands
   static constexpr unsigned kLaneLog2 = 3;  // bytes of a slave's lane
-  static constexpr std::size_t kQueue = 32;  // as deep as any master's outstanding limit
+  static constexpr std::size_t kQueue = 64;  // as deep as any master's outstanding limit
   struct Port {
     struct Item {
       MemRequest* request;

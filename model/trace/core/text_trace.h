@@ -13,7 +13,7 @@ namespace fovea::trace {
 class TextTrace : public RecordSource {
  public:
   static constexpr std::string_view kHeader = "# dramtrace 1";
-  static constexpr unsigned kMaxReads = 16, kWrites = 16, kMaxBytes = 4096;
+  static constexpr unsigned kMaxReads = 48, kWrites = 16, kMaxBytes = 4096;
   static constexpr Picoseconds kLatest = 100 * kPsPerSecond;
   static constexpr unsigned kMaxMasters = 10;
   /// The port of the n-th master: those behind the core's, which are narrower and slower.
