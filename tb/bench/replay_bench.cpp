@@ -8,13 +8,13 @@ namespace fovea::app {
 namespace {
 
 /// Arguments: masters, requests.
-void replay(benchmark::State& state, bool random, bool memory_only) {
+void replay(benchmark::State& state, Pattern pattern, bool memory_only) {
   ReplayParams params;
   ParamSet set;
   params.declare(set);
   const auto count = static_cast<std::uint64_t>(state.range(1));
   for (auto _ : state) {
-    SyntheticTrace source(static_cast<unsigned>(state.range(0)), count, random);
+    SyntheticTrace source(static_cast<unsigned>(state.range(0)), count, pattern);
     ReplayPath path("synthetic", source.info, source, params, memory_only);
     benchmark::DoNotOptimize(path.run_before(kNever));
   }
@@ -27,10 +27,11 @@ void arguments(benchmark::internal::Benchmark* b) {
     for (const int count : {1'000'000, 10'000'000}) b->Args({masters, count});
 }
 
-BENCHMARK_CAPTURE(replay, sequential, false, false)->Apply(arguments);
-BENCHMARK_CAPTURE(replay, random, true, false)->Apply(arguments);
-BENCHMARK_CAPTURE(replay, sequential_memory_only, false, true)->Apply(arguments);
-BENCHMARK_CAPTURE(replay, random_memory_only, true, true)->Apply(arguments);
+BENCHMARK_CAPTURE(replay, sequential, Pattern::kSequential, false)->Apply(arguments);
+BENCHMARK_CAPTURE(replay, apart, Pattern::kApart, false)->Apply(arguments);
+BENCHMARK_CAPTURE(replay, random, Pattern::kRandom, false)->Apply(arguments);
+BENCHMARK_CAPTURE(replay, sequential_memory_only, Pattern::kSequential, true)->Apply(arguments);
+BENCHMARK_CAPTURE(replay, random_memory_only, Pattern::kRandom, true)->Apply(arguments);
 
 }  // namespace
 }  // namespace fovea::app

@@ -8,7 +8,7 @@ count() {
     awk '/Collected/ { print $NF }'
 }
 printf '%-10s %7s %16s %16s\n' load masters 'first 40 000' 'next 160 000'
-for kind in sequential random; do
+for kind in sequential apart random; do
   for masters in 1 4 10; do
     a=$(count $kind $masters 10000)
     b=$(count $kind $masters 50000)

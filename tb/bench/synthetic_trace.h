@@ -7,12 +7,16 @@
 
 namespace fovea::app {
 
-/// `count` requests of 32 bytes in all, as fast as windows of 8 reads and 8 writes let them go. Not
-/// random: each master reads on through a megabyte of its own. Random: three reads to a write,
-/// anywhere in 64 MiB.
+/// What the masters ask for. Sequential: each reads on through a megabyte of its own; all megabytes
+/// begin in one bank, so that several masters close each other's rows with every request. Apart: the
+/// same with a page between them, so that each is in a bank of its own and the memory has as much to do
+/// as for one. Random: three reads to a write, anywhere in 64 MiB.
+enum class Pattern { kSequential, kApart, kRandom };
+
+/// `count` requests of 32 bytes in all, as fast as windows of 8 reads and 8 writes let them go.
 class SyntheticTrace final : public trace::RecordSource {
  public:
-  SyntheticTrace(unsigned masters, std::uint64_t count, bool random) : random_(random) {
+  SyntheticTrace(unsigned masters, std::uint64_t count, Pattern pattern) : pattern_(pattern) {
     for (unsigned m = 0; m < masters; ++m) {
       info.streams.emplace_back();
       info.masters.push_back(
@@ -29,9 +33,11 @@ class SyntheticTrace final : public trace::RecordSource {
     r.bytes = 32;
     std::uint32_t& seed = seeds_[stream];
     seed = seed * 1664525u + 1013904223u;
-    r.write = random_ && seed >> 30 == 0;
-    r.address = random_ ? (seed >> 8 & 0x1F'FFFFu) * 32u
-                        : stream << 20 | static_cast<std::uint32_t>(n * 32 & 0xF'FFFFu);
+    const bool random = pattern_ == Pattern::kRandom;
+    const std::uint64_t page = pattern_ == Pattern::kApart ? stream * 2048u : 0;
+    r.write = random && seed >> 30 == 0;
+    r.address = random ? (seed >> 8 & 0x1F'FFFFu) * 32u
+                       : stream << 20 | static_cast<std::uint32_t>((n * 32 + page) & 0xF'FFFFu);
     return true;
   }
   trace::TraceInfo info;
@@ -39,7 +45,7 @@ class SyntheticTrace final : public trace::RecordSource {
  private:
   /// Behind the core's: those of 64 bits.
   static Master port(unsigned n) { return static_cast<Master>(index(Master::kEdmaTc0Read) + n); }
-  bool random_;
+  Pattern pattern_;
   std::vector<std::uint64_t> left_;
   std::vector<std::uint32_t> seeds_;
 };
