@@ -39,6 +39,7 @@ class BoardExecutor final : public Executor {
 
  private:
   ExecResult run_board(const ExecRequest& request, const ExecMap& map, const ExecClocks& clocks);
+  void collect_memory(std::vector<StatRow>& rows) const;
 
   cpu::CpuParams cpu_;
   bus::CrossbarParams crossbar_;
@@ -67,6 +68,11 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   session.attach(*board_, [&](GdbViews& v) {
     v.blocks = blocks;
     v.log = log.get();
+    v.stats = [this, core = std::move(v.stats)] {
+      auto rows = core();
+      collect_memory(rows);
+      return rows;
+    };
     join_bus(v, board_->scr, board_->ddr, board_->arm, board_->quiet, map.ram_base);
   });
   // Slices only let the host look in. No instruction takes as long as one.
@@ -91,12 +97,16 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   if (!request.registers.pattern.empty()) result.registers = log->text();
   board_->scr.settle();
   board_->ddr.settle(kernel_time());
-  for (const auto m : {Master::kArmI, Master::kArmD}) {
-    collect(*board_->scr.crossbar().stats[index(m)], result.stats);
-    collect(*board_->scr.latency[index(m)], result.stats);
-  }
-  collect(board_->ddr.controller().stats, result.stats);
+  collect_memory(result.stats);
   return result;
+}
+
+void BoardExecutor::collect_memory(std::vector<StatRow>& rows) const {
+  for (const auto m : {Master::kArmI, Master::kArmD}) {
+    collect(*board_->scr.crossbar().stats[index(m)], rows);
+    collect(*board_->scr.latency[index(m)], rows);
+  }
+  collect(board_->ddr.controller().stats, rows);
 }
 
 ExecResult BoardExecutor::run(const ExecRequest& request) {

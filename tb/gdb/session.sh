@@ -28,6 +28,7 @@ delete
 info mem
 monitor time
 monitor stats cpu.inst
+monitor stats ddr.bursts
 monitor params ddr.part
 monitor regs ddr.SDBCR
 x/i $pc
@@ -36,7 +37,7 @@ G
 end 35 'Breakpoint 1, leaf \(n=n@entry=0\)' '#1 .* in branch \(n=5\)' '#2 .* in main' \
   'control +0x50078' 'Value returned is \$1 = 1' 'Hardware watchpoint' 'Old value = 0' \
   'New value = 35' '0x00000000 0x08000000 rw' '[0-9]+\.[0-9]{3} ns, core clock [0-9]+' \
-  'cpu.instructions = [0-9]+' 'ddr.part = mt47h64m16' 'SDBCR = 0x[0-9a-f]{8} .*CL=5' 'detached'
+  'cpu.instructions = [0-9]+' 'ddr.bursts = [1-9]' 'ddr.part = mt47h64m16' 'SDBCR = 0x[0-9a-f]{8} .*CL=5' 'detached'
 cmp plain.out look.out || fail 'look: other output'
 cmp plain/stats.json look/stats.json || fail 'look: other figures than without a debugger'
 
