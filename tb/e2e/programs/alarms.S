@@ -1,5 +1,6 @@
 /* Two alarms of TIMER0's upper half, from reset, clocks as they are there. Pins 64..67 show 1 and 3 when
    an alarm was started, 2 and 4 when its interrupt has come. The second takes SECOND - FIRST longer. */
+#include "pins.inc"
     .syntax unified
     .arm
     .equ FIRST, 200
@@ -16,20 +17,7 @@ _start:
     nop
 
 reset:
-    ldr r0, =0x01C41A00              /* PSC: MDCTL 26 (GPIO) and 27 (TIMER0) to Enable */
-    mov r1, #3
-    str r1, [r0, #104]
-    str r1, [r0, #108]
-    ldr r0, =0x01C41120              /* PTCMD, PTSTAT */
-    mov r1, #1
-    str r1, [r0]
-1:  ldr r1, [r0, #8]
-    tst r1, #1
-    bne 1b
-
-    ldr r4, =0x01C67060              /* GPIO, third block: DIR, OUT_DATA */
-    mov r0, #0
-    str r0, [r4]
+    open_pins
     ldr r5, =0x01C48000              /* AINTC */
     mov r0, #2                       /* EINT1: source 33, TINT34 of TIMER0 */
     str r0, [r5, #0x1c]

@@ -1,22 +1,12 @@
 /* From reset: the core's clock is divided as FROM says, then as TO says while the core runs on. The register access
    that follows the command comes one instruction later each time. Pins 64..71 count before and after. */
+#include "pins.inc"
     .syntax unified
     .arm
     .equ TIMES, 24
     .global _start
 _start:
-    ldr r0, =0x01C41A00              /* PSC: MDCTL 26 (GPIO) to Enable */
-    mov r1, #3
-    str r1, [r0, #104]
-    ldr r0, =0x01C41120              /* PTCMD, PTSTAT */
-    mov r1, #1
-    str r1, [r0]
-1:  ldr r1, [r0, #8]
-    tst r1, #1
-    bne 1b
-    ldr r4, =0x01C67060              /* GPIO, third block: DIR, OUT_DATA */
-    mov r0, #0
-    str r0, [r4]
+    open_pins
     ldr r5, =0x01C40900              /* PLLC1, from PLLCTL on */
     mov r1, #1
     mov r7, #0
