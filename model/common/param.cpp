@@ -69,8 +69,12 @@ std::string real_text(double v) {
 
 std::string list_text(const std::vector<double>& v) {
   std::string out = "[";
-  for (std::size_t i = 0; i < v.size(); ++i) out += (i ? ", " : "") + real_text(v[i]);
-  return out + "]";
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (i) out += ", ";
+    out += real_text(v[i]);
+  }
+  out += ']';
+  return out;
 }
 
 [[noreturn]] void refuse(std::string_view text, const std::string& allowed) {
@@ -150,7 +154,7 @@ std::string IntParam::unit() const {
 std::string IntParam::allowed() const {
   std::string units;
   for (const auto& s : suffixes(unit_))
-    if (!s.text.empty()) units += (units.empty() ? "" : " ") + std::string(s.text);
+    if (!s.text.empty()) units.append(units.empty() ? "" : " ").append(s.text);
   return format(min_) + " .. " + format(max_) + (units.empty() ? "" : " (unit: " + units + ")");
 }
 
@@ -207,7 +211,7 @@ std::string ListParam::default_text() const { return list_text(default_); }
 std::string ListParam::allowed() const {
   std::string n;
   for (std::size_t i = 0; i < sizes_.size(); ++i)
-    n += (i ? " or " : "") + std::to_string(sizes_[i]);
+    n.append(i ? " or " : "").append(std::to_string(sizes_[i]));
   return "a list of " + n + " plain numbers, [a, b, ...]";
 }
 void ListParam::parse(std::string_view text) {
@@ -248,7 +252,7 @@ std::size_t EnumParam::index() const {
 }
 std::string EnumParam::allowed() const {
   std::string out;
-  for (const auto& w : words_) out += (out.empty() ? "" : ", ") + w;
+  for (const auto& w : words_) out.append(out.empty() ? "" : ", ").append(w);
   return out;
 }
 void EnumParam::parse(std::string_view text) {

@@ -546,7 +546,7 @@ const Instruction* Core::fetch_slow() {
     play(cycle_);
     sync_to_ahb(pa);
     BusAccess& a = fetch_access_;
-      a.kind = BusAccess::Kind::kIncr4;
+    a.kind = BusAccess::Kind::kIncr4;
     a.write = a.buffered = false;
     a.address = pa & ~15u;
     a.bytes = 16;
