@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
   using namespace fovea::app;
   const std::string_view kind = argc == 4 ? argv[1] : "";
   const unsigned long masters = argc == 4 ? std::strtoul(argv[2], nullptr, 10) : 0;
-  if ((kind != "sequential" && kind != "apart" && kind != "random") || masters == 0 || masters > kMasterCount) {
+  if ((kind != "sequential" && kind != "apart" && kind != "random") || masters == 0 ||
+      masters > kMasterCount) {
     std::fprintf(stderr, "usage: bench_replay_load sequential|apart|random MASTERS REQUESTS\n");
     return 2;
   }

@@ -51,7 +51,8 @@ std::string random_program(std::uint64_t seed) {
                 " str r0, [r6, #0x20]\n" + nops(6) +
                 "mov r0, #0\n mcr p15, 0, r0, c7, c0, 4\n mov r0, #2\n str r0, [r8, #0x0c]\n";
         break;
-      default: text += "mul r3, r7, r1\n stmia r9, {r0-r3}\n ldmia r9, {r2, r3}\n smull r2, r3, r7, r7\n";
+      default:  // several clocks each
+        text += "mul r3, r7, r1\n stmia r9, {r0-r3}\n ldmia r9, {r2, r3}\n smull r2, r3, r7, r7\n";
     }
     if (step % 20 == 19) text += "b 2f\n .ltorg\n 2:\n";
   }

@@ -48,7 +48,8 @@ printf '\x00\x00\x00\x50\x00\x00\x00\x50' |
 run() { "$fovea" run "$@" -o "$out/run"; }
 expect good 0 'frame.rate' -- run "$out/small.yaml"
 expect unknown_key 2 'key.yaml:2' 'frame' 'did you mean .run.frames' -- run "$out/key.yaml"
-expect missing_unit 2 'unit.yaml:2' 'request_latency' 'cycles.*; a number alone lacks its unit'  -- run "$out/unit.yaml"
+expect missing_unit 2 'unit.yaml:2' 'request_latency' 'cycles.*; a number alone lacks its unit' -- \
+  run "$out/unit.yaml"
 expect out_of_range 2 'range.yaml:2' 'video.width' '720' -- run "$out/range.yaml"
 expect bad_override 2 'run.frames' -- run "$out/small.yaml" -s run.frames=none
 expect no_experiment 2 'nowhere.yaml' -- run "$out/nowhere.yaml"

@@ -55,7 +55,8 @@ TEST_P(ClockChangeTest, TheChangeComesWhenItIsDue) {
   EXPECT_EQ(soc.arm.failure(), "");
   ASSERT_EQ(shown.size(), 48u);
   const auto took = [&](unsigned n) { return static_cast<double>(shown[2 * n + 1] - shown[2 * n]); };
-  for (unsigned n = c.from; n < 24; ++n) EXPECT_NEAR(took(n), took(n - 2) + c.two_instructions, 2) << n;
+  for (unsigned n = c.from; n < 24; ++n)
+    EXPECT_NEAR(took(n), took(n - 2) + c.two_instructions, 2) << n;
 }
 INSTANTIATE_TEST_SUITE_P(
     Clocks, ClockChangeTest,

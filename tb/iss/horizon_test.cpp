@@ -31,9 +31,10 @@ std::string program(const std::string& before, const std::string& access, const 
   return text;
 }
 
-
-/// Before which instruction of the sled the interrupt is taken. The block raises IRQ at `at`, which it learns when it is accessed.
-std::uint32_t run(const std::string& text, Picoseconds at, Picoseconds others_every, bool tells = true) {
+/// Before which instruction of the sled the interrupt is taken. The block raises IRQ at `at`, which it
+/// learns when it is accessed.
+std::uint32_t run(const std::string& text, Picoseconds at, Picoseconds others_every,
+                  bool tells = true) {
   BlockMachine m;
   m.port.tells = tells;
   m.on_svc = [&](std::uint32_t n) {

@@ -133,7 +133,7 @@ struct CoreStats : StatGroup {
                  "wait states of internal RAM, and waiting for DMA there");
   FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "cache maintenance");
   FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
-  FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge");
+  FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge, or for the first edge of another clock");
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
                  "words looked up in the I-cache, with two dropped behind each change of flow");
   FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read");
