@@ -35,8 +35,8 @@ constexpr const char* kMemoryHelp =
     "and stack take the largest piece the program leaves free, the stack from its top. Nothing "
     "else\n"
     "answers but, with RAM above 0x20000000, the SDRAM controller's registers there. Options may\n"
-    "stand before or behind the program; what is no option of exec, and all behind --, belongs to\n"
-    "the program.\n"
+    "stand before or behind the program;\n"
+    "what is no option of exec, and all behind --, belongs to the program.\n"
     "Exit status: the program's own; 2 wrong input, 3 the guest failed, 4 a defect of fovea, each\n"
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
