@@ -1,5 +1,6 @@
 // Requests without a file, for the speed of the player and the path.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,18 +10,24 @@ namespace fovea::app {
 
 /// What the masters ask for. Sequential: each reads on through a megabyte of its own; all megabytes
 /// begin in one bank, so that several masters close each other's rows with every request. Apart: the
-/// same with a page between them, so that each is in a bank of its own and the memory has as much to do
-/// as for one. Random: three reads to a write, anywhere in 64 MiB.
-enum class Pattern { kSequential, kApart, kRandom };
+/// same with a page between them, so that up to eight are in banks of their own. Dealt: one stream of
+/// which each master has every so-manieth request, so that the memory has the same to do however many
+/// they are. Random: three reads to a write, anywhere in 64 MiB.
+enum class Pattern { kSequential, kApart, kDealt, kRandom };
 
-/// `count` requests of 32 bytes in all, as fast as windows of 8 reads and 8 writes let them go.
+/// Reads, and writes as well, that a master may have outstanding by default.
+inline constexpr unsigned kWindow = 8;
+
+/// `count` requests of 32 bytes in all, as fast as windows of so many reads and up to 16 writes for each
+/// master let them go.
 class SyntheticTrace final : public trace::RecordSource {
  public:
-  SyntheticTrace(unsigned masters, std::uint64_t count, Pattern pattern) : pattern_(pattern) {
+  SyntheticTrace(unsigned masters, std::uint64_t count, Pattern pattern, unsigned window = kWindow)
+      : pattern_(pattern), masters_(masters) {
     for (unsigned m = 0; m < masters; ++m) {
       info.streams.emplace_back();
       info.masters.push_back(
-          {port(m), std::string(kMasterNames[index(port(m))]), m, 8, 8, false});
+          {port(m), std::string(kMasterNames[index(port(m))]), m, window, std::min(window, 2 * kWindow), false});
       left_.push_back(count / masters);
       seeds_.push_back(m * 77 + 1);
     }
@@ -34,10 +41,13 @@ class SyntheticTrace final : public trace::RecordSource {
     std::uint32_t& seed = seeds_[stream];
     seed = seed * 1664525u + 1013904223u;
     const bool random = pattern_ == Pattern::kRandom;
-    const std::uint64_t page = pattern_ == Pattern::kApart ? stream * 2048u : 0;
     r.write = random && seed >> 30 == 0;
-    r.address = random ? (seed >> 8 & 0x1F'FFFFu) * 32u
-                       : stream << 20 | static_cast<std::uint32_t>((n * 32 + page) & 0xF'FFFFu);
+    if (random)
+      r.address = (seed >> 8 & 0x1F'FFFFu) * 32u;
+    else if (pattern_ == Pattern::kDealt)
+      r.address = static_cast<std::uint32_t>(((n + 1) * masters_ - stream) * 32 & 0x3FF'FFFFu);
+    else
+      r.address = stream << 20 | static_cast<std::uint32_t>((n * 32 + page(stream)) & 0xF'FFFFu);
     return true;
   }
   trace::TraceInfo info;
@@ -45,7 +55,11 @@ class SyntheticTrace final : public trace::RecordSource {
  private:
   /// Behind the core's: those of 64 bits.
   static Master port(unsigned n) { return static_cast<Master>(index(Master::kEdmaTc0Read) + n); }
+  std::uint64_t page(unsigned stream) const {
+    return pattern_ == Pattern::kApart ? stream * 2048u : 0u;
+  }
   Pattern pattern_;
+  unsigned masters_;
   std::vector<std::uint64_t> left_;
   std::vector<std::uint32_t> seeds_;
 };
