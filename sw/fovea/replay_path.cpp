@@ -252,6 +252,7 @@ bool ReplayPath::run_before(Picoseconds until) {
     } else if (xbar < ddr) {
       xbar_.step(*this);
     } else {
+      stepped_ = ddr;
       ddr_.step();
       if (door_opened_) send_waiting();
     }
@@ -261,6 +262,13 @@ bool ReplayPath::run_before(Picoseconds until) {
     if (s.valid)  // a locked read without its write keeps all others out
       throw UserError(fmt::format("trace '{}': it stops before its end", name_));
   return true;
+}
+
+Picoseconds ReplayPath::memory_end() const {
+  const Clock& clock = ddr_.ddr_clock();
+  if (stepped_ == 0 || !clock.running()) return last_;
+  const std::uint64_t data = ddr_.config().timing.WL() + mem::DdrTiming::kBurstClocks;
+  return std::max(last_, clock.edge(clock.edge_at_or_after(stepped_) + data));
 }
 
 std::vector<Picoseconds> ReplayPath::remap_times() const {

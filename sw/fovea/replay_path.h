@@ -31,7 +31,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   bool run_before(Picoseconds until);
   /// To be called before the figures are read.
   void finish() {
-    ddr_.catch_up(last_);
+    ddr_.catch_up(memory_end());
     check_.remark(ddr_.config(), ddr_.ddr_clock().frequency());
   }
 
@@ -46,6 +46,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   std::uint64_t requests() const { return requests_; }
   /// From the recording's start to the last completion.
   Picoseconds duration() const { return last_ > start_ ? last_ - start_ : 0; }
+  /// The last data on the SDRAM's bus: a write's come behind its completion.
+  Picoseconds memory_end() const;
   bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
   /// Who looks on at the crossbar.
   void observe(MemObserver* observer) { xbar_.observe(observer); }
@@ -126,6 +128,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;
+  Picoseconds stepped_ = 0;  // last decision of the controller
   std::uint64_t requests_ = 0, bytes_ = 0;
   std::vector<Mark> marks_;
   std::vector<MemRequest*> waiting_;  // without the crossbar: behind the one at the door

@@ -14,13 +14,14 @@ std::vector<StatRow> ReplayPath::stats() {
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
-    const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
+    const double clocks = static_cast<double>(memory_end() - start_) * 1e-12 *
+                          ddr_.ddr_clock().frequency().hertz();
     const auto busy = static_cast<double>(ddr_.busy_clocks());
     const auto queued = static_cast<double>(ddr_.stats.queued_clocks.count());
     rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
-                    "share of replay.time in which the SDRAM's data bus moves data"});
+                    "share of the time until the SDRAM's last data in which its data bus moves data"});
     rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
-                    "share of replay.time in which no request is queued at the SDRAM"});
+                    "share of the time until the SDRAM's last data in which no request is queued there"});
     if (queued > 0)
       rows.push_back({"ddr.efficiency", busy / queued, "ratio",
                       "data clocks / clocks in which a request is queued"});

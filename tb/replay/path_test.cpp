@@ -305,6 +305,26 @@ TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
   }
 }
 
+// Writes are complete before the memory has them: the shares are of the time that it needs.
+TEST(ReplayPathTest, SharesCountTheWritesThatAreStillQueued) {
+  for (const unsigned writes : {1u, 2u, 7u}) {
+    std::string text = master_lines(1, 4);
+    for (unsigned i = 0; i < writes; ++i) text += fmt::format("0 0 W 0x{:x} 16\n", i << 20);
+    trace::TextTrace t("t", text);
+    const Played p(t);
+    std::map<std::string, double> value;
+    for (const app::StatRow& row : p.path->stats())
+      value[row.name] = std::visit([](auto v) { return static_cast<double>(v); }, row.value);
+    EXPECT_GT(p.path->memory_end(), p.path->duration());
+    const double clocks = static_cast<double>(p.path->memory_end()) * 243e-6;
+    EXPECT_NEAR(value.at("ddr.utilisation"), writes * 4 / clocks, 1e-9);
+    EXPECT_GT(value.at("ddr.headroom"), 0);
+    EXPECT_NEAR(value.at("ddr.headroom") * clocks,
+                clocks - static_cast<double>(p.path->memory().queued_clocks.count()), 1e-6);
+    EXPECT_LT(value.at("ddr.utilisation"), 1);
+  }
+}
+
 // What the reads of a master waited for is their latency, to the picosecond; what their master and the
 // bus did is in proportion.
 TEST(ReplayPathTest, TheFiguresAddUp) {
