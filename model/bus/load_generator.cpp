@@ -34,42 +34,44 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   SC_METHOD(fill);
   sensitive << wake_;
   dont_initialize();
+  if (!params.active()) return;
   // Not at power-up itself: the clocks get their first values in that instant.
-  if (params.active()) wake_.notify(ps_time(std::max<Picoseconds>(params.start(), kPsPerNs)));
-}
-
-unsigned LoadGenerator::under_way() const {
-  if (params_.copies()) return copies_;
-  return reads_.outstanding() + (other_side_ ? other_side_->outstanding() : 0);
+  const Picoseconds start = std::max<Picoseconds>(params.start(), kPsPerNs);
+  for (std::uint64_t i = 0; i < params.outstanding(); ++i) ready_.push(start);
+  wake_.notify(ps_time(start));
 }
 
 void LoadGenerator::fill() {
-  while (under_way() < params_.outstanding()) {
-    const std::uint64_t n = serial_++;
-    const std::uint64_t slots = region() / params_.bytes();
-    // A fixed generator: the same load in every run.
-    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
-    const std::uint64_t slot = params_.pattern.is("random") ? (state_ >> 33) % slots : n % slots;
-    const auto address =
-        static_cast<std::uint32_t>((params_.memory.is("sdram") ? kSdram : kInternalRam) +
-                                   params_.base() + slot * params_.bytes());
-    const auto bytes = static_cast<unsigned>(params_.bytes());
-    if (params_.kind.is("write") || (params_.kind.is("mixed") && n % 2 == 1)) {
-      writes().write(address, {data_.data(), bytes});
-    } else {
-      copies_ += params_.copies();
-      reads_.read(address, bytes);
-    }
+  const Picoseconds now = kernel_time();
+  while (!ready_.empty() && ready_.top() <= now) {
+    ready_.pop();
+    issue();
   }
+  if (!ready_.empty()) wake_.notify(ps_time(ready_.top() - now));
+}
+
+void LoadGenerator::issue() {
+  const std::uint64_t n = serial_++;
+  const std::uint64_t slots = region() / params_.bytes();
+  // A fixed generator: the same load in every run.
+  state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+  const std::uint64_t slot = params_.pattern.is("random") ? (state_ >> 33) % slots : n % slots;
+  const auto address =
+      static_cast<std::uint32_t>((params_.memory.is("sdram") ? kSdram : kInternalRam) +
+                                 params_.base() + slot * params_.bytes());
+  const auto bytes = static_cast<unsigned>(params_.bytes());
+  if (params_.kind.is("write") || (params_.kind.is("mixed") && n % 2 == 1))
+    writes().write(address, {data_.data(), bytes});
+  else
+    reads_.read(address, bytes);
 }
 
 void LoadGenerator::done(const BurstMaster::Completion& c) {
-  if (params_.copies()) {
-    if (!c.write && !c.error)
-      return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
-    --copies_;
-  }
-  wake_.notify(ps_time(c.error ? 10 * kPsPerUs : pause_));
+  if (params_.copies() && !c.write && !c.error)
+    return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
+  const Picoseconds now = kernel_time();
+  ready_.push(now + (c.error ? 10 * kPsPerUs : pause_));
+  wake_.notify(ps_time(ready_.top() - now));
 }
 
 }  // namespace fovea::bus

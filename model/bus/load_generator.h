@@ -2,9 +2,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <queue>
 #include <string>
 #include <systemc>
+#include <vector>
 
 #include "model/common/burst_master.h"
 #include "model/common/param.h"
@@ -21,7 +24,8 @@ struct LoadParams : ParamGroup {
   IntParam outstanding{*this, "outstanding", U::kCount, 0, 0, 16,
                        "bursts the load keeps under way; 0: no load", Origin::kChoice, ""};
   IntParam bytes{*this, "bytes", U::kBytes, 64, 4, 64, "size of a burst", Origin::kChoice, ""};
-  IntParam gap{*this, "gap", U::kTime, 0, 0, kPsPerMs, "pause from a completion to the next burst",
+  IntParam gap{*this, "gap", U::kTime, 0, 0, kPsPerMs,
+               "pause from the completion of a burst to the one that takes its place",
                Origin::kChoice, ""};
   IntParam priority{*this, "priority", U::kCount, 7, 0, 7,
                     "priority on port load, 0 highest; other ports have the chip's registers",
@@ -67,8 +71,8 @@ class LoadGenerator : public sc_core::sc_module {
 
  private:
   BurstMaster& writes() { return other_side_ ? *other_side_ : reads_; }
-  unsigned under_way() const;
   void fill();
+  void issue();
   void done(const BurstMaster::Completion& c);
   std::uint64_t region() const { return params_.copies() ? params_.size() / 2 : params_.size(); }
 
@@ -76,7 +80,9 @@ class LoadGenerator : public sc_core::sc_module {
   BurstMaster reads_;
   std::unique_ptr<BurstMaster> other_side_;
   Picoseconds pause_;
-  unsigned copies_ = 0;  // under way
+  /// When each burst that is not under way may go out. What completes in an instant does so in any
+  /// order, before or after fill(): a place must not depend on the others.
+  std::priority_queue<Picoseconds, std::vector<Picoseconds>, std::greater<>> ready_;
   std::uint64_t serial_ = 0, state_ = 1;
   std::array<std::uint8_t, kMaxBurstBytes> data_{};
   sc_core::sc_event wake_;
