@@ -32,6 +32,13 @@ constexpr std::string_view culprit_name(Culprit c) {
   return index(c) < kMasterCount ? kMasterNames[index(c)] : kNames[index(c) - kMasterCount];
 }
 
+/// In `ddr.<label>.wait.<direction>.<name>` taken already: no label of a master in a trace.
+constexpr bool is_culprit_name(std::string_view name) {
+  for (std::size_t c = kMasterCount; c < kCulprits; ++c)
+    if (name == culprit_name(static_cast<Culprit>(c))) return true;
+  return name == "own";
+}
+
 /// Two neighbouring sums as one word of the host.
 using PairOfSums [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = std::uint64_t;
 inline PairOfSums& pair(std::uint64_t* first) { return *reinterpret_cast<PairOfSums*>(first); }

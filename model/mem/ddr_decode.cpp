@@ -41,7 +41,7 @@ DdrConfig decode(const DdrRegs& regs) {
   c.read_latency = regs.ddrphycr.rl.get();
   c.refresh_interval = regs.sdrcr.rr.get();
   // Less leaves no time for anything but refreshes.
-  if (c.refresh_interval) c.refresh_interval = std::max(c.refresh_interval, 2 * t.nRFC);
+  if (c.refresh_interval) c.refresh_interval = std::max(c.refresh_interval, t.least_interval());
   c.old_count = regs.pbbpr.pr_old_count.get();
   c.page_log2 = 9 + std::min(regs.sdbcr.pagesize.get(), kLargestPage);  // 256 words of 2 bytes
   c.bank_on_top = regs.sdbcr.ibank_pos.get() != 0;

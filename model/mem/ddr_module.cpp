@@ -70,7 +70,10 @@ void DdrModule::reconfigure() {
   settle(now);
   controller_.configure(programmed(), now);
   replanned_.notify(sc_core::SC_ZERO_TIME);
-  if (!regs.sdbcr.timunlock && regs.sdbcr.sdramen) ready_ = true;
+  if (!regs.sdbcr.sdramen)
+    ready_ = false;
+  else if (!regs.sdbcr.timunlock)
+    ready_ = true;
   examined_ = open_ = false;
 }
 

@@ -19,7 +19,8 @@ BusTraceRun::~BusTraceRun() {
   board_.dm365.tap.attach(nullptr);
   if (complete_) return;
   std::error_code ignored;
-  std::filesystem::remove(file_.path(), ignored);
+  if (std::filesystem::is_regular_file(file_.path(), ignored))  // a device stays
+    std::filesystem::remove(file_.path(), ignored);
 }
 
 void BusTraceRun::open() {

@@ -77,7 +77,9 @@ void ReplayParams::check() const {
   // Each of the three was rounded up to clocks by itself.
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");
   at_least(r.tRFC, r.tRP() + 1, "more than ddr.tRP: a refresh opens and closes a row");
-  if (r.tREFI() != 0) at_least(r.tREFI, 2 * r.tRFC(), "twice ddr.tRFC, or 0 for no refresh");
+  if (r.tREFI() != 0)
+    at_least(r.tREFI, config().timing.least_interval(),
+             "a refresh and a request, twice ddr.tRFC at least, or 0 for no refresh");
 }
 
 std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run,

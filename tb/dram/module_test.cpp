@@ -178,6 +178,22 @@ TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
   EXPECT_EQ(remarks("needs tREFI at most 7800 ns = 1684 at 216 MHz: 211 over"), 1u);
 }
 
+TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
+  Diagnostics::instance().clear();
+  const auto read_fails = [&](std::uint32_t sdbcr) {
+    b.ddr.regs.write(0x08, 4, sdbcr);
+    b.done.clear();
+    b.master.read(kDdr, 64);
+    run_for(5 * kPsPerUs);
+    EXPECT_EQ(b.done.size(), 1u);
+    return b.done.empty() || b.done[0].error;
+  };
+  EXPECT_TRUE(read_fails(0x0052'4A32)) << "SDRAMEN = 0";
+  EXPECT_TRUE(read_fails(0x0053'CA32)) << "not locked yet";
+  EXPECT_EQ(remarks("access to the SDRAM before its controller runs"), 2u);
+  EXPECT_FALSE(read_fails(0x0053'4A32));
+}
+
 TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
   Diagnostics::instance().clear();
   auto& r = b.ddr.regs;

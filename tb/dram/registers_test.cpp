@@ -212,6 +212,34 @@ TEST(DdrRegistersTest, RefreshIntervalLeavesTimeForRequests) {
   EXPECT_LT(b.now() / kTck, 500u * 4 * 12);
 }
 
+// A refresh that becomes urgent between each ACT and its column would let no request through: T_RAS, T_RP
+// and T_RCD count beside T_RFC.
+TEST(DdrRegistersTest, LeastRefreshIntervalLetsRequestsThroughWhateverTheTimes) {
+  Rng rng(21);
+  for (int n = 0; n < 300; ++n) {
+    Words w = with(&Words::sdrcr, 0, 16, 1 + rng.below(130));
+    w.sdtimr = static_cast<std::uint32_t>(rng.below(std::uint64_t{1} << 32));
+    if (n % 2) w.sdtimr = (w.sdtimr & 0x01FF'FFFF) | static_cast<unsigned>(rng.below(32)) << 25;
+    BenchOptions o;
+    o.config = decoded(w);
+    DdrBench b(o);
+    b.keep_log = false;
+    std::vector<Request> all(60);
+    unsigned steps = 0;
+    for (Request& r : all) {
+      r.master = static_cast<Master>(rng.below(3));
+      r.write = rng.below(3) == 0;
+      r.bytes = 64;
+      r.address = static_cast<std::uint32_t>(rng.below(1u << 14) * 64);
+      while (b.door_taken() && ++steps < 100'000) b.step();
+      ASSERT_FALSE(b.door_taken()) << std::hex << w.sdtimr << ", RR " << w.sdrcr;
+      b.submit_at(r, std::max<Picoseconds>(b.now(), kTck));
+    }
+    while (b.ddr.next_decision() != kNever && ++steps < 100'000) b.step();
+    ASSERT_EQ(b.ddr.next_decision(), kNever) << std::hex << w.sdtimr << ", RR " << w.sdrcr;
+  }
+}
+
 TEST(DdrRegistersTest, ClockStopsInSelfRefreshOnly) {
   const auto sdrcr = [](unsigned lpmoden, unsigned mclkstopen, unsigned sr_pd) {
     Words w;

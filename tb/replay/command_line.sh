@@ -64,6 +64,10 @@ grep -q '"ddr.right.latency.mean": {"value": 0' "$out/replay/stats.json" || fail
 
 expect empty_name 2 -- run -o "$out/run" --bus-trace ''
 expect unwritable 2 '/nowhere/a.trace' -- run -o "$out/run" --bus-trace /nowhere/a.trace
+ln -s /dev/full "$out/full"
+text=$(run -o "$out/run" --bus-trace "$out/full" 2>&1)
+grep -q 'No space left' <<<"$text" || fail "a full disk is not named: $text"
+[ -L "$out/full" ] || fail 'a device that takes no trace is removed'
 expect no_file 2 'missing.trace' -- replay "$out/missing.trace"
 expect not_a_trace 2 'is no bus trace' -- replay "$out/small.yaml"
 head -c 900 "$trace" >"$out/cut.trace"

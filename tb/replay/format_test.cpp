@@ -141,6 +141,17 @@ TEST(TraceFileTest, RecordsThatRefuteThemselvesAreFound) {
   EXPECT_THAT(error_with(r), testing::HasSubstr("after its end"));
 }
 
+// `ddr.<other>.wait.read.refresh` would be two figures.
+TEST(TraceFileTest, LabelsAreNoCausesOfWaiting) {
+  for (const char* label : {"refresh", "own"}) {
+    trace::TraceInfo info = board_info();
+    info.masters.back().label = label;
+    std::string bytes;
+    trace::TraceWriter(3).finish(info, [&](std::string_view piece) { bytes += piece; });
+    EXPECT_THAT(error_of(bytes), testing::HasSubstr("impossible description"));
+  }
+}
+
 TEST(TraceFileTest, TheOrderOfStreamsDoesNotShow) {
   const auto written = [](bool swapped) {
     Rng rng(7);

@@ -92,6 +92,9 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
   EXPECT_THAT(error_of(head + "# master 1 window 49 b\n"), HasSubstr("allowed: 1 to 48"));
   EXPECT_EQ(error_of(head + "# master 1 window 48 b\n1 1 R 0x0 4\n"), "");
   EXPECT_THAT(error_of(head + "# master 1 window 1 B/c\n"), HasSubstr("a master is declared as"));
+  for (const char* cause : {"bridge", "service", "row_miss", "refresh", "power_down", "own"})
+    EXPECT_THAT(error_of(head + "# master 1 window 1 " + cause + "\n"),
+                HasSubstr("':3: the label '" + std::string(cause) + "' is the name of a cause"));
   EXPECT_EQ(error_of(head + "# master 1 window 1 GPU-0\n1 1 R 0x0 4\n"), "");
 }
 

@@ -39,6 +39,12 @@ struct DdrTiming {
   bool mobile = false;  // mobile DDR
   unsigned WL() const { return mobile ? 1 : CL - 1; }
   static constexpr unsigned kBurstClocks = 4;  // BL8 / 2
+  /// The shortest refresh interval that leaves requests their turn. An urgent refresh may come between
+  /// an ACT and its column: the interval lasts until that column has been given behind the refresh.
+  unsigned least_interval() const {
+    const unsigned refreshed = nRAS + nRP + (banks == 8 ? 1u : 0u) + nRFC;
+    return std::max(2 * nRFC, std::max(refreshed, nRC) + nRRD + nRCD + 2);
+  }
 };
 
 enum class Level : std::uint8_t { kBank, kRank };

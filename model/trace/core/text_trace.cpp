@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "model/common/check.h"
+#include "model/common/waits.h"
 
 namespace fovea::trace {
 namespace {
@@ -80,6 +81,8 @@ void TextTrace::read_master(const std::vector<std::string_view>& words) {
     bad("more masters than the " + std::to_string(kMaxMasters) + " allowed");
   for (const auto& m : info_.masters)
     if (m.label == words[5]) bad("two masters have the same label");
+  if (is_culprit_name(words[5]))
+    bad("the label '" + std::string(words[5]) + "' is the name of a cause of waiting");
   const auto n = static_cast<unsigned>(ids_.size());
   ids_.push_back(id);
   info_.streams.emplace_back();

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "model/common/check.h"
+#include "model/common/waits.h"
 
 namespace fovea::trace {
 namespace {
@@ -250,7 +251,8 @@ void TraceFile::check_info() {
   for (const Picoseconds t : info_.interrupts) ok = ok && time_ok(t);
   std::array<bool, kMasterCount> seen{};
   for (const auto& m : info_.masters) {
-    ok = ok && m.stream < info_.streams.size() && !seen[index(m.id)] && !m.label.empty();
+    ok = ok && m.stream < info_.streams.size() && !seen[index(m.id)] && !m.label.empty() &&
+         !is_culprit_name(m.label);
     seen[index(m.id)] = true;
     stream_of_[index(m.id)] = m.stream;
   }
