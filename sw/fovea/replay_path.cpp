@@ -264,7 +264,7 @@ bool ReplayPath::run_before(Picoseconds until) {
   return true;
 }
 
-Picoseconds ReplayPath::memory_end() const {
+Picoseconds ReplayPath::end() const {
   const Clock& clock = ddr_.ddr_clock();
   if (stepped_ == 0 || !clock.running()) return last_;
   const std::uint64_t data = ddr_.config().timing.WL() + mem::DdrTiming::kBurstClocks;
@@ -334,24 +334,37 @@ void ReplayPath::acknowledge(MemRequest& r, Picoseconds at) {
 }
 
 void ReplayPath::send(MemRequest& r, Picoseconds at) {
+  const auto m = static_cast<unsigned>(index(r.master));
   if (door_taken_) {
-    waiting_.push_back(&r);
+    waiting_[m].push_back(&r);
+    wait_ |= 1u << m;
     return;
   }
-  memory_timeline_.add(index(r.master), r.write, r.bytes, at);
+  sent_ = m;
+  memory_timeline_.add(m, r.write, r.bytes, at);
   door_taken_ = !ddr_.submit_inside(r, at);
   if (!door_taken_ && r.write) acknowledge(r, at);
 }
 
-/// The most urgent of those that wait, the oldest among equals.
+/// As the crossbar's arbiter: the most urgent first, among equals in turn.
+MemRequest* ReplayPath::next_waiting() {
+  unsigned best = 0, best_rank = ~0u;
+  for (std::uint32_t set = wait_; set; set &= set - 1) {
+    const auto m = static_cast<unsigned>(std::countr_zero(set));
+    const auto turn = static_cast<unsigned>((m + kMasterCount - sent_ - 1) % kMasterCount);
+    const unsigned rank = waiting_[m].front()->priority * 64u + turn;
+    if (rank < best_rank) best = m, best_rank = rank;
+  }
+  MemRequest* const r = waiting_[best].front();
+  waiting_[best].pop_front();
+  if (waiting_[best].empty()) wait_ &= ~(1u << best);
+  return r;
+}
+
 void ReplayPath::send_waiting() {
   door_opened_ = false;
-  while (!door_taken_ && !waiting_.empty()) {
-    auto first = std::min_element(
-        waiting_.begin(), waiting_.end(),
-        [](const MemRequest* a, const MemRequest* b) { return a->priority < b->priority; });
-    MemRequest* r = *first;
-    waiting_.erase(first);
+  while (!door_taken_ && wait_) {
+    MemRequest* const r = next_waiting();
     send(*r, std::max(r->issued, opened_at_));
   }
 }

@@ -1,6 +1,7 @@
 // Crossbar and DDR controller played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -31,7 +32,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   bool run_before(Picoseconds until);
   /// To be called before the figures are read.
   void finish() {
-    ddr_.catch_up(memory_end());
+    ddr_.catch_up(end());
     check_.remark(ddr_.config(), ddr_.ddr_clock().frequency());
   }
 
@@ -44,10 +45,9 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// Of the frames whose remap began and ended in the trace, by its marks.
   std::vector<Picoseconds> remap_times() const;
   std::uint64_t requests() const { return requests_; }
-  /// From the recording's start to the last completion.
-  Picoseconds duration() const { return last_ > start_ ? last_ - start_ : 0; }
-  /// The last data on the SDRAM's bus: a write's come behind its completion.
-  Picoseconds memory_end() const;
+  /// From the recording's start to the last completion, and to the last data on the SDRAM's bus: those
+  /// of a write come behind its completion.
+  Picoseconds duration() const { return end() > start_ ? end() - start_ : 0; }
   bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
   /// Who looks on at the crossbar.
   void observe(MemObserver* observer) { xbar_.observe(observer); }
@@ -88,6 +88,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
     std::vector<Outcome> history;
   };
 
+  Picoseconds end() const;
   void add_wait_rows(const std::string& label, Waits MasterWaits::*direction, const char* name,
                      std::vector<StatRow>& rows) const;
   void fetch(unsigned stream);
@@ -114,6 +115,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void send(MemRequest& r, Picoseconds at);
   void acknowledge(MemRequest& r, Picoseconds at);
   void send_waiting();
+  MemRequest* next_waiting();
 
   std::string name_;
   const trace::TraceInfo& info_;
@@ -131,7 +133,10 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   Picoseconds stepped_ = 0;  // last decision of the controller
   std::uint64_t requests_ = 0, bytes_ = 0;
   std::vector<Mark> marks_;
-  std::vector<MemRequest*> waiting_;  // without the crossbar: behind the one at the door
+  // Without the crossbar: by master, behind the one at the door.
+  std::array<std::deque<MemRequest*>, kMasterCount> waiting_;
+  std::uint32_t wait_ = 0;     // masters with any
+  unsigned sent_ = 0;          // the last one whose request went to the door
   bool door_taken_ = false, door_opened_ = false;
   Picoseconds opened_at_ = 0;
   bus::Timeline memory_timeline_;     // without the crossbar

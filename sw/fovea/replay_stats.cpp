@@ -9,19 +9,18 @@ std::vector<StatRow> ReplayPath::stats() {
   std::vector<StatRow> rows;
   collect(ddr_.stats, rows);
   const double seconds = static_cast<double>(duration()) * 1e-12;
-  rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion"});
+  rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion or, if that is later, the SDRAM's last data"});
   rows.push_back({"replay.requests", requests_, "1", "requests played"});
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
-    const double clocks = static_cast<double>(memory_end() - start_) * 1e-12 *
-                          ddr_.ddr_clock().frequency().hertz();
+    const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
     const auto busy = static_cast<double>(ddr_.busy_clocks());
     const auto queued = static_cast<double>(ddr_.stats.queued_clocks.count());
     rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
-                    "share of the time until the SDRAM's last data in which its data bus moves data"});
+                    "share of replay.time in which the SDRAM's data bus moves data"});
     rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
-                    "share of the time until the SDRAM's last data in which no request is queued there"});
+                    "share of replay.time in which no request is queued at the SDRAM"});
     if (queued > 0)
       rows.push_back({"ddr.efficiency", busy / queued, "ratio",
                       "data clocks / clocks in which a request is queued"});
@@ -84,7 +83,7 @@ std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
   const bus::Timeline& from = memory_only_ ? memory_timeline_ : xbar_.timeline;
   std::vector<TimelineRow> rows;
-  from.list_until(last_, [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
+  from.list_until(end(), [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
     TimelineRow& row = rows.emplace_back();
     row.start = start;
     row.end = end;
