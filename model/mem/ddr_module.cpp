@@ -13,7 +13,8 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
       controller_(params, store_, *this),
       check_(params, controller_),
       sdtimr_(regs.sdtimr.get()),
-      sdtimr2_(regs.sdtimr2.get()) {
+      sdtimr2_(regs.sdtimr2.get()),
+      cl_(regs.sdbcr.cl.get()) {
   SC_HAS_PROCESS(DdrModule);
   socket.bind(*this);
   lookahead.bind(*this);
@@ -22,6 +23,10 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
   SC_METHOD(enabled_changed);
   sensitive << enabled;
   for (Reg* r : regs.regs()) r->on_write([this](std::uint32_t) { reconfigure(); });
+  regs.sdbcr.on_write([this](std::uint32_t) {
+    keep_latency_while_locked();
+    reconfigure();
+  });
   regs.sdtimr.on_write([this](std::uint32_t) { keep_while_locked(regs.sdtimr, sdtimr_); });
   regs.sdtimr2.on_write([this](std::uint32_t) { keep_while_locked(regs.sdtimr2, sdtimr2_); });
   regs.sdrstat.on_read([this] {
@@ -60,6 +65,19 @@ void DdrModule::keep_while_locked(Reg& timing, std::uint32_t& kept) {
     timing.set(kept);
   }
   reconfigure();
+}
+
+/// The manual has TIMUNLOCK open CL; the vendor's boot loader writes its last CL with BOOTUNLOCK only.
+/// Either does here (assumed), in the write itself or in the one before.
+void DdrModule::keep_latency_while_locked() {
+  auto& r = regs.sdbcr;
+  const bool unlocks = r.timunlock || r.bootunlock;
+  if (r.cl.get() != cl_ && !unlocks && !unlocked_) {
+    Diagnostics::instance().guest("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK: write lost");
+    r.cl.set(cl_);
+  }
+  cl_ = r.cl.get();
+  unlocked_ = unlocks;
 }
 
 /// SDBCR is written with TIMUNLOCK to load CL and the timing; the write that locks it again ends

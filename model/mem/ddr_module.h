@@ -59,6 +59,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   void enabled_changed();
   void reconfigure();
   void keep_while_locked(Reg& timing, std::uint32_t& kept);
+  void keep_latency_while_locked();
   bool admit(const MemRequest& m);
   Taken refuse_in_order(MemRequest& m, Picoseconds at);
   void refuse_after(const void* read, Picoseconds last);
@@ -74,6 +75,8 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   bool examined_ = false;   // what is programmed now
   bool open_ = false;       // all three
   std::uint32_t sdtimr_, sdtimr2_;  // as last written with TIMUNLOCK
+  std::uint32_t cl_;                // SDBCR.CL as last taken
+  bool unlocked_ = false;           // the last write of SDBCR opened it
   /// Reads that nobody answers, behind older ones of their master that are still to be served.
   struct Refused {
     MemRequest* request;

@@ -14,7 +14,7 @@ struct DdrRegs : RegBank {
     using Reg::Reg;
     Field pagesize{*this, "PAGESIZE", 0, 3, Mode::kRw, "256 * 2^n words in a page"};
     Field ibank{*this, "IBANK", 4, 3, Mode::kRw, "2^n banks"};
-    Field cl{*this, "CL", 9, 3, Mode::kRw, "CAS latency; taken while TIMUNLOCK"};
+    Field cl{*this, "CL", 9, 3, Mode::kRw, "CAS latency; taken with TIMUNLOCK or BOOTUNLOCK"};
     Field nm{*this, "NM", 14, 1, Mode::kRw, "1: 16-bit bus, the only one bonded out"};
     Field timunlock{*this, "TIMUNLOCK", 15, 1, Mode::kRw, "opens CL and the timing registers"};
     Field sdramen{*this, "SDRAMEN", 16, 1, Mode::kRw, "SDRAM"};
@@ -23,7 +23,7 @@ struct DdrRegs : RegBank {
     Field ddr2en{*this, "DDR2EN", 20, 1, Mode::kRw, "DDR2"};
     Field ddrdllen{*this, "DDRDLL_DIS", 21, 1, Mode::kRw, "DLL; no effect here"};
     Field ddqs{*this, "DDQS", 22, 1, Mode::kRw, "differential DQS; no effect here"};
-    Field bootunlock{*this, "BOOTUNLOCK", 23, 1, Mode::kRw, "opens the type bits"};
+    Field bootunlock{*this, "BOOTUNLOCK", 23, 1, Mode::kRw, "opens CL; in the chip the type bits too"};
     Field ddrdrive1{*this, "DDRDRIVE1", 24, 1, Mode::kRw, "drive strength; no effect here"};
     Field mddren{*this, "MSDRAMEN", 25, 1, Mode::kRw, "mobile DDR"};
     Field ibank_pos{*this, "IBANK_POS", 26, 1, Mode::kRw, "1: bank address on top of the row"};

@@ -215,6 +215,31 @@ TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
   EXPECT_EQ(remarks("write lost"), 2u);
 }
 
+// TIMUNLOCK by the manual, BOOTUNLOCK by what the boot loader does; in the write or before it.
+TEST_F(ModuleTest, LatencyIsWrittenWithAnUnlockBitOnly) {
+  Diagnostics::instance().clear();
+  auto& r = b.ddr.regs;
+  const auto latency_after = [&](std::uint32_t sdbcr) {
+    r.write(0x08, 4, sdbcr);
+    std::uint32_t word = 0;
+    EXPECT_EQ(r.read(0x08, 4, word), Access::kOk);
+    EXPECT_EQ(b.ddr.programmed().timing.CL, word >> 9 & 7u);
+    return word >> 9 & 7u;
+  };
+  const auto lost = [&] { return remarks("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK"); };
+  EXPECT_EQ(latency_after(0x0053'4A32), 5u);
+  EXPECT_EQ(latency_after(0x0053'4832), 5u) << "4, locked";
+  EXPECT_EQ(lost(), 1u);
+  EXPECT_EQ(latency_after(0x0053'C832), 4u) << "TIMUNLOCK";
+  EXPECT_EQ(latency_after(0x0053'4632), 3u) << "with the write that locks again";
+  EXPECT_EQ(latency_after(0x0053'4832), 3u);
+  EXPECT_EQ(lost(), 2u);
+  EXPECT_EQ(latency_after(0x00D3'4832), 4u) << "BOOTUNLOCK";
+  EXPECT_EQ(latency_after(0x0053'4A32), 5u);
+  EXPECT_EQ(latency_after(0x0053'4A32), 5u) << "the same again is no change";
+  EXPECT_EQ(lost(), 2u);
+}
+
 // LPMODEN, then MCLKSTOPEN: PHYRDY goes low; an access brings the clock back.
 TEST_F(ModuleTest, PhyIsNotReadyWhileTheMemorysClockStands) {
   auto& r = b.ddr.regs;
