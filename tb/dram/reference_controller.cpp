@@ -294,8 +294,10 @@ void ReferenceController::idle_at(std::uint64_t clock) {
 }
 
 void ReferenceController::idle_until(Picoseconds at) {
-  if (!queue_.empty()) return;
-  const std::uint64_t end = ddr_.edge_after(at);
+  if (queue_.empty()) idle_while_empty(ddr_.edge_after(at));
+}
+
+void ReferenceController::idle_while_empty(std::uint64_t end) {
   // Clocks in which nothing can fall due are passed over.
   std::uint64_t clock = clock_after_last();
   const bool calm = config().sleep == ReferenceConfig::Sleep::kNever && owed_ == 0;
@@ -459,11 +461,18 @@ void ReferenceController::step() {
 void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
   passed_ = place == 0 ? 0 : passed_ + columns_of(queue_[place].request);
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
-  if (!door_ || !fits(*door_)) return;
-  last_arrival_ = std::max(door_arrived_, clock + 1);
-  queue_.push_back({*door_, last_arrival_ + limits_.request_latency});
-  accepted.push_back({door_->id, ddr_.edge(clock)});
-  door_.reset();
+  if (door_ && fits(*door_)) {
+    last_arrival_ = std::max(door_arrived_, clock + 1);
+    queue_.push_back({*door_, last_arrival_ + limits_.request_latency});
+    accepted.push_back({door_->id, ddr_.edge(clock)});
+    door_.reset();
+  }
+  // Until the first of the queue arrives there is nobody.
+  if (queue_.empty()) return;
+  const std::uint64_t arrival = queue_.front().ready - limits_.request_latency;
+  if (arrival <= clock + 1) return;
+  idle_while_empty(arrival);
+  wake(arrival);
 }
 
 /// The way of a read's data: PHY, read FIFO, and a lane of 8 bytes a crossbar clock.

@@ -89,6 +89,7 @@ class ReferenceController {
   void step();
   /// Refreshes of an idle controller up to `at`.
   void idle_until(Picoseconds at);
+  void idle_while_empty(std::uint64_t end);
 
   // What it did.
   std::vector<Given> commands;

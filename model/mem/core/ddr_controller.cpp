@@ -540,8 +540,22 @@ void DdrController::last_column() {
 [[gnu::noinline]] void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue();
   if (door_full_) open_door(clock);
-  if (count_ == 0) count_queued(clock + 1);
+  if (count_ == 0)
+    count_queued(clock + 1);
+  else if (entry(0).ready > clock + 1 + request_latency_) [[unlikely]]
+    idle_until_arrival(clock);
   plan();
+}
+
+/// What is queued has only been announced: the crossbar says at the grant when the last beat will be
+/// here. Nothing else comes before that.
+[[gnu::noinline]] void DdrController::idle_until_arrival(std::uint64_t clock) {
+  const std::uint64_t arrives = entry(0).ready - request_latency_;
+  count_queued(clock + 1);
+  queued_since_ = arrives;
+  if (idle_calm_ >= arrives) return;
+  idle(arrives);
+  wake(arrives);
 }
 
 inline void DdrController::leave_queue() {

@@ -255,6 +255,7 @@ class DdrController {
   bool passes(const Entry& read, Places older) const;
   void offer(Places of_one_master);
   void idle(std::uint64_t until);
+  void idle_until_arrival(std::uint64_t clock);
   void pass_over_refreshes(std::uint64_t until);
   bool fall_asleep(std::uint64_t until);
   void sleep_changes(LowPower to, std::uint64_t clock);
