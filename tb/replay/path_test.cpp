@@ -348,6 +348,21 @@ TEST(ReplayPathTest, EqualsTakeTurnsAtTheDoor) {
   }
 }
 
+// A slow crossbar announces requests long before they arrive: rows that are due are closed meanwhile,
+// or the checker of the commands (Played) ends the test.
+TEST(ReplayPathTest, RowsAreClosedInTimeBehindASlowCrossbar) {
+  Rng rng(6);
+  std::string text = master_lines(2, 4);
+  for (unsigned i = 0; i < 4000; ++i)
+    text += fmt::format("0 {} {} 0x{:x} 64\n", rng.below(2), rng.below(2) ? 'W' : 'R',
+                        rng.below(1u << 20) * 64);
+  for (const char* clock : {"1MHz", "10MHz", "60MHz"}) {
+    trace::TextTrace t("t", text);
+    const Played p(t.info(), t, false, {{"bus.clock", clock}, {"ddr.row_intervals", "1"}});
+    EXPECT_EQ(p.path->requests(), 4000u);
+  }
+}
+
 // What the reads of a master waited for is their latency, to the picosecond; what their master and the
 // bus did is in proportion.
 TEST(ReplayPathTest, TheFiguresAddUp) {
