@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# Random settings of memory, crossbar, core and loads: strict and default synchronisation must leave the
+# same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT FIRST_SEED COUNT
+set -uo pipefail
+fovea=$1 experiment=$2 out=$3 first=$4 count=$5
+mkdir -p "$out"
+
+one_of() { local words=("$@"); echo "${words[RANDOM % $#]}"; }
+settings() {  # SEED: keys in ${keys[@]}
+  RANDOM=$1
+  keys=(-s run.frames=1 -s video.width=$((16 * (2 + RANDOM % 4))) -s video.height=$((8 * (2 + RANDOM % 4)))
+    -s ddr.check=commands)
+  local line name n port gap
+  while read -r line; do
+    read -r name n <<<"$line"
+    # shellcheck disable=SC2086 # the values are words
+    ((RANDOM % 4 == 0)) && keys+=(-s "$name=$(one_of $n)")
+  done <<'K'
+clocks.preset 297/243 297/270 270/216 216/172 432/340
+ddr.scheduler ti fcfs frfcfs closed_page
+ddr.command_fifo 1 3 16
+ddr.read_fifo 64B 72B 512B
+ddr.write_fifo 64B 72B 512B
+ddr.request_latency 0cycles 1cycles 32cycles
+ddr.return_latency 0cycles 16cycles
+ddr.refresh.gap 1 3 64
+ddr.refresh.must 0 11 64
+ddr.refresh.need 0 7 32
+cpu.ahb_ratio 1 2 3 8
+cpu.dcache.size 4KiB 128KiB
+cpu.fill_latency 0cycles 8cycles
+firmware.kernel plain ldm
+firmware.flow double serial
+firmware.overlay true false
+vpss.burst 32B 64B
+vpss.read_outstanding 1 16
+vpss.write_buffer_bursts 1 32
+vpss.osd_latch field frame
+bus.config.fast_latency 1ps 1us
+bus.arm_d.request_latency 0cycles 16cycles
+bus.arm_d.response_latency 0cycles 16cycles
+bus.arm_d.width 16bit 64bit
+bus.vpfe.width 16bit 32bit
+bus.vpbe.request_latency 0cycles 16cycles
+bus.load.response_latency 0cycles 16cycles
+K
+  # Pauses in whole microseconds: bursts then end in the instant in which others begin.
+  for n in load load.1 load.2; do
+    ((RANDOM % 2)) && continue
+    port=edma_tc${n#load}
+    port=${port/tc./tc}
+    [ "$n" = load ] && port=load
+    gap=$(one_of 317ns 1us 2us)
+    keys+=(-s "$n.port=$port" -s "$n.outstanding=$(one_of 1 2 16)" -s "$n.kind=$(one_of read write mixed copy)"
+      -s "$n.bytes=$(one_of 4B 32B 64B)" -s "$n.gap=$gap" -s "$n.pattern=$(one_of sequential random)")
+  done
+}
+play() {  # MODE FOLDER
+  "$fovea" run "$experiment" "${keys[@]}" --sync="$1" -o "$out/$2" >"$out/$2.log" 2>&1
+}
+differ() {  # FOLDER FOLDER
+  local f
+  for f in stats.json frames.csv timeline.csv stalls.csv uart.log; do
+    cmp "$out/$1/$f" "$out/$2/$f" || return 0
+  done
+  ! diff -r "$out/$1/frames" "$out/$2/frames"
+}
+
+failures=0
+for ((seed = first; seed < first + count; ++seed)); do
+  settings "$seed"
+  play strict strict
+  a=$?
+  play default default
+  b=$?
+  if [ $a -ne 0 ] || [ $b -ne 0 ]; then
+    echo "seed $seed: exit $a and $b: ${keys[*]}: $(tail -1 "$out/strict.log") / $(tail -1 "$out/default.log")"
+    failures=$((failures + 1))
+  elif differ strict default; then
+    echo "seed $seed: differs: ${keys[*]}"
+    failures=$((failures + 1))
+  fi
+done
+# The comparison can fail.
+keys+=(-s bus.arm_i.request_latency=9cycles)
+play default other
+if ! differ other default >/dev/null; then
+  echo 'another bridge makes no difference'
+  failures=$((failures + 1))
+fi
+echo "$count settings, $failures failures"
+exit $((failures > 0))
