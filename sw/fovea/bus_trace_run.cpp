@@ -1,12 +1,30 @@
 #include "sw/fovea/bus_trace_run.h"
 
+#include <fmt/format.h>
+
+#include <string>
+
 #include "sw/fovea/replay_params.h"
 
 namespace fovea::app {
+namespace {
+
+std::filesystem::path while_written(const std::filesystem::path& target) {
+  std::error_code ignored;
+  const bool device = std::filesystem::exists(target, ignored) &&
+                      !std::filesystem::is_regular_file(target, ignored);
+  return device ? target : std::filesystem::path(target.string() + ".tmp");
+}
+
+}  // namespace
 
 BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& params,
                          board::Board& board)
-    : file_(file), params_(params), board_(board), recorder_(board.dm365.make_recorder()) {
+    : target_(file),
+      file_(while_written(file)),
+      params_(params),
+      board_(board),
+      recorder_(board.dm365.make_recorder()) {
   const auto pins = board.dm365.gpio.on_output;
   board.dm365.gpio.on_output = [this, pins](unsigned bank, std::uint32_t out, Picoseconds at) {
     pins(bank, out, at);
@@ -19,8 +37,7 @@ BusTraceRun::~BusTraceRun() {
   board_.dm365.tap.attach(nullptr);
   if (complete_) return;
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(file_.path(), ignored))  // a device stays
-    std::filesystem::remove(file_.path(), ignored);
+  if (file_.path() != target_) std::filesystem::remove(file_.path(), ignored);
 }
 
 void BusTraceRun::open() {
@@ -51,6 +68,11 @@ void BusTraceRun::finish() {
                             ddr_.frequency);
   recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
   file_.close();
+  if (file_.path() != target_) {
+    std::error_code error;
+    std::filesystem::rename(file_.path(), target_, error);
+    if (error) throw UserError(fmt::format("file '{}': {}", target_.string(), error.message()));
+  }
   complete_ = true;
 }
 

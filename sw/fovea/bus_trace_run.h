@@ -9,8 +9,9 @@
 
 namespace fovea::app {
 
-/// Made before the run, so that a file that cannot be written shows at once. open() and close() are
-/// the window's edges; without both, finish() removes the file.
+/// Made before the run, so that a file that cannot be written shows at once. It has another name until
+/// it is whole: an earlier trace stays until then. open() and close() are the window's edges; without
+/// both there is no trace.
 class BusTraceRun {
  public:
   BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
@@ -21,7 +22,8 @@ class BusTraceRun {
   void finish();
 
  private:
-  CheckedFile file_;
+  std::filesystem::path target_;
+  CheckedFile file_;  // `target_` itself if that is a device
   const ParamSet& params_;
   board::Board& board_;
   std::unique_ptr<trace::BusRecorder> recorder_;

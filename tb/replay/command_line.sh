@@ -62,6 +62,10 @@ grep -q '"bus.left.read_bytes": {"value": 256,' "$out/replay/stats.json" || fail
   fail "timeline.csv: $(head -1 "$out/replay/timeline.csv")"
 grep -q '"ddr.right.latency.mean": {"value": 0' "$out/replay/stats.json" || fail 'no ddr.right'
 
+cp "$trace" "$out/earlier.trace"
+expect kept 3 -- run -o "$out/run" -s run.start_limit=10ms --bus-trace "$out/earlier.trace"
+cmp "$trace" "$out/earlier.trace" || fail 'a run that fails destroys an earlier trace'
+[ ! -e "$out/earlier.trace.tmp" ] || fail 'a run that fails leaves a piece of a trace'
 expect empty_name 2 -- run -o "$out/run" --bus-trace ''
 expect unwritable 2 '/nowhere/a.trace' -- run -o "$out/run" --bus-trace /nowhere/a.trace
 ln -s /dev/full "$out/full"

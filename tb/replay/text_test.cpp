@@ -78,6 +78,10 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
   const std::string head = "# dramtrace 1\n# master 0 window 1 a\n";
   EXPECT_THAT(error_of("# dramtrace 2\n"), HasSubstr("'t':1: "));
   EXPECT_THAT(error_of("# dramtrace 1\n"), HasSubstr("no master"));
+  EXPECT_THAT(error_of("# dramtrace 1\n# master 0 window 1 a\n# 0 0 R 0x0 4\n"),
+              HasSubstr("no record"));
+  EXPECT_THAT(error_of(std::string("# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x0 4\0x\n", 50)),
+              HasSubstr("'4?x' is not allowed"));
   EXPECT_THAT(error_of(head + "0 1 R 0x0 4\n"), HasSubstr("'t':3: master 1 was not declared"));
   EXPECT_THAT(error_of(head + "0 0 X 0x0 4\n"), HasSubstr("allowed: R, W"));
   EXPECT_THAT(error_of(head + "0 0 R 100 4\n"), HasSubstr("hexadecimal"));

@@ -29,7 +29,8 @@ bool is_label(std::string_view word) {
 
 }  // namespace
 
-void TextTrace::bad(const std::string& what) const {
+void TextTrace::bad(std::string what) const {
+  std::replace_if(what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, '?');
   throw UserError("trace '" + name_ + "':" + std::to_string(line_) + ": " + what);
 }
 
@@ -45,6 +46,8 @@ TextTrace::TextTrace(std::string name, std::string_view text) : name_(std::move(
     if (line_ > 1) read_line(line);
   }
   if (streams_.empty()) bad("no master; a line '# master ID window W label' is needed");
+  if (std::all_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.lines.empty(); }))
+    bad("no record; 't_ps master R|W 0xaddress bytes' is one");
 }
 
 std::uint64_t TextTrace::number(std::string_view word, const char* what, std::uint64_t least,

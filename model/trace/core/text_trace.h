@@ -40,7 +40,7 @@ class TextTrace : public RecordSource {
     std::size_t next = 0;
     unsigned done = 0;  // bytes of the next line
   };
-  [[noreturn]] void bad(const std::string& what) const;
+  [[noreturn]] void bad(std::string what) const;
   void read_line(std::string_view line);
   void read_master(const std::vector<std::string_view>& words);
   void read_record(const std::vector<std::string_view>& words);
