@@ -39,7 +39,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   /// Both sides of a transfer controller, of one label, are one.
   std::vector<StatRow> stats();
   std::vector<std::string> labels() const;
-  /// Bytes by label, in the rows that are whole.
+  /// Bytes by label. The last row ends with the replay.
   std::vector<TimelineRow> timeline() const;
   const std::vector<Mark>& marks() const { return marks_; }
   /// Of the frames whose remap began and ended in the trace, by its marks.

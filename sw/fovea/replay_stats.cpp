@@ -83,7 +83,7 @@ std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
   const bus::Timeline& from = memory_only_ ? memory_timeline_ : xbar_.timeline;
   std::vector<TimelineRow> rows;
-  from.list_until(end(), [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
+  const auto list = [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
     TimelineRow& row = rows.emplace_back();
     row.start = start;
     row.end = end;
@@ -96,7 +96,8 @@ std::vector<TimelineRow> ReplayPath::timeline() const {
       row.read_bytes[column] += bytes.read[m];
       row.write_bytes[column] += bytes.write[m];
     }
-  });
+  };
+  from.list_until(end(), list, true);
   return rows;
 }
 

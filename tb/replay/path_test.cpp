@@ -295,7 +295,10 @@ TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
     const Played p(t, memory_only);
     EXPECT_EQ(p.path->labels(), (std::vector<std::string>{"left", "right"}));
     const auto rows = p.path->timeline();  // of 1 ms; the fourth is not whole
-    ASSERT_EQ(rows.size(), 3u);
+    ASSERT_EQ(rows.size(), 4u);
+    EXPECT_EQ(rows[3].start, 3'000'000'000u);
+    EXPECT_EQ(rows[3].end, p.path->duration());
+    EXPECT_EQ(rows[3].write_bytes, (std::vector<std::uint64_t>{0, 4}));
     EXPECT_EQ(rows[0].start, 0u);
     EXPECT_EQ(rows[2].end, 3'000'000'000u);
     EXPECT_EQ(rows[0].read_bytes, (std::vector<std::uint64_t>{256, 0}));
@@ -456,12 +459,12 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_EQ(play("0 0 R 0x0 256\n\n0 0 W 0x7fffffe 4\n", {}),
             "trace 't': line 5 of a: 2 bytes at 0x08000000: outside the SDRAM of 128 MiB (ddr.part)");
   EXPECT_EQ(play("0 0 R 0x8000000 4\n", {{"ddr.part", "mt47h128m16"}}), "");
-  EXPECT_THAT(play("", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
-  EXPECT_THAT(play("", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));
-  EXPECT_THAT(play("", {{"ddr.CL", "9 cycles"}}), HasSubstr("7"));
-  EXPECT_THAT(play("", {{"ddr.clock", "90MHz"}}), HasSubstr("125"));
-  EXPECT_THAT(play("", {{"ddr.banks", "6"}}), HasSubstr("powers of two"));
-  EXPECT_THAT(play("", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.CL", "9 cycles"}}), HasSubstr("7"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.clock", "90MHz"}}), HasSubstr("125"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.banks", "6"}}), HasSubstr("powers of two"));
+  EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
 // What no part of its kind does is refused; what the part at hand forbids is a remark.

@@ -20,8 +20,11 @@ class Timeline {
   static constexpr std::uint64_t kMaxRows = 1'000'000;
 
   explicit Timeline(Picoseconds interval) : interval_(interval) {}
-  /// The first row listed is the one with `start`; nothing comes before.
-  void begin(Picoseconds start) { first_ = start / interval_; }
+  /// The first row listed begins at `start`; nothing comes before.
+  void begin(Picoseconds start) {
+    begin_ = start;
+    first_ = start / interval_;
+  }
   /// `at` never decreases by a row.
   void add(std::size_t master, bool write, std::uint64_t bytes, Picoseconds at) {
     if (at >= end_) [[unlikely]] {
@@ -33,20 +36,22 @@ class Timeline {
   /// Rows in which something moved.
   const std::vector<Row>& rows() const { return rows_; }
   /// Calls list(start, end, row) for each row that is over at `until`, also those without bytes
-  /// between the first and the last.
+  /// between the first and the last. `all`: a last one that is not over ends at `until`.
   template <class List>
-  void list_until(Picoseconds until, List list) const {
+  void list_until(Picoseconds until, List list, bool all = false) const {
     std::uint64_t next = first_;
     for (const Row& r : rows_) {
       for (; next <= r.number; ++next) {
-        if ((next + 1) * interval_ > until || next - first_ >= kMaxRows) return;
-        list(next * interval_, (next + 1) * interval_, next == r.number ? r : Row{});
+        const Picoseconds start = next * interval_, end = start + interval_;
+        const bool over = end <= until;
+        if (next - first_ >= kMaxRows || !(over || (all && start < until))) return;
+        list(std::max(start, begin_), over ? end : until, next == r.number ? r : Row{});
       }
     }
   }
 
  private:
-  Picoseconds interval_, end_ = 0;
+  Picoseconds interval_, begin_ = 0, end_ = 0;
   std::uint64_t first_ = 0;
   std::vector<Row> rows_;
 };
