@@ -155,9 +155,13 @@ std::uint64_t ReferenceController::clock_after_last() const {
 
 bool ReferenceController::fits(const ReferenceRequest& r) const {
   if (queue_.size() >= limits_.command_fifo) return false;
-  unsigned held = 0;
-  for (const Queued& q : queue_) held += q.request.write ? q.request.bytes : 0;
-  return !r.write || held + r.bytes <= limits_.write_fifo;
+  // Each 8 bytes of memory that a write touches are a word of the FIFO.
+  const auto words = [](const ReferenceRequest& w) {
+    return w.write ? (w.address + w.bytes - 1) / 8 - w.address / 8 + 1 : 0;
+  };
+  unsigned held = words(r);
+  for (const Queued& q : queue_) held += words(q.request);
+  return !r.write || held <= limits_.write_fifo / 8;
 }
 
 bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at) {

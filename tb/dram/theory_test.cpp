@@ -200,18 +200,30 @@ TEST(FifoTest, SevenCommandsFitAndTheEighthWaitsForAColumnCommand) {
 }
 
 TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
-  DdrBench b(no_refresh());
-  std::vector<Request> all(4);
-  const unsigned bytes[] = {64, 16, 8, 4};
-  for (unsigned i = 0; i < 4; ++i) {
-    all[i].write = true;
-    all[i].bytes = bytes[i];
-    all[i].address = i * 64;
-    EXPECT_EQ(b.submit(all[i], 9), i < 3) << "64 + 16 + 8 = 88 bytes";
+  struct Write {
+    unsigned bytes, offset;
+  };
+  // The last one waits at the door.
+  const std::vector<Write> cases[] = {
+      {{64, 0}, {16, 0}, {8, 0}, {4, 0}},         // 8 + 2 + 1 words
+      {{64, 0}, {4, 0}, {1, 7}, {2, 2}, {4, 4}},  // 8 + 1 + 1 + 1: few bytes take a word as well
+      {{64, 0}, {4, 6}, {1, 0}, {1, 0}},          // 8 + 2 + 1: four bytes across two words
+      {{64, 0}, {16, 4}, {1, 0}},                 // 8 + 3
+      {{64, 0}, {8, 0}, {8, 0}, {4, 6}},          // 8 + 1 + 1, and one word is too few
+  };
+  for (const std::vector<Write>& writes : cases) {
+    DdrBench b(no_refresh());
+    std::vector<Request> all(writes.size());
+    for (unsigned i = 0; i < all.size(); ++i) {
+      all[i].write = true;
+      all[i].bytes = writes[i].bytes;
+      all[i].address = i * 64 + writes[i].offset;
+      EXPECT_EQ(b.submit(all[i], 9), i + 1 < all.size()) << &writes - cases << ", write " << i;
+    }
+    b.drain();
+    // WR at 23, 27, 31, 35: the last burst of the first write makes room.
+    EXPECT_EQ(all.back().accepted_at, 35 * kTck) << &writes - cases;
   }
-  b.drain();
-  // WR at 23, 27, 31, 35: the last burst of the first write makes room.
-  EXPECT_EQ(all[3].accepted_at, 35 * kTck);
 }
 
 // The crossbar hands a request over when it grants it, its last beat still on the way. If the FIFO

@@ -92,7 +92,7 @@ bool DdrController::queue(Request& request, std::uint64_t arrived) {
   const bool was_alone = alone_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
-      (request.write && write_bytes_held_ + request.bytes > write_fifo_bytes_)) {
+      (request.write && write_words_held_ + write_words(request) > write_fifo_words_)) {
     door_full_ = shut_ = true;
     put(door_, request);
     door_arrived_ = arrived;
@@ -135,7 +135,7 @@ void DdrController::join_queue() {
   unseen_ = e.ready;
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
-  write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
+  write_words_held_ = e.request.write ? write_words(e.request) : 0u;
 }
 
 template <class Request>
@@ -151,7 +151,7 @@ void DdrController::take(Request& request, std::uint64_t arrived) {
   const Places older = places_.of_master(request.master);
   places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
-  if (request.write) write_bytes_held_ += request.bytes;
+  if (request.write) write_words_held_ += write_words(request);
   if (older == 0 || (!request.write && passes(e, older))) offered_ |= bit;
 }
 
@@ -547,7 +547,7 @@ void DdrController::last_column() {
 inline void DdrController::leave_queue() {
   const Entry& e = *choice_.entry;
   const unsigned place = choice_.place;
-  if (e.request.write) write_bytes_held_ -= e.request.bytes;
+  if (e.request.write) write_words_held_ -= write_words(e.request);
   free_slots_ |= 1u << places_.slot(place);
   places_.leave(place, e.request.priority);
   offered_ = QueuePlaces::without(place, offered_);
@@ -563,7 +563,7 @@ inline void DdrController::leave_queue() {
 
 void DdrController::open_door(std::uint64_t clock) {
   if (count_ >= fifo_entries_ ||
-      (door_.write && write_bytes_held_ + door_.bytes > write_fifo_bytes_))
+      (door_.write && write_words_held_ + write_words(door_) > write_fifo_words_))
     return;
   door_full_ = shut_ = false;
   take(door_, std::max(door_arrived_, clock + 1));

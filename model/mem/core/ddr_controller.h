@@ -302,7 +302,7 @@ class DdrController {
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
-  unsigned write_fifo_bytes_, request_latency_, return_latency_, clock_restart_;
+  unsigned write_fifo_words_, request_latency_, return_latency_, clock_restart_;
   Picoseconds retention_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
@@ -319,7 +319,7 @@ class DdrController {
   Places offered_ = 0;  // whose command its master offers (rule 1)
   Places hits_ = 0;     // whose row is open
   std::uint64_t last_arrival_ = 0;
-  unsigned write_bytes_held_ = 0;
+  unsigned write_words_held_ = 0;
   bool door_full_ = false;
   DdrRequest door_;
   std::uint64_t door_arrived_ = 0;
@@ -367,6 +367,12 @@ class DdrController {
   CommandHook hook_ = nullptr;  // the only listener, or one that calls all
   void* hook_self_ = nullptr;
 };
+
+/// Words of 64 bits that a write's data holds in the FIFO: one touched in part is held whole.
+template <class Request>
+inline unsigned write_words(const Request& r) {
+  return ((r.address & 7u) + r.bytes + 7u) >> 3;
+}
 
 inline Cmd DdrController::needed(const Entry& e) const {
   const std::uint32_t open = device_.row(e.bank);
