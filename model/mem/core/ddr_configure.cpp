@@ -22,7 +22,8 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs")) {
+      kinds_count_(!params.scheduler.is("frfcfs")),
+      free_order_(!kinds_count_) {
   lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }

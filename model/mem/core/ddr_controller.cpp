@@ -152,7 +152,10 @@ void DdrController::take(Request& request, std::uint64_t arrived) {
   places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
   if (request.write) write_words_held_ += write_words(request);
-  if (older == 0 || (!request.write && passes(e, older))) offered_ |= bit;
+  const auto goes_before = [&] {
+    return free_order_ ? !bound_by(e, older) : !request.write && passes(e, older);
+  };
+  if (older == 0 || goes_before()) offered_ |= bit;
 }
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
@@ -479,7 +482,10 @@ void DdrController::first_column() {
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
-    client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
+    if (free_order_) [[unlikely]]
+      tell_in_order(e, on_lane);
+    else
+      client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
   // No turnaround lies between the columns of a write, so this one passes for a RD among the given.
@@ -558,7 +564,10 @@ inline void DdrController::leave_queue() {
   else
     look_for_unseen();
   served_while_oldest_ = place == 0 ? 0 : served_while_oldest_ + e.chunks;
-  offer(places_.of_master(e.request.master));
+  const Places others = places_.of_master(e.request.master);
+  if (free_order_) [[unlikely]]
+    return offer_all(others);
+  offer(others);
 }
 
 void DdrController::open_door(std::uint64_t clock) {
