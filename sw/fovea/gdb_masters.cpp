@@ -107,7 +107,7 @@ std::string GdbMasters::where(Picoseconds now) const {
         e.open == e.row                     ? " (open)"
         : e.open == mem::DdrDevice::kClosed ? " (bank closed)"
                                             : fmt::format(" (row 0x{:x} is open)", e.open),
-        e.door ? ", at the door" : "");
+        e.door ? ", at the door" : e.held ? ", served, held for older reads" : "");
   }
   if (ddr.next_at != kNever)
     out += fmt::format("sdram: next command {} for {} at {} ns\n", name(ddr.cmd),
@@ -169,6 +169,7 @@ std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const
 std::string GdbMasters::in_controller(const mem::DdrController::View& ddr, std::size_t i,
                                       Picoseconds now) const {
   const auto& e = ddr.items[i];
+  if (e.held) return "in the SDRAM controller: its data wait for those of its master's older reads";
   if (ddr.next_at == kNever) return "in the SDRAM controller, which stands";
   const bool own = ddr.next == i, refresh = ddr.next >= ddr.items.size();
   const std::string served =

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "model/bus/core/crossbar.h"
 #include "model/mem/core/ddr_controller.h"
@@ -17,8 +18,11 @@ struct PathRequest : MemRequest {
 class Path : private bus::XbarHost, private mem::DdrClient {
  public:
   explicit Path(Frequency ddr_clock = Frequency(250'000'000),
-                Frequency scr_clock = Frequency(125'000'000))
-      : store(ddr_params_.size_bytes()), xbar(xbar_params_, *this), ddr(ddr_params_, store, *this) {
+                Frequency scr_clock = Frequency(125'000'000), const std::string& scheduler = "ti")
+      : ddr_params_(scheduler),
+        store(ddr_params_.size_bytes()),
+        xbar(xbar_params_, *this),
+        ddr(ddr_params_, store, *this) {
     xbar.set_clock(scr_clock, 0);
     ddr.set_clocks(ddr_clock, scr_clock, 0);
   }
@@ -61,7 +65,13 @@ class Path : private bus::XbarHost, private mem::DdrClient {
     xbar.slave_done(*static_cast<MemRequest*>(cookie), first, last, false);
   }
   bus::CrossbarParams xbar_params_;
-  mem::DdrParams ddr_params_;
+  struct Params : mem::DdrParams {
+    explicit Params(const std::string& order) {
+      ParamSet set;
+      set.add(*this);
+      set.set("ddr.scheduler", order);
+    }
+  } ddr_params_;
 
  public:
   mem::BackingStore store;

@@ -155,9 +155,13 @@ std::uint64_t ReferenceController::clock_after_last() const {
 
 bool ReferenceController::fits(const ReferenceRequest& r) const {
   if (queue_.size() >= limits_.command_fifo) return false;
-  unsigned held = 0;
-  for (const Queued& q : queue_) held += q.request.write ? q.request.bytes : 0;
-  return !r.write || held + r.bytes <= limits_.write_fifo;
+  // Each 8 bytes of memory that a write touches are a word of the FIFO.
+  const auto words = [](const ReferenceRequest& w) {
+    return w.write ? (w.address + w.bytes - 1) / 8 - w.address / 8 + 1 : 0;
+  };
+  unsigned held = words(r);
+  for (const Queued& q : queue_) held += words(q.request);
+  return !r.write || held <= limits_.write_fifo / 8;
 }
 
 bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at) {
@@ -171,19 +175,28 @@ bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at
     door_arrived_ = arrived;
     return false;
   }
-  last_arrival_ = arrived;
-  queue_.push_back({request, arrived + limits_.request_latency});
+  enter(request, arrived);
   return true;
 }
 
+void ReferenceController::enter(const ReferenceRequest& r, std::uint64_t arrived) {
+  last_arrival_ = arrived;
+  queue_.push_back({r, arrived + limits_.request_latency});
+  if (!r.write && limits_.order == ReferenceLimits::Order::kFrFcfs)
+    unanswered_.push_back({r.id, r.master});
+}
+
 /// Each master offers its oldest request; a read passes older writes of its master to other
-/// 2048-byte blocks that are not more urgent.
+/// 2048-byte blocks that are not more urgent. FR-FCFS: all but those that touch a cache line of 64
+/// bytes with an older request of the master, unless both only read.
 bool ReferenceController::offered(std::size_t place) const {
   const ReferenceRequest& r = queue_[place].request;
   return std::all_of(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(place),
                      [&](const Queued& q) {
                        const ReferenceRequest& o = q.request;
                        if (o.master != r.master) return true;
+                       if (limits_.order == ReferenceLimits::Order::kFrFcfs)
+                         return o.address / 64 != r.address / 64 || (!o.write && !r.write);
                        return !r.write && o.write && o.address / 2048 != r.address / 2048 &&
                               r.priority <= o.priority;
                      });
@@ -462,8 +475,7 @@ void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
   passed_ = place == 0 ? 0 : passed_ + columns_of(queue_[place].request);
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
   if (door_ && fits(*door_)) {
-    last_arrival_ = std::max(door_arrived_, clock + 1);
-    queue_.push_back({*door_, last_arrival_ + limits_.request_latency});
+    enter(*door_, std::max(door_arrived_, clock + 1));
     accepted.push_back({door_->id, ddr_.edge(clock)});
     door_.reset();
   }
@@ -494,7 +506,35 @@ void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock)
     const std::uint64_t room = ddr_.edge_at_or_after(scr_.edge(lane_free_ - held));
     read_room_ = room > head ? room - head : 0;
   }
-  reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
+  if (limits_.order == ReferenceLimits::Order::kFrFcfs)
+    hand_out(r, start, end);
+  else
+    reads.push_back({r.id, scr_.edge(start), scr_.edge(end)});
+}
+
+/// Each master gets its reads in the order in which they arrived, one after the other and never
+/// before their data are there.
+void ReferenceController::hand_out(const ReferenceRequest& r, std::uint64_t start,
+                                   std::uint64_t end) {
+  handed_out_until_.resize(std::max<std::size_t>(handed_out_until_.size(), r.master + 1));
+  for (Unanswered& o : unanswered_) {
+    if (o.id != r.id) continue;
+    o.has_data = true;
+    o.first = scr_.edge(start);
+    o.edges = end - start;
+  }
+  Picoseconds& until = handed_out_until_[r.master];
+  for (auto o = unanswered_.begin(); o != unanswered_.end();) {
+    if (o->master != r.master) {
+      ++o;
+      continue;
+    }
+    if (!o->has_data) return;
+    const Picoseconds first = std::max(o->first, scr_.next_edge_after(until));
+    until = scr_.edge(scr_.edge_at_or_after(first) + o->edges);
+    reads.push_back({o->id, first, until});
+    o = unanswered_.erase(o);
+  }
 }
 
 /// JESD209: half of the array is without the bank's upper address bit, a quarter without both, and

@@ -110,6 +110,14 @@ class ReferenceController {
     unsigned columns_given = 0;
     bool classified = false;
   };
+  /// A read from its arrival on, with its own data's edges once they are known.
+  struct Unanswered {
+    std::size_t id;
+    unsigned master;
+    bool has_data = false;
+    Picoseconds first = 0;
+    std::uint64_t edges = 0;  // from the first to the last
+  };
   struct Plan {
     Kind kind;
     std::uint64_t clock;
@@ -145,6 +153,8 @@ class ReferenceController {
   bool may_sleep(std::uint64_t clock) const;
   void wake(std::uint64_t clock);
   void answer(const ReferenceRequest& r, std::uint64_t clock);
+  void hand_out(const ReferenceRequest& r, std::uint64_t start, std::uint64_t end);
+  void enter(const ReferenceRequest& r, std::uint64_t arrived);
   void leave(std::size_t place, std::uint64_t clock);
   bool fits(const ReferenceRequest& r) const;
 
@@ -152,6 +162,8 @@ class ReferenceController {
   std::vector<ReferenceConfig> configs_;
   Clock ddr_, scr_;
   std::vector<Queued> queue_;  // oldest first
+  std::vector<Unanswered> unanswered_;         // in the order of their arrival; kFrFcfs
+  std::vector<Picoseconds> handed_out_until_;  // by master
   std::optional<ReferenceRequest> door_;
   std::uint64_t door_arrived_ = 0, last_arrival_ = 0;
   std::uint64_t not_before_ = 0;  // the last change of clocks or configuration

@@ -305,6 +305,105 @@ TEST(OtherSchedulersTest, FrfcfsTakesOpenRowsFirstWhateverKindAndPriority) {
   EXPECT_EQ(Scenario(turned, with("frfcfs")).columns(), "W0 R1");
 }
 
+TEST(OtherSchedulersTest, FrfcfsSortsTheRequestsOfOneMasterToo) {
+  const std::vector<Request> opened = {read(kC, at(1, 0))};
+  for (const bool first : {false, true})
+    for (const bool second : {false, true}) {
+      const std::vector<Request> two = {make(kA, first, at(1, 1), 0),
+                                        make(kA, second, at(1, 0), 7)};
+      const std::string a = first ? "W1" : "R1", b = second ? "W0" : "R0";
+      EXPECT_EQ(Scenario(two, with("frfcfs"), opened).columns(), b + " " + a);
+      EXPECT_EQ(Scenario(two, with("frfcfs")).columns(), a + " " + b) << "no row open: by age";
+      const bool passes = first && !second;  // with TI's rules: a read an older write
+      EXPECT_EQ(
+          Scenario({make(kA, first, at(1, 1)), make(kA, second, at(1, 0))}, with("ti"), opened)
+              .columns(),
+          passes ? b + " " + a : a + " " + b);
+    }
+}
+
+// Requests to one block have one row, so their age alone keeps them in order, but while the read
+// FIFO is full: then a younger write would go before a read.
+TEST(OtherSchedulersTest, FrfcfsWriteStaysBehindAnOlderReadOfItsBlock) {
+  const auto last_two = [](Master writer, std::uint32_t to, std::uint32_t from) {
+    BenchOptions o = with("frfcfs");
+    o.scr = Frequency(31'250'000);
+    std::vector<Request> all;  // the first two fill the FIFO
+    for (unsigned i = 0; i < 2; ++i) all.push_back(read(kB, at(1, 1, i * 64), 3, 64));
+    all.push_back(read(kA, from));
+    all.push_back(write(writer, to));
+    const std::string s = Scenario(all, o).columns();
+    EXPECT_EQ(s.size(), 10u * 3 - 1);
+    return s.substr(8 * 3);
+  };
+  const std::uint32_t block = at(1, 1, 512);
+  EXPECT_EQ(last_two(kA, block, block), "R1 W1");
+  EXPECT_EQ(last_two(kA, block + 48, block), "R1 W1") << "other bytes of the block";
+  EXPECT_EQ(last_two(kA, block, block + 48), "R1 W1");
+  EXPECT_EQ(last_two(kA, block + 64, block), "W1 R1") << "the neighbours";
+  EXPECT_EQ(last_two(kA, block - 16, block), "W1 R1");
+  EXPECT_EQ(last_two(kC, block, block), "W1 R1") << "between masters there is no order";
+}
+
+TEST(OtherSchedulersTest, FrfcfsTellsTheReadsOfOneMasterInOrder) {
+  DdrBench b(with("frfcfs"));
+  Request before = read(kC, at(1, 0));
+  // The first one needs another row of the bank; 16 bytes are 2 words, 64 are 8.
+  std::vector<Request> all = {read(kA, at(2, 0)), read(kA, at(1, 0, 64), 3, 64), read(kB, at(1, 0)),
+                              read(kA, at(1, 0, 16))};
+  b.submit(before, 9);
+  b.drain();
+  b.read_order.clear();
+  for (Request& r : all) b.submit(r, 300);
+  using Items = std::vector<std::string>;
+  const auto state = [&] {
+    Items items;
+    for (const auto& i : b.ddr.view().items)
+      items.push_back(std::to_string(static_cast<const Request*>(i.cookie) - all.data()) +
+                      (i.moving ? "moves"
+                       : i.held ? "held"
+                                : ""));
+    return items;
+  };
+  const auto after = [&](std::uint64_t clock) {
+    b.run_before(clock * kTck + 1);
+    return state();
+  };
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  // Columns of 1 at 309, 313, 317, 321, of 2 at 325, of 3 at 329; PRE at 333, ACT at 338, 0 at 343.
+  EXPECT_EQ(after(kFrom), (Items{"0", "1moves", "2", "3"}));
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  EXPECT_EQ(after(kFrom + 12), (Items{"0", "2", "3", "1held"}));
+  EXPECT_EQ(after(kFrom + 20), (Items{"0", "1held", "3held"}));
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  EXPECT_EQ(b.read_order, (std::vector<Request*>{&all[2]})) << "only of another master";
+  EXPECT_EQ(after(kFrom + 34), Items{});
+  EXPECT_EQ(b.ddr.newest_read(kA), nullptr);
+  EXPECT_EQ(b.read_order, (std::vector<Request*>{&all[2], &all[0], &all[1], &all[3]}));
+  // Data come CL + 2 after the RD and are on the lane an edge after their fourth beat.
+  EXPECT_EQ(all[2].first, (kFrom + 16 + 5 + 2 + 2 + 1) * kTck) << "at once";
+  EXPECT_EQ(all[0].first, (kFrom + 34 + 5 + 2 + 2 + 1) * kTck);
+  EXPECT_EQ(all[1].first, all[0].last + kTck);
+  EXPECT_GE(all[1].last, all[1].first + 7 * kTck) << "a word an edge";
+  EXPECT_EQ(all[3].first, all[1].last + kTck);
+  EXPECT_FALSE(b.went_back);
+}
+
+// A read served in its turn comes behind those that were held, though its data do not.
+TEST(OtherSchedulersTest, FrfcfsReadBehindHeldOnesWaitsForThem) {
+  DdrBench b(with("frfcfs"));
+  Request before = read(kC, at(1, 0));
+  std::vector<Request> all = {read(kA, at(1, 1)), read(kA, at(1, 0), 3, 64),
+                              read(kA, at(1, 1, 64))};
+  b.submit(before, 9);
+  b.drain();
+  for (Request& r : all) b.submit(r, 300);
+  b.drain();
+  EXPECT_EQ(b.clock_of(Cmd::kRd, 1, 1), b.clock_of(Cmd::kRd, 1, 0) + 4);
+  EXPECT_EQ(all[1].first, all[0].last + kTck);
+  EXPECT_EQ(all[2].first, all[1].last + kTck);
+}
+
 TEST(OtherSchedulersTest, ClosedPageSavesTrpOnAnotherRowAndCostsTrcdOnTheSame) {
   const auto column = [](const char* scheduler, std::uint32_t row) {
     Scenario s({read(kA, at(row, 0))}, with(scheduler), {read(kC, at(1, 0))});

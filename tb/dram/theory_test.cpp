@@ -172,6 +172,35 @@ TEST(TheoryTest, PingPongOfOneMasterIsAtTheInOrderBound) {
   EXPECT_LT(in_order / by_rows, 2.3);
 }
 
+// `frfcfs` sorts the same reads of one master. Of n entries, filled in turn with both rows, p are
+// still in the pipeline when a row has no more of those that are seen: n - p wait for the other
+// row. For it is every second one that comes while these and those are served, so N = n - p +
+// floor(N / 2) reads share a change of rows: 2 (n - p) - 1.
+TEST(TheoryTest, PingPongOfOneMasterIsSortedByRowsWithFrfcfs) {
+  const mem::DdrTiming t;
+  const unsigned precharge = 4 + std::max(t.nRTP, 2u) - 2, latency = 8 + 1;
+  for (const unsigned bytes : {16u, 32u, 64u})
+    for (const unsigned entries : {6u, 7u, 12u}) {
+      const auto ping_pong = [=](const char* scheduler) {
+        BenchOptions o = no_refresh();
+        o.params = {{"scheduler", scheduler}, {"command_fifo", std::to_string(entries)}};
+        return clocks_per_request(o, 8'000, [=](Request& r, unsigned i) {
+          r.bytes = bytes;
+          r.address = at(i % 2, 0, i / 2 * bytes % 2048);
+        });
+      };
+      const unsigned columns = bytes / 16, reads = 4 * columns;
+      const double in_order = ping_pong("ti"), sorted = ping_pong("frfcfs");
+      expect_within_one_percent(
+          in_order, std::max<double>(t.nRC, t.nRCD + 4 * (columns - 1) + precharge + t.nRP));
+      // The newest came with the last column, those before it a read each earlier.
+      const unsigned pipeline = (latency - precharge + reads - 1) / reads;
+      const double change = precharge + t.nRP + t.nRCD - 4;
+      expect_within_one_percent(sorted, reads + change / (2 * (entries - pipeline) - 1));
+      EXPECT_GT(in_order / sorted, bytes == 64 ? 1.5 : 1.9) << bytes << " bytes, " << entries;
+    }
+}
+
 // An entry is held from acceptance to its column command: request_latency + 1 clocks at least, so n
 // entries serve n requests in that time, until the data bus binds.
 TEST(TheoryTest, CommandFifoBoundsTheRate) {
@@ -200,18 +229,30 @@ TEST(FifoTest, SevenCommandsFitAndTheEighthWaitsForAColumnCommand) {
 }
 
 TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
-  DdrBench b(no_refresh());
-  std::vector<Request> all(4);
-  const unsigned bytes[] = {64, 16, 8, 4};
-  for (unsigned i = 0; i < 4; ++i) {
-    all[i].write = true;
-    all[i].bytes = bytes[i];
-    all[i].address = i * 64;
-    EXPECT_EQ(b.submit(all[i], 9), i < 3) << "64 + 16 + 8 = 88 bytes";
+  struct Write {
+    unsigned bytes, offset;
+  };
+  // The last one waits at the door.
+  const std::vector<Write> cases[] = {
+      {{64, 0}, {16, 0}, {8, 0}, {4, 0}},         // 8 + 2 + 1 words
+      {{64, 0}, {4, 0}, {1, 7}, {2, 2}, {4, 4}},  // 8 + 1 + 1 + 1: few bytes take a word as well
+      {{64, 0}, {4, 6}, {1, 0}, {1, 0}},          // 8 + 2 + 1: four bytes across two words
+      {{64, 0}, {16, 4}, {1, 0}},                 // 8 + 3
+      {{64, 0}, {8, 0}, {8, 0}, {4, 6}},          // 8 + 1 + 1, and one word is too few
+  };
+  for (const std::vector<Write>& writes : cases) {
+    DdrBench b(no_refresh());
+    std::vector<Request> all(writes.size());
+    for (unsigned i = 0; i < all.size(); ++i) {
+      all[i].write = true;
+      all[i].bytes = writes[i].bytes;
+      all[i].address = i * 64 + writes[i].offset;
+      EXPECT_EQ(b.submit(all[i], 9), i + 1 < all.size()) << &writes - cases << ", write " << i;
+    }
+    b.drain();
+    // WR at 23, 27, 31, 35: the last burst of the first write makes room.
+    EXPECT_EQ(all.back().accepted_at, 35 * kTck) << &writes - cases;
   }
-  b.drain();
-  // WR at 23, 27, 31, 35: the last burst of the first write makes room.
-  EXPECT_EQ(all[3].accepted_at, 35 * kTck);
 }
 
 // The crossbar hands a request over when it grants it, its last beat still on the way. If the FIFO

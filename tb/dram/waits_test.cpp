@@ -11,6 +11,7 @@
 #include "model/bus/core/crossbar.h"
 #include "model/mem/core/ddr_controller.h"
 #include "tb/dram/bench.h"
+#include "tb/dram/path.h"
 
 namespace fovea::dram {
 namespace {
@@ -262,6 +263,92 @@ TEST(LoadedWaitsTest, ControllerTagsEachClockWithTheCommandBefore) {
     for (const MasterWaits& w : banks.counted) turned += w.read.ps[index(Culprit::kTurnaround)];
   }
   EXPECT_GT(turned, 0u);
+}
+
+/// Four masters with up to six requests each on crossbar and controller.
+struct Crowd {
+  Path path;
+  WaitTable counted{};  // from the requests' own parts
+  Picoseconds waited = 0;
+  unsigned reads = 0;
+  explicit Crowd(const std::string& scheduler)
+      : path(Frequency(243'000'000), Frequency(121'500'000), scheduler) {}
+  void run(std::uint64_t seed) {
+    Rng rng(seed);
+    struct Slot {
+      PathRequest request;
+      RequestWaits parts;
+      std::array<std::uint8_t, 64> data{};
+      bool busy = false;
+    };
+    std::array<std::array<Slot, 6>, 4> slots;
+    std::array<Picoseconds, 4> newest{};
+    std::array<std::vector<Slot*>, 4> order;  // reads, as issued
+    for (Picoseconds now = 10'000; reads < 1500; now += rng.below(40'000)) {
+      path.run_before(now);
+      for (auto& of_master : slots)
+        for (Slot& s : of_master)
+          if (s.request.write && s.request.responses) s.busy = false;
+      for (unsigned m = 0; m < 4; ++m)
+        for (; !order[m].empty() && order[m].front()->request.responses;
+             order[m].erase(order[m].begin())) {
+          Slot& s = *order[m].front();
+          const PathRequest& r = s.request;
+          ASSERT_EQ(s.parts.total(), r.first - r.issued) << "seed " << seed;
+          ASSERT_GT(r.first, newest[m]) << "in the order of issue, seed " << seed;
+          newest[m] = r.last;
+          waited += r.first - r.issued;
+          s.parts.each([&](Culprit c, Picoseconds t) { counted[index(r.master)].read.add(c, t); });
+          s.busy = false;
+          ++reads;
+        }
+      const auto m = static_cast<unsigned>(rng.below(4));
+      for (Slot& s : slots[m]) {
+        if (s.busy) continue;
+        PathRequest& r = s.request = {};
+        r.master = static_cast<Master>(2 * m + 2);  // 64-bit ports
+        r.write = rng.below(4) == 0;
+        r.bytes = static_cast<std::uint8_t>(16u << rng.below(3));
+        r.address =
+            at(static_cast<std::uint32_t>(rng.below(3)), static_cast<unsigned>(rng.below(2)),
+               static_cast<std::uint32_t>(rng.below(4)) * 64);
+        r.data = s.data.data();
+        r.parts = &s.parts;
+        s.parts.clear();
+        s.busy = true;
+        path.submit(r, now);
+        if (!r.write) order[m].push_back(&s);
+        break;
+      }
+    }
+    for (const auto& list : order)
+      for (const Slot* s : list) {
+        while (s->request.responses == 0) path.step();
+        s->parts.each(
+            [&](Culprit c, Picoseconds t) { counted[index(s->request.master)].read.add(c, t); });
+      }
+    path.drain();
+  }
+};
+
+// Each read's parts are its latency to its first data, and the tables are the parts of all: with
+// `frfcfs` the time behind older reads of the master too.
+TEST(LoadedWaitsTest, PartsOfEachReadAddUpWithAnyScheduler) {
+  std::map<std::string, Picoseconds> own;
+  for (const char* scheduler : {"ti", "fcfs", "frfcfs", "closed_page"})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      Crowd crowd(scheduler);
+      crowd.run(seed);
+      if (HasFatalFailure()) FAIL() << scheduler;
+      for (std::size_t m = 0; m < kMasterCount; ++m) {
+        own[scheduler] += crowd.path.ddr.waits[m].read.ps[m];
+        for (std::size_t c = 0; c < kCulprits; ++c)
+          ASSERT_EQ(crowd.counted[m].read.ps[c],
+                    crowd.path.ddr.waits[m].read.ps[c] + crowd.path.xbar.waits[m].read.ps[c])
+              << scheduler << ", seed " << seed << ", master " << m << ", culprit " << c;
+      }
+    }
+  EXPECT_GT(own["frfcfs"], 0u);
 }
 
 // The data of a write burst are one piece: no turnaround lies between its columns, whether or not

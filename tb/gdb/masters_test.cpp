@@ -17,6 +17,8 @@ using Kind = GdbMasters::Kind;
 constexpr std::uint32_t kRow = 0x4000;  // 8 banks of 2048 bytes
 
 struct Bench {
+  explicit Bench(const char* scheduler = "ti")
+      : path(Frequency(250'000'000), Frequency(125'000'000), scheduler) {}
   Path path;
   GdbMasters masters{path.xbar, path.ddr, 0};
   std::deque<PathRequest> requests;
@@ -123,11 +125,11 @@ TEST(GdbMastersTest, AFullQueueIsSeenAtItsDoor) {
 
 /// Whatever happens, each request that is issued and not over is somewhere, and no other one is
 /// shown.
-TEST(GdbMastersTest, EveryRequestIsSomewhere) {
+void every_request_is_somewhere(const char* scheduler, unsigned rows, bool held) {
   std::mt19937 rng(5);
-  Bench b;
+  Bench b(scheduler);
   Picoseconds t = 0;
-  unsigned seen = 0;
+  unsigned seen = 0, seen_held = 0;
   for (unsigned k = 0; k < 3'000; ++k) {
     t += rng() % 60'000;
     const std::string text = b.at(t);
@@ -138,6 +140,8 @@ TEST(GdbMastersTest, EveryRequestIsSomewhere) {
       shown += text.substr(p, 60).find(" since ") != std::string::npos;
     EXPECT_EQ(shown, open) << text;
     seen += shown;
+    seen_held +=
+        text.find("its data wait for those of its master's older reads") != std::string::npos;
     while (b.requests.size() > 24 && b.requests.front().responses && b.requests.front().last < t) {
       b.requests.pop_front();
       b.data.pop_front();
@@ -147,9 +151,15 @@ TEST(GdbMastersTest, EveryRequestIsSomewhere) {
     const unsigned m = rng() % 4;
     for (const auto& r : b.requests)
       own[m] += r.master == kMasters[m] && (!r.responses || r.last > t);
-    if (own[m] < 6) b.submit(kMasters[m], rng() % 2, (rng() % 64) * kRow + (rng() % 64) * 64, t);
+    if (own[m] < 6) b.submit(kMasters[m], rng() % 2, (rng() % rows) * kRow + (rng() % 64) * 64, t);
   }
   EXPECT_GT(seen, 1'000u);
+  EXPECT_EQ(seen_held > 10, held);
+}
+
+TEST(GdbMastersTest, EveryRequestIsSomewhere) {
+  every_request_is_somewhere("ti", 64, false);
+  every_request_is_somewhere("frfcfs", 4, true);
 }
 
 TEST(GdbMastersTest, WatchesNameMasterTimeAndPlace) {

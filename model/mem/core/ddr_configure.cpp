@@ -12,7 +12,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       client_(client),
       size_(store.size()),
       fifo_entries_(params.command_fifo()),
-      write_fifo_bytes_(static_cast<unsigned>(params.write_fifo())),
+      write_fifo_words_(static_cast<unsigned>(params.write_fifo() / 8)),
       request_latency_(static_cast<unsigned>(params.request_latency())),
       return_latency_(static_cast<unsigned>(params.return_latency())),
       clock_restart_(static_cast<unsigned>(params.clock_restart())),
@@ -22,7 +22,8 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs")) {
+      kinds_count_(!params.scheduler.is("frfcfs")),
+      free_order_(!kinds_count_) {
   lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }

@@ -92,7 +92,7 @@ bool DdrController::queue(Request& request, std::uint64_t arrived) {
   const bool was_alone = alone_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
-      (request.write && write_bytes_held_ + request.bytes > write_fifo_bytes_)) {
+      (request.write && write_words_held_ + write_words(request) > write_fifo_words_)) {
     door_full_ = shut_ = true;
     put(door_, request);
     door_arrived_ = arrived;
@@ -135,7 +135,7 @@ void DdrController::join_queue() {
   unseen_ = e.ready;
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
-  write_bytes_held_ = e.request.write ? e.request.bytes : 0u;
+  write_words_held_ = e.request.write ? write_words(e.request) : 0u;
 }
 
 template <class Request>
@@ -151,8 +151,11 @@ void DdrController::take(Request& request, std::uint64_t arrived) {
   const Places older = places_.of_master(request.master);
   places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
-  if (request.write) write_bytes_held_ += request.bytes;
-  if (older == 0 || (!request.write && passes(e, older))) offered_ |= bit;
+  if (request.write) write_words_held_ += write_words(request);
+  const auto goes_before = [&] {
+    return free_order_ ? !bound_by(e, older) : !request.write && passes(e, older);
+  };
+  if (older == 0 || goes_before()) offered_ |= bit;
 }
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
@@ -479,7 +482,10 @@ void DdrController::first_column() {
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
-    client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
+    if (free_order_) [[unlikely]]
+      tell_in_order(e, on_lane);
+    else
+      client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
   // No turnaround lies between the columns of a write, so this one passes for a RD among the given.
@@ -561,7 +567,7 @@ void DdrController::last_column() {
 inline void DdrController::leave_queue() {
   const Entry& e = *choice_.entry;
   const unsigned place = choice_.place;
-  if (e.request.write) write_bytes_held_ -= e.request.bytes;
+  if (e.request.write) write_words_held_ -= write_words(e.request);
   free_slots_ |= 1u << places_.slot(place);
   places_.leave(place, e.request.priority);
   offered_ = QueuePlaces::without(place, offered_);
@@ -572,12 +578,15 @@ inline void DdrController::leave_queue() {
   else
     look_for_unseen();
   served_while_oldest_ = place == 0 ? 0 : served_while_oldest_ + e.chunks;
-  offer(places_.of_master(e.request.master));
+  const Places others = places_.of_master(e.request.master);
+  if (free_order_) [[unlikely]]
+    return offer_all(others);
+  offer(others);
 }
 
 void DdrController::open_door(std::uint64_t clock) {
   if (count_ >= fifo_entries_ ||
-      (door_.write && write_bytes_held_ + door_.bytes > write_fifo_bytes_))
+      (door_.write && write_words_held_ + write_words(door_) > write_fifo_words_))
     return;
   door_full_ = shut_ = false;
   take(door_, std::max(door_arrived_, clock + 1));

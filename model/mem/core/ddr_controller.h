@@ -61,7 +61,8 @@ class DdrClient {
   /// The request waiting at the door was taken into the FIFOs at `at`.
   virtual void ddr_accepted(void* cookie, Picoseconds at) = 0;
   /// A read's data is on the crossbar from `first` (its first 8 bytes) to `last`; both lie ahead.
-  /// Called with its first column command: from there on nothing interrupts the burst.
+  /// Called with its first column command: from there on nothing interrupts the burst. With
+  /// `frfcfs` later, with that of the last of its master's older reads.
   virtual void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) = 0;
 };
 
@@ -112,11 +113,12 @@ class DdrController {
       std::uint32_t address;  ///< offset in the SDRAM
       bool door;              ///< waits for room in the FIFOs
       bool moving;            ///< its burst is under way
+      bool held;              ///< its data wait for those of its master's older reads
       Picoseconds ready;      ///< the scheduler sees it from then on
       unsigned bank;
       std::uint32_t row, open;  ///< open: DdrDevice::kClosed or the bank's row
     };
-    std::vector<Item> items;             ///< oldest first
+    std::vector<Item> items;             ///< the queue, oldest first; the door; those held
     std::size_t next = ~std::size_t{0};  ///< item of the next command; beyond the end: a refresh's
     Cmd cmd = Cmd::kRef;                 ///< that command
     Picoseconds next_at = kNever;        ///< kNever: nothing to do
@@ -129,8 +131,9 @@ class DdrController {
 
   DdrStats stats;
   /// What reads waited for here, between the pipeline's end and their first column command: each
-  /// clock is blamed on the last command before it, a master's for others, or the read's own ACT and
-  /// PRE. From the end of a write burst on it is the turnaround.
+  /// clock is blamed on the last command before it, a master's for others, or the read's own ACT
+  /// and PRE. From the end of a write burst on it is the turnaround. Data held back for older reads
+  /// of the same master wait for it.
   WaitTable waits;
   /// Within ddr_read_done: the sum of that read's waits.
   Picoseconds read_waited() const { return read_waited_; }
@@ -205,12 +208,29 @@ class DdrController {
     unseen_ = seen_count_ < count_ ? entry(seen_count_).ready : kNoClock;
   }
   Blamed blamed(const Given& g, std::uint64_t clock, Picoseconds at) const;
+
+  /// A read whose data have come before those of older reads of its master: they wait behind the
+  /// lane, in a buffer as large as what the masters have under way.
+  struct Held {
+    DdrRequest request;
+    std::uint32_t behind = 0;  // slots of the older reads
+    Picoseconds first = 0;     // its own data on the lane
+    std::uint64_t edges = 0;   // of the crossbar, from there to the last
+    Picoseconds waited = 0;
+  };
+  bool bound_by(const Entry& younger, Places older) const;
+  void offer_all(Places of_one_master);
+  void tell_in_order(const Entry& e, const ReadLane::Span& on_lane);
+  void tell(const Held& h);
+  const void* newest_held(unsigned behind_slot) const;
+
   void attribute(const Entry& e, std::uint64_t clock);
   void blame_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
   void blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready, const Blamed& newest);
-  void charge(const Entry& e, Culprit c, Picoseconds t) {
-    waits[index(e.request.master)].read.add(c, t);
-    if (e.request.parts) e.request.parts->add(c, t);
+  void charge(const Entry& e, Culprit c, Picoseconds t) { charge(e.request, c, t); }
+  void charge(const DdrRequest& r, Culprit c, Picoseconds t) {
+    waits[index(r.master)].read.add(c, t);
+    if (r.parts) r.parts->add(c, t);
   }
   void time_given();
 
@@ -303,12 +323,13 @@ class DdrController {
 
   // Configuration copied out of the parameters once: read in the hot path.
   std::size_t fifo_entries_;
-  unsigned write_fifo_bytes_, request_latency_, return_latency_, clock_restart_;
+  unsigned write_fifo_words_, request_latency_, return_latency_, clock_restart_;
   Picoseconds retention_;
   unsigned need_, must_, gap_limit_;
   // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
-  // nobody waits for is closed after its access; reads before writes, and priorities, count.
-  bool in_order_, closes_rows_, kinds_count_;
+  // nobody waits for is closed after its access; reads before writes, and priorities, count; a
+  // master's requests pass each other.
+  bool in_order_, closes_rows_, kinds_count_, free_order_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
@@ -320,7 +341,7 @@ class DdrController {
   Places offered_ = 0;  // whose command its master offers (rule 1)
   Places hits_ = 0;     // whose row is open
   std::uint64_t last_arrival_ = 0;
-  unsigned write_bytes_held_ = 0;
+  unsigned write_words_held_ = 0;
   bool door_full_ = false;
   DdrRequest door_;
   std::uint64_t door_arrived_ = 0;
@@ -363,11 +384,19 @@ class DdrController {
   unsigned seen_count_ = 0;             // places that have theirs
   std::uint64_t unseen_ = kNoClock;     // edge at which the one after them is ready
   Picoseconds read_waited_ = 0;
+  std::vector<Held> held_;                        // each master's oldest first
+  std::array<Picoseconds, kMasterCount> told_{};  // with free_order_: ends of their newest
 
   std::vector<std::pair<CommandHook, void*>> listeners_;
   CommandHook hook_ = nullptr;  // the only listener, or one that calls all
   void* hook_self_ = nullptr;
 };
+
+/// Words of 64 bits that a write's data holds in the FIFO: one touched in part is held whole.
+template <class Request>
+inline unsigned write_words(const Request& r) {
+  return ((r.address & 7u) + r.bytes + 7u) >> 3;
+}
 
 inline Cmd DdrController::needed(const Entry& e) const {
   const std::uint32_t open = device_.row(e.bank);

@@ -22,7 +22,9 @@ const void* DdrController::newest_read(Master master) const {
   for (unsigned i = count_; i-- > 0;) {
     const Entry& e = entry(i);
     const bool answered = in_burst_ && &e == choice_.entry;
-    if (!e.request.write && e.request.master == master && !answered) return e.request.cookie;
+    if (e.request.write || e.request.master != master || answered) continue;
+    const void* const younger = newest_held(places_.slot(i));
+    return younger ? younger : e.request.cookie;
   }
   return nullptr;
 }
@@ -51,7 +53,7 @@ DdrController::View DdrController::view() const {
   View v;
   const auto add = [&](const DdrRequest& r, std::uint64_t ready, bool door) {
     const auto bank = (r.address >> bank_shift_) & bank_mask_;
-    v.items.push_back({r.cookie, r.master, r.write, r.bytes, r.address, door, false,
+    v.items.push_back({r.cookie, r.master, r.write, r.bytes, r.address, door, false, false,
                        running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
                        (r.address & row_mask_) >> row_shift_, device_.row(bank)});
   };
@@ -65,6 +67,11 @@ DdrController::View DdrController::view() const {
   if (door_full_) {
     add(door_, door_arrived_, true);
     v.data_full = count_ < fifo_entries_;
+  }
+  for (const Held& h : held_) {
+    if (in_burst_ && h.request.cookie == choice_.entry->request.cookie) continue;  // in the queue
+    add(h.request, first_edge_, false);
+    v.items.back().held = true;
   }
   if (given_count_) {
     const Given& g = given_[(given_count_ - 1) % kGiven];

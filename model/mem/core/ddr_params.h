@@ -50,7 +50,7 @@ struct DdrParams : ParamGroup {
                        "intervals without a REF above which four are issued before requests",
                        Origin::kSourced, "same controller in sibling devices, dm365.md 5.4"};
   EnumParam scheduler{*this, "scheduler", "ti", {"ti", "fcfs", "frfcfs", "closed_page"},
-                      "ti: the chip's; fcfs: strictly by age; frfcfs: open rows, then age; "
+                      "ti: the chip's; fcfs: strictly by age; frfcfs: open rows, then age, of all; "
                       "closed_page: ti, but a row nobody waits for is closed after its access",
                       Origin::kChoice, ""};
   DdrParams() : ParamGroup("ddr") {}
