@@ -112,8 +112,61 @@ TEST(ReplayFiguresTest, AGapCountsFromTheBeatThatTheRecordNames) {
   }
 }
 
-// Each key of the SDRAM's timing, by what it moves. Both clocks are 250 MHz and the crossbar is left
-// out, so that a clock more is a clock later, exactly.
+/// When each record of streams 1 and 2 was done, told by marks of stream 0 that wait for it.
+std::array<std::vector<Picoseconds>, 2> ends_at_the_door(std::array<std::uint8_t, 2> priority,
+                                                         bool write) {
+  trace::TraceInfo info = board_info();
+  info.streams[0] = {};  // counts picoseconds
+  for (auto& m : info.masters) m.reads = m.writes = 24;
+  Listed l;
+  constexpr unsigned kEach = 24;
+  Rng rng(6);
+  for (const unsigned s : {1u, 2u}) {
+    for (unsigned n = 0; n < kEach; ++n) {
+      // The second master's come when the first one's fill the FIFO and the door.
+      const auto address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
+      Record r = read_at(990'000 + s * 10'000, address);
+      r.master = s == 1 ? Master::kVpfe : Master::kVpbe;
+      r.priority = priority[s - 1];
+      r.write = write;
+      r.bytes = 64;
+      l.records[s].push_back(r);
+      Record mark = read_at(0, 0);
+      mark.mark = true;
+      mark.release = Release::kWhen;
+      mark.source = static_cast<std::uint8_t>(s);
+      mark.event = n;
+      l.records[0].push_back(mark);
+    }
+  }
+  const Played p(info, l, true, {{"ddr.tREFI", "0cycles"}});
+  std::array<std::vector<Picoseconds>, 2> ends;
+  for (std::size_t i = 0; i < p.issued[0].size(); ++i) ends[i / kEach].push_back(p.issued[0][i]);
+  return ends;
+}
+
+// How equal masters take turns is another matter; a master's own requests keep their order.
+TEST(MemoryOnlyTest, TheOldestOfAMasterGoesThroughTheDoorFirst) {
+  for (const bool write : {false, true})
+    for (const std::array<std::uint8_t, 2> priority : {std::array<std::uint8_t, 2>{7, 7}, {7, 0}})
+      for (const auto& of_master : ends_at_the_door(priority, write)) {
+        ASSERT_EQ(of_master.size(), 24u);
+        EXPECT_TRUE(std::is_sorted(of_master.begin(), of_master.end())) << "write " << write;
+      }
+}
+
+TEST(MemoryOnlyTest, TheUrgentGoThroughTheDoorFirst) {
+  for (const bool write : {false, true}) {
+    const auto ends = ends_at_the_door({7, 0}, write);
+    // Of the first master eight at most are inside or at the door when the second one's come. When its
+    // tenth goes in, all the urgent ones have, and but for the eight places they are done.
+    EXPECT_GT(ends[0][9], ends[1][15]) << "write " << write;
+    EXPECT_LT(ends[0][0], ends[1][15]);
+  }
+}
+
+// Each key of the SDRAM's timing, by what it moves. Both clocks are 250 MHz and the crossbar is
+// left out, so that a clock more is a clock later, exactly.
 constexpr Picoseconds kClock = 4'000;
 
 Keys base_keys() {
@@ -193,7 +246,8 @@ double overdue(Played& p) { return static_cast<double>(p.path->memory().overdue_
 INSTANTIATE_TEST_SUITE_P(
     Keys, KeyEffectTest,
     testing::Values(
-        KeyEffect{"CL", "ddr.CL", "5cycles", "6cycles", {{"ddr.RL", "1cycles"}}, lone_read(), 1, end},
+        KeyEffect{"CL", "ddr.CL", "5cycles", "6cycles", {{"ddr.RL", "1cycles"}}, lone_read(), 1,
+                  end},
         KeyEffect{"RL", "ddr.RL", "7cycles", "8cycles", {}, lone_read(), 1, end},
         KeyEffect{"tRCD", "ddr.tRCD", "6cycles", "7cycles", {}, lone_read(), 1, end},
         KeyEffect{"tRP", "ddr.tRP", "7cycles", "8cycles", {}, row_conflict(), 1, end},
