@@ -7,6 +7,7 @@
 
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
+#include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_path.h"
@@ -76,6 +77,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   Experiment experiment(set);
   for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
   for (const auto& s : options.sets) experiment.override_with(s);
+  apply_ddr_preset(params, trace.info->ddr.frequency, experiment);
   params.check();
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)

@@ -52,7 +52,8 @@ void ReplayParams::check() const {
   const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
                           const char* range) {
     if (p() < least || p() > most)
-      refuse(p, fmt::format("{} (ddr.part = {})", range, ddr.part()));
+      refuse(p, fmt::format("{} (ddr.part = {}, whose timings ddr.preset=data_sheet takes)", range,
+                            ddr.part()));
   };
   if (ddr.mobile()) {
     within(r.clock, 1'000'000, 200'000'000, "1MHz .. 200MHz, mobile DDR");
@@ -72,7 +73,9 @@ void ReplayParams::check() const {
     refuse(r.CL, fmt::format("more cycles at {}: no part reads so soon", r.clock.text()));
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
   if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
-    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
+    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {}, whose banks "
+                                "ddr.preset=data_sheet takes)",
+                                ddr.banks(), ddr.part()));
   at_least(r.tRAS, r.tRCD(), "ddr.tRCD: a row is open when its columns are read");
   // Each of the three was rounded up to clocks by itself.
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");

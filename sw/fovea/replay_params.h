@@ -45,6 +45,10 @@ struct DdrRegisterParams : ParamGroup {
                      "PBBPR.PR_OLD_COUNT, transfers after which the oldest command is raised; 255 "
                      "never",
                      Origin::kChoice, ""};
+  EnumParam preset{*this, "preset", "as_recorded", {"as_recorded", "data_sheet"},
+                   "data_sheet: clock, CL, RL, timings, refresh, banks and page that are not set by "
+                   "hand are those of ddr.part in ddr.grade, in clocks of ddr.clock",
+                   Origin::kChoice, "dram.md 2 and 4"};
   IntParam page{*this, "page", U::kBytes, 2048, 512, 4096, "bytes of a row", Origin::kChoice, ""};
   IntParam banks{*this, "banks", U::kCount, 8, 1, 8, "banks that the controller uses",
                  Origin::kChoice, ""};

@@ -158,8 +158,8 @@ TEST(MemoryOnlyTest, TheOldestOfAMasterGoesThroughTheDoorFirst) {
 TEST(MemoryOnlyTest, TheUrgentGoThroughTheDoorFirst) {
   for (const bool write : {false, true}) {
     const auto ends = ends_at_the_door({7, 0}, write);
-    // Of the first master eight at most are inside or at the door when the second one's come. When its
-    // tenth goes in, all the urgent ones have, and but for the eight places they are done.
+    // Of the first master eight at most are inside or at the door when the second one's come. When
+    // its tenth goes in, all the urgent ones have, and but for the eight places they are done.
     EXPECT_GT(ends[0][9], ends[1][15]) << "write " << write;
     EXPECT_LT(ends[0][0], ends[1][15]);
   }
