@@ -176,13 +176,25 @@ void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment
     if (t.name == "tRC") n = std::max(n, r.tRAS() + r.tRP() - 1);
     if (n != 0) cycles(t.name, n, t.assumed == kGradeWords[grade]);
   }
+  // Sleep. DDR2 [S2 S3]. Mobile [S11 S13], the longest where makers differ; no DLL that must lock.
+  if (ddr.mobile()) {
+    cycles("tXP", std::max<std::uint64_t>(rounded_up(25'000, clock), 1), true);
+    cycles("tCKE", 2, true);
+    cycles("tXSNR", rounded_up(200'000, clock), true);
+    cycles("tXSRD", 1);
+  } else {
+    cycles("tXP", 2);
+    cycles("tCKE", 3);
+    cycles("tXSNR", rounded_up(part.tRFC + 10'000, clock));
+    cycles("tXSRD", 200);
+  }
   // A slow clock rounds both up to one clock; a refresh opens and closes a row in its time.
   cycles("tRFC", std::max(rounded_up(part.tRFC, clock), r.tRP() + 1), part.assumed);
   const std::uint64_t interval = rounded_down(kRefresh, clock);
   cycles("tREFI", interval);
-  const std::uint64_t open = rounded_down(kOpenAtMost, clock);
-  set("row_intervals",
-      std::to_string(std::clamp<std::uint64_t>(open / std::max<std::uint64_t>(r.tREFI(), 1), 1, 16)));
+  const std::uint64_t open =
+      rounded_down(kOpenAtMost, clock) / std::max<std::uint64_t>(r.tREFI(), 1);
+  set("row_intervals", std::to_string(std::clamp<std::uint64_t>(open, 1, 16)));
   set("banks", std::to_string(ddr.banks()));
   set("page", fmt::format("{}B", kPageBytes), ddr.mobile());
 }

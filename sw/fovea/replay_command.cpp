@@ -75,8 +75,15 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   ParamSet set;
   params.declare(set);
   Experiment experiment(set);
-  for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
-  for (const auto& s : options.sets) experiment.override_with(s);
+  for (const auto& [key, value] : trace.info->params)
+    if (!ReplayParams::without_effect(key)) experiment.preset(key, value, options.trace);
+  for (const auto& s : options.sets) {
+    const std::string key = s.substr(0, s.find('='));
+    if (ReplayParams::without_effect(key))
+      throw UserError(
+          fmt::format("key '{}' has no effect in a replay, which plays no contents", key));
+    experiment.override_with(s);
+  }
   apply_ddr_preset(params, trace.info->ddr.frequency, experiment);
   params.check();
 

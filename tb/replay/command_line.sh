@@ -93,6 +93,9 @@ expect preset_recorded 0 -- replay "$trace" -s ddr.preset=data_sheet -s ddr.tRP=
 grep -q '"ddr.tRP": {"value": "7 cycles", .*"origin": "command line"' "$out/replay/config.json" || fail 'a key by hand does not win'
 grep -q '"ddr.tRRD": {"value": "4 cycles", .*"origin": "ddr.preset: ' "$out/replay/config.json" || fail 'config.json: ddr.tRRD by preset'
 grep -q '"remarks": \[\]' "$out/replay/stats.json" || fail 'a preset of the data sheet has remarks'
+expect no_effect 2 "'ddr.retention' has no effect in a replay" -- replay "$trace" -s ddr.retention=1s
+expect sleep 0 -- replay "$trace" -s ddr.low_power=power_down
+grep -qE '"ddr.power_downs": \{"value": [1-9]' "$out/replay/stats.json" || fail 'a replay does not sleep'
 expect preset_clock 2 'has no CL for it' -- replay "$trace" -s ddr.preset=data_sheet -s ddr.clock=401MHz
 expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
 expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1

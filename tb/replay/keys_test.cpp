@@ -241,6 +241,11 @@ Keys patient_refresh(std::string interval) {
   return {{"ddr.tREFI", std::move(interval)}, {"ddr.refresh.need", "32"},
           {"ddr.refresh.must", "64"}, {"ddr.refresh.gap", "64"}};
 }
+/// With a pipeline of no clocks, which would hide the shorter times.
+Keys asleep(std::string how) {
+  return {{"ddr.low_power", std::move(how)}, {"ddr.request_latency", "0cycles"},
+          {"ddr.tXP", "8cycles"}, {"ddr.tXSNR", "34cycles"}, {"ddr.tXSRD", "1cycles"}};
+}
 double overdue(Played& p) { return static_cast<double>(p.path->memory().overdue_rows.count()); }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -278,6 +283,20 @@ INSTANTIATE_TEST_SUITE_P(
         KeyEffect{"bank_on_top", "ddr.bank_on_top", "false", "true", {}, far_apart(kBank), 7, end},
         KeyEffect{"old_count", "ddr.old_count", "8", "9", {}, hits_and_one_conflict(), 4,
                   longest_read},
+        // Asleep since the start, awake when the read comes.
+        KeyEffect{"low_power", "ddr.low_power", "off", "power_down", asleep("off"), lone_read(), 8,
+                  end},
+        KeyEffect{"tXP", "ddr.tXP", "7cycles", "8cycles", asleep("power_down"), lone_read(), 1,
+                  end},
+        KeyEffect{"tXSNR", "ddr.tXSNR", "34cycles", "35cycles", asleep("self_refresh"), lone_read(),
+                  1, end},
+        KeyEffect{"tXSRD", "ddr.tXSRD", "200cycles", "201cycles", asleep("self_refresh"),
+                  lone_read(), 1, end},
+        KeyEffect{"clock_restart", "ddr.clock_restart", "1cycles", "2cycles", asleep("clock_stop"),
+                  lone_read(), 1, end},
+        // RD at 115 or so, asleep ten clocks later: the second comes just then.
+        KeyEffect{"tCKE", "ddr.tCKE", "7cycles", "8cycles", asleep("power_down"),
+                  lone_read() + record(127, 0, 'R', 0), 1, end},
         KeyEffect{"row_intervals 1", "ddr.row_intervals", "2", "1", patient_refresh("1000cycles"),
                   long_stream(), 6 - 3, overdue},
         KeyEffect{"row_intervals 2", "ddr.row_intervals", "3", "2", patient_refresh("1000cycles"),

@@ -86,6 +86,11 @@ TEST(DdrPresetTest, NoPartHasARemarkAtAnyClock) {
         }
         EXPECT_THAT(remarks(*setup), testing::IsEmpty())
             << s.part << ", grade " << grade << ", " << clock;
+        for (const char* sleep : {"self_refresh", "power_down"}) {
+          by_hand.push_back(std::string("ddr.low_power=") + sleep);
+          EXPECT_THAT(remarks(Keyed(by_hand)), testing::IsEmpty())
+              << s.part << ", grade " << grade << ", " << clock << ", " << sleep;
+        }
         ++played;
       }
   // Of the twelve clocks 37e, 3, 25e and 25 can 6, 8, 10 and 10 (DDR2 has none below 125 MHz), 5, 6
