@@ -186,6 +186,34 @@ TEST(DdrPresetTest, WhoSetWhatIsKept) {
   EXPECT_EQ(exact.value("ddr.tRCD"), "4 cycles");
 }
 
+// A trace stores a configuration as keys; they must give it back, each field of its own value.
+TEST(ReplayKeysTest, AConfigurationSurvivesBeingStored) {
+  mem::DdrConfig c;
+  c.timing = {6, 44, 6, 7, 8, 17, 23, 4, 2, 3, 5, 70, 199, 2, 4, false};
+  c.read_latency = 9;
+  c.refresh_interval = 1111;
+  c.row_intervals = 7;
+  c.old_count = 33;
+  c.page_log2 = 10;
+  c.bank_on_top = true;
+  for (const auto sleep : {mem::LowPower::kOff, mem::LowPower::kSelfRefresh,
+                           mem::LowPower::kPowerDown, mem::LowPower::kClockStop}) {
+    c.low_power = sleep;
+    trace::TraceInfo info;
+    info.params = app::replay_keys({}, c, Frequency(170'000'000), Frequency(340'000'000));
+    const mem::DdrConfig back = Keyed({}, info).params.config();
+    EXPECT_EQ(back.low_power, c.low_power);
+    const auto numbers_of = [](const mem::DdrConfig& d) {
+      const mem::DdrTiming& t = d.timing;
+      return std::vector<unsigned>{t.CL, t.nRFC, t.nRP, t.nRCD, t.nWR, t.nRAS, t.nRC, t.nRRD,
+                                   t.nWTR, t.nRTP, t.nXP, t.nXSNR, t.nXSRD, t.nCKE, t.banks,
+                                   d.read_latency, d.refresh_interval, d.row_intervals,
+                                   d.old_count, d.page_log2, d.bank_on_top};
+    };
+    EXPECT_EQ(numbers_of(back), numbers_of(c));
+  }
+}
+
 TEST(DdrPresetTest, AGradeOfAnotherKindIsRefused) {
   try {
     Keyed s({"ddr.preset=data_sheet", "ddr.part=mt46h64m16lf", "ddr.grade=25e"});
