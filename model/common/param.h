@@ -186,6 +186,10 @@ class ParamGroup {
 class ParamSet {
  public:
   void add(ParamGroup& group);
+  /// One of a group that has no effect here.
+  void remove(std::string_view key) {
+    std::erase_if(all_, [&](const ParamBase* p) { return p->key() == key; });
+  }
   const std::vector<ParamBase*>& all() const { return all_; }
   ParamBase* find(std::string_view key) const;
   /// The known key nearest to `key` by edit distance, empty if none is near.

@@ -7,6 +7,7 @@
 
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
+#include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_path.h"
@@ -74,8 +75,16 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   ParamSet set;
   params.declare(set);
   Experiment experiment(set);
-  for (const auto& [key, value] : trace.info->params) experiment.preset(key, value, options.trace);
-  for (const auto& s : options.sets) experiment.override_with(s);
+  for (const auto& [key, value] : trace.info->params)
+    if (!ReplayParams::without_effect(key)) experiment.preset(key, value, options.trace);
+  for (const auto& s : options.sets) {
+    const std::string key = s.substr(0, s.find('='));
+    if (ReplayParams::without_effect(key))
+      throw UserError(
+          fmt::format("key '{}' has no effect in a replay, which plays no contents", key));
+    experiment.override_with(s);
+  }
+  apply_ddr_preset(params, trace.info->ddr.frequency, experiment);
   params.check();
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)

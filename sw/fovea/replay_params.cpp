@@ -12,6 +12,7 @@ void ReplayParams::declare(ParamSet& set) {
   set.add(clocks);
   set.add(ddr);
   set.add(registers);
+  set.remove(ddr.retention.key());
 }
 
 mem::DdrConfig ReplayParams::config() const {
@@ -30,6 +31,11 @@ mem::DdrConfig ReplayParams::config() const {
   c.timing.nRTP = value(r.tRTP);
   c.timing.banks = value(r.banks);
   c.timing.mobile = ddr.mobile();
+  c.timing.nXP = value(r.tXP);
+  c.timing.nXSNR = value(r.tXSNR);
+  c.timing.nXSRD = value(r.tXSRD);
+  c.timing.nCKE = value(r.tCKE);
+  c.low_power = static_cast<mem::LowPower>(r.low_power.index());
   c.read_latency = value(r.RL);
   c.refresh_interval = value(r.tREFI);
   c.row_intervals = value(r.row_intervals);
@@ -52,7 +58,8 @@ void ReplayParams::check() const {
   const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
                           const char* range) {
     if (p() < least || p() > most)
-      refuse(p, fmt::format("{} (ddr.part = {})", range, ddr.part()));
+      refuse(p, fmt::format("{} (ddr.part = {}, whose timings ddr.preset=data_sheet takes)", range,
+                            ddr.part()));
   };
   if (ddr.mobile()) {
     within(r.clock, 1'000'000, 200'000'000, "1MHz .. 200MHz, mobile DDR");
@@ -72,7 +79,9 @@ void ReplayParams::check() const {
     refuse(r.CL, fmt::format("more cycles at {}: no part reads so soon", r.clock.text()));
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
   if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())
-    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {})", ddr.banks(), ddr.part()));
+    refuse(r.banks, fmt::format("powers of two up to {} (ddr.part = {}, whose banks "
+                                "ddr.preset=data_sheet takes)",
+                                ddr.banks(), ddr.part()));
   at_least(r.tRAS, r.tRCD(), "ddr.tRCD: a row is open when its columns are read");
   // Each of the three was rounded up to clocks by itself.
   at_least(r.tRC, r.tRAS() + r.tRP() - 1, "ddr.tRAS + ddr.tRP, rounded");
@@ -111,6 +120,12 @@ std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run
   cycles("tWTR", c.timing.nWTR);
   cycles("tRTP", c.timing.nRTP);
   cycles("tREFI", c.refresh_interval);
+  cycles("tXP", c.timing.nXP);
+  cycles("tXSNR", c.timing.nXSNR);
+  cycles("tXSRD", c.timing.nXSRD);
+  cycles("tCKE", c.timing.nCKE);
+  constexpr const char* kSleeps[] = {"off", "self_refresh", "power_down", "clock_stop"};
+  out.emplace_back("ddr.low_power", kSleeps[static_cast<std::size_t>(c.low_power)]);
   out.emplace_back("ddr.row_intervals", std::to_string(c.row_intervals));
   out.emplace_back("ddr.old_count", std::to_string(c.old_count));
   out.emplace_back("ddr.page", fmt::format("{}B", 1u << c.page_log2));

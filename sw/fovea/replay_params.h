@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,14 @@ struct DdrRegisterParams : ParamGroup {
   IntParam tWTR = timing("tWTR", 3, 1, 8, "write to read");
   IntParam tRTP = timing("tRTP", 2, 1, 8, "RD to PRE");
   IntParam tREFI = timing("tREFI", 1895, 0, 65535, "SDRCR.RR, refresh interval; 0: no refresh");
+  EnumParam low_power{*this, "low_power", "off",
+                      {"off", "self_refresh", "power_down", "clock_stop"},
+                      "SDRCR.LPMODEN, SR_PD, MCLKSTOPEN: what an idle controller does with the part",
+                      Origin::kChoice, ""};
+  IntParam tXP = timing("tXP", 3, 1, 8, "end of power-down to a command");
+  IntParam tXSNR = timing("tXSNR", 34, 1, 128, "end of self-refresh to a command");
+  IntParam tXSRD = timing("tXSRD", 200, 1, 256, "end of self-refresh to RD");
+  IntParam tCKE = timing("tCKE", 3, 1, 8, "CKE low, or high, at least");
   IntParam row_intervals{*this, "row_intervals", U::kCount, 8, 1, 16,
                          "SDTIMR2.T_RASMAX + 1, refresh intervals that a row may be open",
                          Origin::kChoice, ""};
@@ -45,6 +54,10 @@ struct DdrRegisterParams : ParamGroup {
                      "PBBPR.PR_OLD_COUNT, transfers after which the oldest command is raised; 255 "
                      "never",
                      Origin::kChoice, ""};
+  EnumParam preset{*this, "preset", "as_recorded", {"as_recorded", "data_sheet"},
+                   "data_sheet: clock, CL, RL, timings, refresh, banks and page that are not set by "
+                   "hand are those of ddr.part in ddr.grade, in clocks of ddr.clock",
+                   Origin::kChoice, "dram.md 2 and 4"};
   IntParam page{*this, "page", U::kBytes, 2048, 512, 4096, "bytes of a row", Origin::kChoice, ""};
   IntParam banks{*this, "banks", U::kCount, 8, 1, 8, "banks that the controller uses",
                  Origin::kChoice, ""};
@@ -66,6 +79,9 @@ struct ReplayParams {
   DdrRegisterParams registers;
 
   void declare(ParamSet& set);
+  /// A key of the controller that a trace may hold, but that moves nothing here: a replay plays no
+  /// contents, so none can be lost.
+  static bool without_effect(std::string_view key) { return key == "ddr.retention"; }
   mem::DdrConfig config() const;
   /// @throws UserError for a set of timings that no part allows
   void check() const;

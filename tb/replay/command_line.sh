@@ -88,6 +88,18 @@ expect part_timing 0 'fovea: guest: SDTIMR T_RFC: 31 clocks programmed' '127.5 n
 grep -q '"kind": "guest", "what": "SDTIMR T_RFC: 31 clocks' "$out/replay/stats.json" || fail 'no remark in stats.json'
 expect part_cl 2 'ddr.CL' 'more cycles at' -- replay "$trace" -s ddr.CL=3cycles
 expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
+expect part_alone 2 'ddr.preset=data_sheet' -- replay "$out/good.txt" -s ddr.part=mt46h32m16lf
+expect preset 0 -- replay "$out/good.txt" -s ddr.part=mt46h32m16lf -s ddr.preset=data_sheet
+grep -q '"ddr.clock": {"value": "166666666Hz", .*"origin": "ddr.preset: mt46h32m16lf, grade 6"' "$out/replay/config.json" ||
+  fail 'config.json: ddr.clock by preset'
+expect preset_recorded 0 -- replay "$trace" -s ddr.preset=data_sheet -s ddr.tRP=7cycles
+grep -q '"ddr.tRP": {"value": "7 cycles", .*"origin": "command line"' "$out/replay/config.json" || fail 'a key by hand does not win'
+grep -q '"ddr.tRRD": {"value": "4 cycles", .*"origin": "ddr.preset: ' "$out/replay/config.json" || fail 'config.json: ddr.tRRD by preset'
+grep -q '"remarks": \[\]' "$out/replay/stats.json" || fail 'a preset of the data sheet has remarks'
+expect no_effect 2 "'ddr.retention' has no effect in a replay" -- replay "$trace" -s ddr.retention=1s
+expect sleep 0 -- replay "$trace" -s ddr.low_power=power_down
+grep -qE '"ddr.power_downs": \{"value": [1-9]' "$out/replay/stats.json" || fail 'a replay does not sleep'
+expect preset_clock 2 'has no CL for it' -- replay "$trace" -s ddr.preset=data_sheet -s ddr.clock=401MHz
 expect unknown_key 2 'ddr.tRPC' 'did you mean' -- replay "$trace" -s ddr.tRPC=3cycles
 expect cpu_key 2 'cpu.ahb_ratio' -- replay "$trace" -s cpu.ahb_ratio=1
 expect params 0 'ddr.tRCD' 'bus.clock' -- "$fovea" params --replay

@@ -7,9 +7,8 @@
 #include <deque>
 #include <map>
 
-#include "model/trace/core/text_trace.h"
-#include "sw/fovea/replay_path.h"
 #include "tb/dram/path.h"
+#include "tb/replay/played.h"
 #include "tb/replay/support.h"
 
 namespace fovea::replay {
@@ -17,34 +16,6 @@ namespace {
 
 using trace::Record;
 using trace::Release;
-
-/// Plays a source and keeps when each record went out.
-struct Played {
-  std::vector<std::vector<Picoseconds>> issued{kMasterCount};
-  std::unique_ptr<app::ReplayParams> params = std::make_unique<app::ReplayParams>();
-  std::unique_ptr<app::ReplayPath> path;
-
-  Played(const trace::TraceInfo& info, trace::RecordSource& source, bool memory_only = false,
-         const std::vector<std::pair<std::string, std::string>>& keys = {}) {
-    ParamSet set;
-    params->declare(set);
-    set.set("ddr.check", "commands");
-    for (const auto& [key, value] : keys) set.set(key, value);
-    params->check();
-    path = std::make_unique<app::ReplayPath>("t", info, source, *params, memory_only);
-    path->on_issue = [this](unsigned stream, Picoseconds at) { issued[stream].push_back(at); };
-    EXPECT_TRUE(path->run_before(kNever));
-    path->finish();
-  }
-  explicit Played(trace::TextTrace& t, bool memory_only = false) : Played(t.info(), t, memory_only) {}
-};
-
-std::string master_lines(unsigned masters, unsigned window) {
-  std::string text = "# dramtrace 1\n";
-  for (unsigned m = 0; m < masters; ++m)
-    text += fmt::format("# master {} window {} m{}\n", m, window, m);
-  return text;
-}
 
 TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
   Rng rng(1);
@@ -153,24 +124,6 @@ TEST(ReplayPathTest, TheCrossbarCostsTime) {
   EXPECT_GT(Played(a).path->duration(), Played(b, true).path->duration());
 }
 
-/// Records of a core with an AHB at half its clock, as given.
-struct Listed : trace::RecordSource {
-  std::vector<std::vector<Record>> records{3};
-  std::vector<std::size_t> at = std::vector<std::size_t>(3);
-  bool next(unsigned stream, Record& r) override {
-    if (at[stream] == records[stream].size()) return false;
-    r = records[stream][at[stream]++];
-    return true;
-  }
-};
-
-Record read_at(Picoseconds at, std::uint32_t address) {
-  Record r;
-  r.bytes = 32;
-  r.address = address;
-  r.at = at;
-  return r;
-}
 Record after(std::uint32_t back, bool first, std::uint64_t gap, std::uint32_t address) {
   Record r = read_at(0, address);
   r.release = Release::kAfter;
@@ -306,13 +259,6 @@ TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
     EXPECT_EQ(rows[2].read_bytes, (std::vector<std::uint64_t>{64, 0}));
     EXPECT_EQ(rows[2].write_bytes, (std::vector<std::uint64_t>{0, 64}));
   }
-}
-
-std::map<std::string, double> figures(const Played& p) {
-  std::map<std::string, double> value;
-  for (const app::StatRow& row : p.path->stats())
-    value[row.name] = std::visit([](auto v) { return static_cast<double>(v); }, row.value);
-  return value;
 }
 
 // Writes are complete before the memory has them: the figures are of the time that it needs.

@@ -27,7 +27,9 @@ using Figures = std::map<std::string, double>;
 struct Change {
   std::uint64_t ddr_hertz = 0;
   unsigned CL = 0;
+  bool sleeps = false;
   std::string text() const {
+    if (sleeps) return "self-refresh";
     return ddr_hertz ? "DDR clock " + std::to_string(ddr_hertz) : "CL " + std::to_string(CL);
   }
 };
@@ -137,6 +139,10 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
         c.timing.CL = c.read_latency = change.CL;
         soc.ddr.controller().configure(c, kernel_time());
       }
+      if (change.sleeps) {
+        c.low_power = mem::LowPower::kSelfRefresh;
+        soc.ddr.controller().configure(c, kernel_time());
+      }
       if (change.ddr_hertz)
         soc.ddr.controller().set_clocks(Frequency(change.ddr_hertz), soc.scr.clk.read(),
                                         kernel_time());
@@ -222,6 +228,7 @@ app::ReplayParams& configure(app::ReplayParams& params, const trace::TraceInfo& 
     set.set("ddr.CL", std::to_string(change.CL) + "cycles");
     set.set("ddr.RL", std::to_string(change.CL) + "cycles");
   }
+  if (change.sleeps) set.set("ddr.low_power", "self_refresh");
   return params;
 }
 
@@ -383,6 +390,16 @@ TEST_F(CopyTest, SidesOfATransferControllerFollowEachOther) {
       EXPECT_GT(lost, 0.03) << "each goes when it went with slower memory";
     }
   }
+}
+
+// Recorded with a memory that goes to sleep whenever it is idle and takes tXSRD to give data again.
+class SleepTest : public CopyTest {};
+TEST_F(SleepTest, ASleepingMemoryIsPlayedAsOne) {
+  const Watched watched;
+  const Change sleeps{0, 0, true};
+  const Figures recorded = run_board({{"firmware.kernel", "plain"}}, watched, sleeps, file());
+  EXPECT_LE(worst(recorded, replay(file(), watched, sleeps), "asleep"), 0.01);
+  EXPECT_GT(worst(recorded, replay(file(), watched, {}), "awake"), 0.3);
 }
 
 }  // namespace

@@ -1,0 +1,202 @@
+#include "sw/fovea/ddr_presets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace fovea::app {
+namespace {
+
+// Typed in from dram.md and nothing else: model/mem/check has its own sheets, and the one is to be
+// held against the other. S1 ... are the sources as dram.md lists them.
+constexpr std::size_t kGrades = 7;
+using ByGrade = std::array<Picoseconds, kGrades>;
+// The first four are DDR2 (JESD79-2 533C, 667D, 800D, 800E), the others mobile DDR.
+constexpr std::array<std::string_view, kGrades> kGradeWords = {"37e", "3", "25e", "25",
+                                                               "5",   "6", "75"};
+constexpr std::size_t kFirstMobile = 4;
+
+struct ShortestPeriod {
+  unsigned CL;
+  ByGrade period;  // 0: not offered
+};
+// DDR2: dram.md 2 [S3]. Mobile: dram.md 4 [S11 S12].
+constexpr ShortestPeriod kPeriods[] = {
+    {2, {0, 0, 0, 0, 12'000, 12'000, 12'000}},
+    {3, {5'000, 5'000, 5'000, 5'000, 5'000, 6'000, 7'500}},
+    {4, {3'750, 3'750, 3'750, 3'750, 0, 0, 0}},
+    {5, {0, 3'000, 2'500, 3'000, 0, 0, 0}},
+    {6, {0, 0, 2'500, 2'500, 0, 0, 0}},
+};
+// JESD79-2, tCK(avg): the DLL's limit. Mobile DDR has no DLL.
+constexpr Picoseconds kLongestPeriod = 8'000;
+
+struct Timing {
+  std::string_view name;
+  ByGrade least;
+  std::string_view assumed;  // grade for which no one number is public
+};
+constexpr Timing kTimings[] = {
+    // [S1], [S12 S13]; by maker in -75
+    {"tRCD", {15'000, 15'000, 12'500, 15'000, 15'000, 18'000, 22'500}, "75"},
+    // [S1], [S12 S13]; by maker in -75
+    {"tRP", {15'000, 15'000, 12'500, 15'000, 15'000, 18'000, 22'500}, "75"},
+    // Micron's [S2 S4], below JEDEC's 45 ns; [S12 S13]; by maker in -75
+    {"tRAS", {40'000, 40'000, 40'000, 40'000, 40'000, 42'000, 45'000}, "75"},
+    // Micron's [S1 S2 S4]; [S12 S13]: tRAS + tRP where nothing else is said
+    {"tRC", {55'000, 55'000, 55'000, 55'000, 55'000, 60'000, 67'500}, "75"},
+    // Pages of 2 KiB [S2]; [S12 S13]
+    {"tRRD", {10'000, 10'000, 10'000, 10'000, 10'000, 12'000, 15'000}, ""},
+    // [S2], [S13]
+    {"tWR", {15'000, 15'000, 15'000, 15'000, 15'000, 15'000, 15'000}, ""},
+    // [S2]; mobile parts give it in clocks, below
+    {"tWTR", {7'500, 7'500, 7'500, 7'500, 0, 0, 0}, ""},
+    // [S2]; mobile parts have none
+    {"tRTP", {7'500, 7'500, 7'500, 7'500, 0, 0, 0}, ""},
+};
+// [S13]; some makers' -6 want 2
+constexpr std::array<unsigned, kGrades> kWriteToReadClocks = {0, 0, 0, 0, 2, 1, 1};
+// Four ACT, parts of eight banks and 2 KiB pages [S2]
+constexpr ByGrade kFourActivates = {50'000, 50'000, 45'000, 45'000, 0, 0, 0};
+
+struct OfPart {
+  std::string_view word;
+  std::size_t grade;  // what `default` means
+  Picoseconds tRFC;
+  bool assumed;
+};
+constexpr OfPart kParts[] = {
+    {"mt47h32m16", 0, 105'000, false},    // 512 Mb [S2 S3 S4]
+    {"mt47h64m16", 1, 127'500, false},    // 1 Gb [S2 S3 S4]
+    {"mt47h128m16", 2, 195'000, false},   // 2 Gb [S2 S3 S4]
+    {"mt46h32m16lf", 5, 72'000, false},   // 512 Mb [S12 S13]
+    {"mt46h64m16lf", 5, 125'000, true},   // 1 Gb: 72 to 140 ns by maker [S12 S13]
+};
+constexpr Picoseconds kRefresh = 7'800'000;    // up to 85 C [S2], [S11]
+constexpr Picoseconds kOpenAtMost = 70'000'000;  // [S2], [S12 S13]
+constexpr unsigned kPageBytes = 2'048;  // DDR2 x16 [S1 S2]; mobile: assumed
+
+using Wide = unsigned __int128;
+std::uint64_t rounded_up(Picoseconds t, Frequency f) {
+  const Wide unit = Wide{kPsPerSecond} * f.den;
+  return static_cast<std::uint64_t>((Wide{t} * f.num + unit - 1) / unit);
+}
+std::uint64_t rounded_down(Picoseconds t, Frequency f) {
+  return static_cast<std::uint64_t>(Wide{t} * f.num / (Wide{kPsPerSecond} * f.den));
+}
+bool no_faster(Frequency f, Picoseconds period) {
+  return Wide{period} * f.num <= Wide{kPsPerSecond} * f.den;
+}
+
+const OfPart& part_of(const mem::DdrParams& ddr) {
+  for (const OfPart& p : kParts)
+    if (p.word == ddr.part()) return p;
+  FOVEA_CHECK(false, "a part of ddr.part without a preset: " + ddr.part());
+}
+
+std::size_t grade_of(const mem::DdrParams& ddr) {
+  if (ddr.grade.is("default")) return part_of(ddr).grade;
+  std::string offered;
+  for (std::size_t g = 0; g < kGrades; ++g) {
+    if ((g >= kFirstMobile) != ddr.mobile()) continue;
+    if (kGradeWords[g] == ddr.grade()) return g;
+    offered += (offered.empty() ? "" : ", ") + std::string(kGradeWords[g]);
+  }
+  throw UserError(fmt::format("key 'ddr.grade': '{}' is not allowed; ddr.part = {} comes in {}",
+                              ddr.grade(), ddr.part(), offered));
+}
+
+Frequency in_force(Frequency recorded, std::uint64_t hertz) {
+  const Frequency wanted(hertz);
+  const bool same =
+      !recorded.stopped() && std::abs(recorded.hertz() - wanted.hertz()) < 1.0;
+  return same ? recorded : wanted;
+}
+
+}  // namespace
+
+void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment& experiment) {
+  const DdrRegisterParams& r = params.registers;
+  if (!r.preset.is("data_sheet")) return;
+  const mem::DdrParams& ddr = params.ddr;
+  const OfPart& part = part_of(ddr);
+  const std::size_t grade = grade_of(ddr);
+  const std::string sheet =
+      fmt::format("ddr.preset: {}, grade {}", part.word, kGradeWords[grade]);
+  const auto of_user = [&](const std::string& key) {
+    return experiment.origin(key).kind == ValueOrigin::Kind::kCommandLine;
+  };
+  const auto set = [&](std::string_view name, const std::string& value, bool assumed = false) {
+    const std::string key = "ddr." + std::string(name);
+    if (!of_user(key)) experiment.preset(key, value, sheet + (assumed ? " (assumed)" : ""));
+  };
+  const auto cycles = [&](std::string_view name, std::uint64_t n, bool assumed = false) {
+    set(name, fmt::format("{}cycles", n), assumed);
+  };
+
+  if (!of_user("ddr.clock")) {
+    Picoseconds shortest = 0;
+    for (const ShortestPeriod& p : kPeriods) {
+      const Picoseconds of_CL = p.period[grade];
+      if (of_CL == 0 || (of_user("ddr.CL") && p.CL != r.CL())) continue;
+      if (shortest == 0 || of_CL < shortest) shortest = of_CL;
+    }
+    const Frequency now = in_force(recorded, r.clock());
+    if (shortest != 0 && !no_faster(now, shortest))
+      set("clock", fmt::format("{}Hz", kPsPerSecond / shortest));
+    else if (!ddr.mobile() && r.clock() < kPsPerSecond / kLongestPeriod)
+      set("clock", fmt::format("{}Hz", kPsPerSecond / kLongestPeriod));
+  }
+  const Frequency clock = in_force(recorded, r.clock());
+
+  const std::uint64_t beyond_CL = r.RL() > r.CL() ? r.RL() - r.CL() : 0;
+  if (!of_user("ddr.CL")) {
+    const auto fits = std::find_if(std::begin(kPeriods), std::end(kPeriods), [&](const auto& p) {
+      return p.period[grade] != 0 && no_faster(clock, p.period[grade]);
+    });
+    if (fits == std::end(kPeriods))
+      throw UserError(fmt::format("key 'ddr.clock': {} is not allowed; ddr.part = {} in grade {} "
+                                  "has no CL for it",
+                                  r.clock.text(), part.word, kGradeWords[grade]));
+    cycles("CL", fits->CL);
+  }
+  // Boards differ in what the PHY adds: it stays.
+  cycles("RL", r.CL() + beyond_CL);
+
+  for (const Timing& t : kTimings) {
+    std::uint64_t n = rounded_up(t.least[grade], clock);
+    // TI's controller has no tFAW: five ACT take four times tRRD.
+    if (t.name == "tRRD" && ddr.banks() == 8)
+      n = std::max(n, (rounded_up(kFourActivates[grade], clock) + 3) / 4);
+    if (t.name == "tWTR") n = std::max<std::uint64_t>(n, kWriteToReadClocks[grade]);
+    // A longer one by hand takes along what contains it.
+    if (t.name == "tRAS") n = std::max(n, r.tRCD());
+    if (t.name == "tRC") n = std::max(n, r.tRAS() + r.tRP() - 1);
+    if (n != 0) cycles(t.name, n, t.assumed == kGradeWords[grade]);
+  }
+  // Sleep. DDR2 [S2 S3]. Mobile [S11 S13], the longest where makers differ; no DLL that must lock.
+  if (ddr.mobile()) {
+    cycles("tXP", std::max<std::uint64_t>(rounded_up(25'000, clock), 1), true);
+    cycles("tCKE", 2, true);
+    cycles("tXSNR", rounded_up(200'000, clock), true);
+    cycles("tXSRD", 1);
+  } else {
+    cycles("tXP", 2);
+    cycles("tCKE", 3);
+    cycles("tXSNR", rounded_up(part.tRFC + 10'000, clock));
+    cycles("tXSRD", 200);
+  }
+  // A slow clock rounds both up to one clock; a refresh opens and closes a row in its time.
+  cycles("tRFC", std::max(rounded_up(part.tRFC, clock), r.tRP() + 1), part.assumed);
+  const std::uint64_t interval = rounded_down(kRefresh, clock);
+  cycles("tREFI", interval);
+  const std::uint64_t open =
+      rounded_down(kOpenAtMost, clock) / std::max<std::uint64_t>(r.tREFI(), 1);
+  set("row_intervals", std::to_string(std::clamp<std::uint64_t>(open, 1, 16)));
+  set("banks", std::to_string(ddr.banks()));
+  set("page", fmt::format("{}B", kPageBytes), ddr.mobile());
+}
+
+}  // namespace fovea::app
