@@ -109,10 +109,12 @@ class Agent : public sc_core::sc_module, private MemInitiatorIf {
         const Picoseconds h = next_event();
         if (std::min({t, b, h}) >= until) return;
         if (std::min(t, b) >= h) break;
-        if (b <= t)
+        if (b <= t) {
           self().background_act();
-        else
+          put_out();  // the decisions that follow are behind what it asked for
+        } else {
           path_->step_before(std::min({until, b, h}));
+        }
       }
     }
     leave();

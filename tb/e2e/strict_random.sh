@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Random settings of memory, crossbar, core and loads: strict and default synchronisation must leave the
-# same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT FIRST_SEED COUNT
+# same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT SEED...
 set -uo pipefail
-fovea=$1 experiment=$2 out=$3 first=$4 count=$5
+fovea=$1 experiment=$2 out=$3
+shift 3
 mkdir -p "$out"
 
 one_of() { local words=("$@"); echo "${words[RANDOM % $#]}"; }
@@ -67,7 +68,7 @@ differ() {  # FOLDER FOLDER
 }
 
 failures=0
-for ((seed = first; seed < first + count; ++seed)); do
+for seed; do
   settings "$seed"
   play strict strict
   a=$?
@@ -88,5 +89,5 @@ if ! differ other default >/dev/null; then
   echo 'another bridge makes no difference'
   failures=$((failures + 1))
 fi
-echo "$count settings, $failures failures"
+echo "$# settings, $failures failures"
 exit $((failures > 0))
