@@ -46,13 +46,17 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   const Picoseconds scr_start = start_near(info.scr, info.start);
   xbar_.set_clock(scr, scr_start);
   ddr_.set_clocks({}, scr, scr_start);
-  ddr_.set_clocks(clock(info.ddr, params.registers.clock), scr, start_near(info.ddr, info.start));
+  const Frequency ddr = clock(info.ddr, params.registers.clock);
+  const bool other = !info.ddr.frequency.stopped() && !(ddr == info.ddr.frequency);
+  ddr_.set_clocks(other ? info.ddr.frequency : ddr, scr, start_near(info.ddr, info.start));
   mem::DdrConfig config = params.config();
   const unsigned interval = std::exchange(config.refresh_interval, 0);
   ddr_.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
   ddr_.configure(config, info.refresh ? info.refresh : info.start);
   ddr_.catch_up(info.start);  // the refreshes before
+  // Another clock than recorded has no phase of its own: it begins with the trace.
+  if (other) ddr_.set_clocks(ddr, scr, info.start);
   ddr_.stats.reset();
   xbar_.timeline.begin(info.start);
   memory_timeline_.begin(info.start);

@@ -50,7 +50,6 @@ void ReferenceController::configure(const ReferenceConfig& config, Picoseconds a
 }
 
 // ---- addresses and banks
-
 unsigned ReferenceController::bank_of(std::uint32_t address) const {
   const ReferenceConfig& c = config();
   if (c.bank_on_top) return static_cast<unsigned>(address / (limits_.size / c.banks));
@@ -87,7 +86,6 @@ bool ReferenceController::all_closed() const {
 }
 
 // ---- what the part allows
-
 /// Clocks that must lie between `before` and a `kind` to this bank.
 unsigned ReferenceController::apart(const Given& before, Kind kind, unsigned bank) const {
   const ReferenceConfig& c = configs_[before.config];
@@ -152,7 +150,6 @@ std::uint64_t ReferenceController::clock_after_last() const {
 }
 
 // ---- the queue
-
 bool ReferenceController::fits(const ReferenceRequest& r) const {
   if (queue_.size() >= limits_.command_fifo) return false;
   // Each 8 bytes of memory that a write touches are a word of the FIFO.
@@ -210,7 +207,6 @@ ReferenceController::Kind ReferenceController::wanted(const Queued& q) const {
 }
 
 // ---- refresh
-
 ReferenceController::Refresh ReferenceController::refresh_level(std::uint64_t edge) const {
   std::uint64_t more = 0;
   if (config().refresh_interval)
@@ -309,7 +305,6 @@ void ReferenceController::idle_at(std::uint64_t clock) {
 void ReferenceController::idle_until(Picoseconds at) {
   if (queue_.empty()) idle_while_empty(ddr_.edge_after(at));
 }
-
 void ReferenceController::idle_while_empty(std::uint64_t end) {
   // Clocks in which nothing can fall due are passed over.
   std::uint64_t clock = clock_after_last();
@@ -320,7 +315,6 @@ void ReferenceController::idle_while_empty(std::uint64_t end) {
 }
 
 // ---- scheduling
-
 Picoseconds ReferenceController::next() const {
   return queue_.empty() ? kNever : ddr_.edge(plan().clock);
 }
