@@ -107,6 +107,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string_view to_string(Origin origin) {
   switch (origin) {
     case Origin::kSourced: return "sourced";
+    case Origin::kFamily: return "family";
     case Origin::kCalibrated: return "calibrated";
     case Origin::kAssumed: return "assumed";
     case Origin::kChoice: break;
@@ -115,20 +116,47 @@ std::string_view to_string(Origin origin) {
 }
 
 ParamBase::ParamBase(ParamGroup& group, std::string name, std::string sentence, Origin origin,
-                     std::string source)
+                     std::string source, Belief belief)
     : key_(group.prefix().empty() ? name : group.prefix() + "." + name),
       sentence_(std::move(sentence)),
       source_(std::move(source)),
+      belief_(std::move(belief)),
       origin_(origin) {
   group.params_.push_back(this);
 }
 
+void ParamBase::check_belief() {
+  const bool needed = origin_ == Origin::kAssumed || origin_ == Origin::kFamily;
+  FOVEA_CHECK(needed != belief_.empty(),
+              key_ + (needed ? ": assumed and family figures need a belief interval"
+                             : ": only assumed and family figures have a belief interval"));
+  if (!needed) return;
+  FOVEA_CHECK(!belief_.reason.empty(), key_ + ": the belief interval has no reason");
+  const std::string own = text();
+  const double rank_of_default = rank();
+  const auto rank_of = [&](const std::string& end) {
+    try {
+      parse(end);
+    } catch (const UserError& e) {
+      FOVEA_CHECK(false, key_ + ": belief interval: " + e.what());
+    }
+    return rank();
+  };
+  const double low = rank_of(belief_.low);
+  const double high = rank_of(belief_.high);
+  parse(own);
+  FOVEA_CHECK(low <= rank_of_default && rank_of_default <= high,
+              key_ + ": the default lies outside its belief interval");
+}
+
 IntParam::IntParam(ParamGroup& group, std::string name, Unit unit, std::uint64_t def,
                    std::uint64_t min, std::uint64_t max, std::string sentence, Origin origin,
-                   std::string source)
-    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source)),
+                   std::string source, Belief belief)
+    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source),
+                std::move(belief)),
       unit_(unit), value_(def), default_(def), min_(min), max_(max) {
   FOVEA_CHECK(min <= def && def <= max, "default of " + key() + " out of its own range");
+  check_belief();
 }
 
 std::string IntParam::format(std::uint64_t v) const {
@@ -185,9 +213,13 @@ void IntParam::parse(std::string_view text) {
 }
 
 RealParam::RealParam(ParamGroup& group, std::string name, std::string unit, double def, double min,
-                     double max, std::string sentence, Origin origin, std::string source)
-    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source)),
-      unit_(std::move(unit)), value_(def), default_(def), min_(min), max_(max) {}
+                     double max, std::string sentence, Origin origin, std::string source,
+                     Belief belief)
+    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source),
+                std::move(belief)),
+      unit_(std::move(unit)), value_(def), default_(def), min_(min), max_(max) {
+  check_belief();
+}
 std::string RealParam::text() const { return real_text(value_) + unit_; }
 std::string RealParam::default_text() const { return real_text(default_) + unit_; }
 std::string RealParam::allowed() const {
@@ -205,7 +237,9 @@ ListParam::ListParam(ParamGroup& group, std::string name, std::vector<double> de
                      std::vector<std::size_t> sizes, std::string sentence, Origin origin,
                      std::string source)
     : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source)),
-      value_(def), default_(std::move(def)), sizes_(std::move(sizes)) {}
+      value_(def), default_(std::move(def)), sizes_(std::move(sizes)) {
+  check_belief();
+}
 std::string ListParam::text() const { return list_text(value_); }
 std::string ListParam::default_text() const { return list_text(default_); }
 std::string ListParam::allowed() const {
@@ -232,9 +266,12 @@ void ListParam::parse(std::string_view text) {
 }
 
 BoolParam::BoolParam(ParamGroup& group, std::string name, bool def, std::string sentence,
-                     Origin origin, std::string source)
-    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source)),
-      value_(def), default_(def) {}
+                     Origin origin, std::string source, Belief belief)
+    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source),
+                std::move(belief)),
+      value_(def), default_(def) {
+  check_belief();
+}
 void BoolParam::parse(std::string_view text) {
   const auto s = trim(text);
   if (s != "true" && s != "false") refuse(text, allowed());
@@ -243,9 +280,12 @@ void BoolParam::parse(std::string_view text) {
 
 EnumParam::EnumParam(ParamGroup& group, std::string name, std::string def,
                      std::vector<std::string> words, std::string sentence, Origin origin,
-                     std::string source)
-    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source)),
-      value_(def), default_(std::move(def)), words_(std::move(words)) {}
+                     std::string source, Belief belief)
+    : ParamBase(group, std::move(name), std::move(sentence), origin, std::move(source),
+                std::move(belief)),
+      value_(def), default_(std::move(def)), words_(std::move(words)) {
+  check_belief();
+}
 std::size_t EnumParam::index() const {
   return static_cast<std::size_t>(std::find(words_.begin(), words_.end(), value_) -
                                   words_.begin());

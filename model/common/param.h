@@ -11,17 +11,27 @@
 
 namespace fovea {
 
-/// Where a number comes from. kSourced: a public document; kCalibrated: fitted; kAssumed: no public
-/// source, see the range; kChoice: the user's free choice, nothing to source.
-enum class Origin { kSourced, kCalibrated, kAssumed, kChoice };
+/// Where a default comes from. kSourced: a public document about this chip. kFamily: a public
+/// document about a sister chip only. kCalibrated: fitted to a measurement. kAssumed: no public
+/// source. kChoice: the user's free choice, nothing to source.
+enum class Origin { kSourced, kFamily, kCalibrated, kAssumed, kChoice };
 std::string_view to_string(Origin origin);
+
+/// Interval in which the chip's true figure is believed to lie, with the reason. Every parameter
+/// whose origin is kFamily or kAssumed has one; no other has. It is narrower than the allowed
+/// values, which are mere limits of input. `low` and `high` are written as the user would write the
+/// values; for a parameter with words they are the two ends of that part of the word list.
+struct Belief {
+  std::string low, high, reason;
+  bool empty() const { return low.empty(); }
+};
 
 class ParamGroup;
 
 class ParamBase {
  public:
   ParamBase(ParamGroup& group, std::string name, std::string sentence, Origin origin,
-            std::string source);
+            std::string source, Belief belief = {});
   virtual ~ParamBase() = default;
   ParamBase(const ParamBase&) = delete;
   ParamBase& operator=(const ParamBase&) = delete;
@@ -30,6 +40,7 @@ class ParamBase {
   const std::string& sentence() const { return sentence_; }
   Origin origin() const { return origin_; }
   const std::string& source() const { return source_; }
+  const Belief& belief() const { return belief_; }
   /// True once parse() was called: the value is the user's, not the default.
   bool user_set() const { return user_set_; }
   /// Sets the value. @throws UserError that says what is allowed (key not included)
@@ -37,16 +48,22 @@ class ParamBase {
     parse(text);
     user_set_ = true;
   }
-  virtual std::string text() const = 0;          ///< value with unit, parseable again
+  virtual std::string text() const = 0;  ///< value with unit, parseable again
   virtual std::string default_text() const = 0;
   virtual std::string unit() const = 0;
-  virtual std::string allowed() const = 0;       ///< range or list of words
+  virtual std::string allowed() const = 0;  ///< range or list of words
 
  protected:
   virtual void parse(std::string_view text) = 0;
+  /// The value's rank: numbers by size, words by their position in the list.
+  virtual double rank() const = 0;
+  /// For the end of each constructor: an interval exists exactly where one is needed, its ends are
+  /// allowed values, and the default lies between them.
+  void check_belief();
 
  private:
   std::string key_, sentence_, source_;
+  Belief belief_;
   Origin origin_;
   bool user_set_ = false;
 };
@@ -56,7 +73,8 @@ class IntParam : public ParamBase {
  public:
   enum class Unit { kCount, kCycles, kBytes, kTime, kHertz };
   IntParam(ParamGroup& group, std::string name, Unit unit, std::uint64_t def, std::uint64_t min,
-           std::uint64_t max, std::string sentence, Origin origin, std::string source);
+           std::uint64_t max, std::string sentence, Origin origin, std::string source,
+           Belief belief = {});
   std::uint64_t operator()() const { return value_; }
   operator std::uint64_t() const { return value_; }
   std::string text() const override { return format(value_); }
@@ -66,6 +84,7 @@ class IntParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override;
+  double rank() const override { return static_cast<double>(value_); }
 
  private:
   std::string format(std::uint64_t v) const;
@@ -77,7 +96,8 @@ class IntParam : public ParamBase {
 class RealParam : public ParamBase {
  public:
   RealParam(ParamGroup& group, std::string name, std::string unit, double def, double min,
-            double max, std::string sentence, Origin origin, std::string source);
+            double max, std::string sentence, Origin origin, std::string source,
+            Belief belief = {});
   double operator()() const { return value_; }
   std::string text() const override;
   std::string default_text() const override;
@@ -86,6 +106,7 @@ class RealParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override;
+  double rank() const override { return value_; }
 
  private:
   std::string unit_;
@@ -106,6 +127,7 @@ class ListParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override;
+  double rank() const override { return 0; }
 
  private:
   std::vector<double> value_, default_;
@@ -115,7 +137,7 @@ class ListParam : public ParamBase {
 class BoolParam : public ParamBase {
  public:
   BoolParam(ParamGroup& group, std::string name, bool def, std::string sentence, Origin origin,
-            std::string source);
+            std::string source, Belief belief = {});
   bool operator()() const { return value_; }
   std::string text() const override { return value_ ? "true" : "false"; }
   std::string default_text() const override { return default_ ? "true" : "false"; }
@@ -124,6 +146,7 @@ class BoolParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override;
+  double rank() const override { return value_; }
 
  private:
   bool value_, default_;
@@ -133,7 +156,7 @@ class BoolParam : public ParamBase {
 class EnumParam : public ParamBase {
  public:
   EnumParam(ParamGroup& group, std::string name, std::string def, std::vector<std::string> words,
-            std::string sentence, Origin origin, std::string source);
+            std::string sentence, Origin origin, std::string source, Belief belief = {});
   const std::string& operator()() const { return value_; }
   bool is(std::string_view word) const { return value_ == word; }
   std::size_t index() const;
@@ -144,6 +167,7 @@ class EnumParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override;
+  double rank() const override { return static_cast<double>(index()); }
 
  private:
   std::string value_, default_;
@@ -162,6 +186,7 @@ class TextParam : public ParamBase {
 
  protected:
   void parse(std::string_view text) override { value_ = text; }
+  double rank() const override { return 0; }
 
  private:
   std::string value_, default_;

@@ -19,7 +19,8 @@ struct EdmaParams : ParamGroup {
                           7,
                           "QUEPRI out of reset, for each queue; 0 highest",
                           Origin::kAssumed,
-                          "no public figure; Linux writes 7, 7, 7, 0 (dm365.md 4)"};
+                          "no public figure; Linux writes 7, 7, 7, 0",
+                          {"0", "7", "0 on some sister chips; firmware that cares writes QUEPRI"}};
   EdmaParams() : ParamGroup("edma") {}
 };
 

@@ -17,7 +17,8 @@ struct AintcParams : ParamGroup {
                     "what latches a source: its rising edge, or its level (a source still high "
                     "latches again after the acknowledge)",
                     Origin::kAssumed,
-                    "the manual's text is not public; Linux serves every source as an edge"};
+                    "the manual's text is not public; Linux serves every source as an edge",
+                    {"edge", "level", "drivers work with either"}};
   AintcParams() : ParamGroup("aintc") {}
 };
 

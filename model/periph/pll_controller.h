@@ -22,7 +22,8 @@ struct PllParams : ParamGroup {
                      10 * kPsPerMs,
                      "from the last change of multiplier, pre-divider or reset to lock",
                      Origin::kAssumed,
-                     "no DM365 figure; start-up only, frame times do not depend"};
+                     "no DM365 figure; OMAP-L138's rule, 2000 N / sqrt(M) clocks, gives 20 to 70 us",
+                     {"20us", "200us", "the rule's least, and twice the default; only start-up"}};
   IntParam go_time{*this,
                    "go_time",
                    IntParam::Unit::kTime,
@@ -31,7 +32,8 @@ struct PllParams : ParamGroup {
                    100 * kPsPerUs,
                    "from GOSET to the new SYSCLK ratios",
                    Origin::kAssumed,
-                   "no DM365 figure; software polls GOSTAT or waits some microseconds"};
+                   "no DM365 figure; software polls GOSTAT or waits some microseconds",
+                   {"100ns", "10us", "a few clocks of 24 MHz to what boot loaders wait"}};
   IntParam reset_type{*this,
                       "reset_type",
                       IntParam::Unit::kCount,

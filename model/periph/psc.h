@@ -45,7 +45,8 @@ struct PscParams : ParamGroup {
                            100 * kPsPerUs,
                            "from PTCMD to the new module states",
                            Origin::kAssumed,
-                           "no figure published; software polls PTSTAT"};
+                           "no figure published; software polls PTSTAT",
+                           {"100ns", "10us", "some clocks of the slowest clock, 24 MHz, to hundreds"}};
   PscParams() : ParamGroup("psc") {}
 };
 

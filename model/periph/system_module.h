@@ -19,7 +19,8 @@ struct SystemParams : ParamGroup {
                     kPsPerMs,
                     "from CLRZ = 1 to READY of the DDR I/O calibration",
                     Origin::kAssumed,
-                    "no figure published; software polls READY once at start-up"};
+                    "no figure published; software polls READY once at start-up",
+                    {"500ns", "100us", "a search over some hundred steps of a clock"}};
   IntParam bootcfg{*this,
                    "bootcfg",
                    IntParam::Unit::kCount,

@@ -7,6 +7,10 @@ namespace fovea::video {
 struct VpssParams : ParamGroup {
   using Unit = IntParam::Unit;
   VpssParams() : ParamGroup("vpss") {}
+  static constexpr const char* kBasePxBelief =
+      "a driver that shifts the picture by four pixels would hardly be noticed on a screen";
+  static constexpr const char* kBasePyBelief =
+      "a driver that leaves out two lines of a field would hardly be noticed on a screen";
 
   IntParam burst{*this,
                  "burst",
@@ -16,7 +20,8 @@ struct VpssParams : ParamGroup {
                  64,
                  "largest memory burst of capture and display, 32 B or 64 B",
                  Origin::kAssumed,
-                 "registers use units of 32 B; no public figure"};
+                 "registers use units of 32 B; no public figure",
+                 {"32B", "64B", "one or two units"}};
   IntParam write_buffer_bursts{*this,
                                "write_buffer_bursts",
                                Unit::kCount,
@@ -25,7 +30,8 @@ struct VpssParams : ParamGroup {
                                32,
                                "bursts of captured data that may wait for memory",
                                Origin::kAssumed,
-                               "no public figure; watch capture.overflows"};
+                               "no public figure; watch capture.overflows",
+                               {"2", "8", "two buffers in turn at the least"}};
   IntParam read_ahead_lines{*this,
                             "read_ahead_lines",
                             Unit::kCount,
@@ -34,7 +40,8 @@ struct VpssParams : ParamGroup {
                             4,
                             "lines fetched before the line on display",
                             Origin::kAssumed,
-                            "no public figure; watch display.underflows"};
+                            "no public figure; watch display.underflows",
+                            {"1", "2", "a line buffer, or two in turn"}};
   IntParam read_outstanding{*this,
                             "read_outstanding",
                             Unit::kCount,
@@ -43,7 +50,8 @@ struct VpssParams : ParamGroup {
                             16,
                             "display reads that may be under way at once",
                             Origin::kAssumed,
-                            "no public figure"};
+                            "no public figure",
+                            {"1", "8", "one read at a time, or half a kilobyte of them"}};
   EnumParam osd_latch{*this,
                       "osd_latch",
                       "field",
@@ -51,7 +59,8 @@ struct VpssParams : ParamGroup {
                       "when a new window address takes effect: at each field start, or only at "
                       "the start of the field with F = 0",
                       Origin::kAssumed,
-                      "the manual was not readable"};
+                      "the manual's text is not public",
+                      {"field", "frame", "drivers write the address in the vertical blanking"}};
   IntParam base_px_625{*this,
                        "base_px_625",
                        Unit::kCount,
@@ -60,7 +69,8 @@ struct VpssParams : ParamGroup {
                        1023,
                        "BASEPX that puts the window's left edge on the first active pixel, 625/50",
                        Origin::kAssumed,
-                       "the value that Linux programs"};
+                       "the value that Linux programs",
+                       {"122", "130", kBasePxBelief}};
   IntParam base_px_525{*this,
                        "base_px_525",
                        Unit::kCount,
@@ -69,7 +79,8 @@ struct VpssParams : ParamGroup {
                        1023,
                        "BASEPX that puts the window's left edge on the first active pixel, 525/60",
                        Origin::kAssumed,
-                       "the value that Linux programs"};
+                       "the value that Linux programs",
+                       {"117", "125", kBasePxBelief}};
   IntParam base_py_625{*this,
                        "base_py_625",
                        Unit::kCount,
@@ -78,7 +89,8 @@ struct VpssParams : ParamGroup {
                        511,
                        "BASEPY that puts the window's top on the first active line, 625/50",
                        Origin::kAssumed,
-                       "the value that Linux programs: line 23 is 22 after the vertical sync"};
+                       "the value that Linux programs: line 23 is 22 after the vertical sync",
+                       {"22", "24", kBasePyBelief}};
   IntParam base_py_525{*this,
                        "base_py_525",
                        Unit::kCount,
@@ -87,7 +99,8 @@ struct VpssParams : ParamGroup {
                        511,
                        "BASEPY that puts the window's top on the first active line, 525/60",
                        Origin::kAssumed,
-                       "the value that Linux programs: line 20 is 16 after the vertical sync"};
+                       "the value that Linux programs: line 20 is 16 after the vertical sync",
+                       {"16", "18", kBasePyBelief}};
 };
 
 struct Tvp5146Params : ParamGroup {
@@ -118,7 +131,8 @@ struct Tvp5146Params : ParamGroup {
                          100,
                          "fields until the decoder locks after power-up or a change of its input",
                          Origin::kAssumed,
-                         "Linux waits 200 ms; no figure in the data manual"};
+                         "Linux waits 200 ms; no figure in the data manual",
+                         {"2", "25", "from the next frame to half a second"}};
   BoolParam output_at_reset{
       *this,           "output_at_reset",
       false,           "data and clock outputs are on before anyone writes register 34",

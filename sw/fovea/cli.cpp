@@ -167,25 +167,29 @@ std::string params_table(const ParamSet& params, const std::string& pattern, boo
   }
   std::sort(rows.begin(), rows.end(),
             [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
-  std::vector<std::array<std::string, 5>> cells = {{"key", "default", "allowed", "tag", "meaning"}};
+  std::vector<std::array<std::string, 6>> cells = {
+      {"key", "default", "allowed", "belief", "tag", "meaning"}};
   for (const auto* p : rows) {
     std::string tag(to_string(p->origin()));
     if (!p->source().empty()) tag += " (" + p->source() + ")";
+    if (!p->belief().empty()) tag += "; belief: " + p->belief().reason;
+    const std::string belief =
+        p->belief().empty() ? "-" : p->belief().low + " .. " + p->belief().high;
     const std::string value = p->default_text().empty() ? "-" : p->default_text();
-    cells.push_back({p->key(), value, p->allowed(), tag, p->sentence()});
+    cells.push_back({p->key(), value, p->allowed(), belief, tag, p->sentence()});
   }
   std::string out;
   if (markdown) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       for (const auto& cell : cells[i]) out += "| " + markdown_cell(cell) + " ";
       out += "|\n";
-      if (i == 0) out += "|---|---|---|---|---|\n";
+      if (i == 0) out += "|---|---|---|---|---|---|\n";
     }
     return out;
   }
   // A few long cells (lists, sources) must not push all others off the screen.
   constexpr std::size_t kMaxWidth = 44;
-  std::array<std::size_t, 5> width{};
+  std::array<std::size_t, 6> width{};
   for (const auto& row : cells)
     for (std::size_t c = 0; c < row.size(); ++c)
       width[c] = std::max(width[c], std::min(kMaxWidth, row[c].size()));

@@ -38,6 +38,12 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
+std::string belief_json(const Belief& belief) {
+  if (belief.empty()) return "null";
+  return fmt::format("{{\"low\": {}, \"high\": {}, \"reason\": {}}}", js(belief.low),
+                     js(belief.high), js(belief.reason));
+}
+
 std::string cell(const std::optional<Picoseconds>& time) { return time ? ns_text(*time) : ""; }
 
 }  // namespace
@@ -86,10 +92,11 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
   for (const auto* p : sorted) {
     out += fmt::format(
         "{}    {}: {{\"value\": {}, \"unit\": {}, \"origin\": {}, \"default\": {}, "
-        "\"allowed\": {}, \"tag\": {}, \"source\": {}, \"description\": {}}}",
+        "\"allowed\": {}, \"tag\": {}, \"source\": {}, \"belief\": {}, \"description\": {}}}",
         separator, js(p->key()), js(p->text()), js(p->unit()),
         js(experiment.origin(p->key()).text()), js(p->default_text()), js(p->allowed()),
-        js(to_string(p->origin())), js(p->source()), js(p->sentence()));
+        js(to_string(p->origin())), js(p->source()), belief_json(p->belief()),
+        js(p->sentence()));
     separator = ",\n";
   }
   return out + "\n  }\n}\n";

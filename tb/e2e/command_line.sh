@@ -76,6 +76,14 @@ expect idle_loop 3 'run.start_limit' 'pc 0x00000000' -- timeout 60 "$fovea" run 
 expect stopped_clock 3 'run.start_limit' 'wrote 4 bytes at 0x01c40938' -- timeout 60 "$fovea" run \
   "$out/small.yaml" -s firmware.elf="$stopped_clock" -s run.start_limit=60ms -o "$out/run"
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
+# Every figure without a source of its own is printed with its belief interval and the reason.
+"$fovea" params --markdown >"$out/params.md"
+without=$(grep -E '\| (assumed|family)\b' "$out/params.md" |
+  grep -cvE '^\| [^|]+ \| [^|]+ \| [^|]+ \| [^|]+ \.\. [^|]+ \| [^|]*; belief: ')
+if [ "$without" != 0 ] || ! grep -q '| assumed (' "$out/params.md" || ! grep -q '| family (' "$out/params.md"; then
+  echo "fovea params: $without assumed or family figures without a belief interval"
+  failures=$((failures + 1))
+fi
 expect params_of_masters 0 'bus.arm_d.request_latency' 'bus.vpbe' 'bus.edma_tc3.width' -- "$fovea" params 'bus.*'
 expect load_priority 2 "load.1.priority" 'QUEPRI' -- run "$out/small.yaml" -s load.1.outstanding=1 \
   -s load.1.port=edma_tc2 -s load.1.priority=0

@@ -60,7 +60,8 @@ class FakeBoard : public app::Simulation {
          "not_modelled"},
         "how it ends | or not",
         Origin::kAssumed,
-        ""};
+        "",
+        {"good", "slow", "a fake"}};
   } params_;
 };
 

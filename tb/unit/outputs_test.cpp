@@ -107,8 +107,8 @@ TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
     Group() : ParamGroup("ddr") {}
     IntParam tRCD{*this,  "tRCD",      IntParam::Unit::kTime, 15'000,       5'000,
                   60'000, "ACT to RD", Origin::kSourced,      "[DDR2] p. 1"};
-    IntParam depth{*this, "depth",   IntParam::Unit::kCount, 4, 1,
-                   16,    "entries", Origin::kAssumed,       ""};
+    IntParam depth{*this, "depth",   IntParam::Unit::kCount, 4,  1,
+                   16,    "entries", Origin::kAssumed,       "", {"3", "8", "as others"}};
   } group;
   ParamSet params;
   params.add(group);
@@ -127,6 +127,10 @@ TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
   EXPECT_EQ(j["params"]["ddr.depth"]["default"], "4");
   EXPECT_EQ(j["params"]["ddr.depth"]["origin"], file.string() + ":1");
   EXPECT_EQ(j["params"]["ddr.depth"]["allowed"], "1 .. 16");
+  EXPECT_EQ(j["params"]["ddr.depth"]["tag"], "assumed");
+  EXPECT_EQ(j["params"]["ddr.depth"]["belief"],
+            json::parse(R"({"low": "3", "high": "8", "reason": "as others"})"));
+  EXPECT_TRUE(j["params"]["ddr.tRCD"]["belief"].is_null());
 }
 
 TEST(FramesCsvTest, UnknownTimesAreEmptyCells) {

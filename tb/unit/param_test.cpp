@@ -14,12 +14,21 @@ struct Params : ParamGroup {
   Params() : ParamGroup("block") {}
   IntParam time{*this,  "time",   IntParam::Unit::kTime, 15'000,    5'000,
                 60'000, "a time", Origin::kSourced,      "[X] p. 1"};
-  IntParam size{*this,   "size",   IntParam::Unit::kBytes, 16 << 10, 1 << 10,
-                1 << 20, "a size", Origin::kAssumed,       ""};
+  IntParam size{*this,
+                "size",
+                IntParam::Unit::kBytes,
+                16 << 10,
+                1 << 10,
+                1 << 20,
+                "a size",
+                Origin::kAssumed,
+                "",
+                {"8KiB", "32KiB", "between its sisters"}};
   IntParam clock{*this,         "clock",   IntParam::Unit::kHertz, 297'000'000, 1,
                  1'000'000'000, "a clock", Origin::kChoice,        ""};
-  IntParam cycles{*this, "cycles", IntParam::Unit::kCycles, 4, 0,
-                  100,   "cycles", Origin::kAssumed,        ""};
+  IntParam cycles{
+      *this,           "cycles",        IntParam::Unit::kCycles,       4, 0, 100, "cycles",
+      Origin::kFamily, "a sister chip", {"4cycles", "4cycles", "same"}};
   IntParam count{*this, "count", IntParam::Unit::kCount, 3, 0, 10, "a count", Origin::kChoice, ""};
   RealParam angle{*this, "angle", "deg", 180, 1, 220, "an angle", Origin::kChoice, ""};
   ListParam list{*this, "list", {1, 2}, {2, 3}, "a list", Origin::kChoice, ""};
@@ -125,6 +134,57 @@ TEST(ParamDeathTest, DefaultOutOfItsRangeIsADefect) {
   ParamGroup group("g");
   EXPECT_EXIT(IntParam(group, "p", IntParam::Unit::kCount, 11, 0, 10, "", Origin::kChoice, ""),
               testing::ExitedWithCode(4), "out of its own range");
+}
+
+/// A parameter of 5 out of 1 .. 10 with the given origin and belief interval.
+void declare(Origin origin, Belief belief) {
+  ParamGroup group("g");
+  IntParam(group, "p", IntParam::Unit::kCount, 5, 1, 10, "", origin, "", std::move(belief));
+}
+
+TEST(BeliefTest, IntervalIsKeptAndLeavesTheValueAlone) {
+  const Params params;
+  EXPECT_EQ(params.size.belief().low, "8KiB");
+  EXPECT_EQ(params.size.belief().high, "32KiB");
+  EXPECT_EQ(params.size.belief().reason, "between its sisters");
+  EXPECT_EQ(params.size(), 16u << 10);
+  EXPECT_FALSE(params.size.user_set());
+  EXPECT_TRUE(params.time.belief().empty());
+}
+
+TEST(BeliefTest, EndsMayTouchTheDefaultAndTheLimits) {
+  declare(Origin::kAssumed, {"5", "5", "known well"});
+  declare(Origin::kFamily, {"1", "10", "anything"});
+  ParamGroup group("g");
+  BoolParam(group, "b", true, "", Origin::kAssumed, "", {"false", "true", "either"});
+  EnumParam(group, "e", "mid", {"low", "mid", "top"}, "", Origin::kAssumed, "",
+            {"mid", "top", "not the least"});
+  RealParam(group, "r", "deg", 1.5, 0, 3, "", Origin::kAssumed, "", {"1.5deg", "2deg", "seen"});
+}
+
+TEST(BeliefDeathTest, AssumedAndFamilyFiguresNeedOneAndNoOtherMayHaveOne) {
+  for (const Origin origin : {Origin::kAssumed, Origin::kFamily})
+    EXPECT_EXIT(declare(origin, {}), testing::ExitedWithCode(4), "g.p.* need a belief interval");
+  for (const Origin origin : {Origin::kSourced, Origin::kCalibrated, Origin::kChoice})
+    EXPECT_EXIT(declare(origin, {"5", "6", "why"}), testing::ExitedWithCode(4),
+                "g.p: only assumed and family");
+}
+
+TEST(BeliefDeathTest, WrongIntervalsAreDefects) {
+  const auto expect = [](Belief belief, const char* text) {
+    EXPECT_EXIT(declare(Origin::kAssumed, belief), testing::ExitedWithCode(4), text);
+  };
+  expect({"4", "6", ""}, "no reason");
+  expect({"6", "7", "why"}, "default lies outside");
+  expect({"3", "4", "why"}, "default lies outside");
+  expect({"6", "4", "why"}, "default lies outside");
+  expect({"0", "6", "why"}, "'0' is not allowed");
+  expect({"4", "11", "why"}, "'11' is not allowed");
+  expect({"4", "", "why"}, "'' is not allowed");
+  ParamGroup group("g");
+  EXPECT_EXIT(EnumParam(group, "e", "low", {"low", "mid", "top"}, "", Origin::kAssumed, "",
+                        {"mid", "top", "why"}),
+              testing::ExitedWithCode(4), "default lies outside");
 }
 
 }  // namespace

@@ -18,22 +18,37 @@ struct MasterPortParams : ParamGroup {
   explicit MasterPortParams(Master m)
       : ParamGroup("bus." + std::string(stat_name(m))),
         width(*this, "width", is_arm(m) ? "32bit" : "64bit", {"16bit", "32bit", "64bit"},
-              "data that crosses the port in a crossbar clock, each way", Origin::kAssumed,
-              width_source(m)),
+              "data that crosses the port in a crossbar clock, each way",
+              is_vpss(m) ? Origin::kFamily : Origin::kAssumed, width_source(m), width_belief(m)),
         request_latency(*this, "request_latency", U::kCycles, is_arm(m) ? 3 : 2, 0, 16,
                         "crossbar clocks (SYSCLK4) through the bridge before arbitration",
-                        Origin::kAssumed, "no public figure; dm365.md 12 #6: 2 to 4 per hop"),
+                        Origin::kAssumed, kLatencySource, latency_belief(m)),
         response_latency(*this, "response_latency", U::kCycles, is_arm(m) ? 3 : 2, 0, 16,
                          "crossbar clocks from the crossbar back to the master's port",
-                         Origin::kAssumed, "no public figure; dm365.md 12 #6: 2 to 4 per hop") {}
+                         Origin::kAssumed, kLatencySource, latency_belief(m)) {}
+  static constexpr const char* kLatencySource = "no public figure for a bridge of this chip";
   static const char* width_source(Master m) {
     if (is_arm(m))
-      return "AHB beats are 32 bits (arm926.md 3); that the bridge gathers none is assumed";
-    if (m == Master::kVpfe || m == Master::kVpbe)
-      return "VPSS buffers to DMA bus on the DM355: 64 bits, dm365.md 6.2";
-    return "no public figure; dm365.md 4: TC buses equal the crossbar's 64 bits";
+      return "the core's AHB beats are 32 bits (ARM DDI 0198); that the bridge gathers none is "
+             "assumed";
+    if (is_vpss(m)) return "TMS320DM355 (SPRS463A): 64 bits from the VPSS buffers to the DMA bus";
+    return "no public figure; the transfer controllers' buses are taken as wide as the crossbar";
+  }
+  static Belief width_belief(Master m) {
+    if (is_arm(m))
+      return {"32bit", "64bit", "a bridge may gather two AHB beats into one of the crossbar"};
+    if (is_vpss(m)) return {"64bit", "64bit", "the video front end changed little since the DM355"};
+    return {"32bit", "64bit", "transfer controllers of sister chips have 32 or 64 bits"};
+  }
+  static Belief latency_belief(Master m) {
+    if (is_arm(m))
+      return {"2 cycles", "6 cycles",
+              "a clock-crossing bridge takes two clocks at least; above six a core at 297 MHz could "
+              "not remap the 25 PAL frames a second that were reported for a DM365"};
+    return {"1 cycles", "4 cycles", "from a register stage to a clock-crossing bridge"};
   }
   static bool is_arm(Master m) { return m == Master::kArmI || m == Master::kArmD; }
+  static bool is_vpss(Master m) { return m == Master::kVpfe || m == Master::kVpbe; }
   /// log2 of the bytes of a beat.
   unsigned beat_log2() const { return 1 + static_cast<unsigned>(width.index()); }
 };

@@ -6,49 +6,63 @@ namespace fovea::mem {
 
 struct DdrParams : ParamGroup {
   using U = IntParam::Unit;
+  static constexpr const char* kSisters =
+      "TMS320DM6446, TMS320C6455, OMAP-L138 (SPRU986B, SPRUEM4A, SPRUH82C): the same controller";
+  static constexpr const char* kSistersAgree = "the guides of three sister chips agree";
+  static constexpr const char* kLevels =
+      "refresh urgency levels of the same controller in sister chips (SPRU986B)";
+  static constexpr const char* kLevelsBelief =
+      "the levels are known of older chips; JESD79-2 lets eight refreshes be postponed";
   EnumParam part{*this, "part", "mt47h64m16", {"mt47h32m16", "mt47h64m16", "mt47h128m16",
                                                 "mt46h32m16lf", "mt46h64m16lf"},
                  "x16 part, 2 KiB page: DDR2 of 64, 128, 256 MiB (4, 8, 8 banks) or mobile DDR of "
                  "64, 128 MiB (4 banks)",
-                 Origin::kChoice, "Micron data sheets, dram.md 1 and 4"};
+                 Origin::kChoice, "Micron data sheets"};
   EnumParam grade{*this, "grade", "default", {"default", "37e", "3", "25e", "25", "5", "6", "75"},
                   "speed grade of the part in remarks against its data sheet; default: 37e, 3, 25e, "
                   "6, 6 for the parts in their order",
-                  Origin::kChoice, "JESD79-2, JESD209, dram.md 2 and 4"};
+                  Origin::kChoice, "JESD79-2, JESD209"};
   EnumParam check{*this, "check", "none", {"none", "commands"},
                   "commands: independent checkers read the SDRAM's command bus; what the part's data "
                   "sheet forbids is a counted remark",
                   Origin::kChoice, ""};
   IntParam command_fifo{*this, "command_fifo", U::kCount, 7, 1, 16,
-                        "entries of the controller's command FIFO", Origin::kSourced,
-                        "SPRU986B, SPRUEM4A, SPRUH82C (same controller)"};
+                        "entries of the controller's command FIFO", Origin::kFamily, kSisters,
+                        {"7", "7", kSistersAgree}};
   IntParam write_fifo{*this, "write_fifo", U::kBytes, 88, 64, 512,
-                      "write data the controller holds: 11 x 64 bit", Origin::kSourced,
-                      "SPRU986B, SPRUEM4A, SPRUH82C"};
+                      "write data the controller holds: 11 x 64 bit", Origin::kFamily, kSisters,
+                      {"88B", "88B", kSistersAgree}};
   IntParam read_fifo{*this, "read_fifo", U::kBytes, 136, 64, 512,
-                     "read data the controller holds: 17 x 64 bit", Origin::kSourced,
-                     "SPRU986B, SPRUEM4A, SPRUH82C"};
+                     "read data the controller holds: 17 x 64 bit", Origin::kFamily, kSisters,
+                     {"136B", "136B", kSistersAgree}};
   IntParam request_latency{*this, "request_latency", U::kCycles, 8, 0, 32,
                            "DDR clocks from the request's arrival to its first DRAM command",
-                           Origin::kAssumed, "no public figure; dm365.md 12 #13 suggests 6 to 10"};
+                           Origin::kAssumed, "no public figure",
+                           {"6 cycles", "10 cycles",
+                            "synchronisation, FIFO and decision take about two clocks each"}};
   IntParam return_latency{*this, "return_latency", U::kCycles, 2, 0, 16,
                           "DDR clocks from the last data beat at the PHY to the crossbar",
-                          Origin::kAssumed, "no public figure; dm365.md 12 #12"};
+                          Origin::kAssumed, "no public figure",
+                          {"1 cycles", "4 cycles",
+                           "DDRPHYCR.RL covers the PHY; a FIFO and a register stage remain"}};
   IntParam clock_restart{*this, "clock_restart", U::kCycles, 1, 0, 64,
                          "DDR clocks from the restart of a stopped memory clock (MCLKSTOPEN) to CKE",
-                         Origin::kAssumed, "no public figure; the clock is stable before CKE rises"};
+                         Origin::kAssumed, "no public figure",
+                         {"1 cycles", "4 cycles",
+                          "JESD209 asks for a stable clock before CKE rises; one clock is the least"}};
   IntParam retention{*this, "retention", U::kTime, 64 * kPsPerMs, 1, 3600 * kPsPerSecond,
                      "self-refresh longer than this loses what partial-array self-refresh leaves out",
-                     Origin::kAssumed, "rows are refreshed every 64 ms (JESD209); cells may last longer"};
+                     Origin::kAssumed, "rows are refreshed every 64 ms (JESD209)",
+                     {"64ms", "10s", "guaranteed at the hottest; cool cells keep data for seconds"}};
   IntParam refresh_need{*this, "refresh.need", U::kCount, 7, 0, 32,
-                        "refresh backlog above which refresh goes before writes", Origin::kAssumed,
-                        "family values, dm365.md 5.4"};
+                        "refresh backlog above which refresh goes before writes", Origin::kFamily,
+                        kLevels, {"3", "8", kLevelsBelief}};
   IntParam refresh_must{*this, "refresh.must", U::kCount, 11, 0, 64,
                         "refresh backlog above which refresh goes before everything",
-                        Origin::kAssumed, "family values, dm365.md 5.4"};
+                        Origin::kFamily, kLevels, {"7", "12", kLevelsBelief}};
   IntParam refresh_gap{*this, "refresh.gap", U::kCount, 7, 1, 64,
                        "intervals without a REF above which four are issued before requests",
-                       Origin::kSourced, "same controller in sibling devices, dm365.md 5.4"};
+                       Origin::kFamily, kSisters, {"7", "7", kSistersAgree}};
   EnumParam scheduler{*this, "scheduler", "ti", {"ti", "fcfs", "frfcfs", "closed_page"},
                       "ti: the chip's; fcfs: strictly by age; frfcfs: open rows, then age, of all; "
                       "closed_page: ti, but a row nobody waits for is closed after its access",
