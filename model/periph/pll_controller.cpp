@@ -1,6 +1,7 @@
 #include "model/periph/pll_controller.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fovea::periph {
 
@@ -31,7 +32,9 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
   ratio_.fill(kEnabledRatio1);
   regs.pllctl.on_write([this](std::uint32_t) { control_written(); });
   for (Reg* r : {&regs.pllm, &regs.prediv, &regs.secctl})
-    r->on_write([this](std::uint32_t) { relock(); });
+    r->on_write([this, r, last = r->get()](std::uint32_t) mutable {
+      if (r->get() != std::exchange(last, r->get())) relock();
+    });
   regs.postdiv.on_write([this](std::uint32_t) { wake_.notify(sc_core::SC_ZERO_TIME); });
   for (unsigned n = 0; n < sysclks; ++n) {
     regs.plldiv[n].on_write([this, n](std::uint32_t) {
@@ -59,6 +62,7 @@ void PllController::control_written() {
   const bool on = !regs.pllctl.pllpwrdn && !regs.pllctl.pllrst;
   if (on != pll_on_) {
     pll_on_ = on;
+    pllm_ = 0;  // a PLL that was in reset has no output before it has locked
     relock();
   }
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && !locked_)
@@ -68,13 +72,16 @@ void PllController::control_written() {
 
 void PllController::relock() {
   locked_ = false;
+  if (regs.pllctl.pllen && !regs.pllctl.pllensrc && pllm_)
+    Diagnostics::instance().guest(regs.name() +
+                                  ": multiplier or pre-divider changed while PLLEN = 1");
   lock_at_ = pll_on_ ? now_ps() + lock_time_ : kNever;
   wake_.notify(sc_core::SC_ZERO_TIME);
 }
 
 Frequency PllController::source() const {
-  if (!regs.pllctl.pllen || regs.pllctl.pllensrc || !locked_) return osc.read();
-  return divided(vco(osc.read(), regs.pllm.get(), regs.prediv.get()), regs.postdiv.get());
+  if (!regs.pllctl.pllen || regs.pllctl.pllensrc || !pllm_) return osc.read();
+  return divided(vco(osc.read(), pllm_, prediv_), regs.postdiv.get());
 }
 
 void PllController::update() {
@@ -82,6 +89,10 @@ void PllController::update() {
   if (now >= lock_at_) {
     lock_at_ = kNever;
     locked_ = !vco(osc.read(), regs.pllm.get(), regs.prediv.get()).stopped();
+    if (locked_) {
+      pllm_ = regs.pllm.get();
+      prediv_ = regs.prediv.get();
+    }
   }
   if (now >= go_at_) {
     go_at_ = kNever;

@@ -86,10 +86,13 @@ struct PllRegs : RegBank {
 
 /// PLLC1 at 0x01C40800 (9 SYSCLKs) or PLLC2 at 0x01C40C00 (5).
 /// SYSCLKn = (bypass: oscillator; else oscillator x 2 PLLM / (PREDIV+1) / (POSTDIV+1)) /
-/// (PLLDIVn+1). The ratios act go_time after GOSET. The PLL locks lock_time after the last write to
-/// PLLM, PREDIV or SECCTL, or the release of PLLRST or PLLPWRDN; PLLEN before the lock stays in
-/// bypass until it comes (assumed) and is remarked. Every SYSCLK changes at the instant of the
-/// effect.
+/// (PLLDIVn+1). The ratios act go_time after GOSET. The PLL locks lock_time after the last change
+/// of PLLM, PREDIV or SECCTL, or the release of PLLRST or PLLPWRDN. Writing the value that is there
+/// changes nothing: Linux' clock framework writes PREDIV back while it runs from the PLL. A PLL
+/// that loses its lock with PLLEN = 1 is not bypassed; it keeps its frequency until it locks again
+/// (assumed; the chip's drifts), and software is warned. PLLEN before the first lock since a reset
+/// stays in bypass until it comes (assumed), with a warning too. Every SYSCLK changes at the
+/// instant of the effect.
 class PllController : public WithRegs<PllRegs>, public BusTarget {
  public:
   SC_HAS_PROCESS(PllController);
@@ -110,6 +113,7 @@ class PllController : public WithRegs<PllRegs>, public BusTarget {
   Picoseconds lock_time_, go_time_;
   std::array<std::uint32_t, kMaxSysclks> ratio_;  // PLLDIVn in effect
   bool locked_ = false, pll_on_ = false;
+  std::uint32_t pllm_ = 0, prediv_ = 0;  // in effect since the last lock; pllm_ 0: none since reset
   Picoseconds lock_at_ = kNever, go_at_ = kNever;
   sc_core::sc_event wake_;
 };

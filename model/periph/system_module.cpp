@@ -7,7 +7,7 @@ SystemRegs::SystemRegs(std::uint32_t bootcfg_pins)
       bootcfg(*this, "BOOTCFG", 0x14, Mode::kRo, "boot configuration pins", bootcfg_pins) {
   for (unsigned n = 0; n < 5; ++n)
     pinmux.emplace_back(*this, "PINMUX" + std::to_string(n), 4 * n, Mode::kRw,
-                        "pin functions; kept");
+                        "pin functions; no pin is disconnected");
   for (unsigned n = 0; n < 8; ++n)
     debounce.emplace_back(*this, "DEBOUNCE" + std::to_string(n), 0x54 + 4 * n, Mode::kRw,
                           "GPIO debounce; kept");
@@ -21,6 +21,7 @@ SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& par
                                             &regs.peri_clk_ctrl, &regs.misc, &regs.edma_evtmux,
                                             &regs.arm_intmux})
     r->on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
+  regs.pinmux[3].on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
   regs.deepsleep.on_write([](std::uint32_t word) {
     if (word >> 31) Diagnostics::instance().not_modelled("deep sleep");
   });
@@ -46,6 +47,10 @@ void SystemModule::update() {
   misc.write(regs.misc.get());
   edma_evtmux.write(regs.edma_evtmux.get());
   arm_intmux.write(regs.arm_intmux.get());
+  const std::uint32_t pinmux3 = regs.pinmux[3].get();
+  uart0_pins.write(pinmux3 >> 19 & 1);
+  uart1_pins.write((pinmux3 >> 15 & 3) == 2);
+  i2c_pins.write((pinmux3 >> 21 & 3) == 2 && (pinmux3 >> 23 & 3) == 2);
 }
 
 }  // namespace fovea::periph

@@ -38,9 +38,10 @@ struct SystemParams : ParamGroup {
 /// that select a block which is not modelled.
 struct SystemRegs : RegBank {
   explicit SystemRegs(std::uint32_t bootcfg_pins);
-  std::deque<Reg> pinmux;
+  std::deque<Reg> pinmux;  ///< PINMUX0 to 4
   Reg bootcfg;
-  Reg arm_intmux{*this, "ARM_INTMUX", 0x18, Mode::kRw, "alternative interrupt sources"};
+  Reg arm_intmux{*this, "ARM_INTMUX", 0x18, Mode::kRw,
+                 "which of two blocks feeds an interrupt (interrupt_mux.h)"};
   Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw, "alternative EDMA events"};
   Reg ddr_slew{*this, "DDR_SLEW", 0x20, Mode::kRw, "DDR pad slew; bit 4 CMOS levels", 0x700};
   Reg uhpi_ctl{*this, "UHPI_CTL", 0x24, Mode::kRw, "host port; kept"};
@@ -50,9 +51,11 @@ struct SystemRegs : RegBank {
   Reg usbphy_ctl{*this, "USBPHY_CTL", 0x34, Mode::kRw, "USB PHY; kept", 0xC7};
   struct Misc : Reg {
     using Reg::Reg;
-    Field arm_waitst{*this, "ARM_WAITST", 0, 1, Mode::kRw, "1: internal RAM without wait state"};
+    Field arm_waitst{*this, "ARM_WAITST", 0,
+                     1,     Mode::kRw,    "internal RAM: 0 one wait state, 1 none"};
     Field efuse{*this, "EFUSE_BIT", 2, 2, Mode::kRo, "0"};
-    Field timer2_wdt{*this, "TIMER2_WDT", 4, 1, Mode::kRw, "TIMER2 is the watchdog; kept"};
+    Field timer2_wdt{*this, "TIMER2_WDT", 4,
+                     1,     Mode::kRw,    "1: TIMER2's reset request resets the chip"};
     Field clkstp{*this, "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass; kept"};
     Field tptc1_bst{*this, "TPTC1_BST", 7, 1, Mode::kRw, "burst of TPTC1: 0 32 bytes, 1 64"};
     Field bootst{*this, "BOOTST", 8, 2, Mode::kRw, "boot status; kept"};
@@ -83,7 +86,7 @@ struct SystemRegs : RegBank {
   Reg peri_clk_ctrl{
       *this,     "PERI_CLK_CTRL", 0x48, Mode::kRw, "29 ARM from PLL2, 27 DDR from PLL2, dividers",
       0x003F0FF8};
-  Reg deepsleep{*this, "DEEPSLEEP", 0x4C, Mode::kRw, "deep sleep; not modelled"};
+  Reg deepsleep{*this, "DEEPSLEEP", 0x4C, Mode::kRw, "deep sleep; not modelled", 0x176B};
   Reg dft_enable{*this, "DFT_ENABLE", 0x50, Mode::kRw, "test; kept"};
   std::deque<Reg> debounce;
   struct Vtpiocr : Reg {
@@ -115,12 +118,16 @@ class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
   OptionalOut<std::uint32_t> vpss_clk_ctrl{"vpss_clk_ctrl"}, peri_clk_ctrl{"peri_clk_ctrl"};
   OptionalOut<std::uint32_t> misc{"misc"}, edma_evtmux{"edma_evtmux"}, arm_intmux{"arm_intmux"};
 
+  /// PINMUX gives these blocks their pins (Linux mach-davinci/dm365.c, MUX_CFG). No other pin is
+  /// looked at, and none is disconnected.
+  OptionalOut<bool> uart0_pins{"uart0_pins"}, uart1_pins{"uart1_pins"}, i2c_pins{"i2c_pins"};
+
   SystemModule(sc_core::sc_module_name name, const SystemParams& params);
 
  private:
   void update();
   Picoseconds vtp_time_;
-  Picoseconds vtp_ready_at_ = 0;
+  Picoseconds vtp_ready_at_ = kNever;
   bool vtp_clrz_ = true;
   sc_core::sc_event written_;
 };

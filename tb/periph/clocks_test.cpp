@@ -270,16 +270,63 @@ TEST_F(PllTest, DisabledDividerStopsItsClock) {
   EXPECT_EQ(s.b1.read(0x150), 0x1EFu);
 }
 
-TEST_F(PllTest, LockComesLockTimeAfterTheLastChangeAndBypassUntilThen) {
+TEST_F(PllTest, LockComesLockTimeAfterTheLastChangeAndTheOldFrequencyStaysUntilThen) {
+  Diagnostics::instance().clear();
   s.b1.write(kPllm, 0x52);
   const Picoseconds change = now();
-  EXPECT_EQ(s.edma.read(), khz(6'000));  // bypass through the same divider
+  EXPECT_EQ(Diagnostics::instance().counts().size(), 1u);  // PLLEN is 1
+  EXPECT_EQ(s.edma.read(), khz(121'500));                  // not bypassed
   run_until(change + s.pll_params.lock_time() - 1);
   EXPECT_EQ(s.bs.read(0x84), 0u);
-  EXPECT_EQ(s.edma.read(), khz(6'000));
+  EXPECT_EQ(s.edma.read(), khz(121'500));
   run_until(change + s.pll_params.lock_time());
   EXPECT_EQ(s.bs.read(0x84), 0x1F000000u);
   EXPECT_EQ(s.edma.read(), khz(123'000));  // 24 x 2 x 82 / 8 / 4
+}
+
+TEST_F(PllTest, WritingTheValueThatIsThereKeepsLockAndClock) {
+  for (const std::uint32_t reg : {kPllm, kPrediv, kSecctl}) {
+    const Picoseconds at = now();
+    s.b1.write(reg, s.b1.read(reg));
+    run_until(at + kPsPerNs);
+    EXPECT_EQ(s.bs.read(0x84), 0x1F000000u) << std::hex << reg;
+    EXPECT_EQ(s.edma.read(), khz(121'500)) << std::hex << reg;
+  }
+}
+
+TEST_F(PllTest, EachChangeOfMultiplierPreDividerOrSecctlLosesTheLock) {
+  for (const std::uint32_t reg : {kPllm, kPrediv, kSecctl}) {
+    s.b1.write(reg, s.b1.read(reg) ^ 2);
+    EXPECT_EQ(s.bs.read(0x84), 0u) << std::hex << reg;
+    EXPECT_EQ(s.b1.read(kPllstat) & 2, 0u);
+    run_until(now() + s.pll_params.lock_time());
+    EXPECT_EQ(s.bs.read(0x84), 0x1F000000u) << std::hex << reg;
+    s.b1.write(reg, s.b1.read(reg) ^ 2);  // back: a change again
+    EXPECT_EQ(s.bs.read(0x84), 0u) << std::hex << reg;
+    run_until(now() + s.pll_params.lock_time());
+  }
+  EXPECT_EQ(s.edma.read(), khz(121'500));
+}
+
+TEST_F(PllTest, APllOutOfResetStaysBypassedUntilItHasLocked) {
+  s.b1.write(kPllctl, s.b1.read(kPllctl) | 8);  // PLLRST with PLLEN = 1
+  EXPECT_EQ(s.edma.read(), khz(6'000));
+  s.b1.write(kPllctl, s.b1.read(kPllctl) & ~8u);
+  const Picoseconds release = now();
+  run_until(release + s.pll_params.lock_time() - 1);
+  EXPECT_EQ(s.edma.read(), khz(6'000));
+  run_until(release + s.pll_params.lock_time());
+  EXPECT_EQ(s.edma.read(), khz(121'500));
+}
+
+TEST_F(PllTest, DchangeShowsRatiosThatDifferFromThoseInEffect) {
+  s.b1.write(plldiv(4), 0x8005);
+  s.b1.write(plldiv(5), 0x0001);
+  EXPECT_EQ(s.b1.read(kDchange), 1u << 3 | 1u << 4);
+  s.b1.write(plldiv(4), 0x8003);  // as in effect
+  EXPECT_EQ(s.b1.read(kDchange), 1u << 4);
+  s.b1.write(plldiv(5), 0x8001);
+  EXPECT_EQ(s.b1.read(kDchange), 0u);
 }
 
 TEST_F(PllTest, PllenBeforeTheLockIsRemarked) {
@@ -339,6 +386,20 @@ TEST(PscTest, TransitionIsSeenOnlyAfterPtcmdAndItsTime) {
   EXPECT_TRUE(s.arm_on.read());
 }
 
+TEST(PscTest, AReservedNextStateChangesNothing) {
+  System& s = sys();
+  const std::uint32_t mdctl = 0xA00 + 4 * kLpscTimer3, mdstat = 0x800 + 4 * kLpscTimer3;
+  const std::uint32_t before = s.bp.read(mdstat);
+  for (const std::uint32_t state : {4u, 0x1Fu}) {
+    s.bp.write(mdctl, state);
+    s.bp.write(0x120, 1);
+    run_until(now() + s.psc_params.transition_time());
+    EXPECT_EQ(s.bp.read(mdstat), before) << state;
+    EXPECT_FALSE(s.timer3_on.read());
+  }
+  s.bp.write(mdctl, 0);
+}
+
 TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndIsRemarkedBefore) {
   System& s = sys();
   Diagnostics::instance().clear();
@@ -355,9 +416,10 @@ TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndIsRemarkedBefore) {
 TEST(SystemModuleTest, RegistersHaveTheirResetValues) {
   System& s = sys();
   const std::pair<std::uint32_t, std::uint32_t> values[] = {
-      {0x00, 0},    {0x20, 0x700}, {0x28, 0x0B83E02F}, {0x2C, 0x00115500},
-      {0x34, 0xC7}, {0x38, 0x13},  {0x3C, 0x00550011}, {0x40, 0x444},
-      {0x78, ~0u},  {0x7C, ~0u},   {0x80, 1}};
+      {0x00, 0},      {0x20, 0x700},      {0x28, 0x0B83E02F}, {0x2C, 0x00115500},
+      {0x34, 0xC7},   {0x38, 0x13},       {0x3C, 0x00550011}, {0x40, 0x444},
+      {0x4C, 0x176B}, {0x74, 0x00182077},  // VTPIOCR: READY is 0 although CLRZ is 1
+      {0x78, ~0u},    {0x7C, ~0u},        {0x80, 1}};
   for (auto [offset, value] : values) EXPECT_EQ(s.bs.read(offset), value) << offset;
 }
 
