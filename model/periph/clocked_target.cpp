@@ -25,6 +25,14 @@ Picoseconds ClockedTarget::time_of(std::uint64_t tick) const {
   return tick == kNever || !clock_.running() ? kNever : clock_.edge(tick);
 }
 
+void ClockedTarget::check_pins(const OptionalIn<bool>& pins, const char* selection) {
+  if (pins_checked_ || pins.size() == 0 || pins->read()) return;
+  pins_checked_ = true;
+  Diagnostics::instance().guest(std::string(basename()) +
+                                " is used, but PINMUX does not give it its pins (" + selection +
+                                "): on the chip nothing would reach them");
+}
+
 void ClockedTarget::take_clock() {
   const Frequency wanted = clocked() ? clk.read() : Frequency{};
   if (wanted == clock_.frequency()) return;

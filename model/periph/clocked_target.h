@@ -30,6 +30,10 @@ class OptionalOut
   }
 };
 
+/// An input that may stay unbound.
+template <class T>
+using OptionalIn = sc_core::sc_port<sc_core::sc_signal_in_if<T>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+
 inline Picoseconds now_ps() { return sc_core::sc_time_stamp().value(); }
 /// (Re)schedules a timed event at the absolute time `at` (kNever: cancels it).
 void notify_at(sc_core::sc_event& event, Picoseconds at);
@@ -42,7 +46,7 @@ class ClockedTarget : public BusTarget {
   SC_HAS_PROCESS(ClockedTarget);
   ClockIn clk{"clk"};
   /// The module's clock gate from the PSC; left unbound the module is always clocked.
-  sc_core::sc_port<sc_core::sc_signal_in_if<bool>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> lpsc{"lpsc"};
+  OptionalIn<bool> lpsc{"lpsc"};
 
  protected:
   ClockedTarget(sc_core::sc_module_name name, RegBank& bank);
@@ -52,6 +56,10 @@ class ClockedTarget : public BusTarget {
   std::uint64_t ticks() const;
   /// When tick n (> ticks()) ends; kNever while the clock stands or when n is kNever.
   Picoseconds time_of(std::uint64_t tick) const;
+  /// Warns once if PINMUX gives a block's pins away: the chip would do nothing visible. Here the
+  /// pins stay connected.
+  void check_pins(const OptionalIn<bool>& pins, const char* selection);
+
   /// Called after the frequency or the gate has changed; pending events must be set again.
   virtual void clock_changed() = 0;
 
@@ -59,6 +67,7 @@ class ClockedTarget : public BusTarget {
   void take_clock();
   Clock clock_;
   std::uint64_t stopped_at_ = 0;
+  bool pins_checked_ = false;
 };
 
 }  // namespace fovea::periph

@@ -57,8 +57,14 @@ std::uint64_t I2cController::bit_ticks() const {
   return (psc + 1) * ((regs.icclkl.get() & 0xFFFF) + (regs.icclkh.get() & 0xFFFF) + 2 * d);
 }
 
+bool I2cController::sending() const {
+  return regs.icmdr.trx &&
+         (state_ == State::kAddress || state_ == State::kSend || state_ == State::kWaitData);
+}
+
 std::uint32_t I2cController::pending_vector() const {
-  const std::uint32_t active = status_ & regs.icimr.get() & 0x3F;
+  std::uint32_t active = status_ & regs.icimr.get() & 0x3F;
+  if (!sending()) active &= ~kXrdy;
   for (unsigned n = 0; n < 6; ++n)
     if (active >> n & 1) return n + 1;
   return 0;
@@ -100,6 +106,7 @@ void I2cController::begin(State state, unsigned bits) {
 }
 
 void I2cController::start() {
+  check_pins(pins, "PINMUX3 bits 22:21 and 24:23 = 2");
   regs.icmdr.stt.set(0);
   remaining_ = regs.iccnt.get() & 0xFFFF;
   if (remaining_ == 0) remaining_ = 65536;

@@ -51,12 +51,17 @@ struct I2cRegs : RegBank {
 /// When the count is done: STP set gives a STOP (SCD), else the bus is held and ARDY is set; STT
 /// then makes a repeated START. A NACK holds the bus until STP or STT is written.
 /// Reading ICIVR clears the flag it reports, except ICRRDY and ICXRDY, which follow the data.
-/// Not modelled: target mode, arbitration, 10-bit addresses, pin functions.
+/// ICSTR shows an empty ICDXR at any time. As an interrupt ICXRDY counts only while a transmission
+/// is under way, from its START to its last byte: Linux i2c-davinci.c enables the interrupt, then
+/// loads the first byte, then writes STT. Not modelled: target mode, arbitration, 10-bit addresses,
+/// pin functions.
 class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(I2cController);
   sc_core::sc_port<I2cTargetIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> targets{"targets"};
   OptionalOut<bool> irq{"irq"};  ///< level: an enabled flag of ICSTR is set
+
+  OptionalIn<bool> pins{"pins"};  ///< PINMUX gives the controller SCL and SDA; unbound: it does
 
   explicit I2cController(sc_core::sc_module_name name);
 
@@ -77,6 +82,7 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   std::uint32_t flags() const { return status_; }
   void set_flag(std::uint32_t bit) { status_ |= bit; }
   void clear_flag(std::uint32_t bit) { status_ &= ~bit; }
+  bool sending() const;  ///< a transmission has begun and its last byte is not out
   std::uint32_t pending_vector() const;
   void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
   void refresh() { wake_.notify(sc_core::SC_ZERO_TIME); }

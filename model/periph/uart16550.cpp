@@ -10,7 +10,8 @@ enum : std::uint8_t { kErbi = 1, kEtbei = 2, kElsi = 4 };
 enum : std::uint32_t { kNone = 1, kTxEmpty = 2, kRxData = 4, kLineStatus = 6, kRxTimeout = 12 };
 }  // namespace
 
-Uart16550::Uart16550(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
+Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
+    : ClockedTarget(name, regs), selection_(selection) {
   // Two registers share offsets 0, 4 and 8, so their true values are kept beside the bank.
   regs.rbr.on_write([this](std::uint32_t word) {
     if (regs.lcr.dlab)
@@ -129,6 +130,7 @@ void Uart16550::start_next(std::uint64_t first_tick) {
   tx_.pop_front();
   if (tx_.empty()) thre_event_ = true;
   shifting_ = true;
+  if (!regs.mcr.loop) check_pins(pins, selection_);
   done_tick_ = first_tick + character_ticks();
 }
 

@@ -55,10 +55,12 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Uart16550);
   OptionalOut<bool> irq{"irq"};
+  OptionalIn<bool> pins{"pins"};  ///< PINMUX gives this UART its transmit pin; unbound: it does
   /// Each transmitted byte with the end of its last stop bit. Set by the board.
   std::function<void(std::uint8_t, Picoseconds)> sink;
 
-  explicit Uart16550(sc_core::sc_module_name name);
+  /// @param selection the PINMUX setting that gives the pin, for the warning
+  explicit Uart16550(sc_core::sc_module_name name, const char* selection = "");
   /// A byte has arrived completely (kernel time). Lost, with OE, when there is no room.
   void receive(std::uint8_t byte);
   std::uint64_t transmitted() const { return transmitted_; }
@@ -78,6 +80,7 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
   void update();
 
+  const char* selection_;
   std::deque<std::uint8_t> tx_, rx_;
   std::uint8_t shift_ = 0, ier_ = 0, fcr_ = 0, last_rx_ = 0;
   bool shifting_ = false, overrun_ = false, thre_event_ = true, rx_timeout_ = false;

@@ -146,6 +146,7 @@ TEST_F(BootTest, ModulesThatTheFirmwareUsesAreOn) {
   for (unsigned module : {13, 18, 19, 26, 27, 47}) EXPECT_EQ(values[0x01C41800 + 4 * module], 3u);
   EXPECT_EQ(values[0x01C40000], 0x00FD0000u) << "video input pins";
   EXPECT_EQ(values[0x01C40004], 0x00145555u) << "video output pins";
+  EXPECT_EQ(values[0x01C4000C], 1u << 19 | 1u << 20 | 2u << 21 | 2u << 23) << "UART0, SCL, SDA";
   EXPECT_EQ(values[0x01C67064], 1u) << "phase pins: boot";
   EXPECT_EQ(values[0x01C67060] & 0xFFFu, 0u) << "phase pins: outputs";
 }

@@ -292,6 +292,103 @@ TEST_F(I2cTest, InterruptDrivenWriteAsLinuxDoes) {
   EXPECT_EQ(s.decoder.log, "SWwwwP");
 }
 
+TEST_F(I2cTest, EmptyDataRegisterInterruptsFromStartToTheLastByteOnly) {
+  bus.write(kImr, kXrdy);
+  EXPECT_FALSE(s.irq.read());
+  EXPECT_EQ(bus.read(kIvr), 0u);
+  EXPECT_EQ(bus.read(kStr) & kXrdy, kXrdy);  // the flag itself is there for who polls
+  bus.write(kCnt, 2);
+  bus.write(kMdr, kIrs | kMst | kTrx);  // no START yet
+  EXPECT_FALSE(s.irq.read());
+  bus.write(kMdr, kIrs | kMst | kTrx | kStt);  // nothing loaded
+  EXPECT_TRUE(s.irq.read());
+  EXPECT_EQ(bus.read(kIvr), 5u);
+  bus.write(kDxr, 0x30);
+  EXPECT_FALSE(s.irq.read());
+  run_until(now() + 12 * kBit * 42'000);  // address, then the byte begins
+  EXPECT_TRUE(s.irq.read());
+  bus.write(kDxr, 0x77);
+  ASSERT_TRUE(poll(kArdy));  // held without STOP, nothing left to send
+  EXPECT_EQ(bus.read(kStr) & kXrdy, kXrdy);
+  EXPECT_FALSE(s.irq.read());
+  EXPECT_EQ(s.decoder.regs[0x30], 0x77);
+  bus.write(kCnt, 1);  // a reader has nothing to send either
+  bus.write(kMdr, kIrs | kMst | kStt | kStp);
+  run_until(now() + 15 * kBit * 42'000);
+  EXPECT_FALSE(s.irq.read());
+  ASSERT_TRUE(poll(kRrdy));
+  bus.read(kDrr);
+  ASSERT_TRUE(poll(kScd));
+  EXPECT_FALSE(s.irq.read());
+}
+
+TEST_F(I2cTest, VectorReadLeavesTheReceivedByteToItsReader) {
+  s.decoder.regs = {7};
+  s.decoder.pointer = 0;
+  bus.write(kImr, kRrdy);
+  bus.write(kCnt, 1);
+  bus.write(kMdr, kIrs | kMst | kStt | kStp);
+  ASSERT_TRUE(poll(kRrdy));
+  EXPECT_EQ(bus.read(kIvr), 4u);
+  EXPECT_EQ(bus.read(kStr) & kRrdy, kRrdy);
+  EXPECT_TRUE(s.irq.read());
+  EXPECT_EQ(bus.read(kDrr), 7u);
+  EXPECT_EQ(bus.read(kStr) & kRrdy, 0u);
+  EXPECT_FALSE(s.irq.read());
+}
+
+TEST_F(I2cTest, ACountOfZeroIs65536Bytes) {
+  bus.write(kMdr, 0);
+  bus.write(kPsc, 0);
+  bus.write(kClkl, 0);
+  bus.write(kClkh, 0);  // a bit is 14 clocks, a byte 126: 5.25 us
+  bus.write(kMdr, kIrs);
+  bus.write(kCnt, 0);
+  bus.write(kMdr, kIrs | kMst | kStt | kStp);
+  std::uint32_t bytes = 0;
+  for (int idle = 0; idle < 20;) {
+    run_until(now() + 5 * kPsPerUs);
+    const std::uint32_t status = bus.read(kStr);
+    if (status & kRrdy) {
+      bus.read(kDrr);
+      ++bytes;
+      idle = 0;
+    } else {
+      ++idle;
+    }
+    if (status & kScd) break;
+  }
+  EXPECT_EQ(bytes, 65536u);
+}
+
+TEST_F(I2cTest, NackmodEndsACountedReadWithTheNextByte) {
+  s.decoder.regs = {1, 2, 3, 4, 5};
+  s.decoder.pointer = 0;
+  bus.write(kCnt, 5);
+  bus.write(kMdr, kIrs | kMst | kStt | kStp);
+  ASSERT_TRUE(poll(kRrdy));
+  bus.write(kMdr, bus.read(kMdr) | 0x8000);
+  EXPECT_EQ(bus.read(kDrr), 1u);
+  ASSERT_TRUE(poll(kRrdy));
+  EXPECT_EQ(bus.read(kDrr), 2u);
+  ASSERT_TRUE(poll(kScd));
+  EXPECT_EQ(s.decoder.log, "SRrrP");
+  EXPECT_EQ(bus.read(kStr) & 0x2000, 0x2000u);  // NACKSNT
+}
+
+TEST_F(I2cTest, ARepeatingTransmitterStopsOnlyWhenNothingIsLoaded) {
+  bus.write(kDxr, 0x50);
+  bus.write(kMdr, kIrs | kMst | kTrx | kRm | kStt | kStp);
+  for (std::uint32_t byte : {0x61u, 0x62u}) {
+    ASSERT_TRUE(poll(kXrdy));
+    bus.write(kDxr, byte);
+  }
+  ASSERT_TRUE(poll(kScd));
+  EXPECT_EQ(s.decoder.log, "SWwwwP");
+  EXPECT_EQ(s.decoder.regs[0x50], 0x61);
+  EXPECT_EQ(s.decoder.regs[0x51], 0x62);
+}
+
 TEST_F(I2cTest, ResetInMidTransferFreesTheBus) {
   write_bytes({0x10}, 0);
   ASSERT_TRUE(poll(kArdy));

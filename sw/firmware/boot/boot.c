@@ -154,10 +154,10 @@ void boot_init(void) {
   psc_transition(LPSC_I2C, PSC_ENABLE);
   psc_transition(LPSC_VPSSMSTR, PSC_ENABLE);
 
-  /* Pin functions as the public loader sets them: video in, video out, I2C. */
+  /* Pin functions as the public loader sets them: video in, video out, UART0 and I2C. */
   mmio_write32(SYS_PINMUX(0), 0x00FD0000u);
   mmio_write32(SYS_PINMUX(1), 0x00145555u);
-  mmio_write32(SYS_PINMUX(3), 0x00180000u);
+  mmio_write32(SYS_PINMUX(3), 0x01580000u);
 
   phase_pins_init();
   phase_mark(PHASE_BOOT, 0);
