@@ -31,6 +31,7 @@ Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
   regs.wdtcr.on_write([this](std::uint32_t word) { watchdog_key(word); });
   auto pin = [this](std::uint32_t) {
     pin_reset_ = (regs.gpint_gpen.get() & 0x20000) && (regs.gpdat_gpdir.get() & 0x20002) == 0x20002;
+    if (pin_reset_) reset_cause_ = "the watchdog timer's pin was driven high, as boot loaders do";
     reschedule();
   };
   regs.gpint_gpen.on_write(pin);
@@ -132,6 +133,7 @@ void Timer64::matched(unsigned half) {
   regs.cap34.set(static_cast<std::uint32_t>(count(1)));
   if (mode_ == kWatchdog) {
     watchdog_ = Watchdog::kExpired;
+    reset_cause_ = "the watchdog expired";
     regs.wdtcr.wdflag.set(1);
   }
 }
@@ -169,7 +171,10 @@ void Timer64::watchdog_key(std::uint32_t word) {
     case Watchdog::kExpired:
       break;
   }
-  if (watchdog_ == Watchdog::kExpired) regs.wdtcr.wdflag.set(1);
+  if (watchdog_ == Watchdog::kExpired && !regs.wdtcr.wdflag) {
+    regs.wdtcr.wdflag.set(1);
+    reset_cause_ = "a wrong key was written to the active watchdog, as Linux does to restart";
+  }
   reconfigure();
 }
 

@@ -65,11 +65,13 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Timer64);
   OptionalOut<bool> tint12{"tint12"}, tint34{"tint34"};
-  /// Resets the board: watchdog expired, or the timer pin was driven high by software as the
-  /// boot loaders do to reset the chip (GPINT_GPEN = 0x20000, GPDAT_GPDIR = 0x20002).
+  /// Asks for a reset of the chip: the watchdog has expired, or software drives the timer's pin
+  /// high as the boot loaders do to reset the chip (GPINT_GPEN = 0x20000, GPDAT_GPDIR = 0x20002).
   OptionalOut<bool> expired{"expired"};
 
   explicit Timer64(sc_core::sc_module_name name);
+  /// Why `expired` is high, for people.
+  const char* reset_cause() const { return reset_cause_; }
 
  private:
   enum TimerMode : std::uint32_t { k64 = 0, kUnchained = 1, kWatchdog = 2, kChained = 3 };
@@ -99,6 +101,7 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
   std::uint32_t mode_ = k64;
   Watchdog watchdog_ = Watchdog::kIdle;
   bool pin_reset_ = false;
+  const char* reset_cause_ = "";
   std::uint32_t shadow34_ = 0;  // upper half, taken when the lower is read
   bool shadow_valid_ = false;
   sc_core::sc_event wake_;

@@ -63,6 +63,17 @@ TEST_F(AintcTest, IdmodeHoldsADisabledInterruptUntilItsAcknowledge) {
   EXPECT_FALSE(core.irq());
 }
 
+TEST_F(AintcTest, AnAcknowledgeEndsTheHoldOfIdmodeForLaterEdgesToo) {
+  write(0x20, 4);
+  enable(5);
+  pulse(5);
+  write(0x18, 0);
+  write(0x08, 1u << 5);
+  pulse(5);  // disabled now, so this one only latches
+  EXPECT_FALSE(core.irq());
+  EXPECT_EQ(read(0x08), ~(1u << 5));
+}
+
 TEST_F(AintcTest, WritingOneAcknowledgesOnlyThatSource) {
   write(0x18, 0x30);
   pulse(4);

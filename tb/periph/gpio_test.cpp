@@ -31,7 +31,8 @@ struct System {
   ClockSignal clk{"clk", Frequency(121'500'000)};
   Gpio gpio{"gpio"};
   sc_core::sc_signal<bool> irq0{"irq0"}, irq5{"irq5"};
-  test::Bus bus{"bus"};
+  Gpio fresh{"fresh"};  // with a pin that is high from the start
+  test::Bus bus{"bus"}, fresh_bus{"fresh_bus"};
   test::Probe probe0{"probe0"}, probe5{"probe5"};
   std::vector<std::tuple<unsigned, std::uint32_t, Picoseconds>> outputs;
   System() {
@@ -45,6 +46,9 @@ struct System {
       outputs.emplace_back(bank, out, t);
     };
     gpio.set_pin(97, true);  // a DIP switch, set before the run starts
+    fresh.clk(clk);
+    fresh_bus.socket.bind(fresh.reg_socket);
+    fresh.set_pin(5, true);
   }
 };
 
@@ -131,6 +135,13 @@ TEST_F(GpioTest, FallingEdgeAndDisableRegistersWork) {
   s.gpio.set_pin(0, false);
   run_until(now() + 100'000);
   EXPECT_EQ(s.probe0.rises, 1u);
+}
+
+TEST_F(GpioTest, ALevelFromBeforeTheStartIsNoEdgeWhenAnotherPinChanges) {
+  s.fresh_bus.write(reg(0, kSetRis), 1u << 5 | 1u << 6);
+  s.gpio.set_pin(6, false);
+  s.fresh.set_pin(6, true);
+  EXPECT_EQ(s.fresh_bus.read(reg(0, kIntstat)), 1u << 6);
 }
 
 TEST_F(GpioTest, BintenGatesTheLineButNotTheStatus) {

@@ -63,6 +63,9 @@ enum : std::uint32_t {
   kTgcr = 0x24,
   kWdtcr = 0x28,
   kRel12 = 0x34,
+  kRel34 = 0x38,
+  kCap12 = 0x3C,
+  kCap34 = 0x40,
   kStat = 0x44
 };
 
@@ -208,6 +211,122 @@ TEST_F(TimerTest, ReloadModeTakesTheNextPeriodAfterTheMatch) {
   EXPECT_EQ(s.probe12.last_rise, edge(k + 11 + 20));  // 0 at k + 11
 }
 
+TEST_F(TimerTest, ReloadOfASixtyFourBitTimerTakesBothHalves) {
+  bus.write(kPrd12, 10);
+  bus.write(kRel12, 20);
+  bus.write(kRel34, 7);
+  bus.write(kTgcr, 0x3);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 3u << 6);
+  run_until(edge(k + 10));
+  EXPECT_EQ(bus.read(kPrd34), 0u);  // comes with the count of 0
+  run_until(edge(k + 11));
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 10));
+  EXPECT_EQ(bus.read(kPrd12), 20u);
+  EXPECT_EQ(bus.read(kPrd34), 7u);
+  bus.write(kRel34, 0);
+}
+
+TEST_F(TimerTest, AWriteOfEitherHalfDropsTheLatchedUpperHalf) {
+  for (const bool upper : {false, true}) {
+    bus.write(kTcr, 0);
+    bus.write(kTim12, 0xFFFFFFF0);
+    bus.write(kTim34, 2);
+    bus.write(kPrd12, 0);
+    bus.write(kPrd34, 100);
+    bus.write(kTgcr, 0x3);
+    const std::uint64_t k = edges();
+    bus.write(kTcr, 1u << 6);
+    run_until(edge(k + 8));
+    EXPECT_EQ(bus.read(kTim12), 0xFFFFFFF8u);  // latches 2
+    run_until(edge(k + 20));
+    bus.write(upper ? kTim34 : kTim12, upper ? 9 : 0x100);
+    EXPECT_EQ(bus.read(kTim34), upper ? 9u : 3u);
+  }
+}
+
+TEST_F(TimerTest, AMatchCapturesBothCounters) {
+  bus.write(kPrd34, 0xFFFF);
+  bus.write(kTgcr, 0x7);
+  bus.write(kTcr, 2u << 22);
+  const std::uint64_t k34 = edges();
+  run_until(edge(k34 + 30));
+  bus.write(kPrd12, 12);
+  const std::uint64_t k12 = edges();
+  bus.write(kTcr, 2u << 22 | 1u << 6);
+  run_until(edge(k12 + 50));
+  EXPECT_EQ(bus.read(kCap12), 12u);
+  EXPECT_EQ(bus.read(kCap34), k12 + 12 - k34);
+}
+
+TEST_F(TimerTest, ATimerThatStartsAtItsPeriodMatchesAWholePeriodLater) {
+  bus.write(kTim12, 10);
+  bus.write(kPrd12, 10);
+  bus.write(kTgcr, 0x5);
+  const std::uint64_t k = edges();
+  bus.write(kTcr, 2u << 6);
+  run_until(edge(k + 11) - 1);
+  EXPECT_EQ(s.probe12.rises, 0u);
+  run_until(edge(k + 11));
+  EXPECT_EQ(s.probe12.rises, 1u);
+  EXPECT_EQ(s.probe12.last_rise, edge(k + 11));
+}
+
+TEST_F(TimerTest, AnEndedOneShotStaysSoWhateverPeriodIsWritten) {
+  bus.write(kPrd12, 20);
+  bus.write(kTgcr, 0x5);
+  bus.write(kTcr, 1u << 6);
+  run_until(now() + 2'000'000);
+  EXPECT_EQ(s.probe12.rises, 1u);
+  bus.write(kPrd12, 60);
+  run_until(now() + 4'000'000);
+  EXPECT_EQ(bus.read(kTim12), 20u);
+  EXPECT_EQ(s.probe12.rises, 1u);
+  bus.write(kTim12, 30);
+  run_until(now() + 4'000'000);
+  EXPECT_EQ(bus.read(kTim12), 30u);
+  EXPECT_EQ(s.probe12.rises, 1u);
+}
+
+struct ChainedTimerTest : TimerTest {
+  /// PRD34 9, PRD12 100; 23 ticks: TIM12 2, TIM34 3.
+  std::uint64_t start() {
+    bus.write(kPrd34, 9);
+    bus.write(kPrd12, 100);
+    bus.write(kTgcr, 0xF);
+    const std::uint64_t k = edges();
+    bus.write(kTcr, 2u << 6);
+    run_until(edge(k + 23));
+    EXPECT_EQ(bus.read(kTim12), 2u);
+    EXPECT_EQ(bus.read(kTim34), 3u);
+    return k + 23;
+  }
+};
+
+TEST_F(ChainedTimerTest, AWriteOfTim34MovesThePrescaler) {
+  const std::uint64_t k = start();
+  bus.write(kTim34, 8);  // two ticks before the next count
+  run_until(edge(k + 1));
+  EXPECT_EQ(bus.read(kTim12), 2u);
+  EXPECT_EQ(bus.read(kTim34), 9u);
+  run_until(edge(k + 2));
+  EXPECT_EQ(bus.read(kTim12), 3u);
+  EXPECT_EQ(bus.read(kTim34), 0u);
+}
+
+TEST_F(ChainedTimerTest, Tim34KeepsItsPlaceWhileStopped) {
+  const std::uint64_t k = start();
+  bus.write(kTcr, 0);
+  run_until(edge(k + 50));
+  EXPECT_EQ(bus.read(kTim12), 2u);
+  EXPECT_EQ(bus.read(kTim34), 3u);
+  bus.write(kTcr, 2u << 6);
+  run_until(edge(k + 56));
+  EXPECT_EQ(bus.read(kTim12), 2u);
+  run_until(edge(k + 57));
+  EXPECT_EQ(bus.read(kTim12), 3u);
+}
+
 TEST_F(TimerTest, GatedClockStopsTheCountAndClosesTheRegisters) {
   bus.write(kPrd12, 0xFFFF);
   bus.write(kTgcr, 0x5);
@@ -313,6 +432,8 @@ TEST_F(TimerTest, WrongKeyExpiresAnActiveWatchdogAtOnce) {
   EXPECT_FALSE(s.bitten.read());
   s.wdt_bus.write(kWdtcr, 0xDA7E'4000);
   EXPECT_TRUE(s.bitten.read());
+  EXPECT_STREQ(s.watchdog.reset_cause(),
+               "a wrong key was written to the active watchdog, as Linux does to restart");
 }
 
 TEST_F(TimerTest, TimerPinAsBootLoadersUseItResetsTheBoard) {
@@ -320,6 +441,8 @@ TEST_F(TimerTest, TimerPinAsBootLoadersUseItResetsTheBoard) {
   EXPECT_FALSE(s.pin_reset.read());
   s.pin_bus.write(0x0C, 0x00020002);
   EXPECT_TRUE(s.pin_reset.read());
+  EXPECT_STREQ(s.pin_timer.reset_cause(),
+               "the watchdog timer's pin was driven high, as boot loaders do");
 }
 
 // Last: an expired watchdog stays so.
@@ -344,6 +467,7 @@ TEST_F(TimerTest, ZWatchdogIsServedAndThenExpiresAtItsPeriod) {
   run_until(base + 41'750'000);
   EXPECT_TRUE(s.expired.read());
   EXPECT_EQ(bus.read(kWdtcr) & 0x8000, 0x8000u);
+  EXPECT_STREQ(s.timer.reset_cause(), "the watchdog expired");
 }
 
 }  // namespace

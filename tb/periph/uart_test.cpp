@@ -100,6 +100,45 @@ TEST_F(UartTest, FifoBytesFollowWithoutGapAndInOrder) {
   }
 }
 
+TEST_F(UartTest, AByteTooManyTakesTheLastPlaceOfTheTransmitFifo) {
+  bus.write(kIirFcr, 1);
+  for (std::uint32_t n = 0; n < 18; ++n) bus.write(kData, n);  // one in the shift register, 16, one
+  run_until(now() + edge(30 * 2080));
+  ASSERT_EQ(s.sent.size(), 17u);
+  for (unsigned n = 0; n < 16; ++n) EXPECT_EQ(s.sent[n].first, n);
+  EXPECT_EQ(s.sent[16].first, 17u);
+}
+
+TEST_F(UartTest, BytesLeftAfterAReadTimeOutAgain) {
+  bus.write(kIirFcr, 0x81);  // FIFOs, interrupt from 8 bytes on
+  bus.write(kIer, 1);
+  for (unsigned n = 0; n < 3; ++n) s.uart.receive(static_cast<std::uint8_t>(n));
+  run_until(now() + edge(5 * 2080));
+  EXPECT_EQ(bus.read(kIirFcr) & 0xF, 12u);
+  EXPECT_EQ(bus.read(kData), 0u);
+  EXPECT_EQ(bus.read(kIirFcr) & 0xF, 1u);
+  const std::uint64_t k = next_edge() - 1;
+  run_until(edge(k + 4 * 2080) - 1);
+  EXPECT_FALSE(s.irq.read());
+  run_until(edge(k + 4 * 2080));
+  EXPECT_TRUE(s.irq.read());
+  EXPECT_EQ(bus.read(kIirFcr) & 0xF, 12u);
+  EXPECT_EQ(bus.read(kData), 1u);
+  EXPECT_EQ(bus.read(kData), 2u);
+  run_until(now() + edge(5 * 2080));
+  EXPECT_EQ(bus.read(kIirFcr) & 0xF, 1u);  // empty: no time-out
+}
+
+TEST_F(UartTest, AResetTransmitterDropsTheByteItIsSending) {
+  bus.write(kData, 'X');
+  run_until(now() + edge(1000));
+  bus.write(kPwremu, 0xA001);  // receiver only
+  EXPECT_EQ(bus.read(kLsr) & 0x40, 0x40u);
+  bus.write(kPwremu, 0xE001);
+  run_until(now() + edge(3 * 2080));
+  EXPECT_TRUE(s.sent.empty());
+}
+
 struct Format {
   std::uint32_t lcr, mdr, divisor;
   std::uint64_t ticks;
