@@ -3,11 +3,22 @@
 #include <algorithm>
 
 namespace fovea::board {
+namespace {
 
-Board::Board(sc_core::sc_module_name name, const BoardParams& params,
-             video::PictureSource& source, std::uint32_t entry, bool strict)
+constexpr const char* kChipSelect1 = "aemif_ce1";
+
+/// What lies on the asynchronous memory interface.
+std::vector<bus::ConfigBus::BlockSpec> external_devices(const DevicesParams& devices) {
+  if (!devices.cpld()) return {};
+  return {{kChipSelect1, 0x0400'0000, EvmCpld::kBytes, bus::ConfigBus::Speed::kSlow}};
+}
+
+}  // namespace
+
+Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::PictureSource& source,
+             std::uint32_t entry, bool strict)
     : sc_module(name),
-      dm365("dm365", params.soc, entry, strict),
+      dm365("dm365", params.soc, entry, strict, external_devices(params.devices)),
       decoder("tvp5146", params.decoder, source),
       params_(params),
       wanted_(params.run.frames()) {
@@ -17,7 +28,12 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   decoder.video.bind(dm365.isif.video);
   dm365.i2c.targets.bind(decoder.i2c);
   set_switches();
+  if (params.devices.cpld()) {
+    cpld = std::make_unique<EvmCpld>("cpld", params.devices);
+    dm365.config.to(kChipSelect1).bind(cpld->reg_socket);
+  }
 
+  dm365.on_reset = [this](const std::string& cause) { reset_asked(cause); };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
     uart_.push_back(static_cast<char>(byte));
   };
@@ -29,6 +45,13 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   };
   dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
   sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
+}
+
+void Board::reset_asked(const std::string& cause) {
+  if (chip_reset_) return;
+  chip_reset_ = ChipReset{cause, kernel_time(), dm365.arm.core().current_pc()};
+  if (on_chip_reset) on_chip_reset(*chip_reset_);
+  sc_core::sc_pause();
 }
 
 void Board::set_switches() {

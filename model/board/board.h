@@ -4,12 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <systemc>
 #include <vector>
 
 #include "model/board/board_params.h"
+#include "model/board/evm_cpld.h"
 #include "model/board/frame_log.h"
 #include "model/soc/dm365.h"
 #include "model/video/display_sink.h"
@@ -35,6 +37,13 @@ struct FrameStats {
   std::uint64_t latencies = 0, remaps = 0;
 };
 
+/// A request of the chip to be reset.
+struct ChipReset {
+  std::string cause;  ///< for people
+  Picoseconds at = 0;
+  std::uint32_t pc = 0;  ///< of the core at that instant
+};
+
 class Board : public sc_core::sc_module {
  public:
   /// @param entry first instruction; stands in for the ROM boot loader
@@ -52,6 +61,12 @@ class Board : public sc_core::sc_module {
   /// happened).
   std::function<void()> on_window_open, on_window_close;
 
+  /// The chip's first request to be reset. The simulation pauses at its instant, for a board that
+  /// resets itself is not modelled: whoever runs it ends the run there.
+  const std::optional<ChipReset>& chip_reset() const { return chip_reset_; }
+  /// Called at that instant, before the pause.
+  std::function<void(const ChipReset&)> on_chip_reset;
+
   bool window_open() const { return window_start_.has_value() && !window_end_; }
   std::optional<Picoseconds> window_start() const { return window_start_; }
   std::optional<Picoseconds> window_end() const { return window_end_; }
@@ -66,8 +81,10 @@ class Board : public sc_core::sc_module {
   soc::Dm365 dm365;
   video::Tvp5146 decoder;
   video::DisplaySink sink{"sink"};
+  std::unique_ptr<EvmCpld> cpld;  ///< with board.cpld
 
  private:
+  void reset_asked(const std::string& cause);
   void set_switches();
   void latched(const video::Osd::Latch& latch);
   void frame_shown(const video::DisplayFrame& frame);
@@ -79,6 +96,7 @@ class Board : public sc_core::sc_module {
   std::uint64_t wanted_;
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
+  std::optional<ChipReset> chip_reset_;
   std::optional<Picoseconds> window_start_, window_end_;
   Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
   std::size_t first_record_ = 0;

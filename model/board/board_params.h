@@ -105,8 +105,31 @@ struct LensParams : ParamGroup {
   LensParams() : ParamGroup("lens") {}
 };
 
+/// Devices that a board may have beside those of the camera.
+struct DevicesParams : ParamGroup {
+  BoolParam cpld{*this,
+                 "cpld",
+                 false,
+                 "the CPLD of TI's DM365 EVM at 0x04000000 (AEMIF CE1), which Linux for that board "
+                 "reads first",
+                 Origin::kChoice,
+                 ""};
+  IntParam cpld_switch{
+      *this,
+      "cpld_switch",
+      IntParam::Unit::kCount,
+      0x20,
+      0,
+      255,
+      "what the CPLD's SWITCH register reads; Linux takes bit 5 = 0 as NAND present",
+      Origin::kChoice,
+      "NAND is not modelled"};
+  DevicesParams() : ParamGroup("board") {}
+};
+
 struct BoardParams {
   RunParams run;
+  DevicesParams devices;
   ClockParams clocks;
   VideoParams video;
   FirmwareParams firmware;
@@ -116,6 +139,7 @@ struct BoardParams {
   soc::Dm365Params soc;
   void declare(ParamSet& set) {
     set.add(run);
+    set.add(devices);
     set.add(clocks);
     set.add(video);
     set.add(firmware);

@@ -75,21 +75,31 @@ void ConfigBus::access(MemRequest& r) {
   accessing_ = r.master;
   // Bursts to registers do not exist on this bus.
   if (!b || r.bytes > 4) {
-    ++stats.errors;
-    char text[64];
-    std::snprintf(text, sizeof text, "bus error at 0x%08x", r.address);
-    Diagnostics::instance().guest(text);
     r.error = true;
+    bus_error(r.address);
   } else {
     tlm::tlm_generic_payload gp;
     fill(gp, r, b->base);
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
     const_cast<Block*>(b)->initiator->b_transport(gp, delay);
     r.error = gp.is_response_error();
+    if (gp.get_response_status() == tlm::TLM_ADDRESS_ERROR_RESPONSE) bus_error(r.address);
   }
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
   socket->nb_transport_bw(r, phase, delay);
+}
+
+/// Documented blocks are named once each, whichever of their addresses is touched.
+[[gnu::noinline]] void ConfigBus::bus_error(std::uint32_t address) {
+  ++stats.errors;
+  if (const std::string what = describe ? describe(address) : ""; !what.empty()) {
+    Diagnostics::instance().not_modelled("bus error: " + what);
+    return;
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "bus error at 0x%08x", address);
+  Diagnostics::instance().guest(text);
 }
 
 unsigned ConfigBus::transport_dbg(MemRequest& r) {

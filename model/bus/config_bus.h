@@ -1,5 +1,6 @@
 // The configuration bus: register accesses at their exact time.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -65,6 +66,9 @@ class ConfigBus : public sc_core::sc_module, public MemTargetIf {
 
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
   unsigned transport_dbg(MemRequest&) override;
+  /// What the chip has at an address where nothing answers here, such as "MMCSD0 at 0x01d11000 is
+  /// not modelled"; empty: nothing known. Unset on a bus that is not the chip's.
+  std::function<std::string(std::uint32_t address)> describe;
   /// Whose access is, or was last, at its register.
   Master accessing() const { return accessing_; }
 
@@ -72,6 +76,7 @@ class ConfigBus : public sc_core::sc_module, public MemTargetIf {
   struct Block;
   const Block* find(std::uint64_t address) const;
   void access(MemRequest& r);
+  void bus_error(std::uint32_t address);
   static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base);
 
   const ConfigBusParams& params_;

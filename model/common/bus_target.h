@@ -31,6 +31,10 @@ class BusTarget : public sc_core::sc_module {
   }
   /// False while the block's clock is gated: reads give 0 and writes are lost, both counted.
   virtual bool clocked() const { return true; }
+  /// True: an offset without a register reads 0 and loses writes, as in the chip's peripherals.
+  /// False: it is a bus error, for a block of which so little is modelled that software must
+  /// notice.
+  virtual bool holes_answer() const { return true; }
 
  private:
   void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
@@ -56,6 +60,10 @@ class BusTarget : public sc_core::sc_module {
     } else {
       a = bank_.read(offset, bytes, word);
       std::memcpy(gp.get_data_ptr(), &word, bytes <= 4 ? bytes : 4);
+    }
+    if (a == Access::kNoRegister && !holes_answer()) {
+      gp.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+      return;
     }
     if (a == Access::kNoRegister) {
       // The chip's peripherals answer holes with 0; only the configuration bus reports errors.

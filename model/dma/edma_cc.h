@@ -56,6 +56,8 @@ class EdmaCc : public BusTarget {
 
  protected:
   bool clocked() const override { return lpsc.read(); }
+  /// Zeros would tell a driver that there are two channels (CCCFG).
+  bool holes_answer() const override { return false; }
 
  private:
   void update();

@@ -24,7 +24,7 @@ struct AintcParams : ParamGroup {
 
 /// AINTC at 0x01C48000. A source that rises at t is pending from t on; the pins change in the same
 /// instant, which the core sees after t. Rules: core/aintc_core.h.
-/// Not modelled: the source multiplexer ARM_INTMUX (the wiring decides which block feeds an input).
+/// Which block feeds an input is decided in front of it (interrupt_mux.h).
 class Aintc : public WithRegs<AintcCore>, public BusTarget {
  public:
   SC_HAS_PROCESS(Aintc);

@@ -23,6 +23,7 @@ enum Lpsc : unsigned {
   kLpscTimer3 = 5,
   kLpscDdr = 13,
   kLpscAemif = 14,
+  kLpscTimer4 = 17,
   kLpscI2c = 18,
   kLpscUart0 = 19,
   kLpscUart1 = 20,

@@ -2,35 +2,10 @@
 
 #include <algorithm>
 
+#include "model/soc/memory_map.h"
+
 namespace fovea::soc {
 namespace {
-
-using bus::ConfigBus;
-constexpr auto kFast = ConfigBus::Speed::kFast;
-constexpr auto kSlow = ConfigBus::Speed::kSlow;
-
-/// Register blocks (dm365.md 2.1). Slow: blocks on the 24 MHz AUXCLK.
-const std::vector<ConfigBus::BlockSpec> kRegisterMap = {
-    {"ddr", 0x2000'0000, 0x8000, kFast},
-    {"edma", 0x01C0'0000, 0x1'0000, kFast},
-    {"uart0", 0x01C2'0000, 0x400, kSlow},
-    {"uart1", 0x01D0'6000, 0x400, kFast},
-    {"timer0", 0x01C2'1400, 0x400, kSlow},
-    {"timer1", 0x01C2'1800, 0x400, kSlow},
-    {"timer2", 0x01C2'0800, 0x400, kSlow},
-    {"timer3", 0x01C2'3800, 0x400, kSlow},
-    {"i2c", 0x01C2'1000, 0x400, kSlow},
-    {"system", 0x01C4'0000, 0x800, kFast},
-    {"pll1", 0x01C4'0800, 0x400, kFast},
-    {"pll2", 0x01C4'0C00, 0x400, kFast},
-    {"psc", 0x01C4'1000, 0x1000, kFast},
-    {"aintc", 0x01C4'8000, 0x400, kFast},
-    {"gpio", 0x01C6'7000, 0x800, kFast},
-    {"vpss", 0x01C7'0000, 0x400, kFast},
-    {"isif", 0x01C7'1000, 0x200, kFast},
-    {"osd", 0x01C7'1C00, 0x100, kFast},
-    {"venc", 0x01C7'1E00, 0x200, kFast},
-};
 
 bus::AddressMap address_map(const mem::DdrParams& ddr, std::size_t internal_bytes) {
   bus::AddressMap map;
@@ -45,7 +20,7 @@ cpu::RegionMap regions(const bus::AddressMap& map, std::size_t internal_bytes) {
   out.add("itcm", 0, internal_bytes);
   out.add("dtcm", 0x1'0000, internal_bytes);
   out.add("sdram", map.ddr_base, map.ddr_size);
-  for (const auto& block : kRegisterMap) out.add("registers", block.base, block.size);
+  for (const auto& block : register_blocks()) out.add("registers", block.base, block.size);
   return out;
 }
 
@@ -66,13 +41,23 @@ void Dm365Params::declare(ParamSet& set) {
   set.add(vpss);
 }
 
+namespace {
+
+std::vector<bus::ConfigBus::BlockSpec> with(std::vector<bus::ConfigBus::BlockSpec> blocks,
+                                            const std::vector<bus::ConfigBus::BlockSpec>& more) {
+  blocks.insert(blocks.end(), more.begin(), more.end());
+  return blocks;
+}
+
+}  // namespace
+
 Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry,
-             bool strict)
+             bool strict, const std::vector<bus::ConfigBus::BlockSpec>& external)
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), quiet),
       scr("scr", params.crossbar, address_map(params.ddr, internal_ram.size()), strict),
-      config("config", params.config_bus, quiet, kRegisterMap),
+      config("config", params.config_bus, quiet, with(register_blocks(), external)),
       ddr("ddr", params.ddr),
       edma("edma", params.edma),
       pll1("pll1", "PLLC1", 9, params.pll),
@@ -101,6 +86,12 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
   for (auto& level : tc_priority_) sensitive << level;
+  SC_METHOD(set_wait_states);
+  sensitive << misc_;
+  dont_initialize();
+  SC_METHOD(watch_reset);
+  sensitive << reset_asked_ << misc_;
+  dont_initialize();
 }
 
 void Dm365::wire_clocks() {
@@ -122,6 +113,14 @@ void Dm365::wire_clocks() {
   system.peri_clk_ctrl(peri_clk_ctrl_);
   system.vpss_clk_ctrl(vpss_clk_ctrl_);
   system.mstpri0(mstpri0_);
+  system.misc(misc_);
+  system.arm_intmux(arm_intmux_);
+  system.uart0_pins(uart0_pins_);
+  system.uart1_pins(uart1_pins_);
+  system.i2c_pins(i2c_pins_);
+  uart0.pins(uart0_pins_);
+  uart1.pins(uart1_pins_);
+  i2c.pins(i2c_pins_);
   pll1.locked(pll1_locked_);
   pll2.locked(pll2_locked_);
   system.pll1_locked(pll1_locked_);
@@ -158,8 +157,9 @@ void Dm365::wire_clocks() {
   gpio.lpsc(lpsc_[periph::kLpscGpio]);
   timers[0]->lpsc(lpsc_[periph::kLpscTimer0]);
   timers[1]->lpsc(lpsc_[periph::kLpscTimer1]);
-  timers[2]->lpsc(lpsc_[periph::kLpscTimer2]);
+  // timers[2], the watchdog, has no gate: public code never disables LPSC 29 (Linux psc-dm365.c).
   timers[3]->lpsc(lpsc_[periph::kLpscTimer3]);
+  timers[4]->lpsc(lpsc_[periph::kLpscTimer4]);
   for (auto* p : {&vpss.psc_enabled, &isif.psc_enabled, &osd.psc_enabled, &venc.psc_enabled})
     (*p)(lpsc_[periph::kLpscVpss]);
 }
@@ -189,6 +189,7 @@ void Dm365::wire_memory() {
 
 void Dm365::wire_registers() {
   scr.config_socket.bind(config.socket);
+  config.describe = not_modelled_at;
   config.to("ddr").bind(ddr.reg_socket);
   config.to("edma").bind(edma.reg_socket);
   config.to("uart0").bind(uart0.reg_socket);
@@ -216,15 +217,56 @@ void Dm365::wire_interrupts() {
   arm.fiq(arm_fiq_);
   tap.irq(arm_irq_);
   tap.fiq(arm_fiq_);
-  for (unsigned i = 0; i < video::VpssTop::kOutputs; ++i) vpss.vpssint[i](irq_[i]);
-  timers[0]->tint12(irq_[32]);
+  interrupt_mux.arm_intmux(arm_intmux_);
+  for (std::size_t i = 0; i < periph::kInterruptChoices.size(); ++i)
+    interrupt_mux.out[i](irq_[periph::kInterruptChoices[i].interrupt]);
+  // A block reaches its input directly, or as one of the two sources of a multiplexer.
+  const auto first = [this](unsigned n) -> auto& {
+    return interrupt_mux.first[periph::InterruptMux::choice_of(n)];
+  };
+  const auto second = [this](unsigned n) -> auto& {
+    return interrupt_mux.second[periph::InterruptMux::choice_of(n)];
+  };
+  for (unsigned i = 0; i < video::VpssTop::kOutputs; ++i) {
+    const bool shared = i == 0 || i == 7 || i == 8;
+    vpss.vpssint[i](shared ? vpssint_[i] : irq_[i]);
+    if (shared) first(i)(vpssint_[i]);
+  }
+  timers[0]->tint12(irq_[32]);  // TINT0
   timers[0]->tint34(irq_[33]);
   timers[1]->tint12(irq_[34]);
   timers[1]->tint34(irq_[35]);
+  timers[2]->tint12(tint_[4]);
+  second(13)(tint_[4]);
+  timers[2]->tint34(irq_[14]);
+  timers[3]->tint12(irq_[15]);
+  timers[3]->tint34(irq_[22]);
+  timers[4]->tint12(tint_[8]);
+  second(38)(tint_[8]);
+  timers[4]->tint34(tint_[9]);
+  second(28)(tint_[9]);
+  timers[2]->expired(reset_asked_);
   i2c.irq(irq_[39]);
   uart0.irq(irq_[40]);
   uart1.irq(irq_[41]);
   for (unsigned i = 0; i < 8; ++i) gpio.irq[i](irq_[44 + i]);
+  for (unsigned i = 8; i < periph::kGpioDirectIrqs; ++i) {
+    gpio.irq[i](gpio_irq_[i]);
+    first(44 + i)(gpio_irq_[i]);
+  }
+}
+
+/// MISC.ARM_WAITST: 1 no wait state, 0 one.
+void Dm365::set_wait_states() {
+  const bool one = (misc_.read() & 1u) == 0;
+  arm.core().set_tcm_wait_states(static_cast<unsigned>(params_.cpu.tcm_wait_states()) + one);
+}
+
+/// TIMER2's reset request leaves the timer only while MISC.TIMER2_WDT says that it is the watchdog.
+void Dm365::watch_reset() {
+  constexpr std::uint32_t kTimer2Wdt = 1u << 4;
+  if (reset_asked_.read() && (misc_.read() & kTimer2Wdt) && on_reset)
+    on_reset(timers[2]->reset_cause());
 }
 
 void Dm365::wire_video() {

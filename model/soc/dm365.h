@@ -1,7 +1,9 @@
 // The TMS320DM365: wiring only. The constructor reads like the block diagram.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
+#include <string>
 #include <systemc>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "model/periph/clock_tree.h"
 #include "model/periph/gpio.h"
 #include "model/periph/i2c_controller.h"
+#include "model/periph/interrupt_mux.h"
 #include "model/periph/pll_controller.h"
 #include "model/periph/psc.h"
 #include "model/periph/system_module.h"
@@ -51,7 +54,10 @@ struct Dm365Params {
 class Dm365 : public sc_core::sc_module {
  public:
   /// @param entry where the core starts: the ROM boot loader's work is done by whoever loads it
-  Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict);
+  /// @param external the board's devices on the asynchronous memory interface, each to be bound to
+  ///   config.to(its name)
+  Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict,
+        const std::vector<bus::ConfigBus::BlockSpec>& external = {});
 
   ClockIn osc{"osc"};                                  ///< 24 MHz oscillator
   sc_core::sc_port<video::DisplayLineIf> display{"display"};
@@ -71,8 +77,10 @@ class Dm365 : public sc_core::sc_module {
   periph::Psc psc;
   periph::SystemModule system;
   periph::Aintc aintc;
-  std::array<std::unique_ptr<periph::Timer64>, 4> timers;
-  periph::Uart16550 uart0{"uart0"}, uart1{"uart1"};
+  periph::InterruptMux interrupt_mux{"interrupt_mux"};
+  /// TIMER0 to TIMER4; TIMER2 is the watchdog.
+  std::array<std::unique_ptr<periph::Timer64>, 5> timers;
+  periph::Uart16550 uart0{"uart0", "PINMUX3 bit 19 = 1"}, uart1{"uart1", "PINMUX3 bits 16:15 = 2"};
   periph::Gpio gpio{"gpio"};
   periph::I2cController i2c{"i2c"};
   video::VpssTop vpss{"vpss"};
@@ -81,6 +89,10 @@ class Dm365 : public sc_core::sc_module {
   video::Venc venc;
   std::vector<std::unique_ptr<bus::LoadGenerator>> loads;
   trace::BusTap tap{"tap"};
+
+  /// The chip asks to be reset, with the cause. Nothing here resets itself yet: whoever sets this
+  /// ends the simulation at this instant.
+  std::function<void(const std::string& cause)> on_reset;
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
   /// chip.
@@ -91,6 +103,8 @@ class Dm365 : public sc_core::sc_module {
 
  private:
   void route_priorities();
+  void set_wait_states();
+  void watch_reset();
   void wire_clocks();
   void wire_registers();
   void wire_memory();
@@ -104,11 +118,15 @@ class Dm365 : public sc_core::sc_module {
   Signals<bool> lpsc_{"lpsc", periph::kLpscCount};
   Signals<bool> irq_{"irq", 64};
   Signals<bool> vdint_{"vdint", 3};
+  // By source number; those that share an input of the interrupt controller.
+  Signals<bool> vpssint_{"vpssint", video::VpssTop::kOutputs}, tint_{"tint", 10},
+      gpio_irq_{"gpio_irq", periph::kGpioDirectIrqs};
   Signals<std::uint32_t> priority_{"priority", kMasterCount};
   Signals<std::uint32_t> tc_priority_{"tc_priority", kTransferControllers};
-  sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_;
+  sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_, reset_asked_;
+  sc_core::sc_signal<bool> uart0_pins_, uart1_pins_, i2c_pins_;
   sc_core::sc_signal<bool> isif_gate_, vpbe_gate_, venc_gate_;
-  sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_;
+  sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_;
   const Dm365Params& params_;
 };
 

@@ -266,6 +266,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       if (gdb) gdb->failed(guest);
       break;
     }
+    if (board_->chip_reset()) {
+      guest = failure_text("chip reset: " + board_->chip_reset()->cause, elf);
+      if (gdb) gdb->failed(guest);
+      break;
+    }
     if (closed_ && arm.core().mark_done()) break;
     if (failure || request.stop.load() || (gdb && gdb->killed())) {
       result.complete = false;

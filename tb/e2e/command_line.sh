@@ -75,6 +75,8 @@ expect idle_loop 3 'run.start_limit' 'pc 0x00000000' -- timeout 60 "$fovea" run 
   -s firmware.elf="$idle_loop" -s run.start_limit=60ms -o "$out/run"
 expect stopped_clock 3 'run.start_limit' 'wrote 4 bytes at 0x01c40938' -- timeout 60 "$fovea" run \
   "$out/small.yaml" -s firmware.elf="$stopped_clock" -s run.start_limit=60ms -o "$out/run"
+expect chip_reset 3 'guest failed: chip reset: a wrong key .* at pc 0x[0-9a-f]{8} \(restart_as_linux' \
+  's after power-up' -- run "$out/small.yaml" -s firmware.elf="$(dirname "$idle_loop")/foreign_sequences.elf"
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
 # Every figure without a source of its own is printed with its belief interval and the reason.
 "$fovea" params --markdown >"$out/params.md"

@@ -62,7 +62,8 @@ void Rig::advance(Picoseconds duration) { slices_.run(duration); }
 
 void Rig::run(Picoseconds limit) {
   if (!board_) build();
-  while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
+  while (!board_->window_end() && board_->dm365.arm.failure().empty() && !board_->chip_reset() &&
+         kernel_time() < limit)
     advance(kPsPerMs);
 }
 

@@ -80,6 +80,11 @@ class Core : public Background {
   /// Of its last instruction boundary; may lie ahead of everybody else's time.
   Picoseconds boundary_time() const { return time(cycle_); }
   std::vector<AccessRecord> last_accesses() const;
+  /// Core clocks that an access to internal RAM takes beyond its first, from now on.
+  void set_tcm_wait_states(unsigned clocks) {
+    tcm_wait_ = clocks;
+    flush_memos();
+  }
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
   /// The DMA port of internal RAM, for the kernel's side (model/cpu/tcm_dma.h): a burst arrives at

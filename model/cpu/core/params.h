@@ -45,8 +45,9 @@ struct CpuParams : ParamGroup {
                                  {"1 cycles", "128 cycles",
                                   "from all lines at once to one clock for each set of the I-cache"}};
   IntParam tcm_wait_states{*this, "tcm.wait_states", U::kCycles, 0, 0, 3,
-                           "extra core clocks of an access to internal RAM", Origin::kSourced,
-                           "MISC.ARM_WAITST is 1 (none) out of reset"};
+                           "extra core clocks of an access to internal RAM, beside the one that the "
+                           "program asks for with MISC.ARM_WAITST = 0",
+                           Origin::kSourced, "MISC.ARM_WAITST: 1, its reset value, is none"};
   IntParam tcm_dma_word_clocks{*this, "tcm.dma_word_clocks", U::kCycles, 2, 1, 8,
                                "core clocks for which a word of a DMA holds its bank of internal RAM",
                                Origin::kAssumed, "no public figure; an AHB clock",

@@ -1,0 +1,188 @@
+// The documented address map, and what an access to a part of it that is not modelled says.
+#include "model/soc/memory_map.h"
+
+#include <map>
+#include <optional>
+
+#include "model/common/check.h"
+#include "model/periph/clocked_target.h"
+#include "tb/periph/bench.h"
+
+namespace fovea::soc {
+namespace {
+
+/// Bases of blocks that are not modelled, typed in apart from the table: Linux mach-davinci/dm365.c
+/// and devices.c, U-Boot asm/arch-davinci/hardware.h.
+const std::map<std::uint32_t, std::string> kAbsent = {
+    {0x01C1'0000, "EDMA3 transfer controller 0"},
+    {0x01C1'0C00, "EDMA3 transfer controller 3"},
+    {0x01C2'0C00, "RTO"},
+    {0x01C2'2000, "PWM0"},
+    {0x01C2'2C00, "PWM3"},
+    {0x01C2'3000, "SPI4"},
+    {0x01C2'3C00, "ADC"},
+    {0x01C6'4000, "USB"},
+    {0x01C6'6000, "SPI0"},
+    {0x01C6'6800, "SPI1"},
+    {0x01C6'7800, "SPI2"},
+    {0x01C6'8000, "SPI3"},
+    {0x01C6'9000, "RTC"},
+    {0x01C6'9400, "key scan"},
+    {0x01C6'9800, "UHPI"},
+    {0x01CA'0000, "MJCP"},
+    {0x01D0'0000, "MMCSD1"},
+    {0x01D0'2000, "McBSP"},
+    {0x01D0'7000, "EMAC"},
+    {0x01D0'A000, "EMAC control"},
+    {0x01D0'B000, "MDIO"},
+    {0x01D0'C000, "voice codec"},
+    {0x01D1'0000, "AEMIF"},
+    {0x01D1'1000, "MMCSD0"},
+    {0x01D2'0000, "memory stick"},
+    {0x01E0'0000, "HDVICP"},
+    {0x0000'8000, "ROM"},
+    {0x0200'0000, "chip select 0"},
+    {0x0400'0000, "chip select 1"},
+};
+
+TEST(MemoryMapTest, IsSortedWithoutOverlapAndWordAligned) {
+  std::uint64_t end = 0;
+  for (const MapEntry& e : memory_map()) {
+    EXPECT_GE(e.base, end) << e.title;
+    EXPECT_GT(e.size, 0u) << e.title;
+    EXPECT_EQ(e.base % 4 + e.size % 4, 0u) << e.title;
+    EXPECT_FALSE(e.title.empty());
+    end = std::uint64_t{e.base} + e.size;
+  }
+  EXPECT_LE(end, 0x8000'0000u);  // the SDRAM
+}
+
+TEST(MemoryMapTest, EachBlockIsNamedFromItsFirstToItsLastByte) {
+  unsigned absent = 0;
+  for (const MapEntry& e : memory_map()) {
+    const bool modelled = !e.block.empty() && !e.partly;
+    absent += !modelled;
+    for (const std::uint32_t inside : {e.base, e.base + e.size - 1}) {
+      const std::string text = not_modelled_at(inside);
+      if (modelled)
+        EXPECT_EQ(text, "") << e.title;
+      else
+        EXPECT_TRUE(text.starts_with(e.title + " at 0x")) << text;
+    }
+    for (const std::uint32_t outside : {e.base - 1, e.base + e.size})
+      EXPECT_FALSE(not_modelled_at(outside).starts_with(e.title + " at ")) << e.title;
+  }
+  EXPECT_GT(absent, 30u);
+}
+
+TEST(MemoryMapTest, WhatOtherSoftwareTouchesFirstIsNamed) {
+  for (const auto& [base, part] : kAbsent) {
+    const std::string text = not_modelled_at(base);
+    EXPECT_NE(text.find(part), std::string::npos) << std::hex << base << ": " << text;
+    char address[16];
+    std::snprintf(address, sizeof address, "0x%08x", base);
+    EXPECT_NE(text.find(address), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(" is not modelled")) << text;
+  }
+  EXPECT_EQ(not_modelled_at(0x01C0'0004),
+            "EDMA3 channel controller at 0x01c00000 is modelled in part only");
+  EXPECT_EQ(not_modelled_at(0x01C3'0000), "");  // nothing is documented there
+}
+
+TEST(MemoryMapTest, ModelledBlocksAreThoseOfTheChip) {
+  std::map<std::string, std::uint32_t> bases;
+  for (const auto& b : register_blocks()) EXPECT_TRUE(bases.emplace(b.name, b.base).second);
+  const std::map<std::string, std::uint32_t> timers = {{"timer0", 0x01C2'1400},
+                                                       {"timer1", 0x01C2'1800},
+                                                       {"timer2", 0x01C2'1C00},
+                                                       {"timer3", 0x01C2'0800},
+                                                       {"timer4", 0x01C2'3800}};
+  for (const auto& [name, base] : timers) EXPECT_EQ(bases[name], base) << name;
+}
+
+struct OneRegister : RegBank {
+  Reg r{*this, "R", 8, Mode::kRw, "a register"};
+  OneRegister() : RegBank("BLOCK") {}
+};
+
+struct Block : periph::WithRegs<OneRegister>, BusTarget {
+  bool answers = true;
+  explicit Block(sc_core::sc_module_name name) : BusTarget(name, regs) {}
+
+ protected:
+  bool holes_answer() const override { return answers; }
+};
+
+/// A master on the configuration bus that makes one access at a time.
+struct Initiator : sc_core::sc_module, MemInitiatorIf {
+  MemInitiatorSocket<32> socket{"socket"};
+  bool done = false;
+  explicit Initiator(sc_core::sc_module_name name) : sc_module(name) { socket.bind(*this); }
+  tlm::tlm_sync_enum nb_transport_bw(MemRequest&, MemPhase&, sc_core::sc_time&) override {
+    done = true;
+    return tlm::TLM_COMPLETED;
+  }
+  bool fails(std::uint32_t address, unsigned bytes = 4) {
+    std::array<std::uint8_t, 64> data{};
+    MemRequest r;
+    r.address = address;
+    r.bytes = static_cast<std::uint8_t>(bytes);
+    r.data = data.data();
+    MemPhase phase = MemPhase::kRequest;
+    sc_core::sc_time delay;
+    done = false;
+    socket->nb_transport_fw(r, phase, delay);
+    while (!done) test::run_until(test::now() + kPsPerNs);
+    return r.error;
+  }
+};
+
+struct Chip {
+  QuietPhase quiet{"quiet"};
+  bus::ConfigBusParams params;
+  bus::ConfigBus config{"config",
+                        params,
+                        quiet,
+                        {{"edma", 0x01C0'0000, 0x1'0000, bus::ConfigBus::Speed::kFast},
+                         {"psc", 0x01C4'1000, 0x1000, bus::ConfigBus::Speed::kFast}}};
+  Block edma{"edma"}, psc{"psc"};
+  Initiator master{"master"};
+  Chip() {
+    config.describe = not_modelled_at;
+    config.to("edma").bind(edma.reg_socket);
+    config.to("psc").bind(psc.reg_socket);
+    edma.answers = false;
+    master.socket.bind(config.socket);
+  }
+};
+
+TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
+  static Chip chip;
+  auto& notes = Diagnostics::instance();
+  using Kind = Diagnostics::Kind;
+  notes.clear();
+  EXPECT_FALSE(chip.master.fails(0x01C4'1008));
+  EXPECT_FALSE(chip.master.fails(0x01C0'0008));
+  EXPECT_TRUE(notes.counts().empty());
+  EXPECT_TRUE(chip.master.fails(0x01D0'7008));
+  EXPECT_TRUE(chip.master.fails(0x01D0'7FFC));
+  EXPECT_TRUE(chip.master.fails(0x01C0'0004));   // a hole that does not answer
+  EXPECT_FALSE(chip.master.fails(0x01C4'1004));  // one that does
+  EXPECT_TRUE(chip.master.fails(0x01C3'0000));
+  EXPECT_TRUE(chip.master.fails(0x01C4'1000, 32));  // no bursts to registers
+  const std::map<std::pair<Kind, std::string>, std::uint64_t> expected = {
+      {{Kind::kNotModelled, "bus error: EMAC at 0x01d07000 is not modelled"}, 2},
+      {{Kind::kNotModelled,
+        "bus error: EDMA3 channel controller at 0x01c00000 is modelled in part only"},
+       1},
+      {{Kind::kNotModelled, "BLOCK register at offset 0x4"}, 1},
+      {{Kind::kGuest, "bus error at 0x01c30000"}, 1},
+      {{Kind::kGuest, "bus error at 0x01c41000"}, 1}};
+  EXPECT_EQ(notes.counts(), expected);
+  EXPECT_EQ(chip.config.stats.errors.count(), 5u);
+}
+
+}  // namespace
+}  // namespace fovea::soc
+
+FOVEA_SC_TEST_MAIN
