@@ -22,8 +22,11 @@ namespace fovea::bus {
 ///
 /// A class template for its own work beside the path, called at every step: Self may hide
 /// background_next(), background_act() and completed().
+///
+/// MemInitiatorIf is a public base although nobody else calls it: it has SystemC's virtual base,
+/// which the most derived class destroys, and a private base would bar the way to it (CWG 7).
 template <class Self>
-class Agent : public sc_core::sc_module, private MemInitiatorIf {
+class Agent : public sc_core::sc_module, public MemInitiatorIf {
  public:
   struct Transaction : MemRequest {
     unsigned port = 0;

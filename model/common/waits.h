@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "model/common/masters.h"
@@ -39,11 +40,16 @@ constexpr bool is_culprit_name(std::string_view name) {
   return name == "own";
 }
 
-/// Two neighbouring sums as one word of the host.
-using PairOfSums [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = std::uint64_t;
-inline PairOfSums& pair(std::uint64_t* first) { return *reinterpret_cast<PairOfSums*>(first); }
-inline const PairOfSums& pair(const std::uint64_t* first) {
-  return *reinterpret_cast<const PairOfSums*>(first);
+/// Two neighbouring sums as one vector of the host. The sums are aligned to 8 bytes only, so they
+/// are copied, never referred to as a vector: compilers may assume that a vector is aligned to 16.
+using PairOfSums [[gnu::vector_size(16)]] = std::uint64_t;
+inline PairOfSums load_pair(const std::uint64_t* first) {
+  PairOfSums pair;
+  std::memcpy(&pair, first, sizeof pair);
+  return pair;
+}
+inline void store_pair(std::uint64_t* first, PairOfSums pair) {
+  std::memcpy(first, &pair, sizeof pair);
 }
 
 /// Picoseconds by culprit, of the requests of one master and direction.
@@ -54,7 +60,8 @@ struct Waits {
   /// What was added to a sum of each master between two readings of it.
   void add_masters(const std::uint64_t* after, const std::uint64_t* before) {
     std::size_t m = 0;
-    for (; m + 2 <= kMasterCount; m += 2) pair(&ps[m]) += pair(&after[m]) - pair(&before[m]);
+    for (; m + 2 <= kMasterCount; m += 2)
+      store_pair(&ps[m], load_pair(&ps[m]) + (load_pair(&after[m]) - load_pair(&before[m])));
     if (m < kMasterCount) ps[m] += after[m] - before[m];
   }
 };

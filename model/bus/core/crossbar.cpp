@@ -166,7 +166,8 @@ inline void Crossbar::sum_grants(SlaveState& s) {
   for (; s.summed != last; ++s.summed) {
     const Grant& g = s.grant(s.summed);
     LaneTimes& before = s.before[s.summed % SlaveState::kGrants];
-    for (std::size_t i = 0; i < s.lane.size(); i += 2) pair(&before[i]) = pair(&s.lane[i]);
+    for (std::size_t i = 0; i < s.lane.size(); i += 2)
+      store_pair(&before[i], load_pair(&s.lane[i]));
     s.lane[g.master] += g.time();
     s.lane[kMasterCount] += g.time();
   }

@@ -32,7 +32,8 @@ void DdrController::time_given() {
       s.newest = Seen::kNot;
       continue;
     }
-    for (std::size_t i = 0; i < blames_.size(); i += 2) pair(&s.blames[i]) = pair(&blames_[i]);
+    for (std::size_t i = 0; i < blames_.size(); i += 2)
+      store_pair(&s.blames[i], load_pair(&blames_[i]));
     s.newest = newest;
     s.blames[late_blame_] += late_.itself;
     const Blamed part = blamed(g, ready, ddr_.edge(ready));
@@ -104,7 +105,8 @@ void DdrController::time_given() {
   if (e.request.parts) before = w;
   w.add_masters(blames_.data(), seen.blames.data());
   constexpr std::size_t kRest = index(culprit_of(kTurned));
-  pair(&w.ps[kRest]) += pair(&blames_[kTurned]) - pair(&seen.blames[kTurned]);
+  store_pair(&w.ps[kRest], load_pair(&w.ps[kRest]) + (load_pair(&blames_[kTurned]) -
+                                                      load_pair(&seen.blames[kTurned])));
   w.ps[kRest + 2] += blames_[kAsleep] - seen.blames[kAsleep];
   w.add(culprit_of(late_blame_), late_.itself);
   w.add(culprit_of(given(end - 1).blame), newest.itself);
