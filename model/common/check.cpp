@@ -24,7 +24,19 @@ void Diagnostics::not_modelled(const std::string& what) {
 }
 
 void Diagnostics::note(Kind kind, const std::string& what) {
-  if (++counts_[{kind, what}] == 1 && sink_) sink_(kind, what);
+  using Show = BoundedCounts::Show;
+  const Show show = counts_.add(static_cast<unsigned>(kind), what);
+  if (show == Show::kNothing || !sink_) return;
+  if (show == Show::kText) sink_(kind, what);
+  if (show == Show::kLastOfKind) sink_(kind, what + " (others like this one are only counted)");
+  if (show == Show::kNoMore) sink_(kind, "warnings of further kinds are only counted");
+}
+
+std::map<std::pair<Diagnostics::Kind, std::string>, std::uint64_t> Diagnostics::counts() const {
+  std::map<std::pair<Kind, std::string>, std::uint64_t> counts;
+  for (const auto& line : counts_.list())
+    counts[{static_cast<Kind>(line.group), line.text}] += line.count;
+  return counts;
 }
 
 }  // namespace fovea

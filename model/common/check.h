@@ -5,6 +5,9 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "model/common/bounded_counts.h"
 
 namespace fovea {
 
@@ -26,7 +29,8 @@ struct NotModelled : std::runtime_error {
 [[noreturn]] void check_failed(const char* expression, const char* file, int line,
                                const std::string& what);
 
-/// Counts remarks about the guest and about missing features; each text is shown once.
+/// Counts warnings about the guest and about missing features. Each text is shown once, and few of
+/// those that differ only in numbers: a wild pointer's addresses are examples of one warning.
 class Diagnostics {
  public:
   enum class Kind { kGuest, kNotModelled };
@@ -39,11 +43,12 @@ class Diagnostics {
   void set_strict(bool strict) { strict_ = strict; }
   void set_sink(Sink sink) { sink_ = std::move(sink); }
   void clear() { counts_.clear(); }
-  const std::map<std::pair<Kind, std::string>, std::uint64_t>& counts() const { return counts_; }
+  /// By kind and text; what BoundedCounts does not keep is summed up in lines of its own.
+  std::map<std::pair<Kind, std::string>, std::uint64_t> counts() const;
 
  private:
   void note(Kind kind, const std::string& what);
-  std::map<std::pair<Kind, std::string>, std::uint64_t> counts_;
+  BoundedCounts counts_;
   Sink sink_;
   bool strict_ = false;
 };
