@@ -97,7 +97,6 @@ void Board::latched(const video::Osd::Latch& latch) {
       dm365.scr.settle();
       dm365.ddr.settle(kernel_time());
       window_start_ = whole_until_ = kernel_time();
-      first_record_ = log.records().size();
       if (on_window_open) on_window_open();
     });
   } else if (window_open()) {
@@ -122,45 +121,63 @@ void Board::frame_shown(const video::DisplayFrame& frame) {
   const FrameRecord& r = log.shown(frame.start, frame.end);
   ++frames_in_window_;
   if (on_frame) on_frame(frame, r);
+  forget_old_frames();
+}
+
+/// A long run keeps its latest frames one by one and of all others their sums.
+void Board::forget_old_frames() {
+  constexpr std::size_t kKept = 256;
+  struct Old {
+    Board& board;
+    void operator()(const FrameRecord& r) { board.old_.add(r, true); }
+    void operator()(const FrameLog::Remap& m) {
+      if (board.in_window(m.end)) board.old_.add(m);
+    }
+    void operator()(Picoseconds captured) { board.old_.stats.captured += board.in_window(captured); }
+  };
+  log.forget(kKept, Old{*this});
+}
+
+void FrameSums::add(const FrameRecord& r, bool whole) {
+  ++stats.displayed;
+  if (r.repeated || !r.captured) {
+    ++stats.repeated;
+    return;
+  }
+  fresh += whole;
+  stats.dropped += r.dropped;
+  if (!r.capture_start) return;
+  const Picoseconds t = r.display_start - *r.capture_start;
+  stats.latency_min = stats.latencies ? std::min(stats.latency_min, t) : t;
+  stats.latency_max = std::max(stats.latency_max, t);
+  latency += static_cast<double>(t);
+  ++stats.latencies;
+}
+
+void FrameSums::add(const FrameLog::Remap& m) {
+  const Picoseconds t = m.end - m.start;
+  stats.remap_min = stats.remaps ? std::min(stats.remap_min, t) : t;
+  stats.remap_max = std::max(stats.remap_max, t);
+  remap += static_cast<double>(t);
+  ++stats.remaps;
 }
 
 FrameStats Board::frame_stats() const {
-  FrameStats s;
-  if (!window_start_) return s;
+  if (!window_start_) return {};
   const Picoseconds from = *window_start_;
   const Picoseconds to = window_end_ ? *window_end_ : kernel_time();
-  std::uint64_t fresh = 0;
-  double latency_sum = 0, remap_sum = 0;
-  for (const FrameRecord& r : log.records()) {
-    ++s.displayed;
-    if (r.repeated || !r.captured) {
-      ++s.repeated;
-      continue;
-    }
-    fresh += r.display_start < whole_until_;
-    s.dropped += r.dropped;
-    if (!r.capture_start) continue;
-    const Picoseconds latency = r.display_start - *r.capture_start;
-    s.latency_min = s.latencies ? std::min(s.latency_min, latency) : latency;
-    s.latency_max = std::max(s.latency_max, latency);
-    latency_sum += static_cast<double>(latency);
-    ++s.latencies;
-  }
-  for (const auto& m : log.remaps()) {
-    if (m.end <= from || m.end > to) continue;
-    const Picoseconds t = m.end - m.start;
-    s.remap_min = s.remaps ? std::min(s.remap_min, t) : t;
-    s.remap_max = std::max(s.remap_max, t);
-    remap_sum += static_cast<double>(t);
-    ++s.remaps;
-  }
-  s.remapped = s.remaps;
+  FrameSums sums = old_;
+  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  for (const auto& m : log.remaps())
+    if (m.end > from && m.end <= to) sums.add(m);
+  FrameStats& s = sums.stats;
   for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
+  s.remapped = s.remaps;
   s.window = static_cast<double>(to - from) * 1e-12;
   if (whole_until_ > from)
-    s.rate = static_cast<double>(fresh) / (static_cast<double>(whole_until_ - from) * 1e-12);
-  s.latency_mean = s.latencies ? latency_sum / static_cast<double>(s.latencies) : 0;
-  s.remap_mean = s.remaps ? remap_sum / static_cast<double>(s.remaps) : 0;
+    s.rate = static_cast<double>(sums.fresh) / (static_cast<double>(whole_until_ - from) * 1e-12);
+  s.latency_mean = s.latencies ? sums.latency / static_cast<double>(s.latencies) : 0;
+  s.remap_mean = s.remaps ? sums.remap / static_cast<double>(s.remaps) : 0;
   return s;
 }
 

@@ -44,6 +44,16 @@ struct ChipReset {
   std::uint32_t pc = 0;  ///< of the core at that instant
 };
 
+/// FrameStats in the making: the sums over the entries of the frame log.
+struct FrameSums {
+  FrameStats stats;
+  std::uint64_t fresh = 0;
+  double latency = 0, remap = 0;
+  /// `whole`: its display frame was out before the window's end.
+  void add(const FrameRecord& record, bool whole);
+  void add(const FrameLog::Remap& remap);
+};
+
 class Board : public sc_core::sc_module {
  public:
   /// @param entry first instruction; stands in for the ROM boot loader
@@ -88,6 +98,10 @@ class Board : public sc_core::sc_module {
   void set_switches();
   void latched(const video::Osd::Latch& latch);
   void frame_shown(const video::DisplayFrame& frame);
+  void forget_old_frames();
+  bool in_window(Picoseconds t) const {
+    return t > *window_start_ && (!window_end_ || t <= *window_end_);
+  }
 
   const BoardParams& params_;
   ClockSignal osc_{"osc", Frequency(24'000'000)};
@@ -99,7 +113,7 @@ class Board : public sc_core::sc_module {
   std::optional<ChipReset> chip_reset_;
   std::optional<Picoseconds> window_start_, window_end_;
   Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
-  std::size_t first_record_ = 0;
+  FrameSums old_;            ///< of what the log has forgotten
 };
 
 }  // namespace fovea::board

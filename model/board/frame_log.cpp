@@ -62,7 +62,7 @@ bool FrameLog::latch(std::uint32_t address, Picoseconds) {
 
 const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
   FrameRecord r;
-  r.index = records_.size();
+  r.index = shown_++;
   r.captured = showing_;
   r.display_start = start;
   r.display_end = end;

@@ -43,15 +43,30 @@ class FrameLog {
   std::optional<Picoseconds> first(Phase phase) const {
     return first_[static_cast<std::size_t>(phase)];
   }
+  /// Frames shown, in order, but for those that were forgotten.
   const std::vector<FrameRecord>& records() const { return records_; }
-  /// Remaps that ended, and how long each took, in order.
+  /// Remaps that ended, and how long each took, in order; the same.
   struct Remap {
     std::uint64_t captured;
     Picoseconds start, end;
   };
   const std::vector<Remap>& remaps() const { return remaps_; }
-  /// Ends of complete captures, in order.
+  /// Ends of complete captures, in order; the same.
   const std::vector<Picoseconds>& captures() const { return capture_ends_; }
+  /// Forgets the oldest entries of each list, all but `kept` of it, once there are twice as many.
+  /// Calls old(entry) for each one that goes.
+  template <class Old>
+  void forget(std::size_t kept, Old old) {
+    const auto trim = [&](auto& list) {
+      if (list.size() < 2 * kept) return;
+      const auto end = list.end() - static_cast<std::ptrdiff_t>(kept);
+      for (auto i = list.begin(); i != end; ++i) old(*i);
+      list.erase(list.begin(), end);
+    };
+    trim(records_);
+    trim(remaps_);
+    trim(capture_ends_);
+  }
 
  private:
   struct Capture {
@@ -69,6 +84,7 @@ class FrameLog {
   std::optional<std::uint32_t> address_;
   Picoseconds remap_start_ = 0;
   std::vector<FrameRecord> records_;
+  std::uint64_t shown_ = 0;
 };
 
 }  // namespace fovea::board

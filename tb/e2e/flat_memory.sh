@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# A run that is longer takes no more memory: peaks of two lengths, both beyond what is kept of the
+# latest frames (256 to 511 of them). One record of a frame in the log has more than 100 bytes, a row
+# of the timeline more than 160, 40 of them to a frame; BYTES a frame are allowed.
+# Usage: flat_memory.sh FOVEA OUT FEW MANY BYTES
+set -euo pipefail
+fovea=$1 out=$2 few=$3 many=$4 bytes=$5
+mkdir -p "$out"
+cat >"$out/tiny.yaml" <<'Y'
+camera: {kind: chart, stamp: false}
+video: {width: 16, height: 16}
+Y
+peak() {
+  "$fovea" run "$out/tiny.yaml" --no-frames -s run.frames="$1" -o "$out/$1" >/dev/null 2>&1
+  grep -oE '"peak_rss": \{"value": [0-9]+' "$out/$1/host.json" | grep -oE '[0-9]+$'
+}
+a=$(peak "$few") b=$(peak "$many")
+for n in "$few" "$many"; do
+  [ "$(wc -l <"$out/$n/frames.csv")" = $((n + 1)) ] || { echo "frames.csv of $n frames"; exit 1; }
+done
+echo "peak $a bytes with $few frames, $b with $many: $(((b - a) / (many - few))) a frame"
+[ $((b - a)) -le $((bytes * (many - few))) ]
