@@ -23,6 +23,9 @@ namespace {
 
 constexpr int kLookMs = 100;  // how often the process's stop flag is looked at
 
+/// GDB begins with an acknowledgement, a packet or an interrupt.
+bool begins_like_gdb(char c) { return c == '+' || c == '-' || c == '$' || c == '\x03'; }
+
 bool readable(int fd, int timeout_ms) {
   pollfd p{fd, POLLIN, 0};
   return ::poll(&p, 1, timeout_ms) > 0;
@@ -81,12 +84,19 @@ bool GdbServer::connect(int timeout_ms) {
   const int on = 1;
   ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   framer_.clear();
+  silent_ = true;
   return true;
 }
 
-/// A second debugger would wait without a word for the first to leave.
-void GdbServer::refuse_others() {
+/// A second debugger would wait without a word for the first to leave. It takes the place of somebody
+/// who never spoke.
+void GdbServer::attend_others() {
   if (!readable(listener_, 0)) return;
+  if (silent_) {
+    drop();
+    connect(0);
+    return;
+  }
   const int other = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
   if (other >= 0) ::close(other);
 }
@@ -94,13 +104,14 @@ void GdbServer::refuse_others() {
 /// Others are refused only when the one that is there has nothing to say: it may have left.
 GdbServer::Io GdbServer::receive(int timeout_ms) {
   if (!readable(socket_, timeout_ms)) {
-    refuse_others();
+    attend_others();
     return Io::kNothing;
   }
   std::array<char, 4096> bytes;
   const ssize_t n = ::recv(socket_, bytes.data(), bytes.size(), 0);
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return Io::kNothing;
-  if (n <= 0) return Io::kClosed;
+  if (n <= 0 || (silent_ && !begins_like_gdb(bytes[0]))) return Io::kClosed;
+  silent_ = false;
   framer_.feed({bytes.data(), static_cast<std::size_t>(n)});
   return Io::kSome;
 }
@@ -117,7 +128,7 @@ void GdbServer::send(std::string_view payload) {
 }
 
 GdbResume GdbServer::serve(const GdbStop& stop) {
-  if (socket_ >= 0) {
+  if (attached()) {
     protocol_.stopped(stop);
     if (running_) {
       if (!stop.note.empty()) send(GdbProtocol::console(stop.note));
@@ -128,14 +139,17 @@ GdbResume GdbServer::serve(const GdbStop& stop) {
   for (;;) {
     if (stop_.load()) return {.kind = GdbResume::Kind::kKill};
     if (socket_ < 0) {
-      if (connect(kLookMs)) protocol_.begin(stop);
+      connect(kLookMs);
       continue;
     }
     const auto event = framer_.next();
     if (!event) {
-      if (receive(kLookMs) == Io::kClosed) {
+      const bool newcomer = silent_;
+      const Io io = receive(kLookMs);
+      if (newcomer && io == Io::kSome) protocol_.begin(stop);
+      if (io == Io::kClosed) {
         // A debugger that is gone without a word leaves the target where it is, for the next one.
-        target_.clear_all_points();
+        if (!newcomer) target_.clear_all_points();
         drop();
       }
       continue;
@@ -166,12 +180,15 @@ GdbResume GdbServer::serve(const GdbStop& stop) {
 }
 
 bool GdbServer::wants_halt() {
-  if (socket_ < 0) {
-    if (!connect(0)) return false;
+  if (socket_ < 0 && !connect(0)) return false;
+  const bool newcomer = silent_;
+  const Io io = receive(0);
+  if (newcomer) {
+    if (io == Io::kClosed) drop();
+    if (io != Io::kSome) return false;
     protocol_.begin({});
     return true;
   }
-  const Io io = receive(0);
   if (io == Io::kClosed) {
     target_.clear_all_points();
     drop();
@@ -184,7 +201,7 @@ bool GdbServer::wants_halt() {
 }
 
 void GdbServer::exited(int status, bool by_signal) {
-  if (socket_ < 0) return;
+  if (!attached()) return drop();
   if (running_) send(fmt::format("{}{:02x}", by_signal ? 'X' : 'W', status & 0xFF));
   // What is still on its way to the debugger would be lost by a reset of the connection.
   ::shutdown(socket_, SHUT_WR);

@@ -95,7 +95,9 @@ class GdbProtocol {
   bool no_ack_ = false, software_reason_ = false, hardware_reason_ = false;
 };
 
-/// One debugger at a time; another one may attach when it has left.
+/// One debugger at a time; another one may attach when it has left. Whoever does not begin as GDB's
+/// protocol does is cut off unheard: a web page can make a browser send packets to this port, but
+/// only behind the words of HTTP.
 class GdbServer {
  public:
   /// Listens on 127.0.0.1; port 0 takes a free one. @throws UserError
@@ -112,7 +114,7 @@ class GdbServer {
   /// Never waits.
   bool wants_halt();
   /// A debugger is there.
-  bool attached() const { return socket_ >= 0; }
+  bool attached() const { return socket_ >= 0 && !silent_; }
   /// The target has ended, with this status or by a signal.
   void exited(int status, bool by_signal = false);
 
@@ -120,7 +122,7 @@ class GdbServer {
   enum class Io { kNothing, kSome, kClosed };
   bool connect(int timeout_ms);
   Io receive(int timeout_ms);
-  void refuse_others();
+  void attend_others();
   void send(std::string_view payload);
   void drop();
 
@@ -129,6 +131,7 @@ class GdbServer {
   const std::atomic<bool>& stop_;
   GdbFramer framer_;
   int listener_ = -1, socket_ = -1;
+  bool silent_ = false;  // whoever is connected has not said anything yet
   std::uint16_t port_ = 0;
   std::string last_sent_;
   bool running_ = false;  // the debugger waits for a stop reply

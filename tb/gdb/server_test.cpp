@@ -107,6 +107,55 @@ TEST_F(GdbServerTest, TheNextOneComesWhenTheFirstIsGone) {
   EXPECT_TRUE(target.points.empty()) << "they go with their debugger";
 }
 
+/// What a page in a browser can send: the packets are in the body.
+TEST_F(GdbServerTest, ARequestOfABrowserIsCutOffUnheard) {
+  for (const char* first : {"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", "GET / HTTP/1.1\r\n\r\n",
+                            "\x16\x03\x01", " ", "\n"}) {
+    Client browser(server.port());
+    EXPECT_EQ(browser.ask(std::string(first) + "$P0=dead0000#0b" + kWhy, "#"), "") << first;
+    EXPECT_TRUE(browser.closed) << first;
+  }
+  EXPECT_EQ(target.values[0], 0x11223344u);
+  for (const char* first : {"+", "-", "\x03", ""}) {
+    Client client(server.port());
+    EXPECT_NE(client.ask(std::string(first) + kWhy, "#").find(kStopped), std::string::npos);
+  }
+}
+
+TEST_F(GdbServerTest, WhoSaysNothingDoesNotKeepADebuggerAway) {
+  Client silent(server.port());
+  Client client(server.port());
+  EXPECT_NE(client.ask(kWhy, "#").find(kStopped), std::string::npos);
+  EXPECT_EQ(silent.hear("#"), "");
+  EXPECT_TRUE(silent.closed);
+}
+
+TEST(GdbServerRunningTest, OnlyADebuggerHaltsARunningTarget) {
+  test::FakeGdbTarget target;
+  std::atomic<bool> stop{false};
+  GdbServer server(0, target, stop);
+  const auto halts = [&] {
+    for (int i = 0; i < 20; ++i) {
+      if (server.wants_halt()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  {
+    Client silent(server.port());
+    EXPECT_FALSE(halts());
+    EXPECT_FALSE(server.attached());
+    Client browser(server.port());
+    browser.say("POST / HTTP/1.1\r\n\r\n$P0=dead0000#0b");
+    EXPECT_FALSE(halts());
+    EXPECT_FALSE(server.attached());
+  }
+  Client client(server.port());
+  client.say(kWhy);
+  EXPECT_TRUE(halts());
+  EXPECT_TRUE(server.attached());
+}
+
 TEST_F(GdbServerTest, AcknowledgementsAndRepeats) {
   Client c(server.port());
   const std::string answer = c.ask(kWhy, "#d4");
