@@ -190,6 +190,31 @@ std::string BoardSimulation::failure_text(const std::string& what, const ElfImag
   return text;
 }
 
+std::vector<std::string> timeline_masters() { return {kStatNames.begin(), kStatNames.end()}; }
+
+TimelineRow timeline_row(Picoseconds start, Picoseconds end, const bus::Timeline::Row& row) {
+  TimelineRow out{start, end, std::vector<std::uint64_t>(kStatCount),
+                  std::vector<std::uint64_t>(kStatCount)};
+  for (std::size_t m = 0; m < kMasterCount; ++m) {
+    out.read_bytes[stat_index(static_cast<Master>(m))] += row.read[m];
+    out.write_bytes[stat_index(static_cast<Master>(m))] += row.write[m];
+  }
+  return out;
+}
+
+/// Hands over the rows of the timeline that are final: those of a while ago, as the window may end a
+/// little before the present time.
+void take_timeline(board::Board& board, const RunRequest& request) {
+  constexpr Picoseconds kWhile = 200 * kPsPerMs;
+  const Picoseconds now = board.window_end().value_or(kernel_time());
+  if (!request.timeline_row || now < kWhile) return;
+  static const std::vector<std::string> masters = timeline_masters();
+  board.dm365.scr.crossbar().timeline.take_until(
+      now - kWhile, [&](Picoseconds start, Picoseconds end, const auto& row) {
+        request.timeline_row(masters, timeline_row(start, end, row));
+      });
+}
+
 RunResult BoardSimulation::run(const RunRequest& request) {
   started_ = Wall::now();
   const ElfImage elf = ElfImage::load(program_file(params_));
@@ -197,7 +222,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   complete_params(params_);
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
-  auto source = video::make_picture_source(params_.camera, load_footage(params_),
+  auto source = video::make_picture_source(params_.camera, load_footage(params_, &request.stop),
                                            params_.raster_width(), params_.raster_height());
 
   video::AheadSource camera(*source);
@@ -230,14 +255,17 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     out.display_end = r.display_end;
     out.dropped = r.dropped;
     out.repeated = r.repeated;
-    frames_.push_back(out);
-    // An error of the writer must not unwind through the kernel: keep it and stop.
-    if (request.frame && !failure) {
-      try {
+    // An error of a writer must not unwind through the kernel: keep it and stop.
+    if (failure) return;
+    try {
+      if (request.frame_row)
+        request.frame_row(out);
+      else
+        frames_.push_back(out);
+      if (request.frame)
         request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
-      } catch (...) {
-        failure = std::current_exception();
-      }
+    } catch (...) {
+      failure = std::current_exception();
     }
   };
 
@@ -259,6 +287,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   std::string guest;
   for (;;) {
     slices.run(gdb && gdb->hit_pending() ? kPsPerUs : slice);
+    take_timeline(*board_, request);
     request.progress.update({kernel_time(), board_->frames_in_window(), params_.run.frames(),
                              arm.core().instructions_executed()});
     if (!arm.failure().empty()) {
@@ -307,21 +336,14 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   result.guest_failure = guest;
   result.stats = std::move(stats_);
   result.frames = std::move(frames_);
-  const auto& xbar = board_->dm365.scr.crossbar();
-  for (auto n : kStatNames) result.timeline_masters.emplace_back(n);
+  result.timeline_masters = timeline_masters();
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on
   // who played it.
-  const Picoseconds last = board_->window_end().value_or(kernel_time());
-  xbar.timeline.list_until(last, [&](Picoseconds start, Picoseconds end, const auto& row) {
-    TimelineRow t{start, end, {}, {}};
-    t.read_bytes.resize(kStatCount);
-    t.write_bytes.resize(kStatCount);
-    for (std::size_t m = 0; m < kMasterCount; ++m) {
-      t.read_bytes[stat_index(static_cast<Master>(m))] += row.read[m];
-      t.write_bytes[stat_index(static_cast<Master>(m))] += row.write[m];
-    }
-    result.timeline.push_back(std::move(t));
-  });
+  board_->dm365.scr.crossbar().timeline.list_until(
+      board_->window_end().value_or(kernel_time()),
+      [&](Picoseconds start, Picoseconds end, const auto& row) {
+        result.timeline.push_back(timeline_row(start, end, row));
+      });
   result.uart = board_->uart_text();
   if (!request.registers.pattern.empty()) result.registers = log->text();
   add_host(result, request.strict_sync);

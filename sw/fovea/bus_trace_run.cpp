@@ -1,27 +1,24 @@
 #include "sw/fovea/bus_trace_run.h"
 
-#include <fmt/format.h>
-
 #include <string>
+#include <string_view>
 
+#include "model/trace/core/text_trace.h"
+#include "model/trace/core/trace_file.h"
 #include "sw/fovea/replay_params.h"
 
 namespace fovea::app {
 namespace {
 
-std::filesystem::path while_written(const std::filesystem::path& target) {
-  std::error_code ignored;
-  const bool device = std::filesystem::exists(target, ignored) &&
-                      !std::filesystem::is_regular_file(target, ignored);
-  return device ? target : std::filesystem::path(target.string() + ".tmp");
+bool is_trace(std::string_view first_bytes) {
+  return trace::TraceFile::recognises(first_bytes) || trace::TextTrace::recognises(first_bytes);
 }
 
 }  // namespace
 
 BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& params,
                          board::Board& board)
-    : target_(file),
-      file_(while_written(file)),
+    : file_(file, "--bus-trace", "a bus trace", is_trace),
       params_(params),
       board_(board),
       recorder_(board.dm365.make_recorder()) {
@@ -35,9 +32,6 @@ BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& para
 BusTraceRun::~BusTraceRun() {
   board_.dm365.scr.crossbar().observe(nullptr);
   board_.dm365.tap.attach(nullptr);
-  if (complete_) return;
-  std::error_code ignored;
-  if (file_.path() != target_) std::filesystem::remove(file_.path(), ignored);
 }
 
 void BusTraceRun::open() {
@@ -67,13 +61,7 @@ void BusTraceRun::finish() {
   info.params = replay_keys(params_, board_.dm365.ddr.programmed(), scr_.frequency,
                             ddr_.frequency);
   recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
-  file_.close();
-  if (file_.path() != target_) {
-    std::error_code error;
-    std::filesystem::rename(file_.path(), target_, error);
-    if (error) throw UserError(fmt::format("file '{}': {}", target_.string(), error.message()));
-  }
-  complete_ = true;
+  file_.commit();
 }
 
 }  // namespace fovea::app

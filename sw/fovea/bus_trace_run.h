@@ -5,13 +5,12 @@
 
 #include "model/board/board.h"
 #include "model/trace/core/recorder.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/output_file.h"
 
 namespace fovea::app {
 
-/// Made before the run, so that a file that cannot be written shows at once. It has another name until
-/// it is whole: an earlier trace stays until then. open() and close() are the window's edges; without
-/// both there is no trace.
+/// Made before the run, so that a file that cannot be written shows at once. open() and close() are
+/// the window's edges; without both there is no trace, and an earlier one stays.
 class BusTraceRun {
  public:
   BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
@@ -22,14 +21,13 @@ class BusTraceRun {
   void finish();
 
  private:
-  std::filesystem::path target_;
-  CheckedFile file_;  // `target_` itself if that is a device
+  OutputFile file_;
   const ParamSet& params_;
   board::Board& board_;
   std::unique_ptr<trace::BusRecorder> recorder_;
   trace::ClockInfo core_, scr_, ddr_;
   Picoseconds refresh_ = 0;
-  bool opened_ = false, closed_ = false, complete_ = false;
+  bool opened_ = false, closed_ = false;
 };
 
 }  // namespace fovea::app

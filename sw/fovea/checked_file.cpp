@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,10 +23,34 @@ struct Descriptor {
     if (fd >= 0) ::close(fd);
   }
 };
+
+/// Appends byte i of `text`, as an escape if it belongs to a control character: C0, DEL, or one of
+/// C1 (U+0080 to U+009F), which some terminals obey as well.
+void append_printable(std::string& out, std::string_view text, std::size_t i) {
+  const auto at = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const auto c1 = [](unsigned byte) { return byte >= 0x80 && byte < 0xA0; };
+  const bool starts_c1 = at(i) == 0xC2 && i + 1 < text.size() && c1(at(i + 1));
+  const bool ends_c1 = i > 0 && at(i - 1) == 0xC2 && c1(at(i));
+  if (at(i) < 0x20 || at(i) == 0x7F || starts_c1 || ends_c1)
+    out += fmt::format("\\x{:02x}", at(i));
+  else
+    out += text[i];
+}
 }  // namespace
 
 CheckedFile::CheckedFile(std::filesystem::path path) : path_(std::move(path)) {
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0) fail(errno);
+}
+
+CheckedFile::CheckedFile(std::filesystem::path path, int folder) : path_(std::move(path)) {
+  fd_ = ::openat(folder, path_.filename().c_str(),
+                 O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (fd_ < 0) fail(errno);
+}
+
+CheckedFile::CheckedFile(std::filesystem::path path, New) : path_(std::move(path)) {
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (fd_ < 0) fail(errno);
 }
 
@@ -52,6 +77,16 @@ void CheckedFile::close() {
   // Network file systems report a full disk only here.
   const int fd = std::exchange(fd_, -1);
   if (::close(fd) != 0) fail(errno);
+}
+
+void CheckedFile::sync() {
+  flush();
+  // File systems without fsync() answer EINVAL.
+  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
+}
+
+void CheckedFile::lock() {
+  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) fail(errno);
 }
 
 void CheckedFile::flush() {
@@ -115,17 +150,25 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) 
 
 std::string one_line(std::string_view text, std::size_t max_chars) {
   std::string out;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
     if (out.size() >= max_chars) return out + "...";
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '\n')
+    if (text[i] == '\n')
       out += "\\n";
-    else if (c == '\t')
+    else if (text[i] == '\t')
       out += ' ';
-    else if (byte < 0x20 || byte == 0x7f)
-      out += fmt::format("\\x{:02x}", byte);
     else
-      out += c;
+      append_printable(out, text, i);
+  }
+  return out;
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n')
+      out += '\n';
+    else
+      append_printable(out, text, i);
   }
   return out;
 }

@@ -7,16 +7,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <new>
 #include <ostream>
+#include <system_error>
 
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/replay_params.h"
+#include "sw/fovea/row_files.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -42,8 +46,6 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
                    const std::vector<std::string>& args, std::vector<StatRow>& host, bool log) {
   host = result.host;
   meter.add_host_rows(host);
-  dir.write("frames.csv", frames_csv(result.frames));
-  dir.write("timeline.csv", timeline_csv(result.timeline_masters, result.timeline));
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("uart.log", result.uart);
   if (log) dir.write("registers.log", result.registers);
@@ -65,14 +67,23 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   for (const auto& set : options.sets) experiment.override_with(set);
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
-                               : fs::path("out") / experiment.name());
-  // First, so that an unfinished folder is known as ours and says what was tried.
+                               : fs::path("out") / experiment.name(),
+             "run");
+  if (!options.bus_trace.empty() && dir.covers(options.bus_trace))
+    throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
+                                "files of a run only; choose a place beside it",
+                                one_line(options.bus_trace)));
+  // First, so that an unfinished folder is known as ours and says what was tried, and a full disk
+  // shows before the simulation.
   dir.write("config.json", config_json(params, experiment, version_text()));
 
   const RemarkScope remarks(context.err, options.strict);
   ProgressMeter meter(context.err, context.terminal);
   FrameWriterOptions writer_options;
-  if (!options.no_frames) writer_options.folder = dir.frames();
+  if (!options.no_frames) {
+    writer_options.folder = dir.folder() / "frames";
+    writer_options.folder_fd = dir.make_folder("frames");
+  }
   if (options.mp4) writer_options.mp4 = dir.file("display.mp4");
   FrameWriter writer(writer_options);
   RunRequest request{.params = params,
@@ -92,6 +103,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     request.gdb_port = parse_gdb_port(options.gdb);
     request.notes = &context.err;
   }
+  RowFiles rows(dir);
+  rows.attach(request);
   RunResult result;
   try {
     result = simulation->run(request);
@@ -103,8 +116,9 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   writer.close();
 
   std::vector<StatRow> host;
+  rows.finish(result);
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
-  dir.commit();
+  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
   context.out << summary_table(result.stats, host);
   context.out << fmt::format("  results in {}\n", dir.folder().string());
   if (!options.no_frames)
@@ -130,6 +144,18 @@ int command_params(const std::string& pattern, bool markdown, bool of_replay,
   return kExitDone;
 }
 
+/// What the host refused (memory, a thread), if that is what the exception says; else empty. From
+/// within a process of SystemC it comes as a report that quotes the exception's name.
+std::string lack_of_host(const std::exception& e) {
+  const std::string_view what = e.what();
+  if (dynamic_cast<const std::bad_alloc*>(&e) || what.find("std::bad_alloc") != what.npos)
+    return "out of memory: the host gives this process no more; allowed: a smaller run, or a higher "
+           "limit (ulimit -v, container)";
+  if (const auto* refused = dynamic_cast<const std::system_error*>(&e))
+    return fmt::format("the host refused: {}", one_line(refused->what()));
+  return "";
+}
+
 /// "A | B" would end a cell of a table.
 std::string markdown_cell(const std::string& text) {
   std::string out;
@@ -148,6 +174,10 @@ void on_signal(int signal) {
 }
 
 }  // namespace
+
+void report_earlier(const std::string& note, const CliContext& context) {
+  if (!note.empty()) context.err << "fovea: " << note << std::endl;
+}
 
 std::string version_text() { return FOVEA_VERSION; }
 
@@ -302,14 +332,22 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   } catch (const UserError& e) {
     context.err << "fovea: error: " << one_line(e.what(), 2000) << std::endl;
     return kExitWrongInput;
+  } catch (const Stopped& e) {
+    context.err << "fovea: " << e.what() << "; there are no results" << std::endl;
+    return context.signal && context.signal->load() ? 128 + context.signal->load()
+                                                    : kExitGuestFailed;
   } catch (const GuestFailure& e) {
-    context.err << "fovea: the guest failed: " << e.what() << std::endl;
+    context.err << "fovea: the guest failed: " << printable(e.what()) << std::endl;
     return kExitGuestFailed;
   } catch (const NotModelled& e) {
-    context.err << "fovea: " << e.what() << std::endl;
+    context.err << "fovea: " << printable(e.what()) << std::endl;
     return kExitGuestFailed;
   } catch (const std::exception& e) {
-    context.err << "fovea: own defect: " << e.what() << std::endl;
+    if (const std::string why = lack_of_host(e); !why.empty()) {
+      context.err << "fovea: error: " << why << std::endl;
+      return kExitWrongInput;
+    }
+    context.err << "fovea: own defect: " << printable(e.what()) << std::endl;
     return kExitOwnDefect;
   }
 }

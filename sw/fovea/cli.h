@@ -45,6 +45,9 @@ std::string params_table(const ParamSet& params, const std::string& pattern, boo
 /// become errors of the write.
 void install_signals(CliContext& context);
 
+/// Prints what RunDir::commit() says about results that the folder held before.
+void report_earlier(const std::string& note, const CliContext& context);
+
 std::string version_text();
 
 }  // namespace fovea::app

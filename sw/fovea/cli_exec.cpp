@@ -211,7 +211,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
 
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
-    dir.emplace(o.out_dir);
+    dir.emplace(o.out_dir, "exec");
     dir->write("config.json", config_json(params, experiment, version_text()));
   }
   const RemarkScope remarks(context.err, o.strict);
@@ -237,7 +237,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     dir->write("stats.json",
                stats_json(result.stats, result.complete && result.guest_failure.empty(),
                           collect_remarks(Diagnostics::instance())));
-    dir->commit();
+    report_earlier(dir->commit(result.complete && result.guest_failure.empty()), context);
   }
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (lost) throw UserError("the program's output cannot be written");

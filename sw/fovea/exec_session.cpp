@@ -66,6 +66,7 @@ bool ExecSession::swi(std::uint32_t number) {
 
 void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm) {
   const auto put = [&](std::uint32_t address, std::span<const std::uint8_t> bytes) {
+    if (bytes.empty()) return;  // a segment without zeros at its end, also one at the end of RAM
     std::uint8_t* to = address - map_.ram_base < ram.size() ? &ram[address - map_.ram_base]
                                                             : &tcm[address & (tcm.size() - 1)];
     std::memcpy(to, bytes.data(), bytes.size());

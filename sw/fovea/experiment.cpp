@@ -203,7 +203,7 @@ std::string ValueOrigin::text() const {
 bool is_path_key(const ParamBase& param) {
   if (!dynamic_cast<const TextParam*>(&param)) return false;
   const std::string& key = param.key();
-  return key.ends_with(".file") || key.ends_with(".elf") || key.ends_with(".source");
+  return key.ends_with(".file") || key.ends_with(".elf");
 }
 
 void Experiment::set(std::string_view key, std::string value, const fs::path& folder) {

@@ -25,10 +25,40 @@ namespace fovea::app {
 namespace {
 
 constexpr std::size_t kMaxMessageBytes = 4096;
+constexpr int kLookMs = 100;  ///< how often a stop flag is looked at
+
+/// The demuxers of ffmpeg that read one film or one picture, and nothing but the file they are given.
+/// Left out on purpose: hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and
+/// the like (text), svg_pipe (may refer to files), lavfi and devices.
+constexpr const char* kFormats =
+    "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,mjpeg,gif,apng,flv,asf,ogg,ivf,nut,dv,mxf,"
+    "yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,jpegxl_pipe,"
+    "pam_pipe,pbm_pipe,pcx_pipe,pgm_pipe,png_pipe,ppm_pipe,psd_pipe,qoi_pipe,sgi_pipe,sunrast_pipe,"
+    "tiff_pipe,webp_pipe,xwd_pipe";
+/// The footage as the child sees it. Its real name would let ffmpeg guess the format by the suffix.
+constexpr const char* kFootage = "file:/dev/stdin";
+
+void look_at(const std::atomic<bool>* stop) {
+  if (stop && stop->load()) throw Stopped();
+}
 
 void close_fd(int& fd) {
   if (fd >= 0) ::close(std::exchange(fd, -1));
 }
+
+/// A descriptor that is closed at the end of its scope, or before.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  void close() { close_fd(fd_); }
+
+ private:
+  int fd_;
+};
 
 /// What ffmpeg said, as part of a one-line error: its last line, which names the cause.
 std::string last_line(std::string text) {
@@ -72,7 +102,7 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
-                           const std::string& purpose) {
+                           const std::string& purpose, int stdin_fd) {
   std::vector<char*> argv;
   for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
@@ -89,7 +119,10 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const bool input = data == Stream::kInput;
-  posix_spawn_file_actions_addopen(&actions, input ? 1 : 0, "/dev/null", O_RDWR, 0);
+  if (stdin_fd >= 0)
+    posix_spawn_file_actions_adddup2(&actions, stdin_fd, 0);
+  else
+    posix_spawn_file_actions_addopen(&actions, input ? 1 : 0, "/dev/null", O_RDWR, 0);
   posix_spawn_file_actions_adddup2(&actions, stream[1], input ? 0 : 1);
   posix_spawn_file_actions_adddup2(&actions, errors[1], 2);
   posix_spawnattr_t attributes;
@@ -131,7 +164,8 @@ ChildProcess::~ChildProcess() {
 }
 
 void ChildProcess::kill() {
-  if (pid_ > 0) ::kill(pid_, SIGKILL);
+  // With whatever it has started: it leads a process group of its own.
+  if (pid_ > 0) ::kill(-pid_, SIGKILL);
 }
 
 void ChildProcess::read_messages() {
@@ -149,11 +183,14 @@ void ChildProcess::read_messages() {
   }
 }
 
-bool ChildProcess::read_some(std::string& buffer) {
+bool ChildProcess::read_some(std::string& buffer, const std::atomic<bool>* stop) {
   std::array<char, 64 * 1024> chunk;
   for (;;) {
+    look_at(stop);
     std::array<pollfd, 2> fds{{{data_, POLLIN, 0}, {error_, POLLIN, 0}}};
-    if (::poll(fds.data(), fds.size(), -1) < 0 && errno != EINTR) return false;
+    const int ready = ::poll(fds.data(), fds.size(), stop ? kLookMs : -1);
+    if (ready < 0 && errno != EINTR) return false;
+    if (ready <= 0) continue;
     if (fds[1].revents != 0) read_messages();
     if (fds[0].revents == 0) continue;
     const ssize_t n = ::recv(data_, chunk.data(), chunk.size(), 0);
@@ -179,12 +216,13 @@ bool ChildProcess::write_all(const std::uint8_t* bytes, std::size_t size) {
   return true;
 }
 
-int ChildProcess::finish() {
+int ChildProcess::finish(const std::atomic<bool>* stop) {
   close_fd(data_);
   // Until the child closes its standard error; so it never blocks on a message nobody reads.
   while (error_ >= 0) {
+    look_at(stop);
     pollfd fd{error_, POLLIN, 0};
-    if (::poll(&fd, 1, -1) < 0 && errno != EINTR) break;
+    if (::poll(&fd, 1, stop ? kLookMs : -1) < 0 && errno != EINTR) break;
     read_messages();
   }
   int status = 0;
@@ -204,8 +242,9 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("no such file");
   if (!std::filesystem::is_regular_file(file, error)) fail("it is not a regular file");
-  // The prefix keeps names such as "-i", "http:..." or "concat:..." names of files. Errors in the
-  // data end the decoding (-xerror) instead of being painted over.
+  Descriptor footage(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (footage.get() < 0) fail(std::strerror(errno));
+  // Errors in the data end the decoding (-xerror) instead of being painted over.
   std::vector<std::string> command = {options.program,
                                       "-nostdin",
                                       "-hide_banner",
@@ -214,10 +253,12 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
                                       "-xerror",
                                       "-protocol_whitelist",
                                       "file,pipe",
+                                      "-format_whitelist",
+                                      kFormats,
                                       "-threads",
                                       "1",
                                       "-i",
-                                      "file:" + file.string(),
+                                      kFootage,
                                       "-map",
                                       "0:v:0",
                                       "-frames:v",
@@ -231,17 +272,25 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
     command.push_back(word);
 
   ChildProcess child(command, ChildProcess::Stream::kOutput,
-                     fmt::format("cannot read the footage '{}'", name));
+                     fmt::format("cannot read the footage '{}'", name), footage.get());
+  footage.close();
   std::vector<RgbImage> frames;
   std::string buffer;
   try {
-    while (child.read_some(buffer))
+    while (child.read_some(buffer, options.stop))
       while (auto frame = take_frame(buffer)) frames.push_back(std::move(*frame));
+  } catch (const Stopped&) {
+    throw;
   } catch (const std::runtime_error& e) {
     fail(e.what());
   }
-  const int status = child.finish();
-  const std::string words = last_line(child.messages());
+  const int status = child.finish(options.stop);
+  std::string words = last_line(child.messages());
+  if (child.messages().find("ormat not on whitelist") != std::string::npos)
+    fail("its format is not allowed; allowed: one film or picture, and no playlist, list of files or "
+         "text");
+  if (const auto at = words.find(kFootage); at != std::string::npos)
+    words.replace(at, std::string_view(kFootage).size(), "the file");
   if (status != 0)
     fail(fmt::format("ffmpeg ended with status {}{}", status, words.empty() ? "" : ": " + words));
   if (!buffer.empty()) fail("ffmpeg's output ends within a frame");
@@ -253,13 +302,13 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   return frames;
 }
 
-RgbImage load_still(const std::filesystem::path& file) {
+RgbImage load_still(const std::filesystem::path& file, const std::atomic<bool>* stop) {
   static constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
   constexpr std::size_t kMaxStillBytes = 256u << 20;
   // Also a file that only claims to be a PNG by its name goes to the PNG reader: its message fits.
   if (file.extension() == ".png" || read_file(file, kMaxStillBytes).starts_with(kPngSignature))
     return read_png(file);
-  return std::move(decode_frames(file, {}).front());
+  return std::move(decode_frames(file, {.stop = stop}).front());
 }
 
 Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate,

@@ -23,16 +23,18 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
            params.soc.ddr.size_bytes()}};
 }
 
-std::vector<RgbImage> load_footage(const board::BoardParams& params) {
+std::vector<RgbImage> load_footage(const board::BoardParams& params,
+                                   const std::atomic<bool>* stop) {
   const auto& camera = params.camera;
   if (camera.kind.is("chart")) return {};
   if (camera.file().empty())
     throw UserError("key 'camera.file': a picture or film is needed for camera.kind = " +
                     camera.kind() + "; allowed: a file name, or camera.kind: chart");
-  if (camera.kind.is("sphere")) return {load_still(camera.file())};
+  if (camera.kind.is("sphere")) return {load_still(camera.file(), stop)};
   DecodeOptions options;
   // Two fields a frame; some frames more for start-up. Films repeat when they end.
   options.max_frames = 250;
+  options.stop = stop;
   return decode_frames(camera.file(), options);
 }
 

@@ -1,6 +1,7 @@
 // What a boot loader and the person at the board do before the start: program, footage, switches,
 // parameter page.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -17,7 +18,9 @@ std::filesystem::path program_file(const board::BoardParams& params);
 /// Where a program's segments may lie.
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params);
 /// Decodes camera.file; nothing for a chart. @throws UserError naming the file
-std::vector<RgbImage> load_footage(const board::BoardParams& params);
+/// @throws Stopped when `stop` is set while ffmpeg decodes
+std::vector<RgbImage> load_footage(const board::BoardParams& params,
+                                   const std::atomic<bool>* stop = nullptr);
 /// Sets what follows from other keys and was not set itself (the decoder's standard).
 void complete_params(board::BoardParams& params);
 /// The bytes of the parameter page (sw/lens/README.md).

@@ -131,31 +131,43 @@ std::string host_json(std::vector<StatRow> rows, std::span<const std::string> co
   return out + "\n}\n";
 }
 
+std::string frames_csv_header() {
+  return "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+         "display_start_ns,display_end_ns,dropped,repeated\n";
+}
+
+std::string frames_csv_line(const FrameRow& r) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.camera,
+                     r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
+                     cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
+                     cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0);
+}
+
 std::string frames_csv(std::span<const FrameRow> rows) {
-  std::string out =
-      "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
-      "display_start_ns,display_end_ns,dropped,repeated\n";
-  for (const auto& r : rows)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.camera,
-                       r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
-                       cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
-                       cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0);
+  std::string out = frames_csv_header();
+  for (const auto& r : rows) out += frames_csv_line(r);
   return out;
 }
 
-std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows) {
+std::string timeline_csv_header(std::span<const std::string> masters) {
   std::string out = "start_ns,end_ns";
   for (const auto& m : masters)
     out += "," + csv_field(m + ".read_bytes") + "," + csv_field(m + ".write_bytes");
-  out += "\n";
-  for (const auto& r : rows) {
-    FOVEA_CHECK(r.read_bytes.size() == masters.size() && r.write_bytes.size() == masters.size(),
-                "timeline row and header differ in the number of masters");
-    out += ns_text(r.start) + "," + ns_text(r.end);
-    for (std::size_t m = 0; m < masters.size(); ++m)
-      out += fmt::format(",{},{}", r.read_bytes[m], r.write_bytes[m]);
-    out += "\n";
-  }
+  return out + "\n";
+}
+
+std::string timeline_csv_line(const TimelineRow& r, std::size_t masters) {
+  FOVEA_CHECK(r.read_bytes.size() == masters && r.write_bytes.size() == masters,
+              "timeline row and header differ in the number of masters");
+  std::string out = ns_text(r.start) + "," + ns_text(r.end);
+  for (std::size_t m = 0; m < masters; ++m)
+    out += fmt::format(",{},{}", r.read_bytes[m], r.write_bytes[m]);
+  return out + "\n";
+}
+
+std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows) {
+  std::string out = timeline_csv_header(masters);
+  for (const auto& r : rows) out += timeline_csv_line(r, masters.size());
   return out;
 }
 

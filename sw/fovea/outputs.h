@@ -77,6 +77,13 @@ std::string stats_json(std::vector<StatRow> rows, bool complete,
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);
 
+/// The parts of frames.csv and timeline.csv, for files that grow with the run: the line with the
+/// columns' names, and one line per row.
+std::string frames_csv_header();
+std::string frames_csv_line(const FrameRow& row);
+std::string timeline_csv_header(std::span<const std::string> masters);
+std::string timeline_csv_line(const TimelineRow& row, std::size_t masters);
+
 std::string frames_csv(std::span<const FrameRow> rows);
 /// `masters` names the entries of each row's vectors; columns are bytes per interval.
 std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);

@@ -180,8 +180,12 @@ void FrameWriter::run() {
 
 void FrameWriter::encode(const Job& job) {
   const RgbImage image = uyvy_to_rgb(job.width, job.height, job.uyvy);
-  if (!options_.folder.empty())
-    write_png(options_.folder / file_name(job.index), image, options_.png_level);
+  if (!options_.folder.empty()) {
+    const auto file = options_.folder / file_name(job.index);
+    auto out = options_.folder_fd < 0 ? CheckedFile(file) : CheckedFile(file, options_.folder_fd);
+    out.write(encode_png(image, options_.png_level));
+    out.close();
+  }
   if (options_.mp4.empty()) return;
   if (!mp4_)
     mp4_ = std::make_unique<Mp4Writer>(options_.mp4, image.width, image.height, options_.mp4_rate);

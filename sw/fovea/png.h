@@ -31,6 +31,7 @@ class Mp4Writer;
 
 struct FrameWriterOptions {
   std::filesystem::path folder = {};  ///< PNG files `frame_000000.png`; empty: none
+  int folder_fd = -1;  ///< the same folder, open: files are new ones in it; -1: by its name
   int png_level = 1;                  ///< 0..9; 1 is fast and about a tenth larger than 6
   std::size_t queue_frames = 8;       ///< push() waits when so many wait for the encoder
   std::filesystem::path mp4 = {};     ///< also a film; empty: none

@@ -88,7 +88,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   params.check();
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
-                               : fs::path("out") / fs::path(options.trace).stem());
+                               : fs::path("out") / fs::path(options.trace).stem(),
+             "replay");
   dir.write("config.json", config_json(set, experiment, version_text()));
 
   ReplayPath path(one_line(options.trace), *trace.info, *trace.source, params,
@@ -114,7 +115,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   dir.write("host.json", host_json(host, args, version_text()));
   dir.write("stats.json", stats_json(stats, complete, collect_remarks(Diagnostics::instance())));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
-  dir.commit();
+  report_earlier(dir.commit(complete), context);
   context.out << summary_table(stats, host);
   context.out << fmt::format("  results in {}\n", dir.folder().string()) << std::flush;
   if (complete) return kExitDone;

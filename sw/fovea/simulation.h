@@ -51,6 +51,10 @@ struct RunRequest {
   /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
   /// full), which the board lets through.
   std::function<void(const DisplayedFrame&)> frame;
+  /// Take rows as they become final, in order; the result has the rest of them. Empty: it has all.
+  /// May throw UserError as `frame` may.
+  std::function<void(const FrameRow&)> frame_row = {};
+  std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
   /// Waits for a debugger there before the core starts.
   std::optional<std::uint16_t> gdb_port = {};

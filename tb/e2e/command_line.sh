@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Wrong input, a failing guest and Ctrl-C, on the real program.
-# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT IDLE_LOOP.elf STOPPED_CLOCK.elf
+# Usage: command_line.sh FOVEA PROJECT_SOURCE OUT IDLE_LOOP.elf STOPPED_CLOCK.elf WILD_POINTER.elf
 set -uo pipefail
-fovea=$1 source=$2 out=$3 idle_loop=$4 stopped_clock=$5
+fovea=$1 source=$2 out=$3 idle_loop=$4 stopped_clock=$5 wild_pointer=$6
 rm -rf "$out"
 mkdir -p "$out"
 firmware=$(dirname "$fovea")/sw/firmware
@@ -95,6 +95,46 @@ expect load_ram 2 "load.base" 'internal RAM of 32 KiB' -- run "$out/small.yaml" 
   -s load.outstanding=1 -s load.memory=internal_ram
 expect load_size 2 "load.size" '128' -- run "$out/small.yaml" -s load.outstanding=1 -s load.kind=copy \
   -s load.size=8256B
+
+# A wild pointer: its warnings are counted, a few of them shown and kept.
+"$fovea" run "$out/small.yaml" -s firmware.elf="$wild_pointer" -s run.start_limit=20ms -o "$out/wild" \
+  >/dev/null 2>"$out/wild.err"
+status=$?
+lines=$(wc -l <"$out/wild.err") bytes=$(stat -c %s "$out/wild/stats.json")
+counted=$(grep -oE '"count": [0-9]+' "$out/wild/stats.json" | awk '{ s += $2 } END { print s + 0 }')
+if [ "$status" != 3 ] || [ "$lines" -gt 60 ] || [ "$bytes" -gt 200000 ] || [ "$counted" -lt 10000 ]; then
+  echo "wild pointer: status $status, $lines lines, stats.json $bytes bytes, $counted warnings counted"
+  failures=$((failures + 1))
+fi
+
+# A film that names other files; a host without memory.
+printf '#EXTM3U\n#EXT-X-TARGETDURATION:9\n#EXTINF:9,\n%s\n#EXT-X-ENDLIST\n' \
+  "$source/traces/footage/udacity-road/solidWhiteRight.mp4" >"$out/list.mp4"
+expect playlist 2 'list.mp4' 'playlist' -- run "$out/small.yaml" -s camera.kind=video \
+  -s camera.file="$out/list.mp4"
+out_of_memory() { (ulimit -v 150000 && exec "$fovea" run "$out/small.yaml" -o "$out/run"); }
+expect out_of_memory 2 'out of memory|the host refused' -- out_of_memory
+
+# Ctrl-C while footage is decoded, by a decoder that hangs.
+mkdir -p "$out/bin"
+printf '#!/bin/sh\necho $$ >"%s"\nexec sleep 1000\n' "$out/decoder.pid" >"$out/bin/ffmpeg"
+chmod +x "$out/bin/ffmpeg"
+cp "$out/list.mp4" "$out/film.mp4"
+PATH="$out/bin:$PATH" "$fovea" run "$out/small.yaml" -s camera.kind=video -s camera.file="$out/film.mp4" \
+  -o "$out/decoding" >"$out/decoding.text" 2>&1 &
+pid=$!
+for _ in {1..600}; do
+  [ -s "$out/decoder.pid" ] && break
+  sleep 0.1
+done
+kill -TERM "$pid"
+wait "$pid"
+status=$?
+if [ "$status" != 143 ] || [ -e "$out/decoding.tmp" ] || [ -e "$out/decoding" ] ||
+  kill -0 "$(cat "$out/decoder.pid")" 2>/dev/null || ! grep -q 'no results' "$out/decoding.text"; then
+  echo "SIGTERM while decoding: exit status $status, or something is left: $(cat "$out/decoding.text")"
+  failures=$((failures + 1))
+fi
 
 # Ctrl-C: a valid partial result.
 "$fovea" run "$out/small.yaml" -s run.frames=100000 -o "$out/stopped" >/dev/null 2>&1 &

@@ -38,6 +38,20 @@ expect without 0 -- run -o "$out/without"
 cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
 expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
 cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
+
+# What is not a trace is not overwritten, and no link is followed.
+echo dear >"$out/letter"
+cp "$out/letter" "$out/other.tmp"
+ln -s "$out/letter" "$out/link"
+for name in letter link other; do
+  expect "bus_trace_$name" 2 "$name" 'bus trace|symbolic link' -- run -o "$out/refused" --bus-trace "$out/$name"
+done
+expect bus_trace_in_folder 2 'output folder' -- run -o "$out/refused" --bus-trace "$out/refused/x.trace"
+[ "$(cat "$out/letter" "$out/other.tmp")" = $'dear\ndear' ] || fail 'a file that is not a trace was overwritten'
+[ ! -e "$out/refused" ] && [ ! -e "$out/refused.tmp" ] || fail 'a refused trace left a folder'
+expect record_again 0 -- run -o "$out/run" --bus-trace "$trace"
+cmp "$trace" "$out/strict.trace" || fail 'a trace recorded over another differs'
+
 expect replay 0 'replay.time' 'frame.remap_time.mean' -- replay "$trace"
 moved() { awk -F, 'NR > 1 { for (i = 3; i <= NF; i++) s += $i } END { print s + 0 }' "$1"; }
 all=$(grep -oE '"bus\.[a-z_0-9]*\.(read|write)_bytes": \{"value": [0-9]+' "$out/replay/stats.json" | awk '{ s += $NF } END { print s }')

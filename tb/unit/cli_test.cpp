@@ -81,6 +81,24 @@ TEST_F(CliTest, TwoRunsAreEqualInAllButHostJson) {
   for (const char* name : names) EXPECT_EQ(read_text(result / name), first[i++]) << name;
 }
 
+TEST_F(CliTest, RowsAreWrittenInOrderWhetherEarlyOrLate) {
+  for (const unsigned frames : {1u, 3u, 4u}) {
+    ASSERT_EQ(run({"-s", "run.frames=" + std::to_string(frames)}), 0) << err.str();
+    std::istringstream csv(read_text(result / "frames.csv"));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_THAT(line, testing::StartsWith("frame,camera,"));
+    for (unsigned i = 0; i < frames; ++i) {
+      ASSERT_TRUE(std::getline(csv, line));
+      EXPECT_THAT(line, testing::StartsWith(std::to_string(i) + ","));
+    }
+    EXPECT_FALSE(std::getline(csv, line));
+  }
+  EXPECT_EQ(read_text(result / "timeline.csv"),
+            "start_ns,end_ns,arm_d.read_bytes,arm_d.write_bytes\n"
+            "0.000,1000000.000,32,8\n1000000.000,2000000.000,64,0\n");
+}
+
 TEST_F(CliTest, CommandLineWinsAndIsRecorded) {
   ASSERT_EQ(run({"-s", "run.frames=2", "-s", "run.mode=slow", "--sync=strict"}), 0) << err.str();
   EXPECT_EQ(stats()["frame.displayed"]["value"], 2);
@@ -99,7 +117,7 @@ TEST_F(CliTest, SetMayStandBeforeTheExperiment) {
 
 TEST_F(CliTest, NoFramesWritesNoPictures) {
   ASSERT_EQ(run({"--no-frames"}), 0);
-  EXPECT_TRUE(fs::is_empty(result / "frames"));
+  EXPECT_FALSE(fs::exists(result / "frames"));
 }
 
 TEST_F(CliTest, WrongInputIsOneLineAndStatusTwo) {
@@ -145,6 +163,31 @@ TEST_F(CliTest, GuestFailureIsStatusThreeAndADefectFour) {
   EXPECT_THAT(err.str(), HasSubstr("PC 0x0"));
   EXPECT_EQ(run({"-s", "run.mode=defect"}), 4);
   EXPECT_THAT(err.str(), HasSubstr("own defect: broken"));
+}
+
+TEST_F(CliTest, WhatTheHostRefusesIsStatusTwoAndNoDefect) {
+  for (const char* mode : {"out_of_memory", "out_of_memory_in_kernel"}) {
+    EXPECT_EQ(run({"-s", std::string("run.mode=") + mode}), 2);
+    EXPECT_THAT(err.str(), AllOf(HasSubstr("error: out of memory"), Not(HasSubstr("defect"))));
+    const std::string text = err.str();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  }
+  EXPECT_EQ(run({"-s", "run.mode=no_thread"}), 2);
+  EXPECT_THAT(err.str(), AllOf(HasSubstr("the host refused"), HasSubstr("temporarily")));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+}
+
+TEST_F(CliTest, ASignalBeforeTheSimulationLeavesNoFolder) {
+  signal = SIGTERM;
+  EXPECT_EQ(run({"-s", "run.mode=stopped_decoding"}), 143);
+  EXPECT_THAT(err.str(), HasSubstr("stopped before the simulation began; there are no results"));
+  EXPECT_FALSE(fs::exists(result));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+}
+
+TEST_F(CliTest, TextOfTheGuestDoesNotDriveTheTerminal) {
+  EXPECT_EQ(run({"-s", "run.mode=escape"}), 3);
+  EXPECT_EQ(err.str(), "fovea: the guest failed: at \\x1b[31mmain\nsecond line\n");
 }
 
 TEST_F(CliTest, GuestFailureWithFiguresKeepsThem) {
@@ -198,7 +241,7 @@ class ProgramTest : public testing::Test {
   };
   /// Starts it; `after` acts on the running process.
   Ended start(std::vector<std::string> args, const std::function<void(pid_t)>& after = {},
-              rlim_t file_limit = RLIM_INFINITY) {
+              rlim_t file_limit = RLIM_INFINITY, const std::string& output = "/dev/null") {
     args.insert(args.begin(), FAKE_PROGRAM);
     std::vector<char*> argv;
     for (auto& a : args) argv.push_back(a.data());
@@ -206,7 +249,7 @@ class ProgramTest : public testing::Test {
     const std::string err = (dir / "err").string();
     const pid_t pid = ::fork();
     if (pid == 0) {
-      if (!std::freopen(err.c_str(), "w", stderr) || !std::freopen("/dev/null", "w", stdout))
+      if (!std::freopen(err.c_str(), "w", stderr) || !std::freopen(output.c_str(), "w", stdout))
         ::_exit(99);
       const rlimit limit{file_limit, file_limit};
       ::setrlimit(RLIMIT_FSIZE, &limit);
@@ -248,6 +291,50 @@ TEST_F(ProgramTest, FullDiskIsOneLineAndStatusTwo) {
   EXPECT_THAT(ended.err, AllOf(HasSubstr("config.json"), HasSubstr("File too large")));
   EXPECT_FALSE(fs::exists(dir / "r"));
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+}
+
+TEST_F(ProgramTest, OutputThatCannotBeWrittenIsStatusTwo) {
+  const std::string trace = dir.write("t.txt", "# dramtrace 1\n# master 3 window 2 cpu\n0 3 R 0x0 32\n");
+  for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
+           {"version"},
+           {"params"},
+           {"--help"},
+           {"run", experiment, "-s", "run.mode=good", "-s", "run.frames=2", "-o", (dir / "r").string()},
+           {"replay", trace, "-o", (dir / "p").string()}}) {
+    EXPECT_EQ(start(args).status, 0) << args[0];
+    const auto ended = start(args, {}, RLIM_INFINITY, "/dev/full");
+    EXPECT_EQ(ended.status, 2) << args[0];
+    EXPECT_THAT(ended.err, HasSubstr("error: the standard output cannot be written")) << args[0];
+  }
+  EXPECT_TRUE(fs::exists(dir / "r/stats.json")) << "the results are there all the same";
+  // A status that says more is kept.
+  EXPECT_EQ(start({"run", experiment, "-s", "run.mode=late_failure", "-s", "run.frames=1", "-o",
+                   (dir / "q").string()}, {}, RLIM_INFINITY, "/dev/full").status, 3);
+}
+
+TEST_F(ProgramTest, AReaderThatHasEnoughIsNoError) {
+  const std::string command = "'" + std::string(FAKE_PROGRAM) + "' params 2>'" +
+                              (dir / "err").string() + "'; echo $? >'" + (dir / "status").string() + "'";
+  // The reader is gone before the program starts.
+  ASSERT_EQ(std::system(("{ sleep 0.3; " + command + "; } | true").c_str()), 0);
+  EXPECT_EQ(read_text(dir / "status"), "0\n");
+  EXPECT_EQ(read_text(dir / "err"), "");
+}
+
+TEST_F(ProgramTest, ClosedStandardStreamsAreNotTakenByFilesOfResults) {
+  // The first files that are open at a time are the folder's lock and the trace; the warning comes
+  // while both are.
+  for (const char* streams : {">/dev/null 2>&1", ">&- 2>&-", "<&- >&- 2>&-", "2>&- >/dev/null",
+                              "<&-  >/dev/null 2>&1"}) {
+    const std::string command = "'" + std::string(FAKE_PROGRAM) + "' run '" + experiment +
+                                "' -s run.mode=not_modelled -s run.frames=2 --no-frames -o '" +
+                                (dir / "r").string() + "' --bus-trace '" +
+                                (dir / "r.trace").string() + "' " + streams;
+    ASSERT_EQ(std::system(command.c_str()), 0) << streams;
+    EXPECT_EQ(read_text(dir / "r.trace"), "the trace\n") << streams;
+    const auto stats = json::parse(read_text(dir / "r/stats.json"));
+    EXPECT_EQ(stats["frame.displayed"]["value"], 2) << streams;
+  }
 }
 
 TEST_F(ProgramTest, ABrokenInvariantIsStatusFourAndLeavesNoFolder) {

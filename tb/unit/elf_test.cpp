@@ -56,6 +56,17 @@ TEST_F(ElfTest, SegmentsHoldTheFilesBytesAtTheirAddresses) {
   EXPECT_GE(in_memory - in_file, 64u) << "`zeroed` takes no room in the file";
 }
 
+TEST_F(ElfTest, ControlCharactersInNamesAreEscaped) {
+  std::string bytes = read_text(kGood);
+  const std::string name("\0counter\0", 9);
+  const std::size_t at = bytes.find(name);
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at + 1, 7, "\x1b[31m\nr");
+  const auto image = ElfImage::load(dir.write("escape.elf", bytes));
+  EXPECT_EQ(image.find("counter"), nullptr);
+  EXPECT_NE(image.find("\\x1b[31m\\nr"), nullptr);
+}
+
 TEST_F(ElfTest, EntryIsTheStartFunction) {
   const auto image = ElfImage::load(kGood);
   ASSERT_NE(image.find("_start"), nullptr);

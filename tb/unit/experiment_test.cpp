@@ -1,6 +1,8 @@
 // sw/fovea/experiment.h: the YAML file, its errors in one line, and the order of precedence.
 #include "sw/fovea/experiment.h"
 
+#include <sys/stat.h>
+
 #include "tb/unit/support.h"
 
 namespace fovea::app {
@@ -176,8 +178,42 @@ TEST_F(ExperimentTest, DeepNestingIsRefused) {
   EXPECT_THAT(load_error(maps + "         a: 1\n"), HasSubstr("nested deeper"));
 }
 
+TEST_F(ExperimentTest, EightLevelsAreReadAndTheNinthIsNot) {
+  const auto nested = [](unsigned levels) {
+    std::string text;
+    for (unsigned i = 0; i < levels; ++i)
+      text += std::string(i, ' ') + (i + 1 < levels ? "a:\n" : "a: 1\n");
+    return text;
+  };
+  EXPECT_THAT(load_error(nested(8)), HasSubstr("'a.a.a.a.a.a.a.a'"));
+  EXPECT_THAT(load_error(nested(9)), at(9, "nested deeper than the 8 levels"));
+}
+
+TEST_F(ExperimentTest, SixtyFourFilesAreReadAndTheNextIsNot) {
+  dir.write("leaf.yaml", "run.frames: 7\n");
+  const auto including = [](unsigned files) {
+    std::string text = "include: [leaf.yaml";
+    for (unsigned i = 1; i < files; ++i) text += ", leaf.yaml";
+    return text + "]\n";
+  };
+  experiment.load(dir.write("top.yaml", including(63)));
+  EXPECT_EQ(run.frames(), 7u);
+  Experiment another{params};
+  const auto more = dir.write("more.yaml", including(64));
+  EXPECT_THAT(user_error([&] { another.load(more); }), HasSubstr("more than 64"));
+}
+
 TEST_F(ExperimentTest, OversizedFileIsRefused) {
   EXPECT_THAT(load_error(std::string((1u << 20) + 1, '#')), HasSubstr("larger than"));
+  experiment.load(dir.write("whole.yaml", std::string(1u << 20, '#')));
+}
+
+TEST_F(ExperimentTest, PipesAndDevicesAreRefusedAndNotReadAsEmpty) {
+  const auto pipe = dir / "pipe.yaml";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string file : {pipe.string(), std::string("/dev/null")})
+    EXPECT_THAT(user_error([&] { experiment.load(file); }),
+                AllOf(HasSubstr(file), HasSubstr("not a regular file")));
 }
 
 TEST_F(ExperimentTest, IncludeErrorsNameTheLine) {

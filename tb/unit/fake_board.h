@@ -2,10 +2,15 @@
 #pragma once
 #include <chrono>
 #include <memory>
+#include <new>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/simulation.h"
 
 namespace fovea::test {
@@ -18,9 +23,23 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("guest_failure")) throw GuestFailure("PC 0x0 in nowhere");
     if (params_.mode.is("defect")) throw std::logic_error("broken");
     if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
+    std::optional<app::CheckedFile> trace;
+    if (!request.bus_trace.empty()) trace.emplace(request.bus_trace);
+    if (params_.mode.is("out_of_memory")) throw std::bad_alloc();
+    if (params_.mode.is("no_thread"))
+      throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+    if (params_.mode.is("out_of_memory_in_kernel"))
+      throw std::runtime_error("Error: (E549) uncaught exception: std::bad_alloc\nIn process: p");
+    if (params_.mode.is("stopped_decoding")) throw app::Stopped();
     if (params_.mode.is("user_error")) throw UserError("footage 'x' is missing");
     if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
+    if (trace) {
+      trace->write("the trace\n");
+      trace->close();
+    }
     app::RunResult result;
+    std::vector<app::FrameRow> late;
+    std::uint64_t shown = 0;
     std::vector<std::uint8_t> uyvy(32 * 16 * 2, 128);
     for (std::uint64_t i = 0; i < params_.frames(); ++i) {
       if (request.stop) {
@@ -31,16 +50,25 @@ class FakeBoard : public app::Simulation {
       app::FrameRow row;
       row.index = i;
       row.display_start = i * 40 * kPsPerMs;
-      result.frames.push_back(row);
+      for (; !late.empty(); late.erase(late.begin())) request.frame_row(late.front());
+      // As the real board does: rows go out when they are final, the last ones come with the result.
+      if (request.frame_row && i % 3 != 2)
+        request.frame_row(row);
+      else
+        late.push_back(row);
+      ++shown;
       request.progress.update({(i + 1) * 40 * kPsPerMs, i + 1, params_.frames(), 1000 * i});
       if (params_.mode.is("slow")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    if (params_.mode.is("escape")) throw GuestFailure("at \x1b[31mmain\nsecond line");
     if (params_.mode.is("late_failure")) result.guest_failure = "watchdog\nlast access: 0x0";
-    result.stats.push_back({"frame.displayed", std::uint64_t{result.frames.size()}, "count", "n"});
+    result.frames = std::move(late);
+    result.stats.push_back({"frame.displayed", shown, "count", "n"});
     result.stats.push_back(
         {"sync.strict", std::uint64_t{request.strict_sync ? 1u : 0u}, "count", "asked for"});
     result.timeline_masters = {"arm_d"};
-    result.timeline = {{0, kPsPerMs, {64}, {0}}};
+    if (request.timeline_row) request.timeline_row(result.timeline_masters, {0, kPsPerMs, {32}, {8}});
+    result.timeline = {{kPsPerMs, 2 * kPsPerMs, {64}, {0}}};
     result.stalls = {{"dcache", "lut", "vpbe", 7}};
     result.uart = "hello from the guest\n";
     return result;
@@ -57,7 +85,8 @@ class FakeBoard : public app::Simulation {
         "mode",
         "good",
         {"good", "slow", "guest_failure", "late_failure", "defect", "broken_check", "user_error",
-         "not_modelled"},
+         "not_modelled", "out_of_memory", "out_of_memory_in_kernel", "no_thread",
+         "stopped_decoding", "escape"},
         "how it ends | or not",
         Origin::kAssumed,
         "",

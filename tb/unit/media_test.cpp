@@ -2,7 +2,10 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/ffmpeg.h"
@@ -309,6 +312,77 @@ TEST_F(FfmpegTest, NamesThatLookLikeOptionsOrProtocolsAreFiles) {
     EXPECT_EQ(decode_frames(name, {}).size(), 1u) << name;
   }
   fs::current_path(old);
+}
+
+/// Files that would make ffmpeg open others, under names that promise a film or a picture.
+TEST_F(FfmpegTest, OnlyTheFileItselfIsRead) {
+  const std::string film = clip(1).string();
+  const std::string hls = "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:10,\n" + film +
+                          "\n#EXT-X-ENDLIST\n";
+  const std::string concat = "ffconcat version 1.0\nfile clip.mp4\n";
+  const std::string dash =
+      "<?xml version=\"1.0\"?><MPD xmlns=\"urn:mpeg:dash:schema:mpd:2011\" type=\"static\">"
+      "<Period><AdaptationSet mimeType=\"video/mp4\"><Representation id=\"0\" bandwidth=\"1\">"
+      "<BaseURL>" + film + "</BaseURL></Representation></AdaptationSet></Period></MPD>";
+  const std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><image href=\"p.png\"/></svg>";
+  for (const std::string& text : {hls, concat, dash, svg})
+    for (const char* name : {"x.mp4", "x.jpg", "x.m3u8", "x.txt"}) {
+      const auto file = dir.write(name, text);
+      EXPECT_THAT(user_error([&] { decode_frames(file, {}); }), HasSubstr(name)) << text;
+    }
+  EXPECT_THAT(user_error([&] { decode_frames(dir.write("pl.mp4", hls), {}); }),
+              HasSubstr("format is not allowed"));
+  // ffmpeg draws text as a terminal would, judging by the name.
+  for (const char* name : {"x.nfo", "x.ans", "x.diz"})
+    EXPECT_THAT(user_error([&] { decode_frames(dir.write(name, "hello, world\n"), {}); }),
+                HasSubstr(name));
+}
+
+TEST_F(FfmpegTest, ANameWithAPatternIsOneFile) {
+  write_png(dir / "p.png", pattern(32, 16));
+  write_png(dir / "q.png", pattern(48, 16));
+  for (const char* step : {"p.png a%03d.jpg", "q.png a001.jpg"}) {
+    const std::string text = step;
+    const auto space = text.find(' ');
+    ASSERT_EQ(std::system(("cd '" + dir.path().string() + "' && ffmpeg -v error -i " +
+                           text.substr(0, space) + " -update 1 -f image2 b.jpg && mv b.jpg '" +
+                           text.substr(space + 1) + "'")
+                              .c_str()),
+              0);
+  }
+  EXPECT_EQ(load_still(dir / "a%03d.jpg").width, 32u) << "and not a001.jpg, which the pattern fits";
+}
+
+/// A decoder that hangs, in a process that it has started itself.
+TEST_F(FfmpegTest, AStopEndsTheDecodingAndLeavesNoProcess) {
+  const auto file = dir.write("x.mp4", "x");
+  for (const char* body : {"sleep 1000 & echo $! >\"$0.pid\"; wait",
+                           "exec >&-; sleep 1000 & echo $! >\"$0.pid\"; wait"}) {
+    const auto program = dir.write("fake", std::string("#!/bin/sh\n") + body + "\n");
+    fs::permissions(program, fs::perms::owner_all);
+    const auto pid_file = dir / "fake.pid";
+    fs::remove(pid_file);
+    std::atomic<bool> stop{false};
+    std::thread signal([&] {
+      for (int i = 0; i < 1000 && read_text(pid_file).find('\n') == std::string::npos; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      stop = true;
+    });
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_THROW(decode_frames(file, {.program = program.string(), .stop = &stop}), Stopped);
+    signal.join();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+    const pid_t pid = std::stoi(read_text(pid_file));
+    // A zombie until whoever inherits it looks: gone, or about to go.
+    bool gone = false;
+    for (int i = 0; i < 500 && !gone; ++i) {
+      const std::string state = read_text("/proc/" + std::to_string(pid) + "/stat");
+      gone = state.empty() || state.find(") Z ") != std::string::npos;
+      if (!gone) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(gone);
+  }
 }
 
 TEST_F(FfmpegTest, FilmThatCannotBeWrittenIsAnErrorNotASignal) {

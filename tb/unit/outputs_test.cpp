@@ -174,6 +174,10 @@ TEST(HumanTextTest, PicksAFittingPrefix) {
   EXPECT_EQ(human_text(123.0, "s"), "123 s") << "no kiloseconds";
   EXPECT_EQ(human_text(std::uint64_t{165'888'000}, "bytes"), "165.9 MB");
   EXPECT_EQ(human_text(std::uint64_t{0}, "bytes"), "0 bytes");
+  EXPECT_EQ(human_text(std::uint64_t{999}, "bytes"), "999 B");
+  EXPECT_EQ(human_text(std::uint64_t{1000}, "bytes"), "1 kB");
+  EXPECT_EQ(human_text(0.001, "s"), "1 ms");
+  EXPECT_EQ(human_text(0.000999, "s"), "999 us");
   EXPECT_EQ(human_text(0.337, "ratio"), "33.7 %");
   EXPECT_EQ(human_text(25.0, "1/s"), "25 1/s");
   EXPECT_EQ(human_text(std::uint64_t{26}, "count"), "26");

@@ -3,8 +3,10 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include "sw/fovea/output_file.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {
@@ -21,11 +23,13 @@ const std::string kConfig = R"({"format": "fovea run 1"})";
 
 TEST(RunDirTest, FilesAppearUnderTheNameOnlyWhenComplete) {
   TempDir dir;
-  RunDir run(dir / "r");
+  RunDir run(dir / "r", "run");
   run.write("config.json", kConfig);
   EXPECT_FALSE(fs::exists(dir / "r"));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp/frames"));
+  run.make_folder("frames");
   EXPECT_TRUE(fs::is_directory(dir / "r.tmp/frames"));
-  run.commit();
+  EXPECT_EQ(run.commit(true), "");
   EXPECT_EQ(read_text(dir / "r/config.json"), kConfig);
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
   EXPECT_EQ(run.folder(), fs::canonical(dir / "r"));
@@ -34,30 +38,30 @@ TEST(RunDirTest, FilesAppearUnderTheNameOnlyWhenComplete) {
 TEST(RunDirTest, AbandonedRunLeavesNothingButTheOldResult) {
   TempDir dir;
   dir.write("r/config.json", kConfig);
-  dir.write("r/old", "1");
+  dir.write("r/uart.log", "1");
   {
-    RunDir run(dir / "r");
-    run.write("new", "2");
+    RunDir run(dir / "r", "run");
+    run.write("uart.log", "2");
   }
-  EXPECT_EQ(read_text(dir / "r/old"), "1");
+  EXPECT_EQ(read_text(dir / "r/uart.log"), "1");
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
 }
 
 TEST(RunDirTest, TmpOfARefusedRunIsRemovedOnlyByTheRunThatHasIt) {
   TempDir dir;
-  RunDir first(dir / "r");
-  first.write("new", "2");
-  EXPECT_THAT(user_error([&] { RunDir second(dir / "r"); }), HasSubstr("another run"));
-  EXPECT_EQ(read_text(dir / "r.tmp/new"), "2");
+  RunDir first(dir / "r", "run");
+  first.write("uart.log", "2");
+  EXPECT_THAT(user_error([&] { RunDir second(dir / "r", "run"); }), HasSubstr("another run"));
+  EXPECT_EQ(read_text(dir / "r.tmp/uart.log"), "2");
 }
 
 TEST(RunDirTest, PreviousRunIsReplacedAsAWhole) {
   TempDir dir;
   dir.write("r/config.json", kConfig);
   dir.write("r/frames/frame_000099.png", "old");
-  RunDir run(dir / "r");
+  RunDir run(dir / "r", "run");
   run.write("config.json", kConfig);
-  run.commit();
+  run.commit(true);
   EXPECT_FALSE(fs::exists(dir / "r/frames/frame_000099.png"));
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
 }
@@ -66,59 +70,146 @@ TEST(RunDirTest, LeftoverTmpOfARunIsEmptied) {
   TempDir dir;
   dir.write("r.tmp/config.json", kConfig);
   dir.write("r.tmp/frames/frame_000000.png", "old");
-  RunDir run(dir / "r");
+  RunDir run(dir / "r", "run");
   EXPECT_FALSE(fs::exists(dir / "r.tmp/frames/frame_000000.png"));
 }
 
 TEST(RunDirTest, ForeignFoldersAndFilesAreRefusedUntouched) {
   TempDir dir;
   dir.write("home/letter.txt", "dear");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "home"); }),
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "home", "run"); }),
               AllOf(HasSubstr("home"), HasSubstr("not the folder of a Fovea run")));
   dir.write("other/config.json", R"({"format": "something else"})");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "other"); }), HasSubstr("other"));
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "other", "run"); }), HasSubstr("other"));
   dir.write("broken/config.json", "{");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "broken"); }), HasSubstr("broken"));
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "broken", "run"); }), HasSubstr("broken"));
   dir.write("file", "x");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "file"); }), HasSubstr("file"));
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "file", "run"); }), HasSubstr("file"));
   dir.write("r.tmp/letter.txt", "dear");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "r"); }), HasSubstr("r.tmp"));
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }), HasSubstr("r.tmp"));
   EXPECT_EQ(read_text(dir / "home/letter.txt"), "dear");
   EXPECT_EQ(read_text(dir / "r.tmp/letter.txt"), "dear");
-  EXPECT_THAT(user_error([] { RunDir run("/"); }), HasSubstr("output folder"));
-  EXPECT_THAT(user_error([] { RunDir run(""); }), HasSubstr("name"));
+  EXPECT_THAT(user_error([] { RunDir run("/", "run"); }), HasSubstr("output folder"));
+  EXPECT_THAT(user_error([] { RunDir run("", "run"); }), HasSubstr("name"));
 }
 
 TEST(RunDirTest, FolderThatBecameForeignDuringTheRunIsNotReplaced) {
   TempDir dir;
   {
-    RunDir run(dir / "r");
-    run.write("new", "2");
+    RunDir run(dir / "r", "run");
+    run.write("uart.log", "2");
     dir.write("r/letter.txt", "dear");
-    EXPECT_THAT(user_error([&] { run.commit(); }), HasSubstr("r.tmp"));
+    EXPECT_THAT(user_error([&] { run.commit(true); }), HasSubstr("r.new"));
   }
   EXPECT_EQ(read_text(dir / "r/letter.txt"), "dear");
-  EXPECT_EQ(read_text(dir / "r.tmp/new"), "2");  // the message says that the results are here
+  EXPECT_EQ(read_text(dir / "r.new/uart.log"), "2");  // the message says that the results are here
+}
+
+TEST(RunDirTest, FilesOfTheUserInAnyPlaceAreNoRunFiles) {
+  for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
+                           "stalls.csv", "uart.log", "registers.log", "display.mp4",
+                           "frames/frame_000000.png", "frames/frame_1234567.png"})
+    EXPECT_TRUE(is_run_file(name)) << name;
+  for (const char* name : {"", "stats.json~", "stats", "frames", "frames/", "frames/frame_.png",
+                           "frames/frame_1.png.bak", "frames/frame_1a.png", "frames/1.png",
+                           "frames/x/frame_1.png", "frame_000000.png", "frames.csv/x"})
+    EXPECT_FALSE(is_run_file(name)) << name;
+  TempDir dir;
+  dir.write("r/config.json", kConfig);
+  fs::create_directory(dir / "r/uart.log");  // a folder by the name of a file of ours
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }), HasSubstr("uart.log"));
+  fs::remove(dir / "r/uart.log");
+  fs::create_symlink(dir / "elsewhere", dir / "r/uart.log");
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }), HasSubstr("uart.log"));
+  fs::remove(dir / "r/uart.log");
+  fs::create_directories(dir / "r/frames/mine");
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }), HasSubstr("frames/mine"));
+}
+
+TEST(RunDirTest, AnEmptyFolderIsTakenAndOneWithPicturesOnlyIsNot) {
+  TempDir dir;
+  fs::create_directories(dir / "empty/frames");
+  { RunDir run(dir / "empty", "run"); }
+  dir.write("pictures/frames/frame_000000.png", "mine");
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "pictures", "run"); }),
+              HasSubstr("not the folder of a Fovea run"));
+  dir.write("r.tmp/frames/frame_000000.png", "mine");
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }), HasSubstr("r.tmp"));
+  EXPECT_EQ(read_text(dir / "r.tmp/frames/frame_000000.png"), "mine");
+}
+
+TEST(RunDirTest, LinksInTheUnfinishedFolderAreNotFollowed) {
+  TempDir dir;
+  dir.write("victim", "mine");
+  RunDir run(dir / "r", "run");
+  fs::create_symlink(dir / "victim", dir / "r.tmp/uart.log");
+  fs::create_symlink(dir / "victim", dir / "r.tmp/frames.csv");
+  EXPECT_THAT(user_error([&] { run.create("frames.csv"); }),
+              AllOf(HasSubstr("frames.csv"), HasSubstr("File exists")));
+  run.write("uart.log", "ours");  // takes the place of the link
+  EXPECT_EQ(read_text(dir / "victim"), "mine");
+  EXPECT_FALSE(fs::is_symlink(dir / "r.tmp/uart.log"));
+}
+
+TEST(RunDirTest, AFolderPutInThePlaceOfTheUnfinishedOneGetsNoFiles) {
+  TempDir dir;
+  RunDir run(dir / "r", "run");
+  const int frames = run.make_folder("frames");
+  fs::rename(dir / "r.tmp", dir / "moved");
+  fs::create_directories(dir / "r.tmp/frames");
+  run.write("uart.log", "2");
+  CheckedFile(dir / "r.tmp/frames/frame_000000.png", frames).close();
+  EXPECT_TRUE(fs::is_empty(dir / "r.tmp/frames"));
+  EXPECT_FALSE(fs::exists(dir / "r.tmp/uart.log"));
+  EXPECT_TRUE(fs::exists(dir / "moved/frames/frame_000000.png"));
+  EXPECT_EQ(read_text(dir / "moved/uart.log"), "2");
+}
+
+TEST(RunDirTest, NobodyElseMayEnterTheUnfinishedFolder) {
+  TempDir dir;
+  const mode_t mask = ::umask(027);
+  {
+    RunDir run(dir / "r", "run");
+    EXPECT_EQ(fs::status(dir / "r.tmp").permissions(), fs::perms::owner_all);
+    run.write("config.json", kConfig);
+    run.commit(true);
+  }
+  EXPECT_EQ(fs::status(dir / "r").permissions(), static_cast<fs::perms>(0750));
+  ::umask(mask);
+}
+
+TEST(RunDirTest, AnUnfinishedFolderOfAnotherUserIsRefused) {
+  if (::geteuid() != 0) {
+    // Only root can make a folder that belongs to somebody else; /proc/1 is not ours either.
+    SUCCEED();
+    return;
+  }
+  TempDir dir;
+  dir.write("r.tmp/config.json", kConfig);
+  ASSERT_EQ(::chown((dir / "r.tmp").c_str(), 65534, 65534), 0);
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "r", "run"); }),
+              AllOf(HasSubstr("r.tmp"), HasSubstr("another user")));
+  EXPECT_EQ(read_text(dir / "r.tmp/config.json"), kConfig);
 }
 
 TEST(RunDirTest, TwoRunsIntoOneFolderAtATimeAreRefused) {
   TempDir dir;
-  RunDir first(dir / "r");
-  EXPECT_THAT(user_error([&] { RunDir second(dir / "r"); }), HasSubstr("another run"));
+  RunDir first(dir / "r", "run");
+  EXPECT_THAT(user_error([&] { RunDir second(dir / "r", "run"); }), HasSubstr("another run"));
 }
 
 TEST(RunDirTest, ParentFoldersAreMadeAndTrailingSlashesAndLinksUnderstood) {
   TempDir dir;
   {
-    RunDir run(dir / "a/b/r/");
+    RunDir run(dir / "a/b/r/", "run");
     run.write("config.json", kConfig);
-    run.commit();
+    run.commit(true);
   }
   EXPECT_TRUE(fs::exists(dir / "a/b/r/config.json"));
   fs::create_directory_symlink(dir / "a/b/r", dir / "link");
-  RunDir run(dir / "link");
+  RunDir run(dir / "link", "run");
   run.write("config.json", kConfig);
-  run.commit();
+  run.commit(true);
   EXPECT_TRUE(fs::is_symlink(dir / "link"));
   EXPECT_FALSE(fs::exists(dir / "link.tmp"));
 }
@@ -126,13 +217,13 @@ TEST(RunDirTest, ParentFoldersAreMadeAndTrailingSlashesAndLinksUnderstood) {
 TEST(RunDirTest, UnwritablePlaceShowsBeforeTheRun) {
   TempDir dir;
   dir.write("file", "x");
-  EXPECT_THAT(user_error([&] { RunDir run(dir / "file/r"); }),
+  EXPECT_THAT(user_error([&] { RunDir run(dir / "file/r", "run"); }),
               AllOf(HasSubstr("file/r"), HasSubstr("Not a directory")));
-  EXPECT_THAT(user_error([] { RunDir run("/proc/fovea-run"); }), HasSubstr("/proc/fovea-run"));
+  EXPECT_THAT(user_error([] { RunDir run("/proc/fovea-run", "run"); }), HasSubstr("/proc/fovea-run"));
   if (::geteuid() != 0) {  // root may write anywhere
     fs::create_directory(dir / "locked");
     fs::permissions(dir / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_THAT(user_error([&] { RunDir run(dir / "locked/r"); }), HasSubstr("Permission denied"));
+    EXPECT_THAT(user_error([&] { RunDir run(dir / "locked/r", "run"); }), HasSubstr("Permission denied"));
   }
 }
 
@@ -177,6 +268,93 @@ TEST(CheckedFileTest, WritesEverythingInOrderAcrossTheBuffer) {
   EXPECT_EQ(read_text(dir / "f"), expected);
 }
 
+TEST(ReadFileTest, AFileOfTheLargestSizeIsReadAndOneByteMoreIsNot) {
+  TempDir dir;
+  const auto file = dir.write("f", "0123456789");
+  EXPECT_EQ(read_file(file, 10), "0123456789");
+  EXPECT_THAT(user_error([&] { read_file(file, 9); }), HasSubstr("larger than the 9 bytes"));
+}
+
+TEST(CheckedFileTest, ANewFileTakesNobodysPlace) {
+  TempDir dir;
+  dir.write("f", "mine");
+  fs::create_symlink(dir / "elsewhere", dir / "link");
+  for (const char* name : {"f", "link"})
+    EXPECT_THAT(user_error([&] { CheckedFile file(dir / name, CheckedFile::New{}); }),
+                AllOf(HasSubstr(name), HasSubstr("File exists")));
+  EXPECT_EQ(read_text(dir / "f"), "mine");
+  EXPECT_FALSE(fs::exists(dir / "elsewhere"));
+}
+
+bool is_trace(std::string_view bytes) { return bytes.starts_with("trace"); }
+struct Trace : OutputFile {
+  explicit Trace(const fs::path& name) : OutputFile(name, "--trace", "a trace", is_trace) {}
+};
+
+TEST(OutputFileTest, AnEarlierFileStaysUntilTheNewOneIsWhole) {
+  TempDir dir;
+  dir.write("f", "trace 1");
+  {
+    Trace unfinished(dir / "f");
+    unfinished.write("trace 2");
+  }
+  EXPECT_EQ(read_text(dir / "f"), "trace 1");
+  EXPECT_FALSE(fs::exists(dir / "f.tmp"));
+  {
+    Trace whole(dir / "f");
+    whole.write("trace 3");
+    EXPECT_EQ(read_text(dir / "f"), "trace 1");
+    whole.commit();
+    dir.write("f.tmp", "of somebody else");
+  }
+  EXPECT_EQ(read_text(dir / "f"), "trace 3");
+  EXPECT_EQ(read_text(dir / "f.tmp"), "of somebody else");
+}
+
+TEST(OutputFileTest, OnlyFilesOfItsKindAndEmptyOnesAreReplaced) {
+  TempDir dir;
+  dir.write("victim", "mine");
+  dir.write("letter", "dear");
+  dir.write("empty", "");
+  fs::create_directory(dir / "folder");
+  fs::create_symlink(dir / "victim", dir / "link");
+  EXPECT_THAT(user_error([&] { Trace t(dir / "letter"); }),
+              AllOf(HasSubstr("--trace"), HasSubstr("letter"), HasSubstr("is not a trace")));
+  EXPECT_THAT(user_error([&] { Trace t(dir / "link"); }), HasSubstr("symbolic link"));
+  EXPECT_THAT(user_error([&] { Trace t(dir / "folder"); }), HasSubstr("it is a folder"));
+  EXPECT_THAT(user_error([&] { Trace t(dir / "no/f"); }), HasSubstr("No such file"));
+  Trace(dir / "empty").commit();
+  // What lies under the working name is looked at in the same way.
+  dir.write("a.tmp", "dear");
+  EXPECT_THAT(user_error([&] { Trace t(dir / "a"); }), HasSubstr("a.tmp"));
+  fs::create_symlink(dir / "victim", dir / "b.tmp");
+  EXPECT_THAT(user_error([&] { Trace t(dir / "b"); }), HasSubstr("symbolic link"));
+  dir.write("c.tmp", "trace, cut off by a cra");
+  Trace(dir / "c").commit();
+  EXPECT_EQ(read_text(dir / "c"), "");
+  EXPECT_EQ(read_text(dir / "victim"), "mine");
+  EXPECT_EQ(read_text(dir / "letter"), "dear");
+  EXPECT_EQ(read_text(dir / "a.tmp"), "dear");
+}
+
+TEST(OutputFileTest, TwoRunsDoNotWriteOneFile) {
+  TempDir dir;
+  Trace first(dir / "f");
+  EXPECT_THAT(user_error([&] { Trace second(dir / "f"); }), HasSubstr("another run"));
+  first.write("trace");
+  first.commit();
+  EXPECT_EQ(read_text(dir / "f"), "trace");
+}
+
+TEST(OutputFileTest, ADeviceIsWrittenDirectly) {
+  Trace null("/dev/null");
+  null.write("trace");
+  null.commit();
+  Trace full("/dev/full");
+  full.write("trace");
+  EXPECT_THAT(user_error([&] { full.commit(); }), HasSubstr("No space left"));
+}
+
 TEST(CheckedFileTest, MissingFolderIsNamed) {
   EXPECT_THAT(user_error([] { write_file("/nonexistent/f", ""); }),
               AllOf(HasSubstr("/nonexistent/f"), HasSubstr("No such file")));
@@ -185,6 +363,11 @@ TEST(CheckedFileTest, MissingFolderIsNamed) {
 TEST(OneLineTest, EscapesControlCharactersAndCutsLongText) {
   EXPECT_EQ(one_line("a\nb\tc\x1b[31m"), "a\\nb c\\x1b[31m");
   EXPECT_EQ(one_line(std::string(500, 'x'), 10), "xxxxxxxxxx...");
+  EXPECT_EQ(one_line("\x7f\r\b"), "\\x7f\\x0d\\x08");
+  EXPECT_EQ(one_line("\xc2\x9b" "31m \xc2\x80\xc2\x9f"), "\\xc2\\x9b31m \\xc2\\x80\\xc2\\x9f");
+  EXPECT_EQ(one_line("\xc2\xa0 \xc3\xa4\xe2\x80\x9c \xc2"), "\xc2\xa0 \xc3\xa4\xe2\x80\x9c \xc2")
+      << "letters of other languages stay";
+  EXPECT_EQ(printable("a\nb\x1b[31m"), "a\nb\\x1b[31m");
 }
 
 }  // namespace
