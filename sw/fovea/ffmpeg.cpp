@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -232,6 +234,16 @@ int ChildProcess::finish(const std::atomic<bool>* stop) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// The options that scale frames of this size down to the largest allowed, in their proportions.
+static DecodeOptions reduced(DecodeOptions options, unsigned width, unsigned height) {
+  const double scale = std::min(static_cast<double>(options.most_width) / width,
+                                static_cast<double>(options.most_height) / height);
+  options.width = std::max(1u, static_cast<unsigned>(width * scale));
+  options.height = std::max(1u, static_cast<unsigned>(height * scale));
+  options.most_width = options.most_height = 0;
+  return options;
+}
+
 std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
                                     const DecodeOptions& options) {
   const std::string name = one_line(file.string());
@@ -278,7 +290,12 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   std::string buffer;
   try {
     while (child.read_some(buffer, options.stop))
-      while (auto frame = take_frame(buffer)) frames.push_back(std::move(*frame));
+      while (auto frame = take_frame(buffer)) {
+        if (options.most_width != 0 &&
+            (frame->width > options.most_width || frame->height > options.most_height))
+          return decode_frames(file, reduced(options, frame->width, frame->height));
+        frames.push_back(std::move(*frame));
+      }
   } catch (const Stopped&) {
     throw;
   } catch (const std::runtime_error& e) {

@@ -21,6 +21,7 @@ struct Stopped : std::runtime_error {
 
 struct DecodeOptions {
   unsigned width = 0, height = 0;  ///< scaled to this size; 0: as the file has it
+  unsigned most_width = 0, most_height = 0;  ///< larger ones are scaled down to fit; 0: none are
   std::size_t max_frames = 1;      ///< the rest of the file is not read
   std::string program = "ffmpeg";  ///< looked up in PATH
   const std::atomic<bool>* stop = nullptr;  ///< set by a signal: ffmpeg is ended; nullptr: never

@@ -34,6 +34,10 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
   DecodeOptions options;
   // Two fields a frame; some frames more for start-up. Films repeat when they end.
   options.max_frames = 250;
+  // All of them are kept. More than twice the raster's size shows nothing more, and takes the host's
+  // memory.
+  options.most_width = 2 * params.raster_width();
+  options.most_height = 2 * params.raster_height();
   options.stop = stop;
   return decode_frames(camera.file(), options);
 }

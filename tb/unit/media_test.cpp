@@ -243,6 +243,22 @@ TEST_F(FfmpegTest, FramesAreScaledToTheSizeAskedFor) {
   EXPECT_EQ(frames[0].rgb.size(), 720u * 576 * 3);
 }
 
+TEST_F(FfmpegTest, LargeFramesAreScaledDownInTheirProportions) {
+  const auto file = clip(3);  // 64x48
+  const auto size = [&](unsigned most_width, unsigned most_height) {
+    const auto frames =
+        decode_frames(file, {.most_width = most_width, .most_height = most_height, .max_frames = 9});
+    EXPECT_EQ(frames.size(), 3u);
+    return std::pair(frames.back().width, frames.back().height);
+  };
+  EXPECT_EQ(size(64, 48), std::pair(64u, 48u));
+  EXPECT_EQ(size(63, 48), std::pair(63u, 47u));
+  EXPECT_EQ(size(640, 24), std::pair(32u, 24u));
+  EXPECT_EQ(size(16, 16), std::pair(16u, 12u));
+  EXPECT_EQ(decode_frames(file, {.most_width = 64, .most_height = 48})[0].rgb,
+            decode_frames(file, {})[0].rgb);
+}
+
 TEST_F(FfmpegTest, GarbageIsAnErrorThatNamesTheFile) {
   const auto file = dir.write("garbage.mp4", std::string(5000, 'z'));
   EXPECT_THAT(user_error([&] { decode_frames(file, {}); }),
