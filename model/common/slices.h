@@ -11,6 +11,7 @@ namespace fovea {
 class Slices {
  public:
   void run(Picoseconds slice) {
+    end_.cancel();  // of a slice that the simulation's pause cut short
     end_.notify(ps_time(slice));
     sc_core::sc_start(ps_time(slice));
   }

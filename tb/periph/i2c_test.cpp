@@ -346,7 +346,7 @@ TEST_F(I2cTest, ACountOfZeroIs65536Bytes) {
   bus.write(kCnt, 0);
   bus.write(kMdr, kIrs | kMst | kStt | kStp);
   std::uint32_t bytes = 0;
-  for (int idle = 0; idle < 20;) {
+  for (int idle = 0; idle < 20 && bytes <= 65536;) {
     run_until(now() + 5 * kPsPerUs);
     const std::uint32_t status = bus.read(kStr);
     if (status & kRrdy) {
