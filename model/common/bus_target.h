@@ -53,10 +53,11 @@ class BusTarget : public sc_core::sc_module {
     Access a;
     if (gp.is_write()) {
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
-      if (const Reg* r = bank_.register_at(offset);
-          r && ((word << 8 * (offset & 3u)) & r->reserved()))
-        reserved_written(*r);
+      const Reg* const r = bank_.register_at(offset);
+      if (r && ((word << 8 * (offset & 3u)) & r->reserved())) reserved_written(*r);
       a = bank_.write(offset, bytes, word);
+      if (a == Access::kOk && r->limited()) [[unlikely]]
+        warn_not_modelled(*r, offset, bytes);
     } else {
       a = bank_.read(offset, bytes, word);
       std::memcpy(gp.get_data_ptr(), &word, bytes <= 4 ? bytes : 4);
@@ -83,6 +84,13 @@ class BusTarget : public sc_core::sc_module {
     std::snprintf(bits, sizeof bits, "0x%08x", r.reserved());
     Diagnostics::instance().guest("1 written to reserved bits of " + bank_.name() + " " + r.name() +
                                   " (" + bits + ")");
+  }
+
+  [[gnu::noinline]] void warn_not_modelled(const Reg& r, std::uint32_t offset,
+                                           unsigned bytes) const {
+    const std::uint32_t lanes = (bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u) << 8 * (offset & 3u);
+    for (const std::string& what : r.not_modelled(lanes))
+      Diagnostics::instance().not_modelled(bank_.name() + " " + what);
   }
 
   unsigned transport_dbg(tlm::tlm_generic_payload& gp) {

@@ -1,15 +1,24 @@
 #include "model/common/regbank.h"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "model/common/check.h"
 
 namespace fovea {
 
 Field::Field(Reg& reg, std::string name, unsigned lsb, unsigned width, Mode mode,
-             std::string sentence)
-    : reg_(reg), name_(std::move(name)), sentence_(std::move(sentence)), lsb_(lsb), width_(width),
+             std::string sentence, std::optional<Modelled> modelled)
+    : reg_(reg),
+      name_(std::move(name)),
+      sentence_(std::move(sentence)),
+      lsb_(lsb),
+      width_(width),
       mode_(mode),
       mask_((width == 32 ? ~0u : (1u << width) - 1u) << lsb) {
   reg.add(*this);
+  if (modelled)
+    reg.add({reg.name() + "." + name_, sentence_, lsb_, mask_, std::move(modelled->values)});
 }
 std::uint32_t Field::get() const { return (reg_.value_ & mask_) >> lsb_; }
 void Field::set(std::uint32_t value) {
@@ -18,16 +27,21 @@ void Field::set(std::uint32_t value) {
 
 Reg::Reg(RegBank& bank, std::string name, std::uint32_t offset, std::string sentence,
          std::uint32_t reset)
-    : bank_(bank), name_(std::move(name)), sentence_(std::move(sentence)), offset_(offset),
-      reset_(reset), value_(reset) {
+    : bank_(bank),
+      name_(std::move(name)),
+      sentence_(std::move(sentence)),
+      offset_(offset),
+      reset_(reset),
+      value_(reset) {
   bank.add(*this);
 }
 
 Reg::Reg(RegBank& bank, std::string name, std::uint32_t offset, Mode mode, std::string sentence,
-         std::uint32_t reset)
+         std::uint32_t reset, std::optional<Modelled> modelled)
     : Reg(bank, std::move(name), offset, std::move(sentence), reset) {
   covered_ = ~0u;
   (mode == Mode::kRw ? rw_ : mode == Mode::kW1c ? w1c_ : mode == Mode::kWo ? wo_ : covered_) = ~0u;
+  if (modelled) add({name_, sentence_, 0, ~0u, std::move(modelled->values)});
 }
 
 void Reg::add(Field& field) {
@@ -37,6 +51,30 @@ void Reg::add(Field& field) {
   if (field.mode() == Mode::kW1c) w1c_ |= field.mask();
   if (field.mode() == Mode::kWo) wo_ |= field.mask();
   fields_.push_back(&field);
+}
+
+void Reg::add(Limit limit) {
+  limited_ |= limit.mask;
+  limits_.push_back(std::move(limit));
+}
+
+std::vector<std::string> Reg::not_modelled(std::uint32_t lanes) const {
+  std::vector<std::string> out;
+  for (const Limit& l : limits_) {
+    const std::uint32_t value = (value_ & l.mask) >> l.lsb;
+    if (!(l.mask & lanes) || std::find(l.values.begin(), l.values.end(), value) != l.values.end())
+      continue;
+    std::string text = l.name + " (" + l.sentence + "): ";
+    if (l.values.empty()) text += "not modelled";
+    for (std::size_t i = 0; i < l.values.size(); ++i) {
+      char number[16];
+      std::snprintf(number, sizeof number, l.values[i] < 10 ? "%u" : "0x%x", l.values[i]);
+      text += (i == 0 ? "only " : i + 1 < l.values.size() ? ", " : " and ") + std::string(number);
+    }
+    if (!l.values.empty()) text += l.values.size() == 1 ? " is modelled" : " are modelled";
+    out.push_back(std::move(text));
+  }
+  return out;
 }
 
 void RegBank::add(Reg& reg) {

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +19,19 @@ enum class Mode : std::uint8_t {
   kWo,   ///< reads as 0; the write reaches on_write
 };
 
+/// The values of a field (or of a register without fields) for which the model behaves like the
+/// chip, where others would act on the chip and have no effect here. A write over the bus that
+/// leaves another value there is warned of, once by name: `Modelled{0}`, `Modelled{0, 3}`.
+/// List the reset value too unless even that deserves a warning.
+struct Modelled {
+  Modelled(std::initializer_list<std::uint32_t> list) : values(list) {}
+  std::vector<std::uint32_t> values;
+};
+
 class Field {
  public:
-  Field(Reg& reg, std::string name, unsigned lsb, unsigned width, Mode mode, std::string sentence);
+  Field(Reg& reg, std::string name, unsigned lsb, unsigned width, Mode mode, std::string sentence,
+        std::optional<Modelled> modelled = {});
   Field(const Field&) = delete;
   Field& operator=(const Field&) = delete;
   std::uint32_t get() const;
@@ -47,7 +59,7 @@ class Reg {
       std::uint32_t reset = 0);
   /// A register that is one 32-bit field of `mode`.
   Reg(RegBank& bank, std::string name, std::uint32_t offset, Mode mode, std::string sentence,
-      std::uint32_t reset = 0);
+      std::uint32_t reset = 0, std::optional<Modelled> modelled = {});
   Reg(const Reg&) = delete;
   Reg& operator=(const Reg&) = delete;
 
@@ -65,16 +77,29 @@ class Reg {
   const std::vector<Field*>& fields() const { return fields_; }
   /// Bits that belong to no field and are not 1 out of reset: software writes 0 there.
   std::uint32_t reserved() const { return ~(covered_ | reset_); }
+  /// Bits of which only some values are modelled.
+  std::uint32_t limited() const { return limited_; }
+  /// One text for each limited field in `lanes` that holds a value which is not modelled, for
+  /// example "MODESET.HLPF (low-pass filter): only 0 is modelled".
+  std::vector<std::string> not_modelled(std::uint32_t lanes) const;
 
  private:
   friend class Field;
   friend class RegBank;
+  struct Limit {
+    std::string name, sentence;
+    unsigned lsb;
+    std::uint32_t mask;
+    std::vector<std::uint32_t> values;
+  };
   void add(Field& field);
+  void add(Limit limit);
   RegBank& bank_;
   std::string name_, sentence_;
   std::uint32_t offset_, reset_, value_;
-  std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0;
+  std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0, limited_ = 0;
   std::vector<Field*> fields_;
+  std::vector<Limit> limits_;
   std::function<void()> on_read_;
   std::function<void(std::uint32_t)> on_write_;
 };

@@ -19,12 +19,12 @@ struct IsifRegs : RegBank {
     Field vdpol{*this, "VDPOL", 2, 1, Mode::kRw, "VD polarity; no meaning with embedded syncs"};
     Field hdpol{*this, "HDPOL", 3, 1, Mode::kRw, "HD polarity; no meaning with embedded syncs"};
     Field fipol{*this, "FIPOL", 4, 1, Mode::kRw, "1 inverts the field id"};
-    Field swen{*this, "SWEN", 5, 1, Mode::kRw, "external write enable; not modelled"};
-    Field dpol{*this, "DPOL", 6, 1, Mode::kRw, "data polarity; not modelled"};
+    Field swen{*this, "SWEN", 5, 1, Mode::kRw, "external write enable", Modelled{0}};
+    Field dpol{*this, "DPOL", 6, 1, Mode::kRw, "1: inverts the input data", Modelled{0}};
     Field ccdmd{*this, "CCDMD", 7, 1, Mode::kRw, "1: interlaced"};
     Field ccdw{*this, "CCDW", 8, 3, Mode::kRw, "data shift; no meaning for YC data"};
     Field inpmod{*this, "INPMOD", 12, 2, Mode::kRw, "input: 0 raw, 1 YC 16 bit, 2 YC 8 bit"};
-    Field hlpf{*this, "HLPF", 14, 1, Mode::kRw, "low-pass filter; not modelled"};
+    Field hlpf{*this, "HLPF", 14, 1, Mode::kRw, "low-pass filter", Modelled{0}};
     Field mdfs{*this, "MDFS", 15, 1, Mode::kRo, "field now: 1 is the second"};
   } modeset{*this, "MODESET", 0x04, "input mode", 0x2000};
 
@@ -95,10 +95,11 @@ struct IsifRegs : RegBank {
     Field ycoutswp{*this, "YCOUTSWP", 2, 1, Mode::kRw, "swap Y and C towards memory"};
     Field ycinswp{*this, "YCINSWP", 4, 1, Mode::kRw, "swap Y and C at the input"};
     Field bw656{*this, "BW656", 5, 1, Mode::kRw, "10-bit input; the upper 8 bits are taken"};
-    Field fidmd{*this, "FIDMD", 6, 2, Mode::kRw, "field id mode; 0 (latch at VD) is modelled"};
-    Field wenlog{*this, "WENLOG", 8, 1, Mode::kRw, "logic of the external write enable"};
-    Field trgsel{*this, "TRGSEL", 9, 1, Mode::kRw, "trigger source; not modelled"};
-    Field extrg{*this, "EXTRG", 10, 1, Mode::kRw, "external trigger; not modelled"};
+    Field fidmd{*this, "FIDMD", 6, 2, Mode::kRw, "field id: 0 latched at VD", Modelled{0}};
+    Field wenlog{*this,      "WENLOG", 8, 1, Mode::kRw, "logic of the external write enable",
+                 Modelled{0}};
+    Field trgsel{*this, "TRGSEL", 9, 1, Mode::kRw, "trigger source", Modelled{0}};
+    Field extrg{*this, "EXTRG", 10, 1, Mode::kRw, "external trigger", Modelled{0}};
     Field y8pos{*this, "Y8POS", 11, 1, Mode::kRw, "1: C Y C Y in memory, 0: Y C Y C (Linux)"};
     Field bswd{*this, "BSWD", 12, 1, Mode::kRw, "swap bytes"};
     Field vdlc{*this, "VDLC", 15, 1, Mode::kRw, "0: settings latch at VD, 1: at once"};

@@ -108,6 +108,37 @@ TEST_F(RegBankTest, ResetRestoresDeclaredValues) {
   EXPECT_EQ(read(0), 0x0000'5000u);
 }
 
+TEST(RegBankModelledTest, ValuesThatAreNotModelledAreNamed) {
+  struct Limited : RegBank {
+    struct R : Reg {
+      using Reg::Reg;
+      Field filter{*this, "FILTER", 0, 1, Mode::kRw, "low-pass filter", Modelled{0}};
+      Field free{*this, "FREE", 1, 3, Mode::kRw, "acts"};
+      Field mode{*this, "MODE", 8, 6, Mode::kRw, "mode", Modelled{0, 3, 16}};
+      Field burst{*this, "BURST", 16, 1, Mode::kRw, "burst", Modelled{}};
+    } r{*this, "R", 0, "fields"};
+    Reg whole{*this, "WHOLE", 4, Mode::kRw, "all bits", 7, Modelled{7, 0x80000000}};
+    Limited() : RegBank("X") {}
+  } x;
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(x.r.limited(), 0x0001'3F01u);
+  EXPECT_EQ(x.whole.limited(), ~0u);
+  EXPECT_EQ(x.whole.not_modelled(~0u), Texts{}) << "the reset value is listed";
+  const std::string burst = "R.BURST (burst): not modelled";
+  EXPECT_EQ(x.r.not_modelled(~0u), Texts{burst}) << "an empty list: no value is modelled";
+  EXPECT_EQ(x.r.not_modelled(0xFFFF), Texts{}) << "only fields in the lanes that were written";
+  x.r.set(0x1000);  // MODE = 16
+  EXPECT_EQ(x.r.not_modelled(0xFF00), Texts{});
+  x.r.set(0x110F);  // MODE = 17, all the lower fields
+  EXPECT_EQ(x.r.not_modelled(~0u),
+            (Texts{"R.FILTER (low-pass filter): only 0 is modelled",
+                   "R.MODE (mode): only 0, 3 and 0x10 are modelled", burst}));
+  x.whole.set(0x8000'0000);
+  EXPECT_EQ(x.whole.not_modelled(~0u), Texts{});
+  x.whole.set(0x8000'0007);
+  EXPECT_EQ(x.whole.not_modelled(1), Texts{"WHOLE (all bits): only 7 and 0x80000000 are modelled"});
+}
+
 TEST(RegBankDeathTest, OverlappingFieldsAreADefect) {
   struct Overlapping : RegBank {
     struct R : Reg {

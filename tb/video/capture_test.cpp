@@ -481,6 +481,37 @@ TEST_F(CaptureTest, FieldsOfDifferentFramesAreNoFrame) {
   EXPECT_FALSE(b.ended[0].complete);
 }
 
+TEST_F(CaptureTest, SettingsWithoutEffectAreWarnedOfByName) {
+  Diagnostics& d = Diagnostics::instance();
+  d.clear();
+  const auto names = [&d] {
+    std::vector<std::string> out;
+    for (const auto& [what, times] : d.counts()) {
+      EXPECT_EQ(what.first, Diagnostics::Kind::kNotModelled);
+      out.push_back(what.second);
+    }
+    return out;
+  };
+  b.regs.write(MODESET, 2u << 12 | 1u << 7 | 1u << 2);
+  b.regs.write(CCDCFG, kUyvy);
+  EXPECT_EQ(names(), std::vector<std::string>{}) << "the settings of the public drivers";
+  b.regs.write(MODESET, 1u << 14 | 2u << 12 | 1u << 7 | 1u << 2);
+  b.regs.write(MODESET, 1u << 14 | 2u << 12 | 1u << 7 | 1u << 2);
+  EXPECT_EQ(names(),
+            std::vector<std::string>{"ISIF MODESET.HLPF (low-pass filter): only 0 is modelled"});
+  b.isif.regs.modeset.set(1u << 5 | 1u << 6);
+  EXPECT_EQ(names().size(), 1u) << "no write, no warning";
+  b.regs.write(CCDCFG, kUyvy | 1u << 6 | 1u << 8 | 1u << 9 | 1u << 10);
+  EXPECT_EQ(names(),
+            (std::vector<std::string>{
+                "ISIF CCDCFG.EXTRG (external trigger): only 0 is modelled",
+                "ISIF CCDCFG.FIDMD (field id: 0 latched at VD): only 0 is modelled",
+                "ISIF CCDCFG.TRGSEL (trigger source): only 0 is modelled",
+                "ISIF CCDCFG.WENLOG (logic of the external write enable): only 0 is modelled",
+                "ISIF MODESET.HLPF (low-pass filter): only 0 is modelled"}));
+  d.clear();
+}
+
 TEST_F(CaptureTest, PrioritiesAndGatesLeaveAsWritten) {
   EXPECT_EQ(b.top_regs.read(0x08), 2u);
   b.top_regs.write(0x08, 5u << 2 | 3u << 5 | 2u);
