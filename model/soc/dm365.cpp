@@ -278,11 +278,13 @@ void Dm365::wire_video() {
   vpss.venc_int(venc_int_);
   vpss.isif_gate(isif_gate_);
   vpss.vpbe_gate(vpbe_gate_);
-  vpss.venc_gate(venc_gate_);
+  vpss.venc_clk_sel(venc_clk_sel_);
+  vpss.isif_owns_write_buffer(isif_owns_write_buffer_);
   isif.gate(isif_gate_);
+  isif.owns_write_buffer(isif_owns_write_buffer_);
   osd.gate(vpbe_gate_);
   venc.vpbe_gate(vpbe_gate_);
-  venc.venc_gate(venc_gate_);
+  venc.clk_sel(venc_clk_sel_);
   venc.osd.bind(osd.lines);
   venc.display(display);
 }

@@ -125,7 +125,7 @@ class Dm365 : public sc_core::sc_module {
   Signals<std::uint32_t> tc_priority_{"tc_priority", kTransferControllers};
   sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_, reset_asked_;
   sc_core::sc_signal<bool> uart0_pins_, uart1_pins_, i2c_pins_;
-  sc_core::sc_signal<bool> isif_gate_, vpbe_gate_, venc_gate_;
+  sc_core::sc_signal<bool> isif_gate_, isif_owns_write_buffer_, vpbe_gate_, venc_clk_sel_;
   sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_;
   const Dm365Params& params_;
 };

@@ -26,7 +26,9 @@ void Isif::write_syncen() {
     synced_ = false;
     line_ = 0;
     frame_open_ = false;
-    last_row_ = false;  // a row under way is still written, but ends no frame
+    // A row under way is still written, but ends no field and no frame.
+    last_row_ = false;
+    while (!ends_.empty() && ends_.back().due > kernel_time()) ends_.pop_back();
     frame_index_ = 0;
     setup_.write = false;
     return;
@@ -41,7 +43,8 @@ void Isif::write_syncen() {
 }
 
 void Isif::latch() {
-  setup_.write = regs.syncen.wen && regs.rec656if.r656on && regs.modeset.inpmod.get() == 2;
+  setup_.write = regs.syncen.wen && regs.rec656if.r656on && regs.modeset.inpmod.get() == 2 &&
+                 owns_write_buffer.read();
   setup_.interlaced = regs.modeset.ccdmd.get();
   setup_.fiinv = regs.sdofst.fiinv.get();
   // On the wire: Cb Y Cr Y. Linux's UYVY settings (YCINSWP = Y8POS = 1) keep that order; each of
@@ -49,6 +52,7 @@ void Isif::latch() {
   setup_.swap = ((regs.ccdcfg.y8pos.get() ^ regs.ccdcfg.ycinswp.get() ^ regs.ccdcfg.ycoutswp.get() ^
                   regs.ccdcfg.bswd.get()) &
                  1) != 0;
+  setup_.invert_chroma = regs.ccdcfg.msbinvi.get() != regs.ccdcfg.msbinvo.get();
   setup_.sph = regs.sph.value.get();
   setup_.bytes = regs.lnh.value.get() + 1;
   if (setup_.sph >= kActiveBytes || setup_.sph + setup_.bytes > kActiveBytes) {
@@ -131,6 +135,8 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
   } else {
     std::memcpy(row_.data(), from, row_bytes_);
   }
+  if (setup_.invert_chroma)
+    for (unsigned i = setup_.swap ? 1 : 0; i < row_bytes_; i += 2) row_[i] ^= 0x80;
 
   if (index == 0) {
     if (!field_ || !frame_open_) {
@@ -151,8 +157,9 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
 
 /// Hands to the port every burst of the row of which it is certain that a place is free when its
 /// last byte arrives, ahead of that time; and counts as lost those of which the contrary is
-/// certain. A place freed at a time serves bursts strictly later. What is uncertain hangs on a burst
-/// whose outcome is not decided: done() comes back to it. At `now` all is certain that was due.
+/// certain. A place freed at a time serves bursts strictly later. What is uncertain hangs on a
+/// burst whose outcome is not decided: done() comes back to it. At `now` all is certain that was
+/// due.
 void Isif::issue(Picoseconds now) {
   while (row_pos_ < row_bytes_) {
     const unsigned bytes = first_burst(row_address_ + row_pos_, row_bytes_ - row_pos_,
@@ -182,7 +189,7 @@ void Isif::issue(Picoseconds now) {
 /// `due`: when the field's last burst is, or was lost.
 void Isif::end_field(Picoseconds due) {
   const Picoseconds at = tag_ <= done_tag_ ? std::max(due, done_at_) : kNever;
-  ends_.push_back({tag_, at, field_, frame_});
+  ends_.push_back({tag_, due, at, field_, frame_});
   if (field_) {
     if (frame_.complete) ++frame_index_;
     frame_open_ = false;

@@ -52,6 +52,7 @@ class Isif : public BusTarget, public Bt656If {
   BurstMaster memory;                           ///< bind memory.socket
   sc_core::sc_vector<Pulse> vdint{"vdint", 3};  ///< bind vdint[i].out
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
+  sc_core::sc_in<bool> owns_write_buffer{"owns_write_buffer"};  ///< BCR.SRC_SEL_WB; taken with WEN
   IsifRegs regs;
   CaptureStats stats;
   /// Called at the first line of a frame (its start is the first sample's time, a little later).
@@ -72,13 +73,14 @@ class Isif : public BusTarget, public Bt656If {
 
  private:
   struct Setup {
-    bool write = false, interlaced = false, fiinv = false, swap = false;
+    bool write = false, interlaced = false, fiinv = false, swap = false, invert_chroma = false;
     unsigned sph = 0, bytes = 0, first_line[2] = {}, lines = 0;
     std::uint32_t address = 0, pitch = 0;
   };
   struct FieldEnd {
     std::uint64_t last_tag;
-    Picoseconds at;  // all its data are in memory; kNever: not known
+    Picoseconds due;  // its last burst leaves, or is lost
+    Picoseconds at;   // all its data are in memory; kNever: not known
     bool second;
     CaptureFrame frame;
   };

@@ -15,7 +15,7 @@ struct IsifRegs : RegBank {
   struct Modeset : Reg {
     using Reg::Reg;
     Field hdvdd{*this, "HDVDD", 0, 1, Mode::kRw, "HD/VD direction; 1 (output) is not modelled"};
-    Field fidd{*this, "FIDD", 1, 1, Mode::kRw, "field id direction"};
+    Field fidd{*this, "FIDD", 1, 1, Mode::kRw, "field id pin: 0 input", Modelled{0}};
     Field vdpol{*this, "VDPOL", 2, 1, Mode::kRw, "VD polarity; no meaning with embedded syncs"};
     Field hdpol{*this, "HDPOL", 3, 1, Mode::kRw, "HD polarity; no meaning with embedded syncs"};
     Field fipol{*this, "FIPOL", 4, 1, Mode::kRw, "1 inverts the field id"};
@@ -102,6 +102,9 @@ struct IsifRegs : RegBank {
     Field extrg{*this, "EXTRG", 10, 1, Mode::kRw, "external trigger", Modelled{0}};
     Field y8pos{*this, "Y8POS", 11, 1, Mode::kRw, "1: C Y C Y in memory, 0: Y C Y C (Linux)"};
     Field bswd{*this, "BSWD", 12, 1, Mode::kRw, "swap bytes"};
+    Field msbinvi{*this, "MSBINVI", 13, 1, Mode::kRw, "inverts the top bit of chroma at the input"};
+    Field msbinvo{*this, "MSBINVO", 14,
+                  1,     Mode::kRw, "inverts the top bit of chroma towards memory"};
     Field vdlc{*this, "VDLC", 15, 1, Mode::kRw, "0: settings latch at VD, 1: at once"};
   } ccdcfg{*this, "CCDCFG", 0x88, "data format"};
 

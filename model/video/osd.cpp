@@ -36,7 +36,7 @@ void Osd::field_start(const Standard& standard, bool f) {
     window_.upper = upper;
   } else {
     const bool is_625 = &standard == &k625;
-    const auto value = [](const OsdRegs::Number& r) { return static_cast<int>(r.value.get()); };
+    const auto value = [](const auto& r) { return static_cast<int>(r.value.get()); };
     Window w;
     w.on = clocked() && regs.vidwinmd.act0;
     w.field_mode = regs.vidwinmd.vff0.get();

@@ -10,7 +10,7 @@ struct OsdRegs : RegBank {
     Field cabg{*this, "CABG", 0, 8, Mode::kRw, "background colour, CLUT index; 0 is black"};
     Field bclut{*this, "BCLUT", 8, 1, Mode::kRw, "background CLUT; kept"};
     Field fsinv{*this, "FSINV", 9, 1, Mode::kRw, "1 inverts the field signal"};
-    Field other{*this, "OTHER", 10, 5, Mode::kRw, "filters and expansion; not modelled"};
+    Field other{*this, "OTHER", 10, 5, Mode::kRw, "filters and expansion", Modelled{0}};
     Field cs{*this, "CS", 15, 1, Mode::kRw, "1: Cr comes first in memory"};
   } mode{*this, "MODE", 0x00, "display mode"};
 
@@ -26,9 +26,14 @@ struct OsdRegs : RegBank {
     Field vfinv{*this, "VFINV", 15, 1, Mode::kRw, "1 swaps the fields of the video windows"};
   } vidwinmd{*this, "VIDWINMD", 0x04, "video window mode"};
 
-  Reg osdwin0md{*this, "OSDWIN0MD", 0x08, Mode::kRw, "bitmap window 0; not modelled"};
-  Reg osdwin1md{*this, "OSDWIN1MD", 0x0C, Mode::kRw, "bitmap window 1; not modelled"};
-  Reg rectcur{*this, "RECTCUR", 0x10, Mode::kRw, "cursor; not modelled"};
+  struct Overlay : Reg {
+    using Reg::Reg;
+    Field on{*this, "ACT", 0, 1, Mode::kRw, "1: on", Modelled{0}};
+    Field other{*this, "OTHER", 1, 15, Mode::kRw, "no effect while it is off"};
+  };
+  Overlay osdwin0md{*this, "OSDWIN0MD", 0x08, "bitmap window 0"};
+  Overlay osdwin1md{*this, "OSDWIN1MD", 0x0C, "bitmap window 1"};
+  Overlay rectcur{*this, "RECTCUR", 0x10, "cursor"};
 
   struct Ofst : Reg {
     using Reg::Reg;
@@ -57,10 +62,16 @@ struct OsdRegs : RegBank {
 
   struct Number : Reg {
     using Reg::Reg;
-    Field value{*this, "VALUE", 0, 12, Mode::kRw, "number"};
+    Field value{*this, "VALUE", 0, 11, Mode::kRw, "number"};
   };
-  Number basepx{*this, "BASEPX", 0x40, "left origin of all windows, pixels"};
-  Number basepy{*this, "BASEPY", 0x44, "upper origin of all windows, lines of a field"};
+  struct Basepx : Reg {
+    using Reg::Reg;
+    Field value{*this, "BPX", 0, 10, Mode::kRw, "number"};
+  } basepx{*this, "BASEPX", 0x40, "left origin of all windows, pixels"};
+  struct Basepy : Reg {
+    using Reg::Reg;
+    Field value{*this, "BPY", 0, 9, Mode::kRw, "number"};
+  } basepy{*this, "BASEPY", 0x44, "upper origin of all windows, lines of a field"};
   Number vidwin0xp{*this, "VIDWIN0XP", 0x48, "window 0, left edge, pixels"};
   Number vidwin0yp{*this, "VIDWIN0YP", 0x4C, "window 0, upper edge, lines of a field"};
   Number vidwin0xl{*this, "VIDWIN0XL", 0x50, "window 0, width, pixels"};
@@ -81,10 +92,16 @@ struct OsdRegs : RegBank {
   Number curyp{*this, "CURYP", 0x8C, "not modelled"};
   Number curxl{*this, "CURXL", 0x90, "not modelled"};
   Number curyl{*this, "CURYL", 0x94, "not modelled"};
-  Reg vbndry{*this, "VBNDRY", 0xE0, Mode::kRw, "kept"};
-  Reg extmode{*this, "EXTMODE", 0xE4, Mode::kRw, "kept"};
-  Reg miscctl{*this, "MISCCTL", 0xE8, Mode::kRw,
-              "bit 14 4:2:0 (not modelled), 12 DM365 mode; kept"};
+  Reg vbndry{*this, "VBNDRY", 0xE0, Mode::kRw, "filters at the windows' borders", 0, Modelled{0}};
+  Reg extmode{*this, "EXTMODE", 0xE4, Mode::kRw, "expansion", 0, Modelled{0}};
+  struct Miscctl : Reg {
+    using Reg::Reg;
+    Field low{*this, "LOW", 0, 6, Mode::kRw, "3 busy, 4 DMA; kept"};
+    Field rgb{*this, "RGBWIN_RGBEN", 6, 2, Mode::kRw, "RGB in a video window", Modelled{0}};
+    Field middle{*this, "MIDDLE", 8, 6, Mode::kRw, "12 DM365 mode; kept"};
+    Field s420d{*this, "S420D", 14, 1, Mode::kRw, "4:2:0 data", Modelled{0}};
+    Field high{*this, "HIGH", 15, 1, Mode::kRw, "kept"};
+  } miscctl{*this, "MISCCTL", 0xE8, "miscellaneous"};
 
   OsdRegs() : RegBank("OSD") {}
   /// Byte address of video window 0: 27 bits of 32-byte units above 0x80000000. Bit 26 of the units

@@ -61,6 +61,17 @@ struct VpssParams : ParamGroup {
                       Origin::kAssumed,
                       "the manual's text is not public",
                       {"field", "frame", "drivers write the address in the vertical blanking"}};
+  EnumParam venc_clk_sel{
+      *this,
+      "venc_clk_sel",
+      "no_effect",
+      {"no_effect", "halves"},
+      "what bit 2 of VPSS_CLK_CTRL (0x01C70200) = 1 does to the raster of "
+      "525/60 and 625/50: nothing, or half the line rate",
+      Origin::kAssumed,
+      "Linux names it ENC_CLK/2, yet sets it for these rasters with a clock of "
+      "27 MHz, and a TI board test shows them with 0 (decision 0009)",
+      {"no_effect", "no_effect", "programs for one board and clock use either value"}};
   IntParam base_px_625{*this,
                        "base_px_625",
                        Unit::kCount,
@@ -69,8 +80,8 @@ struct VpssParams : ParamGroup {
                        1023,
                        "BASEPX that puts the window's left edge on the first active pixel, 625/50",
                        Origin::kAssumed,
-                       "the value that Linux programs",
-                       {"122", "130", kBasePxBelief}};
+                       "Linux's board-dm365-evm.c writes 0x7E, a TI board test 132",
+                       {"122", "132", kBasePxBelief}};
   IntParam base_px_525{*this,
                        "base_px_525",
                        Unit::kCount,
@@ -79,7 +90,7 @@ struct VpssParams : ParamGroup {
                        1023,
                        "BASEPX that puts the window's left edge on the first active pixel, 525/60",
                        Origin::kAssumed,
-                       "the value that Linux programs",
+                       "Linux's board-dm365-evm.c writes 0x79, a TI board test 122",
                        {"117", "125", kBasePxBelief}};
   IntParam base_py_625{*this,
                        "base_py_625",
@@ -89,7 +100,9 @@ struct VpssParams : ParamGroup {
                        511,
                        "BASEPY that puts the window's top on the first active line, 625/50",
                        Origin::kAssumed,
-                       "the value that Linux programs: line 23 is 22 after the vertical sync",
+                       "Linux's board-dm365-evm.c and a TI board test write 0x16: line 23 is 22 "
+                       "after the vertical sync. TI's Linux 2.6.32 adds 2 on this chip, not for "
+                       "the position: its davinci_platform.c says that bitmap window 0 shakes",
                        {"22", "24", kBasePyBelief}};
   IntParam base_py_525{*this,
                        "base_py_525",
@@ -99,7 +112,8 @@ struct VpssParams : ParamGroup {
                        511,
                        "BASEPY that puts the window's top on the first active line, 525/60",
                        Origin::kAssumed,
-                       "the value that Linux programs: line 20 is 16 after the vertical sync",
+                       "Linux's board-dm365-evm.c writes 0x10: line 20 is 16 after the vertical "
+                       "sync; a TI board test writes 18",
                        {"16", "18", kBasePyBelief}};
 };
 
@@ -133,6 +147,16 @@ struct Tvp5146Params : ParamGroup {
                          Origin::kAssumed,
                          "Linux waits 200 ms; no figure in the data manual",
                          {"2", "25", "from the next frame to half a second"}};
+  IntParam rom_version{*this,
+                       "rom_version",
+                       Unit::kCount,
+                       0,
+                       0,
+                       255,
+                       "what register 70 reads, the version of the decoder's program",
+                       Origin::kAssumed,
+                       "the data manual gives no value; Linux's tvp514x driver only prints it",
+                       {"0", "255", "nothing depends on it"}};
   BoolParam output_at_reset{
       *this,           "output_at_reset",
       false,           "data and clock outputs are on before anyone writes register 34",

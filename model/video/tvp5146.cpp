@@ -9,8 +9,8 @@ namespace fovea::video {
 namespace {
 
 constexpr std::uint8_t kInputSelect = 0x00, kVideoStandard = 0x02, kOperationMode = 0x03,
-                       kFormatter2 = 0x34, kStatus1 = 0x3A, kStatus2 = 0x3B, kDetected = 0x3F,
-                       kIdHigh = 0x80, kIdLow = 0x81;
+                       kFormatter2 = 0x34, kClearLostLock = 0x39, kStatus1 = 0x3A, kStatus2 = 0x3B,
+                       kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81;
 constexpr std::uint8_t kFormatter2Enables = 0x11;  // data and clock outputs
 
 }  // namespace
@@ -65,7 +65,8 @@ bool Tvp5146::standard_ok() const {
 
 std::uint64_t Tvp5146::present_field() const {
   if (!started_ || !clock_.running()) return stopped_field_;
-  const std::uint64_t edge = clock_.edge_after(kernel_time());  // the sample on the wire is edge - 1
+  const std::uint64_t edge =
+      clock_.edge_after(kernel_time());  // the sample on the wire is edge - 1
   return edge <= origin_ ? 0 : locate(standard_, (edge - 1 - origin_) / standard_.line_bytes).field;
 }
 
@@ -153,24 +154,28 @@ std::uint8_t Tvp5146::i2c_read() { return read_register(pointer_++); }
 void Tvp5146::relock() { locked_from_ = present_field() + params_.relock_fields(); }
 
 void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {
-  const bool was_enabled = enabled();
+  const bool was_enabled = enabled(), was_locked = lock();
   const std::uint8_t old = regs_[index];
   regs_[index] = value;
   if ((index == kInputSelect || index == kVideoStandard) && old != value) relock();
   if (index == kOperationMode && (old & 1) && !(value & 1)) relock();
+  if (was_locked && !lock()) lost_lock_ = true;
+  if (index == kClearLostLock && (value & 1)) lost_lock_ = false;
   if (enabled() != was_enabled) schedule();
 }
 
 std::uint8_t Tvp5146::read_register(std::uint8_t index) const {
-  const bool lock = started_ && (regs_[kOperationMode] & 1) == 0 && locked(present_field());
   const bool is_625 = &standard_ == &k625;
   switch (index) {
-    case kStatus1:  // bit 1 H lock, 2 V lock, 3 colour lock, 5 field rate 50 Hz
-      return lock ? static_cast<std::uint8_t>(0x0E | (is_625 ? 0x20 : 0)) : 0;
+    case kStatus1:  // bit 1 H lock, 2 V lock, 3 colour lock, 4 lost lock, 5 field rate 50 Hz
+      return static_cast<std::uint8_t>((lock() ? 0x0E | (is_625 ? 0x20 : 0) : 0) |
+                                       (lost_lock_ ? 0x10 : 0));
     case kStatus2:
       return 0x80;  // signal present
     case kDetected:
-      return lock ? (is_625 ? 2 : 1) : 0;
+      return lock() ? (is_625 ? 2 : 1) : 0;
+    case kRomVersion:
+      return static_cast<std::uint8_t>(params_.rom_version());
     case kIdHigh:
       return 0x51;
     case kIdLow:

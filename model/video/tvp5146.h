@@ -13,7 +13,8 @@ namespace fovea::video {
 /// The analogue camera and the decoder behind it, as one block. The camera runs from power-up
 /// (time 0 plus `phase`): field k begins k field periods later, whatever the decoder does. While
 /// its outputs are enabled the decoder announces every line at its first sample.
-/// Register subset: dm365 reference, SLES084C. Not modelled: picture controls (kept, no effect),
+/// Register subset: SLES084C. STATUS1 bit 4 tells that the lock was lost; it stays until a 1 is
+/// written to bit 0 of CLEAR_LOST_LOCK. Not modelled: picture controls (kept, no effect),
 /// the 10-bit output's two low bits, square pixels, VBI data, the time of the I2C patch. Not locked
 /// (after power-up, a change of register 00 or 02, or the wrong standard in 02): the raster goes on
 /// with black pictures; this is an assumption.
@@ -47,6 +48,8 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void schedule();
   bool enabled() const;
   bool standard_ok() const;
+  /// What the status registers say now: powered and locked.
+  bool lock() const { return started_ && (regs_[3] & 1) == 0 && locked(present_field()); }
   bool locked(std::uint64_t field) const { return standard_ok() && field >= locked_from_; }
   std::uint64_t present_field() const;
   void write_register(std::uint8_t index, std::uint8_t value);
@@ -60,6 +63,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   Clock clock_;
   std::uint64_t origin_ = 0;  // clock edge at which line index 0 begins
   bool started_ = false;
+  bool lost_lock_ = false;           // since the last clear
   std::uint64_t next_line_ = 0;      // line index to announce next
   std::uint64_t stopped_field_ = 0;  // the camera's field when the clock stopped
   std::uint64_t locked_from_;

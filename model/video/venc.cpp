@@ -6,26 +6,35 @@ namespace fovea::video {
 
 Venc::Venc(sc_core::sc_module_name name, const VpssParams& params)
     : BusTarget(name, regs), params_(params) {
-  regs.vmod.on_write([this](std::uint32_t) { reconsider_event_.notify(sc_core::SC_ZERO_TIME); });
+  for (Reg* r : {static_cast<Reg*>(&regs.vmod), static_cast<Reg*>(&regs.clkctl)})
+    r->on_write([this](std::uint32_t) { reconsider_event_.notify(sc_core::SC_ZERO_TIME); });
   SC_METHOD(reconsider);
-  sensitive << clock << psc_enabled << vpbe_gate << venc_gate << reconsider_event_;
+  sensitive << clock << psc_enabled << vpbe_gate << clk_sel << reconsider_event_;
   SC_METHOD(tick);
   sensitive << line_event_;
   dont_initialize();
 }
 
 bool Venc::wanted() const {
-  return regs.vmod.venc && clock_.running() && clocked() && venc_gate.read();
+  return regs.vmod.venc && regs.clkctl.venc && clock_.running() && clocked();
+}
+
+Frequency Venc::input_frequency() const {
+  const Frequency f = clock.read();
+  return clk_sel.read() && params_.venc_clk_sel.is("halves") ? Frequency(f.num, f.den * 2) : f;
 }
 
 void Venc::reconsider() {
-  if (clock.read() != clock_.frequency()) {
-    clock_.restart(clock.read(), kernel_time());
+  if (input_frequency() != clock_.frequency()) {
+    clock_.restart(input_frequency(), kernel_time());
     if (standard_ && clock_.running()) schedule();
   }
   if (regs.vmod.venc && (regs.vmod.vmd || regs.vmod.slave || regs.vmod.hdmd || regs.vmod.nsit ||
                          regs.vmod.tvtyp.get() > 1))
     Diagnostics::instance().not_modelled("VENC mode other than standard 525/60 or 625/50");
+  if (regs.vmod.venc && !regs.vmod.vie)
+    Diagnostics::instance().not_modelled(
+        "VENC VMOD.VIE = 0: the analogue output shows the picture");
   const bool on = wanted();
   if (standard_ && (!on || standard_ != &chosen())) {
     standard_ = nullptr;

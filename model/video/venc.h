@@ -12,10 +12,10 @@
 namespace fovea::video {
 
 /// VENC in standard interlaced timing: 625/50 or 525/60 by VMOD.TVTYP, on its own clock (27 MHz for
-/// true rates). The raster starts with a field 1 (F = 0) at the clock edge after the encoder is
-/// switched on. At the start of each field (where F changes: lines 1 and 313, 4 and 266) VSTAT
-/// changes, the OSD latches its window and the interrupt fires. Lines go to the display when
-/// their last sample is out; no process runs more often than once a line.
+/// true rates), which CLKCTL bit 0 gates. The raster starts with a field 1 (F = 0) at the clock
+/// edge after the encoder is switched on. At the start of each field (where F changes: lines 1 and
+/// 313, 4 and 266) VSTAT changes, the OSD latches its window and the interrupt fires. Lines go to
+/// the display when their last sample is out; no process runs more often than once a line.
 class Venc : public BusTarget {
  public:
   ClockIn clock{"clock"};
@@ -23,7 +23,8 @@ class Venc : public BusTarget {
   sc_core::sc_port<DisplayLineIf> display{"display"};
   Pulse interrupt{"interrupt"};  ///< bind interrupt.out
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
-  sc_core::sc_in<bool> vpbe_gate{"vpbe_gate"}, venc_gate{"venc_gate"};
+  sc_core::sc_in<bool> vpbe_gate{"vpbe_gate"};
+  sc_core::sc_in<bool> clk_sel{"clk_sel"};  ///< VENC_CLK_SEL of the VPSS
   VencRegs regs;
 
   SC_HAS_PROCESS(Venc);
@@ -37,6 +38,7 @@ class Venc : public BusTarget {
   void tick();
   void schedule();
   bool wanted() const;
+  Frequency input_frequency() const;
   const Standard& chosen() const { return standard_of(regs.vmod.tvtyp.get() == 1); }
 
   const VpssParams& params_;

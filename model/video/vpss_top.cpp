@@ -31,7 +31,8 @@ void VpssTop::route() {
 void VpssTop::drive_controls() {
   isif_gate.write(regs.pccr.isif.get() != 0);
   vpbe_gate.write(regs.clkctrl.vpbe.get() != 0);
-  venc_gate.write(regs.clkctrl.venc.get() != 0);
+  venc_clk_sel.write(regs.clkctrl.venc.get() != 0);
+  isif_owns_write_buffer.write(regs.bcr.isif_wb.get() != 0);
   read_priority.write(regs.bcr.rd_pri.get());
   write_priority.write(regs.bcr.wr_pri.get());
 }

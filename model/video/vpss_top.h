@@ -9,21 +9,28 @@ namespace fovea::video {
 /// ISP5 registers at offset 0 (0x01C70000) and the VPSS clock control at offset 0x200: decode the
 /// block with a size of 0x400. Source: TI's register header for the DM36x, Linux vpss.c.
 struct VpssRegs : RegBank {
-  Reg pid{*this, "PID", 0x00, Mode::kRo, "peripheral identification; value not known"};
+  Reg pid{*this, "PID", 0x00, Mode::kRo, "peripheral identification", 0x4C180800};
   struct Pccr : Reg {
     using Reg::Reg;
-    Field bl{*this, "BL", 0, 1, Mode::kRw, "buffer logic clock"};
+    Field bl{*this, "BL", 0, 1, Mode::kRw, "buffer logic clock", Modelled{1}};
     Field isif{*this, "ISIF", 1, 1, Mode::kRw, "ISIF clock"};
     Field h3a{*this, "H3A", 2, 1, Mode::kRw, "H3A clock; block not modelled"};
     Field rsz{*this, "RSZ", 3, 1, Mode::kRw, "resizer clock; block not modelled"};
     Field ipipe{*this, "IPIPE", 4, 1, Mode::kRw, "IPIPE clock; block not modelled"};
     Field ipipeif{*this, "IPIPEIF", 5, 1, Mode::kRw, "IPIPEIF clock; block not modelled"};
-    Field sync{*this, "SYNC", 6, 1, Mode::kRw, "sync module clock"};
+    Field sync{*this, "SYNC", 6, 1, Mode::kRw, "internal pixel clock", Modelled{1}};
+    Field psync{
+        *this,     "PSYNC_CLK_SEL",
+        7,         1,
+        Mode::kRw, "clock of the sync module: 0 registers', 1 VPSS; no effect on what is modelled"};
   } pccr{*this, "PCCR", 0x04, "clock gates of the front end", 0x7F};
   struct Bcr : Reg {
     using Reg::Reg;
     Field ldc_ipipe{*this, "SRC_SEL_RB", 0, 1, Mode::kRw, "read buffer: IPIPE or LDC; kept"};
-    Field isif_wb{*this, "SRC_SEL_WB", 1, 1, Mode::kRw, "write buffer belongs to the ISIF; kept"};
+    Field isif_wb{
+        *this,     "SRC_SEL_WB",
+        1,         1,
+        Mode::kRw, "1: the write buffer is the ISIF's; 0: nothing captured reaches memory"};
     Field rd_pri{*this, "RD_PRI", 2, 3, Mode::kRw, "priority of VPSS reads, 0 highest"};
     Field wr_pri{*this, "WR_PRI", 5, 3, Mode::kRw, "priority of VPSS writes, 0 highest"};
   } bcr{*this, "BCR", 0x08, "buffer control", 0x2};
@@ -35,21 +42,29 @@ struct VpssRegs : RegBank {
     Field n2{*this, "N2", 16, 5, Mode::kRw, "source of the third output"};
     Field n3{*this, "N3", 24, 5, Mode::kRw, "source of the fourth output"};
   };
-  // Reset values are not known; 0x1F (no source) is assumed.
-  Select intsel1{*this, "INTSEL1", 0x10, "sources of VPSSINT0 ... 3", 0x1F1F1F1F};
-  Select intsel2{*this, "INTSEL2", 0x14, "sources of VPSSINT4 ... 7", 0x1F1F1F1F};
-  Select intsel3{*this, "INTSEL3", 0x18, "source of VPSSINT8", 0x1F1F1F1F};
-  Select evtsel{*this, "EVTSEL", 0x1C, "sources of the EDMA events; kept", 0x1F1F1F1F};
-  Reg ccdcmux{*this, "CCDCMUX", 0x20, Mode::kRw, "input multiplexer; kept"};
+  // Out of reset all outputs follow source 0, ISIF_INT0 (TI's register header).
+  Select intsel1{*this, "INTSEL1", 0x10, "sources of VPSSINT0 ... 3"};
+  Select intsel2{*this, "INTSEL2", 0x14, "sources of VPSSINT4 ... 7"};
+  Select intsel3{*this, "INTSEL3", 0x18, "source of VPSSINT8"};
+  Reg evtsel{*this, "EVTSEL", 0x1C, Mode::kRw, "sources of the EDMA events", 0, Modelled{0}};
+  Reg ccdcmux{*this, "CCDCMUX", 0x20, Mode::kRw, "input multiplexer", 0, Modelled{0}};
   Reg mpsr{*this, "MPSR", 0x2C, Mode::kRw, "memory access of the blocks' tables; kept"};
   struct Clkctrl : Reg {
     using Reg::Reg;
     Field vpbe{*this, "VPBE_CLK", 0, 1, Mode::kRw, "OSD and VENC register clock"};
     Field reserved1{*this, "RSV1", 1, 1, Mode::kRw, "kept"};
-    Field venc{*this, "VENC_CLK", 2, 1, Mode::kRw, "VENC raster clock"};
+    Field venc{*this,
+               "VENC_CLK_SEL",
+               2,
+               1,
+               Mode::kRw,
+               "VENC clock: 0 ENC_CLK, 1 ENC_CLK/2 (Linux vpss.h); what it does to the standard "
+               "raster: vpss.venc_clk_sel"};
     Field ldc{*this, "LDC_CLK", 3, 1, Mode::kRw, "LDC clock; block not modelled"};
     Field fdif{*this, "FDIF_CLK", 4, 1, Mode::kRw, "face detection clock; block not modelled"};
-  } clkctrl{*this, "VPSS_CLK_CTRL", 0x200, "clock gates of the back end", 0x19};
+    Field osd_sel{*this, "OSD_CLK_SEL", 6, 1, Mode::kRw, "clock of the OSD", Modelled{0}};
+    Field ldc_sel{*this, "LDC_CLK_SEL", 7, 1, Mode::kRw, "clock of the LDC; block not modelled"};
+  } clkctrl{*this, "VPSS_CLK_CTRL", 0x200, "clock gates and selectors of the back end", 0x19};
   VpssRegs() : RegBank("VPSS") {}
 };
 
@@ -64,7 +79,8 @@ class VpssTop : public BusTarget {
   sc_core::sc_in<bool> venc_int{"venc_int"};
   sc_core::sc_vector<sc_core::sc_out<bool>> vpssint{"vpssint", kOutputs};  ///< AINTC 0 ... 8
   sc_core::sc_out<bool> isif_gate{"isif_gate"};
-  sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_gate{"venc_gate"};
+  sc_core::sc_out<bool> isif_owns_write_buffer{"isif_owns_write_buffer"};
+  sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_clk_sel{"venc_clk_sel"};
   sc_core::sc_out<std::uint32_t> read_priority{"read_priority"}, write_priority{"write_priority"};
   VpssRegs regs;
 

@@ -146,7 +146,7 @@
 #define PCCR_IPIPEIF (1u << 5)
 #define PCCR_SYNC (1u << 6)
 #define VPSS_CLKCTL_VPBE (1u << 0)
-#define VPSS_CLKCTL_VENC (1u << 2)
+#define VPSS_CLKCTL_VENC_SEL (1u << 2) /* clock selector, set as Linux sets it for 525 and 625 */
 #define ISP5_SOURCE_ISIF_INT0 0u
 #define ISP5_SOURCE_VENC 21u
 

@@ -78,7 +78,7 @@ struct Bench {
   VpssParams params;
   sc_core::sc_signal<bool> psc{"psc", true}, no_venc{"no_venc"};
   sc_core::sc_signal<bool> isif_gate{"isif_gate", true}, vpbe_gate{"vpbe_gate"},
-      venc_gate{"venc_gate"};
+      venc_clk_sel{"venc_clk_sel"}, owns_write_buffer{"owns_write_buffer"};
   sc_core::sc_signal<std::uint32_t> read_priority{"read_priority"},
       write_priority{"write_priority"};
   sc_core::sc_vector<sc_core::sc_signal<bool>> event{"event", 3}, vpssint{"vpssint", 9};
@@ -97,6 +97,7 @@ struct Bench {
     top_regs.socket.bind(top.reg_socket);
     isif.psc_enabled(psc);
     isif.gate(isif_gate);
+    isif.owns_write_buffer(owns_write_buffer);
     top.psc_enabled(psc);
     for (unsigned i = 0; i < 3; ++i) {
       isif.vdint[i].out(event[i]);
@@ -109,7 +110,8 @@ struct Bench {
     }
     top.isif_gate(isif_gate);
     top.vpbe_gate(vpbe_gate);
-    top.venc_gate(venc_gate);
+    top.venc_clk_sel(venc_clk_sel);
+    top.isif_owns_write_buffer(owns_write_buffer);
     top.read_priority(read_priority);
     top.write_priority(write_priority);
     isif.on_frame_start = [this](const CaptureFrame& f) { started.push_back(f); };
@@ -145,6 +147,7 @@ class CaptureTest : public testing::Test {
   void SetUp() override {
     b.regs.write(SYNCEN, 0);
     b.top_regs.write(0x04, 0x7F);
+    b.top_regs.write(0x08, 2);
     b.wire.damage = nullptr;
     b.memory.latency = 100 * kPsPerNs;
     run_for(kFrame);  // earlier writes come to rest
@@ -277,6 +280,104 @@ TEST_F(CaptureTest, EachSwapBitTogglesTheByteOrder) {
   }
 }
 
+TEST_F(CaptureTest, EitherMsbBitInvertsTheTopBitOfChromaAndBothLeaveIt) {
+  enable();
+  const auto check = [&](std::uint32_t ccdcfg, unsigned order, std::uint8_t change) {
+    b.regs.write(CCDCFG, ccdcfg);
+    run_until(b.wire.next_frame() + kFrame - kPsPerUs);
+    for (unsigned r = 0; r < kRows; ++r)
+      for (unsigned i = 0; i < kRowBytes; ++i) {
+        const unsigned from = i ^ order;  // byte of the wire; chroma is on the even ones
+        ASSERT_EQ(b.memory.at(kBuffer + r * kRowBytes)[i],
+                  pattern(r, from) ^ (from % 2 == 0 ? change : 0))
+            << std::hex << ccdcfg << std::dec << " row " << r << " byte " << i;
+      }
+  };
+  check(kUyvy | 0x2000, 0, 0x80);
+  check(kUyvy | 0x4000, 0, 0x80);
+  check(kUyvy | 0x6000, 0, 0);
+  check((kUyvy | 0x2000) ^ 0x800, 1, 0x80);  // Y first in memory
+}
+
+TEST_F(CaptureTest, InvertedFieldIdSwapsTheFields) {
+  b.regs.write(MODESET, 2u << 12 | 1u << 7 | 1u << 4 | 1u << 2);
+  enable();
+  run_until(line_time(3) + kPsPerUs);
+  EXPECT_EQ(b.regs.read(MODESET) >> 15, 1u);
+  run_until(line_time(15) + kPsPerUs);
+  EXPECT_EQ(b.regs.read(MODESET) >> 15, 0u);
+  run_until(frame_start_ + 2 * kFrame - kPsPerUs);
+  for (unsigned r = 0; r < kRows; ++r)
+    EXPECT_EQ(b.memory.at(kBuffer + r * kRowBytes)[9], pattern(r ^ 1, 9)) << "row " << r;
+  // The frame that counts begins with the wire's second field.
+  ASSERT_EQ(b.ended.size(), 2u);
+  EXPECT_FALSE(b.ended[0].complete);
+  EXPECT_TRUE(b.ended[1].complete);
+}
+
+TEST_F(CaptureTest, WholeLineIsAWindowAndOneSampleMoreIsCut) {
+  Diagnostics& d = Diagnostics::instance();
+  d.clear();
+  b.regs.write(HSIZE, kActiveBytes / 32);
+  b.regs.write(LNH, kActiveBytes - 1);
+  capture_frame();
+  EXPECT_TRUE(d.counts().empty());
+  for (unsigned i = 0; i < kActiveBytes; ++i)
+    ASSERT_EQ(b.memory.at(kBuffer + kActiveBytes)[i], pattern(1, i)) << i;
+  // Two samples further the last two do not exist; whole pairs of four samples are captured.
+  std::fill(b.memory.bytes.begin(), b.memory.bytes.end(), 0xEE);
+  b.regs.write(SPH, 2);
+  run_until(frame_start_ + 2 * kFrame - kPsPerUs);
+  ASSERT_EQ(d.counts().size(), 1u);
+  EXPECT_EQ(d.counts().begin()->first.second,
+            "ISIF window leaves the active part of the line; cut");
+  EXPECT_EQ(b.memory.at(kBuffer)[kActiveBytes - 5], pattern(0, kActiveBytes - 3));
+  EXPECT_EQ(b.memory.at(kBuffer)[kActiveBytes - 4], 0xEE);
+  d.clear();
+}
+
+TEST_F(CaptureTest, CaptureSwitchedOffInTheLastRowEndsNoFrame) {
+  // In a memory that takes the row at once, and in one that never gives it a place.
+  for (const Picoseconds latency : {100 * kPsPerNs, 10 * kLine}) {
+    SetUp();
+    b.memory.latency = latency;
+    const std::uint64_t frames = b.isif.stats.frames.count();
+    const std::uint64_t fields = b.isif.stats.fields.count();
+    enable();
+    run_until(line_time(22) + kPsPerUs);
+    b.regs.write(SYNCEN, 0);
+    run_for(2 * kFrame);
+    EXPECT_TRUE(b.ended.empty());
+    EXPECT_EQ(b.isif.stats.frames.count(), frames);
+    EXPECT_EQ(b.isif.stats.fields.count(), fields + 1) << "the first field";
+    EXPECT_EQ(b.memory.at(kBuffer + (kRows - 1) * kRowBytes)[0],
+              latency < kLine ? pattern(kRows - 1, 0) : 0xEE)
+        << "a row under way is still written";
+  }
+}
+
+TEST_F(CaptureTest, CaptureSwitchedOffBehindTheLastRowEndsTheFrame) {
+  enable();
+  run_until(line_time(23) + kPsPerUs);
+  b.regs.write(SYNCEN, 0);
+  run_for(kFrame);
+  ASSERT_EQ(b.ended.size(), 1u);
+  EXPECT_TRUE(b.ended[0].complete);
+}
+
+TEST_F(CaptureTest, FramesCountTheBurstsThatTheyLost) {
+  const std::uint64_t before = b.isif.stats.overflows.count();
+  b.memory.latency = 10 * kLine;  // in each field two rows find places, six find none
+  enable();
+  run_until(frame_start_ + kFrame - kPsPerUs);
+  b.memory.latency = 100 * kPsPerNs;
+  run_until(frame_start_ + 2 * kFrame - kPsPerUs);
+  ASSERT_EQ(b.ended.size(), 2u);
+  EXPECT_EQ(b.ended[0].overflows, 2u * 2 * (8 - 2));
+  EXPECT_EQ(b.ended[1].overflows, 0u);
+  EXPECT_EQ(b.isif.stats.overflows.count() - before, 2u * 2 * (8 - 2));
+}
+
 TEST_F(CaptureTest, GatedIsifWritesNothingAndGivesNoInterrupt) {
   b.top_regs.write(0x10, 0x1F1F1F00);
   b.regs.write(VDINT0, 0);
@@ -301,6 +402,22 @@ TEST_F(CaptureTest, PscOffStopsCaptureToo) {
   EXPECT_TRUE(b.memory.log.empty());
   b.psc.write(true);
   run_for(kPsPerUs);
+}
+
+TEST_F(CaptureTest, WithoutTheWriteBufferNothingReachesMemory) {
+  b.top_regs.write(0x10, 0x1F1F1F00);
+  b.regs.write(VDINT0, 0);
+  b.top_regs.write(0x08, 0);
+  enable();
+  run_until(frame_start_ + kFrame);
+  EXPECT_TRUE(b.memory.log.empty());
+  EXPECT_TRUE(b.started.empty());
+  EXPECT_EQ(b.edges[0].rises.size(), 2u) << "interrupts go on";
+  b.top_regs.write(0x08, 2);
+  run_until(frame_start_ + 2 * kFrame - kPsPerUs);
+  EXPECT_EQ(wrong_bytes(kBuffer), 0u);
+  ASSERT_EQ(b.ended.size(), 1u);
+  EXPECT_TRUE(b.ended[0].complete);
 }
 
 TEST_F(CaptureTest, WithoutWriteEnableOnlyInterruptsCome) {
@@ -513,17 +630,39 @@ TEST_F(CaptureTest, SettingsWithoutEffectAreWarnedOfByName) {
 }
 
 TEST_F(CaptureTest, PrioritiesAndGatesLeaveAsWritten) {
-  EXPECT_EQ(b.top_regs.read(0x08), 2u);
   b.top_regs.write(0x08, 5u << 2 | 3u << 5 | 2u);
   b.top_regs.write(0x200, 0x1D);
   run_for(kPsPerNs);
   EXPECT_EQ(b.read_priority.read(), 5u);
   EXPECT_EQ(b.write_priority.read(), 3u);
   EXPECT_TRUE(b.vpbe_gate.read());
-  EXPECT_TRUE(b.venc_gate.read());
+  EXPECT_TRUE(b.venc_clk_sel.read());
   b.top_regs.write(0x200, 0x18);
   run_for(kPsPerNs);
   EXPECT_FALSE(b.vpbe_gate.read());
+  EXPECT_FALSE(b.venc_clk_sel.read());
+}
+
+TEST_F(CaptureTest, OutOfResetAllInterruptsFollowTheFirst) {
+  b.top.regs.reset();
+  EXPECT_EQ(b.top_regs.read(0x00), 0x4C180800u);
+  EXPECT_EQ(b.top_regs.read(0x04), 0x7Fu);
+  EXPECT_EQ(b.top_regs.read(0x08), 2u);
+  for (const std::uint32_t offset : {0x10u, 0x14u, 0x18u, 0x1Cu})
+    EXPECT_EQ(b.top_regs.read(offset), 0u) << offset;
+  EXPECT_EQ(b.top_regs.read(0x200), 0x19u);
+  b.regs.write(VDINT0, 5);
+  capture_frame();
+  for (unsigned i = 0; i < 9; ++i)
+    EXPECT_EQ(b.edges[i].rises, (std::vector<Picoseconds>{line_time(7), line_time(19)})) << i;
+}
+
+TEST_F(CaptureTest, ClockRegistersKeepTheirSelectors) {
+  b.top_regs.write(0x04, 0xFF);
+  EXPECT_EQ(b.top_regs.read(0x04), 0xFFu);
+  b.top_regs.write(0x200, 0xFF);
+  EXPECT_EQ(b.top_regs.read(0x200), 0xDFu);
+  b.top_regs.write(0x200, 0x19);
 }
 
 }  // namespace

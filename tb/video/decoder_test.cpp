@@ -29,6 +29,7 @@ constexpr bool kStudio = std::string_view(FOVEA_CROP) == "studio";
 constexpr const Standard& kStd = standard_of(k625Here);
 constexpr unsigned kWidth = FOVEA_WIDTH, kHeight = kStd.rows;
 constexpr std::uint32_t kBuffer = 0x8010'0000;
+constexpr int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
 
 std::uint8_t pattern(std::uint64_t k, unsigned row, unsigned i) {
   return static_cast<std::uint8_t>(1 + (k * 91 + row * 37 + i * 5 + (row * i >> 4)) % 254);
@@ -69,6 +70,7 @@ struct Bench {
     tvp_params.crop_525.set(FOVEA_CROP);
     tvp_params.relock_fields.set(std::to_string(FOVEA_RELOCK));
     tvp_params.phase.set(FOVEA_PHASE);
+    tvp_params.rom_version.set("35");
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
     tvp->video.bind(isif.video);
@@ -76,6 +78,7 @@ struct Bench {
     regs.socket.bind(isif.reg_socket);
     isif.psc_enabled(on);
     isif.gate(on);
+    isif.owns_write_buffer(on);
     for (unsigned i = 0; i < 3; ++i) {
       isif.vdint[i].out(event[i]);
       edges[i].in(event[i]);
@@ -114,6 +117,12 @@ TEST(DecoderTest, NobodyElseAnswersOnI2cAndIdsAreRight) {
   EXPECT_EQ(bench->i2c_read(0x81), 0x46);
 }
 
+TEST(DecoderTest, RomVersionIsTheParametersAndIsNotWritten) {
+  EXPECT_EQ(bench->i2c_read(0x70), 0x23);
+  bench->i2c_write(0x70, 7);
+  EXPECT_EQ(bench->i2c_read(0x70), 0x23);
+}
+
 TEST(DecoderTest, CameraRunsFromPowerUpPlusItsPhase) {
   const Clock clock(kByteClock);
   const std::uint64_t first = clock.edge_at_or_after(bench->tvp_params.phase());
@@ -143,7 +152,7 @@ TEST(DecoderTest, LocksAfterTheConfiguredFields) {
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
   EXPECT_EQ(b.i2c_read(0x3F), 0);
   run_until(b.tvp->field_time(from) + kPsPerUs);
-  EXPECT_EQ(b.i2c_read(0x3A), k625Here ? 0x2E : 0x0E);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked);
   EXPECT_EQ(b.i2c_read(0x3F), k625Here ? 2 : 1);
 }
 
@@ -197,6 +206,7 @@ TEST(DecoderTest, FrameRateIsExact) {
 TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
   Bench& b = *bench;
   b.i2c_write(0x02, k625Here ? 1 : 2);  // the other standard: never locks
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10) << "not locked, lock lost";
   b.ended.clear();
   while (b.ended.size() < 2) run_for(kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
@@ -207,15 +217,52 @@ TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
   run_until(b.tvp->field_time(from) - kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
   run_until(b.tvp->field_time(from) + kPsPerUs);
-  EXPECT_NE(b.i2c_read(0x3A) & 0x0E, 0);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10) << "lost once stays until it is cleared";
+  b.i2c_write(0x39, 0);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10);
+  b.i2c_write(0x39, 1);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked);
 }
 
-TEST(DecoderTest, PowerDownStopsTheStream) {
+TEST(DecoderTest, ClearingWhileNotLockedForgetsTheLoss) {
+  Bench& b = *bench;
+  b.i2c_write(0x00, 1);  // another input
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+  b.i2c_write(0x39, 1);
+  EXPECT_EQ(b.i2c_read(0x3A), 0) << "cleared; not locked since, so nothing was lost since";
+  run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+TEST(DecoderTest, PowerDownStopsTheStreamAndLosesTheLock) {
   Bench& b = *bench;
   b.i2c_write(0x03, 1);
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+  EXPECT_EQ(b.i2c_read(0x3F), 0);
   const std::uint64_t sent = b.tvp->lines_sent();
   run_for(50 * kPsPerMs);
   EXPECT_EQ(b.tvp->lines_sent(), sent);
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+}
+
+TEST(DecoderTest, PowerUpLocksAnewAfterTheConfiguredFields) {
+  Bench& b = *bench;
+  std::uint64_t field = b.tvp->locked_from_field();  // find the camera's field now
+  while (b.tvp->field_time(field + 1) <= kernel_time()) ++field;
+  b.i2c_write(0x03, 0);
+  EXPECT_EQ(b.tvp->locked_from_field(), field + FOVEA_RELOCK);
+  run_until(b.tvp->field_time(field + FOVEA_RELOCK) - kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+  run_until(b.tvp->field_time(field + FOVEA_RELOCK) + kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10);
+}
+
+TEST(DecoderTest, StoppedClockKeepsTheFieldAndTheLock) {
+  Bench& b = *bench;
+  b.clock.write(Frequency{});
+  run_for(kPsPerMs);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10);
+  EXPECT_EQ(b.i2c_read(0x3F), k625Here ? 2 : 1);
 }
 
 }  // namespace

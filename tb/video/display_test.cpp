@@ -57,7 +57,8 @@ struct Params : VpssParams {
 
 struct Bench {
   Params params;
-  sc_core::sc_signal<bool> on{"on", true}, gate{"gate", true}, event{"event"};
+  sc_core::sc_signal<bool> on{"on", true}, vpbe_gate{"vpbe_gate", true}, clk_sel{"clk_sel"},
+      event{"event"};
   ClockSignal clock{"clock", kByteClock};
   Osd osd{"osd", params};
   Venc venc{"venc", params};
@@ -74,10 +75,10 @@ struct Bench {
     osd_regs.socket.bind(osd.reg_socket);
     venc_regs.socket.bind(venc.reg_socket);
     osd.psc_enabled(on);
-    osd.gate(on);
+    osd.gate(vpbe_gate);
     venc.psc_enabled(on);
-    venc.vpbe_gate(on);
-    venc.venc_gate(gate);
+    venc.vpbe_gate(vpbe_gate);
+    venc.clk_sel(clk_sel);
     venc.clock(clock);
     venc.osd.bind(osd.lines);
     venc.display.bind(tap.in);
@@ -103,6 +104,7 @@ enum : std::uint32_t {
   XL = 0x50,
   YL = 0x54,
   VMOD = 0x00,
+  CLKCTL = 0x140,
   VSTAT = 0xB8
 };
 constexpr std::uint32_t kOn = FOVEA_625 ? 0x43 : 0x03;
@@ -113,6 +115,7 @@ class DisplayTest : public testing::Test {
   Bench& b = *bench;
   void SetUp() override {
     b.venc_regs.write(VMOD, 0);
+    b.venc_regs.write(CLKCTL, 1);
     b.memory.latency = 100 * kPsPerNs;
     run_for(kPsPerMs);
     for (unsigned r = 0; r < kRows; ++r)
@@ -180,6 +183,20 @@ TEST_F(DisplayTest, FieldInversionShowsTheLowerRowsFirst) {
   show(1);
   EXPECT_EQ(b.tap.firsts[0].byte, pattern(1, 0));
   EXPECT_EQ(b.tap.firsts[1].byte, pattern(0, 0));
+}
+
+TEST_F(DisplayTest, WindowFieldInversionShowsTheLowerRowsFirst) {
+  b.osd_regs.write(VIDWINMD, 1u << 15 | 3u);
+  show(1);
+  EXPECT_EQ(b.tap.firsts[0].byte, pattern(1, 0));
+  EXPECT_EQ(b.tap.firsts[1].byte, pattern(0, 0));
+  b.venc_regs.write(VMOD, 0);
+  run_for(kPsPerMs);
+  b.tap.firsts.clear();
+  b.osd_regs.write(MODE, 1u << 9);  // inverted twice
+  show(1);
+  EXPECT_EQ(b.tap.firsts[0].byte, pattern(0, 0));
+  EXPECT_EQ(b.tap.firsts[1].byte, pattern(1, 0));
 }
 
 TEST_F(DisplayTest, WithoutFieldModeBothFieldsShowTheSameRows) {
@@ -264,6 +281,19 @@ TEST_F(DisplayTest, BasepxOnePairFurtherMovesThePictureByOnePair) {
   EXPECT_EQ(b.frames[0].picture.row(0)[4], pattern(0, 0));
 }
 
+TEST_F(DisplayTest, WindowThatBeginsLeftOfThePictureIsCutThere) {
+  b.osd_regs.write(BASEPX, (FOVEA_625 ? 0x7E : 0x79) - 6);
+  show(1);
+  const Picture& p = b.frames[0].picture;
+  // Six pixels of each row lie left of the first active one; the row ends six pixels early.
+  for (unsigned r : {0u, 1u, kRows - 1})
+    for (unsigned i = 0; i < kPitch; ++i)
+      ASSERT_EQ(p.row(r)[i], i < kPitch - 12 ? pattern(r, i + 12)
+                             : i % 2         ? 0x10
+                                             : 0x80)
+          << "row " << r << " byte " << i;
+}
+
 TEST_F(DisplayTest, WrongPitchShears) {
   b.osd_regs.write(VIDWIN0OFST, 0x1000 | (kPitch / 32 - 1));
   show(1);
@@ -296,16 +326,128 @@ TEST_F(DisplayTest, BlankedEncoderIsBlack) {
   EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
 }
 
-TEST_F(DisplayTest, GatedEncoderShowsNothing) {
-  b.gate.write(false);
-  run_for(kPsPerUs);
-  b.venc_regs.write(VMOD, kOn);
-  run_for(3 * kField);
-  EXPECT_TRUE(b.edges.rises.empty());
-  EXPECT_TRUE(b.frames.empty());
-  b.gate.write(true);
+TEST_F(DisplayTest, EncoderWithoutItsClockShowsNothing) {
+  for (const std::uint32_t off : {0x00u, 0x10u}) {  // bit 4 is the digital LCD's
+    b.venc_regs.write(CLKCTL, off);
+    b.venc_regs.write(VMOD, kOn);
+    run_for(3 * kField);
+    EXPECT_TRUE(b.edges.rises.empty());
+    EXPECT_TRUE(b.frames.empty());
+  }
+  b.venc_regs.write(CLKCTL, 1);
   run_for(3 * kField);
   EXPECT_FALSE(b.frames.empty());
+  b.venc_regs.write(CLKCTL, 0);
+  run_for(kPsPerUs);
+  const std::size_t rises = b.edges.rises.size(), frames = b.frames.size();
+  run_for(3 * kField);
+  EXPECT_EQ(b.edges.rises.size(), rises);
+  EXPECT_EQ(b.frames.size(), frames);
+}
+
+TEST_F(DisplayTest, VpbeClockGatesTheRasterAndTheRegisters) {
+  b.venc_regs.write(VMOD, kOn);
+  b.vpbe_gate.write(false);
+  run_for(3 * kField);
+  EXPECT_TRUE(b.frames.empty());
+  b.vpbe_gate.write(true);
+  run_for(3 * kField);
+  EXPECT_FALSE(b.frames.empty());
+}
+
+TEST_F(DisplayTest, ClockSelectorLeavesTheStandardRasterAloneByDefault) {
+  b.clk_sel.write(true);
+  run_for(kPsPerUs);
+  show(2);
+  EXPECT_EQ(wrong(b.frames[0].picture), 0u);
+  const Picoseconds frame = kStd.frame_bytes() * (kPsPerSecond / 1'000'000) / 27;
+  EXPECT_NEAR(static_cast<double>(b.frames[1].start - b.frames[0].start),
+              static_cast<double>(frame), 1.0);
+  b.clk_sel.write(false);
+}
+
+TEST_F(DisplayTest, OtherStandardIsTakenWhileTheEncoderRuns) {
+  b.venc_regs.write(VMOD, kOn);
+  run_for(kField / 2);
+  const std::size_t first = b.tap.firsts.size();
+  ASSERT_GE(first, 1u);
+  b.venc_regs.write(VMOD, kOn ^ 0x40);
+  const Clock clock(kByteClock);
+  const std::uint64_t origin = clock.edge_after(kernel_time());
+  const Standard& other = standard_of(!FOVEA_625);
+  while (b.tap.firsts.size() < first + 2) run_for(kPsPerMs);
+  // A new raster begins at once, with the other standard's first field.
+  EXPECT_EQ(b.tap.firsts[first].number, other.active_first[0]);
+  EXPECT_FALSE(b.tap.firsts[first].f);
+  EXPECT_EQ(
+      b.tap.firsts[first].start,
+      clock.edge(origin + (FOVEA_625 ? 16u : 22u) * other.line_bytes + other.active_offset()));
+  EXPECT_EQ(b.tap.firsts[first + 1].number, other.active_first[1]);
+  b.venc_regs.write(VMOD, 0);
+  run_for(kPsPerUs);
+}
+
+TEST_F(DisplayTest, SettingsWithoutEffectAreWarnedOfByName) {
+  Diagnostics& d = Diagnostics::instance();
+  d.clear();
+  const auto names = [&d] {
+    std::vector<std::string> out;
+    for (const auto& [what, times] : d.counts())
+      out.push_back(what.second.substr(0, what.second.find(' ', 5)));
+    d.clear();
+    return out;
+  };
+  using Names = std::vector<std::string>;
+  // What Linux writes for these rasters.
+  for (const auto& [offset, value] :
+       std::initializer_list<std::pair<std::uint32_t, std::uint32_t>>{{CLKCTL, 1},
+                                                                      {0x04, 0},
+                                                                      {0x0C, 0x20},
+                                                                      {0x12C, 1},
+                                                                      {0x130, 2},
+                                                                      {0xC4, 0},
+                                                                      {0x08, 0},
+                                                                      {0xE0, 0x100},
+                                                                      {0xDC, 0}})
+    b.venc_regs.write(offset, value);
+  for (const std::uint32_t offset : {0x08u, 0x0Cu, 0x10u, 0xE0u, 0xE4u})
+    b.osd_regs.write(offset, 0);
+  b.osd_regs.write(0xE8, 0x10);
+  EXPECT_EQ(names(), Names{});
+  b.venc_regs.write(0x08, 0x100);
+  EXPECT_EQ(names(), Names{"VENC VDPRO.CBMD"});
+  b.venc_regs.write(0x08, 0x200);
+  EXPECT_EQ(names(), Names{}) << "the kind of colour bars, without bars";
+  b.venc_regs.write(0xC4, 0xF000);
+  b.venc_regs.write(0x12C, 0);
+  b.venc_regs.write(0x130, 1);
+  EXPECT_EQ(names(), (Names{"VENC DACTST", "VENC OSDCLK0", "VENC OSDCLK1"}));
+  b.osd_regs.write(0x08, 1);
+  b.osd_regs.write(0x0C, 0x8001);
+  b.osd_regs.write(0x10, 1);
+  EXPECT_EQ(names(), (Names{"OSD OSDWIN0MD.ACT", "OSD OSDWIN1MD.ACT", "OSD RECTCUR.ACT"}));
+  b.osd_regs.write(0xE8, 1u << 14 | 1u << 7);
+  EXPECT_EQ(names(), (Names{"OSD MISCCTL.RGBWIN_RGBEN", "OSD MISCCTL.S420D"}));
+  b.venc_regs.write(VMOD, kOn & ~2u);
+  run_for(kPsPerNs);
+  EXPECT_EQ(names(), Names{"VENC VMOD.VIE"});
+  for (const std::uint32_t offset : {0x08u, 0x0Cu, 0x10u, 0xE8u}) b.osd_regs.write(offset, 0);
+  b.venc_regs.write(0x08, 0);
+  b.venc_regs.write(0xC4, 0);
+  d.clear();
+}
+
+TEST_F(DisplayTest, PositionsHaveTheirRegistersWidths) {
+  b.osd_regs.write(BASEPX, ~0u);
+  b.osd_regs.write(BASEPY, ~0u);
+  EXPECT_EQ(b.osd_regs.read(BASEPX), 0x3FFu);
+  EXPECT_EQ(b.osd_regs.read(BASEPY), 0x1FFu);
+  for (std::uint32_t offset = XP; offset <= 0x94; offset += 4) {
+    b.osd_regs.write(offset, ~0u);
+    EXPECT_EQ(b.osd_regs.read(offset), 0x7FFu) << offset;
+    b.osd_regs.write(offset, 0);
+  }
+  Diagnostics::instance().clear();
 }
 
 TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
@@ -353,6 +495,27 @@ TEST_F(DisplayTest, HopelessMemoryGivesBlackAndCountsEveryBurst) {
   run_for(25 * kPsPerMs);  // late answers come to nobody
 }
 
+TEST_F(DisplayTest, WhatIsLateAlreadyIsNotRead) {
+  const Clock clock(kByteClock);
+  const std::uint64_t origin = clock.edge_after(kernel_time());
+  b.memory.latency = 300 * kPsPerUs;  // almost five lines; places for FOVEA_OUTSTANDING bursts
+  show(1);
+  EXPECT_GT(underflows(), 0u);
+  const std::uint64_t first[2] = {FOVEA_625 ? 22u : 16u, FOVEA_625 ? 335u : 279u};
+  std::size_t reads = 0;
+  for (const auto& r : b.memory.log) {
+    if (r.time >= b.frames[0].end) break;
+    ++reads;
+    const unsigned row = (r.address - kBuffer) / kPitch, byte = (r.address - kBuffer) % kPitch;
+    const Picoseconds due = clock.edge(origin + (first[row % 2] + row / 2) * kStd.line_bytes +
+                                       kStd.active_offset() + byte);
+    ASSERT_LT(r.time, due) << "row " << row << " byte " << byte;
+  }
+  EXPECT_GT(reads, 100u);
+  b.venc_regs.write(VMOD, 0);
+  run_for(kPsPerMs);
+}
+
 TEST_F(DisplayTest, WrongClockIsCaughtByTheDisplay) {
   b.clock.write(Frequency(26'538'461));
   b.venc_regs.write(VMOD, kOn);
@@ -361,6 +524,45 @@ TEST_F(DisplayTest, WrongClockIsCaughtByTheDisplay) {
   b.venc_regs.write(VMOD, 0);
   b.clock.write(kByteClock);
   run_for(kPsPerUs);
+  violations_ = b.sink.stats.violations.count();
+}
+
+TEST_F(DisplayTest, WithTheHalvingSelectorEachLineLastsTwiceAsLong) {
+  b.params.venc_clk_sel.set("halves");
+  b.venc_regs.write(VMOD, kOn);
+  while (b.edges.rises.size() < 3) run_for(kPsPerMs);
+  const Picoseconds whole = b.edges.rises[2] - b.edges.rises[0];
+  b.edges.rises.clear();
+  b.clk_sel.write(true);
+  while (b.edges.rises.size() < 4) run_for(kPsPerMs);
+  EXPECT_NEAR(static_cast<double>(b.edges.rises[3] - b.edges.rises[1]),
+              2 * static_cast<double>(whole), 2.0);
+  b.venc_regs.write(VMOD, 0);
+  b.params.venc_clk_sel.set("no_effect");
+  b.clk_sel.write(false);
+  run_for(kPsPerMs);
+  violations_ = b.sink.stats.violations.count();  // the display expects the true rate
+}
+
+TEST_F(DisplayTest, ChangedClockMovesTheLineUnderWay) {
+  b.venc_regs.write(VMOD, kOn);
+  while (b.edges.rises.empty()) run_for(kPsPerUs);
+  // In the middle of the line before the second field the clock becomes ten times slower: the rest
+  // of that line, which ends with the interrupt, lasts ten times as long.
+  const unsigned lines = FOVEA_625 ? 312 : 262;
+  const std::uint64_t half = kStd.line_bytes / 2;
+  const Clock clock(kByteClock, b.edges.rises[0]);
+  run_until(clock.edge((lines - 1) * kStd.line_bytes + half));
+  const Picoseconds change = kernel_time();
+  b.edges.rises.clear();
+  b.clock.write(Frequency(2'700'000));
+  while (b.edges.rises.empty()) run_for(kPsPerUs);
+  const Picoseconds slow = kPsPerSecond / 2'700'000;
+  EXPECT_NEAR(static_cast<double>(b.edges.rises[0] - change), static_cast<double>(half * slow),
+              static_cast<double>(slow));
+  b.venc_regs.write(VMOD, 0);
+  b.clock.write(kByteClock);
+  run_for(kPsPerMs);
   violations_ = b.sink.stats.violations.count();
 }
 

@@ -53,6 +53,21 @@ struct Feed {
 class BothStandards : public testing::TestWithParam<const Standard*> {};
 INSTANTIATE_TEST_SUITE_P(Standards, BothStandards, testing::Values(&k625, &k525));
 
+TEST_P(BothStandards, FrameThatBeginsAnewIsBrokenOnce) {
+  Feed feed(*GetParam());
+  const unsigned first = GetParam()->active_first[0];
+  // The raster runs to the middle of the first field and begins again.
+  bool stop = false;
+  feed.frames_from_to(0, 1, [&](DisplayLine& l) {
+    stop |= l.number == first + 100;
+    return !stop;
+  });
+  EXPECT_EQ(feed.sink.broken_frames(), 0u) << "not yet known";
+  feed.frames_from_to(1, 2, [](DisplayLine&) { return true; });
+  EXPECT_EQ(feed.sink.broken_frames(), 1u);
+  EXPECT_EQ(feed.frames.size(), 1u);
+}
+
 TEST_P(BothStandards, CleanRasterGivesFramesWithoutComplaint) {
   Feed feed(*GetParam());
   feed.run(3);

@@ -4,8 +4,10 @@
 #include "../mmio.h"
 #include "../regs.h"
 
-/* Left and top edge of the active picture, as in the public drivers; those add two lines for
- * 625/50 on this chip, which would leave the top two lines of each field to the background. */
+/* Left and top edge of the active picture, as in Linux's board-dm365-evm.c. TI's Linux 2.6.32 adds
+ * two lines for 625/50 on this chip against a shaking bitmap window 0 (davinci_platform.c); no
+ * bitmap window is used here, and two lines more would leave the top two lines of each field to
+ * the background if 0x16 is the first active line, as assumed in vpss.base_py_625. */
 #define BASEPX_525 0x79u
 #define BASEPY_525 0x10u
 #define BASEPX_625 0x7Eu
