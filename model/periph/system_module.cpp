@@ -9,8 +9,7 @@ SystemRegs::SystemRegs(std::uint32_t bootcfg_pins)
     pinmux.emplace_back(*this, "PINMUX" + std::to_string(n), 4 * n, Mode::kRw,
                         "pin functions; no pin is disconnected");
   for (unsigned n = 0; n < 8; ++n)
-    debounce.emplace_back(*this, "DEBOUNCE" + std::to_string(n), 0x54 + 4 * n, Mode::kRw,
-                          "GPIO debounce; kept");
+    debounce.emplace_back(*this, "DEBOUNCE" + std::to_string(n), 0x54 + 4 * n, "GPIO debounce");
 }
 
 SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& params)

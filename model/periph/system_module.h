@@ -33,21 +33,26 @@ struct SystemParams : ParamGroup {
   SystemParams() : ParamGroup("system") {}
 };
 
-/// Offsets and reset values: TI register header (CSL) and TI boot loader, which agree. BOOTCFG,
-/// DDR_SLEW's CMOS bit and the debounce registers are kept without effect, as are all multiplexers
-/// that select a block which is not modelled.
+/// Offsets and reset values: TI register header (CSL) and TI boot loader, which agree. What would
+/// act on the chip and does not here is declared so (Modelled) and warned of; BOOTCFG, DDR_SLEW,
+/// the pull resistors and the registers of blocks that are not modelled (host port, USB) are just
+/// kept.
 struct SystemRegs : RegBank {
   explicit SystemRegs(std::uint32_t bootcfg_pins);
   std::deque<Reg> pinmux;  ///< PINMUX0 to 4
   Reg bootcfg;
   Reg arm_intmux{*this, "ARM_INTMUX", 0x18, Mode::kRw,
                  "which of two blocks feeds an interrupt (interrupt_mux.h)"};
-  Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw, "alternative EDMA events"};
+  Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw, "alternative EDMA events", 0, Modelled{0}};
   Reg ddr_slew{*this, "DDR_SLEW", 0x20, Mode::kRw, "DDR pad slew; bit 4 CMOS levels", 0x700};
   Reg uhpi_ctl{*this, "UHPI_CTL", 0x24, Mode::kRw, "host port; kept"};
   Reg device_id{*this, "DEVICE_ID", 0x28, Mode::kRo, "JTAG identification", 0x0B83E02F};
   Reg vdac_config{*this, "VDAC_CONFIG", 0x2C, Mode::kRw, "video DAC; kept", 0x00115500};
-  Reg timer64_ctl{*this, "TIMER64_CTL", 0x30, Mode::kRw, "timer input pins; kept"};
+  struct Timer64Ctl : Reg {
+    using Reg::Reg;
+    Field gio1_2{*this, "GIO1_2", 0, 1, Mode::kRw, "input pin of TIMER0: GIO1, GIO2", Modelled{0}};
+    Field gio3_4{*this, "GIO3_4", 1, 1, Mode::kRw, "input pin of TIMER1: GIO3, GIO4", Modelled{0}};
+  } timer64_ctl{*this, "TIMER64_CTL", 0x30, "timer input pins"};
   Reg usbphy_ctl{*this, "USBPHY_CTL", 0x34, Mode::kRw, "USB PHY; kept", 0xC7};
   struct Misc : Reg {
     using Reg::Reg;
@@ -56,8 +61,10 @@ struct SystemRegs : RegBank {
     Field efuse{*this, "EFUSE_BIT", 2, 2, Mode::kRo, "0"};
     Field timer2_wdt{*this, "TIMER2_WDT", 4,
                      1,     Mode::kRw,    "1: TIMER2's reset request resets the chip"};
-    Field clkstp{*this, "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass; kept"};
-    Field tptc1_bst{*this, "TPTC1_BST", 7, 1, Mode::kRw, "burst of TPTC1: 0 32 bytes, 1 64"};
+    Field clkstp{*this,      "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass: McBSP, EDMA",
+                 Modelled{0}};
+    Field tptc1_bst{*this,      "TPTC1_BST", 7, 1, Mode::kRw, "burst of TPTC1: 0 32 bytes, 1 64",
+                    Modelled{0}};
     Field bootst{*this, "BOOTST", 8, 2, Mode::kRw, "boot status; kept"};
   } misc{*this, "MISC", 0x38, "miscellaneous", 0x13};
   struct Mstpri0 : Reg {
@@ -88,7 +95,12 @@ struct SystemRegs : RegBank {
       0x003F0FF8};
   Reg deepsleep{*this, "DEEPSLEEP", 0x4C, Mode::kRw, "deep sleep; not modelled", 0x176B};
   Reg dft_enable{*this, "DFT_ENABLE", 0x50, Mode::kRw, "test; kept"};
-  std::deque<Reg> debounce;
+  struct Debounce : Reg {
+    using Reg::Reg;
+    Field interval{*this, "INTERVAL", 0, 21, Mode::kRw, "time that a level must last"};
+    Field enable{*this, "ENABLE", 31, 1, Mode::kRw, "debouncing of a GPIO pin", Modelled{0}};
+  };
+  std::deque<Debounce> debounce;  ///< of GPIO0 to 7
   struct Vtpiocr : Reg {
     using Reg::Reg;
     Field code{*this, "DRIVE", 0, 6, Mode::kRw, "drive and filter settings; kept"};

@@ -434,6 +434,35 @@ TEST(SystemModuleTest, PrioritiesAndMiscReachTheirPorts) {
   EXPECT_EQ(s.bs.read(0x28), 0x0B83E02Fu);
 }
 
+TEST(SystemModuleTest, SettingsWithoutEffectAreNamed) {
+  System& s = sys();
+  auto& notes = Diagnostics::instance();
+  struct Setting {
+    std::uint32_t offset, harmless, word;
+    const char* name;
+  };
+  for (const Setting& t :
+       {Setting{0x1C, 0, 1, "EDMA_EVTMUX"}, Setting{0x30, 0, 1, "TIMER64_CTL.GIO1_2"},
+        Setting{0x30, 0, 2, "TIMER64_CTL.GIO3_4"}, Setting{0x38, 0x313, 0x93, "MISC.TPTC1_BST"},
+        Setting{0x38, 0x12, 0x33, "MISC.CLKSTP_BYP"},
+        Setting{0x54, 0x1FFFFF, 0x80000000, "DEBOUNCE0.ENABLE"},
+        Setting{0x70, 0x1FFFFF, 0x80000010, "DEBOUNCE7.ENABLE"}}) {
+    notes.clear();
+    s.bs.write(t.offset, t.harmless);
+    EXPECT_TRUE(notes.counts().empty()) << t.name;
+    s.bs.write(t.offset, t.word);
+    s.bs.write(t.offset, t.word);
+    const auto counts = notes.counts();
+    ASSERT_EQ(counts.size(), 1u) << t.name;
+    const auto& [what, times] = *counts.begin();
+    EXPECT_EQ(what.first, Diagnostics::Kind::kNotModelled);
+    EXPECT_TRUE(what.second.starts_with(std::string("SYSTEM ") + t.name + " (")) << what.second;
+    EXPECT_TRUE(what.second.ends_with("): only 0 is modelled")) << what.second;
+    EXPECT_EQ(times, 2u);
+    s.bs.write(t.offset, t.offset == 0x38 ? 0x13 : 0);
+  }
+}
+
 TEST(SystemModuleTest, VtpIsReadyAfterTheRiseOfClrz) {
   System& s = sys();
   s.bs.write(0x74, s.bs.read(0x74) & 0xFFFF9F3F);
