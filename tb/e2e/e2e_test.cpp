@@ -79,6 +79,9 @@ TEST(EndToEndTest, WholePalFrameIsCorrectedExactly) {
   ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
   expect_lut_right(rig);
   expect_frames_right(rig);
+  // The firmware uses nothing that the model lacks, and keeps the chip's rules.
+  for (const auto& [what, times] : Diagnostics::instance().counts())
+    ADD_FAILURE() << times << " times: " << what.second;
 }
 
 TEST(EndToEndTest, NtscPairMethodBIsCorrectedExactly) {
