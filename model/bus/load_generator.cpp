@@ -6,6 +6,7 @@ namespace fovea::bus {
 namespace {
 
 constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
+constexpr Picoseconds kPause = 10 * kPsPerUs;  // after an error, or while the SDRAM is set up
 constexpr std::uint32_t kSdram = 0x8000'0000u, kInternalRam = 0x1'0000u;
 
 /// Words of LoadParams::port: load, the transfer controllers, the engine.
@@ -34,6 +35,8 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   SC_METHOD(fill);
   sensitive << wake_;
   dont_initialize();
+  SC_METHOD(sdram_changed);
+  sensitive << sdram_initialised;
   if (!params.active()) return;
   // Not at power-up itself: the clocks get their first values in that instant.
   const Picoseconds start = std::max<Picoseconds>(params.start(), kPsPerNs);
@@ -41,8 +44,18 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   wake_.notify(ps_time(start));
 }
 
+void LoadGenerator::sdram_changed() {
+  if (!params_.memory.is("sdram")) return;
+  usable_from_ = sdram_initialised.read() ? kernel_time() + kPause : kNever;
+  if (sdram_initialised.read() && !ready_.empty()) wake_.notify(ps_time(kPause));
+}
+
 void LoadGenerator::fill() {
   const Picoseconds now = kernel_time();
+  if (now < usable_from_) {
+    if (usable_from_ != kNever) wake_.notify(ps_time(usable_from_ - now));
+    return;
+  }
   while (!ready_.empty() && ready_.top() <= now) {
     ready_.pop();
     issue();
@@ -70,7 +83,7 @@ void LoadGenerator::done(const BurstMaster::Completion& c) {
   if (params_.copies() && !c.write && !c.error)
     return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
   const Picoseconds now = kernel_time();
-  ready_.push(now + (c.error ? 10 * kPsPerUs : pause_));
+  ready_.push(now + (c.error ? kPause : pause_));
   wake_.notify(ps_time(ready_.top() - now));
 }
 

@@ -37,7 +37,9 @@ struct LoadParams : ParamGroup {
                  "direction of the bursts; copy: each is read in the lower half of the region and "
                  "written to the upper as soon as it is there",
                  Origin::kChoice, ""};
-  IntParam start{*this, "start", U::kTime, 0, 0, 3600 * kPsPerSecond, "when the load begins",
+  IntParam start{*this, "start", U::kTime, 0, 0, 3600 * kPsPerSecond,
+                 "when the load begins; a load on the SDRAM waits until 10 us after software has "
+                 "initialised that",
                  Origin::kChoice, ""};
   EnumParam memory{*this, "memory", "sdram", {"sdram", "internal_ram"},
                    "where its region lies", Origin::kChoice, ""};
@@ -55,12 +57,16 @@ struct LoadParams : ParamGroup {
   bool writes() const { return !kind.is("read"); }
 };
 
-/// Keeps a number of bursts under way; a copy is one from its read to its write's acknowledgement. A
-/// burst refused with a bus error (the SDRAM is not up yet) is tried again after 10 us.
+/// Keeps a number of bursts under way; a copy is one from its read to its write's acknowledgement. On
+/// the SDRAM it pauses while that is not initialised and 10 us longer, since boot loaders write
+/// registers and reset the controller after they have locked its timing. A burst refused with a bus
+/// error is tried again after 10 us.
 class LoadGenerator : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(LoadGenerator);
   LoadGenerator(sc_core::sc_module_name name, const LoadParams& params);
+
+  sc_core::sc_in<bool> sdram_initialised{"sdram_initialised"};
 
   /// Calls `bind(socket, master)` for each port that it drives.
   template <class Bind>
@@ -72,6 +78,7 @@ class LoadGenerator : public sc_core::sc_module {
  private:
   BurstMaster& writes() { return other_side_ ? *other_side_ : reads_; }
   void fill();
+  void sdram_changed();
   void issue();
   void done(const BurstMaster::Completion& c);
   std::uint64_t region() const { return params_.copies() ? params_.size() / 2 : params_.size(); }
@@ -83,6 +90,7 @@ class LoadGenerator : public sc_core::sc_module {
   /// When each burst that is not under way may go out. What completes in an instant does so in any
   /// order, before or after fill(): a place must not depend on the others.
   std::priority_queue<Picoseconds, std::vector<Picoseconds>, std::greater<>> ready_;
+  Picoseconds usable_from_ = 0;  // its memory; kNever: not known
   std::uint64_t serial_ = 0, state_ = 1;
   std::array<std::uint8_t, kMaxBurstBytes> data_{};
   sc_core::sc_event wake_;

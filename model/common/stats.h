@@ -42,6 +42,18 @@ class Counter : public StatBase {
   std::uint64_t count_ = 0;
 };
 
+/// The largest of the values noted in the window.
+class Maximum : public StatBase {
+ public:
+  using StatBase::StatBase;
+  void note(std::uint64_t v) { most_ = v > most_ ? v : most_; }
+  Value value() const override { return most_; }
+  void reset() override { most_ = 0; }
+
+ private:
+  std::uint64_t most_ = 0;
+};
+
 /// A value that is computed when asked for, from counters that reset themselves.
 class Formula : public StatBase {
  public:

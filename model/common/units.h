@@ -29,6 +29,10 @@ struct Frequency {
   constexpr double hertz() const { return static_cast<double>(num) / static_cast<double>(den); }
   constexpr Frequency operator*(std::uint64_t k) const { return {num * k, den}; }
   constexpr Frequency operator/(std::uint64_t k) const { return {num, den * k}; }
+  /// A key in whole hertz stands for up to 1 Hz more or less (166666667Hz for 1/6 ns): what a limit or a
+  /// rounding is held against is 1 Hz in the key's favour.
+  constexpr Frequency less_1_hertz() const { return num > den ? Frequency(num - den, den) : *this; }
+  constexpr Frequency plus_1_hertz() const { return stopped() ? *this : Frequency(num + den, den); }
   friend constexpr bool operator==(const Frequency&, const Frequency&) = default;
   friend std::ostream& operator<<(std::ostream& os, const Frequency& f) {
     return os << f.num << "/" << f.den << " Hz";

@@ -5,6 +5,12 @@
 #include "model/mem/ddr_decode.h"
 
 namespace fovea::mem {
+namespace {
+
+/// The part of the chip's memory map that belongs to the SDRAM (SPRS457E, memory map).
+constexpr std::uint64_t kWindow = 256u << 20;
+
+}  // namespace
 
 DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
     : BusTarget(name, regs),
@@ -43,6 +49,13 @@ void DdrModule::settle(Picoseconds now) {
 void DdrModule::enabled_changed() {
   enabled_ = enabled.read();
   open_ = ready_ && enabled_ && examined_;
+  note_initialised();
+}
+
+void DdrModule::note_initialised() {
+  const auto& r = regs.sdbcr;
+  initialised.write(ready_ && timed_ && !r.timunlock && !r.bootunlock && enabled_ &&
+                    controller_.running());
 }
 
 void DdrModule::clocks_changed() {
@@ -54,6 +67,7 @@ void DdrModule::clocks_changed() {
   controller_.set_clocks(ddr_clk.read(), scr_clk.read(), now);
   examined_ = open_ = false;
   replanned_.notify(sc_core::SC_ZERO_TIME);
+  note_initialised();
 }
 
 /// SDTIMR and SDTIMR2 can be written while SDBCR.TIMUNLOCK is set.
@@ -92,31 +106,48 @@ void DdrModule::reconfigure() {
     ready_ = false;
   else if (!regs.sdbcr.timunlock)
     ready_ = true;
+  if (regs.sdbcr.timunlock) timed_ = true;
   examined_ = open_ = false;
+  note_initialised();
 }
 
 DdrConfig DdrModule::programmed() const { return decode(regs); }
 
-/// The seldom side of a request. False: nobody answers it.
-[[gnu::noinline]] bool DdrModule::admit(const MemRequest& m) {
-  const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
-  if (!outside && ready_ && enabled_ && controller_.running()) {
+/// True if the controller takes the request. False: it ends in a bus error.
+bool DdrModule::admit(const MemRequest& m) {
+  const bool outside = std::uint64_t{m.address} + m.bytes > kWindow;
+  if (outside || !ready_ || !enabled_ || !controller_.running()) {
+    Diagnostics::instance().guest(outside ? "access beyond the SDRAM's 256 MiB of the memory map"
+                                          : "access to the SDRAM before its controller runs");
+    return false;
+  }
+  if (!examined_) {
     examined_ = open_ = true;
     for (const std::string& line : nonsense(regs, params_)) Diagnostics::instance().guest(line);
     check_.remark(programmed(), ddr_clk.read());
-    return true;
   }
-  Diagnostics::instance().guest(outside ? "access beyond the end of the SDRAM"
-                                        : "access to the SDRAM before its controller runs");
-  return false;
+  if (std::uint64_t{m.address} + m.bytes > store_.size())
+    Diagnostics::instance().guest("access beyond the SDRAM's end (ddr.part, " +
+                                  std::to_string(store_.size() >> 20) +
+                                  " MiB): it repeats from its beginning");
+  return true;
+}
+
+/// The controller is stopped or not examined since it was programmed, or the address is beyond the part.
+[[gnu::noinline]] Taken DdrModule::arrive_slowly(MemRequest& m, Picoseconds at) {
+  if (!admit(m)) return refuse_in_order(m, at);
+  FOVEA_CHECK(!controller_.shut(), "a request while another one waits at the door");
+  const std::uint32_t address = m.address;
+  m.address &= static_cast<std::uint32_t>(store_.size() - 1);
+  const bool taken = controller_.submit_inside(m, at);
+  m.address = address;
+  return taken ? Taken::kYes : Taken::kWaits;
 }
 
 [[gnu::flatten]] Taken DdrModule::arrive(MemRequest& m, Picoseconds at) {
   const bool outside = std::uint64_t{m.address} + m.bytes > store_.size();
-  if (!open_ || outside || controller_.shut()) [[unlikely]] {
-    if (!admit(m)) return refuse_in_order(m, at);
-    FOVEA_CHECK(!controller_.shut(), "a request while another one waits at the door");
-  }
+  if (!open_ || outside || controller_.shut()) [[unlikely]]
+    return arrive_slowly(m, at);
   return controller_.submit_inside(m, at) ? Taken::kYes : Taken::kWaits;
 }
 
@@ -176,13 +207,13 @@ void DdrModule::refuse_after(const void* read, Picoseconds last) {
 }
 
 unsigned DdrModule::transport_dbg(MemRequest& r) {
-  if (r.address >= store_.size()) return 0;
-  const auto n =
-      static_cast<unsigned>(std::min<std::uint64_t>(r.bytes, store_.size() - r.address));
+  if (r.address >= kWindow) return 0;
+  const auto address = static_cast<std::uint32_t>(r.address & (store_.size() - 1));
+  const auto n = static_cast<unsigned>(std::min<std::uint64_t>(r.bytes, store_.size() - address));
   if (r.write)
-    controller_.debug_write(r.address, r.data, n);
+    controller_.debug_write(address, r.data, n);
   else
-    controller_.debug_read(r.address, r.data, n);
+    controller_.debug_read(address, r.data, n);
   return n;
 }
 

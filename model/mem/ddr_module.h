@@ -17,7 +17,8 @@ namespace fovea::mem {
 /// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDBCR2, SDTIMR,
 /// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
 /// while LPSC 13 or the clock is off, end in a bus error (assumed: the chip's reaction is not
-/// documented). With the first access after a change of registers or clock, when all of it is
+/// documented). An address beyond the part's size, inside the chip's window of 256 MiB, is taken modulo
+/// that size: the row address bits above the part's are not connected. With the first access after a change of registers or clock, when all of it is
 /// written, what was programmed is looked at: nonsense and times below the part's data sheet are
 /// remarks about the guest.
 class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
@@ -28,6 +29,8 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   ClockIn ddr_clk{"ddr_clk"};
   ClockIn scr_clk{"scr_clk"};
   sc_core::sc_in<bool> enabled{"enabled"};  ///< LPSC 13
+  /// Software has programmed the timing and locked it again, and power domain and clock are on.
+  sc_core::sc_signal<bool, sc_core::SC_UNCHECKED_WRITERS> initialised{"initialised"};
 
   DdrModule(sc_core::sc_module_name name, const DdrParams& params);
 
@@ -60,7 +63,9 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   void reconfigure();
   void keep_while_locked(Reg& timing, std::uint32_t& kept);
   void keep_latency_while_locked();
+  void note_initialised();
   bool admit(const MemRequest& m);
+  Taken arrive_slowly(MemRequest& m, Picoseconds at);
   Taken refuse_in_order(MemRequest& m, Picoseconds at);
   void refuse_after(const void* read, Picoseconds last);
 
@@ -71,6 +76,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   sc_core::sc_event replanned_;
   KernelNow now_;
   bool ready_ = false;      // initialised by the firmware
+  bool timed_ = false;      // the timing registers have been open since power-up
   bool enabled_ = false;    // of `enabled`, without a call
   bool examined_ = false;   // what is programmed now
   bool open_ = false;       // all three

@@ -28,7 +28,7 @@ struct DdrRegs : RegBank {
     Field mddren{*this, "MSDRAMEN", 25, 1, Mode::kRw, "mobile DDR"};
     Field ibank_pos{*this, "IBANK_POS", 26, 1, Mode::kRw, "1: bank address on top of the row"};
     Field term{*this, "DDRTERM", 27, 2, Mode::kRw, "termination; no effect here"};
-  } sdbcr{*this, "SDBCR", 0x08, "SDRAM bank configuration", 0x00053832};
+  } sdbcr{*this, "SDBCR", 0x08, "SDRAM bank configuration; reset value assumed", 0x00053832};
 
   struct Sdrcr : Reg {
     using Reg::Reg;
@@ -37,7 +37,7 @@ struct DdrRegs : RegBank {
     Field mclkstopen{*this, "MCLKSTOPEN", 30, 1, Mode::kRw,
                      "with LPMODEN: the memory's clock stands in self-refresh"};
     Field lpmoden{*this, "LPMODEN", 31, 1, Mode::kRw, "low power"};
-  } sdrcr{*this, "SDRCR", 0x0C, "refresh control", 0x00000535};
+  } sdrcr{*this, "SDRCR", 0x0C, "refresh control; reset value assumed", 0x00000535};
 
   struct Sdtimr : Reg {
     using Reg::Reg;
@@ -49,7 +49,7 @@ struct DdrRegs : RegBank {
     Field rcd{*this, "T_RCD", 19, 3, Mode::kRw, "clocks - 1"};
     Field rp{*this, "T_RP", 22, 3, Mode::kRw, "clocks - 1"};
     Field rfc{*this, "T_RFC", 25, 7, Mode::kRw, "clocks - 1"};
-  } sdtimr{*this, "SDTIMR", 0x10, "timing, first word", 0xFFFFFFFF};
+  } sdtimr{*this, "SDTIMR", 0x10, "timing, first word; reset value assumed", 0xFFFFFFFF};
 
   struct Sdtimr2 : Reg {
     using Reg::Reg;
@@ -60,7 +60,7 @@ struct DdrRegs : RegBank {
     Field odt{*this, "T_ODT", 23, 2, Mode::kRw, "clocks"};
     Field xp{*this, "T_XP", 25, 2, Mode::kRw, "clocks - 1"};
     Field rasmax{*this, "T_RASMAX", 27, 4, Mode::kRw, "refresh intervals - 1"};
-  } sdtimr2{*this, "SDTIMR2", 0x14, "timing, second word", 0x7FFFFFFF};
+  } sdtimr2{*this, "SDTIMR2", 0x14, "timing, second word; reset value assumed", 0x7FFFFFFF};
 
   struct Sdbcr2 : Reg {
     using Reg::Reg;
@@ -82,7 +82,7 @@ struct DdrRegs : RegBank {
     using Reg::Reg;
     Field rl{*this, "RL", 0, 3, Mode::kRw, "read latency, clocks"};
     Field other{*this, "CTRL", 3, 29, Mode::kRw, "power-down, strobes, DLL; no effect here"};
-  } ddrphycr{*this, "DDRPHYCR", 0xE4, "PHY control", 0x50006405};
+  } ddrphycr{*this, "DDRPHYCR", 0xE4, "PHY control; reset value assumed", 0x50006405};
   Reg ddrphycr2{*this, "DDRPHYCR2", 0xE8, Mode::kRw, "PHY control 2; no effect here"};
 
   DdrRegs() : RegBank("DDR") {}

@@ -170,8 +170,10 @@ void Dm365::wire_memory() {
   arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
   isif.memory.socket.bind(*scr.target[index(Master::kVpfe)]);
   osd.memory.socket.bind(*scr.target[index(Master::kVpbe)]);
-  for (auto& load : loads)
+  for (auto& load : loads) {
     load->bind_ports([this](auto& socket, Master m) { socket.bind(*scr.target[index(m)]); });
+    load->sdram_initialised(ddr.initialised);
+  }
   std::vector<Master> masters{Master::kArmI, Master::kArmD, Master::kVpfe, Master::kVpbe};
   for (const auto& load : params_.loads)
     if (load.active()) masters.push_back(load.reader());

@@ -79,14 +79,17 @@ constexpr Picoseconds kOpenAtMost = 70'000'000;  // [S2], [S12 S13]
 constexpr unsigned kPageBytes = 2'048;  // DDR2 x16 [S1 S2]; mobile: assumed
 
 using Wide = unsigned __int128;
-std::uint64_t rounded_up(Picoseconds t, Frequency f) {
+// ddr.clock is in whole hertz, so that a period of 6 ns is 166666667Hz or 166666666Hz.
+std::uint64_t rounded_up(Picoseconds t, Frequency key) {
+  const Frequency f = key.less_1_hertz();
   const Wide unit = Wide{kPsPerSecond} * f.den;
   return static_cast<std::uint64_t>((Wide{t} * f.num + unit - 1) / unit);
 }
 std::uint64_t rounded_down(Picoseconds t, Frequency f) {
   return static_cast<std::uint64_t>(Wide{t} * f.num / (Wide{kPsPerSecond} * f.den));
 }
-bool no_faster(Frequency f, Picoseconds period) {
+bool no_faster(Frequency key, Picoseconds period) {
+  const Frequency f = key.less_1_hertz();
   return Wide{period} * f.num <= Wide{kPsPerSecond} * f.den;
 }
 

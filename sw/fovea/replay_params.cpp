@@ -54,7 +54,7 @@ void ReplayParams::check() const {
   const auto at_least = [&](const IntParam& p, std::uint64_t least, const char* what) {
     if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
   };
-  // What no part of this kind does at all; what a single part forbids is a remark (mem::DdrCheck).
+  // What no part of this kind does at all, with 1 Hz for the rounding of ddr.clock; what a single part forbids is a remark (mem::DdrCheck).
   const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
                           const char* range) {
     if (p() < least || p() > most)
@@ -62,20 +62,20 @@ void ReplayParams::check() const {
                             ddr.part()));
   };
   if (ddr.mobile()) {
-    within(r.clock, 1'000'000, 200'000'000, "1MHz .. 200MHz, mobile DDR");
+    within(r.clock, 1'000'000, 200'000'001, "1MHz .. 200MHz, mobile DDR");
     within(r.CL, 2, 3, "2 or 3 cycles, mobile DDR");
   } else {
-    within(r.clock, 125'000'000, 533'333'333, "125MHz .. 533MHz, DDR2");
+    within(r.clock, 124'999'999, 533'333'334, "125MHz .. 533MHz, DDR2");
     within(r.CL, 3, 7, "3 .. 7 cycles, DDR2");
   }
-  // The highest clock that any speed grade has at this CL (JESD79-2, JESD209).
-  const std::uint64_t highest = ddr.mobile() && r.CL() == 2 ? 83'333'334
-                                : ddr.mobile()              ? 200'000'000
-                                : r.CL() == 3               ? 200'000'000
-                                : r.CL() == 4               ? 266'666'667
-                                : r.CL() == 5               ? 400'000'000
-                                                            : 533'333'333;
-  if (r.clock() > highest)
+  // The shortest period that any speed grade has at this CL (JESD79-2, JESD209).
+  const Picoseconds shortest = ddr.mobile() && r.CL() == 2 ? 12'000
+                               : ddr.mobile()              ? 5'000
+                               : r.CL() == 3               ? 5'000
+                               : r.CL() == 4               ? 3'750
+                               : r.CL() == 5               ? 2'500
+                                                           : 1'875;
+  if ((r.clock() - 1) * shortest > kPsPerSecond)
     refuse(r.CL, fmt::format("more cycles at {}: no part reads so soon", r.clock.text()));
   if (!std::has_single_bit(r.page())) refuse(r.page, "powers of two");
   if (!std::has_single_bit(r.banks()) || r.banks() > ddr.banks())

@@ -127,13 +127,40 @@ TEST(ProgrammingTest, RefreshAndOpenRowsAreBoundedAbove) {
 }
 
 TEST(ProgrammingTest, ClockBeyondTheGradeIsNamed) {
-  EXPECT_THAT(violations(tight(), "mt47h128m16", Frequency(400'000'001)),
+  const auto clock_is_named = [](std::uint64_t hertz) {
+    const auto all = violations(tight(), "mt47h128m16", Frequency(hertz));
+    return std::any_of(all.begin(), all.end(),
+                       [](const auto& line) { return line.find("SDBCR CL") == 0; });
+  };
+  EXPECT_FALSE(clock_is_named(400'000'001)) << "a rounding of whole hertz";
+  EXPECT_THAT(violations(tight(), "mt47h128m16", Frequency(400'000'002)),
               testing::Contains("SDBCR CL: 5 programmed at 400 MHz, MT47H128M16-25E: CL 5 has tCK "
                                 "2.5 ns at least"));
   mem::DdrConfig c = tight();
   c.timing.CL = 2;
   EXPECT_THAT(violations(c, "mt47h128m16", k340),
               ElementsAre("SDBCR CL: 2 programmed at 340 MHz, MT47H128M16-25E: CL 2 is not offered"));
+}
+
+// 18 ns are three clocks of 6 ns, which no whole number of hertz is.
+TEST(ProgrammingTest, HertzThatRoundAPeriodAreNoClockMore) {
+  mem::DdrConfig c;
+  auto& t = c.timing;
+  t.CL = 3;
+  t.nRCD = t.nRP = 3, t.nRAS = 7, t.nRC = 10, t.nRRD = 2, t.nWR = 3, t.nWTR = 1, t.nRFC = 12;
+  t.banks = 4, t.mobile = true;
+  c.row_intervals = 8;
+  for (const std::uint64_t hertz : {166'666'666u, 166'666'667u}) {
+    c.refresh_interval = hertz == 166'666'666u ? 1299 : 1300;  // 7.8 us, rounded down
+    EXPECT_THAT(violations(c, "mt46h32m16lf", Frequency(hertz)), IsEmpty()) << hertz;
+  }
+  // 1.3 Hz beyond.
+  EXPECT_THAT(violations(c, "mt46h32m16lf", Frequency(166'666'668)),
+              testing::Contains("SDTIMR T_RCD: 3 clocks programmed, MT46H32M16LF-6 needs tRCD 18 ns "
+                                "= 4 at 166.667 MHz: 1 short"));
+  c.refresh_interval = 1301;
+  EXPECT_THAT(violations(c, "mt46h32m16lf", Frequency(166'666'667)),
+              ElementsAre(HasSubstr("needs tREFI at most 7800 ns = 1300 at 166.667 MHz: 1 over")));
 }
 
 /// What boot loaders program, in clocks (dm365.md 5.6).

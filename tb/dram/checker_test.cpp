@@ -238,5 +238,32 @@ TEST(CheckerStateTest, RefreshIsNeverMoreThanNineIntervalsLate) {
   EXPECT_EQ(none.total(), 1u);
 }
 
+// And at no time more than eight are owed, however close together two of them are.
+TEST(CheckerStateTest, NoMoreThanEightRefreshesAreOwed) {
+  DataSheet s = sheet();
+  s.tREFI = 100;
+  s.counts_postponed = true;
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 899}}, s), "") << "eight intervals have ended";
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 900}}, s), "postponed REF");
+  // One REF at 100 pays for the first; the ninth of the others ends at 1000.
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 100}, {kRef, 0, 0, 999}}, s), "");
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 100}, {kRef, 0, 0, 1000}}, s), "postponed REF");
+  // What is not owed yet is not paid for.
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 10}, {kRef, 0, 0, 60}, {kRef, 0, 0, 900}}, s), "postponed REF");
+  // Five owed, one paid, five more: nine at 1000, a gap of five intervals.
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 500}, {kRef, 0, 0, 999}}, s), "") << "4 + 4";
+  EXPECT_EQ(rule_of({{kRef, 0, 0, 500}, {kRef, 0, 0, 1000}}, s), "postponed REF");
+  CommandChecker slept(s);
+  slept.command(kSre, 0, 0, 850);
+  slept.command(kSrx, 0, 0, 5000);
+  slept.command(kRef, 0, 0, 5899);
+  EXPECT_EQ(slept.total(), 0u) << slept.text();
+  slept.command(kRef, 0, 0, 6800);
+  EXPECT_EQ(slept.total(), 2u) << "8 - 1 + 10 owed, and a gap of 901 clocks";
+  CommandChecker none(s);
+  none.finish(899);
+  EXPECT_EQ(none.total(), 0u);
+}
+
 }  // namespace
 }  // namespace fovea::dram

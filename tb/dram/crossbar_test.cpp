@@ -112,6 +112,25 @@ TEST(CrossbarTest, EqualPrioritiesTakeTurns) {
   EXPECT_EQ(winners(c), "BCAB");
 }
 
+// Two slaves have a winner each at the same edge: these are granted by priority too, then by turn.
+TEST(CrossbarTest, WinnersOfTwoSlavesAtOneEdgeAreGrantedByPriority) {
+  const auto order = [](unsigned of_a, unsigned of_b) {
+    XbarBench b;
+    b.xbar.set_priority(kA, of_a);
+    b.xbar.set_priority(kB, of_b);
+    b.submit(kA, 5, false, 4, Slave::kConfig);
+    b.submit(kB, 5);
+    b.run();
+    EXPECT_EQ(b.events.at(0).granted, b.events.at(1).granted);
+    return winners(b);
+  };
+  EXPECT_EQ(order(4, 1), "BA");
+  EXPECT_EQ(order(1, 4), "AB");
+  EXPECT_EQ(order(2, 3), "AB");
+  EXPECT_EQ(order(3, 2), "BA");
+  EXPECT_EQ(order(3, 3), "AB") << "the lower number after the last winner, who is nobody";
+}
+
 TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
   for (const bool change_first : {true, false}) {
     XbarBench b;
@@ -191,6 +210,23 @@ TEST(CrossbarTest, LockedReadKeepsTheSlaveUntilItsMastersNextRequest) {
       EXPECT_EQ(b.events[3].granted, b.events[2].arrival) << "as soon as it is free";
     }
   }
+}
+
+// The read of an SWP that ends in a bus error is not followed by a write: the slave is free for others.
+TEST(CrossbarTest, LockedReadThatFailsGivesTheSlaveFree) {
+  XbarBench b;
+  b.refuses = true;
+  b.submit(kA, 5, false, 4, Slave::kDdr, true);
+  b.submit(kB, 6);
+  b.run();
+  ASSERT_EQ(winners(b), "AB");
+  EXPECT_EQ(b.events[1].granted, b.events[0].arrival) << "as soon as it is free";
+  ASSERT_EQ(b.answers.size(), 2u);
+  EXPECT_TRUE(b.answers[0].error);
+  b.refuses = false;
+  b.submit(kC, 30);
+  b.run();
+  EXPECT_EQ(winners(b), "ABC");
 }
 
 // Video ports put requests on their port ahead of time; the clock may change before.

@@ -16,6 +16,15 @@ namespace {
 constexpr std::uint32_t kDdr = 0x8000'0000;
 constexpr Frequency kFast(243'000'000), kSlow(1'000'000);
 
+struct SlowRegs : RegBank {
+  Reg value{*this, "VALUE", 0, Mode::kRw, "any"};
+  SlowRegs() : RegBank("SLOW") {}
+};
+struct SlowBlock : BusTarget {
+  SlowRegs regs;
+  explicit SlowBlock(sc_core::sc_module_name name) : BusTarget(name, regs) {}
+};
+
 struct Bench {
   bus::CrossbarParams xbar_params;
   bus::ConfigBusParams config_params;
@@ -25,8 +34,10 @@ struct Bench {
   bus::ConfigBus config{"config",
                         config_params,
                         quiet,
-                        {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}};
+                        {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast},
+                         {"slow", 0x01C2'0000, 0x100, bus::ConfigBus::Speed::kSlow}}};
   mem::DdrModule ddr{"ddr", ddr_params};
+  SlowBlock slow{"slow_block"};
   BurstMaster master{"master", Master::kLoad, 4};
   ClockSignal ddr_clk{"ddr_clk", kFast}, scr_clk{"scr_clk", Frequency(121'500'000)};
   sc_core::sc_signal<bool> on{"on", true};
@@ -46,6 +57,7 @@ struct Bench {
     ddr.scr_clk(scr_clk);
     ddr.enabled(on);
     config.to("ddr").bind(ddr.reg_socket);
+    config.to("slow").bind(slow.reg_socket);
     for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
     master.socket.bind(*scr.target[index(Master::kLoad)]);
     master.on_done = [this](const BurstMaster::Completion& c) {
@@ -71,6 +83,7 @@ class ModuleTest : public testing::Test {
     end_.notify(ps_time(t));
     sc_core::sc_start(ps_time(t));
   }
+  Picoseconds read_alone(std::uint32_t address, unsigned bytes);
   sc_core::sc_event end_;
 };
 
@@ -114,7 +127,7 @@ TEST_F(ModuleTest, RequestWhileTheSdramClockStandsEndsInABusError) {
 
 // A refusal takes no time at the controller; the master sees it behind the data it asked for before.
 TEST_F(ModuleTest, RefusedReadDoesNotOvertakeAnOlderOneOfItsMaster) {
-  const std::uint32_t end = kDdr + (128u << 20);
+  const std::uint32_t end = kDdr + (256u << 20);
   b.master.read(kDdr + 0x20000, 64);
   b.master.read(kDdr + 0x40000, 64);
   b.master.read(end, 64);
@@ -132,7 +145,7 @@ TEST_F(ModuleTest, RefusedReadDoesNotOvertakeAnOlderOneOfItsMaster) {
 }
 
 TEST_F(ModuleTest, RefusedReadAloneEndsAtOnce) {
-  b.master.read(kDdr + (128u << 20), 64);
+  b.master.read(kDdr + (256u << 20), 64);
   b.master.read(kDdr + 0x20000, 64);
   run_for(10 * kPsPerUs);
   ASSERT_EQ(b.done.size(), 2u);
@@ -141,12 +154,116 @@ TEST_F(ModuleTest, RefusedReadAloneEndsAtOnce) {
   EXPECT_LT(b.done[0].last, b.done[1].first);
 }
 
+/// Time from the port to the first data of a read alone.
+Picoseconds ModuleTest::read_alone(std::uint32_t address, unsigned bytes) {
+  b.done.clear();
+  const Picoseconds issued = kernel_time();
+  b.master.read(address, bytes);
+  run_for(20 * kPsPerUs);
+  EXPECT_EQ(b.done.size(), 1u);
+  EXPECT_FALSE(b.done.at(0).error);
+  return b.done.at(0).first - issued;
+}
+
+// Registers of the auxiliary clock's domain answer later than others, by the difference of the two
+// parameters, give or take an edge of the crossbar.
+TEST_F(ModuleTest, SlowRegisterBlocksAnswerLaterThanFastOnes) {
+  const Picoseconds edge = kPsPerSecond / 121'500'000;
+  const Picoseconds fast = read_alone(0x2000'0004, 4), slow = read_alone(0x01C2'0000, 4);
+  const Picoseconds more = b.config_params.slow_latency() - b.config_params.fast_latency();
+  ASSERT_GT(more, 2 * edge);
+  EXPECT_GE(slow, fast + more - edge);
+  EXPECT_LE(slow, fast + more + edge);
+}
+
+// Latency is from the port to the first data, not to the last.
+TEST_F(ModuleTest, LatencyStatisticsTakeTheFirstBeat) {
+  Histogram& latency = b.scr.latency[stat_index(Master::kLoad)]->histogram;
+  latency.reset();
+  const Picoseconds first = read_alone(kDdr + 0x30000, 64);
+  EXPECT_GT(b.done.at(0).last, b.done.at(0).first) << "the two can be told apart";
+  ASSERT_EQ(latency.count(), 1u);
+  EXPECT_EQ(latency.min(), first);
+  EXPECT_EQ(latency.max(), first);
+}
+
 /// Remarks that contain this text.
 std::uint64_t remarks(const std::string& text) {
   std::uint64_t n = 0;
   for (const auto& [what, count] : Diagnostics::instance().counts())
     if (what.second.find(text) != std::string::npos) n += count;
   return n;
+}
+
+// The row address bits above the part's are not connected: U-Boot's get_ram_size() writes at powers of
+// two up to the largest size and finds the part's where a write comes back at the beginning.
+TEST_F(ModuleTest, AddressesRepeatAtThePartsSizeUpToTheEndOfTheWindow) {
+  Diagnostics::instance().clear();
+  constexpr std::uint32_t kSize = 128u << 20, kAt = 0x12340;
+  std::array<std::uint8_t, 64> bytes{};
+  const auto round_trip = [&](std::uint32_t to, std::uint32_t from, std::uint8_t value) {
+    b.done.clear();
+    bytes.fill(value);
+    b.master.write(to, bytes);
+    run_for(5 * kPsPerUs);
+    const std::uint8_t there = *b.ddr.store().at(from - kDdr);
+    return b.done.size() == 1 && !b.done[0].error && there == value;
+  };
+  EXPECT_TRUE(round_trip(kDdr + kAt, kDdr + kAt, 1));
+  EXPECT_EQ(remarks("it repeats from its beginning"), 0u);
+  EXPECT_TRUE(round_trip(kDdr + kSize + kAt, kDdr + kAt, 2));
+  EXPECT_TRUE(round_trip(kDdr + kSize, kDdr, 3));
+  EXPECT_TRUE(round_trip(kDdr + 2 * kSize - 64, kDdr + kSize - 64, 4));
+  EXPECT_TRUE(round_trip(kDdr + kSize - 64, kDdr + kSize - 64, 5));
+  EXPECT_FALSE(round_trip(kDdr + 2 * kSize, kDdr, 6));
+  EXPECT_EQ(remarks("access beyond the SDRAM's end (ddr.part, 128 MiB): it repeats from its beginning"),
+            3u);
+  EXPECT_EQ(remarks("access beyond the SDRAM's 256 MiB of the memory map"), 1u);
+  // A read finds the row that the other address has opened.
+  b.master.read(kDdr + kAt, 64);
+  run_for(300 * kPsPerNs);
+  const std::uint64_t hits = b.ddr.controller().stats.row_hits.count();
+  b.master.read(kDdr + kSize + kAt, 64);
+  run_for(5 * kPsPerUs);
+  EXPECT_EQ(b.ddr.controller().stats.row_hits.count() - hits, 1u);
+  // A debugger sees the same, up to the end of the part in one piece.
+  MemRequest r;
+  r.data = bytes.data();
+  r.bytes = 64;
+  r.address = kDdr + kSize + kAt;
+  EXPECT_EQ(b.master.socket->transport_dbg(r), 64u);
+  EXPECT_EQ(bytes[0], 2);
+  r.address = kDdr + 2 * kSize - 16;
+  EXPECT_EQ(b.master.socket->transport_dbg(r), 16u);
+  r.address = kDdr + 2 * kSize;
+  EXPECT_EQ(b.master.socket->transport_dbg(r), 0u);
+}
+
+// For whoever waits for it, as a synthetic load does: timing programmed and locked, power and clock on.
+TEST_F(ModuleTest, SdramIsInitialisedWhenItsTimingIsLockedAndPowerAndClockAreOn) {
+  auto& r = b.ddr.regs;
+  const auto initialised = [&] {
+    run_for(kPsPerNs);
+    return b.ddr.initialised.read();
+  };
+  r.write(0x08, 4, 0x0053'CA32);
+  EXPECT_FALSE(initialised()) << "TIMUNLOCK";
+  r.write(0x08, 4, 0x00D3'4A32);
+  EXPECT_FALSE(initialised()) << "BOOTUNLOCK";
+  r.write(0x08, 4, 0x0053'4A32);
+  EXPECT_TRUE(initialised());
+  b.on.write(false);
+  EXPECT_FALSE(initialised()) << "LPSC";
+  b.on.write(true);
+  EXPECT_TRUE(initialised());
+  b.ddr_clk.write(Frequency());
+  EXPECT_FALSE(initialised()) << "clock";
+  b.ddr_clk.write(kFast);
+  EXPECT_TRUE(initialised());
+  r.write(0x08, 4, 0x0052'4A32);
+  EXPECT_FALSE(initialised()) << "SDRAMEN";
+  r.write(0x08, 4, 0x0053'4A32);
+  EXPECT_TRUE(initialised());
 }
 
 // The registers hold their reset pattern but for SDRCR: all times are long, T_RC is not above T_RAS.

@@ -207,27 +207,40 @@ ReferenceController::Kind ReferenceController::wanted(const Queued& q) const {
 }
 
 // ---- refresh
+// From TI's text, not from the model (SPRU986B 2.4.2 and 2.9 on the same controller, SPRUH73 7.3.3.5 on
+// its successor):
+// - An interval counter adds one to the backlog whenever it expires; each REFR takes one off. A second
+//   counter holds the intervals since the last REFR.
+// - REFR "is automatically preceded by a DCAB command": the two are one refresh cycle, and once it has
+//   begun nothing comes between them, whether requests waited when it began or came later.
+// - Levels: may (backlog above 0) refreshes while the controller is not busy; need and must go before
+//   what they outrank. After "must" no request is served until the backlog is no longer above the
+//   release level. After too many intervals without one, four REFR come before new requests.
 ReferenceController::Refresh ReferenceController::refresh_level(std::uint64_t edge) const {
   std::uint64_t more = 0;
   if (config().refresh_interval)
     for (std::uint64_t e = expiry_; e <= edge; e += config().refresh_interval) ++more;
-  if (forced_ || closed_for_refresh_ || owed_ + more > limits_.must ||
-      since_refresh_ + more > limits_.gap)
+  const bool begun = cycle_begun_ || series_ != 0 || far_behind_;
+  if (begun || backlog_ + more > limits_.must || since_refresh_ + more > limits_.gap)
     return Refresh::kMust;
-  return owed_ + more > limits_.need ? Refresh::kNeed : Refresh::kMay;
+  return backlog_ + more > limits_.need ? Refresh::kNeed : Refresh::kMay;
 }
 
 void ReferenceController::expire(std::uint64_t clock) {
   if (!config().refresh_interval) return;
-  for (; expiry_ <= clock; expiry_ += config().refresh_interval) ++owed_, ++since_refresh_;
+  for (; expiry_ <= clock; expiry_ += config().refresh_interval) ++backlog_, ++since_refresh_;
+  if (backlog_ > limits_.must) far_behind_ = true;
 }
 
-void ReferenceController::give_refresh(std::uint64_t clock) {
-  give(Kind::kRef, 0, 0, clock);
+/// The next command of a refresh cycle: its DCAB unless all banks are closed, else its REFR.
+void ReferenceController::refresh_cycle(Kind kind, std::uint64_t clock) {
+  give(kind, 0, 0, clock);
+  cycle_begun_ = kind == Kind::kPreAll;
+  if (cycle_begun_) return;
   since_refresh_ = 0;
-  closed_for_refresh_ = false;
-  owed_ -= owed_ ? 1 : 0;
-  forced_ -= forced_ ? 1 : 0;
+  if (backlog_ != 0) --backlog_;
+  if (series_ != 0) --series_;
+  if (backlog_ <= limits_.release) far_behind_ = false;
 }
 
 /// From when on the part takes commands of this kind after its last sleep.
@@ -266,13 +279,13 @@ void ReferenceController::wake(std::uint64_t clock) {
   if (asleep_ != Sleep::kPowerDown) {  // it refreshed itself until now
     if (ddr_.edge(clock) - asleep_at_ > limits_.retention)
       losses_.push_back(config().refreshed_log2);
-    owed_ = since_refresh_ = 0;
+    backlog_ = since_refresh_ = 0;
     expiry_ = clock + config().refresh_interval;
   }
   asleep_ = Sleep::kNever;
 }
 
-/// What an idle controller does in one clock: an owed refresh, the PREA before it, or sleep.
+/// What an idle controller does in one clock: a step of a refresh cycle, or sleep.
 void ReferenceController::idle_at(std::uint64_t clock) {
   using Sleep = ReferenceConfig::Sleep;
   const bool refreshes = config().refresh_interval != 0;
@@ -285,16 +298,19 @@ void ReferenceController::idle_at(std::uint64_t clock) {
   }
   expire(clock);
   if (clock < awake_from(Kind::kRef, clock)) return;
-  if (owed_ && !refreshes) return;
   const Sleep sleep = config().sleep;
-  if (owed_ || sleep == Sleep::kSelfRefresh || sleep == Sleep::kClockStop) {
-    if (!all_closed()) {
-      if (legal_from(Kind::kPreAll, 0, clock) == clock) give(Kind::kPreAll, 0, 0, clock);
-      return;
-    }
-    if (legal_from(Kind::kRef, 0, clock) != clock) return;
+  const bool self_refresh = sleep == Sleep::kSelfRefresh || sleep == Sleep::kClockStop;
+  if (cycle_begun_ || backlog_ != 0) {
+    if (!refreshes && !cycle_begun_) return;
+    const Kind kind = all_closed() ? Kind::kRef : Kind::kPreAll;
+    if (legal_from(kind, 0, clock) == clock) refresh_cycle(kind, clock);
+    return;
   }
-  if (owed_) return give_refresh(clock);
+  if (self_refresh && !all_closed()) {  // the part must have its banks closed; a request may still come
+    if (legal_from(Kind::kPreAll, 0, clock) == clock) give(Kind::kPreAll, 0, 0, clock);
+    return;
+  }
+  if (self_refresh && legal_from(Kind::kRef, 0, clock) != clock) return;
   if (sleep == Sleep::kNever || !may_sleep(clock)) return;
   give(sleep == Sleep::kPowerDown ? Kind::kPde : Kind::kSre, 0, 0, clock);
   if (sleep == Sleep::kClockStop) clock_changes_.emplace_back(true, clock);
@@ -308,7 +324,7 @@ void ReferenceController::idle_until(Picoseconds at) {
 void ReferenceController::idle_while_empty(std::uint64_t end) {
   // Clocks in which nothing can fall due are passed over.
   std::uint64_t clock = clock_after_last();
-  const bool calm = config().sleep == ReferenceConfig::Sleep::kNever && owed_ == 0;
+  const bool calm = config().sleep == ReferenceConfig::Sleep::kNever && backlog_ == 0;
   if (calm && !config().refresh_interval) return;
   if (calm) clock = std::max(clock, expiry_);
   for (; clock < end; ++clock) idle_at(clock);
@@ -320,6 +336,7 @@ Picoseconds ReferenceController::next() const {
 }
 
 ReferenceController::Plan ReferenceController::plan() const {
+  if (cycle_begun_) return refresh_at(clock_after_last());
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const Queued& q = queue_[i];
     if (q.columns_given == 0) continue;
@@ -372,26 +389,34 @@ ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const
   const Refresh level = refresh_level(edge);
   if (level == Refresh::kMust) return refresh_at(edge);
 
+  using Order = ReferenceLimits::Order;
+  const bool in_order = limits_.order == Order::kFcfs, plain = limits_.order == Order::kFrFcfs;
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < queue_.size(); ++i)
-    if (queue_[i].ready <= edge && offered(i)) list.push_back(i);
-  if (limits_.order == ReferenceLimits::Order::kFcfs) list = {0};
+    if (queue_[i].ready <= edge && (in_order || offered(i))) list.push_back(i);
   const bool raise = config().old_count != 0xFF && passed_ > config().old_count;
+  // FR-FCFS: what can have its column first; with TI's rules that is a question of the setting.
+  const auto column_from = [&](const ReferenceRequest& r) -> std::uint64_t {
+    if (!plain && !limits_.ready_rows_first) return 0;
+    const std::uint64_t from = legal_from(r.write ? Kind::kWr : Kind::kRd, bank_of(r), edge);
+    return r.write ? from : std::max(from, read_room_);
+  };
   const auto order = [&](std::size_t i) {
     const ReferenceRequest& r = queue_[i].request;
     const bool reads_wait = read_room_ > edge;
-    const bool plain = limits_.order == ReferenceLimits::Order::kFrFcfs;
     const int kind = !r.write && reads_wait ? 2 : r.write && !plain ? 1 : 0;
-    return std::make_tuple(!(raise && i == 0), kind, open_row(bank_of(r)) != row_of(r),
+    const bool open = open_row(bank_of(r)) == row_of(r);
+    return std::make_tuple(!(raise && i == 0), kind, !open, open ? column_from(r) : 0,
                            plain ? 0 : r.priority, i);
   };
-  std::sort(list.begin(), list.end(),
-            [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
+  if (!in_order)
+    std::sort(list.begin(), list.end(),
+              [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
 
   if (level == Refresh::kNeed) {
     // Before writes, and before a read if the write that would come first is more urgent.
     std::optional<std::size_t> read, write;
-    for (const std::size_t i : list) {
+    for (const std::size_t i : in_order ? std::vector<std::size_t>{0} : list) {
       auto& first = queue_[i].request.write ? write : read;
       const auto natural = [&](std::size_t k) {
         const ReferenceRequest& r = queue_[k].request;
@@ -430,15 +455,8 @@ void ReferenceController::step() {
   expire(p.clock);
   if (!p.of && p.kind == Kind::kPre) return give(p.kind, p.bank, 0, p.clock);
   if (!p.of) {
-    // More than the allowed intervals without a refresh: four before anything new.
-    if (since_refresh_ > limits_.gap && forced_ == 0) forced_ = 4;
-    if (p.kind == Kind::kRef) {
-      give_refresh(p.clock);
-    } else {
-      give(p.kind, 0, 0, p.clock);
-      closed_for_refresh_ = true;
-    }
-    return;
+    if (since_refresh_ > limits_.gap && series_ == 0) series_ = 4;
+    return refresh_cycle(p.kind, p.clock);
   }
   Queued& q = queue_[*p.of];
   const ReferenceRequest r = q.request;
@@ -529,72 +547,6 @@ void ReferenceController::hand_out(const ReferenceRequest& r, std::uint64_t star
     reads.push_back({o->id, first, until});
     o = unanswered_.erase(o);
   }
-}
-
-/// JESD209: half of the array is without the bank's upper address bit, a quarter without both, and
-/// below that the row's uppermost bits are 0 as well.
-unsigned ReferenceController::losses(std::uint32_t address) const {
-  const unsigned bank_bits = log2_of(config().banks);
-  const unsigned row_bits = log2_of(limits_.size) - bank_bits - config().page_log2;
-  const auto bit = [](std::uint32_t n, unsigned place) { return (n >> place & 1u) != 0; };
-  unsigned n = 0;
-  for (const unsigned kept : losses_)
-    n += (kept >= 1 && bit(bank_of(address), bank_bits - 1)) ||
-         (kept >= 2 && bit(bank_of(address), bank_bits - 2)) ||
-         (kept >= 3 && bit(row_of(address), row_bits - 1)) ||
-         (kept >= 4 && bit(row_of(address), row_bits - 2));
-  return n;
-}
-
-std::array<std::uint64_t, 5> ReferenceController::residency(Picoseconds at) const {
-  const std::uint64_t now = ddr_.edge_after(at);
-  using Span = std::pair<std::uint64_t, std::uint64_t>;
-  std::vector<Span> open;  // rows
-  std::array<std::uint64_t, 8> act{};
-  std::uint32_t rows = 0;  // banks with one
-  const auto close = [&](unsigned bank, std::uint64_t clock) {
-    if (rows >> bank & 1u) open.emplace_back(act[bank], clock);
-    rows &= ~(1u << bank);
-  };
-  std::array<std::uint64_t, 5> out{};
-  const Given* sleep = nullptr;
-  const auto wake = [&](std::uint64_t clock) {
-    if (!sleep || clock <= sleep->clock) return;
-    const std::uint64_t n = clock - sleep->clock;
-    if (sleep->kind == Kind::kPde && rows) out[1] += n;
-    out[sleep->kind == Kind::kPde ? 2 : 3] += n;
-    // Of this sleep, the spans from a stop of the clock to its start or the end.
-    for (std::size_t i = 0; i < clock_changes_.size(); ++i) {
-      const auto [stands, from] = clock_changes_[i];
-      if (!stands || from < sleep->clock || from >= clock) continue;
-      std::uint64_t to = clock;
-      if (i + 1 < clock_changes_.size()) to = std::min(to, clock_changes_[i + 1].second);
-      out[4] += to - from;
-    }
-  };
-  for (const Given& g : commands) {
-    if (g.kind == Kind::kAct) act[g.bank] = g.clock, rows |= 1u << g.bank;
-    if (g.kind == Kind::kPre) close(g.bank, g.clock);
-    if (g.kind == Kind::kRda || g.kind == Kind::kWra) close(g.bank, g.closes);
-    for (unsigned b = 0; b < 8 && g.kind == Kind::kPreAll; ++b) close(b, g.clock);
-    if (g.kind == Kind::kPde || g.kind == Kind::kSre) sleep = &g;
-    if (g.kind == Kind::kPdx || g.kind == Kind::kSrx) wake(g.clock), sleep = nullptr;
-  }
-  wake(now);
-  for (unsigned b = 0; b < 8; ++b) close(b, std::max(now, act[b]));
-  std::sort(open.begin(), open.end());
-  std::uint64_t counted = 0;  // up to here
-  for (const auto& [from, to] : open) {
-    const std::uint64_t first = std::max(from, counted), end = std::min(to, now);
-    if (end > first) out[0] += end - first;
-    counted = std::max(counted, end);
-  }
-  return out;
-}
-
-std::uint64_t ReferenceController::count(Kind kind) const {
-  return static_cast<std::uint64_t>(std::count_if(commands.begin(), commands.end(),
-                                                  [&](const Given& g) { return g.kind == kind; }));
 }
 
 }  // namespace fovea::dram

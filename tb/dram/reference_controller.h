@@ -31,11 +31,12 @@ struct ReferenceConfig {
 struct ReferenceLimits {
   unsigned command_fifo = 7, write_fifo = 88, read_fifo = 136;  // entries, bytes, bytes
   unsigned request_latency = 8, return_latency = 2;             // DDR clocks
-  unsigned need = 7, must = 11, gap = 7;                        // refresh intervals
+  unsigned release = 3, need = 7, must = 11, gap = 7;           // refresh intervals
   unsigned clock_restart = 1;                                   // DDR clocks
   Picoseconds retention = 64'000'000'000;                       // without refresh
   std::uint64_t size = 128u << 20;
   enum class Order { kTi, kFcfs, kFrFcfs, kClosedPage } order = Order::kTi;
+  bool ready_rows_first = false;  // kTi, kClosedPage: an open row counts when its column is legal
 };
 
 struct ReferenceRequest {
@@ -147,7 +148,7 @@ class ReferenceController {
   std::uint64_t clock_after_last() const;
   void expire(std::uint64_t clock);
   void give(Kind kind, unsigned bank, std::uint32_t row, std::uint64_t clock);
-  void give_refresh(std::uint64_t clock);
+  void refresh_cycle(Kind kind, std::uint64_t clock);
   std::uint64_t awake_from(Kind kind, std::uint64_t clock) const;
   void idle_at(std::uint64_t clock);
   bool may_sleep(std::uint64_t clock) const;
@@ -168,12 +169,15 @@ class ReferenceController {
   std::uint64_t door_arrived_ = 0, last_arrival_ = 0;
   std::uint64_t not_before_ = 0;  // the last change of clocks or configuration
   std::uint64_t passed_ = 0;      // transfers served while the oldest request waited
-  std::uint64_t expiry_ = 0, owed_ = 0, forced_ = 0, since_refresh_ = 0;
+  std::uint64_t expiry_ = 0;         // the interval counter runs out then
+  std::uint64_t backlog_ = 0, since_refresh_ = 0;
+  std::uint64_t series_ = 0;         // REFR that are still to come of four
+  bool cycle_begun_ = false;         // its DCAB is given, its REFR not yet
+  bool far_behind_ = false;          // the backlog was above `must`, and is above `release`
   std::vector<std::pair<bool, std::uint64_t>> clock_changes_;  // in self-refresh: stands, from when
   std::vector<unsigned> losses_;  // refreshed_log2 of each self-refresh that was too long
   Picoseconds asleep_at_ = 0;
   ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
-  bool closed_for_refresh_ = false;  // the REF that goes with the last PREA is still to come
   std::uint64_t clock_runs_from_ = 0;  // again, after a stop
   std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
 };

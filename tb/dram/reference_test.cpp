@@ -119,12 +119,14 @@ class Production : private mem::DdrClient {
       set.set("ddr.retention", std::to_string(l.retention) + "ps");
       constexpr const char* kOrders[] = {"ti", "fcfs", "frfcfs", "closed_page"};
       set.set("ddr.scheduler", kOrders[static_cast<std::size_t>(l.order)]);
+      set.set("ddr.ti_open_row", l.ready_rows_first ? "ready" : "activated");
       give("command_fifo", l.command_fifo);
       give("write_fifo", l.write_fifo, " B");
       give("read_fifo", l.read_fifo, " B");
       give("request_latency", l.request_latency, " cycles");
       give("return_latency", l.return_latency, " cycles");
       give("clock_restart", l.clock_restart, " cycles");
+      give("refresh.release", l.release);
       give("refresh.need", l.need);
       give("refresh.must", l.must);
       give("refresh.gap", l.gap);
@@ -247,6 +249,9 @@ Setup random_setup(Rng& rng) {
     s.limits.need = s.limits.must = 32;
     s.limits.gap = 64;
   }
+  // No number is drawn for these, so that seeds keep their streams.
+  s.limits.release = s.config.tRC * 7 % (s.limits.must + 1);
+  s.limits.ready_rows_first = s.config.tRC % 3 == 0;
   constexpr std::uint64_t kDdr[] = {243'000'000, 340'000'000, 250'000'000, 172'500'000};
   constexpr std::uint64_t kScr[] = {121'500'000, 60'000'000, 170'000'000, 250'000'000};
   s.ddr = Frequency(kDdr[below(4)]);

@@ -278,18 +278,83 @@ BenchOptions with(const char* scheduler) {
 constexpr std::uint64_t kFrom = 301 + 8;
 
 // tRCD = 5, tRRD = 3, WR to RD takes WL + 4 + tWTR = 4 + 4 + 3.
-TEST(OtherSchedulersTest, FcfsServesByAgeAndPreparesNothing) {
+TEST(OtherSchedulersTest, FcfsGivesColumnsByAgeAndOpensRowsAhead) {
   const std::vector<Request> two = {write(kA, at(1, 0), 7), read(kB, at(1, 1), 0)};
   EXPECT_EQ(Scenario(two, with("ti")).columns(), "R1 W0");
   Scenario s(two, with("fcfs"));
   EXPECT_EQ(s.columns(), "W0 R1");
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 0), kFrom);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 1), kFrom + 3) << "tRRD later, while the write waits";
   EXPECT_EQ(s.bench.clock_of(Cmd::kWr), kFrom + 5);
-  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 1), kFrom + 5 + 1) << "not before the write has its column";
   EXPECT_EQ(s.bench.clock_of(Cmd::kRd), kFrom + 5 + 11);
   // An open row does not help the younger one.
   const std::vector<Request> hit = {read(kA, at(1, 1)), read(kB, at(1, 0))};
   EXPECT_EQ(Scenario(hit, with("fcfs"), {read(kC, at(1, 0))}).columns(), "R1 R0");
   EXPECT_EQ(Scenario(hit, with("ti"), {read(kC, at(1, 0))}).columns(), "R0 R1");
+}
+
+// One master's requests open rows ahead as well, where TI's rules offer only its oldest.
+TEST(OtherSchedulersTest, FcfsOpensRowsAheadForOneMasterToo) {
+  const std::vector<Request> two = {read(kA, at(1, 0)), read(kA, at(1, 1))};
+  Scenario s(two, with("fcfs")), ti(two, with("ti"));
+  EXPECT_EQ(s.bench.clock_of(Cmd::kAct, 1), kFrom + 3);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kRd, 1), kFrom + 5 + 4);
+  EXPECT_EQ(ti.bench.clock_of(Cmd::kAct, 1), kFrom + 5 + 1);
+}
+
+// Of a bank only the oldest request decides: its open row stays for it, another one's is closed.
+TEST(OtherSchedulersTest, FcfsOpensAheadOnlyWhatTheOldestOfABankNeeds) {
+  const std::vector<Request> opened = {read(kC, at(1, 1))};
+  // Bank 1 has row 1 open. The older of its two requests wants it, the younger one row 2.
+  Scenario keeps({read(kA, at(1, 0), 3, 64), read(kB, at(1, 1)), read(kA, at(2, 1))}, with("fcfs"),
+                 opened);
+  EXPECT_EQ(keeps.columns(), "R0 R0 R0 R0 R1 R1");
+  const std::uint64_t hit = kFrom + 5 + 16;
+  EXPECT_EQ(keeps.bench.clock_of(Cmd::kRd, 1), hit);
+  EXPECT_EQ(keeps.bench.clock_of(Cmd::kPre, 1), hit + 4);
+  // The other way round the row is closed at once, though the younger one would find it open.
+  Scenario closes({read(kA, at(1, 0), 3, 64), read(kB, at(2, 1)), read(kA, at(1, 1))}, with("fcfs"),
+                  opened);
+  EXPECT_EQ(closes.columns(), "R0 R0 R0 R0 R1 R1");
+  EXPECT_EQ(closes.bench.clock_of(Cmd::kPre, 1), kFrom + 1);
+  // The burst of the first, with columns from + 5 to + 17, is not interrupted.
+  EXPECT_EQ(closes.bench.clock_of(Cmd::kAct, 1), kFrom + 5 + 13);
+  EXPECT_EQ(closes.bench.clock_of(Cmd::kRd, 1), kFrom + 5 + 13 + 5);
+}
+
+// At kFrom bank 0's row is open and serves B; at kFrom + 1 A's row opens, from kFrom + 6 on it can be
+// read. C's column in the open row can go at kFrom + 4.
+TEST(OtherSchedulersTest, FirstReadyTakesTheColumnThatCanGoFirst) {
+  const std::vector<Request> three = {read(kA, at(1, 1)), read(kB, at(1, 0)),
+                                      read(kC, at(1, 0, 64))};
+  const auto served = [&](const char* scheduler, const char* open_row) {
+    BenchOptions o = with(scheduler);
+    o.params.emplace_back("ti_open_row", open_row);
+    Scenario s(three, o, {read(Master::kVpbe, at(1, 0))});
+    std::string out = s.columns();
+    for (const Logged& l : s.bench.log)
+      if (l.cmd == Cmd::kRd || l.cmd == Cmd::kRda) out += " " + std::to_string(l.clock - kFrom);
+    return out;
+  };
+  EXPECT_EQ(served("frfcfs", "activated"), "R0 R0 R1 0 4 8");
+  EXPECT_EQ(served("ti", "ready"), "R0 R0 R1 0 4 8");
+  EXPECT_EQ(served("ti", "activated"), "R0 R1 R0 0 6 10") << "its row counts as open from its ACT on";
+  EXPECT_EQ(served("fcfs", "ready"), "R1 R0 R0 5 9 13");
+}
+
+// After a write a read waits for WL + 4 + tWTR = 11 clocks, the next write for 4. With TI's rules the
+// read goes first all the same.
+TEST(OtherSchedulersTest, FrfcfsDoesNotWaitForTheTurnaroundWhileWritesAreReady) {
+  const std::vector<Request> opened = {read(Master::kVpbe, at(1, 0))};
+  const std::vector<Request> three = {write(kA, at(1, 0)), read(kB, at(1, 0, 64)),
+                                      write(kC, at(1, 0, 128))};
+  Scenario s(three, with("frfcfs"), opened);
+  EXPECT_EQ(s.columns(), "W0 W0 R0");
+  EXPECT_EQ(s.bench.clock_of(Cmd::kWr, 0, 1), kFrom + 4);
+  EXPECT_EQ(s.bench.clock_of(Cmd::kRd), kFrom + 4 + 11);
+  BenchOptions ready = with("ti");
+  ready.params.emplace_back("ti_open_row", "ready");
+  EXPECT_EQ(Scenario(three, ready, opened).columns(), "R0 W0 W0");
 }
 
 TEST(OtherSchedulersTest, FrfcfsTakesOpenRowsFirstWhateverKindAndPriority) {

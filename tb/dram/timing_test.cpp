@@ -283,6 +283,22 @@ TEST(LowPowerTest, CkeStaysLowForTckeAndTheRowStaysOpen) {
   }
 }
 
+// A refresh that falls due at 301 wakes the part; REF follows tXP = 3 later, and CKE falls again after
+// it, but not before it has been high for tCKE.
+TEST(LowPowerTest, CkeStaysHighForTckeToo) {
+  for (const unsigned nCKE : {3u, 4u, 5u, 20u}) {
+    BenchOptions o = asleep(mem::LowPower::kPowerDown);
+    o.config.refresh_interval = 300;
+    o.config.timing.nCKE = nCKE;
+    DdrBench b(o);
+    b.ddr.catch_up(500 * kTck);
+    EXPECT_EQ(b.clock_of(Cmd::kPdx), 301u);
+    EXPECT_EQ(b.clock_of(Cmd::kRef), 304u);
+    EXPECT_EQ(b.clock_of(Cmd::kPde, -1, 1), 301u + std::max(4u, nCKE)) << "tCKE " << nCKE;
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  }
+}
+
 TEST(LowPowerTest, SelfRefreshClosesTheRowsAndNeedsNoRefresh) {
   BenchOptions o = asleep(mem::LowPower::kSelfRefresh);
   o.config.refresh_interval = 300;

@@ -159,6 +159,20 @@ TEST_P(StoppedRunTest, StrictAndDefaultLeaveTheSame) {
 // Frames are shown every 40 ms from about 0.35 s.
 INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 415));
 
+// A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the
+// guest is not blamed for it.
+TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
+  const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"},
+                      {"load.outstanding", "1"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_GT(count(r, "bus.load.read_bytes"), 1'000'000u);
+  for (const auto& [what, n] : Diagnostics::instance().counts()) {
+    EXPECT_EQ(what.second.find("before its controller runs"), std::string::npos) << what.second;
+    EXPECT_EQ(what.second.find("SDBCR CL: 4"), std::string::npos)
+        << "the loader's passing CL is nobody's to see: " << what.second;
+  }
+}
+
 TEST(RunTest, StoppedRunHasTheRateOfItsWholeFrames) {
   const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "1000"}}, false,
                      510 * kPsPerMs);

@@ -434,6 +434,17 @@ TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   EXPECT_EQ(play({{"ddr.clock", "266MHz"}, {"ddr.CL", "4cycles"}}), "");
   EXPECT_THAT(play({{"ddr.clock", "267MHz"}, {"ddr.CL", "4cycles"}}),
               HasSubstr("'ddr.CL': 4 cycles is not allowed; allowed: more cycles at 267MHz"));
+  // 3.75 ns, 2.5 ns and 1.875 ns in whole hertz, rounded up; 2 Hz more are too many.
+  const auto at_CL = [&](const char* clock, const char* CL) {
+    return play({{"ddr.clock", clock}, {"ddr.CL", CL}});
+  };
+  EXPECT_EQ(at_CL("266666667Hz", "4cycles"), "");
+  EXPECT_THAT(at_CL("266666669Hz", "4cycles"), HasSubstr("more cycles at 266666669Hz"));
+  EXPECT_EQ(at_CL("400000001Hz", "5cycles"), "");
+  EXPECT_THAT(at_CL("400000002Hz", "5cycles"), HasSubstr("more cycles at 400000002Hz"));
+  EXPECT_EQ(at_CL("533333334Hz", "7cycles"), "");
+  EXPECT_THAT(at_CL("533333336Hz", "7cycles"), HasSubstr("125MHz .. 533MHz, DDR2"));
+  EXPECT_THAT(at_CL("124999998Hz", "4cycles"), HasSubstr("125MHz .. 533MHz, DDR2"));
   const std::vector<std::pair<std::string, std::string>> mobile = {
       {"ddr.part", "mt46h32m16lf"}, {"ddr.banks", "4"},      {"ddr.CL", "3cycles"},
       {"ddr.clock", "166MHz"},      {"ddr.tREFI", "1290cycles"}};

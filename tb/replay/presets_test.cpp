@@ -149,6 +149,25 @@ TEST(DdrPresetTest, NumbersByHand) {
   EXPECT_EQ(of("mt46h32m16lf", "75", "83MHz"), "83MHz 2 2 2 2 4 6 2 2 1 2 6 647 8 4 2KiB");
 }
 
+// ddr.clock is in whole hertz; tCK is 6 ns in grade 6 and 3 ns in grade 3.
+TEST(DdrPresetTest, RoundedHertzAreTheClockOfTheGrade) {
+  const auto of = [](const char* part, const char* grade, const char* clock) -> std::string {
+    try {
+      return numbers(Keyed({std::string("ddr.part=") + part, std::string("ddr.grade=") + grade,
+                            "ddr.preset=data_sheet", std::string("ddr.clock=") + clock}));
+    } catch (const UserError& e) {
+      return e.what();
+    }
+  };
+  EXPECT_EQ(of("mt46h64m16lf", "6", "166666666Hz"),
+            "166666666Hz 3 3 3 3 7 10 2 3 1 2 21 1299 8 4 2KiB");
+  EXPECT_EQ(of("mt46h64m16lf", "6", "166666667Hz"),
+            "166666667Hz 3 3 3 3 7 10 2 3 1 2 21 1300 8 4 2KiB");
+  EXPECT_THAT(of("mt46h64m16lf", "6", "166666668Hz"), HasSubstr("has no CL for it"));
+  EXPECT_EQ(of("mt47h64m16", "3", "333333334Hz").substr(0, 19), "333333334Hz 5 5 5 5");
+  EXPECT_THAT(of("mt47h64m16", "3", "333333335Hz"), HasSubstr("has no CL for it"));
+}
+
 TEST(DdrPresetTest, WhoSetWhatIsKept) {
   trace::TraceInfo info;
   info.ddr.frequency = Frequency(340'000'000);

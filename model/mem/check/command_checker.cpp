@@ -24,7 +24,8 @@ void CommandChecker::change(const DataSheet& sheet, std::uint64_t clock) {
   for (Bank& b : banks_) b.act = b.pre = b.rd = b.wr = kLongAgo;
   acts_.fill(kLongAgo);
   rd_ = wr_ = ref_ = pre_ = prea_ = cke_ = pdx_ = srx_ = kLongAgo;
-  last_ref_ = clock;
+  last_ref_ = counted_to_ = clock;
+  owed_ = 0;
 }
 
 void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
@@ -166,7 +167,10 @@ void CommandChecker::wake(bool self_refresh, std::int64_t now) {
     complain("exit without entry", static_cast<std::uint64_t>(now), 0, 0);
   apart("tCKE", cke_, now, sheet_.tCKE, 0);
   (self_refresh ? srx_ : pdx_) = cke_ = now;
-  if (self_refresh) last_ref_ = static_cast<std::uint64_t>(now);  // it refreshed itself
+  if (self_refresh) {  // it refreshed itself
+    last_ref_ = counted_to_ = static_cast<std::uint64_t>(now);
+    owed_ = 0;
+  }
   state_ = Cke::kHigh;
 }
 
@@ -177,8 +181,20 @@ void CommandChecker::refresh(std::int64_t now) {
   apart("tRP", pre_, now, sheet_.tRP, 0);
   apart("tRPA", prea_, now, sheet_.tRP + (sheet_.banks == 8 ? 1 : 0), 0);
   check_refresh_gap(clock);
+  check_postponed(clock);
+  if (owed_ != 0) --owed_;
   last_ref_ = clock;
   ref_ = now;
+}
+
+/// At a REF: every interval that ended owes one. A part in self-refresh owes none.
+void CommandChecker::check_postponed(std::uint64_t clock) {
+  if (sheet_.tREFI == 0 || !sheet_.counts_postponed || state_ == Cke::kSelfRefresh) return;
+  const std::uint64_t ended = (clock - counted_to_) / sheet_.tREFI;
+  owed_ += ended;
+  counted_to_ += ended * sheet_.tREFI;
+  if (owed_ > sheet_.postponed_max)
+    complain("postponed REF", clock, 0, static_cast<std::int64_t>(owed_ - sheet_.postponed_max));
 }
 
 void CommandChecker::check_refresh_gap(std::uint64_t clock) {

@@ -32,7 +32,8 @@ struct Complaint {
   std::string rule;         ///< "tRCD", ...
   std::uint64_t clock = 0;  ///< of the offending command
   unsigned bank = 0;
-  std::uint64_t missing = 0;  ///< clocks too early (tREFI, tRASmax: too late); 0: a state rule
+  /// Clocks too early (tREFI, tRASmax: too late; "postponed REF": how many too many); 0: a state rule
+  std::uint64_t missing = 0;
 };
 
 class CommandChecker {
@@ -41,12 +42,15 @@ class CommandChecker {
 
   void command(Command c, unsigned bank, std::uint32_t row, std::uint64_t clock);
   /// End of the stream: refreshes owed by then are late too.
-  void finish(std::uint64_t clock) { check_refresh_gap(clock); }
+  void finish(std::uint64_t clock) {
+    check_refresh_gap(clock);
+    check_postponed(clock);
+  }
   /// Other numbers from `clock` on (registers written, another clock): what was given before puts
   /// nothing off any more, except that rows stay open and the part asleep.
   void change(const DataSheet& sheet, std::uint64_t clock);
   /// The interval counter restarted here (SDRCR written): gaps count from this clock.
-  void refresh_counts_from(std::uint64_t clock) { last_ref_ = clock; }
+  void refresh_counts_from(std::uint64_t clock) { last_ref_ = counted_to_ = clock; }
 
   /// The first complaints, at most 100; `total` counts all.
   const std::vector<Complaint>& complaints() const { return complaints_; }
@@ -77,6 +81,7 @@ class CommandChecker {
   void wake(bool self_refresh, std::int64_t now);
   void refresh(std::int64_t now);
   void check_refresh_gap(std::uint64_t clock);
+  void check_postponed(std::uint64_t clock);
   void check_open_time(unsigned b, std::int64_t closed);
   unsigned WL() const { return sheet_.mobile ? 1 : sheet_.CL - 1; }
 
@@ -87,6 +92,7 @@ class CommandChecker {
                previous_ = kLongAgo, cke_ = kLongAgo, pdx_ = kLongAgo, srx_ = kLongAgo;
   enum class Cke { kHigh, kPowerDown, kSelfRefresh } state_ = Cke::kHigh;
   std::uint64_t last_ref_ = 0, largest_gap_ = 0;
+  std::uint64_t owed_ = 0, counted_to_ = 0;  // refreshes, by intervals that ended up to this clock
   std::vector<Complaint> complaints_;
   std::uint64_t total_ = 0, commands_ = 0;
 };

@@ -48,11 +48,15 @@ constexpr Type kTypes[] = {
 };
 
 using Wide = unsigned __int128;
-unsigned up(Picoseconds t, Frequency f) {
+/// Minima and maxima of time in clocks. A clock given in whole hertz may be rounded, so that 18 ns are 3
+/// clocks at 166666667 Hz too.
+unsigned up(Picoseconds t, Frequency given) {
+  const Frequency f = given.less_1_hertz();
   const Wide unit = Wide{kPsPerSecond} * f.den;
   return static_cast<unsigned>((Wide{t} * f.num + unit - 1) / unit);
 }
-unsigned down(Picoseconds t, Frequency f) {
+unsigned down(Picoseconds t, Frequency given) {
+  const Frequency f = given.plus_1_hertz();
   return static_cast<unsigned>(Wide{t} * f.num / (Wide{kPsPerSecond} * f.den));
 }
 
@@ -122,11 +126,13 @@ DataSheet in_clocks(const Part& p, Frequency clock, unsigned CL) {
   s.tXSNR = up(p.tXSNR, clock);
   s.tXSRD = p.tXSRD;
   s.tREFI = down(p.tREFI, clock);
+  s.counts_postponed = true;
   s.tRASmax = down(p.tRASmax, clock);
   return s;
 }
 
-bool offers(const Part& part, Frequency clock, unsigned CL) {
+bool offers(const Part& part, Frequency given, unsigned CL) {
+  const Frequency clock = given.less_1_hertz();
   const Picoseconds shortest = CL < part.tCK.size() ? part.tCK[CL] : 0;
   // Compared as a product: the period itself need not be a whole number of ps.
   return shortest != 0 && Wide{shortest} * clock.num <= Wide{kPsPerSecond} * clock.den;

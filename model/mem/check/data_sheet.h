@@ -41,7 +41,8 @@ struct DataSheet {
   std::uint64_t tRASmax = 0;   ///< 0: not checked
   unsigned banks = 8;
   bool mobile = false;         ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
-  unsigned postponed_max = 8;  ///< refreshes that may be owed: 8, so at most 9 tREFI between two
+  unsigned postponed_max = 8;  ///< so at most 9 tREFI between two REF
+  bool counts_postponed = false;  ///< more than postponed_max refreshes owed at once is an offence too
 };
 
 /// Minima rounded up, tREFI and tRASmax down.

@@ -17,13 +17,15 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrCl
       return_latency_(static_cast<unsigned>(params.return_latency())),
       clock_restart_(static_cast<unsigned>(params.clock_restart())),
       retention_(params.retention()),
+      release_(static_cast<unsigned>(params.refresh_release())),
       need_(static_cast<unsigned>(params.refresh_need())),
       must_(static_cast<unsigned>(params.refresh_must())),
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
       in_order_(params.scheduler.is("fcfs")),
       closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs")),
-      free_order_(!kinds_count_) {
+      kinds_count_(!params.scheduler.is("frfcfs") && !in_order_),
+      free_order_(params.scheduler.is("frfcfs")),
+      first_ready_(free_order_ || (!in_order_ && params.ti_open_row.is("ready"))) {
   lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }

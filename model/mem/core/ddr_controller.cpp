@@ -217,40 +217,6 @@ inline void DdrController::plan_one(Entry& e) {
   next_ = ddr_.edge(at);
 }
 
-/// Too long without a refresh: four in a row before anything new.
-void DdrController::begin_refresh() {
-  if (gap_ > gap_limit_ && forced_ == 0) forced_ = 4;
-  closing_ = true;
-  urgency_changed();
-}
-
-void DdrController::urgency_changed() {
-  const bool urgent =
-      forced_ > 0 || closing_ || owed_ > std::min(must_, need_) || gap_ > gap_limit_;
-  urgency_ = refresh_urgency_after(0);
-  all_in_time_until_ = std::min(next_expiry_, first_overdue());
-  calm_until_ = urgent ? 0 : all_in_time_until_;
-  idle_calm_ = owed_ || config_.low_power != LowPower::kOff ? 0 : next_expiry_;
-}
-
-Picoseconds DdrController::interval_start(Picoseconds t) const {
-  const std::uint64_t interval = config_.refresh_interval;
-  if (!running_ || interval == 0 || next_expiry_ == kNoClock) return 0;
-  std::uint64_t begin = next_expiry_;
-  while (begin > interval && (begin == next_expiry_ || ddr_.edge(begin - 1) > t)) begin -= interval;
-  return begin > 0 && ddr_.edge(begin - 1) <= t ? ddr_.edge(begin - 1) : 0;
-}
-
-/// Refresh intervals have run out.
-[[gnu::noinline]] void DdrController::count_expired(std::uint64_t clock) {
-  while (next_expiry_ <= clock) {
-    ++owed_;
-    ++gap_;
-    next_expiry_ += config_.refresh_interval;
-  }
-  urgency_changed();
-}
-
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
   constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
@@ -288,13 +254,15 @@ void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
   gap_ = 0;
   if (owed_) --owed_;
   if (forced_) --forced_;
+  if (owed_ <= release_) catching_up_ = false;
   closing_ = false;
   urgency_changed();
 }
 
 /// What falls into the time without requests: at the "may" level each refresh is done as soon as it
-/// is owed; then the part goes to sleep, if software allows it. This cannot cause anything but
-/// later row misses and waiting, so it is caught up lazily.
+/// is owed; then the part goes to sleep, if software allows it. The PREA belongs to the REF: once it is
+/// given, a request that comes waits for both. This cannot cause anything but later row misses and
+/// waiting, so it is caught up lazily.
 [[gnu::noinline]] void DdrController::idle(std::uint64_t until) {
   for (;;) {
     if (refreshes_itself(asleep_)) return;
@@ -313,11 +281,13 @@ void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
       if (from >= until) return;
       count_owed(from);
     }
-    if (!config_.refresh_interval) return;  // owed from before it was switched off
+    if (!config_.refresh_interval && !closing_) return;  // owed from before it was switched off
     if (!device_.all_closed()) {
       const std::uint64_t at = std::max(from, device_.earliest_pre_all());
       if (at >= until) return;
       issue<Cmd::kPreAll>(0, 0, at, ddr_.edge(at));
+      closing_ = true;
+      urgency_changed();
       from = at + 1;
     }
     const std::uint64_t at = std::max(from, device_.earliest_refresh());
@@ -325,19 +295,6 @@ void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
     count_owed(at);
     issue_refresh(at, ddr_.edge(at));
   }
-}
-
-/// Of a long time without requests only the last refreshes are carried out one by one: all those before
-/// come as they fall due, one an interval, and leave nothing but their number.
-void DdrController::pass_over_refreshes(std::uint64_t until) {
-  const std::uint64_t interval = config_.refresh_interval;
-  if (hook_ || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
-  if (until < next_expiry_ || until - next_expiry_ < 2 * kGiven * interval) return;
-  if (!device_.all_closed() || next_expiry_ < std::max(command_free_, device_.earliest_refresh()))
-    return;
-  const std::uint64_t passed = (until - next_expiry_) / interval - kGiven;
-  stats.refreshes += passed;
-  next_expiry_ += passed * interval;
 }
 
 /// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs

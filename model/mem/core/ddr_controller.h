@@ -248,13 +248,21 @@ class DdrController {
   void plan();
   void plan_anew();
   void plan_one(Entry& e);
-  void plan_many() { plan_from(std::max(command_free_, entry(0).ready)); }
+  void plan_many() {
+    if (closing_) [[unlikely]]
+      return plan_refresh();
+    plan_from(std::max(command_free_, entry(0).ready));
+  }
+  void plan_refresh();
   void plan_from(std::uint64_t edge);
   unsigned first_of(Places set) const;
   Places best_kind(Places set, bool room) const;
   void choose(std::uint64_t edge, Places ready);
   void prepare_others(std::uint64_t edge, Places ready, bool room);
+  Places soonest(Places open, std::uint64_t edge) const;
+  void choose_in_order(std::uint64_t edge, Places ready);
   bool stands_with(unsigned place, std::uint64_t edge, Places ready);
+  bool ranks_below_first(unsigned place, std::uint64_t edge) const;
   bool refresh_goes_first(Places set) const;
   void choose_refresh(std::uint64_t edge);
   bool choose_overdue_row(std::uint64_t edge);
@@ -325,11 +333,11 @@ class DdrController {
   std::size_t fifo_entries_;
   unsigned write_fifo_words_, request_latency_, return_latency_, clock_restart_;
   Picoseconds retention_;
-  unsigned need_, must_, gap_limit_;
-  // The scheduler, as its differences from TI's: only the oldest request is looked at; a row that
+  unsigned release_, need_, must_, gap_limit_;
+  // The scheduler, as its differences from TI's: columns are given in the order of age; a row that
   // nobody waits for is closed after its access; reads before writes, and priorities, count; a
-  // master's requests pass each other.
-  bool in_order_, closes_rows_, kinds_count_, free_order_;
+  // master's requests pass each other; among open rows those go first whose column can go first.
+  bool in_order_, closes_rows_, kinds_count_, free_order_, first_ready_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
@@ -367,10 +375,12 @@ class DdrController {
   Picoseconds asleep_at_ = 0;         // when it fell asleep
   unsigned owed_ = 0, forced_ = 0;
   unsigned gap_ = 0;  // intervals that ended since the last REF
-  // An urgent refresh has closed the banks: its REF follows before anything else. Without this, a
-  // read that ranks first only while all rows are closed and one that does only while its row is
-  // open could take turns in putting it off, and none of them be served.
+  // A refresh has closed the banks: its REF follows before anything else. Without this, requests that
+  // come between the two would reopen their rows and find them closed again at the next idle clock; and
+  // a read that ranks first only while all rows are closed and one that does only while its row is open
+  // could take turns in putting it off, and none of them be served.
   bool closing_ = false;
+  bool catching_up_ = false;  // the backlog was above `must` and is not down to `release` yet
   ReadLane lane_;
 
   std::array<Given, kGiven> given_;  // the last commands, to say who was waited for

@@ -54,6 +54,12 @@ struct DdrParams : ParamGroup {
                      "self-refresh longer than this loses what partial-array self-refresh leaves out",
                      Origin::kAssumed, "rows are refreshed every 64 ms (JESD209)",
                      {"64ms", "10s", "guaranteed at the hottest; cool cells keep data for seconds"}};
+  IntParam refresh_release{*this, "refresh.release", U::kCount, 3, 0, 64,
+                           "refresh backlog down to which refreshes follow each other once it was above "
+                           "refresh.must",
+                           Origin::kFamily, kLevels,
+                           {"3", "11", "SPRU986B has the level; that requests wait until then is said of "
+                                       "AM335x only (SPRUH73): 11 is one refresh at a time"}};
   IntParam refresh_need{*this, "refresh.need", U::kCount, 7, 0, 32,
                         "refresh backlog above which refresh goes before writes", Origin::kFamily,
                         kLevels, {"3", "8", kLevelsBelief}};
@@ -64,9 +70,17 @@ struct DdrParams : ParamGroup {
                        "intervals without a REF above which four are issued before requests",
                        Origin::kFamily, kSisters, {"7", "7", kSistersAgree}};
   EnumParam scheduler{*this, "scheduler", "ti", {"ti", "fcfs", "frfcfs", "closed_page"},
-                      "ti: the chip's; fcfs: strictly by age; frfcfs: open rows, then age, of all; "
-                      "closed_page: ti, but a row nobody waits for is closed after its access",
+                      "ti: the chip's; fcfs: data strictly by age, rows opened ahead; frfcfs: what is "
+                      "ready first, so open rows, then age, of all; closed_page: ti, but a row nobody "
+                      "waits for is closed after its access",
                       Origin::kChoice, ""};
+  EnumParam ti_open_row{*this, "ti_open_row", "activated", {"activated", "ready"},
+                        "which rows ti and closed_page serve first as open: activated, all from their "
+                        "ACT on; ready, those whose data command is legal first (tRCD is over)",
+                        Origin::kAssumed,
+                        "\"the ACTV command opens a row\" (SPRUH82C 14.2.3.3), a sister chip; the choice "
+                        "among open rows is not public",
+                        {"activated", "ready", "a controller may know which rows can be read already"}};
   DdrParams() : ParamGroup("ddr") {}
 
   std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index() % 3; }

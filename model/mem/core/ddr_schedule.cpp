@@ -31,19 +31,14 @@ namespace fovea::mem {
 bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready) {
   if (!plain_ || lane_.room() > edge || edge >= all_in_time_until_) return false;
   const Places bit = 1u << place;
-  if (in_order_ || !(offered_ & bit)) return true;
-  const bool write = places_.writes() & bit;
-  if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
-  // It must rank below the first.
   const Entry &e = entry(place), &top = entry(first_);
-  const Places first = 1u << first_;
-  const bool first_writes = places_.writes() & first;
-  if (kinds_count_ && first_writes && !write) return false;
-  if (!kinds_count_ || first_writes == write) {
-    const bool hits_first = (hits_ & bit) && !(hits_ & first);
-    if (hits_first || (kinds_count_ && e.request.priority < top.request.priority)) return false;
+  if (in_order_) {
+    if (ready & places_.of_bank(e.bank)) return true;  // the oldest request decides about a bank
+  } else {
+    if (!(offered_ & bit)) return true;
+    if (!ranks_below_first(place, edge)) return false;
+    if (e.bank == top.bank) return true;
   }
-  if (e.bank == top.bank) return true;
   if (e.bank == choice_.entry->bank) return false;
   if (hits_ & bit) return true;
   const Cmd prepare = device_.preparation(e.bank);
@@ -52,6 +47,20 @@ bool DdrController::stands_with(unsigned place, std::uint64_t edge, Places ready
   if (at == choice_.at || (ready & offered_ & places_.of_bank(e.bank))) return false;
   choice_ = {&entry(place), at, prepare, static_cast<std::uint8_t>(place)};
   return true;
+}
+
+/// True if the newest request cannot rank before the first one.
+inline bool DdrController::ranks_below_first(unsigned place, std::uint64_t edge) const {
+  const Places bit = 1u << place, first = 1u << first_;
+  const bool write = places_.writes() & bit, first_writes = places_.writes() & first;
+  if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
+  if (kinds_count_ && first_writes && !write) return false;
+  if (kinds_count_ && first_writes != write) return true;
+  const Entry &e = entry(place), &top = entry(first_);
+  if (kinds_count_ && e.request.priority < top.request.priority) return false;
+  if (!(hits_ & bit)) return true;
+  if (!(hits_ & first)) return false;
+  return !first_ready_ || earliest(e, needed(e), edge) >= earliest(top, needed(top), edge);
 }
 
 /// The place of the request that ranks first: by priority, then age.
@@ -66,8 +75,40 @@ inline Places DdrController::best_kind(Places set, bool room) const {
   return kind ? kind : set;
 }
 
+/// Of requests whose rows are open those whose column commands can be given first.
+[[gnu::noinline]] Places DdrController::soonest(Places open, std::uint64_t edge) const {
+  Places best = 0;
+  std::uint64_t best_at = kNoClock;
+  for (; open; open &= open - 1) {
+    const Places bit = open & -open;
+    const Entry& e = entry(oldest(bit));
+    const std::uint64_t at = earliest(e, needed(e), edge);
+    best = at < best_at ? bit : at == best_at ? best | bit : best;
+    best_at = std::min(best_at, at);
+  }
+  return best;
+}
+
+/// `fcfs`: the oldest request gets its command, and its column before all others. Meanwhile the oldest
+/// request to each other bank may open its row.
+[[gnu::noinline]] void DdrController::choose_in_order(std::uint64_t edge, Places ready) {
+  Places prepares = 0;  // the oldest of each bank
+  for (unsigned bank = 0; bank < DdrDevice::kMaxBanks; ++bank) {
+    const Places set = ready & places_.of_bank(bank);
+    prepares |= set & -set;
+  }
+  Entry& top = entry(0);
+  const Cmd cmd = needed(top);
+  first_ = 0;
+  plain_ = true;
+  choice_ = {&top, earliest(top, cmd, edge), cmd, 0};
+  prepares &= ~places_.of_bank(top.bank);
+  if (prepares && choice_.at > edge) prepare_others(edge, prepares, true);
+}
+
 /// The command to give if only the requests at the places `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, Places ready) {
+  const Places seen = ready;
   ready &= in_order_ ? 1u : offered_;
   plain_ = false;
   if (edge >= calm_until_) [[unlikely]] {
@@ -76,13 +117,18 @@ inline void DdrController::choose(std::uint64_t edge, Places ready) {
       return choose_refresh(edge);
     if (edge >= all_in_time_until_ && choose_overdue_row(edge)) return;
   }
+  if (in_order_) [[unlikely]]
+    return choose_in_order(edge, seen);
   // By kind; in each open rows first, then priority, then age (rules 2 and 3).
   const bool room = lane_.room() <= edge;
   unsigned first = 0;
   // Rule 5: the oldest command, passed by too often, is raised.
   if (served_while_oldest_ <= config_.old_count || config_.old_count == 0xFF) [[likely]] {
     plain_ = room;
-    const Places kind = best_kind(ready, room), open = kind & hits_;
+    const Places kind = best_kind(ready, room);
+    Places open = kind & hits_;
+    if (first_ready_) [[unlikely]]
+      open = soonest(open, edge);
     first = first_of(open ? open : kind);
   }
   // The first in rank gets its command; others may only prepare banks that nobody above them needs.
@@ -133,16 +179,6 @@ void DdrController::choose_refresh(std::uint64_t edge) {
     choice_ = {nullptr, std::max(edge, device_.earliest_refresh()), Cmd::kRef};
   else
     choice_ = {nullptr, std::max(edge, device_.earliest_pre_all()), Cmd::kPreAll};
-}
-
-/// At an edge after which an interval may have run out.
-DdrController::Urgency DdrController::refresh_urgency_after(std::uint64_t edge) const {
-  unsigned expired = 0;
-  if (config_.refresh_interval && edge >= next_expiry_)
-    expired = 1 + static_cast<unsigned>((edge - next_expiry_) / config_.refresh_interval);
-  if (forced_ > 0 || closing_ || owed_ + expired > must_ || gap_ + expired > gap_limit_)
-    return Urgency::kMust;
-  return owed_ + expired > need_ ? Urgency::kNeed : Urgency::kMay;
 }
 
 }  // namespace fovea::mem

@@ -22,6 +22,8 @@ struct DdrStats : StatGroup {
   Counter row_conflicts{*this, "row_conflicts", "1", "requests that found another row open"};
   Counter activates{*this, "activates", "1", "ACT commands"};
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
+  Maximum refresh_backlog{*this, "refresh_backlog", "1",
+                          "most refreshes owed at once; JESD79-2 allows 8 to be postponed"};
   Counter overdue_rows{*this, "overdue_rows", "1", "PRE of a row that was open for T_RASMAX"};
   Counter power_downs{*this, "power_downs", "1", "entries into power-down"};
   Counter self_refreshes{*this, "self_refreshes", "1", "entries into self-refresh"};
