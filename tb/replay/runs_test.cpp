@@ -307,6 +307,24 @@ double worst(Figures real, Figures replayed, const std::string& what) {
   return largest;
 }
 
+/// A percentile moves by whole clocks of a bus, a few percent of it each: so much, of the crossbar's
+/// slowest clock here.
+constexpr double kCrossbarClock = 1 / 121.5e6 + 2e-12;
+
+/// The largest difference of a 99th percentile, in seconds.
+double largest_p99(const Figures& real, const Figures& replayed) {
+  double largest = 0;
+  for (const auto& [name, value] : real)
+    if (name.ends_with(".p99") && replayed.count(name))
+      largest = std::max(largest, std::abs(replayed.at(name) - value));
+  return largest;
+}
+
+Figures without_p99(Figures f) {
+  std::erase_if(f, [](const auto& figure) { return figure.first.ends_with(".p99"); });
+  return f;
+}
+
 /// Masters whose requests did not all go out and end at the very picosecond.
 unsigned other_times(const Figures& real, const Figures& replayed) {
   unsigned masters = 0;
@@ -340,7 +358,9 @@ TEST_P(RunsTest, ReplayFollowsTheRun) {
   for (const Change& change :
        {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 3}, Change{0, 7}}) {
     const Figures real = run_board(keys, watched, change, "");
-    EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
+    const Figures replayed = replay(file(), watched, change);
+    EXPECT_LE(worst(without_p99(real), replayed, change.text()), 0.015);
+    EXPECT_LE(largest_p99(real, replayed), kCrossbarClock) << change.text();
     // The loss shows when memory gets faster; with slower memory the core's one port is always taken,
     // and that alone keeps its requests apart.
     const double lost =
@@ -385,8 +405,11 @@ TEST_P(RunsTest, OtherClocksOfThePllFollowTheRun) {
     change.of_trace = to.info.params;
     const Figures replayed = replay(sides[from].file, watched, change);
     const std::string what = "to " + to.keys.front().second;
-    EXPECT_LE(worst(only(to.figures, {"remap"}), replayed, what), 0.01);
-    EXPECT_LE(worst(only(to.figures, {"arm_", "vpfe", "vpbe"}), replayed, what), 0.03);
+    // LDM waits for the later words of a line, which come with the crossbar's clock (README.md, Limits).
+    const double remap = GetParam() == std::string("ldm") ? 0.025 : 0.005;
+    EXPECT_LE(worst(only(to.figures, {"remap"}), replayed, what), remap);
+    EXPECT_LE(worst(without_p99(only(to.figures, {"arm_", "vpfe", "vpbe"})), replayed, what), 0.015);
+    EXPECT_LE(largest_p99(to.figures, replayed), kCrossbarClock) << what;
   }
   std::filesystem::remove(other_file);
 }
