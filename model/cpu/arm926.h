@@ -28,6 +28,10 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   const std::string& failure() const { return failure_; }
   /// The core waits for an interrupt, as of the kernel's time.
   bool asleep() const { return asleep_; }
+  /// The access behind one of its requests.
+  static const BusAccess& access_of(const MemRequest& r) {
+    return *static_cast<const Record*>(static_cast<const Transaction*>(r.owner))->access;
+  }
   /// From the core's own stack, at an instruction boundary: the kernel comes to its time.
   void catch_up();
 

@@ -320,10 +320,16 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
     }
   }
   auto recorder = std::make_unique<trace::BusRecorder>(
-      masters, places(params_.cpu.ahb_ratio), [this] {
-        const cpu::Counts& c = arm.core().counts();
-        const auto writes = static_cast<std::size_t>(cpu::Cause::kWriteBuffer);
-        return trace::CoreState{c.idle, c.stall[writes]};
+      masters, places(params_.cpu.ahb_ratio), [this](const MemRequest* r) {
+        const cpu::Core& core = arm.core();
+        trace::CoreState s{core.counts().idle, core.room_waits(), core.drains()};
+        s.origin = core.clock().edge_at_or_after(0);
+        if (r) {
+          const cpu::BusAccess& a = cpu::Arm926::access_of(*r);
+          s.asked = a.asked;
+          s.victim = r->write && a.victim;
+        }
+        return s;
       });
   scr.crossbar().observe(recorder.get());
   tap.attach(recorder.get());

@@ -1,3 +1,4 @@
+#include "sw/fovea/clock_presets.h"
 #include "sw/fovea/exec_session.h"
 
 #include <fmt/format.h>
@@ -31,16 +32,8 @@ SemihostingSettings settings(const ExecRequest& request, const ExecMap& map) {
 }  // namespace
 
 ExecClocks ExecClocks::preset(std::string_view name) {
-  // SYSCLK4, the crossbar's clock, is half the DDR clock in each of them.
-  const auto of = [](std::uint64_t core_mhz, std::uint64_t ddr_khz) {
-    return ExecClocks{Frequency(core_mhz * 1'000'000), Frequency(ddr_khz * 1'000),
-                      Frequency(ddr_khz * 1'000, 2)};
-  };
-  if (name == "297/270") return of(297, 270'000);
-  if (name == "270/216") return of(270, 216'000);
-  if (name == "216/172") return of(216, 172'500);
-  if (name == "432/340") return of(432, 340'000);
-  return of(297, 243'000);
+  const ClockPreset& p = clock_preset(name);
+  return {p.core, p.ddr, p.scr()};
 }
 
 ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,

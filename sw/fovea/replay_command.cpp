@@ -10,6 +10,7 @@
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/remarks.h"
+#include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
 
@@ -45,6 +46,17 @@ OpenTrace open_trace(const std::string& file) {
         name, trace::TextTrace::kHeader));
   }
   return out;
+}
+
+/// What of the command line does nothing because there is no crossbar.
+std::vector<std::string> without_crossbar(const std::vector<std::string>& sets) {
+  std::vector<std::string> lines;
+  for (const auto& s : sets) {
+    const std::string key = s.substr(0, s.find('='));
+    if (key.starts_with("bus.") || key == "ddr.read_fifo")
+      lines.push_back(fmt::format("warning: key '{}' has no effect with --memory-only", key));
+  }
+  return lines;
 }
 
 /// As `fovea run` has them, from the phases that the trace keeps.
@@ -84,8 +96,15 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
           fmt::format("key '{}' has no effect in a replay, which plays no contents", key));
     experiment.override_with(s);
   }
+  apply_clock_preset(params, experiment);
   apply_ddr_preset(params, trace.info->ddr.frequency, experiment);
+  std::vector<std::string> said;
+  if (options.memory_only)
+    said = without_crossbar(options.sets);
+  else
+    said = follow_clocks(params, *trace.info, experiment);
   params.check();
+  for (const std::string& line : said) context.err << "fovea: " << one_line(line) << "\n";
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),

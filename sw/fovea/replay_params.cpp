@@ -10,6 +10,7 @@ void ReplayParams::declare(ParamSet& set) {
   set.add(crossbar);
   for (auto& port : crossbar.ports) set.add(*port);
   set.add(clocks);
+  set.add(chip_clocks);
   set.add(ddr);
   set.add(registers);
   set.remove(ddr.retention.key());
@@ -99,7 +100,8 @@ std::vector<std::pair<std::string, std::string>> replay_keys(const ParamSet& run
   known.declare(set);
   std::vector<std::pair<std::string, std::string>> out;
   for (const ParamBase* p : run.all())
-    if (set.find(p->key())) out.emplace_back(p->key(), p->text());
+    // The clocks are recorded as they are, whatever program set them.
+    if (set.find(p->key()) && p->key() != known.chip_clocks.preset.key()) out.emplace_back(p->key(), p->text());
   const auto hertz = [](Frequency f) {
     return fmt::format("{}Hz", static_cast<std::uint64_t>(std::llround(f.hertz())));
   };

@@ -21,6 +21,15 @@ struct PathClocks : ParamGroup {
   PathClocks() : ParamGroup("bus") {}
 };
 
+struct ChipClocks : ParamGroup {
+  EnumParam preset{*this, "preset", "as_recorded",
+                   {"as_recorded", "297/243", "297/270", "270/216", "216/172", "432/340"},
+                   "as clocks.preset of a run, for ddr.clock, which bus.clock follows; the core's clock "
+                   "stays as recorded, and so do timings in clocks",
+                   Origin::kSourced, "TI boot loader presets"};
+  ChipClocks() : ParamGroup("clocks") {}
+};
+
 /// The controller's registers, in clocks and decoded; defaults are what the firmware writes at 243 MHz.
 struct DdrRegisterParams : ParamGroup {
   using U = IntParam::Unit;
@@ -75,6 +84,7 @@ struct DdrRegisterParams : ParamGroup {
 struct ReplayParams {
   bus::CrossbarParams crossbar;
   PathClocks clocks;
+  ChipClocks chip_clocks;
   mem::DdrParams ddr;
   DdrRegisterParams registers;
 

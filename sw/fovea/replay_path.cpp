@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/board/frame_log.h"
+#include "sw/fovea/clock_presets.h"
 
 namespace fovea::app {
 namespace {
@@ -42,21 +43,31 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
                       std::abs(file.frequency.hertz() - wanted.hertz()) < 1.0;
     return same ? file.frequency : wanted;
   };
-  const Frequency scr = clock(info.scr, params.clocks.clock);
-  const Picoseconds scr_start = start_near(info.scr, info.start);
-  xbar_.set_clock(scr, scr_start);
-  ddr_.set_clocks({}, scr, scr_start);
   const Frequency ddr = clock(info.ddr, params.registers.clock);
+  Frequency scr = clock(info.scr, params.clocks.clock);
+  // Half of the SDRAM's clock is so exactly, whatever whole hertz its key has.
+  const bool of_one_pll = std::abs(2 * scr.hertz() - ddr.hertz()) < 2.0;
+  if (of_one_pll && !(scr == info.scr.frequency)) scr = ClockPreset::half(ddr);
   const bool other = !info.ddr.frequency.stopped() && !(ddr == info.ddr.frequency);
-  ddr_.set_clocks(other ? info.ddr.frequency : ddr, scr, start_near(info.ddr, info.start));
+  const bool both = other && !(scr == info.scr.frequency);
+  const Picoseconds scr_start = start_near(info.scr, info.start);
+  // Both clocks come from one PLL (SYSCLK7 = 2 x SYSCLK4): another clock of the SDRAM starts with an
+  // edge of the crossbar's. That has the edges that it would have if the PLL had been programmed so
+  // when it was started; what it is to the core's clock on the board is not known.
+  Picoseconds begins = info.start;
+  if (!memory_only) begins = Clock(scr, scr_start).next_edge_at_or_after(begins);
+  if (memory_only) ddr_.leave_out_lane();
+  xbar_.set_clock(scr, both ? begins : scr_start);
+  const Frequency scr_before = both ? info.scr.frequency : scr;
+  ddr_.set_clocks({}, scr_before, scr_start);
+  ddr_.set_clocks(other ? info.ddr.frequency : ddr, scr_before, start_near(info.ddr, info.start));
   mem::DdrConfig config = params.config();
   const unsigned interval = std::exchange(config.refresh_interval, 0);
   ddr_.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
   ddr_.configure(config, info.refresh ? info.refresh : info.start);
   ddr_.catch_up(info.start);  // the refreshes before
-  // Another clock than recorded has no phase of its own: it begins with the trace.
-  if (other) ddr_.set_clocks(ddr, scr, info.start);
+  if (other) ddr_.set_clocks(ddr, scr, begins);
   ddr_.stats.reset();
   xbar_.timeline.begin(info.start);
   memory_timeline_.begin(info.start);
@@ -79,8 +90,8 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     m.write_slots_from = from.shared ? 0 : from.reads;
     m.in_turn = !from.shared && !memory_only;
     m.turn = {0, from.reads};
-    for (const MasterState& other : masters_)
-      if (&other != &m && other.label == m.label) m.latency = other.latency;
+    for (const MasterState& side : masters_)
+      if (&side != &m && side.label == m.label) m.latency = side.latency;
     if (!m.latency) m.latency = std::make_shared<bus::LatencyStats>(from.label);
     for (Slot& s : m.slots) {
       s.owner = &m;
@@ -134,6 +145,11 @@ Picoseconds ReplayPath::event(const trace::Record& r) const {
   return other.history[r.event % kHistory].last;
 }
 
+/// The first edge of the stream's bus clock at or after one of its clock.
+inline std::uint64_t ReplayPath::aligned(const Stream& s, std::uint64_t edge) {
+  return edge + (s.align + s.phase - edge % s.align) % s.align;
+}
+
 /// When the record's release lets it go; kNever while that is not known.
 inline Picoseconds ReplayPath::released(const Stream& s) const {
   const trace::Record& r = s.record;
@@ -150,7 +166,11 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
     if (risen == kNever) return kNever;
     edge = std::max(edge, s.clock.edge_at_or_after(risen)) + r.wake_gap;
   }
-  edge += (s.align + s.phase - edge % s.align) % s.align;
+  if (r.room != 0) {
+    const Picoseconds ended = s.history[(s.number - r.room) % kHistory].last;
+    if (ended == kNever) return kNever;
+    edge = std::max(edge, aligned(s, s.clock.edge_at_or_after(ended)));
+  }
   return s.clock.edge(edge);
 }
 
@@ -170,17 +190,16 @@ void ReplayPath::prepare(unsigned stream) {
                              : trace::kInterrupt;
     cross_ |= waits_for_[stream] != trace::kInterrupt;
     if (at == kNever) return;
+    s.came = at;
+    bool off_edge = s.align > 1 && s.record.release != trace::Release::kAt;
+    if (!s.record.mark && s.slot->free > at) {
+      at = s.slot->free;
+      off_edge = s.align > 1;
+    }
+    if (off_edge) at = s.clock.edge(aligned(s, s.clock.edge_at_or_after(at)));
     at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
     if (!s.record.mark) {
-      if (s.slot->free > at) {
-        at = s.slot->free;
-        if (s.align > 1) {
-          std::uint64_t edge = s.clock.edge_at_or_after(at);
-          edge += (s.align + s.phase - edge % s.align) % s.align;
-          at = s.clock.edge(edge);
-        }
-      }
       set_time(stream, at);
       return;
     }
@@ -222,7 +241,8 @@ void ReplayPath::issue() {
   slot.write = r.write;
   slot.locked = r.locked;
   slot.bytes = r.bytes;
-  s.history[s.number++ % kHistory] = {kNever, kNever};
+  slot.came = s.came;
+  s.history[s.number++ % kHistory] = {r.write ? s.came : kNever, kNever};
   s.earliest = next_time_;
   if (on_issue) [[unlikely]]
     on_issue(stream, next_time_);
@@ -294,7 +314,8 @@ void ReplayPath::complete(Slot& slot) {
   if (!slot.write) m.latency->histogram.add(slot.first - slot.issued);
   last_ = std::max(last_, slot.last);
   slot.free = slot.last;
-  streams_[m.stream].history[slot.number % kHistory] = {slot.first, slot.last};
+  streams_[m.stream].history[slot.number % kHistory] = {slot.write ? slot.came : slot.first,
+                                                          slot.last};
   if (time_[m.stream] == kNever) wake(m.stream);
   if (cross_) [[unlikely]]
     for (unsigned i = 0; i < streams_.size(); ++i)

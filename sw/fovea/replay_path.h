@@ -61,6 +61,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   struct Slot : MemRequest {
     Picoseconds free = 0;  // kNever: taken, and its end is not known
     std::uint64_t number = 0;
+    Picoseconds came = 0;  // when its record was released, whether or not its port was free
     alignas(16) std::array<std::uint8_t, kMaxBurstBytes> bytes_{};
   };
   struct MasterState {
@@ -85,6 +86,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
     Clock clock;
     unsigned align = 1, phase = 0;
     Slot* slot = nullptr;   // for it
+    Picoseconds came = 0;   // when it was released
     std::vector<Outcome> history;
   };
 
@@ -95,6 +97,7 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void prepare(unsigned stream);
   Picoseconds event(const trace::Record& r) const;
   Picoseconds released(const Stream& s) const;
+  static std::uint64_t aligned(const Stream& s, std::uint64_t edge);
   void wake(unsigned stream);
   Slot* place(MasterState& m, bool write);
   void set_time(unsigned stream, Picoseconds at) {

@@ -64,8 +64,19 @@ done
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
 cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
 expect memory_only 0 -- replay "$trace" --memory-only
+expect memory_only_keys 0 "warning: key 'bus.clock' has no effect with --memory-only" -- replay "$trace" --memory-only -s bus.clock=1GHz
+text=$(replay "$trace" --memory-only -s ddr.clock=270MHz 2>&1)
+grep -q bus.clock <<<"$text" && fail "without a crossbar its clock is named: $text"
 expect other 0 -- replay "$trace" -s ddr.clock=270MHz -s ddr.tRCD=6cycles -s bus.arm_d.request_latency=1cycles
 grep -q '"ddr.clock": {"value": "270MHz"' "$out/replay/config.json" || fail 'config.json: ddr.clock'
+grep -q '"bus.clock": {"value": "135MHz", .*"origin": "half of ddr.clock"' "$out/replay/config.json" ||
+  fail 'config.json: bus.clock does not follow'
+expect follows 0 'fovea: bus.clock follows ddr.clock as on the chip: 135 MHz, it was 121.5 MHz' -- replay "$trace" -s ddr.clock=270MHz
+cp "$out/replay/stats.json" "$out/by_clock.json"
+expect chip_preset 0 'fovea: bus.clock follows' -- replay "$trace" -s clocks.preset=297/270
+cmp "$out/by_clock.json" "$out/replay/stats.json" || fail 'clocks.preset=297/270 is not ddr.clock=270MHz'
+expect deviates 0 'fovea: warning: bus.clock is 121.5 MHz' -- replay "$trace" -s ddr.clock=270MHz -s bus.clock=121.5MHz
+cmp -s "$out/by_clock.json" "$out/replay/stats.json" && fail 'bus.clock by hand changes nothing'
 grep -q '"ddr.tRP": {.*"origin": ".*small.trace"' "$out/replay/config.json" || fail 'config.json: origin'
 
 printf '# dramtrace 1\n# master 5 window 4 left\n# master 6 window 2 right\n0 5 R 0x0 256\n0 6 W 0x40000 64\n' >"$out/good.txt"
@@ -92,7 +103,7 @@ expect truncated 2 'cut off' -- replay "$out/cut.trace"
 { head -c 700 "$trace"; printf 'XXXX'; tail -c +705 "$trace"; } >"$out/bad.trace"
 expect corrupted 2 'corrupted' -- replay "$out/bad.trace"
 sed '1s/[0-9]$/9/' "$trace" >"$out/version.trace"
-expect version 2 'allowed: versions 1 and 2' -- replay "$out/version.trace"
+expect version 2 'allowed: versions 1 to 3' -- replay "$out/version.trace"
 printf '# dramtrace 7\n' >"$out/version.txt"
 expect text_version 2 'version.txt.:1' '# dramtrace 1' -- replay "$out/version.txt"
 printf '# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x8000000 4\n' >"$out/outside.txt"

@@ -133,6 +133,13 @@ Record after(std::uint32_t back, bool first, std::uint64_t gap, std::uint32_t ad
   return r;
 }
 
+/// Outcomes, by direction.
+struct Outcomes : MemObserver {
+  std::array<std::vector<Picoseconds>, 2> issued, last;
+  void submitted(const MemRequest& r, bool) override { issued[r.write].push_back(r.issued); }
+  void responded(const MemRequest& r) override { last[r.write].push_back(r.last); }
+};
+
 TEST(ReplayPathTest, AGapCountsInTheStreamsClock) {
   const trace::TraceInfo info = board_info();
   const Clock core(info.streams[0].clock, info.streams[0].clock_start);
@@ -146,6 +153,87 @@ TEST(ReplayPathTest, AGapCountsInTheStreamsClock) {
   }
   EXPECT_EQ(core.edge_at_or_after(second[402]), core.edge_at_or_after(second[400]) + 2);
   EXPECT_EQ(core.edge_at_or_after(second[440]), core.edge_at_or_after(second[400]) + 40);
+}
+
+// The port is taken until the read's last beat, somewhere between two edges of the AHB.
+TEST(ReplayPathTest, WhoWaitsForThePortGoesOutWithAnAhbEdge) {
+  for (const unsigned align : {2u, 3u, 5u}) {
+    trace::TraceInfo info = board_info();
+    info.streams[0].align = align;
+    info.streams[0].phase = align - 1;
+    const Clock core(info.streams[0].clock, info.streams[0].clock_start);
+    Listed l;
+    Record second = after(1, true, 0, 0x9000);  // its word comes long before the last beat
+    l.records[0] = {read_at(2'000'000, 0x1000), second};
+    Outcomes seen;
+    const Picoseconds at = Played(info, l, false, {}, &seen).issued[0].at(1);
+    ASSERT_EQ(seen.last[0].size(), 2u);
+    const std::uint64_t edge = core.edge_at_or_after(at);
+    EXPECT_EQ(core.edge(edge), at);
+    EXPECT_EQ(edge % align, align - 1) << "not with the AHB's edge";
+    EXPECT_GE(at, seen.last[0][0]);
+    EXPECT_LT(edge, core.edge_at_or_after(seen.last[0][0]) + align) << "the next edge";
+  }
+}
+
+// A store takes its place in the program when it enters the buffer, not when its port is free.
+TEST(ReplayPathTest, AStoreFollowsTheOneBeforeInTheProgram) {
+  const trace::TraceInfo info = board_info();
+  const Clock core(info.streams[0].clock, info.streams[0].clock_start);
+  const auto store = [](std::uint32_t back, std::uint64_t gap, std::uint32_t room) {
+    Record r = after(back, true, gap, 0x9000);
+    r.write = true;
+    r.critical = 0;
+    r.room = room;
+    return r;
+  };
+  const auto issued = [&](std::uint32_t room, std::uint64_t far) {
+    Listed l;
+    // Three stores three clocks apart, and one `far` clocks behind the third.
+    l.records[0] = {read_at(2'000'000, 0x1000), store(1, 1'000, 0), store(1, 3, 0), store(1, 3, 0),
+                    store(1, far, room)};
+    Outcomes seen;
+    const Played p(info, l, false, {}, &seen);
+    std::vector<std::uint64_t> clocks;
+    for (std::size_t n = 1; n < 5; ++n) clocks.push_back(core.edge_at_or_after(p.issued[0].at(n)));
+    clocks.push_back(core.edge_at_or_after(seen.last[1].at(0)));
+    return clocks;
+  };
+  const auto near = issued(0, 3), far = issued(0, 1'001), later = issued(0, 1'003);
+  EXPECT_GT(near[1], near[0] + 4) << "the port is taken much longer than the program needs";
+  EXPECT_EQ(near[0], far[0]);
+  // At least 1007 clocks behind the first: 1000 for the first's AHB edge, and an edge that is odd.
+  EXPECT_LE(far[3], far[0] + 3 + 3 + 1'001 + 1);
+  EXPECT_GE(far[3], far[0] + 3 + 3 + 1'001 - 1);
+  EXPECT_EQ(later[3], far[3] + 2) << "however long the others were on the way";
+  // With no room before the first is out, the program comes to the last at that end, and goes on.
+  EXPECT_EQ(issued(3, 3)[3], near[3]) << "it waits for the port longer than for room";
+}
+
+// What follows a store that waited for room waits as well.
+TEST(ReplayPathTest, AWaitForRoomMovesTheProgram) {
+  const trace::TraceInfo info = board_info();
+  const Clock core(info.streams[0].clock, info.streams[0].clock_start);
+  for (const std::uint32_t room : {0u, 1u}) {
+    Listed l;
+    Record a = after(1, true, 1'001, 0x9000), b = a, c = a;
+    a.write = b.write = true;
+    b.gap = 1;
+    b.room = room;
+    c.gap = 401;
+    l.records[0] = {read_at(2'000'000, 0x1000), a, b, c};
+    Outcomes seen;
+    const Played p(info, l, false, {}, &seen);
+    const std::uint64_t first = core.edge_at_or_after(p.issued[0].at(1));
+    std::uint64_t end = core.edge_at_or_after(seen.last[1].at(0));
+    end += end % 2 == 0;  // the AHB's next edge
+    ASSERT_GT(end, first + 4);
+    const std::uint64_t last = core.edge_at_or_after(p.issued[0].at(3));
+    if (room)
+      EXPECT_EQ(last, end + 401 + (end + 401 + 1) % 2);
+    else
+      EXPECT_LE(last, first + 1 + 401 + 1);
+  }
 }
 
 TEST(ReplayPathTest, AnInterruptReleasesASleeper) {
@@ -176,13 +264,6 @@ Record when(std::uint8_t stream, std::uint64_t record, std::uint32_t gap, bool w
   r.wake_gap = gap;
   return r;
 }
-/// Outcomes, by direction.
-struct Outcomes : MemObserver {
-  std::array<std::vector<Picoseconds>, 2> issued, last;
-  void submitted(const MemRequest& r, bool) override { issued[r.write].push_back(r.issued); }
-  void responded(const MemRequest& r) override { last[r.write].push_back(r.last); }
-};
-
 // A copy with two places: each write waits for its read's data, each read for the write before the
 // last one, and 700 ps. Streams 1 and 2 count picoseconds.
 TEST(ReplayPathTest, ACompletionElsewhereReleasesARecord) {
@@ -279,6 +360,105 @@ TEST(ReplayPathTest, TimeEndsWithTheMemorysLastData) {
         EXPECT_NEAR(clocks, 1 + 8 + 5 + writes * 4 + 4, 1e-3) << writes;
       }
     }
+}
+
+// SDRAM and crossbar have one PLL: with other clocks a trace plays as one that was recorded with these,
+// each edge of the crossbar's being one of the SDRAM's.
+TEST(ReplayPathTest, ChangedClocksAreThoseOfOnePll) {
+  const auto play = [](const trace::TraceInfo& info, const Keys& keys) {
+    Listed l;
+    Rng rng(9);
+    for (unsigned n = 0; n < 2'000; ++n)
+      for (const unsigned s : {1u, 2u}) {
+        Record r = read_at(1'500'000 + n * 60'000 + rng.below(50'000),
+                           static_cast<std::uint32_t>(rng.below(1u << 20) * 64));
+        r.master = s == 1 ? Master::kVpfe : Master::kVpbe;
+        r.write = rng.below(3) == 0;
+        l.records[s].push_back(r);
+      }
+    struct : MemObserver {
+      std::vector<Picoseconds> times;
+      void submitted(const MemRequest&, bool) override {}
+      void responded(const MemRequest& r) override { times.insert(times.end(), {r.first, r.last}); }
+    } seen;
+    const Played p(info, l, false, keys, &seen);
+    return seen.times;
+  };
+  for (const auto& [ddr, scr] : {std::pair{"270MHz", "135MHz"}, std::pair{"340MHz", "170MHz"},
+                                 std::pair{"333333333Hz", "166666667Hz"}}) {
+    const Keys keys = {{"ddr.clock", ddr}, {"bus.clock", scr}, {"ddr.tREFI", "0cycles"}};
+    const trace::TraceInfo recorded = board_info();
+    trace::TraceInfo like = recorded;
+    const std::uint64_t hertz = std::stoull(ddr) < 1'000 ? std::stoull(ddr) * 1'000'000
+                                                         : std::stoull(ddr);
+    const Clock crossbar(Frequency(hertz, 2), recorded.scr.start);
+    like.scr = {Frequency(hertz, 2), crossbar.next_edge_at_or_after(recorded.start)};
+    like.ddr = {Frequency(hertz), like.scr.start};
+    EXPECT_EQ(play(recorded, keys), play(like, keys)) << ddr;
+  }
+}
+
+// A write that waits at the memory's door is acknowledged when it goes through, not before.
+TEST(ReplayPathTest, AWriteIsAcknowledgedAtTheDoor) {
+  trace::TraceInfo info = board_info();
+  info.streams[0] = {};  // counts picoseconds
+  for (auto& m : info.masters) m.writes = m.reads = 24;
+  Listed l;
+  constexpr unsigned kWrites = 24;
+  for (unsigned n = 0; n < kWrites; ++n) {
+    Record w = read_at(1'000'000, n * 64);
+    w.master = Master::kVpfe;
+    w.write = true;
+    w.bytes = 64;
+    l.records[1].push_back(w);
+    Record mark = read_at(0, 0);
+    mark.mark = true;
+    mark.release = Release::kWhen;
+    mark.source = 1;
+    mark.event = n;
+    l.records[0].push_back(mark);
+  }
+  const Played p(info, l, true, {{"ddr.tREFI", "0cycles"}});
+  ASSERT_EQ(p.issued[0].size(), kWrites);
+  // The write FIFO of 88 bytes takes one at once, and one in the place of each whose 16 clocks of data
+  // have gone out.
+  EXPECT_EQ(p.issued[0][0], 1'000'000u);
+  const double clock = 1e12 / 243e6;
+  for (unsigned n = 2; n < kWrites; ++n)
+    EXPECT_GE(static_cast<double>(p.issued[0][n] - p.issued[0][n - 1]), 16 * clock - 1) << n;
+  EXPECT_GE(p.issued[0][1], 1'000'000u);
+  EXPECT_GE(static_cast<double>(p.path->duration()),
+            static_cast<double>(p.issued[0].back() - info.start));
+}
+
+// Without the crossbar nothing but the SDRAM's bus moves the data: four bytes a clock and edge of it.
+TEST(ReplayPathTest, MemoryOnlyReadsAtTheRateOfTheSdram) {
+  for (const char* scheduler : {"ti", "fcfs", "frfcfs"})
+    for (const std::uint64_t mhz : {270u, 340u})
+      for (const char* bus : {"10MHz", "121500000Hz", "1GHz"}) {
+        const auto time = [&](unsigned reads) {
+          std::string text = master_lines(1, 8);
+          for (unsigned n = 0; n < reads; ++n) text += fmt::format("0 0 R 0x{:x} 64\n", n % 32 * 64);
+          trace::TextTrace t("t", text);
+          const Played p(t.info(), t, true,
+                         {{"ddr.clock", fmt::format("{}MHz", mhz)}, {"bus.clock", bus},
+                          {"ddr.tREFI", "0cycles"}, {"ddr.scheduler", scheduler}});
+          return figures(p).at("replay.time");
+        };
+        // An open row: 16 clocks a read, and no other.
+        const double bandwidth = 64 * 1000 / (time(2000) - time(1000));
+        EXPECT_NEAR(bandwidth, 4e6 * static_cast<double>(mhz), 1e3) << scheduler << ' ' << bus;
+      }
+}
+
+TEST(ReplayPathTest, MemoryOnlyHasNoFigureOfTheCrossbar) {
+  const auto all = [](const char* bus, const char* fifo) {
+    trace::TextTrace t("t", random_reads(3, 4, 2'000, 64));
+    return figures(Played(t.info(), t, true, {{"bus.clock", bus}, {"ddr.read_fifo", fifo}}));
+  };
+  const auto one = all("121500000Hz", "136B");
+  EXPECT_EQ(one, all("1MHz", "136B"));
+  EXPECT_EQ(one, all("1GHz", "64B"));
 }
 
 // Eight masters with a bank each keep the data bus busy however many requests wait at the door: equals
@@ -407,6 +587,16 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_EQ(play("0 0 R 0x8000000 4\n", {{"ddr.part", "mt47h128m16"}}), "");
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.tRC", "12 cycles"}}), HasSubstr("ddr.tRC"));
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.tRAS", "4 cycles"}}), HasSubstr("ddr.tRAS"));
+  // A refresh opens and closes a row: a clock more than tRP at least.
+  for (const unsigned tRP : {5u, 8u}) {
+    const auto with = [&](unsigned tRFC) {
+      return play("0 0 R 0x0 4\n", {{"ddr.tRP", fmt::format("{} cycles", tRP)},
+                                    {"ddr.tRC", "32 cycles"},
+                                    {"ddr.tRFC", fmt::format("{} cycles", tRFC)}});
+    };
+    EXPECT_THAT(with(tRP), HasSubstr("ddr.tRFC")) << tRP;
+    EXPECT_EQ(with(tRP + 1), "") << tRP;
+  }
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.CL", "9 cycles"}}), HasSubstr("7"));
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.clock", "90MHz"}}), HasSubstr("125"));
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.banks", "6"}}), HasSubstr("powers of two"));

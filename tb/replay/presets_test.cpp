@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "model/trace/core/text_trace.h"
+#include "sw/fovea/clock_presets.h"
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
 #include "tb/replay/support.h"
 
@@ -24,11 +26,14 @@ struct Keyed {
   app::ReplayParams params;
   ParamSet set;
   app::Experiment experiment;
+  std::vector<std::string> said;
   explicit Keyed(const Assignments& by_hand, const trace::TraceInfo& info = {})
       : experiment((params.declare(set), set)) {
     for (const auto& [key, value] : info.params) experiment.preset(key, value, "a.trace");
     for (const auto& a : by_hand) experiment.override_with(a);
+    app::apply_clock_preset(params, experiment);
     app::apply_ddr_preset(params, info.ddr.frequency, experiment);
+    said = app::follow_clocks(params, info, experiment);
     params.check();
   }
   std::string value(const char* key) const { return set.find(key)->text(); }
@@ -231,6 +236,80 @@ TEST(ReplayKeysTest, AConfigurationSurvivesBeingStored) {
     };
     EXPECT_EQ(numbers_of(back), numbers_of(c));
   }
+}
+
+trace::TraceInfo recorded_at_243() {
+  trace::TraceInfo info;
+  info.scr.frequency = Frequency(121'500'000);
+  info.ddr.frequency = Frequency(243'000'000);
+  info.streams = {{Frequency(297'000'000), 0, 2, 0}};
+  info.params = {{"ddr.clock", "243MHz"}, {"bus.clock", "121500000Hz"}};
+  return info;
+}
+
+// SYSCLK7 is twice SYSCLK4.
+TEST(ReplayClocksTest, TheCrossbarFollowsTheSdram) {
+  for (const bool of_text : {false, true}) {
+    const trace::TraceInfo info = of_text ? trace::TraceInfo{} : recorded_at_243();
+    const Keyed same({}, info);
+    EXPECT_EQ(same.value("bus.clock"), "121500kHz");
+    EXPECT_THAT(same.said, testing::IsEmpty());
+    const Keyed unchanged({"ddr.clock=243MHz"}, info);
+    EXPECT_THAT(unchanged.said, testing::IsEmpty());
+    const Keyed faster({"ddr.clock=270MHz"}, info);
+    EXPECT_EQ(faster.value("bus.clock"), "135MHz");
+    EXPECT_EQ(faster.origin("bus.clock"), "half of ddr.clock");
+    EXPECT_THAT(faster.said, testing::ElementsAre("bus.clock follows ddr.clock as on the chip: 135 "
+                                                  "MHz, it was 121.5 MHz; set it to keep it"));
+    const Keyed odd({"ddr.clock=333333333Hz"}, info);
+    EXPECT_EQ(odd.value("bus.clock"), "166666667Hz");
+    EXPECT_THAT(odd.said, testing::SizeIs(1));
+  }
+}
+
+TEST(ReplayClocksTest, AClockByHandStaysAndIsNamed) {
+  const Keyed kept({"ddr.clock=270MHz", "bus.clock=121500kHz"}, recorded_at_243());
+  EXPECT_EQ(kept.value("bus.clock"), "121500kHz");
+  EXPECT_THAT(kept.said, testing::ElementsAre("warning: bus.clock is 121.5 MHz; the chip's crossbar runs "
+                                              "at half of ddr.clock, 135 MHz"));
+  const Keyed alone({"bus.clock=135MHz"}, recorded_at_243());
+  EXPECT_EQ(alone.value("bus.clock"), "135MHz");
+  EXPECT_THAT(alone.said, testing::ElementsAre(HasSubstr("at half of ddr.clock, 121.5 MHz")));
+  EXPECT_THAT(Keyed({"ddr.clock=270MHz", "bus.clock=135MHz"}, recorded_at_243()).said,
+              testing::IsEmpty());
+  // Whole hertz: one is no deviation, two are.
+  EXPECT_THAT(Keyed({"bus.clock=121500001Hz"}, recorded_at_243()).said, testing::IsEmpty());
+  EXPECT_THAT(Keyed({"bus.clock=121500002Hz"}, recorded_at_243()).said, testing::SizeIs(1));
+}
+
+TEST(ReplayClocksTest, PresetsAreThoseOfARun) {
+  for (const app::ClockPreset& p : app::clock_presets()) {
+    const Keyed s({fmt::format("clocks.preset={}", p.name)}, recorded_at_243());
+    EXPECT_EQ(s.params.registers.clock(), static_cast<std::uint64_t>(p.ddr.hertz())) << p.name;
+    EXPECT_EQ(2 * s.params.clocks.clock(), s.params.registers.clock()) << p.name;
+    EXPECT_EQ(s.origin("ddr.clock"), fmt::format("clocks.preset: {}", p.name));
+    const bool other_core = p.core.hertz() != 297e6;
+    EXPECT_EQ(std::count_if(s.said.begin(), s.said.end(),
+                            [](const std::string& line) {
+                              return line.starts_with("warning: clocks.preset: the core stays at 297 "
+                                                      "MHz as recorded, ");
+                            }),
+              other_core)
+        << p.name;
+  }
+  const Keyed wins({"clocks.preset=297/270", "ddr.clock=243MHz"}, recorded_at_243());
+  EXPECT_EQ(wins.value("ddr.clock"), "243MHz");
+  EXPECT_EQ(wins.value("bus.clock"), "121500kHz");
+  const Keyed none({}, recorded_at_243());
+  EXPECT_EQ(none.value("clocks.preset"), "as_recorded");
+  EXPECT_EQ(none.value("ddr.clock"), "243MHz");
+}
+
+// A recording names clocks, not the preset that a program may or may not have followed.
+TEST(ReplayClocksTest, ARecordingHasNoPreset) {
+  for (const auto& [key, value] :
+       app::replay_keys({}, {}, Frequency(170'000'000), Frequency(340'000'000)))
+    EXPECT_NE(key, "clocks.preset");
 }
 
 TEST(DdrPresetTest, AGradeOfAnotherKindIsRefused) {

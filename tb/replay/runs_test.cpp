@@ -22,19 +22,21 @@ namespace fovea::replay {
 namespace {
 
 using Figures = std::map<std::string, double>;
+using Keys = std::vector<std::pair<std::string, std::string>>;
 
 /// What is changed against the firmware's settings, for the whole window. 0: nothing.
 struct Change {
   std::uint64_t ddr_hertz = 0;
   unsigned CL = 0;
   bool sleeps = false;
+  Keys keys = {};      ///< of the run and of the replay
+  Keys of_trace = {};  ///< of the replay alone: what another run's trace holds
   std::string text() const {
+    if (!keys.empty()) return keys.front().first + " " + keys.front().second;
     if (sleeps) return "self-refresh";
     return ddr_hertz ? "DDR clock " + std::to_string(ddr_hertz) : "CL " + std::to_string(CL);
   }
 };
-
-using Keys = std::vector<std::pair<std::string, std::string>>;
 
 /// What is compared. In the same window a faster memory does more: times are those up to the same count.
 struct Watched {
@@ -45,10 +47,11 @@ struct Watched {
 constexpr unsigned kFrames = 2;
 /// Every so many writes of Watched::writes.
 constexpr std::size_t kWritesApart = 10'000;
-/// Masters with enough reads for a 99th percentile.
-constexpr std::array kReaders = {Master::kArmD, Master::kVpbe};
+/// A 99th percentile needs so many requests of a master and direction, a mean so many.
+constexpr std::size_t kForP99 = 1'000, kForMean = 100;
 
-/// Read latencies, each as it is: the statistics' histogram is too coarse for 1 %.
+/// Latencies, each as it is: the statistics' histogram is too coarse for 1 %. A read's ends with its
+/// first beat, a write's with its acknowledgement.
 class Latencies : public MemObserver {
  public:
   MemObserver* before = nullptr;  // who looked on already
@@ -61,7 +64,8 @@ class Latencies : public MemObserver {
     if (on)
       for (const Picoseconds t : {r.issued, r.first, r.last})
         times_[index(r.master)] = (times_[index(r.master)] ^ t) * 0x100'0000'01B3u;
-    if (on && !r.write) all_[index(r.master)].push_back(r.first - r.issued);
+    if (on)
+      all_[index(r.master)][r.write].push_back((r.write ? r.last : r.first) - r.issued);
     if (on && r.write) written_[index(r.master)].push_back(r.last);
   }
   /// Of each master that asked: all times of its requests, as a sum that any other time changes.
@@ -77,19 +81,23 @@ class Latencies : public MemObserver {
       f["until." + std::to_string(n)] = static_cast<double>(v[n - 1] - start) * 1e-12;
   }
   void add_to(Figures& f) {
-    for (const Master m : kReaders) {
-      auto& v = all_[index(m)];
-      std::sort(v.begin(), v.end());
-      const std::string name(kMasterNames[index(m)]);
-      f[name + ".mean"] = std::accumulate(v.begin(), v.end(), 0.0) /
-                          static_cast<double>(v.size()) * 1e-12;
-      f[name + ".p99"] = static_cast<double>(v[v.size() * 99 / 100]) * 1e-12;
-    }
+    for (std::size_t m = 0; m < kMasterCount; ++m)
+      for (const bool write : {false, true}) {
+        auto& v = all_[m][write];
+        if (v.size() < kForMean) continue;
+        std::sort(v.begin(), v.end());
+        const std::string name = std::string(kMasterNames[m]) + (write ? ".write" : ".read");
+        f[name + ".mean"] = std::accumulate(v.begin(), v.end(), 0.0) /
+                            static_cast<double>(v.size()) * 1e-12;
+        if (v.size() >= kForP99)
+          f[name + ".p99"] = static_cast<double>(v[v.size() * 99 / 100]) * 1e-12;
+      }
   }
 
  private:
   static constexpr std::uint64_t kNoTimes = 0xCBF2'9CE4'8422'2325u;
-  std::array<std::vector<Picoseconds>, kMasterCount> all_, written_;
+  std::array<std::array<std::vector<Picoseconds>, 2>, kMasterCount> all_;  // reads, writes
+  std::array<std::vector<Picoseconds>, kMasterCount> written_;
   std::array<std::uint64_t, kMasterCount> times_ = [] {
     std::array<std::uint64_t, kMasterCount> none;
     none.fill(kNoTimes);
@@ -115,6 +123,7 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     e2e::Rig rig;
     rig.set("run.frames", std::to_string(kFrames)).set("camera.stamp", "false");
     for (const auto& [key, value] : keys_set) rig.set(key, value);
+    for (const auto& [key, value] : change.keys) rig.set(key, value);
     auto& board = rig.build();
     auto& soc = board.dm365;
     ParamSet keys;
@@ -229,6 +238,9 @@ app::ReplayParams& configure(app::ReplayParams& params, const trace::TraceInfo& 
     set.set("ddr.RL", std::to_string(change.CL) + "cycles");
   }
   if (change.sleeps) set.set("ddr.low_power", "self_refresh");
+  for (const auto& [key, value] : change.of_trace) set.set(key, value);
+  for (const auto& [key, value] : change.keys)
+    if (set.find(key)) set.set(key, value);
   return params;
 }
 
@@ -286,12 +298,31 @@ double worst(Figures real, Figures replayed, const std::string& what) {
     if (name.starts_with("until.") && replayed.count(name)) longest = std::max(longest, value);
   for (const auto& [name, value] : real) {
     if (name.starts_with("times.") || (name.starts_with("until.") && value != longest)) continue;
+    if (!replayed.count(name)) continue;  // a few requests fewer than are needed
     const double d = replayed.at(name) / value - 1;
-    std::printf("  %-18s %-10s real %.6g  replay %.6g  %+.3f %%\n", what.c_str(), name.c_str(),
+    std::printf("  %-18s %-16s real %.6g  replay %.6g  %+.3f %%\n", what.c_str(), name.c_str(),
                 value, replayed.at(name), 100 * d);
     largest = std::max(largest, std::abs(d));
   }
   return largest;
+}
+
+/// A percentile moves by whole clocks of a bus, a few percent of it each: so much, of the crossbar's
+/// slowest clock here.
+constexpr double kCrossbarClock = 1 / 121.5e6 + 2e-12;
+
+/// The largest difference of a 99th percentile, in seconds.
+double largest_p99(const Figures& real, const Figures& replayed) {
+  double largest = 0;
+  for (const auto& [name, value] : real)
+    if (name.ends_with(".p99") && replayed.count(name))
+      largest = std::max(largest, std::abs(replayed.at(name) - value));
+  return largest;
+}
+
+Figures without_p99(Figures f) {
+  std::erase_if(f, [](const auto& figure) { return figure.first.ends_with(".p99"); });
+  return f;
 }
 
 /// Masters whose requests did not all go out and end at the very picosecond.
@@ -324,10 +355,12 @@ TEST_P(RunsTest, ReplayFollowsTheRun) {
   EXPECT_EQ(other_times(recorded, same), 0u);
   EXPECT_GT(other_times(recorded, replay(file(), watched, {}, Lost::kNothing, 30'000)), 0u)
       << "refreshes a few clocks earlier";
-  for (const Change change :
+  for (const Change& change :
        {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 3}, Change{0, 7}}) {
     const Figures real = run_board(keys, watched, change, "");
-    EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
+    const Figures replayed = replay(file(), watched, change);
+    EXPECT_LE(worst(without_p99(real), replayed, change.text()), 0.015);
+    EXPECT_LE(largest_p99(real, replayed), kCrossbarClock) << change.text();
     // The loss shows when memory gets faster; with slower memory the core's one port is always taken,
     // and that alone keeps its requests apart.
     const double lost =
@@ -339,6 +372,81 @@ TEST_P(RunsTest, ReplayFollowsTheRun) {
 }
 INSTANTIATE_TEST_SUITE_P(Kernels, RunsTest, testing::Values("plain", "ldm"));
 
+/// The figures of those whose name begins so.
+Figures only(const Figures& all, const std::vector<std::string>& beginnings) {
+  Figures out;
+  for (const auto& [name, value] : all)
+    for (const auto& b : beginnings)
+      if (name.starts_with(b)) out[name] = value;
+  return out;
+}
+
+/// The chip's own clock presets, with all that the firmware programs for them: SDRAM and crossbar change
+/// together. In both directions.
+TEST_P(RunsTest, OtherClocksOfThePllFollowTheRun) {
+  const Watched watched;
+  const auto other_file = file() + ".other";
+  struct Side {
+    Keys keys;
+    std::string file;
+    Figures figures;
+    trace::TraceInfo info;
+  };
+  std::array<Side, 2> sides = {Side{{{"clocks.preset", "297/243"}}, file(), {}, {}},
+                               Side{{{"clocks.preset", "297/270"}}, other_file, {}, {}}};
+  for (Side& s : sides) {
+    s.keys.emplace_back("firmware.kernel", GetParam());
+    s.figures = run_board(s.keys, watched, {}, s.file);
+    s.info = trace::TraceFile("trace", file_bytes(s.file)).info();
+  }
+  for (const unsigned from : {0u, 1u}) {
+    const Side& to = sides[1 - from];
+    Change change;
+    change.of_trace = to.info.params;
+    const Figures replayed = replay(sides[from].file, watched, change);
+    const std::string what = "to " + to.keys.front().second;
+    // LDM waits for the later words of a line, which come with the crossbar's clock (README.md, Limits).
+    const double remap = GetParam() == std::string("ldm") ? 0.025 : 0.005;
+    EXPECT_LE(worst(only(to.figures, {"remap"}), replayed, what), remap);
+    EXPECT_LE(worst(without_p99(only(to.figures, {"arm_", "vpfe", "vpbe"})), replayed, what), 0.015);
+    EXPECT_LE(largest_p99(to.figures, replayed), kCrossbarClock) << what;
+  }
+  std::filesystem::remove(other_file);
+}
+
+/// Bridges much faster than recorded, and back: buffered stores no longer hold the core up, and then do.
+/// The limits grow towards no latency at all, where a read would find more stores out that it went before
+/// in the recording (README.md, Limits). Chained to their port, as up to version 2 of the file, stores
+/// made the remap 0.5, 6 and 15 % too short.
+TEST_P(RunsTest, FasterBridgesThanRecordedFollowTheRun) {
+  const Watched watched;
+  struct Bridges {
+    const char *request, *response;
+    double remap, latency;  // limits
+  };
+  const auto change = [](const Bridges& b) {
+    Change c;
+    c.keys = {{"bus.arm_d.request_latency", b.request}, {"bus.arm_d.response_latency", b.response}};
+    return c;
+  };
+  const Bridges recorded = {"3cycles", "3cycles", 0.015, 0.02};
+  const Bridges faster[] = {{"1cycles", "1cycles", 0.01, 0.03},
+                            {"1cycles", "0cycles", 0.03, 0.05},
+                            {"0cycles", "0cycles", 0.03, 0.08}};
+  const Keys keys = {{"firmware.kernel", GetParam()}};
+  const auto compare = [&](const Figures& real, const Bridges& b, const std::string& what) {
+    const Figures replayed = replay(file(), watched, change(b));
+    EXPECT_LE(worst(only(real, {"remap"}), replayed, what), b.remap);
+    EXPECT_LE(worst(only(real, {"arm_d.read.mean", "arm_d.write.mean"}), replayed, what), b.latency);
+    worst(only(real, {"arm_d.read.p99", "arm_d.write.p99", "vpbe", "vpfe"}), replayed, what);
+  };
+  const Figures slow = run_board(keys, watched, change(recorded), file());
+  for (const Bridges& b : faster)
+    compare(run_board(keys, watched, change(b), ""), b, change(b).text() + " " + b.response);
+  run_board(keys, watched, change(faster[2]), file());
+  compare(slow, recorded, "and back");
+}
+
 /// Remaps back to back, as in the experiment `throughput`: total time.
 class UnpacedTest : public RunsTest {
  protected:
@@ -349,7 +457,7 @@ class UnpacedTest : public RunsTest {
     ASSERT_GE(recorded.size(), 2u);
     // Nothing between two remaps: the last one's end is that of so many in a row.
     EXPECT_LE(worst(recorded, replay(file(), watched, {}), "same"), 0.01);
-    for (const Change change : changes) {
+    for (const Change& change : changes) {
       const Figures real = run_board(keys, watched, change, "");
       EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
       const double lost =
@@ -381,7 +489,7 @@ TEST_F(CopyTest, SidesOfATransferControllerFollowEachOther) {
   const Figures recorded = run_board(keys, watched, {}, file());
   ASSERT_GE(recorded.size(), 5u);
   EXPECT_LE(worst(recorded, replay(file(), watched, {}), "same"), 0.01);
-  for (const Change change : {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 7}}) {
+  for (const Change& change : {Change{270'000'000, 0}, Change{162'000'000, 0}, Change{0, 7}}) {
     const Figures real = run_board(keys, watched, change, "");
     EXPECT_LE(worst(real, replay(file(), watched, change), change.text()), 0.03);
     const double lost =

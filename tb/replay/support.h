@@ -72,6 +72,8 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   r.back = static_cast<std::uint32_t>(1 + rng.below(std::min<std::uint64_t>(number, 9)));
   r.from_first = rng.below(2);
   r.gap = rng.below(40);
+  if (r.write && !r.mark && r.release == Release::kAfter)
+    r.room = static_cast<std::uint32_t>(rng.below(std::min<std::uint64_t>(number, 9) + 1));
   if (r.release == Release::kWhen) {
     if (stream == 0) {
       r.event = rng.below(3);

@@ -102,6 +102,41 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
   EXPECT_EQ(error_of(head + "# master 1 window 1 GPU-0\n1 1 R 0x0 4\n"), "");
 }
 
+// Each limit at its last good value and the one behind it.
+TEST(TextTraceTest, LimitsAreWhereTheReadmeHasThem) {
+  const std::string head = "# dramtrace 1\n# master 0 window 1 a\n";
+  const auto labelled = [](std::size_t n) {
+    return error_of("# dramtrace 1\n# master 0 window 1 " + std::string(n, 'x') + "\n0 0 R 0x0 4\n");
+  };
+  EXPECT_EQ(labelled(32), "");
+  EXPECT_THAT(labelled(33), HasSubstr("a master is declared as"));
+  EXPECT_EQ(error_of(head + "0 0 R 0xFFFFFFFE 2\n"), "");
+  EXPECT_THAT(error_of(head + "0 0 R 0xFFFFFFFE 3\n"), HasSubstr("beyond 4 GiB"));
+  EXPECT_THAT(error_of(head + "0 0 R 0x100000000 1\n"), HasSubstr("address '0x100000000'"));
+  EXPECT_EQ(error_of(head + "0 0 R 0x0 4096\n"), "");
+  EXPECT_THAT(error_of(head + "0 0 R 0x0 4097\n"), HasSubstr("allowed: 1 to 4096"));
+  EXPECT_EQ(error_of(head + "100000000000000 0 R 0x0 4\n"), "");
+  EXPECT_THAT(error_of(head + "100000000000001 0 R 0x0 4\n"), HasSubstr("time in ps"));
+  EXPECT_EQ(error_of("# dramtrace 1\n# master 65535 window 1 a\n0 65535 R 0x0 4\n"), "");
+  EXPECT_THAT(error_of("# dramtrace 1\n# master 65536 window 1 a\n"), HasSubstr("master '65536'"));
+  std::string ten = "# dramtrace 1\n";
+  for (const char* id : {"0", "1", "2", "3", "4", "5", "6", "7", "8", "9"})
+    ten += std::string("# master ") + id + " window 1 m" + id + "\n";
+  EXPECT_EQ(error_of(ten + "0 9 R 0x0 4\n"), "");
+  EXPECT_THAT(error_of(ten + "# master 10 window 1 m10\n"), HasSubstr("more masters than the 10"));
+}
+
+// The player asks where a record stands after it has taken it, whole or in pieces.
+TEST(TextTraceTest, APieceKnowsItsLine) {
+  TextTrace t("t", "# dramtrace 1\n# master 0 window 1 a\n\n0 0 R 0x20 64\n0 0 R 0x80 64\n");
+  Record r;
+  for (const char* line : {"line 4", "line 4", "line 5"}) {
+    ASSERT_TRUE(t.next(0, r));
+    EXPECT_EQ(t.place(0), line) << r.address;
+  }
+  EXPECT_FALSE(t.next(0, r));
+}
+
 TEST(TextTraceTest, NoTextCrashesIt) {
   Rng rng(11);
   for (int n = 0; n < 20'000; ++n) {

@@ -96,19 +96,23 @@ void Core::start_write(std::uint64_t cycle) {
   if (const WriteBuffer::Entry& e = writes_.front(); !write_is_victim_ && e.bytes == 4) {
     a.bytes = 4;
     a.address = e.address;
+    a.asked = e.asked;
     std::memcpy(a.data, e.data.data(), 4);
   } else if (write_is_victim_) {
     a.address = writes_.victim_address;
     a.bytes = static_cast<std::uint8_t>(writes_.victim_bytes);
+    a.asked = writes_.victim_asked;
     std::memcpy(a.data, writes_.victim.data(), a.bytes);
   } else {
     a.bytes = static_cast<std::uint8_t>(WriteBuffer::next_burst(e));
     a.address = e.address + e.sent;
+    a.asked = e.asked;
     std::memcpy(a.data, e.data.data() + e.sent, a.bytes);
   }
   a.kind = a.bytes == 32   ? BusAccess::Kind::kIncr8
            : a.bytes == 16 ? BusAccess::Kind::kIncr4
                            : BusAccess::Kind::kSingle;
+  a.victim = write_is_victim_;
   write_in_flight_ = true;
   write_over_ = 0;
   data_port_free_ = cycle;
@@ -160,16 +164,22 @@ void Core::finish_write(Cause cause) { wait_for_write(cause); }
 
 void Core::drain(Cause cause) {
   play(cycle_);
-  while (write_in_flight_ || !writes_.empty() || writes_.victim_bytes) {
+  const auto busy = [&] {
+    return write_in_flight_ || !writes_.empty() || writes_.victim_bytes != 0;
+  };
+  if (!busy()) return;
+  while (busy()) {
     if (!write_in_flight_) {
       stall_for_port(cause);
       start_write(ahb(cycle_));
     }
     finish_write(cause);
   }
+  ++drains_;
 }
 
 [[gnu::noinline]] void Core::make_room(unsigned count) {
+  const std::uint64_t begin = cycle_;
   do {
     if (!write_in_flight_) {
       stall_for_port(Cause::kWriteBuffer);
@@ -178,6 +188,7 @@ void Core::drain(Cause cause) {
     wait_for_write(Cause::kWriteBuffer);
     play(cycle_);
   } while (!writes_.room(count));
+  room_waits_ += cycle_ - begin;
 }
 
 /// @param put puts `count` bytes into the write buffer
@@ -193,7 +204,7 @@ template <class Put>
 }
 
 void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count) {
-  enqueue(count, [&] { writes_.push(pa, bytes, count); });
+  enqueue(count, [&] { writes_.push(pa, bytes, count, asked_now()); });
 }
 
 /// A store to a line that is not in the cache and may be written.
@@ -203,7 +214,7 @@ void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value)
   ++counts_.dcache_writes;
   if (cycle_ < dfill_.last) dcache_wait(modified(va));
   ++counts_.dcache_write_misses;
-  enqueue(kBytes, [&] { writes_.push(pa, value, kBytes); });
+  enqueue(kBytes, [&] { writes_.push(pa, value, kBytes, asked_now()); });
 }
 template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
 template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
@@ -235,6 +246,7 @@ bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value)
   a.locked = swapping_;
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
+  a.asked = asked_now();
   // Device order: what was written before is out before.
   drain(Cause::kUncached);
   bus_read(a, Cause::kUncached);
@@ -251,6 +263,7 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   a.kind = BusAccess::Kind::kSingle;
   a.write = true;
   a.buffered = false;
+  a.asked = 0;  // the program waits for its end
   a.locked = swapping_;
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
@@ -271,6 +284,7 @@ void Core::write_back(unsigned index, Cause cause) {
   Cache::Line& l = dcache_.line(index);
   if (l.dirty == 0) return;
   if (!filling_) play(cycle_);
+  const std::uint64_t begin = cycle_;
   while (writes_.victim_bytes) {
     if (!write_in_flight_) {
       stall_for_port(cause);
@@ -278,10 +292,12 @@ void Core::write_back(unsigned index, Cause cause) {
     }
     finish_write(cause);
   }
+  room_waits_ += cycle_ - begin;
   const unsigned from = l.dirty == 2 ? 16 : 0, n = l.dirty == 3 ? 32 : 16;
   if (writes_.empty() && !write_in_flight_) next_write_cycle_ = cycle_;
   writes_.victim_address = l.pa + from;
   writes_.victim_bytes = n;
+  writes_.victim_asked = asked_now();
   std::memcpy(writes_.victim.data(), dcache_.data(index) + from, n);
   l.dirty = 0;
   ++counts_.dcache_writebacks;

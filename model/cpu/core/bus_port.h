@@ -19,6 +19,7 @@ struct BusAccess {
   bool write = false;
   bool buffered = false;      ///< write from the write or victim buffer: the core does not wait
   bool locked = false;        ///< SWP
+  bool victim = false;        ///< a write from the victim buffer
   Port port = Port::kData;    ///< does not change after the first submission
   Kind kind = Kind::kSingle;
   /// In address order from the aligned start of the burst (for kWrap8: the start of the line, not
@@ -34,6 +35,10 @@ struct BusAccess {
   Picoseconds first = 0;  ///< read: first (critical) word is at the core's AHB port
   Picoseconds last = 0;   ///< read: last word; write: the write is acknowledged
   Picoseconds issued = 0;  ///< when it was submitted
+  /// When the program came to it, for a recorder of bus traffic: clock at which a store entered its
+  /// buffer, or at which a read was asked for, less the clocks that the core had waited for room in
+  /// the buffers so far. 0: not known.
+  std::uint64_t asked = 0;
   /// Who was waited for from `issued` to a read's `first` or a write's `last`, as far as the port
   /// knows. Empty at the submission.
   RequestWaits parts;

@@ -66,6 +66,11 @@ class Core : public Background {
   bool mark_done() const { return !mark_pending_; }
   const CoreStats& window_stats() const { return window_; }
   const Counts& counts() const { return counts_; }
+  const Clock& clock() const { return clock_; }
+  /// Clocks waited for room in the write and victim buffers, and how often the core waited for both
+  /// to be empty; for a recorder of bus traffic.
+  std::uint64_t room_waits() const { return room_waits_; }
+  std::uint64_t drains() const { return drains_; }
   /// Names for the addresses of stalls; set before the first instruction.
   void set_regions(RegionMap regions) { regions_ = std::move(regions); }
   const RegionMap& regions() const { return regions_; }
@@ -321,6 +326,8 @@ class Core : public Background {
   void enqueue(unsigned count, Put put);
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
   void make_room(unsigned count);
+  /// BusAccess::asked of what the program comes to now.
+  std::uint64_t asked_now() const { return cycle_ - room_waits_; }
   void finish_write(Cause cause);
   void wait_for_write(Cause cause);
   void retire_write();
@@ -468,6 +475,8 @@ class Core : public Background {
   BusAccess data_access_;
   WriteBuffer writes_;
   BusAccess write_access_;
+  std::uint64_t room_waits_ = 0;  // clocks waited for room in the buffers, all causes
+  std::uint64_t drains_ = 0;      // times that the core waited until the buffers were empty
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
   std::uint64_t write_floor_ = 0;  // clock before which the write under way is not over

@@ -76,6 +76,7 @@ bool Core::walk_read(std::uint32_t address, std::uint32_t& word) {
   a.write = a.buffered = a.locked = false;
   a.address = address;
   a.bytes = 4;
+  a.asked = asked_now();
   bus_read(a, Cause::kTlb);
   std::memcpy(&word, a.data, 4);
   return !a.error;
@@ -208,6 +209,7 @@ void Core::dcache_wait(std::uint32_t mva) {
 
 /// @return index of the line; an error leaves it invalid
 int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line) {
+  data_access_.asked = asked_now();
   stall_to(dfill_.last, Cause::kDcache, dfill_.pa, kService);
   const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
   if (dcache_.line(index).tag != 1) drop_hints(dcache_.line(index).tag);
@@ -439,6 +441,7 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
 }
 
 void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
+  fetch_access_.asked = asked_now();
   stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
   const unsigned index = icache_.victim(icache_.set_of(mva), control_ >> 14 & 1u, ilock_ & 15u);
   icache_.invalidate(index);
@@ -541,6 +544,7 @@ const Instruction* Core::fetch_slow() {
   if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_ ||
       redirects_seen_ != counts_.redirects) {
     // One transaction at a time on the port.
+    fetch_access_.asked = asked_now();
     stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
     bus_fetch_ = true;
     play(cycle_);

@@ -16,6 +16,7 @@ class WriteBuffer {
     std::uint32_t address = 0;
     unsigned bytes = 0;  // 1, 2 or a multiple of 4
     unsigned sent = 0;
+    std::uint64_t asked = 0;  // as BusAccess::asked
     std::array<std::uint8_t, 64> data{};
   };
   bool empty() const { return count_ == 0; }
@@ -23,12 +24,13 @@ class WriteBuffer {
   bool room(unsigned bytes) const {
     return count_ < kAddresses && words_ + (bytes + 3) / 4 <= kWords;
   }
-  void push(std::uint32_t address, const std::uint8_t* data, unsigned bytes) {
-    std::memcpy(next(address, bytes).data.data(), data, bytes);
+  void push(std::uint32_t address, const std::uint8_t* data, unsigned bytes,
+            std::uint64_t asked) {
+    std::memcpy(next(address, bytes, asked).data.data(), data, bytes);
   }
   /// The same for a word or less.
-  void push(std::uint32_t address, std::uint32_t value, unsigned bytes) {
-    std::memcpy(next(address, bytes).data.data(), &value, 4);
+  void push(std::uint32_t address, std::uint32_t value, unsigned bytes, std::uint64_t asked) {
+    std::memcpy(next(address, bytes, asked).data.data(), &value, 4);
   }
   Entry& front() { return entries_[head_]; }
   const Entry& front() const { return entries_[head_]; }
@@ -88,14 +90,16 @@ class WriteBuffer {
 
   std::uint32_t victim_address = 0;
   unsigned victim_bytes = 0;  // 0: empty
+  std::uint64_t victim_asked = 0;
   std::array<std::uint8_t, 32> victim{};
 
  private:
-  Entry& next(std::uint32_t address, unsigned bytes) {
+  Entry& next(std::uint32_t address, unsigned bytes, std::uint64_t asked) {
     Entry& e = entries_[(head_ + count_++) % kAddresses];
     e.address = address;
     e.bytes = bytes;
     e.sent = 0;
+    e.asked = asked;
     words_ += (bytes + 3) / 4;
     return e;
   }

@@ -29,7 +29,8 @@ bool DdrController::bound_by(const Entry& younger, Places older) const {
 [[gnu::noinline]] void DdrController::tell_in_order(const Entry& e, const ReadLane::Span& on_lane) {
   const DdrRequest& r = e.request;
   Held mine{r, 0, on_lane.first, 0, read_waited_};
-  mine.edges = scr_.edge_at_or_after(on_lane.last) - scr_.edge_at_or_after(on_lane.first);
+  const Clock& bus = lane_.left_out() ? ddr_ : scr_;
+  mine.edges = bus.edge_at_or_after(on_lane.last) - bus.edge_at_or_after(on_lane.first);
   Places older = places_.of_master(r.master) & ~places_.writes() & ((1u << choice_.place) - 1);
   for (; older; older &= older - 1) mine.behind |= 1u << places_.slot(oldest(older));
   // A read that waits for this one is younger; the others of this master that wait are older.
@@ -52,8 +53,9 @@ bool DdrController::bound_by(const Entry& younger, Places older) const {
 void DdrController::tell(const Held& h) {
   const DdrRequest& r = h.request;
   Picoseconds& told = told_[index(r.master)];
-  const Picoseconds first = std::max(h.first, scr_.next_edge_after(told));
-  told = scr_.edge(scr_.edge_at_or_after(first) + h.edges);
+  const Clock& bus = lane_.left_out() ? ddr_ : scr_;
+  const Picoseconds first = std::max(h.first, bus.next_edge_after(told));
+  told = bus.edge(bus.edge_at_or_after(first) + h.edges);
   if (first > h.first) charge(r, culprit(r.master), first - h.first);
   read_waited_ = h.waited + (first - h.first);
   client_.ddr_read_done(r.cookie, first, told);

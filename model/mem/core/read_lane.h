@@ -1,5 +1,5 @@
 // The way back of a read's data: PHY, read FIFO, and a lane to the crossbar that is 64 bits wide
-// and serves reads in the order of their data.
+// and serves reads in the order of their data. Left out, data are there when the SDRAM has sent them.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -14,6 +14,8 @@ class ReadLane {
   /// `latency`: DDR clocks from a RD to its first beat at the lane's side.
   void set_latency(unsigned latency) { latency_ = latency; }
   void set_fifo(unsigned bytes) { spare_words_ = bytes / 8u - 8u; }
+  void leave_out() { left_out_ = true; }
+  bool left_out() const { return left_out_; }
   /// The crossbar's clock starts at this edge: nothing waits for the lane.
   void start(std::uint64_t edge) { start_ = edge; }
   /// First DDR clock at which a RD finds room for its data in the FIFO.
@@ -26,6 +28,10 @@ class ReadLane {
   Span take(unsigned bytes, unsigned chunks, std::uint64_t clock, const Clock& ddr,
             const Clock& crossbar) {
     constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
+    if (left_out_) [[unlikely]] {
+      const std::uint64_t tail = bytes > 8 || chunks > 1 ? chunks * DdrTiming::kBurstClocks : kHead;
+      return {ddr.edge(clock + latency_ + kHead), ddr.edge(clock + latency_ + tail)};
+    }
     const std::uint64_t arrival = crossbar.edge_after(ddr.edge(clock + latency_ + kHead));
     const std::uint64_t words = (bytes + 7u) / 8u;
     const std::uint64_t first = std::max(arrival, free_);
@@ -52,6 +58,7 @@ class ReadLane {
   std::uint64_t spare_words_ = 0;
   std::uint64_t start_ = 0, free_ = 0;  // crossbar edges
   std::uint64_t room_ = 0;
+  bool left_out_ = false;
 };
 
 }  // namespace fovea::mem

@@ -19,7 +19,7 @@ unsigned count_streams(const std::vector<BusRecorder::MasterSetup>& masters) {
 }  // namespace
 
 BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
-                         std::function<CoreState()> core)
+                         std::function<CoreState(const MemRequest*)> core)
     : masters_(masters),
       streams_(count_streams(masters)),
       core_(std::move(core)),
@@ -46,7 +46,9 @@ void BusRecorder::open(Picoseconds start, Frequency core_clock, Picoseconds core
   interrupts_.clear();
   clock_ = Clock(core_clock, core_clock_start);
   core_info_ = {core_clock, core_clock_start, align_, 0};
-  core_before_ = core_();
+  core_before_ = core_(nullptr);
+  room_waits_at_open_ = core_before_.room_waits;
+  core_before_.room_waits = 0;
   for (Stream& s : streams_) drop_early(s);
 }
 
@@ -89,7 +91,7 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
   if (!open_ || r.issued < start_) return;
   switch (s.pace) {
     case Pace::kCore:
-      return release_core(s, p, r.issued, r.master == Master::kArmD);
+      return release_core(s, p, r);
     case Pace::kLines:
       return release_line(s, p, r.issued);
     case Pace::kRepeating:
@@ -101,17 +103,9 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
   }
 }
 
-void BusRecorder::after(Pending& p, std::uint64_t number, bool first, std::uint64_t from,
-                        std::uint64_t to) {
-  p.record.release = Release::kAfter;
-  p.record.from_first = first;
-  p.reference = number;
-  // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
-  p.record.gap = (to - std::min(from, to)) / align_ * align_;
-}
-
-/// See decision 0006. Port: 0 instruction, 1 data.
-void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_t port) {
+/// See decision 0006.
+void BusRecorder::release_core(Stream& s, Pending& p, const MemRequest& r) {
+  const Picoseconds at = r.issued;
   const std::uint64_t to = clock_.edge_at_or_after(at);
   if (!phase_known_) {
     phase_known_ = true;
@@ -120,22 +114,26 @@ void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_
     align_ = core_info_.align = 1;
     core_info_.phase = 0;
   }
-  const auto round_up = [&](std::uint64_t k) {
-    return k + (core_info_.phase + align_ - k % align_) % align_;
-  };
-  const CoreState now = core_();
+  CoreState now = core_(&r);
+  const bool blocking = now.asked == 0;
+  // In clocks of `clock_`, less the waits since the recording began.
+  now.asked = now.asked + room_waits_at_open_ - now.origin;
+  now.room_waits -= room_waits_at_open_;
+  // The program stands at an access that it waits for.
+  if (blocking) now.asked = to - std::min(to, now.room_waits);
+  const std::uint64_t came = std::min(to, now.asked + now.room_waits);
   const std::uint64_t idle = now.idle - core_before_.idle;
-  const bool waited_for_writes =
-      now.write_stalls != core_before_.write_stalls || register_access_;
+  const bool drained = now.drains != core_before_.drains || register_access_;
+  const bool waited_for_writes = drained || now.room_waits != core_before_.room_waits;
   core_before_ = now;
   register_access_ = false;
 
-  const Outcome* before = outcome(s, s.previous_of_port[port]);
   const Outcome* read = outcome(s, s.blocking_read);
   const Outcome* latest = outcome(s, s.latest);
   const std::uint64_t number = s.next - 1;
   // The core's last sign of life: the word that it waited for, or the write that it had to see out.
   const Outcome* anchor = waited_for_writes || !read ? latest : read;
+  if (anchor && !anchor->done) anchor = nullptr;
   const bool first = anchor && !anchor->write;
   const std::uint64_t from =
       anchor ? clock_.edge_at_or_after(first ? anchor->first : anchor->last) : 0;
@@ -144,22 +142,81 @@ void BusRecorder::release_core(Stream& s, Pending& p, Picoseconds at, std::size_
     const std::uint64_t wake = clock_.edge_at_or_after(interrupts_.back());
     p.record.release = Release::kWhen;
     p.record.event = interrupts_.size() - 1;
-    p.record.wake_gap = static_cast<std::uint32_t>((to - std::min(wake, to)) / align_ * align_);
+    p.record.wake_gap = static_cast<std::uint32_t>(came - std::min(wake, came));
     if (anchor) {
       p.reference = anchor->number;
       p.record.from_first = first;
       const std::uint64_t work = idle + (to - std::min(wake, to));
       p.record.gap = to - from > work ? to - from - work : 0;
     }
-  } else if (before && before->done &&
-             to <= round_up(clock_.edge_at_or_after(before->last)) + align_) {
-    // The port was taken.
-    after(p, before->number, false, clock_.edge_at_or_after(before->last), to);
-  } else if (anchor && anchor->done) {
-    after(p, anchor->number, first, from, to);
+  } else if (!drained) {
+    release_in_program(s, p, now.asked);
+  } else if (anchor) {
+    p.record.release = Release::kAfter;
+    p.record.from_first = first;
+    p.record.gap = came - std::min(from, came);
+    p.reference = anchor->number;
   }
-  s.previous_of_port[port] = s.latest = number;
-  if (!p.record.write) s.blocking_read = number;
+  steps_[next_step_++ % kSteps] = {number, now.asked, now.room_waits, r.write, blocking};
+  if (r.write && !blocking) note_room(s, p, r, now);
+  s.latest = number;
+  if (!r.write) s.blocking_read = number;
+}
+
+/// Releases the request by its place in the program: the core's own clocks since the step before,
+/// which is an access that the core waited for, or a store put into its buffer.
+void BusRecorder::release_in_program(Stream& s, Pending& p, std::uint64_t asked) {
+  const Step* step = nullptr;
+  for (const Step& one : steps_) {
+    if (one.number == kNone || one.asked > asked) continue;
+    if (one.asked == asked && !one.write) continue;  // it comes behind the store of the same clock
+    // Of the bursts of one store the first.
+    if (!step || one.asked > step->asked ||
+        (one.asked == step->asked && one.number < step->number))
+      step = &one;
+  }
+  const Outcome* o = step ? outcome(s, step->number) : nullptr;
+  const bool buffered = step && step->write && !step->blocking;
+  if (!o || (!buffered && !o->done)) return;
+  const bool first = !step->blocking || !step->write;
+  const std::uint64_t from =
+      buffered ? step->asked
+               : clock_.edge_at_or_after(first ? o->first : o->last) - step->room_waits;
+  p.record.release = Release::kAfter;
+  p.record.from_first = first;
+  p.record.gap = asked - std::min(from, asked);
+  p.reference = step->number;
+}
+
+/// Finds the write that must be out before this one has room: entries and words leave the buffer in
+/// order.
+void BusRecorder::note_room(Stream& s, Pending& p, const MemRequest& r, const CoreState& now) {
+  const std::uint64_t number = s.next - 1;
+  if (now.victim) {
+    p.room = last_victim_;
+    last_victim_ = number;
+    return;
+  }
+  const unsigned words = (r.bytes + 3u) / 4;
+  bursts_.push_back({number, now.asked, words});
+  // The first burst of an entry asks for room for all of it.
+  std::size_t entry = bursts_.size() - 1;
+  unsigned filled = words;
+  for (; entry > 0 && bursts_[entry - 1].asked == now.asked; --entry)
+    filled += bursts_[entry - 1].words;
+  unsigned entries = 1;
+  std::uint64_t last_entry = now.asked;
+  for (std::size_t i = entry; i-- > 0;) {
+    filled += bursts_[i].words;
+    entries += bursts_[i].asked != last_entry;
+    last_entry = bursts_[i].asked;
+    if (filled <= kBufferedWords && entries <= kBufferedStores) continue;
+    const std::uint64_t first_pending = s.next - s.pending.size();
+    if (bursts_[entry].number >= first_pending)
+      s.pending[bursts_[entry].number - first_pending].room = bursts_[i].number;
+    break;
+  }
+  while (bursts_.size() > kBufferedWords + kBufferedStores) bursts_.pop_front();
 }
 
 /// A display puts as many bursts of a line on its port as there are places, and each further one in
@@ -252,9 +309,13 @@ void BusRecorder::mark(std::uint32_t value, Picoseconds at) {
   p.record.address = value;
   // The core has seen out all before it touches a pin.
   if (const Outcome* o = outcome(s, s.latest); o && o->done) {
-    const bool first = !o->write;
-    after(p, o->number, first, clock_.edge_at_or_after(first ? o->first : o->last),
-          clock_.edge_at_or_after(at));
+    p.record.release = Release::kAfter;
+    p.record.from_first = !o->write;
+    p.reference = o->number;
+    const std::uint64_t from = clock_.edge_at_or_after(o->write ? o->last : o->first);
+    const std::uint64_t to = clock_.edge_at_or_after(at);
+    // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
+    p.record.gap = (to - std::min(from, to)) / align_ * align_;
   }
 }
 
@@ -287,9 +348,12 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
     }
   } else if (r.release != Release::kAt) {
     const Outcome* o = outcome(s, p.reference);
-    const bool usable = o && o->place != kNone && s.written - o->place <= kMaxBack;
-    if (usable) {
+    // An outcome is forgotten before it lies further back than kMaxBack.
+    if (o && o->place != kNone) {
       r.back = static_cast<std::uint32_t>(s.written - o->place);
+      const Outcome* room = r.release == Release::kAfter ? outcome(s, p.room) : nullptr;
+      if (room && room->place != kNone)
+        r.room = static_cast<std::uint32_t>(s.written - room->place);
     } else {  // what it waited for is not in the recording
       if (r.release == Release::kAfter) r.release = Release::kAt;
       r.from_first = false;

@@ -15,9 +15,18 @@ namespace fovea::trace {
 
 /// What the core tells of itself, in core clocks since its start.
 struct CoreState {
-  std::uint64_t idle = 0;           ///< asleep, waiting for an interrupt
-  std::uint64_t write_stalls = 0;   ///< waiting for room in the write buffer
+  std::uint64_t idle = 0;        ///< asleep, waiting for an interrupt
+  std::uint64_t room_waits = 0;  ///< waiting for room in the write and victim buffers
+  std::uint64_t drains = 0;      ///< how often it has waited for both to be empty
+  /// Of the request asked about: when the program came to it, less the room_waits until then; 0: not
+  /// known, or a write that the program waits for.
+  std::uint64_t asked = 0;
+  bool victim = false;           ///< a write from the victim buffer
+  std::uint64_t origin = 0;      ///< of `asked`: the clock at which the core's clock started
 };
+
+/// The core's write buffer (ARM DDI 0198D ch. 6).
+inline constexpr unsigned kBufferedStores = 4, kBufferedWords = 16;
 
 /// How a master's requests are released.
 enum class Pace : std::uint8_t {
@@ -37,9 +46,9 @@ class BusRecorder : public MemObserver {
     bool shared;
     std::optional<Master> partner = {};  ///< whose completions it waits for as well
   };
-  /// @param core asked at each of the core's requests
+  /// @param core asked at each of the core's requests, and without one when the recording begins
   BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
-              std::function<CoreState()> core);
+              std::function<CoreState(const MemRequest*)> core);
 
   /// Recording covers [start, end): requests put on their port in it. The clock is the core's.
   void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start);
@@ -67,6 +76,7 @@ class BusRecorder : public MemObserver {
     Record record;
     Picoseconds issued = 0;
     std::uint64_t reference = kNone;  // number of the record that releases it
+    std::uint64_t room = kNone;       // number of the write whose end makes room for it
     std::uint64_t event = kNone;      // kWhen of another stream: number of the record there
     bool done = false, failed = false;
   };
@@ -80,11 +90,21 @@ class BusRecorder : public MemObserver {
     std::uint64_t next = 0;     // number of the next record
     std::uint64_t written = 0;
     std::vector<Outcome> history;
-    std::array<std::uint64_t, 2> previous_of_port{kNone, kNone};
     std::uint64_t blocking_read = kNone, latest = kNone, taken_place = kNone;
     Pace pace = Pace::kSampled;
     unsigned reads = 1;
     std::uint8_t partner = kInterrupt;  // its stream
+  };
+  /// A request of the core whose place in the program is known.
+  struct Step {
+    std::uint64_t number = kNone, asked = 0, room_waits = 0;
+    bool write = false;
+    bool blocking = false;  // the program waits for its end
+  };
+  /// A burst from the write buffer.
+  struct Burst {
+    std::uint64_t number, asked;
+    unsigned words;
   };
   struct Flight {
     const MemRequest* request;
@@ -97,13 +117,14 @@ class BusRecorder : public MemObserver {
     return o.number == number ? &o : nullptr;
   }
   Pending& append(Stream& s, Picoseconds issued);
-  void release_core(Stream& s, Pending& p, Picoseconds at, std::size_t port);
+  void release_core(Stream& s, Pending& p, const MemRequest& r);
+  void release_in_program(Stream& s, Pending& p, std::uint64_t asked);
+  void note_room(Stream& s, Pending& p, const MemRequest& r, const CoreState& now);
   void release_line(Stream& s, Pending& p, Picoseconds at);
   void release_repeating(Stream& s, Pending& p, Picoseconds at);
   void release_by_data(Stream& s, Pending& p, Picoseconds at);
   const Outcome* latest_done(Stream& s, Picoseconds at);
   bool write_up_to(std::uint8_t index, std::uint64_t number);
-  void after(Pending& p, std::uint64_t number, bool first, std::uint64_t from, std::uint64_t to);
   void drop_early(Stream& s);
   void write_out(Stream& s, unsigned index, std::size_t keep);
   void write_one(Stream& s, unsigned index);
@@ -112,8 +133,16 @@ class BusRecorder : public MemObserver {
   std::array<unsigned, kMasterCount> stream_of_{};
   std::vector<Stream> streams_;
   std::array<std::vector<Flight>, kMasterCount> flights_;
-  std::function<CoreState()> core_;
+  std::function<CoreState(const MemRequest*)> core_;
+  // A store that is put into its buffer before a read may go out after it; no more than the buffers
+  // hold do so.
+  static constexpr std::size_t kSteps = 32;
+  std::array<Step, kSteps> steps_{};  // in the order in which they went out
+  std::size_t next_step_ = 0;
+  std::deque<Burst> bursts_;          // the last ones, no more than fill the buffer
+  std::uint64_t last_victim_ = kNone;
   CoreState core_before_;
+  std::uint64_t room_waits_at_open_ = 0;
   bool register_access_ = false;  // of the core since its last request here
   Clock clock_;
   StreamInfo core_info_;

@@ -26,13 +26,18 @@ struct Record {
   Release release = Release::kAt;
   bool mark = false;        ///< no request: the program shows `address` on its phase pins
   bool write = false, locked = false;
-  bool from_first = false;  ///< kAfter, kWhen: from that record's first beat, else from its last
+  /// kAfter, kWhen: from that record's first beat, or from the time at which a write was released,
+  /// whether or not its port was free; else from its last beat.
+  bool from_first = false;
   std::uint8_t bytes = 0;
   std::uint8_t critical = 0;
   std::uint8_t priority = 0;
   Master master = Master::kArmD;
   std::uint32_t address = 0;    ///< byte offset in the SDRAM, start of the burst
   std::uint32_t back = 0;       ///< kAfter, kWhen: that many records before this one; 0: none
+  /// kAfter, write: its program goes on only when the write so many records before has ended, which
+  /// makes room for it in a buffer; 0: there is room.
+  std::uint32_t room = 0;
   std::uint64_t gap = 0;        ///< kAfter: clocks; kWhen: clocks of work before the sleep
   std::uint8_t source = kInterrupt;  ///< kWhen: that, or the number of the stream
   std::uint64_t event = 0;      ///< kWhen: number in TraceInfo::interrupts, or of the record there

@@ -7,6 +7,9 @@ namespace {
 constexpr std::uint8_t kWrite = 1, kReleaseShift = 1, kMark = 3 << kReleaseShift, kFromFirst = 8,
                        kCritical = 16, kAttributes = 32, kBackOne = 64, kOtherMaster = 128;
 
+/// Of version 3 on.
+bool has_room(const Record& r) { return r.write && !r.mark && r.release == Release::kAfter; }
+
 }  // namespace
 
 void put_number(std::string& out, std::uint64_t v) {
@@ -49,6 +52,7 @@ void encode(const Record& r, CodeState& s, std::string& out) {
   }
   if (r.back != 1) put_number(out, r.back);
   put_number(out, r.gap);
+  if (has_room(r)) put_number(out, r.room);
   if (r.release == Release::kWhen) {
     put_number(out, r.source == kInterrupt ? 0 : r.source + 1u);
     std::uint64_t& last = s.event(r.source);
@@ -109,6 +113,11 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   if (back > kMaxBack) throw BadTrace("a reference too far back");
   r.back = static_cast<std::uint32_t>(back);
   r.gap = in.number();
+  if (version >= 3 && has_room(r)) {
+    const std::uint64_t room = in.number();
+    if (room > kMaxBack) throw BadTrace("a reference too far back");
+    r.room = static_cast<std::uint32_t>(room);
+  }
   if (r.release == Release::kWhen) {
     const std::uint64_t source = version == 1 ? 0 : in.number();
     if (source > kMasterCount) throw BadTrace("an unknown stream");

@@ -68,7 +68,8 @@ struct CodeState {
 };
 
 void encode(const Record& record, CodeState& state, std::string& out);
-/// `version` is the file's: in 1, each `when` is an interrupt. @throws BadTrace
+/// `version` is the file's: in 1, each `when` is an interrupt; `room` exists from 3 on.
+/// @throws BadTrace
 void decode(ByteReader& in, CodeState& state, Record& record, unsigned version);
 
 }  // namespace fovea::trace

@@ -13,7 +13,7 @@
 namespace fovea::trace {
 namespace {
 
-constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n"};
+constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n", "3\n"};
 constexpr std::uint32_t kBlockRecords = 8192;
 // No record needs more; a block that claims more is not ours.
 constexpr std::uint32_t kMaxRecordBytes = 64, kMaxInfoBytes = 64u << 20;
@@ -101,7 +101,7 @@ void TraceWriter::add(unsigned stream, const Record& record) {
 }
 
 void TraceWriter::finish(const TraceInfo& info, const std::function<void(std::string_view)>& put) {
-  put(std::string(kMagic) + std::string(kVersions[1]));
+  put(std::string(kMagic) + std::string(kVersions[std::size(kVersions) - 1]));
   put(make_block(kInfo, 0, 0, info_text(info)));
   for (unsigned i = 0; i < streams_.size(); ++i) {
     close_block(streams_[i], i);
@@ -122,9 +122,9 @@ TraceFile::TraceFile(std::string name, std::string bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
   const std::string_view all = bytes_;
   if (!recognises(all)) bad("it is not a bus trace");
-  for (unsigned v = 0; v < 2; ++v)
+  for (unsigned v = 0; v < std::size(kVersions); ++v)
     if (all.substr(kMagic.size()).starts_with(kVersions[v])) version_ = v + 1;
-  if (version_ == 0) bad("its version is not known; allowed: versions 1 and 2");
+  if (version_ == 0) bad("its version is not known; allowed: versions 1 to 3");
   std::size_t at = kMagic.size() + kVersions[0].size();
   bool ended = false, informed = false;
   while (at < all.size()) {
@@ -280,7 +280,7 @@ bool TraceFile::next(unsigned stream, Record& record) {
       throw BadTrace("a master in another's stream");
     if (record.gap > s.longest_gap || record.wake_gap > s.longest_gap)
       throw BadTrace("a gap of hours");
-    if (record.back > s.read) throw BadTrace("a reference to before the first record");
+    if (record.back > s.read || record.room > s.read) throw BadTrace("a reference to before the first record");
     if (record.release == Release::kWhen) {
       const bool interrupt = record.source == kInterrupt;
       if (!interrupt && (record.source >= streams_.size() || record.source == stream))
