@@ -236,6 +236,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   cpu::RegionMap regions = board_->dm365.arm.core().regions();
   add_program_regions(regions, elf, memory_regions(params_));
   board_->dm365.arm.core().set_regions(std::move(regions));
+  board_->dm365.arm.core().describe = [&elf](std::uint32_t pc) { return elf.describe(pc); };
   board_->load({0x8000'0000u, parameter_page(params_, *source)});
 
   if (!request.bus_trace.empty())

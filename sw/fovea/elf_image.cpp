@@ -11,6 +11,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/elf_target.h"
 
 namespace fovea::app {
 namespace {
@@ -74,6 +75,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     fail(fmt::format("it is {}, not linked to fixed addresses; {}",
                      header.e_type == ET_REL ? "an object file" : "no executable", kAllowed));
   image.entry_ = static_cast<std::uint32_t>(header.e_entry);
+  if (const std::string why = unfit_flags(header.e_flags); !why.empty())
+    fail(fmt::format("{}; {}", why, kAllowedTarget));
 
   std::size_t count = 0;
   if (elf_getphdrnum(elf.get(), &count) != 0) fail(cut);
@@ -111,6 +114,13 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
       if (text && *text)
         image.sections_.push_back({one_line(text, std::string::npos), static_cast<std::uint32_t>(table.sh_addr),
                                    static_cast<std::uint32_t>(table.sh_size)});
+    }
+    if (table.sh_type == SHT_ARM_ATTRIBUTES) {
+      const Elf_Data* data = elf_rawdata(section, nullptr);
+      if (!data) fail(fmt::format("{}: its attributes", cut));
+      const std::string why =
+          unfit_attributes({static_cast<const std::uint8_t*>(data->d_buf), data->d_size});
+      if (!why.empty()) fail(fmt::format("{}; {}", why, kAllowedTarget));
     }
     if (table.sh_type != SHT_SYMTAB) continue;
     Elf_Data* data = elf_getdata(section, nullptr);

@@ -35,7 +35,7 @@ struct ElfSection {
 class ElfImage {
  public:
   /// @throws UserError of one line: missing, not an ELF, other class, byte order, machine or type,
-  ///   cut short, no segments, overlapping segments
+  ///   code for another architecture than ARMv5TEJ, cut short, no segments, overlapping segments
   static ElfImage load(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }

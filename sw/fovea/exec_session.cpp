@@ -73,6 +73,7 @@ void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm)
         std::vector<std::uint8_t>(s.memory_size - s.data.size()));
   }
   core_.set_reg(13, map_.free_end);
+  core_.describe = [this](std::uint32_t address) { return program_.describe(address); };
 }
 
 std::string ExecSession::failure_text(const std::string& what) const {

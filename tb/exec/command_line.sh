@@ -67,6 +67,8 @@ for memory in '' --fast-memory; do
   expect "load$memory" 3 '^load$' 'the guest failed: data abort with no handler' 'main' 'read 4 bytes at 0x50000000' \
     -- run $memory "$fails" load
   expect "jump$memory" 3 'the guest failed' -- run $memory "$fails" jump
+  expect "null$memory" 3 'the guest failed: jumped to 0 from 0x[0-9a-f]+ \(main\+0x[0-9a-f]+\); undefined' \
+    -- run $memory "$fails" null
   expect "sleep$memory" 3 'waits for an interrupt' 'main' -- run $memory "$fails" sleep
   expect "file$memory" 7 -- run $memory --root "$out" "$fails" file
   "$fovea" exec $memory "$fails" loop -o "$out/loop" >"$out/loop.txt" 2>&1 &

@@ -90,22 +90,6 @@ TEST_F(BoundaryTest, FetchesFromInternalRamAreChecked) {
   EXPECT_EQ(m.core.reg(9), 9u);
 }
 
-/// The address of the page, C and B do not matter; the descriptors are read once.
-TEST_F(BoundaryTest, InternalRamIsFoundByItsModifiedAddress) {
-  internal_ram_by_pages();
-  m.port.set_word(kCoarse + 4 * 0x13, kPa | 0xFFEu);
-  m.on_svc = [this](std::uint32_t) { m.marks.push_back(m.port.data_log().size()); };
-  m.execute(kClients +
-            "mov r1, #77\n add r5, r4, #0x3000\n svc #3\n str r1, [r5]\n svc #3\n"
-            "ldr r2, [r5]\n ldr r3, [r5]\n svc #3\n");
-  EXPECT_EQ(m.core.reg(2), 77u);
-  EXPECT_EQ(m.tcm_word(0x3000), 77u);
-  EXPECT_EQ(m.port.word(kPa), 0u);
-  EXPECT_EQ(m.marks[1] - m.marks[0], 2u) << "a walk of two levels";
-  EXPECT_EQ(m.marks[2] - m.marks[1], 0u);
-  EXPECT_EQ(m.core.counts().dcache_reads, 0u);
-}
-
 /// An access that a hint knows is one that the TLB knows and permits.
 TEST_F(BoundaryTest, RevokedPermissionHoldsForKnownInternalRam) {
   internal_ram_by_pages();

@@ -1,4 +1,6 @@
 // The write buffer (four addresses, sixteen words) and the victim buffer (one line).
+#include <algorithm>
+
 #include "tb/iss/machine.h"
 
 namespace fovea::cpu::test {
@@ -176,6 +178,78 @@ TEST(FlatPortTest, ComplainsAboutABrokenContract) {
   b.kind = Kind::kIncr4;
   b.address = kMemory + 1024 - 8;
   EXPECT_THROW(port.submit(b, 24'000), std::logic_error) << "across 1 KB";
+}
+
+/// Notes what memory holds when the core falls asleep.
+struct SleepPort : FlatPort {
+  using FlatPort::FlatPort;
+  std::vector<std::uint32_t> watched, held;
+  Picoseconds wait_for_interrupt(Picoseconds t) override {
+    for (const std::uint32_t a : watched) held.push_back(word(a));
+    return t + 1'000'000;
+  }
+};
+
+TEST(SleepTest, WaitForInterruptDrainsBothBuffersFirst) {
+  MachineWith<SleepPort> m;
+  m.port.decide_late = true;
+  m.port.write_latency = 400'000;
+  // Two stores past the cache, and the dirty lines of one set, one of which a fifth line drives out.
+  m.port.watched = {kBlock, kBlock + 64};
+  m.execute(kStart +
+            "mov r2, #0x11\n add r5, r4, #0x4000\n mov r3, #4\n"
+            "1: ldr r0, [r5]\n str r2, [r5], #0x800\n subs r3, r3, #1\n bne 1b\n"
+            "mov r12, #0\n str r2, [r4]\n str r2, [r4, #64]\n ldr r0, [r5]\n"
+            "mcr p15, 0, r12, c7, c0, 4\n");
+  ASSERT_EQ(m.port.held.size(), 2u);
+  EXPECT_EQ(m.port.held[0], 0x11u);
+  EXPECT_EQ(m.port.held[1], 0x11u);
+  const std::vector<BusRecord> log = m.port.data_log();
+  const auto victim = std::find_if(log.begin(), log.end(), [](const BusRecord& r) {
+    return r.write && r.bytes == 16 && r.address >= kBlock + 0x4000;
+  });
+  ASSERT_NE(victim, log.end()) << "nothing was written back";
+  EXPECT_EQ(m.port.word(victim->address), 0x11u);
+  EXPECT_GE(m.core.counts().idle, 240u);
+}
+
+/// A buffered store is out before the two locked accesses of a SWP.
+TEST_F(BufferTest, SwapComesBehindBufferedStores) {
+  m.section(0x0800'0000, kBlock, 0, 0);
+  m.execute(kStart +
+            "ldr r5, =0x08000000\n ldr r0, [r5, #0x800]\n mov r1, #3\n str r0, [r4]\n"
+            "str r0, [r4, #64]\n swp r2, r1, [r5]\n" + kDrain);
+  const auto log = m.port.data_log();
+  ASSERT_GE(log.size(), 4u);
+  const auto* const end = &log.back() + 1;
+  EXPECT_TRUE(end[-4].write && end[-4].address == kBlock);
+  EXPECT_TRUE(end[-3].write && end[-3].address == kBlock + 64);
+  EXPECT_TRUE(!end[-2].write && end[-2].locked && end[-2].address == kBlock);
+  EXPECT_TRUE(end[-1].write && end[-1].locked && end[-1].address == kBlock);
+}
+
+/// Nothing of a line fill that failed stays: the next load asks the bus again, and so does one of the
+/// line that had to go for it.
+TEST_F(BufferTest, FailedFillIsNotKept) {
+  m.section(0x0800'0000, 0x7000'0000, 1, 1);
+  const auto fills = [this] {
+    const auto log = m.port.data_log();
+    return std::count_if(log.begin(), log.end(),
+                         [](const BusRecord& r) { return r.address >> 28 == 7; });
+  };
+  // All four lines of set 0, which is that of the failing ones, too.
+  for (std::uint32_t k = 0; k < 4; ++k) m.port.set_word(kBlock + 0x800 * k, 1u << k);
+  const std::string sum =
+      "mov r6, #0\n mov r7, r4\n mov r3, #4\n8: ldr r0, [r7], #0x800\n add r6, r6, r0\n"
+      "subs r3, r3, #1\n bne 8b\n";
+  std::vector<std::ptrdiff_t> seen;
+  m.on_svc = [&](std::uint32_t) { seen.push_back(fills()); };
+  m.execute(kStart +
+            "ldr r5, =0x08000000\n" + sum + "mov r8, r6\n ldr r0, [r5]\n svc #3\n ldr r1, [r5]\n"
+            "svc #3\n ldr r2, [r5, #4]\n svc #3\n" + sum);
+  EXPECT_EQ(seen, (std::vector<std::ptrdiff_t>{1, 2, 3}));
+  EXPECT_EQ(m.core.reg(8), 1u + 2 + 4 + 8);
+  EXPECT_EQ(m.core.reg(6), m.core.reg(8));
 }
 
 }  // namespace

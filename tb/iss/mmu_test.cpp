@@ -66,14 +66,16 @@ TEST_F(MmuTest, SmallPageHasFourPermissions) {
   for (const auto& each : f) EXPECT_EQ(each.dfsr, 0xFu) << "permission, page";
 }
 
-/// AP, S and R bits: who may do what (ARM ARM table B4-1). Bits: privileged read, write, user read,
+/// AP, S and R bits: who may do what (ARM ARM table B4-1; S and R together are reserved there and permit
+/// nothing here). Bits: privileged read, write, user read,
 /// write.
 TEST_F(MmuTest, PermissionTable) {
   struct Row {
     unsigned ap, s, r, allowed;
   };
   for (const Row& row : {Row{0, 0, 0, 0b0000}, Row{0, 1, 0, 0b1000}, Row{0, 0, 1, 0b1010},
-                         Row{1, 0, 0, 0b1100}, Row{2, 0, 0, 0b1110}, Row{3, 0, 0, 0b1111}}) {
+                         Row{0, 1, 1, 0b0000}, Row{1, 0, 0, 0b1100}, Row{2, 0, 0, 0b1110},
+                         Row{3, 0, 0, 0b1111}}) {
     Machine each;
     each.section(kVa, kPa, 0, 0, row.ap, 3);
     each.execute(kStart + "mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #" +
@@ -88,6 +90,23 @@ TEST_F(MmuTest, PermissionTable) {
     }
     EXPECT_EQ(refused, 15u & ~row.allowed) << "AP " << row.ap << " S " << row.s << " R " << row.r;
   }
+}
+
+/// A third page of one set replaces the first, and what was remembered of it goes with it.
+TEST_F(MmuTest, ReplacedEntryIsWalkedForAgain) {
+  coarse();
+  for (const unsigned page : {5u, 5u + 32, 5u + 64})
+    m.port.set_word(kCoarse + 4 * page, (kPa + page * 0x1000) | 0xFF2u);
+  std::vector<std::uint64_t> walks;
+  m.on_svc = [&](std::uint32_t) { walks.push_back(m.core.counts().tlb_walks); };
+  go("add r4, r4, #0x5000\n add r6, r4, #0x20000\n add r7, r4, #0x40000\n svc #3\n"
+     "ldr r0, [r4]\n ldr r0, [r6]\n svc #3\n ldr r0, [r4]\n ldr r0, [r6]\n svc #3\n"
+     "ldr r0, [r7]\n svc #3\n ldr r0, [r4]\n svc #3\n");
+  ASSERT_EQ(walks.size(), 5u);
+  EXPECT_EQ(walks[1] - walks[0], 2u);
+  EXPECT_EQ(walks[2] - walks[1], 0u) << "two ways";
+  EXPECT_EQ(walks[3] - walks[2], 1u);
+  EXPECT_EQ(walks[4] - walks[3], 1u) << "the first page has lost its entry";
 }
 
 TEST_F(MmuTest, DomainFaults) {

@@ -2,8 +2,10 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <vector>
 
 #include "tb/iss/planted.h"
+#include "tb/iss/planted_system.h"
 
 namespace {
 std::string read(const std::string& path) {
@@ -13,11 +15,15 @@ std::string read(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  using fovea::cpu::test::kDefects;
+  using namespace fovea::cpu::test;
+  std::vector<Defect> defects(std::begin(kDefects), std::end(kDefects));
+  defects.insert(defects.end(), std::begin(kTimingDefects), std::end(kTimingDefects));
+  for (const SystemDefect& d : kSystemDefects)
+    defects.push_back({fovea::cpu::InsnClass::kCount, d.what, d.file, d.right, d.wrong});
   for (int f = 3; f < argc; ++f) {
     std::string text = read(std::string(argv[1]) + "/" + argv[f]);
     int number = 0;
-    for (const auto& d : kDefects) {
+    for (const Defect& d : defects) {
       ++number;
       if (std::string(d.file) != argv[f]) continue;
       const auto at = text.find(d.right);

@@ -11,6 +11,7 @@ struct Defect {
   const char* file;   ///< in model/cpu/core
   const char* right;  ///< stands there once
   const char* wrong;
+  bool privileged = false;  ///< only privileged code meets it
 };
 
 // clang-format off
@@ -45,6 +46,9 @@ inline constexpr Defect kDefects[] = {
      "load((address & ~3u) + 4, 4, second, false)", "load((address & ~3u) + (PLANTED ? 0 : 4), 4, second, false)"},
     {InsnClass::kBlock, "LDM of more than four words inverts a bit", "load_store.cpp",
      "else c.r_[r] = value;", "else c.r_[r] = PLANTED && i->amount > 4 ? value ^ 1u : value;"},
+    {InsnClass::kBlock, "STM of the user's registers stores the mode's own base", "execute.cpp",
+     "values[k] = r == 15 ? pc_ + 12 : r_[r];",
+     "values[k] = r == 15 ? pc_ + 12 : PLANTED && r == i.rn ? base : r_[r];", true},
     {InsnClass::kSwap, "SWP writes back what it read", "execute.cpp",
      "store(address, bytes, out)", "store(address, bytes, PLANTED ? value : out)"},
     {InsnClass::kPreload, "PLD counts r0 up", "execute.cpp",
@@ -78,6 +82,100 @@ inline constexpr Defect kDefects[] = {
      "c.r_[14] = (c.run_va_ + i->at + 2) | 1u;", "c.r_[14] = (c.run_va_ + i->at + 2) | (PLANTED ? 0u : 1u);"},
     {InsnClass::kThumbException, "r14 of an undefined one has bit 0", "exceptions.cpp",
      "((cpsr_ & 0x20u) ? 2u : 4u)", "((cpsr_ & 0x20u) ? (PLANTED ? 3u : 2u) : 4u)"},
+};
+// clang-format on
+
+/// A clock too many, in each class at least once. Numbered behind kDefects.
+struct TimingDefect : Defect {
+  const char* timing_case = "";  ///< of timing_cases.h, for quick ways that a first execution misses
+};
+
+// clang-format off
+inline constexpr TimingDefect kTimingDefects[] = {
+    {{InsnClass::kData, "all forms but those shifted by a register", "data_processing.cpp",
+      "cycle + (kForm", "cycle + (PLANTED && writes(kOp) && kForm < Form::kLslReg ? 1u : 0u) + (kForm"}},
+    {{InsnClass::kDataShiftReg, "three clocks", "data_processing.cpp",
+      ">= Form::kLslReg ? 2 :", ">= Form::kLslReg ? (PLANTED ? 3 : 2) :"}},
+    {{InsnClass::kCompare, "two clocks", "data_processing.cpp",
+      "if constexpr (writes(kOp)) c.r_[i->rd] = value;",
+      "if constexpr (writes(kOp)) c.r_[i->rd] = value; else if (PLANTED) ++cycle;"}},
+    {{InsnClass::kMultiply, "three clocks", "branch_multiply.cpp",
+      "return next(c, i + 1, cycle + 2);", "return next(c, i + 1, cycle + (PLANTED ? 3 : 2));"}},
+    {{InsnClass::kLongMultiply, "four clocks", "branch_multiply.cpp",
+      "return next(c, i + 1, cycle + 3);", "return next(c, i + 1, cycle + (PLANTED ? 4 : 3));"}},
+    {{InsnClass::kDsp, "two clocks", "execute.cpp",
+      "unsigned cycles = 1;", "unsigned cycles = PLANTED && i.op <= Op::kSmlalxy ? 2 : 1;"}},
+    {{InsnClass::kSaturate, "two clocks", "execute.cpp",
+      "if (q) cpsr_ |= kQ;", "if (PLANTED && i.op > Op::kSmlalxy) ++cycles;\n  if (q) cpsr_ |= kQ;"}},
+    {{InsnClass::kClz, "two clocks", "branch_multiply.cpp",
+      "Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {",
+      "Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {\n  if (PLANTED) ++cycle;"}},
+    {{InsnClass::kStatus, "MSR of the whole register", "execute.cpp",
+      "&& !(i.flags & kSpsr) ? 1 : 3);", "&& !(i.flags & kSpsr) ? 1 : PLANTED ? 4 : 3);"}},
+    {{InsnClass::kLoad, "LDR, the general way", "execute.cpp",
+      "if (address & 3u) value =", "if (PLANTED) ++cycles;\n      if (address & 3u) value ="}},
+    {{InsnClass::kLoad, "LDR, a known line", "load_store.cpp",
+      "cycle += kAddress == Address::kLsl ? 1u + i->rs : 1u;",
+      "cycle += (kAddress == Address::kLsl ? 1u + i->rs : 1u) + (PLANTED ? 1u : 0u);"}, "LoadWord"},
+    {{InsnClass::kStore, "the general way", "execute.cpp",
+      "value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];",
+      "if (PLANTED) ++cycles;\n      value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];"}},
+    {{InsnClass::kStore, "a known line", "load_store.cpp",
+      "return next(c, i + 1, cycle + (kAddress",
+      "return next(c, i + 1, cycle + (PLANTED ? 1u : 0u) + (kAddress"}, "Store"},
+    {{InsnClass::kNarrow, "halfwords and signed bytes", "execute.cpp",
+      "loaded(i.rd, 2);", "if (PLANTED) spend(1);\n  loaded(i.rd, 2);"}},
+    {{InsnClass::kDouble, "LDRD", "execute.cpp",
+      "r_[i.rd + 1u] = second;", "r_[i.rd + 1u] = second;\n      if (PLANTED) spend(1);"}},
+    {{InsnClass::kBlock, "LDM, the general way", "execute.cpp",
+      "if (n == 1 && !(i.imm & 0x8000u)) spend(1);",
+      "if (PLANTED || (n == 1 && !(i.imm & 0x8000u))) spend(1);"}},
+    {{InsnClass::kBlock, "STM, the general way", "execute.cpp",
+      "if (n == 1) spend(1);", "if (PLANTED || n == 1) spend(1);"}},
+    {{InsnClass::kBlock, "LDM of known lines", "load_store.cpp",
+      "cycle += i->amount;", "cycle += i->amount + (PLANTED ? 1u : 0u);"}, "LoadMultipleFour"},
+    {{InsnClass::kBlock, "STM to known lines", "load_store.cpp",
+      "cycle + i->amount + (i->amount == 1 ? 1u : 0u)",
+      "cycle + i->amount + (PLANTED || i->amount == 1 ? 1u : 0u)"}, "StoreMultipleFour"},
+    {{InsnClass::kSwap, "three clocks", "execute.cpp",
+      "if (bytes == 1 || (address & 3u)) loaded(i.rd, 1);",
+      "if (PLANTED) spend(1);\n  if (bytes == 1 || (address & 3u)) loaded(i.rd, 1);"}},
+    {{InsnClass::kPreload, "two clocks", "execute.cpp",
+      "void Core::execute_rare(const Instruction& i) {",
+      "void Core::execute_rare(const Instruction& i) {\n  if (PLANTED && i.op == Op::kPld) spend(1);"}},
+    {{InsnClass::kBranch, "within a line", "branch_multiply.cpp",
+      "(i) + distance), cycle + 3);", "(i) + distance), cycle + (PLANTED && !kThumb ? 4 : 3));"}},
+    {{InsnClass::kBranch, "to another line", "branch_multiply.cpp",
+      "return jump<kThumb, false>(c, i, cycle + 3,",
+      "return jump<kThumb, false>(c, i, cycle + (PLANTED ? 4 : 3),"}, "BranchTaken"},
+    {{InsnClass::kBranch, "to a register", "branch_multiply.cpp",
+      "return exchange<kThumb>(c, i, cycle + 3, target);",
+      "return exchange<kThumb>(c, i, cycle + (PLANTED && !kThumb ? 4 : 3), target);"}},
+    {{InsnClass::kException, "four clocks to the vector", "exceptions.cpp",
+      "spend(3);", "spend(PLANTED ? 4 : 3);"}},
+    {{InsnClass::kCoprocessor, "MCR and MRC", "cp15.cpp",
+      "++counts_.coprocessor;", "++counts_.coprocessor;\n  if (PLANTED) spend(1);"}},
+    {{InsnClass::kThumbAlu, "two clocks", "data_processing.cpp",
+      "bool carry = c.c_, overflow = false;",
+      "bool carry = c.c_, overflow = false;\n  if (PLANTED && (i->flags & kThumbInsn)) ++cycle;"}},
+    {{InsnClass::kThumbShift, "by a register", "data_processing.cpp",
+      "// Immediates and plain registers leave the carry of a logical operation alone.",
+      "if (PLANTED && kForm >= Form::kLslReg && (i->flags & kThumbInsn)) ++cycle;"}},
+    {{InsnClass::kThumbMultiply, "five clocks", "branch_multiply.cpp",
+      "return next(c, i + 1, cycle + 4);", "return next(c, i + 1, cycle + (PLANTED ? 5 : 4));"}},
+    {{InsnClass::kThumbHigh, "two clocks", "data_processing.cpp",
+      "if constexpr (kSet) {\n    c.n_ = c.z_",
+      "if (PLANTED && !kSet && kForm == Form::kReg && (i->flags & kThumbInsn)) ++cycle;\n"
+      "  if constexpr (kSet) {\n    c.n_ = c.z_"}},
+    {{InsnClass::kThumbMemory, "two clocks", "execute.cpp",
+      "const auto write_back = [&] {",
+      "if (PLANTED && (i.flags & kThumbInsn)) ++cycles;\n  const auto write_back = [&] {"}},
+    {{InsnClass::kThumbBlock, "loads", "execute.cpp",
+      "const bool base_last =", "if (PLANTED && (i.flags & kThumbInsn)) spend(1);\n  const bool base_last ="}},
+    {{InsnClass::kThumbBranch, "BL's second half", "branch_multiply.cpp",
+      "return jump<true, true>(c, i, cycle + 3,", "return jump<true, true>(c, i, cycle + (PLANTED ? 4 : 3),"}},
+    {{InsnClass::kThumbException, "four clocks to the vector", "exceptions.cpp",
+      "++counts_.exceptions;", "++counts_.exceptions;\n  if (PLANTED && (saved & 0x20u)) spend(1);"}},
 };
 // clang-format on
 

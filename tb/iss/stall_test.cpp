@@ -126,6 +126,23 @@ TEST(StallTest, InstructionsAndInternalRam) {
   EXPECT_EQ(t.clocks(Cause::kTcm, "dtcm", kCore), 1u);
 }
 
+/// With the I-cache off a fetch is an uncached read of four words: three beats of two clocks behind the
+/// first, at 20 clocks, and one clock into the core. `bx lr` comes with the same burst.
+TEST(StallTest, FetchesPastTheCacheAreUncached) {
+  for (const bool cache : {false, true}) {
+    Noting m;
+    m.load(assemble("mov r0, r0\n mov r0, r0\n bx lr\n", kA));
+    m.execute(kStart + (cache ? "" : "mrc p15, 0, r1, c1, c0, 0\n bic r1, r1, #0x1000\n"
+                                     "mcr p15, 0, r1, c1, c0, 0\n nop\n nop\n nop\n") +
+              "svc #3\n mov lr, pc\n bx r4\n svc #3");
+    EXPECT_EQ(m.of_cause(Cause::kIcache) > 0, cache);
+    EXPECT_EQ(m.of_cause(Cause::kUncached) > 0, !cache);
+    EXPECT_EQ(m.clocks(cache ? Cause::kIcache : Cause::kUncached, "a", kService),
+              cache ? 20u + 2 : 20u + 3 * 2);
+    EXPECT_EQ(m.clocks(cache ? Cause::kIcache : Cause::kUncached, "a", kCore), 1u);
+  }
+}
+
 /// Says who was waited for: of a read 16 ns the bridge and 24 ns the display, of a write all
 /// another master.
 class TellingPort : public FlatPort {

@@ -98,7 +98,7 @@ class Writer {
                     {Step::kUndefined, 3}, {Step::kLoad, 9},        {Step::kStore, 9},
                     {Step::kAsUser, 4},    {Step::kDouble, 3},      {Step::kSwap, 2},
                     {Step::kLoadMany, 5},  {Step::kStoreMany, 5},   {Step::kUserBank, 4},
-                    {Step::kReturn, 5},    {Step::kReturnByLdm, 3}, {Step::kCp15, 4},
+                    {Step::kUserBase, 3},  {Step::kReturn, 5},    {Step::kReturnByLdm, 3}, {Step::kCp15, 4},
                     {Step::kDomains, 3},   {Step::kControl, 2},     {Step::kFetch, 3},
                     {Step::kInterrupt, 2}, {Step::kThumb, 4}};
     Word sum = 0;
@@ -166,8 +166,9 @@ class Writer {
         many(kind == Step::kLoadMany);
         break;
       case Step::kUserBank:
+      case Step::kUserBase:
         if (!has_spsr()) return data_instead();
-        user_bank();
+        user_bank(kind == Step::kUserBase);
         break;
       case Step::kReturn:
       case Step::kReturnByLdm:
@@ -285,10 +286,17 @@ class Writer {
     const Word rn = any(), pre = pick(2), up = pick(2);
     Word list = (1 + pick(0x7FFF)) & static_cast<Word>(random_()) & ~(1u << rn) & 0x7FFFu;
     if (list == 0) list = 1u << other_than({rn});
+    // With the base in the list only LDM without write-back and STM whose first register it is, or
+    // without write-back, are defined.
+    const Word back = pick(2);
+    if (one_in(4) && !(load && back)) {
+      list |= 1u << rn;
+      if (back) list &= ~((1u << rn) - 1u);
+    }
     const Word n = static_cast<Word>(std::popcount(list));
     const Word base = place(4);
     constant(rn, base);
-    maybe(kAlways | 4u << 25 | pre << 24 | up << 23 | pick(2) << 21 | Word{load} << 20 | rn << 16 |
+    maybe(kAlways | 4u << 25 | pre << 24 | up << 23 | back << 21 | Word{load} << 20 | rn << 16 |
           list);
     const Word from = first_of(base, pre, up, n) & ~3u;
     if (!load || from >> 10 == (from + 4 * n - 4) >> 10) return;
@@ -297,10 +305,18 @@ class Writer {
       if (list >> r & 1u) small(r);
   }
 
-  void user_bank() {
-    const Word rn = low(), load = pick(2), pre = pick(2), up = pick(2);
+  /// A register that the present mode, which has an SPSR, does not share with user mode.
+  Word banked() { return mode_ == kFiq ? 8 + pick(7) : 13 + pick(2); }
+
+  /// LDM and STM of the user's registers.
+  /// @param base_listed the base is a banked register, and the list has the user's of that number
+  void user_bank(bool base_listed) {
+    const Word rn = base_listed ? banked() : low(), load = pick(2), pre = pick(2), up = pick(2);
     Word list = pick(0x8000) & static_cast<Word>(random_()) & ~(1u << rn);
-    list |= one_in(2) ? 0x2000u : 0x4000u;
+    if (base_listed)
+      list = one_in(3) ? 1u << rn : list | 1u << rn;
+    else
+      list |= one_in(2) ? 0x2000u : 0x4000u;
     // Within a kilobyte: it aborts at its first word or not at all.
     Word base = place(4) & ~3u;
     base = (base & ~0x3FFu) + 64 + (base & 0x3FFu) % (0x400u - 128);

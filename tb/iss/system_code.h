@@ -23,6 +23,7 @@ enum class Step : unsigned {
   kLoadMany,
   kStoreMany,
   kUserBank,
+  kUserBase,
   kReturn,
   kReturnByLdm,
   kCp15,
@@ -36,8 +37,8 @@ enum class Step : unsigned {
 inline constexpr std::array<const char*, static_cast<std::size_t>(Step::kCount)> kStepNames = {
     "data",      "flags",      "mode by MSR", "mode by SWI", "status",        "SWI",
     "undefined", "load",       "store",       "as user",     "double",        "swap",
-    "load many", "store many", "user bank",   "return",      "return by LDM", "CP15",
-    "domains",   "control",    "fetch",       "interrupt",   "Thumb"};
+    "load many", "store many", "user bank",   "user base",   "return",        "return by LDM",
+    "CP15",      "domains",    "control",     "fetch",       "interrupt",     "Thumb"};
 
 struct SystemCode {
   static constexpr std::uint32_t kBase = 0x0020'0000;

@@ -196,6 +196,33 @@ TEST(TcmPortTest, AWalkBeforeTheAccessLetsTheBurstIn) {
   EXPECT_EQ(run(walk + probe->between() + 8)->core.reg(0), 0u);
 }
 
+/// Eight words of an STM go to memory, four to the RAM: a burst that arrives meanwhile is seen. A store
+/// under way keeps the buffered words from looking at the bus.
+TEST(TcmPortTest, BufferedWordsBeforeTheAccessLetTheBurstIn) {
+  const auto run = [](std::uint64_t at) {
+    auto m = std::make_unique<Shared>(Machine::Settings{{"cpu.tcm.first", "dma"}});
+    const std::uint32_t table = kTables + 0x8000;
+    m->port.set_word(kTables + 4 * 0x80, table | 0x11u);
+    m->port.set_word(table, 0x0030'0000u | 0xFF6u);      // buffered
+    m->port.set_word(table + 4, 0x0001'4000u | 0xFF2u);  // the data window, bank 1
+    m->port.write_latency = 4'000'000;
+    m->burst(at, false, 0x6000, 64);
+    m->execute(std::string(kCachesOn) +
+               "ldr r14, =0x08000000\n ldr r0, [r14]\n add r12, r14, #0x1000\n ldr r0, [r12]\n"
+               "sub r12, r12, #32\n mov r0, #200\n 1: subs r0, r0, #1\n bne 1b\n"
+               "str r0, [r14]\n svc #1\n stmia r12, {r0-r11}\n svc #1\n");
+    return m;
+  };
+  const auto probe = run(100'000'000);
+  const std::uint64_t begin = probe->marks[0] + 3;
+  EXPECT_EQ(probe->stall(Cause::kTcm), 0u);
+  EXPECT_EQ(probe->between(), 12u);
+  // Arrived behind clock begin + 4: its words want the bank from begin + 7 to begin + 38.
+  const auto met = run(begin + 4);
+  EXPECT_EQ(met->stall(Cause::kTcm), 31u) << "from begin + 8 to begin + 39";
+  EXPECT_EQ(met->between(), 12u + 31);
+}
+
 TEST(TcmPortTest, WaitStatesAreTheCoresOwn) {
   Straight shared(Machine::Settings{{"cpu.tcm.wait_states", "1cycles"}}, 0x4000);
   Shared alone(Machine::Settings{{"cpu.tcm.wait_states", "1cycles"}});

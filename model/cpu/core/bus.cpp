@@ -223,7 +223,7 @@ template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t)
 /// A read on the data port: goes before waiting writes unless it touches one of them.
 void Core::bus_read(BusAccess& a, Cause cause) {
   const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
-  if (writes_.overlaps(start, a.bytes) || a.locked) drain(cause);
+  if (writes_.overlaps(start, a.bytes)) drain(cause);
   if (!filling_) play(cycle_);
   if (write_in_flight_) finish_write(cause);
   stall_to(data_port_free_, cause, data_port_pa_, kService);

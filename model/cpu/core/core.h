@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -92,6 +93,8 @@ class Core : public Background {
   }
   /// Test harness: sees every SWI first; true means it was handled. Empty in production.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
+  /// For messages: "name+0x12" of an address, "" if it has no name. May be empty.
+  std::function<std::string(std::uint32_t)> describe;
   /// The DMA port of internal RAM, for the kernel's side (model/cpu/tcm_dma.h): a burst arrives at
   /// `at`; its data move at tcm_burst_over(), which the core may move back until then.
   void tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at);
@@ -144,6 +147,8 @@ class Core : public Background {
   void branch_to(std::uint32_t target) {
     next_pc_ = target;
     branched_ = true;
+    jumped_from_ = pc_;
+    jumped_to_ = target;
     ++counts_.redirects;
   }
   void interwork(std::uint32_t target);
@@ -197,6 +202,7 @@ class Core : public Background {
   static unsigned bank(std::uint32_t mode);
   bool privileged() const { return (cpsr_ & 31u) != 0x10u; }
   void unpredictable(const char* what);
+  std::string place_of(std::uint32_t address) const;
 
   // cp15.cpp
   void coprocessor_move(const Instruction& i);
@@ -221,14 +227,15 @@ class Core : public Background {
                            bool thumb);
 
   // tcm.cpp
-  void tcm_access(std::uint32_t mva, TcmPort::Side side);
+  void tcm_access(std::uint32_t pa, TcmPort::Side side);
   /// Nobody pays for an access or has to look at it.
   bool tcm_quick() const {
     return (tcm_wait_ | tcm_own_conflict_) == 0 && !tcm_port_.busy();
   }
-  std::uint32_t tcm_offset(std::uint32_t mva) const {
-    return mva & static_cast<std::uint32_t>(tcm_.size() - 1);
+  std::uint32_t tcm_offset(std::uint32_t pa) const {
+    return pa & static_cast<std::uint32_t>(tcm_.size() - 1);
   }
+  bool code_shares_bank(std::uint32_t offset) const;
 
   // memory.cpp
   const Instruction* fetch();
@@ -243,10 +250,13 @@ class Core : public Background {
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
-  bool in_tcm(std::uint32_t mva) const {
-    return (mva < itcm_size_) || (mva - kDtcmBase < dtcm_size_);
-  }
-  std::uint8_t* tcm(std::uint32_t mva) { return tcm_.data() + (mva & (tcm_.size() - 1)); }
+  /// Internal RAM is chosen by the physical address (model/decisions/0008-internal-ram.md). Data
+  /// reach it through both windows, fetches only through the instruction TCM's.
+  bool in_itcm(std::uint32_t pa) const { return pa < itcm_size_; }
+  bool in_dtcm(std::uint32_t pa) const { return pa - kDtcmBase < dtcm_size_; }
+  bool in_tcm(std::uint32_t pa) const { return in_itcm(pa) || in_dtcm(pa); }
+  std::uint8_t* tcm(std::uint32_t pa) { return tcm_.data() + tcm_offset(pa); }
+  DecodedLine& tcm_decoded(std::uint32_t pa) { return tcm_decoded_[tcm_offset(pa) >> 5]; }
   std::uint32_t modified(std::uint32_t va) const {
     return va < 0x0200'0000u ? va | process_ : va;
   }
@@ -457,11 +467,11 @@ class Core : public Background {
   std::uint64_t& counter(const Hint& h) {
     return *reinterpret_cast<std::uint64_t*>(reinterpret_cast<char*>(&counts_) + h.counter);
   }
-  std::uint64_t& reads_of(std::uint32_t tcm_mva) {
-    return tcm_mva < itcm_size_ ? counts_.itcm_reads : counts_.dtcm_reads;
+  std::uint64_t& reads_of(std::uint32_t tcm_pa) {
+    return in_itcm(tcm_pa) ? counts_.itcm_reads : counts_.dtcm_reads;
   }
-  std::uint64_t& writes_of(std::uint32_t tcm_mva) {
-    return tcm_mva < itcm_size_ ? counts_.itcm_writes : counts_.dtcm_writes;
+  std::uint64_t& writes_of(std::uint32_t tcm_pa) {
+    return in_itcm(tcm_pa) ? counts_.itcm_writes : counts_.dtcm_writes;
   }
   void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, std::uint64_t& counter);
   void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, std::uint64_t& counter);
@@ -517,6 +527,12 @@ class Core : public Background {
   bool failing_ = false;
   std::uint32_t failed_pc_ = 0, failed_cpsr_ = 0;
   const char* failed_by_ = "";
+  bool failed_jump_ = false;          // it was reached by a jump to 0, from failed_from_
+  std::uint32_t failed_from_ = 0;
+  // The last jump that left the lines known by then; no exception.
+  static constexpr std::uint32_t kNoJump = 1;
+  std::uint32_t jumped_from_ = 0, jumped_to_ = kNoJump;
+  std::map<std::string, std::string> unpredictable_;  // warnings by form
 
   CoreControl* debugger_ = nullptr;   // looks at every instruction boundary while a debugger wants to
   void control_boundary();             // debug_control.cpp

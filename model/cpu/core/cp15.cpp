@@ -193,8 +193,8 @@ bool Core::cache_operation(unsigned crm, unsigned op2, std::uint32_t v) {
     case 0xA4: drain(Cause::kDrain); return true;
     case 0xD1: {
       const Translation* t = translate(mva, false, false, true);
-      if (t && (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u)) && !in_tcm(mva) &&
-          icache_.find(mva) < 0)
+      if (t && (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u)) &&
+          !in_tcm(t->physical(mva)) && icache_.find(mva) < 0)
         icache_fill(mva, t->physical(mva));
       line_va_ = 1;
       return true;

@@ -43,7 +43,7 @@ std::optional<CoreDebug::Place> CoreDebug::place(std::uint32_t mva) {
   if (!(core_.control_ & 1u)) return Place{mva, false};
   const bool cache_on = core_.control_ & 4u;
   if (const TlbEntry* e = core_.tlb_.find(mva))
-    return Place{e->base_pa | (mva & e->mask), e->cacheable && cache_on};
+    return Place{e->physical(mva), e->cacheable && cache_on};
   // The walk of Core::walk() without its time, faults and TLB.
   const auto first = table_word((core_.ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2);
   if (!first) return std::nullopt;
@@ -73,12 +73,12 @@ bool CoreDebug::read(std::uint32_t va, std::span<std::uint8_t> to) {
   return by_lines(va, to.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
     const std::uint32_t mva = core_.modified(at);
     const auto piece = to.subspan(offset, n);
-    if (core_.in_tcm(mva)) {
-      std::memcpy(piece.data(), core_.tcm(mva), n);
-      return true;
-    }
     const auto p = place(mva);
     if (!p) return false;
+    if (core_.in_tcm(p->pa)) {
+      std::memcpy(piece.data(), core_.tcm(p->pa), n);
+      return true;
+    }
     if (const int i = p->cached ? core_.dcache_.find(mva) : -1; i >= 0) {
       std::memcpy(piece.data(), core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), n);
       return true;
@@ -91,14 +91,15 @@ bool CoreDebug::write(std::uint32_t va, std::span<const std::uint8_t> from) {
   return by_lines(va, from.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
     const std::uint32_t mva = core_.modified(at);
     const auto piece = from.subspan(offset, n);
-    if (core_.in_tcm(mva)) {
-      std::memcpy(core_.tcm(mva), piece.data(), n);
-      core_.tcm_decoded_[(mva & (core_.tcm_.size() - 1)) >> 5].valid = 0;
+    const auto p = place(mva);
+    if (!p) return false;
+    if (core_.in_tcm(p->pa)) {
+      std::memcpy(core_.tcm(p->pa), piece.data(), n);
+      core_.tcm_decoded(p->pa).valid = 0;
       core_.line_va_ = 1;
       return true;
     }
-    const auto p = place(mva);
-    if (!p || !memory_.debug_write(p->pa, piece)) return false;
+    if (!memory_.debug_write(p->pa, piece)) return false;
     // Older data on their way to memory must not win later.
     core_.writes_.patch(p->pa, piece);
     if (core_.write_in_flight_) {
@@ -219,7 +220,8 @@ std::optional<Instruction> CoreDebug::instruction(std::uint32_t va) {
   std::array<std::uint8_t, 4> bytes{};
   const auto piece = std::span(bytes).first(thumb ? 2 : 4);
   const std::uint32_t mva = core_.modified(va);
-  if (const int i = core_.in_tcm(mva) ? -1 : core_.icache_.find(mva); i >= 0)
+  const auto p = place(mva);
+  if (const int i = p && core_.in_tcm(p->pa) ? -1 : core_.icache_.find(mva); i >= 0)
     std::memcpy(bytes.data(), core_.icache_.data(static_cast<unsigned>(i)) + (mva & kLineMask),
                 piece.size());
   else if (!read(va, piece))

@@ -1,4 +1,6 @@
 // Modes, banks and exceptions (ARM ARM A2.6; aborts restore the base).
+#include <cstdio>
+
 #include "model/cpu/core/core.h"
 
 namespace fovea::cpu {
@@ -45,11 +47,16 @@ std::vector<AccessRecord> Core::last_accesses() const {
 }
 
 void Core::set_clock(Frequency f, Picoseconds at) {
-  const Picoseconds port_free = clock_.running() ? time(data_port_free_) : 0;
+  // What is under way on the bus ends at its time, whichever clock that is from now on.
+  const std::array<std::uint64_t*, 5> clocks = {&data_port_free_, &ifill_.first, &ifill_.last,
+                                                &dfill_.first, &dfill_.last};
+  std::array<Picoseconds, clocks.size()> times{};
+  for (std::size_t k = 0; clock_.running() && k < clocks.size(); ++k) times[k] = time(*clocks[k]);
   clock_.restart(f, at);
   if (clock_.running()) {
     clock_floor_ = clock_.edge_after(at);
-    if (port_free > at) data_port_free_ = clock_.edge_at_or_after(port_free);
+    for (std::size_t k = 0; k < clocks.size(); ++k)
+      if (times[k] > at) *clocks[k] = clock_.edge_at_or_after(times[k]);
   }
   write_over_ = write_floor_ = 0;
   whole_of_ = whole_ = 0;
@@ -65,6 +72,7 @@ void Core::reset(std::uint32_t entry, Picoseconds now) {
   fcse_pid_ = process_ = fetch_process_ = 0;
   old_fetch_left_ = 0;
   stop_requested_ = false;
+  jumped_to_ = kNoJump;
   // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
   const bool tcm = !tcm_.empty();
   itcm_region_ = tcm ? 6u << 2 | 1u : 0;
@@ -125,11 +133,14 @@ void Core::take(Exception e, std::uint32_t return_address) {
     failed_pc_ = pc_;
     failed_cpsr_ = cpsr_;
     failed_by_ = kNames[static_cast<unsigned>(e)];
+    failed_jump_ = pc_ == 0 && jumped_to_ == 0;
+    failed_from_ = jumped_from_;
   }
   // A vector that itself faults without one instruction completed will do so for ever.
   if (++chain_ > 3) {
     failing_ = true;
-    throw GuestFailure(std::string(failed_by_) + " with no handler: its vector faults again");
+    const std::string jump = failed_jump_ ? "jumped to 0 from " + place_of(failed_from_) + "; " : "";
+    throw GuestFailure(jump + failed_by_ + " with no handler: its vector faults again");
   }
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
   const std::uint32_t saved = cpsr_;
@@ -140,6 +151,7 @@ void Core::take(Exception e, std::uint32_t return_address) {
   if (e == Exception::kFiq || e == Exception::kReset) cpsr_ |= 0x40u;
   r_[14] = return_address;
   branch_to(entry.vector | ((control_ >> 13 & 1u) ? 0xFFFF0000u : 0u));
+  jumped_to_ = kNoJump;
   fetch_branched_ = true;
   if (!was_privileged) flush_memos();
   aborted_ = true;
@@ -158,9 +170,20 @@ void Core::undefined() {
   take(Exception::kUndefined, pc_ + ((cpsr_ & 0x20u) ? 2u : 4u));
 }
 
+/// An address for a message, with the name around it if one is known.
+std::string Core::place_of(std::uint32_t address) const {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08x", address);
+  const std::string name = describe ? describe(address) : "";
+  return name.empty() ? text : text + (" (" + name + ")");
+}
+
+/// Each form has one warning, which names the place where it was executed first.
 void Core::unpredictable(const char* what) {
   ++counts_.unpredictable;
-  Diagnostics::instance().guest(std::string("UNPREDICTABLE: ") + what);
+  std::string& text = unpredictable_[what];
+  if (text.empty()) text = std::string("UNPREDICTABLE: ") + what + ", first at " + place_of(pc_);
+  Diagnostics::instance().guest(text);
 }
 
 void Core::mark_window(Picoseconds t) {

@@ -444,7 +444,7 @@ void Core::store_multiple(const Instruction& i) {
   unsigned k = 0;
   for (std::uint32_t set = i.imm; set; set &= set - 1, ++k) {
     const auto r = static_cast<unsigned>(std::countr_zero(set));
-    values[k] = r == 15 ? pc_ + 12 : r == i.rn ? base : r_[r];
+    values[k] = r == 15 ? pc_ + 12 : r_[r];
   }
   if (i.flags & kUserBank) switch_mode(mode);
   const std::uint64_t begun = counts_.issue;

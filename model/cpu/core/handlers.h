@@ -53,6 +53,8 @@ struct Core::Ops {
   /// Ends the chain behind branch i.
   [[gnu::noinline]] static Next leave_to(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     c.settle(i + 1, cycle);
+    c.jumped_from_ = c.run_va_ + i->at;
+    c.jumped_to_ = target;
     c.pc_ = target;
     return nullptr;
   }

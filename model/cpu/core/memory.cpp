@@ -183,6 +183,8 @@ const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user
   t.section = e->section;
   t.cacheable = e->cacheable;
   t.bufferable = e->bufferable;
+  // Pages of internal RAM are never cached; a memo's 1 KB lies in it as a whole or not at all.
+  if (in_tcm(t.physical(mva))) t.cacheable = false;
   t.checked = true;
   // Quarters of a small or large page have permissions of their own.
   t.ap = e->ap[e->mask == 0xFFFu ? (mva >> 10) & 3u : e->mask == 0xFFFFu ? (mva >> 14) & 3u : 0];
@@ -263,7 +265,7 @@ const std::uint8_t* Core::load_cached(std::uint32_t va) {
   const std::uint32_t mva = modified(va);
   const Memo& memo = dmemo_[(mva >> 10) % kMemos];
   if (memo.page != memo_key(mva, false) || !memo.read_ok || !memo.translation.cacheable ||
-      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva))
+      (control_ & 5u) != 5u || (mva & (kBytes - 1)))
     return nullptr;
   record(pc_, va, kBytes);
   return load_line(va, mva, memo.translation);
@@ -281,17 +283,16 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   const std::uint32_t a = mva & ~(bytes - 1u);
   record(pc_, va, bytes);
   value = 0;
-  if (in_tcm(a)) {
-    if (!translate(a, false, user, false)) return Result::kAbort;
-    tcm_access(a, TcmPort::Side::kData);
-    std::memcpy(&value, tcm(a), bytes);
-    ++reads_of(a);
-    if (tcm_quick()) note_read(va, mva, tcm(a & ~(kReadSpan - 1)), reads_of(a));
-    return Result::kOk;
-  }
   const Translation* t = translate(a, false, user, false);
   if (!t) return Result::kAbort;
   const std::uint32_t pa = t->physical(a);
+  if (in_tcm(pa)) {
+    tcm_access(pa, TcmPort::Side::kData);
+    std::memcpy(&value, tcm(pa), bytes);
+    ++reads_of(pa);
+    if (tcm_quick()) note_read(va, mva, tcm(pa & ~(kReadSpan - 1)), reads_of(pa));
+    return Result::kOk;
+  }
   if (t->cacheable && (control_ & 5u) == 5u) {
     const std::uint8_t* const from = load_line(va, a, *t);
     if (bytes == 4)
@@ -316,18 +317,17 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   }
   const std::uint32_t a = mva & ~(bytes - 1u);
   record(pc_, va, bytes | kWritten);
-  if (in_tcm(a)) {
-    if (!translate(a, true, user, false)) return Result::kAbort;
-    tcm_access(a, TcmPort::Side::kData);
-    std::memcpy(tcm(a), &value, bytes);
-    tcm_decoded_[(a & (tcm_.size() - 1)) >> 5].valid = 0;
-    ++writes_of(a);
-    if (tcm_quick()) note_write(va, mva, tcm(a & ~(kWriteSpan - 1)), writes_of(a));
-    return Result::kOk;
-  }
   const Translation* t = translate(a, true, user, false);
   if (!t) return Result::kAbort;
   const std::uint32_t pa = t->physical(a);
+  if (in_tcm(pa)) {
+    tcm_access(pa, TcmPort::Side::kData);
+    std::memcpy(tcm(pa), &value, bytes);
+    tcm_decoded(pa).valid = 0;
+    ++writes_of(pa);
+    if (tcm_quick()) note_write(va, mva, tcm(pa & ~(kWriteSpan - 1)), writes_of(pa));
+    return Result::kOk;
+  }
   const bool section = t->section, bufferable = t->bufferable;
   const unsigned domain = t->domain;
   if (t->cacheable && (control_ & 5u) == 5u) {
@@ -372,7 +372,7 @@ bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
   const std::uint32_t mva = modified(va);
   const Memo& memo = dmemo_[(mva >> 10) % kMemos];
   if (memo.page != memo_key(mva, false) || !memo.write_ok || !memo.translation.cacheable ||
-      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || in_tcm(mva) || dcache_.find(mva) >= 0)
+      (control_ & 5u) != 5u || (mva & (kBytes - 1)) || dcache_.find(mva) >= 0)
     return false;
   const std::uint32_t pa = memo.translation.physical(mva);
   absent_.key = va & ~(kReadSpan - 1);
@@ -397,15 +397,15 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
   };
   for (unsigned k = 0; k < count; ++k) {
     const std::uint32_t mva = modified(va + 4 * k) & ~3u;
-    if (!in_tcm(mva)) {
-      const Translation* t = translate(mva, true, user, false);
-      if (!t) {
-        flush();
-        return Result::kAbort;
-      }
+    const Translation* t = translate(mva, true, user, false);
+    if (!t) {
+      flush();
+      return Result::kAbort;
+    }
+    const std::uint32_t pa = t->physical(mva);
+    if (!in_tcm(pa)) {
       const bool cached = t->cacheable && (control_ & 5u) == 5u;
       const bool buffered = t->bufferable && (control_ & 1u);
-      const std::uint32_t pa = t->physical(mva);
       const int line = cached ? dcache_.find(mva) : -1;
       const bool keeps = line >= 0 && buffered && !(cache_debug_ & 4u);
       if (cached ? !keeps : buffered) {
@@ -473,7 +473,7 @@ const Instruction* Core::fetch_slow() {
   const std::uint32_t mva = fetched_at(pc_) & (thumb ? ~1u : ~3u);
   const unsigned shift = thumb ? 1 : 2;
   const unsigned at = (mva & 31u) >> shift;
-  const bool in_ram = in_tcm(mva);
+  bool in_ram = false;
   const auto decode_into = [&](DecodedLine& d, const std::uint8_t* bytes) -> const Instruction* {
     if (d.valid == 0 || (d.valid & 1u) != thumb) {
       clear_line(d, thumb);
@@ -495,8 +495,6 @@ const Instruction* Core::fetch_slow() {
     jumps_[pc_ / 32 % kJumps] = &d;
     return &i;
   };
-  // Internal RAM is chosen by the MVA, and the MMU checks the access all the same (ARM DDI 0198D
-  // 2-34, 3-3); where its page points to and its C and B bits do not matter there.
   const bool mmu = fetch_control_ & 1u;
   const Translation* t = !mmu              ? &flat_
                          : control_ & 1u ? translate(mva, false, false, true)
@@ -505,19 +503,24 @@ const Instruction* Core::fetch_slow() {
     take(Exception::kPrefetchAbort, pc_ + 4);
     return nullptr;
   }
+  const std::uint32_t pa = t->physical(mva);
+  in_ram = in_itcm(pa);
   line_epoch_ = in_ram ? line_epoch_ | kLineInRam : line_epoch_ & ~kLineInRam;
   if (in_ram) {
     counts_.fetch_from(fetch_kind(thumb, FetchFrom::kTcm, mmu));
-    tcm_access(mva, TcmPort::Side::kFetch);
-    DecodedLine& d = tcm_decoded_[(mva & (tcm_.size() - 1)) >> 5];
-    const Instruction* i = decode_into(d, tcm(mva & ~31u));
+    tcm_access(pa, TcmPort::Side::kFetch);
+    DecodedLine& d = tcm_decoded(pa);
+    const Instruction* i = decode_into(d, tcm(pa & ~31u));
     if (!tcm_quick()) {  // every fetch looks
       line_va_ = 1;
       d.valid = 2u | (d.valid & 1u);
     }
     return i;
   }
-  const std::uint32_t pa = t->physical(mva);
+  if (in_dtcm(pa)) [[unlikely]]
+    Diagnostics::instance().guest(
+        "instruction fetch from the data window of internal RAM (0x10000), which serves data only: "
+        "it goes to the bus, where nothing answers; the same RAM holds code at 0x0");
   // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
   const bool cached = (fetch_control_ >> 12 & 1u) && (t->cacheable || !mmu);
   counts_.fetch_from(
@@ -558,7 +561,7 @@ const Instruction* Core::fetch_slow() {
     submit(a, cycle_);
     port_.finish(a);
     const std::uint64_t there = clock_.edge_at_or_after(a.last);
-    stall_on(a, a.last, there, there + fill_latency_, Cause::kIcache);
+    stall_on(a, a.last, there, there + fill_latency_, Cause::kUncached);
     if (a.error) {
       fetch_buffer_pa_ = 1;
       fault(true, section ? 0x8 : 0xA, domain, mva);
@@ -580,22 +583,18 @@ const Instruction* Core::fetch_slow() {
 
 bool Core::peek(std::uint32_t address, std::uint8_t& byte) const {
   const std::uint32_t mva = modified(address);
-  if (in_tcm(mva)) {
-    byte = tcm_[mva & (tcm_.size() - 1)];
+  const TlbEntry* e = control_ & 1u ? tlb_.find(mva) : nullptr;
+  const bool translated = e || !(control_ & 1u);
+  const std::uint32_t pa = e ? e->physical(mva) : mva;
+  if (translated && in_tcm(pa)) {
+    byte = tcm_[tcm_offset(pa)];
     return true;
   }
-  const int i = dcache_.find(mva);
-  if (i < 0) {  // on its way to memory, where the address is the physical one
-    std::uint32_t pa = mva;
-    if (control_ & 1u) {
-      const TlbEntry* e = tlb_.find(mva);
-      if (!e) return false;
-      pa = e->base_pa | (mva & e->mask);
-    }
-    return writes_.find(pa, byte);
+  if (const int i = dcache_.find(mva); i >= 0) {
+    byte = dcache_.data(static_cast<unsigned>(i))[mva & 31u];
+    return true;
   }
-  byte = dcache_.data(static_cast<unsigned>(i))[mva & 31u];
-  return true;
+  return translated && writes_.find(pa, byte);  // on its way to memory
 }
 
 }  // namespace fovea::cpu

@@ -122,12 +122,13 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(issue, "issue", "cycles", issue, "clocks in which instructions issue");
   FOVEA_CPU_STAT(idle, "idle", "cycles", idle, "clocks in wait-for-interrupt");
   FOVEA_CPU_STAT(interlock, "stall.interlock", "cycles", stall[0], "waiting for a register");
-  FOVEA_CPU_STAT(icache, "stall.icache", "cycles", stall[1], "waiting for instructions");
+  FOVEA_CPU_STAT(icache, "stall.icache", "cycles", stall[1],
+                 "waiting for line fills of the I-cache");
   FOVEA_CPU_STAT(dcache, "stall.dcache", "cycles", stall[2], "waiting for data line fills");
   FOVEA_CPU_STAT(write_buffer, "stall.write_buffer", "cycles", stall[3],
                  "waiting for room in the write or victim buffer");
   FOVEA_CPU_STAT(uncached, "stall.uncached", "cycles", stall[4],
-                 "waiting for uncached reads and unbuffered writes");
+                 "waiting for uncached reads and fetches and for unbuffered writes");
   FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "waiting for page walks");
   FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
                  "wait states of internal RAM, and waiting for DMA there");

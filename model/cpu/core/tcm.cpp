@@ -28,28 +28,35 @@ void Core::tcm_burst_ends(bool write, std::uint8_t* data) {
   line_va_ = 1;
 }
 
+/// The instruction under way comes from the bank that holds `offset`. Only while every fetch looks
+/// (tcm_quick()): then the line found last is the one that it comes from.
+bool Core::code_shares_bank(std::uint32_t offset) const {
+  if (!(line_epoch_ & kLineInRam)) return false;
+  const auto line = static_cast<std::uint32_t>(current_line_ - tcm_decoded_.data());
+  return tcm_port_.same_bank(offset, line * Cache::kLineBytes);
+}
+
 /// The core's turn at internal RAM: by the time of the access everybody else has acted who acts before
 /// it. Instructions begin no later than the next event of others, so that only time that passes within
 /// one needs a look: a bus access before this one (a page walk), or the wait for a DMA.
-void Core::tcm_access(std::uint32_t mva, TcmPort::Side side) {
+void Core::tcm_access(std::uint32_t pa, TcmPort::Side side) {
   if (bus_waited_) [[unlikely]] {
     bus_waited_ = false;
     port_.sleep_until(time(cycle_));
   }
-  if (tcm_own_conflict_ && side == TcmPort::Side::kData && in_tcm(fetched_at(pc_)) &&
-      tcm_port_.same_bank(tcm_offset(mva), tcm_offset(fetched_at(pc_))))
-    stall_to(cycle_ + tcm_own_conflict_, Cause::kTcm, mva, kCore);
+  if (tcm_own_conflict_ && side == TcmPort::Side::kData && code_shares_bank(tcm_offset(pa)))
+    stall_to(cycle_ + tcm_own_conflict_, Cause::kTcm, pa, kCore);
   while (tcm_port_.busy()) [[unlikely]] {
     const std::uint64_t bursts = tcm_port_.bursts();
     const Master master = tcm_port_.burst().master;
     const std::uint64_t got =
-        tcm_port_.core_access(tcm_offset(mva), cycle_, 1 + tcm_wait_, side);
+        tcm_port_.core_access(tcm_offset(pa), cycle_, 1 + tcm_wait_, side);
     if (got == cycle_) break;
-    stall_to(got, Cause::kTcm, mva, index(culprit(master)));
+    stall_to(got, Cause::kTcm, pa, index(culprit(master)));
     port_.sleep_until(time(cycle_));
     if (tcm_port_.bursts() == bursts) break;  // else another one has come meanwhile
   }
-  if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, mva, kCore);
+  if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, pa, kCore);
 }
 
 }  // namespace fovea::cpu

@@ -22,6 +22,7 @@ struct TlbEntry {
   std::uint8_t domain = 0;
   bool cacheable = false, bufferable = false, section = false;
   bool covers(std::uint32_t mva) const { return valid && (mva & ~mask) == base_va; }
+  std::uint32_t physical(std::uint32_t mva) const { return base_pa | (mva & mask); }
 };
 
 class Tlb {

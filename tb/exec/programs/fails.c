@@ -8,6 +8,8 @@ int main(int argc, char **argv) {
   fflush(stdout);
   if (strcmp(how, "load") == 0) return *(volatile int *)0x50000000;
   if (strcmp(how, "jump") == 0) ((void (*)(void))0x50000000)();
+  void (*volatile nothing)(void) = 0;
+  if (strcmp(how, "null") == 0) nothing();
   if (strcmp(how, "sleep") == 0) __asm__ volatile("mcr p15, 0, %0, c7, c0, 4" ::"r"(0));
   if (strcmp(how, "loop") == 0)
     for (;;) __asm__ volatile("");

@@ -108,6 +108,25 @@
   nop
   svc #0x80
   .endr
+  @ The base has the same number as a register of the list: the user's goes out and comes in.
+  .irp base, r13, r14
+  ldr \base, =memory
+  stmdb \base, {\base}^
+  stmia \base, {\base}^
+  stmib \base, {r2, r13, r14}^
+  ldr r1, =memory
+  sub r1, r1, #4
+  ldmia r1, {r2-r7}
+  svc #0x91
+  ldr \base, =words
+  ldmia \base, {\base}^
+  nop
+  svc #0x80
+  ldmib \base, {r2, r13, r14}^
+  nop
+  svc #0x80
+  bkpt #1
+  .endr
   svc #0x53
   b 5f
   .ltorg
