@@ -288,16 +288,18 @@ TEST_F(FfmpegTest, CutJpegIsAnErrorAndAWholeOneIsRead) {
   EXPECT_THAT(user_error([&] { load_still(cut); }), HasSubstr("cut.jpg"));
 }
 
-TEST_F(FfmpegTest, FileWithoutVideoIsAnError) {
-  const std::string wav = (dir / "tone.wav").string();
-  ASSERT_EQ(std::system(("ffmpeg -v error -f lavfi -i sine=d=0.1 '" + wav + "'").c_str()), 0);
-  EXPECT_THAT(user_error([&] { decode_frames(wav, {}); }),
-              AllOf(HasSubstr("tone.wav"), HasSubstr("has no pictures (only sound?)")));
-}
-
 /// Makes a file with ffmpeg.
 void make(const std::string& arguments) {
   ASSERT_EQ(std::system(("ffmpeg -v error " + arguments).c_str()), 0) << arguments;
+}
+
+TEST_F(FfmpegTest, SoundWithoutPicturesIsAnErrorOfOurOwn) {
+  for (const auto& [name, message] : {std::pair("tone.mp4", "has no pictures (only sound?)"),
+                                      std::pair("tone.wav", "its format is not allowed")}) {
+    make("-f lavfi -i sine=d=0.1 '" + (dir / name).string() + "'");
+    EXPECT_THAT(user_error([&] { decode_frames(dir / name, {}); }),
+                AllOf(HasSubstr(name), HasSubstr(message)));
+  }
 }
 
 TEST_F(FfmpegTest, TenBitFilmsAndSixteenBitPicturesAreReadAsEight) {
@@ -339,6 +341,8 @@ TEST_F(FfmpegTest, AFilmTellsItsRateAndThePixelsShape) {
   const FilmInfo info = film_info(dir / "f.mp4");
   EXPECT_EQ(info.rate, Frequency(60000, 1001));
   EXPECT_NEAR(info.pixel_aspect, 16.0 / 15, 1e-9);
+  EXPECT_EQ(info.width, 64u);
+  EXPECT_EQ(info.height, 48u);
   EXPECT_TRUE(film_info(dir / "f.mp4", "no-such-ffprobe").rate.stopped());
   EXPECT_TRUE(film_info(dir.write("x.mp4", "x")).rate.stopped());
 }
