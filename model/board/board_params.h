@@ -48,8 +48,8 @@ struct FirmwareParams : ParamGroup {
                  "double buffering, or the paper's capture, remap, show in turn (DIP 8)",
                  Origin::kChoice, ""};
   IntParam repeat{*this, "repeat", IntParam::Unit::kCount, 1, 1, 1000,
-                  "remaps of each captured frame, back to back (parameter page); from two on a large "
-                  "frame's program never waits for the camera",
+                  "correct each captured frame so many times in a row; with 2 or more the firmware no "
+                  "longer waits for the camera with a large frame, so the remap runs at full speed",
                   Origin::kChoice, ""};
   BoolParam overlay{*this, "overlay", false,
                     "a blinking box blended onto the picture through the cache (DIP 10)",
@@ -93,6 +93,9 @@ struct LensParams : ParamGroup {
                      Origin::kChoice, ""};
   RealParam kb_height{*this, "kb_height", "px", 640, 16, 8192, "picture height of the calibration",
                       Origin::kChoice, ""};
+  TextParam calibration{*this, "calibration", "",
+                        "OpenCV fisheye calibration (YAML) of the lens that the firmware corrects; "
+                        "empty: that of camera.calibration, or else lens.kb"};
   RealParam theta_max{*this, "theta_max", "deg", 95, 1, 120,
                       "kannala_brandt: largest angle of the table; beyond it the view is black",
                       Origin::kChoice, ""};
@@ -102,7 +105,29 @@ struct LensParams : ParamGroup {
   EnumParam pair{*this, "pair", "A", {"A", "B"},
                  "pair method: first pixel's source word (the paper), or the pair's centre (DIP 9)",
                  Origin::kChoice, ""};
-  LensParams() : ParamGroup("lens") {}
+  LensParams() : ParamGroup("lens") {
+    const auto any = [this] { return !mapping.is("none"); };
+    const auto closed = [this] { return !mapping.is("none") && !mapping.is("kannala_brandt"); };
+    const auto table = [this] { return mapping.is("kannala_brandt"); };
+    for (ParamBase* p : {&out_focal, &centre_x, &centre_y, &out_aspect})
+      p->matters_only("a lens.mapping other than none", {&mapping}, any);
+    const char* const kClosed = "a lens.mapping other than none and kannala_brandt";
+    focal.matters_only(kClosed, {&mapping}, closed);
+    in_aspect.matters_only(kClosed, {&mapping}, closed);
+    fov.matters_only(kClosed, {&mapping}, closed);
+    fov.matters_only("lens.focal = 0px", {&focal}, [this] { return focal() == 0; });
+    // A view of the lens's own focal length is what a rectilinear lens shows anyway.
+    for (ParamBase* p : {&fov, &focal})
+      p->matters_only("a lens.out_focal above 0px", {&mapping, &out_focal}, [this] {
+        return !mapping.is("rectilinear") || out_focal() > 0;
+      });
+    for (ParamBase* p : std::initializer_list<ParamBase*>{&kb, &kb_width, &kb_height, &theta_max,
+                                                          &calibration})
+      p->matters_only("lens.mapping = kannala_brandt", {&mapping}, table);
+    paper_literal_focal.matters_only("lens.mapping = equisolid", {&mapping},
+                                     [this] { return mapping.is("equisolid"); });
+    paper_literal_focal.matters_only("lens.focal = 0px", {&focal}, [this] { return focal() == 0; });
+  }
 };
 
 /// Devices that a board may have beside those of the camera.
@@ -124,7 +149,9 @@ struct DevicesParams : ParamGroup {
       "what the CPLD's SWITCH register reads; Linux takes bit 5 = 0 as NAND present",
       Origin::kChoice,
       "NAND is not modelled"};
-  DevicesParams() : ParamGroup("board") {}
+  DevicesParams() : ParamGroup("board") {
+    cpld_switch.matters_only("board.cpld = true", {&cpld}, [this] { return cpld(); });
+  }
 };
 
 struct BoardParams {
@@ -137,6 +164,7 @@ struct BoardParams {
   video::SceneParams camera;
   video::Tvp5146Params decoder;
   soc::Dm365Params soc;
+  BoardParams();
   void declare(ParamSet& set) {
     set.add(run);
     set.add(devices);

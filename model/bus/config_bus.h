@@ -36,9 +36,9 @@ struct ConfigBusParams : ParamGroup {
 struct ConfigBusStats : StatGroup {
   Counter reads{*this, "reads", "1", "register reads"};
   Counter writes{*this, "writes", "1", "register writes"};
-  Counter read_bytes{*this, "read_bytes", "B", "bytes of those reads"};
-  Counter write_bytes{*this, "write_bytes", "B", "bytes of those writes"};
-  Counter errors{*this, "errors", "1", "accesses to addresses where nothing answers"};
+  Counter read_bytes{*this, "read_bytes", "B", "bytes of register reads"};
+  Counter write_bytes{*this, "write_bytes", "B", "bytes of register writes"};
+  Counter errors{*this, "errors", "1", "register accesses to addresses where nothing answers"};
   ConfigBusStats() : StatGroup("bus.config") {}
 };
 

@@ -18,8 +18,8 @@ struct LoadParams : ParamGroup {
   using U = IntParam::Unit;
   EnumParam port{*this, "port", "load",
                  {"load", "edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3", "remap_engine"},
-                 "port it drives: one of its own, or a master's that does nothing yet (a transfer "
-                 "controller reads on its read side and writes on its write side)",
+                 "bus port of the load: one of its own (load), or that of a master that is not used "
+                 "otherwise; an EDMA port reads and writes on separate sides",
                  Origin::kChoice, ""};
   IntParam outstanding{*this, "outstanding", U::kCount, 0, 0, 16,
                        "bursts the load keeps under way; 0: no load", Origin::kChoice, ""};
@@ -47,7 +47,11 @@ struct LoadParams : ParamGroup {
                 "offset of its region in that memory", Origin::kChoice, ""};
   IntParam size{*this, "size", U::kBytes, 8u << 20, 4096, 128u << 20, "size of its region",
                 Origin::kChoice, ""};
-  explicit LoadParams(std::string prefix) : ParamGroup(std::move(prefix)) {}
+  explicit LoadParams(std::string prefix) : ParamGroup(std::move(prefix)) {
+    for (ParamBase* p : params())
+      if (p != &outstanding)
+        p->matters_only(outstanding.key() + " above 0", {&outstanding}, [this] { return active(); });
+  }
   bool active() const { return outstanding() > 0; }
   bool copies() const { return kind.is("copy"); }
   /// Where its reads and its writes go out.

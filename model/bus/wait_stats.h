@@ -37,20 +37,22 @@ class WaitStats : public StatGroup {
     const char* sentence;
   };
   static constexpr Named kNamed[] = {
-      {Culprit::kBridge, "between port and crossbar, both ways"},
-      {Culprit::kService, "the requests' own way through crossbar and controller"},
-      {Culprit::kRowMiss, "opening rows of closed banks"},
-      {Culprit::kRowConflict, "closing other rows and opening the wanted ones"},
-      {Culprit::kTurnaround, "the data bus turning between reads and writes"},
-      {Culprit::kRefresh, "refresh"},
-      {Culprit::kPowerDown, "the memory asleep or waking up"},
+      {Culprit::kBridge, "spent between port and crossbar, both ways"},
+      {Culprit::kService, "spent on their own way through crossbar and controller"},
+      {Culprit::kRowMiss, "waited for the rows of closed banks to be opened"},
+      {Culprit::kRowConflict, "waited for another row to be closed and theirs to be opened"},
+      {Culprit::kTurnaround, "waited for the data bus to turn between reads and writes"},
+      {Culprit::kRefresh, "waited for a refresh"},
+      {Culprit::kPowerDown, "waited for the memory to wake up"},
   };
 
   void add(const std::string& prefix, Waits MasterWaits::*direction) {
     const auto entry = [&](const std::string& name, std::vector<Culprit> culprits,
                            const std::string& sentence) {
       formulas_.push_back(std::make_unique<Formula>(
-          *this, prefix + name, "s", "time of its requests: " + sentence,
+          *this, prefix + name, "s",
+          "total time that " + std::string(stat_name(master_)) + "'s " +
+              prefix.substr(0, prefix.size() - 1) + "s " + sentence,
           [this, direction, culprits] {
             std::uint64_t t = 0;
             for (const Culprit c : culprits) t += total(direction, c);
@@ -65,10 +67,10 @@ class WaitStats : public StatGroup {
         if (stat_index(static_cast<Master>(k)) == i)
           ports.push_back(culprit(static_cast<Master>(k)));
       if (same(i))
-        entry("own", ports, "behind its own earlier requests");
+        entry("own", ports, "waited behind its own earlier requests");
       else
         entry(std::string(kStatNames[i]), ports,
-              "while " + std::string(kStatNames[i]) + " was served");
+              "waited while " + std::string(kStatNames[i]) + " was served");
     }
   }
   bool same(std::size_t i) const {

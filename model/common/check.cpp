@@ -23,6 +23,11 @@ void Diagnostics::not_modelled(const std::string& what) {
   if (strict_) throw NotModelled("not modelled: " + what);
 }
 
+void Diagnostics::configuration(const std::string& what) {
+  if (strict_) throw UserError(what);
+  note(Kind::kConfiguration, what);
+}
+
 void Diagnostics::note(Kind kind, const std::string& what) {
   using Show = BoundedCounts::Show;
   const Show show = counts_.add(static_cast<unsigned>(kind), what);

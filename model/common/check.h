@@ -29,17 +29,21 @@ struct NotModelled : std::runtime_error {
 [[noreturn]] void check_failed(const char* expression, const char* file, int line,
                                const std::string& what);
 
-/// Counts warnings about the guest and about missing features. Each text is shown once, and few of
-/// those that differ only in numbers: a wild pointer's addresses are examples of one warning.
+/// Counts warnings. kGuest: the program on the core did it; kNotModelled: the model lacks what the
+/// program asked for; kConfiguration: a parameter has no effect or does not go with another one.
+/// Each text is shown once, and few of those that differ only in numbers: a wild pointer's addresses
+/// are examples of one warning.
 class Diagnostics {
  public:
-  enum class Kind { kGuest, kNotModelled };
+  enum class Kind { kGuest, kNotModelled, kConfiguration };
   using Sink = std::function<void(Kind, const std::string&)>;
 
   static Diagnostics& instance();
   void guest(const std::string& what) { note(Kind::kGuest, what); }
   /// @throws NotModelled when strict
   void not_modelled(const std::string& what);
+  /// @throws UserError when strict
+  void configuration(const std::string& what);
   void set_strict(bool strict) { strict_ = strict; }
   void set_sink(Sink sink) { sink_ = std::move(sink); }
   void clear() { counts_.clear(); }

@@ -320,14 +320,18 @@ ParamBase* ParamSet::find(std::string_view key) const {
 
 std::string ParamSet::nearest(std::string_view key) const {
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, key.size() / 3) + 1;
-  for (const auto* p : all_) {
-    const std::size_t d = edit_distance(key, p->key());
-    if (d < best_distance) {
-      best_distance = d;
-      best = p->key();
-    }
-  }
+  std::size_t best_distance = ~std::size_t{0};
+  const auto consider = [&](const std::string& known) {
+    std::size_t common = 0;
+    for (std::size_t i = 0; i < std::min(key.size(), known.size()) && key[i] == known[i]; ++i)
+      if (key[i] == '.') common = i + 1;
+    const std::size_t d = edit_distance(key.substr(common), known.substr(common));
+    if (d >= best_distance || d > std::max<std::size_t>(2, (key.size() - common) / 3)) return;
+    best_distance = d;
+    best = known;
+  };
+  for (const auto* p : all_) consider(p->key());
+  for (const auto& [known, hint] : foreign_) consider(known);
   return best;
 }
 
@@ -335,9 +339,14 @@ void ParamSet::set(std::string_view key, std::string_view text) {
   ParamBase* p = find(key);
   if (!p) {
     const std::string near = nearest(key);
-    throw UserError("unknown key '" + std::string(key) + "'" +
-                    (near.empty() ? "; 'fovea params' lists all keys"
-                                  : "; did you mean '" + near + "'?"));
+    const auto foreign = foreign_.find(near);
+    std::string hint = near.empty() ? "; 'fovea params' lists all keys"
+                                    : "; did you mean '" + near + "'?";
+    if (foreign != foreign_.end()) {
+      if (near == key) throw UserError("key '" + near + "' " + foreign->second);
+      hint = "; did you mean '" + near + "'? It " + foreign->second;
+    }
+    throw UserError("unknown key '" + std::string(key) + "'" + hint);
   }
   try {
     p->set(text);

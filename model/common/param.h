@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,21 @@ class ParamBase {
     parse(text);
     user_set_ = true;
   }
+
+  /// When the value matters. `condition` completes "KEY has an effect only with ..."; `deciders` are
+  /// the parameters that `effective` reads.
+  struct Effect {
+    std::string condition;
+    std::vector<const ParamBase*> deciders;
+    std::function<bool()> effective;
+  };
+  /// Declares it; without a declaration the value always matters.
+  void matters_only(std::string condition, std::vector<const ParamBase*> deciders,
+                    std::function<bool()> effective) {
+    effects_.push_back({std::move(condition), std::move(deciders), std::move(effective)});
+  }
+  const std::vector<Effect>& effects() const { return effects_; }
+
   virtual std::string text() const = 0;  ///< value with unit, parseable again
   virtual std::string default_text() const = 0;
   virtual std::string unit() const = 0;
@@ -65,6 +81,7 @@ class ParamBase {
   std::string key_, sentence_, source_;
   Belief belief_;
   Origin origin_;
+  std::vector<Effect> effects_;
   bool user_set_ = false;
 };
 
@@ -217,13 +234,18 @@ class ParamSet {
   }
   const std::vector<ParamBase*>& all() const { return all_; }
   ParamBase* find(std::string_view key) const;
-  /// The known key nearest to `key` by edit distance, empty if none is near.
+  /// Names a key that exists elsewhere only: whoever sets it here, or one much like it, reads `hint`
+  /// ("is a key of ...").
+  void add_foreign(std::string key, std::string hint) { foreign_.emplace(std::move(key), hint); }
+  /// The known or foreign key nearest to `key` by edit distance, empty if none is near. What both
+  /// begin with up to a dot does not make them nearer.
   std::string nearest(std::string_view key) const;
   /// @throws UserError naming the key, what is allowed and a suggestion
   void set(std::string_view key, std::string_view text);
 
  private:
   std::vector<ParamBase*> all_;
+  std::map<std::string, std::string, std::less<>> foreign_;
 };
 
 }  // namespace fovea

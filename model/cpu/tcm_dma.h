@@ -15,8 +15,8 @@ namespace fovea::cpu {
 struct TcmStats : StatGroup {
   Counter reads{*this, "dma_reads", "1", "bursts that others read from internal RAM"};
   Counter writes{*this, "dma_writes", "1", "bursts that others write to internal RAM"};
-  Counter read_bytes{*this, "dma_read_bytes", "B", "bytes of those reads"};
-  Counter write_bytes{*this, "dma_write_bytes", "B", "bytes of those writes"};
+  Counter read_bytes{*this, "dma_read_bytes", "B", "bytes that others read from internal RAM"};
+  Counter write_bytes{*this, "dma_write_bytes", "B", "bytes that others write to internal RAM"};
   Counter wait_fetch{*this, "dma_wait.arm_i", "cycles",
                      "core clocks in which a word of a DMA waited for a fetch of the core"};
   Counter wait_data{*this, "dma_wait.arm_d", "cycles",

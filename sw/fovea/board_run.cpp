@@ -38,6 +38,9 @@ double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
+  std::vector<std::pair<std::string, std::filesystem::path>> input_files() const override {
+    return {{params_.firmware.elf.key(), program_file(params_)}};
+  }
   RunResult run(const RunRequest& request) override;
 
  private:
@@ -105,11 +108,11 @@ void BoardSimulation::close_window() {
     const auto queued =
         static_cast<double>(soc.ddr.controller().stats.queued_clocks.count());
     stats_.push_back(row("ddr.headroom", 1 - queued / clocks, "ratio",
-                         "share of the window in which no request is queued at the SDRAM"));
+                         "share of the window in which no request is queued at the SDRAM (not the bandwidth left over)"));
     if (queued > 0)
       stats_.push_back(row("ddr.efficiency",
                            static_cast<double>(soc.ddr.controller().busy_clocks()) / queued,
-                           "ratio", "data clocks / clocks in which a request is queued"));
+                           "ratio", "clocks with data on the SDRAM's bus / clocks in which a request is queued"));
   }
   soc.arm.core().mark_window(kernel_time());
 }
@@ -120,19 +123,19 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
     rows.push_back(row("frame.rate", *f.rate, "1/s",
                        "new frames displayed / time, over the whole display frames in the window"));
   rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
-  rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured"));
-  rows.push_back(row("frame.remapped", f.remapped, "1", "frames whose remap ended"));
-  rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed"));
-  rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never shown"));
-  rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show an old one"));
+  rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured in the window"));
+  rows.push_back(row("frame.remapped", f.remapped, "1", "frames corrected (remap finished) in the window"));
+  rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed in the window"));
+  rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never displayed"));
+  rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show a camera frame again"));
   if (f.latencies) {
-    const std::string what = "first captured sample to first displayed sample, ";
+    const std::string what = "time from a frame's first captured sample to its first displayed sample, ";
     rows.push_back(row("frame.latency.min", to_s(f.latency_min), "s", what + "shortest"));
     rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
     rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
   }
   if (f.remaps) {
-    const std::string what = "remap of one frame, ";
+    const std::string what = "time to correct (remap) one frame, ";
     rows.push_back(row("frame.remap_time.min", to_s(f.remap_min), "s", what + "shortest"));
     rows.push_back(row("frame.remap_time.mean", f.remap_mean * 1e-12, "s", what + "mean"));
     rows.push_back(row("frame.remap_time.max", to_s(f.remap_max), "s", what + "longest"));
@@ -141,10 +144,10 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
     rows.push_back(row("startup.lut_time", to_s(*idle - *lut), "s",
-                       "building the look-up table, from phase pins 2 to 3"));
+                       "time to build the look-up table, from phase 2 to phase 3 on the pins"));
   if (board_->window_start())
     rows.push_back(row("startup.first_frame", to_s(*board_->window_start()), "s",
-                       "power-up to the start of the first corrected frame on the display"));
+                       "time from power-up to the start of the first corrected frame on the display"));
 }
 
 void BoardSimulation::add_host(RunResult& result, bool strict) const {
@@ -156,10 +159,8 @@ void BoardSimulation::add_host(RunResult& result, bool strict) const {
   h.push_back(row("peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "B",
                   "largest resident memory of the process"));
   if (window_wall_s_ > 0 && window > 0) {
-    h.push_back(row("realtime_factor", window / window_wall_s_, "ratio",
-                    "simulated / host time in the measured window"));
-    h.push_back(row("seconds_per_second", window_wall_s_ / window, "ratio",
-                    "host / simulated time in the measured window"));
+    h.push_back(row("realtime_factor", window / window_wall_s_, "x",
+                    "speed against real time: simulated time / host time, in the measured window"));
   }
   if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
     h.push_back(row("mips",
@@ -179,7 +180,7 @@ void BoardSimulation::add_host(RunResult& result, bool strict) const {
 std::string BoardSimulation::failure_text(const std::string& what, const ElfImage& elf) const {
   const auto& core = board_->dm365.arm.core();
   const std::uint32_t pc = core.current_pc();
-  std::string text = fmt::format("guest failed: {} at pc 0x{:08x}", what, pc);
+  std::string text = fmt::format("{} at pc 0x{:08x}", what, pc);
   if (const std::string where = elf.describe(pc); !where.empty()) text += " (" + where + ")";
   text += fmt::format(", {:.6f} s after power-up", to_s(kernel_time()));
   for (const auto& a : core.last_accesses()) {
@@ -222,7 +223,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   complete_params(params_);
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
-  auto source = video::make_picture_source(params_.camera, load_footage(params_, &request.stop),
+  std::vector<RgbImage> footage = load_footage(params_, &request.stop);
+  RunResult result;
+  result.notes = footage_notes(
+      params_, footage, params_.camera.kind.is("video") ? film_info(params_.camera.file()) : FilmInfo{});
+  auto source = video::make_picture_source(params_.camera, std::move(footage),
                                            params_.raster_width(), params_.raster_height());
 
   video::AheadSource camera(*source);
@@ -270,7 +275,6 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     }
   };
 
-  RunResult result;
   auto& arm = board_->dm365.arm;
   BoardDebugMemory debug_memory(board_->dm365);
   const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
@@ -309,7 +313,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (gdb) gdb->look(arm.asleep());
     if (!board_->window_start() && kernel_time() > params_.run.start_limit()) {
       guest = failure_text(
-          fmt::format("no corrected frame within run.start_limit = {}",
+          fmt::format("the firmware showed no frame within {} of simulated time (run.start_limit); it stands",
                       params_.run.start_limit.text()),
           elf);
       break;

@@ -1,6 +1,7 @@
 #include "sw/fovea/cli.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fnmatch.h>
 #include <signal.h>
 
@@ -11,7 +12,9 @@
 #include <ostream>
 #include <system_error>
 
+#include "sw/fovea/calibration.h"
 #include "sw/fovea/cli_exec.h"
+#include "sw/fovea/cli_help.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/gdb_server.h"
@@ -55,6 +58,20 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
                                      collect_remarks(Diagnostics::instance())));
 }
 
+/// What only `fovea replay` has by that name, so that a message can say so.
+void add_replay_keys(ParamSet& params) {
+  ReplayParams replay;
+  ParamSet set;
+  replay.declare(set);
+  for (const auto* p : set.all()) {
+    if (params.find(p->key())) continue;
+    const bool clock = p->key() == "ddr.clock" || p->key() == "bus.clock";
+    params.add_foreign(p->key(), std::string("is a key of 'fovea replay'; here ") +
+                                     (clock ? "clocks.preset sets the clocks"
+                                            : "the firmware programs it"));
+  }
+}
+
 int command_run(const RunOptions& options, const std::vector<std::string>& args,
                 const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
@@ -62,9 +79,13 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   const auto simulation = context.make_simulation();
   ParamSet params;
   simulation->declare(params);
+  add_replay_keys(params);
   Experiment experiment(params);
   experiment.load(options.experiment);
   for (const auto& set : options.sets) experiment.override_with(set);
+  const RemarkScope remarks(context.err, options.strict);
+  warn_without_effect(params, experiment);
+  apply_calibrations(params, experiment);
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / experiment.name(),
@@ -75,9 +96,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                                 one_line(options.bus_trace)));
   // First, so that an unfinished folder is known as ours and says what was tried, and a full disk
   // shows before the simulation.
-  dir.write("config.json", config_json(params, experiment, version_text()));
+  dir.write("config.json", config_json(params, experiment, provenance_of(params, simulation->input_files())));
 
-  const RemarkScope remarks(context.err, options.strict);
   ProgressMeter meter(context.err, context.terminal);
   FrameWriterOptions writer_options;
   if (!options.no_frames) {
@@ -120,6 +140,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
   context.out << summary_table(result.stats, host);
+  for (const auto& note : result.notes) context.out << "  " << one_line(note) << "\n";
   context.out << fmt::format("  results in {}\n", dir.folder().string());
   if (!options.no_frames)
     context.out << fmt::format("  pictures in {}\n", (dir.folder() / "frames").string());
@@ -179,7 +200,7 @@ void report_earlier(const std::string& note, const CliContext& context) {
   if (!note.empty()) context.err << "fovea: " << note << std::endl;
 }
 
-std::string version_text() { return FOVEA_VERSION; }
+std::string version_text() { return provenance_text(program_provenance()); }
 
 std::string params_table(const ParamSet& params, const std::string& pattern, bool markdown) {
   const bool glob = pattern.find_first_of("*?[") != std::string::npos;
@@ -206,7 +227,9 @@ std::string params_table(const ParamSet& params, const std::string& pattern, boo
     const std::string belief =
         p->belief().empty() ? "-" : p->belief().low + " .. " + p->belief().high;
     const std::string value = p->default_text().empty() ? "-" : p->default_text();
-    cells.push_back({p->key(), value, p->allowed(), belief, tag, p->sentence()});
+    std::string meaning = p->sentence();
+    for (const auto& effect : p->effects()) meaning += "; needs " + effect.condition;
+    cells.push_back({p->key(), value, p->allowed(), belief, tag, meaning});
   }
   std::string out;
   if (markdown) {
@@ -245,90 +268,161 @@ void install_signals(CliContext& context) {
   context.stop = &g_stop;
 }
 
+namespace {
+
+/// Targets of the options.
+struct Options {
+  RunOptions run;
+  ReplayOptions replay;
+  ExecOptions exec;
+  std::string pattern, shell;
+  bool markdown = false, of_replay = false;
+};
+
+constexpr const char* kSet = "Set a parameter; may be repeated";
+constexpr const char* kStrict =
+    "Stop with an error when the firmware uses a feature that is not modelled, or a parameter that "
+    "is set has no effect";
+
+/// One value per -s: the experiment's name may follow it.
+void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
+  command.add_option("-s,--set", sets, kSet)->type_name("KEY=VALUE")->allow_extra_args(false);
+}
+
+void add_run_command(CLI::App& app, RunOptions& run) {
+  CLI::App* c = app.add_subcommand("run", "Simulate an experiment");
+  c->add_option("experiment", run.experiment, "Experiment file (YAML)")
+      ->required()
+      ->type_name("FILE");
+  add_set_option(*c, run.sets);
+  c->add_option("-o,--out", run.out_dir, "Folder for the results")
+      ->type_name("DIR")
+      ->default_str("out/EXPERIMENT");
+  c->add_option("--sync", run.sync,
+                "strict: slow reference mode, same results; default: fast mode")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"default", "strict"}))
+      ->default_str("default");
+  c->add_flag("--strict", run.strict, kStrict);
+  c->add_flag("--no-frames", run.no_frames, "Write no pictures");
+  c->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
+  c->add_option("--bus-trace", run.bus_trace,
+                "Write all requests to the SDRAM in the measured window to this file")
+      ->type_name("FILE");
+  c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
+      ->type_name(":PORT");
+  add_register_log_options(*c, run.registers);
+}
+
+void add_replay_command(CLI::App& app, ReplayOptions& replay) {
+  CLI::App* c =
+      app.add_subcommand("replay", "Play a bus trace on crossbar and SDRAM, without the core");
+  c->add_option("trace", replay.trace, "File of 'run --bus-trace', or text ('# dramtrace 1')")
+      ->required()
+      ->type_name("FILE");
+  add_set_option(*c, replay.sets);
+  c->add_option("-o,--out", replay.out_dir, "Folder for the results")
+      ->type_name("DIR")
+      ->default_str("out/TRACE");
+  c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
+}
+
+void add_other_commands(CLI::App& app, Options& options) {
+  CLI::App* params =
+      app.add_subcommand("params", "List parameters: default, allowed values, source");
+  params->add_option("pattern", options.pattern, "Part of a key, or a pattern with * and ?")
+      ->type_name("TEXT");
+  params->add_flag("--markdown", options.markdown, "As a Markdown table");
+  params->add_flag("--replay", options.of_replay, "Those of 'fovea replay'");
+  app.add_subcommand("version", "Print version and commit");
+  app.add_subcommand("completion", "Print a script that completes commands, options and keys")
+      ->add_option("shell", options.shell, "The shell")
+      ->required()
+      ->check(CLI::IsMember({"bash"}));
+  app.add_subcommand("man", "Print the manual page (for 'man -l -')");
+}
+
+std::vector<std::string> keys_of(const ParamSet& params) {
+  std::vector<std::string> out;
+  for (const auto* p : params.all()) out.push_back(p->key());
+  return out;
+}
+
+int command_completion(const CLI::App& app, const CliContext& context) {
+  std::map<std::string, std::vector<std::string>> keys;
+  ParamSet run, replay, exec;
+  const auto simulation = context.make_simulation();
+  simulation->declare(run);
+  keys["run"] = keys_of(run);
+  ReplayParams replay_params;
+  replay_params.declare(replay);
+  keys["replay"] = keys_of(replay);
+  if (const auto executor = context.make_executor ? context.make_executor() : nullptr) {
+    executor->declare(exec);
+    keys["exec"] = keys_of(exec);
+  }
+  context.out << bash_completion(app, keys) << std::flush;
+  return kExitDone;
+}
+
+int run_command(const CLI::App& app, Options& o, const std::vector<std::string>& args,
+                const CliContext& context) {
+  const CLI::App* c = app.get_subcommands().front();
+  const std::string name = c->get_name();
+  o.run.out_given = name == "run" && c->get_option("--out")->count() > 0;
+  o.replay.out_given = name == "replay" && c->get_option("--out")->count() > 0;
+  if (name == "run" && c->get_option("--bus-trace")->count() > 0 && o.run.bus_trace.empty())
+    throw UserError("--bus-trace '': a file name is needed");
+  if (name == "replay") return command_replay(o.replay, args, context);
+  if (name == "run") return command_run(o.run, args, context);
+  if (name == "exec") return command_exec(o.exec, args, context);
+  if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
+  if (name == "completion") return command_completion(app, context);
+  if (name == "man")
+    context.out << man_page(app, version_text()) << std::flush;
+  else
+    context.out << "fovea " << version_text() << std::endl;
+  return kExitDone;
+}
+
+}  // namespace
+
 int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   std::vector<std::string> own = args;
-  ExecOptions exec;
-  CLI::App app("Co-simulation of a fish-eye correction system: DM365 board and its firmware.",
+  Options options;
+  CLI::App app("Co-simulation of a fish-eye correction system: DM365 board and its firmware",
                "fovea");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_version_flag("--version", [] { return "fovea " + version_text(); },
+                       "Print version and commit");
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done, 1 a comparison failed, 2 wrong input, 3 the guest failed,\n"
-      "4 a defect of fovea; 130 or 143 stopped by a signal, with a valid partial result.");
-
-  RunOptions run;
-  CLI::App* run_command = app.add_subcommand("run", "Simulate an experiment");
-  run_command->add_option("experiment", run.experiment, "Experiment file (YAML)")->required();
-  // One value per -s: the experiment's name may follow it.
-  run_command->add_option("-s,--set", run.sets, "Set a parameter, key=value; may be repeated")
-      ->allow_extra_args(false);
-  const CLI::Option* out_option =
-      run_command->add_option("-o,--out", run.out_dir, "Folder for the results (out/EXPERIMENT)");
-  run_command
-      ->add_option("--sync", run.sync,
-                   "strict: every bus access goes through the queue and the kernel")
-      ->check(CLI::IsMember({"default", "strict"}));
-  run_command->add_flag("--strict", run.strict,
-                        "A feature that the guest uses and the model lacks is an error");
-  run_command->add_flag("--no-frames", run.no_frames, "Write no pictures");
-  run_command->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
-
-  const CLI::Option* trace_option = run_command->add_option(
-      "--bus-trace", run.bus_trace, "Write all requests to the SDRAM in the window to this file");
-
-  ReplayOptions replay;
-  CLI::App* replay_command =
-      app.add_subcommand("replay", "Play a bus trace on crossbar and SDRAM, without the core");
-  replay_command
-      ->add_option("trace", replay.trace, "File of 'run --bus-trace', or text ('# dramtrace 1')")
-      ->required();
-  replay_command
-      ->add_option("-s,--set", replay.sets,
-                   "Set a parameter of crossbar or SDRAM, key=value; may be repeated")
-      ->allow_extra_args(false);
-  const CLI::Option* replay_out = replay_command->add_option(
-      "-o,--out", replay.out_dir, "Folder for the results (out/TRACE)");
-  replay_command->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
-  run_command->add_option("--gdb", run.gdb,
-                          "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
-  add_register_log_options(*run_command, run.registers);
-  CLI::App* exec_command = add_exec_command(app, exec);
-  if (!own.empty() && own[0] == "exec") exec.arguments = take_program_arguments(own);
-
-  std::string pattern;
-  bool markdown = false;
-  CLI::App* params_command =
-      app.add_subcommand("params", "List parameters: default, allowed values, source");
-  params_command->add_option("pattern", pattern, "Part of a key, or a pattern with * and ?");
-  params_command->add_flag("--markdown", markdown, "As a Markdown table");
-  bool of_replay = false;
-  params_command->add_flag("--replay", of_replay, "Those of 'fovea replay'");
-  CLI::App* version_command = app.add_subcommand("version", "Print the version");
+      "Exit status: 0 done; 2 wrong input, or a result that cannot be written; 3 "
+      "the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
+      "partial result.");
+  add_run_command(app, options.run);
+  add_replay_command(app, options.replay);
+  add_exec_command(app, options.exec);
+  add_other_commands(app, options);
+  if (!own.empty() && own[0] == "exec") options.exec.arguments = take_program_arguments(own);
 
   try {
     // CLI11 alone would say that a command is missing.
     const auto commands = app.get_subcommands([](CLI::App*) { return true; });
+    std::vector<std::string> names;
+    for (const auto* c : commands) names.push_back(c->get_name());
     if (!args.empty() && !args[0].starts_with("-") &&
         std::none_of(commands.begin(), commands.end(),
                      [&](CLI::App* c) { return c->check_name(args[0]); }))
-      throw UserError(
-          fmt::format("unknown command '{}'; allowed: run, exec, replay, params, version",
-                      one_line(args[0])));
+      throw UserError(fmt::format("unknown command '{}'; allowed: {}", one_line(args[0]),
+                                  fmt::join(names, ", ")));
     try {
       app.parse(std::vector<std::string>(own.rbegin(), own.rend()));
     } catch (const CLI::ParseError& e) {
       if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
       throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
     }
-    run.out_given = out_option->count() > 0;
-    replay.out_given = replay_out->count() > 0;
-    if (trace_option->count() > 0 && run.bus_trace.empty())
-      throw UserError("--bus-trace '': a file name is needed");
-    if (*replay_command) return command_replay(replay, args, context);
-    if (*run_command) return command_run(run, args, context);
-    if (*exec_command) return command_exec(exec, args, context);
-    if (*params_command) return command_params(pattern, markdown, of_replay, context);
-    if (*version_command) context.out << "fovea " << version_text() << std::endl;
-    return kExitDone;
+    return run_command(app, options, args, context);
   } catch (const UserError& e) {
     context.err << "fovea: error: " << one_line(e.what(), 2000) << std::endl;
     return kExitWrongInput;

@@ -22,22 +22,19 @@ namespace {
 constexpr std::array<std::string_view, 10> kWithValue = {
     "-s",      "--set",  "-o",    "--out",           "--load",
     "--entry", "--root", "--gdb", "--log-registers", "--log-registers-kept"};
-constexpr std::array<std::string_view, 5> kFlags = {"--thumb", "--fast-memory", "--strict",
-                                                    "--help", "-h"};
+constexpr std::array<std::string_view, 8> kFlags = {
+    "--thumb", "--fast-memory", "--caches", "--strict", "--quiet", "-q", "--help", "-h"};
 
 constexpr const char* kMemoryHelp =
-    "Memory: RAM of the SDRAM's size (ddr.part) from the multiple of that size below the "
-    "program's\n"
+    "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size below the program's "
     "lowest address, which is 0 for newlib's default link; -s exec.ram_base=ADDR puts it "
-    "elsewhere.\n"
-    "At 0 there is no internal RAM; other programs find the chip's at 0x0 and 0x10000 as well. "
-    "Heap\n"
-    "and stack take the largest piece the program leaves free, the stack from its top. Nothing "
-    "else\n"
-    "answers but, with RAM above 0x20000000, the SDRAM controller's registers there. Options may\n"
-    "stand before or behind the program;\n"
-    "what is no option of exec, and all behind --, belongs to the program.\n"
-    "Exit status: the program's own; 2 wrong input, 3 the guest failed, 4 a defect of fovea, each\n"
+    "elsewhere. At 0 there is no internal RAM; other programs find the chip's at 0x0 and 0x10000 as "
+    "well. Heap and stack take the largest piece that the program leaves free, the stack from its "
+    "top. No peripherals exist (UART, timers, ...): accesses to them are bus errors. With RAM above "
+    "0x20000000 the SDRAM controller's registers are there.\n"
+    "Unknown options and everything after '--' are passed to the program, to which also belongs what "
+    "follows it and is no option of exec.\n"
+    "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, each "
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
 std::size_t read_input(std::span<std::uint8_t> to, const std::atomic<bool>* stop,
@@ -99,15 +96,18 @@ void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
   command
       .add_option("--log-registers", request.pattern,
                   "Log accesses to registers whose BLOCK.REGISTER matches this regular expression")
-      ->check([](const std::string& s) {
-        return s.empty() ? std::string("a regular expression is needed; '.' takes all") : "";
-      });
+      ->type_name("REGEX")
+      ->check(CLI::Validator(
+          [](const std::string& s) {
+            return s.empty() ? std::string("a regular expression is needed; '.' takes all") : "";
+          },
+          ""));
   command
-      .add_option(
-          "--log-registers-kept", request.kept,
-          "How many of the last accesses are kept (4096); with --gdb also of a log that the "
-          "debugger begins")
-      ->check(CLI::Range(std::size_t{1}, kRegisterLogMost));
+      .add_option("--log-registers-kept", request.kept,
+                  "Keep the last N accesses; also of a log that GDB begins")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, kRegisterLogMost))
+      ->capture_default_str();
 }
 
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
@@ -119,19 +119,29 @@ void check_register_log(const RegisterLogRequest& request, const std::string& gd
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   CLI::App* c = app.add_subcommand("exec", "Run a program on core and memory, with semihosting");
   c->add_option("program", o.program, "ELF file, or a flat binary with --load and --entry")
-      ->required();
-  c->add_option("--load", o.load, "Address of a flat binary's first byte");
-  c->add_option("--entry", o.entry, "Address of a flat binary's first instruction");
+      ->required()
+      ->type_name("FILE");
+  c->add_option("--load", o.load, "Address of a flat binary's first byte")->type_name("ADDR");
+  c->add_option("--entry", o.entry, "Address of a flat binary's first instruction")
+      ->type_name("ADDR");
   c->add_flag("--thumb", o.thumb, "A flat binary begins in Thumb state");
+  c->add_flag("--caches", o.caches,
+              "Begin with MMU and caches on: RAM cacheable and write-back, everything else not");
   c->add_flag("--fast-memory", o.fast_memory, "Memory without wait states; no bus and no SDRAM");
-  c->add_option("--root", o.root, "Folder of the program's files; without it there are none");
-  c->add_option("-s,--set", o.sets, "Set a parameter, key=value; may be repeated")
+  c->add_option("--root", o.root, "Folder of the program's files; without it there are none")
+      ->type_name("DIR");
+  c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, stalls.csv, config.json and host.json");
-  c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host, :PORT; :0 takes a free one");
+  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, stalls.csv, config.json and host.json")
+      ->type_name("DIR");
+  c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
+      ->type_name(":PORT");
   add_register_log_options(*c, o.registers);
   c->add_flag("--strict", o.strict,
-              "A feature that the guest uses and the model lacks is an error");
+              "Stop with an error when the program uses a feature that is not modelled, or a "
+              "parameter that is set has no effect");
+  c->add_flag("-q,--quiet", o.quiet, "Print no figures, hints and warnings; errors only");
   c->footer(kMemoryHelp);
   return c;
 }
@@ -168,7 +178,7 @@ std::vector<std::string> take_program_arguments(std::vector<std::string>& args) 
   return guest;
 }
 
-std::string core_table(std::span<const StatRow> stats) {
+std::string core_table(std::span<const StatRow> stats, Frequency core_clock) {
   const auto count = [&](const std::string& name) {
     const StatRow* row = find(stats, name);
     return row ? std::get<std::uint64_t>(row->value) : 0;
@@ -180,6 +190,9 @@ std::string core_table(std::span<const StatRow> stats) {
     out += fmt::format("  {:.2f} an instruction",
                        static_cast<double>(cycles) / static_cast<double>(instructions));
   out += "\n";
+  if (!core_clock.stopped())
+    out += fmt::format("  {:<24} {:>14.6f}  s at {:.5g} MHz\n", "time",
+                       static_cast<double>(cycles) / core_clock.hertz(), core_clock.hertz() * 1e-6);
   constexpr std::string_view kStall = "cpu.stall.";
   for (const auto& row : stats) {
     const bool cause = row.name.starts_with(kStall) &&
@@ -194,6 +207,15 @@ std::string core_table(std::span<const StatRow> stats) {
   return out;
 }
 
+namespace {
+
+bool caches_unused(std::span<const StatRow> stats) {
+  const StatRow* row = find(stats, "cpu.icache.accesses");
+  return row && row->value == StatBase::Value{std::uint64_t{0}};
+}
+
+}  // namespace
+
 int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                  const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
@@ -205,6 +227,15 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   executor->declare(params);
   Experiment experiment(params);
   for (const auto& set : o.sets) experiment.override_with(set);
+  std::ostream nowhere(nullptr);
+  const RemarkScope remarks(o.quiet ? nowhere : context.err, o.strict);
+  warn_without_effect(params, experiment);
+  if (o.fast_memory)
+    for (const auto* p : params.all())
+      if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
+          (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
+        Diagnostics::instance().configuration(fmt::format(
+            "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM", p->key()));
   const ExecProgram program = program_of(o);
   std::optional<std::uint16_t> gdb_port;
   if (!o.gdb.empty()) gdb_port = parse_gdb_port(o.gdb);
@@ -212,9 +243,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
     dir.emplace(o.out_dir, "exec");
-    dir->write("config.json", config_json(params, experiment, version_text()));
+    dir->write("config.json", config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
   }
-  const RemarkScope remarks(context.err, o.strict);
   HostConsole console(context);
   const ExecResult result = executor->run({.program = program,
                                            .arguments = o.arguments,
@@ -222,13 +252,19 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                                            .params = params,
                                            .gdb_port = gdb_port,
                                            .notes = context.err,
+                                           .caches = o.caches,
                                            .fast_memory = o.fast_memory,
                                            .console = console,
                                            .stop = context.stop ? *context.stop : kNeverStops,
                                            .registers = o.registers});
   context.out.flush();
   const bool lost = !context.out;
-  context.err << core_table(result.stats) << std::flush;
+  if (!o.quiet) {
+    context.err << core_table(result.stats, result.core_clock);
+    if (!o.caches && !o.fast_memory && caches_unused(result.stats))
+      context.err << "  The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
+    context.err << std::flush;
+  }
   if (!dir) context.err << result.registers << std::flush;
   if (dir) {
     dir->write("stalls.csv", stalls_csv(result.stalls));

@@ -17,7 +17,7 @@ struct ExecOptions {
   std::vector<std::string> sets;
   std::string load, entry, root, out_dir, gdb;
   RegisterLogRequest registers;
-  bool thumb = false, fast_memory = false, strict = false;
+  bool thumb = false, fast_memory = false, caches = false, strict = false, quiet = false;
 };
 
 /// `--log-registers` and its size, of run and exec.
@@ -35,7 +35,7 @@ std::vector<std::string> take_program_arguments(std::vector<std::string>& args);
 int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
                  const CliContext& context);
 
-/// Instructions, clocks and where they went, aligned, one per line.
-std::string core_table(std::span<const StatRow> stats);
+/// Instructions, clocks, time and where the clocks went, aligned, one per line.
+std::string core_table(std::span<const StatRow> stats, Frequency core_clock);
 
 }  // namespace fovea::app

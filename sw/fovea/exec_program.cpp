@@ -40,7 +40,7 @@ std::uint32_t parse_address(const std::string& option, const std::string& text) 
   std::uint32_t value = 0;
   const auto [stopped, error] = std::from_chars(begin, end, value, hex ? 16 : 10);
   if (error != std::errc() || stopped != end || begin == end)
-    throw UserError(fmt::format("{} '{}' is no address; allowed: 0 to 0xffffffff", option,
+    throw UserError(fmt::format("{} '{}' is not an address; allowed: 0 to 0xffffffff", option,
                                 one_line(text)));
   return value;
 }
@@ -88,7 +88,8 @@ std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64
   return base;
 }
 
-ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base) const {
+ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base,
+                         bool caches) const {
   ExecMap m;
   m.ram_size = ram_size;
   // The lowest segment that is no guest of the internal RAM chooses the window; if all are loaded
@@ -125,7 +126,15 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
   // The last address of the address space cannot be the end of a stack.
   const std::uint64_t top =
       std::min<std::uint64_t>(m.ram_base + ram_size, (std::uint64_t{1} << 32) - kHeapAlignment);
-  used.emplace_back(top, top);
+  if (caches) {
+    m.table = static_cast<std::uint32_t>(m.ram_base + ram_size - ExecMap::kTableBytes);
+    for (const auto& [from, to] : used)
+      if (to > m.table)
+        throw UserError(fmt::format("--caches: program '{}' needs the last {} bytes of RAM itself; "
+                                    "allowed: a program that leaves them free (ddr.part sets the size)",
+                                    one_line(name_), ExecMap::kTableBytes));
+  }
+  used.emplace_back(caches ? m.table : top, top);
   std::uint64_t free_from = used.front().second, best = 0;
   for (const auto& [from, to] : used) {
     const std::uint64_t aligned = (free_from + kHeapAlignment - 1) / kHeapAlignment * kHeapAlignment;

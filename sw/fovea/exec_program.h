@@ -18,6 +18,10 @@ struct ExecMap {
   bool tcm = false;  ///< the chip's internal RAM lies at 0x0 and 0x10000
   /// The largest piece of RAM that the program leaves free: heap from below, stack from the top.
   std::uint32_t free_base = 0, free_end = 0;
+  /// Where a translation table and the preamble that turns MMU and caches on lie: kTableBytes of
+  /// RAM. 0: none asked for.
+  std::uint32_t table = 0;
+  static constexpr std::uint32_t kTableBytes = 0x8000;
   std::uint32_t heap_limit() const { return free_end - stack_bytes(); }
   std::uint32_t stack_bytes() const { return std::min((free_end - free_base) / 4, 8u << 20); }
 };
@@ -41,7 +45,8 @@ class ExecProgram {
   }
   /// @param ram_base where RAM begins; empty: the multiple of its size below the lowest segment.
   /// @throws UserError if the segments do not fit into one map
-  ExecMap map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base = {}) const;
+  ExecMap map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base = {},
+              bool caches = false) const;
 
  private:
   std::string name_;

@@ -8,6 +8,7 @@
 #include "model/common/slices.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/exec_board.h"
+#include "sw/fovea/exec_caches.h"
 #include "sw/fovea/flat_machine.h"
 
 namespace fovea::app {
@@ -53,7 +54,8 @@ class BoardExecutor final : public Executor {
 ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& map,
                                     const ExecClocks& clocks) {
   board_ = std::make_unique<ExecBoard>("exec", ExecBoardParams{cpu_, crossbar_, config_bus_, ddr_},
-                                       map, clocks, request.program.entry());
+                                       map, clocks,
+                                       map.table ? preamble_entry(map) : request.program.entry());
   auto& arm = board_->arm;
   // The console is the program's: no remark of the kernel about the end.
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
@@ -116,10 +118,12 @@ ExecResult BoardExecutor::run(const ExecRequest& request) {
       throw UserError("key '" + cache->size.key() + "': '" + cache->size.text() +
                       "' is not allowed; allowed: powers of two");
   const ExecMap map =
-      request.program.map(memory_bytes(), parse_ram_base(exec_.ram_base(), memory_bytes()));
+      request.program.map(memory_bytes(), parse_ram_base(exec_.ram_base(), memory_bytes()),
+                          request.caches);
   const ExecClocks clocks = ExecClocks::preset(clocks_.preset());
   ExecResult result = request.fast_memory ? run_flat(request, cpu_, map, clocks.core)
                                           : run_board(request, map, clocks);
+  result.core_clock = clocks.core;
   const std::chrono::duration<double> wall = Wall::now() - started;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

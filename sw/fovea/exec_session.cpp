@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "sw/fovea/exec_caches.h"
 #include "sw/fovea/stall_regions.h"
 
 namespace fovea::app {
@@ -72,6 +73,7 @@ void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm)
     put(s.address + static_cast<std::uint32_t>(s.data.size()),
         std::vector<std::uint8_t>(s.memory_size - s.data.size()));
   }
+  if (map_.table) put(map_.table, cache_preamble(map_, program_.entry()));
   core_.set_reg(13, map_.free_end);
   core_.describe = [this](std::uint32_t address) { return program_.describe(address); };
 }

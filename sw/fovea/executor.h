@@ -24,6 +24,7 @@ struct ExecRequest {
   const ParamSet& params;
   std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before it starts
   std::ostream& notes;                 ///< for whoever watches
+  bool caches = false;                 ///< MMU and caches are on when the program begins
   bool fast_memory = false;            ///< flat memory without wait states; no bus, no SDRAM
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
@@ -34,6 +35,7 @@ struct ExecResult {
   bool complete = false;      ///< the program ended by itself
   bool killed = false;        ///< by the debugger
   int exit_code = 0;          ///< its own
+  Frequency core_clock;
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;

@@ -4,6 +4,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <limits>
 #include <sstream>
 
 #include "sw/fovea/checked_file.h"
@@ -203,7 +204,30 @@ std::string ValueOrigin::text() const {
 bool is_path_key(const ParamBase& param) {
   if (!dynamic_cast<const TextParam*>(&param)) return false;
   const std::string& key = param.key();
-  return key.ends_with(".file") || key.ends_with(".elf");
+  return key.ends_with(".file") || key.ends_with(".elf") || key.ends_with(".calibration");
+}
+
+void warn_without_effect(const ParamSet& params, const Experiment& experiment) {
+  for (const ParamBase* p : params.all()) {
+    const int rank = experiment.rank(p->key());
+    if (rank < 0) continue;
+    for (const auto& effect : p->effects()) {
+      if (effect.effective()) continue;
+      std::string because;
+      bool later = false;
+      for (const ParamBase* decider : effect.deciders) {
+        // Of many choices those that were not made would only fill the line.
+        if (decider == effect.deciders.front() || experiment.rank(decider->key()) >= 0)
+          because += (because.empty() ? "" : ", ") + decider->key() + " = " + decider->text();
+        later |= experiment.rank(decider->key()) > rank;
+      }
+      if (!later)
+        Diagnostics::instance().configuration(
+            fmt::format("'{}' is set ({}) but has no effect with {}: it needs {}", p->key(),
+                        experiment.origin(p->key()).text(), because, effect.condition));
+      break;
+    }
+  }
 }
 
 void Experiment::set(std::string_view key, std::string value, const fs::path& folder) {
@@ -254,6 +278,7 @@ void Experiment::load(const fs::path& file, std::vector<fs::path>& chain) {
       load(other, chain);
     }
   }
+  const int rank = next_rank_++;  // above those of the included files
   for (const auto& e : entries) {
     if (e.key == kInclude) continue;
     try {
@@ -262,6 +287,7 @@ void Experiment::load(const fs::path& file, std::vector<fs::path>& chain) {
       throw UserError(at(file, e.line) + ": " + one_line(error.what()));
     }
     origins_[e.key] = {ValueOrigin::Kind::kFile, file.string(), e.line};
+    ranks_[e.key] = rank;
   }
   chain.pop_back();
 }
@@ -273,6 +299,7 @@ void Experiment::preset(std::string_view key, std::string_view value, const std:
     throw UserError(fmt::format("'{}': {}", one_line(file), one_line(error.what())));
   }
   origins_[std::string(key)] = {ValueOrigin::Kind::kFile, file, 0};
+  ranks_[std::string(key)] = 0;
 }
 
 void Experiment::override_with(std::string_view assignment) {
@@ -286,6 +313,12 @@ void Experiment::override_with(std::string_view assignment) {
     throw UserError(fmt::format("-s {}: {}", one_line(assignment, 80), one_line(error.what())));
   }
   origins_[key] = {ValueOrigin::Kind::kCommandLine, "", 0};
+  ranks_[key] = std::numeric_limits<int>::max();
+}
+
+int Experiment::rank(std::string_view key) const {
+  const auto found = ranks_.find(key);
+  return found == ranks_.end() ? -1 : found->second;
 }
 
 const ValueOrigin& Experiment::origin(std::string_view key) const {

@@ -39,6 +39,10 @@ class Experiment {
   /// Applies one `key=value` of the command line. @throws UserError
   void override_with(std::string_view assignment);
 
+  /// Order of precedence of the place where a key was set: -1 nowhere (the default), then the files,
+  /// an included one below the one that includes it, highest the command line.
+  int rank(std::string_view key) const;
+
   /// Origin of a key's value, also of keys that nobody set.
   const ValueOrigin& origin(std::string_view key) const;
   /// The experiment file's name without folder and extension; empty before load().
@@ -51,11 +55,18 @@ class Experiment {
   void set(std::string_view key, std::string value, const std::filesystem::path& folder);
   ParamSet& params_;
   std::map<std::string, ValueOrigin, std::less<>> origins_;
+  std::map<std::string, int, std::less<>> ranks_;
+  int next_rank_ = 0;
   std::vector<std::string> files_;
   std::string name_;
 };
 
-/// True for text parameters that name a file (key ends in `.file`, `.elf` or `.source`): a relative
+/// Warns of each key that was set although another one takes its effect away. A key that a file sets
+/// and that loses its effect by a later choice (`-s camera.kind=chart`) is not worth a word.
+void warn_without_effect(const ParamSet& params, const Experiment& experiment);
+
+/// True for text parameters that name a file (key ends in `.file`, `.elf` or `.calibration`): a
+/// relative
 /// name in an experiment file means relative to that file's folder, on the command line relative
 /// to the working folder.
 bool is_path_key(const ParamBase& param);

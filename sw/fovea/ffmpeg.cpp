@@ -85,9 +85,12 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
     at = static_cast<std::size_t>(end - text.data());
   }
   const auto [width, height, largest] = header;
-  if (largest != 255) throw std::runtime_error("ffmpeg wrote a pixmap of another depth");
+  if (largest != 255)
+    throw std::runtime_error("its pictures have more than 8 bits a channel, and ffmpeg does not "
+                             "convert them; convert the file with '-pix_fmt yuv420p'");
   if (width > kMaxPictureSide || height > kMaxPictureSide)
-    throw std::runtime_error("the picture is too large");
+    throw std::runtime_error(fmt::format("its pictures of {}x{} pixels are too large; allowed: up to {} "
+                                         "pixels a side", width, height, kMaxPictureSide));
   const std::size_t size = std::size_t{3} * width * height;
   const std::size_t begin = at + 1;  // one separator behind the last number
   if (text.size() < begin + size) {
@@ -280,7 +283,9 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
     command.push_back(fmt::format("scale={}:{}:flags=bicubic+accurate_rnd+full_chroma_int+bitexact",
                                   options.width, options.height));
   }
-  for (const char* word : {"-vsync", "passthrough", "-f", "image2pipe", "-c:v", "ppm", "pipe:1"})
+  // Without -pix_fmt a source of more than 8 bits would become a pixmap of 16.
+  for (const char* word : {"-vsync", "passthrough", "-f", "image2pipe", "-c:v", "ppm", "-pix_fmt",
+                           "rgb24", "pipe:1"})
     command.push_back(word);
 
   ChildProcess child(command, ChildProcess::Stream::kOutput,
@@ -308,6 +313,8 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
          "text");
   if (const auto at = words.find(kFootage); at != std::string::npos)
     words.replace(at, std::string_view(kFootage).size(), "the file");
+  if (child.messages().find("matches no streams") != std::string::npos)
+    fail("it has no pictures (only sound?); allowed: a picture or a film");
   if (status != 0)
     fail(fmt::format("ffmpeg ended with status {}{}", status, words.empty() ? "" : ": " + words));
   if (!buffer.empty()) fail("ffmpeg's output ends within a frame");
@@ -317,6 +324,48 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
     if (f.width != frames[0].width || f.height != frames[0].height)
       fail("its frames differ in size");
   return frames;
+}
+
+FilmInfo film_info(const std::filesystem::path& file, const std::string& program) {
+  FilmInfo out;
+  std::string text;
+  Descriptor film(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (film.get() < 0) return out;
+  try {
+    ChildProcess child({program, "-v", "error", "-protocol_whitelist", "file,pipe", "-format_whitelist",
+                        kFormats, "-select_streams", "v:0", "-show_entries",
+                        "stream=width,height,sample_aspect_ratio,avg_frame_rate", "-of",
+                        "default=noprint_wrappers=1", "-i", kFootage},
+                       ChildProcess::Stream::kOutput, "cannot ask ffprobe", film.get());
+    while (text.size() < kMaxMessageBytes && child.read_some(text, nullptr)) {
+    }
+    child.kill();
+    child.finish();
+  } catch (const UserError&) {
+    return out;  // the film itself will be read or refused by ffmpeg
+  }
+  const auto pair = [&](std::string_view key, char separator, std::uint64_t& a, std::uint64_t& b) {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) return false;
+    const char* const end = text.data() + text.size();
+    const auto first = std::from_chars(text.data() + at + key.size(), end, a);
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != separator) return false;
+    const auto second = std::from_chars(first.ptr + 1, end, b);
+    return second.ec == std::errc() && a > 0 && b > 0 && a < 1'000'000'000 && b < 1'000'000'000;
+  };
+  const auto number = [&](std::string_view key) {
+    unsigned n = 0;
+    if (const std::size_t at = text.find(key); at != std::string::npos)
+      std::from_chars(text.data() + at + key.size(), text.data() + text.size(), n);
+    return n;
+  };
+  out.width = number("width=");
+  out.height = number("height=");
+  std::uint64_t a = 0, b = 0;
+  if (pair("avg_frame_rate=", '/', a, b)) out.rate = Frequency(a, b);
+  if (pair("sample_aspect_ratio=", ':', a, b))
+    out.pixel_aspect = static_cast<double>(a) / static_cast<double>(b);
+  return out;
 }
 
 RgbImage load_still(const std::filesystem::path& file, const std::atomic<bool>* stop) {

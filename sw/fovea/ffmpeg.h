@@ -37,6 +37,15 @@ struct DecodeOptions {
 std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
                                     const DecodeOptions& options);
 
+/// What a film says about itself.
+struct FilmInfo {
+  Frequency rate;           ///< frames per second; stopped: not known
+  double pixel_aspect = 1;  ///< width / height of a pixel as it is to be shown
+  unsigned width = 0, height = 0;  ///< of the file, before any scaling; 0: not known
+};
+/// Asks `ffprobe`, which comes with ffmpeg; what it cannot tell stays unknown.
+FilmInfo film_info(const std::filesystem::path& file, const std::string& program = "ffprobe");
+
 /// A still: PNG natively (by its signature, whatever its name), anything else through ffmpeg.
 /// @throws UserError naming the file
 /// @throws Stopped

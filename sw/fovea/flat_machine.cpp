@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "sw/fovea/exec_caches.h"
 #include "sw/fovea/exec_session.h"
 
 namespace fovea::app {
@@ -60,7 +61,7 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   core.set_clock(core_clock, 0);
   std::string failure;
   try {
-    core.reset(request.program.entry(), 0);
+    core.reset(map.table ? preamble_entry(map) : request.program.entry(), 0);
     core.run();
   } catch (const GuestFailure& e) {
     failure = e.what();

@@ -1,5 +1,7 @@
 #include "sw/fovea/loader.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -8,6 +10,13 @@
 #include "sw/lens/param_page.h"
 
 namespace fovea::app {
+
+namespace {
+
+/// Frames of a film that are kept; it begins again after them.
+constexpr std::size_t kMostFilmFrames = 250;
+
+}  // namespace
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
@@ -32,14 +41,40 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
                     camera.kind() + "; allowed: a file name, or camera.kind: chart");
   if (camera.kind.is("sphere")) return {load_still(camera.file(), stop)};
   DecodeOptions options;
-  // Two fields a frame; some frames more for start-up. Films repeat when they end.
-  options.max_frames = 250;
+  options.max_frames = kMostFilmFrames;
   // All of them are kept. More than twice the raster's size shows nothing more, and takes the host's
   // memory.
   options.most_width = 2 * params.raster_width();
   options.most_height = 2 * params.raster_height();
   options.stop = stop;
   return decode_frames(camera.file(), options);
+}
+
+std::vector<std::string> footage_notes(const board::BoardParams& params,
+                                       const std::vector<RgbImage>& frames, const FilmInfo& info) {
+  std::vector<std::string> out;
+  const auto& camera = params.camera;
+  if (frames.empty() || camera.kind.is("chart")) return out;
+  // A film's frames may have been scaled down when they were read.
+  const unsigned width = info.width ? info.width : frames.front().width;
+  const unsigned height = info.height ? info.height : frames.front().height;
+  // Television's raster is shown 4:3. A film that is bent into a lens keeps its shape.
+  const bool film = camera.kind.is("video");
+  const double change = height * (4.0 / 3) / (width * info.pixel_aspect);
+  if (!(film && camera.video_fov() > 0) && std::abs(change - 1) > 0.01)
+    out.push_back(fmt::format("footage of {}x{} is stretched to 4:3, {:.0f} % {}", width, height,
+                              100 * std::abs(change - 1),
+                              change > 1 ? "wider" : "narrower"));
+  if (!film) return out;
+  const double camera_rate = params.video.standard.is("pal") ? 25 : 30000.0 / 1001;
+  if (!info.rate.stopped() && std::abs(camera_rate / info.rate.hertz() - 1) > 0.005)
+    out.push_back(fmt::format("footage of {:.4g} frames/s is shown at {:.4g} frames/s, {:.3g} times as "
+                              "fast",
+                              info.rate.hertz(), camera_rate, camera_rate / info.rate.hertz()));
+  if (frames.size() == kMostFilmFrames)
+    out.push_back(fmt::format("at most the first {} frames of the footage are used, over and over",
+                              kMostFilmFrames));
+  return out;
 }
 
 namespace {
@@ -89,8 +124,41 @@ void complete_params(board::BoardParams& params) {
     params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
 }
 
+namespace {
+
+/// The firmware's calibrated lens in pixels of the raster that the camera sends.
+video::LensModel firmware_lens(const board::BoardParams& params) {
+  const auto& lens = params.lens;
+  const auto& kb = lens.kb();
+  return video::LensModel::kannala_brandt(kb[0], kb[1], kb[2], kb[3], {kb[4], kb[5], kb[6], kb[7]},
+                                          lens.kb.key())
+      .scaled(params.raster_width() / lens.kb_width(), params.raster_height() / lens.kb_height());
+}
+
+/// Whoever sets only one of the two lenses gets a skewed picture, which is hardly meant. Whoever
+/// sets both may want it: firmware can be wrong about a lens on a real board too.
+void check_same_lens(const board::BoardParams& params, const video::LensModel& firmware,
+                     const video::LensModel& camera) {
+  if (params.lens.kb.user_set() == params.camera.kb.user_set()) return;
+  const auto apart = [](double a, double b, double scale) { return std::abs(a - b) > scale / 100; };
+  if (!apart(firmware.fx(), camera.fx(), camera.fx()) &&
+      !apart(firmware.fy(), camera.fy(), camera.fy()) &&
+      !apart(firmware.cx(), camera.cx(), params.raster_width()) &&
+      !apart(firmware.cy(), camera.cy(), params.raster_height()))
+    return;
+  Diagnostics::instance().configuration(fmt::format(
+      "{} is set and {} is not, and they describe different lenses (optical centre {:.1f}, {:.1f} "
+      "in the camera and {:.1f}, {:.1f} in the firmware, in pixels of the {}x{} raster); "
+      "camera.calibration sets both",
+      params.camera.kb.user_set() ? "camera.kb" : "lens.kb",
+      params.camera.kb.user_set() ? "lens.kb" : "camera.kb", camera.cx(), camera.cy(),
+      firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height()));
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
-                                         const video::StampedSource&) {
+                                         const video::StampedSource& source) {
   const board::LensParams& lens = params.lens;
   param_page_t page;
   param_page_default(&page);
@@ -110,13 +178,19 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.out_aspect = lens.out_aspect();
   page.mapping = static_cast<std::uint32_t>(lens.mapping.index());
   if (lens.mapping.is("kannala_brandt")) {
-    // The calibration in pixels of the raster that the camera sends.
-    const auto& kb = lens.kb();
     const double w = params.raster_width(), h = params.raster_height();
-    const auto model = video::LensModel::kannala_brandt(kb[0], kb[1], kb[2], kb[3],
-                                                        {kb[4], kb[5], kb[6], kb[7]})
-                           .scaled(w / lens.kb_width(), h / lens.kb_height());
+    const video::LensModel model = firmware_lens(params);
+    if (const auto* still = dynamic_cast<const video::SphereSource*>(&source);
+        still && params.camera.lens.is("kannala_brandt"))
+      check_same_lens(params, model, still->raster_lens());
     const double theta_max = lens.theta_max() * M_PI / 180;
+    if (theta_max > model.theta_max() + 1e-12) {
+      const double valid = model.theta_max() * 180 / M_PI;
+      throw UserError(fmt::format(
+          "key 'lens.theta_max': {}, but the calibration of the lens (lens.kb) is valid only up to "
+          "{:.2f} deg; use lens.theta_max={:.0f}deg",
+          lens.theta_max.text(), valid, std::floor(valid)));
+    }
     const auto table = model.table(PARAM_TABLE_MAX, theta_max);
     page.mapping = LENS_TABLE;
     page.table_count = PARAM_TABLE_MAX;

@@ -4,11 +4,13 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "model/board/board_params.h"
 #include "model/video/scene/sources.h"
 #include "sw/fovea/elf_image.h"
+#include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/rgb_image.h"
 
 namespace fovea::app {
@@ -21,6 +23,9 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params);
 /// @throws Stopped when `stop` is set while ffmpeg decodes
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
                                    const std::atomic<bool>* stop = nullptr);
+/// What the camera changes in the footage, a sentence each: its shape, its rate, its length.
+std::vector<std::string> footage_notes(const board::BoardParams& params,
+                                       const std::vector<RgbImage>& frames, const FilmInfo& info);
 /// Sets what follows from other keys and was not set itself (the decoder's standard).
 void complete_params(board::BoardParams& params);
 /// The bytes of the parameter page (sw/lens/README.md).

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sw/fovea/remarks.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -80,10 +81,16 @@ std::string ns_text(Picoseconds ps) {
 }
 
 std::string config_json(const ParamSet& params, const Experiment& experiment,
-                        std::string_view version) {
-  std::string out =
-      fmt::format("{{\n  \"format\": {},\n  \"version\": {},\n  \"experiment\": {},\n",
-                  js(kRunFormat), js(version), js(experiment.name()));
+                        const Provenance& provenance) {
+  std::string out = fmt::format(
+      "{{\n  \"format\": {},\n  \"version\": {},\n  \"commit\": {},\n  \"modified\": {},\n"
+      "  \"experiment\": {},\n  \"sha256\": {{",
+      js(kRunFormat), js(provenance.version), js(provenance.commit), provenance.modified,
+      js(experiment.name()));
+  for (const auto& [name, hash] : provenance.inputs)
+    out += fmt::format("{}\n    {}: {}", &name == &provenance.inputs.front().first ? "" : ",", js(name),
+                       hash.empty() ? "null" : js(hash));
+  out += provenance.inputs.empty() ? "},\n" : "\n  },\n";
   std::vector<const ParamBase*> sorted(params.all().begin(), params.all().end());
   std::sort(sorted.begin(), sorted.end(),
             [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
@@ -102,18 +109,18 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
   return out + "\n  }\n}\n";
 }
 
-std::vector<Remark> collect_remarks(const Diagnostics& diagnostics) {
+std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay) {
   std::vector<Remark> out;
   for (const auto& [key, count] : diagnostics.counts())
-    out.push_back(
-        {key.first == Diagnostics::Kind::kGuest ? "guest" : "not modelled", key.second, count});
+    out.push_back({std::string(warning_kind(key.first, replay)),
+                   warning_text(key.first, key.second), count});
   return out;
 }
 
 std::string stats_json(std::vector<StatRow> rows, bool complete,
                        const std::vector<Remark>& remarks) {
   std::string out = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\"", complete);
-  out += ",\n  \"remarks\": [";
+  out += ",\n  \"warnings\": [";
   for (std::size_t i = 0; i < remarks.size(); ++i)
     out += fmt::format("{}\n    {{\"kind\": {}, \"what\": {}, \"count\": {}}}", i ? "," : "",
                        js(remarks[i].kind), js(remarks[i].what), remarks[i].count);
@@ -198,11 +205,35 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
       return fmt::format("{:.4g} {}{}", v / p.scale, p.text, bytes ? "B" : unit);
     }
   }
+  if (unit == "x") return fmt::format("{:.2f}x real time", v);
   if (unit == "ratio") return fmt::format("{:.1f} %", 100 * v);
   const std::string number =
       whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
   // "count", "frames" and the like are said by the name.
-  return unit.empty() || unit == "count" ? number : fmt::format("{} {}", number, unit);
+  return unit.empty() || unit == "count" || unit == "1" ? number : fmt::format("{} {}", number, unit);
+}
+
+std::string verdict(std::span<const StatRow> stats) {
+  const auto count = [&](const char* name) {
+    const StatRow* row = find(stats, name);
+    const auto* n = row ? std::get_if<std::uint64_t>(&row->value) : nullptr;
+    return n ? *n : 0;
+  };
+  const StatRow* rate = find(stats, "frame.rate");
+  const std::uint64_t displayed = count("frame.displayed"), repeated = count("frame.repeated");
+  if (displayed == 0 || !rate || !find(stats, "frame.repeated")) return "";
+  const std::uint64_t fresh = displayed - std::min(repeated, displayed);
+  const std::uint64_t dropped = count("frame.dropped");
+  const auto some = [](std::uint64_t n) { return n ? std::to_string(n) : std::string("none"); };
+  // The camera sends a frame for each one that is displayed.
+  std::string out = fmt::format("{}: {} of {} camera frames shown ({:.4g}/s), {} dropped, {} repeated",
+                                repeated || dropped ? "frame rate missed" : "frame rate met", fresh,
+                                displayed, std::get<double>(rate->value), some(dropped),
+                                some(repeated));
+  for (const auto& [name, what] : {std::pair("capture.overflows", "capture overflow"),
+                                   std::pair("display.underflows", "display underflow")})
+    if (const std::uint64_t n = count(name)) out += fmt::format(", {} {}{}", n, what, n > 1 ? "s" : "");
+  return out + "\n";
 }
 
 std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host) {
@@ -234,9 +265,9 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
   for (const char* name : kHost)
     if (const auto* row = find(host, name))
       lines.emplace_back(name, human_text(row->value, row->unit));
+  std::string out = verdict(stats);
   std::size_t width = 0;
   for (const auto& line : lines) width = std::max(width, line.first.size());
-  std::string out;
   for (const auto& [name, text] : lines) out += fmt::format("  {:<{}}  {}\n", name, width, text);
   return out;
 }

@@ -10,6 +10,7 @@
 #include "model/common/check.h"
 #include "model/common/stats.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/provenance.h"
 
 namespace fovea::app {
 
@@ -58,16 +59,16 @@ std::string number_text(const StatBase::Value& value);
 /// Picoseconds as nanoseconds with exactly three decimals (no rounding).
 std::string ns_text(Picoseconds ps);
 
-/// Every parameter: value, unit, where the value was written, what kind of number the default is.
+/// What made the result, and every parameter: value, unit, where the value was written, what kind of number the default is.
 std::string config_json(const ParamSet& params, const Experiment& experiment,
-                        std::string_view version);
+                        const Provenance& provenance);
 
-/// Diagnostics of the run as stats.json lists them.
+/// A warning as stats.json lists it.
 struct Remark {
   std::string kind, what;
   std::uint64_t count = 0;
 };
-std::vector<Remark> collect_remarks(const Diagnostics& diagnostics);
+std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay = false);
 
 /// Sorted by name, one figure per line: two equal runs give equal bytes. `complete` is false for a
 /// run that was stopped before its end. A name that occurs twice is a defect (FOVEA_CHECK).
@@ -92,7 +93,10 @@ std::string stalls_csv(std::span<const StallRow> rows);
 
 /// A figure for people: three to five digits and a fitting prefix ("40.2 ms", "165.9 MB").
 std::string human_text(const StatBase::Value& value, std::string_view unit);
-/// The headline figures that are among `rows`, aligned, one per line.
+/// Whether the firmware kept up with the camera, as one line with its end; empty if no corrected
+/// frame was displayed.
+std::string verdict(std::span<const StatRow> stats);
+/// The verdict and the headline figures that are among `rows`, aligned, one per line.
 std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host);
 
 }  // namespace fovea::app

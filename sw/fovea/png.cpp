@@ -64,7 +64,10 @@ RgbImage read_png(const std::filesystem::path& file) {
     if (result == SPNG_OK) return;
     if (result == SPNG_IO_EOF || result == SPNG_EOF || result == SPNG_EIDAT_TOO_SHORT)
       fail("the PNG file is cut short");
-    if (result == SPNG_EUSER_WIDTH || result == SPNG_EUSER_HEIGHT) fail("the picture is too large");
+    static const std::string too_large =
+        fmt::format("the picture is too large; allowed: up to {} pixels a side", kMaxPictureSide);
+    if (result == SPNG_EUSER_WIDTH || result == SPNG_EUSER_HEIGHT) 
+      fail(too_large.c_str());
     fail(spng_strerror(result));
   };
   if (!bytes.starts_with(kSignature)) fail("it is not a PNG file");

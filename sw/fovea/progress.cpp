@@ -51,7 +51,7 @@ std::string ProgressMeter::line(const Sample& now) const {
   std::string text = fmt::format("simulated {:.3f} s", seconds(p.simulated));
   text += p.frames_wanted ? fmt::format(", frame {}/{}", p.frames_shown, p.frames_wanted)
                           : fmt::format(", frame {}", p.frames_shown);
-  if (wall > 0 && simulated > 0) text += fmt::format(", {:.3f} s/s", simulated / wall);
+  if (wall > 0 && simulated > 0) text += fmt::format(", {:.2f}x real time", simulated / wall);
   // From the steady state: start-up runs at another speed and shows no frames.
   if (steady_ && p.frames_wanted > p.frames_shown &&
       p.frames_shown > steady_->progress.frames_shown) {
@@ -77,7 +77,7 @@ void ProgressMeter::add_host_rows(std::vector<StatRow>& rows) const {
   const double wall = Seconds(last_.wall - steady_->wall).count();
   if (wall <= 0) return;
   add("realtime_factor", seconds(last_.progress.simulated - steady_->progress.simulated) / wall,
-      "s/s", "simulated time / wall time, from the first displayed frame on");
+      "x", "speed against real time: simulated time / wall time, from the first displayed frame on");
   add("mips",
       static_cast<double>(last_.progress.instructions - steady_->progress.instructions) / wall /
           1e6,

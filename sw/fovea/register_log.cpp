@@ -32,7 +32,7 @@ void RegisterLog::start(const RegisterLogRequest& request) {
     pattern_.emplace(request.pattern, kSyntax);
   } catch (const std::regex_error& e) {
     throw UserError(
-        fmt::format("'{}' is no regular expression ({}); it is looked for in "
+        fmt::format("'{}' is not a regular expression ({}); it is looked for in "
                     "BLOCK.REGISTER, as in '^timer[01]\\.|PSC'",
                     one_line(request.pattern), e.what()));
   }

@@ -41,7 +41,7 @@ OpenTrace open_trace(const std::string& file) {
     out.source = std::move(t);
   } else {
     throw UserError(fmt::format(
-        "'{}' is no bus trace; allowed: a file of 'fovea run --bus-trace', or text that begins "
+        "'{}' is not a bus trace; allowed: a file of 'fovea run --bus-trace', or text that begins "
         "with '{}'",
         name, trace::TextTrace::kHeader));
   }
@@ -66,8 +66,8 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
   double sum = 0;
   for (const Picoseconds t : times) sum += static_cast<double>(t) * 1e-12;
   const auto [min, max] = std::minmax_element(times.begin(), times.end());
-  const std::string what = "remap of one frame, ";
-  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1", "frames whose remap ended"});
+  const std::string what = "time to correct (remap) one frame, ";
+  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1", "frames corrected (remap finished) in the trace"});
   rows.push_back({"frame.remap_time.min", static_cast<double>(*min) * 1e-12, "s",
                   what + "shortest"});
   rows.push_back({"frame.remap_time.mean", sum / static_cast<double>(times.size()), "s",
@@ -81,7 +81,7 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
                    const CliContext& context) {
   const auto started = Wall::now();
-  const RemarkScope remarks(context.err, false);
+  const RemarkScope remarks(context.err, false, true);
   OpenTrace trace = open_trace(options.trace);
   ReplayParams params;
   ParamSet set;
@@ -109,7 +109,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),
              "replay");
-  dir.write("config.json", config_json(set, experiment, version_text()));
+  dir.write("config.json", config_json(set, experiment, provenance_of(set, {{"trace", options.trace}})));
 
   ReplayPath path(one_line(options.trace), *trace.info, *trace.source, params,
                   options.memory_only);
@@ -132,7 +132,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete, collect_remarks(Diagnostics::instance())));
+  dir.write("stats.json", stats_json(stats, complete, collect_remarks(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   report_earlier(dir.commit(complete), context);
   context.out << summary_table(stats, host);

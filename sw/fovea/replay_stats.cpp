@@ -20,10 +20,10 @@ std::vector<StatRow> ReplayPath::stats() {
     rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
                     "share of replay.time in which the SDRAM's data bus moves data"});
     rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
-                    "share of replay.time in which no request is queued at the SDRAM"});
+                    "share of replay.time in which no request is queued at the SDRAM (not the bandwidth left over)"});
     if (queued > 0)
       rows.push_back({"ddr.efficiency", busy / queued, "ratio",
-                      "data clocks / clocks in which a request is queued"});
+                      "clocks with data on the SDRAM's bus / clocks in which a request is queued"});
   }
   for (const std::string& label : labels()) {
     std::uint64_t read = 0, write = 0, transactions = 0;
@@ -36,9 +36,9 @@ std::vector<StatRow> ReplayPath::stats() {
       one = &m;
     }
     const std::string bus = "bus." + label + ".";
-    rows.push_back({bus + "read_bytes", read, "B", "bytes read by this master"});
-    rows.push_back({bus + "write_bytes", write, "B", "bytes written by this master"});
-    rows.push_back({bus + "transactions", transactions, "1", "requests of this master"});
+    rows.push_back({bus + "read_bytes", read, "B", "bytes that " + label + " read"});
+    rows.push_back({bus + "write_bytes", write, "B", "bytes that " + label + " wrote"});
+    rows.push_back({bus + "transactions", transactions, "1", "requests of " + label});
     collect(*one->latency, rows);
     if (memory_only_) continue;  // only the crossbar knows of all waits
     add_wait_rows(label, &MasterWaits::read, "read", rows);
@@ -59,7 +59,10 @@ void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*dir
   const auto add = [&](std::string_view culprit, std::uint64_t ps) {
     rows.push_back({fmt::format("ddr.{}.wait.{}.{}", label, name, culprit),
                     static_cast<double>(ps) * 1e-12, "s",
-                    "time of its requests by who or what they waited for (own: its earlier ones)"});
+                    culprit == "own" ? fmt::format("total time that {}'s {}s waited behind its own "
+                                                   "earlier requests", label, name)
+                                     : fmt::format("total time of {}'s {}s by what they waited for: {}",
+                                                   label, name, culprit)});
   };
   for (std::size_t c = kMasterCount; c < kCulprits; ++c)
     add(culprit_name(static_cast<Culprit>(c)), sum.ps[c]);

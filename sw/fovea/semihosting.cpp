@@ -182,6 +182,13 @@ std::uint32_t Semihosting::open(SemihostingTarget& t, const Arguments& a) {
   if (free == open_.end() && open_.size() >= kMaxFiles) return failed(EMFILE);
   if (f.kind == File::Kind::kFree) {
     f.fd = files_.open(name, kModes[mode / 2]);
+    if (f.fd == -EACCES && !refused_) {
+      refused_ = true;  // one name is enough; a program may try thousands
+      Diagnostics::instance().guest(
+          fmt::format("semihosting: the file '{}' is refused; allowed: names relative to --root, "
+                      "without '..' and symbolic links",
+                      one_line(name, 100)));
+    }
     if (f.fd < 0) return failed(-f.fd);
     f.kind = File::Kind::kHost;
   }

@@ -73,6 +73,7 @@ class Semihosting {
     int fd = -1;             // kHost
     std::uint32_t at = 0;    // kFeatures
   };
+  bool refused_ = false;  ///< a file was, and it was said
   std::uint32_t operate(SemihostingTarget& t, std::uint32_t operation, std::uint32_t parameter);
   std::uint32_t open(SemihostingTarget& t, const Arguments& a);
   std::uint32_t close(std::uint32_t handle);

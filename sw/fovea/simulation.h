@@ -73,6 +73,7 @@ struct RunResult {
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
   std::string uart;  ///< all that the firmware printed
+  std::vector<std::string> notes;  ///< sentences for the person who looks, below the figures
   std::string registers;  ///< the log that was asked for
 };
 
@@ -82,6 +83,10 @@ class Simulation {
   virtual ~Simulation() = default;
   /// Adds all parameters of the board; called once, first.
   virtual void declare(ParamSet& params) = 0;
+  /// Files that a run reads beside those that a parameter names, by the parameter that could.
+  virtual std::vector<std::pair<std::string, std::filesystem::path>> input_files() const {
+    return {};
+  }
   /// Runs to the end. @throws UserError for input that only the board can judge (footage, program),
   ///   GuestFailure, NotModelled
   virtual RunResult run(const RunRequest& request) = 0;

@@ -181,11 +181,11 @@ TEST(ProgrammingTest, WordsOfShippedLoaders) {
   EXPECT_THAT(violations(words(67, 5, 5, 6, 15, 20, 3, 3, 3, 1896, 9), "mt47h128m16", k340),
               ElementsAre("SDTIMR T_RRD: 3 clocks programmed, MT47H128M16-25E needs tRRD 10 ns = 4 "
                           "at 340 MHz: 1 short",
-                          "SDTIMR T_RRD: 4 x 3 clocks programmed, MT47H128M16-25E needs tFAW 45 ns = "
+                          "SDTIMR T_RRD: 3 clocks programmed (4 tRRD = 12), MT47H128M16-25E needs tFAW 45 ns = "
                           "16 at 340 MHz: 4 short"));
   EXPECT_THAT(violations(words(31, 5, 5, 4, 11, 16, 3, 3, 2, 1895, 8), "mt47h64m16",
                          Frequency(243'000'000)),
-              ElementsAre("SDTIMR T_RRD: 4 x 3 clocks programmed, MT47H64M16-3 needs tFAW 50 ns = "
+              ElementsAre("SDTIMR T_RRD: 3 clocks programmed (4 tRRD = 12), MT47H64M16-3 needs tFAW 50 ns = "
                           "13 at 243 MHz: 1 short"));
   EXPECT_THAT(violations(words(28, 5, 5, 4, 10, 15, 3, 3, 2, 1684, 8), "mt47h64m16",
                          Frequency(216'000'000)),

@@ -7,6 +7,7 @@ rm -rf "$out"
 mkdir -p "$out"
 firmware=$(dirname "$fovea")/sw/firmware
 failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
 
 # expect NAME STATUS 'pattern'... -- command...
 expect() {
@@ -67,6 +68,26 @@ if [ -e "$out/run.tmp" ]; then
   failures=$((failures + 1))
 fi
 expect empty_out 2 "output folder ''" -- "$fovea" run "$out/small.yaml" -o ''
+expect version 0 '^fovea [0-9.]+ \(commit [0-9a-f]{12}(, modified)?\)$' -- "$fovea" --version
+
+# Keys without effect, and calibrations: OpenCV's file for camera and firmware, of another picture.
+expect no_effect 0 "warning \(configuration\): 'lens.fov' is set \(command line\) but has no effect with lens.mapping = kannala" \
+  -- run "$out/small.yaml" -s lens.mapping=kannala_brandt -s lens.fov=10deg
+grep -q '"kind": "configuration", "what": "'"'lens.fov'" "$out/run/stats.json" || fail 'no warning in stats.json'
+expect no_effect_strict 2 'lens.fov' -- run "$out/small.yaml" -s lens.mapping=kannala_brandt -s lens.fov=10deg --strict
+footage=$source/traces/footage
+left=(-s camera.kind=sphere -s camera.file="$footage/neozhaoliang-surround/left.png" -s lens.mapping=kannala_brandt
+      -s camera.calibration="$footage/neozhaoliang-surround/left.yaml")
+expect calibration_angle 2 'lens.theta_max' 'use lens.theta_max=86deg' -- run "$out/small.yaml" "${left[@]}"
+expect calibration 0 -- run "$out/small.yaml" "${left[@]}" -s lens.theta_max=86deg --strict
+for key in camera.kb lens.kb; do
+  grep -q "\"$key\": {\"value\": \"\[303.34009006384287, 322.29678244636966, .*\"origin\": \".*left.yaml\"" "$out/run/config.json" ||
+    fail "config.json: $key is not that of left.yaml"
+done
+grep -q "\"camera.calibration\": \"$(sha256sum <"$footage/neozhaoliang-surround/left.yaml" | cut -c1-64)\"" "$out/run/config.json" ||
+  fail 'config.json: no hash of left.yaml'
+expect other_picture 0 "warning.*left.yaml' is of a picture of 960x640.*im_front.jpg" -- \
+  run "$out/small.yaml" "${left[@]}" -s lens.theta_max=86deg -s camera.file="$footage/kalibr-parking/im_front.jpg"
 expect jump_nowhere 3 '0x70000000' 'prefetch abort' 'at 0x' -- run "$out/small.yaml" \
   -s firmware.elf="$firmware/jump_nowhere.elf"
 expect never_a_frame 3 'run.start_limit' 'pc 0x' -- run "$out/small.yaml" \

@@ -9,7 +9,7 @@ failures=0
 
 # expect NAME STATUS 'pattern'... -- command...
 expect() {
-  local name=$1 status=$2 got text
+  local name=$1 status=$2 got
   shift 2
   local patterns=()
   while [ "$1" != -- ]; do patterns+=("$1"); shift; done
@@ -29,8 +29,9 @@ expect() {
 }
 
 run() { "$fovea" exec "$@"; }
+text=
 fails=$programs/fails_arm_O2.elf
-expect help 0 'Memory:' '--fast-memory' 'belongs to the program' -- run --help
+expect help 0 'Memory:' '--fast-memory' 'passed to the program' -- run --help
 expect arm 5 '^flat$' 'cpu.cycles' -- run "$programs/flat_arm.bin" --load 0x8000 --entry 0x8000
 expect thumb 5 '^flat$' -- run "$programs/flat_thumb.bin" --load 0x80000000 --entry 0x80000000 --thumb
 expect fast 5 '^flat$' -- run --fast-memory --load=0 --entry=0 "$programs/flat_arm.bin"
@@ -53,7 +54,7 @@ done
 expect kept_alone 2 '--log-registers or --gdb' -- run --log-registers-kept=5 "$programs/registers.elf"
 expect registers 0 'ns  pc 0x8000000[0-9a-f] \(_start\+0x[0-9a-f]+\) arm_d wrote ddr.PBBPR = 0x00000002 PR_OLD_COUNT=2$' \
   'wrote ddr.SDRCR = 0xffffffff RR=65535 .*  reserved bits 0x3f7f0000$' \
-  'read ddr.SDRSTAT = 0x00000004 PHYRDY=1$' 'guest: 1 written to reserved bits of DDR SDRCR' \
+  'read ddr.SDRSTAT = 0x00000004 PHYRDY=1$' 'warning \(firmware\): 1 written to reserved bits of DDR SDRCR' \
   -- run --log-registers . "$programs/registers.elf"
 expect other_registers 0 '\(2 earlier accesses are not shown\)' \
   -- run --log-registers 'ddr\.' --log-registers-kept=1 "$programs/registers.elf"
@@ -61,6 +62,9 @@ expect no_registers 2 'regular expression' -- run --log-registers '(' "$programs
 expect nested 2 'up to 400' -- run --log-registers "$(printf '(%.0s' {1..9000})" "$programs/registers.elf"
 expect backtracking 0 -- timeout 20 "$fovea" exec --log-registers '(.*.*)*x$' "$programs/registers.elf"
 expect nothing_to_log 2 '--fast-memory' -- run --fast-memory --log-registers . "$programs/registers.elf"
+expect no_effect 0 "'ddr.scheduler' is set but has no effect with --fast-memory" -- \
+  run --fast-memory -s ddr.scheduler=fcfs "$fails"
+expect no_effect_strict 2 'no effect' -- run --strict --fast-memory -s ddr.scheduler=fcfs "$fails"
 expect quotes 2 'quotes' -- run "$fails" "a \"'"
 expect long_line 0 'command line of' -- run "$fails" "$(printf 'x%.0s' {1..300})"
 for memory in '' --fast-memory; do
@@ -111,6 +115,38 @@ for memory in '' --fast-memory; do
     failures=$((failures + 1))
   }
 done
+
+# MMU and caches on from the start: the same output, in less time; the summary has time and clock.
+expect hint 0 's at 297 MHz$' 'ran with MMU and caches off' -- run "$programs/heap_arm_O2.elf" -o "$out/off"
+for program in heap_arm_O2 heap_thumb_O2; do
+  expect "caches_$program" 0 -- run --caches "$programs/$program.elf" -o "$out/on"
+  grep -q 'caches off' <<<"$text" && { echo "caches_$program: a hint"; failures=$((failures + 1)); }
+  "$fovea" exec -q --caches "$programs/$program.elf" >"$out/on.txt" 2>"$out/on.err" </dev/null
+  "$fovea" exec --quiet "$programs/$program.elf" >"$out/off.txt" 2>"$out/off.err" </dev/null
+  cmp "$out/on.txt" "$out/off.txt" || failures=$((failures + 1))
+  [ -s "$out/off.txt" ] && [ ! -s "$out/on.err" ] && [ ! -s "$out/off.err" ] || {
+    echo "quiet: $(cat "$out/on.err" "$out/off.err")"
+    failures=$((failures + 1))
+  }
+  run --fast-memory --caches "$programs/$program.elf" 2>/dev/null </dev/null | cmp - "$out/off.txt" ||
+    failures=$((failures + 1))
+done
+count() { sed -n 's/.*"'"$2"'": {"value": \([0-9]*\).*/\1/p' "$out/$1/stats.json"; }
+[ "$(count off cpu.icache.accesses)" = 0 ] && [ "$(count on cpu.icache.accesses)" -gt 0 ] &&
+  [ "$(count on cpu.dcache.reads)" -gt 0 ] &&
+  [ "$(count on cpu.cycles)" -lt "$(($(count off cpu.cycles) / 3))" ] || {
+  echo "caches: $(count off cpu.cycles) clocks without, $(count on cpu.cycles) with"
+  failures=$((failures + 1))
+}
+expect caches_thumb 5 '^flat$' -- run --caches "$programs/flat_thumb.bin" --load 0x80000000 --entry 0x80000000 --thumb
+# The last 32 KiB of RAM hold the translation table.
+expect caches_room 5 '^flat$' -- run --caches "$programs/flat_arm.bin" --load 0x7ff7000 --entry 0x7ff7000
+expect caches_no_room 2 'last 32768 bytes' -- run --caches "$programs/flat_arm.bin" --load 0x7ff8000 --entry 0x7ff8000
+expect refused_name 7 "the file '/tmp/[^']*' is refused; allowed: names relative to --root" -- \
+  run --root "$out" "$fails" tmpnam
+[ "$(grep -c 'is refused' <<<"$text")" = 1 ] || { echo "refused_name: said more than once"; failures=$((failures + 1)); }
+grep -q '"sha256": {' "$out/on/config.json" && grep -q "\"program\": \"$(sha256sum <"$programs/heap_thumb_O2.elf" | cut -c1-64)\"" "$out/on/config.json" ||
+  { echo 'config.json does not hold the hash of the program'; failures=$((failures + 1)); }
 
 # Equal runs, equal bytes; a slower SDRAM, more clocks.
 for n in 1 2 slow; do

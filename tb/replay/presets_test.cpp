@@ -195,7 +195,7 @@ TEST(DdrPresetTest, WhoSetWhatIsKept) {
   EXPECT_EQ(s.value("ddr.tREFI"), "900 cycles");
   EXPECT_EQ(s.value("ddr.tRFC"), "43 cycles");
   EXPECT_EQ(s.origin("ddr.old_count"), "a.trace");
-  EXPECT_THAT(app::config_json(s.set, s.experiment, "v"),
+  EXPECT_THAT(app::config_json(s.set, s.experiment, {.version = "v"}),
               HasSubstr(R"("ddr.tRFC": {"value": "43 cycles", "unit": "cycles", "origin": )"
                         R"("ddr.preset: mt47h64m16, grade 3")"));
   const Keyed mobile({"ddr.preset=data_sheet", "ddr.part=mt46h64m16lf"}, info);

@@ -8,10 +8,14 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sw/fovea/cli_help.h"
 #include "sw/fovea/png.h"
+#include "sw/fovea/provenance.h"
 #include "tb/unit/fake_board.h"
 #include "tb/unit/support.h"
 
@@ -196,10 +200,11 @@ TEST_F(CliTest, GuestFailureWithFiguresKeepsThem) {
   EXPECT_THAT(err.str(), HasSubstr("last access: 0x0"));
 }
 
-TEST_F(CliTest, MissingFeatureIsARemarkAndUnderStrictAnError) {
+TEST_F(CliTest, MissingFeatureIsAWarningAndUnderStrictAnError) {
   EXPECT_EQ(run({"-s", "run.mode=not_modelled"}), 0);
-  EXPECT_THAT(err.str(), HasSubstr("not modelled: field X of Y"));
-  EXPECT_EQ(stats()["remarks"][0]["what"], "field X of Y");
+  EXPECT_THAT(err.str(), HasSubstr("fovea: warning (model): not modelled: field X of Y\n"));
+  EXPECT_EQ(stats()["warnings"][0]["what"], "not modelled: field X of Y");
+  EXPECT_EQ(stats()["warnings"][0]["kind"], "model");
   EXPECT_EQ(run({"-s", "run.mode=not_modelled", "--strict"}), 3);
 }
 
@@ -230,6 +235,92 @@ TEST_F(CliTest, VersionAndHelp) {
   EXPECT_THAT(out.str(), AllOf(HasSubstr("run"), HasSubstr("params"), HasSubstr("Exit status")));
   EXPECT_EQ(cli({"run", "--help"}), 0);
   EXPECT_THAT(out.str(), HasSubstr("--set"));
+}
+
+TEST_F(CliTest, VersionNamesTheCommit) {
+  EXPECT_EQ(cli({"--version"}), 0);
+  EXPECT_THAT(out.str(), testing::MatchesRegex("fovea [0-9.]+ \\(commit [0-9a-z]+(, modified)?\\)\n"));
+}
+
+TEST_F(CliTest, HelpFitsEightyColumnsAndShowsDefaults) {
+  for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
+           {"--help"}, {"run", "--help"}, {"exec", "--help"}, {"replay", "--help"},
+           {"params", "--help"}, {"completion", "--help"}}) {
+    ASSERT_EQ(cli(args), 0) << args[0] << err.str();
+    std::istringstream lines(out.str());
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << args[0] << ": " << line;
+  }
+  EXPECT_EQ(cli({"run", "--help"}), 0);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("[default: out/EXPERIMENT]"), HasSubstr("--sync default|strict"),
+                               HasSubstr("[default: 4096]"), HasSubstr("-s,--set KEY=VALUE")));
+}
+
+TEST_F(CliTest, WrappedTextFillsTheWidthExactly) {
+  EXPECT_EQ(wrapped("aaa bbb", 0, 7), "aaa bbb");
+  EXPECT_EQ(wrapped("aaa bbb", 0, 6), "aaa\nbbb");
+  EXPECT_EQ(wrapped("aaa bbb ccc", 2, 9), "aaa bbb\n  ccc");
+  EXPECT_EQ(wrapped("a\nb", 1, 80), "a\n b");
+}
+
+/// What bash would offer after these words; the last one is being typed.
+std::string offered(const std::string& script, const fs::path& file, const std::string& words) {
+  std::ofstream(file) << script;
+  const std::string command = "bash -c '. \"" + file.string() + "\"; COMP_WORDS=(" + words +
+                              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _fovea; "
+                              "echo \"${COMPREPLY[*]}\"'";
+  std::string text;
+  FILE* pipe = ::popen(command.c_str(), "r");
+  for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  EXPECT_EQ(::pclose(pipe), 0);
+  return text;
+}
+
+TEST_F(CliTest, CompletionOffersWhatIsDeclared) {
+  ASSERT_EQ(cli({"completion", "bash"}), 0) << err.str();
+  const std::string script = out.str();
+  const auto offer = [&](const std::string& words) { return offered(script, dir / "c.sh", words); };
+  EXPECT_EQ(offer("fovea r"), "run replay\n");
+  EXPECT_EQ(offer("fovea run --no"), "--no-frames\n");
+  EXPECT_EQ(offer("fovea run --sync s"), "strict\n");
+  EXPECT_EQ(offer("fovea run --sync = s"), "strict\n");
+  EXPECT_EQ(offer("fovea run -s run.fr"), "run.frames=\n");
+  EXPECT_EQ(offer("fovea replay -s ddr.tRF"), "ddr.tRFC=\n");
+  EXPECT_EQ(offer("fovea completion b"), "bash\n");
+  EXPECT_EQ(offer("fovea run " + experiment.substr(0, experiment.size() - 3)), experiment + "\n");
+  EXPECT_EQ(cli({"completion", "tcsh"}), 2);
+}
+
+TEST_F(CliTest, ManPageHasEveryCommandAndOption) {
+  ASSERT_EQ(cli({"man"}), 0);
+  for (const char* part : {".TH FOVEA 1", ".SS fovea run", ".SS fovea exec", ".SS fovea replay",
+                           "\\-\\-bus\\-trace FILE", ".SH EXIT STATUS"})
+    EXPECT_THAT(out.str(), HasSubstr(part));
+}
+
+TEST_F(CliTest, AKeyOfReplaySaysSo) {
+  EXPECT_EQ(run({"-s", "ddr.clock=270MHz"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("key 'ddr.clock' is a key of 'fovea replay'; here clocks.preset"));
+  EXPECT_EQ(run({"-s", "ddr.clok=270MHz"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("did you mean 'ddr.clock'? It is a key of 'fovea replay'"));
+}
+
+TEST_F(CliTest, ConfigNamesWhatMadeIt) {
+  // SHA-256 of "abc", FIPS 180-2, appendix B.1.
+  dir.write("abc", "abc");
+  EXPECT_EQ(sha256_of(dir / "abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_of(dir / "none"), "");
+  EXPECT_EQ(sha256_of("/dev/null"), "") << "not a regular file";
+  ASSERT_EQ(run({"-s", "run.file=" + (dir / "abc").string()}), 0) << err.str();
+  auto config = json::parse(read_text(result / "config.json"));
+  EXPECT_EQ(config["sha256"]["run.file"],
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_TRUE(config["commit"].is_string());
+  EXPECT_TRUE(config["modified"].is_boolean());
+  ASSERT_EQ(run({"-s", "run.file=" + (dir / "none").string()}), 0) << err.str();
+  config = json::parse(read_text(result / "config.json"));
+  EXPECT_TRUE(config["sha256"]["run.file"].is_null());
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(json::parse(read_text(result / "config.json"))["sha256"].size(), 0u);
 }
 
 /// The program itself (main.cpp over the stand-in board), as a process.

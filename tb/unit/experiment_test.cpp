@@ -15,7 +15,10 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 struct LensParams : ParamGroup {
-  LensParams() : ParamGroup("lens") {}
+  LensParams() : ParamGroup("lens") {
+    fov.matters_only("lens.mapping = equisolid", {&mapping},
+                     [this] { return mapping.is("equisolid"); });
+  }
   EnumParam mapping{*this,     "mapping",       "linear", {"linear", "equisolid"},
                     "mapping", Origin::kChoice, ""};
   RealParam fov{*this, "fov", "deg", 180, 10, 220, "field of view", Origin::kChoice, ""};
@@ -54,6 +57,66 @@ class ExperimentTest : public testing::Test {
   ParamSet params;
   Experiment experiment{params};
 };
+
+class NoEffectTest : public ExperimentTest {
+ protected:
+  NoEffectTest() { Diagnostics::instance().clear(); }
+  ~NoEffectTest() override {
+    Diagnostics::instance().set_strict(false);
+    Diagnostics::instance().clear();
+  }
+  std::vector<std::string> warned() {
+    warn_without_effect(params, experiment);
+    std::vector<std::string> out;
+    for (const auto& [what, count] : Diagnostics::instance().counts()) {
+      EXPECT_EQ(what.first, Diagnostics::Kind::kConfiguration);
+      out.push_back(what.second);
+    }
+    return out;
+  }
+};
+
+TEST_F(NoEffectTest, OfOneFileIsAWarningThatSaysWhy) {
+  experiment.load(dir.write("a.yaml", "lens.fov: 90deg\nlens.mapping: linear\n"));
+  EXPECT_THAT(warned(), testing::ElementsAre(AllOf(
+                            StartsWith("'lens.fov' is set ("), HasSubstr("a.yaml:1) but has no effect "
+                            "with lens.mapping = linear: it needs lens.mapping = equisolid"))));
+}
+
+TEST_F(NoEffectTest, OnTheCommandLineIsAWarningAlsoBesideADefault) {
+  experiment.load(dir.write("a.yaml", "run.frames: 3\n"));
+  experiment.override_with("lens.fov=90deg");
+  EXPECT_THAT(warned(), testing::ElementsAre(HasSubstr("'lens.fov' is set (command line)")));
+}
+
+TEST_F(NoEffectTest, WithStrictIsAnError) {
+  experiment.load(dir.write("a.yaml", "lens.fov: 90deg\n"));
+  Diagnostics::instance().set_strict(true);
+  EXPECT_THAT(user_error([&] { warn_without_effect(params, experiment); }),
+              HasSubstr("'lens.fov' is set"));
+}
+
+TEST_F(NoEffectTest, ByALaterChoiceIsMeant) {
+  dir.write("inner.yaml", "lens.fov: 90deg\nlens.mapping: equisolid\n");
+  experiment.load(dir.write("a.yaml", "include: inner.yaml\nlens.mapping: linear\n"));
+  EXPECT_THAT(warned(), testing::IsEmpty());
+  experiment.override_with("lens.mapping=equisolid");
+  experiment.override_with("lens.mapping=linear");
+  EXPECT_THAT(warned(), testing::IsEmpty());
+  experiment.override_with("lens.fov=80deg");
+  EXPECT_EQ(warned().size(), 1u);
+}
+
+TEST_F(NoEffectTest, AnOuterFileThatSetsADeadKeyIsWarned) {
+  dir.write("inner.yaml", "lens.mapping: linear\n");
+  experiment.load(dir.write("a.yaml", "include: inner.yaml\nlens.fov: 90deg\n"));
+  EXPECT_EQ(warned().size(), 1u);
+}
+
+TEST_F(NoEffectTest, AKeyThatMattersIsNot) {
+  experiment.load(dir.write("a.yaml", "lens.fov: 90deg\nlens.mapping: equisolid\n"));
+  EXPECT_THAT(warned(), testing::IsEmpty());
+}
 
 TEST_F(ExperimentTest, NestedAndDottedKeysAreTheSame) {
   experiment.load(dir.write("a.yaml",

@@ -79,6 +79,7 @@ class FakeBoard : public app::Simulation {
     Params() : ParamGroup("run") {}
     IntParam frames{*this,   "frames",         IntParam::Unit::kCount, 3, 1,
                     100'000, "frames to show", Origin::kChoice,        ""};
+    TextParam file{*this, "file", "", "a file that is read"};
     ListParam list{*this, "list", {0, 0}, {2}, "two numbers", Origin::kChoice, ""};
     EnumParam mode{
         *this,

@@ -129,7 +129,7 @@ TEST(PngTest, HeaderThatClaimsAHugePictureIsRefused) {
   RgbImage wide{kMaxPictureSide + 1, 1, {}};
   wide.rgb.resize(std::size_t{3} * wide.width);
   write_png(dir / "wide.png", wide);
-  EXPECT_THAT(user_error([&] { read_png(dir / "wide.png"); }), HasSubstr("too large"));
+  EXPECT_THAT(user_error([&] { read_png(dir / "wide.png"); }), HasSubstr("too large; allowed: up to 8192 pixels"));
 }
 
 TEST(UyvyToRgbTest, ReferenceColoursOfBt601) {
@@ -288,10 +288,63 @@ TEST_F(FfmpegTest, CutJpegIsAnErrorAndAWholeOneIsRead) {
   EXPECT_THAT(user_error([&] { load_still(cut); }), HasSubstr("cut.jpg"));
 }
 
-TEST_F(FfmpegTest, FileWithoutVideoIsAnError) {
-  const std::string wav = (dir / "tone.wav").string();
-  ASSERT_EQ(std::system(("ffmpeg -v error -f lavfi -i sine=d=0.1 '" + wav + "'").c_str()), 0);
-  EXPECT_THAT(user_error([&] { decode_frames(wav, {}); }), HasSubstr("tone.wav"));
+/// Makes a file with ffmpeg.
+void make(const std::string& arguments) {
+  ASSERT_EQ(std::system(("ffmpeg -v error " + arguments).c_str()), 0) << arguments;
+}
+
+TEST_F(FfmpegTest, SoundWithoutPicturesIsAnErrorOfOurOwn) {
+  for (const auto& [name, message] : {std::pair("tone.mp4", "has no pictures (only sound?)"),
+                                      std::pair("tone.wav", "its format is not allowed")}) {
+    make("-f lavfi -i sine=d=0.1 '" + (dir / name).string() + "'");
+    EXPECT_THAT(user_error([&] { decode_frames(dir / name, {}); }),
+                AllOf(HasSubstr(name), HasSubstr(message)));
+  }
+}
+
+TEST_F(FfmpegTest, TenBitFilmsAndSixteenBitPicturesAreReadAsEight) {
+  write_png(dir / "p.png", pattern(64, 48));
+  const std::string in = "-i '" + (dir / "p.png").string() + "' ";
+  make(in + "-c:v libx264 -pix_fmt yuv420p10le '" + (dir / "ten.mp4").string() + "'");
+  make(in + "-pix_fmt rgb48le '" + (dir / "deep.tif").string() + "'");
+  make(in + "-pix_fmt gray16be '" + (dir / "grey.tif").string() + "'");
+  make(in + "-pix_fmt rgb48be '" + (dir / "deep.png").string() + "'");
+  const auto film = decode_frames(dir / "ten.mp4", {});
+  ASSERT_EQ(film.size(), 1u);
+  EXPECT_EQ(film[0].rgb.size(), 64u * 48 * 3);
+  // The upper byte of 16 bits is the 8-bit value itself, give or take the converter's rounding.
+  for (const char* name : {"deep.tif", "deep.png"}) {
+    const RgbImage still = load_still(dir / name);
+    ASSERT_EQ(still.rgb.size(), pattern(64, 48).rgb.size()) << name;
+    for (std::size_t i = 0; i < still.rgb.size(); ++i)
+      ASSERT_NEAR(still.rgb[i], pattern(64, 48).rgb[i], 1) << name << " " << i;
+  }
+  const RgbImage grey = load_still(dir / "grey.tif");
+  EXPECT_EQ(grey.rgb[0], grey.rgb[2]);
+}
+
+TEST_F(FfmpegTest, PicturesUpToTheLimitAreReadAndAboveItNamed) {
+  const auto bmp = [&](unsigned width) {
+    const std::string file = (dir / ("w" + std::to_string(width) + ".bmp")).string();
+    make("-f lavfi -i color=red:s=8192x2:d=0.04 -vf format=rgb24,pad=" + std::to_string(width) +
+         ":2 -frames:v 1 '" + file + "'");
+    return file;
+  };
+  EXPECT_EQ(load_still(bmp(8192)).width, 8192u);
+  EXPECT_THAT(user_error([&] { load_still(bmp(8193)); }),
+              HasSubstr("8193x2 pixels are too large; allowed: up to 8192 pixels a side"));
+}
+
+TEST_F(FfmpegTest, AFilmTellsItsRateAndThePixelsShape) {
+  make("-f lavfi -i testsrc=s=64x48:r=60000/1001:d=0.2 -vf setsar=16/15 -c:v libx264 '" +
+       (dir / "f.mp4").string() + "'");
+  const FilmInfo info = film_info(dir / "f.mp4");
+  EXPECT_EQ(info.rate, Frequency(60000, 1001));
+  EXPECT_NEAR(info.pixel_aspect, 16.0 / 15, 1e-9);
+  EXPECT_EQ(info.width, 64u);
+  EXPECT_EQ(info.height, 48u);
+  EXPECT_TRUE(film_info(dir / "f.mp4", "no-such-ffprobe").rate.stopped());
+  EXPECT_TRUE(film_info(dir.write("x.mp4", "x")).rate.stopped());
 }
 
 TEST_F(FfmpegTest, MissingFileAndMissingProgramSayWhat) {

@@ -69,18 +69,23 @@ TEST(StatsJsonTest, AMeanOfNothingIsNullAndStillJson) {
   EXPECT_EQ(j["complete"], false);
 }
 
-TEST(StatsJsonTest, ListsRemarksWithTheirCounts) {
+TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
   auto& d = Diagnostics::instance();
   d.clear();
   d.guest("odd write");
   d.guest("odd write");
   d.not_modelled("field X");
+  d.configuration("key without effect");
   const auto j = json::parse(stats_json({}, true, collect_remarks(d)));
+  const auto replay = json::parse(stats_json({}, true, collect_remarks(d, true)));
   d.clear();
-  ASSERT_EQ(j["remarks"].size(), 2u);
-  EXPECT_EQ(j["remarks"][0]["what"], "odd write");
-  EXPECT_EQ(j["remarks"][0]["count"], 2);
-  EXPECT_EQ(j["remarks"][1]["kind"], "not modelled");
+  ASSERT_EQ(j["warnings"].size(), 3u);
+  EXPECT_EQ(j["warnings"][0]["kind"], "firmware");
+  EXPECT_EQ(replay["warnings"][0]["kind"], "configuration") << "no program runs in a replay";
+  EXPECT_EQ(j["warnings"][2]["kind"], "configuration");
+  EXPECT_EQ(j["warnings"][0]["what"], "odd write");
+  EXPECT_EQ(j["warnings"][0]["count"], 2);
+  EXPECT_EQ(j["warnings"][1]["kind"], "model");
 }
 
 TEST(StatsJsonDeathTest, OneNameTwiceIsADefect) {
@@ -116,7 +121,7 @@ TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
   test::TempDir dir;
   const auto file = dir.write("e.yaml", "ddr.depth: 8\n");
   experiment.load(file);
-  const auto j = json::parse(config_json(params, experiment, "1.2.3"));
+  const auto j = json::parse(config_json(params, experiment, {.version = "1.2.3"}));
   EXPECT_EQ(j["version"], "1.2.3");
   EXPECT_EQ(j["experiment"], "e");
   EXPECT_EQ(j["params"]["ddr.tRCD"]["value"], "15ns");
@@ -179,6 +184,8 @@ TEST(HumanTextTest, PicksAFittingPrefix) {
   EXPECT_EQ(human_text(0.001, "s"), "1 ms");
   EXPECT_EQ(human_text(0.000999, "s"), "999 us");
   EXPECT_EQ(human_text(0.337, "ratio"), "33.7 %");
+  EXPECT_EQ(human_text(0.934, "x"), "0.93x real time");
+  EXPECT_EQ(human_text(std::uint64_t{25}, "1"), "25");
   EXPECT_EQ(human_text(25.0, "1/s"), "25 1/s");
   EXPECT_EQ(human_text(std::uint64_t{26}, "count"), "26");
   EXPECT_EQ(human_text(std::nan(""), "s"), "-");
@@ -194,6 +201,39 @@ TEST(SummaryTableTest, ShowsWhatExistsAndMastersThatMovedBytes) {
   EXPECT_THAT(table, HasSubstr("829.4 kB"));
   EXPECT_THAT(table, Not(HasSubstr("edma")));
   EXPECT_THAT(table, Not(HasSubstr("cpu.cycles")));
+}
+
+std::vector<StatRow> frames_of(double rate, std::uint64_t displayed, std::uint64_t repeated,
+                               std::uint64_t dropped, std::uint64_t overflows = 0,
+                               std::uint64_t underflows = 0) {
+  return {{"frame.rate", rate, "1/s", ""},         {"frame.displayed", displayed, "1", ""},
+          {"frame.repeated", repeated, "1", ""},   {"frame.dropped", dropped, "1", ""},
+          {"capture.overflows", overflows, "1", ""}, {"display.underflows", underflows, "1", ""}};
+}
+
+TEST(VerdictTest, SaysWhetherTheRateWasMet) {
+  EXPECT_EQ(verdict(frames_of(25, 25, 0, 0)),
+            "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated\n");
+  EXPECT_EQ(verdict(frames_of(30000.0 / 1001, 25, 0, 0)),
+            "frame rate met: 25 of 25 camera frames shown (29.97/s), none dropped, none repeated\n");
+  EXPECT_EQ(verdict(frames_of(12.5, 16, 8, 0)),
+            "frame rate missed: 8 of 16 camera frames shown (12.5/s), none dropped, 8 repeated\n");
+  EXPECT_EQ(verdict(frames_of(24, 25, 0, 1)),
+            "frame rate missed: 25 of 25 camera frames shown (24/s), 1 dropped, none repeated\n");
+  EXPECT_EQ(verdict(frames_of(25, 25, 1, 0)),
+            "frame rate missed: 24 of 25 camera frames shown (25/s), none dropped, 1 repeated\n");
+  EXPECT_EQ(verdict(frames_of(25, 25, 0, 0, 1, 2)),
+            "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated, 1 "
+            "capture overflow, 2 display underflows\n");
+}
+
+TEST(VerdictTest, SaysNothingWithoutFrames) {
+  EXPECT_EQ(verdict({}), "");
+  EXPECT_EQ(verdict(frames_of(25, 0, 0, 0)), "");
+}
+
+TEST(SummaryTableTest, BeginsWithTheVerdict) {
+  EXPECT_THAT(summary_table(frames_of(25, 25, 0, 0), {}), testing::StartsWith("frame rate met: 25"));
 }
 
 /// A wall clock that the test moves.
@@ -217,9 +257,9 @@ TEST(ProgressMeterTest, PrintsALineAboutEveryTenSecondsWithoutATerminal) {
   // 25 s: lines at 10 s and 20 s.
   const std::string text = out.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
-  EXPECT_THAT(text, HasSubstr("simulated 5.000 s, frame 10/80, 0.500 s/s"));
+  EXPECT_THAT(text, HasSubstr("simulated 5.000 s, frame 10/80, 0.50x real time"));
   // At 20 s 50 frames remain at 0.5 s each.
-  EXPECT_THAT(text, HasSubstr("frame 30/80, 0.500 s/s, ETA 25 s"));
+  EXPECT_THAT(text, HasSubstr("frame 30/80, 0.50x real time, ETA 25 s"));
 }
 
 TEST(ProgressMeterTest, RewritesOneLineOnATerminal) {

@@ -117,6 +117,23 @@ TEST_F(ParamTest, UnknownKeySuggestsTheNearest) {
   EXPECT_THAT(user_error([&] { set.set("zzzzzzzzzzzzzzzz", "1"); }), HasSubstr("fovea params"));
 }
 
+TEST_F(ParamTest, ASuggestionIsNearInWhatDiffers) {
+  // Three letters of five differ: 'block.' in common does not make 'block.clock' near.
+  EXPECT_THAT(user_error([&] { set.set("block.checks", "1"); }),
+              testing::Not(HasSubstr("did you mean")));
+  EXPECT_THAT(user_error([&] { set.set("block.clok", "1MHz"); }), HasSubstr("'block.clock'?"));
+  EXPECT_THAT(user_error([&] { set.set("blok.clok", "1MHz"); }), HasSubstr("'block.clock'?"));
+}
+
+TEST_F(ParamTest, AKeyOfAnotherCommandSaysSo) {
+  set.add_foreign("block.crystal", "is a key of 'fovea replay'; here: block.clock");
+  EXPECT_EQ(user_error([&] { set.set("block.crystal", "1MHz"); }),
+            "key 'block.crystal' is a key of 'fovea replay'; here: block.clock");
+  EXPECT_EQ(user_error([&] { set.set("block.cristal", "1MHz"); }),
+            "unknown key 'block.cristal'; did you mean 'block.crystal'? It is a key of 'fovea "
+            "replay'; here: block.clock");
+}
+
 TEST_F(ParamTest, RemembersWhetherTheUserSetIt) {
   EXPECT_FALSE(params.count.user_set());
   set.set("block.count", "3");

@@ -34,14 +34,15 @@ class XbarHost {
 };
 
 struct MasterStats : StatGroup {
-  Counter read_bytes{*this, "read_bytes", "B", "bytes read by this master"};
-  Counter write_bytes{*this, "write_bytes", "B", "bytes written by this master"};
-  Counter transactions{*this, "transactions", "1", "bursts and single accesses of this master"};
+  Counter read_bytes{*this, "read_bytes", "B", "bytes that " + name() + " read"};
+  Counter write_bytes{*this, "write_bytes", "B", "bytes that " + name() + " wrote"};
+  Counter transactions{*this, "transactions", "1", "bursts and single accesses of " + name()};
   /// The part that goes to the SDRAM, for the balance against ddr.*_bytes; not printed itself.
   std::uint64_t ddr_read_bytes = 0, ddr_write_bytes = 0;
   explicit MasterStats(Master m) : StatGroup("bus." + std::string(stat_name(m))) {}
 
- protected:
+ private:
+  std::string name() const { return prefix().substr(4); }
   void on_reset() override { ddr_read_bytes = ddr_write_bytes = 0; }
 };
 

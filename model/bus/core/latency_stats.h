@@ -1,28 +1,37 @@
 // Read latency of one master.
 #pragma once
+#include <limits>
 #include <string>
 
 #include "model/common/stats.h"
 
 namespace fovea::bus {
 
-/// Read latency at the master's port, for the reports.
+/// Read latency at the master's port, for the reports. Without a read there is no figure (null).
 struct LatencyStats : StatGroup {
   Histogram histogram;
-  Formula mean{*this, "mean", "s", "mean read latency, request to first beat at the port",
-               [this] { return StatBase::Value(histogram.mean() * 1e-12); }};
-  Formula p50{*this, "p50", "s", "median read latency", [this] { return quantile(0.50); }};
-  Formula p95{*this, "p95", "s", "95th percentile of read latency",
+  Formula mean{*this, "mean", "s", "mean latency of " + reads() + ", from the request to the first beat "
+               "at the port", [this] { return value(histogram.mean()); }};
+  Formula p50{*this, "p50", "s", "median latency of " + reads(), [this] { return quantile(0.50); }};
+  Formula p95{*this, "p95", "s", "latency that 95 % of " + reads() + " stay within",
               [this] { return quantile(0.95); }};
-  Formula p99{*this, "p99", "s", "99th percentile of read latency",
+  Formula p99{*this, "p99", "s", "latency that 99 % of " + reads() + " stay within",
               [this] { return quantile(0.99); }};
-  Formula max{*this, "max", "s", "largest read latency",
-              [this] { return StatBase::Value(static_cast<double>(histogram.max()) * 1e-12); }};
+  Formula max{*this, "max", "s", "largest latency of " + reads(),
+              [this] { return value(static_cast<double>(histogram.max())); }};
   explicit LatencyStats(const std::string& master) : StatGroup("ddr." + master + ".latency") {}
 
  private:
+  /// "arm_d's reads"
+  std::string reads() const {
+    constexpr std::size_t kBefore = 4, kBehind = 8;  // "ddr." and ".latency"
+    return prefix().substr(kBefore, prefix().size() - kBefore - kBehind) + "'s reads";
+  }
+  StatBase::Value value(double ps) const {
+    return histogram.count() ? ps * 1e-12 : std::numeric_limits<double>::quiet_NaN();
+  }
   StatBase::Value quantile(double q) const {
-    return StatBase::Value(static_cast<double>(histogram.quantile(q)) * 1e-12);
+    return value(static_cast<double>(histogram.quantile(q)));
   }
   void on_reset() override { histogram.reset(); }
 };

@@ -121,25 +121,28 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(cycles, "cycles", "cycles", cycles, "core clocks of the window");
   FOVEA_CPU_STAT(issue, "issue", "cycles", issue, "clocks in which instructions issue");
   FOVEA_CPU_STAT(idle, "idle", "cycles", idle, "clocks in wait-for-interrupt");
-  FOVEA_CPU_STAT(interlock, "stall.interlock", "cycles", stall[0], "waiting for a register");
+  FOVEA_CPU_STAT(interlock, "stall.interlock", "cycles", stall[0], "clocks waiting for a register");
   FOVEA_CPU_STAT(icache, "stall.icache", "cycles", stall[1],
-                 "waiting for line fills of the I-cache");
-  FOVEA_CPU_STAT(dcache, "stall.dcache", "cycles", stall[2], "waiting for data line fills");
+                 "clocks waiting for line fills of the I-cache");
+  FOVEA_CPU_STAT(dcache, "stall.dcache", "cycles", stall[2],
+                 "clocks waiting for line fills of the D-cache");
   FOVEA_CPU_STAT(write_buffer, "stall.write_buffer", "cycles", stall[3],
-                 "waiting for room in the write or victim buffer");
+                 "clocks waiting for room in the write or victim buffer");
   FOVEA_CPU_STAT(uncached, "stall.uncached", "cycles", stall[4],
-                 "waiting for uncached reads and fetches and for unbuffered writes");
-  FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "waiting for page walks");
+                 "clocks waiting for uncached reads and fetches and for unbuffered writes");
+  FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "clocks waiting for page walks");
   FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
-                 "wait states of internal RAM, and waiting for DMA there");
-  FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "cache maintenance");
-  FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "draining the write buffer");
-  FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9], "waiting for an AHB clock edge, or for the first edge of another clock");
+                 "clocks of wait states of internal RAM, and waiting for DMA there");
+  FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "clocks of cache maintenance");
+  FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "clocks waiting for the write buffer to drain");
+  FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9],
+                 "clocks waiting for an AHB clock edge, or for the first edge of another clock");
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
                  "words looked up in the I-cache, with two dropped behind each change of flow");
-  FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read");
+  FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read into the I-cache");
   FOVEA_CPU_STAT(dcache_reads, "dcache.reads", "1", dcache_reads, "cacheable loads looked up");
-  FOVEA_CPU_STAT(dcache_fills, "dcache.read_line_fills", "1", dcache_read_fills, "lines read");
+  FOVEA_CPU_STAT(dcache_fills, "dcache.read_line_fills", "1", dcache_read_fills,
+                 "lines read into the D-cache");
   FOVEA_CPU_STAT(dcache_writes, "dcache.writes", "1", dcache_writes, "cacheable stores looked up");
   FOVEA_CPU_STAT(dcache_write_misses, "dcache.write_misses", "1", dcache_write_misses,
                  "cacheable stores that missed");
@@ -185,7 +188,8 @@ struct CoreStats : StatGroup {
         const std::string culprit(stall_culprit_name(c));
         by_culprit_.push_back(std::make_unique<Formula>(
             *this, "stall." + std::string(kCauseNames[k]) + ".by." + culprit, "cycles",
-            "of stall." + std::string(kCauseNames[k]) + ": culprit " + culprit,
+            "clocks of cpu.stall." + std::string(kCauseNames[k]) + " for which " + culprit +
+                " is to blame",
             [this, cause, c] { return V(to.stalls.by(cause, c, from.stalls)); }));
       }
     }

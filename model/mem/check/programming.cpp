@@ -61,7 +61,7 @@ std::vector<std::string> violations(const Programmed& programmed, const Part& pa
   c.at_least("SDTIMR T_RRD", "tRRD", p.tRRD, need.tRRD, time(part.tRRD));
   // The controller has no field for tFAW: five ACT take four times T_RRD.
   if (4 * p.tRRD < need.tFAW)
-    c.add("SDTIMR T_RRD: 4 x " + number(p.tRRD) + " clocks programmed", "tFAW",
+    c.add("SDTIMR T_RRD: " + clocks(p.tRRD) + " programmed (4 tRRD = " + number(4 * p.tRRD) + ")", "tFAW",
           time(part.tFAW) + number(need.tFAW) + " at " + megahertz(clock),
           number(need.tFAW - 4 * p.tRRD) + " short");
   c.at_least("SDTIMR T_WTR", "tWTR", p.tWTR, need.tWTR, part.tWTR ? time(part.tWTR) : "");

@@ -19,12 +19,12 @@ struct DdrParams : ParamGroup {
                  "64, 128 MiB (4 banks)",
                  Origin::kChoice, "Micron data sheets"};
   EnumParam grade{*this, "grade", "default", {"default", "37e", "3", "25e", "25", "5", "6", "75"},
-                  "speed grade of the part in remarks against its data sheet; default: 37e, 3, 25e, "
+                  "speed grade of the part that warnings refer to; default: 37e, 3, 25e, "
                   "6, 6 for the parts in their order",
                   Origin::kChoice, "JESD79-2, JESD209"};
   EnumParam check{*this, "check", "none", {"none", "commands"},
-                  "commands: independent checkers read the SDRAM's command bus; what the part's data "
-                  "sheet forbids is a counted remark",
+                  "commands: independent checkers read the SDRAM's command bus; violations of the "
+                  "part's data sheet are reported as warnings with a count",
                   Origin::kChoice, ""};
   IntParam command_fifo{*this, "command_fifo", U::kCount, 7, 1, 16,
                         "entries of the controller's command FIFO", Origin::kFamily, kSisters,

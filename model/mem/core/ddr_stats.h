@@ -32,11 +32,11 @@ struct DdrStats : StatGroup {
                           "DDR clocks with a row open in any bank"};
   Counter power_down_clocks{*this, "power_down_clocks", "cycles", "DDR clocks in power-down"};
   Counter active_power_down_clocks{*this, "active_power_down_clocks", "cycles",
-                                   "of them with a row open"};
+                                   "DDR clocks in power-down with a row open"};
   Counter self_refresh_clocks{*this, "self_refresh_clocks", "cycles",
                               "DDR clocks in self-refresh"};
   Counter clock_stop_clocks{*this, "clock_stop_clocks", "cycles",
-                            "of them with the memory's clock stopped (MCLKSTOPEN)"};
+                            "DDR clocks in self-refresh with the memory's clock stopped (MCLKSTOPEN)"};
   /// Of the requests to each bank, as above.
   struct Bank {
     std::uint64_t row_hits = 0, row_misses = 0, row_conflicts = 0;
@@ -48,12 +48,13 @@ struct DdrStats : StatGroup {
     for (std::size_t i = 0; i < bank.size(); ++i) {
       const auto add = [&](const char* name, std::uint64_t Bank::*count, const char* sentence) {
         of_banks_.push_back(std::make_unique<Formula>(
-            *this, "bank" + std::to_string(i) + "." + name, "1", sentence,
+            *this, "bank" + std::to_string(i) + "." + name, "1",
+            sentence + (" in bank " + std::to_string(i)),
             [this, i, count] { return Value(bank[i].*count); }));
       };
-      add("row_hits", &Bank::row_hits, "of them in this bank");
-      add("row_misses", &Bank::row_misses, "of them in this bank");
-      add("row_conflicts", &Bank::row_conflicts, "of them in this bank");
+      add("row_hits", &Bank::row_hits, "row hits");
+      add("row_misses", &Bank::row_misses, "row misses");
+      add("row_conflicts", &Bank::row_conflicts, "row conflicts");
     }
   }
 

@@ -47,12 +47,13 @@ LensModel::LensModel(LensKind kind, double fx, double fy, double cx, double cy,
 }
 
 LensModel LensModel::kannala_brandt(double fx, double fy, double cx, double cy,
-                                    std::array<double, 4> k) {
+                                    std::array<double, 4> k, const std::string& key) {
   if (!(fx > 0 && fy > 0))
-    throw UserError("camera.kb: fx and fy are focal lengths in pixels, greater than 0");
+    throw UserError("key '" + key + "': fx and fy are focal lengths in pixels; allowed: above 0");
   LensModel lens(LensKind::kKannalaBrandt, fx, fy, cx, cy, k);
   if (lens.theta_max_ < 10 * kPi / 180)
-    throw UserError("camera.kb: k1..k4 make the radius fall within 10 degrees of the axis");
+    throw UserError("key '" + key + "': with these k1..k4 the radius falls within 10 degrees of the "
+                    "axis; allowed: a radius that grows with the angle");
   return lens;
 }
 

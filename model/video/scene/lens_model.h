@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace fovea::video {
@@ -29,9 +30,10 @@ enum class LensKind {
 /// x = cx + fx r(theta) cos(phi), y = cy + fy r(theta) sin(phi), r as listed at radius().
 class LensModel {
  public:
-  /// Kannala–Brandt, as OpenCV `fisheye` without skew. @throws UserError for fx or fy <= 0
+  /// Kannala–Brandt, as OpenCV `fisheye` without skew. @throws UserError for fx or fy <= 0; it names
+  /// `key`, the parameter that the numbers come from
   static LensModel kannala_brandt(double fx, double fy, double cx, double cy,
-                                  std::array<double, 4> k);
+                                  std::array<double, 4> k, const std::string& key = "camera.kb");
   /// One of the closed forms with square pixels, centred; the full angle `fov_deg` fills the width.
   /// @throws UserError for an angle that the mapping cannot show
   static LensModel closed_form(LensKind kind, double fov_deg, unsigned width, unsigned height);

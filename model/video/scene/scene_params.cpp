@@ -1,6 +1,8 @@
 #include "model/video/scene/scene_params.h"
 
 #include <array>
+#include <cmath>
+#include <initializer_list>
 
 namespace fovea::video {
 namespace {
@@ -46,16 +48,71 @@ SceneParams::SceneParams()
           0.0084123126605702321},
          {8}, "Kannala-Brandt lens: fx fy cx cy in pixels of the still, k1 k2 k3 k4",
          Origin::kSourced, kFrontCamera),
+      kb_width(*this, "kb_width", "px", 0, 0, 8192,
+               "picture width that camera.kb belongs to; 0: that of the still", Origin::kChoice, ""),
+      kb_height(*this, "kb_height", "px", 0, 0, 8192,
+                "picture height that camera.kb belongs to; 0: that of the still", Origin::kChoice,
+                ""),
       video_fov(*this, "video_fov", "deg", 0, 0, 170,
                 "horizontal angle of a flat video to be bent into camera.lens; 0 deg: as it is",
-                Origin::kChoice, "") {}
+                Origin::kChoice, ""),
+      calibration(*this, "calibration", "",
+                  "OpenCV fisheye calibration (YAML) of the lens that took the still, in place of "
+                  "camera.kb; the firmware's lens defaults to it (lens.calibration)") {
+  const auto sphere = [this] { return kind.is("sphere"); };
+  const auto bent = [this] { return kind.is("sphere") || (kind.is("video") && video_fov() > 0); };
+  file.matters_only("camera.kind = sphere or video", {&kind},
+                    [this] { return !kind.is("chart"); });
+  motion_amplitude.matters_only("camera.kind = sphere", {&kind}, sphere);
+  motion_period.matters_only("camera.kind = sphere", {&kind}, sphere);
+  motion_period.matters_only("a camera.motion_amplitude above 0deg", {&motion_amplitude},
+                             [this] { return motion_amplitude() > 0; });
+  video_fov.matters_only("camera.kind = video", {&kind}, [this] { return kind.is("video"); });
+  const char* const kBent = "camera.kind = sphere, or video with a camera.video_fov above 0deg";
+  lens.matters_only(kBent, {&kind, &video_fov}, bent);
+  fov.matters_only(kBent, {&kind, &video_fov}, bent);
+  fov.matters_only("a camera.lens other than kannala_brandt", {&lens},
+                   [this] { return !lens.is("kannala_brandt"); });
+  for (ParamBase* p : std::initializer_list<ParamBase*>{&kb, &kb_width, &kb_height, &calibration}) {
+    p->matters_only("camera.kind = sphere", {&kind}, sphere);
+    p->matters_only("camera.lens = kannala_brandt", {&lens},
+                    [this] { return lens.is("kannala_brandt"); });
+  }
+}
 
 LensModel SceneParams::lens_model(unsigned width, unsigned height) const {
   if (!lens.is("kannala_brandt"))
     return LensModel::closed_form(closed_form_kind(lens), fov(), width, height);
   const auto& v = kb();
-  return LensModel::kannala_brandt(v[0], v[1], v[2], v[3],
-                                   std::array<double, 4>{v[4], v[5], v[6], v[7]});
+  const LensModel lens_of_kb = LensModel::kannala_brandt(
+      v[0], v[1], v[2], v[3], std::array<double, 4>{v[4], v[5], v[6], v[7]});
+  const double w = kb_width() > 0 ? kb_width() : width, h = kb_height() > 0 ? kb_height() : height;
+  return w == width && h == height ? lens_of_kb : lens_of_kb.scaled(width / w, height / h);
+}
+
+void SceneParams::check_calibration(unsigned width, unsigned height) const {
+  const std::string whose =
+      calibration().empty() ? "camera.kb" : "camera.calibration '" + calibration() + "'";
+  const std::string picture = "camera.file '" + file() + "' (" + std::to_string(width) + "x" +
+                              std::to_string(height) + ")";
+  if (kb_width() > 0 && kb_height() > 0) {
+    // The same picture in another size keeps its shape, to a pixel of rounding.
+    if (std::abs(width * kb_height() / kb_width() - height) > 1)
+      Diagnostics::instance().configuration(
+          whose + " is of a picture of " + std::to_string(std::lround(kb_width())) + "x" +
+          std::to_string(std::lround(kb_height())) + ", so it does not belong to " + picture +
+          ", which has another shape");
+    return;
+  }
+  const LensModel lens_of_kb = lens_model(width, height);
+  const auto off = [](double centre, unsigned side) {
+    return std::abs(centre - (side - 1) / 2.0) > side / 6.0;
+  };
+  if (off(lens_of_kb.cx(), width) || off(lens_of_kb.cy(), height))
+    Diagnostics::instance().configuration(
+        whose + " has its optical centre at " + std::to_string(std::lround(lens_of_kb.cx())) + ", " +
+        std::to_string(std::lround(lens_of_kb.cy())) + ", outside the middle third of " + picture +
+        ", so it hardly belongs to this picture");
 }
 
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
@@ -66,6 +123,8 @@ std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
   if (frames.empty())
     throw UserError("camera.file: '" + params.file() + "' gave no picture; camera.kind " +
                     params.kind() + " needs a still or a video (chart needs none)");
+  if (params.kind.is("sphere") && params.lens.is("kannala_brandt"))
+    params.check_calibration(frames.front().width, frames.front().height);
   if (params.kind.is("sphere"))
     return std::make_unique<SphereSource>(
         frames.front(), params.lens_model(frames.front().width, frames.front().height), raster,

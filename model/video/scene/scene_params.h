@@ -21,10 +21,15 @@ struct SceneParams : ParamGroup {
   EnumParam lens;
   RealParam fov;
   ListParam kb;
+  RealParam kb_width, kb_height;
   RealParam video_fov;
+  TextParam calibration;
 
   /// The lens of a still or flat video of this size, in its own pixels. @throws UserError
   LensModel lens_model(unsigned width, unsigned height) const;
+  /// Warns of a calibration that cannot belong to a still of this size: one of a picture of another
+  /// shape or, if the calibration's size is not known, with its centre outside the middle third.
+  void check_calibration(unsigned width, unsigned height) const;
 };
 
 /// Makes the source for a raster of width x height. `frames`: what camera.file decodes to, one

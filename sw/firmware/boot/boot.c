@@ -21,12 +21,14 @@ struct preset_setting {
   const char *name;
 };
 
-/* Cycles of a time given in 0.1 ns at f MHz, rounded up, minus 1: the encoding of SDTIMR. */
+/* Cycles of a time given in 0.1 ns at f MHz, rounded up, minus 1: the encoding of SDTIMR.
+ * T_RRD is a quarter of tFAW (50 ns) and not tRRD (10 ns): the controller has no field for tFAW, and
+ * with T_RRD >= tFAW / 4 any five activations are far enough apart. */
 #define CYCLES_MINUS_1(t, f) (((t) * (f) + 9999u) / 10000u - 1u)
 #define SDTIMR_AT(f)                                                                               \
   (CYCLES_MINUS_1(1275u, f) << 25 | CYCLES_MINUS_1(200u, f) << 22 |                                \
    CYCLES_MINUS_1(200u, f) << 19 | CYCLES_MINUS_1(150u, f) << 16 | CYCLES_MINUS_1(450u, f) << 11 | \
-   CYCLES_MINUS_1(650u, f) << 6 | CYCLES_MINUS_1(100u, f) << 3 | CYCLES_MINUS_1(100u, f))
+   CYCLES_MINUS_1(650u, f) << 6 | CYCLES_MINUS_1(125u, f) << 3 | CYCLES_MINUS_1(100u, f))
 /* T_RASMAX 70 us in refresh intervals of 7.8 us, minus 1 (the public loader overflows this field);
  * T_XP 2, T_XSNR 137.5 ns, T_XSRD 199, T_RTP 7.5 ns, T_CKE 3. */
 #define SDTIMR2_AT(f) \
@@ -56,7 +58,8 @@ static const struct preset_setting kPresets[CLOCK_PRESET_COUNT] = {
                        "270/216"},
     [CLOCK_216_172] = {{0x73, 15, {0x0D, 1, 1, 3, 1, 0x0C, 0, 3, 1}},
                        {0x12, 1, {0x11, 1, 1, 0x14, 0x0F}},
-                       DDR_AT(173u),
+                       /* 172.5 MHz: times rounded up, the refresh interval down */
+                       SDTIMR_AT(173u), SDTIMR2_AT(173u), SDRCR_AT(172u),
                        VENC_FROM_PLL2,
                        "216/172"},
     [CLOCK_432_340] = {{0x55, 5, {0x1B, 1, 1, 3, 1, 8, 0, 6, 0x1B}},

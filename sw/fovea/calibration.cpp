@@ -1,0 +1,134 @@
+#include "sw/fovea/calibration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <vector>
+
+#include "sw/fovea/checked_file.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxFileBytes = 1u << 20;
+constexpr double kMaxSide = 8192;
+
+class Reader {
+ public:
+  explicit Reader(const fs::path& file) : file_(file) {
+    std::string text = read_file(file, kMaxFileBytes);
+    // OpenCV's first line, "%YAML:1.0", is no directive of YAML.
+    if (text.starts_with("%YAML")) text.erase(0, text.find('\n'));
+    try {
+      root_ = YAML::Load(text);
+    } catch (const YAML::Exception& e) {
+      fail("it is not valid YAML: " + one_line(e.msg));
+    }
+    if (!root_.IsMap()) fail("it has no camera matrix");
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    throw UserError(fmt::format(
+        "calibration '{}': {}; allowed: an OpenCV fisheye calibration with camera_matrix (3x3), "
+        "dist_coeffs (4 numbers) and resolution (width, height)",
+        one_line(file_.string()), why));
+  }
+
+  /// All numbers of the first of `names` that is there: of a matrix, a list or a list of rows.
+  std::vector<double> numbers(std::initializer_list<const char*> names) const {
+    for (const char* name : names) {
+      if (!root_[name]) continue;
+      std::vector<double> out;
+      const YAML::Node node = root_[name];
+      append(node.IsMap() && node["data"] ? node["data"] : node, name, out);
+      return out;
+    }
+    return {};
+  }
+
+ private:
+  void append(const YAML::Node& node, const char* name, std::vector<double>& out) const {
+    if (node.IsSequence()) {
+      for (const auto& item : node) append(item, name, out);
+      return;
+    }
+    double value = 0;
+    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+      fail(fmt::format("'{}' holds something that is not a number", name));
+    out.push_back(value);
+  }
+
+  fs::path file_;
+  YAML::Node root_;
+};
+
+}  // namespace
+
+Calibration read_calibration(const fs::path& file) {
+  const Reader in(file);
+  const auto matrix = in.numbers({"camera_matrix", "K"});
+  if (matrix.size() != 9)
+    in.fail(matrix.empty() ? std::string("it has no camera matrix")
+                           : fmt::format("its camera matrix has {} numbers", matrix.size()));
+  if (std::abs(matrix[1]) > 1e-9) in.fail(fmt::format("it has a skew of {}, allowed is 0", matrix[1]));
+  const auto k = in.numbers({"dist_coeffs", "distortion_coefficients", "D"});
+  if (k.size() != 4)
+    in.fail(fmt::format("it has {} distortion coefficients{}", k.size(),
+                        k.size() > 4 ? ", those of a lens that is not a fisheye" : ""));
+  Calibration out;
+  out.kb = {matrix[0], matrix[4], matrix[2], matrix[5], k[0], k[1], k[2], k[3]};
+  auto size = in.numbers({"resolution", "image_size"});
+  if (size.empty()) {
+    size = in.numbers({"image_width"});
+    const auto height = in.numbers({"image_height"});
+    size.insert(size.end(), height.begin(), height.end());
+  }
+  if (size.empty()) return out;
+  if (size.size() != 2) in.fail(fmt::format("its picture size has {} numbers", size.size()));
+  for (const double side : size)
+    if (side < 16 || side > kMaxSide || side != std::floor(side))
+      in.fail(fmt::format("its picture has a side of {}, allowed are 16 to {}", side, kMaxSide));
+  out.width = static_cast<unsigned>(size[0]);
+  out.height = static_cast<unsigned>(size[1]);
+  return out;
+}
+
+void apply_calibrations(const ParamSet& params, Experiment& experiment) {
+  const auto file_of = [&](const char* key) {
+    const ParamBase* p = params.find(key);
+    return p ? p->text() : std::string();
+  };
+  const auto apply = [&](const std::string& group, const std::string& key, const std::string& file,
+                         int rank) {
+    const Calibration c = read_calibration(file);
+    if (experiment.rank(group + ".kb") > rank) return;
+    if (experiment.rank(group + ".kb") == rank)
+      Diagnostics::instance().configuration(
+          fmt::format("'{0}.kb' is set ({1}) but has no effect with {2} = {3}", group,
+                      experiment.origin(group + ".kb").text(), key, file));
+    if (!c.width && group == "lens" && experiment.rank("lens.kb_width") < 0)
+      throw UserError(fmt::format("calibration '{}' does not say the size of its picture; set "
+                                  "lens.kb_width and lens.kb_height",
+                                  one_line(file)));
+    experiment.preset(group + ".kb", fmt::format("[{}]", fmt::join(c.kb, ", ")), file);
+    if (c.width) {
+      experiment.preset(group + ".kb_width", fmt::format("{}px", c.width), file);
+      experiment.preset(group + ".kb_height", fmt::format("{}px", c.height), file);
+    }
+  };
+  const std::string camera = file_of("camera.calibration"), lens = file_of("lens.calibration");
+  const int camera_rank = experiment.rank("camera.calibration");
+  if (!camera.empty()) apply("camera", "camera.calibration", camera, camera_rank);
+  if (!lens.empty())
+    apply("lens", "lens.calibration", lens, experiment.rank("lens.calibration"));
+  else if (!camera.empty() && experiment.rank("lens.kb") < 0)
+    apply("lens", "camera.calibration", camera, camera_rank);
+}
+
+}  // namespace fovea::app

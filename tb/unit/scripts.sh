@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# scripts/run, build, test and figures over stand-ins of cmake and fovea: what they start with which
+# arguments. Usage: scripts.sh SOURCE
+set -uo pipefail
+source=$1
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
+cp "$source"/scripts/{run,build,test,figures} "$dir/tree/scripts/"
+touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
+printf '#!/bin/sh\n' >"$dir/tree/scripts/setup"
+for name in cmake ctest ffmpeg; do printf '#!/bin/sh\necho "%s $*" >>"%s/calls"\n' $name "$dir" >"$dir/bin/$name"; done
+printf '#!/bin/sh\necho "fovea $*" >>"%s/calls"\n' "$dir" >"$dir/tree/build/release/fovea"
+chmod +x "$dir/bin/"* "$dir/tree/scripts/"* "$dir/tree/build/release/fovea"
+export PATH=$dir/bin:$PATH
+cd "$dir/elsewhere" || exit 1
+failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
+
+# calls NAME STATUS 'expected last call' -- command...; an empty expectation means no call at all
+calls() {
+  local name=$1 status=$2 want=$3 got
+  shift 4
+  : >"$dir/calls"
+  "$@" >"$dir/text" 2>&1
+  got=$?
+  [ "$got" = "$status" ] || fail "$name: exit status $got, expected $status: $(cat "$dir/text")"
+  [ "$(tail -1 "$dir/calls")" = "$want" ] || fail "$name: '$(tail -1 "$dir/calls")', expected '$want'"
+}
+tree=$dir/tree default=$dir/tree/scripts/experiments/default.yaml
+calls plain 0 "fovea run $default" -- "$tree/scripts/run"
+calls set 0 "fovea run $default -s run.frames=1" -- "$tree/scripts/run" -s run.frames=1
+calls set_a_file 0 "fovea run $default -s camera.calibration=left.yaml" -- \
+  "$tree/scripts/run" -s camera.calibration=left.yaml
+calls named 0 'fovea run mine.yaml --mp4' -- "$tree/scripts/run" mine.yaml --mp4
+calls named_last 0 'fovea run -s run.frames=1 mine.yaml' -- "$tree/scripts/run" -s run.frames=1 mine.yaml
+calls misspelt 0 'fovea run none.yaml' -- "$tree/scripts/run" none.yaml
+for script in run build test figures; do
+  calls "help_$script" 0 '' -- "$tree/scripts/$script" --help
+  grep -q "Usage: scripts/$script" "$dir/text" || fail "help of $script: $(cat "$dir/text")"
+done
+calls figures_argument 2 '' -- "$tree/scripts/figures" --quick
+calls test 0 'ctest --test-dir build/release --output-on-failure -j '"$(nproc)"' -LE nightly -R unit' -- \
+  "$tree/scripts/test" -R unit
+
+# A clone that was moved is configured anew, another one is not.
+printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >"$tree/build/release/CMakeCache.txt"
+calls stays 0 'cmake --build --preset release --target fovea -- --quiet' -- "$tree/scripts/build" fovea
+grep -qx 'cmake --preset release' "$dir/calls" || fail "stays: $(cat "$dir/calls")"
+printf 'CMAKE_HOME_DIRECTORY:INTERNAL=/another/place\n' >"$tree/build/release/CMakeCache.txt"
+calls moved 0 'cmake --build --preset release -- --quiet' -- "$tree/scripts/build"
+grep -qx 'cmake --preset release --fresh' "$dir/calls" || fail "moved: $(cat "$dir/calls")"
+grep -q "belongs to '/another/place'" "$dir/text" || fail "moved: $(cat "$dir/text")"
+echo "$failures failures"
+[ "$failures" = 0 ]
