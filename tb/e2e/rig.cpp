@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "model/video/core/bt656.h"
+#include "sw/fovea/experiment.h"
 #include "sw/fovea/loader.h"
 
 namespace fovea::e2e {
@@ -31,6 +32,11 @@ Rig::~Rig() = default;
 
 Rig& Rig::set(const std::string& key, const std::string& value) {
   set_.set(key, value);
+  return *this;
+}
+
+Rig& Rig::load(const std::string& experiment) {
+  app::Experiment(set_).load(std::filesystem::path(FOVEA_EXPERIMENTS_DIR) / experiment);
   return *this;
 }
 
@@ -124,12 +130,9 @@ oracle::Geometry Rig::geometry() const {
     const double sx = params.raster_width() / l.kb_width();
     const double sy = params.raster_height() / l.kb_height();
     const double fx = kb[0] * sx, fy = kb[1] * sy;
+    g.mapping = oracle::Mapping::kKannalaBrandt;
     g.theta_max = l.theta_max() * std::numbers::pi / 180;
-    for (int i = 0; i <= 128; ++i) {
-      const double t = g.theta_max * i / 128, t2 = t * t;
-      g.table_r.push_back(
-          fx * t * (1 + t2 * (kb[4] + t2 * (kb[5] + t2 * (kb[6] + t2 * kb[7])))));
-    }
+    g.k = {kb[4], kb[5], kb[6], kb[7]};
     g.focal_px = fx;
     g.in_aspect = fy / fx;
     g.centre_x = (kb[2] + 0.5) * sx - 0.5 - (params.raster_width() - 1) / 2.0;

@@ -33,6 +33,8 @@ class Rig {
   ~Rig();
   /// As `-s key=value`; before run() only.
   Rig& set(const std::string& key, const std::string& value);
+  /// Takes all keys of a shipped experiment ("default.yaml"), its footage included.
+  Rig& load(const std::string& experiment);
   Rig& strict() { strict_ = true; return *this; }
   /// Builds the board without running it, for tests that turn something by hand.
   board::Board& build();
@@ -43,6 +45,8 @@ class Rig {
 
   board::Board& board() { return *board_; }
   const std::vector<Shown>& shown() const { return shown_; }
+  /// Where the marks are in the pictures that the camera sends; nothing when they are off.
+  const std::optional<video::StampLayout>& stamps() const { return source_->stamps(); }
   /// What the camera sent in frame n: rows of fields 2n and 2n + 1, the region that is captured.
   oracle::Frame sent(std::uint64_t n);
   std::vector<std::uint32_t> lut();

@@ -56,6 +56,10 @@ double radius_continued(const Geometry& g, double theta) {
       return 2 * f * std::sin(theta / 2);
     case Mapping::kStereographic:
       return 2 * f * std::tan(theta / 2);
+    case Mapping::kKannalaBrandt: {
+      const double t2 = theta * theta;
+      return f * theta * (1 + t2 * (g.k[0] + t2 * (g.k[1] + t2 * (g.k[2] + t2 * g.k[3]))));
+    }
     case Mapping::kTable:
       break;
   }
@@ -120,6 +124,8 @@ double lens_focal(const Geometry& g) {
       return g.paper_literal_focal ? w / (4 * std::sin(fov / 2)) : w / (4 * std::sin(fov / 4));
     case Mapping::kStereographic:
       return w / (4 * std::tan(fov / 4));
+    case Mapping::kKannalaBrandt:
+      throw std::invalid_argument("a Kannala-Brandt lens needs its focal length in pixels");
     case Mapping::kTable:
       break;
   }

@@ -2,6 +2,7 @@
 // Written from the text of the geometry (README of this folder), not from the lens library of the
 // firmware; it shares no header with it or with the models.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,7 +18,8 @@ enum class Mapping {
   kOrthographic,
   kEquisolid,
   kStereographic,
-  kTable
+  kTable,
+  kKannalaBrandt
 };
 
 /// Which source pair an output pair takes: that of its first pixel's nearest source pixel (A, the
@@ -38,7 +40,10 @@ struct Geometry {
   double shift_x = 0, shift_y = 0;       ///< of the output view
   double in_aspect = 1, out_aspect = 1;  ///< y scale / x scale
   double theta_max = 0;         ///< radians, largest angle shown; 0: no limit (a table needs one)
-  std::vector<double> table_r;  ///< x-pixels at i * theta_max / (size - 1)
+  std::vector<double> table_r;  ///< kTable: x-pixels at i * theta_max / (size - 1)
+  /// kKannalaBrandt: k1..k4 of R = focal_px theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 +
+  /// k4 theta^8), the model of Kannala and Brandt (2006) as OpenCV's fisheye module writes it.
+  std::array<double, 4> k{};
 };
 
 /// A position in the input picture, pixels, pixel centres at integers.

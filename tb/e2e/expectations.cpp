@@ -1,0 +1,53 @@
+#include "tb/e2e/expectations.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <optional>
+
+namespace fovea::e2e {
+
+void expect_lut_right(Rig& rig) {
+  const auto lut = rig.lut();
+  const oracle::Geometry g = rig.geometry();
+  ASSERT_EQ(lut.size(), std::size_t{g.width} / 2 * g.height);
+  const oracle::LutCheck c = oracle::check_lut(lut, g, 0.02);
+  EXPECT_EQ(c.wrong, 0u) << c.first_wrong->text();
+  // Two roundings that are both right may differ at a boundary, but only there.
+  EXPECT_LE(c.near_boundary, c.entries / 1000);
+  std::printf("LUT: %zu entries, %zu wrong, %zu within 0.02 px of a boundary and different\n",
+              c.entries, c.wrong, c.near_boundary);
+}
+
+void expect_frames_right(Rig& rig, std::uint64_t step) {
+  const auto lut = rig.lut();
+  const std::uint32_t pitch = rig.geometry().pitch_bytes;
+  ASSERT_FALSE(rig.shown().empty());
+  std::uint64_t last = 0;
+  for (const Shown& s : rig.shown()) {
+    ASSERT_TRUE(s.record.captured && s.record.capture_start);
+    EXPECT_EQ(s.underflows, 0u);
+    // Which frame the camera sent is found from the pixels, near the time of the capture.
+    const double period = rig.params.video.standard.is("pal") ? 0.04 : 1001.0 / 30000;
+    const auto guess = static_cast<std::uint64_t>(
+        static_cast<double>(*s.record.capture_start) * 1e-12 / period);
+    std::optional<std::uint64_t> found;
+    std::string difference;
+    for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2 && !found; ++n) {
+      const auto d = oracle::compare(oracle::remap(rig.sent(n), lut, pitch), s.frame);
+      if (!d) found = n;
+      if (n == guess && d) difference = d->text();
+    }
+    ASSERT_TRUE(found) << "frame " << s.record.index << " is no remap of a sent frame: "
+                       << difference;
+    if (&s != &rig.shown().front()) {
+      if (step > 0) {
+        EXPECT_EQ(*found, last + (s.record.repeated ? 0 : step)) << "order of frames";
+      }
+      EXPECT_GE(*found, last) << "an older frame than the one before";
+    }
+    last = *found;
+  }
+}
+
+}  // namespace fovea::e2e

@@ -1,0 +1,143 @@
+// The experiments that are shipped, as they are shipped: full size, real footage, marks on. Every
+// displayed frame is exact, the marks that it shows tell the right order, no frame is dropped or
+// repeated, the rate is the standard's, and the run warns of nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <systemc>
+
+#include "model/common/check.h"
+#include "tb/e2e/expectations.h"
+#include "tb/e2e/rig.h"
+#include "tb/e2e/stamp_reader.h"
+
+namespace fovea::e2e {
+namespace {
+
+constexpr Picoseconds kLimit = 20 * kPsPerSecond;
+constexpr double kPal = 25, kNtsc = 30'000.0 / 1'001;
+
+struct Experiment {
+  const char* file;
+  double rate;  ///< displayed frames a second, ITU-R BT.601
+};
+
+void expect_no_warnings() {
+  for (const auto& [kind, count] : Diagnostics::instance().counts())
+    ADD_FAILURE() << "warning: " << kind.second << " (" << count << " times)";
+}
+
+class ShippedTest : public testing::TestWithParam<Experiment> {
+ protected:
+  /// The number of the camera's frame that a displayed frame shows, read from its marks.
+  std::optional<unsigned> frame_shown(const Rig& rig, const Shown& s) {
+    const unsigned x = (rig.params.raster_width() - rig.params.width()) / 2;
+    const unsigned y = (rig.params.raster_height() - rig.params.height()) / 2;
+    const ShownFields f = read_stamps(s.frame, rig.geometry(), *rig.stamps(), x, y);
+    EXPECT_TRUE(f.even && f.odd) << "frame " << s.record.index << ": the marks cannot be read";
+    if (!f.even || !f.odd) return std::nullopt;
+    EXPECT_EQ(*f.even % 2, 0) << "rows of the first field show the second one";
+    EXPECT_EQ(*f.odd, *f.even + 1) << "a frame woven of fields that do not belong together";
+    return *f.even / 2;
+  }
+};
+
+TEST_P(ShippedTest, EveryFrameIsExactInOrderAndInTime) {
+  Rig rig;
+  rig.load(GetParam().file);
+  rig.run(kLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
+  expect_lut_right(rig);
+  expect_frames_right(rig);
+
+  std::optional<unsigned> before;
+  for (const Shown& s : rig.shown()) {
+    const auto now = frame_shown(rig, s);
+    ASSERT_TRUE(now);
+    if (before) {
+      EXPECT_EQ(*now, *before + 1) << "order of the frames, from their pixels";
+    }
+    before = now;
+  }
+
+  const board::FrameStats f = rig.board().frame_stats();
+  ASSERT_TRUE(f.rate);
+  EXPECT_NEAR(*f.rate, GetParam().rate, 0.01);
+  EXPECT_EQ(f.displayed, rig.params.run.frames());
+  EXPECT_EQ(f.dropped, 0u);
+  EXPECT_EQ(f.repeated, 0u);
+  EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
+  EXPECT_EQ(rig.board().sink.stats.underflows.count(), 0u);
+  expect_no_warnings();
+}
+
+// Ten remaps of each captured frame, without waiting for the camera: old frames are shown again.
+TEST(ThroughputTest, EveryFrameIsExactAndNoneIsOlderThanTheOneBefore) {
+  Rig rig;
+  rig.load("throughput.yaml");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
+  expect_lut_right(rig);
+  expect_frames_right(rig, 0);
+  EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
+  EXPECT_EQ(rig.board().sink.stats.underflows.count(), 0u);
+  expect_no_warnings();
+}
+
+INSTANTIATE_TEST_SUITE_P(Experiments, ShippedTest,
+                         testing::Values(Experiment{"default.yaml", kPal},
+                                         Experiment{"paper-pal.yaml", kPal},
+                                         Experiment{"paper-vga.yaml", kNtsc},
+                                         Experiment{"paper-ntsc.yaml", kNtsc}),
+                         [](const auto& of) {
+                           std::string name = of.param.file;
+                           name.resize(name.find('.'));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// The reader must be able to see what it looks for.
+
+TEST(StampReaderTest, SwappedFieldsAndTornFramesAreSeen) {
+  const video::StampLayout layout = video::StampLayout::at(720, 576, 359.5, 287.5);
+  oracle::Geometry flat;
+  flat.mapping = oracle::Mapping::kNone;
+  const auto woven = [&](unsigned even, unsigned odd) {
+    video::Picture a(720, 576, 100), b(720, 576, 100);
+    video::stamp(a, layout, even);
+    video::stamp(b, layout, odd);
+    for (unsigned y = 1; y < a.height; y += 2) std::copy_n(b.row(y), a.row_bytes(), a.row(y));
+    return crop(a, 0, 0, 720, 576);
+  };
+  const ShownFields right = read_stamps(woven(1000, 1001), flat, layout, 0, 0);
+  EXPECT_EQ(right.even, 1000);
+  EXPECT_EQ(right.odd, 1001);
+  const ShownFields swapped = read_stamps(woven(1001, 1000), flat, layout, 0, 0);
+  EXPECT_EQ(swapped.even, 1001);
+  EXPECT_EQ(swapped.odd, 1000);
+  const ShownFields torn = read_stamps(woven(1000, 1003), flat, layout, 0, 0);
+  EXPECT_EQ(torn.odd, 1003);
+  const ShownFields none = read_stamps(crop(video::Picture(720, 576), 0, 0, 720, 576), flat, layout,
+                                       0, 0);
+  EXPECT_FALSE(none.even || none.odd);
+}
+
+TEST(StampReaderTest, APictureThatIsShiftedByACellIsNotRead) {
+  const video::StampLayout layout = video::StampLayout::at(720, 576, 359.5, 287.5);
+  oracle::Geometry flat;
+  flat.mapping = oracle::Mapping::kNone;
+  video::Picture p(720, 576, 100);
+  video::stamp(p, layout, 1234);
+  flat.shift_x = video::StampLayout::kCellPixels;
+  const ShownFields f = read_stamps(crop(p, 0, 0, 720, 576), flat, layout, 0, 0);
+  EXPECT_FALSE(f.even || f.odd);
+}
+
+}  // namespace
+}  // namespace fovea::e2e
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,54 @@
+#include "tb/e2e/stamp_reader.h"
+
+#include <array>
+#include <cmath>
+
+namespace fovea::e2e {
+namespace {
+
+constexpr unsigned kColumns = video::StampLayout::kCodeColumns;
+constexpr unsigned kRows = video::StampLayout::kCodeRows;
+constexpr double kCell = video::StampLayout::kCellPixels;
+
+/// Luma of the pixels found in the middle of a cell.
+struct Mean {
+  unsigned sum = 0, count = 0;
+};
+
+/// The code drawn anew from the means of its cells, in all rows; nothing if a cell was not seen.
+std::optional<std::uint16_t> decode(const std::array<Mean, kColumns * kRows>& cells) {
+  video::Picture picture(kColumns, kRows);
+  for (unsigned i = 0; i < cells.size(); ++i) {
+    if (cells[i].count == 0) return std::nullopt;
+    picture.row(i / kColumns)[2 * (i % kColumns) + 1] =
+        static_cast<std::uint8_t>(cells[i].sum / cells[i].count);
+  }
+  return video::decode_counter(picture, video::CodeGrid(0, 0, 1, 1));
+}
+
+}  // namespace
+
+ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geometry,
+                        const video::StampLayout& layout, unsigned x, unsigned y) {
+  std::array<Mean, kColumns * kRows> even{}, odd{};
+  for (unsigned v = 0; v < shown.height; ++v)
+    for (unsigned u = 0; u < shown.width; ++u) {
+      // A pixel pair moves as a whole, so the camera pixel lies up to one to the side of its exact
+      // position; the middle half of a cell is far enough from its neighbours.
+      const oracle::Position p = oracle::source_position(geometry, u, v);
+      const double row = std::floor(p.y + 0.5) + y;
+      const double column = (p.x + x - layout.code_x) / kCell;
+      const double line = (row - layout.code_y) / kCell;
+      if (column < 0 || column >= kColumns || line < 0 || line >= kRows) continue;
+      const double across = column - std::floor(column), down = line - std::floor(line);
+      if (across < 0.25 || across > 0.75 || down < 0.25 || down > 0.75) continue;
+      const unsigned cell =
+          static_cast<unsigned>(line) * kColumns + static_cast<unsigned>(column);
+      Mean& mean = (static_cast<unsigned>(row) % 2 ? odd : even)[cell];
+      mean.sum += shown.uyvy[(std::size_t{v} * shown.width + u) * 2 + 1];
+      ++mean.count;
+    }
+  return {decode(even), decode(odd)};
+}
+
+}  // namespace fovea::e2e
