@@ -217,15 +217,15 @@ TEST(SleepTest, WaitForInterruptDrainsBothBuffersFirst) {
 TEST_F(BufferTest, SwapComesBehindBufferedStores) {
   m.section(0x0800'0000, kBlock, 0, 0);
   m.execute(kStart +
-            "ldr r5, =0x08000000\n ldr r0, [r5, #0x800]\n mov r1, #3\n str r0, [r4]\n"
-            "str r0, [r4, #64]\n swp r2, r1, [r5]\n" + kDrain);
+            "ldr r5, =0x08000000\n ldr r0, [r5, #0x800]\n add r5, r5, #0x100\n mov r1, #3\n"
+            "str r0, [r4]\n str r0, [r4, #64]\n swp r2, r1, [r5]\n" + kDrain);
   const auto log = m.port.data_log();
   ASSERT_GE(log.size(), 4u);
   const auto* const end = &log.back() + 1;
   EXPECT_TRUE(end[-4].write && end[-4].address == kBlock);
   EXPECT_TRUE(end[-3].write && end[-3].address == kBlock + 64);
-  EXPECT_TRUE(!end[-2].write && end[-2].locked && end[-2].address == kBlock);
-  EXPECT_TRUE(end[-1].write && end[-1].locked && end[-1].address == kBlock);
+  EXPECT_TRUE(!end[-2].write && end[-2].locked && end[-2].address == kBlock + 0x100);
+  EXPECT_TRUE(end[-1].write && end[-1].locked && end[-1].address == kBlock + 0x100);
 }
 
 /// Nothing of a line fill that failed stays: the next load asks the bus again, and so does one of the

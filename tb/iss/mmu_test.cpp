@@ -100,13 +100,13 @@ TEST_F(MmuTest, ReplacedEntryIsWalkedForAgain) {
   std::vector<std::uint64_t> walks;
   m.on_svc = [&](std::uint32_t) { walks.push_back(m.core.counts().tlb_walks); };
   go("add r4, r4, #0x5000\n add r6, r4, #0x20000\n add r7, r4, #0x40000\n svc #3\n"
-     "ldr r0, [r4]\n ldr r0, [r6]\n svc #3\n ldr r0, [r4]\n ldr r0, [r6]\n svc #3\n"
-     "ldr r0, [r7]\n svc #3\n ldr r0, [r4]\n svc #3\n");
+     "ldr r0, [r6]\n ldr r0, [r4]\n svc #3\n ldr r0, [r6]\n ldr r0, [r4]\n svc #3\n"
+     "ldr r0, [r7]\n svc #3\n ldr r0, [r6]\n svc #3\n");
   ASSERT_EQ(walks.size(), 5u);
   EXPECT_EQ(walks[1] - walks[0], 2u);
   EXPECT_EQ(walks[2] - walks[1], 0u) << "two ways";
   EXPECT_EQ(walks[3] - walks[2], 1u);
-  EXPECT_EQ(walks[4] - walks[3], 1u) << "the first page has lost its entry";
+  EXPECT_EQ(walks[4] - walks[3], 1u) << "the page that came first has lost its entry";
 }
 
 TEST_F(MmuTest, DomainFaults) {

@@ -69,6 +69,7 @@ TEST_F(TcmMappingTest, PageThatMapsTheRamElsewhereReachesTheRam) {
       low_pages(each);
       coarse(each, kVa, kCoarse + 0x400);
       page(each, kCoarse + 0x400, kVa, (by_data_window ? kWindow : 0) + 0x6000, cb);
+      each.tcm[0x6040] = 9;  // other lines of the page, which nothing knows yet
       std::vector<Counts> counts;
       each.on_svc = [&](std::uint32_t) {
         each.marks.push_back(each.port.data_log().size());
@@ -77,11 +78,14 @@ TEST_F(TcmMappingTest, PageThatMapsTheRamElsewhereReachesTheRam) {
       each.execute(kStart +
                    "mov r1, #77\n mov r2, #78\n svc #3\n str r1, [r5]\n svc #3\n"
                    "add r7, r5, #8\n stmia r7, {r1, r2}\n strh r2, [r5, #4]\n ldr r8, [r5]\n"
-                   "ldmia r7, {r9, r10}\n swp r11, r2, [r5]\n ldr r8, [r5]\n svc #3\n");
+                   "ldmia r7, {r9, r10}\n swp r11, r2, [r5]\n ldr r8, [r5]\n ldr r3, [r5, #64]\n"
+                   "str r1, [r5, #128]\n svc #3\n");
       EXPECT_EQ(each.marks[1] - each.marks[0], 2u) << "a walk of two levels";
       EXPECT_EQ(each.marks[2] - each.marks[1], 0u) << cb;
       EXPECT_EQ(each.core.reg(11), 77u);
       EXPECT_EQ(each.core.reg(8), 78u);
+      EXPECT_EQ(each.core.reg(3), 9u) << cb;
+      EXPECT_EQ(each.tcm_word(0x6080), 77u) << cb;
       EXPECT_EQ(each.core.reg(10), 78u);
       EXPECT_EQ(each.tcm_word(0x6000), 78u);
       EXPECT_EQ(each.tcm_word(0x6004) & 0xFFFFu, 78u);
@@ -89,8 +93,8 @@ TEST_F(TcmMappingTest, PageThatMapsTheRamElsewhereReachesTheRam) {
       const auto added = [&](std::uint64_t Counts::*which) {
         return counts.at(2).*which - counts.at(0).*which;
       };
-      EXPECT_EQ(added(by_data_window ? &Counts::dtcm_reads : &Counts::itcm_reads), 5u) << cb;
-      EXPECT_EQ(added(by_data_window ? &Counts::dtcm_writes : &Counts::itcm_writes), 5u) << cb;
+      EXPECT_EQ(added(by_data_window ? &Counts::dtcm_reads : &Counts::itcm_reads), 6u) << cb;
+      EXPECT_EQ(added(by_data_window ? &Counts::dtcm_writes : &Counts::itcm_writes), 6u) << cb;
       EXPECT_EQ(added(by_data_window ? &Counts::itcm_reads : &Counts::dtcm_reads), 0u) << cb;
       EXPECT_EQ(counts[2].dcache_reads + counts[2].dcache_writes, 0u) << cb;
     }
