@@ -165,6 +165,16 @@ int command_params(const std::string& pattern, bool markdown, bool of_replay,
   return kExitDone;
 }
 
+/// The text of a NotModelled that a process of the simulation threw: SystemC has made an exception
+/// of its own of it. Empty for anything else.
+std::string missing_feature(const std::exception& e) {
+  const std::string what = e.what(), mark = "uncaught exception: not modelled: ";
+  const auto at = what.find(mark);
+  if (at == what.npos) return {};
+  const auto from = at + mark.find("not");
+  return what.substr(from, what.find('\n', from) - from);
+}
+
 /// What the host refused (memory, a thread), if that is what the exception says; else empty. From
 /// within a process of SystemC it comes as a report that quotes the exception's name.
 std::string lack_of_host(const std::exception& e) {
@@ -440,6 +450,10 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
     if (const std::string why = lack_of_host(e); !why.empty()) {
       context.err << "fovea: error: " << why << std::endl;
       return kExitWrongInput;
+    }
+    if (const std::string what = missing_feature(e); !what.empty()) {
+      context.err << "fovea: " << printable(what) << std::endl;
+      return kExitGuestFailed;
     }
     context.err << "fovea: own defect: " << printable(e.what()) << std::endl;
     return kExitOwnDefect;

@@ -169,6 +169,12 @@ TEST_F(CliTest, GuestFailureIsStatusThreeAndADefectFour) {
   EXPECT_THAT(err.str(), HasSubstr("own defect: broken"));
 }
 
+TEST_F(CliTest, AMissingFeatureThatAProcessFindsIsNoDefect) {
+  EXPECT_EQ(run({"-s", "run.mode=not_modelled_in_kernel"}), 3);
+  EXPECT_THAT(err.str(), AllOf(HasSubstr("fovea: not modelled: field X of Y\n"),
+                               Not(HasSubstr("defect")), Not(HasSubstr("E549"))));
+}
+
 TEST_F(CliTest, WhatTheHostRefusesIsStatusTwoAndNoDefect) {
   for (const char* mode : {"out_of_memory", "out_of_memory_in_kernel"}) {
     EXPECT_EQ(run({"-s", std::string("run.mode=") + mode}), 2);

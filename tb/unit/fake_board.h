@@ -30,6 +30,10 @@ class FakeBoard : public app::Simulation {
       throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
     if (params_.mode.is("out_of_memory_in_kernel"))
       throw std::runtime_error("Error: (E549) uncaught exception: std::bad_alloc\nIn process: p");
+    if (params_.mode.is("not_modelled_in_kernel"))
+      throw std::runtime_error(
+          "Error: (E549) uncaught exception: not modelled: field X of Y\nIn file: f\nIn process: "
+          "p");
     if (params_.mode.is("stopped_decoding")) throw app::Stopped();
     if (params_.mode.is("user_error")) throw UserError("footage 'x' is missing");
     if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
@@ -81,17 +85,16 @@ class FakeBoard : public app::Simulation {
                     100'000, "frames to show", Origin::kChoice,        ""};
     TextParam file{*this, "file", "", "a file that is read"};
     ListParam list{*this, "list", {0, 0}, {2}, "two numbers", Origin::kChoice, ""};
-    EnumParam mode{
-        *this,
-        "mode",
-        "good",
-        {"good", "slow", "guest_failure", "late_failure", "defect", "broken_check", "user_error",
-         "not_modelled", "out_of_memory", "out_of_memory_in_kernel", "no_thread",
-         "stopped_decoding", "escape"},
-        "how it ends | or not",
-        Origin::kAssumed,
-        "",
-        {"good", "slow", "a fake"}};
+    EnumParam mode{*this,
+                   "mode",
+                   "good",
+                   {"good", "slow", "guest_failure", "late_failure", "defect", "broken_check",
+                    "user_error", "not_modelled", "out_of_memory", "out_of_memory_in_kernel",
+                    "no_thread", "not_modelled_in_kernel", "stopped_decoding", "escape"},
+                   "how it ends | or not",
+                   Origin::kAssumed,
+                   "",
+                   {"good", "slow", "a fake"}};
   } params_;
 };
 
