@@ -25,7 +25,7 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
     std::optional<app::CheckedFile> trace;
     if (!request.bus_trace.empty()) trace.emplace(request.bus_trace);
-    if (params_.mode.is("out_of_memory")) throw std::bad_alloc();
+    if (params_.mode.is("out_of_memory")) throw std::bad_array_new_length();  // a kind of bad_alloc
     if (params_.mode.is("no_thread"))
       throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
     if (params_.mode.is("out_of_memory_in_kernel"))
