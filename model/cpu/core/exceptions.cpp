@@ -51,7 +51,10 @@ void Core::set_clock(Frequency f, Picoseconds at) {
   const std::array<std::uint64_t*, 5> clocks = {&data_port_free_, &ifill_.first, &ifill_.last,
                                                 &dfill_.first, &dfill_.last};
   std::array<Picoseconds, clocks.size()> times{};
-  for (std::size_t k = 0; clock_.running() && k < clocks.size(); ++k) times[k] = time(*clocks[k]);
+  // What is over may be older than the present clock, which has no times for it.
+  const std::uint64_t future = clock_.running() ? clock_.edge_after(at) : ~std::uint64_t{0};
+  for (std::size_t k = 0; k < clocks.size(); ++k)
+    if (*clocks[k] >= future) times[k] = time(*clocks[k]);
   clock_.restart(f, at);
   if (clock_.running()) {
     clock_floor_ = clock_.edge_after(at);
