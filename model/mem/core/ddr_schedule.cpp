@@ -100,7 +100,7 @@ inline Places DdrController::best_kind(Places set, bool room) const {
   Entry& top = entry(0);
   const Cmd cmd = needed(top);
   first_ = 0;
-  plain_ = true;
+  plain_ = lane_.room() <= edge;
   choice_ = {&top, earliest(top, cmd, edge), cmd, 0};
   prepares &= ~places_.of_bank(top.bank);
   if (prepares && choice_.at > edge) prepare_others(edge, prepares, true);
