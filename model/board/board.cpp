@@ -36,6 +36,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
   dm365.on_reset = [this](const std::string& cause) { reset_asked(cause); };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
     uart_.push_back(static_cast<char>(byte));
+    if (on_uart) on_uart(byte);
   };
   dm365.gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == 2) log.pins(out, at);
@@ -101,19 +102,28 @@ void Board::latched(const video::Osd::Latch& latch) {
     });
   } else if (window_open()) {
     whole_until_ = kernel_time();
-    if (frames_in_window_ >= wanted_) close_window(kernel_time());
+    if (wanted_ && frames_in_window_ >= wanted_) close_window(kernel_time());
   }
+}
+
+void Board::measure_whole_run() {
+  window_start_ = whole_until_ = 0;
+  opening_ = true;
+  wanted_ = 0;
 }
 
 void Board::close_window(Picoseconds at) {
   if (window_end_) return;
-  dm365.quiet.at(at, kMasterCount, [this] {
-    if (window_end_) return;
-    dm365.scr.settle();
-    dm365.ddr.settle(kernel_time());
-    window_end_ = kernel_time();
-    if (on_window_close) on_window_close();
-  });
+  dm365.quiet.at(at, kMasterCount, [this] { close_window_now(); });
+}
+
+void Board::close_window_now() {
+  if (window_end_) return;
+  dm365.scr.settle();
+  dm365.ddr.settle(kernel_time());
+  if (!window_start_) window_start_ = whole_until_ = 0;
+  window_end_ = kernel_time();
+  if (on_window_close) on_window_close();
 }
 
 void Board::frame_shown(const video::DisplayFrame& frame) {

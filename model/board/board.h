@@ -67,6 +67,8 @@ class Board : public sc_core::sc_module {
 
   /// Called for each frame shown inside the window, in order.
   std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
+  /// Called for each byte that UART0 has sent, at its last stop bit.
+  std::function<void(std::uint8_t)> on_uart;
   /// Called when the window opens and when it closes (quiet phase: everything of that instant has
   /// happened).
   std::function<void()> on_window_open, on_window_close;
@@ -80,9 +82,15 @@ class Board : public sc_core::sc_module {
   bool window_open() const { return window_start_.has_value() && !window_end_; }
   std::optional<Picoseconds> window_start() const { return window_start_; }
   std::optional<Picoseconds> window_end() const { return window_end_; }
-  /// Ends the window at `at` instead of at its last frame (a run that is stopped). Masters may have
+  /// The window is the whole run: open from power-up, closed by close_window() only. Before the
+  /// simulation starts.
+  void measure_whole_run();
+  /// Ends the window at `at` instead of at its last frame (a run that is stopped). A window that
+  /// was not yet open is the whole run so far. Masters may have
   /// worked ahead of the present time, so `at` must lie beyond the next kernel event.
   void close_window(Picoseconds at);
+  /// Ends the window here, with the simulation over: without a quiet phase.
+  void close_window_now();
   FrameStats frame_stats() const;
   std::uint64_t frames_in_window() const { return frames_in_window_; }
   const std::string& uart_text() const { return uart_; }
@@ -107,7 +115,7 @@ class Board : public sc_core::sc_module {
   ClockSignal osc_{"osc", Frequency(24'000'000)};
   ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
   std::string uart_;
-  std::uint64_t wanted_;
+  std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
   std::optional<ChipReset> chip_reset_;

@@ -14,7 +14,20 @@ struct RunParams : ParamGroup {
                        3600 * kPsPerSecond,
                        "simulated time within which the first frame must be shown",
                        Origin::kChoice, ""};
+  TextParam until{*this, "until", "frames",
+                  "what ends the run, the first of a list that is met: frames (run.frames of them are "
+                  "shown), time:2s (simulated), pc:main or pc:0x80008000 (reached), uart:TEXT (sent by "
+                  "UART0), exit (semihosting), halt (nothing wakes the core), reset (of the chip); "
+                  "without frames the figures cover the whole run",
+                  "frames, time:T, pc:ADDRESS, uart:TEXT, exit, halt, reset, or [a, b]"};
   RunParams() : ParamGroup("run") {}
+};
+
+struct UartParams : ParamGroup {
+  TextParam input{*this, "input", "",
+                  "file of what is typed on UART0, a step a line: wait TEXT (until UART0 has sent "
+                  "it), send TEXT, at TIME; empty: nothing, or the input of --console"};
+  UartParams() : ParamGroup("uart0") {}
 };
 
 struct ClockParams : ParamGroup {
@@ -157,6 +170,7 @@ struct DevicesParams : ParamGroup {
 struct BoardParams {
   RunParams run;
   DevicesParams devices;
+  UartParams uart0;
   ClockParams clocks;
   VideoParams video;
   FirmwareParams firmware;
@@ -168,6 +182,7 @@ struct BoardParams {
   void declare(ParamSet& set) {
     set.add(run);
     set.add(devices);
+    set.add(uart0);
     set.add(clocks);
     set.add(video);
     set.add(firmware);

@@ -301,9 +301,10 @@ void EnumParam::parse(std::string_view text) {
   value_ = s;
 }
 
-TextParam::TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence)
+TextParam::TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence,
+                     std::string allowed)
     : ParamBase(group, std::move(name), std::move(sentence), Origin::kChoice, ""),
-      value_(def), default_(std::move(def)) {}
+      value_(def), default_(std::move(def)), allowed_(std::move(allowed)) {}
 
 void ParamSet::add(ParamGroup& group) {
   for (auto* p : group.params()) {

@@ -194,19 +194,20 @@ class EnumParam : public ParamBase {
 /// Free text, such as a file name.
 class TextParam : public ParamBase {
  public:
-  TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence);
+  TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence,
+            std::string allowed = "text");
   const std::string& operator()() const { return value_; }
   std::string text() const override { return value_; }
   std::string default_text() const override { return default_; }
   std::string unit() const override { return "text"; }
-  std::string allowed() const override { return "text"; }
+  std::string allowed() const override { return allowed_; }
 
  protected:
   void parse(std::string_view text) override { value_ = text; }
   double rank() const override { return 0; }
 
  private:
-  std::string value_, default_;
+  std::string value_, default_, allowed_;
 };
 
 /// A block's parameters; `prefix` is the block's dotted name ("ddr", "cpu.dcache").

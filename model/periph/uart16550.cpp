@@ -55,7 +55,19 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
   sensitive << wake_;
 }
 
-void Uart16550::refresh() { wake_.notify(sc_core::SC_ZERO_TIME); }
+void Uart16550::refresh() {
+  wake_.notify(sc_core::SC_ZERO_TIME);
+  if (on_ready) on_ready();
+}
+
+bool Uart16550::can_receive() const {
+  return regs.pwremu.urrst && clocked() && running() && divisor() != 0 && !regs.mcr.loop &&
+         rx_.size() < capacity();
+}
+
+Picoseconds Uart16550::character_time() const {
+  return time_of(ticks() + character_ticks()) - now_ps();
+}
 
 std::uint64_t Uart16550::character_ticks() const {
   const unsigned data = 5 + regs.lcr.wls.get();

@@ -63,6 +63,12 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   explicit Uart16550(sc_core::sc_module_name name, const char* selection = "");
   /// A byte has arrived completely (kernel time). Lost, with OE, when there is no room.
   void receive(std::uint8_t byte);
+  /// The receiver runs at a programmed rate and has room for one more byte.
+  bool can_receive() const;
+  /// How long a byte that begins now takes on the line. Only while can_receive().
+  Picoseconds character_time() const;
+  /// Called whenever can_receive() may have become true. Set by the board; may be empty.
+  std::function<void()> on_ready;
   std::uint64_t transmitted() const { return transmitted_; }
 
  private:
@@ -77,7 +83,7 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   void refresh();
   std::uint32_t interrupt_id() const;
   void start_next(std::uint64_t first_tick);
-  void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
+  void clock_changed() override { refresh(); }
   void update();
 
   const char* selection_;

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -12,11 +13,15 @@
 #include "model/board/board.h"
 #include "model/common/slices.h"
 #include "model/video/scene/ahead.h"
+#include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/bus_trace_run.h"
+#include "sw/fovea/core_semihosting.h"
 #include "sw/fovea/elf_image.h"
+#include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/loader.h"
+#include "sw/fovea/run_end.h"
 #include "sw/fovea/simulation.h"
 #include "sw/fovea/stall_regions.h"
 
@@ -35,6 +40,18 @@ StatRow row(std::string name, StatBase::Value value, std::string unit, std::stri
 
 double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
 
+// Slices only let the host look in; nothing in the model depends on where they end.
+constexpr Picoseconds kSlice = 5 * kPsPerMs;
+
+// Once the run has ended the core is let to its next instruction boundary: short slices first, long
+// ones for a core that hardly runs, and an end for one that does not run at all.
+constexpr unsigned kShortLooks = 20, kLooksAfterEnd = 40;
+Picoseconds after_end(unsigned looks) { return looks < kShortLooks ? kPsPerUs : kSlice; }
+
+bool kernel_stopped() { return sc_core::sc_get_status() == sc_core::SC_STOPPED; }
+
+constexpr std::uint32_t kSdram = 0x8000'0000;
+
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
@@ -49,11 +66,17 @@ class BoardSimulation : public Simulation {
   void collect_all(std::vector<StatRow>& rows);
   void add_frame_stats(std::vector<StatRow>& rows) const;
   void add_host(RunResult& result, bool strict) const;
-  [[noreturn]] void guest_failed(const std::string& what, const ElfImage& elf) const;
-  std::string failure_text(const std::string& what, const ElfImage& elf) const;
+  std::string failure_text(const std::string& what) const;
+  void collect_core(RunResult& result) const;
+  std::string ended_text(const RunEnd::Met& met) const;
+  SemihostingSettings semihosting_settings(const RunRequest& request) const;
+  std::optional<ElfImage> loader_of(const ElfImage& program, const RunRequest& request) const;
+  void load_loader(const ElfImage& loader, const ElfImage& program, const RunRequest& request);
+  ExecMap hosted_map() const;
 
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
+  Symbols symbols_;
   std::unique_ptr<BusTraceRun> trace_;
   std::vector<StatRow> stats_;
   std::vector<FrameRow> frames_;
@@ -61,11 +84,13 @@ class BoardSimulation : public Simulation {
   double window_wall_s_ = 0;
   std::uint64_t window_instructions_ = 0, direct_at_open_ = 0, queued_at_open_ = 0;
   std::uint64_t direct_ = 0, queued_ = 0;
-  bool closed_ = false;
+  bool opened_ = false, closed_ = false;
+  std::optional<cpu::Counts> asleep_at_end_;  // of a core that may not wake up any more
 };
 
 void BoardSimulation::open_window() {
   auto& soc = board_->dm365;
+  opened_ = true;
   for (auto& s : soc.scr.crossbar().stats) s->reset();
   for (auto& s : soc.scr.latency) s->reset();
   for (auto& s : soc.waits) s->reset();
@@ -115,6 +140,7 @@ void BoardSimulation::close_window() {
                            "ratio", "clocks with data on the SDRAM's bus / clocks in which a request is queued"));
   }
   soc.arm.core().mark_window(kernel_time());
+  if (soc.arm.asleep()) asleep_at_end_ = soc.arm.core().counts_asleep(kernel_time());
 }
 
 void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
@@ -145,7 +171,7 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
   if (lut && idle && *idle > *lut)
     rows.push_back(row("startup.lut_time", to_s(*idle - *lut), "s",
                        "time to build the look-up table, from phase 2 to phase 3 on the pins"));
-  if (board_->window_start())
+  if (opened_)
     rows.push_back(row("startup.first_frame", to_s(*board_->window_start()), "s",
                        "time from power-up to the start of the first corrected frame on the display"));
 }
@@ -177,17 +203,14 @@ void BoardSimulation::add_host(RunResult& result, bool strict) const {
   h.push_back(row("sync.strict", std::uint64_t{strict ? 1u : 0u}, "1", "--sync=strict"));
 }
 
-std::string BoardSimulation::failure_text(const std::string& what, const ElfImage& elf) const {
+std::string BoardSimulation::failure_text(const std::string& what) const {
   const auto& core = board_->dm365.arm.core();
-  const std::uint32_t pc = core.current_pc();
-  std::string text = fmt::format("{} at pc 0x{:08x}", what, pc);
-  if (const std::string where = elf.describe(pc); !where.empty()) text += " (" + where + ")";
-  text += fmt::format(", {:.6f} s after power-up", to_s(kernel_time()));
-  for (const auto& a : core.last_accesses()) {
-    text += fmt::format("\n  {} {} bytes at 0x{:08x} from pc 0x{:08x}", a.write ? "wrote" : "read",
-                        a.bytes, a.address, a.pc);
-    if (const std::string where = elf.describe(a.pc); !where.empty()) text += " (" + where + ")";
-  }
+  std::string text =
+      fmt::format("{} at pc {}, {:.6f} s after power-up", what,
+                  symbols_.place(core.current_pc()), to_s(kernel_time()));
+  for (const auto& a : core.last_accesses())
+    text += fmt::format("\n  {} {} bytes at 0x{:08x} from pc {}", a.write ? "wrote" : "read", a.bytes,
+                        a.address, symbols_.place(a.pc));
   return text;
 }
 
@@ -216,10 +239,91 @@ void take_timeline(board::Board& board, const RunRequest& request) {
       });
 }
 
+std::string BoardSimulation::ended_text(const RunEnd::Met& met) const {
+  return fmt::format("{} after {:.6f} s, {} instructions, at pc {}", met.what, to_s(met.at),
+                     board_->dm365.arm.core().instructions_executed(), symbols_.place(met.pc));
+}
+
+/// The core's figures of the window, or of the whole run if none was opened. A core that ended, or
+/// comes to no instruction boundary any more, has what it has.
+void BoardSimulation::collect_core(RunResult& result) const {
+  const auto& core = board_->dm365.arm.core();
+  cpu::CoreStats figures;
+  if (opened_) figures.from = core.window_stats().from;
+  if (closed_ && core.mark_done() && core.window_stats().to.cycles) {
+    figures.to = core.window_stats().to;
+  } else if (asleep_at_end_) {
+    figures.to = *asleep_at_end_;
+  } else {
+    figures.to = core.counts();
+    figures.to.cycles = core.clock_count();
+  }
+  // The clock's first edge after power-up is number 1; a core that never ran has no clocks either.
+  if (!opened_ && figures.to.cycles) --figures.to.cycles;
+  collect(figures, result.stats);
+  result.stalls = stall_rows(figures.from, figures.to, core.regions());
+}
+
+ExecMap BoardSimulation::hosted_map() const {
+  return ExecProgram::elf(program_file(params_)).map(params_.soc.ddr.size_bytes(), kSdram);
+}
+
+/// A program that lies in SDRAM alone needs a loader that sets up clocks and SDRAM before it; any other
+/// brings its own and starts as the chip does at power-up.
+std::optional<ElfImage> BoardSimulation::loader_of(const ElfImage& program,
+                                                   const RunRequest& request) const {
+  const auto& segments = program.segments();
+  if (!request.hosted || std::any_of(segments.begin(), segments.end(),
+                                     [](const ElfSegment& s) { return s.address < kSdram; }))
+    return std::nullopt;
+  return ElfImage::load(built_program("board_loader.elf"));
+}
+
+/// The loader leaves the registers in `start_state` (sw/firmware/boot/loader.h) when it jumps.
+void BoardSimulation::load_loader(const ElfImage& loader, const ElfImage& program,
+                                  const RunRequest&) {
+  const ElfSymbol* state = loader.find("start_state");
+  FOVEA_CHECK(state && loader.segments().size() == 1, "the board's loader is the one of this build");
+  const ElfSegment& segment = loader.segments().front();
+  board::LoadImage image{segment.address, segment.data};
+  image.bytes.resize(segment.memory_size);
+  const std::uint32_t words[] = {0, 0, 0, hosted_map().free_end, program.entry()};
+  std::memcpy(image.bytes.data() + (state->address - segment.address), words, sizeof words);
+  board_->load(image);
+}
+
+/// Heap and stack take the largest piece of SDRAM that the program leaves free.
+SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& request) const {
+  const ExecMap map = hosted_map();
+  SemihostingSettings s;
+  std::vector<std::string> line = {program_file(params_).filename().string()};
+  if (request.hosted) {
+    s.root = request.hosted->root;
+    line.insert(line.end(), request.hosted->arguments.begin(), request.hosted->arguments.end());
+  }
+  s.command_line = guest_command_line(line);
+  s.heap_base = map.free_base;
+  s.heap_limit = s.stack_limit = map.heap_limit();
+  s.stack_base = map.free_end;
+  return s;
+}
+
 RunResult BoardSimulation::run(const RunRequest& request) {
   started_ = Wall::now();
   const ElfImage elf = ElfImage::load(program_file(params_));
   check_fits(elf, memory_regions(params_));
+  symbols_ = Symbols(&elf, request.symbols);
+  const std::vector<EndCondition> until = parse_run_until(params_.run.until(), symbols_);
+  const auto wanted = [&](EndCondition::Kind kind) {
+    return std::any_of(until.begin(), until.end(), [&](const auto& c) { return c.kind == kind; });
+  };
+  if (request.gdb_port && wanted(EndCondition::Kind::kPc))
+    throw UserError("key 'run.until': pc is not possible with --gdb; use a breakpoint");
+  if (!request.bus_trace.empty() && !wanted(EndCondition::Kind::kFrames))
+    throw UserError("--bus-trace records the window of displayed frames; allowed: with frames in "
+                    "'run.until'");
+  std::optional<Dialogue> dialogue;
+  if (!params_.uart0.input().empty()) dialogue = Dialogue::load(params_.uart0.input());
   complete_params(params_);
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
@@ -231,24 +335,30 @@ RunResult BoardSimulation::run(const RunRequest& request) {
                                            params_.raster_width(), params_.raster_height());
 
   video::AheadSource camera(*source);
-  board_ = std::make_unique<board::Board>("board", params_, camera, elf.entry(),
+  const std::optional<ElfImage> loader = loader_of(elf, request);
+  board_ = std::make_unique<board::Board>("board", params_, camera,
+                                          loader ? loader->entry() : elf.entry(),
                                           request.strict_sync);
   for (const auto& s : elf.segments()) {
     board::LoadImage image{s.address, s.data};
     image.bytes.resize(s.memory_size);
     board_->load(image);
   }
+  if (loader) load_loader(*loader, elf, request);
   cpu::RegionMap regions = board_->dm365.arm.core().regions();
   add_program_regions(regions, elf, memory_regions(params_));
   board_->dm365.arm.core().set_regions(std::move(regions));
-  board_->dm365.arm.core().describe = [&elf](std::uint32_t pc) { return elf.describe(pc); };
-  board_->load({0x8000'0000u, parameter_page(params_, *source)});
+  board_->dm365.arm.core().describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
+  if (!request.hosted) board_->load({0x8000'0000u, parameter_page(params_, *source)});
 
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
+  std::optional<BoardConsole> console;
+  if (request.console || dialogue)
+    console.emplace(*board_, request.console, std::move(dialogue));
   board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
     FrameRow out;
     out.index = r.index;
@@ -278,68 +388,102 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   auto& arm = board_->dm365.arm;
   BoardDebugMemory debug_memory(board_->dm365);
   const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
-                                [&elf](std::uint32_t pc) { return elf.describe(pc); });
+                                [this](std::uint32_t pc) { return symbols_.describe(pc); });
   log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);
+  RunEnd run_end(*board_, debug_memory, until);
+  if (!run_end.wants(EndCondition::Kind::kFrames)) board_->measure_whole_run();
+  std::optional<CoreSemihosting> semihosting;
+  if (request.semihosting && run_end.wants(EndCondition::Kind::kExit))
+    semihosting.emplace(arm.core(), debug_memory, semihosting_settings(request),
+                        *request.semihosting, [&] {
+                          if (semihosting->exit_code()) run_end.program_exited();
+                          return run_end.core_ended() || request.semihosting->lost();
+                        });
   std::unique_ptr<GdbSession> gdb;
   if (request.gdb_port)
     gdb = std::make_unique<GdbSession>(*request.gdb_port, arm.core(), debug_memory,
                                        board_views(*board_, request.params, log.get()),
                                        request.stop, *request.notes);
-  // Slices only let the host look in; nothing in the model depends on where they end.
-  const Picoseconds slice = 5 * kPsPerMs;
+  const auto lost = [&] {
+    return (request.console && request.console->lost()) ||
+           (request.semihosting && request.semihosting->lost());
+  };
+  window_wall_ = Wall::now();
   Slices slices;
   std::string guest;
+  unsigned behind_end = 0;
   for (;;) {
-    slices.run(gdb && gdb->hit_pending() ? kPsPerUs : slice);
+    slices.run(run_end.met()                    ? after_end(behind_end++)
+               : gdb && gdb->hit_pending() ? kPsPerUs
+                                           : request.limits.next_slice(
+                                                 kSlice, kernel_time(),
+                                                 arm.core().instructions_executed()));
     take_timeline(*board_, request);
-    request.progress.update({kernel_time(), board_->frames_in_window(), params_.run.frames(),
-                             arm.core().instructions_executed()});
+    const std::uint64_t executed = arm.core().instructions_executed();
+    request.progress.update({kernel_time(), board_->frames_in_window(),
+                             run_end.wants(EndCondition::Kind::kFrames) ? params_.run.frames() : 0,
+                             executed});
+    const bool left = console && console->look();
     if (!arm.failure().empty()) {
-      guest = failure_text(arm.failure(), elf);
+      guest = failure_text(arm.failure());
       if (gdb) gdb->failed(guest);
       break;
     }
-    if (board_->chip_reset()) {
-      guest = failure_text("chip reset: " + board_->chip_reset()->cause, elf);
+    if (board_->chip_reset() && !run_end.met()) {
+      guest = failure_text("chip reset: " + board_->chip_reset()->cause);
       if (gdb) gdb->failed(guest);
       break;
     }
-    if (closed_ && arm.core().mark_done()) break;
-    if (failure || request.stop.load() || (gdb && gdb->killed())) {
+    const bool asleep = run_end.met() && asleep_at_end_;
+    if ((closed_ && (arm.core().mark_done() || asleep)) || (run_end.core_ended() && kernel_stopped()) ||
+        behind_end > kLooksAfterEnd)
+      break;
+    if (failure || request.stop.load() || left || lost() || (gdb && gdb->killed())) {
       result.complete = false;
       break;
     }
     if (gdb) gdb->look(arm.asleep());
-    if (!board_->window_start() && kernel_time() > params_.run.start_limit()) {
-      guest = failure_text(
-          fmt::format("the firmware showed no frame within {} of simulated time (run.start_limit); it stands",
-                      params_.run.start_limit.text()),
-          elf);
+    if (const auto option = request.limits.reached(kernel_time(), executed); !option.empty())
+      run_end.limit(option);
+    if (run_end.only_frames() && !board_->window_start() &&
+        kernel_time() > params_.run.start_limit()) {
+      guest = failure_text(fmt::format("the firmware showed no frame within {} of simulated time "
+                                       "(run.start_limit); it stands",
+                                       params_.run.start_limit.text()));
       break;
     }
   }
   if (failure) std::rethrow_exception(failure);
-  if (!closed_) {
+  if (run_end.met() && run_end.met()->limit)
+    guest = failure_text(fmt::format("run.until = {} not met within {}", params_.run.until(),
+                                     run_end.met()->what));
+  else if (run_end.met())
+    result.ended = ended_text(*run_end.met());
+  if (result.complete && guest.empty())
+    result.ended_by = run_end.met() ? run_end.met()->what : "frames";
+  else
     result.complete = false;
-    // A stopped run closes its window a slice from here: the masters may have worked ahead of this
-    // time, but not past the display's next line. The core's own part follows at its next boundary,
-    // which a failed core does not reach any more.
-    if (board_->window_start() && guest.empty() && !(gdb && gdb->killed())) {
-      board_->close_window(kernel_time() + slice);
-      for (int i = 0; i < 20 && !(closed_ && arm.core().mark_done()); ++i)
-        slices.run(slice);
-    }
-    // Without a window there is nothing to report but the guest's own words.
-    if (!closed_ && board_->window_start()) close_window();
+  // A stopped run closes its window a slice from here: the masters may have worked ahead of this
+  // time, but not past the display's next line. The core's own part follows at its next boundary,
+  // which a failed core does not reach any more.
+  if (!closed_ && !kernel_stopped()) {
+    board_->close_window(kernel_time() + kSlice);
+    for (int i = 0; i < 20 && !(closed_ && (arm.core().mark_done() || asleep_at_end_)); ++i)
+      slices.run(kSlice);
   }
+  board_->close_window_now();
+  if (console) {
+    console->look();
+    result.typed = console->typed();
+    result.untyped = console->open_step();
+  }
+  if (semihosting) result.exit_code = semihosting->exit_code();
   if (trace_) trace_->finish();
-  const cpu::CoreStats& core = arm.core().window_stats();
-  collect(core, stats_);
-  result.stalls = stall_rows(core.from, core.to, arm.core().regions());
   add_frame_stats(stats_);
   result.guest_failure = guest;
   result.stats = std::move(stats_);
+  collect_core(result);
   result.frames = std::move(frames_);
   result.timeline_masters = timeline_masters();
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on

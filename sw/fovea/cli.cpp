@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <fnmatch.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,9 +16,11 @@
 #include "sw/fovea/calibration.h"
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/cli_help.h"
+#include "sw/fovea/cli_limits.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/gdb_server.h"
+#include "sw/fovea/host_console.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/remarks.h"
@@ -43,6 +46,8 @@ struct RunOptions {
   std::string bus_trace;
   std::string gdb;
   RegisterLogRequest registers;
+  LimitOptions limits;
+  bool console = false;
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
@@ -51,11 +56,12 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   meter.add_host_rows(host);
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("uart.log", result.uart);
+  if (!result.typed.empty()) dir.write("uart0.input", result.typed);
   if (log) dir.write("registers.log", result.registers);
   dir.write("host.json", host_json(host, args, version_text()));
   // Last: who finds stats.json finds all the rest.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_remarks(Diagnostics::instance())));
+                                     collect_remarks(Diagnostics::instance()), result.ended_by));
 }
 
 /// What only `fovea replay` has by that name, so that a message can say so.
@@ -86,6 +92,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   const RemarkScope remarks(context.err, options.strict);
   warn_without_effect(params, experiment);
   apply_calibrations(params, experiment);
+  const RunLimits limits = limits_of(options.limits);
+  const std::optional<ElfImage> symbols = symbols_of(options.limits);
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / experiment.name(),
@@ -98,7 +106,19 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   // shows before the simulation.
   dir.write("config.json", config_json(params, experiment, provenance_of(params, simulation->input_files())));
 
-  ProgressMeter meter(context.err, context.terminal);
+  const auto& stop = context.stop ? *context.stop : kNeverStops;
+  HostConsole semihosting(context.out, context.err, context.stop);
+  std::optional<ConsoleStream> console;
+  std::optional<RawTerminal> raw;
+  if (options.console) {
+    console.emplace(context.out, STDIN_FILENO, stop);
+    if (console->interactive()) {
+      context.err << kConsoleHelp << std::flush;
+      raw.emplace(STDIN_FILENO);
+    }
+  }
+  // A line that is rewritten in place would overwrite what the console shows.
+  ProgressMeter meter(context.err, context.terminal && !options.console);
   FrameWriterOptions writer_options;
   if (!options.no_frames) {
     writer_options.folder = dir.folder() / "frames";
@@ -109,12 +129,16 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .strict_sync = options.sync == "strict",
-                     .stop = context.stop ? *context.stop : kNeverStops,
+                     .stop = stop,
                      .progress = meter,
                      .frame = {},
                      .bus_trace = options.bus_trace,
                      .gdb_port = {},
-                     .registers = options.registers};
+                     .registers = options.registers,
+                     .limits = limits,
+                     .symbols = symbols ? &*symbols : nullptr,
+                     .console = console ? &*console : nullptr,
+                     .semihosting = &semihosting};
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
@@ -132,6 +156,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     meter.finish();
     throw;
   }
+  raw.reset();
   meter.finish();
   writer.close();
 
@@ -139,16 +164,27 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   rows.finish(result);
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
-  context.out << summary_table(result.stats, host);
-  for (const auto& note : result.notes) context.out << "  " << one_line(note) << "\n";
-  context.out << fmt::format("  results in {}\n", dir.folder().string());
-  if (!options.no_frames)
-    context.out << fmt::format("  pictures in {}\n", (dir.folder() / "frames").string());
-  context.out << std::flush;
+  // With --console the output stream is UART0's alone.
+  std::ostream& report = options.console ? context.err : context.out;
+  context.out.flush();
+  report << summary_table(result.stats, host);
+  for (const auto& note : result.notes) report << "  " << one_line(note) << "\n";
+  if (!result.ended.empty()) report << fmt::format("  ended by {}\n", result.ended);
+  report << fmt::format("  results in {}\n", dir.folder().string());
+  const StatRow* shown = find(result.stats, "frame.displayed");
+  if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
+    report << fmt::format("  pictures in {}\n", (dir.folder() / "frames").string());
+  report << std::flush;
+  if (!result.untyped.empty())
+    context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (!context.out) throw UserError("the program's output cannot be written");
+  if (result.complete && result.exit_code.value_or(0) != 0)
+    throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
   if (result.complete) return kExitDone;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
+  if (console && console->quit()) return 128 + SIGINT;
   return signal ? 128 + signal : kExitGuestFailed;
 }
 
@@ -200,6 +236,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_alw
               "a signal handler may only touch lock-free atomics");
 
 void on_signal(int signal) {
+  RawTerminal::restore();  // a second signal ends the process at once
   g_signal = signal;
   g_stop = true;
 }
@@ -322,6 +359,9 @@ void add_run_command(CLI::App& app, RunOptions& run) {
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
   add_register_log_options(*c, run.registers);
+  add_limit_options(*c, run.limits);
+  c->add_flag("--console", run.console,
+              "Show UART0 on the output and type the input on it; see run.until");
 }
 
 void add_replay_command(CLI::App& app, ReplayOptions& replay) {

@@ -1,8 +1,7 @@
 #include "sw/fovea/cli_exec.h"
 
-#include <errno.h>
 #include <fmt/format.h>
-#include <poll.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -13,17 +12,22 @@
 
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/gdb_server.h"
+#include "sw/fovea/console.h"
+#include "sw/fovea/host_console.h"
+#include "sw/fovea/progress.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
 namespace {
 
-constexpr std::array<std::string_view, 10> kWithValue = {
+constexpr std::array<std::string_view, 13> kWithValue = {
     "-s",      "--set",  "-o",    "--out",           "--load",
-    "--entry", "--root", "--gdb", "--log-registers", "--log-registers-kept"};
-constexpr std::array<std::string_view, 8> kFlags = {
-    "--thumb", "--fast-memory", "--caches", "--strict", "--quiet", "-q", "--help", "-h"};
+    "--entry", "--root", "--gdb", "--log-registers", "--log-registers-kept",
+    "--max-time", "--max-instructions", "--symbols"};
+constexpr std::array<std::string_view, 10> kFlags = {
+    "--thumb", "--fast-memory", "--caches", "--strict", "--board", "--console",
+    "--quiet", "-q", "--help", "-h"};
 
 constexpr const char* kMemoryHelp =
     "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size below the program's "
@@ -31,52 +35,49 @@ constexpr const char* kMemoryHelp =
     "elsewhere. At 0 there is no internal RAM; other programs find the chip's at 0x0 and 0x10000 as "
     "well. Heap and stack take the largest piece that the program leaves free, the stack from its "
     "top. No peripherals exist (UART, timers, ...): accesses to them are bus errors. With RAM above "
-    "0x20000000 the SDRAM controller's registers are there.\n"
+    "0x20000000 the SDRAM controller's registers are there. With --board the chip's own memory map "
+    "is there instead, with all its peripherals: RAM at 0x80000000.\n"
     "Unknown options and everything after '--' are passed to the program, to which also belongs what "
     "follows it and is no option of exec.\n"
     "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, each "
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
-std::size_t read_input(std::span<std::uint8_t> to, const std::atomic<bool>* stop,
-                       const std::function<bool()>& go_on) {
-  for (;;) {
-    pollfd p{STDIN_FILENO, POLLIN, 0};
-    const int ready = ::poll(&p, 1, 100);
-    if (stop && stop->load()) return 0;
-    if (ready <= 0) {
-      if (go_on && !go_on()) return 0;
-      continue;
-    }
-    const ssize_t n = ::read(STDIN_FILENO, to.data(), to.size());
-    if (n < 0 && errno == EINTR) continue;
-    return n < 0 ? 0 : static_cast<std::size_t>(n);
+/// `--board`: the program runs as the board's firmware. It ends by semihosting, or when nothing can wake
+/// the core any more, unless run.until says otherwise.
+ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOptions& o,
+                        const ExecRequest& request, const CliContext& context) {
+  ConsoleStream uart0(context.out, o.console ? STDIN_FILENO : -1, request.stop);
+  std::optional<RawTerminal> raw;
+  if (uart0.interactive()) {
+    context.err << kConsoleHelp << std::flush;
+    raw.emplace(STDIN_FILENO);
   }
+  RunRequest run{.params = params,
+                 .folder = {},
+                 .stop = request.stop,
+                 .progress = *request.progress,
+                 .frame = {},
+                 .gdb_port = request.gdb_port,
+                 .notes = &request.notes,
+                 .registers = request.registers,
+                 .limits = request.limits,
+                 .symbols = request.symbols,
+                 .console = &uart0,
+                 .semihosting = &request.console,
+                 .hosted = HostedProgram{request.root, request.arguments}};
+  RunResult result = board.run(run);
+  ExecResult out;
+  out.complete = result.complete;
+  out.left = uart0.quit();
+  out.exit_code = result.exit_code.value_or(0);
+  out.guest_failure = std::move(result.guest_failure);
+  out.stats = std::move(result.stats);
+  out.host = std::move(result.host);
+  out.stalls = std::move(result.stalls);
+  out.registers = std::move(result.registers);
+  if (!result.exit_code) out.ended = std::move(result.ended);
+  return out;
 }
-
-class HostConsole : public SemihostingConsole {
- public:
-  explicit HostConsole(const CliContext& context) : context_(context) {}
-  std::size_t read(std::span<std::uint8_t> to) override {
-    context_.out.flush();
-    return read_input(to, context_.stop, go_on);
-  }
-  bool write(bool error_stream, std::string_view text) override {
-    if (error_stream) {
-      context_.out.flush();
-      context_.err << text << std::flush;
-    } else {
-      context_.out << text;
-      if (text.find('\n') != std::string_view::npos) context_.out.flush();
-    }
-    if (!context_.out) lost_ = true;
-    return !lost_;
-  }
-  bool lost() const override { return lost_; }
-
- private:
-  bool lost_ = false;
-  const CliContext& context_;
-};
 
 ExecProgram program_of(const ExecOptions& o) {
   const bool flat = !o.load.empty() || !o.entry.empty() || o.thumb;
@@ -128,6 +129,9 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_flag("--caches", o.caches,
               "Begin with MMU and caches on: RAM cacheable and write-back, everything else not");
   c->add_flag("--fast-memory", o.fast_memory, "Memory without wait states; no bus and no SDRAM");
+  c->add_flag("--board", o.board,
+              "On the whole board, with peripherals; UART0 is shown on the output");
+  c->add_flag("--console", o.console, "With --board: the input is typed on UART0");
   c->add_option("--root", o.root, "Folder of the program's files; without it there are none")
       ->type_name("DIR");
   c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
@@ -138,6 +142,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
   add_register_log_options(*c, o.registers);
+  add_limit_options(*c, o.limits);
   c->add_flag("--strict", o.strict,
               "Stop with an error when the program uses a feature that is not modelled, or a "
               "parameter that is set has no effect");
@@ -222,11 +227,27 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   check_register_log(o.registers, o.gdb);
   if (o.fast_memory && !o.registers.pattern.empty())
     throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
+  if (o.console && !o.board) throw UserError("--console: there is no UART; allowed: with --board");
+  if (o.board && (o.fast_memory || o.caches || !o.load.empty() || !o.entry.empty() || o.thumb))
+    throw UserError("--board: not with --fast-memory or --caches, nor with a flat binary; allowed: an ELF "
+                    "file");
   const auto executor = context.make_executor();
+  const auto board = context.make_simulation();
   ParamSet params;
-  executor->declare(params);
+  if (o.board)
+    board->declare(params);
+  else
+    executor->declare(params);
   Experiment experiment(params);
+  if (o.board) {
+    experiment.preset("camera.kind", "chart", "exec --board");
+    experiment.preset("camera.stamp", "false", "exec --board");
+    experiment.preset("run.until", "[exit, halt]", "exec --board");
+  }
   for (const auto& set : o.sets) experiment.override_with(set);
+  if (o.board) experiment.preset("firmware.elf", o.program, "command line");
+  const RunLimits limits = limits_of(o.limits);
+  const std::optional<ElfImage> symbols = symbols_of(o.limits);
   std::ostream nowhere(nullptr);
   const RemarkScope remarks(o.quiet ? nowhere : context.err, o.strict);
   warn_without_effect(params, experiment);
@@ -245,24 +266,32 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     dir.emplace(o.out_dir, "exec");
     dir->write("config.json", config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
   }
-  HostConsole console(context);
-  const ExecResult result = executor->run({.program = program,
-                                           .arguments = o.arguments,
-                                           .root = o.root,
-                                           .params = params,
-                                           .gdb_port = gdb_port,
-                                           .notes = context.err,
-                                           .caches = o.caches,
-                                           .fast_memory = o.fast_memory,
-                                           .console = console,
-                                           .stop = context.stop ? *context.stop : kNeverStops,
-                                           .registers = o.registers});
+  HostConsole console(context.out, context.err, context.stop);
+  // Never rewritten in place: the program writes on the same terminal.
+  ProgressMeter meter(o.quiet ? nowhere : context.err, false);
+  const ExecRequest request{.program = program,
+                            .arguments = o.arguments,
+                            .root = o.root,
+                            .params = params,
+                            .gdb_port = gdb_port,
+                            .notes = context.err,
+                            .caches = o.caches,
+                            .fast_memory = o.fast_memory,
+                            .console = console,
+                            .stop = context.stop ? *context.stop : kNeverStops,
+                            .registers = o.registers,
+                            .limits = limits,
+                            .symbols = symbols ? &*symbols : nullptr,
+                            .progress = &meter};
+  const ExecResult result = o.board ? run_on_board(*board, params, o, request, context)
+                                    : executor->run(request);
   context.out.flush();
   const bool lost = !context.out;
   if (!o.quiet) {
     context.err << core_table(result.stats, result.core_clock);
-    if (!o.caches && !o.fast_memory && caches_unused(result.stats))
+    if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
       context.err << "  The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
+    if (!result.ended.empty()) context.err << "  ended by " << result.ended << "\n";
     context.err << std::flush;
   }
   if (!dir) context.err << result.registers << std::flush;
@@ -281,6 +310,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
                              result.killed && !signal ? "by the debugger" : "before the end");
+  if (result.left) return 128 + SIGINT;
   return signal ? 128 + signal : kExitGuestFailed;
 }
 

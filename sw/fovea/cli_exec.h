@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sw/fovea/cli.h"
+#include "sw/fovea/cli_limits.h"
 
 namespace CLI {
 class App;
@@ -17,7 +18,9 @@ struct ExecOptions {
   std::vector<std::string> sets;
   std::string load, entry, root, out_dir, gdb;
   RegisterLogRequest registers;
+  LimitOptions limits;
   bool thumb = false, fast_memory = false, caches = false, strict = false, quiet = false;
+  bool board = false, console = false;
 };
 
 /// `--log-registers` and its size, of run and exec.

@@ -169,13 +169,12 @@ const ElfSymbol* ElfImage::function_at(std::uint32_t address) const {
     const ElfSymbol& s = symbols_[*--above];
     if (s.size != 0) {
       if (address - s.address < s.size) return &s;
-      // A label behind the end of the last sized function covers up to the next symbol.
-      return label;
+      break;  // a label behind the end of the last sized function covers up to the next symbol
     }
     if (!label || s.address == label->address) label = &s;
   }
   if (!label) return nullptr;
-  // A label without size reaches at most to the end of its segment.
+  // But at most to the end of its segment.
   for (const auto& segment : segments_)
     if (address - segment.virtual_address < segment.memory_size &&
         label->address >= segment.virtual_address)

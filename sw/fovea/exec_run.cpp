@@ -64,7 +64,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   session.load(board_->ram(), board_->tcm());
   const std::vector<RegisterBlock> blocks = {register_block("ddr", board_->ddr)};
   const auto log = register_log(blocks, board_->config, arm.core(),
-                                [&](std::uint32_t pc) { return request.program.describe(pc); });
+                                [&](std::uint32_t pc) { return session.describe(pc); });
   log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);
   session.attach(*board_, [&](GdbViews& v) {
@@ -82,14 +82,19 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   Slices slices;
   std::string failure;
   for (std::uint64_t before = ~std::uint64_t{0};;) {
-    slices.run(slice);
+    slices.run(request.limits.next_slice(slice, kernel_time(),
+                                         arm.core().instructions_executed()));
     failure = arm.failure();
     if (!failure.empty() || session.over()) break;
+    if (const auto option = session.look(kernel_time()); !option.empty()) {
+      failure = option + " reached";
+      break;
+    }
     GdbSession* const gdb = session.gdb();
     if (gdb && gdb->killed()) break;
     const std::uint64_t now = arm.core().instructions_executed();
     if (gdb) gdb->look();
-    if (now == before) {
+    if (now == before && arm.asleep()) {
       failure = "the program waits for an interrupt, and none can come";
       break;
     }

@@ -40,23 +40,16 @@ ExecClocks ExecClocks::preset(std::string_view name) {
 ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
                          const ExecMap& map)
     : core_(core),
-      debug_(core, memory),
       request_(request),
       program_(request.program),
+      symbols_(request.program.image(), request.symbols),
       map_(map),
-      semihosting_(settings(request, map), request.console) {
+      semihosting_(core, memory, settings(request, map), request.console,
+                   [this] { return over(); }) {
   core_.set_regions(exec_regions(program_, map_));
-  core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
 }
 
 ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
-
-bool ExecSession::swi(std::uint32_t number) {
-  if (!Semihosting::is_call(number, core_.cpsr() & 0x20u)) return false;
-  semihosting_.call(*this);
-  if (over()) core_.request_stop();
-  return true;
-}
 
 void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm) {
   const auto put = [&](std::uint32_t address, std::span<const std::uint8_t> bytes) {
@@ -79,16 +72,19 @@ void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm)
 }
 
 std::string ExecSession::failure_text(const std::string& what) const {
-  const auto at = [this](std::uint32_t pc) {
-    const std::string where = program_.describe(pc);
-    return fmt::format("pc 0x{:08x}{}", pc, where.empty() ? "" : " (" + where + ")");
-  };
+  const auto at = [this](std::uint32_t pc) { return "pc " + symbols_.place(pc); };
   std::string text = fmt::format("{} at {}, {:.6f} s after the start", what,
-                                 at(core_.current_pc()), static_cast<double>(now()) * 1e-12);
+                                 at(core_.current_pc()), static_cast<double>(semihosting_.now()) * 1e-12);
   for (const auto& a : core_.last_accesses())
     text += fmt::format("\n  {} {} bytes at 0x{:08x} from {}", a.write ? "wrote" : "read", a.bytes,
                         a.address, at(a.pc));
   return text;
+}
+
+std::string ExecSession::look(Picoseconds now) {
+  const std::uint64_t executed = core_.instructions_executed();
+  if (request_.progress) request_.progress->update({now, 0, 0, executed});
+  return request_.limits.reached(now, executed);
 }
 
 std::vector<StatRow> ExecSession::core_stats() const {

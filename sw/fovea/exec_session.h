@@ -5,12 +5,14 @@
 #include <string>
 
 #include "model/cpu/core/debug.h"
+#include "sw/fovea/core_semihosting.h"
 #include "sw/fovea/executor.h"
 #include "sw/fovea/gdb_session.h"
+#include "sw/fovea/symbols.h"
 
 namespace fovea::app {
 
-class ExecSession : private SemihostingTarget {
+class ExecSession {
  public:
   /// Takes the core's SWI hook.
   ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
@@ -28,29 +30,23 @@ class ExecSession : private SemihostingTarget {
   bool ended() const { return semihosting_.exit_code().has_value(); }
   /// Ended, or to be ended: no instruction follows.
   bool over() const { return ended() || request_.stop.load() || request_.console.lost(); }
+  /// What the request's symbols say about an address.
+  std::string describe(std::uint32_t address) const { return symbols_.describe(address); }
+  /// For the host's looks: tells the progress. @return the option whose limit is reached, or ""
+  std::string look(Picoseconds now);
   /// Result and core figures; `failure` is empty if the guest did not fail.
   ExecResult result(const std::string& failure);
 
  private:
-  std::uint32_t r(unsigned number) const override { return core_.reg(number); }
-  void set_r0(std::uint32_t value) override { core_.set_reg(0, value); }
-  bool read(std::uint32_t address, std::span<std::uint8_t> to) override {
-    return debug_.read(address, to);
-  }
-  bool write(std::uint32_t address, std::span<const std::uint8_t> from) override {
-    return debug_.write(address, from);
-  }
-  Picoseconds now() const override { return debug_.now(); }
-  bool swi(std::uint32_t number);
   std::string failure_text(const std::string& what) const;
   std::vector<StatRow> core_stats() const;
 
   cpu::Core& core_;
-  cpu::CoreDebug debug_;
   const ExecRequest& request_;
   const ExecProgram& program_;
+  Symbols symbols_;
   ExecMap map_;
-  Semihosting semihosting_;
+  CoreSemihosting semihosting_;
   std::unique_ptr<GdbSession> gdb_;
 };
 

@@ -13,6 +13,7 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/register_log.h"
+#include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
 
 namespace fovea::app {
@@ -29,17 +30,22 @@ struct ExecRequest {
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
   RegisterLogRequest registers = {};
+  RunLimits limits = {};
+  const ElfImage* symbols = nullptr;  ///< of --symbols; null: none
+  ProgressSink* progress = nullptr;   ///< null: nobody looks
 };
 
 struct ExecResult {
   bool complete = false;      ///< the program ended by itself
   bool killed = false;        ///< by the debugger
+  bool left = false;          ///< a person left the console
   int exit_code = 0;          ///< its own
   Frequency core_clock;
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
   std::string registers;  ///< the log that was asked for
+  std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
 };
 
 /// A machine that runs one program.

@@ -31,6 +31,14 @@ std::string at(const fs::path& file, unsigned line) {
   return fmt::format("{}:{}", one_line(file.string()), line);
 }
 
+/// An item of a list as text; with a comma in it, it stands in quotation marks.
+std::string list_item(const std::string& item) {
+  if (item.find(',') == std::string::npos) return item;
+  std::string out = "\"";
+  for (const char c : item) out += c == '"' ? std::string("\\\"") : std::string(1, c);
+  return out + "\"";
+}
+
 /// Flattens the parser's events into dotted keys. Works on events and not on a node tree: aliases
 /// are refused before anything could expand, and keys written twice stay visible.
 class Flattener : public YAML::EventHandler {
@@ -81,7 +89,8 @@ class Flattener : public YAML::EventHandler {
   }
   void OnSequenceEnd() override {
     levels_.pop_back();
-    for (const auto& item : entry_.items) entry_.value += (entry_.value.empty() ? "" : ", ") + item;
+    for (const auto& item : entry_.items)
+      entry_.value += (entry_.value.empty() ? "" : ", ") + list_item(item);
     entry_.value = "[" + entry_.value + "]";
     add(std::move(entry_));
     levels_.back().expect_key = true;
@@ -204,7 +213,8 @@ std::string ValueOrigin::text() const {
 bool is_path_key(const ParamBase& param) {
   if (!dynamic_cast<const TextParam*>(&param)) return false;
   const std::string& key = param.key();
-  return key.ends_with(".file") || key.ends_with(".elf") || key.ends_with(".calibration");
+  return key.ends_with(".file") || key.ends_with(".elf") || key.ends_with(".calibration") ||
+         key.ends_with(".input");
 }
 
 void warn_without_effect(const ParamSet& params, const Experiment& experiment) {

@@ -54,8 +54,10 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   ExecSession session(core, port, request, map);
   session.load(port.ram(), tcm);
   session.attach(port);
+  std::string limit;
   port.on_slice = [&] {
-    if (request.stop.load()) core.request_stop();
+    limit = session.look(core.boundary_time());
+    if (request.stop.load() || !limit.empty()) core.request_stop();
     if (session.gdb()) session.gdb()->look();
   };
   core.set_clock(core_clock, 0);
@@ -66,6 +68,7 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   } catch (const GuestFailure& e) {
     failure = e.what();
   }
+  if (failure.empty() && !limit.empty() && !session.over()) failure = limit + " reached";
   return session.result(failure);
 }
 

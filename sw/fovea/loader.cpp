@@ -20,9 +20,13 @@ constexpr std::size_t kMostFilmFrames = 250;
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
+  return built_program("fovea_firmware.elf");
+}
+
+std::filesystem::path built_program(const std::string& name) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return self.parent_path() / "sw/firmware/fovea_firmware.elf";
+  return self.parent_path() / "sw/firmware" / name;
 }
 
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {

@@ -17,6 +17,8 @@ namespace fovea::app {
 
 /// firmware.elf, or the program built with Fovea, which lies beside the `fovea` program.
 std::filesystem::path program_file(const board::BoardParams& params);
+/// A target program that was built with Fovea; they lie beside the `fovea` program.
+std::filesystem::path built_program(const std::string& name);
 /// Where a program's segments may lie.
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params);
 /// Decodes camera.file; nothing for a chart. @throws UserError naming the file

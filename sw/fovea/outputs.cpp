@@ -118,8 +118,9 @@ std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay)
 }
 
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Remark>& remarks) {
+                       const std::vector<Remark>& remarks, std::string_view ended_by) {
   std::string out = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\"", complete);
+  if (!ended_by.empty()) out += fmt::format(",\n  \"ended_by\": {}", js(std::string(ended_by)));
   out += ",\n  \"warnings\": [";
   for (std::size_t i = 0; i < remarks.size(); ++i)
     out += fmt::format("{}\n    {{\"kind\": {}, \"what\": {}, \"count\": {}}}", i ? "," : "",

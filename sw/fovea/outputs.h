@@ -71,9 +71,9 @@ struct Remark {
 std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay = false);
 
 /// Sorted by name, one figure per line: two equal runs give equal bytes. `complete` is false for a
-/// run that was stopped before its end. A name that occurs twice is a defect (FOVEA_CHECK).
+/// run that was stopped before its end; `ended_by` is the condition of run.until, if there was one. A name that occurs twice is a defect (FOVEA_CHECK).
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Remark>& remarks = {});
+                       const std::vector<Remark>& remarks = {}, std::string_view ended_by = {});
 /// As stats.json without the run's state; for figures that differ from run to run.
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);

@@ -49,8 +49,12 @@ std::string ProgressMeter::line(const Sample& now) const {
   const double wall = Seconds(now.wall - last_printed_.wall).count();
   const double simulated = seconds(p.simulated) - seconds(last_printed_.progress.simulated);
   std::string text = fmt::format("simulated {:.3f} s", seconds(p.simulated));
-  text += p.frames_wanted ? fmt::format(", frame {}/{}", p.frames_shown, p.frames_wanted)
-                          : fmt::format(", frame {}", p.frames_shown);
+  if (p.frames_wanted)
+    text += fmt::format(", frame {}/{}", p.frames_shown, p.frames_wanted);
+  else if (p.frames_shown)
+    text += fmt::format(", frame {}", p.frames_shown);
+  else if (p.instructions)
+    text += fmt::format(", {:.1f} million instructions", static_cast<double>(p.instructions) * 1e-6);
   if (wall > 0 && simulated > 0) text += fmt::format(", {:.2f}x real time", simulated / wall);
   // From the steady state: start-up runs at another speed and shows no frames.
   if (steady_ && p.frames_wanted > p.frames_shown &&

@@ -21,9 +21,9 @@ constexpr std::size_t kMaxConfigBytes = 16u << 20;
 constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
 /// The files of all commands. RunDir refuses to write a file that is missing here.
-constexpr std::array<std::string_view, 9> kFiles = {
+constexpr std::array<std::string_view, 10> kFiles = {
     "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",
-    "stalls.csv",  "uart.log",   "registers.log", "display.mp4"};
+    "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4"};
 
 /// Folders of numbered files.
 struct Series {

@@ -12,31 +12,26 @@
 #include <vector>
 
 #include "model/common/param.h"
+#include "sw/fovea/console.h"
+#include "sw/fovea/elf_image.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/register_log.h"
+#include "sw/fovea/run_limits.h"
+#include "sw/fovea/semihosting.h"
 
 namespace fovea::app {
-
-/// How far a run is; all counts since the start of the run.
-struct Progress {
-  Picoseconds simulated = 0;
-  std::uint64_t frames_shown = 0;   ///< corrected frames displayed
-  std::uint64_t frames_wanted = 0;  ///< 0: unknown
-  std::uint64_t instructions = 0;   ///< executed by the core
-};
-
-/// Takes progress; cheap enough to be called at every field (it decides when to print).
-class ProgressSink {
- public:
-  virtual ~ProgressSink() = default;
-  virtual void update(const Progress& progress) = 0;
-};
 
 /// A displayed frame: 4:2:2, bytes Cb Y0 Cr Y1, no padding. Valid during the call only.
 struct DisplayedFrame {
   std::uint64_t index = 0;
   unsigned width = 0, height = 0;
   std::span<const std::uint8_t> uyvy;
+};
+
+/// A program that is run for its own sake (`fovea exec --board`), not as a camera's firmware.
+struct HostedProgram {
+  std::filesystem::path root;          ///< folder of its files; empty: none
+  std::vector<std::string> arguments;  ///< argv[1] and on
 };
 
 /// What `fovea run` asks of the board.
@@ -60,6 +55,12 @@ struct RunRequest {
   std::optional<std::uint16_t> gdb_port = {};
   std::ostream* notes = nullptr;  ///< says where; not null with gdb_port
   RegisterLogRequest registers = {};
+  RunLimits limits = {};
+  const ElfImage* symbols = nullptr;  ///< of --symbols; null: none
+  ConsoleStream* console = nullptr;   ///< shows UART0 and has what is typed; null: neither
+  /// For the program's semihosting calls, which are served if run.until has `exit`.
+  SemihostingConsole* semihosting = nullptr;
+  std::optional<HostedProgram> hosted = {};
 };
 
 /// What the board answers.
@@ -74,6 +75,11 @@ struct RunResult {
   std::vector<StallRow> stalls;
   std::string uart;  ///< all that the firmware printed
   std::vector<std::string> notes;  ///< sentences for the person who looks, below the figures
+  std::string ended_by;      ///< the condition of run.until that was met; empty: none was
+  std::string ended;         ///< a sentence about that, for people
+  std::optional<int> exit_code = {};  ///< the program's own, if it ended by semihosting
+  std::string typed;         ///< what a person typed on the console, as a file for uart0.input
+  std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
   std::string registers;  ///< the log that was asked for
 };
 

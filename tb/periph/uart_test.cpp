@@ -244,6 +244,38 @@ TEST_F(UartTest, FifoTriggerLevelAndTimeoutAfterFourCharacters) {
   EXPECT_FALSE(s.irq.read());
 }
 
+TEST_F(UartTest, TellsWhenItCanReceiveAndHowLongAByteTakes) {
+  unsigned told = 0;
+  s.uart.on_ready = [&] { ++told; };
+  EXPECT_TRUE(s.uart.can_receive());
+  const Picoseconds begin = edge(next_edge() - 1);
+  run_until(begin);
+  EXPECT_EQ(s.uart.character_time(), edge(next_edge() - 1 + 2080) - begin);  // 10 bits of 16 * 13
+  s.uart.receive('a');  // without FIFOs one byte is all
+  EXPECT_FALSE(s.uart.can_receive());
+  told = 0;
+  bus.read(kData);
+  EXPECT_TRUE(s.uart.can_receive());
+  EXPECT_GT(told, 0u);
+  bus.write(kIirFcr, 1);
+  for (int n = 0; n < 15; ++n) s.uart.receive('b');
+  EXPECT_TRUE(s.uart.can_receive());
+  s.uart.receive('b');
+  EXPECT_FALSE(s.uart.can_receive());
+  bus.write(kIirFcr, 3);
+  EXPECT_TRUE(s.uart.can_receive());
+  bus.write(kMcr, 0x10);  // loopback: the line is not connected
+  EXPECT_FALSE(s.uart.can_receive());
+  bus.write(kMcr, 0);
+  bus.write(kPwremu, 0x4001);
+  EXPECT_FALSE(s.uart.can_receive());
+  told = 0;
+  bus.write(kPwremu, 0x6001);
+  EXPECT_TRUE(s.uart.can_receive());
+  EXPECT_GT(told, 0u);
+  s.uart.on_ready = nullptr;
+}
+
 TEST_F(UartTest, LoopbackFeedsTheReceiver) {
   bus.write(kMcr, 0x10);
   const std::uint64_t k = next_edge();

@@ -72,6 +72,8 @@ class Core : public Background {
   /// to be empty; for a recorder of bus traffic.
   std::uint64_t room_waits() const { return room_waits_; }
   std::uint64_t drains() const { return drains_; }
+  /// The counters as of time t of a core that waits for an interrupt until then.
+  Counts counts_asleep(Picoseconds t) const;
   /// Names for the addresses of stalls; set before the first instruction.
   void set_regions(RegionMap regions) { regions_ = std::move(regions); }
   const RegionMap& regions() const { return regions_; }

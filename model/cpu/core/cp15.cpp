@@ -211,6 +211,13 @@ bool Core::cache_operation(unsigned crm, unsigned op2, std::uint32_t v) {
   }
 }
 
+Counts Core::counts_asleep(Picoseconds t) const {
+  Counts c = counts_;
+  c.cycles = clock_.running() ? std::max(cycle_, clock_.edge_after(t)) : cycle_;
+  c.idle += c.cycles - cycle_;
+  return c;
+}
+
 /// Sleeps until IRQ or FIQ is asserted, masked or not.
 void Core::wait_for_interrupt() {
   drain(Cause::kDrain);

@@ -56,7 +56,10 @@ void Core::run() {
       step_attention();
       if (stop_requested_) stop_cycle_ = 0;  // one more instruction
     }
-    if (debugger_ && pc_ != looked_at) [[unlikely]] control_boundary();
+    if (debugger_ && pc_ != looked_at) [[unlikely]] {
+      control_boundary();
+      if (stop_requested_) return;
+    }
     looked_at = 1;
     const Instruction* i = fetch();
     if (!i) {

@@ -1,0 +1,27 @@
+// Options that `fovea run` and `fovea exec` share: limits of a run, and a second file of symbols.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "sw/fovea/elf_image.h"
+#include "sw/fovea/simulation.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fovea::app {
+
+struct LimitOptions {
+  std::string max_time;
+  std::optional<std::uint64_t> max_instructions;
+  std::string symbols;
+};
+
+void add_limit_options(CLI::App& command, LimitOptions& options);
+/// @throws UserError naming the option
+RunLimits limits_of(const LimitOptions& options);
+/// The file of --symbols, if it was given. @throws UserError
+std::optional<ElfImage> symbols_of(const LimitOptions& options);
+
+}  // namespace fovea::app

@@ -1,0 +1,54 @@
+// Watches a board for the conditions of `run.until` and for the limits of a run.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/board/board.h"
+#include "model/cpu/core/debug_control.h"
+#include "sw/fovea/run_until.h"
+
+namespace fovea::app {
+
+class RunEnd {
+ public:
+  /// Before the simulation starts.
+  RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCondition> conditions);
+
+  bool wants(EndCondition::Kind kind) const;
+  /// run.frames frames are the only end.
+  bool only_frames() const { return conditions_.size() == 1 && wants(EndCondition::Kind::kFrames); }
+
+  /// What has ended the run: the first condition that was met, or a limit.
+  struct Met {
+    std::string what;     ///< as written; or the limit's option
+    bool limit = false;
+    Picoseconds at = 0;
+    std::uint32_t pc = 0;
+  };
+  const std::optional<Met>& met() const { return met_; }
+  /// The core has ended with it: no simulated time follows.
+  bool core_ended() const { return core_ended_; }
+
+  // Told by whoever sees them first.
+  /// On the core's stack; the core stops.
+  void program_exited();
+  void limit(const std::string& option) { end(option, true, kernel_time()); }
+
+ private:
+  void meet(EndCondition::Kind kind);
+  void end(const std::string& what, bool limit, Picoseconds at);
+  void look_for_halt();
+  bool halted();
+  void heard(std::uint8_t byte);
+
+  board::Board& board_;
+  std::vector<EndCondition> conditions_;
+  cpu::CoreDebug debug_;
+  std::optional<cpu::CoreControl> control_;  // for kPc
+  std::optional<Met> met_;
+  bool core_ended_ = false;
+  std::optional<std::uint32_t> halted_at_;
+};
+
+}  // namespace fovea::app
