@@ -322,6 +322,33 @@ TEST(OtherSchedulersTest, FcfsOpensAheadOnlyWhatTheOldestOfABankNeeds) {
   EXPECT_EQ(closes.bench.clock_of(Cmd::kRd, 1), kFrom + 5 + 13 + 5);
 }
 
+// The read FIFO has room again long before the row of the oldest request may be closed (tRAS). A
+// request that the crossbar has announced opens its row when it is there, not when there is room.
+TEST(OtherSchedulersTest, FcfsOpensNoRowForARequestThatIsYetToCome) {
+  constexpr unsigned kLater = 120;
+  for (const std::uint64_t scr : {250'000'000, 31'250'000}) {
+    BenchOptions o = with("fcfs");
+    o.scr = Frequency(scr);
+    o.config.timing.nRAS = 150;
+    o.config.timing.nRC = 150 + o.config.timing.nRP;
+    DdrBench b(o);
+    std::vector<Request> four = {read(kA, at(1, 0), 3, 64), read(kA, at(1, 0, 64), 3, 64),
+                                 read(kA, at(2, 0)), read(kB, at(1, 1))};
+    for (unsigned i = 0; i < 3; ++i) ASSERT_TRUE(b.submit(four[i], 300));
+    mem::DdrRequest announced;
+    announced.cookie = &four[3];
+    announced.master = kB;
+    announced.bytes = 16;
+    announced.address = four[3].address;
+    announced.data = four[3].data.data();
+    ASSERT_TRUE(b.ddr.submit(announced, (300 + kLater) * kTck));
+    b.drain();
+    EXPECT_EQ(b.clock_of(Cmd::kAct, 1), kFrom + kLater) << scr;
+    EXPECT_EQ(b.clock_of(Cmd::kPre, 0), kFrom + 150) << scr;
+    EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  }
+}
+
 // At kFrom bank 0's row is open and serves B; at kFrom + 1 A's row opens, from kFrom + 6 on it can be
 // read. C's column in the open row can go at kFrom + 4.
 TEST(OtherSchedulersTest, FirstReadyTakesTheColumnThatCanGoFirst) {
