@@ -43,7 +43,7 @@ for who in board flat; do
       echo "$who: on the error stream, and not under qemu: $line"
       failures=$((failures + 1))
     }
-  done < <(grep -v '^  cpu\.' "$dir/$who.err")
+  done < <(grep -vE '^  (cpu\.|time  |The program ran with MMU)' "$dir/$who.err")
   grep -q 'cpu.cycles' "$dir/$who.err" || {
     echo "$who: no figures"
     failures=$((failures + 1))
