@@ -136,9 +136,11 @@ if command -v script >/dev/null; then
   cmp "$out/keys/stats.json" "$out/again/stats.json" || fail "what was typed does not repeat"
   terminal leave "$line/leave" '\001x'
   [ "$(cat "$out/leave.status")" = 130 ] || fail "leave: status $(cat "$out/leave.status")"
-  for s in INT TERM HUP QUIT ABRT; do
+  declare -A ended=([INT]=130 [TERM]=143 [HUP]=129 [QUIT]=131 [ABRT]=134)
+  for s in "${!ended[@]}"; do
     # With its standard input named, a process in the background keeps the terminal.
     terminal "signal_$s" "exec 3<&0; $line/s <&3 & p=\$!; sleep 1; stty -g >$out/signal_$s.raw; kill -$s \$p; wait \$p" ''
+    [ "$(cat "$out/signal_$s.status")" = "${ended[$s]}" ] || fail "signal_$s: status $(cat "$out/signal_$s.status")"
     cmp -s "$out/signal_$s.before" "$out/signal_$s.raw" && fail "signal_$s: the terminal was not in raw mode"
   done
   terminal guest "$line/guest" 'a'
