@@ -52,8 +52,8 @@ void Core::set_clock(Frequency f, Picoseconds at) {
                                                 &dfill_.first, &dfill_.last};
   std::array<Picoseconds, clocks.size()> times{};
   // What is over may be older than the present clock, which has no times for it.
-  const std::uint64_t future = clock_.running() ? clock_.edge_after(at) : ~std::uint64_t{0};
-  for (std::size_t k = 0; k < clocks.size(); ++k)
+  const std::uint64_t future = clock_.running() ? clock_.edge_after(at) : 0;
+  for (std::size_t k = 0; clock_.running() && k < clocks.size(); ++k)
     if (*clocks[k] >= future) times[k] = time(*clocks[k]);
   clock_.restart(f, at);
   if (clock_.running()) {
