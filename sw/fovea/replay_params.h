@@ -34,7 +34,7 @@ struct ChipClocks : ParamGroup {
 struct DdrRegisterParams : ParamGroup {
   using U = IntParam::Unit;
   // JESD79-2: tCK(avg) 1.875 to 8 ns. JESD209: 5 ns and more, no DLL that bounds it.
-  IntParam clock{*this, "clock", U::kHertz, 243'000'000, 1'000'000, 533'333'333,
+  IntParam clock{*this, "clock", U::kHertz, 243'000'000, 1'000'000, 600'000'000,
                  "SDRAM clock; DDR2 125 to 533 MHz, mobile DDR up to 200 MHz", Origin::kChoice, ""};
   IntParam CL = timing("CL", 5, 2, 7, "CAS latency; DDR2 3 to 7, mobile DDR 2 or 3");
   IntParam RL = timing("RL", 5, 1, 15, "DDRPHYCR.RL, read latency of the PHY; at least CL counts");

@@ -218,7 +218,7 @@ detach
 G
 end 0 'the clock of timer3 is gated' 'timer0.TCR has no field NONE' \
   'timer0.TCR.ENAMODE12: allowed: 0 to 3' 'the value is decimal or begins with 0x' \
-  'no such register; blocks: ddr' 'uart0.SCR = 0x0000005a' "'\(' is no regular expression" \
+  'no such register; blocks: ddr' 'uart0.SCR = 0x0000005a' "'\(' is not a regular expression" \
   'pc 0x8[0-9a-f]* \(.*\) arm_d read aintc\.IRQ' 'the log is off'
 
 grep -q '~' set/uart.log || fail "set: the UART has not sent it: $(cat set/uart.log)"
