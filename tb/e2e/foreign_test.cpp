@@ -39,6 +39,9 @@ TEST(ForeignTest, SequencesOfOtherDriversWork) {
   Foreign f;
   EXPECT_EQ(f.verdicts["i2c write of two bytes"], "ok");
   EXPECT_EQ(f.verdicts["prediv written back"], "ok");
+  EXPECT_EQ(f.verdicts["memory size"], "ok");
+  EXPECT_EQ(f.verdicts["user page at 0x10000"], "ok");
+  EXPECT_EQ(f.verdicts["internal RAM elsewhere"], "ok");
   EXPECT_EQ(f.verdicts["edma CCCFG aborts"], "ok");
   EXPECT_EQ(f.verdicts["edma QUEPRI reads"], "ok");
   EXPECT_EQ(f.verdicts["emac aborts"], "ok");
