@@ -9,8 +9,8 @@
 namespace fovea::app {
 namespace {
 
-// Typed in from dram.md and nothing else: model/mem/check has its own sheets, and the one is to be
-// held against the other. S1 ... are the sources as dram.md lists them.
+// Typed in from the public data sheets, independently of model/mem/check, which has its own tables:
+// each is checked against the other. S1 ... are the sources listed in model/SOURCES.md.
 constexpr std::size_t kGrades = 7;
 using ByGrade = std::array<Picoseconds, kGrades>;
 // The first four are DDR2 (JESD79-2 533C, 667D, 800D, 800E), the others mobile DDR.
@@ -22,7 +22,7 @@ struct ShortestPeriod {
   unsigned CL;
   ByGrade period;  // 0: not offered
 };
-// DDR2: dram.md 2 [S3]. Mobile: dram.md 4 [S11 S12].
+// DDR2: [S3]. Mobile DDR: [S11 S12].
 constexpr ShortestPeriod kPeriods[] = {
     {2, {0, 0, 0, 0, 12'000, 12'000, 12'000}},
     {3, {5'000, 5'000, 5'000, 5'000, 5'000, 6'000, 7'500}},
