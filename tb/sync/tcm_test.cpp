@@ -1,19 +1,16 @@
 // The core and a DMA share internal RAM: strict and default synchronisation give the same record, and
 // a late horizon is found.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <string>
 
-#include "model/bus/config_bus.h"
-#include "model/bus/scr.h"
 #include "model/common/burst_master.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
-#include "model/mem/ddr_module.h"
 #include "tb/iss/assembler.h"
+#include "tb/sync/in_child.h"
+#include "tb/sync/memory_system.h"
 
 namespace fovea::sync {
 namespace {
@@ -134,30 +131,20 @@ struct Case {
 };
 
 std::string run(const Case& s) {
-  planted_late_horizon = s.late;
-  QuietPhase quiet("quiet");
   cpu::CpuParams cpu_params;
   cpu_params.tcm_first.set(s.dma_first ? "dma" : "core");
-  bus::CrossbarParams xp;
-  bus::ConfigBusParams cp;
-  mem::DdrParams dp;
   std::vector<std::uint8_t> ram(0x8000);
   bus::AddressMap map;
   map.ram_size = 0x8000;
+  MemorySystem system(map, s.strict, Frequency(243'000'000), Frequency(121'500'000));
+  bus::Scr& scr = system.scr;
+  mem::DdrModule& ddr = system.ddr;
   cpu::Arm926 arm("arm", cpu_params, ram, 0);
-  cpu::TcmDma dma("dma", arm.core(), quiet);
-  bus::Scr scr("scr", xp, map, s.strict);
-  bus::ConfigBus config("config", cp, quiet,
-                        {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}});
-  mem::DdrModule ddr("ddr", dp);
+  cpu::TcmDma dma("dma", arm.core(), system.quiet);
   Traffic first("first", Master::kEdmaTc0Write, s.seed * 2 + 1),
       second("second", Master::kEdmaTc1Read, s.seed * 2 + 2);
   ClockSignal arm_clk{"arm_clk", Frequency(297'000'000)};
-  ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
-  ClockSignal scr_clk{"scr_clk", Frequency(121'500'000)};
-  sc_core::sc_signal<bool> on{"on", true}, irq{"irq"}, fiq{"fiq"};
-  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
-  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
+  sc_core::sc_signal<bool> irq{"irq"}, fiq{"fiq"};
   arm.clk(arm_clk);
   dma.clk(arm_clk);
   arm.irq(irq);
@@ -167,24 +154,7 @@ std::string run(const Case& s) {
   arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
   first.master.socket.bind(*scr.target[index(Master::kEdmaTc0Write)]);
   second.master.socket.bind(*scr.target[index(Master::kEdmaTc1Read)]);
-  scr.clk(scr_clk);
-  scr.ddr_socket.bind(ddr.socket);
-  scr.ddr_lookahead.bind(ddr.lookahead);
-  scr.config_socket.bind(config.socket);
   scr.ram_socket.bind(dma.socket);
-  ddr.ddr_clk(ddr_clk);
-  ddr.scr_clk(scr_clk);
-  ddr.enabled(on);
-  config.to("ddr").bind(ddr.reg_socket);
-  // The registers as a boot loader leaves them (UBL values for 243 MHz).
-  ddr.regs.write(0x08, 4, 0x0053CA32);  // TIMUNLOCK
-  ddr.regs.write(0x10, 4, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 |
-                              2u << 3 | 2u);
-  ddr.regs.write(0x14, 4, 1u << 5 | 33u << 16);
-  ddr.regs.write(0x0C, 4, 1895);
-  ddr.regs.write(0xE4, 4, 5);
-  ddr.regs.write(0x20, 4, 0xFE);
-  ddr.regs.write(0x08, 4, 0x00534A32);
 
   std::string text = kProgram;
   const auto fill_in = [&text](const std::string& word, std::uint64_t value) {
@@ -232,46 +202,8 @@ std::string run(const Case& s) {
   return out;
 }
 
-/// A second elaboration in one process fails, so each run gets a child process.
 std::string in_child(const Case& s) {
-  int fd[2];
-  if (pipe(fd) != 0) return {};
-  const pid_t pid = fork();
-  if (pid == 0) {
-    close(fd[0]);
-    std::string all;
-    try {
-      all = run(s);
-    } catch (const std::exception& e) {
-      std::fprintf(stderr, "%s\n", e.what());
-      _exit(1);
-    }
-    for (std::size_t at = 0; at < all.size();) {
-      const ssize_t n = write(fd[1], all.data() + at, all.size() - at);
-      if (n <= 0) _exit(1);
-      at += static_cast<std::size_t>(n);
-    }
-    _exit(0);
-  }
-  close(fd[1]);
-  std::string all;
-  char buffer[65536];
-  for (ssize_t n; (n = read(fd[0], buffer, sizeof buffer)) > 0;)
-    all.append(buffer, static_cast<std::size_t>(n));
-  close(fd[0]);
-  int status = 0;
-  waitpid(pid, &status, 0);
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? all : "";
-}
-
-std::string first_difference(const std::string& a, const std::string& b) {
-  for (std::size_t line = 0; line < a.size() && line < b.size();) {
-    const std::size_t ea = a.find('\n', line), eb = b.find('\n', line);
-    if (a.substr(line, ea - line) != b.substr(line, eb - line))
-      return "strict:  " + a.substr(line, ea - line) + "\ndefault: " + b.substr(line, eb - line);
-    line = ea + 1;
-  }
-  return a.size() == b.size() ? "" : "one record is longer";
+  return sync::in_child(s.late, [&s] { return run(s); });
 }
 
 std::uint64_t value(const std::string& record, const std::string& name) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tb/sync/memory_system.h"
+
 namespace fovea::sync {
 namespace {
 
@@ -20,6 +22,7 @@ std::string text(const char* format, auto... values) {
 
 constexpr std::uint32_t kRegs = 0x01C0'0000;
 constexpr std::uint32_t kDdr = 0x8000'0000;
+constexpr Picoseconds kMeeting = 64 * kPsPerNs;  // timers and masters meet at multiples of it
 constexpr Picoseconds kSlot = 60 * kPsPerUs;  // time set aside for one program
 
 }  // namespace
@@ -39,7 +42,9 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
   dont_initialize();
   regs.timer.on_write([this](std::uint32_t ns) {
     due_.cancel();
-    due_.notify(ps_time((ns & 0xFFF) * kPsPerNs + 1));
+    Picoseconds delay = (ns & 0xFFF) * kPsPerNs + 1;
+    if (ns & 1) delay += kMeeting - 1 - (kernel_time() + delay - 1) % kMeeting;
+    due_.notify(ps_time(delay));
   });
   regs.copy.on_write([this](std::uint32_t address) {
     if (dma.can_issue()) dma.read(address & ~63u, 64, address & ~63u);
@@ -147,16 +152,18 @@ void TrafficMaster::execute(const Program& p) {
   for (unsigned i = 0; i < p.operations && now < end; ++i) {
     // Gaps: often none, so that masters meet at equal times; sometimes a clock, or longer than a
     // register access and what follows from it take.
-    switch (rng.below(6)) {
+    switch (rng.below(7)) {
       case 0: break;
       case 1: break;
       case 2: now += 8230; break;
       case 3: now += rng.below(p.seed % 2 ? 50 : 3000) * kPsPerNs; break;
       case 4: now += 1; break;
+      case 5: now += kMeeting - now % kMeeting + 1; break;
       default: now += (now % 8230 == 0) ? 0 : 8230 - now % 8230; break;
     }
-    // An interrupt is seen strictly after its time, and changes what comes next.
-    if (now >= horizon()) sleep_until(now);
+    // An interrupt is seen strictly after its time, and changes what comes next. So everything before
+    // `now` must have happened: it may be the horizon itself, but not beyond.
+    if (now > horizon()) sleep_until(now);
     const Picoseconds irq = block_.irq_at < now ? block_.irq_at : block_.irq_before;
     if (irq > seen_irq && irq < now) {
       seen_irq = irq;
@@ -220,9 +227,7 @@ void TrafficMaster::execute(const Program& p) {
     if (o.used) retire(o, p.seed, now);
 }
 
-Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
-                     Picoseconds planted_late) {
-  planted_late_horizon = planted_late;
+Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   Log log;
   QuietPhase quiet("quiet");
   bus::CrossbarParams xp;
@@ -273,15 +278,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
     for (unsigned i = 0; i < count; ++i)
       masters[i]->programs.push_back({first_seed + n, start, operations});
   }
-  // The registers as a boot loader leaves them (UBL values for 243 MHz).
-  ddr.regs.write(0x08, 4, 0x0053CA32);  // TIMUNLOCK
-  ddr.regs.write(0x10, 4, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 |
-                              2u << 3 | 2u);
-  ddr.regs.write(0x14, 4, 1u << 5 | 33u << 16);
-  ddr.regs.write(0x0C, 4, 1895);
-  ddr.regs.write(0xE4, 4, 5);
-  ddr.regs.write(0x20, 4, 0xFE);
-  ddr.regs.write(0x08, 4, 0x00534A32);
+  start_sdram(ddr);
   sc_core::sc_start(ps_time(start + kSlot));
   scr.settle();
   for (auto& m : masters)

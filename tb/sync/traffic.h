@@ -43,7 +43,8 @@ class Log {
   std::vector<std::string> lines_;
 };
 
-/// Registers: TIMER (write n: interrupt after n ns), COPY (write address: a DMA master reads 64
+/// Registers: TIMER (write n: interrupt after n ns and 1 ps; if n is odd, at the next multiple of 64 ns
+/// that is so far away, where masters look for it one picosecond later), COPY (write address: a DMA master reads 64
 /// bytes there and writes them 4 KiB further, then interrupts), COUNT (reads: expiries so far),
 /// PRIORITY (write master<<8|level: a crossbar priority changes), STREAM (write address: a passive
 /// DMA master, which reacts to outcomes ahead of the kernel as the video ports do, moves twelve
@@ -118,7 +119,6 @@ struct Outcome {
   std::string record;
   std::uint64_t direct = 0, queued = 0;
 };
-Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict,
-                     Picoseconds planted_late);
+Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict);
 
 }  // namespace fovea::sync
