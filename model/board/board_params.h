@@ -34,7 +34,7 @@ struct ClockParams : ParamGroup {
   EnumParam preset{*this, "preset", "297/243",
                    {"297/243", "297/270", "270/216", "216/172", "432/340"},
                    "MHz of core / DDR clock that the firmware programs (DIP 12..14)",
-                   Origin::kSourced, "TI boot loader presets, dm365.md 1.2"};
+                   Origin::kSourced, "TI boot loader for the DM36x (UBL, device.c)"};
   ClockParams() : ParamGroup("clocks") {}
 };
 

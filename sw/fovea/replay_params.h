@@ -26,7 +26,7 @@ struct ChipClocks : ParamGroup {
                    {"as_recorded", "297/243", "297/270", "270/216", "216/172", "432/340"},
                    "as clocks.preset of a run, for ddr.clock, which bus.clock follows; the core's clock "
                    "stays as recorded, and so do timings in clocks",
-                   Origin::kSourced, "TI boot loader presets"};
+                   Origin::kSourced, "TI boot loader for the DM36x (UBL, device.c)"};
   ChipClocks() : ParamGroup("clocks") {}
 };
 
@@ -66,7 +66,7 @@ struct DdrRegisterParams : ParamGroup {
   EnumParam preset{*this, "preset", "as_recorded", {"as_recorded", "data_sheet"},
                    "data_sheet: clock, CL, RL, timings, refresh, banks and page that are not set by "
                    "hand are those of ddr.part in ddr.grade, in clocks of ddr.clock",
-                   Origin::kChoice, "dram.md 2 and 4"};
+                   Origin::kChoice, "JESD79-2, JESD209"};
   IntParam page{*this, "page", U::kBytes, 2048, 512, 4096, "bytes of a row", Origin::kChoice, ""};
   IntParam banks{*this, "banks", U::kCount, 8, 1, 8, "banks that the controller uses",
                  Origin::kChoice, ""};

@@ -7,7 +7,7 @@ namespace fovea::mem {
 struct DdrParams : ParamGroup {
   using U = IntParam::Unit;
   static constexpr const char* kSisters =
-      "TMS320DM6446, TMS320C6455, OMAP-L138 (SPRU986B, SPRUEM4A, SPRUH82C): the same controller";
+      "TMS320DM643x, TMS320C642x, AM1808 (SPRU986B, SPRUEM4A, SPRUH82C): the same controller";
   static constexpr const char* kSistersAgree = "the guides of three sister chips agree";
   static constexpr const char* kLevels =
       "refresh urgency levels of the same controller in sister chips (SPRU986B)";
