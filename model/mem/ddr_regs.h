@@ -1,4 +1,4 @@
-// Registers of the DDR2/mDDR controller (dm365.md 5.5).
+// Registers of the DDR2/mDDR controller (U-Boot, asm/arch-davinci/ddr2_defs.h; SPRU986B).
 #pragma once
 #include "model/common/regbank.h"
 

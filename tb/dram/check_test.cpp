@@ -40,7 +40,7 @@ std::vector<std::string> violations(const mem::DdrConfig& c, const char* part, F
   return x.check.violations(c, clock);
 }
 
-/// Within the sheet of a -25E part of 2 Gb at 340 MHz, nothing to spare (dram.md 3).
+/// Exactly what JESD79-2 and Micron's data sheet ask of a -25E part of 2 Gb at 340 MHz.
 mem::DdrConfig tight() {
   mem::DdrConfig c;
   auto& t = c.timing;
@@ -166,7 +166,7 @@ TEST(ProgrammingTest, HertzThatRoundAPeriodAreNoClockMore) {
               ElementsAre(HasSubstr("needs tREFI at most 7800 ns = 1300 at 166.667 MHz: 1 over")));
 }
 
-/// What boot loaders program, in clocks (dm365.md 5.6).
+/// What boot loaders program, in clocks (TI's UBL, device.c; U-Boot, cam_enc_4xx.h).
 mem::DdrConfig words(unsigned RFC, unsigned RP, unsigned RCD, unsigned WR, unsigned RAS, unsigned RC,
                      unsigned RRD, unsigned WTR, unsigned RTP, unsigned RR, unsigned intervals) {
   mem::DdrConfig c;

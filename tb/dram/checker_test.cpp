@@ -1,5 +1,5 @@
-// The checker complains at n - 1 and is silent at n, for each rule; numbers typed in from
-// dram.md 2.
+// The checker complains at n - 1 and is silent at n, for each rule; numbers are the
+// relations of JESD79-2.
 #include <gtest/gtest.h>
 
 #include <ostream>

@@ -6,7 +6,7 @@
 namespace fovea::dram {
 namespace {
 
-// dram.md 3 and the end of 4, where the clocks of some grades are worked out.
+// Nanoseconds of JESD79-2 and of the makers' data sheets, rounded up to clocks by hand.
 TEST(PartTest, NumbersInClocksAsWorkedOutByHand) {
   const DataSheet a = in_clocks(find_part("mt47h64m16"), Frequency(243'000'000), 4);
   EXPECT_EQ(a.tRCD, 4u);
@@ -74,7 +74,7 @@ PartChecker::Warning warning(const mem::DdrConfig& programmed, const Part& p, co
   return found == checker.warnings().end() ? PartChecker::Warning{} : found->second;
 }
 
-/// What a DM368 board ships with at 340 MHz (dram.md 3, last table).
+/// What a DM368 board ships with at 340 MHz (U-Boot, configs/cam_enc_4xx.h).
 mem::DdrConfig shipped() {
   mem::DdrConfig c;
   c.timing.CL = 5;

@@ -1,6 +1,7 @@
 // The DDR controller once more, as an oracle: a slow, stepwise scheduler that keeps nothing but its
 // queue and the list of commands given, and derives every answer from them when asked. It shares no
-// header with model/mem; the rules are dm365.md 5.3 and 5.4 and the relations of dram.md 2.
+// header with model/mem; the rules are those of SPRU986B and SPRUH82C ch. 14 and the
+// relations of JESD79-2.
 #pragma once
 #include <array>
 #include <cstdint>

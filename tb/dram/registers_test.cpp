@@ -17,8 +17,7 @@ constexpr std::uint32_t kSdbcr = 0x08, kSdrcr = 0x0C, kSdtimr = 0x10, kSdtimr2 =
                         kPbbpr = 0x20, kDdrphycr = 0xE4,
                         kSdbcr2 = 0x1C;
 
-/// The words of a shipped DM368 board (dram.md 3, last table), field by field as the manual has
-/// them.
+/// The words of a shipped DM368 board (U-Boot, configs/cam_enc_4xx.h), field by field.
 struct Words {
   std::uint32_t sdbcr = 0x0053'4A32;  // 8 banks, 1024-word page, CL 5, 16 bit
   std::uint32_t sdrcr = 0x768;

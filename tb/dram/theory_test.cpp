@@ -1,4 +1,5 @@
-// Throughput against closed formulas, within 1 %. Formulas from the command distances of dram.md 2.
+// Throughput against closed formulas, within 1 %. Formulas from the command distances of
+// JESD79-2.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +64,7 @@ TEST(TheoryTest, SequentialReadsReachThePeakLessRowChangesAndRefresh) {
   });
   const double theory = row / 32 / share;
   expect_within_one_percent(measured, theory);
-  EXPECT_LT(16 / measured, 0.98) << "97.9 % of peak before row changes, dram.md 3";
+  EXPECT_LT(16 / measured, 0.98) << "97.9 % of peak before row changes: each tREFI loses tRP + 1 + tRFC + tRCD";
   EXPECT_GT(16 / measured, 0.96);
 }
 

@@ -1,5 +1,5 @@
 // Cause and effect: each timing moves the time it should by exactly the clocks it should. All times
-// are computed by hand from the relations of dram.md 2; the bench's DDR and crossbar clocks are
+// are computed by hand from the relations of JESD79-2; the bench's DDR and crossbar clocks are
 // one.
 #include <gtest/gtest.h>
 
