@@ -1,5 +1,5 @@
-// The scheduling rules of SPRUH82C 14.2.5 to 14.2.7, one smallest scenario each, always with its counterpart: the
-// same requests where the rule does not apply come out the other way round.
+// The scheduling rules of SPRUH82C 14.2.5 to 14.2.7, one smallest scenario each, always with its
+// counterpart: the same requests where the rule does not apply come out the other way round.
 #include <gtest/gtest.h>
 
 #include <memory>
