@@ -64,7 +64,8 @@ TEST(TheoryTest, SequentialReadsReachThePeakLessRowChangesAndRefresh) {
   });
   const double theory = row / 32 / share;
   expect_within_one_percent(measured, theory);
-  EXPECT_LT(16 / measured, 0.98) << "97.9 % of peak before row changes: each tREFI loses tRP + 1 + tRFC + tRCD";
+  EXPECT_LT(16 / measured, 0.98)
+      << "97.9 % of peak before row changes: each tREFI loses tRP + 1 + tRFC + tRCD";
   EXPECT_GT(16 / measured, 0.96);
 }
 
