@@ -7,28 +7,28 @@ SerialSender::SerialSender(sc_core::sc_module_name name, periph::Uart16550& uart
     : sc_module(name), uart_(uart), input_(input) {
   SC_HAS_PROCESS(SerialSender);
   SC_METHOD(run);
-  sensitive << look_ << over_;
-  uart_.on_ready = [this] { look_.notify(sc_core::SC_ZERO_TIME); };
+  sensitive << look_.event() << over_.event();
+  uart_.on_ready = [this] { look_.soon(); };
 }
 
 void SerialSender::kick() {
-  look_.notify(sc_core::SC_ZERO_TIME);
-  ++horizon_epoch;
+  look_.soon();
 }
 
 void SerialSender::run() {
   const Picoseconds now = kernel_time();
   if (on_line_) {
-    if (!over_.triggered()) return;
+    if (now < over_at_) return;
     uart_.receive(*on_line_);
     on_line_.reset();
   }
   if (!uart_.can_receive()) return;  // on_ready tells
   on_line_ = input_.next(now);
   if (on_line_) {
-    over_.notify(ps_time(uart_.character_time()));
-  } else if (const Picoseconds at = input_.ask_again(); at != kNever) {
-    look_.notify(ps_time(at > now ? at - now : 0));
+    over_at_ = now + uart_.character_time();
+    over_.at(over_at_);
+  } else {
+    look_.at(input_.ask_again());
   }
 }
 

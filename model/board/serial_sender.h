@@ -4,7 +4,7 @@
 #include <optional>
 #include <systemc>
 
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 #include "model/periph/uart16550.h"
 
 namespace fovea::board {
@@ -33,8 +33,9 @@ class SerialSender : public sc_core::sc_module {
 
   periph::Uart16550& uart_;
   SerialInput& input_;
-  std::optional<std::uint8_t> on_line_;  // its last stop bit ends with `over_`
-  sc_core::sc_event look_, over_;
+  std::optional<std::uint8_t> on_line_;  // until `over_`, the end of its last stop bit
+  Picoseconds over_at_ = 0;
+  Timer look_, over_;
 };
 
 }  // namespace fovea::board

@@ -47,7 +47,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     FOVEA_CHECK(ports <= ports_.size(), "an agent with too many ports");
     SC_HAS_PROCESS(Agent);
     SC_METHOD(background);
-    sensitive << background_due_;
+    sensitive << background_due_.event();
     dont_initialize();
   }
 
@@ -93,10 +93,10 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     if (held_ == &tx) play_held(self().background_next());
     if (!tx.done) finish_queued(tx);
   }
-  /// Returns when `event` fires in the kernel.
-  void wait_for(sc_core::sc_event& event) {
+  /// Returns when `timer` fires in the kernel.
+  void wait_for(const Timer& timer) {
     leave();
-    sc_core::wait(event);
+    sc_core::wait(timer.event());
     enter();
   }
   /// Lets everybody else act before `until`; afterwards nothing is pending before it.
@@ -157,8 +157,8 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     }
     now_ = kernel_();
     background_due_.cancel();
-    ++horizon_epoch;
     path_->hold();
+    horizon_.forget();
   }
   void leave() {
     put_out();
@@ -167,12 +167,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     path_->release();
   }
 
-  /// kernel_horizon(), asked again only when something was notified since.
-  Picoseconds next_event() {
-    if (seen_epoch_ != horizon_epoch) [[unlikely]]
-      ask_kernel();
-    return next_event_;
-  }
+  Picoseconds next_event() { return horizon_(); }
 
   Picoseconds background_next() const { return kNever; }
   void background_act() {}
@@ -266,11 +261,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     own_undecided_ -= to_memory(tx);
     self().completed(tx);
     if (!running_) {
-      ++horizon_epoch;  // another agent plays the path: it must see what is notified here
-      if (waiting_ == &tx) {
-        const Picoseconds now = kernel_time();
-        done_.notify(ps_time(tx.first > now ? tx.first - now : 0));
-      }
+      if (waiting_ == &tx) done_.at(tx.first);
       arm_background();
     }
     return tlm::TLM_COMPLETED;
@@ -281,17 +272,10 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     arm_background();
   }
   void arm_background() {
-    const Picoseconds t = self().background_next();
-    if (t == kNever) return;
-    const Picoseconds now = kernel_time();
-    background_due_.notify(ps_time(t > now ? t - now : 0));
-  }
-  [[gnu::noinline]] void ask_kernel() {
-    seen_epoch_ = horizon_epoch;
-    next_event_ = kernel_horizon();
+    background_due_.at(self().background_next());
   }
 
-  sc_core::sc_event done_, background_due_;
+  Timer done_, background_due_;
   KernelNow kernel_;
   MemoryPathIf* path_ = nullptr;  // behind `path`
   std::array<const Picoseconds*, 2> decisions_{};
@@ -304,8 +288,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   std::uint64_t held_base_ = kNever;  // from here on requests may be held back
   bool running_ = false;
   unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act
-  std::uint64_t seen_epoch_ = ~std::uint64_t{0};
-  Picoseconds next_event_ = 0;
+  Horizon horizon_;
   Picoseconds now_ = 0;  // kernel time of the present activation
   bool strict_ = false;
 };

@@ -33,7 +33,7 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   reads_.on_done = report;
   if (other_side_) other_side_->on_done = report;
   SC_METHOD(fill);
-  sensitive << wake_;
+  sensitive << wake_.event();
   dont_initialize();
   SC_METHOD(sdram_changed);
   sensitive << sdram_initialised;
@@ -41,26 +41,26 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   // Not at power-up itself: the clocks get their first values in that instant.
   const Picoseconds start = std::max<Picoseconds>(params.start(), kPsPerNs);
   for (std::uint64_t i = 0; i < params.outstanding(); ++i) ready_.push(start);
-  wake_.notify(ps_time(start));
+  wake_.at(start);
 }
 
 void LoadGenerator::sdram_changed() {
   if (!params_.memory.is("sdram")) return;
   usable_from_ = sdram_initialised.read() ? kernel_time() + kPause : kNever;
-  if (sdram_initialised.read() && !ready_.empty()) wake_.notify(ps_time(kPause));
+  if (!ready_.empty()) wake_.at(usable_from_);
 }
 
 void LoadGenerator::fill() {
   const Picoseconds now = kernel_time();
   if (now < usable_from_) {
-    if (usable_from_ != kNever) wake_.notify(ps_time(usable_from_ - now));
+    wake_.at(usable_from_);
     return;
   }
   while (!ready_.empty() && ready_.top() <= now) {
     ready_.pop();
     issue();
   }
-  if (!ready_.empty()) wake_.notify(ps_time(ready_.top() - now));
+  if (!ready_.empty()) wake_.at(ready_.top());
 }
 
 void LoadGenerator::issue() {
@@ -84,7 +84,7 @@ void LoadGenerator::done(const BurstMaster::Completion& c) {
     return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
   const Picoseconds now = kernel_time();
   ready_.push(now + (c.error ? kPause : pause_));
-  wake_.notify(ps_time(ready_.top() - now));
+  wake_.at(ready_.top());
 }
 
 }  // namespace fovea::bus

@@ -97,7 +97,7 @@ class LoadGenerator : public sc_core::sc_module {
   Picoseconds usable_from_ = 0;  // its memory; kNever: not known
   std::uint64_t serial_ = 0, state_ = 1;
   std::array<std::uint8_t, kMaxBurstBytes> data_{};
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::bus

@@ -30,7 +30,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
   sensitive << clk;
   for (auto& p : priority) sensitive << p;
   SC_METHOD(play);
-  sensitive << due_;
+  sensitive << due_.event();
   dont_initialize();
 }
 
@@ -55,10 +55,11 @@ void Scr::step() {
 }
 
 [[gnu::noinline]] void Scr::step_before(Picoseconds limit) {
-  const std::uint64_t epoch = horizon_epoch, responses = responses_;
+  const Horizon::Mark mark;
+  const std::uint64_t responses = responses_;
   do {
     step();
-  } while (next_decision() < limit && horizon_epoch == epoch && responses_ == responses);
+  } while (next_decision() < limit && !mark.moved() && responses_ == responses);
 }
 
 void Scr::settle() {
@@ -78,10 +79,7 @@ void Scr::release() {
 }
 
 void Scr::arm() {
-  const Picoseconds t = next_decision();
-  if (t == kNever) return;
-  const Picoseconds now = kernel_time();
-  due_.notify(ps_time(t > now ? t - now : 0));
+  due_.at(next_decision());
 }
 
 /// Kernel side of the path: decides what is due, and in default mode what lies before the next
@@ -89,17 +87,11 @@ void Scr::arm() {
 void Scr::play() {
   if (held_) return;
   const Picoseconds now = now_();
-  Picoseconds horizon = now;
-  for (std::uint64_t epoch = ~std::uint64_t{0};;) {
+  for (Horizon horizon;;) {
     const Picoseconds t = next_decision();
     if (t == kNever) return;
     if (t > now) {
-      if (strict_) break;
-      if (epoch != horizon_epoch) {
-        epoch = horizon_epoch;
-        horizon = kernel_horizon();
-      }
-      if (t >= horizon) break;
+      if (strict_ || t >= horizon()) break;
     }
     step();
   }
@@ -152,11 +144,12 @@ template <bool kWrite>
 [[gnu::noinline]] Scr::Alone Scr::play_alone(MemRequest& r, Picoseconds limit) {
   const Crossbar::AloneGrant g = crossbar_.grant_if_alone(r);
   if (g.at >= limit) return Alone::kNo;
-  const std::uint64_t epoch = horizon_epoch, responses = responses_;
+  const Horizon::Mark mark;
+  const std::uint64_t responses = responses_;
   while (*ddr_next_ <= g.at) {
     deciding_ = *ddr_next_;
     ddr_->step();
-    if (horizon_epoch != epoch || responses_ != responses) return Alone::kNo;
+    if (mark.moved() || responses_ != responses) return Alone::kNo;
   }
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
   undecided_ += !r.passive;
@@ -167,7 +160,7 @@ template <bool kWrite>
     ++(g.at > now_() ? direct_ : queued_);
     return Alone::kDone;
   }
-  while (responses_ == responses && horizon_epoch == epoch && *ddr_next_ < limit &&
+  while (responses_ == responses && !mark.moved() && *ddr_next_ < limit &&
          *ddr_next_ < crossbar_.next_decision()) {
     deciding_ = *ddr_next_;
     ddr_->step();

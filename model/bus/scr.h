@@ -115,7 +115,7 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHo
   Crossbar crossbar_;
   std::array<Target, kMasterCount> targets_;
   std::array<SlavePort, kSlaveCount> slave_ports_;
-  sc_core::sc_event due_;
+  Timer due_;
   KernelNow now_;
   PassiveIf* ddr_ = nullptr;  // behind `ddr_lookahead`
   const Picoseconds* ddr_next_ = nullptr;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "model/common/check.h"
-#include "model/common/lookahead.h"
 #include "model/common/mem_sockets.h"
+#include "model/common/timer.h"
 
 namespace fovea {
 
@@ -43,7 +43,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     SC_HAS_PROCESS(BurstMaster);
     socket.bind(*this);
     SC_METHOD(deliver);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
   }
 
@@ -150,11 +150,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   }
 
   void schedule() {
-    if (Slot* s = next_due()) {
-      const Picoseconds now = kernel_();
-      due_.notify(ps_time(s->last > now ? s->last - now : 0));
-      ++horizon_epoch;
-    }
+    if (Slot* s = next_due()) due_.at(s->last);
   }
 
   void deliver() {
@@ -169,7 +165,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   Report report_;
   KernelNow kernel_;
   std::vector<Slot> slots_;
-  sc_core::sc_event due_;
+  Timer due_;
   Picoseconds newest_ = 0;  // when the latest burst is put on the port
   unsigned busy_ = 0;
   std::uint64_t issued_count_ = 0;

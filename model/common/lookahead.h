@@ -1,52 +1,14 @@
-// How far a block may run ahead of the kernel, and who plays the memory path meanwhile.
+// The memory path as a master sees it that runs ahead of the kernel.
 #pragma once
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <systemc>
 
 #include "model/common/mem_request.h"
+#include "model/common/timer.h"
 #include "model/common/units.h"
 
 namespace fovea {
-
-inline Picoseconds kernel_time() { return sc_core::sc_time_stamp().value(); }
-/// Exact: the kernel's resolution is 1 ps. sc_time is one 64-bit number, but its from_value() is a
-/// call into the library, too dear for the memory path.
-inline sc_core::sc_time ps_time(Picoseconds ps) {
-  static_assert(sizeof(sc_core::sc_time) == sizeof ps);
-  sc_core::sc_time t;
-  std::memcpy(static_cast<void*>(&t), &ps, sizeof ps);
-  return t;
-}
-
-/// kernel_time() without a call: sc_time_stamp() refers to the kernel's own present time. For
-/// objects of the simulation, which are made after its kernel.
-class KernelNow {
- public:
-  Picoseconds operator()() const { return now_.value(); }
-
- private:
-  const sc_core::sc_time& now_ = sc_core::sc_time_stamp();
-};
-
-/// For the test that shows the strict/default comparison can fail: makes every horizon late by this
-/// much. 0 in production; nothing but that test sets it.
-inline Picoseconds planted_late_horizon = 0;
-
-/// Time of the next pending kernel event; `now` while anything is runnable now. Nobody else acts
-/// before it.
-inline Picoseconds kernel_horizon() {
-  if (sc_core::sc_pending_activity_at_current_time()) return kernel_time() + planted_late_horizon;
-  if (!sc_core::sc_pending_activity_at_future_time()) return kNever;
-  return kernel_time() + sc_core::sc_time_to_pending_activity().value() + planted_late_horizon;
-}
-
-/// Counts notifications that blocks make while somebody plays the path for them (a completion, a
-/// register access to come). As long as it stands still, the horizon of the present activation stands
-/// still too, so it need not be asked from the kernel again. Whoever calls notify() from within a call
-/// of the memory path counts it here.
-inline std::uint64_t horizon_epoch = 0;
 
 /// A passive state machine: it decides at times of its own but acts only when told to.
 class PassiveIf : public virtual sc_core::sc_interface {

@@ -6,7 +6,7 @@
 #include <systemc>
 #include <utility>
 
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 
 namespace fovea {
 
@@ -19,15 +19,14 @@ class QuietPhase : public sc_core::sc_module {
   explicit QuietPhase(sc_core::sc_module_name name) : sc_module(name) {
     SC_HAS_PROCESS(QuietPhase);
     SC_METHOD(run);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
   }
 
   /// `at` >= now.
   void at(Picoseconds at, unsigned order, std::function<void()> f) {
     queue_.emplace(Key{at, order, ++serial_}, std::move(f));
-    due_.notify(ps_time(queue_.begin()->first.at - kernel_time()));
-    ++horizon_epoch;
+    due_.at(queue_.begin()->first.at);
   }
 
  private:
@@ -49,12 +48,12 @@ class QuietPhase : public sc_core::sc_module {
       queue_.erase(queue_.begin());
       f();
     }
-    if (!queue_.empty()) due_.notify(ps_time(queue_.begin()->first.at - now));
+    if (!queue_.empty()) due_.at(queue_.begin()->first.at);
   }
 
   std::multimap<Key, std::function<void()>> queue_;
   std::uint64_t serial_ = 0;
-  sc_core::sc_event due_;
+  Timer due_;
 };
 
 }  // namespace fovea

@@ -2,7 +2,7 @@
 #pragma once
 #include <systemc>
 
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 
 namespace fovea {
 
@@ -11,13 +11,12 @@ namespace fovea {
 class Slices {
  public:
   void run(Picoseconds slice) {
-    end_.cancel();  // of a slice that the simulation's pause cut short
-    end_.notify(ps_time(slice));
+    end_.move_to(kernel_time() + slice);  // a pause may have cut the last slice short
     sc_core::sc_start(ps_time(slice));
   }
 
  private:
-  sc_core::sc_event end_;
+  Timer end_;
 };
 
 }  // namespace fovea

@@ -15,7 +15,7 @@ Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
 }
 
 void Arm926::run() {
-  while (clk.read().stopped()) sc_core::wait(clock_runs_);
+  while (clk.read().stopped()) sc_core::wait(clock_runs_.event());
   enter();
   try {
     core_.reset(entry_, kernel_time());
@@ -34,7 +34,7 @@ void Arm926::clock_changed() {
   core_.set_clock(clk.read(), kernel_time());
   ++clock_changes_;
   background_moved();
-  if (!clk.read().stopped()) clock_runs_.notify();
+  if (!clk.read().stopped()) clock_runs_.soon();
 }
 
 /// From event to event, as any may change the clock.
@@ -54,7 +54,7 @@ void Arm926::interrupt_changed() {
   if (fiq.read() != fiq_) core_.set_fiq(fiq_ = fiq.read(), now);
   if (irq_ || fiq_) {
     asserted_ = now;
-    interrupt_.notify(sc_core::SC_ZERO_TIME);
+    interrupt_.soon();
   }
 }
 

@@ -62,7 +62,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   std::uint32_t entry_;
   std::array<Record, Core::kAccesses> records_;
   std::size_t record_count_ = 0;
-  sc_core::sc_event interrupt_, clock_runs_;
+  Timer interrupt_, clock_runs_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
   unsigned clock_changes_ = 0;
   Picoseconds asserted_ = 0;  // since when IRQ or FIQ is asserted

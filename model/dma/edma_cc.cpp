@@ -7,9 +7,9 @@ namespace fovea::dma {
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
     : BusTarget(name, regs), regs(static_cast<unsigned>(params.reset_priority())) {
   for (Reg* r : {&regs.quetcmap, &regs.quepri})
-    r->on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
+    r->on_write([this](std::uint32_t) { written_.soon(); });
   SC_METHOD(update);
-  sensitive << written_;
+  sensitive << written_.event();
 }
 
 void EdmaCc::update() {

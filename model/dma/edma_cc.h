@@ -7,6 +7,7 @@
 #include "model/common/bus_target.h"
 #include "model/common/masters.h"
 #include "model/common/param.h"
+#include "model/common/timer.h"
 
 namespace fovea::dma {
 
@@ -61,7 +62,7 @@ class EdmaCc : public BusTarget {
 
  private:
   void update();
-  sc_core::sc_event written_;
+  Timer written_;
 };
 
 }  // namespace fovea::dma

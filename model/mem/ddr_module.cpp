@@ -66,7 +66,7 @@ void DdrModule::clocks_changed() {
         "the SDRAM's clock stops outside self-refresh: nothing refreshes it; the model keeps its data");
   controller_.set_clocks(ddr_clk.read(), scr_clk.read(), now);
   examined_ = open_ = false;
-  replanned_.notify(sc_core::SC_ZERO_TIME);
+  replanned_.soon();
   note_initialised();
 }
 
@@ -101,7 +101,7 @@ void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   settle(now);
   controller_.configure(programmed(), now);
-  replanned_.notify(sc_core::SC_ZERO_TIME);
+  replanned_.soon();
   if (!regs.sdbcr.sdramen)
     ready_ = false;
   else if (!regs.sdbcr.timunlock)

@@ -48,7 +48,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   const Picoseconds* next_decision_place() const override {
     return controller_.next_decision_place();
   }
-  const sc_core::sc_event& replanned() const override { return replanned_; }
+  const sc_core::sc_event& replanned() const override { return replanned_.event(); }
 
   Taken arrive(MemRequest& request, Picoseconds at) override;
 
@@ -73,7 +73,7 @@ class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
   BackingStore store_;
   DdrController controller_;
   DdrCheck check_;
-  sc_core::sc_event replanned_;
+  Timer replanned_;
   KernelNow now_;
   bool ready_ = false;      // initialised by the firmware
   bool timed_ = false;      // the timing registers have been open since power-up

@@ -4,9 +4,9 @@ namespace fovea::periph {
 
 Aintc::Aintc(sc_core::sc_module_name name, const AintcParams& params)
     : WithRegs(params.capture.is("level")), BusTarget(name, regs.regs) {
-  regs.on_change = [this] { written_.notify(sc_core::SC_ZERO_TIME); };
+  regs.on_change = [this] { written_.soon(); };
   SC_METHOD(update);
-  sensitive << written_;
+  sensitive << written_.event();
   for (auto& s : source) sensitive << s;
 }
 

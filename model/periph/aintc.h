@@ -4,6 +4,7 @@
 
 #include "model/common/bus_target.h"
 #include "model/common/param.h"
+#include "model/common/timer.h"
 #include "model/periph/clocked_target.h"
 #include "model/periph/core/aintc_core.h"
 
@@ -37,7 +38,7 @@ class Aintc : public WithRegs<AintcCore>, public BusTarget {
 
  private:
   void update();
-  sc_core::sc_event written_;
+  Timer written_;
 };
 
 }  // namespace fovea::periph

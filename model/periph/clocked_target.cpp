@@ -2,14 +2,6 @@
 
 namespace fovea::periph {
 
-void notify_at(sc_core::sc_event& event, Picoseconds at) {
-  event.cancel();
-  if (at == kNever) return;
-  const Picoseconds now = now_ps();
-  FOVEA_CHECK(at >= now, "event in the past");
-  event.notify(sc_core::sc_time::from_value(at - now));
-}
-
 ClockedTarget::ClockedTarget(sc_core::sc_module_name name, RegBank& bank) : BusTarget(name, bank) {
   SC_METHOD(take_clock);
   sensitive << clk << lpsc;
@@ -18,7 +10,7 @@ ClockedTarget::ClockedTarget(sc_core::sc_module_name name, RegBank& bank) : BusT
 bool ClockedTarget::clocked() const { return lpsc.size() == 0 || lpsc->read(); }
 
 std::uint64_t ClockedTarget::ticks() const {
-  return clock_.running() ? clock_.edge_after(now_ps()) - 1 : stopped_at_;
+  return clock_.running() ? clock_.edge_after(kernel_time()) - 1 : stopped_at_;
 }
 
 Picoseconds ClockedTarget::time_of(std::uint64_t tick) const {
@@ -37,7 +29,7 @@ void ClockedTarget::take_clock() {
   const Frequency wanted = clocked() ? clk.read() : Frequency{};
   if (wanted == clock_.frequency()) return;
   stopped_at_ = ticks();
-  clock_.restart(wanted, now_ps());
+  clock_.restart(wanted, kernel_time());
   clock_changed();
 }
 

@@ -6,6 +6,7 @@
 #include "model/common/bus_target.h"
 #include "model/common/clock.h"
 #include "model/common/sc_ports.h"
+#include "model/common/timer.h"
 
 namespace fovea::periph {
 
@@ -33,10 +34,6 @@ class OptionalOut
 /// An input that may stay unbound.
 template <class T>
 using OptionalIn = sc_core::sc_port<sc_core::sc_signal_in_if<T>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
-
-inline Picoseconds now_ps() { return sc_core::sc_time_stamp().value(); }
-/// (Re)schedules a timed event at the absolute time `at` (kNever: cancels it).
-void notify_at(sc_core::sc_event& event, Picoseconds at);
 
 /// A peripheral with one functional clock. Time is counted in ticks: tick n ends at clock edge n,
 /// and ticks() is the number of edges at or before now since the start of the run (edges while the

@@ -53,7 +53,7 @@ Gpio::Gpio(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
     for (Reg* r : {&b.set_fal, &b.clr_fal}) r->on_read([r, &s] { r->set(s.falling); });
   }
   SC_METHOD(update);
-  sensitive << wake_;
+  sensitive << wake_.event();
 }
 
 std::uint32_t Gpio::levels(unsigned bank) const {
@@ -78,7 +78,7 @@ void Gpio::output_written(unsigned bank) {
   const std::uint32_t out = regs.banks[bank].out_data.get() & ~regs.banks[bank].dir.get();
   if (out == s.shown) return;
   s.shown = out;
-  if (on_output) on_output(bank, out, now_ps());
+  if (on_output) on_output(bank, out, kernel_time());
 }
 
 void Gpio::levels_changed(unsigned bank) {
@@ -91,7 +91,7 @@ void Gpio::levels_changed(unsigned bank) {
   intstat.set(intstat.get() | edges);
   if (bank == 0 && (regs.binten.get() & 1)) {
     fired_ |= edges & 0xFFFF;
-    wake_.notify(sc_core::SC_ZERO_TIME);
+    wake_.soon();
   }
 }
 
@@ -110,7 +110,7 @@ void Gpio::update() {
     next = std::min(next, off_[n]);
   }
   fired_ = 0;
-  notify_at(wake_, time_of(next));
+  wake_.move_to(time_of(next));
 }
 
 }  // namespace fovea::periph

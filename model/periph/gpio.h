@@ -46,7 +46,7 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
   std::uint32_t levels(unsigned bank) const;
   void output_written(unsigned bank);
   void levels_changed(unsigned bank);
-  void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
+  void clock_changed() override { wake_.soon(); }
   void update();
 
   struct State {
@@ -58,7 +58,7 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
   std::array<State, kGpioBanks> state_;
   std::array<std::uint64_t, kGpioDirectIrqs> off_;  // tick at which the pulse ends
   std::uint32_t fired_ = 0;                         // pins 0-15 whose pulse begins now
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

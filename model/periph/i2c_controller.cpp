@@ -48,7 +48,7 @@ I2cController::I2cController(sc_core::sc_module_name name)
   });
   regs.icmdr.on_write([this](std::uint32_t) { mode_written(); });
   SC_METHOD(update);
-  sensitive << wake_;
+  sensitive << wake_.event();
 }
 
 std::uint64_t I2cController::bit_ticks() const {
@@ -220,7 +220,7 @@ void I2cController::update() {
     if (done_tick_ == ended) done_tick_ = kNever;
   }
   irq.write(pending_vector() != 0);
-  notify_at(wake_, time_of(done_tick_));
+  wake_.move_to(time_of(done_tick_));
 }
 
 }  // namespace fovea::periph

@@ -84,8 +84,8 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   void clear_flag(std::uint32_t bit) { status_ &= ~bit; }
   bool sending() const;  ///< a transmission has begun and its last byte is not out
   std::uint32_t pending_vector() const;
-  void clock_changed() override { wake_.notify(sc_core::SC_ZERO_TIME); }
-  void refresh() { wake_.notify(sc_core::SC_ZERO_TIME); }
+  void clock_changed() override { wake_.soon(); }
+  void refresh() { wake_.soon(); }
   void update();
 
   State state_ = State::kIdle;
@@ -94,7 +94,7 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   std::uint8_t shift_ = 0, received_ = 0;
   I2cTargetIf* target_ = nullptr;
   std::uint64_t done_tick_ = kNever;
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

@@ -35,7 +35,7 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
     r->on_write([this, r, last = r->get()](std::uint32_t) mutable {
       if (r->get() != std::exchange(last, r->get())) relock();
     });
-  regs.postdiv.on_write([this](std::uint32_t) { wake_.notify(sc_core::SC_ZERO_TIME); });
+  regs.postdiv.on_write([this](std::uint32_t) { wake_.soon(); });
   for (unsigned n = 0; n < sysclks; ++n) {
     regs.plldiv[n].on_write([this, n](std::uint32_t) {
       const bool differs = (regs.plldiv[n].get() ^ ratio_[n]) & 0x801F;
@@ -45,8 +45,8 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
   regs.pllcmd.on_write([this](std::uint32_t word) {
     if (!(word & 1)) return;
     regs.pllstat.gostat.set(1);
-    go_at_ = now_ps() + go_time_;
-    wake_.notify(sc_core::SC_ZERO_TIME);
+    go_at_ = kernel_time() + go_time_;
+    wake_.soon();
   });
   regs.cken.on_write([this](std::uint32_t) { regs.ckstat.set(regs.cken.get() & 3); });
   regs.systat.on_read([this] {
@@ -55,7 +55,7 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
     regs.systat.set(on);
   });
   SC_METHOD(update);
-  sensitive << wake_ << osc;
+  sensitive << wake_.event() << osc;
 }
 
 void PllController::control_written() {
@@ -67,7 +67,7 @@ void PllController::control_written() {
   }
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && !locked_)
     Diagnostics::instance().guest(regs.name() + ": PLLEN set before the PLL has locked");
-  wake_.notify(sc_core::SC_ZERO_TIME);
+  wake_.soon();
 }
 
 void PllController::relock() {
@@ -75,8 +75,8 @@ void PllController::relock() {
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && pllm_)
     Diagnostics::instance().guest(regs.name() +
                                   ": multiplier or pre-divider changed while PLLEN = 1");
-  lock_at_ = pll_on_ ? now_ps() + lock_time_ : kNever;
-  wake_.notify(sc_core::SC_ZERO_TIME);
+  lock_at_ = pll_on_ ? kernel_time() + lock_time_ : kNever;
+  wake_.soon();
 }
 
 Frequency PllController::source() const {
@@ -85,7 +85,7 @@ Frequency PllController::source() const {
 }
 
 void PllController::update() {
-  const Picoseconds now = now_ps();
+  const Picoseconds now = kernel_time();
   if (now >= lock_at_) {
     lock_at_ = kNever;
     locked_ = !vco(osc.read(), regs.pllm.get(), regs.prediv.get()).stopped();
@@ -105,7 +105,7 @@ void PllController::update() {
   const Frequency f = source();
   for (unsigned n = 0; n < sysclk.size(); ++n) sysclk[n].write(divided(f, ratio_[n]));
   locked.write(locked_);
-  notify_at(wake_, std::min(lock_at_, go_at_));
+  wake_.move_to(std::min(lock_at_, go_at_));
 }
 
 }  // namespace fovea::periph

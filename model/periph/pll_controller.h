@@ -8,6 +8,7 @@
 #include "model/common/bus_target.h"
 #include "model/common/param.h"
 #include "model/common/sc_ports.h"
+#include "model/common/timer.h"
 #include "model/periph/clocked_target.h"
 #include "model/periph/core/pll_rules.h"
 
@@ -115,7 +116,7 @@ class PllController : public WithRegs<PllRegs>, public BusTarget {
   bool locked_ = false, pll_on_ = false;
   std::uint32_t pllm_ = 0, prediv_ = 0;  // in effect since the last lock; pllm_ 0: none since reset
   Picoseconds lock_at_ = kNever, go_at_ = kNever;
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

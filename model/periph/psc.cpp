@@ -40,7 +40,7 @@ Psc::Psc(sc_core::sc_module_name name, const PscParams& params)
     command(word);
   });
   SC_METHOD(update);
-  sensitive << wake_;
+  sensitive << wake_.event();
 }
 
 void Psc::command(std::uint32_t domains) {
@@ -53,12 +53,12 @@ void Psc::command(std::uint32_t domains) {
   for (unsigned n = 0; n < kLpscCount; ++n)
     goal_[n] = static_cast<std::uint8_t>(regs.mdctl[n].get() & 0x1F);
   regs.ptstat.set(1);
-  done_at_ = now_ps() + transition_time_;
-  wake_.notify(sc_core::SC_ZERO_TIME);
+  done_at_ = kernel_time() + transition_time_;
+  wake_.soon();
 }
 
 void Psc::update() {
-  if (now_ps() >= done_at_) {
+  if (kernel_time() >= done_at_) {
     done_at_ = kNever;
     regs.ptstat.set(0);
     for (unsigned n = 0; n < kLpscCount; ++n)
@@ -69,7 +69,7 @@ void Psc::update() {
     }
   }
   for (unsigned n = 0; n < kLpscCount; ++n) enabled[n].write((regs.mdstat[n].get() & 0x3F) == 3);
-  notify_at(wake_, done_at_);
+  wake_.move_to(done_at_);
 }
 
 }  // namespace fovea::periph

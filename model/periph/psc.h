@@ -7,6 +7,7 @@
 
 #include "model/common/bus_target.h"
 #include "model/common/param.h"
+#include "model/common/timer.h"
 #include "model/periph/clocked_target.h"
 
 namespace fovea::periph {
@@ -92,7 +93,7 @@ class Psc : public WithRegs<PscRegs>, public BusTarget {
   std::array<std::uint8_t, kLpscCount> goal_{};
   bool again_ = false;
   Picoseconds done_at_ = kNever;
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

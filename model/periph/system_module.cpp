@@ -19,23 +19,23 @@ SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& par
   for (Reg* r : std::initializer_list<Reg*>{&regs.mstpri0, &regs.mstpri1, &regs.vpss_clk_ctrl,
                                             &regs.peri_clk_ctrl, &regs.misc, &regs.edma_evtmux,
                                             &regs.arm_intmux})
-    r->on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
-  regs.pinmux[3].on_write([this](std::uint32_t) { written_.notify(sc_core::SC_ZERO_TIME); });
+    r->on_write([this](std::uint32_t) { written_.soon(); });
+  regs.pinmux[3].on_write([this](std::uint32_t) { written_.soon(); });
   regs.deepsleep.on_write([](std::uint32_t word) {
     if (word >> 31) Diagnostics::instance().not_modelled("deep sleep");
   });
   regs.vtpiocr.on_write([this](std::uint32_t) {
     const bool clrz = regs.vtpiocr.clrz.get();
-    if (clrz && !vtp_clrz_) vtp_ready_at_ = now_ps() + vtp_time_;
+    if (clrz && !vtp_clrz_) vtp_ready_at_ = kernel_time() + vtp_time_;
     vtp_clrz_ = clrz;
   });
-  regs.vtpiocr.on_read([this] { regs.vtpiocr.ready.set(vtp_clrz_ && now_ps() >= vtp_ready_at_); });
+  regs.vtpiocr.on_read([this] { regs.vtpiocr.ready.set(vtp_clrz_ && kernel_time() >= vtp_ready_at_); });
   // LOCK, LOCK123 and LOOPLOCK rise together; boot code waits for bits 26:24.
   constexpr std::uint32_t kLockFlags = 0x1F000000;
   regs.pll0_config.on_read([this] { regs.pll0_config.set(pll1_locked.read() ? kLockFlags : 0); });
   regs.pll1_config.on_read([this] { regs.pll1_config.set(pll2_locked.read() ? kLockFlags : 0); });
   SC_METHOD(update);
-  sensitive << written_;
+  sensitive << written_.event();
 }
 
 void SystemModule::update() {

@@ -6,6 +6,7 @@
 
 #include "model/common/bus_target.h"
 #include "model/common/param.h"
+#include "model/common/timer.h"
 #include "model/periph/clocked_target.h"
 
 namespace fovea::periph {
@@ -141,7 +142,7 @@ class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
   Picoseconds vtp_time_;
   Picoseconds vtp_ready_at_ = kNever;
   bool vtp_clrz_ = true;
-  sc_core::sc_event written_;
+  Timer written_;
 };
 
 }  // namespace fovea::periph

@@ -37,7 +37,7 @@ Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
   regs.gpint_gpen.on_write(pin);
   regs.gpdat_gpdir.on_write(pin);
   SC_METHOD(update);
-  sensitive << wake_;
+  sensitive << wake_.event();
 }
 
 std::uint64_t Timer64::count(unsigned half) const {
@@ -184,7 +184,7 @@ void Timer64::reschedule() {
     if (h.run && t >= h.due) continue;  // a match of this very instant: update() serves it
     h.due = h.run ? h.counter.next_match(t) : kNever;
   }
-  wake_.notify(sc_core::SC_ZERO_TIME);
+  wake_.soon();
 }
 
 void Timer64::update() {
@@ -207,7 +207,7 @@ void Timer64::update() {
   tint12.write(half_[0].level);
   tint34.write(half_[1].level);
   expired.write(watchdog_ == Watchdog::kExpired || pin_reset_);
-  notify_at(wake_, time_of(std::min(std::min(half_[0].due, half_[1].due),
+  wake_.move_to(time_of(std::min(std::min(half_[0].due, half_[1].due),
                                     std::min(half_[0].off, half_[1].off))));
 }
 

@@ -104,7 +104,7 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
   const char* reset_cause_ = "";
   std::uint32_t shadow34_ = 0;  // upper half, taken when the lower is read
   bool shadow_valid_ = false;
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

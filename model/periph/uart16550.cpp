@@ -52,11 +52,11 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
   regs.dll.on_write(kick);
   regs.dlh.on_write(kick);
   SC_METHOD(update);
-  sensitive << wake_;
+  sensitive << wake_.event();
 }
 
 void Uart16550::refresh() {
-  wake_.notify(sc_core::SC_ZERO_TIME);
+  wake_.soon();
   if (on_ready) on_ready();
 }
 
@@ -66,7 +66,7 @@ bool Uart16550::can_receive() const {
 }
 
 Picoseconds Uart16550::character_time() const {
-  return time_of(ticks() + character_ticks()) - now_ps();
+  return time_of(ticks() + character_ticks()) - kernel_time();
 }
 
 std::uint64_t Uart16550::character_ticks() const {
@@ -161,7 +161,7 @@ void Uart16550::update() {
     if (regs.mcr.loop)
       receive(shift_);
     else if (sink)
-      sink(shift_, now_ps());
+      sink(shift_, kernel_time());
   }
   start_next(first_tick);
   if (t >= timeout_tick_) {
@@ -169,7 +169,7 @@ void Uart16550::update() {
     timeout_tick_ = kNever;
   }
   irq.write(interrupt_id() != kNone);
-  notify_at(wake_, time_of(std::min(done_tick_, timeout_tick_)));
+  wake_.move_to(time_of(std::min(done_tick_, timeout_tick_)));
 }
 
 }  // namespace fovea::periph

@@ -92,7 +92,7 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   bool shifting_ = false, overrun_ = false, thre_event_ = true, rx_timeout_ = false;
   std::uint64_t done_tick_ = kNever, timeout_tick_ = kNever;
   std::uint64_t transmitted_ = 0;
-  sc_core::sc_event wake_;
+  Timer wake_;
 };
 
 }  // namespace fovea::periph

@@ -17,7 +17,7 @@ Isif::Isif(sc_core::sc_module_name name, const VpssParams& params)
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
   regs.syncen.on_write([this](std::uint32_t) { write_syncen(); });
   SC_METHOD(close_fields);
-  sensitive << end_event_;
+  sensitive << end_timer_.event();
   dont_initialize();
 }
 
@@ -198,10 +198,7 @@ void Isif::end_field(Picoseconds due) {
 }
 
 void Isif::arm_end() {
-  if (ends_.empty() || ends_.front().at == kNever) return;
-  const Picoseconds now = kernel_time(), at = ends_.front().at;
-  end_event_.notify(ps_time(at > now ? at - now : 0));
-  ++horizon_epoch;
+  if (!ends_.empty()) end_timer_.at(ends_.front().at);
 }
 
 void Isif::close_fields() {

@@ -8,6 +8,7 @@
 #include "model/common/burst_master.h"
 #include "model/common/bus_target.h"
 #include "model/common/stats.h"
+#include "model/common/timer.h"
 #include "model/video/isif_regs.h"
 #include "model/video/params.h"
 #include "model/video/pulse.h"
@@ -109,7 +110,7 @@ class Isif : public BusTarget, public Bt656If {
   std::uint64_t row_first_sample_ = 0;
   const Clock* row_clock_ = nullptr;
   bool last_row_ = false;
-  sc_core::sc_event end_event_;
+  Timer end_timer_;
 
   std::uint64_t tag_ = 0, done_tag_ = 0;
   Picoseconds done_at_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 #include <systemc>
 
+#include "model/common/timer.h"
 #include "model/common/units.h"
 
 namespace fovea::video {
@@ -14,10 +15,10 @@ class Pulse : public sc_core::sc_module {
   SC_HAS_PROCESS(Pulse);
   explicit Pulse(sc_core::sc_module_name name) : sc_module(name) {
     SC_METHOD(drive);
-    sensitive << raise_;
+    sensitive << raise_.event();
     dont_initialize();
   }
-  void raise() { raise_.notify(sc_core::SC_ZERO_TIME); }
+  void raise() { raise_.soon(); }
 
  private:
   void drive() {
@@ -26,7 +27,7 @@ class Pulse : public sc_core::sc_module {
     if (high_) next_trigger(width_);
   }
   const sc_core::sc_time width_ = sc_core::sc_time::from_value(kPsPerSecond / 27'000'000);
-  sc_core::sc_event raise_;
+  Timer raise_;
   bool high_ = false;
 };
 

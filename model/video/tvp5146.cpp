@@ -37,7 +37,7 @@ Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, Pict
   SC_METHOD(clock_changed);
   sensitive << clock;
   SC_METHOD(send_line);
-  sensitive << line_event_;
+  sensitive << line_timer_.event();
   dont_initialize();
 }
 
@@ -45,7 +45,7 @@ void Tvp5146::clock_changed() {
   if (clock.read() == clock_.frequency()) return;
   stopped_field_ = present_field();
   clock_.restart(clock.read(), kernel_time());
-  if (!clock_.running()) return line_event_.cancel();
+  if (!clock_.running()) return line_timer_.cancel();
   if (!started_) {
     started_ = true;
     origin_ = clock_.edge_at_or_after(kernel_time() + params_.phase());
@@ -76,14 +76,14 @@ Picoseconds Tvp5146::field_time(std::uint64_t k) const {
 }
 
 void Tvp5146::schedule() {
-  line_event_.cancel();
+  line_timer_.cancel();
   if (!started_ || !clock_.running() || !enabled()) return;
   const Picoseconds now = kernel_time();
   // Outputs enabled in mid-line start with the next whole line, strictly later.
   const std::uint64_t edge = clock_.edge_after(now);
   const std::uint64_t line = standard_.line_bytes;
   next_line_ = edge <= origin_ ? 0 : (edge - origin_ + line - 1) / line;
-  line_event_.notify(ps_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - now));
+  line_timer_.at(clock_.edge(origin_ + next_line_ * standard_.line_bytes));
 }
 
 void Tvp5146::send_line() {
@@ -101,8 +101,7 @@ void Tvp5146::send_line() {
                        this};
   ++lines_sent_;
   ++next_line_;
-  line_event_.notify(
-      ps_time(clock_.edge(origin_ + next_line_ * standard_.line_bytes) - kernel_time()));
+  line_timer_.at(clock_.edge(origin_ + next_line_ * standard_.line_bytes));
   video->line(line);
 }
 

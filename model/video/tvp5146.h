@@ -4,6 +4,7 @@
 #include <systemc>
 
 #include "model/common/sc_ports.h"
+#include "model/common/timer.h"
 #include "model/video/core/picture.h"
 #include "model/video/params.h"
 #include "model/video/wire.h"
@@ -68,7 +69,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t stopped_field_ = 0;  // the camera's field when the clock stopped
   std::uint64_t locked_from_;
   std::uint64_t lines_sent_ = 0;
-  sc_core::sc_event line_event_;
+  Timer line_timer_;
 
   std::array<std::uint8_t, 256> regs_{};
   std::uint8_t pointer_ = 0;

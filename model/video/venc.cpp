@@ -7,11 +7,11 @@ namespace fovea::video {
 Venc::Venc(sc_core::sc_module_name name, const VpssParams& params)
     : BusTarget(name, regs), params_(params) {
   for (Reg* r : {static_cast<Reg*>(&regs.vmod), static_cast<Reg*>(&regs.clkctl)})
-    r->on_write([this](std::uint32_t) { reconsider_event_.notify(sc_core::SC_ZERO_TIME); });
+    r->on_write([this](std::uint32_t) { reconsider_timer_.soon(); });
   SC_METHOD(reconsider);
-  sensitive << clock << psc_enabled << vpbe_gate << clk_sel << reconsider_event_;
+  sensitive << clock << psc_enabled << vpbe_gate << clk_sel << reconsider_timer_.event();
   SC_METHOD(tick);
-  sensitive << line_event_;
+  sensitive << line_timer_.event();
   dont_initialize();
 }
 
@@ -38,7 +38,7 @@ void Venc::reconsider() {
   const bool on = wanted();
   if (standard_ && (!on || standard_ != &chosen())) {
     standard_ = nullptr;
-    line_event_.cancel();
+    line_timer_.cancel();
     osd->stop();
     display->raster_off();
   }
@@ -52,9 +52,7 @@ void Venc::reconsider() {
 }
 
 void Venc::schedule() {
-  line_event_.cancel();
-  const Picoseconds at = clock_.edge(origin_ + next_line_ * standard_->line_bytes);
-  line_event_.notify(ps_time(at - kernel_time()));
+  line_timer_.move_to(clock_.edge(origin_ + next_line_ * standard_->line_bytes));
 }
 
 void Venc::tick() {

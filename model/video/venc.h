@@ -4,6 +4,7 @@
 
 #include "model/common/bus_target.h"
 #include "model/common/sc_ports.h"
+#include "model/common/timer.h"
 #include "model/video/osd.h"
 #include "model/video/pulse.h"
 #include "model/video/venc_regs.h"
@@ -47,7 +48,7 @@ class Venc : public BusTarget {
   std::uint64_t origin_ = 0;            // clock edge of line index 0
   std::uint64_t next_line_ = 0;
   bool line_out_ = false;  // the line before next_line_ is active
-  sc_core::sc_event line_event_, reconsider_event_;
+  Timer line_timer_, reconsider_timer_;
 };
 
 }  // namespace fovea::video

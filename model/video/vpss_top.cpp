@@ -5,16 +5,16 @@ namespace fovea::video {
 VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
   // Outputs are driven by processes of this block only: register writes come from several others.
   for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})
-    r->on_write([this](std::uint32_t) { selection_.notify(sc_core::SC_ZERO_TIME); });
-  const auto controls = [this](std::uint32_t) { controls_.notify(sc_core::SC_ZERO_TIME); };
+    r->on_write([this](std::uint32_t) { selection_.soon(); });
+  const auto controls = [this](std::uint32_t) { controls_.soon(); };
   regs.pccr.on_write(controls);
   regs.bcr.on_write(controls);
   regs.clkctrl.on_write(controls);
   SC_METHOD(route);
   for (auto& i : isif_int) sensitive << i;
-  sensitive << venc_int << selection_;
+  sensitive << venc_int << selection_.event();
   SC_METHOD(drive_controls);
-  sensitive << controls_;
+  sensitive << controls_.event();
 }
 
 void VpssTop::route() {

@@ -3,6 +3,7 @@
 #include <systemc>
 
 #include "model/common/bus_target.h"
+#include "model/common/timer.h"
 
 namespace fovea::video {
 
@@ -94,7 +95,7 @@ class VpssTop : public BusTarget {
   static constexpr unsigned kVencSource = 21;
   void route();
   void drive_controls();
-  sc_core::sc_event selection_, controls_;
+  Timer selection_, controls_;
   std::uint32_t level_ = 0;
 };
 

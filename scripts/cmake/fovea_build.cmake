@@ -27,6 +27,10 @@ if(FOVEA_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+if(FOVEA_PARANOID)
+  add_compile_definitions(FOVEA_PARANOID)
+endif()
+
 find_package(PkgConfig REQUIRED)
 find_package(GTest)
 pkg_check_modules(SYSTEMC REQUIRED IMPORTED_TARGET systemc>=2.3.4)

@@ -14,19 +14,16 @@ class Pause : public sc_core::sc_module {
   explicit Pause(sc_core::sc_module_name name) : sc_module(name) {
     SC_HAS_PROCESS(Pause);
     SC_METHOD(pause);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
   }
   void at(Picoseconds t) {
-    const Picoseconds now = kernel_time();
-    due_.cancel();  // an earlier one whose cause the core has met already
-    due_.notify(ps_time(t > now ? t - now : 0));
-    ++horizon_epoch;
+    due_.move_to(t);  // the core may have met the cause of an earlier one already
   }
 
  private:
   void pause() { sc_core::sc_pause(); }
-  sc_core::sc_event due_;
+  Timer due_;
 };
 
 }  // namespace

@@ -80,11 +80,11 @@ class ModuleTest : public testing::Test {
   }
   /// The end is a kernel event, so that the path does not run past it.
   void run_for(Picoseconds t) {
-    end_.notify(ps_time(t));
+    end_.at(kernel_time() + t);
     sc_core::sc_start(ps_time(t));
   }
   Picoseconds read_alone(std::uint32_t address, unsigned bytes);
-  sc_core::sc_event end_;
+  Timer end_;
 };
 
 TEST_F(ModuleTest, RequestQueuedWhenTheSdramClockStopsIsServedAfterItsRestart) {

@@ -26,15 +26,15 @@ class Alarm : public sc_core::sc_module {
       : sc_module(name), act_(std::move(act)) {
     SC_HAS_PROCESS(Alarm);
     SC_METHOD(run);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
-    due_.notify(ps_time(at));
+    due_.at(at);
   }
 
  private:
   void run() { act_(); }
   std::function<void()> act_;
-  sc_core::sc_event due_;
+  Timer due_;
 };
 
 constexpr std::uint32_t kRamBase = 0x1'0000, kRamSize = 0x8000;

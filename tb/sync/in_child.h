@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-#include "model/common/lookahead.h"
+#include "tb/sync/late_horizon.h"
 
 namespace fovea::sync {
 

@@ -82,9 +82,9 @@ class Traffic : public sc_core::sc_module {
       : sc_module(name), master("master", id, 1), name_(kMasterNames[index(id)]), state_(seed) {
     SC_HAS_PROCESS(Traffic);
     SC_METHOD(next);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
-    due_.notify(ps_time(kPsPerUs + index(id)));
+    due_.at(kPsPerUs + index(id));
     master.on_done = [this](const BurstMaster::Completion& c) {
       char line[160];
       std::snprintf(line, sizeof line, "%llu %s %s %08x %llu %016llx\n",
@@ -92,7 +92,7 @@ class Traffic : public sc_core::sc_module {
                     c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
                     static_cast<unsigned long long>(hash(c.data.data(), c.data.size())));
       record += line;
-      due_.notify(ps_time(1 + random(4) * random(300) * kPsPerNs));
+      due_.at(kernel_time() + 1 + random(4) * random(300) * kPsPerNs);
     };
   }
 
@@ -121,7 +121,7 @@ class Traffic : public sc_core::sc_module {
   }
   std::string_view name_;
   std::uint64_t state_;
-  sc_core::sc_event due_;
+  Timer due_;
 };
 
 struct Case {

@@ -38,13 +38,12 @@ std::string Log::sorted() const {
 TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, regs), log_(log) {
   SC_HAS_PROCESS(TestBlock);
   SC_METHOD(expire);
-  sensitive << due_;
+  sensitive << due_.event();
   dont_initialize();
   regs.timer.on_write([this](std::uint32_t ns) {
-    due_.cancel();
     Picoseconds delay = (ns & 0xFFF) * kPsPerNs + 1;
     if (ns & 1) delay += kMeeting - 1 - (kernel_time() + delay - 1) % kMeeting;
-    due_.notify(ps_time(delay));
+    due_.move_to(kernel_time() + delay);
   });
   regs.copy.on_write([this](std::uint32_t address) {
     if (dma.can_issue()) dma.read(address & ~63u, 64, address & ~63u);
@@ -64,14 +63,11 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     log_.add(text("%015llu stream %s %08x %llu %016llx", static_cast<unsigned long long>(c.last),
                   c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
                   static_cast<unsigned long long>(hash(c.data.data(), c.data.size()))));
-    if (c.tag == 0 && !stream_passive_) {
-      stream_end_.notify(ps_time(c.last > kernel_time() ? c.last - kernel_time() : 0));
-      ++horizon_epoch;
-    }
+    if (c.tag == 0 && !stream_passive_) stream_end_.at(c.last);
     move_stream();
   };
   SC_METHOD(raise);
-  sensitive << stream_end_;
+  sensitive << stream_end_.event();
   dont_initialize();
   dma.on_done = [this](const BurstMaster::Completion& c) {
     log_.add(text("%015llu dma %s %08x %016llx", static_cast<unsigned long long>(c.last),

@@ -13,6 +13,7 @@
 #include "model/common/burst_master.h"
 #include "model/common/bus_target.h"
 #include "model/common/quiet.h"
+#include "model/common/timer.h"
 #include "model/mem/ddr_module.h"
 
 namespace fovea::sync {
@@ -65,7 +66,6 @@ class TestBlock : public BusTarget {
   BurstMaster dma{"dma", Master::kEdmaTc0Read, 4};
   BurstMaster stream{"stream", Master::kLoad, 3, BurstMaster::Report::kWhenDecided};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
-  sc_core::sc_event irq;
   Picoseconds irq_at = 0, irq_before = 0;  // last and last-but-one interrupt
 
   TestBlock(sc_core::sc_module_name name, Log& log);
@@ -75,7 +75,7 @@ class TestBlock : public BusTarget {
   void raise();
   void move_stream();
   Log& log_;
-  sc_core::sc_event due_, stream_end_;
+  Timer due_, stream_end_;
   unsigned stream_left_ = 0;
   bool stream_passive_ = false;
   std::uint32_t stream_address_ = 0;

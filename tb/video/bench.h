@@ -34,7 +34,7 @@ class FakeMemory : public sc_core::sc_module, private MemTargetIf {
       : sc_module(name), bytes(size) {
     socket.bind(*this);
     SC_METHOD(decide);
-    sensitive << due_;
+    sensitive << due_.event();
     dont_initialize();
   }
   std::uint8_t* at(std::uint32_t address) { return bytes.data() + (address - kBase); }
@@ -52,7 +52,7 @@ class FakeMemory : public sc_core::sc_module, private MemTargetIf {
       requests_.pop_front();
       answer(r);
     }
-    if (!requests_.empty()) due_.notify(ps_time(requests_.front()->issued - kernel_time()));
+    if (!requests_.empty()) due_.at(requests_.front()->issued);
   }
   void answer(MemRequest& r) {
     log.push_back({r.issued, r.address, r.bytes});
@@ -70,7 +70,7 @@ class FakeMemory : public sc_core::sc_module, private MemTargetIf {
     socket->nb_transport_bw(r, response, zero);
   }
   std::deque<MemRequest*> requests_;
-  sc_core::sc_event due_;
+  Timer due_;
   Picoseconds last_ = 0;
 };
 
