@@ -18,15 +18,14 @@ void SerialSender::kick() {
 void SerialSender::run() {
   const Picoseconds now = kernel_time();
   if (on_line_) {
-    if (now < over_at_) return;
+    if (!over_.event().triggered()) return;
     uart_.receive(*on_line_);
     on_line_.reset();
   }
   if (!uart_.can_receive()) return;  // on_ready tells
   on_line_ = input_.next(now);
   if (on_line_) {
-    over_at_ = now + uart_.character_time();
-    over_.at(over_at_);
+    over_.at(now + uart_.character_time());
   } else {
     look_.at(input_.ask_again());
   }

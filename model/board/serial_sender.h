@@ -33,8 +33,7 @@ class SerialSender : public sc_core::sc_module {
 
   periph::Uart16550& uart_;
   SerialInput& input_;
-  std::optional<std::uint8_t> on_line_;  // until `over_`, the end of its last stop bit
-  Picoseconds over_at_ = 0;
+  std::optional<std::uint8_t> on_line_;  // its last stop bit ends with `over_`
   Timer look_, over_;
 };
 

@@ -98,8 +98,7 @@ class Timer {
     event_.cancel();
     ++Horizon::changes_;
   }
-  /// For sensitivity lists and wait(). Do not ask it triggered(): where sc_start() ends at the very
-  /// time of the event the kernel runs the process in the next sc_start(), and says false.
+  /// For sensitivity lists, wait() and triggered().
   const sc_core::sc_event& event() const { return event_; }
 
  private:

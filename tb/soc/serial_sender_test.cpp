@@ -1,5 +1,5 @@
-// The far end of a UART's receive line: every byte arrives at its time, wherever the host interrupts
-// the simulation.
+// The far end of a UART's receive line: every byte arrives at its time, also where the host stops the
+// simulation at that very time.
 #include <deque>
 
 #include "model/board/serial_sender.h"

@@ -37,7 +37,12 @@ class TimerTest : public testing::Test {
     listener->fired.clear();
     start = kernel_time();
   }
-  static void advance(Picoseconds ps) { sc_core::sc_start(ps_time(ps)); }
+  /// Lets everything happen up to and at the new time: sc_start() leaves what is due at its very end
+  /// to the next call.
+  static void advance(Picoseconds ps) {
+    sc_core::sc_start(ps_time(ps));
+    while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
   Timer& timer = listener->timer;
   std::vector<Picoseconds>& fired = listener->fired;
   Picoseconds start = 0;
