@@ -134,6 +134,37 @@ TEST(StampReaderTest, APictureThatIsShiftedByACellIsNotRead) {
   EXPECT_FALSE(f.even || f.odd);
 }
 
+// A cell without a displayed pixel in its middle is not dark but unknown, even where dark is what the
+// code would need.
+TEST(StampReaderTest, ACellThatIsNotShownIsNotRead) {
+  const video::StampLayout layout = video::StampLayout::at(720, 576, 359.5, 287.5);
+  oracle::Geometry flat;
+  flat.mapping = oracle::Mapping::kNone;
+  constexpr unsigned kCell = video::StampLayout::kCellPixels;
+  // The middle half of the first column of cells ends three quarters of a cell behind its left edge.
+  const unsigned last = layout.code_x + kCell * 3 / 4;
+  const auto from = [&](const video::Picture& p, unsigned x) {
+    return read_stamps(crop(p, x, 0, 720 - x, 576), flat, layout, x, 0);
+  };
+  unsigned tried = 0;
+  for (unsigned counter = 0; counter < 128 && tried < 8; ++counter) {
+    video::Picture p(720, 576, 100);
+    video::stamp(p, layout, counter);
+    bool dark = true;
+    for (unsigned row = 0; row < video::StampLayout::kCodeRows; ++row) {
+      const std::uint8_t* const line = p.row(layout.code_y + row * kCell + kCell / 2);
+      dark &= line[2 * (layout.code_x + kCell / 2) + 1] < 126;
+    }
+    if (!dark) continue;
+    ++tried;
+    const ShownFields seen = from(p, last), cut = from(p, last + 1);
+    EXPECT_EQ(seen.even, counter);
+    EXPECT_EQ(seen.odd, counter);
+    EXPECT_FALSE(cut.even || cut.odd) << counter;
+  }
+  EXPECT_EQ(tried, 8u);
+}
+
 }  // namespace
 }  // namespace fovea::e2e
 
