@@ -3,8 +3,33 @@
 #include <algorithm>
 
 namespace fovea::board {
+namespace {
+
+/// Whether `frames` is among the conditions of run.until, one or a list in brackets.
+bool ends_by_frames(std::string_view until) {
+  const auto plain = [](char c) { return c != ' ' && c != '[' && c != ']' && c != '"'; };
+  std::string item;
+  for (const char c : until) {
+    if (c == ',') {
+      if (item == "frames") return true;
+      item.clear();
+    } else if (plain(c)) {
+      item += c;
+    }
+  }
+  return item == "frames";
+}
+
+}  // namespace
 
 BoardParams::BoardParams() {
+  run.frames.matters_only("frames in run.until", {&run.until},
+                          [this] { return ends_by_frames(run.until()); });
+  run.start_limit.matters_only("run.until = frames", {&run.until},
+                               [this] { return run.until() == "frames" || run.until() == "[frames]"; });
+  soc.ddr.ti_open_row.matters_only("ddr.scheduler = ti or closed_page", {&soc.ddr.scheduler}, [this] {
+    return soc.ddr.scheduler.is("ti") || soc.ddr.scheduler.is("closed_page");
+  });
   // Which lines and samples the display uses is the firmware's choice; only that of this project is
   // known to follow video.standard.
   const auto pal = [this] { return !firmware.elf().empty() || video.standard.is("pal"); };
@@ -26,6 +51,23 @@ BoardParams::BoardParams() {
         });
       });
   }
+  // Of this project's firmware and the synthetic loads, only loads use internal RAM beside the core.
+  std::vector<const ParamBase*> places;
+  for (const auto& load : soc.loads) places.insert(places.end(), {&load.memory, &load.outstanding});
+  places.push_back(&firmware.elf);
+  const auto shared = [this] {
+    return !firmware.elf().empty() ||
+           std::any_of(soc.loads.begin(), soc.loads.end(), [](const bus::LoadParams& load) {
+             return load.active() && load.memory.is("internal_ram");
+           });
+  };
+  for (ParamBase* p : std::initializer_list<ParamBase*>{&soc.cpu.tcm_dma_word_clocks,
+                                                        &soc.cpu.tcm_dma_latency, &soc.cpu.tcm_first})
+    p->matters_only("a load with load.memory = internal_ram", places, shared);
+  places.push_back(&soc.cpu.tcm_own_conflict);
+  soc.cpu.tcm_banks.matters_only(
+      "a load with load.memory = internal_ram, or cpu.tcm.own_conflict above 0 cycles", places,
+      [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
   decoder.crop_525.matters_only("525 lines from the camera (tvp5146.standard, video.standard)",
                                 {&decoder.standard, &video.standard}, [this] {
                                   return decoder.standard.user_set()

@@ -30,6 +30,16 @@ expect() {
   done
 }
 
+# Whoever reads has seen enough (`| head`): no failure, no signal, no word.
+for command in params version man --help 'completion bash'; do
+  # shellcheck disable=SC2086 # words
+  { sleep 0.1; "$fovea" $command 2>"$out/closed.txt"; echo $? >"$out/closed.status"; } | true
+  if [ "$(cat "$out/closed.status")" != 0 ] || [ -s "$out/closed.txt" ]; then
+    fail "$command into a closed pipe: exit status $(cat "$out/closed.status"): $(cat "$out/closed.txt")"
+  fi
+  rm -f "$out/closed.status"
+done
+
 cat >"$out/small.yaml" <<'Y'
 run: {frames: 2, start_limit: 2s}
 camera: {kind: chart, stamp: false}

@@ -274,7 +274,7 @@ TEST_F(ExperimentTest, OversizedFileIsRefused) {
 TEST_F(ExperimentTest, PipesAndDevicesAreRefusedAndNotReadAsEmpty) {
   const auto pipe = dir / "pipe.yaml";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string file : {pipe.string(), std::string("/dev/null")})
+  for (const std::string& file : {pipe.string(), std::string("/dev/null")})
     EXPECT_THAT(user_error([&] { experiment.load(file); }),
                 AllOf(HasSubstr(file), HasSubstr("not a regular file")));
 }

@@ -1,0 +1,297 @@
+#!/usr/bin/env bash
+# Every key of `fovea params` is changed to another allowed value in a situation in which it should act, and
+# something in the results must change. Where a key cannot act, a run must warn of it, and end with status 2
+# with --strict. A key that the table lacks is a failure, so is one that `fovea params` says "needs"
+# something and that has no line where it lacks that.
+# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM
+set -uo pipefail
+fovea=$1 source=$2 out=$3 program=$4
+rm -rf "$out"
+mkdir -p "$out"
+cd "$out" || exit 1
+front=$source/traces/footage/neozhaoliang-surround/front.png
+cat >base.yaml <<'Y'
+run: {frames: 1}
+video: {width: 48, height: 16}
+camera: {kind: chart, stamp: false}
+Y
+printf 'wait decoder\nsend x\n' >typed.txt
+failures=0
+fail() {
+  echo "$*"
+  failures=$((failures + 1))
+}
+
+# What a word of the table stands for, beside KEY=VALUE.
+situation() {
+  local word
+  keys=()
+  for word; do
+    case $word in
+      PROGRAM) keys+=(-s firmware.elf="$program" -s "run.until=[uart:finished, time:90ms]") ;;
+      SPHERE) keys+=(-s camera.kind=sphere -s camera.file="$front" -s camera.lens=equisolid) ;;
+      VIDEO) keys+=(-s camera.kind=video -s camera.file="$front") ;;
+      RAM) # bursts in internal RAM
+        keys+=(-s load.outstanding=1 -s load.memory=internal_ram -s load.base=0B -s load.size=32KiB
+          -s load.gap=1us) ;;
+      BUSY) # bursts in SDRAM, most of them in another row than the one before
+        keys+=(-s load.outstanding=8 -s load.kind=mixed -s load.pattern=random -s load.priority=0
+          -s load.gap=1us -s load.start=55ms) ;;
+      *) keys+=(-s "$word") ;;
+    esac
+  done
+}
+play() {  # NAME OPTIONS...
+  local name=$1
+  shift
+  timeout 60 "$fovea" run base.yaml "$@" -o "$name" >"$name.out" 2>"$name.err"
+  echo $? >"$name.status"
+}
+differ() {
+  local f
+  for f in stats.json frames.csv timeline.csv stalls.csv uart.log; do
+    cmp -s "$1/$f" "$2/$f" || return 0
+  done
+  ! diff -rq "$1/frames" "$2/frames" >/dev/null
+}
+
+# acts KEY VALUE SITUATION...: the results differ; fails likewise, but the run ends with status 3.
+# idle KEY VALUE SITUATION...: the run warns.
+# tested KEY TEST: shown elsewhere, as it needs a program or a device of its own.
+table() {
+  cat <<'T'
+acts aintc.capture level PROGRAM
+acts board.cpld true PROGRAM
+acts board.cpld_switch 0 PROGRAM board.cpld=true
+idle board.cpld_switch 0
+acts bus.arm_d.request_latency 4cycles
+acts bus.arm_d.response_latency 4cycles
+acts bus.arm_d.width 16bit
+acts bus.arm_i.request_latency 4cycles
+acts bus.arm_i.response_latency 4cycles
+acts bus.arm_i.width 16bit
+acts bus.config.fast_latency 50ns
+acts bus.config.slow_latency 130ns
+acts bus.timeline_interval 100us
+acts bus.vpbe.request_latency 9cycles
+acts bus.vpbe.response_latency 9cycles
+acts bus.vpbe.width 16bit
+acts bus.vpfe.request_latency 9cycles
+acts bus.vpfe.response_latency 9cycles
+acts bus.vpfe.width 16bit
+tested camera.calibration unit.calibration
+idle camera.calibration none.yaml
+acts camera.file chess SPHERE
+idle camera.file none.png
+acts camera.fov 150deg SPHERE
+idle camera.fov 150deg
+acts camera.kb [300,300,480,320,0,0,0,0] SPHERE camera.lens=kannala_brandt
+idle camera.kb [300,300,480,320,0,0,0,0]
+acts camera.kb_height 600px SPHERE camera.lens=kannala_brandt
+idle camera.kb_height 600px
+acts camera.kb_width 900px SPHERE camera.lens=kannala_brandt
+idle camera.kb_width 900px
+acts camera.kind sphere camera.file=FRONT
+acts camera.lens linear SPHERE
+idle camera.lens linear
+acts camera.motion_amplitude 9deg SPHERE camera.motion_period=3
+idle camera.motion_amplitude 9deg
+acts camera.motion_period 3 SPHERE camera.motion_amplitude=9deg
+idle camera.motion_period 3
+acts camera.stamp true video.width=320 video.height=240
+acts camera.video_fov 90deg VIDEO camera.lens=equisolid
+idle camera.video_fov 90deg
+acts clocks.preset 297/270
+acts cpu.ahb_ratio 3
+acts cpu.cache_op_cycles 2cycles
+acts cpu.dcache.size 4KiB
+acts cpu.fill_latency 2cycles
+acts cpu.icache.size 4KiB
+acts cpu.invalidate_all_cycles 5cycles
+acts cpu.shifted_address_cycle false
+acts cpu.tcm.banks 1 RAM
+acts cpu.tcm.banks 1 cpu.tcm.own_conflict=1cycles
+idle cpu.tcm.banks 1
+acts cpu.tcm.dma_latency 3cycles RAM
+idle cpu.tcm.dma_latency 3cycles
+acts cpu.tcm.dma_word_clocks 3cycles RAM
+idle cpu.tcm.dma_word_clocks 3cycles
+acts cpu.tcm.first dma RAM
+idle cpu.tcm.first dma
+acts cpu.tcm.own_conflict 1cycles
+acts cpu.tcm.wait_states 1cycles
+acts cpu.test_clean_cycles 3cycles PROGRAM
+acts cpu.walk_cycles 4cycles
+tested ddr.check dram.check
+tested ddr.clock_restart dram.rows
+acts ddr.command_fifo 1
+acts ddr.grade 37e clocks.preset=432/340
+acts ddr.part mt47h32m16
+acts ddr.read_fifo 64B BUSY
+acts ddr.refresh.gap 1 BUSY
+acts ddr.refresh.must 0
+acts ddr.refresh.need 0
+tested ddr.refresh.release dram.refresh
+acts ddr.request_latency 9cycles
+tested ddr.retention dram.rows
+acts ddr.return_latency 3cycles
+acts ddr.scheduler fcfs
+acts ddr.ti_open_row ready BUSY
+idle ddr.ti_open_row ready ddr.scheduler=fcfs
+idle ddr.ti_open_row ready ddr.scheduler=frfcfs
+acts ddr.write_fifo 64B BUSY
+acts edma.reset_priority 0 PROGRAM
+acts firmware.elf PROGRAM run.until=time:50ms
+acts firmware.flow serial
+acts firmware.kernel ldm
+acts firmware.overlay true
+acts firmware.patch true
+acts firmware.repeat 2
+tested lens.calibration unit.calibration
+idle lens.calibration none.yaml
+acts pll.go_time 5us
+acts pll.lock_time 50us
+acts pll.reset_type 2 PROGRAM
+acts psc.transition_time 2us
+acts run.frames 2
+idle run.frames 2 run.until=time:60ms
+acts run.frames 2 run.until=[frames,time:10s]
+fails run.start_limit 10ms
+idle run.start_limit 10ms run.until=time:60ms
+idle run.start_limit 10ms run.until=[frames,time:10s]
+acts run.until time:50ms
+acts system.bootcfg 1 PROGRAM
+acts system.vtp_time 3us
+acts tvp5146.crop_525 studio video.standard=ntsc
+idle tvp5146.crop_525 studio
+fails tvp5146.i2c_address 92
+acts tvp5146.output_at_reset true PROGRAM
+acts tvp5146.phase 1ms
+acts tvp5146.relock_fields 11
+acts tvp5146.rom_version 1 PROGRAM
+acts tvp5146.standard 625/50 video.standard=ntsc
+acts uart0.input typed.txt PROGRAM
+acts video.height 24
+acts video.standard ntsc
+acts video.width 64
+acts vpss.base_px_525 122 video.standard=ntsc
+idle vpss.base_px_525 122
+acts vpss.base_px_625 127
+idle vpss.base_px_625 127 video.standard=ntsc
+acts vpss.base_py_525 17 video.standard=ntsc
+idle vpss.base_py_525 17
+acts vpss.base_py_625 23
+idle vpss.base_py_625 23 video.standard=ntsc
+acts vpss.burst 32B
+tested vpss.osd_latch video.display_625
+acts vpss.read_ahead_lines 2
+acts vpss.read_outstanding 1
+acts vpss.venc_clk_sel halves
+tested vpss.write_buffer_bursts video.capture
+T
+  # The lens: all of it lies idle without one.
+  local key value
+  while read -r key value rest; do
+    echo "acts lens.$key $value $rest"
+    echo "idle lens.$key $value lens.mapping=none"
+  done <<'T'
+centre_x 8px
+centre_y 4px
+fov 120deg
+focal 300px
+in_aspect 1.5
+kb [250,250,480,320,0,0,0,0] lens.mapping=kannala_brandt
+kb_height 600px lens.mapping=kannala_brandt
+kb_width 800px lens.mapping=kannala_brandt
+out_aspect 1.5
+out_focal 20px
+paper_literal_focal true
+theta_max 1deg lens.mapping=kannala_brandt
+T
+  echo 'acts lens.mapping linear'
+  echo 'acts lens.pair B lens.shift_x=1px'
+  echo 'acts lens.shift_x 7px'
+  echo 'acts lens.shift_y 5px'
+  # Synthetic loads, all alike; ports that nothing else uses.
+  local load
+  for load in load load.1 load.2 load.3; do
+    echo "acts $load.outstanding 1"
+    while read -r key value; do
+      echo "acts $load.$key $value $load.outstanding=2 $load.kind=mixed $load.pattern=random"
+      echo "idle $load.$key $value"
+    done <<'T'
+base 33556480B
+bytes 16B
+gap 3us
+kind read
+pattern sequential
+port edma_tc1
+size 64KiB
+start 50ms
+T
+    echo "acts $load.memory internal_ram $load.outstanding=1 $load.base=0B $load.size=16KiB"
+    echo "idle $load.memory internal_ram"
+    echo "acts $load.priority 0 $load.outstanding=8"
+    echo "idle $load.priority 0"
+  done
+  local port
+  for port in edma_tc0 edma_tc1 edma_tc2 edma_tc3 load remap_engine; do
+    for key in request_latency response_latency width; do
+      value=9cycles
+      [ $key = width ] && value=16bit
+      echo "acts bus.$port.$key $value load.outstanding=1 load.port=$port"
+      echo "idle bus.$port.$key $value"
+    done
+  done
+}
+
+declare -A listed bases idle
+number=0
+while read -r what key value rest; do
+  listed[$key]=1
+  [ "$what" = tested ] && continue
+  rest=${rest/FRONT/$front}
+  [ "$key $value" = 'camera.file chess' ] && value=${front%front.png}left.png
+  [ "$key" = firmware.elf ] && value=$program rest=${rest/PROGRAM/}
+  # shellcheck disable=SC2086 # words
+  situation $rest
+  if [ "$what" = idle ]; then
+    idle[$key]=1
+    play idle "${keys[@]}" -s "$key=$value" --strict
+    if ! grep -q "'$key' is set .* but has no effect" idle.err || [ "$(cat idle.status)" != 2 ]; then
+      fail "$key=$value ($rest) has no effect, and nothing says so: $(cat idle.err)"
+    fi
+    continue
+  fi
+  base=${bases["=$rest"]:-}
+  if [ -z "$base" ]; then
+    base=base$number
+    number=$((number + 1))
+    bases["=$rest"]=$base
+    play "$base" "${keys[@]}"
+    [ "$(cat "$base.status")" = 0 ] || fail "the situation ($rest) fails: $(tail -1 "$base.err")"
+  fi
+  rm -rf changed
+  play changed "${keys[@]}" -s "$key=$value"
+  status=$(cat changed.status)
+  if [ "$what" = fails ]; then
+    [ "$status" = 3 ] || fail "$key=$value ($rest) does not fail: status $status"
+  elif [ "$status" != 0 ]; then
+    fail "$key=$value ($rest): status $status: $(tail -1 changed.err)"
+  elif grep -q "'$key' is set .* but has no effect" changed.err; then
+    fail "$key=$value ($rest) should act, and is said to have no effect"
+  elif ! differ "$base" changed; then
+    fail "$key=$value ($rest) changes nothing"
+  fi
+done < <(table | { if [ -n "${ONLY:-}" ]; then grep -E "$ONLY"; else cat; fi; })
+
+# No key is forgotten, and none that is gone is listed.
+"$fovea" params | tail -n +2 >params.txt
+while read -r key line; do
+  [ -n "${listed[$key]:-}" ] || fail "$key is in no line of the table"
+  [[ $line != *'; needs '* ]] || [ -n "${idle[$key]:-}" ] || fail "$key needs something, and no line lacks it"
+  unset "listed[$key]"
+done <params.txt
+for key in "${!listed[@]}"; do fail "$key is no key"; done
+echo "$(wc -l <params.txt) keys, $failures failures"
+exit $((failures > 0))
