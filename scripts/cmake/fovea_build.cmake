@@ -12,7 +12,7 @@ set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
 # Optimisation across the files of the hot libraries (fovea_hot).
 set(FOVEA_LTO OFF)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release"
-   AND NOT FOVEA_SANITIZE)
+   AND NOT FOVEA_SANITIZE AND NOT FOVEA_COVERAGE)
   set(FOVEA_LTO ON)
 endif()
 
@@ -22,10 +22,20 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()
 
-if(FOVEA_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
+if(FOVEA_SANITIZE STREQUAL "address")
+  add_compile_options(-O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
                       -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+elseif(FOVEA_SANITIZE STREQUAL "thread")
+  add_compile_options(-O1 -fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
+elseif(FOVEA_SANITIZE)
+  message(FATAL_ERROR "FOVEA_SANITIZE is '${FOVEA_SANITIZE}'; it can be 'address', 'thread' or empty")
+endif()
+
+if(FOVEA_COVERAGE)
+  add_compile_options(-O1 --coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
 endif()
 
 if(FOVEA_PARANOID)

@@ -6,9 +6,10 @@ source=$1
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
-cp "$source"/scripts/{run,build,test,figures} "$dir/tree/scripts/"
+cp "$source"/scripts/{run,build,test,figures,sanitize,nightly} "$dir/tree/scripts/"
+cp "$source/CMakeLists.txt" "$dir/tree/"
 touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
-printf '#!/bin/sh\n' >"$dir/tree/scripts/setup"
+printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
 for name in cmake ctest ffmpeg; do printf '#!/bin/sh\necho "%s $*" >>"%s/calls"\n' $name "$dir" >"$dir/bin/$name"; done
 printf '#!/bin/sh\necho "fovea $*" >>"%s/calls"\n' "$dir" >"$dir/tree/build/release/fovea"
 chmod +x "$dir/bin/"* "$dir/tree/scripts/"* "$dir/tree/build/release/fovea"
@@ -35,7 +36,7 @@ calls set_a_file 0 "fovea run $default -s camera.calibration=left.yaml" -- \
 calls named 0 'fovea run mine.yaml --mp4' -- "$tree/scripts/run" mine.yaml --mp4
 calls named_last 0 'fovea run -s run.frames=1 mine.yaml' -- "$tree/scripts/run" -s run.frames=1 mine.yaml
 calls misspelt 0 'fovea run none.yaml' -- "$tree/scripts/run" none.yaml
-for script in run build test figures; do
+for script in run build test figures sanitize nightly; do
   calls "help_$script" 0 '' -- "$tree/scripts/$script" --help
   grep -q "Usage: scripts/$script" "$dir/text" || fail "help of $script: $(cat "$dir/text")"
 done
@@ -44,6 +45,29 @@ calls test 0 'ctest --test-dir build/release --output-on-failure -j '"$(nproc)"'
   "$tree/scripts/test" -R unit
 
 # A clone that was moved is configured anew, another one is not.
+# A run needs no tests, but leaves them in a build folder that has them.
+asked() { grep -qx "$2" "$dir/calls" || fail "$1: no '$2' in $(cat "$dir/calls")"; }
+rm -f "$tree/build/release/CMakeCache.txt"
+calls new_run 0 "fovea run $default" -- "$tree/scripts/run"
+asked new_run 'setup run'
+asked new_run 'cmake --preset release -D FOVEA_TESTS=OFF'
+echo 'FOVEA_TESTS:BOOL=ON' >"$tree/build/release/CMakeCache.txt"
+printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >>"$tree/build/release/CMakeCache.txt"
+calls run_after_tests 0 "fovea run $default" -- "$tree/scripts/run"
+asked run_after_tests 'cmake --preset release'
+calls build 0 'cmake --build --preset release -- --quiet' -- "$tree/scripts/build"
+asked build 'setup test'
+asked build 'cmake --preset release'
+
+# Sanitizers: only the layers that are named, all folders of the model.
+mkdir -p "$tree/build/asan"
+ln -s ../release/fovea "$tree/build/asan/fovea"
+calls sanitize 0 'fovea run scripts/experiments/default.yaml -s run.frames=1 -o build/asan/board' -- \
+  "$tree/scripts/sanitize" dram
+grep -q '^cmake --preset asan -D FOVEA_ONLY=model/common;.*sw/fovea;tb/dram;$' "$dir/calls" ||
+  fail "sanitize: $(cat "$dir/calls")"
+calls no_check 1 'setup nightly' -- "$tree/scripts/nightly" unknown
+
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >"$tree/build/release/CMakeCache.txt"
 calls stays 0 'cmake --build --preset release --target fovea -- --quiet' -- "$tree/scripts/build" fovea
 grep -qx 'cmake --preset release' "$dir/calls" || fail "stays: $(cat "$dir/calls")"
