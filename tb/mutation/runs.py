@@ -1,0 +1,191 @@
+"""Which tests there are, what they reach, and what they say of a mutant."""
+import hashlib
+import json
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import time
+
+from tree import say
+
+# A test with a mutant on may take so many times the processor time of the same test without, and the
+# configuration's `extra_seconds`.
+TIMES = 4
+MEMORY = 8 << 30   # bytes of address space
+FILE_SIZE = 1 << 30
+
+
+def limits(cpu):
+    def set_them():
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 5))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_SIZE, FILE_SIZE))
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    return set_them
+
+
+class Test:
+    def __init__(self, entry):
+        self.name = entry['name']
+        self.command = entry.get('command', [])
+        properties = {p['name']: p['value'] for p in entry.get('properties', [])}
+        self.labels = properties.get('LABELS', [])
+        self.folder = properties.get('WORKING_DIRECTORY')
+        self.environment = dict(e.split('=', 1) for e in properties.get('ENVIRONMENT', []))
+        self.skip = properties.get('SKIP_RETURN_CODE')
+        self.inverted = bool(properties.get('WILL_FAIL')) or 'PASS_REGULAR_EXPRESSION' in properties
+
+    def fingerprint(self, root):
+        """Changes when the test's program or script does."""
+        digest = hashlib.sha256(json.dumps(self.command).encode())
+        for word in self.command[:1]:
+            path = pathlib.Path(word)
+            if path.is_file():
+                digest.update(path.read_bytes())
+        return digest.hexdigest()[:16]
+
+    def run(self, environment, cpu, wall):
+        """Returns passed and the processor seconds used."""
+        before = time.monotonic()
+        full = dict(os.environ, GTEST_FAIL_FAST='1', **self.environment, **environment)
+        try:
+            process = subprocess.Popen(
+                self.command, cwd=self.folder, env=full, stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
+                preexec_fn=limits(cpu))
+        except OSError as error:
+            say(f'{self.name}: {error}')
+            return False, 0.0
+        deadline = time.monotonic() + wall
+        usage = None
+        while usage is None:
+            pid, status, used = os.wait4(process.pid, os.WNOHANG)
+            if pid:
+                usage, code = used, os.waitstatus_to_exitcode(status)
+            elif time.monotonic() > deadline:
+                break
+            else:
+                time.sleep(0.005 if time.monotonic() - before < 1 else 0.05)
+        try:  # what a script left running, or all of a test that takes too long
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        if usage is None:
+            _, _, usage = os.wait4(process.pid, 0)
+            code = -signal.SIGKILL
+        process.returncode = code
+        return code == 0, usage.ru_utime + usage.ru_stime
+
+
+class Runs:
+    """Results are kept after each step, so that a later call can go on."""
+
+    def __init__(self, tree, mutants, budget, only=None):
+        self.tree, self.budget = tree, budget
+        self.extra = tree.config['tests']['extra_seconds']
+        self.mutants = {m['id']: m for m in mutants}
+        self.file = tree.out / 'results.json'
+        self.state = {'tests': {}, 'mutants': {}}
+        if self.file.exists():
+            self.state = json.loads(self.file.read_text())
+        self.save()
+        self.tests = {t.name: t for t in self.listed() if not only or re.search(only, t.name)}
+
+    def save(self):
+        temporary = self.file.with_suffix('.new')
+        temporary.write_text(json.dumps(self.state))
+        temporary.replace(self.file)
+
+    def listed(self):
+        listing = subprocess.run(['ctest', '--test-dir', self.tree.build, '--show-only=json-v1'],
+                                 capture_output=True, text=True, check=True).stdout
+        rules = self.tree.config['tests']
+        for entry in json.loads(listing)['tests']:
+            test = Test(entry)
+            if not test.command or test.inverted or any(
+                    re.search(r, test.name) for r in rules['leave_out']):
+                continue
+            if set(test.labels) & set(rules['leave_out_labels']):
+                continue
+            if not os.path.exists(test.command[0]):
+                say(f'not built, so not run: {test.name}')
+                continue
+            yield test
+
+    def reach(self, end):
+        """Runs every test once with no mutant on. False if the time was over before."""
+        todo = []
+        for name, test in self.tests.items():
+            test.print = test.fingerprint(self.tree.tree)
+            if self.state['tests'].get(name, {}).get('print') != test.print:
+                todo.append(test)
+        map_file = self.tree.out / 'reached'
+        for number, test in enumerate(todo):
+            if time.monotonic() > end:
+                return False
+            map_file.write_bytes(bytes(65536))
+            passed, seconds = test.run({'FOVEA_MUTANT_REACHED': str(map_file)}, 1200, 1800)
+            reached = [i for i, b in enumerate(map_file.read_bytes()) if b]
+            self.state['tests'][test.name] = {
+                'print': test.print, 'seconds': seconds, 'passed': passed, 'reached': reached}
+            note = '' if passed else ' FAILS WITH NO MUTANT ON: left out'
+            say(f'reach {number + 1}/{len(todo)}: {test.name} {seconds:.1f} s, '
+                f'{len(reached)} mutants{note}')
+            self.save()
+        return True
+
+    def order(self, mutant):
+        """Tests that reach the mutant: those of its own layer first, and the quick ones first."""
+        own = self.tree.areas.own_tests(mutant['area'])
+        found = []
+        for name in self.tests:
+            known = self.state['tests'].get(name)
+            if known and known['passed'] and mutant['id'] in self.reached[name]:
+                found.append((known['seconds'] * (1 if own.search(name) else 4), name))
+        return [name for _, name in sorted(found)]
+
+    def judge(self, mutant):
+        """Runs tests until one fails; notes which passed."""
+        record = self.state['mutants'].setdefault(str(mutant['id']), {'passed': {}})
+        if 'killed' in record:
+            return record
+        spent, record['left'] = 0.0, 0
+        for name in self.order(mutant):
+            test, known = self.tests[name], self.state['tests'][name]
+            if record['passed'].get(name) == test.print:
+                spent += known['seconds']
+                continue
+            if spent and spent + known['seconds'] > self.budget:
+                record['left'] += 1
+                continue
+            cpu = int(self.extra + TIMES * known['seconds'])
+            passed, seconds = test.run({'FOVEA_MUTANT': str(mutant['id'])}, cpu, 60 + 10 * cpu)
+            spent += seconds
+            if not passed:
+                record['killed'] = name
+                record['passed'] = {}
+                break
+            record['passed'][name] = test.print
+        return record
+
+    def judge_all(self, ids, end):
+        self.reached = {n: set(k['reached']) for n, k in self.state['tests'].items()}
+        complete = True
+        for number, i in enumerate(ids):
+            if time.monotonic() > end:
+                complete = False
+                break
+            mutant, before = self.mutants[i], time.monotonic()
+            old = 'killed' in self.state['mutants'].get(str(i), {})
+            record = self.judge(mutant)
+            if not old:
+                how = f'killed by {record["killed"]}' if 'killed' in record else \
+                    f'SURVIVED {len(record["passed"])} tests'
+                say(f'{number + 1}/{len(ids)}: {i} {mutant["file"]}:{mutant["line"]} {how} '
+                    f'({time.monotonic() - before:.0f} s)')
+                self.save()
+        self.save()
+        return complete

@@ -1,0 +1,237 @@
+"""The mutated copy of a project: copying, drawing mutants, writing them, building."""
+import json
+import math
+import os
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+SPARE = 1.3  # drawn beyond the number asked for: some changes do not compile
+
+
+def say(text):
+    print(text, flush=True)
+
+
+def fail(text, status=2):
+    print(f'scripts/mutate: {text}', file=sys.stderr)
+    sys.exit(status)
+
+
+def project_files(source):
+    listed = subprocess.run(['git', '-C', source, 'ls-files', '-z', '-co', '--exclude-standard'],
+                            capture_output=True, check=False)
+    if listed.returncode == 0 and listed.stdout:
+        return [f for f in listed.stdout.decode().split('\0') if f]
+    return [str(p.relative_to(source)) for p in pathlib.Path(source).rglob('*')
+            if p.is_file() and 'build' not in p.relative_to(source).parts[:1]]
+
+
+def write_if_changed(path, data):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_bytes() != data:
+        path.write_bytes(data)
+        return True
+    return False
+
+
+class Areas:
+    def __init__(self, config):
+        self.areas = [(a['name'], re.compile(a['files']), re.compile(a['tests']))
+                      for a in config['area']]
+        self.names = [a[0] for a in self.areas]
+
+    def of(self, file):
+        return next((name for name, files, _ in self.areas if files.match(file)), None)
+
+    def own_tests(self, area):
+        return next(tests for name, _, tests in self.areas if name == area)
+
+
+def draw(places, areas, number, least, seed):
+    """Mutants of each area in the order in which they are used. Every operator is equally likely, then
+    every place of it; none overlaps another."""
+    generator = random.Random(seed)
+
+    def below(n):  # the standard's generator, our own reduction: the same draw with every Python
+        return generator.getrandbits(32) * n >> 32
+
+    by_area = {a: [] for a in areas}
+    for p in places:
+        by_area[p['area']].append(p)
+    total = sum(len(v) for v in by_area.values())
+    quota = {a: min(len(v), least) for a, v in by_area.items()}
+    rest = max(0, number - sum(quota.values()))
+    for a, v in by_area.items():
+        quota[a] = min(len(v), quota[a] + rest * len(v) // max(1, total))
+    mutants, taken = [], {}
+    for a in areas:
+        kinds = {}
+        for p in sorted(by_area[a], key=lambda p: (p['file'], p['start'], p['end'], p['change'])):
+            kinds.setdefault(p['kind'], []).append(p)
+        chosen, wanted = 0, math.ceil(quota[a] * SPARE)
+        while kinds and chosen < wanted:
+            names = sorted(kinds)
+            kind = names[below(len(names))]
+            p = kinds[kind].pop(below(len(kinds[kind])))
+            if not kinds[kind]:
+                del kinds[kind]
+            spans = taken.setdefault(p['file'], [])
+            if any(p['start'] < e and s < p['end'] for s, e in spans):
+                continue
+            spans.append((p['start'], p['end']))
+            mutants.append(dict(p, id=len(mutants)))
+            chosen += 1
+    return mutants, quota
+
+
+class Tree:
+    def __init__(self, source, out, config):
+        self.source, self.out, self.config = pathlib.Path(source), pathlib.Path(out), config
+        self.tree, self.build = self.out / 'tree', self.out / 'build'
+        self.areas = Areas(config)
+
+    # --- copying ----------------------------------------------------------
+    def copy(self, keep):
+        """Brings the copy up to date; files in `keep` (mutated) stay. Returns files of areas that differ
+        from the originals."""
+        originals = self.out / 'originals'
+        changed, present = [], set()
+        for name in project_files(self.source):
+            path = self.source / name
+            if not path.is_file():
+                continue
+            present.add(name)
+            data = path.read_bytes()
+            if self.areas.of(name):
+                original = originals / name
+                if keep is not None:
+                    if not original.exists() or original.read_bytes() != data:
+                        changed.append(name)
+                    continue
+                write_if_changed(original, data)
+            if write_if_changed(self.tree / name, data):
+                shutil.copymode(path, self.tree / name)
+        if keep is None:
+            for p in [p for p in self.tree.rglob('*') if p.is_file()]:
+                if str(p.relative_to(self.tree)) not in present:
+                    p.unlink()
+        return changed
+
+    def configure(self):
+        self.out.mkdir(parents=True, exist_ok=True)
+        for name in ('switch.h', 'switch.c'):
+            write_if_changed(self.out / name, (HERE / name).read_bytes())
+        switch = self.out / 'switch.o'
+        subprocess.run(['gcc', '-O2', '-c', self.out / 'switch.c', '-o', switch], check=True)
+        # A build type of its own: optimised, without optimisation across files, whose linking would take long.
+        flags = '-O2 -w -Wno-narrowing -Werror=vla -fno-sanitize=all'
+        run = ['cmake', '-S', self.tree, '-B', self.build, '-G', 'Ninja',
+               '-DCMAKE_BUILD_TYPE=Mutants', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON',
+               f'-DCMAKE_C_FLAGS_MUTANTS=-O2 -w', f'-DCMAKE_CXX_FLAGS_MUTANTS={flags}',
+               f'-DCMAKE_EXE_LINKER_FLAGS={switch}']
+        done = subprocess.run(run, capture_output=True, text=True, check=False)
+        if done.returncode:
+            fail('the copy cannot be configured:\n' + done.stdout + done.stderr, 4)
+
+    # --- places -----------------------------------------------------------
+    def find_places(self):
+        import places
+        commands = json.loads((self.build / 'compile_commands.json').read_text())
+        found, done, seen = [], set(), set()
+        root = str(self.tree)
+        for number, entry in enumerate(commands):
+            name = os.path.relpath(entry['file'], root)
+            if not self.areas.of(name) or name in seen:
+                continue
+            seen.add(name)
+            arguments = shlex.split(entry['command'])[1:]
+            for option in ('-o', '-c'):
+                if option in arguments:
+                    at = arguments.index(option)
+                    del arguments[at:at + 2]
+            os.chdir(entry['directory'])
+            new, complaints = places.unit_places(
+                entry['file'], arguments, root, lambda n: self.areas.of(n) is not None, done)
+            for text in complaints[:3]:
+                say(f'parsing: {text}')
+            found += new
+            say(f'places: {number + 1} of {len(commands)} files, {len(found)} found')
+        unique = {}
+        for p in found:
+            d = dict(vars(p), area=self.areas.of(p.file))
+            unique[(p.file, p.start, p.end, p.kind, p.change)] = d
+        result = list(unique.values())
+        lines = {}
+        for p in result:
+            if p['file'] not in lines:
+                lines[p['file']] = (self.tree / p['file']).read_text().split('\n')
+            p['text'] = lines[p['file']][p['line'] - 1].strip()
+        return result
+
+    # --- writing and building -------------------------------------------
+    def write(self, mutants):
+        by_file = {}
+        for m in mutants:
+            by_file.setdefault(m['file'], []).append(m)
+        originals = self.out / 'originals'
+        for path in originals.rglob('*'):
+            if not path.is_file():
+                continue
+            name = str(path.relative_to(originals))
+            data = path.read_bytes()
+            here = sorted(by_file.get(name, []), key=lambda m: -m['start'])
+            for m in here:
+                form = m['form'].replace('{m}', f'fovea_mutant({m["id"]})')
+                data = data[:m['start']] + form.encode() + data[m['end']:]
+            if here:
+                head = f'#include "{self.out}/switch.h"\n#line 1 "{self.tree / name}"\n'
+                data = head.encode() + data
+            write_if_changed(self.tree / name, data)
+
+    def targets(self):
+        listed = subprocess.run(['ninja', '-C', self.build, '-t', 'targets', 'all'],
+                                capture_output=True, text=True, check=True).stdout
+        names = {line.split(':')[0] for line in listed.splitlines()}
+        names = {n for n in names if '/' not in n}
+        tests = self.config['tests']
+        return sorted(n for n in names if re.match(tests['build'], n)
+                      and not re.match(tests['build_not'], n))
+
+    def compile(self, jobs, mutants):
+        """Builds; takes out mutants that do not compile until the rest does. Returns the rest."""
+        for attempt in range(8):
+            say(f'build {attempt + 1}: {len(mutants)} mutants, see {self.out}/build.log')
+            with open(self.out / 'build.log', 'w') as log:
+                code = subprocess.run(['ninja', '-C', self.build, f'-j{jobs}', '-k0']
+                                      + self.targets(), stdout=log, stderr=subprocess.STDOUT,
+                                      check=False).returncode
+            if code == 0:
+                return mutants
+            bad = self.blamed((self.out / 'build.log').read_text(errors='replace'), mutants)
+            if not bad:
+                fail(f'the copy does not compile: see {self.out}/build.log', 4)
+            say(f'build {attempt + 1}: {len(bad)} mutants do not compile')
+            mutants = [m for m in mutants if m['id'] not in bad]
+            self.write(mutants)
+        fail('mutants that do not compile remain after eight builds', 4)
+
+    def blamed(self, log, mutants):
+        spans = {}
+        for m in mutants:
+            lines = m['form'].count('\n')
+            spans.setdefault(str(self.tree / m['file']), []).append(
+                (m['line'], m['line'] + lines, m['id']))
+
+        def at(pattern):
+            bad = set()
+            for file, line in re.findall(r'^(?:In file included from )?(\S+?):(\d+)[:,]' + pattern,
+                                         log, re.M):
+                bad |= {i for a, b, i in spans.get(file, []) if a <= int(line) <= b}
+            return bad
+        return at(r'.*error:') or at('')
