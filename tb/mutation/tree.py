@@ -1,4 +1,5 @@
 """The mutated copy of a project: copying, drawing mutants, writing them, building."""
+import hashlib
 import json
 import math
 import os
@@ -102,6 +103,8 @@ class Tree:
         from the originals."""
         originals = self.out / 'originals'
         changed, present = [], set()
+        if keep is None:
+            shutil.rmtree(originals, ignore_errors=True)
         for name in project_files(self.source):
             path = self.source / name
             if not path.is_file():
@@ -141,6 +144,22 @@ class Tree:
 
     # --- places -----------------------------------------------------------
     def find_places(self):
+        """Every place of the areas' files; kept in a file, as finding them takes minutes."""
+        key = hashlib.sha256((HERE / 'places.py').read_bytes() + json.dumps(
+            self.config['area']).encode())
+        for path in sorted((self.out / 'originals').rglob('*')):
+            if path.is_file():
+                key.update(str(path).encode() + path.read_bytes())
+        kept = self.out / 'places.json'
+        if kept.exists():
+            old = json.loads(kept.read_text())
+            if old['key'] == key.hexdigest():
+                return old['places']
+        found = self.parse()
+        kept.write_text(json.dumps({'key': key.hexdigest(), 'places': found}))
+        return found
+
+    def parse(self):
         import places
         commands = json.loads((self.build / 'compile_commands.json').read_text())
         found, done, seen = [], set(), set()
@@ -155,7 +174,7 @@ class Tree:
                 if option in arguments:
                     at = arguments.index(option)
                     del arguments[at:at + 2]
-            os.chdir(entry['directory'])
+            arguments.append(f'-working-directory={entry["directory"]}')
             new, complaints = places.unit_places(
                 entry['file'], arguments, root, lambda n: self.areas.of(n) is not None, done)
             for text in complaints[:3]:
