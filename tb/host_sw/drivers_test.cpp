@@ -70,10 +70,18 @@ TEST(IsifTest, ABadWindowWritesNothing) {
   RegisterRecorder chip;
   const isif_window_t bad[] = {{0, 0, 721, 576, 1472}, {0, 0, 720, 575, 1440},
                                {0, 0, 720, 576, 1439}, {0, 0, 720, 576, 1408},
-                               {0, 1, 720, 576, 1440}, {0, 0, 0, 576, 1440}};
+                               {0, 1, 720, 576, 1440}, {0, 0, 0, 576, 1440},
+                               {0, 0, 720, 0, 1440}};
   for (const isif_window_t& window : bad) EXPECT_EQ(isif_configure(&window), ISIF_BAD_WINDOW);
   EXPECT_EQ(isif_set_address(0x80123450), ISIF_BAD_ADDRESS);
   EXPECT_THAT(chip.accesses, IsEmpty());
+}
+
+// Lines of a field count from 1; the last captured one is behind half of `top` and half of `height`.
+TEST(IsifTest, TheFieldEndsTwoLinesBehindItsLastRow) {
+  const isif_window_t whole = {0, 0, 720, 576, 1440}, middle = {40, 20, 640, 440, 1280};
+  EXPECT_EQ(isif_end_of_field_line(&whole), 290u);
+  EXPECT_EQ(isif_end_of_field_line(&middle), 232u);
 }
 
 TEST(IsifTest, AddressIsSplitInto32ByteUnits) {
@@ -152,11 +160,23 @@ TEST(DisplayTest, ABadModeOrAddressWritesNothing) {
                                 {0, 0, 0, 720, 576, 1440},
                                 {1, 0, 1, 720, 574, 1440},
                                 {1, 0, 0, 720, 576, 1430},
-                                {1, 0, 0, 720, 576, 512 * 32}};
+                                {1, 0, 0, 720, 576, 512 * 32},
+                                {1, 0, 0, 0, 576, 1440},
+                                {1, 0, 0, 720, 0, 1440},
+                                {1, 2, 0, 720, 576, 1440},
+                                {1, 0, 2, 720, 576, 1440}};
   for (const display_mode_t& mode : bad) EXPECT_EQ(display_start(&mode), DISPLAY_BAD_MODE);
   EXPECT_EQ(display_set_address(0x80000010, 1440), DISPLAY_BAD_ADDRESS);
   EXPECT_EQ(display_set_address(0x00010000, 1440), DISPLAY_BAD_ADDRESS);
   EXPECT_THAT(chip.accesses, IsEmpty());
+}
+
+TEST(DisplayTest, LimitsOfTheRasterAndThePitchAreReached) {
+  RegisterRecorder chip;
+  const display_mode_t good[] = {{1, 0, 0, 720, 576, 511 * 32}, {1, 80, 0, 640, 576, 1280},
+                                 {1, 0, 96, 720, 480, 1440},    {0, 0, 0, 720, 480, 1440},
+                                 {0, 0, 40, 720, 440, 1440}};
+  for (const display_mode_t& mode : good) EXPECT_EQ(display_start(&mode), DISPLAY_OK);
 }
 
 TEST(DisplayTest, FieldComesFromVstatBit4) {

@@ -59,6 +59,13 @@ TEST(LensFocalTest, ImpossibleFieldsOfViewGiveNone) {
   EXPECT_EQ(lens_focal_from_fov(LENS_RECTILINEAR, 720, 180, 0), 0);
   EXPECT_EQ(lens_focal_from_fov(LENS_ORTHOGRAPHIC, 720, 180.1, 0), 0);
   EXPECT_EQ(lens_focal_from_fov(LENS_EQUISOLID, 720, 360, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, 360, 0), 0);
+  EXPECT_EQ(lens_focal_from_fov(LENS_STEREOGRAPHIC, 720, 360, 0), 0);
+  EXPECT_GT(lens_focal_from_fov(LENS_RECTILINEAR, 720, 179.9, 0), 0);
+  EXPECT_GT(lens_focal_from_fov(LENS_ORTHOGRAPHIC, 720, 180, 0), 0);
+  EXPECT_GT(lens_focal_from_fov(LENS_EQUISOLID, 720, 359.9, 0), 0);
+  EXPECT_GT(lens_focal_from_fov(LENS_LINEAR, 720, 359.9, 0), 0);
+  EXPECT_GT(lens_focal_from_fov(LENS_STEREOGRAPHIC, 720, 359.9, 0), 0);
   EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, 0, 0), 0);
   EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, -10, 0), 0);
   EXPECT_EQ(lens_focal_from_fov(LENS_LINEAR, 720, std::nan(""), 0), 0);
@@ -276,6 +283,19 @@ TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
   param_page_t page;
   param_page_default(&page);
   EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
+}
+
+TEST(ParamPageTest, DefaultsFillThePageAndNothingBehindIt) {
+  struct {
+    param_page_t page;
+    unsigned char behind[8];
+  } memory;
+  memset(&memory, 0xA5, sizeof memory);
+  param_page_default(&memory.page);
+  for (const unsigned char byte : memory.behind) EXPECT_EQ(byte, 0xA5);
+  const auto* bytes = reinterpret_cast<const unsigned char*>(&memory.page);
+  EXPECT_EQ(bytes[sizeof memory.page - 1], 0) << "the last word of the table";
+  EXPECT_TRUE(param_page_valid(&memory.page));
 }
 
 TEST(ParamPageTest, ASealedPageIsAcceptedAndEachFlippedBitRefused) {

@@ -133,10 +133,10 @@ class Tree:
         switch = self.out / 'switch.o'
         subprocess.run(['gcc', '-O2', '-c', self.out / 'switch.c', '-o', switch], check=True)
         # A build type of its own: optimised, without optimisation across files, whose linking would take long.
-        flags = '-O2 -w -Wno-narrowing -Werror=vla -fno-sanitize=all'
+        flags = '-O1 -w -Wno-narrowing -Werror=vla -fno-sanitize=all'
         run = ['cmake', '-S', self.tree, '-B', self.build, '-G', 'Ninja',
                '-DCMAKE_BUILD_TYPE=Mutants', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON',
-               f'-DCMAKE_C_FLAGS_MUTANTS=-O2 -w', f'-DCMAKE_CXX_FLAGS_MUTANTS={flags}',
+               f'-DCMAKE_C_FLAGS_MUTANTS=-O1 -w', f'-DCMAKE_CXX_FLAGS_MUTANTS={flags}',
                f'-DCMAKE_EXE_LINKER_FLAGS={switch}']
         done = subprocess.run(run, capture_output=True, text=True, check=False)
         if done.returncode:

@@ -148,6 +148,9 @@ TEST(LensModelTest, TableIsTheCurve) {
   EXPECT_EQ(r[0], 0);
   EXPECT_NEAR(r[128], 0.75 * 302.453 * kFront.radius(1.5), 1e-9);
   EXPECT_THROW(kFront.table(129, 3.0), UserError);
+  EXPECT_THROW(kFront.table(129, 0), UserError);
+  EXPECT_NO_THROW(kFront.table(2, 1e-9));
+  EXPECT_NO_THROW(kFront.table(2, kFront.theta_max()));
 }
 
 TEST(SphereSourceTest, WithoutMotionShowsTheStillItself) {

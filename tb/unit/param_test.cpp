@@ -53,6 +53,16 @@ TEST_F(ParamTest, TimeIsKeptInPicoseconds) {
   EXPECT_EQ(params.time(), 20'000u);
 }
 
+TEST_F(ParamTest, ARealNumberReachesItsLimits) {
+  set.set("block.angle", "1deg");
+  EXPECT_EQ(params.angle(), 1);
+  set.set("block.angle", "220deg");
+  EXPECT_EQ(params.angle(), 220);
+  EXPECT_THROW(set.set("block.angle", "0.999deg"), UserError);
+  EXPECT_THROW(set.set("block.angle", "220.001deg"), UserError);
+  EXPECT_EQ(params.angle(), 220);
+}
+
 TEST_F(ParamTest, SizesAreBinaryAndClocksDecimal) {
   set.set("block.size", "4KiB");
   EXPECT_EQ(params.size(), 4096u);

@@ -92,6 +92,27 @@ TEST_P(BothStandards, MissingLineIsReportedAndBreaksTheFrame) {
   EXPECT_EQ(feed.sink.broken_frames(), 1u);
 }
 
+// One complaint for each property of a line that is not its own.
+TEST_P(BothStandards, WrongFieldBitBlankingLineAndWrongLengthAreReported) {
+  const unsigned odd_one = GetParam()->active_first[1] + 9;
+  const auto complaints = [&](auto change) {
+    Feed feed(*GetParam());
+    feed.frames_from_to(0, 1, [&](DisplayLine& l) {
+      if (l.number == odd_one) change(l);
+      return true;
+    });
+    return feed.sink.violations();
+  };
+  EXPECT_EQ(complaints([](DisplayLine&) {}), 0u);
+  EXPECT_EQ(complaints([](DisplayLine& l) { l.f = !l.f; }), 1u);
+  // Two roundings to a picosecond are tolerated.
+  EXPECT_EQ(complaints([](DisplayLine& l) { l.end += 1; }), 0u);
+  EXPECT_EQ(complaints([](DisplayLine& l) { l.end += 4; }), 1u);
+  EXPECT_EQ(complaints([](DisplayLine& l) { l.end -= 4; }), 1u);
+  // A blanking line, out of order, of the other field; and the one behind it is out of order too.
+  EXPECT_GE(complaints([](DisplayLine& l) { l.number = 1; }), 3u);
+}
+
 TEST_P(BothStandards, LateLineIsReported) {
   Feed feed(*GetParam());
   const unsigned late = GetParam()->active_first[1] + 9;

@@ -1,0 +1,138 @@
+// model/board/frame_log.h: which captured frame is on show, from the pins' eight-bit numbers.
+#include "model/board/frame_log.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea::board {
+namespace {
+
+struct Log : FrameLog {
+  void captured_up_to(std::uint64_t last) {
+    for (std::uint64_t i = 0; i <= last; ++i) capture(i, i * 100, i * 100 + 50);
+  }
+  void show(Phase phase, unsigned sequence, Picoseconds at = 0) {
+    pins(static_cast<std::uint32_t>(phase) | sequence << 4, at);
+  }
+  /// What is on show when the firmware flips to `sequence`.
+  std::optional<std::uint64_t> flipped_to(unsigned sequence) {
+    show(Phase::kFlip, sequence);
+    latch(address_ += 0x100, 0);
+    return shown(0, 0).captured;
+  }
+
+ private:
+  std::uint32_t address_ = 0x8000'0000;
+};
+
+TEST(FrameLogTest, ANumberMayBeOneAheadOfTheCapturesAndNotTwo) {
+  Log none;
+  EXPECT_EQ(none.flipped_to(1), std::nullopt);
+  EXPECT_EQ(none.flipped_to(0), 0u);
+
+  Log log;
+  log.captured_up_to(254);
+  EXPECT_EQ(log.flipped_to(255), 255u);
+  EXPECT_EQ(log.flipped_to(254), 254u);
+  EXPECT_EQ(log.flipped_to(0), 0u) << "256 would be two ahead";
+}
+
+TEST(FrameLogTest, NumbersAreUnrolledAgainstTheLatestCapture) {
+  Log log;
+  log.captured_up_to(255);
+  EXPECT_EQ(log.flipped_to(255), 255u);
+  EXPECT_EQ(log.flipped_to(0), 256u);
+  EXPECT_EQ(log.flipped_to(1), 1u);
+
+  Log later;
+  later.captured_up_to(300);
+  EXPECT_EQ(later.flipped_to(44), 300u);
+  EXPECT_EQ(later.flipped_to(45), 301u);
+  EXPECT_EQ(later.flipped_to(46), 46u) << "302 would be two ahead";
+}
+
+TEST(FrameLogTest, TimesOfTheLatest128CapturesAndRemapsAreKept) {
+  Log log;
+  for (unsigned i = 0; i < 129; ++i) {
+    log.capture(i, i * 100, i * 100 + 50);
+    log.show(Phase::kRemapStart, i, i * 100 + 60);
+    log.show(Phase::kRemapEnd, i, i * 100 + 70);
+  }
+  const auto shown = [&log](unsigned n) {
+    log.flipped_to(n);
+    return log.records().back();
+  };
+  EXPECT_EQ(shown(0).capture_start, std::nullopt);
+  EXPECT_EQ(shown(0).remap_start, 60u) << "the 129 remaps end behind the last capture";
+  EXPECT_EQ(shown(1).capture_start, 100u);
+  EXPECT_EQ(shown(1).capture_end, 150u);
+  log.capture(129, 12'900, 12'950);
+  EXPECT_EQ(shown(0).remap_start, std::nullopt);
+  EXPECT_EQ(shown(1).remap_start, 160u);
+  EXPECT_EQ(shown(1).remap_end, 170u);
+  EXPECT_EQ(shown(1).capture_start, std::nullopt);
+  EXPECT_EQ(shown(2).capture_start, 200u);
+}
+
+TEST(FrameLogTest, RepeatedAndDroppedFramesAreCounted) {
+  Log log;
+  log.captured_up_to(10);
+  log.show(Phase::kFlip, 2);
+  EXPECT_FALSE(FrameLog().latch(0x8000'0000, 0)) << "nothing was flipped to";
+  EXPECT_TRUE(log.latch(0x8000'0000, 0));
+  EXPECT_EQ(log.shown(1'000, 1'400).dropped, 0u);
+  EXPECT_EQ(log.records()[0].index, 0u);
+  EXPECT_EQ(log.records()[0].display_start, 1'000u);
+  EXPECT_EQ(log.records()[0].display_end, 1'400u);
+  EXPECT_FALSE(log.records()[0].repeated);
+  // The same address again: the flip counts only with a new one.
+  log.show(Phase::kFlip, 3);
+  EXPECT_TRUE(log.latch(0x8000'0000, 0));
+  EXPECT_TRUE(log.shown(0, 0).repeated);
+  EXPECT_EQ(log.records()[1].captured, 2u);
+  EXPECT_EQ(log.records()[1].index, 1u);
+  EXPECT_EQ(log.flipped_to(3), 3u);
+  EXPECT_EQ(log.records()[2].dropped, 0u) << "the next one";
+  EXPECT_EQ(log.flipped_to(5), 5u);
+  EXPECT_EQ(log.records()[3].dropped, 1u);
+  EXPECT_EQ(log.flipped_to(9), 9u);
+  EXPECT_EQ(log.records()[4].dropped, 3u);
+  EXPECT_EQ(log.flipped_to(8), 8u);
+  EXPECT_EQ(log.records()[5].dropped, 0u) << "backwards";
+}
+
+TEST(FrameLogTest, APhasesFirstTimeAndARemapsDurationAreKept) {
+  Log log;
+  EXPECT_EQ(log.first(Phase::kLut), std::nullopt);
+  log.show(Phase::kLut, 0, 10);
+  log.show(Phase::kIdle, 0, 20);
+  log.show(Phase::kLut, 0, 30);
+  EXPECT_EQ(log.first(Phase::kLut), 10u);
+  EXPECT_EQ(log.phase(), Phase::kLut);
+  log.show(Phase::kRemapEnd, 0, 40);
+  EXPECT_TRUE(log.remaps().empty()) << "none was begun";
+  log.show(Phase::kRemapStart, 0, 50);
+  log.show(Phase::kRemapEnd, 0, 80);
+  log.show(Phase::kRemapEnd, 0, 90);
+  ASSERT_EQ(log.remaps().size(), 1u);
+  EXPECT_EQ(log.remaps()[0].captured, 0u);
+  EXPECT_EQ(log.remaps()[0].start, 50u);
+  EXPECT_EQ(log.remaps()[0].end, 80u);
+}
+
+TEST(FrameLogTest, ForgetsTheOldestWhenThereAreTwiceAsMany) {
+  Log log;
+  unsigned gone = 0;
+  const auto count = [&gone](const auto&) { ++gone; };
+  log.captured_up_to(8);
+  log.forget(5, count);
+  EXPECT_EQ(gone, 0u);
+  EXPECT_EQ(log.captures().size(), 9u);
+  log.capture(9, 900, 950);
+  log.forget(5, count);
+  EXPECT_EQ(gone, 5u);
+  ASSERT_EQ(log.captures().size(), 5u);
+  EXPECT_EQ(log.captures().front(), 550u);
+}
+
+}  // namespace
+}  // namespace fovea::board
