@@ -226,20 +226,6 @@ TEST(FootageNotesTest, SayWhatTheCameraChanges) {
   EXPECT_EQ(notes({{"camera.kind", "chart"}}, 1280, 720, {{60}}), Notes{});
 }
 
-TEST(CompleteParamsTest, ThePictureFitsTheRasterExactly) {
-  const auto complete = [](const Keys& keys) {
-    Settings s(keys);
-    app::complete_params(s.params);
-  };
-  EXPECT_NO_THROW(complete({{"video.standard", "pal"}, {"video.height", "576"}}));
-  EXPECT_THROW(complete({{"video.standard", "pal"}, {"video.height", "580"}}), UserError);
-  EXPECT_THROW(complete({{"video.standard", "pal"}, {"video.height", "574"}}), UserError);
-  EXPECT_NO_THROW(complete({{"video.standard", "ntsc"}, {"video.height", "480"}}));
-  EXPECT_THROW(complete({{"video.standard", "ntsc"}, {"video.height", "484"}}), UserError);
-  EXPECT_NO_THROW(complete({{"video.width", "636"}}));
-  EXPECT_THROW(complete({{"video.width", "638"}}), UserError);
-}
-
 // Calibrations that cannot belong to the picture, at the limit and one beyond.
 std::vector<std::string> warnings_of(const Keys& keys, unsigned width, unsigned height) {
   Diagnostics::instance().clear();

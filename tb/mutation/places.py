@@ -103,9 +103,10 @@ class Finder:
         self.body_end = body.extent.end.offset
         self.returns_value = node.kind not in (K.CONSTRUCTOR, K.DESTRUCTOR) and \
             node.result_type.spelling != 'void'
-        # Of constructors also the initialisers of members; default arguments stay.
+        # Of constructors also the initialisers of members; types and default arguments stay.
         for child in children:
-            if child.kind not in CONSTANT and child.kind != K.MEMBER_REF:
+            if child is body or (child.kind not in CONSTANT and child.kind != K.MEMBER_REF and
+                                 child.extent.start.offset > node.location.offset):
                 self.visit(child)
         self.function, self.body_end, self.returns_value = outer
 
