@@ -9,7 +9,7 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 bool is_hex(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Length of the number that begins at `at`; 0 if none does.
+/// Length of the number that begins at `at`, or 0 if there is none.
 std::size_t number_at(std::string_view text, std::size_t at) {
   if (!is_digit(text[at]) || (at > 0 && is_word(text[at - 1]))) return 0;
   std::size_t end = at;
@@ -38,7 +38,8 @@ std::string BoundedCounts::kind_of(std::string_view text) {
 BoundedCounts::Show BoundedCounts::add(unsigned group, const std::string& text) {
   const auto [place, new_kind] = kinds_.try_emplace({group, kind_of(text)});
   if (kinds_.size() > kKinds) {
-    // The last one gives way; it is never kept again, as all that are kept come before it.
+    // The table is full: the alphabetically last kind is dropped. It cannot return, because every
+    // kind that is kept sorts before it.
     const auto last = std::prev(kinds_.end());
     const bool itself = last == place;
     std::uint64_t& others = others_[last->first.first];

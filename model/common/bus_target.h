@@ -1,4 +1,4 @@
-// Registers behind a TLM target socket.
+// Base class of peripherals: a register bank behind a TLM target socket.
 #pragma once
 #include <tlm_utils/simple_target_socket.h>
 
@@ -12,16 +12,17 @@
 
 namespace fovea {
 
-/// Base of every peripheral: b_transport on the block's registers. Called by the configuration bus
-/// with kernel time = local time (its latency is modelled there), so it never waits. The payload's
-/// address is the offset in the block. transport_dbg reads without side effects.
+/// Base class of every peripheral with registers: b_transport reads and writes its register bank.
+/// The configuration bus models the latency of the access and calls with local time equal to kernel
+/// time, so b_transport neither waits nor adds a delay. The payload's address is the offset in the
+/// block; accesses are 1, 2 or 4 bytes. transport_dbg reads one word without side effects.
 class BusTarget : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
   const RegBank& bank() const { return bank_; }
   RegBank& bank() { return bank_; }
   bool gated() const { return !clocked(); }
-  /// Looks on at all accesses; null: nobody.
+  /// Reports every access over the bus to `observer`; null removes the observer.
   void observe(RegisterObserver* observer) { observer_ = observer; }
 
  protected:
@@ -29,11 +30,12 @@ class BusTarget : public sc_core::sc_module {
     reg_socket.register_b_transport(this, &BusTarget::b_transport);
     reg_socket.register_transport_dbg(this, &BusTarget::transport_dbg);
   }
-  /// False while the block's clock is gated: reads give 0 and writes are lost, both counted.
+  /// False while the block's clock is gated: reads then return 0 and writes are lost, each with a
+  /// warning.
   virtual bool clocked() const { return true; }
-  /// True: an offset without a register reads 0 and loses writes, as in the chip's peripherals.
-  /// False: it is a bus error, for a block of which so little is modelled that software must
-  /// notice.
+  /// What an access to an offset without a register does. True: reads return 0 and writes are lost,
+  /// as in the chip's peripherals. False: a bus error, for a block of which so little is modelled
+  /// that software has to notice.
   virtual bool holes_answer() const { return true; }
 
  private:
@@ -67,7 +69,8 @@ class BusTarget : public sc_core::sc_module {
       return;
     }
     if (a == Access::kNoRegister) {
-      // The chip's peripherals answer holes with 0; only the configuration bus reports errors.
+      // The chip's peripherals answer such an offset with 0; only the configuration bus reports
+      // errors.
       char where[16];
       std::snprintf(where, sizeof where, "0x%x", offset);
       Diagnostics::instance().not_modelled(bank_.name() + " register at offset " + where);

@@ -9,7 +9,8 @@ void check_failed(const char* expression, const char* file, int line, const std:
   std::fprintf(stderr, "fovea: own defect: %s (%s) at %s:%d\n", what.c_str(), expression, file,
                line);
   std::fflush(nullptr);
-  // quick_exit: no destructor of a half-consistent model runs; status 4 is the contract.
+  // quick_exit runs no destructors, which could fail on the inconsistent state. Status 4 is
+  // documented.
   std::quick_exit(4);
 }
 

@@ -1,4 +1,4 @@
-// The four reactions to a fault: guest, user, not modelled, own defect.
+// The four kinds of error and what Fovea does for each: guest, user, not modelled, own defect.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,17 +11,19 @@
 
 namespace fovea {
 
-/// Wrong input by the user: one line that says what, where and what is allowed. Exit status 2.
+/// Wrong input by the user. The message is one line: what is wrong, where, and what is allowed.
+/// Exit status 2.
 struct UserError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The guest program failed beyond recovery (unhandled abort, deadlock, watchdog). Exit status 3.
+/// The guest program failed and cannot continue (unhandled abort, deadlock, watchdog). Exit status
+/// 3.
 struct GuestFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A feature the guest used and the model lacks, under --strict. Exit status 3.
+/// With --strict: the guest used a feature of the chip that the model lacks. Exit status 3.
 struct NotModelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -29,10 +31,11 @@ struct NotModelled : std::runtime_error {
 [[noreturn]] void check_failed(const char* expression, const char* file, int line,
                                const std::string& what);
 
-/// Counts warnings. kGuest: the program on the core did it; kNotModelled: the model lacks what the
-/// program asked for; kConfiguration: a parameter has no effect or does not go with another one.
-/// Each text is shown once, and few of those that differ only in numbers: a wild pointer's addresses
-/// are examples of one warning.
+/// Collects the run's warnings and counts them. kGuest: caused by the program on the core.
+/// kNotModelled: the program used something that the model lacks. kConfiguration: a parameter has
+/// no effect or contradicts another one. Each text is passed to the sink once, and only a few of
+/// those that differ in nothing but numbers: the addresses of a wild pointer are examples of one
+/// warning (see BoundedCounts).
 class Diagnostics {
  public:
   enum class Kind { kGuest, kNotModelled, kConfiguration };
@@ -40,14 +43,15 @@ class Diagnostics {
 
   static Diagnostics& instance();
   void guest(const std::string& what) { note(Kind::kGuest, what); }
-  /// @throws NotModelled when strict
+  /// Warns that the model lacks something. @throws NotModelled with --strict
   void not_modelled(const std::string& what);
-  /// @throws UserError when strict
+  /// Warns about a parameter. @throws UserError with --strict
   void configuration(const std::string& what);
   void set_strict(bool strict) { strict_ = strict; }
   void set_sink(Sink sink) { sink_ = std::move(sink); }
   void clear() { counts_.clear(); }
-  /// By kind and text; what BoundedCounts does not keep is summed up in lines of its own.
+  /// Counts by kind and text. Texts that BoundedCounts does not keep are summed in lines of their
+  /// own.
   std::map<std::pair<Kind, std::string>, std::uint64_t> counts() const;
 
  private:
@@ -59,7 +63,8 @@ class Diagnostics {
 
 }  // namespace fovea
 
-/// A broken invariant of Fovea itself: aborts in every build type. Exit status 4.
+/// Checks an invariant of Fovea itself, in every build type. If it is broken, prints `what` and
+/// ends the process with exit status 4.
 #define FOVEA_CHECK(cond, what)                                                   \
   do {                                                                            \
     if (!(cond)) [[unlikely]]                                                     \

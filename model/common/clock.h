@@ -7,11 +7,13 @@
 
 namespace fovea {
 
-/// Numbers the edges of a clock. Edge k is floor((k - k0) * 10^12 * den / num) ps after the last
-/// start; periods are never added up. A frequency change restarts the clock: the edge that would
-/// have come next comes at the time of the change, and numbering goes on.
-/// Ratios with small terms (all of the chip's) are converted by a multiplication, exactly, for hours
-/// of simulated time after the last start; others, and later times, by a division.
+/// Numbers the edges of a clock. Edge k is at floor((k - k0) * 10^12 * den / num) ps after the last
+/// start, so rounding errors never accumulate. A change of frequency restarts the clock: the edge
+/// that would have come next moves to the time of the change, and the numbering continues from
+/// there.
+///
+/// Frequencies with small terms (all of the chip's) are converted by an exact multiplication, for
+/// hours of simulated time after the last start; other frequencies and later times by a division.
 class Clock {
  public:
   Clock() = default;
@@ -38,7 +40,7 @@ class Clock {
   Frequency frequency() const { return frequency_; }
   Picoseconds start() const { return start_; }
 
-  /// Time of edge k (k >= the index at the last restart).
+  /// Time of edge k in ps; k must not be below the index of the last restart.
   [[gnu::always_inline]] Picoseconds edge(std::uint64_t k) const {
     const std::uint64_t n = k - k0_;
     if (n > edges_limit_) [[unlikely]] return start_ + scale(n, ps_, edges_, 0);
@@ -58,35 +60,35 @@ class Clock {
   }
   Picoseconds next_edge_after(Picoseconds t) const { return edge(edge_after(t)); }
   Picoseconds next_edge_at_or_after(Picoseconds t) const { return edge(edge_at_or_after(t)); }
-  /// Duration of n periods from edge 0, rounded down; for reports, not for scheduling.
+  /// Duration of n periods counted from edge 0, rounded down. For reports, not for scheduling.
   Picoseconds periods(std::uint64_t n) const { return scale(n, ps_, edges_, 0); }
 
  private:
   using Wide = unsigned __int128;
 
-  /// (n * mul + add) / div.
+  /// (n * mul + add) / div, with an intermediate result of 128 bits.
   [[gnu::noinline]] static std::uint64_t scale(std::uint64_t n, std::uint64_t mul,
                                                std::uint64_t div, std::uint64_t add) {
     if (div == 0) return 0;  // a stopped clock stays at its last edge
     return static_cast<std::uint64_t>((Wide{n} * mul + add) / div);
   }
 
-  /// Fixed-point factors of both directions. Exact results are multiples of 1/edges_ and of 1/ps_, so
-  /// an error below half of that cannot carry a result over a whole number.
+  /// Computes the fixed-point factors of both directions. Exact results are multiples of 1/edges_
+  /// and of 1/ps_, so an error of less than half of that never changes the whole part of a result.
   void prepare() {
-    edges_limit_ = ps_limit_ = 0;  // 0: divide
+    edges_limit_ = ps_limit_ = 0;  // 0: use the division
     if (ps_ > (1u << 21) || edges_ > (1u << 10)) return;
     const auto log2 = [](std::uint64_t v) { return 63u - static_cast<unsigned>(__builtin_clzll(v)); };
-    // edge: whole picoseconds of a period, and the rest * 2^64 rounded up; n of these are too long by
-    // less than n / 2^64.
+    // For edge(): the whole picoseconds of a period, and the remainder * 2^64 rounded up, which
+    // makes n periods too long by less than n / 2^64.
     period_ = ps_ / edges_;
     fraction_ = static_cast<std::uint64_t>(((Wide{ps_ % edges_} << 64) + edges_ - 1) / edges_);
     edges_limit_ = std::uint64_t{1} << (63 - log2(ps_) - 1);
-    // edge_at_or_after: edges a ps * 2^(64 + r) rounded down, d of them too small by less than
-    // d / 2^(64 + r). Rounding up adds 1 - 1/(2 ps_).
+    // For edge_at_or_after(): edges per ps * 2^(64 + r), rounded down, which makes d picoseconds
+    // too few edges by less than d / 2^(64 + r). Rounding up adds 1 - 1/(2 ps_).
     if (edges_ >= ps_) return;
     unsigned r = log2(ps_ / edges_);
-    if (edges_ << r == ps_) --r;  // the rate would need one bit more
+    if (edges_ << r == ps_) --r;  // otherwise the rate would need one more bit
     rate_shift_ = r;
     rate_ = static_cast<std::uint64_t>((Wide{edges_} << 64 << r) / ps_);
     const Wide one = Wide{1} << 64 << r;
@@ -97,8 +99,8 @@ class Clock {
   Frequency frequency_;
   Picoseconds start_ = 0;
   std::uint64_t k0_ = 0;
-  std::uint64_t ps_ = 0;     // ps_ picoseconds hold exactly edges_ periods
-  std::uint64_t edges_ = 0;  // 0: stopped
+  std::uint64_t ps_ = 0;     // ps_ picoseconds are exactly edges_ periods
+  std::uint64_t edges_ = 0;  // 0 while the clock is stopped
   std::uint64_t period_ = 0, fraction_ = 0, edges_limit_ = 0;
   std::uint64_t rate_ = 0, ps_limit_ = 0;
   Wide round_up_ = 0;

@@ -16,7 +16,7 @@ struct Suffix {
   std::uint64_t scale;
 };
 
-/// Largest first, so that the printer picks the largest that divides the value.
+/// Largest unit first: format() uses the first one that divides the value.
 const std::vector<Suffix>& suffixes(Unit unit) {
   static const std::vector<Suffix> count = {{"", 1}};
   static const std::vector<Suffix> cycles = {{"cycles", 1}};
@@ -42,7 +42,7 @@ std::string_view trim(std::string_view s) {
   return s;
 }
 
-/// Splits "12.5 ns" into number text and unit text.
+/// Splits "12.5 ns" into the text of the number and the text of the unit.
 std::pair<std::string_view, std::string_view> split(std::string_view s) {
   s = trim(s);
   std::size_t i = 0;
@@ -81,7 +81,7 @@ std::string list_text(const std::vector<double>& v) {
   throw UserError("'" + std::string(text) + "' is not allowed; allowed: " + allowed);
 }
 
-/// The commonest slip is the number alone.
+/// The most frequent mistake is a number without its unit, which gets a sentence of its own.
 [[noreturn]] void refuse_quantity(std::string_view text, const std::string& allowed,
                                   std::string_view unit, bool wants_unit) {
   refuse(text, allowed + (unit.empty() && wants_unit ? "; a number alone lacks its unit" : ""));
@@ -201,7 +201,8 @@ void IntParam::parse(std::string_view text) {
       if (!to_real(number, d) || d < 0 || d * static_cast<double>(s.scale) > 1.8e19) break;
       const double scaled = d * static_cast<double>(s.scale);
       const double rounded = std::round(scaled);
-      // A fraction of the smallest unit cannot be kept: refuse it instead of rounding in silence.
+      // A fraction of the smallest unit cannot be represented: report it instead of rounding
+      // silently.
       if (std::abs(scaled - rounded) > 1e-6 * std::max(1.0, scaled)) break;
       v = static_cast<std::uint64_t>(rounded);
     }

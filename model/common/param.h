@@ -1,4 +1,4 @@
-// Parameters: each declared once with key, unit, default, range, sentence and origin.
+// Parameters: each is declared once, with key, unit, default, range, description and origin.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -12,16 +12,17 @@
 
 namespace fovea {
 
-/// Where a default comes from. kSourced: a public document about this chip. kFamily: a public
+/// Where a default value comes from. kSourced: a public document about this chip. kFamily: a public
 /// document about a sister chip only. kCalibrated: fitted to a measurement. kAssumed: no public
-/// source. kChoice: the user's free choice, nothing to source.
+/// source. kChoice: the user's free choice, which needs no source.
 enum class Origin { kSourced, kFamily, kCalibrated, kAssumed, kChoice };
 std::string_view to_string(Origin origin);
 
-/// Interval in which the chip's true figure is believed to lie, with the reason. Every parameter
-/// whose origin is kFamily or kAssumed has one; no other has. It is narrower than the allowed
-/// values, which are mere limits of input. `low` and `high` are written as the user would write the
-/// values; for a parameter with words they are the two ends of that part of the word list.
+/// Interval in which the chip's true figure is believed to lie, and the reason for it. Required for
+/// the origins kFamily and kAssumed and forbidden for the others. It is usually narrower than the
+/// allowed range, which only limits the input. `low` and `high` are written as a user would write
+/// them; for a parameter with words, they are the first and the last word of a part of the word
+/// list.
 struct Belief {
   std::string low, high, reason;
   bool empty() const { return low.empty(); }
@@ -42,39 +43,41 @@ class ParamBase {
   Origin origin() const { return origin_; }
   const std::string& source() const { return source_; }
   const Belief& belief() const { return belief_; }
-  /// True once parse() was called: the value is the user's, not the default.
+  /// True once set() was called: the value was given by the user and is not the default.
   bool user_set() const { return user_set_; }
-  /// Sets the value. @throws UserError that says what is allowed (key not included)
+  /// Sets the value from its text with unit. @throws UserError that says what is allowed; the
+  /// caller adds the key
   void set(std::string_view text) {
     parse(text);
     user_set_ = true;
   }
 
-  /// When the value matters. `condition` completes "KEY has an effect only with ..."; `deciders` are
-  /// the parameters that `effective` reads.
+  /// A condition under which the value has an effect. `condition` completes the sentence "KEY has
+  /// an effect only with ..."; `deciders` are the parameters that `effective` reads.
   struct Effect {
     std::string condition;
     std::vector<const ParamBase*> deciders;
     std::function<bool()> effective;
   };
-  /// Declares it; without a declaration the value always matters.
+  /// Declares a condition. Without a declaration, the value always has an effect.
   void matters_only(std::string condition, std::vector<const ParamBase*> deciders,
                     std::function<bool()> effective) {
     effects_.push_back({std::move(condition), std::move(deciders), std::move(effective)});
   }
   const std::vector<Effect>& effects() const { return effects_; }
 
-  virtual std::string text() const = 0;  ///< value with unit, parseable again
+  virtual std::string text() const = 0;  ///< the value with its unit, which set() accepts again
   virtual std::string default_text() const = 0;
   virtual std::string unit() const = 0;
-  virtual std::string allowed() const = 0;  ///< range or list of words
+  virtual std::string allowed() const = 0;  ///< the allowed range or the list of words
 
  protected:
   virtual void parse(std::string_view text) = 0;
-  /// The value's rank: numbers by size, words by their position in the list.
+  /// Orders the values: numbers by size, words by their position in the list.
   virtual double rank() const = 0;
-  /// For the end of each constructor: an interval exists exactly where one is needed, its ends are
-  /// allowed values, and the default lies between them.
+  /// To be called at the end of each constructor. Checks that a belief interval exists exactly if
+  /// the origin requires one, that its ends are allowed values, and that the default lies between
+  /// them.
   void check_belief();
 
  private:
@@ -85,7 +88,7 @@ class ParamBase {
   bool user_set_ = false;
 };
 
-/// Integers with a unit. Time is kept in ps, sizes in bytes, frequencies in Hz.
+/// An integer with a unit. Times are stored in picoseconds, sizes in bytes, frequencies in hertz.
 class IntParam : public ParamBase {
  public:
   enum class Unit { kCount, kCycles, kBytes, kTime, kHertz };
@@ -109,7 +112,7 @@ class IntParam : public ParamBase {
   std::uint64_t value_, default_, min_, max_;
 };
 
-/// Real numbers; unit "" (a plain number), "deg", "px", ...: the unit is written behind the number.
+/// A real number. Its unit ("deg", "px", or "" for none) is written directly after the number.
 class RealParam : public ParamBase {
  public:
   RealParam(ParamGroup& group, std::string name, std::string unit, double def, double min,
@@ -130,7 +133,7 @@ class RealParam : public ParamBase {
   double value_, default_, min_, max_;
 };
 
-/// A list of plain numbers, written `[a, b, c]`; the count must be one of `sizes`.
+/// A list of numbers without unit, written `[a, b, c]`; its length must be one of `sizes`.
 class ListParam : public ParamBase {
  public:
   ListParam(ParamGroup& group, std::string name, std::vector<double> def,
@@ -169,7 +172,7 @@ class BoolParam : public ParamBase {
   bool value_, default_;
 };
 
-/// One of a list of words.
+/// One word out of a list.
 class EnumParam : public ParamBase {
  public:
   EnumParam(ParamGroup& group, std::string name, std::string def, std::vector<std::string> words,
@@ -191,7 +194,7 @@ class EnumParam : public ParamBase {
   std::vector<std::string> words_;
 };
 
-/// Free text, such as a file name.
+/// Free text, for example a file name.
 class TextParam : public ParamBase {
  public:
   TextParam(ParamGroup& group, std::string name, std::string def, std::string sentence,
@@ -210,7 +213,7 @@ class TextParam : public ParamBase {
   std::string value_, default_, allowed_;
 };
 
-/// A block's parameters; `prefix` is the block's dotted name ("ddr", "cpu.dcache").
+/// The parameters of a block; `prefix` is the block's dotted name ("ddr", "cpu.dcache").
 class ParamGroup {
  public:
   explicit ParamGroup(std::string prefix) : prefix_(std::move(prefix)) {}
@@ -225,23 +228,24 @@ class ParamGroup {
   std::vector<ParamBase*> params_;
 };
 
-/// All parameters of a run, found by key.
+/// All parameters of a run, found by their keys.
 class ParamSet {
  public:
   void add(ParamGroup& group);
-  /// One of a group that has no effect here.
+  /// Removes a parameter that has no effect in this command, so that setting it is an error.
   void remove(std::string_view key) {
     std::erase_if(all_, [&](const ParamBase* p) { return p->key() == key; });
   }
   const std::vector<ParamBase*>& all() const { return all_; }
   ParamBase* find(std::string_view key) const;
-  /// Names a key that exists elsewhere only: whoever sets it here, or one much like it, reads `hint`
-  /// ("is a key of ...").
+  /// Declares a key that belongs to another command. If somebody sets it here, or a similar key
+  /// that is unknown, the error message says so with `hint` ("is a key of ...").
   void add_foreign(std::string key, std::string hint) { foreign_.emplace(std::move(key), hint); }
-  /// The known or foreign key nearest to `key` by edit distance, empty if none is near. What both
-  /// begin with up to a dot does not make them nearer.
+  /// The known or foreign key that is nearest to `key` by edit distance; empty if none is similar.
+  /// A common prefix that ends with a dot is not compared.
   std::string nearest(std::string_view key) const;
-  /// @throws UserError naming the key, what is allowed and a suggestion
+  /// Sets a parameter from text. @throws UserError that names the key and what is allowed, or
+  /// suggests a similar key
   void set(std::string_view key, std::string_view text);
 
  private:

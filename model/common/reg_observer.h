@@ -1,4 +1,4 @@
-// Who looks on while registers are accessed.
+// Interface for observers of register accesses.
 #pragma once
 #include <cstdint>
 

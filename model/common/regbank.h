@@ -1,4 +1,5 @@
-// Memory-mapped registers: declared once with offset, fields, modes, reset value and sentence.
+// Memory-mapped registers: each is declared once, with offset, fields, access modes and reset
+// value.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,16 +14,16 @@ class Reg;
 class RegBank;
 
 enum class Mode : std::uint8_t {
-  kRw,   ///< keeps what is written
-  kRo,   ///< writes are lost, as in hardware
-  kW1c,  ///< writing 1 clears
-  kWo,   ///< reads as 0; the write reaches on_write
+  kRw,   ///< read and write
+  kRo,   ///< read only: writes have no effect
+  kW1c,  ///< writing 1 clears the bit
+  kWo,   ///< write only: reads as 0; the written value is passed to on_write
 };
 
-/// The values of a field (or of a register without fields) for which the model behaves like the
-/// chip, where others would act on the chip and have no effect here. A write over the bus that
-/// leaves another value there is warned of, once by name: `Modelled{0}`, `Modelled{0, 3}`.
-/// List the reset value too unless even that deserves a warning.
+/// The values of a field (or of a register without fields) that the model implements. Other values
+/// would act on the chip and have no effect here: the first write over the bus that leaves one of
+/// them in the field gives a warning with the field's name. Written `Modelled{0}` or `Modelled{0,
+/// 3}`. List the reset value too, unless even that should give a warning.
 struct Modelled {
   Modelled(std::initializer_list<std::uint32_t> list) : values(list) {}
   std::vector<std::uint32_t> values;
@@ -35,7 +36,7 @@ class Field {
   Field(const Field&) = delete;
   Field& operator=(const Field&) = delete;
   std::uint32_t get() const;
-  void set(std::uint32_t value);  ///< from the hardware side, whatever the mode
+  void set(std::uint32_t value);  ///< sets the field from the hardware side, whatever its mode
   explicit operator bool() const { return get() != 0; }
   const std::string& name() const { return name_; }
   const std::string& sentence() const { return sentence_; }
@@ -54,20 +55,21 @@ class Field {
 
 class Reg {
  public:
-  /// A register with fields.
+  /// Declares a register whose bits are described by Field members.
   Reg(RegBank& bank, std::string name, std::uint32_t offset, std::string sentence,
       std::uint32_t reset = 0);
-  /// A register that is one 32-bit field of `mode`.
+  /// Declares a register that is a single 32-bit field with the given mode.
   Reg(RegBank& bank, std::string name, std::uint32_t offset, Mode mode, std::string sentence,
       std::uint32_t reset = 0, std::optional<Modelled> modelled = {});
   Reg(const Reg&) = delete;
   Reg& operator=(const Reg&) = delete;
 
   std::uint32_t get() const { return value_; }
-  void set(std::uint32_t value) { value_ = value; }  ///< from the hardware side
-  /// Runs before a read; may set() the value (counters, entry registers).
+  void set(std::uint32_t value) { value_ = value; }  ///< sets the value from the hardware side
+  /// Called before each read; may set() the value (counters, for example).
   void on_read(std::function<void()> f) { on_read_ = std::move(f); }
-  /// Runs after a write has taken effect, with the word as written (lanes not written are 0).
+  /// Called after each write has taken effect, with the word as written (byte lanes that were not
+  /// written are 0).
   void on_write(std::function<void(std::uint32_t)> f) { on_write_ = std::move(f); }
 
   const std::string& name() const { return name_; }
@@ -75,12 +77,12 @@ class Reg {
   std::uint32_t offset() const { return offset_; }
   std::uint32_t reset_value() const { return reset_; }
   const std::vector<Field*>& fields() const { return fields_; }
-  /// Bits that belong to no field and are not 1 out of reset: software writes 0 there.
+  /// Reserved bits, where software should write 0: those that belong to no field and reset to 0.
   std::uint32_t reserved() const { return ~(covered_ | reset_); }
   /// Bits of which only some values are modelled.
   std::uint32_t limited() const { return limited_; }
-  /// One text for each limited field in `lanes` that holds a value which is not modelled, for
-  /// example "MODESET.HLPF (low-pass filter): only 0 is modelled".
+  /// One sentence for each field in the bits `lanes` that holds a value which is not modelled, such
+  /// as "MODESET.HLPF (low-pass filter): only 0 is modelled".
   std::vector<std::string> not_modelled(std::uint32_t lanes) const;
 
  private:
@@ -106,9 +108,9 @@ class Reg {
 
 enum class Access { kOk, kNoRegister, kMisaligned };
 
-/// A block's registers. Reads and writes of 1, 2 or 4 bytes; byte lanes are merged on a write.
-/// Writes to read-only and uncovered bits are lost and counted; uncovered bits read as their reset
-/// value.
+/// The registers of a block. Reads and writes take 1, 2 or 4 bytes; a write changes only the byte
+/// lanes that it covers. Writes to bits that are read-only or belong to no field have no effect;
+/// bits without a field read as their reset value.
 class RegBank {
  public:
   explicit RegBank(std::string name) : name_(std::move(name)) {}
@@ -117,12 +119,12 @@ class RegBank {
 
   Access read(std::uint32_t offset, unsigned bytes, std::uint32_t& value);
   Access write(std::uint32_t offset, unsigned bytes, std::uint32_t value);
-  /// As read, without side effects; for debuggers and tests.
+  /// Reads a word without side effects, for debuggers and tests.
   Access peek(std::uint32_t offset, std::uint32_t& value) const;
   void reset();
   const std::string& name() const { return name_; }
   const std::vector<Reg*>& regs() const { return regs_; }
-  /// The register at an offset in the block; null: none.
+  /// The register at an offset in the block, or null.
   const Reg* register_at(std::uint32_t offset) const { return find(offset); }
   std::uint64_t lost_writes() const { return lost_writes_; }
 

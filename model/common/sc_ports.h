@@ -1,4 +1,4 @@
-// Values that travel on sc_signals between blocks.
+// Types of the signals between blocks.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace fovea {
 
-/// sc_signal<Frequency> wants a tracer; a frequency is no waveform.
+/// sc_signal requires this function. Frequencies are not written to waveform files.
 inline void sc_trace(sc_core::sc_trace_file*, const Frequency&, const std::string&) {}
 
-/// A clock is a port that carries its frequency, not its edges: blocks number the edges themselves
-/// (clock.h) and restart when the value changes.
+/// A clock port carries the frequency and no edges: each block computes the edges it needs
+/// (clock.h) and restarts its clock when the frequency changes.
 using ClockIn = sc_core::sc_in<Frequency>;
 using ClockSignal = sc_core::sc_signal<Frequency>;
 
-/// One I2C target device on the board. Called by the controller in kernel time.
+/// An I2C target device on the board. The I2C controller calls it with local time equal to kernel
+/// time.
 class I2cTargetIf : public virtual sc_core::sc_interface {
  public:
   virtual bool i2c_start(std::uint8_t address7, bool read) = 0;  ///< true: acknowledged

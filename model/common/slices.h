@@ -1,4 +1,4 @@
-// A stretch of simulated time between two looks of the host.
+// Runs the simulation in slices of simulated time, with the host in control between them.
 #pragma once
 #include <systemc>
 
@@ -6,12 +6,12 @@
 
 namespace fovea {
 
-/// Runs the kernel a slice at a time. At the end of each an event is pending, so that a core with
-/// nothing else ahead of it (an idle loop, every block asleep) comes back there too.
+/// Runs the kernel for one slice at a time. An event is pending at the end of each slice, so that a
+/// core that runs ahead (in an idle loop, while every other block sleeps) stops there too.
 class Slices {
  public:
   void run(Picoseconds slice) {
-    end_.move_to(kernel_time() + slice);  // a pause may have cut the last slice short
+    end_.move_to(kernel_time() + slice);  // sc_pause() may have ended the last slice early
     sc_core::sc_start(ps_time(slice));
   }
 

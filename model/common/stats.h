@@ -1,4 +1,4 @@
-// Statistics: value, unit and a sentence, declared once where they are counted.
+// Statistics: each is declared with its unit and a description where it is counted.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,7 +10,7 @@ namespace fovea {
 
 class StatGroup;
 
-/// Anything that stats.json prints. Names are `<group>.<name>`, lower_snake, and never change.
+/// A value in stats.json. Names are `<group>.<name>` in lower_snake and never change.
 class StatBase {
  public:
   using Value = std::variant<std::uint64_t, double>;
@@ -22,7 +22,7 @@ class StatBase {
   const std::string& unit() const { return unit_; }
   const std::string& sentence() const { return sentence_; }
   virtual Value value() const = 0;
-  /// Called when the measured window opens.
+  /// Called when the measurement window opens.
   virtual void reset() = 0;
 
  private:
@@ -42,7 +42,7 @@ class Counter : public StatBase {
   std::uint64_t count_ = 0;
 };
 
-/// The largest of the values noted in the window.
+/// The largest value that was noted in the measurement window.
 class Maximum : public StatBase {
  public:
   using StatBase::StatBase;
@@ -54,7 +54,7 @@ class Maximum : public StatBase {
   std::uint64_t most_ = 0;
 };
 
-/// A value that is computed when asked for, from counters that reset themselves.
+/// A value computed on request from counters, which are reset on their own.
 class Formula : public StatBase {
  public:
   Formula(StatGroup& group, std::string name, std::string unit, std::string sentence,
@@ -67,8 +67,8 @@ class Formula : public StatBase {
   std::function<Value()> f_;
 };
 
-/// Log-linear histogram of picoseconds: 256 buckets per factor of two (error below 0.4 %), exact
-/// minimum, maximum and sum.
+/// Log-linear histogram of durations in picoseconds: 256 buckets per factor of two (relative error
+/// below 0.4 %); minimum, maximum and sum are exact.
 class Histogram {
  public:
   void add(std::uint64_t v);
@@ -77,7 +77,8 @@ class Histogram {
   std::uint64_t min() const { return count_ ? min_ : 0; }
   std::uint64_t max() const { return max_; }
   double mean() const { return count_ ? static_cast<double>(sum_) / static_cast<double>(count_) : 0; }
-  /// Upper edge of the bucket that holds the q-quantile (0 < q <= 1), not above max().
+  /// Upper edge of the bucket that holds the q-quantile (0 < q <= 1), but at most max(). 0 if
+  /// empty.
   std::uint64_t quantile(double q) const;
 
  private:
@@ -85,7 +86,7 @@ class Histogram {
   std::uint64_t count_ = 0, sum_ = 0, max_ = 0, min_ = ~std::uint64_t{0};
 };
 
-/// A block's statistics; `prefix` is the dotted name of the block.
+/// The statistics of a block; `prefix` is the block's dotted name.
 class StatGroup {
  public:
   explicit StatGroup(std::string prefix) : prefix_(std::move(prefix)) {}
@@ -100,7 +101,7 @@ class StatGroup {
 
  protected:
   ~StatGroup() = default;
-  /// For state that is no StatBase (histograms, time integrals).
+  /// Resets state that is not a StatBase (histograms, time integrals).
   virtual void on_reset() {}
 
  private:

@@ -6,7 +6,7 @@
 
 namespace fovea {
 
-/// Simulated time and durations, integer picoseconds since the start of the run.
+/// Simulated times and durations in picoseconds; times count from the start of the simulation.
 using Picoseconds = std::uint64_t;
 inline constexpr Picoseconds kNever = ~Picoseconds{0};
 inline constexpr Picoseconds kPsPerNs = 1'000;
@@ -29,8 +29,9 @@ struct Frequency {
   constexpr double hertz() const { return static_cast<double>(num) / static_cast<double>(den); }
   constexpr Frequency operator*(std::uint64_t k) const { return {num * k, den}; }
   constexpr Frequency operator/(std::uint64_t k) const { return {num, den * k}; }
-  /// A key in whole hertz stands for up to 1 Hz more or less (166666667Hz for 1/6 ns): what a limit or a
-  /// rounding is held against is 1 Hz in the key's favour.
+  /// A frequency that a user writes in whole hertz may stand for a true one up to 1 Hz away
+  /// (166666667Hz for a period of 6 ns). Limits are therefore compared with 1 Hz of tolerance in
+  /// the user's favour.
   constexpr Frequency less_1_hertz() const { return num > den ? Frequency(num - den, den) : *this; }
   constexpr Frequency plus_1_hertz() const { return stopped() ? *this : Frequency(num + den, den); }
   friend constexpr bool operator==(const Frequency&, const Frequency&) = default;
