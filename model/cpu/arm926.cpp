@@ -20,7 +20,7 @@ void Arm926::run() {
   try {
     core_.reset(entry_, kernel_time());
     core_.run();
-    catch_up();  // how far the kernel has come does not depend on who looked on
+    catch_up();  // how far the kernel has advanced must not depend on observers
   } catch (const GuestFailure& e) {
     failure_ = e.what();
   } catch (const NotModelled& e) {
@@ -37,7 +37,7 @@ void Arm926::clock_changed() {
   if (!clk.read().stopped()) clock_runs_.soon();
 }
 
-/// From event to event, as any may change the clock.
+/// Waits event by event, because each event may change the clock.
 void Arm926::sleep_until(Picoseconds until) {
   const unsigned before = clock_changes_;
   for (;;) {
@@ -47,7 +47,7 @@ void Arm926::sleep_until(Picoseconds until) {
   }
 }
 
-/// The core samples the lines at instruction boundaries strictly after now.
+/// The core samples the lines at instruction boundaries strictly after the present time.
 void Arm926::interrupt_changed() {
   const Picoseconds now = kernel_time();
   if (irq.read() != irq_) core_.set_irq(irq_ = irq.read(), now);

@@ -1,4 +1,4 @@
-// The ARM926EJ-S on its two AHB sockets.
+// The ARM926EJ-S as a SystemC module with its two AHB ports.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace fovea::cpu {
 
-/// Thin wrapper: the core runs on an SC_THREAD, so its blocking calls suspend it at any bus access
-/// and resume it there; the rules of time are those of bus::Agent.
+/// SystemC wrapper of the core. The core runs on an SC_THREAD, so that a call that blocks can
+/// suspend it at any bus access and resume it there. bus::Agent contains the rules of time.
 class Arm926 final : public bus::Agent<Arm926>, private BusPort {
  public:
   static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
@@ -24,15 +24,17 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
          std::uint32_t entry);
   Core& core() { return core_; }
   const Core& core() const { return core_; }
-  /// Not empty once the core has ended by a guest failure; the simulation is stopped then.
+  /// The message of the guest failure that ended the core and stopped the simulation; empty if none
+  /// did.
   const std::string& failure() const { return failure_; }
-  /// The core waits for an interrupt, as of the kernel's time.
+  /// True while the core waits for an interrupt, at kernel time.
   bool asleep() const { return asleep_; }
-  /// The access behind one of its requests.
+  /// The core's access that belongs to one of its requests on the bus.
   static const BusAccess& access_of(const MemRequest& r) {
     return *static_cast<const Record*>(static_cast<const Transaction*>(r.owner))->access;
   }
-  /// From the core's own stack, at an instruction boundary: the kernel comes to its time.
+  /// Waits until kernel time has reached the core's time. To be called from the core's own thread,
+  /// at an instruction boundary.
   void catch_up();
 
  private:
@@ -51,7 +53,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   void background_act() { core_.act(); }
   void completed(Transaction& tx);
 
-  /// What of an access does not change is set once.
+  /// The request of an access; its constant members are set only once.
   struct Record : Transaction {
     BusAccess* access = nullptr;
   };
@@ -65,7 +67,7 @@ class Arm926 final : public bus::Agent<Arm926>, private BusPort {
   Timer interrupt_, clock_runs_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
   unsigned clock_changes_ = 0;
-  Picoseconds asserted_ = 0;  // since when IRQ or FIQ is asserted
+  Picoseconds asserted_ = 0;  // time at which IRQ or FIQ was asserted
   std::string failure_;
 };
 

@@ -15,7 +15,7 @@ TcmDma::TcmDma(sc_core::sc_module_name name, Core& core, QuietPhase& quiet)
   dont_initialize();
 }
 
-/// Addresses are offsets in the RAM.
+/// The request's address is an offset in the RAM.
 tlm::tlm_sync_enum TcmDma::nb_transport_fw(MemRequest& r, MemPhase& phase,
                                            sc_core::sc_time& delay) {
   if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
@@ -33,14 +33,14 @@ void TcmDma::at(Picoseconds t) {
 }
 
 void TcmDma::act() {
-  if (clk.read().stopped()) return;  // clock_changed() goes on
+  if (clk.read().stopped()) return;  // clock_changed() continues
   MemRequest& r = *queue_.front().request;
   if (!begun_) {
     begun_ = true;
     core_.tcm_burst_begins({r.address, r.bytes, r.master}, kernel_time());
   }
   const Picoseconds over = core_.tcm_burst_over();
-  if (over > kernel_time()) return at(over);  // or the core has moved it back since
+  if (over > kernel_time()) return at(over);  // the core has postponed the end since
   finish(r);
 }
 
@@ -61,7 +61,7 @@ void TcmDma::finish(MemRequest& r) {
   if (!queue_.empty()) at(queue_.front().arrival);
 }
 
-/// The core has its new clock when the quiet phase comes.
+/// The core has applied the new clock by the time QuietPhase calls act().
 void TcmDma::clock_changed() {
   if (!queue_.empty() && !clk.read().stopped()) at(std::max(queue_.front().arrival, kernel_time()));
 }

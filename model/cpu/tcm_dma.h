@@ -1,4 +1,4 @@
-// The way of other masters into the core's internal RAM: a slave of the crossbar.
+// The crossbar slave through which other masters reach the core's internal RAM.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -24,9 +24,9 @@ struct TcmStats : StatGroup {
   TcmStats() : StatGroup("cpu.tcm") {}
 };
 
-/// One burst after the other, in the order of their arrival. Each begins and ends in the quiet phase of
-/// its instant, so that the core's own accesses of that instant come before. It stands still while the
-/// core's clock does.
+/// Executes one burst at a time, in order of arrival. Each burst begins and ends after all other
+/// activity of its instant (QuietPhase), so the core's own accesses of that instant come first.
+/// While the core's clock is stopped, bursts wait.
 class TcmDma : public sc_core::sc_module, public MemTargetIf {
  public:
   MemTargetSocket<32> socket{"socket"};
@@ -50,8 +50,8 @@ class TcmDma : public sc_core::sc_module, public MemTargetIf {
   Core& core_;
   QuietPhase& quiet_;
   std::deque<Waiting> queue_;
-  bool begun_ = false;       // the first of them
-  std::uint64_t plan_ = 0;   // the number of the only act that counts
+  bool begun_ = false;       // the first burst of the queue has begun
+  std::uint64_t plan_ = 0;   // number of the newest scheduled call of act(); older ones do nothing
   std::uint64_t waited_fetch_ = 0, waited_data_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Branches, multiplies and CLZ as handlers. Cycle counts: arm926.md 1.1.
+// Handlers of branches, multiplies and CLZ. Cycle counts: ARM DDI 0222B chapter 8.
 #include "model/cpu/core/handlers.h"
 
 namespace fovea::cpu {
@@ -7,7 +7,7 @@ template <Op kOp, bool kSet>
 Core::Ops::Next Core::Ops::multiply(Core& c, Next i, Cycle cycle) {
   ++c.counts_.multiplies;
   if constexpr (kOp == Op::kMul || kOp == Op::kMla) {
-    // Rd is in 19:16, the accumulator in 15:12.
+    // In the encoding, Rd is in bits 19:16 and the accumulator in bits 15:12.
     const std::uint32_t v = c.r_[i->rm] * c.r_[i->rs] + (kOp == Op::kMla ? c.r_[i->rd] : 0);
     c.r_[i->rn] = v;
     if constexpr (kSet) {
@@ -54,7 +54,8 @@ Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + 1);
 }
 
-/// B and BL. imm: distance from the first byte of the line; near: raw is that of the records.
+/// B and BL. imm: target relative to the first byte of the line. kNear: raw is the distance in
+/// records.
 template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
@@ -79,7 +80,7 @@ Core::Ops::Next Core::Ops::branch_exchange(Core& c, Next i, Cycle cycle) {
   return exchange<kThumb>(c, i, cycle + 3, target);
 }
 
-/// imm: from the line's first byte.
+/// imm: relative to the first byte of the line.
 Core::Ops::Next Core::Ops::thumb_link_prefix(Core& c, Next i, Cycle cycle) {
   c.r_[14] = c.run_va_ + i->imm;
   return next(c, i + 1, cycle + 1);
@@ -97,7 +98,7 @@ Handler Core::Ops::branch_body(Instruction& i, Place place) {
   if (i.op == Op::kBlxReg)
     return thumb ? &branch_exchange<true, true> : &branch_exchange<false, true>;
   if (i.op == Op::kThumbBlSuffix) return (i.flags & kSpsr) ? nullptr : &thumb_link_suffix;
-  // From here on: relative to the pc, and told from the beginning of the line.
+  // From here on, imm is not relative to the pc but to the beginning of the line.
   i.imm += i.at + (thumb ? 4u : kPcDelayArm);
   i.flags = static_cast<std::uint16_t>(i.flags & ~kReadsPc);
   if (i.op == Op::kThumbBlPrefix) return &thumb_link_prefix;

@@ -1,4 +1,4 @@
-// The D-AHB with its write and victim buffers, and the reads that wait for it.
+// The data AHB port with its write and victim buffers, and reads that wait for the port.
 #include <cstring>
 
 #include "model/cpu/core/fast_path.h"
@@ -11,16 +11,17 @@ void Core::charge_stall(std::uint64_t cycle, Cause cause, std::uint32_t pa, std:
   cycle_ = cycle;
 }
 
-/// Waits until the next buffered write can go out: a read's last words hold the port, then it is the
-/// AHB clock.
+/// Waits until the next buffered write can be sent: until the last words of a read have left the
+/// port, then for an edge of the AHB clock.
 void Core::stall_for_port(Cause cause) {
   stall_to(data_port_free_, cause, data_port_pa_, kService);
   stall_to(ahb(std::max(next_write_cycle_, data_port_free_)), cause,
            writes_.victim_bytes ? writes_.victim_address : writes_.front().address, kCore);
 }
 
-/// All others act before this clock. They may change its time, or stop it.
-/// @return that clock, or the first behind the change
+/// Lets all other agents do what they do before this clock. They may change the core's frequency or
+/// stop its clock.
+/// @return the clock, or the first one after a change
 [[gnu::noinline]] std::uint64_t Core::come_to(std::uint64_t cycle) {
   for (;;) {
     await_clock();
@@ -32,19 +33,19 @@ void Core::stall_for_port(Cause cause) {
   }
 }
 
-/// A core whose clock stands does nothing.
+/// Waits while the core's clock is stopped.
 void Core::await_clock() {
   while (!clock_.running()) port_.sleep_until(kNever);
 }
 
-/// Puts an access on its port.
+/// Submits an access on its port.
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
-  a.done = false;  // the buffers may look at it while others act
+  a.done = false;  // the buffers may inspect it while others act
   if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] cycle = come_to(cycle);
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
-  if (a.outside) attention_ = true;  // the horizon may be nearer from its outcome on
+  if (a.outside) attention_ = true;  // its outcome may bring the horizon nearer
 }
 
 Picoseconds Core::time_of_next_act() const {
@@ -64,7 +65,7 @@ std::uint64_t Core::next_act_cycle() const {
   return ahb(std::max(next_write_cycle_, data_port_free_));
 }
 
-/// AHB clock at which the write under way, which is done, leaves the port.
+/// AHB clock at which the write under way, whose outcome is known, leaves the port.
 std::uint64_t Core::write_over() const {
   if (write_over_ == 0) write_over_ = ahb(clock_.edge_at_or_after(write_access_.last));
   return write_over_;
@@ -76,7 +77,7 @@ void Core::act() {
   played_ = false;
 }
 
-/// @param cycle the present next_act_cycle()
+/// @param cycle the current next_act_cycle()
 inline void Core::act_at(std::uint64_t cycle) {
   if (write_in_flight_) retire_write();
   if (!writes_.empty() || writes_.victim_bytes) start_write(cycle);
@@ -122,14 +123,15 @@ void Core::start_write(std::uint64_t cycle) {
   write_floor_ = cycle + whole_;
 }
 
-/// Clocks that surely pass in this time. Ports rarely change their answer.
+/// Number of whole clocks in a duration. The result is kept, because ports rarely change their
+/// answer.
 [[gnu::noinline]] void Core::count_whole(Picoseconds t) {
   whole_of_ = t;
   whole_ = 0;
-  while (clock_.periods(whole_ + 1) + 1 < t) ++whole_;  // an edge may be rounded down
+  while (clock_.periods(whole_ + 1) + 1 < t) ++whole_;  // because edges may be rounded down
 }
 
-/// The buffers have something, and the write under way may be over by then.
+/// Executes the buffers' work before a clock, in order of time. Called only if there may be some.
 [[gnu::noinline]] void Core::play_on(std::uint64_t cycle) {
   for (;;) {
     if (write_in_flight_ && !write_access_.done && (cycle < write_floor_ || !write_is_over(cycle)))
@@ -140,14 +142,14 @@ void Core::start_write(std::uint64_t cycle) {
   }
 }
 
-/// Lets the write under way end by then, if it does. While the port waits the buffers may move on by
-/// themselves: look again afterwards.
+/// True if the write under way has ended by then. While the port waits, the buffers may advance on
+/// their own, so the caller has to check their state again.
 [[gnu::noinline]] bool Core::write_is_over(std::uint64_t cycle) {
   if (cycle >= stop_cycle_ || attention_) [[unlikely]] cycle = come_to(cycle);
   return port_.poll(write_access_, time(cycle)) || (write_in_flight_ && write_access_.done);
 }
 
-/// Waits for the write under way; the next one does not start by itself meanwhile.
+/// Waits until the write under way has ended; the next one does not start meanwhile.
 void Core::finish_write(Cause cause) { wait_for_write(cause); }
 
 [[gnu::always_inline]] inline void Core::wait_for_write(Cause cause) {
@@ -199,7 +201,7 @@ template <class Put>
   if (writes_.empty()) next_write_cycle_ = cycle_;
   put();
   counts_.d_write_beats += beats(count);
-  // The port may be idle: then the write goes out at once.
+  // If the port is idle, the write is sent at once.
   if (!write_in_flight_ && data_port_free_ <= cycle_) start_write(ahb(cycle_));
 }
 
@@ -207,7 +209,7 @@ void Core::enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned c
   enqueue(count, [&] { writes_.push(pa, bytes, count, asked_now()); });
 }
 
-/// A store to a line that is not in the cache and may be written.
+/// A store to a writable line that the cache does not hold.
 template <unsigned kBytes>
 void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
   record(pc_, va, kBytes | kWritten);
@@ -220,7 +222,7 @@ template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t)
 template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
 template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
 
-/// A read on the data port: goes before waiting writes unless it touches one of them.
+/// A read on the data port. It overtakes waiting writes unless it overlaps one of them.
 void Core::bus_read(BusAccess& a, Cause cause) {
   const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
   if (writes_.overlaps(start, a.bytes)) drain(cause);
@@ -247,7 +249,7 @@ bool Core::uncached_read(std::uint32_t pa, unsigned bytes, std::uint32_t& value)
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);
   a.asked = asked_now();
-  // Device order: what was written before is out before.
+  // Device order: earlier writes have to be complete first.
   drain(Cause::kUncached);
   bus_read(a, Cause::kUncached);
   value = 0;
@@ -263,7 +265,7 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
   a.kind = BusAccess::Kind::kSingle;
   a.write = true;
   a.buffered = false;
-  a.asked = 0;  // the program waits for its end
+  a.asked = 0;  // the program waits until it has ended
   a.locked = swapping_;
   a.address = pa;
   a.bytes = static_cast<std::uint8_t>(bytes);

@@ -1,4 +1,4 @@
-// A 4-way virtually tagged cache that holds its data.
+// A virtually tagged, 4-way set-associative cache that holds its data.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,17 +15,18 @@ class Cache {
         data_(static_cast<std::size_t>(size)) {}
   struct Line {
     std::uint32_t tag = 1;   // MVA of the line; 1: invalid
-    std::uint32_t pa = 0;    // where it came from, for write-backs
-    std::uint8_t dirty = 0;  // one bit per half
+    std::uint32_t pa = 0;    // physical address of the line, for write-backs
+    std::uint8_t dirty = 0;  // one bit for each half of the line
     bool write_back = false;
   };
   unsigned sets() const { return sets_; }
   unsigned lines() const { return sets_ * kWays; }
   unsigned set_of(std::uint32_t mva) const { return (mva >> 5) & (sets_ - 1); }
-  /// Index of the line that holds this MVA (low five bits ignored); -1 if none.
+  /// Index of the line that holds this MVA (its five low bits are ignored), or -1.
   [[gnu::always_inline]] int find(std::uint32_t mva) const {
     const std::uint32_t line = mva & ~31u;
-    // The whole MVA is the tag, so a line that carries it is the one, wherever the hint came from.
+    // The tag is the whole MVA, so a line with this tag is the right one, whichever address left
+    // the hint.
     std::uint16_t& hint = hints_[(mva >> 5) % kHints];
     if (lines_[hint].tag == line) return hint;
     const unsigned base = set_of(mva) * kWays;
@@ -44,9 +45,9 @@ class Cache {
   void invalidate_all() {
     for (unsigned i = 0; i < lines(); ++i) invalidate(i);
   }
-  /// The way to replace in a set: an invalid one first, else by the counter; locked ways (format C,
-  /// bit set) are passed over. Round robin or a 16-bit Galois LFSR (assumed: the chip's generator
-  /// is not documented).
+  /// Index of the line to replace in a set: an invalid one first, otherwise by the replacement
+  /// counter. Ways whose bit is set in `locked` (lockdown format C) are skipped. The policy is
+  /// round robin or a 16-bit Galois LFSR (assumed: the chip's random generator is not documented).
   unsigned victim(unsigned set, bool round_robin, std::uint32_t locked) {
     for (unsigned w = 0; w < kWays; ++w)
       if (lines_[set * kWays + w].tag == 1 && !(locked >> w & 1u)) return set * kWays + w;
@@ -70,7 +71,7 @@ class Cache {
   unsigned counter_ = 0;
   std::uint16_t lfsr_ = 0xACE1;
   static constexpr unsigned kHints = 64;
-  mutable std::array<std::uint16_t, kHints> hints_{};  // where lines were found last
+  mutable std::array<std::uint16_t, kHints> hints_{};  // index of the line found last, by address
 };
 
 }  // namespace fovea::cpu

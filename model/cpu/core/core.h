@@ -1,4 +1,4 @@
-// ARM926EJ-S: instructions, caches with data, MMU, write buffer and their time. Knows no SystemC.
+// The ARM926EJ-S: instructions, caches with data, MMU, write buffer, and their timing. No SystemC.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,53 +28,53 @@ enum class CpuMode : std::uint32_t {
   kUsr = 0x10, kFiq = 0x11, kIrq = 0x12, kSvc = 0x13, kAbt = 0x17, kUnd = 0x1B, kSys = 0x1F
 };
 
-/// One of the last data accesses, for messages about a failed guest.
+/// One of the last data accesses, for messages about a guest failure.
 struct AccessRecord {
   std::uint32_t pc = 0, address = 0;
   std::uint8_t bytes = 0;
   bool write = false;
 };
 
-/// Time is counted in core clocks (edge numbers of the core's clock) and becomes picoseconds only at
-/// the bus. An instruction boundary at clock c has the time of edge c.
+/// The core counts time in clocks (edge numbers of its clock) and converts it into picoseconds only
+/// for the bus. An instruction boundary at clock c has the time of edge c.
 class Core : public Background {
  public:
-  /// @param tcm the 32 KB RAM behind both TCM windows (0x0 and 0x10000), a power of two of bytes;
-  ///   empty: a core without TCMs
+  /// @param tcm the RAM of 32 KB that is visible through both TCM windows (0x0 and 0x10000); its
+  ///        size is a power of two. Empty: a core without TCMs
   Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm);
 
   void set_clock(Frequency f, Picoseconds at);
-  /// Interrupt lines; a change at t is seen by instruction boundaries strictly after t.
+  /// Sets an interrupt line. A change at t is visible to instruction boundaries strictly after t.
   void set_irq(bool level, Picoseconds at) { irq_.set(level, at); attention_ = true; }
   void set_fiq(bool level, Picoseconds at) { fiq_.set(level, at); attention_ = true; }
 
-  /// @param entry first instruction; bit 0 set means Thumb
+  /// @param entry address of the first instruction; bit 0 selects the Thumb state
   void reset(std::uint32_t entry, Picoseconds now);
-  /// Runs until request_stop(); blocks inside BusPort calls. @throws GuestFailure
+  /// Runs until request_stop(), blocking inside calls of BusPort. @throws GuestFailure
   void run();
   void request_stop() { stop_requested_ = true; attention_ = true; }
 
   // Background: the write and victim buffers on the D-AHB.
   Picoseconds next_act() const final { return read_waiting_ ? kNever : time_of_next_act(); }
   void act() final;
-  /// It has so many BusAccess of its own.
+  /// Number of BusAccess objects that the core owns.
   static constexpr std::size_t kAccesses = 3;
 
-  /// Marks an edge of the measured window at time t: the core notes its counters at its first
-  /// instruction boundary after t, or within a wait-for-interrupt at t exactly. First call: from,
-  /// second: to.
+  /// Marks the start (first call) or end (second call) of the measurement window at time t. The
+  /// core copies its counters at its first instruction boundary after t, or exactly at t during a
+  /// wait for interrupt.
   void mark_window(Picoseconds t);
   bool mark_done() const { return !mark_pending_; }
   const CoreStats& window_stats() const { return window_; }
   const Counts& counts() const { return counts_; }
   const Clock& clock() const { return clock_; }
-  /// Clocks waited for room in the write and victim buffers, and how often the core waited for both
-  /// to be empty; for a recorder of bus traffic.
+  /// Clocks that the core waited for room in the write and victim buffers, and how often it waited
+  /// until both were empty; for a recorder of bus traffic.
   std::uint64_t room_waits() const { return room_waits_; }
   std::uint64_t drains() const { return drains_; }
-  /// The counters as of time t of a core that waits for an interrupt until then.
+  /// The counters as of time t, for a core that waits for an interrupt until then.
   Counts counts_asleep(Picoseconds t) const;
-  /// Names for the addresses of stalls; set before the first instruction.
+  /// Names for the addresses in the stall statistics; must be set before the first instruction.
   void set_regions(RegionMap regions) { regions_ = std::move(regions); }
   const RegionMap& regions() const { return regions_; }
   std::uint64_t instructions_executed() const { return counts_.instructions; }
@@ -82,29 +82,31 @@ class Core : public Background {
   std::uint32_t reg(unsigned i) const { return i == 15 ? pc_ : r_[i]; }
   void set_reg(unsigned i, std::uint32_t v) { r_[i] = v; }
   std::uint32_t cpsr() const { return flags_live_ ? packed_cpsr() : cpsr_; }
-  /// The instruction being executed; after a guest failure, where its chain of exceptions began.
+  /// Address of the instruction that is executed; after a guest failure, of the one that began the
+  /// chain of exceptions.
   std::uint32_t current_pc() const { return failing_ ? failed_pc_ : pc_; }
   std::uint64_t clock_count() const { return cycle_; }
-  /// Of its last instruction boundary; may lie ahead of everybody else's time.
+  /// Time of the last instruction boundary; may be ahead of the other agents' time.
   Picoseconds boundary_time() const { return time(cycle_); }
   std::vector<AccessRecord> last_accesses() const;
-  /// Core clocks that an access to internal RAM takes beyond its first, from now on.
+  /// Core clocks that each access to internal RAM takes beyond its first one, from now on.
   void set_tcm_wait_states(unsigned clocks) {
     tcm_wait_ = clocks;
     flush_memos();
   }
-  /// Test harness: sees every SWI first; true means it was handled. Empty in production.
+  /// For test programs: called for every SWI first; returns true if it has handled it. Otherwise
+  /// empty.
   std::function<bool(Core&, std::uint32_t number)> swi_hook;
-  /// For messages: "name+0x12" of an address, "" if it has no name. May be empty.
+  /// For messages: returns "name+0x12" for an address, or "" if it has no name. May be empty.
   std::function<std::string(std::uint32_t)> describe;
-  /// The DMA port of internal RAM, for the kernel's side (model/cpu/tcm_dma.h): a burst arrives at
-  /// `at`; its data move at tcm_burst_over(), which the core may move back until then.
+  /// The DMA port of internal RAM, used by model/cpu/tcm_dma.h. A burst arrives at `at`; its data
+  /// are moved at tcm_burst_over(), a time that accesses of the core may postpone until then.
   void tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at);
   Picoseconds tcm_burst_over() const { return time(tcm_port_.end() - 1); }
   void tcm_burst_ends(bool write, std::uint8_t* data);
   const TcmPort& tcm_port() const { return tcm_port_; }
-  /// Reads internal RAM, the D-cache and the buffers without any effect; false if the address is in
-  /// none of them (memory has it then).
+  /// Reads internal RAM, the D-cache and the buffers without side effects. Returns false if none of
+  /// them holds the address, so that memory has the current value.
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
 
  private:
@@ -157,18 +159,18 @@ class Core : public Background {
   void interlock(const Instruction& i);
   std::uint64_t operands_ready(const Instruction& i, std::uint64_t cycle) const;
   enum Producer : std::uint8_t { kOther, kLoad, kMultiply };
-  /// The result of an instruction whose issue ends now is usable `latency` clocks later.
+  /// The result of an instruction whose issue ends now can be used `latency` clocks later.
   void produce(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kOther); }
   void loaded(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kLoad); }
   void multiplied(unsigned r, unsigned latency) { produced(r, cycle_ + latency, kMultiply); }
-  /// Latencies are two clocks at most and an instruction takes one at least: the youngest result is
-  /// never ready before an older one.
+  /// Latencies are at most two clocks and each instruction takes at least one, so a younger result
+  /// is never available before an older one.
   void produced(unsigned r, std::uint64_t ready, Producer by) {
     ready_[r] = ready << 2 | by;
     busy_until_ = ready;
   }
-  /// N, Z, C and V live apart while run() is active; whoever needs them in the CPSR packs first,
-  /// and unpacks what may have changed them there.
+  /// N, Z, C and V are kept in members of their own while run() is active. Code that needs them in
+  /// the CPSR calls pack_flags() first, and unpack_flags() after any change of the CPSR.
   std::uint32_t packed_cpsr() const {
     return (cpsr_ & 0x0FFF'FFFFu) | (n_ & 1u << 31) | (z_ ? 0 : 1u << 30) |
            std::uint32_t{c_} << 29 | std::uint32_t{v_} << 28;
@@ -180,7 +182,7 @@ class Core : public Background {
     c_ = cpsr_ >> 29 & 1u;
     v_ = cpsr_ >> 28 & 1u;
   }
-  /// What a chain of records did up to record `i` becomes part of the counters.
+  /// Adds what a chain of records did before record `i` to the counters, and sets pc_ and cycle_.
   void settle(const Instruction* i, std::uint64_t cycle) {
     pc_ = run_va_ + i->at;
     counts_.issue += cycle - cycle_;
@@ -216,11 +218,11 @@ class Core : public Background {
 
   // prepare.cpp
   struct DecodedLine;
-  /// What the neighbours in a line say about a record; as it stands here it is right anywhere.
+  /// What the neighbours in a line allow a record to leave out. The default is correct anywhere.
   struct Place {
     enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
-    bool track = true;    // somebody may have to wait for its result
-    bool in_line = false;  // lies in a line with all its records
+    bool track = true;    // a later record may have to wait for its result
+    bool in_line = false;  // the record belongs to a line that holds all its records
   };
   void prepare(Instruction& i, unsigned at, Place place) const;
   static void clear_line(DecodedLine& d, bool thumb);
@@ -230,7 +232,7 @@ class Core : public Background {
 
   // tcm.cpp
   void tcm_access(std::uint32_t pa, TcmPort::Side side);
-  /// Nobody pays for an access or has to look at it.
+  /// True if accesses to internal RAM cost no extra clocks and no DMA can interfere.
   bool tcm_quick() const {
     return (tcm_wait_ | tcm_own_conflict_) == 0 && !tcm_port_.busy();
   }
@@ -252,8 +254,9 @@ class Core : public Background {
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, bool user = false);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, bool user = false);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count, bool user);
-  /// Internal RAM is chosen by the physical address (model/decisions/0008-internal-ram.md). Data
-  /// reach it through both windows, fetches only through the instruction TCM's.
+  /// The physical address selects internal RAM (model/decisions/0008-internal-ram.md). Data
+  /// accesses reach it through both windows, instruction fetches only through that of the
+  /// instruction TCM.
   bool in_itcm(std::uint32_t pa) const { return pa < itcm_size_; }
   bool in_dtcm(std::uint32_t pa) const { return pa - kDtcmBase < dtcm_size_; }
   bool in_tcm(std::uint32_t pa) const { return in_itcm(pa) || in_dtcm(pa); }
@@ -262,7 +265,7 @@ class Core : public Background {
   std::uint32_t modified(std::uint32_t va) const {
     return va < 0x0200'0000u ? va | process_ : va;
   }
-  /// MVA of an instruction.
+  /// Modified virtual address of an instruction.
   std::uint32_t fetched_at(std::uint32_t va) const {
     return va < 0x0200'0000u ? va | fetch_process_ : va;
   }
@@ -276,7 +279,8 @@ class Core : public Background {
   bool permitted(const Translation& t, bool write, bool user, unsigned& fault) const;
   void fault(bool instruction, unsigned status, unsigned domain, std::uint32_t address);
   void external_abort_at(std::uint32_t last);
-  /// Several words at an address that is not a word's: notes a fault if alignment is checked.
+  /// For an access of several words: records a fault if the address is not a word's and alignment
+  /// is checked.
   bool misaligned(std::uint32_t va) {
     if (!(control_ & 2u) || !(va & 3u)) return false;
     fault(false, 0x1, 0, modified(va));
@@ -301,7 +305,7 @@ class Core : public Background {
     const std::uint64_t n = cycle + ratio_ - 1;
     return ahb_mask_ ? n & ahb_mask_ : n / ratio_ * ratio_;
   }
-  /// A stall of the core's own that has no address.
+  /// Stalls the core for a reason without an address, with the core itself as culprit.
   void stall_to(std::uint64_t cycle, Cause cause) {
     if (cycle > cycle_) {
       counts_.stall[index(cause)] += cycle - cycle_;
@@ -310,7 +314,7 @@ class Core : public Background {
       cycle_ = cycle;
     }
   }
-  /// A stall for the sake of a physical address. The culprit is one of kStallCulprits.
+  /// Stalls the core for an access to a physical address. The culprit is one of kStallCulprits.
   void stall_to(std::uint64_t cycle, Cause cause, std::uint32_t pa, std::size_t culprit) {
     if (cycle > cycle_) charge_stall(cycle, cause, pa, culprit);
   }
@@ -320,7 +324,7 @@ class Core : public Background {
   void stall_for_port(Cause cause);
   void sync_to_ahb(std::uint32_t pa) { stall_to(ahb(cycle_), Cause::kBusSync, pa, kCore); }
   void submit(BusAccess& a, std::uint64_t cycle);
-  /// Plays the buffers up to a clock, in time order.
+  /// Sends the buffered writes that are due before a clock, in order of time.
   void play(std::uint64_t cycle) {
     if (write_in_flight_ ? !write_access_.done && cycle < write_floor_
                          : writes_.empty() && writes_.victim_bytes == 0)
@@ -338,7 +342,7 @@ class Core : public Background {
   void enqueue(unsigned count, Put put);
   void enqueue_write(std::uint32_t pa, const std::uint8_t* bytes, unsigned count);
   void make_room(unsigned count);
-  /// BusAccess::asked of what the program comes to now.
+  /// BusAccess::asked of an access that the program reaches now.
   std::uint64_t asked_now() const { return cycle_ - room_waits_; }
   void finish_write(Cause cause);
   void wait_for_write(Cause cause);
@@ -353,25 +357,27 @@ class Core : public Background {
   BusPort& port_;
   std::span<std::uint8_t> tcm_;
   TcmPort tcm_port_;
-  bool bus_waited_ = false;  // since the last access to internal RAM that looked
+  bool bus_waited_ = false;  // set by a bus access since tcm_access() last looked
   Clock clock_;
   unsigned ratio_, fill_latency_, walk_cycles_, cache_op_cycles_, test_clean_cycles_,
       invalidate_all_cycles_, tcm_wait_, tcm_own_conflict_;
   bool shifted_cycle_;
-  std::uint64_t ahb_mask_;  // of the core clocks at AHB edges; 0: their ratio is no power of two
+  std::uint64_t ahb_mask_;  // selects the core clocks at AHB edges; 0: their ratio is not a power
+                            // of two
 
   // Registers.
   std::array<std::uint32_t, 16> r_{};
   std::uint32_t pc_ = 0, next_pc_ = 0;
   std::uint32_t cpsr_ = 0xD3;
-  std::array<std::array<std::uint32_t, 7>, 6> banked_{};  // per bank: r13, r14, (r8..r12)
-  std::array<std::uint32_t, 5> user_high_{};              // r8..r12 outside FIQ
+  std::array<std::array<std::uint32_t, 7>, 6> banked_{};  // for each bank: r13, r14, (r8..r12)
+  std::array<std::uint32_t, 5> user_high_{};              // r8..r12 outside FIQ mode
   std::array<std::uint32_t, 5> fiq_high_{};
   std::array<std::uint32_t, 6> spsr_{};
   bool branched_ = false;
 
-  // Results: bit 31 is N; zero is Z. Laid out so that compilers do not join the stores of two flags
-  // (that takes longer than the stores).
+  // Flags in the form in which results provide them: bit 31 of n_ is N, and Z is set if z_ is zero.
+  // The order of the members keeps compilers from merging the stores of two flags, which takes
+  // longer than two stores.
   std::uint32_t n_ = 0;
   std::uint8_t c_ = 0;
   std::uint32_t z_ = 1;
@@ -380,34 +386,35 @@ class Core : public Background {
 
   // Time.
   std::uint64_t cycle_ = 0;
-  std::uint64_t clock_floor_ = 0;  // first edge behind the last change of the clock
-  std::uint64_t stop_cycle_ = 0;  // first clock that needs step_attention()
-  bool played_ = false;           // the port plays the buffers: it is their time
+  std::uint64_t clock_floor_ = 0;  // first edge after the last change of the clock
+  std::uint64_t stop_cycle_ = 0;  // first clock at which step_attention() has to be called
+  bool played_ = false;           // the port is executing the buffers' work, at its own time
   bool attention_ = true;
-  std::uint64_t chain_stop_ = 0;  // first clock at which a chain of records ends
-  std::uint64_t chain_cycle_ = 0;  // between two records (build without tail calls)
+  std::uint64_t chain_stop_ = 0;  // clock at which a chain of records ends
+  std::uint64_t chain_cycle_ = 0;  // clock between two records (builds without tail calls)
   std::array<std::uint64_t, 16> ready_{};  // clock << 2 | Producer
-  std::uint64_t busy_until_ = 0;           // the latest of them
+  std::uint64_t busy_until_ = 0;           // the latest entry of ready_
 
   // Fetch.
   std::uint32_t line_va_ = 1;               // line of the current records; 1: none
   std::uint32_t line_thumb_ = 0;
-  unsigned line_shift_ = 2;                 // instruction size there, as a power of two
+  unsigned line_shift_ = 2;                 // log2 of the instruction size in that line
   std::uint32_t run_va_ = 0;                // line of the running chain
-  std::intptr_t run_first_ = 0;             // place of a record: those from here on are not counted
-  /// One more record than a line can hold: the one behind the last leads to the next line.
+  std::intptr_t run_first_ = 0;             // address of a record: those from here on are not
+                                            // counted yet
+  /// Holds one more record than a line: the one after the last leads to the next line.
   struct DecodedLine {
-    std::uint64_t valid = 0;                // line_key() of its last lookup; 0: nothing decoded
+    std::uint64_t valid = 0;                // line_key() of the last lookup; 0: nothing is decoded
     std::array<Instruction, 17> records;
   };
-  /// Says where and under which translation a line was found; never 0. Bit 0 is the Thumb state,
-  /// bit 2 internal RAM: a chain stays in one of them (Counts::fetch_from).
+  /// Identifies a line's address and the translation under which it was found; never 0. Bit 0 is
+  /// the Thumb state, bit 2 internal RAM. A chain never leaves one of these (Counts::fetch_from).
   std::uint64_t line_key(std::uint32_t va) const {
     return line_epoch_ | (va & ~31u) | (cpsr_ >> 5 & 1u);
   }
   static constexpr std::uint64_t kEpoch = std::uint64_t{1} << 32;
   static constexpr std::uint64_t kLineInRam = 4;
-  std::uint64_t line_epoch_ = kEpoch | 2u;  // a new one at each flush_memos()
+  std::uint64_t line_epoch_ = kEpoch | 2u;  // changes at each flush_memos()
   std::vector<DecodedLine> decoded_;        // one per I-cache line
   DecodedLine* current_line_ = nullptr;
   std::vector<DecodedLine> tcm_decoded_;
@@ -418,19 +425,19 @@ class Core : public Background {
     out.fill(line);
     return out;
   }
-  std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // lines found last, by address
+  std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // targets found last, by address
   std::array<Instruction, 2> uncached_record_;
-  std::array<Instruction, 2> apart_;        // for an UNPREDICTABLE form
+  std::array<Instruction, 2> apart_;        // separate copy of an UNPREDICTABLE form
   bool fetch_branched_ = false;
-  std::uint64_t redirects_seen_ = 0;  // by the last fetch past the caches
-  bool bus_fetch_ = false;  // the last fetch went to the bus: time has passed since the boundary
+  std::uint64_t redirects_seen_ = 0;  // value at the last fetch that bypassed the caches
+  bool bus_fetch_ = false;  // the last fetch used the bus: time has passed since the boundary
   std::uint32_t fetch_buffer_pa_ = 1, fetch_words_[4] = {};
   BusAccess fetch_access_;
   struct Fill {
-    std::uint32_t line = 1;                 // MVA of the line under fill, 1: none
-    std::uint32_t critical = 0;             // word that came first
+    std::uint32_t line = 1;                 // MVA of the line that is being filled; 1: none
+    std::uint32_t critical = 0;             // word that arrives first
     std::uint32_t pa = 0;
-    std::uint64_t first = 0, last = 0;      // clocks
+    std::uint64_t first = 0, last = 0;      // clocks of the first and the last word
     std::uint64_t word(std::uint32_t index) const {
       const std::uint32_t order = (index - critical) & 7u;
       return first + (last - first) * order / 7;
@@ -442,26 +449,26 @@ class Core : public Background {
   Cache icache_, dcache_;
   Tlb tlb_;
   struct Memo {
-    std::uint32_t page = 1;  // mva >> 10, or a number no page has
+    std::uint32_t page = 1;  // mva >> 10, or a number that no page has
     Translation translation;
     bool read_ok = false, write_ok = false;
   };
   static constexpr unsigned kMemos = 256;
   std::array<Memo, kMemos> dmemo_{}, imemo_{};
   void flush_memos();
-  /// A place where the core reads or writes without a further look: translation, permission and
-  /// tag held when it was noted, and what could change that takes the note away. For writes a hint
-  /// covers half a line whose dirty bit is set.
+  /// An address range that the core may read or write without further checks: translation,
+  /// permission and cache tag were valid when the hint was made, and whatever could change them
+  /// removes the hint. A write hint covers half a line whose dirty bit is set.
   struct Hint {
-    std::uint32_t key = kNoHint;  // address of its first byte
-    std::uint32_t counter = 0;    // where in counts_ an access is counted, in bytes
+    std::uint32_t key = kNoHint;  // virtual address of its first byte
+    std::uint32_t counter = 0;    // offset in counts_ of the counter of these accesses, in bytes
     std::uintptr_t bias = 0;      // host address of the byte at VA is bias + VA
   };
-  static constexpr std::uint32_t kNoHint = 4;  // no masked address has this bit
+  static constexpr std::uint32_t kNoHint = 4;  // no aligned address has this bit
   static constexpr unsigned kHints = 256, kReadSpan = 32, kWriteSpan = 16;
   std::array<Hint, kHints> read_hints_{}, write_hints_{};
-  /// A writable line that the D-cache does not hold, as for the read hints: stores to it go to the
-  /// write buffer.
+  /// A writable, cacheable line that the D-cache does not hold; valid under the same conditions as
+  /// a read hint. Stores to it go to the write buffer.
   struct {
     std::uint32_t key = kNoHint, pa = 0;
   } absent_;
@@ -483,60 +490,67 @@ class Core : public Background {
   }
   void flush_hints();
   void drop_hints(std::uint32_t line_mva);
-  Translation flat_;          // MMU off
+  Translation flat_;          // used while the MMU is off
   BusAccess data_access_;
   WriteBuffer writes_;
   BusAccess write_access_;
-  std::uint64_t room_waits_ = 0;  // clocks waited for room in the buffers, all causes
-  std::uint64_t drains_ = 0;      // times that the core waited until the buffers were empty
+  std::uint64_t room_waits_ = 0;  // clocks waited for room in the buffers, for all causes
+  std::uint64_t drains_ = 0;      // number of times that the core waited until the buffers were
+                                  // empty
   bool write_in_flight_ = false;
   bool write_is_victim_ = false;
-  std::uint64_t write_floor_ = 0;  // clock before which the write under way is not over
-  Picoseconds whole_of_ = 0;       // count_whole(): last question and answer
+  std::uint64_t write_floor_ = 0;  // the write under way does not end before this clock
+  Picoseconds whole_of_ = 0;       // count_whole(): last argument and result
   std::uint64_t whole_ = 0;
-  mutable std::uint64_t write_over_ = 0;  // clock at which it can be retired; 0: not yet known
+  mutable std::uint64_t write_over_ = 0;  // clock at which the write under way can be retired; 0:
+                                          // unknown
   static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};
   mutable std::uint64_t act_time_cycle_ = kNoCycle;  // next_act(): last clock and its time
   mutable Picoseconds act_time_ = 0;
-  bool filling_ = false;             // the victim waits until the fill has read
+  bool filling_ = false;             // the victim is sent only after the fill has been requested
   std::uint64_t next_write_cycle_ = 0;
   bool read_waiting_ = false;
-  std::uint64_t data_port_free_ = 0;  // clock
-  std::uint32_t data_port_pa_ = 0;    // whose last word holds it until then
+  std::uint64_t data_port_free_ = 0;  // clock at which the data port is free
+  std::uint32_t data_port_pa_ = 0;    // address whose last word occupies the port until then
 
   // CP15.
   std::uint32_t control_ = 0x0005'0078;
   std::uint32_t ttbr_ = 0, dacr_ = 0, dfsr_ = 0, ifsr_ = 0, far_ = 0;
   std::uint32_t fcse_pid_ = 0, context_id_ = 0;
-  std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on (ARM DDI 0198D 2-34)
-  // The same and the control register for fetches: old ones behind a change.
+  std::uint32_t process_ = 0;  // the FCSE PID while the MMU is on, otherwise 0 (ARM DDI 0198D 2-34)
+  // Process and control register that apply to fetches: after a change, for a short time the old
+  // values.
   std::uint32_t fetch_process_ = 0, fetch_control_ = 0x0005'0078;
-  std::uint32_t old_fetch_pc_ = 0;     // where the flow must be to go on with them
-  unsigned old_fetch_left_ = 0;        // instructions fetched with them: so many to come, and one
-  static constexpr std::uint32_t kFetchBits = 1u << 12 | 1u;  // of the control register: I and M
+  std::uint32_t old_fetch_pc_ = 0;     // pc at which the old values still apply
+  unsigned old_fetch_left_ = 0;        // number of instructions that are still fetched with them,
+                                       // plus one
+  static constexpr std::uint32_t kFetchBits = 1u << 12 | 1u;  // bits I and M of the control
+                                                              // register
   std::uint32_t dlock_ = 0, ilock_ = 0, tlb_lock_ = 0;
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;
 
   Line irq_, fiq_;
   bool stop_requested_ = false;
-  bool swapping_ = false;             // the two accesses of an SWP are locked
-  bool aborted_ = false;              // set by a failed access of this instruction
+  bool swapping_ = false;             // the two accesses of a SWP are locked
+  bool aborted_ = false;              // an access of the current instruction failed
   bool mark_pending_ = false;
   bool first_mark_ = true;
-  Picoseconds mark_at_ = 0, mark_next_ = kNever;  // the second may come before the first is taken
+  Picoseconds mark_at_ = 0, mark_next_ = kNever;  // the second mark may be set before the first one
+                                                  // is reached
   unsigned chain_ = 0;                // exceptions since the last completed instruction
   bool failing_ = false;
   std::uint32_t failed_pc_ = 0, failed_cpsr_ = 0;
   const char* failed_by_ = "";
-  bool failed_jump_ = false;          // it was reached by a jump to 0, from failed_from_
+  bool failed_jump_ = false;          // the failing address 0 was reached by a jump from
+                                      // failed_from_
   std::uint32_t failed_from_ = 0;
-  // The last jump that left the lines known by then; no exception.
+  // The last jump to an unknown line; not set by exceptions.
   static constexpr std::uint32_t kNoJump = 1;
   std::uint32_t jumped_from_ = 0, jumped_to_ = kNoJump;
-  std::map<std::string, std::string> unpredictable_;  // warnings by form
+  std::map<std::string, std::string> unpredictable_;  // texts of the warnings, by form
 
-  CoreControl* debugger_ = nullptr;   // looks at every instruction boundary while a debugger wants to
+  CoreControl* debugger_ = nullptr;   // called at every instruction boundary if set
   void control_boundary();             // debug_control.cpp
 
   Counts counts_;
@@ -544,12 +558,12 @@ class Core : public Background {
   CoreStats window_;
   struct alignas(16) Access {
     std::uint32_t pc = 0, address = 0;
-    std::uint32_t what = 0;  // bytes, kWritten, how many more words follow << 16; 0: none yet
+    std::uint32_t what = 0;  // bytes, kWritten, number of further words << 16; 0: no access yet
     std::uint32_t unused = 0;
   };
   static constexpr std::uint32_t kWritten = 1u << 8;
   std::array<Access, 16> ring_{};
-  std::uint8_t ring_at_ = 0;  // in bytes: wraps with the ring
+  std::uint8_t ring_at_ = 0;  // offset in bytes; wraps at the size of the ring
   const CpuParams& params_;
 };
 

@@ -1,15 +1,15 @@
-// CP15: control, MMU and cache registers, cache operations, wait-for-interrupt.
+// CP15: control, MMU and cache registers, cache operations, wait for interrupt.
 #include "model/cpu/core/fast_path.h"
 
 namespace fovea::cpu {
 namespace {
 
-/// One number per register: opc1, CRn, CRm, opc2.
+/// Number of a register: opc1, CRn, CRm, opc2.
 constexpr std::uint32_t id(unsigned op1, unsigned crn, unsigned crm, unsigned op2) {
   return op1 << 12 | crn << 8 | crm << 4 | op2;
 }
 
-/// Cache type register: format C lockdown, write-back (arm926.md 2.6).
+/// Size field of the cache type register: write-back, lockdown format C (ARM DDI 0198D 2.3).
 std::uint32_t size_field(std::uint64_t bytes) {
   unsigned code = 0;
   for (std::uint64_t s = 512; s < bytes; s *= 2) ++code;
@@ -56,7 +56,7 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
     case id(0, 5, 0, 1): v = ifsr_; return true;
     case id(0, 6, 0, 0): v = far_; return true;
     case id(0, 7, 10, 3):
-    case id(0, 7, 14, 3): {  // test and clean (and invalidate when all is clean)
+    case id(0, 7, 14, 3): {  // test and clean (and invalidate, once all lines are clean)
       stall_to(cycle_ + test_clean_cycles_, Cause::kCacheOp);
       for (unsigned n = 0; n < dcache_.lines(); ++n) {
         if (dcache_.line(n).tag == 1 || dcache_.line(n).dirty == 0) continue;
@@ -79,15 +79,16 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
     case id(7, 15, 0, 0): v = cache_debug_; return true;
     default: break;
   }
-  if ((reg >> 8 & 15u) == 0) {  // c0: undefined codes read the main ID
+  if ((reg >> 8 & 15u) == 0) {  // c0: undefined codes read the main ID register
     v = 0x41069265u;
     return true;
   }
   return false;
 }
 
-/// Behind a change of the process or of the control register: the pipeline holds two instructions
-/// already. A second change shows both at once to what comes behind it (assumed).
+/// Called after a change of the process ID or of the control register: two instructions are already
+/// in the pipeline. If a second change follows, the instructions after it see both at once
+/// (assumed).
 void Core::fetch_differently() {
   const bool same = old_fetch_left_ || (process_ == fetch_process_ &&
                                         !((control_ ^ fetch_control_) & kFetchBits));
@@ -119,7 +120,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(0, 9, 1, 0):
     case id(0, 9, 1, 1): {
       if (tcm_.empty()) return true;
-      // The regions are soldered on this chip; only the enable bit moves.
+      // The chip fixes the address and size of the regions; only the enable bit can be changed.
       auto& region = reg == id(0, 9, 1, 0) ? dtcm_region_ : itcm_region_;
       auto& size = reg == id(0, 9, 1, 0) ? dtcm_size_ : itcm_size_;
       if ((v & 0xFFFFF000u) != (region & 0xFFFFF000u))
@@ -140,7 +141,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(7, 15, 0, 0): cache_debug_ = v & 7u; return true;
     default: break;
   }
-  if ((reg >> 8) == 8) {  // TLB operations; all three CRm forms act on the unified TLB
+  if ((reg >> 8) == 8) {  // TLB operations; all three values of CRm act on the unified TLB
     if ((reg & 15u) == 0) tlb_.invalidate_all();
     else tlb_.invalidate(v & ~0x3FFu);
     flush_memos();
@@ -177,7 +178,7 @@ bool Core::cache_operation(unsigned crm, unsigned op2, std::uint32_t v) {
     line_va_ = 1;
     fetch_buffer_pa_ = 1;
   };
-  // The register holds the modified address: FCSE does not apply here (ARM DDI 0198D 2-34).
+  // The register holds a modified address, so FCSE does not apply (ARM DDI 0198D 2-34).
   const std::uint32_t mva = v & ~31u;
   switch (crm << 4 | op2) {
     case 0x04: wait_for_interrupt(); return true;
@@ -218,7 +219,7 @@ Counts Core::counts_asleep(Picoseconds t) const {
   return c;
 }
 
-/// Sleeps until IRQ or FIQ is asserted, masked or not.
+/// Sleeps until IRQ or FIQ is asserted, even if masked.
 void Core::wait_for_interrupt() {
   drain(Cause::kDrain);
   const std::uint64_t begin = cycle_;
@@ -226,7 +227,7 @@ void Core::wait_for_interrupt() {
     const Picoseconds at = port_.wait_for_interrupt(time(cycle_));
     const std::uint64_t wake = std::max(begin, clock_.edge_after(at));
     while (mark_pending_) {
-      // A window's edge falls into the sleep: split the idle time there.
+      // The edge of the measurement window is within the sleep: split the idle time there.
       const std::uint64_t split = std::max(begin, clock_.edge_after(mark_at_));
       if (split > wake) break;
       counts_.idle += split - cycle_;

@@ -1,5 +1,5 @@
-// Data processing instructions: a handler for each operation, operand form and S bit, so that what
-// an instruction does not need (carry out, flags) costs nothing. Cycle counts: arm926.md 1.1.
+// Handlers of data-processing instructions: one for each operation, operand form and S bit, so that
+// unneeded work (carry-out, flags) costs no host time. Cycle counts: ARM DDI 0222B chapter 8.
 #include "model/cpu/core/handlers.h"
 #include "model/cpu/core/shifter.h"
 
@@ -12,10 +12,10 @@ constexpr bool logical(Op op) {
 }
 constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
 
-// The flags are results of their own and not members beside the value: compilers pack such members
-// into one register, which takes longer than the addition.
+// The flags are separate results and not members of a struct with the value: compilers pack such
+// members into one register, which takes longer than the addition.
 
-/// x + y + in, with the flags of the adder.
+/// x + y + in, with carry and overflow of the adder.
 [[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool in,
                                                 bool& carry, bool& overflow) {
   const std::uint64_t sum = std::uint64_t{x} + y + in;
@@ -24,7 +24,7 @@ constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
   overflow = ((~(x ^ y) & (x ^ value)) >> 31) != 0;
   return value;
 }
-/// x + y.
+/// x + y, with carry and overflow.
 [[gnu::always_inline]] inline std::uint32_t add(std::uint32_t x, std::uint32_t y, bool& carry,
                                                 bool& overflow) {
   std::int32_t value;
@@ -33,7 +33,7 @@ constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
   carry = static_cast<std::uint32_t>(value) < x;
   return static_cast<std::uint32_t>(value);
 }
-/// x - y; the carry is the borrow's complement.
+/// x - y; the carry is the complement of the borrow.
 [[gnu::always_inline]] inline std::uint32_t subtract(std::uint32_t x, std::uint32_t y, bool& carry,
                                                      bool& overflow) {
   std::int32_t value;
@@ -43,7 +43,7 @@ constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
   return static_cast<std::uint32_t>(value);
 }
 
-/// @param carry in: the shifter's carry out, which logical operations keep
+/// @param carry in: the shifter's carry-out, which logical operations keep
 template <Op kOp>
 [[gnu::always_inline]] inline std::uint32_t compute(std::uint32_t a, std::uint32_t b, bool c,
                                                     bool& carry, bool& overflow) {
@@ -83,7 +83,7 @@ Core::Ops::Next Core::Ops::data(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + (kForm >= Form::kLslReg ? 2 : 1));
 }
 
-/// Place of a handler: operation, form * 16, S * 16 * kForms.
+/// Index of a handler: operation + form * 16 + S * 16 * kForms.
 template <std::size_t... k>
 constexpr std::array<Handler, sizeof...(k)> Core::Ops::data_table(std::index_sequence<k...>) {
   return {&data<static_cast<Op>(k % 16), static_cast<Form>(k / 16 % kForms),
@@ -93,14 +93,14 @@ constexpr std::array<Handler, sizeof...(k)> Core::Ops::data_table(std::index_seq
 Handler Core::Ops::data_body(Instruction& i) {
   static constexpr auto kTable = data_table(std::make_index_sequence<32 * kForms>{});
   if (writes(i.op) && i.rd == 15) return nullptr;
-  // Register-specified: the pc reads 12 ahead (one cycle later).
+  // With a shift by register, r15 reads 12 bytes ahead, because it is read one clock later.
   if (i.operand == Operand::kShiftReg && (i.flags & kReadsPc)) return nullptr;
   const auto form = static_cast<unsigned>(form_of(i));
   return kTable[static_cast<unsigned>(i.op) + 16 * (form + kForms * (i.flags & kSetFlags))];
 }
 
-/// What has no handler: writes to the pc, and operands that read the pc a cycle later. The CPSR is
-/// packed.
+/// Instructions without a handler: writes to the pc, and operands that read the pc one clock later.
+/// The flags must be packed into the CPSR.
 void Core::data_processing(const Instruction& decoded) {
   Instruction i = decoded;
   const bool late = i.operand == Operand::kShiftReg;
@@ -117,7 +117,7 @@ void Core::data_processing(const Instruction& decoded) {
       [](auto op) { return &compute<static_cast<Op>(decltype(op)::value)>; },
       std::make_index_sequence<16>{})(r[i.rn], b, (cpsr_ & kC) != 0, carry, overflow);
   if (writes(i.op) && i.rd == 15) {
-    // RSC counts with the logical ones here.
+    // For this, RSC behaves like the logical operations.
     spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);
     if ((i.flags & kSetFlags) && !(i.flags & kThumbInsn)) {
       set_cpsr(spsr_[bank(cpsr_)]);

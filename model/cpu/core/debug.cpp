@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kLineMask = Cache::kLineBytes - 1;
 
-/// Calls f(va, offset, count) for each piece inside one cache line, until one answers false.
+/// Calls f(va, offset, count) for each part within one cache line, until a call returns false.
 template <class F>
 bool by_lines(std::uint32_t va, std::size_t bytes, F f) {
   for (std::size_t done = 0; done < bytes;) {
@@ -23,7 +23,7 @@ bool by_lines(std::uint32_t va, std::size_t bytes, F f) {
 
 }  // namespace
 
-/// Memory with what the write and victim buffers still hold.
+/// Reads memory, including the pending bytes of the write and victim buffers.
 bool CoreDebug::read_memory(std::uint32_t pa, std::span<std::uint8_t> to) {
   if (!memory_.debug_read(pa, to)) return false;
   for (std::size_t k = 0; k < to.size(); ++k)
@@ -44,7 +44,7 @@ std::optional<CoreDebug::Place> CoreDebug::place(std::uint32_t mva) {
   const bool cache_on = core_.control_ & 4u;
   if (const TlbEntry* e = core_.tlb_.find(mva))
     return Place{e->physical(mva), e->cacheable && cache_on};
-  // The walk of Core::walk() without its time, faults and TLB.
+  // The same walk as Core::walk(), without time, faults or TLB.
   const auto first = table_word((core_.ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2);
   if (!first) return std::nullopt;
   const auto page = [&](std::uint32_t d, std::uint32_t mask) {
@@ -100,7 +100,7 @@ bool CoreDebug::write(std::uint32_t va, std::span<const std::uint8_t> from) {
       return true;
     }
     if (!memory_.debug_write(p->pa, piece)) return false;
-    // Older data on their way to memory must not win later.
+    // Older data on their way to memory must not overwrite the new bytes later.
     core_.writes_.patch(p->pa, piece);
     if (core_.write_in_flight_) {
       BusAccess& a = core_.write_access_;

@@ -20,7 +20,7 @@ bool holds(unsigned cond, std::uint32_t cpsr) {
   }
 }
 
-/// What an instruction will touch.
+/// What an instruction is about to touch.
 struct Touch {
   std::uint32_t va = 0, bytes = 0;
   bool reads = false, writes = false;
@@ -28,7 +28,7 @@ struct Touch {
 
 }  // namespace
 
-/// Flags travel apart while the core runs; debuggers see them in the CPSR.
+/// The flags are kept outside the CPSR while the core runs; debuggers expect them in it.
 void Core::control_boundary() {
   pack_flags();
   debugger_->boundary();
@@ -39,11 +39,11 @@ void CoreControl::update() {
   const bool active = halt_ || step_ || follow_ || stop_after_ != kNever || !breakpoints_.empty() ||
                       !watches_.empty();
   core_.debugger_ = active ? this : nullptr;
-  if (active) core_.attention_ = true;  // a chain under way ends
+  if (active) core_.attention_ = true;  // end a chain that is under way
 }
 
 void CoreControl::set_watch(std::uint32_t va, std::uint32_t bytes, Watch kind) {
-  // Setting one again changes nothing, as GDB's protocol says.
+  // Setting a watchpoint twice has no effect, as the protocol of GDB requires.
   if (std::any_of(watches_.begin(), watches_.end(), [&](const Range& r) {
         return r.va == va && r.bytes == bytes && r.kind == kind;
       }))
@@ -75,8 +75,8 @@ void CoreControl::clear() {
   update();
 }
 
-/// The boundary lies at or before the next event of anybody else: nobody acts here but the core's
-/// own buffers and the bus.
+/// The boundary is not after the next event of any other agent, so only the core's own buffers and
+/// the bus can act here.
 void CoreControl::settle_bus() {
   core_.play(core_.cycle_);
   core_.port_.sleep_until(core_.time(core_.cycle_));
@@ -87,12 +87,12 @@ void CoreControl::disturb() {
   core_.stop_cycle_ = 0;
 }
 
-/// A debugger takes an address for all its watchpoints there.
+/// A debugger attributes an address to all its watchpoints that contain it.
 void CoreControl::drop_ranges_with(std::uint32_t address, std::vector<Touched>& list) {
   std::erase_if(list, [&](const Touched& t) { return address - t.range.va < t.range.bytes; });
 }
 
-/// Whether what was about to be touched has been: an interrupt or an abort may have come instead.
+/// Finds out whether the ranges have been touched: an interrupt or an abort may have come instead.
 void CoreControl::note_touched() {
   touched_.clear();
   if (core_.counts().instructions == touching_count_ + 1) touched_.swap(touching_);
@@ -122,7 +122,8 @@ std::optional<CoreControl::Stop> CoreControl::look(std::uint32_t pc) {
   return tell(pc);
 }
 
-/// When the core is to go on: what else there is to tell at this boundary. `pc` is where it stood.
+/// Called before the core continues: what else has to be reported at this boundary. `pc` is where
+/// the core stopped.
 std::optional<CoreControl::Stop> CoreControl::look_again(const Stop& last, std::uint32_t pc) {
   if (core_.stop_requested_) return std::nullopt;
   if (last.past && step_) return Stop{Stop::Reason::kStep};
@@ -151,7 +152,7 @@ std::optional<CoreControl::Stop> CoreControl::tell(std::uint32_t pc) {
   return Stop{Stop::Reason::kWatch, first.range.kind, first.address};
 }
 
-/// A watchpoint stops before the access, as the core's own breakpoint unit does.
+/// A watchpoint stops before the access, like the core's own breakpoint unit.
 std::vector<CoreControl::Touched> CoreControl::watched(std::uint32_t pc) const {
   std::vector<Touched> out;
   const auto decoded = debug_.instruction(pc);
@@ -186,7 +187,8 @@ std::vector<CoreControl::Touched> CoreControl::watched(std::uint32_t pc) const {
         case Op::kLdrd: case Op::kStrd: t.bytes = 8; break;
         default: t.bytes = 4; break;
       }
-      t.va &= ~(std::min(t.bytes, 4u) - 1);  // the low bits of an unaligned address only rotate
+      t.va &= ~(std::min(t.bytes, 4u) - 1);  // the low bits of an unaligned address only rotate the
+                                             // value
     }
   }
   switch (i.op) {

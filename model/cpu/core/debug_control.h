@@ -1,4 +1,4 @@
-// Stops the core at instruction boundaries: breakpoints, watchpoints, steps, requests.
+// Stops the core at instruction boundaries: breakpoints, watchpoints, single steps, requests.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,16 +10,17 @@
 
 namespace fovea::cpu {
 
-/// While nothing is set the core does not know of it; with anything set it looks at every boundary
-/// and runs slower on the host, with the same simulated time.
+/// While nothing is set, the core runs without any check for it. Otherwise it calls boundary() at
+/// every instruction boundary, which costs host time but no simulated time.
 class CoreControl {
  public:
   enum class Watch : std::uint8_t { kWrite, kRead, kAccess };
   struct Stop {
     enum class Reason : std::uint8_t { kRequest, kStep, kBreakpoint, kWatch, kTime } reason;
-    Watch watch = Watch::kAccess;   ///< kWatch: which kind of watchpoint
-    std::uint32_t address = 0;      ///< kWatch: first watched address that will be touched
-    bool past = false;              ///< kWatch: the instruction before this boundary has touched it
+    Watch watch = Watch::kAccess;   ///< kWatch: the kind of watchpoint
+    std::uint32_t address = 0;      ///< kWatch: first watched address that the instruction touches
+    bool past = false;              ///< kWatch: touched by the instruction before this boundary,
+                                    ///< not by the next one
   };
 
   CoreControl(Core& core, CoreDebug& debug) : core_(core), debug_(debug) {}
@@ -27,33 +28,35 @@ class CoreControl {
   CoreControl(const CoreControl&) = delete;
   CoreControl& operator=(const CoreControl&) = delete;
 
-  /// Called at a boundary, on the core's own stack, before the instruction at the pc; the core goes
-  /// on with that instruction when it returns, unless that touches what is watched by then and
-  /// nobody was told yet. Of the watched ranges that one instruction touches the first is told
-  /// before it, the others when the core is to go on behind it and they are still watched. A step
-  /// from there ends where it began: there is no instruction left to step over.
+  /// Called at a boundary on the core's own thread, before the instruction at the pc. When it
+  /// returns, the core executes that instruction, unless the instruction touches a watched range
+  /// that has not been reported yet. If one instruction touches several watched ranges, the first
+  /// is reported before it is executed and each of the others after it, if that range is still
+  /// watched. A single step that is requested at such a second report ends at once: there is no
+  /// instruction left to execute.
   std::function<void(const Stop&)> on_stop;
 
   void set_breakpoint(std::uint32_t va) { breakpoints_.insert(va), update(); }
   void clear_breakpoint(std::uint32_t va) { breakpoints_.erase(va), update(); }
   void set_watch(std::uint32_t va, std::uint32_t bytes, Watch kind);
   void clear_watch(std::uint32_t va, std::uint32_t bytes, Watch kind);
-  /// Stops at the next boundary. Not from another thread.
+  /// Stops at the next boundary. Not to be called from another thread.
   void request_halt() { halt_ = true, update(); }
   bool halt_pending() const { return halt_; }
   void cancel_halt() { halt_ = false, update(); }
-  /// Stops at the next boundary whose pc lies outside [from, to).
+  /// Stops at the next boundary where the pc is outside [from, to).
   void step(std::uint32_t from = 0, std::uint32_t to = 0);
-  /// Stops at the first boundary later than t; kNever takes that back.
+  /// Stops at the first boundary after t; kNever cancels this.
   void stop_after(Picoseconds t) { stop_after_ = t, update(); }
-  /// At each boundary the bus has decided all that it decides before: what other masters do there
-  /// is known before the core goes on.
+  /// While on, the bus decides everything that it decides before each boundary, so that the actions
+  /// of other masters are known before the core continues.
   void follow_bus(bool on) { follow_ = on, update(); }
-  /// The same once, for whoever looks at the bus at a stop.
+  /// Does that once, for a caller that inspects the bus while the core is stopped.
   void settle_bus();
-  /// Something outside the core has changed at this boundary: it looks for the next event anew.
+  /// To be called when something outside the core was changed at this boundary: the core asks for
+  /// the next event again.
   void disturb();
-  /// Forgets all of it.
+  /// Removes everything that was set.
   void clear();
 
  private:
@@ -80,9 +83,9 @@ class CoreControl {
   CoreDebug& debug_;
   std::set<std::uint32_t> breakpoints_;
   std::vector<Range> watches_;
-  std::vector<Touched> touching_;  // by the instruction at which the core stands, beside the told
-  std::uint64_t touching_count_ = 0;  // instructions that were executed before it
-  std::vector<Touched> touched_;      // by the instruction before, not yet told
+  std::vector<Touched> touching_;  // touched by the next instruction, apart from the reported range
+  std::uint64_t touching_count_ = 0;  // number of instructions executed before it
+  std::vector<Touched> touched_;      // touched by the previous instruction and not reported yet
   bool halt_ = false, step_ = false, follow_ = false;
   Picoseconds stop_after_ = kNever;
   std::uint32_t step_from_ = 0, step_to_ = 0;

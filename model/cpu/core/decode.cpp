@@ -1,5 +1,5 @@
-// From instruction words to records, by the table of instructions. A Thumb instruction becomes the
-// record of its ARM equivalent.
+// Decodes instruction words into records with the table of instructions. A Thumb instruction
+// becomes the record of its ARM equivalent.
 #include <array>
 #include <bit>
 #include <string_view>
@@ -13,7 +13,7 @@
 namespace fovea::cpu {
 namespace {
 
-/// Numbers that a record is made of.
+/// The numbers that make up a record.
 enum Slot : std::uint8_t { kD, kN, kM, kS, kShift, kAmount, kNumber, kRotate, kCond, kSlots };
 
 constexpr std::uint8_t kNoSlot = kSlots;
@@ -23,7 +23,7 @@ constexpr std::uint8_t slot_of(char letter) {
     case 'e': return kD;
     case 'n': return kN;
     case 'm': return kM;
-    // The place of the third register also holds a coprocessor's number and the mask of MSR.
+    // The slot of the third register also holds a coprocessor's number and the mask of MSR.
     case 's':
     case 'p':
     case 'f': return kS;
@@ -37,7 +37,7 @@ constexpr std::uint8_t slot_of(char letter) {
   }
 }
 
-/// A row made ready for decoding: what its words have in common, and where the rest lies in them.
+/// A row prepared for decoding: what its words have in common, and where their fields are.
 struct Plan {
   struct Take {
     std::uint8_t slot, from, width;
@@ -68,7 +68,7 @@ struct Plan {
   List<Copy, 2> copies;
   List<std::uint8_t, 3> sources, stored;
   Immediate immediate = Immediate::kNone;
-  unsigned scale = 0, unused = 0;  ///< of a signed number: bits above it
+  unsigned scale = 0, unused = 0;  ///< of a signed number: unused bits above it
   std::uint16_t also = 0;
   bool pair = false, stores_list = false, thumb_ldm = false;
   bool always_defined = false;
@@ -124,7 +124,7 @@ const Plan& plan(int row) {
   return plans[static_cast<std::size_t>(row)];
 }
 
-/// Half of a BLX's offset in ARM state.
+/// Bit H of a BLX in ARM state: half of a word, added to the offset.
 constexpr std::uint32_t kBlxHalf = 1u << 24;
 
 Instruction decode(std::uint32_t w, bool thumb) {
@@ -164,10 +164,10 @@ Instruction decode(std::uint32_t w, bool thumb) {
       break;
     case Immediate::kList:
       i.imm = v[kNumber] | p.also;
-      // Only the first register of a store can be waited for: the others are read later.
+      // Only the first register of a store multiple can delay it; the others are read later.
       if (p.stores_list && i.imm) i.stored = static_cast<std::uint16_t>(i.imm & (0u - i.imm));
       if (p.stores_list && (i.imm & 0x8000u)) flags |= kReadsPc;
-      // A Thumb LDMIA with the base in the list has no write-back.
+      // A Thumb LDMIA whose list contains the base has no write-back.
       if (p.thumb_ldm && i.imm >> i.rn & 1u) flags &= ~std::uint32_t{kWriteBack};
       break;
     case Immediate::kSigned:
@@ -179,7 +179,7 @@ Instruction decode(std::uint32_t w, bool thumb) {
   std::uint32_t sources = 0, stored = i.stored;
   for (const std::uint8_t slot : p.sources) sources |= 1u << v[slot];
   for (const std::uint8_t slot : p.stored) stored |= 1u << v[slot];
-  // The second word of STRD is read later, as those of STM are.
+  // The second word of STRD is read later, like those of STM.
   const std::uint32_t second = p.pair && !p.stored.empty() ? 2u << v[kD] : 0u;
   if ((sources | stored | second) & 0x8000u) flags |= kReadsPc;
   if (!p.always_defined && !isa_defined(row, w)) flags |= kUnpredictable;

@@ -16,7 +16,7 @@ constexpr const char* kRegisters[] = {"r0", "r1", "r2", "r3", "r4", "r5", "r6", 
 constexpr const char* kConditions[] = {"eq", "ne", "cs", "cc", "mi", "pl", "vs", "vc",
                                        "hi", "ls", "ge", "lt", "gt", "le", "", ""};
 constexpr const char* kShifts[] = {"lsl", "lsr", "asr", "ror"};
-constexpr const char* kModes[] = {"da", "ia", "db", "ib"};  // by P U
+constexpr const char* kModes[] = {"da", "ia", "db", "ib"};  // indexed by the bits P and U
 
 std::string decimal(std::uint32_t v) { return std::to_string(static_cast<std::int32_t>(v)); }
 std::string hex(const char* format, std::uint32_t v) {
@@ -58,7 +58,7 @@ class Printer {
  private:
   static std::uint16_t halfword(std::uint32_t w) { return static_cast<std::uint16_t>(w); }
   bool rrx() const { return f_['t'] == 3 && f_['a'] == 0; }
-  /// The distance 0 of LSR and ASR means 32.
+  /// A distance of 0 means 32 for LSR and ASR.
   std::string distance() const {
     return std::to_string(f_['a'] == 0 && f_['t'] ? 32 : f_['a']);
   }
@@ -72,14 +72,14 @@ class Printer {
 
   std::string immediate() const {
     if (row_.kind.immediate != Immediate::kRotated) return decimal(i_.imm);
-    // The shortest rotation is the one an assembler finds.
+    // An assembler chooses the smallest rotation.
     for (unsigned r = 0; r < f_['r']; ++r)
       if (std::rotl(i_.imm, static_cast<int>(2 * r)) < 256)
         return std::to_string(f_['i']) + ", " + std::to_string(2 * f_['r']);
     return decimal(i_.imm);
   }
 
-  /// objdump leaves out the usual one, but not of a store with `!` or `^`.
+  /// objdump omits the default mode, except for a store with `!` or `^`.
   std::string mode() const {
     const std::uint32_t k = 2 * f_['P'] + f_['U'];
     const bool usual = i_.op == Op::kLdm || !(f_['W'] || (i_.flags & kUserBank));

@@ -1,4 +1,4 @@
-// Modes, banks and exceptions (ARM ARM A2.6; aborts restore the base).
+// Processor modes, register banks and exceptions (ARM DDI 0100, A2.6; aborts restore the base).
 #include <cstdio>
 
 #include "model/cpu/core/core.h"
@@ -35,7 +35,7 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
 std::vector<AccessRecord> Core::last_accesses() const {
   constexpr std::size_t kShown = 8;
   std::vector<AccessRecord> out;
-  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest
+  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest access
   for (std::size_t n = first; n < first + ring_.size(); ++n) {
     const Access& a = ring_[n % ring_.size()];
     for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
@@ -47,11 +47,11 @@ std::vector<AccessRecord> Core::last_accesses() const {
 }
 
 void Core::set_clock(Frequency f, Picoseconds at) {
-  // What is under way on the bus ends at its time, whichever clock that is from now on.
+  // Bus activity that is under way keeps its end time; convert it into clocks of the new frequency.
   const std::array<std::uint64_t*, 5> clocks = {&data_port_free_, &ifill_.first, &ifill_.last,
                                                 &dfill_.first, &dfill_.last};
   std::array<Picoseconds, clocks.size()> times{};
-  // What is over may be older than the present clock, which has no times for it.
+  // What has ended may be older than the new clock, which has no numbers for those times.
   const std::uint64_t future = clock_.running() ? clock_.edge_after(at) : 0;
   for (std::size_t k = 0; clock_.running() && k < clocks.size(); ++k)
     if (*clocks[k] >= future) times[k] = time(*clocks[k]);
@@ -76,7 +76,7 @@ void Core::reset(std::uint32_t entry, Picoseconds now) {
   old_fetch_left_ = 0;
   stop_requested_ = false;
   jumped_to_ = kNoJump;
-  // Both TCMs are on out of reset on this chip: 32 KB each (size code 6), one RAM behind them.
+  // On this chip both TCMs are enabled after reset: 32 KB each (size code 6), backed by one RAM.
   const bool tcm = !tcm_.empty();
   itcm_region_ = tcm ? 6u << 2 | 1u : 0;
   dtcm_region_ = tcm ? kDtcmBase | 6u << 2 | 1u : 0;
@@ -93,7 +93,7 @@ unsigned Core::bank(std::uint32_t mode) {
     case 0x13: return 3;
     case 0x17: return 4;
     case 0x1B: return 5;
-    default: return 0;  // user and system
+    default: return 0;  // user and system mode
   }
 }
 
@@ -121,7 +121,7 @@ void Core::set_cpsr(std::uint32_t value) {
   switch_mode(value);
   cpsr_ = value;
   if (was_privileged != privileged()) flush_memos();
-  attention_ = true;  // masks may have opened
+  attention_ = true;  // interrupts may have been unmasked
 }
 
 void Core::take(Exception e, std::uint32_t return_address) {
@@ -139,7 +139,7 @@ void Core::take(Exception e, std::uint32_t return_address) {
     failed_jump_ = pc_ == 0 && jumped_to_ == 0;
     failed_from_ = jumped_from_;
   }
-  // A vector that itself faults without one instruction completed will do so for ever.
+  // If no instruction completes between exceptions, the vector itself fails and always will.
   if (++chain_ > 3) {
     failing_ = true;
     const std::string jump = failed_jump_ ? "jumped to 0 from " + place_of(failed_from_) + "; " : "";
@@ -162,8 +162,9 @@ void Core::take(Exception e, std::uint32_t return_address) {
   spend(3);
 }
 
-/// An aborted instruction runs to its end, `left` clocks more; in the next the last word comes with its
-/// abort, and the one behind it finds that (ARM DDI 0165B 5.3). Then the entry begins.
+/// An aborted instruction continues to its end, for `left` more clocks. In the next clock its last
+/// word arrives together with the abort, and in the one after it the core reacts (ARM DDI 0165B
+/// 5.3). Then the exception entry begins.
 void Core::data_abort(unsigned left) {
   spend(left + 2);
   take(Exception::kDataAbort, pc_ + 8);
@@ -173,7 +174,7 @@ void Core::undefined() {
   take(Exception::kUndefined, pc_ + ((cpsr_ & 0x20u) ? 2u : 4u));
 }
 
-/// An address for a message, with the name around it if one is known.
+/// An address for a message, with its symbol if one is known.
 std::string Core::place_of(std::uint32_t address) const {
   char text[16];
   std::snprintf(text, sizeof text, "0x%08x", address);
@@ -181,7 +182,7 @@ std::string Core::place_of(std::uint32_t address) const {
   return name.empty() ? text : text + (" (" + name + ")");
 }
 
-/// Each form has one warning, which names the place where it was executed first.
+/// Warns once for each form, with the address of its first execution.
 void Core::unpredictable(const char* what) {
   ++counts_.unpredictable;
   std::string& text = unpredictable_[what];

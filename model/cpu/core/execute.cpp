@@ -1,4 +1,4 @@
-// Instructions. Cycle counts: ARM DDI 0222B chapter 8 (arm926.md 1.1), interlocks 1.3.
+// Execution of instructions. Cycle counts and interlocks: ARM DDI 0222B chapter 8.
 #include <bit>
 
 #include "model/cpu/core/handlers.h"
@@ -6,7 +6,7 @@
 namespace fovea::cpu {
 namespace {
 
-/// Bit cond*16 + NZCV: the condition holds.
+/// Bit cond*16 + NZCV is set if the condition holds.
 constexpr std::array<std::uint16_t, 16> make_conditions() {
   std::array<std::uint16_t, 16> out{};
   for (unsigned f = 0; f < 16; ++f) {
@@ -48,13 +48,13 @@ void Core::run() {
       core.flags_live_ = false;
     }
   } live(*this);
-  std::uint32_t looked_at = 1;  // pc of a boundary at which the debugger has had its look
+  std::uint32_t looked_at = 1;  // pc of a boundary that the debugger has already inspected
   for (;;) {
     if (cycle_ >= stop_cycle_ || attention_) {
       if (stop_requested_) return;
       pack_flags();
       step_attention();
-      if (stop_requested_) stop_cycle_ = 0;  // one more instruction
+      if (stop_requested_) stop_cycle_ = 0;  // execute one more instruction
     }
     if (debugger_ && pc_ != looked_at) [[unlikely]] {
       control_boundary();
@@ -66,7 +66,7 @@ void Core::run() {
       enter_exception();
       continue;
     }
-    if (bus_fetch_) {  // an interrupt that came meanwhile goes first
+    if (bus_fetch_) {  // an interrupt that arrived meanwhile is taken first
       bus_fetch_ = false;
       if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) {
         looked_at = pc_;
@@ -88,16 +88,17 @@ void Core::run() {
   }
 }
 
-/// What is left of an exception that no instruction raised.
+/// Completes an exception that was not raised by an instruction.
 void Core::enter_exception() {
   pc_ = next_pc_;
   branched_ = aborted_ = false;
   if (old_fetch_left_) leave_old_fetch();
 }
 
-/// Behind an instruction: the two that follow a write of the FCSE PID, or one that turns the MMU or the
-/// I-cache on or off, were fetched before it took effect, unless the flow leaves them (ARM DDI 0198D
-/// 2-34; for the control register two as well, by the length of the pipeline).
+/// Called after an instruction: the two instructions that follow a write of the FCSE PID, or a
+/// change that turns the MMU or the I-cache on or off, were fetched before it took effect, unless
+/// the program branches (ARM DDI 0198D 2-34; two for the control register as well, from the length
+/// of the pipeline).
 void Core::leave_old_fetch() {
   if (pc_ == old_fetch_pc_ && --old_fetch_left_) {
     old_fetch_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
@@ -110,7 +111,7 @@ void Core::leave_old_fetch() {
   flush_memos();
 }
 
-/// One instruction whose beginning or end may depend on what happened before it.
+/// An instruction whose beginning or end may depend on earlier instructions.
 void Core::execute_alone(const Instruction& i) {
   if (i.cond != 14 && !(kConditions[i.cond] >> (packed_cpsr() >> 28) & 1u)) {
     spend(1);
@@ -131,7 +132,7 @@ void Core::execute_alone(const Instruction& i) {
   }
 }
 
-/// An instruction without a quick handler, or one whose access is no plain hit. State is settled.
+/// An instruction without a fast handler, or whose access is not a plain hit. State is settled.
 void Core::execute_one(const Instruction& i) {
   next_pc_ = pc_ + ((i.flags & kThumbInsn) ? 2u : 4u);
   if (i.flags & kReadsPc)
@@ -152,13 +153,13 @@ void Core::execute_one(const Instruction& i) {
   pc_ = next_pc_;
 }
 
-/// Instruction boundary that needs a look: horizon reached, an interrupt line or a mask changed, or
-/// the edge of the window.
+/// Handles an instruction boundary at which the horizon is reached, an interrupt line or mask has
+/// changed, or the measurement window begins or ends.
 void Core::step_attention() {
   for (;;) {
     attention_ = false;
     await_clock();
-    // What happens at an edge is seen behind it, another clock as well.
+    // Changes at an edge are visible after it, including a change of the clock.
     stall_to(clock_floor_, Cause::kBusSync);
     const Picoseconds t = time(cycle_);
     while (mark_due(t)) snapshot();
@@ -180,8 +181,8 @@ void Core::step_attention() {
     if (cycle_ >= stop) {
       play(cycle_);
       port_.sleep_until(t);
-      if (time(cycle_) != t || !clock_.running()) continue;  // another clock since
-      // At t itself everybody may act once more: run this instruction, then look again.
+      if (time(cycle_) != t || !clock_.running()) continue;  // the clock has changed meanwhile
+      // At t itself others may still act: execute this instruction, then check again.
       if (!attention_ && !mark_pending_) {
         const Picoseconds again = port_.horizon();
         stop_cycle_ = again <= t ? cycle_ + 1
@@ -197,14 +198,15 @@ void Core::step_attention() {
       return;
     }
     stop_cycle_ = stop;
-    // Raised but not yet visible, or a mark not yet passed: look at the next boundary.
+    // An interrupt is raised but not visible yet, or a mark is not reached yet: check the next
+    // boundary.
     if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || mark_pending_)
       stop_cycle_ = cycle_ + 1;
     return;
   }
 }
 
-/// The chain that was left for one instruction still holds, and `next` follows it.
+/// True if the chain that was left for one instruction can continue with `next`.
 bool Core::chain_goes_on(const Instruction* next) const {
   return cycle_ < chain_stop_ && cycle_ < stop_cycle_ && !attention_ &&
          pc_ == run_va_ + next->at && line_va_ == run_va_ && line_thumb_ == (cpsr_ & 0x20u) &&
@@ -279,7 +281,7 @@ void Core::interwork(std::uint32_t target) {
   }
 }
 
-/// Offset of a load or store: no form of it is shifted by a register.
+/// Offset of a load or store; no such instruction shifts by a register.
 std::uint32_t Core::offset(const Instruction& decoded) const {
   if (decoded.operand == Operand::kImm) return decoded.imm;
   Instruction i = decoded;
@@ -372,7 +374,7 @@ void Core::load_store(const Instruction& i) {
     }
   }
   write_back();
-  if (i.rd == 15) return spend(cycles);  // UNPREDICTABLE: the value is lost
+  if (i.rd == 15) return spend(cycles);  // UNPREDICTABLE: the value is discarded
   r_[i.rd] = value;
   spend(cycles);
   loaded(i.rd, 2);
@@ -381,7 +383,7 @@ void Core::load_store(const Instruction& i) {
 void Core::load_multiple(const Instruction& i) {
   const std::uint32_t base = r_[i.rn];
   const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
-  if (n == 0) {  // no register: the base moves by sixteen words (isa_reactions.cpp)
+  if (n == 0) {  // empty list: the base moves by sixteen words (isa_reactions.cpp)
     if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
     spend(1);
     return;
@@ -402,7 +404,7 @@ void Core::load_multiple(const Instruction& i) {
   if (n == 1 && !(i.imm & 0x8000u)) spend(1);
   const bool user_bank = (i.flags & kUserBank) && !(i.imm & 0x8000u);
   const std::uint32_t mode = cpsr_ & 31u;
-  // Write-back wins, unless the base is the last of several registers.
+  // The write-back wins, unless the base is the last of several registers.
   const bool base_listed = i.imm >> i.rn & 1u;
   const bool base_last = base_listed && (i.imm >> i.rn) == 1u && n > 1;
   if (user_bank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
@@ -461,7 +463,7 @@ void Core::swap(const Instruction& i) {
   const unsigned bytes = i.op == Op::kSwpb ? 1 : 4;
   const std::uint32_t address = r_[i.rn], out = r_[i.rm];
   std::uint32_t value = 0;
-  // What its write may not do stops it before the read locks the bus.
+  // If the write is not permitted, it aborts before the read locks the bus.
   const std::uint32_t mva = modified(address) & ~(bytes - 1u);
   const bool aligned = !(control_ & 2u) || !(address & (bytes - 1u));
   if (aligned && !translate(mva, true, false, false)) return data_abort(2);
@@ -492,7 +494,7 @@ void Core::status(const Instruction& i) {
     s = (s & ~fields) | (v & fields);
   } else {
     if (!privileged()) fields &= 0xF8000000u;
-    // T is not for MSR to change.
+    // MSR does not change the T bit.
     set_cpsr((cpsr_ & ~fields) | (v & fields & ~0x20u) | (cpsr_ & 0x20u));
   }
   spend(i.rs == 8 && !(i.flags & kSpsr) ? 1 : 3);
@@ -524,7 +526,7 @@ void Core::execute_rare(const Instruction& i) {
       branch_to(r_[15] + i.imm);
       spend(3);
       return;
-    case Op::kThumbBlSuffix: {  // the one that goes to ARM state
+    case Op::kThumbBlSuffix: {  // the suffix that switches to ARM state
       const std::uint32_t target = r_[14] + i.imm;
       r_[14] = (pc_ + 2) | 1u;
       cpsr_ &= ~0x20u;

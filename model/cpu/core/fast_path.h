@@ -1,5 +1,5 @@
-// Fetch from the current line, translation of a known page, the end of a bus access. Inline, for the files that execute
-// instructions.
+// Inline fast paths of the core: fetch from the current line, translation of a known page, the end
+// of a bus access.
 #pragma once
 #include <bit>
 #include <cstring>
@@ -18,7 +18,7 @@ inline const Instruction* Core::fetch() {
   return fetch_slow();
 }
 
-/// @return nullptr: a fault was noted
+/// @return nullptr if a fault was recorded
 [[gnu::always_inline]] inline const Translation* Core::translate(std::uint32_t mva, bool write,
                                                                  bool user, bool instruction) {
   if (!(control_ & 1u)) return &flat_;
@@ -28,9 +28,9 @@ inline const Instruction* Core::fetch() {
   return translate_slow(mva, write, user, instruction);
 }
 
-/// Waits up to `cycle` for access `a`, which is decided and let the core go on at `outcome`, at clock
-/// `bus`: what the access waited for is to blame in proportion, also where the core began to wait
-/// later. The clocks behind that are the core's own.
+/// Stalls up to `cycle` for access `a`, which completed at `outcome` (clock `bus` of the core). The
+/// clocks up to `bus` are attributed in proportion to what the access waited for, even if the core
+/// began to wait later; the clocks after it are attributed to the core itself.
 [[gnu::always_inline]] inline void Core::stall_on(const BusAccess& a, Picoseconds outcome,
                                                   std::uint64_t bus, std::uint64_t cycle,
                                                   Cause cause) {
@@ -43,8 +43,8 @@ inline const Instruction* Core::fetch() {
   cycle_ = cycle;
 }
 
-/// Clock at which operands that are still on their way are there (ARM DDI 0222B 8.3): ready counts
-/// from the end of the producer's issue; store data and accumulators are read a cycle later.
+/// Clock at which all operands are available (ARM DDI 0222B 8.3). Times in ready_ count from the
+/// end of the producer's issue; store data and accumulators are read one clock later.
 inline std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cycle) const {
   std::uint64_t need = cycle;
   for (std::uint32_t s = i.sources; s; s &= s - 1)
@@ -53,8 +53,8 @@ inline std::uint64_t Core::operands_ready(const Instruction& i, std::uint64_t cy
     const std::uint64_t entry = ready_[static_cast<unsigned>(std::countr_zero(s))];
     const std::uint64_t ready = entry >> 2;
     const auto by = static_cast<Producer>(entry & 3u);
-    // Read a cycle later, but loads have no forwarding to this port (their latency is one more),
-    // and of a multiply only the accumulator input is forwarded, not store data.
+    // These operands are read one clock later. But loads do not forward to this port (their latency
+    // is one clock more), and a multiply forwards only to the accumulator input, not to store data.
     const bool late = by == kLoad || (by == kMultiply && i.op >= Op::kLdr);
     need = std::max(need, late || ready == 0 ? ready : ready - 1);
   }

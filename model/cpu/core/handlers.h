@@ -1,13 +1,15 @@
-// How records follow each other: each handler executes one and calls the next by a tail call, so
-// that a chain of records runs without a loop around it. A handler calls nothing else in the
-// middle: what is not quick is a tail call too, and its own work needs no stack frame.
+// Execution of decoded instructions ("records"): each handler executes one record and calls the
+// next record's handler by a tail call, so that a chain of records runs without a loop around it. A
+// handler makes no other calls in between: slow cases are tail calls too, so that handlers need no
+// stack frame.
 //
-// Within a chain the clock travels in a register; cycle_, pc_ and the counters stand where the
-// chain began until settle(). Whoever calls something out of line before it goes on must have no
-// variable whose address is taken: the compiler would keep its frame, and the stack would grow with
-// the chain (iss.chain measures that). A chain begins with nothing under way that could hold up a
-// record (operands, an instruction fill) and ends at chain_stop_, at a record or line not known yet,
-// and where an instruction that may have called the outside leaves something to look at.
+// Within a chain, the clock is a parameter (kept in a host register); cycle_, pc_ and the counters
+// keep their values from the start of the chain until settle(). A handler that calls a function out
+// of line and then continues must not have a variable whose address is taken: the compiler would
+// keep its frame, and the stack would grow with the chain (checked by iss.chain). A chain begins
+// when nothing is under way that could delay a record (operands, an instruction fill). It ends at
+// chain_stop_, at a record or line that is not known yet, and after an instruction that may have
+// called the outside if that requires attention.
 #pragma once
 #include <utility>
 
@@ -16,11 +18,12 @@
 
 namespace fovea::cpu {
 
-/// Address of a load or store: base register and what is added to it.
+/// How the address of a load or store is formed from the base register and an offset.
 enum class Address : std::uint8_t { kImm, kRegUp, kRegDown, kLsl };
 enum class Indexed : std::uint8_t { kOffset, kPre, kPost };
 
-/// What `f` gives for the constant k that equals n; f's results have one type.
+/// Returns f(integral_constant<k>) for the constant k that equals n; all results of f have one
+/// type.
 template <class F, std::size_t... k>
 auto select(unsigned n, F f, std::index_sequence<k...>) {
   decltype(f(std::integral_constant<std::size_t, 0>{})) out{};
@@ -40,7 +43,7 @@ struct Core::Ops {
     return i;
 #endif
   }
-  /// To record i at an instruction boundary.
+  /// Continues with record i at an instruction boundary.
   [[gnu::always_inline]] static Next next(Core& c, Next i, Cycle cycle) {
     if (cycle >= c.chain_stop_) [[unlikely]] return leave(c, i, cycle);
     return go(c, i, cycle);
@@ -50,7 +53,7 @@ struct Core::Ops {
     c.settle(i, cycle);
     return nullptr;
   }
-  /// Ends the chain behind branch i.
+  /// Ends the chain after the taken branch i.
   [[gnu::noinline]] static Next leave_to(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     c.settle(i + 1, cycle);
     c.jumped_from_ = c.run_va_ + i->at;
@@ -58,21 +61,21 @@ struct Core::Ops {
     c.pc_ = target;
     return nullptr;
   }
-  /// Executes i with all state settled: the way of all that is rare or touches the outside.
+  /// Executes record i with settled state, for everything that is rare or calls the outside.
   [[gnu::noinline]] static Next generic(Core& c, Next i, Cycle cycle) {
     c.settle(i, cycle);
     c.execute_one(*i);
     return resume(c, i + 1);
   }
-  /// An UNPREDICTABLE form: warns, then executes it on a record apart.
+  /// An UNPREDICTABLE form: gives a warning, then executes a separate record of it.
   [[gnu::noinline]] static Next warned(Core& c, Next i, Cycle cycle);
-  /// Goes on with record i after its neighbour was executed with all state settled.
+  /// Continues with record i after the previous one was executed with settled state.
   [[gnu::always_inline]] static Next resume(Core& c, Next i) {
     return c.chain_goes_on(i) ? resume_here(c, i) : nullptr;
   }
   [[gnu::always_inline]] static Next resume_here(Core& c, Next i) {
     c.run_first_ = reinterpret_cast<std::intptr_t>(i);
-    // Behind the last record of a line line_end() takes care of results on their way.
+    // After the last record of a line, line_end() handles results that are not available yet.
     if (c.cycle_ < c.busy_until_ && i->at < 32) {
       const Cycle start = held_until(c, i, c.cycle_);
       if (start == kNoCycle) return nullptr;
@@ -82,12 +85,12 @@ struct Core::Ops {
     }
     return go(c, i, c.cycle_);
   }
-  /// For records that do not know what was executed before them: the clock at which the first has
-  /// its operands. kNoCycle: they have to be executed alone.
+  /// For records that do not know which instruction precedes them: the clock at which the operands
+  /// of the first one are available. kNoCycle: it has to be executed on its own.
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
   static Cycle held(const Core& c, Next i, Cycle cycle);
 
-  /// Branch i is taken, state kept.
+  /// Continues at the target of the taken branch i, without a change of state (ARM or Thumb).
   template <bool kThumb, bool kMaybeSameLine>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     ++c.counts_.redirects;
@@ -104,7 +107,7 @@ struct Core::Ops {
     c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
     return go(c, to, cycle);
   }
-  /// To an address whose bit 0 is the Thumb state to come.
+  /// Branches to an address whose bit 0 is the new Thumb state.
   template <bool kThumb>
   [[gnu::always_inline]] static Next exchange(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     if ((target & 1u) == kThumb) [[likely]]
@@ -138,22 +141,23 @@ struct Core::Ops {
 
   [[gnu::always_inline]] static void stall(Core& c, Cycle& cycle, Cycle until) {
     c.counts_.stall[static_cast<std::size_t>(Cause::kInterlock)] += until - cycle;
-    c.counts_.issue -= until - cycle;  // settle() takes the whole distance for issue
+    c.counts_.issue -= until - cycle;  // settle() counts all clocks since the start of the chain as
+                                       // issue
     cycle = until;
   }
-  /// What a record needs that has a condition, operands to wait for, or r15 to read.
+  /// Runs before the body of a record that has a condition, may wait for operands, or reads r15.
   template <unsigned kCond, Place::Check kCheck, bool kPc>
   static Next before(Core& c, Next i, Cycle cycle);
   template <std::size_t... k>
   static constexpr std::array<Handler, sizeof...(k)> before_table(std::index_sequence<k...>);
 
-  /// A result that is still on its way when the next record starts.
+  /// Notes a result that becomes available only after the next record has started.
   [[gnu::always_inline]] static void track(Core& c, unsigned r, Cycle ready, Producer by) {
     c.ready_[r] = ready * 4 + by;
     c.busy_until_ = ready;
   }
 
-  /// Stands behind the last record of a line.
+  /// Pseudo record after the last one of a line: leads to the next line.
   template <bool kThumb>
   static Next line_end(Core& c, Next i, Cycle cycle);
   template <bool kThumb>
@@ -190,7 +194,8 @@ struct Core::Ops {
   template <bool kLong>
   static Next store_block(Core& c, Next i, Cycle cycle);
 
-  // Body of a record, nullptr where no quick one exists. They may rewrite the record's operands.
+  // Each returns the body of a record, or nullptr if there is no fast one. It may rewrite the
+  // operands of the record for that body.
   static Handler data_body(Instruction& i);                  // data_processing.cpp
   static Handler multiply_body(Instruction& i);              // branch_multiply.cpp
   static Handler branch_body(Instruction& i, Place place);   // branch_multiply.cpp

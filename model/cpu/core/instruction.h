@@ -1,11 +1,11 @@
-// A decoded instruction: ARM and Thumb in one form.
+// A decoded instruction ("record"): ARM and Thumb in one form.
 #pragma once
 #include <cstdint>
 
 namespace fovea::cpu {
 
 enum class Op : std::uint8_t {
-  // Data processing, in encoding order.
+  // Data processing, in the order of the encoding.
   kAnd, kEor, kSub, kRsb, kAdd, kAdc, kSbc, kRsc, kTst, kTeq, kCmp, kCmn, kOrr, kMov, kBic, kMvn,
   kMul, kMla, kUmull, kUmlal, kSmull, kSmlal,
   kSmulxy, kSmlaxy, kSmulwy, kSmlawy, kSmlalxy,
@@ -25,27 +25,29 @@ enum InsnFlags : std::uint16_t {
   kUp = 1 << 2,
   kWriteBack = 1 << 3,
   kUserBank = 1 << 4,   // LDRT/STRT, LDM^/STM^
-  kReadsPc = 1 << 5,    // r15 must hold the pipeline value
+  kReadsPc = 1 << 5,    // r15 must hold the address of the instruction plus the pipeline's offset
   kThumbInsn = 1 << 6,
   kSpsr = 1 << 7,       // MRS/MSR of SPSR
   kTop1 = 1 << 8,       // x of SMULxy
   kTop2 = 1 << 9,       // y
-  kAlignPc = 1 << 10,   // Thumb literal: pc & ~3
-  kImmCarry = 1 << 11,  // rotated immediate gives the carry
+  kAlignPc = 1 << 10,   // Thumb literal: the base is pc & ~3
+  kImmCarry = 1 << 11,  // a rotated immediate sets the carry flag
   kUnpredictable = 1 << 12,
 };
 
 class Core;
 struct Instruction;
-/// Executes a record that starts at a core clock and goes on with the next one. @return the record
-/// to go on with (build without tail calls), nullptr: the core's state is settled, run() decides
+/// Executes a record that starts at a core clock and continues with the next one. @return the
+/// record to continue with (builds without tail calls), or nullptr: the core's state is settled,
+/// and run() decides how to continue
 using Handler = const Instruction* (*)(Core&, const Instruction*, std::uint64_t cycle);
 
-/// The decoder fills all but handler, body and at; Core::prepare() fills those, and rewrites
-/// offsets and shift amounts into the form that the handlers expect.
+/// The decoder sets all members except handler, body and at. Core::prepare() sets these and
+/// converts offsets and shift distances into the form that the handlers expect.
 struct Instruction {
-  Handler handler = nullptr;  // condition and interlock where there are any, then body
-  Handler body = nullptr;     // nullptr: not entered yet
+  Handler handler = nullptr;  // checks the condition and waits for operands if needed, then calls
+                              // body
+  Handler body = nullptr;     // nullptr: not prepared yet
   Op op = Op::kUndefined;
   std::uint8_t cond = 14;
   Operand operand = Operand::kImm;
@@ -54,8 +56,8 @@ struct Instruction {
   std::uint16_t flags = 0;
   std::uint16_t sources = 0;  // registers read as operands or address
   std::uint16_t stored = 0;   // registers read as store data or accumulator (port C)
-  std::uint8_t amount = 0;    // immediate shift
-  std::uint8_t at = 0;        // offset in its line
+  std::uint8_t amount = 0;    // distance of an immediate shift
+  std::uint8_t at = 0;        // offset of the instruction in its line, in bytes
   std::uint32_t imm = 0;      // immediate, offset, register list, branch offset
   std::uint32_t raw = 0;
 };

@@ -1,10 +1,11 @@
-// The table. Encodings: ARM DDI 0100 chapters A3 to A7. Cycles: see the `source` of each kind.
+// The table of instructions. Encodings: ARM DDI 0100 chapters A3 to A7. Cycles: `source` of each
+// kind.
 #include "model/cpu/core/isa.h"
 
 namespace fovea::cpu {
 namespace {
 
-// Where cycle counts come from.
+// Sources of the cycle counts.
 constexpr const char* k9ejs = "ARM DDI 0222B table 8-2";
 constexpr const char* k9ejsUnread = "ARM DDI 0222B ch. 8 (row not seen)";
 constexpr const char* k7ejs = "ARM DDI 0214B ch. 9 (same pipeline)";
@@ -14,7 +15,8 @@ constexpr const char* kAssumed = "assumed";
 
 constexpr const char* kNoPc = "d != 15, n != 15, m != 15, s != 15";
 
-// Shorthand of this file: class, reads, stored, writes, defined if, cycles, source, ...
+// Abbreviations of this file. The members are: class, reads, stored, writes, defined if, cycles,
+// source.
 using C = InsnClass;
 constexpr auto kFlags = kSetFlags;
 
@@ -57,7 +59,7 @@ constexpr IsaKind kMsrSpsrReg{C::kStatus, "m", "", "", "m != 15, f != 0", "3", k
 constexpr IsaKind kMsrSpsrImm{C::kStatus, "", "", "", "f != 0", "3", k9ejsUnread, Operand::kImm,
                               Immediate::kRotated};
 
-// Words and bytes: before, after, as user. Only a word may be loaded into the pc.
+// Words and bytes: pre-indexed, post-indexed, and as user. Only a word may be loaded into the pc.
 constexpr const char* kWordPre = "W: n != 15, W: n != d";
 constexpr const char* kWordPreReg = "m != 15, W: n != 15, W: n != d, W: n != m";
 constexpr const char* kWordPost = "n != 15, n != d";
@@ -77,7 +79,7 @@ constexpr auto kAsUser = static_cast<std::uint16_t>(kBack | kUserBank);
 constexpr auto kBefore = kPre;
 constexpr auto kPlain = Immediate::kUnsigned;
 
-struct Transfer {  // the six forms of one transfer
+struct Transfer {  // the six addressing forms of one transfer
   IsaKind pre, post, user, pre_reg, post_reg, user_reg;
 };
 constexpr Transfer transfer(InsnClass c, bool load, bool word, const char* cycles,
@@ -100,7 +102,7 @@ constexpr Transfer kLoadByte = transfer(C::kLoad, true, false, kLdrb, kLdrbReg);
 constexpr Transfer kStoreWord = transfer(C::kStore, false, true, kStr, kStrReg);
 constexpr Transfer kStoreByte = transfer(C::kStore, false, false, kStr, kStrReg);
 
-struct Narrow {  // halfwords, signed bytes, pairs
+struct Narrow {  // halfwords, signed bytes, pairs of words
   IsaKind pre, post, pre_reg, post_reg;
 };
 constexpr Narrow narrow(InsnClass c, bool load, const char* cycles, const char* pair,
@@ -223,7 +225,8 @@ constexpr IsaKind kTSuffix{C::kThumbBranch, "n", "", "", "", "3", k7ejs, Operand
 constexpr IsaKind kTTrap{C::kThumbException, "", "", "", "", "3", k9ejsUnread};
 
 // clang-format off
-// Three forms of a data operation with two sources, with one, and of a comparison.
+// The three operand forms of an operation with two sources, of one with one source, and of a
+// comparison.
 #define FOVEA_DATA(NAME, BITS, OP) \
   {NAME " imm", "cccc 001" BITS "S nnnn dddd rrrr iiii iiii", NAME "<S><c> <d>, <n>, #<i>", OP, kDataImm}, \
   {NAME " shift", "cccc 000" BITS "S nnnn dddd aaaa att0 mmmm", NAME "<S><c> <d>, <n>, <m><shift>", OP, kDataShift}, \
@@ -248,7 +251,7 @@ constexpr IsaKind kTTrap{C::kThumbException, "", "", "", "", "3", k9ejsUnread};
   {NAME " imm post", "cccc 0000 U1-" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n>], <offset>", OP, KIND.post}, \
   {NAME " reg pre", "cccc 0001 U0W" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", OP, KIND.pre_reg}, \
   {NAME " reg post", "cccc 0000 U0-" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>], <reg>", OP, KIND.post_reg}
-// Transfers of coprocessors, none of which this chip has; CC is the condition or 1111.
+// Instructions of coprocessors that this chip does not have; CC is the condition or 1111.
 #define FOVEA_ABSENT(NAME, CC, COND) \
   {"cdp" NAME, CC " 1110 oooo CCCC DDDD pppp qqq0 MMMM", "cdp" NAME COND " <p>, <o>, <D>, <C>, <M>, <q>", Op::kCoprocessor, kAbsent}, \
   {"ldc" NAME " pre", CC " 1101 ULW1 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
@@ -276,7 +279,7 @@ constexpr IsaRow kRows[] = {
   FOVEA_MOVE("mov", "1 101", Op::kMov),
   FOVEA_DATA("bic", "1 110", Op::kBic),
   FOVEA_MOVE("mvn", "1 111", Op::kMvn),
-  // Multiplies: the result, or its upper half, is n.
+  // Multiplies: the result, or its upper half, is field n.
   {"mul", "cccc 0000 000S nnnn ---- ssss 1001 mmmm", "mul<S><c> <n>, <m>, <s>", Op::kMul, kMulKind},
   {"mla", "cccc 0000 001S nnnn dddd ssss 1001 mmmm", "mla<S><c> <n>, <m>, <s>, <d>", Op::kMla, kMulKind},
   {"umull", "cccc 0000 100S nnnn dddd ssss 1001 mmmm", "umull<S><c> <d>, <n>, <m>, <s>", Op::kUmull, kUmullKind},
@@ -326,13 +329,14 @@ constexpr IsaRow kRows[] = {
   {"bl", "cccc 1011 iiii iiii iiii iiii iiii iiii", "bl<c> <target>", Op::kBl, kBranchKind, 0, "", 2},
   {"blx imm", "1111 101h iiii iiii iiii iiii iiii iiii", "blx <target>", Op::kBlxImm, kBranchKind, 0, "", 2},
   {"bx", "cccc 0001 0010 ++++ ++++ ++++ 0001 mmmm", "bx<c> <m>", Op::kBxReg, kBranchReg},
-  {"bxj", "cccc 0001 0010 ++++ ++++ ++++ 0010 mmmm", "bxj<c> <m>", Op::kBxReg, kBranchRegNoPc},  // Jazelle is off
+  // Jazelle state is disabled, so BXJ behaves like BX.
+  {"bxj", "cccc 0001 0010 ++++ ++++ ++++ 0010 mmmm", "bxj<c> <m>", Op::kBxReg, kBranchRegNoPc},
   {"blx reg", "cccc 0001 0010 ++++ ++++ ++++ 0011 mmmm", "blx<c> <m>", Op::kBlxReg, kBranchRegNoPc},
   // Exceptions.
   {"svc", "cccc 1111 kkkk kkkk kkkk kkkk kkkk kkkk", "svc<c> <k>", Op::kSwi, kTrap},
   {"bkpt", "cccc 0001 0010 kkkk kkkk kkkk 0111 kkkk", "bkpt <k>", Op::kBkpt, kTrapAlways},
   {"udf", "cccc 0111 1111 kkkk kkkk kkkk 1111 kkkk", "udf #<k>", Op::kUndefined, kTrapAlways},
-  // Coprocessors. Of the moves only those of CP15 do something.
+  // Coprocessors. Only moves to and from CP15 have an effect.
   {"mcr", "cccc 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr<c> <p>, <o>, <d>, <C>, <M>, <q>", Op::kMcr, kMcrKind},
   {"mrc", "cccc 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc<c> <p>, <o>, <dflags>, <C>, <M>, <q>", Op::kMrc, kMrcKind},
   {"mcrr", "cccc 1100 0100 nnnn dddd pppp oooo MMMM", "mcrr<c> <p>, <o>, <d>, <n>, <M>", Op::kCoprocessor, kAbsentMove},

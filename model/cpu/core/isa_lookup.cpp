@@ -1,4 +1,4 @@
-// Reads the patterns of the table once and finds the row of a word.
+// Parses the patterns of the table once, and finds the row of an instruction word.
 #include <bit>
 #include <cstring>
 #include <string>
@@ -11,13 +11,13 @@
 namespace fovea::cpu {
 namespace {
 
-/// "a != b", "a = b", "a not in l", "a first in l" (if in it at all), "a or b > number", perhaps
-/// behind "W:".
+/// A parsed clause: "a != b", "a = b", "a not in l", "a first in l" (if in the list at all), or "a
+/// or b > number", with an optional prefix "W:".
 struct Clause {
   enum class Relation { kDiffers, kEquals, kNotIn, kFirst, kAbove } relation = Relation::kDiffers;
   bool guarded = false;
-  char a = 0, b = 0;           ///< b: 0 if a number
-  std::uint32_t number = 0;    ///< of b, or added to b
+  char a = 0, b = 0;           ///< b is 0 if the operand is a number
+  std::uint32_t number = 0;    ///< the number, or a number added to b
 };
 
 struct Form {
@@ -25,7 +25,7 @@ struct Form {
   std::vector<IsaPiece> pieces;
   std::vector<IsaImplied> implied;
   std::vector<Clause> clauses;
-  std::vector<std::string> texts;  // of the clauses
+  std::vector<std::string> texts;  // texts of the clauses
   std::uint64_t letters = 0;
 };
 
@@ -118,7 +118,7 @@ Form parse(const IsaRow& row) {
   }
   for (const std::string& s : split(row.kind.defined_if, ", ")) {
     const Clause c = parse_clause(s);
-    // Clauses about operands that the row has not.
+    // Skip clauses about operands that the row does not have.
     if (!(f.letters & letter_bit(c.a)) || (c.b && !(f.letters & letter_bit(c.b)))) continue;
     f.clauses.push_back(c);
     f.texts.push_back(s);
@@ -126,8 +126,8 @@ Form parse(const IsaRow& row) {
   return f;
 }
 
-/// Candidates by the bits that distinguish most: 27:20 and 7:4 of an ARM word (conditional or not),
-/// 15:6 of a Thumb halfword.
+/// Lists of candidate rows, indexed by the most significant bits for this purpose: 27:20 and 7:4 of
+/// an ARM word (with and without a condition), 15:6 of a Thumb halfword.
 class Lookup {
  public:
   Lookup() {
@@ -152,7 +152,7 @@ class Lookup {
   std::vector<Form> forms;
 
  private:
-  /// Rows that a word with these key bits can have.
+  /// Lists the rows that a word with these key bits can match.
   void list(bool thumb, std::uint32_t word, std::uint32_t key_bits) {
     const auto rows = isa_rows();
     first.push_back(static_cast<std::uint32_t>(candidates.size()));

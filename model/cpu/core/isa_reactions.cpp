@@ -1,5 +1,5 @@
-// UNPREDICTABLE forms: what this core does. Most of it is what falls out of a plain data path;
-// where the behaviour of ARM9E cores is known (arm926.md 6.3) it is that.
+// What this core does with UNPREDICTABLE forms: where the behaviour of an ARM9E core is known, that
+// (hardware tests of the ARM946E-S), otherwise what a plain data path does.
 #include "model/cpu/core/isa.h"
 
 namespace fovea::cpu {

@@ -1,5 +1,5 @@
-// Loads and stores as handlers: hits that a hint knows of. All else goes the general way, with the
-// chain ended. Cycle counts: arm926.md 1.1, interlocks 1.3.
+// Handlers of loads and stores that hit a hint. Everything else ends the chain and is executed in
+// execute.cpp. Cycle counts and interlocks: ARM DDI 0222B chapter 8.
 #include <bit>
 
 #include "model/cpu/core/handlers.h"
@@ -31,12 +31,12 @@ template <Op kOp>
   return reinterpret_cast<std::uint8_t*>(bias + va);
 }
 
-/// Number of the lowest bit set; there is one.
+/// Number of the lowest set bit; `set` must not be 0.
 [[gnu::always_inline]] inline unsigned lowest(std::uint32_t set) {
   return static_cast<unsigned>(__builtin_ctz(set));
 }
 
-/// Base plus offset; immediates are signed (memory_body()).
+/// Base plus offset; an immediate offset is signed (see memory_body()).
 template <Address kAddress>
 [[gnu::always_inline]] inline std::uint32_t moved(const std::array<std::uint32_t, 16>& r,
                                                   const Instruction& i) {
@@ -64,13 +64,13 @@ Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
   const std::uint32_t value = read<kOp>(host(hint.bias, va));
   if constexpr (kIndexed != Indexed::kOffset) c.r_[i->rn] = end;
   c.r_[i->rd] = value;
-  // rs: the extra clock of a shifted offset.
+  // rs: the extra clock for a shifted offset.
   cycle += kAddress == Address::kLsl ? 1u + i->rs : 1u;
   if constexpr (kTrack) track(c, i->rd, cycle + (kOp == Op::kLdr ? 1 : 2), kLoad);
   return next(c, i + 1, cycle);
 }
 
-/// A load that no hint knows, perhaps of a line that has to be read first; or while a line is read.
+/// A load without a hint (perhaps of a line that must be filled first), or during a line fill.
 template <Op kOp, Indexed kIndexed, bool kTrack>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::load_line(Core& c, Next i, Cycle cycle,
                                                        std::uint32_t va, std::uint32_t end,
@@ -113,7 +113,7 @@ Core::Ops::Next Core::Ops::store(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + (kAddress == Address::kLsl ? 1u + i->rs : 1u));
 }
 
-/// A store that no hint knows: perhaps to the write buffer.
+/// A store without a hint, perhaps to the write buffer.
 template <Op kOp, Address kAddress, Indexed kIndexed>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::store_out(Core& c, Next i, Cycle cycle) {
   const std::uint32_t end = moved<kAddress>(c.r_, *i);
@@ -128,24 +128,24 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   return over(c, i);
 }
 
-/// Record i, a load or store that went to the bus, is over.
+/// Continues after record i, a load or store that used the bus.
 [[gnu::always_inline]] inline Core::Ops::Next Core::Ops::over(Core& c, Next i) {
   ++c.counts_.instructions;
   c.pc_ = c.run_va_ + i[1].at;
   c.run_first_ = reinterpret_cast<std::intptr_t>(i + 1);
-  // Of what chain_goes_on() asks, such an access leaves the place of the chain alone.
+  // As chain_goes_on(), without the conditions that such an access cannot change.
   if (c.cycle_ >= c.chain_stop_ || c.cycle_ >= c.stop_cycle_ || c.attention_ ||
       !c.current_line_->valid || c.cycle_ < c.ifill_.last)
     return nullptr;
   return go(c, i + 1, c.cycle_);
 }
 
-/// A word relative to the pc; imm: from the first byte of the line.
+/// A load relative to the pc; imm is relative to the first byte of the line.
 Core::Ops::Next Core::Ops::load_literal(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = c.run_va_ + i->imm;
   const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
   if (hint.key != (va & ~(kReadSpan - 4)) || cycle < c.dfill_.last) [[unlikely]] {
-    c.r_[15] = c.run_va_;  // what the general way adds the offset to
+    c.r_[15] = c.run_va_;  // base to which the general routine adds the offset
     return generic(c, i, cycle);
   }
   ++c.counter(hint);
@@ -183,7 +183,7 @@ Handler Core::Ops::memory_body(Instruction& i, Place place) {
   const Indexed indexed = !(i.flags & kPre)       ? Indexed::kPost
                           : (i.flags & kWriteBack) ? Indexed::kPre
                                                    : Indexed::kOffset;
-  // One step for each thing that is chosen.
+  // Each step below selects one template parameter.
   const auto by_index = [&]<Op kOp, Address kAddress, bool kTrack>() -> Handler {
     const auto one = []<Indexed kIndexed>() -> Handler {
       if constexpr (kOp == Op::kStr || kOp == Op::kStrb || kOp == Op::kStrh)
@@ -221,8 +221,8 @@ Handler Core::Ops::memory_body(Instruction& i, Place place) {
   }
 }
 
-/// LDM. rm, rs: first address and new base, in words from the base, signed; amount: registers.
-/// Most lie in one line; those that do not take the second way.
+/// LDM. rm and rs: first address and new base, in words relative to the base, signed; amount:
+/// number of registers. Most lists lie in one line; kLong is for the others.
 template <bool kPc, bool kThumb, bool kLong>
 Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.r_[i->rn];
@@ -279,7 +279,7 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   c.record(c.run_va_ + i->at, va, 4 | kWritten | (i->amount - 1u) << 16);
   std::uint32_t set = i->imm;
   for (unsigned left = i->amount; left;) {
-    // Both halves of a line lie side by side on the host.
+    // Both halves of a line are adjacent in host memory.
     const Hint& hint = c.write_hints_[va / kWriteSpan % kHints];
     const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
     c.counter(hint) += here;
@@ -308,7 +308,7 @@ Handler Core::Ops::block_body(Instruction& i) {
   i.rm = static_cast<std::uint8_t>(first);
   i.rs = static_cast<std::uint8_t>(up ? n : -n);
   if (i.op == Op::kStm) return &store_block<false>;
-  // Write-back wins, unless the base is the last of several registers.
+  // The write-back wins, unless the base is the last of several registers.
   if (n > 1 && i.imm >> i.rn == 1u) i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
   const bool thumb = i.flags & kThumbInsn;
   if (!pc) return &load_block<false, false, false>;

@@ -1,4 +1,4 @@
-// Loads, stores and fetches: TCM, translation, caches.
+// Loads, stores and fetches: TCMs, translation, caches.
 #include <cstring>
 
 #include "model/cpu/core/fast_path.h"
@@ -10,7 +10,7 @@ void Core::flush_memos() {
   for (auto& m : imemo_) m.page = ~0u;
   line_va_ = 1;
   line_epoch_ += kEpoch;
-  if (line_epoch_ < kEpoch) [[unlikely]] {  // numbers begin again: no line may carry an old one
+  if (line_epoch_ < kEpoch) [[unlikely]] {  // the numbers start again: no line may keep an old one
     line_epoch_ += kEpoch;
     for (auto* lines : {&decoded_, &tcm_decoded_})
       for (auto& d : *lines)
@@ -27,16 +27,16 @@ void Core::flush_hints() {
   absent_.key = kNoHint;
 }
 
-/// A line of the D-cache gets other contents.
+/// To be called when a line of the D-cache changes its contents.
 void Core::drop_hints(std::uint32_t line_mva) {
-  // FCSE changes only bits that do not choose the place.
+  // FCSE changes only address bits that do not select the hint.
   read_hints_[line_mva / kReadSpan % kHints].key = kNoHint;
   for (unsigned half = 0; half < 2; ++half)
     write_hints_[(line_mva / kWriteSpan + half) % kHints].key = kNoHint;
 }
 
-/// @param line where the line that holds `va` lies on the host
-/// @param counter of counts_: counts accesses to it
+/// @param line host address of the line that contains `va`
+/// @param counter member of counts_ that counts accesses to it
 void Core::note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line,
                      std::uint64_t& counter) {
   const std::uint32_t key = va & ~(kReadSpan - 1);
@@ -62,9 +62,9 @@ void Core::fault(bool instruction, unsigned status, unsigned domain, std::uint32
   }
 }
 
-/// The FAR of a transfer of several words up to `last` that aborted outside: the last word before
-/// the 1 KB boundary that follows the aborted one (ARM DDI 0198D ch. 3, FAR). The words between are
-/// not transferred (assumed).
+/// Sets the FAR of a transfer of several words up to `last` that was aborted by the bus: the last
+/// word before the 1 KB boundary after the aborted word (ARM DDI 0198D ch. 3, FAR). The words in
+/// between are not transferred (assumed).
 void Core::external_abort_at(std::uint32_t last) {
   const std::uint32_t status = dfsr_ & 0xFu;
   if (status == 0x8 || status == 0xA) far_ = std::min(far_ | 0x3FCu, modified(last));
@@ -159,8 +159,8 @@ bool Core::permitted(const Translation& t, bool write, bool user, unsigned& stat
   }
 }
 
-/// The way through the TLB; what it finds is remembered for translate().
-/// @return nullptr: a fault was noted
+/// Translates with the TLB, and remembers the result for translate(). @return nullptr if a fault
+/// was recorded
 const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user,
                                         bool instruction) {
   const bool as_user = user || !privileged();
@@ -171,7 +171,7 @@ const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user
     const bool lock = tlb_lock_ & 1u;
     tlb_.insert(fresh, lock, (tlb_lock_ >> 26) & 7u);
     if (lock) tlb_lock_ = (tlb_lock_ & ~(7u << 26)) | (((tlb_lock_ >> 26) + 1) & 7u) << 26;
-    // An entry may have been replaced: what was remembered of it goes too.
+    // An entry may have been replaced: forget what was remembered of it.
     flush_memos();
     e = &fresh;
   }
@@ -183,10 +183,11 @@ const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user
   t.section = e->section;
   t.cacheable = e->cacheable;
   t.bufferable = e->bufferable;
-  // Pages of internal RAM are never cached; a memo's 1 KB lies in it as a whole or not at all.
+  // Pages of internal RAM are never cached; the 1 KB of a memo lies completely inside or outside
+  // it.
   if (in_tcm(t.physical(mva))) t.cacheable = false;
   t.checked = true;
-  // Quarters of a small or large page have permissions of their own.
+  // The quarters of a small or large page have permissions of their own.
   t.ap = e->ap[e->mask == 0xFFFu ? (mva >> 10) & 3u : e->mask == 0xFFFFu ? (mva >> 14) & 3u : 0];
   unsigned status = 0;
   if (!permitted(t, write, as_user, status)) {
@@ -202,21 +203,21 @@ const Translation* Core::translate_slow(std::uint32_t mva, bool write, bool user
   return &memo.translation;
 }
 
-/// While a line is filled its words can be used as they arrive; everything else waits for its end.
+/// During a fill, words can be used as they arrive; any other access waits for its end.
 void Core::dcache_wait(std::uint32_t mva) {
   const std::uint64_t c =
       (mva & ~31u) == dfill_.line ? dfill_.word((mva >> 2) & 7u) : dfill_.last;
   stall_to(c, Cause::kDcache, dfill_.pa, kService);
 }
 
-/// @return index of the line; an error leaves it invalid
+/// @return index of the line; after a bus error, that line is invalid
 int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line) {
   data_access_.asked = asked_now();
   stall_to(dfill_.last, Cause::kDcache, dfill_.pa, kService);
   const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
   if (dcache_.line(index).tag != 1) drop_hints(dcache_.line(index).tag);
   play(cycle_);
-  filling_ = true;  // from here on the read goes before the victim
+  filling_ = true;  // from here on the read precedes the victim
   write_back(index, Cause::kWriteBuffer);
   BusAccess& a = data_access_;
   a.kind = BusAccess::Kind::kWrap8;
@@ -244,7 +245,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   return static_cast<int>(index);
 }
 
-/// A cacheable load. @param mva of its first byte @return where that is on the host
+/// A cacheable load. @param mva address of its first byte @return host address of that byte
 [[gnu::always_inline]] inline const std::uint8_t* Core::load_line(std::uint32_t va,
                                                                   std::uint32_t mva,
                                                                   const Translation& t) {
@@ -258,8 +259,8 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   return line + (mva & 31u);
 }
 
-/// A load that is aligned, cacheable and known to be permitted. nullptr: it is another kind, and
-/// nothing was done.
+/// An aligned, cacheable load that is known to be permitted. Returns nullptr, without having done
+/// anything, if the load is of another kind.
 template <unsigned kBytes>
 const std::uint8_t* Core::load_cached(std::uint32_t va) {
   const std::uint32_t mva = modified(va);
@@ -365,8 +366,8 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
   return Result::kOk;
 }
 
-/// The store that misses the cache and goes to the write buffer. False: it is another kind, and
-/// nothing was done.
+/// A store that misses the cache and goes to the write buffer. Returns false, without having done
+/// anything, if the store is of another kind.
 template <unsigned kBytes>
 bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
   const std::uint32_t mva = modified(va);
@@ -385,7 +386,7 @@ template bool Core::store_beside_cache<1>(std::uint32_t, std::uint32_t);
 template bool Core::store_beside_cache<2>(std::uint32_t, std::uint32_t);
 template bool Core::store_beside_cache<4>(std::uint32_t, std::uint32_t);
 
-/// Words of an STM or STRD. Those that go to the write buffer and follow each other share an entry.
+/// Stores the words of an STM or STRD. Consecutive words for the write buffer share an entry.
 Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, unsigned count,
                                bool user) {
   std::array<std::uint8_t, 64> run;
@@ -468,7 +469,7 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
 }
 
 const Instruction* Core::fetch_slow() {
-  pack_flags();  // for an abort
+  pack_flags();  // in case of an abort
   const bool thumb = cpsr_ & 0x20u;
   const std::uint32_t mva = fetched_at(pc_) & (thumb ? ~1u : ~3u);
   const unsigned shift = thumb ? 1 : 2;
@@ -477,13 +478,13 @@ const Instruction* Core::fetch_slow() {
   const auto decode_into = [&](DecodedLine& d, const std::uint8_t* bytes) -> const Instruction* {
     if (d.valid == 0 || (d.valid & 1u) != thumb) {
       clear_line(d, thumb);
-      if (in_ram) flush_hints();  // stores to this line must be seen
+      if (in_ram) flush_hints();  // stores to this line must be noticed
     }
     d.valid = line_key(pc_);
     Instruction& i = d.records[at];
     if (!i.body) {
       i = decode_at(bytes, at, thumb);
-      // Internal RAM may be written from outside: its records say nothing about each other.
+      // Other masters may write internal RAM, so its records must not rely on each other.
       Place place = in_ram ? Place{} : look_around(d, at, bytes, thumb);
       place.in_line = true;
       prepare(i, at << shift, place);
@@ -511,7 +512,7 @@ const Instruction* Core::fetch_slow() {
     tcm_access(pa, TcmPort::Side::kFetch);
     DecodedLine& d = tcm_decoded(pa);
     const Instruction* i = decode_into(d, tcm(pa & ~31u));
-    if (!tcm_quick()) {  // every fetch looks
+    if (!tcm_quick()) {  // every fetch has to be checked
       line_va_ = 1;
       d.valid = 2u | (d.valid & 1u);
     }
@@ -521,7 +522,7 @@ const Instruction* Core::fetch_slow() {
     Diagnostics::instance().guest(
         "instruction fetch from the data window of internal RAM (0x10000), which serves data only: "
         "it goes to the bus, where nothing answers; the same RAM holds code at 0x0");
-  // With the MMU off the I-cache alone decides; with it on the page's C bit as well.
+  // With the MMU off only the I-cache's enable bit decides; with it on, the C bit of the page too.
   const bool cached = (fetch_control_ >> 12 & 1u) && (t->cacheable || !mmu);
   counts_.fetch_from(
       fetch_kind(thumb, cached ? FetchFrom::kCache : FetchFrom::kBus, mmu));
@@ -541,12 +542,12 @@ const Instruction* Core::fetch_slow() {
     return decode_into(decoded_[static_cast<unsigned>(index)],
                        icache_.data(static_cast<unsigned>(index)));
   }
-  // Uncached: four words ahead, kept until the flow leaves them.
+  // Uncached: fetch four words ahead and keep them until the program leaves them.
   const unsigned domain = t->domain;
   const bool section = t->section;
   if ((pa & ~15u) != fetch_buffer_pa_ || fetch_branched_ ||
       redirects_seen_ != counts_.redirects) {
-    // One transaction at a time on the port.
+    // The port carries one transaction at a time.
     fetch_access_.asked = asked_now();
     stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
     bus_fetch_ = true;
@@ -594,7 +595,7 @@ bool Core::peek(std::uint32_t address, std::uint8_t& byte) const {
     byte = dcache_.data(static_cast<unsigned>(i))[mva & 31u];
     return true;
   }
-  return translated && writes_.find(pa, byte);  // on its way to memory
+  return translated && writes_.find(pa, byte);  // it is on its way to memory
 }
 
 }  // namespace fovea::cpu

@@ -1,12 +1,13 @@
-// Decoded records become runnable: which handler, and what its neighbours let it leave out.
+// Prepares decoded records: chooses the handler, and finds out which checks the neighbours make
+// unnecessary.
 #include "model/cpu/core/handlers.h"
 #include "model/cpu/core/isa.h"
 
 namespace fovea::cpu {
 namespace {
 
-/// Registers whose value comes later than the end of the instruction's issue, and by how much at
-/// most on the quick ways. (A rotated word takes the general way.)
+/// Registers whose value arrives after the end of the instruction's issue, and by how many clocks
+/// at most in the fast handlers. (A rotated word is loaded by the general routine.)
 struct Late {
   std::uint32_t registers = 0;
   unsigned latency = 0;
@@ -24,7 +25,8 @@ Late late_results(const Instruction& i) {
     case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull:
     case Op::kSmlal:
       return {1u << i.rn, 1, false};
-    default: return {};  // others end the chain: what comes next is executed alone
+    default: return {};  // other instructions end the chain, and the next one is executed on its
+                         // own
   }
 }
 
@@ -45,8 +47,8 @@ Instruction Core::decode_at(const std::uint8_t* bytes, unsigned index, bool thum
   return decode_arm(word);
 }
 
-/// Within a chain only the two records before can hold up a record, and a taken branch takes longer
-/// than any result.
+/// Within a chain only the two preceding records can delay a record, and a taken branch takes
+/// longer than any result.
 Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
                               bool thumb) {
   const unsigned count = thumb ? 16 : 8;
@@ -63,7 +65,7 @@ Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::u
     const Late old = index >= 2 ? late_results(at(index - 2)) : Late{};
     const bool waits_for_young = young.registers & needs;
     const bool waits_for_old = old.latency == 2 && (old.registers & needs);
-    // Where the record before is always executed, its result is the last one on its way.
+    // If the preceding record is always executed, its result is the latest one.
     const bool in_full = (young.registers & i.sources) || young.load;
     if (waits_for_young && in_full && before.cond == 14)
       place.check = Place::Check::kYoungest;
@@ -72,7 +74,7 @@ Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::u
   }
   const Late mine = late_results(i);
   if (mine.registers) {
-    place.track = index + mine.latency >= count;  // line_end() looks at the next line
+    place.track = index + mine.latency >= count;  // line_end() checks the next line
     for (unsigned k = 1; k <= mine.latency && index + k < count; ++k)
       if (operands(at(index + k)) & mine.registers) place.track = true;
   }
@@ -105,7 +107,7 @@ Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
   return i->body(c, i, cycle);
 }
 
-/// Place of a handler: condition, check * 15, pc * 45.
+/// Index of a handler: condition + check * 15 + pc * 45.
 template <std::size_t... k>
 constexpr std::array<Handler, sizeof...(k)> Core::Ops::before_table(std::index_sequence<k...>) {
   return {&before<k % 15, static_cast<Place::Check>(k / 15 % 3), (k / 45) != 0>...};
@@ -167,7 +169,7 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   c.prepare(pair[0], i->at, Place{});
   pair[1].at = static_cast<std::uint8_t>(i->at + (thumb ? 2u : 4u));
   pair[1].handler = &leave;
-  c.chain_stop_ = 0;  // one record, and back to run()
+  c.chain_stop_ = 0;  // execute one record, then return to run()
   c.run_first_ = reinterpret_cast<std::intptr_t>(pair.data());
   for (Next k = pair[0].body(c, pair.data(), c.cycle_); k;) k = k->handler(c, k, c.chain_cycle_);
   return nullptr;
@@ -192,7 +194,7 @@ Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
   return enter_line<kThumb>(c, i, cycle, *d);
 }
 
-/// The records of a line know nothing of the line before.
+/// The records of a line are prepared without knowing the preceding line.
 template <bool kThumb>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle,
                                                            DecodedLine& d) {
@@ -216,7 +218,7 @@ template <bool kThumb>
   };
   const Cycle start = c.operands_ready(*i, cycle);
   if (start > cycle && i->cond != 14) return kNoCycle;
-  // No result is later than two clocks.
+  // No result takes longer than two clocks.
   if (c.busy_until_ > start + 1 && late(operands(i[1]), start + 1)) return kNoCycle;
   return start;
 }

@@ -1,4 +1,4 @@
-// Named ranges of physical addresses, to say where stalls come from.
+// Named ranges of physical addresses, for statistics of stalls by region.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace fovea::cpu {
 
-/// Addresses in no range are `other`; what has no address is `none`.
+/// Addresses outside all ranges belong to `other`; stalls without an address belong to `none`.
 class RegionMap {
  public:
   static constexpr std::uint8_t kNone = 0, kOther = 1;
-  /// `none`, `other`, and those that have ranges.
+  /// `none`, `other`, and 16 named regions.
   static constexpr std::size_t kMax = 2 + 16;
 
-  /// The range belongs to `name` from here on, whatever lay there before. A name may have several
-  /// ranges. False, and nothing changed: that would be a name too many.
+  /// Assigns the range to region `name` and removes it from any other region. A region may consist
+  /// of several ranges. Returns false, without any change, if that would be one name too many.
   bool add(std::string_view name, std::uint64_t first, std::uint64_t bytes) {
     const auto known = std::find(names_.begin(), names_.end(), name);
     if (known == names_.end() && names_.size() == kMax) return false;
@@ -44,16 +44,17 @@ class RegionMap {
       return find_anew(address);
     return f.id;
   }
-  /// Numbers are places in here.
+  /// The names, indexed by the numbers that find() returns.
   const std::vector<std::string>& names() const { return names_; }
 
  private:
   static constexpr std::uint64_t kEnd = std::uint64_t{1} << 32;
   struct Piece {
-    std::uint64_t first;  // up to the next one's
+    std::uint64_t first;  // the piece ends where the next one begins
     std::uint8_t id;
   };
-  /// Found last, by megabyte: the core's streams of accesses stay in their ranges.
+  /// Results found last, one for each megabyte modulo 16: consecutive accesses mostly stay in one
+  /// range.
   struct Found {
     std::uint64_t first = 0, bytes = 0;
     std::uint8_t id = kOther;

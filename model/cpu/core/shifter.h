@@ -1,4 +1,4 @@
-// The barrel shifter (ARM ARM A5.1), and the names of the flags in the CPSR.
+// The barrel shifter (ARM DDI 0100, A5.1), and the flag bits of the CPSR.
 #pragma once
 #include <array>
 #include <bit>
@@ -11,14 +11,14 @@ namespace fovea::cpu {
 inline constexpr std::uint32_t kN = 1u << 31, kZ = 1u << 30, kC = 1u << 29, kV = 1u << 28,
                                kQ = 1u << 27;
 
-/// The forms of a second operand that differ in what has to be computed. A distance of 32 stands as
-/// 32 in the record, RRX as a form of its own (form_of()).
+/// The forms of a second operand that need different computations. form_of() turns an encoded
+/// distance of 0 into 32 or, for ROR, into the form kRrx.
 enum class Form : std::uint8_t {
   kImm, kImmCarry, kReg, kLsl, kLsr, kAsr, kRor, kRrx, kLslReg, kLsrReg, kAsrReg, kRorReg, kCount
 };
 
-/// Form of a decoded record; brings the distance of an immediate shift into the form above. To be
-/// called once for a record.
+/// The form of a decoded record. Also rewrites the distance of an immediate shift as described
+/// above, so it must be called only once for each record.
 inline Form form_of(Instruction& i) {
   switch (i.operand) {
     case Operand::kImm: return (i.flags & kImmCarry) ? Form::kImmCarry : Form::kImm;
@@ -31,7 +31,7 @@ inline Form form_of(Instruction& i) {
   }
 }
 
-/// Shifts by an immediate distance. `carry` holds the flag and becomes the shifter's carry out.
+/// Shifts by an immediate distance. `carry` is the carry flag and becomes the shifter's carry-out.
 template <Form kForm>
 [[gnu::always_inline]] inline std::uint32_t shifted(std::uint32_t v, unsigned n, bool& carry) {
   const bool in = carry;
@@ -53,7 +53,7 @@ template <Form kForm>
   }
 }
 
-/// Shifts by a register's low byte.
+/// Shifts by the low byte `n` of a register.
 template <Form kForm>
 [[gnu::always_inline]] inline std::uint32_t shifted_by_register(std::uint32_t v, unsigned n,
                                                                 bool& carry) {
@@ -73,7 +73,7 @@ template <Form kForm>
   }
 }
 
-/// Second operand of a data processing instruction in the registers' present state.
+/// Second operand of a data-processing instruction, from the current register values.
 template <Form kForm>
 [[gnu::always_inline]] inline std::uint32_t second_operand(
     const Instruction& i, const std::array<std::uint32_t, 16>& r, bool& carry) {

@@ -1,4 +1,4 @@
-// Stalled clocks by cause, by the region of the address and by the culprit.
+// Clocks of stalls by cause, region of the address, and culprit.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -21,31 +21,33 @@ inline constexpr std::array<const char*, kCauses> kCauseNames = {
     "tlb",       "tcm",    "cache_op", "drain",      "bus_sync"};
 constexpr std::size_t index(Cause c) { return static_cast<std::size_t>(c); }
 
-/// Those of a bus transaction, and the core itself: interlocks, wait states, edges of the AHB clock,
-/// the way from the AHB into the core.
+/// Culprits of a stall: those of a bus transaction, and the core itself (interlocks, wait states,
+/// waiting for an edge of the AHB clock, the path from the AHB into the core).
 inline constexpr std::size_t kCore = kCulprits, kStallCulprits = kCulprits + 1;
-/// The transfer itself, behind its first word as well.
+/// The transfer itself, including the words after the first one.
 inline constexpr std::size_t kService = index(Culprit::kService);
 constexpr std::string_view stall_culprit_name(std::size_t culprit) {
   return culprit == kCore ? "core" : culprit_name(static_cast<Culprit>(culprit));
 }
-/// Causes that may wait for others; the rest have but one culprit, the core.
+/// Causes for which others may be the culprit; for the rest it is always the core.
 constexpr bool waits_for_others(Cause c) {
   return c != Cause::kInterlock && c != Cause::kBusSync;
 }
 
-/// Interlocks, which the running chain of instructions counts by itself, are not in here. Kept in
-/// parts of a clock, so that a stall is split by one division; whole clocks are made when they are
-/// read. Good for 2^40 clocks of a cause and region.
+/// Stalled clocks by cause, region and culprit. Interlocks are not included: the running chain of
+/// instructions counts them by itself. Values are stored as fractions of a clock (2^-24), so that a
+/// stall is split with one division, and rounded to whole clocks when they are read. The limit is
+/// 2^40 clocks for one cause and region.
 class StallTable {
  public:
   bool operator==(const StallTable&) const = default;
-  /// Each end of a culprit's share is rounded, so that whole clocks add up exactly.
+  /// Whole clocks of one culprit. The boundaries between the culprits are rounded, so the sum is
+  /// exact.
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit) const {
     return at(cause, region, culprit, empty());
   }
-  /// Of what was added since the table was `from`: the difference of two rounded shares may be less
-  /// than nothing.
+  /// The same for what was added since the table was `from`. As a difference of two rounded shares,
+  /// the result may be below zero (it wraps around).
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit,
                    const StallTable& from) const {
     const std::size_t first = place(cause, region, 0);
@@ -57,9 +59,9 @@ class StallTable {
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
     parts_[place(cause, region, culprit)] += clocks << kFraction;
   }
-  /// Splits `clocks` by what a transaction waited for, in the proportion of its picoseconds. What the
-  /// waits leave of `span`, and what is lost by rounding, is service as well. `own` clocks more are
-  /// the core's.
+  /// Splits `clocks` in proportion to the picoseconds that a transaction waited for each culprit.
+  /// The part of `span` without waits, and rounding errors, are attributed to kService. `own`
+  /// further clocks are attributed to the core.
   [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks,
                                     const RequestWaits& waits, std::uint64_t span,
                                     std::uint64_t own = 0) {
@@ -70,7 +72,7 @@ class StallTable {
     const Parts all = clocks << kFraction;
     Parts left = all;
     if (whole == 0) {
-    } else if (whole >> 20 == 0) {  // a microsecond: the error stays below a tenth of a clock
+    } else if (whole >> 20 == 0) {  // up to a microsecond, the error stays below a tenth of a clock
       const Parts rate = all / whole;
       waits.each_but_service([&](Culprit c, std::uint64_t ps) {
         row[index(c)] += ps * rate;
@@ -85,7 +87,7 @@ class StallTable {
     }
     row[kService] += left;
   }
-  /// Over all regions.
+  /// Sum over all regions.
   std::uint64_t by(Cause cause, std::size_t culprit) const {
     return by(cause, culprit, empty());
   }
@@ -94,7 +96,7 @@ class StallTable {
     for (std::size_t r = 0; r < RegionMap::kMax; ++r) sum += at(cause, r, culprit, from);
     return sum;
   }
-  /// Over all regions and culprits.
+  /// Sum over all regions and culprits.
   std::uint64_t total(Cause cause) const {
     const auto first = parts_.begin() + place(cause, 0, 0);
     return std::accumulate(first, first + kOfCause, Parts{0}) >> kFraction;
@@ -113,7 +115,7 @@ class StallTable {
   }
   static std::uint64_t rounded(Parts p) { return (p + (Parts{1} << (kFraction - 1))) >> kFraction; }
 
-  // Aligned: g++ 12 takes the table for it when it vectorises sums.
+  // Aligned because g++ 12 assumes this alignment when it vectorises sums over the table.
   alignas(16) std::array<Parts, kCauses * kOfCause> parts_{};
 };
 

@@ -1,4 +1,4 @@
-// What the core counts. Every cycle has one cause.
+// Counters and statistics of the core. Every clock is attributed to one cause.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,30 +11,31 @@
 
 namespace fovea::cpu {
 
-/// Instruction set, memory and MMU of executed code: Thumb, 2 * FetchFrom, 8 with the MMU on.
+/// How executed code is fetched: Thumb state + 2 * FetchFrom + 8 if the MMU is on.
 enum class FetchFrom : std::uint8_t { kCache, kTcm, kBus };
 inline constexpr std::size_t kFetchKinds = 16;
 constexpr std::size_t fetch_kind(bool thumb, FetchFrom from, bool mmu) {
   return static_cast<std::size_t>(from) * 2 + thumb + (mmu ? 8 : 0);
 }
 
-/// Plain numbers, counted since reset; the window is a difference of two copies.
+/// Plain counters since reset. The statistics of a window are the difference of two copies.
 struct Counts {
   std::uint64_t instructions = 0, cycles = 0, issue = 0, idle = 0;
   std::array<std::uint64_t, kCauses> stall{};
-  std::uint64_t redirects = 0;  // branches taken, writes to the pc, exceptions
+  std::uint64_t redirects = 0;  // taken branches, writes to the pc, exceptions
   std::uint64_t icache_fills = 0;
   std::uint64_t dcache_reads = 0, dcache_read_fills = 0, dcache_writes = 0,
                 dcache_write_misses = 0, dcache_writebacks = 0;
   std::uint64_t itcm_reads = 0, itcm_writes = 0, dtcm_reads = 0, dtcm_writes = 0;
-  std::uint64_t translated_uncached = 0;  // data accesses beside the D-cache, MMU on
+  std::uint64_t translated_uncached = 0;  // data accesses that do not use the D-cache, with the MMU
+                                          // on
   std::uint64_t tlb_walks = 0, writeback_words = 0, multiplies = 0, coprocessor = 0;
   std::uint64_t i_read_beats = 0, d_read_beats = 0, d_write_beats = 0;
   std::uint64_t exceptions = 0, unpredictable = 0;
   StallTable stalls;
 
   bool operator==(const Counts&) const = default;
-  /// The next instructions are of that kind.
+  /// Declares how the instructions from here on are fetched.
   void fetch_from(std::size_t kind) {
     if (kind == kind_) return;
     executed_[kind_] += instructions;
@@ -43,9 +44,9 @@ struct Counts {
     executed_[kind_] -= instructions;
     redirected_[kind_] -= redirects;
   }
-  /// Words fetched for executed instructions, with the two behind each change of flow that the
-  /// pipeline drops. A word holds two Thumb instructions; that one of the two ends of each run of
-  /// them is in the middle of a word is assumed, as an average.
+  /// Words fetched for executed instructions, plus the two that the pipeline drops at each change
+  /// of flow. A word holds two Thumb instructions; on average, one of the two ends of a sequence is
+  /// assumed to be in the middle of a word.
   std::uint64_t words_fetched(FetchFrom from, bool mmu) const {
     const std::size_t arm = fetch_kind(false, from, mmu), thumb = fetch_kind(true, from, mmu);
     return executed(arm) + 2 * redirected(arm) + (executed(thumb) + 3 * redirected(thumb)) / 2;
@@ -59,14 +60,14 @@ struct Counts {
            words_fetched(FetchFrom::kTcm, true) + dcache_reads + dcache_writes +
            translated_uncached + translated_ram();
   }
-  /// The MMU is on or off from here on.
+  /// Declares that the MMU is on or off from here on.
   void translate(bool on) {
     if (on == translating_) return;
     translating_ = on;
     translated_ram_ += on ? 0 - ram_accesses() : ram_accesses();
   }
 
-  /// Since the counts were `from`.
+  /// Clocks stalled since the counters had the values `from`.
   std::uint64_t stalled(Cause cause, std::size_t region, std::size_t culprit,
                         const Counts& from) const {
     if (cause != Cause::kInterlock) return stalls.at(cause, region, culprit, from.stalls);
@@ -74,7 +75,7 @@ struct Counts {
                ? stall[index(cause)] - from.stall[index(cause)]
                : 0;
   }
-  /// The first cause whose clocks are not those of its regions and culprits; kCount: none.
+  /// The first cause whose clocks do not equal the sum over its regions and culprits; kCount: none.
   Cause unexplained() const {
     for (std::size_t k = 0; k < kCauses; ++k) {
       const auto cause = static_cast<Cause>(k);
@@ -87,13 +88,14 @@ struct Counts {
   std::uint64_t ram_accesses() const {
     return itcm_reads + itcm_writes + dtcm_reads + dtcm_writes;
   }
-  /// Loads and stores in internal RAM with the MMU on. While it is on, less what the counters say.
+  /// Loads and stores in internal RAM with the MMU on. While it is on, translated_ram_ holds the
+  /// number minus the counters' current values.
   std::uint64_t translated_ram() const {
     return translated_ram_ + (translating_ ? ram_accesses() : 0);
   }
   std::uint64_t translated_ram_ = 0;
   bool translating_ = false;
-  // Of each kind so far; of the present one less what instructions and redirects say.
+  // By kind of fetch. The current kind's entry is stored minus the current counters.
   std::array<std::uint64_t, kFetchKinds> executed_{}, redirected_{};
   std::size_t kind_ = 0;
   std::uint64_t executed(std::size_t kind) const {
@@ -104,7 +106,7 @@ struct Counts {
   }
 };
 
-/// The window's figures under their public names.
+/// Statistics of the measurement window, under their public names.
 struct CoreStats : StatGroup {
   Counts from, to;
   using V = StatBase::Value;
@@ -151,7 +153,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(exceptions, "exceptions", "1", exceptions, "exceptions taken");
   FOVEA_CPU_STAT(unpredictable, "unpredictable", "1", unpredictable,
                  "instructions with an UNPREDICTABLE encoding");
-  // What else a power model needs; issue, idle, the caches' look-ups and fills are above.
+  // Further inputs of a power model; issue, idle, cache accesses and fills are above.
   FOVEA_CPU_STAT(itcm_fetches, "activity.itcm_fetches", "1", words_fetched(FetchFrom::kTcm),
                  "words fetched from internal RAM, with two dropped behind each change of flow");
   FOVEA_CPU_STAT(itcm_reads, "activity.itcm_reads", "1", itcm_reads,

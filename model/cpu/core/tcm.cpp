@@ -1,6 +1,6 @@
-// Internal RAM that others reach too. The burst of a DMA arrives and moves its data in the kernel's
-// time; the core runs ahead strictly before that. From one to the other each of the core's accesses
-// comes by here.
+// Internal RAM that other masters can access too. A burst of the DMA arrives and moves its data in
+// kernel time, and the core runs ahead strictly before that. Between these two, each access of the
+// core to internal RAM is checked here.
 #include <cstring>
 
 #include "model/cpu/core/core.h"
@@ -11,7 +11,7 @@ void Core::tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at) {
   FOVEA_CHECK(!tcm_port_.busy() && burst.bytes > 0 && burst.offset + burst.bytes <= tcm_.size(),
               "bad burst to internal RAM");
   tcm_port_.begin(burst, clock_.edge_after(at));
-  // Nobody may go on with what it knew about internal RAM.
+  // Discard everything that was remembered about internal RAM.
   flush_memos();
 }
 
@@ -28,17 +28,18 @@ void Core::tcm_burst_ends(bool write, std::uint8_t* data) {
   line_va_ = 1;
 }
 
-/// The instruction under way comes from the bank that holds `offset`. Only while every fetch looks
-/// (tcm_quick()): then the line found last is the one that it comes from.
+/// True if the current instruction was fetched from the bank that holds `offset`. Valid only while
+/// every fetch is checked (tcm_quick()), since the last line found is then the one it came from.
 bool Core::code_shares_bank(std::uint32_t offset) const {
   if (!(line_epoch_ & kLineInRam)) return false;
   const auto line = static_cast<std::uint32_t>(current_line_ - tcm_decoded_.data());
   return tcm_port_.same_bank(offset, line * Cache::kLineBytes);
 }
 
-/// The core's turn at internal RAM: by the time of the access everybody else has acted who acts before
-/// it. Instructions begin no later than the next event of others, so that only time that passes within
-/// one needs a look: a bus access before this one (a page walk), or the wait for a DMA.
+/// Called for an access of the core to internal RAM: all agents that act before the time of the
+/// access have to act first. Instructions begin no later than the next event of the others, so only
+/// time that passes within an instruction needs a check: a bus access before this one (a page
+/// walk), or waiting for a DMA.
 void Core::tcm_access(std::uint32_t pa, TcmPort::Side side) {
   if (bus_waited_) [[unlikely]] {
     bus_waited_ = false;
@@ -54,7 +55,7 @@ void Core::tcm_access(std::uint32_t pa, TcmPort::Side side) {
     if (got == cycle_) break;
     stall_to(got, Cause::kTcm, pa, index(culprit(master)));
     port_.sleep_until(time(cycle_));
-    if (tcm_port_.bursts() == bursts) break;  // else another one has come meanwhile
+    if (tcm_port_.bursts() == bursts) break;  // otherwise another burst has arrived meanwhile
   }
   if (tcm_wait_) stall_to(cycle_ + tcm_wait_, Cause::kTcm, pa, kCore);
 }

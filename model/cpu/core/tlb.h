@@ -1,24 +1,25 @@
-// The unified main TLB (2 ways x 32 sets) and the lockdown TLB (8 entries).
+// The main TLB (2 ways, 32 sets) and the lockdown TLB (8 entries), unified for instructions and
+// data.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace fovea::cpu {
 
-/// What an access needs to know of its page.
+/// The translation of a page, as far as an access needs it.
 struct Translation {
   std::uint32_t base_va = 1, base_pa = 0, mask = 0;  // pa = base_pa | (mva & mask)
   std::uint8_t ap = 3, domain = 0;
   bool cacheable = false, bufferable = false;
   bool section = false;
-  bool checked = false;  // false: MMU off, no permissions
+  bool checked = false;  // false: the MMU is off, so there are no permissions
   std::uint32_t physical(std::uint32_t mva) const { return base_pa | (mva & mask); }
 };
 
 struct TlbEntry {
   bool valid = false;
   std::uint32_t base_va = 0, base_pa = 0, mask = 0;
-  std::array<std::uint8_t, 4> ap{};  // per quarter of the page
+  std::array<std::uint8_t, 4> ap{};  // access permissions of each quarter of the page
   std::uint8_t domain = 0;
   bool cacheable = false, bufferable = false, section = false;
   bool covers(std::uint32_t mva) const { return valid && (mva & ~mask) == base_va; }
@@ -27,8 +28,8 @@ struct TlbEntry {
 
 class Tlb {
  public:
-  /// Sets are chosen by the 1 MB, 64 KB, 4 KB and 1 KB number (assumed: the structure is not
-  /// architectural).
+  /// Looks up an entry. The set is chosen by the number of the 1 MB, 64 KB, 4 KB or 1 KB page
+  /// (assumed: the architecture does not define the structure).
   const TlbEntry* find(std::uint32_t mva) const {
     for (const auto& e : locked_)
       if (e.covers(mva)) return &e;

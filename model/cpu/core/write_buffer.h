@@ -7,8 +7,8 @@
 
 namespace fovea::cpu {
 
-/// Entries leave in order. Bursts of a multi-word entry: eights, then fours, then singles, none
-/// across 1 KB.
+/// Entries leave in order. An entry of several words is sent as bursts of eight words, then of
+/// four, then as single words; no burst crosses a 1 KB boundary.
 class WriteBuffer {
  public:
   static constexpr unsigned kAddresses = 4, kWords = 16;
@@ -16,7 +16,7 @@ class WriteBuffer {
     std::uint32_t address = 0;
     unsigned bytes = 0;  // 1, 2 or a multiple of 4
     unsigned sent = 0;
-    std::uint64_t asked = 0;  // as BusAccess::asked
+    std::uint64_t asked = 0;  // see BusAccess::asked
     std::array<std::uint8_t, 64> data{};
   };
   bool empty() const { return count_ == 0; }
@@ -43,7 +43,7 @@ class WriteBuffer {
     if (left >= 16 && to_boundary >= 16) return 16;
     return 4;
   }
-  /// A burst of this many bytes was acknowledged.
+  /// To be called when a burst of this many bytes was acknowledged.
   void acknowledge(unsigned bytes) {
     words_ -= (bytes + 3) / 4;
     Entry& e = entries_[head_];
@@ -63,7 +63,7 @@ class WriteBuffer {
            victim_address < address + n;
   }
 
-  /// The byte at an address as the youngest pending write leaves it; false if there is none.
+  /// The byte at an address after all pending writes; false if none of them covers it.
   bool find(std::uint32_t address, std::uint8_t& byte) const {
     for (unsigned i = count_; i-- > 0;) {
       const Entry& e = entries_[(head_ + i) % kAddresses];
@@ -76,7 +76,7 @@ class WriteBuffer {
     return true;
   }
 
-  /// Changes pending bytes from `address` on where they are (a debugger's write).
+  /// Changes pending bytes from `address` on in place (a debugger's write).
   void patch(std::uint32_t address, std::span<const std::uint8_t> bytes) {
     for (std::size_t k = 0; k < bytes.size(); ++k) {
       const std::uint32_t at = address + static_cast<std::uint32_t>(k);
