@@ -20,12 +20,12 @@ struct DisplayStats : StatGroup {
   DisplayStats() : StatGroup("display") {}
 };
 
-/// Takes the encoder's lines, checks them and hands out frames.
+/// Receives the lines of the video encoder, checks them and delivers complete frames.
 class DisplaySink : public sc_core::sc_module, public DisplayLineIf {
  public:
   sc_core::sc_export<DisplayLineIf> lines{"lines"};
   DisplayStats stats;
-  FrameAssembler assembler;  ///< set assembler.on_frame for a callback per displayed frame
+  FrameAssembler assembler;  ///< assembler.on_frame is called for each displayed frame
 
   explicit DisplaySink(sc_core::sc_module_name name) : sc_module(name) { lines.bind(*this); }
   void line(const DisplayLine& l) override {
@@ -38,7 +38,7 @@ class DisplaySink : public sc_core::sc_module, public DisplayLineIf {
   }
 
  private:
-  // The assembler counts over the whole run; the statistics only in the measured window.
+  // The assembler counts over the whole run, the statistics only over the measurement window.
   void count() {
     const Totals now{assembler.frames(), assembler.repeated(), assembler.underflows(),
                      assembler.broken_frames(), assembler.violations()};

@@ -26,7 +26,7 @@ void Isif::write_syncen() {
     synced_ = false;
     line_ = 0;
     frame_open_ = false;
-    // A row under way is still written, but ends no field and no frame.
+    // A row that is being captured is still written, but no longer ends a field or a frame.
     last_row_ = false;
     while (!ends_.empty() && ends_.back().due > kernel_time()) ends_.pop_back();
     frame_index_ = 0;
@@ -47,8 +47,9 @@ void Isif::latch() {
                  owns_write_buffer.read();
   setup_.interlaced = regs.modeset.ccdmd.get();
   setup_.fiinv = regs.sdofst.fiinv.get();
-  // On the wire: Cb Y Cr Y. Linux's UYVY settings (YCINSWP = Y8POS = 1) keep that order; each of
-  // the four swap bits toggles it.
+  // On the wire the order is Cb Y Cr Y. Linux's UYVY settings (YCINSWP = Y8POS = 1) keep it; each
+  // of the
+  // four swap bits reverses it.
   setup_.swap = ((regs.ccdcfg.y8pos.get() ^ regs.ccdcfg.ycinswp.get() ^ regs.ccdcfg.ycoutswp.get() ^
                   regs.ccdcfg.bswd.get()) &
                  1) != 0;
@@ -74,7 +75,7 @@ void Isif::line(const Bt656Line& l) {
     line_ = 0;
     return;
   }
-  issue(kernel_time());  // the last burst of the previous line is due at this very time
+  issue(kernel_time());  // the last burst of the previous line may be due at this very time
 
   const XyCode code = decode_xy(l.eav_xy);
   bool f = (l.eav_xy & 0x40) != 0, v = (l.eav_xy & 0x20) != 0;
@@ -109,7 +110,7 @@ void Isif::begin_field(const Bt656Line& l) {
   field_ = f_ != (regs.modeset.fipol.get() != 0);
   regs.modeset.mdfs.set(field_);
   latch();
-  if (!setup_.write) frame_open_ = false;  // a first field whose second is not captured
+  if (!setup_.write) frame_open_ = false;  // the second field of this frame will not be captured
 }
 
 void Isif::begin_row(const Bt656Line& l, unsigned index) {
@@ -155,11 +156,11 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
   issue(kernel_time());
 }
 
-/// Hands to the port every burst of the row of which it is certain that a place is free when its
-/// last byte arrives, ahead of that time; and counts as lost those of which the contrary is
-/// certain. A place freed at a time serves bursts strictly later. What is uncertain hangs on a
-/// burst whose outcome is not decided: done() comes back to it. At `now` all is certain that was
-/// due.
+/// Issues the bursts of the row for which a buffer slot is certainly free when their last byte
+/// arrives, ahead of that time, and counts those as lost for which certainly none is free. A slot
+/// freed at time t can be used strictly after t. If neither is certain, the answer depends on a
+/// burst whose outcome is not decided, and done() calls again. At `now`, everything is certain that
+/// was due by then.
 void Isif::issue(Picoseconds now) {
   while (row_pos_ < row_bytes_) {
     const unsigned bytes = first_burst(row_address_ + row_pos_, row_bytes_ - row_pos_,
@@ -172,7 +173,8 @@ void Isif::issue(Picoseconds now) {
       ++stats.bursts;
       ++tag_;
       if (last) end_field(due);
-      // A field's last burst is followed by a kernel event of ours.
+      // The last burst of a field is followed by a kernel event of this block, so it has side
+      // effects.
       memory.write(row_address_ + at, {row_.data() + at, bytes}, tag_, due, !last);
     } else if (due <= now || memory.outstanding() == 0) {
       overflow_sticky_ = true;
@@ -186,7 +188,7 @@ void Isif::issue(Picoseconds now) {
   }
 }
 
-/// `due`: when the field's last burst is, or was lost.
+/// @param due time at which the last burst of the field is issued or lost
 void Isif::end_field(Picoseconds due) {
   const Picoseconds at = tag_ <= done_tag_ ? std::max(due, done_at_) : kNever;
   ends_.push_back({tag_, due, at, field_, frame_});
@@ -214,7 +216,8 @@ void Isif::close_fields() {
   arm_end();
 }
 
-/// Called ahead of c.last: nothing here may depend on, or change, what others see before then.
+/// Called ahead of time c.last: must not use or change anything that others can observe before
+/// then.
 void Isif::done(const BurstMaster::Completion& c) {
   if (c.error) Diagnostics::instance().guest("capture writes to an address without memory");
   done_tag_ = c.tag;

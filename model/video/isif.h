@@ -1,4 +1,4 @@
-// Image sensor interface: BT.656 capture to memory.
+// ISIF (image sensor interface): BT.656 capture to memory.
 #pragma once
 #include <array>
 #include <deque>
@@ -28,37 +28,42 @@ struct CaptureStats : StatGroup {
   CaptureStats() : StatGroup("capture") {}
 };
 
-/// A captured frame, for the board's bookkeeping.
+/// A captured frame, as reported to the board.
 struct CaptureFrame {
-  std::uint64_t index = 0;  ///< complete frames before it since SYNCEN.VDHDEN was set
-  bool complete = false;    ///< false: only the second field was captured
-  Picoseconds start = 0;    ///< first captured sample is on the wire
-  Picoseconds end = 0;      ///< last sample's data are in memory (write acknowledged)
-  std::array<std::uint32_t, 2> address{};       ///< buffer address by field
-  std::array<std::uint64_t, 2> source_field{};  ///< the camera's field number by field
-  std::uint64_t overflows = 0;                  ///< bursts lost in it
+  std::uint64_t index = 0;  ///< number of complete frames since SYNCEN.VDHDEN was set
+  bool complete = false;    ///< false if only the second field was captured
+  Picoseconds start = 0;    ///< time at which the first captured sample is on the wire
+  Picoseconds end = 0;      ///< time at which all data are in memory (last write acknowledged)
+  std::array<std::uint32_t, 2> address{};       ///< buffer address of each field
+  std::array<std::uint64_t, 2> source_field{};  ///< the camera's field number of each field
+  std::uint64_t overflows = 0;                  ///< bursts lost from this frame
 };
 
-/// ISIF with 8-bit BT.656 input. Line counting: VD is the EAV where V falls; that line is line 1
-/// (Linux starts capture of a full picture at line 1), lines count on through the blanking.
-/// VDINTn fires at the EAV of line n, and with VD for 0. Settings latch at VD when VDLC = 0.
-/// Data goes out in bursts when their last byte has arrived, i.e. one byte clock after it came on
-/// the wire. At most `vpss.write_buffer_bursts` bursts wait for memory; a place freed at a time
-/// serves bursts strictly later. On overflow the burst is lost, a sticky flag (model only: no
-/// public register) is set and capture goes on. Not modelled: raw and 16-bit input, culling,
-/// filters, formatter, own HD/VD.
+/// ISIF with 8-bit BT.656 input.
+///
+/// Counting of lines: VD is the EAV at which V falls. That line is line 1 (Linux starts the capture
+/// of a full picture at line 1), and counting continues through the blanking. VDINTn fires at the
+/// EAV of line n, or at VD for n = 0. Settings are latched at VD if VDLC = 0.
+///
+/// Data are written in bursts. A burst is issued when its last byte has arrived, i.e. one byte
+/// clock after that byte appeared on the wire. At most `vpss.write_buffer_bursts` bursts wait for
+/// memory; a buffer slot that is freed at time t can be used by bursts strictly after t. On
+/// overflow the burst is lost, a sticky flag is set (it exists only in the model: no register is
+/// documented) and capture continues. Not modelled: raw and 16-bit input, culling, filters,
+/// formatter, HD/VD as outputs.
 class Isif : public BusTarget, public Bt656If {
  public:
   sc_core::sc_export<Bt656If> video{"video"};
   BurstMaster memory;                           ///< bind memory.socket
   sc_core::sc_vector<Pulse> vdint{"vdint", 3};  ///< bind vdint[i].out
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
-  sc_core::sc_in<bool> owns_write_buffer{"owns_write_buffer"};  ///< BCR.SRC_SEL_WB; taken with WEN
+  sc_core::sc_in<bool> owns_write_buffer{"owns_write_buffer"};  ///< BCR.SRC_SEL_WB; latched
+                                                                ///< together with WEN
   IsifRegs regs;
   CaptureStats stats;
-  /// Called at the first line of a frame (its start is the first sample's time, a little later).
+  /// Called at the first line of a frame, a little before its first captured sample.
   std::function<void(const CaptureFrame&)> on_frame_start;
-  /// Called when the last data of a frame are in memory.
+  /// Called when all data of a frame are in memory.
   std::function<void(const CaptureFrame&)> on_frame_end;
 
   SC_HAS_PROCESS(Isif);
@@ -66,7 +71,7 @@ class Isif : public BusTarget, public Bt656If {
 
   void line(const Bt656Line& line) override;
   bool overflowed() const { return overflow_sticky_; }
-  /// Row-start address of the row captured last; for tests.
+  /// Address of the start of the last captured row; for tests.
   std::uint32_t row_address() const { return row_address_; }
 
  protected:
@@ -80,8 +85,8 @@ class Isif : public BusTarget, public Bt656If {
   };
   struct FieldEnd {
     std::uint64_t last_tag;
-    Picoseconds due;  // its last burst leaves, or is lost
-    Picoseconds at;   // all its data are in memory; kNever: not known
+    Picoseconds due;  // time at which its last burst is issued or lost
+    Picoseconds at;   // time at which all its data are in memory; kNever: unknown
     bool second;
     CaptureFrame frame;
   };
@@ -97,16 +102,16 @@ class Isif : public BusTarget, public Bt656If {
   void done(const BurstMaster::Completion& c);
 
   const VpssParams& params_;
-  bool synced_ = false;  // an EAV was seen
+  bool synced_ = false;  // an EAV was received
   bool f_ = false, v_ = true;
-  unsigned line_ = 0;   // 0: no VD yet
-  bool field_ = false;  // second field, after FIPOL
+  unsigned line_ = 0;   // 0: no VD so far
+  bool field_ = false;  // true: second field (FIPOL applied)
   Setup setup_;
 
   std::array<std::uint8_t, kActiveBytes> row_{};
   unsigned row_bytes_ = 0, row_pos_ = 0;
   std::uint32_t row_address_ = 0;
-  int row_offset_ = 0;  // rows from the buffer's start
+  int row_offset_ = 0;  // in rows from the start of the buffer
   std::uint64_t row_first_sample_ = 0;
   const Clock* row_clock_ = nullptr;
   bool last_row_ = false;

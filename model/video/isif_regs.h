@@ -60,8 +60,8 @@ struct IsifRegs : RegBank {
     Field lofts0{*this, "LOFTS0", 9, 3, Mode::kRw, "step after an even line of field 0"};
     Field fofst{*this, "FOFST", 12, 2, Mode::kRw, "start of field 1: 1 ... 4 lines"};
     Field fiinv{*this, "FIINV", 14, 1, Mode::kRw, "1 swaps the fields' places in memory"};
-    /// Lines by which the address moves after line i of a field: codes 0...3 are +1...+4, 4...7 are
-    /// -1...-4.
+    /// Number of lines by which the address moves after line i of a field: codes 0 to 3 mean +1 to
+    /// +4, codes 4 to 7 mean -1 to -4.
     int step(bool field, unsigned line) const {
       const unsigned code =
           field ? (line & 1 ? lofts3 : lofts2).get() : (line & 1 ? lofts1 : lofts0).get();

@@ -9,7 +9,7 @@
 namespace fovea::video {
 namespace {
 
-constexpr unsigned kBurstIndexBits = 8;  // of the tag; the rest is the line's running number
+constexpr unsigned kBurstIndexBits = 8;  // of the tag; the other bits are the number of the line
 
 constexpr auto kBlackLine = [] {
   std::array<std::uint8_t, kActiveBytes> line{};
@@ -109,8 +109,8 @@ void Osd::plan(Line& line) {
   }
 }
 
-/// Puts on the port what is known to get a place there: a burst follows the last beat of the one
-/// whose place it takes.
+/// Issues the bursts that are certain to get a slot. A burst is issued after the last beat of the
+/// burst whose slot it takes.
 void Osd::issue() {
   for (std::uint64_t n = finished_; n < fetched_; ++n) {
     Line& line = at(n);
@@ -120,18 +120,20 @@ void Osd::issue() {
       const Picoseconds when = std::max(line.fetched, place);
       const unsigned i = line.next++;
       const Burst& b = line.bursts[i];
-      // What is late already is not read. This also keeps the order of a completion and a line's
-      // end at the same time from mattering.
+      // A burst that is already late is not read. For this reason it also does not matter whether a
+      // completion
+      // or the end of a line at the same time is handled first.
       if (b.due > when) memory.read(b.address, b.bytes, n << kBurstIndexBits | i, when, true);
     }
   }
 }
 
-/// Called ahead of c.last: nothing here may depend on, or change, what others see before then.
+/// Called ahead of time c.last: must not use or change anything that others can observe before
+/// then.
 void Osd::done(const BurstMaster::Completion& c) {
   if (c.error) Diagnostics::instance().guest("display reads an address without memory");
   const std::uint64_t n = c.tag >> kBurstIndexBits;
-  if (n >= finished_ && n < fetched_) {  // else the line is out already
+  if (n >= finished_ && n < fetched_) {  // otherwise the line was displayed already
     Line& line = at(n);
     Burst& b = line.bursts[c.tag & ((1u << kBurstIndexBits) - 1)];
     b.arrived = c.last;

@@ -1,4 +1,4 @@
-// On-screen display block: fetches video window 0 from memory and composes lines.
+// OSD (on-screen display block): fetches video window 0 from memory and composes display lines.
 #pragma once
 #include <array>
 #include <functional>
@@ -13,7 +13,8 @@
 
 namespace fovea::video {
 
-/// What the encoder's raster asks of the OSD. All calls come at a line's start, in time order.
+/// What the encoder's raster needs from the OSD. All calls are made at the start of a line, in
+/// order of time.
 class OsdLineIf : public virtual sc_core::sc_interface {
  public:
   struct Timing {
@@ -23,22 +24,23 @@ class OsdLineIf : public virtual sc_core::sc_interface {
     unsigned number;             ///< line number in the standard
     bool f;
   };
-  /// Window registers take effect for the field that starts now.
+  /// The window registers are latched for the field that starts now.
   virtual void field_start(const Standard& standard, bool f) = 0;
-  /// Starts fetching the line that will be shown with this timing.
+  /// Starts to fetch the line that will be displayed with this timing.
   virtual void fetch(const Timing& timing) = 0;
-  /// The line fetched first of those not yet finished is out: its pixels and what came too late.
+  /// Returns the oldest line that was fetched and not yet finished, at the end of its display: its
+  /// pixels and the number of bursts that arrived too late.
   virtual DisplayLine finish() = 0;
-  /// Forgets all lines under way.
+  /// Discards all lines that were fetched and not finished.
   virtual void stop() = 0;
 };
 
-/// OSD with video window 0 in 4:2:2 (Cb Y Cr Y in memory; Cr first with MODE.CS). Window registers
-/// latch at each field start (`vpss.osd_latch`), so a frame mixes two buffers when the address
-/// changes between its fields. A line is fetched `vpss.read_ahead_lines` lines before it is shown,
-/// in bursts of at most `vpss.burst` bytes. A burst whose data did not arrive strictly before its
-/// first pixel is due shows black and counts as an underflow; it is not shown later.
-/// Not modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, background other than black.
+/// OSD with video window 0 in 4:2:2 (Cb Y Cr Y in memory; Cr first with MODE.CS). The window
+/// registers are latched at each field start (`vpss.osd_latch`), so a frame shows two buffers if
+/// the address changes between its fields. A line is fetched `vpss.read_ahead_lines` lines before
+/// it is displayed, in bursts of at most `vpss.burst` bytes. A burst whose data do not arrive
+/// strictly before its first pixel is due is displayed as black and counts as an underflow. Not
+/// modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, any background but black.
 class Osd : public BusTarget, public OsdLineIf {
  public:
   struct Latch {
@@ -51,7 +53,7 @@ class Osd : public BusTarget, public OsdLineIf {
   BurstMaster memory;  ///< bind memory.socket
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
   OsdRegs regs;
-  /// Called at each field start with what will be shown.
+  /// Called at each field start with the latched settings of window 0.
   std::function<void(const Latch&)> on_latch;
 
   Osd(sc_core::sc_module_name name, const VpssParams& params);
@@ -68,23 +70,24 @@ class Osd : public BusTarget, public OsdLineIf {
   struct Window {
     bool on = false, field_mode = false, upper = true, swap_chroma = false;
     std::uint32_t address = 0, pitch = 0;
-    int x = 0, y = 0;  // pixels, lines of a field from the first active line
+    int x = 0, y = 0;  // in pixels, and in lines of a field from the first active line
     int width = 0, height = 0;
   };
   struct Burst {
     std::uint32_t address;
-    std::uint16_t at, bytes;  // place in the active line
+    std::uint16_t at, bytes;  // position in the active line, in bytes
     Picoseconds due, arrived;
   };
   struct Line {
     Timing timing{};
-    Picoseconds fetched = 0;         // when its reads begin
-    Picoseconds start = 0, end = 0;  // of its active part, by the clock at the fetch
+    Picoseconds fetched = 0;         // time at which its reads begin
+    Picoseconds start = 0, end = 0;  // start and end of its active part, by the clock at the time
+                                     // of the fetch
     bool window = false;
     bool swap_chroma = false;
     std::uint32_t address = 0;
     std::vector<Burst> bursts;
-    unsigned next = 0;  // first burst not yet issued
+    unsigned next = 0;  // first burst that was not issued yet
     std::array<std::uint8_t, kActiveBytes> bytes{};
   };
 
@@ -96,7 +99,7 @@ class Osd : public BusTarget, public OsdLineIf {
   const VpssParams& params_;
   Window window_;
   std::vector<Line> ring_;
-  std::uint64_t fetched_ = 0, finished_ = 0;  // lines begun, lines shown
+  std::uint64_t fetched_ = 0, finished_ = 0;  // number of lines fetched and displayed
   std::array<std::uint8_t, kActiveBytes> out_{};
 };
 

@@ -104,8 +104,9 @@ struct OsdRegs : RegBank {
   } miscctl{*this, "MISCCTL", 0xE8, "miscellaneous"};
 
   OsdRegs() : RegBank("OSD") {}
-  /// Byte address of video window 0: 27 bits of 32-byte units above 0x80000000. Bit 26 of the units
-  /// must be written as 1 (Linux): it selects the memory and is no part of the offset.
+  /// Byte address of video window 0. The registers hold 27 bits in units of 32 bytes above
+  /// 0x80000000. Bit 26 must be written as 1 (Linux); it selects the memory and is not part of the
+  /// offset.
   std::uint32_t address() const {
     const std::uint32_t units =
         (vidwin0ofst.ah.get() & 7) << 23 | vidwinadh.v0.get() << 16 | vidwin0adl.low.get();

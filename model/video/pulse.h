@@ -1,4 +1,4 @@
-// An interrupt line that gives one pulse per event.
+// Interrupt output that gives one pulse for each event.
 #pragma once
 #include <systemc>
 
@@ -7,8 +7,9 @@
 
 namespace fovea::video {
 
-/// Drives `out` high for one byte-clock period (37.037 ns) after raise(), so that every event is a
-/// rising edge for the interrupt controller. An event while high prolongs nothing and adds no edge.
+/// Drives `out` high for one period of the byte clock (37.037 ns) after raise(), so that every
+/// event is a rising edge for the interrupt controller. An event while `out` is high is lost: it
+/// neither extends the pulse nor adds an edge.
 class Pulse : public sc_core::sc_module {
  public:
   sc_core::sc_out<bool> out{"out"};

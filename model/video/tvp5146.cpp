@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint8_t kInputSelect = 0x00, kVideoStandard = 0x02, kOperationMode = 0x03,
                        kFormatter2 = 0x34, kClearLostLock = 0x39, kStatus1 = 0x3A, kStatus2 = 0x3B,
                        kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81;
-constexpr std::uint8_t kFormatter2Enables = 0x11;  // data and clock outputs
+constexpr std::uint8_t kFormatter2Enables = 0x11;  // enables the data and clock outputs
 
 }  // namespace
 
@@ -66,7 +66,7 @@ bool Tvp5146::standard_ok() const {
 std::uint64_t Tvp5146::present_field() const {
   if (!started_ || !clock_.running()) return stopped_field_;
   const std::uint64_t edge =
-      clock_.edge_after(kernel_time());  // the sample on the wire is edge - 1
+      clock_.edge_after(kernel_time());  // the sample on the wire began at edge - 1
   return edge <= origin_ ? 0 : locate(standard_, (edge - 1 - origin_) / standard_.line_bytes).field;
 }
 
@@ -79,7 +79,8 @@ void Tvp5146::schedule() {
   line_timer_.cancel();
   if (!started_ || !clock_.running() || !enabled()) return;
   const Picoseconds now = kernel_time();
-  // Outputs enabled in mid-line start with the next whole line, strictly later.
+  // If the outputs are enabled in the middle of a line, they start with the next whole line after
+  // `now`.
   const std::uint64_t edge = clock_.edge_after(now);
   const std::uint64_t line = standard_.line_bytes;
   next_line_ = edge <= origin_ ? 0 : (edge - origin_ + line - 1) / line;
@@ -110,7 +111,7 @@ std::span<const std::uint8_t> Tvp5146::render() {
   if (!fv_.v) {
     static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
     for (unsigned i = 0; i < kActiveBytes; i += 4) std::memcpy(row_.data() + i, kBlack, 4);
-    // A smaller picture sits in the middle, on the same field's lines and on whole pairs.
+    // A smaller picture is centred, on lines of the same field and on whole pixel pairs.
     const unsigned top = (placement_.rows - source_.height()) / 2 & ~1u;
     const int row = placement_.row(fv_.f, position_.line) - static_cast<int>(top);
     if (row >= 0 && row < static_cast<int>(source_.height()) && locked(position_.field)) {
@@ -166,7 +167,7 @@ void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {
 std::uint8_t Tvp5146::read_register(std::uint8_t index) const {
   const bool is_625 = &standard_ == &k625;
   switch (index) {
-    case kStatus1:  // bit 1 H lock, 2 V lock, 3 colour lock, 4 lost lock, 5 field rate 50 Hz
+    case kStatus1:  // bit 1 H lock, 2 V lock, 3 colour lock, 4 lost lock, 5 50 Hz fields
       return static_cast<std::uint8_t>((lock() ? 0x0E | (is_625 ? 0x20 : 0) : 0) |
                                        (lost_lock_ ? 0x10 : 0));
     case kStatus2:

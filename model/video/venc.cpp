@@ -70,7 +70,8 @@ void Venc::tick() {
     interrupt.raise();
   }
   line_out_ = !s.at(now.line).v;
-  // Blanking is longer than the look-ahead, so a fetched line belongs to the field that has begun.
+  // Vertical blanking is longer than the read-ahead, so a fetched line belongs to the current
+  // field.
   const std::uint64_t ahead = next_line_ + params_.read_ahead_lines();
   const LinePosition then = locate(s, ahead);
   const Standard::Lines& fv = s.at(then.line);

@@ -1,4 +1,4 @@
-// Video encoder: the display raster.
+// VENC (video encoder): generates the display raster.
 #pragma once
 #include <systemc>
 
@@ -12,11 +12,12 @@
 
 namespace fovea::video {
 
-/// VENC in standard interlaced timing: 625/50 or 525/60 by VMOD.TVTYP, on its own clock (27 MHz for
-/// true rates), which CLKCTL bit 0 gates. The raster starts with a field 1 (F = 0) at the clock
-/// edge after the encoder is switched on. At the start of each field (where F changes: lines 1 and
-/// 313, 4 and 266) VSTAT changes, the OSD latches its window and the interrupt fires. Lines go to
-/// the display when their last sample is out; no process runs more often than once a line.
+/// VENC in standard interlaced timing, 625/50 or 525/60 as selected by VMOD.TVTYP, on its own clock
+/// (27 MHz for the standard's rates), which CLKCTL bit 0 gates. The raster starts with a field 1 (F
+/// = 0) at the clock edge after the encoder was switched on. At the start of each field, where F
+/// changes (lines 1 and 313, or 4 and 266), VSTAT changes, the OSD latches its window and the
+/// interrupt fires. A line is passed to the display when its last sample has been sent; no process
+/// runs more than once per line.
 class Venc : public BusTarget {
  public:
   ClockIn clock{"clock"};
@@ -45,9 +46,9 @@ class Venc : public BusTarget {
   const VpssParams& params_;
   Clock clock_;
   const Standard* standard_ = nullptr;  // null: the raster is off
-  std::uint64_t origin_ = 0;            // clock edge of line index 0
+  std::uint64_t origin_ = 0;            // clock edge at which line 0 begins
   std::uint64_t next_line_ = 0;
-  bool line_out_ = false;  // the line before next_line_ is active
+  bool line_out_ = false;  // the line before next_line_ is an active line
   Timer line_timer_, reconsider_timer_;
 };
 

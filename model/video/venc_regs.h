@@ -22,7 +22,7 @@ struct VencRegs : RegBank {
     Field vdmd{*this, "VDMD", 12, 3, Mode::kRw, "digital output mode; kept"};
   } vmod{*this, "VMOD", 0x00, "video mode"};
 
-  // Built-in standard timing needs none of the timing registers; they are kept.
+  // The built-in standard timing does not use the timing registers; they keep what is written.
   Reg vidctl{*this, "VIDCTL", 0x04, Mode::kRw, "digital output; kept"};
   struct Vdpro : Reg {
     using Reg::Reg;
@@ -69,7 +69,7 @@ struct VencRegs : RegBank {
   Reg etmg2{*this, "ETMG2", 0xEC, Mode::kRw, "timing of the component output", 0, Modelled{0}};
   Reg etmg3{*this, "ETMG3", 0xF0, Mode::kRw, "timing of the component output", 0, Modelled{0}};
   Reg dacsel{*this, "DACSEL", 0xF4, Mode::kRw, "signals of the DACs; kept"};
-  // Linux writes 1 and 2 for these rasters: the OSD runs at half the encoder's clock.
+  // Linux writes 1 and 2 for these rasters, which lets the OSD run at half the encoder's clock.
   Reg osdclk0{*this, "OSDCLK0",  0x12C, Mode::kRw, "length of the OSD's clock pattern",
               0,     Modelled{1}};
   Reg osdclk1{*this, "OSDCLK1", 0x130, Mode::kRw, "the OSD's clock pattern", 0, Modelled{2}};

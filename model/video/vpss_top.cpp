@@ -3,7 +3,8 @@
 namespace fovea::video {
 
 VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
-  // Outputs are driven by processes of this block only: register writes come from several others.
+  // Only processes of this block drive the outputs: register writes arrive in several other
+  // processes.
   for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})
     r->on_write([this](std::uint32_t) { selection_.soon(); });
   const auto controls = [this](std::uint32_t) { controls_.soon(); };

@@ -1,4 +1,4 @@
-// Top level of the video processing subsystem: interrupt routing, clock gates, priorities.
+// Top level of the VPSS (video processing subsystem): interrupt routing, clock gates, priorities.
 #pragma once
 #include <systemc>
 
@@ -7,8 +7,8 @@
 
 namespace fovea::video {
 
-/// ISP5 registers at offset 0 (0x01C70000) and the VPSS clock control at offset 0x200: decode the
-/// block with a size of 0x400. Source: TI's register header for the DM36x, Linux vpss.c.
+/// The ISP5 registers from offset 0 (0x01C70000) and the VPSS clock control at offset 0x200, as one
+/// block of 0x400 bytes. Source: TI's register header for the DM36x, Linux vpss.c.
 struct VpssRegs : RegBank {
   Reg pid{*this, "PID", 0x00, Mode::kRo, "peripheral identification", 0x4C180800};
   struct Pccr : Reg {
@@ -43,7 +43,7 @@ struct VpssRegs : RegBank {
     Field n2{*this, "N2", 16, 5, Mode::kRw, "source of the third output"};
     Field n3{*this, "N3", 24, 5, Mode::kRw, "source of the fourth output"};
   };
-  // Out of reset all outputs follow source 0, ISIF_INT0 (TI's register header).
+  // After reset all outputs follow source 0, ISIF_INT0 (TI's register header).
   Select intsel1{*this, "INTSEL1", 0x10, "sources of VPSSINT0 ... 3"};
   Select intsel2{*this, "INTSEL2", 0x14, "sources of VPSSINT4 ... 7"};
   Select intsel3{*this, "INTSEL3", 0x18, "source of VPSSINT8"};
@@ -69,16 +69,17 @@ struct VpssRegs : RegBank {
   VpssRegs() : RegBank("VPSS") {}
 };
 
-/// Routes events: each VPSSINT output follows the input that its INTSEL field names, so an input's
-/// pulse is a rising edge at the interrupt controller; INTSTAT records rising inputs and gates
-/// nothing (Linux never clears it). Events modelled: 0-2 VDINT0-2, 21 VENC.
+/// Routes events to interrupts: each VPSSINT output follows the input that its INTSEL field
+/// selects, so a pulse of an input is a rising edge at the interrupt controller. INTSTAT records
+/// rising inputs and does not gate the outputs (Linux never clears it). Modelled events: 0 to 2
+/// VDINT0 to VDINT2, 21 VENC.
 class VpssTop : public BusTarget {
  public:
   static constexpr unsigned kOutputs = 9;
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
   sc_core::sc_vector<sc_core::sc_in<bool>> isif_int{"isif_int", 3};
   sc_core::sc_in<bool> venc_int{"venc_int"};
-  sc_core::sc_vector<sc_core::sc_out<bool>> vpssint{"vpssint", kOutputs};  ///< AINTC 0 ... 8
+  sc_core::sc_vector<sc_core::sc_out<bool>> vpssint{"vpssint", kOutputs};  ///< AINTC inputs 0 to 8
   sc_core::sc_out<bool> isif_gate{"isif_gate"};
   sc_core::sc_out<bool> isif_owns_write_buffer{"isif_owns_write_buffer"};
   sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_clk_sel{"venc_clk_sel"};

@@ -1,4 +1,4 @@
-// The two wires of the video blocks: BT.656 from the decoder, active lines to the display.
+// The two video links between blocks: BT.656 from the decoder, active lines to the display.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,23 +10,25 @@
 
 namespace fovea::video {
 
-/// Renders a line's bytes when somebody wants them.
+/// Computes the bytes of a line on request.
 class Bt656Renderer {
  public:
   virtual ~Bt656Renderer() = default;
-  /// All standard.line_bytes bytes of the line announced last; valid until the next line.
+  /// All standard.line_bytes bytes of the line that was announced last; valid until the next line.
   virtual std::span<const std::uint8_t> render() = 0;
 };
 
-/// One line on the wire, announced at its first sample (EAV). Sample i of it is on the wire from
-/// clock edge first_sample + i to the next edge.
+/// A line on the wire, announced at its first sample (EAV). Sample i is on the wire from clock edge
+/// first_sample + i to the next edge.
 struct Bt656Line {
   const Standard* standard;
   const Clock* clock;          ///< the byte clock; outlives the call
   Picoseconds start;           ///< time of edge first_sample
   std::uint64_t first_sample;  ///< edge number of the EAV's first byte
-  std::uint64_t field_index;   ///< the picture source's field number; for bookkeeping only
-  unsigned number;             ///< line number; for bookkeeping only: receivers count themselves
+  std::uint64_t field_index;   ///< field number of the picture source; only for statistics and
+                               ///< tests
+  unsigned number;             ///< line number; only for statistics and tests: receivers count
+                               ///< lines themselves
   std::uint8_t eav_xy, sav_xy;
   Bt656Renderer* renderer;
   std::span<const std::uint8_t> bytes() const { return renderer->render(); }
@@ -39,9 +41,9 @@ class Bt656If : public virtual sc_core::sc_interface {
 
 class DisplayLineIf : public virtual sc_core::sc_interface {
  public:
-  /// Called when the line's last sample is out.
+  /// Called when the last sample of the line has been sent.
   virtual void line(const DisplayLine& line) = 0;
-  /// The raster was switched off; a frame under way is lost.
+  /// The raster was switched off; an incomplete frame is lost.
   virtual void raster_off() = 0;
 };
 

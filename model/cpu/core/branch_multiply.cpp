@@ -54,8 +54,8 @@ Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + 1);
 }
 
-/// B and BL. imm: target relative to the first byte of the line. kNear: raw is the distance in
-/// records.
+/// B and BL. imm: target relative to the first byte of the line. kNear: the target is in the same
+/// line, and raw is the distance of its record in host memory, in bytes.
 template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);

@@ -8,7 +8,7 @@
 namespace fovea::video {
 
 XyCode decode_xy(std::uint8_t byte) {
-  // Valid codes differ in four bits, so the nearest one is unique up to one wrong bit.
+  // Valid codes differ in at least four bits, so with one wrong bit the nearest code is unique.
   for (unsigned fvh = 0; fvh < 8; ++fvh) {
     const bool f = fvh & 4, v = fvh & 2, h = fvh & 1;
     const int distance = std::popcount(static_cast<unsigned>(encode_xy(f, v, h) ^ byte));

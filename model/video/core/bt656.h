@@ -1,4 +1,5 @@
-// ITU-R BT.656: line and field structure of both standards as data, timing reference codes, lines.
+// ITU-R BT.656: the lines and fields of both standards as data, timing reference codes, whole
+// lines.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,11 +14,12 @@ inline constexpr unsigned kActiveBytes = 1440;  ///< 720 Y, 360 Cb, 360 Cr
 inline constexpr unsigned kActivePixels = 720;
 inline constexpr unsigned kCodeBytes = 4;  ///< FF 00 00 XY
 inline constexpr unsigned kMaxLineBytes = 1728;
-/// 27 MHz, the byte clock of both standards [ITU-R BT.656].
+/// The byte clock of both standards, 27 MHz [ITU-R BT.656].
 inline constexpr Frequency kByteClock{27'000'000};
 
-/// One interlaced standard. Lines are numbered from 1 as in the standard; a line starts with EAV,
-/// so that its active samples are the last kActiveBytes of it. Source: SPRU629 table 4-2, BT.601.
+/// An interlaced standard. Lines are numbered from 1, as in the standard. A line starts with its
+/// EAV, so its active samples are its last kActiveBytes. Source: TI SPRU629 table 4-2, ITU-R
+/// BT.601.
 struct Standard {
   struct Lines {
     unsigned first, last;
@@ -25,19 +27,20 @@ struct Standard {
   };
   std::string_view name;
   unsigned lines;                        ///< per frame
-  unsigned line_bytes;                   ///< samples of the byte clock per line
-  std::array<Lines, 6> fv;               ///< F and V by line
-  std::array<unsigned, 2> field_start;   ///< line at which F becomes 0, 1
-  std::array<unsigned, 2> active_first;  ///< first line with V = 0, by F
-  std::array<unsigned, 2> active_count;  ///< lines with V = 0, by F
-  unsigned rows;                         ///< rows of the usual picture (576, 480)
-  unsigned sync_line[2];                 ///< first line after the start of the vertical sync, by F
+  unsigned line_bytes;                   ///< periods of the byte clock per line
+  std::array<Lines, 6> fv;               ///< ranges of lines with equal F and V
+  std::array<unsigned, 2> field_start;   ///< lines at which F becomes 0 and 1
+  std::array<unsigned, 2> active_first;  ///< first line with V = 0, for F = 0 and 1
+  std::array<unsigned, 2> active_count;  ///< number of lines with V = 0, for F = 0 and 1
+  unsigned rows;                         ///< rows of the usual picture (576 or 480)
+  unsigned sync_line[2];                 ///< first line after the start of the vertical sync, for F
+                                         ///< = 0 and 1
 
   constexpr unsigned active_offset() const { return line_bytes - kActiveBytes; }
   constexpr unsigned frame_bytes() const { return lines * line_bytes; }
-  /// 25 or 30000/1001 Hz when the byte clock is 27 MHz.
+  /// 25 Hz or 30000/1001 Hz at the nominal byte clock.
   constexpr Frequency frame_rate() const { return kByteClock / frame_bytes(); }
-  /// The F/V entry of a line (1 ... lines).
+  /// F and V of a line (1 to `lines`).
   constexpr const Lines& at(unsigned line) const {
     for (const Lines& l : fv)
       if (line >= l.first && line <= l.last) return l;
@@ -74,7 +77,7 @@ inline constexpr Standard k525{"525/60",
                                480,
                                {4, 267}};
 
-/// The standard a register value or a picture height stands for.
+/// The standard that a register value or a picture height selects.
 constexpr const Standard& standard_of(bool is_625) { return is_625 ? k625 : k525; }
 
 /// Fourth byte of a timing reference code: 1 F V H P3 P2 P1 P0.
@@ -87,30 +90,30 @@ struct XyCode {
   enum class Quality { kGood, kCorrected, kBad } quality;
   bool f, v, h;
 };
-/// Decodes with correction of any single wrong bit; two wrong bits are kBad (F, V, H as received).
+/// Decodes the byte and corrects any single wrong bit. Two wrong bits give kBad, with F, V, H as
+/// received.
 XyCode decode_xy(std::uint8_t byte);
 
-/// Counts lines without end from the start of a field 1 (F = 0): where line index n lies.
+/// Position of a line that is counted continuously from the start of a field 1 (F = 0).
 struct LinePosition {
-  std::uint64_t field;  ///< running number; even fields have F = 0
-  unsigned line;        ///< number in the standard, 1 ... lines
+  std::uint64_t field;  ///< consecutive number; even fields have F = 0
+  unsigned line;        ///< number in the standard, 1 to `lines`
 };
 constexpr LinePosition locate(const Standard& s, std::uint64_t n) {
   const unsigned pos = static_cast<unsigned>(n % s.lines);
   const unsigned first_field = s.field_start[1] - s.field_start[0];
   return {2 * (n / s.lines) + (pos >= first_field), (s.field_start[0] - 1 + pos) % s.lines + 1};
 }
-/// Index of the first line of a running field number.
+/// Index of the first line of the field with a consecutive number.
 constexpr std::uint64_t first_line_of_field(const Standard& s, std::uint64_t field) {
   return field / 2 * s.lines + (field % 2 ? s.field_start[1] - s.field_start[0] : 0);
 }
 
-/// Which lines carry which rows of a picture: line first_line[F] + i carries row first_row[F] + 2
-/// i.
+/// Assigns rows of a picture to lines: line first_line[F] + i carries row first_row[F] + 2 i.
 struct Placement {
   std::array<unsigned, 2> first_line, first_row;
   unsigned rows;
-  /// The row on a line of field F, or -1.
+  /// The row on a line of field F, or -1 if the line carries none.
   constexpr int row(bool f, unsigned line) const {
     if (line < first_line[f]) return -1;
     const unsigned r = first_row[f] + 2 * (line - first_line[f]);
@@ -119,15 +122,15 @@ struct Placement {
 };
 /// 625/50: row 0 on line 23, row 1 on line 336.
 inline constexpr Placement kPlacement625{{23, 336}, {0, 1}, 576};
-/// 525/60 from the first active line of each field: row 0 on line 20, row 1 on line 283. This is
-/// what a capture with equal first lines (SLV0 = SLV1) weaves.
+/// 525/60 from the first active line of each field: row 0 on line 20, row 1 on line 283. A capture
+/// with equal first lines (SLV0 = SLV1) interleaves the fields in this way.
 inline constexpr Placement kPlacement525{{20, 283}, {0, 1}, 480};
-/// 525/60, the studio's 480 lines: row 0 on line 285 (field 2), row 1 on line 23: the field that
-/// comes first in time holds the lower rows.
+/// 525/60, the 480 lines of studio practice: row 0 on line 285 (field 2), row 1 on line 23, so the
+/// field that is first in time holds the odd rows.
 inline constexpr Placement kPlacement525Studio{{23, 285}, {1, 0}, 480};
 
-/// Writes a whole line: EAV, blanking 80 10, SAV, then `active` (kActiveBytes) or blanking.
-/// `out` has standard.line_bytes bytes.
+/// Writes a whole line to `out` (standard.line_bytes bytes): EAV, blanking 80 10, SAV, then
+/// `active` (kActiveBytes bytes), or blanking if `active` is null.
 void compose_line(const Standard& standard, std::uint8_t eav_xy, std::uint8_t sav_xy,
                   const std::uint8_t* active, std::span<std::uint8_t> out);
 

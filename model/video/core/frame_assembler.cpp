@@ -52,7 +52,7 @@ void FrameAssembler::check(const DisplayLine& line) {
       violation(line, "expected at " + std::to_string(due) + " ps");
     }
   }
-  // First line, or one after a violation: count anew from here.
+  // The first line, or the first one after a violation: start the line count here.
   standard_ = &s;
   last_number_ = line.number;
   anchor_ = line.start;

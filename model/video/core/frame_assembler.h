@@ -1,4 +1,4 @@
-// What a display does with the lines it gets: checks their timing and order, builds frames.
+// The display: checks the timing and order of the lines that it receives, and assembles frames.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,38 +12,40 @@
 
 namespace fovea::video {
 
-/// One active line as the display receives it.
+/// An active line as the display receives it.
 struct DisplayLine {
   const Standard* standard;
   unsigned number;           ///< line number in the standard
   bool f;                    ///< field bit
-  Picoseconds start, end;    ///< first active sample; end of the last one
-  const std::uint8_t* uyvy;  ///< kActiveBytes bytes, valid during the call; null: black
-  bool window;               ///< the video window was on in this field
-  std::uint32_t address;     ///< window 0's base address latched for this field, 0 if off
-  unsigned underflows;       ///< bursts that came too late for this line
+  Picoseconds start, end;    ///< start of the first active sample and end of the last one
+  const std::uint8_t* uyvy;  ///< kActiveBytes bytes, valid during the call; null: a black line
+  bool window;               ///< the video window was enabled in this field
+  std::uint32_t address;     ///< base address of window 0 latched for this field; 0 if disabled
+  unsigned underflows;       ///< bursts that arrived too late for this line
 };
 
 /// A complete displayed frame.
 struct DisplayFrame {
-  std::uint64_t index;                   ///< frames completed before it
-  Picoseconds start, end;                ///< first sample of the first field; end of the last row
-  Picture picture;                       ///< 720 x 576 or 720 x 480
-  std::array<std::uint32_t, 2> address;  ///< latched buffer address by field
-  bool window;                           ///< the video window was on in both fields
-  unsigned underflows;                   ///< late bursts in it
-  bool repeated;  ///< window on, same addresses and same pixels as in the frame before
+  std::uint64_t index;                   ///< number of frames completed before it
+  Picoseconds start, end;                ///< start of its first sample and end of its last row
+  Picture picture;                       ///< 720 x 576 or 720 x 480 pixels
+  std::array<std::uint32_t, 2> address;  ///< latched buffer address of each field
+  bool window;                           ///< the video window was enabled in both fields
+  unsigned underflows;                   ///< bursts of this frame that arrived too late
+  bool repeated;  ///< window enabled, and the same addresses and pixels as the previous frame
 };
 
-/// Builds frames of 576 or 480 rows (the first 240 active lines of each field) and checks that
-/// lines come in the standard's order, with the right field bit, at the line period of a 27 MHz
-/// byte clock (within 2 ps of an unbroken count: edges are rounded down) and of the right length.
+/// Assembles frames of 576 or 480 rows (for 525/60 the first 240 active lines of each field).
+/// Checks that lines come in the order of the standard with the right field bit, that they have the
+/// right length, and that they start at the line period of a 27 MHz byte clock (within 2 ps of an
+/// uninterrupted count, because edges are rounded down).
 class FrameAssembler {
  public:
   std::function<void(const DisplayFrame&)> on_frame;
 
   void line(const DisplayLine& line);
-  /// The raster stopped: the frame under way is dropped, the next line may come at any time.
+  /// The raster has stopped: the incomplete frame is dropped, and the next line may come at any
+  /// time.
   void raster_off();
 
   std::uint64_t frames() const { return frames_; }
@@ -51,20 +53,20 @@ class FrameAssembler {
   std::uint64_t broken_frames() const { return broken_; }
   std::uint64_t underflows() const { return underflows_; }
   std::uint64_t violations() const { return violations_; }
-  /// The first few violations in words.
+  /// Descriptions of the first few violations.
   const std::vector<std::string>& messages() const { return messages_; }
 
  private:
   void check(const DisplayLine& line);
   void violation(const DisplayLine& line, const std::string& what);
 
-  const Standard* standard_ = nullptr;  // null: no line yet
+  const Standard* standard_ = nullptr;  // null: no line so far
   unsigned last_number_ = 0;
   Picoseconds anchor_ = 0;  // start of the line with count 0
   std::uint64_t lines_since_anchor_ = 0;
 
   bool open_ = false;
-  unsigned rows_ = 0;  // received of the frame under way
+  unsigned rows_ = 0;  // rows of the current frame received so far
   DisplayFrame frame_{};
   Picture previous_;
   std::array<std::uint32_t, 2> previous_address_{};

@@ -1,11 +1,12 @@
-// A 4:2:2 picture and where it comes from: the seam between camera optics and camera wire.
+// A 4:2:2 picture, and the interface of picture sources for the camera.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace fovea::video {
 
-/// 4:2:2 picture, 8 bit, bytes Cb Y0 Cr Y1 (UYVY), rows top to bottom, no padding.
+/// A 4:2:2 picture with 8-bit samples in the order Cb Y0 Cr Y1 (UYVY), rows top to bottom, no
+/// padding.
 struct Picture {
   unsigned width = 0;   ///< pixels, even
   unsigned height = 0;  ///< rows
@@ -28,9 +29,9 @@ struct Picture {
   friend bool operator==(const Picture&, const Picture&) = default;
 };
 
-/// What the camera sees. Field k starts at k field periods after power-up; field() returns a
-/// full-height picture of that instant, of which the encoder sends the rows of the field's parity.
-/// Must be a pure function of k; the reference is valid until the next call.
+/// Delivers what the camera sees. Field k starts k field periods after power-up. field(k) returns a
+/// picture of full height for that instant; the encoder sends the rows of the field's parity. The
+/// result must depend on k only. The reference is valid until the next call.
 class PictureSource {
  public:
   virtual ~PictureSource() = default;

@@ -1,4 +1,4 @@
-// A picture source that is drawn on another thread, one field ahead.
+// A picture source that renders one field ahead on another thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace fovea::video {
 
-/// The pictures of another source, byte for byte: while field k is on the wire a second thread draws
-/// k + 1. Nobody else may use that source meanwhile. An error while drawing comes out of the call
-/// that wants the field.
+/// Delivers the pictures of another source unchanged: while field k is sent, a second thread
+/// renders field k + 1. That source must not be used by anybody else meanwhile. An error during
+/// rendering is thrown by the call of field() for that picture.
 class AheadSource : public PictureSource {
  public:
   explicit AheadSource(PictureSource& source) : source_(source) {}
@@ -25,7 +25,7 @@ class AheadSource : public PictureSource {
       if (wanted)
         next_.get();
       else
-        next_.wait();  // never shown: its error, if any, is not asked for
+        next_.wait();  // this picture is not used, and neither is its error
       if (!wanted) pictures_[next_place_] = source_.field(k);
     } else {
       pictures_[next_place_] = source_.field(k);

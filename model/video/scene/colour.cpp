@@ -44,7 +44,7 @@ void SampledImage::assign(const RgbImage& image) {
 
 void pack_row(const std::uint64_t* lanes, unsigned width, std::uint8_t* uyvy) {
   FOVEA_CHECK(width % 2 == 0, "4:2:2 rows have an even number of pixels");
-  // Both chroma lanes are filtered at once: 255 * 4 + 2 fits its 16 bits.
+  // Both chroma lanes are filtered at once: 255 * 4 + 2 fits into 16 bits.
   constexpr std::uint64_t kTwo = 2ull << 16 | 2ull << 32;
   constexpr std::uint64_t kChroma = 0x0000'ffff'ffff'0000;
   for (unsigned x = 0; x < width; x += 2, uyvy += 4) {

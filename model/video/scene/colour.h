@@ -1,4 +1,4 @@
-// Colour conversion and sampling of scene pictures, integer arithmetic throughout.
+// Colour conversion and sampling of scene pictures, in integer arithmetic.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,27 +13,28 @@ struct YCbCr {
   friend bool operator==(const YCbCr&, const YCbCr&) = default;
 };
 
-/// BT.601, limited range (Y 16–235, C 16–240), the usual 8-bit integer form:
+/// ITU-R BT.601, limited range (Y 16 to 235, C 16 to 240), in the usual 8-bit integer form:
 /// Y = 16 + (66 R + 129 G + 25 B + 128 >> 8), Cb = 128 + (-38 R - 74 G + 112 B + 128 >> 8),
 /// Cr = 128 + (112 R - 94 G - 18 B + 128 >> 8).
 YCbCr to_ycbcr(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 
-/// A 4:4:4 picture that can be sampled between pixels. One pixel is one word with Y, Cb, Cr in
-/// 16-bit lanes 0, 1, 2, so that one multiplication interpolates all three.
+/// A 4:4:4 picture that can be sampled between pixels. A pixel is one 64-bit word with Y, Cb and Cr
+/// in its 16-bit lanes 0, 1 and 2, so that one multiplication interpolates all three.
 class SampledImage {
  public:
-  /// Converts an RGB picture. @throws UserError when it is empty or its size and data disagree
+  /// Converts an RGB picture. @throws UserError if it is empty or its size does not match its data
   explicit SampledImage(const RgbImage& image) { assign(image); }
-  /// The same again for another picture, in the same memory.
+  /// Replaces the picture by another one, reusing the memory.
   void assign(const RgbImage& image);
 
   unsigned width() const { return width_; }
   unsigned height() const { return height_; }
 
-  /// Bilinear sample at (x, y) in pixels, pixel centres at integers, weights of 1/256. Positions up
-  /// to half a pixel outside repeat the edge; beyond, black.
+  /// Bilinear sample at (x, y) in pixels, with pixel centres at integers and weights in steps of
+  /// 1/256. Positions up to half a pixel outside repeat the edge; beyond, the result is black.
   std::uint64_t sample(float x, float y) const {
-    // Also false for NaN. The comparison comes first: a float outside int's range must not be cast.
+    // Also false for NaN. This must come first: a float outside the range of int must not be
+    // converted.
     if (!(x >= -0.5f && y >= -0.5f && x <= max_x_ && y <= max_y_)) return kBlackLanes;
     const int fx = static_cast<int>((x + 1.0f) * 256.0f);
     const int fy = static_cast<int>((y + 1.0f) * 256.0f);
@@ -57,16 +58,17 @@ class SampledImage {
   }
 
   unsigned width_ = 0, height_ = 0;
-  std::size_t stride_ = 0;  ///< width + 2: the edge is repeated once on each side
+  std::size_t stride_ = 0;  ///< width + 2: the edge pixel is repeated on each side
   float max_x_ = 0, max_y_ = 0;
   std::vector<std::uint64_t> lanes_;
 };
 
-/// Writes one row of 4:4:4 samples as UYVY. Chroma sits on the even pixels, filtered 1-2-1 over its
-/// neighbours (the row's ends repeat). `width` is even.
+/// Writes one row of 4:4:4 samples as UYVY. Chroma is taken at the even pixels, filtered with
+/// weights 1-2-1 over the neighbours (the first and last pixel are repeated). `width` must be even.
 void pack_row(const std::uint64_t* lanes, unsigned width, std::uint8_t* uyvy);
 
-/// Converts a picture of the raster's own size. @throws UserError as SampledImage, or odd width
+/// Converts a picture of the size of the raster. @throws UserError as SampledImage does, and if the
+/// width is odd
 Picture to_picture(const RgbImage& image);
 
 }  // namespace fovea::video

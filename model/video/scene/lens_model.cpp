@@ -10,10 +10,10 @@ namespace fovea::video {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// Rectilinear and stereographic radii grow without bound; nothing useful lies beyond.
+/// Rectilinear and stereographic radii grow without bound; larger angles are of no use.
 constexpr double kRectilinearLimit = 89.0 * kPi / 180;
 constexpr double kStereographicLimit = 170.0 * kPi / 180;
-/// Kannala–Brandt polynomials are fitted up to the edge of the image circle, 100 degrees or so.
+/// Kannala–Brandt polynomials are fitted up to the edge of the image circle, about 100 degrees.
 constexpr double kPolynomialLimit = 120.0 * kPi / 180;
 
 }  // namespace
@@ -36,7 +36,7 @@ LensModel::LensModel(LensKind kind, double fx, double fy, double cx, double cy,
       theta_max_ = kPi;
       break;
     case LensKind::kKannalaBrandt: {
-      // The first angle where the curve turns back, to a hundredth of a degree.
+      // The first angle at which the curve stops growing, to a hundredth of a degree.
       const double step = kPi / 18000;
       theta_max_ = 0;
       for (int i = 1; i * step <= kPolynomialLimit && slope(i * step) > 0; ++i)
@@ -118,7 +118,8 @@ double LensModel::angle(double r) const {
     case LensKind::kKannalaBrandt:
       break;
   }
-  // Newton inside a shrinking bracket: the curve grows from 0 to theta_max, but may be flat.
+  // Newton's method within a shrinking interval: the curve grows from 0 to theta_max, but may be
+  // flat.
   double low = 0, high = theta_max_, t = std::min(r, high);
   for (int i = 0; i < 60; ++i) {
     const double error = radius(t) - r;

@@ -96,7 +96,7 @@ void SceneParams::check_calibration(unsigned width, unsigned height) const {
   const std::string picture = "camera.file '" + file() + "' (" + std::to_string(width) + "x" +
                               std::to_string(height) + ")";
   if (kb_width() > 0 && kb_height() > 0) {
-    // The same picture in another size keeps its shape, to a pixel of rounding.
+    // The same picture in another size has the same aspect ratio, up to one pixel of rounding.
     if (std::abs(width * kb_height() / kb_width() - height) > 1)
       Diagnostics::instance().configuration(
           whose + " is of a picture of " + std::to_string(std::lround(kb_width())) + "x" +

@@ -1,4 +1,4 @@
-// The camera's keys, and the picture source they describe.
+// The camera's parameters, and the construction of its picture source.
 #pragma once
 #include <memory>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace fovea::video {
 
-/// What the camera looks at and through which lens. The firmware's own lens description is
-/// separate: it may be wrong about this lens, as on a real board.
+/// What the camera looks at, and through which lens. The firmware has its own description of the
+/// lens, which may be wrong, as on a real board.
 struct SceneParams : ParamGroup {
   SceneParams();
 
@@ -25,16 +25,17 @@ struct SceneParams : ParamGroup {
   RealParam video_fov;
   TextParam calibration;
 
-  /// The lens of a still or flat video of this size, in its own pixels. @throws UserError
+  /// The lens of a still or flat video of this size, in that picture's pixels. @throws UserError
   LensModel lens_model(unsigned width, unsigned height) const;
-  /// Warns of a calibration that cannot belong to a still of this size: one of a picture of another
-  /// shape or, if the calibration's size is not known, with its centre outside the middle third.
+  /// Warns about a calibration that cannot belong to a still of this size: one made with a picture
+  /// of another aspect ratio or, if its size is unknown, one whose centre lies outside the middle
+  /// third.
   void check_calibration(unsigned width, unsigned height) const;
 };
 
-/// Makes the source for a raster of width x height. `frames`: what camera.file decodes to, one
-/// still for `sphere`, at least one frame for `video`, unused for `chart`.
-/// @throws UserError naming key and what is allowed
+/// Creates the source for a raster of width x height pixels. `frames` are the decoded frames of
+/// camera.file: one still for `sphere`, at least one frame for `video`, none needed for `chart`.
+/// @throws UserError that names the key and what is allowed
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
                                                    std::vector<RgbImage> frames, unsigned width,
                                                    unsigned height);

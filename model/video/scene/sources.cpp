@@ -14,12 +14,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 constexpr std::size_t kStretchSteps = 4096;
-/// r(theta)/sin(theta) has a pole at 180 degrees.
+/// r(theta) / sin(theta) has a pole at 180 degrees.
 constexpr double kSphereLimit = 170 * kDegree;
 
 Point middle(const Raster& raster) { return {(raster.width - 1) / 2.0, (raster.height - 1) / 2.0}; }
 
-/// The lens of `still` in raster pixels. @throws UserError for an empty still
+/// The lens of `still` in raster pixels. @throws UserError if the still is empty
 LensModel stretched(const LensModel& lens, const RgbImage& still, const Raster& raster) {
   if (still.width == 0 || still.height == 0)
     throw UserError("camera.file: the still is empty: it needs at least 1x1 pixels");
@@ -92,7 +92,7 @@ const Picture& SphereSource::view(std::uint64_t k) {
 }
 
 void SphereSource::render(double yaw, double pitch, Picture& picture) {
-  // Yaw about the y axis after pitch about the x axis.
+  // Rotation about the x axis (pitch), then about the y axis (yaw).
   const auto cy = static_cast<float>(std::cos(yaw)), sy = static_cast<float>(std::sin(yaw));
   const auto cp = static_cast<float>(std::cos(pitch)), sp = static_cast<float>(std::sin(pitch));
   const auto fx = static_cast<float>(lens_.fx()), fy = static_cast<float>(lens_.fy());
@@ -104,7 +104,7 @@ void SphereSource::render(double yaw, double pitch, Picture& picture) {
       const float pz = sp * d->y + cp * d->z;
       const float rx = cy * d->x + sy * pz;
       const float rz = cy * pz - sy * d->x;
-      // Also true for NaN, the directions that the lens does not image.
+      // Also true for NaN: directions that the lens does not image.
       const float step = (rz - cos_min_) * steps_per_cos_;
       if (!(step >= 0)) {
         row_[x] = SampledImage::kBlackLanes;
@@ -182,7 +182,7 @@ ChartSource::ChartSource(const Raster& raster)
     : StampedSource(raster, middle(raster)), current_(raster.width, raster.height) {}
 
 std::array<std::uint8_t, 4> ChartSource::pair(unsigned x, unsigned y, std::uint64_t k) {
-  // An integer hash (Murmur3's finaliser): close places get unrelated words.
+  // An integer hash (Murmur3's finaliser): neighbouring positions get unrelated words.
   std::uint64_t h = k * 0x9e37'79b9'7f4a'7c15 + (std::uint64_t{y} << 32 | x);
   h = (h ^ h >> 33) * 0xff51'afd7'ed55'8ccd;
   h = (h ^ h >> 33) * 0xc4ce'b9fe'1a85'ec53;

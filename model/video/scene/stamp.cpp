@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::uint8_t kDark = 32;
 constexpr std::uint8_t kBright = 220;
-/// Cells between these belong to two fields at once, or are damaged.
+/// Cells with a level between these belong to two fields at once, or are damaged.
 constexpr int kSurelyDark = kDark + (kBright - kDark) / 4;
 constexpr int kSurelyBright = kBright - (kBright - kDark) / 4;
 constexpr std::uint8_t kNeutral = 128;
-constexpr unsigned kQuiet = 6;  ///< dark rim around code and digits, pixels
+constexpr unsigned kQuiet = 6;  ///< dark border around code and digits, in pixels
 constexpr unsigned kCells = StampLayout::kCodeColumns * StampLayout::kCodeRows;
 constexpr unsigned kAllCells = (1u << kCells) - 1;
 constexpr unsigned kFieldCells = 1u << 8 | 1u;  ///< bit 0 of the number and its complement
@@ -26,9 +26,9 @@ constexpr unsigned kDigitPitch = 6 * StampLayout::kDigitScale;
 constexpr unsigned kDigitHeight = 7 * StampLayout::kDigitScale;
 constexpr unsigned kDigitsWidth = StampLayout::kDigits * kDigitPitch;
 constexpr unsigned kBoxWidth = std::max(kCodeWidth, kDigitsWidth);
-constexpr unsigned kMarkerRise = 16;  ///< how far the marker moves down, pixels
+constexpr unsigned kMarkerRise = 16;  ///< vertical range of the marker, in pixels
 
-/// 5x7 digits, one byte per row, bit 4 leftmost.
+/// 5x7 digits, one byte for each row, bit 4 is leftmost.
 constexpr std::array<std::array<std::uint8_t, 7>, 10> kFont = {{
     {0x0e, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0e},
     {0x04, 0x0c, 0x04, 0x04, 0x04, 0x04, 0x0e},
@@ -42,7 +42,8 @@ constexpr std::array<std::array<std::uint8_t, 7>, 10> kFont = {{
     {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c},
 }};
 
-/// CRC-7 (x^7 + x^3 + 1) over 15 bits; the start value keeps an all-dark picture from being a code.
+/// CRC-7 (x^7 + x^3 + 1) over 15 bits; because of the start value, an all-dark picture is not a
+/// code.
 unsigned check_bits(unsigned frame) {
   unsigned crc = 0x5a;
   for (int bit = 14; bit >= 0; --bit) {
@@ -57,7 +58,7 @@ unsigned code_word(std::uint16_t counter) {
   return unsigned{counter} << 8 | check_bits(counter >> 1) << 1 | (~counter & 1u);
 }
 
-/// Fills a rectangle. The colour of a pair goes with either of its pixels.
+/// Fills a rectangle without colour; each pixel sets the chroma sample that is stored with it.
 void fill(Picture& p, unsigned x, unsigned y, unsigned width, unsigned height, std::uint8_t luma) {
   for (unsigned row = y; row < y + height; ++row) {
     std::uint8_t* out = p.row(row) + std::size_t{x} * 2;
@@ -80,12 +81,13 @@ void draw_digits(Picture& picture, unsigned x, unsigned y, std::uint64_t number)
   }
 }
 
-/// Mean luma of the middle of a cell over the rows of a parity; -1 when outside the picture or when
-/// no such row is in it.
+/// Mean luma of the middle part of a cell over the rows of a parity; -1 if it is outside the
+/// picture or
+/// contains no such row.
 int cell_luma(const Picture& picture, const CodeGrid& grid, unsigned cell, Rows rows) {
   const double x0 = grid.x + (cell % StampLayout::kCodeColumns) * grid.cell_width;
   const double y0 = grid.y + (cell / StampLayout::kCodeColumns) * grid.cell_height;
-  // Corner coordinates are pixel edges; pixel i covers i..i+1. The middle half is read.
+  // Corner coordinates are pixel edges: pixel i covers i to i + 1. The middle half is read.
   const int left = static_cast<int>(std::ceil(x0 + grid.cell_width * 0.25 - 0.5));
   const int right = static_cast<int>(std::floor(x0 + grid.cell_width * 0.75 - 0.5));
   const int top = static_cast<int>(std::ceil(y0 + grid.cell_height * 0.25 - 0.5));
@@ -101,7 +103,7 @@ int cell_luma(const Picture& picture, const CodeGrid& grid, unsigned cell, Rows 
   return count ? sum / count : -1;
 }
 
-/// The cells as a word, bits outside `needed` unread (0).
+/// Reads the cells into a word; bits outside `needed` are not read and 0.
 std::optional<unsigned> read_cells(const Picture& picture, const CodeGrid& grid, Rows rows,
                                    unsigned needed) {
   unsigned word = 0;
