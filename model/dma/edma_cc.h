@@ -1,4 +1,4 @@
-// EDMA3 channel controller: the registers that set the priorities of the transfer controllers.
+// EDMA3 channel controller: only the registers that set the priorities of the transfer controllers.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct EdmaParams : ParamGroup {
   EdmaParams() : ParamGroup("edma") {}
 };
 
-/// Offsets: Linux dma.c. Fields of 3 bits on a pitch of 4, one for each queue.
+/// Offsets: Linux dma.c. Each register has a 3-bit field for each queue, at a pitch of 4 bits.
 struct EdmaRegs : RegBank {
   struct PerQueue : Reg {
     using Reg::Reg;
@@ -42,22 +42,22 @@ struct EdmaRegs : RegBank {
                0x1111u * reset_priority) {}
 };
 
-/// At 0x01C00000. A transfer controller has the priority of the queue that is mapped to it, of several
-/// the most urgent one; without a queue it keeps the lowest.
+/// EDMA3CC at 0x01C00000. A transfer controller has the priority of the queue that is mapped to it;
+/// if several are, the most urgent of them; if none is, the lowest priority.
 class EdmaCc : public BusTarget {
  public:
   SC_HAS_PROCESS(EdmaCc);
   static constexpr unsigned kQueues = 4;
   EdmaRegs regs;
   sc_core::sc_in<bool> lpsc{"lpsc"};
-  /// Of both of its ports.
+  /// Priority of each transfer controller, for its read and its write port.
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
 
   EdmaCc(sc_core::sc_module_name name, const EdmaParams& params);
 
  protected:
   bool clocked() const override { return lpsc.read(); }
-  /// Zeros would tell a driver that there are two channels (CCCFG).
+  /// A hole must not read 0: for CCCFG, that would mean a controller with two channels.
   bool holes_answer() const override { return false; }
 
  private:

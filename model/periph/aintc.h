@@ -1,4 +1,4 @@
-// ARM interrupt controller on the configuration bus.
+// AINTC (ARM interrupt controller) as a peripheral on the configuration bus.
 #pragma once
 #include <systemc>
 
@@ -23,14 +23,14 @@ struct AintcParams : ParamGroup {
   AintcParams() : ParamGroup("aintc") {}
 };
 
-/// AINTC at 0x01C48000. A source that rises at t is pending from t on; the pins change in the same
-/// instant, which the core sees after t. Rules: core/aintc_core.h.
-/// Which block feeds an input is decided in front of it (interrupt_mux.h).
+/// AINTC at 0x01C48000. A source that rises at time t is pending from t on, and the outputs change
+/// in the same instant; the core sees them strictly after t. The rules are in core/aintc_core.h.
+/// Which of two blocks drives an input is selected before the AINTC, in interrupt_mux.h.
 class Aintc : public WithRegs<AintcCore>, public BusTarget {
  public:
   SC_HAS_PROCESS(Aintc);
   sc_core::sc_vector<sc_core::sc_in<bool>> source{"source", kInterruptCount};
-  sc_core::sc_out<bool> irq{"irq"};  ///< true: interrupt the core
+  sc_core::sc_out<bool> irq{"irq"};  ///< true: interrupt request to the core
   sc_core::sc_out<bool> fiq{"fiq"};
 
   Aintc(sc_core::sc_module_name name, const AintcParams& params);

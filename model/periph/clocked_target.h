@@ -1,5 +1,5 @@
-// What the clocked peripherals share: registers that exist before the bus socket, and a clock that
-// numbers its edges and stops while the module is gated.
+// Base classes of clocked peripherals: registers that are constructed before the bus socket, and a
+// clock whose edges are numbered and which stops while the module is gated.
 #pragma once
 #include <systemc>
 
@@ -10,8 +10,8 @@
 
 namespace fovea::periph {
 
-/// Holds a block's registers as a base class, so that they are built before BusTarget refers to
-/// them.
+/// Holds a block's registers in a base class, so that they are constructed before BusTarget refers
+/// to them.
 template <class Regs>
 struct WithRegs {
   template <class... Args>
@@ -19,7 +19,7 @@ struct WithRegs {
   Regs regs;
 };
 
-/// An output that need not be bound: a board without the consumer leaves it open.
+/// An output that may stay unbound, on boards where nothing uses it.
 template <class T>
 class OptionalOut
     : public sc_core::sc_port<sc_core::sc_signal_inout_if<T>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> {
@@ -36,13 +36,14 @@ template <class T>
 using OptionalIn = sc_core::sc_port<sc_core::sc_signal_in_if<T>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
 /// A peripheral with one functional clock. Time is counted in ticks: tick n ends at clock edge n,
-/// and ticks() is the number of edges at or before now since the start of the run (edges while the
-/// clock was stopped do not exist). What software starts at t counts from the first edge after t.
+/// and ticks() is the number of edges up to now since the start of the run. While the clock is
+/// stopped there are no edges. An action that software starts at time t counts from the first edge
+/// after t.
 class ClockedTarget : public BusTarget {
  public:
   SC_HAS_PROCESS(ClockedTarget);
   ClockIn clk{"clk"};
-  /// The module's clock gate from the PSC; left unbound the module is always clocked.
+  /// The module's clock enable from the PSC; if unbound, the module is always clocked.
   OptionalIn<bool> lpsc{"lpsc"};
 
  protected:
@@ -51,13 +52,14 @@ class ClockedTarget : public BusTarget {
 
   bool running() const { return clock_.running(); }
   std::uint64_t ticks() const;
-  /// When tick n (> ticks()) ends; kNever while the clock stands or when n is kNever.
+  /// Time at which tick n (> ticks()) ends; kNever while the clock is stopped, or if n is kNever.
   Picoseconds time_of(std::uint64_t tick) const;
-  /// Warns once if PINMUX gives a block's pins away: the chip would do nothing visible. Here the
-  /// pins stay connected.
+  /// Warns once if PINMUX assigns the block's pins to another function, so that the chip would do
+  /// nothing visible. In the model the pins stay connected.
   void check_pins(const OptionalIn<bool>& pins, const char* selection);
 
-  /// Called after the frequency or the gate has changed; pending events must be set again.
+  /// Called after a change of the frequency or of the clock gate: pending events must be scheduled
+  /// again.
   virtual void clock_changed() = 0;
 
  private:

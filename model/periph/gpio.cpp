@@ -86,7 +86,7 @@ void Gpio::levels_changed(unsigned bank) {
   const std::uint32_t now = levels(bank);
   const std::uint32_t edges = (now & ~s.last & s.rising) | (~now & s.last & s.falling);
   s.last = now;
-  if (!edges || !running()) return;  // edges are taken with the module's clock
+  if (!edges || !running()) return;  // edges are detected with the module's clock
   Reg& intstat = regs.banks[bank].intstat;
   intstat.set(intstat.get() | edges);
   if (bank == 0 && (regs.binten.get() & 1)) {

@@ -1,4 +1,4 @@
-// General-purpose pins.
+// GPIO: general-purpose input and output pins.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,13 +11,13 @@
 namespace fovea::periph {
 
 inline constexpr unsigned kGpioPins = 104;
-inline constexpr unsigned kGpioBanks = 4;        ///< register blocks of 32 pins
-inline constexpr unsigned kGpioDirectIrqs = 16;  ///< GPIO0-15 have an AINTC input each
+inline constexpr unsigned kGpioBanks = 4;        ///< register groups of 32 pins each
+inline constexpr unsigned kGpioDirectIrqs = 16;  ///< GPIO0 to GPIO15 have one AINTC input each
 
 struct GpioRegs : RegBank {
   Reg pid{*this, "PID", 0x00, Mode::kRo, "peripheral identification (value not public)"};
   Reg binten{*this, "BINTEN", 0x08, Mode::kRw, "bit n: interrupts of pins 16n..16n+15"};
-  /// One block of 32 pins, 0x28 bytes apart from 0x10.
+  /// The registers of 32 pins, in groups of 0x28 bytes from offset 0x10 on.
   struct Bank {
     Bank(RegBank& bank, unsigned n);
     Reg dir, out_data, set_data, clr_data, in_data, set_ris, clr_ris, set_fal, clr_fal, intstat;
@@ -26,19 +26,20 @@ struct GpioRegs : RegBank {
   GpioRegs();
 };
 
-/// GPIO at 0x01C67000: 104 pins. An edge on a pin (of an input, or of an output that software
-/// drives) that SET_RIS/SET_FAL selects sets INTSTAT and, for pins 0-15 with BINTEN, pulses the
-/// pin's interrupt line for one clock period. Not modelled: debounce, pin multiplexing (PINMUX
-/// does not disconnect a pin), the shared bank interrupts.
+/// GPIO at 0x01C67000 with 104 pins. If SET_RIS or SET_FAL selects an edge of a pin (an input, or
+/// an output that software drives), the edge sets INTSTAT and, for pins 0 to 15 while BINTEN is
+/// set, pulses the pin's interrupt line for one clock period. Not modelled: debouncing, pin
+/// multiplexing (PINMUX does not disconnect a pin), the shared interrupts of the banks.
 class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Gpio);
   sc_core::sc_vector<OptionalOut<bool>> irq{"irq", kGpioDirectIrqs};
-  /// Driven levels of a bank after a change: OUT_DATA of the pins that are outputs, 0 elsewhere.
+  /// Called with the levels that a bank drives after a change: OUT_DATA of the output pins, 0
+  /// elsewhere.
   std::function<void(unsigned bank, std::uint32_t out, Picoseconds)> on_output;
 
   explicit Gpio(sc_core::sc_module_name name);
-  /// The board drives a pin. Before the simulation starts it sets the initial level, without edge.
+  /// Sets the level that the board drives on a pin. Before the simulation starts, this is no edge.
   void set_pin(unsigned pin, bool level);
   bool pin(unsigned pin) const { return levels(pin / 32) >> pin % 32 & 1; }
 
@@ -50,14 +51,14 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
   void update();
 
   struct State {
-    std::uint32_t driven = 0;  // by the board
-    std::uint32_t last = 0;    // levels at the last look, for edges
+    std::uint32_t driven = 0;  // levels driven by the board
+    std::uint32_t last = 0;    // levels at the last call, for the detection of edges
     std::uint32_t rising = 0, falling = 0;
-    std::uint32_t shown = 0;  // last value told to on_output
+    std::uint32_t shown = 0;  // value last passed to on_output
   };
   std::array<State, kGpioBanks> state_;
   std::array<std::uint64_t, kGpioDirectIrqs> off_;  // tick at which the pulse ends
-  std::uint32_t fired_ = 0;                         // pins 0-15 whose pulse begins now
+  std::uint32_t fired_ = 0;                         // pins 0 to 15 whose pulse begins now
   Timer wake_;
 };
 

@@ -34,7 +34,7 @@ I2cController::I2cController(sc_core::sc_module_name name)
   regs.icdrr.on_read([this] {
     regs.icdrr.set(received_);
     clear_flag(kRrdy);
-    if (state_ == State::kWaitRead) {  // the byte that waited in the shift register moves up
+    if (state_ == State::kWaitRead) {  // the byte that waited in the shift register moves to ICDRR
       clear_flag(kRsfull);
       byte_finished();
     }
@@ -93,13 +93,13 @@ void I2cController::mode_written() {
   else if (m.stp && state_ == State::kHeld)
     begin(State::kStop, 1);
   else if (m.stp && m.rm && state_ == State::kWaitData)
-    begin(State::kStop, 1);  // a repeat-mode transfer ends by STP alone
+    begin(State::kStop, 1);  // a transfer in repeat mode ends only by STP
   refresh();
 }
 
 void I2cController::begin(State state, unsigned bits) {
-  // Back to back bits follow the last one's end; a stretched or idle bus goes on with the next
-  // edge.
+  // Consecutive bits start at the end of the previous one; after a stretched clock or on an idle
+  // bus, the first bit starts at the next edge.
   const std::uint64_t from = done_tick_ == ticks() ? done_tick_ : ticks() + 1;
   state_ = state;
   done_tick_ = from + bits * bit_ticks();
@@ -169,7 +169,7 @@ void I2cController::address_done() {
 void I2cController::next_byte() {
   if (!regs.icmdr.trx) {
     begin(State::kReceive, 9);
-  } else if (flags() & kXrdy) {  // nothing to send yet
+  } else if (flags() & kXrdy) {  // nothing to send so far
     if (regs.icmdr.rm && regs.icmdr.stp) {
       begin(State::kStop, 1);
       return;

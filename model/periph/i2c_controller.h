@@ -1,4 +1,4 @@
-// I2C controller, master mode.
+// I2C controller in master mode.
 #pragma once
 #include <cstdint>
 #include <systemc>
@@ -44,24 +44,27 @@ struct I2cRegs : RegBank {
   I2cRegs() : RegBank("I2C") {}
 };
 
-/// Master-mode I2C in bit time: a bit is (ICPSC + 1) x (ICCLKL + ICCLKH + 2d) clock periods with
-/// d = 7, 6, 5 for ICPSC = 0, 1, more; START and STOP take one bit each (assumed), a byte with its
-/// acknowledge nine. Targets are called when a byte is complete. The controller stretches the clock
-/// while ICDXR is empty or ICDRR unread.
-/// When the count is done: STP set gives a STOP (SCD), else the bus is held and ARDY is set; STT
-/// then makes a repeated START. A NACK holds the bus until STP or STT is written.
-/// Reading ICIVR clears the flag it reports, except ICRRDY and ICXRDY, which follow the data.
-/// ICSTR shows an empty ICDXR at any time. As an interrupt ICXRDY counts only while a transmission
-/// is under way, from its START to its last byte: Linux i2c-davinci.c enables the interrupt, then
-/// loads the first byte, then writes STT. Not modelled: target mode, arbitration, 10-bit addresses,
-/// pin functions.
+/// I2C in master mode, with bit timing: a bit takes (ICPSC + 1) x (ICCLKL + ICCLKH + 2d) clock
+/// periods with d = 7, 6 or 5 for ICPSC = 0, 1 or more. START and STOP take one bit each (assumed),
+/// a byte with its acknowledge nine. Targets are called when a byte is complete. The controller
+/// stretches the clock while ICDXR is empty or ICDRR was not read.
+///
+/// When the byte count is done, STP causes a STOP (SCD); without STP the bus is held and ARDY is
+/// set, and STT then causes a repeated START. A NACK holds the bus until STP or STT is written.
+/// Reading ICIVR clears the flag that it reports, except ICRRDY and ICXRDY, which follow the data.
+///
+/// ICSTR always shows whether ICDXR is empty. But ICXRDY requests an interrupt only during a
+/// transmission, from its START to its last byte: Linux i2c-davinci.c enables the interrupt, then
+/// loads the first byte, and then writes STT. Not modelled: target mode, arbitration, 10-bit
+/// addresses, use of the pins as general-purpose pins.
 class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(I2cController);
   sc_core::sc_port<I2cTargetIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> targets{"targets"};
-  OptionalOut<bool> irq{"irq"};  ///< level: an enabled flag of ICSTR is set
+  OptionalOut<bool> irq{"irq"};  ///< level; high while an enabled flag of ICSTR is set
 
-  OptionalIn<bool> pins{"pins"};  ///< PINMUX gives the controller SCL and SDA; unbound: it does
+  OptionalIn<bool> pins{"pins"};  ///< true while PINMUX assigns SCL and SDA to the controller; may
+                                  ///< stay unbound
 
   explicit I2cController(sc_core::sc_module_name name);
 
@@ -72,17 +75,17 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   void mode_written();
   void start();
   void begin(State state, unsigned bits);
-  void step();  // the current state's last bit has ended
+  void step();  // called when the last bit of the current state has ended
   void address_done();
   void next_byte();
-  void byte_finished();  // after a byte of either direction
+  void byte_finished();  // called after a byte in either direction
   void stop_or_hold();
   void nack();
   void reset();
   std::uint32_t flags() const { return status_; }
   void set_flag(std::uint32_t bit) { status_ |= bit; }
   void clear_flag(std::uint32_t bit) { status_ &= ~bit; }
-  bool sending() const;  ///< a transmission has begun and its last byte is not out
+  bool sending() const;  ///< a transmission has begun and its last byte was not sent yet
   std::uint32_t pending_vector() const;
   void clock_changed() override { wake_.soon(); }
   void refresh() { wake_.soon(); }

@@ -1,4 +1,4 @@
-// ARM_INTMUX: which of two sources drives an input of the interrupt controller.
+// ARM_INTMUX: selects which of two sources drives an input of the interrupt controller.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace fovea::periph {
 
-/// One bit of ARM_INTMUX (TI register header for the system module).
+/// One bit of ARM_INTMUX (TI's register header for the system module).
 struct InterruptChoice {
   unsigned interrupt;  ///< input of the AINTC
-  unsigned bit;        ///< of ARM_INTMUX: 0 takes `first`, 1 takes `second`
+  unsigned bit;        ///< bit of ARM_INTMUX: 0 selects `first`, 1 selects `second`
   const char* first;
   const char* second;
 };
@@ -32,19 +32,19 @@ inline constexpr std::array<InterruptChoice, 27> kInterruptChoices = {{
     {62, 23, "COMMRX", "TCERRINT3"},
 }};
 
-/// A source that is not modelled stays unbound and is silent; selecting it is reported once by
-/// name.
+/// Inputs of sources that are not modelled stay unbound and are always low. Selecting one gives a
+/// warning, once for each source.
 class InterruptMux : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(InterruptMux);
   sc_core::sc_in<std::uint32_t> arm_intmux{"arm_intmux"};
-  /// Indexed as kInterruptChoices.
+  /// Indexed like kInterruptChoices.
   sc_core::sc_vector<OptionalIn<bool>> first{"first", kInterruptChoices.size()};
   sc_core::sc_vector<OptionalIn<bool>> second{"second", kInterruptChoices.size()};
   sc_core::sc_vector<OptionalOut<bool>> out{"out", kInterruptChoices.size()};
 
   explicit InterruptMux(sc_core::sc_module_name name);
-  /// Position of the choice that drives an AINTC input.
+  /// Index of the choice that drives an AINTC input.
   static std::size_t choice_of(unsigned interrupt);
 
  private:

@@ -62,7 +62,7 @@ void PllController::control_written() {
   const bool on = !regs.pllctl.pllpwrdn && !regs.pllctl.pllrst;
   if (on != pll_on_) {
     pll_on_ = on;
-    pllm_ = 0;  // a PLL that was in reset has no output before it has locked
+    pllm_ = 0;  // after a reset, a PLL has no output before its first lock
     relock();
   }
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && !locked_)

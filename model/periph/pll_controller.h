@@ -1,4 +1,4 @@
-// PLL controller with its SYSCLK dividers.
+// PLL controller with the dividers of its SYSCLKs.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -47,8 +47,8 @@ struct PllParams : ParamGroup {
   PllParams() : ParamGroup("pll") {}
 };
 
-/// Register map: TI boot loader for DM36x (device.h), Linux drivers/clk/davinci/pll.c. Reset values
-/// are not public: bypass, PLL in reset, all dividers enabled with ratio 1 (assumed).
+/// Registers: TI boot loader for DM36x (device.h), Linux drivers/clk/davinci/pll.c. The reset
+/// values are not public; assumed: bypass, PLL in reset, all dividers enabled with ratio 1.
 struct PllRegs : RegBank {
   explicit PllRegs(const char* name, unsigned sysclks, std::uint32_t reset_type);
   Reg pid{*this, "PID", 0x000, Mode::kRo, "peripheral identification (value not public)"};
@@ -85,23 +85,26 @@ struct PllRegs : RegBank {
   std::deque<Reg> plldiv;
 };
 
-/// PLLC1 at 0x01C40800 (9 SYSCLKs) or PLLC2 at 0x01C40C00 (5).
-/// SYSCLKn = (bypass: oscillator; else oscillator x 2 PLLM / (PREDIV+1) / (POSTDIV+1)) /
-/// (PLLDIVn+1). The ratios act go_time after GOSET. The PLL locks lock_time after the last change
-/// of PLLM, PREDIV or SECCTL, or the release of PLLRST or PLLPWRDN. Writing the value that is there
-/// changes nothing: Linux' clock framework writes PREDIV back while it runs from the PLL. A PLL
-/// that loses its lock with PLLEN = 1 is not bypassed; it keeps its frequency until it locks again
-/// (assumed; the chip's drifts), and software is warned. PLLEN before the first lock since a reset
-/// stays in bypass until it comes (assumed), with a warning too. Every SYSCLK changes at the
-/// instant of the effect.
+/// PLLC1 at 0x01C40800 (9 SYSCLKs) or PLLC2 at 0x01C40C00 (5 SYSCLKs).
+///
+/// SYSCLKn = f / (PLLDIVn + 1), where f is the oscillator in bypass, and otherwise oscillator x 2
+/// PLLM / (PREDIV + 1) / (POSTDIV + 1). New ratios take effect go_time after GOSET. All SYSCLKs
+/// change in the same instant.
+///
+/// The PLL locks lock_time after the last change of PLLM, PREDIV or SECCTL, or after the release of
+/// PLLRST or PLLPWRDN. Writing the value that a register already has changes nothing: Linux' clock
+/// framework writes PREDIV back while it runs from the PLL. A PLL that loses its lock while PLLEN =
+/// 1 is not bypassed. It keeps its frequency until it locks again (assumed; the chip's drifts),
+/// with a warning. If PLLEN is set before the first lock since a reset, the output stays in bypass
+/// until the lock (assumed), also with a warning.
 class PllController : public WithRegs<PllRegs>, public BusTarget {
  public:
   SC_HAS_PROCESS(PllController);
   ClockIn osc{"osc"};
-  sc_core::sc_vector<OptionalOut<Frequency>> sysclk;  ///< [0] is SYSCLK1
-  OptionalOut<bool> locked{"locked"};                 ///< to PLLn_CONFIG of the system module
+  sc_core::sc_vector<OptionalOut<Frequency>> sysclk;  ///< sysclk[0] is SYSCLK1
+  OptionalOut<bool> locked{"locked"};                 ///< for PLLn_CONFIG of the system module
 
-  /// @param sysclks 9 or 5
+  /// @param sysclks number of SYSCLKs, 9 or 5
   PllController(sc_core::sc_module_name name, const char* bank, unsigned sysclks,
                 const PllParams& params);
 
@@ -112,9 +115,9 @@ class PllController : public WithRegs<PllRegs>, public BusTarget {
   Frequency source() const;
 
   Picoseconds lock_time_, go_time_;
-  std::array<std::uint32_t, kMaxSysclks> ratio_;  // PLLDIVn in effect
+  std::array<std::uint32_t, kMaxSysclks> ratio_;  // PLLDIVn that are in effect
   bool locked_ = false, pll_on_ = false;
-  std::uint32_t pllm_ = 0, prediv_ = 0;  // in effect since the last lock; pllm_ 0: none since reset
+  std::uint32_t pllm_ = 0, prediv_ = 0;  // values of the last lock; pllm_ 0: no lock since reset
   Picoseconds lock_at_ = kNever, go_at_ = kNever;
   Timer wake_;
 };

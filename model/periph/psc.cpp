@@ -3,8 +3,8 @@
 namespace fovea::periph {
 
 namespace {
-/// MDSTAT of a settled state, the family's bits: 8 LRST, 9 LRSTDONE, 10 MRST, 11 MRSTDONE,
-/// 12 clock on (state 1, 3); MRST is 1 out of reset (state 2, 3).
+/// MDSTAT of a state without transition, with the bits of the chip family: 8 LRST, 9 LRSTDONE, 10
+/// MRST (1 in states 2 and 3), 11 MRSTDONE, 12 clock enabled (states 1 and 3).
 std::uint32_t mdstat_of(std::uint32_t state) {
   return 0xB00u | (state >= 2 ? 0x400u : 0u) | (state & 1 ? 0x1000u : 0u) | state;
 }

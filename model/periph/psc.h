@@ -1,4 +1,4 @@
-// Power and sleep controller: the clock gates of the modules.
+// PSC (power and sleep controller): the clock gates of the modules.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace fovea::periph {
 
 inline constexpr unsigned kLpscCount = 52;
 
-/// Local PSC numbers of the blocks this chip model has (TI boot loader, Linux psc-dm365.c).
+/// Numbers of the local PSCs of the blocks in this chip model (TI boot loader, Linux psc-dm365.c).
 enum Lpsc : unsigned {
   kLpscTpcc = 0,
   kLpscTptc0 = 1,
@@ -73,15 +73,17 @@ struct PscRegs : RegBank {
   PscRegs();
 };
 
-/// PSC at 0x01C41000. MDCTL.NEXT (bits 4:0), then PTCMD: transition_time later PTSTAT clears and
-/// MDSTAT.STATE is NEXT. States: 0 software reset, 1 synchronous reset, 2 disabled, 3 enabled.
-/// After reset the ARM (31), the system module (30) and the modules that the boot ROM needs
-/// (AEMIF, UART0, TIMER0..2) are enabled, everything else is in state 0; which ones the ROM leaves
-/// on is assumed. Not modelled: power domains other than 0, errors, emulation.
+/// PSC at 0x01C41000. Software writes MDCTL.NEXT (bits 4:0) and then PTCMD; after transition_time,
+/// PTSTAT is cleared and MDSTAT.STATE equals NEXT. States: 0 software reset, 1 synchronous reset, 2
+/// disabled, 3 enabled. After reset, the ARM (31), the system module (30) and the modules that the
+/// boot ROM needs (AEMIF, UART0, TIMER0 to TIMER2) are enabled, and all others are in state 0;
+/// which modules the ROM leaves enabled is assumed. Not modelled: power domains other than 0,
+/// errors, emulation.
 class Psc : public WithRegs<PscRegs>, public BusTarget {
  public:
   SC_HAS_PROCESS(Psc);
-  sc_core::sc_vector<OptionalOut<bool>> enabled{"enabled", kLpscCount};  ///< [n]: LPSC n, state 3
+  /// enabled[n]: LPSC n is in state 3
+  sc_core::sc_vector<OptionalOut<bool>> enabled{"enabled", kLpscCount};
 
   Psc(sc_core::sc_module_name name, const PscParams& params);
 

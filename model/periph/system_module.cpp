@@ -29,8 +29,9 @@ SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& par
     if (clrz && !vtp_clrz_) vtp_ready_at_ = kernel_time() + vtp_time_;
     vtp_clrz_ = clrz;
   });
-  regs.vtpiocr.on_read([this] { regs.vtpiocr.ready.set(vtp_clrz_ && kernel_time() >= vtp_ready_at_); });
-  // LOCK, LOCK123 and LOOPLOCK rise together; boot code waits for bits 26:24.
+  regs.vtpiocr.on_read(
+      [this] { regs.vtpiocr.ready.set(vtp_clrz_ && kernel_time() >= vtp_ready_at_); });
+  // LOCK, LOCK123 and LOOPLOCK change together; boot code waits for bits 26:24.
   constexpr std::uint32_t kLockFlags = 0x1F000000;
   regs.pll0_config.on_read([this] { regs.pll0_config.set(pll1_locked.read() ? kLockFlags : 0); });
   regs.pll1_config.on_read([this] { regs.pll1_config.set(pll2_locked.read() ? kLockFlags : 0); });

@@ -34,10 +34,10 @@ struct SystemParams : ParamGroup {
   SystemParams() : ParamGroup("system") {}
 };
 
-/// Offsets and reset values: TI register header (CSL) and TI boot loader, which agree. What would
-/// act on the chip and does not here is declared so (Modelled) and warned of; BOOTCFG, DDR_SLEW,
-/// the pull resistors and the registers of blocks that are not modelled (host port, USB) are just
-/// kept.
+/// Offsets and reset values: TI's register header (CSL) and TI's boot loader, which agree. Settings
+/// that act on the chip but have no effect here give a warning (Modelled). BOOTCFG, DDR_SLEW, the
+/// pull resistors and the registers of blocks that are not modelled (host port, USB) only keep what
+/// is written.
 struct SystemRegs : RegBank {
   explicit SystemRegs(std::uint32_t bootcfg_pins);
   std::deque<Reg> pinmux;  ///< PINMUX0 to 4
@@ -90,7 +90,8 @@ struct SystemRegs : RegBank {
     Field venc_src{*this, "VENC_CLK_SRC", 5, 2, Mode::kRw, "0 PLL1, 1 PLL2, 2, 3 crystal"};
     Field clkmd{*this, "VPSS_CLKMD", 7, 1, Mode::kRw, "DMA : VPSS 0 1:2, 1 1:1; kept"};
   } vpss_clk_ctrl{*this, "VPSS_CLK_CTRL", 0x44, "VPSS clocks", 0x10};
-  /// The header gives DDRCLKS a reset of 1 but the whole register 0x003F0FF8; the latter is taken.
+  /// TI's header gives DDRCLKS a reset value of 1, but the whole register 0x003F0FF8; the latter is
+  /// used.
   Reg peri_clk_ctrl{
       *this,     "PERI_CLK_CTRL", 0x48, Mode::kRw, "29 ARM from PLL2, 27 DDR from PLL2, dividers",
       0x003F0FF8};
@@ -101,7 +102,7 @@ struct SystemRegs : RegBank {
     Field interval{*this, "INTERVAL", 0, 21, Mode::kRw, "time that a level must last"};
     Field enable{*this, "ENABLE", 31, 1, Mode::kRw, "debouncing of a GPIO pin", Modelled{0}};
   };
-  std::deque<Debounce> debounce;  ///< of GPIO0 to 7
+  std::deque<Debounce> debounce;  ///< for GPIO0 to GPIO7
   struct Vtpiocr : Reg {
     using Reg::Reg;
     Field code{*this, "DRIVE", 0, 6, Mode::kRw, "drive and filter settings; kept"};
@@ -121,8 +122,8 @@ struct SystemRegs : RegBank {
   Reg pll1_config{*this, "PLL1_CONFIG", 0x88, Mode::kRo, "PLLC2 lock flags: 24, 27:25, 28"};
 };
 
-/// System module at 0x01C40000. Its steering registers leave as ports and change in the instant of
-/// the write.
+/// System module at 0x01C40000. Its control registers are output as ports, which change in the
+/// instant of the write.
 class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
  public:
   SC_HAS_PROCESS(SystemModule);
@@ -131,8 +132,8 @@ class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
   OptionalOut<std::uint32_t> vpss_clk_ctrl{"vpss_clk_ctrl"}, peri_clk_ctrl{"peri_clk_ctrl"};
   OptionalOut<std::uint32_t> misc{"misc"}, edma_evtmux{"edma_evtmux"}, arm_intmux{"arm_intmux"};
 
-  /// PINMUX gives these blocks their pins (Linux mach-davinci/dm365.c, MUX_CFG). No other pin is
-  /// looked at, and none is disconnected.
+  /// True while PINMUX assigns their pins to these blocks (Linux mach-davinci/dm365.c, MUX_CFG).
+  /// Other pins are not checked, and no pin is disconnected.
   OptionalOut<bool> uart0_pins{"uart0_pins"}, uart1_pins{"uart1_pins"}, i2c_pins{"i2c_pins"};
 
   SystemModule(sc_core::sc_module_name name, const SystemParams& params);

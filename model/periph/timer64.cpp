@@ -120,7 +120,7 @@ void Timer64::reconfigure() {
       const std::uint64_t position = count(1);
       const bool run = rs12 && rs34 && ena12;
       apply(h12, run, ena12 == 1, std::uint64_t{regs.prd34.get()} + 1, position);
-      if (!run) h34.counter.set_value(position, ticks());  // TIM34 keeps its place
+      if (!run) h34.counter.set_value(position, ticks());  // TIM34 keeps its position
       break;
     }
   }
@@ -138,7 +138,7 @@ void Timer64::matched(unsigned half) {
   }
 }
 
-/// ENAMODE = 3: the new period comes with the count of 0, one tick after the match.
+/// ENAMODE = 3: the new period takes effect with the count of 0, one tick after the match.
 void Timer64::reload(unsigned half) {
   if ((half ? regs.tcr.enamode34.get() : regs.tcr.enamode12.get()) != 3) return;
   if (half == 0) regs.prd12.set(regs.rel12.get());
@@ -181,7 +181,7 @@ void Timer64::watchdog_key(std::uint32_t word) {
 void Timer64::reschedule() {
   const std::uint64_t t = ticks();
   for (Half& h : half_) {
-    if (h.run && t >= h.due) continue;  // a match of this very instant: update() serves it
+    if (h.run && t >= h.due) continue;  // a match at this instant is handled by update()
     h.due = h.run ? h.counter.next_match(t) : kNever;
   }
   wake_.soon();

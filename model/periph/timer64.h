@@ -1,4 +1,4 @@
-// 64-bit timer: one 64-bit, two 32-bit, chained, or watchdog.
+// 64-bit timer: used as one 64-bit timer, two 32-bit timers, chained timers, or watchdog.
 #pragma once
 #include <array>
 #include <systemc>
@@ -53,24 +53,27 @@ struct TimerRegs : RegBank {
   TimerRegs() : RegBank("TIMER64") {}
 };
 
-/// Timer64 (SPRUH82C ch. 30 is the family's public text; offsets: TI boot loader, Linux).
-/// A match raises tint12/tint34 for one clock period (the AINTC takes the edge). Counters are
-/// computed when read; the one pending event is the next match or the end of its pulse.
-/// Interrupts do not depend on INTCTL_STAT: Linux gets them without writing it.
-/// A counter in reset (TIMxxRS = 0) holds its value (assumed).
-/// Watchdog: keys 0xA5C6, 0xDA7E (with WDEN) activate and later serve it; a wrong key or the match
-/// expires it; it then stays expired.
-/// Not modelled: pin as clock or gate, compare registers, external-event capture.
+/// Timer64 (public description of the family: SPRUH82C ch. 30; offsets: TI boot loader, Linux).
+///
+/// A match raises tint12 or tint34 for one clock period (the AINTC captures the edge). Counters are
+/// computed when they are read; the only pending event is the next match or the end of its pulse.
+/// Interrupts do not depend on INTCTL_STAT: Linux gets them without writing it. A counter in reset
+/// (TIMxxRS = 0) keeps its value (assumed).
+///
+/// Watchdog: the keys 0xA5C6, 0xDA7E (with WDEN) activate it and later serve it. A wrong key or a
+/// match makes it expire, and it stays expired.
+///
+/// Not modelled: the pin as clock or gate, compare registers, capture of external events.
 class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Timer64);
   OptionalOut<bool> tint12{"tint12"}, tint34{"tint34"};
-  /// Asks for a reset of the chip: the watchdog has expired, or software drives the timer's pin
-  /// high as the boot loaders do to reset the chip (GPINT_GPEN = 0x20000, GPDAT_GPDIR = 0x20002).
+  /// Requests a reset of the chip: the watchdog has expired, or software drives the timer's pin
+  /// high, as boot loaders do for a reset (GPINT_GPEN = 0x20000, GPDAT_GPDIR = 0x20002).
   OptionalOut<bool> expired{"expired"};
 
   explicit Timer64(sc_core::sc_module_name name);
-  /// Why `expired` is high, for people.
+  /// The reason why `expired` is high, for messages.
   const char* reset_cause() const { return reset_cause_; }
 
  private:
@@ -80,7 +83,8 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
     TimerCounter counter{32};
     bool run = false, once = false;
     std::uint64_t prescale = 1;
-    std::uint64_t due = kNever, off = kNever;  // ticks: next match, end of the pulse
+    std::uint64_t due = kNever, off = kNever;  // ticks of the next match and of the end of the
+                                               // pulse
     bool level = false;
   };
 
@@ -97,12 +101,12 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
   void clock_changed() override { reschedule(); }
   void update();
 
-  std::array<Half, 2> half_;  // TIM12 and TIM34; in the 64-bit modes [0] is both
+  std::array<Half, 2> half_;  // TIM12 and TIM34; in the 64-bit modes half_[0] is both
   std::uint32_t mode_ = k64;
   Watchdog watchdog_ = Watchdog::kIdle;
   bool pin_reset_ = false;
   const char* reset_cause_ = "";
-  std::uint32_t shadow34_ = 0;  // upper half, taken when the lower is read
+  std::uint32_t shadow34_ = 0;  // upper half of the count, latched when the lower half is read
   bool shadow_valid_ = false;
   Timer wake_;
 };

@@ -12,7 +12,7 @@ enum : std::uint32_t { kNone = 1, kTxEmpty = 2, kRxData = 4, kLineStatus = 6, kR
 
 Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     : ClockedTarget(name, regs), selection_(selection) {
-  // Two registers share offsets 0, 4 and 8, so their true values are kept beside the bank.
+  // Several registers share the offsets 0, 4 and 8, so their values are kept outside the bank.
   regs.rbr.on_write([this](std::uint32_t word) {
     if (regs.lcr.dlab)
       regs.dll.set(word & 0xFF);
@@ -27,7 +27,8 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     if (regs.lcr.dlab) {
       regs.dlh.set(word & 0xFF);
     } else {
-      // Enabling the transmit interrupt while the holding register is empty raises it (16550).
+      // Enabling the transmit interrupt while the holding register is empty raises the interrupt
+      // (16550).
       if ((word & ~ier_ & kEtbei) && tx_.empty()) thre_event_ = true;
       ier_ = static_cast<std::uint8_t>(word & 0x0F);
     }
@@ -44,7 +45,7 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
   regs.lsr.on_read([this] {
     regs.lsr.set((rx_.empty() ? 0u : kDr) | (overrun_ ? kOe : 0u) | (tx_.empty() ? kThre : 0u) |
                  (tx_.empty() && !shifting_ ? kTemt : 0u));
-    if (overrun_) refresh();  // polling costs no kernel activity
+    if (overrun_) refresh();  // polling without an overrun causes no kernel activity
     overrun_ = false;
   });
   auto kick = [this](std::uint32_t) { refresh(); };
@@ -80,7 +81,7 @@ std::uint64_t Uart16550::character_ticks() const {
 void Uart16550::data_written(std::uint8_t byte) {
   if (tx_.size() >= capacity()) {
     Diagnostics::instance().guest("UART transmit overrun: THR written while full");
-    tx_.pop_back();  // the holding register is overwritten
+    tx_.pop_back();  // the byte in the holding register is overwritten
   }
   tx_.push_back(byte);
   thre_event_ = false;
@@ -100,7 +101,7 @@ void Uart16550::read_data() {
 void Uart16550::fcr_written(std::uint32_t word) {
   const bool was = fifo_mode();
   fcr_ = static_cast<std::uint8_t>(word & 0xC9);
-  const bool toggled = was != fifo_mode();  // a mode change empties both FIFOs
+  const bool toggled = was != fifo_mode();  // changing the mode empties both FIFOs
   if ((word & 2) || toggled) {
     rx_.clear();
     rx_timeout_ = false;
@@ -148,8 +149,8 @@ void Uart16550::start_next(std::uint64_t first_tick) {
 
 void Uart16550::update() {
   const std::uint64_t t = ticks();
-  std::uint64_t first_tick = t + 1;       // an idle transmitter starts with the next edge
-  if (!regs.pwremu.utrst && shifting_) {  // a reset transmitter drops its byte
+  std::uint64_t first_tick = t + 1;       // an idle transmitter starts at the next edge
+  if (!regs.pwremu.utrst && shifting_) {  // a transmitter in reset drops its byte
     shifting_ = false;
     done_tick_ = kNever;
   }

@@ -1,4 +1,4 @@
-// UART with 16-byte FIFOs, word-spaced registers.
+// UART with 16-byte FIFOs and registers at a pitch of 4 bytes.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -9,8 +9,8 @@
 
 namespace fovea::periph {
 
-/// Registers of UART0/UART1 (16550 at a 4-byte pitch plus the DaVinci additions; TI boot loader,
-/// Linux 8250). DLL and DLH also answer at 0x20/0x24 without DLAB.
+/// Registers of UART0 and UART1: a 16550 at a 4-byte pitch plus DaVinci's additions (TI boot
+/// loader, Linux 8250). DLL and DLH are also accessible at 0x20 and 0x24, without DLAB.
 struct UartRegs : RegBank {
   Reg rbr{*this, "RBR_THR", 0x00, Mode::kRw, "receive / transmit data; DLL while LCR.DLAB"};
   Reg ier{*this, "IER", 0x04, Mode::kRw, "1 RX data, 2 TX empty, 4 line status; DLH under DLAB"};
@@ -47,25 +47,28 @@ struct UartRegs : RegBank {
   UartRegs() : RegBank("UART") {}
 };
 
-/// A byte leaves in real time: start, data, parity and stop bits of 16 (13) x divisor clock
-/// periods, the first from the first clock edge after the write; the next byte follows without a
-/// gap. The baud generator starts with the byte (its free-running phase is not public). The
-/// interrupt output is a level. Not modelled: parity and framing errors, break, modem lines.
+/// A byte is sent in real time: start, data, parity and stop bits of 16 (13) x divisor clock
+/// periods each, the first one from the first clock edge after the write; the next byte follows
+/// without a gap. The baud generator starts with the byte (the phase of the chip's generator is not
+/// public). The interrupt output is a level. Not modelled: parity and framing errors, break, modem
+/// lines.
 class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Uart16550);
   OptionalOut<bool> irq{"irq"};
-  OptionalIn<bool> pins{"pins"};  ///< PINMUX gives this UART its transmit pin; unbound: it does
-  /// Each transmitted byte with the end of its last stop bit. Set by the board.
+  OptionalIn<bool> pins{"pins"};  ///< true while PINMUX assigns the transmit pin to this UART; may
+                                  ///< stay unbound
+  /// Called for each transmitted byte with the time of the end of its last stop bit. Set by the
+  /// board.
   std::function<void(std::uint8_t, Picoseconds)> sink;
 
-  /// @param selection the PINMUX setting that gives the pin, for the warning
+  /// @param selection the PINMUX setting that assigns the pin, for the warning
   explicit Uart16550(sc_core::sc_module_name name, const char* selection = "");
-  /// A byte has arrived completely (kernel time). Lost, with OE, when there is no room.
+  /// A byte was received completely, at kernel time. If there is no room it is lost and OE is set.
   void receive(std::uint8_t byte);
-  /// The receiver runs at a programmed rate and has room for one more byte.
+  /// True if the receiver is enabled with a baud rate and has room for one more byte.
   bool can_receive() const;
-  /// How long a byte that begins now takes on the line. Only while can_receive().
+  /// Duration in ps of a byte that begins now. May be called only while can_receive().
   Picoseconds character_time() const;
   /// Called whenever can_receive() may have become true. Set by the board; may be empty.
   std::function<void()> on_ready;

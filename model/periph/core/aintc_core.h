@@ -1,4 +1,4 @@
-// Interrupt controller: latches, priorities, pins and entry registers. No SystemC.
+// The interrupt controller without SystemC: latches, priorities, outputs and entry registers.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace fovea::periph {
 
 inline constexpr unsigned kInterruptCount = 64;
 
-/// Registers of the AINTC at 0x01C48000 (Linux irq-davinci-aintc.c, TI register header).
-/// Status bits: 0 = pending, 1 = idle.
+/// Registers of the AINTC at 0x01C48000 (Linux irq-davinci-aintc.c, TI's register header).
+/// Status bits: 0 pending, 1 idle.
 struct AintcRegs : RegBank {
   Reg fiq0{*this, "FIQ0", 0x00, Mode::kW1c, "FIQ sources 0-31: 0 pending; write 1 acknowledges",
            ~0u};
@@ -49,18 +49,19 @@ struct AintcRegs : RegBank {
   static constexpr const char* kPri = "3 bits a source on a 4-bit pitch: 0-1 FIQ, 2-7 IRQ, 2 first";
 };
 
-/// Rules: a rising edge latches, also while its source is disabled; the enable gates pin and entry;
-/// writing 1 to the status clears the latch; a source that stays high does not latch again (edge
-/// capture) or does at once (level capture). One latch a source; its priority decides whether it
-/// shows as FIQ or IRQ. Among equal priorities the lower number wins.
+/// A rising edge sets the latch of its source, even while the source is disabled; the enable bit
+/// gates outputs and entry registers. Writing 1 to the status clears the latch. A source that stays
+/// high does not set the latch again (edge capture), or does so at once (level capture). There is
+/// one latch for each source, and the priority decides whether it appears as FIQ or IRQ. Among
+/// equal priorities, the lowest number is first.
 class AintcCore {
  public:
-  /// @param level_capture true: a latch follows its source while that is high
+  /// @param level_capture true: a latch is set as long as its source is high
   explicit AintcCore(bool level_capture);
   AintcRegs regs;
-  std::function<void()> on_change;  ///< after a register write that may move a pin
+  std::function<void()> on_change;  ///< called after a register write that may change an output
 
-  /// Takes the 64 source levels, bit n = source n.
+  /// Sets the levels of the 64 sources; bit n is source n.
   void set_sources(std::uint64_t levels);
   bool irq() const { return (active() & ~fiq_map_) != 0; }
   bool fiq() const { return (active() & fiq_map_) != 0; }
@@ -79,8 +80,8 @@ class AintcCore {
 
   bool level_capture_;
   std::uint64_t levels_ = 0, pending_ = 0;
-  std::uint64_t fiq_map_ = 0;  // sources of priority 0 and 1
-  std::uint64_t held_ = 0;     // IDMODE: disabled while active, kept until acknowledged
+  std::uint64_t fiq_map_ = 0;  // sources with priority 0 or 1
+  std::uint64_t held_ = 0;     // IDMODE: disabled while active, so kept until acknowledged
   std::uint64_t was_enabled_ = 0;
   std::array<std::uint8_t, kInterruptCount> priority_{};
 };

@@ -1,4 +1,4 @@
-// Frequencies of a PLL controller. No SystemC.
+// The frequencies of a PLL controller. No SystemC.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,13 +9,13 @@ namespace fovea::periph {
 
 inline constexpr unsigned kMaxSysclks = 9;
 
-/// A divider register as written: bits 4:0 ratio - 1, bit 15 enable.
+/// Applies a divider register: bits 4:0 ratio - 1, bit 15 enable. Disabled: the clock is stopped.
 constexpr Frequency divided(Frequency f, std::uint32_t divider) {
   return divider & 0x8000u ? f / ((divider & 0x1Fu) + 1) : Frequency{};
 }
 
-/// osc x 2 PLLM / (PREDIV + 1); the DM365 doubles the multiplier (Linux clk/davinci PLL_PLLM_2X).
-/// Stopped when PREDIV is disabled or PLLM is 0.
+/// osc x 2 PLLM / (PREDIV + 1): the DM365 doubles the multiplier (Linux clk/davinci, PLL_PLLM_2X).
+/// Stopped if PREDIV is disabled or PLLM is 0.
 Frequency vco(Frequency oscillator, std::uint32_t pllm, std::uint32_t prediv);
 
 }  // namespace fovea::periph

@@ -20,7 +20,7 @@ void TimerCounter::stop(std::uint64_t now) {
 
 std::uint64_t TimerCounter::counts_to_first_match() const {
   if (base_value_ < period_) return period_ - base_value_;
-  if (base_value_ == period_) return period_ + 1;  // 0 (2^64) for a full-range 64-bit period
+  if (base_value_ == period_) return period_ + 1;  // 0 (2^64) for a 64-bit period of the full range
   return (top_ - base_value_) + 1 + period_;
 }
 
@@ -70,10 +70,11 @@ std::uint64_t TimerCounter::next_match(std::uint64_t now) const {
   std::uint64_t match = first;
   if (n >= first) {
     if (once_) return kNever;
-    if (period_ == ~0ull) return kNever;  // beyond any run
+    if (period_ == ~0ull) return kNever;  // later than the end of any run
     match = first + ((n - first) / (period_ + 1) + 1) * (period_ + 1);
   }
-  if (match > (1ull << 62) / prescale_) return kNever;  // beyond any run; keeps products in 64 bits
+  if (match > (1ull << 62) / prescale_) return kNever;  // later than the end of any run; keeps
+                                                        // products within 64 bits
   return base_tick_ + match * prescale_ - phase_;
 }
 
