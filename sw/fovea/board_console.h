@@ -1,4 +1,4 @@
-// UART0's line on the host: terminal, pipe, or a dialogue that was written before.
+// The serial line of UART0 on the host: a terminal, a pipe, or a prepared dialogue.
 #pragma once
 #include <chrono>
 #include <deque>
@@ -13,19 +13,20 @@
 
 namespace fovea::app {
 
-/// What arrives, and when, follows from simulated time alone, unless a person types.
+/// What is received, and when, depends only on simulated time, unless a person types.
 class BoardConsole : public board::SerialInput {
  public:
-  /// Before the simulation starts. @param stream null: nothing is shown. @param dialogue what is
-  /// typed instead of the stream's input
+  /// To be constructed before the simulation starts. @param stream shows the output and provides
+  /// the input; null: nothing is shown @param dialogue replaces the stream's input
   BoardConsole(board::Board& board, ConsoleStream* stream, std::optional<Dialogue> dialogue);
 
-  /// Between two slices of the simulation: shows what came, takes keys, and lets a person's time
-  /// pass no faster than the clock on the wall. @return true if the person wants to leave
+  /// To be called between two slices of the simulation. Shows output, reads keys, and keeps an
+  /// interactive simulation from running faster than wall-clock time. @return true if the user
+  /// wants to leave
   bool look();
-  /// What a person typed, as a dialogue that types the same again.
+  /// The keys that a person typed, as a dialogue that repeats them.
   const std::string& typed() const { return typed_; }
-  /// The step at which a dialogue stands that is not over; else "".
+  /// The current step of a dialogue that has not ended, otherwise "".
   std::string open_step() const { return dialogue_ ? dialogue_->position() : ""; }
 
  private:

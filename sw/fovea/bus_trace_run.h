@@ -1,4 +1,4 @@
-// `fovea run --bus-trace`: records the measured window of a board.
+// `fovea run --bus-trace`: records the bus traffic of the measurement window of a board.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -9,15 +9,16 @@
 
 namespace fovea::app {
 
-/// Made before the run, so that a file that cannot be written shows at once. open() and close() are
-/// the window's edges; without both there is no trace, and an earlier one stays.
+/// To be constructed before the run, so that a file that cannot be written is reported at once.
+/// open() and close() mark the start and end of the window. Without both no trace is written, and
+/// an earlier file is kept.
 class BusTraceRun {
  public:
   BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
   ~BusTraceRun();
   void open();
   void close();
-  /// @throws UserError when the file cannot be written
+  /// @throws UserError if the file cannot be written
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-// A file writer that reports every failure: the only way the host program writes files.
+// A file writer that reports every failure. The host program writes all its files with it.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -8,30 +8,30 @@
 
 namespace fovea::app {
 
-/// Buffered output file. A short write, a full disk or a failed close is a UserError of one line
-/// that names the file and the reason, never a silent loss.
+/// Buffered output file. A short write, a full disk or a failed close causes a UserError of one
+/// line with the name of the file and the reason; data are never lost silently.
 class CheckedFile {
  public:
-  /// Creates or truncates `path`. @throws UserError when it cannot be opened
+  /// Creates or truncates `path`. @throws UserError if it cannot be opened
   explicit CheckedFile(std::filesystem::path path);
-  /// Creates the file in the open folder `folder`, by the last part of `path`; the rest of it is
-  /// for messages. It must not exist yet either. @throws UserError
+  /// Creates a new file in the open folder `folder`. Its name is the last component of `path`; the
+  /// rest is used in messages. The file must not exist. @throws UserError
   CheckedFile(std::filesystem::path path, int folder);
-  /// Creates a file that must not exist yet, not even as a symbolic link. @throws UserError
+  /// Creates a file that must not exist, not even as a symbolic link. @throws UserError
   struct New {};
   CheckedFile(std::filesystem::path path, New);
-  /// Closes without reporting: a caller that cares has called close().
+  /// Closes without reporting errors; call close() first to have them reported.
   ~CheckedFile();
   CheckedFile(const CheckedFile&) = delete;
   CheckedFile& operator=(const CheckedFile&) = delete;
 
   void write(std::string_view text);
   void write(std::span<const std::uint8_t> bytes);
-  /// Flushes and closes. @throws UserError if the last bytes did not reach the file
+  /// Flushes and closes. @throws UserError if the last bytes could not be written
   void close();
-  /// Has everything written to the disk itself. @throws UserError
+  /// Makes sure that everything written has reached the disk. @throws UserError
   void sync();
-  /// Keeps others that ask for a lock away until the file is closed.
+  /// Locks the file against other processes that lock it, until it is closed.
   void lock();
   const std::filesystem::path& path() const { return path_; }
 
@@ -44,18 +44,19 @@ class CheckedFile {
   int fd_ = -1;
 };
 
-/// Writes the whole file in one go. @throws UserError as CheckedFile
+/// Writes a whole file. @throws UserError as CheckedFile does
 void write_file(const std::filesystem::path& path, std::string_view text);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
-/// Reads a whole regular file of at most `max_bytes`. @throws UserError naming the file
+/// Reads a whole regular file of at most `max_bytes`. @throws UserError that names the file
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// `text` with every control character but the line's end written as an escape, so that text from a
-/// file or from the guest cannot drive the terminal.
+/// `text` with every control character except the line feed written as an escape, so that text from
+/// a file or from the guest cannot control the terminal.
 std::string printable(std::string_view text);
 
-/// `text` on one line: control characters are written as escapes, and at most `max_chars` of it.
+/// `text` on one line: control characters become escapes, and it is cut after `max_chars`
+/// characters.
 std::string one_line(std::string_view text, std::size_t max_chars = 400);
 
 }  // namespace fovea::app

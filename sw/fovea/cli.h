@@ -12,8 +12,8 @@
 
 namespace fovea::app {
 
-/// Exit statuses. A run that SIGINT or SIGTERM stopped leaves a valid partial result
-/// (`"complete": false`) and exits with 128 + the signal's number, as shells have it: 130, 143.
+/// Exit statuses. A run that was stopped by SIGINT or SIGTERM leaves a valid partial result
+/// (`"complete": false`) and exits with 128 + the signal's number, like shells: 130 or 143.
 enum ExitStatus : int {
   kExitDone = 0,
   kExitCheckFailed = 1,
@@ -22,30 +22,30 @@ enum ExitStatus : int {
   kExitOwnDefect = 4,
 };
 
-/// Surroundings of the program, so that tests can stand in for them.
+/// The surroundings of the program, which tests replace.
 struct CliContext {
   std::ostream& out;
   std::ostream& err;
-  bool terminal = false;  ///< err is a terminal
+  bool terminal = false;  ///< true if err is a terminal
   std::function<std::unique_ptr<Simulation>()> make_simulation;
   std::function<std::unique_ptr<Executor>()> make_executor = nullptr;
-  const std::atomic<int>* signal = nullptr;  ///< the signal that asked to stop; 0: none
-  const std::atomic<bool>* stop = nullptr;   ///< set together with it
+  const std::atomic<int>* signal = nullptr;  ///< the signal that requested a stop; 0: none
+  const std::atomic<bool>* stop = nullptr;   ///< set together with `signal`
 };
 
-/// Runs one command. `args` is without the program's name. Every error is reported here.
+/// Runs one command and reports every error. `args` does not contain the program's name. @return
+/// the exit status
 int run_cli(const std::vector<std::string>& args, const CliContext& context);
 
-/// The table of `fovea params`. `pattern`: part of a key, or with `*` and `?` all of it; empty:
-/// all.
-/// @throws UserError if no key matches
+/// The table of `fovea params`. `pattern` is a part of a key or, with `*` and `?`, a pattern for
+/// the whole key; empty: all keys. @throws UserError if no key matches
 std::string params_table(const ParamSet& params, const std::string& pattern, bool markdown);
 
-/// SIGINT and SIGTERM set the flags (a second one ends the program at once); SIGPIPE and SIGXFSZ
-/// become errors of the write.
+/// Installs signal handlers: SIGINT and SIGTERM set the flags (a second one ends the program at
+/// once); SIGPIPE and SIGXFSZ are ignored, so that they become write errors.
 void install_signals(CliContext& context);
 
-/// Prints what RunDir::commit() says about results that the folder held before.
+/// Prints the sentence of RunDir::commit() about results that were in the folder before.
 void report_earlier(const std::string& note, const CliContext& context);
 
 std::string version_text();

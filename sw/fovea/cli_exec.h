@@ -1,4 +1,4 @@
-// `fovea exec` on the command line.
+// The command line of `fovea exec`.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ namespace fovea::app {
 
 struct ExecOptions {
   std::string program;
-  std::vector<std::string> arguments;  ///< of the program
+  std::vector<std::string> arguments;  ///< arguments of the program
   std::vector<std::string> sets;
   std::string load, entry, root, out_dir, gdb;
   RegisterLogRequest registers;
@@ -23,22 +23,22 @@ struct ExecOptions {
   bool board = false, console = false;
 };
 
-/// `--log-registers` and its size, of run and exec.
+/// Adds `--log-registers` and the option for its size, which `run` and `exec` share.
 void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
-/// @throws UserError: a size without anything that could begin a log
+/// @throws UserError if a size is given although nothing can start a log
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb);
 
-/// Adds the subcommand; its options go to `options`.
+/// Adds the subcommand, whose options are stored in `options`.
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);
 
-/// Takes the program's own arguments out of a command line that begins with `exec`: whatever follows
-/// the program and is no option of this command, and all behind `--`.
+/// Removes the program's own arguments from a command line that begins with `exec`, and returns
+/// them: all that follow the program and are not options of this command, and all after `--`.
 std::vector<std::string> take_program_arguments(std::vector<std::string>& args);
 
 int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
                  const CliContext& context);
 
-/// Instructions, clocks, time and where the clocks went, aligned, one per line.
+/// A table with instructions, clocks, time and stalls, aligned, one row per line.
 std::string core_table(std::span<const StatRow> stats, Frequency core_clock);
 
 }  // namespace fovea::app

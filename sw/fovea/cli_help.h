@@ -1,4 +1,4 @@
-// What the command line tells about itself, all of it from the one declaration to CLI11.
+// Help, completion and manual page, all generated from the declarations made to CLI11.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -7,7 +7,7 @@
 
 namespace fovea::app {
 
-/// Help of at most 80 columns, with the default of each option that has one.
+/// Help with at most 80 columns, including the default of each option that has one.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
@@ -16,16 +16,16 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override;
 };
 
-/// Lines of at most `width` columns, all but the first indented by `indent`; a line feed in `text`
-/// stays one.
+/// Breaks `text` into lines of at most `width` columns, all but the first indented by `indent`.
+/// Line feeds in `text` are kept.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width = 80);
 
-/// Completion for bash: commands, options, words that an option allows, and after -s the keys that
-/// `keys` lists for the command.
+/// Completion script for bash: commands, options, the words that an option allows and, after -s,
+/// the keys that `keys` lists for the command.
 std::string bash_completion(const CLI::App& app,
                             const std::map<std::string, std::vector<std::string>>& keys);
 
-/// The manual page, for `man -l`.
+/// The manual page in the format of `man -l`.
 std::string man_page(const CLI::App& app, const std::string& version);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// Options that `fovea run` and `fovea exec` share: limits of a run, and a second file of symbols.
+// Options that `fovea run` and `fovea exec` share: limits of a run, and an additional symbol file.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,9 +19,9 @@ struct LimitOptions {
 };
 
 void add_limit_options(CLI::App& command, LimitOptions& options);
-/// @throws UserError naming the option
+/// @throws UserError that names the option
 RunLimits limits_of(const LimitOptions& options);
-/// The file of --symbols, if it was given. @throws UserError
+/// The file of --symbols, if that was given. @throws UserError
 std::optional<ElfImage> symbols_of(const LimitOptions& options);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// `--console`: UART0 in the terminal.
+// `--console`: connects UART0 to the terminal.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -14,40 +14,40 @@ namespace fovea::app {
 inline constexpr std::string_view kConsoleHelp =
     "fovea: console: Ctrl-A x ends the run, Ctrl-A Ctrl-A types a Ctrl-A\n";
 
-/// The process's terminal in raw mode: keys come as they are pressed, Ctrl-C among them. Output is
-/// still processed, so that messages of ours look right. The former mode comes back with the
-/// destructor, and on every other way out of the process: exit(), quick_exit() and signals.
+/// Sets the process's terminal to raw mode: keys arrive when they are pressed, including Ctrl-C.
+/// Output is still processed, so that messages look right. The destructor restores the former mode,
+/// and so does every other way of ending the process: exit(), quick_exit() and signals.
 class RawTerminal {
  public:
-  /// @param fd the terminal. At most one at a time.
+  /// @param fd the terminal. Only one object may exist at a time.
   explicit RawTerminal(int fd);
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
-  /// Gives the former mode back now; safe in a signal handler.
+  /// Restores the former mode now; safe in a signal handler.
   static void restore();
 };
 
-/// What the host's side of a serial console does: shows bytes, and has the bytes that are typed.
+/// The host's side of a serial console: shows bytes from the guest and provides typed bytes.
 class ConsoleStream {
  public:
-  /// @param out takes what the guest sends. @param in_fd -1: nothing is typed.
+  /// @param out receives what the guest sends. @param in_fd input; -1: none.
   ConsoleStream(std::ostream& out, int in_fd, const std::atomic<bool>& stop);
 
   /// Shows a byte that the guest has sent.
   void show(std::uint8_t byte);
   void flush();
-  /// What is shown does not arrive anywhere: the run is to end.
+  /// True if the output cannot be written any more, so the run should end.
   bool lost() const;
 
-  /// Input comes from a terminal: typed when a person likes to, in no repeatable way.
+  /// True if the input is a terminal, so that a person types at times that cannot be repeated.
   bool interactive() const { return interactive_; }
-  /// Interactive: the keys pressed since the last call, without waiting.
+  /// Interactive input: the keys pressed since the last call, without waiting.
   std::string keys();
-  /// Ctrl-A x was pressed.
+  /// True once Ctrl-A x was pressed.
   bool quit() const { return quit_; }
-  /// Not interactive: the next byte of the input, waited for as long as it takes; nothing at its end,
-  /// or if the run is to stop.
+  /// Other input: the next byte, waiting as long as necessary; empty at the end of the input, or if
+  /// the run is to stop.
   std::optional<std::uint8_t> next();
 
  private:
@@ -55,7 +55,7 @@ class ConsoleStream {
   const int in_;
   const std::atomic<bool>& stop_;
   bool interactive_ = false, quit_ = false, escape_ = false, ended_ = false;
-  std::string block_;  // read ahead
+  std::string block_;  // bytes read ahead
   std::size_t taken_ = 0;
 };
 

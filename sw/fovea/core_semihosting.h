@@ -1,4 +1,4 @@
-// Semihosting calls of the program on one core.
+// Semihosting calls of a program on one core.
 #pragma once
 #include <functional>
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace fovea::app {
 
-/// Takes the core's SWI hook as long as it lives.
+/// Uses the core's SWI hook during its lifetime.
 class CoreSemihosting : private SemihostingTarget {
  public:
-  /// @param over asked after each call: true if no instruction is to follow
+  /// @param over called after each call: returns true if no further instruction may be executed
   CoreSemihosting(cpu::Core& core, cpu::DebugMemory& memory, const SemihostingSettings& settings,
                   SemihostingConsole& console, std::function<bool()> over)
       : core_(core), debug_(core, memory), calls_(settings, console), over_(std::move(over)) {

@@ -1,4 +1,5 @@
-// SDRAM timing by preset: `ddr.preset = data_sheet` gives what the sheet of `ddr.part` asks for.
+// SDRAM timings by preset: `ddr.preset = data_sheet` uses the figures of the data sheet of
+// `ddr.part`.
 #pragma once
 #include "model/common/units.h"
 #include "sw/fovea/experiment.h"
@@ -6,10 +7,10 @@
 
 namespace fovea::app {
 
-/// Sets clock, CL, RL, timings, banks and page of the part, but no key that came from the command
-/// line. Nothing happens with `as_recorded`. `recorded` is the trace's SDRAM clock: exact, where the
-/// key is in whole hertz; it may be stopped. `params` are those of `experiment`.
-/// @throws UserError for a grade or a clock that the part does not come in
+/// Sets clock, CL, RL, timings, banks and page size of the part, except keys that were set on the
+/// command line. Does nothing with `as_recorded`. `recorded` is the exact SDRAM clock of the trace
+/// (the key is in whole hertz); it may be stopped. `params` must be those of `experiment`. @throws
+/// UserError for a speed grade or clock that the part does not have
 void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment& experiment);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// `uart0.input`: what is typed on the serial console, and when, so that it can be repeated.
+// `uart0.input`: a prepared, repeatable input for the serial console.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,27 +10,27 @@
 
 namespace fovea::app {
 
-/// A file of steps, one a line, taken in order; `#` begins a comment line:
-///   wait TEXT   until UART0 has sent TEXT (since the step before)
-///   send TEXT   types it
-///   at TIME     until this much simulated time since power-up, with its unit
-/// TEXT runs to the end of the line and knows \n, \r, \t, \", \\ and \xHH; "\n" is the Enter key of
-/// most programs' line discipline.
+/// A file of steps, one per line, executed in order; lines that begin with `#` are comments:
+///   wait TEXT   until UART0 has sent TEXT since the previous step
+///   send TEXT   types TEXT
+///   at TIME     until this simulated time since power-up, with a unit
+/// TEXT extends to the end of the line and may contain the escapes \n, \r, \t, \", \\ and \xHH.
+/// "\n" is the Enter key for most programs.
 class Dialogue {
  public:
-  /// @throws UserError naming file and line
+  /// @throws UserError that names file and line
   static Dialogue load(const std::filesystem::path& file);
   static Dialogue parse(const std::string& name, const std::string& text);
 
-  /// UART0 has sent this byte.
+  /// To be called for each byte that UART0 sends.
   void heard(std::uint8_t byte);
-  /// The next byte to type, if it is time for one.
+  /// The next byte to type, if it is due.
   std::optional<std::uint8_t> next(Picoseconds now);
-  /// When the present step is `at`: its time.
+  /// The time of the current step, if that is `at`.
   std::optional<Picoseconds> waits_until() const;
-  /// All is typed.
+  /// True once everything was typed.
   bool over() const { return at_ >= steps_.size(); }
-  /// The step that it is at, as "FILE:LINE: wait login"; for a run that ended before it was over.
+  /// The current step as "FILE:LINE: wait login", for a run that ended before the dialogue did.
   std::string position() const;
 
  private:
@@ -46,10 +46,10 @@ class Dialogue {
   std::string name_;
   std::vector<Step> steps_;
   std::size_t at_ = 0, sent_ = 0;
-  std::string heard_;  // since the present step began, not longer than its text
+  std::string heard_;  // received since the current step began; at most as long as its text
 };
 
-/// One typed byte as a line pair of such a file.
+/// A typed byte, as two lines of such a file.
 std::string dialogue_lines(Picoseconds at, const std::string& typed);
 
 }  // namespace fovea::app

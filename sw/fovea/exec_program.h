@@ -1,4 +1,4 @@
-// A foreign program: its bytes, its entry, and the memory map it is given.
+// A program for `fovea exec`: its bytes, its entry, and the memory map that it gets.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,15 +11,16 @@
 
 namespace fovea::app {
 
-/// Where memory lies for one program (model/decisions/0007-exec-memory.md).
+/// The memory map for one program (model/decisions/0007-exec-memory.md).
 struct ExecMap {
   std::uint32_t ram_base = 0;
   std::uint64_t ram_size = 0;
-  bool tcm = false;  ///< the chip's internal RAM lies at 0x0 and 0x10000
-  /// The largest piece of RAM that the program leaves free: heap from below, stack from the top.
+  bool tcm = false;  ///< the chip's internal RAM is at 0x0 and 0x10000
+  /// The largest part of RAM that the program leaves free: the heap grows from its start, the stack
+  /// from its end.
   std::uint32_t free_base = 0, free_end = 0;
-  /// Where a translation table and the preamble that turns MMU and caches on lie: kTableBytes of
-  /// RAM. 0: none asked for.
+  /// Address of kTableBytes of RAM for a translation table and the preamble that enables MMU and
+  /// caches; 0: none.
   std::uint32_t table = 0;
   static constexpr std::uint32_t kTableBytes = 0x8000;
   std::uint32_t heap_limit() const { return free_end - stack_bytes(); }
@@ -28,22 +29,24 @@ struct ExecMap {
 
 class ExecProgram {
  public:
-  /// @throws UserError: not a program for this core
+  /// @throws UserError if it is not a program for this core
   static ExecProgram elf(const std::filesystem::path& file);
-  /// @param entry bit 0 set means Thumb. @throws UserError: no file, empty, beyond 4 GiB
+  /// @param entry bit 0 selects the Thumb state. @throws UserError if the file is missing, empty or
+  /// does not fit into 4 GiB
   static ExecProgram flat(const std::filesystem::path& file, std::uint32_t load,
                           std::uint32_t entry);
 
-  const std::string& name() const { return name_; }  ///< argv[0]: without the folder
+  const std::string& name() const { return name_; }  ///< argv[0]: the file's name without its
+                                                     ///< folder
   std::uint32_t entry() const { return entry_; }
   const std::vector<ElfSegment>& segments() const { return segments_; }
   /// Null for a flat binary.
   const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
-  /// "name+0x12" if symbols are known, else "".
+  /// "name+0x12" if the program has symbols, otherwise "".
   std::string describe(std::uint32_t address) const {
     return image_ ? image_->describe(address) : "";
   }
-  /// @param ram_base where RAM begins; empty: the multiple of its size below the lowest segment.
+  /// @param ram_base start of RAM; empty: the highest multiple of its size below the lowest segment
   /// @throws UserError if the segments do not fit into one map
   ExecMap map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base = {},
               bool caches = false) const;
@@ -55,10 +58,10 @@ class ExecProgram {
   std::optional<ElfImage> image_;
 };
 
-/// The text of `exec.ram_base`: "auto" is empty. @throws UserError
+/// Parses `exec.ram_base`; "auto" gives an empty result. @throws UserError
 std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64_t ram_size);
 
-/// "0x8000" or "32768". @throws UserError naming the option
+/// Parses "0x8000" or "32768". @throws UserError that names the option
 std::uint32_t parse_address(const std::string& option, const std::string& text);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// One program on one core: loading, semihosting, and what is left to say at the end.
+// A session of `fovea exec`: one program on one core, with loading, semihosting and results.
 #pragma once
 #include <optional>
 #include <span>
@@ -14,27 +14,27 @@ namespace fovea::app {
 
 class ExecSession {
  public:
-  /// Takes the core's SWI hook.
+  /// Uses the core's SWI hook.
   ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
               const ExecMap& map);
   ~ExecSession();
   ExecSession(const ExecSession&) = delete;
   ExecSession& operator=(const ExecSession&) = delete;
 
-  /// Fills memory, the vectors that the program leaves out, and the stack pointer. `ram` begins at
-  /// the map's ram_base.
+  /// Fills memory, the exception vectors that the program does not contain, and the stack pointer.
+  /// `ram` begins at the map's ram_base.
   void load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm);
-  /// Waits for a debugger if the request asks for one; `add` says what it sees beside the core.
+  /// Waits for a debugger if the request asks for one; `add` adds views of more than the core.
   void attach(cpu::DebugMemory& memory, const std::function<void(GdbViews&)>& add = nullptr);
   GdbSession* gdb() { return gdb_.get(); }
   bool ended() const { return semihosting_.exit_code().has_value(); }
-  /// Ended, or to be ended: no instruction follows.
+  /// True if the program has ended or the run is to end: no further instruction may be executed.
   bool over() const { return ended() || request_.stop.load() || request_.console.lost(); }
-  /// What the request's symbols say about an address.
+  /// The symbol of an address in the request's symbol tables, as "name+0x12".
   std::string describe(std::uint32_t address) const { return symbols_.describe(address); }
-  /// For the host's looks: tells the progress. @return the option whose limit is reached, or ""
+  /// To be called now and then: reports progress. @return the option whose limit is reached, or ""
   std::string look(Picoseconds now);
-  /// Result and core figures; `failure` is empty if the guest did not fail.
+  /// The result with the core's figures; `failure` is empty if the guest did not fail.
   ExecResult result(const std::string& failure);
 
  private:
@@ -50,7 +50,7 @@ class ExecSession {
   std::unique_ptr<GdbSession> gdb_;
 };
 
-/// The core's clock, and with it those of crossbar and SDRAM, by `clocks.preset`.
+/// The clocks of core, crossbar and SDRAM of a `clocks.preset`.
 struct ExecClocks {
   Frequency core, ddr, scr;
   static ExecClocks preset(std::string_view name);

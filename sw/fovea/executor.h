@@ -1,4 +1,4 @@
-// The seam between `fovea exec` and the machines that run a foreign program.
+// The interface between `fovea exec` and the machines that run a program.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -20,31 +20,31 @@ namespace fovea::app {
 
 struct ExecRequest {
   const ExecProgram& program;
-  std::vector<std::string> arguments;  ///< argv[1] and on
-  std::filesystem::path root;          ///< folder of the program's files; empty: none
+  std::vector<std::string> arguments;  ///< argv[1] and the following ones
+  std::filesystem::path root;          ///< folder of the program's files; empty: no files
   const ParamSet& params;
-  std::optional<std::uint16_t> gdb_port;  ///< waits for a debugger there before it starts
-  std::ostream& notes;                 ///< for whoever watches
-  bool caches = false;                 ///< MMU and caches are on when the program begins
-  bool fast_memory = false;            ///< flat memory without wait states; no bus, no SDRAM
+  std::optional<std::uint16_t> gdb_port;  ///< port on which to wait for a debugger before the start
+  std::ostream& notes;                 ///< messages for the user
+  bool caches = false;                 ///< MMU and caches are enabled when the program begins
+  bool fast_memory = false;            ///< memory without wait states; no bus, no SDRAM
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
   RegisterLogRequest registers = {};
   RunLimits limits = {};
-  const ElfImage* symbols = nullptr;  ///< of --symbols; null: none
-  ProgressSink* progress = nullptr;   ///< null: nobody looks
+  const ElfImage* symbols = nullptr;  ///< from --symbols; null: none
+  ProgressSink* progress = nullptr;   ///< null: progress is not reported
 };
 
 struct ExecResult {
   bool complete = false;      ///< the program ended by itself
-  bool killed = false;        ///< by the debugger
-  bool left = false;          ///< a person left the console
-  int exit_code = 0;          ///< its own
+  bool killed = false;        ///< the debugger ended it
+  bool left = false;          ///< the user left the console
+  int exit_code = 0;          ///< the program's own
   Frequency core_clock;
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
-  std::string registers;  ///< the log that was asked for
+  std::string registers;  ///< the register log, if requested
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
 };
 
@@ -52,14 +52,14 @@ struct ExecResult {
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Adds all parameters; called once, first.
+  /// Adds all parameters; called once, before the other functions.
   virtual void declare(ParamSet& params) = 0;
-  /// Bytes of the machine's memory, by the parameters.
+  /// Size of the machine's memory in bytes, according to the parameters.
   virtual std::uint64_t memory_bytes() const = 0;
   virtual ExecResult run(const ExecRequest& request) = 0;
 };
 
-/// Defined beside make_simulation().
+/// Defined together with make_simulation().
 std::unique_ptr<Executor> make_executor();
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// Experiments: parameters from a YAML file and from the command line, each with its origin.
+// Experiments: parameters from YAML files and from the command line, each with its origin.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -10,44 +10,46 @@
 
 namespace fovea::app {
 
-/// Where the value of a parameter was written.
+/// Where the value of a parameter was given.
 struct ValueOrigin {
   enum class Kind { kDefault, kFile, kCommandLine };
   Kind kind = Kind::kDefault;
   std::string file;   ///< as the user named it; empty unless kFile
-  unsigned line = 0;  ///< from 1; 0 unless kFile, and for files without lines
+  unsigned line = 0;  ///< from 1 on; 0 unless kFile, or if the file has no lines
   /// "default", "command line", "file:line" or "file".
   std::string text() const;
 };
 
-/// Fills a ParamSet. Order of precedence: defaults, included files, the file itself, `-s`.
+/// Fills a ParamSet. Order of precedence, lowest first: defaults, included files, the file itself,
+/// `-s`.
 ///
 /// The file is YAML: dotted keys, nested maps or both (`lens: {mapping: equisolid}` is
-/// `lens.mapping: equisolid`); a sequence becomes the text `[a, b]`; `include: other.yaml` (or a
-/// list) at the top level is relative to the including file and read first, wherever it stands.
-/// Not part of the format: aliases and anchors (a small file could expand without limit), tags,
-/// several documents, files above 1 MiB, nesting deeper than 8. A key written twice in one file is
-/// an error. Every error is a UserError of one line: file:line, key, what is allowed, suggestion.
+/// `lens.mapping: equisolid`). A sequence becomes the text `[a, b]`. `include: other.yaml` (or a
+/// list) at the top level is relative to the including file and is read first, wherever it is
+/// written. Not part of the format: aliases and anchors (a small file could expand without limit),
+/// tags, several documents, files larger than 1 MiB, nesting deeper than 8. A key that occurs twice
+/// in a file is an error. Every error is a UserError of one line: file:line, key, what is allowed,
+/// suggestion.
 class Experiment {
  public:
   explicit Experiment(ParamSet& params) : params_(params) {}
 
   /// Reads the experiment file. @throws UserError
   void load(const std::filesystem::path& file);
-  /// Sets a key that a file without lines brings with it. @throws UserError
+  /// Sets a key from a file without lines (a trace, a calibration). @throws UserError
   void preset(std::string_view key, std::string_view value, const std::string& file);
-  /// Applies one `key=value` of the command line. @throws UserError
+  /// Applies one `key=value` from the command line. @throws UserError
   void override_with(std::string_view assignment);
 
-  /// Order of precedence of the place where a key was set: -1 nowhere (the default), then the files,
-  /// an included one below the one that includes it, highest the command line.
+  /// Precedence of the place where a key was set: -1 for the default, then the files (an included
+  /// one below the one that includes it), highest for the command line.
   int rank(std::string_view key) const;
 
-  /// Origin of a key's value, also of keys that nobody set.
+  /// Origin of the value of a key, even if it is the default.
   const ValueOrigin& origin(std::string_view key) const;
-  /// The experiment file's name without folder and extension; empty before load().
+  /// Name of the experiment file without folder and extension; empty before load().
   const std::string& name() const { return name_; }
-  /// All files read, in order of reading, as the user named them.
+  /// All files that were read, in this order, as the user named them.
   const std::vector<std::string>& files() const { return files_; }
 
  private:
@@ -61,14 +63,13 @@ class Experiment {
   std::string name_;
 };
 
-/// Warns of each key that was set although another one takes its effect away. A key that a file sets
-/// and that loses its effect by a later choice (`-s camera.kind=chart`) is not worth a word.
+/// Warns about each key that was set although another one makes it ineffective. No warning is given
+/// for a key from a file that became ineffective by a later choice (`-s camera.kind=chart`).
 void warn_without_effect(const ParamSet& params, const Experiment& experiment);
 
-/// True for text parameters that name a file (key ends in `.file`, `.elf` or `.calibration`): a
-/// relative
-/// name in an experiment file means relative to that file's folder, on the command line relative
-/// to the working folder.
+/// True for text parameters that name a file (the key ends in `.file`, `.elf` or `.calibration`). A
+/// relative name in an experiment file is relative to that file's folder; on the command line, to
+/// the working folder.
 bool is_path_key(const ParamBase& param);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// `fovea exec --fast-memory`: the core on a memory without wait states. Knows no SystemC.
+// `fovea exec --fast-memory`: the core with memory without wait states. No SystemC.
 #pragma once
 #include <span>
 
@@ -8,12 +8,12 @@
 
 namespace fovea::app {
 
-/// Answers every access at once; nobody else is there, and no interrupt ever comes.
+/// Completes every access at once. There are no other masters and no interrupts.
 class FlatMemoryPort final : public cpu::BusPort, public cpu::DebugMemory {
  public:
   FlatMemoryPort(std::uint32_t base, std::uint64_t bytes) : base_(base), store_(bytes) {}
   std::span<std::uint8_t> ram() { return {store_.at(0), store_.size()}; }
-  /// Called about once a simulated millisecond, at an instruction boundary.
+  /// Called about once per simulated millisecond, at an instruction boundary.
   std::function<void()> on_slice;
 
   void submit(cpu::BusAccess& access, Picoseconds at) override;
@@ -35,7 +35,7 @@ class FlatMemoryPort final : public cpu::BusPort, public cpu::DebugMemory {
   Picoseconds slice_end_ = kSlice;
 };
 
-/// Runs the request on it.
+/// Runs the request on such a machine.
 ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& cpu, const ExecMap& map,
                     Frequency core_clock);
 

@@ -1,5 +1,5 @@
-// All memory masters under a debugger: who waits for whom, and watchpoints on those beside the
-// core.
+// The memory masters under a debugger: which requests wait for whom, and watchpoints on masters
+// other than the core.
 #pragma once
 #include <array>
 #include <functional>
@@ -13,44 +13,46 @@
 
 namespace fovea::app {
 
-/// Looks on at the crossbar while a debugger may attach. Changes nothing there.
+/// Observes the crossbar while a debugger may attach. Does not influence it.
 class GdbMasters final : public MemObserver {
  public:
   using Kind = cpu::CoreControl::Watch;
-  /// Bytes from `pa` on; `va` is what the debugger calls the first of them.
+  /// A watched range: bytes from the physical address `pa` on; the debugger knows the first one as
+  /// `va`.
   struct Watch {
     std::uint32_t pa = 0, bytes = 0, va = 0;
     Kind kind = Kind::kWrite;
-    std::optional<Master> only;  ///< else any but the core
+    std::optional<Master> only;  ///< empty: any master except the core
     bool packet = false;         ///< set by a Z packet, not by `monitor watch dma`
     friend bool operator==(const Watch&, const Watch&) = default;
   };
   struct Hit {
-    Picoseconds at = 0;  ///< acknowledgement of a write, last beat of a read
+    Picoseconds at = 0;  ///< time of a write's acknowledgement, or of a read's last beat
     Master master = Master::kVpfe;
     bool write = false;
-    std::uint32_t va = 0, pa = 0;  ///< first watched byte that it touches
-    std::uint32_t bytes = 0;       ///< so many of them
+    std::uint32_t va = 0, pa = 0;  ///< first watched byte that was accessed
+    std::uint32_t bytes = 0;       ///< number of watched bytes that were accessed
     Watch watch;
   };
 
-  /// @param ddr_base where the crossbar puts the SDRAM
+  /// @param ddr_base address of the SDRAM on the crossbar
   GdbMasters(bus::Crossbar& crossbar, const mem::DdrController& ddr, std::uint32_t ddr_base);
   ~GdbMasters() override;
   GdbMasters(const GdbMasters&) = delete;
   GdbMasters& operator=(const GdbMasters&) = delete;
 
-  /// Called for each access to watched bytes as soon as its time is known; that may lie ahead.
+  /// Called for each access to watched bytes as soon as its time is known, which may be in the
+  /// future.
   std::function<void(const Hit&)> on_hit;
   std::vector<Watch> watches;
 
-  /// What each master has under way at `now`, oldest first, and the SDRAM's queue. The caller
-  /// has all decisions at or before `now` taken.
+  /// Describes the outstanding requests of each master at `now`, oldest first, and the SDRAM queue.
+  /// The caller must have advanced the bus to `now`.
   std::string where(Picoseconds now) const;
 
  private:
   struct Request {
-    const MemRequest* request;  // not to be read once decided: its master may have gone on
+    const MemRequest* request;  // must not be read once decided: its master may have reused it
     std::uint32_t address;
     std::uint8_t bytes;
     bool write, to_sdram, decided;

@@ -1,4 +1,4 @@
-// The framing of GDB's remote protocol: $payload#checksum, acknowledgements, the interrupt byte.
+// Framing of GDB's remote protocol: $payload#checksum, acknowledgements, the interrupt byte.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace fovea::app {
 
-/// Largest payload that is accepted, and announced to GDB.
+/// Largest accepted payload in bytes, as reported to GDB.
 inline constexpr std::size_t kGdbPacketBytes = 0x4000;
 
-/// Takes bytes in any pieces and gives them back as events. Whatever arrives, it ends in an event or is
-/// dropped: bytes between packets, packets that are too long or whose checksum is wrong.
+/// Splits a stream of bytes into events. Everything else is dropped: bytes between packets, packets
+/// that are too long or have a wrong checksum.
 class GdbFramer {
  public:
   struct Event {
     enum class Kind { kPacket, kAck, kNak, kInterrupt, kBroken } kind;
-    std::string payload;  ///< kPacket: unescaped
+    std::string payload;  ///< kPacket: the unescaped payload
   };
   void feed(std::string_view bytes) { input_ += bytes; }
   std::optional<Event> next();
-  /// Forgets what has arrived (a new connection).
+  /// Discards everything received (for a new connection).
   void clear() { *this = GdbFramer(); }
 
  private:
@@ -34,19 +34,20 @@ class GdbFramer {
   bool broken_ = false, escaped_ = false;
 };
 
-/// `$payload#checksum` with what must be escaped.
+/// `$payload#checksum`, with characters escaped as necessary.
 std::string gdb_frame(std::string_view payload);
 
 std::string to_hex(std::span<const std::uint8_t> bytes);
-/// Register values travel as they lie in memory.
+/// Register values are sent in the byte order of memory.
 std::string to_hex(std::uint32_t word);
-/// All of `text` as bytes; nothing if it is no even number of hex digits.
+/// All of `text` as bytes; empty if it is not an even number of hexadecimal digits.
 std::optional<std::vector<std::uint8_t>> from_hex(std::string_view text);
 std::optional<std::uint32_t> word_from_hex(std::string_view text);
-/// A hexadecimal number, most significant digit first; at most 32 bits.
+/// A hexadecimal number of at most 32 bits, most significant digit first.
 std::optional<std::uint32_t> hex_number(std::string_view text);
 
-/// Takes the front of `text` up to `end` (or all of it) away; `end` itself goes too.
+/// Removes the front of `text` up to and including `end` (or all of it), and returns it without
+/// `end`.
 std::string_view take_until(std::string_view& text, char end);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// GDB's remote protocol towards one debugger, over a loopback TCP port.
+// GDB's remote protocol for one debugger, on a loopback TCP port.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -13,12 +13,12 @@
 
 namespace fovea::app {
 
-/// What the debugger looks at; used only while the target stands still.
+/// The target as the debugger accesses it; called only while the target is stopped.
 class GdbTarget {
  public:
   enum class Point : std::uint8_t { kSoftware, kHardware, kWrite, kRead, kAccess };  // Z0 .. Z4
   virtual ~GdbTarget() = default;
-  /// Numbers are those of target_xml().
+  /// Register numbers are those of target_xml().
   virtual std::span<const unsigned> registers() const = 0;
   virtual std::optional<std::uint32_t> read_register(unsigned number) const = 0;
   virtual bool write_register(unsigned number, std::uint32_t value) = 0;
@@ -29,11 +29,11 @@ class GdbTarget {
   virtual void clear_all_points() = 0;
   virtual std::string target_xml() const = 0;
   virtual std::string memory_map_xml() const = 0;
-  /// Answer to `monitor COMMAND`, with line ends.
+  /// The answer to `monitor COMMAND`, with line ends.
   virtual std::string monitor(const std::string& command) = 0;
 };
 
-/// Why the target stands still.
+/// Why the target has stopped.
 struct GdbStop {
   enum class Reason : std::uint8_t {
     kRequest,
@@ -47,33 +47,34 @@ struct GdbStop {
     kOther
   };
   Reason reason = Reason::kRequest;
-  std::uint32_t address = 0;  ///< of a watchpoint
-  std::string note = {};      ///< for the debugger's console, with a line end
+  std::uint32_t address = 0;  ///< address of a watchpoint
+  std::string note = {};      ///< text for the debugger's console, with a line end
 };
 
-/// How the target is to go on.
+/// How the target is to continue.
 struct GdbResume {
   enum class Kind : std::uint8_t { kContinue, kStep, kKill } kind = Kind::kContinue;
   std::uint32_t from = 0, to = 0;  ///< kStep: until the pc leaves [from, to)
 };
 
-/// The protocol without the socket: one packet in, at most one answer out.
+/// The protocol without the socket: takes one packet and returns at most one answer.
 class GdbProtocol {
  public:
   explicit GdbProtocol(GdbTarget& target) : target_(target) {}
-  /// A connection begins, with the target standing still for this reason.
+  /// A connection begins while the target is stopped for this reason.
   void begin(const GdbStop& stop);
   void stopped(const GdbStop& stop) { stop_ = stop; }
 
   struct Answer {
-    std::optional<std::string> payload;  ///< unframed
-    std::vector<std::string> output;     ///< packets with console text, sent before it
-    std::optional<GdbResume> resume;     ///< the target goes on; its stop is reported later
-    bool detached = false;               ///< the debugger leaves after this answer
+    std::optional<std::string> payload;  ///< without framing
+    std::vector<std::string> output;     ///< packets with console text, to be sent before the
+                                         ///< answer
+    std::optional<GdbResume> resume;     ///< the target continues; its next stop is reported later
+    bool detached = false;               ///< the debugger detaches after this answer
   };
   Answer handle(std::string_view packet);
   std::string stop_reply() const;
-  /// A packet that puts text on the debugger's console.
+  /// A packet that prints text on the debugger's console.
   static std::string console(std::string_view text);
   bool no_ack() const { return no_ack_; }
 
@@ -95,27 +96,27 @@ class GdbProtocol {
   bool no_ack_ = false, software_reason_ = false, hardware_reason_ = false;
 };
 
-/// One debugger at a time; another one may attach when it has left. Whoever does not begin as GDB's
-/// protocol does is cut off unheard: a web page can make a browser send packets to this port, but
-/// only behind the words of HTTP.
+/// Serves one debugger at a time; another one may attach after it has left. A client that does not
+/// begin as GDB does is disconnected without an answer: a web page can make a browser send packets
+/// to this port, but only after the text of an HTTP request.
 class GdbServer {
  public:
-  /// Listens on 127.0.0.1; port 0 takes a free one. @throws UserError
+  /// Listens on 127.0.0.1; port 0 selects a free one. @throws UserError
   GdbServer(std::uint16_t port, GdbTarget& target, const std::atomic<bool>& stop);
   ~GdbServer();
   GdbServer(const GdbServer&) = delete;
   GdbServer& operator=(const GdbServer&) = delete;
   std::uint16_t port() const { return port_; }
 
-  /// The target stands still: answers the debugger, or waits for one, until the target is to go on.
-  /// The process's stop flag ends it with kKill.
+  /// To be called when the target has stopped: answers the debugger, or waits for one, until the
+  /// target is to continue. Returns kKill if the process's stop flag is set.
   GdbResume serve(const GdbStop& stop);
-  /// The target runs: true if it is to stop, since the debugger asks for it or a new one attaches.
-  /// Never waits.
+  /// To be called while the target runs: returns true if the debugger requests a stop, or a new one
+  /// attaches. Never waits.
   bool wants_halt();
-  /// A debugger is there.
+  /// True while a debugger is connected.
   bool attached() const { return socket_ >= 0 && !silent_; }
-  /// The target has ended, with this status or by a signal.
+  /// Reports that the target has ended, with this status or by a signal.
   void exited(int status, bool by_signal = false);
 
  private:
@@ -131,7 +132,7 @@ class GdbServer {
   const std::atomic<bool>& stop_;
   GdbFramer framer_;
   int listener_ = -1, socket_ = -1;
-  bool silent_ = false;  // whoever is connected has not said anything yet
+  bool silent_ = false;  // the client has not sent anything yet
   std::uint16_t port_ = 0;
   std::string last_sent_;
   bool running_ = false;  // the debugger waits for a stop reply

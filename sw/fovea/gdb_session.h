@@ -1,4 +1,4 @@
-// One core under a debugger.
+// Debugging one core with GDB.
 #pragma once
 #include <functional>
 #include <map>
@@ -18,46 +18,52 @@
 
 namespace fovea::app {
 
-/// What `monitor` shows beside the core.
+/// What the `monitor` commands show besides the core.
 struct GdbViews {
   const ParamSet* params = nullptr;
-  std::function<std::vector<StatRow>()> stats;  ///< present values, core included
+  std::function<std::vector<StatRow>()> stats;  ///< current values, including those of the core
   std::vector<RegisterBlock> blocks;
   RegisterLog* log = nullptr;  ///< null: there is nothing to log
   struct Memory {
     std::uint64_t base = 0, end = 0;
   };
-  std::vector<Memory> memory;  ///< physical RAM, ascending
+  std::vector<Memory> memory;  ///< physical RAM, in ascending order
 
-  // What a machine has only if there is more than the core; null otherwise.
+  // For machines that have more than the core; null otherwise.
   std::unique_ptr<GdbMasters> masters;
-  std::function<Picoseconds()> now;  ///< of everybody but the core, which may be ahead
-  std::function<void()> settle;      ///< takes the bus's decisions up to now; while the core sleeps
-  /// The simulation returns to its caller at this time, or now if that is past.
+  std::function<Picoseconds()> now;  ///< time of the kernel; the core may be ahead
+  std::function<void()> settle;      ///< advances the bus to the current time, while the core
+                                     ///< sleeps
+  /// Makes the simulation return to its caller at this time, or now if the time is past.
   std::function<void(Picoseconds)> pause_at;
-  /// While the core sleeps: done with the next event, before which the bus may be decided already.
+  /// While the core sleeps: calls the function at the next event (before which the bus may already
+  /// be decided). Returns its time.
   std::function<Picoseconds(std::function<void()>)> at_next_event;
-  /// On the core's stack: the others come to the core's time, so that registers may change there.
+  /// On the core's thread: advances all others to the core's time, so that registers may be changed
+  /// there.
   std::function<void()> catch_up;
 };
 
-/// Stands between the core's control and the server. Simulated time stands still while it serves.
+/// Connects the core's debug control to the server. Simulated time does not advance while it
+/// serves.
 class GdbSession : private GdbTarget {
  public:
-  /// Listens, says where on `notes`, and lets the core stop before its first instruction.
+  /// Starts to listen, reports the port on `notes`, and lets the core stop before its first
+  /// instruction.
   GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& memory, GdbViews views,
              const std::atomic<bool>& stop, std::ostream& notes);
-  /// To be called now and then, not from inside the core. `asleep`: the core waits for an
-  /// interrupt; then it is stopped where it is, if it is to stop.
+  /// To be called now and then, but not from inside the core. If `asleep`, the core waits for an
+  /// interrupt, and a requested stop takes place there.
   void look(bool asleep = false);
-  /// The same from inside a semihosting call that waits for console input.
+  /// The same, called by a semihosting call that waits for console input.
   void look_at_input();
-  /// A watched access has happened or will, and the core has not stopped for it yet: a good time to
-  /// look more often.
+  /// A watchpoint was hit, or is certain to be, and the core has not stopped yet: call look() at
+  /// shorter intervals.
   bool hit_pending() const { return !hits_.empty(); }
   bool killed() const { return killed_; }
-  /// The program has failed, for this reason, and the core will not go on: a debugger that is there
-  /// sees it at the instruction that failed, until it wants to go on. Not from inside the core.
+  /// The program has failed, for this reason, and the core will not continue. A connected debugger
+  /// can inspect it at the instruction that failed, until it continues. Must not be called from
+  /// inside the core.
   void failed(const std::string& why);
   void exited(int status, bool by_signal = false) { server_.exited(status, by_signal); }
 
@@ -112,11 +118,11 @@ class GdbSession : private GdbTarget {
     Point kind;
     friend bool operator==(const Range&, const Range&) = default;
   };
-  std::vector<Range> watched_;  // by Z packets, for the other masters
+  std::vector<Range> watched_;  // set by Z packets, for masters other than the core
   std::vector<Range> watched_at_stop_;
   bool watch_masters_ = true;
-  std::vector<GdbMasters::Hit> hits_;  // not told yet; some may lie ahead
-  bool asleep_ = false;                // served while the core waits
+  std::vector<GdbMasters::Hit> hits_;  // not reported yet; some may lie in the future
+  bool asleep_ = false;                // serving while the core waits for an interrupt
   const char* waits_for_ = "an interrupt";
   bool failed_ = false;
   bool halt_seen_ = false, serving_ = false;

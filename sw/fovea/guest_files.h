@@ -1,4 +1,4 @@
-// Host files for a guest, all below one folder.
+// Access of a guest program to host files below one folder.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,20 +6,19 @@
 
 namespace fovea::app {
 
-/// Resolves names component by component from the folder's descriptor, so that nothing that changes
-/// on the host meanwhile leads out of it. Refused with EACCES: absolute names, `..`, symbolic links
-/// anywhere in the name, and whatever is neither a regular file nor a folder on the way to one. Hard
-/// links cannot be told from files.
+/// Resolves names component by component from the folder's descriptor, so that no change of the
+/// host's file system during a run can lead out of the folder. Refused with EACCES: absolute names,
+/// `..`, symbolic links anywhere in the name, and anything but regular files and the folders on the
+/// way to them. Hard links cannot be distinguished from files.
 class GuestFiles {
  public:
-  /// An empty name: no files at all.
-  /// @throws UserError if it is no folder
+  /// @param root the folder; empty: the guest has no files @throws UserError if it is not a folder
   explicit GuestFiles(const std::filesystem::path& root);
   ~GuestFiles();
   GuestFiles(const GuestFiles&) = delete;
   GuestFiles& operator=(const GuestFiles&) = delete;
 
-  /// As open(2). @return a file descriptor, or -errno
+  /// Like open(2). @return a file descriptor, or -errno
   int open(const std::string& name, int flags) const;
   /// @return 0 or -errno
   int remove(const std::string& name) const;

@@ -1,4 +1,4 @@
-// The process's own streams as the console of a program's semihosting calls.
+// Uses the process's own streams as the console of a program's semihosting calls.
 #pragma once
 #include <atomic>
 #include <iosfwd>
@@ -9,7 +9,7 @@ namespace fovea::app {
 
 class HostConsole : public SemihostingConsole {
  public:
-  /// @param stop null: nothing but the end of input ends a read
+  /// @param stop ends a waiting read when set; null: only the end of input does
   HostConsole(std::ostream& out, std::ostream& err, const std::atomic<bool>* stop)
       : out_(out), err_(err), stop_(stop) {}
   std::size_t read(std::span<std::uint8_t> to) override;

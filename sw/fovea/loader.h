@@ -1,5 +1,4 @@
-// What a boot loader and the person at the board do before the start: program, footage, switches,
-// parameter page.
+// Prepares a board as a boot loader and a user would: program, footage, switches, parameter page.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -15,20 +14,20 @@
 
 namespace fovea::app {
 
-/// firmware.elf, or the program built with Fovea, which lies beside the `fovea` program.
+/// The file of firmware.elf or, by default, the program built with Fovea in the folder of `fovea`.
 std::filesystem::path program_file(const board::BoardParams& params);
-/// A target program that was built with Fovea; they lie beside the `fovea` program.
+/// A target program that was built with Fovea; these are in the folder of the `fovea` program.
 std::filesystem::path built_program(const std::string& name);
-/// Where a program's segments may lie.
+/// The memories to which a program's segments may be loaded.
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params);
-/// Decodes camera.file; nothing for a chart. @throws UserError naming the file
-/// @throws Stopped when `stop` is set while ffmpeg decodes
+/// Decodes camera.file; empty for a chart. @throws UserError that names the file
+/// @throws Stopped if `stop` is set while ffmpeg decodes
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
                                    const std::atomic<bool>* stop = nullptr);
-/// What the camera changes in the footage, a sentence each: its shape, its rate, its length.
+/// How the camera changes the footage (shape, rate, length), one sentence for each.
 std::vector<std::string> footage_notes(const board::BoardParams& params,
                                        const std::vector<RgbImage>& frames, const FilmInfo& info);
-/// Sets what follows from other keys and was not set itself (the decoder's standard).
+/// Sets keys that follow from others, unless they were set (the decoder's standard).
 void complete_params(board::BoardParams& params);
 /// The bytes of the parameter page (sw/lens/README.md).
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,

@@ -1,4 +1,4 @@
-// A single file of results under a name that the user gave.
+// A single file of results with a name that the user gave.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -10,24 +10,23 @@
 
 namespace fovea::app {
 
-/// A file that is whole under its name or not there: it is written as NAME.tmp and renamed when it
-/// is complete; an earlier one stays until then. Only a file of the same kind, or an empty one, is
-/// ever replaced, and no symbolic link is followed. A device or a pipe is written directly.
+/// The file appears under its name only when it is complete: it is written as NAME.tmp and then
+/// renamed; an earlier file is kept until then. Only an empty file or one of the same kind is
+/// replaced, and symbolic links are not followed. A device or a pipe is written directly.
 class OutputFile {
  public:
-  /// Opens the file, so that a name that cannot be used shows at once. `is_ours` looks at the first
-  /// kilobytes of an earlier file; `option` and `kind` ("--bus-trace", "a bus trace") are for
-  /// messages.
-  /// @throws UserError
+  /// Opens the file, so that an unusable name is reported at once. `is_ours` checks the first
+  /// kilobytes of an existing file; `option` and `kind` ("--bus-trace", "a bus trace") are used in
+  /// messages. @throws UserError
   OutputFile(const std::filesystem::path& name, std::string_view option, std::string_view kind,
              const std::function<bool(std::string_view)>& is_ours);
-  /// Removes NAME.tmp if commit() was not called.
+  /// Removes NAME.tmp unless commit() was called.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes) { file_->write(bytes); }
-  /// Puts the complete file in place. @throws UserError
+  /// Gives the complete file its name. @throws UserError
   void commit();
 
  private:

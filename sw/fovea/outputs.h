@@ -1,4 +1,5 @@
-// The files of a run that are text: config.json, stats.json, host.json, frames.csv, timeline.csv.
+// The text files of a run: config.json, stats.json, host.json, frames.csv, timeline.csv,
+// stalls.csv.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,7 +15,7 @@
 
 namespace fovea::app {
 
-/// One figure as a file shows it.
+/// One statistic as a file shows it.
 struct StatRow {
   std::string name;
   StatBase::Value value;
@@ -22,81 +23,83 @@ struct StatRow {
   std::string description;
 };
 
-/// Appends the present values of a group.
+/// Appends the current values of a group.
 void collect(const StatGroup& group, std::vector<StatRow>& rows);
 /// The row called `name`, or nullptr.
 const StatRow* find(std::span<const StatRow> rows, std::string_view name);
 
-/// A frame as it was displayed. Times in ps since the start of the run; absent if unknown (a frame
-/// shown without remap has no remap times).
+/// A displayed frame. Times are in ps since the start of the run and empty if unknown (a frame that
+/// is shown without remap has no remap times).
 struct FrameRow {
-  std::uint64_t index = 0;  ///< displayed frame, from 0
+  std::uint64_t index = 0;  ///< number of the displayed frame, from 0 on
   unsigned camera = 0;
   std::optional<std::uint64_t> captured;  ///< number of the captured frame that it shows
   std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
   std::optional<Picoseconds> display_start, display_end;
-  std::uint64_t dropped = 0;  ///< captured frames skipped between the previous row and this one
-  bool repeated = false;      ///< shows the same captured frame as the row before
+  std::uint64_t dropped = 0;  ///< captured frames that were skipped since the previous row
+  bool repeated = false;      ///< shows the same captured frame as the previous row
 };
 
-/// Bytes moved in [start, end), by master in the order of the timeline's names.
+/// Bytes moved in [start, end), for each master in the order of the timeline's names.
 struct TimelineRow {
   Picoseconds start = 0, end = 0;
   std::vector<std::uint64_t> read_bytes, write_bytes;
 };
 
-/// Clocks of a cause, by region of the address and culprit.
+/// Clocks of one stall cause, region and culprit.
 struct StallRow {
   std::string cause, region, culprit;
   std::uint64_t cycles = 0;
 };
 
-/// Shortest text that reads back as the same double; always with '.' or exponent, "null" for
-/// infinities and NaN (a mean of nothing), since JSON has neither.
+/// The shortest text that is read back as the same double, always with '.' or an exponent; "null"
+/// for infinities and NaN (a mean of nothing), which JSON does not have.
 std::string number_text(double value);
 std::string number_text(const StatBase::Value& value);
 
-/// Picoseconds as nanoseconds with exactly three decimals (no rounding).
+/// Picoseconds as nanoseconds with exactly three decimals, without rounding.
 std::string ns_text(Picoseconds ps);
 
-/// What made the result, and every parameter: value, unit, where the value was written, what kind of number the default is.
+/// What produced the result, and every parameter: value, unit, where the value was given, origin of
+/// its default.
 std::string config_json(const ParamSet& params, const Experiment& experiment,
                         const Provenance& provenance);
 
-/// A warning as stats.json lists it.
+/// A warning as it is listed in stats.json.
 struct Remark {
   std::string kind, what;
   std::uint64_t count = 0;
 };
 std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay = false);
 
-/// Sorted by name, one figure per line: two equal runs give equal bytes. `complete` is false for a
-/// run that was stopped before its end; `ended_by` is the condition of run.until, if there was one. A name that occurs twice is a defect (FOVEA_CHECK).
+/// Sorted by name, one value per line, so that equal runs give equal bytes. `complete` is false for
+/// a run that was stopped early; `ended_by` is the condition of run.until that was met. A name that
+/// occurs twice is a defect of Fovea (FOVEA_CHECK).
 std::string stats_json(std::vector<StatRow> rows, bool complete,
                        const std::vector<Remark>& remarks = {}, std::string_view ended_by = {});
-/// As stats.json without the run's state; for figures that differ from run to run.
+/// Like stats.json but without the state of the run; for values that differ from run to run.
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);
 
-/// The parts of frames.csv and timeline.csv, for files that grow with the run: the line with the
-/// columns' names, and one line per row.
+/// The header and one line of frames.csv and timeline.csv, for files that are written during the
+/// run.
 std::string frames_csv_header();
 std::string frames_csv_line(const FrameRow& row);
 std::string timeline_csv_header(std::span<const std::string> masters);
 std::string timeline_csv_line(const TimelineRow& row, std::size_t masters);
 
 std::string frames_csv(std::span<const FrameRow> rows);
-/// `masters` names the entries of each row's vectors; columns are bytes per interval.
+/// `masters` names the elements of each row's vectors; columns are bytes per interval.
 std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);
 
 std::string stalls_csv(std::span<const StallRow> rows);
 
-/// A figure for people: three to five digits and a fitting prefix ("40.2 ms", "165.9 MB").
+/// A value for people: three to five digits and a suitable prefix ("40.2 ms", "165.9 MB").
 std::string human_text(const StatBase::Value& value, std::string_view unit);
 /// Whether the firmware kept up with the camera, as one line with its end; empty if no corrected
 /// frame was displayed.
 std::string verdict(std::span<const StatRow> stats);
-/// The verdict and the headline figures that are among `rows`, aligned, one per line.
+/// The verdict and the headline figures found in `stats` and `host`, aligned, one per line.
 std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host);
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// PNG files, and a thread that writes displayed frames as PNG while the simulation goes on.
+// PNG files, and a thread that writes displayed frames as PNG during the simulation.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -18,11 +18,11 @@
 namespace fovea::app {
 
 /// Reads a PNG of any colour type and depth as 8-bit RGB (alpha is dropped, 16 bits are cut to 8).
-/// @throws UserError naming the file: missing, not a PNG, damaged, cut short, larger than
-///   kMaxPictureSide
+/// @throws UserError that names the file: missing, not a PNG, damaged, truncated, larger than
+/// kMaxPictureSide
 RgbImage read_png(const std::filesystem::path& file);
 
-/// `level`: zlib level 0..9. Equal pictures give equal bytes.
+/// @param level zlib compression level 0 to 9. Equal pictures give equal bytes.
 std::vector<std::uint8_t> encode_png(const RgbImage& image, int level);
 /// @throws UserError if the file cannot be written
 void write_png(const std::filesystem::path& file, const RgbImage& image, int level = 1);
@@ -30,28 +30,30 @@ void write_png(const std::filesystem::path& file, const RgbImage& image, int lev
 class Mp4Writer;
 
 struct FrameWriterOptions {
-  std::filesystem::path folder = {};  ///< PNG files `frame_000000.png`; empty: none
-  int folder_fd = -1;  ///< the same folder, open: files are new ones in it; -1: by its name
-  int png_level = 1;                  ///< 0..9; 1 is fast and about a tenth larger than 6
-  std::size_t queue_frames = 8;       ///< push() waits when so many wait for the encoder
-  std::filesystem::path mp4 = {};     ///< also a film; empty: none
-  Frequency mp4_rate{25};             ///< frames per second of the film
+  std::filesystem::path folder = {};  ///< for PNG files `frame_000000.png`; empty: none
+  int folder_fd = -1;  ///< descriptor of that folder, in which the files are created; -1: use the
+                       ///< name
+  int png_level = 1;                  ///< 0 to 9; level 1 is fast, and its files are about a tenth
+                                      ///< larger than with 6
+  std::size_t queue_frames = 8;       ///< push() waits while so many frames wait for the encoder
+  std::filesystem::path mp4 = {};     ///< also writes a video; empty: none
+  Frequency mp4_rate{25};             ///< frames per second of the video
 };
 
-/// Encodes displayed frames on a thread of its own, in order. The pictures do not depend on the
-/// host's timing. An error of the thread is thrown by the next push() or by close().
+/// Encodes displayed frames in order on a thread of its own. The files do not depend on the host's
+/// timing. An error of the thread is thrown by the next push() or by close().
 class FrameWriter {
  public:
   explicit FrameWriter(FrameWriterOptions options);
-  /// Stops without reporting errors: a caller that cares has called close().
+  /// Stops without reporting errors; call close() first to have them reported.
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// `uyvy` is copied; `index` numbers the file. @throws the encoder's error
+  /// Copies `uyvy`; `index` is the number in the file's name. @throws the encoder's error
   void push(std::uint64_t index, unsigned width, unsigned height,
             std::span<const std::uint8_t> uyvy);
-  /// Waits until everything is written. @throws the encoder's error
+  /// Waits until all frames are written. @throws the encoder's error
   void close();
   /// Name of the file of frame `index`, without folder.
   static std::string file_name(std::uint64_t index);
@@ -67,7 +69,7 @@ class FrameWriter {
   void stop();
 
   FrameWriterOptions options_;
-  std::unique_ptr<Mp4Writer> mp4_;  // used by the thread; by close() after the join
+  std::unique_ptr<Mp4Writer> mp4_;  // used by the thread, and by close() after the thread has ended
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> queue_;

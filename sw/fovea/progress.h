@@ -1,4 +1,4 @@
-// The progress line, and the speed of the simulation in steady state.
+// The progress line, and the speed of the simulation in its steady state.
 #pragma once
 #include <chrono>
 #include <iosfwd>
@@ -10,19 +10,19 @@
 
 namespace fovea::app {
 
-/// Prints progress: on a terminal one line that is rewritten a few times a second, elsewhere a line
-/// about every ten seconds. Wall-clock time is read here only and reaches host.json alone.
+/// Prints the progress: on a terminal one line that is updated a few times per second, otherwise a
+/// line about every ten seconds. Wall-clock time is read only here and affects only host.json.
 class ProgressMeter : public ProgressSink {
  public:
   using Clock = std::chrono::steady_clock;
-  using Now = std::function<Clock::time_point()>;  ///< replaceable for tests
+  using Now = std::function<Clock::time_point()>;  ///< replaced by tests
   ProgressMeter(std::ostream& out, bool terminal, Now now = Clock::now);
   void update(const Progress& progress) override;
   /// Ends the line on a terminal.
   void finish();
 
-  /// `wall_time`, `peak_rss`, and, from the first displayed frame on (the steady state),
-  /// `realtime_factor` and `mips`. Figures that `rows` already has are left as they are.
+  /// Adds `wall_time`, `peak_rss` and, measured from the first displayed frame on (steady state),
+  /// `realtime_factor` and `mips`. Values that `rows` already contains are not changed.
   void add_host_rows(std::vector<StatRow>& rows) const;
 
  private:

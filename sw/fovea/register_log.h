@@ -1,4 +1,4 @@
-// The last accesses to registers, with names: who, when, from where, what.
+// A log of the last register accesses: master, time, code address, register and value.
 #pragma once
 #include <functional>
 #include <optional>
@@ -14,17 +14,17 @@
 
 namespace fovea::app {
 
-/// A peripheral's registers as debugger and log see them.
+/// A peripheral's registers, for the debugger and the log.
 struct RegisterBlock {
   std::string name;
   RegBank* registers = nullptr;
-  std::function<bool()> gated;  ///< its clock is off: accesses do nothing
+  std::function<bool()> gated;  ///< true while its clock is gated, so that accesses have no effect
   std::function<void(RegisterObserver*)> observe;
 };
 
 inline constexpr std::size_t kRegisterLogMost = 100'000'000;
 
-/// What `--log-registers` asks for.
+/// The request of `--log-registers`.
 struct RegisterLogRequest {
   std::string
       pattern;  ///< ECMAScript regular expression on part of "block.REGISTER"; empty: no log
@@ -35,23 +35,24 @@ class RegisterLog final : private RegisterObserver {
  public:
   struct Sources {
     std::function<Picoseconds()> now;
-    std::function<Master()> master;                      ///< of the access under way
-    std::function<std::uint32_t()> pc;                   ///< of the core
-    std::function<std::string(std::uint32_t)> describe;  ///< a code address; may be empty
+    std::function<Master()> master;                      ///< master of the current access
+    std::function<std::uint32_t()> pc;                   ///< pc of the core
+    std::function<std::string(std::uint32_t)> describe;  ///< symbol of a code address; may be empty
   };
   RegisterLog(std::vector<RegisterBlock> blocks, Sources sources);
   ~RegisterLog() { stop(); }
   RegisterLog(const RegisterLog&) = delete;
   RegisterLog& operator=(const RegisterLog&) = delete;
 
-  /// Forgets what it has and begins. @throws UserError: no regular expression
+  /// Clears the log and starts it. @throws UserError if the pattern is not a regular expression
   void start(const RegisterLogRequest& request);
   void stop();
-  /// How many it keeps from now on, of those that it has too; also the default of later starts.
+  /// Sets the number of accesses to keep, including those already logged; also for later starts.
   void keep(std::size_t most);
   std::size_t kept() const { return kept_; }
   bool running() const { return running_; }
-  /// The last `most` accesses, oldest first, a line each; before them how many are not there.
+  /// The last `most` accesses, oldest first, one per line, preceded by the number of those left
+  /// out.
   std::string text(std::size_t most = ~std::size_t{0}) const;
 
  private:
@@ -72,7 +73,7 @@ class RegisterLog final : private RegisterObserver {
   std::unordered_map<const Reg*, bool> matches_;
   std::vector<Record> ring_;
   std::size_t kept_ = RegisterLogRequest{}.kept;
-  std::size_t oldest_ = 0;  // in a full ring
+  std::size_t oldest_ = 0;  // index of the oldest record in a full ring
   std::uint64_t count_ = 0;
   bool running_ = false;
 };

@@ -1,4 +1,4 @@
-// frames.csv and timeline.csv, written as the run goes on.
+// Writes frames.csv and timeline.csv during the run.
 #pragma once
 #include <memory>
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace fovea::app {
 
-/// The rows of a run, however long it is, never lie in memory all at once.
+/// Writes rows when they become final, so that memory does not grow with the length of the run.
 class RowFiles {
  public:
   /// Creates both files. @throws UserError
   explicit RowFiles(RunDir& dir);
-  /// Has the board hand over its rows. The request must not outlive this object.
+  /// Lets the board deliver its rows to this object, which must outlive the run of `request`.
   void attach(RunRequest& request);
-  /// Writes the rows that came with the result, and closes the files. @throws UserError
+  /// Writes the rows that are part of the result, and closes the files. @throws UserError
   void finish(const RunResult& result);
 
  private:
@@ -24,7 +24,7 @@ class RowFiles {
   void timeline(std::span<const std::string> masters, const TimelineRow& row);
   void timeline_header(std::span<const std::string> masters);
   std::unique_ptr<CheckedFile> frames_, timeline_;
-  bool has_header_ = false;  ///< of timeline.csv, which names the masters
+  bool has_header_ = false;  ///< for timeline.csv, whose header names the masters
 };
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// What lies in a folder of results: which files are Fovea's, of which command, complete or not.
+// The contents of a folder of results: which files are Fovea's, of which command, whether complete.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,34 +6,34 @@
 
 namespace fovea::app {
 
-/// What config.json of a run folder has under "format".
+/// The value of "format" in config.json of a run folder.
 inline constexpr std::string_view kRunFormat = "fovea run 1";
 
-/// True for the name, relative to the folder, of a file that Fovea writes ("stats.json",
-/// "frames/frame_000000.png"). RunDir writes no others.
+/// True for names, relative to the folder, of files that Fovea writes ("stats.json",
+/// "frames/frame_000000.png"). RunDir writes no other files.
 bool is_run_file(std::string_view name);
 
-/// An existing folder as a place for results.
+/// An existing folder that may receive results.
 struct RunFolder {
-  bool exists = false;   ///< something of this name exists, of whatever kind
-  bool ours = false;     ///< a folder with a config.json of Fovea's
-  bool vacant = false;   ///< a folder without any file, apart from empty folders of Fovea's
-  std::string foreign;   ///< a file in it, relative to it, that Fovea does not write; empty: none
+  bool exists = false;   ///< something of this name exists, of whatever type
+  bool ours = false;     ///< a folder with a config.json written by Fovea
+  bool vacant = false;   ///< a folder without files, except in empty folders of Fovea's
+  std::string foreign;   ///< relative name of a file that Fovea does not write; empty: none
   std::string command;   ///< "run", "replay", "exec"; empty: unknown
-  std::string date;      ///< local date and time of its results; empty if there are none
-  bool complete = false; ///< it has results, and nothing says that they are only partial
+  std::string date;      ///< local date and time of its results; empty if it has none
+  bool complete = false; ///< it has results, and they are not marked as partial
 
   /// "the results of 2026-11-22 18:01:59" or "the partial results of ...".
   std::string results() const;
 };
 RunFolder look_at_run_folder(const std::filesystem::path& dir);
 
-/// True if `dir` holds a config.json written by Fovea.
+/// True if `dir` contains a config.json written by Fovea.
 bool is_run_folder(const std::filesystem::path& dir);
 
-/// Removes the files that Fovea writes, and then the folder (its contents alone with
-/// `keep_folder`) unless something foreign is left in it. Nothing else is ever removed. An error of
-/// the file system is left unsaid: what cannot be removed stays.
+/// Removes the files that Fovea writes, and then the folder (unless `keep_folder`), provided that
+/// nothing else is left in it. Other files are never removed. Errors of the file system are
+/// ignored: what cannot be removed stays.
 /// @return false if anything is left
 bool remove_run_files(const std::filesystem::path& dir, bool keep_folder = false);
 

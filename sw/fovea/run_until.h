@@ -1,4 +1,4 @@
-// `run.until`: what ends a run, as it is written.
+// `run.until`: the conditions that end a run.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,39 +10,39 @@
 
 namespace fovea::app {
 
-/// One condition. A run ends with the first that is met.
+/// A condition. A run ends when the first one is met.
 struct EndCondition {
   enum class Kind : std::uint8_t {
-    kFrames,  ///< the measured window of run.frames frames is over
-    kTime,    ///< this much simulated time since power-up
+    kFrames,  ///< the measurement window of run.frames frames has ended
+    kTime,    ///< this simulated time since power-up is reached
     kPc,      ///< the core is about to execute the instruction at this address
     kUart,    ///< UART0 has sent this text
-    kExit,    ///< the program ends by semihosting
-    kHalt,    ///< nothing can make the core go on
+    kExit,    ///< the program ends by a semihosting call
+    kHalt,    ///< nothing can make the core continue
     kReset    ///< the chip is reset
   };
   Kind kind = Kind::kFrames;
   std::string written;       ///< as the user wrote it
   Picoseconds time = 0;      ///< kTime
-  std::uint32_t address = 0; ///< kPc: virtual, without the Thumb bit
-  std::string text = {};     ///< kUart: without escapes
+  std::uint32_t address = 0; ///< virtual, without the Thumb bit
+  std::string text = {};     ///< after replacing escapes
 };
 
 inline constexpr std::string_view kEndConditionsAllowed =
     "frames, time:2s, pc:main, pc:0x80008000, uart:TEXT, exit, halt, reset, or a list of them: "
     "[uart:login, time:20s]";
 
-/// One condition or a list in brackets, its items apart by commas; an item with a comma stands in
-/// double quotes. TEXT knows \n, \r, \t, \", \\ and \xHH.
-/// @throws UserError that says what is allowed
+/// Parses one condition, or a list in brackets with commas between its items; an item with a comma
+/// must be in double quotes. TEXT may contain the escapes \n, \r, \t, \", \\ and \xHH. @throws
+/// UserError that says what is allowed
 std::vector<EndCondition> parse_run_until(const std::string& text, const Symbols& symbols);
 
-/// A duration with its unit, for `--max-time` and the like. @throws UserError
+/// Parses a duration with its unit, for example of `--max-time`. @throws UserError
 Picoseconds parse_time(const std::string& what, const std::string& text);
 
-/// Text with escapes as above made plain. @throws UserError
+/// Replaces the escapes listed above. @throws UserError
 std::string unescape(const std::string& what, std::string_view text);
-/// The reverse, on one line.
+/// The reverse: a single line with escapes.
 std::string escape(std::string_view text);
 
 }  // namespace fovea::app

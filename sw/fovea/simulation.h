@@ -1,4 +1,4 @@
-// The seam between the host program and the board: what a run is asked for and what it answers.
+// The interface between the host program and the board: the request of a run and its result.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -21,84 +21,86 @@
 
 namespace fovea::app {
 
-/// A displayed frame: 4:2:2, bytes Cb Y0 Cr Y1, no padding. Valid during the call only.
+/// A displayed frame in 4:2:2: bytes Cb Y0 Cr Y1, no padding. Valid only during the call.
 struct DisplayedFrame {
   std::uint64_t index = 0;
   unsigned width = 0, height = 0;
   std::span<const std::uint8_t> uyvy;
 };
 
-/// A program that is run for its own sake (`fovea exec --board`), not as a camera's firmware.
+/// A program that is run by `fovea exec --board` instead of the camera's firmware.
 struct HostedProgram {
-  std::filesystem::path root;          ///< folder of its files; empty: none
-  std::vector<std::string> arguments;  ///< argv[1] and on
+  std::filesystem::path root;          ///< folder of its files; empty: no files
+  std::vector<std::string> arguments;  ///< argv[1] and the following ones
 };
 
-/// What `fovea run` asks of the board.
+/// The request of `fovea run`.
 struct RunRequest {
   const ParamSet& params;
-  /// Folder of the run (still DIR.tmp) for files that the board writes itself, such as traces.
+  /// Folder of the run (still DIR.tmp), for files that the board writes itself, such as traces.
   std::filesystem::path folder;
   bool strict_sync = false;  ///< --sync=strict
-  /// Set by a signal: the board ends the run soon and returns what it has with complete = false.
+  /// Set by a signal: the board ends the run soon and returns a result with complete = false.
   const std::atomic<bool>& stop;
   ProgressSink& progress;
   /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
-  /// full), which the board lets through.
+  /// full), which the board passes on.
   std::function<void(const DisplayedFrame&)> frame;
-  /// Take rows as they become final, in order; the result has the rest of them. Empty: it has all.
-  /// May throw UserError as `frame` may.
+  /// Called with rows when they become final, in order; the result contains the others. If empty,
+  /// the result contains all rows. May throw UserError.
   std::function<void(const FrameRow&)> frame_row = {};
   std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
-  /// Waits for a debugger there before the core starts.
+  /// Port on which to wait for a debugger before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
-  std::ostream* notes = nullptr;  ///< says where; not null with gdb_port
+  std::ostream* notes = nullptr;  ///< receives the message with the port; not null if gdb_port is
+                                  ///< set
   RegisterLogRequest registers = {};
   RunLimits limits = {};
-  const ElfImage* symbols = nullptr;  ///< of --symbols; null: none
-  ConsoleStream* console = nullptr;   ///< shows UART0 and has what is typed; null: neither
-  /// For the program's semihosting calls, which are served if run.until has `exit`.
+  const ElfImage* symbols = nullptr;  ///< from --symbols; null: none
+  ConsoleStream* console = nullptr;   ///< shows the output of UART0 and provides its input; null:
+                                      ///< neither
+  /// For the program's semihosting calls, which are enabled if run.until contains `exit`.
   SemihostingConsole* semihosting = nullptr;
   std::optional<HostedProgram> hosted = {};
 };
 
-/// What the board answers.
+/// The result of a run.
 struct RunResult {
-  bool complete = true;        ///< false: stopped before the wanted frames were shown
+  bool complete = true;        ///< false: stopped before all requested frames were displayed
   std::string guest_failure;   ///< not empty: the guest failed (exit 3); may have several lines
-  std::vector<StatRow> stats;  ///< stats.json, in any order
-  std::vector<StatRow> host;   ///< host.json, in any order (direct and queued accesses, ...)
+  std::vector<StatRow> stats;  ///< for stats.json, in any order
+  std::vector<StatRow> host;   ///< for host.json, in any order
   std::vector<FrameRow> frames;
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
-  std::string uart;  ///< all that the firmware printed
-  std::vector<std::string> notes;  ///< sentences for the person who looks, below the figures
-  std::string ended_by;      ///< the condition of run.until that was met; empty: none was
-  std::string ended;         ///< a sentence about that, for people
-  std::optional<int> exit_code = {};  ///< the program's own, if it ended by semihosting
+  std::string uart;  ///< everything that the firmware printed
+  std::vector<std::string> notes;  ///< sentences for the user, shown below the figures
+  std::string ended_by;      ///< the condition of run.until that was met; empty: none
+  std::string ended;         ///< a sentence about that for the user
+  std::optional<int> exit_code = {};  ///< the program's own, if it ended by a semihosting call
   std::string typed;         ///< what a person typed on the console, as a file for uart0.input
   std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
-  std::string registers;  ///< the log that was asked for
+  std::string registers;  ///< the register log, if requested
 };
 
-/// A board that can be run once.
+/// A board that can run once.
 class Simulation {
  public:
   virtual ~Simulation() = default;
-  /// Adds all parameters of the board; called once, first.
+  /// Adds all parameters of the board; called once, before the other functions.
   virtual void declare(ParamSet& params) = 0;
-  /// Files that a run reads beside those that a parameter names, by the parameter that could.
+  /// Files that a run reads by default, with the parameter that could name another one.
   virtual std::vector<std::pair<std::string, std::filesystem::path>> input_files() const {
     return {};
   }
-  /// Runs to the end. @throws UserError for input that only the board can judge (footage, program),
-  ///   GuestFailure, NotModelled
+  /// Runs to the end. @throws UserError for input that only the board can check (footage, program),
+  /// GuestFailure, NotModelled
   virtual RunResult run(const RunRequest& request) = 0;
 };
 
-/// The DM365 board; defined by the board library, not by this one.
+/// The DM365 board; defined in the board's library.
 std::unique_ptr<Simulation> make_simulation();
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// Where a program's stalls come from: names for its addresses, and the table of a run.
+// Names for a program's addresses in the stall statistics, and the table of a run.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,18 +10,19 @@
 
 namespace fovea::app {
 
-/// Objects of a program from this size on get a region of their own.
+/// Objects of a program get a region of their own from this size on, in bytes.
 inline constexpr std::uint32_t kRegionObjectBytes = 4096;
 
-/// Names the program's sections, the largest first while there is room for their names and for half
-/// as many objects; then its largest objects, which lie in the sections. A section is where it is
-/// linked to if that is inside `memory`, else where it is loaded.
+/// Adds the program's sections as regions, the largest first, as long as there is room for them and
+/// for half as many objects, and then its largest objects, which lie within the sections. The
+/// address of a section is its link address if that is inside `memory`, otherwise its load address.
 void add_program_regions(cpu::RegionMap& map, const ElfImage& image,
                          std::span<const MemoryRegion> memory);
-/// Memory of `fovea exec`: RAM as `sdram`, internal RAM, registers, heap and stack, and the program.
+/// Regions of `fovea exec`: RAM as `sdram`, internal RAM, registers, heap and stack, and the
+/// program.
 cpu::RegionMap exec_regions(const ExecProgram& program, const ExecMap& map);
 
-/// What is not zero, in order of cause, region and culprit.
+/// All entries that are not zero, ordered by cause, region and culprit.
 std::vector<StallRow> stall_rows(const cpu::Counts& from, const cpu::Counts& to,
                                  const cpu::RegionMap& regions);
 

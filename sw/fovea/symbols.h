@@ -1,4 +1,4 @@
-// Names for a program's addresses, from one ELF file or two.
+// Names for a program's addresses, from one or two ELF files.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace fovea::app {
 
-/// The program's own symbols first, then those of `--symbols`. Neither image is owned; null: none.
+/// Searches the program's own symbols first, then those of `--symbols`. The images are not owned;
+/// null: none.
 class Symbols {
  public:
   explicit Symbols(const ElfImage* program = nullptr, const ElfImage* more = nullptr)
       : images_{program, more} {}
 
-  /// "name+0x12", or "" if nobody knows the address.
+  /// "name+0x12", or "" if no image has a symbol there.
   std::string describe(std::uint32_t address) const {
     for (const ElfImage* image : images_) {
       if (!image) continue;
@@ -22,7 +23,7 @@ class Symbols {
     }
     return "";
   }
-  /// "0x8000 (main+0x12)", or the number alone.
+  /// "0x8000 (main+0x12)", or only the number.
   std::string place(std::uint32_t address) const;
   std::optional<std::uint32_t> find(std::string_view name) const {
     for (const ElfImage* image : images_)
