@@ -45,7 +45,8 @@ bool BoardConsole::look() {
   return stream_->quit();
 }
 
-/// An idle board simulates an hour in a minute: too fast for whoever types.
+/// Limits the speed to real time for an interactive user: an idle board would simulate an hour per
+/// minute.
 void BoardConsole::keep_pace() {
   using std::chrono::nanoseconds;
   constexpr nanoseconds kSlack = std::chrono::milliseconds(20);
@@ -54,7 +55,8 @@ void BoardConsole::keep_pace() {
   if (ahead > kSlack) {
     std::this_thread::sleep_for(ahead - kSlack / 2);
   } else if (ahead < -kSlack) {
-    wall_ = std::chrono::steady_clock::now();  // a busy board: no catching up later
+    wall_ = std::chrono::steady_clock::now();  // a busy board falls behind; it must not catch up
+                                               // later
     simulated_ = kernel_time();
   }
 }

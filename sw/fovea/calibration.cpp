@@ -23,7 +23,7 @@ class Reader {
  public:
   explicit Reader(const fs::path& file) : file_(file) {
     std::string text = read_file(file, kMaxFileBytes);
-    // OpenCV's first line, "%YAML:1.0", is no directive of YAML.
+    // OpenCV's first line, "%YAML:1.0", is not a valid YAML directive.
     if (text.starts_with("%YAML")) text.erase(0, text.find('\n'));
     try {
       root_ = YAML::Load(text);
@@ -40,7 +40,7 @@ class Reader {
         one_line(file_.string()), why));
   }
 
-  /// All numbers of the first of `names` that is there: of a matrix, a list or a list of rows.
+  /// All numbers of the first of `names` that exists: a matrix, a list, or a list of rows.
   std::vector<double> numbers(std::initializer_list<const char*> names) const {
     for (const char* name : names) {
       if (!root_[name]) continue;

@@ -16,7 +16,7 @@ namespace fovea::app {
 namespace {
 constexpr std::size_t kBufferBytes = 64 * 1024;
 
-/// Closes a descriptor at the end of a scope.
+/// Closes a descriptor at the end of its scope.
 struct Descriptor {
   int fd;
   ~Descriptor() {
@@ -25,7 +25,7 @@ struct Descriptor {
 };
 
 /// Appends byte i of `text`, as an escape if it belongs to a control character: C0, DEL, or one of
-/// C1 (U+0080 to U+009F), which some terminals obey as well.
+/// C1 (U+0080 to U+009F), which some terminals interpret too.
 void append_printable(std::string& out, std::string_view text, std::size_t i) {
   const auto at = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const auto c1 = [](unsigned byte) { return byte >= 0x80 && byte < 0xA0; };
@@ -74,14 +74,14 @@ void CheckedFile::write(std::span<const std::uint8_t> bytes) {
 void CheckedFile::close() {
   if (fd_ < 0) return;
   flush();
-  // Network file systems report a full disk only here.
+  // Network file systems may report a full disk only at this point.
   const int fd = std::exchange(fd_, -1);
   if (::close(fd) != 0) fail(errno);
 }
 
 void CheckedFile::sync() {
   flush();
-  // File systems without fsync() answer EINVAL.
+  // fsync() fails with EINVAL on file systems that do not support it.
   if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
 }
 
@@ -126,7 +126,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) 
   const auto fail = [&](const std::string& why) {
     throw UserError(fmt::format("cannot read '{}': {}", one_line(path.string()), why));
   };
-  // O_NONBLOCK: opening a pipe that nobody writes must not hang before the check below.
+  // O_NONBLOCK: opening a pipe without a writer must not block before the check below.
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.fd < 0) fail(std::strerror(errno));
   struct stat info {};

@@ -59,12 +59,12 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   if (!result.typed.empty()) dir.write("uart0.input", result.typed);
   if (log) dir.write("registers.log", result.registers);
   dir.write("host.json", host_json(host, args, version_text()));
-  // Last: who finds stats.json finds all the rest.
+  // Written last: if stats.json exists, all other files do.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
                                      collect_remarks(Diagnostics::instance()), result.ended_by));
 }
 
-/// What only `fovea replay` has by that name, so that a message can say so.
+/// Adds the keys that only `fovea replay` has, so that an error message can say so.
 void add_replay_keys(ParamSet& params) {
   ReplayParams replay;
   ParamSet set;
@@ -102,8 +102,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
                                 "files of a run only; choose a place beside it",
                                 one_line(options.bus_trace)));
-  // First, so that an unfinished folder is known as ours and says what was tried, and a full disk
-  // shows before the simulation.
+  // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
+  // tried, and a full disk is noticed before the simulation.
   dir.write("config.json", config_json(params, experiment, provenance_of(params, simulation->input_files())));
 
   const auto& stop = context.stop ? *context.stop : kNeverStops;
@@ -117,7 +117,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
       raw.emplace(STDIN_FILENO);
     }
   }
-  // A line that is rewritten in place would overwrite what the console shows.
+  // A progress line that is updated in place would overwrite the console's output.
   ProgressMeter meter(context.err, context.terminal && !options.console);
   FrameWriterOptions writer_options;
   if (!options.no_frames) {
@@ -164,7 +164,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   rows.finish(result);
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
-  // With --console the output stream is UART0's alone.
+  // With --console the output stream is reserved for UART0.
   std::ostream& report = options.console ? context.err : context.out;
   context.out.flush();
   report << summary_table(result.stats, host);
@@ -201,8 +201,8 @@ int command_params(const std::string& pattern, bool markdown, bool of_replay,
   return kExitDone;
 }
 
-/// The text of a NotModelled that a process of the simulation threw: SystemC has made an exception
-/// of its own of it. Empty for anything else.
+/// The message of a NotModelled that was thrown inside a process of the simulation: SystemC wraps
+/// it in an exception of its own. Empty for any other exception.
 std::string missing_feature(const std::exception& e) {
   const std::string what = e.what(), mark = "uncaught exception: not modelled: ";
   const auto at = what.find(mark);
@@ -211,8 +211,9 @@ std::string missing_feature(const std::exception& e) {
   return what.substr(from, what.find('\n', from) - from);
 }
 
-/// What the host refused (memory, a thread), if that is what the exception says; else empty. From
-/// within a process of SystemC it comes as a report that quotes the exception's name.
+/// What the host could not provide (memory, a thread), if that is the reason of the exception;
+/// otherwise empty. From inside a SystemC process it arrives as a report that quotes the
+/// exception's name.
 std::string lack_of_host(const std::exception& e) {
   const std::string_view what = e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e) || what.find("std::bad_alloc") != what.npos)
@@ -223,7 +224,7 @@ std::string lack_of_host(const std::exception& e) {
   return "";
 }
 
-/// "A | B" would end a cell of a table.
+/// Escapes '|', which would end a cell of the table.
 std::string markdown_cell(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -287,7 +288,7 @@ std::string params_table(const ParamSet& params, const std::string& pattern, boo
     }
     return out;
   }
-  // A few long cells (lists, sources) must not push all others off the screen.
+  // A few long cells (lists, sources) must not widen a column beyond the screen.
   constexpr std::size_t kMaxWidth = 44;
   std::array<std::size_t, 6> width{};
   for (const auto& row : cells)
@@ -305,7 +306,8 @@ void install_signals(CliContext& context) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  // One shot: a second Ctrl-C ends a program that does not react any more.
+  // The handler is reset after one signal: a second Ctrl-C ends a program that does not react any
+  // more.
   action.sa_flags = SA_RESETHAND | SA_RESTART;
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
@@ -317,7 +319,7 @@ void install_signals(CliContext& context) {
 
 namespace {
 
-/// Targets of the options.
+/// Variables that receive the values of the options.
 struct Options {
   RunOptions run;
   ReplayOptions replay;
@@ -331,7 +333,7 @@ constexpr const char* kStrict =
     "Stop with an error when the firmware uses a feature that is not modelled, or a parameter that "
     "is set has no effect";
 
-/// One value per -s: the experiment's name may follow it.
+/// Takes one value for each -s, because the name of the experiment may follow it.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
   command.add_option("-s,--set", sets, kSet)->type_name("KEY=VALUE")->allow_extra_args(false);
 }
@@ -457,7 +459,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   if (!own.empty() && own[0] == "exec") options.exec.arguments = take_program_arguments(own);
 
   try {
-    // CLI11 alone would say that a command is missing.
+    // CLI11's own message would be that a command is missing.
     const auto commands = app.get_subcommands([](CLI::App*) { return true; });
     std::vector<std::string> names;
     for (const auto* c : commands) names.push_back(c->get_name());

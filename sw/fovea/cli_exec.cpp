@@ -42,8 +42,8 @@ constexpr const char* kMemoryHelp =
     "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, each "
     "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
-/// `--board`: the program runs as the board's firmware. It ends by semihosting, or when nothing can wake
-/// the core any more, unless run.until says otherwise.
+/// `--board`: runs the program as the board's firmware. It ends by semihosting, or when nothing can
+/// wake the core any more, unless run.until says otherwise.
 ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOptions& o,
                         const ExecRequest& request, const CliContext& context) {
   ConsoleStream uart0(context.out, o.console ? STDIN_FILENO : -1, request.stop);
@@ -160,7 +160,7 @@ std::vector<std::string> take_program_arguments(std::vector<std::string>& args) 
   for (std::size_t i = 0; i < args.size(); ++i) {
     const std::string& a = args[i];
     const std::string_view name = std::string_view(a).substr(0, a.find('='));
-    if (i == 0 || value) {  // the command; an option's value
+    if (i == 0 || value) {  // the command, or the value of an option
       own.push_back(a);
       value = false;
     } else if (all) {
@@ -267,7 +267,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     dir->write("config.json", config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
   }
   HostConsole console(context.out, context.err, context.stop);
-  // Never rewritten in place: the program writes on the same terminal.
+  // Never updated in place, because the program writes to the same terminal.
   ProgressMeter meter(o.quiet ? nowhere : context.err, false);
   const ExecRequest request{.program = program,
                             .arguments = o.arguments,

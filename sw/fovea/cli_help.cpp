@@ -8,21 +8,21 @@
 namespace fovea::app {
 namespace {
 
-constexpr std::size_t kColumn = 28;  ///< where descriptions begin
+constexpr std::size_t kColumn = 28;  ///< column at which descriptions begin
 
-/// "WORD:{a,b}": name of the value and what its check says.
+/// Splits "WORD:{a,b}" into the name of the value and the description of its check.
 struct TypeText {
   std::string name, check;
 };
 
 TypeText type_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  const std::size_t colon = type.find(':', 1);  // ":PORT" is a name
+  const std::size_t colon = type.find(':', 1);  // ":PORT" is only a name
   if (colon == std::string::npos) return {type, ""};
   return {type.substr(0, colon), type.substr(colon + 1)};
 }
 
-/// Words that the option allows; empty: no list.
+/// The words that the option allows; empty if it has no such list.
 std::vector<std::string> words_of(const CLI::Option& option) {
   const std::string check = type_of(option).check;
   if (!check.starts_with('{') || !check.ends_with('}')) return {};
@@ -44,7 +44,7 @@ std::string left_text(const CLI::Option& option, bool positional) {
 std::string description_of(const CLI::Option& option) {
   std::string text = option.get_description();
   const std::string check = type_of(option).check;
-  // CLI11's own words for a range: "INT in [1 - 9]".
+  // CLI11's text for a range: "INT in [1 - 9]".
   if (const std::size_t in = check.find(" in ["); in != std::string::npos)
     text += " (" + check.substr(in + 5, check.find(']') - in - 5) + ")";
   if (!option.get_default_str().empty()) text += fmt::format(" [default: {}]", option.get_default_str());
@@ -69,7 +69,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional)
       [positional](const CLI::Option* o) { return o->get_positional() == positional; });
 }
 
-/// All names of an option, with their dashes.
+/// All names of an option, including their dashes.
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> out;
   for (const auto& name : option.get_snames()) out.push_back("-" + name);
@@ -77,7 +77,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return out;
 }
 
-/// Text for troff: no escapes, no requests at the start of a line, hyphens as they are typed.
+/// Escapes text for troff, so that it contains no escapes or requests, and hyphens are kept.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {

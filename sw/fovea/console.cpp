@@ -12,12 +12,12 @@
 namespace fovea::app {
 namespace {
 
-// For handlers: plain objects that are written before the flag is set.
+// Used by signal handlers: plain objects that are written before the flag is set.
 termios g_former;
 int g_fd = -1;
 volatile sig_atomic_t g_raw = 0;
 
-/// Signals that end the process and that nobody else here handles.
+/// Signals that end the process and are not handled elsewhere.
 constexpr int kDeadly[] = {SIGHUP, SIGQUIT, SIGILL, SIGABRT, SIGBUS, SIGFPE, SIGSEGV};
 
 void restore_and_die(int signal) {

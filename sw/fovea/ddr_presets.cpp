@@ -9,8 +9,8 @@
 namespace fovea::app {
 namespace {
 
-// Typed in from the public data sheets, independently of model/mem/check, which has its own tables:
-// each is checked against the other. S1 ... are the sources listed in model/SOURCES.md.
+// Deliberately independent of the data sheets in model/mem/check, so that each can be checked
+// against the other. S1 to S13 are the sources listed in model/SOURCES.md.
 constexpr std::size_t kGrades = 7;
 using ByGrade = std::array<Picoseconds, kGrades>;
 // The first four are DDR2 (JESD79-2 533C, 667D, 800D, 800E), the others mobile DDR.
@@ -20,7 +20,7 @@ constexpr std::size_t kFirstMobile = 4;
 
 struct ShortestPeriod {
   unsigned CL;
-  ByGrade period;  // 0: not offered
+  ByGrade period;  // 0: not available
 };
 // DDR2: [S3]. Mobile DDR: [S11 S12].
 constexpr ShortestPeriod kPeriods[] = {
@@ -30,40 +30,40 @@ constexpr ShortestPeriod kPeriods[] = {
     {5, {0, 3'000, 2'500, 3'000, 0, 0, 0}},
     {6, {0, 0, 2'500, 2'500, 0, 0, 0}},
 };
-// JESD79-2, tCK(avg): the DLL's limit. Mobile DDR has no DLL.
+// JESD79-2, tCK(avg): limit of the DLL. Mobile DDR has no DLL.
 constexpr Picoseconds kLongestPeriod = 8'000;
 
 struct Timing {
   std::string_view name;
   ByGrade least;
-  std::string_view assumed;  // grade for which no one number is public
+  std::string_view assumed;  // speed grade for which the sources do not give a single figure
 };
 constexpr Timing kTimings[] = {
-    // [S1], [S12 S13]; by maker in -75
+    // [S1], [S12 S13]; -75 differs by manufacturer
     {"tRCD", {15'000, 15'000, 12'500, 15'000, 15'000, 18'000, 22'500}, "75"},
-    // [S1], [S12 S13]; by maker in -75
+    // [S1], [S12 S13]; -75 differs by manufacturer
     {"tRP", {15'000, 15'000, 12'500, 15'000, 15'000, 18'000, 22'500}, "75"},
-    // Micron's [S2 S4], below JEDEC's 45 ns; [S12 S13]; by maker in -75
+    // Micron's figure [S2 S4], below JEDEC's 45 ns; [S12 S13]; -75 differs by manufacturer
     {"tRAS", {40'000, 40'000, 40'000, 40'000, 40'000, 42'000, 45'000}, "75"},
-    // Micron's [S1 S2 S4]; [S12 S13]: tRAS + tRP where nothing else is said
+    // Micron's figure [S1 S2 S4]; [S12 S13]: tRAS + tRP unless given
     {"tRC", {55'000, 55'000, 55'000, 55'000, 55'000, 60'000, 67'500}, "75"},
     // Pages of 2 KiB [S2]; [S12 S13]
     {"tRRD", {10'000, 10'000, 10'000, 10'000, 10'000, 12'000, 15'000}, ""},
     // [S2], [S13]
     {"tWR", {15'000, 15'000, 15'000, 15'000, 15'000, 15'000, 15'000}, ""},
-    // [S2]; mobile parts give it in clocks, below
+    // [S2]; for mobile parts it is given in clocks, below
     {"tWTR", {7'500, 7'500, 7'500, 7'500, 0, 0, 0}, ""},
-    // [S2]; mobile parts have none
+    // [S2]; mobile parts do not have it
     {"tRTP", {7'500, 7'500, 7'500, 7'500, 0, 0, 0}, ""},
 };
-// [S13]; some makers' -6 want 2
+// [S13]; some manufacturers' -6 requires 2
 constexpr std::array<unsigned, kGrades> kWriteToReadClocks = {0, 0, 0, 0, 2, 1, 1};
-// Four ACT, parts of eight banks and 2 KiB pages [S2]
+// Four ACT commands in parts with eight banks and pages of 2 KiB [S2].
 constexpr ByGrade kFourActivates = {50'000, 50'000, 45'000, 45'000, 0, 0, 0};
 
 struct OfPart {
   std::string_view word;
-  std::size_t grade;  // what `default` means
+  std::size_t grade;  // grade of `default`
   Picoseconds tRFC;
   bool assumed;
 };
@@ -72,14 +72,14 @@ constexpr OfPart kParts[] = {
     {"mt47h64m16", 1, 127'500, false},    // 1 Gb [S2 S3 S4]
     {"mt47h128m16", 2, 195'000, false},   // 2 Gb [S2 S3 S4]
     {"mt46h32m16lf", 5, 72'000, false},   // 512 Mb [S12 S13]
-    {"mt46h64m16lf", 5, 125'000, true},   // 1 Gb: 72 to 140 ns by maker [S12 S13]
+    {"mt46h64m16lf", 5, 125'000, true},   // 1 Gb: 72 to 140 ns, by manufacturer [S12 S13]
 };
 constexpr Picoseconds kRefresh = 7'800'000;    // up to 85 C [S2], [S11]
 constexpr Picoseconds kOpenAtMost = 70'000'000;  // [S2], [S12 S13]
 constexpr unsigned kPageBytes = 2'048;  // DDR2 x16 [S1 S2]; mobile: assumed
 
 using Wide = unsigned __int128;
-// ddr.clock is in whole hertz, so that a period of 6 ns is 166666667Hz or 166666666Hz.
+// ddr.clock is in whole hertz, so a period of 6 ns is 166666667Hz or 166666666Hz.
 std::uint64_t rounded_up(Picoseconds t, Frequency key) {
   const Frequency f = key.less_1_hertz();
   const Wide unit = Wide{kPsPerSecond} * f.den;
@@ -165,21 +165,22 @@ void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment
                                   r.clock.text(), part.word, kGradeWords[grade]));
     cycles("CL", fits->CL);
   }
-  // Boards differ in what the PHY adds: it stays.
+  // The PHY adds clocks that depend on the board: keep that difference.
   cycles("RL", r.CL() + beyond_CL);
 
   for (const Timing& t : kTimings) {
     std::uint64_t n = rounded_up(t.least[grade], clock);
-    // TI's controller has no tFAW: five ACT take four times tRRD.
+    // TI's controller has no tFAW: make sure that four times tRRD covers it.
     if (t.name == "tRRD" && ddr.banks() == 8)
       n = std::max(n, (rounded_up(kFourActivates[grade], clock) + 3) / 4);
     if (t.name == "tWTR") n = std::max<std::uint64_t>(n, kWriteToReadClocks[grade]);
-    // A longer one by hand takes along what contains it.
+    // If a timing was set by the user to a longer value, the timings that include it follow.
     if (t.name == "tRAS") n = std::max(n, r.tRCD());
     if (t.name == "tRC") n = std::max(n, r.tRAS() + r.tRP() - 1);
     if (n != 0) cycles(t.name, n, t.assumed == kGradeWords[grade]);
   }
-  // Sleep. DDR2 [S2 S3]. Mobile [S11 S13], the longest where makers differ; no DLL that must lock.
+  // Power-down and self-refresh. DDR2 [S2 S3]. Mobile DDR [S11 S13]: the longest figure if
+  // manufacturers differ; there is no DLL that has to lock.
   if (ddr.mobile()) {
     cycles("tXP", std::max<std::uint64_t>(rounded_up(25'000, clock), 1), true);
     cycles("tCKE", 2, true);
@@ -191,7 +192,7 @@ void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment
     cycles("tXSNR", rounded_up(part.tRFC + 10'000, clock));
     cycles("tXSRD", 200);
   }
-  // A slow clock rounds both up to one clock; a refresh opens and closes a row in its time.
+  // With a slow clock both would be rounded up to one clock, but a refresh opens and closes a row.
   cycles("tRFC", std::max(rounded_up(part.tRFC, clock), r.tRP() + 1), part.assumed);
   const std::uint64_t interval = rounded_down(kRefresh, clock);
   cycles("tREFI", interval);

@@ -65,7 +65,7 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
   if (!elf || elf_kind(elf.get()) != ELF_K_ELF) fail(cut);
   GElf_Ehdr header{};
   if (!gelf_getehdr(elf.get(), &header)) fail(cut);
-  // The machine first: "ELF64" would be a poor answer to a program for the host.
+  // Checked first: for a program built for the host, "ELF64" would not be a helpful message.
   if (header.e_machine != EM_ARM)
     fail(fmt::format("it is for {}; {}", machine_name(header.e_machine), kAllowed));
   if (header.e_ident[EI_CLASS] != ELFCLASS32)
@@ -130,7 +130,7 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
       if (!gelf_getsym(data, static_cast<int>(i), &s)) fail(fmt::format("{}: symbol {}", cut, i));
       const char* text = elf_strptr(elf.get(), table.sh_link, s.st_name);
       const unsigned type = GELF_ST_TYPE(s.st_info);
-      // '$a', '$t', '$d' mark instruction sets and data inside a section; they are no names.
+      // '$a', '$t' and '$d' mark instruction sets and data inside a section; they are not symbols.
       if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
       if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
       bool function = type == STT_FUNC;
@@ -145,7 +145,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     }
   }
   std::sort(image.symbols_.begin(), image.symbols_.end(), [](const auto& a, const auto& b) {
-    // At one address the name with a size is the better one; then by name, for determinism.
+    // At one address a symbol with a size comes first; then by name, so that the result is
+    // deterministic.
     return std::tuple(a.address, b.size, std::string_view(a.name)) <
            std::tuple(b.address, a.size, std::string_view(b.name));
   });
@@ -169,7 +170,7 @@ const ElfSymbol* ElfImage::function_at(std::uint32_t address) const {
     const ElfSymbol& s = symbols_[*--above];
     if (s.size != 0) {
       if (address - s.address < s.size) return &s;
-      break;  // a label behind the end of the last sized function covers up to the next symbol
+      break;  // a label after the end of the last sized function extends to the next symbol
     }
     if (!label || s.address == label->address) label = &s;
   }

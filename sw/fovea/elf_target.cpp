@@ -41,7 +41,7 @@ constexpr std::array<const char*, 23> kArchitectures = {"older than ARMv4",
                                                         "ARMv8.1-M.mainline",
                                                         "ARMv9-A"};
 
-/// Reads values one after the other; behind the end everything is 0.
+/// Reads values one after the other; after the end, all values are 0.
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -67,7 +67,7 @@ class Reader {
     if (!at_end()) ++at_;
     return out;
   }
-  /// The next `n` bytes, or what is left of them.
+  /// The next `n` bytes, or as many as are left.
   Reader part(std::uint64_t n) {
     const std::size_t here = std::min<std::uint64_t>(n, bytes_.size() - at_);
     Reader out(bytes_.subspan(at_, here));
@@ -81,8 +81,8 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-/// The attributes of the whole file. That a part of it uses VFP or NEON says nothing: an operating
-/// system asks the processor before it goes there.
+/// The attributes that hold for the whole file. If only a part of it uses VFP or NEON, that is no
+/// obstacle: an operating system asks the processor before it executes such code.
 std::string unfit_file(Reader in) {
   std::uint64_t architecture = 0, profile = 0, thumb = 0, vfp_args = 0;
   while (!in.at_end()) {

@@ -22,7 +22,7 @@ bool inside(const ElfSegment& s, std::uint64_t base, std::uint64_t size) {
   return s.address >= base && end_of(s) <= base + size;
 }
 
-/// Where the program has it once its start-up code has moved it.
+/// The segment at the address to which the program's start-up code moves it.
 ElfSegment as_run(const ElfSegment& s) {
   return {s.index, s.virtual_address, s.virtual_address, s.memory_size, {}};
 }
@@ -73,7 +73,8 @@ ExecProgram ExecProgram::flat(const std::filesystem::path& file, std::uint32_t l
 
 std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64_t ram_size) {
   if (text == "auto") return std::nullopt;
-  constexpr std::uint32_t kStep = 1u << 20;  // the internal RAM's windows lie below the first one
+  constexpr std::uint32_t kStep = 1u << 20;  // the windows of internal RAM are below the first
+                                             // multiple
   const std::uint64_t most = (std::uint64_t{1} << 32) - ram_size;
   std::optional<std::uint32_t> base;
   try {
@@ -92,8 +93,8 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
                          bool caches) const {
   ExecMap m;
   m.ram_size = ram_size;
-  // The lowest segment that is no guest of the internal RAM chooses the window; if all are loaded
-  // there (flash at 0), the lowest of those that the program moves out of it.
+  // The lowest segment outside internal RAM determines the window. If all segments are loaded there
+  // (flash at 0), it is the lowest of those that the program moves out of it.
   std::optional<std::uint32_t> lowest, moved;
   for (const auto& s : segments_) {
     if (!in_internal_ram(s)) lowest = std::min(lowest.value_or(s.address), s.address);
@@ -115,7 +116,7 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
         one_line(name_), s.index, s.address, s.memory_size, m.ram_base, m.ram_base + (ram_size - 1),
         m.tcm ? ", or internal RAM at 0x0 and 0x10000" : ""));
   }
-  // The largest gap between the segments in the window.
+  // Find the largest gap between the segments in the window.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> used = {
       {m.ram_base, m.ram_base + (m.ram_base == 0 ? kVectorBytes : 0)}};
   for (const auto& s : segments_)
@@ -123,7 +124,7 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
       if (from >= m.ram_base && from + s.memory_size <= m.ram_base + ram_size)
         used.emplace_back(from, from + s.memory_size);
   std::sort(used.begin(), used.end());
-  // The last address of the address space cannot be the end of a stack.
+  // The very last address cannot be the end of a stack.
   const std::uint64_t top =
       std::min<std::uint64_t>(m.ram_base + ram_size, (std::uint64_t{1} << 32) - kHeapAlignment);
   if (caches) {

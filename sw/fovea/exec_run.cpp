@@ -1,4 +1,4 @@
-// `fovea exec`: parameters, the choice of the machine, and its figures.
+// `fovea exec`: its parameters, the selection of the machine, and the machine's statistics.
 #include <sys/resource.h>
 
 #include <bit>
@@ -57,7 +57,8 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
                                        map, clocks,
                                        map.table ? preamble_entry(map) : request.program.entry());
   auto& arm = board_->arm;
-  // The console is the program's: no remark of the kernel about the end.
+  // The console belongs to the program, so suppress the kernel's message at the end of the
+  // simulation.
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
   ExecSession session(arm.core(), *board_, request, map);
@@ -77,7 +78,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
     };
     join_bus(v, board_->scr, board_->ddr, board_->arm, board_->quiet, map.ram_base);
   });
-  // Slices only let the host look in. No instruction takes as long as one.
+  // Slices only give control to the host now and then; no instruction takes as long as a slice.
   const Picoseconds slice = 10 * kPsPerMs;
   Slices slices;
   std::string failure;

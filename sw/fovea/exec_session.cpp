@@ -14,7 +14,8 @@
 namespace fovea::app {
 namespace {
 
-/// UDF #0: undefined in every version. An exception without a handler ends the run there.
+/// UDF #0, undefined in all architecture versions. An exception without a handler ends the run
+/// here.
 constexpr std::uint32_t kUndefinedWord = 0xE7F000F0u;
 constexpr unsigned kVectors = 8;
 
@@ -53,7 +54,7 @@ ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
 
 void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm) {
   const auto put = [&](std::uint32_t address, std::span<const std::uint8_t> bytes) {
-    if (bytes.empty()) return;  // a segment without zeros at its end, also one at the end of RAM
+    if (bytes.empty()) return;  // a segment without zeros at its end, perhaps at the end of RAM
     std::uint8_t* to = address - map_.ram_base < ram.size() ? &ram[address - map_.ram_base]
                                                             : &tcm[address & (tcm.size() - 1)];
     std::memcpy(to, bytes.data(), bytes.size());
@@ -90,7 +91,8 @@ std::string ExecSession::look(Picoseconds now) {
 std::vector<StatRow> ExecSession::core_stats() const {
   cpu::CoreStats stats;
   stats.to = core_.counts();
-  // The clock's first edge after time 0 is number 1; whoever has not run has no clocks either.
+  // The first edge of the clock after time 0 has number 1; a core that has not run has no clocks at
+  // all.
   stats.to.cycles = core_.clock_count() ? core_.clock_count() - 1 : 0;
   std::vector<StatRow> rows;
   collect(stats, rows);

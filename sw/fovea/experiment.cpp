@@ -22,7 +22,7 @@ constexpr std::string_view kInclude = "include";
 
 struct Entry {
   std::string key;
-  std::string value;               // sequences already as "[a, b]"
+  std::string value;               // sequences are already converted to "[a, b]"
   std::vector<std::string> items;  // the items of a sequence
   unsigned line = 0;
 };
@@ -31,7 +31,7 @@ std::string at(const fs::path& file, unsigned line) {
   return fmt::format("{}:{}", one_line(file.string()), line);
 }
 
-/// An item of a list as text; with a comma in it, it stands in quotation marks.
+/// An item of a list as text; if it contains a comma, in quotation marks.
 std::string list_item(const std::string& item) {
   if (item.find(',') == std::string::npos) return item;
   std::string out = "\"";
@@ -39,8 +39,8 @@ std::string list_item(const std::string& item) {
   return out + "\"";
 }
 
-/// Flattens the parser's events into dotted keys. Works on events and not on a node tree: aliases
-/// are refused before anything could expand, and keys written twice stay visible.
+/// Converts the parser's events into dotted keys. It uses events instead of a node tree, so that
+/// aliases are refused before they can expand and repeated keys are noticed.
 class Flattener : public YAML::EventHandler {
  public:
   explicit Flattener(const fs::path& file) : file_(file) {}
@@ -132,7 +132,7 @@ class Flattener : public YAML::EventHandler {
     fail(mark, "YAML anchors and aliases (&name, *name) are not allowed; write the value out");
   }
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
-    // "?" is a plain scalar, "!" a quoted one.
+    // "?" is the tag of a plain scalar, "!" that of a quoted one.
     if (!tag.empty() && tag != "?" && tag != "!")
       fail(mark, "YAML tags are not allowed ('" + tag + "')");
   }
@@ -180,7 +180,7 @@ std::vector<Entry> parse(const fs::path& file) {
   return flattener.take();
 }
 
-/// If `key` is only the beginning of known keys, says so; else empty.
+/// A message if `key` is a prefix of known keys; otherwise empty.
 std::string group_hint(const ParamSet& params, std::string_view key) {
   const std::string prefix = std::string(key) + ".";
   std::string members;
@@ -226,7 +226,7 @@ void warn_without_effect(const ParamSet& params, const Experiment& experiment) {
       std::string because;
       bool later = false;
       for (const ParamBase* decider : effect.deciders) {
-        // Of many choices those that were not made would only fill the line.
+        // List only deciders that were set: the defaults would only make the line longer.
         if (decider == effect.deciders.front() || experiment.rank(decider->key()) >= 0)
           because += (because.empty() ? "" : ", ") + decider->key() + " = " + decider->text();
         later |= experiment.rank(decider->key()) > rank;
@@ -268,7 +268,7 @@ void Experiment::load(const fs::path& file, std::vector<fs::path>& chain) {
   if (chain.size() >= kMaxIncludeDepth)
     throw UserError(fmt::format("'{}' is included more than {} levels deep",
                                 one_line(file.string()), kMaxIncludeDepth));
-  // A file that includes another ten times, eight levels deep, would be read for ever.
+  // Otherwise a file that includes another ten times, eight levels deep, would be read for ever.
   if (files_.size() >= kMaxFiles)
     throw UserError(
         fmt::format("'{}': more than {} files included", one_line(file.string()), kMaxFiles));
@@ -288,7 +288,7 @@ void Experiment::load(const fs::path& file, std::vector<fs::path>& chain) {
       load(other, chain);
     }
   }
-  const int rank = next_rank_++;  // above those of the included files
+  const int rank = next_rank_++;  // above the rank of the included files
   for (const auto& e : entries) {
     if (e.key == kInclude) continue;
     try {

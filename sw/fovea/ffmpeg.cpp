@@ -27,17 +27,18 @@ namespace fovea::app {
 namespace {
 
 constexpr std::size_t kMaxMessageBytes = 4096;
-constexpr int kLookMs = 100;  ///< how often a stop flag is looked at
+constexpr int kLookMs = 100;  ///< interval in which the stop flag is checked, in ms
 
-/// The demuxers of ffmpeg that read one film or one picture, and nothing but the file they are given.
-/// Left out on purpose: hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and
-/// the like (text), svg_pipe (may refer to files), lavfi and devices.
+/// Demuxers of ffmpeg that read one video or picture from the given file only. Excluded on purpose:
+/// hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and the like (text),
+/// svg_pipe (may refer to other files), lavfi and devices.
 constexpr const char* kFormats =
     "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,mjpeg,gif,apng,flv,asf,ogg,ivf,nut,dv,mxf,"
     "yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,jpegxl_pipe,"
     "pam_pipe,pbm_pipe,pcx_pipe,pgm_pipe,png_pipe,ppm_pipe,psd_pipe,qoi_pipe,sgi_pipe,sunrast_pipe,"
     "tiff_pipe,webp_pipe,xwd_pipe";
-/// The footage as the child sees it. Its real name would let ffmpeg guess the format by the suffix.
+/// The footage as the child sees it: with the real name, ffmpeg would guess the format from the
+/// suffix.
 constexpr const char* kFootage = "file:/dev/stdin";
 
 void look_at(const std::atomic<bool>* stop) {
@@ -48,7 +49,7 @@ void close_fd(int& fd) {
   if (fd >= 0) ::close(std::exchange(fd, -1));
 }
 
-/// A descriptor that is closed at the end of its scope, or before.
+/// A descriptor that is closed at the end of its scope or earlier.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -62,15 +63,15 @@ class Descriptor {
   int fd_;
 };
 
-/// What ffmpeg said, as part of a one-line error: its last line, which names the cause.
+/// ffmpeg's message for a one-line error: its last line, which names the cause.
 std::string last_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   const std::size_t newline = text.find_last_of("\r\n");
   return one_line(newline == std::string::npos ? text : text.substr(newline + 1), 200);
 }
 
-/// Reads a frame of the portable pixmap stream ("P6\nW H\n255\n" and the pixels) from the front of
-/// `buffer`; nullopt if it is not complete yet. @throws std::runtime_error for anything else
+/// Removes a frame of the portable pixmap format ("P6\nW H\n255\n" and the pixels) from the front
+/// of `buffer`; nullopt if it is not complete yet. @throws std::runtime_error for anything else
 std::optional<RgbImage> take_frame(std::string& buffer) {
   std::array<unsigned, 3> header{};  // width, height, largest value
   const std::string_view text(buffer);
@@ -92,7 +93,7 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
     throw std::runtime_error(fmt::format("its pictures of {}x{} pixels are too large; allowed: up to {} "
                                          "pixels a side", width, height, kMaxPictureSide));
   const std::size_t size = std::size_t{3} * width * height;
-  const std::size_t begin = at + 1;  // one separator behind the last number
+  const std::size_t begin = at + 1;  // one separator follows the last number
   if (text.size() < begin + size) {
     buffer.reserve(begin + size);
     return std::nullopt;
@@ -111,7 +112,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
   std::vector<char*> argv;
   for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  // A socket and not a pipe: send() can be told not to raise SIGPIPE, a pipe cannot.
+  // A socket instead of a pipe, because send() can be told not to raise SIGPIPE.
   std::array<int, 2> stream{}, errors{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, stream.data()) != 0)
     throw UserError(fmt::format("{}: {}", purpose, std::strerror(errno)));
@@ -157,7 +158,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
         result == ENOENT ? "was not found; install it (package ffmpeg), or use PNG pictures"
                          : std::string("cannot be started: ") + std::strerror(result)));
   }
-  // Messages are read while data flows; neither stream may block on the other.
+  // Messages are read while data are transferred; neither stream may block because of the other.
   ::fcntl(error_, F_SETFL, O_NONBLOCK);
 }
 
@@ -169,7 +170,7 @@ ChildProcess::~ChildProcess() {
 }
 
 void ChildProcess::kill() {
-  // With whatever it has started: it leads a process group of its own.
+  // The child leads a process group of its own: kill everything that it has started, too.
   if (pid_ > 0) ::kill(-pid_, SIGKILL);
 }
 
@@ -223,7 +224,7 @@ bool ChildProcess::write_all(const std::uint8_t* bytes, std::size_t size) {
 
 int ChildProcess::finish(const std::atomic<bool>* stop) {
   close_fd(data_);
-  // Until the child closes its standard error; so it never blocks on a message nobody reads.
+  // Read until the child closes its standard error, so that it never blocks on a message.
   while (error_ >= 0) {
     look_at(stop);
     pollfd fd{error_, POLLIN, 0};
@@ -237,7 +238,8 @@ int ChildProcess::finish(const std::atomic<bool>* stop) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The options that scale frames of this size down to the largest allowed, in their proportions.
+/// Options that scale frames of this size down to the largest allowed one and keep the aspect
+/// ratio.
 static DecodeOptions reduced(DecodeOptions options, unsigned width, unsigned height) {
   const double scale = std::min(static_cast<double>(options.most_width) / width,
                                 static_cast<double>(options.most_height) / height);
@@ -253,13 +255,13 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   const auto fail = [&](const std::string& why) {
     throw UserError(fmt::format("cannot read the footage '{}': {}", name, why));
   };
-  // ffmpeg's own message about a missing file is long; ours is the same for all readers.
+  // ffmpeg's own message for a missing file is long; this one is the same for all readers.
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("no such file");
   if (!std::filesystem::is_regular_file(file, error)) fail("it is not a regular file");
   Descriptor footage(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (footage.get() < 0) fail(std::strerror(errno));
-  // Errors in the data end the decoding (-xerror) instead of being painted over.
+  // Errors in the data end the decoding (-xerror) instead of being concealed.
   std::vector<std::string> command = {options.program,
                                       "-nostdin",
                                       "-hide_banner",
@@ -283,7 +285,7 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
     command.push_back(fmt::format("scale={}:{}:flags=bicubic+accurate_rnd+full_chroma_int+bitexact",
                                   options.width, options.height));
   }
-  // Without -pix_fmt a source of more than 8 bits would become a pixmap of 16.
+  // Without -pix_fmt, a source with more than 8 bits would become a 16-bit pixmap.
   for (const char* word : {"-vsync", "passthrough", "-f", "image2pipe", "-c:v", "ppm", "-pix_fmt",
                            "rgb24", "pipe:1"})
     command.push_back(word);
@@ -342,7 +344,7 @@ FilmInfo film_info(const std::filesystem::path& file, const std::string& program
     child.kill();
     child.finish();
   } catch (const UserError&) {
-    return out;  // the film itself will be read or refused by ffmpeg
+    return out;  // decoding the video will report the error
   }
   const auto pair = [&](std::string_view key, char separator, std::uint64_t& a, std::uint64_t& b) {
     const std::size_t at = text.find(key);
@@ -371,7 +373,7 @@ FilmInfo film_info(const std::filesystem::path& file, const std::string& program
 RgbImage load_still(const std::filesystem::path& file, const std::atomic<bool>* stop) {
   static constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
   constexpr std::size_t kMaxStillBytes = 256u << 20;
-  // Also a file that only claims to be a PNG by its name goes to the PNG reader: its message fits.
+  // A file named *.png also goes to the PNG reader, whose message is the right one.
   if (file.extension() == ".png" || read_file(file, kMaxStillBytes).starts_with(kPngSignature))
     return read_png(file);
   return std::move(decode_frames(file, {.stop = stop}).front());

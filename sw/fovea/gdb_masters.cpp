@@ -44,7 +44,8 @@ GdbMasters::~GdbMasters() { crossbar_.observe(before_); }
 void GdbMasters::submitted(const MemRequest& r, bool to_sdram) {
   if (before_) before_->submitted(r, to_sdram);
   auto& list = under_way_[index(r.master)];
-  // Those decided long ago go; masters may be ahead of the time at which somebody looks.
+  // Remove requests that were decided long ago. Masters may be ahead of the time at which where()
+  // is called, so some decided requests are kept.
   constexpr std::size_t kKept = 64;
   if (list.size() >= 2 * kKept)
     list.erase(list.begin(), std::find_if(list.begin(), list.end() - kKept,
@@ -88,7 +89,7 @@ std::string GdbMasters::where(Picoseconds now) const {
   constexpr std::size_t kShown = 8;
   for (std::size_t m = 0; m < kMasterCount; ++m) {
     std::size_t n = 0;
-    for (const Request& r : under_way_[m]) {  // in the order of their issue
+    for (const Request& r : under_way_[m]) {  // in the order of issue
       if (r.issued > now || (r.decided && r.last <= now)) continue;
       if (n++ == 0) out += fmt::format("{} (priority {}):\n", kMasterNames[m], bus.priority[m]);
       if (n > kShown) continue;

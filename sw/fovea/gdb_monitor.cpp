@@ -1,4 +1,4 @@
-// What the debugger's `monitor` shows and sets.
+// The `monitor` commands of the debugger.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kPc = 15;
 
-/// A number as C writes it; nothing for anything else.
+/// Parses a number in C syntax; empty for anything else.
 std::optional<std::uint32_t> number(std::string_view text) {
   const bool hex = text.starts_with("0x") || text.starts_with("0X");
   if (hex) return hex_number(text.substr(2));
@@ -55,8 +55,9 @@ std::string GdbSession::show_registers(const std::string& what) const {
   return out.empty() ? fmt::format("no such register; blocks: {}\n", known) : out;
 }
 
-/// BLOCK.REGISTER[.FIELD]=VALUE: a store of the core's at this time, with all that follows from it.
-/// Of a register's other fields those that a 1 clears or sets off are written as 0.
+/// BLOCK.REGISTER[.FIELD]=VALUE: a store by the core at this time, with all its effects. If a field
+/// is given, the register's other fields keep their values, except that 0 is written to those where
+/// a 1 clears or starts something.
 std::string GdbSession::set_register(const std::string& what) {
   std::string_view rest = what;
   std::string_view path = take_until(rest, '=');
@@ -131,7 +132,7 @@ std::string GdbSession::core_line() const {
   return out;
 }
 
-/// A core that sleeps stands behind the others, one that has failed perhaps before them.
+/// A sleeping core is behind the others; a core that has failed may be ahead of them.
 Picoseconds GdbSession::time_now() const {
   return asleep_ && views_.now ? std::max(views_.now(), debug_.now()) : debug_.now();
 }

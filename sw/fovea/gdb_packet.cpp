@@ -45,7 +45,7 @@ std::optional<GdbFramer::Event> GdbFramer::next() {
           state_ = State::kSum1;
           break;
         }
-        if (c == '$') {  // the packet before was cut off
+        if (c == '$') {  // the previous packet was truncated
           payload_.clear();
           sum_ = 0;
           broken_ = escaped_ = false;

@@ -1,4 +1,4 @@
-// Packets of GDB's remote protocol and what they mean for the target.
+// The packets of GDB's remote protocol and their effect on the target.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace fovea::app {
 namespace {
 
-/// Errors as numbers: EFAULT for memory, EINVAL for a packet that makes no sense.
+/// Error numbers: EFAULT for memory, EINVAL for an invalid packet.
 constexpr const char* kNoMemory = "E0e";
 constexpr const char* kBadPacket = "E16";
 constexpr const char* kOk = "OK";
@@ -117,7 +117,7 @@ GdbProtocol::Answer GdbProtocol::handle(std::string_view packet) {
         a.payload = query(packet);
       }
       break;
-    default: a.payload = "";  // not known: GDB does without
+    default: a.payload = "";  // unknown packets are answered with an empty one
   }
   return a;
 }
@@ -127,7 +127,7 @@ GdbProtocol::Answer GdbProtocol::v_packet(std::string_view packet) {
   if (packet == "vCont?") {
     a.payload = "vCont;c;C;s;S;r;t";
   } else if (packet.starts_with("vCont;")) {
-    // One thread: the first action is its action.
+    // There is only one thread, so the first action applies to it.
     std::string_view rest = packet.substr(6);
     std::string_view action = take_until(rest, ';');
     action = take_until(action, ':');
@@ -153,7 +153,7 @@ GdbProtocol::Answer GdbProtocol::v_packet(std::string_view packet) {
   return a;
 }
 
-/// c, C, s, S with an optional address; the signal means nothing to bare metal.
+/// c, C, s or S with an optional address; signals are ignored, as bare-metal programs have none.
 std::optional<GdbResume> GdbProtocol::resume(std::string_view packet) {
   std::string_view rest = packet.substr(1);
   if (packet[0] == 'C' || packet[0] == 'S') take_until(rest, ';');
@@ -199,7 +199,7 @@ std::string GdbProtocol::transfer(std::string_view arguments) {
   else
     return object == "features" || object == "memory-map" ? "E00" : "";
   if (offset > text.size()) return kBadPacket;
-  // Half a packet leaves room for escapes.
+  // Half of a packet leaves room for escapes.
   const std::size_t n = std::min<std::size_t>(bytes, kGdbPacketBytes / 2 - 1);
   const bool last = text.size() - offset <= n;
   return (last ? "l" : "m") + text.substr(offset, n);
@@ -214,7 +214,7 @@ std::string GdbProtocol::read_all() const {
   return out;
 }
 
-/// Registers that cannot be written keep their value.
+/// Writes to read-only registers are ignored.
 std::string GdbProtocol::write_all(std::string_view hex) {
   const auto registers = target_.registers();
   if (hex.size() != 8 * registers.size()) return kBadPacket;
@@ -240,7 +240,7 @@ std::string GdbProtocol::set_register(std::string_view arguments) {
   return n && v && target_.write_register(*n, *v) ? kOk : kBadPacket;
 }
 
-/// As much as can be read from the start on.
+/// Returns as many bytes as can be read from the start on.
 std::string GdbProtocol::read_memory(std::string_view arguments) {
   std::uint32_t address = 0, bytes = 0;
   if (!range(arguments, ';', address, bytes)) return kBadPacket;

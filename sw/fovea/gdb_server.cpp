@@ -1,4 +1,4 @@
-// The socket side: one listener, one debugger.
+// The socket of the GDB server: one listener, one debugger.
 #include "sw/fovea/gdb_server.h"
 
 #include <arpa/inet.h>
@@ -21,9 +21,9 @@
 namespace fovea::app {
 namespace {
 
-constexpr int kLookMs = 100;  // how often the process's stop flag is looked at
+constexpr int kLookMs = 100;  // interval in which the process's stop flag is checked, in ms
 
-/// GDB begins with an acknowledgement, a packet or an interrupt.
+/// GDB begins with an acknowledgement, a packet or an interrupt byte.
 bool begins_like_gdb(char c) { return c == '+' || c == '-' || c == '$' || c == '\x03'; }
 
 bool readable(int fd, int timeout_ms) {
@@ -88,8 +88,8 @@ bool GdbServer::connect(int timeout_ms) {
   return true;
 }
 
-/// A second debugger would wait without a word for the first to leave. It takes the place of somebody
-/// who never spoke.
+/// Handles connections of further clients: a second debugger would otherwise wait for the first one
+/// without a message. It replaces a client that has never sent anything.
 void GdbServer::attend_others() {
   if (!readable(listener_, 0)) return;
   if (silent_) {
@@ -101,7 +101,7 @@ void GdbServer::attend_others() {
   if (other >= 0) ::close(other);
 }
 
-/// Others are refused only when the one that is there has nothing to say: it may have left.
+/// Further clients are only handled if the connected one has sent nothing: it may have left.
 GdbServer::Io GdbServer::receive(int timeout_ms) {
   if (!readable(socket_, timeout_ms)) {
     attend_others();
@@ -122,7 +122,7 @@ void GdbServer::send(std::string_view payload) {
   while (!left.empty()) {
     const ssize_t n = ::send(socket_, left.data(), left.size(), MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return;  // the next receive() says so
+    if (n <= 0) return;  // the next receive() reports the error
     left.remove_prefix(static_cast<std::size_t>(n));
   }
 }
@@ -148,7 +148,8 @@ GdbResume GdbServer::serve(const GdbStop& stop) {
       const Io io = receive(kLookMs);
       if (newcomer && io == Io::kSome) protocol_.begin(stop);
       if (io == Io::kClosed) {
-        // A debugger that is gone without a word leaves the target where it is, for the next one.
+        // A debugger that disconnects without a packet leaves the target as it is, for the next
+        // debugger.
         if (!newcomer) target_.clear_all_points();
         drop();
       }
@@ -157,7 +158,7 @@ GdbResume GdbServer::serve(const GdbStop& stop) {
     using Kind = GdbFramer::Event::Kind;
     switch (event->kind) {
       case Kind::kAck:
-      case Kind::kInterrupt: continue;  // it stands still already
+      case Kind::kInterrupt: continue;  // the target is already stopped
       case Kind::kNak:
         if (!protocol_.no_ack() && !last_sent_.empty())
           ::send(socket_, last_sent_.data(), last_sent_.size(), MSG_NOSIGNAL);
@@ -203,7 +204,7 @@ bool GdbServer::wants_halt() {
 void GdbServer::exited(int status, bool by_signal) {
   if (!attached()) return drop();
   if (running_) send(fmt::format("{}{:02x}", by_signal ? 'X' : 'W', status & 0xFF));
-  // What is still on its way to the debugger would be lost by a reset of the connection.
+  // A reset of the connection would discard data that are still on their way to the debugger.
   ::shutdown(socket_, SHUT_WR);
   for (int tries = 0; tries < 10; ++tries)
     if (receive(kLookMs) == Io::kClosed) break;

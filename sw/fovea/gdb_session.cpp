@@ -10,7 +10,7 @@
 namespace fovea::app {
 namespace {
 
-// GDB's numbers: r0 to r15, and 25 for the CPSR since the days of the FPA.
+// GDB's register numbers: r0 to r15 and, for historical reasons (FPA), 25 for the CPSR.
 constexpr unsigned kPc = 15, kCpsr = 25, kSpsr = 26, kSystem = 27, kBanked = 64;
 
 cpu::CoreControl::Watch watch_of(GdbTarget::Point kind) {
@@ -72,9 +72,9 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
   go_on(resume, over_watched && resume.kind == GdbResume::Kind::kStep);
 }
 
-/// A debugger that finds its watchpoint hit takes all of them out and steps over the instruction
-/// that it takes for the cause. Behind another master's access there is none: that step ends where
-/// it began, for a core at a boundary as for one that sleeps.
+/// When a watchpoint is hit, a debugger removes all watchpoints and steps over the instruction that
+/// it takes for the cause. After another master's access there is no such instruction, so this step
+/// ends at once, both at an instruction boundary and for a sleeping core.
 GdbResume GdbSession::serve(const GdbStop& stop) {
   serving_ = true;
   watched_at_stop_ = watched_;
@@ -105,7 +105,8 @@ void GdbSession::failed(const std::string& why) {
     killed_ = true;
 }
 
-/// Kept until they are told: while the first stops the core, others may be known already.
+/// Hits are kept until they are reported: more may become known before the first one stops the
+/// core.
 void GdbSession::noticed(const GdbMasters::Hit& hit) {
   const bool first = hit.at < next_hit();
   hits_.push_back(hit);
@@ -124,15 +125,16 @@ void GdbSession::wait_for_hit() {
   if (at != kNever) views_.pause_at(at);
 }
 
-/// The earliest. What the debugger reads is the core's view: where that does not show the write, a
-/// watchpoint would find nothing new, so the stop has another reason and the console says which.
+/// Removes the earliest hit. The debugger reads memory as the core sees it. If the core's view does
+/// not show the write, the debugger would find no change, so a different stop reason is reported,
+/// and a text on its console explains it.
 GdbStop GdbSession::take_hit() {
   FOVEA_CHECK(!hits_.empty(), "a stop for another master's access has its access");
   const auto first = std::min_element(hits_.begin(), hits_.end(),
                                       [](const auto& a, const auto& b) { return a.at < b.at; });
   const GdbMasters::Hit h = *first;
   hits_.erase(first);
-  // The debugger takes an address for all its watchpoints there.
+  // The debugger attributes an address to all its watchpoints that contain it.
   if (h.watch.packet)
     std::erase_if(hits_, [&](const GdbMasters::Hit& o) {
       return o.watch.packet && o.at == h.at && o.master == h.master &&
@@ -158,8 +160,9 @@ bool GdbSession::hidden_from_core(const GdbMasters::Hit& h) {
   return debug_.read(h.va, seen) && debug_.read_behind(h.pa, behind) && seen != behind;
 }
 
-/// Other masters know physical addresses only: a watchpoint is where its pages are when the core
-/// goes on. While the debugger steps over one with all of them out, they stay for the others.
+/// Other masters use physical addresses only: a watchpoint applies to the pages as they are mapped
+/// when the core continues. While the debugger steps over a hit with all its watchpoints removed,
+/// they remain active for the other masters.
 void GdbSession::arm_watches(bool over_watched) {
   if (!views_.masters) return;
   const auto& ranges = over_watched && watched_.empty() ? watched_at_stop_ : watched_;
@@ -203,14 +206,15 @@ void GdbSession::go_on(const GdbResume& resume, bool over_watched) {
       return;
   }
   if (over_watched)
-    control_.stop_after(kNever);  // that step ends with the instruction; what comes is told then
+    control_.stop_after(kNever);  // the step ends with this instruction; further hits are reported
+                                  // then
   else
     wait_for_hit();
 }
 
 void GdbSession::look(bool asleep) {
-  if (serving_) return;  // a command lets the others catch up
-  // Also a core that comes to no boundary for a whole turn stands where it is.
+  if (serving_) return;  // a command of the debugger lets the others act
+  // A core that has reached no boundary since the last call is stopped where it is.
   const bool stuck = halt_seen_ && control_.halt_pending();
   if (!control_.halt_pending() && server_.wants_halt()) control_.request_halt();
   halt_seen_ = control_.halt_pending();
@@ -303,7 +307,7 @@ std::string GdbSession::target_xml() const {
   std::string out =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target>\n"
       "<architecture>armv5te</architecture>\n<feature name=\"org.gnu.gdb.arm.core\">\n";
-  // A group is what `info registers GROUP` shows.
+  // The group is the argument of `info registers GROUP`.
   const auto reg = [&out](const std::string& name, unsigned number, const char* type,
                           const char* group = nullptr) {
     out += fmt::format("<reg name=\"{}\" bitsize=\"32\" regnum=\"{}\" type=\"{}\"{}/>\n", name,
@@ -325,8 +329,8 @@ std::string GdbSession::target_xml() const {
   return out + "</feature>\n</target>\n";
 }
 
-/// All addresses, cut at the ends of the physical RAM: GDB refuses what the map leaves out, and a
-/// program with its MMU on may have memory anywhere.
+/// All addresses, divided at the bounds of physical RAM: GDB refuses addresses that the map does
+/// not contain, and a program with its MMU on may map memory anywhere.
 std::string GdbSession::memory_map_xml() const {
   constexpr std::uint64_t kEnd = std::uint64_t{1} << 32;
   std::vector<std::uint64_t> cuts = {0, kEnd};

@@ -53,7 +53,7 @@ GuestFiles::Parent GuestFiles::parent(const std::string& name) const {
     const int next = ::openat(p.folder, p.name.c_str(),
                               O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (next < 0) {
-      // ENOTDIR and ELOOP alike stand for a symbolic link here, or for a file.
+      // Both ENOTDIR and ELOOP may mean a symbolic link, or a file.
       struct stat s {};
       const int error = errno;
       const bool link = ::fstatat(p.folder, p.name.c_str(), &s, AT_SYMLINK_NOFOLLOW) == 0 &&
@@ -67,7 +67,7 @@ GuestFiles::Parent GuestFiles::parent(const std::string& name) const {
   return p;
 }
 
-/// 0 for a regular file, ENOENT for none, EACCES or EISDIR for anything else.
+/// 0 for a regular file, ENOENT if there is none, EACCES or EISDIR for anything else.
 int GuestFiles::check_file(const Parent& p) {
   struct stat s {};
   if (::fstatat(p.folder, p.name.c_str(), &s, AT_SYMLINK_NOFOLLOW) != 0) return errno;
@@ -79,7 +79,7 @@ int GuestFiles::open(const std::string& name, int flags) const {
   const Parent p = parent(name);
   if (p.folder < 0) return p.folder;
   if (const int e = check_file(p); e != 0 && !(e == ENOENT && (flags & O_CREAT))) return -e;
-  // The name may have come to mean something else since: no link is followed, no FIFO waited for.
+  // The name may refer to something else by now: do not follow links or wait for FIFOs.
   const int fd = ::openat(p.folder, p.name.c_str(),
                           flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0644);
   if (fd < 0) return errno == ELOOP ? -EACCES : -errno;

@@ -13,7 +13,7 @@ namespace fovea::app {
 
 namespace {
 
-/// Frames of a film that are kept; it begins again after them.
+/// Number of frames of a video that are used; then it starts again.
 constexpr std::size_t kMostFilmFrames = 250;
 
 }  // namespace
@@ -46,8 +46,8 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
   if (camera.kind.is("sphere")) return {load_still(camera.file(), stop)};
   DecodeOptions options;
   options.max_frames = kMostFilmFrames;
-  // All of them are kept. More than twice the raster's size shows nothing more, and takes the host's
-  // memory.
+  // All frames are kept in the host's memory, and more than twice the size of the raster shows no
+  // more detail.
   options.most_width = 2 * params.raster_width();
   options.most_height = 2 * params.raster_height();
   options.stop = stop;
@@ -59,10 +59,10 @@ std::vector<std::string> footage_notes(const board::BoardParams& params,
   std::vector<std::string> out;
   const auto& camera = params.camera;
   if (frames.empty() || camera.kind.is("chart")) return out;
-  // A film's frames may have been scaled down when they were read.
+  // The frames of a video may have been scaled down when they were read.
   const unsigned width = info.width ? info.width : frames.front().width;
   const unsigned height = info.height ? info.height : frames.front().height;
-  // Television's raster is shown 4:3. A film that is bent into a lens keeps its shape.
+  // A television raster is displayed 4:3. Frames that are warped by a lens keep their shape.
   const bool film = camera.kind.is("video");
   const double change = height * (4.0 / 3) / (width * info.pixel_aspect);
   if (!(film && camera.video_fov() > 0) && std::abs(change - 1) > 0.01)
@@ -130,7 +130,7 @@ void complete_params(board::BoardParams& params) {
 
 namespace {
 
-/// The firmware's calibrated lens in pixels of the raster that the camera sends.
+/// The firmware's calibrated lens, in pixels of the camera's raster.
 video::LensModel firmware_lens(const board::BoardParams& params) {
   const auto& lens = params.lens;
   const auto& kb = lens.kb();
@@ -139,8 +139,9 @@ video::LensModel firmware_lens(const board::BoardParams& params) {
       .scaled(params.raster_width() / lens.kb_width(), params.raster_height() / lens.kb_height());
 }
 
-/// Whoever sets only one of the two lenses gets a skewed picture, which is hardly meant. Whoever
-/// sets both may want it: firmware can be wrong about a lens on a real board too.
+/// Warns if only one of the two lenses was set, which gives a distorted picture and is probably a
+/// mistake. If both are set, the difference may be intended: firmware on a real board can be wrong
+/// about its lens.
 void check_same_lens(const board::BoardParams& params, const video::LensModel& firmware,
                      const video::LensModel& camera) {
   if (params.lens.kb.user_set() == params.camera.kb.user_set()) return;

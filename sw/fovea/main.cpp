@@ -1,4 +1,4 @@
-// The program `fovea`. The only file of the host program that knows SystemC.
+// The program `fovea`: SystemC's entry point, signals, standard streams and exit status.
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -12,8 +12,8 @@
 
 namespace {
 
-/// A file that is opened takes the lowest free descriptor. If that is 1 or 2, since the program was
-/// started with a closed stream, messages would go into a file of results.
+/// Opens standard streams that were closed when the program was started. Otherwise a result file
+/// could get descriptor 1 or 2, and messages would be written into it.
 void open_standard_streams() {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
     if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
@@ -21,13 +21,13 @@ void open_standard_streams() {
       std::_Exit(fovea::app::kExitWrongInput);
 }
 
-/// True if a reader has closed its end of the pipe, as `head` does: it has all it wants.
+/// True if the reader of a pipe has closed its end, as `head` does once it has enough.
 bool reader_has_left(int fd) {
   pollfd p{fd, POLLOUT, 0};
   return ::poll(&p, 1, 0) > 0 && (p.revents & POLLERR) != 0;
 }
 
-/// Text that did not reach the standard output is an error of the run.
+/// Standard output that could not be written is an error of the run.
 int check_output(int status) {
   std::cout.flush();
   if (std::cout || reader_has_left(STDOUT_FILENO)) return status;
@@ -46,8 +46,8 @@ int sc_main(int argc, char** argv) {
                      .make_executor = make_executor};
   install_signals(context);
   const int status = check_output(run_cli({argv + 1, argv + argc}, context));
-  // Without destructors: the kernel's own state must not outlive or predecease ours in an order
-  // that nobody controls, and all files are closed by now.
+  // Ends without destructors, whose order relative to those of the SystemC kernel is not defined.
+  // All files are closed by now.
   std::cerr.flush();
   std::fflush(nullptr);
   std::quick_exit(status);
@@ -55,7 +55,7 @@ int sc_main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  // SystemC prints a banner from here unless told otherwise.
+  // Suppresses SystemC's banner, unless the user has set the variable.
   ::setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
   return sc_core::sc_elab_and_sim(argc, argv);
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kFirstBytes = 4096;
 
-/// Why the existing file `name` may not be replaced; empty: it may, or there is none.
+/// Why the existing file `name` may not be replaced; empty if it may, or if there is none.
 std::string obstacle(const fs::path& name, std::string_view kind,
                      const std::function<bool(std::string_view)>& is_ours) {
   struct stat info {};
@@ -37,7 +37,7 @@ std::string obstacle(const fs::path& name, std::string_view kind,
   return is_ours(first) ? "" : fmt::format("it exists and is not {}", kind);
 }
 
-/// True if another process has the file open to write it.
+/// True if another process has the file open for writing.
 bool is_locked(const fs::path& name) {
   const int fd = ::open(name.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return false;
@@ -86,7 +86,7 @@ OutputFile::~OutputFile() {
 void OutputFile::commit() {
   FOVEA_CHECK(!committed_, "output file committed twice");
   if (!device_) file_->sync();
-  // The lock goes with the descriptor, so the file gets its name first.
+  // Closing the file releases the lock, so it is renamed first.
   if (!device_ && ::rename(working_.c_str(), name_.c_str()) != 0)
     throw UserError(
         fmt::format("cannot write '{}': {}", one_line(name_.string()), std::strerror(errno)));

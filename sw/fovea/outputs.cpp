@@ -14,7 +14,7 @@
 namespace fovea::app {
 namespace {
 
-/// A JSON string; bytes that are no UTF-8 become the replacement character.
+/// A JSON string; bytes that are not UTF-8 become the replacement character.
 std::string js(std::string_view text) {
   return nlohmann::json(std::string(text))
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -31,7 +31,7 @@ void append_rows(std::string& out, std::vector<StatRow> rows) {
   }
 }
 
-/// A field of a CSV file, quoted when it must be (RFC 4180).
+/// A field of a CSV file, quoted if necessary (RFC 4180).
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -62,7 +62,7 @@ const StatRow* find(std::span<const StatRow> rows, std::string_view name) {
 
 std::string number_text(double value) {
   if (!std::isfinite(value)) return "null";
-  if (value == 0) value = 0;  // no "-0.0"
+  if (value == 0) value = 0;  // avoids "-0.0"
   std::array<char, 40> buffer{};
   const auto [end, ec] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   FOVEA_CHECK(ec == std::errc(), "a double fits 40 characters");
@@ -210,7 +210,7 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
   if (unit == "ratio") return fmt::format("{:.1f} %", 100 * v);
   const std::string number =
       whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
-  // "count", "frames" and the like are said by the name.
+  // Units such as "count" and "frames" are already in the name.
   return unit.empty() || unit == "count" || unit == "1" ? number : fmt::format("{} {}", number, unit);
 }
 
@@ -226,7 +226,7 @@ std::string verdict(std::span<const StatRow> stats) {
   const std::uint64_t fresh = displayed - std::min(repeated, displayed);
   const std::uint64_t dropped = count("frame.dropped");
   const auto some = [](std::uint64_t n) { return n ? std::to_string(n) : std::string("none"); };
-  // The camera sends a frame for each one that is displayed.
+  // The camera sends one frame for each displayed frame.
   std::string out = fmt::format("{}: {} of {} camera frames shown ({:.4g}/s), {} dropped, {} repeated",
                                 repeated || dropped ? "frame rate missed" : "frame rate met", fresh,
                                 displayed, std::get<double>(rate->value), some(dropped),
@@ -251,7 +251,7 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
   for (const char* name : kStats)
     if (const auto* row = find(stats, name))
       lines.emplace_back(name, human_text(row->value, row->unit));
-  // Bytes of the masters that moved any.
+  // Bytes of each master that has transferred any.
   std::vector<std::string> masters;
   for (const auto& row : stats) {
     const bool bytes = row.name.starts_with("bus.") &&

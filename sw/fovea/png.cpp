@@ -24,7 +24,7 @@ using Context = std::unique_ptr<spng_ctx, ContextDeleter>;
 constexpr std::int32_t fixed(double v) {
   return static_cast<std::int32_t>(v * 65536 + (v < 0 ? -0.5 : 0.5));
 }
-// 255/219 and 255/224 times the BT.601 factors (Kr 0.299, Kb 0.114).
+// Factors of BT.601 (Kr 0.299, Kb 0.114) times 255/219 and 255/224.
 constexpr std::int32_t kY = fixed(255.0 / 219), kCrR = fixed(1.402 * 255 / 224),
                        kCbG = fixed(0.114 * 1.772 / 0.587 * 255 / 224),
                        kCrG = fixed(0.299 * 1.402 / 0.587 * 255 / 224),
@@ -73,7 +73,7 @@ RgbImage read_png(const std::filesystem::path& file) {
   if (!bytes.starts_with(kSignature)) fail("it is not a PNG file");
   const Context context(spng_ctx_new(0));
   FOVEA_CHECK(context != nullptr, "no memory for a PNG decoder");
-  // A few hundred megabytes of text chunks are no picture.
+  // Refuse files with hundreds of megabytes in text chunks.
   check(spng_set_chunk_limits(context.get(), 16u << 20, 32u << 20));
   check(spng_set_image_limits(context.get(), kMaxPictureSide, kMaxPictureSide));
   check(spng_set_crc_action(context.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD));
@@ -85,8 +85,8 @@ RgbImage read_png(const std::filesystem::path& file) {
   RgbImage image{header.width, header.height, std::vector<std::uint8_t>(size)};
   check(spng_decode_image(context.get(), image.rgb.data(), size, SPNG_FMT_RGB8, 0));
   check(spng_decode_chunks(context.get()));
-  // The decoder is content without the end mark; a file cut behind the pixels is damaged all the
-  // same.
+  // The decoder does not require the end marker, but a file that is truncated after the pixels is
+  // damaged.
   if (bytes.find(kLastChunk) == std::string::npos) fail("the PNG file is cut short");
   return image;
 }
@@ -105,7 +105,7 @@ std::vector<std::uint8_t> encode_png(const RgbImage& image, int level) {
   header.color_type = SPNG_COLOR_TYPE_TRUECOLOR;
   check(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
   check(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, level));
-  // One filter for all rows: trying each per row costs more time than the fast levels save bytes.
+  // Use one filter for all rows: choosing it for each row takes more time than it saves bytes.
   if (level <= 3) check(spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB));
   check(spng_set_ihdr(context.get(), &header));
   check(spng_encode_image(context.get(), image.rgb.data(), image.rgb.size(), SPNG_FMT_PNG,

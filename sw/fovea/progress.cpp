@@ -56,7 +56,7 @@ std::string ProgressMeter::line(const Sample& now) const {
   else if (p.instructions)
     text += fmt::format(", {:.1f} million instructions", static_cast<double>(p.instructions) * 1e-6);
   if (wall > 0 && simulated > 0) text += fmt::format(", {:.2f}x real time", simulated / wall);
-  // From the steady state: start-up runs at another speed and shows no frames.
+  // Estimated from the steady state, because start-up has another speed and displays no frames.
   if (steady_ && p.frames_wanted > p.frames_shown &&
       p.frames_shown > steady_->progress.frames_shown) {
     const double per_frame = Seconds(now.wall - steady_->wall).count() /

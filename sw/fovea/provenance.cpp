@@ -23,7 +23,7 @@ bool has_effect(const ParamBase& p) {
 
 std::string sha256_of(const fs::path& file) {
   std::error_code error;
-  // A pipe would be emptied, and its reader wait for ever.
+  // Reading a pipe would consume its contents or block for ever.
   if (!fs::is_regular_file(file, error)) return "";
   std::array<char, SHA256_DIGEST_STRING_LENGTH> text{};
   return ::SHA256File(file.c_str(), text.data()) ? text.data() : "";

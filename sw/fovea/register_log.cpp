@@ -11,11 +11,13 @@
 namespace fovea::app {
 namespace {
 
-/// Long enough for any list of names; the compiler of expressions recurs for each parenthesis.
+/// Long enough for any list of names; the compiler of regular expressions recurses for each
+/// parenthesis.
 constexpr std::size_t kLongestPattern = 400;
 
-/// With this library's executor that keeps a set of states: time is bounded by length of name times
-/// length of pattern, where the usual one tries out all ways ('(.*)*x').
+/// Selects the executor of libstdc++ that tracks sets of states: its time is bounded by the product
+/// of the lengths of name and pattern. The default one backtracks and may take exponential time
+/// ('(.*)*x').
 constexpr auto kSyntax = std::regex::ECMAScript | std::regex_constants::__polynomial;
 
 }  // namespace
@@ -69,7 +71,7 @@ const std::string& RegisterLog::block_name(const RegBank* bank) const {
   return found->name;
 }
 
-/// Offsets without a register match by their block's name alone.
+/// Offsets without a register match by the name of their block alone.
 bool RegisterLog::wanted(const RegisterAccess& access) {
   const Reg* const reg = access.bank->register_at(access.offset);
   if (!reg) return std::regex_search(block_name(access.bank) + ".", *pattern_);

@@ -30,7 +30,7 @@ fs::path with_suffix(const fs::path& path, std::string_view suffix) {
   return out;
 }
 
-/// Folders to be removed also when the program ends without destructors: at a broken invariant
+/// Folders to be removed when the program ends without destructors, at a broken invariant
 /// (FOVEA_CHECK).
 std::vector<fs::path>& abandoned_at_exit() {
   static std::vector<fs::path> folders;
@@ -46,7 +46,7 @@ mode_t umask_now() {
   return mask;
 }
 
-/// File systems that know no fsync() answer EINVAL.
+/// fsync() fails with EINVAL on file systems that do not support it.
 void sync_to_disk(const fs::path& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) fail(path, std::strerror(errno));
@@ -60,7 +60,8 @@ void sync_to_disk(const fs::path& path) {
 RunDir::RunDir(const fs::path& dir, std::string_view command) : command_(command) {
   if (dir.empty()) throw UserError("output folder '': a name is needed");
   std::error_code error;
-  // Resolves symbolic links, "." and a trailing slash: DIR.tmp must be a neighbour of the real DIR.
+  // Resolves symbolic links, "." and a trailing slash, so that DIR.tmp is in the same folder as
+  // DIR.
   final_ = fs::weakly_canonical(fs::absolute(dir), error);
   if (error) fail(dir, error.message());
   if (!final_.has_filename()) final_ = final_.parent_path();
@@ -100,7 +101,7 @@ void RunDir::take_working() {
   if (mine.st_uid != ::geteuid())
     fail(working_, "it belongs to another user; choose another name or remove it");
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) fail(working_, "another run is writing it");
-  // The run that had it may just have renamed it to DIR.
+  // The run that used it may just have renamed it to DIR.
   if (::lstat(working_.c_str(), &there) != 0 || there.st_ino != mine.st_ino ||
       there.st_dev != mine.st_dev)
     fail(working_, "another run is writing it");
@@ -110,7 +111,7 @@ void RunDir::take_working() {
   if (!found.foreign.empty())
     fail(working_, fmt::format("it holds {}, which is not a file of a Fovea run; move it away",
                                in_quotes(found.foreign)));
-  // Nobody else can put a link in the way of a file while the run writes.
+  // Only the owner may enter, so that nobody can place links in the folder while the run writes.
   mode_ = (0777 & ~umask_now()) | (mine.st_mode & S_ISGID);
   if (!made && ::fchmod(lock_, 0700) != 0) fail(working_, std::strerror(errno));
   set_remove(true);
@@ -126,7 +127,7 @@ void RunDir::set_remove(bool remove) {
   if (remove) folders.push_back(working_);
 }
 
-/// Removed under the lock: no other run can have begun in it.
+/// Removes the folder while it is locked, so that no other run can have started in it.
 void RunDir::abandon() {
   if (remove_) {
     set_remove(false);
@@ -169,7 +170,7 @@ int RunDir::make_folder(std::string_view name) {
   return folders_.emplace_back(fd);
 }
 
-/// Names without contents are what a power failure leaves otherwise.
+/// Without this, files could be empty after a power failure.
 void RunDir::sync() const {
   for (const auto& entry : fs::recursive_directory_iterator(working_))
     if (!entry.is_symlink() && (entry.is_regular_file() || entry.is_directory()))
@@ -207,8 +208,8 @@ std::string RunDir::commit(bool complete) {
   return note;
 }
 
-/// Puts DIR.tmp in the place of `target`, which may exist. At no time are both results missing.
-/// @return what to add to the note
+/// Renames DIR.tmp to `target`, which may exist. At any time one of the two results exists. @return
+/// what to add to the note about earlier results
 std::string RunDir::replace(const fs::path& target) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(target, error))) {
@@ -216,7 +217,7 @@ std::string RunDir::replace(const fs::path& target) {
       fail(target, fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
     return "";
   }
-  // The old folder is locked too: no other run takes it for an abandoned DIR.tmp.
+  // The old folder is locked too, so that no other run takes it for an abandoned DIR.tmp.
   const int old = ::open(target.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (old >= 0) {
     ::flock(old, LOCK_EX | LOCK_NB);
@@ -224,7 +225,7 @@ std::string RunDir::replace(const fs::path& target) {
   }
   fs::path aside = working_;
   if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
-    // File systems without exchange: the old result steps aside first.
+    // File systems that cannot exchange names: the old result is renamed first.
     aside = with_suffix(target, ".old");
     for (int n = 2; fs::exists(fs::symlink_status(aside, error)); ++n)
       aside = with_suffix(target, fmt::format(".old.{}", n));
@@ -240,7 +241,7 @@ std::string RunDir::replace(const fs::path& target) {
   return fmt::format("; what could not be removed of it is in {}", in_quotes(aside));
 }
 
-/// DIR and the suffix; with a number as well if that name is taken by anything but partial results.
+/// DIR with the suffix, and with a number if that name is used for anything but partial results.
 fs::path RunDir::put_beside(std::string_view suffix) {
   for (int n = 1;; ++n) {
     fs::path name = with_suffix(final_, suffix);

@@ -15,8 +15,8 @@ namespace fovea::app {
 
 /// Files of a run are written to `DIR.tmp`; commit() renames it to `DIR` and replaces an earlier
 /// result. The following is never lost:
-/// - Files that Fovea does not write are never removed: a folder that contains one is refused, before the
-///   run and again after it.
+/// - Files that Fovea does not write are never removed: a folder with such files is refused, before
+///   the run and again after it.
 /// - Results of one command are not replaced by those of another.
 /// - Complete results are replaced only by complete ones; partial ones go to `DIR.partial`.
 /// Without commit() (an error, a broken invariant), `DIR.tmp` is removed and `DIR` stays unchanged.

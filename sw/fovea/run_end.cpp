@@ -7,8 +7,8 @@
 namespace fovea::app {
 namespace {
 
-/// A halted core is looked for so often; the second look that finds it at the same place ends the
-/// run.
+/// Interval in which a halted core is searched for. If two successive checks find it at the same
+/// address, the run ends.
 constexpr Picoseconds kHaltLook = kPsPerMs;
 constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
 
@@ -94,8 +94,8 @@ void RunEnd::look_for_halt() {
   });
 }
 
-/// The core sleeps in WFI, or runs a branch to itself, and no interrupt can change that: the
-/// controller has none enabled, or the branch runs with both masked.
+/// True if the core waits for an interrupt or executes a branch to itself, and no interrupt can
+/// change that: none is enabled in the controller, or both are masked at the branch.
 bool RunEnd::halted() {
   auto& soc = board_.dm365;
   const auto& enables = soc.aintc.core().regs;

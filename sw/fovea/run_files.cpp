@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr std::size_t kMaxConfigBytes = 16u << 20;
 constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
-/// The files of all commands. RunDir refuses to write a file that is missing here.
+/// The files of all commands. RunDir refuses to write files that are not listed here.
 constexpr std::array<std::string_view, 10> kFiles = {
     "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",
     "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4"};
@@ -36,8 +36,8 @@ bool is_series_folder(std::string_view name) {
                      [&](const Series& s) { return s.folder == name; });
 }
 
-/// `f(relative name, entry, is a folder of numbered files)` for all that lies in `dir` and in its
-/// folders of numbered files, sorted by name.
+/// Calls `f(relative name, entry, is a folder of numbered files)` for everything in `dir` and in
+/// its folders of numbered files, sorted by name.
 template <class F>
 void each_entry(const fs::path& dir, const F& f) {
   const auto sorted = [](const fs::path& folder) {
@@ -63,7 +63,7 @@ bool is_regular(const fs::path& file) {
   return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
 }
 
-/// A JSON file; a discarded value if it cannot be read or is not JSON.
+/// Reads a JSON file; returns a discarded value if it cannot be read or is not JSON.
 json read_json(const fs::path& file, std::size_t max_bytes) {
   try {
     return json::parse(read_file(file, max_bytes), nullptr, false);
@@ -128,7 +128,7 @@ RunFolder look_at_run_folder(const fs::path& dir) {
     found.command = host["command"][0];
   if (fs::exists(fs::symlink_status(dir / "stats.json", error))) {
     const json stats = read_json(dir / "stats.json", kMaxStatsBytes);
-    // Results that cannot be read count as complete: they are not given up for partial ones.
+    // Results that cannot be read count as complete, so that partial results do not replace them.
     found.complete = !(stats.is_object() && stats.contains("complete") && stats["complete"] == false);
     found.date = local_date(dir / "stats.json");
   } else {
@@ -142,7 +142,7 @@ bool remove_run_files(const fs::path& dir, bool keep_folder) {
   each_entry(dir, [&](const fs::path& name, bool series) {
     std::error_code error;
     const bool ours = series || (is_run_file(name.string()) && is_regular(dir / name));
-    // fs::remove() takes a folder only if it is empty.
+    // fs::remove() removes a folder only if it is empty.
     if (!ours || !fs::remove(dir / name, error)) empty = false;
   });
   std::error_code error;

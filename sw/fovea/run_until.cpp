@@ -34,7 +34,7 @@ std::vector<std::string> items_of(const std::string& text) {
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const char c = rest[i];
     if (quoted && c == '\\' && i + 1 < rest.size() && (rest[i + 1] == '"' || rest[i + 1] == '\\')) {
-      // Kept as an escape: the text of a condition is made plain later.
+      // Escapes are kept here and replaced when the condition is parsed.
       item += c;
       item += rest[++i];
     } else if (c == '"') {
@@ -61,7 +61,7 @@ std::optional<std::uint32_t> number(std::string_view text) {
   return value;
 }
 
-/// "0x8000", "main" or "main+0x10".
+/// The address of "0x8000", "main" or "main+0x10".
 std::uint32_t address_of(const std::string& item, std::string_view text, const Symbols& symbols) {
   if (const auto value = number(text)) return *value & ~1u;
   std::uint32_t offset = 0;

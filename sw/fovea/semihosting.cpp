@@ -27,15 +27,15 @@ constexpr std::uint32_t kError = 0xFFFF'FFFFu;
 constexpr std::uint32_t kApplicationExit = 0x20026;
 constexpr std::size_t kMaxFiles = 64, kMaxName = 4096, kChunk = 4096;
 constexpr std::uint32_t kTicksPerSecond = 1'000'000'000;
-/// ":semihosting-features": magic, then EXT_EXIT_EXTENDED and EXT_STDOUT_STDERR.
+/// ":semihosting-features": magic number, then EXT_EXIT_EXTENDED and EXT_STDOUT_STDERR.
 constexpr std::array<std::uint8_t, 5> kFeatureBytes = {'S', 'H', 'F', 'B', 0x03};
 
-/// Modes of SYS_OPEN: those of fopen, each in text and binary.
+/// Modes of SYS_OPEN: those of fopen, each as text and as binary.
 constexpr std::array<int, 6> kModes = {
     O_RDONLY, O_RDWR, O_WRONLY | O_CREAT | O_TRUNC, O_RDWR | O_CREAT | O_TRUNC,
     O_WRONLY | O_CREAT | O_APPEND, O_RDWR | O_CREAT | O_APPEND};
 
-/// The guest's C library numbers some errors differently from Linux (newlib's errno.h).
+/// newlib (errno.h) numbers some errors differently from Linux.
 int guest_errno(int error) {
   switch (error) {
     case ENOSYS: return 88;
@@ -87,7 +87,7 @@ Semihosting::File* Semihosting::file(std::uint32_t handle) {
 
 std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation,
                                    std::uint32_t parameter) {
-  // Words in the parameter block of each operation that has one.
+  // Number of words in the parameter block of each operation that has one.
   const auto words = [operation]() -> unsigned {
     switch (operation) {
       case kClose: case kIsError: case kIsTty: case kFlen: return 1;
@@ -143,7 +143,7 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
     case kErrno: return static_cast<std::uint32_t>(errno_);
     case kGetCmdLine: return command_line(t, parameter, a);
     case kHeapInfo: return heap_info(t, parameter);
-    case kExit:  // in 32-bit states the reason is all there is
+    case kExit:  // in 32-bit states, the only argument is the reason
       exit_code_ = parameter == kApplicationExit ? 0 : 1;
       return 0;
     case kExitExtended:
@@ -183,7 +183,7 @@ std::uint32_t Semihosting::open(SemihostingTarget& t, const Arguments& a) {
   if (f.kind == File::Kind::kFree) {
     f.fd = files_.open(name, kModes[mode / 2]);
     if (f.fd == -EACCES && !refused_) {
-      refused_ = true;  // one name is enough; a program may try thousands
+      refused_ = true;  // one warning is enough; a program may try thousands of names
       Diagnostics::instance().guest(
           fmt::format("semihosting: the file '{}' is refused; allowed: names relative to --root, "
                       "without '..' and symbolic links",
@@ -245,7 +245,7 @@ std::int64_t Semihosting::get(File& f, std::span<std::uint8_t> bytes) {
   }
 }
 
-/// @return bytes that were not written
+/// @return number of bytes that were not written
 std::uint32_t Semihosting::write(SemihostingTarget& t, const Arguments& a) {
   File* f = file(a[0]);
   if (!f) return failed(EBADF), a[2];
@@ -260,7 +260,7 @@ std::uint32_t Semihosting::write(SemihostingTarget& t, const Arguments& a) {
   return 0;
 }
 
-/// @return bytes that were not read; all of them at the end of the file
+/// @return number of bytes that were not read; all of them at the end of the file
 std::uint32_t Semihosting::read(SemihostingTarget& t, const Arguments& a) {
   File* f = file(a[0]);
   if (!f) return failed(EBADF), kError;
@@ -273,7 +273,7 @@ std::uint32_t Semihosting::read(SemihostingTarget& t, const Arguments& a) {
     if (n > 0 && !t.write(a[1] + done, piece.first(static_cast<std::size_t>(n))))
       return failed(EFAULT);
     done += static_cast<std::uint32_t>(n);
-    // The console gives what was typed; a second look would wait for more.
+    // The console returns what was typed; another call would wait for more.
     if (n == 0 || f->kind == File::Kind::kInput) break;
   }
   return a[2] - done;

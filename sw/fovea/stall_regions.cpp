@@ -15,7 +15,7 @@ bool inside(const ElfSection& s, std::span<const MemoryRegion> memory) {
   });
 }
 
-/// What is added to an address of the section to find it in memory.
+/// Difference between the address of the section in memory and its link address.
 std::uint32_t offset(const ElfSection& s, const ElfImage& image,
                      std::span<const MemoryRegion> memory) {
   if (inside(s, memory)) return 0;
