@@ -78,7 +78,9 @@ class Clock {
   void prepare() {
     edges_limit_ = ps_limit_ = 0;  // 0: use the division
     if (ps_ > (1u << 21) || edges_ > (1u << 10)) return;
-    const auto log2 = [](std::uint64_t v) { return 63u - static_cast<unsigned>(__builtin_clzll(v)); };
+    const auto log2 = [](std::uint64_t v) {
+      return 63u - static_cast<unsigned>(__builtin_clzll(v));
+    };
     // For edge(): the whole picoseconds of a period, and the remainder * 2^64 rounded up, which
     // makes n periods too long by less than n / 2^64.
     period_ = ps_ / edges_;

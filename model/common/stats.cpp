@@ -12,7 +12,8 @@ constexpr std::uint64_t kSubBuckets = 1u << kSubBits;
 std::size_t bucket_of(std::uint64_t v) {
   if (v < kSubBuckets) return v;
   const unsigned exponent = static_cast<unsigned>(std::bit_width(v)) - 1 - kSubBits;
-  return (static_cast<std::size_t>(exponent + 1) << kSubBits) + ((v >> exponent) & (kSubBuckets - 1));
+  return (static_cast<std::size_t>(exponent + 1) << kSubBits) +
+         ((v >> exponent) & (kSubBuckets - 1));
 }
 
 std::uint64_t upper_edge(std::size_t bucket) {

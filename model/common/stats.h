@@ -76,7 +76,9 @@ class Histogram {
   std::uint64_t count() const { return count_; }
   std::uint64_t min() const { return count_ ? min_ : 0; }
   std::uint64_t max() const { return max_; }
-  double mean() const { return count_ ? static_cast<double>(sum_) / static_cast<double>(count_) : 0; }
+  double mean() const {
+    return count_ ? static_cast<double>(sum_) / static_cast<double>(count_) : 0;
+  }
   /// Upper edge of the bucket that holds the q-quantile (0 < q <= 1), but at most max(). 0 if
   /// empty.
   std::uint64_t quantile(double q) const;

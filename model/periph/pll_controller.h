@@ -15,16 +15,17 @@
 namespace fovea::periph {
 
 struct PllParams : ParamGroup {
-  IntParam lock_time{*this,
-                     "lock_time",
-                     IntParam::Unit::kTime,
-                     100 * kPsPerUs,
-                     kPsPerUs,
-                     10 * kPsPerMs,
-                     "from the last change of multiplier, pre-divider or reset to lock",
-                     Origin::kAssumed,
-                     "no DM365 figure; OMAP-L138's rule, 2000 N / sqrt(M) clocks, gives 20 to 70 us",
-                     {"20us", "200us", "the rule's least, and twice the default; only start-up"}};
+  IntParam lock_time{
+      *this,
+      "lock_time",
+      IntParam::Unit::kTime,
+      100 * kPsPerUs,
+      kPsPerUs,
+      10 * kPsPerMs,
+      "from the last change of multiplier, pre-divider or reset to lock",
+      Origin::kAssumed,
+      "no DM365 figure; OMAP-L138's rule, 2000 N / sqrt(M) clocks, gives 20 to 70 us",
+      {"20us", "200us", "the rule's least, and twice the default; only start-up"}};
   IntParam go_time{*this,
                    "go_time",
                    IntParam::Unit::kTime,

@@ -39,16 +39,17 @@ enum Lpsc : unsigned {
 };
 
 struct PscParams : ParamGroup {
-  IntParam transition_time{*this,
-                           "transition_time",
-                           IntParam::Unit::kTime,
-                           kPsPerUs,
-                           10 * kPsPerNs,
-                           100 * kPsPerUs,
-                           "from PTCMD to the new module states",
-                           Origin::kAssumed,
-                           "no figure published; software polls PTSTAT",
-                           {"100ns", "10us", "some clocks of the slowest clock, 24 MHz, to hundreds"}};
+  IntParam transition_time{
+      *this,
+      "transition_time",
+      IntParam::Unit::kTime,
+      kPsPerUs,
+      10 * kPsPerNs,
+      100 * kPsPerUs,
+      "from PTCMD to the new module states",
+      Origin::kAssumed,
+      "no figure published; software polls PTSTAT",
+      {"100ns", "10us", "some clocks of the slowest clock, 24 MHz, to hundreds"}};
   PscParams() : ParamGroup("psc") {}
 };
 

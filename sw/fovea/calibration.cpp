@@ -76,7 +76,8 @@ Calibration read_calibration(const fs::path& file) {
   if (matrix.size() != 9)
     in.fail(matrix.empty() ? std::string("it has no camera matrix")
                            : fmt::format("its camera matrix has {} numbers", matrix.size()));
-  if (std::abs(matrix[1]) > 1e-9) in.fail(fmt::format("it has a skew of {}, allowed is 0", matrix[1]));
+  if (std::abs(matrix[1]) > 1e-9)
+    in.fail(fmt::format("it has a skew of {}, allowed is 0", matrix[1]));
   const auto k = in.numbers({"dist_coeffs", "distortion_coefficients", "D"});
   if (k.size() != 4)
     in.fail(fmt::format("it has {} distortion coefficients{}", k.size(),

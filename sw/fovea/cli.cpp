@@ -104,7 +104,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                                 one_line(options.bus_trace)));
   // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
   // tried, and a full disk is noticed before the simulation.
-  dir.write("config.json", config_json(params, experiment, provenance_of(params, simulation->input_files())));
+  dir.write("config.json",
+            config_json(params, experiment, provenance_of(params, simulation->input_files())));
 
   const auto& stop = context.stop ? *context.stop : kNeverStops;
   HostConsole semihosting(context.out, context.err, context.stop);
@@ -217,8 +218,8 @@ std::string missing_feature(const std::exception& e) {
 std::string lack_of_host(const std::exception& e) {
   const std::string_view what = e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e) || what.find("std::bad_alloc") != what.npos)
-    return "out of memory: the host gives this process no more; allowed: a smaller run, or a higher "
-           "limit (ulimit -v, container)";
+    return "out of memory: the host gives this process no more; allowed: a smaller run, or a "
+           "higher limit (ulimit -v, container)";
   if (const auto* refused = dynamic_cast<const std::system_error*>(&e))
     return fmt::format("the host refused: {}", one_line(refused->what()));
   return "";

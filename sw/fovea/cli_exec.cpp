@@ -30,17 +30,17 @@ constexpr std::array<std::string_view, 10> kFlags = {
     "--quiet", "-q", "--help", "-h"};
 
 constexpr const char* kMemoryHelp =
-    "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size below the program's "
-    "lowest address, which is 0 for newlib's default link; -s exec.ram_base=ADDR puts it "
-    "elsewhere. At 0 there is no internal RAM; other programs find the chip's at 0x0 and 0x10000 as "
-    "well. Heap and stack take the largest piece that the program leaves free, the stack from its "
-    "top. No peripherals exist (UART, timers, ...): accesses to them are bus errors. With RAM above "
-    "0x20000000 the SDRAM controller's registers are there. With --board the chip's own memory map "
-    "is there instead, with all its peripherals: RAM at 0x80000000.\n"
-    "Unknown options and everything after '--' are passed to the program, to which also belongs what "
-    "follows it and is no option of exec.\n"
-    "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, each "
-    "with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
+    "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size at or below the "
+    "program's lowest address, which is 0 for newlib's default link address; -s exec.ram_base=ADDR "
+    "moves it. RAM at 0 hides the chip's internal RAM; other programs find that at 0x0 and 0x10000. "
+    "Heap and stack share the largest part that the program leaves free; the stack starts at its "
+    "end. There are no peripherals (UART, timers, ...): accesses to them are bus errors. With RAM "
+    "above 0x20000000 the SDRAM controller's registers exist. --board uses the chip's own memory "
+    "map with all its peripherals instead: RAM at 0x80000000.\n"
+    "Unknown options and everything after '--' are passed to the program, and so is everything "
+    "after the program that is not an option of exec.\n"
+    "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, "
+    "each with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
 
 /// `--board`: runs the program as the board's firmware. It ends by semihosting, or when nothing can
 /// wake the core any more, unless run.until says otherwise.
@@ -137,7 +137,8 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  c->add_option("-o,--out", o.out_dir, "Folder for stats.json, stalls.csv, config.json and host.json")
+  c->add_option("-o,--out", o.out_dir,
+                "Folder for stats.json, stalls.csv, config.json and host.json")
       ->type_name("DIR");
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
@@ -229,8 +230,9 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
   if (o.console && !o.board) throw UserError("--console: there is no UART; allowed: with --board");
   if (o.board && (o.fast_memory || o.caches || !o.load.empty() || !o.entry.empty() || o.thumb))
-    throw UserError("--board: not with --fast-memory or --caches, nor with a flat binary; allowed: an ELF "
-                    "file");
+    throw UserError(
+        "--board: not with --fast-memory or --caches, nor with a flat binary; allowed: an ELF "
+        "file");
   const auto executor = context.make_executor();
   const auto board = context.make_simulation();
   ParamSet params;
@@ -256,7 +258,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
       if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
           (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
         Diagnostics::instance().configuration(fmt::format(
-            "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM", p->key()));
+            "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM",
+            p->key()));
   const ExecProgram program = program_of(o);
   std::optional<std::uint16_t> gdb_port;
   if (!o.gdb.empty()) gdb_port = parse_gdb_port(o.gdb);
@@ -264,7 +267,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
     dir.emplace(o.out_dir, "exec");
-    dir->write("config.json", config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
+    dir->write("config.json",
+               config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
   }
   HostConsole console(context.out, context.err, context.stop);
   // Never updated in place, because the program writes to the same terminal.
@@ -290,7 +294,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   if (!o.quiet) {
     context.err << core_table(result.stats, result.core_clock);
     if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
-      context.err << "  The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
+      context.err
+          << "  The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
     if (!result.ended.empty()) context.err << "  ended by " << result.ended << "\n";
     context.err << std::flush;
   }

@@ -38,7 +38,8 @@ std::string left_text(const CLI::Option& option, bool positional) {
   std::string text = option.get_name(false, true);
   if (option.get_type_size() == 0) return text;
   const auto words = words_of(option);
-  return text + " " + (words.empty() ? type_of(option).name : fmt::format("{}", fmt::join(words, "|")));
+  return text + " " +
+         (words.empty() ? type_of(option).name : fmt::format("{}", fmt::join(words, "|")));
 }
 
 std::string description_of(const CLI::Option& option) {
@@ -47,7 +48,8 @@ std::string description_of(const CLI::Option& option) {
   // CLI11's text for a range: "INT in [1 - 9]".
   if (const std::size_t in = check.find(" in ["); in != std::string::npos)
     text += " (" + check.substr(in + 5, check.find(']') - in - 5) + ")";
-  if (!option.get_default_str().empty()) text += fmt::format(" [default: {}]", option.get_default_str());
+  if (!option.get_default_str().empty())
+    text += fmt::format(" [default: {}]", option.get_default_str());
   return text;
 }
 
@@ -83,7 +85,8 @@ std::string roff(const std::string& text) {
   for (const char c : text) {
     if (c == '\\') out += "\\e";
     else if (c == '-') out += "\\-";
-    else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += std::string("\\&") + c;
+    else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n'))
+      out += std::string("\\&") + c;
     else out += c;
   }
   return out;
@@ -147,7 +150,8 @@ std::string bash_completion(const CLI::App& app,
       for (const auto& name : names_of(*o)) names += (names.empty() ? "" : " ") + name;
     std::string words;
     for (const auto* o : options_of(*c, true))
-      if (const auto list = words_of(*o); !list.empty()) words = fmt::format("{}", fmt::join(list, " "));
+      if (const auto list = words_of(*o); !list.empty())
+        words = fmt::format("{}", fmt::join(list, " "));
     cases += fmt::format("    {}) options='{}' words='{}'", c->get_name(), names, words);
     if (const auto k = keys.find(c->get_name()); k != keys.end())
       cases += fmt::format(" keys='{}'", fmt::join(k->second, " "));
@@ -155,8 +159,9 @@ std::string bash_completion(const CLI::App& app,
     for (const auto* o : options_of(*c, false))
       if (const auto list = words_of(*o); !list.empty())
         for (const auto& name : names_of(*o))
-          values += fmt::format("    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n",
-                                c->get_name(), name, fmt::join(list, " "));
+          values += fmt::format(
+              "    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n",
+              c->get_name(), name, fmt::join(list, " "));
   }
   return "# Completion for bash: source it, or put it into /etc/bash_completion.d.\n"
          "_fovea() {\n"
@@ -168,7 +173,8 @@ std::string bash_completion(const CLI::App& app,
          "  if [ \"$before\" = = ]; then before=${COMP_WORDS[COMP_CWORD-2]}; fi\n"
          "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
          "    COMPREPLY=($(compgen -W '" +
-         commands + " --help --version' -- \"$current\"))\n"
+         commands +
+         " --help --version' -- \"$current\"))\n"
          "    return\n"
          "  fi\n"
          "  case $command in\n" +
@@ -181,7 +187,8 @@ std::string bash_completion(const CLI::App& app,
          "  esac\n"
          "  case $current in\n"
          "    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$current\")) ;;\n"
-         "    *) COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- \"$current\")) ;;\n"
+         "    *) COMPREPLY=($(compgen -W \"$words\" -- \"$current\") "
+         "$(compgen -f -- \"$current\")) ;;\n"
          "  esac\n"
          "}\n"
          "complete -o filenames -F _fovea fovea\n";
@@ -197,7 +204,8 @@ std::string man_page(const CLI::App& app, const std::string& version) {
     out += "\n" + roff(c->get_description()) + ".\n";
     for (const bool positional : {true, false})
       for (const auto* o : options_of(*c, positional))
-        out += fmt::format(".TP\n.B {}\n{}\n", roff(left_text(*o, positional)), roff(description_of(*o)));
+        out += fmt::format(".TP\n.B {}\n{}\n", roff(left_text(*o, positional)),
+                           roff(description_of(*o)));
     if (!c->get_footer().empty()) out += ".PP\n" + roff(c->get_footer()) + "\n";
   }
   return out + ".SH EXIT STATUS\n" + roff(app.get_footer()) + "\n";

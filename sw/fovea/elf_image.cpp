@@ -112,7 +112,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     if ((table.sh_flags & SHF_ALLOC) != 0 && table.sh_size > 0 && named) {
       const char* text = elf_strptr(elf.get(), section_names, table.sh_name);
       if (text && *text)
-        image.sections_.push_back({one_line(text, std::string::npos), static_cast<std::uint32_t>(table.sh_addr),
+        image.sections_.push_back({one_line(text, std::string::npos),
+                                   static_cast<std::uint32_t>(table.sh_addr),
                                    static_cast<std::uint32_t>(table.sh_size)});
     }
     if (table.sh_type == SHT_ARM_ATTRIBUTES) {
@@ -140,7 +141,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
         function = where && gelf_getshdr(where, &home) && (home.sh_flags & SHF_EXECINSTR) != 0;
       }
       const auto address = static_cast<std::uint32_t>(s.st_value);
-      image.symbols_.push_back({one_line(text, std::string::npos), type == STT_FUNC ? address & ~1u : address,
+      image.symbols_.push_back({one_line(text, std::string::npos),
+                                type == STT_FUNC ? address & ~1u : address,
                                 static_cast<std::uint32_t>(s.st_size), function});
     }
   }

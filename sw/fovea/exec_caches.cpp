@@ -17,7 +17,8 @@ std::vector<std::uint8_t> cache_preamble(const ExecMap& map, std::uint32_t entry
   for (std::uint64_t i = 0; i < words.size(); ++i) {
     const std::uint64_t address = i * kSectionBytes;
     const bool ram = address >= map.ram_base && address < map.ram_base + map.ram_size;
-    words[i] = static_cast<std::uint32_t>(address) | kSection | (ram ? kCacheable | kBufferable : 0);
+    words[i] =
+        static_cast<std::uint32_t>(address) | kSection | (ram ? kCacheable | kBufferable : 0);
   }
   const std::array<std::uint32_t, 16> code = {
       0xE59F0030,  // ldr r0, table

@@ -131,14 +131,16 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
     m.table = static_cast<std::uint32_t>(m.ram_base + ram_size - ExecMap::kTableBytes);
     for (const auto& [from, to] : used)
       if (to > m.table)
-        throw UserError(fmt::format("--caches: program '{}' needs the last {} bytes of RAM itself; "
-                                    "allowed: a program that leaves them free (ddr.part sets the size)",
-                                    one_line(name_), ExecMap::kTableBytes));
+        throw UserError(
+            fmt::format("--caches: program '{}' needs the last {} bytes of RAM itself; "
+                        "allowed: a program that leaves them free (ddr.part sets the size)",
+                        one_line(name_), ExecMap::kTableBytes));
   }
   used.emplace_back(caches ? m.table : top, top);
   std::uint64_t free_from = used.front().second, best = 0;
   for (const auto& [from, to] : used) {
-    const std::uint64_t aligned = (free_from + kHeapAlignment - 1) / kHeapAlignment * kHeapAlignment;
+    const std::uint64_t aligned =
+        (free_from + kHeapAlignment - 1) / kHeapAlignment * kHeapAlignment;
     const std::uint64_t end = from / 8 * 8;
     if (end > aligned && end - aligned > best) {
       best = end - aligned;

@@ -74,8 +74,8 @@ void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm)
 
 std::string ExecSession::failure_text(const std::string& what) const {
   const auto at = [this](std::uint32_t pc) { return "pc " + symbols_.place(pc); };
-  std::string text = fmt::format("{} at {}, {:.6f} s after the start", what,
-                                 at(core_.current_pc()), static_cast<double>(semihosting_.now()) * 1e-12);
+  std::string text = fmt::format("{} at {}, {:.6f} s after the start", what, at(core_.current_pc()),
+                                 static_cast<double>(semihosting_.now()) * 1e-12);
   for (const auto& a : core_.last_accesses())
     text += fmt::format("\n  {} {} bytes at 0x{:08x} from {}", a.write ? "wrote" : "read", a.bytes,
                         a.address, at(a.pc));

@@ -33,8 +33,8 @@ constexpr int kLookMs = 100;  ///< interval in which the stop flag is checked, i
 /// hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and the like (text),
 /// svg_pipe (may refer to other files), lavfi and devices.
 constexpr const char* kFormats =
-    "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,mjpeg,gif,apng,flv,asf,ogg,ivf,nut,dv,mxf,"
-    "yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,jpegxl_pipe,"
+    "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,mjpeg,gif,apng,flv,asf,ogg,ivf,nut,dv,"
+    "mxf,yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,jpegxl_pipe,"
     "pam_pipe,pbm_pipe,pcx_pipe,pgm_pipe,png_pipe,ppm_pipe,psd_pipe,qoi_pipe,sgi_pipe,sunrast_pipe,"
     "tiff_pipe,webp_pipe,xwd_pipe";
 /// The footage as the child sees it: with the real name, ffmpeg would guess the format from the
@@ -90,8 +90,10 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
     throw std::runtime_error("its pictures have more than 8 bits a channel, and ffmpeg does not "
                              "convert them; convert the file with '-pix_fmt yuv420p'");
   if (width > kMaxPictureSide || height > kMaxPictureSide)
-    throw std::runtime_error(fmt::format("its pictures of {}x{} pixels are too large; allowed: up to {} "
-                                         "pixels a side", width, height, kMaxPictureSide));
+    throw std::runtime_error(
+        fmt::format("its pictures of {}x{} pixels are too large; allowed: up to {} "
+                    "pixels a side",
+                    width, height, kMaxPictureSide));
   const std::size_t size = std::size_t{3} * width * height;
   const std::size_t begin = at + 1;  // one separator follows the last number
   if (text.size() < begin + size) {
@@ -311,8 +313,9 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   const int status = child.finish(options.stop);
   std::string words = last_line(child.messages());
   if (child.messages().find("ormat not on whitelist") != std::string::npos)
-    fail("its format is not allowed; allowed: one film or picture, and no playlist, list of files or "
-         "text");
+    fail(
+        "its format is not allowed; allowed: one film or picture, and no playlist, list of files "
+        "or text");
   if (const auto at = words.find(kFootage); at != std::string::npos)
     words.replace(at, std::string_view(kFootage).size(), "the file");
   if (child.messages().find("matches no streams") != std::string::npos)
@@ -334,8 +337,8 @@ FilmInfo film_info(const std::filesystem::path& file, const std::string& program
   Descriptor film(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (film.get() < 0) return out;
   try {
-    ChildProcess child({program, "-v", "error", "-protocol_whitelist", "file,pipe", "-format_whitelist",
-                        kFormats, "-select_streams", "v:0", "-show_entries",
+    ChildProcess child({program, "-v", "error", "-protocol_whitelist", "file,pipe",
+                        "-format_whitelist", kFormats, "-select_streams", "v:0", "-show_entries",
                         "stream=width,height,sample_aspect_ratio,avg_frame_rate", "-of",
                         "default=noprint_wrappers=1", "-i", kFootage},
                        ChildProcess::Stream::kOutput, "cannot ask ffprobe", film.get());

@@ -247,8 +247,8 @@ std::string GdbProtocol::read_memory(std::string_view arguments) {
   std::vector<std::uint8_t> data(std::min<std::size_t>(bytes, kGdbPacketBytes / 2));
   if (target_.read_memory(address, data)) return to_hex(data);
   std::size_t n = 0;
-  while (n < data.size() &&
-         target_.read_memory(address + static_cast<std::uint32_t>(n), std::span(data).subspan(n, 1)))
+  while (n < data.size() && target_.read_memory(address + static_cast<std::uint32_t>(n),
+                                                std::span(data).subspan(n, 1)))
     ++n;
   return n ? to_hex(std::span<const std::uint8_t>(data).first(n)) : kNoMemory;
 }

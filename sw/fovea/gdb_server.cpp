@@ -39,8 +39,10 @@ std::uint16_t parse_gdb_port(const std::string& text) {
   const char* const end = digits.data() + digits.size();
   const auto [stopped, error] = std::from_chars(digits.data(), end, port);
   if (error != std::errc() || stopped != end || digits.empty())
-    throw UserError(fmt::format("--gdb: '{}' is not a valid port; allowed: :0 (any free port) to :65535 "
-                                "(localhost only)", one_line(text)));
+    throw UserError(
+        fmt::format("--gdb: '{}' is not a valid port; allowed: :0 (any free port) to :65535 "
+                    "(localhost only)",
+                    one_line(text)));
   return port;
 }
 

@@ -72,9 +72,10 @@ std::vector<std::string> footage_notes(const board::BoardParams& params,
   if (!film) return out;
   const double camera_rate = params.video.standard.is("pal") ? 25 : 30000.0 / 1001;
   if (!info.rate.stopped() && std::abs(camera_rate / info.rate.hertz() - 1) > 0.005)
-    out.push_back(fmt::format("footage of {:.4g} frames/s is shown at {:.4g} frames/s, {:.3g} times as "
-                              "fast",
-                              info.rate.hertz(), camera_rate, camera_rate / info.rate.hertz()));
+    out.push_back(
+        fmt::format("footage of {:.4g} frames/s is shown at {:.4g} frames/s, {:.3g} times as "
+                    "fast",
+                    info.rate.hertz(), camera_rate, camera_rate / info.rate.hertz()));
   if (frames.size() == kMostFilmFrames)
     out.push_back(fmt::format("at most the first {} frames of the footage are used, over and over",
                               kMostFilmFrames));
@@ -85,7 +86,8 @@ namespace {
 
 void require(bool ok, const std::string& key, const std::string& value,
              const std::string& allowed) {
-  if (!ok) throw UserError("key '" + key + "': '" + value + "' is not allowed; allowed: " + allowed);
+  if (!ok)
+    throw UserError("key '" + key + "': '" + value + "' is not allowed; allowed: " + allowed);
 }
 
 void check_loads(const board::BoardParams& params) {

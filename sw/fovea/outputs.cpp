@@ -88,8 +88,8 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
       js(kRunFormat), js(provenance.version), js(provenance.commit), provenance.modified,
       js(experiment.name()));
   for (const auto& [name, hash] : provenance.inputs)
-    out += fmt::format("{}\n    {}: {}", &name == &provenance.inputs.front().first ? "" : ",", js(name),
-                       hash.empty() ? "null" : js(hash));
+    out += fmt::format("{}\n    {}: {}", &name == &provenance.inputs.front().first ? "" : ",",
+                       js(name), hash.empty() ? "null" : js(hash));
   out += provenance.inputs.empty() ? "},\n" : "\n  },\n";
   std::vector<const ParamBase*> sorted(params.all().begin(), params.all().end());
   std::sort(sorted.begin(), sorted.end(),
@@ -211,7 +211,8 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
   const std::string number =
       whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
   // Units such as "count" and "frames" are already in the name.
-  return unit.empty() || unit == "count" || unit == "1" ? number : fmt::format("{} {}", number, unit);
+  return unit.empty() || unit == "count" || unit == "1" ? number
+                                                        : fmt::format("{} {}", number, unit);
 }
 
 std::string verdict(std::span<const StatRow> stats) {
@@ -227,13 +228,14 @@ std::string verdict(std::span<const StatRow> stats) {
   const std::uint64_t dropped = count("frame.dropped");
   const auto some = [](std::uint64_t n) { return n ? std::to_string(n) : std::string("none"); };
   // The camera sends one frame for each displayed frame.
-  std::string out = fmt::format("{}: {} of {} camera frames shown ({:.4g}/s), {} dropped, {} repeated",
-                                repeated || dropped ? "frame rate missed" : "frame rate met", fresh,
-                                displayed, std::get<double>(rate->value), some(dropped),
-                                some(repeated));
+  std::string out =
+      fmt::format("{}: {} of {} camera frames shown ({:.4g}/s), {} dropped, {} repeated",
+                  repeated || dropped ? "frame rate missed" : "frame rate met", fresh, displayed,
+                  std::get<double>(rate->value), some(dropped), some(repeated));
   for (const auto& [name, what] : {std::pair("capture.overflows", "capture overflow"),
                                    std::pair("display.underflows", "display underflow")})
-    if (const std::uint64_t n = count(name)) out += fmt::format(", {} {}{}", n, what, n > 1 ? "s" : "");
+    if (const std::uint64_t n = count(name))
+      out += fmt::format(", {} {}{}", n, what, n > 1 ? "s" : "");
   return out + "\n";
 }
 

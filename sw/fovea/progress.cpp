@@ -54,7 +54,8 @@ std::string ProgressMeter::line(const Sample& now) const {
   else if (p.frames_shown)
     text += fmt::format(", frame {}", p.frames_shown);
   else if (p.instructions)
-    text += fmt::format(", {:.1f} million instructions", static_cast<double>(p.instructions) * 1e-6);
+    text +=
+        fmt::format(", {:.1f} million instructions", static_cast<double>(p.instructions) * 1e-6);
   if (wall > 0 && simulated > 0) text += fmt::format(", {:.2f}x real time", simulated / wall);
   // Estimated from the steady state, because start-up has another speed and displays no frames.
   if (steady_ && p.frames_wanted > p.frames_shown &&
@@ -81,7 +82,8 @@ void ProgressMeter::add_host_rows(std::vector<StatRow>& rows) const {
   const double wall = Seconds(last_.wall - steady_->wall).count();
   if (wall <= 0) return;
   add("realtime_factor", seconds(last_.progress.simulated - steady_->progress.simulated) / wall,
-      "x", "speed against real time: simulated time / wall time, from the first displayed frame on");
+      "x",
+      "speed against real time: simulated time / wall time, from the first displayed frame on");
   add("mips",
       static_cast<double>(last_.progress.instructions - steady_->progress.instructions) / wall /
           1e6,

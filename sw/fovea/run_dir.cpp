@@ -115,7 +115,8 @@ void RunDir::take_working() {
   mode_ = (0777 & ~umask_now()) | (mine.st_mode & S_ISGID);
   if (!made && ::fchmod(lock_, 0700) != 0) fail(working_, std::strerror(errno));
   set_remove(true);
-  if (!remove_run_files(working_, true)) fail(working_, "what an earlier run left cannot be removed");
+  if (!remove_run_files(working_, true))
+    fail(working_, "what an earlier run left cannot be removed");
 }
 
 RunDir::~RunDir() { abandon(); }
@@ -214,7 +215,8 @@ std::string RunDir::replace(const fs::path& target) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(target, error))) {
     if (::rename(working_.c_str(), target.c_str()) != 0)
-      fail(target, fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
+      fail(target,
+           fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
     return "";
   }
   // The old folder is locked too, so that no other run takes it for an abandoned DIR.tmp.
@@ -230,11 +232,13 @@ std::string RunDir::replace(const fs::path& target) {
     for (int n = 2; fs::exists(fs::symlink_status(aside, error)); ++n)
       aside = with_suffix(target, fmt::format(".old.{}", n));
     if (::rename(target.c_str(), aside.c_str()) != 0)
-      fail(target, fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
+      fail(target,
+           fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
     if (::rename(working_.c_str(), target.c_str()) != 0) {
       const int reason = errno;
       ::rename(aside.c_str(), target.c_str());
-      fail(target, fmt::format("{}; the results are in {}", std::strerror(reason), in_quotes(working_)));
+      fail(target,
+           fmt::format("{}; the results are in {}", std::strerror(reason), in_quotes(working_)));
     }
   }
   if (remove_run_files(aside)) return "";

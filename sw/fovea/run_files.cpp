@@ -129,7 +129,8 @@ RunFolder look_at_run_folder(const fs::path& dir) {
   if (fs::exists(fs::symlink_status(dir / "stats.json", error))) {
     const json stats = read_json(dir / "stats.json", kMaxStatsBytes);
     // Results that cannot be read count as complete, so that partial results do not replace them.
-    found.complete = !(stats.is_object() && stats.contains("complete") && stats["complete"] == false);
+    found.complete =
+        !(stats.is_object() && stats.contains("complete") && stats["complete"] == false);
     found.date = local_date(dir / "stats.json");
   } else {
     found.date = local_date(dir / "config.json");

@@ -80,7 +80,8 @@ bool CoreDebug::read(std::uint32_t va, std::span<std::uint8_t> to) {
       return true;
     }
     if (const int i = p->cached ? core_.dcache_.find(mva) : -1; i >= 0) {
-      std::memcpy(piece.data(), core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), n);
+      std::memcpy(piece.data(), core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask),
+                  n);
       return true;
     }
     return read_memory(p->pa, piece);
@@ -109,7 +110,8 @@ bool CoreDebug::write(std::uint32_t va, std::span<const std::uint8_t> from) {
           a.data[d] = piece[k];
     }
     if (const int i = core_.dcache_.find(mva); i >= 0)
-      std::memcpy(core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), piece.data(), n);
+      std::memcpy(core_.dcache_.data(static_cast<unsigned>(i)) + (mva & kLineMask), piece.data(),
+                  n);
     patch_instructions(mva, p->pa, piece);
     return true;
   });

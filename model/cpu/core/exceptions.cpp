@@ -142,7 +142,8 @@ void Core::take(Exception e, std::uint32_t return_address) {
   // If no instruction completes between exceptions, the vector itself fails and always will.
   if (++chain_ > 3) {
     failing_ = true;
-    const std::string jump = failed_jump_ ? "jumped to 0 from " + place_of(failed_from_) + "; " : "";
+    const std::string jump =
+        failed_jump_ ? "jumped to 0 from " + place_of(failed_from_) + "; " : "";
     throw GuestFailure(jump + failed_by_ + " with no handler: its vector faults again");
   }
   const Entry& entry = kEntries[static_cast<unsigned>(e)];

@@ -47,8 +47,8 @@ struct IsaKind {
   std::uint16_t flags = 0;
 };
 
-/// One instruction. The pattern is read from the top bit down. 0 and 1 are fixed bits, `-` should be
-/// zero and `+` should be one (both are ignored), and letters are fields:
+/// One instruction. The pattern is read from the top bit down. 0 and 1 are fixed bits, `-` should
+/// be zero and `+` should be one (both are ignored), and letters are fields:
 ///   c condition  S sets flags  n d m s registers  e Rd / 2  a shift distance  t type of shift
 ///   r i immediate  l register list  P U W indexing  f PSR fields  x y halves of SMULxy
 ///   h halfword bit of BLX  k number for software  p o q C D M L of coprocessor instructions

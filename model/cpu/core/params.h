@@ -39,19 +39,40 @@ struct CpuParams : ParamGroup {
                              "extra core clocks of one test-and-clean step", Origin::kAssumed,
                              "not in ARM DDI 0198 or DDI 0222",
                              {"1 cycles", "3 cycles", "two to four clocks in all"}};
-  IntParam invalidate_all_cycles{*this, "invalidate_all_cycles", U::kCycles, 4, 0, 1024,
-                                 "extra core clocks to invalidate a whole cache",
-                                 Origin::kAssumed, "not in ARM DDI 0198 or DDI 0222",
-                                 {"1 cycles", "128 cycles",
-                                  "from all lines at once to one clock for each set of the I-cache"}};
-  IntParam tcm_wait_states{*this, "tcm.wait_states", U::kCycles, 0, 0, 3,
-                           "extra core clocks of an access to internal RAM, beside the one that the "
-                           "program asks for with MISC.ARM_WAITST = 0",
-                           Origin::kSourced, "MISC.ARM_WAITST: 1, its reset value, is none"};
-  IntParam tcm_dma_word_clocks{*this, "tcm.dma_word_clocks", U::kCycles, 2, 1, 8,
-                               "core clocks for which a word of a DMA holds its bank of internal RAM",
-                               Origin::kAssumed, "no public figure; an AHB clock",
-                               {"1 cycles", "4 cycles", "half to twice an AHB clock"}};
+  IntParam invalidate_all_cycles{
+      *this,
+      "invalidate_all_cycles",
+      U::kCycles,
+      4,
+      0,
+      1024,
+      "extra core clocks to invalidate a whole cache",
+      Origin::kAssumed,
+      "not in ARM DDI 0198 or DDI 0222",
+      {"1 cycles", "128 cycles",
+       "from all lines at once to one clock for each set of the I-cache"}};
+  IntParam tcm_wait_states{
+      *this,
+      "tcm.wait_states",
+      U::kCycles,
+      0,
+      0,
+      3,
+      "extra core clocks of an access to internal RAM, beside the one that the "
+      "program asks for with MISC.ARM_WAITST = 0",
+      Origin::kSourced,
+      "MISC.ARM_WAITST: 1, its reset value, is none"};
+  IntParam tcm_dma_word_clocks{
+      *this,
+      "tcm.dma_word_clocks",
+      U::kCycles,
+      2,
+      1,
+      8,
+      "core clocks for which a word of a DMA holds its bank of internal RAM",
+      Origin::kAssumed,
+      "no public figure; an AHB clock",
+      {"1 cycles", "4 cycles", "half to twice an AHB clock"}};
   IntParam tcm_dma_latency{*this, "tcm.dma_latency", U::kCycles, 2, 0, 32,
                            "core clocks from a burst's arrival at internal RAM to its first word",
                            Origin::kAssumed, "no public figure",

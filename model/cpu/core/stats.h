@@ -136,12 +136,14 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
                  "clocks of wait states of internal RAM, and waiting for DMA there");
   FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "clocks of cache maintenance");
-  FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8], "clocks waiting for the write buffer to drain");
+  FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8],
+                 "clocks waiting for the write buffer to drain");
   FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9],
                  "clocks waiting for an AHB clock edge, or for the first edge of another clock");
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
                  "words looked up in the I-cache, with two dropped behind each change of flow");
-  FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills, "lines read into the I-cache");
+  FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills,
+                 "lines read into the I-cache");
   FOVEA_CPU_STAT(dcache_reads, "dcache.reads", "1", dcache_reads, "cacheable loads looked up");
   FOVEA_CPU_STAT(dcache_fills, "dcache.read_line_fills", "1", dcache_read_fills,
                  "lines read into the D-cache");

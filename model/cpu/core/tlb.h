@@ -43,7 +43,10 @@ class Tlb {
       locked_[victim & 7u] = e;
       return;
     }
-    const unsigned shift = e.mask == 0xFFFFFu ? 20 : e.mask == 0xFFFu ? 12 : e.mask == 0xFFFFu ? 16 : 10;
+    const unsigned shift = e.mask == 0xFFFFFu  ? 20
+                           : e.mask == 0xFFFu  ? 12
+                           : e.mask == 0xFFFFu ? 16
+                                               : 10;
     const unsigned set = (e.base_va >> shift) & 31u;
     main_[set][next_[set]] = e;
     next_[set] ^= 1u;

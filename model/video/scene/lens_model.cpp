@@ -52,7 +52,8 @@ LensModel LensModel::kannala_brandt(double fx, double fy, double cx, double cy,
     throw UserError("key '" + key + "': fx and fy are focal lengths in pixels; allowed: above 0");
   LensModel lens(LensKind::kKannalaBrandt, fx, fy, cx, cy, k);
   if (lens.theta_max_ < 10 * kPi / 180)
-    throw UserError("key '" + key + "': with these k1..k4 the radius falls within 10 degrees of the "
+    throw UserError("key '" + key +
+                    "': with these k1..k4 the radius falls within 10 degrees of the "
                     "axis; allowed: a radius that grows with the angle");
   return lens;
 }

@@ -49,7 +49,8 @@ SceneParams::SceneParams()
          {8}, "Kannala-Brandt lens: fx fy cx cy in pixels of the still, k1 k2 k3 k4",
          Origin::kSourced, kFrontCamera),
       kb_width(*this, "kb_width", "px", 0, 0, 8192,
-               "picture width that camera.kb belongs to; 0: that of the still", Origin::kChoice, ""),
+               "picture width that camera.kb belongs to; 0: that of the still", Origin::kChoice,
+               ""),
       kb_height(*this, "kb_height", "px", 0, 0, 8192,
                 "picture height that camera.kb belongs to; 0: that of the still", Origin::kChoice,
                 ""),
@@ -110,9 +111,9 @@ void SceneParams::check_calibration(unsigned width, unsigned height) const {
   };
   if (off(lens_of_kb.cx(), width) || off(lens_of_kb.cy(), height))
     Diagnostics::instance().configuration(
-        whose + " has its optical centre at " + std::to_string(std::lround(lens_of_kb.cx())) + ", " +
-        std::to_string(std::lround(lens_of_kb.cy())) + ", outside the middle third of " + picture +
-        ", so it hardly belongs to this picture");
+        whose + " has its optical centre at " + std::to_string(std::lround(lens_of_kb.cx())) +
+        ", " + std::to_string(std::lround(lens_of_kb.cy())) + ", outside the middle third of " +
+        picture + ", so it hardly belongs to this picture");
 }
 
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,

@@ -128,12 +128,13 @@ StampLayout StampLayout::at(unsigned width, unsigned height, double centre_x, do
   const double left = centre_x - (kMarkerSpan + kMarkerPixels) / 2.0 - kMarkerBorder;
   const double right = centre_x + (kMarkerSpan + kMarkerPixels) / 2.0 + kMarkerBorder;
   if (top < kQuiet || bottom + 2 > height || left < 0 || right + 2 > width || width % 2 != 0)
-    throw UserError("the lens centre (" + std::to_string(std::lround(centre_x)) + ", " +
-                    std::to_string(std::lround(centre_y)) + ") is too close to the edge of the " +
-                    std::to_string(width) + "x" + std::to_string(height) +
-                    " raster for the frame counter, which needs an even width and 112 px to each "
-                    "side, 84 above, 100 below: does the lens (camera.kb, camera.calibration) belong "
-                    "to this picture? camera.stamp=false leaves the counter out");
+    throw UserError(
+        "the lens centre (" + std::to_string(std::lround(centre_x)) + ", " +
+        std::to_string(std::lround(centre_y)) + ") is too close to the edge of the " +
+        std::to_string(width) + "x" + std::to_string(height) +
+        " raster for the frame counter, which needs an even width and 112 px to each "
+        "side, 84 above, 100 below: does the lens (camera.kb, camera.calibration) belong "
+        "to this picture? camera.stamp=false leaves the counter out");
   StampLayout s;
   s.code_x = even(centre_x + 0.5 - kCodeWidth / 2.0);
   s.code_y = even(top);
