@@ -1,5 +1,5 @@
-/* The only place that touches device registers. On the host the two functions are supplied by the
- * test (a recorder), so that drivers can be checked access by access. */
+/* The only access to device registers. In host tests, the test defines these two functions as a
+ * recorder, so that drivers can be checked access by access. */
 #ifndef FOVEA_FIRMWARE_MMIO_H
 #define FOVEA_FIRMWARE_MMIO_H
 

@@ -1,10 +1,10 @@
-/* Addresses and bits of the DM365 registers that the firmware programs.
- * Spelling and offsets as in the chip's manuals and public drivers (reference: dm365.md, by
- * section). */
+/* Addresses and bits of the DM365 registers that the firmware programs. Names and offsets as in
+ * TI's register header (CSL) and boot loader for the DM36x and in the public Linux drivers of each
+ * block. */
 #ifndef FOVEA_FIRMWARE_REGS_H
 #define FOVEA_FIRMWARE_REGS_H
 
-/* System module, 2.2 */
+/* System module */
 #define SYS_PINMUX(n) (0x01C40000u + 4u * (n))
 #define SYS_VDAC_CONFIG 0x01C4002Cu
 #define SYS_VPSS_CLK_CTRL 0x01C40044u
@@ -20,7 +20,7 @@
 #define VTPIOCR_IOPWRDN (1u << 14)
 #define VTPIOCR_READY (1u << 15)
 
-/* PLL controllers, 1 (the family's register map) */
+/* PLL controllers (register map of the chip family) */
 #define PLLC1 0x01C40800u
 #define PLLC2 0x01C40C00u
 #define PLLC_PLLCTL 0x100u
@@ -30,7 +30,7 @@
 #define PLLC_POSTDIV 0x128u
 #define PLLC_PLLCMD 0x138u
 #define PLLC_PLLSTAT 0x13Cu
-/* Dividers 1 to 3 and 4 to 9 lie in two blocks. */
+/* Dividers 1 to 3 and 4 to 9 are in two separate groups. */
 #define PLLC_PLLDIV(n) ((n) <= 3u ? 0x118u + 4u * ((n)-1u) : 0x160u + 4u * ((n)-4u))
 
 #define PLLCTL_PLLEN (1u << 0)
@@ -42,7 +42,7 @@
 #define PLLSTAT_GOSTAT 1u
 #define PLL_DIV_ENABLE 0x8000u
 
-/* PSC, 9.4 */
+/* PSC (power and sleep controller) */
 #define PSC_PTCMD 0x01C41120u
 #define PSC_PTSTAT 0x01C41128u
 #define PSC_MDSTAT(n) (0x01C41800u + 4u * (n))
@@ -58,7 +58,7 @@
 #define LPSC_TIMER0 27u
 #define LPSC_VPSSMSTR 47u
 
-/* DDR2 controller, 5.5 */
+/* DDR2 controller */
 #define DDR_SDBCR 0x20000008u
 #define DDR_SDRCR 0x2000000Cu
 #define DDR_SDTIMR 0x20000010u
@@ -66,7 +66,7 @@
 #define DDR_PBBPR 0x20000020u
 #define DDR_DDRPHYCR 0x200000E4u
 
-/* AINTC, 3 */
+/* AINTC (interrupt controller) */
 #define AINTC_FIQ0 0x01C48000u
 #define AINTC_FIQ1 0x01C48004u
 #define AINTC_IRQ0 0x01C48008u
@@ -82,7 +82,7 @@
 #define IRQ_VPSSINT8 8u
 #define IRQ_TINT0_34 33u
 
-/* TIMER0, 9.1 */
+/* TIMER0 */
 #define TIMER0_TIM12 0x01C21410u
 #define TIMER0_TIM34 0x01C21414u
 #define TIMER0_PRD12 0x01C21418u
@@ -90,7 +90,7 @@
 #define TIMER0_TCR 0x01C21420u
 #define TIMER0_TGCR 0x01C21424u
 
-/* UART0, 9.2 (16550, registers a word apart) */
+/* UART0: a 16550 with registers at a pitch of one word */
 #define UART0_THR 0x01C20000u
 #define UART0_IER 0x01C20004u
 #define UART0_FCR 0x01C20008u
@@ -103,7 +103,7 @@
 #define LSR_THRE (1u << 5)
 #define LSR_TEMT (1u << 6)
 
-/* GPIO, 9.3: one block of registers per 32 pins */
+/* GPIO: one group of registers for 32 pins */
 #define GPIO_DIR(bank) (0x01C67010u + 0x28u * (bank))
 #define GPIO_OUT(bank) (0x01C67014u + 0x28u * (bank))
 #define GPIO_IN(bank) (0x01C67020u + 0x28u * (bank))
@@ -133,7 +133,7 @@
 #define ICMDR_STT (1u << 13)
 #define ICMDR_FREE (1u << 14)
 
-/* ISP5 (VPSS top), 3.1 and 9.5 */
+/* ISP5 (top level of the VPSS) */
 #define ISP5_PCCR 0x01C70004u
 #define ISP5_INTSTAT 0x01C7000Cu
 #define ISP5_INTSEL1 0x01C70010u
@@ -146,11 +146,12 @@
 #define PCCR_IPIPEIF (1u << 5)
 #define PCCR_SYNC (1u << 6)
 #define VPSS_CLKCTL_VPBE (1u << 0)
-#define VPSS_CLKCTL_VENC_SEL (1u << 2) /* clock selector, set as Linux sets it for 525 and 625 */
+#define VPSS_CLKCTL_VENC_SEL (1u << 2) /* clock selector, written as Linux does for 525 and 625
+                                           lines */
 #define ISP5_SOURCE_ISIF_INT0 0u
 #define ISP5_SOURCE_VENC 21u
 
-/* ISIF, 7 */
+/* ISIF (capture) */
 #define ISIF_SYNCEN 0x01C71000u
 #define ISIF_MODESET 0x01C71004u
 #define ISIF_SPH 0x01C71018u
@@ -175,10 +176,10 @@
 #define MODESET_VD_NEGATIVE (1u << 2)
 #define CCDCFG_PACK8 2u
 #define CCDCFG_YC_IN_SWAP (1u << 4)
-#define CCDCFG_Y8POS (1u << 11) /* with YC_IN_SWAP: bytes Cb Y Cr Y in memory (UYVY) */
-#define SDOFST_WEAVE 0x249u     /* each LOFTS = +2 lines: the fields of a frame interleave */
+#define CCDCFG_Y8POS (1u << 11) /* with YC_IN_SWAP: byte order Cb Y Cr Y in memory (UYVY) */
+#define SDOFST_WEAVE 0x249u     /* each LOFTS is +2 lines, so the fields of a frame interleave */
 
-/* OSD, 8.1 */
+/* OSD (display windows) */
 #define OSD_MODE 0x01C71C00u
 #define OSD_VIDWINMD 0x01C71C04u
 #define OSD_OSDWIN0MD 0x01C71C08u
@@ -197,7 +198,7 @@
 #define VIDWINMD_VFF0 (1u << 1)
 #define OFST_FIXED (1u << 12)
 
-/* VENC, 8.2 */
+/* VENC (video encoder) */
 #define VENC_VMOD 0x01C71E00u
 #define VENC_VIDCTL 0x01C71E04u
 #define VENC_VSTAT 0x01C71EB8u

@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 10> kFlags = {
 constexpr const char* kMemoryHelp =
     "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size at or below the "
     "program's lowest address, which is 0 for newlib's default link address; -s exec.ram_base=ADDR "
-    "moves it. RAM at 0 hides the chip's internal RAM; other programs find that at 0x0 and 0x10000. "
+    "moves it. RAM at 0 hides the chip's internal RAM; other programs find it at 0x0 and 0x10000. "
     "Heap and stack share the largest part that the program leaves free; the stack starts at its "
     "end. There are no peripherals (UART, timers, ...): accesses to them are bus errors. With RAM "
     "above 0x20000000 the SDRAM controller's registers exist. --board uses the chip's own memory "

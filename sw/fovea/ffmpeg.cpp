@@ -34,9 +34,9 @@ constexpr int kLookMs = 100;  ///< interval in which the stop flag is checked, i
 /// svg_pipe (may refer to other files), lavfi and devices.
 constexpr const char* kFormats =
     "mov,matroska,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,mjpeg,gif,apng,flv,asf,ogg,ivf,nut,dv,"
-    "mxf,yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,jpegxl_pipe,"
-    "pam_pipe,pbm_pipe,pcx_pipe,pgm_pipe,png_pipe,ppm_pipe,psd_pipe,qoi_pipe,sgi_pipe,sunrast_pipe,"
-    "tiff_pipe,webp_pipe,xwd_pipe";
+    "mxf,yuv4mpegpipe,bmp_pipe,dpx_pipe,exr_pipe,gif_pipe,j2k_pipe,jpeg_pipe,jpegls_pipe,"
+    "jpegxl_pipe,pam_pipe,pbm_pipe,pcx_pipe,pgm_pipe,png_pipe,ppm_pipe,psd_pipe,qoi_pipe,"
+    "sgi_pipe,sunrast_pipe,tiff_pipe,webp_pipe,xwd_pipe";
 /// The footage as the child sees it: with the real name, ffmpeg would guess the format from the
 /// suffix.
 constexpr const char* kFootage = "file:/dev/stdin";

@@ -5,8 +5,8 @@
 #define PI 3.14159265358979323846
 #define RADIANS(deg) ((deg) * (PI / 180.0))
 #define SIDE_MAX 4096u
-/* Below this tan(theta) squared the ratio R / tan(theta) is taken at its limit: no 0 / 0 on the
- * axis. */
+/* For smaller values of tan(theta) squared, R / tan(theta) is replaced by its limit, to avoid 0 / 0
+ * on the axis. */
 #define NEAR_AXIS 1e-18
 
 static int positive(double x) { return x > 0.0 && x < HUGE_VAL; }
@@ -144,16 +144,17 @@ double lens_sqrt(double x) {
   const int32_t half_exponent = (exponent - 1023 - odd) / 2;
   const uint64_t mantissa = (in.bits & 0xFFFFFFFFFFFFFull) | 1ull << 52;
   const uint64_t a = (mantissa << odd) >> 22;
-  /* 1.0664 - a * 39 / 256 is within 9 % of the inverse root; each turn squares the relative error
-   * (times 1.5): 0.086, 0.012, 2e-4, 6e-8, then the arithmetic's 2^-28. */
+  /* 1.0664 - a * 39 / 256 is within 9 % of the inverse root. Each iteration squares the relative
+   * error (times 1.5): 0.086, 0.012, 2e-4, 6e-8, then the 2^-28 of the arithmetic. */
   uint64_t y = 1145038281u - (a * 39u >> 8);
   for (int i = 0; i < 4; ++i) {
     const uint64_t ay = a * y >> 30;
     const uint64_t residue = (3ull << 30) - (ay * y >> 30);
     y = y * residue >> 31;
   }
-  const uint64_t root = a * y >> 30; /* 1 <= root < 2, or just below 1 for a = 1 */
-  /* One step in double: root + (x - root^2) * y / 2, error about 2^-53. */
+  const uint64_t root = a * y >> 30; /* 1 <= root < 2, or slightly below 1 for a = 1 */
+  /* One more step in double precision: root + (x - root^2) * y / 2, with an error of about 2^-53.
+   */
   start.value = (double)(uint32_t)root;
   slope.value = (double)(uint32_t)y;
   start.bits += (uint64_t)((int64_t)(half_exponent - 30)) << 52;
@@ -175,8 +176,8 @@ double lens_gain(const lens_t *lens, double r_squared) {
     case LENS_ORTHOGRAPHIC:
       return f / lens_sqrt(1.0 + r_squared);
     case LENS_EQUISOLID: {
-      /* The textbook form f * sqrt(2 * (1 - 1 / h)) / r loses digits near the axis; this one
-       * does not (fisheye-video.md 1.3). */
+      /* The textbook form f * sqrt(2 * (1 - 1 / h)) / r loses digits near the axis. This form is
+       * equal to it and does not. */
       const double h = lens_sqrt(1.0 + r_squared);
       return f * lens_sqrt(2.0 / (h * (h + 1.0)));
     }
@@ -190,11 +191,11 @@ double lens_gain(const lens_t *lens, double r_squared) {
   }
 }
 
-/* What the four mirror images of an output position share: the offset of the source from the
- * optical centre, or "beyond theta_max". */
+/* Offset of the source from the optical centre, which the four mirror images of an output position
+ * share. Returns 0 beyond theta_max. */
 static int source_offset(const lens_t *lens, double x, double y, double *dx, double *dy) {
   const double r_squared = x * x + y * y;
-  /* The last table entry belongs to the lens: not visible only beyond the limit. */
+  /* The last table entry still belongs to the lens: only larger angles are invisible. */
   if (!(r_squared <= lens->tan_limit_squared)) return 0;
   const double gain = lens_gain(lens, r_squared);
   *dx = gain * x;
@@ -221,7 +222,8 @@ lens_point_t lens_source(const lens_t *lens, double u, double v) {
                         half(lens->height) + lens->centre_y + dy, 1};
 }
 
-/* floor(x + 0.5) for a position that may be far outside; -1 stands for everything below. */
+/* floor(x + 0.5) for a position that may be far outside the picture; -1 for all positions below 0.
+ */
 static int32_t nearest(double x) {
   if (!(x >= -0.5)) return -1;
   if (x > 1e6) return 1000000;
@@ -242,9 +244,9 @@ void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
   const uint32_t pairs = lens->width / 2;
   const uint32_t black = lens_black_offset(lens->height, pitch_bytes);
   const double first = lens->pair_method_b ? 0.5 : 0.0;
-  /* Mirror images: rows v and H-1-v when the view is not shifted vertically. Columns only with
-   * method B, whose positions 2i + 0.5 are symmetric; the mirror image of a first pixel (even) is
-   * a second one (odd). */
+  /* Mirror images: rows v and H-1-v if the view is not shifted vertically. Columns can be mirrored
+   * only with method B, whose positions 2i + 0.5 are symmetric; without it, the mirror image of a
+   * first pixel (even) is a second one (odd). */
   const int mirror_rows = lens->mapping != LENS_NONE && lens->shift_y == 0.0;
   const int mirror_columns =
       lens->mapping != LENS_NONE && lens->shift_x == 0.0 && lens->pair_method_b;

@@ -1,4 +1,5 @@
-/* Lens model and look-up table. Portable C11, needs only math.h; README.md has the geometry. */
+/* Lens model and look-up table. Portable C11 that needs only math.h; README.md describes the
+ * geometry. */
 #ifndef FOVEA_LENS_LENS_H
 #define FOVEA_LENS_LENS_H
 
@@ -14,12 +15,12 @@ typedef enum lens_result {
   LENS_OK = 0,
   LENS_BAD_SIZE,    /* width odd, or a side is 0 or above 4096 */
   LENS_BAD_MAPPING, /* not an enum lens_mapping */
-  LENS_BAD_FOV,     /* outside what the mapping can show */
+  LENS_BAD_FOV,     /* beyond what the mapping can represent */
   LENS_BAD_FOCAL,   /* a focal length or aspect is not a positive finite number */
-  LENS_BAD_TABLE    /* fewer than 2 entries, theta_max missing, or not increasing from 0 */
+  LENS_BAD_TABLE    /* fewer than 2 entries, theta_max missing, or entries not increasing from 0 */
 } lens_result_t;
 
-/** A lens and view, checked and with everything derived. */
+/** A checked lens and view, with all derived values. */
 typedef struct lens {
   uint32_t mapping;
   uint32_t width, height; /* pixels */
@@ -29,65 +30,67 @@ typedef struct lens {
   double centre_x, centre_y; /* px */
   double shift_x, shift_y;   /* px */
   double in_aspect, out_aspect;
-  double scale_x, scale_y;  /* output pixels to tan(theta) */
-  double tan_limit_squared; /* of the largest angle shown; HUGE_VAL: all below 90 degrees */
+  double scale_x, scale_y;  /* from output pixels to tan(theta) */
+  double tan_limit_squared; /* for the largest angle shown; HUGE_VAL: all angles below 90 degrees */
   double table_scale;       /* table intervals per radian */
   uint32_t table_count;
-  const double *table_r; /* borrowed from the page */
+  const double *table_r; /* not owned: points into the page */
 } lens_t;
 
-/** Exact source position of an output position, in input pixels from the picture's first pixel. */
+/** Exact source position of an output position, in input pixels relative to the first pixel. */
 typedef struct lens_point {
   double column, row;
-  int visible; /* 0: beyond theta_max; the position is then meaningless */
+  int visible; /* 0: beyond theta_max, the position is not valid */
 } lens_point_t;
 
-/** Focal length in px from width and full field of view: the correct one per mapping, or the
- * paper's printed equation (10) for the equisolid mapping when `paper_literal` is set.
- * 0 if the mapping has no such focal length at that field of view. */
+/** Focal length in px from the picture's width (px) and full field of view (degrees): the correct
+ * formula of each mapping, or for the equisolid mapping the paper's printed equation (10) if
+ * `paper_literal` is set. 0 if the mapping has no such focal length at that field of view. */
 double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int paper_literal);
 
-/** Checks `page` for a picture of width x height and derives `lens`. The page must outlive it. */
+/** Checks `page` for a picture of width x height and derives `lens`. The page must outlive `lens`.
+ */
 lens_result_t lens_init(lens_t *lens, const param_page_t *page, uint32_t width, uint32_t height);
 
-/** Sentence for a result, for a message. */
+/** A sentence for a message about a result. */
 const char *lens_result_text(lens_result_t result);
 
-/** Image radius R in px at angle theta (radians) from the axis, by the mapping's definition.
- * Not limited to 90 degrees. A table is linear between its entries and ends at theta_max. */
+/** Image radius R in px at the angle theta (radians) from the axis, by the definition of the
+ * mapping. Not limited to 90 degrees. A table is interpolated linearly and ends at theta_max. */
 double lens_radius(const lens_t *lens, double theta);
 
-/** R(theta) / tan(theta) in px, given tan(theta) squared; no trigonometry where the mapping allows.
- */
+/** R(theta) / tan(theta) in px for tan(theta) squared, without trigonometry where the mapping
+ * allows it. */
 double lens_gain(const lens_t *lens, double r_squared);
 
-/** Square root of a normal positive number to within 2 units in the last place, mostly in integers:
- * far fewer instructions than the C library's on a core without floating point. */
+/** Square root of a normal positive number, accurate to 2 units in the last place and computed
+ * mostly with integers: on a core without floating point it takes far fewer instructions than the C
+ * library's. */
 double lens_sqrt(double x);
 
-/** Source of the output position (u, v); u and v may be fractional. */
+/** Source of the output position (u, v) in pixels; u and v may be fractional. */
 lens_point_t lens_source(const lens_t *lens, double u, double v);
 
-/** Table entries of a picture: one per pair of pixels. */
+/** Number of table entries of a picture: one for each pair of pixels. */
 static inline uint32_t lens_lut_entries(uint32_t width, uint32_t height) {
   return width / 2 * height;
 }
 
-/** Entry for a source position: byte offset of the aligned pair word from the start of the frame,
- * or `black_offset` for a position outside the picture. */
+/** Table entry for a source position: byte offset of the aligned pixel pair from the start of the
+ * frame, or `black_offset` for a position outside the picture. */
 uint32_t lens_lut_entry(const lens_t *lens, lens_point_t source, uint32_t pitch_bytes,
                         uint32_t black_offset);
 
-/** Byte offset of the reserved black word: right behind the last line. */
+/** Byte offset of the reserved black word, directly after the last line. */
 static inline uint32_t lens_black_offset(uint32_t height, uint32_t pitch_bytes) {
   return height * pitch_bytes;
 }
 
-/** Fills `lut` (row by row, width / 2 entries a row). Uses the symmetry of a centred view: entries
- * are the same as those computed one by one. */
+/** Fills `lut` row by row, with width / 2 entries per row. Uses the symmetry of a centred view; the
+ * entries are the same as if each was computed separately. */
 void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes);
 
-/** The pair UYVY black, Y 16, Cb = Cr = 128. */
+/** A black pixel pair in UYVY: Y = 16, Cb = Cr = 128. */
 #define LENS_BLACK_WORD 0x10801080u
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
-/* The parameter page: how a host tells the firmware which lens and view it has.
- * It lies at the start of target memory (0x80000000), little-endian, doubles on 8-byte boundaries,
- * and is read once at start. Layout and meaning are described in README.md. */
+/* The parameter page, with which a host describes lens and view to the firmware. It is at the start
+ * of target memory (0x80000000), little-endian, with doubles at multiples of 8 bytes, and is read
+ * once at the start. README.md describes layout and meaning. */
 #ifndef FOVEA_LENS_PARAM_PAGE_H
 #define FOVEA_LENS_PARAM_PAGE_H
 
@@ -24,8 +24,10 @@ enum lens_mapping {
   LENS_TABLE = 6
 };
 
-#define PARAM_PAPER_LITERAL_FOCAL (1u << 0) /* equisolid focal by the paper's printed eq. (10) */
-#define PARAM_PAIR_METHOD_B (1u << 1)       /* map the pair's centre instead of its first pixel */
+#define PARAM_PAPER_LITERAL_FOCAL (1u << 0) /* equisolid focal length by the paper's printed eq.
+                                                (10) */
+#define PARAM_PAIR_METHOD_B (1u << 1)       /* map the centre of a pair instead of its first pixel
+#define PARAM_PAIR_METHOD_B (1u << 1)        */
 
 typedef struct param_page {
   uint32_t magic;    /* PARAM_PAGE_MAGIC */
@@ -35,35 +37,37 @@ typedef struct param_page {
 
   uint32_t mapping; /* enum lens_mapping */
   uint32_t flags;   /* PARAM_... bits */
-  uint32_t width;   /* pixels; 0: the standard's. Else a centred region of the standard's raster */
-  uint32_t height;  /* lines; 0: the standard's */
+  uint32_t width;   /* pixels; 0: of the standard, else a centred region of its raster */
+  uint32_t height;  /* lines; 0: of the standard */
 
-  uint32_t table_count; /* entries of table_r in use, for LENS_TABLE */
-  uint32_t repeats;     /* remaps of each captured frame, back to back; 0: one */
+  uint32_t table_count; /* number of entries of table_r in use, for LENS_TABLE */
+  uint32_t repeats;     /* number of consecutive remaps of each captured frame; 0: one */
 
   double fov_deg;      /* full horizontal field of view over `width`, degrees */
-  double focal_px;     /* lens focal length, px; 0: from fov_deg */
-  double out_focal_px; /* focal length of the corrected view, px; 0: the lens focal length */
-  double centre_x;     /* optical centre of the input relative to the picture's centre, px */
+  double focal_px;     /* focal length of the lens, px; 0: computed from fov_deg */
+  double out_focal_px; /* focal length of the corrected view, px; 0: that of the lens */
+  double centre_x;     /* optical centre of the input, relative to the picture's centre, px */
   double centre_y;
   double shift_x; /* shift of the output view, px */
   double shift_y;
   double in_aspect;  /* y scale / x scale of the lens image */
   double out_aspect; /* y scale / x scale of the output view */
-  double theta_max;  /* largest angle the lens shows, radians; 0: no limit (needed for a table) */
-  double table_r[PARAM_TABLE_MAX]; /* R in input x-pixels at theta = i * theta_max / (count - 1) */
+  double theta_max;  /* largest angle that the lens images, radians; 0: no limit (a table needs one)
+  double theta_max;   */
+  double table_r[PARAM_TABLE_MAX]; /* R in x-pixels of the input at theta = i * theta_max / (count -
+                                       1) */
 } param_page_t;
 
 typedef char
     param_page_size_check[sizeof(param_page_t) == 40 + 8 * (10 + PARAM_TABLE_MAX) ? 1 : -1];
 
-/** Fills a page with defaults: equisolid, 180 degrees, square pixels, centred; and seals it. */
+/** Fills a page with defaults (equisolid, 180 degrees, square pixels, centred) and seals it. */
 void param_page_default(param_page_t *page);
 
 /** Sets magic, version, bytes and checksum. */
 void param_page_seal(param_page_t *page);
 
-/** 1 if magic, version, bytes and checksum are right, else 0. */
+/** Returns 1 if magic, version, bytes and checksum are right, else 0. */
 int param_page_valid(const param_page_t *page);
 
 #ifdef __cplusplus

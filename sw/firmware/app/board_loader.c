@@ -1,5 +1,6 @@
-/* Boot loader of `fovea exec --board`: clocks by the switches and DDR2, without a word on the UART, and
- * on to a program that the host has put into SDRAM. The host fills in `start_state`. */
+/* Boot loader of `fovea exec --board`: sets the clocks by the switches, starts DDR2 without output
+ * on the UART, and starts a program that the host has put into SDRAM. The host fills in
+ * `start_state`. */
 #include "../boot/boot.h"
 #include "../boot/loader.h"
 

@@ -1,5 +1,6 @@
-/* Which input buffer is filled, waits or is worked on. Called from the interrupt handler and, with
- * interrupts masked, from the main loop. No hardware access: tested on the host. */
+/* Manages the input buffers: which one is being filled, which is complete, which are in use. Called
+ * from the interrupt handler and, with interrupts masked, from the main loop. No hardware access,
+ * so that it can be tested on the host. */
 #ifndef FOVEA_FIRMWARE_CAPTURE_H
 #define FOVEA_FIRMWARE_CAPTURE_H
 
@@ -10,26 +11,28 @@
 
 typedef struct capture {
   uint32_t buffer_count;
-  uint32_t next_sequence; /* number of the frame being captured */
+  uint32_t next_sequence; /* number of the frame that is being captured */
   uint32_t dropped;
   int32_t filling;
-  int32_t ready; /* complete, waiting for the main loop */
+  int32_t ready; /* complete and waiting for the main loop */
   uint32_t ready_sequence;
-  uint32_t busy; /* bit n: buffer n is in use by remap or display */
+  uint32_t busy; /* bit n: buffer n is used by remap or display */
 } capture_t;
 
-/** Starts with buffer 0 being filled. */
+/** Initial state: buffer 0 is being filled. */
 void capture_init(capture_t *capture, uint32_t buffer_count);
 
-/** A frame is complete: it becomes `ready`. One that was still waiting is dropped and counted.
- * @return buffer for the next frame, CAPTURE_NONE if all are in use: the frame just completed is
- * then dropped too and its buffer filled again (only with fewer than three free buffers). */
+/** To be called when a frame is complete: it becomes `ready`, and a frame that was still waiting is
+ * dropped and counted. @return the buffer for the next frame; CAPTURE_NONE if all are in use. In
+ * that case the completed frame is dropped too and its buffer is filled again (only with fewer than
+ * three free buffers). */
 int32_t capture_frame_done(capture_t *capture);
 
-/** Serial flow, one buffer: the frame becomes `ready` and capture pauses until it is released. */
+/** For the serial flow with one buffer: the frame becomes `ready`, and capture pauses until its
+ * release. */
 void capture_single_done(capture_t *capture);
 
-/** Takes the waiting frame: its buffer counts as busy until capture_release(). */
+/** Takes the waiting frame. Its buffer is in use until capture_release(). */
 int32_t capture_take(capture_t *capture, uint32_t *sequence);
 
 void capture_release(capture_t *capture, int32_t buffer);

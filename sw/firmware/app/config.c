@@ -27,7 +27,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
   const uint32_t raster_height = c->is_625 ? 576u : 480u;
   c->width = c->page.width != 0 ? c->page.width : standard == 2 ? 640u : 720u;
   c->height = c->page.height != 0 ? c->page.height : raster_height;
-  /* Multiples of 4 keep the centred region on whole pairs and whole lines of a field. */
+  /* With multiples of 4, the centred region begins at a whole pair and a whole line of a field. */
   if (c->width > 720u || c->width % 4u != 0 || c->height > raster_height || c->height % 4u != 0)
     return CONFIG_BAD_SIZE;
   c->left = (720u - c->width) / 2u;

@@ -1,4 +1,4 @@
-/* Smallest program: boots like the others, greets on the UART and sleeps. */
+/* A minimal program: boots like the others, prints a greeting on the UART and sleeps. */
 #include "../boot/boot.h"
 #include "../drivers/gpio.h"
 #include "../drivers/uart.h"

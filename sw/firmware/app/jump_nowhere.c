@@ -1,5 +1,5 @@
-/* A guest that fails on purpose: jumps to an address where nothing is, with the vectors switched to
- * 0xFFFF0000, where nothing is either. The abort can therefore never be handled. */
+/* A guest that fails deliberately: it jumps to an address without memory while the vectors are at
+ * 0xFFFF0000, where there is no memory either, so the abort can never be handled. */
 #include <stdint.h>
 
 #include "../drivers/uart.h"

@@ -1,4 +1,5 @@
-/* The fish-eye correction: builds the table at start, then captures, remaps and shows frames. */
+/* The fish-eye correction: builds the table at the start, then captures, remaps and displays
+ * frames. */
 #include "../boot/boot.h"
 #include "../drivers/cp15.h"
 #include "../drivers/gpio.h"
@@ -62,8 +63,8 @@ static void init_frames(uint32_t in_count) {
   }
 }
 
-/* Sum over the source words of the first output row. Equal before and after the remap unless the
- * camera wrote into the frame meanwhile. */
+/* Sum of the source words of the first output row. It is the same before and after the remap unless
+ * the camera has written to the frame meanwhile. */
 static uint32_t first_row_sum(const uint8_t *in) {
   uint32_t sum = 0;
   for (uint32_t i = 0; i < config.width / 2u; ++i)
@@ -142,8 +143,8 @@ int main(void) {
     const uint8_t *in;
     uint8_t *out;
     uint32_t sequence;
-    /* Looked at with interrupts masked: one that comes after the look still ends the sleep, and is
-     * served when they are unmasked. */
+    /* Checked with interrupts masked: an interrupt that comes after the check still ends the sleep,
+     * and is handled when interrupts are unmasked. */
     const uint32_t cpsr = irq_mask();
     const int work = pipeline_take(&in, &out, &sequence);
     if (!work) {

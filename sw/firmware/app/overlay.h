@@ -1,10 +1,10 @@
-/* A blinking status box, blended onto the picture through the cache. */
+/* A blinking status box, blended into the picture through the data cache. */
 #ifndef FOVEA_FIRMWARE_OVERLAY_H
 #define FOVEA_FIRMWARE_OVERLAY_H
 
 #include <stdint.h>
 
-/* Place and size in the output picture, pixels; even, inside every supported picture. */
+/* Position and size in the output picture, in pixels; even, and inside every supported picture. */
 #define OVERLAY_LEFT 32u
 #define OVERLAY_TOP 32u
 #define OVERLAY_WIDTH 64u
@@ -13,17 +13,17 @@
 #define OVERLAY_LUMA 0x50u
 #define OVERLAY_LUMA_PATCHED 0xC0u
 
-/** 1 in frames that show the box: eight on, eight off, by frame number. */
+/** Returns 1 for frames that show the box: eight with it, then eight without. */
 static inline int overlay_visible(uint32_t sequence) { return (sequence & 8u) == 0; }
 
-/** Replaces each luma Y of the box by (Y + luma) / 2, rounded down; chroma stays. */
+/** Replaces each luma value Y in the box by (Y + luma) / 2, rounded down; chroma is kept. */
 void overlay_draw(uint8_t *frame, uint32_t pitch_bytes, uint8_t luma);
 
-/** Returns the immediate of one instruction, OVERLAY_LUMA as linked (see patch.S). */
+/** Returns the immediate operand of one instruction, initially OVERLAY_LUMA (see patch.S). */
 uint32_t overlay_luma(void);
 
-/** Runs overlay_luma(), replaces that immediate in memory, makes the caches agree, and returns what
- * it gives now. */
+/** Calls overlay_luma(), replaces that immediate in memory, makes the caches coherent, and returns
+ * the function's new result. */
 uint32_t overlay_patch(uint32_t luma);
 
 #endif

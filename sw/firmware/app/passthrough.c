@@ -1,4 +1,4 @@
-/* Shows the captured frames as they are: the drivers without table and remap. */
+/* Displays the captured frames unchanged: the drivers without table and remap. */
 #include "../drivers/cp15.h"
 #include "../drivers/gpio.h"
 #include "../drivers/intc.h"

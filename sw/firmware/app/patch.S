@@ -1,5 +1,5 @@
-/* uint32_t overlay_luma(void): the function whose immediate the firmware patches. Alone in its cache
- * line, so that nothing else fetches or evicts it on purpose. */
+/* uint32_t overlay_luma(void): the function whose immediate operand the firmware patches. It has a
+ * cache line of its own, so that no other code fetches that line. */
     .syntax unified
     .arm
     .section .text.overlay_luma, "ax", %progbits

@@ -14,18 +14,18 @@
 #include "output.h"
 #include "state.h"
 
-/* Time kept free before a field's start when the main loop moves the display by itself. */
+/* Minimum time before a field's start for a change of the displayed buffer by the main loop. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
 
-/* Public drivers allow the decoder up to five times 200 ms to lock. */
+/* Public drivers wait up to five times 200 ms for the decoder's lock. */
 #define LOCK_TIMEOUT_TICKS (1000u * TIMER_TICKS_PER_MS)
 #define LOCK_POLL_TICKS (10u * TIMER_TICKS_PER_MS)
 
-/* How long before the end of a camera's frame the display's frames begin. In the serial flow the
- * result of one frame is then on show when the capture of the next may start. */
+/* The display's frames begin this long before the end of a camera frame. In the serial flow, the
+ * result of one frame is then already displayed when the capture of the next one may start. */
 #define DISPLAY_LEAD_TICKS TIMER_TICKS_PER_MS
 
-/* Everything here belongs to the interrupt handler; the main loop touches it with IRQ masked. */
+/* All of this is used by the interrupt handler; the main loop accesses it with IRQ masked. */
 static struct {
   capture_t capture;
   output_t output;
@@ -33,8 +33,8 @@ static struct {
   uint32_t field_ticks;
   int serial;
   int passthrough;
-  int capturing;       /* data of the current frame go to memory */
-  int capture_wanted;  /* start with the next frame */
+  int capturing;       /* the current frame is written to memory */
+  int capture_wanted;  /* capture starts with the next frame */
   int in_second_field; /* of the display, since second_field_start */
   uint32_t second_field_start;
   int window_on;
@@ -59,7 +59,7 @@ static uint8_t *shown_buffer(int32_t n) {
   return pipe.passthrough ? in_buffer(n) : frame_out + (uint32_t)n * frame_stride;
 }
 
-/* Points the display at the next finished frame. During a second field only. */
+/* Displays the next finished frame. Only during a second field. */
 static void flip(void) {
   uint32_t sequence;
   const int32_t buffer = output_next(&pipe.output, &sequence);
@@ -93,8 +93,8 @@ static void captured_frame_done(void) {
   }
 }
 
-/* VDINT0, after the last line of a field. Capture is switched on and off only here, after a second
- * field, so that frames are whole and are counted from a first field. */
+/* VDINT0, after the last line of a field. Capture is started and stopped only here, after a second
+ * field, so that frames are complete and begin with a first field. */
 static void capture_field_end(void) {
   if (!isif_second_field()) return;
   if (pipe.capturing) captured_frame_done();
@@ -118,7 +118,8 @@ static void display_field_start(void) {
   if (pipe.serial) pipe.capture_wanted = 1;
 }
 
-/* Called by the IRQ entry. Acknowledges first, serves then: an edge in between is latched anew. */
+/* Called by the IRQ entry. Acknowledges before handling, so that an edge in between is latched
+ * again. */
 void irq_dispatch(void);
 void irq_dispatch(void) {
   const uint32_t source = intc_pending();
@@ -152,8 +153,8 @@ void pipeline_prepare(const config_t *config) {
   }
 }
 
-/* Sleeps until an enabled source is pending, at most `ticks`. Interrupts are masked in the core.
- * @return what was pending, IRQ_TINT0_34 if nothing else came. */
+/* Sleeps until an enabled source is pending, for at most `ticks`, with interrupts masked in the
+ * core. @return the pending source, or IRQ_TINT0_34 if the time has passed */
 static uint32_t sleep_at_most(uint32_t ticks) {
   intc_enable(IRQ_TINT0_34, 7);
   timer_alarm(ticks);
@@ -165,10 +166,10 @@ static uint32_t sleep_at_most(uint32_t ticks) {
 
 static void sleep_between_looks(void) { (void)sleep_at_most(LOCK_POLL_TICKS); }
 
-/* Returns DISPLAY_LEAD_TICKS before the end of a camera's frame, or soon if there are no syncs.
- * A display started now has its second field, in which it may be pointed at a new frame, while the
- * remap of a frame ends: as far as can be from the moment at which a late result would be shown a
- * frame later, and with the shortest way from camera to display. */
+/* Returns DISPLAY_LEAD_TICKS before the end of a camera frame, or soon if there are no syncs. If
+ * the display is started now, the remap of each frame ends during the display's second field, in
+ * which the displayed buffer may be changed. This leaves the largest margin before a late result
+ * would be displayed one frame later, and gives the shortest latency from camera to display. */
 static void wait_for_frame_end(void) {
   isif_watch();
   intc_enable(IRQ_VPSSINT0, 2);
@@ -222,7 +223,8 @@ void pipeline_done(void) {
   const uint32_t cpsr = irq_mask();
   capture_release(&pipe.capture, pipe.taken_in);
   output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
-  /* Sooner than the handler would, if enough of a second field is left. */
+  /* The main loop changes the display earlier than the handler would, if enough of a second field
+   * is left. */
   if (pipe.in_second_field &&
       timer_ticks() - pipe.second_field_start < pipe.field_ticks - FLIP_MARGIN_TICKS)
     flip();

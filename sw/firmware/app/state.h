@@ -1,4 +1,4 @@
-/* What the firmware shows to a host that reads target memory by symbol. */
+/* State of the firmware for a host that reads target memory by symbol names. */
 #ifndef FOVEA_FIRMWARE_STATE_H
 #define FOVEA_FIRMWARE_STATE_H
 
@@ -10,7 +10,7 @@
 #define FRAME_WIDTH_MAX 720u
 #define FRAME_HEIGHT_MAX 576u
 #define LUT_ENTRIES_MAX (FRAME_WIDTH_MAX / 2u * FRAME_HEIGHT_MAX)
-/* A frame, one cache line with the black word behind it, rounded up to whole pages. */
+/* A frame and a cache line with the black word, rounded up to whole pages. */
 #define FRAME_STRIDE_MAX ((FRAME_WIDTH_MAX * 2u * FRAME_HEIGHT_MAX + 32u + 4095u) & ~4095u)
 
 #ifndef IN_COUNT
@@ -20,19 +20,20 @@
 #define OUT_COUNT 4u
 #endif
 
-/** All words; lies in uncached memory, so that memory always holds the current values. */
+/** Consists of words only. Located in uncached memory, so that memory always holds the current
+ * values. */
 typedef struct fw_state {
   uint32_t magic;   /* FW_STATE_MAGIC, written last during start-up */
   uint32_t version; /* FW_STATE_VERSION */
   uint32_t width, height, pitch_bytes;
   uint32_t lut_entries;
-  uint32_t in_count, out_count; /* frame buffers in use */
-  uint32_t lut_time_ticks;      /* 24 MHz */
+  uint32_t in_count, out_count; /* number of frame buffers in use */
+  uint32_t lut_time_ticks;      /* duration of the table's computation, in ticks of 24 MHz */
   uint32_t captured, remapped;  /* frames */
-  uint32_t flipped;             /* times the display was pointed at a new frame */
-  uint32_t dropped;             /* captured frames that were never remapped */
-  uint32_t patched_value;       /* what position 11 of the switches demonstrates; 0: not run */
-  uint32_t dip;                 /* switches as read */
+  uint32_t flipped;             /* number of times that the display was switched to a new frame */
+  uint32_t dropped;             /* captured frames that were not remapped */
+  uint32_t patched_value;       /* result of the demonstration of switch 11; 0: not run */
+  uint32_t dip;                 /* switches as read at the start */
   uint32_t torn;                /* frames whose first source row changed during the remap */
   uint32_t spurious;            /* interrupts without a pending source */
 } fw_state_t;

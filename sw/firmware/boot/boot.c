@@ -6,13 +6,13 @@
 #include "../mmio.h"
 #include "../regs.h"
 
-#ifdef BOOT_QUIET /* for a loader whose program has the UART to itself */
+#ifdef BOOT_QUIET /* for a loader whose program uses the UART alone */
 #define uart_puts(text) ((void)(text))
 #define uart_drain() ((void)0)
 #endif
 
-/* PLL settings for a 24 MHz oscillator, those of TI's boot loader for the DM36x: output =
- * 24 MHz * 2 * PLLM / (PREDIV + 1); each divider register holds n - 1. */
+/* PLL settings for a 24 MHz oscillator, as in TI's boot loader for the DM36x: output = 24 MHz * 2 *
+ * PLLM / (PREDIV + 1). Each divider register holds n - 1. */
 struct pll_setting {
   uint16_t pllm;
   uint8_t prediv;
@@ -26,22 +26,23 @@ struct preset_setting {
   const char *name;
 };
 
-/* Cycles of a time given in 0.1 ns at f MHz, rounded up, minus 1: the encoding of SDTIMR.
- * T_RRD is a quarter of tFAW (50 ns) and not tRRD (10 ns): the controller has no field for tFAW, and
- * with T_RRD >= tFAW / 4 any five activations are far enough apart. */
+/* Clocks of a time given in 0.1 ns at f MHz, rounded up, minus 1: the encoding of SDTIMR. T_RRD is
+ * a quarter of tFAW (50 ns) instead of tRRD (10 ns): the controller has no field for tFAW, and with
+ * T_RRD >= tFAW / 4 any five activations are far enough apart. */
 #define CYCLES_MINUS_1(t, f) (((t) * (f) + 9999u) / 10000u - 1u)
 #define SDTIMR_AT(f)                                                                               \
   (CYCLES_MINUS_1(1275u, f) << 25 | CYCLES_MINUS_1(200u, f) << 22 |                                \
    CYCLES_MINUS_1(200u, f) << 19 | CYCLES_MINUS_1(150u, f) << 16 | CYCLES_MINUS_1(450u, f) << 11 | \
    CYCLES_MINUS_1(650u, f) << 6 | CYCLES_MINUS_1(125u, f) << 3 | CYCLES_MINUS_1(100u, f))
-/* T_RASMAX 70 us in refresh intervals of 7.8 us, minus 1 (the public loader overflows this field);
+/* T_RASMAX is 70 us in refresh intervals of 7.8 us, minus 1 (TI's loader overflows this field);
  * T_XP 2, T_XSNR 137.5 ns, T_XSRD 199, T_RTP 7.5 ns, T_CKE 3. */
 #define SDTIMR2_AT(f) \
   (7u << 27 | 2u << 25 | (1375u * (f) / 10000u) << 16 | 199u << 8 | (75u * (f) / 10000u) << 5 | 3u)
 #define SDRCR_AT(f) (78u * (f) / 10u)
 #define DDR_AT(f) SDTIMR_AT(f), SDTIMR2_AT(f), SDRCR_AT(f)
 
-/* Encoder clock, 27 MHz: from PLL1 SYSCLK6 where it divides, else from PLL2 SYSCLK5. */
+/* Encoder clock of 27 MHz: from PLL1 SYSCLK6 if that can be divided to it, otherwise from PLL2
+ * SYSCLK5. */
 #define VENC_FROM_PLL1 0x18u
 #define VENC_FROM_PLL2 0x38u
 
@@ -63,7 +64,7 @@ static const struct preset_setting kPresets[CLOCK_PRESET_COUNT] = {
                        "270/216"},
     [CLOCK_216_172] = {{0x73, 15, {0x0D, 1, 1, 3, 1, 0x0C, 0, 3, 1}},
                        {0x12, 1, {0x11, 1, 1, 0x14, 0x0F}},
-                       /* 172.5 MHz: times rounded up, the refresh interval down */
+                       /* 172.5 MHz: times are rounded up, the refresh interval is rounded down */
                        SDTIMR_AT(173u), SDTIMR2_AT(173u), SDRCR_AT(172u),
                        VENC_FROM_PLL2,
                        "216/172"},
@@ -74,7 +75,7 @@ static const struct preset_setting kPresets[CLOCK_PRESET_COUNT] = {
                        "432/340"},
 };
 
-/* ARM from PLL2 SYSCLK2, DDR from PLL1 SYSCLK7. */
+/* ARM clock from PLL2 SYSCLK2, DDR clock from PLL1 SYSCLK7. */
 #define PERI_CLK_CTRL_VALUE 0x243F04FCu
 
 static void wait_loop(uint32_t count) {
@@ -95,7 +96,7 @@ static void pll_init(uint32_t base, uint32_t lock_register, const struct pll_set
 
   mmio_write32(base + PLLC_PLLM, setting->pllm);
   mmio_write32(base + PLLC_PREDIV, PLL_DIV_ENABLE | setting->prediv);
-  /* The loader's ritual on TENABLE, TENABLEDIV and TINITZ. */
+  /* Initialisation sequence of TENABLE, TENABLEDIV and TINITZ as in TI's boot loader. */
   mmio_write32(base + PLLC_SECCTL, 0x00470000u);
   mmio_write32(base + PLLC_SECCTL, 0x00460000u);
   mmio_write32(base + PLLC_SECCTL, 0x00400000u);
@@ -162,7 +163,7 @@ void boot_init(void) {
   psc_transition(LPSC_I2C, PSC_ENABLE);
   psc_transition(LPSC_VPSSMSTR, PSC_ENABLE);
 
-  /* Pin functions as the public loader sets them: video in, video out, UART0 and I2C. */
+  /* Pin functions as in TI's boot loader: video input, video output, UART0 and I2C. */
   mmio_write32(SYS_PINMUX(0), 0x00FD0000u);
   mmio_write32(SYS_PINMUX(1), 0x00145555u);
   mmio_write32(SYS_PINMUX(3), 0x01580000u);

@@ -1,4 +1,4 @@
-/* First stage: what a boot loader does before DDR2 may be touched. */
+/* First stage of the boot: everything that has to be done before DDR2 may be accessed. */
 #ifndef FOVEA_FIRMWARE_BOOT_H
 #define FOVEA_FIRMWARE_BOOT_H
 
@@ -14,19 +14,20 @@ enum clock_preset {
   CLOCK_PRESET_COUNT
 };
 
-/** Runs in internal RAM: interrupts masked, modules enabled, UART0, switches, PLLs, DDR2. */
+/** Runs in internal RAM. Masks interrupts, enables modules and UART0, reads the switches, starts
+ * PLLs and DDR2. */
 void boot_init(void);
 
-/** Preset that the switches select; an unused code means 297/243. */
+/** The preset selected by the switches; unused codes mean 297/243. */
 enum clock_preset boot_clock_preset(uint32_t dip);
 
-/** Word for VPSS_CLK_CTRL: which PLL gives the encoder's 27 MHz in this preset. */
+/** Value of VPSS_CLK_CTRL: selects the PLL that provides the encoder's 27 MHz with this preset. */
 uint32_t boot_vpss_clk_ctrl(enum clock_preset preset);
 
 /** Prints the cause and stops; called by the exception entries. */
 void fatal_exception(uint32_t kind, uint32_t pc) __attribute__((noreturn));
 
-/** Sleeps for good with interrupts masked. */
+/** Sleeps for ever with interrupts masked. */
 void stop(void) __attribute__((noreturn));
 
 #endif

@@ -1,5 +1,5 @@
-/* Start of a boot loader that lies in internal RAM and starts a program in SDRAM: loader_main()
- * prepares the board and says where and how. Caches and MMU stay off, interrupts masked. */
+/* Start of a boot loader in internal RAM that starts a program in SDRAM. loader_main() prepares the
+ * board and provides the start state. Caches and MMU stay off, interrupts stay masked. */
     .syntax unified
     .arm
 
@@ -9,7 +9,7 @@
 _start:
     b loader_reset
     .rept 7
-    .word 0xE7F000F0                 /* undefined: an exception that nobody handles ends the run */
+    .word 0xE7F000F0                 /* undefined: an exception without a handler ends the run */
     .endr
     .size _start, . - _start
 

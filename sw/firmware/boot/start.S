@@ -1,4 +1,4 @@
-/* Vectors, reset, stacks and the entries of exceptions. Lies in internal RAM (see firmware.ld). */
+/* Vectors, reset, stacks and exception entries. Located in internal RAM (see firmware.ld). */
     .syntax unified
     .arm
 
@@ -36,7 +36,8 @@ fiq_address:       .word fiq_entry
     .type reset_handler, %function
 reset_handler:
     msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
-    /* A debugger may start a warm core: caches and MMU off, both caches and the TLB empty. */
+    /* A debugger may start a core that is already running: caches and MMU off, caches and TLB
+     * invalidated. */
     mrc p15, 0, r0, c1, c0, 0
     bic r0, r0, #0x00002000          /* V: vectors at 0 */
     bic r0, r0, #0x00001000          /* I */
@@ -48,9 +49,9 @@ reset_handler:
     mcr p15, 0, r0, c7, c10, 4
 
     ldr sp, =__boot_stack_top
-    bl boot_init                     /* clocks, UART0, DDR2: only internal RAM so far */
+    bl boot_init                     /* clocks, UART0, DDR2; uses only internal RAM */
 
-    /* From here on DDR2 works. */
+    /* From here on DDR2 can be used. */
     msr cpsr_c, #(MODE_FIQ | NO_INTERRUPTS)
     ldr sp, =__exception_stack_top
     msr cpsr_c, #(MODE_ABT | NO_INTERRUPTS)
@@ -62,7 +63,7 @@ reset_handler:
     msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
     ldr sp, =__svc_stack_top
 
-    bl mmu_enable                    /* page table, both caches: clearing memory is quick then */
+    bl mmu_enable                    /* page table, both caches; makes clearing the memory faster */
 
     mov r2, #0
     ldr r0, =__bss_start
@@ -82,7 +83,7 @@ reset_handler:
 
     .global stop
     .type stop, %function
-/* Sleeps for good: interrupts stay masked, so each wake-up only returns to the sleep. */
+/* Sleeps for ever: interrupts stay masked, so that every wake-up returns to the sleep. */
 stop:
     msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
     mov r0, #0
@@ -98,7 +99,7 @@ irq_entry:
     ldmfd sp!, {r0-r3, r12, pc}^
     .size irq_entry, . - irq_entry
 
-/* fatal_exception(kind, pc of the culprit) prints and stops. */
+/* Calls fatal_exception(kind, pc of the failing instruction), which prints a message and stops. */
     .type undefined_entry, %function
 undefined_entry:
     sub r1, lr, #4
@@ -126,7 +127,7 @@ fiq_entry:
     b fatal_exception
     .ltorg
 
-/* Programs that take no interrupts need not bring a dispatcher. */
+/* Programs without interrupts need not define a dispatcher. */
     .weak irq_dispatch
     .type irq_dispatch, %function
 irq_dispatch:

@@ -25,9 +25,9 @@ void mmu_enable(void) {
   uint32_t control;
   __asm__ volatile(
       "mcr p15, 0, %1, c2, c0, 0\n\t" /* table */
-      "mcr p15, 0, %2, c3, c0, 0\n\t" /* domain 0: check permissions */
-      "mcr p15, 0, %3, c8, c7, 0\n\t" /* empty TLB */
-      "mcr p15, 0, %3, c7, c7, 0\n\t" /* empty caches */
+      "mcr p15, 0, %2, c3, c0, 0\n\t" /* domain 0: permissions are checked */
+      "mcr p15, 0, %3, c8, c7, 0\n\t" /* invalidate TLB */
+      "mcr p15, 0, %3, c7, c7, 0\n\t" /* invalidate caches */
       "mrc p15, 0, %0, c1, c0, 0"
       : "=&r"(control)
       : "r"(PAGE_TABLE_BASE), "r"(1), "r"(0)

@@ -1,4 +1,4 @@
-/* Caches, write buffer and sleep of the ARM926EJ-S. */
+/* Caches, write buffer and sleep mode of the ARM926EJ-S. */
 #ifndef FOVEA_FIRMWARE_CP15_H
 #define FOVEA_FIRMWARE_CP15_H
 
@@ -7,46 +7,49 @@
 #define CACHE_LINE_BYTES 32u
 #define DCACHE_BYTES 8192u
 
-/** Fills the page table at PAGE_TABLE_BASE and turns MMU and both caches on. Sections of 1 MiB:
- * internal RAM and devices uncached, unbuffered; DDR2 cached, write-back, except its last MiB
- * (UNCACHED_BASE); everything else faults. Call once, with caches off. */
+/** Fills the page table at PAGE_TABLE_BASE and enables MMU and both caches. Sections of 1 MiB:
+ * internal RAM and devices are uncached and unbuffered; DDR2 is cached and write-back, except for
+ * its last MiB (UNCACHED_BASE); everything else causes an abort. To be called once, with caches
+ * disabled. */
 void mmu_enable(void);
 
-/** Waits until write buffer and victim buffer are empty. */
+/** Waits until the write buffer and the victim buffer are empty. */
 static inline void write_buffer_drain(void) {
   __asm__ volatile("mcr p15, 0, %0, c7, c10, 4" : : "r"(0) : "memory");
 }
 
-/** Writes every dirty D line back (test-and-clean; at most 256 lines), lines stay valid. */
+/** Writes back every dirty line of the D-cache (test and clean, at most 256 lines); lines stay
+ * valid. */
 static inline void dcache_clean_all(void) {
   __asm__ volatile("1: mrc p15, 0, r15, c7, c10, 3\n\tbne 1b" : : : "cc", "memory");
   write_buffer_drain();
 }
 
-/** Writes every dirty D line back and empties the D cache. */
+/** Writes back every dirty line of the D-cache and invalidates the D-cache. */
 static inline void dcache_clean_invalidate_all(void) {
   __asm__ volatile("1: mrc p15, 0, r15, c7, c14, 3\n\tbne 1b" : : : "cc", "memory");
   write_buffer_drain();
 }
 
-/** Makes memory hold what the core wrote to [start, start + bytes). By line for a range smaller
- * than the cache; else test-and-clean over the whole cache, which is then cheaper (256 lines
- * against 25,920 of a PAL frame). */
+/** Writes back what the core wrote to [start, start + bytes). A range smaller than the cache is
+ * cleaned line by line. For others the whole cache is tested and cleaned, which is cheaper (256
+ * lines instead of the 25,920 lines of a PAL frame). */
 void dcache_clean_range(const void *start, uint32_t bytes);
 
-/** Makes the next reads of [start, start + bytes) come from memory. `start` and `bytes` are line
- * aligned. Large ranges: clean and invalidate the whole cache, as above. */
+/** Discards cached copies of [start, start + bytes), so that the next reads come from memory.
+ * `start` and `bytes` must be multiples of a cache line. Large ranges: the whole cache is cleaned
+ * and invalidated. */
 void dcache_invalidate_range(const void *start, uint32_t bytes);
 
-/** Makes instruction fetches from [start, start + bytes) see memory. */
+/** Makes instruction fetches from [start, start + bytes) read memory again. */
 void icache_invalidate_range(const void *start, uint32_t bytes);
 
-/** Sleeps until an interrupt is pending, masked or not. */
+/** Sleeps until an interrupt is pending, even if masked. */
 static inline void wait_for_interrupt(void) {
   __asm__ volatile("mcr p15, 0, %0, c7, c0, 4" : : "r"(0) : "memory");
 }
 
-/** Masks IRQ; returns the CPSR before, for irq_restore(). */
+/** Masks IRQ. Returns the previous CPSR for irq_restore(). */
 static inline uint32_t irq_mask(void) {
   uint32_t cpsr;
   __asm__ volatile("mrs %0, cpsr\n\torr r12, %0, #0x80\n\tmsr cpsr_c, r12"

@@ -5,8 +5,8 @@
 #include "../regs.h"
 
 /* Left and top edge of the active picture, as in Linux's board-dm365-evm.c. TI's Linux 2.6.32 adds
- * two lines for 625/50 on this chip against a shaking bitmap window 0 (davinci_platform.c); no
- * bitmap window is used here, and two lines more would leave the top two lines of each field to
+ * two lines for 625/50 on this chip, to keep bitmap window 0 from shaking (davinci_platform.c). No
+ * bitmap window is used here, and with two more lines the top two lines of each field would show
  * the background if 0x16 is the first active line, as assumed in vpss.base_py_625. */
 #define BASEPX_525 0x79u
 #define BASEPY_525 0x10u
@@ -35,7 +35,8 @@ display_result_t display_start(const display_mode_t *m) {
   mmio_write32(OSD_BASEPX, m->is_625 ? BASEPX_625 : BASEPX_525);
   mmio_write32(OSD_BASEPY, m->is_625 ? BASEPY_625 : BASEPY_525);
   mmio_write32(OSD_VIDWIN0XP, m->left);
-  mmio_write32(OSD_VIDWIN0YP, m->top / 2u); /* vertical figures count field lines */
+  mmio_write32(OSD_VIDWIN0YP, m->top / 2u); /* vertical positions and sizes are in lines of a field
+  mmio_write32(OSD_VIDWIN0YP, m->top / 2u);  */
   mmio_write32(OSD_VIDWIN0XL, m->width);
   mmio_write32(OSD_VIDWIN0YL, m->height / 2u);
 

@@ -4,7 +4,8 @@
 #include "../regs.h"
 #include "timer.h"
 
-/* 24 MHz / (2 + 1) = 8 MHz module clock; SCL period (35 + 5) + (35 + 5) = 80 of those: 100 kHz. */
+/* 24 MHz / (2 + 1) = 8 MHz module clock; an SCL period is (35 + 5) + (35 + 5) = 80 of its clocks:
+ * 100 kHz. */
 #define PRESCALER 2u
 #define CLOCK_LOW 35u
 #define CLOCK_HIGH 35u
@@ -20,7 +21,7 @@ void i2c_init(void) {
   mmio_write32(I2C_ICMDR, ICMDR_IRS);
 }
 
-/* Waits for a status bit; NACK ends every wait. */
+/* Waits for a status bit. A NACK ends the wait. */
 static i2c_result_t wait_status(uint32_t bit) {
   const uint32_t start = timer_ticks();
   for (;;) {
@@ -38,7 +39,7 @@ static i2c_result_t wait_bus_free(void) {
   return I2C_OK;
 }
 
-/* After a failure: STOP if the bus is ours, then a clean module for the next transfer. */
+/* After a failure: a STOP if the controller owns the bus, then a reset of the controller. */
 static i2c_result_t fail(i2c_result_t result) {
   mmio_modify32(I2C_ICMDR, 0, ICMDR_STP);
   i2c_result_t ignored = wait_bus_free();

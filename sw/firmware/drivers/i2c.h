@@ -1,4 +1,4 @@
-/* I2C master, polled, 100 kHz. */
+/* I2C master with polling, at 100 kHz. */
 #ifndef FOVEA_FIRMWARE_I2C_H
 #define FOVEA_FIRMWARE_I2C_H
 
@@ -13,7 +13,7 @@ __attribute__((warn_unused_result)) i2c_result_t i2c_write_register(uint32_t dev
                                                                     uint8_t sub_address,
                                                                     uint8_t value);
 
-/** Reads one register of a device in two transfers (sub-address, then data). */
+/** Reads a device register with two transfers (sub-address, then data). */
 __attribute__((warn_unused_result)) i2c_result_t i2c_read_register(uint32_t device,
                                                                    uint8_t sub_address,
                                                                    uint8_t *value);

@@ -3,7 +3,7 @@
 #include "../mmio.h"
 #include "../regs.h"
 
-/* Registers come in pairs: sources 0 to 31, then 32 to 63. */
+/* Registers come in pairs, for sources 0 to 31 and 32 to 63. */
 static uint32_t bank(uint32_t source) { return source / 32u * 4u; }
 
 void intc_init(void) {

@@ -8,7 +8,7 @@ isif_result_t isif_configure(const isif_window_t *w) {
       w->top % 2 != 0 || w->pitch_bytes % 32u != 0 || w->pitch_bytes < w->width * 2u)
     return ISIF_BAD_WINDOW;
   mmio_write32(ISIF_SYNCEN, 0);
-  mmio_write32(ISIF_REC656IF, 3); /* embedded syncs, corrected */
+  mmio_write32(ISIF_REC656IF, 3); /* embedded syncs, with error correction */
   mmio_write32(ISIF_MODESET, MODESET_INPUT_YC8 | MODESET_INTERLACED | MODESET_VD_NEGATIVE);
   mmio_write32(ISIF_CCDCFG, CCDCFG_PACK8 | CCDCFG_YC_IN_SWAP | CCDCFG_Y8POS);
   mmio_write32(ISIF_CULH, 0xFFFF);

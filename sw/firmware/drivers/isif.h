@@ -1,4 +1,4 @@
-/* Capture of BT.656 by the ISIF: both fields woven into one UYVY frame. */
+/* BT.656 capture by the ISIF: both fields are interleaved into one UYVY frame. */
 #ifndef FOVEA_FIRMWARE_ISIF_H
 #define FOVEA_FIRMWARE_ISIF_H
 
@@ -12,29 +12,30 @@ typedef struct isif_window {
 
 typedef enum isif_result { ISIF_OK = 0, ISIF_BAD_WINDOW, ISIF_BAD_ADDRESS } isif_result_t;
 
-/** Bytes from one line to the next: the line rounded up to the ISIF's 32-byte units. */
+/** Bytes from one line to the next: a line, rounded up to the 32-byte units of the ISIF. */
 static inline uint32_t isif_pitch(uint32_t width) { return (width * 2u + 31u) & ~31u; }
 
-/** Line of VDINT0. The public drivers use LNV, two lines before the end of the captured area
- * because counting starts at the VD and the first captured line is SLV. Here the frame is used at
- * once, so the interrupt comes two lines after its last line: its last burst has left by then. */
+/** Line of VDINT0. Public drivers use LNV, two lines before the end of the captured region, because
+ * lines are counted from VD and the first captured line is SLV. Here the frame is used at once, so
+ * the interrupt comes two lines after the last captured line, when its last burst has been issued.
+ */
 static inline uint32_t isif_end_of_field_line(const isif_window_t *w) {
   return w->top / 2u + 1u + w->height / 2u + 1u;
 }
 
-/** Programs the window; capture stays off. Nothing is written when the window is refused. */
+/** Programs the window; capture stays off. Nothing is written if the window is refused. */
 __attribute__((warn_unused_result)) isif_result_t isif_configure(const isif_window_t *window);
 
-/** Sets the address of the frame (32-byte aligned); taken at the next VD. */
+/** Sets the frame's address (32-byte aligned), which takes effect at the next VD. */
 __attribute__((warn_unused_result)) isif_result_t isif_set_address(uint32_t address);
 
-/** Syncs only: VDINT0 comes every field, nothing is written to memory. */
+/** Synchronises only: VDINT0 comes for every field, and nothing is written to memory. */
 void isif_watch(void);
 
-/** Syncs and data from the next VD on. */
+/** Synchronises and captures data, from the next VD on. */
 void isif_capture(void);
 
-/** 1 while the second field of a frame arrives. */
+/** Returns 1 while the second field of a frame is received. */
 int isif_second_field(void);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <stdint.h>
 
-/** Moves a module to a state (PSC_ENABLE, PSC_SYNC_RESET) and waits until MDSTAT shows it. */
+/** Changes the state of a module (PSC_ENABLE, PSC_SYNC_RESET) and waits until MDSTAT shows it. */
 void psc_transition(uint32_t module, uint32_t state);
 
 #endif

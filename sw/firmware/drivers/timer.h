@@ -1,5 +1,5 @@
-/* TIMER0 at 24 MHz (AUXCLK): TIM12 counts up freely, 32 bit, wraps after 179 s; TIM34 is an
- * alarm. */
+/* TIMER0 at 24 MHz (AUXCLK). TIM12 is a free-running 32-bit counter, which wraps after 179 s; TIM34
+ * is used for alarms. */
 #ifndef FOVEA_FIRMWARE_TIMER_H
 #define FOVEA_FIRMWARE_TIMER_H
 
@@ -10,7 +10,7 @@
 void timer_start(void);
 uint32_t timer_ticks(void);
 
-/** Raises the interrupt of TIM34 once, `ticks` (not 0) from now. */
+/** Requests one interrupt of TIM34 in `ticks` (not 0) from now. */
 void timer_alarm(uint32_t ticks);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "timer.h"
 
-/* Registers, fisheye-video.md 3.5. */
+/* Registers of the TVP5146 (TI SLES084C). */
 #define REG_INPUT_SELECT 0x00
 #define REG_VIDEO_STANDARD 0x02
 #define REG_OPERATION_MODE 0x03
@@ -12,17 +12,17 @@
 #define REG_ID_MSB 0x80
 #define REG_ID_LSB 0x81
 
-/* Horizontal and vertical lock. A monochrome camera never gives colour lock. */
+/* Horizontal and vertical lock. With a monochrome camera there is no colour lock. */
 #define STATUS1_LOCKED 0x06u
 
 i2c_result_t tvp5146_start(int is_625, uint32_t *id) {
   static const struct {
     uint8_t sub_address, value;
   } kSetup[] = {
-      {REG_INPUT_SELECT, 0x05},   /* composite on VI_2_B, as on the evaluation module */
+      {REG_INPUT_SELECT, 0x05},   /* composite video on VI_2_B, as on TI's evaluation module */
       {REG_FORMATTER1, 0x00},     /* 4:2:2 with embedded syncs */
       {REG_OPERATION_MODE, 0x00}, /* run */
-      {REG_FORMATTER2, 0x11},     /* drive data and clock pins */
+      {REG_FORMATTER2, 0x11},     /* enable data and clock pins */
   };
   uint8_t msb = 0, lsb = 0;
   i2c_result_t result = i2c_read_register(TVP5146_ADDRESS, REG_ID_MSB, &msb);

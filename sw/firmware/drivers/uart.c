@@ -1,4 +1,5 @@
-/* Linked into internal RAM with the boot code: no call may leave this file (division included). */
+/* Linked into internal RAM with the boot code, so it must not call code in DDR2 (not even for
+ * divisions). */
 #include "uart.h"
 
 #include "../mmio.h"
@@ -8,12 +9,13 @@ void uart_init(void) {
   mmio_write32(UART0_PWREMU_MGMT, 0);
   mmio_write32(UART0_DLL, 13);
   mmio_write32(UART0_DLH, 0);
-  mmio_write32(UART0_FCR, 7); /* FIFOs on and empty */
+  mmio_write32(UART0_FCR, 7); /* FIFOs enabled and cleared */
   mmio_write32(UART0_FCR, 1);
   mmio_write32(UART0_IER, 0);
   mmio_write32(UART0_LCR, 3); /* 8N1 */
   mmio_write32(UART0_MCR, 0);
-  mmio_write32(UART0_PWREMU_MGMT, 0x6001u); /* both halves run; bit 15 is reserved */
+  mmio_write32(UART0_PWREMU_MGMT, 0x6001u); /* transmitter and receiver enabled; bit 15 is reserved
+  mmio_write32(UART0_PWREMU_MGMT, 0x6001u);  */
 }
 
 void uart_putc(char c) {

@@ -1,4 +1,4 @@
-/* UART0, polled, 115200 8N1 (24 MHz / 16 / 13 = 115385 Bd). */
+/* UART0 with polling, 115200 8N1 (24 MHz / 16 / 13 = 115385 Bd). */
 #ifndef FOVEA_FIRMWARE_UART_H
 #define FOVEA_FIRMWARE_UART_H
 
@@ -6,11 +6,11 @@
 
 void uart_init(void);
 void uart_putc(char c);
-/** Writes a string; "\n" goes out as CR LF. */
+/** Sends a string; "\n" is sent as CR LF. */
 void uart_puts(const char *text);
 void uart_put_hex(uint32_t value);
 void uart_put_uint(uint32_t value);
-/** Waits until the last stop bit has left. */
+/** Waits until the last stop bit was sent. */
 void uart_drain(void);
 
 #endif

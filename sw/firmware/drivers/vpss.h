@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/** Opens the gates of capture and display, picks the encoder's clock source, routes VDINT0 to
+/** Enables the clocks of capture and display, selects the encoder's clock, and routes VDINT0 to
  * VPSSINT0 and the encoder's field interrupt to VPSSINT8. */
 void vpss_init(uint32_t vpss_clk_ctrl);
 

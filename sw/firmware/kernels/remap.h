@@ -8,11 +8,12 @@
 typedef void remap_kernel_t(uint32_t *restrict out, const void *in, const uint32_t *restrict lut,
                             uint32_t pairs);
 
-/** The paper's loop, as the compiler makes it: load entry, load pair, store pair. */
+/** The paper's loop as compiled: load the entry, load the pair, store the pair. */
 remap_kernel_t remap_plain;
 
-/** Eight pairs a turn: entries by LDM, results by one STM of 32 bytes, which leaves the write
- * buffer as one burst. Best with `out` on a 32-byte boundary; any word boundary works. */
+/** Eight pairs per iteration: the entries are loaded by LDM and the results stored by one STM of 32
+ * bytes, which leaves the write buffer as one burst. Fastest if `out` is a multiple of 32; any word
+ * address works. */
 remap_kernel_t remap_ldm;
 
 #endif

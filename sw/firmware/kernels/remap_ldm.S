@@ -1,6 +1,7 @@
 /* void remap_ldm(uint32_t *out, const void *in, const uint32_t *lut, uint32_t pairs)
- * r0 out, r1 in, r2 lut, r3 pairs left. Each loaded register is used three or more instructions
- * later, so that no load waits for its result as long as the data lies in the cache. */
+ *
+ * r0 out, r1 in, r2 lut, r3 pairs left. Each loaded register is used at least three instructions
+ * later, so that no load waits for its result as long as the data are in the cache. */
     .syntax unified
     .arm
     .section .text.remap_ldm, "ax", %progbits
