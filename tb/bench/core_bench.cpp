@@ -1,4 +1,4 @@
-// Host speed of the core alone, in guest instructions a second of host CPU time. Not a test.
+// Host speed of the core alone, in guest instructions per second of host CPU time. Not a test.
 #include <benchmark/benchmark.h>
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// A core over flat memory of fixed latency that runs a program file: nothing else is measured.
+// A core on flat memory of fixed latency that runs a program file, to measure only the core.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace fovea::cpu {
 
-/// Every outcome is certain at once; nobody else acts.
+/// Decides every outcome at once; there are no other agents.
 class QuietPort final : public BusPort {
  public:
   static constexpr Picoseconds kRead = 80'000, kWrite = 40'000, kBeat = 8'000;
@@ -18,16 +18,16 @@ class QuietPort final : public BusPort {
   bool poll(BusAccess& a, Picoseconds until) override { return a.last <= until; }
   void finish(BusAccess&) override {}
   Picoseconds horizon() override { return limit; }
-  /// The program ran for as long as it was allowed to.
+  /// The limit of simulated time was reached.
   void sleep_until(Picoseconds) override { core->request_stop(); }
   Picoseconds wait_for_interrupt(Picoseconds) override;
 
-  std::vector<std::uint8_t> memory;  ///< from address 0
+  std::vector<std::uint8_t> memory;  ///< starts at address 0
   Picoseconds limit = kNever;
   Core* core = nullptr;
 };
 
-/// Runs an ELF file from its entry to `svc #0x123456`, or for so many core clocks.
+/// Runs an ELF file from its entry up to `svc #0x123456`, or for a number of core clocks.
 class CoreRig {
  public:
   static constexpr Picoseconds kClock = 4'000;

@@ -1,4 +1,5 @@
-// core_run FILE [CLOCKS]: runs a program on the core alone; says instructions, clocks, seconds.
+// core_run FILE [CLOCKS]: runs a program on the core alone and prints instructions, clocks and
+// seconds.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

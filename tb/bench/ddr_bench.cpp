@@ -1,4 +1,4 @@
-// Host speed of the memory path's cores: how many requests a second they play. Not a test.
+// Host speed of crossbar and controller cores, in requests per second. Not a test.
 #include <benchmark/benchmark.h>
 
 #include <array>

@@ -1,8 +1,8 @@
-// Plays one kind of load on the DDR controller's core a given number of times, for an instruction
-// counter:
+// Executes one kind of load on the DDR controller's core for a given number of requests, to be run
+// under an instruction counter:
 //   valgrind --tool=callgrind --callgrind-out-file=/dev/null bench_ddr_load KIND COUNT
-// The difference of two counts, divided by their distance, is the cost of a request without
-// start-up.
+// The difference between two runs, divided by the difference of their counts, is the cost of one
+// request without start-up.
 #include <array>
 #include <cstdint>
 #include <cstdio>

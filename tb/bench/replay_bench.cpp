@@ -1,5 +1,5 @@
-// Host speed of the replay: requests a second. Items are requests of 32 bytes; `rows` of the memory
-// opened for each of them say how much it had to do. Not a test.
+// Host speed of the replay in requests (items of 32 bytes) per second. The counter `rows`, the
+// memory rows opened per request, shows how much work the controller had. Not a test.
 #include <benchmark/benchmark.h>
 
 #include "sw/fovea/replay_path.h"

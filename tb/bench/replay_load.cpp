@@ -1,4 +1,4 @@
-// Plays one kind of synthetic trace, for an instruction counter: see replay_instructions.sh.
+// Replays one kind of synthetic trace, for an instruction counter: see replay_instructions.sh.
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Requests without a file, for the speed of the player and the path.
+// Requests that are generated instead of read from a file, to measure player and memory path.
 #pragma once
 #include <algorithm>
 #include <string>
@@ -8,18 +8,19 @@
 
 namespace fovea::app {
 
-/// What the masters ask for. Sequential: each reads on through a megabyte of its own; all megabytes
-/// begin in one bank, so that several masters close each other's rows with every request. Apart: the
-/// same with a page between them, so that up to eight are in banks of their own. Dealt: one stream of
-/// which each master has every so-manieth request, so that the memory has the same to do however many
-/// they are. Random: three reads to a write, anywhere in 64 MiB.
+/// Addresses of the masters' requests. Sequential: each master reads through a megabyte of its own.
+/// All megabytes begin in the same bank, so that several masters close each other's rows with every
+/// request. Apart: the same with a page between the megabytes, so that up to eight masters use
+/// different banks. Dealt: the requests of one stream are distributed over the masters in turn, so
+/// that the memory's work does not depend on their number. Random: three reads per write, anywhere
+/// in 64 MiB.
 enum class Pattern { kSequential, kApart, kDealt, kRandom };
 
-/// Reads, and writes as well, that a master may have outstanding by default.
+/// Default number of reads, and of writes, that a master may have outstanding.
 inline constexpr unsigned kWindow = 8;
 
-/// `count` requests of 32 bytes in all, as fast as windows of so many reads and up to 16 writes for each
-/// master let them go.
+/// `count` requests of 32 bytes in total, issued as fast as a window of reads and up to 16 writes
+/// per master allow.
 class SyntheticTrace final : public trace::RecordSource {
  public:
   SyntheticTrace(unsigned masters, std::uint64_t count, Pattern pattern, unsigned window = kWindow)
@@ -53,7 +54,7 @@ class SyntheticTrace final : public trace::RecordSource {
   trace::TraceInfo info;
 
  private:
-  /// Behind the core's: those of 64 bits.
+  /// The 64-bit masters, which follow the core's.
   static Master port(unsigned n) { return static_cast<Master>(index(Master::kEdmaTc0Read) + n); }
   std::uint64_t page(unsigned stream) const {
     return pattern_ == Pattern::kApart ? stream * 2048u : 0u;

@@ -1,4 +1,4 @@
-// The chip's own wiring: timers to interrupts, ARM_INTMUX, watchdog to reset, wait states of
+// Connections inside the chip: timers to interrupts, ARM_INTMUX, watchdog to reset, wait states of
 // internal RAM.
 #include <gtest/gtest.h>
 

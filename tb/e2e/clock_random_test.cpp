@@ -1,5 +1,5 @@
-// Random programs that change their own clock, wait and sleep: neither the synchronisation nor how often
-// the host looks in may change the time of anything they do.
+// Random programs that change their own clock, wait and sleep. Neither the synchronisation mode nor
+// the length of the host's time slices may change the time of anything they do.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// Time on the board where the core alone goes on: a timer's interrupt, a change of its own clock.
+// Simulated time on the board while only the core is active: a timer's interrupt, a change of the
+// core's clock.
 #include <gtest/gtest.h>
 
 #include <systemc>

@@ -1,5 +1,5 @@
-// The whole way: camera pixels in, corrected pixels out. CTest runs each case in its own process,
-// since a simulation elaborates once.
+// The whole system from camera pixels to corrected pixels. CTest runs each case in its own process,
+// since a process can elaborate only one simulation.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// Keys without effect, found by trying: each key of camera and lens is changed under each
-// combination of the choices that could make it idle, and what the firmware and the raster get is
-// compared. ParamBase::effects() must say so exactly where nothing changes.
+// Finds keys without effect by trying: changes each key of camera and lens under each combination
+// of choices that could make it ineffective, and compares what the firmware and the raster get.
+// ParamBase::effects() must declare exactly the cases in which nothing changes.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -1,4 +1,4 @@
-// What every run of the rig must fulfil: the look-up table and all displayed frames are exact.
+// Conditions for every run of the rig: the look-up table and all displayed frames are exact.
 #pragma once
 #include <cstdint>
 
@@ -6,13 +6,14 @@
 
 namespace fovea::e2e {
 
-/// Every entry of the table in target memory is the oracle's; one that lies within 0.02 px of a
-/// boundary, where two roundings may both be right, may be its neighbour (one in 1,000 at most).
+/// Every entry of the table in target memory must equal the oracle's. An entry within 0.02 px of a
+/// boundary, where two roundings may both be right, may be the neighbouring one (at most one in
+/// 1,000).
 void expect_lut_right(Rig& rig);
 
-/// Every displayed frame is the host's remap of a frame that the camera sent, byte for byte. A result
-/// that is new on the display is that of the camera's frame `step` after the one before; with
-/// step 0, of that one or a later one.
+/// Every displayed frame must be the host's remap of a frame that the camera sent, byte for byte. A
+/// new result on the display must belong to the camera frame `step` after the previous one; with
+/// step 0, to the same or a later one.
 void expect_frames_right(Rig& rig, std::uint64_t step = 1);
 
 }  // namespace fovea::e2e

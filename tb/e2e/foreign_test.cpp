@@ -1,5 +1,5 @@
-// Register sequences of drivers that this project did not write (programs/foreign_sequences.c) on
-// the board, and what the host sees of them.
+// Runs register sequences of public drivers (programs/foreign_sequences.c) on the board, and checks
+// what the host observes.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -1,5 +1,5 @@
-// Each priority register of the chip against the time that its master's requests take, with another
-// master on the memory that is never idle.
+// Tests each priority register of the chip by the time that its master's requests take while
+// another master keeps the memory busy.
 #include <gtest/gtest.h>
 
 #include <functional>

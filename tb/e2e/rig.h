@@ -1,4 +1,4 @@
-// One board in one process: set keys, run, look at frames and memory.
+// One board in one process: set keys, run, inspect frames and memory.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,14 +13,14 @@
 
 namespace fovea::e2e {
 
-/// A displayed frame of the window with what the board knows of it.
+/// A frame displayed in the window, with the board's record of it.
 struct Shown {
-  oracle::Frame frame;   ///< the region that the firmware shows, without the border around it
+  oracle::Frame frame;   ///< the region that the firmware displays, without the surrounding border
   board::FrameRecord record;
   unsigned underflows = 0;
 };
 
-/// `fw_state` of the firmware, by position (sw/firmware/README.md).
+/// The members of the firmware's `fw_state` by position (sw/firmware/README.md).
 struct FwState {
   std::uint32_t magic, version, width, height, pitch_bytes, lut_entries, in_count, out_count,
       lut_time_ticks, captured, remapped, flipped, dropped, patched_value, dip, torn, spurious;
@@ -28,26 +28,27 @@ struct FwState {
 
 class Rig {
  public:
-  /// `elf`: a file of the firmware's build folder, or an absolute name.
+  /// @param elf a file in the firmware's build folder, or an absolute name
   explicit Rig(std::string elf = "fovea_firmware.elf");
   ~Rig();
-  /// As `-s key=value`; before run() only.
+  /// Like `-s key=value`; only before run().
   Rig& set(const std::string& key, const std::string& value);
-  /// Takes all keys of a shipped experiment ("default.yaml"), its footage included.
+  /// Sets all keys of a shipped experiment ("default.yaml"), including its footage.
   Rig& load(const std::string& experiment);
   Rig& strict() { strict_ = true; return *this; }
-  /// Builds the board without running it, for tests that turn something by hand.
+  /// Builds the board without running it, for tests that modify something themselves.
   board::Board& build();
-  /// Runs until the window is closed, the core fails, or `limit` of simulated time is over.
+  /// Runs until the window is closed, the core fails, or the simulated time has reached `limit`.
   void run(Picoseconds limit);
-  /// Only lets time pass.
+  /// Runs for a simulated duration.
   void advance(Picoseconds duration);
 
   board::Board& board() { return *board_; }
   const std::vector<Shown>& shown() const { return shown_; }
-  /// Where the marks are in the pictures that the camera sends; nothing when they are off.
+  /// Positions of the marks in the camera's pictures; empty if they are disabled.
   const std::optional<video::StampLayout>& stamps() const { return source_->stamps(); }
-  /// What the camera sent in frame n: rows of fields 2n and 2n + 1, the region that is captured.
+  /// What the camera sent as frame n (rows of fields 2n and 2n + 1), limited to the captured
+  /// region.
   oracle::Frame sent(std::uint64_t n);
   std::vector<std::uint32_t> lut();
   FwState state();
@@ -60,13 +61,13 @@ class Rig {
   app::ElfImage elf_;
   bool strict_ = false;
   std::unique_ptr<video::StampedSource> source_;
-  std::unique_ptr<video::StampedSource> reference_;  // for sent(): a source of its own
+  std::unique_ptr<video::StampedSource> reference_;  // a separate source for sent()
   std::unique_ptr<board::Board> board_;
   std::vector<Shown> shown_;
   Slices slices_;
 };
 
-/// Bytes of a rectangle of a picture.
+/// The bytes of a rectangle of a picture.
 oracle::Frame crop(const video::Picture& p, unsigned x, unsigned y, unsigned width,
                    unsigned height);
 

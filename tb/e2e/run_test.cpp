@@ -1,4 +1,5 @@
-// Figures of a run as `fovea run` reports them: conservation, arithmetic of the video streams.
+// Statistics of a run as `fovea run` reports them: conservation, and arithmetic of the video
+// streams.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
-// The experiments that are shipped, as they are shipped: full size, real footage, marks on. Every
-// displayed frame is exact, the marks that it shows tell the right order, no frame is dropped or
-// repeated, the rate is the standard's, and the run warns of nothing.
+// The shipped experiments in full size with real footage. Every displayed frame is exact, its marks
+// show the right order, no frame is dropped or repeated, the frame rate is that of the standard,
+// and the run gives no warnings.
 #include <gtest/gtest.h>
 
 #include <algorithm>

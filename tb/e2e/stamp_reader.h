@@ -1,4 +1,4 @@
-// Reads the camera's marks back from a corrected picture, by the oracle's geometry alone.
+// Reads the camera's marks from a corrected picture, using only the oracle's geometry.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace fovea::e2e {
 
-/// Field numbers, modulo 65536, that a displayed frame shows in the pixels that come from even and
-/// from odd rows of the camera's picture; nothing where the code cannot be read.
+/// Field numbers, modulo 65536, in the pixels of a displayed frame that come from even and odd rows
+/// of the camera's picture; empty if the code cannot be read.
 struct ShownFields {
   std::optional<std::uint16_t> even, odd;
 };
 
-/// @param shown the displayed region; `geometry` says which camera pixel each of its pixels shows
-/// @param x, y  where that region begins in the camera's picture, whose marks `layout` describes
+/// @param shown the displayed region; `geometry` maps each of its pixels to a camera pixel
+/// @param x, y  position of that region in the camera's picture, whose marks `layout` describes
 ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geometry,
                         const video::StampLayout& layout, unsigned x, unsigned y);
 

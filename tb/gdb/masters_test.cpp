@@ -1,4 +1,4 @@
-// Who waits for whom, and watchpoints on masters, on the crossbar and controller of the SoC.
+// Waiting requests and watchpoints of masters, on the crossbar and controller of the SoC.
 #include <gtest/gtest.h>
 
 #include <deque>

@@ -1,4 +1,4 @@
-// The log of register accesses: names from the declaration, filter, ring, remarks.
+// The log of register accesses: names from the declarations, pattern, ring, warnings.
 #include "sw/fovea/register_log.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// The server over real connections: one debugger, acknowledgements, whatever else arrives.
+// The GDB server over real connections: one debugger, acknowledgements, and anything else that may
+// arrive.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>

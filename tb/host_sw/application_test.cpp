@@ -1,4 +1,4 @@
-// Buffer hand-over, switches, overlay and the plain kernel, without hardware.
+// Buffer management, switches, overlay and the plain kernel, without hardware.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,5 +1,6 @@
-// The boot loader's register sequences, judged by what the chip makes of the values: clocks in MHz
-// and DRAM timings in clocks (dm365.md 1.2, 5.6, 5.8).
+// The register sequences of the boot code, checked by their meaning for the chip: clocks in MHz
+// (PLL formula of TI's boot loader and Linux clk/davinci) and DRAM timings in clocks (JEDEC times
+// of the part).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Drivers against a recorder. Addresses and values are literals of reference/dm365.md.
+// Drivers against a recorder. Addresses and values are literals from TI's register header and Linux
+// drivers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -333,8 +334,7 @@ TEST(Tvp5146Test, AnAbsentDecoderIsReported) {
   EXPECT_THAT(bus.sent, IsEmpty());
 }
 
-// Status 1 at 0x3A: bit 1 horizontal lock, bit 2 vertical lock (fisheye-video.md 3.5). Every pause
-// takes 10 ms of the 24 MHz timer at 0x01C21410.
+// Status 1 at 0x3A: bit 1 horizontal lock, bit 2 vertical lock (TI SLES084C). Every pause takes 10 ms of the 24 MHz timer at 0x01C21410.
 class LockTest : public testing::Test {
  protected:
   LockTest() : bus_(chip_, true) {

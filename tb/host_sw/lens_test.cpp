@@ -1,4 +1,4 @@
-// Lens formulas against the printed figures of reference/fisheye-video.md and the definitions.
+// Lens formulas against figures computed independently from the definitions of the mappings.
 #include "sw/lens/lens.h"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,7 @@ TEST(LensSourceTest, TrigFreeFormsEqualTheDefinitions) {
   }
 }
 
-TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {  // R6, R7, R8
+TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {
   const param_page_t page = page_of(LENS_EQUISOLID, 170);
   const lens_t lens = lens_of(page);
   const double f = lens.focal;
@@ -127,7 +127,7 @@ TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {  // R6,
   }
 }
 
-TEST(LensSourceTest, PointsStayOnTheirRadius) {  // R10
+TEST(LensSourceTest, PointsStayOnTheirRadius) {
   const param_page_t page = page_of(LENS_STEREOGRAPHIC, 160);
   const lens_t lens = lens_of(page);
   for (double u = 3; u < 720; u += 101)
@@ -137,7 +137,7 @@ TEST(LensSourceTest, PointsStayOnTheirRadius) {  // R10
     }
 }
 
-TEST(LensSourceTest, WiderThan180DegreesIsSafe) {  // R13
+TEST(LensSourceTest, WiderThan180DegreesIsSafe) {
   for (std::uint32_t mapping : {LENS_LINEAR, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
     const param_page_t page = page_of(mapping, 190);
     const lens_t lens = lens_of(page);

@@ -1,4 +1,4 @@
-// The pair table: methods A and B, rounding, border, symmetry.
+// The table of pixel pairs: methods A and B, rounding, border, symmetry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,7 +79,7 @@ TEST(LutTest, MethodsAAndBMapFirstPixelAndCentre) {
     param_page_t page = page_of(LENS_EQUISOLID, 180);
     if (b) page.flags = PARAM_PAIR_METHOD_B;
     const auto lut = build(page, 720, 576, 1440);
-    const double f = 720 / (4 * std::sin(45 * M_PI / 180));  // R9 with the quarter angle
+    const double f = 720 / (4 * std::sin(45 * M_PI / 180));  // equation (10), corrected
     unsigned differing = 0;
     for (unsigned v = 0; v < 576; v += 25)
       for (unsigned i = 0; i < 360; i += 7) {
@@ -167,7 +167,7 @@ TEST(LutTest, PitchMovesRowsOnly) {
   }
 }
 
-TEST(LutTest, TouchesTheDocumentedPartOfTheSource) {  // R16: columns 126..593, rows 78..497
+TEST(LutTest, TouchesTheDocumentedPartOfTheSource) {  // columns 126..593, rows 78..497
   const auto lut = build(page_of(LENS_EQUISOLID, 180), 720, 576, 1440);
   unsigned left = 719, right = 0, top = 575, bottom = 0;
   for (std::uint32_t e : lut) {

@@ -1,4 +1,4 @@
-// Stands in for the chip's registers: records every access in order and answers reads.
+// Replaces the chip's registers: records every access in order and provides the values of reads.
 #pragma once
 #include <cstdint>
 #include <deque>

@@ -1,5 +1,5 @@
-// Which memory accesses an instruction makes, told from its word and the registers before it; and
-// what loads must leave in the registers. Independent of the core's decoder.
+// Determines the memory accesses of an instruction from its word and the registers before it, and
+// what its loads must leave in the registers. Independent of the core's decoder.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,19 +12,20 @@
 
 namespace fovea::cpu::test {
 
-/// Stands beside a core that stops at every instruction boundary, and plays to the oracle what the
-/// next instruction will do. Knows user-visible loads, stores, SWP, and CP15 c1, c7, c9, c15.
+/// Used with a core that stops at every instruction boundary: passes the accesses of the next
+/// instruction to the oracle. Supports user-visible loads, stores, SWP, and CP15 c1, c7, c9, c15.
 class AccessStream {
  public:
   AccessStream(const Core& core, std::span<const std::uint8_t> tcm, CacheOracle& oracle)
       : core_(core), tcm_(tcm), oracle_(oracle) {}
-  /// Call at each instruction boundary, once or more. No instruction may cause an exception.
+  /// To be called at each instruction boundary, at least once. No instruction may cause an
+  /// exception.
   void boundary();
-  /// Call after the last: looks at what the instruction before loaded.
+  /// To be called after the last instruction: checks what it has loaded.
   void check();
-  /// Data accesses that reached the oracle.
+  /// Number of data accesses passed to the oracle.
   std::uint64_t accesses() const { return accesses_; }
-  /// First loaded value that differs from the oracle's; empty: none.
+  /// The first loaded value that differs from the oracle's; empty if none does.
   const std::string& complaint() const { return complaint_; }
 
  private:
@@ -52,7 +53,8 @@ class AccessStream {
   std::uint32_t pc_ = 0, cpsr_ = 0;
   bool thumb_ = false;
   std::vector<Loaded> loaded_;
-  std::uint64_t executed_ = ~std::uint64_t{0};  ///< instructions before the one told last
+  std::uint64_t executed_ = ~std::uint64_t{0};  ///< instructions executed before the one passed
+                                                ///< last
   std::uint64_t accesses_ = 0;
   std::string complaint_;
 };

@@ -1,4 +1,4 @@
-// Turns a piece of assembly text into words, by the cross assembler of the build.
+// Assembles text into words with the cross assembler of the build.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,7 +14,7 @@ struct Program {
   std::uint32_t base = 0;
 };
 
-/// A folder of its own below TMPDIR, removed at the end.
+/// A temporary folder below TMPDIR, removed at the end.
 class TempFolder {
  public:
   TempFolder();
@@ -22,7 +22,7 @@ class TempFolder {
   TempFolder(const TempFolder&) = delete;
   TempFolder& operator=(const TempFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// A file in it as a word of a shell command; TMPDIR may hold spaces.
+  /// The name of a file in it as a word of a shell command; TMPDIR may contain spaces.
   std::string quoted(const std::string& name) const {
     return "'" + (path_ / name).string() + "'";
   }
@@ -31,11 +31,11 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-/// Assembles for ARMv5TE at `base`. @throws std::runtime_error with the assembler's words
+/// Assembles for ARMv5TE at `base`. @throws std::runtime_error with the assembler's message
 Program assemble(const std::string& text, std::uint32_t base);
-/// Runs a command and returns what it printed. @throws std::runtime_error unless it exits with 0
+/// Runs a command and returns its output. @throws std::runtime_error unless it exits with 0
 std::string output_of(const std::string& command);
-/// A file's bytes. @throws std::runtime_error
+/// The bytes of a file. @throws std::runtime_error
 std::vector<std::uint8_t> read_file(const std::string& path);
 
 }  // namespace fovea::cpu::test

@@ -1,5 +1,5 @@
-// Internal RAM under the MMU, aborts in the middle of several words, and what was fetched before a
-// register changed: ARM DDI 0198D chapters 2 and 3, expectations by hand.
+// Internal RAM under the MMU, aborts within accesses of several words, and instructions fetched
+// before a register changes: ARM DDI 0198D chapters 2 and 3, with expectations worked out by hand.
 #include "tb/iss/vectors.h"
 
 namespace fovea::cpu::test {

@@ -1,4 +1,4 @@
-// System behaviour in which QEMU is no oracle, with expectations from the architecture manual.
+// System behaviour for which QEMU is not an oracle, with expectations from the architecture manual.
 #include "tb/iss/vectors.h"
 
 namespace fovea::cpu::test {

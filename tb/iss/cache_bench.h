@@ -1,8 +1,8 @@
-// What the tests of the caches share: a machine that notes its bus traffic, and the comparison of
-// its runs with the functional oracle. Beside a first run, which stops at every instruction, the
-// oracle is told what the instruction does; a second runs freely, by the quick ways of the core; a
-// third on a memory of uneven latency. All must have put on the bus, in order and with its data,
-// what the oracle predicts.
+// Shared code of the cache tests: a machine that records its bus traffic, and the comparison of its
+// runs with the functional oracle. The first run stops at every instruction, which is passed to the
+// oracle. The second runs freely and uses the core's fast paths, and the third uses a memory of
+// varying latency. All of them must produce the bus traffic that the oracle predicts, in order and
+// with its data.
 #pragma once
 #include <functional>
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace fovea::cpu::test {
 
-/// Notes what goes over the bus with its data, and stops the core at each instruction if asked to.
+/// Records the bus traffic with its data, and stops the core at each instruction if requested.
 class NotingPort : public FlatPort {
  public:
   using FlatPort::FlatPort;
@@ -23,7 +23,7 @@ class NotingPort : public FlatPort {
   void submit(BusAccess& a, Picoseconds t) override {
     FlatPort::submit(a, t);
     if (!a.done) throw std::logic_error("nothing else is going on, so it is decided at once");
-    if (a.address >= kTables || a.error) return;  // page walks are not the caches' business
+    if (a.address >= kTables || a.error) return;  // page walks do not concern the caches
     Transfer out{a.address, {a.data, a.data + a.bytes}};
     const bool line = a.kind == BusAccess::Kind::kWrap8;
     if (a.port == BusAccess::Port::kInstruction) {
@@ -33,7 +33,7 @@ class NotingPort : public FlatPort {
     } else {
       (a.buffered ? seen.buffered : seen.unbuffered).push_back(std::move(out));
     }
-    log.clear();  // it would hold millions
+    log.clear();  // otherwise it would hold millions of entries
   }
   Picoseconds horizon() override { return at_boundary ? 0 : FlatPort::horizon(); }
   void sleep_until(Picoseconds t) override {
@@ -45,19 +45,19 @@ class NotingPort : public FlatPort {
 using NotingMachine = MachineWith<NotingPort>;
 
 struct Outcome {
-  std::string difference;  ///< of traffic, loaded values, counters or final contents; empty: none
+  std::string difference;  ///< in traffic, loaded values, counters or final contents; empty: none
   std::uint64_t accesses = 0, line_changes = 0, operations = 0;
   CacheCounts counts;
 };
 
-/// @param make makes a machine that is ready to run, the same each time
-/// @param victims the oracle knows which way is given up
+/// @param make creates a machine that is ready to run, the same for each call
+/// @param victims the oracle predicts which way is replaced
 Outcome compare(const std::function<std::unique_ptr<NotingMachine>()>& make,
                 CacheOracle::Fault fault, bool victims = true);
-/// The figures of a comparison, in a line on the standard output.
+/// Prints the figures of a comparison on one line.
 void print(const std::string& name, const Outcome& o);
 
-/// Assembly that selects round-robin replacement; r0 is lost.
+/// Assembly that selects round-robin replacement; changes r0.
 inline const std::string kRoundRobin =
     " mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #0x4000\n mcr p15, 0, r0, c1, c0, 0\n";
 

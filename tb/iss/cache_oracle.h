@@ -1,5 +1,5 @@
-// What the caches of an ARM926EJ-S do to a stream of accesses, written from the manual and without
-// anything of the core: no time, no tags packed into words, no hints.
+// What the caches of an ARM926EJ-S do with a stream of accesses, written from the manual and
+// independent of the core's code: no time, no packed tags, no hints.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,30 +10,30 @@
 
 namespace fovea::cpu::test {
 
-/// A transaction on the AHB that follows from the caches' state.
+/// An AHB transaction caused by the state of the caches.
 struct Transfer {
-  std::uint32_t address = 0;  ///< physical; of a line fill: the word asked for
+  std::uint32_t address = 0;  ///< physical; of a line fill: the requested word
   std::vector<std::uint8_t> data;
   bool operator==(const Transfer&) const = default;
 };
 
-/// Transactions in the order in which they leave their part of the core. Between the lists the
-/// order depends on time.
+/// Transactions in the order in which they leave their part of the core. The order between the
+/// lists depends on timing.
 struct Traffic {
   std::vector<Transfer> instruction_fills, data_fills, reads, unbuffered;
   std::vector<Transfer> write_backs;  ///< of half or whole lines, through the victim buffer
   std::vector<Transfer> buffered;     ///< through the main write buffer
 };
 
-/// Public counters of the core with the same meaning.
+/// Counters of the core that have the same meaning.
 struct CacheCounts {
   std::uint64_t icache_fills = 0, dcache_reads = 0, dcache_fills = 0, dcache_writes = 0,
                 dcache_write_misses = 0, dcache_writebacks = 0;
 };
 
-/// One cache: four ways, 32-byte lines, virtual index and tag.
-/// Assumed, as the manual does not tell: an invalid way is filled first, the lowest one; the round
-/// robin has one counter for all sets; test-and-clean goes from the first set up.
+/// One cache: four ways, 32-byte lines, virtual index and tag. Assumed, since the manual does not
+/// say: the lowest invalid way is filled first; one round-robin counter serves all sets;
+/// test-and-clean begins at the first set.
 class OracleCache {
  public:
   struct Line {
@@ -43,27 +43,27 @@ class OracleCache {
     std::array<std::uint8_t, 32> bytes{};
   };
   explicit OracleCache(unsigned bytes) : sets(bytes / 128) {}
-  /// The line that holds an address; nullptr: none.
+  /// The line that holds an address, or nullptr.
   Line* find(std::uint32_t mva);
   Line& at(unsigned set, unsigned way) { return sets[set][way]; }
-  /// The line to give up for an address.
+  /// The line to replace for an address.
   Line& victim(std::uint32_t mva);
-  std::uint32_t locked = 0;  ///< a bit for each way
+  std::uint32_t locked = 0;  ///< one bit for each way
   unsigned next_way = 0;
   std::vector<std::array<Line, 4>> sets;
 };
 
 class CacheOracle {
  public:
-  /// Errors that a test plants, to see that they are found.
+  /// Errors that a test plants in the oracle, to check that they are found.
   enum class Fault { kNone, kVictimOneOff, kDirtyHalfLost, kInvalidateMissed, kWriteAllocates };
   struct Page {
     std::uint32_t pa = 0;
     bool cacheable = false, bufferable = false;
   };
 
-  /// @param memory a copy of all memory, which begins at `base`
-  /// @param pages translation of an address
+  /// @param memory a copy of the whole memory, which begins at `base`
+  /// @param pages translates an address
   CacheOracle(std::uint32_t base, std::vector<std::uint8_t> memory,
               std::function<Page(std::uint32_t)> pages, unsigned icache, unsigned dcache);
 
@@ -71,9 +71,9 @@ class CacheOracle {
   std::uint32_t control = 0x0005'0078;  ///< CP15 c1
   std::uint32_t cache_debug = 0;        ///< CP15 c15: bit 2 forces write-through
 
-  /// The aligned word at an address, as the instruction side sees it.
+  /// The aligned word at an address as an instruction fetch reads it.
   std::uint32_t fetch(std::uint32_t mva, bool thumb = false);
-  /// The program does not go on behind the last instruction, or not from here.
+  /// The program does not continue after the last instruction.
   void flow_changes() { end_run(); }
   std::uint32_t load(std::uint32_t mva, unsigned bytes);
   /// A store of 1, 2 or 4 bytes, or consecutive words of an STM or STRD.
@@ -81,16 +81,16 @@ class CacheOracle {
   void lock(bool instruction, std::uint32_t ways) {
     (instruction ? icache_ : dcache_).locked = ways & 15u;
   }
-  /// MCR p15, 0, value, c7, crm, op2. @return false: no such operation
+  /// MCR p15, 0, value, c7, crm, op2. @return false if there is no such operation
   bool operate(unsigned crm, unsigned op2, std::uint32_t value);
-  /// MRC c7, c10 or c14, 3. @return no line was dirty
+  /// MRC c7, c10 or c14, 3. @return true if no line was dirty
   bool test_and_clean(bool invalidate);
 
   const Traffic& traffic() const { return traffic_; }
   const CacheCounts& counts() const { return counts_; }
   std::uint64_t line_changes() const { return line_changes_; }
-  /// Words asked of the I-cache: one an ARM instruction, one for two Thumb instructions; behind each
-  /// change of flow two words that are not executed, or one and a half on average.
+  /// Words requested from the I-cache: one for each ARM instruction and for two Thumb instructions.
+  /// After each change of flow, two words that are not executed, or one and a half on average.
   std::uint64_t words() const { return words_ + half_words_ / 2; }
   std::uint64_t operations() const { return operations_; }
   const std::vector<std::uint8_t>& memory() const { return memory_; }
@@ -115,12 +115,12 @@ class CacheOracle {
   std::uint64_t line_changes_ = 0, words_ = 0, half_words_ = 0, operations_ = 0,
                 invalidates_ = 0;
   std::optional<std::uint32_t> fetch_line_;
-  std::optional<std::uint32_t> run_end_;  ///< address behind the last instruction fetched here
+  std::optional<std::uint32_t> run_end_;  ///< address after the last instruction fetched here
   bool run_cached_ = false, run_thumb_ = false;
 };
 
-/// @return the first difference in words; empty: none. `buffered` of what was seen holds everything
-/// from both buffers, in the order of the bus.
+/// @return a description of the first difference; empty if there is none. In what was observed,
+/// `buffered` contains everything from both buffers, in the order of the bus.
 std::string difference(const Traffic& expected, const Traffic& seen);
 
 }  // namespace fovea::cpu::test

@@ -1,4 +1,5 @@
-// The core's caches against the functional oracle, in compiled programs; and the oracle by itself.
+// The core's caches against the functional oracle in compiled programs, and tests of the oracle
+// itself.
 #include <cstring>
 
 #include "tb/iss/cache_bench.h"

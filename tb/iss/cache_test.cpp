@@ -1,4 +1,5 @@
-// The caches keep data of their own: what is stale stays stale until the program says otherwise.
+// The caches hold their own data: stale data stay stale until the program cleans or invalidates
+// them.
 #include "tb/iss/machine.h"
 
 namespace fovea::cpu::test {

@@ -1,5 +1,5 @@
-// What the core remembers to be quick: records that follow each other, lines found last, places
-// that may be read or written without a look. Each must be forgotten in time, and none may show.
+// State that the core keeps to run faster: chains of records, lines found last, hints for reads and
+// writes. It must be discarded in time and must never be observable.
 #include <limits>
 
 #include "tb/iss/vectors.h"

@@ -1,4 +1,4 @@
-// Every clock has one cause, and time does not change what a program does.
+// Every clock has one cause, and timing does not change the results of a program.
 #include <cstdlib>
 #include <iostream>
 #include <random>

@@ -1,4 +1,4 @@
-// A machine with a debugger's view of it.
+// A machine with a debugger's view.
 #pragma once
 #include <array>
 #include <cstring>

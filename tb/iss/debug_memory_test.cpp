@@ -1,4 +1,4 @@
-// What debuggers and failure reports see of internal RAM, of the buffers and of the last accesses.
+// What debuggers and failure reports show of internal RAM, the buffers and the last accesses.
 #include "tb/iss/debug_machine.h"
 
 namespace fovea::cpu::test {

@@ -1,4 +1,4 @@
-// Compiled programs print the same here and under qemu-arm, with and without caches.
+// Compiled programs print the same on the core and under qemu-arm, with and without caches.
 #include <chrono>
 #include <iostream>
 #include <iterator>

@@ -1,4 +1,4 @@
-// What waits for a transfer that is under way: other lines, and the port after a change of the
+// Accesses that wait for a transfer under way: other lines, and the port after a change of the
 // clock.
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// A BusPort over flat memory with fixed latencies, and a list of things that happen at given times.
+// A BusPort for flat memory with fixed latencies and a list of events at given times.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace fovea::cpu::test {
 
-/// One access as it was put on the bus.
+/// One access as it was submitted.
 struct BusRecord {
   BusAccess::Port port;
   BusAccess::Kind kind;
@@ -24,16 +24,17 @@ struct BusRecord {
   Picoseconds at, last;
 };
 
-/// Reads deliver their first word `read_latency` after submission and one more word each `beat`. A
-/// read samples memory at its first word, at which the core goes on; a write changes it when it is
-/// acknowledged. Checks the core's side of the contract of bus_port.h and throws std::logic_error
-/// when it is broken.
+/// Reads deliver their first word `read_latency` after submission and each further word one `beat`
+/// later. A read samples memory at its first word, when the core continues; a write changes memory
+/// when it is acknowledged. Checks that the core follows bus_port.h and throws std::logic_error
+/// otherwise.
 class FlatPort : public BusPort {
  public:
   Picoseconds read_latency = 80'000, beat = 8'000, write_latency = 40'000;
-  bool decide_late = false;  ///< an outcome is known at its time, not as soon as it is certain
-  std::function<Picoseconds()> extra;  ///< added to each access's latency
-  Picoseconds ahb_period = 8'000;  ///< every submission must lie on a multiple of it; 0: unchecked
+  bool decide_late = false;  ///< an outcome is reported at its time instead of as soon as it is
+                             ///< certain
+  std::function<Picoseconds()> extra;  ///< added to the latency of each access
+  Picoseconds ahb_period = 8'000;  ///< every submission must be at a multiple of it; 0: not checked
   std::vector<BusRecord> log;
   Picoseconds now = 0;
 
@@ -51,7 +52,7 @@ class FlatPort : public BusPort {
   }
   void set_word(std::uint32_t address, std::uint32_t v) { std::memcpy(at(address), &v, 4); }
   void schedule(Picoseconds t, std::function<void()> what) { events_.emplace(t, std::move(what)); }
-  /// Marks the time of an interrupt edge for wait_for_interrupt().
+  /// Sets the time of an interrupt edge for wait_for_interrupt().
   void interrupt_at(Picoseconds t) { asserted_ = t; }
 
   void submit(BusAccess& a, Picoseconds t) override {
@@ -72,7 +73,7 @@ class FlatPort : public BusPort {
     a.first = t + (a.write ? write_latency : read_latency) + (extra ? extra() : 0);
     a.last = a.first + (beats - 1) * beat;
     log.push_back({a.port, a.kind, a.address, a.bytes, a.write, a.buffered, a.locked, t, a.last});
-    // If nobody else acts before its end the outcome is certain at once, as on the real bus.
+    // If no event comes before its end, the outcome is certain at once, as on the real bus.
     if (!decide_late && (events_.empty() || events_.begin()->first > a.last)) {
       if (!other_under_way(a)) return carry_out(a);
     }
@@ -132,8 +133,8 @@ class FlatPort : public BusPort {
     }
     a.done = decided_[a.port == BusAccess::Port::kData] = true;
   }
-  /// Plays events, and the core's buffers if it is blocked, in time order up to t or until `a` is
-  /// decided.
+  /// Executes events, and the core's buffers if the core is blocked, in order of time up to t or
+  /// until `a` is decided.
   void run_events(Picoseconds t, bool blocked, const BusAccess* a = nullptr) {
     while (!(a && a->done)) {
       const Picoseconds event = events_.empty() ? kNever : events_.begin()->first;
@@ -156,7 +157,7 @@ class FlatPort : public BusPort {
   std::multimap<Picoseconds, std::function<void()>> events_;
   Background* background_ = nullptr;
   BusAccess* under_way_[2] = {};
-  bool decided_[2] = {};  // not what the core makes of `done` when it uses the access again
+  bool decided_[2] = {};  // separate from `done`, which the core resets when it reuses the access
   Picoseconds last_submit_ = 0, asserted_ = kNever;
 };
 

@@ -1,5 +1,6 @@
-// Random words, of ARM and Thumb, in each mode, with the MMU on: the core has a defined reaction to
-// all, stays within its bounds (AddressSanitizer, UBSan) and counts what is UNPREDICTABLE.
+// Random words as ARM and Thumb code, in each mode, with the MMU on: the core has a defined
+// reaction to all of them, stays within its bounds (AddressSanitizer, UBSan), and counts
+// UNPREDICTABLE ones.
 #include <cstdlib>
 #include <iostream>
 #include <numeric>

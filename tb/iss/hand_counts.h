@@ -1,14 +1,14 @@
 // Clocks of each row of the table of instructions, counted by hand from the manuals (ARM DDI 0222B
-// chapter 8, ARM DDI 0214B chapter 9): plain operands, everything hit, two registers in a list
-// besides pc and lr, conditions that hold, branches taken. Not read from the table, which is under
-// test.
+// chapter 8, ARM DDI 0214B chapter 9): plain operands, all cache hits, two registers in a list
+// besides pc and lr, conditions that pass, branches that are taken. Not taken from the table, which
+// is being tested.
 #pragma once
 
 namespace fovea::cpu::test {
 
 struct HandCount {
   unsigned clocks;
-  unsigned wait;  ///< of an instruction that comes next and adds to the result that is last there
+  unsigned wait;  ///< of a following instruction that adds to the result written last
   const char* rows;  ///< names, separated by ", "
 };
 
@@ -28,7 +28,7 @@ inline constexpr HandCount kHandCounts[] = {
     {2, 0, "smlalxy"},
     {1, 0, "clz"},
     {2, 0, "mrs cpsr, mrs spsr"},
-    {1, 0, "msr cpsr reg, msr cpsr imm"},  // the flags alone
+    {1, 0, "msr cpsr reg, msr cpsr imm"},  // only the flags
     {3, 0, "msr spsr reg, msr spsr imm"},
     {1, 1, "ldr imm pre, ldr imm post, ldrt imm, ldr reg pre, ldr reg post, ldrt reg"},
     {1, 2, "ldrb imm pre, ldrb imm post, ldrbt imm, ldrb reg pre, ldrb reg post, ldrbt reg"},

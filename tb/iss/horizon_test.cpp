@@ -1,4 +1,4 @@
-// The core asks how far it may run ahead again behind each access that may make a block act.
+// After each access that may make a block act, the core asks again how far it may run ahead.
 #include "tb/iss/vectors.h"
 
 namespace fovea::cpu::test {

@@ -1,4 +1,5 @@
-// Results and flags of single instructions, by hand from the ARM ARM; the corner cases of v5TE.
+// Results and flags of single instructions, worked out by hand from ARM DDI 0100; corner cases of
+// v5TE.
 #include "tb/iss/machine.h"
 
 namespace fovea::cpu::test {

@@ -1,4 +1,4 @@
-// Exceptions other than aborts: entry, return, masks, and the instant at which a line is seen.
+// Exceptions other than aborts: entry, return, masks, and the time at which a line is sampled.
 #include <random>
 
 #include "tb/iss/vectors.h"

@@ -1,4 +1,4 @@
-// One execution of each row of the table of instructions, with plain operands, and its clocks.
+// Executes each row of the table of instructions with plain operands, and measures its clocks.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,9 +9,10 @@
 
 namespace fovea::cpu::test {
 
-inline constexpr unsigned kListedRegisters = 2;  ///< in a list, without pc or lr
+inline constexpr unsigned kListedRegisters = 2;  ///< in a list, without pc and lr
 
-/// Plain operands: no shift, no flags, addresses in internal RAM, branches to what follows.
+/// A word with plain operands: no shift, no flags, addresses in internal RAM, branches to the next
+/// instruction.
 std::uint32_t plain(int row);
 
 struct RowRun {

@@ -1,4 +1,4 @@
-// The table of instructions: its patterns, and the texts it gives, judged by the GNU assembler.
+// The table of instructions: its patterns and texts, checked with the GNU assembler.
 #include "model/cpu/core/isa.h"
 
 #include <gtest/gtest.h>

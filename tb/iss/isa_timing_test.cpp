@@ -1,4 +1,4 @@
-// Each row takes the clocks counted by hand, and the table of instructions states them.
+// Each row takes the clocks counted by hand, and the table of instructions states the same.
 #include <gtest/gtest.h>
 
 #include <charconv>

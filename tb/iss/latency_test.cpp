@@ -1,4 +1,4 @@
-// How long interrupts take at zero wait, counted by hand from ARM DDI 0165B 5.3.
+// Interrupt latency with zero-wait memory, counted by hand from ARM DDI 0165B 5.3.
 #include "tb/iss/machine.h"
 
 namespace fovea::cpu::test {

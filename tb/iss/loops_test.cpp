@@ -1,5 +1,5 @@
-// Loops from zero-wait internal RAM. Their clocks are counted by hand from ARM DDI 0222B chapter 8,
-// instruction by instruction, and never taken from the core or its table.
+// Loops in zero-wait internal RAM. Their clocks are counted by hand from ARM DDI 0222B chapter 8,
+// instruction by instruction, independently of the core and its table.
 #include <sstream>
 
 #include "tb/iss/machine.h"

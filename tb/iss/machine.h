@@ -1,4 +1,4 @@
-// A core, 32 KB of internal RAM and flat memory: enough to run a program.
+// A core with 32 KB of internal RAM and flat memory, to run programs.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@
 
 namespace fovea::cpu::test {
 
-inline constexpr std::uint32_t kMemory = 0x0010'0000;  ///< flat memory begins
+inline constexpr std::uint32_t kMemory = 0x0010'0000;  ///< start of the flat memory
 inline constexpr std::size_t kMemoryBytes = 16u << 20;
-inline constexpr std::uint32_t kTables = kMemory + 0x00F0'0000;  ///< room for page tables
+inline constexpr std::uint32_t kTables = kMemory + 0x00F0'0000;  ///< space for page tables
 
-/// Assembly that turns on MMU (tables at kTables), I- and D-cache; r0 is lost.
+/// Assembly that enables MMU (tables at kTables), I-cache and D-cache; changes r0.
 inline const char* const kCachesOn = R"(
   ldr r0, =0x01000000
   mcr p15, 0, r0, c2, c0, 0
@@ -29,8 +29,8 @@ inline const char* const kCachesOn = R"(
 )";
 static_assert(kTables == 0x0100'0000);
 
-/// At 250 MHz a core clock is 4 ns and an AHB clock (ratio 2) 8 ns.
-/// @tparam Port a FlatPort, or what is derived from it
+/// At 250 MHz, a core clock is 4 ns and an AHB clock (ratio 2) 8 ns.
+/// @tparam Port FlatPort or a class derived from it
 template <class Port>
 class MachineWith {
  public:
@@ -46,8 +46,8 @@ class MachineWith {
   Port port{kMemory, kMemoryBytes};
   std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
   Core core;
-  std::vector<std::uint64_t> marks;  ///< clock at each `svc #1`
-  std::string output;                ///< what the program wrote by Linux' write()
+  std::vector<std::uint64_t> marks;  ///< clock of each `svc #1`
+  std::string output;                ///< output of the program by Linux' write()
   int exit_status = -1;
 
   explicit MachineWith(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
@@ -56,8 +56,9 @@ class MachineWith {
     core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
     identity_map();
   }
-  std::function<void(std::uint32_t)> on_svc;  ///< gets `svc #3` to `svc #15`
-  /// `svc #0` with r7: Linux write and exit; #1 notes the clock; #2 ends the run; from 16 on real.
+  std::function<void(std::uint32_t)> on_svc;  ///< called for `svc #3` to `svc #15`
+  /// `svc #0` with r7: Linux write and exit; #1 records the clock; #2 ends the run; from 16 on a
+  /// real exception.
   bool swi(Core& c, std::uint32_t number) {
     if (number == 1) {
       marks.push_back(c.clock_count());
@@ -90,7 +91,7 @@ class MachineWith {
     std::uint8_t* to = p.base < tcm.size() ? tcm.data() + p.base : port.at(p.base);
     std::memcpy(to, p.bytes.data(), p.bytes.size());
   }
-  /// Sections, VA = PA, all domains 0, write-back over the flat memory, the rest uncached.
+  /// Sections with VA = PA in domain 0; the flat memory is write-back, everything else uncached.
   void identity_map() {
     for (std::uint32_t s = 0; s < 4096; ++s) {
       const bool cached = s >= kMemory >> 20 && s < (kMemory + kMemoryBytes) >> 20;
@@ -109,20 +110,20 @@ class MachineWith {
     const std::uint64_t sum =
         c.issue + c.idle + std::accumulate(c.stall.begin(), c.stall.end(), std::uint64_t{0});
     EXPECT_EQ(core.clock_count() - first_clock, sum);
-    // And each stalled one a region and a culprit.
+    // Every stalled clock has a region and a culprit.
     EXPECT_EQ(c.unexplained(), Cause::kCount);
   }
-  Picoseconds limit = 500 * kPsPerMs;  ///< simulated time a program may take
+  Picoseconds limit = 500 * kPsPerMs;  ///< simulated time that a program may take
   unsigned runs = 0;
   std::uint64_t first_clock = 1;  ///< the first edge after time 0
-  /// Assembles at `base`, runs from there to `svc #2`.
+  /// Assembles at `base` and runs from there to `svc #2`.
   const Program& execute(const std::string& text, std::uint32_t base = 0) {
     program = assemble(text + "\n svc #2\n .ltorg\n", base);
     load(program);
     run(base);
     return program;
   }
-  /// Clocks between mark n and mark n+1, less the three of the mark itself.
+  /// Clocks between mark n and mark n+1, minus the three of the mark itself.
   std::uint64_t between(unsigned n = 0) const { return marks.at(n + 1) - marks.at(n) - 3; }
   Picoseconds time() const { return core.clock_count() * kClock; }
   std::uint32_t tcm_word(std::uint32_t address) const {
@@ -130,7 +131,7 @@ class MachineWith {
     std::memcpy(&v, tcm.data() + address, 4);
     return v;
   }
-  /// First-level descriptor of the section that holds `va`: maps it to `pa`.
+  /// Writes the first-level descriptor of the section that holds `va`, which maps it to `pa`.
   void section(std::uint32_t va, std::uint32_t pa, unsigned c, unsigned b, unsigned ap = 3,
                unsigned domain = 0) {
     port.set_word(kTables + 4 * (va >> 20),

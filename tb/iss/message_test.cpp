@@ -1,4 +1,4 @@
-// What the core says of a program that does what it should not.
+// The core's messages about faulty programs.
 #include <map>
 
 #include "model/common/check.h"

@@ -1,6 +1,7 @@
-// Clocks of a turn of programs/mix.c from zero-wait internal RAM, printed beside what ARM's FAQ
-// ka3885 gives for Dhrystone 2.1 (1.1 DMIPS/MHz: 517 clocks). Another program and another compiler:
-// the figure says whether the order is right, and nobody compares it. The result is compared.
+// Clocks per iteration of programs/mix.c from zero-wait internal RAM, printed next to the figure of
+// ARM's FAQ ka3885 for Dhrystone 2.1 (1.1 DMIPS/MHz: 517 clocks). Program and compiler differ, so
+// the figure only shows whether the magnitude is right and is not compared. The program's result
+// is.
 #include <cstring>
 #include <iostream>
 

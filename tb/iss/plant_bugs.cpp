@@ -1,4 +1,4 @@
-// plant_bugs FROM TO FILE...: copies sources of the core with the defects of planted.h in them.
+// plant_bugs FROM TO FILE...: copies sources of the core and plants the defects of planted.h.
 #include <fstream>
 #include <iostream>
 #include <iterator>

@@ -1,5 +1,5 @@
-// Defects planted into a copy of the core, one for each class of instructions. plant_bugs writes the
-// copy; PLANTED in `wrong` is true while the defect's number is in fovea_planted.
+// Defects planted into a copy of the core, one for each class of instructions. plant_bugs makes the
+// copy; PLANTED in `wrong` is true while fovea_planted is the defect's number.
 #pragma once
 #include "model/cpu/core/isa.h"
 
@@ -9,9 +9,9 @@ struct Defect {
   InsnClass insn_class;
   const char* what;
   const char* file;   ///< in model/cpu/core
-  const char* right;  ///< stands there once
+  const char* right;  ///< occurs exactly once in the file
   const char* wrong;
-  bool privileged = false;  ///< only privileged code meets it
+  bool privileged = false;  ///< only privileged code is affected
 };
 
 // clang-format off
@@ -85,9 +85,10 @@ inline constexpr Defect kDefects[] = {
 };
 // clang-format on
 
-/// A clock too many, in each class at least once. Numbered behind kDefects.
+/// One clock too many, at least once in each class. Numbered after kDefects.
 struct TimingDefect : Defect {
-  const char* timing_case = "";  ///< of timing_cases.h, for quick ways that a first execution misses
+  const char* timing_case = "";  ///< of timing_cases.h, for fast paths that a first execution does
+                                 ///< not use
 };
 
 // clang-format off

@@ -1,5 +1,5 @@
-// Defects of MMU, caches, buffers and internal RAM that are planted into the copy of the core
-// (planted.h), each with the tests that must complain. Numbered behind kTimingDefects.
+// Defects of MMU, caches, buffers and internal RAM planted into the copy of the core (planted.h),
+// with the tests that must fail for each. Numbered after kTimingDefects.
 #pragma once
 
 namespace fovea::cpu::test {
@@ -7,9 +7,9 @@ namespace fovea::cpu::test {
 struct SystemDefect {
   const char* what;
   const char* file;   ///< in model/cpu/core
-  const char* right;  ///< stands there once
+  const char* right;  ///< occurs exactly once in the file
   const char* wrong;
-  const char* tests;  ///< a filter of GoogleTest
+  const char* tests;  ///< a GoogleTest filter
 };
 
 // clang-format off

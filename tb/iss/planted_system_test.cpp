@@ -1,5 +1,5 @@
-// Tests of MMU, caches, buffers and internal RAM on a copy of the core with a planted defect: each
-// defect of planted_system.h is found by the tests named there, and by nobody without it.
+// Tests of MMU, caches, buffers and internal RAM on a copy of the core with a planted defect: for
+// each defect of planted_system.h, the tests named there fail, and they pass without it.
 #include "tb/iss/planted_system.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A core with a defect in one class of instructions does not pass the random comparison.
+// A core with a defect in one class of instructions fails the random comparison.
 #include "tb/iss/planted.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A core that takes a clock too many in one class of instructions does not pass the hand counts.
+// A core with one clock too many in one class of instructions fails the hand counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// ARM instructions of random programs, with what they need around them.
+// ARM instructions of random programs, with the code that they need around them.
 #include <algorithm>
 #include <bit>
 

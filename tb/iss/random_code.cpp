@@ -1,4 +1,4 @@
-// Random programs as a whole, and the rows that none of them contains.
+// Whole random programs, and the rows of the table that none of them contains.
 #include "tb/iss/random_code.h"
 
 #include <algorithm>

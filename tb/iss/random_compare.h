@@ -1,4 +1,4 @@
-// A random program by the core and by qemu, and where they differ.
+// Runs a random program on the core and on qemu, and compares the results.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -41,7 +41,7 @@ inline Here by_core(const RandomProgram& p, bool caches = true,
   return {m.output, m.core.counts().instructions};
 }
 
-/// Sequences whose results differ, with the first difference of each in words.
+/// The sequences whose results differ, each with its first difference.
 inline std::vector<std::string> differences(const RandomProgram& p, const std::string& a,
                                             const std::string& b) {
   std::vector<std::string> out;

@@ -1,6 +1,6 @@
-// Makes random programs: what ARM and Thumb steps share. Only defined, aligned code: there qemu and
-// the chip agree. Known differences, none of which is generated: unaligned accesses, stores of
-// the pc (+12 on the chip), the pc with a shift by register.
+// Generates random programs: what ARM and Thumb steps share. Only defined, aligned code, for which
+// qemu and the chip agree. Known differences, which are not generated: unaligned accesses, stores
+// of the pc (+12 on the chip), the pc with a shift by register.
 #pragma once
 #include <cstring>
 
@@ -21,7 +21,7 @@ class Generator {
   static constexpr std::uint32_t kAlways = 14u << 28;
   static constexpr std::uint32_t kSp = 13, kPc = 15;
 
-  // Numbers.
+  // Random numbers.
   std::uint32_t r(std::uint32_t n) { return static_cast<std::uint32_t>(random_() % n); }
   std::uint32_t word() { return static_cast<std::uint32_t>(random_()); }
   bool one_in(std::uint32_t n) { return r(n) == 0; }
@@ -32,7 +32,7 @@ class Generator {
                                         0x80008000, 0x7FFF7FFF};
     return one_in(3) ? kEdges[r(std::size(kEdges))] : word();
   }
-  /// Registers a sequence may change: all but r13, which always points to the data.
+  /// A register that a sequence may change: all but r13, which always points to the data.
   std::uint32_t dest() {
     const std::uint32_t d = r(14);
     return d == kSp ? 14 : d;
@@ -49,7 +49,7 @@ class Generator {
     return d;
   }
 
-  // Code.
+  // Code generation.
   std::uint32_t here() const { return kMemory + static_cast<std::uint32_t>(program.image.size()); }
   void put(std::uint32_t w, unsigned bytes) {
     for (unsigned k = 0; k < bytes; ++k)
@@ -60,7 +60,7 @@ class Generator {
   }
   void note(std::uint32_t w, bool thumb) {
     const int row = isa_row(w, thumb);
-    // A Thumb branch on a condition does all it can do, taken or not.
+    // A conditional Thumb branch always counts, taken or not.
     const bool always = thumb || w >> 28 >= 14;
     program.spots.push_back({here(), row, thumb, always && !skipped_});
     if (program.spots.back().certain) ++program.counts[static_cast<std::size_t>(row)];
@@ -73,7 +73,7 @@ class Generator {
     note(h, true);
     put(h, 2);
   }
-  /// reg = constant; returns where the constant lies. ldr reg, [pc, #0]; b; .word
+  /// Emits reg = constant and returns the constant's address: ldr reg, [pc, #0]; b; .word
   std::uint32_t arm_constant(std::uint32_t reg, std::uint32_t v) {
     arm(kAlways | 0x059F0000u | reg << 12);
     arm(kAlways | 0x0A000000u);
@@ -98,7 +98,7 @@ class Generator {
     thumb(0x4778u);
     put(0x46C0u, 2);
   }
-  /// What a jump leaves out, or may leave out: not counted.
+  /// Emits code that a jump skips or may skip: not counted.
   template <typename F>
   void skip(F code) {
     const bool before = skipped_;
@@ -116,8 +116,8 @@ class Generator {
       for (std::uint32_t n = r(3); n < 3; ++n) thumb_filler();
     });
   }
-  /// Where an ARM jump goes to: over some instructions, perhaps to Thumb code and back.
-  /// @return the address with its Thumb bit
+  /// Emits the target of an ARM jump: behind some instructions, perhaps via Thumb code.
+  /// @return its address with the Thumb bit
   std::uint32_t arm_landing(bool to_thumb) {
     skip_arm();
     const std::uint32_t at = here();
@@ -126,7 +126,7 @@ class Generator {
     thumb_to_arm();
     return at | 1u;
   }
-  /// The same for Thumb. A link must be seen before r14 is used to come back.
+  /// The same for Thumb. A link register must be used before r14 is changed to return.
   std::uint32_t thumb_landing(bool to_arm) {
     skip_thumb();
     if (to_arm && (here() & 2u)) skip([this] { thumb_filler(); });
@@ -140,7 +140,8 @@ class Generator {
     arm_to_thumb();
   }
 
-  /// Random fields; registers within what a sequence may change. Tried until the row defines them.
+  /// Random fields, with registers that a sequence may change. Repeated until the row defines the
+  /// result.
   template <typename F>
   std::uint32_t draw(int row, F choose) {
     const IsaKind& kind = row_at(row).kind;

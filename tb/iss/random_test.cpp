@@ -1,5 +1,6 @@
-// Random sequences of instructions leave the same registers, flags and memory here and under qemu;
-// every row of the table of instructions is compared often, or excused by name.
+// Random instruction sequences leave the same registers, flags and memory on the core and under
+// qemu. Every row of the table of instructions is compared often, or listed as an exception by
+// name.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Thumb instructions of random programs, with what they need around them.
+// Thumb instructions of random programs, with the code that they need around them.
 #include <bit>
 
 #include "tb/iss/random_generator.h"

@@ -1,4 +1,5 @@
-// Stalls by cause, region and culprit, and what the core counts of its activity, by hand.
+// Stalls by cause, region and culprit, and the core's activity counters, with values worked out by
+// hand.
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>

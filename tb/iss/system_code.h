@@ -1,4 +1,4 @@
-// Random privileged programs for the surroundings of system/random.c.
+// Random privileged programs for the environment of system/random.c.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace fovea::cpu::test {
 
-/// Kinds of step that are counted apart.
+/// Kinds of steps that are counted separately.
 enum class Step : unsigned {
   kData,
   kFlags,
@@ -42,12 +42,12 @@ inline constexpr std::array<const char*, static_cast<std::size_t>(Step::kCount)>
 
 struct SystemCode {
   static constexpr std::uint32_t kBase = 0x0020'0000;
-  std::vector<std::uint8_t> image;  ///< for kBase
+  std::vector<std::uint8_t> image;  ///< to be loaded at kBase
   std::array<unsigned, static_cast<std::size_t>(Step::kCount)> counts{};
-  std::uint64_t instructions = 0;  ///< in the straight line, without handlers
+  std::uint64_t instructions = 0;  ///< on the main path, without handlers
 };
 
-/// @param resume address of the harness's variable of that name
+/// @param resume address of the variable of that name in the harness
 SystemCode generate_system(std::uint64_t seed, unsigned blocks, unsigned steps,
                            std::uint32_t resume);
 

@@ -1,5 +1,5 @@
-// Exceptions, modes, translation and CP15: the programs of system/ leave the same log here and on
-// QEMU's versatilepb.
+// Exceptions, modes, translation and CP15: the programs of system/ produce the same log on the core
+// and on QEMU's versatilepb.
 #include <gtest/gtest.h>
 
 #include <iostream>

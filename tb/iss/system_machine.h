@@ -1,5 +1,5 @@
-// A core and flat memory from address 0 that run the programs of system/: what QEMU's versatilepb
-// is to them (RAM, two lines of the interrupt controller, semihosting).
+// A core with flat memory from address 0 on that runs the programs of system/ like QEMU's
+// versatilepb (RAM, two lines of the interrupt controller, semihosting).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace fovea::cpu::test {
 
-/// FlatPort with the PL190 at 0x10140000: line 0 is IRQ, line 1 FIQ, both raised by software.
+/// A FlatPort with the PL190 at 0x10140000: line 0 is IRQ, line 1 is FIQ, both raised by software.
 class SystemPort : public FlatPort {
  public:
   static constexpr std::uint32_t kVic = 0x1014'0000;
   Core* core = nullptr;
-  std::function<void(BusAccess&)> before, after;  ///< plants see each access here
+  std::function<void(BusAccess&)> before, after;  ///< called for each access, used to plant defects
 
   using FlatPort::FlatPort;
   void submit(BusAccess& a, Picoseconds t) override {
@@ -93,7 +93,7 @@ class SystemMachine {
       throw std::runtime_error("the image is larger than the memory");
     std::memcpy(port.at(address), bytes.data(), bytes.size());
   }
-  /// Runs what lies at 0, with internal RAM out of the way, until it exits. @return its output
+  /// Runs the program at 0, with internal RAM disabled, until it exits. @return its output
   const std::string& run(Caches caches) {
     static const Program prelude = assemble(
         " mov r0, #0x18\n mcr p15, 0, r0, c9, c1, 1\n orr r0, r0, #0x10000\n"
@@ -112,7 +112,7 @@ class SystemMachine {
   }
 
  private:
-  /// SYS_OPEN, SYS_WRITE, SYS_EXIT. @return false: an ordinary SWI
+  /// SYS_OPEN, SYS_WRITE, SYS_EXIT. @return false for an ordinary SWI
   bool semihosting(Core& c, std::uint32_t number) {
     if (number != 0x123456) return false;
     const auto word = [&](std::uint32_t at) {

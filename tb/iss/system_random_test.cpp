@@ -1,5 +1,5 @@
-// Random privileged sequences leave the same log here and on QEMU's versatilepb; a core with a
-// defect in its system part does not.
+// Random privileged sequences produce the same log on the core and on QEMU's versatilepb; a core
+// with a defect in its system part does not.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

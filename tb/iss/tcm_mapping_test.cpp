@@ -1,5 +1,4 @@
-// Internal RAM under the MMU is chosen by the physical address:
-// model/decisions/0008-internal-ram.md.
+// Under the MMU, the physical address selects internal RAM: model/decisions/0008-internal-ram.md.
 #include "tb/iss/vectors.h"
 
 namespace fovea::cpu::test {

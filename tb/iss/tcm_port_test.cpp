@@ -1,6 +1,6 @@
-// Internal RAM with a DMA beside the core: data, and clocks by hand. Core clocks are 4 ns; a burst
-// arrives between two of them. Two banks of 16 KB, words of two clocks, two clocks of latency, the
-// core first, unless said otherwise.
+// Internal RAM shared with a DMA: data, and clocks counted by hand. A core clock is 4 ns, and a
+// burst arrives between two of them. Unless stated otherwise: two banks of 16 KB, words of two
+// clocks, a latency of two clocks, the core goes first.
 #include <array>
 #include <deque>
 #include <memory>

@@ -7,14 +7,14 @@
 
 namespace fovea::cpu::test {
 
-/// A few instructions between two marks, and their clocks.
+/// A few instructions between two marks, and the clocks they take.
 struct TimingCase {
   const char* name;
   std::uint64_t clocks;
   const char* text;
 };
 
-/// All from zero-wait internal RAM: r4 points to data there, r5 = 3, r6 = 7.
+/// All run in zero-wait internal RAM: r4 points to data there, r5 = 3, r6 = 7.
 inline constexpr TimingCase kTimingCases[] = {
     {"Alu", 1, "add r0, r5, r6"},
     {"AluShiftedByImmediate", 1, "add r0, r5, r6, lsl #3"},
@@ -34,7 +34,7 @@ inline constexpr TimingCase kTimingCases[] = {
      "mov r14, #10\n add r0, r4, #0x400\n svc #1\n1: ldmia r4!, {r1-r3, r7-r11}\n"
      "stmia r0!, {r1-r3, r7-r11}\n subs r14, r14, #1\n bne 1b"},
     {"SubsBhiLoopIsFourClocks", 400 - 2, "mov r0, #100\n svc #1\n1: subs r0, r0, #1\n bhi 1b"},
-    // An ALU result is there for each place that reads a register.
+    // An ALU result is available wherever a register can be read.
     {"AluToAddress", 2, "add r0, r4, #4\n ldr r1, [r0]"},
     {"AluToStoreData", 2, "add r0, r5, r6\n str r0, [r4]"},
     {"AluToShiftAmount", 3, "add r0, r5, #1\n add r1, r5, r6, lsl r0"},
@@ -190,7 +190,7 @@ inline constexpr TimingCase kTimingCases[] = {
     {"ThumbMulIsMuls", 4, ".thumb\n muls r0, r5"},
 };
 
-/// From zero-wait internal RAM; what comes before an `svc #1` of the case's own is not counted.
+/// Clocks in zero-wait internal RAM; code before an `svc #1` in the case itself is not counted.
 inline std::uint64_t clocks_in_ram(const TimingCase& c) {
   const std::string text = c.text;
   const bool thumb = text.starts_with(".thumb"), own = text.find("svc") != std::string::npos;
@@ -205,8 +205,9 @@ inline std::uint64_t clocks_in_ram(const TimingCase& c) {
   return m.between();
 }
 
-/// From the I-cache, beginning at each word of a line: what the core knows of a record from its
-/// neighbours must not move a clock. The second of two turns counts, with all lines there.
+/// Clocks from the I-cache, starting at each word of a line: what the core knows about a record
+/// from its neighbours must not change the timing. The second of two iterations is measured, with
+/// all lines cached.
 inline std::vector<std::uint64_t> clocks_by_place(const TimingCase& c) {
   const std::string text = c.text;
   const bool thumb = text.starts_with(".thumb"), own = text.find("svc") != std::string::npos;

@@ -1,4 +1,4 @@
-// Issue clocks and interlocks, and the parameters that move them.
+// Issue clocks and interlocks, and the parameters that affect them.
 #include "tb/iss/timing_cases.h"
 
 namespace fovea::cpu::test {

@@ -1,4 +1,4 @@
-// UNPREDICTABLE forms: each has a stated reaction, does that, and is counted.
+// UNPREDICTABLE forms: the core reacts to each as stated, and counts it.
 #include <algorithm>
 #include <functional>
 #include <set>

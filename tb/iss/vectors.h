@@ -1,4 +1,5 @@
-// Exception vectors for tests: each exception leaves a record in internal RAM and goes on.
+// Exception vectors for tests: each exception leaves a record in internal RAM, and the program
+// continues.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,13 +10,14 @@ namespace fovea::cpu::test {
 
 /// One exception as its handler saw it.
 struct Taken {
-  std::uint32_t kind;  ///< number of the vector, 1 undefined .. 7 FIQ
+  std::uint32_t kind;  ///< number of the vector, 1 (undefined) to 7 (FIQ)
   std::uint32_t lr, spsr, cpsr, dfsr, far, ifsr;
 };
 
-/// Begins a program at 0 or, for high vectors, wherever the vectors are; `start:` follows. Records
-/// go to 0x5000 on. After a prefetch abort the program goes on at r12; after the others behind the
-/// instruction. IRQ and FIQ handlers first say `svc #4`, so that the line can be lowered.
+/// Beginning of a program at 0 or, with high vectors, at the vectors; the test appends code from
+/// `start:` on. Records are stored from 0x5000 on. After a prefetch abort the program continues at
+/// r12, after the others behind the instruction. IRQ and FIQ handlers first execute `svc #4`, so
+/// that the test can lower the line.
 inline const std::string kVectors = R"(
   b start
   b undefined

@@ -1,6 +1,6 @@
-// Independent oracle of the correction geometry, in double precision.
-// Written from the text of the geometry (README of this folder), not from the lens library of the
-// firmware; it shares no header with it or with the models.
+// Independent oracle of the correction geometry, in double precision. Written from the description
+// in this folder's README and not from the firmware's lens library; it shares no header with that
+// or the models.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,11 +22,12 @@ enum class Mapping {
   kKannalaBrandt
 };
 
-/// Which source pair an output pair takes: that of its first pixel's nearest source pixel (A, the
-/// paper), or that of the position seen from the middle of the pair (B).
+/// Source of an output pair: the pair that contains the source pixel nearest to that of its first
+/// pixel (A, the paper), or to that of the pair's centre (B).
 enum class PairMethod { kFirstPixel, kPairCentre };
 
-/// Everything that decides the table. Lengths in pixels, angles in degrees unless said otherwise.
+/// Everything that determines the table. Lengths in pixels, angles in degrees unless stated
+/// otherwise.
 struct Geometry {
   Mapping mapping = Mapping::kEquisolid;
   PairMethod method = PairMethod::kFirstPixel;
@@ -35,9 +36,10 @@ struct Geometry {
   std::uint32_t pitch_bytes = 1440;
   double fov_deg = 180;
   double focal_px = 0;                   ///< 0: from fov_deg
-  double out_focal_px = 0;               ///< 0: as the lens
-  double centre_x = 0, centre_y = 0;     ///< optical centre of the input, from the picture's centre
-  double shift_x = 0, shift_y = 0;       ///< of the output view
+  double out_focal_px = 0;               ///< 0: that of the lens
+  double centre_x = 0, centre_y = 0;     ///< optical centre of the input, relative to the picture's
+                                         ///< centre
+  double shift_x = 0, shift_y = 0;       ///< shift of the output view
   double in_aspect = 1, out_aspect = 1;  ///< y scale / x scale
   double theta_max = 0;         ///< radians, largest angle shown; 0: no limit (a table needs one)
   std::vector<double> table_r;  ///< kTable: x-pixels at i * theta_max / (size - 1)
@@ -46,27 +48,27 @@ struct Geometry {
   std::array<double, 4> k{};
 };
 
-/// A position in the input picture, pixels, pixel centres at integers.
+/// A position in the input picture in pixels, with pixel centres at integers.
 struct Position {
   double x = 0, y = 0;
 };
 
-/// @throws std::invalid_argument for a geometry that describes no lens
+/// Focal length in px. @throws std::invalid_argument for a geometry that is not a lens
 double lens_focal(const Geometry& g);
 double output_focal(const Geometry& g);
-/// R(theta) in x-pixels, theta in radians; nothing beyond theta_max.
+/// R(theta) in x-pixels, theta in radians; empty beyond theta_max.
 std::optional<double> lens_radius(const Geometry& g, double theta);
-/// Exact source of output position (u, v), which need not be whole; far away when it is invisible
-/// (theta beyond theta_max).
+/// Exact source of the output position (u, v), which may be fractional; far outside if it is
+/// invisible (theta beyond theta_max).
 Position source_position(const Geometry& g, double u, double v);
 
-/// One entry as it has to be, and how firmly.
+/// The expected value of an entry, and how far it is from changing.
 struct Expected {
   Position exact;
   std::uint32_t entry =
       0;                ///< byte offset of the source pair, or of the black pair behind the frame
   bool inside = false;  ///< in the picture and within theta_max
-  /// Distance in pixels from the exact position to the nearest place where the entry changes.
+  /// Distance in pixels from the exact position to the nearest one at which the entry changes.
   double margin = 0;
 };
 /// @param pair output column / 2
@@ -81,16 +83,17 @@ struct WrongEntry {
 
 struct LutCheck {
   std::size_t entries = 0;
-  std::size_t wrong = 0;          ///< not what any position within the tolerance would give
-  std::size_t near_boundary = 0;  ///< differs, but a position within the tolerance gives it
-  std::size_t at_risk = 0;  ///< exact position within the tolerance of a boundary, equal or not
+  std::size_t wrong = 0;          ///< not the value of any position within the tolerance
+  std::size_t near_boundary = 0;  ///< different, but the value of a position within the tolerance
+  std::size_t at_risk = 0;  ///< exact position within the tolerance of a boundary, whether equal or
+                            ///< not
   std::optional<WrongEntry> first_wrong;
 };
-/// Compares a whole table, row by row, width / 2 entries each. A table of another size is wrong in
-/// every entry missing or too many.
+/// Compares a whole table, row by row, width / 2 entries per row. In a table of another size, every
+/// missing or additional entry is wrong.
 LutCheck check_lut(std::span<const std::uint32_t> lut, const Geometry& g,
                    double tolerance_px = 0.02);
-/// The table as it has to be.
+/// The expected table.
 std::vector<std::uint32_t> build_lut(const Geometry& g);
 
 }  // namespace fovea::oracle

@@ -1,4 +1,4 @@
-// The oracle against the published numbers of the optics, and against planted mistakes.
+// The oracle against published figures of optics, and against planted mistakes.
 #include <gtest/gtest.h>
 
 #include <cmath>

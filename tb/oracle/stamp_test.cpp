@@ -1,4 +1,4 @@
-// The marks in camera pictures: readable, distinct for fields, and read wrongly by nobody.
+// The marks in camera pictures: readable, distinct for fields, and never read wrongly.
 #include "model/video/scene/stamp.h"
 
 #include <gtest/gtest.h>

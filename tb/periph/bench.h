@@ -1,4 +1,4 @@
-// What the peripheral tests share: a register bus and stepping of simulated time.
+// Shared code of the peripheral tests: a register bus, and stepping of simulated time.
 #pragma once
 #include <gtest/gtest.h>
 #include <tlm_utils/simple_initiator_socket.h>
@@ -14,7 +14,7 @@ namespace fovea::test {
 
 inline Picoseconds now() { return sc_core::sc_time_stamp().value(); }
 
-/// Lets everything of the present instant happen.
+/// Lets all activity of the present instant happen.
 inline void settle() {
   static bool elaborated = false;
   while (!elaborated || sc_core::sc_pending_activity_at_current_time()) {
@@ -23,13 +23,13 @@ inline void settle() {
   }
 }
 
-/// Advances to the absolute time t and lets everything of that instant happen.
+/// Advances to the absolute time t and lets all activity of that instant happen.
 inline void run_until(Picoseconds t) {
   if (t > now()) sc_core::sc_start(sc_core::sc_time::from_value(t - now()));
   settle();
 }
 
-/// Register accesses as the configuration bus makes them: after all activity of the instant.
+/// Register accesses as the configuration bus makes them: after all other activity of the instant.
 struct Bus : sc_core::sc_module {
   tlm_utils::simple_initiator_socket<Bus> socket{"socket"};
   explicit Bus(sc_core::sc_module_name name) : sc_module(name) {}
@@ -60,7 +60,7 @@ struct Bus : sc_core::sc_module {
   }
 };
 
-/// Counts edges of a line and remembers the time of the last ones.
+/// Counts the edges of a line and records the times of the last ones.
 struct Probe : sc_core::sc_module {
   SC_HAS_PROCESS(Probe);
   sc_core::sc_in<bool> in{"in"};

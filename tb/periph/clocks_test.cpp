@@ -1,4 +1,4 @@
-// PLLs, clock tree, module gates and the system module, programmed as the boot loader does.
+// PLLs, clock tree, module gates and the system module, programmed like a boot loader does.
 #include <vector>
 
 #include "model/periph/clock_tree.h"

@@ -1,4 +1,4 @@
-// Pins, edges, and the interrupt lines of GPIO0-15.
+// Pins, edges, and the interrupt lines of GPIO0 to GPIO15.
 #include "model/periph/gpio.h"
 
 #include <tuple>

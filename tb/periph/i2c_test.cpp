@@ -1,4 +1,4 @@
-// I2C master against a register-file target, polled and by interrupt, in bit time.
+// The I2C master with a register-file target, by polling and by interrupt, with bit timing.
 #include <array>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Timer64 with the AINTC, in time.
+// Timer64 with the AINTC: times of counts, matches and interrupts.
 #include "model/periph/aintc.h"
 #include "model/periph/timer64.h"
 #include "tb/periph/bench.h"

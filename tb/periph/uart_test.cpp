@@ -1,4 +1,4 @@
-// UART in time: byte times to the picosecond, FIFO rules, interrupts.
+// UART timing: byte times to the picosecond, FIFO rules, interrupts.
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-// The file of a bus trace: what goes in comes out, and nothing broken comes in.
+// The file format of bus traces: round trips, and rejection of damaged files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a replay prints against what was seen from outside, and what each of its keys moves.
+// The statistics of a replay against independent observation, and the effect of each of its keys.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>

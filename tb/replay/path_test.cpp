@@ -1,4 +1,5 @@
-// The player of bus traces: releases, windows, and the same times as the cores driven by hand.
+// The player of bus traces: release rules, windows, and times compared with the cores driven
+// directly.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

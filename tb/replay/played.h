@@ -1,4 +1,4 @@
-// A trace played from beginning to end, with its command bus checked.
+// Replays a trace from beginning to end, and checks its command bus.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace fovea::replay {
 
 using Keys = std::vector<std::pair<std::string, std::string>>;
 
-/// Plays a source and keeps when each record went out.
+/// Replays a source and records the time at which each record was issued.
 struct Played {
   std::vector<std::vector<Picoseconds>> issued{kMasterCount};
   std::unique_ptr<app::ReplayParams> params = std::make_unique<app::ReplayParams>();
@@ -46,7 +46,7 @@ inline std::string master_lines(unsigned masters, unsigned window) {
   return text;
 }
 
-/// Records as given, of the streams of board_info().
+/// A source of given records for the streams of board_info().
 struct Listed : trace::RecordSource {
   std::vector<std::vector<trace::Record>> records{3};
   std::vector<std::size_t> at = std::vector<std::size_t>(3);

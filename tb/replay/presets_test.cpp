@@ -1,4 +1,4 @@
-// Timings by preset: against the checkers' own data sheets, and against numbers by hand.
+// Timing presets against the checker's own data sheets and against figures worked out by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -136,7 +136,8 @@ std::string numbers(const Keyed& s) {
   return out;
 }
 
-// dram.md 3, with Micron's tRAS of 40 and tRC of 55 ns; tRRD that covers tFAW.
+// JEDEC times of each grade (sources: ddr_presets.cpp) with Micron's tRAS of 40 and tRC of 55 ns, in
+// clocks rounded up; tRRD so that four times tRRD covers tFAW.
 TEST(DdrPresetTest, NumbersByHand) {
   const auto of = [](const char* part, const char* grade, const char* clock) {
     Assignments by_hand = {std::string("ddr.part=") + part, std::string("ddr.grade=") + grade,

@@ -1,4 +1,4 @@
-// The recorder fed by hand: what releases each record that it writes.
+// The recorder with hand-made events: what releases each record that it writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Files of bus traces with right checksums and wrong contents: each refusal by its message, and each limit
-// at its last good value and the one behind it.
+// Bus traces with right checksums and wrong contents: each refusal with its message, and each limit
+// at its last valid value and the one after it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -1,4 +1,5 @@
-// A recorded run against its replay, and a replay with other memory against a real run with it.
+// A recorded run against its replay, and a replay with other memory against a real run with that
+// memory.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

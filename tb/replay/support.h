@@ -1,4 +1,4 @@
-// Traces made by hand.
+// Bus traces made by hand.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace fovea::replay {
 
-/// Own generator: results must not depend on a library's distribution.
+/// Random numbers that do not depend on a library's distributions.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) : s_(seed * 0x9E3779B97F4A7C15ull + 0x1234567) { next(); }
@@ -26,7 +26,7 @@ class Rng {
   std::uint64_t s_;
 };
 
-/// A core of two ports and two video masters, as the board's traces have them.
+/// A core with two ports and two video masters, like in the traces of the board.
 inline trace::TraceInfo board_info() {
   trace::TraceInfo info;
   info.start = 1'000'000;
@@ -44,7 +44,7 @@ inline trace::TraceInfo board_info() {
   return info;
 }
 
-/// A random record of a stream, valid as the `number`-th.
+/// A random record of a stream that is valid as its `number`-th.
 inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t number) {
   using trace::Release;
   trace::Record r;
@@ -77,7 +77,7 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   if (r.release == Release::kWhen) {
     if (stream == 0) {
       r.event = rng.below(3);
-    } else {  // of an earlier round
+    } else {  // from an earlier iteration
       r.source = static_cast<std::uint8_t>((stream + 1 + rng.below(2)) % 3);
       r.event = rng.below(number);
     }

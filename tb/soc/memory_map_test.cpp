@@ -1,4 +1,4 @@
-// The documented address map, and what an access to a part of it that is not modelled says.
+// The documented address map, and the message for an access to a part of it that is not modelled.
 #include "model/soc/memory_map.h"
 
 #include <map>

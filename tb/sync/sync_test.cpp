@@ -1,4 +1,4 @@
-// Strict and default synchronisation give the same record of everything observable; a planted late
+// Strict and default synchronisation give the same record of everything observable. A planted late
 // horizon shows that the comparison can fail.
 #include <gtest/gtest.h>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// The core and a DMA share internal RAM: strict and default synchronisation give the same record, and
-// a late horizon is found.
+// The core and a DMA share internal RAM: strict and default synchronisation give the same record,
+// and a planted late horizon is found.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Random traffic for the proof of the time rule: masters that run ahead, a register block that
-// starts timers and transfers, interrupts that change what a master does next.
+// Random traffic for the test of the time rule: masters that run ahead, a register block that
+// starts timers and transfers, and interrupts that change what a master does next.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -18,7 +18,7 @@
 
 namespace fovea::sync {
 
-/// Own generator: results must not depend on a library's distribution.
+/// Random numbers that do not depend on a library's distributions.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) : s_(seed * 0x9E3779B97F4A7C15ull + 0x1234567) { next(); }
@@ -34,7 +34,7 @@ class Rng {
   std::uint64_t s_;
 };
 
-/// The record of everything observable; compared as text.
+/// The record of everything observable, compared as text.
 class Log {
  public:
   void add(const std::string& line) { lines_.push_back(line); }
@@ -82,7 +82,8 @@ class TestBlock : public BusTarget {
   Picoseconds stream_start_ = 0;
 };
 
-/// One master of a random program. Sleeps until its program starts, runs it, reports.
+/// One master of a random program: sleeps until the program starts, executes it, and logs the
+/// results.
 class TrafficMaster : public bus::Agent<TrafficMaster> {
  public:
   TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports, Log& log,
@@ -114,7 +115,7 @@ class TrafficMaster : public bus::Agent<TrafficMaster> {
   std::array<Op, kSlots> ops_;
 };
 
-/// Runs `programs` random programs and returns the record. One call per process.
+/// Runs `programs` random programs and returns the record. Only one call per process.
 struct Outcome {
   std::string record;
   std::uint64_t direct = 0, queued = 0;

@@ -1,4 +1,5 @@
-// model/common/bounded_counts.h: bounded, whatever comes; nothing uncounted; no order.
+// model/common/bounded_counts.h: memory is bounded, everything is counted, the order does not
+// matter.
 #include "model/common/bounded_counts.h"
 
 #include <gmock/gmock.h>

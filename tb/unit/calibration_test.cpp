@@ -1,4 +1,4 @@
-// sw/fovea/calibration.h: OpenCV's files, and which keys they fill.
+// sw/fovea/calibration.h: OpenCV's files, and the keys that they set.
 #include "sw/fovea/calibration.h"
 
 #include "tb/unit/support.h"

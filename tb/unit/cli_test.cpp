@@ -1,5 +1,5 @@
-// sw/fovea/cli.h over a stand-in board: files, exit statuses, messages; and the real program's
-// reaction to signals and a full disk.
+// sw/fovea/cli.h with a fake board: files, exit statuses, messages; and how the real program reacts
+// to signals and a full disk.
 #include "sw/fovea/cli.h"
 
 #include <signal.h>

@@ -1,5 +1,5 @@
-// What reaches the disk and in which order: the system calls that finish a file and a folder of
-// results are replaced by ones that record, and fail on demand.
+// What reaches the disk, and in which order: the system calls that finish files and folders of
+// results are replaced by functions that record them and fail on demand.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Programs for other processors than an ARM926EJ-S are refused by what their ELF file says.
+// Programs for processors other than an ARM926EJ-S are refused because of their ELF attributes.
 #include "sw/fovea/elf_target.h"
 
 #include <initializer_list>

@@ -1,4 +1,4 @@
-// sw/fovea/elf_image.h with programs made by the cross compiler at build time.
+// sw/fovea/elf_image.h with programs built by the cross compiler.
 #include <fstream>
 
 #include "sw/fovea/elf_image.h"

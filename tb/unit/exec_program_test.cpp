@@ -1,4 +1,4 @@
-// Where a program's memory lies, and what is no program.
+// The memory map of a program, and files that are not programs.
 #include "sw/fovea/exec_program.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// sw/fovea/experiment.h: the YAML file, its errors in one line, and the order of precedence.
+// sw/fovea/experiment.h: the YAML file, its errors of one line, and the order of precedence.
 #include "sw/fovea/experiment.h"
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// A stand-in for the board: shows grey frames, obeys the stop flag, fails on request.
+// A fake board: displays grey frames, obeys the stop flag, fails on request.
 #pragma once
 #include <chrono>
 #include <memory>
@@ -25,7 +25,8 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
     std::optional<app::CheckedFile> trace;
     if (!request.bus_trace.empty()) trace.emplace(request.bus_trace);
-    if (params_.mode.is("out_of_memory")) throw std::bad_array_new_length();  // a kind of bad_alloc
+    // derived from bad_alloc
+    if (params_.mode.is("out_of_memory")) throw std::bad_array_new_length();
     if (params_.mode.is("no_thread"))
       throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
     if (params_.mode.is("out_of_memory_in_kernel"))
@@ -55,7 +56,8 @@ class FakeBoard : public app::Simulation {
       row.index = i;
       row.display_start = i * 40 * kPsPerMs;
       for (; !late.empty(); late.erase(late.begin())) request.frame_row(late.front());
-      // As the real board does: rows go out when they are final, the last ones come with the result.
+      // As on the real board: rows are delivered when they are final, the last ones with the
+      // result.
       if (request.frame_row && i % 3 != 2)
         request.frame_row(row);
       else

@@ -1,4 +1,4 @@
-// Gives main.cpp the stand-in board, which runs no foreign programs.
+// Links main.cpp with the fake board, which cannot run other programs.
 #include "sw/fovea/executor.h"
 #include "tb/unit/fake_board.h"
 

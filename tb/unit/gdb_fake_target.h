@@ -1,4 +1,4 @@
-// A target for the protocol and the server: four registers, 256 bytes from 0x1000.
+// A fake target for GDB protocol and server: four registers, 256 bytes from 0x1000 on.
 #pragma once
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-// GDB's framing and packets against a fake target; malformed input in every piece.
+// GDB's framing and packets with a fake target; malformed input in all parts.
 #include <gtest/gtest.h>
 
 #include <random>

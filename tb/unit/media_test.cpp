@@ -1,4 +1,4 @@
-// sw/fovea/png.h and ffmpeg.h: pictures survive, damage is said in one line.
+// sw/fovea/png.h and ffmpeg.h: round trips of pictures, and one-line errors for damaged files.
 #include <signal.h>
 #include <sys/resource.h>
 

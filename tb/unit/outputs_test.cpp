@@ -1,4 +1,4 @@
-// sw/fovea/outputs.h: what the text files of a run hold, byte by byte where tools rely on it.
+// sw/fovea/outputs.h: contents of the text files of a run, byte by byte where tools depend on them.
 #include "sw/fovea/outputs.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// model/common/regbank.h: modes, byte lanes, callbacks, and declarations that must not pass.
+// model/common/regbank.h: modes, byte lanes, callbacks, and invalid declarations.
 #include "model/common/regbank.h"
 
 #include "tb/unit/support.h"

@@ -1,5 +1,5 @@
-// What becomes of earlier results and of the user's own files when a command writes into a folder
-// that has them: every combination of old result, new result, foreign file and command.
+// What happens to earlier results and to the user's own files when a command writes into their
+// folder: every combination of old result, new result, foreign file and command.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>

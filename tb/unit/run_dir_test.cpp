@@ -1,4 +1,4 @@
-// sw/fovea/run_dir.h and checked_file.h: nothing is lost, nothing foreign is removed.
+// sw/fovea/run_dir.h and checked_file.h: no result is lost, no foreign file is removed.
 #include "sw/fovea/run_dir.h"
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-// What ends a run, what is typed meanwhile, and limits: how they are written.
+// The syntax of end conditions, dialogues and limits.
 #include "sw/fovea/run_until.h"
 
 #include <gmock/gmock.h>

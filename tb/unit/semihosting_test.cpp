@@ -1,4 +1,4 @@
-// Semihosting calls against a fake machine: a flat memory and two registers.
+// Semihosting calls with a fake machine: flat memory and two registers.
 #include "sw/fovea/semihosting.h"
 
 #include <errno.h>

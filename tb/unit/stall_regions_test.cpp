@@ -1,4 +1,4 @@
-// Names for a program's addresses, and the table of its stalls.
+// Region names of a program's addresses, and the table of its stalls.
 #include "sw/fovea/stall_regions.h"
 
 #include <map>

@@ -1,4 +1,4 @@
-// Helpers of the unit tests: a folder that vanishes, and the text of an expected error.
+// Helpers of the unit tests: a temporary folder, and the text of an expected error.
 #pragma once
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace fovea::test {
 
-/// A folder of its own for a test, removed at the end.
+/// A temporary folder for a test, removed at the end.
 class TempDir {
  public:
   TempDir() {
@@ -28,7 +28,7 @@ class TempDir {
   TempDir& operator=(const TempDir&) = delete;
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// Writes a file (and the folders above it) and returns its name.
+  /// Writes a file (and creates the folders above it) and returns its name.
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name, std::ios::binary) << text;
@@ -46,7 +46,8 @@ inline std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// The text of the UserError that `f` throws; fails the test if it throws none or more than a line.
+/// The message of the UserError that `f` throws. Fails the test if it throws none or the message
+/// has more than one line.
 template <typename F>
 std::string user_error(F&& f) {
   try {

@@ -1,4 +1,4 @@
-// model/bus/core/timeline.h: rows that are taken early are those that would be listed at the end.
+// model/bus/core/timeline.h: rows that are taken early equal those that are listed at the end.
 #include "model/bus/core/timeline.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Pieces that the SystemC tests of the video blocks share.
+// Shared modules of the SystemC tests of the video blocks.
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
 
@@ -14,8 +14,8 @@
 
 namespace fovea::video {
 
-/// A memory that answers every burst after a fixed time, in order. It decides on a burst when that
-/// is put on the port.
+/// A memory that answers every burst after a fixed time, in order. The outcome of a burst is
+/// decided when it is submitted.
 class FakeMemory : public sc_core::sc_module, private MemTargetIf {
  public:
   static constexpr std::uint32_t kBase = 0x8000'0000;
@@ -74,7 +74,7 @@ class FakeMemory : public sc_core::sc_module, private MemTargetIf {
   Picoseconds last_ = 0;
 };
 
-/// Register access to one block, without time.
+/// Register access to one block, without latency.
 class RegisterPort : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<RegisterPort> socket{"socket"};
@@ -99,7 +99,7 @@ class RegisterPort : public sc_core::sc_module {
   }
 };
 
-/// Notes the times of rising edges.
+/// Records the times of rising edges.
 class EdgeLog : public sc_core::sc_module {
  public:
   sc_core::sc_in<bool> in{"in"};

@@ -1,4 +1,4 @@
-// BT.656 data and codes against the published tables.
+// BT.656 data and codes compared with the published tables.
 #include "model/video/core/bt656.h"
 
 #include <gtest/gtest.h>

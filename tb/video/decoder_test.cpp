@@ -1,4 +1,4 @@
-// Decoder and ISIF at full size: I2C, lock, rates, every byte of captured frames.
+// Decoder and ISIF in full size: I2C, lock, rates, every byte of captured frames.
 #include <gtest/gtest.h>
 
 #include "model/video/isif.h"

@@ -1,4 +1,4 @@
-// OSD, VENC and display at full size: what is in memory is what the display gets, when it is due.
+// OSD, VENC and display in full size: the display gets the contents of memory at the right time.
 #include <gtest/gtest.h>
 
 #include "model/video/display_sink.h"

@@ -1,4 +1,4 @@
-// The display's checker: right frames from right lines, and a complaint for each way to be wrong.
+// The checks of the display: right frames from right lines, and a violation for each kind of error.
 #include "model/video/core/frame_assembler.h"
 
 #include <gtest/gtest.h>

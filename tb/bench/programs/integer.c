@@ -1,4 +1,4 @@
-// Integer code: a checksum by table, a sort, and a bitwise tree walk, all in the D-cache.
+// Integer code: a table-driven checksum, a sort, and a bitwise tree walk, all within the D-cache.
 #include <stdint.h>
 
 static uint32_t crc_table[256], values[512];

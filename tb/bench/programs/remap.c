@@ -1,4 +1,5 @@
-// The remap loop: a pair of pixels by table, from one picture to another that is never read.
+// The remap loop: copies pixel pairs through a table from one picture to another that is never
+// read.
 #include <stdint.h>
 
 enum { kWidth = 360, kHeight = 144, kPairs = kWidth * kHeight / 2 };

@@ -1,4 +1,5 @@
-// A look-up table's arithmetic: double-precision radius, angle and polynomial of each entry.
+// The arithmetic of a look-up table: radius, angle and polynomial of each entry in double
+// precision.
 #include <math.h>
 #include <stdint.h>
 

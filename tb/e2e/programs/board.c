@@ -1,4 +1,5 @@
-/* A program of newlib's that also uses the chip: semihosting for text, UART0 and TIMER0 directly. */
+/* A program linked with newlib that also uses the chip: semihosting for text, UART0 and TIMER0
+ * directly. */
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Loops from reset, every block of the chip at rest. */
+/* An endless loop from reset on, with all blocks of the chip idle. */
     .syntax unified
     .arm
     .global _start

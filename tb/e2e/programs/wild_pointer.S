@@ -1,4 +1,4 @@
-/* Reads through a pointer that runs away over addresses where nothing answers, from reset. */
+/* From reset on, reads through a pointer that runs over addresses without memory. */
     .syntax unified
     .arm
     .global _start

@@ -1,4 +1,4 @@
-/* Arguments, and the ways a program ends: the last argument chooses. */
+/* Prints its arguments. The last argument selects how the program ends. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

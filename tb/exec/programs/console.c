@@ -1,4 +1,4 @@
-/* Formats, three streams, input line by line. */
+/* Formatted output, the three standard streams, and input line by line. */
 #include <stdio.h>
 #include <string.h>
 #include <time.h>

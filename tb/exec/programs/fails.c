@@ -1,4 +1,4 @@
-/* Programs that do not end well, by the first argument. */
+/* Programs that fail, selected by the first argument. */
 #include <stdio.h>
 #include <string.h>
 

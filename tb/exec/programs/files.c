@@ -1,4 +1,4 @@
-/* Files: written, read, sought, appended, renamed, removed; errors. */
+/* Files: write, read, seek, append, rename, remove, and errors. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

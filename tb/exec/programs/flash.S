@@ -1,4 +1,4 @@
-// Moves its data to RAM, says so, and ends with 42 if the heap lies behind them.
+// Moves its data to RAM, reports that, and exits with 42 if the heap begins after the data.
     .section .vectors, "ax"
     .global _start
 _start:

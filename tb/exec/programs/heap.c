@@ -1,4 +1,4 @@
-/* setjmp, malloc, sorting, recursion, and code that lies on the stack of nobody else. */
+/* setjmp, malloc, sorting, recursion, and code that is executed on the stack. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdint.h>

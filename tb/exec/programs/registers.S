@@ -1,4 +1,5 @@
-/* The SDRAM controller's registers, the only ones that exec has; ones in reserved bits. */
+/* Writes ones to reserved bits of the SDRAM controller's registers, the only registers that exec
+ * has. */
   .global _start
 _start:
   ldr r0, =0x20000000

@@ -1,4 +1,5 @@
-// C++: constructors before main, exceptions through frames, containers, streams, destructors at exit.
+// C++: constructors before main, exceptions through frames, containers, streams, destructors at
+// exit.
 #include <cstddef>
 #include <iostream>
 #include <map>

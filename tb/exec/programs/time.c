@@ -1,4 +1,4 @@
-/* Clocks: what they say differs from one machine to the next. */
+/* Clocks. Their values differ between machines. */
 #include <stdio.h>
 #include <time.h>
 

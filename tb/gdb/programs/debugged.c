@@ -1,4 +1,4 @@
-/* Something to stop in: calls, watched variables, a value to patch, a failure, an endless wait. */
+/* A program to debug: calls, watched variables, a value to patch, a failure, an endless wait. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* MMU and caches on, a window at 0x40000000 onto 0x01000000: virtual is not physical there. */
+/* MMU and caches on, with 0x40000000 mapped to 0x01000000, so that virtual and physical differ. */
 #include <stdint.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-// printf and scanf conversions, flags, widths and precisions; conversions of numbers and texts.
+// printf and scanf conversions, flags, widths and precisions; conversions between numbers and text.
 #include <errno.h>
 #include <float.h>
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-// SHA-256 and CRC-32 (by table and bit by bit) of texts of all lengths, and the published answers.
+// SHA-256 and CRC-32 (by table and bit by bit) of texts of all lengths, and published results.
 #include <stdint.h>
 #include <string.h>
 

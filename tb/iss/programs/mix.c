@@ -1,7 +1,8 @@
-// A Dhrystone-like mix, not Dhrystone: each turn is about half assignments, a third control
-// statements and a sixth calls, on locals, parameters, globals, an array of 50 and one of 50 x 50
+// A mix similar to Dhrystone, but not Dhrystone: each iteration is about half assignments, a third
+// control statements and a sixth calls, on locals, parameters, globals, arrays of 50 and of 50 x 50
 // numbers, records behind pointers, enumerations, and one copy and one comparison of strings of 30
-// characters. A sorting office: parcels get labels, weights and a place in the books.
+// characters. It models a sorting office, where parcels get labels, weights and an entry in the
+// books.
 #include "mix.h"
 
 #include <string.h>

@@ -6,7 +6,7 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-/** Runs the mix from the start. @return a sum over what it left */
+/** Runs the mix from its initial state. @return a checksum of its results */
 uint32_t mix_run(uint32_t turns);
 
 #endif

@@ -1,4 +1,4 @@
-// What newlib asks of its system, and formatted output to host_write().
+// The system calls that newlib needs, and formatted output to host_write().
 #include "support.h"
 
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-// CP15 and other coprocessors: what reads back, what is undefined, and what user mode may not do.
+// CP15 and other coprocessors: values read back, undefined accesses, and accesses forbidden in user
+// mode.
 #include "support.h"
 
 #define READ(op1, n, m, op2)                                                                      \

@@ -1,4 +1,4 @@
-// What DFSR, IFSR and FAR say for each kind of descriptor, domain and access.
+// DFSR, IFSR and FAR after faults, for each kind of descriptor, domain and access.
 #include "support.h"
 
 static uint32_t *const coarse = (uint32_t *)(kTables + 0x5000);

@@ -1,5 +1,5 @@
-// The fast context switch: addresses below 32 MB move by the process number, in accesses, fetches,
-// vectors, faults and the address that they leave.
+// The fast context switch extension: addresses below 32 MB are moved by the process number, for
+// accesses, fetches, vectors, faults and fault addresses.
 #include "support.h"
 
 /// Empties the caches and sets the process number without a memory access in between.

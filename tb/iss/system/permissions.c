@@ -1,4 +1,5 @@
-// Every access, privileged and as user, to every kind of page, for every AP, S, R and domain mode.
+// Every access, privileged and as user, to every kind of page, for all values of AP, S, R and
+// domain mode.
 #include "support.h"
 
 enum { kSection, kLarge, kSmall, kTiny, kKinds };

@@ -1,5 +1,5 @@
-// The surroundings of a random privileged program: ten megabytes of pages of every kind, each in a
-// domain of its own, and a checksum of what it leaves in them.
+// The environment of a random privileged program: ten megabytes of pages of every kind, each in a
+// domain of its own, and a checksum of their contents at the end.
 #include "support.h"
 
 enum { kRegions = 10 };
