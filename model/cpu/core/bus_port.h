@@ -18,10 +18,8 @@ struct BusAccess {
   /// port.
   void* record = nullptr;
   bool write = false;
-  bool buffered = false;      ///< write from the write or victim buffer, for which the core does
-                              ///< not wait
-  bool locked = false;        ///< first and second access of a SWP: the bus stays locked between
-                              ///< them
+  bool buffered = false;      ///< write from a buffer, for which the core does not wait
+  bool locked = false;        ///< access of a SWP, between whose accesses the bus stays locked
   bool victim = false;        ///< write from the victim buffer
   Port port = Port::kData;    ///< never changes after the first submission
   Kind kind = Kind::kSingle;
@@ -64,9 +62,9 @@ class BusPort {
   /// one is outstanding per port. Others may act before `at`.
   virtual void submit(BusAccess& access, Picoseconds at) = 0;
 
-  /// Returns true if `access` is done and its `last` is not after `until`. Advances the bus only up
-  /// to `until` and only as far as needed to decide `access`, so the core may still submit a
-  /// transaction at its `last` or later.
+  /// Returns true if `access` is done and its `last` is not after `until`. Lets the bus act only
+  /// before `until`, and only as far as needed to decide `access`, so that the core may still submit
+  /// a transaction at its `last` or later.
   virtual bool poll(BusAccess& access, Picoseconds until) = 0;
 
   /// Waits until access.done. Meanwhile, the background work of the core (its write buffer) is
