@@ -92,7 +92,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
 
   void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag,
              Picoseconds at, bool passive) {
-    FOVEA_CHECK(bytes > 0 && bytes <= kMaxBurstBytes && address % 4 == 0, "bad burst");
+    FOVEA_CHECK(bytes > 0 && address % kMaxBurstBytes + bytes <= kMaxBurstBytes, "bad burst");
     Slot* s = nullptr;
     for (Slot& c : slots_)
       if (c.free <= at && (!s || c.free < s->free)) s = &c;
