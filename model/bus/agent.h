@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "model/bus/core/crossbar.h"
+#include "model/bus/memory_path.h"
 #include "model/common/check.h"
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 #include "model/common/mem_sockets.h"
 
 namespace fovea::bus {
@@ -85,7 +85,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
         sleep_until(until);
         return tx.done && tx.last <= until;
       }
-      path_->step_before(std::min(until, h));
+      memory_->advance(std::min(until, h));
     }
   }
   /// Returns when tx is done; plays background work in time order meanwhile.
@@ -116,7 +116,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
           self().background_act();
           put_out();  // the decisions that follow are behind what it asked for
         } else {
-          path_->step_before(std::min({until, b, h}));
+          memory_->advance(std::min({until, b, h}));
         }
       }
     }
@@ -131,7 +131,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   /// act.
   Picoseconds horizon() {
     const Picoseconds h = next_event();
-    return path_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
+    return memory_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
   }
   /// Its outcome lets nobody else act by itself.
   bool in_memory(const Transaction& tx) const { return tx.address >= sdram_base_; }
@@ -145,13 +145,14 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     if (!path_) {
       path_ = path.operator->();
       strict_ = path_->strict();
-      decisions_ = path_->decision_places();
-      sdram_base_ = path_->memory_base();
+      memory_ = &path_->memory();
+      // An observer disables deferral, so that it sees each request when it is issued.
+      sdram_base_ = memory_->crossbar().observed() ? kNever : memory_->map().ddr_base;
     }
     if (!strict_) {
       held_base_ = sdram_base_;
       for (Port& p : ports_) {
-        p.least_latency = path_->least_latency(p.master);
+        p.least_latency = memory_->crossbar().least_latency(p.master);
         if (p.known) p.held_from = held_base_;
       }
     }
@@ -207,7 +208,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
           if (b <= t)
             self().background_act();
           else
-            path_->step_before(std::min(b, h));
+            memory_->advance(std::min(b, h));
           continue;
         }
       }
@@ -235,24 +236,25 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     Transaction& tx = *std::exchange(held_, nullptr);
     tx.master = ports_[tx.port].master;
     ++own_undecided_;
-    switch (path_->play_alone(tx, std::min(limit, next_event()))) {
-      case MemoryPathIf::Alone::kDone:
+    using Attempt = memsys::MemorySystem::Attempt;
+    switch (memory_->try_complete(tx, std::min(limit, next_event()))) {
+      case Attempt::kCompleted:
         --own_undecided_;
         tx.done = true;
         self().completed(tx);
         break;
-      case MemoryPathIf::Alone::kNo:
+      case Attempt::kNotSubmitted:
         --own_undecided_;
         put_on_port(tx);
         break;
-      case MemoryPathIf::Alone::kUnder: break;
+      case Attempt::kUnderWay: break;
     }
   }
   /// Known once the request is on its port.
   static bool to_memory(const MemRequest& r) {
     return r.slave == static_cast<std::uint8_t>(Slave::kDdr);
   }
-  Picoseconds next_decision() const { return std::min(*decisions_[0], *decisions_[1]); }
+  Picoseconds next_decision() const { return memory_->next_event(); }
 
   tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
     if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
@@ -278,7 +280,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   Timer done_, background_due_;
   KernelNow kernel_;
   MemoryPathIf* path_ = nullptr;  // behind `path`
-  std::array<const Picoseconds*, 2> decisions_{};
+  memsys::MemorySystem* memory_ = nullptr;
   Transaction* waiting_ = nullptr;
   /// The newest request, alone on its way: most often its master waits for it next and nobody comes
   /// between, so that it need not go through the queues.

@@ -29,7 +29,7 @@ TlmMasterPort::TlmMasterPort(sc_core::sc_module_name name, Master master, unsign
   socket.register_transport_dbg(this, &TlmMasterPort::transport_dbg);
   bursts_.on_done = [this](const BurstMaster::Completion& c) { burst_done(c); };
   SC_METHOD(response_over);
-  sensitive << free_;
+  sensitive << free_.event();
   dont_initialize();
 }
 
@@ -125,7 +125,7 @@ void TlmMasterPort::respond() {
     busy_ = false;
     if (delay == sc_core::SC_ZERO_TIME) continue;
     busy_ = true;  // until then
-    free_.notify(delay);
+    free_.at(kernel_time() + delay.value());
     return;
   }
 }

@@ -52,7 +52,7 @@ class TlmMasterPort : public sc_core::sc_module {
   Transactions requests_;                              // in the order of BEGIN_REQ
   std::deque<tlm::tlm_generic_payload*> responses_;    // the first is in its response phase, if busy_
   bool busy_ = false;
-  sc_core::sc_event free_;                             // the response phase is over
+  Timer free_;                                         // the response phase is over
 };
 
 }  // namespace fovea::bus

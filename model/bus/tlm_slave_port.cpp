@@ -22,17 +22,15 @@ TlmSlavePort::TlmSlavePort(sc_core::sc_module_name name) : sc_module(name) {
 tlm::tlm_sync_enum TlmSlavePort::nb_transport_fw(MemRequest& r, MemPhase& phase,
                                                  sc_core::sc_time& delay) {
   if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
-  if (arrivals_.empty()) {
-    arrived_.notify(delay);
-    ++horizon_epoch;
-  }
-  arrivals_.push_back({&r, kernel_time() + delay.value()});
+  const Picoseconds at = kernel_time() + delay.value();
+  if (arrivals_.empty()) arrived_.at(at);
+  arrivals_.push_back({&r, at});
   return tlm::TLM_UPDATED;
 }
 
 void TlmSlavePort::serve() {
   for (;;) {
-    if (arrivals_.empty()) wait(arrived_);
+    if (arrivals_.empty()) wait(arrived_.event());
     const auto [request, at] = arrivals_.front();
     if (const Picoseconds now = kernel_time(); at > now) wait(ps_time(at - now));
     tlm::tlm_generic_payload payload;

@@ -7,7 +7,7 @@
 #include <systemc>
 #include <tlm>
 
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 #include "model/common/mem_sockets.h"
 
 namespace fovea::bus {
@@ -33,7 +33,7 @@ class TlmSlavePort : public sc_core::sc_module, public MemTargetIf {
   void serve();
 
   std::deque<Arrival> arrivals_;
-  sc_core::sc_event arrived_;
+  Timer arrived_;
 };
 
 }  // namespace fovea::bus

@@ -36,8 +36,6 @@ struct MemRequest {
   std::uint8_t slave = 0;          ///< bus::Slave
   bool error = false;              ///< outcome: nobody answered
   Picoseconds taken = 0;           ///< in the slave's hands
-  Picoseconds slave_waited = 0;    ///< read: part of its time that the slave's own tags explain
-  Master door_opener = Master::kArmD;  ///< whose leaving let it in, if it waited at the door
   Picoseconds first = 0;           ///< outcome: first beat at the master's port
   Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
 };

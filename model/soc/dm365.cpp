@@ -7,19 +7,18 @@
 namespace fovea::soc {
 namespace {
 
-bus::AddressMap address_map(const mem::DdrParams& ddr, std::size_t internal_bytes) {
+bus::AddressMap address_map(std::size_t internal_bytes) {
   bus::AddressMap map;
-  map.ddr_size = ddr.size_bytes();
   map.ram_size = static_cast<std::uint32_t>(internal_bytes);
   return map;
 }
 
 /// Names for the core's stalls. All register blocks are one.
-cpu::RegionMap regions(const bus::AddressMap& map, std::size_t internal_bytes) {
+cpu::RegionMap regions(const Dm365Params& params, std::size_t internal_bytes) {
   cpu::RegionMap out;
   out.add("itcm", 0, internal_bytes);
   out.add("dtcm", 0x1'0000, internal_bytes);
-  out.add("sdram", map.ddr_base, map.ddr_size);
+  out.add("sdram", bus::AddressMap().ddr_base, params.ddr.size_bytes());
   for (const auto& block : register_blocks()) out.add("registers", block.base, block.size);
   return out;
 }
@@ -56,9 +55,9 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), quiet),
-      scr("scr", params.crossbar, address_map(params.ddr, internal_ram.size()), strict),
+      scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
       config("config", params.config_bus, quiet, with(register_blocks(), external)),
-      ddr("ddr", params.ddr),
+      ddr("ddr", params.ddr, scr.memory()),
       edma("edma", params.edma),
       pll1("pll1", "PLLC1", 9, params.pll),
       pll2("pll2", "PLLC2", 5, params.pll),
@@ -76,8 +75,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
     if (params.loads[i].active())
       loads.push_back(std::make_unique<bus::LoadGenerator>(
           i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
-  arm.core().set_regions(
-      regions(address_map(params.ddr, internal_ram.size()), internal_ram.size()));
+  arm.core().set_regions(regions(params, internal_ram.size()));
   wire_clocks();
   wire_memory();
   wire_registers();
@@ -180,9 +178,7 @@ void Dm365::wire_memory() {
   for (const Master m : masters)
     waits.push_back(std::make_unique<bus::WaitStats>(
         m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
-  scr.ddr_socket.bind(ddr.socket);
   scr.ram_socket.bind(tcm_dma.socket);
-  scr.ddr_lookahead.bind(ddr.lookahead);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(Master::kVpfe)]);
   vpss.read_priority(priority_[index(Master::kVpbe)]);

@@ -2,7 +2,7 @@
 #pragma once
 #include <systemc>
 
-#include "model/common/lookahead.h"
+#include "model/common/timer.h"
 #include "model/common/sc_ports.h"
 #include "model/trace/core/recorder.h"
 

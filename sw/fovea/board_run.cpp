@@ -102,8 +102,8 @@ void BoardSimulation::open_window() {
   soc.arm.core().mark_window(kernel_time());
   if (trace_) trace_->open();
   window_wall_ = Wall::now();
-  direct_at_open_ = soc.scr.direct_accesses();
-  queued_at_open_ = soc.scr.queued_accesses();
+  direct_at_open_ = soc.scr.memory().decided_ahead();
+  queued_at_open_ = soc.scr.memory().decided_at_present();
 }
 
 void BoardSimulation::close_window() {
@@ -112,8 +112,8 @@ void BoardSimulation::close_window() {
   auto& soc = board_->dm365;
   if (trace_) trace_->close();
   window_wall_s_ = seconds_since(window_wall_);
-  direct_ = soc.scr.direct_accesses() - direct_at_open_;
-  queued_ = soc.scr.queued_accesses() - queued_at_open_;
+  direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
+  queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
   for (auto& s : soc.scr.crossbar().stats) collect(*s, stats_);
   for (auto& s : soc.scr.latency) collect(*s, stats_);
   for (auto& s : soc.waits) collect(*s, stats_);

@@ -16,10 +16,10 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
       tcm_(std::span(internal_ram_).first(map.tcm ? internal_ram_.size() : 0)),
       ram_base_(map.ram_base),
       arm("arm", params.cpu, tcm_, entry),
-      scr("scr", params.crossbar, {map.ram_base, map.ram_size}, false),
+      scr("scr", params.crossbar, params.ddr, {.ddr_base = map.ram_base}, false),
       config("config", params.config_bus, quiet,
              {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
-      ddr("ddr", params.ddr),
+      ddr("ddr", params.ddr, scr.memory()),
       ddr_size_(map.ram_size),
       arm_clk_("arm_clk", clocks.core),
       ddr_clk_("ddr_clk", clocks.ddr),
@@ -35,8 +35,6 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
   arm.path(scr.path);
   arm.sockets[cpu::Arm926::kInstructionPort]->bind(*scr.target[index(Master::kArmI)]);
   arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
-  scr.ddr_socket.bind(ddr.socket);
-  scr.ddr_lookahead.bind(ddr.lookahead);
   scr.config_socket.bind(config.socket);
   config.to("ddr").bind(ddr.reg_socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);

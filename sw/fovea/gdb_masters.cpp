@@ -134,7 +134,7 @@ std::string GdbMasters::place(const Request& r, const bus::Crossbar::View& bus,
                            : "on the configuration bus",
                        ns_text(r.request->taken));
   for (std::size_t i = 0; i < ddr.items.size(); ++i)
-    if (ddr.items[i].cookie == r.request && (!r.write || ddr.items[i].door))
+    if (ddr.items[i].request == r.request && (!r.write || ddr.items[i].door))
       return in_controller(ddr, i, now);
   return "between crossbar and SDRAM controller";
 }

@@ -31,11 +31,9 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       memory_only_(memory_only),
       start_(info.start),
       last_(info.start),
-      memory_timeline_(params.crossbar.timeline_interval()),
-      store_(params.ddr.size_bytes()),
-      xbar_(params.crossbar, *this),
-      ddr_(params.ddr, store_, *this),
-      check_(params.ddr, ddr_) {
+      memory_(params.crossbar, params.ddr, {.ddr_base = 0}, *this,
+              memory_only ? memsys::Route::kBypass : memsys::Route::kCrossbar),
+      check_(params.ddr, memory_.controller()) {
   // The file's clock is exact, a parameter's in whole hertz: it counts only if it was changed.
   const auto clock = [](const trace::ClockInfo& file, const IntParam& param) {
     const Frequency wanted(param());
@@ -43,12 +41,12 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
                       std::abs(file.frequency.hertz() - wanted.hertz()) < 1.0;
     return same ? file.frequency : wanted;
   };
-  const Frequency ddr = clock(info.ddr, params.registers.clock);
+  const Frequency ddr_clock = clock(info.ddr, params.registers.clock);
   Frequency scr = clock(info.scr, params.clocks.clock);
   // Half of the SDRAM's clock is so exactly, whatever whole hertz its key has.
-  const bool of_one_pll = std::abs(2 * scr.hertz() - ddr.hertz()) < 2.0;
-  if (of_one_pll && !(scr == info.scr.frequency)) scr = ClockPreset::half(ddr);
-  const bool other = !info.ddr.frequency.stopped() && !(ddr == info.ddr.frequency);
+  const bool of_one_pll = std::abs(2 * scr.hertz() - ddr_clock.hertz()) < 2.0;
+  if (of_one_pll && !(scr == info.scr.frequency)) scr = ClockPreset::half(ddr_clock);
+  const bool other = !info.ddr.frequency.stopped() && !(ddr_clock == info.ddr.frequency);
   const bool both = other && !(scr == info.scr.frequency);
   const Picoseconds scr_start = start_near(info.scr, info.start);
   // Both clocks come from one PLL (SYSCLK7 = 2 x SYSCLK4): another clock of the SDRAM starts with an
@@ -56,21 +54,20 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   // when it was started; what it is to the core's clock on the board is not known.
   Picoseconds begins = info.start;
   if (!memory_only) begins = Clock(scr, scr_start).next_edge_at_or_after(begins);
-  if (memory_only) ddr_.leave_out_lane();
-  xbar_.set_clock(scr, both ? begins : scr_start);
+  mem::DdrController& controller = memory_.controller();
+  memory_.crossbar().set_clock(scr, both ? begins : scr_start);
   const Frequency scr_before = both ? info.scr.frequency : scr;
-  ddr_.set_clocks({}, scr_before, scr_start);
-  ddr_.set_clocks(other ? info.ddr.frequency : ddr, scr_before, start_near(info.ddr, info.start));
+  controller.set_clocks({}, scr_before, scr_start);
+  controller.set_clocks(other ? info.ddr.frequency : ddr_clock, scr_before, start_near(info.ddr, info.start));
   mem::DdrConfig config = params.config();
   const unsigned interval = std::exchange(config.refresh_interval, 0);
-  ddr_.configure(config, 0);
+  controller.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
-  ddr_.configure(config, info.refresh ? info.refresh : info.start);
-  ddr_.catch_up(info.start);  // the refreshes before
-  if (other) ddr_.set_clocks(ddr, scr, begins);
-  ddr_.stats.reset();
-  xbar_.timeline.begin(info.start);
-  memory_timeline_.begin(info.start);
+  controller.configure(config, info.refresh ? info.refresh : info.start);
+  controller.catch_up(info.start);  // the refreshes before
+  if (other) controller.set_clocks(ddr_clock, scr, begins);
+  controller.stats.reset();
+  memory_.timeline().begin(info.start);
 
   streams_.resize(info.streams.size());
   for (std::size_t i = 0; i < streams_.size(); ++i) {
@@ -112,8 +109,9 @@ void ReplayPath::check(const trace::Record& r, const Stream& s) const {
     throw UserError(fmt::format("trace '{}': {} of {}: {} bytes at 0x{:08x}: {}", name_, place,
                                 masters_[index(r.master)].label, r.bytes, r.address, why));
   };
-  if (std::uint64_t{r.address} + r.bytes > store_.size())
-    refuse(fmt::format("outside the SDRAM of {} MiB (ddr.part)", store_.size() >> 20));
+  const std::uint64_t size = memory_.store().size();
+  if (std::uint64_t{r.address} + r.bytes > size)
+    refuse(fmt::format("outside the SDRAM of {} MiB (ddr.part)", size >> 20));
   if (r.address % 1024 + r.bytes > 1024) refuse("a burst stays inside 1024 aligned bytes (AHB)");
 }
 
@@ -252,36 +250,24 @@ void ReplayPath::issue() {
   (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
   if (m.priority != r.priority) {
     m.priority = r.priority;
-    if (!memory_only_) xbar_.set_priority(r.master, r.priority);
+    memory_.crossbar().set_priority(r.master, r.priority);
   }
   slot.priority = r.priority;
-  if (memory_only_)
-    send(slot, slot.issued);
-  else
-    xbar_.submit(slot, bus::Slave::kDdr);
+  memory_.submit(slot);
   fetch(stream);
   find_next();
 }
 
 bool ReplayPath::run_before(Picoseconds until) {
   for (;;) {
-    // Without the crossbar nothing is ever submitted to it.
-    const Picoseconds xbar = xbar_.next_decision(), ddr = ddr_.next_decision();
-    const Picoseconds decision = std::min(xbar, ddr);
-    if (next_time_ <= decision) {
+    if (next_time_ <= memory_.next_event()) {
       if (next_time_ >= until) break;
       issue();
-    } else if (decision >= until) {
+    } else if (!memory_.advance(std::min(next_time_, until)) && until <= next_time_) {
       break;
-    } else if (xbar < ddr) {
-      xbar_.step(*this);
-    } else {
-      stepped_ = ddr;
-      ddr_.step();
-      if (door_opened_) send_waiting();
     }
   }
-  if (std::min({next_time_, xbar_.next_decision(), ddr_.next_decision()}) != kNever) return false;
+  if (std::min(next_time_, memory_.next_event()) != kNever) return false;
   for (const Stream& s : streams_)
     if (s.valid)  // a locked read without its write keeps all others out
       throw UserError(fmt::format("trace '{}': it stops before its end", name_));
@@ -289,10 +275,11 @@ bool ReplayPath::run_before(Picoseconds until) {
 }
 
 Picoseconds ReplayPath::end() const {
-  const Clock& clock = ddr_.ddr_clock();
-  if (stepped_ == 0 || !clock.running()) return last_;
-  const std::uint64_t data = ddr_.config().timing.WL() + mem::DdrTiming::kBurstClocks;
-  return std::max(last_, clock.edge(clock.edge_at_or_after(stepped_) + data));
+  const Clock& clock = ddr().ddr_clock();
+  const Picoseconds stepped = memory_.last_command_time();
+  if (stepped == 0 || !clock.running()) return last_;
+  const std::uint64_t data = ddr().config().timing.WL() + mem::DdrTiming::kBurstClocks;
+  return std::max(last_, clock.edge(clock.edge_at_or_after(stepped) + data));
 }
 
 std::vector<Picoseconds> ReplayPath::remap_times() const {
@@ -327,70 +314,6 @@ void ReplayPath::wake(unsigned stream) {
   if (time_[stream] < next_time_) {
     next_stream_ = stream;
     next_time_ = time_[stream];
-  }
-}
-
-ReplayPath::Taken ReplayPath::forward(MemRequest& r, Picoseconds arrival) {
-  return ddr_.submit_inside(r, arrival) ? Taken::kYes : Taken::kWaits;
-}
-
-void ReplayPath::ddr_accepted(void* cookie, Picoseconds at) {
-  auto& r = *static_cast<MemRequest*>(cookie);
-  r.door_opener = ddr_.door_opener();
-  if (!memory_only_) return xbar_.slave_accepted(r, at);
-  door_taken_ = false;
-  door_opened_ = true;  // the next one goes when the controller has decided
-  opened_at_ = at;
-  if (r.write) acknowledge(r, at);
-}
-
-void ReplayPath::ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) {
-  auto& r = *static_cast<MemRequest*>(cookie);
-  r.slave_waited = ddr_.read_waited();
-  if (!memory_only_) return xbar_.slave_done(r, first, last, false);
-  r.first = first;
-  r.last = last;
-  complete(static_cast<Slot&>(r));
-}
-
-void ReplayPath::acknowledge(MemRequest& r, Picoseconds at) {
-  r.first = r.last = at;
-  complete(static_cast<Slot&>(r));
-}
-
-void ReplayPath::send(MemRequest& r, Picoseconds at) {
-  const auto m = static_cast<unsigned>(index(r.master));
-  if (door_taken_) {
-    waiting_[m].push_back(&r);
-    wait_ |= 1u << m;
-    return;
-  }
-  sent_ = m;
-  memory_timeline_.add(m, r.write, r.bytes, at);
-  door_taken_ = !ddr_.submit_inside(r, at);
-  if (!door_taken_ && r.write) acknowledge(r, at);
-}
-
-/// As the crossbar's arbiter: the most urgent first, among equals in turn.
-MemRequest* ReplayPath::next_waiting() {
-  unsigned best = 0, best_rank = ~0u;
-  for (std::uint32_t set = wait_; set; set &= set - 1) {
-    const auto m = static_cast<unsigned>(std::countr_zero(set));
-    const auto turn = static_cast<unsigned>((m + kMasterCount - sent_ - 1) % kMasterCount);
-    const unsigned rank = waiting_[m].front()->priority * 64u + turn;
-    if (rank < best_rank) best = m, best_rank = rank;
-  }
-  MemRequest* const r = waiting_[best].front();
-  waiting_[best].pop_front();
-  if (waiting_[best].empty()) wait_ &= ~(1u << best);
-  return r;
-}
-
-void ReplayPath::send_waiting() {
-  door_opened_ = false;
-  while (!door_taken_ && wait_) {
-    MemRequest* const r = next_waiting();
-    send(*r, std::max(r->issued, opened_at_));
   }
 }
 

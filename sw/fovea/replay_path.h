@@ -1,23 +1,21 @@
-// Crossbar and DDR controller played from a trace, without core, video and SystemC.
+// The memory system played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "model/bus/core/crossbar.h"
 #include "model/bus/core/latency_stats.h"
-#include "model/mem/core/ddr_controller.h"
 #include "model/mem/ddr_check.h"
+#include "model/memsys/memory_system.h"
 #include "model/trace/core/trace.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_params.h"
 
 namespace fovea::app {
 
-class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
+class ReplayPath final : private memsys::MemoryHost {
  public:
   struct Mark {
     std::uint32_t value;
@@ -32,8 +30,8 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   bool run_before(Picoseconds until);
   /// To be called before the figures are read.
   void finish() {
-    ddr_.catch_up(end());
-    check_.remark(ddr_.config(), ddr_.ddr_clock().frequency());
+    memory_.controller().catch_up(end());
+    check_.remark(ddr().config(), ddr().ddr_clock().frequency());
   }
 
   /// Both sides of a transfer controller, of one label, are one.
@@ -50,13 +48,12 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   Picoseconds duration() const { return end() > start_ ? end() - start_ : 0; }
   bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
   /// Who looks on at the crossbar.
-  void observe(MemObserver* observer) { xbar_.observe(observer); }
-  const mem::DdrStats& memory() const { return ddr_.stats; }
+  void observe(MemObserver* observer) { memory_.crossbar().observe(observer); }
+  const mem::DdrStats& memory() const { return ddr().stats; }
   /// Called with each record as it goes out; empty in production.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;
 
  private:
-  friend class bus::Crossbar;
   static constexpr std::size_t kHistory = trace::kMaxBack + 1;
   struct Slot : MemRequest {
     Picoseconds free = 0;  // kNever: taken, and its end is not known
@@ -110,15 +107,9 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   void check(const trace::Record& r, const Stream& s) const;
   void complete(Slot& slot);
 
-  Taken forward(MemRequest& r, Picoseconds arrival) override;
-  void respond(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
-  void ddr_accepted(void* cookie, Picoseconds at) override;
-  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override;
-  // Without the crossbar.
-  void send(MemRequest& r, Picoseconds at);
-  void acknowledge(MemRequest& r, Picoseconds at);
-  void send_waiting();
-  MemRequest* next_waiting();
+  void completed(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
+  Taken deliver(MemRequest&, bus::Slave, Picoseconds) override { return Taken::kRefused; }
+  const mem::DdrController& ddr() const { return memory_.controller(); }
 
   std::string name_;
   const trace::TraceInfo& info_;
@@ -133,19 +124,9 @@ class ReplayPath final : private bus::XbarHost, private mem::DdrClient {
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;
-  Picoseconds stepped_ = 0;  // last decision of the controller
   std::uint64_t requests_ = 0, bytes_ = 0;
   std::vector<Mark> marks_;
-  // Without the crossbar: by master, behind the one at the door.
-  std::array<std::deque<MemRequest*>, kMasterCount> waiting_;
-  std::uint32_t wait_ = 0;     // masters with any
-  unsigned sent_ = 0;          // the last one whose request went to the door
-  bool door_taken_ = false, door_opened_ = false;
-  Picoseconds opened_at_ = 0;
-  bus::Timeline memory_timeline_;     // without the crossbar
-  mem::BackingStore store_;
-  bus::Crossbar xbar_;
-  mem::DdrController ddr_;
+  memsys::MemorySystem memory_;
   mem::DdrCheck check_;
 };
 

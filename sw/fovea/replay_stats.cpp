@@ -7,16 +7,16 @@ namespace fovea::app {
 
 std::vector<StatRow> ReplayPath::stats() {
   std::vector<StatRow> rows;
-  collect(ddr_.stats, rows);
+  collect(ddr().stats, rows);
   const double seconds = static_cast<double>(duration()) * 1e-12;
   rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion or, if that is later, the SDRAM's last data"});
   rows.push_back({"replay.requests", requests_, "1", "requests played"});
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
-    const double clocks = seconds * ddr_.ddr_clock().frequency().hertz();
-    const auto busy = static_cast<double>(ddr_.busy_clocks());
-    const auto queued = static_cast<double>(ddr_.stats.queued_clocks.count());
+    const double clocks = seconds * ddr().ddr_clock().frequency().hertz();
+    const auto busy = static_cast<double>(ddr().busy_clocks());
+    const auto queued = static_cast<double>(ddr().stats.queued_clocks.count());
     rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
                     "share of replay.time in which the SDRAM's data bus moves data"});
     rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
@@ -55,7 +55,7 @@ void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*dir
   for (std::size_t m = 0; m < kMasterCount; ++m)
     if (masters_[m].label == label)
       for (std::size_t c = 0; c < kCulprits; ++c)
-        sum.ps[c] += (xbar_.waits[m].*direction).ps[c] + (ddr_.waits[m].*direction).ps[c];
+        sum.ps[c] += (memory_.crossbar().waits[m].*direction).ps[c] + (ddr().waits[m].*direction).ps[c];
   const auto add = [&](std::string_view culprit, std::uint64_t ps) {
     rows.push_back({fmt::format("ddr.{}.wait.{}.{}", label, name, culprit),
                     static_cast<double>(ps) * 1e-12, "s",
@@ -84,7 +84,7 @@ std::vector<std::string> ReplayPath::labels() const {
 
 std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
-  const bus::Timeline& from = memory_only_ ? memory_timeline_ : xbar_.timeline;
+  const bus::Timeline& from = memory_.timeline();
   std::vector<TimelineRow> rows;
   const auto list = [&](Picoseconds start, Picoseconds end, const bus::Timeline::Row& bytes) {
     TimelineRow& row = rows.emplace_back();

@@ -9,33 +9,27 @@
 namespace fovea::dram {
 namespace {
 
-struct NoClient : mem::DdrClient {
-  void ddr_accepted(void*, Picoseconds) override {}
-  void ddr_read_done(void*, Picoseconds, Picoseconds) override {}
-};
-
 /// One request at a time through the controller alone: submit, then its commands.
 void controller(benchmark::State& state, bool write, unsigned bytes) {
   mem::DdrParams params;
   mem::BackingStore store(params.size_bytes());
-  NoClient client;
-  mem::DdrController ddr(params, store, client);
+  mem::DdrController ddr(params, store);
   ddr.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   std::array<std::uint8_t, 64> data{};
-  mem::DdrRequest r;
+  MemRequest r;
   r.write = write;
   r.bytes = static_cast<std::uint8_t>(bytes);
   r.data = data.data();
   Picoseconds now = 1'000;
   std::uint32_t address = 0;
   for (auto _ : state) {
-    r.address = address;
+    ddr.submit(r, address, now);
     address = (address + bytes) & 0xF'FFFFu;
-    ddr.submit(r, now);
     Picoseconds t = now;
     while (ddr.next_decision() != kNever) {
       t = ddr.next_decision();
       ddr.step();
+      ddr.news().clear();
     }
     now = t;
   }
@@ -70,28 +64,27 @@ void path(benchmark::State& state, bool write, unsigned bytes) {
 void saturated(benchmark::State& state) {
   mem::DdrParams params;
   mem::BackingStore store(params.size_bytes());
-  struct Door : NoClient {
-    bool open = true;
-    void ddr_accepted(void*, Picoseconds) override { open = true; }
-  } client;
-  mem::DdrController ddr(params, store, client);
+  bool open = true;
+  mem::DdrController ddr(params, store);
   ddr.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   std::array<std::uint8_t, 64> data{};
-  mem::DdrRequest r;
-  r.bytes = 32;
-  r.data = data.data();
+  std::array<MemRequest, 32> requests;  // more than the controller holds
   Picoseconds now = 1'000;
   std::uint32_t i = 0;
   for (auto _ : state) {
     ++i;
+    MemRequest& r = requests[i % requests.size()];
+    r.bytes = 32;
+    r.data = data.data();
     r.master = static_cast<Master>(i % 7);
     r.write = i % 3 == 0;
-    r.address = (i % 7 << 20) + (i * 32 & 0xFFFFu);
-    while (!client.open) {
+    while (!open) {
       now = ddr.next_decision();
       ddr.step();
+      open = ddr.news().accepted.has_value();
+      ddr.news().clear();
     }
-    client.open = ddr.submit(r, now);
+    open = ddr.submit(r, (i % 7 << 20) + (i * 32 & 0xFFFFu), now);
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }

@@ -14,9 +14,9 @@
 namespace fovea::dram {
 namespace {
 
-class Load : private mem::DdrClient {
+class Load {
  public:
-  Load() : store_(params_.size_bytes()), ddr_(params_, store_, *this) {
+  Load() : store_(params_.size_bytes()), ddr_(params_, store_) {
     ddr_.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   }
 
@@ -26,14 +26,13 @@ class Load : private mem::DdrClient {
     now_ += gap;
     run_before(now_);
     while (!door_open_) step();
-    mem::DdrRequest r;
+    MemRequest& r = requests_[next_++ % requests_.size()];
     r.master = master;
     r.priority = static_cast<std::uint8_t>(priority);
     r.write = write;
     r.bytes = static_cast<std::uint8_t>(bytes);
-    r.address = address;
     r.data = data_.data();
-    door_open_ = ddr_.submit(r, now_);
+    door_open_ = ddr_.submit(r, address, now_);
   }
   void drain() { run_before(kNever); }
   std::uint64_t commands() const {
@@ -42,19 +41,25 @@ class Load : private mem::DdrClient {
 
  private:
   void run_before(Picoseconds at) {
-    while (ddr_.next_decision() < at) ddr_.step();
+    while (ddr_.next_decision() < at) take_step();
   }
   void step() {
     now_ = ddr_.next_decision();
-    ddr_.step();
+    take_step();
   }
-  void ddr_accepted(void*, Picoseconds) override { door_open_ = true; }
-  void ddr_read_done(void*, Picoseconds, Picoseconds) override {}
+  void take_step() {
+    ddr_.step();
+    if (!ddr_.news().any) return;
+    if (ddr_.news().accepted) door_open_ = true;
+    ddr_.news().clear();
+  }
 
   mem::DdrParams params_;
   mem::BackingStore store_;
   mem::DdrController ddr_;
   std::array<std::uint8_t, 64> data_{};
+  std::array<MemRequest, 32> requests_;  // more than the controller holds
+  unsigned next_ = 0;
   Picoseconds now_ = 1'000;
   bool door_open_ = true;
 };

@@ -43,6 +43,7 @@ struct Logged {
 
 /// One request and what became of it.
 struct Request {
+  MemRequest path;  // as the controller gets it
   Master master = Master::kLoad;
   unsigned priority = 0;
   bool write = false;
@@ -116,12 +117,12 @@ inline Command translate(mem::Cmd c) {
   }
 }
 
-class DdrBench : private mem::DdrClient {
+class DdrBench {
  public:
   explicit DdrBench(const BenchOptions& o = {})
       : params_(o),
         store_(params_.size_bytes()),
-        ddr(params_, store_, *this),
+        ddr(params_, store_),
         checker(with_faw(sheet_of(o.config), o.tFAW)) {
     ddr.set_command_hook(&DdrBench::hook, this);
     ddr.set_clocks(o.ddr, o.scr, 0);
@@ -134,19 +135,21 @@ class DdrBench : private mem::DdrClient {
   bool submit(Request& r, std::uint64_t clock) { return submit_at(r, clock * kTck); }
   bool submit_at(Request& r, Picoseconds at) {
     run_before(at);
-    mem::DdrRequest q;
-    q.cookie = &r;
-    q.master = r.master;
-    q.priority = static_cast<std::uint8_t>(r.priority);
-    q.write = r.write;
-    q.bytes = static_cast<std::uint8_t>(r.bytes);
-    q.address = r.address;
-    q.critical = r.critical;
-    q.data = r.data.data();
-    const bool taken = ddr.submit(q, at);
+    const bool taken = hand_over(r, at);
     if (taken) accept(r, at);
     door_ = !taken;
     return taken;
+  }
+  /// The same without the bench's bookkeeping: `at` may lie ahead.
+  bool hand_over(Request& r, Picoseconds at) {
+    r.path.owner = &r;
+    r.path.master = r.master;
+    r.path.priority = static_cast<std::uint8_t>(r.priority);
+    r.path.write = r.write;
+    r.path.bytes = static_cast<std::uint8_t>(r.bytes);
+    r.path.critical = r.critical;
+    r.path.data = r.data.data();
+    return ddr.submit(r.path, r.address, at);
   }
   bool door_taken() const { return door_; }
 
@@ -162,6 +165,12 @@ class DdrBench : private mem::DdrClient {
     if (t < latest_) went_back = true;
     latest_ = t;
     ddr.step();
+    for (const auto& read : ddr.news().reads) done(read);
+    if (const auto& accepted = ddr.news().accepted) {
+      door_ = false;
+      accept(*static_cast<Request*>(accepted->request->owner), accepted->at);
+    }
+    ddr.news().clear();
   }
   Picoseconds now() const { return latest_; }
 
@@ -207,16 +216,12 @@ class DdrBench : private mem::DdrClient {
     r.accepted_at = at;
     accept_order.push_back(&r);
   }
-  void ddr_accepted(void* cookie, Picoseconds at) override {
-    door_ = false;
-    accept(*static_cast<Request*>(cookie), at);
-  }
-  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override {
-    auto& r = *static_cast<Request*>(cookie);
+  void done(const mem::DdrController::ReadOutcome& read) {
+    auto& r = *static_cast<Request*>(read.request->owner);
     ++r.done;
-    r.first = first;
-    r.last = last;
-    if (first <= latest_ || last < first) went_back = true;
+    r.first = read.first;
+    r.last = read.last;
+    if (r.first <= latest_ || r.last < r.first) went_back = true;
     read_order.push_back(&r);
   }
 

@@ -40,8 +40,8 @@ TEST(CrossbarTest, ResponseLatencyMovesReadDataAndAcknowledgeByItsEdges) {
     b.submit(kA, 5);
     b.submit(kB, 5, true, 64);
     b.run();
-    b.xbar.slave_done(*b.sent[0], 30 * kEdge, 37 * kEdge, false);
-    b.xbar.slave_done(*b.sent[0], 40 * kEdge + 1, 40 * kEdge + 1, true);
+    b.xbar.slave_done(b, *b.sent[0], {30 * kEdge, 37 * kEdge});
+    b.xbar.slave_done(b, *b.sent[0], {40 * kEdge + 1, 40 * kEdge + 1, 0, true});
     ASSERT_EQ(b.answers.size(), 3u);
     EXPECT_EQ(b.answers[1].first, 30 + latency);
     EXPECT_EQ(b.answers[1].last, 37 + latency);
@@ -156,7 +156,7 @@ TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
   EXPECT_EQ(b.events[1].slave, Slave::kConfig);
   EXPECT_TRUE(b.answers.empty()) << "no acknowledge before the slave has the write";
   b.ddr_accepts = true;
-  b.xbar.slave_accepted(*b.sent[0], 49 * kEdge + 3);
+  b.xbar.slave_accepted(b, *b.sent[0], 49 * kEdge + 3, Master::kArmD);
   b.run();
   ASSERT_EQ(b.answers.size(), 1u);
   EXPECT_EQ(b.answers[0].first, 52u) << "taken before edge 50, two edges back";
@@ -172,7 +172,7 @@ TEST(CrossbarTest, WriteIsNotAcknowledgedBeforeItsLastBeat) {
   b.ddr_accepts = false;
   b.submit(kA, 5, true, 64);
   b.run();
-  b.xbar.slave_accepted(*b.sent[0], 10 * kEdge);
+  b.xbar.slave_accepted(b, *b.sent[0], 10 * kEdge, Master::kArmD);
   ASSERT_EQ(b.answers.size(), 1u);
   EXPECT_EQ(b.answers[0].first, 8u + 8u + 2u);
 }

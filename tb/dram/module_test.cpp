@@ -30,13 +30,13 @@ struct Bench {
   bus::ConfigBusParams config_params;
   mem::DdrParams ddr_params;
   QuietPhase quiet{"quiet"};
-  bus::Scr scr{"scr", xbar_params, {}, false};
+  bus::Scr scr{"scr", xbar_params, ddr_params, {}, false};
   bus::ConfigBus config{"config",
                         config_params,
                         quiet,
                         {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast},
                          {"slow", 0x01C2'0000, 0x100, bus::ConfigBus::Speed::kSlow}}};
-  mem::DdrModule ddr{"ddr", ddr_params};
+  mem::DdrModule ddr{"ddr", ddr_params, scr.memory()};
   SlowBlock slow{"slow_block"};
   BurstMaster master{"master", Master::kLoad, 4};
   ClockSignal ddr_clk{"ddr_clk", kFast}, scr_clk{"scr_clk", Frequency(121'500'000)};
@@ -50,8 +50,6 @@ struct Bench {
 
   Bench() {
     scr.clk(scr_clk);
-    scr.ddr_socket.bind(ddr.socket);
-    scr.ddr_lookahead.bind(ddr.lookahead);
     scr.config_socket.bind(config.socket);
     ddr.ddr_clk(ddr_clk);
     ddr.scr_clk(scr_clk);

@@ -1,13 +1,8 @@
-// Crossbar and DDR controller cores wired as the SoC wires them, without SystemC.
+// The memory system with the parameters' default values, except for the scheduler.
 #pragma once
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <cstring>
 #include <string>
 
-#include "model/bus/core/crossbar.h"
-#include "model/mem/core/ddr_controller.h"
+#include "model/memsys/memory_system.h"
 
 namespace fovea::dram {
 
@@ -15,55 +10,29 @@ struct PathRequest : MemRequest {
   unsigned responses = 0;
 };
 
-class Path : private bus::XbarHost, private mem::DdrClient {
+/// Requests are PathRequests; addresses count from the beginning of the SDRAM.
+class Path : private memsys::MemoryHost {
  public:
   explicit Path(Frequency ddr_clock = Frequency(250'000'000),
                 Frequency scr_clock = Frequency(125'000'000), const std::string& scheduler = "ti")
       : ddr_params_(scheduler),
-        store(ddr_params_.size_bytes()),
-        xbar(xbar_params_, *this),
-        ddr(ddr_params_, store, *this) {
+        memory(xbar_params_, ddr_params_, {.ddr_base = 0}, *this) {
     xbar.set_clock(scr_clock, 0);
     ddr.set_clocks(ddr_clock, scr_clock, 0);
   }
   void submit(PathRequest& r, Picoseconds at) {
     r.issued = at;
-    xbar.submit(r, bus::Slave::kDdr);
+    memory.submit(r);
   }
-  Picoseconds next_decision() const { return std::min(xbar.next_decision(), ddr.next_decision()); }
-  void step() {
-    if (xbar.next_decision() < ddr.next_decision())
-      xbar.step();
-    else
-      ddr.step();
-  }
-  void run_before(Picoseconds at) {
-    while (next_decision() < at) step();
-  }
+  Picoseconds next_decision() const { return memory.next_event(); }
+  /// Takes the events of the next instant that has any.
+  void step() { run_before(next_decision() + 1); }
+  void run_before(Picoseconds at) { memory.advance_through(at); }
   void drain() { run_before(kNever); }
 
  private:
-  Taken forward(MemRequest& r, Picoseconds arrival) override {
-    mem::DdrRequest q;
-    q.cookie = &r;
-    q.master = r.master;
-    q.priority = r.priority;
-    q.write = r.write;
-    q.bytes = r.bytes;
-    q.address = r.address;
-    q.data = r.data;
-    q.parts = r.parts;
-    return ddr.submit(q, arrival) ? Taken::kYes : Taken::kWaits;
-  }
-  void respond(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }
-  void ddr_accepted(void* cookie, Picoseconds at) override {
-    static_cast<MemRequest*>(cookie)->door_opener = ddr.door_opener();
-    xbar.slave_accepted(*static_cast<MemRequest*>(cookie), at);
-  }
-  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override {
-    static_cast<MemRequest*>(cookie)->slave_waited = ddr.read_waited();
-    xbar.slave_done(*static_cast<MemRequest*>(cookie), first, last, false);
-  }
+  void completed(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }
+  Taken deliver(MemRequest&, bus::Slave, Picoseconds) override { return Taken::kRefused; }
   bus::CrossbarParams xbar_params_;
   struct Params : mem::DdrParams {
     explicit Params(const std::string& order) {
@@ -74,9 +43,10 @@ class Path : private bus::XbarHost, private mem::DdrClient {
   } ddr_params_;
 
  public:
-  mem::BackingStore store;
-  bus::Crossbar xbar;
-  mem::DdrController ddr;
+  memsys::MemorySystem memory;
+  mem::BackingStore& store = memory.store();
+  bus::Crossbar& xbar = memory.crossbar();
+  mem::DdrController& ddr = memory.controller();
 };
 
 }  // namespace fovea::dram

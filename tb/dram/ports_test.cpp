@@ -35,7 +35,7 @@ TEST(PortsTest, NarrowPortTakesLongerForReadData) {
     XbarBench b({{"bus.vpfe.width", std::to_string(bits) + "bit"}});
     b.submit(kA, 5, false, bytes);
     b.run();
-    b.xbar.slave_done(*b.sent[0], from * kEdge, to * kEdge, false);
+    b.xbar.slave_done(b, *b.sent[0], {from * kEdge, to * kEdge});
     EXPECT_EQ(b.answers[0].first, from + 2) << "the first beat is not later";
     return b.answers[0].last;
   };
@@ -55,9 +55,9 @@ TEST(PortsTest, NarrowPortReturnsOneBurstAfterTheOther) {
   b.submit(kA, 5, false, 32);
   b.submit(kB, 5, false, 32);
   b.run();
-  b.xbar.slave_done(*b.sent[0], 30 * kEdge, 33 * kEdge, false);
-  b.xbar.slave_done(*b.sent[2], 34 * kEdge, 37 * kEdge, false);
-  b.xbar.slave_done(*b.sent[1], 38 * kEdge, 41 * kEdge, false);
+  b.xbar.slave_done(b, *b.sent[0], {30 * kEdge, 33 * kEdge});
+  b.xbar.slave_done(b, *b.sent[2], {34 * kEdge, 37 * kEdge});
+  b.xbar.slave_done(b, *b.sent[1], {38 * kEdge, 41 * kEdge});
   EXPECT_EQ(b.answers[0].last, 39u);
   EXPECT_EQ(b.answers[1].first, 40u) << "behind the port's first burst";
   EXPECT_EQ(b.answers[1].last, 47u);

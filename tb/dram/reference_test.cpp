@@ -2,6 +2,7 @@
 // arbitrary instants must be the same over random streams of up to ten masters.
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -30,10 +31,10 @@ struct Setup {
 };
 
 /// The production controller with the questions of the comparison.
-class Production : private mem::DdrClient {
+class Production {
  public:
   explicit Production(const Setup& s)
-      : params_(s), store_(params_.size_bytes()), ddr_(params_, store_, *this) {
+      : params_(s), store_(params_.size_bytes()), ddr_(params_, store_) {
     ddr_.set_command_hook(
         [](void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           static_cast<Production*>(self)->command(c, bank, row, clock);
@@ -72,18 +73,25 @@ class Production : private mem::DdrClient {
   }
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at) { ddr_.set_clocks(ddr, scr, at); }
   bool submit(const ReferenceRequest& r, Picoseconds at) {
-    mem::DdrRequest q;
-    q.cookie = reinterpret_cast<void*>(r.id);
+    MemRequest& q = requests_.emplace_back();
+    q.owner = reinterpret_cast<void*>(r.id);
     q.master = static_cast<Master>(r.master);
     q.priority = static_cast<std::uint8_t>(r.priority);
     q.write = r.write;
     q.bytes = static_cast<std::uint8_t>(r.bytes);
-    q.address = r.address;
     q.data = data_.data();
-    return ddr_.submit(q, at);
+    return ddr_.submit(q, r.address, at);
   }
   Picoseconds next() const { return ddr_.next_decision(); }
-  void step() { ddr_.step(); }
+  void step() {
+    ddr_.step();
+    const auto id = [](const MemRequest* r) { return reinterpret_cast<std::uint64_t>(r->owner); };
+    for (const auto& read : ddr_.news().reads)
+      reads.push_back({kRead, id(read.request), read.first, read.last});
+    if (const auto& one = ddr_.news().accepted)
+      accepted.push_back({kAccepted, id(one->request), one->at, 0});
+    ddr_.news().clear();
+  }
   void catch_up(Picoseconds at) { ddr_.catch_up(at); }
   std::array<std::uint64_t, 6> statistics() const {
     const mem::DdrStats& s = ddr_.stats;
@@ -139,15 +147,10 @@ class Production : private mem::DdrClient {
     commands.push_back({kCommand, static_cast<std::uint64_t>(kKinds[static_cast<std::size_t>(c)]),
                         std::uint64_t{bank} << 32 | row, clock});
   }
-  void ddr_accepted(void* cookie, Picoseconds at) override {
-    accepted.push_back({kAccepted, reinterpret_cast<std::uint64_t>(cookie), at, 0});
-  }
-  void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) override {
-    reads.push_back({kRead, reinterpret_cast<std::uint64_t>(cookie), first, last});
-  }
   Params params_;
   mem::BackingStore store_;
   std::array<std::uint8_t, 64> data_{};
+  std::deque<MemRequest> requests_;
   mem::DdrController ddr_;
 };
 

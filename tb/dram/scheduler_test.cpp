@@ -335,13 +335,7 @@ TEST(OtherSchedulersTest, FcfsOpensNoRowForARequestThatIsYetToCome) {
     std::vector<Request> four = {read(kA, at(1, 0), 3, 64), read(kA, at(1, 0, 64), 3, 64),
                                  read(kA, at(2, 0)), read(kB, at(1, 1))};
     for (unsigned i = 0; i < 3; ++i) ASSERT_TRUE(b.submit(four[i], 300));
-    mem::DdrRequest announced;
-    announced.cookie = &four[3];
-    announced.master = kB;
-    announced.bytes = 16;
-    announced.address = four[3].address;
-    announced.data = four[3].data.data();
-    ASSERT_TRUE(b.ddr.submit(announced, (300 + kLater) * kTck));
+    ASSERT_TRUE(b.hand_over(four[3], (300 + kLater) * kTck));
     b.drain();
     EXPECT_EQ(b.clock_of(Cmd::kAct, 1), kFrom + kLater) << scr;
     EXPECT_EQ(b.clock_of(Cmd::kPre, 0), kFrom + 150) << scr;
@@ -451,7 +445,7 @@ TEST(OtherSchedulersTest, FrfcfsTellsTheReadsOfOneMasterInOrder) {
   const auto state = [&] {
     Items items;
     for (const auto& i : b.ddr.view().items)
-      items.push_back(std::to_string(static_cast<const Request*>(i.cookie) - all.data()) +
+      items.push_back(std::to_string(static_cast<const Request*>(i.request->owner) - all.data()) +
                       (i.moving ? "moves"
                        : i.held ? "held"
                                 : ""));

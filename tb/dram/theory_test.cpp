@@ -298,12 +298,7 @@ TEST(FifoTest, RequestAtTheDoorIsNotSeenBeforeItsArrival) {
   Request one, two;
   two.address = 64;
   b.submit(one, 9);
-  mem::DdrRequest q;
-  q.cookie = &two;
-  q.bytes = 16;
-  q.address = two.address;
-  q.data = two.data.data();
-  EXPECT_FALSE(b.ddr.submit(q, 40 * kTck)) << "the first is served at 23 only";
+  EXPECT_FALSE(b.hand_over(two, 40 * kTck)) << "the first is served at 23 only";
   b.drain();
   EXPECT_EQ(two.accepted_at, 23 * kTck);
   EXPECT_EQ(b.clock_of(Cmd::kRd, 0, 1), 40u + 1u + 8u);

@@ -27,10 +27,10 @@ void expect_equal(const WaitTable& counted, const WaitTable& table, std::uint64_
 }
 
 /// A crossbar before a slave that is busy at times. Edges have 10 ns.
-class Lanes : private bus::XbarHost {
+class Lanes {
  public:
   static constexpr Picoseconds kEdge = 10'000;
-  explicit Lanes(std::uint64_t seed) : rng_(seed), xbar_(params_, *this) {
+  explicit Lanes(std::uint64_t seed) : rng_(seed), xbar_(params_) {
     xbar_.set_clock(Frequency(100'000'000), 0);
   }
   /// Four masters in turn with up to four requests each: none waits for more grants than are kept.
@@ -60,7 +60,7 @@ class Lanes : private bus::XbarHost {
  private:
   void step() {
     granted_ = xbar_.next_decision() / kEdge;
-    xbar_.step();
+    xbar_.step(*this);
   }
   void count(const MemRequest& r) {
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
@@ -73,7 +73,10 @@ class Lanes : private bus::XbarHost {
       w.add(culprit(lane == had_lane_.end() ? r.master : lane->second), kEdge);
     }
   }
-  Taken forward(MemRequest& r, Picoseconds arrival) override {
+
+ public:
+  /// The crossbar's slave.
+  Taken forward(MemRequest& r, Picoseconds arrival) {
     count(r);
     at_door_ = &r;
     for (std::uint64_t edge = granted_; edge < arrival / kEdge; ++edge) had_lane_[edge] = r.master;
@@ -87,15 +90,21 @@ class Lanes : private bus::XbarHost {
     finish(r, arrival);
     return Taken::kYes;
   }
+  void respond(MemRequest& r) {
+    ++answered_;
+    --outstanding_[index(r.master)];
+  }
+
+ private:
   void open() {
     const Picoseconds at = std::exchange(opens_, kNever);
     MemRequest& r = *at_door_;
-    r.door_opener = static_cast<Master>(rng_.below(kMasterCount));
+    const auto unblocked_by = static_cast<Master>(rng_.below(kMasterCount));
     const std::uint64_t taken = at / kEdge + 1;
     for (std::uint64_t edge = blocked_from_; edge < taken; ++edge) had_lane_[edge] = r.master;
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
-    w.add(culprit(r.door_opener), (taken - blocked_from_) * kEdge);
-    xbar_.slave_accepted(r, at);
+    w.add(culprit(unblocked_by), (taken - blocked_from_) * kEdge);
+    xbar_.slave_accepted(*this, r, at, unblocked_by);
     finish(r, taken * kEdge);
   }
   /// A read's data come at once; a write is acknowledged by the crossbar.
@@ -104,11 +113,7 @@ class Lanes : private bus::XbarHost {
         static_cast<std::uint64_t>(params_.ports[index(r.master)]->response_latency());
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
     w.add(Culprit::kBridge, latency * kEdge);
-    if (!r.write) xbar_.slave_done(r, at, at, false);
-  }
-  void respond(MemRequest& r) override {
-    ++answered_;
-    --outstanding_[index(r.master)];
+    if (!r.write) xbar_.slave_done(*this, r, {at, at, 0, false});
   }
 
   Rng rng_;
@@ -134,12 +139,12 @@ TEST(LoadedWaitsTest, CrossbarTagsEachEdgeWithWhoHadTheLane) {
 
 /// Eight masters, each with one request at a time in a bank of its own: a command's bank says whose
 /// it is. DDR clocks have 4 ns, the crossbar's 8 ns.
-class Banks : private mem::DdrClient {
+class Banks {
  public:
   static constexpr Picoseconds kClock = 4'000;
   /// `looks`: in between somebody looks at the statistics, as a debugger or the kernel's turn does.
   explicit Banks(std::uint64_t seed, bool looks = false)
-      : rng_(seed), look_(seed + 1), looks_(looks), store_(params_.size_bytes()), ddr_(params_, store_, *this) {
+      : rng_(seed), look_(seed + 1), looks_(looks), store_(params_.size_bytes()), ddr_(params_, store_) {
     ddr_.set_clocks(Frequency(250'000'000), Frequency(125'000'000), 0);
     mem::DdrConfig config;
     config.refresh_interval = 400;
@@ -155,24 +160,23 @@ class Banks : private mem::DdrClient {
     for (Picoseconds now = kClock; done_ < requests; now += kClock * 3 / 2) {
       while (ddr_.next_decision() < now) {
         if (looks_ && look_.below(3)) look_before(ddr_.next_decision());
-        ddr_.step();
+        step();
       }
       if (looks_) look_before(now);
       const auto m = static_cast<unsigned>(rng_.below(8));
       Request& r = requests_[m];
       if (r.busy || door_ != nullptr || rng_.below(4) == 0) continue;
       r.busy = true;
-      mem::DdrRequest q;
-      q.cookie = &r;
+      MemRequest& q = r.path;
       q.master = static_cast<Master>(m);
       q.priority = static_cast<std::uint8_t>(rng_.below(3));
       q.write = rng_.below(3) == 0;
       r.left = 1 + static_cast<unsigned>(rng_.below(4));
       q.bytes = static_cast<std::uint8_t>(16 * r.left);
-      q.address = m << 11 | static_cast<std::uint32_t>(rng_.below(3)) << 14;
+      const std::uint32_t offset = m << 11 | static_cast<std::uint32_t>(rng_.below(3)) << 14;
       q.data = r.data.data();
       r.arrived = now / kClock + 1;
-      if (!ddr_.submit(q, now)) door_ = &r;
+      if (!ddr_.submit(q, offset, now)) door_ = &r;
     }
   }
   const WaitTable& table() const { return ddr_.waits; }
@@ -181,6 +185,7 @@ class Banks : private mem::DdrClient {
 
  private:
   struct Request {
+    MemRequest path;
     bool busy = false;
     std::uint64_t arrived = 0;  // clock
     unsigned left = 0;  // columns to come
@@ -232,12 +237,15 @@ class Banks : private mem::DdrClient {
       w.add(culprit, kClock);
     }
   }
-  void ddr_accepted(void* cookie, Picoseconds at) override {
-    EXPECT_EQ(cookie, door_);
-    door_->arrived = std::max(door_->arrived, at / kClock + 1);
-    door_ = nullptr;
+  void step() {
+    ddr_.step();
+    if (const auto& accepted = ddr_.news().accepted) {
+      EXPECT_EQ(accepted->request, &door_->path);
+      door_->arrived = std::max(door_->arrived, accepted->at / kClock + 1);
+      door_ = nullptr;
+    }
+    ddr_.news().clear();
   }
-  void ddr_read_done(void*, Picoseconds, Picoseconds) override {}
 
   Rng rng_, look_;
   bool looks_;

@@ -25,10 +25,10 @@ struct Answer {
   bool error;
 };
 
-class XbarBench : private bus::XbarHost {
+class XbarBench {
  public:
   explicit XbarBench(std::vector<std::pair<std::string, std::string>> params = {})
-      : params_(params), xbar(params_, *this) {
+      : params_(params), xbar(params_) {
     xbar.set_clock(Frequency(100'000'000), 0);
   }
   /// On the port's wires at edge `edge`: the crossbar's next edge is the first to see it.
@@ -46,7 +46,7 @@ class XbarBench : private bus::XbarHost {
   void run(std::uint64_t until = ~std::uint64_t{0} / kEdge) {
     while (xbar.next_decision() < until * kEdge) {
       granted_ = xbar.next_decision();
-      xbar.step();
+      xbar.step(*this);
     }
   }
   std::vector<Event> events;
@@ -63,7 +63,10 @@ class XbarBench : private bus::XbarHost {
       for (const auto& [key, value] : list) set.set(key, value);
     }
   };
-  Taken forward(MemRequest& r, Picoseconds arrival) override {
+
+ public:
+  /// The crossbar's slaves and masters.
+  Taken forward(MemRequest& r, Picoseconds arrival) {
     EXPECT_EQ(arrival % kEdge, 0u);
     const auto slave = static_cast<Slave>(r.slave);
     events.push_back({r.master, slave, granted_ / kEdge, arrival / kEdge});
@@ -71,9 +74,11 @@ class XbarBench : private bus::XbarHost {
     if (refuses) return Taken::kRefused;
     return slave != Slave::kDdr || ddr_accepts ? Taken::kYes : Taken::kWaits;
   }
-  void respond(MemRequest& r) override {
+  void respond(MemRequest& r) {
     answers.push_back({r.master, r.first / kEdge, r.last / kEdge, r.error});
   }
+
+ private:
   std::vector<std::unique_ptr<MemRequest>> requests_;
   Params params_;
   Picoseconds granted_ = 0;

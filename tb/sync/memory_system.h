@@ -23,16 +23,14 @@ inline void start_sdram(mem::DdrModule& ddr) {
 
 struct MemorySystem {
   MemorySystem(bus::AddressMap map, bool strict, Frequency ddr_clock, Frequency scr_clock)
-      : scr("scr", xbar_params, map, strict),
+      : scr("scr", xbar_params, ddr_params, map, strict),
         config("config", config_params, quiet,
                {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
-        ddr("ddr", ddr_params),
+        ddr("ddr", ddr_params, scr.memory()),
         ddr_clk("ddr_clk", ddr_clock),
         scr_clk("scr_clk", scr_clock) {
     for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
     scr.clk(scr_clk);
-    scr.ddr_socket.bind(ddr.socket);
-    scr.ddr_lookahead.bind(ddr.lookahead);
     scr.config_socket.bind(config.socket);
     ddr.ddr_clk(ddr_clk);
     ddr.scr_clk(scr_clk);

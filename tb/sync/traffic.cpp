@@ -230,19 +230,17 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   bus::ConfigBusParams cp;
   mem::DdrParams dp;
   dp.check.set("commands");
-  bus::Scr scr("scr", xp, {}, strict);
+  bus::Scr scr("scr", xp, dp, {}, strict);
   using Speed = bus::ConfigBus::Speed;
   bus::ConfigBus config("config", cp, quiet,
                         {{"block", kRegs, 0x1000, Speed::kFast},
                          {"ddr", 0x2000'0000, 0x8000, Speed::kFast}});
-  mem::DdrModule ddr("ddr", dp);
+  mem::DdrModule ddr("ddr", dp, scr.memory());
   TestBlock block("block", log);
   ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
   ClockSignal scr_clk{"scr_clk", Frequency(121'500'000)};
   sc_core::sc_signal<bool> on{"on", true};
   scr.clk(scr_clk);
-  scr.ddr_socket.bind(ddr.socket);
-  scr.ddr_lookahead.bind(ddr.lookahead);
   scr.config_socket.bind(config.socket);
   ddr.ddr_clk(ddr_clk);
   ddr.scr_clk(scr_clk);
@@ -283,7 +281,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
     log.add(text("stat %s %llu", s->name().c_str(),
                  static_cast<unsigned long long>(std::get<std::uint64_t>(s->value()))));
   log.add(text("memory %016llx", static_cast<unsigned long long>(hash(ddr.store().at(0), 0x20000))));
-  return {log.sorted(), scr.direct_accesses(), scr.queued_accesses()};
+  return {log.sorted(), scr.memory().decided_ahead(), scr.memory().decided_at_present()};
 }
 
 }  // namespace fovea::sync

@@ -6,8 +6,7 @@
 
 namespace fovea::bus {
 
-Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
-    : timeline(params.timeline_interval()), host_(host) {
+Crossbar::Crossbar(const CrossbarParams& params) : timeline(params.timeline_interval()) {
   for (std::size_t i = 0; i < kStatCount; ++i)
     stats[i] = std::make_unique<MasterStats>(static_cast<Master>(i));
   for (std::size_t i = 0; i < kMasterCount; ++i) {
@@ -68,7 +67,6 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.slave = static_cast<std::uint8_t>(slave);
-  request.slave_waited = 0;
   if (observer_) [[unlikely]]
     observer_->submitted(request, slave == Slave::kDdr);
   const bool head = p.empty();
@@ -210,7 +208,8 @@ inline void Crossbar::sum_grants(SlaveState& s) {
     if (const Picoseconds t = w.ps[m] - before->ps[m]) r.parts->add(static_cast<Culprit>(m), t);
 }
 
-void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
+/// The slave's input is free again. @return the edge at which the request is in the slave's hands
+std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblocked_by) {
   SlaveState& s = slaves_[request.slave];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
@@ -223,16 +222,15 @@ void Crossbar::slave_accepted(MemRequest& request, Picoseconds at) {
     g.end_at = taken;
   }
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    charge(request, culprit(request.door_opener), taken - request.taken);
+    charge(request, culprit(unblocked_by), taken - request.taken);
   request.taken = taken;
-  if (request.write && request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    acknowledge_write(host_, request, s.free);
-  plan();
+  return s.free;
 }
 
 /// Data from the lane to the port. A port narrower than the lane takes longer for each word, and
 /// begins with the next burst when it is through with the one before.
-void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last) {
+void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
+                           Picoseconds attributed) {
   const Port& p = ports_[index(r.master)];
   const std::uint64_t seen = scr_.edge_at_or_after(first) + p.response_latency;
   std::uint64_t begin = seen;
@@ -253,15 +251,17 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last) {
   };
   add(Culprit::kBridge, free - first);
   if (r.first != free) add(culprit(r.master), r.first - free);
-  add(Culprit::kService, first - r.taken - r.slave_waited);
+  add(Culprit::kService, first - r.taken - attributed);
 }
 
-void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error) {
+/// Everything about an outcome but the call that reports it.
+void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) {
+  const auto [first, last, attributed, error] = outcome;
   const bool ddr = request.slave == static_cast<std::uint8_t>(Slave::kDdr);
   request.error = error;
   if (ddr) {
     // Nor does a faster clock bring data before the command was there.
-    return_read(request, std::max(first, request.taken + request.slave_waited), last);
+    return_read(request, std::max(first, request.taken + attributed), last, attributed);
   } else {
     const std::uint64_t latency = ports_[index(request.master)].response_latency;
     request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);
@@ -274,7 +274,6 @@ void Crossbar::slave_done(MemRequest& request, Picoseconds first, Picoseconds la
   }
   if (observer_) [[unlikely]]
     ddr ? observer_->responded(request) : observer_->register_done(request);
-  host_.respond(request);
 }
 
 }  // namespace fovea::bus

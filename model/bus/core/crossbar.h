@@ -2,6 +2,7 @@
 // clock. A passive state machine like the controllers behind it.
 #pragma once
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,16 +22,15 @@ namespace fovea::bus {
 enum class Slave : std::uint8_t { kDdr, kConfig, kInternalRam, kCount };
 inline constexpr std::size_t kSlaveCount = static_cast<std::size_t>(Slave::kCount);
 
-/// What the crossbar moves requests and outcomes through.
-class XbarHost {
- public:
-  virtual ~XbarHost() = default;
-  using Taken = fovea::Taken;
-  /// Sends a granted request; it is at the slave at `arrival`. If it waits there slave_accepted()
-  /// follows.
-  virtual Taken forward(MemRequest& request, Picoseconds arrival) = 0;
+/// What the crossbar moves requests and outcomes through. The type is known at compile time, so that
+/// both are direct calls.
+template <class H>
+concept CrossbarHost = requires(H& host, MemRequest& request, Picoseconds arrival) {
+  /// Sends a granted request; it is at the slave at `arrival`. If the result is kWaits, the host calls
+  /// slave_accepted() later.
+  { host.forward(request, arrival) } -> std::same_as<Taken>;
   /// The outcome is in the request.
-  virtual void respond(MemRequest& request) = 0;
+  host.respond(request);
 };
 
 struct MasterStats : StatGroup {
@@ -48,7 +48,7 @@ struct MasterStats : StatGroup {
 
 class Crossbar {
  public:
-  Crossbar(const CrossbarParams& params, XbarHost& host);
+  explicit Crossbar(const CrossbarParams& params);
   void set_clock(Frequency scr, Picoseconds at);
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
@@ -62,9 +62,7 @@ class Crossbar {
   /// The next arbitration, kNever if there is nothing to arbitrate.
   Picoseconds next_decision() const { return next_; }
   const Picoseconds* next_decision_place() const { return &next_; }
-  void step() { step(host_); }
-  /// The same for a host of known type: its forward() and respond() are called directly.
-  template <class Host>
+  template <CrossbarHost Host>
   void step(Host& host);
 
   bool observed() const { return observer_; }
@@ -87,7 +85,7 @@ class Crossbar {
   }
   /// submit() and step() in one, for the present grant_if_alone() of a request of which r.parts has
   /// nothing yet. True: it is over, and the host not called, which a write with room is at once.
-  template <bool kWrite, class Host>
+  template <bool kWrite, CrossbarHost Host>
   bool grant_alone(Host& host, MemRequest& request, const AloneGrant& grant);
   /// A write: from its issue to its acknowledgement, with one beat and nobody in the way.
   Picoseconds least_latency(Master m) const {
@@ -96,10 +94,22 @@ class Crossbar {
     return t > 2 ? t - 2 : 0;  // two times may have been rounded down
   }
 
-  /// Slave side: the request waiting at the slave was taken at `at`.
-  void slave_accepted(MemRequest& request, Picoseconds at);
+  /// Slave side: the request waiting at the slave was accepted at `at`, when a request of
+  /// `unblocked_by` left the slave's queue and made room.
+  template <CrossbarHost Host>
+  void slave_accepted(Host& host, MemRequest& request, Picoseconds at, Master unblocked_by);
   /// Slave side: read data on the crossbar from first to last; or a register access that ended.
-  void slave_done(MemRequest& request, Picoseconds first, Picoseconds last, bool error);
+  struct SlaveOutcome {
+    Picoseconds first = 0, last = 0;
+    Picoseconds attributed = 0;  ///< part of a read's time in the slave that the slave's own wait
+                                 ///< attribution explains
+    bool error = false;
+  };
+  template <CrossbarHost Host>
+  void slave_done(Host& host, MemRequest& request, const SlaveOutcome& outcome) {
+    settle_outcome(request, outcome);
+    host.respond(request);
+  }
 
   /// By stat_index().
   std::array<std::unique_ptr<MasterStats>, kStatCount> stats;
@@ -180,13 +190,13 @@ class Crossbar {
   };
 
   void plan();
-  template <class Host>
+  template <CrossbarHost Host>
   void grant(Host& host, MemRequest& request, std::uint64_t crossed, std::uint32_t grants);
   unsigned winner(const SlaveState& s, std::uint32_t set) const;
   bool goes_first(unsigned a, const SlaveState& of_a, unsigned b, const SlaveState& of_b) const;
   void sum_grants(SlaveState& s);
   void set_lock(SlaveState& s, const MemRequest& r);
-  template <class Host>
+  template <CrossbarHost Host>
   void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
     set_outcome(request, at, at);
@@ -208,7 +218,9 @@ class Crossbar {
     slaves_[ports_[port].front().request->slave].heads |= 1u << port;
   }
   void count(unsigned port, bool write, const MemRequest& r, Picoseconds at);
-  void return_read(MemRequest& r, Picoseconds first, Picoseconds last);
+  void settle_outcome(MemRequest& r, const SlaveOutcome& outcome);
+  void return_read(MemRequest& r, Picoseconds first, Picoseconds last, Picoseconds attributed);
+  std::uint64_t reopen(MemRequest& r, Picoseconds at, Master unblocked_by);
   /// The parts of request.issued .. `granted`.
   void attribute(SlaveState& s, const MemRequest& r, std::uint64_t crossed, std::uint32_t grants,
                  Picoseconds granted);
@@ -218,7 +230,6 @@ class Crossbar {
     if (r.parts) r.parts->add(c, t);
   }
 
-  XbarHost& host_;
   MemObserver* observer_ = nullptr;
   Clock scr_;
   std::array<Port, kMasterCount> ports_;
@@ -243,7 +254,7 @@ class Crossbar {
   timeline.add(port, write, r.bytes, at);
 }
 
-template <class Host>
+template <CrossbarHost Host>
 void Crossbar::step(Host& host) {
   Port& p = ports_[next_port_];
   const Port::Item& item = p.front();
@@ -266,7 +277,7 @@ void Crossbar::step(Host& host) {
 }
 
 /// The slave's lane is the request's at next_edge_.
-template <class Host>
+template <CrossbarHost Host>
 [[gnu::always_inline]] inline void Crossbar::grant(Host& host, MemRequest& r,
                                                    std::uint64_t crossed, std::uint32_t grants) {
   const Port& p = ports_[next_port_];
@@ -293,12 +304,12 @@ template <class Host>
   if (taken == Taken::kWaits)
     s.blocked = true;
   else if (taken == Taken::kRefused)
-    slave_done(r, at, at, true);
+    slave_done(host, r, {at, at, 0, true});
   else if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host, r, arrival);
 }
 
-template <bool kWrite, class Host>
+template <bool kWrite, CrossbarHost Host>
 [[gnu::always_inline]] inline bool Crossbar::grant_alone(Host& host, MemRequest& r,
                                                          const AloneGrant& g) {
   constexpr auto kDdr = static_cast<std::uint8_t>(Slave::kDdr);
@@ -306,7 +317,6 @@ template <bool kWrite, class Host>
   const Port& p = ports_[m];
   SlaveState& s = slaves_[kDdr];
   r.slave = kDdr;
-  r.slave_waited = 0;
   r.priority = p.priority;
   const std::uint64_t arrival = g.edge + (kWrite ? p.beats(r.bytes) : 1u);
   const Picoseconds at = scr_.edge(arrival);
@@ -332,7 +342,7 @@ template <bool kWrite, class Host>
     if (taken == Taken::kWaits)
       s.blocked = true;
     else
-      slave_done(r, at, at, true);
+      slave_done(host, r, {at, at, 0, true});
   } else if (kWrite) {
     const Picoseconds acknowledged = scr_.edge(arrival + p.response_latency);
     set_outcome(r, acknowledged, acknowledged);
@@ -343,6 +353,13 @@ template <bool kWrite, class Host>
   // What was planned for the others stands, unless the lane is not free then or their turn changed.
   if (waiting_ && (waiting_ & (waiting_ - 1) || next_edge_ < s.free || s.blocked)) plan();
   return over;
+}
+
+template <CrossbarHost Host>
+void Crossbar::slave_accepted(Host& host, MemRequest& r, Picoseconds at, Master unblocked_by) {
+  const std::uint64_t edge = reopen(r, at, unblocked_by);
+  if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr)) acknowledge_write(host, r, edge);
+  plan();
 }
 
 }  // namespace fovea::bus

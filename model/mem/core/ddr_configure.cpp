@@ -7,9 +7,8 @@
 
 namespace fovea::mem {
 
-DdrController::DdrController(const DdrParams& params, BackingStore& store, DdrClient& client)
+DdrController::DdrController(const DdrParams& params, BackingStore& store)
     : store_(store),
-      client_(client),
       size_(store.size()),
       fifo_entries_(params.command_fifo()),
       write_fifo_words_(static_cast<unsigned>(params.write_fifo() / 8)),
@@ -86,12 +85,6 @@ void DdrController::set_command_hook(CommandHook hook, void* self) {
     for (const auto& [one, its_self] : static_cast<DdrController*>(all)->listeners_)
       one(its_self, cmd, bank, row, clock);
   };
-}
-
-void DdrController::refuse(const DdrRequest& request) const {
-  FOVEA_CHECK(running_, "request to a DDR controller without a clock");
-  FOVEA_CHECK(!door_full_, "request to a DDR controller whose door is taken");
-  FOVEA_CHECK(false, "request outside the SDRAM reached the controller");
 }
 
 }  // namespace fovea::mem

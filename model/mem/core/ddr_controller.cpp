@@ -37,44 +37,42 @@ void DdrController::count_asleep(std::uint64_t until) {
     stats.active_power_down_clocks += clocks;
 }
 
-namespace {
+bool DdrController::submit(MemRequest& r, std::uint32_t offset, Picoseconds at) {
+  FOVEA_CHECK(running_, "request to a DDR controller without a clock");
+  FOVEA_CHECK(!shut_, "request to a DDR controller whose input register is taken");
+  FOVEA_CHECK(r.bytes <= 64 && std::uint64_t{offset} + r.bytes <= size_,
+              "request outside the SDRAM reached the controller");
+  return take_in(r, offset, at);
+}
 
-void* cookie_of(const DdrRequest& r) { return r.cookie; }
-void* cookie_of(MemRequest& r) { return &r; }
+bool DdrController::submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at) {
+  return take_in(request, offset, at);
+}
+
+namespace {
 
 /// Field by field: a copy of the whole, or by way of another one, would read bytes just written as
 /// wide words, for which the host has to wait.
-template <class Request>
-[[gnu::always_inline]] inline void put(DdrRequest& r, Request& from) {
-  r.cookie = cookie_of(from);
+template <class Queued>
+[[gnu::always_inline]] inline void put(Queued& r, MemRequest& from, std::uint32_t offset) {
+  r.origin = &from;
   r.master = from.master;
   r.priority = from.priority;
   r.write = from.write;
   r.bytes = from.bytes;
-  r.address = from.address;
-  r.critical = from.critical;
+  r.address = offset;
   r.data = from.data;
   r.parts = from.parts;
 }
 
 }  // namespace
 
-bool DdrController::submit(const DdrRequest& request, Picoseconds at) {
-  if (shut_ || request.bytes > 64 || request.address + request.bytes > size_) [[unlikely]]
-    refuse(request);
-  return take_in(request, at);
-}
-
-bool DdrController::submit_inside(MemRequest& request, Picoseconds at) {
-  return take_in(request, at);
-}
-
-template <class Request>
-[[gnu::always_inline]] inline bool DdrController::take_in(Request& request, Picoseconds at) {
+[[gnu::always_inline]] inline bool DdrController::take_in(MemRequest& request, std::uint32_t offset,
+                                                          Picoseconds at) {
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
-  if (count_ != 0) return queue(request, arrived);
+  if (count_ != 0) return queue(request, offset, arrived);
   if (idle_calm_ < arrived) [[unlikely]] {
     idle(arrived);
     wake(arrived);
@@ -82,23 +80,26 @@ template <class Request>
   last_arrival_ = queued_since_ = arrived;
   count_ = 1;
   alone_ = true;
-  fill(slots_[0], request, arrived);
+  put(slots_[0].request, request, offset);
+  fill(slots_[0], arrived);
   plan_one(slots_[0]);
   return true;
 }
 
-template <class Request>
-bool DdrController::queue(Request& request, std::uint64_t arrived) {
+bool DdrController::queue(MemRequest& request, std::uint32_t offset, std::uint64_t arrived) {
   const bool was_alone = alone_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
-      (request.write && write_words_held_ + write_words(request) > write_fifo_words_)) {
+      (request.write &&
+       write_words_held_ + write_words(offset, request.bytes) > write_fifo_words_)) {
     door_full_ = shut_ = true;
-    put(door_, request);
+    put(door_, request, offset);
     door_arrived_ = arrived;
     return false;
   }
-  take(request, arrived);
+  Entry& e = free_entry();
+  put(e.request, request, offset);
+  take(e, arrived);
   // A choice for a clock before the newcomer is ready stands; else nothing can be given before then.
   const std::uint64_t seen = entry(count_ - 1).ready;
   if (in_burst_ || seen > choice_.at) return true;
@@ -110,11 +111,10 @@ bool DdrController::queue(Request& request, std::uint64_t arrived) {
   return true;
 }
 
-template <class Request>
-inline void DdrController::fill(Entry& e, Request& request, std::uint64_t arrived) const {
-  DdrRequest& r = e.request;
-  __builtin_prefetch(store_.at(request.address));  // the host's own memory is slow as well
-  put(r, request);
+/// What follows from the entry's request.
+inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
+  const Queued& r = e.request;
+  __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
   e.ready = arrived + request_latency_;
   e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
   e.row = (r.address & row_mask_) >> row_shift_;
@@ -135,23 +135,23 @@ void DdrController::join_queue() {
   unseen_ = e.ready;
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
-  write_words_held_ = e.request.write ? write_words(e.request) : 0u;
+  write_words_held_ = e.request.write ? write_words(e.request.address, e.request.bytes) : 0u;
 }
 
-template <class Request>
-void DdrController::take(Request& request, std::uint64_t arrived) {
-  const auto slot = static_cast<unsigned>(std::countr_zero(free_slots_));
+/// The request in this entry joins the queue as the newest one.
+void DdrController::take(Entry& e, std::uint64_t arrived) {
+  const Queued& request = e.request;
+  const auto slot = static_cast<unsigned>(&e - slots_.data());
   const unsigned place = count_++;
   const Places bit = 1u << place;
   free_slots_ ^= 1u << slot;
   last_arrival_ = arrived;
-  Entry& e = slots_[slot];
-  fill(e, request, arrived);
+  fill(e, arrived);
   if (seen_count_ == place) unseen_ = e.ready;
   const Places older = places_.of_master(request.master);
   places_.add(place, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
-  if (request.write) write_words_held_ += write_words(request);
+  if (request.write) write_words_held_ += write_words(request.address, request.bytes);
   const auto goes_before = [&] {
     return free_order_ ? !bound_by(e, older) : !request.write && passes(e, older);
   };
@@ -162,9 +162,9 @@ void DdrController::take(Request& request, std::uint64_t arrived) {
 /// that is in another 2048-byte block and not more urgent.
 bool DdrController::passes(const Entry& read, Places older) const {
   if (older & ~places_.writes()) return false;
-  const DdrRequest& r = read.request;
+  const Queued& r = read.request;
   for (; older; older &= older - 1) {
-    const DdrRequest& o = entry(oldest(older)).request;
+    const Queued& o = entry(oldest(older)).request;
     if ((o.address >> 11) == (r.address >> 11) || o.priority < r.priority) return false;
   }
   return true;
@@ -419,7 +419,7 @@ template <Cmd kCmd>
 template <Cmd kCmd>
 void DdrController::first_column() {
   const Entry& e = *choice_.entry;
-  const DdrRequest& r = e.request;
+  const Queued& r = e.request;
   const std::uint64_t clock = choice_.at;
   if (!e.classified) {
     ++stats.row_hits;
@@ -442,7 +442,7 @@ void DdrController::first_column() {
     if (free_order_) [[unlikely]]
       tell_in_order(e, on_lane);
     else
-      client_.ddr_read_done(r.cookie, on_lane.first, on_lane.last);
+      report_read(r.origin, on_lane.first, on_lane.last);
   }
   if (e.chunks == 1) return finish(clock);
   // No turnaround lies between the columns of a write, so this one passes for a RD among the given.
@@ -524,7 +524,7 @@ void DdrController::last_column() {
 inline void DdrController::leave_queue() {
   const Entry& e = *choice_.entry;
   const unsigned place = choice_.place;
-  if (e.request.write) write_words_held_ -= write_words(e.request);
+  if (e.request.write) write_words_held_ -= write_words(e.request.address, e.request.bytes);
   free_slots_ |= 1u << places_.slot(place);
   places_.leave(place, e.request.priority);
   offered_ = QueuePlaces::without(place, offered_);
@@ -543,11 +543,14 @@ inline void DdrController::leave_queue() {
 
 void DdrController::open_door(std::uint64_t clock) {
   if (count_ >= fifo_entries_ ||
-      (door_.write && write_words_held_ + write_words(door_) > write_fifo_words_))
+      (door_.write && write_words_held_ + write_words(door_.address, door_.bytes) > write_fifo_words_))
     return;
   door_full_ = shut_ = false;
-  take(door_, std::max(door_arrived_, clock + 1));
-  client_.ddr_accepted(door_.cookie, ddr_.edge(clock));
+  Entry& e = free_entry();
+  e.request = door_;
+  take(e, std::max(door_arrived_, clock + 1));
+  news_.accepted = {door_.origin, ddr_.edge(clock), choice_.entry->request.master};
+  news_.any = true;
 }
 
 }  // namespace fovea::mem

@@ -21,19 +21,6 @@
 
 namespace fovea::mem {
 
-/// One request as the crossbar hands it over. `address` is the byte offset in the SDRAM.
-struct DdrRequest {
-  void* cookie = nullptr;  ///< given back with the outcome
-  Master master = Master::kArmD;
-  std::uint8_t priority = 0;
-  bool write = false;
-  std::uint8_t bytes = 0;  ///< 1..64, inside one aligned 64-byte block
-  std::uint32_t address = 0;
-  std::uint32_t critical = 0;    ///< offset wanted first; the 16 bytes around it are read first
-  std::uint8_t* data = nullptr;  ///< read: where to; write: copied when accepted
-  RequestWaits* parts = nullptr;  ///< read: gets its share of `waits` as well; null: nobody asks
-};
-
 /// What an idle controller does with the part (SDRCR.LPMODEN, SR_PD and MCLKSTOPEN). kClockStop:
 /// self-refresh, and the memory's clock stands.
 enum class LowPower : std::uint8_t { kOff, kSelfRefresh, kPowerDown, kClockStop };
@@ -55,20 +42,9 @@ struct DdrConfig {
   unsigned refreshed_log2 = 0;
 };
 
-class DdrClient {
- public:
-  virtual ~DdrClient() = default;
-  /// The request waiting at the door was taken into the FIFOs at `at`.
-  virtual void ddr_accepted(void* cookie, Picoseconds at) = 0;
-  /// A read's data is on the crossbar from `first` (its first 8 bytes) to `last`; both lie ahead.
-  /// Called with its first column command: from there on nothing interrupts the burst. With
-  /// `frfcfs` later, with that of the last of its master's older reads.
-  virtual void ddr_read_done(void* cookie, Picoseconds first, Picoseconds last) = 0;
-};
-
 class DdrController {
  public:
-  DdrController(const DdrParams& params, BackingStore& store, DdrClient& client);
+  DdrController(const DdrParams& params, BackingStore& store);
 
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at);
   /// Reads have no crossbar to go to: their data are there when the SDRAM has sent them.
@@ -82,24 +58,54 @@ class DdrController {
   /// or request; whoever reads the statistics calls this first.
   void catch_up(Picoseconds at);
 
-  /// A request arrives at time `at`; true: taken at once. False: it waits at the door until
-  /// ddr_accepted; the caller sends no other one before.
-  bool submit(const DdrRequest& request, Picoseconds at);
-  /// The same for a caller that knows the request to lie in the SDRAM, with no other at the door and
-  /// the clock running. Its address is an offset in the SDRAM; it is its own cookie.
-  bool submit_inside(MemRequest& request, Picoseconds at);
-  /// Stopped, or the door taken: no request may come.
-  bool shut() const { return shut_; }
+  /// A request for the SDRAM, at byte `offset` in it, arrives at time `at`. The write data are copied
+  /// when the request is accepted; the request itself stays valid until its outcome. True: accepted at
+  /// once. False: it waits in the input register, and is among accepted() of a later step; the caller
+  /// sends no other one before.
+  bool submit(MemRequest& request, std::uint32_t offset, Picoseconds at);
+  /// The same for a caller that knows that it may: the request inside the SDRAM, input_blocked() false.
+  bool submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at);
+  /// The clock stands, or a request waits in the input register: no request may come.
+  bool input_blocked() const { return shut_; }
 
   /// Time of the next decision, kNever if nothing is queued: a DRAM command, but of a burst's
   /// columns only the first and the last, as nothing can come between. Depends only on arrivals
   /// strictly before it.
   Picoseconds next_decision() const { return next_; }
-  const Picoseconds* next_decision_place() const { return &next_; }
+  /// Takes that decision. What it decided for others is in news().
   void step();
 
-  /// Cookie of a master's newest read that has no outcome yet; null: there is none.
-  const void* newest_read(Master master) const;
+  /// A read whose data is on the crossbar from `first` (its first 8 bytes) to `last`; both lie ahead.
+  /// Reported with its first column command; with the scheduler `frfcfs` later, with that of the last of
+  /// its master's older reads.
+  struct ReadOutcome {
+    MemRequest* request;
+    Picoseconds first, last;
+    Picoseconds attributed;  ///< the part of its time that `waits` explains
+  };
+  /// The request in the input register was taken into the FIFOs at `at`, as a request of `unblocked_by`
+  /// left them and made room.
+  struct Acceptance {
+    MemRequest* request;
+    Picoseconds at;
+    Master unblocked_by;
+  };
+  /// What the last step() decided for others; the caller handles the reads first, in their order, and
+  /// clears it.
+  struct News {
+    std::vector<ReadOutcome> reads;
+    std::optional<Acceptance> accepted;
+    bool any = false;
+    void clear() {
+      reads.clear();
+      accepted.reset();
+      any = false;
+    }
+  };
+  News& news() { return news_; }
+
+  /// A master's newest read that has no outcome yet; null: there is none.
+  const MemRequest* newest_read(Master master) const;
 
   /// A debugger's access, without time: memory with the write data that wait in the FIFO. The caller
   /// checks address + bytes against the SDRAM's size.
@@ -108,7 +114,7 @@ class DdrController {
   /// What stands here, for a debugger.
   struct View {
     struct Item {
-      const void* cookie;  ///< of a write that is not at the door: stale, its master has gone on
+      const MemRequest* request;  ///< of a write that is not at the door: stale, its master has gone on
       Master master;
       bool write;
       std::uint8_t bytes;
@@ -137,10 +143,6 @@ class DdrController {
   /// and PRE. From the end of a write burst on it is the turnaround. Data held back for older reads
   /// of the same master wait for it.
   WaitTable waits;
-  /// Within ddr_read_done: the sum of that read's waits.
-  Picoseconds read_waited() const { return read_waited_; }
-  /// Within ddr_accepted: whose command left the FIFO and made room.
-  Master door_opener() const { return choice_.entry->request.master; }
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
   /// What the part does now; catch_up() first.
@@ -160,8 +162,20 @@ class DdrController {
  private:
   static constexpr std::size_t kMaxEntries = QueuePlaces::kMost;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
+  /// The controller's own copy of what it needs of a request: the master of a write goes on, and uses
+  /// its record for another one, as soon as the write is accepted.
+  struct Queued {
+    MemRequest* origin = nullptr;
+    std::uint8_t* data = nullptr;   // read: where to; write, in the input register: where from
+    RequestWaits* parts = nullptr;  // read: gets its share of `waits` as well
+    std::uint32_t address = 0;      // offset in the SDRAM
+    Master master = Master::kArmD;
+    std::uint8_t priority = 0;
+    bool write = false;
+    std::uint8_t bytes = 0;  // 1..64, inside one aligned 64-byte block
+  };
   struct alignas(64) Entry {
-    DdrRequest request;
+    Queued request;
     std::uint64_t ready = 0;  // first edge at which the scheduler sees it
     std::uint32_t row = 0;
     std::uint8_t bank = 0;
@@ -214,7 +228,7 @@ class DdrController {
   /// A read whose data have come before those of older reads of its master: they wait behind the
   /// lane, in a buffer as large as what the masters have under way.
   struct Held {
-    DdrRequest request;
+    Queued request;
     std::uint32_t behind = 0;  // slots of the older reads
     Picoseconds first = 0;     // its own data on the lane
     std::uint64_t edges = 0;   // of the crossbar, from there to the last
@@ -224,29 +238,25 @@ class DdrController {
   void offer_all(Places of_one_master);
   void tell_in_order(const Entry& e, const ReadLane::Span& on_lane);
   void tell(const Held& h);
-  const void* newest_held(unsigned behind_slot) const;
+  const MemRequest* newest_held(unsigned behind_slot) const;
 
   void attribute(const Entry& e, std::uint64_t clock);
   void blame_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
   void blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready, const Blamed& newest);
   void charge(const Entry& e, Culprit c, Picoseconds t) { charge(e.request, c, t); }
-  void charge(const DdrRequest& r, Culprit c, Picoseconds t) {
+  void charge(const Queued& r, Culprit c, Picoseconds t) {
     waits[index(r.master)].read.add(c, t);
     if (r.parts) r.parts->add(c, t);
   }
   void time_given();
 
-  [[noreturn]] void refuse(const DdrRequest& request) const;
-  // Request: DdrRequest or MemRequest.
-  template <class Request>
-  bool take_in(Request& request, Picoseconds at);
-  template <class Request>
-  [[gnu::noinline]] bool queue(Request& request, std::uint64_t arrived);
-  template <class Request>
-  void fill(Entry& e, Request& request, std::uint64_t arrived) const;
+  bool take_in(MemRequest& request, std::uint32_t offset, Picoseconds at);
+  [[gnu::noinline]] bool queue(MemRequest& request, std::uint32_t offset,
+                                 std::uint64_t arrived);
+  void fill(Entry& e, std::uint64_t arrived) const;
   void join_queue();
-  template <class Request>
-  [[gnu::noinline]] void take(Request& request, std::uint64_t arrived);
+  [[gnu::noinline]] void take(Entry& e, std::uint64_t arrived);
+  Entry& free_entry() { return slots_[oldest(free_slots_)]; }
   void plan();
   void plan_anew();
   void plan_one(Entry& e);
@@ -316,10 +326,14 @@ class DdrController {
   void finish(std::uint64_t clock);
   void finish_queued(std::uint64_t clock);
   void leave_queue();
+  void report_read(MemRequest* request, Picoseconds first, Picoseconds last) {
+    news_.reads.push_back({request, first, last, read_waited_});
+    news_.any = true;
+  }
   void open_door(std::uint64_t clock);
 
   BackingStore& store_;
-  DdrClient& client_;
+  News news_;
   Clock ddr_, scr_;
   std::uint64_t first_edge_ = 0;  // of the DDR clock since its last restart
   bool running_ = false;
@@ -353,7 +367,7 @@ class DdrController {
   std::uint64_t last_arrival_ = 0;
   unsigned write_words_held_ = 0;
   bool door_full_ = false;
-  DdrRequest door_;
+  Queued door_;
   std::uint64_t door_arrived_ = 0;
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
@@ -405,9 +419,8 @@ class DdrController {
 };
 
 /// Words of 64 bits that a write's data holds in the FIFO: one touched in part is held whole.
-template <class Request>
-inline unsigned write_words(const Request& r) {
-  return ((r.address & 7u) + r.bytes + 7u) >> 3;
+inline unsigned write_words(std::uint32_t address, unsigned bytes) {
+  return ((address & 7u) + bytes + 7u) >> 3;
 }
 
 inline Cmd DdrController::needed(const Entry& e) const {

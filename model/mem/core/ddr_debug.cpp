@@ -18,13 +18,13 @@ Overlap overlap(std::uint32_t a, std::uint32_t a_bytes, std::uint32_t b, std::ui
 
 }  // namespace
 
-const void* DdrController::newest_read(Master master) const {
+const MemRequest* DdrController::newest_read(Master master) const {
   for (unsigned i = count_; i-- > 0;) {
     const Entry& e = entry(i);
     const bool answered = in_burst_ && &e == choice_.entry;
     if (e.request.write || e.request.master != master || answered) continue;
-    const void* const younger = newest_held(places_.slot(i));
-    return younger ? younger : e.request.cookie;
+    const MemRequest* const younger = newest_held(places_.slot(i));
+    return younger ? younger : e.request.origin;
   }
   return nullptr;
 }
@@ -51,9 +51,9 @@ void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from,
 
 DdrController::View DdrController::view() const {
   View v;
-  const auto add = [&](const DdrRequest& r, std::uint64_t ready, bool door) {
+  const auto add = [&](const Queued& r, std::uint64_t ready, bool door) {
     const auto bank = (r.address >> bank_shift_) & bank_mask_;
-    v.items.push_back({r.cookie, r.master, r.write, r.bytes, r.address, door, false, false,
+    v.items.push_back({r.origin, r.master, r.write, r.bytes, r.address, door, false, false,
                        running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
                        (r.address & row_mask_) >> row_shift_, device_.row(bank)});
   };
@@ -69,7 +69,7 @@ DdrController::View DdrController::view() const {
     v.data_full = count_ < fifo_entries_;
   }
   for (const Held& h : held_) {
-    if (in_burst_ && h.request.cookie == choice_.entry->request.cookie) continue;  // in the queue
+    if (in_burst_ && h.request.origin == choice_.entry->request.origin) continue;  // in the queue
     add(h.request, first_edge_, false);
     v.items.back().held = true;
   }

@@ -8,9 +8,9 @@ namespace fovea::mem {
 /// True if the request must stay behind one of these older ones of its master: one of the two
 /// writes to the 64-byte block of the other.
 bool DdrController::bound_by(const Entry& younger, Places older) const {
-  const DdrRequest& r = younger.request;
+  const Queued& r = younger.request;
   for (; older; older &= older - 1) {
-    const DdrRequest& o = entry(oldest(older)).request;
+    const Queued& o = entry(oldest(older)).request;
     if ((r.write || o.write) && o.address >> 6 == r.address >> 6) return true;
   }
   return false;
@@ -27,7 +27,7 @@ bool DdrController::bound_by(const Entry& younger, Places older) const {
 /// A read has its first column. Its outcome is told when its master's older reads have theirs, and
 /// then the younger ones that waited for it alone.
 [[gnu::noinline]] void DdrController::tell_in_order(const Entry& e, const ReadLane::Span& on_lane) {
-  const DdrRequest& r = e.request;
+  const Queued& r = e.request;
   Held mine{r, 0, on_lane.first, 0, read_waited_};
   const Clock& bus = lane_.left_out() ? ddr_ : scr_;
   mine.edges = bus.edge_at_or_after(on_lane.last) - bus.edge_at_or_after(on_lane.first);
@@ -51,21 +51,21 @@ bool DdrController::bound_by(const Entry& younger, Places older) const {
 
 /// From the buffer a word an edge, behind what its master was told of before; that wait is its own.
 void DdrController::tell(const Held& h) {
-  const DdrRequest& r = h.request;
+  const Queued& r = h.request;
   Picoseconds& told = told_[index(r.master)];
   const Clock& bus = lane_.left_out() ? ddr_ : scr_;
   const Picoseconds first = std::max(h.first, bus.next_edge_after(told));
   told = bus.edge(bus.edge_at_or_after(first) + h.edges);
   if (first > h.first) charge(r, culprit(r.master), first - h.first);
   read_waited_ = h.waited + (first - h.first);
-  client_.ddr_read_done(r.cookie, first, told);
+  report_read(r.origin, first, told);
 }
 
 /// The newest read held of those younger than the queue's read in this slot; null: none.
-const void* DdrController::newest_held(unsigned behind_slot) const {
+const MemRequest* DdrController::newest_held(unsigned behind_slot) const {
   const auto newest = std::find_if(held_.rbegin(), held_.rend(),
                                    [&](const Held& h) { return h.behind >> behind_slot & 1u; });
-  return newest == held_.rend() ? nullptr : newest->request.cookie;
+  return newest == held_.rend() ? nullptr : newest->request.origin;
 }
 
 }  // namespace fovea::mem
