@@ -30,7 +30,7 @@ tlm::tlm_sync_enum TlmSlavePort::nb_transport_fw(MemRequest& r, MemPhase& phase,
 
 void TlmSlavePort::serve() {
   for (;;) {
-    if (arrivals_.empty()) wait(arrived_.event());
+    while (arrivals_.empty()) wait(arrived_.event());
     const auto [request, at] = arrivals_.front();
     if (const Picoseconds now = kernel_time(); at > now) wait(ps_time(at - now));
     tlm::tlm_generic_payload payload;

@@ -104,7 +104,8 @@ inline Taken MemorySystem::forward(MemRequest& r, Picoseconds arrival) {
 
 inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
   const std::uint32_t offset = r.address - map_.ddr_base;
-  if (!open_ || std::uint64_t{offset} + r.bytes > store_.size() || controller_.input_blocked()) [[unlikely]]
+  const bool outside = std::uint64_t{offset} + r.bytes > store_.size();
+  if (!open_ || outside || controller_.input_blocked()) [[unlikely]]
     return arrive_slowly(r, at);
   return controller_.submit_inside(r, offset, at) ? Taken::kYes : Taken::kWaits;
 }
@@ -116,7 +117,7 @@ inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
   FOVEA_CHECK(admission_ || std::uint64_t{offset} + r.bytes <= store_.size(),
               "request outside the SDRAM");
   FOVEA_CHECK(controller_.running(), "request to a DDR controller without a clock");
-  FOVEA_CHECK(!controller_.input_blocked(), "a request while another one waits at the controller's input");
+  FOVEA_CHECK(!controller_.input_blocked(), "a request while the controller's input is taken");
   const auto inside = offset & static_cast<std::uint32_t>(store_.size() - 1);
   return controller_.submit_inside(r, inside, at) ? Taken::kYes : Taken::kWaits;
 }
