@@ -18,7 +18,7 @@ namespace fovea::bus {
 
 /// Runs on one SC_THREAD with a local time at or after the kernel's. It works ahead strictly before
 /// the horizon H, the next event pending in the kernel; while it works it holds the memory path and
-/// plays the path's decisions itself. Whatever lies at or beyond H waits for the kernel.
+/// takes the path's events itself. Whatever lies at or beyond H waits for the kernel.
 ///
 /// A class template for its own work beside the path, called at every step: Self may hide
 /// background_next(), background_act() and completed().
@@ -57,10 +57,10 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   void submit(Transaction& tx, Picoseconds at) {
     tx.done = tx.error = false;
     tx.issued = at;
-    // The usual case of what follows in submit_any(): nothing under way, and nobody acts before `at`.
-    if (running_ && !held_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from &&
+    // The usual case of submit_any(): nothing else is under way, and no kernel event comes before `at`.
+    if (running_ && !deferred_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].deferred_from &&
         at >= now_ && at < next_event()) [[likely]]
-      held_ = &tx;
+      deferred_ = &tx;
     else
       submit_any(tx, at);
   }
@@ -72,9 +72,9 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     }
     for (;;) {
       if (tx.done) return tx.last <= until;
-      if (held_ == &tx) {
+      if (deferred_ == &tx) {
         if (until < tx.issued + ports_[tx.port].least_latency) return false;
-        play_held(until);
+        try_deferred(until);
         continue;
       }
       const Picoseconds t = next_decision();
@@ -88,9 +88,9 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
       memory_->advance(std::min(until, h));
     }
   }
-  /// Returns when tx is done; plays background work in time order meanwhile.
+  /// Returns when tx is done; does background work in time order meanwhile.
   void finish(Transaction& tx) {
-    if (held_ == &tx) play_held(self().background_next());
+    if (deferred_ == &tx) try_deferred(self().background_next());
     if (!tx.done) finish_queued(tx);
   }
   /// Returns when `timer` fires in the kernel.
@@ -103,9 +103,9 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   [[gnu::noinline]] void sleep_until(Picoseconds until) {
     const Picoseconds now = now_;
     if (until <= now) return;
-    put_out();
+    submit_deferred();
     if (!strict_) {
-      // No process switch if all that lies before `until` is in the path and can be played here.
+      // No process switch if all that lies before `until` is in the path and can be taken here.
       for (;;) {
         const Picoseconds t = next_decision();
         const Picoseconds b = self().background_next();
@@ -114,7 +114,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
         if (std::min(t, b) >= h) break;
         if (b <= t) {
           self().background_act();
-          put_out();  // the decisions that follow are behind what it asked for
+          submit_deferred();  // the decisions that follow are behind what it asked for
         } else {
           memory_->advance(std::min({until, b, h}));
         }
@@ -139,7 +139,8 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   void background_moved() {
     if (!running_) arm_background();
   }
-  /// Thread body brackets: the path is the agent's between enter() and leave().
+  /// Called at the start and end of each activation of the thread. In between this initiator advances the
+  /// memory system instead of the kernel.
   void enter() {
     running_ = true;
     if (!path_) {
@@ -150,10 +151,10 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
       sdram_base_ = memory_->crossbar().observed() ? kNever : memory_->map().ddr_base;
     }
     if (!strict_) {
-      held_base_ = sdram_base_;
+      deferred_base_ = sdram_base_;
       for (Port& p : ports_) {
         p.least_latency = memory_->crossbar().least_latency(p.master);
-        if (p.known) p.held_from = held_base_;
+        if (p.known) p.deferred_from = deferred_base_;
       }
     }
     now_ = kernel_();
@@ -162,7 +163,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     horizon_.forget();
   }
   void leave() {
-    put_out();
+    submit_deferred();
     running_ = false;
     arm_background();
     path_->release();
@@ -177,7 +178,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
  private:
   struct Port {
     bool known = false;  // `master`, once a request has gone through it
-    std::uint64_t held_from = kNever;  // requests to addresses from here on may be held back
+    std::uint64_t deferred_from = kNever;  // requests to addresses from here on may be deferred
     Master master = Master::kArmD;
     Picoseconds least_latency = 0;
   };
@@ -188,16 +189,16 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     // Ahead of the kernel only strictly before H; at `now` the order within the instant is harmless.
     if (at > now && (strict_ || at >= next_event())) sleep_until(at);
     FOVEA_CHECK(at >= now, "a request in the past");
-    put_out();
-    if (running_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].held_from)
-      held_ = &tx;
+    submit_deferred();
+    if (running_ && own_undecided_ == 0 && tx.address >= ports_[tx.port].deferred_from)
+      deferred_ = &tx;
     else
       put_on_port(tx);
   }
   [[gnu::noinline]] void finish_queued(Transaction& tx) {
     while (!tx.done) {
-      if (held_) {
-        play_held(self().background_next());
+      if (deferred_) {
+        try_deferred(self().background_next());
         continue;
       }
       if (!strict_) {
@@ -226,14 +227,14 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
     Port& p = ports_[tx.port];
     p.known = true;
     p.master = tx.master;
-    p.held_from = held_base_;
+    p.deferred_from = deferred_base_;
   }
-  /// A request held back goes the usual way: others may come in between.
-  void put_out() {
-    if (held_) put_on_port(*std::exchange(held_, nullptr));
+  /// The deferred request takes the ordinary route: others may come in between.
+  void submit_deferred() {
+    if (deferred_) put_on_port(*std::exchange(deferred_, nullptr));
   }
-  void play_held(Picoseconds limit) {
-    Transaction& tx = *std::exchange(held_, nullptr);
+  void try_deferred(Picoseconds limit) {
+    Transaction& tx = *std::exchange(deferred_, nullptr);
     tx.master = ports_[tx.port].master;
     ++own_undecided_;
     using Attempt = memsys::MemorySystem::Attempt;
@@ -282,12 +283,12 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   MemoryPathIf* path_ = nullptr;  // behind `path`
   memsys::MemorySystem* memory_ = nullptr;
   Transaction* waiting_ = nullptr;
-  /// The newest request, alone on its way: most often its master waits for it next and nobody comes
-  /// between, so that it need not go through the queues.
-  Transaction* held_ = nullptr;
+  /// The newest request, not yet on its port: most often its master waits for it next and no other request
+  /// comes between, so that it need not go through the queues.
+  Transaction* deferred_ = nullptr;
   std::array<Port, 8> ports_;
   std::uint64_t sdram_base_ = kNever;
-  std::uint64_t held_base_ = kNever;  // from here on requests may be held back
+  std::uint64_t deferred_base_ = kNever;  // from here on requests may be deferred
   bool running_ = false;
   unsigned own_undecided_ = 0;  // own requests to memory: they let only this agent act
   Horizon horizon_;

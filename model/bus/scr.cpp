@@ -26,7 +26,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
   SC_METHOD(inputs_changed);
   sensitive << clk;
   for (auto& p : priority) sensitive << p;
-  SC_METHOD(play);
+  SC_METHOD(advance_by_kernel);
   sensitive << due_.event();
   dont_initialize();
 }
@@ -54,7 +54,7 @@ void Scr::arm() { due_.at(memory_.next_event()); }
 
 /// The kernel's turn: takes the events that are due, and in default mode those before the next event of
 /// anybody else.
-void Scr::play() {
+void Scr::advance_by_kernel() {
   if (held_) return;
   const Picoseconds now = now_();
   memory_.set_present(now);

@@ -74,7 +74,7 @@ class Scr final : public sc_core::sc_module, public MemoryPathIf, private memsys
   void completed(MemRequest& request) override;
   Taken deliver(MemRequest& request, Slave slave, Picoseconds arrival) override;
   void rescheduled() override;
-  void play();
+  void advance_by_kernel();
   void arm();
   void inputs_changed();
 

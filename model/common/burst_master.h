@@ -47,15 +47,15 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     dont_initialize();
   }
 
-  /// From when on a place for a burst is free; kNever while that is not known. A place is free
-  /// again at the last beat of its burst.
+  /// Earliest time at which a slot is free; kNever if no outstanding burst has a known end. A slot is
+  /// freed at the last beat of its burst.
   Picoseconds free_from() const {
     Picoseconds t = kNever;
     for (const Slot& s : slots_) t = std::min(t, s.free);
     return t;
   }
   bool can_issue() const { return free_from() <= kernel_time(); }
-  /// Places not free strictly before t, as far as is known.
+  /// Slots not free strictly before t, as far as is known.
   unsigned taken_at(Picoseconds t) const {
     unsigned n = 0;
     for (const Slot& s : slots_) n += s.free >= t;
@@ -64,15 +64,15 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   /// Bursts not yet reported; with kWhenDecided those undecided.
   unsigned outstanding() const { return busy_; }
 
-  /// `at`: when the burst is put on the port, now or later; a place must be free from then on. The
-  /// port keeps the order of the calls. `passive`: see MemRequest.
+  /// `at`: when the burst is put on the port, now or later; a slot must be free from then on. The
+  /// port keeps the order of the calls. `no_side_effects`: see MemRequest.
   void write(std::uint32_t address, std::span<const std::uint8_t> data, std::uint64_t tag,
-             Picoseconds at, bool passive) {
-    issue(address, static_cast<unsigned>(data.size()), data.data(), tag, at, passive);
+             Picoseconds at, bool no_side_effects) {
+    issue(address, static_cast<unsigned>(data.size()), data.data(), tag, at, no_side_effects);
   }
   void read(std::uint32_t address, unsigned bytes, std::uint64_t tag, Picoseconds at,
-            bool passive) {
-    issue(address, bytes, nullptr, tag, at, passive);
+            bool no_side_effects) {
+    issue(address, bytes, nullptr, tag, at, no_side_effects);
   }
   void write(std::uint32_t address, std::span<const std::uint8_t> data, std::uint64_t tag = 0) {
     write(address, data, tag, kernel_time(), false);
@@ -91,7 +91,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   };
 
   void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag,
-             Picoseconds at, bool passive) {
+             Picoseconds at, bool no_side_effects) {
     FOVEA_CHECK(bytes > 0 && address % kMaxBurstBytes + bytes <= kMaxBurstBytes, "bad burst");
     Slot* s = nullptr;
     for (Slot& c : slots_)
@@ -108,7 +108,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     s->bytes = static_cast<std::uint8_t>(bytes);
     s->write = data != nullptr;
     s->master = id_;
-    s->passive = passive;
+    s->no_side_effects = no_side_effects;
     s->error = false;
     s->issued = at;
     MemPhase phase = MemPhase::kRequest;

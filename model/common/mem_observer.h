@@ -1,4 +1,4 @@
-// Who looks on while memory requests pass the crossbar.
+// Observer interface of the crossbar.
 #pragma once
 #include "model/common/mem_request.h"
 

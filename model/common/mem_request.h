@@ -20,22 +20,22 @@ struct MemRequest {
   std::uint32_t critical = 0;      ///< byte offset in the burst that must come first (WRAP8)
   std::uint8_t* data = nullptr;    ///< `bytes` bytes, in address order
   void* owner = nullptr;           ///< the master's own record of the transaction
-  RequestWaits* parts = nullptr;   ///< gets what an SDRAM request waits for; null: nobody asks
+  RequestWaits* parts = nullptr;   ///< receives the attribution of an SDRAM request; null: not wanted
   Picoseconds issued = 0;          ///< when the master puts it on its port
   Master master = Master::kArmD;
   bool write = false;
   bool locked = false;             ///< nobody else reaches the slave before this master's next request
   std::uint8_t bytes = 0;          ///< 1 .. kMaxBurstBytes
-  /// The outcome makes nobody but the memory path act, nor do the requests that follow from it:
-  /// whoever runs ahead need not stop where it is decided. An interrupt at the end of a chain of
-  /// requests makes all of them not passive.
-  bool passive = false;
+  /// Completing this request wakes no process and raises no interrupt, directly or through requests that
+  /// follow from it. Initiators that run ahead need not stop at its completion. An interrupt at the end
+  /// of a chain of requests is a side effect of all of them.
+  bool no_side_effects = false;
 
   // Set by the memory path.
   std::uint8_t priority = 0;       ///< 0 highest ... 7 lowest; as of the grant
   std::uint8_t slave = 0;          ///< bus::Slave
-  bool error = false;              ///< outcome: nobody answered
-  Picoseconds taken = 0;           ///< in the slave's hands
+  bool error = false;              ///< outcome: no slave answered (bus error)
+  Picoseconds accepted_at = 0;     ///< when the slave accepted it
   Picoseconds first = 0;           ///< outcome: first beat at the master's port
   Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
 };
@@ -43,8 +43,8 @@ struct MemRequest {
 /// What a slave does with a request.
 enum class Taken : std::uint8_t {
   kYes,
-  kWaits,    ///< it stays at the slave's door
-  kRefused,  ///< nobody answers: a bus error
+  kWaits,    ///< it waits in the slave's input register
+  kRefused,  ///< no slave answers: a bus error
 };
 
 }  // namespace fovea

@@ -10,7 +10,7 @@ namespace fovea {
 
 enum class MemPhase : std::uint8_t {
   kRequest,   ///< forward: the request is on the port at MemRequest::issued
-  kAccepted,  ///< backward, between crossbar and slave: taken from the door
+  kAccepted,  ///< backward, from a slave: accepted from its input register
   kResponse,  ///< backward: the outcome is decided; its times may lie ahead
   kRefused,   ///< backward, from a slave: the same, and the outcome is that nobody answers
 };

@@ -14,7 +14,7 @@ namespace fovea {
 /// own number is the wait behind its own earlier requests.
 enum class Culprit : std::uint8_t {
   kBridge = kMasterCount,  ///< between port and crossbar, both ways, with the edges waited for
-  kService,                ///< its own way through crossbar, controller and return lane
+  kService,                ///< its own way through crossbar, controller and return channel
   kRowMiss,                ///< its bank was closed: ACT to column command
   kRowConflict,            ///< another row was open: PRE to column command
   kTurnaround,             ///< the data bus turns from writes to reads or back

@@ -53,7 +53,7 @@ DdrConfig decode(const DdrRegs& regs) {
   return c;
 }
 
-std::vector<std::string> nonsense(const DdrRegs& regs, const DdrParams& params) {
+std::vector<std::string> invalid_register_values(const DdrRegs& regs, const DdrParams& params) {
   std::vector<std::string> out;
   const auto say = [&](bool wrong, const std::string& line) {
     if (wrong) out.push_back(line);

@@ -14,6 +14,6 @@ DdrConfig decode(const DdrRegs& regs);
 
 /// One line for each value that makes no sense by itself or with this part: register and field, the
 /// value, what the model does. Timing against the data sheet is DdrCheck's.
-std::vector<std::string> nonsense(const DdrRegs& regs, const DdrParams& params);
+std::vector<std::string> invalid_register_values(const DdrRegs& regs, const DdrParams& params);
 
 }  // namespace fovea::mem

@@ -114,7 +114,7 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
   if (!examined_) {
     examined_ = true;
     update_open();
-    for (const std::string& line : nonsense(regs, params_)) Diagnostics::instance().guest(line);
+    for (const std::string& line : invalid_register_values(regs, params_)) Diagnostics::instance().guest(line);
     check_.remark(programmed(), ddr_clk.read());
   }
   if (end > store().size())

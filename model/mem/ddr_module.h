@@ -11,13 +11,13 @@
 
 namespace fovea::mem {
 
-/// What it does: DDR2 timing and scheduling as model/mem/core. Programmed by SDBCR, SDBCR2, SDTIMR,
-/// SDTIMR2, SDRCR, PBBPR, DDRPHYCR; data accesses before SDBCR was unlocked and locked again, or
-/// while LPSC 13 or the clock is off, end in a bus error (assumed: the chip's reaction is not
-/// documented). An address beyond the part's size, inside the chip's window of 256 MiB, is taken modulo
-/// that size: the row address bits above the part's are not connected. With the first access after a change of registers or clock, when all of it is
-/// written, what was programmed is looked at: nonsense and times below the part's data sheet are
-/// remarks about the guest.
+/// Software programs the controller by SDBCR, SDBCR2, SDTIMR, SDTIMR2, SDRCR, PBBPR and DDRPHYCR. Data
+/// accesses before SDBCR was unlocked and locked again, or while LPSC 13 or the clock is off, end in a
+/// bus error (assumed: the chip's reaction is not documented). An address beyond the part's size, inside
+/// the chip's window of 256 MiB, is taken modulo that size: the row address bits above the part's are not
+/// connected. With the first access after a change of registers or clock, what was programmed is
+/// examined: values that the manual does not allow, and times below the part's data sheet, are warnings
+/// about the guest.
 class DdrModule final : public BusTarget, private memsys::SdramAdmission {
  public:
   ClockIn ddr_clk{"ddr_clk"};

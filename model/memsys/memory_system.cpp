@@ -17,7 +17,7 @@ MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrPa
       controller_(ddr, store_) {
   if (route != Route::kBypass) return;
   bypass_.emplace(crossbar.timeline_interval());
-  controller_.leave_out_lane();
+  controller_.leave_out_return_channel();
 }
 
 Slave MemorySystem::slave_of(const MemRequest& r) const {
@@ -29,12 +29,12 @@ Slave MemorySystem::slave_of(const MemRequest& r) const {
 void MemorySystem::submit(MemRequest& r) {
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
   if (bypass_) [[unlikely]] {
-    undecided_ += !r.passive;
+    undecided_ += !r.no_side_effects;
     return send_directly(r, r.issued);
   }
   const Slave slave = slave_of(r);
-  if (slave == Slave::kInternalRam) r.passive = false;  // the core sees what it does
-  undecided_ += !r.passive;
+  if (slave == Slave::kInternalRam) r.no_side_effects = false;  // the core sees what it does
+  undecided_ += !r.no_side_effects;
   crossbar_.submit(r, slave);
 }
 
@@ -72,7 +72,7 @@ MemorySystem::Attempt MemorySystem::try_complete(MemRequest& r, Picoseconds limi
 /// path is given up.
 template <bool kWrite>
 [[gnu::noinline]] MemorySystem::Attempt MemorySystem::try_grant(MemRequest& r, Picoseconds limit) {
-  const bus::Crossbar::AloneGrant grant = crossbar_.grant_if_alone(r);
+  const bus::Crossbar::UncontendedGrant grant = crossbar_.uncontended_grant(r);
   if (grant.at >= limit) return Attempt::kNotSubmitted;
   const std::uint64_t calls = host_calls_;
   while (controller_.next_decision() <= grant.at) {
@@ -80,11 +80,11 @@ template <bool kWrite>
     if (host_calls_ != calls) return Attempt::kNotSubmitted;
   }
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
-  undecided_ += !r.passive;
+  undecided_ += !r.no_side_effects;
   event_time_ = grant.at;
   Link link{*this};
-  if (crossbar_.grant_alone<kWrite>(link, r, grant)) {
-    undecided_ -= !r.passive;
+  if (crossbar_.grant_uncontended<kWrite>(link, r, grant)) {
+    undecided_ -= !r.no_side_effects;
     count_decided();
     return Attempt::kCompleted;
   }
@@ -145,7 +145,7 @@ Taken MemorySystem::refuse_in_order(MemRequest& r, Picoseconds at) {
 
 void MemorySystem::respond(MemRequest& r) {
   ++host_calls_;
-  undecided_ -= !r.passive;
+  undecided_ -= !r.no_side_effects;
   if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) count_decided();
   host_.completed(r);
 }
@@ -206,7 +206,7 @@ unsigned MemorySystem::debug_access(const MemRequest& r) {
 
 void MemorySystem::respond_directly(MemRequest& r, Picoseconds first, Picoseconds last) {
   ++host_calls_;
-  undecided_ -= !r.passive;
+  undecided_ -= !r.no_side_effects;
   count_decided();
   r.first = first;
   r.last = last;

@@ -90,7 +90,7 @@ class MemorySystem final {
   /// A debugger's access to the SDRAM, without time. @return bytes moved
   unsigned debug_access(const MemRequest& r);
 
-  /// Requests without an outcome yet whose outcome may make others act (MemRequest::passive).
+  /// Requests without an outcome yet whose outcome may make others act (not MemRequest::no_side_effects).
   unsigned undecided() const { return undecided_; }
   /// Time of the event being taken, within a call of the host.
   Picoseconds event_time() const { return event_time_; }

@@ -108,7 +108,7 @@ std::string GdbMasters::where(Picoseconds now) const {
         e.open == e.row                     ? " (open)"
         : e.open == mem::DdrDevice::kClosed ? " (bank closed)"
                                             : fmt::format(" (row 0x{:x} is open)", e.open),
-        e.door ? ", at the door" : e.held ? ", served, held for older reads" : "");
+        e.waiting ? ", in the input register" : e.out_of_order ? ", served, waits for older reads" : "");
   }
   if (ddr.next_at != kNever)
     out += fmt::format("sdram: next command {} for {} at {} ns\n", name(ddr.cmd),
@@ -132,9 +132,9 @@ std::string GdbMasters::place(const Request& r, const bus::Crossbar::View& bus,
                        r.request->slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam)
                            ? "at internal RAM"
                            : "on the configuration bus",
-                       ns_text(r.request->taken));
+                       ns_text(r.request->accepted_at));
   for (std::size_t i = 0; i < ddr.items.size(); ++i)
-    if (ddr.items[i].request == r.request && (!r.write || ddr.items[i].door))
+    if (ddr.items[i].request == r.request && (!r.write || ddr.items[i].waiting))
       return in_controller(ddr, i, now);
   return "between crossbar and SDRAM controller";
 }
@@ -152,7 +152,7 @@ std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const
   const std::string place = fmt::format("in the crossbar, for {}: waits for ", what);
   const bool others = slave.granted && *slave.granted != r.master;
   if (slave.blocked)
-    return place + fmt::format("{}, whose request is at the slave's door",
+    return place + fmt::format("{}, whose request is in the slave's input register",
                                slave.granted ? name(*slave.granted) : "another");
   if (slave.locked_by && *slave.locked_by != r.master)
     return place + fmt::format("{}, which has locked it", name(*slave.locked_by));
@@ -170,14 +170,14 @@ std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const
 std::string GdbMasters::in_controller(const mem::DdrController::View& ddr, std::size_t i,
                                       Picoseconds now) const {
   const auto& e = ddr.items[i];
-  if (e.held) return "in the SDRAM controller: its data wait for those of its master's older reads";
+  if (e.out_of_order) return "in the SDRAM controller: its data wait for those of its master's older reads";
   if (ddr.next_at == kNever) return "in the SDRAM controller, which stands";
   const bool own = ddr.next == i, refresh = ddr.next >= ddr.items.size();
   const std::string served =
       refresh ? std::string("a refresh")
               : fmt::format("{}, which is served", name(ddr.items[ddr.next].master));
-  if (e.door)
-    return fmt::format("at the SDRAM controller's door: waits for room for {} behind {}",
+  if (e.waiting)
+    return fmt::format("in the SDRAM controller's input register: waits for room for {} behind {}",
                        ddr.data_full ? "its data" : "an entry", served);
   const std::string place = "in the SDRAM queue: ";
   if (ddr.asleep != mem::LowPower::kOff) return place + "waits for the memory to wake up";

@@ -146,7 +146,7 @@ TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {
 TEST(CrossbarTest, BlockedSlaveStopsItsRequestsAndTheirFollowersOnly) {
   XbarBench b;
   b.ddr_accepts = false;
-  b.submit(kA, 5, true, 8);                   // taken to the door of the DDR: 8, there at 9
+  b.submit(kA, 5, true, 8);                   // granted to the DDR: 8, there at 9
   b.submit(kB, 5, false, 8);                  // waits for the DDR
   b.submit(kB, 5, false, 4, Slave::kConfig);  // waits behind its master's own head
   b.submit(kC, 5, false, 4, Slave::kConfig);  // goes

@@ -82,15 +82,15 @@ class Side {
     r.issued = ask.at;
     if (ask.attributed) r.parts = &r.waited;
     r.waited.clear();
-    const Crossbar::AloneGrant g =
-        ask.slave == Slave::kDdr ? xbar.grant_if_alone(r) : Crossbar::AloneGrant{};
+    const Crossbar::UncontendedGrant g =
+        ask.slave == Slave::kDdr ? xbar.uncontended_grant(r) : Crossbar::UncontendedGrant{};
     if (g.at == kNever) {
       xbar.submit(r, ask.slave);
       return false;
     }
     if (direct_) {
       const bool over =
-          ask.write ? xbar.grant_alone<true>(*this, r, g) : xbar.grant_alone<false>(*this, r, g);
+          ask.write ? xbar.grant_uncontended<true>(*this, r, g) : xbar.grant_uncontended<false>(*this, r, g);
       if (over) respond(r);
     } else {
       xbar.submit(r, ask.slave);
@@ -174,7 +174,7 @@ void expect_same_figures(const Side& a, const Side& b) {
     EXPECT_EQ(ra.error, rb.error) << i;
     EXPECT_EQ(ra.priority, rb.priority) << i;
     EXPECT_EQ(ra.slave, rb.slave) << i;
-    EXPECT_EQ(ra.taken, rb.taken) << i;
+    EXPECT_EQ(ra.accepted_at, rb.accepted_at) << i;
     for (std::size_t c = 0; c < kCulprits; ++c)
       EXPECT_EQ(ra.waited.ps(static_cast<Culprit>(c)), rb.waited.ps(static_cast<Culprit>(c)))
           << i << ' ' << culprit_name(static_cast<Culprit>(c));

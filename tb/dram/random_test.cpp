@@ -97,7 +97,7 @@ Outcome run(std::uint64_t seed, unsigned requests, const char* scheduler = "ti")
     while (b.door_taken()) {  // the one in front waits: the next may come when it is in
       const Picoseconds t = b.ddr.next_decision();
       if (t == kNever) {
-        ADD_FAILURE() << "seed " << seed << ": a request at the door is never taken";
+        ADD_FAILURE() << "seed " << seed << ": a request in the input register is never accepted";
         return {};
       }
       b.step();
@@ -130,7 +130,7 @@ Outcome run(std::uint64_t seed, unsigned requests, const char* scheduler = "ti")
     EXPECT_EQ(*b.store().at(where.second), value) << "seed " << seed << " final memory";
   EXPECT_EQ(b.accept_order.size(), all.size());
   for (std::size_t i = 0; i < b.accept_order.size(); ++i) {
-    EXPECT_EQ(b.accept_order[i], all[i].get()) << "the door keeps the order";
+    EXPECT_EQ(b.accept_order[i], all[i].get()) << "the input register keeps the order";
   }
   EXPECT_EQ(b.ddr.stats.read_bytes.count(), bytes_read);
   EXPECT_EQ(b.ddr.stats.write_bytes.count(), bytes_written);

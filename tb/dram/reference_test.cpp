@@ -109,7 +109,7 @@ class Production {
   /// A read has its data, but no outcome yet.
   bool holds() const {
     const auto items = ddr_.view().items;
-    return std::any_of(items.begin(), items.end(), [](const auto& i) { return i.held; });
+    return std::any_of(items.begin(), items.end(), [](const auto& i) { return i.out_of_order; });
   }
   std::uint64_t overdue_rows() const { return ddr_.stats.overdue_rows.count(); }
   std::vector<Event> commands, accepted, reads;
@@ -291,7 +291,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, const Plant& plan
     if (c.commands.size() > 20u * requests)
       throw std::runtime_error("seed " + std::to_string(seed) + ": nobody is served");
   };
-  std::size_t door = 0;
+  std::size_t waiting = 0;
   bool waits = false;
   for (unsigned i = 0; i < requests; ++i) {
     ReferenceRequest r;
@@ -314,11 +314,11 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, const Plant& plan
     while (waits) {  // the next may come when the one in front is in
       const Picoseconds t = c.next();
       if (t == kNever) {
-        ADD_FAILURE() << "seed " << seed << ": a request at the door is never taken";
+        ADD_FAILURE() << "seed " << seed << ": a request in the input register is never accepted";
         return taken;
       }
       step();
-      waits = c.accepted.empty() || c.accepted.back().a != door;
+      waits = c.accepted.empty() || c.accepted.back().a != waiting;
       now = std::max(now, t);
     }
     if (sample || reconfigure || reclock) {  // an outsider: sees all up to its own time
@@ -349,7 +349,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, const Plant& plan
     const bool in = c.submit(r, now);
     taken.push_back({kTaken, i, in, now});
     waits = !in;
-    door = i;
+    waiting = i;
   }
   while (c.next() != kNever) step();
   if constexpr (requires { c.overdue_rows(); }) overdue_rows_seen += c.overdue_rows();

@@ -41,12 +41,12 @@ mem::DdrConfig decoded(const Words& w) {
   return mem::decode(regs);
 }
 /// What is said about these words with this part.
-std::vector<std::string> nonsense(const Words& w, const char* part = "mt47h64m16") {
+std::vector<std::string> invalid_register_values(const Words& w, const char* part = "mt47h64m16") {
   mem::DdrRegs regs;
   write(regs, w);
   mem::DdrParams params;
   params.part.set(part);
-  return mem::nonsense(regs, params);
+  return mem::invalid_register_values(regs, params);
 }
 
 TEST(DdrRegistersTest, ShippedWordsMeanTheirClocks) {
@@ -76,7 +76,7 @@ TEST(DdrRegistersTest, ShippedWordsMeanTheirClocks) {
   EXPECT_EQ(c.low_power, mem::LowPower::kOff);
   EXPECT_EQ(c.row_intervals, 9u);
   EXPECT_EQ(c.refreshed_log2, 0u);
-  EXPECT_THAT(nonsense({}), IsEmpty());
+  EXPECT_THAT(invalid_register_values({}), IsEmpty());
 }
 
 /// The words with a field of a register set to `value`.
@@ -93,10 +93,10 @@ TEST(DdrRegistersTest, ReservedValuesAreNamedAndTakenAsOthers) {
     const bool reserved = cl < 2 || cl > 5;
     EXPECT_EQ(decoded(w).timing.CL, reserved ? 5 : cl);
     if (reserved) {
-      EXPECT_THAT(nonsense(w), ElementsAre("SDBCR CL = " + std::to_string(cl) +
+      EXPECT_THAT(invalid_register_values(w), ElementsAre("SDBCR CL = " + std::to_string(cl) +
                                            " is reserved; taken as 5"));
     } else {
-      EXPECT_THAT(nonsense(w), IsEmpty()) << cl;
+      EXPECT_THAT(invalid_register_values(w), IsEmpty()) << cl;
     }
   }
   for (unsigned n = 0; n < 8; ++n) {
@@ -105,31 +105,31 @@ TEST(DdrRegistersTest, ReservedValuesAreNamedAndTakenAsOthers) {
     EXPECT_EQ(decoded(page).page_log2, n > 3 ? 12u : 9 + n);
     const std::string value = std::to_string(n);
     if (n > 3) {
-      EXPECT_THAT(nonsense(banks),
+      EXPECT_THAT(invalid_register_values(banks),
                   ElementsAre("SDBCR IBANK = " + value + " is reserved; taken as 3, 8 banks"));
-      EXPECT_THAT(nonsense(page),
+      EXPECT_THAT(invalid_register_values(page),
                   Contains("SDBCR PAGESIZE = " + value + " is reserved; taken as 3, 2048 words"));
     }
   }
 }
 
 TEST(DdrRegistersTest, NonsenseOfSdbcrIsNamed) {
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 14, 1, 0)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 14, 1, 0)),
               ElementsAre("SDBCR NM = 0: a 32-bit bus, but the chip has 16 bits; taken as 16"));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 20, 1, 0)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 20, 1, 0)),
               ElementsAre(HasSubstr("SDBCR DDR2EN = 0: not the type of ddr.part = mt47h64m16")));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 17, 1, 0)), ElementsAre(HasSubstr("SDBCR DDREN = 0")));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 25, 1, 1)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 17, 1, 0)), ElementsAre(HasSubstr("SDBCR DDREN = 0")));
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 25, 1, 1)),
               ElementsAre("SDBCR MSDRAMEN = 1, but ddr.part = mt47h64m16 is DDR2; timed as "
                           "programmed"));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 4, 3, 2), "mt46h64m16lf"),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 4, 3, 2), "mt46h64m16lf"),
               ElementsAre("SDBCR MSDRAMEN = 0, but ddr.part = mt46h64m16lf is mobile DDR; timed as "
                           "programmed"));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 4, 3, 2)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 4, 3, 2)),
               ElementsAre(HasSubstr("SDBCR IBANK: 4 banks, but ddr.part = mt47h64m16 has 8")));
-  EXPECT_THAT(nonsense({}, "mt47h32m16"), ElementsAre(HasSubstr("8 banks, but ddr.part = mt47h32m16 "
+  EXPECT_THAT(invalid_register_values({}, "mt47h32m16"), ElementsAre(HasSubstr("8 banks, but ddr.part = mt47h32m16 "
                                                                 "has 4")));
-  EXPECT_THAT(nonsense(with(&Words::sdbcr, 0, 3, 1)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdbcr, 0, 3, 1)),
               ElementsAre(HasSubstr("SDBCR PAGESIZE: rows of 512 words, but ddr.part = mt47h64m16")));
 }
 
@@ -138,13 +138,13 @@ TEST(DdrRegistersTest, RowsOfTheOtherAddressMapComeFromThePart) {
   for (unsigned size = 0; size < 8; ++size) {
     Words w = with(&Words::sdbcr, 26, 1, 1);
     w.sdbcr2 = size;
-    EXPECT_EQ(nonsense(w).empty(), size == 4) << size;
-    EXPECT_EQ(nonsense(w, "mt47h128m16").empty(), size == 5) << size;
+    EXPECT_EQ(invalid_register_values(w).empty(), size == 4) << size;
+    EXPECT_EQ(invalid_register_values(w, "mt47h128m16").empty(), size == 5) << size;
     w.sdbcr = Words{}.sdbcr;
-    EXPECT_THAT(nonsense(w), IsEmpty()) << "not looked at without IBANK_POS";
+    EXPECT_THAT(invalid_register_values(w), IsEmpty()) << "not looked at without IBANK_POS";
   }
   Words w = with(&Words::sdbcr, 26, 1, 1);
-  EXPECT_THAT(nonsense(w), ElementsAre("SDBCR2 ROWSIZE = 0 with IBANK_POS, but ddr.part = "
+  EXPECT_THAT(invalid_register_values(w), ElementsAre("SDBCR2 ROWSIZE = 0 with IBANK_POS, but ddr.part = "
                                        "mt47h64m16 has 13 row address bits; taken as 4"));
 }
 
@@ -153,33 +153,33 @@ TEST(DdrRegistersTest, PartialArrayOfMobilePartsOnly) {
   Words mobile = with(&Words::sdbcr, 25, 1, 1);
   mobile = with(&Words::sdbcr, 4, 3, 2, mobile);
   mobile = with(&Words::sdbcr, 20, 1, 0, mobile);
-  EXPECT_THAT(nonsense(mobile, "mt46h64m16lf"), IsEmpty());
+  EXPECT_THAT(invalid_register_values(mobile, "mt46h64m16lf"), IsEmpty());
   for (unsigned pasr = 0; pasr < 8; ++pasr) {
     mobile.sdbcr2 = pasr << 16;
     const bool reserved = pasr == 3 || pasr == 4 || pasr == 7;
     EXPECT_EQ(decoded(mobile).refreshed_log2, kKept[pasr]) << pasr;
-    EXPECT_EQ(nonsense(mobile, "mt46h64m16lf").size(), reserved ? 1u : 0u) << pasr;
+    EXPECT_EQ(invalid_register_values(mobile, "mt46h64m16lf").size(), reserved ? 1u : 0u) << pasr;
     Words w;
     w.sdbcr2 = pasr << 16;
     EXPECT_EQ(decoded(w).refreshed_log2, 0u);
     if (pasr) {
-      EXPECT_THAT(nonsense(w), Contains(HasSubstr("without MSDRAMEN; all banks are refreshed")));
+      EXPECT_THAT(invalid_register_values(w), Contains(HasSubstr("without MSDRAMEN; all banks are refreshed")));
     }
   }
 }
 
 TEST(DdrRegistersTest, TimesThatContradictEachOtherAreNamed) {
   const auto ras = [](unsigned n) { return with(&Words::sdtimr, 11, 5, n); };
-  EXPECT_THAT(nonsense(ras(4)), IsEmpty()) << "T_RCD is 4";
-  EXPECT_THAT(nonsense(ras(3)), ElementsAre(HasSubstr("SDTIMR T_RAS below T_RCD")));
-  EXPECT_THAT(nonsense(ras(18)), IsEmpty()) << "T_RC is 19";
-  EXPECT_THAT(nonsense(ras(19)), ElementsAre(HasSubstr("SDTIMR T_RC not above T_RAS")));
+  EXPECT_THAT(invalid_register_values(ras(4)), IsEmpty()) << "T_RCD is 4";
+  EXPECT_THAT(invalid_register_values(ras(3)), ElementsAre(HasSubstr("SDTIMR T_RAS below T_RCD")));
+  EXPECT_THAT(invalid_register_values(ras(18)), IsEmpty()) << "T_RC is 19";
+  EXPECT_THAT(invalid_register_values(ras(19)), ElementsAre(HasSubstr("SDTIMR T_RC not above T_RAS")));
   const auto rfc = [](unsigned n) { return with(&Words::sdtimr, 25, 7, n); };
-  EXPECT_THAT(nonsense(rfc(5)), IsEmpty()) << "T_RP is 4";
-  EXPECT_THAT(nonsense(rfc(4)), ElementsAre(HasSubstr("SDTIMR T_RFC not above T_RP")));
+  EXPECT_THAT(invalid_register_values(rfc(5)), IsEmpty()) << "T_RP is 4";
+  EXPECT_THAT(invalid_register_values(rfc(4)), ElementsAre(HasSubstr("SDTIMR T_RFC not above T_RP")));
   Words sleep = with(&Words::sdrcr, 31, 1, 1);
-  EXPECT_THAT(nonsense(with(&Words::sdtimr2, 8, 8, 69, sleep)), IsEmpty()) << "T_XSNR is 69";
-  EXPECT_THAT(nonsense(with(&Words::sdtimr2, 8, 8, 68, sleep)),
+  EXPECT_THAT(invalid_register_values(with(&Words::sdtimr2, 8, 8, 69, sleep)), IsEmpty()) << "T_XSNR is 69";
+  EXPECT_THAT(invalid_register_values(with(&Words::sdtimr2, 8, 8, 68, sleep)),
               ElementsAre(HasSubstr("SDTIMR2 T_XSRD below T_XSNR")));
 }
 
@@ -187,15 +187,15 @@ TEST(DdrRegistersTest, TimesThatContradictEachOtherAreNamed) {
 TEST(DdrRegistersTest, RefreshIntervalLeavesTimeForRequests) {
   const auto rr = [](unsigned n) { return with(&Words::sdrcr, 0, 16, n); };
   EXPECT_EQ(decoded(rr(134)).refresh_interval, 134u);
-  EXPECT_THAT(nonsense(rr(134)), IsEmpty());
+  EXPECT_THAT(invalid_register_values(rr(134)), IsEmpty());
   for (const unsigned n : {1u, 133u}) {
     EXPECT_EQ(decoded(rr(n)).refresh_interval, 134u);
-    EXPECT_THAT(nonsense(rr(n)), ElementsAre("SDRCR RR = " + std::to_string(n) +
+    EXPECT_THAT(invalid_register_values(rr(n)), ElementsAre("SDRCR RR = " + std::to_string(n) +
                                              " leaves no time between refreshes of 67 clocks; taken "
                                              "as 134"));
   }
   EXPECT_EQ(decoded(rr(0)).refresh_interval, 0u);
-  EXPECT_THAT(nonsense(rr(0)), ElementsAre(HasSubstr("SDRCR RR = 0: the SDRAM is never refreshed")));
+  EXPECT_THAT(invalid_register_values(rr(0)), ElementsAre(HasSubstr("SDRCR RR = 0: the SDRAM is never refreshed")));
   // The least interval does leave it: a stream of reads ends.
   BenchOptions o;
   o.config = decoded(rr(1));
@@ -251,16 +251,16 @@ TEST(DdrRegistersTest, ClockStopsInSelfRefreshOnly) {
   EXPECT_EQ(decoded(sdrcr(1, 1, 0)).low_power, kClockStop);
   EXPECT_EQ(decoded(sdrcr(1, 0, 1)).low_power, kPowerDown);
   EXPECT_EQ(decoded(sdrcr(1, 1, 1)).low_power, kPowerDown);
-  EXPECT_THAT(nonsense(sdrcr(0, 1, 0)), IsEmpty());
-  EXPECT_THAT(nonsense(sdrcr(1, 1, 0)), IsEmpty());
-  EXPECT_THAT(nonsense(sdrcr(1, 1, 1)),
+  EXPECT_THAT(invalid_register_values(sdrcr(0, 1, 0)), IsEmpty());
+  EXPECT_THAT(invalid_register_values(sdrcr(1, 1, 0)), IsEmpty());
+  EXPECT_THAT(invalid_register_values(sdrcr(1, 1, 1)),
               ElementsAre(HasSubstr("SDRCR MCLKSTOPEN with SR_PD: the clock must not stop")));
 }
 
 TEST(DdrRegistersTest, ReadLatencyBelowClIsNamed) {
   const auto rl = [](unsigned n) { return with(&Words::ddrphycr, 0, 3, n); };
-  EXPECT_THAT(nonsense(rl(5)), IsEmpty());
-  EXPECT_THAT(nonsense(rl(4)), ElementsAre("DDRPHYCR RL = 4 below CL = 5: read data would be "
+  EXPECT_THAT(invalid_register_values(rl(5)), IsEmpty());
+  EXPECT_THAT(invalid_register_values(rl(4)), ElementsAre("DDRPHYCR RL = 4 below CL = 5: read data would be "
                                            "missed; taken as CL"));
 }
 
@@ -269,7 +269,7 @@ TEST(DdrRegistersTest, EveryOldCountIsAllowed) {
     Words w;
     w.pbbpr = n;
     EXPECT_EQ(decoded(w).old_count, n);
-    EXPECT_THAT(nonsense(w), IsEmpty());
+    EXPECT_THAT(invalid_register_values(w), IsEmpty());
   }
 }
 

@@ -447,7 +447,7 @@ TEST(OtherSchedulersTest, FrfcfsTellsTheReadsOfOneMasterInOrder) {
     for (const auto& i : b.ddr.view().items)
       items.push_back(std::to_string(static_cast<const Request*>(i.request->owner) - all.data()) +
                       (i.moving ? "moves"
-                       : i.held ? "held"
+                       : i.out_of_order ? "held"
                                 : ""));
     return items;
   };

@@ -266,7 +266,7 @@ TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
   struct Write {
     unsigned bytes, offset;
   };
-  // The last one waits at the door.
+  // The last one waits in the input register.
   const std::vector<Write> cases[] = {
       {{64, 0}, {16, 0}, {8, 0}, {4, 0}},         // 8 + 2 + 1 words
       {{64, 0}, {4, 0}, {1, 7}, {2, 2}, {4, 4}},  // 8 + 1 + 1 + 1: few bytes take a word as well

@@ -114,10 +114,10 @@ TEST(GdbMastersTest, AFullQueueIsSeenAtItsDoor) {
   for (unsigned k = 0; k < 30; ++k)
     b.submit(Master::kVpfe, true, k % 2 ? 0x1000 + 64 * k : 0x1000 + kRow + 64 * k, 1'000);
   b.submit(Master::kVpbe, false, 0x80'0000, 1'000);
-  b.when("at the SDRAM controller's door: waits for room for its data behind vpfe");
+  b.when("in the SDRAM controller's input register: waits for room for its data behind vpfe");
   b.when("on its port, behind the same master's earlier request");
   b.when(" more\n");
-  b.when("waits for vpfe, whose request is at the slave's door");
+  b.when("waits for vpfe, whose request is in the slave's input register");
   b.path.drain();
   EXPECT_EQ(b.masters.where(b.requests.front().last + kPsPerMs),
             "no master has a request under way\n");

@@ -123,7 +123,7 @@ std::array<std::vector<Picoseconds>, 2> ends_at_the_door(std::array<std::uint8_t
   Rng rng(6);
   for (const unsigned s : {1u, 2u}) {
     for (unsigned n = 0; n < kEach; ++n) {
-      // The second master's come when the first one's fill the FIFO and the door.
+      // The second master's come when the first one's fill the FIFO and the input register.
       const auto address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
       Record r = read_at(990'000 + s * 10'000, address);
       r.master = s == 1 ? Master::kVpfe : Master::kVpbe;
@@ -158,7 +158,7 @@ TEST(MemoryOnlyTest, TheOldestOfAMasterGoesThroughTheDoorFirst) {
 TEST(MemoryOnlyTest, TheUrgentGoThroughTheDoorFirst) {
   for (const bool write : {false, true}) {
     const auto ends = ends_at_the_door({7, 0}, write);
-    // Of the first master eight at most are inside or at the door when the second one's come. When
+    // Of the first master eight at most are inside or in the input register when the second one's come. When
     // its tenth goes in, all the urgent ones have, and but for the eight places they are done.
     EXPECT_GT(ends[0][9], ends[1][15]) << "write " << write;
     EXPECT_LT(ends[0][0], ends[1][15]);

@@ -399,7 +399,7 @@ TEST(ReplayPathTest, ChangedClocksAreThoseOfOnePll) {
   }
 }
 
-// A write that waits at the memory's door is acknowledged when it goes through, not before.
+// A write that waits in the memory's input register is acknowledged when it goes through, not before.
 TEST(ReplayPathTest, AWriteIsAcknowledgedAtTheDoor) {
   trace::TraceInfo info = board_info();
   info.streams[0] = {};  // counts picoseconds

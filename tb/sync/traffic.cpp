@@ -55,7 +55,7 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     if (stream_left_ > 0 || stream.outstanding() > 0) return;
     stream_left_ = 12;
     stream_address_ = address & ~63u;
-    stream_passive_ = (address & 64u) != 0;
+    stream_no_side_effects_ = (address & 64u) != 0;
     stream_start_ = kernel_time();
     move_stream();
   });
@@ -63,7 +63,7 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     log_.add(text("%015llu stream %s %08x %llu %016llx", static_cast<unsigned long long>(c.last),
                   c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
                   static_cast<unsigned long long>(hash(c.data.data(), c.data.size()))));
-    if (c.tag == 0 && !stream_passive_) stream_end_.at(c.last);
+    if (c.tag == 0 && !stream_no_side_effects_) stream_end_.at(c.last);
     move_stream();
   };
   SC_METHOD(raise);
@@ -92,9 +92,9 @@ void TestBlock::move_stream() {
     if (n % 3 == 0) at = std::max(at, stream_start_ + (12 - n) * 150 * kPsPerNs);
     const std::uint32_t address = stream_address_ + n * 64;
     if (n % 2)
-      stream.write(address, kData, n, at, stream_passive_);
+      stream.write(address, kData, n, at, stream_no_side_effects_);
     else
-      stream.read(address, 64, n, at, stream_passive_);
+      stream.read(address, 64, n, at, stream_no_side_effects_);
   }
 }
 

@@ -77,7 +77,7 @@ class TestBlock : public BusTarget {
   Log& log_;
   Timer due_, stream_end_;
   unsigned stream_left_ = 0;
-  bool stream_passive_ = false;
+  bool stream_no_side_effects_ = false;
   std::uint32_t stream_address_ = 0;
   Picoseconds stream_start_ = 0;
 };

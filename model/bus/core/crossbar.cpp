@@ -28,7 +28,7 @@ void Crossbar::set_clock(Frequency scr, Picoseconds at) {
   scr_.restart(scr, at);
   if (scr_.running()) {
     const std::uint64_t first = scr_.edge_at_or_after(at);  // edges before have no times any more
-    for (SlaveState& s : slaves_) s.grants_made = s.summed = s.shown = 0;
+    for (SlaveState& s : slaves_) s.grants_made = s.summed = s.visible_heads = 0;
     for (std::size_t m = 0; m < kMasterCount; ++m) {
       Port& p = ports_[m];
       for (std::uint32_t i = p.head; i != p.tail; ++i) {
@@ -122,14 +122,14 @@ bool Crossbar::goes_first(unsigned a, const SlaveState& of_a, unsigned b,
     const std::uint32_t candidates = s.candidates();
     if (candidates == 0) continue;
     std::uint64_t edge = kNotYet;
-    for (std::uint32_t set = candidates & ~s.shown; set; set &= set - 1) {
+    for (std::uint32_t set = candidates & ~s.visible_heads; set; set &= set - 1) {
       const auto m = static_cast<unsigned>(std::countr_zero(set));
       if (visible_[m] <= s.free)
-        s.shown |= set & -set;
+        s.visible_heads |= set & -set;
       else
         edge = std::min(edge, visible_[m]);
     }
-    std::uint32_t competing = candidates & s.shown;
+    std::uint32_t competing = candidates & s.visible_heads;
     if (competing) {
       edge = s.free;
     } else {
@@ -155,7 +155,7 @@ void Crossbar::set_lock(SlaveState& s, const MemRequest& r) {
   s.open_to = r.locked && !second ? 1u << index(r.master) : ~0u;
 }
 
-/// Brings `lane` and `before` up to the last grant but one. A sum just changed and read with its
+/// Brings `bus` and `before` up to the last grant but one. A sum just changed and read with its
 /// neighbours would hold up the host.
 inline void Crossbar::sum_grants(SlaveState& s) {
   const std::uint32_t last = s.grants_made - 1;
@@ -163,11 +163,11 @@ inline void Crossbar::sum_grants(SlaveState& s) {
     s.summed = last - static_cast<std::uint32_t>(SlaveState::kGrants - 1);
   for (; s.summed != last; ++s.summed) {
     const Grant& g = s.grant(s.summed);
-    LaneTimes& before = s.before[s.summed % SlaveState::kGrants];
-    for (std::size_t i = 0; i < s.lane.size(); i += 2)
-      store_pair(&before[i], load_pair(&s.lane[i]));
-    s.lane[g.master] += g.time();
-    s.lane[kMasterCount] += g.time();
+    BusTimes& before = s.before[s.summed % SlaveState::kGrants];
+    for (std::size_t i = 0; i < s.bus.size(); i += 2)
+      store_pair(&before[i], load_pair(&s.bus[i]));
+    s.bus[g.master] += g.time();
+    s.bus[kMasterCount] += g.time();
   }
 }
 
@@ -183,14 +183,14 @@ inline void Crossbar::sum_grants(SlaveState& s) {
   Waits& w = r.write ? of_master.write : of_master.read;
   std::optional<Waits> before;
   if (r.parts) before = w;
-  Picoseconds of_lane = 0;
+  Picoseconds of_bus = 0;
   if (n > kFewGrants) {
     sum_grants(s);
     const Grant &first = s.grant(made - n), &last = s.grant(made - 1);
     const Picoseconds passed = first.start < crossed ? start - first.start_at : 0;
-    const LaneTimes& lane = s.before[(made - n) % SlaveState::kGrants];
-    of_lane = s.lane[kMasterCount] - lane[kMasterCount] + last.time() - passed;
-    w.add_masters(s.lane.data(), lane.data());
+    const BusTimes& bus = s.before[(made - n) % SlaveState::kGrants];
+    of_bus = s.bus[kMasterCount] - bus[kMasterCount] + last.time() - passed;
+    w.add_masters(s.bus.data(), bus.data());
     w.add(static_cast<Culprit>(last.master), last.time());
     w.take_back(static_cast<Culprit>(first.master), passed);
   } else {
@@ -198,11 +198,12 @@ inline void Crossbar::sum_grants(SlaveState& s) {
       const Grant& g = s.grant(made - n);
       const Picoseconds t = g.end_at - (g.start < crossed ? start : g.start_at);
       w.add(static_cast<Culprit>(g.master), t);
-      of_lane += t;
+      of_bus += t;
     }
   }
-  // Where nobody had the lane the request stood behind its own master's last one.
-  w.add(culprit(r.master), waited - of_lane);
+  // Time in which no other master occupied the data bus: the request waited behind an earlier one of its
+  // own master.
+  w.add(culprit(r.master), waited - of_bus);
   if (!before) return;
   for (std::size_t m = 0; m < kMasterCount; ++m)
     if (const Picoseconds t = w.ps[m] - before->ps[m]) r.parts->add(static_cast<Culprit>(m), t);
@@ -214,7 +215,7 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   // A faster clock since the grant does not bring it there before the time that was announced.
-  s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.taken)});
+  s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.accepted_at)});
   const Picoseconds taken = scr_.edge(s.free);
   if (s.grants_made) {
     Grant& g = s.grant(s.grants_made - 1);
@@ -222,12 +223,12 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
     g.end_at = taken;
   }
   if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    charge(request, culprit(unblocked_by), taken - request.taken);
-  request.taken = taken;
+    charge(request, culprit(unblocked_by), taken - request.accepted_at);
+  request.accepted_at = taken;
   return s.free;
 }
 
-/// Data from the lane to the port. A port narrower than the lane takes longer for each word, and
+/// Data from the crossbar to the port. A port narrower than the crossbar takes longer for each word, and
 /// begins with the next burst when it is through with the one before.
 void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
                            Picoseconds attributed) {
@@ -236,9 +237,9 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
   std::uint64_t begin = seen;
   std::uint64_t end =
       last <= first ? begin : scr_.edge_at_or_after(last) + p.response_latency;
-  if (p.beat_log2 < kLaneLog2 && scr_.running()) {
+  if (p.beat_log2 < kBusLog2 && scr_.running()) {
     if (p.answered[0]) begin = std::max(begin, scr_.edge_after(p.answered[0]));
-    const unsigned last_word = std::min<unsigned>(r.bytes, 1u << kLaneLog2);
+    const unsigned last_word = std::min<unsigned>(r.bytes, 1u << kBusLog2);
     end = std::max(end + p.beats(last_word), begin + p.beats(r.bytes)) - 1;
   }
   set_outcome(r, scr_.edge(begin), scr_.edge(end));
@@ -251,7 +252,7 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
   };
   add(Culprit::kBridge, free - first);
   if (r.first != free) add(culprit(r.master), r.first - free);
-  add(Culprit::kService, first - r.taken - attributed);
+  add(Culprit::kService, first - r.accepted_at - attributed);
 }
 
 /// Everything about an outcome but the call that reports it.
@@ -261,7 +262,7 @@ void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) 
   request.error = error;
   if (ddr) {
     // Nor does a faster clock bring data before the command was there.
-    return_read(request, std::max(first, request.taken + attributed), last, attributed);
+    return_read(request, std::max(first, request.accepted_at + attributed), last, attributed);
   } else {
     const std::uint64_t latency = ports_[index(request.master)].response_latency;
     request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);

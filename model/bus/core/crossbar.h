@@ -53,7 +53,7 @@ class Crossbar {
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
 
-  /// Looks on at all requests; null: nobody. Gives back who did before.
+  /// Sets the observer of all requests; null: none. @return the one before
   MemObserver* observe(MemObserver* observer) { return std::exchange(observer_, observer); }
 
   /// Puts a request on its master's port at request.issued: not before the master's earlier ones,
@@ -68,13 +68,13 @@ class Crossbar {
   bool observed() const { return observer_; }
   /// The grant of a request to the SDRAM whose port has not been called, if it comes before the
   /// next one planned: its time is known at once. `at` is kNever if somebody else has a say.
-  struct AloneGrant {
+  struct UncontendedGrant {
     std::uint64_t crossed = 0, edge = 0;
     Picoseconds at = kNever;
   };
-  AloneGrant grant_if_alone(const MemRequest& r) const {
+  UncontendedGrant uncontended_grant(const MemRequest& r) const {
     const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
-    AloneGrant g;
+    UncontendedGrant g;
     if (waiting_ >> index(r.master) & 1u || observer_ || r.locked || s.blocked ||
         s.open_to != ~0u || !scr_.running())
       return g;
@@ -83,11 +83,11 @@ class Crossbar {
     if (next_ == kNever || g.edge < next_edge_) g.at = scr_.edge(g.edge);
     return g;
   }
-  /// submit() and step() in one, for the present grant_if_alone() of a request of which r.parts has
+  /// submit() and step() in one, for the present uncontended_grant() of a request of which r.parts has
   /// nothing yet. True: it is over, and the host not called, which a write with room is at once.
   template <bool kWrite, CrossbarHost Host>
-  bool grant_alone(Host& host, MemRequest& request, const AloneGrant& grant);
-  /// A write: from its issue to its acknowledgement, with one beat and nobody in the way.
+  bool grant_uncontended(Host& host, MemRequest& request, const UncontendedGrant& grant);
+  /// A write: from its issue to its acknowledgement, with one beat and without contention.
   Picoseconds least_latency(Master m) const {
     const Port& p = ports_[index(m)];
     const Picoseconds t = scr_.periods(p.request_latency + 1u + p.response_latency);
@@ -118,7 +118,7 @@ class Crossbar {
   /// Time between issue and arrival at the SDRAM, and from there back to the port.
   WaitTable waits;
 
-  /// What stands where at a time, for a debugger.
+  /// Snapshot of all queued requests, for debugger commands.
   struct View {
     struct Item {
       const MemRequest* request;
@@ -126,8 +126,8 @@ class Crossbar {
       bool head;            ///< of its master's queue: competes for the slave
     };
     struct SlaveView {
-      bool blocked = false;           ///< the last granted request waits at its door
-      Picoseconds free = 0;           ///< its command lane; 0: free already
+      bool blocked = false;           ///< the last granted request waits in its input register
+      Picoseconds free = 0;           ///< its data bus; 0: free already
       std::optional<Master> granted;  ///< last
       std::optional<Master> locked_by;
     };
@@ -141,7 +141,7 @@ class Crossbar {
 
  private:
   static constexpr std::uint64_t kNotYet = ~std::uint64_t{0};  // the clock stands
-  static constexpr unsigned kLaneLog2 = 3;  // bytes of a slave's lane
+  static constexpr unsigned kBusLog2 = 3;  // bytes of a slave's data bus
   static constexpr std::size_t kQueue = 64;  // as deep as any master's outstanding limit
   struct Port {
     struct Item {
@@ -156,13 +156,13 @@ class Crossbar {
     const Item& front() const { return queue[head % kQueue]; }
     std::uint8_t priority = 7;
     std::uint8_t request_latency = 0, response_latency = 0;
-    std::uint8_t beat_log2 = kLaneLog2;  // bytes that cross the port in a clock
+    std::uint8_t beat_log2 = kBusLog2;  // bytes that cross the port in a clock
     MasterStats* stats = nullptr;
     unsigned beats(unsigned bytes) const { return (bytes + (1u << beat_log2) - 1) >> beat_log2; }
     std::array<Picoseconds, 2> answered{};  // last beat of the newest outcome; reads, writes
     bool empty() const { return head == tail; }
   };
-  /// The lane was the master's from `start` on, up to the next one's start or `end`.
+  /// The slave's data bus was the master's from `start` on, up to the next one's start or `end`.
   struct Grant {
     std::uint64_t start = 0, end = 0;
     Picoseconds start_at = 0, end_at = 0;
@@ -170,20 +170,20 @@ class Crossbar {
     Picoseconds time() const { return end_at - start_at; }
   };
   static constexpr std::uint32_t kFewGrants = 4;  // so many are added up one by one
-  /// How long each master had a lane, and all of them together, in ps.
-  using LaneTimes = std::array<Picoseconds, (kMasterCount + 2) / 2 * 2>;
+  /// How long each master occupied a slave's data bus, and all of them together, in ps.
+  using BusTimes = std::array<Picoseconds, (kMasterCount + 2) / 2 * 2>;
   struct SlaveState {
     static constexpr std::size_t kGrants = 64;
-    std::uint64_t free = 0;      // first edge at which its command lane is free
+    std::uint64_t free = 0;      // first edge at which its data bus is free
     std::uint32_t heads = 0;     // ports whose first request is for it
-    std::uint32_t shown = 0;     // those of them that are visible at `free`
+    std::uint32_t visible_heads = 0;     // those of them that are visible at `free`
     std::uint32_t grants_made = 0;
     std::array<Grant, kGrants> grants;  // the last ones, to say who was waited for
     Grant& grant(std::uint32_t n) { return grants[n % kGrants]; }
-    std::uint32_t summed = 0;    // grants that are in `lane`: not the last
-    LaneTimes lane{};
-    std::array<LaneTimes, kGrants> before;  // `lane` at the start of each summed grant
-    bool blocked = false;        // a request waits at its door
+    std::uint32_t summed = 0;    // grants that are in `bus`: not the last
+    BusTimes bus{};
+    std::array<BusTimes, kGrants> before;  // `bus` at the start of each summed grant
+    bool blocked = false;        // a request waits in its input register
     std::uint8_t last = 0;       // round robin: last master granted
     std::uint32_t open_to = ~0u; // masters it serves: all, or the one that locked it
     std::uint32_t candidates() const { return blocked ? 0 : heads & open_to; }
@@ -201,7 +201,7 @@ class Crossbar {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
     set_outcome(request, at, at);
     request.error = false;
-    charge(request, Culprit::kBridge, request.first - request.taken);
+    charge(request, Culprit::kBridge, request.first - request.accepted_at);
     if (observer_) [[unlikely]]
       observer_->responded(request);
     host.respond(request);
@@ -264,7 +264,7 @@ void Crossbar::step(Host& host) {
   SlaveState& s = slaves_[r.slave];
   const std::uint32_t bit = 1u << next_port_;
   s.heads &= ~bit;
-  s.shown &= ~bit;
+  s.visible_heads &= ~bit;
   if (++p.head == p.tail)
     waiting_ &= ~bit;
   else  // the next in line shows itself one clock later
@@ -276,7 +276,7 @@ void Crossbar::step(Host& host) {
     plan();
 }
 
-/// The slave's lane is the request's at next_edge_.
+/// The slave's data bus is the request's at next_edge_.
 template <CrossbarHost Host>
 [[gnu::always_inline]] inline void Crossbar::grant(Host& host, MemRequest& r,
                                                    std::uint64_t crossed, std::uint32_t grants) {
@@ -299,7 +299,7 @@ template <CrossbarHost Host>
     charge(r, Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_, at, next_port_};
-  r.taken = at;
+  r.accepted_at = at;
   const Taken taken = host.forward(r, at);
   if (taken == Taken::kWaits)
     s.blocked = true;
@@ -310,8 +310,8 @@ template <CrossbarHost Host>
 }
 
 template <bool kWrite, CrossbarHost Host>
-[[gnu::always_inline]] inline bool Crossbar::grant_alone(Host& host, MemRequest& r,
-                                                         const AloneGrant& g) {
+[[gnu::always_inline]] inline bool Crossbar::grant_uncontended(Host& host, MemRequest& r,
+                                                         const UncontendedGrant& g) {
   constexpr auto kDdr = static_cast<std::uint8_t>(Slave::kDdr);
   const auto m = static_cast<std::uint8_t>(index(r.master));
   const Port& p = ports_[m];
@@ -335,7 +335,7 @@ template <bool kWrite, CrossbarHost Host>
     if (r.parts) r.parts->add(Culprit::kService, service);
   }
   s.grant(s.grants_made++) = {g.edge, arrival, g.at, at, m};
-  r.taken = at;
+  r.accepted_at = at;
   const Taken taken = host.forward(r, at);
   bool over = false;
   if (taken != Taken::kYes) [[unlikely]] {
@@ -350,7 +350,7 @@ template <bool kWrite, CrossbarHost Host>
     charge(r, Culprit::kBridge, r.first - at);
     over = true;
   }
-  // What was planned for the others stands, unless the lane is not free then or their turn changed.
+  // What was planned for the others stands, unless the data bus is not free then or their turn changed.
   if (waiting_ && (waiting_ & (waiting_ - 1) || next_edge_ < s.free || s.blocked)) plan();
   return over;
 }

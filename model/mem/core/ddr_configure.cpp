@@ -25,7 +25,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store)
       kinds_count_(!params.scheduler.is("frfcfs") && !in_order_),
       free_order_(params.scheduler.is("frfcfs")),
       first_ready_(free_order_ || (!in_order_ && params.ti_open_row.is("ready"))) {
-  lane_.set_fifo(static_cast<unsigned>(params.read_fifo()));
+  return_channel_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }
 
@@ -34,13 +34,13 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   if (!(ddr == ddr_.frequency())) {
     ddr_.restart(ddr, at);
     if (ddr_.running()) first_edge_ = ddr_.edge_at_or_after(at);
-    time_given();
+    retime_history();
   }
   if (!(scr == scr_.frequency())) scr_.restart(scr, at);
   running_ = ddr_.running() && scr_.running();
-  shut_ = !running_ || door_full_;
+  input_blocked_ = !running_ || input_taken_;
   if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
-  if (scr_.running()) lane_.start(scr_.edge_at_or_after(scr_.start()));
+  if (scr_.running()) return_channel_.start(scr_.edge_at_or_after(scr_.start()));
   if (on_change) on_change(at);
   plan_anew();
 }
@@ -57,7 +57,7 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   command_free_ = std::max(command_free_, now);
   config_ = config;
   device_.configure(config.timing);
-  lane_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
+  return_channel_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
   const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
   bank_mask_ = config.timing.banks - 1;
   if (config.bank_on_top) {

@@ -39,7 +39,7 @@ void DdrController::count_asleep(std::uint64_t until) {
 
 bool DdrController::submit(MemRequest& r, std::uint32_t offset, Picoseconds at) {
   FOVEA_CHECK(running_, "request to a DDR controller without a clock");
-  FOVEA_CHECK(!shut_, "request to a DDR controller whose input register is taken");
+  FOVEA_CHECK(!input_blocked_, "request to a DDR controller whose input register is taken");
   FOVEA_CHECK(r.bytes <= 64 && std::uint64_t{offset} + r.bytes <= size_,
               "request outside the SDRAM reached the controller");
   return take_in(r, offset, at);
@@ -79,7 +79,7 @@ template <class Queued>
   }
   last_arrival_ = queued_since_ = arrived;
   count_ = 1;
-  alone_ = true;
+  single_ = true;
   put(slots_[0].request, request, offset);
   fill(slots_[0], arrived);
   plan_one(slots_[0]);
@@ -87,20 +87,20 @@ template <class Queued>
 }
 
 bool DdrController::queue(MemRequest& request, std::uint32_t offset, std::uint64_t arrived) {
-  const bool was_alone = alone_;
+  const bool was_alone = single_;
   if (was_alone) join_queue();
   if (count_ >= fifo_entries_ ||
       (request.write &&
        write_words_held_ + write_words(offset, request.bytes) > write_fifo_words_)) {
-    door_full_ = shut_ = true;
-    put(door_, request, offset);
-    door_arrived_ = arrived;
+    input_taken_ = input_blocked_ = true;
+    put(input_, request, offset);
+    input_arrived_ = arrived;
     return false;
   }
   Entry& e = free_entry();
   put(e.request, request, offset);
   take(e, arrived);
-  // A choice for a clock before the newcomer is ready stands; else nothing can be given before then.
+  // A command chosen for a clock before the newcomer is ready stands; no other can come before then.
   const std::uint64_t seen = entry(count_ - 1).ready;
   if (in_burst_ || seen > choice_.at) return true;
   const std::uint64_t edge = std::max(command_free_, seen);
@@ -124,15 +124,15 @@ inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
 
-/// The request that was alone takes its place in the queue.
+/// The single request in slot 0 becomes the first of the queue.
 void DdrController::join_queue() {
-  alone_ = false;
+  single_ = false;
   Entry& e = slots_[0];
   free_slots_ ^= 1u;
-  places_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
-  seen_[0].newest = Seen::kNot;  // commands since then were not looked at
-  seen_count_ = 0;
-  unseen_ = e.ready;
+  queue_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
+  baselines_[0].newest = Baseline::kNot;  // commands since then were not looked at
+  baseline_count_ = 0;
+  next_without_baseline_ = e.ready;
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
   write_words_held_ = e.request.write ? write_words(e.request.address, e.request.bytes) : 0u;
@@ -142,14 +142,14 @@ void DdrController::join_queue() {
 void DdrController::take(Entry& e, std::uint64_t arrived) {
   const Queued& request = e.request;
   const auto slot = static_cast<unsigned>(&e - slots_.data());
-  const unsigned place = count_++;
-  const Places bit = 1u << place;
+  const unsigned position = count_++;
+  const Positions bit = 1u << position;
   free_slots_ ^= 1u << slot;
   last_arrival_ = arrived;
   fill(e, arrived);
-  if (seen_count_ == place) unseen_ = e.ready;
-  const Places older = places_.of_master(request.master);
-  places_.add(place, slot, request.master, e.bank, request.priority, request.write);
+  if (baseline_count_ == position) next_without_baseline_ = e.ready;
+  const Positions older = queue_.of_master(request.master);
+  queue_.add(position, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
   if (request.write) write_words_held_ += write_words(request.address, request.bytes);
   const auto goes_before = [&] {
@@ -160,8 +160,8 @@ void DdrController::take(Entry& e, std::uint64_t arrived) {
 
 /// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
 /// that is in another 2048-byte block and not more urgent.
-bool DdrController::passes(const Entry& read, Places older) const {
-  if (older & ~places_.writes()) return false;
+bool DdrController::passes(const Entry& read, Positions older) const {
+  if (older & ~queue_.writes()) return false;
   const Queued& r = read.request;
   for (; older; older &= older - 1) {
     const Queued& o = entry(oldest(older)).request;
@@ -171,10 +171,10 @@ bool DdrController::passes(const Entry& read, Places older) const {
 }
 
 /// What a master offers of its requests: no more than the oldest one and the first read.
-inline void DdrController::offer(Places of_one_master) {
+inline void DdrController::offer(Positions of_one_master) {
   if (of_one_master == 0) return;
   offered_ |= of_one_master & -of_one_master;
-  const Places reads = of_one_master & ~places_.writes(), first = reads & -reads;
+  const Positions reads = of_one_master & ~queue_.writes(), first = reads & -reads;
   if (first & ~offered_ && passes(entry(oldest(first)), of_one_master & (first - 1)))
     offered_ |= first;
 }
@@ -195,7 +195,7 @@ inline void DdrController::plan() {
 void DdrController::plan_anew() {
   next_ = kNever;
   if (count_ == 0 || !running_) return;
-  if (alone_) join_queue();
+  if (single_) join_queue();
   if (!in_burst_) return plan_many();
   if (next_column_ < command_free_) {  // it is finished before anything else
     choice_.at += command_free_ - next_column_;
@@ -210,7 +210,7 @@ inline void DdrController::plan_one(Entry& e) {
   const Cmd cmd = needed(e);
   const std::uint64_t at = earliest(e, cmd, edge);
   if (at >= calm_until_) [[unlikely]] {
-    if (alone_) join_queue();
+    if (single_) join_queue();
     return plan_many();
   }
   choice_ = {&e, at, cmd};
@@ -220,14 +220,14 @@ inline void DdrController::plan_one(Entry& e) {
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
   constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
-  Given& g = give(clock, at, kColumn ? choice_.entry : nullptr);
+  IssuedCommand& g = note_issued(clock, at, kColumn ? choice_.entry : nullptr);
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
-    g.blame = kRefreshed;
+    g.cause = kRefreshed;
   else
-    g.blame = static_cast<std::uint8_t>(index(choice_.entry->request.master));
+    g.cause = static_cast<std::uint8_t>(index(choice_.entry->request.master));
   if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
-    g.before = std::exchange(choice_.entry->prepared, given_count_);
+    g.before = std::exchange(choice_.entry->prepared, issued_count_);
 }
 
 template <Cmd kCmd>
@@ -235,10 +235,10 @@ inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t
                                  Picoseconds at) {
   device_.issue<kCmd>(bank, row, clock);
   if constexpr (kCmd == Cmd::kAct) {
-    for (Places set = places_.of_bank(bank); set; set &= set - 1)
+    for (Positions set = queue_.of_bank(bank); set; set &= set - 1)
       if (entry(oldest(set)).row == row) hits_ |= set & -set;
   } else if constexpr (kCmd == Cmd::kPre) {
-    hits_ &= ~places_.of_bank(bank);
+    hits_ &= ~queue_.of_bank(bank);
   } else if constexpr (kCmd == Cmd::kPreAll) {
     hits_ = 0;
   }
@@ -261,7 +261,7 @@ void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
 
 /// What falls into the time without requests: at the "may" level each refresh is done as soon as it
 /// is owed; then the part goes to sleep, if software allows it. The PREA belongs to the REF: once it is
-/// given, a request that comes waits for both. This cannot cause anything but later row misses and
+/// issued, a request that comes waits for both. This cannot cause anything but later row misses and
 /// waiting, so it is caught up lazily.
 [[gnu::noinline]] void DdrController::idle(std::uint64_t until) {
   for (;;) {
@@ -341,9 +341,9 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  Given& g = give(clock, ddr_.edge(clock));
+  IssuedCommand& g = note_issued(clock, ddr_.edge(clock));
   g.cmd = cmd;
-  g.blame = kAsleep;
+  g.cause = kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
@@ -394,7 +394,7 @@ void DdrController::step() {
 }
 
 bool DdrController::row_wanted(const Entry& by_others) const {
-  if (alone_) return false;
+  if (single_) return false;
   for (unsigned i = 0; i < count_; ++i) {
     const Entry& o = entry(i);
     if (&o != &by_others && o.bank == by_others.bank && o.row == by_others.row) return true;
@@ -404,11 +404,11 @@ bool DdrController::row_wanted(const Entry& by_others) const {
 
 /// The last column of a request under the closed-page rule.
 template <Cmd kCmd>
-[[gnu::noinline]] void DdrController::give_closing_column(const Entry& e, std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::issue_closing_column(const Entry& e, std::uint64_t clock) {
   if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock, next_);
   device_.issue<kCmd>(e.bank, e.row, clock);
   device_.close_when_legal(e.bank);
-  hits_ &= ~places_.of_bank(e.bank);
+  hits_ &= ~queue_.of_bank(e.bank);
   command_free_ = clock + 1;
   note<kCmd>(clock, next_);
   if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
@@ -430,7 +430,7 @@ void DdrController::first_column() {
     if (clock > e.ready) attribute(e, clock);
   }
   if (closes_rows_ && e.chunks == 1) [[unlikely]]
-    give_closing_column<kCmd>(e, clock);
+    issue_closing_column<kCmd>(e, clock);
   else
     issue<kCmd>(e.bank, e.row, clock, next_);
   ++stats.bursts;
@@ -438,15 +438,15 @@ void DdrController::first_column() {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
-    const ReadLane::Span on_lane = lane_.take(r.bytes, e.chunks, clock, ddr_, scr_);
+    const ReturnChannel::Span transfer = return_channel_.take(r.bytes, e.chunks, clock, ddr_, scr_);
     if (free_order_) [[unlikely]]
-      tell_in_order(e, on_lane);
+      report_in_order(e, transfer);
     else
-      report_read(r.origin, on_lane.first, on_lane.last);
+      report_read(r.origin, transfer.first, transfer.last);
   }
   if (e.chunks == 1) return finish(clock);
-  // No turnaround lies between the columns of a write, so this one passes for a RD among the given.
-  if constexpr (kCmd == Cmd::kWr) given(given_count_ - 1).cmd = Cmd::kRd;
+  // No turnaround lies between the columns of a write, so the history shows this one as a RD.
+  if constexpr (kCmd == Cmd::kWr) issued(issued_count_ - 1).cmd = Cmd::kRd;
   in_burst_ = true;
   columns_left_ = e.chunks - 1u;
   next_column_ = clock + DdrTiming::kBurstClocks;
@@ -454,8 +454,8 @@ void DdrController::first_column() {
   next_ = ddr_.edge(choice_.at);
 }
 
-/// The last column command, and the ones inside the burst that nobody asked about. What those put
-/// off, the last one puts off further.
+/// The last column command, and those inside the burst that catch_up() has not issued yet. Every
+/// constraint that they would set, the last one sets later.
 template <Cmd kCmd>
 void DdrController::last_column() {
   const Entry& e = *choice_.entry;
@@ -467,7 +467,7 @@ void DdrController::last_column() {
       hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
   }
   if (closes_rows_) [[unlikely]]
-    give_closing_column<kCmd>(e, clock);
+    issue_closing_column<kCmd>(e, clock);
   else
     issue<kCmd>(e.bank, e.row, clock, next_);
   finish(clock);
@@ -490,10 +490,11 @@ void DdrController::last_column() {
   }
 }
 
-/// The last column command is given: the entry is free, and the request at the door may come in.
+/// The last column command is issued: the entry is free, and the request in the input register may
+/// enter.
 [[gnu::always_inline]] inline void DdrController::finish(std::uint64_t clock) {
-  if (!alone_) return finish_queued(clock);
-  alone_ = false;
+  if (!single_) return finish_queued(clock);
+  single_ = false;
   served_while_oldest_ = 0;
   count_ = 0;
   count_queued(clock + 1);
@@ -502,7 +503,7 @@ void DdrController::last_column() {
 
 [[gnu::noinline]] void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue();
-  if (door_full_) open_door(clock);
+  if (input_taken_) accept_waiting(clock);
   if (count_ == 0)
     count_queued(clock + 1);
   else if (entry(0).ready > clock + 1 + request_latency_) [[unlikely]]
@@ -523,33 +524,33 @@ void DdrController::last_column() {
 
 inline void DdrController::leave_queue() {
   const Entry& e = *choice_.entry;
-  const unsigned place = choice_.place;
+  const unsigned position = choice_.position;
   if (e.request.write) write_words_held_ -= write_words(e.request.address, e.request.bytes);
-  free_slots_ |= 1u << places_.slot(place);
-  places_.leave(place, e.request.priority);
-  offered_ = QueuePlaces::without(place, offered_);
-  hits_ = QueuePlaces::without(place, hits_);
+  free_slots_ |= 1u << queue_.slot(position);
+  queue_.leave(position, e.request.priority);
+  offered_ = QueuePositions::without(position, offered_);
+  hits_ = QueuePositions::without(position, hits_);
   --count_;
-  if (place < seen_count_)
-    --seen_count_;
+  if (position < baseline_count_)
+    --baseline_count_;
   else
-    look_for_unseen();
-  served_while_oldest_ = place == 0 ? 0 : served_while_oldest_ + e.chunks;
-  const Places others = places_.of_master(e.request.master);
+    find_next_without_baseline();
+  served_while_oldest_ = position == 0 ? 0 : served_while_oldest_ + e.chunks;
+  const Positions others = queue_.of_master(e.request.master);
   if (free_order_) [[unlikely]]
     return offer_all(others);
   offer(others);
 }
 
-void DdrController::open_door(std::uint64_t clock) {
+void DdrController::accept_waiting(std::uint64_t clock) {
   if (count_ >= fifo_entries_ ||
-      (door_.write && write_words_held_ + write_words(door_.address, door_.bytes) > write_fifo_words_))
+      (input_.write && write_words_held_ + write_words(input_.address, input_.bytes) > write_fifo_words_))
     return;
-  door_full_ = shut_ = false;
+  input_taken_ = input_blocked_ = false;
   Entry& e = free_entry();
-  e.request = door_;
-  take(e, std::max(door_arrived_, clock + 1));
-  news_.accepted = {door_.origin, ddr_.edge(clock), choice_.entry->request.master};
+  e.request = input_;
+  take(e, std::max(input_arrived_, clock + 1));
+  news_.accepted = {input_.origin, ddr_.edge(clock), choice_.entry->request.master};
   news_.any = true;
 }
 

@@ -16,8 +16,8 @@
 #include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_stats.h"
 #include "model/mem/core/ddr_timing.h"
-#include "model/mem/core/queue_places.h"
-#include "model/mem/core/read_lane.h"
+#include "model/mem/core/queue_positions.h"
+#include "model/mem/core/return_channel.h"
 
 namespace fovea::mem {
 
@@ -48,7 +48,7 @@ class DdrController {
 
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at);
   /// Reads have no crossbar to go to: their data are there when the SDRAM has sent them.
-  void leave_out_lane() { lane_.leave_out(); }
+  void leave_out_return_channel() { return_channel_.leave_out(); }
   /// New timing from the registers; takes effect for commands after the call's time.
   void configure(const DdrConfig& config, Picoseconds at);
   bool running() const { return running_; }
@@ -65,8 +65,8 @@ class DdrController {
   bool submit(MemRequest& request, std::uint32_t offset, Picoseconds at);
   /// The same for a caller that knows that it may: the request inside the SDRAM, input_blocked() false.
   bool submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at);
-  /// The clock stands, or a request waits in the input register: no request may come.
-  bool input_blocked() const { return shut_; }
+  /// The clock is stopped, or a request waits in the input register: no request may be submitted.
+  bool input_blocked() const { return input_blocked_; }
 
   /// Time of the next decision, kNever if nothing is queued: a DRAM command, but of a burst's
   /// columns only the first and the last, as nothing can come between. Depends only on arrivals
@@ -111,37 +111,37 @@ class DdrController {
   /// checks address + bytes against the SDRAM's size.
   void debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const;
   void debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes);
-  /// What stands here, for a debugger.
+  /// Snapshot of all requests and of the next command, for debugger commands.
   struct View {
     struct Item {
-      const MemRequest* request;  ///< of a write that is not at the door: stale, its master has gone on
+      const MemRequest* request;  ///< stale for an accepted write: its master has gone on
       Master master;
       bool write;
       std::uint8_t bytes;
       std::uint32_t address;  ///< offset in the SDRAM
-      bool door;              ///< waits for room in the FIFOs
+      bool waiting;           ///< in the input register, for room in the FIFOs
       bool moving;            ///< its burst is under way
-      bool held;              ///< its data wait for those of its master's older reads
+      bool out_of_order;      ///< its data wait for those of its master's older reads
       Picoseconds ready;      ///< the scheduler sees it from then on
       unsigned bank;
       std::uint32_t row, open;  ///< open: DdrDevice::kClosed or the bank's row
     };
-    std::vector<Item> items;             ///< the queue, oldest first; the door; those held
+    std::vector<Item> items;  ///< the queue, oldest first; the input register; out-of-order reads
     std::size_t next = ~std::size_t{0};  ///< item of the next command; beyond the end: a refresh's
     Cmd cmd = Cmd::kRef;                 ///< that command
     Picoseconds next_at = kNever;        ///< kNever: nothing to do
     LowPower asleep = LowPower::kOff;
     Cmd last = Cmd::kRef;               ///< the command before it
     std::optional<Master> last_master;  ///< whose that was; none: a refresh's, or none at all
-    bool data_full = false;  ///< the door waits for room for write data, not for an entry
+    bool data_full = false;  ///< the input register waits for room for write data, not for an entry
   };
   View view() const;
 
   DdrStats stats;
   /// What reads waited for here, between the pipeline's end and their first column command: each
-  /// clock is blamed on the last command before it, a master's for others, or the read's own ACT
-  /// and PRE. From the end of a write burst on it is the turnaround. Data held back for older reads
-  /// of the same master wait for it.
+  /// clock is attributed to the last command before it: another master's, or the read's own ACT or PRE.
+  /// From the end of a write burst on it is the turnaround. Data that wait for older reads of the same
+  /// master count as that master's own wait.
   WaitTable waits;
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
@@ -160,7 +160,7 @@ class DdrController {
   const DdrConfig& config() const { return config_; }
 
  private:
-  static constexpr std::size_t kMaxEntries = QueuePlaces::kMost;
+  static constexpr std::size_t kMaxEntries = QueuePositions::kMost;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
   /// The controller's own copy of what it needs of a request: the master of a write goes on, and uses
   /// its record for another one, as soon as the write is accepted.
@@ -189,66 +189,67 @@ class DdrController {
     Entry* entry = nullptr;
     std::uint64_t at = 0;
     Cmd cmd = Cmd::kAct;
-    std::uint8_t place = 0;  // of the entry
+    std::uint8_t position = 0;  // of the entry
     std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
-  /// What commands are to blame for: masters, then these.
-  enum Blame : std::uint8_t { kTurned = kMasterCount, kRefreshed, kAsleep, kBlames };
-  /// A command that was given. The time up to the next one is blamed on it; after the data of a write
-  /// on the turnaround, and an ACT or PRE of the read itself on its row.
-  struct alignas(32) Given {
+  /// Cause recorded with each command: the master it served, or one of these.
+  enum DelayCause : std::uint8_t { kTurned = kMasterCount, kRefreshed, kAsleep, kDelayCauses };
+  /// A command that was issued. The time up to the next one is attributed to it; after the data of a
+  /// write to the turnaround, and after an ACT or PRE of the read itself to its row.
+  struct alignas(32) IssuedCommand {
     std::uint64_t clock = 0;
     Picoseconds at = 0;        // of that clock; before a clock's restart: the restart
     std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
     Cmd cmd = Cmd::kRef;
-    std::uint8_t blame = kRefreshed;
+    std::uint8_t cause = kRefreshed;
   };
-  static constexpr std::size_t kGiven = 64;
-  using Blames = std::array<Picoseconds, (kBlames + 1) / 2 * 2>;  // two make a wide word of the host
-  /// What the time from a command on is blamed on: itself, and the turnaround behind a write.
-  struct Blamed {
+  static constexpr std::size_t kHistory = 64;
+  using CauseTotals = std::array<Picoseconds, (kDelayCauses + 1) / 2 * 2>;  // two make a wide word of the host
+  /// How the time behind a command divides: the command itself, and the turnaround behind a write.
+  struct Attributed {
     Picoseconds itself = 0, turned = 0;
   };
-  /// The sums at the time a request became ready.
-  struct Seen {
+  /// Running totals at the time when a request became ready. What it waited for is a later reading less
+  /// this one.
+  struct Baseline {
     static constexpr std::uint64_t kNot = ~std::uint64_t{0};
-    Blames blames;
+    CauseTotals totals;
     std::uint64_t newest = kNot;  // command before; kNot: the sums are not known
   };
-  Given& given(std::uint64_t n) { return given_[n % kGiven]; }
-  const Given& given(std::uint64_t n) const { return given_[n % kGiven]; }
-  Given& give(std::uint64_t clock, Picoseconds at, const Entry* served = nullptr);
-  void see(std::uint64_t clock, const Entry* served);
-  void look_for_unseen() {
-    unseen_ = seen_count_ < count_ ? entry(seen_count_).ready : kNoClock;
+  IssuedCommand& issued(std::uint64_t n) { return history_[n % kHistory]; }
+  const IssuedCommand& issued(std::uint64_t n) const { return history_[n % kHistory]; }
+  IssuedCommand& note_issued(std::uint64_t clock, Picoseconds at, const Entry* served = nullptr);
+  void take_baselines(std::uint64_t clock, const Entry* served);
+  void find_next_without_baseline() {
+    next_without_baseline_ = baseline_count_ < count_ ? entry(baseline_count_).ready : kNoClock;
   }
-  Blamed blamed(const Given& g, std::uint64_t clock, Picoseconds at) const;
+  Attributed attributed(const IssuedCommand& g, std::uint64_t clock, Picoseconds at) const;
 
-  /// A read whose data have come before those of older reads of its master: they wait behind the
-  /// lane, in a buffer as large as what the masters have under way.
-  struct Held {
+  /// A read whose data came before those of older reads of its master. They wait behind the return
+  /// channel, in a buffer as large as what the masters have under way.
+  struct OutOfOrderRead {
     Queued request;
     std::uint32_t behind = 0;  // slots of the older reads
-    Picoseconds first = 0;     // its own data on the lane
+    Picoseconds first = 0;     // its own data on the return channel
     std::uint64_t edges = 0;   // of the crossbar, from there to the last
     Picoseconds waited = 0;
   };
-  bool bound_by(const Entry& younger, Places older) const;
-  void offer_all(Places of_one_master);
-  void tell_in_order(const Entry& e, const ReadLane::Span& on_lane);
-  void tell(const Held& h);
-  const MemRequest* newest_held(unsigned behind_slot) const;
+  bool bound_by(const Entry& younger, Positions older) const;
+  void offer_all(Positions of_one_master);
+  void report_in_order(const Entry& e, const ReturnChannel::Span& transfer);
+  void report_out_of_order(const OutOfOrderRead& h);
+  const MemRequest* newest_out_of_order(unsigned behind_slot) const;
 
   void attribute(const Entry& e, std::uint64_t clock);
-  void blame_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
-  void blame_sums(const Entry& e, const Seen& seen, std::uint64_t ready, const Blamed& newest);
+  void attribute_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
+  void attribute_by_totals(const Entry& e, const Baseline& seen, std::uint64_t ready, const Attributed& newest);
   void charge(const Entry& e, Culprit c, Picoseconds t) { charge(e.request, c, t); }
   void charge(const Queued& r, Culprit c, Picoseconds t) {
     waits[index(r.master)].read.add(c, t);
     if (r.parts) r.parts->add(c, t);
   }
-  void time_given();
+  void retime_history();
 
   bool take_in(MemRequest& request, std::uint32_t offset, Picoseconds at);
   [[gnu::noinline]] bool queue(MemRequest& request, std::uint32_t offset,
@@ -267,15 +268,15 @@ class DdrController {
   }
   void plan_refresh();
   void plan_from(std::uint64_t edge);
-  unsigned first_of(Places set) const;
-  Places best_kind(Places set, bool room) const;
-  void choose(std::uint64_t edge, Places ready);
-  void prepare_others(std::uint64_t edge, Places ready, bool room);
-  Places soonest(Places open, std::uint64_t edge) const;
-  void choose_in_order(std::uint64_t edge, Places ready);
-  bool stands_with(unsigned place, std::uint64_t edge, Places ready);
-  bool ranks_below_first(unsigned place, std::uint64_t edge) const;
-  bool refresh_goes_first(Places set) const;
+  unsigned first_of(Positions set) const;
+  Positions best_kind(Positions set, bool room) const;
+  void choose(std::uint64_t edge, Positions ready);
+  void prepare_others(std::uint64_t edge, Positions ready, bool room);
+  Positions soonest(Positions open, std::uint64_t edge) const;
+  void choose_in_order(std::uint64_t edge, Positions ready);
+  bool stands_with(unsigned position, std::uint64_t edge, Positions ready);
+  bool ranks_below_first(unsigned position, std::uint64_t edge) const;
+  bool refresh_goes_first(Positions set) const;
   void choose_refresh(std::uint64_t edge);
   bool choose_overdue_row(std::uint64_t edge);
   void close_overdue_row(std::uint64_t clock);
@@ -290,10 +291,10 @@ class DdrController {
   void urgency_changed();
   Cmd needed(const Entry& e) const;
   std::uint64_t earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const;
-  Entry& entry(unsigned place) { return slots_[places_.slot(place)]; }
-  const Entry& entry(unsigned place) const { return slots_[places_.slot(place)]; }
-  bool passes(const Entry& read, Places older) const;
-  void offer(Places of_one_master);
+  Entry& entry(unsigned position) { return slots_[queue_.slot(position)]; }
+  const Entry& entry(unsigned position) const { return slots_[queue_.slot(position)]; }
+  bool passes(const Entry& read, Positions older) const;
+  void offer(Positions of_one_master);
   void idle(std::uint64_t until);
   void idle_until_arrival(std::uint64_t clock);
   void pass_over_refreshes(std::uint64_t until);
@@ -317,7 +318,7 @@ class DdrController {
   void prepare();
   bool row_wanted(const Entry& by_others) const;
   template <Cmd kCmd>
-  void give_closing_column(const Entry& e, std::uint64_t clock);
+  void issue_closing_column(const Entry& e, std::uint64_t clock);
   template <Cmd kCmd>
   [[gnu::noinline]] void first_column();
   template <Cmd kCmd>
@@ -330,14 +331,14 @@ class DdrController {
     news_.reads.push_back({request, first, last, read_waited_});
     news_.any = true;
   }
-  void open_door(std::uint64_t clock);
+  void accept_waiting(std::uint64_t clock);
 
   BackingStore& store_;
   News news_;
   Clock ddr_, scr_;
   std::uint64_t first_edge_ = 0;  // of the DDR clock since its last restart
   bool running_ = false;
-  bool shut_ = true;  // stopped, or the door taken: no request may come
+  bool input_blocked_ = true;  // stopped, or the input register taken
   DdrDevice device_;
   DdrConfig config_;
   // The address map in effect.
@@ -350,29 +351,30 @@ class DdrController {
   unsigned write_fifo_words_, request_latency_, return_latency_, clock_restart_;
   Picoseconds retention_;
   unsigned release_, need_, must_, gap_limit_;
-  // The scheduler, as its differences from TI's: columns are given in the order of age; a row that
-  // nobody waits for is closed after its access; reads before writes, and priorities, count; a
-  // master's requests pass each other; among open rows those go first whose column can go first.
+  // The scheduler, by what distinguishes the policies. in_order_: column commands follow the age of their
+  // requests. closes_rows_: a row is closed after its access if no other request wants it. kinds_count_:
+  // reads go before writes, and priorities count. free_order_: requests of one master pass each other.
+  // first_ready_: among open rows the one whose column command is legal first.
   bool in_order_, closes_rows_, kinds_count_, free_order_, first_ready_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
   unsigned count_ = 0;
-  // A request that comes while nothing else is queued goes to slot 0 and mostly leaves it alone:
-  // the places, sets and sums of the queue do not know it until join_queue().
-  bool alone_ = false;
-  QueuePlaces places_;
-  Places offered_ = 0;  // whose command its master offers (rule 1)
-  Places hits_ = 0;     // whose row is open
+  // A request that comes while nothing else is queued goes to slot 0, and mostly leaves before another
+  // one comes: the sets and totals of the queue do not know it until join_queue().
+  bool single_ = false;
+  QueuePositions queue_;
+  Positions offered_ = 0;  // whose command its master offers (rule 1)
+  Positions hits_ = 0;     // whose row is open
   std::uint64_t last_arrival_ = 0;
   unsigned write_words_held_ = 0;
-  bool door_full_ = false;
-  Queued door_;
-  std::uint64_t door_arrived_ = 0;
+  bool input_taken_ = false;
+  Queued input_;
+  std::uint64_t input_arrived_ = 0;
 
   std::uint64_t command_free_ = 0;  // edge after the last command or change of configuration
   Choice choice_;
-  unsigned first_ = 0;     // place of the first in rank when choice_ was made
+  unsigned first_ = 0;     // position of the first in rank when choice_ was made
   bool plain_ = false;     // by rank, with room for read data
   Picoseconds next_ = kNever;
   bool in_burst_ = false;  // choice_ is the last column of a burst under way
@@ -397,28 +399,28 @@ class DdrController {
   // could take turns in putting it off, and none of them be served.
   bool closing_ = false;
   bool catching_up_ = false;  // the backlog was above `must` and is not down to `release` yet
-  ReadLane lane_;
+  ReturnChannel return_channel_;
 
-  std::array<Given, kGiven> given_;  // the last commands, to say who was waited for
-  std::uint64_t given_count_ = 0;
+  std::array<IssuedCommand, kHistory> history_;  // the last commands, to say who was waited for
+  std::uint64_t issued_count_ = 0;
   // Sums over the commands before the newest but one, and what that one adds. A sum just changed
   // and read with its neighbours would hold up the host.
-  Blames blames_{};
-  Blamed late_;
-  std::uint8_t late_blame_ = 0;
-  std::array<Seen, kMaxEntries> seen_;  // by slot
-  unsigned seen_count_ = 0;             // places that have theirs
-  std::uint64_t unseen_ = kNoClock;     // edge at which the one after them is ready
+  CauseTotals totals_{};
+  Attributed late_;
+  std::uint8_t late_cause_ = 0;
+  std::array<Baseline, kMaxEntries> baselines_;  // by slot
+  unsigned baseline_count_ = 0;             // positions that have theirs
+  std::uint64_t next_without_baseline_ = kNoClock;     // edge at which the one after them is ready
   Picoseconds read_waited_ = 0;
-  std::vector<Held> held_;                        // each master's oldest first
-  std::array<Picoseconds, kMasterCount> told_{};  // with free_order_: ends of their newest
+  std::vector<OutOfOrderRead> out_of_order_;                        // each master's oldest first
+  std::array<Picoseconds, kMasterCount> reported_until_{};  // with free_order_: ends of their newest
 
   std::vector<std::pair<CommandHook, void*>> listeners_;
   CommandHook hook_ = nullptr;  // the only listener, or one that calls all
   void* hook_self_ = nullptr;
 };
 
-/// Words of 64 bits that a write's data holds in the FIFO: one touched in part is held whole.
+/// Words of 64 bits that a write's data occupies in the FIFO: one touched in part counts as a whole one.
 inline unsigned write_words(std::uint32_t address, unsigned bytes) {
   return ((address & 7u) + bytes + 7u) >> 3;
 }
@@ -429,25 +431,25 @@ inline Cmd DdrController::needed(const Entry& e) const {
   return open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
 }
 
-/// The place of another command among those given. `served`: whose column it is.
-[[gnu::always_inline]] inline DdrController::Given& DdrController::give(std::uint64_t clock,
+/// Adds a command to the history. `served`: the request whose column command it is.
+[[gnu::always_inline]] inline DdrController::IssuedCommand& DdrController::note_issued(std::uint64_t clock,
                                                                         Picoseconds at,
                                                                         const Entry* served) {
-  if (clock > unseen_) see(clock, served);
-  const std::uint64_t n = given_count_++;
-  blames_[late_blame_] += late_.itself;
-  blames_[kTurned] += late_.turned;
-  const Given& before = given(n - 1);
-  late_ = n ? blamed(before, clock, at) : Blamed{};
-  late_blame_ = before.blame;
-  Given& g = given(n);
+  if (clock > next_without_baseline_) take_baselines(clock, served);
+  const std::uint64_t n = issued_count_++;
+  totals_[late_cause_] += late_.itself;
+  totals_[kTurned] += late_.turned;
+  const IssuedCommand& before = issued(n - 1);
+  late_ = n ? attributed(before, clock, at) : Attributed{};
+  late_cause_ = before.cause;
+  IssuedCommand& g = issued(n);
   g.clock = clock;
   g.at = at;
   return g;
 }
 
-/// What the time from a command up to `clock` is blamed on.
-[[gnu::always_inline]] inline DdrController::Blamed DdrController::blamed(const Given& g,
+/// How the time from a command up to `clock` divides.
+[[gnu::always_inline]] inline DdrController::Attributed DdrController::attributed(const IssuedCommand& g,
                                                                           std::uint64_t clock,
                                                                           Picoseconds at) const {
   if (g.cmd == Cmd::kWr) {
@@ -462,7 +464,7 @@ inline Cmd DdrController::needed(const Entry& e) const {
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {
   const std::uint64_t at = std::max(edge, device_.earliest(cmd, e.bank));
-  return cmd == Cmd::kRd ? std::max(at, lane_.room()) : at;
+  return cmd == Cmd::kRd ? std::max(at, return_channel_.room()) : at;
 }
 
 }  // namespace fovea::mem

@@ -23,7 +23,7 @@ const MemRequest* DdrController::newest_read(Master master) const {
     const Entry& e = entry(i);
     const bool answered = in_burst_ && &e == choice_.entry;
     if (e.request.write || e.request.master != master || answered) continue;
-    const MemRequest* const younger = newest_held(places_.slot(i));
+    const MemRequest* const younger = newest_out_of_order(queue_.slot(i));
     return younger ? younger : e.request.origin;
   }
   return nullptr;
@@ -51,9 +51,9 @@ void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from,
 
 DdrController::View DdrController::view() const {
   View v;
-  const auto add = [&](const Queued& r, std::uint64_t ready, bool door) {
+  const auto add = [&](const Queued& r, std::uint64_t ready, bool waiting) {
     const auto bank = (r.address >> bank_shift_) & bank_mask_;
-    v.items.push_back({r.origin, r.master, r.write, r.bytes, r.address, door, false, false,
+    v.items.push_back({r.origin, r.master, r.write, r.bytes, r.address, waiting, false, false,
                        running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
                        (r.address & row_mask_) >> row_shift_, device_.row(bank)});
   };
@@ -64,19 +64,19 @@ DdrController::View DdrController::view() const {
     v.next = i;
     v.items.back().moving = in_burst_;
   }
-  if (door_full_) {
-    add(door_, door_arrived_, true);
+  if (input_taken_) {
+    add(input_, input_arrived_, true);
     v.data_full = count_ < fifo_entries_;
   }
-  for (const Held& h : held_) {
+  for (const OutOfOrderRead& h : out_of_order_) {
     if (in_burst_ && h.request.origin == choice_.entry->request.origin) continue;  // in the queue
     add(h.request, first_edge_, false);
-    v.items.back().held = true;
+    v.items.back().out_of_order = true;
   }
-  if (given_count_) {
-    const Given& g = given_[(given_count_ - 1) % kGiven];
+  if (issued_count_) {
+    const IssuedCommand& g = history_[(issued_count_ - 1) % kHistory];
     v.last = in_burst_ ? choice_.cmd : g.cmd;
-    if (g.blame < kMasterCount) v.last_master = static_cast<Master>(g.blame);
+    if (g.cause < kMasterCount) v.last_master = static_cast<Master>(g.cause);
   }
   v.cmd = choice_.cmd;
   v.next_at = next_;

@@ -1,4 +1,4 @@
-// What seldom happens to rows: one is open for too long, or its data is lost in self-refresh.
+// Rows that are open for too long (T_RASMAX), and data lost in partial self-refresh.
 #include <cstring>
 
 #include "model/common/check.h"
@@ -7,7 +7,7 @@
 namespace fovea::mem {
 namespace {
 
-/// What a cell that lost its charge reads as. Any value would do that nobody takes for data.
+/// What a cell that lost its charge reads as: any value that is not mistaken for data.
 constexpr int kLostByte = 0xA5;
 
 }  // namespace
@@ -41,11 +41,11 @@ bool DdrController::choose_overdue_row(std::uint64_t edge) {
 
 void DdrController::close_overdue_row(std::uint64_t clock) {
   device_.issue<Cmd::kPre>(choice_.bank, 0, clock);
-  hits_ &= ~places_.of_bank(choice_.bank);
+  hits_ &= ~queue_.of_bank(choice_.bank);
   ++stats.overdue_rows;
   command_free_ = clock + 1;
-  Given& g = give(clock, next_);
-  g.blame = kRefreshed;
+  IssuedCommand& g = note_issued(clock, next_);
+  g.cause = kRefreshed;
   g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh
   if (hook_) hook_(hook_self_, Cmd::kPre, choice_.bank, 0, clock);

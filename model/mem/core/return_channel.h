@@ -1,5 +1,6 @@
-// The way back of a read's data: PHY, read FIFO, and a lane to the crossbar that is 64 bits wide
-// and serves reads in the order of their data. Left out, data are there when the SDRAM has sent them.
+// The return channel: how a read's data come back through PHY and read FIFO to the crossbar, 64 bits a
+// clock, in the order in which the SDRAM sends them. Without it data are there when the SDRAM has sent
+// them.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,14 +10,14 @@
 
 namespace fovea::mem {
 
-class ReadLane {
+class ReturnChannel {
  public:
-  /// `latency`: DDR clocks from a RD to its first beat at the lane's side.
+  /// `latency`: DDR clocks from a RD to its first beat at the crossbar's side.
   void set_latency(unsigned latency) { latency_ = latency; }
   void set_fifo(unsigned bytes) { spare_words_ = bytes / 8u - 8u; }
   void leave_out() { left_out_ = true; }
   bool left_out() const { return left_out_; }
-  /// The crossbar's clock starts at this edge: nothing waits for the lane.
+  /// The crossbar's clock starts at this edge: nothing waits for the channel.
   void start(std::uint64_t edge) { start_ = edge; }
   /// First DDR clock at which a RD finds room for its data in the FIFO.
   std::uint64_t room() const { return room_; }
@@ -24,7 +25,7 @@ class ReadLane {
   struct Span {
     Picoseconds first, last;
   };
-  /// A read whose first column command is given at `clock`; the others follow without a gap.
+  /// A read whose first column command is issued at `clock`; the others follow without a gap.
   Span take(unsigned bytes, unsigned chunks, std::uint64_t clock, const Clock& ddr,
             const Clock& crossbar) {
     constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
@@ -42,8 +43,8 @@ class ReadLane {
     }
     free_ = last + 1;
     // Scheduling rule 3: the FIFO is full while another 64 bytes would not fit beside the words
-    // that wait for the lane when their data comes. It can only fill if the lane is slower than the
-    // DDR bus. Words that the lane has taken by the next read's data, at or after `arrival`, do not
+    // that wait for the channel when their data comes. It can only fill if the channel is slower than the
+    // DDR bus. Words that the channel has taken by the next read's data, at or after `arrival`, do not
     // count.
     if (free_ > start_ + spare_words_ && free_ - spare_words_ >= arrival) {
       const std::uint64_t room = ddr.edge_at_or_after(crossbar.edge(free_ - spare_words_));
