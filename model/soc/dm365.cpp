@@ -177,7 +177,7 @@ void Dm365::wire_memory() {
     if (load.active()) masters.push_back(load.reader());
   for (const Master m : masters)
     waits.push_back(std::make_unique<bus::WaitStats>(
-        m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
+        m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()}));
   scr.ram_socket.bind(tcm_dma.socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(Master::kVpfe)]);

@@ -55,7 +55,7 @@ void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*dir
   for (std::size_t m = 0; m < kMasterCount; ++m)
     if (masters_[m].label == label)
       for (std::size_t c = 0; c < kCulprits; ++c)
-        sum.ps[c] += (memory_.crossbar().waits[m].*direction).ps[c] + (ddr().waits[m].*direction).ps[c];
+        sum.ps[c] += (memory_.crossbar().waits[m].*direction).ps[c] + (ddr().waits()[m].*direction).ps[c];
   const auto add = [&](std::string_view culprit, std::uint64_t ps) {
     rows.push_back({fmt::format("ddr.{}.wait.{}.{}", label, name, culprit),
                     static_cast<double>(ps) * 1e-12, "s",

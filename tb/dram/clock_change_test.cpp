@@ -44,7 +44,7 @@ TEST(ClockChangeTest, WaitsAddUpAcrossChanges) {
     const auto run = [&](Picoseconds at) {
       while (path.next_decision() < at) {
         path.step();
-        const Tables is{path.xbar.waits, path.ddr.waits};
+        const Tables is{path.xbar.waits, path.ddr.waits()};
         for (std::size_t i = 0; i < is.size(); ++i) {
           expect_grown(was[i], is[i]);
           if (testing::Test::HasFatalFailure()) return;

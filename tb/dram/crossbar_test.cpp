@@ -395,8 +395,8 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
         if (index(item->r.master) == m)
           (item->r.write ? writes : reads) += item->r.first - item->at;
       for (std::size_t c = 0; c < kCulprits; ++c) {
-        tagged_reads += path.xbar.waits[m].read.ps[c] + path.ddr.waits[m].read.ps[c];
-        tagged_writes += path.xbar.waits[m].write.ps[c] + path.ddr.waits[m].write.ps[c];
+        tagged_reads += path.xbar.waits[m].read.ps[c] + path.ddr.waits()[m].read.ps[c];
+        tagged_writes += path.xbar.waits[m].write.ps[c] + path.ddr.waits()[m].write.ps[c];
       }
       EXPECT_EQ(tagged_reads, reads) << m;
       EXPECT_EQ(tagged_writes, writes) << m;
@@ -407,7 +407,7 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
 
 /// DDR clocks of 4 ns that the reads of a master waited for a culprit in the controller.
 std::uint64_t clocks(const Path& p, Master m, Culprit c) {
-  return p.ddr.waits[index(m)].read.ps[index(c)] / 4'000;
+  return p.ddr.waits()[index(m)].read.ps[index(c)] / 4'000;
 }
 
 class WaitsTest : public testing::Test {
@@ -475,7 +475,7 @@ TEST_F(WaitsTest, ClosedBankCostsTheActivation) {
   go(kA, false, at(1, 0, 64), 32, kLater);
   path.drain();
   EXPECT_EQ(clocks(path, kA, Culprit::kRowMiss), t.nRCD) << "the row is open now";
-  EXPECT_EQ(path.ddr.waits[index(kA)].read.ps[index(Culprit::kRowConflict)], 0u);
+  EXPECT_EQ(path.ddr.waits()[index(kA)].read.ps[index(Culprit::kRowConflict)], 0u);
 }
 
 TEST_F(WaitsTest, OtherRowCostsPrechargeAndActivation) {

@@ -146,7 +146,7 @@ TEST(IdleTimeTest, LongTimesOfRefreshesEndTheSame) {
       const auto& s = b.ddr.stats;
       seen.insert(seen.end(), {s.refreshes.count(), s.row_misses.count(), s.row_conflicts.count(),
                                s.row_open_clocks.count(), s.queued_clocks.count()});
-      for (const MasterWaits& w : b.ddr.waits)
+      for (const MasterWaits& w : b.ddr.waits())
         seen.insert(seen.end(), w.read.ps.begin(), w.read.ps.end());
     }
     for (const auto& r : all) seen.insert(seen.end(), {r->first, r->last});

@@ -179,7 +179,7 @@ class Banks {
       if (!ddr_.submit(q, offset, now)) door_ = &r;
     }
   }
-  const WaitTable& table() const { return ddr_.waits; }
+  const WaitTable& table() const { return ddr_.waits(); }
   WaitTable counted{};
   std::uint64_t longest = 0;  // commands that one read waited for
 
@@ -349,10 +349,10 @@ TEST(LoadedWaitsTest, PartsOfEachReadAddUpWithAnyScheduler) {
       crowd.run(seed);
       if (HasFatalFailure()) FAIL() << scheduler;
       for (std::size_t m = 0; m < kMasterCount; ++m) {
-        own[scheduler] += crowd.path.ddr.waits[m].read.ps[m];
+        own[scheduler] += crowd.path.ddr.waits()[m].read.ps[m];
         for (std::size_t c = 0; c < kCulprits; ++c)
           ASSERT_EQ(crowd.counted[m].read.ps[c],
-                    crowd.path.ddr.waits[m].read.ps[c] + crowd.path.xbar.waits[m].read.ps[c])
+                    crowd.path.ddr.waits()[m].read.ps[c] + crowd.path.xbar.waits[m].read.ps[c])
               << scheduler << ", seed " << seed << ", master " << m << ", culprit " << c;
       }
     }

@@ -65,7 +65,7 @@ class Priorities {
   }
   Sum sum(Master m) {
     Sum s;
-    for (const WaitTable* t : {&soc().scr.crossbar().waits, &soc().ddr.controller().waits})
+    for (const WaitTable* t : {&soc().scr.crossbar().waits, &soc().ddr.controller().waits()})
       for (std::size_t c = 0; c < kCulprits; ++c)
         s.ps += (*t)[index(m)].read.ps[c] + (*t)[index(m)].write.ps[c];
     s.requests = soc().scr.crossbar().stats[stat_index(m)]->transactions.count();

@@ -4,6 +4,7 @@
 
 #include "model/common/check.h"
 #include "model/mem/core/ddr_controller.h"
+#include "model/mem/core/scheduler/policies.h"
 
 namespace fovea::mem {
 
@@ -20,11 +21,7 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store)
       need_(static_cast<unsigned>(params.refresh_need())),
       must_(static_cast<unsigned>(params.refresh_must())),
       gap_limit_(static_cast<unsigned>(params.refresh_gap())),
-      in_order_(params.scheduler.is("fcfs")),
-      closes_rows_(params.scheduler.is("closed_page")),
-      kinds_count_(!params.scheduler.is("frfcfs") && !in_order_),
-      free_order_(params.scheduler.is("frfcfs")),
-      first_ready_(free_order_ || (!in_order_ && params.ti_open_row.is("ready"))) {
+      policy_(scheduler_policy(params)) {
   return_channel_.set_fifo(static_cast<unsigned>(params.read_fifo()));
   configure(DdrConfig{}, 0);
 }
@@ -34,7 +31,7 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   if (!(ddr == ddr_.frequency())) {
     ddr_.restart(ddr, at);
     if (ddr_.running()) first_edge_ = ddr_.edge_at_or_after(at);
-    retime_history();
+    attribution_.restart_clock(first_edge_);
   }
   if (!(scr == scr_.frequency())) scr_.restart(scr, at);
   running_ = ddr_.running() && scr_.running();
@@ -57,6 +54,7 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   command_free_ = std::max(command_free_, now);
   config_ = config;
   device_.configure(config.timing);
+  attribution_.set_write_clocks(config.timing.WL() + DdrTiming::kBurstClocks);
   return_channel_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
   const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
   bank_mask_ = config.timing.banks - 1;

@@ -130,9 +130,7 @@ void DdrController::join_queue() {
   Entry& e = slots_[0];
   free_slots_ ^= 1u;
   queue_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
-  baselines_[0].newest = Baseline::kNot;  // commands since then were not looked at
-  baseline_count_ = 0;
-  next_without_baseline_ = e.ready;
+  attribution_.begin_queue(e.ready);
   offered_ = 1u;
   hits_ = device_.row(e.bank) == e.row;
   write_words_held_ = e.request.write ? write_words(e.request.address, e.request.bytes) : 0u;
@@ -147,13 +145,13 @@ void DdrController::take(Entry& e, std::uint64_t arrived) {
   free_slots_ ^= 1u << slot;
   last_arrival_ = arrived;
   fill(e, arrived);
-  if (baseline_count_ == position) next_without_baseline_ = e.ready;
+  attribution_.joined(position, e.ready);
   const Positions older = queue_.of_master(request.master);
   queue_.add(position, slot, request.master, e.bank, request.priority, request.write);
   if (device_.row(e.bank) == e.row) hits_ |= bit;
   if (request.write) write_words_held_ += write_words(request.address, request.bytes);
   const auto goes_before = [&] {
-    return free_order_ ? !bound_by(e, older) : !request.write && passes(e, older);
+    return policy_.free_order ? !bound_by(e, older) : !request.write && passes(e, older);
   };
   if (older == 0 || goes_before()) offered_ |= bit;
 }
@@ -220,14 +218,14 @@ inline void DdrController::plan_one(Entry& e) {
 template <Cmd kCmd>
 inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
   constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
-  IssuedCommand& g = note_issued(clock, at, kColumn ? choice_.entry : nullptr);
+  IssuedCommand& g = attribution_.add(clock, at, kColumn ? choice_.entry : nullptr);
   g.cmd = kCmd;
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
-    g.cause = kRefreshed;
+    g.cause = WaitAttribution::kRefreshed;
   else
     g.cause = static_cast<std::uint8_t>(index(choice_.entry->request.master));
   if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
-    g.before = std::exchange(choice_.entry->prepared, issued_count_);
+    g.before = std::exchange(choice_.entry->prepared, attribution_.count());
 }
 
 template <Cmd kCmd>
@@ -341,9 +339,9 @@ bool DdrController::fall_asleep(std::uint64_t until) {
 
 void DdrController::mark(Cmd cmd, std::uint64_t clock) {
   command_free_ = std::max(command_free_, clock + 1);
-  IssuedCommand& g = note_issued(clock, ddr_.edge(clock));
+  IssuedCommand& g = attribution_.add(clock, ddr_.edge(clock));
   g.cmd = cmd;
-  g.cause = kAsleep;
+  g.cause = WaitAttribution::kAsleep;
   if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
 }
 
@@ -426,10 +424,10 @@ void DdrController::first_column() {
     ++stats.bank[e.bank].row_hits;
   }
   if constexpr (kCmd == Cmd::kRd) {
-    read_waited_ = 0;
-    if (clock > e.ready) attribute(e, clock);
+    attribution_.waited = 0;
+    if (clock > e.ready) attribution_.attribute(e, clock, next_, !single_);
   }
-  if (closes_rows_ && e.chunks == 1) [[unlikely]]
+  if (policy_.closes_rows && e.chunks == 1) [[unlikely]]
     issue_closing_column<kCmd>(e, clock);
   else
     issue<kCmd>(e.bank, e.row, clock, next_);
@@ -439,14 +437,14 @@ void DdrController::first_column() {
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     const ReturnChannel::Span transfer = return_channel_.take(r.bytes, e.chunks, clock, ddr_, scr_);
-    if (free_order_) [[unlikely]]
+    if (policy_.free_order) [[unlikely]]
       report_in_order(e, transfer);
     else
       report_read(r.origin, transfer.first, transfer.last);
   }
   if (e.chunks == 1) return finish(clock);
   // No turnaround lies between the columns of a write, so the history shows this one as a RD.
-  if constexpr (kCmd == Cmd::kWr) issued(issued_count_ - 1).cmd = Cmd::kRd;
+  if constexpr (kCmd == Cmd::kWr) attribution_.newest().cmd = Cmd::kRd;
   in_burst_ = true;
   columns_left_ = e.chunks - 1u;
   next_column_ = clock + DdrTiming::kBurstClocks;
@@ -466,7 +464,7 @@ void DdrController::last_column() {
     for (; columns_left_ > 1; --columns_left_, next_column_ += DdrTiming::kBurstClocks)
       hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
   }
-  if (closes_rows_) [[unlikely]]
+  if (policy_.closes_rows) [[unlikely]]
     issue_closing_column<kCmd>(e, clock);
   else
     issue<kCmd>(e.bank, e.row, clock, next_);
@@ -531,13 +529,10 @@ inline void DdrController::leave_queue() {
   offered_ = QueuePositions::without(position, offered_);
   hits_ = QueuePositions::without(position, hits_);
   --count_;
-  if (position < baseline_count_)
-    --baseline_count_;
-  else
-    find_next_without_baseline();
+  attribution_.left(position);
   served_while_oldest_ = position == 0 ? 0 : served_while_oldest_ + e.chunks;
   const Positions others = queue_.of_master(e.request.master);
-  if (free_order_) [[unlikely]]
+  if (policy_.free_order) [[unlikely]]
     return offer_all(others);
   offer(others);
 }

@@ -18,6 +18,8 @@
 #include "model/mem/core/ddr_timing.h"
 #include "model/mem/core/queue_positions.h"
 #include "model/mem/core/return_channel.h"
+#include "model/mem/core/scheduler/policy.h"
+#include "model/mem/core/wait_attribution.h"
 
 namespace fovea::mem {
 
@@ -142,7 +144,8 @@ class DdrController {
   /// clock is attributed to the last command before it: another master's, or the read's own ACT or PRE.
   /// From the end of a write burst on it is the turnaround. Data that wait for older reads of the same
   /// master count as that master's own wait.
-  WaitTable waits;
+  WaitTable& waits() { return attribution_.waits; }
+  const WaitTable& waits() const { return attribution_.waits; }
   std::uint64_t busy_clocks() const { return stats.bursts.count() * DdrTiming::kBurstClocks; }
   const DdrDevice& device() const { return device_; }
   /// What the part does now; catch_up() first.
@@ -162,28 +165,8 @@ class DdrController {
  private:
   static constexpr std::size_t kMaxEntries = QueuePositions::kMost;
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
-  /// The controller's own copy of what it needs of a request: the master of a write goes on, and uses
-  /// its record for another one, as soon as the write is accepted.
-  struct Queued {
-    MemRequest* origin = nullptr;
-    std::uint8_t* data = nullptr;   // read: where to; write, in the input register: where from
-    RequestWaits* parts = nullptr;  // read: gets its share of `waits` as well
-    std::uint32_t address = 0;      // offset in the SDRAM
-    Master master = Master::kArmD;
-    std::uint8_t priority = 0;
-    bool write = false;
-    std::uint8_t bytes = 0;  // 1..64, inside one aligned 64-byte block
-  };
-  struct alignas(64) Entry {
-    Queued request;
-    std::uint64_t ready = 0;  // first edge at which the scheduler sees it
-    std::uint32_t row = 0;
-    std::uint8_t bank = 0;
-    std::uint8_t chunks = 0;  // column commands it needs
-    bool classified = false;
-    std::uint64_t prepared = 0;  // number of its newest ACT or PRE, from 1; 0: none
-    std::array<std::uint8_t, 64> data;
-  };
+  using Queued = QueuedRequest;
+  using Entry = QueueEntry;
   /// PREA and REF are refresh's; the others belong to a request.
   struct Choice {
     Entry* entry = nullptr;
@@ -193,38 +176,7 @@ class DdrController {
     std::uint8_t bank = 0;  // of a PRE without an entry: the row has been open for too long
   };
 
-  /// Cause recorded with each command: the master it served, or one of these.
-  enum DelayCause : std::uint8_t { kTurned = kMasterCount, kRefreshed, kAsleep, kDelayCauses };
-  /// A command that was issued. The time up to the next one is attributed to it; after the data of a
-  /// write to the turnaround, and after an ACT or PRE of the read itself to its row.
-  struct alignas(32) IssuedCommand {
-    std::uint64_t clock = 0;
-    Picoseconds at = 0;        // of that clock; before a clock's restart: the restart
-    std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as Entry::prepared
-    Cmd cmd = Cmd::kRef;
-    std::uint8_t cause = kRefreshed;
-  };
-  static constexpr std::size_t kHistory = 64;
-  using CauseTotals = std::array<Picoseconds, (kDelayCauses + 1) / 2 * 2>;  // two make a wide word of the host
-  /// How the time behind a command divides: the command itself, and the turnaround behind a write.
-  struct Attributed {
-    Picoseconds itself = 0, turned = 0;
-  };
-  /// Running totals at the time when a request became ready. What it waited for is a later reading less
-  /// this one.
-  struct Baseline {
-    static constexpr std::uint64_t kNot = ~std::uint64_t{0};
-    CauseTotals totals;
-    std::uint64_t newest = kNot;  // command before; kNot: the sums are not known
-  };
-  IssuedCommand& issued(std::uint64_t n) { return history_[n % kHistory]; }
-  const IssuedCommand& issued(std::uint64_t n) const { return history_[n % kHistory]; }
-  IssuedCommand& note_issued(std::uint64_t clock, Picoseconds at, const Entry* served = nullptr);
-  void take_baselines(std::uint64_t clock, const Entry* served);
-  void find_next_without_baseline() {
-    next_without_baseline_ = baseline_count_ < count_ ? entry(baseline_count_).ready : kNoClock;
-  }
-  Attributed attributed(const IssuedCommand& g, std::uint64_t clock, Picoseconds at) const;
+  using IssuedCommand = WaitAttribution::IssuedCommand;
 
   /// A read whose data came before those of older reads of its master. They wait behind the return
   /// channel, in a buffer as large as what the masters have under way.
@@ -240,16 +192,6 @@ class DdrController {
   void report_in_order(const Entry& e, const ReturnChannel::Span& transfer);
   void report_out_of_order(const OutOfOrderRead& h);
   const MemRequest* newest_out_of_order(unsigned behind_slot) const;
-
-  void attribute(const Entry& e, std::uint64_t clock);
-  void attribute_each(const Entry& e, std::uint64_t ready, Picoseconds from, std::uint64_t clock);
-  void attribute_by_totals(const Entry& e, const Baseline& seen, std::uint64_t ready, const Attributed& newest);
-  void charge(const Entry& e, Culprit c, Picoseconds t) { charge(e.request, c, t); }
-  void charge(const Queued& r, Culprit c, Picoseconds t) {
-    waits[index(r.master)].read.add(c, t);
-    if (r.parts) r.parts->add(c, t);
-  }
-  void retime_history();
 
   bool take_in(MemRequest& request, std::uint32_t offset, Picoseconds at);
   [[gnu::noinline]] bool queue(MemRequest& request, std::uint32_t offset,
@@ -328,7 +270,7 @@ class DdrController {
   void finish_queued(std::uint64_t clock);
   void leave_queue();
   void report_read(MemRequest* request, Picoseconds first, Picoseconds last) {
-    news_.reads.push_back({request, first, last, read_waited_});
+    news_.reads.push_back({request, first, last, attribution_.waited});
     news_.any = true;
   }
   void accept_waiting(std::uint64_t clock);
@@ -351,11 +293,7 @@ class DdrController {
   unsigned write_fifo_words_, request_latency_, return_latency_, clock_restart_;
   Picoseconds retention_;
   unsigned release_, need_, must_, gap_limit_;
-  // The scheduler, by what distinguishes the policies. in_order_: column commands follow the age of their
-  // requests. closes_rows_: a row is closed after its access if no other request wants it. kinds_count_:
-  // reads go before writes, and priorities count. free_order_: requests of one master pass each other.
-  // first_ready_: among open rows the one whose column command is legal first.
-  bool in_order_, closes_rows_, kinds_count_, free_order_, first_ready_;
+  SchedulerPolicy policy_;
 
   std::array<Entry, kMaxEntries> slots_;
   std::uint32_t free_slots_ = (1u << kMaxEntries) - 1;
@@ -366,6 +304,7 @@ class DdrController {
   QueuePositions queue_;
   Positions offered_ = 0;  // whose command its master offers (rule 1)
   Positions hits_ = 0;     // whose row is open
+  WaitAttribution attribution_{ddr_, slots_, queue_, count_};
   std::uint64_t last_arrival_ = 0;
   unsigned write_words_held_ = 0;
   bool input_taken_ = false;
@@ -401,19 +340,8 @@ class DdrController {
   bool catching_up_ = false;  // the backlog was above `must` and is not down to `release` yet
   ReturnChannel return_channel_;
 
-  std::array<IssuedCommand, kHistory> history_;  // the last commands, to say who was waited for
-  std::uint64_t issued_count_ = 0;
-  // Sums over the commands before the newest but one, and what that one adds. A sum just changed
-  // and read with its neighbours would hold up the host.
-  CauseTotals totals_{};
-  Attributed late_;
-  std::uint8_t late_cause_ = 0;
-  std::array<Baseline, kMaxEntries> baselines_;  // by slot
-  unsigned baseline_count_ = 0;             // positions that have theirs
-  std::uint64_t next_without_baseline_ = kNoClock;     // edge at which the one after them is ready
-  Picoseconds read_waited_ = 0;
   std::vector<OutOfOrderRead> out_of_order_;                        // each master's oldest first
-  std::array<Picoseconds, kMasterCount> reported_until_{};  // with free_order_: ends of their newest
+  std::array<Picoseconds, kMasterCount> reported_until_{};  // with policy_.free_order: ends of their newest
 
   std::vector<std::pair<CommandHook, void*>> listeners_;
   CommandHook hook_ = nullptr;  // the only listener, or one that calls all
@@ -429,37 +357,6 @@ inline Cmd DdrController::needed(const Entry& e) const {
   const std::uint32_t open = device_.row(e.bank);
   if (open == e.row) return e.request.write ? Cmd::kWr : Cmd::kRd;
   return open == DdrDevice::kClosed ? Cmd::kAct : Cmd::kPre;
-}
-
-/// Adds a command to the history. `served`: the request whose column command it is.
-[[gnu::always_inline]] inline DdrController::IssuedCommand& DdrController::note_issued(std::uint64_t clock,
-                                                                        Picoseconds at,
-                                                                        const Entry* served) {
-  if (clock > next_without_baseline_) take_baselines(clock, served);
-  const std::uint64_t n = issued_count_++;
-  totals_[late_cause_] += late_.itself;
-  totals_[kTurned] += late_.turned;
-  const IssuedCommand& before = issued(n - 1);
-  late_ = n ? attributed(before, clock, at) : Attributed{};
-  late_cause_ = before.cause;
-  IssuedCommand& g = issued(n);
-  g.clock = clock;
-  g.at = at;
-  return g;
-}
-
-/// How the time from a command up to `clock` divides.
-[[gnu::always_inline]] inline DdrController::Attributed DdrController::attributed(const IssuedCommand& g,
-                                                                          std::uint64_t clock,
-                                                                          Picoseconds at) const {
-  if (g.cmd == Cmd::kWr) {
-    const std::uint64_t over = g.clock + config_.timing.WL() + DdrTiming::kBurstClocks;
-    if (over < clock) {
-      const Picoseconds end = ddr_.edge(std::max(over, first_edge_));
-      return {end - g.at, at - end};
-    }
-  }
-  return {at - g.at, 0};
 }
 
 inline std::uint64_t DdrController::earliest(const Entry& e, Cmd cmd, std::uint64_t edge) const {

@@ -73,8 +73,8 @@ DdrController::View DdrController::view() const {
     add(h.request, first_edge_, false);
     v.items.back().out_of_order = true;
   }
-  if (issued_count_) {
-    const IssuedCommand& g = history_[(issued_count_ - 1) % kHistory];
+  if (attribution_.count()) {
+    const IssuedCommand& g = attribution_.newest();
     v.last = in_burst_ ? choice_.cmd : g.cmd;
     if (g.cause < kMasterCount) v.last_master = static_cast<Master>(g.cause);
   }

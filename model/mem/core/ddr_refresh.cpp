@@ -54,10 +54,10 @@ Picoseconds DdrController::interval_start(Picoseconds t) const {
 void DdrController::pass_over_refreshes(std::uint64_t until) {
   const std::uint64_t interval = config_.refresh_interval;
   if (hook_ || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
-  if (until < next_expiry_ || until - next_expiry_ < 2 * kHistory * interval) return;
+  if (until < next_expiry_ || until - next_expiry_ < 2 * WaitAttribution::kHistory * interval) return;
   if (!device_.all_closed() || next_expiry_ < std::max(command_free_, device_.earliest_refresh()))
     return;
-  const std::uint64_t passed = (until - next_expiry_) / interval - kHistory;
+  const std::uint64_t passed = (until - next_expiry_) / interval - WaitAttribution::kHistory;
   stats.refreshes += passed;
   next_expiry_ += passed * interval;
 }

@@ -28,7 +28,7 @@ bool DdrController::bound_by(const Entry& younger, Positions older) const {
 /// theirs; then follow the younger ones that waited only for this one.
 [[gnu::noinline]] void DdrController::report_in_order(const Entry& e, const ReturnChannel::Span& transfer) {
   const Queued& r = e.request;
-  OutOfOrderRead mine{r, 0, transfer.first, 0, read_waited_};
+  OutOfOrderRead mine{r, 0, transfer.first, 0, attribution_.waited};
   const Clock& bus = return_channel_.left_out() ? ddr_ : scr_;
   mine.edges = bus.edge_at_or_after(transfer.last) - bus.edge_at_or_after(transfer.first);
   Positions older = queue_.of_master(r.master) & ~queue_.writes() & ((1u << choice_.position) - 1);
@@ -57,8 +57,8 @@ void DdrController::report_out_of_order(const OutOfOrderRead& h) {
   const Clock& bus = return_channel_.left_out() ? ddr_ : scr_;
   const Picoseconds first = std::max(h.first, bus.next_edge_after(reported));
   reported = bus.edge(bus.edge_at_or_after(first) + h.edges);
-  if (first > h.first) charge(r, culprit(r.master), first - h.first);
-  read_waited_ = h.waited + (first - h.first);
+  if (first > h.first) attribution_.charge(r, culprit(r.master), first - h.first);
+  attribution_.waited = h.waited + (first - h.first);
   report_read(r.origin, first, reported);
 }
 

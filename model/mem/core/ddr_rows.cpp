@@ -44,8 +44,8 @@ void DdrController::close_overdue_row(std::uint64_t clock) {
   hits_ &= ~queue_.of_bank(choice_.bank);
   ++stats.overdue_rows;
   command_free_ = clock + 1;
-  IssuedCommand& g = note_issued(clock, next_);
-  g.cause = kRefreshed;
+  IssuedCommand& g = attribution_.add(clock, next_);
+  g.cause = WaitAttribution::kRefreshed;
   g.before = 0;
   g.cmd = Cmd::kPreAll;  // whoever waits for it waits for the upkeep of the part, as for refresh
   if (hook_) hook_(hook_self_, Cmd::kPre, choice_.bank, 0, clock);

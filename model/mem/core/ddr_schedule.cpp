@@ -32,7 +32,7 @@ bool DdrController::stands_with(unsigned position, std::uint64_t edge, Positions
   if (!plain_ || return_channel_.room() > edge || edge >= all_in_time_until_) return false;
   const Positions bit = 1u << position;
   const Entry &e = entry(position), &top = entry(first_);
-  if (in_order_) {
+  if (policy_.in_order) {
     if (ready & queue_.of_bank(e.bank)) return true;  // the oldest request decides about a bank
   } else {
     if (!(offered_ & bit)) return true;
@@ -53,24 +53,24 @@ bool DdrController::stands_with(unsigned position, std::uint64_t edge, Positions
 inline bool DdrController::ranks_below_first(unsigned position, std::uint64_t edge) const {
   const Positions bit = 1u << position, first = 1u << first_;
   const bool write = queue_.writes() & bit, first_writes = queue_.writes() & first;
-  if (urgency_ != Urgency::kMay && (write || !kinds_count_)) return false;
-  if (kinds_count_ && first_writes && !write) return false;
-  if (kinds_count_ && first_writes != write) return true;
+  if (urgency_ != Urgency::kMay && (write || !policy_.kinds_count)) return false;
+  if (policy_.kinds_count && first_writes && !write) return false;
+  if (policy_.kinds_count && first_writes != write) return true;
   const Entry &e = entry(position), &top = entry(first_);
-  if (kinds_count_ && e.request.priority < top.request.priority) return false;
+  if (policy_.kinds_count && e.request.priority < top.request.priority) return false;
   if (!(hits_ & bit)) return true;
   if (!(hits_ & first)) return false;
-  return !first_ready_ || earliest(e, needed(e), edge) >= earliest(top, needed(top), edge);
+  return !policy_.first_ready || earliest(e, needed(e), edge) >= earliest(top, needed(top), edge);
 }
 
 /// The position of the request that ranks first: by priority, then age.
 inline unsigned DdrController::first_of(Positions set) const {
-  return oldest(kinds_count_ ? queue_.most_urgent(set) : set);
+  return oldest(policy_.kinds_count ? queue_.most_urgent(set) : set);
 }
 
 /// Rules 2 and 3: reads, then writes; with the read FIFO full, writes before reads.
 inline Positions DdrController::best_kind(Positions set, bool room) const {
-  if (room && !kinds_count_) return set;
+  if (room && !policy_.kinds_count) return set;
   const Positions writes = queue_.writes(), kind = set & (room ? ~writes : writes);
   return kind ? kind : set;
 }
@@ -109,7 +109,7 @@ inline Positions DdrController::best_kind(Positions set, bool room) const {
 /// The command to issue if only the requests at the positions `ready` are there.
 inline void DdrController::choose(std::uint64_t edge, Positions ready) {
   const Positions seen = ready;
-  ready &= in_order_ ? 1u : offered_;
+  ready &= policy_.in_order ? 1u : offered_;
   plain_ = false;
   if (edge >= calm_until_) [[unlikely]] {
     const Urgency refresh = refresh_urgency(edge);
@@ -117,7 +117,7 @@ inline void DdrController::choose(std::uint64_t edge, Positions ready) {
       return choose_refresh(edge);
     if (edge >= all_in_time_until_ && choose_overdue_row(edge)) return;
   }
-  if (in_order_) [[unlikely]]
+  if (policy_.in_order) [[unlikely]]
     return choose_in_order(edge, seen);
   // By kind; in each open rows first, then priority, then age (rules 2 and 3).
   const bool room = return_channel_.room() <= edge;
@@ -127,7 +127,7 @@ inline void DdrController::choose(std::uint64_t edge, Positions ready) {
     plain_ = room;
     const Positions kind = best_kind(ready, room);
     Positions open = kind & hits_;
-    if (first_ready_) [[unlikely]]
+    if (policy_.first_ready) [[unlikely]]
       open = soonest(open, edge);
     first = first_of(open ? open : kind);
   }
@@ -144,7 +144,7 @@ inline void DdrController::choose(std::uint64_t edge, Positions ready) {
 /// Puts the ACT or PRE of another bank before choice_, if it is legal earlier; of several at
 /// the same clock the one that ranks first.
 inline void DdrController::prepare_others(std::uint64_t edge, Positions ready, bool room) {
-  const Positions preferred = !room ? queue_.writes() : kinds_count_ ? ~queue_.writes() : ~0u;
+  const Positions preferred = !room ? queue_.writes() : policy_.kinds_count ? ~queue_.writes() : ~0u;
   QueuePositions::ByBank kinds;
   unsigned banks = queue_.by_bank(ready, preferred, hits_, kinds);
   std::uint64_t best = choice_.at - 1;

@@ -1,0 +1,147 @@
+#include "model/mem/core/wait_attribution.h"
+
+#include <optional>
+
+namespace fovea::mem {
+namespace {
+
+constexpr Culprit culprit_of(std::size_t cause) {
+  constexpr std::array kRest = {Culprit::kTurnaround, Culprit::kRefresh, Culprit::kPowerDown};
+  return cause < kMasterCount ? static_cast<Culprit>(cause) : kRest[cause - kMasterCount];
+}
+
+}  // namespace
+
+void WaitAttribution::restart_clock(std::uint64_t first_edge) {
+  first_edge_ = first_edge;
+  for (IssuedCommand& c : history_) c.at = ddr_.edge(std::max(c.clock, first_edge_));
+  for (Baseline& b : baselines_) b.newest = Baseline::kNot;
+}
+
+/// Of the requests that became ready before `clock`, with no command since the newest.
+[[gnu::noinline]] void WaitAttribution::take_baselines(std::uint64_t clock,
+                                                       const QueueEntry* served) {
+  const std::uint64_t newest = issued_ - 1;
+  const IssuedCommand& c = command(newest);
+  for (; have_baseline_ < count_; ++have_baseline_) {
+    const QueueEntry& e = entry(have_baseline_);
+    if (e.ready >= clock) break;
+    if (e.request.write || &e == served) continue;
+    Baseline& b = baselines_[queue_.slot(have_baseline_)];
+    const std::uint64_t ready = std::max(e.ready, first_edge_);
+    if (issued_ == 0 || c.clock > ready) {
+      b.newest = Baseline::kNot;
+      continue;
+    }
+    for (std::size_t i = 0; i < totals_.size(); i += 2)
+      store_pair(&b.totals[i], load_pair(&totals_[i]));
+    b.newest = newest;
+    b.totals[late_cause_] += late_.itself;
+    const Division part = divide(c, ready, ddr_.edge(ready));
+    b.totals[c.cause] += part.itself;
+    b.totals[kTurned] += late_.turned + part.turned;
+  }
+  find_next_without_baseline();
+}
+
+/// The waits since `ready`, by the commands one by one: for a few, or where there is no baseline. The
+/// read's own ACT and PRE are no wait behind an earlier request.
+[[gnu::noinline]] void WaitAttribution::attribute_each(const QueueEntry& e, std::uint64_t ready,
+                                                       Picoseconds from, std::uint64_t clock,
+                                                       Picoseconds at) {
+  const Culprit own = culprit(e.request.master);
+  const std::uint64_t end = issued_;
+  const std::uint64_t oldest = end - std::min<std::uint64_t>(end, kHistory - 1);
+  std::uint64_t n = end - 1;  // the last command at or before `ready`, or the oldest that is known
+  while (n > oldest && command(n).clock > ready) --n;
+  std::uint64_t prepared = 0;  // bit i: the command i before `end`
+  Culprit row = Culprit::kRowMiss;
+  for (std::uint64_t p = e.prepared; p > n; p = command(p - 1).before) {
+    const IssuedCommand& c = command(p - 1);
+    if (c.clock < ready) break;
+    prepared |= std::uint64_t{1} << (end - p);
+    if (c.cmd == Cmd::kPre) row = Culprit::kRowConflict;
+  }
+  std::uint64_t reached = ready;
+  const auto until = [&](std::uint64_t next, Picoseconds to, Culprit c) {
+    if (next <= reached) return;
+    charge(e.request, c, to - from);
+    reached = next;
+    from = to;
+  };
+  until(command(n).clock, command(n).at, own);  // what is not known is its own
+  for (; n < end; ++n) {
+    const IssuedCommand& c = command(n);
+    const bool newest = n + 1 == end;
+    const std::uint64_t next = newest ? clock : command(n + 1).clock;
+    const Picoseconds next_at = newest ? at : command(n + 1).at;
+    if (c.cmd == Cmd::kWr) {
+      const std::uint64_t over = std::min(next, c.clock + write_clocks_);
+      if (over > reached) until(over, ddr_.edge(over), culprit_of(c.cause));
+      until(next, next_at, Culprit::kTurnaround);
+    } else {
+      until(next, next_at, prepared >> (end - n - 1) & 1u ? row : culprit_of(c.cause));
+    }
+  }
+}
+
+/// The same by totals, however many commands there were. `newest`: what the newest one adds.
+[[gnu::always_inline]] inline void WaitAttribution::attribute_by_totals(
+    const QueueEntry& e, const Baseline& baseline, std::uint64_t ready, const Division& newest,
+    Picoseconds at) {
+  static_assert(index(culprit_of(kTurned)) + 1 == index(culprit_of(kRefreshed)) &&
+                index(culprit_of(kTurned)) + 2 == index(culprit_of(kAsleep)));
+  const std::uint64_t end = issued_;
+  const std::uint64_t oldest = end - std::min<std::uint64_t>(end, kHistory - 1);
+  Picoseconds row = 0;
+  bool closed_other = false;
+  for (std::uint64_t p = e.prepared; p > oldest; p = command(p - 1).before) {
+    const IssuedCommand& c = command(p - 1);
+    if (c.clock < ready) break;
+    row += (p == end ? at : command(p).at) - c.at;
+    closed_other |= c.cmd == Cmd::kPre;
+  }
+  Waits& w = waits[index(e.request.master)].read;
+  std::optional<Waits> before;
+  if (e.request.parts) before = w;
+  w.add_masters(totals_.data(), baseline.totals.data());
+  constexpr std::size_t kRest = index(culprit_of(kTurned));
+  store_pair(&w.ps[kRest], load_pair(&w.ps[kRest]) + (load_pair(&totals_[kTurned]) -
+                                                      load_pair(&baseline.totals[kTurned])));
+  w.ps[kRest + 2] += totals_[kAsleep] - baseline.totals[kAsleep];
+  w.add(culprit_of(late_cause_), late_.itself);
+  w.add(culprit_of(command(end - 1).cause), newest.itself);
+  w.add(Culprit::kTurnaround, late_.turned + newest.turned);
+  w.take_back(culprit(e.request.master), row);
+  w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
+  if (!before) return;
+  for (std::size_t c = 0; c < kCulprits; ++c)
+    if (const Picoseconds t = w.ps[c] - before->ps[c])
+      e.request.parts->add(static_cast<Culprit>(c), t);
+}
+
+[[gnu::noinline]] void WaitAttribution::attribute(const QueueEntry& e, std::uint64_t clock,
+                                                  Picoseconds at, bool queued) {
+  const std::uint64_t ready = std::max(e.ready, first_edge_);
+  const Picoseconds from = ddr_.edge(ready);
+  waited = at - from;
+  if (issued_ == 0) return charge(e.request, culprit(e.request.master), waited);
+  const IssuedCommand& last = newest();
+  if (last.clock <= ready) {
+    const bool own_act = last.clock == ready && e.prepared == issued_;
+    const Division before = divide(last, ready, from), all = divide(last, clock, at);
+    charge(e.request, own_act ? Culprit::kRowMiss : culprit_of(last.cause),
+           all.itself - before.itself);
+    if (all.turned) charge(e.request, Culprit::kTurnaround, all.turned - before.turned);
+    return;
+  }
+  const std::uint64_t oldest = issued_ - std::min<std::uint64_t>(issued_, kHistory - 1);
+  if (queued) {
+    const Baseline& baseline = baselines_[static_cast<std::size_t>(&e - slots_.data())];
+    if (baseline.newest != Baseline::kNot && baseline.newest >= oldest)
+      return attribute_by_totals(e, baseline, ready, divide(last, clock, at), at);
+  }
+  attribute_each(e, ready, from, clock, at);
+}
+
+}  // namespace fovea::mem
