@@ -104,9 +104,9 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
 
 void ReplayPath::check(const trace::Record& r, const Stream& s) const {
   const auto refuse = [&](const std::string& why) {
-    std::string place = source_.place(static_cast<unsigned>(&s - streams_.data()));
-    if (place.empty()) place = fmt::format("record {}", s.number);
-    throw UserError(fmt::format("trace '{}': {} of {}: {} bytes at 0x{:08x}: {}", name_, place,
+    std::string where = source_.place(static_cast<unsigned>(&s - streams_.data()));
+    if (where.empty()) where = fmt::format("record {}", s.number);
+    throw UserError(fmt::format("trace '{}': {} of {}: {} bytes at 0x{:08x}: {}", name_, where,
                                 masters_[index(r.master)].label, r.bytes, r.address, why));
   };
   const std::uint64_t size = memory_.store().size();

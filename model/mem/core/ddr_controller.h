@@ -47,6 +47,8 @@ struct DdrConfig {
 class DdrController {
  public:
   DdrController(const DdrParams& params, BackingStore& store);
+  DdrController(const DdrController&) = delete;
+  DdrController& operator=(const DdrController&) = delete;
 
   void set_clocks(Frequency ddr, Frequency scr, Picoseconds at);
   /// Reads have no crossbar to go to: their data are there when the SDRAM has sent them.
