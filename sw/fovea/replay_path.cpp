@@ -102,7 +102,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   find_next();
 }
 
-void ReplayPath::check(const trace::Record& r, const Stream& s) const {
+void ReplayPath::check(const trace::Record& r, const Stream& s) {
   const auto refuse = [&](const std::string& why) {
     std::string where = source_.place(static_cast<unsigned>(&s - streams_.data()));
     if (where.empty()) where = fmt::format("record {}", s.number);

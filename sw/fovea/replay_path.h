@@ -104,7 +104,7 @@ class ReplayPath final : private memsys::MemoryHost {
   }
   void find_next();
   void issue();
-  void check(const trace::Record& r, const Stream& s) const;
+  void check(const trace::Record& r, const Stream& s);
   void complete(Slot& slot);
 
   void completed(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
