@@ -455,13 +455,13 @@ TEST(OtherSchedulersTest, FrfcfsTellsTheReadsOfOneMasterInOrder) {
     b.run_before(clock * kTck + 1);
     return state();
   };
-  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3].path);
   // Columns of 1 at 309, 313, 317, 321, of 2 at 325, of 3 at 329; PRE at 333, ACT at 338, 0 at 343.
   EXPECT_EQ(after(kFrom), (Items{"0", "1moves", "2", "3"}));
-  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3].path);
   EXPECT_EQ(after(kFrom + 12), (Items{"0", "2", "3", "1held"}));
   EXPECT_EQ(after(kFrom + 20), (Items{"0", "1held", "3held"}));
-  EXPECT_EQ(b.ddr.newest_read(kA), &all[3]);
+  EXPECT_EQ(b.ddr.newest_read(kA), &all[3].path);
   EXPECT_EQ(b.read_order, (std::vector<Request*>{&all[2]})) << "only of another master";
   EXPECT_EQ(after(kFrom + 34), Items{});
   EXPECT_EQ(b.ddr.newest_read(kA), nullptr);
