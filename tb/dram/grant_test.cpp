@@ -229,8 +229,8 @@ TEST(GrantTest, AtOnceAndFromTheQueuesAreTheSameOnRandomStates) {
     ASSERT_NO_FATAL_FAILURE(expect_same_figures(a, b)) << seed;
   }
   // The comparison is not empty: both directions, a full slave, and others planned behind.
-  EXPECT_GT(direct[0], 3'000u);
-  EXPECT_GT(direct[1], 3'000u);
+  EXPECT_GT(direct[0], 2'000u);
+  EXPECT_GT(direct[1], 2'000u);
   EXPECT_GT(waiting, 500u);
   EXPECT_GT(others, 3'000u);
 }

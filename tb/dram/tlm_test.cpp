@@ -24,9 +24,10 @@ constexpr std::uint32_t kSdram = 0x8000'0000, kRam = 0x1'0000;
 constexpr std::size_t kRamBytes = 0x1000;
 constexpr std::uint64_t kLatency = 37;  // of the target, ns
 
-/// No other slave answers: what goes to registers is refused.
+/// No other slave answers: what goes to registers is refused. The SDRAM controller's are written directly.
 struct NoRegisters : sc_core::sc_module, MemTargetIf {
   MemTargetSocket<32> socket{"socket"};
+  tlm_utils::simple_initiator_socket<NoRegisters> sdram{"sdram"};
   explicit NoRegisters(sc_core::sc_module_name name) : sc_module(name) { socket.bind(*this); }
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override {
     return tlm::TLM_COMPLETED;
@@ -52,6 +53,7 @@ struct Board {
       : scr("scr", xbar_params, ddr_params, {.ram_size = 2 * kRamBytes}, strict) {
     scr.clk(scr_clk);
     scr.config_socket.bind(registers.socket);
+    registers.sdram.bind(ddr.reg_socket);
     scr.ram_socket.bind(slave.memory);
     ddr.ddr_clk(ddr_clk);
     ddr.scr_clk(scr_clk);
