@@ -32,6 +32,9 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
     cpld = std::make_unique<EvmCpld>("cpld", params.devices);
     dm365.config.to(kChipSelect1).bind(cpld->reg_socket);
   }
+  platform.add(dm365.platform);
+  platform.add("display", sink);
+  if (cpld) platform.add("cpld", *cpld);
 
   dm365.on_reset = [this](const std::string& cause) { reset_asked(cause); };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {

@@ -18,6 +18,8 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
   }
   for (std::size_t i = 0; i < kStatCount; ++i)
     latency[i] = std::make_unique<LatencyStats>(std::string(kStatNames[i]));
+  for (auto& s : crossbar_.stats) add_statistics(*s);
+  for (auto& s : latency) add_statistics(*s);
   for (std::size_t i = 0; i < kSlaveCount; ++i) {
     slave_ports_[i].owner = this;
     slave_ports_[i].slave = static_cast<Slave>(i);

@@ -8,6 +8,7 @@
 
 #include "model/bus/core/crossbar.h"
 #include "model/bus/core/latency_stats.h"
+#include "model/common/block.h"
 #include "model/common/lookahead.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
@@ -23,7 +24,10 @@ struct AddressMap {
   std::uint32_t ram_base = 0x1'0000, ram_size = 0;
 };
 
-class Scr final : public sc_core::sc_module, public MemoryPathIf, private XbarHost {
+class Scr final : public sc_core::sc_module,
+                  public Block,
+                  public MemoryPathIf,
+                  private XbarHost {
  public:
   using TargetSocket = MemTargetSocket<32>;
   template <class T>

@@ -6,6 +6,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "model/common/block.h"
 #include "model/common/check.h"
 #include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
@@ -15,11 +16,12 @@ namespace fovea {
 /// Base of every peripheral: b_transport on the block's registers. Called by the configuration bus
 /// with kernel time = local time (its latency is modelled there), so it never waits. The payload's
 /// address is the offset in the block. transport_dbg reads without side effects.
-class BusTarget : public sc_core::sc_module {
+class BusTarget : public sc_core::sc_module, public Block {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
   const RegBank& bank() const { return bank_; }
   RegBank& bank() { return bank_; }
+  BusTarget* registers() final { return this; }
   bool gated() const { return !clocked(); }
   /// Looks on at all accesses; null: nobody.
   void observe(RegisterObserver* observer) { observer_ = observer; }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "model/common/census.h"
+
 namespace fovea {
 
 class Reg;
@@ -109,7 +111,7 @@ enum class Access { kOk, kNoRegister, kMisaligned };
 /// A block's registers. Reads and writes of 1, 2 or 4 bytes; byte lanes are merged on a write.
 /// Writes to read-only and uncovered bits are lost and counted; uncovered bits read as their reset
 /// value.
-class RegBank {
+class RegBank : public Census<RegBank> {
  public:
   explicit RegBank(std::string name) : name_(std::move(name)) {}
   RegBank(const RegBank&) = delete;

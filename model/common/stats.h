@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "model/common/census.h"
+
 namespace fovea {
 
 class StatGroup;
@@ -86,7 +88,7 @@ class Histogram {
 };
 
 /// A block's statistics; `prefix` is the dotted name of the block.
-class StatGroup {
+class StatGroup : public Census<StatGroup> {
  public:
   explicit StatGroup(std::string prefix) : prefix_(std::move(prefix)) {}
   StatGroup(const StatGroup&) = delete;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <systemc>
 
+#include "model/common/block.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/quiet.h"
 #include "model/common/sc_ports.h"
@@ -27,7 +28,7 @@ struct TcmStats : StatGroup {
 /// One burst after the other, in the order of their arrival. Each begins and ends in the quiet phase of
 /// its instant, so that the core's own accesses of that instant come before. It stands still while the
 /// core's clock does.
-class TcmDma : public sc_core::sc_module, public MemTargetIf {
+class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
  public:
   MemTargetSocket<32> socket{"socket"};
   ClockIn clk{"clk"};

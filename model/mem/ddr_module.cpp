@@ -24,6 +24,7 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
   SC_HAS_PROCESS(DdrModule);
   socket.bind(*this);
   lookahead.bind(*this);
+  add_statistics(controller_.stats);
   SC_METHOD(clocks_changed);
   sensitive << ddr_clk << scr_clk;
   SC_METHOD(enabled_changed);

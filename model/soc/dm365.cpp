@@ -26,21 +26,6 @@ cpu::RegionMap regions(const bus::AddressMap& map, std::size_t internal_bytes) {
 
 }  // namespace
 
-void Dm365Params::declare(ParamSet& set) {
-  cpu.declare(set);
-  set.add(crossbar);
-  for (auto& port : crossbar.ports) set.add(*port);
-  set.add(config_bus);
-  for (auto& load : loads) set.add(load);
-  set.add(ddr);
-  set.add(edma);
-  set.add(pll);
-  set.add(psc);
-  set.add(system);
-  set.add(aintc);
-  set.add(vpss);
-}
-
 namespace {
 
 std::vector<bus::ConfigBus::BlockSpec> with(std::vector<bus::ConfigBus::BlockSpec> blocks,
@@ -83,6 +68,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   wire_registers();
   wire_interrupts();
   wire_video();
+  list_blocks();
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
   for (auto& level : tc_priority_) sensitive << level;
@@ -92,6 +78,32 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   SC_METHOD(watch_reset);
   sensitive << reset_asked_ << misc_;
   dont_initialize();
+}
+
+void Dm365::list_blocks() {
+  platform.add("arm", arm);
+  platform.add("scr", scr);
+  platform.add("waits", *this);
+  for (auto& w : waits) add_statistics(*w);
+  platform.add("config", config);
+  platform.add("ddr", ddr);
+  platform.add("edma", edma);
+  platform.add("tcm_dma", tcm_dma);
+  platform.add("uart0", uart0);
+  platform.add("uart1", uart1);
+  platform.add("i2c", i2c);
+  platform.add("system", system);
+  platform.add("pll1", pll1);
+  platform.add("pll2", pll2);
+  platform.add("psc", psc);
+  platform.add("aintc", aintc);
+  platform.add("gpio", gpio);
+  for (std::size_t i = 0; i < timers.size(); ++i)
+    platform.add("timer" + std::to_string(i), *timers[i]);
+  platform.add("vpss", vpss);
+  platform.add("isif", isif);
+  platform.add("osd", osd);
+  platform.add("venc", venc);
 }
 
 void Dm365::wire_clocks() {

@@ -11,6 +11,7 @@
 #include "model/bus/load_generator.h"
 #include "model/bus/scr.h"
 #include "model/bus/wait_stats.h"
+#include "model/common/block.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
@@ -34,24 +35,23 @@
 
 namespace fovea::soc {
 
-struct Dm365Params {
-  cpu::CpuParams cpu;
-  bus::CrossbarParams crossbar;
-  bus::ConfigBusParams config_bus;
-  dma::EdmaParams edma;
-  std::array<bus::LoadParams, 4> loads{{bus::LoadParams("load"), bus::LoadParams("load.1"),
-                                        bus::LoadParams("load.2"), bus::LoadParams("load.3")}};
-  mem::DdrParams ddr;
-  periph::PllParams pll;
-  periph::PscParams psc;
-  periph::SystemParams system;
-  periph::AintcParams aintc;
-  video::VpssParams vpss;
-  void declare(ParamSet& set);
+struct Dm365Params : ParamTree {
+  Declared<cpu::CpuParams> cpu{*this};
+  Declared<bus::CrossbarParams> crossbar{*this};
+  Declared<bus::ConfigBusParams> config_bus{*this};
+  std::array<Declared<bus::LoadParams>, 4> loads{
+      {{*this, "load"}, {*this, "load.1"}, {*this, "load.2"}, {*this, "load.3"}}};
+  Declared<mem::DdrParams> ddr{*this};
+  Declared<dma::EdmaParams> edma{*this};
+  Declared<periph::PllParams> pll{*this};
+  Declared<periph::PscParams> psc{*this};
+  Declared<periph::SystemParams> system{*this};
+  Declared<periph::AintcParams> aintc{*this};
+  Declared<video::VpssParams> vpss{*this};
 };
 
 /// Outside pins: osc, the decoder's video input, the display output, I2C, UART0, GPIO.
-class Dm365 : public sc_core::sc_module {
+class Dm365 : public sc_core::sc_module, public Block {
  public:
   /// @param entry where the core starts: the ROM boot loader's work is done by whoever loads it
   /// @param external the board's devices on the asynchronous memory interface, each to be bound to
@@ -89,6 +89,8 @@ class Dm365 : public sc_core::sc_module {
   video::Venc venc;
   std::vector<std::unique_ptr<bus::LoadGenerator>> loads;
   trace::BusTap tap{"tap"};
+  /// All blocks of the chip.
+  Platform platform;
 
   /// The chip asks to be reset, with the cause. Nothing here resets itself yet: whoever sets this
   /// ends the simulation at this instant.
@@ -102,6 +104,7 @@ class Dm365 : public sc_core::sc_module {
   std::vector<std::unique_ptr<bus::WaitStats>> waits;
 
  private:
+  void list_blocks();
   void route_priorities();
   void set_wait_states();
   void watch_reset();

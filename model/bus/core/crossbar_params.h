@@ -62,7 +62,7 @@ struct CrossbarParams : ParamGroup {
   const MasterPortParams& port(Master m) const { return *ports[stat_index(m)]; }
   CrossbarParams() : ParamGroup("bus") {
     for (std::size_t i = 0; i < kStatCount; ++i)
-      ports[i] = std::make_unique<MasterPortParams>(static_cast<Master>(i));
+      add_part(*(ports[i] = std::make_unique<MasterPortParams>(static_cast<Master>(i))));
   }
 };
 

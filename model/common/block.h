@@ -1,0 +1,74 @@
+// What a block of the chip or the board says of itself, and the list of all blocks.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/common/check.h"
+#include "model/common/stats.h"
+
+namespace fovea {
+
+class BusTarget;
+
+/// Base of every block. A block states in its constructor what it consists of; whoever needs all
+/// statistics or all registers walks the Platform instead of keeping a list.
+class Block {
+ public:
+  virtual ~Block() = default;
+  const std::vector<StatGroup*>& statistics() const { return statistics_; }
+  /// Groups that count in a window of the block's own, such as the core's, which opens and closes at
+  /// instruction boundaries. The walk neither resets nor reports them.
+  const std::vector<const StatGroup*>& own_windows() const { return own_windows_; }
+  /// The block's registers on the configuration bus; null if it has none.
+  virtual BusTarget* registers() { return nullptr; }
+
+ protected:
+  /// The group is reset when the measured window opens and reported when it closes.
+  void add_statistics(StatGroup& group) { statistics_.push_back(&group); }
+  void add_own_window(const StatGroup& group) { own_windows_.push_back(&group); }
+
+ private:
+  std::vector<StatGroup*> statistics_;
+  std::vector<const StatGroup*> own_windows_;
+};
+
+/// The blocks of a chip or a board, each under the name by which tools show it.
+class Platform {
+ public:
+  struct Entry {
+    std::string name;
+    Block* block;
+  };
+
+  void add(std::string name, Block& block) {
+    for (const Entry& e : entries_) {
+      FOVEA_CHECK(e.name != name, "two blocks named " + name);
+      FOVEA_CHECK(e.block != &block, "block added twice: " + name);
+    }
+    entries_.push_back({std::move(name), &block});
+  }
+  /// Adds all blocks of a part of this platform, for example those of the chip on a board.
+  void add(const Platform& part) {
+    for (const Entry& e : part.entries_) add(e.name, *e.block);
+  }
+  const std::vector<Entry>& blocks() const { return entries_; }
+
+  /// Calls f(group) for each group of statistics.
+  template <class F>
+  void each_statistics(F f) const {
+    for (const Entry& e : entries_)
+      for (StatGroup* g : e.block->statistics()) f(*g);
+  }
+  /// Calls f(name, target) for each block with registers.
+  template <class F>
+  void each_registers(F f) const {
+    for (const Entry& e : entries_)
+      if (BusTarget* t = e.block->registers()) f(e.name, *t);
+  }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace fovea
