@@ -8,12 +8,11 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const Addre
          bool strict)
     : sc_module(name), map_(map), strict_(strict), crossbar_(params, *this) {
   SC_HAS_PROCESS(Scr);
-  for (std::size_t i = 0; i < kMasterCount; ++i) {
-    const auto m = static_cast<Master>(i);
-    target[i] = std::make_unique<TargetSocket>(
-        ("target_" + std::string(kMasterNames[i])).c_str());
+  for (const MasterInfo& m : kMasters.rows) {
+    const std::size_t i = index(m.id);
+    target[i] = std::make_unique<TargetSocket>(("target_" + std::string(m.name)).c_str());
     targets_[i].owner = this;
-    targets_[i].master = m;
+    targets_[i].master = m.id;
     target[i]->bind(targets_[i]);
   }
   for (std::size_t i = 0; i < kStatCount; ++i)

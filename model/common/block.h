@@ -1,15 +1,26 @@
 // What a block of the chip or the board says of itself, and the list of all blocks.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/common/check.h"
+#include "model/common/masters.h"
+#include "model/common/mem_sockets.h"
 #include "model/common/stats.h"
 
 namespace fovea {
 
 class BusTarget;
+
+/// A block's port as a memory master.
+struct MasterPort {
+  Master id;
+  MemInitiatorSocket<32>* socket;
+  unsigned outstanding;  ///< requests it may have under way; 0: it issues none with these parameters
+  Pace pace;
+};
 
 /// Base of every block. A block states in its constructor what it consists of; whoever needs all
 /// statistics or all registers walks the Platform instead of keeping a list.
@@ -20,17 +31,27 @@ class Block {
   /// Groups that count in a window of the block's own, such as the core's, which opens and closes at
   /// instruction boundaries. The walk neither resets nor reports them.
   const std::vector<const StatGroup*>& own_windows() const { return own_windows_; }
+  const std::vector<MasterPort>& masters() const { return masters_; }
   /// The block's registers on the configuration bus; null if it has none.
   virtual BusTarget* registers() { return nullptr; }
 
  protected:
   /// The group is reset when the measured window opens and reported when it closes.
   void add_statistics(StatGroup& group) { statistics_.push_back(&group); }
+  /// The port is bound to that master's port of the crossbar. `pace`, where it is not that of the row.
+  void add_master(Master id, MemInitiatorSocket<32>& socket, unsigned outstanding,
+                  std::optional<Pace> pace = {}) {
+    const MasterInfo& row = master_info(id);
+    FOVEA_CHECK(outstanding <= row.most_outstanding,
+                std::string(row.name) + " has more requests under way than its row allows");
+    masters_.push_back({id, &socket, outstanding, pace.value_or(row.pace)});
+  }
   void add_own_window(const StatGroup& group) { own_windows_.push_back(&group); }
 
  private:
   std::vector<StatGroup*> statistics_;
   std::vector<const StatGroup*> own_windows_;
+  std::vector<MasterPort> masters_;
 };
 
 /// The blocks of a chip or a board, each under the name by which tools show it.
@@ -59,6 +80,12 @@ class Platform {
   void each_statistics(F f) const {
     for (const Entry& e : entries_)
       for (StatGroup* g : e.block->statistics()) f(*g);
+  }
+  /// Calls f(port) for each port of each block that is a memory master.
+  template <class F>
+  void each_master(F f) const {
+    for (const Entry& e : entries_)
+      for (const MasterPort& p : e.block->masters()) f(p);
   }
   /// Calls f(name, target) for each block with registers.
   template <class F>

@@ -63,12 +63,12 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
           i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
   arm.core().set_regions(
       regions(address_map(params.ddr, internal_ram.size()), internal_ram.size()));
+  list_blocks();
   wire_clocks();
   wire_memory();
   wire_registers();
   wire_interrupts();
   wire_video();
-  list_blocks();
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
   for (auto& level : tc_priority_) sensitive << level;
@@ -84,7 +84,6 @@ void Dm365::list_blocks() {
   platform.add("arm", arm);
   platform.add("scr", scr);
   platform.add("waits", *this);
-  for (auto& w : waits) add_statistics(*w);
   platform.add("config", config);
   platform.add("ddr", ddr);
   platform.add("edma", edma);
@@ -104,6 +103,8 @@ void Dm365::list_blocks() {
   platform.add("isif", isif);
   platform.add("osd", osd);
   platform.add("venc", venc);
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    platform.add(loads[i]->basename(), *loads[i]);
 }
 
 void Dm365::wire_clocks() {
@@ -178,26 +179,21 @@ void Dm365::wire_clocks() {
 
 void Dm365::wire_memory() {
   arm.path(scr.path);
-  arm.sockets[cpu::Arm926::kInstructionPort]->bind(*scr.target[index(Master::kArmI)]);
-  arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
-  isif.memory.socket.bind(*scr.target[index(Master::kVpfe)]);
-  osd.memory.socket.bind(*scr.target[index(Master::kVpbe)]);
-  for (auto& load : loads) {
-    load->bind_ports([this](auto& socket, Master m) { socket.bind(*scr.target[index(m)]); });
-    load->sdram_initialised(ddr.initialised);
-  }
-  std::vector<Master> masters{Master::kArmI, Master::kArmD, Master::kVpfe, Master::kVpbe};
-  for (const auto& load : params_.loads)
-    if (load.active()) masters.push_back(load.reader());
-  for (const Master m : masters)
+  platform.each_master([this](const MasterPort& p) {
+    p.socket->bind(*scr.target[index(p.id)]);
+    for (const auto& w : waits)
+      if (w->is_of(p.id)) return;
     waits.push_back(std::make_unique<bus::WaitStats>(
-        m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
+        p.id, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits}));
+    add_statistics(*waits.back());
+  });
+  for (auto& load : loads) load->sdram_initialised(ddr.initialised);
   scr.ddr_socket.bind(ddr.socket);
   scr.ram_socket.bind(tcm_dma.socket);
   scr.ddr_lookahead.bind(ddr.lookahead);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
-  vpss.write_priority(priority_[index(Master::kVpfe)]);
-  vpss.read_priority(priority_[index(Master::kVpbe)]);
+  vpss.write_priority(priority_[index(master_with(PrioritySource::kVideoWrite))]);
+  vpss.read_priority(priority_[index(master_with(PrioritySource::kVideoRead))]);
   for (unsigned tc = 0; tc < kTransferControllers; ++tc) edma.priority[tc](tc_priority_[tc]);
 }
 
@@ -304,35 +300,19 @@ void Dm365::wire_video() {
 }
 
 std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
-  using trace::Pace;
-  const auto places = [](const IntParam& p) { return static_cast<unsigned>(p()); };
-  const unsigned captured = places(params_.vpss.write_buffer_bursts);
-  const unsigned shown = places(params_.vpss.read_outstanding);
-  std::vector<trace::BusRecorder::MasterSetup> masters = {
-      {Master::kArmI, Pace::kCore, 1, 1, true},
-      {Master::kArmD, Pace::kCore, 1, 1, true},
-      {Master::kVpfe, Pace::kSampled, captured, captured, true},
-      {Master::kVpbe, Pace::kLines, shown, shown, true}};
-  for (const auto& load : params_.loads) {
-    if (!load.active()) continue;
-    const unsigned n = places(load.outstanding);
-    if (load.reader() == load.writer()) {
-      masters.push_back({load.reader(), Pace::kRepeating, n, n, true});
-    } else {
-      // Both sides: a copy's wait for each other, a mixture's take each other's places.
-      if (load.reads())
-        masters.push_back({load.reader(), Pace::kRepeating, n, n, true, {}});
-      if (load.writes())
-        masters.push_back({load.writer(), load.copies() ? Pace::kData : Pace::kRepeating, n, n,
-                           true, {}});
-      if (load.reads() && load.writes()) {
-        masters[masters.size() - 2].partner = load.writer();
-        masters.back().partner = load.reader();
-      }
+  const auto ratio = static_cast<unsigned>(params_.cpu.ahb_ratio());
+  std::vector<trace::BusRecorder::MasterSetup> masters;
+  for (const Platform::Entry& e : platform.blocks())
+    for (const MasterPort& p : e.block->masters()) {
+      if (p.outstanding == 0) continue;
+      auto& setup = masters.emplace_back(trace::BusRecorder::MasterSetup{
+          p.id, p.pace, p.outstanding, p.outstanding, true, {}});
+      // The sides of one block wait for each other's completions.
+      for (const MasterPort& other : e.block->masters())
+        if (other.outstanding > 0 && master_info(p.id).partner == other.id) setup.partner = other.id;
     }
-  }
   auto recorder = std::make_unique<trace::BusRecorder>(
-      masters, places(params_.cpu.ahb_ratio), [this](const MemRequest* r) {
+      masters, ratio, [this](const MemRequest* r) {
         const cpu::Core& core = arm.core();
         trace::CoreState s{core.counts().idle, core.room_waits(), core.drains()};
         s.origin = core.clock().edge_at_or_after(0);
@@ -348,23 +328,36 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   return recorder;
 }
 
-/// MSTPRI0.2:0 is the ARM's memory priority. The remap engine is no part of the chip: it takes
-/// MJCP's place, the imaging coprocessor's (assumed). A transfer controller has one priority for both
-/// sides.
+/// Drives the priorities that come from the system module, the EDMA and parameters; the video
+/// subsystem drives its own.
 void Dm365::route_priorities() {
   const std::uint32_t mstpri0 = mstpri0_.read();
-  priority_[index(Master::kArmI)].write(mstpri0 & 7u);
-  priority_[index(Master::kArmD)].write(mstpri0 & 7u);
-  priority_[index(Master::kRemapEngine)].write(mstpri0 >> 16 & 7u);
-  for (unsigned tc = 0; tc < kTransferControllers; ++tc) {
-    priority_[index(edma_read(tc))].write(tc_priority_[tc].read());
-    priority_[index(edma_write(tc))].write(tc_priority_[tc].read());
+  for (const MasterInfo& m : kMasters.rows) {
+    auto& priority = priority_[index(m.id)];
+    switch (m.priority) {
+      case PrioritySource::kArm:
+        priority.write(mstpri0 & 7u);
+        break;
+      case PrioritySource::kImcop:
+        priority.write(mstpri0 >> 16 & 7u);
+        break;
+      case PrioritySource::kQueue:
+        priority.write(tc_priority_[m.unit].read());
+        break;
+      case PrioritySource::kParameter:
+        priority.write(load_priority(m.id));
+        break;
+      case PrioritySource::kVideoRead:
+      case PrioritySource::kVideoWrite:
+        break;
+    }
   }
-  std::uint32_t load = 7;
-  for (const auto& l : params_.loads)
-    if (l.active() && l.reader() == Master::kLoad)
-      load = static_cast<std::uint32_t>(l.priority());
-  priority_[index(Master::kLoad)].write(load);
+}
+
+std::uint32_t Dm365::load_priority(Master m) const {
+  for (const bus::LoadParams& l : params_.loads)
+    if (l.active() && l.reader() == m) return static_cast<std::uint32_t>(l.priority());
+  return 7;
 }
 
 }  // namespace fovea::soc

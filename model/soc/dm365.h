@@ -106,6 +106,7 @@ class Dm365 : public sc_core::sc_module, public Block {
  private:
   void list_blocks();
   void route_priorities();
+  std::uint32_t load_priority(Master m) const;
   void set_wait_states();
   void watch_reset();
   void wire_clocks();

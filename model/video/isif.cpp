@@ -14,6 +14,7 @@ Isif::Isif(sc_core::sc_module_name name, const VpssParams& params)
       params_(params) {
   if (params.burst() & (params.burst() - 1)) throw UserError("vpss.burst must be 32B or 64B");
   add_statistics(stats);
+  add_master(Master::kVpfe, memory.socket, static_cast<unsigned>(params.write_buffer_bursts()));
   video.bind(*this);
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
   regs.syncen.on_write([this](std::uint32_t) { write_syncen(); });

@@ -28,7 +28,7 @@ class BoardExecutor final : public Executor {
   void declare(ParamSet& set) override {
     set.add(cpu_);
     set.add_alone(crossbar_);
-    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[index(m)]);
+    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[stat_index(m)]);
     set.add(config_bus_);
     set.add(ddr_);
     set.add(clocks_);
@@ -109,8 +109,8 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
 
 void BoardExecutor::collect_memory(std::vector<StatRow>& rows) const {
   for (const auto m : {Master::kArmI, Master::kArmD}) {
-    collect(*board_->scr.crossbar().stats[index(m)], rows);
-    collect(*board_->scr.latency[index(m)], rows);
+    collect(*board_->scr.crossbar().stats[stat_index(m)], rows);
+    collect(*board_->scr.latency[stat_index(m)], rows);
   }
   collect(board_->ddr.controller().stats, rows);
 }

@@ -9,7 +9,7 @@ namespace fovea::bus {
 Crossbar::Crossbar(const CrossbarParams& params, XbarHost& host)
     : timeline(params.timeline_interval()), host_(host) {
   for (std::size_t i = 0; i < kStatCount; ++i)
-    stats[i] = std::make_unique<MasterStats>(static_cast<Master>(i));
+    stats[i] = std::make_unique<MasterStats>(master_of_stat(i));
   for (std::size_t i = 0; i < kMasterCount; ++i) {
     const auto m = static_cast<Master>(i);
     const MasterPortParams& from = params.port(m);
