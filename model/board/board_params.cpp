@@ -22,7 +22,7 @@ bool ends_by_frames(std::string_view until) {
 
 }  // namespace
 
-BoardParams::BoardParams() {
+BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks)) {
   run.frames.matters_only("frames in run.until", {&run.until},
                           [this] { return ends_by_frames(run.until()); });
   run.start_limit.matters_only("run.until = frames", {&run.until},

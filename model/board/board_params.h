@@ -177,8 +177,9 @@ struct BoardParams : ParamTree {
   Declared<LensParams> lens{*this};
   Declared<video::SceneParams> camera{*this};
   Declared<video::Tvp5146Params> decoder{*this};
-  Declared<soc::Dm365Params> soc{*this};
-  BoardParams();
+  Declared<soc::Dm365Params> soc;
+  /// @param blocks of the chip
+  explicit BoardParams(soc::Placements blocks = soc::dm365_blocks());
   /// Size of the standard's picture, and of what is corrected and shown.
   unsigned raster_width() const { return 720; }
   unsigned raster_height() const { return video.standard.is("pal") ? 576 : 480; }

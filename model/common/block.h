@@ -8,6 +8,7 @@
 #include "model/common/check.h"
 #include "model/common/masters.h"
 #include "model/common/mem_sockets.h"
+#include "model/common/sc_ports.h"
 #include "model/common/stats.h"
 
 namespace fovea {
@@ -22,6 +23,10 @@ struct MasterPort {
   Pace pace;
 };
 
+/// Any input or output of that kind, whether or not it must be bound.
+using PowerGateIn = sc_core::sc_port_b<sc_core::sc_signal_in_if<bool>>;
+using InterruptOut = sc_core::sc_port_b<sc_core::sc_signal_inout_if<bool>>;
+
 /// Base of every block. A block states in its constructor what it consists of; whoever needs all
 /// statistics or all registers walks the Platform instead of keeping a list.
 class Block {
@@ -32,6 +37,13 @@ class Block {
   /// instruction boundaries. The walk neither resets nor reports them.
   const std::vector<const StatGroup*>& own_windows() const { return own_windows_; }
   const std::vector<MasterPort>& masters() const { return masters_; }
+  const std::vector<ClockIn*>& clocks() const { return clocks_; }
+  const std::vector<PowerGateIn*>& power_gates() const { return power_gates_; }
+  struct Interrupt {
+    std::string name;  ///< of the source, such as "tint12"
+    InterruptOut* port;
+  };
+  const std::vector<Interrupt>& interrupts() const { return interrupts_; }
   /// The block's registers on the configuration bus; null if it has none.
   virtual BusTarget* registers() { return nullptr; }
 
@@ -46,12 +58,22 @@ class Block {
                 std::string(row.name) + " has more requests under way than its row allows");
     masters_.push_back({id, &socket, outstanding, pace.value_or(row.pace)});
   }
+  /// The functional clock, the gate of the power and sleep controller, and an interrupt line: whoever
+  /// places the block binds them. Interrupts keep the order of the calls.
+  void add_clock(ClockIn& port) { clocks_.push_back(&port); }
+  void add_power_gate(PowerGateIn& port) { power_gates_.push_back(&port); }
+  void add_interrupt(std::string name, InterruptOut& port) {
+    interrupts_.push_back({std::move(name), &port});
+  }
   void add_own_window(const StatGroup& group) { own_windows_.push_back(&group); }
 
  private:
   std::vector<StatGroup*> statistics_;
   std::vector<const StatGroup*> own_windows_;
   std::vector<MasterPort> masters_;
+  std::vector<ClockIn*> clocks_;
+  std::vector<PowerGateIn*> power_gates_;
+  std::vector<Interrupt> interrupts_;
 };
 
 /// The blocks of a chip or a board, each under the name by which tools show it.

@@ -46,6 +46,7 @@ struct EdmaRegs : RegBank {
 /// the most urgent one; without a queue it keeps the lowest.
 class EdmaCc : public BusTarget {
  public:
+  using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
   static constexpr unsigned kQueues = 4;
   EdmaRegs regs;

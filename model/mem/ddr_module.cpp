@@ -21,6 +21,7 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params)
       sdtimr_(regs.sdtimr.get()),
       sdtimr2_(regs.sdtimr2.get()),
       cl_(regs.sdbcr.cl.get()) {
+  add_power_gate(enabled);
   SC_HAS_PROCESS(DdrModule);
   socket.bind(*this);
   lookahead.bind(*this);

@@ -24,6 +24,7 @@ namespace fovea::mem {
 class DdrModule final : public BusTarget, public PassiveIf, public MemTargetIf,
                         private DdrClient {
  public:
+  using Params = DdrParams;
   MemTargetSocket<64> socket{"socket"};
   sc_core::sc_export<PassiveIf> lookahead{"lookahead"};
   ClockIn ddr_clk{"ddr_clk"};

@@ -96,6 +96,7 @@ struct PllRegs : RegBank {
 /// instant of the effect.
 class PllController : public WithRegs<PllRegs>, public BusTarget {
  public:
+  using Params = PllParams;
   SC_HAS_PROCESS(PllController);
   ClockIn osc{"osc"};
   sc_core::sc_vector<OptionalOut<Frequency>> sysclk;  ///< [0] is SYSCLK1

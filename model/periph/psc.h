@@ -80,6 +80,7 @@ struct PscRegs : RegBank {
 /// on is assumed. Not modelled: power domains other than 0, errors, emulation.
 class Psc : public WithRegs<PscRegs>, public BusTarget {
  public:
+  using Params = PscParams;
   SC_HAS_PROCESS(Psc);
   sc_core::sc_vector<OptionalOut<bool>> enabled{"enabled", kLpscCount};  ///< [n]: LPSC n, state 3
 

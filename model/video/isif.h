@@ -49,6 +49,7 @@ struct CaptureFrame {
 /// filters, formatter, own HD/VD.
 class Isif : public BusTarget, public Bt656If {
  public:
+  using Params = VpssParams;
   sc_core::sc_export<Bt656If> video{"video"};
   BurstMaster memory;                           ///< bind memory.socket
   sc_core::sc_vector<Pulse> vdint{"vdint", 3};  ///< bind vdint[i].out

@@ -41,6 +41,7 @@ class OsdLineIf : public virtual sc_core::sc_interface {
 /// Not modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, background other than black.
 class Osd : public BusTarget, public OsdLineIf {
  public:
+  using Params = VpssParams;
   struct Latch {
     Picoseconds time;
     bool f;

@@ -19,6 +19,7 @@ namespace fovea::video {
 /// the display when their last sample is out; no process runs more often than once a line.
 class Venc : public BusTarget {
  public:
+  using Params = VpssParams;
   ClockIn clock{"clock"};
   sc_core::sc_port<OsdLineIf> osd{"osd"};
   sc_core::sc_port<DisplayLineIf> display{"display"};

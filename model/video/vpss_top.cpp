@@ -3,6 +3,9 @@
 namespace fovea::video {
 
 VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
+  add_power_gate(psc_enabled);
+  for (unsigned k = 0; k < kOutputs; ++k)
+    add_interrupt("vpssint" + std::to_string(k), vpssint[k]);
   // Outputs are driven by processes of this block only: register writes come from several others.
   for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})
     r->on_write([this](std::uint32_t) { selection_.soon(); });
