@@ -5,12 +5,12 @@
 namespace fovea::board {
 namespace {
 
-constexpr const char* kChipSelect1 = "aemif_ce1";
-
 /// What lies on the asynchronous memory interface.
-std::vector<bus::ConfigBus::BlockSpec> external_devices(const DevicesParams& devices) {
+soc::Placements external_devices(const DevicesParams& devices) {
   if (!devices.cpld()) return {};
-  return {{kChipSelect1, 0x0400'0000, EvmCpld::kBytes, bus::ConfigBus::Speed::kSlow}};
+  return {soc::place<EvmCpld>({"cpld", "CPLD of the EVM", 0x0400'0000, EvmCpld::kBytes,
+                               bus::ConfigBus::Speed::kSlow},
+                              std::cref(devices))};
 }
 
 }  // namespace
@@ -28,10 +28,8 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
   decoder.video.bind(dm365.isif.video);
   dm365.i2c.targets.bind(decoder.i2c);
   set_switches();
-  if (params.devices.cpld()) {
-    cpld = std::make_unique<EvmCpld>("cpld", params.devices);
-    dm365.config.to(kChipSelect1).bind(cpld->reg_socket);
-  }
+  platform.add(dm365.platform);
+  platform.add("display", sink);
 
   dm365.on_reset = [this](const std::string& cause) { reset_asked(cause); };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {

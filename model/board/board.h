@@ -99,7 +99,7 @@ class Board : public sc_core::sc_module {
   soc::Dm365 dm365;
   video::Tvp5146 decoder;
   video::DisplaySink sink{"sink"};
-  std::unique_ptr<EvmCpld> cpld;  ///< with board.cpld
+  Platform platform;              ///< all blocks of the board, those of the chip included
 
  private:
   void reset_asked(const std::string& cause);

@@ -22,7 +22,7 @@ bool ends_by_frames(std::string_view until) {
 
 }  // namespace
 
-BoardParams::BoardParams() {
+BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks)) {
   run.frames.matters_only("frames in run.until", {&run.until},
                           [this] { return ends_by_frames(run.until()); });
   run.start_limit.matters_only("run.until = frames", {&run.until},
@@ -41,10 +41,10 @@ BoardParams::BoardParams() {
   // Ports that only a synthetic load drives.
   std::vector<const ParamBase*> loads;
   for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});
-  for (std::size_t i = 0; i < kStatCount; ++i) {
-    const std::string name(kStatNames[i]);
-    if (!name.starts_with("edma") && name != "remap_engine" && name != "load") continue;
-    for (ParamBase* p : soc.crossbar.ports[i]->params())
+  for (const MasterInfo& m : kMasters.rows) {
+    if (!m.spare || m.side == Side::kWrites) continue;
+    const std::string name(m.statistics);
+    for (ParamBase* p : soc.crossbar.ports[stat_index(m.id)]->params())
       p->matters_only("a load with load.port = " + name, loads, [this, name] {
         return std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
           return load.active() && load.port.is(name);

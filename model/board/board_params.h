@@ -167,30 +167,19 @@ struct DevicesParams : ParamGroup {
   }
 };
 
-struct BoardParams {
-  RunParams run;
-  DevicesParams devices;
-  UartParams uart0;
-  ClockParams clocks;
-  VideoParams video;
-  FirmwareParams firmware;
-  LensParams lens;
-  video::SceneParams camera;
-  video::Tvp5146Params decoder;
-  soc::Dm365Params soc;
-  BoardParams();
-  void declare(ParamSet& set) {
-    set.add(run);
-    set.add(devices);
-    set.add(uart0);
-    set.add(clocks);
-    set.add(video);
-    set.add(firmware);
-    set.add(lens);
-    set.add(camera);
-    set.add(decoder);
-    soc.declare(set);
-  }
+struct BoardParams : ParamTree {
+  Declared<RunParams> run{*this};
+  Declared<DevicesParams> devices{*this};
+  Declared<UartParams> uart0{*this};
+  Declared<ClockParams> clocks{*this};
+  Declared<VideoParams> video{*this};
+  Declared<FirmwareParams> firmware{*this};
+  Declared<LensParams> lens{*this};
+  Declared<video::SceneParams> camera{*this};
+  Declared<video::Tvp5146Params> decoder{*this};
+  Declared<soc::Dm365Params> soc;
+  /// @param blocks of the chip
+  explicit BoardParams(soc::Placements blocks = soc::dm365_blocks());
   /// Size of the standard's picture, and of what is corrected and shown.
   unsigned raster_width() const { return 720; }
   unsigned raster_height() const { return video.standard.is("pal") ? 576 : 480; }

@@ -25,6 +25,7 @@ ConfigBus::ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params
                      QuietPhase& quiet, const std::vector<BlockSpec>& blocks)
     : sc_module(name), params_(params), quiet_(quiet) {
   socket.bind(*this);
+  add_statistics(stats);
   for (const BlockSpec& s : blocks) {
     for (const auto& b : blocks_)
       FOVEA_CHECK(s.base + s.size <= b->base || b->base + b->size <= s.base,

@@ -8,6 +8,7 @@
 #include <tlm>
 #include <vector>
 
+#include "model/common/block.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/param.h"
 #include "model/common/quiet.h"
@@ -46,7 +47,7 @@ struct ConfigBusStats : StatGroup {
 /// quiet phase of its instant, so that the register is seen after everything else that happens at
 /// that time. One access at a time per master port; several masters' accesses of one instant go by
 /// master number.
-class ConfigBus : public sc_core::sc_module, public MemTargetIf {
+class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
  public:
   enum class Speed { kFast, kSlow };
   MemTargetSocket<32> socket{"socket"};

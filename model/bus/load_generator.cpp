@@ -8,19 +8,17 @@ namespace {
 constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
 constexpr Picoseconds kPause = 10 * kPsPerUs;  // after an error, or while the SDRAM is set up
 constexpr std::uint32_t kSdram = 0x8000'0000u, kInternalRam = 0x1'0000u;
-
-/// Words of LoadParams::port: load, the transfer controllers, the engine.
-Master port_of(std::size_t word, bool write) {
-  if (word == 0) return Master::kLoad;
-  if (word > kTransferControllers) return Master::kRemapEngine;
-  const auto tc = static_cast<unsigned>(word - 1);
-  return write ? edma_write(tc) : edma_read(tc);
-}
-
 }  // namespace
 
-Master LoadParams::reader() const { return port_of(port.index(), false); }
-Master LoadParams::writer() const { return port_of(port.index(), true); }
+std::vector<std::string> LoadParams::ports() {
+  std::vector<std::string> words{std::string(stat_name(Master::kLoad))};
+  for (const MasterInfo& m : kMasters.rows)
+    if (m.spare && m.id != Master::kLoad && m.side != Side::kWrites)
+      words.emplace_back(m.statistics);
+  return words;
+}
+Master LoadParams::reader() const { return kMasters.find(port(), false)->id; }
+Master LoadParams::writer() const { return kMasters.find(port(), true)->id; }
 
 LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& params)
     : sc_module(name),
@@ -32,6 +30,14 @@ LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& par
   const auto report = [this](const BurstMaster::Completion& c) { done(c); };
   reads_.on_done = report;
   if (other_side_) other_side_->on_done = report;
+  const auto outstanding = static_cast<unsigned>(params.outstanding());
+  if (other_side_) {
+    add_master(params.reader(), reads_.socket, params.reads() ? outstanding : 0);
+    add_master(params.writer(), other_side_->socket, params.writes() ? outstanding : 0,
+               params.copies() ? Pace::kData : Pace::kRepeating);
+  } else {
+    add_master(params.reader(), reads_.socket, outstanding);
+  }
   SC_METHOD(fill);
   sensitive << wake_.event();
   dont_initialize();

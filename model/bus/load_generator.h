@@ -9,6 +9,7 @@
 #include <systemc>
 #include <vector>
 
+#include "model/common/block.h"
 #include "model/common/burst_master.h"
 #include "model/common/param.h"
 
@@ -17,7 +18,7 @@ namespace fovea::bus {
 struct LoadParams : ParamGroup {
   using U = IntParam::Unit;
   EnumParam port{*this, "port", "load",
-                 {"load", "edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3", "remap_engine"},
+                 ports(),
                  "bus port of the load: one of its own (load), or that of a master that is not used "
                  "otherwise; an EDMA port reads and writes on separate sides",
                  Origin::kChoice, ""};
@@ -54,6 +55,8 @@ struct LoadParams : ParamGroup {
   }
   bool active() const { return outstanding() > 0; }
   bool copies() const { return kind.is("copy"); }
+  /// The ports that no block of the model uses.
+  static std::vector<std::string> ports();
   /// Where its reads and its writes go out.
   Master reader() const;
   Master writer() const;
@@ -65,19 +68,12 @@ struct LoadParams : ParamGroup {
 /// the SDRAM it pauses while that is not initialised and 10 us longer, since boot loaders write
 /// registers and reset the controller after they have locked its timing. A burst refused with a bus
 /// error is tried again after 10 us.
-class LoadGenerator : public sc_core::sc_module {
+class LoadGenerator : public sc_core::sc_module, public Block {
  public:
   SC_HAS_PROCESS(LoadGenerator);
   LoadGenerator(sc_core::sc_module_name name, const LoadParams& params);
 
   sc_core::sc_in<bool> sdram_initialised{"sdram_initialised"};
-
-  /// Calls `bind(socket, master)` for each port that it drives.
-  template <class Bind>
-  void bind_ports(Bind bind) {
-    bind(reads_.socket, params_.reader());
-    if (other_side_) bind(other_side_->socket, params_.writer());
-  }
 
  private:
   BurstMaster& writes() { return other_side_ ? *other_side_ : reads_; }

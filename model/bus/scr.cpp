@@ -6,16 +6,17 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
          const AddressMap& map, bool strict)
     : sc_module(name), strict_(strict), memory_(params, ddr, map, *this) {
   SC_HAS_PROCESS(Scr);
-  for (std::size_t i = 0; i < kMasterCount; ++i) {
-    const auto m = static_cast<Master>(i);
-    target[i] = std::make_unique<TargetSocket>(
-        ("target_" + std::string(kMasterNames[i])).c_str());
+  for (const MasterInfo& m : kMasters.rows) {
+    const std::size_t i = index(m.id);
+    target[i] = std::make_unique<TargetSocket>(("target_" + std::string(m.name)).c_str());
     targets_[i].owner = this;
-    targets_[i].master = m;
+    targets_[i].master = m.id;
     target[i]->bind(targets_[i]);
   }
   for (std::size_t i = 0; i < kStatCount; ++i)
     latency[i] = std::make_unique<LatencyStats>(std::string(kStatNames[i]));
+  for (auto& s : crossbar().stats) add_statistics(*s);
+  for (auto& s : latency) add_statistics(*s);
   for (std::size_t i = 0; i < kSlaveCount; ++i) {
     slave_ports_[i].owner = this;
     slave_ports_[i].slave = static_cast<Slave>(i);

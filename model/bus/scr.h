@@ -8,6 +8,7 @@
 
 #include "model/bus/core/latency_stats.h"
 #include "model/bus/memory_path.h"
+#include "model/common/block.h"
 #include "model/common/timer.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/sc_ports.h"
@@ -18,7 +19,10 @@ namespace fovea::bus {
 
 using memsys::AddressMap;
 
-class Scr final : public sc_core::sc_module, public MemoryPathIf, private memsys::MemoryHost {
+class Scr final : public sc_core::sc_module,
+                  public Block,
+                  public MemoryPathIf,
+                  private memsys::MemoryHost {
  public:
   using TargetSocket = MemTargetSocket<32>;
   template <class T>

@@ -23,11 +23,13 @@ class WaitStats : public StatGroup {
     add("read.", &MasterWaits::read);
     add("write.", &MasterWaits::write);
   }
+  /// True for each side of a transfer controller.
+  bool is_of(Master m) const { return same(m); }
   std::uint64_t total(Waits MasterWaits::*direction, Culprit c) const {
     std::uint64_t t = 0;
     for (const WaitTable* w : tables_)
       for (std::size_t i = 0; i < kMasterCount; ++i)
-        if (same(i)) t += ((*w)[i].*direction).ps[index(c)];
+        if (same(static_cast<Master>(i))) t += ((*w)[i].*direction).ps[index(c)];
     return t;
   }
 
@@ -63,23 +65,20 @@ class WaitStats : public StatGroup {
       entry(std::string(culprit_name(n.culprit)), {n.culprit}, n.sentence);
     for (std::size_t i = 0; i < kStatCount; ++i) {
       std::vector<Culprit> ports;
-      for (std::size_t k = 0; k < kMasterCount; ++k)
-        if (stat_index(static_cast<Master>(k)) == i)
-          ports.push_back(culprit(static_cast<Master>(k)));
-      if (same(i))
+      for (const MasterInfo& m : kMasters.rows)
+        if (stat_index(m.id) == i) ports.push_back(culprit(m.id));
+      if (i == stat_index(master_))
         entry("own", ports, "waited behind its own earlier requests");
       else
         entry(std::string(kStatNames[i]), ports,
               "waited while " + std::string(kStatNames[i]) + " was served");
     }
   }
-  bool same(std::size_t i) const {
-    return stat_index(static_cast<Master>(i)) == stat_index(master_);
-  }
+  bool same(Master m) const { return stat_index(m) == stat_index(master_); }
   void on_reset() override {
     for (WaitTable* w : tables_)
       for (std::size_t i = 0; i < kMasterCount; ++i)
-        if (same(i)) (*w)[i] = {};
+        if (same(static_cast<Master>(i))) (*w)[i] = {};
   }
 
   Master master_;

@@ -6,6 +6,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "model/common/block.h"
 #include "model/common/check.h"
 #include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
@@ -16,11 +17,12 @@ namespace fovea {
 /// The configuration bus models the latency of the access and calls with local time equal to kernel
 /// time, so b_transport neither waits nor adds a delay. The payload's address is the offset in the
 /// block; accesses are 1, 2 or 4 bytes. transport_dbg reads one word without side effects.
-class BusTarget : public sc_core::sc_module {
+class BusTarget : public sc_core::sc_module, public Block {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
   const RegBank& bank() const { return bank_; }
   RegBank& bank() { return bank_; }
+  BusTarget* registers() final { return this; }
   bool gated() const { return !clocked(); }
   /// Reports every access over the bus to `observer`; null removes the observer.
   void observe(RegisterObserver* observer) { observer_ = observer; }

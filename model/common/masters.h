@@ -2,12 +2,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace fovea {
 
-/// Equal priorities take turns in the order of these numbers. They stand in bus traces: a new master
-/// goes to the end. Read and write side of a transfer controller are masters of their own.
+/// A master's number. Equal priorities take turns in this order, and bus traces hold the numbers, so a
+/// new master goes to the end. All else about a master is its row in kMasters; no other code computes
+/// with these numbers.
 enum class Master : std::uint8_t {
   kArmI, kArmD,
   kEdmaTc0Read, kEdmaTc1Read, kEdmaTc2Read, kEdmaTc3Read,
@@ -18,31 +20,217 @@ enum class Master : std::uint8_t {
 };
 inline constexpr std::size_t kMasterCount = static_cast<std::size_t>(Master::kCount);
 constexpr std::size_t index(Master m) { return static_cast<std::size_t>(m); }
-/// Of ports.
-inline constexpr std::array<std::string_view, kMasterCount> kMasterNames = {
-    "arm_i", "arm_d", "edma_tc0_read", "edma_tc1_read", "edma_tc2_read", "edma_tc3_read",
-    "vpfe", "vpbe", "remap_engine", "load",
-    "edma_tc0_write", "edma_tc1_write", "edma_tc2_write", "edma_tc3_write"};
 
-inline constexpr unsigned kTransferControllers = 4;
-constexpr Master edma_read(unsigned tc) {
-  return static_cast<Master>(index(Master::kEdmaTc0Read) + tc);
+/// What lies between a master and the crossbar; decides the defaults of the port's parameters.
+enum class Bridge : std::uint8_t {
+  kCore,   ///< from the core's AHB: 32 bits, a clock-crossing bridge
+  kVideo,  ///< from the buffers of the video subsystem: 64 bits
+  kDma,    ///< from a DMA engine: 64 bits
+};
+
+/// The register that holds a master's priority on the crossbar.
+enum class PrioritySource : std::uint8_t {
+  kArm,         ///< MSTPRI0.ARM_DMAP of the system module
+  kImcop,       ///< MSTPRI0.IMCOPP
+  kVideoRead,   ///< BCR.RD_PRI of the video subsystem
+  kVideoWrite,  ///< BCR.WR_PRI
+  kQueue,       ///< QUEPRI of the EDMA, through QUETCMAP; `unit` is the transfer controller
+  kParameter,   ///< no register: a parameter of the block
+};
+
+/// How a master's requests are released in a bus trace.
+enum class Pace : std::uint8_t {
+  kCore,       ///< program order, one request a port
+  kSampled,    ///< each at its time
+  kLines,      ///< bursts of a line at a time, those without a slot after the burst they replace
+  kRepeating,  ///< after a completion, of its own or of the partner's records
+  kData,       ///< each with the last beat of a read of its partner, in order
+};
+
+/// Which direction of a block a master is.
+enum class Side : std::uint8_t { kBoth, kReads, kWrites };
+
+struct MasterInfo {
+  Master id{};
+  std::string_view name;        ///< of the port, in traces and debugger output
+  std::string_view statistics;  ///< in statistics and parameters; two sides of a block share it
+  Bridge bridge = Bridge::kDma;
+  PrioritySource priority = PrioritySource::kParameter;
+  unsigned unit = 0;              ///< number within its kind, such as that of a transfer controller
+  unsigned most_outstanding = 1;  ///< requests it may have under way at once
+  Pace pace = Pace::kRepeating;
+  Side side = Side::kBoth;
+  /// The master that is the block's other side.
+  std::optional<Master> partner = {};
+  bool on_chip = true;
+  /// No block of the model drives it: only a synthetic load does (`load.port`).
+  bool spare = false;
+};
+
+/// More than any port queues (bus/core/crossbar.h, trace::kMaxWindow).
+inline constexpr unsigned kMostOutstanding = 32;
+
+/// The rows of all masters, in the order of their numbers. A template, so that tests can try other
+/// tables.
+template <std::size_t N>
+struct MasterTable {
+  std::array<MasterInfo, N> rows{};
+
+  constexpr const MasterInfo& of(Master m) const { return rows[index(m)]; }
+  /// The first row with a name in the statistics, counted among the different names.
+  constexpr std::size_t stat_index(Master m) const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; rows[i].statistics != of(m).statistics; ++i) n += is_first(i);
+    return n;
+  }
+  constexpr std::size_t stat_count() const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < N; ++i) n += is_first(i);
+    return n;
+  }
+  /// The master that serves a direction of the block of that name in the statistics.
+  constexpr const MasterInfo* find(std::string_view statistics, bool write) const {
+    for (const MasterInfo& r : rows)
+      if (r.statistics == statistics && r.side != (write ? Side::kReads : Side::kWrites)) return &r;
+    return nullptr;
+  }
+  /// What is wrong with the table; null if nothing is.
+  constexpr const char* defect() const {
+    for (std::size_t i = 0; i < N; ++i) {
+      const MasterInfo& r = rows[i];
+      if (index(r.id) != i) return "a row is missing or out of order";
+      if (r.name.empty() || r.statistics.empty()) return "a master without a name";
+      if (r.most_outstanding == 0 || r.most_outstanding > kMostOutstanding)
+        return "a master with no requests, or with more than a port queues";
+      if (r.on_chip && r.priority == PrioritySource::kParameter)
+        return "a master of the chip without a register for its priority";
+      if ((r.side == Side::kBoth) != !r.partner) return "one side of a block without the other";
+      for (std::size_t k = 0; k < i; ++k) {
+        if (rows[k].name == r.name) return "two masters with one name";
+        if (rows[k].statistics == r.statistics && (!r.partner || *r.partner != rows[k].id))
+          return "two masters with one name in the statistics";
+      }
+      if (!r.partner) continue;
+      if (index(*r.partner) >= N) return "a partner that does not exist";
+      const MasterInfo& p = of(*r.partner);
+      if (!p.partner || *p.partner != r.id || p.side == r.side || p.statistics != r.statistics ||
+          p.priority != r.priority || p.unit != r.unit || p.bridge != r.bridge)
+        return "partners that differ in more than their side";
+    }
+    return nullptr;
+  }
+
+ private:
+  constexpr bool is_first(std::size_t i) const {
+    for (std::size_t k = 0; k < i; ++k)
+      if (rows[k].statistics == rows[i].statistics) return false;
+    return true;
+  }
+};
+
+namespace masters {
+constexpr MasterInfo arm(Master id, std::string_view name) {
+  return {.id = id, .name = name, .statistics = name, .bridge = Bridge::kCore,
+          .priority = PrioritySource::kArm, .most_outstanding = 1, .pace = Pace::kCore};
 }
-constexpr Master edma_write(unsigned tc) {
-  return static_cast<Master>(index(Master::kEdmaTc0Write) + tc);
+constexpr MasterInfo edma(Master id, std::string_view name, std::string_view statistics,
+                          unsigned controller, Side side, Master partner) {
+  return {.id = id, .name = name, .statistics = statistics,
+          .priority = PrioritySource::kQueue, .unit = controller, .most_outstanding = 16,
+          .side = side, .partner = partner, .spare = true};
+}
+}  // namespace masters
+
+inline constexpr MasterTable<kMasterCount> kMasters{{
+    masters::arm(Master::kArmI, "arm_i"),
+    masters::arm(Master::kArmD, "arm_d"),
+    masters::edma(Master::kEdmaTc0Read, "edma_tc0_read", "edma_tc0", 0, Side::kReads,
+                  Master::kEdmaTc0Write),
+    masters::edma(Master::kEdmaTc1Read, "edma_tc1_read", "edma_tc1", 1, Side::kReads,
+                  Master::kEdmaTc1Write),
+    masters::edma(Master::kEdmaTc2Read, "edma_tc2_read", "edma_tc2", 2, Side::kReads,
+                  Master::kEdmaTc2Write),
+    masters::edma(Master::kEdmaTc3Read, "edma_tc3_read", "edma_tc3", 3, Side::kReads,
+                  Master::kEdmaTc3Write),
+    {.id = Master::kVpfe, .name = "vpfe", .statistics = "vpfe", .bridge = Bridge::kVideo,
+     .priority = PrioritySource::kVideoWrite, .most_outstanding = 32, .pace = Pace::kSampled},
+    {.id = Master::kVpbe, .name = "vpbe", .statistics = "vpbe", .bridge = Bridge::kVideo,
+     .priority = PrioritySource::kVideoRead, .most_outstanding = 32, .pace = Pace::kLines},
+    // No part of the chip: it has the priority of MJCP, the imaging coprocessor (assumed).
+    {.id = Master::kRemapEngine, .name = "remap_engine", .statistics = "remap_engine",
+     .priority = PrioritySource::kImcop, .most_outstanding = 16, .on_chip = false, .spare = true},
+    {.id = Master::kLoad, .name = "load", .statistics = "load",
+     .priority = PrioritySource::kParameter, .most_outstanding = 16, .on_chip = false,
+     .spare = true},
+    masters::edma(Master::kEdmaTc0Write, "edma_tc0_write", "edma_tc0", 0, Side::kWrites,
+                  Master::kEdmaTc0Read),
+    masters::edma(Master::kEdmaTc1Write, "edma_tc1_write", "edma_tc1", 1, Side::kWrites,
+                  Master::kEdmaTc1Read),
+    masters::edma(Master::kEdmaTc2Write, "edma_tc2_write", "edma_tc2", 2, Side::kWrites,
+                  Master::kEdmaTc2Read),
+    masters::edma(Master::kEdmaTc3Write, "edma_tc3_write", "edma_tc3", 3, Side::kWrites,
+                  Master::kEdmaTc3Read),
+}};
+static_assert(kMasters.defect() == nullptr, "see MasterTable::defect");
+
+constexpr const MasterInfo& master_info(Master m) { return kMasters.of(m); }
+
+/// Name of each port.
+inline constexpr std::array<std::string_view, kMasterCount> kMasterNames = [] {
+  std::array<std::string_view, kMasterCount> names;
+  for (std::size_t i = 0; i < kMasterCount; ++i) names[i] = kMasters.rows[i].name;
+  return names;
+}();
+
+/// Masters as statistics and parameters count them, `bus.<name>.read_bytes`.
+inline constexpr std::size_t kStatCount = kMasters.stat_count();
+inline constexpr std::array<std::uint8_t, kMasterCount> kStatIndex = [] {
+  std::array<std::uint8_t, kMasterCount> of{};
+  for (const MasterInfo& r : kMasters.rows)
+    of[index(r.id)] = static_cast<std::uint8_t>(kMasters.stat_index(r.id));
+  return of;
+}();
+inline constexpr std::array<std::string_view, kStatCount> kStatNames = [] {
+  std::array<std::string_view, kStatCount> names;
+  for (const MasterInfo& r : kMasters.rows) names[kMasters.stat_index(r.id)] = r.statistics;
+  return names;
+}();
+constexpr std::size_t stat_index(Master m) { return kStatIndex[index(m)]; }
+constexpr std::string_view stat_name(Master m) { return master_info(m).statistics; }
+/// The first master that goes by a name in the statistics.
+constexpr Master master_of_stat(std::size_t stat) {
+  for (const MasterInfo& r : kMasters.rows)
+    if (stat_index(r.id) == stat) return r.id;
+  return Master::kCount;
 }
 
-/// Names as they appear in statistics and parameters, `bus.<name>.read_bytes`: both sides of a
-/// transfer controller go by one.
-inline constexpr std::size_t kStatCount = kMasterCount - kTransferControllers;
-inline constexpr std::array<std::string_view, kStatCount> kStatNames = {
-    "arm_i", "arm_d", "edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3",
-    "vpfe", "vpbe", "remap_engine", "load"};
-constexpr std::size_t stat_index(Master m) {
-  return index(m) < kStatCount ? index(m)
-                               : index(m) - index(Master::kEdmaTc0Write) +
-                                     index(Master::kEdmaTc0Read);
+/// The master whose priority comes from a source that serves one master only.
+constexpr Master master_with(PrioritySource source) {
+  for (const MasterInfo& r : kMasters.rows)
+    if (r.priority == source) return r.id;
+  return Master::kCount;
 }
-constexpr std::string_view stat_name(Master m) { return kStatNames[stat_index(m)]; }
+
+/// The n-th master behind a DMA or video bridge, in the order of the numbers; kCount: there are fewer.
+constexpr Master wide_master(std::size_t n) {
+  for (const MasterInfo& r : kMasters.rows)
+    if (r.bridge != Bridge::kCore && n-- == 0) return r.id;
+  return Master::kCount;
+}
+
+/// The transfer controllers of the EDMA.
+inline constexpr unsigned kTransferControllers = [] {
+  unsigned n = 0;
+  for (const MasterInfo& r : kMasters.rows)
+    n += r.priority == PrioritySource::kQueue && r.side == Side::kReads;
+  return n;
+}();
+constexpr Master edma_side(unsigned controller, Side side) {
+  for (const MasterInfo& r : kMasters.rows)
+    if (r.priority == PrioritySource::kQueue && r.unit == controller && r.side == side) return r.id;
+  return Master::kCount;
+}
+constexpr Master edma_read(unsigned controller) { return edma_side(controller, Side::kReads); }
+constexpr Master edma_write(unsigned controller) { return edma_side(controller, Side::kWrites); }
 
 }  // namespace fovea

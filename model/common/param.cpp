@@ -308,6 +308,11 @@ TextParam::TextParam(ParamGroup& group, std::string name, std::string def, std::
       value_(def), default_(std::move(def)), allowed_(std::move(allowed)) {}
 
 void ParamSet::add(ParamGroup& group) {
+  add_alone(group);
+  for (ParamGroup* part : group.parts()) add(*part);
+}
+
+void ParamSet::add_alone(ParamGroup& group) {
   for (auto* p : group.params()) {
     FOVEA_CHECK(find(p->key()) == nullptr, "parameter declared twice: " + p->key());
     all_.push_back(p);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/common/census.h"
 #include "model/common/check.h"
 #include "model/common/units.h"
 
@@ -214,24 +215,59 @@ class TextParam : public ParamBase {
 };
 
 /// The parameters of a block; `prefix` is the block's dotted name ("ddr", "cpu.dcache").
-class ParamGroup {
+class ParamGroup : public Census<ParamGroup> {
  public:
   explicit ParamGroup(std::string prefix) : prefix_(std::move(prefix)) {}
   ParamGroup(const ParamGroup&) = delete;
   ParamGroup& operator=(const ParamGroup&) = delete;
   const std::string& prefix() const { return prefix_; }
   const std::vector<ParamBase*>& params() const { return params_; }
+  const std::vector<ParamGroup*>& parts() const { return parts_; }
+
+ protected:
+  /// A group of parts of the block, such as the caches of a core; declared with this one.
+  void add_part(ParamGroup& part) { parts_.push_back(&part); }
 
  private:
   friend class ParamBase;
   std::string prefix_;
   std::vector<ParamBase*> params_;
+  std::vector<ParamGroup*> parts_;
+};
+
+/// The groups of a chip or a board, in the order in which users see them. A member declares its group
+/// by its type: `Declared<UartParams> uart{*this};`.
+class ParamTree {
+ public:
+  ParamTree() = default;
+  ParamTree(const ParamTree&) = delete;
+  ParamTree& operator=(const ParamTree&) = delete;
+  void add(ParamGroup& group) { groups_.push_back(&group); }
+  void add(const ParamTree& part) {
+    groups_.insert(groups_.end(), part.groups_.begin(), part.groups_.end());
+  }
+  const std::vector<ParamGroup*>& groups() const { return groups_; }
+  inline void declare(class ParamSet& set) const;
+
+ private:
+  std::vector<ParamGroup*> groups_;
+};
+
+/// A member of a ParamTree: a group, or the tree of a part.
+template <class Group>
+struct Declared : Group {
+  template <class... Args>
+  Declared(ParamTree& tree, Args&&... args) : Group(std::forward<Args>(args)...) {
+    tree.add(static_cast<Group&>(*this));
+  }
 };
 
 /// All parameters of a run, found by their keys.
 class ParamSet {
  public:
   void add(ParamGroup& group);
+  /// Adds this group, but none of the groups of its parts.
+  void add_alone(ParamGroup& group);
   /// Removes a parameter that has no effect in this command, so that setting it is an error.
   void remove(std::string_view key) {
     std::erase_if(all_, [&](const ParamBase* p) { return p->key() == key; });
@@ -252,5 +288,9 @@ class ParamSet {
   std::vector<ParamBase*> all_;
   std::map<std::string, std::string, std::less<>> foreign_;
 };
+
+void ParamTree::declare(ParamSet& set) const {
+  for (ParamGroup* g : groups_) set.add(*g);
+}
 
 }  // namespace fovea

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "model/common/census.h"
+
 namespace fovea {
 
 class Reg;
@@ -111,7 +113,7 @@ enum class Access { kOk, kNoRegister, kMisaligned };
 /// The registers of a block. Reads and writes take 1, 2 or 4 bytes; a write changes only the byte
 /// lanes that it covers. Writes to bits that are read-only or belong to no field have no effect;
 /// bits without a field read as their reset value.
-class RegBank {
+class RegBank : public Census<RegBank> {
  public:
   explicit RegBank(std::string name) : name_(std::move(name)) {}
   RegBank(const RegBank&) = delete;

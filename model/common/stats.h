@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "model/common/census.h"
+
 namespace fovea {
 
 class StatGroup;
@@ -89,7 +91,7 @@ class Histogram {
 };
 
 /// The statistics of a block; `prefix` is the block's dotted name.
-class StatGroup {
+class StatGroup : public Census<StatGroup> {
  public:
   explicit StatGroup(std::string prefix) : prefix_(std::move(prefix)) {}
   StatGroup(const StatGroup&) = delete;

@@ -6,6 +6,7 @@
 #include <systemc>
 
 #include "model/bus/agent.h"
+#include "model/common/block.h"
 #include "model/common/sc_ports.h"
 #include "model/cpu/core/bus_port.h"
 #include "model/cpu/core/core.h"
@@ -14,7 +15,7 @@ namespace fovea::cpu {
 
 /// SystemC wrapper of the core. The core runs on an SC_THREAD, so that a call that blocks can
 /// suspend it at any bus access and resume it there. bus::Agent contains the rules of time.
-class Arm926 final : public bus::Agent<Arm926>, private BusPort {
+class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
  public:
   static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
   ClockIn clk{"clk"};

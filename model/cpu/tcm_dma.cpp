@@ -9,6 +9,7 @@ namespace fovea::cpu {
 TcmDma::TcmDma(sc_core::sc_module_name name, Core& core, QuietPhase& quiet)
     : sc_module(name), core_(core), quiet_(quiet) {
   socket.bind(*this);
+  add_statistics(stats);
   SC_HAS_PROCESS(TcmDma);
   SC_METHOD(clock_changed);
   sensitive << clk;

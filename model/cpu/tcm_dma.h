@@ -4,6 +4,7 @@
 #include <deque>
 #include <systemc>
 
+#include "model/common/block.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/quiet.h"
 #include "model/common/sc_ports.h"
@@ -27,7 +28,7 @@ struct TcmStats : StatGroup {
 /// Executes one burst at a time, in order of arrival. Each burst begins and ends after all other
 /// activity of its instant (QuietPhase), so the core's own accesses of that instant come first.
 /// While the core's clock is stopped, bursts wait.
-class TcmDma : public sc_core::sc_module, public MemTargetIf {
+class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
  public:
   MemTargetSocket<32> socket{"socket"};
   ClockIn clk{"clk"};

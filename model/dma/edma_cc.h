@@ -46,6 +46,7 @@ struct EdmaRegs : RegBank {
 /// if several are, the most urgent of them; if none is, the lowest priority.
 class EdmaCc : public BusTarget {
  public:
+  using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
   static constexpr unsigned kQueues = 4;
   EdmaRegs regs;

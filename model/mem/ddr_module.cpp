@@ -14,9 +14,11 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params,
       sdtimr_(regs.sdtimr.get()),
       sdtimr2_(regs.sdtimr2.get()),
       cl_(regs.sdbcr.cl.get()) {
+  add_power_gate(enabled);
   SC_HAS_PROCESS(DdrModule);
   memory_.set_admission(*this);
   update_open();
+  add_statistics(controller().stats);
   SC_METHOD(clocks_changed);
   sensitive << ddr_clk << scr_clk;
   SC_METHOD(enabled_changed);

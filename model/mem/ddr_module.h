@@ -20,6 +20,7 @@ namespace fovea::mem {
 /// about the guest.
 class DdrModule final : public BusTarget, private memsys::SdramAdmission {
  public:
+  using Params = DdrParams;
   ClockIn ddr_clk{"ddr_clk"};
   ClockIn scr_clk{"scr_clk"};
   sc_core::sc_in<bool> enabled{"enabled"};  ///< LPSC 13

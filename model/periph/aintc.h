@@ -28,6 +28,7 @@ struct AintcParams : ParamGroup {
 /// Which of two blocks drives an input is selected before the AINTC, in interrupt_mux.h.
 class Aintc : public WithRegs<AintcCore>, public BusTarget {
  public:
+  using Params = AintcParams;
   SC_HAS_PROCESS(Aintc);
   sc_core::sc_vector<sc_core::sc_in<bool>> source{"source", kInterruptCount};
   sc_core::sc_out<bool> irq{"irq"};  ///< true: interrupt request to the core

@@ -3,6 +3,8 @@
 namespace fovea::periph {
 
 ClockedTarget::ClockedTarget(sc_core::sc_module_name name, RegBank& bank) : BusTarget(name, bank) {
+  add_clock(clk);
+  add_power_gate(lpsc);
   SC_METHOD(take_clock);
   sensitive << clk << lpsc;
 }

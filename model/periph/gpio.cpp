@@ -28,6 +28,8 @@ GpioRegs::GpioRegs() : RegBank("GPIO") {
 }
 
 Gpio::Gpio(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
+  for (unsigned pin = 0; pin < kGpioDirectIrqs; ++pin)
+    add_interrupt("gpio" + std::to_string(pin), irq[pin]);
   off_.fill(kNever);
   for (unsigned n = 0; n < kGpioBanks; ++n) {
     GpioRegs::Bank& b = regs.banks[n];

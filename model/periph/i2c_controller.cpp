@@ -20,6 +20,7 @@ constexpr std::uint32_t kIdleStatus = kXsmt | kXrdy;
 
 I2cController::I2cController(sc_core::sc_module_name name)
     : ClockedTarget(name, regs), status_(kIdleStatus) {
+  add_interrupt("irq", irq);
   regs.icstr.on_read([this] { regs.icstr.set(status_); });
   regs.icstr.on_write([this](std::uint32_t word) {
     clear_flag(word & (kAl | kNack | kArdy | kRrdy | kScd | kNackSnt));

@@ -11,10 +11,10 @@ InterruptMux::InterruptMux(sc_core::sc_module_name name) : sc_module(name) {
   for (std::size_t i = 0; i < kInterruptChoices.size(); ++i) sensitive << first[i] << second[i];
 }
 
-std::size_t InterruptMux::choice_of(unsigned interrupt) {
+std::optional<std::size_t> InterruptMux::find_choice(unsigned interrupt) {
   for (std::size_t i = 0; i < kInterruptChoices.size(); ++i)
     if (kInterruptChoices[i].interrupt == interrupt) return i;
-  FOVEA_CHECK(false, "ARM_INTMUX has no choice for this interrupt");
+  return std::nullopt;
 }
 
 void InterruptMux::select() {

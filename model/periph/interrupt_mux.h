@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <systemc>
 
 #include "model/periph/clocked_target.h"
@@ -44,8 +45,9 @@ class InterruptMux : public sc_core::sc_module {
   sc_core::sc_vector<OptionalOut<bool>> out{"out", kInterruptChoices.size()};
 
   explicit InterruptMux(sc_core::sc_module_name name);
-  /// Index of the choice that drives an AINTC input.
-  static std::size_t choice_of(unsigned interrupt);
+  /// Index of the choice that drives an input of the interrupt controller; none: a single source
+  /// drives it.
+  static std::optional<std::size_t> find_choice(unsigned interrupt);
 
  private:
   void select();

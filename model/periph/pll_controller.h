@@ -100,6 +100,7 @@ struct PllRegs : RegBank {
 /// until the lock (assumed), also with a warning.
 class PllController : public WithRegs<PllRegs>, public BusTarget {
  public:
+  using Params = PllParams;
   SC_HAS_PROCESS(PllController);
   ClockIn osc{"osc"};
   sc_core::sc_vector<OptionalOut<Frequency>> sysclk;  ///< sysclk[0] is SYSCLK1

@@ -82,6 +82,7 @@ struct PscRegs : RegBank {
 /// errors, emulation.
 class Psc : public WithRegs<PscRegs>, public BusTarget {
  public:
+  using Params = PscParams;
   SC_HAS_PROCESS(Psc);
   /// enabled[n]: LPSC n is in state 3
   sc_core::sc_vector<OptionalOut<bool>> enabled{"enabled", kLpscCount};

@@ -126,6 +126,7 @@ struct SystemRegs : RegBank {
 /// instant of the write.
 class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
  public:
+  using Params = SystemParams;
   SC_HAS_PROCESS(SystemModule);
   sc_core::sc_in<bool> pll1_locked{"pll1_locked"}, pll2_locked{"pll2_locked"};
   OptionalOut<std::uint32_t> mstpri0{"mstpri0"}, mstpri1{"mstpri1"};

@@ -9,6 +9,8 @@ constexpr std::uint32_t kKey1 = 0xA5C6, kKey2 = 0xDA7E;
 }
 
 Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
+  add_interrupt("tint12", tint12);
+  add_interrupt("tint34", tint34);
   half_[0].counter = TimerCounter(64);
   regs.tim12.on_read([this] {
     regs.tim12.set(static_cast<std::uint32_t>(count(0)));

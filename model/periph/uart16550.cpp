@@ -12,6 +12,7 @@ enum : std::uint32_t { kNone = 1, kTxEmpty = 2, kRxData = 4, kLineStatus = 6, kR
 
 Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     : ClockedTarget(name, regs), selection_(selection) {
+  add_interrupt("irq", irq);
   // Several registers share the offsets 0, 4 and 8, so their values are kept outside the bank.
   regs.rbr.on_write([this](std::uint32_t word) {
     if (regs.lcr.dlab)

@@ -19,66 +19,41 @@ cpu::RegionMap regions(const Dm365Params& params, std::size_t internal_bytes) {
   out.add("itcm", 0, internal_bytes);
   out.add("dtcm", 0x1'0000, internal_bytes);
   out.add("sdram", bus::AddressMap().ddr_base, params.ddr.size_bytes());
-  for (const auto& block : register_blocks()) out.add("registers", block.base, block.size);
+  for (const Placement& row : params.rows) out.add("registers", row.base, row.size);
+  return out;
+}
+
+Placements joined(Placements rows, const Placements& more) {
+  rows.insert(rows.end(), more.begin(), more.end());
+  return rows;
+}
+
+std::vector<bus::ConfigBus::BlockSpec> specs(const Placements& rows) {
+  std::vector<bus::ConfigBus::BlockSpec> out;
+  for (const Placement& row : rows) out.push_back({row.name, row.base, row.size, row.speed});
   return out;
 }
 
 }  // namespace
 
-void Dm365Params::declare(ParamSet& set) {
-  cpu.declare(set);
-  set.add(crossbar);
-  for (auto& port : crossbar.ports) set.add(*port);
-  set.add(config_bus);
-  for (auto& load : loads) set.add(load);
-  set.add(ddr);
-  set.add(edma);
-  set.add(pll);
-  set.add(psc);
-  set.add(system);
-  set.add(aintc);
-  set.add(vpss);
-}
-
-namespace {
-
-std::vector<bus::ConfigBus::BlockSpec> with(std::vector<bus::ConfigBus::BlockSpec> blocks,
-                                            const std::vector<bus::ConfigBus::BlockSpec>& more) {
-  blocks.insert(blocks.end(), more.begin(), more.end());
-  return blocks;
-}
-
-}  // namespace
-
 Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry,
-             bool strict, const std::vector<bus::ConfigBus::BlockSpec>& external)
+             bool strict, const Placements& external)
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), quiet),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, quiet, with(register_blocks(), external)),
-      ddr("ddr", params.ddr, scr.memory()),
-      edma("edma", params.edma),
-      pll1("pll1", "PLLC1", 9, params.pll),
-      pll2("pll2", "PLLC2", 5, params.pll),
-      psc("psc", params.psc),
-      system("system", params.system),
-      aintc("aintc", params.aintc),
-      isif("isif", params.vpss),
-      osd("osd", params.vpss),
-      venc("venc", params.vpss),
+      config("config", params.config_bus, quiet, specs(joined(params.rows, external))),
+      placed(joined(params.rows, external), params.block_params, scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);
-  for (unsigned i = 0; i < timers.size(); ++i)
-    timers[i] = std::make_unique<periph::Timer64>(("timer" + std::to_string(i)).c_str());
   for (std::size_t i = 0; i < params.loads.size(); ++i)
     if (params.loads[i].active())
       loads.push_back(std::make_unique<bus::LoadGenerator>(
           i == 0 ? "load" : ("load" + std::to_string(i)).c_str(), params.loads[i]));
   arm.core().set_regions(regions(params, internal_ram.size()));
+  list_blocks();
   wire_clocks();
   wire_memory();
-  wire_registers();
   wire_interrupts();
   wire_video();
   SC_METHOD(route_priorities);
@@ -90,6 +65,65 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   SC_METHOD(watch_reset);
   sensitive << reset_asked_ << misc_;
   dont_initialize();
+}
+
+void Dm365::list_blocks() {
+  platform.add("arm", arm);
+  platform.add("scr", scr);
+  platform.add("waits", *this);
+  platform.add("config", config);
+  platform.add("tcm_dma", tcm_dma);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    platform.add(placed.row(i).name, placed.block(i));
+    connect(placed.row(i), placed.block(i));
+  }
+  for (auto& load : loads) platform.add(load->basename(), *load);
+}
+
+/// Binds what the row says of a block to what the block says of itself.
+void Dm365::connect(const Placement& row, BusTarget& block) {
+  config.to(row.name).bind(block.reg_socket);
+  FOVEA_CHECK(block.clocks().empty() || row.clock != BlockClock::kNone,
+              "no clock in the row of " + row.name);
+  for (ClockIn* port : block.clocks()) (*port)(signal_of(row.clock));
+  if (row.lpsc)
+    for (PowerGateIn* port : block.power_gates()) (*port)(lpsc_[*row.lpsc]);
+  FOVEA_CHECK(row.irqs.size() == block.interrupts().size(),
+              "the row of " + row.name + " has another number of interrupts than the block");
+  for (std::size_t i = 0; i < row.irqs.size(); ++i)
+    connect(row.irqs[i], *block.interrupts()[i].port);
+}
+
+/// A source reaches its input of the interrupt controller directly, or as one of the two sources of a
+/// multiplexer.
+void Dm365::connect(Irq line, InterruptOut& source) {
+  FOVEA_CHECK(irqs_taken_.emplace(line.input, line.second).second,
+              "two blocks on interrupt " + std::to_string(line.input));
+  const auto choice = periph::InterruptMux::find_choice(line.input);
+  if (!choice) {
+    FOVEA_CHECK(!line.second, "ARM_INTMUX has no choice for interrupt " + std::to_string(line.input));
+    source(irq_[line.input]);
+    return;
+  }
+  auto& signal = irq_source_[2 * *choice + line.second];
+  source(signal);
+  (line.second ? interrupt_mux.second : interrupt_mux.first)[*choice](signal);
+}
+
+ClockSignal& Dm365::signal_of(BlockClock clock) {
+  switch (clock) {
+    case BlockClock::kEdma:
+      return edma_clk_;
+    case BlockClock::kAux:
+      return aux_clk_;
+    case BlockClock::kUart1:
+      return uart1_clk_;
+    case BlockClock::kVenc:
+      return venc_clk_;
+    case BlockClock::kNone:
+      break;
+  }
+  FOVEA_CHECK(false, "no such clock");
 }
 
 void Dm365::wire_clocks() {
@@ -139,72 +173,28 @@ void Dm365::wire_clocks() {
   scr.clk(edma_clk_);
   ddr.ddr_clk(ddr_clk_);
   ddr.scr_clk(edma_clk_);
-  venc.clock(venc_clk_);
-  for (auto& t : timers) t->clk(aux_clk_);
-  uart0.clk(aux_clk_);
-  uart1.clk(uart1_clk_);
-  i2c.clk(aux_clk_);
-  gpio.clk(edma_clk_);
 
   for (unsigned i = 0; i < periph::kLpscCount; ++i) psc.enabled[i](lpsc_[i]);
-  ddr.enabled(lpsc_[periph::kLpscDdr]);
-  edma.lpsc(lpsc_[periph::kLpscTpcc]);
-  uart0.lpsc(lpsc_[periph::kLpscUart0]);
-  uart1.lpsc(lpsc_[periph::kLpscUart1]);
-  i2c.lpsc(lpsc_[periph::kLpscI2c]);
-  gpio.lpsc(lpsc_[periph::kLpscGpio]);
-  timers[0]->lpsc(lpsc_[periph::kLpscTimer0]);
-  timers[1]->lpsc(lpsc_[periph::kLpscTimer1]);
-  // timers[2], the watchdog, has no gate: public code never disables LPSC 29 (Linux psc-dm365.c).
-  timers[3]->lpsc(lpsc_[periph::kLpscTimer3]);
-  timers[4]->lpsc(lpsc_[periph::kLpscTimer4]);
-  for (auto* p : {&vpss.psc_enabled, &isif.psc_enabled, &osd.psc_enabled, &venc.psc_enabled})
-    (*p)(lpsc_[periph::kLpscVpss]);
 }
 
 void Dm365::wire_memory() {
   arm.path(scr.path);
-  arm.sockets[cpu::Arm926::kInstructionPort]->bind(*scr.target[index(Master::kArmI)]);
-  arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
-  isif.memory.socket.bind(*scr.target[index(Master::kVpfe)]);
-  osd.memory.socket.bind(*scr.target[index(Master::kVpbe)]);
-  for (auto& load : loads) {
-    load->bind_ports([this](auto& socket, Master m) { socket.bind(*scr.target[index(m)]); });
-    load->sdram_initialised(ddr.initialised);
-  }
-  std::vector<Master> masters{Master::kArmI, Master::kArmD, Master::kVpfe, Master::kVpbe};
-  for (const auto& load : params_.loads)
-    if (load.active()) masters.push_back(load.reader());
-  for (const Master m : masters)
+  platform.each_master([this](const MasterPort& p) {
+    p.socket->bind(*scr.target[index(p.id)]);
+    for (const auto& w : waits)
+      if (w->is_of(p.id)) return;
     waits.push_back(std::make_unique<bus::WaitStats>(
-        m, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()}));
+        p.id, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()}));
+    add_statistics(*waits.back());
+  });
+  for (auto& load : loads) load->sdram_initialised(ddr.initialised);
+  scr.config_socket.bind(config.socket);
+  config.describe = [this](std::uint32_t address) { return not_modelled_at(address, params_.rows); };
   scr.ram_socket.bind(tcm_dma.socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
-  vpss.write_priority(priority_[index(Master::kVpfe)]);
-  vpss.read_priority(priority_[index(Master::kVpbe)]);
+  vpss.write_priority(priority_[index(master_with(PrioritySource::kVideoWrite))]);
+  vpss.read_priority(priority_[index(master_with(PrioritySource::kVideoRead))]);
   for (unsigned tc = 0; tc < kTransferControllers; ++tc) edma.priority[tc](tc_priority_[tc]);
-}
-
-void Dm365::wire_registers() {
-  scr.config_socket.bind(config.socket);
-  config.describe = not_modelled_at;
-  config.to("ddr").bind(ddr.reg_socket);
-  config.to("edma").bind(edma.reg_socket);
-  config.to("uart0").bind(uart0.reg_socket);
-  config.to("uart1").bind(uart1.reg_socket);
-  for (unsigned i = 0; i < timers.size(); ++i)
-    config.to("timer" + std::to_string(i)).bind(timers[i]->reg_socket);
-  config.to("i2c").bind(i2c.reg_socket);
-  config.to("system").bind(system.reg_socket);
-  config.to("pll1").bind(pll1.reg_socket);
-  config.to("pll2").bind(pll2.reg_socket);
-  config.to("psc").bind(psc.reg_socket);
-  config.to("aintc").bind(aintc.reg_socket);
-  config.to("gpio").bind(gpio.reg_socket);
-  config.to("vpss").bind(vpss.reg_socket);
-  config.to("isif").bind(isif.reg_socket);
-  config.to("osd").bind(osd.reg_socket);
-  config.to("venc").bind(venc.reg_socket);
 }
 
 void Dm365::wire_interrupts() {
@@ -218,40 +208,7 @@ void Dm365::wire_interrupts() {
   interrupt_mux.arm_intmux(arm_intmux_);
   for (std::size_t i = 0; i < periph::kInterruptChoices.size(); ++i)
     interrupt_mux.out[i](irq_[periph::kInterruptChoices[i].interrupt]);
-  // A block reaches its input directly, or as one of the two sources of a multiplexer.
-  const auto first = [this](unsigned n) -> auto& {
-    return interrupt_mux.first[periph::InterruptMux::choice_of(n)];
-  };
-  const auto second = [this](unsigned n) -> auto& {
-    return interrupt_mux.second[periph::InterruptMux::choice_of(n)];
-  };
-  for (unsigned i = 0; i < video::VpssTop::kOutputs; ++i) {
-    const bool shared = i == 0 || i == 7 || i == 8;
-    vpss.vpssint[i](shared ? vpssint_[i] : irq_[i]);
-    if (shared) first(i)(vpssint_[i]);
-  }
-  timers[0]->tint12(irq_[32]);  // TINT0
-  timers[0]->tint34(irq_[33]);
-  timers[1]->tint12(irq_[34]);
-  timers[1]->tint34(irq_[35]);
-  timers[2]->tint12(tint_[4]);
-  second(13)(tint_[4]);
-  timers[2]->tint34(irq_[14]);
-  timers[3]->tint12(irq_[15]);
-  timers[3]->tint34(irq_[22]);
-  timers[4]->tint12(tint_[8]);
-  second(38)(tint_[8]);
-  timers[4]->tint34(tint_[9]);
-  second(28)(tint_[9]);
   timers[2]->expired(reset_asked_);
-  i2c.irq(irq_[39]);
-  uart0.irq(irq_[40]);
-  uart1.irq(irq_[41]);
-  for (unsigned i = 0; i < 8; ++i) gpio.irq[i](irq_[44 + i]);
-  for (unsigned i = 8; i < periph::kGpioDirectIrqs; ++i) {
-    gpio.irq[i](gpio_irq_[i]);
-    first(44 + i)(gpio_irq_[i]);
-  }
 }
 
 /// MISC.ARM_WAITST: 1 no wait state, 0 one.
@@ -288,35 +245,19 @@ void Dm365::wire_video() {
 }
 
 std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
-  using trace::Pace;
-  const auto places = [](const IntParam& p) { return static_cast<unsigned>(p()); };
-  const unsigned captured = places(params_.vpss.write_buffer_bursts);
-  const unsigned shown = places(params_.vpss.read_outstanding);
-  std::vector<trace::BusRecorder::MasterSetup> masters = {
-      {Master::kArmI, Pace::kCore, 1, 1, true},
-      {Master::kArmD, Pace::kCore, 1, 1, true},
-      {Master::kVpfe, Pace::kSampled, captured, captured, true},
-      {Master::kVpbe, Pace::kLines, shown, shown, true}};
-  for (const auto& load : params_.loads) {
-    if (!load.active()) continue;
-    const unsigned n = places(load.outstanding);
-    if (load.reader() == load.writer()) {
-      masters.push_back({load.reader(), Pace::kRepeating, n, n, true});
-    } else {
-      // Both sides: a copy's wait for each other, a mixture's take each other's places.
-      if (load.reads())
-        masters.push_back({load.reader(), Pace::kRepeating, n, n, true, {}});
-      if (load.writes())
-        masters.push_back({load.writer(), load.copies() ? Pace::kData : Pace::kRepeating, n, n,
-                           true, {}});
-      if (load.reads() && load.writes()) {
-        masters[masters.size() - 2].partner = load.writer();
-        masters.back().partner = load.reader();
-      }
+  const auto ratio = static_cast<unsigned>(params_.cpu.ahb_ratio());
+  std::vector<trace::BusRecorder::MasterSetup> masters;
+  for (const Platform::Entry& e : platform.blocks())
+    for (const MasterPort& p : e.block->masters()) {
+      if (p.outstanding == 0) continue;
+      auto& setup = masters.emplace_back(trace::BusRecorder::MasterSetup{
+          p.id, p.pace, p.outstanding, p.outstanding, true, {}});
+      // The sides of one block wait for each other's completions.
+      for (const MasterPort& other : e.block->masters())
+        if (other.outstanding > 0 && master_info(p.id).partner == other.id) setup.partner = other.id;
     }
-  }
   auto recorder = std::make_unique<trace::BusRecorder>(
-      masters, places(params_.cpu.ahb_ratio), [this](const MemRequest* r) {
+      masters, ratio, [this](const MemRequest* r) {
         const cpu::Core& core = arm.core();
         trace::CoreState s{core.counts().idle, core.room_waits(), core.drains()};
         s.origin = core.clock().edge_at_or_after(0);
@@ -332,23 +273,36 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   return recorder;
 }
 
-/// MSTPRI0.2:0 is the ARM's memory priority. The remap engine is no part of the chip: it takes
-/// MJCP's place, the imaging coprocessor's (assumed). A transfer controller has one priority for both
-/// sides.
+/// Drives the priorities that come from the system module, the EDMA and parameters; the video
+/// subsystem drives its own.
 void Dm365::route_priorities() {
   const std::uint32_t mstpri0 = mstpri0_.read();
-  priority_[index(Master::kArmI)].write(mstpri0 & 7u);
-  priority_[index(Master::kArmD)].write(mstpri0 & 7u);
-  priority_[index(Master::kRemapEngine)].write(mstpri0 >> 16 & 7u);
-  for (unsigned tc = 0; tc < kTransferControllers; ++tc) {
-    priority_[index(edma_read(tc))].write(tc_priority_[tc].read());
-    priority_[index(edma_write(tc))].write(tc_priority_[tc].read());
+  for (const MasterInfo& m : kMasters.rows) {
+    auto& priority = priority_[index(m.id)];
+    switch (m.priority) {
+      case PrioritySource::kArm:
+        priority.write(mstpri0 & 7u);
+        break;
+      case PrioritySource::kImcop:
+        priority.write(mstpri0 >> 16 & 7u);
+        break;
+      case PrioritySource::kQueue:
+        priority.write(tc_priority_[m.unit].read());
+        break;
+      case PrioritySource::kParameter:
+        priority.write(load_priority(m.id));
+        break;
+      case PrioritySource::kVideoRead:
+      case PrioritySource::kVideoWrite:
+        break;
+    }
   }
-  std::uint32_t load = 7;
-  for (const auto& l : params_.loads)
-    if (l.active() && l.reader() == Master::kLoad)
-      load = static_cast<std::uint32_t>(l.priority());
-  priority_[index(Master::kLoad)].write(load);
+}
+
+std::uint32_t Dm365::load_priority(Master m) const {
+  for (const bus::LoadParams& l : params_.loads)
+    if (l.active() && l.reader() == m) return static_cast<std::uint32_t>(l.priority());
+  return 7;
 }
 
 }  // namespace fovea::soc

@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "model/bus/load_generator.h"
 #include "model/bus/scr.h"
 #include "model/bus/wait_stats.h"
+#include "model/common/block.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
@@ -26,6 +28,7 @@
 #include "model/periph/system_module.h"
 #include "model/periph/timer64.h"
 #include "model/periph/uart16550.h"
+#include "model/soc/placement.h"
 #include "model/trace/bus_tap.h"
 #include "model/video/isif.h"
 #include "model/video/osd.h"
@@ -34,30 +37,35 @@
 
 namespace fovea::soc {
 
-struct Dm365Params {
-  cpu::CpuParams cpu;
-  bus::CrossbarParams crossbar;
-  bus::ConfigBusParams config_bus;
-  dma::EdmaParams edma;
-  std::array<bus::LoadParams, 4> loads{{bus::LoadParams("load"), bus::LoadParams("load.1"),
-                                        bus::LoadParams("load.2"), bus::LoadParams("load.3")}};
-  mem::DdrParams ddr;
-  periph::PllParams pll;
-  periph::PscParams psc;
-  periph::SystemParams system;
-  periph::AintcParams aintc;
-  video::VpssParams vpss;
-  void declare(ParamSet& set);
+struct Dm365Params : ParamTree {
+  explicit Dm365Params(Placements blocks = dm365_blocks()) : rows(std::move(blocks)) {
+    for (const Placement& row : rows) row.declare(block_params);
+  }
+  Declared<cpu::CpuParams> cpu{*this};
+  Declared<bus::CrossbarParams> crossbar{*this};
+  Declared<bus::ConfigBusParams> config_bus{*this};
+  std::array<Declared<bus::LoadParams>, 4> loads{
+      {{*this, "load"}, {*this, "load.1"}, {*this, "load.2"}, {*this, "load.3"}}};
+
+  /// The blocks that the chip has, and their parameters.
+  Placements rows;
+  BlockParams block_params{*this};
+  mem::DdrParams& ddr = block_params.get<mem::DdrParams>();
+  dma::EdmaParams& edma = block_params.get<dma::EdmaParams>();
+  periph::PllParams& pll = block_params.get<periph::PllParams>();
+  periph::PscParams& psc = block_params.get<periph::PscParams>();
+  periph::SystemParams& system = block_params.get<periph::SystemParams>();
+  periph::AintcParams& aintc = block_params.get<periph::AintcParams>();
+  video::VpssParams& vpss = block_params.get<video::VpssParams>();
 };
 
 /// Outside pins: osc, the decoder's video input, the display output, I2C, UART0, GPIO.
-class Dm365 : public sc_core::sc_module {
+class Dm365 : public sc_core::sc_module, public Block {
  public:
   /// @param entry where the core starts: the ROM boot loader's work is done by whoever loads it
-  /// @param external the board's devices on the asynchronous memory interface, each to be bound to
-  ///   config.to(its name)
+  /// @param external the board's devices on the asynchronous memory interface
   Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict,
-        const std::vector<bus::ConfigBus::BlockSpec>& external = {});
+        const Placements& external = {});
 
   ClockIn osc{"osc"};                                  ///< 24 MHz oscillator
   sc_core::sc_port<video::DisplayLineIf> display{"display"};
@@ -70,25 +78,34 @@ class Dm365 : public sc_core::sc_module {
   cpu::TcmDma tcm_dma;
   bus::Scr scr;
   bus::ConfigBus config;
-  mem::DdrModule ddr;
-  dma::EdmaCc edma;
-  periph::PllController pll1, pll2;
-  periph::ClockTree clocks{"clocks"};
-  periph::Psc psc;
-  periph::SystemModule system;
-  periph::Aintc aintc;
-  periph::InterruptMux interrupt_mux{"interrupt_mux"};
+  /// All blocks with registers, as the rows have them; below, those that need more wires.
+  PlacedBlocks placed;
+  mem::DdrModule& ddr = placed.get<mem::DdrModule>("ddr");
+  dma::EdmaCc& edma = placed.get<dma::EdmaCc>("edma");
+  periph::PllController& pll1 = placed.get<periph::PllController>("pll1");
+  periph::PllController& pll2 = placed.get<periph::PllController>("pll2");
+  periph::Psc& psc = placed.get<periph::Psc>("psc");
+  periph::SystemModule& system = placed.get<periph::SystemModule>("system");
+  periph::Aintc& aintc = placed.get<periph::Aintc>("aintc");
   /// TIMER0 to TIMER4; TIMER2 is the watchdog.
-  std::array<std::unique_ptr<periph::Timer64>, 5> timers;
-  periph::Uart16550 uart0{"uart0", "PINMUX3 bit 19 = 1"}, uart1{"uart1", "PINMUX3 bits 16:15 = 2"};
-  periph::Gpio gpio{"gpio"};
-  periph::I2cController i2c{"i2c"};
-  video::VpssTop vpss{"vpss"};
-  video::Isif isif;
-  video::Osd osd;
-  video::Venc venc;
+  std::array<periph::Timer64*, 5> timers{
+      &placed.get<periph::Timer64>("timer0"), &placed.get<periph::Timer64>("timer1"),
+      &placed.get<periph::Timer64>("timer2"), &placed.get<periph::Timer64>("timer3"),
+      &placed.get<periph::Timer64>("timer4")};
+  periph::Uart16550& uart0 = placed.get<periph::Uart16550>("uart0");
+  periph::Uart16550& uart1 = placed.get<periph::Uart16550>("uart1");
+  periph::Gpio& gpio = placed.get<periph::Gpio>("gpio");
+  periph::I2cController& i2c = placed.get<periph::I2cController>("i2c");
+  video::VpssTop& vpss = placed.get<video::VpssTop>("vpss");
+  video::Isif& isif = placed.get<video::Isif>("isif");
+  video::Osd& osd = placed.get<video::Osd>("osd");
+  video::Venc& venc = placed.get<video::Venc>("venc");
+  periph::ClockTree clocks{"clocks"};
+  periph::InterruptMux interrupt_mux{"interrupt_mux"};
   std::vector<std::unique_ptr<bus::LoadGenerator>> loads;
   trace::BusTap tap{"tap"};
+  /// All blocks of the chip.
+  Platform platform;
 
   /// The chip asks to be reset, with the cause. Nothing here resets itself yet: whoever sets this
   /// ends the simulation at this instant.
@@ -102,11 +119,15 @@ class Dm365 : public sc_core::sc_module {
   std::vector<std::unique_ptr<bus::WaitStats>> waits;
 
  private:
+  void list_blocks();
+  void connect(const Placement& row, BusTarget& block);
+  void connect(Irq line, InterruptOut& source);
+  ClockSignal& signal_of(BlockClock clock);
   void route_priorities();
+  std::uint32_t load_priority(Master m) const;
   void set_wait_states();
   void watch_reset();
   void wire_clocks();
-  void wire_registers();
   void wire_memory();
   void wire_interrupts();
   void wire_video();
@@ -118,9 +139,9 @@ class Dm365 : public sc_core::sc_module {
   Signals<bool> lpsc_{"lpsc", periph::kLpscCount};
   Signals<bool> irq_{"irq", 64};
   Signals<bool> vdint_{"vdint", 3};
-  // By source number; those that share an input of the interrupt controller.
-  Signals<bool> vpssint_{"vpssint", video::VpssTop::kOutputs}, tint_{"tint", 10},
-      gpio_irq_{"gpio_irq", periph::kGpioDirectIrqs};
+  /// From the blocks whose input of the interrupt controller has a choice of two sources.
+  Signals<bool> irq_source_{"irq_source", 2 * periph::kInterruptChoices.size()};
+  std::set<std::pair<unsigned, bool>> irqs_taken_;
   Signals<std::uint32_t> priority_{"priority", kMasterCount};
   Signals<std::uint32_t> tc_priority_{"tc_priority", kTransferControllers};
   sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_, reset_asked_;

@@ -2,6 +2,7 @@
 #pragma once
 #include <systemc>
 
+#include "model/common/block.h"
 #include "model/common/stats.h"
 #include "model/video/core/frame_assembler.h"
 #include "model/video/wire.h"
@@ -21,13 +22,16 @@ struct DisplayStats : StatGroup {
 };
 
 /// Receives the lines of the video encoder, checks them and delivers complete frames.
-class DisplaySink : public sc_core::sc_module, public DisplayLineIf {
+class DisplaySink : public sc_core::sc_module, public Block, public DisplayLineIf {
  public:
   sc_core::sc_export<DisplayLineIf> lines{"lines"};
   DisplayStats stats;
   FrameAssembler assembler;  ///< assembler.on_frame is called for each displayed frame
 
-  explicit DisplaySink(sc_core::sc_module_name name) : sc_module(name) { lines.bind(*this); }
+  explicit DisplaySink(sc_core::sc_module_name name) : sc_module(name) {
+    lines.bind(*this);
+    add_statistics(stats);
+  }
   void line(const DisplayLine& l) override {
     assembler.line(l);
     count();

@@ -12,7 +12,10 @@ Isif::Isif(sc_core::sc_module_name name, const VpssParams& params)
       memory("memory", Master::kVpfe, static_cast<unsigned>(params.write_buffer_bursts()),
              BurstMaster::Report::kWhenDecided),
       params_(params) {
+  add_power_gate(psc_enabled);
   if (params.burst() & (params.burst() - 1)) throw UserError("vpss.burst must be 32B or 64B");
+  add_statistics(stats);
+  add_master(Master::kVpfe, memory.socket, static_cast<unsigned>(params.write_buffer_bursts()));
   video.bind(*this);
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
   regs.syncen.on_write([this](std::uint32_t) { write_syncen(); });

@@ -53,6 +53,7 @@ struct CaptureFrame {
 /// formatter, HD/VD as outputs.
 class Isif : public BusTarget, public Bt656If {
  public:
+  using Params = VpssParams;
   sc_core::sc_export<Bt656If> video{"video"};
   BurstMaster memory;                           ///< bind memory.socket
   sc_core::sc_vector<Pulse> vdint{"vdint", 3};  ///< bind vdint[i].out

@@ -25,6 +25,8 @@ Osd::Osd(sc_core::sc_module_name name, const VpssParams& params)
              BurstMaster::Report::kWhenDecided),
       params_(params),
       ring_(params.read_ahead_lines() + 2) {
+  add_power_gate(psc_enabled);
+  add_master(Master::kVpbe, memory.socket, static_cast<unsigned>(params.read_outstanding()));
   lines.bind(*this);
   for (Line& l : ring_) l.bursts.reserve(kActiveBytes / 32 + 8);
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };

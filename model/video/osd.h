@@ -43,6 +43,7 @@ class OsdLineIf : public virtual sc_core::sc_interface {
 /// modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, any background but black.
 class Osd : public BusTarget, public OsdLineIf {
  public:
+  using Params = VpssParams;
   struct Latch {
     Picoseconds time;
     bool f;

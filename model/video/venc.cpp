@@ -6,6 +6,8 @@ namespace fovea::video {
 
 Venc::Venc(sc_core::sc_module_name name, const VpssParams& params)
     : BusTarget(name, regs), params_(params) {
+  add_clock(clock);
+  add_power_gate(psc_enabled);
   for (Reg* r : {static_cast<Reg*>(&regs.vmod), static_cast<Reg*>(&regs.clkctl)})
     r->on_write([this](std::uint32_t) { reconsider_timer_.soon(); });
   SC_METHOD(reconsider);

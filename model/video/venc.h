@@ -20,6 +20,7 @@ namespace fovea::video {
 /// runs more than once per line.
 class Venc : public BusTarget {
  public:
+  using Params = VpssParams;
   ClockIn clock{"clock"};
   sc_core::sc_port<OsdLineIf> osd{"osd"};
   sc_core::sc_port<DisplayLineIf> display{"display"};

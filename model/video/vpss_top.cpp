@@ -3,6 +3,9 @@
 namespace fovea::video {
 
 VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
+  add_power_gate(psc_enabled);
+  for (unsigned k = 0; k < kOutputs; ++k)
+    add_interrupt("vpssint" + std::to_string(k), vpssint[k]);
   // Only processes of this block drive the outputs: register writes arrive in several other
   // processes.
   for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})

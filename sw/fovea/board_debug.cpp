@@ -62,16 +62,11 @@ RegisterBlock register_block(const std::string& name, BusTarget& block) {
           [&block](RegisterObserver* o) { block.observe(o); }};
 }
 
-std::vector<RegisterBlock> board_blocks(soc::Dm365& soc) {
-  std::vector<std::pair<std::string, BusTarget*>> blocks = {
-      {"ddr", &soc.ddr},       {"uart0", &soc.uart0}, {"uart1", &soc.uart1}, {"i2c", &soc.i2c},
-      {"system", &soc.system}, {"pll1", &soc.pll1},   {"pll2", &soc.pll2},   {"psc", &soc.psc},
-      {"aintc", &soc.aintc},   {"gpio", &soc.gpio},   {"vpss", &soc.vpss},   {"isif", &soc.isif},
-      {"osd", &soc.osd},       {"venc", &soc.venc}};
-  for (std::size_t i = 0; i < soc.timers.size(); ++i)
-    blocks.emplace_back("timer" + std::to_string(i), soc.timers[i].get());
+std::vector<RegisterBlock> register_blocks(const Platform& platform) {
   std::vector<RegisterBlock> out;
-  for (const auto& [name, block] : blocks) out.push_back(register_block(name, *block));
+  platform.each_registers([&](const std::string& name, BusTarget& target) {
+    out.push_back(register_block(name, target));
+  });
   return out;
 }
 
@@ -108,7 +103,7 @@ GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* l
   v.memory = {{0, kInternal},
               {kDataWindow, kDataWindow + kInternal},
               {kSdram, kSdram + soc.ddr.store().size()}};
-  v.blocks = board_blocks(soc);
+  v.blocks = register_blocks(board.platform);
   v.log = log;
   join_bus(v, soc.scr, soc.ddr, soc.arm, soc.quiet, kSdram);
   v.stats = [&board] {
@@ -118,13 +113,7 @@ GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* l
     core.to = chip.arm.core().counts();
     core.to.cycles = chip.arm.core().clock_count();
     collect(core, rows);
-    for (auto& s : chip.scr.crossbar().stats) collect(*s, rows);
-    for (auto& s : chip.scr.latency) collect(*s, rows);
-    collect(chip.ddr.controller().stats, rows);
-    collect(chip.config.stats, rows);
-    collect(chip.tcm_dma.stats, rows);
-    collect(chip.isif.stats, rows);
-    collect(board.sink.stats, rows);
+    board.platform.each_statistics([&](const StatGroup& group) { collect(group, rows); });
     return rows;
   };
   return v;

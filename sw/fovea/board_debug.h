@@ -20,7 +20,8 @@ class BoardDebugMemory : public cpu::DebugMemory {
 };
 
 RegisterBlock register_block(const std::string& name, BusTarget& block);
-std::vector<RegisterBlock> board_blocks(soc::Dm365& soc);
+/// Of all blocks that have registers.
+std::vector<RegisterBlock> register_blocks(const Platform& platform);
 /// Not yet started.
 std::unique_ptr<RegisterLog> register_log(std::vector<RegisterBlock> blocks, bus::ConfigBus& bus,
                                           cpu::Core& core,

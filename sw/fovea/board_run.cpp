@@ -1,7 +1,6 @@
 // `fovea run` on the board: loads footage and program, runs the window, gathers the figures.
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +19,7 @@
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
+#include "sw/fovea/figures.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/simulation.h"
@@ -91,14 +91,7 @@ class BoardSimulation : public Simulation {
 void BoardSimulation::open_window() {
   auto& soc = board_->dm365;
   opened_ = true;
-  for (auto& s : soc.scr.crossbar().stats) s->reset();
-  for (auto& s : soc.scr.latency) s->reset();
-  for (auto& s : soc.waits) s->reset();
-  soc.ddr.controller().stats.reset();
-  soc.config.stats.reset();
-  soc.tcm_dma.stats.reset();
-  soc.isif.stats.reset();
-  board_->sink.stats.reset();
+  board_->platform.each_statistics([](StatGroup& group) { group.reset(); });
   soc.arm.core().mark_window(kernel_time());
   if (trace_) trace_->open();
   window_wall_ = Wall::now();
@@ -114,30 +107,15 @@ void BoardSimulation::close_window() {
   window_wall_s_ = seconds_since(window_wall_);
   direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
   queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
-  for (auto& s : soc.scr.crossbar().stats) collect(*s, stats_);
-  for (auto& s : soc.scr.latency) collect(*s, stats_);
-  for (auto& s : soc.waits) collect(*s, stats_);
-  collect(soc.ddr.controller().stats, stats_);
-  collect(soc.config.stats, stats_);
-  collect(soc.tcm_dma.stats, stats_);
-  collect(soc.isif.stats, stats_);
-  collect(board_->sink.stats, stats_);
+  board_->platform.each_statistics([this](const StatGroup& group) { collect(group, stats_); });
   // The SDRAM's data bus: clocks with data over clocks of the window.
   const auto from = board_->window_start(), to = board_->window_end();
   if (from && to && *to > *from) {
-    const double clocks =
-        to_s(*to - *from) * soc.ddr.controller().ddr_clock().frequency().hertz();
-    stats_.push_back(row("ddr.utilisation",
-                         static_cast<double>(soc.ddr.controller().busy_clocks()) / clocks, "ratio",
-                         "share of the window in which the SDRAM's data bus moves data"));
-    const auto queued =
-        static_cast<double>(soc.ddr.controller().stats.queued_clocks.count());
-    stats_.push_back(row("ddr.headroom", 1 - queued / clocks, "ratio",
-                         "share of the window in which no request is queued at the SDRAM (not the bandwidth left over)"));
-    if (queued > 0)
-      stats_.push_back(row("ddr.efficiency",
-                           static_cast<double>(soc.ddr.controller().busy_clocks()) / queued,
-                           "ratio", "clocks with data on the SDRAM's bus / clocks in which a request is queued"));
+    const mem::DdrController& ddr = soc.ddr.controller();
+    add_ddr_shares(stats_,
+                   {ddr.busy_clocks(), ddr.stats.queued_clocks.count(),
+                    to_s(*to - *from) * ddr.ddr_clock().frequency().hertz()},
+                   "the window");
   }
   soc.arm.core().mark_window(kernel_time());
   if (soc.arm.asleep()) asleep_at_end_ = soc.arm.core().counts_asleep(kernel_time());
@@ -160,12 +138,8 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
     rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
     rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
   }
-  if (f.remaps) {
-    const std::string what = "time to correct (remap) one frame, ";
-    rows.push_back(row("frame.remap_time.min", to_s(f.remap_min), "s", what + "shortest"));
-    rows.push_back(row("frame.remap_time.mean", f.remap_mean * 1e-12, "s", what + "mean"));
-    rows.push_back(row("frame.remap_time.max", to_s(f.remap_max), "s", what + "longest"));
-  }
+  if (f.remaps)
+    add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
   const auto lut = board_->log.first(board::Phase::kLut);
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
@@ -177,21 +151,15 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
 }
 
 void BoardSimulation::add_host(RunResult& result, bool strict) const {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
   auto& h = result.host;
   const double window = board_->frame_stats().window;
-  h.push_back(row("wall_time", seconds_since(started_), "s", "host time of the whole run"));
-  h.push_back(row("peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "B",
-                  "largest resident memory of the process"));
-  if (window_wall_s_ > 0 && window > 0) {
-    h.push_back(row("realtime_factor", window / window_wall_s_, "x",
-                    "speed against real time: simulated time / host time, in the measured window"));
-  }
+  h.push_back(wall_time(seconds_since(started_), "the whole run"));
+  h.push_back(peak_rss());
+  if (window_wall_s_ > 0 && window > 0)
+    h.push_back(realtime_factor(window, window_wall_s_, "in the measured window"));
   if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
-    h.push_back(row("mips",
-                    static_cast<double>(std::get<std::uint64_t>(n->value)) / window_wall_s_ * 1e-6,
-                    "1e6/s", "guest instructions per host second in the window"));
+    h.push_back(
+        mips(std::get<std::uint64_t>(n->value), window_wall_s_, "in the measured window"));
   h.push_back(row("sync.direct", direct_, "1",
                   "SDRAM accesses decided ahead of the kernel, in the window"));
   h.push_back(row("sync.queued", queued_, "1",
@@ -387,7 +355,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
 
   auto& arm = board_->dm365.arm;
   BoardDebugMemory debug_memory(board_->dm365);
-  const auto log = register_log(board_blocks(board_->dm365), board_->dm365.config, arm.core(),
+  const auto log = register_log(register_blocks(board_->platform), board_->dm365.config, arm.core(),
                                 [this](std::uint32_t pc) { return symbols_.describe(pc); });
   log->keep(request.registers.kept);
   if (!request.registers.pattern.empty()) log->start(request.registers);

@@ -9,6 +9,7 @@
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/exec_board.h"
 #include "sw/fovea/exec_caches.h"
+#include "sw/fovea/figures.h"
 #include "sw/fovea/flat_machine.h"
 
 namespace fovea::app {
@@ -27,9 +28,9 @@ struct ExecParams : ParamGroup {
 class BoardExecutor final : public Executor {
  public:
   void declare(ParamSet& set) override {
-    cpu_.declare(set);
-    set.add(crossbar_);
-    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[index(m)]);
+    set.add(cpu_);
+    set.add_alone(crossbar_);
+    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[stat_index(m)]);
     set.add(config_bus_);
     set.add(ddr_);
     set.add(clocks_);
@@ -111,8 +112,8 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
 
 void BoardExecutor::collect_memory(std::vector<StatRow>& rows) const {
   for (const auto m : {Master::kArmI, Master::kArmD}) {
-    collect(*board_->scr.crossbar().stats[index(m)], rows);
-    collect(*board_->scr.latency[index(m)], rows);
+    collect(*board_->scr.crossbar().stats[stat_index(m)], rows);
+    collect(*board_->scr.latency[stat_index(m)], rows);
   }
   collect(board_->ddr.controller().stats, rows);
 }
@@ -131,11 +132,8 @@ ExecResult BoardExecutor::run(const ExecRequest& request) {
                                           : run_board(request, map, clocks);
   result.core_clock = clocks.core;
   const std::chrono::duration<double> wall = Wall::now() - started;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  result.host.push_back({"wall_time", wall.count(), "s", "host time of the run"});
-  result.host.push_back({"peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "B",
-                         "largest resident memory of the process"});
+  result.host.push_back(wall_time(wall.count(), "the run"));
+  result.host.push_back(peak_rss());
   return result;
 }
 

@@ -1,9 +1,10 @@
 #include "sw/fovea/progress.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <ostream>
+
+#include "sw/fovea/figures.h"
 
 namespace fovea::app {
 namespace {
@@ -69,25 +70,17 @@ std::string ProgressMeter::line(const Sample& now) const {
 }
 
 void ProgressMeter::add_host_rows(std::vector<StatRow>& rows) const {
-  const auto add = [&](const char* name, StatBase::Value value, const char* unit,
-                       const char* sentence) {
-    if (!find(rows, name)) rows.push_back({name, value, unit, sentence});
+  const auto add = [&](StatRow row) {
+    if (!find(rows, row.name)) rows.push_back(std::move(row));
   };
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  add("wall_time", Seconds(now_() - begin_.wall).count(), "s", "wall-clock time of the run");
-  add("peak_rss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, "bytes",
-      "largest resident memory of the process");
+  add(wall_time(Seconds(now_() - begin_.wall).count(), "the run"));
+  add(peak_rss());
   if (!steady_ || last_.progress.simulated <= steady_->progress.simulated) return;
   const double wall = Seconds(last_.wall - steady_->wall).count();
   if (wall <= 0) return;
-  add("realtime_factor", seconds(last_.progress.simulated - steady_->progress.simulated) / wall,
-      "x",
-      "speed against real time: simulated time / wall time, from the first displayed frame on");
-  add("mips",
-      static_cast<double>(last_.progress.instructions - steady_->progress.instructions) / wall /
-          1e6,
-      "1e6/s", "guest instructions per second of wall time, from the first displayed frame on");
+  constexpr const char* kWhen = "from the first displayed frame on";
+  add(realtime_factor(seconds(last_.progress.simulated - steady_->progress.simulated), wall, kWhen));
+  add(mips(last_.progress.instructions - steady_->progress.instructions, wall, kWhen));
 }
 
 }  // namespace fovea::app

@@ -9,6 +9,7 @@
 #include "model/trace/core/trace_file.h"
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/figures.h"
 #include "sw/fovea/remarks.h"
 #include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
@@ -66,14 +67,10 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
   double sum = 0;
   for (const Picoseconds t : times) sum += static_cast<double>(t) * 1e-12;
   const auto [min, max] = std::minmax_element(times.begin(), times.end());
-  const std::string what = "time to correct (remap) one frame, ";
-  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1", "frames corrected (remap finished) in the trace"});
-  rows.push_back({"frame.remap_time.min", static_cast<double>(*min) * 1e-12, "s",
-                  what + "shortest"});
-  rows.push_back({"frame.remap_time.mean", sum / static_cast<double>(times.size()), "s",
-                  what + "mean"});
-  rows.push_back({"frame.remap_time.max", static_cast<double>(*max) * 1e-12, "s",
-                  what + "longest"});
+  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1",
+                  "frames corrected (remap finished) in the trace"});
+  add_remap_times(rows, static_cast<double>(*min) * 1e-12,
+                  sum / static_cast<double>(times.size()), static_cast<double>(*max) * 1e-12);
 }
 
 }  // namespace
@@ -128,7 +125,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   std::vector<StatRow> stats = path.stats();
   add_remap_rows(path, stats);
   const std::vector<StatRow> host = {
-      {"wall_time", wall, "s", "host time of the whole replay"},
+      wall_time(wall, "the whole replay"),
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));

@@ -8,7 +8,6 @@ namespace fovea::app {
 
 void ReplayParams::declare(ParamSet& set) {
   set.add(crossbar);
-  for (auto& port : crossbar.ports) set.add(*port);
   set.add(clocks);
   set.add(chip_clocks);
   set.add(ddr);

@@ -1,7 +1,9 @@
-#include "sw/fovea/replay_path.h"
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <fmt/format.h>
+
+#include "sw/fovea/figures.h"
+#include "sw/fovea/replay_path.h"
 
 namespace fovea::app {
 
@@ -14,16 +16,10 @@ std::vector<StatRow> ReplayPath::stats() {
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
-    const double clocks = seconds * ddr().ddr_clock().frequency().hertz();
-    const auto busy = static_cast<double>(ddr().busy_clocks());
-    const auto queued = static_cast<double>(ddr().stats.queued_clocks.count());
-    rows.push_back({"ddr.utilisation", busy / clocks, "ratio",
-                    "share of replay.time in which the SDRAM's data bus moves data"});
-    rows.push_back({"ddr.headroom", 1 - queued / clocks, "ratio",
-                    "share of replay.time in which no request is queued at the SDRAM (not the bandwidth left over)"});
-    if (queued > 0)
-      rows.push_back({"ddr.efficiency", busy / queued, "ratio",
-                      "clocks with data on the SDRAM's bus / clocks in which a request is queued"});
+    add_ddr_shares(rows,
+                   {ddr().busy_clocks(), ddr().stats.queued_clocks.count(),
+                    seconds * ddr().ddr_clock().frequency().hertz()},
+                   "replay.time");
   }
   for (const std::string& label : labels()) {
     std::uint64_t read = 0, write = 0, transactions = 0;

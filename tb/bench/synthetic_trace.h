@@ -55,7 +55,7 @@ class SyntheticTrace final : public trace::RecordSource {
 
  private:
   /// The 64-bit masters, which follow the core's.
-  static Master port(unsigned n) { return static_cast<Master>(index(Master::kEdmaTc0Read) + n); }
+  static Master port(unsigned n) { return wide_master(n); }
   std::uint64_t page(unsigned stream) const {
     return pattern_ == Pattern::kApart ? stream * 2048u : 0u;
   }

@@ -10,7 +10,6 @@ namespace fovea::replay {
 namespace {
 
 using trace::BusRecorder;
-using trace::Pace;
 using trace::Record;
 using trace::Release;
 

@@ -8,7 +8,7 @@ namespace fovea::bus {
 
 Crossbar::Crossbar(const CrossbarParams& params) : timeline(params.timeline_interval()) {
   for (std::size_t i = 0; i < kStatCount; ++i)
-    stats[i] = std::make_unique<MasterStats>(static_cast<Master>(i));
+    stats[i] = std::make_unique<MasterStats>(master_of_stat(i));
   for (std::size_t i = 0; i < kMasterCount; ++i) {
     const auto m = static_cast<Master>(i);
     const MasterPortParams& from = params.port(m);

@@ -92,11 +92,9 @@ struct CpuParams : ParamGroup {
   BoolParam shifted_address_cycle{*this, "shifted_address_cycle", true,
                                   "a shifted register offset costs a cycle", Origin::kSourced,
                                   "ARM DDI 0222B table 8.2"};
-  CpuParams() : ParamGroup("cpu") {}
-  void declare(ParamSet& set) {
-    set.add(*this);
-    set.add(icache);
-    set.add(dcache);
+  CpuParams() : ParamGroup("cpu") {
+    add_part(icache);
+    add_part(dcache);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/common/clock.h"
+#include "model/common/masters.h"
 #include "model/common/mem_observer.h"
 #include "model/trace/core/trace_file.h"
 
@@ -27,15 +28,6 @@ struct CoreState {
 
 /// The core's write buffer (ARM DDI 0198D ch. 6).
 inline constexpr unsigned kBufferedStores = 4, kBufferedWords = 16;
-
-/// How a master's requests are released.
-enum class Pace : std::uint8_t {
-  kCore,       ///< program order, one request a port
-  kSampled,    ///< each at its time
-  kLines,      ///< bursts of a line at a time, those without a place after the burst they replace
-  kRepeating,  ///< after a completion, of its own or of the partner's records
-  kData,       ///< each with the last beat of a read of its partner, in order
-};
 
 class BusRecorder : public MemObserver {
  public:

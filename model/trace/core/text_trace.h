@@ -17,9 +17,7 @@ class TextTrace : public RecordSource {
   static constexpr Picoseconds kLatest = 100 * kPsPerSecond;
   static constexpr unsigned kMaxMasters = 10;
   /// The port of the n-th master: those behind the core's, which are narrower and slower.
-  static constexpr Master port(std::size_t n) {
-    return static_cast<Master>(index(Master::kEdmaTc0Read) + n);
-  }
+  static constexpr Master port(std::size_t n) { return wide_master(n); }
 
   TextTrace(std::string name, std::string_view text);
   static bool recognises(std::string_view text) { return text.starts_with("# dramtrace"); }

@@ -1,0 +1,111 @@
+// The walk over the board's blocks reaches all of them; what it does not reach makes the test fail.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "model/board/board.h"
+#include "sw/fovea/board_debug.h"
+#include "sw/fovea/loader.h"
+#include "tb/soc/reach.h"
+
+namespace fovea::soc {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+struct TestBoard {
+  explicit TestBoard(bool cpld = true) {
+    params.declare(set);
+    set.set("camera.kind", "chart");
+    if (cpld) set.set("board.cpld", "true");
+    set.set("load.outstanding", "1");
+    set.set("load.1.outstanding", "1");
+    set.set("load.1.port", "edma_tc0");
+    source = video::make_picture_source(params.camera, app::load_footage(params),
+                                        params.raster_width(), params.raster_height());
+    board = std::make_unique<board::Board>("board", params, *source, 0, false);
+  }
+  board::BoardParams params;
+  ParamSet set;
+  std::unique_ptr<video::PictureSource> source;
+  std::unique_ptr<board::Board> board;
+};
+
+TEST(Platform, WalkReachesEveryBlockBankAndStatistic) {
+  TestBoard t;
+  EXPECT_THAT(unreached(t.board->platform), IsEmpty());
+}
+
+TEST(Platform, EveryParameterIsDeclared) {
+  TestBoard t;
+  EXPECT_THAT(undeclared(t.set), IsEmpty());
+  struct Forgotten : ParamGroup {
+    IntParam p{*this, "p", IntParam::Unit::kCount, 1, 0, 2, "a parameter", Origin::kChoice, ""};
+    Forgotten() : ParamGroup("forgotten") {}
+  } forgotten;
+  EXPECT_THAT(undeclared(t.set), ElementsAre("parameters forgotten"));
+}
+
+struct PlantedStats : StatGroup {
+  Counter n{*this, "n", "1", "a counter"};
+  PlantedStats() : StatGroup("planted") {}
+};
+struct PlantedRegs : RegBank {
+  Reg r{*this, "R", 0, Mode::kRw, "a register"};
+  PlantedRegs() : RegBank("PLANTED") {}
+};
+struct PlantedBlock : periph::WithRegs<PlantedRegs>, BusTarget {
+  PlantedStats stats;
+  explicit PlantedBlock(sc_core::sc_module_name name) : BusTarget(name, regs) {
+    add_statistics(stats);
+  }
+};
+
+TEST(Platform, ABlockThatTheWalkDoesNotReachIsFound) {
+  TestBoard t;
+  PlantedBlock planted("planted");
+  EXPECT_THAT(unreached(t.board->platform),
+              ElementsAre("block planted", "registers PLANTED", "statistics planted"));
+  t.board->platform.add("planted", planted);
+  EXPECT_THAT(unreached(t.board->platform), IsEmpty());
+  PlantedStats loose;  // of a block that does not mention it
+  EXPECT_THAT(unreached(t.board->platform), ElementsAre("statistics planted"));
+}
+
+TEST(Platform, NamesAndBlocksOccurOnce) {
+  TestBoard t;
+  EXPECT_EXIT(t.board->platform.add("uart0", t.board->dm365.gpio), testing::ExitedWithCode(4),
+              "two blocks named uart0");
+  EXPECT_EXIT(t.board->platform.add("another", t.board->dm365.gpio), testing::ExitedWithCode(4),
+              "block added twice: another");
+}
+
+// Both were missing in lists that were kept by hand.
+TEST(Platform, DebuggerAndRegisterLogSeeEdmaAndCpld) {
+  TestBoard t;
+  std::vector<std::string> names;
+  for (const auto& b : app::register_blocks(t.board->platform)) names.push_back(b.name);
+  EXPECT_THAT(names, Contains("edma"));
+  EXPECT_THAT(names, Contains("cpld"));
+  EXPECT_EQ(names.size(), 21u);  // 14, five timers, and these
+}
+
+TEST(Platform, MonitorHasTheWaits) {
+  TestBoard t;
+  const app::GdbViews views = app::board_views(*t.board, t.set, nullptr);
+  std::vector<std::string> names;
+  for (const auto& row : views.stats()) names.push_back(row.name);
+  EXPECT_THAT(names, Contains("ddr.vpfe.wait.write.bridge"));
+  EXPECT_THAT(names, Contains("ddr.load.wait.read.own"));
+  EXPECT_THAT(names, Contains("ddr.edma_tc0.wait.read.own"));
+  EXPECT_THAT(names, Contains("display.frames"));
+}
+
+}  // namespace
+}  // namespace fovea::soc
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleMock(&argc, argv);
+  return RUN_ALL_TESTS();
+}
