@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "model/board/board.h"
+#include "model/common/slices.h"
+#include "model/soc/memory_map.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/loader.h"
 #include "tb/examples/alarm/alarm.h"
@@ -34,9 +36,10 @@ struct Rig {
                                         params.raster_width(), params.raster_height());
     board = std::make_unique<board::Board>("board", params, *source, 0, false);
     board->load({0, {0xFE, 0xFF, 0xFF, 0xEA}});  // b .
+    views.emplace(app::board_views(*board, set, nullptr));  // before the simulation starts
     return *board;
   }
-  static void run(Picoseconds t) { sc_core::sc_start(ps_time(t)); }
+  void run(Picoseconds t) { slices.run(t); }
   /// By its address, as a debugger does: over the configuration bus.
   std::uint32_t read(std::uint32_t address) {
     app::BoardDebugMemory memory(board->dm365);
@@ -47,7 +50,7 @@ struct Rig {
     return word;
   }
   std::uint64_t statistic(const std::string& name) {
-    for (const auto& row : app::board_views(*board, set, nullptr).stats())
+    for (const auto& row : views->stats())
       if (row.name == name) return std::get<std::uint64_t>(row.value);
     ADD_FAILURE() << "no statistic " << name;
     return 0;
@@ -62,6 +65,8 @@ struct Rig {
   ParamSet set;
   std::unique_ptr<video::PictureSource> source;
   std::unique_ptr<board::Board> board;
+  std::optional<app::GdbViews> views;
+  Slices slices;
 };
 
 soc::Placement alarm_row() {
@@ -160,7 +165,7 @@ TEST(Example, MasterIsMeasuredUnderItsOwnName) {
   EXPECT_EQ(rig.statistic("bus.remap_engine.transactions"), 10u);
   EXPECT_EQ(rig.statistic("bus.vpfe.write_bytes"), before);
   std::vector<std::string> names;
-  for (const auto& row : app::board_views(*rig.board, rig.set, nullptr).stats())
+  for (const auto& row : rig.views->stats())
     names.push_back(row.name);
   EXPECT_THAT(names, Contains("ddr.remap_engine.wait.write.bridge"));
 }
