@@ -638,7 +638,7 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
-// What no part of its kind does is refused; what the part at hand forbids is a remark.
+// What no part of its kind does is refused; what the part at hand forbids is a warning.
 TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   using testing::HasSubstr;
   std::vector<std::string> said;
