@@ -215,7 +215,7 @@ std::string missing_feature(const std::exception& e) {
 /// What the host could not provide (memory, a thread), if that is the reason of the exception;
 /// otherwise empty. From inside a SystemC process it arrives as a report that quotes the
 /// exception's name.
-std::string lack_of_host(const std::exception& e) {
+std::string host_shortage(const std::exception& e) {
   const std::string_view what = e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e) || what.find("std::bad_alloc") != what.npos)
     return "out of memory: the host gives this process no more; allowed: a smaller run, or a "
@@ -490,7 +490,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
     context.err << "fovea: " << printable(e.what()) << std::endl;
     return kExitGuestFailed;
   } catch (const std::exception& e) {
-    if (const std::string why = lack_of_host(e); !why.empty()) {
+    if (const std::string why = host_shortage(e); !why.empty()) {
       context.err << "fovea: error: " << why << std::endl;
       return kExitWrongInput;
     }
