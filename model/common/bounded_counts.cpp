@@ -36,12 +36,12 @@ std::string BoundedCounts::kind_of(std::string_view text) {
 }
 
 BoundedCounts::Show BoundedCounts::add(unsigned group, const std::string& text) {
-  const auto [place, new_kind] = kinds_.try_emplace({group, kind_of(text)});
+  const auto [position, new_kind] = kinds_.try_emplace({group, kind_of(text)});
   if (kinds_.size() > kKinds) {
     // The table is full: the alphabetically last kind is dropped. It cannot return, because every
     // kind that is kept sorts before it.
     const auto last = std::prev(kinds_.end());
-    const bool itself = last == place;
+    const bool itself = last == position;
     std::uint64_t& others = others_[last->first.first];
     others += last->second.others;
     for (const auto& example : last->second.examples) others += example.second;
@@ -51,7 +51,7 @@ BoundedCounts::Show BoundedCounts::add(unsigned group, const std::string& text) 
       return std::exchange(more_kinds_shown_, true) ? Show::kNothing : Show::kNoMore;
     }
   }
-  Kind& kind = place->second;
+  Kind& kind = position->second;
   bool is_new = false;
   if (const auto known = kind.examples.find(text); known != kind.examples.end()) {
     ++known->second;

@@ -160,7 +160,7 @@ std::vector<std::string> DdrCheck::violations(const DdrConfig& config, Frequency
                            sheet_->part, clock);
 }
 
-void DdrCheck::remark(const DdrConfig& config, Frequency clock) const {
+void DdrCheck::warn(const DdrConfig& config, Frequency clock) const {
   for (const std::string& line : violations(config, clock)) Diagnostics::instance().guest(line);
 }
 

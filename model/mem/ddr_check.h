@@ -20,8 +20,8 @@ class DdrCheck {
   /// The commands from `at` on are held against these numbers; what the controller is told itself
   /// needs no call.
   void expect(const DdrConfig& config, Frequency clock, Picoseconds at);
-  /// A remark about each value that the part's data sheet does not allow.
-  void remark(const DdrConfig& config, Frequency clock) const;
+  /// A warning about each value that the part's data sheet does not allow.
+  void warn(const DdrConfig& config, Frequency clock) const;
   /// The same lines, without counting them.
   std::vector<std::string> violations(const DdrConfig& config, Frequency clock) const;
 

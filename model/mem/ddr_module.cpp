@@ -117,7 +117,7 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
     examined_ = true;
     update_open();
     for (const std::string& line : invalid_register_values(regs, params_)) Diagnostics::instance().guest(line);
-    check_.remark(programmed(), ddr_clk.read());
+    check_.warn(programmed(), ddr_clk.read());
   }
   if (end > store().size())
     Diagnostics::instance().guest("access beyond the SDRAM's end (ddr.part, " +

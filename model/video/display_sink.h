@@ -46,16 +46,16 @@ class DisplaySink : public sc_core::sc_module, public Block, public DisplayLineI
   void count() {
     const Totals now{assembler.frames(), assembler.repeated(), assembler.underflows(),
                      assembler.broken_frames(), assembler.violations()};
-    stats.frames += now.frames - seen_.frames;
-    stats.repeated += now.repeated - seen_.repeated;
-    stats.underflows += now.underflows - seen_.underflows;
-    stats.broken_frames += now.broken - seen_.broken;
-    stats.violations += now.violations - seen_.violations;
-    seen_ = now;
+    stats.frames += now.frames - counted_.frames;
+    stats.repeated += now.repeated - counted_.repeated;
+    stats.underflows += now.underflows - counted_.underflows;
+    stats.broken_frames += now.broken - counted_.broken;
+    stats.violations += now.violations - counted_.violations;
+    counted_ = now;
   }
   struct Totals {
     std::uint64_t frames = 0, repeated = 0, underflows = 0, broken = 0, violations = 0;
-  } seen_;
+  } counted_;
 };
 
 }  // namespace fovea::video

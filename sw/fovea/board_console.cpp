@@ -11,7 +11,7 @@ BoardConsole::BoardConsole(board::Board& board, ConsoleStream* stream,
     if (stream_) stream_->show(byte);
     if (!dialogue_) return;
     const bool before = dialogue_->over();
-    dialogue_->heard(byte);
+    dialogue_->received(byte);
     if (!before) sender_->kick();
   };
   sender_ = std::make_unique<board::SerialSender>("uart0_input", board.dm365.uart0, *this);

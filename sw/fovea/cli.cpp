@@ -23,7 +23,7 @@
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
-#include "sw/fovea/remarks.h"
+#include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/row_files.h"
@@ -61,7 +61,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   dir.write("host.json", host_json(host, args, version_text()));
   // Written last: if stats.json exists, all other files do.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_remarks(Diagnostics::instance()), result.ended_by));
+                                     collect_warnings(Diagnostics::instance()), result.ended_by));
 }
 
 /// Adds the keys that only `fovea replay` has, so that an error message can say so.
@@ -89,7 +89,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   Experiment experiment(params);
   experiment.load(options.experiment);
   for (const auto& set : options.sets) experiment.override_with(set);
-  const RemarkScope remarks(context.err, options.strict);
+  const WarningScope warnings(context.err, options.strict);
   warn_without_effect(params, experiment);
   apply_calibrations(params, experiment);
   const RunLimits limits = limits_of(options.limits);
@@ -215,7 +215,7 @@ std::string missing_feature(const std::exception& e) {
 /// What the host could not provide (memory, a thread), if that is the reason of the exception;
 /// otherwise empty. From inside a SystemC process it arrives as a report that quotes the
 /// exception's name.
-std::string lack_of_host(const std::exception& e) {
+std::string host_shortage(const std::exception& e) {
   const std::string_view what = e.what();
   if (dynamic_cast<const std::bad_alloc*>(&e) || what.find("std::bad_alloc") != what.npos)
     return "out of memory: the host gives this process no more; allowed: a smaller run, or a "
@@ -490,7 +490,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
     context.err << "fovea: " << printable(e.what()) << std::endl;
     return kExitGuestFailed;
   } catch (const std::exception& e) {
-    if (const std::string why = lack_of_host(e); !why.empty()) {
+    if (const std::string why = host_shortage(e); !why.empty()) {
       context.err << "fovea: error: " << why << std::endl;
       return kExitWrongInput;
     }

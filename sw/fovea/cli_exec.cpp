@@ -15,7 +15,7 @@
 #include "sw/fovea/console.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/progress.h"
-#include "sw/fovea/remarks.h"
+#include "sw/fovea/warnings.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -251,7 +251,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   const RunLimits limits = limits_of(o.limits);
   const std::optional<ElfImage> symbols = symbols_of(o.limits);
   std::ostream nowhere(nullptr);
-  const RemarkScope remarks(o.quiet ? nowhere : context.err, o.strict);
+  const WarningScope warnings(o.quiet ? nowhere : context.err, o.strict);
   warn_without_effect(params, experiment);
   if (o.fast_memory)
     for (const auto* p : params.all())
@@ -306,7 +306,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     dir->write("host.json", host_json(result.host, args, version_text()));
     dir->write("stats.json",
                stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                          collect_remarks(Diagnostics::instance())));
+                          collect_warnings(Diagnostics::instance())));
     report_earlier(dir->commit(result.complete && result.guest_failure.empty()), context);
   }
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);

@@ -47,18 +47,18 @@ Dialogue Dialogue::parse(const std::string& name, const std::string& text) {
   return d;
 }
 
-void Dialogue::step_on() {
+void Dialogue::next_step() {
   ++at_;
   sent_ = 0;
-  heard_.clear();
+  received_.clear();
 }
 
-void Dialogue::heard(std::uint8_t byte) {
+void Dialogue::received(std::uint8_t byte) {
   if (over() || steps_[at_].kind != Step::Kind::kWait) return;
   const std::string& wanted = steps_[at_].text;
-  heard_ += static_cast<char>(byte);
-  if (heard_.size() > wanted.size()) heard_.erase(0, 1);
-  if (heard_ == wanted) step_on();
+  received_ += static_cast<char>(byte);
+  if (received_.size() > wanted.size()) received_.erase(0, 1);
+  if (received_ == wanted) next_step();
 }
 
 std::optional<std::uint8_t> Dialogue::next(Picoseconds now) {
@@ -67,11 +67,11 @@ std::optional<std::uint8_t> Dialogue::next(Picoseconds now) {
     if (step.kind == Step::Kind::kWait) return std::nullopt;
     if (step.kind == Step::Kind::kAt) {
       if (now < step.time) return std::nullopt;
-      step_on();
+      next_step();
       continue;
     }
     const auto byte = static_cast<std::uint8_t>(step.text[sent_]);
-    if (++sent_ == step.text.size()) step_on();
+    if (++sent_ == step.text.size()) next_step();
     return byte;
   }
   return std::nullopt;

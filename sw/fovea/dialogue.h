@@ -23,7 +23,7 @@ class Dialogue {
   static Dialogue parse(const std::string& name, const std::string& text);
 
   /// To be called for each byte that UART0 sends.
-  void heard(std::uint8_t byte);
+  void received(std::uint8_t byte);
   /// The next byte to type, if it is due.
   std::optional<std::uint8_t> next(Picoseconds now);
   /// The time of the current step, if that is `at`.
@@ -41,12 +41,12 @@ class Dialogue {
     unsigned line = 0;
     std::string written;
   };
-  void step_on();
+  void next_step();
 
   std::string name_;
   std::vector<Step> steps_;
   std::size_t at_ = 0, sent_ = 0;
-  std::string heard_;  // received since the current step began; at most as long as its text
+  std::string received_;  // received since the current step began; at most as long as its text
 };
 
 /// A typed byte, as two lines of such a file.

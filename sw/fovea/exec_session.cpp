@@ -109,7 +109,7 @@ void ExecSession::attach(cpu::DebugMemory& memory, const std::function<void(GdbV
   gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
                                       request_.stop, request_.notes);
   request_.console.go_on = [this] {
-    gdb_->look_at_input();
+    gdb_->poll_during_input();
     return !gdb_->killed();
   };
 }

@@ -27,7 +27,7 @@ namespace fovea::app {
 namespace {
 
 constexpr std::size_t kMaxMessageBytes = 4096;
-constexpr int kLookMs = 100;  ///< interval in which the stop flag is checked, in ms
+constexpr int kPollMs = 100;  ///< interval in which the stop flag is checked, in ms
 
 /// Demuxers of ffmpeg that read one video or picture from the given file only. Excluded on purpose:
 /// hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and the like (text),
@@ -41,7 +41,7 @@ constexpr const char* kFormats =
 /// suffix.
 constexpr const char* kFootage = "file:/dev/stdin";
 
-void look_at(const std::atomic<bool>* stop) {
+void check_stop(const std::atomic<bool>* stop) {
   if (stop && stop->load()) throw Stopped();
 }
 
@@ -194,9 +194,9 @@ void ChildProcess::read_messages() {
 bool ChildProcess::read_some(std::string& buffer, const std::atomic<bool>* stop) {
   std::array<char, 64 * 1024> chunk;
   for (;;) {
-    look_at(stop);
+    check_stop(stop);
     std::array<pollfd, 2> fds{{{data_, POLLIN, 0}, {error_, POLLIN, 0}}};
-    const int ready = ::poll(fds.data(), fds.size(), stop ? kLookMs : -1);
+    const int ready = ::poll(fds.data(), fds.size(), stop ? kPollMs : -1);
     if (ready < 0 && errno != EINTR) return false;
     if (ready <= 0) continue;
     if (fds[1].revents != 0) read_messages();
@@ -228,9 +228,9 @@ int ChildProcess::finish(const std::atomic<bool>* stop) {
   close_fd(data_);
   // Read until the child closes its standard error, so that it never blocks on a message.
   while (error_ >= 0) {
-    look_at(stop);
+    check_stop(stop);
     pollfd fd{error_, POLLIN, 0};
-    if (::poll(&fd, 1, stop ? kLookMs : -1) < 0 && errno != EINTR) break;
+    if (::poll(&fd, 1, stop ? kPollMs : -1) < 0 && errno != EINTR) break;
     read_messages();
   }
   int status = 0;

@@ -64,10 +64,10 @@ void GdbMasters::done(const MemRequest& r) {
     found->first = r.first;
     found->last = r.last;
   }
-  if (to_sdram && !r.error && !watches.empty()) look(r);
+  if (to_sdram && !r.error && !watches.empty()) check_watches(r);
 }
 
-void GdbMasters::look(const MemRequest& r) const {
+void GdbMasters::check_watches(const MemRequest& r) const {
   const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
   for (const Watch& w : watches) {
     if (w.only ? *w.only != r.master : core) continue;
@@ -95,7 +95,7 @@ std::string GdbMasters::where(Picoseconds now) const {
       if (n > kShown) continue;
       out += fmt::format("    {} of {} bytes at 0x{:08x} since {} ns ({} ns): {}\n",
                          r.write ? "write" : "read", r.bytes, r.address, ns_text(r.issued),
-                         ns_text(now - r.issued), place(r, bus, ddr, now));
+                         ns_text(now - r.issued), position_text(r, bus, ddr, now));
     }
     if (n > kShown) out += fmt::format("    and {} more\n", n - kShown);
   }
@@ -117,7 +117,7 @@ std::string GdbMasters::where(Picoseconds now) const {
   return out;
 }
 
-std::string GdbMasters::place(const Request& r, const bus::Crossbar::View& bus,
+std::string GdbMasters::position_text(const Request& r, const bus::Crossbar::View& bus,
                               const mem::DdrController::View& ddr, Picoseconds now) const {
   if (r.decided) {
     if (r.write) return "acknowledged; the answer is on its way, " + until(r.last);

@@ -62,8 +62,8 @@ class GdbMasters final : public MemObserver {
   void responded(const MemRequest& r) override { done(r); }
   void register_done(const MemRequest& r) override { done(r); }
   void done(const MemRequest& r);
-  void look(const MemRequest& r) const;
-  std::string place(const Request& r, const bus::Crossbar::View& bus,
+  void check_watches(const MemRequest& r) const;
+  std::string position_text(const Request& r, const bus::Crossbar::View& bus,
                     const mem::DdrController::View& ddr, Picoseconds now) const;
   std::string in_crossbar(const bus::Crossbar::View::Item& item, const MemRequest& r,
                           const bus::Crossbar::View& bus, Picoseconds now) const;

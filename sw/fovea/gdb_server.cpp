@@ -21,7 +21,7 @@
 namespace fovea::app {
 namespace {
 
-constexpr int kLookMs = 100;  // interval in which the process's stop flag is checked, in ms
+constexpr int kPollMs = 100;  // interval in which the process's stop flag is checked, in ms
 
 /// GDB begins with an acknowledgement, a packet or an interrupt byte.
 bool begins_like_gdb(char c) { return c == '+' || c == '-' || c == '$' || c == '\x03'; }
@@ -92,7 +92,7 @@ bool GdbServer::connect(int timeout_ms) {
 
 /// Handles connections of further clients: a second debugger would otherwise wait for the first one
 /// without a message. It replaces a client that has never sent anything.
-void GdbServer::attend_others() {
+void GdbServer::handle_other_clients() {
   if (!readable(listener_, 0)) return;
   if (silent_) {
     drop();
@@ -106,7 +106,7 @@ void GdbServer::attend_others() {
 /// Further clients are only handled if the connected one has sent nothing: it may have left.
 GdbServer::Io GdbServer::receive(int timeout_ms) {
   if (!readable(socket_, timeout_ms)) {
-    attend_others();
+    handle_other_clients();
     return Io::kNothing;
   }
   std::array<char, 4096> bytes;
@@ -141,13 +141,13 @@ GdbResume GdbServer::serve(const GdbStop& stop) {
   for (;;) {
     if (stop_.load()) return {.kind = GdbResume::Kind::kKill};
     if (socket_ < 0) {
-      connect(kLookMs);
+      connect(kPollMs);
       continue;
     }
     const auto event = framer_.next();
     if (!event) {
       const bool newcomer = silent_;
-      const Io io = receive(kLookMs);
+      const Io io = receive(kPollMs);
       if (newcomer && io == Io::kSome) protocol_.begin(stop);
       if (io == Io::kClosed) {
         // A debugger that disconnects without a packet leaves the target as it is, for the next
@@ -209,7 +209,7 @@ void GdbServer::exited(int status, bool by_signal) {
   // A reset of the connection would discard data that are still on their way to the debugger.
   ::shutdown(socket_, SHUT_WR);
   for (int tries = 0; tries < 10; ++tries)
-    if (receive(kLookMs) == Io::kClosed) break;
+    if (receive(kPollMs) == Io::kClosed) break;
   drop();
 }
 

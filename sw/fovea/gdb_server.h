@@ -123,7 +123,7 @@ class GdbServer {
   enum class Io { kNothing, kSome, kClosed };
   bool connect(int timeout_ms);
   Io receive(int timeout_ms);
-  void attend_others();
+  void handle_other_clients();
   void send(std::string_view payload);
   void drop();
 

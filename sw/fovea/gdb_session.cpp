@@ -35,7 +35,7 @@ GdbSession::GdbSession(std::uint16_t port, cpu::Core& core, cpu::DebugMemory& me
     numbers_.push_back(kSystem + k);
   for (unsigned k = 0; k < cpu::CoreDebug::banked_registers().size(); ++k)
     numbers_.push_back(kBanked + k);
-  if (views_.masters) views_.masters->on_hit = [this](const GdbMasters::Hit& h) { noticed(h); };
+  if (views_.masters) views_.masters->on_hit = [this](const GdbMasters::Hit& h) { add_hit(h); };
   control_.on_stop = [this](const cpu::CoreControl::Stop& s) { stopped(s); };
   control_.request_halt();
   notes << fmt::format("fovea: waiting for gdb: target remote 127.0.0.1:{}\n", server_.port())
@@ -107,7 +107,7 @@ void GdbSession::failed(const std::string& why) {
 
 /// Hits are kept until they are reported: more may become known before the first one stops the
 /// core.
-void GdbSession::noticed(const GdbMasters::Hit& hit) {
+void GdbSession::add_hit(const GdbMasters::Hit& hit) {
   const bool first = hit.at < next_hit();
   hits_.push_back(hit);
   if (first) wait_for_hit();
@@ -227,7 +227,7 @@ void GdbSession::look(bool asleep) {
   halt_seen_ = false;
 }
 
-void GdbSession::look_at_input() {
+void GdbSession::poll_during_input() {
   waits_for_ = "console input";
   look(true);
   waits_for_ = "an interrupt";

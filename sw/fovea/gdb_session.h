@@ -56,7 +56,7 @@ class GdbSession : private GdbTarget {
   /// interrupt, and a requested stop takes place there.
   void look(bool asleep = false);
   /// The same, called by a semihosting call that waits for console input.
-  void look_at_input();
+  void poll_during_input();
   /// A watchpoint was hit, or is certain to be, and the core has not stopped yet: call look() at
   /// shorter intervals.
   bool hit_pending() const { return !hits_.empty(); }
@@ -72,7 +72,7 @@ class GdbSession : private GdbTarget {
   void go_on(const GdbResume& resume, bool over_watched = false);
   GdbResume serve(const GdbStop& stop);
   void serve_asleep(const GdbStop& stop);
-  void noticed(const GdbMasters::Hit& hit);
+  void add_hit(const GdbMasters::Hit& hit);
   Picoseconds next_hit() const;
   GdbStop take_hit();
   void wait_for_hit();

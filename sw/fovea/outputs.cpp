@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sw/fovea/remarks.h"
+#include "sw/fovea/warnings.h"
 #include "sw/fovea/run_dir.h"
 
 namespace fovea::app {
@@ -109,8 +109,8 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
   return out + "\n  }\n}\n";
 }
 
-std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay) {
-  std::vector<Remark> out;
+std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay) {
+  std::vector<Warning> out;
   for (const auto& [key, count] : diagnostics.counts())
     out.push_back({std::string(warning_kind(key.first, replay)),
                    warning_text(key.first, key.second), count});
@@ -118,14 +118,14 @@ std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay)
 }
 
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Remark>& remarks, std::string_view ended_by) {
+                       const std::vector<Warning>& warnings, std::string_view ended_by) {
   std::string out = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\"", complete);
   if (!ended_by.empty()) out += fmt::format(",\n  \"ended_by\": {}", js(std::string(ended_by)));
   out += ",\n  \"warnings\": [";
-  for (std::size_t i = 0; i < remarks.size(); ++i)
+  for (std::size_t i = 0; i < warnings.size(); ++i)
     out += fmt::format("{}\n    {{\"kind\": {}, \"what\": {}, \"count\": {}}}", i ? "," : "",
-                       js(remarks[i].kind), js(remarks[i].what), remarks[i].count);
-  out += remarks.empty() ? "]" : "\n  ]";
+                       js(warnings[i].kind), js(warnings[i].what), warnings[i].count);
+  out += warnings.empty() ? "]" : "\n  ]";
   append_rows(out, std::move(rows));
   return out + "\n}\n";
 }

@@ -66,17 +66,17 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
                         const Provenance& provenance);
 
 /// A warning as it is listed in stats.json.
-struct Remark {
+struct Warning {
   std::string kind, what;
   std::uint64_t count = 0;
 };
-std::vector<Remark> collect_remarks(const Diagnostics& diagnostics, bool replay = false);
+std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay = false);
 
 /// Sorted by name, one value per line, so that equal runs give equal bytes. `complete` is false for
 /// a run that was stopped early; `ended_by` is the condition of run.until that was met. A name that
 /// occurs twice is a defect of Fovea (FOVEA_CHECK).
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Remark>& remarks = {}, std::string_view ended_by = {});
+                       const std::vector<Warning>& warnings = {}, std::string_view ended_by = {});
 /// Like stats.json but without the state of the run; for values that differ from run to run.
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);

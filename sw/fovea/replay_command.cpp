@@ -10,7 +10,7 @@
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/figures.h"
-#include "sw/fovea/remarks.h"
+#include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
@@ -78,7 +78,7 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
                    const CliContext& context) {
   const auto started = Wall::now();
-  const RemarkScope remarks(context.err, false, true);
+  const WarningScope warnings(context.err, false, true);
   OpenTrace trace = open_trace(options.trace);
   ReplayParams params;
   ParamSet set;
@@ -129,7 +129,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"}};
   dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete, collect_remarks(Diagnostics::instance(), true)));
+  dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   report_earlier(dir.commit(complete), context);
   context.out << summary_table(stats, host);

@@ -31,7 +31,7 @@ class ReplayPath final : private memsys::MemoryHost {
   /// To be called before the figures are read.
   void finish() {
     memory_.controller().catch_up(end());
-    check_.remark(ddr().config(), ddr().ddr_clock().frequency());
+    check_.warn(ddr().config(), ddr().ddr_clock().frequency());
   }
 
   /// Both sides of a transfer controller, of one label, are one.

@@ -68,7 +68,7 @@ RunDir::RunDir(const fs::path& dir, std::string_view command) : command_(command
   if (!final_.has_filename()) fail(dir, "a name is needed");
   working_ = with_suffix(final_, ".tmp");
 
-  const std::string why = obstacle(look_at_run_folder(final_));
+  const std::string why = obstacle(inspect_run_folder(final_));
   if (!why.empty()) fail(dir, why + "; choose another name, or move it away");
   fs::create_directories(final_.parent_path(), error);
   if (error) fail(dir, error.message());
@@ -105,7 +105,7 @@ void RunDir::take_working() {
   if (::lstat(working_.c_str(), &there) != 0 || there.st_ino != mine.st_ino ||
       there.st_dev != mine.st_dev)
     fail(working_, "another run is writing it");
-  const RunFolder found = look_at_run_folder(working_);
+  const RunFolder found = inspect_run_folder(working_);
   if (!found.vacant && !found.ours)
     fail(working_, "it exists and is not left by a Fovea run; remove it or choose another name");
   if (!found.foreign.empty())
@@ -188,7 +188,7 @@ std::string RunDir::commit(bool complete) {
     fail(working_, e.code().message());
   }
   if (::fchmod(lock_, mode_) != 0) fail(working_, std::strerror(errno));
-  const RunFolder old = look_at_run_folder(final_);
+  const RunFolder old = inspect_run_folder(final_);
   std::string note;
   if (const std::string why = obstacle(old); !why.empty()) {
     const fs::path kept = put_beside(".new");
@@ -250,7 +250,7 @@ fs::path RunDir::put_beside(std::string_view suffix) {
   for (int n = 1;; ++n) {
     fs::path name = with_suffix(final_, suffix);
     if (n > 1) name += fmt::format(".{}", n);
-    const RunFolder found = look_at_run_folder(name);
+    const RunFolder found = inspect_run_folder(name);
     const bool partial = suffix == ".partial" && found.ours && !found.complete;
     if (found.exists && !(partial && obstacle(found).empty())) continue;
     replace(name);

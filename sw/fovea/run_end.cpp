@@ -9,7 +9,7 @@ namespace {
 
 /// Interval in which a halted core is searched for. If two successive checks find it at the same
 /// address, the run ends.
-constexpr Picoseconds kHaltLook = kPsPerMs;
+constexpr Picoseconds kHaltCheck = kPsPerMs;
 constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
 
 }  // namespace
@@ -40,14 +40,14 @@ RunEnd::RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCon
       board_.dm365.arm.core().request_stop();
       end(met->written, false, core.boundary_time());
     };
-  if (wants(Kind::kHalt)) look_for_halt();
+  if (wants(Kind::kHalt)) check_for_halt();
   if (wants(Kind::kReset))
     board_.on_chip_reset = [this](const board::ChipReset&) { meet(Kind::kReset); };
   if (wants(Kind::kUart)) {
     auto others = std::move(board_.on_uart);
     board_.on_uart = [this, others = std::move(others)](std::uint8_t byte) {
       if (others) others(byte);
-      heard(byte);
+      uart_sent(byte);
     };
   }
 }
@@ -77,20 +77,20 @@ void RunEnd::program_exited() {
     if (c.kind == EndCondition::Kind::kExit) end(c.written, false, core.boundary_time());
 }
 
-void RunEnd::heard(std::uint8_t) {
+void RunEnd::uart_sent(std::uint8_t) {
   for (const auto& c : conditions_)
     if (c.kind == EndCondition::Kind::kUart && board_.uart_text().ends_with(c.text))
       return end(c.written, false, kernel_time());
 }
 
-void RunEnd::look_for_halt() {
-  board_.dm365.quiet.at(kernel_time() + kHaltLook, kAfterAll, [this] {
+void RunEnd::check_for_halt() {
+  board_.dm365.quiet.at(kernel_time() + kHaltCheck, kAfterAll, [this] {
     if (met_) return;
     const std::uint32_t pc = board_.dm365.arm.core().current_pc();
     const bool now = halted();
     if (now && halted_at_ == pc) return meet(EndCondition::Kind::kHalt);
     halted_at_ = now ? std::optional(pc) : std::nullopt;
-    look_for_halt();
+    check_for_halt();
   });
 }
 

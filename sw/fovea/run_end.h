@@ -38,9 +38,9 @@ class RunEnd {
  private:
   void meet(EndCondition::Kind kind);
   void end(const std::string& what, bool limit, Picoseconds at);
-  void look_for_halt();
+  void check_for_halt();
   bool halted();
-  void heard(std::uint8_t byte);
+  void uart_sent(std::uint8_t byte);
 
   board::Board& board_;
   std::vector<EndCondition> conditions_;

@@ -107,7 +107,7 @@ std::string RunFolder::results() const {
   return (complete ? "the results of " : "the partial results of ") + date;
 }
 
-RunFolder look_at_run_folder(const fs::path& dir) {
+RunFolder inspect_run_folder(const fs::path& dir) {
   RunFolder found;
   std::error_code error;
   const fs::file_status status = fs::symlink_status(dir, error);

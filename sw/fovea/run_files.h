@@ -26,7 +26,7 @@ struct RunFolder {
   /// "the results of 2026-11-22 18:01:59" or "the partial results of ...".
   std::string results() const;
 };
-RunFolder look_at_run_folder(const std::filesystem::path& dir);
+RunFolder inspect_run_folder(const std::filesystem::path& dir);
 
 /// True if `dir` contains a config.json written by Fovea.
 bool is_run_folder(const std::filesystem::path& dir);

@@ -217,7 +217,7 @@ TEST(ProgrammingTest, MobilePartsHaveTheirOwnSheet) {
   }
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> remarks() {
+std::vector<std::pair<std::string, std::uint64_t>> warnings() {
   std::vector<std::pair<std::string, std::uint64_t>> out;
   for (const auto& [what, count] : Diagnostics::instance().counts())
     out.emplace_back(what.second, count);
@@ -249,17 +249,17 @@ BenchOptions at_340(const mem::DdrConfig& c) {
 }
 
 // As counted by hand in dram.part: two ACT a clock early, two fifth ACT two clocks early.
-TEST(CommandCheckTest, RunsRemarkOnTheBusWithParameterMarginAndTime) {
+TEST(CommandCheckTest, RunsWarnAboutTheBusWithParameterMarginAndTime) {
   const mem::DdrConfig shipped = words(67, 5, 5, 6, 15, 20, 3, 3, 3, 1896, 9);
   for (const char* key : {"none", "commands"}) {
     Diagnostics::instance().clear();
     Checked x({{"part", "mt47h128m16"}, {"check", key}}, at_340(shipped));
     open_eight_banks(x);
     if (std::string(key) == "none") {
-      EXPECT_THAT(remarks(), IsEmpty());
+      EXPECT_THAT(warnings(), IsEmpty());
       continue;
     }
-    const auto said = remarks();
+    const auto said = warnings();
     ASSERT_EQ(said.size(), 3u);
     EXPECT_THAT(said[0].first, HasSubstr("SDRAM command bus: tFAW, 1 clock (2.94 ns) short of "
                                          "MT47H128M16-25E at 340 MHz, first at 0.0000001"));
@@ -270,11 +270,11 @@ TEST(CommandCheckTest, RunsRemarkOnTheBusWithParameterMarginAndTime) {
   }
 }
 
-TEST(CommandCheckTest, NothingToRemarkOnWithinTheSheet) {
+TEST(CommandCheckTest, NoWarningWithinTheSheet) {
   Diagnostics::instance().clear();
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
   open_eight_banks(x);
-  EXPECT_THAT(remarks(), IsEmpty());
+  EXPECT_THAT(warnings(), IsEmpty());
 }
 
 // Before a boot loader has set it up the controller refreshes at a slow clock, and nothing is lost.
@@ -285,14 +285,14 @@ TEST(CommandCheckTest, NothingIsSaidBeforeTheFirstUse) {
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
   x.bench.ddr.catch_up(10 * kPsPerMs);
   EXPECT_GT(x.bench.count(mem::Cmd::kRef), 10u);
-  EXPECT_THAT(remarks(), IsEmpty());
+  EXPECT_THAT(warnings(), IsEmpty());
   Request r;
   x.bench.submit_at(r, 10 * kPsPerMs + 1);
   x.bench.drain();
-  EXPECT_THAT(remarks(), IsEmpty());
+  EXPECT_THAT(warnings(), IsEmpty());
   x.bench.ddr.catch_up(20 * kPsPerMs);
   const std::string beyond = "tREFI, " + std::to_string(40'000 - 9 * 2'652) + " clocks (";
-  EXPECT_THAT(remarks(), Contains(Pair(HasSubstr(beyond), Gt(1u)))) << "9 tREFI of 2652 clocks";
+  EXPECT_THAT(warnings(), Contains(Pair(HasSubstr(beyond), Gt(1u)))) << "9 tREFI of 2652 clocks";
 }
 
 // The model's commands against numbers that it was not given: its own defect, not the guest's.
@@ -341,7 +341,7 @@ TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
     x.bench.submit_at(r, now);
   }
   x.bench.drain();
-  EXPECT_THAT(remarks(), IsEmpty()) << "and no defect either";
+  EXPECT_THAT(warnings(), IsEmpty()) << "and no defect either";
 }
 
 }  // namespace

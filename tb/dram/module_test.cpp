@@ -185,8 +185,8 @@ TEST_F(ModuleTest, LatencyStatisticsTakeTheFirstBeat) {
   EXPECT_EQ(latency.max(), first);
 }
 
-/// Remarks that contain this text.
-std::uint64_t remarks(const std::string& text) {
+/// Warnings that contain this text.
+std::uint64_t warnings(const std::string& text) {
   std::uint64_t n = 0;
   for (const auto& [what, count] : Diagnostics::instance().counts())
     if (what.second.find(text) != std::string::npos) n += count;
@@ -208,15 +208,15 @@ TEST_F(ModuleTest, AddressesRepeatAtThePartsSizeUpToTheEndOfTheWindow) {
     return b.done.size() == 1 && !b.done[0].error && there == value;
   };
   EXPECT_TRUE(round_trip(kDdr + kAt, kDdr + kAt, 1));
-  EXPECT_EQ(remarks("it repeats from its beginning"), 0u);
+  EXPECT_EQ(warnings("it repeats from its beginning"), 0u);
   EXPECT_TRUE(round_trip(kDdr + kSize + kAt, kDdr + kAt, 2));
   EXPECT_TRUE(round_trip(kDdr + kSize, kDdr, 3));
   EXPECT_TRUE(round_trip(kDdr + 2 * kSize - 64, kDdr + kSize - 64, 4));
   EXPECT_TRUE(round_trip(kDdr + kSize - 64, kDdr + kSize - 64, 5));
   EXPECT_FALSE(round_trip(kDdr + 2 * kSize, kDdr, 6));
-  EXPECT_EQ(remarks("access beyond the SDRAM's end (ddr.part, 128 MiB): it repeats from its beginning"),
+  EXPECT_EQ(warnings("access beyond the SDRAM's end (ddr.part, 128 MiB): it repeats from its beginning"),
             3u);
-  EXPECT_EQ(remarks("access beyond the SDRAM's 256 MiB of the memory map"), 1u);
+  EXPECT_EQ(warnings("access beyond the SDRAM's 256 MiB of the memory map"), 1u);
   // A read finds the row that the other address has opened.
   b.master.read(kDdr + kAt, 64);
   run_for(300 * kPsPerNs);
@@ -279,18 +279,18 @@ TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
   write(0x0C, 1896);
   EXPECT_EQ(Diagnostics::instance().counts().size(), 0u) << "others may be written still";
   read_some();
-  EXPECT_EQ(remarks("SDRCR RR: 1896 clocks programmed, MT47H64M16-3 needs tREFI at most 7800 ns = "
+  EXPECT_EQ(warnings("SDRCR RR: 1896 clocks programmed, MT47H64M16-3 needs tREFI at most 7800 ns = "
                     "1895 at 243 MHz: 1 over"),
             1u);
-  EXPECT_EQ(remarks("SDTIMR T_RC not above T_RAS"), 1u);
+  EXPECT_EQ(warnings("SDTIMR T_RC not above T_RAS"), 1u);
   write(0x0C, 1895);
   read_some();
-  EXPECT_EQ(remarks("SDRCR"), 1u) << "no more of them";
-  EXPECT_EQ(remarks("SDTIMR T_RC not above T_RAS"), 2u) << "once for each change";
+  EXPECT_EQ(warnings("SDRCR"), 1u) << "no more of them";
+  EXPECT_EQ(warnings("SDTIMR T_RC not above T_RAS"), 2u) << "once for each change";
   b.ddr_clk.write(Frequency(216'000'000));
   run_for(kPsPerUs);
   read_some();
-  EXPECT_EQ(remarks("needs tREFI at most 7800 ns = 1684 at 216 MHz: 211 over"), 1u);
+  EXPECT_EQ(warnings("needs tREFI at most 7800 ns = 1684 at 216 MHz: 211 over"), 1u);
 }
 
 TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
@@ -305,7 +305,7 @@ TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
   };
   EXPECT_TRUE(read_fails(0x0052'4A32)) << "SDRAMEN = 0";
   EXPECT_TRUE(read_fails(0x0053'CA32)) << "not locked yet";
-  EXPECT_EQ(remarks("access to the SDRAM before its controller runs"), 2u);
+  EXPECT_EQ(warnings("access to the SDRAM before its controller runs"), 2u);
   EXPECT_FALSE(read_fails(0x0053'4A32));
 }
 
@@ -317,8 +317,8 @@ TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
   r.write(0x14, 4, 0x02345678);
   EXPECT_EQ(r.sdtimr.get(), was);
   EXPECT_EQ(r.sdtimr2.get(), was2);
-  EXPECT_EQ(remarks("SDTIMR written without SDBCR TIMUNLOCK: write lost"), 1u);
-  EXPECT_EQ(remarks("SDTIMR2 written without SDBCR TIMUNLOCK: write lost"), 1u);
+  EXPECT_EQ(warnings("SDTIMR written without SDBCR TIMUNLOCK: write lost"), 1u);
+  EXPECT_EQ(warnings("SDTIMR2 written without SDBCR TIMUNLOCK: write lost"), 1u);
   r.write(0x08, 4, 0x0053CA32);
   r.write(0x10, 4, 0x12345678);
   r.write(0x14, 4, 0x02345678);
@@ -327,7 +327,7 @@ TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
   r.write(0x10, 4, was);
   r.write(0x14, 4, was2);
   r.write(0x08, 4, 0x00534A32);
-  EXPECT_EQ(remarks("write lost"), 2u);
+  EXPECT_EQ(warnings("write lost"), 2u);
 }
 
 // TIMUNLOCK by the manual, BOOTUNLOCK by what the boot loader does; in the write or before it.
@@ -341,7 +341,7 @@ TEST_F(ModuleTest, LatencyIsWrittenWithAnUnlockBitOnly) {
     EXPECT_EQ(b.ddr.programmed().timing.CL, word >> 9 & 7u);
     return word >> 9 & 7u;
   };
-  const auto lost = [&] { return remarks("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK"); };
+  const auto lost = [&] { return warnings("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK"); };
   EXPECT_EQ(latency_after(0x0053'4A32), 5u);
   EXPECT_EQ(latency_after(0x0053'4832), 5u) << "4, locked";
   EXPECT_EQ(lost(), 1u);
@@ -379,7 +379,7 @@ TEST_F(ModuleTest, PhyIsNotReadyWhileTheMemorysClockStands) {
   Diagnostics::instance().clear();
   b.ddr_clk.write(Frequency());
   run_for(kPsPerMs);
-  EXPECT_EQ(remarks("outside self-refresh"), 0u);
+  EXPECT_EQ(warnings("outside self-refresh"), 0u);
   b.ddr_clk.write(kFast);
   run_for(kPsPerUs);
   r.write(0x0C, 4, 1895);
@@ -387,7 +387,7 @@ TEST_F(ModuleTest, PhyIsNotReadyWhileTheMemorysClockStands) {
   EXPECT_EQ(phy(), 1u);
   b.ddr_clk.write(Frequency());
   run_for(kPsPerUs);
-  EXPECT_EQ(remarks("outside self-refresh"), 1u);
+  EXPECT_EQ(warnings("outside self-refresh"), 1u);
 }
 
 }  // namespace

@@ -270,7 +270,7 @@ TEST(ResidencyTest, SleepIsTakenApart) {
   EXPECT_EQ(self[0] + self[1] + stop[0] + stop[1], 0u);
 }
 
-std::uint64_t remarks() {
+std::uint64_t warnings() {
   std::uint64_t n = 0;
   for (const auto& [what, count] : Diagnostics::instance().counts())
     if (what.second.find("PASR") != std::string::npos) n += count;
@@ -307,7 +307,7 @@ TEST(PartialArrayTest, LosesWhatIsNotRefreshedAfterTheRetentionTime) {
   for (const Picoseconds slept : {20 * kPsPerUs, 20 * kPsPerUs + kTck}) {
     const bool lost = slept > 20 * kPsPerUs;
     Partial p(1, false, slept);
-    EXPECT_EQ(remarks(), lost ? 1u : 0u);
+    EXPECT_EQ(warnings(), lost ? 1u : 0u);
     EXPECT_EQ(p.byte(0, 3, false), lost ? 0xA5 : 1);
     EXPECT_EQ(p.byte(0, 1, false), 1);
   }
@@ -326,7 +326,7 @@ TEST(PartialArrayTest, KeepsTheProgrammedPart) {
             EXPECT_EQ(p.byte(row, bank, top, column),
                       bank < c.banks && row < c.rows ? 1 : 0xA5)
                 << "PASR 1/2^" << c.log2 << " bank " << bank << " row " << row << " top " << top;
-      EXPECT_EQ(remarks(), c.log2 ? 1u : 0u);
+      EXPECT_EQ(warnings(), c.log2 ? 1u : 0u);
     }
 }
 

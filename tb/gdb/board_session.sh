@@ -12,7 +12,7 @@ camera: {kind: chart, stamp: false}
 video: {width: 64, height: 16}
 Y
 "$fovea" run small.yaml -o plain --no-frames >plain.out 2>&1
-grep -q SystemC plain.out && fail "run: a remark of the kernel: $(cat plain.out)"
+grep -q SystemC plain.out && fail "run: a message of the kernel: $(cat plain.out)"
 same() { cmp plain/stats.json "$1/stats.json" || fail "$1: other figures than without a debugger"; }
 
 # Into an interrupt handler, peripherals.

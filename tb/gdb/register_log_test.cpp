@@ -34,7 +34,7 @@ struct RegisterLogTest : testing::Test {
   }
 };
 
-TEST_F(RegisterLogTest, NamesFieldsAndRemarks) {
+TEST_F(RegisterLogTest, NamesFieldsAndWarnings) {
   EXPECT_EQ(seen_one, nullptr) << "nobody looks on before the start";
   log.start({.pattern = "."});
   access(0, 4, true, 0x8000'0701);

@@ -334,7 +334,8 @@ TEST(Tvp5146Test, AnAbsentDecoderIsReported) {
   EXPECT_THAT(bus.sent, IsEmpty());
 }
 
-// Status 1 at 0x3A: bit 1 horizontal lock, bit 2 vertical lock (TI SLES084C). Every pause takes 10 ms of the 24 MHz timer at 0x01C21410.
+// Status 1 at 0x3A: bit 1 horizontal lock, bit 2 vertical lock (TI SLES084C). Every pause takes
+// 10 ms of the 24 MHz timer at 0x01C21410.
 class LockTest : public testing::Test {
  protected:
   LockTest() : bus_(chip_, true) {

@@ -73,7 +73,7 @@ inline constexpr SystemDefect kSystemDefects[] = {
     {"a jump to 0 is not noticed", "exceptions.cpp",
      "failed_jump_ = pc_ == 0", "failed_jump_ = !PLANTED && pc_ == 0", "MessageTest.JumpToZero*"},
     {"a warning names no place", "exceptions.cpp",
-     "place_of(pc_);", "place_of(PLANTED ? 0 : pc_);", "MessageTest.Unpredictable*"},
+     "address_text(pc_);", "address_text(PLANTED ? 0 : pc_);", "MessageTest.Unpredictable*"},
 };
 // clang-format on
 

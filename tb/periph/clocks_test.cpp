@@ -329,7 +329,7 @@ TEST_F(PllTest, DchangeShowsRatiosThatDifferFromThoseInEffect) {
   EXPECT_EQ(s.b1.read(kDchange), 0u);
 }
 
-TEST_F(PllTest, PllenBeforeTheLockIsRemarked) {
+TEST_F(PllTest, PllenBeforeTheLockGivesAWarning) {
   Diagnostics::instance().clear();
   s.b1.write(kPllctl, 0x48);  // bypass, in reset
   EXPECT_EQ(s.bs.read(0x84), 0u);
@@ -400,7 +400,7 @@ TEST(PscTest, AReservedNextStateChangesNothing) {
   s.bp.write(mdctl, 0);
 }
 
-TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndIsRemarkedBefore) {
+TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndGivesAWarningBefore) {
   System& s = sys();
   Diagnostics::instance().clear();
   s.bt.write(0x18, 123);

@@ -1,6 +1,7 @@
 // Pins, edges, and the interrupt lines of GPIO0 to GPIO15.
 #include "model/periph/gpio.h"
 
+#include <array>
 #include <tuple>
 #include <vector>
 
@@ -73,6 +74,33 @@ struct GpioTest : testing::Test {
     s.probe0.rises = s.probe5.rises = 0;
   }
 };
+
+// Registers of any block: what an observer is told of whole words, parts of words and holes.
+TEST_F(GpioTest, AnObserverSeesWhatWasReadAndWritten) {
+  struct Seen : RegisterObserver {
+    std::vector<RegisterAccess> all;
+    void accessed(const RegisterAccess& a) override { all.push_back(a); }
+  } seen;
+  bus.write(reg(1, kOut), 0x1234'5678);
+  s.gpio.observe(&seen);
+  EXPECT_EQ(bus.read(reg(1, kOut)), 0x1234'5678u);
+  EXPECT_EQ(bus.read(reg(1, kOut) + 2, 2), 0x1234u);
+  bus.write(reg(1, kOut) + 3, 0xFF, 1);
+  EXPECT_EQ(bus.read(0xF00), 0u) << "a hole";
+  s.gpio.observe(nullptr);
+  EXPECT_EQ(bus.read(reg(1, kOut)), 0xFF34'5678u);
+  ASSERT_EQ(seen.all.size(), 4u);
+  const std::array<std::tuple<std::uint32_t, unsigned, bool, std::uint32_t>, 4> expected{
+      {{reg(1, kOut), 4, false, 0x1234'5678},
+       {reg(1, kOut) + 2, 2, false, 0x1234},
+       {reg(1, kOut) + 3, 1, true, 0xFF},
+       {0xF00, 4, false, 0}}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const RegisterAccess& a = seen.all[i];
+    EXPECT_EQ(std::tuple(a.offset, a.bytes, a.write, a.value), expected[i]) << i;
+    EXPECT_FALSE(a.gated);
+  }
+}
 
 TEST_F(GpioTest, InputsReadTheBoardAndSwitchesHoldFromTheStart) {
   EXPECT_EQ(bus.read(reg(3, kIn)), 2u);  // pin 97

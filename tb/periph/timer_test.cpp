@@ -351,7 +351,7 @@ struct Watcher : RegisterObserver {
   void accessed(const RegisterAccess& a) override { seen.push_back(a); }
 };
 
-TEST_F(TimerTest, WhoLooksOnSeesAccessesAndRemarksAreCounted) {
+TEST_F(TimerTest, WhoLooksOnSeesAccessesAndWarningsAreCounted) {
   auto& notes = Diagnostics::instance();
   const auto count = [&notes](const std::string& part) {
     std::uint64_t n = 0;

@@ -432,6 +432,40 @@ TEST(ReplayPathTest, AWriteIsAcknowledgedAtTheDoor) {
             static_cast<double>(p.issued[0].back() - info.start));
 }
 
+// The write FIFO of 88 bytes takes a burst of 64; the next one waits at the door, and behind it another
+// master's word. When the burst goes in there is room for the word too: both are acknowledged then.
+TEST(ReplayPathTest, AWordBehindTheDoorIsAcknowledgedWhenTheDoorOpens) {
+  trace::TraceInfo info = board_info();
+  info.streams[0] = {};  // counts picoseconds
+  Listed l;
+  const auto write = [&](unsigned stream, Master master, Picoseconds at, unsigned bytes) {
+    Record w = read_at(at, static_cast<std::uint32_t>(l.records[stream].size() * 64));
+    w.master = master;
+    w.write = true;
+    w.bytes = static_cast<std::uint8_t>(bytes);
+    l.records[stream].push_back(w);
+  };
+  write(1, Master::kVpfe, 1'000'000, 64);
+  write(1, Master::kVpfe, 1'000'000, 64);
+  write(2, Master::kVpbe, 1'002'000, 8);
+  // Marks that wait for the first burst, the word, the second burst.
+  for (const auto& [stream, n] : {std::pair{1, 0}, {2, 0}, {1, 1}}) {
+    Record mark = read_at(0, 0);
+    mark.mark = true;
+    mark.release = Release::kWhen;
+    mark.source = static_cast<std::uint8_t>(stream);
+    mark.event = static_cast<unsigned>(n);
+    l.records[0].push_back(mark);
+  }
+  for (auto& m : info.masters) m.writes = m.reads = 4;
+  const Played p(info, l, true, {{"ddr.tREFI", "0cycles"}});
+  ASSERT_EQ(p.issued[0].size(), 3u);
+  EXPECT_EQ(p.issued[0][0], 1'000'000u);
+  // Not before the 16 clocks of the first burst's data.
+  EXPECT_GT(p.issued[0][1], 1'000'000u + 16 * 4'115u);
+  EXPECT_EQ(p.issued[0][2], p.issued[0][1]);
+}
+
 // Without the crossbar nothing but the SDRAM's bus moves the data: four bytes a clock and edge of it.
 TEST(ReplayPathTest, MemoryOnlyReadsAtTheRateOfTheSdram) {
   for (const char* scheduler : {"ti", "fcfs", "frfcfs"})
@@ -604,7 +638,7 @@ TEST(ReplayPathTest, WhatNoMemoryHasIsRefused) {
   EXPECT_THAT(play("0 0 R 0x0 4\n", {{"ddr.part", "mt47h32m16"}}), HasSubstr("ddr.banks"));
 }
 
-// What no part of its kind does is refused; what the part at hand forbids is a remark.
+// What no part of its kind does is refused; what the part at hand forbids is a warning.
 TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   using testing::HasSubstr;
   std::vector<std::string> said;

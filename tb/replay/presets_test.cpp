@@ -40,8 +40,8 @@ struct Keyed {
   std::string origin(const char* key) const { return experiment.origin(key).text(); }
 };
 
-/// The remarks about a random trace.
-std::vector<std::string> remarks(const Keyed& setup) {
+/// The warnings about a random trace.
+std::vector<std::string> warnings(const Keyed& setup) {
   Rng rng(7);
   std::string text = "# dramtrace 1\n# master 0 window 8 a\n# master 1 window 4 b\n";
   for (unsigned i = 0; i < 400; ++i)
@@ -70,7 +70,7 @@ std::vector<Sold> sold() {
 }
 
 // A clock beyond the part's is limited where it is not set by hand, and refused where it is.
-TEST(DdrPresetTest, NoPartHasARemarkAtAnyClock) {
+TEST(DdrPresetTest, NoPartGivesAWarningAtAnyClock) {
   unsigned played = 0, refused = 0;
   for (const Sold& s : sold())
     for (const char* grade : s.grades)
@@ -89,11 +89,11 @@ TEST(DdrPresetTest, NoPartHasARemarkAtAnyClock) {
           ++refused;
           continue;
         }
-        EXPECT_THAT(remarks(*setup), testing::IsEmpty())
+        EXPECT_THAT(warnings(*setup), testing::IsEmpty())
             << s.part << ", grade " << grade << ", " << clock;
         for (const char* sleep : {"self_refresh", "power_down"}) {
           by_hand.push_back(std::string("ddr.low_power=") + sleep);
-          EXPECT_THAT(remarks(Keyed(by_hand)), testing::IsEmpty())
+          EXPECT_THAT(warnings(Keyed(by_hand)), testing::IsEmpty())
               << s.part << ", grade " << grade << ", " << clock << ", " << sleep;
         }
         ++played;
@@ -105,14 +105,14 @@ TEST(DdrPresetTest, NoPartHasARemarkAtAnyClock) {
 }
 
 // A value set by hand wins, and the checkers find the one that is short.
-TEST(DdrPresetTest, AClockLessIsARemark) {
+TEST(DdrPresetTest, AClockLessGivesAWarning) {
   const std::map<std::string, int> short_of = {
       {"tRFC", -1}, {"tRP", -1}, {"tRCD", -1}, {"tWR", -1}, {"tRAS", -1}, {"tRC", -1},
       {"tWTR", -1}, {"tRTP", -1}, {"tRRD", -1}, {"tREFI", 1}};
   const Assignments preset = {"ddr.part=mt47h128m16", "ddr.grade=25e", "ddr.preset=data_sheet",
                               "ddr.clock=390MHz", "ddr.check=commands"};
   const Keyed whole(preset);
-  EXPECT_THAT(remarks(whole), testing::IsEmpty());
+  EXPECT_THAT(warnings(whole), testing::IsEmpty());
   for (const auto& [name, by] : short_of) {
     const std::string key = "ddr." + name;
     const auto given = std::stoi(whole.value(key.c_str())) + by;
@@ -120,9 +120,9 @@ TEST(DdrPresetTest, AClockLessIsARemark) {
     by_hand.push_back(fmt::format("{}={}cycles", key, given));
     const Keyed setup(by_hand);
     EXPECT_EQ(setup.value(key.c_str()), fmt::format("{} cycles", given)) << "set by hand";
-    EXPECT_THAT(remarks(setup), testing::Contains(HasSubstr(name == "tRRD" ? "tFAW" : name)));
+    EXPECT_THAT(warnings(setup), testing::Contains(HasSubstr(name == "tRRD" ? "tFAW" : name)));
   }
-  EXPECT_THAT(remarks(Keyed({"ddr.grade=3", "ddr.preset=data_sheet", "ddr.clock=340MHz",
+  EXPECT_THAT(warnings(Keyed({"ddr.grade=3", "ddr.preset=data_sheet", "ddr.clock=340MHz",
                              "ddr.CL=5cycles"})),
               testing::Contains(HasSubstr("CL 5 has tCK 3 ns at least")));
 }

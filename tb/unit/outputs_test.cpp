@@ -76,8 +76,8 @@ TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
   d.guest("odd write");
   d.not_modelled("field X");
   d.configuration("key without effect");
-  const auto j = json::parse(stats_json({}, true, collect_remarks(d)));
-  const auto replay = json::parse(stats_json({}, true, collect_remarks(d, true)));
+  const auto j = json::parse(stats_json({}, true, collect_warnings(d)));
+  const auto replay = json::parse(stats_json({}, true, collect_warnings(d, true)));
   d.clear();
   ASSERT_EQ(j["warnings"].size(), 3u);
   EXPECT_EQ(j["warnings"][0]["kind"], "firmware");

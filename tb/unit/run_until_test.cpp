@@ -86,7 +86,7 @@ std::string typed(Dialogue& d, Picoseconds now) {
   return out;
 }
 void hear(Dialogue& d, const std::string& text) {
-  for (const char c : text) d.heard(static_cast<std::uint8_t>(c));
+  for (const char c : text) d.received(static_cast<std::uint8_t>(c));
 }
 
 TEST(DialogueTest, WaitsSendsAndWaitsForATime) {

@@ -91,7 +91,7 @@ Core::Ops::Next Core::Ops::thumb_link_suffix(Core& c, Next i, Cycle cycle) {
   return jump<true, true>(c, i, cycle + 3, target & ~1u);
 }
 
-Handler Core::Ops::branch_body(Instruction& i, Place place) {
+Handler Core::Ops::branch_body(Instruction& i, Context context) {
   const bool thumb = i.flags & kThumbInsn;
   if (i.op == Op::kBxReg)
     return thumb ? &branch_exchange<true, false> : &branch_exchange<false, false>;
@@ -102,7 +102,7 @@ Handler Core::Ops::branch_body(Instruction& i, Place place) {
   i.imm += i.at + (thumb ? 4u : kPcDelayArm);
   i.flags = static_cast<std::uint16_t>(i.flags & ~kReadsPc);
   if (i.op == Op::kThumbBlPrefix) return &thumb_link_prefix;
-  const bool near = place.in_line && i.imm < 32;
+  const bool near = context.in_line && i.imm < 32;
   if (near) {
     const auto from = static_cast<std::int32_t>(i.at), to = static_cast<std::int32_t>(i.imm);
     i.raw = static_cast<std::uint32_t>((to - from) / (thumb ? 2 : 4) *

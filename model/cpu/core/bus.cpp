@@ -22,7 +22,7 @@ void Core::stall_for_port(Cause cause) {
 /// Lets all other agents do what they do before this clock. They may change the core's frequency or
 /// stop its clock.
 /// @return the clock, or the first one after a change
-[[gnu::noinline]] std::uint64_t Core::come_to(std::uint64_t cycle) {
+[[gnu::noinline]] std::uint64_t Core::let_others_act(std::uint64_t cycle) {
   for (;;) {
     await_clock();
     if (cycle < clock_floor_) cycle = ahb(clock_floor_);
@@ -41,7 +41,8 @@ void Core::await_clock() {
 /// Submits an access on its port.
 void Core::submit(BusAccess& a, std::uint64_t cycle) {
   a.done = false;  // the buffers may inspect it while others act
-  if ((cycle >= stop_cycle_ || attention_) && !played_) [[unlikely]] cycle = come_to(cycle);
+  if ((cycle >= stop_cycle_ || attention_) && !port_runs_buffers_) [[unlikely]]
+    cycle = let_others_act(cycle);
   a.parts.clear();
   a.issued = time(cycle);
   port_.submit(a, a.issued);
@@ -72,9 +73,9 @@ std::uint64_t Core::write_over() const {
 }
 
 void Core::act() {
-  played_ = true;
+  port_runs_buffers_ = true;
   act_at(next_act_cycle());
-  played_ = false;
+  port_runs_buffers_ = false;
 }
 
 /// @param cycle the current next_act_cycle()
@@ -132,7 +133,7 @@ void Core::start_write(std::uint64_t cycle) {
 }
 
 /// Executes the buffers' work before a clock, in order of time. Called only if there may be some.
-[[gnu::noinline]] void Core::play_on(std::uint64_t cycle) {
+[[gnu::noinline]] void Core::run_buffers_slow(std::uint64_t cycle) {
   for (;;) {
     if (write_in_flight_ && !write_access_.done && (cycle < write_floor_ || !write_is_over(cycle)))
       return;
@@ -145,7 +146,7 @@ void Core::start_write(std::uint64_t cycle) {
 /// True if the write under way has ended by then. While the port waits, the buffers may advance on
 /// their own, so the caller has to check their state again.
 [[gnu::noinline]] bool Core::write_is_over(std::uint64_t cycle) {
-  if (cycle >= stop_cycle_ || attention_) [[unlikely]] cycle = come_to(cycle);
+  if (cycle >= stop_cycle_ || attention_) [[unlikely]] cycle = let_others_act(cycle);
   return port_.poll(write_access_, time(cycle)) || (write_in_flight_ && write_access_.done);
 }
 
@@ -165,7 +166,7 @@ void Core::finish_write(Cause cause) { wait_for_write(cause); }
 }
 
 void Core::drain(Cause cause) {
-  play(cycle_);
+  run_buffers(cycle_);
   const auto busy = [&] {
     return write_in_flight_ || !writes_.empty() || writes_.victim_bytes != 0;
   };
@@ -188,7 +189,7 @@ void Core::drain(Cause cause) {
       start_write(ahb(cycle_));
     }
     wait_for_write(Cause::kWriteBuffer);
-    play(cycle_);
+    run_buffers(cycle_);
   } while (!writes_.room(count));
   room_waits_ += cycle_ - begin;
 }
@@ -196,7 +197,7 @@ void Core::drain(Cause cause) {
 /// @param put puts `count` bytes into the write buffer
 template <class Put>
 [[gnu::always_inline]] inline void Core::enqueue(unsigned count, Put put) {
-  play(cycle_);
+  run_buffers(cycle_);
   if (!writes_.room(count)) make_room(count);
   if (writes_.empty()) next_write_cycle_ = cycle_;
   put();
@@ -226,7 +227,7 @@ template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t)
 void Core::bus_read(BusAccess& a, Cause cause) {
   const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
   if (writes_.overlaps(start, a.bytes)) drain(cause);
-  if (!filling_) play(cycle_);
+  if (!filling_) run_buffers(cycle_);
   if (write_in_flight_) finish_write(cause);
   stall_to(data_port_free_, cause, data_port_pa_, kService);
   sync_to_ahb(a.address);
@@ -285,7 +286,7 @@ bool Core::unbuffered_write(std::uint32_t pa, unsigned bytes, std::uint32_t valu
 void Core::write_back(unsigned index, Cause cause) {
   Cache::Line& l = dcache_.line(index);
   if (l.dirty == 0) return;
-  if (!filling_) play(cycle_);
+  if (!filling_) run_buffers(cycle_);
   const std::uint64_t begin = cycle_;
   while (writes_.victim_bytes) {
     if (!write_in_flight_) {

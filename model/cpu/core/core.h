@@ -131,11 +131,11 @@ class Core : public Background {
 
   // execute.cpp
   void step_attention();
-  std::uint64_t come_to(std::uint64_t cycle);
+  std::uint64_t let_others_act(std::uint64_t cycle);
   void await_clock();
   void execute_alone(const Instruction& i);
   void enter_exception();
-  void leave_old_fetch();
+  void end_old_fetch();
   [[gnu::noinline]] void execute_one(const Instruction& i);
   bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
@@ -187,10 +187,10 @@ class Core : public Background {
     pc_ = run_va_ + i->at;
     counts_.issue += cycle - cycle_;
     cycle_ = cycle;
-    const auto place = reinterpret_cast<std::intptr_t>(i);
+    const auto at = reinterpret_cast<std::intptr_t>(i);
     counts_.instructions += static_cast<std::uint64_t>(
-        (place - run_first_) / static_cast<std::intptr_t>(sizeof(Instruction)));
-    run_first_ = place;
+        (at - run_first_) / static_cast<std::intptr_t>(sizeof(Instruction)));
+    run_first_ = at;
   }
   void snapshot();
   bool mark_due(Picoseconds boundary) const { return mark_pending_ && boundary > mark_at_; }
@@ -206,11 +206,11 @@ class Core : public Background {
   static unsigned bank(std::uint32_t mode);
   bool privileged() const { return (cpsr_ & 31u) != 0x10u; }
   void unpredictable(const char* what);
-  std::string place_of(std::uint32_t address) const;
+  std::string address_text(std::uint32_t address) const;
 
   // cp15.cpp
   void coprocessor_move(const Instruction& i);
-  void fetch_differently();
+  void begin_old_fetch();
   bool cp15_read(std::uint32_t opc, std::uint32_t& value);
   bool cp15_write(std::uint32_t opc, std::uint32_t value);
   bool cache_operation(unsigned crm, unsigned op2, std::uint32_t value);
@@ -219,15 +219,15 @@ class Core : public Background {
   // prepare.cpp
   struct DecodedLine;
   /// What the neighbours in a line allow a record to leave out. The default is correct anywhere.
-  struct Place {
+  struct Context {
     enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
     bool track = true;    // a later record may have to wait for its result
     bool in_line = false;  // the record belongs to a line that holds all its records
   };
-  void prepare(Instruction& i, unsigned at, Place place) const;
+  void prepare(Instruction& i, unsigned at, Context context) const;
   static void clear_line(DecodedLine& d, bool thumb);
   static Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb);
-  static Place look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
+  static Context record_context(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
                            bool thumb);
 
   // tcm.cpp
@@ -325,13 +325,13 @@ class Core : public Background {
   void sync_to_ahb(std::uint32_t pa) { stall_to(ahb(cycle_), Cause::kBusSync, pa, kCore); }
   void submit(BusAccess& a, std::uint64_t cycle);
   /// Sends the buffered writes that are due before a clock, in order of time.
-  void play(std::uint64_t cycle) {
+  void run_buffers(std::uint64_t cycle) {
     if (write_in_flight_ ? !write_access_.done && cycle < write_floor_
                          : writes_.empty() && writes_.victim_bytes == 0)
       return;
-    play_on(cycle);
+    run_buffers_slow(cycle);
   }
-  void play_on(std::uint64_t cycle);
+  void run_buffers_slow(std::uint64_t cycle);
   Picoseconds time_of_next_act() const;
   std::uint64_t next_act_cycle() const;
   void act_at(std::uint64_t cycle);
@@ -388,7 +388,7 @@ class Core : public Background {
   std::uint64_t cycle_ = 0;
   std::uint64_t clock_floor_ = 0;  // first edge after the last change of the clock
   std::uint64_t stop_cycle_ = 0;  // first clock at which step_attention() has to be called
-  bool played_ = false;           // the port is executing the buffers' work, at its own time
+  bool port_runs_buffers_ = false;  // the port is executing the buffers' work, at its own time
   bool attention_ = true;
   std::uint64_t chain_stop_ = 0;  // clock at which a chain of records ends
   std::uint64_t chain_cycle_ = 0;  // clock between two records (builds without tail calls)
@@ -427,7 +427,7 @@ class Core : public Background {
   }
   std::array<DecodedLine*, kJumps> jumps_ = all_to(&no_line_);  // targets found last, by address
   std::array<Instruction, 2> uncached_record_;
-  std::array<Instruction, 2> apart_;        // separate copy of an UNPREDICTABLE form
+  std::array<Instruction, 2> unpredictable_record_;  // separate copy of an UNPREDICTABLE form
   bool fetch_branched_ = false;
   std::uint64_t redirects_seen_ = 0;  // value at the last fetch that bypassed the caches
   bool bus_fetch_ = false;  // the last fetch used the bus: time has passed since the boundary
@@ -484,7 +484,7 @@ class Core : public Background {
   }
   void note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line, std::uint64_t& counter);
   void note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half, std::uint64_t& counter);
-  std::uint32_t place(const std::uint64_t& counter) const {
+  std::uint32_t counter_offset(const std::uint64_t& counter) const {
     return static_cast<std::uint32_t>(reinterpret_cast<const char*>(&counter) -
                                       reinterpret_cast<const char*>(&counts_));
   }

@@ -89,7 +89,7 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
 /// Called after a change of the process ID or of the control register: two instructions are already
 /// in the pipeline. If a second change follows, the instructions after it see both at once
 /// (assumed).
-void Core::fetch_differently() {
+void Core::begin_old_fetch() {
   const bool same = old_fetch_left_ || (process_ == fetch_process_ &&
                                         !((control_ ^ fetch_control_) & kFetchBits));
   old_fetch_left_ = same ? 0 : 3;
@@ -108,7 +108,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
       control_ = (v & 0x0000F387u) | 0x0005'0078u;
       process_ = control_ & 1u ? fcse_pid_ : 0;
       counts_.translate(control_ & 1u);
-      fetch_differently();
+      begin_old_fetch();
       return true;
     case id(0, 2, 0, 0): ttbr_ = v; return true;
     case id(0, 3, 0, 0): dacr_ = v; flush_memos(); return true;
@@ -134,7 +134,7 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
     case id(0, 13, 0, 0):
       fcse_pid_ = v & 0xFE000000u;
       process_ = control_ & 1u ? fcse_pid_ : 0;
-      fetch_differently();
+      begin_old_fetch();
       return true;
     case id(0, 13, 0, 1): context_id_ = v; return true;
     case id(0, 15, 0, 0): debug_override_ = v; return true;

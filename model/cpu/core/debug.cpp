@@ -39,16 +39,16 @@ std::optional<std::uint32_t> CoreDebug::table_word(std::uint32_t pa) {
   return word;
 }
 
-std::optional<CoreDebug::Place> CoreDebug::place(std::uint32_t mva) {
-  if (!(core_.control_ & 1u)) return Place{mva, false};
+std::optional<CoreDebug::Mapping> CoreDebug::mapping(std::uint32_t mva) {
+  if (!(core_.control_ & 1u)) return Mapping{mva, false};
   const bool cache_on = core_.control_ & 4u;
   if (const TlbEntry* e = core_.tlb_.find(mva))
-    return Place{e->physical(mva), e->cacheable && cache_on};
+    return Mapping{e->physical(mva), e->cacheable && cache_on};
   // The same walk as Core::walk(), without time, faults or TLB.
   const auto first = table_word((core_.ttbr_ & 0xFFFFC000u) | (mva >> 20) << 2);
   if (!first) return std::nullopt;
   const auto page = [&](std::uint32_t d, std::uint32_t mask) {
-    return Place{(d & ~mask) | (mva & mask), (d >> 3 & 1u) && cache_on};
+    return Mapping{(d & ~mask) | (mva & mask), (d >> 3 & 1u) && cache_on};
   };
   if ((*first & 3u) == 2) return page(*first, 0xFFFFFu);
   if ((*first & 3u) == 0) return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<CoreDebug::Place> CoreDebug::place(std::uint32_t mva) {
 }
 
 std::optional<std::uint32_t> CoreDebug::physical(std::uint32_t va) {
-  const auto p = place(core_.modified(va));
+  const auto p = mapping(core_.modified(va));
   return p ? std::optional(p->pa) : std::nullopt;
 }
 
@@ -73,7 +73,7 @@ bool CoreDebug::read(std::uint32_t va, std::span<std::uint8_t> to) {
   return by_lines(va, to.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
     const std::uint32_t mva = core_.modified(at);
     const auto piece = to.subspan(offset, n);
-    const auto p = place(mva);
+    const auto p = mapping(mva);
     if (!p) return false;
     if (core_.in_tcm(p->pa)) {
       std::memcpy(piece.data(), core_.tcm(p->pa), n);
@@ -92,7 +92,7 @@ bool CoreDebug::write(std::uint32_t va, std::span<const std::uint8_t> from) {
   return by_lines(va, from.size(), [&](std::uint32_t at, std::size_t offset, std::size_t n) {
     const std::uint32_t mva = core_.modified(at);
     const auto piece = from.subspan(offset, n);
-    const auto p = place(mva);
+    const auto p = mapping(mva);
     if (!p) return false;
     if (core_.in_tcm(p->pa)) {
       std::memcpy(core_.tcm(p->pa), piece.data(), n);
@@ -222,7 +222,7 @@ std::optional<Instruction> CoreDebug::instruction(std::uint32_t va) {
   std::array<std::uint8_t, 4> bytes{};
   const auto piece = std::span(bytes).first(thumb ? 2 : 4);
   const std::uint32_t mva = core_.modified(va);
-  const auto p = place(mva);
+  const auto p = mapping(mva);
   if (const int i = p && core_.in_tcm(p->pa) ? -1 : core_.icache_.find(mva); i >= 0)
     std::memcpy(bytes.data(), core_.icache_.data(static_cast<unsigned>(i)) + (mva & kLineMask),
                 piece.size());

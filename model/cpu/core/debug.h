@@ -91,11 +91,11 @@ class CoreDebug {
   Picoseconds now() const { return core_.time(core_.cycle_); }
 
  private:
-  struct Place {
+  struct Mapping {
     std::uint32_t pa = 0;
     bool cached = false;  // cacheable by the D-cache
   };
-  std::optional<Place> place(std::uint32_t mva);
+  std::optional<Mapping> mapping(std::uint32_t mva);
   std::optional<std::uint32_t> table_word(std::uint32_t pa);
   bool read_memory(std::uint32_t pa, std::span<std::uint8_t> to);
   const std::uint32_t* banked(const BankedRegister& r) const;

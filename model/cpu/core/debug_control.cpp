@@ -78,7 +78,7 @@ void CoreControl::clear() {
 /// The boundary is not after the next event of any other agent, so only the core's own buffers and
 /// the bus can act here.
 void CoreControl::settle_bus() {
-  core_.play(core_.cycle_);
+  core_.run_buffers(core_.cycle_);
   core_.port_.sleep_until(core_.time(core_.cycle_));
 }
 
@@ -102,29 +102,29 @@ void CoreControl::note_touched() {
 void CoreControl::boundary() {
   if (follow_) settle_bus();
   note_touched();
-  std::optional<Stop> stop = look(core_.pc_);
+  std::optional<Stop> stop = find_stop(core_.pc_);
   while (stop) {
     const std::uint32_t pc = core_.pc_;
     halt_ = step_ = false;
     if (stop->reason == Stop::Reason::kTime) stop_after_ = kNever;
     update();
     if (on_stop) on_stop(*stop);
-    stop = look_again(*stop, pc);
+    stop = find_next_stop(*stop, pc);
   }
 }
 
-std::optional<CoreControl::Stop> CoreControl::look(std::uint32_t pc) {
+std::optional<CoreControl::Stop> CoreControl::find_stop(std::uint32_t pc) {
   if (breakpoints_.contains(pc)) return Stop{Stop::Reason::kBreakpoint};
   if (step_ && (pc < step_from_ || pc >= step_to_)) return Stop{Stop::Reason::kStep};
   if (halt_) return Stop{Stop::Reason::kRequest};
   if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
     return Stop{Stop::Reason::kTime};
-  return tell(pc);
+  return report_touched(pc);
 }
 
 /// Called before the core continues: what else has to be reported at this boundary. `pc` is where
 /// the core stopped.
-std::optional<CoreControl::Stop> CoreControl::look_again(const Stop& last, std::uint32_t pc) {
+std::optional<CoreControl::Stop> CoreControl::find_next_stop(const Stop& last, std::uint32_t pc) {
   if (core_.stop_requested_) return std::nullopt;
   if (last.past && step_) return Stop{Stop::Reason::kStep};
   while (!touched_.empty()) {
@@ -136,13 +136,13 @@ std::optional<CoreControl::Stop> CoreControl::look_again(const Stop& last, std::
   }
   if (stop_after_ != kNever && core_.time(core_.cycle_) > stop_after_)
     return Stop{Stop::Reason::kTime};
-  const bool told = last.reason == Stop::Reason::kWatch && !last.past && core_.pc_ == pc;
-  if (told) return std::nullopt;
+  const bool reported = last.reason == Stop::Reason::kWatch && !last.past && core_.pc_ == pc;
+  if (reported) return std::nullopt;
   touching_.clear();
-  return tell(core_.pc_);
+  return report_touched(core_.pc_);
 }
 
-std::optional<CoreControl::Stop> CoreControl::tell(std::uint32_t pc) {
+std::optional<CoreControl::Stop> CoreControl::report_touched(std::uint32_t pc) {
   if (watches_.empty()) return std::nullopt;
   touching_ = watched(pc);
   touching_count_ = core_.counts().instructions;

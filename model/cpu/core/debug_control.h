@@ -72,10 +72,10 @@ class CoreControl {
   };
   void boundary();
   void update();
-  std::optional<Stop> look(std::uint32_t pc);
-  std::optional<Stop> look_again(const Stop& last, std::uint32_t pc);
+  std::optional<Stop> find_stop(std::uint32_t pc);
+  std::optional<Stop> find_next_stop(const Stop& last, std::uint32_t pc);
   std::vector<Touched> watched(std::uint32_t pc) const;
-  std::optional<Stop> tell(std::uint32_t pc);
+  std::optional<Stop> report_touched(std::uint32_t pc);
   void note_touched();
   static void drop_ranges_with(std::uint32_t address, std::vector<Touched>& list);
 

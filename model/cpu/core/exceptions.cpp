@@ -143,7 +143,7 @@ void Core::take(Exception e, std::uint32_t return_address) {
   if (++chain_ > 3) {
     failing_ = true;
     const std::string jump =
-        failed_jump_ ? "jumped to 0 from " + place_of(failed_from_) + "; " : "";
+        failed_jump_ ? "jumped to 0 from " + address_text(failed_from_) + "; " : "";
     throw GuestFailure(jump + failed_by_ + " with no handler: its vector faults again");
   }
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
@@ -176,7 +176,7 @@ void Core::undefined() {
 }
 
 /// An address for a message, with its symbol if one is known.
-std::string Core::place_of(std::uint32_t address) const {
+std::string Core::address_text(std::uint32_t address) const {
   char text[16];
   std::snprintf(text, sizeof text, "0x%08x", address);
   const std::string name = describe ? describe(address) : "";
@@ -187,7 +187,8 @@ std::string Core::place_of(std::uint32_t address) const {
 void Core::unpredictable(const char* what) {
   ++counts_.unpredictable;
   std::string& text = unpredictable_[what];
-  if (text.empty()) text = std::string("UNPREDICTABLE: ") + what + ", first at " + place_of(pc_);
+  if (text.empty())
+    text = std::string("UNPREDICTABLE: ") + what + ", first at " + address_text(pc_);
   Diagnostics::instance().guest(text);
 }
 

@@ -48,7 +48,7 @@ void Core::run() {
       core.flags_live_ = false;
     }
   } live(*this);
-  std::uint32_t looked_at = 1;  // pc of a boundary that the debugger has already inspected
+  std::uint32_t inspected_pc = 1;  // pc of a boundary that the debugger has already inspected
   for (;;) {
     if (cycle_ >= stop_cycle_ || attention_) {
       if (stop_requested_) return;
@@ -56,11 +56,11 @@ void Core::run() {
       step_attention();
       if (stop_requested_) stop_cycle_ = 0;  // execute one more instruction
     }
-    if (debugger_ && pc_ != looked_at) [[unlikely]] {
+    if (debugger_ && pc_ != inspected_pc) [[unlikely]] {
       control_boundary();
       if (stop_requested_) return;
     }
-    looked_at = 1;
+    inspected_pc = 1;
     const Instruction* i = fetch();
     if (!i) {
       enter_exception();
@@ -69,7 +69,7 @@ void Core::run() {
     if (bus_fetch_) {  // an interrupt that arrived meanwhile is taken first
       bus_fetch_ = false;
       if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) {
-        looked_at = pc_;
+        inspected_pc = pc_;
         continue;
       }
     }
@@ -84,7 +84,7 @@ void Core::run() {
     } else {
       execute_alone(*i);
     }
-    if (old_fetch_left_) [[unlikely]] leave_old_fetch();
+    if (old_fetch_left_) [[unlikely]] end_old_fetch();
   }
 }
 
@@ -92,14 +92,14 @@ void Core::run() {
 void Core::enter_exception() {
   pc_ = next_pc_;
   branched_ = aborted_ = false;
-  if (old_fetch_left_) leave_old_fetch();
+  if (old_fetch_left_) end_old_fetch();
 }
 
 /// Called after an instruction: the two instructions that follow a write of the FCSE PID, or a
 /// change that turns the MMU or the I-cache on or off, were fetched before it took effect, unless
 /// the program branches (ARM DDI 0198D 2-34; two for the control register as well, from the length
 /// of the pipeline).
-void Core::leave_old_fetch() {
+void Core::end_old_fetch() {
   if (pc_ == old_fetch_pc_ && --old_fetch_left_) {
     old_fetch_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
     return;
@@ -179,7 +179,7 @@ void Core::step_attention() {
     const Picoseconds h = port_.horizon();
     const std::uint64_t stop = h == kNever ? ~std::uint64_t{0} : clock_.edge_after(h);
     if (cycle_ >= stop) {
-      play(cycle_);
+      run_buffers(cycle_);
       port_.sleep_until(t);
       if (time(cycle_) != t || !clock_.running()) continue;  // the clock has changed meanwhile
       // At t itself others may still act: execute this instruction, then check again.

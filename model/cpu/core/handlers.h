@@ -146,7 +146,7 @@ struct Core::Ops {
     cycle = until;
   }
   /// Runs before the body of a record that has a condition, may wait for operands, or reads r15.
-  template <unsigned kCond, Place::Check kCheck, bool kPc>
+  template <unsigned kCond, Context::Check kCheck, bool kPc>
   static Next before(Core& c, Next i, Cycle cycle);
   template <std::size_t... k>
   static constexpr std::array<Handler, sizeof...(k)> before_table(std::index_sequence<k...>);
@@ -198,8 +198,8 @@ struct Core::Ops {
   // operands of the record for that body.
   static Handler data_body(Instruction& i);                  // data_processing.cpp
   static Handler multiply_body(Instruction& i);              // branch_multiply.cpp
-  static Handler branch_body(Instruction& i, Place place);   // branch_multiply.cpp
-  static Handler memory_body(Instruction& i, Place place);   // load_store.cpp
+  static Handler branch_body(Instruction& i, Context context);   // branch_multiply.cpp
+  static Handler memory_body(Instruction& i, Context context);   // load_store.cpp
   static Handler block_body(Instruction& i);                 // load_store.cpp
 };
 

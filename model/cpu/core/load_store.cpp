@@ -80,7 +80,7 @@ template <Op kOp, Indexed kIndexed, bool kTrack>
   const std::uint8_t* from;
   const Hint& hint = c.read_hints_[va / kReadSpan % kHints];
   if (hint.key == (va & ~(kReadSpan - kBytes)) &&
-      hint.counter == c.place(c.counts_.dcache_reads)) {
+      hint.counter == c.counter_offset(c.counts_.dcache_reads)) {
     c.record(c.pc_, va, kBytes);
     ++c.counts_.dcache_reads;
     c.dcache_wait(c.modified(va));
@@ -155,7 +155,7 @@ Core::Ops::Next Core::Ops::load_literal(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + 1);
 }
 
-Handler Core::Ops::memory_body(Instruction& i, Place place) {
+Handler Core::Ops::memory_body(Instruction& i, Context context) {
   if (i.op == Op::kLdrd || i.op == Op::kStrd || (i.flags & kUserBank) || i.rd == 15)
     return nullptr;
   if (i.rn == 15 && (i.flags & kWriteBack)) return nullptr;
@@ -206,7 +206,7 @@ Handler Core::Ops::memory_body(Instruction& i, Place place) {
     }
   };
   const auto a_load = [&]<Op kOp>() -> Handler {
-    return place.track ? by_address.template operator()<kOp, true>()
+    return context.track ? by_address.template operator()<kOp, true>()
                        : by_address.template operator()<kOp, false>();
   };
   switch (i.op) {

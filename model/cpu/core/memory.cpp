@@ -40,14 +40,14 @@ void Core::drop_hints(std::uint32_t line_mva) {
 void Core::note_read(std::uint32_t va, std::uint32_t mva, std::uint8_t* line,
                      std::uint64_t& counter) {
   const std::uint32_t key = va & ~(kReadSpan - 1);
-  read_hints_[mva / kReadSpan % kHints] = {key, place(counter),
+  read_hints_[mva / kReadSpan % kHints] = {key, counter_offset(counter),
                                            reinterpret_cast<std::uintptr_t>(line) - key};
   hints_used_ = true;
 }
 void Core::note_write(std::uint32_t va, std::uint32_t mva, std::uint8_t* half,
                       std::uint64_t& counter) {
   const std::uint32_t key = va & ~(kWriteSpan - 1);
-  write_hints_[mva / kWriteSpan % kHints] = {key, place(counter),
+  write_hints_[mva / kWriteSpan % kHints] = {key, counter_offset(counter),
                                              reinterpret_cast<std::uintptr_t>(half) - key};
   hints_used_ = true;
 }
@@ -216,7 +216,7 @@ int Core::dcache_fill(std::uint32_t mva, std::uint32_t pa, bool write_back_line)
   stall_to(dfill_.last, Cause::kDcache, dfill_.pa, kService);
   const unsigned index = dcache_.victim(dcache_.set_of(mva), control_ >> 14 & 1u, dlock_ & 15u);
   if (dcache_.line(index).tag != 1) drop_hints(dcache_.line(index).tag);
-  play(cycle_);
+  run_buffers(cycle_);
   filling_ = true;  // from here on the read precedes the victim
   write_back(index, Cause::kWriteBuffer);
   BusAccess& a = data_access_;
@@ -448,7 +448,7 @@ void Core::icache_fill(std::uint32_t mva, std::uint32_t pa) {
   icache_.invalidate(index);
   decoded_[index].valid = 0;
   bus_fetch_ = true;
-  play(cycle_);
+  run_buffers(cycle_);
   sync_to_ahb(pa);
   BusAccess& a = fetch_access_;
   a.kind = BusAccess::Kind::kWrap8;
@@ -485,9 +485,9 @@ const Instruction* Core::fetch_slow() {
     if (!i.body) {
       i = decode_at(bytes, at, thumb);
       // Other masters may write internal RAM, so its records must not rely on each other.
-      Place place = in_ram ? Place{} : look_around(d, at, bytes, thumb);
-      place.in_line = true;
-      prepare(i, at << shift, place);
+      Context context = in_ram ? Context{} : record_context(d, at, bytes, thumb);
+      context.in_line = true;
+      prepare(i, at << shift, context);
     }
     line_va_ = pc_ & ~31u;
     line_thumb_ = thumb ? 0x20u : 0u;
@@ -551,7 +551,7 @@ const Instruction* Core::fetch_slow() {
     fetch_access_.asked = asked_now();
     stall_to(ifill_.last, Cause::kIcache, ifill_.pa, kService);
     bus_fetch_ = true;
-    play(cycle_);
+    run_buffers(cycle_);
     sync_to_ahb(pa);
     BusAccess& a = fetch_access_;
     a.kind = BusAccess::Kind::kIncr4;
@@ -577,7 +577,7 @@ const Instruction* Core::fetch_slow() {
   line_va_ = 1;
   Instruction& i = uncached_record_[0];
   i = decode_at(reinterpret_cast<const std::uint8_t*>(fetch_words_), (pa & 15u) >> shift, thumb);
-  prepare(i, mva & 31u, Place{});
+  prepare(i, mva & 31u, Context{});
   uncached_record_[1].at = static_cast<std::uint8_t>(i.at + (1u << shift));
   return &i;
 }

@@ -49,15 +49,15 @@ Instruction Core::decode_at(const std::uint8_t* bytes, unsigned index, bool thum
 
 /// Within a chain only the two preceding records can delay a record, and a taken branch takes
 /// longer than any result.
-Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
+Core::Context Core::record_context(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
                               bool thumb) {
   const unsigned count = thumb ? 16 : 8;
   const auto at = [&](unsigned k) {
     return d.records[k].body ? d.records[k] : decode_at(bytes, k, thumb);
   };
   const Instruction& i = d.records[index];
-  Place place;
-  place.check = Place::Check::kNone;
+  Context context;
+  context.check = Context::Check::kNone;
   const std::uint32_t needs = operands(i);
   if (needs && index >= 1) {
     const Instruction before = at(index - 1);
@@ -68,17 +68,17 @@ Core::Place Core::look_around(const DecodedLine& d, unsigned index, const std::u
     // If the preceding record is always executed, its result is the latest one.
     const bool in_full = (young.registers & i.sources) || young.load;
     if (waits_for_young && in_full && before.cond == 14)
-      place.check = Place::Check::kYoungest;
+      context.check = Context::Check::kYoungest;
     else if (waits_for_young || waits_for_old)
-      place.check = Place::Check::kAll;
+      context.check = Context::Check::kAll;
   }
   const Late mine = late_results(i);
   if (mine.registers) {
-    place.track = index + mine.latency >= count;  // line_end() checks the next line
+    context.track = index + mine.latency >= count;  // line_end() checks the next line
     for (unsigned k = 1; k <= mine.latency && index + k < count; ++k)
-      if (operands(at(index + k)) & mine.registers) place.track = true;
+      if (operands(at(index + k)) & mine.registers) context.track = true;
   }
-  return place;
+  return context;
 }
 
 void Core::clear_line(DecodedLine& d, bool thumb) {
@@ -93,12 +93,12 @@ void Core::clear_line(DecodedLine& d, bool thumb) {
   d.records[count].at = 32;
 }
 
-template <unsigned kCond, Core::Place::Check kCheck, bool kPc>
+template <unsigned kCond, Core::Context::Check kCheck, bool kPc>
 Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
-  if constexpr (kCheck == Place::Check::kYoungest) {
+  if constexpr (kCheck == Context::Check::kYoungest) {
     if (cycle < c.busy_until_) stall(c, cycle, c.busy_until_);
-  } else if constexpr (kCheck == Place::Check::kAll) {
+  } else if constexpr (kCheck == Context::Check::kAll) {
     if (cycle < c.busy_until_) stall(c, cycle, c.operands_ready(*i, cycle));
   }
   if constexpr (kPc)
@@ -110,10 +110,10 @@ Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
 /// Index of a handler: condition + check * 15 + pc * 45.
 template <std::size_t... k>
 constexpr std::array<Handler, sizeof...(k)> Core::Ops::before_table(std::index_sequence<k...>) {
-  return {&before<k % 15, static_cast<Place::Check>(k / 15 % 3), (k / 45) != 0>...};
+  return {&before<k % 15, static_cast<Context::Check>(k / 15 % 3), (k / 45) != 0>...};
 }
 
-void Core::prepare(Instruction& i, unsigned at, Place place) const {
+void Core::prepare(Instruction& i, unsigned at, Context context) const {
   i.at = static_cast<std::uint8_t>(at);
   Handler body = nullptr;
   bool own_condition = false;
@@ -130,7 +130,7 @@ void Core::prepare(Instruction& i, unsigned at, Place place) const {
       case Op::kLdr: case Op::kLdrb: case Op::kLdrh: case Op::kLdrsb: case Op::kLdrsh:
       case Op::kStr: case Op::kStrb: case Op::kStrh:
         if (i.operand == Operand::kShiftImm) i.rs = shifted_cycle_;
-        body = Ops::memory_body(i, place);
+        body = Ops::memory_body(i, context);
         break;
       case Op::kLdm: case Op::kStm:
         body = Ops::block_body(i);
@@ -139,7 +139,7 @@ void Core::prepare(Instruction& i, unsigned at, Place place) const {
         own_condition = true;
         [[fallthrough]];
       case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlPrefix: case Op::kThumbBlSuffix:
-        body = Ops::branch_body(i, place);
+        body = Ops::branch_body(i, context);
         break;
       case Op::kClz:
         body = &Ops::count_zeros;
@@ -149,9 +149,9 @@ void Core::prepare(Instruction& i, unsigned at, Place place) const {
   }
   i.body = body ? body : &Ops::generic;
   const unsigned cond = own_condition ? 14u : i.cond;
-  const auto check = operands(i) ? place.check : Place::Check::kNone;
+  const auto check = operands(i) ? context.check : Context::Check::kNone;
   const bool pc = body && (i.flags & kReadsPc);
-  if (cond == 14 && check == Place::Check::kNone && !pc) {
+  if (cond == 14 && check == Context::Check::kNone && !pc) {
     i.handler = i.body;
     return;
   }
@@ -163,10 +163,10 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   c.settle(i, cycle);
   const bool thumb = i->flags & kThumbInsn;
   c.unpredictable(isa_rows()[static_cast<std::size_t>(isa_row(i->raw, thumb))].name);
-  std::array<Instruction, 2>& pair = c.apart_;
+  std::array<Instruction, 2>& pair = c.unpredictable_record_;
   pair[0] = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
   pair[0].flags = static_cast<std::uint16_t>(pair[0].flags & ~kUnpredictable);
-  c.prepare(pair[0], i->at, Place{});
+  c.prepare(pair[0], i->at, Context{});
   pair[1].at = static_cast<std::uint8_t>(i->at + (thumb ? 2u : 4u));
   pair[1].handler = &leave;
   c.chain_stop_ = 0;  // execute one record, then return to run()

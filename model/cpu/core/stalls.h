@@ -50,14 +50,14 @@ class StallTable {
   /// the result may be below zero (it wraps around).
   std::uint64_t at(Cause cause, std::size_t region, std::size_t culprit,
                    const StallTable& from) const {
-    const std::size_t first = place(cause, region, 0);
+    const std::size_t first = slot(cause, region, 0);
     Parts before = 0;
     for (std::size_t k = first; k < first + culprit; ++k) before += parts_[k] - from.parts_[k];
     const Parts own = parts_[first + culprit] - from.parts_[first + culprit];
     return rounded(before + own) - rounded(before);
   }
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
-    parts_[place(cause, region, culprit)] += clocks << kFraction;
+    parts_[slot(cause, region, culprit)] += clocks << kFraction;
   }
   /// Splits `clocks` in proportion to the picoseconds that a transaction waited for each culprit.
   /// The part of `span` without waits, and rounding errors, are attributed to kService. `own`
@@ -65,7 +65,7 @@ class StallTable {
   [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks,
                                     const RequestWaits& waits, std::uint64_t span,
                                     std::uint64_t own = 0) {
-    Parts* const row = &parts_[place(cause, region, 0)];
+    Parts* const row = &parts_[slot(cause, region, 0)];
     row[kCore] += own << kFraction;
     if (clocks == 0) return;
     const std::uint64_t whole = std::max(waits.total(), span);
@@ -98,7 +98,7 @@ class StallTable {
   }
   /// Sum over all regions and culprits.
   std::uint64_t total(Cause cause) const {
-    const auto first = parts_.begin() + place(cause, 0, 0);
+    const auto first = parts_.begin() + slot(cause, 0, 0);
     return std::accumulate(first, first + kOfCause, Parts{0}) >> kFraction;
   }
 
@@ -110,7 +110,7 @@ class StallTable {
   using Parts = std::uint64_t;
   static constexpr unsigned kFraction = 24;
   static constexpr std::size_t kOfCause = RegionMap::kMax * kStallCulprits;
-  static constexpr std::size_t place(Cause cause, std::size_t region, std::size_t culprit) {
+  static constexpr std::size_t slot(Cause cause, std::size_t region, std::size_t culprit) {
     return index(cause) * kOfCause + region * kStallCulprits + culprit;
   }
   static std::uint64_t rounded(Parts p) { return (p + (Parts{1} << (kFraction - 1))) >> kFraction; }

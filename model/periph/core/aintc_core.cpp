@@ -33,15 +33,15 @@ void AintcCore::set_sources(std::uint64_t levels) {
 
 void AintcCore::acknowledge(std::uint64_t mask) {
   pending_ &= ~mask;
-  held_ &= ~mask;
+  disable_pending_ &= ~mask;
   if (level_capture_) pending_ |= levels_;
   changed();
 }
 
 void AintcCore::enable_written() {
   const std::uint64_t now = enabled();
-  if (regs.intctl.idmode) held_ |= was_enabled_ & ~now & pending_;
-  held_ &= ~now;
+  if (regs.intctl.idmode) disable_pending_ |= was_enabled_ & ~now & pending_;
+  disable_pending_ &= ~now;
   was_enabled_ = now;
   changed();
 }

@@ -69,7 +69,7 @@ class AintcCore {
 
  private:
   std::uint64_t enabled() const { return std::uint64_t{regs.eint1.get()} << 32 | regs.eint0.get(); }
-  std::uint64_t active() const { return pending_ & (enabled() | held_); }
+  std::uint64_t active() const { return pending_ & (enabled() | disable_pending_); }
   void changed() {
     if (on_change) on_change();
   }
@@ -81,7 +81,7 @@ class AintcCore {
   bool level_capture_;
   std::uint64_t levels_ = 0, pending_ = 0;
   std::uint64_t fiq_map_ = 0;  // sources with priority 0 or 1
-  std::uint64_t held_ = 0;     // IDMODE: disabled while active, so kept until acknowledged
+  std::uint64_t disable_pending_ = 0;  // IDMODE: disabled while active, so kept until acknowledged
   std::uint64_t was_enabled_ = 0;
   std::array<std::uint8_t, kInterruptCount> priority_{};
 };

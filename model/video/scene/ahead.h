@@ -26,15 +26,15 @@ class AheadSource : public PictureSource {
         next_.get();
       else
         next_.wait();  // this picture is not used, and neither is its error
-      if (!wanted) pictures_[next_place_] = source_.field(k);
+      if (!wanted) pictures_[next_index_] = source_.field(k);
     } else {
-      pictures_[next_place_] = source_.field(k);
+      pictures_[next_index_] = source_.field(k);
     }
-    const Picture& shown = pictures_[next_place_];
-    next_place_ ^= 1u;
+    const Picture& shown = pictures_[next_index_];
+    next_index_ ^= 1u;
     next_field_ = k + 1;
-    next_ = std::async(std::launch::async, [this, place = next_place_, field = k + 1] {
-      pictures_[place] = source_.field(field);
+    next_ = std::async(std::launch::async, [this, index = next_index_, field = k + 1] {
+      pictures_[index] = source_.field(field);
     });
     return shown;
   }
@@ -42,7 +42,7 @@ class AheadSource : public PictureSource {
  private:
   PictureSource& source_;
   std::array<Picture, 2> pictures_;
-  unsigned next_place_ = 0;
+  unsigned next_index_ = 0;
   std::uint64_t next_field_ = 0;
   std::future<void> next_;
 };

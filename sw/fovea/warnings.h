@@ -29,9 +29,9 @@ inline std::string warning_text(Diagnostics::Kind kind, const std::string& what)
 }
 
 /// Counts the warnings of one command and shows each once.
-class RemarkScope {
+class WarningScope {
  public:
-  RemarkScope(std::ostream& err, bool strict, bool replay = false) {
+  WarningScope(std::ostream& err, bool strict, bool replay = false) {
     auto& d = Diagnostics::instance();
     d.clear();
     d.set_strict(strict);
@@ -40,12 +40,12 @@ class RemarkScope {
           << "): " << one_line(warning_text(kind, what)) << "\n";
     });
   }
-  ~RemarkScope() {
+  ~WarningScope() {
     Diagnostics::instance().set_sink({});
     Diagnostics::instance().set_strict(false);
   }
-  RemarkScope(const RemarkScope&) = delete;
-  RemarkScope& operator=(const RemarkScope&) = delete;
+  WarningScope(const WarningScope&) = delete;
+  WarningScope& operator=(const WarningScope&) = delete;
 };
 
 }  // namespace fovea::app
