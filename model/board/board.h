@@ -69,7 +69,7 @@ class Board : public sc_core::sc_module {
   std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
   /// Called for each byte that UART0 has sent, at its last stop bit.
   std::function<void(std::uint8_t)> on_uart;
-  /// Called when the window opens and when it closes (quiet phase: everything of that instant has
+  /// Called when the window opens and when it closes (end-of-instant phase: everything of that instant has
   /// happened).
   std::function<void()> on_window_open, on_window_close;
 
@@ -89,7 +89,7 @@ class Board : public sc_core::sc_module {
   /// was not yet open is the whole run so far. Masters may have
   /// worked ahead of the present time, so `at` must lie beyond the next kernel event.
   void close_window(Picoseconds at);
-  /// Ends the window here, with the simulation over: without a quiet phase.
+  /// Ends the window here, with the simulation over: without an end-of-instant phase.
   void close_window_now();
   FrameStats frame_stats() const;
   std::uint64_t frames_in_window() const { return frames_in_window_; }

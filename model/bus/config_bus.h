@@ -44,7 +44,7 @@ struct ConfigBusStats : StatGroup {
 };
 
 /// Decodes register addresses, waits the latency of the block's class, and makes the access in the
-/// quiet phase of its instant, so that the register is seen after everything else that happens at
+/// end-of-instant phase, so that the register is seen after everything else that happens at
 /// that time. One access at a time per master port; several masters' accesses of one instant go by
 /// master number.
 class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {

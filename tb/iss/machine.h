@@ -39,7 +39,7 @@ class MachineWith {
   struct Params : CpuParams {
     explicit Params(const Settings& settings) {
       ParamSet set;
-      declare(set);
+      set.add(*this);
       for (const auto& [key, text] : settings) set.set(key, text);
     }
   } params;
