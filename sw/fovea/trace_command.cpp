@@ -5,11 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <deque>
-#include <limits>
 #include <ostream>
 #include <vector>
 
@@ -170,6 +167,9 @@ void in_played_order(const std::string& file, const trace::TraceInfo& info,
   RecordedParams recorded(&info, file);
   recorded.params.check();
   ReplayPath path(one_line(file), info, kept, recorded.params, false);
+  // Marks that nothing held up are gone already, and nobody was told.
+  for (auto& records : kept.records)
+    while (records.size() > 1) records.pop_front();
   path.on_issue = [&](unsigned stream, Picoseconds at) {
     const trace::Record r = kept.records[stream].front();
     kept.records[stream].pop_front();

@@ -67,7 +67,7 @@ expect played 0 'the times of a replay' 'priorities' -- \
 requests=$("$fovea" replay "$source/traces/bus/paper-pal.trace" -o "$out/replay" >/dev/null &&
   grep -oE '"replay.requests": \{"value": [0-9]+' "$out/replay/stats.json" | grep -oE '[0-9]+$')
 [ "$(grep -vc '^#' "$out/p.txt")" = "$requests" ] || fail "text has not the $requests requests"
-sort -cn "$out/p.txt" 2>/dev/null || fail 'times of a replay do not rise'
+sort -cns "$out/p.txt" 2>/dev/null || fail 'times of a replay do not rise'
 
 # Foreign formats there and back.
 printf '0:\twrite\t0x0\n3:\tread\t0x40\n3: (32) read 0x80\n17: write 0xc0\n' >"$out/d.stl"

@@ -91,13 +91,13 @@ std::string hostile_line(Rng& rng) {
       "0xAbCd", "0x-1", "0xFFFFFFFFFFFFFFFFF"};
   static constexpr const char* kBytes[] = {"1", "2", "3", "32", "64", "4096", "4097", "0", "0004",
       "00004", "9999", "10000", "0x20", "-4", "4x", "65536"};
-  static constexpr const char* kGaps[] = {" ", " ", " ", " ", " ", " ", "  ", "\t", " \t ", "\r",
-      "\v", ""};
+  static constexpr const char* kGaps[] = {" ", " ", " ", " ", " ", " ", " ", " ", " ", " ", " ", " ",
+      "  ", "\t", " \t ", "\r", "\v", ""};
   static constexpr const char* kEnds[] = {"\n", "\n", "\n", "\n", "\r\n", "\r\r\n", " \n", "\t\r\n",
       " x\n", "\n\n", " #\n"};
-  const bool mostly = rng.below(4) != 0;
+  const bool mostly = rng.below(8) != 0;
   const auto word = [&](auto& list, const char* good) {
-    return std::string(mostly && rng.below(8) != 0 ? good : one_of(rng, list));
+    return std::string(mostly && rng.below(16) != 0 ? good : one_of(rng, list));
   };
   std::string line = rng.below(20) == 0 ? one_of(rng, kGaps) : "";
   line += word(kTimes, "123") + one_of(rng, kGaps);
@@ -132,8 +132,8 @@ TEST(TextFuzzTest, BothParsersSayTheSameOfHostileLines) {
     if (HasFatalFailure()) return;
     (read_all(text, kCareful, 0).error.empty() ? good : bad)++;
   }
-  EXPECT_GT(good, 3'000);
-  EXPECT_GT(bad, 3'000);
+  EXPECT_GT(good, 1'000);
+  EXPECT_GT(bad, 10'000);
 }
 
 /// Good lines of `masters` masters whose records come in long runs, so that readers are far ahead of
