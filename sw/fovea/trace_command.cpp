@@ -177,7 +177,7 @@ void in_played_order(const std::string& file, const trace::TraceInfo& info,
   };
   const Picoseconds slice = 10 * kPsPerMs;
   for (Picoseconds until = info.start + slice; !path.run_before(until); until += slice)
-    if (context.stop && context.stop->load()) throw Stopped("stopped before the end");
+    if (context.stop && context.stop->load()) throw Stopped();
 }
 
 /// Labels as a text trace has them: both sides of a transfer controller have one in a recording.
