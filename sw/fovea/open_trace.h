@@ -13,19 +13,27 @@ namespace fovea::app {
 
 /// Formats of trace files. The foreign ones are in the order of trace::ForeignFormat.
 enum class TraceFormat : std::uint8_t {
-  kBinary, kText, kDramsysStl, kDramsysRstl, kRamulator, kRamulator2, kDramsim3
+  kBinary,
+  kText,
+  kDramsysStl,
+  kDramsysRstl,
+  kRamulator,
+  kRamulator2,
+  kDramsim3
 };
 inline constexpr std::string_view kTraceFormats[] = {
     "binary", "text", "dramsys-stl", "dramsys-rstl", "ramulator", "ramulator2", "dramsim3"};
-inline std::string_view name_of(TraceFormat f) { return kTraceFormats[static_cast<std::size_t>(f)]; }
+inline std::string_view name_of(TraceFormat f) {
+  return kTraceFormats[static_cast<std::size_t>(f)];
+}
 /// The foreign format; none for Fovea's own.
 std::optional<trace::ForeignFormat> foreign(TraceFormat f);
 
 /// A regular file that is read piece by piece.
 std::unique_ptr<trace::ByteSource> open_bytes(const std::filesystem::path& file);
 
-/// The format of a file, by its first bytes; DRAMSys' two formats are told apart by the name's suffix
-/// `.stl` or `.rstl`. @throws UserError if it is none, or not clear
+/// The format of a file, by its first bytes; the name's suffix, `.stl` or `.rstl`, tells DRAMSys'
+/// two formats apart. @throws UserError if the format is unknown or ambiguous
 TraceFormat format_of(const std::string& file);
 /// True if these first bytes are of any of the formats.
 bool is_any_trace(std::string_view first_bytes);

@@ -38,11 +38,11 @@ TraceFormat format_named(std::string_view name) {
 /// Quantities of the command line, parsed as those of experiments are.
 struct Quantities : ParamGroup {
   using U = IntParam::Unit;
-  IntParam frequency{*this, "frequency", U::kHertz, 1'000'000, 1'000, 1'000'000'000'000, "",
-                     Origin::kChoice, ""};
+  IntParam frequency{*this, "frequency",     U::kHertz, 1'000'000, 1'000, 1'000'000'000'000,
+                     "",    Origin::kChoice, ""};
   IntParam period{*this, "period", U::kTime, 1'000, 1, kPsPerMs, "", Origin::kChoice, ""};
-  IntParam size{*this, "size", U::kBytes, 1 << 20, 1 << 10, std::uint64_t{1} << 32, "",
-                Origin::kChoice, ""};
+  IntParam size{*this, "size",          U::kBytes, 1 << 20, 1 << 10, std::uint64_t{1} << 32,
+                "",    Origin::kChoice, ""};
   Quantities() : ParamGroup("trace") {}
 };
 
@@ -61,9 +61,10 @@ Frequency parse_clock(const std::string& text) {
   Quantities q;
   if (parses(q, q.frequency, text)) return Frequency(q.frequency());
   if (parses(q, q.period, text)) return Frequency(kPsPerSecond, q.period());
-  throw UserError(fmt::format("--clock '{}' is not allowed; allowed: a frequency of 1kHz to 1000GHz "
-                              "(800MHz) or a period of 1ps to 1ms (1250ps)",
-                              one_line(text)));
+  throw UserError(
+      fmt::format("--clock '{}' is not allowed; allowed: a frequency of 1kHz to 1000GHz "
+                  "(800MHz) or a period of 1ps to 1ms (1250ps)",
+                  one_line(text)));
 }
 
 std::uint64_t parse_size(const std::string& text) {
@@ -93,9 +94,9 @@ struct Census {
   };
   std::vector<Count> masters;
   std::uint64_t marks = 0;
-  Picoseconds last = 0;      // latest of the times
-  bool timed = true;         // each record has a time, and none depends on another
-  bool plain = true;         // nothing that text cannot say: priority, lock, critical word
+  Picoseconds last = 0;  // latest of the times
+  bool timed = true;     // each record has a time, and none depends on another
+  bool plain = true;     // nothing that text cannot say: priority, lock, critical word
 };
 
 unsigned master_of(const trace::TraceInfo& info, const trace::Record& r) {
@@ -228,15 +229,19 @@ class Conversion {
     const bool in_foreign = foreign(from_).has_value();
     const bool cycles = has_cycles(from_) || has_cycles(to_);
     if (cycles && o_.clock.empty())
-      throw UserError(fmt::format("--clock is needed, as {} counts cycles: a frequency (800MHz) or a "
-                                  "period (1250ps)",
-                                  name_of(has_cycles(from_) ? from_ : to_)));
+      throw UserError(
+          fmt::format("--clock is needed, as {} counts cycles: a frequency (800MHz) or a "
+                      "period (1250ps)",
+                      name_of(has_cycles(from_) ? from_ : to_)));
     if (!cycles && !o_.clock.empty())
-      refuse("--clock", fmt::format("neither {} nor {} counts cycles", name_of(from_), name_of(to_)));
+      refuse("--clock",
+             fmt::format("neither {} nor {} counts cycles", name_of(from_), name_of(to_)));
     if (cycles) clock_ = parse_clock(o_.clock);
     if (o_.bytes && !in_foreign && !foreign(to_))
-      refuse("--bytes", fmt::format("{} and {} say the size of each request", name_of(from_), name_of(to_)));
-    if (o_.master && !in_foreign) refuse("--master", fmt::format("{} names its masters", name_of(from_)));
+      refuse("--bytes",
+             fmt::format("{} and {} say the size of each request", name_of(from_), name_of(to_)));
+    if (o_.master && !in_foreign)
+      refuse("--master", fmt::format("{} names its masters", name_of(from_)));
     if (o_.window && !in_foreign) refuse("--window", fmt::format("{} has windows", name_of(from_)));
     if (o_.master && !trace::TextTrace::is_label(*o_.master))
       throw UserError(fmt::format("--master '{}' is not allowed; allowed: {}", one_line(*o_.master),
@@ -248,8 +253,9 @@ class Conversion {
     in_range("--window", o_.window, trace::TextTrace::kMaxReads);
     in_range("--bytes", o_.bytes, trace::TextTrace::kMaxBytes);
     if (foreign(to_) && o_.bytes && !std::has_single_bit(*o_.bytes))
-      throw UserError(fmt::format("--bytes {} is not allowed for {}; allowed: powers of two up to {}",
-                                  *o_.bytes, name_of(to_), trace::TextTrace::kMaxBytes));
+      throw UserError(
+          fmt::format("--bytes {} is not allowed for {}; allowed: powers of two up to {}",
+                      *o_.bytes, name_of(to_), trace::TextTrace::kMaxBytes));
     bounds_.wrap = o_.wrap;
   }
 
@@ -314,9 +320,8 @@ class Conversion {
       writer.add({at, ready, number[master_of(info, r)], r.write, r.address, r.bytes});
     };
     if (census.timed)
-      in_order(info, source, [&](unsigned, const trace::Record& r, Picoseconds ready) {
-        add(r, r.at, ready);
-      });
+      in_order(info, source,
+               [&](unsigned, const trace::Record& r, Picoseconds ready) { add(r, r.at, ready); });
     else
       in_played_order(o_.in, info, source, context_,
                       [&](unsigned, const trace::Record& r, Picoseconds at) { add(r, at, at); });
@@ -326,12 +331,13 @@ class Conversion {
                       name_of(to_)));
     const bool plain = census.plain && (same_windows || !is_text);
     if (!plain)
-      say(fmt::format("{} has no priorities, locks and critical words, and other windows; they are "
+      say(
+          fmt::format("{} cannot hold priorities, locks, critical words and all windows; these are "
                       "left out",
                       name_of(to_)));
     if (!is_text && masters.size() > 1)
-      say(fmt::format("{} does not tell masters apart: the {} of the trace became one", name_of(to_),
-                      masters.size()));
+      say(fmt::format("{} does not tell masters apart: the {} of the trace became one",
+                      name_of(to_), masters.size()));
     if (writer.resized() != 0)
       say(fmt::format("{} has no sizes: {} requests became {} of {} bytes", name_of(to_),
                       writer.resized(), writer.pieces(), o_.bytes.value_or(kDefaultBytes)));
@@ -348,7 +354,9 @@ class Conversion {
   std::uint64_t requests_ = 0;
 };
 
-std::string milliseconds(Picoseconds t) { return fmt::format("{:.6f} ms", static_cast<double>(t) * 1e-9); }
+std::string milliseconds(Picoseconds t) {
+  return fmt::format("{:.6f} ms", static_cast<double>(t) * 1e-9);
+}
 
 void print_info(const TraceOptions& options, std::ostream& out) {
   const TraceFormat format = format_of(options.in);
@@ -390,17 +398,22 @@ void add_trace_command(CLI::App& app, TraceOptions& o) {
   c->require_subcommand(1);
   CLI::App* convert = c->add_subcommand(
       "convert", "Write a bus trace in another format, or read one of another simulator");
-  const CLI::IsMember formats(std::vector<std::string>(std::begin(kTraceFormats), std::end(kTraceFormats)));
+  const CLI::IsMember formats(
+      std::vector<std::string>(std::begin(kTraceFormats), std::end(kTraceFormats)));
   convert->add_option("in", o.in, "The trace to read")->required()->type_name("FILE");
   convert->add_option("-o,--out", o.out, "The trace to write")->required()->type_name("FILE");
-  convert->add_option("--to", o.to, "Format to write")->required()->type_name("FORMAT")->check(formats);
+  convert->add_option("--to", o.to, "Format to write")
+      ->required()
+      ->type_name("FORMAT")
+      ->check(formats);
   convert->add_option("--from", o.from, "Format to read")
       ->type_name("FORMAT")
       ->check(formats)
       ->default_str("what the file holds");
-  convert->add_option("--clock", o.clock,
-                      "Clock of the cycles in a DRAMSys or DRAMsim3 trace: frequency (800MHz) or "
-                      "period (1250ps)")
+  convert
+      ->add_option("--clock", o.clock,
+                   "Clock of the cycles in a DRAMSys or DRAMsim3 trace: frequency (800MHz) or "
+                   "period (1250ps)")
       ->type_name("CLOCK");
   convert->add_option("--bytes", o.bytes, "Size of a request where the format does not say it")
       ->type_name("N")

@@ -36,7 +36,8 @@ void LineWriter::add_foreign(const TimedRequest& r, std::uint64_t cycle) {
   const std::uint64_t since = cycle - std::min(cycle, cycle_);
   cycle_ = std::max(cycle, cycle_);
   const char* const word = r.write ? "write" : "read";
-  if (settings_.format == TraceFormat::kDramsysStl || settings_.format == TraceFormat::kDramsysRstl) {
+  if (settings_.format == TraceFormat::kDramsysStl ||
+      settings_.format == TraceFormat::kDramsysRstl) {
     const bool relative = settings_.format == TraceFormat::kDramsysRstl;
     fmt::format_to(out, "{}: ", relative ? since : cycle);
     if (r.bytes != settings_.bytes) fmt::format_to(out, "({}) ", r.bytes);

@@ -1,4 +1,5 @@
-// Reads a trace to its end, without playing it, for an instruction counter: see trace_instructions.sh.
+// Reads a trace to its end, without playing it, for an instruction counter: see
+// trace_instructions.sh.
 #include <cstdio>
 #include <exception>
 

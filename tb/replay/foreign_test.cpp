@@ -102,8 +102,10 @@ TEST(ForeignTraceTest, RamulatorHasNoTimes) {
 TEST(ForeignTraceTest, Dramsim3CyclesComeLast) {
   // A period of 1.5 ns.
   const auto reading = reading_of(ForeignFormat::kDramsim3, Frequency(kPsPerSecond, 1500));
-  const std::vector<Expected> expected = {{7'500, false, 0x40, 64}, {9'000, true, 0x80, 64},
-                                          {9'000, false, 0xC0, 64}, {10'500, true, 0x100, 64}};
+  const std::vector<Expected> expected = {{7'500, false, 0x40, 64},
+                                          {9'000, true, 0x80, 64},
+                                          {9'000, false, 0xC0, 64},
+                                          {10'500, true, 0x100, 64}};
   EXPECT_EQ(read("0x40 READ 5\n80 WRITE 6\n0xC0 P_MEM_RD 6\n0x100 write 7\n", reading), expected);
 }
 
@@ -142,7 +144,8 @@ TEST(ForeignTraceTest, ErrorsNameLineAndWhatIsAllowed) {
   EXPECT_THAT(error_of("LD 0x0\nR 0,0,1,2,40,7\n", ram2), HasSubstr("an address vector"));
   EXPECT_THAT(error_of("LD 1f\n", ram2), HasSubstr("decimal or 0x"));
   EXPECT_THAT(error_of("0x0 READ\n", sim3), HasSubstr("a request is '0xADDRESS READ|WRITE CYCLE'"));
-  EXPECT_THAT(error_of("0x0 FETCH 1\n", sim3), HasSubstr("allowed: READ, read, P_MEM_RD, P_FETCH, WRITE"));
+  EXPECT_THAT(error_of("0x0 FETCH 1\n", sim3),
+              HasSubstr("allowed: READ, read, P_MEM_RD, P_FETCH, WRITE"));
   EXPECT_THAT(error_of("0x0 READ 0x5\n", sim3), HasSubstr("cycle '0x5'"));
 }
 
@@ -165,7 +168,8 @@ TEST(ForeignTraceTest, LimitsOfAddressesAndTimes) {
   // 100 s at 800 MHz.
   EXPECT_EQ(error_of("80000000000: read 0x0\n", kStl), "");
   EXPECT_THAT(error_of("80000000001: read 0x0\n", kStl), HasSubstr("later than the 100 s allowed"));
-  EXPECT_THAT(error_of("18446744073709551615: read 0x0\n", kStl), HasSubstr("later than the 100 s"));
+  EXPECT_THAT(error_of("18446744073709551615: read 0x0\n", kStl),
+              HasSubstr("later than the 100 s"));
   EXPECT_THAT(error_of("18446744073709551616: read 0x0\n", kStl), HasSubstr("cycle '1844"));
   ForeignReading relative = kStl;
   relative.format = ForeignFormat::kDramsysRstl;
@@ -183,7 +187,8 @@ TEST(ForeignTraceTest, ARequestOverTheEndGoesOnAtTheBeginning) {
 }
 
 TEST(BoundedSourceTest, RecordsAreHeldToTheMemory) {
-  const std::string text = "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x3FFFFC0 64\n0 0 R 0x4000000 4\n";
+  const std::string text =
+      "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x3FFFFC0 64\n0 0 R 0x4000000 4\n";
   trace::TextTrace strict_text("t", text), wrapped_text("t", text);
   trace::BoundedSource strict("t", strict_text, {64 * kMiB, false});
   Record r;
@@ -192,7 +197,8 @@ TEST(BoundedSourceTest, RecordsAreHeldToTheMemory) {
     strict.next(0, r);
     ADD_FAILURE() << "taken";
   } catch (const UserError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("line 4: 4 bytes at 0x04000000 are outside the memory of 64 MiB"));
+    EXPECT_THAT(e.what(),
+                HasSubstr("line 4: 4 bytes at 0x04000000 are outside the memory of 64 MiB"));
   }
   trace::BoundedSource wrapped("t", wrapped_text, {64 * kMiB, true});
   EXPECT_TRUE(wrapped.next(0, r));
@@ -212,14 +218,15 @@ TEST(ForeignTraceTest, FormatsAreRecognisedByTheirFirstRequest) {
   EXPECT_EQ(is("W 0,0,1,2,40,7\n"), F::kRamulator2) << "so that its own message comes";
   EXPECT_EQ(is("0x1000 WRITE 12"), F::kDramsim3);
   EXPECT_EQ(is("1000 P_FETCH 12"), F::kDramsim3);
-  for (const char* none : {"", "\n", "# dramtrace 1\n", "hello world\n", "0 0 R 0x0 64\n", "0x10\n",
-                           "0x10 X\n", "12 READ x\n", "x: read 0x0\n", "key: value\n", "{\n",
-                           "0: read\n", "LD 0x0 0x1\n"})
+  for (const char* none :
+       {"", "\n", "# dramtrace 1\n", "hello world\n", "0 0 R 0x0 64\n", "0x10\n", "0x10 X\n",
+        "12 READ x\n", "x: read 0x0\n", "key: value\n", "{\n", "0: read\n", "LD 0x0 0x1\n"})
     EXPECT_EQ(is(none), std::nullopt) << none;
 }
 
 /// What a writer makes of these requests.
-std::string written(const app::WriterSettings& settings, const std::vector<app::TimedRequest>& requests,
+std::string written(const app::WriterSettings& settings,
+                    const std::vector<app::TimedRequest>& requests,
                     app::LineWriter** keep = nullptr) {
   static std::string out;
   static std::unique_ptr<app::LineWriter> writer;
@@ -235,8 +242,7 @@ std::string written(const app::WriterSettings& settings, const std::vector<app::
 TEST(LineWriterTest, EachFormatAsItsSimulatorReadsIt) {
   using app::TraceFormat;
   const std::vector<app::TimedRequest> requests = {
-      {0, 0, 0, false, 0x1000, 64},
-      {2500, 2500, 1, true, 0x2000, 64},
+      {0, 0, 0, false, 0x1000, 64},       {2500, 2500, 1, true, 0x2000, 64},
       {2501, 2501, 0, false, 0x3040, 64},  // not on an edge of 1250 ps: the next
       {0, 2501, 0, true, 0x40, 32},        // behind the one before it
       {5000, 5000, 1, false, 0x70, 32},    // over a border of 64
@@ -245,13 +251,16 @@ TEST(LineWriterTest, EachFormatAsItsSimulatorReadsIt) {
   EXPECT_EQ(written({TraceFormat::kText, {}, 64}, requests),
             "# dramtrace 1\n# master 0 window 4 a\n# master 1 window 48 b\n0 0 R 0x1000 64\n"
             "2500 1 W 0x2000 64\n2501 0 R 0x3040 64\n0 0 W 0x40 32\n5000 1 R 0x70 32\n");
-  EXPECT_EQ(written({TraceFormat::kDramsysStl, clock, 64}, requests),
-            "0: read 0x1000\n2: write 0x2000\n3: read 0x3040\n3: (32) write 0x40\n4: (32) read 0x70\n");
-  EXPECT_EQ(written({TraceFormat::kDramsysRstl, clock, 64}, requests),
-            "0: read 0x1000\n2: write 0x2000\n1: read 0x3040\n0: (32) write 0x40\n1: (32) read 0x70\n");
+  EXPECT_EQ(
+      written({TraceFormat::kDramsysStl, clock, 64}, requests),
+      "0: read 0x1000\n2: write 0x2000\n3: read 0x3040\n3: (32) write 0x40\n4: (32) read 0x70\n");
+  EXPECT_EQ(
+      written({TraceFormat::kDramsysRstl, clock, 64}, requests),
+      "0: read 0x1000\n2: write 0x2000\n1: read 0x3040\n0: (32) write 0x40\n1: (32) read 0x70\n");
   app::LineWriter* writer = nullptr;
-  EXPECT_EQ(written({TraceFormat::kDramsim3, clock, 64}, requests, &writer),
-            "0x1000 READ 0\n0x2000 WRITE 2\n0x3040 READ 3\n0x40 WRITE 3\n0x70 READ 4\n0x80 READ 4\n");
+  EXPECT_EQ(
+      written({TraceFormat::kDramsim3, clock, 64}, requests, &writer),
+      "0x1000 READ 0\n0x2000 WRITE 2\n0x3040 READ 3\n0x40 WRITE 3\n0x70 READ 4\n0x80 READ 4\n");
   EXPECT_EQ(writer->resized(), 2u);
   EXPECT_EQ(writer->pieces(), 3u);
   EXPECT_EQ(written({TraceFormat::kRamulator, {}, 32}, requests),

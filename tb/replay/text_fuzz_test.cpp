@@ -80,21 +80,39 @@ const char* one_of(Rng& rng, const char* const (&list)[n]) {
 
 /// A line of words each of which is good, at a limit, or one beyond it.
 std::string hostile_line(Rng& rng) {
-  static constexpr const char* kTimes[] = {"0", "5", "00", "70000", "100000000000000",
-      "100000000000001", "099999999999999", "0000000000000001", "999999999999999",
-      "1000000000000000", "18446744073709551616", "-1", "+1", "0x10", "0X10", "1e3", "", "1.0"};
-  static constexpr const char* kIds[] = {"0", "1", "3", "7", "65535", "65536", "00003", "000003",
-      "99999", "0x3", "0xFFFF", "x", "-0", "8"};
+  static constexpr const char* kTimes[] = {"0",
+                                           "5",
+                                           "00",
+                                           "70000",
+                                           "100000000000000",
+                                           "100000000000001",
+                                           "099999999999999",
+                                           "0000000000000001",
+                                           "999999999999999",
+                                           "1000000000000000",
+                                           "18446744073709551616",
+                                           "-1",
+                                           "+1",
+                                           "0x10",
+                                           "0X10",
+                                           "1e3",
+                                           "",
+                                           "1.0"};
+  static constexpr const char* kIds[] = {"0",      "1",     "3",      "7",     "65535",
+                                         "65536",  "00003", "000003", "99999", "0x3",
+                                         "0xFFFF", "x",     "-0",     "8"};
   static constexpr const char* kDirections[] = {"R", "W", "r", "w", "RW", "Rx", "", "R\t"};
-  static constexpr const char* kAddresses[] = {"0x0", "0x1000", "0xFFFFFFFF", "0xffffffff",
-      "0x100000000", "0x000000000", "0x0FFFFFFFF", "0xFFFFFFFE", "0XFF", "1000", "0x", "0xg",
-      "0xAbCd", "0x-1", "0xFFFFFFFFFFFFFFFFF"};
-  static constexpr const char* kBytes[] = {"1", "2", "3", "32", "64", "4096", "4097", "0", "0004",
-      "00004", "9999", "10000", "0x20", "-4", "4x", "65536"};
-  static constexpr const char* kGaps[] = {" ", " ", " ", " ", " ", " ", " ", " ", " ", " ", " ", " ",
-      "  ", "\t", " \t ", "\r", "\v", ""};
-  static constexpr const char* kEnds[] = {"\n", "\n", "\n", "\n", "\r\n", "\r\r\n", " \n", "\t\r\n",
-      " x\n", "\n\n", " #\n"};
+  static constexpr const char* kAddresses[] = {
+      "0x0",         "0x1000",      "0xFFFFFFFF", "0xffffffff", "0x100000000",
+      "0x000000000", "0x0FFFFFFFF", "0xFFFFFFFE", "0XFF",       "1000",
+      "0x",          "0xg",         "0xAbCd",     "0x-1",       "0xFFFFFFFFFFFFFFFFF"};
+  static constexpr const char* kBytes[] = {"1",    "2",  "3",    "32",    "64",   "4096",
+                                           "4097", "0",  "0004", "00004", "9999", "10000",
+                                           "0x20", "-4", "4x",   "65536"};
+  static constexpr const char* kGaps[] = {" ", " ", " ", " ",  " ",  " ",    " ",  " ",  " ",
+                                          " ", " ", " ", "  ", "\t", " \t ", "\r", "\v", ""};
+  static constexpr const char* kEnds[] = {"\n",  "\n",     "\n",   "\n",   "\r\n", "\r\r\n",
+                                          " \n", "\t\r\n", " x\n", "\n\n", " #\n"};
   const bool mostly = rng.below(8) != 0;
   const auto word = [&](auto& list, const char* good) {
     return std::string(mostly && rng.below(16) != 0 ? good : one_of(rng, list));
@@ -110,11 +128,22 @@ std::string hostile_line(Rng& rng) {
 }
 
 std::string other_line(Rng& rng) {
-  static constexpr const char* kOthers[] = {"\n", "# a comment # master 9\n", "#\n", "  \t\n",
-      "  # master 7 window 48 late\n", "# master 1 window 49 w\n", "# master 0 window 0 w\n",
-      "#master 8 window 1 no\n", "# master 0 window 1 refresh\n", "# master 3 window 1 twice\n",
-      "# master 65535 window 1 last\n", "# master 65536 window 1 more\n", "# master\n",
-      "# master 1 window 4 one\r\n", "# dramtrace 1\n", "# master 1 window 1 cpu\n"};
+  static constexpr const char* kOthers[] = {"\n",
+                                            "# a comment # master 9\n",
+                                            "#\n",
+                                            "  \t\n",
+                                            "  # master 7 window 48 late\n",
+                                            "# master 1 window 49 w\n",
+                                            "# master 0 window 0 w\n",
+                                            "#master 8 window 1 no\n",
+                                            "# master 0 window 1 refresh\n",
+                                            "# master 3 window 1 twice\n",
+                                            "# master 65535 window 1 last\n",
+                                            "# master 65536 window 1 more\n",
+                                            "# master\n",
+                                            "# master 1 window 4 one\r\n",
+                                            "# dramtrace 1\n",
+                                            "# master 1 window 1 cpu\n"};
   return one_of(rng, kOthers);
 }
 
@@ -136,8 +165,8 @@ TEST(TextFuzzTest, BothParsersSayTheSameOfHostileLines) {
   EXPECT_GT(bad, 10'000);
 }
 
-/// Good lines of `masters` masters whose records come in long runs, so that readers are far ahead of
-/// each other.
+/// Good lines of `masters` masters whose records come in long runs, so that readers are far ahead
+/// of each other.
 std::string long_text(Rng& rng, unsigned masters, unsigned lines) {
   std::string text = "# dramtrace 1\n";
   for (unsigned m = 0; m < masters; ++m)
@@ -158,7 +187,8 @@ TEST(TextFuzzTest, LongRunsOfOneMasterAreReadTheSameInPieces) {
     const std::string text = long_text(rng, 1 + static_cast<unsigned>(rng.below(10)), 3'000);
     const Read expected = read_all(text, kCareful, 0);
     ASSERT_EQ(expected.error, "");
-    for (const std::size_t ahead : {std::size_t{1}, std::size_t{7}, std::size_t{600}, std::size_t{1500}})
+    for (const std::size_t ahead :
+         {std::size_t{1}, std::size_t{7}, std::size_t{600}, std::size_t{1500}})
       for (const unsigned turns : {0u, 1u, 700u})
         ASSERT_EQ(read_all(text, {100 + rng.below(5000), ahead, true}, turns), expected);
     // A defect far behind is found whoever comes there first.
@@ -168,7 +198,8 @@ TEST(TextFuzzTest, LongRunsOfOneMasterAreReadTheSameInPieces) {
   }
 }
 
-/// The grammar of README.md, written a third time, for lines that both parsers might get wrong alike.
+/// The grammar of README.md, written a third time, for lines that both parsers might get wrong
+/// alike.
 TEST(TextFuzzTest, RecordsAreWhatTheLinesSay) {
   Rng rng(7);
   std::string text = "# dramtrace 1\n# master 65535 window 1 a\n";
@@ -183,7 +214,8 @@ TEST(TextFuzzTest, RecordsAreWhatTheLinesSay) {
     r.master = TextTrace::port(0);
     expected.push_back(r);
     char line[80];
-    std::snprintf(line, sizeof line, rng.below(2) ? "%llu 65535 %c 0x%x %u\n" : "%llu 65535 %c 0x%X %u\n",
+    std::snprintf(line, sizeof line,
+                  rng.below(2) ? "%llu 65535 %c 0x%x %u\n" : "%llu 65535 %c 0x%X %u\n",
                   static_cast<unsigned long long>(r.at), r.write ? 'W' : 'R', r.address, r.bytes);
     text += line;
   }

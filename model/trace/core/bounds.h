@@ -11,8 +11,8 @@ namespace fovea::trace {
 /// The memory that a trace is for.
 struct Bounds {
   std::uint64_t size = std::uint64_t{1} << 32;  ///< bytes, a power of two from 1 KiB to 4 GiB
-  /// Addresses beyond the memory are taken modulo its size, as a part does that has no wires for the
-  /// upper address bits; false: they are an error.
+  /// Addresses beyond the memory are taken modulo its size, as a part does that has no wires for
+  /// the upper address bits; false: they are an error.
   bool wrap = false;
 
   /// True if a request may stay where it is.

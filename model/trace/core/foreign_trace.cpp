@@ -88,17 +88,15 @@ std::optional<ForeignFormat> recognise_foreign(std::string_view first_bytes) {
 
 ForeignTrace::ForeignTrace(std::string name, std::unique_ptr<ByteSource> bytes,
                            const ForeignReading& reading)
-    : name_(std::move(name)),
-      bytes_(std::move(bytes)),
-      reading_(reading),
-      lines_(*bytes_, kBlock) {
+    : name_(std::move(name)), bytes_(std::move(bytes)), reading_(reading), lines_(*bytes_, kBlock) {
   info_.streams.emplace_back();
   info_.masters.push_back(
       {TextTrace::port(0), reading.label, 0, reading.window, TextTrace::kWrites, false});
 }
 
 void ForeignTrace::bad(std::string what) const {
-  std::replace_if(what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, '?');
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, '?');
   throw UserError("trace '" + name_ + "':" + std::to_string(lines_.line) + ": " + what);
 }
 
@@ -107,18 +105,19 @@ std::uint64_t ForeignTrace::address(std::string_view word, bool decimal_allowed)
   std::uint64_t v = 0;
   if (!is_number(word, hex ? 16 : 10, v))
     bad("address '" + std::string(word.substr(0, 40)) + "' is not allowed; allowed: " +
-        (decimal_allowed ? "a number of 64 bits, decimal or 0x..." : "a hexadecimal number of 64 bits"));
+        (decimal_allowed ? "a number of 64 bits, decimal or 0x..."
+                         : "a hexadecimal number of 64 bits"));
   return v;
 }
 
 Picoseconds ForeignTrace::time(std::string_view word) {
   std::uint64_t cycle = 0;
   if (!is_number(word, 10, cycle))
-    bad("cycle '" + std::string(word.substr(0, 40)) + "' is not allowed; allowed: a decimal number");
+    bad("cycle '" + std::string(word.substr(0, 40)) +
+        "' is not allowed; allowed: a decimal number");
   unsigned __int128 sum = cycle;
   if (reading_.format == ForeignFormat::kDramsysRstl) sum += cycle_;
-  const unsigned __int128 at =
-      sum * kPsPerSecond * reading_.clock.den / reading_.clock.num;
+  const unsigned __int128 at = sum * kPsPerSecond * reading_.clock.den / reading_.clock.num;
   if (at > TextTrace::kLatest)
     bad("cycle " + std::string(word.substr(0, 40)) + " is later than the 100 s allowed");
   cycle_ = static_cast<std::uint64_t>(sum);
@@ -134,8 +133,8 @@ void ForeignTrace::read_direction(std::string_view word, std::string_view reads,
     for (const auto w : split(words)) out += (out.empty() ? "" : ", ") + std::string(w);
     return out;
   };
-  bad("direction '" + std::string(word.substr(0, 40)) + "' is not allowed; allowed: " + list(reads) +
-      ", " + list(writes));
+  bad("direction '" + std::string(word.substr(0, 40)) +
+      "' is not allowed; allowed: " + list(reads) + ", " + list(writes));
 }
 
 void ForeignTrace::read_dramsys(const Words& words) {
@@ -214,7 +213,8 @@ bool ForeignTrace::next(unsigned, Record& record) {
   record.at = request_.at;
   record.write = request_.write;
   record.master = info_.masters[0].id;
-  record.address = static_cast<std::uint32_t>((request_.address + done_) & (reading_.bounds.size - 1));
+  record.address =
+      static_cast<std::uint32_t>((request_.address + done_) & (reading_.bounds.size - 1));
   const unsigned room = kMaxBurstBytes - record.address % kMaxBurstBytes;
   record.bytes = static_cast<std::uint8_t>(std::min(room, request_.bytes - done_));
   done_ += record.bytes;

@@ -15,10 +15,14 @@ namespace fovea::trace {
 
 /// kDramsysStl: `CYCLE: [(BYTES)] read|write 0xADDRESS [0xDATA]`, cycles from the start.
 /// kDramsysRstl: the same with cycles since the request before.
-/// kRamulator: `0xADDRESS R|W`. kRamulator2: `LD|ST ADDRESS`, also `R|W ADDRESS`.
+/// kRamulator: `0xADDRESS R|W`. kRamulator2: `LD|ST ADDRESS`; `R|W` are accepted as well.
 /// kDramsim3: `0xADDRESS READ|WRITE CYCLE`.
 enum class ForeignFormat : std::uint8_t {
-  kDramsysStl, kDramsysRstl, kRamulator, kRamulator2, kDramsim3
+  kDramsysStl,
+  kDramsysRstl,
+  kRamulator,
+  kRamulator2,
+  kDramsim3
 };
 
 /// True if the format's lines say when a request comes; the others come one after another.
@@ -26,8 +30,8 @@ constexpr bool has_cycles(ForeignFormat f) {
   return f != ForeignFormat::kRamulator && f != ForeignFormat::kRamulator2;
 }
 
-/// The format that the first request line of these bytes, the beginning of a file, has. DRAMSys' two
-/// formats look alike: kDramsysStl stands for both.
+/// The format that the first request line of these bytes, the beginning of a file, has. DRAMSys'
+/// two formats look alike: kDramsysStl stands for both.
 std::optional<ForeignFormat> recognise_foreign(std::string_view first_bytes);
 
 /// What these formats leave to their simulator's configuration.

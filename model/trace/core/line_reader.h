@@ -12,8 +12,8 @@ namespace fovea::trace {
 /// longer. A reader may begin at the start of any line.
 class LineReader {
  public:
-  /// `block`: bytes asked of the file at a time. `offset`, `line`: where to begin, and the number of
-  /// the line before; `bytes` must outlive the reader.
+  /// `block`: bytes asked of the file at a time. `offset`, `line`: where to begin, and the number
+  /// of the line before; `bytes` must outlive the reader.
   LineReader(const ByteSource& bytes, std::size_t block, std::uint64_t offset = 0,
              std::uint64_t lines_before = 0)
       : line(lines_before), bytes_(&bytes), block_(block), next_(offset) {}
@@ -48,8 +48,8 @@ class LineReader {
   }
   /// Takes the line at `at`, without its line feed.
   std::string_view take() {
-    const auto* feed = static_cast<const char*>(
-        std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
+    const auto* feed =
+        static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
     const std::string_view text(at, static_cast<std::size_t>(feed - at));
     at = feed + 1;
     return text;

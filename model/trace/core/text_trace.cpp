@@ -65,7 +65,8 @@ bool TextTrace::is_label(std::string_view word) {
 }
 
 void TextTrace::bad(std::string what) const {
-  std::replace_if(what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, '?');
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, '?');
   throw UserError("trace '" + name_ + "':" + std::to_string(line_) + ": " + what);
 }
 
@@ -101,9 +102,8 @@ void TextTrace::find_masters() {
   while (lines.fill()) {
     const char *counted = lines.at, *at = lines.at;
     const char* mark;
-    while (at < lines.end &&
-           (mark = static_cast<const char*>(
-                std::memchr(at, '#', static_cast<std::size_t>(lines.end - at))))) {
+    while (at < lines.end && (mark = static_cast<const char*>(std::memchr(
+                                  at, '#', static_cast<std::size_t>(lines.end - at))))) {
       const auto* before = static_cast<const char*>(
           ::memrchr(lines.at, '\n', static_cast<std::size_t>(mark - lines.at)));
       const char* const begin = before ? before + 1 : lines.at;
@@ -150,8 +150,8 @@ std::uint64_t TextTrace::number(std::string_view word, const char* what, std::ui
   const auto [end, error] =
       std::from_chars(digits.data(), digits.data() + digits.size(), v, hex ? 16 : 10);
   if (error != std::errc{} || end != digits.data() + digits.size() || v < least || v > most)
-    bad(std::string(what) + " '" + std::string(word.substr(0, 40)) + "' is not allowed; allowed: " +
-        std::to_string(least) + " to " + std::to_string(most));
+    bad(std::string(what) + " '" + std::string(word.substr(0, 40)) +
+        "' is not allowed; allowed: " + std::to_string(least) + " to " + std::to_string(most));
   return v;
 }
 
@@ -159,8 +159,7 @@ std::uint64_t TextTrace::number(std::string_view word, const char* what, std::ui
 bool TextTrace::read_line(std::string_view line, Line& l, unsigned& stream) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line_ == 1) {
-    if (line != kHeader)
-      bad("its version is not known; allowed: '" + std::string(kHeader) + "'");
+    if (line != kHeader) bad("its version is not known; allowed: '" + std::string(kHeader) + "'");
     return false;
   }
   const Words words = split(line);
@@ -176,7 +175,8 @@ bool TextTrace::read_line(std::string_view line, Line& l, unsigned& stream) {
 void TextTrace::declare(const Words& words) {
   const auto is_word = [](std::string_view w) { return is_label(w) || is_culprit_name(w); };
   if (words.size() != 6 || words[3] != "window" || !is_word(words[5]))
-    bad("a master is declared as '# master ID window W label', the label of letters, digits, _ and -");
+    bad("a master is declared as '# master ID window W label', the label of letters, digits, _ and "
+        "-");
   const std::uint64_t id = number(words[2], "master", 0, kMaxId);
   const auto window = static_cast<unsigned>(number(words[4], "window", 1, kMaxReads));
   if (stream_of_[id] != kNoStream) bad("this master is declared twice");
@@ -190,8 +190,7 @@ void TextTrace::declare(const Words& words) {
   ids_.push_back(id);
   stream_of_[id] = static_cast<std::uint8_t>(n);
   info_.streams.emplace_back();
-  info_.masters.push_back(
-      {port(n), std::string(words[5]), n, window, kWrites, false});
+  info_.masters.push_back({port(n), std::string(words[5]), n, window, kWrites, false});
   streams_.emplace_back();
   streams_.back().declared = line_;
 }

@@ -39,8 +39,8 @@ class TraceWriter {
 /// file. Every defect is a UserError of one line.
 class TraceFile : public RecordSource {
  public:
-  /// `name` is for messages. The constructor checks the description and the checksums of all blocks;
-  /// next() checks each record.
+  /// `name` is for messages. The constructor checks the description and the checksums of all
+  /// blocks; next() checks each record.
   TraceFile(std::string name, std::unique_ptr<ByteSource> bytes);
   TraceFile(std::string name, std::string bytes);
   /// True if the bytes begin as a trace does, of whatever version.
