@@ -293,7 +293,7 @@ TEST_F(CliTest, CompletionOffersWhatIsDeclared) {
   EXPECT_EQ(offer("fovea run -s run.fr"), "run.frames=\n");
   EXPECT_EQ(offer("fovea replay -s ddr.tRF"), "ddr.tRFC=\n");
   EXPECT_EQ(offer("fovea completion b"), "bash\n");
-  EXPECT_EQ(offer("fovea trace c"), "convert\n");
+  EXPECT_EQ(offer("fovea trace conv"), "convert\n");
   EXPECT_EQ(offer("fovea trace convert --wr"), "--wrap\n");
   EXPECT_EQ(offer("fovea trace convert --to dramsim"), "dramsim3\n");
   EXPECT_EQ(offer("fovea run " + experiment.substr(0, experiment.size() - 3)), experiment + "\n");
