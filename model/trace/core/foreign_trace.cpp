@@ -130,7 +130,7 @@ void ForeignTrace::read_direction(std::string_view word, std::string_view reads,
   if (request_.write || is_one_of(word, reads)) return;
   const auto list = [](std::string_view words) {
     std::string out;
-    for (const auto w : split(words)) out += (out.empty() ? "" : ", ") + std::string(w);
+    for (const auto w : split(words)) out.append(out.empty() ? "" : ", ").append(w);
     return out;
   };
   bad("direction '" + std::string(word.substr(0, 40)) +
