@@ -28,6 +28,7 @@
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/row_files.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/trace_command.h"
 
 namespace fovea::app {
 namespace {
@@ -325,6 +326,7 @@ struct Options {
   RunOptions run;
   ReplayOptions replay;
   ExecOptions exec;
+  TraceOptions trace;
   std::string pattern, shell;
   bool markdown = false, of_replay = false;
 };
@@ -378,6 +380,8 @@ void add_replay_command(CLI::App& app, ReplayOptions& replay) {
       ->type_name("DIR")
       ->default_str("out/TRACE");
   c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
+  c->add_flag("--wrap", replay.wrap,
+              "Take addresses beyond the memory (ddr.part) modulo its size");
 }
 
 void add_other_commands(CLI::App& app, Options& options) {
@@ -429,6 +433,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "replay") return command_replay(o.replay, args, context);
   if (name == "run") return command_run(o.run, args, context);
   if (name == "exec") return command_exec(o.exec, args, context);
+  if (name == "trace") return command_trace(*c, o.trace, context);
   if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
   if (name == "man")
@@ -456,6 +461,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   add_run_command(app, options.run);
   add_replay_command(app, options.replay);
   add_exec_command(app, options.exec);
+  add_trace_command(app, options.trace);
   add_other_commands(app, options);
   if (!own.empty() && own[0] == "exec") options.exec.arguments = take_program_arguments(own);
 

@@ -145,10 +145,18 @@ std::string bash_completion(const CLI::App& app,
   std::string commands, cases, values;
   for (const auto* c : commands_of(app)) {
     commands += (commands.empty() ? "" : " ") + c->get_name();
-    std::string names;
-    for (const auto* o : options_of(*c, false))
-      for (const auto& name : names_of(*o)) names += (names.empty() ? "" : " ") + name;
-    std::string words;
+    std::string names, words;
+    const auto add_names = [&names](const CLI::App& of) {
+      for (const auto* o : options_of(of, false))
+        for (const auto& name : names_of(*o))
+          if ((" " + names + " ").find(" " + name + " ") == std::string::npos)
+            names += (names.empty() ? "" : " ") + name;
+    };
+    add_names(*c);
+    for (const auto* part : commands_of(*c)) {
+      words += (words.empty() ? "" : " ") + part->get_name();
+      add_names(*part);
+    }
     for (const auto* o : options_of(*c, true))
       if (const auto list = words_of(*o); !list.empty())
         words = fmt::format("{}", fmt::join(list, " "));
@@ -156,7 +164,10 @@ std::string bash_completion(const CLI::App& app,
     if (const auto k = keys.find(c->get_name()); k != keys.end())
       cases += fmt::format(" keys='{}'", fmt::join(k->second, " "));
     cases += " ;;\n";
-    for (const auto* o : options_of(*c, false))
+    auto options = options_of(*c, false);
+    for (const auto* part : commands_of(*c))
+      for (const auto* o : options_of(*part, false)) options.push_back(o);
+    for (const auto* o : options)
       if (const auto list = words_of(*o); !list.empty())
         for (const auto& name : names_of(*o))
           values += fmt::format(
@@ -198,15 +209,19 @@ std::string man_page(const CLI::App& app, const std::string& version) {
   std::string out = fmt::format(".TH FOVEA 1 \"\" \"fovea {}\" \"User Commands\"\n", roff(version));
   out += fmt::format(".SH NAME\nfovea \\- {}\n", roff(app.get_description()));
   out += ".SH SYNOPSIS\n.B fovea\nCOMMAND [OPTIONS]\n.SH COMMANDS\n";
-  for (const auto* c : commands_of(app)) {
-    out += fmt::format(".SS fovea {}", roff(c->get_name()));
-    for (const auto* o : options_of(*c, true)) out += " " + roff(left_text(*o, true));
-    out += "\n" + roff(c->get_description()) + ".\n";
+  const auto add = [&out](const std::string& name, const CLI::App& c) {
+    out += fmt::format(".SS fovea {}", roff(name));
+    for (const auto* o : options_of(c, true)) out += " " + roff(left_text(*o, true));
+    out += "\n" + roff(c.get_description()) + ".\n";
     for (const bool positional : {true, false})
-      for (const auto* o : options_of(*c, positional))
+      for (const auto* o : options_of(c, positional))
         out += fmt::format(".TP\n.B {}\n{}\n", roff(left_text(*o, positional)),
                            roff(description_of(*o)));
-    if (!c->get_footer().empty()) out += ".PP\n" + roff(c->get_footer()) + "\n";
+    if (!c.get_footer().empty()) out += ".PP\n" + roff(c.get_footer()) + "\n";
+  };
+  for (const auto* c : commands_of(app)) {
+    add(c->get_name(), *c);
+    for (const auto* part : commands_of(*c)) add(c->get_name() + " " + part->get_name(), *part);
   }
   return out + ".SH EXIT STATUS\n" + roff(app.get_footer()) + "\n";
 }

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+
 #include <ostream>
 
-#include "model/trace/core/text_trace.h"
-#include "model/trace/core/trace_file.h"
+#include "model/trace/core/bounds.h"
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/figures.h"
+#include "sw/fovea/open_trace.h"
 #include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
@@ -20,34 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Wall = std::chrono::steady_clock;
-
-constexpr std::size_t kMaxTraceBytes = std::size_t{2} << 30;
-
-struct OpenTrace {
-  std::unique_ptr<trace::RecordSource> source;
-  const trace::TraceInfo* info = nullptr;
-};
-
-OpenTrace open_trace(const std::string& file) {
-  std::string bytes = read_file(file, kMaxTraceBytes);
-  const std::string name = one_line(file);
-  OpenTrace out;
-  if (trace::TraceFile::recognises(bytes)) {
-    auto t = std::make_unique<trace::TraceFile>(name, std::move(bytes));
-    out.info = &t->info();
-    out.source = std::move(t);
-  } else if (trace::TextTrace::recognises(bytes)) {
-    auto t = std::make_unique<trace::TextTrace>(name, bytes);
-    out.info = &t->info();
-    out.source = std::move(t);
-  } else {
-    throw UserError(fmt::format(
-        "'{}' is not a bus trace; allowed: a file of 'fovea run --bus-trace', or text that begins "
-        "with '{}'",
-        name, trace::TextTrace::kHeader));
-  }
-  return out;
-}
 
 /// What of the command line does nothing because there is no crossbar.
 std::vector<std::string> without_crossbar(const std::vector<std::string>& sets) {
@@ -79,7 +52,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
                    const CliContext& context) {
   const auto started = Wall::now();
   const WarningScope warnings(context.err, false, true);
-  OpenTrace trace = open_trace(options.trace);
+  const OpenTrace trace = open_own_trace(options.trace);
   ReplayParams params;
   ParamSet set;
   params.declare(set);
@@ -108,8 +81,10 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
              "replay");
   dir.write("config.json", config_json(set, experiment, provenance_of(set, {{"trace", options.trace}})));
 
-  ReplayPath path(one_line(options.trace), *trace.info, *trace.source, params,
-                  options.memory_only);
+  trace::BoundedSource wrapped(one_line(options.trace), *trace.source,
+                               {params.ddr.size_bytes(), true});
+  trace::RecordSource& source = options.wrap ? wrapped : *trace.source;
+  ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
   // Slices only let a signal in.
   const Picoseconds slice = 10 * kPsPerMs;
   bool complete = true;
@@ -127,7 +102,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   const std::vector<StatRow> host = {
       wall_time(wall, "the whole replay"),
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
-       "requests played per host second"}};
+       "requests played per host second"},
+      peak_rss()};
   dir.write("host.json", host_json(host, args, version_text()));
   dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));

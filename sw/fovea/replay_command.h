@@ -13,6 +13,7 @@ struct ReplayOptions {
   std::string out_dir;
   bool out_given = false;
   bool memory_only = false;
+  bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
 };
 
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,

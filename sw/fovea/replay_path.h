@@ -50,7 +50,7 @@ class ReplayPath final : private memsys::MemoryHost {
   /// Who looks on at the crossbar.
   void observe(MemObserver* observer) { memory_.crossbar().observe(observer); }
   const mem::DdrStats& memory() const { return ddr().stats; }
-  /// Called with each record as it goes out; empty in production.
+  /// Called with each record as it goes out; empty in a plain replay.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;
 
  private:

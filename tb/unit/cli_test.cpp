@@ -251,7 +251,8 @@ TEST_F(CliTest, VersionNamesTheCommit) {
 TEST_F(CliTest, HelpFitsEightyColumnsAndShowsDefaults) {
   for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
            {"--help"}, {"run", "--help"}, {"exec", "--help"}, {"replay", "--help"},
-           {"params", "--help"}, {"completion", "--help"}}) {
+           {"params", "--help"}, {"completion", "--help"},
+           {"trace", "--help"}, {"trace", "convert", "--help"}, {"trace", "info", "--help"}}) {
     ASSERT_EQ(cli(args), 0) << args[0] << err.str();
     std::istringstream lines(out.str());
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << args[0] << ": " << line;
@@ -292,6 +293,9 @@ TEST_F(CliTest, CompletionOffersWhatIsDeclared) {
   EXPECT_EQ(offer("fovea run -s run.fr"), "run.frames=\n");
   EXPECT_EQ(offer("fovea replay -s ddr.tRF"), "ddr.tRFC=\n");
   EXPECT_EQ(offer("fovea completion b"), "bash\n");
+  EXPECT_EQ(offer("fovea trace conv"), "convert\n");
+  EXPECT_EQ(offer("fovea trace convert --wr"), "--wrap\n");
+  EXPECT_EQ(offer("fovea trace convert --to dramsim"), "dramsim3\n");
   EXPECT_EQ(offer("fovea run " + experiment.substr(0, experiment.size() - 3)), experiment + "\n");
   EXPECT_EQ(cli({"completion", "tcsh"}), 2);
 }

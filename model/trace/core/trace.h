@@ -49,7 +49,7 @@ struct Record {
 /// Furthest reference to an earlier record.
 inline constexpr std::uint32_t kMaxBack = 4095;
 /// Deepest window of a master; as many requests as a port of the crossbar queues.
-inline constexpr unsigned kMaxWindow = 32;
+inline constexpr unsigned kMaxWindow = 64;
 
 /// One agent whose records are in program order: the core with both of its ports, a video port.
 struct StreamInfo {

@@ -119,24 +119,30 @@ void TraceFile::bad(const std::string& what) const {
 }
 
 TraceFile::TraceFile(std::string name, std::string bytes)
+    : TraceFile(std::move(name), std::make_unique<MemoryBytes>(std::move(bytes))) {}
+
+TraceFile::TraceFile(std::string name, std::unique_ptr<ByteSource> bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
-  const std::string_view all = bytes_;
-  if (!recognises(all)) bad("it is not a bus trace");
+  const std::uint64_t size = bytes_->size();
+  std::string begin(kMagic.size() + kVersions[0].size(), '\0');
+  begin.resize(bytes_->read(0, begin.data(), begin.size()));
+  if (!recognises(begin)) bad("it is not a bus trace");
   for (unsigned v = 0; v < std::size(kVersions); ++v)
-    if (all.substr(kMagic.size()).starts_with(kVersions[v])) version_ = v + 1;
+    if (begin.substr(kMagic.size()) == kVersions[v]) version_ = v + 1;
   if (version_ == 0) bad("its version is not known; allowed: versions 1 to 3");
-  std::size_t at = kMagic.size() + kVersions[0].size();
+  std::uint64_t at = begin.size();
   bool ended = false, informed = false;
-  while (at < all.size()) {
+  while (at < size) {
     const std::string where = " at byte " + std::to_string(at);
     if (ended) bad("something follows its end" + where);
-    if (all.size() - at < kHeadBytes) bad("it is cut off" + where);
-    const char* head = all.data() + at;
+    if (size - at < kHeadBytes) bad("it is cut off" + where);
+    char head[kHeadBytes];
+    read(at, head, kHeadBytes);
     const auto kind = static_cast<std::uint8_t>(head[0]);
     const auto stream = static_cast<std::uint8_t>(head[1]);
     Block b{at + kHeadBytes, get32(head + 12), get32(head + 8), get32(head + 4), get32(head + 16)};
-    if (all.size() - b.offset < b.packed) bad("it is cut off" + where);
-    if (checksum(all.data() + b.offset, b.packed, checksum(head, kHeadBytes - 4)) != b.crc)
+    if (size - b.offset < b.packed) bad("it is cut off" + where);
+    if (checksum_of(b, checksum(head, kHeadBytes - 4)) != b.crc)
       bad("it is corrupted: wrong checksum" + where);
     const bool size_ok = kind == kRecords
                              ? b.count > 0 && b.count <= kBlockRecords &&
@@ -172,11 +178,28 @@ TraceFile::TraceFile(std::string name, std::string bytes)
   if (!ended) bad("it is cut off: its end is missing");
 }
 
+/// Reads what the file was seen to hold.
+void TraceFile::read(std::uint64_t offset, char* to, std::size_t bytes) const {
+  if (bytes_->read(offset, to, bytes) != bytes) bad("it became shorter while it was read");
+}
+
+std::uint32_t TraceFile::checksum_of(const Block& b, std::uint32_t from) const {
+  std::array<char, 64 << 10> piece;
+  for (std::uint32_t done = 0; done < b.packed;) {
+    const std::size_t n = std::min<std::size_t>(piece.size(), b.packed - done);
+    read(b.offset + done, piece.data(), n);
+    from = checksum(piece.data(), n, from);
+    done += static_cast<std::uint32_t>(n);
+  }
+  return from;
+}
+
 std::vector<std::uint8_t> TraceFile::unpack(const Block& b) const {
+  std::string packed(b.packed, '\0');
+  read(b.offset, packed.data(), packed.size());
   std::vector<std::uint8_t> raw(b.raw + 1u);  // never empty
   uLongf size = b.raw;
-  const int result = ::uncompress(raw.data(), &size,
-                                  reinterpret_cast<const Bytef*>(bytes_.data() + b.offset),
+  const int result = ::uncompress(raw.data(), &size, reinterpret_cast<const Bytef*>(packed.data()),
                                   static_cast<uLong>(b.packed));
   if (result != Z_OK || size != b.raw) bad("it is corrupted: a block that cannot be unpacked");
   raw.resize(b.raw);

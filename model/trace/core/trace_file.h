@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/trace/core/byte_source.h"
 #include "model/trace/core/trace.h"
 #include "model/trace/core/trace_code.h"
 
@@ -33,15 +35,19 @@ class TraceWriter {
   std::uint64_t records_ = 0;
 };
 
-/// A trace read from memory. Every defect is a UserError of one line.
+/// Reads a trace file, one block of each stream at a time, so that memory does not grow with the
+/// file. Every defect is a UserError of one line.
 class TraceFile : public RecordSource {
  public:
-  /// `name` is for messages. Checks the whole file, and its records as they
-  /// are read.
+  /// `name` is for messages. The constructor checks the description and the checksums of all
+  /// blocks; next() checks each record.
+  TraceFile(std::string name, std::unique_ptr<ByteSource> bytes);
   TraceFile(std::string name, std::string bytes);
   /// True if the bytes begin as a trace does, of whatever version.
   static bool recognises(std::string_view bytes);
   const TraceInfo& info() const { return info_; }
+  /// Version of the format, 1 to 3.
+  unsigned version() const { return version_; }
   std::uint64_t records() const { return records_; }
   bool next(unsigned stream, Record& record) override;
 
@@ -60,13 +66,17 @@ class TraceFile : public RecordSource {
     CodeState state;
   };
   [[noreturn]] void bad(const std::string& what) const;
+  std::uint32_t checksum_of(const Block& b, std::uint32_t from) const;
   std::vector<std::uint8_t> unpack(const Block& b) const;
   void read_info(std::string_view text);
   void info_line(const std::string& key, std::string_view rest);
   void check_info();
   void open_block(Stream& s);
 
-  std::string name_, bytes_;
+  void read(std::uint64_t offset, char* to, std::size_t bytes) const;
+
+  std::string name_;
+  std::unique_ptr<ByteSource> bytes_;
   TraceInfo info_;
   std::vector<Stream> streams_;
   std::array<unsigned, kMasterCount> stream_of_ = [] {
