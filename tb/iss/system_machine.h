@@ -73,7 +73,7 @@ class SystemMachine {
   struct Params : CpuParams {
     Params() {
       ParamSet set;
-      declare(set);
+      set.add(*this);
     }
   } params;
   SystemPort port{0, kBytes};
