@@ -11,20 +11,24 @@ namespace fovea {
 template <class T>
 class Census {
  public:
-  static const std::vector<T*>& alive() { return list(); }
+  static std::vector<T*> alive() {
+    std::vector<T*> out;
+    for (Census* c : list()) out.push_back(static_cast<T*>(c));
+    return out;
+  }
 
  protected:
-  Census() { list().push_back(static_cast<T*>(this)); }
+  Census() { list().push_back(this); }  // not yet a T
   ~Census() {
     auto& all = list();
-    all.erase(std::find(all.begin(), all.end(), static_cast<T*>(this)));
+    all.erase(std::find(all.begin(), all.end(), this));
   }
   Census(const Census&) = delete;
   Census& operator=(const Census&) = delete;
 
  private:
-  static std::vector<T*>& list() {
-    static auto* const all = new std::vector<T*>;  // outlives objects with static storage
+  static std::vector<Census*>& list() {
+    static auto* const all = new std::vector<Census*>;  // outlives objects with static storage
     return *all;
   }
 };

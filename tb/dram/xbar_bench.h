@@ -59,7 +59,6 @@ class XbarBench {
     explicit Params(const std::vector<std::pair<std::string, std::string>>& list) {
       ParamSet set;
       set.add(*this);
-      for (auto& p : ports) set.add(*p);
       for (const auto& [key, value] : list) set.set(key, value);
     }
   };
