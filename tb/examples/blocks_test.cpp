@@ -99,10 +99,10 @@ TEST(Example, PeripheralIsOneRow) {
 
   // The interrupt arrives at the row's input: 42 is bit 10 of EINT1, and of IRQ1, which is 0 there while
   // the enabled interrupt is pending.
-  chip.aintc.regs.write(0x1C, 4, 1u << (kIrq - 32));
+  chip.aintc.regs.regs.write(0x1C, 4, 1u << (kIrq - 32));
   const auto pending = [&chip] {
     std::uint32_t irq1 = 0;
-    chip.aintc.regs.read(0x0C, 4, irq1);
+    chip.aintc.regs.regs.read(0x0C, 4, irq1);
     return (irq1 >> (kIrq - 32) & 1u) == 0;
   };
   EXPECT_FALSE(pending());
