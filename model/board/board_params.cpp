@@ -27,9 +27,6 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                           [this] { return ends_by_frames(run.until()); });
   run.start_limit.matters_only("run.until = frames", {&run.until},
                                [this] { return run.until() == "frames" || run.until() == "[frames]"; });
-  soc.ddr.ti_open_row.matters_only("ddr.scheduler = ti or closed_page", {&soc.ddr.scheduler}, [this] {
-    return soc.ddr.scheduler.is("ti") || soc.ddr.scheduler.is("closed_page");
-  });
   // Which lines and samples the display uses is the firmware's choice; only that of this project is
   // known to follow video.standard.
   const auto pal = [this] { return !firmware.elf().empty() || video.standard.is("pal"); };

@@ -220,7 +220,7 @@ bool is_path_key(const ParamBase& param) {
 void warn_without_effect(const ParamSet& params, const Experiment& experiment) {
   for (const ParamBase* p : params.all()) {
     const int rank = experiment.rank(p->key());
-    if (rank < 0) continue;
+    if (rank < 0 || experiment.origin(p->key()).preset()) continue;
     for (const auto& effect : p->effects()) {
       if (effect.effective()) continue;
       std::string because;

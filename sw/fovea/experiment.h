@@ -16,6 +16,8 @@ struct ValueOrigin {
   Kind kind = Kind::kDefault;
   std::string file;   ///< as the user named it; empty unless kFile
   unsigned line = 0;  ///< from 1 on; 0 unless kFile, or if the file has no lines
+  /// True if the value comes from a file without lines, such as a trace or a calibration.
+  bool preset() const { return kind == Kind::kFile && line == 0; }
   /// "default", "command line", "file:line" or "file".
   std::string text() const;
 };
@@ -65,6 +67,7 @@ class Experiment {
 
 /// Warns about each key that was set although another one makes it ineffective. No warning is given
 /// for a key from a file that became ineffective by a later choice (`-s camera.kind=chart`).
+/// Nor is one given for a key that a trace or a calibration sets, because the user did not choose it.
 void warn_without_effect(const ParamSet& params, const Experiment& experiment);
 
 /// True for text parameters that name a file (the key ends in `.file`, `.elf` or `.calibration`). A

@@ -73,6 +73,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
     said = without_crossbar(options.sets);
   else
     said = follow_clocks(params, *trace.info, experiment);
+  warn_without_effect(set, experiment);
   params.check();
   for (const std::string& line : said) context.err << "fovea: " << one_line(line) << "\n";
 

@@ -73,6 +73,7 @@ expect text 0 'ended by uart:ready after' -- until_ quit 'uart:ready'
 expect text_list 0 'ended by uart:ready' -- until_ quit '[uart:never, "uart:ready", time:100ms]'
 expect escape 0 'ended by uart:y' -- until_ quit 'uart:y\x0d\n'
 expect symbol 0 'ended by pc:quit after .* at pc 0x[0-9a-f]+ \(quit\)' -- until_ quit pc:quit
+expect second 0 'ended by pc:quit after .* at pc 0x[0-9a-f]+ \(quit\)' -- until_ quit '[pc:fail, pc:quit]'
 expect offset 0 'ended by pc:quit\+4 after .* \(quit\+0x4\)' -- until_ quit pc:quit+4
 expect five 3 'the program ended with status 5' -- until_ five exit
 expect abort 3 'data abort' 'read 4 bytes at 0x50000000' '\(abort' -- until_ abort exit

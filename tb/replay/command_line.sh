@@ -78,6 +78,16 @@ cmp "$out/by_clock.json" "$out/replay/stats.json" || fail 'clocks.preset=297/270
 expect deviates 0 'fovea: warning: bus.clock is 121.5 MHz' -- replay "$trace" -s ddr.clock=270MHz -s bus.clock=121.5MHz
 cmp -s "$out/by_clock.json" "$out/replay/stats.json" && fail 'bus.clock by hand changes nothing'
 grep -q '"ddr.tRP": {.*"origin": ".*small.trace"' "$out/replay/config.json" || fail 'config.json: origin'
+# A key that cannot act is warned of; what the trace sets is not, as nobody chose it for this replay.
+idle="warning \(configuration\): 'ddr.ti_open_row' is set \(command line\) but has no effect with"
+idle+=" ddr.scheduler = fcfs: it needs ddr.scheduler = ti or closed_page"
+expect idle 0 "$idle" -- replay "$trace" -s ddr.scheduler=fcfs -s ddr.ti_open_row=ready
+grep -q "ddr.ti_open_row' is set" "$out/replay/stats.json" || fail 'stats.json: no warning of a key that cannot act'
+text=$(replay "$trace" -s ddr.scheduler=closed_page -s ddr.ti_open_row=ready 2>&1)
+grep -q 'no effect' <<<"$text" && fail "a key that acts is said to have no effect: $text"
+expect record_fcfs 0 -- run -o "$out/run" -s ddr.scheduler=fcfs --bus-trace "$out/fcfs.trace"
+text=$(replay "$out/fcfs.trace" 2>&1)
+grep -q 'no effect' <<<"$text" && fail "a key of the trace is said to have no effect: $text"
 
 printf '# dramtrace 1\n# master 5 window 4 left\n# master 6 window 2 right\n0 5 R 0x0 256\n0 6 W 0x40000 64\n' >"$out/good.txt"
 expect text 0 'replay.time' -- replay "$out/good.txt"

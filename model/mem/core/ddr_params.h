@@ -81,7 +81,10 @@ struct DdrParams : ParamGroup {
                         "\"the ACTV command opens a row\" (SPRUH82C 14.2.3.3), a sister chip; the choice "
                         "among open rows is not public",
                         {"activated", "ready", "a controller may know which rows can be read already"}};
-  DdrParams() : ParamGroup("ddr") {}
+  DdrParams() : ParamGroup("ddr") {
+    ti_open_row.matters_only("ddr.scheduler = ti or closed_page", {&scheduler},
+                             [this] { return scheduler.is("ti") || scheduler.is("closed_page"); });
+  }
 
   std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index() % 3; }
   bool mobile() const { return part.index() >= 3; }
