@@ -460,10 +460,11 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       "partial result.");
   add_run_command(app, options.run);
   add_replay_command(app, options.replay);
-  add_exec_command(app, options.exec);
+  const CLI::App* const exec = add_exec_command(app, options.exec);
   add_trace_command(app, options.trace);
   add_other_commands(app, options);
-  if (!own.empty() && own[0] == "exec") options.exec.arguments = take_program_arguments(own);
+  if (!own.empty() && own[0] == exec->get_name())
+    options.exec.arguments = take_program_arguments(*exec, own);
 
   try {
     // CLI11's own message would be that a command is missing.

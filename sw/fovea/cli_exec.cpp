@@ -10,24 +10,16 @@
 #include <optional>
 #include <ostream>
 
+#include "sw/fovea/console.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/gdb_server.h"
-#include "sw/fovea/console.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/progress.h"
-#include "sw/fovea/warnings.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/warnings.h"
 
 namespace fovea::app {
 namespace {
-
-constexpr std::array<std::string_view, 13> kWithValue = {
-    "-s",      "--set",  "-o",    "--out",           "--load",
-    "--entry", "--root", "--gdb", "--log-registers", "--log-registers-kept",
-    "--max-time", "--max-instructions", "--symbols"};
-constexpr std::array<std::string_view, 10> kFlags = {
-    "--thumb", "--fast-memory", "--caches", "--strict", "--board", "--console",
-    "--quiet", "-q", "--help", "-h"};
 
 constexpr const char* kMemoryHelp =
     "Memory: RAM of the SDRAM's size (ddr.part), from the multiple of that size at or below the "
@@ -152,15 +144,19 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   return c;
 }
 
-std::vector<std::string> take_program_arguments(std::vector<std::string>& args) {
-  const auto among = [](const auto& list, std::string_view a) {
-    return std::find(list.begin(), list.end(), a) != list.end();
+std::vector<std::string> take_program_arguments(const CLI::App& exec,
+                                                std::vector<std::string>& args) {
+  // CLI11's prefix_command() is not enough: version 2.1 refuses the '--' of `exec PROGRAM -- ARGS`
+  // and reverses the arguments behind it.
+  const auto option_of = [&](const std::string& a) -> const CLI::Option* {
+    if (!a.starts_with('-') || a == "-") return nullptr;
+    const bool with_value = a.starts_with("--") && a.find('=') != a.npos;
+    return exec.get_option_no_throw(with_value ? a.substr(0, a.find('=')) : a);
   };
   std::vector<std::string> own, guest;
   bool program = false, value = false, all = false;
   for (std::size_t i = 0; i < args.size(); ++i) {
     const std::string& a = args[i];
-    const std::string_view name = std::string_view(a).substr(0, a.find('='));
     if (i == 0 || value) {  // the command, or the value of an option
       own.push_back(a);
       value = false;
@@ -168,11 +164,9 @@ std::vector<std::string> take_program_arguments(std::vector<std::string>& args) 
       guest.push_back(a);
     } else if (a == "--" && program) {
       all = true;
-    } else if (among(kWithValue, a)) {
+    } else if (const CLI::Option* option = option_of(a)) {
       own.push_back(a);
-      value = true;
-    } else if (among(kFlags, a) || (a.starts_with("--") && among(kWithValue, name))) {
-      own.push_back(a);
+      value = option->get_items_expected_max() > 0 && a.find('=') == a.npos;
     } else if (!program) {
       own.push_back(a);
       program = !a.starts_with('-');
@@ -201,8 +195,8 @@ std::string core_table(std::span<const StatRow> stats, Frequency core_clock) {
                        static_cast<double>(cycles) / core_clock.hertz(), core_clock.hertz() * 1e-6);
   constexpr std::string_view kStall = "cpu.stall.";
   for (const auto& row : stats) {
-    const bool cause = row.name.starts_with(kStall) &&
-                       row.name.find('.', kStall.size()) == std::string::npos;
+    const bool cause =
+        row.name.starts_with(kStall) && row.name.find('.', kStall.size()) == std::string::npos;
     const bool share = row.name == "cpu.issue" || row.name == "cpu.idle" || cause;
     if (!share || !std::holds_alternative<std::uint64_t>(row.value)) continue;
     const auto n = std::get<std::uint64_t>(row.value);
@@ -287,8 +281,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                             .limits = limits,
                             .symbols = symbols ? &*symbols : nullptr,
                             .progress = &meter};
-  const ExecResult result = o.board ? run_on_board(*board, params, o, request, context)
-                                    : executor->run(request);
+  const ExecResult result =
+      o.board ? run_on_board(*board, params, o, request, context) : executor->run(request);
   context.out.flush();
   const bool lost = !context.out;
   if (!o.quiet) {

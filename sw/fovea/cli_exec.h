@@ -32,8 +32,9 @@ void check_register_log(const RegisterLogRequest& request, const std::string& gd
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);
 
 /// Removes the program's own arguments from a command line that begins with `exec`, and returns
-/// them: all that follow the program and are not options of this command, and all after `--`.
-std::vector<std::string> take_program_arguments(std::vector<std::string>& args);
+/// them: all that follow the program and are not options of the subcommand, and all after `--`.
+std::vector<std::string> take_program_arguments(const CLI::App& exec,
+                                                std::vector<std::string>& args);
 
 int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
                  const CliContext& context);

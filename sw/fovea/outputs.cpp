@@ -4,30 +4,75 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
-#include "sw/fovea/warnings.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/warnings.h"
 
 namespace fovea::app {
 namespace {
 
-/// A JSON string; bytes that are not UTF-8 become the replacement character.
-std::string js(std::string_view text) {
-  return nlohmann::json(std::string(text))
-      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+using Json = nlohmann::ordered_json;
+
+/// The text of a value without line breaks, e.g. `{"value": 1, "unit": "B"}`. Bytes that are not
+/// UTF-8 become the replacement character.
+std::string one_line_json(const Json& value) {
+  const std::string text = value.dump(0, ' ', false, Json::error_handler_t::replace);
+  // Line breaks inside strings are escaped, so that the others separate the elements.
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\n') {
+      out += text[i];
+      continue;
+    }
+    const bool after_bracket = out.back() == '{' || out.back() == '[';
+    const bool before_bracket = text[i + 1] == '}' || text[i + 1] == ']';
+    if (!after_bracket && !before_bracket) out += ' ';
+  }
+  return out;
 }
 
-void append_rows(std::string& out, std::vector<StatRow> rows) {
+/// The text of a file: an object with one member per line. A member that is listed in `nested` has
+/// a line for each of its own elements.
+std::string file_json(const Json& members, const std::set<std::string>& nested = {}) {
+  std::string out = "{";
+  const char* separator = "\n";
+  for (const auto& [name, value] : members.items()) {
+    out += separator + ("  " + Json(name).dump()) + ": ";
+    separator = ",\n";
+    if (!nested.contains(name) || value.empty()) {
+      out += one_line_json(value);
+      continue;
+    }
+    out += value.is_array() ? "[" : "{";
+    const char* inner = "\n";
+    for (const auto& [key, element] : value.items()) {
+      out += std::string(inner) + "    ";
+      if (value.is_object()) out += one_line_json(key) + ": ";
+      out += one_line_json(element);
+      inner = ",\n";
+    }
+    out += value.is_array() ? "\n  ]" : "\n  }";
+  }
+  return out + "\n}\n";
+}
+
+/// A number; JSON has none for infinity and "not a number", which become null.
+Json number_json(const StatBase::Value& value) {
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
+  const double number = std::get<double>(value);
+  return number == 0 ? 0.0 : number;  // avoids "-0.0"
+}
+
+void append_rows(Json& out, std::vector<StatRow> rows) {
   std::sort(rows.begin(), rows.end(),
             [](const StatRow& a, const StatRow& b) { return a.name < b.name; });
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const StatRow& r = rows[i];
-    FOVEA_CHECK(i == 0 || rows[i - 1].name != r.name, "two statistics are called " + r.name);
-    out += fmt::format(",\n  {}: {{\"value\": {}, \"unit\": {}, \"description\": {}}}", js(r.name),
-                       number_text(r.value), js(r.unit), js(r.description));
+  for (const StatRow& r : rows) {
+    FOVEA_CHECK(!out.contains(r.name), "two statistics are called " + r.name);
+    out[r.name] = {
+        {"value", number_json(r.value)}, {"unit", r.unit}, {"description", r.description}};
   }
 }
 
@@ -39,10 +84,9 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
-std::string belief_json(const Belief& belief) {
-  if (belief.empty()) return "null";
-  return fmt::format("{{\"low\": {}, \"high\": {}, \"reason\": {}}}", js(belief.low),
-                     js(belief.high), js(belief.reason));
+Json belief_json(const Belief& belief) {
+  if (belief.empty()) return nullptr;
+  return {{"low", belief.low}, {"high", belief.high}, {"reason", belief.reason}};
 }
 
 std::string cell(const std::optional<Picoseconds>& time) { return time ? ns_text(*time) : ""; }
@@ -60,21 +104,9 @@ const StatRow* find(std::span<const StatRow> rows, std::string_view name) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-std::string number_text(double value) {
-  if (!std::isfinite(value)) return "null";
-  if (value == 0) value = 0;  // avoids "-0.0"
-  std::array<char, 40> buffer{};
-  const auto [end, ec] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  FOVEA_CHECK(ec == std::errc(), "a double fits 40 characters");
-  std::string text(buffer.data(), end);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
-}
+std::string number_text(double value) { return number_json(value).dump(); }
 
-std::string number_text(const StatBase::Value& value) {
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
-  return number_text(std::get<double>(value));
-}
+std::string number_text(const StatBase::Value& value) { return number_json(value).dump(); }
 
 std::string ns_text(Picoseconds ps) {
   return fmt::format("{}.{:03}", ps / kPsPerNs, ps % kPsPerNs);
@@ -82,61 +114,57 @@ std::string ns_text(Picoseconds ps) {
 
 std::string config_json(const ParamSet& params, const Experiment& experiment,
                         const Provenance& provenance) {
-  std::string out = fmt::format(
-      "{{\n  \"format\": {},\n  \"version\": {},\n  \"commit\": {},\n  \"modified\": {},\n"
-      "  \"experiment\": {},\n  \"sha256\": {{",
-      js(kRunFormat), js(provenance.version), js(provenance.commit), provenance.modified,
-      js(experiment.name()));
+  Json hashes = Json::object();
   for (const auto& [name, hash] : provenance.inputs)
-    out += fmt::format("{}\n    {}: {}", &name == &provenance.inputs.front().first ? "" : ",",
-                       js(name), hash.empty() ? "null" : js(hash));
-  out += provenance.inputs.empty() ? "},\n" : "\n  },\n";
+    hashes[name] = hash.empty() ? Json(nullptr) : Json(hash);
   std::vector<const ParamBase*> sorted(params.all().begin(), params.all().end());
   std::sort(sorted.begin(), sorted.end(),
             [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
-  out += "  \"params\": {";
-  const char* separator = "\n";
-  for (const auto* p : sorted) {
-    out += fmt::format(
-        "{}    {}: {{\"value\": {}, \"unit\": {}, \"origin\": {}, \"default\": {}, "
-        "\"allowed\": {}, \"tag\": {}, \"source\": {}, \"belief\": {}, \"description\": {}}}",
-        separator, js(p->key()), js(p->text()), js(p->unit()),
-        js(experiment.origin(p->key()).text()), js(p->default_text()), js(p->allowed()),
-        js(to_string(p->origin())), js(p->source()), belief_json(p->belief()),
-        js(p->sentence()));
-    separator = ",\n";
-  }
-  return out + "\n  }\n}\n";
+  Json values = Json::object();
+  for (const auto* p : sorted)
+    values[p->key()] = {{"value", p->text()},
+                        {"unit", p->unit()},
+                        {"origin", experiment.origin(p->key()).text()},
+                        {"default", p->default_text()},
+                        {"allowed", p->allowed()},
+                        {"tag", to_string(p->origin())},
+                        {"source", p->source()},
+                        {"belief", belief_json(p->belief())},
+                        {"description", p->sentence()}};
+  return file_json({{"format", kRunFormat},
+                    {"version", provenance.version},
+                    {"commit", provenance.commit},
+                    {"modified", provenance.modified},
+                    {"experiment", experiment.name()},
+                    {"sha256", hashes},
+                    {"params", values}},
+                   {"sha256", "params"});
 }
 
 std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay) {
   std::vector<Warning> out;
   for (const auto& [key, count] : diagnostics.counts())
-    out.push_back({std::string(warning_kind(key.first, replay)),
-                   warning_text(key.first, key.second), count});
+    out.push_back(
+        {std::string(warning_kind(key.first, replay)), warning_text(key.first, key.second), count});
   return out;
 }
 
 std::string stats_json(std::vector<StatRow> rows, bool complete,
                        const std::vector<Warning>& warnings, std::string_view ended_by) {
-  std::string out = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\"", complete);
-  if (!ended_by.empty()) out += fmt::format(",\n  \"ended_by\": {}", js(std::string(ended_by)));
-  out += ",\n  \"warnings\": [";
-  for (std::size_t i = 0; i < warnings.size(); ++i)
-    out += fmt::format("{}\n    {{\"kind\": {}, \"what\": {}, \"count\": {}}}", i ? "," : "",
-                       js(warnings[i].kind), js(warnings[i].what), warnings[i].count);
-  out += warnings.empty() ? "]" : "\n  ]";
+  Json out = {{"complete", complete}, {"band", "not run"}};
+  if (!ended_by.empty()) out["ended_by"] = ended_by;
+  Json& list = out["warnings"] = Json::array();
+  for (const Warning& w : warnings)
+    list.push_back({{"kind", w.kind}, {"what", w.what}, {"count", w.count}});
   append_rows(out, std::move(rows));
-  return out + "\n}\n";
+  return file_json(out, {"warnings"});
 }
 
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version) {
-  std::string out = fmt::format("{{\n  \"version\": {},\n  \"command\": [", js(version));
-  for (std::size_t i = 0; i < command.size(); ++i) out += (i ? ", " : "") + js(command[i]);
-  out += "]";
+  Json out = {{"version", version}, {"command", command}};
   append_rows(out, std::move(rows));
-  return out + "\n}\n";
+  return file_json(out);
 }
 
 std::string frames_csv_header() {
@@ -244,9 +272,9 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
       "frame.rate",        "frame.captured",       "frame.remapped",        "frame.displayed",
       "frame.dropped",     "frame.remap_time.min", "frame.remap_time.mean", "frame.remap_time.max",
       "frame.latency.min", "frame.latency.mean",   "frame.latency.max",     "startup.lut_time",
-      "capture.overflows", "display.underflows",   "ddr.utilisation",
-      "ddr.efficiency",    "ddr.headroom",         "ddr.read_bytes",
-      "ddr.write_bytes",   "replay.time",          "replay.bandwidth"};
+      "capture.overflows", "display.underflows",   "ddr.utilisation",       "ddr.efficiency",
+      "ddr.headroom",      "ddr.read_bytes",       "ddr.write_bytes",       "replay.time",
+      "replay.bandwidth"};
   static constexpr std::array kHost{"realtime_factor", "mips", "requests_per_second", "wall_time",
                                     "peak_rss"};
   std::vector<std::pair<std::string, std::string>> lines;

@@ -1,6 +1,7 @@
 #include "sw/fovea/register_log.h"
 
 #include <fmt/format.h>
+#include <re2/re2.h>
 
 #include <algorithm>
 
@@ -9,36 +10,23 @@
 #include "sw/fovea/outputs.h"
 
 namespace fovea::app {
-namespace {
-
-/// Long enough for any list of names; the compiler of regular expressions recurses for each
-/// parenthesis.
-constexpr std::size_t kLongestPattern = 400;
-
-/// Selects the executor of libstdc++ that tracks sets of states: its time is bounded by the product
-/// of the lengths of name and pattern. The default one backtracks and may take exponential time
-/// ('(.*)*x').
-constexpr auto kSyntax = std::regex::ECMAScript | std::regex_constants::__polynomial;
-
-}  // namespace
-
 RegisterLog::RegisterLog(std::vector<RegisterBlock> blocks, Sources sources)
     : blocks_(std::move(blocks)), sources_(std::move(sources)) {}
 
+RegisterLog::~RegisterLog() { stop(); }
+
 void RegisterLog::start(const RegisterLogRequest& request) {
   FOVEA_CHECK(request.kept > 0, "a ring has room for one access at least");
-  if (request.pattern.size() > kLongestPattern)
-    throw UserError(fmt::format("a regular expression of {} characters; allowed: up to {}",
-                                request.pattern.size(), kLongestPattern));
-  try {
-    pattern_.emplace(request.pattern, kSyntax);
-  } catch (const std::regex_error& e) {
+  // RE2 takes time proportional to the length of the name, whatever the pattern, and refuses
+  // patterns that need more than its limit of memory.
+  auto pattern = std::make_unique<re2::RE2>(request.pattern, re2::RE2::Quiet);
+  if (!pattern->ok())
     throw UserError(
         fmt::format("'{}' is not a regular expression ({}); it is looked for in "
                     "BLOCK.REGISTER, as in '^timer[01]\\.|PSC'",
-                    one_line(request.pattern), e.what()));
-  }
+                    one_line(request.pattern), one_line(pattern->error())));
   stop();
+  pattern_ = std::move(pattern);
   matches_.clear();
   ring_.clear();
   kept_ = request.kept;
@@ -74,10 +62,10 @@ const std::string& RegisterLog::block_name(const RegBank* bank) const {
 /// Offsets without a register match by the name of their block alone.
 bool RegisterLog::wanted(const RegisterAccess& access) {
   const Reg* const reg = access.bank->register_at(access.offset);
-  if (!reg) return std::regex_search(block_name(access.bank) + ".", *pattern_);
+  if (!reg) return re2::RE2::PartialMatch(block_name(access.bank) + ".", *pattern_);
   const auto [place, fresh] = matches_.try_emplace(reg, false);
   if (fresh)
-    place->second = std::regex_search(block_name(access.bank) + "." + reg->name(), *pattern_);
+    place->second = re2::RE2::PartialMatch(block_name(access.bank) + "." + reg->name(), *pattern_);
   return place->second;
 }
 

@@ -1,8 +1,8 @@
 // A log of the last register accesses: master, time, code address, register and value.
 #pragma once
 #include <functional>
+#include <memory>
 #include <optional>
-#include <regex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -11,6 +11,10 @@
 #include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
 #include "model/common/units.h"
+
+namespace re2 {
+class RE2;
+}
 
 namespace fovea::app {
 
@@ -26,8 +30,7 @@ inline constexpr std::size_t kRegisterLogMost = 100'000'000;
 
 /// The request of `--log-registers`.
 struct RegisterLogRequest {
-  std::string
-      pattern;  ///< ECMAScript regular expression on part of "block.REGISTER"; empty: no log
+  std::string pattern;      ///< RE2 regular expression on part of "block.REGISTER"; empty: no log
   std::size_t kept = 4096;  ///< at least 1
 };
 
@@ -40,7 +43,7 @@ class RegisterLog final : private RegisterObserver {
     std::function<std::string(std::uint32_t)> describe;  ///< symbol of a code address; may be empty
   };
   RegisterLog(std::vector<RegisterBlock> blocks, Sources sources);
-  ~RegisterLog() { stop(); }
+  ~RegisterLog();
   RegisterLog(const RegisterLog&) = delete;
   RegisterLog& operator=(const RegisterLog&) = delete;
 
@@ -69,7 +72,7 @@ class RegisterLog final : private RegisterObserver {
 
   std::vector<RegisterBlock> blocks_;
   Sources sources_;
-  std::optional<std::regex> pattern_;
+  std::unique_ptr<re2::RE2> pattern_;
   std::unordered_map<const Reg*, bool> matches_;
   std::vector<Record> ring_;
   std::size_t kept_ = RegisterLogRequest{}.kept;

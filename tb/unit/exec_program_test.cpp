@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 
 #include "model/common/check.h"
@@ -92,12 +93,18 @@ TEST(ParseAddressTest, TakesHexAndDecimalOnly) {
 
 TEST(TakeProgramArgumentsTest, LeavesItsOwnOptionsOnEitherSide) {
   using Words = std::vector<std::string>;
+  CLI::App app;
+  ExecOptions options;
+  const CLI::App& exec = *add_exec_command(app, options);
   Words args = {"exec", "-s", "a=b", "prog", "x", "--fast-memory", "-o", "dir", "-v", "--", "-s"};
-  EXPECT_EQ(take_program_arguments(args), (Words{"x", "-v", "-s"}));
+  EXPECT_EQ(take_program_arguments(exec, args), (Words{"x", "-v", "-s"}));
   EXPECT_EQ(args, (Words{"exec", "-s", "a=b", "prog", "--fast-memory", "-o", "dir"}));
   args = {"exec", "--bad", "prog", "--root=here"};
-  EXPECT_EQ(take_program_arguments(args), Words{});
+  EXPECT_EQ(take_program_arguments(exec, args), Words{});
   EXPECT_EQ(args, (Words{"exec", "--bad", "prog", "--root=here"}));
+  args = {"exec", "prog", "--set=a=b", "--other=1", "-", "--gdb", "--", "--"};
+  EXPECT_EQ(take_program_arguments(exec, args), (Words{"--other=1", "-"}));
+  EXPECT_EQ(args, (Words{"exec", "prog", "--set=a=b", "--gdb", "--"})) << "a value may be '--'";
 }
 
 }  // namespace

@@ -88,6 +88,22 @@ TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
   EXPECT_EQ(j["warnings"][1]["kind"], "model");
 }
 
+TEST(StatsJsonTest, HasOneLineForEachStatisticAndEachWarning) {
+  EXPECT_EQ(stats_json(some_rows(), true, {{"model", "a [{b}]\n", 2}}, "frames"),
+            "{\n"
+            "  \"complete\": true,\n"
+            "  \"band\": \"not run\",\n"
+            "  \"ended_by\": \"frames\",\n"
+            "  \"warnings\": [\n"
+            "    {\"kind\": \"model\", \"what\": \"a [{b}]\\n\", \"count\": 2}\n"
+            "  ],\n"
+            "  \"cpu.cycles\": {\"value\": 297, \"unit\": \"cycles\", "
+            "\"description\": \"a \\\"quoted\\\" \uFFFD sentence\"},\n"
+            "  \"frame.rate\": {\"value\": 25.0, \"unit\": \"1/s\", "
+            "\"description\": \"new frames\"}\n"
+            "}\n");
+}
+
 TEST(StatsJsonDeathTest, OneNameTwiceIsADefect) {
   EXPECT_EXIT(stats_json({{"x", 1.0, "", ""}, {"x", 2.0, "", ""}}, true),
               testing::ExitedWithCode(4), "called x");
@@ -206,16 +222,17 @@ TEST(SummaryTableTest, ShowsWhatExistsAndMastersThatMovedBytes) {
 std::vector<StatRow> frames_of(double rate, std::uint64_t displayed, std::uint64_t repeated,
                                std::uint64_t dropped, std::uint64_t overflows = 0,
                                std::uint64_t underflows = 0) {
-  return {{"frame.rate", rate, "1/s", ""},         {"frame.displayed", displayed, "1", ""},
-          {"frame.repeated", repeated, "1", ""},   {"frame.dropped", dropped, "1", ""},
+  return {{"frame.rate", rate, "1/s", ""},           {"frame.displayed", displayed, "1", ""},
+          {"frame.repeated", repeated, "1", ""},     {"frame.dropped", dropped, "1", ""},
           {"capture.overflows", overflows, "1", ""}, {"display.underflows", underflows, "1", ""}};
 }
 
 TEST(VerdictTest, SaysWhetherTheRateWasMet) {
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0)),
             "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated\n");
-  EXPECT_EQ(verdict(frames_of(30000.0 / 1001, 25, 0, 0)),
-            "frame rate met: 25 of 25 camera frames shown (29.97/s), none dropped, none repeated\n");
+  EXPECT_EQ(
+      verdict(frames_of(30000.0 / 1001, 25, 0, 0)),
+      "frame rate met: 25 of 25 camera frames shown (29.97/s), none dropped, none repeated\n");
   EXPECT_EQ(verdict(frames_of(12.5, 16, 8, 0)),
             "frame rate missed: 8 of 16 camera frames shown (12.5/s), none dropped, 8 repeated\n");
   EXPECT_EQ(verdict(frames_of(24, 25, 0, 1)),
@@ -233,7 +250,8 @@ TEST(VerdictTest, SaysNothingWithoutFrames) {
 }
 
 TEST(SummaryTableTest, BeginsWithTheVerdict) {
-  EXPECT_THAT(summary_table(frames_of(25, 25, 0, 0), {}), testing::StartsWith("frame rate met: 25"));
+  EXPECT_THAT(summary_table(frames_of(25, 25, 0, 0), {}),
+              testing::StartsWith("frame rate met: 25"));
 }
 
 /// A wall clock that the test moves.
