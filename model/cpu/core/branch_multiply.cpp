@@ -56,7 +56,8 @@ Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
 }
 
 /// B and BL. imm: target relative to the first byte of the line. kNear: the target is in the same
-/// line, and raw is the distance of its record in host memory, in bytes.
+/// line, and raw is the distance of its record in host memory, in bytes; otherwise raw is its
+/// record_offset().
 template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
@@ -67,7 +68,7 @@ Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
     c.chain_.first += distance - static_cast<std::intptr_t>(sizeof(Instruction));
     return next(c, reinterpret_cast<Next>(reinterpret_cast<const char*>(i) + distance), cycle + 3);
   } else {
-    return jump<kThumb, false>(c, i, cycle + 3, c.chain_.va + i->imm);
+    return jump<kThumb, false>(c, i, cycle + 3, c.chain_.va + i->imm, i->raw);
   }
 }
 
@@ -108,6 +109,8 @@ Handler Core::Ops::branch_body(Instruction& i, Context context) {
     const auto from = static_cast<std::int32_t>(i.at), to = static_cast<std::int32_t>(i.imm);
     i.raw = static_cast<std::uint32_t>((to - from) / (thumb ? 2 : 4) *
                                        static_cast<std::int32_t>(sizeof(Instruction)));
+  } else {
+    i.raw = thumb ? record_offset<true>(i.imm) : record_offset<false>(i.imm);
   }
   const bool link = i.op == Op::kBl;
   return select(i.cond, [&](auto k) -> Handler {

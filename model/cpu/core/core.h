@@ -73,6 +73,16 @@ struct CoreView {
 /// counts time in clocks (edge numbers of its clock) and converts it into picoseconds only for the
 /// bus. An instruction boundary at clock c has the time of edge c.
 class Core : public Background {
+  // First, so that every handler reaches them with a short offset.
+  /// The running chain of records (handlers.h).
+  struct {
+    std::uint64_t stop = 0;   // clock at which it ends
+    std::intptr_t first = 0;  // address of a record: those from here on are not counted yet
+    std::uint32_t va = 0;     // address of its line
+    std::uint64_t cycle = 0;  // clock between two records (builds without tail calls)
+  } chain_;
+  RegisterFile regs_;
+
  public:
   /// @param tcm the RAM of 32 KB that is visible through both TCM windows (0x0 and 0x10000); its
   ///        size is a power of two. Empty: a core without TCMs
@@ -237,6 +247,7 @@ class Core : public Background {
   /// Adds what a chain of records did before record `i` to the counters, and sets pc and clock.
   void settle(const Instruction* i, std::uint64_t cycle) {
     regs_.pc = chain_.va + i->at;
+    fetch_.move_to_line(chain_.va);
     ledger_.counts.issue += cycle - ledger_.cycle;
     ledger_.cycle = cycle;
     const auto at = reinterpret_cast<std::intptr_t>(i);
@@ -344,14 +355,6 @@ class Core : public Background {
                                              h.counter);
   }
 
-  /// The running chain of records (handlers.h).
-  struct {
-    std::uint64_t stop = 0;   // clock at which it ends
-    std::intptr_t first = 0;  // address of a record: those from here on are not counted yet
-    std::uint32_t va = 0;     // address of its line
-    std::uint64_t cycle = 0;  // clock between two records (builds without tail calls)
-  } chain_;
-  RegisterFile regs_;
   std::uint32_t next_pc_ = 0;
   bool branched_ = false;  // the current instruction set next_pc_
   bool aborted_ = false;   // an access of the current instruction failed
@@ -371,8 +374,8 @@ class Core : public Background {
   InterruptLine irq_, fiq_;
   bool stop_requested_ = false;
   bool swapping_ = false;  // the two accesses of a SWP are locked
-  std::array<Instruction, 2> unpredictable_record_;  // separate copy of an UNPREDICTABLE form
-  std::map<std::string, std::string> unpredictable_;  // texts of the warnings, by form
+  DecodedLine unpredictable_;  // separate copy of an UNPREDICTABLE form
+  std::map<std::string, std::string> unpredictable_texts_;  // of the warnings, by form
   MeasurementWindow window_;
 
   static constexpr std::uint32_t kNoJump = 1;

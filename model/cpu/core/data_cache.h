@@ -57,6 +57,12 @@ class DataCache {
   }
   void write_back(unsigned line, Cause cause) { bus_.write_back(lines_, line, false, cause); }
 
+  /// The same as read_hints[va / kReadSpan % kHints], one host instruction shorter.
+  const Hint& read_hint(std::uint32_t va) const {
+    static_assert(sizeof(Hint) == 16 && kReadSpan == 2 * sizeof(Hint));
+    return *reinterpret_cast<const Hint*>(reinterpret_cast<const char*>(read_hints.data()) +
+                                          (va / 2 & (kHints - 1) * sizeof(Hint)));
+  }
   /// @param line host address of the line that contains `va`
   /// @param counter member of Counts that counts accesses to it
   void hint_reads(std::uint32_t va, std::uint32_t mva, std::uint8_t* line,

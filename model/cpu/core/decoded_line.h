@@ -1,22 +1,39 @@
 // A line of decoded instructions ("records"), and how records are prepared for their handlers.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "model/cpu/core/instruction.h"
 
 namespace fovea::cpu {
 
-/// Holds one more record than a line: the one after the last leads to the next line.
+/// Holds one more record than a line: the one after the last leads to the next line. A record's
+/// place follows from its offset in the line.
 struct DecodedLine {
   std::uint64_t valid = 0;  // FetchUnit::key() of the last lookup; 0: nothing is decoded
   std::array<Instruction, 17> records;
+  DecodedLine* next = nullptr;  // where the following line was found last, perhaps not any more
+  std::uint32_t va = 0;         // address of the line in the last lookup
+
+  bool holds(const Instruction* record) const {
+    return record >= records.data() && record < records.data() + records.size();
+  }
+  /// The line that holds a decoded record.
+  static const DecodedLine& of(const Instruction* record) {
+    const std::size_t index = record->at / ((record->flags & kThumbInsn) ? 2u : 4u);
+    return *reinterpret_cast<const DecodedLine*>(reinterpret_cast<const char*>(record - index) -
+                                                 offsetof(DecodedLine, records));
+  }
 
   /// True if nothing is decoded for this state yet.
   bool stale(bool thumb) const { return valid == 0 || (valid & 1u) != thumb; }
   /// Keeps the records, but has the next use looked up.
   void look_up_again() { valid = 2u | (valid & 1u); }
   void clear(bool thumb);
+  /// Keeps only the record of an instruction that belongs to no line, and ends the chain behind it.
+  /// @return the record
+  const Instruction* hold_one(const Instruction& decoded, std::uint32_t pc, bool shifted_cycle);
 };
 
 /// What the neighbours in a line allow a record to leave out. The default is correct anywhere.

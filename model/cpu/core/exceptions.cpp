@@ -16,7 +16,7 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
               .ram_bytes = tcm.size(),
               .fill_latency = static_cast<unsigned>(params.fill_latency()),
               .shifted_cycle = params.shifted_address_cycle()},
-             interface_, ledger_, bus_, system_),
+             interface_, ledger_, bus_, log_, system_),
       cache_op_cycles_(static_cast<unsigned>(params.cache_op_cycles())),
       test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
       invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
@@ -142,7 +142,7 @@ std::string Core::address_text(std::uint32_t address) const {
 /// Warns once for each form, with the address of its first execution.
 void Core::unpredictable(const char* what) {
   ++ledger_.counts.unpredictable;
-  std::string& text = unpredictable_[what];
+  std::string& text = unpredictable_texts_[what];
   if (text.empty())
     text = std::string("UNPREDICTABLE: ") + what + ", first at " + address_text(regs_.pc);
   Diagnostics::instance().guest(text);

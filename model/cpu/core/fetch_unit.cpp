@@ -5,10 +5,11 @@
 namespace fovea::cpu {
 
 FetchUnit::FetchUnit(const Sizes& sizes, BusInterface& interface, StallLedger& ledger,
-                     DataBus& data_bus, const SystemRegisters& registers)
+                     DataBus& data_bus, AccessLog& log, const SystemRegisters& registers)
     : interface_(interface),
       ledger_(ledger),
       data_bus_(data_bus),
+      log_(log),
       registers_(registers),
       fill_latency_(sizes.fill_latency),
       shifted_cycle_(sizes.shifted_cycle),
@@ -16,6 +17,8 @@ FetchUnit::FetchUnit(const Sizes& sizes, BusInterface& interface, StallLedger& l
       decoded_(sizes.cache_bytes / Cache::kLineBytes),
       ram_decoded_(sizes.ram_bytes / Cache::kLineBytes) {
   jumps.fill(&no_line_);
+  for (auto* lines : {&decoded_, &ram_decoded_})
+    for (auto& d : *lines) d.next = &no_line_;
   access_.port = BusAccess::Port::kInstruction;
 }
 
@@ -132,8 +135,11 @@ bool FetchUnit::read_ahead(std::uint32_t pa) {
 
 const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
                                      const FetchTarget& target, bool ram) {
+  const std::uint32_t line = target.pc & ~31u;
+  if (d.stale(target.thumb) || d.va != line) log_.line_changes(d);
   if (d.stale(target.thumb)) d.clear(target.thumb);
   d.valid = key(target.pc, target.thumb);
+  d.va = line;
   const unsigned at = target.index();
   Instruction& i = d.records[at];
   if (!i.body) {
@@ -142,7 +148,8 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
     context.in_line = true;
     prepare(i, at << target.shift(), context, shifted_cycle_);
   }
-  line_va = target.pc & ~31u;
+  if (current && current->va + 32 == line) current->next = &d;
+  line_va = line;
   line_thumb = target.thumb ? 0x20u : 0u;
   current = &d;
   jumps[target.pc / 32 % kJumps] = &d;
@@ -151,12 +158,10 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
 
 const Instruction* FetchUnit::decode_uncached(std::uint32_t pa, const FetchTarget& target) {
   leave_line();
-  Instruction& i = uncached_record_[0];
-  i = decode_at(reinterpret_cast<const std::uint8_t*>(words_), (pa & 15u) >> target.shift(),
-                target.thumb);
-  prepare(i, target.mva & 31u, RecordContext{}, shifted_cycle_);
-  uncached_record_[1].at = static_cast<std::uint8_t>(i.at + (1u << target.shift()));
-  return &i;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(words_);
+  log_.line_changes(uncached_);
+  return uncached_.hold_one(decode_at(bytes, (pa & 15u) >> target.shift(), target.thumb),
+                            target.pc, shifted_cycle_);
 }
 
 void FetchUnit::invalidate_all() {

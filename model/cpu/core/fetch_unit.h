@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "model/cpu/core/access_log.h"
 #include "model/cpu/core/bus_interface.h"
 #include "model/cpu/core/cache.h"
 #include "model/cpu/core/data_bus.h"
@@ -32,7 +33,7 @@ class FetchUnit {
     bool shifted_cycle;
   };
   FetchUnit(const Sizes& sizes, BusInterface& interface, StallLedger& ledger, DataBus& data_bus,
-            const SystemRegisters& registers);
+            AccessLog& log, const SystemRegisters& registers);
   FetchUnit(const FetchUnit&) = delete;
   FetchUnit& operator=(const FetchUnit&) = delete;
 
@@ -75,7 +76,12 @@ class FetchUnit {
 
   /// Forgets under which addresses lines were found.
   void forget();
-  void leave_line() { line_va = 1; }
+  void leave_line() { line_va = kNoLine; }
+  /// A chain of records has gone to another line, which is `current`, unless the line was left for
+  /// another reason since the chain began.
+  void move_to_line(std::uint32_t va) {
+    if (line_va != kNoLine) line_va = va;
+  }
   void invalidate_line(unsigned index) {
     icache_.invalidate(index);
     decoded_[index].valid = 0;
@@ -108,7 +114,8 @@ class FetchUnit {
 
   // Used by the handlers of records and by the main loop.
   static constexpr unsigned kJumps = 1024;
-  std::uint32_t line_va = 1;    // line of the current records; 1: none
+  static constexpr std::uint32_t kNoLine = 1;
+  std::uint32_t line_va = kNoLine;  // line of the current records; behind while a chain runs
   std::uint32_t line_thumb = 0;  // the CPSR's T bit in that line
   DecodedLine* current = nullptr;
   std::uint64_t epoch = kEpoch | 2u;  // changes at each forget()
@@ -128,6 +135,7 @@ class FetchUnit {
   BusInterface& interface_;
   StallLedger& ledger_;
   DataBus& data_bus_;
+  AccessLog& log_;
   const SystemRegisters& registers_;
   unsigned fill_latency_;
   bool shifted_cycle_;
@@ -137,7 +145,7 @@ class FetchUnit {
   std::vector<DecodedLine> ram_decoded_;  // one per 32 bytes of internal RAM
   DecodedLine no_line_;
   BusAccess access_;
-  std::array<Instruction, 2> uncached_record_;
+  DecodedLine uncached_;  // holds one decoded instruction
   std::uint64_t redirects_seen_ = 0;  // value at the last fetch that bypassed the caches
   std::uint32_t buffer_pa_ = 1, words_[4] = {};
 

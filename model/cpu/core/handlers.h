@@ -39,7 +39,6 @@ struct Core::Ops {
   using Hint = DataCache::Hint;
   static constexpr unsigned kReadSpan = DataCache::kReadSpan, kWriteSpan = DataCache::kWriteSpan,
                             kHints = DataCache::kHints;
-  static constexpr std::uint32_t kWritten = AccessLog::kWritten;
   static constexpr Cycle kNever = ~Cycle{0};
 
   [[gnu::always_inline]] static Next go(Core& c, Next i, Cycle cycle) {
@@ -52,6 +51,9 @@ struct Core::Ops {
   }
   /// Continues with record i at an instruction boundary.
   [[gnu::always_inline]] static Next next(Core& c, Next i, Cycle cycle) {
+    // Without this, compilers compute both from the old values again in each of the two tail calls
+    // and move them there, instead of changing the registers that they already are in.
+    asm("" : "+r"(i), "+r"(cycle));
     if (cycle >= c.chain_.stop) [[unlikely]] return leave(c, i, cycle);
     return go(c, i, cycle);
   }
@@ -97,18 +99,29 @@ struct Core::Ops {
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
   static Cycle held(const Core& c, Next i, Cycle cycle);
 
+  /// Distance of the record of an address from the first byte of its decoded line, in host memory.
+  template <bool kThumb>
+  static constexpr std::uint32_t record_offset(std::uint32_t target) {
+    return static_cast<std::uint32_t>(offsetof(DecodedLine, records) +
+                                      target % 32 / (kThumb ? 2 : 4) * sizeof(Instruction));
+  }
   /// Continues at the target of the taken branch i, without a change of state (ARM or Thumb).
   template <bool kThumb, bool kMaybeSameLine>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
+    return jump<kThumb, kMaybeSameLine>(c, i, cycle, target, record_offset<kThumb>(target));
+  }
+  template <bool kThumb, bool kMaybeSameLine>
+  [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target,
+                                          std::uint32_t offset) {
     ++c.ledger_.counts.redirects;
     if (cycle >= c.chain_.stop) [[unlikely]] return leave_to(c, i, cycle, target);
     DecodedLine* d = c.fetch_.jumps[target / 32 % FetchUnit::kJumps];
     if (d->valid != (c.fetch_.epoch | (target & ~31u) | kThumb)) [[unlikely]]
       return leave_to(c, i, cycle, target);
-    Next to = &d->records[target % 32 / (kThumb ? 2 : 4)];
+    const auto to = reinterpret_cast<Next>(reinterpret_cast<const char*>(d) + offset);
     if (!to->body) [[unlikely]] return leave_to(c, i, cycle, target);
     if (!kMaybeSameLine || c.chain_.va != (target & ~31u)) {
-      c.fetch_.line_va = c.chain_.va = target & ~31u;
+      c.chain_.va = target & ~31u;
       c.fetch_.current = d;
     }
     c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
@@ -180,9 +193,12 @@ struct Core::Ops {
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
-  template <bool kPc, bool kThumb, bool kLong>
+  /// The registers of a block: consecutive ones (apart from the pc) in one line, any in one line, or
+  /// any in several lines.
+  enum class Block : std::uint8_t { kRun, kList, kLong };
+  template <bool kPc, bool kThumb, Block kBlock>
   static Next load_block(Core& c, Next i, Cycle cycle);
-  template <bool kLong>
+  template <Block kBlock>
   static Next store_block(Core& c, Next i, Cycle cycle);
 
   // Each returns the body of a record, or nullptr if there is no fast one. It may rewrite the

@@ -31,6 +31,21 @@ template <Op kOp>
   return static_cast<unsigned>(__builtin_ctz(set));
 }
 
+/// Copies 1 to 16 words.
+[[gnu::always_inline]] inline void copy_words(void* to, const void* from, unsigned words) {
+  auto* t = static_cast<std::uint8_t*>(to);
+  const auto* f = static_cast<const std::uint8_t*>(from);
+  if (words & 1u) {
+    std::memcpy(t, f, 4);
+    t += 4, f += 4;
+  }
+  if (words & 2u) {
+    std::memcpy(t, f, 8);
+    t += 8, f += 8;
+  }
+  for (words /= 4; words; --words, t += 16, f += 16) std::memcpy(t, f, 16);
+}
+
 /// Base plus offset; an immediate offset is signed (see memory_body()).
 template <Address kAddress>
 [[gnu::always_inline]] inline std::uint32_t moved(const std::array<std::uint32_t, 16>& r,
@@ -50,18 +65,19 @@ Core::Ops::Next Core::Ops::load(Core& c, Next i, Cycle cycle) {
   constexpr unsigned kBytes = access_bytes(kOp);
   const std::uint32_t end = moved<kAddress>(c.regs_.r, *i);
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.regs_.r[i->rn] : end;
-  const Hint& hint = c.data_.read_hints[va / kReadSpan % kHints];
+  const Hint& hint = c.data_.read_hint(va);
   if (hint.key != (va & ~(kReadSpan - kBytes)) || cycle < c.data_.fill.last) [[unlikely]]
     return load_line<kOp, kIndexed, kTrack>(c, i, cycle, va, end,
                                             kAddress == Address::kLsl ? 1u + i->rs : 1u);
   ++c.counter(hint);
-  c.log_.note(c.chain_.va + i->at, va, kBytes);
+  c.log_.note(i, va);
   const std::uint32_t value = read<kOp>(host(hint.bias, va));
+  const unsigned rd = i->rd;
   if constexpr (kIndexed != Indexed::kOffset) c.regs_.r[i->rn] = end;
-  c.regs_.r[i->rd] = value;
+  c.regs_.r[rd] = value;
   // rs: the extra clock for a shifted offset.
   cycle += kAddress == Address::kLsl ? 1u + i->rs : 1u;
-  if constexpr (kTrack) track(c, i->rd, cycle + (kOp == Op::kLdr ? 1 : 2), Scoreboard::kLoad);
+  if constexpr (kTrack) track(c, rd, cycle + (kOp == Op::kLdr ? 1 : 2), Scoreboard::kLoad);
   return next(c, i + 1, cycle);
 }
 
@@ -76,7 +92,7 @@ template <Op kOp, Indexed kIndexed, bool kTrack>
   const Hint& hint = c.data_.read_hints[va / kReadSpan % kHints];
   if (hint.key == (va & ~(kReadSpan - kBytes)) &&
       hint.counter == c.data_.counter_offset(c.ledger_.counts.dcache_reads)) {
-    c.log_.note(c.regs_.pc, va, kBytes);
+    c.log_.note(i, va);
     ++c.ledger_.counts.dcache_reads;
     c.data_.wait_for_fill(c.system_.modified(va));
     from = host(hint.bias, va);
@@ -102,7 +118,7 @@ Core::Ops::Next Core::Ops::store(Core& c, Next i, Cycle cycle) {
   if (hint.key != (va & ~(kWriteSpan - kBytes)) || cycle < c.data_.fill.last) [[unlikely]]
     return store_out<kOp, kAddress, kIndexed>(c, i, cycle);
   ++c.counter(hint);
-  c.log_.note(c.chain_.va + i->at, va, kBytes | kWritten);
+  c.log_.note(i, va);
   const std::uint32_t value = c.regs_.r[i->rd];
   std::memcpy(host(hint.bias, va), &value, kBytes);
   if constexpr (kIndexed != Indexed::kOffset) c.regs_.r[i->rn] = end;
@@ -140,15 +156,16 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
 /// A load relative to the pc; imm is relative to the first byte of the line.
 Core::Ops::Next Core::Ops::load_literal(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = c.chain_.va + i->imm;
-  const Hint& hint = c.data_.read_hints[va / kReadSpan % kHints];
+  const Hint& hint = c.data_.read_hint(va);
   if (hint.key != (va & ~(kReadSpan - 4)) || cycle < c.data_.fill.last) [[unlikely]] {
     c.regs_.r[15] = c.chain_.va;  // base to which the general routine adds the offset
     return generic(c, i, cycle);
   }
   ++c.counter(hint);
-  c.log_.note(c.chain_.va + i->at, va, 4);
-  c.regs_.r[i->rd] = read<Op::kLdr>(host(hint.bias, va));
-  track(c, i->rd, cycle + 2, Scoreboard::kLoad);
+  c.log_.note(i, va);
+  const unsigned rd = i->rd;
+  c.regs_.r[rd] = read<Op::kLdr>(host(hint.bias, va));
+  track(c, rd, cycle + 2, Scoreboard::kLoad);
   return next(c, i + 1, cycle + 1);
 }
 
@@ -219,75 +236,94 @@ Handler Core::Ops::memory_body(Instruction& i, Context context) {
 }
 
 /// LDM. rm and rs: first address and new base, in words relative to the base, signed; amount:
-/// number of registers. Most lists lie in one line; kLong is for the others.
-template <bool kPc, bool kThumb, bool kLong>
+/// number of registers; shift: the first one; rd: the last one.
+template <bool kPc, bool kThumb, Core::Ops::Block kBlock>
 Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.regs_.r[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.data_.fill.last) [[unlikely]] return generic(c, i, cycle);
   if (kPc && (c.system_.control & kArmV4Loads)) [[unlikely]] return generic(c, i, cycle);
-  if (!kLong && (va ^ last) >= kReadSpan) return load_block<kPc, kThumb, true>(c, i, cycle);
+  constexpr bool kLong = kBlock == Block::kLong;
+  if (!kLong && (va ^ last) >= kReadSpan)
+    return load_block<kPc, kThumb, Block::kLong>(c, i, cycle);
   for (std::uint32_t line = va & ~(kReadSpan - 1);; line += kReadSpan) {
     if (c.data_.read_hints[line / kReadSpan % kHints].key != line) [[unlikely]]
       return generic(c, i, cycle);
     if (!kLong || line == (last & ~(kReadSpan - 1))) break;
   }
-  c.log_.note(c.chain_.va + i->at, va, 4 | (i->amount - 1u) << 16);
-  std::uint32_t target = 0, set = i->imm;
-  unsigned r = 0;
-  for (unsigned left = i->amount; left;) {
-    const Hint& hint = c.data_.read_hints[va / kReadSpan % kHints];
-    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
-    c.counter(hint) += here;
-    const std::uint8_t* from = host(hint.bias, va);
-    for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
-      const std::uint32_t value = read<Op::kLdr>(from);
-      r = lowest(set);
-      set &= set - 1;
-      if (kPc && r == 15) target = value;
-      else c.regs_.r[r] = value;
+  c.log_.note(i, va);
+  std::uint32_t target = 0;
+  auto& r = c.regs_.r;
+  if constexpr (kBlock == Block::kRun) {
+    const Hint& hint = c.data_.read_hint(va);
+    c.counter(hint) += i->amount;
+    const std::uint8_t* const from = host(hint.bias, va);
+    const unsigned words = i->amount - (kPc ? 1u : 0u);
+    copy_words(&r[i->shift], from, words);
+    if (kPc) target = read<Op::kLdr>(from + 4 * words);
+  } else {
+    std::uint32_t set = i->imm;
+    for (unsigned left = i->amount; left;) {
+      const Hint& hint = c.data_.read_hint(va);
+      const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+      c.counter(hint) += here;
+      const std::uint8_t* from = host(hint.bias, va);
+      for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
+        const std::uint32_t value = read<Op::kLdr>(from);
+        const unsigned to = lowest(set);
+        set &= set - 1;
+        if (kPc && to == 15) target = value;
+        else r[to] = value;
+      }
+      if (!kLong) break;
+      va += 4 * here;
+      left -= here;
     }
-    if (!kLong) break;
-    va += 4 * here;
-    left -= here;
   }
   if (i->flags & kWriteBack)
-    c.regs_.r[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
+    r[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
   if constexpr (kPc) return exchange<kThumb>(c, i, cycle + i->amount + 4, target);
   if (i->amount == 1) return next(c, i + 1, cycle + 2);
   cycle += i->amount;
-  track(c, r, cycle + 1, Scoreboard::kLoad);
+  track(c, i->rd, cycle + 1, Scoreboard::kLoad);
   return next(c, i + 1, cycle);
 }
 
-template <bool kLong>
+template <Core::Ops::Block kBlock>
 Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.regs_.r[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.data_.fill.last) [[unlikely]] return generic(c, i, cycle);
-  if (!kLong && (va ^ last) >= kReadSpan) return store_block<true>(c, i, cycle);
+  constexpr bool kLong = kBlock == Block::kLong;
+  if (!kLong && (va ^ last) >= kReadSpan) return store_block<Block::kLong>(c, i, cycle);
   for (std::uint32_t half = va & ~(kWriteSpan - 1);; half += kWriteSpan) {
     if (c.data_.write_hints[half / kWriteSpan % kHints].key != half) [[unlikely]]
       return generic(c, i, cycle);
     if (half == (last & ~(kWriteSpan - 1))) break;
   }
-  c.log_.note(c.chain_.va + i->at, va, 4 | kWritten | (i->amount - 1u) << 16);
-  std::uint32_t set = i->imm;
-  for (unsigned left = i->amount; left;) {
-    // Both halves of a line are adjacent in host memory.
+  c.log_.note(i, va);
+  if constexpr (kBlock == Block::kRun) {
     const Hint& hint = c.data_.write_hints[va / kWriteSpan % kHints];
-    const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
-    c.counter(hint) += here;
-    std::uint8_t* to = host(hint.bias, va);
-    for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
-      std::memcpy(to, &c.regs_.r[lowest(set)], 4);
-      set &= set - 1;
+    c.counter(hint) += i->amount;
+    // Both halves of a line are adjacent in host memory.
+    copy_words(host(hint.bias, va), &c.regs_.r[i->shift], i->amount);
+  } else {
+    std::uint32_t set = i->imm;
+    for (unsigned left = i->amount; left;) {
+      const Hint& hint = c.data_.write_hints[va / kWriteSpan % kHints];
+      const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+      c.counter(hint) += here;
+      std::uint8_t* to = host(hint.bias, va);
+      for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
+        std::memcpy(to, &c.regs_.r[lowest(set)], 4);
+        set &= set - 1;
+      }
+      if (!kLong) break;
+      va += 4 * here;
+      left -= here;
     }
-    if (!kLong) break;
-    va += 4 * here;
-    left -= here;
   }
   if (i->flags & kWriteBack)
     c.regs_.r[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
@@ -300,15 +336,20 @@ Handler Core::Ops::block_body(Instruction& i) {
   if (i.op == Op::kStm && pc) return nullptr;
   const BlockShape shape = block_shape(i.imm, i.flags & kUp, i.flags & kPre);
   i.amount = static_cast<std::uint8_t>(shape.words);
-  i.rm = static_cast<std::uint8_t>(shape.first);
-  i.rs = static_cast<std::uint8_t>(shape.moved);
-  if (i.op == Op::kStm) return &store_block<false>;
+  i.rd = static_cast<std::uint8_t>(31 - std::countl_zero(i.imm));
+  i.shift = static_cast<std::uint8_t>(std::countr_zero(i.imm));
+  const std::uint32_t moved_alike = (pc ? i.imm & 0x7FFFu : i.imm) >> i.shift;
+  const bool run = moved_alike != 0 && (moved_alike & (moved_alike + 1)) == 0;
+  if (i.op == Op::kStm) return run ? &store_block<Block::kRun> : &store_block<Block::kList>;
   // The write-back wins, unless the base is the last of several registers.
   if (shape.words > 1 && i.imm >> i.rn == 1u)
     i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
   const bool thumb = i.flags & kThumbInsn;
-  if (!pc) return &load_block<false, false, false>;
-  return thumb ? &load_block<true, true, false> : &load_block<true, false, false>;
+  if (!pc)
+    return run ? &load_block<false, false, Block::kRun> : &load_block<false, false, Block::kList>;
+  if (thumb)
+    return run ? &load_block<true, true, Block::kRun> : &load_block<true, true, Block::kList>;
+  return run ? &load_block<true, false, Block::kRun> : &load_block<true, false, Block::kList>;
 }
 
 }  // namespace fovea::cpu

@@ -23,7 +23,7 @@ const std::uint8_t* Core::load_cached(std::uint32_t va) {
   const std::uint32_t mva = system_.modified(va);
   const Translation* const t = mmu_.known_cacheable(mva, Access::kLoad, !regs_.privileged());
   if (!t || !system_.data_cached() || (mva & (kBytes - 1))) return nullptr;
-  log_.note(regs_.pc, va, kBytes);
+  log_.note(regs_.pc, va, kBytes, false);
   return data_.load(va, mva, *t);
 }
 template const std::uint8_t* Core::load_cached<1>(std::uint32_t);
@@ -33,7 +33,7 @@ template const std::uint8_t* Core::load_cached<4>(std::uint32_t);
 Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, Rights rights) {
   if (misaligned(va, bytes)) return Result::kAbort;
   const std::uint32_t mva = system_.modified(va), a = mva & ~(bytes - 1u);
-  log_.note(regs_.pc, va, bytes);
+  log_.note(regs_.pc, va, bytes, false);
   value = 0;
   const Translation* const t = translate(a, Access::kLoad, rights);
   if (!t) return Result::kAbort;
@@ -74,7 +74,7 @@ void Core::store_to_ram(std::uint32_t va, std::uint32_t pa, unsigned bytes, std:
 Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, Rights rights) {
   if (misaligned(va, bytes)) return Result::kAbort;
   const std::uint32_t mva = system_.modified(va), a = mva & ~(bytes - 1u);
-  log_.note(regs_.pc, va, bytes | AccessLog::kWritten);
+  log_.note(regs_.pc, va, bytes, true);
   const Translation* const t = translate(a, Access::kStore, rights);
   if (!t) return Result::kAbort;
   const std::uint32_t pa = t->physical(a);
@@ -120,7 +120,7 @@ template bool Core::store_beside_cache<4>(std::uint32_t, std::uint32_t);
 /// A store to a writable line that the cache does not hold.
 template <unsigned kBytes>
 void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
-  log_.note(regs_.pc, va, kBytes | AccessLog::kWritten);
+  log_.note(regs_.pc, va, kBytes, true);
   ++ledger_.counts.dcache_writes;
   if (ledger_.cycle < data_.fill.last) data_.wait_for_fill(system_.modified(va));
   ++ledger_.counts.dcache_write_misses;
@@ -154,7 +154,7 @@ Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, uns
       const bool buffered = t->bufferable && system_.mmu_on();
       const int line = cached ? data_.lines().find(mva) : -1;
       if (cached ? !data_.keeps(line, buffered) : buffered) {
-        log_.note(regs_.pc, va + 4 * k, 4 | AccessLog::kWritten);
+        log_.note(regs_.pc, va + 4 * k, 4, true);
         if (cached)
           data_.store(va + 4 * k, mva, 4, words[k], false);
         else

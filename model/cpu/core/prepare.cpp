@@ -97,6 +97,19 @@ void DecodedLine::clear(bool thumb) {
   records[count].at = 32;
 }
 
+const Instruction* DecodedLine::hold_one(const Instruction& decoded, std::uint32_t pc,
+                                         bool shifted_cycle) {
+  const unsigned size = (decoded.flags & kThumbInsn) ? 2 : 4;
+  va = pc & ~31u;
+  Instruction* const i = &records[(pc & 31u) / size];
+  i[0] = decoded;
+  prepare(i[0], pc & 31u, RecordContext{}, shifted_cycle);
+  i[1] = Instruction{};
+  i[1].at = static_cast<std::uint8_t>(i->at + size);
+  i[1].handler = &Core::Ops::leave;
+  return i;
+}
+
 template <unsigned kCond, RecordContext::Check kCheck, bool kPc>
 Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
@@ -168,24 +181,21 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   c.settle(i, cycle);
   const bool thumb = i->flags & kThumbInsn;
   c.unpredictable(isa_rows()[static_cast<std::size_t>(isa_row(i->raw, thumb))].name);
-  std::array<Instruction, 2>& pair = c.unpredictable_record_;
-  pair[0] = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
-  pair[0].flags = static_cast<std::uint16_t>(pair[0].flags & ~kUnpredictable);
-  prepare(pair[0], i->at, Context{}, c.shifted_cycle_);
-  pair[1].at = static_cast<std::uint8_t>(i->at + (thumb ? 2u : 4u));
-  pair[1].handler = &leave;
+  Instruction own = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
+  own.flags = static_cast<std::uint16_t>(own.flags & ~kUnpredictable);
+  c.log_.line_changes(c.unpredictable_);
+  const Next record = c.unpredictable_.hold_one(own, c.regs_.pc, c.shifted_cycle_);
   c.chain_.stop = 0;  // execute one record, then return to run()
-  c.chain_.first = reinterpret_cast<std::intptr_t>(pair.data());
-  for (Next k = pair[0].body(c, pair.data(), c.ledger_.cycle); k;)
+  c.chain_.first = reinterpret_cast<std::intptr_t>(record);
+  for (Next k = record->body(c, record, c.ledger_.cycle); k;)
     k = k->handler(c, k, c.chain_.cycle);
   return nullptr;
 }
 
 template <bool kThumb>
 Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d) {
-  Next to = &d.records[0];
-  if (!to->body) [[unlikely]] return leave(c, i, cycle);
-  c.fetch_.line_va = c.chain_.va += 32;
+  const Next to = &d.records[0];
+  c.chain_.va += 32;
   c.fetch_.current = &d;
   c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
   return go(c, to, cycle);
@@ -194,7 +204,7 @@ Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine&
 template <bool kThumb>
 Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = c.chain_.va + 32;
-  DecodedLine* d = c.fetch_.jumps[va / 32 % FetchUnit::kJumps];
+  DecodedLine* const d = c.fetch_.current->next;
   if (d->valid != (c.fetch_.epoch | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
   if (cycle < c.scoreboard_.latest) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle, *d);
   return enter_line<kThumb>(c, i, cycle, *d);
