@@ -8,8 +8,16 @@
 
 namespace fovea::cpu {
 
-/// Holds one more record than a line: the one after the last leads to the next line. A record's
-/// place follows from its offset in the line.
+/// What the neighbours in a line allow a record to leave out. The default is correct anywhere.
+struct RecordContext {
+  enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
+  bool track = true;     // a later record may have to wait for its result
+  bool in_line = false;  // the record belongs to a line that holds all its records
+};
+
+/// Holds one more record than a line: the one after the last leads to the next line, and its
+/// `sources` are the registers that the line's last records may deliver late. A record's place
+/// follows from its offset in the line.
 struct DecodedLine {
   std::uint64_t valid = 0;  // FetchUnit::key() of the last lookup; 0: nothing is decoded
   std::array<Instruction, 17> records;
@@ -31,16 +39,11 @@ struct DecodedLine {
   /// Keeps the records, but has the next use looked up.
   void look_up_again() { valid = 2u | (valid & 1u); }
   void clear(bool thumb);
+  void prepare_record(const Instruction& decoded, unsigned index, RecordContext context,
+                      bool shifted_cycle);
   /// Keeps only the record of an instruction that belongs to no line, and ends the chain behind it.
   /// @return the record
   const Instruction* hold_one(const Instruction& decoded, std::uint32_t pc, bool shifted_cycle);
-};
-
-/// What the neighbours in a line allow a record to leave out. The default is correct anywhere.
-struct RecordContext {
-  enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
-  bool track = true;     // a later record may have to wait for its result
-  bool in_line = false;  // the record belongs to a line that holds all its records
 };
 
 /// Decodes the instruction at an index of a line.

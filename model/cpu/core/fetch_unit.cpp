@@ -146,7 +146,7 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
     i = decode_at(bytes, at, target.thumb);
     RecordContext context = ram ? RecordContext{} : record_context(d, at, bytes, target.thumb);
     context.in_line = true;
-    prepare(i, at << target.shift(), context, shifted_cycle_);
+    d.prepare_record(Instruction(i), at, context, shifted_cycle_);
   }
   if (current && current->va + 32 == line) current->next = &d;
   line_va = line;

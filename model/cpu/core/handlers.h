@@ -193,12 +193,9 @@ struct Core::Ops {
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
-  /// The registers of a block: consecutive ones (apart from the pc) in one line, any in one line, or
-  /// any in several lines.
-  enum class Block : std::uint8_t { kRun, kList, kLong };
-  template <bool kPc, bool kThumb, Block kBlock>
+  template <bool kPc, bool kThumb, bool kLong>
   static Next load_block(Core& c, Next i, Cycle cycle);
-  template <Block kBlock>
+  template <bool kLong>
   static Next store_block(Core& c, Next i, Cycle cycle);
 
   // Each returns the body of a record, or nullptr if there is no fast one. It may rewrite the

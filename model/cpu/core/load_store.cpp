@@ -46,6 +46,9 @@ template <Op kOp>
   for (words /= 4; words; --words, t += 16, f += 16) std::memcpy(t, f, 16);
 }
 
+/// Registers of a block that follow each other from its first one on.
+[[gnu::always_inline]] inline unsigned first_run(const Instruction& i) { return i.raw & 0xFFu; }
+
 /// Base plus offset; an immediate offset is signed (see memory_body()).
 template <Address kAddress>
 [[gnu::always_inline]] inline std::uint32_t moved(const std::array<std::uint32_t, 16>& r,
@@ -236,17 +239,17 @@ Handler Core::Ops::memory_body(Instruction& i, Context context) {
 }
 
 /// LDM. rm and rs: first address and new base, in words relative to the base, signed; amount:
-/// number of registers; shift: the first one; rd: the last one.
-template <bool kPc, bool kThumb, Core::Ops::Block kBlock>
+/// number of registers; shift and rd: the first and the last one; raw: how many of them follow each
+/// other from the first one on, and a list of the others << 16. Most blocks lie in one line; kLong
+/// is for the others.
+template <bool kPc, bool kThumb, bool kLong>
 Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.regs_.r[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.data_.fill.last) [[unlikely]] return generic(c, i, cycle);
   if (kPc && (c.system_.control & kArmV4Loads)) [[unlikely]] return generic(c, i, cycle);
-  constexpr bool kLong = kBlock == Block::kLong;
-  if (!kLong && (va ^ last) >= kReadSpan)
-    return load_block<kPc, kThumb, Block::kLong>(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return load_block<kPc, kThumb, true>(c, i, cycle);
   for (std::uint32_t line = va & ~(kReadSpan - 1);; line += kReadSpan) {
     if (c.data_.read_hints[line / kReadSpan % kHints].key != line) [[unlikely]]
       return generic(c, i, cycle);
@@ -255,28 +258,28 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   c.log_.note(i, va);
   std::uint32_t target = 0;
   auto& r = c.regs_.r;
-  if constexpr (kBlock == Block::kRun) {
+  const auto load = [&](std::uint32_t set, const std::uint8_t* from, unsigned words) {
+    for (; words; --words, set &= set - 1, from += 4) {
+      const unsigned to = lowest(set);
+      if (kPc && to == 15) target = read<Op::kLdr>(from);
+      else r[to] = read<Op::kLdr>(from);
+    }
+    return set;
+  };
+  if constexpr (!kLong) {
     const Hint& hint = c.data_.read_hint(va);
     c.counter(hint) += i->amount;
     const std::uint8_t* const from = host(hint.bias, va);
-    const unsigned words = i->amount - (kPc ? 1u : 0u);
+    const unsigned words = first_run(*i);
     copy_words(&r[i->shift], from, words);
-    if (kPc) target = read<Op::kLdr>(from + 4 * words);
+    load(i->raw >> 16, from + 4 * words, i->amount - words);
   } else {
     std::uint32_t set = i->imm;
     for (unsigned left = i->amount; left;) {
       const Hint& hint = c.data_.read_hint(va);
-      const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+      const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
       c.counter(hint) += here;
-      const std::uint8_t* from = host(hint.bias, va);
-      for (const std::uint8_t* const end = from + 4 * here; from != end; from += 4) {
-        const std::uint32_t value = read<Op::kLdr>(from);
-        const unsigned to = lowest(set);
-        set &= set - 1;
-        if (kPc && to == 15) target = value;
-        else r[to] = value;
-      }
-      if (!kLong) break;
+      set = load(set, host(hint.bias, va), here);
       va += 4 * here;
       left -= here;
     }
@@ -290,37 +293,37 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle);
 }
 
-template <Core::Ops::Block kBlock>
+template <bool kLong>
 Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.regs_.r[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.data_.fill.last) [[unlikely]] return generic(c, i, cycle);
-  constexpr bool kLong = kBlock == Block::kLong;
-  if (!kLong && (va ^ last) >= kReadSpan) return store_block<Block::kLong>(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) return store_block<true>(c, i, cycle);
   for (std::uint32_t half = va & ~(kWriteSpan - 1);; half += kWriteSpan) {
     if (c.data_.write_hints[half / kWriteSpan % kHints].key != half) [[unlikely]]
       return generic(c, i, cycle);
     if (half == (last & ~(kWriteSpan - 1))) break;
   }
   c.log_.note(i, va);
-  if constexpr (kBlock == Block::kRun) {
+  const auto store = [&](std::uint32_t set, std::uint8_t* to, unsigned words) {
+    for (; words; --words, set &= set - 1, to += 4) std::memcpy(to, &c.regs_.r[lowest(set)], 4);
+    return set;
+  };
+  if constexpr (!kLong) {
     const Hint& hint = c.data_.write_hints[va / kWriteSpan % kHints];
     c.counter(hint) += i->amount;
-    // Both halves of a line are adjacent in host memory.
-    copy_words(host(hint.bias, va), &c.regs_.r[i->shift], i->amount);
+    std::uint8_t* const to = host(hint.bias, va);  // a line's halves are adjacent in host memory
+    const unsigned words = first_run(*i);
+    copy_words(to, &c.regs_.r[i->shift], words);
+    store(i->raw >> 16, to + 4 * words, i->amount - words);
   } else {
     std::uint32_t set = i->imm;
     for (unsigned left = i->amount; left;) {
       const Hint& hint = c.data_.write_hints[va / kWriteSpan % kHints];
-      const unsigned here = kLong ? std::min(left, (kReadSpan - va % kReadSpan) / 4) : left;
+      const unsigned here = std::min(left, (kReadSpan - va % kReadSpan) / 4);
       c.counter(hint) += here;
-      std::uint8_t* to = host(hint.bias, va);
-      for (std::uint8_t* const end = to + 4 * here; to != end; to += 4) {
-        std::memcpy(to, &c.regs_.r[lowest(set)], 4);
-        set &= set - 1;
-      }
-      if (!kLong) break;
+      set = store(set, host(hint.bias, va), here);
       va += 4 * here;
       left -= here;
     }
@@ -336,20 +339,20 @@ Handler Core::Ops::block_body(Instruction& i) {
   if (i.op == Op::kStm && pc) return nullptr;
   const BlockShape shape = block_shape(i.imm, i.flags & kUp, i.flags & kPre);
   i.amount = static_cast<std::uint8_t>(shape.words);
+  i.rm = static_cast<std::uint8_t>(shape.first);
+  i.rs = static_cast<std::uint8_t>(shape.moved);
   i.rd = static_cast<std::uint8_t>(31 - std::countl_zero(i.imm));
   i.shift = static_cast<std::uint8_t>(std::countr_zero(i.imm));
-  const std::uint32_t moved_alike = (pc ? i.imm & 0x7FFFu : i.imm) >> i.shift;
-  const bool run = moved_alike != 0 && (moved_alike & (moved_alike + 1)) == 0;
-  if (i.op == Op::kStm) return run ? &store_block<Block::kRun> : &store_block<Block::kList>;
+  const int run = std::countr_one((i.imm & 0x7FFFu) >> i.shift);
+  i.raw = static_cast<std::uint32_t>(run) |
+          (i.imm & ~(((1u << run) - 1) << i.shift) & 0xFFFFu) << 16;
+  if (i.op == Op::kStm) return &store_block<false>;
   // The write-back wins, unless the base is the last of several registers.
   if (shape.words > 1 && i.imm >> i.rn == 1u)
     i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
   const bool thumb = i.flags & kThumbInsn;
-  if (!pc)
-    return run ? &load_block<false, false, Block::kRun> : &load_block<false, false, Block::kList>;
-  if (thumb)
-    return run ? &load_block<true, true, Block::kRun> : &load_block<true, true, Block::kList>;
-  return run ? &load_block<true, false, Block::kRun> : &load_block<true, false, Block::kList>;
+  if (!pc) return &load_block<false, false, false>;
+  return thumb ? &load_block<true, true, false> : &load_block<true, false, false>;
 }
 
 }  // namespace fovea::cpu

@@ -37,6 +37,20 @@ std::uint32_t operands(const Instruction& i) {
   return static_cast<std::uint32_t>(i.sources) | i.stored;
 }
 
+/// Registers that may not be available yet after the instruction.
+std::uint16_t perhaps_late(const Instruction& i) {
+  switch (i.op) {
+    case Op::kStr: case Op::kStrb: case Op::kStrh: case Op::kStrd: case Op::kStm: case Op::kPld:
+    case Op::kB: case Op::kBl: case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlPrefix:
+    case Op::kThumbBlSuffix: case Op::kClz:
+      return 0;
+    default: break;
+  }
+  if (i.op <= Op::kMvn) return 0;
+  const std::uint32_t known = late_results(i).registers;
+  return static_cast<std::uint16_t>(known ? known : 0xFFFFu);
+}
+
 }  // namespace
 
 Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb) {
@@ -48,6 +62,18 @@ Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb) {
   std::uint32_t word;
   std::memcpy(&word, bytes + 4 * index, 4);
   return decode_arm(word);
+}
+
+void DecodedLine::prepare_record(const Instruction& decoded, unsigned index, RecordContext context,
+                                 bool shifted_cycle) {
+  const bool thumb = decoded.flags & kThumbInsn;
+  const unsigned count = thumb ? 16 : 8;
+  records[index] = decoded;
+  prepare(records[index], index * 32 / count, context, shifted_cycle);
+  // The last two may delay the first ones of the next line.
+  if (index + 2 >= count)
+    records[count].sources =
+        static_cast<std::uint16_t>(records[count].sources | perhaps_late(decoded));
 }
 
 /// Within a chain only the two preceding records can delay a record, and a taken branch takes
@@ -215,6 +241,8 @@ template <bool kThumb>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle,
                                                            DecodedLine& d) {
   if (!d.records[0].body) [[unlikely]] return leave(c, i, cycle);
+  if (!((operands(d.records[0]) | operands(d.records[1])) & i->sources))
+    return enter_line<kThumb>(c, i, cycle, d);
   const Cycle start = held(c, &d.records[0], cycle);
   if (start == kNever) [[unlikely]] return leave(c, i, cycle);
   if (start > cycle) stall(c, cycle, start);
