@@ -310,11 +310,13 @@ class Core : public Background {
     return nullptr;
   }
   template <unsigned kBytes>
-  [[gnu::noinline]] bool store_beside_cache(std::uint32_t va, std::uint32_t value);
+  [[gnu::noinline]] bool store_beside_cache(const Instruction* i, std::uint32_t va,
+                                            std::uint32_t value);
   template <unsigned kBytes>
-  [[gnu::noinline]] void store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value);
+  [[gnu::noinline]] void store_absent(const Instruction* i, std::uint32_t va, std::uint32_t pa,
+                                      std::uint32_t value);
   template <unsigned kBytes>
-  [[gnu::noinline]] const std::uint8_t* load_cached(std::uint32_t va);
+  [[gnu::noinline]] const std::uint8_t* load_cached(const Instruction* i, std::uint32_t va);
   Result load(std::uint32_t va, unsigned bytes, std::uint32_t& value, Rights rights);
   Result store(std::uint32_t va, unsigned bytes, std::uint32_t value, Rights rights);
   Result store_words(std::uint32_t va, const std::uint32_t* words, unsigned count);

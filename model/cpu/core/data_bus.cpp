@@ -2,6 +2,13 @@
 
 namespace fovea::cpu {
 
+/// AHB clock at which the write under way, whose outcome is known, leaves the port.
+[[gnu::always_inline]] inline std::uint64_t DataBus::write_over() const {
+  if (write_over_ == 0)
+    write_over_ = interface_.ahb(interface_.clock.edge_at_or_after(write_access_.last));
+  return write_over_;
+}
+
 /// Waits until the next buffered write can be sent: until the last words of a read have left the
 /// port, then for an edge of the AHB clock.
 void DataBus::wait_for_port(Cause cause) {
@@ -27,13 +34,6 @@ std::uint64_t DataBus::next_act_cycle() const {
   return interface_.ahb(std::max(next_write_cycle_, port_free_));
 }
 
-/// AHB clock at which the write under way, whose outcome is known, leaves the port.
-std::uint64_t DataBus::write_over() const {
-  if (write_over_ == 0)
-    write_over_ = interface_.ahb(interface_.clock.edge_at_or_after(write_access_.last));
-  return write_over_;
-}
-
 void DataBus::act() {
   interface_.buffers_act = true;
   act_at(next_act_cycle());
@@ -54,20 +54,16 @@ void DataBus::retire_write() {
     writes_.acknowledge(write_access_.bytes);
 }
 
-void DataBus::start_write(std::uint64_t cycle) {
-  write_is_victim_ = writes_.victim_bytes != 0;
+/// The next burst of the victim buffer, or of a write buffer entry of several words.
+void DataBus::next_burst() {
   BusAccess& a = write_access_;
-  if (const WriteBuffer::Entry& e = writes_.front(); !write_is_victim_ && e.bytes == 4) {
-    a.bytes = 4;
-    a.address = e.address;
-    a.asked = e.asked;
-    std::memcpy(a.data, e.data.data(), 4);
-  } else if (write_is_victim_) {
+  if (write_is_victim_) {
     a.address = writes_.victim_address;
     a.bytes = static_cast<std::uint8_t>(writes_.victim_bytes);
     a.asked = writes_.victim_asked;
     std::memcpy(a.data, writes_.victim.data(), a.bytes);
   } else {
+    const WriteBuffer::Entry& e = writes_.front();
     a.bytes = static_cast<std::uint8_t>(WriteBuffer::next_burst(e));
     a.address = e.address + e.sent;
     a.asked = e.asked;
@@ -76,7 +72,21 @@ void DataBus::start_write(std::uint64_t cycle) {
   a.kind = a.bytes == 32   ? BusAccess::Kind::kIncr8
            : a.bytes == 16 ? BusAccess::Kind::kIncr4
                            : BusAccess::Kind::kSingle;
+}
+
+void DataBus::start_write(std::uint64_t cycle) {
+  BusAccess& a = write_access_;
+  write_is_victim_ = writes_.victim_bytes != 0;
   a.victim = write_is_victim_;
+  if (const WriteBuffer::Entry& e = writes_.front(); !write_is_victim_ && e.bytes == 4) {
+    a.kind = BusAccess::Kind::kSingle;
+    a.bytes = 4;
+    a.address = e.address;
+    a.asked = e.asked;
+    std::memcpy(a.data, e.data.data(), 4);
+  } else {
+    next_burst();
+  }
   write_in_flight_ = true;
   write_over_ = 0;
   port_free_ = cycle;

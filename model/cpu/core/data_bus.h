@@ -88,6 +88,7 @@ class DataBus {
   std::uint64_t next_act_cycle() const;
   void act_at(std::uint64_t cycle);
   void start_write(std::uint64_t ahb_cycle);
+  [[gnu::noinline]] void next_burst();
   void retire_write();
   std::uint64_t write_over() const;
   [[gnu::noinline]] bool write_is_over(std::uint64_t cycle);

@@ -4,12 +4,12 @@
 // stack frame.
 //
 // Within a chain, the clock is a parameter (kept in a host register); the ledger's clock, the pc
-// and the counters keep their values from the start of the chain until settle(). A handler that calls a
-// function out of line and then continues must not have a variable whose address is taken: the
-// compiler would keep its frame, and the stack would grow with the chain (checked by iss.chain). A
-// chain begins when nothing is under way that could delay a record (operands, an instruction fill).
-// It ends at chain_.stop, at a record or line that is not known yet, and after an instruction that
-// may have called the outside if that requires attention.
+// and the counters keep their values from the start of the chain until settle(). A handler that
+// calls a function out of line and then continues must not have a variable whose address is taken:
+// the compiler would keep its frame, and the stack would grow with the chain (checked by
+// iss.chain). A chain begins when nothing is under way that could delay a record (operands, an
+// instruction fill). It ends at chain_.stop, at a record or line that is not known yet, and after
+// an instruction that may have called the outside if that requires attention.
 #pragma once
 #include <utility>
 

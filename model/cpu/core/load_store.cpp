@@ -100,7 +100,7 @@ template <Op kOp, Indexed kIndexed, bool kTrack>
     c.data_.wait_for_fill(c.system_.modified(va));
     from = host(hint.bias, va);
   } else {
-    from = c.load_cached<kBytes>(va);
+    from = c.load_cached<kBytes>(i, va);
     if (!from) return generic(c, i, cycle);
   }
   const std::uint32_t value = read<kOp>(from);
@@ -135,8 +135,8 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.regs_.r[i->rn] : end;
   c.settle(i, cycle);
   if (c.data_.absent.key == (va & ~(kReadSpan - access_bytes(kOp))))
-    c.store_absent<access_bytes(kOp)>(va, c.data_.absent.pa | va % kReadSpan, c.regs_.r[i->rd]);
-  else if (!c.store_beside_cache<access_bytes(kOp)>(va, c.regs_.r[i->rd]))
+    c.store_absent<access_bytes(kOp)>(i, va, c.data_.absent.pa | va % kReadSpan, c.regs_.r[i->rd]);
+  else if (!c.store_beside_cache<access_bytes(kOp)>(i, va, c.regs_.r[i->rd]))
     return generic(c, i, cycle);
   if constexpr (kIndexed != Indexed::kOffset) c.regs_.r[i->rn] = end;
   c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);

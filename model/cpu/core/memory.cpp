@@ -19,16 +19,16 @@ void Core::ram_access(std::uint32_t pa, TcmPort::Side side) {
 /// An aligned, cacheable load that is known to be permitted. Returns nullptr, without having done
 /// anything, if the load is of another kind.
 template <unsigned kBytes>
-const std::uint8_t* Core::load_cached(std::uint32_t va) {
+const std::uint8_t* Core::load_cached(const Instruction* i, std::uint32_t va) {
   const std::uint32_t mva = system_.modified(va);
   const Translation* const t = mmu_.known_cacheable(mva, Access::kLoad, !regs_.privileged());
   if (!t || !system_.data_cached() || (mva & (kBytes - 1))) return nullptr;
-  log_.note(regs_.pc, va, kBytes, false);
+  log_.note(i, va);
   return data_.load(va, mva, *t);
 }
-template const std::uint8_t* Core::load_cached<1>(std::uint32_t);
-template const std::uint8_t* Core::load_cached<2>(std::uint32_t);
-template const std::uint8_t* Core::load_cached<4>(std::uint32_t);
+template const std::uint8_t* Core::load_cached<1>(const Instruction*, std::uint32_t);
+template const std::uint8_t* Core::load_cached<2>(const Instruction*, std::uint32_t);
+template const std::uint8_t* Core::load_cached<4>(const Instruction*, std::uint32_t);
 
 Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, Rights rights) {
   if (misaligned(va, bytes)) return Result::kAbort;
@@ -103,32 +103,36 @@ Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, 
 /// A store that misses the cache and goes to the write buffer. Returns false, without having done
 /// anything, if the store is of another kind.
 template <unsigned kBytes>
-bool Core::store_beside_cache(std::uint32_t va, std::uint32_t value) {
+bool Core::store_beside_cache(const Instruction* i, std::uint32_t va, std::uint32_t value) {
   const std::uint32_t mva = system_.modified(va);
   const Translation* const t = mmu_.known_cacheable(mva, Access::kStore, !regs_.privileged());
   if (!t || !system_.data_cached() || (mva & (kBytes - 1)) || data_.lines().find(mva) >= 0)
     return false;
   const std::uint32_t pa = t->physical(mva);
   data_.hint_absent(va, pa);
-  store_absent<kBytes>(va, pa, value);
+  store_absent<kBytes>(i, va, pa, value);
   return true;
 }
-template bool Core::store_beside_cache<1>(std::uint32_t, std::uint32_t);
-template bool Core::store_beside_cache<2>(std::uint32_t, std::uint32_t);
-template bool Core::store_beside_cache<4>(std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<1>(const Instruction*, std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<2>(const Instruction*, std::uint32_t, std::uint32_t);
+template bool Core::store_beside_cache<4>(const Instruction*, std::uint32_t, std::uint32_t);
 
 /// A store to a writable line that the cache does not hold.
 template <unsigned kBytes>
-void Core::store_absent(std::uint32_t va, std::uint32_t pa, std::uint32_t value) {
-  log_.note(regs_.pc, va, kBytes, true);
+void Core::store_absent(const Instruction* i, std::uint32_t va, std::uint32_t pa,
+                        std::uint32_t value) {
+  log_.note(i, va);
   ++ledger_.counts.dcache_writes;
   if (ledger_.cycle < data_.fill.last) data_.wait_for_fill(system_.modified(va));
   ++ledger_.counts.dcache_write_misses;
   bus_.buffer_word<kBytes>(pa, value);
 }
-template void Core::store_absent<1>(std::uint32_t, std::uint32_t, std::uint32_t);
-template void Core::store_absent<2>(std::uint32_t, std::uint32_t, std::uint32_t);
-template void Core::store_absent<4>(std::uint32_t, std::uint32_t, std::uint32_t);
+template void Core::store_absent<1>(const Instruction*, std::uint32_t, std::uint32_t,
+                                      std::uint32_t);
+template void Core::store_absent<2>(const Instruction*, std::uint32_t, std::uint32_t,
+                                      std::uint32_t);
+template void Core::store_absent<4>(const Instruction*, std::uint32_t, std::uint32_t,
+                                      std::uint32_t);
 
 /// Stores the words of an STM or STRD. Consecutive words for the write buffer share an entry.
 Core::Result Core::store_words(std::uint32_t va, const std::uint32_t* words, unsigned count) {
