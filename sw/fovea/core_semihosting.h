@@ -8,16 +8,15 @@
 
 namespace fovea::app {
 
-/// Uses the core's SWI hook during its lifetime.
+/// Handles SWIs of the core during its lifetime.
 class CoreSemihosting : private SemihostingTarget {
  public:
   /// @param over called after each call: returns true if no further instruction may be executed
   CoreSemihosting(cpu::Core& core, cpu::DebugMemory& memory, const SemihostingSettings& settings,
                   SemihostingConsole& console, std::function<bool()> over)
       : core_(core), debug_(core, memory), calls_(settings, console), over_(std::move(over)) {
-    core_.swi_hook = [this](cpu::Core&, std::uint32_t number) { return swi(number); };
+    handling_ = core_.handle_swi([this](cpu::Core&, std::uint32_t n) { return swi(n); });
   }
-  ~CoreSemihosting() { core_.swi_hook = nullptr; }
   CoreSemihosting(const CoreSemihosting&) = delete;
   CoreSemihosting& operator=(const CoreSemihosting&) = delete;
 
@@ -45,6 +44,7 @@ class CoreSemihosting : private SemihostingTarget {
   cpu::CoreDebug debug_;
   Semihosting calls_;
   std::function<bool()> over_;
+  Subscription handling_;
 };
 
 }  // namespace fovea::app

@@ -73,14 +73,12 @@ std::vector<StallRow> stall_rows(const cpu::Counts& from, const cpu::Counts& to,
   FOVEA_CHECK(to.unexplained() == cpu::Cause::kCount,
               "every stalled clock has one region and one culprit");
   std::vector<StallRow> rows;
-  for (std::size_t k = 0; k < cpu::kCauses; ++k)
+  for (const cpu::CauseInfo& info : cpu::kCauseTable)
     for (std::size_t r = 0; r < regions.names().size(); ++r)
       for (std::size_t c = 0; c < cpu::kStallCulprits; ++c) {
-        const auto cause = static_cast<cpu::Cause>(k);
-        const std::uint64_t n = to.stalled(cause, r, c, from);
+        const std::uint64_t n = to.stalled(info.cause, r, c, from);
         if (n != 0)
-          rows.push_back({cpu::kCauseNames[k], regions.names()[r],
-                          std::string(cpu::stall_culprit_name(c)), n});
+          rows.push_back({info.name, regions.names()[r], std::string(cpu::stall_culprit_name(c)), n});
       }
   return rows;
 }

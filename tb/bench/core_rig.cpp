@@ -43,11 +43,11 @@ CoreRig::CoreRig(const std::string& elf, std::uint64_t clocks) : core(params, po
   port.core = &core;
   if (clocks) port.limit = clocks * kClock;
   core.set_clock(Frequency(kPsPerSecond / kClock), 0);
-  core.swi_hook = [](Core& c, std::uint32_t number) {
+  exit_ = core.handle_swi([](Core& c, std::uint32_t number) {
     if (number != 0x123456u) return false;
     c.request_stop();
     return true;
-  };
+  });
   core.reset(word(24), 0);
 }
 

@@ -38,6 +38,9 @@ class CoreRig {
   QuietPort port{32u << 20};
   std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
   Core core;
+
+ private:
+  Subscription exit_;
 };
 
 }  // namespace fovea::cpu

@@ -147,10 +147,10 @@ TEST(CoreDebugTest, WithoutTcmItsWindowsAreMemory) {
   Core core(params, port, {});
   port.attach(&core);
   core.set_clock(Frequency(250'000'000), 0);
-  core.swi_hook = [](Core& c, std::uint32_t) {
+  const Subscription exit = core.handle_swi([](Core& c, std::uint32_t) {
     c.request_stop();
     return true;
-  };
+  });
   const Program p = assemble(R"(
     ldr r0, =0x10000
     mov r1, #7
@@ -340,6 +340,49 @@ TEST(CoreControlTest, StepsGoInstructionByInstructionAndRangesAsOne) {
   m.control.request_halt();
   m.execute(kLoop);
   EXPECT_EQ(m.pcs, (std::vector<std::uint32_t>{0, 4, loop, here}));
+}
+
+TEST(CoreControlTest, TwoToolsWatchOneCoreAndEachIsReleasedAlone) {
+  ControlledMachine m;
+  const auto p = assemble(std::string(kLoop) + "\n svc #2\n .ltorg\n", 0);
+  const std::uint32_t loop = p.symbols.at("loop"), here = p.symbols.at("here");
+  std::vector<std::uint32_t> seen;
+  std::optional<CoreControl> other(std::in_place, m.core, m.debug);
+  other->on_stop = [&](const CoreControl::Stop&) {
+    seen.push_back(m.core.reg(15));
+    if (seen.size() == 2) other->clear();
+  };
+  m.control.set_breakpoint(here);
+  other->set_breakpoint(loop);
+  m.execute(kLoop);
+  EXPECT_EQ(m.pcs, (std::vector<std::uint32_t>{here, here, here}));
+  EXPECT_EQ(seen, (std::vector<std::uint32_t>{loop, loop}));
+
+  other->set_breakpoint(loop);
+  other.reset();
+  m.execute(kLoop);
+  EXPECT_EQ(m.pcs.size(), 6u) << "the first one is still there";
+  m.control.clear();
+  m.execute(kLoop);
+  EXPECT_EQ(m.pcs.size(), 6u);
+}
+
+TEST(SwiTest, HandlersOfSwisAreAskedInOrderUntilOneAnswers) {
+  DebugMachine m;
+  m.svc_handling.reset();
+  std::vector<std::uint32_t> first, second;
+  const Subscription a = m.core.handle_swi([&](Core&, std::uint32_t n) {
+    first.push_back(n);
+    return n == 20;
+  });
+  const Subscription b = m.core.handle_swi([&](Core& c, std::uint32_t n) {
+    second.push_back(n);
+    if (n == 2) c.request_stop();
+    return true;
+  });
+  m.execute("svc #20\n svc #21\n");
+  EXPECT_EQ(first, (std::vector<std::uint32_t>{20, 21, 2}));
+  EXPECT_EQ(second, (std::vector<std::uint32_t>{21, 2}));
 }
 
 /// Stops come before the access, with its lowest address; each address is worked out by hand.

@@ -20,13 +20,13 @@ class CoreTest {
   explicit CoreTest(Core& core) : c(core) {}
   void begin(std::uint32_t pc, std::uint32_t cpsr) {
     c.stop_requested_ = false;
-    c.chain_ = 0;
-    c.failing_ = false;
+    c.failure_.exceptions = 0;
+    c.failure_.failed = false;
     c.set_cpsr(cpsr);
     c.next_pc_ = pc;
     c.enter_exception();
-    c.fetch_branched_ = true;
-    c.attention_ = true;
+    c.fetch_.branched = true;
+    c.end_chain();
   }
   void system(std::uint32_t control, std::uint32_t tables, std::uint32_t domains,
               std::uint32_t process) {
@@ -34,11 +34,11 @@ class CoreTest {
     c.cp15_write(2u << 8, tables);
     c.cp15_write(3u << 8, domains);
     c.cp15_write(13u << 8, process);
-    c.tlb_lock_ = c.dlock_ = c.ilock_ = 0;
+    c.system_.tlb_lock = c.system_.dlock = c.system_.ilock = 0;
     c.cp15_write(8u << 8 | 7u << 4, 0);
   }
-  std::uint32_t pc() const { return c.pc_; }
-  bool flags_hold() const { return c.cpsr() == c.cpsr_; }
+  std::uint32_t pc() const { return c.regs_.pc; }
+  bool flags_hold() const { return c.cpsr() == c.regs_.cpsr; }
   Core& c;
 };
 
@@ -73,7 +73,7 @@ class FuzzTest : public testing::Test {
   }
   FuzzTest() {
     m.port.core = &m.core;
-    m.core.swi_hook = {};
+    m.svc_handling.reset();
     m.core.reset(0, 0);
   }
   /// As they were: random stores reach them.

@@ -53,9 +53,10 @@ class MachineWith {
   explicit MachineWith(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);
-    core.swi_hook = [this](Core& c, std::uint32_t number) { return swi(c, number); };
+    svc_handling = core.handle_swi([this](Core& c, std::uint32_t n) { return swi(c, n); });
     identity_map();
   }
+  Subscription svc_handling;  ///< reset(): no SWI is handled, each goes to the guest
   std::function<void(std::uint32_t)> on_svc;  ///< called for `svc #3` to `svc #15`
   /// `svc #0` with r7: Linux write and exit; #1 records the clock; #2 ends the run; from 16 on a
   /// real exception.

@@ -86,7 +86,7 @@ class SystemMachine {
     port.core = &core;
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);
-    core.swi_hook = [this](Core& c, std::uint32_t number) { return semihosting(c, number); };
+    handling_ = core.handle_swi([this](Core& c, std::uint32_t n) { return semihosting(c, n); });
   }
   void load(std::uint32_t address, const std::vector<std::uint8_t>& bytes) {
     if (!port.mapped(address, static_cast<unsigned>(bytes.size())))
@@ -139,6 +139,8 @@ class SystemMachine {
     }
     return true;
   }
+
+  Subscription handling_;
 };
 
 }  // namespace fovea::cpu::test

@@ -20,18 +20,19 @@ class CoreTest {
  public:
   explicit CoreTest(Core& core) : c(core) {}
   Core& c;
-  std::uint32_t pc() const { return c.pc_; }
-  std::uint32_t mode() const { return c.cpsr_ & 31u; }
-  std::uint32_t& r(unsigned n) { return c.r_[n]; }
-  std::uint32_t& cpsr() { return c.cpsr_; }
-  std::uint32_t& spsr() { return c.spsr_[Core::bank(c.cpsr_)]; }
-  std::uint32_t& far() { return c.far_; }
-  std::uint32_t& dfsr() { return c.dfsr_; }
-  std::uint32_t& dacr() { return c.dacr_; }
+  std::uint32_t pc() const { return c.regs_.pc; }
+  std::uint32_t mode() const { return c.regs_.cpsr & kModeBits; }
+  std::uint32_t& r(unsigned n) { return c.regs_.r[n]; }
+  std::uint32_t& cpsr() { return c.regs_.cpsr; }
+  std::uint32_t& spsr() { return c.regs_.spsr(); }
+  std::uint32_t& far() { return c.system_.far; }
+  std::uint32_t& dfsr() { return c.system_.dfsr; }
+  std::uint32_t& dacr() { return c.system_.dacr; }
+  /// r13 (0) or r14 (1) of a mode that is not the present one.
   std::uint32_t& banked(std::uint32_t mode, unsigned which) {
-    return c.banked_[Core::bank(mode)][which];
+    return c.regs_.banked(RegisterFile::bank(mode), 13 + which);
   }
-  std::uint32_t& user_high(unsigned n) { return c.user_high_[n - 8]; }
+  std::uint32_t& user_high(unsigned n) { return c.regs_.user_high(n); }
 };
 
 namespace test {

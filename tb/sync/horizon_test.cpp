@@ -75,11 +75,11 @@ std::string instructions_before_interrupt(const cpu::test::Program& program, Pic
   Alarm alarm("alarm", irq_at, [&irq] { irq.write(true); });
   std::memcpy(ram.data(), program.bytes.data(), program.bytes.size());
   std::string answer;
-  arm.core().swi_hook = [&answer](cpu::Core& c, std::uint32_t) {
+  const Subscription exit = arm.core().handle_swi([&answer](cpu::Core& c, std::uint32_t) {
     answer = std::to_string(c.reg(8));
     c.request_stop();
     return true;
-  };
+  });
   sc_core::sc_start(ps_time(100 * kPsPerUs));
   return answer;
 }

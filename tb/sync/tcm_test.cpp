@@ -177,11 +177,11 @@ std::string run(const Case& s) {
   }
   arm.core().set_reg(9, kSdram + 0x20'0000);
   bool ended = false;
-  arm.core().swi_hook = [&ended](cpu::Core& c, std::uint32_t number) {
+  const Subscription exit = arm.core().handle_swi([&ended](cpu::Core& c, std::uint32_t number) {
     ended = number == 2;
     c.request_stop();
     return true;
-  };
+  });
   sc_core::sc_start(ps_time(50 * kPsPerMs));
 
   std::string out = first.record + second.record;

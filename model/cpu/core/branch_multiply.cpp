@@ -5,34 +5,35 @@ namespace fovea::cpu {
 
 template <Op kOp, bool kSet>
 Core::Ops::Next Core::Ops::multiply(Core& c, Next i, Cycle cycle) {
-  ++c.counts_.multiplies;
+  ++c.ledger_.counts.multiplies;
   if constexpr (kOp == Op::kMul || kOp == Op::kMla) {
     // In the encoding, Rd is in bits 19:16 and the accumulator in bits 15:12.
-    const std::uint32_t v = c.r_[i->rm] * c.r_[i->rs] + (kOp == Op::kMla ? c.r_[i->rd] : 0);
-    c.r_[i->rn] = v;
+    const auto& r = c.regs_.r;
+    const std::uint32_t v = r[i->rm] * r[i->rs] + (kOp == Op::kMla ? r[i->rd] : 0);
+    c.regs_.r[i->rn] = v;
     if constexpr (kSet) {
-      c.n_ = c.z_ = v;
+      c.regs_.n = c.regs_.z = v;
       return next(c, i + 1, cycle + 4);
     }
-    track(c, i->rn, cycle + 3, kMultiply);
+    track(c, i->rn, cycle + 3, Scoreboard::kMultiply);
     return next(c, i + 1, cycle + 2);
   } else {
     std::uint64_t v;
     if constexpr (kOp == Op::kUmull || kOp == Op::kUmlal)
-      v = std::uint64_t{c.r_[i->rm]} * c.r_[i->rs];
+      v = std::uint64_t{c.regs_.r[i->rm]} * c.regs_.r[i->rs];
     else
-      v = static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(c.r_[i->rm])} *
-                                     static_cast<std::int32_t>(c.r_[i->rs]));
+      v = static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(c.regs_.r[i->rm])} *
+                                     static_cast<std::int32_t>(c.regs_.r[i->rs]));
     if constexpr (kOp == Op::kUmlal || kOp == Op::kSmlal)
-      v += std::uint64_t{c.r_[i->rn]} << 32 | c.r_[i->rd];
-    c.r_[i->rd] = static_cast<std::uint32_t>(v);
-    c.r_[i->rn] = static_cast<std::uint32_t>(v >> 32);
+      v += std::uint64_t{c.regs_.r[i->rn]} << 32 | c.regs_.r[i->rd];
+    c.regs_.r[i->rd] = static_cast<std::uint32_t>(v);
+    c.regs_.r[i->rn] = static_cast<std::uint32_t>(v >> 32);
     if constexpr (kSet) {
-      c.n_ = c.r_[i->rn];
-      c.z_ = v != 0;
+      c.regs_.n = c.regs_.r[i->rn];
+      c.regs_.z = v != 0;
       return next(c, i + 1, cycle + 5);
     }
-    track(c, i->rn, cycle + 4, kMultiply);
+    track(c, i->rn, cycle + 4, Scoreboard::kMultiply);
     return next(c, i + 1, cycle + 3);
   }
 }
@@ -50,44 +51,45 @@ Handler Core::Ops::multiply_body(Instruction& i) {
 }
 
 Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
-  c.r_[i->rd] = static_cast<std::uint32_t>(std::countl_zero(c.r_[i->rm]));
+  c.regs_.r[i->rd] = static_cast<std::uint32_t>(std::countl_zero(c.regs_.r[i->rm]));
   return next(c, i + 1, cycle + 1);
 }
 
 /// B and BL. imm: target relative to the first byte of the line. kNear: the target is in the same
-/// line, and raw is the distance of its record in host memory, in bytes.
+/// line, and raw is the distance of its record in host memory, in bytes; otherwise raw is its
+/// record_offset().
 template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
-  if constexpr (kLink) c.r_[14] = c.run_va_ + i->at + 4;
+  if constexpr (kLink) c.regs_.r[14] = c.chain_.va + i->at + 4;
   if constexpr (kNear) {
-    ++c.counts_.redirects;
+    ++c.ledger_.counts.redirects;
     const std::intptr_t distance = static_cast<std::int32_t>(i->raw);
-    c.run_first_ += distance - static_cast<std::intptr_t>(sizeof(Instruction));
+    c.chain_.first += distance - static_cast<std::intptr_t>(sizeof(Instruction));
     return next(c, reinterpret_cast<Next>(reinterpret_cast<const char*>(i) + distance), cycle + 3);
   } else {
-    return jump<kThumb, false>(c, i, cycle + 3, c.run_va_ + i->imm);
+    return jump<kThumb, false>(c, i, cycle + 3, c.chain_.va + i->imm, i->raw);
   }
 }
 
 template <bool kThumb, bool kLink>
 Core::Ops::Next Core::Ops::branch_exchange(Core& c, Next i, Cycle cycle) {
-  const std::uint32_t target = c.r_[i->rm];
+  const std::uint32_t target = c.regs_.r[i->rm];
   if constexpr (kLink) {
-    const std::uint32_t pc = c.run_va_ + i->at;
-    c.r_[14] = kThumb ? (pc + 2) | 1u : pc + 4;
+    const std::uint32_t pc = c.chain_.va + i->at;
+    c.regs_.r[14] = kThumb ? (pc + 2) | 1u : pc + 4;
   }
   return exchange<kThumb>(c, i, cycle + 3, target);
 }
 
 /// imm: relative to the first byte of the line.
 Core::Ops::Next Core::Ops::thumb_link_prefix(Core& c, Next i, Cycle cycle) {
-  c.r_[14] = c.run_va_ + i->imm;
+  c.regs_.r[14] = c.chain_.va + i->imm;
   return next(c, i + 1, cycle + 1);
 }
 Core::Ops::Next Core::Ops::thumb_link_suffix(Core& c, Next i, Cycle cycle) {
-  const std::uint32_t target = c.r_[14] + i->imm;
-  c.r_[14] = (c.run_va_ + i->at + 2) | 1u;
+  const std::uint32_t target = c.regs_.r[14] + i->imm;
+  c.regs_.r[14] = (c.chain_.va + i->at + 2) | 1u;
   return jump<true, true>(c, i, cycle + 3, target & ~1u);
 }
 
@@ -107,6 +109,8 @@ Handler Core::Ops::branch_body(Instruction& i, Context context) {
     const auto from = static_cast<std::int32_t>(i.at), to = static_cast<std::int32_t>(i.imm);
     i.raw = static_cast<std::uint32_t>((to - from) / (thumb ? 2 : 4) *
                                        static_cast<std::int32_t>(sizeof(Instruction)));
+  } else {
+    i.raw = thumb ? record_offset<true>(i.imm) : record_offset<false>(i.imm);
   }
   const bool link = i.op == Op::kBl;
   return select(i.cond, [&](auto k) -> Handler {

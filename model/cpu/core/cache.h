@@ -74,4 +74,18 @@ class Cache {
   mutable std::array<std::uint16_t, kHints> hints_{};  // index of the line found last, by address
 };
 
+/// A line fill under way. The core continues when the first word is there, and each further word
+/// can be used as it arrives.
+struct LineFill {
+  std::uint32_t line = 1;      // MVA of the line that is being filled; 1: none
+  std::uint32_t critical = 0;  // number of the word that arrives first
+  std::uint32_t pa = 0;
+  std::uint64_t first = 0, last = 0;  // clocks of the first and the last word
+  /// Clock at which the word of an address arrives; `mva` is in the line.
+  std::uint64_t word(std::uint32_t mva) const {
+    const std::uint32_t order = ((mva >> 2) - critical) & 7u;
+    return first + (last - first) * order / 7;
+  }
+};
+
 }  // namespace fovea::cpu

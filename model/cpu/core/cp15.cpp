@@ -1,5 +1,5 @@
 // CP15: control, MMU and cache registers, cache operations, wait for interrupt.
-#include "model/cpu/core/fast_path.h"
+#include "model/cpu/core/core.h"
 
 namespace fovea::cpu {
 namespace {
@@ -22,23 +22,23 @@ void Core::coprocessor_move(const Instruction& i) {
   if (i.rs != 15) return undefined();
   const unsigned op1 = (i.raw >> 21) & 7u, crn = (i.raw >> 16) & 15u, crm = i.raw & 15u,
                  op2 = (i.raw >> 5) & 7u;
-  if (!privileged()) return undefined();
+  if (!regs_.privileged()) return undefined();
   const std::uint32_t reg = id(op1, crn, crm, op2);
   spend(1);
-  ++counts_.coprocessor;
+  ++ledger_.counts.coprocessor;
   if (i.op == Op::kMrc) {
     std::uint32_t value = 0;
     if (!cp15_read(reg, value)) return undefined();
     if (i.rd == 15) {
-      cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (value & 0xF0000000u);
+      regs_.cpsr = (regs_.cpsr & 0x0FFFFFFFu) | (value & 0xF0000000u);
       spend(2);
     } else {
-      r_[i.rd] = value;
+      regs_.r[i.rd] = value;
       produce(i.rd, 1);
     }
     return;
   }
-  if (!cp15_write(reg, i.rd == 15 ? pc_ + 12 : r_[i.rd])) return undefined();
+  if (!cp15_write(reg, i.rd == 15 ? regs_.pc + 12 : regs_.r[i.rd])) return undefined();
 }
 
 bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
@@ -48,35 +48,24 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
       v = 0x1D000000u | size_field(params_.dcache.size()) << 12 |
           size_field(params_.icache.size());
       return true;
-    case id(0, 0, 0, 2): v = tcm_.empty() ? 0 : 0x00010001u; return true;
-    case id(0, 1, 0, 0): v = control_; return true;
-    case id(0, 2, 0, 0): v = ttbr_; return true;
-    case id(0, 3, 0, 0): v = dacr_; return true;
-    case id(0, 5, 0, 0): v = dfsr_; return true;
-    case id(0, 5, 0, 1): v = ifsr_; return true;
-    case id(0, 6, 0, 0): v = far_; return true;
-    case id(0, 7, 10, 3):
-    case id(0, 7, 14, 3): {  // test and clean (and invalidate, once all lines are clean)
-      stall_to(cycle_ + test_clean_cycles_, Cause::kCacheOp);
-      for (unsigned n = 0; n < dcache_.lines(); ++n) {
-        if (dcache_.line(n).tag == 1 || dcache_.line(n).dirty == 0) continue;
-        write_back(n, Cause::kCacheOp);
-        v = 0;
-        return true;
-      }
-      if (reg == id(0, 7, 14, 3)) dcache_.invalidate_all();
-      v = 1u << 30;
-      return true;
-    }
-    case id(0, 9, 0, 0): v = dlock_; return true;
-    case id(0, 9, 0, 1): v = ilock_; return true;
-    case id(0, 9, 1, 0): v = dtcm_region_; return true;
-    case id(0, 9, 1, 1): v = itcm_region_; return true;
-    case id(0, 10, 0, 0): v = tlb_lock_; return true;
-    case id(0, 13, 0, 0): v = fcse_pid_; return true;
-    case id(0, 13, 0, 1): v = context_id_; return true;
-    case id(0, 15, 0, 0): v = debug_override_; return true;
-    case id(7, 15, 0, 0): v = cache_debug_; return true;
+    case id(0, 0, 0, 2): v = ram_.empty() ? 0 : 0x00010001u; return true;
+    case id(0, 1, 0, 0): v = system_.control; return true;
+    case id(0, 2, 0, 0): v = system_.ttbr; return true;
+    case id(0, 3, 0, 0): v = system_.dacr; return true;
+    case id(0, 5, 0, 0): v = system_.dfsr; return true;
+    case id(0, 5, 0, 1): v = system_.ifsr; return true;
+    case id(0, 6, 0, 0): v = system_.far; return true;
+    case id(0, 7, 10, 3): v = test_and_clean(false); return true;
+    case id(0, 7, 14, 3): v = test_and_clean(true); return true;
+    case id(0, 9, 0, 0): v = system_.dlock; return true;
+    case id(0, 9, 0, 1): v = system_.ilock; return true;
+    case id(0, 9, 1, 0): v = system_.dtcm_region; return true;
+    case id(0, 9, 1, 1): v = system_.itcm_region; return true;
+    case id(0, 10, 0, 0): v = system_.tlb_lock; return true;
+    case id(0, 13, 0, 0): v = system_.fcse_pid; return true;
+    case id(0, 13, 0, 1): v = system_.context_id; return true;
+    case id(0, 15, 0, 0): v = system_.debug_override; return true;
+    case id(7, 15, 0, 0): v = system_.cache_debug; return true;
     default: break;
   }
   if ((reg >> 8 & 15u) == 0) {  // c0: undefined codes read the main ID register
@@ -86,158 +75,160 @@ bool Core::cp15_read(std::uint32_t reg, std::uint32_t& v) {
   return false;
 }
 
-/// Called after a change of the process ID or of the control register: two instructions are already
-/// in the pipeline. If a second change follows, the instructions after it see both at once
-/// (assumed).
-void Core::begin_old_fetch() {
-  const bool same = old_fetch_left_ || (process_ == fetch_process_ &&
-                                        !((control_ ^ fetch_control_) & kFetchBits));
-  old_fetch_left_ = same ? 0 : 3;
-  old_fetch_pc_ = next_pc_;
-  if (same) {
-    fetch_process_ = process_;
-    if (fetch_control_ != control_) fetch_buffer_pa_ = 1;
-    fetch_control_ = control_;
+/// Writes back one dirty line. If all lines are clean, reports so in Z and, if asked, invalidates
+/// the cache.
+std::uint32_t Core::test_and_clean(bool invalidate) {
+  ledger_.stall_to(ledger_.cycle + test_clean_cycles_, Cause::kCacheOp);
+  Cache& lines = data_.lines();
+  for (unsigned n = 0; n < lines.lines(); ++n) {
+    if (lines.line(n).tag == 1 || lines.line(n).dirty == 0) continue;
+    data_.write_back(n, Cause::kCacheOp);
+    return 0;
   }
-  flush_memos();
+  if (invalidate) lines.invalidate_all();
+  return kZ;
+}
+
+/// Called after a change of the process ID or of the control register.
+void Core::settings_changed() {
+  system_.process = system_.mmu_on() ? system_.fcse_pid : 0;
+  fetch_.settings_changed(next_pc_);
+  forget_translations();
+}
+
+/// The chip fixes the address and size of the regions of internal RAM; only the enable bit can be
+/// changed.
+void Core::set_ram_region(bool data, std::uint32_t value) {
+  if (ram_.empty()) return;
+  std::uint32_t& region = data ? system_.dtcm_region : system_.itcm_region;
+  if ((value & 0xFFFFF000u) != (region & 0xFFFFF000u))
+    Diagnostics::instance().not_modelled("moving a TCM region by CP15 c9,c1");
+  region = (region & ~1u) | (value & 1u);
+  const std::uint32_t bytes = (value & 1u) ? 32 * 1024 : 0;
+  data ? ram_.set_dtcm(bytes) : ram_.set_itcm(bytes);
+  forget_translations();
 }
 
 bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
   switch (reg) {
     case id(0, 1, 0, 0):
-      control_ = (v & 0x0000F387u) | 0x0005'0078u;
-      process_ = control_ & 1u ? fcse_pid_ : 0;
-      counts_.translate(control_ & 1u);
-      begin_old_fetch();
+      system_.control = (v & 0x0000F387u) | 0x0005'0078u;
+      ledger_.counts.translate(system_.mmu_on());
+      settings_changed();
       return true;
-    case id(0, 2, 0, 0): ttbr_ = v; return true;
-    case id(0, 3, 0, 0): dacr_ = v; flush_memos(); return true;
-    case id(0, 5, 0, 0): dfsr_ = v; return true;
-    case id(0, 5, 0, 1): ifsr_ = v; return true;
-    case id(0, 6, 0, 0): far_ = v; return true;
-    case id(0, 9, 0, 0): dlock_ = v & 15u; return true;
-    case id(0, 9, 0, 1): ilock_ = v & 15u; return true;
-    case id(0, 9, 1, 0):
-    case id(0, 9, 1, 1): {
-      if (tcm_.empty()) return true;
-      // The chip fixes the address and size of the regions; only the enable bit can be changed.
-      auto& region = reg == id(0, 9, 1, 0) ? dtcm_region_ : itcm_region_;
-      auto& size = reg == id(0, 9, 1, 0) ? dtcm_size_ : itcm_size_;
-      if ((v & 0xFFFFF000u) != (region & 0xFFFFF000u))
-        Diagnostics::instance().not_modelled("moving a TCM region by CP15 c9,c1");
-      region = (region & ~1u) | (v & 1u);
-      size = (v & 1u) ? 32 * 1024 : 0;
-      flush_memos();
-      return true;
-    }
-    case id(0, 10, 0, 0): tlb_lock_ = v & 0x1C000001u; return true;
+    case id(0, 2, 0, 0): system_.ttbr = v; return true;
+    case id(0, 3, 0, 0): system_.dacr = v; forget_translations(); return true;
+    case id(0, 5, 0, 0): system_.dfsr = v; return true;
+    case id(0, 5, 0, 1): system_.ifsr = v; return true;
+    case id(0, 6, 0, 0): system_.far = v; return true;
+    case id(0, 9, 0, 0): system_.dlock = v & 15u; return true;
+    case id(0, 9, 0, 1): system_.ilock = v & 15u; return true;
+    case id(0, 9, 1, 0): set_ram_region(true, v); return true;
+    case id(0, 9, 1, 1): set_ram_region(false, v); return true;
+    case id(0, 10, 0, 0): system_.tlb_lock = v & 0x1C000001u; return true;
     case id(0, 13, 0, 0):
-      fcse_pid_ = v & 0xFE000000u;
-      process_ = control_ & 1u ? fcse_pid_ : 0;
-      begin_old_fetch();
+      system_.fcse_pid = v & 0xFE000000u;
+      settings_changed();
       return true;
-    case id(0, 13, 0, 1): context_id_ = v; return true;
-    case id(0, 15, 0, 0): debug_override_ = v; return true;
-    case id(7, 15, 0, 0): cache_debug_ = v & 7u; return true;
+    case id(0, 13, 0, 1): system_.context_id = v; return true;
+    case id(0, 15, 0, 0): system_.debug_override = v; return true;
+    case id(7, 15, 0, 0): system_.cache_debug = v & 7u; return true;
     default: break;
   }
   if ((reg >> 8) == 8) {  // TLB operations; all three values of CRm act on the unified TLB
-    if ((reg & 15u) == 0) tlb_.invalidate_all();
-    else tlb_.invalidate(v & ~0x3FFu);
-    flush_memos();
+    if ((reg & 15u) == 0) mmu_.invalidate_all();
+    else mmu_.invalidate(v & ~0x3FFu);
+    forget_translations();
     return true;
   }
   if ((reg >> 8) == 7) return cache_operation((reg >> 4) & 15u, reg & 15u, v);
   return false;
 }
 
+void Core::clean_line(int line) {
+  if (line >= 0 && data_.lines().line(static_cast<unsigned>(line)).tag != 1)
+    data_.write_back(static_cast<unsigned>(line), Cause::kCacheOp);
+}
+
+void Core::clean_and_invalidate_line(int line) {
+  clean_line(line);
+  if (line >= 0) data_.lines().invalidate(static_cast<unsigned>(line));
+}
+
+void Core::prefetch_line(std::uint32_t mva) {
+  const bool mmu = system_.mmu_on();
+  const Translation* const t =
+      mmu ? translated(mmu_.translate(mva, Access::kFetch, !regs_.privileged())) : &mmu_.flat();
+  if (t && (system_.control & kIcacheOn) && (t->cacheable || !mmu) &&
+      !ram_.contains(t->physical(mva)) && fetch_.icache().find(mva) < 0)
+    fetch_.fill_line(mva, t->physical(mva));
+  fetch_.leave_line();
+}
+
 bool Core::cache_operation(unsigned crm, unsigned op2, std::uint32_t v) {
   const auto all = [this] {
-    stall_to(cycle_ + invalidate_all_cycles_, Cause::kCacheOp);
+    ledger_.stall_to(ledger_.cycle + invalidate_all_cycles_, Cause::kCacheOp);
   };
-  const auto one = [this] { stall_to(cycle_ + cache_op_cycles_, Cause::kCacheOp); };
-  const auto invalidate_i = [this](int n) {
-    if (n < 0) return;
-    icache_.invalidate(static_cast<unsigned>(n));
-    decoded_[static_cast<unsigned>(n)].valid = 0;
-    line_va_ = 1;
+  const auto one = [this] {
+    ledger_.stall_to(ledger_.cycle + cache_op_cycles_, Cause::kCacheOp);
   };
-  const auto by_set_way = [](const Cache& c, std::uint32_t w) {
-    return static_cast<int>(((w >> 5) & (c.sets() - 1)) * Cache::kWays + (w >> 30));
+  const auto by_set_way = [v](const Cache& c) {
+    return static_cast<int>(((v >> 5) & (c.sets() - 1)) * Cache::kWays + (v >> 30));
   };
-  const auto clean_d = [this](int n) {
-    if (n >= 0 && dcache_.line(static_cast<unsigned>(n)).tag != 1)
-      write_back(static_cast<unsigned>(n), Cause::kCacheOp);
+  const auto invalidate_i = [this](int line) {
+    if (line >= 0) fetch_.invalidate_line(static_cast<unsigned>(line));
   };
-  const auto invalidate_d = [this](int n) {
-    if (n >= 0) dcache_.invalidate(static_cast<unsigned>(n));
-  };
-  const auto invalidate_all_i = [this] {
-    icache_.invalidate_all();
-    for (auto& d : decoded_) d.valid = 0;
-    line_va_ = 1;
-    fetch_buffer_pa_ = 1;
+  Cache& data = data_.lines();
+  const auto invalidate_d = [&data](int line) {
+    if (line >= 0) data.invalidate(static_cast<unsigned>(line));
   };
   // The register holds a modified address, so FCSE does not apply (ARM DDI 0198D 2-34).
   const std::uint32_t mva = v & ~31u;
   switch (crm << 4 | op2) {
     case 0x04: wait_for_interrupt(); return true;
-    case 0x50: all(); invalidate_all_i(); return true;
-    case 0x51: one(); invalidate_i(icache_.find(mva)); return true;
-    case 0x52: one(); invalidate_i(by_set_way(icache_, v)); return true;
-    case 0x60: all(); dcache_.invalidate_all(); return true;
-    case 0x61: one(); invalidate_d(dcache_.find(mva)); return true;
-    case 0x62: one(); invalidate_d(by_set_way(dcache_, v)); return true;
-    case 0x70: all(); invalidate_all_i(); dcache_.invalidate_all(); return true;
-    case 0xA1: one(); clean_d(dcache_.find(mva)); return true;
-    case 0xA2: one(); clean_d(by_set_way(dcache_, v)); return true;
-    case 0xA4: drain(Cause::kDrain); return true;
-    case 0xD1: {
-      const Translation* t = translate(mva, false, false, true);
-      if (t && (control_ >> 12 & 1u) && (t->cacheable || !(control_ & 1u)) &&
-          !in_tcm(t->physical(mva)) && icache_.find(mva) < 0)
-        icache_fill(mva, t->physical(mva));
-      line_va_ = 1;
-      return true;
-    }
-    case 0xE1: one(); clean_d(dcache_.find(mva)); invalidate_d(dcache_.find(mva)); return true;
-    case 0xE2: {
-      one();
-      const int n = by_set_way(dcache_, v);
-      clean_d(n);
-      invalidate_d(n);
-      return true;
-    }
+    case 0x50: all(); fetch_.invalidate_all(); return true;
+    case 0x51: one(); invalidate_i(fetch_.icache().find(mva)); return true;
+    case 0x52: one(); invalidate_i(by_set_way(fetch_.icache())); return true;
+    case 0x60: all(); data.invalidate_all(); return true;
+    case 0x61: one(); invalidate_d(data.find(mva)); return true;
+    case 0x62: one(); invalidate_d(by_set_way(data)); return true;
+    case 0x70: all(); fetch_.invalidate_all(); data.invalidate_all(); return true;
+    case 0xA1: one(); clean_line(data.find(mva)); return true;
+    case 0xA2: one(); clean_line(by_set_way(data)); return true;
+    case 0xA4: bus_.drain(Cause::kDrain); return true;
+    case 0xD1: prefetch_line(mva); return true;
+    case 0xE1: one(); clean_and_invalidate_line(data.find(mva)); return true;
+    case 0xE2: one(); clean_and_invalidate_line(by_set_way(data)); return true;
     default: return false;
   }
 }
 
 Counts Core::counts_asleep(Picoseconds t) const {
-  Counts c = counts_;
-  c.cycles = clock_.running() ? std::max(cycle_, clock_.edge_after(t)) : cycle_;
-  c.idle += c.cycles - cycle_;
+  const Clock& clock = interface_.clock;
+  Counts c = ledger_.counts;
+  c.cycles = clock.running() ? std::max(ledger_.cycle, clock.edge_after(t)) : ledger_.cycle;
+  c.idle += c.cycles - ledger_.cycle;
   return c;
 }
 
 /// Sleeps until IRQ or FIQ is asserted, even if masked.
 void Core::wait_for_interrupt() {
-  drain(Cause::kDrain);
-  const std::uint64_t begin = cycle_;
-  if (!((irq_.level && irq_.since < time(cycle_)) || (fiq_.level && fiq_.since < time(cycle_)))) {
-    const Picoseconds at = port_.wait_for_interrupt(time(cycle_));
-    const std::uint64_t wake = std::max(begin, clock_.edge_after(at));
-    while (mark_pending_) {
-      // The edge of the measurement window is within the sleep: split the idle time there.
-      const std::uint64_t split = std::max(begin, clock_.edge_after(mark_at_));
-      if (split > wake) break;
-      counts_.idle += split - cycle_;
-      cycle_ = split;
-      snapshot();
-    }
-    counts_.idle += wake - cycle_;
-    cycle_ = wake;
+  bus_.drain(Cause::kDrain);
+  interface_.attention = true;
+  const std::uint64_t begin = ledger_.cycle;
+  const Picoseconds now = time(begin);
+  if ((irq_.level && irq_.since < now) || (fiq_.level && fiq_.since < now)) return;
+  const Picoseconds at = interface_.port.wait_for_interrupt(now);
+  const std::uint64_t wake = std::max(begin, interface_.clock.edge_after(at));
+  while (window_.pending()) {
+    // The edge of the measurement window is within the sleep: split the idle time there.
+    const std::uint64_t split = std::max(begin, interface_.clock.edge_after(window_.at()));
+    if (split > wake) break;
+    ledger_.sleep_to(split);
+    window_.take(ledger_.counts, ledger_.cycle);
   }
-  attention_ = true;
+  ledger_.sleep_to(wake);
+  interface_.attention = true;
 }
 
 }  // namespace fovea::cpu

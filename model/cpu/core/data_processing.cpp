@@ -71,15 +71,15 @@ template <Op kOp, Form kForm, bool kSet>
 Core::Ops::Next Core::Ops::data(Core& c, Next i, Cycle cycle) {
   // Immediates and plain registers leave the carry of a logical operation alone.
   constexpr bool kSetsCarry = !logical(kOp) || (kForm != Form::kImm && kForm != Form::kReg);
-  bool carry = c.c_, overflow = false;
-  const std::uint32_t b = second_operand<kForm>(*i, c.r_, carry);
-  const std::uint32_t value = compute<kOp>(c.r_[i->rn], b, c.c_, carry, overflow);
+  bool carry = c.regs_.c, overflow = false;
+  const std::uint32_t b = second_operand<kForm>(*i, c.regs_.r, carry);
+  const std::uint32_t value = compute<kOp>(c.regs_.r[i->rn], b, c.regs_.c, carry, overflow);
   if constexpr (kSet) {
-    c.n_ = c.z_ = value;
-    if constexpr (kSetsCarry) c.c_ = carry;
-    if constexpr (!logical(kOp)) c.v_ = overflow;
+    c.regs_.n = c.regs_.z = value;
+    if constexpr (kSetsCarry) c.regs_.c = carry;
+    if constexpr (!logical(kOp)) c.regs_.v = overflow;
   }
-  if constexpr (writes(kOp)) c.r_[i->rd] = value;
+  if constexpr (writes(kOp)) c.regs_.r[i->rd] = value;
   return next(c, i + 1, cycle + (kForm >= Form::kLslReg ? 2 : 1));
 }
 
@@ -105,9 +105,9 @@ void Core::data_processing(const Instruction& decoded) {
   Instruction i = decoded;
   const bool late = i.operand == Operand::kShiftReg;
   const bool shifted_operand = late || i.operand == Operand::kShiftImm;
-  auto r = r_;
+  auto r = regs_.r;
   if (late) r[15] += 4;
-  bool carry = cpsr_ & kC, overflow = cpsr_ & kV;
+  bool carry = regs_.cpsr & kC, overflow = regs_.cpsr & kV;
   const std::uint32_t b = select(
       static_cast<unsigned>(form_of(i)),
       [](auto form) { return &second_operand<static_cast<Form>(decltype(form)::value)>; },
@@ -115,22 +115,22 @@ void Core::data_processing(const Instruction& decoded) {
   const std::uint32_t value = select(
       static_cast<unsigned>(i.op),
       [](auto op) { return &compute<static_cast<Op>(decltype(op)::value)>; },
-      std::make_index_sequence<16>{})(r[i.rn], b, (cpsr_ & kC) != 0, carry, overflow);
+      std::make_index_sequence<16>{})(r[i.rn], b, (regs_.cpsr & kC) != 0, carry, overflow);
   if (writes(i.op) && i.rd == 15) {
     // For this, RSC behaves like the logical operations.
     spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);
     if ((i.flags & kSetFlags) && !(i.flags & kThumbInsn)) {
-      set_cpsr(spsr_[bank(cpsr_)]);
-      branch_to(value & ((cpsr_ & 0x20u) ? ~1u : ~3u));
+      set_cpsr(regs_.spsr());
+      branch_to(value & ((regs_.cpsr & 0x20u) ? ~1u : ~3u));
       return;
     }
     branch_to(value & ((i.flags & kThumbInsn) ? ~1u : ~3u));
     return;
   }
   if (i.flags & kSetFlags)
-    cpsr_ = (cpsr_ & 0x0FFFFFFFu) | (value & kN) | (value ? 0 : kZ) | (carry ? kC : 0) |
+    regs_.cpsr = (regs_.cpsr & 0x0FFFFFFFu) | (value & kN) | (value ? 0 : kZ) | (carry ? kC : 0) |
             (overflow ? kV : 0);
-  if (writes(i.op)) r_[i.rd] = value;
+  if (writes(i.op)) regs_.r[i.rd] = value;
   spend(late ? 2 : 1);
 }
 

@@ -20,7 +20,7 @@ class DebugMemory {
 /// May be used only between instructions, or during an SWI.
 class CoreDebug {
  public:
-  CoreDebug(Core& core, DebugMemory& memory) : core_(core), memory_(memory) {}
+  CoreDebug(Core& core, DebugMemory& memory) : core_(core), view_(core.view()), memory_(memory) {}
 
   /// Reads the bytes that loads of the core would return now. Access permissions are ignored.
   /// @return false if an address is not translated or not mapped; `to` is then undefined
@@ -32,35 +32,49 @@ class CoreDebug {
   std::optional<std::uint32_t> physical(std::uint32_t va);
   std::uint32_t reg(unsigned i) const { return core_.reg(i); }
   /// Writing r15 chooses the next instruction; bit 0 of the value does not select the Thumb state.
-  void set_reg(unsigned i, std::uint32_t value);
+  void set_reg(unsigned i, std::uint32_t value) {
+    i == 15 ? core_.redirect(value) : core_.set_reg(i, value);
+  }
   std::uint32_t cpsr() const { return core_.cpsr(); }
   /// Changes mode and Thumb state too.
-  void set_cpsr(std::uint32_t value);
-  std::uint32_t spsr() const { return core_.spsr_[Core::bank(core_.cpsr())]; }
+  void set_cpsr(std::uint32_t value) { core_.change_status(value); }
+  std::uint32_t spsr() const {
+    return view_.registers.spsr(RegisterFile::bank(view_.registers.cpsr));
+  }
   /// Returns false in user and system mode, which have no SPSR.
   bool set_spsr(std::uint32_t value);
   /// A CP15 register that can be read without side effects. Writing it has the side effects of an
   /// MCR, but takes no time.
   struct SystemRegister {
     const char* name;
-    std::uint32_t (*get)(const Core&);
+    std::uint32_t SystemRegisters::*value;
     std::uint32_t number;  ///< hexadecimal digits: opc1, CRn, CRm, opc2
   };
   static std::span<const SystemRegister> system_registers();
-  std::uint32_t system_register(const SystemRegister& r) const { return r.get(core_); }
-  void set_system_register(const SystemRegister& r, std::uint32_t value);
+  std::uint32_t system_register(const SystemRegister& r) const {
+    return view_.system.*r.value;
+  }
+  void set_system_register(const SystemRegister& r, std::uint32_t value) {
+    core_.change_system_register(r.number, value);
+  }
   /// A register of one mode, whether or not the core is in it: r8 to r14 of user and FIQ mode, r13
   /// and r14 of the other modes, and each SPSR.
   struct BankedRegister {
     const char* name;
-    std::uint8_t bank;    ///< result of Core::bank()
+    std::uint8_t bank;    ///< result of RegisterFile::bank()
     std::uint8_t number;  ///< r8 to r14, or kSpsrNumber
   };
   static constexpr std::uint8_t kSpsrNumber = 16;
   static std::span<const BankedRegister> banked_registers();
-  std::uint32_t banked_register(const BankedRegister& r) const { return *banked(r); }
+  std::uint32_t banked_register(const BankedRegister& r) const {
+    return r.number == kSpsrNumber ? view_.registers.spsr(r.bank)
+                                   : view_.registers.banked(r.bank, r.number);
+  }
   void set_banked_register(const BankedRegister& r, std::uint32_t value) {
-    *const_cast<std::uint32_t*>(banked(r)) = value;
+    if (r.number == kSpsrNumber)
+      core_.change_spsr(r.bank, value);
+    else
+      core_.change_banked(r.bank, r.number, value);
   }
 
   /// Unfinished work of the core at an instruction boundary. Times and addresses are 0 if there is
@@ -85,10 +99,10 @@ class CoreDebug {
     return memory_.debug_read(pa, to);
   }
   /// After a GuestFailure: restores mode and pc of the instruction with which the failure began.
-  void back_to_failure();
+  void back_to_failure() { core_.back_to_failure(); }
 
   /// The core's own time, which may be ahead of the other agents.
-  Picoseconds now() const { return core_.time(core_.cycle_); }
+  Picoseconds now() const { return core_.boundary_time(); }
 
  private:
   struct Mapping {
@@ -96,12 +110,10 @@ class CoreDebug {
     bool cached = false;  // cacheable by the D-cache
   };
   std::optional<Mapping> mapping(std::uint32_t mva);
-  std::optional<std::uint32_t> table_word(std::uint32_t pa);
   bool read_memory(std::uint32_t pa, std::span<std::uint8_t> to);
-  const std::uint32_t* banked(const BankedRegister& r) const;
-  void patch_instructions(std::uint32_t mva, std::uint32_t pa, std::span<const std::uint8_t> from);
 
-  Core& core_;
+  Core& core_;      // changed through its own functions
+  CoreView view_;
   DebugMemory& memory_;
 };
 

@@ -10,9 +10,10 @@
 
 namespace fovea::cpu {
 
-/// While nothing is set, the core runs without any check for it. Otherwise it calls boundary() at
-/// every instruction boundary, which costs host time but no simulated time.
-class CoreControl {
+/// While nothing is set, the core runs without any check for it. Otherwise it calls at_boundary()
+/// at every instruction boundary, which costs host time but no simulated time. There may be several
+/// objects for one core.
+class CoreControl : private BoundaryObserver {
  public:
   enum class Watch : std::uint8_t { kWrite, kRead, kAccess };
   struct Stop {
@@ -24,7 +25,6 @@ class CoreControl {
   };
 
   CoreControl(Core& core, CoreDebug& debug) : core_(core), debug_(debug) {}
-  ~CoreControl() { clear(); core_.debugger_ = nullptr; }
   CoreControl(const CoreControl&) = delete;
   CoreControl& operator=(const CoreControl&) = delete;
 
@@ -52,15 +52,14 @@ class CoreControl {
   /// of other masters are known before the core continues.
   void follow_bus(bool on) { follow_ = on, update(); }
   /// Does that once, for a caller that inspects the bus while the core is stopped.
-  void settle_bus();
+  void settle_bus() { core_.settle_bus(); }
   /// To be called when something outside the core was changed at this boundary: the core asks for
   /// the next event again.
-  void disturb();
+  void disturb() { core_.disturb(); }
   /// Removes everything that was set.
   void clear();
 
  private:
-  friend class Core;
   struct Range {
     std::uint32_t va, bytes;
     Watch kind;
@@ -70,7 +69,7 @@ class CoreControl {
     Range range;
     std::uint32_t address;
   };
-  void boundary();
+  void at_boundary() override;
   void update();
   std::optional<Stop> find_stop(std::uint32_t pc);
   std::optional<Stop> find_next_stop(const Stop& last, std::uint32_t pc);
@@ -89,6 +88,7 @@ class CoreControl {
   bool halt_ = false, step_ = false, follow_ = false;
   Picoseconds stop_after_ = kNever;
   std::uint32_t step_from_ = 0, step_to_ = 0;
+  Subscription observing_;  // while something is set
 };
 
 }  // namespace fovea::cpu

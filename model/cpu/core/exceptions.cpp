@@ -1,4 +1,5 @@
-// Processor modes, register banks and exceptions (ARM DDI 0100, A2.6; aborts restore the base).
+// Construction, changes of clock and mode, and exceptions (ARM DDI 0100, A2.6; aborts restore the
+// base).
 #include <cstdio>
 
 #include "model/cpu/core/core.h"
@@ -6,160 +7,115 @@
 namespace fovea::cpu {
 
 Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
-    : port_(port),
-      tcm_(tcm),
-      tcm_port_({static_cast<unsigned>(params.tcm_dma_word_clocks()),
-                 static_cast<unsigned>(params.tcm_dma_latency()),
-                 static_cast<unsigned>(params.tcm_banks()), params.tcm_first.is("core")},
-                tcm.size()),
-      ratio_(static_cast<unsigned>(params.ahb_ratio())),
-      fill_latency_(static_cast<unsigned>(params.fill_latency())),
-      walk_cycles_(static_cast<unsigned>(params.walk_cycles())),
+    : interface_(port, static_cast<unsigned>(params.ahb_ratio())),
+      bus_(interface_, ledger_, static_cast<unsigned>(params.fill_latency())),
+      ram_(params, interface_, ledger_, tcm),
+      mmu_(ledger_, bus_, ram_, system_, static_cast<unsigned>(params.walk_cycles())),
+      data_(params.dcache.size(), ledger_, bus_, system_),
+      fetch_({.cache_bytes = params.icache.size(),
+              .ram_bytes = tcm.size(),
+              .fill_latency = static_cast<unsigned>(params.fill_latency()),
+              .shifted_cycle = params.shifted_address_cycle()},
+             interface_, ledger_, bus_, log_, system_),
       cache_op_cycles_(static_cast<unsigned>(params.cache_op_cycles())),
       test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
       invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
-      tcm_wait_(static_cast<unsigned>(params.tcm_wait_states())),
-      tcm_own_conflict_(static_cast<unsigned>(params.tcm_own_conflict())),
       shifted_cycle_(params.shifted_address_cycle()),
-      ahb_mask_(ratio_ & (ratio_ - 1) ? 0 : ~std::uint64_t{ratio_ - 1}),
-      decoded_(params.icache.size() / Cache::kLineBytes),
-      tcm_decoded_(tcm.size() / Cache::kLineBytes),
-      icache_(params.icache.size()),
-      dcache_(params.dcache.size()),
-      params_(params) {
-  flat_.mask = ~0u;
-  fetch_access_.port = BusAccess::Port::kInstruction;
-  write_access_.write = write_access_.buffered = true;
-}
-
-std::vector<AccessRecord> Core::last_accesses() const {
-  constexpr std::size_t kShown = 8;
-  std::vector<AccessRecord> out;
-  const std::size_t first = ring_at_ / sizeof(Access);  // the oldest access
-  for (std::size_t n = first; n < first + ring_.size(); ++n) {
-    const Access& a = ring_[n % ring_.size()];
-    for (std::uint32_t k = 0; a.what && k <= a.what >> 16; ++k)
-      out.push_back({a.pc, a.address + 4 * k, static_cast<std::uint8_t>(a.what),
-                     (a.what & kWritten) != 0});
-  }
-  if (out.size() > kShown) out.erase(out.begin(), out.end() - kShown);
-  return out;
-}
+      params_(params) {}
 
 void Core::set_clock(Frequency f, Picoseconds at) {
   // Bus activity that is under way keeps its end time; convert it into clocks of the new frequency.
-  const std::array<std::uint64_t*, 5> clocks = {&data_port_free_, &ifill_.first, &ifill_.last,
-                                                &dfill_.first, &dfill_.last};
+  const std::array<std::uint64_t*, 5> clocks = {&bus_.port_free(), &fetch_.fill.first,
+                                                &fetch_.fill.last, &data_.fill.first,
+                                                &data_.fill.last};
   std::array<Picoseconds, clocks.size()> times{};
+  Clock& clock = interface_.clock;
   // What has ended may be older than the new clock, which has no numbers for those times.
-  const std::uint64_t future = clock_.running() ? clock_.edge_after(at) : 0;
-  for (std::size_t k = 0; clock_.running() && k < clocks.size(); ++k)
+  const std::uint64_t future = clock.running() ? clock.edge_after(at) : 0;
+  for (std::size_t k = 0; clock.running() && k < clocks.size(); ++k)
     if (*clocks[k] >= future) times[k] = time(*clocks[k]);
-  clock_.restart(f, at);
-  if (clock_.running()) {
-    clock_floor_ = clock_.edge_after(at);
+  clock.restart(f, at);
+  if (clock.running()) {
+    interface_.clock_floor = clock.edge_after(at);
     for (std::size_t k = 0; k < clocks.size(); ++k)
-      if (times[k] > at) *clocks[k] = clock_.edge_at_or_after(times[k]);
+      if (times[k] > at) *clocks[k] = clock.edge_at_or_after(times[k]);
   }
-  write_over_ = write_floor_ = 0;
-  whole_of_ = whole_ = 0;
-  act_time_cycle_ = kNoCycle;
-  attention_ = true;
+  bus_.clock_changed();
+  interface_.attention = true;
 }
 
 void Core::reset(std::uint32_t entry, Picoseconds now) {
-  cpsr_ = 0xD3u | ((entry & 1u) << 5);
-  pc_ = next_pc_ = entry & ~1u;
-  control_ = fetch_control_ = 0x0005'0078;
-  counts_.translate(false);
-  fcse_pid_ = process_ = fetch_process_ = 0;
-  old_fetch_left_ = 0;
+  regs_.cpsr = 0xD3u | ((entry & 1u) << 5);
+  regs_.pc = next_pc_ = entry & ~1u;
+  system_.control = SystemRegisters::kControlAtReset;
+  ledger_.counts.translate(false);
+  system_.fcse_pid = system_.process = 0;
+  fetch_.reset();
   stop_requested_ = false;
-  jumped_to_ = kNoJump;
+  failure_.jumped_to = kNoJump;
   // On this chip both TCMs are enabled after reset: 32 KB each (size code 6), backed by one RAM.
-  const bool tcm = !tcm_.empty();
-  itcm_region_ = tcm ? 6u << 2 | 1u : 0;
-  dtcm_region_ = tcm ? kDtcmBase | 6u << 2 | 1u : 0;
-  itcm_size_ = dtcm_size_ = tcm ? 32 * 1024 : 0;
-  cycle_ = clock_.running() ? clock_.edge_after(now) : 0;
-  attention_ = true;
-  flush_memos();
-}
-
-unsigned Core::bank(std::uint32_t mode) {
-  switch (mode & 31u) {
-    case 0x11: return 1;
-    case 0x12: return 2;
-    case 0x13: return 3;
-    case 0x17: return 4;
-    case 0x1B: return 5;
-    default: return 0;  // user and system mode
-  }
-}
-
-void Core::switch_mode(std::uint32_t mode) {
-  const unsigned from = bank(cpsr_), to = bank(mode);
-  if (from != to) {
-    banked_[from][0] = r_[13];
-    banked_[from][1] = r_[14];
-    if (from == 1 || to == 1) {
-      auto& keep = from == 1 ? fiq_high_ : user_high_;
-      auto& bring = to == 1 ? fiq_high_ : user_high_;
-      for (unsigned k = 0; k < 5; ++k) {
-        keep[k] = r_[8 + k];
-        r_[8 + k] = bring[k];
-      }
-    }
-    r_[13] = banked_[to][0];
-    r_[14] = banked_[to][1];
-  }
-  cpsr_ = (cpsr_ & ~31u) | (mode & 31u);
+  const bool ram = !ram_.empty();
+  system_.itcm_region = ram ? 6u << 2 | 1u : 0;
+  system_.dtcm_region = ram ? InternalRam::kDtcmBase | 6u << 2 | 1u : 0;
+  ram_.set_itcm(ram ? 32 * 1024 : 0);
+  ram_.set_dtcm(ram ? 32 * 1024 : 0);
+  ledger_.cycle = interface_.clock.running() ? interface_.clock.edge_after(now) : 0;
+  interface_.attention = true;
+  forget_translations();
 }
 
 void Core::set_cpsr(std::uint32_t value) {
-  const bool was_privileged = privileged();
-  switch_mode(value);
-  cpsr_ = value;
-  if (was_privileged != privileged()) flush_memos();
-  attention_ = true;  // interrupts may have been unmasked
+  const bool was_privileged = regs_.privileged();
+  regs_.switch_mode(value);
+  regs_.cpsr = value;
+  if (was_privileged != regs_.privileged()) forget_translations();
+  interface_.attention = true;  // interrupts may have been unmasked
+}
+
+/// Keeps for a message what an exception interrupted, if it is the first of a chain of exceptions.
+/// @throws GuestFailure if the chain has become too long: no instruction completes between the
+/// exceptions, so the vector itself fails and always will
+void Core::note_failure(Exception e) {
+  constexpr const char* kNames[] = {"reset", "undefined instruction", "SWI", "prefetch abort",
+                                    "data abort", "IRQ", "FIQ"};
+  if (failure_.exceptions == 0) {
+    failure_.pc = regs_.pc;
+    failure_.cpsr = regs_.cpsr;
+    failure_.by = kNames[static_cast<unsigned>(e)];
+    failure_.at_jump = regs_.pc == 0 && failure_.jumped_to == 0;
+    failure_.from = failure_.jumped_from;
+  }
+  if (++failure_.exceptions <= 3) return;
+  failure_.failed = true;
+  const std::string jump =
+      failure_.at_jump ? "jumped to 0 from " + address_text(failure_.from) + "; " : "";
+  throw GuestFailure(jump + failure_.by + " with no handler: its vector faults again");
 }
 
 void Core::take(Exception e, std::uint32_t return_address) {
   struct Entry {
-    std::uint32_t vector, mode;
+    std::uint32_t vector;
+    CpuMode mode;
   };
-  constexpr Entry kEntries[] = {{0x00, 0x13}, {0x04, 0x1B}, {0x08, 0x13}, {0x0C, 0x17},
-                                {0x10, 0x17}, {0x18, 0x12}, {0x1C, 0x11}};
-  constexpr const char* kNames[] = {"reset", "undefined instruction", "SWI", "prefetch abort",
-                                    "data abort", "IRQ", "FIQ"};
-  if (chain_ == 0) {
-    failed_pc_ = pc_;
-    failed_cpsr_ = cpsr_;
-    failed_by_ = kNames[static_cast<unsigned>(e)];
-    failed_jump_ = pc_ == 0 && jumped_to_ == 0;
-    failed_from_ = jumped_from_;
-  }
-  // If no instruction completes between exceptions, the vector itself fails and always will.
-  if (++chain_ > 3) {
-    failing_ = true;
-    const std::string jump =
-        failed_jump_ ? "jumped to 0 from " + address_text(failed_from_) + "; " : "";
-    throw GuestFailure(jump + failed_by_ + " with no handler: its vector faults again");
-  }
+  constexpr Entry kEntries[] = {{0x00, CpuMode::kSvc}, {0x04, CpuMode::kUnd},
+                                {0x08, CpuMode::kSvc}, {0x0C, CpuMode::kAbt},
+                                {0x10, CpuMode::kAbt}, {0x18, CpuMode::kIrq},
+                                {0x1C, CpuMode::kFiq}};
+  note_failure(e);
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
-  const std::uint32_t saved = cpsr_;
-  const bool was_privileged = privileged();
-  switch_mode(entry.mode);
-  spsr_[bank(entry.mode)] = saved;
-  cpsr_ = (cpsr_ & ~0x20u) | 0x80u;
-  if (e == Exception::kFiq || e == Exception::kReset) cpsr_ |= 0x40u;
-  r_[14] = return_address;
-  branch_to(entry.vector | ((control_ >> 13 & 1u) ? 0xFFFF0000u : 0u));
-  jumped_to_ = kNoJump;
-  fetch_branched_ = true;
-  if (!was_privileged) flush_memos();
+  const std::uint32_t saved = regs_.cpsr;
+  const bool was_privileged = regs_.privileged();
+  regs_.switch_mode(static_cast<std::uint32_t>(entry.mode));
+  regs_.spsr() = saved;
+  regs_.cpsr = (regs_.cpsr & ~kThumbState) | kIrqMask;
+  if (e == Exception::kFiq || e == Exception::kReset) regs_.cpsr |= kFiqMask;
+  regs_.r[14] = return_address;
+  branch_to(entry.vector | ((system_.control & kHighVectors) ? 0xFFFF0000u : 0u));
+  failure_.jumped_to = kNoJump;
+  fetch_.branched = true;
+  if (!was_privileged) forget_translations();
   aborted_ = true;
-  ++counts_.exceptions;
+  ++ledger_.counts.exceptions;
   spend(3);
 }
 
@@ -168,11 +124,11 @@ void Core::take(Exception e, std::uint32_t return_address) {
 /// 5.3). Then the exception entry begins.
 void Core::data_abort(unsigned left) {
   spend(left + 2);
-  take(Exception::kDataAbort, pc_ + 8);
+  take(Exception::kDataAbort, regs_.pc + 8);
 }
 
 void Core::undefined() {
-  take(Exception::kUndefined, pc_ + ((cpsr_ & 0x20u) ? 2u : 4u));
+  take(Exception::kUndefined, regs_.pc + (regs_.thumb() ? 2u : 4u));
 }
 
 /// An address for a message, with its symbol if one is known.
@@ -185,27 +141,11 @@ std::string Core::address_text(std::uint32_t address) const {
 
 /// Warns once for each form, with the address of its first execution.
 void Core::unpredictable(const char* what) {
-  ++counts_.unpredictable;
-  std::string& text = unpredictable_[what];
+  ++ledger_.counts.unpredictable;
+  std::string& text = unpredictable_texts_[what];
   if (text.empty())
-    text = std::string("UNPREDICTABLE: ") + what + ", first at " + address_text(pc_);
+    text = std::string("UNPREDICTABLE: ") + what + ", first at " + address_text(regs_.pc);
   Diagnostics::instance().guest(text);
-}
-
-void Core::mark_window(Picoseconds t) {
-  (mark_pending_ ? mark_next_ : mark_at_) = t;
-  mark_pending_ = true;
-  attention_ = true;
-}
-
-void Core::snapshot() {
-  mark_pending_ = mark_next_ != kNever;
-  mark_at_ = mark_next_;
-  mark_next_ = kNever;
-  counts_.cycles = cycle_;
-  (first_mark_ ? window_.from : window_.to) = counts_;
-  if (first_mark_) window_.to = counts_;
-  first_mark_ = false;
 }
 
 }  // namespace fovea::cpu

@@ -1,63 +1,31 @@
 // Execution of instructions. Cycle counts and interlocks: ARM DDI 0222B chapter 8.
-#include <bit>
-
+#include "model/cpu/core/conditions.h"
 #include "model/cpu/core/handlers.h"
 
 namespace fovea::cpu {
-namespace {
-
-/// Bit cond*16 + NZCV is set if the condition holds.
-constexpr std::array<std::uint16_t, 16> make_conditions() {
-  std::array<std::uint16_t, 16> out{};
-  for (unsigned f = 0; f < 16; ++f) {
-    const bool n = f & 8, z = f & 4, c = f & 2, v = f & 1;
-    const bool pass[16] = {z, !z, c, !c, n, !n, v, !v, c && !z, !c || z,
-                           n == v, n != v, !z && n == v, z || n != v, true, false};
-    for (unsigned k = 0; k < 16; ++k)
-      if (pass[k]) out[k] = static_cast<std::uint16_t>(out[k] | (1u << f));
-  }
-  return out;
-}
-constexpr auto kConditions = make_conditions();
-
-std::int32_t half(std::uint32_t v, bool top) {
-  return static_cast<std::int16_t>(top ? v >> 16 : v);
-}
-
-std::uint32_t saturate(std::int64_t v, bool& q) {
-  if (v > INT32_MAX) {
-    q = true;
-    return INT32_MAX;
-  }
-  if (v < INT32_MIN) {
-    q = true;
-    return 0x80000000u;
-  }
-  return static_cast<std::uint32_t>(v);
-}
-
-}  // namespace
 
 void Core::run() {
-  unpack_flags();
+  regs_.unpack_flags();
   struct Live {
-    Core& core;
-    explicit Live(Core& c) : core(c) { core.flags_live_ = true; }
+    RegisterFile& registers;
+    explicit Live(RegisterFile& r) : registers(r) { registers.flags_live = true; }
     ~Live() {
-      core.pack_flags();
-      core.flags_live_ = false;
+      registers.pack_flags();
+      registers.flags_live = false;
     }
-  } live(*this);
-  std::uint32_t inspected_pc = 1;  // pc of a boundary that the debugger has already inspected
+  } live(regs_);
+  std::uint32_t inspected_pc = 1;  // pc of a boundary that observers have already inspected
   for (;;) {
-    if (cycle_ >= stop_cycle_ || attention_) {
+    if (ledger_.cycle >= interface_.stop_cycle || interface_.attention) {
       if (stop_requested_) return;
-      pack_flags();
+      regs_.pack_flags();
       step_attention();
-      if (stop_requested_) stop_cycle_ = 0;  // execute one more instruction
+      if (stop_requested_) interface_.stop_cycle = 0;  // execute one more instruction
     }
-    if (debugger_ && pc_ != inspected_pc) [[unlikely]] {
-      control_boundary();
+    if (!boundary_observers_.empty() && regs_.pc != inspected_pc) [[unlikely]] {
+      regs_.pack_flags();  // observers expect the flags in the CPSR
+      boundary_observers_.each([](BoundaryObserver* o) { o->at_boundary(); });
+      regs_.unpack_flags();
       if (stop_requested_) return;
     }
     inspected_pc = 1;
@@ -66,438 +34,157 @@ void Core::run() {
       enter_exception();
       continue;
     }
-    if (bus_fetch_) {  // an interrupt that arrived meanwhile is taken first
-      bus_fetch_ = false;
-      if ((cycle_ >= stop_cycle_ || attention_) && !stop_requested_) {
-        inspected_pc = pc_;
+    if (fetch_.used_bus) {  // an interrupt that arrived meanwhile is taken first
+      fetch_.used_bus = false;
+      if ((ledger_.cycle >= interface_.stop_cycle || interface_.attention) && !stop_requested_) {
+        inspected_pc = regs_.pc;
         continue;
       }
     }
-    run_va_ = pc_ & ~31u;
-    run_first_ = reinterpret_cast<std::intptr_t>(i);
-    const bool chain = line_va_ == run_va_ && cycle_ >= busy_until_ && cycle_ >= ifill_.last &&
-                       chain_ == 0 && old_fetch_left_ == 0 && !debugger_;
+    chain_.va = regs_.pc & ~31u;
+    chain_.first = reinterpret_cast<std::intptr_t>(i);
+    const bool chain = fetch_.line_va == chain_.va && ledger_.cycle >= scoreboard_.latest &&
+                       ledger_.cycle >= fetch_.fill.last && failure_.exceptions == 0 &&
+                       !fetch_.lagging() && boundary_observers_.empty();
     if (chain) {
-      chain_stop_ = stop_cycle_;
-      i = i->handler(*this, i, cycle_);
-      while (i) i = i->handler(*this, i, chain_cycle_);
+      chain_.stop = interface_.stop_cycle;
+      i = i->handler(*this, i, ledger_.cycle);
+      while (i) i = i->handler(*this, i, chain_.cycle);
     } else {
       execute_alone(*i);
     }
-    if (old_fetch_left_) [[unlikely]] end_old_fetch();
+    if (fetch_.lagging()) [[unlikely]] end_old_fetch();
   }
 }
 
 /// Completes an exception that was not raised by an instruction.
 void Core::enter_exception() {
-  pc_ = next_pc_;
+  regs_.pc = next_pc_;
   branched_ = aborted_ = false;
-  if (old_fetch_left_) end_old_fetch();
+  if (fetch_.lagging()) end_old_fetch();
 }
 
-/// Called after an instruction: the two instructions that follow a write of the FCSE PID, or a
-/// change that turns the MMU or the I-cache on or off, were fetched before it took effect, unless
-/// the program branches (ARM DDI 0198D 2-34; two for the control register as well, from the length
-/// of the pipeline).
+/// Called after an instruction while fetches still use older settings.
 void Core::end_old_fetch() {
-  if (pc_ == old_fetch_pc_ && --old_fetch_left_) {
-    old_fetch_pc_ += (cpsr_ & 0x20u) ? 2u : 4u;
-    return;
-  }
-  old_fetch_left_ = 0;
-  fetch_process_ = process_;
-  if (fetch_control_ != control_) fetch_buffer_pa_ = 1;
-  fetch_control_ = control_;
-  flush_memos();
+  if (fetch_.instruction_done(regs_.pc, regs_.thumb())) forget_translations();
 }
 
 /// An instruction whose beginning or end may depend on earlier instructions.
 void Core::execute_alone(const Instruction& i) {
-  if (i.cond != 14 && !(kConditions[i.cond] >> (packed_cpsr() >> 28) & 1u)) {
+  if (i.cond != kAlways && !condition_holds(i.cond, regs_.packed())) {
     spend(1);
-    ++counts_.instructions;
-    pc_ += (i.flags & kThumbInsn) ? 2u : 4u;
+    ++ledger_.counts.instructions;
+    regs_.pc += (i.flags & kThumbInsn) ? 2u : 4u;
     return;
   }
-  if (cycle_ < busy_until_) stall_to(operands_ready(i, cycle_), Cause::kInterlock);
-  if (i.flags & kReadsPc)
-    r_[15] = (pc_ + ((i.flags & kThumbInsn) ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
-  chain_stop_ = 0;
-  const std::uint64_t exceptions = counts_.exceptions;
-  i.body(*this, &i, cycle_);
-  if (counts_.exceptions == exceptions) chain_ = 0;
+  if (ledger_.cycle < scoreboard_.latest)
+    ledger_.stall_to(scoreboard_.operands_ready(i, ledger_.cycle), Cause::kInterlock);
+  set_pc_ahead(i);
+  chain_.stop = 0;
+  const std::uint64_t exceptions = ledger_.counts.exceptions;
+  i.body(*this, &i, ledger_.cycle);
+  if (ledger_.counts.exceptions == exceptions) failure_.exceptions = 0;
   if (branched_) {
     branched_ = false;
-    fetch_branched_ = true;
+    fetch_.branched = true;
   }
 }
 
 /// An instruction without a fast handler, or whose access is not a plain hit. State is settled.
 void Core::execute_one(const Instruction& i) {
-  next_pc_ = pc_ + ((i.flags & kThumbInsn) ? 2u : 4u);
-  if (i.flags & kReadsPc)
-    r_[15] = (pc_ + ((i.flags & kThumbInsn) ? 4u : 8u)) & ((i.flags & kAlignPc) ? ~3u : ~0u);
-  pack_flags();
+  next_pc_ = regs_.pc + ((i.flags & kThumbInsn) ? 2u : 4u);
+  set_pc_ahead(i);
+  regs_.pack_flags();
   execute(i);
-  unpack_flags();
+  regs_.unpack_flags();
   if (aborted_) {
     aborted_ = false;
   } else {
-    ++counts_.instructions;
-    chain_ = 0;
+    ++ledger_.counts.instructions;
+    failure_.exceptions = 0;
   }
   if (branched_) {
     branched_ = false;
-    fetch_branched_ = true;
+    fetch_.branched = true;
   }
-  pc_ = next_pc_;
+  regs_.pc = next_pc_;
+}
+
+/// Takes an interrupt that is visible at the time of a boundary and not masked.
+/// @return true: the core is at its vector now, which is another boundary
+bool Core::take_interrupt(Picoseconds at) {
+  const bool fiq = !(regs_.cpsr & kFiqMask) && fiq_.at(at);
+  if (!fiq && !(!(regs_.cpsr & kIrqMask) && irq_.at(at))) return false;
+  take(fiq ? Exception::kFiq : Exception::kIrq, regs_.pc + 4);
+  enter_exception();
+  failure_.exceptions = 0;
+  return true;
+}
+
+/// An interrupt that is not masked is raised, but may not be visible yet.
+bool Core::interrupt_pending() const {
+  return (!(regs_.cpsr & kFiqMask) && fiq_.level) || (!(regs_.cpsr & kIrqMask) && irq_.level);
 }
 
 /// Handles an instruction boundary at which the horizon is reached, an interrupt line or mask has
 /// changed, or the measurement window begins or ends.
 void Core::step_attention() {
   for (;;) {
-    attention_ = false;
-    await_clock();
+    interface_.attention = false;
+    interface_.await_clock();
     // Changes at an edge are visible after it, including a change of the clock.
-    stall_to(clock_floor_, Cause::kBusSync);
-    const Picoseconds t = time(cycle_);
-    while (mark_due(t)) snapshot();
-    const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
-    if (fiq_open && fiq_.at(t)) {
-      take(Exception::kFiq, pc_ + 4);
-      enter_exception();
-      chain_ = 0;
-      continue;
-    }
-    if (irq_open && irq_.at(t)) {
-      take(Exception::kIrq, pc_ + 4);
-      enter_exception();
-      chain_ = 0;
-      continue;
-    }
-    const Picoseconds h = port_.horizon();
-    const std::uint64_t stop = h == kNever ? ~std::uint64_t{0} : clock_.edge_after(h);
-    if (cycle_ >= stop) {
-      run_buffers(cycle_);
-      port_.sleep_until(t);
-      if (time(cycle_) != t || !clock_.running()) continue;  // the clock has changed meanwhile
-      // At t itself others may still act: execute this instruction, then check again.
-      if (!attention_ && !mark_pending_) {
-        const Picoseconds again = port_.horizon();
-        stop_cycle_ = again <= t ? cycle_ + 1
-                      : again == kNever ? ~std::uint64_t{0} : clock_.edge_after(again);
-        if ((fiq_open && fiq_.level) || (irq_open && irq_.level)) stop_cycle_ = cycle_ + 1;
-        return;
-      }
-      const Picoseconds now = time(cycle_);
-      while (mark_due(now)) snapshot();
-      if ((fiq_open && fiq_.at(now)) || (irq_open && irq_.at(now))) continue;
-      attention_ = false;
-      stop_cycle_ = cycle_ + 1;
+    ledger_.stall_to(interface_.clock_floor, Cause::kBusSync);
+    const Picoseconds t = time(ledger_.cycle);
+    while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
+    if (take_interrupt(t)) continue;
+    const std::uint64_t stop = interface_.first_clock_after_horizon();
+    if (ledger_.cycle >= stop) {
+      if (wait_for_others(t) == Boundary::kRepeat) continue;
       return;
     }
-    stop_cycle_ = stop;
-    // An interrupt is raised but not visible yet, or a mark is not reached yet: check the next
-    // boundary.
-    if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || mark_pending_)
-      stop_cycle_ = cycle_ + 1;
+    // Check the next boundary again if an interrupt is raised but not visible yet, or a mark is not
+    // reached yet.
+    interface_.stop_cycle =
+        interrupt_pending() || window_.pending() ? ledger_.cycle + 1 : stop;
     return;
   }
+}
+
+/// Lets all others act up to the boundary at time t. At t itself they may still act: the core
+/// executes one instruction, then it checks again.
+Core::Boundary Core::wait_for_others(Picoseconds t) {
+  bus_.run_buffers(ledger_.cycle);
+  interface_.port.sleep_until(t);
+  const bool clock_changed = time(ledger_.cycle) != t || !interface_.clock.running();
+  if (clock_changed) return Boundary::kRepeat;
+  if (!interface_.attention && !window_.pending()) {
+    const Picoseconds horizon = interface_.port.horizon();
+    interface_.stop_cycle = horizon <= t || interrupt_pending()
+                                ? ledger_.cycle + 1
+                                : interface_.first_clock_after(horizon);
+    return Boundary::kExecute;
+  }
+  while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
+  const bool fiq = !(regs_.cpsr & kFiqMask) && fiq_.at(t);
+  if (fiq || (!(regs_.cpsr & kIrqMask) && irq_.at(t))) return Boundary::kRepeat;
+  interface_.attention = false;
+  interface_.stop_cycle = ledger_.cycle + 1;
+  return Boundary::kExecute;
 }
 
 /// True if the chain that was left for one instruction can continue with `next`.
 bool Core::chain_goes_on(const Instruction* next) const {
-  return cycle_ < chain_stop_ && cycle_ < stop_cycle_ && !attention_ &&
-         pc_ == run_va_ + next->at && line_va_ == run_va_ && line_thumb_ == (cpsr_ & 0x20u) &&
-         current_line_->valid && cycle_ >= ifill_.last && chain_ == 0;
-}
-
-void Core::dsp(const Instruction& i) {
-  bool q = false;
-  if (i.op <= Op::kSmlalxy) ++counts_.multiplies;
-  const auto s = [this](unsigned r) { return std::int64_t{static_cast<std::int32_t>(r_[r])}; };
-  unsigned cycles = 1;
-  switch (i.op) {
-    case Op::kSmulxy:
-      r_[i.rn] = static_cast<std::uint32_t>(half(r_[i.rm], i.flags & kTop1) *
-                                            half(r_[i.rs], i.flags & kTop2));
-      multiplied(i.rn, 2);
-      break;
-    case Op::kSmlaxy: {
-      const std::int64_t v = std::int64_t{half(r_[i.rm], i.flags & kTop1)} *
-                                 half(r_[i.rs], i.flags & kTop2) + s(i.rd);
-      if (v != static_cast<std::int32_t>(v)) q = true;
-      r_[i.rn] = static_cast<std::uint32_t>(v);
-      multiplied(i.rn, 2);
-      break;
-    }
-    case Op::kSmulwy:
-      r_[i.rn] = static_cast<std::uint32_t>((s(i.rm) * half(r_[i.rs], i.flags & kTop2)) >> 16);
-      multiplied(i.rn, 2);
-      break;
-    case Op::kSmlawy: {
-      const std::int64_t v = ((s(i.rm) * half(r_[i.rs], i.flags & kTop2)) >> 16) + s(i.rd);
-      if (v != static_cast<std::int32_t>(v)) q = true;
-      r_[i.rn] = static_cast<std::uint32_t>(v);
-      multiplied(i.rn, 2);
-      break;
-    }
-    case Op::kSmlalxy: {
-      std::uint64_t v = std::uint64_t{r_[i.rn]} << 32 | r_[i.rd];
-      v += static_cast<std::uint64_t>(std::int64_t{half(r_[i.rm], i.flags & kTop1)} *
-                                      half(r_[i.rs], i.flags & kTop2));
-      r_[i.rd] = static_cast<std::uint32_t>(v);
-      r_[i.rn] = static_cast<std::uint32_t>(v >> 32);
-      cycles = 2;
-      break;
-    }
-    case Op::kQadd: r_[i.rd] = saturate(s(i.rm) + s(i.rn), q); produce(i.rd, 2); break;
-    case Op::kQsub: r_[i.rd] = saturate(s(i.rm) - s(i.rn), q); produce(i.rd, 2); break;
-    case Op::kQdadd: {
-      const std::uint32_t twice = saturate(2 * s(i.rn), q);
-      r_[i.rd] = saturate(s(i.rm) + static_cast<std::int32_t>(twice), q);
-      produce(i.rd, 2);
-      break;
-    }
-    default: {
-      const std::uint32_t twice = saturate(2 * s(i.rn), q);
-      r_[i.rd] = saturate(s(i.rm) - static_cast<std::int32_t>(twice), q);
-      produce(i.rd, 2);
-      break;
-    }
-  }
-  if (q) cpsr_ |= kQ;
-  spend(cycles);
+  const std::uint64_t cycle = ledger_.cycle;
+  return cycle < chain_.stop && cycle < interface_.stop_cycle && !interface_.attention &&
+         regs_.pc == chain_.va + next->at && fetch_.line_va == chain_.va &&
+         fetch_.line_thumb == (regs_.cpsr & kThumbState) && fetch_.current->valid &&
+         cycle >= fetch_.fill.last && failure_.exceptions == 0;
 }
 
 void Core::interwork(std::uint32_t target) {
-  if ((target & 1u) && !(control_ >> 15 & 1u)) {
-    cpsr_ |= 0x20u;
-    branch_to(target & ~1u);
-  } else {
-    if (!(control_ >> 15 & 1u)) cpsr_ &= ~0x20u;
-    branch_to(target & ((cpsr_ & 0x20u) ? ~1u : ~3u));
-  }
-}
-
-/// Offset of a load or store; no such instruction shifts by a register.
-std::uint32_t Core::offset(const Instruction& decoded) const {
-  if (decoded.operand == Operand::kImm) return decoded.imm;
-  Instruction i = decoded;
-  bool carry = cpsr_ & kC;
-  switch (form_of(i)) {
-    case Form::kReg: return r_[i.rm];
-    case Form::kLsl: return shifted<Form::kLsl>(r_[i.rm], i.amount, carry);
-    case Form::kLsr: return shifted<Form::kLsr>(r_[i.rm], i.amount, carry);
-    case Form::kAsr: return shifted<Form::kAsr>(r_[i.rm], i.amount, carry);
-    case Form::kRor: return shifted<Form::kRor>(r_[i.rm], i.amount, carry);
-    default: return shifted<Form::kRrx>(r_[i.rm], i.amount, carry);
-  }
-}
-
-void Core::load_store(const Instruction& i) {
-  const bool user = i.flags & kUserBank;
-  const std::uint32_t by = offset(i);
-  const std::uint32_t base = r_[i.rn];
-  const std::uint32_t moved = (i.flags & kUp) ? base + by : base - by;
-  const std::uint32_t address = (i.flags & kPre) ? moved : base;
-  unsigned cycles = i.operand == Operand::kShiftImm && shifted_cycle_ ? 2 : 1;
-  std::uint32_t value = 0;
-  const auto write_back = [&] {
-    if ((i.flags & kWriteBack) && i.rn != 15) r_[i.rn] = moved;
-  };
-  switch (i.op) {
-    case Op::kStr:
-    case Op::kStrb:
-    case Op::kStrh: {
-      value = i.rd == 15 ? r_[15] + 4 : r_[i.rd];
-      const unsigned bytes = i.op == Op::kStr ? 4 : i.op == Op::kStrb ? 1 : 2;
-      if (store(address, bytes, value, user) != Result::kOk) return data_abort(cycles);
-      write_back();
-      spend(cycles);
-      return;
-    }
-    case Op::kLdr:
-      if (load(address, 4, value, user) != Result::kOk) return data_abort(cycles);
-      write_back();
-      if (address & 3u) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
-      if (i.rd == 15) [[unlikely]] {
-        spend(cycles + 4);
-        return interwork(value);
-      }
-      r_[i.rd] = value;
-      spend(cycles);
-      loaded(i.rd, (address & 3u) ? 2 : 1);
-      return;
-    case Op::kLdrb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort(cycles);
-      break;
-    case Op::kLdrh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort(cycles);
-      break;
-    case Op::kLdrsb:
-      if (load(address, 1, value, user) != Result::kOk) return data_abort(cycles);
-      value = static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
-      break;
-    case Op::kLdrsh:
-      if (load(address, 2, value, user) != Result::kOk) return data_abort(cycles);
-      value = static_cast<std::uint32_t>(static_cast<std::int16_t>(value));
-      break;
-    case Op::kLdrd: {
-      std::uint32_t second = 0;
-      if (misaligned(address)) return data_abort(2);
-      if (load(address & ~3u, 4, value, false) != Result::kOk) {
-        external_abort_at((address & ~3u) + 4);
-        return data_abort(2);
-      }
-      spend(1);
-      if (load((address & ~3u) + 4, 4, second, false) != Result::kOk) return data_abort(1);
-      write_back();
-      r_[i.rd] = value;
-      if (i.rd + 1u == 15) {
-        spend(5);
-        return interwork(second);
-      }
-      r_[i.rd + 1u] = second;
-      spend(1);
-      loaded(i.rd + 1u, 1);
-      return;
-    }
-    default: {  // STRD
-      const std::uint32_t words[2] = {r_[i.rd], i.rd + 1u == 15 ? r_[15] + 4 : r_[i.rd + 1u]};
-      const std::uint64_t begun = counts_.issue;
-      if (misaligned(address) || store_words(address & ~3u, words, 2, false) != Result::kOk)
-        return data_abort(2 - static_cast<unsigned>(counts_.issue - begun));
-      write_back();
-      return;
-    }
-  }
-  write_back();
-  if (i.rd == 15) return spend(cycles);  // UNPREDICTABLE: the value is discarded
-  r_[i.rd] = value;
-  spend(cycles);
-  loaded(i.rd, 2);
-}
-
-void Core::load_multiple(const Instruction& i) {
-  const std::uint32_t base = r_[i.rn];
-  const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
-  if (n == 0) {  // empty list: the base moves by sixteen words (isa_reactions.cpp)
-    if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
-    spend(1);
-    return;
-  }
-  const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
-  std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
-                                          : ((i.flags & kPre) ? end : end + 4);
-  if (misaligned(address)) return data_abort(n);
-  std::array<std::uint32_t, 16> values;
-  for (unsigned k = 0; k < n; ++k) {
-    const std::uint32_t at = (address + 4 * k) & ~3u;
-    if (load(at, 4, values[k]) != Result::kOk) {
-      external_abort_at((address & ~3u) + 4 * (n - 1));
-      return data_abort(n - k);
-    }
-    spend(1);
-  }
-  if (n == 1 && !(i.imm & 0x8000u)) spend(1);
-  const bool user_bank = (i.flags & kUserBank) && !(i.imm & 0x8000u);
-  const std::uint32_t mode = cpsr_ & 31u;
-  // The write-back wins, unless the base is the last of several registers.
-  const bool base_listed = i.imm >> i.rn & 1u;
-  const bool base_last = base_listed && (i.imm >> i.rn) == 1u && n > 1;
-  if (user_bank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
-  unsigned k = 0, last = 0;
-  std::uint32_t target = 0;
-  for (std::uint32_t set = i.imm; set; set &= set - 1, ++k) {
-    const auto r = static_cast<unsigned>(std::countr_zero(set));
-    last = r;
-    if (r == 15) target = values[k];
-    else r_[r] = values[k];
-  }
-  if (user_bank) switch_mode(mode);
-  if ((i.flags & kWriteBack) && !(base_listed && base_last)) r_[i.rn] = end;
-  if (i.imm & 0x8000u) {
-    spend(4);
-    if (i.flags & kUserBank) {
-      set_cpsr(spsr_[bank(cpsr_)]);
-      branch_to(target & ((cpsr_ & 0x20u) ? ~1u : ~3u));
-    } else {
-      interwork(target);
-    }
-    return;
-  }
-  if (n > 1) loaded(last, 1);
-}
-
-void Core::store_multiple(const Instruction& i) {
-  const std::uint32_t base = r_[i.rn];
-  const unsigned n = static_cast<unsigned>(std::popcount(i.imm));
-  if (n == 0) {
-    if (i.flags & kWriteBack) r_[i.rn] = (i.flags & kUp) ? base + 64 : base - 64;
-    spend(1);
-    return;
-  }
-  const std::uint32_t end = (i.flags & kUp) ? base + 4 * n : base - 4 * n;
-  const std::uint32_t address = (i.flags & kUp) ? ((i.flags & kPre) ? base + 4 : base)
-                                                : ((i.flags & kPre) ? end : end + 4);
-  if (misaligned(address)) return data_abort(n);
-  std::array<std::uint32_t, 16> values;
-  const std::uint32_t mode = cpsr_ & 31u;
-  if (i.flags & kUserBank) switch_mode(static_cast<std::uint32_t>(CpuMode::kSys));
-  unsigned k = 0;
-  for (std::uint32_t set = i.imm; set; set &= set - 1, ++k) {
-    const auto r = static_cast<unsigned>(std::countr_zero(set));
-    values[k] = r == 15 ? pc_ + 12 : r_[r];
-  }
-  if (i.flags & kUserBank) switch_mode(mode);
-  const std::uint64_t begun = counts_.issue;
-  if (store_words(address & ~3u, values.data(), n, false) != Result::kOk)
-    return data_abort(n - static_cast<unsigned>(counts_.issue - begun));
-  if (n == 1) spend(1);
-  if (i.flags & kWriteBack) r_[i.rn] = end;
-}
-
-void Core::swap(const Instruction& i) {
-  const unsigned bytes = i.op == Op::kSwpb ? 1 : 4;
-  const std::uint32_t address = r_[i.rn], out = r_[i.rm];
-  std::uint32_t value = 0;
-  // If the write is not permitted, it aborts before the read locks the bus.
-  const std::uint32_t mva = modified(address) & ~(bytes - 1u);
-  const bool aligned = !(control_ & 2u) || !(address & (bytes - 1u));
-  if (aligned && !translate(mva, true, false, false)) return data_abort(2);
-  swapping_ = true;
-  const bool ok = load(address, bytes, value) == Result::kOk &&
-                  store(address, bytes, out) == Result::kOk;
-  swapping_ = false;
-  if (!ok) return data_abort(2);
-  if (bytes == 4 && (address & 3u)) value = std::rotr(value, static_cast<int>(8 * (address & 3u)));
-  r_[i.rd] = value;
-  spend(2);
-  if (bytes == 1 || (address & 3u)) loaded(i.rd, 1);
-}
-
-void Core::status(const Instruction& i) {
-  if (i.op == Op::kMrs) {
-    r_[i.rd] = (i.flags & kSpsr) ? spsr_[bank(cpsr_)] : cpsr_;
-    spend(2);
-    return;
-  }
-  const std::uint32_t v = i.operand == Operand::kReg ? r_[i.rm] : i.imm;
-  std::uint32_t fields = 0;
-  for (unsigned f = 0; f < 4; ++f)
-    if (i.rs >> f & 1u) fields |= 0xFFu << (8 * f);
-  fields &= 0xF80000FFu;
-  if (i.flags & kSpsr) {
-    auto& s = spsr_[bank(cpsr_)];
-    s = (s & ~fields) | (v & fields);
-  } else {
-    if (!privileged()) fields &= 0xF8000000u;
-    // MSR does not change the T bit.
-    set_cpsr((cpsr_ & ~fields) | (v & fields & ~0x20u) | (cpsr_ & 0x20u));
-  }
-  spend(i.rs == 8 && !(i.flags & kSpsr) ? 1 : 3);
+  const bool keeps_state = system_.control & kArmV4Loads;
+  if (!keeps_state) regs_.cpsr = (regs_.cpsr & ~kThumbState) | (target & 1u ? kThumbState : 0);
+  branch_to(target & (regs_.thumb() ? ~1u : ~3u));
 }
 
 void Core::execute(const Instruction& i) {
@@ -521,15 +208,15 @@ void Core::execute_rare(const Instruction& i) {
     case Op::kSwp: case Op::kSwpb: return swap(i);
     case Op::kPld: spend(1); return;
     case Op::kBlxImm:
-      r_[14] = pc_ + 4;
-      cpsr_ |= 0x20u;
-      branch_to(r_[15] + i.imm);
+      regs_.r[14] = regs_.pc + 4;
+      regs_.cpsr |= 0x20u;
+      branch_to(regs_.r[15] + i.imm);
       spend(3);
       return;
     case Op::kThumbBlSuffix: {  // the suffix that switches to ARM state
-      const std::uint32_t target = r_[14] + i.imm;
-      r_[14] = (pc_ + 2) | 1u;
-      cpsr_ &= ~0x20u;
+      const std::uint32_t target = regs_.r[14] + i.imm;
+      regs_.r[14] = (regs_.pc + 2) | 1u;
+      regs_.cpsr &= ~0x20u;
       branch_to(target & ~3u);
       spend(3);
       return;
@@ -537,7 +224,7 @@ void Core::execute_rare(const Instruction& i) {
     case Op::kMrs: case Op::kMsr: return status(i);
     case Op::kSwi: {
       const std::uint32_t number = (i.flags & kThumbInsn) ? i.raw & 0xFFu : i.raw & 0xFFFFFFu;
-      if (swi_hook && swi_hook(*this, number)) {
+      if (swi_handlers_.any([&](SwiHandler& handles) { return handles(*this, number); })) {
         spend(3);
         return;
       }
@@ -546,12 +233,12 @@ void Core::execute_rare(const Instruction& i) {
       return;
     }
     case Op::kBkpt:
-      fault(true, 0x2, 0, pc_);
-      take(Exception::kPrefetchAbort, pc_ + 4);
+      mmu_.fault(Access::kFetch, Fault::kBreakpoint, 0, regs_.pc);
+      prefetch_abort();
       return;
     case Op::kMcr: case Op::kMrc:
       coprocessor_move(i);
-      flush_hints();  // lines may be clean or gone
+      data_.forget_hints();  // lines may be clean or gone
       return;
     default: return undefined();
   }

@@ -3,17 +3,18 @@
 // handler makes no other calls in between: slow cases are tail calls too, so that handlers need no
 // stack frame.
 //
-// Within a chain, the clock is a parameter (kept in a host register); cycle_, pc_ and the counters
-// keep their values from the start of the chain until settle(). A handler that calls a function out
-// of line and then continues must not have a variable whose address is taken: the compiler would
-// keep its frame, and the stack would grow with the chain (checked by iss.chain). A chain begins
-// when nothing is under way that could delay a record (operands, an instruction fill). It ends at
-// chain_stop_, at a record or line that is not known yet, and after an instruction that may have
-// called the outside if that requires attention.
+// Within a chain, the clock is a parameter (kept in a host register); the ledger's clock, the pc
+// and the counters keep their values from the start of the chain until settle(). A handler that
+// calls a function out of line and then continues must not have a variable whose address is taken:
+// the compiler would keep its frame, and the stack would grow with the chain (checked by
+// iss.chain). A chain begins when nothing is under way that could delay a record (operands, an
+// instruction fill). It ends at chain_.stop, at a record or line that is not known yet, and after
+// an instruction that may have called the outside if that requires attention.
 #pragma once
 #include <utility>
 
-#include "model/cpu/core/fast_path.h"
+#include "model/cpu/core/conditions.h"
+#include "model/cpu/core/core.h"
 #include "model/cpu/core/shifter.h"
 
 namespace fovea::cpu {
@@ -34,18 +35,26 @@ auto select(unsigned n, F f, std::index_sequence<k...>) {
 struct Core::Ops {
   using Next = const Instruction*;
   using Cycle = std::uint64_t;
+  using Context = RecordContext;
+  using Hint = DataCache::Hint;
+  static constexpr unsigned kReadSpan = DataCache::kReadSpan, kWriteSpan = DataCache::kWriteSpan,
+                            kHints = DataCache::kHints;
+  static constexpr Cycle kNever = ~Cycle{0};
 
   [[gnu::always_inline]] static Next go(Core& c, Next i, Cycle cycle) {
 #if defined(FOVEA_TAIL_CALLS)
     return i->handler(c, i, cycle);
 #else
-    c.chain_cycle_ = cycle;
+    c.chain_.cycle = cycle;
     return i;
 #endif
   }
   /// Continues with record i at an instruction boundary.
   [[gnu::always_inline]] static Next next(Core& c, Next i, Cycle cycle) {
-    if (cycle >= c.chain_stop_) [[unlikely]] return leave(c, i, cycle);
+    // Without this, compilers compute both from the old values again in each of the two tail calls
+    // and move them there, instead of changing the registers that they already are in.
+    asm("" : "+r"(i), "+r"(cycle));
+    if (cycle >= c.chain_.stop) [[unlikely]] return leave(c, i, cycle);
     return go(c, i, cycle);
   }
   /// Ends the chain before record i.
@@ -56,9 +65,9 @@ struct Core::Ops {
   /// Ends the chain after the taken branch i.
   [[gnu::noinline]] static Next leave_to(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     c.settle(i + 1, cycle);
-    c.jumped_from_ = c.run_va_ + i->at;
-    c.jumped_to_ = target;
-    c.pc_ = target;
+    c.failure_.jumped_from = c.chain_.va + i->at;
+    c.failure_.jumped_to = target;
+    c.regs_.pc = target;
     return nullptr;
   }
   /// Executes record i with settled state, for everything that is rare or calls the outside.
@@ -74,37 +83,48 @@ struct Core::Ops {
     return c.chain_goes_on(i) ? resume_here(c, i) : nullptr;
   }
   [[gnu::always_inline]] static Next resume_here(Core& c, Next i) {
-    c.run_first_ = reinterpret_cast<std::intptr_t>(i);
+    c.chain_.first = reinterpret_cast<std::intptr_t>(i);
     // After the last record of a line, line_end() handles results that are not available yet.
-    if (c.cycle_ < c.busy_until_ && i->at < 32) {
-      const Cycle start = held_until(c, i, c.cycle_);
-      if (start == kNoCycle) return nullptr;
-      Cycle cycle = c.cycle_;
+    if (c.ledger_.cycle < c.scoreboard_.latest && i->at < 32) {
+      const Cycle start = held_until(c, i, c.ledger_.cycle);
+      if (start == kNever) return nullptr;
+      Cycle cycle = c.ledger_.cycle;
       if (start > cycle) stall(c, cycle, start);
       return go(c, i, cycle);
     }
-    return go(c, i, c.cycle_);
+    return go(c, i, c.ledger_.cycle);
   }
   /// For records that do not know which instruction precedes them: the clock at which the operands
-  /// of the first one are available. kNoCycle: it has to be executed on its own.
+  /// of the first one are available. kNever: it has to be executed on its own.
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
   static Cycle held(const Core& c, Next i, Cycle cycle);
 
+  /// Distance of the record of an address from the first byte of its decoded line, in host memory.
+  template <bool kThumb>
+  static constexpr std::uint32_t record_offset(std::uint32_t target) {
+    return static_cast<std::uint32_t>(offsetof(DecodedLine, records) +
+                                      target % 32 / (kThumb ? 2 : 4) * sizeof(Instruction));
+  }
   /// Continues at the target of the taken branch i, without a change of state (ARM or Thumb).
   template <bool kThumb, bool kMaybeSameLine>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
-    ++c.counts_.redirects;
-    if (cycle >= c.chain_stop_) [[unlikely]] return leave_to(c, i, cycle, target);
-    DecodedLine* d = c.jumps_[target / 32 % kJumps];
-    if (d->valid != (c.line_epoch_ | (target & ~31u) | kThumb)) [[unlikely]]
+    return jump<kThumb, kMaybeSameLine>(c, i, cycle, target, record_offset<kThumb>(target));
+  }
+  template <bool kThumb, bool kMaybeSameLine>
+  [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target,
+                                          std::uint32_t offset) {
+    ++c.ledger_.counts.redirects;
+    if (cycle >= c.chain_.stop) [[unlikely]] return leave_to(c, i, cycle, target);
+    DecodedLine* d = c.fetch_.jumps[target / 32 % FetchUnit::kJumps];
+    if (d->valid != (c.fetch_.epoch | (target & ~31u) | kThumb)) [[unlikely]]
       return leave_to(c, i, cycle, target);
-    Next to = &d->records[target % 32 / (kThumb ? 2 : 4)];
+    const auto to = reinterpret_cast<Next>(reinterpret_cast<const char*>(d) + offset);
     if (!to->body) [[unlikely]] return leave_to(c, i, cycle, target);
-    if (!kMaybeSameLine || c.run_va_ != (target & ~31u)) {
-      c.line_va_ = c.run_va_ = target & ~31u;
-      c.current_line_ = d;
+    if (!kMaybeSameLine || c.chain_.va != (target & ~31u)) {
+      c.chain_.va = target & ~31u;
+      c.fetch_.current = d;
     }
-    c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
+    c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
     return go(c, to, cycle);
   }
   /// Branches to an address whose bit 0 is the new Thumb state.
@@ -112,37 +132,21 @@ struct Core::Ops {
   [[gnu::always_inline]] static Next exchange(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     if ((target & 1u) == kThumb) [[likely]]
       return jump<kThumb, true>(c, i, cycle, target & (kThumb ? ~1u : ~3u));
-    c.cpsr_ ^= 0x20u;
-    ++c.counts_.redirects;
+    c.regs_.cpsr ^= 0x20u;
+    ++c.ledger_.counts.redirects;
     return leave_to(c, i, cycle, target & (kThumb ? ~3u : ~1u));
   }
 
   template <unsigned kCond>
   [[gnu::always_inline]] static bool passes(const Core& c) {
-    const bool n = c.n_ >> 31, z = c.z_ == 0;
-    switch (kCond) {
-      case 0: return z;
-      case 1: return !z;
-      case 2: return c.c_;
-      case 3: return !c.c_;
-      case 4: return n;
-      case 5: return !n;
-      case 6: return c.v_;
-      case 7: return !c.v_;
-      case 8: return c.c_ && !z;
-      case 9: return !c.c_ || z;
-      case 10: return n == (c.v_ != 0);
-      case 11: return n != (c.v_ != 0);
-      case 12: return !z && n == (c.v_ != 0);
-      case 13: return z || n != (c.v_ != 0);
-      default: return true;
-    }
+    const RegisterFile& r = c.regs_;
+    return condition_holds(kCond, r.n >> 31, r.z == 0, r.c != 0, r.v != 0);
   }
 
   [[gnu::always_inline]] static void stall(Core& c, Cycle& cycle, Cycle until) {
-    c.counts_.stall[static_cast<std::size_t>(Cause::kInterlock)] += until - cycle;
-    c.counts_.issue -= until - cycle;  // settle() counts all clocks since the start of the chain as
-                                       // issue
+    c.ledger_.counts.stall[index(Cause::kInterlock)] += until - cycle;
+    // settle() counts all clocks since the start of the chain as issue.
+    c.ledger_.counts.issue -= until - cycle;
     cycle = until;
   }
   /// Runs before the body of a record that has a condition, may wait for operands, or reads r15.
@@ -152,9 +156,9 @@ struct Core::Ops {
   static constexpr std::array<Handler, sizeof...(k)> before_table(std::index_sequence<k...>);
 
   /// Notes a result that becomes available only after the next record has started.
-  [[gnu::always_inline]] static void track(Core& c, unsigned r, Cycle ready, Producer by) {
-    c.ready_[r] = ready * 4 + by;
-    c.busy_until_ = ready;
+  [[gnu::always_inline]] static void track(Core& c, unsigned r, Cycle ready,
+                                           Scoreboard::Producer by) {
+    c.scoreboard_.ready_at(r, ready, by);
   }
 
   /// Pseudo record after the last one of a line: leads to the next line.

@@ -1,5 +1,8 @@
 // Prepares decoded records: chooses the handler, and finds out which checks the neighbours make
 // unnecessary.
+#include <bit>
+#include <cstring>
+
 #include "model/cpu/core/handlers.h"
 #include "model/cpu/core/isa.h"
 
@@ -34,9 +37,23 @@ std::uint32_t operands(const Instruction& i) {
   return static_cast<std::uint32_t>(i.sources) | i.stored;
 }
 
+/// Registers that may not be available yet after the instruction.
+std::uint16_t perhaps_late(const Instruction& i) {
+  switch (i.op) {
+    case Op::kStr: case Op::kStrb: case Op::kStrh: case Op::kStrd: case Op::kStm: case Op::kPld:
+    case Op::kB: case Op::kBl: case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlPrefix:
+    case Op::kThumbBlSuffix: case Op::kClz:
+      return 0;
+    default: break;
+  }
+  if (i.op <= Op::kMvn) return 0;
+  const std::uint32_t known = late_results(i).registers;
+  return static_cast<std::uint16_t>(known ? known : 0xFFFFu);
+}
+
 }  // namespace
 
-Instruction Core::decode_at(const std::uint8_t* bytes, unsigned index, bool thumb) {
+Instruction decode_at(const std::uint8_t* bytes, unsigned index, bool thumb) {
   if (thumb) {
     std::uint16_t half;
     std::memcpy(&half, bytes + 2 * index, 2);
@@ -47,17 +64,30 @@ Instruction Core::decode_at(const std::uint8_t* bytes, unsigned index, bool thum
   return decode_arm(word);
 }
 
+void DecodedLine::prepare_record(const Instruction& decoded, unsigned index, RecordContext context,
+                                 bool shifted_cycle) {
+  const bool thumb = decoded.flags & kThumbInsn;
+  const unsigned count = thumb ? 16 : 8;
+  records[index] = decoded;
+  prepare(records[index], index * 32 / count, context, shifted_cycle);
+  // The last two may delay the first ones of the next line.
+  if (index + 2 >= count)
+    records[count].sources =
+        static_cast<std::uint16_t>(records[count].sources | perhaps_late(decoded));
+}
+
 /// Within a chain only the two preceding records can delay a record, and a taken branch takes
 /// longer than any result.
-Core::Context Core::record_context(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
-                              bool thumb) {
+RecordContext record_context(const DecodedLine& d, unsigned index, const std::uint8_t* bytes,
+                             bool thumb) {
   const unsigned count = thumb ? 16 : 8;
   const auto at = [&](unsigned k) {
     return d.records[k].body ? d.records[k] : decode_at(bytes, k, thumb);
   };
   const Instruction& i = d.records[index];
-  Context context;
-  context.check = Context::Check::kNone;
+  using Check = RecordContext::Check;
+  RecordContext context;
+  context.check = Check::kNone;
   const std::uint32_t needs = operands(i);
   if (needs && index >= 1) {
     const Instruction before = at(index - 1);
@@ -68,9 +98,9 @@ Core::Context Core::record_context(const DecodedLine& d, unsigned index, const s
     // If the preceding record is always executed, its result is the latest one.
     const bool in_full = (young.registers & i.sources) || young.load;
     if (waits_for_young && in_full && before.cond == 14)
-      context.check = Context::Check::kYoungest;
+      context.check = Check::kYoungest;
     else if (waits_for_young || waits_for_old)
-      context.check = Context::Check::kAll;
+      context.check = Check::kAll;
   }
   const Late mine = late_results(i);
   if (mine.registers) {
@@ -81,29 +111,41 @@ Core::Context Core::record_context(const DecodedLine& d, unsigned index, const s
   return context;
 }
 
-void Core::clear_line(DecodedLine& d, bool thumb) {
+void DecodedLine::clear(bool thumb) {
   const unsigned count = thumb ? 16 : 8;
   for (unsigned k = 0; k < count; ++k) {
-    d.records[k] = Instruction{};
-    d.records[k].handler = &Ops::leave;
-    d.records[k].at = static_cast<std::uint8_t>(k * 32 / count);
+    records[k] = Instruction{};
+    records[k].handler = &Core::Ops::leave;
+    records[k].at = static_cast<std::uint8_t>(k * 32 / count);
   }
-  d.records[count] = Instruction{};
-  d.records[count].handler = thumb ? &Ops::line_end<true> : &Ops::line_end<false>;
-  d.records[count].at = 32;
+  records[count] = Instruction{};
+  records[count].handler = thumb ? &Core::Ops::line_end<true> : &Core::Ops::line_end<false>;
+  records[count].at = 32;
 }
 
-template <unsigned kCond, Core::Context::Check kCheck, bool kPc>
+const Instruction* DecodedLine::hold_one(const Instruction& decoded, std::uint32_t pc,
+                                         bool shifted_cycle) {
+  const unsigned size = (decoded.flags & kThumbInsn) ? 2 : 4;
+  va = pc & ~31u;
+  Instruction* const i = &records[(pc & 31u) / size];
+  i[0] = decoded;
+  prepare(i[0], pc & 31u, RecordContext{}, shifted_cycle);
+  i[1] = Instruction{};
+  i[1].at = static_cast<std::uint8_t>(i->at + size);
+  i[1].handler = &Core::Ops::leave;
+  return i;
+}
+
+template <unsigned kCond, RecordContext::Check kCheck, bool kPc>
 Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
   if constexpr (kCheck == Context::Check::kYoungest) {
-    if (cycle < c.busy_until_) stall(c, cycle, c.busy_until_);
+    if (cycle < c.scoreboard_.latest) stall(c, cycle, c.scoreboard_.latest);
   } else if constexpr (kCheck == Context::Check::kAll) {
-    if (cycle < c.busy_until_) stall(c, cycle, c.operands_ready(*i, cycle));
+    if (cycle < c.scoreboard_.latest) stall(c, cycle, c.scoreboard_.operands_ready(*i, cycle));
   }
   if constexpr (kPc)
-    c.r_[15] = (c.run_va_ + i->at + ((i->flags & kThumbInsn) ? 4u : kPcDelayArm)) &
-               ((i->flags & kAlignPc) ? ~3u : ~0u);
+    c.regs_.r[15] = pc_ahead(*i, c.chain_.va + i->at);
   return i->body(c, i, cycle);
 }
 
@@ -113,7 +155,9 @@ constexpr std::array<Handler, sizeof...(k)> Core::Ops::before_table(std::index_s
   return {&before<k % 15, static_cast<Context::Check>(k / 15 % 3), (k / 45) != 0>...};
 }
 
-void Core::prepare(Instruction& i, unsigned at, Context context) const {
+void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cycle) {
+  using Ops = Core::Ops;
+  using Check = RecordContext::Check;
   i.at = static_cast<std::uint8_t>(at);
   Handler body = nullptr;
   bool own_condition = false;
@@ -129,7 +173,7 @@ void Core::prepare(Instruction& i, unsigned at, Context context) const {
         break;
       case Op::kLdr: case Op::kLdrb: case Op::kLdrh: case Op::kLdrsb: case Op::kLdrsh:
       case Op::kStr: case Op::kStrb: case Op::kStrh:
-        if (i.operand == Operand::kShiftImm) i.rs = shifted_cycle_;
+        if (i.operand == Operand::kShiftImm) i.rs = shifted_cycle;
         body = Ops::memory_body(i, context);
         break;
       case Op::kLdm: case Op::kStm:
@@ -148,10 +192,10 @@ void Core::prepare(Instruction& i, unsigned at, Context context) const {
     }
   }
   i.body = body ? body : &Ops::generic;
-  const unsigned cond = own_condition ? 14u : i.cond;
-  const auto check = operands(i) ? context.check : Context::Check::kNone;
+  const unsigned cond = own_condition ? kAlways : i.cond;
+  const auto check = operands(i) ? context.check : Check::kNone;
   const bool pc = body && (i.flags & kReadsPc);
-  if (cond == 14 && check == Context::Check::kNone && !pc) {
+  if (cond == kAlways && check == Check::kNone && !pc) {
     i.handler = i.body;
     return;
   }
@@ -163,34 +207,32 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   c.settle(i, cycle);
   const bool thumb = i->flags & kThumbInsn;
   c.unpredictable(isa_rows()[static_cast<std::size_t>(isa_row(i->raw, thumb))].name);
-  std::array<Instruction, 2>& pair = c.unpredictable_record_;
-  pair[0] = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
-  pair[0].flags = static_cast<std::uint16_t>(pair[0].flags & ~kUnpredictable);
-  c.prepare(pair[0], i->at, Context{});
-  pair[1].at = static_cast<std::uint8_t>(i->at + (thumb ? 2u : 4u));
-  pair[1].handler = &leave;
-  c.chain_stop_ = 0;  // execute one record, then return to run()
-  c.run_first_ = reinterpret_cast<std::intptr_t>(pair.data());
-  for (Next k = pair[0].body(c, pair.data(), c.cycle_); k;) k = k->handler(c, k, c.chain_cycle_);
+  Instruction own = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
+  own.flags = static_cast<std::uint16_t>(own.flags & ~kUnpredictable);
+  c.log_.line_changes(c.unpredictable_);
+  const Next record = c.unpredictable_.hold_one(own, c.regs_.pc, c.shifted_cycle_);
+  c.chain_.stop = 0;  // execute one record, then return to run()
+  c.chain_.first = reinterpret_cast<std::intptr_t>(record);
+  for (Next k = record->body(c, record, c.ledger_.cycle); k;)
+    k = k->handler(c, k, c.chain_.cycle);
   return nullptr;
 }
 
 template <bool kThumb>
 Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d) {
-  Next to = &d.records[0];
-  if (!to->body) [[unlikely]] return leave(c, i, cycle);
-  c.line_va_ = c.run_va_ += 32;
-  c.current_line_ = &d;
-  c.run_first_ += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
+  const Next to = &d.records[0];
+  c.chain_.va += 32;
+  c.fetch_.current = &d;
+  c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
   return go(c, to, cycle);
 }
 
 template <bool kThumb>
 Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
-  const std::uint32_t va = c.run_va_ + 32;
-  DecodedLine* d = c.jumps_[va / 32 % kJumps];
-  if (d->valid != (c.line_epoch_ | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
-  if (cycle < c.busy_until_) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle, *d);
+  const std::uint32_t va = c.chain_.va + 32;
+  DecodedLine* const d = c.fetch_.current->next;
+  if (d->valid != (c.fetch_.epoch | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
+  if (cycle < c.scoreboard_.latest) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle, *d);
   return enter_line<kThumb>(c, i, cycle, *d);
 }
 
@@ -199,8 +241,10 @@ template <bool kThumb>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle,
                                                            DecodedLine& d) {
   if (!d.records[0].body) [[unlikely]] return leave(c, i, cycle);
+  if (!((operands(d.records[0]) | operands(d.records[1])) & i->sources))
+    return enter_line<kThumb>(c, i, cycle, d);
   const Cycle start = held(c, &d.records[0], cycle);
-  if (start == kNoCycle) [[unlikely]] return leave(c, i, cycle);
+  if (start == kNever) [[unlikely]] return leave(c, i, cycle);
   if (start > cycle) stall(c, cycle, start);
   return enter_line<kThumb>(c, i, cycle, d);
 }
@@ -211,15 +255,12 @@ template <bool kThumb>
 
 [[gnu::always_inline]] inline Core::Ops::Cycle Core::Ops::held(const Core& c, Next i,
                                                               Cycle cycle) {
-  const auto late = [&c](std::uint32_t set, Cycle than) {
-    for (; set; set &= set - 1)
-      if (c.ready_[static_cast<unsigned>(__builtin_ctz(set))] >> 2 > than) return true;
-    return false;
-  };
-  const Cycle start = c.operands_ready(*i, cycle);
-  if (start > cycle && i->cond != 14) return kNoCycle;
+  const Cycle start = c.scoreboard_.operands_ready(*i, cycle);
+  if (start > cycle && i->cond != 14) return kNever;
   // No result takes longer than two clocks.
-  if (c.busy_until_ > start + 1 && late(operands(i[1]), start + 1)) return kNoCycle;
+  if (c.scoreboard_.latest > start + 1 &&
+      c.scoreboard_.any_later(operands(i[1]), start + 1))
+    return kNever;
   return start;
 }
 

@@ -1,4 +1,4 @@
-// The barrel shifter (ARM DDI 0100, A5.1), and the flag bits of the CPSR.
+// The barrel shifter (ARM DDI 0100, A5.1).
 #pragma once
 #include <array>
 #include <bit>
@@ -7,9 +7,6 @@
 #include "model/cpu/core/instruction.h"
 
 namespace fovea::cpu {
-
-inline constexpr std::uint32_t kN = 1u << 31, kZ = 1u << 30, kC = 1u << 29, kV = 1u << 28,
-                               kQ = 1u << 27;
 
 /// The forms of a second operand that need different computations. form_of() turns an encoded
 /// distance of 0 into 32 or, for ROR, into the form kRrx.

@@ -16,10 +16,35 @@ enum class Cause : std::uint8_t {
   kCount
 };
 inline constexpr std::size_t kCauses = static_cast<std::size_t>(Cause::kCount);
-inline constexpr std::array<const char*, kCauses> kCauseNames = {
-    "interlock", "icache", "dcache", "write_buffer", "uncached",
-    "tlb",       "tcm",    "cache_op", "drain",      "bus_sync"};
 constexpr std::size_t index(Cause c) { return static_cast<std::size_t>(c); }
+
+struct CauseInfo {
+  Cause cause;
+  const char* name;      ///< in cpu.stall.NAME
+  const char* sentence;  ///< of that statistic
+};
+/// All causes in the order of the enumeration: the one list of their names.
+inline constexpr std::array<CauseInfo, kCauses> kCauseTable = {{
+    {Cause::kInterlock, "interlock", "clocks waiting for a register"},
+    {Cause::kIcache, "icache", "clocks waiting for line fills of the I-cache"},
+    {Cause::kDcache, "dcache", "clocks waiting for line fills of the D-cache"},
+    {Cause::kWriteBuffer, "write_buffer",
+     "clocks waiting for room in the write or victim buffer"},
+    {Cause::kUncached, "uncached",
+     "clocks waiting for uncached reads and fetches and for unbuffered writes"},
+    {Cause::kTlb, "tlb", "clocks waiting for page walks"},
+    {Cause::kTcm, "tcm", "clocks of wait states of internal RAM, and waiting for DMA there"},
+    {Cause::kCacheOp, "cache_op", "clocks of cache maintenance"},
+    {Cause::kDrain, "drain", "clocks waiting for the write buffer to drain"},
+    {Cause::kBusSync, "bus_sync",
+     "clocks waiting for an AHB clock edge, or for the first edge of another clock"},
+}};
+static_assert([] {
+  for (std::size_t k = 0; k < kCauses; ++k)
+    if (index(kCauseTable[k].cause) != k) return false;
+  return true;
+}());
+constexpr const char* cause_name(Cause c) { return kCauseTable[index(c)].name; }
 
 /// Culprits of a stall: those of a bus transaction, and the core itself (interlocks, wait states,
 /// waiting for an edge of the AHB clock, the path from the AHB into the core).

@@ -123,23 +123,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(cycles, "cycles", "cycles", cycles, "core clocks of the window");
   FOVEA_CPU_STAT(issue, "issue", "cycles", issue, "clocks in which instructions issue");
   FOVEA_CPU_STAT(idle, "idle", "cycles", idle, "clocks in wait-for-interrupt");
-  FOVEA_CPU_STAT(interlock, "stall.interlock", "cycles", stall[0], "clocks waiting for a register");
-  FOVEA_CPU_STAT(icache, "stall.icache", "cycles", stall[1],
-                 "clocks waiting for line fills of the I-cache");
-  FOVEA_CPU_STAT(dcache, "stall.dcache", "cycles", stall[2],
-                 "clocks waiting for line fills of the D-cache");
-  FOVEA_CPU_STAT(write_buffer, "stall.write_buffer", "cycles", stall[3],
-                 "clocks waiting for room in the write or victim buffer");
-  FOVEA_CPU_STAT(uncached, "stall.uncached", "cycles", stall[4],
-                 "clocks waiting for uncached reads and fetches and for unbuffered writes");
-  FOVEA_CPU_STAT(tlb, "stall.tlb", "cycles", stall[5], "clocks waiting for page walks");
-  FOVEA_CPU_STAT(tcm, "stall.tcm", "cycles", stall[6],
-                 "clocks of wait states of internal RAM, and waiting for DMA there");
-  FOVEA_CPU_STAT(cache_op, "stall.cache_op", "cycles", stall[7], "clocks of cache maintenance");
-  FOVEA_CPU_STAT(drain, "stall.drain", "cycles", stall[8],
-                 "clocks waiting for the write buffer to drain");
-  FOVEA_CPU_STAT(bus_sync, "stall.bus_sync", "cycles", stall[9],
-                 "clocks waiting for an AHB clock edge, or for the first edge of another clock");
+  std::vector<std::unique_ptr<Formula>> stalls = stalls_by_cause();
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
                  "words looked up in the I-cache, with two dropped behind each change of flow");
   FOVEA_CPU_STAT(icache_fills, "icache.line_fills", "1", icache_fills,
@@ -184,22 +168,31 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(redirects, "activity.redirects", "1", redirects,
                  "changes of flow: branches taken, writes to the pc, exceptions");
 #undef FOVEA_CPU_STAT
-  CoreStats() : StatGroup("cpu") {
-    for (std::size_t k = 0; k < kCauses; ++k) {
-      const auto cause = static_cast<Cause>(k);
-      if (!waits_for_others(cause)) continue;
+  CoreStats() : StatGroup("cpu") { add_stalls_by_culprit(); }
+
+ private:
+  std::vector<std::unique_ptr<Formula>> stalls_by_cause() {
+    std::vector<std::unique_ptr<Formula>> out;
+    for (const CauseInfo& info : kCauseTable)
+      out.push_back(std::make_unique<Formula>(
+          *this, "stall." + std::string(info.name), "cycles", info.sentence,
+          [this, k = index(info.cause)] { return V(to.stall[k] - from.stall[k]); }));
+    return out;
+  }
+  void add_stalls_by_culprit() {
+    for (const CauseInfo& info : kCauseTable) {
+      if (!waits_for_others(info.cause)) continue;
+      const std::string name = info.name;
       for (std::size_t c = 0; c < kStallCulprits; ++c) {
         const std::string culprit(stall_culprit_name(c));
         by_culprit_.push_back(std::make_unique<Formula>(
-            *this, "stall." + std::string(kCauseNames[k]) + ".by." + culprit, "cycles",
-            "clocks of cpu.stall." + std::string(kCauseNames[k]) + " for which " + culprit +
-                " is to blame",
-            [this, cause, c] { return V(to.stalls.by(cause, c, from.stalls)); }));
+            *this, "stall." + name + ".by." + culprit, "cycles",
+            "clocks of cpu.stall." + name + " for which " + culprit + " is to blame",
+            [this, cause = info.cause, c] { return V(to.stalls.by(cause, c, from.stalls)); }));
       }
     }
   }
 
- private:
   std::vector<std::unique_ptr<Formula>> by_culprit_;
 };
 

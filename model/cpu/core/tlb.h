@@ -6,16 +6,6 @@
 
 namespace fovea::cpu {
 
-/// The translation of a page, as far as an access needs it.
-struct Translation {
-  std::uint32_t base_va = 1, base_pa = 0, mask = 0;  // pa = base_pa | (mva & mask)
-  std::uint8_t ap = 3, domain = 0;
-  bool cacheable = false, bufferable = false;
-  bool section = false;
-  bool checked = false;  // false: the MMU is off, so there are no permissions
-  std::uint32_t physical(std::uint32_t mva) const { return base_pa | (mva & mask); }
-};
-
 struct TlbEntry {
   bool valid = false;
   std::uint32_t base_va = 0, base_pa = 0, mask = 0;
@@ -24,6 +14,10 @@ struct TlbEntry {
   bool cacheable = false, bufferable = false, section = false;
   bool covers(std::uint32_t mva) const { return valid && (mva & ~mask) == base_va; }
   std::uint32_t physical(std::uint32_t mva) const { return base_pa | (mva & mask); }
+  /// Access permissions at an address: the quarters of a small or large page have their own.
+  std::uint8_t permissions(std::uint32_t mva) const {
+    return ap[mask == 0xFFFu ? (mva >> 10) & 3u : mask == 0xFFFFu ? (mva >> 14) & 3u : 0];
+  }
 };
 
 class Tlb {

@@ -1,0 +1,71 @@
+#include "model/cpu/core/data_cache.h"
+
+#include <algorithm>
+
+#include "model/common/check.h"
+
+namespace fovea::cpu {
+
+void DataCache::forget_hints() {
+  if (!hints_used_) return;
+  hints_used_ = false;
+  for (auto* hints : {&read_hints, &write_hints})
+    for (auto& h : *hints) h.key = kNoHint;
+  absent.key = kNoHint;
+}
+
+/// To be called when a line changes its contents.
+void DataCache::drop_hints(std::uint32_t line_mva) {
+  // FCSE changes only address bits that do not select the hint.
+  read_hints[line_mva / kReadSpan % kHints].key = kNoHint;
+  for (unsigned half = 0; half < 2; ++half)
+    write_hints[(line_mva / kWriteSpan + half) % kHints].key = kNoHint;
+}
+
+/// @return index of the line; after a bus error, that line is invalid
+int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_page) {
+  const std::uint64_t asked = bus_.asked_now();
+  ledger_.stall_to(fill.last, Cause::kDcache, fill.pa, kService);
+  const unsigned index = lines_.victim(lines_.set_of(mva), registers_.control & kRoundRobin,
+                                       registers_.dlock & 15u);
+  if (lines_.line(index).tag != 1) drop_hints(lines_.line(index).tag);
+  bus_.run_buffers(ledger_.cycle);
+  bus_.write_back(lines_, index, true, Cause::kWriteBuffer);
+  const bool good = bus_.read_line(pa, asked, Cause::kDcache);
+  ++ledger_.counts.dcache_read_fills;
+  Cache::Line& l = lines_.line(index);
+  if (!good) {  // linefills cannot abort on this core: the line is simply not kept
+    lines_.invalidate(index);
+    Diagnostics::instance().guest("bus error on a D-cache line fill");
+    std::memset(lines_.data(index), 0, 32);
+    return static_cast<int>(index);
+  }
+  std::memcpy(lines_.data(index), bus_.data(), 32);
+  absent.key = kNoHint;
+  l.tag = mva & ~31u;
+  l.pa = pa & ~31u;
+  l.dirty = 0;
+  l.write_back = write_back_page;
+  fill = {mva & ~31u, (pa >> 2) & 7u, pa, ledger_.cycle,
+          std::max(ledger_.cycle, bus_.last_word())};
+  return static_cast<int>(index);
+}
+
+bool DataCache::store(std::uint32_t va, std::uint32_t mva, unsigned bytes, std::uint32_t value,
+                      bool write_back_page) {
+  ++ledger_.counts.dcache_writes;
+  if (ledger_.cycle < fill.last) wait_for_fill(mva);
+  const int i = lines_.find(mva);
+  if (i < 0) {
+    ++ledger_.counts.dcache_write_misses;
+    return false;
+  }
+  const auto line = static_cast<unsigned>(i);
+  std::memcpy(lines_.data(line) + (mva & 31u), &value, bytes);
+  if (!keeps(i, write_back_page)) return false;
+  lines_.line(line).dirty |= static_cast<std::uint8_t>(1u << ((mva >> 4) & 1u));
+  hint_writes(va, mva, lines_.data(line) + (mva & 16u), ledger_.counts.dcache_writes);
+  return true;
+}
+
+}  // namespace fovea::cpu
