@@ -37,7 +37,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
     if (on_uart) on_uart(byte);
   };
   dm365.gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds at) {
-    if (bank == 2) log.pins(out, at);
+    if (bank == PHASE_BANK) log.pins(out, at);
   };
   dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
     if (f.complete) log.capture(f.index, f.start, f.end);
@@ -54,34 +54,38 @@ void Board::reset_asked(const std::string& cause) {
 }
 
 void Board::set_switches() {
-  std::uint32_t dip = 0;
-  dip |= static_cast<std::uint32_t>(params_.video.standard.index());
-  dip |= (params_.lens.paper_literal_focal() ? 1u : 0u) << 5;
-  dip |= static_cast<std::uint32_t>(params_.firmware.kernel.index()) << 6;
-  dip |= (params_.firmware.flow.is("serial") ? 1u : 0u) << 8;
-  dip |= (params_.lens.pair.is("B") ? 1u : 0u) << 9;
-  dip |= (params_.firmware.overlay() ? 1u : 0u) << 10;
-  dip |= (params_.firmware.patch() ? 1u : 0u) << 11;
-  dip |= static_cast<std::uint32_t>(params_.clocks.preset.index()) << 12;
-  for (unsigned pin = 0; pin < 16; ++pin) dm365.gpio.set_pin(pin, (dip >> pin & 1u) != 0);
+  const VideoParams& v = params_.video;
+  const std::uint32_t standard = v.standard.is("pal") ? SWITCH_PAL : SWITCH_NTSC;
+  const std::uint32_t size = v.width() || v.height()   ? SWITCH_SIZE_OF_PAGE
+                             : v.standard.is("pal")    ? SWITCH_720X576
+                             : v.standard.is("ntsc")   ? SWITCH_720X480
+                                                       : SWITCH_640X480;
+  const std::uint32_t mapping = contract::code_of(contract::kMappings, params_.lens.mapping()) + 1;
+  const std::uint32_t pins =
+      SWITCH_PUT(SWITCH_STANDARD_IN, standard) | SWITCH_PUT(SWITCH_STANDARD_OUT, standard) |
+      SWITCH_PUT(SWITCH_SIZE_IN, size) | SWITCH_PUT(SWITCH_SIZE_OUT, size) |
+      SWITCH_PUT(SWITCH_MAPPING, mapping) |
+      SWITCH_PUT(SWITCH_SHIFT_X, SwitchParams::code(params_.switches.shift_x)) |
+      SWITCH_PUT(SWITCH_SHIFT_Y, SwitchParams::code(params_.switches.shift_y));
+  for (unsigned pin = 0; pin < SWITCH_COUNT; ++pin) dm365.gpio.set_pin(pin, (pins >> pin & 1u) != 0);
 }
 
 void Board::load(const LoadImage& image) {
   const std::size_t n = image.bytes.size();
   if (n == 0) return;
-  if (image.address >= 0x8000'0000u)
+  if (image.address >= DDR_BASE)
     std::copy(image.bytes.begin(), image.bytes.end(),
-              dm365.ddr.store().at(image.address - 0x8000'0000u));
+              dm365.ddr.store().at(image.address - DDR_BASE));
   else
     std::copy(image.bytes.begin(), image.bytes.end(),
-              dm365.internal_ram.begin() + (image.address & 0x7FFFu));
+              dm365.internal_ram.begin() + (image.address & (INTERNAL_RAM_BYTES - 1)));
 }
 
 std::vector<std::uint8_t> Board::peek(std::uint32_t address, std::size_t bytes) {
   dm365.scr.settle();
-  const std::uint8_t* p = address >= 0x8000'0000u
-                              ? dm365.ddr.store().at(address - 0x8000'0000u)
-                              : dm365.internal_ram.data() + (address & 0x7FFFu);
+  const std::uint8_t* p = address >= DDR_BASE
+                              ? dm365.ddr.store().at(address - DDR_BASE)
+                              : dm365.internal_ram.data() + (address & (INTERNAL_RAM_BYTES - 1));
   return {p, p + bytes};
 }
 

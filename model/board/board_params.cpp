@@ -48,6 +48,19 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
         });
       });
   }
+  // Masters that nothing but a load drives.
+  for (EnumParam& p : priority.of) {
+    const std::string name = p.key().substr(p.key().find('.') + 1);
+    const bool spare = std::any_of(kMasters.rows.begin(), kMasters.rows.end(), [&](const MasterInfo& m) {
+      return m.spare && priority_name(m) == name;
+    });
+    if (spare)
+      p.matters_only("a load with load.port = " + name, loads, [this, name] {
+        return std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
+          return load.active() && load.port.is(name);
+        });
+      });
+  }
   // Of this project's firmware and the synthetic loads, only loads use internal RAM beside the core.
   std::vector<const ParamBase*> places;
   for (const auto& load : soc.loads) places.insert(places.end(), {&load.memory, &load.outstanding});

@@ -1,5 +1,8 @@
 // Parameters of the board: what is soldered, switched and loaded.
 #pragma once
+#include "model/board/clock_presets.h"
+#include "model/board/priority_params.h"
+#include "model/contract/switches.h"
 #include "model/soc/dm365.h"
 #include "model/video/params.h"
 #include "model/video/scene/scene_params.h"
@@ -31,17 +34,29 @@ struct UartParams : ParamGroup {
 };
 
 struct ClockParams : ParamGroup {
-  EnumParam preset{*this, "preset", "297/243",
-                   {"297/243", "297/270", "270/216", "216/172", "432/340"},
-                   "MHz of core / DDR clock that the firmware programs (DIP 12..14)",
+  using U = IntParam::Unit;
+  EnumParam preset{*this, "preset", std::string(kClockPresets.front().name), clock_preset_names(),
+                   "MHz of core / DDR clock that the firmware programs",
                    Origin::kSourced, "TI boot loader for the DM36x (UBL, device.c)"};
-  ClockParams() : ParamGroup("clocks") {}
+  IntParam arm{*this, "arm", U::kHertz, 0, 0, hertz(most([](const ClockPreset& p) { return p.core(); })),
+               "core clock instead of the preset's, where the PLLs can give it; 0: the preset's",
+               Origin::kChoice, ""};
+  IntParam ddr{*this, "ddr", U::kHertz, 0, 0, hertz(most([](const ClockPreset& p) { return p.ddr(); })),
+               "SDRAM clock likewise; crossbar and video follow it, with half of it and all of it",
+               Origin::kChoice, ""};
+  ClockParams() : ParamGroup("clocks") {
+    preset.matters_only("clocks.arm = 0Hz or clocks.ddr = 0Hz", {&arm, &ddr},
+                        [this] { return arm() == 0 || ddr() == 0; });
+  }
+
+ private:
+  static constexpr std::uint64_t hertz(Frequency f) { return f.num / f.den; }
 };
 
 struct VideoParams : ParamGroup {
   using U = IntParam::Unit;
   EnumParam standard{*this, "standard", "pal", {"pal", "ntsc", "vga"},
-                     "720x576 625/50, 720x480 525/60, or a 640x480 window in 525/60 (DIP 0..1)",
+                     "720x576 625/50, 720x480 525/60, or a 640x480 window in 525/60 (DIP switches)",
                      Origin::kChoice, ""};
   IntParam width{*this, "width", U::kCount, 0, 0, 720,
                  "pixels of a centred region that is captured, corrected and shown; 0: all",
@@ -54,30 +69,37 @@ struct VideoParams : ParamGroup {
 struct FirmwareParams : ParamGroup {
   TextParam elf{*this, "elf", "",
                 "program to run; empty: the firmware that was built with Fovea"};
-  EnumParam kernel{*this, "kernel", "plain", {"plain", "ldm"},
-                   "remap loop: the paper's load/load/store, or LDM/STM (DIP 6..7)",
+  EnumParam kernel{*this, "kernel", "plain", contract::words(contract::kKernels),
+                   "remap loop: the paper's load/load/store, or LDM/STM",
                    Origin::kChoice, ""};
-  EnumParam flow{*this, "flow", "double", {"double", "serial"},
-                 "double buffering, or the paper's capture, remap, show in turn (DIP 8)",
+  EnumParam flow{*this, "flow", "double", contract::words(contract::kFlows),
+                 "double buffering, or the paper's capture, remap, show in turn",
                  Origin::kChoice, ""};
   IntParam repeat{*this, "repeat", IntParam::Unit::kCount, 1, 1, 1000,
                   "correct each captured frame so many times in a row; with 2 or more the firmware no "
                   "longer waits for the camera with a large frame, so the remap runs at full speed",
                   Origin::kChoice, ""};
   BoolParam overlay{*this, "overlay", false,
-                    "a blinking box blended onto the picture through the cache (DIP 10)",
+                    "a blinking box blended onto the picture through the cache",
                     Origin::kChoice, ""};
-  BoolParam patch{*this, "patch", false, "the program patches its own code once (DIP 11)",
+  BoolParam patch{*this, "patch", false, "the program patches its own code once",
                   Origin::kChoice, ""};
+  EnumParam baud{*this, "baud", "115200", {"115200", "57600", "38400", "19200", "9600"},
+                 "rate of UART0 that the firmware sets", Origin::kChoice, ""};
+  /// Divisor of the UART's 24 MHz / 16, rounded.
+  std::uint32_t baud_divisor() const {
+    const auto rate = static_cast<std::uint32_t>(std::stoul(baud()));
+    return (24'000'000 / 16 + rate / 2) / rate;
+  }
   FirmwareParams() : ParamGroup("firmware") {}
 };
 
-/// The lens description that the loader puts into the parameter page (sw/lens/README.md).
+/// The lens description that the loader puts into the parameter page (model/contract).
 struct LensParams : ParamGroup {
   EnumParam mapping{*this, "mapping", "equisolid",
-                    {"none", "rectilinear", "linear", "orthographic", "equisolid",
-                     "stereographic", "kannala_brandt"},
-                    "mapping function the firmware corrects; kannala_brandt goes in as a table",
+                    contract::words(contract::kMappings),
+                    "mapping function the firmware corrects; kannala_brandt goes in as a table "
+                    "(DIP switches)",
                     Origin::kChoice, ""};
   RealParam fov{*this, "fov", "deg", 180, 10, 359, "full horizontal field of view",
                 Origin::kChoice, ""};
@@ -113,10 +135,10 @@ struct LensParams : ParamGroup {
                       "kannala_brandt: largest angle of the table; beyond it the view is black",
                       Origin::kChoice, ""};
   BoolParam paper_literal_focal{*this, "paper_literal_focal", false,
-                                "equation (10) as the paper prints it (DIP 5)", Origin::kChoice,
+                                "equation (10) as the paper prints it", Origin::kChoice,
                                 ""};
-  EnumParam pair{*this, "pair", "A", {"A", "B"},
-                 "pair method: first pixel's source word (the paper), or the pair's centre (DIP 9)",
+  EnumParam pair{*this, "pair", "A", contract::words(contract::kPairMethods),
+                 "pair method: first pixel's source word (the paper), or the pair's centre",
                  Origin::kChoice, ""};
   LensParams() : ParamGroup("lens") {
     const auto any = [this] { return !mapping.is("none"); };
@@ -141,6 +163,21 @@ struct LensParams : ParamGroup {
                                      [this] { return mapping.is("equisolid"); });
     paper_literal_focal.matters_only("lens.focal = 0px", {&focal}, [this] { return focal() == 0; });
   }
+};
+
+/// Switches that an installer may set besides those that follow from other keys.
+struct SwitchParams : ParamGroup {
+  EnumParam shift_x{*this, "shift_x", "centred", {"centred", "right", "left"},
+                    "DIP switches for the view: 32 pixels, in addition to lens.shift_x", Origin::kChoice, ""};
+  EnumParam shift_y{*this, "shift_y", "centred", {"centred", "down", "up"},
+                    "the same for lines, in addition to lens.shift_y", Origin::kChoice, ""};
+  /// The code of a shift switch.
+  static std::uint32_t code(const EnumParam& shift) {
+    return shift.is("centred")                       ? SWITCH_CENTRED
+           : shift.is("right") || shift.is("down") ? SWITCH_FORWARD
+                                                     : SWITCH_BACK;
+  }
+  SwitchParams() : ParamGroup("switches") {}
 };
 
 /// Devices that a board may have beside those of the camera.
@@ -175,6 +212,8 @@ struct BoardParams : ParamTree {
   Declared<VideoParams> video{*this};
   Declared<FirmwareParams> firmware{*this};
   Declared<LensParams> lens{*this};
+  Declared<SwitchParams> switches{*this};
+  Declared<PriorityParams> priority{*this};
   Declared<video::SceneParams> camera{*this};
   Declared<video::Tvp5146Params> decoder{*this};
   Declared<soc::Dm365Params> soc;

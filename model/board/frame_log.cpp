@@ -15,20 +15,20 @@ void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end) 
 /// last line, the record with the last write), never more than half the range behind.
 std::optional<std::uint64_t> FrameLog::unroll(unsigned sequence) const {
   const std::uint64_t next = latest_capture_ ? *latest_capture_ + 1 : 0;
-  const std::uint64_t base = next & ~std::uint64_t{255};
+  const std::uint64_t base = next & ~std::uint64_t{PHASE_SEQUENCES - 1};
   std::uint64_t value = base + sequence;
   if (value > next) {
-    if (value < 256) return std::nullopt;  // ahead of all captures: not a frame of ours
-    value -= 256;
+    if (value < PHASE_SEQUENCES) return std::nullopt;  // ahead of all captures: not a frame of ours
+    value -= PHASE_SEQUENCES;
   }
   return value;
 }
 
 void FrameLog::pins(std::uint32_t levels, Picoseconds at) {
-  const auto phase = static_cast<Phase>(levels & 15u);
-  const unsigned sequence = (levels >> 4) & 255u;
+  const Phase phase = phase_of(levels);
+  const unsigned sequence = PHASE_SEQUENCE(levels);
   phase_ = phase;
-  auto& first = first_[levels & 15u];
+  auto& first = first_[PHASE_OF(levels)];
   if (!first) first = at;
   switch (phase) {
     case Phase::kRemapStart:

@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "model/common/units.h"
+#include "model/contract/phases.h"
 
 namespace fovea::board {
 
-/// Phases that firmware shows on GPIO 64..95 as (phase | sequence << 4), as one would for a scope.
+/// Phases that firmware shows on GPIO pins, as one would for a scope (model/contract/phases.h).
 enum class Phase : std::uint8_t {
-  kReset = 0, kBoot = 1, kLut = 2, kIdle = 3, kRemapStart = 4, kRemapEnd = 5, kFlip = 6,
-  kFailed = 7
+  kReset = PHASE_RESET, kBoot = PHASE_BOOT, kLut = PHASE_LUT, kIdle = PHASE_IDLE,
+  kRemapStart = PHASE_REMAP_START, kRemapEnd = PHASE_REMAP_END, kFlip = PHASE_FLIP,
+  kFailed = PHASE_FAILED
 };
+constexpr Phase phase_of(std::uint32_t pins) { return static_cast<Phase>(PHASE_OF(pins)); }
 
 /// One displayed frame and the way of the captured frame that it shows.
 struct FrameRecord {
@@ -75,7 +78,7 @@ class FrameLog {
   std::optional<std::uint64_t> unroll(unsigned sequence) const;
 
   Phase phase_ = Phase::kReset;
-  std::array<std::optional<Picoseconds>, 16> first_{};
+  std::array<std::optional<Picoseconds>, PHASE_COUNT> first_{};
   std::map<std::uint64_t, Capture> captured_;
   std::map<std::uint64_t, Remap> remapped_;
   std::vector<Remap> remaps_;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "model/contract/memory_map.h"
+
 namespace fovea::bus {
 namespace {
 
 constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
 constexpr Picoseconds kPause = 10 * kPsPerUs;  // after an error, or while the SDRAM is set up
-constexpr std::uint32_t kSdram = 0x8000'0000u, kInternalRam = 0x1'0000u;
+constexpr std::uint32_t kSdram = DDR_BASE, kInternalRam = INTERNAL_RAM_DATA_BASE;
 }  // namespace
 
 std::vector<std::string> LoadParams::ports() {

@@ -9,6 +9,7 @@
 #include "model/bus/core/crossbar.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
+#include "model/contract/memory_map.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_controller.h"
 #include "model/memsys/bypass.h"
@@ -18,11 +19,11 @@ namespace fovea::memsys {
 
 /// Which slave an address belongs to.
 struct AddressMap {
-  std::uint32_t ddr_base = 0x8000'0000;
+  std::uint32_t ddr_base = DDR_BASE;
   /// Addresses from there on that belong to the SDRAM, however large the part is (SPRS457E, memory map).
   std::uint64_t ddr_window = 256u << 20;
   /// Internal RAM, for all masters but the core's own ports, which reach it by another way.
-  std::uint32_t ram_base = 0x1'0000, ram_size = 0;
+  std::uint32_t ram_base = INTERNAL_RAM_DATA_BASE, ram_size = 0;
 };
 
 /// How the masters reach the controller.

@@ -16,8 +16,8 @@ bus::AddressMap address_map(std::size_t internal_bytes) {
 /// Names for the core's stalls. All register blocks are one.
 cpu::RegionMap regions(const Dm365Params& params, std::size_t internal_bytes) {
   cpu::RegionMap out;
-  out.add("itcm", 0, internal_bytes);
-  out.add("dtcm", 0x1'0000, internal_bytes);
+  out.add("itcm", INTERNAL_RAM_BASE, internal_bytes);
+  out.add("dtcm", INTERNAL_RAM_DATA_BASE, internal_bytes);
   out.add("sdram", bus::AddressMap().ddr_base, params.ddr.size_bytes());
   for (const Placement& row : params.rows) out.add("registers", row.base, row.size);
   return out;

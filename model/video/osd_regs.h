@@ -1,6 +1,7 @@
 // Registers of the on-screen display block (OSD), 0x01C71C00. Source: Linux vpbe_osd, davinci_osd.
 #pragma once
 #include "model/common/regbank.h"
+#include "model/contract/memory_map.h"
 
 namespace fovea::video {
 
@@ -110,7 +111,7 @@ struct OsdRegs : RegBank {
   std::uint32_t address() const {
     const std::uint32_t units =
         (vidwin0ofst.ah.get() & 7) << 23 | vidwinadh.v0.get() << 16 | vidwin0adl.low.get();
-    return 0x8000'0000u + (units << 5);
+    return DDR_BASE + (units << 5);
   }
   std::uint32_t pitch() const { return vidwin0ofst.lo.get() * 32; }
 };

@@ -7,12 +7,15 @@
 /* System module */
 #define SYS_PINMUX(n) (0x01C40000u + 4u * (n))
 #define SYS_VDAC_CONFIG 0x01C4002Cu
+#define SYS_MSTPRI0 0x01C4003Cu
 #define SYS_VPSS_CLK_CTRL 0x01C40044u
 #define SYS_PERI_CLK_CTRL 0x01C40048u
 #define SYS_VTPIOCR 0x01C40074u
 #define SYS_PLL0_CONFIG 0x01C40084u
 #define SYS_PLL1_CONFIG 0x01C40088u
 
+#define MSTPRI0_ARM 0u   /* lowest bits of fields of three bits */
+#define MSTPRI0_MJCP 16u
 #define PLL_CONFIG_LOCK 0x07000000u
 #define VTPIOCR_PWRDN (1u << 6)
 #define VTPIOCR_LOCK (1u << 7)
@@ -51,6 +54,7 @@
 #define PSC_SYNC_RESET 1u
 #define PSC_ENABLE 3u
 
+#define LPSC_TPCC 0u
 #define LPSC_DDR 13u
 #define LPSC_I2C 18u
 #define LPSC_UART0 19u
@@ -65,6 +69,9 @@
 #define DDR_SDTIMR2 0x20000014u
 #define DDR_PBBPR 0x20000020u
 #define DDR_DDRPHYCR 0x200000E4u
+
+/* EDMA3 channel controller */
+#define EDMA_QUEPRI 0x01C00284u /* a field of three bits every four bits, one for each queue */
 
 /* AINTC (interrupt controller) */
 #define AINTC_FIQ0 0x01C48000u
@@ -135,12 +142,15 @@
 
 /* ISP5 (top level of the VPSS) */
 #define ISP5_PCCR 0x01C70004u
+#define ISP5_BCR 0x01C70008u
 #define ISP5_INTSTAT 0x01C7000Cu
 #define ISP5_INTSEL1 0x01C70010u
 #define ISP5_INTSEL2 0x01C70014u
 #define ISP5_INTSEL3 0x01C70018u
 #define ISP5_EVTSEL 0x01C7001Cu
 #define VPSS_CLKCTL 0x01C70200u
+#define BCR_READ_PRIORITY 2u /* lowest bits of fields of three bits */
+#define BCR_WRITE_PRIORITY 5u
 #define PCCR_BL (1u << 0)
 #define PCCR_ISIF (1u << 1)
 #define PCCR_IPIPEIF (1u << 5)

@@ -5,8 +5,8 @@
 namespace fovea::app {
 namespace {
 
-constexpr std::uint32_t kSdram = 0x8000'0000;
-constexpr std::uint64_t kInternal = 0x8000, kDataWindow = 0x1'0000;
+constexpr std::uint32_t kSdram = DDR_BASE;
+constexpr std::uint64_t kInternal = INTERNAL_RAM_BYTES, kDataWindow = INTERNAL_RAM_DATA_BASE;
 
 /// Gives the simulation back to its caller at a time. Made before the simulation starts.
 class Pause : public sc_core::sc_module {

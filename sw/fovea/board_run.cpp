@@ -21,6 +21,7 @@
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/figures.h"
 #include "sw/fovea/loader.h"
+#include "sw/fovea/parameter_page.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/simulation.h"
 #include "sw/fovea/stall_regions.h"
@@ -48,9 +49,16 @@ constexpr Picoseconds kSlice = 5 * kPsPerMs;
 constexpr unsigned kShortLooks = 20, kLooksAfterEnd = 40;
 Picoseconds after_end(unsigned looks) { return looks < kShortLooks ? kPsPerUs : kSlice; }
 
+/// The last line that has something in it.
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of("\r\n") + 1;
+  const std::size_t begin = text.find_last_of("\r\n", end ? end - 1 : 0);
+  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1));
+}
+
 bool kernel_stopped() { return sc_core::sc_get_status() == sc_core::SC_STOPPED; }
 
-constexpr std::uint32_t kSdram = 0x8000'0000;
+constexpr std::uint32_t kSdram = DDR_BASE;
 
 class BoardSimulation : public Simulation {
  public:
@@ -72,6 +80,7 @@ class BoardSimulation : public Simulation {
   SemihostingSettings semihosting_settings(const RunRequest& request) const;
   std::optional<ElfImage> loader_of(const ElfImage& program, const RunRequest& request) const;
   void load_loader(const ElfImage& loader, const ElfImage& program, const RunRequest& request);
+  void load_page(const ElfImage& program, std::vector<std::uint8_t> page);
   ExecMap hosted_map() const;
 
   board::BoardParams params_;
@@ -260,6 +269,16 @@ void BoardSimulation::load_loader(const ElfImage& loader, const ElfImage& progra
   board_->load(image);
 }
 
+/// The page stands for one of the boot image. A program that has something of its own at that place keeps it.
+void BoardSimulation::load_page(const ElfImage& program, std::vector<std::uint8_t> page) {
+  const auto overlaps = [&](const ElfSegment& s) {
+    const std::uint32_t at = s.address >= INTERNAL_RAM_DATA_BASE ? s.address - INTERNAL_RAM_DATA_BASE : s.address;
+    return s.address < DDR_BASE && at < PARAM_PAGE_BASE + page.size() && at + s.memory_size > PARAM_PAGE_BASE;
+  };
+  if (std::none_of(program.segments().begin(), program.segments().end(), overlaps))
+    board_->load({PARAM_PAGE_BASE, std::move(page)});
+}
+
 /// Heap and stack take the largest piece of SDRAM that the program leaves free.
 SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& request) const {
   const ExecMap map = hosted_map();
@@ -317,7 +336,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   add_program_regions(regions, elf, memory_regions(params_));
   board_->dm365.arm.core().set_regions(std::move(regions));
   board_->dm365.arm.core().describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
-  if (!request.hosted) board_->load({0x8000'0000u, parameter_page(params_, *source)});
+  load_page(elf, parameter_page(params_, *source));
 
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
@@ -414,6 +433,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (gdb) gdb->look(arm.asleep());
     if (const auto option = request.limits.reached(kernel_time(), executed); !option.empty())
       run_end.limit(option);
+    if (run_end.wants(EndCondition::Kind::kFrames) && board_->log.phase() == board::Phase::kFailed &&
+        arm.asleep() && !run_end.met()) {
+      guest = failure_text("the firmware stopped: " + last_line(board_->uart_text()));
+      break;
+    }
     if (run_end.only_frames() && !board_->window_start() &&
         kernel_time() > params_.run.start_limit()) {
       guest = failure_text(fmt::format("the firmware showed no frame within {} of simulated time "

@@ -42,27 +42,14 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
   SC_METHOD(beat);
 }
 
-/// JEDEC times of the DDR2-667 part in clocks of this frequency; CL, latency and priority raise are
-/// those of the boot loader. The write to SDBCR ends the initialisation.
+/// CL, latency and priority raise are those of the boot loader. The write to SDBCR ends the initialisation.
 void ExecBoard::program_controller(Frequency ddr_clock) {
-  const auto clocks = [&](std::uint64_t tenths_of_ns) {
-    const std::uint64_t den = ddr_clock.den * 10'000'000'000ull;
-    return static_cast<std::uint32_t>((tenths_of_ns * ddr_clock.num + den - 1) / den);
-  };
-  constexpr std::uint64_t kFawQuarter = 125;  // of 50 ns, above tRRD: T_RRD stands for both
+  const DdrRegisters words = ddr_registers(ddr_clock);
   auto& r = ddr.regs;
-  const std::uint32_t sdtimr = (clocks(1275) - 1) << 25 | (clocks(200) - 1) << 22 |
-                               (clocks(200) - 1) << 19 | (clocks(150) - 1) << 16 |
-                               (clocks(450) - 1) << 11 | (clocks(650) - 1) << 6 |
-                               (clocks(kFawQuarter) - 1) << 3 | (clocks(100) - 1);
-  constexpr std::uint32_t kRasMax = 7, kXp = 2, kXsrd = 199, kCke = 3;
-  const std::uint32_t sdtimr2 = kRasMax << 27 | kXp << 25 | (clocks(1375) - 1) << 16 | kXsrd << 8 |
-                                (clocks(75) - 1) << 5 | kCke;
-  const auto refresh = static_cast<std::uint32_t>(ddr_clock.hertz() * 7.8e-6);
   r.write(0x08, 4, 0x0053'CA32);  // TIMUNLOCK
-  r.write(0x10, 4, sdtimr);
-  r.write(0x14, 4, sdtimr2);
-  r.write(0x0C, 4, refresh);
+  r.write(0x10, 4, words.sdtimr);
+  r.write(0x14, 4, words.sdtimr2);
+  r.write(0x0C, 4, words.sdrcr);
   r.write(0xE4, 4, 0xC5);
   r.write(0x20, 4, 0xFE);
   r.write(0x08, 4, 0x0053'4A32);

@@ -6,13 +6,14 @@
 #include <charconv>
 
 #include "model/common/check.h"
+#include "model/contract/memory_map.h"
 #include "sw/fovea/checked_file.h"
 
 namespace fovea::app {
 namespace {
 
-constexpr std::uint32_t kInternalBytes = 0x8000, kDataWindow = 0x1'0000;
-constexpr std::uint32_t kChipSdram = 0x8000'0000;
+constexpr std::uint32_t kInternalBytes = INTERNAL_RAM_BYTES, kDataWindow = INTERNAL_RAM_DATA_BASE;
+constexpr std::uint32_t kChipSdram = DDR_BASE;
 constexpr std::uint32_t kVectorBytes = 0x20;
 constexpr std::uint32_t kHeapAlignment = 64;
 

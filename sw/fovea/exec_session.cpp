@@ -1,4 +1,3 @@
-#include "sw/fovea/clock_presets.h"
 #include "sw/fovea/exec_session.h"
 
 #include <fmt/format.h>
@@ -33,9 +32,9 @@ SemihostingSettings settings(const ExecRequest& request, const ExecMap& map) {
 
 }  // namespace
 
-ExecClocks ExecClocks::preset(std::string_view name) {
-  const ClockPreset& p = clock_preset(name);
-  return {p.core, p.ddr, p.scr()};
+ExecClocks ExecClocks::of(const WantedClocks& wanted) {
+  const board::ClockSetting s = clock_setting(wanted);
+  return {s.core(), s.ddr(), s.scr()};
 }
 
 ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,

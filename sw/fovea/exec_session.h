@@ -5,6 +5,7 @@
 #include <string>
 
 #include "model/cpu/core/debug.h"
+#include "sw/fovea/clock_setting.h"
 #include "sw/fovea/core_semihosting.h"
 #include "sw/fovea/executor.h"
 #include "sw/fovea/gdb_session.h"
@@ -50,10 +51,11 @@ class ExecSession {
   std::unique_ptr<GdbSession> gdb_;
 };
 
-/// The clocks of core, crossbar and SDRAM of a `clocks.preset`.
+/// The clocks of core, crossbar and SDRAM.
 struct ExecClocks {
   Frequency core, ddr, scr;
-  static ExecClocks preset(std::string_view name);
+  /// @throws UserError for clocks that the PLLs cannot give
+  static ExecClocks of(const WantedClocks& wanted);
 };
 
 }  // namespace fovea::app

@@ -4,10 +4,8 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "sw/fovea/ffmpeg.h"
-#include "sw/lens/param_page.h"
 
 namespace fovea::app {
 
@@ -30,9 +28,9 @@ std::filesystem::path built_program(const std::string& name) {
 }
 
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
-  return {{"internal RAM (instruction side)", 0x0000'0000, 0x8000},
-          {"internal RAM (data side)", 0x0001'0000, 0x8000},
-          {"SDRAM (ddr.part = " + params.soc.ddr.part() + ")", 0x8000'0000,
+  return {{"internal RAM (instruction side)", INTERNAL_RAM_BASE, INTERNAL_RAM_BYTES},
+          {"internal RAM (data side)", INTERNAL_RAM_DATA_BASE, INTERNAL_RAM_BYTES},
+          {"SDRAM (ddr.part = " + params.soc.ddr.part() + ")", DDR_BASE,
            params.soc.ddr.size_bytes()}};
 }
 
@@ -128,90 +126,6 @@ void complete_params(board::BoardParams& params) {
   check_loads(params);
   if (!params.decoder.standard.user_set())
     params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
-}
-
-namespace {
-
-/// The firmware's calibrated lens, in pixels of the camera's raster.
-video::LensModel firmware_lens(const board::BoardParams& params) {
-  const auto& lens = params.lens;
-  const auto& kb = lens.kb();
-  return video::LensModel::kannala_brandt(kb[0], kb[1], kb[2], kb[3], {kb[4], kb[5], kb[6], kb[7]},
-                                          lens.kb.key())
-      .scaled(params.raster_width() / lens.kb_width(), params.raster_height() / lens.kb_height());
-}
-
-/// Warns if only one of the two lenses was set, which gives a distorted picture and is probably a
-/// mistake. If both are set, the difference may be intended: firmware on a real board can be wrong
-/// about its lens.
-void check_same_lens(const board::BoardParams& params, const video::LensModel& firmware,
-                     const video::LensModel& camera) {
-  if (params.lens.kb.user_set() == params.camera.kb.user_set()) return;
-  const auto apart = [](double a, double b, double scale) { return std::abs(a - b) > scale / 100; };
-  if (!apart(firmware.fx(), camera.fx(), camera.fx()) &&
-      !apart(firmware.fy(), camera.fy(), camera.fy()) &&
-      !apart(firmware.cx(), camera.cx(), params.raster_width()) &&
-      !apart(firmware.cy(), camera.cy(), params.raster_height()))
-    return;
-  Diagnostics::instance().configuration(fmt::format(
-      "{} is set and {} is not, and they describe different lenses (optical centre {:.1f}, {:.1f} "
-      "in the camera and {:.1f}, {:.1f} in the firmware, in pixels of the {}x{} raster); "
-      "camera.calibration sets both",
-      params.camera.kb.user_set() ? "camera.kb" : "lens.kb",
-      params.camera.kb.user_set() ? "lens.kb" : "camera.kb", camera.cx(), camera.cy(),
-      firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height()));
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
-                                         const video::StampedSource& source) {
-  const board::LensParams& lens = params.lens;
-  param_page_t page;
-  param_page_default(&page);
-  page.flags = (lens.paper_literal_focal() ? PARAM_PAPER_LITERAL_FOCAL : 0u) |
-               (lens.pair.is("B") ? PARAM_PAIR_METHOD_B : 0u);
-  page.width = static_cast<std::uint32_t>(params.video.width());
-  page.height = static_cast<std::uint32_t>(params.video.height());
-  page.repeats = static_cast<std::uint32_t>(params.firmware.repeat());
-  page.fov_deg = lens.fov();
-  page.focal_px = lens.focal();
-  page.out_focal_px = lens.out_focal();
-  page.centre_x = lens.centre_x();
-  page.centre_y = lens.centre_y();
-  page.shift_x = lens.shift_x();
-  page.shift_y = lens.shift_y();
-  page.in_aspect = lens.in_aspect();
-  page.out_aspect = lens.out_aspect();
-  page.mapping = static_cast<std::uint32_t>(lens.mapping.index());
-  if (lens.mapping.is("kannala_brandt")) {
-    const double w = params.raster_width(), h = params.raster_height();
-    const video::LensModel model = firmware_lens(params);
-    if (const auto* still = dynamic_cast<const video::SphereSource*>(&source);
-        still && params.camera.lens.is("kannala_brandt"))
-      check_same_lens(params, model, still->raster_lens());
-    const double theta_max = lens.theta_max() * M_PI / 180;
-    if (theta_max > model.theta_max() + 1e-12) {
-      const double valid = model.theta_max() * 180 / M_PI;
-      throw UserError(fmt::format(
-          "key 'lens.theta_max': {}, but the calibration of the lens (lens.kb) is valid only up to "
-          "{:.2f} deg; use lens.theta_max={:.0f}deg",
-          lens.theta_max.text(), valid, std::floor(valid)));
-    }
-    const auto table = model.table(PARAM_TABLE_MAX, theta_max);
-    page.mapping = LENS_TABLE;
-    page.table_count = PARAM_TABLE_MAX;
-    page.theta_max = theta_max;
-    std::copy(table.begin(), table.end(), page.table_r);
-    page.focal_px = model.fx();
-    page.in_aspect = model.fy() / model.fx();
-    page.centre_x = model.cx() - (w - 1) / 2 + lens.centre_x();
-    page.centre_y = model.cy() - (h - 1) / 2 + lens.centre_y();
-  }
-  param_page_seal(&page);
-  std::vector<std::uint8_t> bytes(sizeof page);
-  std::memcpy(bytes.data(), &page, sizeof page);
-  return bytes;
 }
 
 }  // namespace fovea::app

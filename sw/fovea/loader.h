@@ -1,4 +1,4 @@
-// Prepares a board as a boot loader and a user would: program, footage, switches, parameter page.
+// Prepares a board as a boot loader and a user would: program and footage.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -29,8 +29,5 @@ std::vector<std::string> footage_notes(const board::BoardParams& params,
                                        const std::vector<RgbImage>& frames, const FilmInfo& info);
 /// Sets keys that follow from others, unless they were set (the decoder's standard).
 void complete_params(board::BoardParams& params);
-/// The bytes of the parameter page (sw/lens/README.md).
-std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
-                                         const video::StampedSource& source);
 
 }  // namespace fovea::app

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "sw/fovea/clock_presets.h"
+#include "model/board/clock_presets.h"
 
 namespace fovea::app {
 namespace {
@@ -21,9 +21,9 @@ void apply_clock_preset(const ReplayParams& params, Experiment& experiment) {
   const EnumParam& chosen = params.chip_clocks.preset;
   if (chosen.is("as_recorded") || from_command_line(experiment, params.registers.clock))
     return;
-  const ClockPreset& preset = clock_preset(chosen());
+  const board::ClockPreset& preset = board::clock_preset(chosen());
   experiment.preset(params.registers.clock.key(),
-                    fmt::format("{}Hz", std::llround(preset.ddr.hertz())),
+                    fmt::format("{}Hz", std::llround(preset.ddr().hertz())),
                     fmt::format("clocks.preset: {}", preset.name));
 }
 
@@ -54,7 +54,7 @@ std::vector<std::string> follow_clocks(const ReplayParams& params, const trace::
   if (params.chip_clocks.preset.is("as_recorded") || recorded.streams.empty()) return lines;
   // The core is the first stream of a recorded trace; others count picoseconds.
   const double core = recorded.streams.front().clock.hertz();
-  const double wanted = clock_preset(params.chip_clocks.preset()).core.hertz();
+  const double wanted = board::clock_preset(params.chip_clocks.preset()).core().hertz();
   if (!recorded.scr.frequency.stopped() && differ(core, wanted))
     lines.push_back(fmt::format("warning: clocks.preset: the core stays at {} as recorded, {} is not "
                                 "played",

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/board/clock_presets.h"
 #include "model/bus/core/crossbar_params.h"
 #include "model/mem/core/ddr_controller.h"
 #include "model/trace/core/trace.h"
@@ -23,7 +24,7 @@ struct PathClocks : ParamGroup {
 
 struct ChipClocks : ParamGroup {
   EnumParam preset{*this, "preset", "as_recorded",
-                   {"as_recorded", "297/243", "297/270", "270/216", "216/172", "432/340"},
+                   board::clock_preset_names({"as_recorded"}),
                    "as clocks.preset of a run, for ddr.clock, which bus.clock follows; the core's clock "
                    "stays as recorded, and so do timings in clocks",
                    Origin::kSourced, "TI boot loader for the DM36x (UBL, device.c)"};

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "model/board/frame_log.h"
-#include "sw/fovea/clock_presets.h"
+#include "model/board/clock_presets.h"
 
 namespace fovea::app {
 namespace {
@@ -45,7 +45,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   Frequency scr = clock(info.scr, params.clocks.clock);
   // Half of the SDRAM's clock is so exactly, whatever whole hertz its key has.
   const bool of_one_pll = std::abs(2 * scr.hertz() - ddr_clock.hertz()) < 2.0;
-  if (of_one_pll && !(scr == info.scr.frequency)) scr = ClockPreset::half(ddr_clock);
+  if (of_one_pll && !(scr == info.scr.frequency)) scr = board::ClockSetting::half(ddr_clock);
   const bool other = !info.ddr.frequency.stopped() && !(ddr_clock == info.ddr.frequency);
   const bool both = other && !(scr == info.scr.frequency);
   const Picoseconds scr_start = start_near(info.scr, info.start);
@@ -284,12 +284,12 @@ Picoseconds ReplayPath::end() const {
 
 std::vector<Picoseconds> ReplayPath::remap_times() const {
   std::vector<Picoseconds> out;
-  const auto phase = [](const Mark& m) { return static_cast<board::Phase>(m.value & 15u); };
+  const auto phase = [](const Mark& m) { return board::phase_of(m.value); };
   const Mark* begun = nullptr;
   for (const Mark& m : marks_) {
     if (phase(m) == board::Phase::kRemapStart) begun = &m;
     if (phase(m) != board::Phase::kRemapEnd || !begun) continue;
-    if (m.value >> 4 == begun->value >> 4) out.push_back(m.at - begun->at);
+    if (PHASE_SEQUENCE(m.value) == PHASE_SEQUENCE(begun->value)) out.push_back(m.at - begun->at);
     begun = nullptr;
   }
   return out;

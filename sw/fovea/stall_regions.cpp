@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/common/check.h"
+#include "model/contract/memory_map.h"
 
 namespace fovea::app {
 namespace {
@@ -57,8 +58,8 @@ RegionMap exec_regions(const ExecProgram& program, const ExecMap& map) {
   RegionMap out;
   std::vector<MemoryRegion> memory = {{"sdram", map.ram_base, map.ram_size}};
   if (map.tcm) {
-    memory.push_back({"itcm", 0, 0x8000});
-    memory.push_back({"dtcm", 0x1'0000, 0x8000});
+    memory.push_back({"itcm", INTERNAL_RAM_BASE, INTERNAL_RAM_BYTES});
+    memory.push_back({"dtcm", INTERNAL_RAM_DATA_BASE, INTERNAL_RAM_BYTES});
   }
   for (const auto& m : memory) out.add(m.name, m.base, m.size);
   out.add("registers", 0x2000'0000, 0x8000);

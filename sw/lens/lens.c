@@ -31,55 +31,56 @@ double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int p
   }
 }
 
-static lens_result_t init_table(lens_t *lens, const param_page_t *page) {
-  if (page->table_count < 2 || page->table_count > PARAM_TABLE_MAX || !positive(page->theta_max))
+static lens_result_t init_table(lens_t *lens, const lens_view_t *view) {
+  if (view->table_count < 2 || view->table_count > PARAM_TABLE_MAX || !positive(view->theta_max))
     return LENS_BAD_TABLE;
-  if (page->table_r[0] != 0.0) return LENS_BAD_TABLE;
-  for (uint32_t i = 1; i < page->table_count; ++i)
-    if (!(page->table_r[i] > page->table_r[i - 1]) || !positive(page->table_r[i]))
+  if (view->table_r[0] != 0.0) return LENS_BAD_TABLE;
+  for (uint32_t i = 1; i < view->table_count; ++i)
+    if (!(view->table_r[i] > view->table_r[i - 1]) || !positive(view->table_r[i]))
       return LENS_BAD_TABLE;
-  lens->table_r = page->table_r;
-  lens->table_count = page->table_count;
-  lens->table_scale = (double)(page->table_count - 1) / page->theta_max;
+  lens->table_r = view->table_r;
+  lens->table_count = view->table_count;
+  lens->table_scale = (double)(view->table_count - 1) / view->theta_max;
   return LENS_OK;
 }
 
-lens_result_t lens_init(lens_t *lens, const param_page_t *page, uint32_t width, uint32_t height) {
+lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height) {
   if (width == 0 || width % 2 != 0 || width > SIDE_MAX || height == 0 || height > SIDE_MAX)
     return LENS_BAD_SIZE;
-  if (page->mapping > LENS_TABLE) return LENS_BAD_MAPPING;
+  if (view->mapping > LENS_TABLE) return LENS_BAD_MAPPING;
+  if (view->pair_method > PAIR_CENTRE) return LENS_BAD_PAIR;
 
-  *lens = (lens_t){.mapping = page->mapping,
+  *lens = (lens_t){.mapping = view->mapping,
                    .width = width,
                    .height = height,
-                   .pair_method_b = (page->flags & PARAM_PAIR_METHOD_B) != 0,
-                   .centre_x = page->centre_x,
-                   .centre_y = page->centre_y,
-                   .shift_x = page->shift_x,
-                   .shift_y = page->shift_y,
-                   .in_aspect = page->in_aspect,
-                   .out_aspect = page->out_aspect,
+                   .pair_method_b = view->pair_method == PAIR_CENTRE,
+                   .centre_x = view->centre_x,
+                   .centre_y = view->centre_y,
+                   .shift_x = view->shift_x,
+                   .shift_y = view->shift_y,
+                   .in_aspect = view->in_aspect,
+                   .out_aspect = view->out_aspect,
                    .tan_limit_squared = HUGE_VAL};
-  if (page->theta_max > 0.0 && page->theta_max < PI / 2.0)
-    lens->tan_limit_squared = tan(page->theta_max) * tan(page->theta_max);
+  if (view->theta_max > 0.0 && view->theta_max < PI / 2.0)
+    lens->tan_limit_squared = tan(view->theta_max) * tan(view->theta_max);
 
-  if (page->mapping == LENS_NONE) {
+  if (view->mapping == LENS_NONE) {
     lens->focal = lens->out_focal = 1.0;
     return LENS_OK;
   }
-  if (!positive(page->in_aspect) || !positive(page->out_aspect)) return LENS_BAD_FOCAL;
-  if (page->mapping == LENS_TABLE) {
-    const lens_result_t result = init_table(lens, page);
+  if (!positive(view->in_aspect) || !positive(view->out_aspect)) return LENS_BAD_FOCAL;
+  if (view->mapping == LENS_TABLE) {
+    const lens_result_t result = init_table(lens, view);
     if (result != LENS_OK) return result;
-    lens->focal = page->focal_px != 0.0 ? page->focal_px : page->table_r[1] * lens->table_scale;
-  } else if (page->focal_px != 0.0) {
-    lens->focal = page->focal_px;
+    lens->focal = view->focal_px != 0.0 ? view->focal_px : view->table_r[1] * lens->table_scale;
+  } else if (view->focal_px != 0.0) {
+    lens->focal = view->focal_px;
   } else {
-    lens->focal = lens_focal_from_fov(page->mapping, (double)width, page->fov_deg,
-                                      (page->flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
+    lens->focal = lens_focal_from_fov(view->mapping, (double)width, view->fov_deg,
+                                      (view->flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
     if (!positive(lens->focal)) return LENS_BAD_FOV;
   }
-  lens->out_focal = page->out_focal_px != 0.0 ? page->out_focal_px : lens->focal;
+  lens->out_focal = view->out_focal_px != 0.0 ? view->out_focal_px : lens->focal;
   if (!positive(lens->focal) || !positive(lens->out_focal)) return LENS_BAD_FOCAL;
   lens->scale_x = 1.0 / lens->out_focal;
   lens->scale_y = 1.0 / (lens->out_focal * lens->out_aspect);
@@ -94,6 +95,8 @@ const char *lens_result_text(lens_result_t result) {
       return "width must be even, sides 1 to 4096";
     case LENS_BAD_MAPPING:
       return "mapping must be 0 to 6";
+    case LENS_BAD_PAIR:
+      return "pair method must be 0 or 1";
     case LENS_BAD_FOV:
       return "field of view outside what the mapping can show";
     case LENS_BAD_FOCAL:

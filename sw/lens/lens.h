@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "sw/lens/param_page.h"
+#include "model/contract/param_page.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,6 +15,7 @@ typedef enum lens_result {
   LENS_OK = 0,
   LENS_BAD_SIZE,    /* width odd, or a side is 0 or above 4096 */
   LENS_BAD_MAPPING, /* not an enum lens_mapping */
+  LENS_BAD_PAIR,    /* not an enum param_pair_method */
   LENS_BAD_FOV,     /* beyond what the mapping can represent */
   LENS_BAD_FOCAL,   /* a focal length or aspect is not a positive finite number */
   LENS_BAD_TABLE    /* fewer than 2 entries, theta_max missing, or entries not increasing from 0 */
@@ -34,7 +35,7 @@ typedef struct lens {
   double tan_limit_squared; /* for the largest angle shown; HUGE_VAL: all angles below 90 degrees */
   double table_scale;       /* table intervals per radian */
   uint32_t table_count;
-  const double *table_r; /* not owned: points into the page */
+  const double *table_r; /* not owned: points into the lens_view_t */
 } lens_t;
 
 /** Exact source position of an output position, in input pixels relative to the first pixel. */
@@ -48,9 +49,8 @@ typedef struct lens_point {
  * `paper_literal` is set. 0 if the mapping has no such focal length at that field of view. */
 double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int paper_literal);
 
-/** Checks `page` for a picture of width x height and derives `lens`. The page must outlive `lens`.
- */
-lens_result_t lens_init(lens_t *lens, const param_page_t *page, uint32_t width, uint32_t height);
+/** Checks `view` for a picture of width x height and derives `lens`. The view must outlive `lens`. */
+lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height);
 
 /** A sentence for a message about a result. */
 const char *lens_result_text(lens_result_t result);

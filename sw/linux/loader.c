@@ -14,7 +14,7 @@
 
 #define MACH_DAVINCI_DM365_EVM 1939u
 #define TAGS 0x80000100u
-#define KERNEL 0x80008000u
+#define KERNEL PROGRAM_BASE
 #define ATAG_CORE 0x54410001u
 #define ATAG_MEM 0x54410002u
 #define ATAG_CMDLINE 0x54410009u
@@ -30,7 +30,7 @@ static void write_tags(void) {
   *tag++ = 4;
   *tag++ = ATAG_MEM;
   *tag++ = MEMORY_BYTES;
-  *tag++ = 0x80000000u;
+  *tag++ = DDR_BASE;
   *tag++ = 2 + (sizeof kCommandLine + 3) / 4;
   *tag++ = ATAG_CMDLINE;
   for (uint32_t i = 0; i < (sizeof kCommandLine + 3) / 4; ++i) {
@@ -43,8 +43,8 @@ static void write_tags(void) {
   *tag++ = 0;
 }
 
-void loader_main(struct start_state *state) {
-  boot_init();
+uint32_t loader_main(struct start_state *state) {
+  if (boot_init((const param_page_t *)PARAM_PAGE_BASE) != PARAM_PAGE_OK) return 1;
   /* Modules 0 to 28 but the SDRAM controller's; the peripherals from 38 on, the video and the clock of
    * the DAC. */
   for (uint32_t module = 0; module <= 51; ++module) {
@@ -57,4 +57,5 @@ void loader_main(struct start_state *state) {
   state->r2 = TAGS;
   state->sp = 0;
   state->entry = KERNEL;
+  return 0;
 }

@@ -57,6 +57,17 @@ printf '\x00\x00\x00\x50\x00\x00\x00\x50' |
   dd of="$out/outside.elf" bs=1 seek=$((52 + 8)) conv=notrunc status=none
 
 run() { "$fovea" run "$@" -o "$out/run"; }
+# What the firmware refuses is the guest's failure, with its sentence, and not after run.start_limit only.
+expect old_page 3 'the firmware stopped: failed: parameter page: unknown version; this firmware reads version 2 at pc .*, 0\.0[0-9]+ s' -- \
+  run "$out/small.yaml" -s run.start_limit=60s -s firmware.elf="$firmware/old_page.elf"
+expect bad_lens 3 'the firmware stopped: failed: lens: field of view outside' -- \
+  run "$out/small.yaml" -s run.start_limit=60s -s lens.mapping=orthographic -s lens.fov=190deg
+# Clocks that the PLLs cannot give, with the nearest.
+expect no_such_clock 2 "key 'clocks.arm'.*297MHz and 310.5MHz.*243MHz and 256.5MHz" -- \
+  run "$out/small.yaml" -s clocks.arm=300MHz -s clocks.ddr=250MHz
+expect clock_beyond 2 "clocks.ddr.*340MHz" -- run "$out/small.yaml" -s clocks.ddr=341MHz
+expect free_clocks 0 -- run "$out/small.yaml" -s clocks.arm=135MHz -s clocks.ddr=162MHz --strict
+grep -q 'boot: clocks 135000/162000 kHz' "$out/run/uart.log" || fail 'uart.log lacks the clocks'
 expect good 0 'frame.rate' -- run "$out/small.yaml"
 expect unknown_key 2 'key.yaml:2' 'frame' 'did you mean .run.frames' -- run "$out/key.yaml"
 expect missing_unit 2 'unit.yaml:2' 'request_latency' 'cycles.*; a number alone lacks its unit' -- \

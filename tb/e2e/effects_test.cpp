@@ -7,9 +7,8 @@
 #include <systemc>
 
 #include "model/board/board_params.h"
-#include "sw/fovea/loader.h"
+#include "sw/fovea/parameter_page.h"
 #include "sw/lens/lens.h"
-#include "sw/lens/param_page.h"
 
 namespace fovea::e2e {
 namespace {
@@ -43,10 +42,11 @@ struct Settings {
   std::vector<std::uint32_t> lut() {
     const auto source = video::make_picture_source(chart_.params.camera, {}, 720, 576);
     const auto bytes = app::parameter_page(params, *source);
-    param_page_t page;
-    std::memcpy(&page, bytes.data(), sizeof page);
+    param_page_t page{};
+    std::memcpy(&page, bytes.data(), bytes.size());
+    EXPECT_EQ(param_page_check(&page), PARAM_PAGE_OK);
     lens_t lens;
-    EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_OK);
+    EXPECT_EQ(lens_init(&lens, &page.camera[0].view, 720, 576), LENS_OK);
     std::vector<std::uint32_t> out(lens_lut_entries(720, 576));
     lens_build_lut(&lens, out.data(), 720 * 2);
     return out;

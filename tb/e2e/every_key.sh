@@ -101,7 +101,10 @@ idle camera.motion_period 3
 acts camera.stamp true video.width=320 video.height=240
 acts camera.video_fov 90deg VIDEO camera.lens=equisolid
 idle camera.video_fov 90deg
+acts clocks.arm 270MHz
+acts clocks.ddr 216MHz
 acts clocks.preset 297/270
+idle clocks.preset 297/270 clocks.arm=270MHz clocks.ddr=216MHz
 acts cpu.ahb_ratio 3
 acts cpu.cache_op_cycles 2cycles
 acts cpu.dcache.size 4KiB
@@ -141,6 +144,7 @@ idle ddr.ti_open_row ready ddr.scheduler=fcfs
 idle ddr.ti_open_row ready ddr.scheduler=frfcfs
 acts ddr.write_fifo 64B BUSY
 acts edma.reset_priority 0 PROGRAM
+acts firmware.baud 57600
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial
 acts firmware.kernel ldm
@@ -152,6 +156,9 @@ idle lens.calibration none.yaml
 acts pll.go_time 5us
 acts pll.lock_time 50us
 acts pll.reset_type 2 PROGRAM
+acts priority.arm 0
+acts priority.vpbe 7
+acts priority.vpfe 7
 acts psc.transition_time 2us
 acts run.frames 2
 idle run.frames 2 run.until=time:60ms
@@ -160,6 +167,8 @@ fails run.start_limit 10ms
 idle run.start_limit 10ms run.until=time:60ms
 idle run.start_limit 10ms run.until=[frames,time:10s]
 acts run.until time:50ms
+acts switches.shift_x right
+acts switches.shift_y up
 acts system.bootcfg 1 PROGRAM
 acts system.vtp_time 3us
 acts tvp5146.crop_525 studio video.standard=ntsc
@@ -242,6 +251,8 @@ T
       echo "acts bus.$port.$key $value load.outstanding=1 load.port=$port"
       echo "idle bus.$port.$key $value"
     done
+    [ $port = load ] || echo "acts priority.$port 0 load.outstanding=8 load.port=$port load.gap=1us load.start=55ms"
+    [ $port = load ] || echo "idle priority.$port 0"
   done
 }
 

@@ -8,6 +8,7 @@
 #include "model/video/core/bt656.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/loader.h"
+#include "sw/fovea/parameter_page.h"
 
 namespace fovea::e2e {
 
@@ -55,7 +56,7 @@ board::Board& Rig::build() {
     image.bytes.resize(s.memory_size);
     board_->load(image);
   }
-  board_->load({0x8000'0000u, app::parameter_page(params, *source_)});
+  board_->load({PARAM_PAGE_BASE, app::parameter_page(params, *source_)});
   board_->on_frame = [this](const video::DisplayFrame& f, const board::FrameRecord& r) {
     const unsigned w = params.width(), h = params.height();
     shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h),

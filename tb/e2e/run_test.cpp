@@ -151,6 +151,25 @@ INSTANTIATE_TEST_SUITE_P(RunTest, EveryPreset,
                            return name;
                          });
 
+// Clocks between the presets, in the ranges of their PLLs: exact in the core's count of clocks and in the SDRAM's.
+class FreeClocks : public testing::TestWithParam<std::pair<int, int>> {};
+TEST_P(FreeClocks, RunWithoutWarnings) {
+  Diagnostics::instance().clear();
+  const auto [core, ddr] = GetParam();
+  const auto r = run({{"clocks.arm", std::to_string(core) + "MHz"}, {"clocks.ddr", std::to_string(ddr) + "MHz"},
+                      {"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_NEAR(static_cast<double>(count(r, "cpu.cycles")), 0.08 * core * 1e6, 200);
+  for (const auto& [what, times] : Diagnostics::instance().counts())
+    ADD_FAILURE() << what.second << ", " << times << " times";
+}
+INSTANTIATE_TEST_SUITE_P(RunTest, FreeClocks,
+                         testing::Values(std::pair{27, 333}, std::pair{135, 162}, std::pair{300, 135},
+                                         std::pair{378, 125}, std::pair{432, 200}),
+                         [](const auto& p) {
+                           return std::to_string(p.param.first) + "_" + std::to_string(p.param.second);
+                         });
+
 // A stopped run. Each of the two is a process of its own: a simulation elaborates once.
 
 /// What a run stopped at `stop_at` leaves in its files, from a child process.

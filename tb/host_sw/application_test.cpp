@@ -127,93 +127,139 @@ TEST(OutputTest, AQueueKeepsItsOrderAndBlocksWritersWhenFull) {
 
 class ConfigTest : public testing::Test {
  protected:
-  ConfigTest() { param_page_default(&page); }
+  ConfigTest() {
+    page.camera_count = 1;
+    lens_view_default(&page.camera[0].view);
+  }
   config_result_t read(std::uint32_t dip) { return config_read(&config, dip, &page); }
-  param_page_t page;
+  param_page_t page{};
   config_t config;
 };
+constexpr std::uint32_t kNtsc = 3;  // both standards
+/// A size for camera and display.
+constexpr std::uint32_t size(std::uint32_t code) { return code << 2 | code << 5; }
 
-TEST_F(ConfigTest, StandardsGiveTheirPictures) {
+TEST_F(ConfigTest, StandardsAndSizesGiveTheirPictures) {
   ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_TRUE(config.is_625);
   EXPECT_EQ(config.width, 720u);
   EXPECT_EQ(config.height, 576u);
   EXPECT_EQ(config.pitch_bytes, 1440u);
-  ASSERT_EQ(read(1), CONFIG_OK);
+  ASSERT_EQ(read(size(1)), CONFIG_OK);
+  EXPECT_EQ(config.height, 576u);
+  ASSERT_EQ(read(kNtsc), CONFIG_OK);
   EXPECT_FALSE(config.is_625);
   EXPECT_EQ(config.height, 480u);
-  ASSERT_EQ(read(2), CONFIG_OK);
+  ASSERT_EQ(read(kNtsc | size(4)), CONFIG_OK);
   EXPECT_EQ(config.width, 640u);
   EXPECT_EQ(config.left, 40u);
   EXPECT_EQ(config.pitch_bytes, 1280u);
+  ASSERT_EQ(read(size(2)), CONFIG_OK) << "480 lines of 576, in the middle";
+  EXPECT_EQ(config.top, 48u);
+}
+
+TEST_F(ConfigTest, WhatTheBoardCannotDoIsRefused) {
+  EXPECT_EQ(read(1), CONFIG_BAD_STANDARDS);
+  EXPECT_EQ(read(2), CONFIG_BAD_STANDARDS);
+  EXPECT_EQ(read(kNtsc | 1 << 2 | 2 << 5), CONFIG_BAD_SIZES) << "another size for the display";
+  EXPECT_EQ(read(size(6)), CONFIG_BAD_SIZES);
+  EXPECT_EQ(read(size(7)), CONFIG_BAD_SIZES);
+  EXPECT_EQ(read(kNtsc | size(1)), CONFIG_BAD_REGION) << "576 lines in 525/60";
+  EXPECT_EQ(read(kNtsc | size(3)), CONFIG_BAD_REGION) << "486 lines in 525/60";
+  EXPECT_EQ(read(size(5)), CONFIG_BAD_REGION) << "800 pixels in a line of 720";
+  EXPECT_EQ(read(3 << 11), CONFIG_BAD_SHIFT);
+  EXPECT_EQ(read(3 << 13), CONFIG_BAD_SHIFT);
 }
 
 TEST_F(ConfigTest, RepeatsComeFromThePage) {
   ASSERT_EQ(read(0), CONFIG_OK);
-  EXPECT_EQ(config.repeats, 1u) << "0, as in pages that do not know the field";
+  EXPECT_EQ(config.repeats, 1u);
   page.repeats = 7;
-  param_page_seal(&page);
   ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_EQ(config.repeats, 7u);
 }
 
-TEST_F(ConfigTest, EachSwitchActs) {
+TEST_F(ConfigTest, TheMappingOfTheSwitchesWins) {
   ASSERT_EQ(read(0), CONFIG_OK);
-  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_EQUISOLID});
+  EXPECT_EQ(config.view.mapping, std::uint32_t{LENS_EQUISOLID}) << "as the page says";
+  for (std::uint32_t mapping = LENS_NONE; mapping <= LENS_TABLE; ++mapping) {
+    ASSERT_EQ(read((mapping + 1) << 8), CONFIG_OK);
+    EXPECT_EQ(config.view.mapping, mapping);
+  }
+}
+
+TEST_F(ConfigTest, ShiftsAddToThoseOfThePage) {
+  page.camera[0].view.shift_x = 5;
+  page.camera[0].view.shift_y = -7;
+  ASSERT_EQ(read(1 << 11 | 2 << 13), CONFIG_OK);
+  EXPECT_EQ(config.view.shift_x, 37);
+  EXPECT_EQ(config.view.shift_y, -39);
+  ASSERT_EQ(read(2 << 11 | 1 << 13), CONFIG_OK);
+  EXPECT_EQ(config.view.shift_x, -27);
+  EXPECT_EQ(config.view.shift_y, 25);
+}
+
+TEST_F(ConfigTest, EachMemberOfThePageActs) {
+  ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_FALSE(config.serial || config.overlay || config.self_patch || config.kernel);
-  EXPECT_EQ(config.page.flags, 0u);
-  ASSERT_EQ(read(2 << 2), CONFIG_OK);
-  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_LINEAR});
-  ASSERT_EQ(read(1 << 5), CONFIG_OK);
-  EXPECT_EQ(config.page.flags, PARAM_PAPER_LITERAL_FOCAL);
-  ASSERT_EQ(read(1 << 6), CONFIG_OK);
-  EXPECT_EQ(config.kernel, KERNEL_LDM);
-  ASSERT_EQ(read(1 << 8), CONFIG_OK);
+  page.kernel = KERNEL_LDM;
+  page.flow = FLOW_SERIAL;
+  page.clocks.vpss_clk_ctrl = 0x38;
+  page.priority[3] = 5;
+  page.camera[0].view.fov_deg = 99;
+  page.flags = PARAM_OVERLAY;
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.kernel, std::uint32_t{KERNEL_LDM});
   EXPECT_TRUE(config.serial);
-  ASSERT_EQ(read(1 << 9), CONFIG_OK);
-  EXPECT_EQ(config.page.flags, PARAM_PAIR_METHOD_B);
-  ASSERT_EQ(read(1 << 10), CONFIG_OK);
   EXPECT_TRUE(config.overlay);
-  ASSERT_EQ(read(1 << 11), CONFIG_OK);
+  EXPECT_FALSE(config.self_patch);
+  EXPECT_EQ(config.vpss_clk_ctrl, 0x38u);
+  EXPECT_EQ(config.priority[3], 5);
+  EXPECT_EQ(config.view.fov_deg, 99);
+  page.flags = PARAM_SELF_PATCH;
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_FALSE(config.overlay);
   EXPECT_TRUE(config.self_patch);
 }
 
-TEST_F(ConfigTest, UnusedCodesAreRefused) {
-  EXPECT_EQ(read(3), CONFIG_BAD_STANDARD);
-  EXPECT_EQ(read(2 << 6), CONFIG_BAD_KERNEL);
-  EXPECT_EQ(read(7 << 2), CONFIG_BAD_MAPPING);
+TEST_F(ConfigTest, UnknownCodesOfThePageAreRefused) {
+  const auto with = [&](std::uint32_t param_page_t::*member, std::uint32_t value) {
+    const std::uint32_t before = page.*member;
+    page.*member = value;
+    const config_result_t result = read(0);
+    page.*member = before;
+    return result;
+  };
+  EXPECT_EQ(with(&param_page_t::kernel, KERNEL_LDM + 1), CONFIG_BAD_KERNEL);
+  EXPECT_EQ(with(&param_page_t::table_builder, 1), CONFIG_BAD_BUILDER);
+  EXPECT_EQ(with(&param_page_t::flow, FLOW_SERIAL + 1), CONFIG_BAD_FLOW);
+  EXPECT_EQ(with(&param_page_t::camera_count, 2), CONFIG_BAD_CAMERAS);
+  std::set<std::string> seen;
+  for (int r = 0; r < CONFIG_RESULTS; ++r)
+    seen.insert(config_result_text(static_cast<config_result_t>(r)));
+  EXPECT_EQ(seen.size(), static_cast<std::size_t>(CONFIG_RESULTS)) << "a sentence each";
+  EXPECT_EQ(seen.count("unknown"), 0u);
 }
 
 TEST_F(ConfigTest, APageWithARegionIsCentred) {
   page.width = 352;
   page.height = 288;
-  param_page_seal(&page);
   ASSERT_EQ(read(0), CONFIG_OK);
-  EXPECT_TRUE(config.page_valid);
   EXPECT_EQ(config.left, 184u);
   EXPECT_EQ(config.top, 144u);
   EXPECT_EQ(config.pitch_bytes, 704u);
+  ASSERT_EQ(read(size(1)), CONFIG_OK);
+  EXPECT_EQ(config.width, 720u) << "the switches win";
 }
 
 TEST_F(ConfigTest, ARegionThatDoesNotFitIsRefused) {
   page.height = 576;
-  param_page_seal(&page);
-  EXPECT_EQ(read(1), CONFIG_BAD_SIZE);
+  EXPECT_EQ(read(kNtsc), CONFIG_BAD_REGION);
   page.height = 0;
   page.width = 722;
-  param_page_seal(&page);
-  EXPECT_EQ(read(0), CONFIG_BAD_SIZE);
+  EXPECT_EQ(read(0), CONFIG_BAD_REGION);
   page.width = 358;
-  param_page_seal(&page);
-  EXPECT_EQ(read(0), CONFIG_BAD_SIZE);
-}
-
-TEST_F(ConfigTest, ADamagedPageIsReplacedByDefaults) {
-  page.mapping = LENS_LINEAR;  // without a new checksum
-  ASSERT_EQ(read(0), CONFIG_OK);
-  EXPECT_FALSE(config.page_valid);
-  EXPECT_EQ(config.page.mapping, std::uint32_t{LENS_EQUISOLID});
-  EXPECT_EQ(config.page.fov_deg, 180.0);
+  EXPECT_EQ(read(0), CONFIG_BAD_REGION);
 }
 
 TEST(OverlayTest, HalvesTowardsItsLumaInsideTheBoxOnly) {

@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "model/board/clock_presets.h"
 #include "register_recorder.h"
+#include "sw/fovea/clock_setting.h"
 
 extern "C" {
 #include "sw/firmware/boot/boot.h"
+#include "sw/firmware/drivers/priority.h"
 
 uint32_t mmio_read32(uint32_t address) { return RegisterRecorder::current()->read(address); }
 void mmio_write32(uint32_t address, uint32_t value) {
@@ -22,21 +25,39 @@ constexpr std::uint32_t kPllc1 = 0x01C40800, kPllc2 = 0x01C40C00;
 // A chip on which every request succeeds at once.
 class BootTest : public testing::Test {
  protected:
-  void boot(unsigned preset, std::uint32_t other_switches = 0) {
+  /// A page with a preset's clocks.
+  static param_page_t page_of(unsigned preset) {
+    const fovea::board::ClockSetting& clocks = fovea::board::kClockPresets[preset].setting;
+    const auto ddr = fovea::app::ddr_registers(clocks.ddr());
+    param_page_t page{};
+    page.clocks = {clocks.pll1, clocks.pll2, clocks.vpss_clk_ctrl, 297'000, 243'000,
+                   ddr.sdtimr, ddr.sdtimr2, ddr.sdrcr};
+    page.console.divisor = 13;
+    for (std::uint8_t& p : page.priority) p = PRIORITY_OF_RESET;
+    page.camera_count = 1;
+    return page;
+  }
+  void boot(unsigned preset) {
+    param_page_t page = page_of(preset);
+    param_page_seal(&page);
+    EXPECT_EQ(boot(page), PARAM_PAGE_OK);
+  }
+  param_page_result_t boot(const param_page_t& page) {
     values.clear();
     recorder.accesses.clear();
-    values[0x01C67020] = preset << 12 | other_switches;
+    sent.clear();
     values[0x01C40084] = values[0x01C40088] = 0x07000000;
     values[0x01C20014] = 0x60;
     recorder.on_write = [this](std::uint32_t address, std::uint32_t value) {
       values[address] = value;
+      if (address == 0x01C20000) sent.push_back(static_cast<char>(value));
       if (address == 0x01C41120)  // PTCMD: modules reach the state asked for
         for (unsigned n = 0; n < 52; ++n)
           values[0x01C41800 + 4 * n] = values[0x01C41A00 + 4 * n] & 0x1F;
       if (address == 0x01C40074 && (value & 0x2000)) values[address] |= 0x8000;  // VTP ready
     };
     recorder.on_read = [this](std::uint32_t address) { return values[address]; };
-    boot_init();
+    return boot_init(&page);
   }
   double sysclk(std::uint32_t base, unsigned n) {
     const auto divider = [&](std::uint32_t offset) {
@@ -57,6 +78,7 @@ class BootTest : public testing::Test {
   }
   RegisterRecorder recorder;
   std::map<std::uint32_t, std::uint32_t> values;
+  std::string sent;  // by UART0
 };
 
 TEST_F(BootTest, EachPresetGivesItsClocks) {
@@ -78,16 +100,65 @@ TEST_F(BootTest, EachPresetGivesItsClocks) {
     EXPECT_TRUE(values[kPllc1 + 0x100] & 1);  // PLLEN
     EXPECT_TRUE(values[kPllc2 + 0x100] & 1);
     // The encoder gets 27 MHz from the PLL that VPSS_CLK_CTRL will name.
-    const auto source = boot_vpss_clk_ctrl(static_cast<clock_preset>(preset)) >> 5 & 3;
+    const auto source = page_of(preset).clocks.vpss_clk_ctrl >> 5 & 3;
     EXPECT_DOUBLE_EQ(source == 0 ? sysclk(kPllc1, 6) : sysclk(kPllc2, 5), 27.0);
   }
 }
 
-TEST_F(BootTest, AnUnusedPresetMeansTheDefault) {
-  for (unsigned preset = 5; preset < 8; ++preset) {
-    boot(preset);
-    EXPECT_DOUBLE_EQ(sysclk(kPllc1, 7) / 2, 243.0);
+TEST_F(BootTest, SaysItsClocks) {
+  boot(0);
+  EXPECT_EQ(sent, "boot: clocks 297000/243000 kHz\r\nboot: DDR2 up\r\n");
+}
+
+// Nothing but the console was touched: no clock, no SDRAM.
+TEST_F(BootTest, ABadPageIsRefusedWithASentence) {
+  param_page_t page = page_of(0);
+  param_page_seal(&page);
+  page.version = 1;
+  EXPECT_EQ(boot(page), PARAM_PAGE_BAD_VERSION);
+  EXPECT_EQ(sent, "failed: parameter page: unknown version; this firmware reads version 2\r\n");
+  EXPECT_EQ(values[0x01C67064], 7u) << "phase pins: failed";
+  for (const RegisterAccess& a : recorder.writes()) {
+    EXPECT_FALSE(a.address >= kPllc1 && a.address < kPllc2 + 0x400) << a;
+    EXPECT_FALSE(a.address >> 28 == 2) << a;
   }
+  EXPECT_EQ(values[0x01C20020], 13u) << "115200 Bd";
+}
+
+TEST_F(BootTest, TheConsolesRateIsThatOfThePage) {
+  param_page_t page = page_of(0);
+  page.console.divisor = 0x19C;
+  param_page_seal(&page);
+  EXPECT_EQ(boot(page), PARAM_PAGE_OK);
+  EXPECT_EQ(values[0x01C20020], 0x9Cu);
+  EXPECT_EQ(values[0x01C20024], 0x01u);
+}
+
+TEST_F(BootTest, PrioritiesGoIntoTheirFieldsAndNowhereElse) {
+  boot(0);
+  values[0x01C4003C] = 0x00550011;
+  values[0x01C00284] = 0x7777;
+  values[0x01C70008] = 0x2;
+  recorder.accesses.clear();
+  std::uint8_t priority[PRIORITY_COUNT];
+  for (std::uint8_t& p : priority) p = PRIORITY_OF_RESET;
+  priority_set(priority);
+  EXPECT_TRUE(recorder.accesses.empty()) << "of reset: not even read";
+  priority[PRIORITY_ARM] = 6;
+  priority_set(priority);
+  EXPECT_EQ(values[0x01C4003C], 0x00550016u);
+  priority[PRIORITY_MJCP] = 2;
+  priority[PRIORITY_EDMA_TC0] = 1;
+  priority[PRIORITY_EDMA_TC1] = 0;
+  priority[PRIORITY_EDMA_TC2] = 3;
+  priority[PRIORITY_EDMA_TC3] = 4;
+  priority[PRIORITY_VPFE] = 5;
+  priority[PRIORITY_VPBE] = 7;
+  priority_set(priority);
+  EXPECT_EQ(values[0x01C4003C], 0x00520016u);
+  EXPECT_EQ(values[0x01C00284], 0x4301u);
+  EXPECT_EQ(values[0x01C70008], 0x2u | 7u << 2 | 5u << 5);
+  EXPECT_EQ(values[0x01C41800], 3u) << "the EDMA is on";
 }
 
 TEST_F(BootTest, DramTimingsAreThoseOfTheTable) {

@@ -249,7 +249,7 @@ TEST(TimerTest, TheAlarmIsTim34OnceAndLeavesTim12Running) {
 
 TEST(UartTest, DivisorFormatAndText) {
   RegisterRecorder chip;
-  uart_init();
+  uart_init(UART_DIVISOR_115200);
   EXPECT_EQ(chip.values[0x01C20020], 13u);  // 24 MHz / 16 / 13 = 115385
   EXPECT_EQ(chip.values[0x01C2000C], 3u);
   EXPECT_EQ(chip.values[0x01C20030], 0x6001u);

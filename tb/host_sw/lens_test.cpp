@@ -11,22 +11,21 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-param_page_t page_of(std::uint32_t mapping, double fov_deg) {
-  param_page_t page;
-  param_page_default(&page);
-  page.mapping = mapping;
-  page.fov_deg = fov_deg;
-  param_page_seal(&page);
-  return page;
+lens_view_t view_of(std::uint32_t mapping, double fov_deg) {
+  lens_view_t view;
+  lens_view_default(&view);
+  view.mapping = mapping;
+  view.fov_deg = fov_deg;
+  return view;
 }
 
-lens_t lens_of(const param_page_t& page, unsigned width = 720, unsigned height = 576) {
+lens_t lens_of(const lens_view_t& view, unsigned width = 720, unsigned height = 576) {
   lens_t lens;
-  EXPECT_EQ(lens_init(&lens, &page, width, height), LENS_OK);
+  EXPECT_EQ(lens_init(&lens, &view, width, height), LENS_OK);
   return lens;
 }
 
-lens_t lens_of(param_page_t&&, unsigned = 0, unsigned = 0) = delete;  // the page must live
+lens_t lens_of(lens_view_t&&, unsigned = 0, unsigned = 0) = delete;  // the view must live
 
 struct FocalRow {
   double fov, printed, equisolid, linear, ortho, stereo;
@@ -75,8 +74,8 @@ TEST(LensFocalTest, ImpossibleFieldsOfViewGiveNone) {
 TEST(LensFocalTest, HalfTheFieldOfViewLandsOnThePictureEdge) {
   for (std::uint32_t mapping :
        {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC, LENS_RECTILINEAR}) {
-    const param_page_t page = page_of(mapping, 140);
-    const lens_t lens = lens_of(page);
+    const lens_view_t view = view_of(mapping, 140);
+    const lens_t lens = lens_of(view);
     EXPECT_NEAR(lens_radius(&lens, 70 * kPi / 180), 360.0, 1e-9) << mapping;
   }
 }
@@ -94,8 +93,8 @@ constexpr EdgeRow kEdges[] = {{LENS_LINEAR, 230.1, 254.3},
 TEST(LensSourceTest, RadiiAtEdgeAndCornerMatchTheTable) {
   for (const EdgeRow& row : kEdges) {
     SCOPED_TRACE(row.mapping);
-    const param_page_t page = page_of(row.mapping, 180);
-    const lens_t lens = lens_of(page);
+    const lens_view_t view = view_of(row.mapping, 180);
+    const lens_t lens = lens_of(view);
     // The table's edge is W/2 and its corner (W/2, H/2) from the centre: half a pixel outside.
     const lens_point_t edge = lens_source(&lens, 719.5, 287.5);
     EXPECT_NEAR(edge.column - 359.5, row.right_edge, 0.06);
@@ -108,8 +107,8 @@ TEST(LensSourceTest, RadiiAtEdgeAndCornerMatchTheTable) {
 TEST(LensSourceTest, TrigFreeFormsEqualTheDefinitions) {
   for (std::uint32_t mapping :
        {LENS_RECTILINEAR, LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
-    const param_page_t page = page_of(mapping, 130);
-    const lens_t lens = lens_of(page);
+    const lens_view_t view = view_of(mapping, 130);
+    const lens_t lens = lens_of(view);
     for (double r = 1e-6; r < 20; r *= 1.7)
       EXPECT_NEAR(lens_gain(&lens, r * r) * r, lens_radius(&lens, std::atan(r)),
                   1e-9 * (1 + 300 * r))
@@ -118,8 +117,8 @@ TEST(LensSourceTest, TrigFreeFormsEqualTheDefinitions) {
 }
 
 TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {
-  const param_page_t page = page_of(LENS_EQUISOLID, 170);
-  const lens_t lens = lens_of(page);
+  const lens_view_t view = view_of(LENS_EQUISOLID, 170);
+  const lens_t lens = lens_of(view);
   const double f = lens.focal;
   for (double radius = 0.5; radius < 430; radius += 13.7) {
     const double source = lens_gain(&lens, radius / f * (radius / f)) * radius / f;
@@ -128,8 +127,8 @@ TEST(LensSourceTest, EquisolidRoundTripThroughThePapersForwardFormula) {
 }
 
 TEST(LensSourceTest, PointsStayOnTheirRadius) {
-  const param_page_t page = page_of(LENS_STEREOGRAPHIC, 160);
-  const lens_t lens = lens_of(page);
+  const lens_view_t view = view_of(LENS_STEREOGRAPHIC, 160);
+  const lens_t lens = lens_of(view);
   for (double u = 3; u < 720; u += 101)
     for (double v = 1; v < 576; v += 97) {
       const lens_point_t p = lens_source(&lens, u, v);
@@ -139,8 +138,8 @@ TEST(LensSourceTest, PointsStayOnTheirRadius) {
 
 TEST(LensSourceTest, WiderThan180DegreesIsSafe) {
   for (std::uint32_t mapping : {LENS_LINEAR, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
-    const param_page_t page = page_of(mapping, 190);
-    const lens_t lens = lens_of(page);
+    const lens_view_t view = view_of(mapping, 190);
+    const lens_t lens = lens_of(view);
     for (double u : {0.0, 359.5, 719.0}) {
       const lens_point_t p = lens_source(&lens, u, 0);
       EXPECT_TRUE(p.visible);
@@ -153,12 +152,12 @@ TEST(LensSourceTest, WiderThan180DegreesIsSafe) {
 TEST(LensSourceTest, OnTheAxisTheSourceIsTheOpticalCentre) {
   for (std::uint32_t mapping :
        {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC, LENS_RECTILINEAR}) {
-    param_page_t page = page_of(mapping, 120);
-    page.centre_x = 7.25;
-    page.centre_y = -3.5;
-    page.shift_x = 0.5;  // brings pixel (359, 287) onto the axis
-    page.shift_y = 0.5;
-    const lens_t lens = lens_of(page);
+    lens_view_t view = view_of(mapping, 120);
+    view.centre_x = 7.25;
+    view.centre_y = -3.5;
+    view.shift_x = 0.5;  // brings pixel (359, 287) onto the axis
+    view.shift_y = 0.5;
+    const lens_t lens = lens_of(view);
     const lens_point_t p = lens_source(&lens, 359, 287);
     EXPECT_DOUBLE_EQ(p.column, 359.5 + 7.25);
     EXPECT_DOUBLE_EQ(p.row, 287.5 - 3.5);
@@ -166,31 +165,31 @@ TEST(LensSourceTest, OnTheAxisTheSourceIsTheOpticalCentre) {
 }
 
 TEST(LensSourceTest, AspectsScaleTheVerticalDirections) {
-  param_page_t page = page_of(LENS_RECTILINEAR, 90);
-  page.in_aspect = 1.25;
-  page.out_aspect = 0.8;
-  page.out_focal_px = 2 * 360.0;  // lens focal is 720 / (2 tan 45) = 360: zoom 2
-  const lens_t lens = lens_of(page);
+  lens_view_t view = view_of(LENS_RECTILINEAR, 90);
+  view.in_aspect = 1.25;
+  view.out_aspect = 0.8;
+  view.out_focal_px = 2 * 360.0;  // lens focal is 720 / (2 tan 45) = 360: zoom 2
+  const lens_t lens = lens_of(view);
   const lens_point_t p = lens_source(&lens, 359.5 + 100, 287.5 + 40);
   EXPECT_NEAR(p.column, 359.5 + 50, 1e-9);
   EXPECT_NEAR(p.row, 287.5 + 1.25 * 40 / (2 * 0.8), 1e-9);
 }
 
 TEST(LensSourceTest, ThetaMaxHidesWhatLiesBeyond) {
-  param_page_t page = page_of(LENS_LINEAR, 180);
-  page.theta_max = 45 * kPi / 180;
-  const lens_t lens = lens_of(page);
+  lens_view_t view = view_of(LENS_LINEAR, 180);
+  view.theta_max = 45 * kPi / 180;
+  const lens_t lens = lens_of(view);
   const double reach = lens.out_focal;  // tan 45 = 1
   EXPECT_TRUE(lens_source(&lens, 359.5 + reach - 1e-6, 287.5).visible);
   EXPECT_FALSE(lens_source(&lens, 359.5 + reach + 1e-6, 287.5).visible);
 }
 
 TEST(LensSourceTest, NoneShowsThePictureShifted) {
-  param_page_t page = page_of(LENS_NONE, 0);
-  page.shift_x = 6;
-  page.shift_y = -2;
-  page.centre_x = 99;  // no effect
-  const lens_t lens = lens_of(page);
+  lens_view_t view = view_of(LENS_NONE, 0);
+  view.shift_x = 6;
+  view.shift_y = -2;
+  view.centre_x = 99;  // no effect
+  const lens_t lens = lens_of(view);
   const lens_point_t p = lens_source(&lens, 100, 200);
   EXPECT_EQ(p.column, 106);
   EXPECT_EQ(p.row, 198);
@@ -210,129 +209,70 @@ TEST(LensSqrtTest, IsWithinTwoUnitsInTheLastPlace) {
 }
 
 TEST(LensTableTest, ReproducesAClosedForm) {
-  param_page_t page = page_of(LENS_TABLE, 0);
-  page.table_count = PARAM_TABLE_MAX;
-  page.theta_max = 95 * kPi / 180;
+  lens_view_t view = view_of(LENS_TABLE, 0);
+  view.table_count = PARAM_TABLE_MAX;
+  view.theta_max = 95 * kPi / 180;
   const double f = 254.56;
-  for (unsigned i = 0; i < page.table_count; ++i)
-    page.table_r[i] = 2 * f * std::sin(i * page.theta_max / (page.table_count - 1) / 2);
-  const lens_t lens = lens_of(page);
+  for (unsigned i = 0; i < view.table_count; ++i)
+    view.table_r[i] = 2 * f * std::sin(i * view.theta_max / (view.table_count - 1) / 2);
+  const lens_t lens = lens_of(view);
   // Linear interpolation errs by at most step^2 / 8 * |R''| = (95 deg / 128)^2 / 8 * f / 2 * sin.
-  const double step = page.theta_max / 128, bound = step * step / 8 * f / 2;
-  for (double theta = 0.01; theta < page.theta_max; theta += 0.013)
+  const double step = view.theta_max / 128, bound = step * step / 8 * f / 2;
+  for (double theta = 0.01; theta < view.theta_max; theta += 0.013)
     EXPECT_NEAR(lens_radius(&lens, theta), 2 * f * std::sin(theta / 2), bound);
-  EXPECT_DOUBLE_EQ(lens_radius(&lens, page.theta_max), page.table_r[page.table_count - 1]);
-  EXPECT_DOUBLE_EQ(lens.focal, page.table_r[1] / step);
+  EXPECT_DOUBLE_EQ(lens_radius(&lens, view.theta_max), view.table_r[view.table_count - 1]);
+  EXPECT_DOUBLE_EQ(lens.focal, view.table_r[1] / step);
 }
 
 TEST(LensTableTest, EachFaultIsRefused) {
-  param_page_t page = page_of(LENS_TABLE, 0);
+  lens_view_t view = view_of(LENS_TABLE, 0);
   lens_t lens;
-  page.table_count = 3;
-  page.theta_max = 1;
-  page.table_r[1] = 100;
-  page.table_r[2] = 200;
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_OK);
-  param_page_t bad = page;
+  view.table_count = 3;
+  view.theta_max = 1;
+  view.table_r[1] = 100;
+  view.table_r[2] = 200;
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_OK);
+  lens_view_t bad = view;
   bad.table_count = 1;
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
-  bad = page;
+  bad = view;
   bad.table_count = PARAM_TABLE_MAX + 1;
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
-  bad = page;
+  bad = view;
   bad.theta_max = 0;
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
-  bad = page;
+  bad = view;
   bad.table_r[2] = 100;
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
-  bad = page;
+  bad = view;
   bad.table_r[2] = std::nan("");
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
-  bad = page;
+  bad = view;
   bad.table_r[0] = 1;
   EXPECT_EQ(lens_init(&lens, &bad, 720, 576), LENS_BAD_TABLE);
 }
 
 TEST(LensInitTest, EachFaultIsRefused) {
   lens_t lens;
-  param_page_t page = page_of(LENS_EQUISOLID, 180);
-  EXPECT_EQ(lens_init(&lens, &page, 719, 576), LENS_BAD_SIZE);
-  EXPECT_EQ(lens_init(&lens, &page, 0, 576), LENS_BAD_SIZE);
-  EXPECT_EQ(lens_init(&lens, &page, 720, 5000), LENS_BAD_SIZE);
-  page.mapping = 7;
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_MAPPING);
-  page = page_of(LENS_ORTHOGRAPHIC, 190);
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOV);
-  page = page_of(LENS_EQUISOLID, 180);
-  page.out_focal_px = -1;
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
-  page = page_of(LENS_EQUISOLID, 180);
-  page.in_aspect = 0;
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
-  page = page_of(LENS_EQUISOLID, 180);
-  page.focal_px = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(lens_init(&lens, &page, 720, 576), LENS_BAD_FOCAL);
+  lens_view_t view = view_of(LENS_EQUISOLID, 180);
+  EXPECT_EQ(lens_init(&lens, &view, 719, 576), LENS_BAD_SIZE);
+  EXPECT_EQ(lens_init(&lens, &view, 0, 576), LENS_BAD_SIZE);
+  EXPECT_EQ(lens_init(&lens, &view, 720, 5000), LENS_BAD_SIZE);
+  view.mapping = 7;
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_BAD_MAPPING);
+  view = view_of(LENS_ORTHOGRAPHIC, 190);
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_BAD_FOV);
+  view = view_of(LENS_EQUISOLID, 180);
+  view.out_focal_px = -1;
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_BAD_FOCAL);
+  view = view_of(LENS_EQUISOLID, 180);
+  view.in_aspect = 0;
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_BAD_FOCAL);
+  view = view_of(LENS_EQUISOLID, 180);
+  view.focal_px = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_BAD_FOCAL);
   for (int r = LENS_OK; r <= LENS_BAD_TABLE; ++r)
     EXPECT_NE(std::string(lens_result_text(static_cast<lens_result_t>(r))), "unknown");
-}
-
-TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
-  EXPECT_EQ(sizeof(param_page_t), 1152u);
-  EXPECT_EQ(offsetof(param_page_t, fov_deg), 40u);
-  EXPECT_EQ(offsetof(param_page_t, table_r), 120u);
-  param_page_t page;
-  param_page_default(&page);
-  EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
-}
-
-TEST(ParamPageTest, DefaultsFillThePageAndNothingBehindIt) {
-  struct {
-    param_page_t page;
-    unsigned char behind[8];
-  } memory;
-  memset(&memory, 0xA5, sizeof memory);
-  param_page_default(&memory.page);
-  for (const unsigned char byte : memory.behind) EXPECT_EQ(byte, 0xA5);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(&memory.page);
-  EXPECT_EQ(bytes[sizeof memory.page - 1], 0) << "the last word of the table";
-  EXPECT_TRUE(param_page_valid(&memory.page));
-}
-
-TEST(ParamPageTest, ASealedPageIsAcceptedAndEachFlippedBitRefused) {
-  param_page_t page = page_of(LENS_LINEAR, 123.456);
-  ASSERT_TRUE(param_page_valid(&page));
-  auto* bytes = reinterpret_cast<unsigned char*>(&page);
-  for (unsigned i = 0; i < sizeof page; ++i)
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      bytes[i] ^= 1u << bit;
-      EXPECT_FALSE(param_page_valid(&page)) << "byte " << i << " bit " << bit;
-      bytes[i] ^= 1u << bit;
-    }
-  EXPECT_TRUE(param_page_valid(&page));
-}
-
-TEST(ParamPageTest, WrongMagicVersionOrSizeIsRefusedThoughTheSumFits) {
-  const auto with_sum = [](param_page_t page) {
-    const auto* words = reinterpret_cast<const std::uint32_t*>(&page);
-    page.checksum = 0;
-    std::uint32_t sum = 0;
-    for (unsigned i = 0; i < sizeof page / 4; ++i) sum += words[i];
-    page.checksum = 0 - sum;
-    return page;
-  };
-  param_page_t page;
-  param_page_default(&page);
-  param_page_t changed = page;
-  EXPECT_TRUE(param_page_valid(&(changed = with_sum(page))));
-  changed = page;
-  changed.magic ^= 1;
-  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
-  changed = page;
-  changed.version = 2;
-  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
-  changed = page;
-  changed.bytes = 1024;
-  EXPECT_FALSE(param_page_valid(&(changed = with_sum(changed))));
 }
 
 }  // namespace

@@ -8,18 +8,18 @@
 
 namespace {
 
-param_page_t page_of(std::uint32_t mapping, double fov_deg) {
-  param_page_t page;
-  param_page_default(&page);
-  page.mapping = mapping;
-  page.fov_deg = fov_deg;
-  return page;
+lens_view_t view_of(std::uint32_t mapping, double fov_deg) {
+  lens_view_t view;
+  lens_view_default(&view);
+  view.mapping = mapping;
+  view.fov_deg = fov_deg;
+  return view;
 }
 
-std::vector<std::uint32_t> build(const param_page_t& page, unsigned width, unsigned height,
+std::vector<std::uint32_t> build(const lens_view_t& view, unsigned width, unsigned height,
                                  unsigned pitch) {
   lens_t lens;
-  EXPECT_EQ(lens_init(&lens, &page, width, height), LENS_OK);
+  EXPECT_EQ(lens_init(&lens, &view, width, height), LENS_OK);
   std::vector<std::uint32_t> lut(lens_lut_entries(width, height) + 2, 0xDEADBEEF);
   lens_build_lut(&lens, lut.data(), pitch);
   EXPECT_EQ(lut[lut.size() - 1], 0xDEADBEEF) << "written behind the table";
@@ -29,16 +29,16 @@ std::vector<std::uint32_t> build(const param_page_t& page, unsigned width, unsig
 }
 
 TEST(LutTest, WithoutCorrectionItIsThePictureItself) {
-  const auto lut = build(page_of(LENS_NONE, 0), 8, 4, 32);
+  const auto lut = build(view_of(LENS_NONE, 0), 8, 4, 32);
   for (unsigned v = 0; v < 4; ++v)
     for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(lut[v * 4 + i], v * 32 + i * 4);
 }
 
 TEST(LutTest, OutsideThePictureEntriesPointAtTheBlackWord) {
-  param_page_t page = page_of(LENS_NONE, 0);
-  page.shift_x = -2;
-  page.shift_y = 1;
-  const auto lut = build(page, 8, 4, 32);
+  lens_view_t view = view_of(LENS_NONE, 0);
+  view.shift_x = -2;
+  view.shift_y = 1;
+  const auto lut = build(view, 8, 4, 32);
   const std::uint32_t black = 4 * 32;
   for (unsigned v = 0; v < 4; ++v)
     for (unsigned i = 0; i < 4; ++i)
@@ -46,16 +46,16 @@ TEST(LutTest, OutsideThePictureEntriesPointAtTheBlackWord) {
 }
 
 TEST(LutTest, OddSourceColumnsFallOnTheirWholePair) {
-  param_page_t page = page_of(LENS_NONE, 0);
-  page.shift_x = 1;  // first pixel of each pair comes from an odd column
-  const auto lut = build(page, 8, 2, 32);
+  lens_view_t view = view_of(LENS_NONE, 0);
+  view.shift_x = 1;  // first pixel of each pair comes from an odd column
+  const auto lut = build(view, 8, 2, 32);
   for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(lut[i], i * 4);
 }
 
 TEST(LutTest, PositionsRoundToNearestHalvesUp) {
   lens_t lens;
-  const param_page_t page = page_of(LENS_NONE, 0);
-  ASSERT_EQ(lens_init(&lens, &page, 8, 4), LENS_OK);
+  const lens_view_t view = view_of(LENS_NONE, 0);
+  ASSERT_EQ(lens_init(&lens, &view, 8, 4), LENS_OK);
   const auto entry = [&](double column, double row) {
     return lens_lut_entry(&lens, lens_point_t{column, row, 1}, 32, 999);
   };
@@ -76,9 +76,9 @@ TEST(LutTest, PositionsRoundToNearestHalvesUp) {
 
 TEST(LutTest, MethodsAAndBMapFirstPixelAndCentre) {
   for (bool b : {false, true}) {
-    param_page_t page = page_of(LENS_EQUISOLID, 180);
-    if (b) page.flags = PARAM_PAIR_METHOD_B;
-    const auto lut = build(page, 720, 576, 1440);
+    lens_view_t view = view_of(LENS_EQUISOLID, 180);
+    if (b) view.pair_method = PAIR_CENTRE;
+    const auto lut = build(view, 720, 576, 1440);
     const double f = 720 / (4 * std::sin(45 * M_PI / 180));  // equation (10), corrected
     unsigned differing = 0;
     for (unsigned v = 0; v < 576; v += 25)
@@ -96,11 +96,11 @@ TEST(LutTest, MethodsAAndBMapFirstPixelAndCentre) {
 }
 
 TEST(LutTest, MethodBTakesThePairWhoseCentreIsNearest) {
-  param_page_t page = page_of(LENS_STEREOGRAPHIC, 150);
-  page.flags = PARAM_PAIR_METHOD_B;
+  lens_view_t view = view_of(LENS_STEREOGRAPHIC, 150);
+  view.pair_method = PAIR_CENTRE;
   lens_t lens;
-  ASSERT_EQ(lens_init(&lens, &page, 64, 48), LENS_OK);
-  const auto lut = build(page, 64, 48, 128);
+  ASSERT_EQ(lens_init(&lens, &view, 64, 48), LENS_OK);
+  const auto lut = build(view, 64, 48, 128);
   for (unsigned v = 0; v < 48; ++v)
     for (unsigned i = 0; i < 32; ++i) {
       const lens_point_t p = lens_source(&lens, 2 * i + 0.5, v);
@@ -114,24 +114,24 @@ TEST(LutTest, SymmetricBuildEqualsEntryByEntry) {
   for (std::uint32_t mapping = LENS_NONE; mapping <= LENS_TABLE; ++mapping)
     for (unsigned variant = 0; variant < 16; ++variant) {
       SCOPED_TRACE(testing::Message() << "mapping " << mapping << " variant " << variant);
-      param_page_t page = page_of(mapping, 130);
-      if (variant & 1) page.flags |= PARAM_PAIR_METHOD_B;
-      if (variant & 2) page.shift_x = 3.25;
-      if (variant & 4) page.shift_y = -1.75;
+      lens_view_t view = view_of(mapping, 130);
+      if (variant & 1) view.pair_method = PAIR_CENTRE;
+      if (variant & 2) view.shift_x = 3.25;
+      if (variant & 4) view.shift_y = -1.75;
       if (variant & 8) {
-        page.centre_x = 2.125;
-        page.centre_y = -4.5;
-        page.in_aspect = 1.06;
-        page.out_aspect = 0.93;
-        page.out_focal_px = 21;
+        view.centre_x = 2.125;
+        view.centre_y = -4.5;
+        view.in_aspect = 1.06;
+        view.out_aspect = 0.93;
+        view.out_focal_px = 21;
       }
-      page.table_count = 17;
-      page.theta_max = mapping == LENS_TABLE ? 1.3 : 0;
-      for (unsigned i = 0; i < 17; ++i) page.table_r[i] = 30 * std::sin(i / 16.0 * 1.3);
+      view.table_count = 17;
+      view.theta_max = mapping == LENS_TABLE ? 1.3 : 0;
+      for (unsigned i = 0; i < 17; ++i) view.table_r[i] = 30 * std::sin(i / 16.0 * 1.3);
       const unsigned width = 60, height = 45, pitch = 128;
       lens_t lens;
-      ASSERT_EQ(lens_init(&lens, &page, width, height), LENS_OK);
-      const auto lut = build(page, width, height, pitch);
+      ASSERT_EQ(lens_init(&lens, &view, width, height), LENS_OK);
+      const auto lut = build(view, width, height, pitch);
       unsigned differing = 0;
       for (unsigned v = 0; v < height; ++v)
         for (unsigned i = 0; i < width / 2; ++i)
@@ -143,10 +143,10 @@ TEST(LutTest, SymmetricBuildEqualsEntryByEntry) {
 }
 
 TEST(LutTest, CentredMethodBIsSymmetric) {
-  param_page_t page = page_of(LENS_EQUISOLID, 160);
-  page.flags = PARAM_PAIR_METHOD_B;
+  lens_view_t view = view_of(LENS_EQUISOLID, 160);
+  view.pair_method = PAIR_CENTRE;
   const unsigned w = 64, h = 48, pitch = 128;
-  const auto lut = build(page, w, h, pitch);
+  const auto lut = build(view, w, h, pitch);
   unsigned asymmetric = 0;
   for (unsigned v = 0; v < h; ++v)
     for (unsigned i = 0; i < w / 2; ++i) {
@@ -159,8 +159,8 @@ TEST(LutTest, CentredMethodBIsSymmetric) {
 }
 
 TEST(LutTest, PitchMovesRowsOnly) {
-  const param_page_t page = page_of(LENS_LINEAR, 170);
-  const auto narrow = build(page, 640, 480, 1280), wide = build(page, 640, 480, 1472);
+  const lens_view_t view = view_of(LENS_LINEAR, 170);
+  const auto narrow = build(view, 640, 480, 1280), wide = build(view, 640, 480, 1472);
   for (std::size_t i = 0; i < narrow.size(); ++i) {
     EXPECT_EQ(narrow[i] / 1280, wide[i] / 1472);
     EXPECT_EQ(narrow[i] % 1280, wide[i] % 1472);
@@ -168,7 +168,7 @@ TEST(LutTest, PitchMovesRowsOnly) {
 }
 
 TEST(LutTest, TouchesTheDocumentedPartOfTheSource) {  // columns 126..593, rows 78..497
-  const auto lut = build(page_of(LENS_EQUISOLID, 180), 720, 576, 1440);
+  const auto lut = build(view_of(LENS_EQUISOLID, 180), 720, 576, 1440);
   unsigned left = 719, right = 0, top = 575, bottom = 0;
   for (std::uint32_t e : lut) {
     const unsigned row = e / 1440, column = e % 1440 / 2;

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "model/trace/core/text_trace.h"
-#include "sw/fovea/clock_presets.h"
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_clocks.h"
@@ -284,12 +283,12 @@ TEST(ReplayClocksTest, AClockByHandStaysAndIsNamed) {
 }
 
 TEST(ReplayClocksTest, PresetsAreThoseOfARun) {
-  for (const app::ClockPreset& p : app::clock_presets()) {
+  for (const board::ClockPreset& p : board::kClockPresets) {
     const Keyed s({fmt::format("clocks.preset={}", p.name)}, recorded_at_243());
-    EXPECT_EQ(s.params.registers.clock(), static_cast<std::uint64_t>(p.ddr.hertz())) << p.name;
+    EXPECT_EQ(s.params.registers.clock(), static_cast<std::uint64_t>(p.ddr().hertz())) << p.name;
     EXPECT_EQ(2 * s.params.clocks.clock(), s.params.registers.clock()) << p.name;
     EXPECT_EQ(s.origin("ddr.clock"), fmt::format("clocks.preset: {}", p.name));
-    const bool other_core = p.core.hertz() != 297e6;
+    const bool other_core = p.core().hertz() != 297e6;
     EXPECT_EQ(std::count_if(s.said.begin(), s.said.end(),
                             [](const std::string& line) {
                               return line.starts_with("warning: clocks.preset: the core stays at 297 "

@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "model/common/check.h"
+#include "model/contract/memory_map.h"
 
 namespace fovea::trace {
 namespace {
 
 constexpr unsigned kNoStream = ~0u;
-constexpr unsigned kSdramBase = 0x8000'0000u;  // the masters' view
+constexpr unsigned kSdramBase = DDR_BASE;  // the masters' view
 
 unsigned count_streams(const std::vector<BusRecorder::MasterSetup>& masters) {
   unsigned n = 1;

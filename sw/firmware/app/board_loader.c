@@ -1,4 +1,4 @@
-/* Boot loader of `fovea exec --board`: sets the clocks by the switches, starts DDR2 without output
+/* Boot loader of `fovea exec --board`: sets the clocks by the parameter page, starts DDR2 without output
  * on the UART, and starts a program that the host has put into SDRAM. The host fills in
  * `start_state`. */
 #include "../boot/boot.h"
@@ -6,7 +6,7 @@
 
 struct start_state start_state __attribute__((section(".data")));
 
-void loader_main(struct start_state *state) {
+uint32_t loader_main(struct start_state *state) {
   (void)state;
-  boot_init();
+  return boot_init((const param_page_t *)PARAM_PAGE_BASE);
 }

@@ -1,53 +1,87 @@
 #include "config.h"
 
 #include "../drivers/isif.h"
+#include "model/contract/switches.h"
 
-config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page) {
-  const uint32_t standard = dip & 3u, mapping = (dip >> 2) & 7u, kernel = (dip >> 6) & 3u;
-  *c = (config_t){.dip = dip,
-                  .is_625 = standard == 0,
-                  .kernel = kernel == 1 ? KERNEL_LDM : KERNEL_PLAIN,
-                  .serial = (dip >> 8 & 1u) != 0,
-                  .overlay = (dip >> 10 & 1u) != 0,
-                  .self_patch = (dip >> 11 & 1u) != 0,
-                  .page_valid = param_page_valid(page)};
-  if (standard > 2) return CONFIG_BAD_STANDARD;
-  if (kernel > 1) return CONFIG_BAD_KERNEL;
-  if (mapping > LENS_TABLE) return CONFIG_BAD_MAPPING;
-
-  if (c->page_valid)
-    c->page = *page;
-  else
-    param_page_default(&c->page);
-  if (mapping != 0) c->page.mapping = mapping;
-  c->repeats = c->page.repeats != 0 ? c->page.repeats : 1u;
-  if ((dip >> 5 & 1u) != 0) c->page.flags |= PARAM_PAPER_LITERAL_FOCAL;
-  if ((dip >> 9 & 1u) != 0) c->page.flags |= PARAM_PAIR_METHOD_B;
-
+static config_result_t read_region(config_t *c, const param_page_t *page) {
+  static const struct {
+    uint16_t width, height;
+  } kSizes[] = {[SWITCH_720X576] = {720, 576}, [SWITCH_720X480] = {720, 480}, [SWITCH_720X486] = {720, 486},
+                [SWITCH_640X480] = {640, 480}, [SWITCH_800X600] = {800, 600}};
+  const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
+  if (size > SWITCH_800X600 || SWITCH_GET(c->dip, SWITCH_SIZE_OUT) != size) return CONFIG_BAD_SIZES;
   const uint32_t raster_height = c->is_625 ? 576u : 480u;
-  c->width = c->page.width != 0 ? c->page.width : standard == 2 ? 640u : 720u;
-  c->height = c->page.height != 0 ? c->page.height : raster_height;
+  c->width = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].width : page->width != 0 ? page->width : 720u;
+  c->height =
+      size != SWITCH_SIZE_OF_PAGE ? kSizes[size].height : page->height != 0 ? page->height : raster_height;
   /* With multiples of 4, the centred region begins at a whole pair and a whole line of a field. */
   if (c->width > 720u || c->width % 4u != 0 || c->height > raster_height || c->height % 4u != 0)
-    return CONFIG_BAD_SIZE;
+    return CONFIG_BAD_REGION;
   c->left = (720u - c->width) / 2u;
   c->top = (raster_height - c->height) / 2u;
   c->pitch_bytes = isif_pitch(c->width);
   return CONFIG_OK;
 }
 
+/* Returns 0 for an unused code. */
+static int add_shift(double *shift, uint32_t code) {
+  if (code == SWITCH_FORWARD) *shift += SWITCH_SHIFT_PIXELS;
+  if (code == SWITCH_BACK) *shift -= SWITCH_SHIFT_PIXELS;
+  return code <= SWITCH_BACK;
+}
+
+static config_result_t read_view(config_t *c, const param_page_t *page) {
+  c->view = page->camera[0].view;
+  const uint32_t mapping = SWITCH_GET(c->dip, SWITCH_MAPPING);
+  if (mapping != 0) c->view.mapping = mapping - 1u;
+  if (!add_shift(&c->view.shift_x, SWITCH_GET(c->dip, SWITCH_SHIFT_X)) ||
+      !add_shift(&c->view.shift_y, SWITCH_GET(c->dip, SWITCH_SHIFT_Y)))
+    return CONFIG_BAD_SHIFT;
+  return CONFIG_OK;
+}
+
+config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page) {
+  const uint32_t standard = SWITCH_GET(dip, SWITCH_STANDARD_IN);
+  *c = (config_t){.dip = dip,
+                  .is_625 = standard == SWITCH_PAL,
+                  .kernel = page->kernel,
+                  .serial = page->flow == FLOW_SERIAL,
+                  .overlay = (page->flags & PARAM_OVERLAY) != 0,
+                  .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,
+                  .repeats = page->repeats != 0 ? page->repeats : 1u,
+                  .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};
+  for (uint32_t i = 0; i < PRIORITY_COUNT; ++i) c->priority[i] = page->priority[i];
+  if (SWITCH_GET(dip, SWITCH_STANDARD_OUT) != standard) return CONFIG_BAD_STANDARDS;
+  if (page->kernel > KERNEL_LDM) return CONFIG_BAD_KERNEL;
+  if (page->table_builder > BUILDER_DOUBLE) return CONFIG_BAD_BUILDER;
+  if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
+  if (page->camera_count != 1) return CONFIG_BAD_CAMERAS;
+  const config_result_t result = read_region(c, page);
+  return result != CONFIG_OK ? result : read_view(c, page);
+}
+
 const char *config_result_text(config_result_t result) {
   switch (result) {
     case CONFIG_OK:
       return "ok";
-    case CONFIG_BAD_STANDARD:
-      return "switches 0-1: 0 PAL, 1 NTSC, 2 VGA";
+    case CONFIG_BAD_STANDARDS:
+      return "switches 0 and 1: camera and display must have the same standard";
+    case CONFIG_BAD_SIZES:
+      return "switches 2-4 and 5-7: camera and display must have the same size, codes 0 to 5";
+    case CONFIG_BAD_REGION:
+      return "size: multiples of 4, within the raster of the standard";
+    case CONFIG_BAD_SHIFT:
+      return "switches 11-12 and 13-14: 0 centred, 1 right or down, 2 left or up";
     case CONFIG_BAD_KERNEL:
-      return "switches 6-7: 0 plain, 1 LDM/STM";
-    case CONFIG_BAD_MAPPING:
-      return "switches 2-4: 0 as page, 1 to 6 mapping";
-    case CONFIG_BAD_SIZE:
-      return "region: multiples of 4, within the raster";
+      return "parameter page: unknown kernel; this firmware has 0 plain, 1 LDM/STM";
+    case CONFIG_BAD_BUILDER:
+      return "parameter page: unknown table builder; this firmware has 0 double precision";
+    case CONFIG_BAD_FLOW:
+      return "parameter page: unknown flow; this firmware has 0 double buffering, 1 serial";
+    case CONFIG_BAD_CAMERAS:
+      return "parameter page: several cameras; this firmware serves one";
+    case CONFIG_RESULTS:
+      break;
   }
   return "unknown";
 }

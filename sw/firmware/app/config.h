@@ -4,9 +4,7 @@
 
 #include <stdint.h>
 
-#include "sw/lens/lens.h"
-
-enum kernel { KERNEL_PLAIN, KERNEL_LDM };
+#include "model/contract/param_page.h"
 
 typedef struct config {
   uint32_t dip;
@@ -14,24 +12,30 @@ typedef struct config {
   uint32_t left, top;     /* of the captured and displayed region in the raster */
   uint32_t width, height; /* of the region */
   uint32_t pitch_bytes;
-  enum kernel kernel;
-  int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
+  uint32_t kernel; /* enum param_kernel */
+  int serial;      /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
   int overlay;
   int self_patch;
   uint32_t repeats; /* number of remaps of each captured frame, at least 1 */
-  int page_valid;    /* 0: the page was invalid, defaults are used */
-  param_page_t page; /* a copy, modified by the switches */
+  uint32_t vpss_clk_ctrl;
+  uint8_t priority[PRIORITY_COUNT];
+  lens_view_t view; /* of the camera, modified by the switches; a copy in cached memory */
 } config_t;
 
 typedef enum config_result {
   CONFIG_OK = 0,
-  CONFIG_BAD_STANDARD, /* switch code 3 */
-  CONFIG_BAD_KERNEL,   /* switch codes 2 and 3 */
-  CONFIG_BAD_MAPPING,  /* switch code 7 */
-  CONFIG_BAD_SIZE      /* region larger than the raster, or a side not a multiple of 4 */
+  CONFIG_BAD_STANDARDS, /* camera and display differ */
+  CONFIG_BAD_SIZES,     /* an unused code, or sizes of camera and display that differ */
+  CONFIG_BAD_REGION,    /* region larger than the raster, or a side not a multiple of 4 */
+  CONFIG_BAD_SHIFT,     /* unused code */
+  CONFIG_BAD_KERNEL,
+  CONFIG_BAD_BUILDER,
+  CONFIG_BAD_FLOW,
+  CONFIG_BAD_CAMERAS, /* more than this firmware serves */
+  CONFIG_RESULTS
 } config_result_t;
 
-/** Derives the configuration. An invalid page is replaced by the defaults. */
+/** Derives the configuration from a page that param_page_check() has accepted. */
 __attribute__((warn_unused_result)) config_result_t config_read(config_t *config, uint32_t dip,
                                                                 const param_page_t *page);
 

@@ -7,11 +7,11 @@
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
 #include "../kernels/remap.h"
-#include "../memory_map.h"
 #include "config.h"
 #include "overlay.h"
 #include "pipeline.h"
 #include "state.h"
+#include "sw/lens/lens.h"
 
 static config_t config;
 static uint8_t overlay_value;
@@ -19,13 +19,12 @@ static uint8_t overlay_value;
 static void print_config(void) {
   static const char *const kMappings[] = {"none",      "rectilinear",   "linear", "orthographic",
                                           "equisolid", "stereographic", "table"};
-  uart_puts(config.page_valid ? "page: lens as given\n" : "page: not valid, defaults\n");
   uart_puts("picture ");
   uart_put_uint(config.width);
   uart_puts("x");
   uart_put_uint(config.height);
   uart_puts(config.is_625 ? " in 625/50, " : " in 525/60, ");
-  uart_puts(kMappings[config.page.mapping <= LENS_TABLE ? config.page.mapping : 0]);
+  uart_puts(kMappings[config.view.mapping <= LENS_TABLE ? config.view.mapping : 0]);
   uart_puts(config.kernel == KERNEL_LDM ? ", LDM/STM kernel" : ", plain kernel");
   uart_puts(config.serial ? ", serial flow" : ", double buffering");
   if (config.repeats > 1) {
@@ -38,7 +37,7 @@ static void print_config(void) {
 
 static void build_lut(void) {
   lens_t lens;
-  const lens_result_t result = lens_init(&lens, &config.page, config.width, config.height);
+  const lens_result_t result = lens_init(&lens, &config.view, config.width, config.height);
   if (result != LENS_OK) fail("lens", lens_result_text(result));
   phase_mark(PHASE_LUT, 0);
   const uint32_t start = timer_ticks();

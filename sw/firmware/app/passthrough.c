@@ -4,10 +4,10 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
-#include "../memory_map.h"
 #include "config.h"
 #include "pipeline.h"
 #include "state.h"
+#include "sw/lens/lens.h"
 
 static config_t config;
 

@@ -6,6 +6,7 @@
 #include "../drivers/gpio.h"
 #include "../drivers/intc.h"
 #include "../drivers/isif.h"
+#include "../drivers/priority.h"
 #include "../drivers/timer.h"
 #include "../drivers/tvp5146.h"
 #include "../drivers/uart.h"
@@ -135,7 +136,8 @@ void irq_dispatch(void) {
 }
 
 void pipeline_prepare(const config_t *config) {
-  vpss_init(boot_vpss_clk_ctrl(boot_clock_preset(config->dip)));
+  vpss_init(config->vpss_clk_ctrl);
+  priority_set(config->priority);
   i2c_init();
   uint32_t id;
   switch (tvp5146_start(config->is_625, &id)) {

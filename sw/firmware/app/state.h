@@ -32,7 +32,7 @@ typedef struct fw_state {
   uint32_t captured, remapped;  /* frames */
   uint32_t flipped;             /* number of times that the display was switched to a new frame */
   uint32_t dropped;             /* captured frames that were not remapped */
-  uint32_t patched_value;       /* result of the demonstration of switch 11; 0: not run */
+  uint32_t patched_value;       /* result of PARAM_SELF_PATCH; 0: not run */
   uint32_t dip;                 /* switches as read at the start */
   uint32_t torn;                /* frames whose first source row changed during the remap */
   uint32_t spurious;            /* interrupts without a pending source */

@@ -4,25 +4,12 @@
 
 #include <stdint.h>
 
-/** Clock presets in the order of DIP switches 12 to 14. */
-enum clock_preset {
-  CLOCK_297_243,
-  CLOCK_297_270,
-  CLOCK_270_216,
-  CLOCK_216_172,
-  CLOCK_432_340,
-  CLOCK_PRESET_COUNT
-};
+#include "model/contract/param_page.h"
 
-/** Runs in internal RAM. Masks interrupts, enables modules and UART0, reads the switches, starts
- * PLLs and DDR2. */
-void boot_init(void);
-
-/** The preset selected by the switches; unused codes mean 297/243. */
-enum clock_preset boot_clock_preset(uint32_t dip);
-
-/** Value of VPSS_CLK_CTRL: selects the PLL that provides the encoder's 27 MHz with this preset. */
-uint32_t boot_vpss_clk_ctrl(enum clock_preset preset);
+/** Runs in internal RAM. Masks interrupts, enables modules and UART0, checks the parameter page, starts PLLs and
+ * DDR2 as the page says. A page that is not right is refused with a sentence on the UART and PHASE_FAILED, before any
+ * clock was changed; DDR2 must not be touched then, and the caller stops. */
+param_page_result_t boot_init(const param_page_t *page);
 
 /** Prints the cause and stops; called by the exception entries. */
 void fatal_exception(uint32_t kind, uint32_t pc) __attribute__((noreturn));

@@ -28,8 +28,14 @@ loader_reset:
     ldr sp, =__loader_stack_top
     ldr r0, =start_state
     bl loader_main
+    cmp r0, #0
+    bne loader_stop
     ldr r4, =start_state
     ldmia r4, {r0-r2, sp, lr}
     bx lr
+loader_stop:
+    mov r0, #0
+1:  mcr p15, 0, r0, c7, c0, 4        /* interrupts are masked: every wake-up returns here */
+    b 1b
     .ltorg
     .size loader_reset, . - loader_reset

@@ -10,7 +10,8 @@ struct start_state {
 };
 extern struct start_state start_state;
 
-/** Prepares the board and sets the members of the state that are not set yet. */
-void loader_main(struct start_state *state);
+/** Prepares the board and sets the members of the state that are not set yet. @return 0; anything else stops the
+ * loader */
+uint32_t loader_main(struct start_state *state);
 
 #endif

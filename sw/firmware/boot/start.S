@@ -1,4 +1,6 @@
 /* Vectors, reset, stacks and exception entries. Located in internal RAM (see firmware.ld). */
+#include "model/contract/memory_map.h"
+
     .syntax unified
     .arm
 
@@ -48,16 +50,19 @@ reset_handler:
     mcr p15, 0, r0, c8, c7, 0
     mcr p15, 0, r0, c7, c10, 4
 
-    ldr sp, =__boot_stack_top
+    ldr sp, =BOOT_STACK_TOP
+    ldr r0, =PARAM_PAGE_BASE
     bl boot_init                     /* clocks, UART0, DDR2; uses only internal RAM */
+    cmp r0, #0
+    bne stop                         /* the page was refused */
 
     /* From here on DDR2 can be used. */
     msr cpsr_c, #(MODE_FIQ | NO_INTERRUPTS)
-    ldr sp, =__exception_stack_top
+    ldr sp, =EXCEPTION_STACK_TOP
     msr cpsr_c, #(MODE_ABT | NO_INTERRUPTS)
-    ldr sp, =__exception_stack_top
+    ldr sp, =EXCEPTION_STACK_TOP
     msr cpsr_c, #(MODE_UND | NO_INTERRUPTS)
-    ldr sp, =__exception_stack_top
+    ldr sp, =EXCEPTION_STACK_TOP
     msr cpsr_c, #(MODE_IRQ | NO_INTERRUPTS)
     ldr sp, =__irq_stack_top
     msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)

@@ -1,6 +1,6 @@
 #include "cp15.h"
 
-#include "../memory_map.h"
+#include "model/contract/memory_map.h"
 
 #define SECTION 0xC12u /* section, full access, domain 0, uncached and unbuffered */
 #define SECTION_CACHED (SECTION | 0xCu)
@@ -19,7 +19,7 @@ void mmu_enable(void) {
   map(table, 0x00000000u, 0x00100000u, SECTION);
   map(table, 0x01C00000u, 0x00200000u, SECTION);
   map(table, 0x20000000u, 0x00100000u, SECTION);
-  map(table, DDR_BASE, DDR_BYTES - UNCACHED_BYTES, SECTION_CACHED);
+  map(table, DDR_BASE, FIRMWARE_DDR_BYTES - UNCACHED_BYTES, SECTION_CACHED);
   map(table, UNCACHED_BASE, UNCACHED_BYTES, SECTION);
 
   uint32_t control;

@@ -1,8 +1,8 @@
 #include "display.h"
 
-#include "../memory_map.h"
 #include "../mmio.h"
 #include "../regs.h"
+#include "model/contract/memory_map.h"
 
 /* Left and top edge of the active picture, as in Linux's board-dm365-evm.c. TI's Linux 2.6.32 adds
  * two lines for 625/50 on this chip, to keep bitmap window 0 from shaking (davinci_platform.c). No
@@ -35,8 +35,7 @@ display_result_t display_start(const display_mode_t *m) {
   mmio_write32(OSD_BASEPX, m->is_625 ? BASEPX_625 : BASEPX_525);
   mmio_write32(OSD_BASEPY, m->is_625 ? BASEPY_625 : BASEPY_525);
   mmio_write32(OSD_VIDWIN0XP, m->left);
-  mmio_write32(OSD_VIDWIN0YP, m->top / 2u); /* vertical positions and sizes are in lines of a field
-  mmio_write32(OSD_VIDWIN0YP, m->top / 2u);  */
+  mmio_write32(OSD_VIDWIN0YP, m->top / 2u); /* vertical positions and sizes are in lines of a field */
   mmio_write32(OSD_VIDWIN0XL, m->width);
   mmio_write32(OSD_VIDWIN0YL, m->height / 2u);
 

@@ -5,17 +5,16 @@
 #include "../mmio.h"
 #include "../regs.h"
 
-void uart_init(void) {
+void uart_init(uint32_t divisor) {
   mmio_write32(UART0_PWREMU_MGMT, 0);
-  mmio_write32(UART0_DLL, 13);
-  mmio_write32(UART0_DLH, 0);
+  mmio_write32(UART0_DLL, divisor & 0xFFu);
+  mmio_write32(UART0_DLH, divisor >> 8);
   mmio_write32(UART0_FCR, 7); /* FIFOs enabled and cleared */
   mmio_write32(UART0_FCR, 1);
   mmio_write32(UART0_IER, 0);
   mmio_write32(UART0_LCR, 3); /* 8N1 */
   mmio_write32(UART0_MCR, 0);
-  mmio_write32(UART0_PWREMU_MGMT, 0x6001u); /* transmitter and receiver enabled; bit 15 is reserved
-  mmio_write32(UART0_PWREMU_MGMT, 0x6001u);  */
+  mmio_write32(UART0_PWREMU_MGMT, 0x6001u); /* transmitter and receiver enabled; bit 15 is reserved */
 }
 
 void uart_putc(char c) {

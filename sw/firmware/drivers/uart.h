@@ -1,10 +1,14 @@
-/* UART0 with polling, 115200 8N1 (24 MHz / 16 / 13 = 115385 Bd). */
+/* UART0 with polling, 8N1. */
 #ifndef FOVEA_FIRMWARE_UART_H
 #define FOVEA_FIRMWARE_UART_H
 
 #include <stdint.h>
 
-void uart_init(void);
+/** Divisor of 115200 Bd: 24 MHz / 16 / 13 = 115385 Bd. */
+#define UART_DIVISOR_115200 13u
+
+/** @param divisor of 24 MHz / 16 */
+void uart_init(uint32_t divisor);
 void uart_putc(char c);
 /** Sends a string; "\n" is sent as CR LF. */
 void uart_puts(const char *text);

@@ -1,5 +1,6 @@
 /* Start of foreign_sequences.c, which lies in internal RAM as a whole: vectors, stacks, and a data abort
    that is counted and skipped. */
+#include "model/contract/memory_map.h"
     .syntax unified
     .arm
     .text                            /* linked first: lies at 0 */
@@ -21,6 +22,7 @@ reset:
     ldr sp, =0x7800
     msr cpsr_c, #0xD3
     ldr sp, =0x8000
+    ldr r0, =PARAM_PAGE_BASE
     bl boot_init                     /* clocks, UART0, SDRAM */
     bl main
 1:  b 1b

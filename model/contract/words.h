@@ -1,0 +1,42 @@
+// The words of experiments for the enumerations of the parameter page: each word with its code in the page.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/contract/param_page.h"
+
+namespace fovea::contract {
+
+struct Word {
+  std::string_view word;
+  std::uint32_t code;
+};
+
+#define FOVEA_WORD(constant, code, word) Word{word, code},
+inline constexpr std::array kMappings = {PARAM_MAPPINGS(FOVEA_WORD)};
+inline constexpr std::array kPairMethods = {PARAM_PAIR_METHODS(FOVEA_WORD)};
+inline constexpr std::array kKernels = {PARAM_KERNELS(FOVEA_WORD)};
+inline constexpr std::array kFlows = {PARAM_FLOWS(FOVEA_WORD)};
+inline constexpr std::array kMasterWords = {PARAM_MASTERS(FOVEA_WORD)};
+#undef FOVEA_WORD
+
+/// The words alone, for a parameter that takes them.
+template <std::size_t N>
+std::vector<std::string> words(const std::array<Word, N>& table) {
+  std::vector<std::string> out;
+  for (const Word& w : table) out.emplace_back(w.word);
+  return out;
+}
+
+/// The code of a word; the order of the words means nothing.
+template <std::size_t N>
+constexpr std::uint32_t code_of(const std::array<Word, N>& table, std::string_view word) {
+  for (const Word& w : table)
+    if (w.word == word) return w.code;
+  return ~0u;
+}
+
+}  // namespace fovea::contract

@@ -1,0 +1,179 @@
+// The parameter page and the switches on the board: what reaches the chip's registers, and what the firmware refuses.
+// Each case is a process of its own, as a simulation elaborates once.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <functional>
+#include <systemc>
+
+#include "sw/fovea/clock_setting.h"
+#include "sw/fovea/parameter_page.h"
+#include "sw/lens/lens.h"
+#include "tb/e2e/rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+/// Text that `what` returns in a child process.
+std::string in_child(const std::function<std::string()>& what) {
+  int ends[2];
+  EXPECT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const std::string text = what();
+    const bool ok = ::write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    ::_exit(ok ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string text;
+  char chunk[4096];
+  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;) text.append(chunk, static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  return text;
+}
+
+Rig& small(Rig& rig) {
+  return rig.set("video.width", "64").set("video.height", "16").set("camera.stamp", "false");
+}
+
+/// What the firmware says of a page that `damage` has changed; with its state if it is not asleep in phase 7.
+std::string said(const std::function<void(param_page_t&)>& damage, bool sealed = true,
+                 const std::function<void(board::Board&)>& also = nullptr) {
+  return in_child([&] {
+    Rig rig;
+    small(rig);
+    board::Board& board = rig.build();
+    const auto bytes = board.peek(PARAM_PAGE_BASE, sizeof(param_page_t));
+    param_page_t page;
+    std::memcpy(&page, bytes.data(), sizeof page);
+    damage(page);
+    if (sealed) param_page_seal(&page);
+    board::LoadImage image{PARAM_PAGE_BASE, std::vector<std::uint8_t>(sizeof page)};
+    std::memcpy(image.bytes.data(), &page, sizeof page);
+    board.load(image);
+    if (also) also(board);
+    rig.advance(60 * kPsPerMs);
+    std::string text = board.uart_text();
+    if (board.log.phase() != board::Phase::kFailed) text += "(phase)";
+    if (!board.dm365.arm.asleep()) text += "(awake)";
+    return text;
+  });
+}
+const auto nothing = [](param_page_t&) {};
+
+TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
+  const std::string prefix = "failed: parameter page: ";
+  EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false), prefix + "there is none (unknown magic)\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.version = 3; }, false),
+            prefix + "unknown version; this firmware reads version 2\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.bytes -= 4; }, false),
+            prefix + "too small for its version and its cameras\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false), prefix + "its checksum is wrong\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.clocks.pll1.multiplier = 0; }),
+            prefix + "a PLL's multiplier must be 1 to 1023, its dividers 1 to 32\r\n");
+}
+
+TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
+  EXPECT_NE(said([](param_page_t& p) { p.kernel = 2; })
+                .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 plain, 1 LDM/STM\r\n"),
+            std::string::npos);
+  EXPECT_NE(said([](param_page_t& p) { p.table_builder = 1; }).find("unknown table builder"), std::string::npos);
+  EXPECT_NE(said([](param_page_t& p) { p.camera_count = 2; }).find("several cameras; this firmware serves one\r\n"),
+            std::string::npos);
+  const std::string other_output = said(nothing, true, [](board::Board& b) { b.dm365.gpio.set_pin(1, true); });
+  EXPECT_NE(other_output.find("failed: configuration: switches 0 and 1: camera and display must have the same standard"),
+            std::string::npos)
+      << other_output;
+  EXPECT_EQ(other_output.find("(awake)"), std::string::npos);
+  EXPECT_NE(said(nothing).find("(phase)"), std::string::npos) << "a good page is not refused";
+}
+
+// The chip's registers after the boot are those of the keys.
+TEST(PageTest, ClocksAndPrioritiesReachTheRegisters) {
+  Rig rig;
+  small(rig).set("clocks.arm", "135MHz").set("clocks.ddr", "162MHz");
+  rig.set("priority.arm", "3").set("priority.vpfe", "2").set("priority.vpbe", "4").set("priority.remap_engine", "6");
+  rig.set("priority.edma_tc0", "1").set("priority.edma_tc3", "5").set("edma.reset_priority", "7");
+  board::Board& board = rig.build();
+  rig.advance(40 * kPsPerMs);
+  soc::Dm365& soc = board.dm365;
+  EXPECT_EQ(soc.system.regs.mstpri0.get(), 0x00560013u);
+  EXPECT_EQ(soc.vpss.regs.bcr.get(), 0x2u | 4u << 2 | 2u << 5);
+  EXPECT_EQ(soc.edma.regs.quepri.get(), 0x5771u);
+  EXPECT_EQ(soc.arm.clk.read(), Frequency(135'000'000));
+  EXPECT_EQ(soc.ddr.ddr_clk.read(), Frequency(162'000'000));
+  EXPECT_EQ(soc.scr.clk.read(), Frequency(81'000'000));
+  EXPECT_NE(board.uart_text().find("boot: clocks 135000/162000 kHz\r\n"), std::string::npos) << board.uart_text();
+  const app::DdrRegisters words = app::ddr_registers(Frequency(162'000'000));
+  EXPECT_EQ(soc.ddr.regs.read(0x10, 4), words.sdtimr);
+  EXPECT_EQ(words.sdrcr, 1263u) << "7.8 us at 162 MHz";
+}
+
+// The switches' shift is that of the key, moved by 32 pixels; so is the table that the board has built.
+TEST(PageTest, TheShiftOfTheSwitchesMovesTheView) {
+  Rig rig;
+  small(rig).set("switches.shift_x", "left").set("switches.shift_y", "down").set("lens.shift_x", "3px");
+  rig.set("lens.fov", "40deg").set("run.frames", "1");
+  rig.build();
+  for (int i = 0; i < 400 && rig.state().magic == 0; ++i) rig.advance(kPsPerMs);
+  lens_view_t view;
+  lens_view_default(&view);
+  view.fov_deg = 40;
+  view.shift_x = 3 - 32;
+  view.shift_y = 32;
+  lens_t lens;
+  ASSERT_EQ(lens_init(&lens, &view, 64, 16), LENS_OK);
+  std::vector<std::uint32_t> expected(lens_lut_entries(64, 16));
+  lens_build_lut(&lens, expected.data(), 128);
+  EXPECT_EQ(rig.lut(), expected);
+}
+
+// A key's priority in time: the core's reads against a synthetic load of priority 3.
+TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
+  const auto mean = [](const char* key, const char* level, Master m) {
+    return std::stod(in_child([&] {
+      Rig rig;
+      rig.set("video.width", "320").set("video.height", "64").set("camera.stamp", "false").set("run.frames", "1000");
+      rig.set("load.outstanding", "12").set("load.kind", "mixed").set("load.pattern", "random");
+      rig.set("load.priority", "3").set("load.start", "300ms").set("load.base", "32MiB").set("load.gap", "3us");
+      rig.set(key, level);
+      board::Board& board = rig.build();
+      rig.advance(500 * kPsPerMs);
+      soc::Dm365& soc = board.dm365;
+      const auto sums = [&] {
+        soc.scr.settle();
+        double ps = 0;
+        for (const WaitTable* t : {&soc.scr.crossbar().waits, &soc.ddr.controller().waits()})
+          for (std::size_t c = 0; c < kCulprits; ++c)
+            ps += static_cast<double>((*t)[index(m)].read.ps[c] + (*t)[index(m)].write.ps[c]);
+        return std::pair(ps, static_cast<double>(soc.scr.crossbar().stats[stat_index(m)]->transactions.count()));
+      };
+      const auto before = sums();
+      rig.advance(80 * kPsPerMs);
+      const auto after = sums();
+      return std::to_string((after.first - before.first) / (after.second - before.second) * 1e-3);
+    }));
+  };
+  const struct {
+    const char* key;
+    Master master;
+  } rows[] = {{"priority.arm", Master::kArmD}, {"priority.vpbe", Master::kVpbe}, {"priority.vpfe", Master::kVpfe}};
+  for (const auto& row : rows) {
+    const double urgent = mean(row.key, "0", row.master), patient = mean(row.key, "7", row.master);
+    std::printf("  %-14s %.0f ns at 0, %.0f ns at 7\n", row.key, urgent, patient);
+    EXPECT_LT(urgent * 1.2, patient) << row.key;
+  }
+}
+
+}  // namespace
+}  // namespace fovea::e2e
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
