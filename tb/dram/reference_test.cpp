@@ -11,6 +11,7 @@
 
 #include "tb/dram/bench.h"
 #include "tb/dram/reference_controller.h"
+#include "tb/rounds.h"
 
 namespace fovea::dram {
 namespace {
@@ -380,7 +381,7 @@ class SameAsReferenceTest : public testing::TestWithParam<unsigned> {};
 
 // 8 x 25 x 1,100 = 220,000 requests.
 TEST_P(SameAsReferenceTest, EveryCommandOutcomeAndStatistic) {
-  for (unsigned i = 0; i < 25; ++i) {
+  for (unsigned i = 0; i < rounds(25); ++i) {
     const std::uint64_t seed = GetParam() * 25 + i + 1;
     const auto a = play<Production>(seed, 1100), b = play<Oracle>(seed, 1100);
     ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
@@ -390,7 +391,7 @@ TEST_P(SameAsReferenceTest, EveryCommandOutcomeAndStatistic) {
 
 // Between the last request served and the arrival of one that is announced the controller is idle.
 TEST_P(SameAsReferenceTest, RequestsThatAreAnnounced) {
-  for (unsigned i = 0; i < 10; ++i) {
+  for (unsigned i = 0; i < rounds(10); ++i) {
     const std::uint64_t seed = 5000 + GetParam() * 10 + i;
     const auto a = play<Production>(seed, 1100, {}, true), b = play<Oracle>(seed, 1100, {}, true);
     ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
@@ -403,11 +404,11 @@ INSTANTIATE_TEST_SUITE_P(Seeds, SameAsReferenceTest, testing::Range(0u, 8u));
 TEST(SameAsReferencesTest, FrfcfsIsTheSame) {
   const auto sorted = [](auto& s) { s.limits.order = ReferenceLimits::Order::kFrFcfs; };
   held_seen = 0;
-  for (std::uint64_t seed = 1001; seed <= 1080; ++seed) {
+  for (std::uint64_t seed = 1001; seed <= 1000 + rounds(80); ++seed) {
     const auto a = play<Production>(seed, 1100, sorted), b = play<Oracle>(seed, 1100, sorted);
     ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
   }
-  EXPECT_GT(held_seen, 10'000u) << "decisions while a read was held";
+  EXPECT_GT(held_seen, 125 * rounds(80)) << "decisions while a read was held";
 }
 
 // Seeds that found a defect. 1322, 2055: a choice outlived the moment at which the read FIFO had room

@@ -150,7 +150,9 @@ TEST(LensModelTest, TableIsTheCurve) {
   EXPECT_THROW(kFront.table(129, 3.0), UserError);
   EXPECT_THROW(kFront.table(129, 0), UserError);
   EXPECT_NO_THROW(kFront.table(2, 1e-9));
-  EXPECT_NO_THROW(kFront.table(2, kFront.theta_max()));
+  // A rounding error of 1e-12 is allowed.
+  EXPECT_NO_THROW(kFront.table(2, kFront.theta_max() + 1e-12));
+  EXPECT_THROW(kFront.table(2, kFront.theta_max() + 2e-12), UserError);
 }
 
 TEST(SphereSourceTest, WithoutMotionShowsTheStillItself) {
@@ -249,6 +251,23 @@ TEST(VideoSourceTest, StretchesFramesOfAnotherSize) {
   EXPECT_NEAR(p.row(3)[2 * 7 + 1], want.y, 2);
 }
 
+// Every pixel, where width, height or both differ from the raster's.
+TEST(VideoSourceTest, StretchesEachDirectionByItself) {
+  for (const auto& [w, h] : {std::pair{32u, 16u}, {16u, 16u}, {32u, 8u}, {8u, 4u}}) {
+    VideoSource source({gradient(w, h)}, {16, 8, false});
+    const Picture& p = source.field(0);
+    // A pixel of the raster's border lies outside the smaller frame; black is drawn there, or the border.
+    const unsigned edge = w < 16 ? 1 : 0;
+    for (unsigned y = edge; y < 8 - edge; ++y)
+      for (unsigned x = edge; x < 16 - edge; ++x) {
+        const double u = (x + 0.5) * w / 16 - 0.5, v = (y + 0.5) * h / 8 - 0.5;
+        const YCbCr want = to_ycbcr(static_cast<std::uint8_t>(std::lround(255 * u / (w - 1))),
+                                    static_cast<std::uint8_t>(std::lround(255 * v / (h - 1))), 128);
+        EXPECT_NEAR(p.row(y)[2 * x + 1], want.y, 2) << w << 'x' << h << " at " << x << ", " << y;
+      }
+  }
+}
+
 TEST(VideoSourceTest, BendsAFlatSceneIntoTheFishEye) {
   // A vertical bright stripe 45 degrees to the right of the axis.
   RgbImage flat{801, 401, std::vector<std::uint8_t>(801 * 401 * 3, 30)};
@@ -275,7 +294,10 @@ TEST(VideoSourceTest, BendsAFlatSceneIntoTheFishEye) {
 
 TEST(VideoSourceTest, RefusesNoFramesAndMixedSizes) {
   EXPECT_THROW(VideoSource({}, {16, 8, false}), UserError);
-  EXPECT_THROW(VideoSource({gradient(16, 8), gradient(16, 4)}, {16, 8, false}), UserError);
+  for (const auto& odd : {gradient(16, 4), gradient(8, 8)}) {
+    EXPECT_THROW(VideoSource({gradient(16, 8), odd}, {16, 8, false}), UserError);
+    EXPECT_THROW(VideoSource({gradient(16, 8), gradient(16, 8), odd}, {16, 8, false}), UserError);
+  }
 }
 
 TEST(ChartSourceTest, TellsPlaceAndField) {

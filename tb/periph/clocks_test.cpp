@@ -268,6 +268,7 @@ TEST_F(PllTest, DisabledDividerStopsItsClock) {
   run_until(now() + kPsPerMs);
   EXPECT_TRUE(s.vpss.read().stopped());
   EXPECT_EQ(s.b1.read(0x150), 0x1EFu);
+  EXPECT_EQ(s.b2.read(0x150), 0x1Fu);  // SYSTAT of the PLL with five dividers
 }
 
 TEST_F(PllTest, LockComesLockTimeAfterTheLastChangeAndTheOldFrequencyStaysUntilThen) {
@@ -398,6 +399,19 @@ TEST(PscTest, AReservedNextStateChangesNothing) {
     EXPECT_FALSE(s.timer3_on.read());
   }
   s.bp.write(mdctl, 0);
+}
+
+// 52 modules, 0 to 51; behind their registers there is nothing.
+TEST(PscTest, TheRegistersEndWithTheLastModule) {
+  System& s = sys();
+  auto& notes = Diagnostics::instance();
+  for (const std::uint32_t first : {0x800u, 0xA00u}) {
+    notes.clear();
+    s.bp.read(first + 4 * 51);
+    EXPECT_TRUE(notes.counts().empty());
+    EXPECT_EQ(s.bp.read(first + 4 * 52), 0u);
+    EXPECT_EQ(notes.counts().size(), 1u) << std::hex << first;
+  }
 }
 
 TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndGivesAWarningBefore) {

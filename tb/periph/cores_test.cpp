@@ -209,6 +209,21 @@ TEST(TimerCounterTest, PeriodZeroNeverMatches) {
   EXPECT_EQ(c.value(77), 77u);
 }
 
+// A match 2^62 clocks ahead is the last one that is told, with and without a prescaler.
+TEST(TimerCounterTest, TheFurthestMatchThatIsTold) {
+  constexpr std::uint64_t kFar = std::uint64_t{1} << 62;
+  for (const std::uint64_t prescale : {1u, 4u}) {
+    TimerCounter c(64);
+    c.set_period(kFar / prescale, 0);
+    c.start(7, false, prescale);
+    EXPECT_EQ(c.next_match(7), 7 + kFar) << prescale;
+    c.stop(7);
+    c.set_period(kFar / prescale + 1, 7);
+    c.start(7, false, prescale);
+    EXPECT_EQ(c.next_match(7), kNever) << prescale;
+  }
+}
+
 TEST(TimerCounterTest, SixtyFourBitFreeRunningCounterHasNoMatchInSight) {
   TimerCounter c(64);
   c.set_period(~0ull, 0);

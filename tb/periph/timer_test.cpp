@@ -424,6 +424,30 @@ TEST(AintcPinTest, TimerPulseReachesThePinInTheSameInstantAndStaysUntilAcknowled
   EXPECT_EQ(s.aintc_bus.read(0x14), 0u);
 }
 
+TEST(AintcPinTest, EachSourceIsTheBitOfItsNumber) {
+  System& s = TimerTest::system();
+  const std::uint32_t enabled0 = s.aintc_bus.read(0x18), enabled1 = s.aintc_bus.read(0x1C);
+  s.aintc_bus.write(0x18, ~0u);
+  s.aintc_bus.write(0x1C, ~0u);
+  for (unsigned n = 0; n < kInterruptCount; ++n) {
+    if (n == 32 || n == 33) continue;  // the timer's
+    s.aintc_bus.write(0x08, ~0u);
+    s.aintc_bus.write(0x0C, ~0u);
+    ASSERT_FALSE(s.irq.read()) << n;
+    s.sources[n].write(true);
+    EXPECT_EQ(s.aintc_bus.read(0x14), 4 * (n + 1));
+    EXPECT_TRUE(s.irq.read()) << n;
+    EXPECT_EQ(s.aintc_bus.read(0x08), n < 32 ? ~(1u << n) : ~0u);
+    EXPECT_EQ(s.aintc_bus.read(0x0C), n < 32 ? ~0u : ~(1u << (n - 32)));
+    s.sources[n].write(false);
+    test::settle();
+  }
+  s.aintc_bus.write(0x08, ~0u);
+  s.aintc_bus.write(0x0C, ~0u);
+  s.aintc_bus.write(0x18, enabled0);
+  s.aintc_bus.write(0x1C, enabled1);
+}
+
 TEST_F(TimerTest, WrongKeyExpiresAnActiveWatchdogAtOnce) {
   s.wdt_bus.write(kWdtcr, 0x1234'4000);  // before activation a wrong key is only ignored
   EXPECT_FALSE(s.bitten.read());

@@ -109,6 +109,23 @@ TEST_F(UartTest, AByteTooManyTakesTheLastPlaceOfTheTransmitFifo) {
   EXPECT_EQ(s.sent[16].first, 17u);
 }
 
+TEST_F(UartTest, FcrEmptiesEachFifoAlone) {
+  for (const bool transmit : {false, true}) {
+    s.sent.clear();
+    bus.write(kIirFcr, 1);
+    for (std::uint32_t n = 0; n < 3; ++n) bus.write(kData, 'a' + n);  // one in the shift register
+    s.uart.receive('x');
+    s.uart.receive('y');
+    bus.write(kIirFcr, transmit ? 5 : 3);
+    EXPECT_EQ(bus.read(kLsr) & 1, transmit ? 1u : 0u);
+    run_until(now() + edge(5 * 2080));
+    EXPECT_EQ(s.sent.size(), transmit ? 1u : 3u);
+    EXPECT_EQ(bus.read(kData), transmit ? 'x' : 0u);
+    EXPECT_EQ(bus.read(kLsr) & 1, transmit ? 1u : 0u);
+    bus.write(kIirFcr, 7);
+  }
+}
+
 TEST_F(UartTest, BytesLeftAfterAReadTimeOutAgain) {
   bus.write(kIirFcr, 0x81);  // FIFOs, interrupt from 8 bytes on
   bus.write(kIer, 1);

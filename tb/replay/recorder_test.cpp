@@ -438,6 +438,24 @@ TEST(RecorderTest, ALoadRepeatsAfterTheLatestCompletion) {
   expect(r[5], {Release::kAfter, false, 3, 0, 0}, "its own is the later one");
 }
 
+// The gap behind a partner's completion has 32 bits.
+TEST(RecorderTest, APartnersCompletionIsRememberedFor32Bits) {
+  for (const Picoseconds late : {0xFFFF'FFFFull, 0x1'0000'0000ull}) {
+    Feed f(copy_of(Pace::kRepeating));
+    f.end(f.put(edma_write(0), true, 10'000, 64), 20'000, 30'000);
+    f.end(f.put(edma_read(0), false, 30'000 + late, 64), 30'000 + late, 40'000 + late);
+    const auto r = f.records(1, 10'000'000'000);
+    ASSERT_EQ(r.size(), 1u);
+    if (late >> 32) {
+      EXPECT_EQ(r[0].release, Release::kAt);
+      EXPECT_EQ(r[0].at, 30'000 + late);
+    } else {
+      EXPECT_EQ(r[0].release, Release::kWhen);
+      EXPECT_EQ(r[0].wake_gap, late);
+    }
+  }
+}
+
 TEST(RecorderTest, EachReadReleasesOneWriteOfACopy) {
   Feed f(copy_of(Pace::kData));
   MemRequest& a = f.put(edma_read(0), false, 10'000, 64);

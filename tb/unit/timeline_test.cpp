@@ -31,6 +31,18 @@ TEST(TimelineTest, ARowCountsTheBytesFromItsStartToBeforeItsEnd) {
   EXPECT_EQ(rows.size(), 3u);
 }
 
+TEST(TimelineTest, ARowIsTakenAtItsEndUnlessItIsTheLast) {
+  for (const Picoseconds until : {99u, 100u, 200u}) {
+    Timeline t(100);
+    t.add(0, false, 1, 0);
+    t.add(0, false, 2, 100);
+    Listed rows;
+    t.take_until(until, into(rows));
+    EXPECT_EQ(rows, until < 100 ? Listed{} : (Listed{{0, 100, 1}})) << until;
+    EXPECT_EQ(t.rows().size(), until < 100 ? 2u : 1u) << until;
+  }
+}
+
 TEST(TimelineTest, TakenRowsAndTheRestAreTheWholeList) {
   std::mt19937 random(3);
   for (int round = 0; round < 200; ++round) {
