@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::uint64_t bit(unsigned n) { return std::uint64_t{1} << n; }
 constexpr std::uint32_t kQdmaMask = (1u << kQdmaChannels) - 1;
-/// Most completion codes that the controller keeps track of.
+/// Most completion codes that may be outstanding. At this number the controller serves no queue (SPRUH73H,
+/// CCSTAT.COMPACTV).
 constexpr unsigned kMostCodes = 63;
 
 /// Calls f with the 64 bits that a write to one half means.
@@ -275,6 +276,7 @@ Picoseconds ChannelController::next_turn() const {
 }
 
 bool ChannelController::process(Picoseconds now) {
+  if (outstanding_codes_ == kMostCodes) return false;
   for (unsigned q = 0; q < kQueues; ++q) {
     if (queues_[q].count == 0 || queues_[q].entry[queues_[q].head].ready > now) continue;
     const unsigned controller = regs_.quetcmap.queue[q]->get();
@@ -318,8 +320,7 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
       r.interrupt = r.chain = false;
     }
     if (r.interrupt || r.chain) {
-      if (outstanding_codes_ == kMostCodes) set_error(0, true);
-      ++outstanding_codes_;
+      if (++outstanding_codes_ == kMostCodes) set_error(0, true);
     }
     host_.submit(controller, r);
   }
@@ -343,6 +344,10 @@ void ChannelController::report(const ParamSet& set, bool final) {
     change_interrupts(
         [&] { regs_.global.ipr.set(regs_.global.ipr.get() | bit(set.tcc())); });
   if (chain) set_chained(set.tcc());
+}
+
+void ChannelController::dropped(const TransferRequest& r) {
+  if (r.interrupt || r.chain) --outstanding_codes_;
 }
 
 void ChannelController::completed(const TransferRequest& r) {

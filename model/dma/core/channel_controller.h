@@ -47,6 +47,8 @@ class ChannelController {
   Picoseconds next_turn() const;
   /// A transfer controller has ended a request that reports: its code arrives here.
   void completed(const TransferRequest& request);
+  /// A transfer controller has dropped a request (TRERR): no code arrives for it.
+  void dropped(const TransferRequest& request);
   /// Back to the state after a hardware reset. The registers are reset by their owner.
   void reset();
 

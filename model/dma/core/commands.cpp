@@ -26,13 +26,13 @@ Commands::Commands(const TransferRequest& request, const TransferRequest::Side& 
 /// Bytes that the next command may have by its address. An array that fits into one command is one,
 /// wherever it begins.
 unsigned Commands::room() const {
-  if (fifo_bytes_) return fifo_bytes_;
+  if (fifo_bytes_) return std::min(fifo_bytes_ - offset_ % fifo_bytes_, burst_);
   if (length_ <= burst_) return burst_;
   return burst_ - (start_ + offset_) % burst_;
 }
 
 Command Commands::next() const {
-  const std::uint32_t address = fifo_bytes_ ? start_ : start_ + offset_;
+  const std::uint32_t address = start_ + (fifo_bytes_ ? offset_ % fifo_bytes_ : offset_);
   const unsigned inside = kMaxBurstBytes - address % kMaxBurstBytes;
   return {address, std::min({room(), inside, length_ - offset_})};
 }

@@ -40,8 +40,14 @@ Picoseconds TransferController::Supply::take(unsigned amount) {
 }
 
 TransferController::TransferController(Host& host, Sizes sizes) : host_(host), sizes_(sizes) {
-  FOVEA_CHECK(sizes.fifo >= sizes.burst && sizes.depth > 0, "a burst does not fit into the FIFO");
+  FOVEA_CHECK(sizes.depth > 0, "no destination register");
+  set_burst(sizes.burst);
   reset();
+}
+
+void TransferController::set_burst(unsigned bytes) {
+  FOVEA_CHECK(sizes_.fifo >= 2 * bytes, "two bursts do not fit into the FIFO");
+  sizes_.burst = bytes;
 }
 
 void TransferController::reset() {

@@ -49,7 +49,7 @@ class TransferController {
 
   struct Sizes {
     unsigned burst = 32;       ///< default burst size: 16, 32 or 64 bytes
-    unsigned fifo = 128;       ///< data FIFO, bytes; at least `burst`
+    unsigned fifo = 128;       ///< data FIFO, bytes; at least two bursts (see set_burst())
     unsigned depth = 4;        ///< destination registers
   };
 
@@ -57,8 +57,10 @@ class TransferController {
   TransferController(const TransferController&) = delete;
   TransferController& operator=(const TransferController&) = delete;
 
-  /// The default burst size of requests that are loaded from now on.
-  void set_burst(unsigned bytes) { sizes_.burst = bytes; }
+  /// The default burst size of requests that are loaded from now on. The FIFO must hold two bursts: with
+  /// less, it could contain a part of the next write and lack the room for the next read, if source and
+  /// destination are aligned differently.
+  void set_burst(unsigned bytes);
   /// Clocks between two reads (RDRATE); 1: as fast as possible.
   void set_read_interval(unsigned clocks) { read_interval_ = clocks; }
   bool program_busy() const { return program_.has_value(); }
