@@ -13,20 +13,64 @@ namespace fovea::dma {
 /// Offsets of registers, as SPRUEE4A and SPRUH82C print them. Those from `kEr` on are relative to
 /// the base of the global region (0x1000) or of a shadow region (0x2000 + 0x200 n).
 enum Offset : std::uint32_t {
-  kCccfg = 0x004, kQchmap0 = 0x200, kDmaqnum0 = 0x240, kQdmaqnum = 0x260, kQuetcmap = 0x280,
-  kQuepri = 0x284, kEmr = 0x300, kEmrh = 0x304, kEmcr = 0x308, kEmcrh = 0x30C, kQemr = 0x310,
-  kQemcr = 0x314, kCcerr = 0x318, kCcerrclr = 0x31C, kEeval = 0x320, kDrae0 = 0x340, kQrae0 = 0x380,
-  kQ0e0 = 0x400, kQstat0 = 0x600, kQwmthra = 0x620, kCcstat = 0x640, kGlobal = 0x1000,
-  kShadow0 = 0x2000, kPaRam = 0x4000,
-  kEr = 0x00, kEcr = 0x08, kEsr = 0x10, kCer = 0x18, kEer = 0x20, kEecr = 0x28, kEesr = 0x30,
-  kSer = 0x38, kSecr = 0x40, kIer = 0x50, kIecr = 0x58, kIesr = 0x60, kIpr = 0x68, kIcr = 0x70,
-  kIeval = 0x78, kQer = 0x80, kQeer = 0x84, kQeecr = 0x88, kQeesr = 0x8C, kQser = 0x90, kQsecr = 0x94,
+  kCccfg = 0x004,
+  kQchmap0 = 0x200,
+  kDmaqnum0 = 0x240,
+  kQdmaqnum = 0x260,
+  kQuetcmap = 0x280,
+  kQuepri = 0x284,
+  kEmr = 0x300,
+  kEmrh = 0x304,
+  kEmcr = 0x308,
+  kEmcrh = 0x30C,
+  kQemr = 0x310,
+  kQemcr = 0x314,
+  kCcerr = 0x318,
+  kCcerrclr = 0x31C,
+  kEeval = 0x320,
+  kDrae0 = 0x340,
+  kQrae0 = 0x380,
+  kQ0e0 = 0x400,
+  kQstat0 = 0x600,
+  kQwmthra = 0x620,
+  kCcstat = 0x640,
+  kGlobal = 0x1000,
+  kShadow0 = 0x2000,
+  kPaRam = 0x4000,
+  kEr = 0x00,
+  kEcr = 0x08,
+  kEsr = 0x10,
+  kCer = 0x18,
+  kEer = 0x20,
+  kEecr = 0x28,
+  kEesr = 0x30,
+  kSer = 0x38,
+  kSecr = 0x40,
+  kIer = 0x50,
+  kIecr = 0x58,
+  kIesr = 0x60,
+  kIpr = 0x68,
+  kIcr = 0x70,
+  kIeval = 0x78,
+  kQer = 0x80,
+  kQeer = 0x84,
+  kQeecr = 0x88,
+  kQeesr = 0x8C,
+  kQser = 0x90,
+  kQsecr = 0x94,
 };
 
 /// Bits of OPT.
 enum Opt : std::uint32_t {
-  kSam = 1u << 0, kDam = 1u << 1, kAbSync = 1u << 2, kStatic = 1u << 3, kTccmode = 1u << 11,
-  kTcinten = 1u << 20, kItcinten = 1u << 21, kTcchen = 1u << 22, kItcchen = 1u << 23,
+  kSam = 1u << 0,
+  kDam = 1u << 1,
+  kAbSync = 1u << 2,
+  kStatic = 1u << 3,
+  kTccmode = 1u << 11,
+  kTcinten = 1u << 20,
+  kItcinten = 1u << 21,
+  kTcchen = 1u << 22,
+  kItcchen = 1u << 23,
 };
 constexpr std::uint32_t tcc(unsigned n) { return n << 12; }
 constexpr std::uint32_t fwid(unsigned n) { return n << 8; }
@@ -42,8 +86,14 @@ struct Set {
     const auto pair = [](int low, int high) {
       return (static_cast<std::uint32_t>(low) & 0xFFFF) | static_cast<std::uint32_t>(high) << 16;
     };
-    return {opt, source, acnt | bcnt << 16, destination, pair(source_b, destination_b),
-            link | reload << 16, pair(source_c, destination_c), ccnt};
+    return {opt,
+            source,
+            acnt | bcnt << 16,
+            destination,
+            pair(source_b, destination_b),
+            link | reload << 16,
+            pair(source_c, destination_c),
+            ccnt};
   }
 };
 

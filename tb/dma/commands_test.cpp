@@ -1,11 +1,11 @@
-// How a transfer is divided into commands: SPRUH82C, section 17.2.11.1.2 with its examples, and SPRUH73H,
-// table 11-21.
+// How a transfer is divided into commands: SPRUH82C, section 17.2.11.1.2 with its examples, and
+// SPRUH73H, table 11-21.
+#include "model/dma/core/commands.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
-
-#include "model/dma/core/commands.h"
 
 namespace fovea::dma {
 
@@ -43,9 +43,16 @@ TEST(Commands, FirstExampleOfTheGuide) {
   EXPECT_EQ(commands(8, 8, 64, 8, 32), (List{{64, 32}, {96, 32}}));
   // Not joined: eight commands of 8 bytes. Those at 191 and 251 cross a multiple of 64, where the
   // crossbar's bursts end.
-  EXPECT_EQ(commands(8, 8, 191, 10, 32),
-            (List{{191, 1}, {192, 7}, {201, 8}, {211, 8}, {221, 8}, {231, 8}, {241, 8}, {251, 5},
-                  {256, 3}, {261, 8}}));
+  EXPECT_EQ(commands(8, 8, 191, 10, 32), (List{{191, 1},
+                                               {192, 7},
+                                               {201, 8},
+                                               {211, 8},
+                                               {221, 8},
+                                               {231, 8},
+                                               {241, 8},
+                                               {251, 5},
+                                               {256, 3},
+                                               {261, 8}}));
   EXPECT_EQ(sizes(commands(8, 4, 192, 10, 32)), Sizes(4, 8));
 }
 
@@ -79,8 +86,8 @@ TEST(Commands, JoinedAreContiguousPowersOfTwoUpToTheBurstSize) {
   EXPECT_EQ(sizes(commands(32, 2, 0, 32, 32)), Sizes(2, 32));
   EXPECT_EQ(sizes(commands(1, 64, 0, 1, 32)), Sizes(2, 32));
   EXPECT_EQ(commands(4, 16, 30, 4, 32), (List{{30, 2}, {32, 32}, {64, 30}}));
-  EXPECT_EQ(sizes(commands(3, 4, 0, 3, 32)), Sizes(4, 3));     // not a power of two
-  EXPECT_EQ(sizes(commands(4, 4, 0, 5, 32)), Sizes(4, 4));     // not contiguous
+  EXPECT_EQ(sizes(commands(3, 4, 0, 3, 32)), Sizes(4, 3));  // not a power of two
+  EXPECT_EQ(sizes(commands(4, 4, 0, 5, 32)), Sizes(4, 4));  // not contiguous
   EXPECT_EQ(sizes(commands(4, 4, 0, -4, 32)), Sizes(4, 4));
   EXPECT_EQ(sizes(commands(4, 4, 0, 0, 32)), Sizes(4, 4));
 }

@@ -120,8 +120,8 @@ TEST_F(Codes, ADroppedRequestIsNotOutstanding) {
 struct Pulses : ChannelBench {
   void SetUp() override {
     write(kDrae0, 0x0F);
-    write(kDrae0 + 8, 0xF8);       // region 1 shares code 3 with region 0
-    write(kDrae0 + 4, 1);          // code 32: region 0
+    write(kDrae0 + 8, 0xF8);  // region 1 shares code 3 with region 0
+    write(kDrae0 + 4, 1);     // code 32: region 0
     put(kIesr, 0xFF);
   }
   void complete(unsigned code, bool interrupt = true) {
@@ -143,7 +143,7 @@ TEST_F(Pulses, ARegionIsPulsedForItsOwnEnabledCodes) {
   put(kIcr, 0x11);
   complete(3);
   EXPECT_EQ(pulses(), (Four{1, 1, 0, 0}));
-  complete(9);  // no region
+  complete(9);   // no region
   complete(32);  // not enabled
   EXPECT_EQ(pulses(), Four{});
 }

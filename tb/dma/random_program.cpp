@@ -5,7 +5,8 @@
 namespace fovea::dma {
 
 std::string Action::text() const {
-  static constexpr const char* kNames[] = {"write", "fill set", "event", "queue", "serve", "transfer by TC"};
+  static constexpr const char* kNames[] = {"write", "fill set", "event",
+                                           "queue", "serve",    "transfer by TC"};
   char line[64];
   if (kind == kWrite)
     std::snprintf(line, sizeof line, "write 0x%04x = 0x%08x", where, value);
@@ -91,7 +92,10 @@ class Generator {
     w[1] = place(through ? 9 : 8, aligned);
     w[3] = place(through || !program_.staged ? 0xA : 9, aligned);
     const unsigned step = aligned ? 32 : 1;
-    const auto index = [&] { return static_cast<unsigned>(dice_.between(-200, 200) / static_cast<int>(step) * static_cast<int>(step)); };
+    const auto index = [&] {
+      return static_cast<unsigned>(dice_.between(-200, 200) / static_cast<int>(step) *
+                                   static_cast<int>(step));
+    };
     if (dice_.percent(5)) {  // around the limit of joined arrays
       const unsigned a = 1u << dice_.below(3);
       w[0] = (opt & ~3u) | 4;
@@ -145,25 +149,38 @@ class Generator {
       return {Action::kWrite, 0x4000 + 32 * dice_.of(sets_) + 4 * word, words()[word]};
     }
     switch (dice_.below(16)) {
-      case 0: return channel_write(0x08);  // ECR
-      case 1: return channel_write(0x28);  // EECR
-      case 2: return channel_write(0x30);  // EESR
+      case 0:
+        return channel_write(0x08);  // ECR
+      case 1:
+        return channel_write(0x28);  // EECR
+      case 2:
+        return channel_write(0x30);  // EESR
       case 3:
-      case 4: return channel_write(0x40);  // SECR
-      case 5: return channel_write(0x58);  // IECR
-      case 6: return channel_write(0x60);  // IESR
+      case 4:
+        return channel_write(0x40);  // SECR
+      case 5:
+        return channel_write(0x58);  // IECR
+      case 6:
+        return channel_write(0x60);  // IESR
       case 7:
-      case 8: return channel_write(0x70);  // ICR
-      case 9: return channel_write(0x78, dice_.below(2) * (dice_.percent(90) ? 1 : 2));  // IEVAL
-      case 10: return channel_write(dice_.percent(30) ? 0x88 : 0x8C, 1u << dice_.of(qdma_));
-      case 11: return channel_write(0x94, 1u << dice_.of(qdma_));
+      case 8:
+        return channel_write(0x70);  // ICR
+      case 9:
+        return channel_write(0x78, dice_.below(2) * (dice_.percent(90) ? 1 : 2));  // IEVAL
+      case 10:
+        return channel_write(dice_.percent(30) ? 0x88 : 0x8C, 1u << dice_.of(qdma_));
+      case 11:
+        return channel_write(0x94, 1u << dice_.of(qdma_));
       case 12: {
         const unsigned half = dice_.below(2);
         return {Action::kWrite, 0x308 + 4 * half, mask(half)};
       }
-      case 13: return {Action::kWrite, 0x314, dice_.below(256)};
-      case 14: return {Action::kWrite, 0x31C, dice_.below(16) | (dice_.percent(20) ? 0x1'0000u : 0)};
-      default: return {Action::kWrite, 0x320, dice_.below(2)};
+      case 13:
+        return {Action::kWrite, 0x314, dice_.below(256)};
+      case 14:
+        return {Action::kWrite, 0x31C, dice_.below(16) | (dice_.percent(20) ? 0x1'0000u : 0)};
+      default:
+        return {Action::kWrite, 0x320, dice_.below(2)};
     }
   }
 

@@ -12,7 +12,9 @@ class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
   unsigned below(unsigned n) { return static_cast<unsigned>(engine_() % n); }
-  int between(int low, int high) { return low + static_cast<int>(below(static_cast<unsigned>(high - low + 1))); }
+  int between(int low, int high) {
+    return low + static_cast<int>(below(static_cast<unsigned>(high - low + 1)));
+  }
   bool percent(unsigned p) { return below(100) < p; }
   template <class T>
   const T& of(const std::vector<T>& v) {
@@ -31,9 +33,9 @@ struct Action {
   std::string text() const;
 };
 
-/// Memory has three zones, told by address bits 31:28: 8 is only read, A only written. Zone 9 is both
-/// if `staged`; each request is then transferred before the next one is served, so that what a request
-/// reads doesn't depend on the time of the one before.
+/// Memory has three zones, told by address bits 31:28: 8 is only read, A only written. Zone 9 is
+/// both if `staged`; each request is then transferred before the next one is served, so that what a
+/// request reads doesn't depend on the time of the one before.
 struct Program {
   bool staged = false;
   std::vector<Action> setup, actions;

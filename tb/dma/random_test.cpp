@@ -1,6 +1,6 @@
-// Random programs on the channel controller and four transfer controllers, against the interpreter in
-// reference.h: the same requests in the same order, the same registers after every step, the same
-// interrupts, and in the end the same parameter RAM and the same bytes in memory.
+// Random programs on the channel controller and four transfer controllers, against the interpreter
+// in reference.h: the same requests in the same order, the same registers after every step, the
+// same interrupts, and in the end the same parameter RAM and the same bytes in memory.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -31,7 +31,9 @@ class Zones {
     }();
     bytes_ = std::make_unique<Bytes>(start);
   }
-  std::uint8_t& at(std::uint32_t address) { return bytes_->at((address >> 28) - 8)[address & 0xFFFF]; }
+  std::uint8_t& at(std::uint32_t address) {
+    return bytes_->at((address >> 28) - 8)[address & 0xFFFF];
+  }
   bool operator==(const Zones& o) const { return *bytes_ == *o.bytes_; }
 
  private:
@@ -96,20 +98,22 @@ class Port : public TransferController::Host {
 };
 
 struct Covered {
-  std::uint64_t requests = 0, refused = 0, links = 0, missed = 0, programs = 0, pulses = 0, errors = 0,
-                in_flight = 0;
+  std::uint64_t requests = 0, refused = 0, links = 0, missed = 0, programs = 0, pulses = 0,
+                errors = 0, in_flight = 0;
 };
 
 class Execution : ChannelController::Host {
  public:
   Execution(EdmaRegs& regs, std::uint64_t seed)
       : regs_(regs), core_(regs, *this), seed_(seed), dice_(seed ^ 0x5EED) {
-    static constexpr unsigned kBursts[] = {16, 32, 64}, kFifos[] = {128, 256, 192}, kDepths[] = {1, 2, 4};
+    static constexpr unsigned kBursts[] = {16, 32, 64}, kFifos[] = {128, 256, 192},
+                              kDepths[] = {1, 2, 4};
     for (auto& p : ports_)
-      p = std::make_unique<Port>(model_memory_,
-                                 TransferController::Sizes{kBursts[dice_.below(3)], kFifos[dice_.below(3)],
-                                                           kDepths[dice_.below(3)]},
-                                 1 + dice_.below(4));
+      p = std::make_unique<Port>(
+          model_memory_,
+          TransferController::Sizes{kBursts[dice_.below(3)], kFifos[dice_.below(3)],
+                                    kDepths[dice_.below(3)]},
+          1 + dice_.below(4));
   }
 
   /// False after the first difference.
@@ -144,11 +148,13 @@ class Execution : ChannelController::Host {
 
  private:
   // ChannelController::Host
-  bool can_submit(unsigned controller) const override { return !ports_[controller]->tc.program_busy(); }
+  bool can_submit(unsigned controller) const override {
+    return !ports_[controller]->tc.program_busy();
+  }
   void submit(unsigned controller, const TransferRequest& r) override {
-    requests_.push_back({controller, r.source.address, r.destination.address, r.acnt, r.bcnt, r.source.index,
-                         r.destination.index, r.source.constant, r.destination.constant, r.fifo_bytes,
-                         r.tcc, r.interrupt, r.chain});
+    requests_.push_back({controller, r.source.address, r.destination.address, r.acnt, r.bcnt,
+                         r.source.index, r.destination.index, r.source.constant,
+                         r.destination.constant, r.fifo_bytes, r.tcc, r.interrupt, r.chain});
     ports_[controller]->tc.submit(r, now_);
   }
   void pulse_completion(unsigned region) override { ++region_pulses_[region]; }
@@ -164,7 +170,9 @@ class Execution : ChannelController::Host {
   void act(const Action& a) {
     ++now_;
     switch (a.kind) {
-      case Action::kWrite: write(a.where, a.value); break;
+      case Action::kWrite:
+        write(a.where, a.value);
+        break;
       case Action::kFill:
         for (unsigned w = 0; w < 8; ++w) write(0x4000 + 32 * a.where + 4 * w, a.words[w]);
         break;
@@ -175,13 +183,18 @@ class Execution : ChannelController::Host {
       case Action::kQueue:
         agree("queued", core_.prioritise(now_ + a.where), reference_.queue_one(now_ + a.where));
         break;
-      case Action::kServe: serve(); break;
-      case Action::kTransfer: transfer(a.where); break;
+      case Action::kServe:
+        serve();
+        break;
+      case Action::kTransfer:
+        transfer(a.where);
+        break;
     }
   }
 
   void agree(const char* what, bool model, bool reference) {
-    if (model != reference) difference_ += std::string(what) + ": model " + (model ? "yes" : "no") + "\n";
+    if (model != reference)
+      difference_ += std::string(what) + ": model " + (model ? "yes" : "no") + "\n";
   }
 
   void serve() {
@@ -235,22 +248,27 @@ class Execution : ChannelController::Host {
   bool same(const std::string& after) {
     static constexpr std::uint32_t kPairs[] = {0x00, 0x10, 0x18, 0x20, 0x38, 0x50, 0x68};
     static constexpr std::uint32_t kSingle[] = {0x80, 0x84, 0x90};
-    for (std::uint32_t o : {0x300u, 0x304u, 0x310u, 0x318u, 0x600u, 0x604u, 0x608u, 0x60Cu, 0x640u}) compare(o);
+    for (std::uint32_t o : {0x300u, 0x304u, 0x310u, 0x318u, 0x600u, 0x604u, 0x608u, 0x60Cu, 0x640u})
+      compare(o);
     const std::uint32_t shadow = 0x2000 + 0x200 * dice_.below(4);
     for (std::uint32_t base : {0x1000u, shadow}) {
       for (std::uint32_t o : kPairs) compare(base + o), compare(base + o + 4);
       for (std::uint32_t o : kSingle) compare(base + o);
     }
-    if (region_pulses_ != reference_.region_pulses()) difference_ += "pulses of completion interrupts\n";
-    if (error_pulses_ != reference_.error_pulses()) difference_ += "pulses of the error interrupt\n";
+    if (region_pulses_ != reference_.region_pulses())
+      difference_ += "pulses of completion interrupts\n";
+    if (error_pulses_ != reference_.error_pulses())
+      difference_ += "pulses of the error interrupt\n";
     if (requests_.size() != reference_.requests().size() ||
         (!requests_.empty() && requests_.back() != reference_.requests().back()))
       difference_ += "the last request\n";
     history_ += "  " + after + "\n";
     if (difference_.empty()) return true;
     const std::size_t from = history_.size() > 1500 ? history_.size() - 1500 : 0;
-    ADD_FAILURE() << "seed " << seed_ << (staged_ ? " (staged)" : "") << ", after " << after << ":\n"
-                  << difference_ << "steps up to here:\n" << history_.substr(from);
+    ADD_FAILURE() << "seed " << seed_ << (staged_ ? " (staged)" : "") << ", after " << after
+                  << ":\n"
+                  << difference_ << "steps up to here:\n"
+                  << history_.substr(from);
     return false;
   }
 
@@ -260,7 +278,8 @@ class Execution : ChannelController::Host {
     if (requests_ != reference_.requests()) difference_ += "requests\n";
     if (model_memory_ != reference_memory_) difference_ += "bytes in memory\n";
     if (difference_.empty()) return true;
-    ADD_FAILURE() << "seed " << seed_ << (staged_ ? " (staged)" : "") << ", in the end:\n" << difference_;
+    ADD_FAILURE() << "seed " << seed_ << (staged_ ? " (staged)" : "") << ", in the end:\n"
+                  << difference_;
     return false;
   }
 

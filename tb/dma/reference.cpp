@@ -5,7 +5,9 @@ namespace {
 
 unsigned low(std::uint32_t w) { return w & 0xFFFF; }
 unsigned high(std::uint32_t w) { return w >> 16; }
-int index_of(unsigned half) { return half < 0x8000 ? static_cast<int>(half) : static_cast<int>(half) - 0x10000; }
+int index_of(unsigned half) {
+  return half < 0x8000 ? static_cast<int>(half) : static_cast<int>(half) - 0x10000;
+}
 bool bit(std::uint32_t w, unsigned n) { return (w >> n) % 2 == 1; }
 
 /// The parts of a parameter set.
@@ -151,8 +153,7 @@ void Interpreter::store(unsigned set, unsigned word, std::uint32_t value) {
 void Interpreter::note_size(EventQueue& q) {
   const auto size = static_cast<unsigned>(q.entries.size());
   if (size > q.mark) q.mark = size;
-  if (size > q.threshold && !q.exceeded)
-    watching_errors([&] { q.exceeded = q.error = true; });
+  if (size > q.threshold && !q.exceeded) watching_errors([&] { q.exceeded = q.error = true; });
 }
 
 bool Interpreter::enter(unsigned queue, Entry e) {
@@ -279,7 +280,8 @@ void Interpreter::link(unsigned set) {
 
 void Interpreter::write(std::uint32_t offset, std::uint32_t value) {
   if (offset >= 0x4000) return store((offset - 0x4000) / 32, offset / 4 % 8, value);
-  if (offset >= 0x2000) return write_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200, value);
+  if (offset >= 0x2000)
+    return write_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200, value);
   if (offset >= 0x1000) return write_channels(kAnybody, offset - 0x1000, value);
   const unsigned half = offset / 4 % 2 * 32;
   if (offset >= 0x200 && offset < 0x220) {
@@ -287,7 +289,8 @@ void Interpreter::write(std::uint32_t offset, std::uint32_t value) {
     q.set = (value >> 5) % 512;
     q.word = (value >> 2) % 8;
   } else if (offset >= 0x240 && offset < 0x260) {
-    for (unsigned i = 0; i < 8; ++i) dma_[(offset - 0x240) / 4 * 8 + i].queue = (value >> 4 * i) % 8;
+    for (unsigned i = 0; i < 8; ++i)
+      dma_[(offset - 0x240) / 4 * 8 + i].queue = (value >> 4 * i) % 8;
   } else if (offset == 0x260) {
     for (unsigned i = 0; i < 8; ++i) qdma_[i].queue = (value >> 4 * i) % 8;
   } else if (offset == 0x280) {
@@ -340,18 +343,33 @@ void Interpreter::write_channels(int region, std::uint32_t offset, std::uint32_t
         if (!bit(value, i) || !owns(region, n)) continue;
         DmaChannel& c = dma_[n];
         switch (offset / 8 * 8) {
-          case 0x08: c.event = false; break;
+          case 0x08:
+            c.event = false;
+            break;
           case 0x10:
             if (c.manual) c.missed = true;
             c.manual = true;
             break;
-          case 0x28: c.enabled = false; break;
-          case 0x30: c.enabled = true; break;
-          case 0x40: c.queued = false; break;
-          case 0x58: c.interrupt_enabled = false; break;
-          case 0x60: c.interrupt_enabled = true; break;
-          case 0x70: c.interrupt = false; break;
-          default: break;
+          case 0x28:
+            c.enabled = false;
+            break;
+          case 0x30:
+            c.enabled = true;
+            break;
+          case 0x40:
+            c.queued = false;
+            break;
+          case 0x58:
+            c.interrupt_enabled = false;
+            break;
+          case 0x60:
+            c.interrupt_enabled = true;
+            break;
+          case 0x70:
+            c.interrupt = false;
+            break;
+          default:
+            break;
         }
       }
     });
@@ -363,7 +381,9 @@ std::uint32_t Interpreter::read_channels(int region, std::uint32_t offset) const
   if (offset >= 0x80) {
     for (unsigned i = 0; i < 8; ++i) {
       const QdmaChannel& q = qdma_[i];
-      const bool b = offset == 0x80 ? q.event : offset == 0x84 ? q.enabled : offset == 0x90 && q.queued;
+      const bool b = offset == 0x80   ? q.event
+                     : offset == 0x84 ? q.enabled
+                                      : offset == 0x90 && q.queued;
       if (b && owns_qdma(region, i)) v += 1u << i;
     }
     return v;
@@ -373,14 +393,29 @@ std::uint32_t Interpreter::read_channels(int region, std::uint32_t offset) const
     const DmaChannel& c = dma_[n];
     bool b = false;
     switch (offset / 8 * 8) {
-      case 0x00: b = c.event; break;
-      case 0x10: b = c.manual; break;
-      case 0x18: b = c.chained; break;
-      case 0x20: b = c.enabled; break;
-      case 0x38: b = c.queued; break;
-      case 0x50: b = c.interrupt_enabled; break;
-      case 0x68: b = c.interrupt; break;
-      default: break;
+      case 0x00:
+        b = c.event;
+        break;
+      case 0x10:
+        b = c.manual;
+        break;
+      case 0x18:
+        b = c.chained;
+        break;
+      case 0x20:
+        b = c.enabled;
+        break;
+      case 0x38:
+        b = c.queued;
+        break;
+      case 0x50:
+        b = c.interrupt_enabled;
+        break;
+      case 0x68:
+        b = c.interrupt;
+        break;
+      default:
+        break;
     }
     if (b && owns(region, n)) v += 1u << i;
   }
@@ -389,7 +424,8 @@ std::uint32_t Interpreter::read_channels(int region, std::uint32_t offset) const
 
 std::uint32_t Interpreter::read(std::uint32_t offset) const {
   if (offset >= 0x4000) return param_[(offset - 0x4000) / 32][offset / 4 % 8];
-  if (offset >= 0x2000) return read_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200);
+  if (offset >= 0x2000)
+    return read_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200);
   if (offset >= 0x1000) return read_channels(kAnybody, offset - 0x1000);
   std::uint32_t v = 0;
   if (offset == 0x300 || offset == 0x304)

@@ -1,5 +1,6 @@
-// A simple interpreter of EDMA3, written from TI's guides SPRUEE4A, SPRUH82C and SPRUH73H. It shares
-// neither headers nor tables with model/dma. It has no time: the caller says which step comes next.
+// A simple interpreter of EDMA3, written from TI's guides SPRUEE4A, SPRUH82C and SPRUH73H. It
+// shares neither headers nor tables with model/dma. It has no time: the caller says which step
+// comes next.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -23,12 +23,12 @@ TEST_F(DmaRegisters, ResetValues) {
 /// CCCFG as Linux, drivers/dma/ti/edma.c, decodes it.
 TEST_F(DmaRegisters, ConfigurationDescribesTheController) {
   const std::uint32_t v = read(kCccfg);
-  EXPECT_EQ(1u << ((v & 7) + 1), 64u);            // DMA channels
-  EXPECT_EQ((v >> 4 & 7) * 2, 8u);                // QDMA channels
-  EXPECT_EQ(1u << ((v >> 12 & 7) + 4), 256u);     // parameter sets
-  EXPECT_EQ((v >> 16 & 7) + 1, 4u);               // queues
-  EXPECT_EQ(1u << (v >> 20 & 3), 4u);             // regions
-  EXPECT_EQ(v >> 24 & 1, 0u);                     // no mapping of channels to sets
+  EXPECT_EQ(1u << ((v & 7) + 1), 64u);         // DMA channels
+  EXPECT_EQ((v >> 4 & 7) * 2, 8u);             // QDMA channels
+  EXPECT_EQ(1u << ((v >> 12 & 7) + 4), 256u);  // parameter sets
+  EXPECT_EQ((v >> 16 & 7) + 1, 4u);            // queues
+  EXPECT_EQ(1u << (v >> 20 & 3), 4u);          // regions
+  EXPECT_EQ(v >> 24 & 1, 0u);                  // no mapping of channels to sets
   write(kCccfg, 0);
   EXPECT_EQ(read(kCccfg), v);
 }
@@ -36,8 +36,9 @@ TEST_F(DmaRegisters, ConfigurationDescribesTheController) {
 /// Offsets that hold nothing on a controller without memory protection and channel mapping.
 TEST_F(DmaRegisters, NothingElseAnswers) {
   std::uint32_t v;
-  for (std::uint32_t o : {0x000u, 0x008u, 0x100u, 0x220u, 0x264u, 0x324u, 0x360u, 0x390u, 0x500u,
-                          0x610u, 0x624u, 0x644u, 0x800u, 0x1048u, 0x1098u, 0x2098u, 0x2800u, 0x6000u})
+  for (std::uint32_t o :
+       {0x000u, 0x008u, 0x100u, 0x220u, 0x264u, 0x324u, 0x360u, 0x390u, 0x500u, 0x610u, 0x624u,
+        0x644u, 0x800u, 0x1048u, 0x1098u, 0x2098u, 0x2800u, 0x6000u})
     EXPECT_EQ(regs.read(o, 4, v), Access::kNoRegister) << std::hex << o;
 }
 
@@ -67,7 +68,8 @@ TEST_F(DmaRegisters, ReservedBitsOfMapsReadZero) {
   EXPECT_EQ(read(kQwmthra), 0x1F1F'1F1Fu);
 }
 
-/// Registers where a write of 1 to `set` sets and to `clear` clears a bit of `shown`; 0 changes nothing.
+/// Registers where a write of 1 to `set` sets and to `clear` clears a bit of `shown`; 0 changes
+/// nothing.
 struct Pair {
   const char* name;
   std::uint32_t shown, set, clear;
@@ -131,8 +133,9 @@ INSTANTIATE_TEST_SUITE_P(Regions, Shadow, testing::Range(0u, 4u));
 
 TEST_P(Shadow, ReadsShowTheRegionsOwn) {
   ChannelRegs& g = regs.global;
-  const std::tuple<std::uint32_t, RegPair*> all[] = {{kEr, &g.er}, {kEsr, &g.esr}, {kCer, &g.cer}, {kEer, &g.eer},
-                                                     {kSer, &g.ser}, {kIer, &g.ier}, {kIpr, &g.ipr}};
+  const std::tuple<std::uint32_t, RegPair*> all[] = {{kEr, &g.er},   {kEsr, &g.esr}, {kCer, &g.cer},
+                                                     {kEer, &g.eer}, {kSer, &g.ser}, {kIer, &g.ier},
+                                                     {kIpr, &g.ipr}};
   for (const auto& [offset, pair] : all) {
     pair->set(~0ull);
     EXPECT_EQ(read(base + offset), 0x0000'F0F0u) << std::hex << offset;
@@ -152,7 +155,8 @@ TEST_P(Shadow, ReadsShowTheRegionsOwn) {
 
 TEST_P(Shadow, WritesReachTheRegionsOwn) {
   ChannelRegs& g = regs.global;
-  const std::pair<std::uint32_t, RegPair*> setters[] = {{kEsr, &g.esr}, {kEesr, &g.eer}, {kIesr, &g.ier}};
+  const std::pair<std::uint32_t, RegPair*> setters[] = {
+      {kEsr, &g.esr}, {kEesr, &g.eer}, {kIesr, &g.ier}};
   for (const auto& [offset, pair] : setters) {
     write(base + offset, ~0u);
     EXPECT_EQ(pair->get(), 0xF0F0u) << std::hex << offset;

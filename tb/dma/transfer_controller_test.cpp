@@ -1,12 +1,12 @@
 // The transfer controller over a memory with fixed latencies, on a clock of 8 ns: bytes, and times
 // that are counted by hand. Structure: SPRUH82C, section 17.2.11.
+#include "model/dma/core/transfer_controller.h"
+
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <map>
 #include <string>
-
-#include "model/dma/core/transfer_controller.h"
 
 namespace fovea::dma {
 namespace {
@@ -15,8 +15,8 @@ constexpr Picoseconds ns(unsigned n) { return n * kPsPerNs; }
 using Failure = TransferController::Failure;
 using Sizes = TransferController::Sizes;
 
-/// Reads are answered 40 ns after their issue, writes 20 ns after. The ports are always free unless a
-/// test says otherwise.
+/// Reads are answered 40 ns after their issue, writes 20 ns after. The ports are always free unless
+/// a test says otherwise.
 struct Memory : TransferController::Host {
   struct Access {
     std::uint32_t address;
@@ -43,7 +43,8 @@ struct Memory : TransferController::Host {
   TransferController tc;
 
   explicit Memory(Sizes sizes) : tc(*this, sizes) {
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
   }
   static unsigned in_ns(Picoseconds t) {
     EXPECT_EQ(t % kPsPerNs, 0u);
@@ -57,14 +58,16 @@ struct Memory : TransferController::Host {
   void read(Command c, Picoseconds at) override {
     reads.push_back({c.address, c.bytes, in_ns(at)});
     events.emplace(at + ns(40), [this, c, at] {
-      const std::vector<std::uint8_t> data(bytes.begin() + c.address, bytes.begin() + c.address + c.bytes);
+      const std::vector<std::uint8_t> data(bytes.begin() + c.address,
+                                           bytes.begin() + c.address + c.bytes);
       tc.read_done(data, c.address == bad_read, at + ns(40));
     });
   }
   void write(Command c, std::span<const std::uint8_t> data, Picoseconds at) override {
     writes.push_back({c.address, c.bytes, in_ns(at)});
     std::copy(data.begin(), data.end(), bytes.begin() + c.address);
-    events.emplace(at + ns(20), [this, c, at] { tc.write_done(c.address == bad_write, at + ns(20)); });
+    events.emplace(at + ns(20),
+                   [this, c, at] { tc.write_done(c.address == bad_write, at + ns(20)); });
   }
   void program_free(Picoseconds at) override { program_free_at.push_back(in_ns(at)); }
   void completed(const TransferRequest& r, Picoseconds at) override {
@@ -180,7 +183,8 @@ TEST(TransferController, DestinationRegistersLimitTheRequestsUnderWay) {
     EXPECT_TRUE(m.tc.program_busy()) << depth;
     EXPECT_EQ(m.tc.destinations(), depth);
     m.run();
-    // Reads at 16, 32, 48; the first request ends at 16 + 40 + 20 = 76; the next is loaded at 80 + 8.
+    // Reads at 16, 32, 48; the first request ends at 16 + 40 + 20 = 76; the next is loaded at 80
+    // + 8.
     EXPECT_EQ(m.reads.back(), (Memory::Access{256 + 64 * depth, 8, 88})) << depth;
     EXPECT_EQ(m.completed_at.back(), 88u + 60) << depth;
     EXPECT_EQ(m.completed_at.size(), depth + 1);
@@ -301,7 +305,8 @@ TEST(TransferController, ReadErrorsNameTheirRequest) {
 }
 
 struct Rules : testing::Test {
-  /// Whether a request with constant addressing on one side is refused, and that nothing moves then.
+  /// Whether a request with constant addressing on one side is refused, and that nothing moves
+  /// then.
   static bool refused(std::uint32_t address, int index, unsigned bcnt, bool at_source) {
     Memory m({32, 128, 4});
     TransferRequest r = copy(4, 256, 1024);
@@ -330,7 +335,8 @@ TEST_F(Rules, ConstantAddressesAndIndicesAreMultiplesOf32) {
     EXPECT_FALSE(refused(512, 64, 2, source));
     EXPECT_FALSE(refused(512, -32, 2, source));
     for (unsigned low : {1u, 4u, 16u, 31u}) EXPECT_TRUE(refused(512 + low, 0, 1, source)) << low;
-    for (int index : {1, 4, 16, 31, 33, -1, -16}) EXPECT_TRUE(refused(512, index, 2, source)) << index;
+    for (int index : {1, 4, 16, 31, 33, -1, -16})
+      EXPECT_TRUE(refused(512, index, 2, source)) << index;
     EXPECT_FALSE(refused(512, 4, 1, source));  // one array: the index moves nothing
   }
 }

@@ -8,9 +8,9 @@ namespace {
 struct DmaTransfers : ChannelBench {
   /// One request of channel 5 takes these addresses; the set then has these addresses and counts.
   struct Step {
-    std::uint32_t source, destination;        // of the request
+    std::uint32_t source, destination;  // of the request
     std::uint32_t next_source, next_destination;
-    unsigned bcnt, ccnt;                      // left in the set
+    unsigned bcnt, ccnt;  // left in the set
   };
   void expect_step(const Step& s, unsigned bcnt_of_request) {
     trigger_and_run(5);
@@ -26,8 +26,15 @@ struct DmaTransfers : ChannelBench {
 };
 
 TEST_F(DmaTransfers, ASyncAddsBidxWithinAFrameAndCidxToTheLastArray) {
-  const Set set{.source = 0x1000, .destination = 0x2000, .acnt = 4, .bcnt = 2, .ccnt = 2,
-                .source_b = 16, .destination_b = 4, .source_c = 100, .destination_c = -20,
+  const Set set{.source = 0x1000,
+                .destination = 0x2000,
+                .acnt = 4,
+                .bcnt = 2,
+                .ccnt = 2,
+                .source_b = 16,
+                .destination_b = 4,
+                .source_c = 100,
+                .destination_c = -20,
                 .reload = 2};
   fill(5, set);
   expect_step({0x1000, 0x2000, 0x1010, 0x2004, 1, 2}, 1);
@@ -42,8 +49,16 @@ TEST_F(DmaTransfers, ASyncAddsBidxWithinAFrameAndCidxToTheLastArray) {
 }
 
 TEST_F(DmaTransfers, AbSyncAddsCidxToTheFirstArrayAndKeepsBcnt) {
-  fill(5, {.opt = kAbSync, .source = 0x1000, .destination = 0x2000, .acnt = 4, .bcnt = 2, .ccnt = 3,
-           .source_b = 16, .destination_b = -4, .source_c = 100, .destination_c = -20,
+  fill(5, {.opt = kAbSync,
+           .source = 0x1000,
+           .destination = 0x2000,
+           .acnt = 4,
+           .bcnt = 2,
+           .ccnt = 3,
+           .source_b = 16,
+           .destination_b = -4,
+           .source_c = 100,
+           .destination_c = -20,
            .reload = 7});
   expect_step({0x1000, 0x2000, 0x1064, 0x1FEC, 2, 2}, 2);
   EXPECT_EQ(last().source.index, 16);
@@ -75,7 +90,10 @@ TEST_F(DmaTransfers, ReloadingZeroMakesADummySet) {
 }
 
 TEST_F(DmaTransfers, IndicesAreSignedAndAddressesWrap) {
-  fill(5, {.source = 0x4000, .destination = 0xFFFF'FFF0, .bcnt = 2, .source_b = -32768,
+  fill(5, {.source = 0x4000,
+           .destination = 0xFFFF'FFF0,
+           .bcnt = 2,
+           .source_b = -32768,
            .destination_b = 32767});
   trigger_and_run(5);
   EXPECT_EQ(words(5)[1], 0x4000u - 32768u);
@@ -92,8 +110,13 @@ TEST_F(DmaTransfers, CountsAreUnsignedWithSixteenBits) {
 }
 
 TEST_F(DmaTransfers, OtherFieldsStayAsTheyAre) {
-  Set set{.opt = tcc(9) | kItcinten, .acnt = 8, .bcnt = 3, .ccnt = 2, .source_b = 8,
-          .link = 0x4040, .reload = 5};
+  Set set{.opt = tcc(9) | kItcinten,
+          .acnt = 8,
+          .bcnt = 3,
+          .ccnt = 2,
+          .source_b = 8,
+          .link = 0x4040,
+          .reload = 5};
   fill(5, set);
   write(kPaRam + 32 * 5 + 28, 0xABCD'0002);  // the upper half of CCNT's word is reserved
   trigger_and_run(5);
@@ -133,9 +156,18 @@ TEST_F(DmaTransfers, StaticSetsAreNeitherUpdatedNorLinked) {
 }
 
 struct Link : ChannelBench {
-  const Set other{.opt = tcc(17), .source = 0x7000, .destination = 0x8000, .acnt = 3, .bcnt = 4,
-                  .ccnt = 5, .source_b = 6, .destination_b = 7, .source_c = 8, .destination_c = 9,
-                  .link = 0x1234, .reload = 11};
+  const Set other{.opt = tcc(17),
+                  .source = 0x7000,
+                  .destination = 0x8000,
+                  .acnt = 3,
+                  .bcnt = 4,
+                  .ccnt = 5,
+                  .source_b = 6,
+                  .destination_b = 7,
+                  .source_c = 8,
+                  .destination_c = 9,
+                  .link = 0x1234,
+                  .reload = 11};
   std::array<std::uint32_t, 8> after_link(unsigned link) {
     fill(5, {.link = link});
     trigger_and_run(5);
@@ -214,12 +246,12 @@ TEST_F(Empty, NullSetIsAnErrorThatBlocksTheChannel) {
   trigger_and_run(5);
   EXPECT_TRUE(submitted.empty());
   EXPECT_EQ(read(kEmr), channel);
-  EXPECT_EQ(get(kSer), channel);                // remains set
+  EXPECT_EQ(get(kSer), channel);  // remains set
   EXPECT_EQ(error_pulses, 1);
-  EXPECT_EQ(words(5), other.words());           // linked
-  EXPECT_EQ(get(kIpr), 1u << 9);                // reported as in early completion
+  EXPECT_EQ(words(5), other.words());  // linked
+  EXPECT_EQ(get(kIpr), 1u << 9);       // reported as in early completion
   EXPECT_EQ(read(kEmr), channel);
-  trigger_and_run(5);                           // ignored until SER is cleared
+  trigger_and_run(5);  // ignored until SER is cleared
   EXPECT_TRUE(submitted.empty());
   EXPECT_EQ(get(kEsr), channel);
   write(kEmcr, channel);
@@ -241,8 +273,11 @@ TEST_F(Empty, NullSetThatIsStaticStays) {
 
 TEST_F(Empty, DummySetsAreLegalTransfersOfNothing) {
   for (unsigned zeros = 1; zeros < 7; ++zeros) {  // one or two of the three counts are 0
-    fill(5, {.opt = tcc(9) | kTcinten, .acnt = zeros & 1 ? 0u : 2u, .bcnt = zeros & 2 ? 0u : 2u,
-             .ccnt = zeros & 4 ? 0u : 2u, .link = 3200});
+    fill(5, {.opt = tcc(9) | kTcinten,
+             .acnt = zeros & 1 ? 0u : 2u,
+             .bcnt = zeros & 2 ? 0u : 2u,
+             .ccnt = zeros & 4 ? 0u : 2u,
+             .link = 3200});
     const Set other{.source = 0x9000 + zeros};
     fill(100, other);
     trigger_and_run(5);

@@ -7,8 +7,7 @@ namespace {
 
 struct Trigger : ChannelBench {
   void SetUp() override {
-    for (unsigned c = 0; c < 64; ++c)
-      fill(c, {.opt = kStatic, .source = 0x10'0000 + c, .bcnt = 1});
+    for (unsigned c = 0; c < 64; ++c) fill(c, {.opt = kStatic, .source = 0x10'0000 + c, .bcnt = 1});
   }
   /// Source addresses tell the channels.
   std::vector<unsigned> served() const {
@@ -16,8 +15,8 @@ struct Trigger : ChannelBench {
     for (const Submitted& s : submitted) out.push_back(s.request.source.address - 0x10'0000);
     return out;
   }
-  /// Leaves a chained event of channel 5 while queue 0 is not served: channel 8, in queue 1, completes
-  /// early.
+  /// Leaves a chained event of channel 5 while queue 0 is not served: channel 8, in queue 1,
+  /// completes early.
   void chain_to_5() {
     fill(8, {.opt = tcc(5) | kTcchen | kTccmode});
     write(kDmaqnum0 + 4, 1);
