@@ -63,7 +63,7 @@ struct MasterInfo {
   /// The master that is the block's other side.
   std::optional<Master> partner = {};
   bool on_chip = true;
-  /// No block of the model drives it: only a synthetic load does (`load.port`).
+  /// A synthetic load may use it (`load.port`), alone or together with the block that drives it.
   bool spare = false;
 };
 

@@ -1,30 +1,143 @@
 #include "model/dma/edma_cc.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fovea::dma {
+namespace {
+/// Width of an interrupt pulse: seen by the interrupt controller, and over before the next edge.
+constexpr Picoseconds kPulse = kPsPerNs;
+}  // namespace
 
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
-    : BusTarget(name, regs), regs(static_cast<unsigned>(params.reset_priority())) {
+    : BusTarget(name, regs),
+      regs(static_cast<unsigned>(params.reset_priority())),
+      params_(params),
+      core_(regs, *this) {
+  add_clock(clk);
   add_power_gate(lpsc);
-  for (Reg* r : {&regs.quetcmap, &regs.quepri})
+  add_interrupt("ccint0", completion);
+  add_interrupt("ccerrint", error);
+  add_statistics(stats);
+  for (Reg* r : {static_cast<Reg*>(&regs.quetcmap), static_cast<Reg*>(&regs.quepri)})
     r->on_write([this](std::uint32_t) { written_.soon(); });
-  SC_METHOD(update);
+  SC_METHOD(update_priorities);
   sensitive << written_.event();
+  SC_METHOD(work);
+  sensitive << wake_.event();
+  dont_initialize();
+  SC_METHOD(end_pulse);
+  sensitive << pulse_end_.event();
+  dont_initialize();
+  SC_METHOD(clock_changed);
+  sensitive << clk << lpsc;
 }
 
-void EdmaCc::update() {
+void EdmaCc::update_priorities() {
   std::array<std::uint32_t, kTransferControllers> level;
   level.fill(7);
   for (unsigned q = 0; q < kQueues; ++q) {
-    const std::uint32_t tc = regs.quetcmap.fields()[q]->get();
+    const std::uint32_t tc = regs.quetcmap.queue[q]->get();
     if (tc >= kTransferControllers) {
       Diagnostics::instance().guest("QUETCMAP names a transfer controller that is not there");
       continue;
     }
-    level[tc] = std::min(level[tc], regs.quepri.fields()[q]->get());
+    level[tc] = std::min(level[tc], regs.quepri.queue[q]->get());
   }
   for (unsigned tc = 0; tc < kTransferControllers; ++tc) priority[tc].write(level[tc]);
 }
+
+/// The edge `clocks` after the first one behind t.
+Picoseconds EdmaCc::edge(Picoseconds t, std::uint64_t clocks) const {
+  return clock_.edge(clock_.edge_after(t) + clocks);
+}
+
+void EdmaCc::clock_changed() {
+  const Frequency f = clk.read();
+  if (f != clock_.frequency()) clock_.restart(f, kernel_time());
+  work_arrived();
+}
+
+void EdmaCc::event(unsigned channel) {
+  events_.push_back({kernel_time(), static_cast<std::uint8_t>(channel)});
+  work_arrived();
+}
+
+void EdmaCc::completed(const TransferRequest& request) {
+  if (!request.interrupt && !request.chain) return;
+  const auto clocks = static_cast<std::uint64_t>(params_.completion_clocks()) - 1;
+  const Picoseconds at = running() ? edge(kernel_time(), clocks) : kernel_time();
+  completions_.push({at, ++completion_count_, request});
+  wake_.at(at);
+}
+
+void EdmaCc::work_arrived() {
+  if (running()) wake_.at(edge(kernel_time(), 0));
+}
+
+/// One edge: what has arrived since the last one is latched, then at most one event enters a queue and
+/// at most one request leaves.
+void EdmaCc::work() {
+  if (!running()) return;  // clock_changed() continues
+  const Picoseconds now = kernel_time();
+  if (const Picoseconds at = clock_.next_edge_at_or_after(now); at != now) return wake_.at(at);
+  const auto first_new = std::find_if(events_.begin(), events_.end(),
+                                      [&](const Latched& e) { return e.at >= now; });
+  std::vector<Latched> latched(events_.begin(), first_new);
+  events_.erase(events_.begin(), first_new);
+  for (const Latched& e : latched) core_.event(e.channel);
+  while (!completions_.empty() && completions_.top().at <= now) {
+    const TransferRequest r = completions_.top().request;
+    completions_.pop();
+    core_.completed(r);
+  }
+  const bool queued =
+      core_.prioritise(edge(now, static_cast<std::uint64_t>(params_.event_clocks()) - 1));
+  const bool requested = now >= next_request_ && core_.process(now);
+  if (requested)
+    next_request_ = edge(now, static_cast<std::uint64_t>(params_.request_clocks()) - 1);
+  if (queued || requested || !events_.empty()) wake_.at(edge(now, 0));
+  if (!completions_.empty()) wake_.at(completions_.top().at);
+  if (const Picoseconds turn = std::max(core_.next_turn(), next_request_); turn > now) wake_.at(turn);
+  count();
+}
+
+void EdmaCc::count() {
+  const ChannelController::Counts& c = core_.counts();
+  stats.events += c.events - std::exchange(reported_.events, c.events);
+  stats.requests += c.requests - std::exchange(reported_.requests, c.requests);
+  stats.missed += c.missed - std::exchange(reported_.missed, c.missed);
+  stats.links += c.links - std::exchange(reported_.links, c.links);
+}
+
+bool EdmaCc::can_submit(unsigned controller) const {
+  const TransferPort* const port = controllers_[controller];
+  return port && port->program_free() < kernel_time();
+}
+
+void EdmaCc::submit(unsigned controller, const TransferRequest& request) {
+  controllers_[controller]->submit(request);
+}
+
+/// Only region 0 has an interrupt of the ARM; the others' are not connected.
+void EdmaCc::pulse_completion(unsigned region) {
+  if (region != 0) return;
+  ++stats.interrupts;
+  completion.write(true);
+  pulse_end_.at(kernel_time() + kPulse);
+}
+
+void EdmaCc::pulse_error() {
+  ++stats.errors;
+  error.write(true);
+  pulse_end_.at(kernel_time() + kPulse);
+}
+
+void EdmaCc::end_pulse() {
+  completion.write(false);
+  error.write(false);
+}
+
+void EdmaCc::warn(const std::string& what) { Diagnostics::instance().guest("EDMA: " + what); }
 
 }  // namespace fovea::dma

@@ -1,69 +1,108 @@
-// EDMA3 channel controller: only the registers that set the priorities of the transfer controllers.
+// EDMA3 channel controller at 0x01C00000.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <queue>
 #include <systemc>
+#include <vector>
 
 #include "model/common/bus_target.h"
+#include "model/common/clock.h"
 #include "model/common/masters.h"
-#include "model/common/param.h"
+#include "model/common/stats.h"
 #include "model/common/timer.h"
+#include "model/dma/core/channel_controller.h"
+#include "model/dma/core/edma_registers.h"
+#include "model/dma/edma_params.h"
 
 namespace fovea::dma {
 
-struct EdmaParams : ParamGroup {
-  IntParam reset_priority{*this,
-                          "reset_priority",
-                          IntParam::Unit::kCount,
-                          7,
-                          0,
-                          7,
-                          "QUEPRI out of reset, for each queue; 0 highest",
-                          Origin::kAssumed,
-                          "no public figure; Linux writes 7, 7, 7, 0",
-                          {"0", "7", "0 on some sister chips; firmware that cares writes QUEPRI"}};
-  EdmaParams() : ParamGroup("edma") {}
+/// A transfer controller, as the channel controller sees it.
+class TransferPort {
+ public:
+  virtual ~TransferPort() = default;
+  /// From when on its program register is free; kNever while that is not known.
+  virtual Picoseconds program_free() const = 0;
+  virtual void submit(const TransferRequest& request) = 0;
 };
 
-/// Offsets: Linux dma.c. Each register has a 3-bit field for each queue, at a pitch of 4 bits.
-struct EdmaRegs : RegBank {
-  struct PerQueue : Reg {
-    using Reg::Reg;
-    Field q0{*this, "Q0", 0, 3, Mode::kRw, "of queue 0"};
-    Field q1{*this, "Q1", 4, 3, Mode::kRw, "of queue 1"};
-    Field q2{*this, "Q2", 8, 3, Mode::kRw, "of queue 2"};
-    Field q3{*this, "Q3", 12, 3, Mode::kRw, "of queue 3"};
-  };
-  PerQueue quetcmap{*this, "QUETCMAP", 0x280, "number of the queue's transfer controller", 0x3210};
-  PerQueue quepri;
-  explicit EdmaRegs(unsigned reset_priority)
-      : RegBank("EDMACC"),
-        quepri(*this, "QUEPRI", 0x284, "priority on the crossbar, 0 highest",
-               0x1111u * reset_priority) {}
+struct EdmaStats : StatGroup {
+  Counter requests{*this, "requests", "1", "transfer requests submitted"};
+  Counter events{*this, "events", "1", "events that entered a queue"};
+  Counter missed{*this, "missed_events", "1", "events lost, and events of null sets"};
+  Counter links{*this, "links", "1", "parameter sets replaced by a link"};
+  Counter interrupts{*this, "interrupts", "1", "pulses of completion interrupts"};
+  Counter errors{*this, "errors", "1", "pulses of the error interrupt"};
+  EdmaStats() : StatGroup("edma") {}
 };
 
-/// EDMA3CC at 0x01C00000. A transfer controller has the priority of the queue that is mapped to it;
-/// if several are, the most urgent of them; if none is, the lowest priority.
-class EdmaCc : public BusTarget {
+/// Works at the edges of the EDMA's clock. What happens at a time (an event, a register access, a
+/// completion) counts from the next edge on, so that the order of processes within an instant does
+/// not matter. A transfer controller has the priority of the queue that is mapped to it; if several
+/// are, the most urgent of them; if none is, the lowest priority.
+class EdmaCc : public BusTarget, private ChannelController::Host {
  public:
   using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
-  static constexpr unsigned kQueues = 4;
   EdmaRegs regs;
+  EdmaStats stats;
+  ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
+  sc_core::sc_out<bool> completion{"completion"};  ///< of shadow region 0 (CCINT0)
+  sc_core::sc_out<bool> error{"error"};            ///< CCERRINT
   /// Priority of each transfer controller, for its read and its write port.
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
 
   EdmaCc(sc_core::sc_module_name name, const EdmaParams& params);
 
+  void attach(unsigned controller, TransferPort& port) { controllers_.at(controller) = &port; }
+  /// A rising edge of a hardware event, 0 .. 63, now.
+  void event(unsigned channel);
+  /// From a transfer controller: its program register is free from `at` on.
+  void program_free(Picoseconds at) { wake_.at(at); }
+  /// From a transfer controller: the request ends now.
+  void completed(const TransferRequest& request);
+
  protected:
   bool clocked() const override { return lpsc.read(); }
-  /// A hole must not read 0: for CCCFG, that would mean a controller with two channels.
-  bool holes_answer() const override { return false; }
 
  private:
-  void update();
-  Timer written_;
+  struct Completion {
+    Picoseconds at;
+    std::uint64_t order;
+    TransferRequest request;
+    bool operator>(const Completion& o) const {
+      return at != o.at ? at > o.at : order > o.order;
+    }
+  };
+  bool can_submit(unsigned controller) const override;
+  void submit(unsigned controller, const TransferRequest& request) override;
+  void pulse_completion(unsigned region) override;
+  void pulse_error() override;
+  void work_arrived() override;
+  void warn(const std::string& what) override;
+  void update_priorities();
+  void work();
+  void count();
+  void end_pulse();
+  void clock_changed();
+  bool running() const { return clock_.running() && lpsc.read(); }
+  Picoseconds edge(Picoseconds t, std::uint64_t clocks) const;
+
+  const EdmaParams& params_;
+  std::array<TransferPort*, kTransferControllers> controllers_{};
+  Clock clock_;
+  ChannelController core_;
+  struct Latched {
+    Picoseconds at;
+    std::uint8_t channel;
+  };
+  std::vector<Latched> events_;
+  std::priority_queue<Completion, std::vector<Completion>, std::greater<>> completions_;
+  std::uint64_t completion_count_ = 0;
+  Picoseconds next_request_ = 0;
+  ChannelController::Counts reported_;
+  Timer wake_, written_, pulse_end_;
 };
 
 }  // namespace fovea::dma

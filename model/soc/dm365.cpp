@@ -55,6 +55,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   wire_clocks();
   wire_memory();
   wire_interrupts();
+  wire_edma();
   wire_video();
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
@@ -105,9 +106,15 @@ void Dm365::connect(Irq line, InterruptOut& source) {
     source(irq_[line.input]);
     return;
   }
-  auto& signal = irq_source_[2 * *choice + line.second];
+  auto& signal = signal_of(line);
   source(signal);
   (line.second ? interrupt_mux.second : interrupt_mux.first)[*choice](signal);
+}
+
+/// The wire of an interrupt source, before any multiplexer.
+sc_core::sc_signal<bool>& Dm365::signal_of(Irq line) {
+  const auto choice = periph::InterruptMux::find_choice(line.input);
+  return choice ? irq_source_[2 * *choice + line.second] : irq_[line.input];
 }
 
 ClockSignal& Dm365::signal_of(BlockClock clock) {
@@ -177,16 +184,31 @@ void Dm365::wire_clocks() {
   for (unsigned i = 0; i < periph::kLpscCount; ++i) psc.enabled[i](lpsc_[i]);
 }
 
+/// Binds the port of a master: to its block, or to its block and a load.
+void Dm365::connect(const MasterInfo& m, const std::vector<MemInitiatorSocket<32>*>& sockets) {
+  if (sockets.empty()) return;
+  FOVEA_CHECK(sockets.size() <= 2, "three blocks on the port of " + std::string(m.name));
+  if (sockets.size() == 1) {
+    sockets[0]->bind(*scr.target[index(m.id)]);
+  } else {
+    const std::string name = "shared_" + std::string(m.name);
+    auto& port = *shared_ports.emplace_back(std::make_unique<bus::SharedPort>(name.c_str()));
+    sockets[0]->bind(port.first);
+    sockets[1]->bind(port.second);
+    port.port.bind(*scr.target[index(m.id)]);
+  }
+  for (const auto& w : waits)
+    if (w->is_of(m.id)) return;
+  waits.push_back(std::make_unique<bus::WaitStats>(
+      m.id, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()}));
+  add_statistics(*waits.back());
+}
+
 void Dm365::wire_memory() {
   arm.path(scr.path);
-  platform.each_master([this](const MasterPort& p) {
-    p.socket->bind(*scr.target[index(p.id)]);
-    for (const auto& w : waits)
-      if (w->is_of(p.id)) return;
-    waits.push_back(std::make_unique<bus::WaitStats>(
-        p.id, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()}));
-    add_statistics(*waits.back());
-  });
+  std::array<std::vector<MemInitiatorSocket<32>*>, kMasterCount> sockets;
+  platform.each_master([&](const MasterPort& p) { sockets[index(p.id)].push_back(p.socket); });
+  for (const MasterInfo& m : kMasters.rows) connect(m, sockets[index(m.id)]);
   for (auto& load : loads) load->sdram_initialised(ddr.initialised);
   scr.config_socket.bind(config.socket);
   config.describe = [this](std::uint32_t address) { return not_modelled_at(address, params_.rows); };
@@ -195,6 +217,37 @@ void Dm365::wire_memory() {
   vpss.write_priority(priority_[index(master_with(PrioritySource::kVideoWrite))]);
   vpss.read_priority(priority_[index(master_with(PrioritySource::kVideoRead))]);
   for (unsigned tc = 0; tc < kTransferControllers; ++tc) edma.priority[tc](tc_priority_[tc]);
+}
+
+/// Events of the EDMA that a wire of an interrupt carries: TI's register header for the DM36x, Linux
+/// mach-davinci/dma.h. Those of UARTs, I2C and the video subsystem are lines of their own.
+void Dm365::wire_edma() {
+  struct Event {
+    unsigned channel;
+    Irq line;
+  };
+  constexpr bool kSecond = true;
+  static const std::vector<Event> kEvents = {
+      {0, 15}, {1, 22},                                       // TIMER3
+      {8, {13, kSecond}}, {9, 14},                            // TIMER2
+      {22, {38, kSecond}}, {23, {28, kSecond}},               // TIMER4
+      {25, 53}, {32, 44}, {33, 45}, {34, 46}, {35, 47},       // GPIO 9, 0 to 3
+      {36, 48}, {37, 49}, {38, 50}, {39, 51}, {47, 52},       // GPIO 4 to 8
+      {40, 54}, {41, 55}, {42, 56}, {43, 57}, {44, 58}, {45, 59},  // GPIO 10 to 15
+      {48, 32}, {49, 33}, {50, 34}, {51, 35},                 // TIMER0, TIMER1
+  };
+  for (const Event& e : kEvents) {
+    sc_core::sc_spawn_options options;
+    options.spawn_method();
+    options.dont_initialize();
+    options.set_sensitivity(&signal_of(e.line).posedge_event());
+    sc_core::sc_spawn([this, channel = e.channel] { edma.event(channel); },
+                      ("edma_event" + std::to_string(e.channel)).c_str(), &options);
+  }
+  for (dma::EdmaTc* tc : edma_tcs) {
+    tc->attach(edma);
+    tc->misc(misc_);
+  }
 }
 
 void Dm365::wire_interrupts() {
@@ -250,6 +303,13 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
   for (const Platform::Entry& e : platform.blocks())
     for (const MasterPort& p : e.block->masters()) {
       if (p.outstanding == 0) continue;
+      const auto shared = std::find_if(masters.begin(), masters.end(),
+                                       [&](const auto& m) { return m.id == p.id; });
+      if (shared != masters.end()) {  // a load on the port of a block
+        shared->pace = p.pace;
+        shared->reads = shared->writes = std::min(shared->reads + p.outstanding, kMostOutstanding);
+        continue;
+      }
       auto& setup = masters.emplace_back(trace::BusRecorder::MasterSetup{
           p.id, p.pace, p.outstanding, p.outstanding, true, {}});
       // The sides of one block wait for each other's completions.

@@ -11,12 +11,14 @@
 #include "model/bus/config_bus.h"
 #include "model/bus/load_generator.h"
 #include "model/bus/scr.h"
+#include "model/bus/shared_port.h"
 #include "model/bus/wait_stats.h"
 #include "model/common/block.h"
 #include "model/common/quiet.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
 #include "model/dma/edma_cc.h"
+#include "model/dma/edma_tc.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
 #include "model/periph/clock_tree.h"
@@ -52,6 +54,7 @@ struct Dm365Params : ParamTree {
   BlockParams block_params{*this};
   mem::DdrParams& ddr = block_params.get<mem::DdrParams>();
   dma::EdmaParams& edma = block_params.get<dma::EdmaParams>();
+  dma::EdmaTcParams& edma_tc = block_params.get<dma::EdmaTcParams>();
   periph::PllParams& pll = block_params.get<periph::PllParams>();
   periph::PscParams& psc = block_params.get<periph::PscParams>();
   periph::SystemParams& system = block_params.get<periph::SystemParams>();
@@ -82,6 +85,9 @@ class Dm365 : public sc_core::sc_module, public Block {
   PlacedBlocks placed;
   mem::DdrModule& ddr = placed.get<mem::DdrModule>("ddr");
   dma::EdmaCc& edma = placed.get<dma::EdmaCc>("edma");
+  std::array<dma::EdmaTc*, kTransferControllers> edma_tcs{
+      &placed.get<dma::EdmaTc>("edma_tc0"), &placed.get<dma::EdmaTc>("edma_tc1"),
+      &placed.get<dma::EdmaTc>("edma_tc2"), &placed.get<dma::EdmaTc>("edma_tc3")};
   periph::PllController& pll1 = placed.get<periph::PllController>("pll1");
   periph::PllController& pll2 = placed.get<periph::PllController>("pll2");
   periph::Psc& psc = placed.get<periph::Psc>("psc");
@@ -115,6 +121,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   /// chip.
   std::unique_ptr<trace::BusRecorder> make_recorder();
 
+  /// Ports that a synthetic load shares with a block of the chip.
+  std::vector<std::unique_ptr<bus::SharedPort>> shared_ports;
   /// Of the masters that are there.
   std::vector<std::unique_ptr<bus::WaitStats>> waits;
 
@@ -122,6 +130,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   void list_blocks();
   void connect(const Placement& row, BusTarget& block);
   void connect(Irq line, InterruptOut& source);
+  void connect(const MasterInfo& m, const std::vector<MemInitiatorSocket<32>*>& sockets);
   ClockSignal& signal_of(BlockClock clock);
   void route_priorities();
   std::uint32_t load_priority(Master m) const;
@@ -130,6 +139,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   void wire_clocks();
   void wire_memory();
   void wire_interrupts();
+  void wire_edma();
+  sc_core::sc_signal<bool>& signal_of(Irq line);
   void wire_video();
 
   template <class T>

@@ -4,6 +4,7 @@
 // most 1 KB (assumed). Power gates: Linux psc-dm365.c, TI boot loader. Interrupts: Linux irqs.h for the
 // DM365.
 #include "model/dma/edma_cc.h"
+#include "model/dma/edma_tc.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
 #include "model/periph/gpio.h"
@@ -27,12 +28,21 @@ const Placements& dm365_blocks() {
   constexpr auto kSlow = bus::ConfigBus::Speed::kSlow;  // blocks on the 24 MHz AUXCLK
   constexpr auto kNone = BlockClock::kNone;
   constexpr auto kAux = BlockClock::kAux;
+  constexpr auto kEdma = BlockClock::kEdma;
   constexpr bool kSecond = true;
   static const Placements rows = {
       place<mem::DdrModule>({"ddr", "DDR2/mDDR controller", 0x2000'0000, 0x8000, kFast, kNone,
                              periph::kLpscDdr}),
-      place<dma::EdmaCc>({"edma", "EDMA3 channel controller", 0x01C0'0000, 0x1'0000, kFast, kNone,
-                          periph::kLpscTpcc, {}, true}),
+      place<dma::EdmaCc>({"edma", "EDMA3 channel controller", 0x01C0'0000, 0x1'0000, kFast, kEdma,
+                          periph::kLpscTpcc, {16, {17, kSecond}}}),
+      place<dma::EdmaTc>({"edma_tc0", "EDMA3 transfer controller 0", 0x01C1'0000, 0x400, kFast, kEdma,
+                          periph::kLpscTptc0, {{18, kSecond}}}, 0u),
+      place<dma::EdmaTc>({"edma_tc1", "EDMA3 transfer controller 1", 0x01C1'0400, 0x400, kFast, kEdma,
+                          periph::kLpscTptc1, {{19, kSecond}}}, 1u),
+      place<dma::EdmaTc>({"edma_tc2", "EDMA3 transfer controller 2", 0x01C1'0800, 0x400, kFast, kEdma,
+                          periph::kLpscTptc2, {{61, kSecond}}}, 2u),
+      place<dma::EdmaTc>({"edma_tc3", "EDMA3 transfer controller 3", 0x01C1'0C00, 0x400, kFast, kEdma,
+                          periph::kLpscTptc3, {{62, kSecond}}}, 3u),
       place<periph::PllController>({"pll1", "PLL controller 1", 0x01C4'0800, 0x400}, "PLLC1", 9u),
       place<periph::PllController>({"pll2", "PLL controller 2", 0x01C4'0C00, 0x400}, "PLLC2", 5u),
       place<periph::Psc>({"psc", "power and sleep controller", 0x01C4'1000, 0x1000}),

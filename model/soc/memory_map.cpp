@@ -10,10 +10,6 @@ namespace {
 const std::vector<MapEntry> kNotModelled = {
     {0x0000'8000, 0x4000, "ROM boot loader"},
     {0x0001'8000, 0x4000, "ROM boot loader (data side)"},
-    {0x01C1'0000, 0x400, "EDMA3 transfer controller 0"},
-    {0x01C1'0400, 0x400, "EDMA3 transfer controller 1"},
-    {0x01C1'0800, 0x400, "EDMA3 transfer controller 2"},
-    {0x01C1'0C00, 0x400, "EDMA3 transfer controller 3"},
     {0x01C2'0C00, 0x400, "RTO (real-time output)"},
     {0x01C2'2000, 0x400, "PWM0"},
     {0x01C2'2400, 0x400, "PWM1"},

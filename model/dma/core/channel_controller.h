@@ -1,0 +1,100 @@
+// The EDMA3 channel controller: events, queues, parameter RAM, completion, interrupts. Knows no
+// SystemC; whoever owns it says when it may act and carries its interrupts and requests away.
+// Behaviour: SPRUEE4A (DM35x) and SPRUH82C (AM1808), the guides of sister chips.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "model/common/units.h"
+#include "model/dma/core/edma_registers.h"
+#include "model/dma/core/transfer_request.h"
+
+namespace fovea::dma {
+
+class ChannelController {
+ public:
+  class Host {
+   public:
+    virtual ~Host() = default;
+    /// The transfer controller's program register is free.
+    virtual bool can_submit(unsigned controller) const = 0;
+    virtual void submit(unsigned controller, const TransferRequest& request) = 0;
+    /// One pulse of a shadow region's completion interrupt, or of the error interrupt.
+    virtual void pulse_completion(unsigned region) = 0;
+    virtual void pulse_error() = 0;
+    /// An event waits that prioritise() or process() may take now.
+    virtual void work_arrived() = 0;
+    /// What a programmer should learn, in one line.
+    virtual void warn(const std::string& what) = 0;
+  };
+
+  /// Installs the behaviour of the registers, which must outlive it.
+  ChannelController(EdmaRegs& regs, Host& host);
+  ChannelController(const ChannelController&) = delete;
+  ChannelController& operator=(const ChannelController&) = delete;
+
+  /// A hardware event, 0 .. 63.
+  void event(unsigned channel);
+  /// Moves the most urgent event that waits into its queue, where its turn comes at `ready` at the
+  /// earliest. False: there is none, or its queue is full.
+  bool prioritise(Picoseconds ready);
+  /// Takes the head of the most urgent queue whose transfer controller is ready, and submits its
+  /// request. False: there is none.
+  bool process(Picoseconds now);
+  /// The earliest time at which the turn of a queue's head comes; kNever: all queues are empty.
+  Picoseconds next_turn() const;
+  /// A transfer controller has ended a request that reports: its code arrives here.
+  void completed(const TransferRequest& request);
+  /// A transfer controller has dropped a request (TRERR): no code arrives for it.
+  void dropped(const TransferRequest& request);
+  /// Back to the state after a hardware reset. The registers are reset by their owner.
+  void reset();
+
+  struct Counts {
+    std::uint64_t events = 0, requests = 0, missed = 0, links = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  enum class Trigger : std::uint8_t { kEvent, kManual, kChain, kQdma };  // ETYPE of QxEy
+  struct Entry {
+    Trigger trigger;
+    std::uint8_t channel;
+    Picoseconds ready;
+  };
+  struct Queue {
+    std::array<Entry, kQueueDepth> entry{};
+    unsigned head = 0, count = 0;
+  };
+
+  void install_global();
+  void install_region(unsigned region);
+  void install(ChannelRegs& regs, std::function<std::uint64_t()> mask,
+               std::function<std::uint32_t()> qdma_mask);
+  void set_manual(std::uint64_t bits);
+  void set_chained(unsigned channel);
+  void miss(std::uint64_t bits);
+  void miss_qdma(std::uint32_t bits);
+  void set_error(std::uint32_t threshold, bool codes);
+  template <class Change>
+  void change_interrupts(Change change);
+  bool push(unsigned queue, Entry e);
+  void show(unsigned queue);
+  void serve(unsigned queue, unsigned controller);
+  void exhausted(unsigned set);
+  void write_trigger(unsigned set, unsigned word);
+  void report(const ParamSet& set, bool final);
+  std::uint64_t pending() const;
+  bool errors() const;
+  std::uint32_t status() const;
+
+  EdmaRegs& regs_;
+  Host& host_;
+  std::array<Queue, kQueues> queues_{};
+  unsigned outstanding_codes_ = 0;
+  Counts counts_;
+};
+
+}  // namespace fovea::dma

@@ -1,0 +1,159 @@
+#include "model/dma/edma_tc.h"
+
+#include <bit>
+
+namespace fovea::dma {
+namespace {
+constexpr Picoseconds kPulse = kPsPerNs;  // see EdmaCc
+constexpr std::uint32_t kTptc1Dbs = 1u << 7;
+}  // namespace
+
+EdmaTcRegs::EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth)
+    : RegBank("EDMATC" + std::to_string(number)) {
+  tccfg.fifo.set(static_cast<unsigned>(std::bit_width(fifo / 32)) - 1);
+  tccfg.width.set(1);  // 64 bits, as the crossbar
+  tccfg.depth.set(static_cast<unsigned>(std::bit_width(depth)) - 1);
+}
+
+EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams& params)
+    : BusTarget(name, regs),
+      regs(number, static_cast<unsigned>(params.fifo()), static_cast<unsigned>(params.depth())),
+      stats(number),
+      number_(number),
+      params_(params),
+      reads_("reads", edma_read(number), static_cast<unsigned>(params.outstanding())),
+      writes_("writes", edma_write(number), static_cast<unsigned>(params.outstanding())),
+      core_(*this, {32, static_cast<unsigned>(params.fifo()),
+                    static_cast<unsigned>(params.depth())}) {
+  add_clock(clk);
+  add_power_gate(lpsc);
+  add_interrupt("tcerrint" + std::to_string(number), error);
+  add_statistics(stats);
+  const auto outstanding = static_cast<unsigned>(params.outstanding());
+  add_master(edma_read(number), reads_.socket, outstanding);
+  add_master(edma_write(number), writes_.socket, outstanding);
+  reads_.on_done = [this](const BurstMaster::Completion& c) {
+    ++stats.reads;
+    core_.read_done(c.data, c.error, c.last);
+  };
+  writes_.on_done = [this](const BurstMaster::Completion& c) {
+    ++stats.writes;
+    stats.bytes += c.data.size();
+    core_.write_done(c.error, c.last);
+  };
+  regs.tcstat.on_read([this] {
+    regs.tcstat.program.set(core_.program_busy());
+    regs.tcstat.source.set(core_.source_active());
+    regs.tcstat.writes.set(writes_.outstanding() > 0);
+    regs.tcstat.destinations.set(static_cast<std::uint32_t>(core_.destinations()));
+  });
+  regs.errclr.on_write([this](std::uint32_t word) {
+    regs.errstat.set(regs.errstat.get() & ~word);
+    if (word & regs.errclr.bus.mask()) regs.errdet.set(0);
+  });
+  regs.errcmd.on_write([this](std::uint32_t word) {
+    if ((word & 1) && (regs.errstat.get() & regs.erren.get())) pulse();
+  });
+  regs.rdrate.on_write([this](std::uint32_t) {
+    static constexpr std::array<unsigned, 5> kClocks{1, 4, 8, 16, 32};
+    const std::uint32_t rate = regs.rdrate.rate.get();
+    if (rate >= kClocks.size()) {
+      Diagnostics::instance().guest("EDMA: RDRATE " + std::to_string(rate) +
+                                    " is reserved; allowed: 0 to 4");
+      return;
+    }
+    core_.set_read_interval(kClocks[rate]);
+  });
+  SC_METHOD(end_pulse);
+  sensitive << pulse_end_.event();
+  dont_initialize();
+  SC_METHOD(clock_changed);
+  sensitive << clk << lpsc;
+}
+
+void EdmaTc::attach(EdmaCc& channels) {
+  channels_ = &channels;
+  channels.attach(number_, *this);
+}
+
+/// TC1 has 32 bytes out of reset and 64 by MISC.TPTC1DBS (SPRUFG5); the others a parameter.
+unsigned EdmaTc::burst() const {
+  if (number_ != 1) return static_cast<unsigned>(params_.burst());
+  return misc.read() & kTptc1Dbs ? 64 : 32;
+}
+
+void EdmaTc::clock_changed() {
+  if (clk.read() != clock_.frequency()) clock_.restart(clk.read(), kernel_time());
+  if (!running()) return;
+  core_.resume();
+  channels_->program_free(std::max(program_free_, kernel_time()) + 1);
+}
+
+Picoseconds EdmaTc::program_free() const {
+  return !running() || core_.program_busy() ? kNever : program_free_;
+}
+
+void EdmaTc::submit(const TransferRequest& request) {
+  core_.set_burst(burst());
+  core_.submit(request, kernel_time());
+}
+
+Picoseconds EdmaTc::edge(Picoseconds t, unsigned clocks) const {
+  return clock_.edge(clock_.edge_at_or_after(t) + clocks);
+}
+
+/// A gated or stopped clock keeps bursts from being issued; clock_changed() continues.
+Picoseconds EdmaTc::read_free() const { return running() ? reads_.free_from() : kNever; }
+Picoseconds EdmaTc::write_free() const { return running() ? writes_.free_from() : kNever; }
+
+void EdmaTc::read(Command burst, Picoseconds at) {
+  reads_.read(burst.address, burst.bytes, 0, at, false);
+}
+
+void EdmaTc::write(Command burst, std::span<const std::uint8_t> data, Picoseconds at) {
+  writes_.write(burst.address, data, 0, at, false);
+}
+
+void EdmaTc::program_free(Picoseconds at) {
+  program_free_ = at;
+  channels_->program_free(at + 1);
+}
+
+void EdmaTc::completed(const TransferRequest& request, Picoseconds) {
+  ++stats.requests;
+  channels_->completed(request);
+}
+
+void EdmaTc::failed(const TransferRequest& request, TransferController::Failure failure,
+                    Picoseconds) {
+  using Failure = TransferController::Failure;
+  ++stats.errors;
+  const std::uint32_t before = regs.errstat.get() & regs.erren.get();
+  if (failure == Failure::kRequest) {
+    regs.errstat.request.set(1);
+    Diagnostics::instance().guest(
+        "EDMA: a request with constant addressing whose address or index is no multiple of 32");
+  } else {
+    // The details are those of the first error.
+    if (!regs.errstat.bus.get()) {
+      regs.errdet.status.set(failure == Failure::kRead ? 1 : 9);
+      regs.errdet.tcc.set(request.tcc);
+      regs.errdet.interrupt.set(request.interrupt);
+      regs.errdet.chain.set(request.chain);
+    }
+    regs.errstat.bus.set(1);
+    Diagnostics::instance().guest(failure == Failure::kRead
+                                      ? "EDMA: a read that nobody answers (bus error)"
+                                      : "EDMA: a write that nobody answers (bus error)");
+  }
+  if (!before && (regs.errstat.get() & regs.erren.get())) pulse();
+}
+
+void EdmaTc::pulse() {
+  error.write(true);
+  pulse_end_.at(kernel_time() + kPulse);
+}
+
+void EdmaTc::end_pulse() { error.write(false); }
+
+}  // namespace fovea::dma

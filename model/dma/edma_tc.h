@@ -1,0 +1,132 @@
+// EDMA3 transfer controllers at 0x01C10000, 0x400 each.
+#pragma once
+#include <cstdint>
+#include <systemc>
+
+#include "model/common/burst_master.h"
+#include "model/common/bus_target.h"
+#include "model/common/clock.h"
+#include "model/dma/core/transfer_controller.h"
+#include "model/dma/edma_cc.h"
+#include "model/dma/edma_params.h"
+
+namespace fovea::dma {
+
+/// Offsets and fields: SPRUH82C, "EDMA3 Transfer Controller Registers".
+struct EdmaTcRegs : RegBank {
+  struct Config : Reg {
+    using Reg::Reg;
+    Field fifo{*this, "FIFOSIZE", 0, 3, Mode::kRo, "data FIFO: 32 << n bytes"};
+    Field width{*this, "BUSWIDTH", 4, 2, Mode::kRo, "buses: 4 << n bytes"};
+    Field depth{*this, "DREGDEPTH", 8, 2, Mode::kRo, "destination registers: 1 << n"};
+  };
+  struct Status : Reg {
+    using Reg::Reg;
+    Field program{*this, "PROGBUSY", 0, 1, Mode::kRo, "the program register is taken"};
+    Field source{*this, "SRCACTV", 1, 1, Mode::kRo, "reads are being issued"};
+    Field writes{*this, "WSACTV", 2, 1, Mode::kRo, "an acknowledgement of a write is outstanding"};
+    Field destinations{*this, "DSTACTV", 4, 3, Mode::kRo, "destination registers in use"};
+  };
+  struct Errors : Reg {
+    using Reg::Reg;
+    Field bus{*this, "BUSERR", 0, 1, Mode::kRo, "a read or a write was not answered"};
+    Field request{*this, "TRERR", 2, 1, Mode::kRo, "a request breaks the rules of constant addressing"};
+    Field address{*this, "MMRAERR", 3, 1, Mode::kRo, "access to a register that does not exist"};
+  };
+  struct ErrorEnables : Reg {
+    using Reg::Reg;
+    Field bus{*this, "BUSERR", 0, 1, Mode::kRw, "interrupt on BUSERR"};
+    Field request{*this, "TRERR", 2, 1, Mode::kRw, "interrupt on TRERR"};
+    Field address{*this, "MMRAERR", 3, 1, Mode::kRw, "interrupt on MMRAERR"};
+  };
+  struct ErrorClear : Reg {
+    using Reg::Reg;
+    Field bus{*this, "BUSERR", 0, 1, Mode::kWo, "clears BUSERR and ERRDET"};
+    Field request{*this, "TRERR", 2, 1, Mode::kWo, "clears TRERR"};
+    Field address{*this, "MMRAERR", 3, 1, Mode::kWo, "clears MMRAERR"};
+  };
+  struct ErrorDetails : Reg {
+    using Reg::Reg;
+    Field status{*this, "STAT", 0, 4, Mode::kRo, "1: a read's address, 9: a write's"};
+    Field tcc{*this, "TCC", 8, 6, Mode::kRo, "completion code of the request"};
+    Field interrupt{*this, "TCINTEN", 16, 1, Mode::kRo, "the request reports by interrupt"};
+    Field chain{*this, "TCCHEN", 17, 1, Mode::kRo, "the request reports by chaining"};
+  };
+  struct ErrorCommand : Reg {
+    using Reg::Reg;
+    Field eval{*this, "EVAL", 0, 1, Mode::kWo, "pulses the interrupt if an enabled error is pending"};
+  };
+  struct ReadRate : Reg {
+    using Reg::Reg;
+    Field rate{*this, "RDRATE", 0, 3, Mode::kRw, "clocks between reads: 0, 4, 8, 16 or 32"};
+  };
+  Config tccfg{*this, "TCCFG", 0x004, "configuration"};
+  Status tcstat{*this, "TCSTAT", 0x100, "status"};
+  Errors errstat{*this, "ERRSTAT", 0x120, "errors"};
+  ErrorEnables erren{*this, "ERREN", 0x124, "enabled errors"};
+  ErrorClear errclr{*this, "ERRCLR", 0x128, "clears errors"};
+  ErrorDetails errdet{*this, "ERRDET", 0x12C, "details of BUSERR"};
+  ErrorCommand errcmd{*this, "ERRCMD", 0x130, "error interrupt"};
+  ReadRate rdrate{*this, "RDRATE", 0x140, "pace of reads"};
+  EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth);
+};
+
+struct EdmaTcStats : StatGroup {
+  Counter requests{*this, "requests", "1", "transfer requests completed"};
+  Counter reads{*this, "reads", "1", "bursts read"};
+  Counter writes{*this, "writes", "1", "bursts written"};
+  Counter bytes{*this, "bytes", "B", "bytes transferred"};
+  Counter errors{*this, "errors", "1", "bus errors and requests against the rules"};
+  explicit EdmaTcStats(unsigned number) : StatGroup("edma.tc" + std::to_string(number)) {}
+};
+
+/// A transfer controller: two masters, one that only reads and one that only writes. While its clock is
+/// gated it issues nothing new.
+class EdmaTc : public BusTarget, public TransferPort, private TransferController::Host {
+ public:
+  using Params = EdmaTcParams;
+  SC_HAS_PROCESS(EdmaTc);
+  EdmaTcRegs regs;
+  EdmaTcStats stats;
+  ClockIn clk{"clk"};
+  sc_core::sc_in<bool> lpsc{"lpsc"};
+  sc_core::sc_out<bool> error{"error"};  ///< TCERRINT
+  /// MISC of the system module: TPTC1DBS; used by number 1 only.
+  sc_core::sc_in<std::uint32_t> misc{"misc"};
+
+  EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams& params);
+  void attach(EdmaCc& channels);
+
+  Picoseconds program_free() const override;
+  void submit(const TransferRequest& request) override;
+
+ protected:
+  bool clocked() const override { return lpsc.read(); }
+
+ private:
+  Picoseconds edge(Picoseconds t, unsigned clocks) const override;
+  Picoseconds read_free() const override;
+  Picoseconds write_free() const override;
+  void read(Command burst, Picoseconds at) override;
+  void write(Command burst, std::span<const std::uint8_t> data, Picoseconds at) override;
+  void program_free(Picoseconds at) override;
+  void completed(const TransferRequest& request, Picoseconds at) override;
+  void failed(const TransferRequest& request, TransferController::Failure failure,
+              Picoseconds at) override;
+  void clock_changed();
+  void end_pulse();
+  void pulse();
+  bool running() const { return clock_.running() && lpsc.read(); }
+  unsigned burst() const;
+
+  const unsigned number_;
+  const EdmaTcParams& params_;
+  Clock clock_;
+  BurstMaster reads_, writes_;
+  TransferController core_;
+  EdmaCc* channels_ = nullptr;
+  Picoseconds program_free_ = 0;
+  Timer pulse_end_;
+};
+
+}  // namespace fovea::dma
