@@ -22,8 +22,8 @@ struct ConfigBus::Block : tlm::tlm_bw_transport_if<> {
 };
 
 ConfigBus::ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params,
-                     QuietPhase& quiet, const std::vector<BlockSpec>& blocks)
-    : sc_module(name), params_(params), quiet_(quiet) {
+                     EndOfInstant& end_of_instant, const std::vector<BlockSpec>& blocks)
+    : sc_module(name), params_(params), end_of_instant_(end_of_instant) {
   socket.bind(*this);
   add_statistics(stats);
   for (const BlockSpec& s : blocks) {
@@ -57,7 +57,7 @@ tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
   const Block* b = find(r.address);
   const Picoseconds latency = b && b->speed == Speed::kSlow ? params_.slow_latency()
                                                             : params_.fast_latency();
-  quiet_.at(kernel_time() + delay.value() + latency, static_cast<unsigned>(index(r.master)),
+  end_of_instant_.at(kernel_time() + delay.value() + latency, static_cast<unsigned>(index(r.master)),
             [this, &r] { access(r); });
   return tlm::TLM_UPDATED;
 }

@@ -11,7 +11,7 @@
 #include "model/common/block.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/param.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/common/stats.h"
 
 namespace fovea::bus {
@@ -58,7 +58,7 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
     std::uint32_t base, size;
     Speed speed;
   };
-  ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params, QuietPhase& quiet,
+  ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params, EndOfInstant& end_of_instant,
             const std::vector<BlockSpec>& blocks);
   ~ConfigBus() override;
 
@@ -81,7 +81,7 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base);
 
   const ConfigBusParams& params_;
-  QuietPhase& quiet_;
+  EndOfInstant& end_of_instant_;
   Master accessing_ = Master::kArmD;
   std::vector<std::unique_ptr<Block>> blocks_;
 };

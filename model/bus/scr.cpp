@@ -123,7 +123,7 @@ tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
 
 void Scr::completed(MemRequest& r) {
   const Picoseconds now = now_();
-  if (!r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
+  if (!r.write && r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
     latency[stat_index(r.master)]->histogram.add(r.first - r.issued);
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(r.first > now ? r.first - now : 0);

@@ -16,7 +16,7 @@ namespace fovea {
 
 /// Issues bursts of at most kMaxBurstBytes (each aligned to its size, so that none crosses a
 /// multiple of it) on one memory master, and reports their completions, in order within a
-/// direction. MemInitiatorIf is public for the same reason as in Agent: a derived class must be able
+/// direction. MemInitiatorIf is public for the same reason as in LookaheadInitiator: a derived class must be able
 /// to destroy SystemC's virtual base.
 class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
  public:

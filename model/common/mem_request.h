@@ -12,10 +12,17 @@ class RequestWaits;
 /// Largest burst a master may ask for; a burst never crosses a multiple of its size.
 inline constexpr unsigned kMaxBurstBytes = 64;
 
-/// Owned by the master, which keeps it and the data alive until the response. Knows no SystemC:
-/// crossbar and controller cores pass it by reference.
+/// What the memory path keeps about a request on its way. Only crossbar and memory system write it.
+struct PathState {
+  std::uint8_t priority = 0;    ///< 0 highest ... 7 lowest; as of the grant
+  std::uint8_t slave = 0;       ///< bus::Slave
+  Picoseconds accepted_at = 0;  ///< when the slave accepted it
+};
+
+/// Owned by the master, which keeps it and the data alive until the outcome. Knows no SystemC: crossbar
+/// and controller pass it by reference. Its halves: what the master sets and reads, and `in_path`.
 struct MemRequest {
-  // Set by the master.
+  // What the master asks for.
   std::uint32_t address = 0;
   std::uint32_t critical = 0;      ///< byte offset in the burst that must come first (WRAP8)
   std::uint8_t* data = nullptr;    ///< `bytes` bytes, in address order
@@ -31,13 +38,12 @@ struct MemRequest {
   /// of a chain of requests is a side effect of all of them.
   bool no_side_effects = false;
 
-  // Set by the memory path.
-  std::uint8_t priority = 0;       ///< 0 highest ... 7 lowest; as of the grant
-  std::uint8_t slave = 0;          ///< bus::Slave
-  bool error = false;              ///< outcome: no slave answered (bus error)
-  Picoseconds accepted_at = 0;     ///< when the slave accepted it
-  Picoseconds first = 0;           ///< outcome: first beat at the master's port
-  Picoseconds last = 0;            ///< outcome: last beat; a write's acknowledgement
+  // The outcome.
+  bool error = false;              ///< no slave answered (bus error)
+  Picoseconds first = 0;           ///< first beat at the master's port
+  Picoseconds last = 0;            ///< last beat; a write's acknowledgement
+
+  PathState in_path;
 };
 
 /// What a slave does with a request.

@@ -4,7 +4,7 @@ namespace fovea::cpu {
 
 Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
                std::span<std::uint8_t> tcm, std::uint32_t entry)
-    : Agent(name, 2), core_(params, *this, tcm), entry_(entry) {
+    : LookaheadInitiator(name, 2), core_(params, *this, tcm), entry_(entry) {
   add_master(Master::kArmI, *sockets[kInstructionPort], 1);
   add_master(Master::kArmD, *sockets[kDataPort], 1);
   add_own_window(core_.window_stats());
@@ -45,7 +45,7 @@ void Arm926::sleep_until(Picoseconds until) {
   const unsigned before = clock_changes_;
   for (;;) {
     const Picoseconds event = next_event();
-    Agent::sleep_until(event < until ? event + 1 : until);
+    LookaheadInitiator::sleep_until(event < until ? event + 1 : until);
     if (event >= until || clock_changes_ != before) return;
   }
 }
@@ -98,7 +98,7 @@ void Arm926::submit(BusAccess& a, Picoseconds at) {
   tx.address = a.address - tx.critical;
   tx.bytes = a.bytes;
   a.outside = !in_memory(tx);
-  Agent::submit(tx, at);
+  LookaheadInitiator::submit(tx, at);
 }
 
 void Arm926::completed(Transaction& tx) {
@@ -110,9 +110,9 @@ void Arm926::completed(Transaction& tx) {
 }
 
 bool Arm926::poll(BusAccess& a, Picoseconds until) {
-  return Agent::poll(record_of(a), until) && a.done && a.last <= until;
+  return LookaheadInitiator::poll(record_of(a), until) && a.done && a.last <= until;
 }
 
-void Arm926::finish(BusAccess& a) { Agent::finish(record_of(a)); }
+void Arm926::finish(BusAccess& a) { LookaheadInitiator::finish(record_of(a)); }
 
 }  // namespace fovea::cpu

@@ -5,7 +5,7 @@
 #include <span>
 #include <systemc>
 
-#include "model/bus/agent.h"
+#include "model/bus/lookahead_initiator.h"
 #include "model/common/block.h"
 #include "model/common/sc_ports.h"
 #include "model/cpu/core/bus_port.h"
@@ -14,8 +14,8 @@
 namespace fovea::cpu {
 
 /// SystemC wrapper of the core. The core runs on an SC_THREAD, so that a call that blocks can
-/// suspend it at any bus access and resume it there. bus::Agent contains the rules of time.
-class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
+/// suspend it at any bus access and resume it there. bus::LookaheadInitiator contains the rules of time.
+class Arm926 final : public bus::LookaheadInitiator<Arm926>, public Block, private BusPort {
  public:
   static constexpr unsigned kInstructionPort = 0, kDataPort = 1;
   ClockIn clk{"clk"};
@@ -39,7 +39,7 @@ class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
   void catch_up();
 
  private:
-  friend bus::Agent<Arm926>;
+  friend bus::LookaheadInitiator<Arm926>;
   void run();
   void clock_changed();
   void interrupt_changed();
@@ -47,7 +47,7 @@ class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
   void submit(BusAccess& access, Picoseconds at) override;
   bool poll(BusAccess& access, Picoseconds until) override;
   void finish(BusAccess& access) override;
-  Picoseconds horizon() override { return Agent::horizon(); }
+  Picoseconds horizon() override { return LookaheadInitiator::horizon(); }
   void sleep_until(Picoseconds until) override;
   Picoseconds wait_for_interrupt(Picoseconds from) override;
   Picoseconds background_next() const { return core_.next_act(); }

@@ -6,8 +6,8 @@
 
 namespace fovea::cpu {
 
-TcmDma::TcmDma(sc_core::sc_module_name name, Core& core, QuietPhase& quiet)
-    : sc_module(name), core_(core), quiet_(quiet) {
+TcmDma::TcmDma(sc_core::sc_module_name name, Core& core, EndOfInstant& end_of_instant)
+    : sc_module(name), core_(core), end_of_instant_(end_of_instant) {
   socket.bind(*this);
   add_statistics(stats);
   SC_HAS_PROCESS(TcmDma);
@@ -28,7 +28,7 @@ tlm::tlm_sync_enum TcmDma::nb_transport_fw(MemRequest& r, MemPhase& phase,
 void TcmDma::at(Picoseconds t) {
   const Picoseconds when = std::max(t, kernel_time());
   const unsigned order = static_cast<unsigned>(index(queue_.front().request->master));
-  quiet_.at(when, order, [this, plan = ++plan_] {
+  end_of_instant_.at(when, order, [this, plan = ++plan_] {
     if (plan == plan_) act();
   });
 }
@@ -62,7 +62,7 @@ void TcmDma::finish(MemRequest& r) {
   if (!queue_.empty()) at(queue_.front().arrival);
 }
 
-/// The core has applied the new clock by the time QuietPhase calls act().
+/// The core has applied the new clock by the time EndOfInstant calls act().
 void TcmDma::clock_changed() {
   if (!queue_.empty() && !clk.read().stopped()) at(std::max(queue_.front().arrival, kernel_time()));
 }

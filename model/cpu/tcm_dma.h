@@ -6,7 +6,7 @@
 
 #include "model/common/block.h"
 #include "model/common/mem_sockets.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/common/sc_ports.h"
 #include "model/common/stats.h"
 #include "model/cpu/core/core.h"
@@ -26,7 +26,7 @@ struct TcmStats : StatGroup {
 };
 
 /// Executes one burst at a time, in order of arrival. Each burst begins and ends after all other
-/// activity of its instant (QuietPhase), so the core's own accesses of that instant come first.
+/// activity of its instant (EndOfInstant), so the core's own accesses of that instant come first.
 /// While the core's clock is stopped, bursts wait.
 class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
  public:
@@ -34,7 +34,7 @@ class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
   ClockIn clk{"clk"};
   TcmStats stats;
 
-  TcmDma(sc_core::sc_module_name name, Core& core, QuietPhase& quiet);
+  TcmDma(sc_core::sc_module_name name, Core& core, EndOfInstant& end_of_instant);
 
   tlm::tlm_sync_enum nb_transport_fw(MemRequest&, MemPhase&, sc_core::sc_time&) override;
 
@@ -49,7 +49,7 @@ class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
   void clock_changed();
 
   Core& core_;
-  QuietPhase& quiet_;
+  EndOfInstant& end_of_instant_;
   std::deque<Waiting> queue_;
   bool begun_ = false;       // the first burst of the queue has begun
   std::uint64_t plan_ = 0;   // number of the newest scheduled call of act(); older ones do nothing

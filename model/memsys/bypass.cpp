@@ -9,7 +9,7 @@ MemRequest& Bypass::next() {
   for (std::uint32_t set = masters_; set; set &= set - 1) {
     const auto m = static_cast<unsigned>(std::countr_zero(set));
     const auto turn = static_cast<unsigned>((m + kMasterCount - last_ - 1) % kMasterCount);
-    const unsigned rank = waiting_[m].front()->priority * 64u + turn;
+    const unsigned rank = waiting_[m].front()->in_path.priority * 64u + turn;
     if (rank < best_rank) best = m, best_rank = rank;
   }
   MemRequest& r = *waiting_[best].front();

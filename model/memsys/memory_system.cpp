@@ -95,7 +95,7 @@ template <bool kWrite>
 }
 
 inline Taken MemorySystem::forward(MemRequest& r, Picoseconds arrival) {
-  const auto slave = static_cast<Slave>(r.slave);
+  const auto slave = static_cast<Slave>(r.in_path.slave);
   if (slave == Slave::kDdr) [[likely]]
     return arrive(r, arrival);
   ++host_calls_;
@@ -146,7 +146,7 @@ Taken MemorySystem::refuse_in_order(MemRequest& r, Picoseconds at) {
 void MemorySystem::respond(MemRequest& r) {
   ++host_calls_;
   undecided_ -= !r.no_side_effects;
-  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) count_decided();
+  if (r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr)) count_decided();
   host_.completed(r);
 }
 

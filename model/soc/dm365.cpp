@@ -40,9 +40,9 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
              bool strict, const Placements& external)
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
-      tcm_dma("tcm_dma", arm.core(), quiet),
+      tcm_dma("tcm_dma", arm.core(), end_of_instant),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, quiet, specs(joined(params.rows, external))),
+      config("config", params.config_bus, end_of_instant, specs(joined(params.rows, external))),
       placed(joined(params.rows, external), params.block_params, scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);

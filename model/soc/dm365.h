@@ -14,7 +14,7 @@
 #include "model/bus/shared_port.h"
 #include "model/bus/wait_stats.h"
 #include "model/common/block.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
 #include "model/dma/edma_cc.h"
@@ -76,7 +76,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   /// The 32 KB internal RAM behind both TCM ports.
   std::array<std::uint8_t, 32 * 1024> internal_ram{};
 
-  QuietPhase quiet{"quiet"};
+  EndOfInstant end_of_instant{"end_of_instant"};
   cpu::Arm926 arm;
   cpu::TcmDma tcm_dma;
   bus::Scr scr;

@@ -79,15 +79,15 @@ std::unique_ptr<RegisterLog> register_log(std::vector<RegisterBlock> blocks, bus
                            [&core] { return core.current_pc(); }, std::move(describe)});
 }
 
-void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm, QuietPhase& quiet,
+void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm, EndOfInstant& end_of_instant,
               std::uint32_t ddr_base) {
   v.masters = std::make_unique<GdbMasters>(scr.crossbar(), ddr.controller(), ddr_base);
   v.now = [] { return kernel_time(); };
   v.settle = [&scr] { scr.settle(); };
-  v.at_next_event = [&quiet](std::function<void()> act) {
+  v.at_next_event = [&end_of_instant](std::function<void()> act) {
     const Picoseconds now = kernel_time(), next = kernel_horizon();
     const Picoseconds at = next == kNever ? now : next;
-    quiet.at(at, static_cast<unsigned>(kMasterCount), std::move(act));
+    end_of_instant.at(at, static_cast<unsigned>(kMasterCount), std::move(act));
     return at;
   };
   v.catch_up = [&arm] { arm.catch_up(); };
@@ -105,7 +105,7 @@ GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* l
               {kSdram, kSdram + soc.ddr.store().size()}};
   v.blocks = register_blocks(board.platform);
   v.log = log;
-  join_bus(v, soc.scr, soc.ddr, soc.arm, soc.quiet, kSdram);
+  join_bus(v, soc.scr, soc.ddr, soc.arm, soc.end_of_instant, kSdram);
   v.stats = [&board] {
     auto& chip = board.dm365;
     std::vector<StatRow> rows;

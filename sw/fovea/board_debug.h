@@ -30,7 +30,7 @@ std::unique_ptr<RegisterLog> register_log(std::vector<RegisterBlock> blocks, bus
 /// The other masters, and what changing registers from a debugger needs; before the simulation
 /// starts.
 void join_bus(GdbViews& views, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
-              QuietPhase& quiet, std::uint32_t ddr_base);
+              EndOfInstant& end_of_instant, std::uint32_t ddr_base);
 
 /// Blocks, memory, statistics and parameters for `monitor`. All three outlive it.
 GdbViews board_views(board::Board& board, const ParamSet& params, RegisterLog* log);

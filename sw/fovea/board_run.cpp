@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "model/board/board.h"
-#include "model/common/slices.h"
+#include "model/common/host_time_slicer.h"
 #include "model/video/scene/ahead.h"
 #include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
@@ -397,11 +397,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
            (request.semihosting && request.semihosting->lost());
   };
   window_wall_ = Wall::now();
-  Slices slices;
+  HostTimeSlicer slicer;
   std::string guest;
   unsigned behind_end = 0;
   for (;;) {
-    slices.run(run_end.met()                    ? after_end(behind_end++)
+    slicer.run(run_end.met()                    ? after_end(behind_end++)
                : gdb && gdb->hit_pending() ? kPsPerUs
                                            : request.limits.next_slice(
                                                  kSlice, kernel_time(),
@@ -462,7 +462,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!closed_ && !kernel_stopped()) {
     board_->close_window(kernel_time() + kSlice);
     for (int i = 0; i < 20 && !(closed_ && (arm.core().mark_done() || asleep_at_end_)); ++i)
-      slices.run(kSlice);
+      slicer.run(kSlice);
   }
   board_->close_window_now();
   if (console) {

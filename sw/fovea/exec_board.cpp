@@ -17,7 +17,7 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
       ram_base_(map.ram_base),
       arm("arm", params.cpu, tcm_, entry),
       scr("scr", params.crossbar, params.ddr, {.ddr_base = map.ram_base}, false),
-      config("config", params.config_bus, quiet,
+      config("config", params.config_bus, end_of_instant,
              {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
       ddr("ddr", params.ddr, scr.memory()),
       ddr_size_(map.ram_size),

@@ -7,7 +7,7 @@
 
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/core/debug.h"
 #include "model/mem/ddr_module.h"
@@ -40,7 +40,7 @@ class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
   std::uint32_t ram_base_;
 
  public:
-  QuietPhase quiet{"quiet"};
+  EndOfInstant end_of_instant{"end_of_instant"};
   cpu::Arm926 arm;
   bus::Scr scr;
   bus::ConfigBus config;

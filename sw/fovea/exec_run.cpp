@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "model/board/board_params.h"
-#include "model/common/slices.h"
+#include "model/common/host_time_slicer.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/exec_board.h"
 #include "sw/fovea/exec_caches.h"
@@ -77,14 +77,14 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
       collect_memory(rows);
       return rows;
     };
-    join_bus(v, board_->scr, board_->ddr, board_->arm, board_->quiet, map.ram_base);
+    join_bus(v, board_->scr, board_->ddr, board_->arm, board_->end_of_instant, map.ram_base);
   });
   // Slices only give control to the host now and then; no instruction takes as long as a slice.
   const Picoseconds slice = 10 * kPsPerMs;
-  Slices slices;
+  HostTimeSlicer slicer;
   std::string failure;
   for (std::uint64_t before = ~std::uint64_t{0};;) {
-    slices.run(request.limits.next_slice(slice, kernel_time(),
+    slicer.run(request.limits.next_slice(slice, kernel_time(),
                                          arm.core().instructions_executed()));
     failure = arm.failure();
     if (!failure.empty() || session.over()) break;

@@ -54,7 +54,7 @@ void GdbMasters::submitted(const MemRequest& r, bool to_sdram) {
 }
 
 void GdbMasters::done(const MemRequest& r) {
-  const bool to_sdram = r.slave == static_cast<std::uint8_t>(bus::Slave::kDdr);
+  const bool to_sdram = r.in_path.slave == static_cast<std::uint8_t>(bus::Slave::kDdr);
   if (before_) to_sdram ? before_->responded(r) : before_->register_done(r);
   auto& list = under_way_[index(r.master)];
   const auto found = std::find_if(list.rbegin(), list.rend(),
@@ -129,10 +129,10 @@ std::string GdbMasters::position_text(const Request& r, const bus::Crossbar::Vie
     if (item.request == r.request) return in_crossbar(item, *r.request, bus, now);
   if (!r.to_sdram)
     return fmt::format("{}; taken there at {} ns",
-                       r.request->slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam)
+                       r.request->in_path.slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam)
                            ? "at internal RAM"
                            : "on the configuration bus",
-                       ns_text(r.request->accepted_at));
+                       ns_text(r.request->in_path.accepted_at));
   for (std::size_t i = 0; i < ddr.items.size(); ++i)
     if (ddr.items[i].request == r.request && (!r.write || ddr.items[i].waiting))
       return in_controller(ddr, i, now);
@@ -141,11 +141,11 @@ std::string GdbMasters::position_text(const Request& r, const bus::Crossbar::Vie
 
 std::string GdbMasters::in_crossbar(const bus::Crossbar::View::Item& item, const MemRequest& r,
                                     const bus::Crossbar::View& bus, Picoseconds now) const {
-  const auto& slave = bus.slaves[r.slave];
-  const std::string_view what =
-      r.slave == static_cast<std::uint8_t>(bus::Slave::kDdr)           ? "the SDRAM"
-      : r.slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam) ? "internal RAM"
-                                                                       : "the registers";
+  const auto& slave = bus.slaves[r.in_path.slave];
+  const auto of = static_cast<bus::Slave>(r.in_path.slave);
+  const std::string_view what = of == bus::Slave::kDdr           ? "the SDRAM"
+                                : of == bus::Slave::kInternalRam ? "internal RAM"
+                                                                 : "the registers";
   if (item.crossed == kNever) return "on its port; the crossbar's clock stands";
   if (!item.head) return "on its port, behind the same master's earlier request";
   if (item.crossed > now) return "on its bridge to the crossbar, " + until(item.crossed);

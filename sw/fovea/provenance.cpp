@@ -1,11 +1,13 @@
 #include "sw/fovea/provenance.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <sha2.h>
+#include <gcrypt.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
+#include <memory>
 
 namespace fovea::app {
 namespace {
@@ -25,8 +27,23 @@ std::string sha256_of(const fs::path& file) {
   std::error_code error;
   // Reading a pipe would consume its contents or block for ever.
   if (!fs::is_regular_file(file, error)) return "";
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> text{};
-  return ::SHA256File(file.c_str(), text.data()) ? text.data() : "";
+  [[maybe_unused]] static const char* const initialised = gcry_check_version(nullptr);
+  gcry_md_hd_t hash = nullptr;
+  if (gcry_md_open(&hash, GCRY_MD_SHA256, 0)) return "";
+  const std::unique_ptr<gcry_md_handle, void (*)(gcry_md_hd_t)> closes(hash, gcry_md_close);
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return "";
+  std::vector<char> block(std::size_t{1} << 18);
+  ssize_t n = 0;
+  while ((n = ::read(fd, block.data(), block.size())) > 0)
+    gcry_md_write(hash, block.data(), static_cast<std::size_t>(n));
+  ::close(fd);
+  if (n < 0) return "";
+  const unsigned char* const digest = gcry_md_read(hash, GCRY_MD_SHA256);
+  std::string text;
+  for (unsigned i = 0; i < gcry_md_get_algo_dlen(GCRY_MD_SHA256); ++i)
+    text += fmt::format("{:02x}", digest[i]);
+  return text;
 }
 
 Provenance program_provenance() {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
-
+#include <future>
 #include <ostream>
 
 #include "model/trace/core/bounds.h"
@@ -80,7 +80,9 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),
              "replay");
-  dir.write("config.json", config_json(set, experiment, provenance_of(set, {{"trace", options.trace}})));
+  // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
+  std::future<Provenance> provenance = std::async(
+      std::launch::async, [&] { return provenance_of(set, {{"trace", options.trace}}); });
 
   trace::BoundedSource wrapped(one_line(options.trace), *trace.source,
                                {params.ddr.size_bytes(), true});
@@ -105,6 +107,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
        "requests played per host second"},
       peak_rss()};
+  dir.write("config.json", config_json(set, experiment, provenance.get()));
   dir.write("host.json", host_json(host, args, version_text()));
   dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));

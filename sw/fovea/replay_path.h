@@ -103,7 +103,8 @@ class ReplayPath final : private memsys::MemoryHost {
     due_ = at == kNever ? due_ & ~bit : due_ | bit;
   }
   void find_next();
-  void issue();
+  /// The next request goes out; `until`: as in run_before().
+  void issue(Picoseconds until);
   void check(const trace::Record& r, const Stream& s);
   void complete(Slot& slot);
 

@@ -22,7 +22,7 @@ RunEnd::RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCon
   auto& soc = board_.dm365;
   for (const auto& c : conditions_) {
     if (c.kind == Kind::kTime)
-      soc.quiet.at(c.time, kAfterAll, [this, &c] { end(c.written, false, c.time); });
+      soc.end_of_instant.at(c.time, kAfterAll, [this, &c] { end(c.written, false, c.time); });
     if (c.kind == Kind::kPc) {
       if (!control_) control_.emplace(soc.arm.core(), debug_);
       control_->set_breakpoint(c.address);
@@ -84,7 +84,7 @@ void RunEnd::uart_sent(std::uint8_t) {
 }
 
 void RunEnd::check_for_halt() {
-  board_.dm365.quiet.at(kernel_time() + kHaltCheck, kAfterAll, [this] {
+  board_.dm365.end_of_instant.at(kernel_time() + kHaltCheck, kAfterAll, [this] {
     if (met_) return;
     const std::uint32_t pc = board_.dm365.arm.core().current_pc();
     const bool now = halted();

@@ -25,14 +25,14 @@ class Load {
                Picoseconds gap) {
     now_ += gap;
     run_before(now_);
-    while (!door_open_) step();
+    while (!input_free_) step();
     MemRequest& r = requests_[next_++ % requests_.size()];
     r.master = master;
-    r.priority = static_cast<std::uint8_t>(priority);
+    r.in_path.priority = static_cast<std::uint8_t>(priority);
     r.write = write;
     r.bytes = static_cast<std::uint8_t>(bytes);
     r.data = data_.data();
-    door_open_ = ddr_.submit(r, address, now_);
+    input_free_ = ddr_.submit(r, address, now_);
   }
   void drain() { run_before(kNever); }
   std::uint64_t commands() const {
@@ -50,7 +50,7 @@ class Load {
   void take_step() {
     ddr_.step();
     if (!ddr_.news().any) return;
-    if (ddr_.news().accepted) door_open_ = true;
+    if (ddr_.news().accepted) input_free_ = true;
     ddr_.news().clear();
   }
 
@@ -61,7 +61,7 @@ class Load {
   std::array<MemRequest, 32> requests_;  // more than the controller holds
   unsigned next_ = 0;
   Picoseconds now_ = 1'000;
-  bool door_open_ = true;
+  bool input_free_ = true;
 };
 
 int play(std::string_view kind, unsigned long count) {

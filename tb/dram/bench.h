@@ -137,21 +137,21 @@ class DdrBench {
     run_before(at);
     const bool taken = hand_over(r, at);
     if (taken) accept(r, at);
-    door_ = !taken;
+    input_ = !taken;
     return taken;
   }
   /// The same without the bench's bookkeeping: `at` may lie ahead.
   bool hand_over(Request& r, Picoseconds at) {
     r.path.owner = &r;
     r.path.master = r.master;
-    r.path.priority = static_cast<std::uint8_t>(r.priority);
+    r.path.in_path.priority = static_cast<std::uint8_t>(r.priority);
     r.path.write = r.write;
     r.path.bytes = static_cast<std::uint8_t>(r.bytes);
     r.path.critical = r.critical;
     r.path.data = r.data.data();
     return ddr.submit(r.path, r.address, at);
   }
-  bool door_taken() const { return door_; }
+  bool input_taken() const { return input_; }
 
   /// Takes all decisions strictly before `at`.
   void run_before(Picoseconds at) {
@@ -167,7 +167,7 @@ class DdrBench {
     ddr.step();
     for (const auto& read : ddr.news().reads) done(read);
     if (const auto& accepted = ddr.news().accepted) {
-      door_ = false;
+      input_ = false;
       accept(*static_cast<Request*>(accepted->request->owner), accepted->at);
     }
     ddr.news().clear();
@@ -228,7 +228,7 @@ class DdrBench {
   Params params_;
   mem::BackingStore store_;
   Picoseconds latest_ = 0;
-  bool door_ = false;
+  bool input_ = false;
 
  public:
   mem::DdrController ddr;

@@ -334,7 +334,7 @@ TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
     r.write = rng.below(3) == 0;
     r.master = static_cast<Master>(rng.below(4));
     r.address = at(static_cast<unsigned>(rng.below(3)), static_cast<unsigned>(rng.below(4)));
-    while (x.bench.door_taken()) {
+    while (x.bench.input_taken()) {
       now = std::max(now, x.bench.ddr.next_decision());
       x.bench.step();
     }

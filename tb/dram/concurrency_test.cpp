@@ -91,7 +91,7 @@ Totals run(std::uint64_t seed, const char* scheduler, bool all_known = false) {
       r.priority = below(8);
     }
     now += below(4) ? below(30) * Picoseconds{1'000} : below(400) * Picoseconds{1'000};
-    while (b.door_taken()) {
+    while (b.input_taken()) {
       now = std::max(now, b.ddr.next_decision());
       b.step();
     }

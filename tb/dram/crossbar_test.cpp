@@ -80,8 +80,8 @@ TEST(CrossbarTest, PriorityWinsWhateverTheOrderOfArrivalInTheInstant) {
     if (!a_first) b.submit(kA, 5);
     b.run();
     EXPECT_EQ(winners(b), "BA");
-    EXPECT_EQ(b.sent[0]->priority, 1) << "the slave is told";
-    EXPECT_EQ(b.sent[1]->priority, 4);
+    EXPECT_EQ(b.sent[0]->in_path.priority, 1) << "the slave is told";
+    EXPECT_EQ(b.sent[1]->in_path.priority, 4);
   }
 }
 

@@ -102,7 +102,7 @@ class Side {
 
   Taken forward(MemRequest& r, Picoseconds arrival) {
     auto& record = static_cast<Record&>(r);
-    events.emplace_back(index(r.master), arrival, r.priority);
+    events.emplace_back(index(r.master), arrival, r.in_path.priority);
     if (record.ask.refused) return Taken::kRefused;
     if (record.ask.waits) {
       plan(arrival + record.ask.wait, {&record, true});
@@ -172,9 +172,9 @@ void expect_same_figures(const Side& a, const Side& b) {
     EXPECT_EQ(ra.first, rb.first) << i;
     EXPECT_EQ(ra.last, rb.last) << i;
     EXPECT_EQ(ra.error, rb.error) << i;
-    EXPECT_EQ(ra.priority, rb.priority) << i;
-    EXPECT_EQ(ra.slave, rb.slave) << i;
-    EXPECT_EQ(ra.accepted_at, rb.accepted_at) << i;
+    EXPECT_EQ(ra.in_path.priority, rb.in_path.priority) << i;
+    EXPECT_EQ(ra.in_path.slave, rb.in_path.slave) << i;
+    EXPECT_EQ(ra.in_path.accepted_at, rb.in_path.accepted_at) << i;
     for (std::size_t c = 0; c < kCulprits; ++c)
       EXPECT_EQ(ra.waited.ps(static_cast<Culprit>(c)), rb.waited.ps(static_cast<Culprit>(c)))
           << i << ' ' << culprit_name(static_cast<Culprit>(c));

@@ -7,7 +7,7 @@
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
 #include "model/common/burst_master.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/mem/ddr_module.h"
 
 namespace fovea::dram {
@@ -29,11 +29,11 @@ struct Bench {
   bus::CrossbarParams xbar_params;
   bus::ConfigBusParams config_params;
   mem::DdrParams ddr_params;
-  QuietPhase quiet{"quiet"};
+  EndOfInstant end_of_instant{"end_of_instant"};
   bus::Scr scr{"scr", xbar_params, ddr_params, {}, false};
   bus::ConfigBus config{"config",
                         config_params,
-                        quiet,
+                        end_of_instant,
                         {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast},
                          {"slow", 0x01C2'0000, 0x100, bus::ConfigBus::Speed::kSlow}}};
   mem::DdrModule ddr{"ddr", ddr_params, scr.memory()};

@@ -14,7 +14,7 @@ namespace {
 struct Outcome {
   std::vector<Logged> log;
   std::vector<Picoseconds> times;
-  unsigned waited_at_door = 0;
+  unsigned waited_at_input = 0;
 };
 
 mem::DdrConfig random_config(Rng& rng) {
@@ -94,7 +94,7 @@ Outcome run(std::uint64_t seed, unsigned requests, const char* scheduler = "ti")
     // Gaps: crowded, sparse, and sometimes long enough for refreshes in between.
     if (density == 0 || rng.below(3) == 0) now += rng.below(density == 3 ? 400'000 : 40'000);
     if (rng.below(100) == 0) now += rng.below(3 * o.config.refresh_interval) * kTck;
-    while (b.door_taken()) {  // the one in front waits: the next may come when it is in
+    while (b.input_taken()) {  // the next one may come when it was accepted
       const Picoseconds t = b.ddr.next_decision();
       if (t == kNever) {
         ADD_FAILURE() << "seed " << seed << ": a request in the input register is never accepted";
@@ -143,7 +143,7 @@ Outcome run(std::uint64_t seed, unsigned requests, const char* scheduler = "ti")
   EXPECT_FALSE(b.went_back) << "seed " << seed;
   EXPECT_EQ(b.checker.total(), 0u) << "seed " << seed << "\n" << b.checker.text();
   out.log = b.log;
-  out.waited_at_door = waited;
+  out.waited_at_input = waited;
   return out;
 }
 
@@ -178,13 +178,13 @@ TEST(RandomStreamsTest, SameSeedGivesTheSameCommandsAndTimes) {
 }
 
 // What the streams must contain for the test above to mean something.
-TEST(RandomStreamsTest, StreamsReachEveryCommandAndTheDoor) {
+TEST(RandomStreamsTest, StreamsReachEveryCommandAndTheInputRegister) {
   std::array<unsigned, mem::kCmdCount> commands{};
   unsigned waited = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Outcome o = run(seed, 600);
     for (const Logged& l : o.log) ++commands[static_cast<std::size_t>(l.cmd)];
-    waited += o.waited_at_door;
+    waited += o.waited_at_input;
   }
   for (const unsigned n : commands) EXPECT_GT(n, 100u);
   EXPECT_GT(waited, 1000u);
@@ -220,7 +220,7 @@ TEST(RandomStreamsTest, CheckerComplainsWhenThePartIsOneClockSlower) {
       r->address =
           at(static_cast<std::uint32_t>(rng.below(3)), static_cast<unsigned>(rng.below(4)));
       if (rng.below(8) == 0) now += rng.below(300) * kTck;
-      while (b.door_taken()) {
+      while (b.input_taken()) {
         now = std::max(now, b.ddr.next_decision());
         b.step();
       }

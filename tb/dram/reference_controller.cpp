@@ -168,8 +168,8 @@ bool ReferenceController::submit(const ReferenceRequest& request, Picoseconds at
     wake(arrived);
   }
   if (!fits(request)) {
-    door_ = request;
-    door_arrived_ = arrived;
+    input_ = request;
+    input_arrived_ = arrived;
     return false;
   }
   enter(request, arrived);
@@ -486,10 +486,10 @@ void ReferenceController::step() {
 void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
   passed_ = place == 0 ? 0 : passed_ + columns_of(queue_[place].request);
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
-  if (door_ && fits(*door_)) {
-    enter(*door_, std::max(door_arrived_, clock + 1));
-    accepted.push_back({door_->id, ddr_.edge(clock)});
-    door_.reset();
+  if (input_ && fits(*input_)) {
+    enter(*input_, std::max(input_arrived_, clock + 1));
+    accepted.push_back({input_->id, ddr_.edge(clock)});
+    input_.reset();
   }
   // Until the first of the queue arrives there is nobody.
   if (queue_.empty()) return;

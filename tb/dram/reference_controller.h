@@ -96,7 +96,7 @@ class ReferenceController {
   // What it did.
   std::vector<Given> commands;
   std::vector<Read> reads;
-  std::vector<Accepted> accepted;  // from the door
+  std::vector<Accepted> accepted;  // from the input register
   std::uint64_t hits = 0, misses = 0, conflicts = 0;
   std::uint64_t count(Kind kind) const;
   /// Clocks with a row open, asleep with a row open, in power-down, in self-refresh, and of these
@@ -166,8 +166,8 @@ class ReferenceController {
   std::vector<Queued> queue_;  // oldest first
   std::vector<Unanswered> unanswered_;         // in the order of their arrival; kFrFcfs
   std::vector<Picoseconds> handed_out_until_;  // by master
-  std::optional<ReferenceRequest> door_;
-  std::uint64_t door_arrived_ = 0, last_arrival_ = 0;
+  std::optional<ReferenceRequest> input_;
+  std::uint64_t input_arrived_ = 0, last_arrival_ = 0;
   std::uint64_t not_before_ = 0;  // the last change of clocks or configuration
   std::uint64_t passed_ = 0;      // transfers served while the oldest request waited
   std::uint64_t expiry_ = 0;         // the interval counter runs out then

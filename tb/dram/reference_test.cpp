@@ -77,7 +77,7 @@ class Production {
     MemRequest& q = requests_.emplace_back();
     q.owner = reinterpret_cast<void*>(r.id);
     q.master = static_cast<Master>(r.master);
-    q.priority = static_cast<std::uint8_t>(r.priority);
+    q.in_path.priority = static_cast<std::uint8_t>(r.priority);
     q.write = r.write;
     q.bytes = static_cast<std::uint8_t>(r.bytes);
     q.data = data_.data();

@@ -69,7 +69,7 @@ Counts periodic_reads(const Board& board, Picoseconds period, bool crossbar) {
     for (unsigned i = 0; i < kReads; ++i) {
       all[i].address = i * kBytes;
       all[i].bytes = kBytes;
-      while (b.door_taken()) b.step();
+      while (b.input_taken()) b.step();
       b.submit_at(all[i], std::max<Picoseconds>((i + 1) * period, b.now()));
     }
     b.drain();
@@ -165,7 +165,7 @@ std::vector<unsigned> series(const char* release, const char* must, const char* 
   for (unsigned i = 0; i < all.size(); ++i) {
     all[i].address = i % 32 * 64;
     all[i].bytes = 64;
-    while (b.door_taken()) b.step();
+    while (b.input_taken()) b.step();
     b.submit_at(all[i], std::max<Picoseconds>(b.now(), kTck));
   }
   std::vector<unsigned> lengths;
@@ -248,7 +248,7 @@ Postponed postponed(const char* must) {
   for (unsigned i = 0; i < all.size(); ++i) {
     all[i].address = i % 32 * 64;
     all[i].bytes = 64;
-    while (b.door_taken()) b.step();
+    while (b.input_taken()) b.step();
     b.submit_at(all[i], std::max<Picoseconds>(b.now(), kTck));
   }
   PartChecker sheet(find_part("mt47h64m16", "25e"), kDdr, o.config.timing.CL);

@@ -203,7 +203,7 @@ TEST(DdrRegistersTest, RefreshIntervalLeavesTimeForRequests) {
   std::vector<Request> all(500);
   for (unsigned i = 0; i < all.size(); ++i) {
     all[i].address = i * 16;
-    while (b.door_taken()) b.step();
+    while (b.input_taken()) b.step();
     b.submit_at(all[i], std::max<Picoseconds>(b.now(), kTck));
   }
   b.drain();
@@ -230,8 +230,8 @@ TEST(DdrRegistersTest, LeastRefreshIntervalLetsRequestsThroughWhateverTheTimes) 
       r.write = rng.below(3) == 0;
       r.bytes = 64;
       r.address = static_cast<std::uint32_t>(rng.below(1u << 14) * 64);
-      while (b.door_taken() && ++steps < 100'000) b.step();
-      ASSERT_FALSE(b.door_taken()) << std::hex << w.sdtimr << ", RR " << w.sdrcr;
+      while (b.input_taken() && ++steps < 100'000) b.step();
+      ASSERT_FALSE(b.input_taken()) << std::hex << w.sdtimr << ", RR " << w.sdrcr;
       b.submit_at(r, std::max<Picoseconds>(b.now(), kTck));
     }
     while (b.ddr.next_decision() != kNever && ++steps < 100'000) b.step();

@@ -36,7 +36,7 @@ struct Busy {
     bench.submit(*all.back(), 9);
     for (unsigned i = 0; i < 1500; ++i) {
       all.push_back(std::make_unique<Request>(read(kB, at(1, hits ? 3 : 0, i % 128 * 16))));
-      while (bench.door_taken()) bench.step();
+      while (bench.input_taken()) bench.step();
       bench.submit_at(*all.back(), std::max<Picoseconds>(bench.now(), 20 * kTck));
     }
     bench.drain();
@@ -95,7 +95,7 @@ TEST(RowTimeTest, NoRowIsOpenForLongerThanProgrammed) {
     for (unsigned i = 0; i < 4000; ++i) {
       all.push_back(std::make_unique<Request>(
           read(rng.below(2) ? kA : kB, at(0, static_cast<unsigned>(rng.below(8)), 64), 64)));
-      while (b.door_taken()) b.step();
+      while (b.input_taken()) b.step();
       b.submit_at(*all.back(), std::max<Picoseconds>(b.now(), kTck));
     }
     b.drain();
@@ -138,7 +138,7 @@ TEST(IdleTimeTest, LongTimesOfRefreshesEndTheSame) {
       for (unsigned k = 0; k < 3; ++k) {
         all.push_back(std::make_unique<Request>(
             read(k & 1 ? kA : kB, at(static_cast<std::uint32_t>(rng.below(3)), 1), 64)));
-        while (b.door_taken()) b.step();
+        while (b.input_taken()) b.step();
         b.submit_at(*all.back(), now = std::max(now, b.now()));
       }
       b.drain();

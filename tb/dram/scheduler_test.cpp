@@ -545,7 +545,7 @@ TEST(RefreshRateTest, SaturatingReadsDelayRefreshWithinTheStandard) {
   std::vector<std::unique_ptr<Request>> all;
   for (unsigned i = 0; i < 5000; ++i) {
     all.push_back(std::make_unique<Request>(read(kA, (i % 32) * 64, 3, 64)));
-    while (b.door_taken()) b.step();
+    while (b.input_taken()) b.step();
     b.submit_at(*all.back(), std::max<Picoseconds>(b.now(), kTck));
   }
   const std::uint64_t clock = b.now() / kTck;

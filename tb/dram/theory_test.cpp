@@ -24,7 +24,7 @@ double clocks_per_request(BenchOptions o, unsigned count,
   const unsigned warm = count / 10;
   for (unsigned i = 0; i < count; ++i) {
     describe(all[i], i);
-    while (b.door_taken()) b.step();
+    while (b.input_taken()) b.step();
     b.submit_at(all[i], std::max<Picoseconds>(b.now(), kTck));
     if (i == warm) begin = b.now();
   }
@@ -291,7 +291,7 @@ TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
 
 // The crossbar hands a request over when it grants it, its last beat still on the way. If the FIFO
 // is full then and has room before the beat is there, the request counts from its own arrival.
-TEST(FifoTest, RequestAtTheDoorIsNotSeenBeforeItsArrival) {
+TEST(FifoTest, RequestInTheInputRegisterIsNotSeenBeforeItsArrival) {
   BenchOptions o = no_refresh();
   o.params.emplace_back("command_fifo", "1");
   DdrBench b(o);

@@ -12,7 +12,7 @@
 #include "model/bus/scr.h"
 #include "model/bus/tlm_master_port.h"
 #include "model/bus/tlm_slave_port.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/mem/ddr_module.h"
 #include "tb/dram/bench.h"
 #include "tb/dram/foreign.h"

@@ -78,7 +78,7 @@ class Lanes {
   /// The crossbar's slave.
   Taken forward(MemRequest& r, Picoseconds arrival) {
     count(r);
-    at_door_ = &r;
+    at_input_ = &r;
     for (std::uint64_t edge = granted_; edge < arrival / kEdge; ++edge) had_lane_[edge] = r.master;
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
     w.add(Culprit::kService, arrival - granted_ * kEdge);
@@ -98,7 +98,7 @@ class Lanes {
  private:
   void open() {
     const Picoseconds at = std::exchange(opens_, kNever);
-    MemRequest& r = *at_door_;
+    MemRequest& r = *at_input_;
     const auto unblocked_by = static_cast<Master>(rng_.below(kMasterCount));
     const std::uint64_t taken = at / kEdge + 1;
     for (std::uint64_t edge = blocked_from_; edge < taken; ++edge) had_lane_[edge] = r.master;
@@ -123,7 +123,7 @@ class Lanes {
   std::map<std::uint64_t, Master> had_lane_;  // by edge
   std::array<unsigned, kMasterCount> outstanding_{};
   std::uint64_t granted_ = 0, blocked_from_ = 0;
-  MemRequest* at_door_ = nullptr;
+  MemRequest* at_input_ = nullptr;
   Picoseconds opens_ = kNever;
   unsigned answered_ = 0;
 };
@@ -165,18 +165,18 @@ class Banks {
       if (looks_) look_before(now);
       const auto m = static_cast<unsigned>(rng_.below(8));
       Request& r = requests_[m];
-      if (r.busy || door_ != nullptr || rng_.below(4) == 0) continue;
+      if (r.busy || input_ != nullptr || rng_.below(4) == 0) continue;
       r.busy = true;
       MemRequest& q = r.path;
       q.master = static_cast<Master>(m);
-      q.priority = static_cast<std::uint8_t>(rng_.below(3));
+      q.in_path.priority = static_cast<std::uint8_t>(rng_.below(3));
       q.write = rng_.below(3) == 0;
       r.left = 1 + static_cast<unsigned>(rng_.below(4));
       q.bytes = static_cast<std::uint8_t>(16 * r.left);
       const std::uint32_t offset = m << 11 | static_cast<std::uint32_t>(rng_.below(3)) << 14;
       q.data = r.data.data();
       r.arrived = now / kClock + 1;
-      if (!ddr_.submit(q, offset, now)) door_ = &r;
+      if (!ddr_.submit(q, offset, now)) input_ = &r;
     }
   }
   const WaitTable& table() const { return ddr_.waits(); }
@@ -240,9 +240,9 @@ class Banks {
   void step() {
     ddr_.step();
     if (const auto& accepted = ddr_.news().accepted) {
-      EXPECT_EQ(accepted->request, &door_->path);
-      door_->arrived = std::max(door_->arrived, accepted->at / kClock + 1);
-      door_ = nullptr;
+      EXPECT_EQ(accepted->request, &input_->path);
+      input_->arrived = std::max(input_->arrived, accepted->at / kClock + 1);
+      input_ = nullptr;
     }
     ddr_.news().clear();
   }
@@ -255,7 +255,7 @@ class Banks {
   mem::DdrController ddr_;
   std::map<std::uint64_t, Given> given_;  // by clock
   std::array<Request, 8> requests_;
-  Request* door_ = nullptr;
+  Request* input_ = nullptr;
   std::uint64_t write_clocks_ = 0;
   unsigned done_ = 0;
 };
@@ -361,7 +361,7 @@ TEST(LoadedWaitsTest, PartsOfEachReadAddUpWithAnyScheduler) {
 
 // The data of a write burst are one piece: no turnaround lies between its columns, whether or not
 // somebody looked at them one by one.
-TEST(LoadedWaitsTest, LookingInBetweenMovesNoBlame) {
+TEST(LoadedWaitsTest, LookingInBetweenMovesNoWait) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Banks alone(seed), watched(seed, true);
     alone.run(400);

@@ -67,7 +67,7 @@ class XbarBench {
   /// The crossbar's slaves and masters.
   Taken forward(MemRequest& r, Picoseconds arrival) {
     EXPECT_EQ(arrival % kEdge, 0u);
-    const auto slave = static_cast<Slave>(r.slave);
+    const auto slave = static_cast<Slave>(r.in_path.slave);
     events.push_back({r.master, slave, granted_ / kEdge, arrival / kEdge});
     sent.push_back(&r);
     if (refuses) return Taken::kRefused;

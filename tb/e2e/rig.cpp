@@ -65,7 +65,7 @@ board::Board& Rig::build() {
   return *board_;
 }
 
-void Rig::advance(Picoseconds duration) { slices_.run(duration); }
+void Rig::advance(Picoseconds duration) { slicer_.run(duration); }
 
 void Rig::run(Picoseconds limit) {
   if (!board_) build();

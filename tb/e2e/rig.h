@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/board/board.h"
-#include "model/common/slices.h"
+#include "model/common/host_time_slicer.h"
 #include "sw/fovea/elf_image.h"
 #include "tb/oracle/frame_compare.h"
 #include "tb/oracle/lens_oracle.h"
@@ -64,7 +64,7 @@ class Rig {
   std::unique_ptr<video::StampedSource> reference_;  // a separate source for sent()
   std::unique_ptr<board::Board> board_;
   std::vector<Shown> shown_;
-  Slices slices_;
+  HostTimeSlicer slicer_;
 };
 
 /// The bytes of a rectangle of a picture.

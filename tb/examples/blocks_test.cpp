@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "model/board/board.h"
-#include "model/common/slices.h"
+#include "model/common/host_time_slicer.h"
 #include "model/soc/memory_map.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/loader.h"
@@ -39,7 +39,7 @@ struct Rig {
     views.emplace(app::board_views(*board, set, nullptr));  // before the simulation starts
     return *board;
   }
-  void run(Picoseconds t) { slices.run(t); }
+  void run(Picoseconds t) { slicer.run(t); }
   /// By its address, as a debugger does: over the configuration bus.
   std::uint32_t read(std::uint32_t address) {
     app::BoardDebugMemory memory(board->dm365);
@@ -66,7 +66,7 @@ struct Rig {
   std::unique_ptr<video::PictureSource> source;
   std::unique_ptr<board::Board> board;
   std::optional<app::GdbViews> views;
-  Slices slices;
+  HostTimeSlicer slicer;
 };
 
 soc::Placement alarm_row() {

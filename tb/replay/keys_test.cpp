@@ -113,7 +113,7 @@ TEST(ReplayFiguresTest, AGapCountsFromTheBeatThatTheRecordNames) {
 }
 
 /// When each record of streams 1 and 2 was done, told by marks of stream 0 that wait for it.
-std::array<std::vector<Picoseconds>, 2> ends_at_the_door(std::array<std::uint8_t, 2> priority,
+std::array<std::vector<Picoseconds>, 2> ends_at_the_input(std::array<std::uint8_t, 2> priority,
                                                          bool write) {
   trace::TraceInfo info = board_info();
   info.streams[0] = {};  // counts picoseconds
@@ -146,18 +146,18 @@ std::array<std::vector<Picoseconds>, 2> ends_at_the_door(std::array<std::uint8_t
 }
 
 // How equal masters take turns is another matter; a master's own requests keep their order.
-TEST(MemoryOnlyTest, TheOldestOfAMasterGoesThroughTheDoorFirst) {
+TEST(MemoryOnlyTest, TheOldestOfAMasterGoesToTheInputFirst) {
   for (const bool write : {false, true})
     for (const std::array<std::uint8_t, 2> priority : {std::array<std::uint8_t, 2>{7, 7}, {7, 0}})
-      for (const auto& of_master : ends_at_the_door(priority, write)) {
+      for (const auto& of_master : ends_at_the_input(priority, write)) {
         ASSERT_EQ(of_master.size(), 24u);
         EXPECT_TRUE(std::is_sorted(of_master.begin(), of_master.end())) << "write " << write;
       }
 }
 
-TEST(MemoryOnlyTest, TheUrgentGoThroughTheDoorFirst) {
+TEST(MemoryOnlyTest, TheUrgentGoToTheInputFirst) {
   for (const bool write : {false, true}) {
-    const auto ends = ends_at_the_door({7, 0}, write);
+    const auto ends = ends_at_the_input({7, 0}, write);
     // Of the first master eight at most are inside or in the input register when the second one's come. When
     // its tenth goes in, all the urgent ones have, and but for the eight places they are done.
     EXPECT_GT(ends[0][9], ends[1][15]) << "write " << write;

@@ -138,11 +138,11 @@ struct Initiator : sc_core::sc_module, MemInitiatorIf {
 };
 
 struct Chip {
-  QuietPhase quiet{"quiet"};
+  EndOfInstant end_of_instant{"end_of_instant"};
   bus::ConfigBusParams params;
   bus::ConfigBus config{"config",
                         params,
-                        quiet,
+                        end_of_instant,
                         {{"edma", 0x01C0'0000, 0x1'0000, bus::ConfigBus::Speed::kFast},
                          {"psc", 0x01C4'1000, 0x1000, bus::ConfigBus::Speed::kFast}}};
   Block edma{"edma"}, psc{"psc"};

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/bus/agent.h"
+#include "model/bus/lookahead_initiator.h"
 #include "model/common/burst_master.h"
 #include "model/cpu/arm926.h"
 #include "tb/iss/assembler.h"
@@ -114,17 +114,17 @@ TEST(HorizonLimitTest, TheCoreSeesAnInterruptAtTheFirstBoundaryStrictlyBehindIt)
 }
 
 /// Reads once, at a given time.
-class Reader : public bus::Agent<Reader> {
+class Reader : public bus::LookaheadInitiator<Reader> {
  public:
   Picoseconds first = 0;
   Reader(sc_core::sc_module_name name, std::uint32_t address, Picoseconds at)
-      : Agent(name, 1), address_(address), at_(at) {
+      : LookaheadInitiator(name, 1), address_(address), at_(at) {
     SC_HAS_PROCESS(Reader);
     SC_THREAD(run);
   }
 
  private:
-  friend bus::Agent<Reader>;
+  friend bus::LookaheadInitiator<Reader>;
   void run() {
     enter();
     sleep_until(at_);

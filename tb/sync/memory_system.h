@@ -4,7 +4,7 @@
 
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/mem/ddr_module.h"
 
 namespace fovea::sync {
@@ -24,7 +24,7 @@ inline void start_sdram(mem::DdrModule& ddr) {
 struct MemorySystem {
   MemorySystem(bus::AddressMap map, bool strict, Frequency ddr_clock, Frequency scr_clock)
       : scr("scr", xbar_params, ddr_params, map, strict),
-        config("config", config_params, quiet,
+        config("config", config_params, end_of_instant,
                {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
         ddr("ddr", ddr_params, scr.memory()),
         ddr_clk("ddr_clk", ddr_clock),
@@ -39,7 +39,7 @@ struct MemorySystem {
     start_sdram(ddr);
   }
 
-  QuietPhase quiet{"quiet"};
+  EndOfInstant end_of_instant{"end_of_instant"};
   bus::CrossbarParams xbar_params;
   bus::ConfigBusParams config_params;
   mem::DdrParams ddr_params;

@@ -140,7 +140,7 @@ std::string run(const Case& s) {
   bus::Scr& scr = system.scr;
   mem::DdrModule& ddr = system.ddr;
   cpu::Arm926 arm("arm", cpu_params, ram, 0);
-  cpu::TcmDma dma("dma", arm.core(), system.quiet);
+  cpu::TcmDma dma("dma", arm.core(), system.end_of_instant);
   Traffic first("first", Master::kEdmaTc0Write, s.seed * 2 + 1),
       second("second", Master::kEdmaTc1Read, s.seed * 2 + 2);
   ClockSignal arm_clk{"arm_clk", Frequency(297'000'000)};

@@ -112,7 +112,7 @@ void TestBlock::raise() {
 
 TrafficMaster::TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports,
                              Log& log, TestBlock& block)
-    : Agent(name, ports), number_(number), ports_(ports), log_(log), block_(block) {
+    : LookaheadInitiator(name, ports), number_(number), ports_(ports), log_(log), block_(block) {
   SC_HAS_PROCESS(TrafficMaster);
   SC_THREAD(run);
 }
@@ -225,14 +225,14 @@ void TrafficMaster::execute(const Program& p) {
 
 Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   Log log;
-  QuietPhase quiet("quiet");
+  EndOfInstant end_of_instant("end_of_instant");
   bus::CrossbarParams xp;
   bus::ConfigBusParams cp;
   mem::DdrParams dp;
   dp.check.set("commands");
   bus::Scr scr("scr", xp, dp, {}, strict);
   using Speed = bus::ConfigBus::Speed;
-  bus::ConfigBus config("config", cp, quiet,
+  bus::ConfigBus config("config", cp, end_of_instant,
                         {{"block", kRegs, 0x1000, Speed::kFast},
                          {"ddr", 0x2000'0000, 0x8000, Speed::kFast}});
   mem::DdrModule ddr("ddr", dp, scr.memory());

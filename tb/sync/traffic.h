@@ -7,12 +7,12 @@
 #include <systemc>
 #include <vector>
 
-#include "model/bus/agent.h"
+#include "model/bus/lookahead_initiator.h"
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
 #include "model/common/burst_master.h"
 #include "model/common/bus_target.h"
-#include "model/common/quiet.h"
+#include "model/common/end_of_instant.h"
 #include "model/common/timer.h"
 #include "model/mem/ddr_module.h"
 
@@ -84,7 +84,7 @@ class TestBlock : public BusTarget {
 
 /// One master of a random program: sleeps until the program starts, executes it, and logs the
 /// results.
-class TrafficMaster : public bus::Agent<TrafficMaster> {
+class TrafficMaster : public bus::LookaheadInitiator<TrafficMaster> {
  public:
   TrafficMaster(sc_core::sc_module_name name, unsigned number, unsigned ports, Log& log,
                 TestBlock& block);
@@ -97,7 +97,7 @@ class TrafficMaster : public bus::Agent<TrafficMaster> {
   bool finished = false;
 
  private:
-  friend bus::Agent<TrafficMaster>;
+  friend bus::LookaheadInitiator<TrafficMaster>;
   static constexpr unsigned kSlots = 6;
   struct Op {
     Transaction tx;

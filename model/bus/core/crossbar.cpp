@@ -66,12 +66,12 @@ void Crossbar::set_priority(Master m, unsigned priority) {
 void Crossbar::submit(MemRequest& request, Slave slave) {
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
-  request.slave = static_cast<std::uint8_t>(slave);
+  request.in_path.slave = static_cast<std::uint8_t>(slave);
   if (observer_) [[unlikely]]
     observer_->submitted(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
-  SlaveState& s = slaves_[request.slave];
+  SlaveState& s = slaves_[request.in_path.slave];
   const std::uint32_t bit = 1u << index(request.master);
   const bool running = scr_.running();  // else set_clock() says when
   const std::uint64_t crossed =
@@ -211,20 +211,20 @@ inline void Crossbar::sum_grants(SlaveState& s) {
 
 /// The slave's input is free again. @return the edge at which the request is in the slave's hands
 std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblocked_by) {
-  SlaveState& s = slaves_[request.slave];
+  SlaveState& s = slaves_[request.in_path.slave];
   s.blocked = false;
   // s.free is when the request's last beat is at the slave: it is not acknowledged before.
   // A faster clock since the grant does not bring it there before the time that was announced.
-  s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.accepted_at)});
+  s.free = std::max({s.free, scr_.edge_after(at), scr_.edge_at_or_after(request.in_path.accepted_at)});
   const Picoseconds taken = scr_.edge(s.free);
   if (s.grants_made) {
     Grant& g = s.grant(s.grants_made - 1);
     g.end = s.free;
     g.end_at = taken;
   }
-  if (request.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    charge(request, culprit(unblocked_by), taken - request.accepted_at);
-  request.accepted_at = taken;
+  if (request.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
+    charge(request, culprit(unblocked_by), taken - request.in_path.accepted_at);
+  request.in_path.accepted_at = taken;
   return s.free;
 }
 
@@ -252,17 +252,17 @@ void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
   };
   add(Culprit::kBridge, free - first);
   if (r.first != free) add(culprit(r.master), r.first - free);
-  add(Culprit::kService, first - r.accepted_at - attributed);
+  add(Culprit::kService, first - r.in_path.accepted_at - attributed);
 }
 
 /// Everything about an outcome but the call that reports it.
 void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) {
   const auto [first, last, attributed, error] = outcome;
-  const bool ddr = request.slave == static_cast<std::uint8_t>(Slave::kDdr);
+  const bool ddr = request.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr);
   request.error = error;
   if (ddr) {
     // Nor does a faster clock bring data before the command was there.
-    return_read(request, std::max(first, request.accepted_at + attributed), last, attributed);
+    return_read(request, std::max(first, request.in_path.accepted_at + attributed), last, attributed);
   } else {
     const std::uint64_t latency = ports_[index(request.master)].response_latency;
     request.first = scr_.edge(scr_.edge_at_or_after(first) + latency);
@@ -270,7 +270,7 @@ void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) 
         last <= first ? request.first : scr_.edge(scr_.edge_at_or_after(last) + latency);
   }
   if (error && request.locked) {  // its master gives up
-    slaves_[request.slave].open_to = ~0u;
+    slaves_[request.in_path.slave].open_to = ~0u;
     plan();
   }
   if (observer_) [[unlikely]]

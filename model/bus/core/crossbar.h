@@ -201,7 +201,7 @@ class Crossbar {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
     set_outcome(request, at, at);
     request.error = false;
-    charge(request, Culprit::kBridge, request.first - request.accepted_at);
+    charge(request, Culprit::kBridge, request.first - request.in_path.accepted_at);
     if (observer_) [[unlikely]]
       observer_->responded(request);
     host.respond(request);
@@ -215,7 +215,7 @@ class Crossbar {
   }
   void new_head(unsigned port, std::uint64_t visible) {
     visible_[port] = visible;
-    slaves_[ports_[port].front().request->slave].heads |= 1u << port;
+    slaves_[ports_[port].front().request->in_path.slave].heads |= 1u << port;
   }
   void count(unsigned port, bool write, const MemRequest& r, Picoseconds at);
   void settle_outcome(MemRequest& r, const SlaveOutcome& outcome);
@@ -249,7 +249,7 @@ class Crossbar {
   MasterStats& st = *ports_[port].stats;
   ++st.transactions;
   (write ? st.write_bytes : st.read_bytes) += r.bytes;
-  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr))
+  if (r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
     (write ? st.ddr_write_bytes : st.ddr_read_bytes) += r.bytes;
   timeline.add(port, write, r.bytes, at);
 }
@@ -261,7 +261,7 @@ void Crossbar::step(Host& host) {
   MemRequest& r = *item.request;
   const std::uint64_t crossed = item.crossed;
   const std::uint32_t grants = item.grants;
-  SlaveState& s = slaves_[r.slave];
+  SlaveState& s = slaves_[r.in_path.slave];
   const std::uint32_t bit = 1u << next_port_;
   s.heads &= ~bit;
   s.visible_heads &= ~bit;
@@ -281,8 +281,8 @@ template <CrossbarHost Host>
 [[gnu::always_inline]] inline void Crossbar::grant(Host& host, MemRequest& r,
                                                    std::uint64_t crossed, std::uint32_t grants) {
   const Port& p = ports_[next_port_];
-  SlaveState& s = slaves_[r.slave];
-  r.priority = p.priority;
+  SlaveState& s = slaves_[r.in_path.slave];
+  r.in_path.priority = p.priority;
   const unsigned cycles = r.write ? p.beats(r.bytes) : 1u;
   s.free = next_edge_ + cycles;
   s.last = next_port_;
@@ -291,7 +291,7 @@ template <CrossbarHost Host>
 
   const std::uint64_t arrival = next_edge_ + cycles;
   const Picoseconds at = scr_.edge(arrival);
-  if (r.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
+  if (r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
     if (crossed == next_edge_)
       charge(r, Culprit::kBridge, next_ - r.issued);
     else
@@ -299,13 +299,13 @@ template <CrossbarHost Host>
     charge(r, Culprit::kService, at - next_);
   }
   s.grant(s.grants_made++) = {next_edge_, arrival, next_, at, next_port_};
-  r.accepted_at = at;
+  r.in_path.accepted_at = at;
   const Taken taken = host.forward(r, at);
   if (taken == Taken::kWaits)
     s.blocked = true;
   else if (taken == Taken::kRefused)
     slave_done(host, r, {at, at, 0, true});
-  else if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr))
+  else if (r.write && r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
     acknowledge_write(host, r, arrival);
 }
 
@@ -316,8 +316,8 @@ template <bool kWrite, CrossbarHost Host>
   const auto m = static_cast<std::uint8_t>(index(r.master));
   const Port& p = ports_[m];
   SlaveState& s = slaves_[kDdr];
-  r.slave = kDdr;
-  r.priority = p.priority;
+  r.in_path.slave = kDdr;
+  r.in_path.priority = p.priority;
   const std::uint64_t arrival = g.edge + (kWrite ? p.beats(r.bytes) : 1u);
   const Picoseconds at = scr_.edge(arrival);
   s.free = arrival;
@@ -335,7 +335,7 @@ template <bool kWrite, CrossbarHost Host>
     if (r.parts) r.parts->add(Culprit::kService, service);
   }
   s.grant(s.grants_made++) = {g.edge, arrival, g.at, at, m};
-  r.accepted_at = at;
+  r.in_path.accepted_at = at;
   const Taken taken = host.forward(r, at);
   bool over = false;
   if (taken != Taken::kYes) [[unlikely]] {
@@ -358,7 +358,7 @@ template <bool kWrite, CrossbarHost Host>
 template <CrossbarHost Host>
 void Crossbar::slave_accepted(Host& host, MemRequest& r, Picoseconds at, Master unblocked_by) {
   const std::uint64_t edge = reopen(r, at, unblocked_by);
-  if (r.write && r.slave == static_cast<std::uint8_t>(Slave::kDdr)) acknowledge_write(host, r, edge);
+  if (r.write && r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr)) acknowledge_write(host, r, edge);
   plan();
 }
 

@@ -4,7 +4,6 @@
 
 #include "model/common/check.h"
 #include "model/mem/core/ddr_controller.h"
-#include "model/mem/core/scheduler/policies.h"
 
 namespace fovea::mem {
 
@@ -15,14 +14,19 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store)
       write_fifo_words_(static_cast<unsigned>(params.write_fifo() / 8)),
       request_latency_(static_cast<unsigned>(params.request_latency())),
       return_latency_(static_cast<unsigned>(params.return_latency())),
-      clock_restart_(static_cast<unsigned>(params.clock_restart())),
       retention_(params.retention()),
-      release_(static_cast<unsigned>(params.refresh_release())),
-      need_(static_cast<unsigned>(params.refresh_need())),
-      must_(static_cast<unsigned>(params.refresh_must())),
-      gap_limit_(static_cast<unsigned>(params.refresh_gap())),
-      policy_(scheduler_policy(params)) {
-  return_channel_.set_fifo(static_cast<unsigned>(params.read_fifo()));
+      refresh_({static_cast<unsigned>(params.refresh_release()),
+                static_cast<unsigned>(params.refresh_need()),
+                static_cast<unsigned>(params.refresh_must()),
+                static_cast<unsigned>(params.refresh_gap())},
+               stats),
+      power_(static_cast<unsigned>(params.clock_restart()), stats),
+      scheduler_(scheduler_of(params)) {
+  returns_.channel().set_fifo(static_cast<unsigned>(params.read_fifo()));
+  with_scheduler([&]<Scheduler S>(S) {
+    returns_.set_reorders(S::kReordersReads);
+    rows_.close_after_access(S::kClosesRows);
+  });
   configure(DdrConfig{}, 0);
 }
 
@@ -37,7 +41,7 @@ void DdrController::set_clocks(Frequency ddr, Frequency scr, Picoseconds at) {
   running_ = ddr_.running() && scr_.running();
   input_blocked_ = !running_ || input_taken_;
   if (ddr_.running()) command_free_ = std::max(command_free_, ddr_.edge_after(at));
-  if (scr_.running()) return_channel_.start(scr_.edge_at_or_after(scr_.start()));
+  if (scr_.running()) returns_.channel().start(scr_.edge_at_or_after(scr_.start()));
   if (on_change) on_change(at);
   plan_anew();
 }
@@ -46,16 +50,15 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   catch_up(at);
   const std::uint64_t now = ddr_.running() ? ddr_.edge_after(at) : 0;
   if (config.low_power != config_.low_power) sleep_changes(config.low_power, now);
-  // Refresh keeps its phase when only timing changes; a new interval starts to count now, and those
-  // that ran out before are owed.
-  if (next_expiry_ != 0 && now != 0) count_owed(now - 1);
-  if (config.refresh_interval != config_.refresh_interval || next_expiry_ == 0)
-    next_expiry_ = config.refresh_interval ? now + config.refresh_interval : kNoClock;
+  // Refresh keeps its phase when only timing changes.
+  refresh_.set_interval(config.refresh_interval, now);
+  rows_.set_limit(std::uint64_t{config.row_intervals} * config.refresh_interval);
   command_free_ = std::max(command_free_, now);
   config_ = config;
+  columns_take_effect();
   device_.configure(config.timing);
   attribution_.set_write_clocks(config.timing.WL() + DdrTiming::kBurstClocks);
-  return_channel_.set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
+  returns_.channel().set_latency(std::max(config.read_latency, config.timing.CL) + return_latency_);
   const unsigned bank_bits = static_cast<unsigned>(std::bit_width(config.timing.banks)) - 1;
   bank_mask_ = config.timing.banks - 1;
   if (config.bank_on_top) {
@@ -68,7 +71,7 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
     row_mask_ = ~0u;
   }
   if (on_change) on_change(at);
-  urgency_changed();
+  update_deadlines();
   plan_anew();
 }
 

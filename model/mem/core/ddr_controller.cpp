@@ -1,9 +1,11 @@
+// Requests and commands: what the controller takes in, and what it issues for them.
 #include "model/mem/core/ddr_controller.h"
 
 #include <bit>
 #include <utility>
 
 #include "model/common/check.h"
+#include "model/mem/core/ddr_plan.h"
 #include "model/mem/core/move_bytes.h"
 
 namespace fovea::mem {
@@ -13,28 +15,11 @@ void DdrController::catch_up(Picoseconds at) {
   const std::uint64_t until = ddr_.edge_after(at);
   if (in_burst_)
     columns_before(until);
-  else if (count_ == 0)
+  else if (queue_.count() == 0)
     idle(until);
-  if (count_) count_queued(until);
-  count_asleep(until);
+  if (queue_.count()) count_queued(until);
+  power_.count(until, device_.all_closed());
   stats.row_open_clocks += device_.take_open_clocks(until);
-}
-
-/// Clocks since the queue filled, or since these were counted last.
-inline void DdrController::count_queued(std::uint64_t until) {
-  if (until <= queued_since_) return;
-  stats.queued_clocks += until - queued_since_;
-  queued_since_ = until;
-}
-
-void DdrController::count_asleep(std::uint64_t until) {
-  if (asleep_ == LowPower::kOff || until <= asleep_since_) return;
-  const std::uint64_t clocks = until - asleep_since_;
-  asleep_since_ = until;
-  (refreshes_itself(asleep_) ? stats.self_refresh_clocks : stats.power_down_clocks) += clocks;
-  if (asleep_ == LowPower::kClockStop) stats.clock_stop_clocks += clocks;
-  if (asleep_ == LowPower::kPowerDown && !device_.all_closed())
-    stats.active_power_down_clocks += clocks;
 }
 
 bool DdrController::submit(MemRequest& r, std::uint32_t offset, Picoseconds at) {
@@ -57,7 +42,7 @@ template <class Queued>
 [[gnu::always_inline]] inline void put(Queued& r, MemRequest& from, std::uint32_t offset) {
   r.origin = &from;
   r.master = from.master;
-  r.priority = from.priority;
+  r.priority = from.in_path.priority;
   r.write = from.write;
   r.bytes = from.bytes;
   r.address = offset;
@@ -72,42 +57,38 @@ template <class Queued>
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
   const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
-  if (count_ != 0) return queue(request, offset, arrived);
+  if (queue_.count() != 0) return queue(request, offset, arrived);
   if (idle_calm_ < arrived) [[unlikely]] {
     idle(arrived);
     wake(arrived);
   }
   last_arrival_ = queued_since_ = arrived;
-  count_ = 1;
-  single_ = true;
-  put(slots_[0].request, request, offset);
-  fill(slots_[0], arrived);
-  plan_one(slots_[0]);
+  Entry& e = queue_.begin_single();
+  put(e.request, request, offset);
+  fill(e, arrived);
+  plan_one(e);
   return true;
 }
 
 bool DdrController::queue(MemRequest& request, std::uint32_t offset, std::uint64_t arrived) {
-  const bool was_alone = single_;
-  if (was_alone) join_queue();
-  if (count_ >= fifo_entries_ ||
-      (request.write &&
-       write_words_held_ + write_words(offset, request.bytes) > write_fifo_words_)) {
+  const bool was_single = queue_.single();
+  if (was_single) join_single();
+  if (!fits(request.write, offset, request.bytes)) {
     input_taken_ = input_blocked_ = true;
     put(input_, request, offset);
     input_arrived_ = arrived;
     return false;
   }
-  Entry& e = free_entry();
+  Entry& e = queue_.free_entry();
   put(e.request, request, offset);
   take(e, arrived);
   // A command chosen for a clock before the newcomer is ready stands; no other can come before then.
-  const std::uint64_t seen = entry(count_ - 1).ready;
-  if (in_burst_ || seen > choice_.at) return true;
-  const std::uint64_t edge = std::max(command_free_, seen);
-  if (!was_alone && stands_with(count_ - 1, edge, (1u << (count_ - 1)) - 1))
-    next_ = ddr_.edge(choice_.at);
-  else
+  if (in_burst_ || e.ready > plan_.choice.at) return true;
+  const std::uint64_t edge = std::max(command_free_, e.ready);
+  if (was_single)
     plan_from(edge);
+  else
+    plan_with_newest(edge);
   return true;
 }
 
@@ -124,240 +105,66 @@ inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
   if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
 
-/// The single request in slot 0 becomes the first of the queue.
-void DdrController::join_queue() {
-  single_ = false;
-  Entry& e = slots_[0];
-  free_slots_ ^= 1u;
-  queue_.add(0, 0, e.request.master, e.bank, e.request.priority, e.request.write);
+/// The single request becomes the first of the queue.
+void DdrController::join_single() {
+  const Entry& e = queue_.entry(0);
+  queue_.join_single(device_.row(e.bank) == e.row);
   attribution_.begin_queue(e.ready);
-  offered_ = 1u;
-  hits_ = device_.row(e.bank) == e.row;
-  write_words_held_ = e.request.write ? write_words(e.request.address, e.request.bytes) : 0u;
 }
 
 /// The request in this entry joins the queue as the newest one.
 void DdrController::take(Entry& e, std::uint64_t arrived) {
-  const Queued& request = e.request;
-  const auto slot = static_cast<unsigned>(&e - slots_.data());
-  const unsigned position = count_++;
-  const Positions bit = 1u << position;
-  free_slots_ ^= 1u << slot;
   last_arrival_ = arrived;
   fill(e, arrived);
-  attribution_.joined(position, e.ready);
-  const Positions older = queue_.of_master(request.master);
-  queue_.add(position, slot, request.master, e.bank, request.priority, request.write);
-  if (device_.row(e.bank) == e.row) hits_ |= bit;
-  if (request.write) write_words_held_ += write_words(request.address, request.bytes);
-  const auto goes_before = [&] {
-    return policy_.free_order ? !bound_by(e, older) : !request.write && passes(e, older);
-  };
-  if (older == 0 || goes_before()) offered_ |= bit;
-}
-
-/// Rule 1: a master offers its oldest command; a read may pass an older write of the same master
-/// that is in another 2048-byte block and not more urgent.
-bool DdrController::passes(const Entry& read, Positions older) const {
-  if (older & ~queue_.writes()) return false;
-  const Queued& r = read.request;
-  for (; older; older &= older - 1) {
-    const Queued& o = entry(oldest(older)).request;
-    if ((o.address >> 11) == (r.address >> 11) || o.priority < r.priority) return false;
-  }
-  return true;
-}
-
-/// What a master offers of its requests: no more than the oldest one and the first read.
-inline void DdrController::offer(Positions of_one_master) {
-  if (of_one_master == 0) return;
-  offered_ |= of_one_master & -of_one_master;
-  const Positions reads = of_one_master & ~queue_.writes(), first = reads & -reads;
-  if (first & ~offered_ && passes(entry(oldest(first)), of_one_master & (first - 1)))
-    offered_ |= first;
-}
-
-/// Chooses the next command and its clock from the present state alone, so it does not matter when
-/// or how often it is called.
-inline void DdrController::plan() {
-  if (count_ == 0)
-    next_ = kNever;
-  else if (count_ > 1)
-    return plan_many();
-  else
-    plan_one(entry(0));
-  plain_ = false;
-}
-
-/// The same after a change from outside: a burst may be under way or the clock stopped.
-void DdrController::plan_anew() {
-  next_ = kNever;
-  if (count_ == 0 || !running_) return;
-  if (single_) join_queue();
-  if (!in_burst_) return plan_many();
-  if (next_column_ < command_free_) {  // it is finished before anything else
-    choice_.at += command_free_ - next_column_;
-    next_column_ = command_free_;
-  }
-  next_ = ddr_.edge(choice_.at);
-}
-
-/// The usual case: one request, nothing to choose from, and no refresh that is urgent.
-inline void DdrController::plan_one(Entry& e) {
-  const std::uint64_t edge = std::max(command_free_, e.ready);
-  const Cmd cmd = needed(e);
-  const std::uint64_t at = earliest(e, cmd, edge);
-  if (at >= calm_until_) [[unlikely]] {
-    if (single_) join_queue();
-    return plan_many();
-  }
-  choice_ = {&e, at, cmd};
-  next_ = ddr_.edge(at);
+  attribution_.joined(queue_.count(), e.ready);
+  const Positions older = queue_.order().of_master(e.request.master);
+  const unsigned position = queue_.add(e, device_.row(e.bank) == e.row);
+  if (with_scheduler([&]<Scheduler S>(S) { return S::competes(queue_, e, older); }))
+    queue_.compete(1u << position);
 }
 
 template <Cmd kCmd>
-inline void DdrController::note(std::uint64_t clock, Picoseconds at) {
+inline void DdrController::note(std::uint64_t clock, Picoseconds at, unsigned burst) {
   constexpr bool kColumn = kCmd == Cmd::kRd || kCmd == Cmd::kWr;
-  IssuedCommand& g = attribution_.add(clock, at, kColumn ? choice_.entry : nullptr);
+  Entry* const entry = plan_.choice.entry;
+  IssuedCommand& g = attribution_.add(clock, at, kColumn ? entry : nullptr);
   g.cmd = kCmd;
+  g.burst = static_cast<std::uint8_t>(burst);
   if constexpr (kCmd == Cmd::kRef || kCmd == Cmd::kPreAll)
     g.cause = WaitAttribution::kRefreshed;
   else
-    g.cause = static_cast<std::uint8_t>(index(choice_.entry->request.master));
+    g.cause = static_cast<std::uint8_t>(index(entry->request.master));
   if constexpr (kCmd == Cmd::kAct || kCmd == Cmd::kPre)
-    g.before = std::exchange(choice_.entry->prepared, attribution_.count());
+    g.before = std::exchange(entry->prepared, attribution_.count());
 }
 
+/// Whatever is no column command.
 template <Cmd kCmd>
 inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t clock,
                                  Picoseconds at) {
   device_.issue<kCmd>(bank, row, clock);
-  if constexpr (kCmd == Cmd::kAct) {
-    for (Positions set = queue_.of_bank(bank); set; set &= set - 1)
-      if (entry(oldest(set)).row == row) hits_ |= set & -set;
-  } else if constexpr (kCmd == Cmd::kPre) {
-    hits_ &= ~queue_.of_bank(bank);
-  } else if constexpr (kCmd == Cmd::kPreAll) {
-    hits_ = 0;
-  }
+  if constexpr (kCmd == Cmd::kAct) queue_.row_opened(bank, row);
+  if constexpr (kCmd == Cmd::kPre) queue_.row_closed(bank);
+  if constexpr (kCmd == Cmd::kPreAll) queue_.all_rows_closed();
   command_free_ = clock + 1;
   note<kCmd>(clock, at);
-  if (hook_) [[unlikely]]
-    hook_(hook_self_, kCmd, bank, row, clock);
+  call_hook(kCmd, bank, row, clock);
 }
-
-void DdrController::issue_refresh(std::uint64_t clock, Picoseconds at) {
-  issue<Cmd::kRef>(0, 0, clock, at);
-  ++stats.refreshes;
-  gap_ = 0;
-  if (owed_) --owed_;
-  if (forced_) --forced_;
-  if (owed_ <= release_) catching_up_ = false;
-  closing_ = false;
-  urgency_changed();
-}
-
-/// What falls into the time without requests: at the "may" level each refresh is done as soon as it
-/// is owed; then the part goes to sleep, if software allows it. The PREA belongs to the REF: once it is
-/// issued, a request that comes waits for both. This cannot cause anything but later row misses and
-/// waiting, so it is caught up lazily.
-[[gnu::noinline]] void DdrController::idle(std::uint64_t until) {
-  for (;;) {
-    if (refreshes_itself(asleep_)) return;
-    if (asleep_ == LowPower::kPowerDown) {
-      const std::uint64_t at = std::max(next_expiry_, cke_free_);
-      if (at >= until) return;
-      wake(at);
-    }
-    std::uint64_t from = command_free_;
-    if (owed_ == 0) {
-      if (config_.low_power != LowPower::kOff && fall_asleep(std::min(until, next_expiry_)))
-        continue;
-      pass_over_refreshes(until);
-      if (next_expiry_ >= until) return;
-      from = std::max(command_free_, next_expiry_);
-      if (from >= until) return;
-      count_owed(from);
-    }
-    if (!config_.refresh_interval && !closing_) return;  // owed from before it was switched off
-    if (!device_.all_closed()) {
-      const std::uint64_t at = std::max(from, device_.earliest_pre_all());
-      if (at >= until) return;
-      issue<Cmd::kPreAll>(0, 0, at, ddr_.edge(at));
-      closing_ = true;
-      urgency_changed();
-      from = at + 1;
-    }
-    const std::uint64_t at = std::max(from, device_.earliest_refresh());
-    if (at >= until) return;
-    count_owed(at);
-    issue_refresh(at, ddr_.edge(at));
-  }
-}
-
-/// Entry with the last data over, before `until`. Power-down leaves rows open; self-refresh needs
-/// them closed. Entry at once, rather than after some time without requests, is assumed.
-bool DdrController::fall_asleep(std::uint64_t until) {
-  const bool self_refresh = refreshes_itself(config_.low_power);
-  if (self_refresh && !device_.all_closed()) {
-    const std::uint64_t at = std::max(command_free_, device_.earliest_pre_all());
-    if (at >= until) return false;
-    issue<Cmd::kPreAll>(0, 0, at, ddr_.edge(at));
-  }
-  std::uint64_t at = std::max({command_free_, device_.quiet(), cke_free_});
-  if (self_refresh) at = std::max(at, device_.earliest_refresh());
-  if (at >= until) return false;
-  asleep_ = config_.low_power;
-  asleep_since_ = at;
-  asleep_at_ = ddr_.edge(at);
-  cke_free_ = at + config_.timing.nCKE;
-  ++(self_refresh ? stats.self_refreshes : stats.power_downs);
-  mark(self_refresh ? Cmd::kSre : Cmd::kPde, at);
-  return true;
-}
-
-/// CKE rises for what comes at `clock`; commands follow tXP later, or tXSNR and for reads tXSRD.
-/// After self-refresh the refresh interval starts anew (assumed).
-[[gnu::noinline]] void DdrController::wake(std::uint64_t clock) {
-  if (asleep_ == LowPower::kOff) return;
-  const DdrTiming& t = config_.timing;
-  const bool self_refresh = refreshes_itself(asleep_);
-  if (asleep_ == LowPower::kClockStop) clock += clock_restart_;
-  const std::uint64_t at = std::max(clock, cke_free_);
-  count_asleep(at);
-  asleep_ = LowPower::kOff;
-  cke_free_ = at + t.nCKE;
-  mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
-  command_free_ = at + (self_refresh ? t.nXSNR : t.nXP);
-  if (!self_refresh) return;
-  lose_unrefreshed(ddr_.edge(at) - asleep_at_);
-  device_.put_off_reads(at + t.nXSRD);
-  owed_ = gap_ = 0;
-  if (config_.refresh_interval) next_expiry_ = at + config_.refresh_interval;
-  urgency_changed();
-}
-
-void DdrController::mark(Cmd cmd, std::uint64_t clock) {
-  command_free_ = std::max(command_free_, clock + 1);
-  IssuedCommand& g = attribution_.add(clock, ddr_.edge(clock));
-  g.cmd = cmd;
-  g.cause = WaitAttribution::kAsleep;
-  if (hook_) hook_(hook_self_, cmd, 0, 0, clock);
-}
+// For ddr_idle.cpp.
+template void DdrController::issue<Cmd::kPreAll>(unsigned, std::uint32_t, std::uint64_t, Picoseconds);
+template void DdrController::issue<Cmd::kRef>(unsigned, std::uint32_t, std::uint64_t, Picoseconds);
 
 void DdrController::step() {
-  if (choice_.at >= next_expiry_) [[unlikely]]
-    count_owed(choice_.at);
-  if (choice_.cmd == Cmd::kWr) return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
-  if (choice_.cmd == Cmd::kRd) return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
+  count_owed(plan_.choice.at);
+  if (plan_.choice.cmd == Cmd::kWr) return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
+  if (plan_.choice.cmd == Cmd::kRd) return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
   prepare();
 }
 
 /// Whatever is no column command.
 [[gnu::noinline]] void DdrController::prepare() {
-  const std::uint64_t clock = choice_.at;
-  Entry* const e = choice_.entry;
-  switch (choice_.cmd) {
+  const auto [e, clock, cmd, position, bank] = plan_.choice;
+  switch (cmd) {
     case Cmd::kAct:
       if (!e->classified) {
         ++stats.row_misses;
@@ -391,110 +198,138 @@ void DdrController::step() {
   plan();
 }
 
-bool DdrController::row_wanted(const Entry& by_others) const {
-  if (single_) return false;
-  for (unsigned i = 0; i < count_; ++i) {
-    const Entry& o = entry(i);
-    if (&o != &by_others && o.bank == by_others.bank && o.row == by_others.row) return true;
-  }
-  return false;
-}
-
-/// The last column of a request under the closed-page rule.
-template <Cmd kCmd>
-[[gnu::noinline]] void DdrController::issue_closing_column(const Entry& e, std::uint64_t clock) {
-  if (row_wanted(e)) return issue<kCmd>(e.bank, e.row, clock, next_);
-  device_.issue<kCmd>(e.bank, e.row, clock);
-  device_.close_when_legal(e.bank);
-  hits_ &= ~queue_.of_bank(e.bank);
+/// A row that has been open for too long; whoever waits for this PRE waits for the upkeep of the part, as
+/// for refresh.
+void DdrController::close_overdue_row(std::uint64_t clock) {
+  const unsigned bank = plan_.choice.bank;
+  device_.issue<Cmd::kPre>(bank, 0, clock);
+  queue_.row_closed(bank);
+  ++stats.overdue_rows;
   command_free_ = clock + 1;
-  note<kCmd>(clock, next_);
-  if (hook_) hook_(hook_self_, kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
+  IssuedCommand& g = attribution_.add(clock, next_);
+  g.cause = WaitAttribution::kRefreshed;
+  g.before = 0;
+  g.cmd = Cmd::kPreAll;
+  call_hook(Cmd::kPre, bank, 0, clock);
+  update_deadlines();
 }
 
 /// The first BL8 column command of a request. All its data moves now, since nothing can come
 /// between its bursts; for the same reason the next decision is its last column.
 template <Cmd kCmd>
 void DdrController::first_column() {
-  const Entry& e = *choice_.entry;
+  const Entry& e = *plan_.choice.entry;
   const Queued& r = e.request;
-  const std::uint64_t clock = choice_.at;
+  const std::uint64_t clock = plan_.choice.at;
   if (!e.classified) {
     ++stats.row_hits;
     ++stats.bank[e.bank].row_hits;
   }
   if constexpr (kCmd == Cmd::kRd) {
     attribution_.waited = 0;
-    if (clock > e.ready) attribution_.attribute(e, clock, next_, !single_);
+    if (clock > e.ready) attribution_.attribute(e, clock, next_, !queue_.single());
   }
-  if (policy_.closes_rows && e.chunks == 1) [[unlikely]]
-    issue_closing_column<kCmd>(e, clock);
-  else
-    issue<kCmd>(e.bank, e.row, clock, next_);
+  const unsigned burst = (e.chunks - 1u) * DdrTiming::kBurstClocks;
+  note<kCmd>(clock, next_, burst);
   ++stats.bursts;
   if constexpr (kCmd == Cmd::kWr) {
     move_bytes(store_.at(r.address), e.data.data(), r.bytes);
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
-    const ReturnChannel::Span transfer = return_channel_.take(r.bytes, e.chunks, clock, ddr_, scr_);
-    if (policy_.free_order) [[unlikely]]
-      report_in_order(e, transfer);
-    else
-      report_read(r.origin, transfer.first, transfer.last);
+    if (returns_.reorders()) [[unlikely]] {
+      send_in_order(e, clock);
+    } else {
+      const ReturnChannel::Span data = returns_.send(e, clock);
+      news_.reads.add({r.origin, data.first, data.last, attribution_.waited});
+      news_.any = true;
+    }
   }
-  if (e.chunks == 1) return finish(clock);
-  // No turnaround lies between the columns of a write, so the history shows this one as a RD.
-  if constexpr (kCmd == Cmd::kWr) attribution_.newest().cmd = Cmd::kRd;
+  if (burst == 0) {
+    issue_last_column<kCmd>(e, clock);
+    return finish(clock);
+  }
+  call_hook(kCmd, e.bank, e.row, clock);
+  command_free_ = clock + 1;
+  newest_column_ = clock;
   in_burst_ = true;
   columns_left_ = e.chunks - 1u;
   next_column_ = clock + DdrTiming::kBurstClocks;
-  choice_.at = clock + columns_left_ * DdrTiming::kBurstClocks;
-  next_ = ddr_.edge(choice_.at);
+  plan_.choice.at = clock + burst;
+  next_ = ddr_.edge(plan_.choice.at);
+}
+
+/// The data of this read may come before those of older reads of its master.
+[[gnu::noinline]] void DdrController::send_in_order(const Entry& e, std::uint64_t clock) {
+  const QueuePositions& order = queue_.order();
+  Positions older = order.of_master(e.request.master) & ~order.writes() &
+                    ((1u << plan_.choice.position) - 1);
+  std::uint32_t slots = 0;
+  for (; older; older &= older - 1) slots |= 1u << order.slot(oldest(older));
+  returns_.send_in_order(e, 1u << queue_.slot_of(e), slots, clock, news_.reads);
+  news_.any |= news_.reads.size() != 0;
 }
 
 /// The last column command, and those inside the burst that catch_up() has not issued yet. Every
 /// constraint that they would set, the last one sets later.
 template <Cmd kCmd>
 void DdrController::last_column() {
-  const Entry& e = *choice_.entry;
-  const std::uint64_t clock = choice_.at;
+  const Entry& e = *plan_.choice.entry;
+  const std::uint64_t clock = plan_.choice.at;
   in_burst_ = false;
   stats.bursts += columns_left_;
   if (hook_) [[unlikely]] {
     for (; columns_left_ > 1; --columns_left_, next_column_ += DdrTiming::kBurstClocks)
       hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
   }
-  if (policy_.closes_rows) [[unlikely]]
-    issue_closing_column<kCmd>(e, clock);
-  else
-    issue<kCmd>(e.bank, e.row, clock, next_);
+  issue_last_column<kCmd>(e, clock);
   finish(clock);
 }
 
-/// Gives the columns inside the burst under way that come before `until`. They are not noted: who is
-/// to blame must not depend on whether somebody looked.
+template <Cmd kCmd>
+[[gnu::always_inline]] inline void DdrController::issue_last_column(const Entry& e,
+                                                                    std::uint64_t clock) {
+  device_.issue<kCmd>(e.bank, e.row, clock);
+  command_free_ = clock + 1;
+  if (rows_.closes_after_access()) [[unlikely]]
+    if (rows_.closes_row_of(e, queue_)) {
+      device_.close_when_legal(e.bank);
+      queue_.row_closed(e.bank);
+      return call_hook(kCmd == Cmd::kRd ? Cmd::kRda : Cmd::kWra, e.bank, e.row, clock);
+    }
+  call_hook(kCmd, e.bank, e.row, clock);
+}
+
+/// Issues the columns inside the burst under way that come before `until`.
 [[gnu::noinline]] void DdrController::columns_before(std::uint64_t until) {
-  const Entry& e = *choice_.entry;
+  const Entry& e = *plan_.choice.entry;
   for (; columns_left_ > 1 && next_column_ < until; --columns_left_) {
     count_owed(next_column_);
-    if (e.request.write)
-      device_.issue<Cmd::kWr>(e.bank, e.row, next_column_);
-    else
-      device_.issue<Cmd::kRd>(e.bank, e.row, next_column_);
+    newest_column_ = next_column_;
     command_free_ = next_column_ + 1;
-    if (hook_) hook_(hook_self_, choice_.cmd, e.bank, e.row, next_column_);
+    call_hook(plan_.choice.cmd, e.bank, e.row, next_column_);
     ++stats.bursts;
     next_column_ += DdrTiming::kBurstClocks;
   }
 }
 
+/// The timing changes within a burst: the constraints of the columns up to now are those of the timing
+/// that was in force.
+void DdrController::columns_take_effect() {
+  if (!in_burst_ || newest_column_ == kNoClock) return;
+  const Entry& e = *plan_.choice.entry;
+  if (e.request.write)
+    device_.issue<Cmd::kWr>(e.bank, e.row, newest_column_);
+  else
+    device_.issue<Cmd::kRd>(e.bank, e.row, newest_column_);
+  newest_column_ = kNoClock;
+}
+
 /// The last column command is issued: the entry is free, and the request in the input register may
 /// enter.
 [[gnu::always_inline]] inline void DdrController::finish(std::uint64_t clock) {
-  if (!single_) return finish_queued(clock);
-  single_ = false;
+  if (!queue_.single()) return finish_queued(clock);
+  queue_.end_single();
   served_while_oldest_ = 0;
-  count_ = 0;
   count_queued(clock + 1);
   next_ = kNever;
 }
@@ -502,50 +337,30 @@ void DdrController::last_column() {
 [[gnu::noinline]] void DdrController::finish_queued(std::uint64_t clock) {
   leave_queue();
   if (input_taken_) accept_waiting(clock);
-  if (count_ == 0)
+  if (queue_.count() == 0)
     count_queued(clock + 1);
-  else if (entry(0).ready > clock + 1 + request_latency_) [[unlikely]]
+  else if (queue_.entry(0).ready > clock + 1 + request_latency_) [[unlikely]]
     idle_until_arrival(clock);
   plan();
 }
 
-/// What is queued has only been announced: the crossbar says at the grant when the last beat will be
-/// here. Nothing else comes before that.
-[[gnu::noinline]] void DdrController::idle_until_arrival(std::uint64_t clock) {
-  const std::uint64_t arrives = entry(0).ready - request_latency_;
-  count_queued(clock + 1);
-  queued_since_ = arrives;
-  if (idle_calm_ >= arrives) return;
-  idle(arrives);
-  wake(arrives);
-}
-
 inline void DdrController::leave_queue() {
-  const Entry& e = *choice_.entry;
-  const unsigned position = choice_.position;
-  if (e.request.write) write_words_held_ -= write_words(e.request.address, e.request.bytes);
-  free_slots_ |= 1u << queue_.slot(position);
-  queue_.leave(position, e.request.priority);
-  offered_ = QueuePositions::without(position, offered_);
-  hits_ = QueuePositions::without(position, hits_);
-  --count_;
+  const Entry& e = *plan_.choice.entry;
+  const unsigned position = plan_.choice.position;
+  queue_.leave(position);
   attribution_.left(position);
   served_while_oldest_ = position == 0 ? 0 : served_while_oldest_ + e.chunks;
-  const Positions others = queue_.of_master(e.request.master);
-  if (policy_.free_order) [[unlikely]]
-    return offer_all(others);
-  offer(others);
+  if (const Positions others = queue_.order().of_master(e.request.master))
+    queue_.compete(with_scheduler([&]<Scheduler S>(S) { return S::competing(queue_, others); }));
 }
 
 void DdrController::accept_waiting(std::uint64_t clock) {
-  if (count_ >= fifo_entries_ ||
-      (input_.write && write_words_held_ + write_words(input_.address, input_.bytes) > write_fifo_words_))
-    return;
+  if (!fits(input_.write, input_.address, input_.bytes)) return;
   input_taken_ = input_blocked_ = false;
-  Entry& e = free_entry();
+  Entry& e = queue_.free_entry();
   e.request = input_;
   take(e, std::max(input_arrived_, clock + 1));
-  news_.accepted = {input_.origin, ddr_.edge(clock), choice_.entry->request.master};
+  news_.accepted = {input_.origin, ddr_.edge(clock), plan_.choice.entry->request.master};
   news_.any = true;
 }
 

@@ -19,11 +19,11 @@ Overlap overlap(std::uint32_t a, std::uint32_t a_bytes, std::uint32_t b, std::ui
 }  // namespace
 
 const MemRequest* DdrController::newest_read(Master master) const {
-  for (unsigned i = count_; i-- > 0;) {
-    const Entry& e = entry(i);
-    const bool answered = in_burst_ && &e == choice_.entry;
+  for (unsigned i = queue_.count(); i-- > 0;) {
+    const Entry& e = queue_.entry(i);
+    const bool answered = in_burst_ && &e == plan_.choice.entry;
     if (e.request.write || e.request.master != master || answered) continue;
-    const MemRequest* const younger = newest_out_of_order(queue_.slot(i));
+    const MemRequest* const younger = returns_.newest_behind(queue_.slot_of(e));
     return younger ? younger : e.request.origin;
   }
   return nullptr;
@@ -31,8 +31,8 @@ const MemRequest* DdrController::newest_read(Master master) const {
 
 void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned bytes) const {
   std::memcpy(to, store_.at(address), bytes);
-  for (unsigned i = 0; i < count_; ++i) {  // oldest first
-    const Entry& e = entry(i);
+  for (unsigned i = 0; i < queue_.count(); ++i) {  // oldest first
+    const Entry& e = queue_.entry(i);
     const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
     if (e.request.write && a < b)
       std::memcpy(to + (a - address), e.data.data() + (a - e.request.address), b - a);
@@ -41,8 +41,8 @@ void DdrController::debug_read(std::uint32_t address, std::uint8_t* to, unsigned
 
 void DdrController::debug_write(std::uint32_t address, const std::uint8_t* from, unsigned bytes) {
   std::memcpy(store_.at(address), from, bytes);
-  for (unsigned i = 0; i < count_; ++i) {
-    Entry& e = entry(i);
+  for (unsigned i = 0; i < queue_.count(); ++i) {
+    Entry& e = queue_.entry(i);
     const auto [a, b] = overlap(address, bytes, e.request.address, e.request.bytes);
     if (e.request.write && a < b)
       std::memcpy(e.data.data() + (a - e.request.address), from + (a - address), b - a);
@@ -57,30 +57,30 @@ DdrController::View DdrController::view() const {
                        running_ ? ddr_.edge(std::max(ready, first_edge_)) : kNever, bank,
                        (r.address & row_mask_) >> row_shift_, device_.row(bank)});
   };
-  for (unsigned i = 0; i < count_; ++i) {
-    const Entry& e = entry(i);
+  for (unsigned i = 0; i < queue_.count(); ++i) {
+    const Entry& e = queue_.entry(i);
     add(e.request, e.ready, false);
-    if (&e != choice_.entry || next_ == kNever) continue;
+    if (&e != plan_.choice.entry || next_ == kNever) continue;
     v.next = i;
     v.items.back().moving = in_burst_;
   }
   if (input_taken_) {
     add(input_, input_arrived_, true);
-    v.data_full = count_ < fifo_entries_;
+    v.data_full = queue_.count() < fifo_entries_;
   }
-  for (const OutOfOrderRead& h : out_of_order_) {
-    if (in_burst_ && h.request.origin == choice_.entry->request.origin) continue;  // in the queue
+  for (const ReadReturn::OutOfOrderRead& h : returns_.waiting()) {
+    if (in_burst_ && h.request.origin == plan_.choice.entry->request.origin) continue;  // in the queue
     add(h.request, first_edge_, false);
     v.items.back().out_of_order = true;
   }
   if (attribution_.count()) {
     const IssuedCommand& g = attribution_.newest();
-    v.last = in_burst_ ? choice_.cmd : g.cmd;
+    v.last = in_burst_ ? plan_.choice.cmd : g.cmd;
     if (g.cause < kMasterCount) v.last_master = static_cast<Master>(g.cause);
   }
-  v.cmd = choice_.cmd;
+  v.cmd = plan_.choice.cmd;
   v.next_at = next_;
-  v.asleep = asleep_;
+  v.asleep = power_.mode();
   return v;
 }
 

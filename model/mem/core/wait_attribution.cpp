@@ -23,11 +23,11 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
                                                        const QueueEntry* served) {
   const std::uint64_t newest = issued_ - 1;
   const IssuedCommand& c = command(newest);
-  for (; have_baseline_ < count_; ++have_baseline_) {
-    const QueueEntry& e = entry(have_baseline_);
+  for (; have_baseline_ < queue_.count(); ++have_baseline_) {
+    const QueueEntry& e = queue_.entry(have_baseline_);
     if (e.ready >= clock) break;
     if (e.request.write || &e == served) continue;
-    Baseline& b = baselines_[queue_.slot(have_baseline_)];
+    Baseline& b = baselines_[queue_.slot_of(e)];
     const std::uint64_t ready = std::max(e.ready, first_edge_);
     if (issued_ == 0 || c.clock > ready) {
       b.newest = Baseline::kNot;
@@ -76,7 +76,7 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
     const std::uint64_t next = newest ? clock : command(n + 1).clock;
     const Picoseconds next_at = newest ? at : command(n + 1).at;
     if (c.cmd == Cmd::kWr) {
-      const std::uint64_t over = std::min(next, c.clock + write_clocks_);
+      const std::uint64_t over = std::min(next, c.clock + c.burst + write_clocks_);
       if (over > reached) until(over, ddr_.edge(over), culprit_of(c.cause));
       until(next, next_at, Culprit::kTurnaround);
     } else {
@@ -137,7 +137,7 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
   }
   const std::uint64_t oldest = issued_ - std::min<std::uint64_t>(issued_, kHistory - 1);
   if (queued) {
-    const Baseline& baseline = baselines_[static_cast<std::size_t>(&e - slots_.data())];
+    const Baseline& baseline = baselines_[queue_.slot_of(e)];
     if (baseline.newest != Baseline::kNot && baseline.newest >= oldest)
       return attribute_by_totals(e, baseline, ready, divide(last, clock, at), at);
   }

@@ -7,14 +7,14 @@
 
 #include "model/common/clock.h"
 #include "model/common/waits.h"
+#include "model/mem/core/command_queue.h"
 #include "model/mem/core/ddr_timing.h"
-#include "model/mem/core/queue_entry.h"
-#include "model/mem/core/queue_positions.h"
 
 namespace fovea::mem {
 
 /// Each clock is attributed to the last command before it: another master's, a refresh, or the read's own
-/// ACT or PRE. From the end of a write burst on it is the turnaround.
+/// ACT or PRE. From the end of a write burst on it is the turnaround. The column commands of one request
+/// are one command here, since nothing comes between them.
 ///
 /// Running totals by cause are kept as commands are issued. A read's waits are the difference of two
 /// readings: its baseline, taken when it became ready, and the totals at its first column command.
@@ -26,24 +26,22 @@ class WaitAttribution {
     std::uint64_t clock = 0;
     Picoseconds at = 0;        // of that clock; before a clock's restart: the restart
     std::uint64_t before = 0;  // the ACT or PRE of the same request before it, as QueueEntry::prepared
+    std::uint8_t burst = 0;    // clocks to the last column command of the same request
     Cmd cmd = Cmd::kRef;
     std::uint8_t cause = kRefreshed;
   };
-  using Slots = std::array<QueueEntry, QueuePositions::kMost>;
   static constexpr std::size_t kHistory = 64;  // commands that are remembered
 
-  /// All refer to the controller's own; `count`: requests in the queue.
-  WaitAttribution(const Clock& ddr, const Slots& slots, const QueuePositions& queue,
-                  const unsigned& count)
-      : ddr_(ddr), slots_(slots), queue_(queue), count_(count) {}
+  /// Both refer to the controller's own.
+  WaitAttribution(const Clock& ddr, const CommandQueue& queue) : ddr_(ddr), queue_(queue) {}
 
   /// From a WR to the end of its data, in clocks.
   void set_write_clocks(unsigned clocks) { write_clocks_ = clocks; }
   /// The clock has restarted: edges before this one have no times any more.
   void restart_clock(std::uint64_t first_edge);
 
-  /// Adds a command; the caller fills in `cmd`, `cause` and `before`. `served`: the request whose column
-  /// command it is.
+  /// Adds a command; the caller fills in `cmd`, `cause`, `before` and `burst`. `served`: the request whose
+  /// column command it is.
   IssuedCommand& add(std::uint64_t clock, Picoseconds at, const QueueEntry* served = nullptr);
   std::uint64_t count() const { return issued_; }
   IssuedCommand& newest() { return command(issued_ - 1); }
@@ -93,10 +91,10 @@ class WaitAttribution {
 
   IssuedCommand& command(std::uint64_t n) { return history_[n % kHistory]; }
   const IssuedCommand& command(std::uint64_t n) const { return history_[n % kHistory]; }
-  const QueueEntry& entry(unsigned position) const { return slots_[queue_.slot(position)]; }
   void take_baselines(std::uint64_t clock, const QueueEntry* served);
   void find_next_without_baseline() {
-    next_without_baseline_ = have_baseline_ < count_ ? entry(have_baseline_).ready : kNoClock;
+    next_without_baseline_ =
+        have_baseline_ < queue_.count() ? queue_.entry(have_baseline_).ready : kNoClock;
   }
   Division divide(const IssuedCommand& c, std::uint64_t clock, Picoseconds at) const;
   void attribute_each(const QueueEntry& e, std::uint64_t ready, Picoseconds from,
@@ -105,19 +103,18 @@ class WaitAttribution {
                            const Division& newest, Picoseconds at);
 
   const Clock& ddr_;
-  const Slots& slots_;
-  const QueuePositions& queue_;
-  const unsigned& count_;
+  const CommandQueue& queue_;
   std::uint64_t first_edge_ = 0;  // of the DDR clock since its last restart
   unsigned write_clocks_ = 0;
   std::array<IssuedCommand, kHistory> history_;
   std::uint64_t issued_ = 0;
-  // Totals over the commands before the newest but one, and what that one adds. A total just changed and
-  // read with its neighbours would hold up the host.
+  // Totals over the commands before the newest but one, and what that one adds; commands that came while
+  // no read had a baseline are left out. A total just changed and read with its neighbours would hold up
+  // the host.
   Totals totals_{};
   Division late_;
   std::uint8_t late_cause_ = 0;
-  std::array<Baseline, QueuePositions::kMost> baselines_;  // by slot
+  std::array<Baseline, CommandQueue::kMost> baselines_;  // by slot
   unsigned have_baseline_ = 0;                      // positions that have theirs
   std::uint64_t next_without_baseline_ = kNoClock;  // edge at which the one after them is ready
 };
@@ -126,7 +123,7 @@ class WaitAttribution {
 [[gnu::always_inline]] inline WaitAttribution::Division WaitAttribution::divide(
     const IssuedCommand& c, std::uint64_t clock, Picoseconds at) const {
   if (c.cmd == Cmd::kWr) {
-    const std::uint64_t over = c.clock + write_clocks_;
+    const std::uint64_t over = c.clock + c.burst + write_clocks_;
     if (over < clock) {
       const Picoseconds end = ddr_.edge(std::max(over, first_edge_));
       return {end - c.at, at - end};
@@ -139,11 +136,13 @@ class WaitAttribution {
     std::uint64_t clock, Picoseconds at, const QueueEntry* served) {
   if (clock > next_without_baseline_) take_baselines(clock, served);
   const std::uint64_t n = issued_++;
-  totals_[late_cause_] += late_.itself;
-  totals_[kTurned] += late_.turned;
-  const IssuedCommand& before = command(n - 1);
-  late_ = n ? divide(before, clock, at) : Division{};
-  late_cause_ = before.cause;
+  if (have_baseline_ != 0) {
+    totals_[late_cause_] += late_.itself;
+    totals_[kTurned] += late_.turned;
+    const IssuedCommand& before = command(n - 1);
+    late_ = n ? divide(before, clock, at) : Division{};
+    late_cause_ = before.cause;
+  }
   IssuedCommand& c = command(n);
   c.clock = clock;
   c.at = at;

@@ -295,7 +295,7 @@ void BusRecorder::responded(const MemRequest& r) {
     Pending& p = s.pending[found->number - first_pending];
     p.done = true;
     p.failed = r.error;
-    p.record.priority = r.priority;
+    p.record.priority = r.in_path.priority;
   }
   flights.erase(found);
   if (open_) write_out(s, stream, kHeldBack);

@@ -32,9 +32,13 @@ class ByteReader {
     if (at_ == end_) ended();
     return *at_++;
   }
-  std::uint64_t number() {
-    std::uint64_t v = byte();
-    if (v < 0x80) return v;
+  [[gnu::always_inline]] std::uint64_t number() {
+    const std::uint8_t v = byte();
+    return v < 0x80 ? v : number_after(v);
+  }
+
+ private:
+  [[gnu::noinline]] std::uint64_t number_after(std::uint64_t v) {
     v &= 0x7F;
     for (unsigned shift = 7; shift < 64; shift += 7) {
       const std::uint64_t b = byte();
@@ -43,8 +47,6 @@ class ByteReader {
     }
     throw BadTrace("a number is too long");
   }
-
- private:
   [[noreturn]] static void ended() { throw BadTrace("a record is cut off"); }
   const std::uint8_t* at_;
   const std::uint8_t* end_;

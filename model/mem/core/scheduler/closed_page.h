@@ -1,12 +1,15 @@
+// `ddr.scheduler = closed_page`: for traffic that seldom comes back to a row.
 #pragma once
-#include "model/mem/core/scheduler/policy.h"
+#include "model/mem/core/scheduler/ti.h"
 
 namespace fovea::mem {
 
-/// `ti`, but a row is closed with its last column command, unless a queued request wants it: for traffic
-/// that seldom comes back to a row.
-constexpr SchedulerPolicy closed_page(bool ready_rows_first) {
-  return {.name = "closed_page", .first_ready = ready_rows_first, .closes_rows = true};
-}
+/// As `ti`, but a row is closed with its last column command, unless a queued request wants it.
+template <OpenRow kOpenRow>
+class ClosedPageScheduler : public TiScheduler<kOpenRow> {
+ public:
+  static constexpr const char* kName = "closed_page";
+  static constexpr bool kClosesRows = true;
+};
 
 }  // namespace fovea::mem

@@ -8,7 +8,7 @@ namespace fovea {
 
 /// Runs the kernel for one slice at a time. An event is pending at the end of each slice, so that a
 /// core that runs ahead (in an idle loop, while every other block sleeps) stops there too.
-class Slices {
+class HostTimeSlicer {
  public:
   void run(Picoseconds slice) {
     end_.move_to(kernel_time() + slice);  // sc_pause() may have ended the last slice early

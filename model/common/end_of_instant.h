@@ -14,10 +14,10 @@ namespace fovea {
 /// request. One such object serves a whole simulation: two would wait for each other. Register
 /// accesses and the edges of the measured window use it, so that they see the same state whatever
 /// the order of processes within T.
-class QuietPhase : public sc_core::sc_module {
+class EndOfInstant : public sc_core::sc_module {
  public:
-  explicit QuietPhase(sc_core::sc_module_name name) : sc_module(name) {
-    SC_HAS_PROCESS(QuietPhase);
+  explicit EndOfInstant(sc_core::sc_module_name name) : sc_module(name) {
+    SC_HAS_PROCESS(EndOfInstant);
     SC_METHOD(run);
     sensitive << due_.event();
     dont_initialize();

@@ -26,7 +26,7 @@ namespace fovea::bus {
 /// MemInitiatorIf is a public base although nobody else calls it: it has SystemC's virtual base,
 /// which the most derived class destroys, and a private base would bar the way to it (CWG 7).
 template <class Self>
-class Agent : public sc_core::sc_module, public MemInitiatorIf {
+class LookaheadInitiator : public sc_core::sc_module, public MemInitiatorIf {
  public:
   struct Transaction : MemRequest {
     unsigned port = 0;
@@ -38,14 +38,14 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
   std::vector<std::unique_ptr<MemInitiatorSocket<32>>> sockets;
   sc_core::sc_port<MemoryPathIf> path{"path"};
 
-  Agent(sc_core::sc_module_name name, unsigned ports) : sc_module(name) {
+  LookaheadInitiator(sc_core::sc_module_name name, unsigned ports) : sc_module(name) {
     for (unsigned i = 0; i < ports; ++i) {
       sockets.push_back(
           std::make_unique<MemInitiatorSocket<32>>(("socket_" + std::to_string(i)).c_str()));
       sockets.back()->bind(*this);
     }
-    FOVEA_CHECK(ports <= ports_.size(), "an agent with too many ports");
-    SC_HAS_PROCESS(Agent);
+    FOVEA_CHECK(ports <= ports_.size(), "a look-ahead initiator with too many ports");
+    SC_HAS_PROCESS(LookaheadInitiator);
     SC_METHOD(background);
     sensitive << background_due_.event();
     dont_initialize();
@@ -251,10 +251,7 @@ class Agent : public sc_core::sc_module, public MemInitiatorIf {
       case Attempt::kUnderWay: break;
     }
   }
-  /// Known once the request is on its port.
-  static bool to_memory(const MemRequest& r) {
-    return r.slave == static_cast<std::uint8_t>(Slave::kDdr);
-  }
+  bool to_memory(const Transaction& tx) const { return tx.address >= memory_->map().ddr_base; }
   Picoseconds next_decision() const { return memory_->next_event(); }
 
   tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
