@@ -38,9 +38,16 @@ class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
   /// at an instruction boundary.
   void catch_up();
 
+  /// The core finishes its instruction, without effect on blocks in reset, and is held at the next
+  /// boundary until leave_reset().
+  void reset(ResetKind) override;
+  bool idle() const override;
+  void leave_reset() override;
+
  private:
   friend bus::Agent<Arm926>;
   void run();
+  void stay_in_reset();
   void clock_changed();
   void interrupt_changed();
 
@@ -65,8 +72,9 @@ class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
   std::uint32_t entry_;
   std::array<Record, Core::kAccesses> records_;
   std::size_t record_count_ = 0;
-  Timer interrupt_, clock_runs_;
+  Timer interrupt_, clock_runs_, released_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
+  bool in_reset_ = false, held_ = false;
   unsigned clock_changes_ = 0;
   Picoseconds asserted_ = 0;  // time at which IRQ or FIQ was asserted
   std::string failure_;

@@ -5,7 +5,7 @@
 namespace fovea::dma {
 
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
-    : BusTarget(name, regs), regs(static_cast<unsigned>(params.reset_priority())) {
+    : WithRegs(static_cast<unsigned>(params.reset_priority())), BusTarget(name, regs) {
   add_power_gate(lpsc);
   for (Reg* r : {&regs.quetcmap, &regs.quepri})
     r->on_write([this](std::uint32_t) { written_.soon(); });

@@ -44,12 +44,11 @@ struct EdmaRegs : RegBank {
 
 /// EDMA3CC at 0x01C00000. A transfer controller has the priority of the queue that is mapped to it;
 /// if several are, the most urgent of them; if none is, the lowest priority.
-class EdmaCc : public BusTarget {
+class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget {
  public:
   using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
   static constexpr unsigned kQueues = 4;
-  EdmaRegs regs;
   sc_core::sc_in<bool> lpsc{"lpsc"};
   /// Priority of each transfer controller, for its read and its write port.
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
@@ -62,6 +61,7 @@ class EdmaCc : public BusTarget {
   bool holes_answer() const override { return false; }
 
  private:
+  void on_reset(ResetKind) override { written_.soon(); }
   void update();
   Timer written_;
 };

@@ -81,7 +81,8 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   void byte_finished();  // called after a byte in either direction
   void stop_or_hold();
   void nack();
-  void reset();
+  void abandon_transfer();
+  void on_reset(ResetKind) override;
   std::uint32_t flags() const { return status_; }
   void set_flag(std::uint32_t bit) { status_ |= bit; }
   void clear_flag(std::uint32_t bit) { status_ &= ~bit; }

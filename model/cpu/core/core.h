@@ -48,9 +48,17 @@ class Core : public Background {
   void set_irq(bool level, Picoseconds at) { irq_.set(level, at); attention_ = true; }
   void set_fiq(bool level, Picoseconds at) { fiq_.set(level, at); attention_ = true; }
 
+  /// Returns to the state after power-up; accesses under way must have ended. Internal RAM and all
+  /// counters are kept.
   /// @param entry address of the first instruction; bit 0 selects the Thumb state
   void reset(std::uint32_t entry, Picoseconds now);
-  /// Runs until request_stop(), blocking inside calls of BusPort. @throws GuestFailure
+  /// The same at the end of a reset. The clocks that have passed since it began count as idle.
+  void restart(std::uint32_t entry, Picoseconds now);
+  /// Sets the reset line. Like an interrupt, a change at t is visible to instruction boundaries
+  /// strictly after t. There run() ends, and held() is true until the next reset().
+  void set_reset(bool level, Picoseconds at) { reset_.set(level, at); attention_ = true; }
+  bool held() const { return held_; }
+  /// Runs until request_stop() or a reset, blocking inside calls of BusPort. @throws GuestFailure
   void run();
   void request_stop() { stop_requested_ = true; attention_ = true; }
 
@@ -197,6 +205,8 @@ class Core : public Background {
   void spend(unsigned n) { cycle_ += n; counts_.issue += n; }
 
   // exceptions.cpp
+  void reset_coprocessor();
+  void forget_accesses();
   enum class Exception { kReset, kUndefined, kSwi, kPrefetchAbort, kDataAbort, kIrq, kFiq };
   void take(Exception e, std::uint32_t return_address);
   void data_abort(unsigned left);
@@ -530,7 +540,8 @@ class Core : public Background {
   std::uint32_t itcm_region_ = 0, dtcm_region_ = 0, debug_override_ = 0, cache_debug_ = 0;
   std::uint32_t itcm_size_ = 0, dtcm_size_ = 0;
 
-  Line irq_, fiq_;
+  Line irq_, fiq_, reset_;
+  bool held_ = false;  // at a boundary that has seen the reset
   bool stop_requested_ = false;
   bool swapping_ = false;             // the two accesses of a SWP are locked
   bool aborted_ = false;              // an access of the current instruction failed

@@ -1,4 +1,5 @@
 // Processor modes, register banks and exceptions (ARM DDI 0100, A2.6; aborts restore the base).
+#include <algorithm>
 #include <cstdio>
 
 #include "model/cpu/core/core.h"
@@ -68,22 +69,63 @@ void Core::set_clock(Frequency f, Picoseconds at) {
 }
 
 void Core::reset(std::uint32_t entry, Picoseconds now) {
+  r_ = {};
+  banked_ = {};
+  user_high_ = fiq_high_ = {};
+  spsr_ = {};
   cpsr_ = 0xD3u | ((entry & 1u) << 5);
   pc_ = next_pc_ = entry & ~1u;
+  branched_ = aborted_ = swapping_ = failing_ = failed_jump_ = held_ = stop_requested_ = false;
+  chain_ = 0;
+  jumped_to_ = kNoJump;
+  reset_coprocessor();
+  forget_accesses();
+  cycle_ = clock_.running() ? clock_.edge_after(now) : 0;
+  attention_ = true;
+}
+
+/// CP15, the TLB and the caches. What they held is lost, dirty lines too.
+void Core::reset_coprocessor() {
   control_ = fetch_control_ = 0x0005'0078;
   counts_.translate(false);
-  fcse_pid_ = process_ = fetch_process_ = 0;
+  ttbr_ = dacr_ = dfsr_ = ifsr_ = far_ = 0;
+  fcse_pid_ = process_ = fetch_process_ = context_id_ = 0;
   old_fetch_left_ = 0;
-  stop_requested_ = false;
-  jumped_to_ = kNoJump;
+  dlock_ = ilock_ = tlb_lock_ = 0;
+  debug_override_ = cache_debug_ = 0;
   // On this chip both TCMs are enabled after reset: 32 KB each (size code 6), backed by one RAM.
   const bool tcm = !tcm_.empty();
   itcm_region_ = tcm ? 6u << 2 | 1u : 0;
   dtcm_region_ = tcm ? kDtcmBase | 6u << 2 | 1u : 0;
   itcm_size_ = dtcm_size_ = tcm ? 32 * 1024 : 0;
-  cycle_ = clock_.running() ? clock_.edge_after(now) : 0;
-  attention_ = true;
+  tlb_ = {};
+  icache_.invalidate_all();
+  dcache_.invalidate_all();
+  // A loader may have changed internal RAM without the core's knowledge.
+  for (auto* lines : {&decoded_, &tcm_decoded_})
+    for (DecodedLine& line : *lines) line.valid = 0;
+  jumps_ = all_to(&no_line_);
+  current_line_ = nullptr;
   flush_memos();
+}
+
+/// Buffered writes that have not been sent are lost.
+void Core::forget_accesses() {
+  writes_ = {};
+  write_in_flight_ = write_is_victim_ = filling_ = read_waiting_ = false;
+  ifill_ = dfill_ = {};
+  fetch_buffer_pa_ = 1;
+  fetch_branched_ = bus_fetch_ = bus_waited_ = false;
+  ready_ = {};
+  busy_until_ = next_write_cycle_ = data_port_free_ = write_floor_ = write_over_ = 0;
+  act_time_cycle_ = kNoCycle;
+}
+
+void Core::restart(std::uint32_t entry, Picoseconds now) {
+  const std::uint64_t before = cycle_;
+  reset(entry, now);
+  cycle_ = std::max(cycle_, before);
+  counts_.idle += cycle_ - before;
 }
 
 unsigned Core::bank(std::uint32_t mode) {

@@ -54,6 +54,7 @@ void Core::run() {
       if (stop_requested_) return;
       pack_flags();
       step_attention();
+      if (held_) return;
       if (stop_requested_) stop_cycle_ = 0;  // execute one more instruction
     }
     if (debugger_ && pc_ != inspected_pc) [[unlikely]] {
@@ -163,6 +164,10 @@ void Core::step_attention() {
     stall_to(clock_floor_, Cause::kBusSync);
     const Picoseconds t = time(cycle_);
     while (mark_due(t)) snapshot();
+    if (reset_.at(t)) {
+      held_ = true;
+      return;
+    }
     const bool fiq_open = !(cpsr_ & 0x40u), irq_open = !(cpsr_ & 0x80u);
     if (fiq_open && fiq_.at(t)) {
       take(Exception::kFiq, pc_ + 4);
@@ -187,12 +192,13 @@ void Core::step_attention() {
         const Picoseconds again = port_.horizon();
         stop_cycle_ = again <= t ? cycle_ + 1
                       : again == kNever ? ~std::uint64_t{0} : clock_.edge_after(again);
-        if ((fiq_open && fiq_.level) || (irq_open && irq_.level)) stop_cycle_ = cycle_ + 1;
+        if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || reset_.level)
+          stop_cycle_ = cycle_ + 1;
         return;
       }
       const Picoseconds now = time(cycle_);
       while (mark_due(now)) snapshot();
-      if ((fiq_open && fiq_.at(now)) || (irq_open && irq_.at(now))) continue;
+      if ((fiq_open && fiq_.at(now)) || (irq_open && irq_.at(now)) || reset_.at(now)) continue;
       attention_ = false;
       stop_cycle_ = cycle_ + 1;
       return;
@@ -200,7 +206,7 @@ void Core::step_attention() {
     stop_cycle_ = stop;
     // An interrupt is raised but not visible yet, or a mark is not reached yet: check the next
     // boundary.
-    if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || mark_pending_)
+    if ((fiq_open && fiq_.level) || (irq_open && irq_.level) || reset_.level || mark_pending_)
       stop_cycle_ = cycle_ + 1;
     return;
   }
