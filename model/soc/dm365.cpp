@@ -29,12 +29,6 @@ Placements joined(Placements rows, const Placements& more) {
   return rows;
 }
 
-std::vector<bus::ConfigBus::BlockSpec> specs(const Placements& rows) {
-  std::vector<bus::ConfigBus::BlockSpec> out;
-  for (const Placement& row : rows) out.push_back({row.name, row.base, row.size, row.speed});
-  return out;
-}
-
 }  // namespace
 
 Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry,
@@ -43,7 +37,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), quiet),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, quiet, specs(joined(params.rows, external))),
+      config("config", params.config_bus, quiet, bus_blocks(joined(params.rows, external))),
       placed(joined(params.rows, external), params.block_params, scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);

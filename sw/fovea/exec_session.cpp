@@ -39,7 +39,7 @@ ExecClocks ExecClocks::preset(std::string_view name) {
 }
 
 ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
-                         const ExecMap& map)
+                         const ExecMap& map, std::span<const MemoryRegion> registers)
     : core_(core),
       request_(request),
       program_(request.program),
@@ -47,7 +47,7 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
       map_(map),
       semihosting_(core, memory, settings(request, map), request.console,
                    [this] { return over(); }) {
-  core_.set_regions(exec_regions(program_, map_));
+  core_.set_regions(exec_regions(program_, map_, registers));
 }
 
 ExecSession::~ExecSession() { request_.console.go_on = nullptr; }

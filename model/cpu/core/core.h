@@ -48,8 +48,8 @@ class Core : public Background {
   void set_irq(bool level, Picoseconds at) { irq_.set(level, at); attention_ = true; }
   void set_fiq(bool level, Picoseconds at) { fiq_.set(level, at); attention_ = true; }
 
-  /// Returns to the state after power-up; accesses under way must have ended. Internal RAM and all
-  /// counters are kept.
+  /// Returns to the state after power-up; accesses under way must have ended. General registers,
+  /// internal RAM and all counters are kept.
   /// @param entry address of the first instruction; bit 0 selects the Thumb state
   void reset(std::uint32_t entry, Picoseconds now);
   /// The same at the end of a reset. The clocks that have passed since it began count as idle.

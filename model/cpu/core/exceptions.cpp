@@ -69,10 +69,7 @@ void Core::set_clock(Frequency f, Picoseconds at) {
 }
 
 void Core::reset(std::uint32_t entry, Picoseconds now) {
-  r_ = {};
-  banked_ = {};
-  user_high_ = fiq_high_ = {};
-  spsr_ = {};
+  switch_mode(0x13);  // the general registers keep their values (ARM DDI 0100: UNPREDICTABLE)
   cpsr_ = 0xD3u | ((entry & 1u) << 5);
   pc_ = next_pc_ = entry & ~1u;
   branched_ = aborted_ = swapping_ = failing_ = failed_jump_ = held_ = stop_requested_ = false;
