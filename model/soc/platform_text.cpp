@@ -122,6 +122,13 @@ std::string address(std::uint32_t v) { return in_hex("0x%08X", v); }
 std::string size(std::uint32_t v) { return in_hex("0x%X", v); }
 
 std::string interrupts_of(const Placement& row, const BusTarget& block) {
+  const auto& irqs = row.irqs;
+  const bool in_sequence = std::adjacent_find(irqs.begin(), irqs.end(), [](Irq a, Irq b) {
+                             return a.second || b.second || b.input != a.input + 1;
+                           }) == irqs.end();
+  if (irqs.size() > 2 && in_sequence)
+    return block.interrupts().front().name + "–" + block.interrupts().back().name + " " +
+           std::to_string(irqs.front().input) + "–" + std::to_string(irqs.back().input);
   std::string out;
   for (std::size_t k = 0; k < row.irqs.size(); ++k) {
     out += (k ? ", " : "") + block.interrupts()[k].name + " " + std::to_string(row.irqs[k].input);

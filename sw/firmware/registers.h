@@ -1,6 +1,6 @@
 /* Registers of the DM365 that the model has: addresses, fields (as masks), power gates and
- * interrupts. Written by the program register_header from the declarations of the blocks;
- * do not edit. */
+ * interrupts. Printed by the program platform_text from the declarations of the blocks; do not
+ * edit. */
 #ifndef FOVEA_FIRMWARE_REGISTERS_H
 #define FOVEA_FIRMWARE_REGISTERS_H
 

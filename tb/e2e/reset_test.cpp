@@ -31,7 +31,8 @@ struct Chip {
   std::uint32_t read(const std::string& block, std::uint32_t offset) {
     std::uint32_t value = 0;
     board.platform.each_registers([&](const std::string& name, BusTarget& target) {
-      if (name == block) EXPECT_EQ(target.bank().read(offset, 4, value), Access::kOk) << name;
+      if (name != block) return;
+      EXPECT_EQ(target.bank().read(offset, 4, value), Access::kOk) << name;
     });
     return value;
   }
