@@ -41,6 +41,7 @@ void Arm926::run() {
 }
 
 void Arm926::stay_in_reset() {
+  take_clock();
   core_.restart(entry_, kernel_time());  // what is in its buffers is not sent any more
   held_ = true;
   while (in_reset_) wait_for(released_);
@@ -68,7 +69,14 @@ void Arm926::leave_reset() {
   released_.soon();
 }
 
+/// The reset changes the clock too. The core finishes its instruction with the old one: how many clocks
+/// of a stall it has counted already depends on the synchronisation.
 void Arm926::clock_changed() {
+  const bool finishing = in_reset_ && !held_ && core_.clock().running();
+  if (!finishing) take_clock();
+}
+
+void Arm926::take_clock() {
   core_.set_clock(clk.read(), kernel_time());
   ++clock_changes_;
   background_moved();

@@ -49,6 +49,7 @@ class Arm926 final : public bus::Agent<Arm926>, public Block, private BusPort {
   void run();
   void stay_in_reset();
   void clock_changed();
+  void take_clock();
   void interrupt_changed();
 
   void submit(BusAccess& access, Picoseconds at) override;

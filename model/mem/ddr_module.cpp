@@ -43,6 +43,7 @@ void DdrModule::on_reset(ResetKind) {
   unlocked_ = timed_ = false;
   in_reset_ = true;
   reconfigure();
+  check_.restart();
   ready_ = false;  // although the reset value of SDBCR is that of a locked register
   update_open();
   note_initialised();
@@ -129,6 +130,7 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
   if (!examined_) {
     examined_ = true;
     update_open();
+    check_.begin();
     for (const std::string& line : invalid_register_values(regs, params_)) Diagnostics::instance().guest(line);
     check_.warn(programmed(), ddr_clk.read());
   }

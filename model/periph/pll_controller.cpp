@@ -15,7 +15,8 @@ std::uint32_t plldiv_offset(unsigned n) {
 PllRegs::PllRegs(const char* name, unsigned sysclks, std::uint32_t reset_type)
     : RegBank(name),
       rstype(*this, "RSTYPE", 0x0E4, Mode::kRo, "1 power-on, 2 warm, 4 watchdog reset",
-             reset_type) {
+             reset_type),
+      systat(*this, "SYSTAT", 0x150, Mode::kRo, "SYSCLKs that are on", (1u << sysclks) - 1) {
   for (unsigned n = 1; n <= sysclks; ++n)
     plldiv.emplace_back(*this, "PLLDIV" + std::to_string(n), plldiv_offset(n), Mode::kRw,
                         "bits 4:0 ratio - 1, bit 15 enable; acts with GOSET", kEnabledRatio1);

@@ -82,7 +82,7 @@ struct PllRegs : RegBank {
   Reg dchange{*this, "DCHANGE", 0x144, Mode::kRo, "ratios written but not yet taken"};
   Reg cken{*this, "CKEN", 0x148, Mode::kRw, "bit 0 AUXCLK, bit 1 OBSCLK; kept", 0x3};
   Reg ckstat{*this, "CKSTAT", 0x14C, Mode::kRo, "bit 0 AUXCLK, bit 1 OBSCLK are on", 0x3};
-  Reg systat{*this, "SYSTAT", 0x150, Mode::kRo, "SYSCLKs that are on"};
+  Reg systat;
   std::deque<Reg> plldiv;
 };
 

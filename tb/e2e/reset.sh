@@ -23,7 +23,7 @@ play() {  # NAME STATUS OPTIONS...
 value() { python3 -c 'import json, sys; d = json.load(open(sys.argv[1])); print(d[sys.argv[2]]["value"])' "$@"; }
 
 load=(-s load.outstanding=4 -s load.kind=mixed -s load.gap=100ns -s load.base=12MiB -s load.size=1MiB)
-loads_ram=(-s load.outstanding=1 -s load.memory=internal_ram -s load.base=30KiB -s load.size=1KiB -s load.gap=300ns)
+loads_ram=(-s load.outstanding=1 -s load.memory=internal_ram -s load.base=28KiB -s load.size=4KiB -s load.gap=300ns)
 play plain 0 -s run.resets=24
 play plain_strict 0 -s run.resets=24 --sync=strict
 play load 0 -s run.resets=24 "${load[@]}"
