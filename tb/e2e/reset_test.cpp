@@ -113,10 +113,15 @@ TEST_P(EachKind, WhatTheRegistersStartedHasNoEffectAfterwards) {
   c.soc.uart0.regs.write(0x00, 4, 'x');
   c.soc.gpio.regs.write(0x38, 4, 0);
   c.soc.gpio.regs.write(0x3C, 4, 0xFFFF);
+  c.soc.gpio.regs.write(0x08, 4, 1);
+  c.soc.gpio.regs.write(0x24, 4, 1u << 3);  // rising edges of GPIO3
+  c.soc.gpio.set_pin(3, false);
+  c.soc.gpio.set_pin(3, true);
   c.soc.pll1.regs.write(0x118 + 4, 4, 0x8001);  // the core's clock at half
   c.soc.pll1.regs.write(0x138, 4, 1);
   c.rig.advance(20 * kPsPerUs);
   EXPECT_TRUE(c.soc.arm.core().clock().frequency() == Frequency(12'000'000));
+  EXPECT_EQ(c.soc.aintc.core().pending(), std::uint64_t{1} << 47);
   const std::string sent = c.board.uart_text();
   c.reset(GetParam());
   EXPECT_TRUE(c.soc.arm.core().clock().frequency() == Frequency(24'000'000));
