@@ -31,7 +31,10 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
   platform.add(dm365.platform);
   platform.add("display", sink);
 
-  dm365.on_reset = [this](const std::string& cause) { reset_asked(cause); };
+  dm365.on_reset_request = [this](const std::string& cause) { reset_asked(cause); };
+  dm365.on_boot = [this](ResetKind) {
+    for (const LoadImage& image : boot_images_) put(image, false);
+  };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
     uart_.push_back(static_cast<char>(byte));
     if (on_uart) on_uart(byte);
@@ -48,9 +51,19 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
 
 void Board::reset_asked(const std::string& cause) {
   if (chip_reset_) return;
-  chip_reset_ = ChipReset{cause, kernel_time(), dm365.arm.core().current_pc()};
+  const ChipReset request{cause, kernel_time(), dm365.arm.core().current_pc()};
+  if (resets_.size() < params_.run.resets()) {
+    resets_.push_back(request);
+    return reset(ResetKind::kWatchdog);
+  }
+  chip_reset_ = request;
   if (on_chip_reset) on_chip_reset(*chip_reset_);
   sc_core::sc_pause();
+}
+
+void Board::reset(ResetKind kind) {
+  log.restart();
+  dm365.reset_chip(kind);
 }
 
 void Board::set_switches() {
@@ -70,15 +83,17 @@ void Board::set_switches() {
   for (unsigned pin = 0; pin < SWITCH_COUNT; ++pin) dm365.gpio.set_pin(pin, (pins >> pin & 1u) != 0);
 }
 
-void Board::load(const LoadImage& image) {
-  const std::size_t n = image.bytes.size();
-  if (n == 0) return;
-  if (image.address >= DDR_BASE)
-    std::copy(image.bytes.begin(), image.bytes.end(),
-              dm365.ddr.store().at(image.address - DDR_BASE));
-  else
-    std::copy(image.bytes.begin(), image.bytes.end(),
-              dm365.internal_ram.begin() + (image.address & (INTERNAL_RAM_BYTES - 1)));
+void Board::load(LoadImage image) {
+  put(image, true);
+  boot_images_.push_back(std::move(image));
+}
+
+void Board::put(const LoadImage& image, bool zeros) {
+  std::uint8_t* const to = image.address >= DDR_BASE
+                               ? dm365.ddr.store().at(image.address - DDR_BASE)
+                               : dm365.internal_ram.data() + (image.address & (INTERNAL_RAM_BYTES - 1));
+  std::copy(image.bytes.begin(), image.bytes.end(), to);
+  if (zeros) std::fill_n(to + image.bytes.size(), image.zeros, std::uint8_t{0});
 }
 
 std::vector<std::uint8_t> Board::peek(std::uint32_t address, std::size_t bytes) {

@@ -19,10 +19,13 @@
 
 namespace fovea::board {
 
-/// A piece of memory to be filled before the start.
+/// A piece of memory to be filled before the start, and again when the chip boots after a reset.
 struct LoadImage {
   std::uint32_t address = 0;
   std::vector<std::uint8_t> bytes;
+  /// Bytes behind them that are 0 at the start. A boot loader reads them from no medium: after a reset
+  /// they are as the program left them.
+  std::size_t zeros = 0;
 };
 
 /// Statistics of the measured window that come from the frame log.
@@ -60,8 +63,9 @@ class Board : public sc_core::sc_module {
   Board(sc_core::sc_module_name name, const BoardParams& params, video::PictureSource& source,
         std::uint32_t entry, bool strict);
 
-  /// Puts bytes into internal RAM (0 or 0x10000) or SDRAM. The caller has checked the address.
-  void load(const LoadImage& image);
+  /// Puts bytes into internal RAM (0 or 0x10000) or SDRAM, now and at every boot after a reset. The
+  /// caller has checked the address.
+  void load(LoadImage image);
   /// Reads memory as the bus sees it now (not through the caches).
   std::vector<std::uint8_t> peek(std::uint32_t address, std::size_t bytes);
 
@@ -73,11 +77,15 @@ class Board : public sc_core::sc_module {
   /// happened).
   std::function<void()> on_window_open, on_window_close;
 
-  /// The chip's first request to be reset. The simulation pauses at its instant, for a board that
-  /// resets itself is not modelled: whoever runs it ends the run there.
+  /// The chip's first request to be reset that is not carried out (`run.resets`). The simulation pauses
+  /// at its instant: whoever runs it ends the run there.
   const std::optional<ChipReset>& chip_reset() const { return chip_reset_; }
   /// Called at that instant, before the pause.
   std::function<void(const ChipReset&)> on_chip_reset;
+  /// The requests that were carried out: the chip has booted again.
+  const std::vector<ChipReset>& resets() const { return resets_; }
+  /// Resets the chip from outside.
+  void reset(ResetKind kind);
 
   bool window_open() const { return window_start_.has_value() && !window_end_; }
   std::optional<Picoseconds> window_start() const { return window_start_; }
@@ -103,6 +111,7 @@ class Board : public sc_core::sc_module {
 
  private:
   void reset_asked(const std::string& cause);
+  void put(const LoadImage& image, bool zeros);
   void set_switches();
   void latched(const video::Osd::Latch& latch);
   void frame_shown(const video::DisplayFrame& frame);
@@ -119,6 +128,8 @@ class Board : public sc_core::sc_module {
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
   std::optional<ChipReset> chip_reset_;
+  std::vector<ChipReset> resets_;
+  std::vector<LoadImage> boot_images_;
   std::optional<Picoseconds> window_start_, window_end_;
   Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
   FrameSums old_;            ///< of what the log has forgotten

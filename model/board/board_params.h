@@ -17,10 +17,14 @@ struct RunParams : ParamGroup {
                        3600 * kPsPerSecond,
                        "simulated time within which the first frame must be shown",
                        Origin::kChoice, ""};
+  IntParam resets{*this, "resets", U::kCount, 0, 0, 1000,
+                  "resets of the chip after which it boots again; the next one ends the run",
+                  Origin::kChoice, ""};
   TextParam until{*this, "until", "frames",
                   "what ends the run, the first of a list that is met: frames (run.frames of them are "
                   "shown), time:2s (simulated), pc:main or pc:0x80008000 (reached), uart:TEXT (sent by "
-                  "UART0), exit (semihosting), halt (nothing wakes the core), reset (of the chip); "
+                  "UART0), exit (semihosting), halt (nothing wakes the core), reset (of the chip, after "
+                  "run.resets of them); "
                   "without frames the figures cover the whole run",
                   "frames, time:T, pc:ADDRESS, uart:TEXT, exit, halt, reset, or [a, b]"};
   RunParams() : ParamGroup("run") {}

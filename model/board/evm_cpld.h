@@ -31,11 +31,15 @@ struct CpldRegs : RegBank {
 /// picture away are reported once. The bus access costs what a register on the slow part of the
 /// configuration bus costs (bus.config.slow_latency; the interface's own wait states are not
 /// modelled).
-class EvmCpld : public periph::WithRegs<CpldRegs>, public BusTarget {
+class EvmCpld : public WithRegs<CpldRegs>, public BusTarget {
  public:
   /// Decoded part of CE1 (assumed: the registers lie below 64 KB).
   static constexpr std::uint32_t kBytes = 0x1'0000;
   EvmCpld(sc_core::sc_module_name name, const DevicesParams& params);
+  /// It is not on the chip: the watchdog's reset does not leave the chip (assumed).
+  void reset(ResetKind kind) override {
+    if (kind != ResetKind::kWatchdog) BusTarget::reset(kind);
+  }
 };
 
 }  // namespace fovea::board

@@ -3,8 +3,9 @@
 namespace fovea::board {
 
 void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end) {
+  index += first_capture_;
   captured_[index] = {start, end};
-  latest_capture_ = index;
+  next_capture_ = index + 1;
   capture_ends_.push_back(end);
   // Only the recent past can still be shown; the history is in records_.
   while (captured_.size() > 128) captured_.erase(captured_.begin());
@@ -14,14 +15,23 @@ void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end) 
 /// The firmware may be a frame ahead of the record of the capture (its interrupt comes with the
 /// last line, the record with the last write), never more than half the range behind.
 std::optional<std::uint64_t> FrameLog::unroll(unsigned sequence) const {
-  const std::uint64_t next = latest_capture_ ? *latest_capture_ + 1 : 0;
+  const std::uint64_t next = next_capture_ - first_capture_;
   const std::uint64_t base = next & ~std::uint64_t{PHASE_SEQUENCES - 1};
   std::uint64_t value = base + sequence;
   if (value > next) {
     if (value < PHASE_SEQUENCES) return std::nullopt;  // ahead of all captures: not a frame of ours
     value -= PHASE_SEQUENCES;
   }
-  return value;
+  return first_capture_ + value;
+}
+
+void FrameLog::restart() {
+  first_capture_ = next_capture_;
+  running_.reset();
+  flipped_.reset();
+  showing_.reset();
+  last_shown_.reset();
+  address_.reset();
 }
 
 void FrameLog::pins(std::uint32_t levels, Picoseconds at) {

@@ -29,15 +29,18 @@ struct FrameRecord {
   bool repeated = false;
 };
 
-/// A sequence number is the count of complete captures modulo 256; it is unrolled against the
-/// captures that the model has seen.
+/// A sequence number is the count of complete captures since the last reset, modulo 256; it is unrolled
+/// against the captures that the model has seen. The log numbers the captures of the whole run.
 class FrameLog {
  public:
+  /// @param index number of the capture since the last reset
   void capture(std::uint64_t index, Picoseconds start, Picoseconds end);
   void pins(std::uint32_t levels, Picoseconds at);
   /// The display begins a frame and will show this buffer. True if it shows a frame that the
   /// firmware has flipped to.
   bool latch(std::uint32_t address, Picoseconds at);
+  /// The chip is reset: capture and firmware count from 0 again. What is in the log stays.
+  void restart();
   /// The frame whose latch was the last one is out.
   const FrameRecord& shown(Picoseconds start, Picoseconds end);
 
@@ -83,7 +86,9 @@ class FrameLog {
   std::map<std::uint64_t, Remap> remapped_;
   std::vector<Remap> remaps_;
   std::vector<Picoseconds> capture_ends_;
-  std::optional<std::uint64_t> latest_capture_, running_, flipped_, showing_, last_shown_;
+  std::uint64_t first_capture_ = 0;  // since the last reset
+  std::uint64_t next_capture_ = 0;
+  std::optional<std::uint64_t> running_, flipped_, showing_, last_shown_;
   std::optional<std::uint32_t> address_;
   Picoseconds remap_start_ = 0;
   std::vector<FrameRecord> records_;

@@ -70,6 +70,9 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   /// What the chip has at an address where nothing answers here, such as "MMCSD0 at 0x01d11000 is
   /// not modelled"; empty: nothing known. Unset on a bus that is not the chip's.
   std::function<std::string(std::uint32_t address)> describe;
+  /// Accesses that are under way at a reset of the chip are answered without effect.
+  void reset(ResetKind) override { in_reset_ = true; }
+  void leave_reset() override { in_reset_ = false; }
   /// Whose access is, or was last, at its register.
   Master accessing() const { return accessing_; }
 
@@ -83,6 +86,7 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   const ConfigBusParams& params_;
   EndOfInstant& end_of_instant_;
   Master accessing_ = Master::kArmD;
+  bool in_reset_ = false;
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 

@@ -1,5 +1,6 @@
 // What a block of the chip or the board says of itself, and the list of all blocks.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,6 +22,13 @@ struct MasterPort {
   MemInitiatorSocket<32>* socket;
   unsigned outstanding;  ///< requests it may have under way; 0: it issues none with these parameters
   Pace pace;
+};
+
+/// Why a chip is reset. What each kind leaves as it was: model/decisions/0015-reset.md.
+enum class ResetKind : std::uint8_t {
+  kPowerOn,   ///< the power-on reset pin; memories have lost their contents
+  kWarm,      ///< the reset pin while the power stays on
+  kWatchdog,  ///< requested by the watchdog timer
 };
 
 /// Any input or output of that kind, whether or not it must be bound.
@@ -46,6 +54,16 @@ class Block {
   const std::vector<Interrupt>& interrupts() const { return interrupts_; }
   /// The block's registers on the configuration bus; null if it has none.
   virtual BusTarget* registers() { return nullptr; }
+
+  /// The chip's reset is asserted, at the end of an instant: the block returns to its state after
+  /// power-up and starts nothing new. Requests that it has sent to memory are still answered, and it
+  /// ignores the answers. Outputs follow in the next delta cycles. Statistics are not touched.
+  virtual void reset(ResetKind) {}
+  /// During a reset: true if none of the block's requests is under way at the present time. It must
+  /// not depend on how far the memory path has been decided ahead of that time.
+  virtual bool idle() const { return true; }
+  /// The chip leaves reset: all blocks are idle.
+  virtual void leave_reset() {}
 
  protected:
   /// The group is reset when the measured window opens and reported when it closes.

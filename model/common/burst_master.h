@@ -61,6 +61,8 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     for (const Slot& s : slots_) n += s.free >= t;
     return n;
   }
+  /// No burst is under way at the present time, whatever was decided ahead of it.
+  bool idle() const { return taken_at(kernel_time() + 1) == 0; }
   /// Bursts not yet reported; with kWhenDecided those undecided.
   unsigned outstanding() const { return busy_; }
 

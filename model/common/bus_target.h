@@ -13,10 +13,20 @@
 
 namespace fovea {
 
+/// Holds a block's registers in a base class, so that they are constructed before BusTarget refers to
+/// them.
+template <class Regs>
+struct WithRegs {
+  template <class... Args>
+  explicit WithRegs(Args&&... args) : regs(std::forward<Args>(args)...) {}
+  Regs regs;
+};
+
 /// Base class of every peripheral with registers: b_transport reads and writes its register bank.
 /// The configuration bus models the latency of the access and calls with local time equal to kernel
 /// time, so b_transport neither waits nor adds a delay. The payload's address is the offset in the
 /// block; accesses are 1, 2 or 4 bytes. transport_dbg reads one word without side effects.
+/// A derived class holds its registers in a WithRegs, named before this base.
 class BusTarget : public sc_core::sc_module, public Block {
  public:
   tlm_utils::simple_target_socket<BusTarget> reg_socket{"reg_socket"};
@@ -24,6 +34,10 @@ class BusTarget : public sc_core::sc_module, public Block {
   RegBank& bank() { return bank_; }
   BusTarget* registers() final { return this; }
   bool gated() const { return !clocked(); }
+  void reset(ResetKind kind) override {
+    bank_.reset();
+    on_reset(kind);
+  }
   /// Reports every access over the bus to `observer`; null removes the observer.
   void observe(RegisterObserver* observer) { observer_ = observer; }
 
@@ -39,6 +53,8 @@ class BusTarget : public sc_core::sc_module, public Block {
   /// as in the chip's peripherals. False: a bus error, for a block of which so little is modelled
   /// that software has to notice.
   virtual bool holes_answer() const { return true; }
+  /// Resets what the block keeps beside its registers, which have their reset values by now.
+  virtual void on_reset(ResetKind) {}
 
  private:
   void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {

@@ -108,8 +108,6 @@ Access RegBank::write(std::uint32_t offset, unsigned bytes, std::uint32_t value)
   const unsigned shift = 8 * (offset & 3u);
   const std::uint32_t lanes = (bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u) << shift;
   const std::uint32_t word = (value << shift) & lanes;
-  const std::uint32_t lost = lanes & ~(r->rw_ | r->w1c_ | r->wo_);
-  if ((word & lost) != (r->value_ & lost)) ++lost_writes_;
   const std::uint32_t keep = (r->rw_ | r->wo_) & lanes;
   r->value_ = (r->value_ & ~keep) | (word & keep);
   r->value_ &= ~(word & r->w1c_);

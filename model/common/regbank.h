@@ -128,7 +128,6 @@ class RegBank : public Census<RegBank> {
   const std::vector<Reg*>& regs() const { return regs_; }
   /// The register at an offset in the block, or null.
   const Reg* register_at(std::uint32_t offset) const { return find(offset); }
-  std::uint64_t lost_writes() const { return lost_writes_; }
 
  private:
   friend class Reg;
@@ -137,7 +136,6 @@ class RegBank : public Census<RegBank> {
   std::string name_;
   std::vector<Reg*> regs_;
   std::vector<Reg*> by_word_;
-  std::uint64_t lost_writes_ = 0;
 };
 
 }  // namespace fovea

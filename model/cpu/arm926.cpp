@@ -1,5 +1,7 @@
 #include "model/cpu/arm926.h"
 
+#include <algorithm>
+
 namespace fovea::cpu {
 
 Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
@@ -22,8 +24,13 @@ void Arm926::run() {
   enter();
   try {
     core_.reset(entry_, kernel_time());
-    core_.run();
-    catch_up();  // how far the kernel has advanced must not depend on observers
+    for (;;) {
+      core_.run();
+      const bool reset = core_.held();
+      catch_up();  // how far the kernel has advanced must not depend on observers
+      if (!reset) break;
+      stay_in_reset();
+    }
   } catch (const GuestFailure& e) {
     failure_ = e.what();
   } catch (const NotModelled& e) {
@@ -33,7 +40,43 @@ void Arm926::run() {
   sc_core::sc_stop();
 }
 
+void Arm926::stay_in_reset() {
+  take_clock();
+  core_.restart(entry_, kernel_time());  // what is in its buffers is not sent any more
+  held_ = true;
+  while (in_reset_) wait_for(released_);
+  held_ = false;
+  core_.restart(entry_, kernel_time());
+}
+
+void Arm926::reset(ResetKind) {
+  in_reset_ = true;
+  asserted_ = kernel_time();
+  core_.set_reset(true, asserted_);
+  interrupt_.soon();
+}
+
+bool Arm926::idle() const {
+  const Picoseconds now = kernel_time();
+  return held_ && std::all_of(records_.begin(), records_.end(), [&](const Record& r) {
+    return r.done && r.last <= now;
+  });
+}
+
+void Arm926::leave_reset() {
+  in_reset_ = false;
+  core_.set_reset(false, kernel_time());
+  released_.soon();
+}
+
+/// The reset changes the clock too. The core finishes its instruction with the old one: how many clocks
+/// of a stall it has counted already depends on the synchronisation.
 void Arm926::clock_changed() {
+  const bool finishing = in_reset_ && !held_ && core_.clock().running();
+  if (!finishing) take_clock();
+}
+
+void Arm926::take_clock() {
   core_.set_clock(clk.read(), kernel_time());
   ++clock_changes_;
   background_moved();
@@ -63,7 +106,7 @@ void Arm926::interrupt_changed() {
 
 Picoseconds Arm926::wait_for_interrupt(Picoseconds) {
   asleep_ = true;
-  while (!irq_ && !fiq_) wait_for(interrupt_);
+  while (!irq_ && !fiq_ && !in_reset_) wait_for(interrupt_);
   asleep_ = false;
   return asserted_;
 }

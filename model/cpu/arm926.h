@@ -38,10 +38,18 @@ class Arm926 final : public bus::LookaheadInitiator<Arm926>, public Block, priva
   /// at an instruction boundary.
   void catch_up();
 
+  /// The core finishes its instruction, without effect on blocks in reset, and is held at the next
+  /// boundary until leave_reset().
+  void reset(ResetKind) override;
+  bool idle() const override;
+  void leave_reset() override;
+
  private:
   friend bus::LookaheadInitiator<Arm926>;
   void run();
+  void stay_in_reset();
   void clock_changed();
+  void take_clock();
   void interrupt_changed();
 
   void submit(BusAccess& access, Picoseconds at) override;
@@ -65,8 +73,9 @@ class Arm926 final : public bus::LookaheadInitiator<Arm926>, public Block, priva
   std::uint32_t entry_;
   std::array<Record, Core::kAccesses> records_;
   std::size_t record_count_ = 0;
-  Timer interrupt_, clock_runs_;
+  Timer interrupt_, clock_runs_, released_;
   bool irq_ = false, fiq_ = false, asleep_ = false;
+  bool in_reset_ = false, held_ = false;
   unsigned clock_changes_ = 0;
   Picoseconds asserted_ = 0;  // time at which IRQ or FIQ was asserted
   std::string failure_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 
 #include "model/common/check.h"
@@ -88,21 +89,40 @@ struct DdrCheck::Sheet {
 struct DdrCheck::Stream {
   DdrController& controller;
   check::CommandChecker programmed;
-  check::PartChecker sheet;
+  const check::Part& part;
+  std::optional<check::PartChecker> sheet;
   bool used = false;  // before its first ACT the part holds nothing, however it is programmed
+  bool in_reset = false;
   std::map<std::string, std::string> said;  // kind of warning: with the time of its first
 
-  Stream(DdrController& c, const check::Part& part)
-      : controller(c),
-        programmed(rules({})),
-        sheet(part, Frequency(243'000'000), DdrConfig{}.timing.CL) {
+  Stream(DdrController& c, const check::Part& of)
+      : controller(c), programmed(rules({})), part(of) {
+    begin_sheet();
     programmed.on_complaint = [this](const check::Complaint& complaint) {
       FOVEA_CHECK(false, "SDRAM command against the programmed timing: " + complaint.rule +
                              ", bank " + std::to_string(complaint.bank) + ", " +
                              std::to_string(complaint.missing) + " clocks, at " +
                              seconds(controller.ddr_clock().edge(complaint.clock)));
     };
-    sheet.on_warning = [this](const check::Complaint& complaint, const std::string& kind) {
+    controller.set_command_hook(
+        [](void* self, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+          auto& s = *static_cast<Stream*>(self);
+          s.programmed.command(word(cmd), bank, row, clock);
+          if (!s.used) {
+            if (cmd != Cmd::kAct || s.in_reset) return;
+            s.used = true;
+            s.sheet->change(s.controller.ddr_clock().frequency(), s.controller.config().timing.CL,
+                           clock);
+          }
+          s.sheet->command(word(cmd), bank, row, clock);
+        },
+        this);
+  }
+  ~Stream() { controller.set_command_hook(nullptr, this); }
+
+  void begin_sheet() {
+    sheet.emplace(part, Frequency(243'000'000), DdrConfig{}.timing.CL);
+    sheet->on_warning = [this](const check::Complaint& complaint, const std::string& kind) {
       const auto [line, first] = said.try_emplace(kind);
       if (first)
         line->second = "SDRAM command bus: " + kind + ", first at " +
@@ -110,21 +130,7 @@ struct DdrCheck::Stream {
                        std::to_string(complaint.bank);
       Diagnostics::instance().guest(line->second);
     };
-    controller.set_command_hook(
-        [](void* self, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
-          auto& s = *static_cast<Stream*>(self);
-          s.programmed.command(word(cmd), bank, row, clock);
-          if (!s.used) {
-            if (cmd != Cmd::kAct) return;
-            s.used = true;
-            s.sheet.change(s.controller.ddr_clock().frequency(), s.controller.config().timing.CL,
-                           clock);
-          }
-          s.sheet.command(word(cmd), bank, row, clock);
-        },
-        this);
   }
-  ~Stream() { controller.set_command_hook(nullptr, this); }
 
   static check::DataSheet rules(const DdrConfig& config) {
     check::DataSheet s = as_programmed(config);
@@ -152,7 +158,18 @@ void DdrCheck::expect(const DdrConfig& config, Frequency clock, Picoseconds at) 
   if (!stream_ || clock.stopped()) return;
   const std::uint64_t now = stream_->controller.ddr_clock().edge_after(at);
   stream_->programmed.change(Stream::rules(config), now);
-  stream_->sheet.change(clock, config.timing.CL, now);
+  stream_->sheet->change(clock, config.timing.CL, now);
+}
+
+void DdrCheck::restart() {
+  if (!stream_) return;
+  stream_->begin_sheet();
+  stream_->used = false;
+  stream_->in_reset = true;
+}
+
+void DdrCheck::begin() {
+  if (stream_) stream_->in_reset = false;
 }
 
 std::vector<std::string> DdrCheck::violations(const DdrConfig& config, Frequency clock) const {

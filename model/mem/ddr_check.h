@@ -22,6 +22,10 @@ class DdrCheck {
   void expect(const DdrConfig& config, Frequency clock, Picoseconds at);
   /// A warning about each value that the part's data sheet does not allow.
   void warn(const DdrConfig& config, Frequency clock) const;
+  /// The part holds nothing until begin(): a chip in reset leaves it without refresh.
+  void restart();
+  /// The part is used, from its next ACT on.
+  void begin();
   /// The same lines, without counting them.
   std::vector<std::string> violations(const DdrConfig& config, Frequency clock) const;
 

@@ -36,6 +36,19 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params,
   });
 }
 
+void DdrModule::on_reset(ResetKind) {
+  sdtimr_ = regs.sdtimr.get();
+  sdtimr2_ = regs.sdtimr2.get();
+  cl_ = regs.sdbcr.cl.get();
+  unlocked_ = timed_ = false;
+  in_reset_ = true;
+  reconfigure();
+  check_.restart();
+  ready_ = false;  // although the reset value of SDBCR is that of a locked register
+  update_open();
+  note_initialised();
+}
+
 void DdrModule::enabled_changed() {
   enabled_ = enabled.read();
   update_open();
@@ -106,6 +119,7 @@ void DdrModule::reconfigure() {
 DdrConfig DdrModule::programmed() const { return decode(regs); }
 
 bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
+  if (in_reset_) return false;
   const std::uint64_t end = std::uint64_t{offset} + bytes;
   const bool outside = end > memory_.map().ddr_window;
   if (outside || !ready_ || !enabled_ || !controller().running()) {
@@ -116,6 +130,7 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
   if (!examined_) {
     examined_ = true;
     update_open();
+    check_.begin();
     for (const std::string& line : invalid_register_values(regs, params_)) Diagnostics::instance().guest(line);
     check_.warn(programmed(), ddr_clk.read());
   }

@@ -18,7 +18,11 @@ namespace fovea::mem {
 /// connected. With the first access after a change of registers or clock, what was programmed is
 /// examined: values that the manual does not allow, and times below the part's data sheet, are warnings
 /// about the guest.
-class DdrModule final : public BusTarget, private memsys::SdramAdmission {
+///
+/// A reset of the chip returns the registers to their reset values; software has to initialise the SDRAM
+/// again. Requests that the controller has accepted are still executed, later ones end in a bus error.
+/// The SDRAM keeps its contents (model/decisions/0015-reset.md).
+class DdrModule final : public WithRegs<DdrRegs>, public BusTarget, private memsys::SdramAdmission {
  public:
   using Params = DdrParams;
   ClockIn ddr_clk{"ddr_clk"};
@@ -32,14 +36,15 @@ class DdrModule final : public BusTarget, private memsys::SdramAdmission {
 
   DdrController& controller() { return memory_.controller(); }
   BackingStore& store() { return memory_.store(); }
-  DdrRegs regs;
   /// What the registers say now.
   DdrConfig programmed() const;
 
   /// Brings the whole memory system to `now`: for whoever looks at its state.
   void settle(Picoseconds now) { memory_.settle(now); }
+  void leave_reset() override { in_reset_ = false; }
 
  private:
+  void on_reset(ResetKind) override;
   void clocks_changed();
   void enabled_changed();
   void reconfigure();
@@ -59,6 +64,7 @@ class DdrModule final : public BusTarget, private memsys::SdramAdmission {
   std::uint32_t sdtimr_, sdtimr2_;  // as last written with TIMUNLOCK
   std::uint32_t cl_;                // SDBCR.CL as last taken
   bool unlocked_ = false;           // the last write of SDBCR opened it
+  bool in_reset_ = false;
 };
 
 }  // namespace fovea::mem

@@ -38,6 +38,7 @@ class Aintc : public WithRegs<AintcCore>, public BusTarget {
   const AintcCore& core() const { return regs; }
 
  private:
+  void on_reset(ResetKind) override { regs.reset(); }
   void update();
   Timer written_;
 };

@@ -1,5 +1,5 @@
-// Base classes of clocked peripherals: registers that are constructed before the bus socket, and a
-// clock whose edges are numbered and which stops while the module is gated.
+// Base class of clocked peripherals, with a clock whose edges are numbered and which stops while the
+// module is gated; ports that may stay unbound.
 #pragma once
 #include <systemc>
 
@@ -9,15 +9,6 @@
 #include "model/common/timer.h"
 
 namespace fovea::periph {
-
-/// Holds a block's registers in a base class, so that they are constructed before BusTarget refers
-/// to them.
-template <class Regs>
-struct WithRegs {
-  template <class... Args>
-  explicit WithRegs(Args&&... args) : regs(std::forward<Args>(args)...) {}
-  Regs regs;
-};
 
 /// An output that may stay unbound, on boards where nothing uses it.
 template <class T>

@@ -63,6 +63,17 @@ std::uint32_t Gpio::levels(unsigned bank) const {
   return (state_[bank].driven & b.dir.get()) | (b.out_data.get() & ~b.dir.get());
 }
 
+/// All pins are inputs again, with the levels that the board drives.
+void Gpio::on_reset(ResetKind) {
+  for (unsigned n = 0; n < kGpioBanks; ++n) {
+    state_[n].rising = state_[n].falling = 0;
+    output_written(n);
+  }
+  fired_ = 0;
+  off_.fill(0);
+  wake_.soon();
+}
+
 void Gpio::set_pin(unsigned pin, bool level) {
   FOVEA_CHECK(pin < kGpioPins, "GPIO pin out of range");
   State& s = state_[pin / 32];

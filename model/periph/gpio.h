@@ -48,6 +48,7 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
   void output_written(unsigned bank);
   void levels_changed(unsigned bank);
   void clock_changed() override { wake_.soon(); }
+  void on_reset(ResetKind) override;
   void update();
 
   struct State {

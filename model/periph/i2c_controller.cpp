@@ -71,7 +71,7 @@ std::uint32_t I2cController::pending_vector() const {
   return 0;
 }
 
-void I2cController::reset() {
+void I2cController::abandon_transfer() {
   if (target_) target_->i2c_stop();
   target_ = nullptr;
   state_ = State::kIdle;
@@ -79,10 +79,17 @@ void I2cController::reset() {
   done_tick_ = kNever;
 }
 
+void I2cController::on_reset(ResetKind) {
+  abandon_transfer();
+  remaining_ = 0;
+  shift_ = received_ = 0;
+  refresh();
+}
+
 void I2cController::mode_written() {
   auto& m = regs.icmdr;
   if (!m.irs) {
-    reset();
+    abandon_transfer();
     refresh();
     return;
   }

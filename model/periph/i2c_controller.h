@@ -12,7 +12,8 @@ namespace fovea::periph {
 struct I2cRegs : RegBank {
   Reg icoar{*this, "ICOAR", 0x00, Mode::kRw, "own address; target mode is not modelled"};
   Reg icimr{*this, "ICIMR", 0x04, Mode::kRw, "interrupt enables, bits as ICSTR 6:0"};
-  Reg icstr{*this, "ICSTR", 0x08, Mode::kRw, "status; 1 clears AL, NACK, ARDY, ICRRDY, SCD"};
+  Reg icstr{*this, "ICSTR", 0x08, Mode::kRw, "status; 1 clears AL, NACK, ARDY, ICRRDY, SCD",
+            0x410};
   Reg icclkl{*this, "ICCLKL", 0x0C, Mode::kRw, "low time of SCL, prescaled clocks - d"};
   Reg icclkh{*this, "ICCLKH", 0x10, Mode::kRw, "high time of SCL, prescaled clocks - d"};
   Reg iccnt{*this, "ICCNT", 0x14, Mode::kRw, "bytes to move; 0 means 65536"};
@@ -81,7 +82,8 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
   void byte_finished();  // called after a byte in either direction
   void stop_or_hold();
   void nack();
-  void reset();
+  void abandon_transfer();
+  void on_reset(ResetKind) override;
   std::uint32_t flags() const { return status_; }
   void set_flag(std::uint32_t bit) { status_ |= bit; }
   void clear_flag(std::uint32_t bit) { status_ &= ~bit; }

@@ -15,7 +15,8 @@ std::uint32_t plldiv_offset(unsigned n) {
 PllRegs::PllRegs(const char* name, unsigned sysclks, std::uint32_t reset_type)
     : RegBank(name),
       rstype(*this, "RSTYPE", 0x0E4, Mode::kRo, "1 power-on, 2 warm, 4 watchdog reset",
-             reset_type) {
+             reset_type),
+      systat(*this, "SYSTAT", 0x150, Mode::kRo, "SYSCLKs that are on", (1u << sysclks) - 1) {
   for (unsigned n = 1; n <= sysclks; ++n)
     plldiv.emplace_back(*this, "PLLDIV" + std::to_string(n), plldiv_offset(n), Mode::kRw,
                         "bits 4:0 ratio - 1, bit 15 enable; acts with GOSET", kEnabledRatio1);
@@ -31,10 +32,12 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
   FOVEA_CHECK(sysclks <= kMaxSysclks, "too many SYSCLKs");
   ratio_.fill(kEnabledRatio1);
   regs.pllctl.on_write([this](std::uint32_t) { control_written(); });
-  for (Reg* r : {&regs.pllm, &regs.prediv, &regs.secctl})
-    r->on_write([this, r, last = r->get()](std::uint32_t) mutable {
-      if (r->get() != std::exchange(last, r->get())) relock();
+  for (LockingRegister& l : locking_) {
+    l.last = l.reg->get();
+    l.reg->on_write([this, &l](std::uint32_t) {
+      if (l.reg->get() != std::exchange(l.last, l.reg->get())) relock();
     });
+  }
   regs.postdiv.on_write([this](std::uint32_t) { wake_.soon(); });
   for (unsigned n = 0; n < sysclks; ++n) {
     regs.plldiv[n].on_write([this, n](std::uint32_t) {
@@ -56,6 +59,16 @@ PllController::PllController(sc_core::sc_module_name name, const char* bank, uns
   });
   SC_METHOD(update);
   sensitive << wake_.event() << osc;
+}
+
+void PllController::on_reset(ResetKind kind) {
+  regs.rstype.set(kind == ResetKind::kPowerOn ? 1 : kind == ResetKind::kWarm ? 2 : 4);
+  ratio_.fill(kEnabledRatio1);
+  for (LockingRegister& l : locking_) l.last = l.reg->get();
+  locked_ = pll_on_ = false;
+  pllm_ = prediv_ = 0;
+  lock_at_ = go_at_ = kNever;
+  wake_.soon();
 }
 
 void PllController::control_written() {

@@ -42,7 +42,7 @@ struct PllParams : ParamGroup {
                       1,
                       0,
                       15,
-                      "RSTYPE at the start: 1 power-on, 2 warm, 4 watchdog",
+                      "RSTYPE at the start of a run: 1 power-on, 2 warm, 4 watchdog",
                       Origin::kChoice,
                       "boot loaders reset the chip once when they see 1 or 2"};
   PllParams() : ParamGroup("pll") {}
@@ -82,7 +82,7 @@ struct PllRegs : RegBank {
   Reg dchange{*this, "DCHANGE", 0x144, Mode::kRo, "ratios written but not yet taken"};
   Reg cken{*this, "CKEN", 0x148, Mode::kRw, "bit 0 AUXCLK, bit 1 OBSCLK; kept", 0x3};
   Reg ckstat{*this, "CKSTAT", 0x14C, Mode::kRo, "bit 0 AUXCLK, bit 1 OBSCLK are on", 0x3};
-  Reg systat{*this, "SYSTAT", 0x150, Mode::kRo, "SYSCLKs that are on"};
+  Reg systat;
   std::deque<Reg> plldiv;
 };
 
@@ -97,7 +97,8 @@ struct PllRegs : RegBank {
 /// framework writes PREDIV back while it runs from the PLL. A PLL that loses its lock while PLLEN =
 /// 1 is not bypassed. It keeps its frequency until it locks again (assumed; the chip's drifts),
 /// with a warning. If PLLEN is set before the first lock since a reset, the output stays in bypass
-/// until the lock (assumed), also with a warning.
+/// until the lock (assumed), also with a warning. A reset of the chip returns it to bypass and leaves
+/// its kind in RSTYPE.
 class PllController : public WithRegs<PllRegs>, public BusTarget {
  public:
   using Params = PllParams;
@@ -111,6 +112,7 @@ class PllController : public WithRegs<PllRegs>, public BusTarget {
                 const PllParams& params);
 
  private:
+  void on_reset(ResetKind kind) override;
   void control_written();
   void relock();
   void update();
@@ -121,6 +123,12 @@ class PllController : public WithRegs<PllRegs>, public BusTarget {
   bool locked_ = false, pll_on_ = false;
   std::uint32_t pllm_ = 0, prediv_ = 0;  // values of the last lock; pllm_ 0: no lock since reset
   Picoseconds lock_at_ = kNever, go_at_ = kNever;
+  /// A register whose change makes the PLL lock again.
+  struct LockingRegister {
+    Reg* reg;
+    std::uint32_t last = 0;
+  };
+  std::array<LockingRegister, 3> locking_{{{&regs.pllm}, {&regs.prediv}, {&regs.secctl}}};
   Timer wake_;
 };
 

@@ -43,6 +43,12 @@ Psc::Psc(sc_core::sc_module_name name, const PscParams& params)
   sensitive << wake_.event();
 }
 
+void Psc::on_reset(ResetKind) {
+  again_ = false;
+  done_at_ = kNever;
+  wake_.soon();
+}
+
 void Psc::command(std::uint32_t domains) {
   if (!(domains & 1)) return;
   if (done_at_ != kNever) {

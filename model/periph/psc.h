@@ -90,6 +90,7 @@ class Psc : public WithRegs<PscRegs>, public BusTarget {
   Psc(sc_core::sc_module_name name, const PscParams& params);
 
  private:
+  void on_reset(ResetKind) override;
   void command(std::uint32_t domains);
   void update();
 

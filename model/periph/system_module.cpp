@@ -39,6 +39,12 @@ SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& par
   sensitive << written_.event();
 }
 
+void SystemModule::on_reset(ResetKind) {
+  vtp_ready_at_ = kNever;
+  vtp_clrz_ = true;
+  written_.soon();
+}
+
 void SystemModule::update() {
   mstpri0.write(regs.mstpri0.get());
   mstpri1.write(regs.mstpri1.get());

@@ -31,6 +31,17 @@ struct SystemParams : ParamGroup {
                    "BOOTCFG pins: 7:5 boot mode (0 NAND ... 3 UART), 2 AEMIF width",
                    Origin::kChoice,
                    "board straps"};
+  IntParam reset_time{*this,
+                      "reset_time",
+                      IntParam::Unit::kTime,
+                      10 * kPsPerUs,
+                      100 * kPsPerNs,
+                      10 * kPsPerMs,
+                      "from a reset of the running chip to the core's first instruction; the work "
+                      "of the ROM boot loader takes no time",
+                      Origin::kAssumed,
+                      "no figure published",
+                      {"1us", "1ms", "some clocks of 24 MHz to the start of the oscillator"}};
   SystemParams() : ParamGroup("system") {}
 };
 
@@ -140,6 +151,7 @@ class SystemModule : public WithRegs<SystemRegs>, public BusTarget {
   SystemModule(sc_core::sc_module_name name, const SystemParams& params);
 
  private:
+  void on_reset(ResetKind) override;
   void update();
   Picoseconds vtp_time_;
   Picoseconds vtp_ready_at_ = kNever;

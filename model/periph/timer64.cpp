@@ -180,6 +180,15 @@ void Timer64::watchdog_key(std::uint32_t word) {
   reconfigure();
 }
 
+void Timer64::on_reset(ResetKind) {
+  half_ = {};
+  half_[0].counter = TimerCounter(64);
+  mode_ = k64;
+  watchdog_ = Watchdog::kIdle;
+  pin_reset_ = shadow_valid_ = false;
+  wake_.soon();
+}
+
 void Timer64::reschedule() {
   const std::uint64_t t = ticks();
   for (Half& h : half_) {

@@ -99,6 +99,7 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
   void reload(unsigned half);
   void watchdog_key(std::uint32_t word);
   void clock_changed() override { reschedule(); }
+  void on_reset(ResetKind) override;
   void update();
 
   std::array<Half, 2> half_;  // TIM12 and TIM34; in the 64-bit modes half_[0] is both

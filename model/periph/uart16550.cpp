@@ -57,6 +57,17 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
   sensitive << wake_.event();
 }
 
+/// The byte that is being sent is lost.
+void Uart16550::on_reset(ResetKind) {
+  tx_.clear();
+  rx_.clear();
+  shift_ = ier_ = fcr_ = last_rx_ = 0;
+  shifting_ = overrun_ = rx_timeout_ = false;
+  thre_event_ = true;
+  done_tick_ = timeout_tick_ = kNever;
+  refresh();
+}
+
 void Uart16550::refresh() {
   wake_.soon();
   if (on_ready) on_ready();

@@ -87,6 +87,7 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   std::uint32_t interrupt_id() const;
   void start_next(std::uint64_t first_tick);
   void clock_changed() override { refresh(); }
+  void on_reset(ResetKind) override;
   void update();
 
   const char* selection_;

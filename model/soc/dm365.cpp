@@ -1,6 +1,7 @@
 #include "model/soc/dm365.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/soc/memory_map.h"
 
@@ -28,12 +29,6 @@ Placements joined(Placements rows, const Placements& more) {
   return rows;
 }
 
-std::vector<bus::ConfigBus::BlockSpec> specs(const Placements& rows) {
-  std::vector<bus::ConfigBus::BlockSpec> out;
-  for (const Placement& row : rows) out.push_back({row.name, row.base, row.size, row.speed});
-  return out;
-}
-
 }  // namespace
 
 Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry,
@@ -42,7 +37,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), end_of_instant),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, end_of_instant, specs(joined(params.rows, external))),
+      config("config", params.config_bus, end_of_instant, bus_blocks(joined(params.rows, external))),
       placed(joined(params.rows, external), params.block_params, scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);
@@ -69,6 +64,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
 }
 
 void Dm365::list_blocks() {
+  add_statistics(stats);
   platform.add("arm", arm);
   platform.add("scr", scr);
   platform.add("waits", *this);
@@ -273,8 +269,39 @@ void Dm365::set_wait_states() {
 /// TIMER2's reset request leaves the timer only while MISC.TIMER2_WDT says that it is the watchdog.
 void Dm365::watch_reset() {
   constexpr std::uint32_t kTimer2Wdt = 1u << 4;
-  if (reset_asked_.read() && (misc_.read() & kTimer2Wdt) && on_reset)
-    on_reset(timers[2]->reset_cause());
+  if (reset_asked_.read() && (misc_.read() & kTimer2Wdt) && on_reset_request)
+    on_reset_request(timers[2]->reset_cause());
+}
+
+namespace {
+constexpr unsigned kAfterRegisters = static_cast<unsigned>(kMasterCount) + 1;
+}
+
+void Dm365::reset_chip(ResetKind kind) {
+  end_of_instant.at(kernel_time(), kAfterRegisters, [this, kind] { begin_reset(kind); });
+}
+
+void Dm365::begin_reset(ResetKind kind) {
+  const bool already = reset_under_way_.has_value();
+  reset_under_way_ = kind;
+  ++stats.resets;
+  for (const Platform::Entry& e : platform.blocks()) e.block->reset(kind);
+  if (!already)
+    end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters, [this] { end_reset(); });
+}
+
+void Dm365::end_reset() {
+  for (const Platform::Entry& e : platform.blocks())
+    if (!e.block->idle())
+      return end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters,
+                      [this] { end_reset(); });
+  const ResetKind kind = *std::exchange(reset_under_way_, std::nullopt);
+  if (kind == ResetKind::kPowerOn) {
+    internal_ram.fill(0);
+    ddr.store().clear();
+  }
+  if (on_boot) on_boot(kind);
+  for (const Platform::Entry& e : platform.blocks()) e.block->leave_reset();
 }
 
 void Dm365::wire_video() {

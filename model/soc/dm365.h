@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <systemc>
@@ -38,6 +39,11 @@
 #include "model/video/vpss_top.h"
 
 namespace fovea::soc {
+
+struct ChipStats : StatGroup {
+  Counter resets{*this, "resets", "1", "resets of the running chip, by its watchdog or from outside"};
+  ChipStats() : StatGroup("soc") {}
+};
 
 struct Dm365Params : ParamTree {
   explicit Dm365Params(Placements blocks = dm365_blocks()) : rows(std::move(blocks)) {
@@ -113,9 +119,16 @@ class Dm365 : public sc_core::sc_module, public Block {
   /// All blocks of the chip.
   Platform platform;
 
-  /// The chip asks to be reset, with the cause. Nothing here resets itself yet: whoever sets this
+  /// The watchdog asks for a reset of the chip, with the cause. Whoever sets this calls reset_chip(), or
   /// ends the simulation at this instant.
-  std::function<void(const std::string& cause)> on_reset;
+  std::function<void(const std::string& cause)> on_reset_request;
+  /// Resets all blocks at the end of the present instant. The core's first instruction follows after
+  /// `system.reset_time`, or later if answers to requests from before the reset are still under way.
+  void reset_chip(ResetKind kind);
+  /// Called just before the core starts again: whoever stands in for the ROM boot loader loads the
+  /// program.
+  std::function<void(ResetKind kind)> on_boot;
+  ChipStats stats;
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
   /// chip.
@@ -136,6 +149,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   std::uint32_t load_priority(Master m) const;
   void set_wait_states();
   void watch_reset();
+  void begin_reset(ResetKind kind);
+  void end_reset();
   void wire_clocks();
   void wire_memory();
   void wire_interrupts();
@@ -159,6 +174,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   sc_core::sc_signal<bool> uart0_pins_, uart1_pins_, i2c_pins_;
   sc_core::sc_signal<bool> isif_gate_, isif_owns_write_buffer_, vpbe_gate_, venc_clk_sel_;
   sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_;
+  std::optional<ResetKind> reset_under_way_;
   const Dm365Params& params_;
 };
 

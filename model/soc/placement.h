@@ -115,6 +115,21 @@ using Placements = std::vector<Placement>;
 
 /// The blocks of the chip.
 const Placements& dm365_blocks();
+/// Those of its rows that have these names, for a machine with a part of the chip.
+inline Placements blocks_named(const std::vector<std::string>& names) {
+  Placements out;
+  for (const std::string& name : names)
+    for (const Placement& row : dm365_blocks())
+      if (row.name == name) out.push_back(row);
+  FOVEA_CHECK(out.size() == names.size(), "a name without a row");
+  return out;
+}
+/// What the configuration bus needs to know of the rows.
+inline std::vector<bus::ConfigBus::BlockSpec> bus_blocks(const Placements& rows) {
+  std::vector<bus::ConfigBus::BlockSpec> out;
+  for (const Placement& row : rows) out.push_back({row.name, row.base, row.size, row.speed});
+  return out;
+}
 
 /// What the rows of a chip have made, in their order.
 class PlacedBlocks {

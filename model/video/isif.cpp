@@ -45,6 +45,19 @@ void Isif::write_syncen() {
   if (regs.modeset.hdvdd) d.not_modelled("ISIF as HD/VD master");
 }
 
+/// Bursts under way are not waited for: the frame is lost, and what of it reaches memory is of no
+/// account.
+void Isif::on_reset(ResetKind) {
+  write_syncen();
+  f_ = field_ = overflow_sticky_ = false;
+  v_ = true;
+  setup_ = {};
+  row_bytes_ = row_pos_ = 0;
+  reset_tag_ = tag_;
+  ends_.clear();
+  end_timer_.cancel();
+}
+
 void Isif::latch() {
   setup_.write = regs.syncen.wen && regs.rec656if.r656on && regs.modeset.inpmod.get() == 2 &&
                  owns_write_buffer.read();
@@ -222,7 +235,8 @@ void Isif::close_fields() {
 /// Called ahead of time c.last: must not use or change anything that others can observe before
 /// then.
 void Isif::done(const BurstMaster::Completion& c) {
-  if (c.error) Diagnostics::instance().guest("capture writes to an address without memory");
+  if (c.error && c.tag > reset_tag_)
+    Diagnostics::instance().guest("capture writes to an address without memory");
   done_tag_ = c.tag;
   done_at_ = c.last;
   for (FieldEnd& e : ends_)

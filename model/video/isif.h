@@ -51,7 +51,7 @@ struct CaptureFrame {
 /// overflow the burst is lost, a sticky flag is set (it exists only in the model: no register is
 /// documented) and capture continues. Not modelled: raw and 16-bit input, culling, filters,
 /// formatter, HD/VD as outputs.
-class Isif : public BusTarget, public Bt656If {
+class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
  public:
   using Params = VpssParams;
   sc_core::sc_export<Bt656If> video{"video"};
@@ -60,7 +60,6 @@ class Isif : public BusTarget, public Bt656If {
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
   sc_core::sc_in<bool> owns_write_buffer{"owns_write_buffer"};  ///< BCR.SRC_SEL_WB; latched
                                                                 ///< together with WEN
-  IsifRegs regs;
   CaptureStats stats;
   /// Called at the first line of a frame, a little before its first captured sample.
   std::function<void(const CaptureFrame&)> on_frame_start;
@@ -74,6 +73,7 @@ class Isif : public BusTarget, public Bt656If {
   bool overflowed() const { return overflow_sticky_; }
   /// Address of the start of the last captured row; for tests.
   std::uint32_t row_address() const { return row_address_; }
+  bool idle() const override { return memory.idle(); }
 
  protected:
   bool clocked() const override { return psc_enabled.read() && gate.read(); }
@@ -92,6 +92,7 @@ class Isif : public BusTarget, public Bt656If {
     CaptureFrame frame;
   };
 
+  void on_reset(ResetKind) override;
   void write_syncen();
   void latch();
   void begin_field(const Bt656Line& line);
@@ -119,6 +120,7 @@ class Isif : public BusTarget, public Bt656If {
   Timer end_timer_;
 
   std::uint64_t tag_ = 0, done_tag_ = 0;
+  std::uint64_t reset_tag_ = 0;  // bursts up to this one were issued before the last reset
   Picoseconds done_at_ = 0;
   bool overflow_sticky_ = false;
 

@@ -133,8 +133,9 @@ void Osd::issue() {
 /// Called ahead of time c.last: must not use or change anything that others can observe before
 /// then.
 void Osd::done(const BurstMaster::Completion& c) {
-  if (c.error) Diagnostics::instance().guest("display reads an address without memory");
   const std::uint64_t n = c.tag >> kBurstIndexBits;
+  if (c.error && n >= reset_line_)
+    Diagnostics::instance().guest("display reads an address without memory");
   if (n >= finished_ && n < fetched_) {  // otherwise the line was displayed already
     Line& line = at(n);
     Burst& b = line.bursts[c.tag & ((1u << kBurstIndexBits) - 1)];

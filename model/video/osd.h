@@ -41,7 +41,7 @@ class OsdLineIf : public virtual sc_core::sc_interface {
 /// it is displayed, in bursts of at most `vpss.burst` bytes. A burst whose data do not arrive
 /// strictly before its first pixel is due is displayed as black and counts as an underflow. Not
 /// modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, any background but black.
-class Osd : public BusTarget, public OsdLineIf {
+class Osd : public WithRegs<OsdRegs>, public BusTarget, public OsdLineIf {
  public:
   using Params = VpssParams;
   struct Latch {
@@ -53,7 +53,6 @@ class Osd : public BusTarget, public OsdLineIf {
   sc_core::sc_export<OsdLineIf> lines{"lines"};
   BurstMaster memory;  ///< bind memory.socket
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
-  OsdRegs regs;
   /// Called at each field start with the latched settings of window 0.
   std::function<void(const Latch&)> on_latch;
 
@@ -63,6 +62,7 @@ class Osd : public BusTarget, public OsdLineIf {
   void fetch(const Timing& timing) override;
   DisplayLine finish() override;
   void stop() override;
+  bool idle() const override { return memory.idle(); }
 
  protected:
   bool clocked() const override { return psc_enabled.read() && gate.read(); }
@@ -92,6 +92,11 @@ class Osd : public BusTarget, public OsdLineIf {
     std::array<std::uint8_t, kActiveBytes> bytes{};
   };
 
+  void on_reset(ResetKind) override {
+    stop();
+    window_ = {};
+    reset_line_ = fetched_;
+  }
   Line& at(std::uint64_t n) { return ring_[n % ring_.size()]; }
   void plan(Line& line);
   void issue();
@@ -101,6 +106,7 @@ class Osd : public BusTarget, public OsdLineIf {
   Window window_;
   std::vector<Line> ring_;
   std::uint64_t fetched_ = 0, finished_ = 0;  // number of lines fetched and displayed
+  std::uint64_t reset_line_ = 0;  // lines before this one were fetched before the last reset
   std::array<std::uint8_t, kActiveBytes> out_{};
 };
 

@@ -26,6 +26,18 @@ Frequency Venc::input_frequency() const {
   return clk_sel.read() && params_.venc_clk_sel.is("halves") ? Frequency(f.num, f.den * 2) : f;
 }
 
+void Venc::on_reset(ResetKind) {
+  if (standard_) stop_raster();
+  reconsider_timer_.soon();
+}
+
+void Venc::stop_raster() {
+  standard_ = nullptr;
+  line_timer_.cancel();
+  osd->stop();
+  display->raster_off();
+}
+
 void Venc::reconsider() {
   if (input_frequency() != clock_.frequency()) {
     clock_.restart(input_frequency(), kernel_time());
@@ -38,12 +50,7 @@ void Venc::reconsider() {
     Diagnostics::instance().not_modelled(
         "VENC VMOD.VIE = 0: the analogue output shows the picture");
   const bool on = wanted();
-  if (standard_ && (!on || standard_ != &chosen())) {
-    standard_ = nullptr;
-    line_timer_.cancel();
-    osd->stop();
-    display->raster_off();
-  }
+  if (standard_ && (!on || standard_ != &chosen())) stop_raster();
   if (on && !standard_) {
     standard_ = &chosen();
     origin_ = clock_.edge_after(kernel_time());

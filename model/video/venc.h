@@ -18,7 +18,7 @@ namespace fovea::video {
 /// changes (lines 1 and 313, or 4 and 266), VSTAT changes, the OSD latches its window and the
 /// interrupt fires. A line is passed to the display when its last sample has been sent; no process
 /// runs more than once per line.
-class Venc : public BusTarget {
+class Venc : public WithRegs<VencRegs>, public BusTarget {
  public:
   using Params = VpssParams;
   ClockIn clock{"clock"};
@@ -28,7 +28,6 @@ class Venc : public BusTarget {
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
   sc_core::sc_in<bool> vpbe_gate{"vpbe_gate"};
   sc_core::sc_in<bool> clk_sel{"clk_sel"};  ///< VENC_CLK_SEL of the VPSS
-  VencRegs regs;
 
   SC_HAS_PROCESS(Venc);
   Venc(sc_core::sc_module_name name, const VpssParams& params);
@@ -37,6 +36,8 @@ class Venc : public BusTarget {
   bool clocked() const override { return psc_enabled.read() && vpbe_gate.read(); }
 
  private:
+  void on_reset(ResetKind) override;
+  void stop_raster();
   void reconsider();
   void tick();
   void schedule();

@@ -73,7 +73,7 @@ struct VpssRegs : RegBank {
 /// selects, so a pulse of an input is a rising edge at the interrupt controller. INTSTAT records
 /// rising inputs and does not gate the outputs (Linux never clears it). Modelled events: 0 to 2
 /// VDINT0 to VDINT2, 21 VENC.
-class VpssTop : public BusTarget {
+class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
  public:
   static constexpr unsigned kOutputs = 9;
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
@@ -84,7 +84,6 @@ class VpssTop : public BusTarget {
   sc_core::sc_out<bool> isif_owns_write_buffer{"isif_owns_write_buffer"};
   sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_clk_sel{"venc_clk_sel"};
   sc_core::sc_out<std::uint32_t> read_priority{"read_priority"}, write_priority{"write_priority"};
-  VpssRegs regs;
 
   SC_HAS_PROCESS(VpssTop);
   explicit VpssTop(sc_core::sc_module_name name);
@@ -94,6 +93,10 @@ class VpssTop : public BusTarget {
 
  private:
   static constexpr unsigned kVencSource = 21;
+  void on_reset(ResetKind) override {
+    selection_.soon();
+    controls_.soon();
+  }
   void route();
   void drive_controls();
   Timer selection_, controls_;

@@ -60,6 +60,12 @@ bool kernel_stopped() { return sc_core::sc_get_status() == sc_core::SC_STOPPED; 
 
 constexpr std::uint32_t kSdram = DDR_BASE;
 
+std::string reset_text(const std::string& cause, std::size_t before) {
+  std::string text = "chip reset: " + cause;
+  if (before) text += fmt::format(" (after as many resets as run.resets allows: {})", before);
+  return text;
+}
+
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
@@ -75,6 +81,7 @@ class BoardSimulation : public Simulation {
   void add_frame_stats(std::vector<StatRow>& rows) const;
   void add_host(RunResult& result, bool strict) const;
   std::string failure_text(const std::string& what) const;
+  std::string reset_note(const board::ChipReset& reset, std::size_t before) const;
   void collect_core(RunResult& result) const;
   std::string ended_text(const RunEnd::Met& met) const;
   SemihostingSettings semihosting_settings(const RunRequest& request) const;
@@ -191,6 +198,13 @@ std::string BoardSimulation::failure_text(const std::string& what) const {
   return text;
 }
 
+std::string BoardSimulation::reset_note(const board::ChipReset& reset, std::size_t before) const {
+  return fmt::format("the chip was reset at pc {}, {:.6f} s after power-up, and booted again ({} of "
+                     "run.resets = {}): {}",
+                     symbols_.place(reset.pc), to_s(reset.at), before + 1, params_.run.resets(),
+                     reset.cause);
+}
+
 std::vector<std::string> timeline_masters() { return {kStatNames.begin(), kStatNames.end()}; }
 
 TimelineRow timeline_row(Picoseconds start, Picoseconds end, const bus::Timeline::Row& row) {
@@ -263,7 +277,7 @@ void BoardSimulation::load_loader(const ElfImage& loader, const ElfImage& progra
   FOVEA_CHECK(state && loader.segments().size() == 1, "the board's loader is the one of this build");
   const ElfSegment& segment = loader.segments().front();
   board::LoadImage image{segment.address, segment.data};
-  image.bytes.resize(segment.memory_size);
+  image.bytes.resize(segment.memory_size);  // the registers may lie behind the segment's data
   const std::uint32_t words[] = {0, 0, 0, hosted_map().free_end, program.entry()};
   std::memcpy(image.bytes.data() + (state->address - segment.address), words, sizeof words);
   board_->load(image);
@@ -327,9 +341,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
                                           loader ? loader->entry() : elf.entry(),
                                           request.strict_sync);
   for (const auto& s : elf.segments()) {
-    board::LoadImage image{s.address, s.data};
-    image.bytes.resize(s.memory_size);
-    board_->load(image);
+    board_->load({s.address, s.data, s.memory_size - s.data.size()});
   }
   if (loader) load_loader(*loader, elf, request);
   cpu::RegionMap regions = board_->dm365.arm.core().regions();
@@ -418,7 +430,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       break;
     }
     if (board_->chip_reset() && !run_end.met()) {
-      guest = failure_text("chip reset: " + board_->chip_reset()->cause);
+      guest = failure_text(reset_text(board_->chip_reset()->cause, board_->resets().size()));
       if (gdb) gdb->failed(guest);
       break;
     }
@@ -486,6 +498,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
         result.timeline.push_back(timeline_row(start, end, row));
       });
   result.uart = board_->uart_text();
+  for (std::size_t i = 0; i < board_->resets().size(); ++i)
+    result.notes.push_back(reset_note(board_->resets()[i], i));
   if (!request.registers.pattern.empty()) result.registers = log->text();
   add_host(result, request.strict_sync);
   const bool stopped = !result.complete && guest.empty();

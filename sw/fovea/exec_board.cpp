@@ -8,6 +8,12 @@ namespace {
 /// How far the core may run without the host looking in.
 constexpr Picoseconds kBeat = kPsPerMs;
 
+/// The blocks that this machine has of the chip's.
+const soc::Placements& rows() {
+  static const soc::Placements all = soc::blocks_named({"ddr"});
+  return all;
+}
+
 }  // namespace
 
 ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params,
@@ -18,7 +24,7 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
       arm("arm", params.cpu, tcm_, entry),
       scr("scr", params.crossbar, params.ddr, {.ddr_base = map.ram_base}, false),
       config("config", params.config_bus, end_of_instant,
-             {{"ddr", 0x2000'0000, 0x8000, bus::ConfigBus::Speed::kFast}}),
+             soc::bus_blocks(rows())),
       ddr("ddr", params.ddr, scr.memory()),
       ddr_size_(map.ram_size),
       arm_clk_("arm_clk", clocks.core),
@@ -40,6 +46,12 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   program_controller(clocks.ddr);
   SC_METHOD(beat);
+}
+
+std::vector<MemoryRegion> ExecBoard::register_regions() {
+  std::vector<MemoryRegion> out;
+  for (const soc::Placement& row : rows()) out.push_back({"registers", row.base, row.size});
+  return out;
 }
 
 /// CL, latency and priority raise are those of the boot loader. The write to SDBCR ends the initialisation.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <systemc>
+#include <vector>
 
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
@@ -11,6 +12,7 @@
 #include "model/cpu/arm926.h"
 #include "model/cpu/core/debug.h"
 #include "model/mem/ddr_module.h"
+#include "model/soc/placement.h"
 #include "sw/fovea/exec_session.h"
 
 namespace fovea::app {
@@ -33,6 +35,8 @@ class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
   std::span<std::uint8_t> tcm() { return tcm_; }
   bool debug_read(std::uint32_t pa, std::span<std::uint8_t> to) override;
   bool debug_write(std::uint32_t pa, std::span<const std::uint8_t> from) override;
+  /// Where its registers lie, for the stall statistics.
+  static std::vector<MemoryRegion> register_regions();
 
  private:
   std::array<std::uint8_t, 32 * 1024> internal_ram_{};

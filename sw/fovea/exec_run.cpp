@@ -62,7 +62,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   // simulation.
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
-  ExecSession session(arm.core(), *board_, request, map);
+  ExecSession session(arm.core(), *board_, request, map, ExecBoard::register_regions());
   session.load(board_->ram(), board_->tcm());
   const std::vector<RegisterBlock> blocks = {register_block("ddr", board_->ddr)};
   const auto log = register_log(blocks, board_->config, arm.core(),

@@ -38,7 +38,7 @@ ExecClocks ExecClocks::of(const WantedClocks& wanted) {
 }
 
 ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
-                         const ExecMap& map)
+                         const ExecMap& map, std::span<const MemoryRegion> registers)
     : core_(core),
       request_(request),
       program_(request.program),
@@ -46,7 +46,7 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
       map_(map),
       semihosting_(core, memory, settings(request, map), request.console,
                    [this] { return over(); }) {
-  core_.set_regions(exec_regions(program_, map_));
+  core_.set_regions(exec_regions(program_, map_, registers));
 }
 
 ExecSession::~ExecSession() { request_.console.go_on = nullptr; }

@@ -16,8 +16,9 @@ namespace fovea::app {
 class ExecSession {
  public:
   /// Uses the core's SWI hook.
+  /// @param registers where the machine has registers, for the stall statistics
   ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
-              const ExecMap& map);
+              const ExecMap& map, std::span<const MemoryRegion> registers = {});
   ~ExecSession();
   ExecSession(const ExecSession&) = delete;
   ExecSession& operator=(const ExecSession&) = delete;

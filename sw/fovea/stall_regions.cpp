@@ -54,7 +54,8 @@ void add_program_regions(RegionMap& map, const ElfImage& image,
   }
 }
 
-RegionMap exec_regions(const ExecProgram& program, const ExecMap& map) {
+RegionMap exec_regions(const ExecProgram& program, const ExecMap& map,
+                       std::span<const MemoryRegion> registers) {
   RegionMap out;
   std::vector<MemoryRegion> memory = {{"sdram", map.ram_base, map.ram_size}};
   if (map.tcm) {
@@ -62,7 +63,7 @@ RegionMap exec_regions(const ExecProgram& program, const ExecMap& map) {
     memory.push_back({"dtcm", INTERNAL_RAM_DATA_BASE, INTERNAL_RAM_BYTES});
   }
   for (const auto& m : memory) out.add(m.name, m.base, m.size);
-  out.add("registers", 0x2000'0000, 0x8000);
+  for (const auto& m : registers) out.add(m.name, m.base, m.size);
   out.add("heap", map.free_base, map.heap_limit() - map.free_base);
   out.add("stack", map.heap_limit(), map.free_end - map.heap_limit());
   if (program.image()) add_program_regions(out, *program.image(), memory);

@@ -20,7 +20,8 @@ void add_program_regions(cpu::RegionMap& map, const ElfImage& image,
                          std::span<const MemoryRegion> memory);
 /// Regions of `fovea exec`: RAM as `sdram`, internal RAM, registers, heap and stack, and the
 /// program.
-cpu::RegionMap exec_regions(const ExecProgram& program, const ExecMap& map);
+cpu::RegionMap exec_regions(const ExecProgram& program, const ExecMap& map,
+                            std::span<const MemoryRegion> registers);
 
 /// All entries that are not zero, ordered by cause, region and culprit.
 std::vector<StallRow> stall_rows(const cpu::Counts& from, const cpu::Counts& to,

@@ -20,8 +20,7 @@ struct SlowRegs : RegBank {
   Reg value{*this, "VALUE", 0, Mode::kRw, "any"};
   SlowRegs() : RegBank("SLOW") {}
 };
-struct SlowBlock : BusTarget {
-  SlowRegs regs;
+struct SlowBlock : WithRegs<SlowRegs>, BusTarget {
   explicit SlowBlock(sc_core::sc_module_name name) : BusTarget(name, regs) {}
 };
 

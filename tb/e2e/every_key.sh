@@ -166,10 +166,12 @@ acts run.frames 2 run.until=[frames,time:10s]
 fails run.start_limit 10ms
 idle run.start_limit 10ms run.until=time:60ms
 idle run.start_limit 10ms run.until=[frames,time:10s]
+tested run.resets e2e.reset
 acts run.until time:50ms
 acts switches.shift_x right
 acts switches.shift_y up
 acts system.bootcfg 1 PROGRAM
+tested system.reset_time e2e.reset
 acts system.vtp_time 3us
 acts tvp5146.crop_525 studio video.standard=ntsc
 idle tvp5146.crop_525 studio

@@ -19,25 +19,29 @@ void expect_lut_right(Rig& rig) {
               c.entries, c.wrong, c.near_boundary);
 }
 
-void expect_frames_right(Rig& rig, std::uint64_t step) {
+std::optional<std::uint64_t> sent_as(Rig& rig, const Shown& s, std::string* difference) {
   const auto lut = rig.lut();
   const std::uint32_t pitch = rig.geometry().pitch_bytes;
+  // Which frame the camera sent is found from the pixels, near the time of the capture.
+  const double period = rig.params.video.standard.is("pal") ? 0.04 : 1001.0 / 30000;
+  const auto guess =
+      static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 / period);
+  for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2; ++n) {
+    const auto d = oracle::compare(oracle::remap(rig.sent(n), lut, pitch), s.frame);
+    if (!d) return n;
+    if (n == guess && difference) *difference = d->text();
+  }
+  return std::nullopt;
+}
+
+void expect_frames_right(Rig& rig, std::uint64_t step) {
   ASSERT_FALSE(rig.shown().empty());
   std::uint64_t last = 0;
   for (const Shown& s : rig.shown()) {
     ASSERT_TRUE(s.record.captured && s.record.capture_start);
     EXPECT_EQ(s.underflows, 0u);
-    // Which frame the camera sent is found from the pixels, near the time of the capture.
-    const double period = rig.params.video.standard.is("pal") ? 0.04 : 1001.0 / 30000;
-    const auto guess = static_cast<std::uint64_t>(
-        static_cast<double>(*s.record.capture_start) * 1e-12 / period);
-    std::optional<std::uint64_t> found;
     std::string difference;
-    for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2 && !found; ++n) {
-      const auto d = oracle::compare(oracle::remap(rig.sent(n), lut, pitch), s.frame);
-      if (!d) found = n;
-      if (n == guess && d) difference = d->text();
-    }
+    const auto found = sent_as(rig, s, &difference);
     ASSERT_TRUE(found) << "frame " << s.record.index << " is no remap of a sent frame: "
                        << difference;
     if (&s != &rig.shown().front()) {

@@ -1,6 +1,8 @@
 // Conditions for every run of the rig: the look-up table and all displayed frames are exact.
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "tb/e2e/rig.h"
 
@@ -10,6 +12,10 @@ namespace fovea::e2e {
 /// boundary, where two roundings may both be right, may be the neighbouring one (at most one in
 /// 1,000).
 void expect_lut_right(Rig& rig);
+
+/// The number of the camera's frame whose remap the displayed frame is; none: it is wrong, and
+/// `difference` says where it differs from the likeliest one. The frame must have been captured.
+std::optional<std::uint64_t> sent_as(Rig& rig, const Shown& shown, std::string* difference = nullptr);
 
 /// Every displayed frame must be the host's remap of a frame that the camera sent, byte for byte. A
 /// new result on the display must belong to the camera frame `step` after the previous one; with

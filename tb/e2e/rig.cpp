@@ -52,9 +52,7 @@ board::Board& Rig::build() {
   app::complete_params(params);
   board_ = std::make_unique<board::Board>("board", params, *source_, elf_.entry(), strict_);
   for (const auto& s : elf_.segments()) {
-    board::LoadImage image{s.address, s.data};
-    image.bytes.resize(s.memory_size);
-    board_->load(image);
+    board_->load({s.address, s.data, s.memory_size - s.data.size()});
   }
   board_->load({PARAM_PAGE_BASE, app::parameter_page(params, *source_)});
   board_->on_frame = [this](const video::DisplayFrame& f, const board::FrameRecord& r) {

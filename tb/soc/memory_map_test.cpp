@@ -105,7 +105,7 @@ struct OneRegister : RegBank {
   OneRegister() : RegBank("BLOCK") {}
 };
 
-struct Block : periph::WithRegs<OneRegister>, BusTarget {
+struct Block : WithRegs<OneRegister>, BusTarget {
   bool answers = true;
   explicit Block(sc_core::sc_module_name name) : BusTarget(name, regs) {}
 

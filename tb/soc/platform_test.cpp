@@ -55,7 +55,7 @@ struct PlantedRegs : RegBank {
   Reg r{*this, "R", 0, Mode::kRw, "a register"};
   PlantedRegs() : RegBank("PLANTED") {}
 };
-struct PlantedBlock : periph::WithRegs<PlantedRegs>, BusTarget {
+struct PlantedBlock : WithRegs<PlantedRegs>, BusTarget {
   PlantedStats stats;
   explicit PlantedBlock(sc_core::sc_module_name name) : BusTarget(name, regs) {
     add_statistics(stats);

@@ -60,9 +60,8 @@ struct TestRegs : RegBank {
   TestRegs() : RegBank("TEST") {}
 };
 
-class TestBlock : public BusTarget {
+class TestBlock : public WithRegs<TestRegs>, public BusTarget {
  public:
-  TestRegs regs;
   BurstMaster dma{"dma", Master::kEdmaTc0Read, 4};
   BurstMaster stream{"stream", Master::kLoad, 3, BurstMaster::Report::kWhenDecided};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};

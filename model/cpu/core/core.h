@@ -100,9 +100,20 @@ class Core : public Background {
     interface_.attention = true;
   }
 
+  /// Returns to the state after power-up; accesses under way must have ended. General registers,
+  /// internal RAM and all counters are kept.
   /// @param entry address of the first instruction; bit 0 selects the Thumb state
   void reset(std::uint32_t entry, Picoseconds now);
-  /// Runs until request_stop(), blocking inside calls of BusPort. @throws GuestFailure
+  /// The same at the end of a reset. The clocks that have passed since it began count as idle.
+  void restart(std::uint32_t entry, Picoseconds now);
+  /// Sets the reset line. Like an interrupt, a change at t is visible to instruction boundaries
+  /// strictly after t. There run() ends, and held() is true until the next reset().
+  void set_reset(bool level, Picoseconds at) {
+    reset_.set(level, at);
+    interface_.attention = true;
+  }
+  bool held() const { return held_; }
+  /// Runs until request_stop() or a reset, blocking inside calls of BusPort. @throws GuestFailure
   void run();
   void request_stop() {
     stop_requested_ = true;
@@ -373,7 +384,8 @@ class Core : public Background {
   FetchUnit fetch_;
   std::uint64_t insertions_seen_ = 0;
 
-  InterruptLine irq_, fiq_;
+  InterruptLine irq_, fiq_, reset_;
+  bool held_ = false;  // at a boundary that has seen the reset
   bool stop_requested_ = false;
   bool swapping_ = false;  // the two accesses of a SWP are locked
   DecodedLine unpredictable_;  // separate copy of an UNPREDICTABLE form

@@ -66,6 +66,13 @@ class DataBus {
   /// To be called around a change of the clock: bus activity that is under way keeps its end.
   std::uint64_t& port_free() { return port_free_; }
   void clock_changed();
+  /// Drops what the buffers hold; no access may be under way.
+  void reset() {
+    writes_ = {};
+    read_waiting_ = write_in_flight_ = write_is_victim_ = false;
+    port_free_ = next_write_cycle_ = write_floor_ = write_over_ = 0;
+    act_time_cycle_ = kNoCycle;
+  }
 
   // What a debugger sees and changes.
   const WriteBuffer& writes() const { return writes_; }

@@ -89,6 +89,12 @@ class DataCache {
                                       reinterpret_cast<const char*>(&ledger_.counts));
   }
 
+  /// Drops all lines, dirty ones too.
+  void reset() {
+    fill = {};
+    lines_.invalidate_all();
+    forget_hints();
+  }
   Cache& lines() { return lines_; }
   const Cache& lines() const { return lines_; }
 

@@ -1,5 +1,6 @@
 // Construction, changes of clock and mode, and exceptions (ARM DDI 0100, A2.6; aborts restore the
 // base).
+#include <algorithm>
 #include <cstdio>
 
 #include "model/cpu/core/core.h"
@@ -44,24 +45,39 @@ void Core::set_clock(Frequency f, Picoseconds at) {
   interface_.attention = true;
 }
 
+/// What the caches and buffers held is lost: dirty lines and writes that have not been sent.
 void Core::reset(std::uint32_t entry, Picoseconds now) {
+  // The general registers keep their values (ARM DDI 0100: UNPREDICTABLE).
+  regs_.switch_mode(static_cast<std::uint32_t>(CpuMode::kSvc));
   regs_.cpsr = 0xD3u | ((entry & 1u) << 5);
   regs_.pc = next_pc_ = entry & ~1u;
-  system_.control = SystemRegisters::kControlAtReset;
+  branched_ = aborted_ = swapping_ = held_ = stop_requested_ = false;
+  failure_ = {};
+  scoreboard_ = {};
+  system_ = {};
   ledger_.counts.translate(false);
-  system_.fcse_pid = system_.process = 0;
-  fetch_.reset();
-  stop_requested_ = false;
-  failure_.jumped_to = kNoJump;
+  ledger_.bus_waited = false;
   // On this chip both TCMs are enabled after reset: 32 KB each (size code 6), backed by one RAM.
   const bool ram = !ram_.empty();
   system_.itcm_region = ram ? 6u << 2 | 1u : 0;
   system_.dtcm_region = ram ? InternalRam::kDtcmBase | 6u << 2 | 1u : 0;
   ram_.set_itcm(ram ? 32 * 1024 : 0);
   ram_.set_dtcm(ram ? 32 * 1024 : 0);
+  mmu_.reset();
+  data_.reset();
+  fetch_.reset();
+  bus_.reset();
   ledger_.cycle = interface_.clock.running() ? interface_.clock.edge_after(now) : 0;
   interface_.attention = true;
   forget_translations();
+}
+
+void Core::restart(std::uint32_t entry, Picoseconds now) {
+  const std::uint64_t before = ledger_.cycle;
+  reset(entry, now);
+  const std::uint64_t cycle = std::max(ledger_.cycle, before);
+  ledger_.cycle = before;
+  ledger_.sleep_to(cycle);
 }
 
 void Core::set_cpsr(std::uint32_t value) {

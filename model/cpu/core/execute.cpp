@@ -20,6 +20,7 @@ void Core::run() {
       if (stop_requested_) return;
       regs_.pack_flags();
       step_attention();
+      if (held_) return;
       if (stop_requested_) interface_.stop_cycle = 0;  // execute one more instruction
     }
     if (!boundary_observers_.empty() && regs_.pc != inspected_pc) [[unlikely]] {
@@ -121,9 +122,9 @@ bool Core::take_interrupt(Picoseconds at) {
   return true;
 }
 
-/// An interrupt that is not masked is raised, but may not be visible yet.
+/// A reset, or an interrupt that is not masked, is raised but may not be visible yet.
 bool Core::interrupt_pending() const {
-  return (!(regs_.cpsr & kFiqMask) && fiq_.level) || (!(regs_.cpsr & kIrqMask) && irq_.level);
+  return reset_.level || (!(regs_.cpsr & kFiqMask) && fiq_.level) || (!(regs_.cpsr & kIrqMask) && irq_.level);
 }
 
 /// Handles an instruction boundary at which the horizon is reached, an interrupt line or mask has
@@ -136,6 +137,10 @@ void Core::step_attention() {
     ledger_.stall_to(interface_.clock_floor, Cause::kBusSync);
     const Picoseconds t = time(ledger_.cycle);
     while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
+    if (reset_.at(t)) {
+      held_ = true;
+      return;
+    }
     if (take_interrupt(t)) continue;
     const std::uint64_t stop = interface_.first_clock_after_horizon();
     if (ledger_.cycle >= stop) {
@@ -166,7 +171,7 @@ Core::Boundary Core::wait_for_others(Picoseconds t) {
   }
   while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
   const bool fiq = !(regs_.cpsr & kFiqMask) && fiq_.at(t);
-  if (fiq || (!(regs_.cpsr & kIrqMask) && irq_.at(t))) return Boundary::kRepeat;
+  if (fiq || reset_.at(t) || (!(regs_.cpsr & kIrqMask) && irq_.at(t))) return Boundary::kRepeat;
   interface_.attention = false;
   interface_.stop_cycle = ledger_.cycle + 1;
   return Boundary::kExecute;

@@ -22,10 +22,16 @@ FetchUnit::FetchUnit(const Sizes& sizes, BusInterface& interface, StallLedger& l
   access_.port = BusAccess::Port::kInstruction;
 }
 
+/// Decoded instructions go too: a loader may have changed internal RAM without the unit's knowledge.
 void FetchUnit::reset() {
   process_ = 0;
   control_ = registers_.control;
   lag_ = 0;
+  fill = {};
+  branched = used_bus = false;
+  invalidate_all();
+  for (auto& d : ram_decoded_) d.valid = 0;
+  jumps.fill(&no_line_);
 }
 
 void FetchUnit::forget() {

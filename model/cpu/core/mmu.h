@@ -69,6 +69,8 @@ class Mmu {
   /// remembers something of a translation must forget it.
   std::uint64_t insertions() const { return insertions_; }
 
+  /// Empties the TLB, locked entries included.
+  void reset() { tlb_ = {}; }
   void invalidate_all() { tlb_.invalidate_all(); }
   void invalidate(std::uint32_t mva) { tlb_.invalidate(mva); }
 

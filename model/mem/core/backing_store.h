@@ -22,6 +22,10 @@ class BackingStore {
   ~BackingStore() { munmap(data_, size_); }
   BackingStore(const BackingStore&) = delete;
   BackingStore& operator=(const BackingStore&) = delete;
+  /// All bytes read 0 again.
+  void clear() {
+    if (madvise(data_, size_, MADV_DONTNEED) != 0) std::memset(data_, 0, size_);
+  }
   std::uint64_t size() const { return size_; }
   /// Caller checks offset + n <= size().
   std::uint8_t* at(std::uint64_t offset) { return data_ + offset; }

@@ -26,6 +26,12 @@ AintcCore::AintcCore(bool level_capture) : level_capture_(level_capture) {
   for (Reg& r : regs.intpri) r.on_write([this](std::uint32_t) { remap(); });
 }
 
+void AintcCore::reset() {
+  regs.reset();
+  pending_ = disable_pending_ = was_enabled_ = 0;
+  remap();
+}
+
 void AintcCore::set_sources(std::uint64_t levels) {
   pending_ |= level_capture_ ? levels : levels & ~levels_;
   levels_ = levels;

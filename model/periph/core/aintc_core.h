@@ -59,6 +59,8 @@ class AintcCore {
   /// @param level_capture true: a latch is set as long as its source is high
   explicit AintcCore(bool level_capture);
   AintcRegs regs;
+  /// After a reset: nothing is latched or enabled. A source that stays high is no new edge.
+  void reset();
   std::function<void()> on_change;  ///< called after a register write that may change an output
 
   /// Sets the levels of the 64 sources; bit n is source n.

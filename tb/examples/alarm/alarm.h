@@ -30,7 +30,7 @@ struct AlarmRegs : RegBank {
 };
 
 /// Each alarm raises the interrupt line for one tick.
-class Alarm : public periph::WithRegs<AlarmRegs>, public periph::ClockedTarget {
+class Alarm : public WithRegs<AlarmRegs>, public periph::ClockedTarget {
  public:
   using Params = AlarmParams;
   periph::OptionalOut<bool> irq{"irq"};
@@ -41,6 +41,7 @@ class Alarm : public periph::WithRegs<AlarmRegs>, public periph::ClockedTarget {
 
  private:
   void clock_changed() override { wake_.soon(); }
+  void on_reset(ResetKind) override { start_or_stop(); }
   void start_or_stop();
   void update();
 

@@ -18,7 +18,7 @@ Filler::Filler(sc_core::sc_module_name name)
     fill();
   });
   memory_.on_done = [this](const BurstMaster::Completion&) {
-    regs.left.set(regs.left.get() - 1);
+    if (regs.left.get()) regs.left.set(regs.left.get() - 1);  // 0: reset meanwhile
     fill();
   };
 }

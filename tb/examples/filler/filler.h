@@ -2,7 +2,6 @@
 #pragma once
 #include "model/common/burst_master.h"
 #include "model/common/bus_target.h"
-#include "model/periph/clocked_target.h"
 
 namespace fovea::examples {
 
@@ -15,12 +14,14 @@ struct FillerRegs : RegBank {
 };
 
 /// Writes bursts of 32 bytes, at most kOutstanding of them at once.
-class Filler : public periph::WithRegs<FillerRegs>, public BusTarget {
+class Filler : public WithRegs<FillerRegs>, public BusTarget {
  public:
   static constexpr unsigned kBurstBytes = 32, kOutstanding = 4;
   explicit Filler(sc_core::sc_module_name name);
+  bool idle() const override { return memory_.idle(); }
 
  private:
+  void on_reset(ResetKind) override { to_issue_ = 0; }
   void fill();
 
   BurstMaster memory_;
