@@ -4,11 +4,6 @@
 #include <utility>
 
 namespace fovea::dma {
-namespace {
-/// Width of an interrupt pulse: seen by the interrupt controller, and over before the next edge.
-constexpr Picoseconds kPulse = kPsPerNs;
-}  // namespace
-
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
     : BusTarget(name, regs),
       regs(static_cast<unsigned>(params.reset_priority())),
@@ -16,8 +11,8 @@ EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
       core_(regs, *this) {
   add_clock(clk);
   add_power_gate(lpsc);
-  add_interrupt("ccint0", completion);
-  add_interrupt("ccerrint", error);
+  add_interrupt("ccint0", completion.out);
+  add_interrupt("ccerrint", error.out);
   add_statistics(stats);
   for (Reg* r : {static_cast<Reg*>(&regs.quetcmap), static_cast<Reg*>(&regs.quepri)})
     r->on_write([this](std::uint32_t) { written_.soon(); });
@@ -25,9 +20,6 @@ EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
   sensitive << written_.event();
   SC_METHOD(work);
   sensitive << wake_.event();
-  dont_initialize();
-  SC_METHOD(end_pulse);
-  sensitive << pulse_end_.event();
   dont_initialize();
   SC_METHOD(clock_changed);
   sensitive << clk << lpsc;
@@ -123,19 +115,12 @@ void EdmaCc::submit(unsigned controller, const TransferRequest& request) {
 void EdmaCc::pulse_completion(unsigned region) {
   if (region != 0) return;
   ++stats.interrupts;
-  completion.write(true);
-  pulse_end_.at(kernel_time() + kPulse);
+  completion.raise();
 }
 
 void EdmaCc::pulse_error() {
   ++stats.errors;
-  error.write(true);
-  pulse_end_.at(kernel_time() + kPulse);
-}
-
-void EdmaCc::end_pulse() {
-  completion.write(false);
-  error.write(false);
+  error.raise();
 }
 
 void EdmaCc::warn(const std::string& what) { Diagnostics::instance().guest("EDMA: " + what); }

@@ -9,6 +9,7 @@
 #include "model/common/bus_target.h"
 #include "model/common/clock.h"
 #include "model/common/masters.h"
+#include "model/common/pulse.h"
 #include "model/common/stats.h"
 #include "model/common/timer.h"
 #include "model/dma/core/channel_controller.h"
@@ -16,6 +17,9 @@
 #include "model/dma/edma_params.h"
 
 namespace fovea::dma {
+
+/// Width of an interrupt's pulse: seen by the interrupt controller, and over before the next edge.
+inline constexpr Picoseconds kInterruptPulse = kPsPerNs;
 
 /// A transfer controller, as the channel controller sees it.
 class TransferPort {
@@ -48,8 +52,8 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   EdmaStats stats;
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
-  sc_core::sc_out<bool> completion{"completion"};  ///< of shadow region 0 (CCINT0)
-  sc_core::sc_out<bool> error{"error"};            ///< CCERRINT
+  Pulse completion{"completion", kInterruptPulse};  ///< of shadow region 0 (CCINT0)
+  Pulse error{"error", kInterruptPulse};            ///< CCERRINT
   /// Priority of each transfer controller, for its read and its write port.
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
 
@@ -84,7 +88,6 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   void update_priorities();
   void work();
   void count();
-  void end_pulse();
   void clock_changed();
   bool running() const { return clock_.running() && lpsc.read(); }
   Picoseconds edge(Picoseconds t, std::uint64_t clocks) const;
@@ -102,7 +105,7 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   std::uint64_t completion_count_ = 0;
   Picoseconds next_request_ = 0;
   ChannelController::Counts reported_;
-  Timer wake_, written_, pulse_end_;
+  Timer wake_, written_;
 };
 
 }  // namespace fovea::dma

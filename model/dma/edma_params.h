@@ -62,7 +62,7 @@ struct EdmaTcParams : ParamGroup {
                  "MISC.TPTC1DBS (SPRUFG5)",
                  Origin::kAssumed,
                  "TC1's reset value",
-                 {"16", "64", "a sister chip, C642x, has 16, 32 and 64 (TI EDMA3 LLD)"}};
+                 {"16B", "64B", "a sister chip, C642x, has 16, 32 and 64 (TI EDMA3 LLD)"}};
   IntParam fifo{*this,
                 "fifo",
                 U::kBytes,
@@ -72,7 +72,7 @@ struct EdmaTcParams : ParamGroup {
                 "data FIFO",
                 Origin::kFamily,
                 "SPRUH82C: TCCFG.FIFOSIZE of AM1808, 128 or 256",
-                {"128", "256", "AM1808 has 128 and 256, C6745 256"}};
+                {"128B", "256B", "AM1808 has 128 and 256, C6745 256"}};
   IntParam depth{*this,
                  "depth",
                  U::kCount,

@@ -4,7 +4,6 @@
 
 namespace fovea::dma {
 namespace {
-constexpr Picoseconds kPulse = kPsPerNs;  // see EdmaCc
 constexpr std::uint32_t kTptc1Dbs = 1u << 7;
 }  // namespace
 
@@ -27,7 +26,7 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
                     static_cast<unsigned>(params.depth())}) {
   add_clock(clk);
   add_power_gate(lpsc);
-  add_interrupt("tcerrint" + std::to_string(number), error);
+  add_interrupt("tcerrint" + std::to_string(number), error.out);
   add_statistics(stats);
   const auto outstanding = static_cast<unsigned>(params.outstanding());
   add_master(edma_read(number), reads_.socket, outstanding);
@@ -52,7 +51,7 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
     if (word & regs.errclr.bus.mask()) regs.errdet.set(0);
   });
   regs.errcmd.on_write([this](std::uint32_t word) {
-    if ((word & 1) && (regs.errstat.get() & regs.erren.get())) pulse();
+    if ((word & 1) && (regs.errstat.get() & regs.erren.get())) error.raise();
   });
   regs.rdrate.on_write([this](std::uint32_t) {
     static constexpr std::array<unsigned, 5> kClocks{1, 4, 8, 16, 32};
@@ -64,9 +63,6 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
     }
     core_.set_read_interval(kClocks[rate]);
   });
-  SC_METHOD(end_pulse);
-  sensitive << pulse_end_.event();
-  dont_initialize();
   SC_METHOD(clock_changed);
   sensitive << clk << lpsc;
 }
@@ -146,14 +142,7 @@ void EdmaTc::failed(const TransferRequest& request, TransferController::Failure 
                                       ? "EDMA: a read that nobody answers (bus error)"
                                       : "EDMA: a write that nobody answers (bus error)");
   }
-  if (!before && (regs.errstat.get() & regs.erren.get())) pulse();
+  if (!before && (regs.errstat.get() & regs.erren.get())) error.raise();
 }
-
-void EdmaTc::pulse() {
-  error.write(true);
-  pulse_end_.at(kernel_time() + kPulse);
-}
-
-void EdmaTc::end_pulse() { error.write(false); }
 
 }  // namespace fovea::dma

@@ -90,7 +90,7 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
   EdmaTcStats stats;
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
-  sc_core::sc_out<bool> error{"error"};  ///< TCERRINT
+  Pulse error{"error", kInterruptPulse};  ///< TCERRINT
   /// MISC of the system module: TPTC1DBS; used by number 1 only.
   sc_core::sc_in<std::uint32_t> misc{"misc"};
 
@@ -114,8 +114,6 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
   void failed(const TransferRequest& request, TransferController::Failure failure,
               Picoseconds at) override;
   void clock_changed();
-  void end_pulse();
-  void pulse();
   bool running() const { return clock_.running() && lpsc.read(); }
   unsigned burst() const;
 
@@ -126,7 +124,6 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
   TransferController core_;
   EdmaCc* channels_ = nullptr;
   Picoseconds program_free_ = 0;
-  Timer pulse_end_;
 };
 
 }  // namespace fovea::dma

@@ -11,7 +11,7 @@
 #include "model/common/timer.h"
 #include "model/video/isif_regs.h"
 #include "model/video/params.h"
-#include "model/video/pulse.h"
+#include "model/common/pulse.h"
 #include "model/video/wire.h"
 
 namespace fovea::video {

@@ -6,7 +6,7 @@
 #include "model/common/sc_ports.h"
 #include "model/common/timer.h"
 #include "model/video/osd.h"
-#include "model/video/pulse.h"
+#include "model/common/pulse.h"
 #include "model/video/venc_regs.h"
 #include "model/video/wire.h"
 

@@ -143,7 +143,14 @@ acts ddr.ti_open_row ready BUSY
 idle ddr.ti_open_row ready ddr.scheduler=fcfs
 idle ddr.ti_open_row ready ddr.scheduler=frfcfs
 acts ddr.write_fifo 64B BUSY
+acts edma.completion_clocks 64 PROGRAM
+acts edma.event_clocks 64 PROGRAM
+acts edma.request_clocks 128 PROGRAM
 acts edma.reset_priority 0 PROGRAM
+acts edma.tc.burst 64B PROGRAM
+acts edma.tc.depth 1 PROGRAM
+acts edma.tc.fifo 64B PROGRAM
+acts edma.tc.outstanding 1 PROGRAM
 acts firmware.baud 57600
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial

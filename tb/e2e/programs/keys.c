@@ -60,11 +60,30 @@ static uint32_t pending_after_acknowledge(void) {
   return pending;
 }
 
+/* A chain of eight requests of the EDMA in internal RAM, each triggered by the completion of the one before it:
+ * how often can a register be read meanwhile? */
+static uint32_t transfer(uint32_t tc, uint32_t option, uint32_t counts) {
+  enum { kRam = 0x10000, kSet = 0x01C04000, kChain = 1 << 23, kAb = 1 << 2 };
+  static const uint32_t kStatus = 0x01C10100u;
+  const uint32_t words[8] = {kAb | kChain | option, kRam + 0x5004, counts,  kRam + 0x6000,
+                             132u | 128u << 16,      0xFFFF,        0,       8};
+  uint32_t polls = 0;
+  mmio_write32(0x01C00240u, tc);
+  for (uint32_t n = 0; n < 8u; ++n) mmio_write32(kSet + 4u * n, words[n]);
+  mmio_write32(0x01C01010u, 1);
+  while (mmio_read32(0x01C00640u) || mmio_read32(kStatus + 0x400u * tc)) ++polls;
+  return polls;
+}
+
 int main(void) {
   show("RSTYPE", mmio_read32(0x01C40800u + 0xE4u));
   show("BOOTCFG", mmio_read32(0x01C40014u));
   psc_transition(0, PSC_ENABLE); /* the channel controller */
   show("QUEPRI", mmio_read32(0x01C00284u));
+  psc_transition(1, PSC_ENABLE); /* transfer controllers 0 and 1 */
+  psc_transition(2, PSC_ENABLE);
+  show("EDMA polls, early completion", transfer(0, 1u << 11, 128u | 3u << 16));
+  show("EDMA polls, short", transfer(1, 0, 16u | 1u << 16));
   show("CPLD", read_byte(0x04000000u));
   show("CPLD SWITCH", read_byte(0x04000400u));
   for (uint32_t n = 0; n < 8u; ++n) /* test and clean, as ARM DDI 0198 has it */
