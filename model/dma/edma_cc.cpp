@@ -63,6 +63,11 @@ void EdmaCc::completed(const TransferRequest& request) {
   wake_.at(at);
 }
 
+void EdmaCc::dropped(const TransferRequest& request) {
+  core_.dropped(request);
+  work_arrived();
+}
+
 void EdmaCc::work_arrived() {
   if (running()) wake_.at(edge(kernel_time(), 0));
 }

@@ -66,6 +66,8 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   void program_free(Picoseconds at) { wake_.at(at); }
   /// From a transfer controller: the request ends now.
   void completed(const TransferRequest& request);
+  /// From a transfer controller: it has dropped the request, whose completion code never arrives.
+  void dropped(const TransferRequest& request);
 
  protected:
   bool clocked() const override { return lpsc.read(); }

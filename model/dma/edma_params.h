@@ -67,9 +67,9 @@ struct EdmaTcParams : ParamGroup {
                 "fifo",
                 U::kBytes,
                 256,
-                64,
+                128,
                 512,
-                "data FIFO",
+                "data FIFO; it must hold two bursts of 64 bytes",
                 Origin::kFamily,
                 "SPRUH82C: TCCFG.FIFOSIZE of AM1808, 128 or 256",
                 {"128B", "256B", "AM1808 has 128 and 256, C6745 256"}};

@@ -126,6 +126,7 @@ void EdmaTc::failed(const TransferRequest& request, TransferController::Failure 
   ++stats.errors;
   const std::uint32_t before = regs.errstat.get() & regs.erren.get();
   if (failure == Failure::kRequest) {
+    channels_->dropped(request);
     regs.errstat.request.set(1);
     Diagnostics::instance().guest(
         "EDMA: a request with constant addressing whose address or index is no multiple of 32");

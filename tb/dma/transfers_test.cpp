@@ -240,7 +240,7 @@ struct Empty : ChannelBench {
 };
 
 TEST_F(Empty, NullSetIsAnErrorThatBlocksTheChannel) {
-  fill(5, {.opt = tcc(9) | kTcinten | kTcchen, .acnt = 0, .bcnt = 0, .ccnt = 0, .link = 3200});
+  fill(5, {.opt = tcc(9) | kTcinten, .acnt = 0, .bcnt = 0, .ccnt = 0, .link = 3200});
   const Set other{.opt = tcc(17), .source = 0x9000};
   fill(100, other);
   trigger_and_run(5);
