@@ -5,8 +5,8 @@
 
 namespace fovea::dma {
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
-    : BusTarget(name, regs),
-      regs(static_cast<unsigned>(params.reset_priority())),
+    : WithRegs(static_cast<unsigned>(params.reset_priority())),
+      BusTarget(name, regs),
       params_(params),
       core_(regs, *this) {
   add_clock(clk);
@@ -50,12 +50,27 @@ void EdmaCc::clock_changed() {
   work_arrived();
 }
 
+/// Events, requests and completion codes under way are lost.
+void EdmaCc::on_reset(ResetKind) {
+  in_reset_ = true;
+  core_.reset();
+  events_.clear();
+  completions_ = {};
+  next_request_ = 0;
+  wake_.cancel();
+  written_.soon();
+}
+
+void EdmaCc::leave_reset() { in_reset_ = false; }
+
 void EdmaCc::event(unsigned channel) {
+  if (in_reset_) return;
   events_.push_back({kernel_time(), static_cast<std::uint8_t>(channel)});
   work_arrived();
 }
 
 void EdmaCc::completed(const TransferRequest& request) {
+  if (in_reset_) return;
   if (!request.interrupt && !request.chain) return;
   const auto clocks = static_cast<std::uint64_t>(params_.completion_clocks()) - 1;
   const Picoseconds at = running() ? edge(kernel_time(), clocks) : kernel_time();

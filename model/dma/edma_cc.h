@@ -44,11 +44,10 @@ struct EdmaStats : StatGroup {
 /// completion) counts from the next edge on, so that the order of processes within an instant does
 /// not matter. A transfer controller has the priority of the queue that is mapped to it; if several
 /// are, the most urgent of them; if none is, the lowest priority.
-class EdmaCc : public BusTarget, private ChannelController::Host {
+class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelController::Host {
  public:
   using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
-  EdmaRegs regs;
   EdmaStats stats;
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
@@ -68,9 +67,11 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   void completed(const TransferRequest& request);
   /// From a transfer controller: it has dropped the request, whose completion code never arrives.
   void dropped(const TransferRequest& request);
+  void leave_reset() override;
 
  protected:
   bool clocked() const override { return lpsc.read(); }
+  void on_reset(ResetKind kind) override;
 
  private:
   struct Completion {
@@ -91,7 +92,7 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   void work();
   void count();
   void clock_changed();
-  bool running() const { return clock_.running() && lpsc.read(); }
+  bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
   Picoseconds edge(Picoseconds t, std::uint64_t clocks) const;
 
   const EdmaParams& params_;
@@ -106,6 +107,7 @@ class EdmaCc : public BusTarget, private ChannelController::Host {
   std::priority_queue<Completion, std::vector<Completion>, std::greater<>> completions_;
   std::uint64_t completion_count_ = 0;
   Picoseconds next_request_ = 0;
+  bool in_reset_ = false;
   ChannelController::Counts reported_;
   Timer wake_, written_;
 };

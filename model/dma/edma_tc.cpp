@@ -7,16 +7,16 @@ namespace {
 constexpr std::uint32_t kTptc1Dbs = 1u << 7;
 }  // namespace
 
+/// TCCFG: the buses are 64 bits wide, as the crossbar.
 EdmaTcRegs::EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth)
-    : RegBank("EDMATC" + std::to_string(number)) {
-  tccfg.fifo.set(static_cast<unsigned>(std::bit_width(fifo / 32)) - 1);
-  tccfg.width.set(1);  // 64 bits, as the crossbar
-  tccfg.depth.set(static_cast<unsigned>(std::bit_width(depth)) - 1);
-}
+    : RegBank("EDMATC" + std::to_string(number)),
+      tccfg(*this, "TCCFG", 0x004, "configuration",
+            (static_cast<unsigned>(std::bit_width(fifo / 32)) - 1) | 1u << 4 |
+                (static_cast<unsigned>(std::bit_width(depth)) - 1) << 8) {}
 
 EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams& params)
-    : BusTarget(name, regs),
-      regs(number, static_cast<unsigned>(params.fifo()), static_cast<unsigned>(params.depth())),
+    : WithRegs(number, static_cast<unsigned>(params.fifo()), static_cast<unsigned>(params.depth())),
+      BusTarget(name, regs),
       stats(number),
       number_(number),
       params_(params),
@@ -32,10 +32,12 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   add_master(edma_read(number), reads_.socket, outstanding);
   add_master(edma_write(number), writes_.socket, outstanding);
   reads_.on_done = [this](const BurstMaster::Completion& c) {
+    if (in_reset_) return;
     ++stats.reads;
     core_.read_done(c.data, c.error, c.last);
   };
   writes_.on_done = [this](const BurstMaster::Completion& c) {
+    if (in_reset_) return;
     ++stats.writes;
     stats.bytes += c.data.size();
     core_.write_done(c.error, c.last);
@@ -66,6 +68,16 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   SC_METHOD(clock_changed);
   sensitive << clk << lpsc;
 }
+
+/// Bursts under way are still answered; nobody waits for them.
+void EdmaTc::on_reset(ResetKind) {
+  in_reset_ = true;
+  core_.reset();
+  core_.set_read_interval(1);
+  program_free_ = 0;
+}
+
+void EdmaTc::leave_reset() { in_reset_ = false; }
 
 void EdmaTc::attach(EdmaCc& channels) {
   channels_ = &channels;

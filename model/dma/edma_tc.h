@@ -60,7 +60,7 @@ struct EdmaTcRegs : RegBank {
     using Reg::Reg;
     Field rate{*this, "RDRATE", 0, 3, Mode::kRw, "clocks between reads: 0, 4, 8, 16 or 32"};
   };
-  Config tccfg{*this, "TCCFG", 0x004, "configuration"};
+  Config tccfg;
   Status tcstat{*this, "TCSTAT", 0x100, "status"};
   Errors errstat{*this, "ERRSTAT", 0x120, "errors"};
   ErrorEnables erren{*this, "ERREN", 0x124, "enabled errors"};
@@ -82,11 +82,12 @@ struct EdmaTcStats : StatGroup {
 
 /// A transfer controller: two masters, one that only reads and one that only writes. While its clock is
 /// gated it issues nothing new.
-class EdmaTc : public BusTarget, public TransferPort, private TransferController::Host {
+class EdmaTc : public WithRegs<EdmaTcRegs>,
+               public BusTarget,
+               public TransferPort, private TransferController::Host {
  public:
   using Params = EdmaTcParams;
   SC_HAS_PROCESS(EdmaTc);
-  EdmaTcRegs regs;
   EdmaTcStats stats;
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
@@ -99,9 +100,12 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
 
   Picoseconds program_free() const override;
   void submit(const TransferRequest& request) override;
+  bool idle() const override { return reads_.outstanding() == 0 && writes_.outstanding() == 0; }
+  void leave_reset() override;
 
  protected:
   bool clocked() const override { return lpsc.read(); }
+  void on_reset(ResetKind kind) override;
 
  private:
   Picoseconds edge(Picoseconds t, unsigned clocks) const override;
@@ -114,7 +118,7 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
   void failed(const TransferRequest& request, TransferController::Failure failure,
               Picoseconds at) override;
   void clock_changed();
-  bool running() const { return clock_.running() && lpsc.read(); }
+  bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
   unsigned burst() const;
 
   const unsigned number_;
@@ -124,6 +128,7 @@ class EdmaTc : public BusTarget, public TransferPort, private TransferController
   TransferController core_;
   EdmaCc* channels_ = nullptr;
   Picoseconds program_free_ = 0;
+  bool in_reset_ = false;
 };
 
 }  // namespace fovea::dma

@@ -146,6 +146,11 @@ std::string block_row(const Placement& row, const BusTarget& block) {
          std::to_string(block.bank().regs().size()) + (row.partly ? ", not all" : "") + " |\n";
 }
 
+const char* driver_of(const MasterInfo& m) {
+  if (!m.spare) return "a block";
+  return m.priority == PrioritySource::kQueue ? "a block, or a synthetic load too" : "a synthetic load";
+}
+
 std::string master_rows() {
   std::string out;
   for (const MasterInfo& m : kMasters.rows) {
@@ -153,7 +158,7 @@ std::string master_rows() {
            std::string(m.statistics) + "` | " + name_of(m.bridge) + " | " + name_of(m.priority) +
            " | " + std::to_string(m.most_outstanding) + " | " +
            (m.partner ? "`" + std::string(master_info(*m.partner).name) + "`" : "–") + " | " +
-           (m.on_chip ? "yes" : "no") + " | " + (m.spare ? "a synthetic load" : "a block") + " |\n";
+           (m.on_chip ? "yes" : "no") + " | " + driver_of(m) + " |\n";
   }
   return out;
 }

@@ -45,7 +45,7 @@ EdmaRegs::QueueNumbers::QueueNumbers(RegBank& bank, const std::string& name, std
 EdmaRegs::EdmaRegs(unsigned reset_priority)
     : RegBank("EDMACC"),
       quepri(*this, "QUEPRI", 0x284, "priority on the crossbar, 0 highest", 0x1111u * reset_priority) {
-  const auto numbered = [](const char* name, unsigned n) { return name + std::to_string(n); };
+  const auto numbered = [](const std::string& name, unsigned n) { return name + std::to_string(n); };
   for (unsigned i = 0; i < kQdmaChannels; ++i)
     qchmap.push_back(std::make_unique<QdmaMap>(*this, numbered("QCHMAP", i), 0x200 + 4 * i,
                                                "parameter set and trigger word"));
@@ -73,7 +73,7 @@ EdmaRegs::EdmaRegs(unsigned reset_priority)
   for (unsigned s = 0; s < kParamSets; ++s) {
     Param& p = param.emplace_back();
     for (unsigned w = 0; w < kParamWords; ++w)
-      p.word.push_back(std::make_unique<Reg>(*this, numbered("PARAM", s) + "." + kWords[w],
+      p.word.push_back(std::make_unique<Reg>(*this, numbered(std::string("PARAM_") + kWords[w], s),
                                              0x4000 + 0x20 * s + 4 * w, Mode::kRw,
                                              "parameter RAM"));
   }
