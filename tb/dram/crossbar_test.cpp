@@ -227,6 +227,13 @@ TEST(CrossbarTest, LockedReadThatFailsGivesTheSlaveFree) {
   b.submit(kC, 30);
   b.run();
   EXPECT_EQ(winners(b), "ABC");
+  // Free for every master, also for the one with number 0.
+  std::size_t granted = b.events.size();
+  for (const Master m : {Master::kArmI, Master::kArmD, kA, kB}) {
+    b.submit(m, 50 + 20 * granted);
+    b.run();
+    EXPECT_EQ(b.events.size(), ++granted) << index(m);
+  }
 }
 
 // Video ports put requests on their port ahead of time; the clock may change before.
