@@ -229,6 +229,19 @@ TEST(CrossbarTest, LockedReadThatFailsGivesTheSlaveFree) {
   EXPECT_EQ(winners(b), "ABC");
 }
 
+// For every other master, whatever its number.
+TEST(CrossbarTest, LockedReadThatFailsGivesTheSlaveToAnyMaster) {
+  for (const MasterInfo& m : kMasters.rows) {
+    if (m.id == kA) continue;
+    XbarBench b;
+    b.refuses = true;
+    b.submit(kA, 5, false, 4, Slave::kDdr, true);
+    b.submit(m.id, 6);
+    b.run();
+    EXPECT_EQ(b.events.size(), 2u) << m.name;
+  }
+}
+
 // Video ports put requests on their port ahead of time; the clock may change before.
 TEST(CrossbarTest, RequestToComeSeesTheEdgesAfterAClockChange) {
   XbarBench b;

@@ -19,6 +19,7 @@ struct Job {
   sc_dt::uint64 address = 0;
   std::vector<unsigned char> data;
   bool byte_enables = false;
+  bool ends_at_once = false;  ///< answers BEGIN_RESP with END_RESP, which takes kEarlyEnd
   // outcome
   sc_core::sc_time begin_req, end_req, begin_resp;
   tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;
@@ -28,6 +29,7 @@ struct Job {
 /// before, so that several transactions are under way.
 class AtInitiator : public sc_core::sc_module, private tlm::tlm_mm_interface {
  public:
+  const sc_core::sc_time kEarlyEnd{300, sc_core::SC_NS};
   tlm_utils::simple_initiator_socket<AtInitiator, 32> socket{"socket"};
   std::deque<Job> jobs;
   unsigned ended = 0, not_released = 0, protocol_errors = 0;
@@ -76,8 +78,17 @@ class AtInitiator : public sc_core::sc_module, private tlm::tlm_mm_interface {
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& p, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) {
     if (delay != sc_core::SC_ZERO_TIME) ++protocol_errors;  // this target annotates nothing
+    if (phase == tlm::BEGIN_RESP && sc_core::sc_time_stamp() < early_end_) ++protocol_errors;
     phase_seen(p, phase);
-    return tlm::TLM_ACCEPTED;
+    if (responding_ != &p || !ends_at_once(p)) return tlm::TLM_ACCEPTED;
+    response_.cancel();
+    responding_ = nullptr;
+    end(p);
+    phase = tlm::END_RESP;
+    delay = kEarlyEnd;
+    early_end_ = sc_core::sc_time_stamp() + delay;
+    p.release();
+    return tlm::TLM_UPDATED;
   }
   void phase_seen(tlm::tlm_generic_payload& p, const tlm::tlm_phase& phase) {
     Job* job = nullptr;
@@ -104,16 +115,24 @@ class AtInitiator : public sc_core::sc_module, private tlm::tlm_mm_interface {
   void end_response() {
     tlm::tlm_generic_payload& p = *responding_;
     responding_ = nullptr;
+    end(p);
+    tlm::tlm_phase phase = tlm::END_RESP;
+    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+    socket->nb_transport_fw(p, phase, delay);
+    p.release();
+  }
+  bool ends_at_once(const tlm::tlm_generic_payload& p) const {
+    for (const auto& [payload, job] : open_)
+      if (payload == &p) return job->ends_at_once;
+    return false;
+  }
+  void end(const tlm::tlm_generic_payload& p) {
     ++ended;
     for (auto o = open_.begin(); o != open_.end(); ++o)
       if (o->first == &p) {
         open_.erase(o);
         break;
       }
-    tlm::tlm_phase phase = tlm::END_RESP;
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    socket->nb_transport_fw(p, phase, delay);
-    p.release();
   }
   void free(tlm::tlm_generic_payload* p) override {
     --not_released;
@@ -124,6 +143,7 @@ class AtInitiator : public sc_core::sc_module, private tlm::tlm_mm_interface {
   std::deque<std::pair<tlm::tlm_generic_payload*, Job*>> open_;
   tlm::tlm_generic_payload *requesting_ = nullptr, *responding_ = nullptr;
   sc_core::sc_event end_request_, response_;
+  sc_core::sc_time early_end_;
   unsigned char enable_ = 0xFF;
 };
 

@@ -37,7 +37,7 @@ struct Bench {
                          {"slow", 0x01C2'0000, 0x100, bus::ConfigBus::Speed::kSlow}}};
   mem::DdrModule ddr{"ddr", ddr_params, scr.memory()};
   SlowBlock slow{"slow_block"};
-  BurstMaster master{"master", Master::kLoad, 4};
+  BurstMaster master{"master", Master::kLoad, 4}, other{"other", Master::kVpbe, 4};
   ClockSignal ddr_clk{"ddr_clk", kFast}, scr_clk{"scr_clk", Frequency(121'500'000)};
   sc_core::sc_signal<bool> on{"on", true};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
@@ -57,6 +57,7 @@ struct Bench {
     config.to("slow").bind(slow.reg_socket);
     for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
     master.socket.bind(*scr.target[index(Master::kLoad)]);
+    other.socket.bind(*scr.target[index(Master::kVpbe)]);
     master.on_done = [this](const BurstMaster::Completion& c) {
       done.push_back({kernel_time(), c.first, c.last, c.error});
     };
@@ -171,6 +172,28 @@ TEST_F(ModuleTest, SlowRegisterBlocksAnswerLaterThanFastOnes) {
   ASSERT_GT(more, 2 * edge);
   EXPECT_GE(slow, fast + more - edge);
   EXPECT_LE(slow, fast + more + edge);
+}
+
+// Of requests at one edge the port goes first whose priority signal is lower, as it is at that time.
+TEST_F(ModuleTest, ThePrioritySignalsDecideAtTheCrossbar) {
+  // Bridges of equal latency, so that both arrive at one edge.
+  std::vector<Picoseconds> first(2);
+  b.other.on_done = [&](const BurstMaster::Completion& c) { first[1] = c.first; };
+  for (const unsigned urgent : {0u, 1u, 0u}) {
+    b.priority[index(Master::kLoad)].write(urgent == 0 ? 2 : 5);
+    b.priority[index(Master::kVpbe)].write(urgent == 0 ? 5 : 2);
+    run_for(10 * kPsPerUs);
+    b.done.clear();
+    b.master.read(kDdr + 0x50000, 64);
+    b.other.read(kDdr + 0x50040, 64);
+    run_for(10 * kPsPerUs);
+    ASSERT_EQ(b.done.size(), 1u);
+    first[0] = b.done[0].first;
+    EXPECT_LT(first[urgent], first[1 - urgent]) << urgent;
+  }
+  b.priority[index(Master::kLoad)].write(0);
+  b.priority[index(Master::kVpbe)].write(0);
+  run_for(10 * kPsPerUs);
 }
 
 // Latency is from the port to the first data, not to the last.

@@ -103,6 +103,7 @@ std::string simulate(bool strict, std::vector<std::uint64_t>& ends, unsigned& re
     const std::uint64_t address = base + rng.below(0x400);
     const bool write = rng.below(2);
     b.job(10'000 + 50 * i, write ? kWr : kRd, address, bytes);
+    b.initiator.jobs.back().ends_at_once = i % 3 == 2;
     auto& data = b.initiator.jobs.back().data;
     expected.emplace_back();
     for (unsigned k = 0; k < bytes; ++k) {

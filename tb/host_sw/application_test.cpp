@@ -96,9 +96,9 @@ TEST(OutputTest, ABufferIsNeverWrittenWhileItMayBeShown) {
     EXPECT_EQ(next, buffer);
     EXPECT_EQ(sequence, expected++);
     EXPECT_EQ(output_next(&o, &sequence), OUTPUT_NONE) << "the display has not taken the last one";
-    EXPECT_TRUE(output_first_field(&o, &released));
+    EXPECT_EQ(output_first_field(&o, &released), 1);
     EXPECT_EQ(o.shown, buffer);
-    EXPECT_FALSE(output_first_field(&o, &released));
+    EXPECT_EQ(output_first_field(&o, &released), 0);
     seen.insert(buffer);
   }
   EXPECT_GE(seen.size(), 2u);
@@ -116,11 +116,11 @@ TEST(OutputTest, AQueueKeepsItsOrderAndBlocksWritersWhenFull) {
   std::uint32_t sequence;
   int released;
   EXPECT_EQ(output_next(&o, &sequence), b);
-  EXPECT_TRUE(output_first_field(&o, &released));
+  EXPECT_EQ(output_first_field(&o, &released), 1);
   EXPECT_EQ(released, OUTPUT_NONE);
   EXPECT_EQ(output_next(&o, &sequence), c);
   EXPECT_EQ(output_take(&o), OUTPUT_NONE) << "b is still shown until the next first field";
-  EXPECT_TRUE(output_first_field(&o, &released));
+  EXPECT_EQ(output_first_field(&o, &released), 1);
   EXPECT_EQ(released, b);
   EXPECT_EQ(output_take(&o), b);
 }

@@ -48,15 +48,20 @@ class BootTest : public testing::Test {
     sent.clear();
     values[0x01C40084] = values[0x01C40088] = 0x07000000;
     values[0x01C20014] = 0x60;
+    values[0x01C40074] = 0x00182077;  // VTPIOCR out of reset
     recorder.on_write = [this](std::uint32_t address, std::uint32_t value) {
       values[address] = value;
       if (address == 0x01C20000) sent.push_back(static_cast<char>(value));
       if (address == 0x01C41120)  // PTCMD: modules reach the state asked for
         for (unsigned n = 0; n < 52; ++n)
           values[0x01C41800 + 4 * n] = values[0x01C41A00 + 4 * n] & 0x1F;
-      if (address == 0x01C40074 && (value & 0x2000)) values[address] |= 0x8000;  // VTP ready
+      if (address == 0x01C40074 && (value & 0x2000)) vtp_looks = 0;
     };
-    recorder.on_read = [this](std::uint32_t address) { return values[address]; };
+    recorder.on_read = [this](std::uint32_t address) {
+      // The VTP controller is ready when it is looked at for the third time.
+      if (address == 0x01C40074 && (values[address] & 0x2000) && ++vtp_looks == 3) values[address] |= 0x8000;
+      return values[address];
+    };
     return boot_init(&page);
   }
   double sysclk(std::uint32_t base, unsigned n) {
@@ -79,6 +84,7 @@ class BootTest : public testing::Test {
   RegisterRecorder recorder;
   std::map<std::uint32_t, std::uint32_t> values;
   std::string sent;  // by UART0
+  unsigned vtp_looks = 0;
 };
 
 TEST_F(BootTest, EachPresetGivesItsClocks) {
@@ -216,7 +222,7 @@ TEST_F(BootTest, TheSequenceIsTheLoaders) {
   const std::size_t pll1 = index_of_write(kPllc1 + 0x138, 1);
   const std::size_t pll2 = index_of_write(kPllc2 + 0x138, 1);
   const std::size_t mux = index_of_write(0x01C40048, 0x243F04FC);
-  const std::size_t vtp = index_of_write(0x01C40074, 0x2000);
+  const std::size_t vtp = index_of_write(0x01C40074, 0x00182037);
   const std::size_t reset = index_of_write(0x01C41A00 + 4 * 13, 1);
   const std::size_t phy = index_of_write(0x200000E4, 0xC5);
   const std::size_t unlock = index_of_write(0x20000008, 0x0053C832);
@@ -228,6 +234,15 @@ TEST_F(BootTest, TheSequenceIsTheLoaders) {
               phy < unlock && unlock < timing && timing < final_bank && final_bank < refresh &&
               refresh < second_reset);
   EXPECT_EQ(values[0x01C41800 + 4 * 13], 3u) << "DDR2 enabled at the end";
+}
+
+// Power up with CLRZ low, raise it, wait for READY (bit 15); then LOCK, and the power-down bits again.
+TEST_F(BootTest, TheVtpControllerIsCalibratedAndThenLocked) {
+  boot(0);
+  std::vector<std::uint32_t> written;
+  for (const RegisterAccess& a : recorder.writes())
+    if (a.address == 0x01C40074) written.push_back(a.value);
+  EXPECT_THAT(written, testing::ElementsAre(0x00180037, 0x00182037, 0x0018A0B7, 0x0018E0F7));
 }
 
 TEST_F(BootTest, NothingTouchesDdrItself) {

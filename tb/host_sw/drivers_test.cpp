@@ -24,9 +24,11 @@ void mmio_write32(uint32_t address, uint32_t value) {
 
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::IsEmpty;
+using testing::Not;
 using A = RegisterAccess;
 
 TEST(IsifTest, PalFrameIsProgrammedAsTheLinuxDriverDoes) {
@@ -197,6 +199,16 @@ TEST(VpssTest, RoutesLikeLinuxAndOpensTheGates) {
   EXPECT_EQ(chip.values[0x01C70010], 0x0B1F0100u);
   EXPECT_EQ(chip.values[0x01C70014], 0x1F0A0F1Fu);
   EXPECT_EQ(chip.values[0x01C70018], 0x15u);
+}
+
+TEST(IntcTest, AtFirstEverySourceIsClosedAndNothingIsPending) {
+  RegisterRecorder chip;
+  intc_init();
+  EXPECT_THAT(chip.accesses,
+              ElementsAre(A{'w', 0x01C48018, 0}, A{'w', 0x01C4801C, 0},   // EINT
+                          A{'w', 0x01C48020, 0}, A{'w', 0x01C48024, 0},   // INTCTL, EABASE
+                          A{'w', 0x01C48000, ~0u}, A{'w', 0x01C48004, ~0u},   // FIQ
+                          A{'w', 0x01C48008, ~0u}, A{'w', 0x01C4800C, ~0u}));  // IRQ
 }
 
 TEST(IntcTest, EnableSetsPriorityDropsOldEdgesAndOpensTheSource) {
@@ -388,6 +400,32 @@ TEST(Tvp5146Test, AnAbsentDecoderIsNotWaitedFor) {
   RegisterRecorder chip;
   FakeI2c bus(chip, false);
   EXPECT_EQ(tvp5146_wait_lock(24'000'000, [] { FAIL() << "a pause"; }), I2C_NACK);
+}
+
+// The device takes its address and the register's number, and then refuses to be read.
+TEST(I2cTest, ARefusedReadIsReportedAndEndsWithAStop) {
+  constexpr std::uint32_t kIcmdr = 0x01C21024, kStt = 0x2000, kStp = 0x800, kTrx = 0x200;
+  RegisterRecorder chip;
+  bool refuses = false;
+  chip.on_write = [&](std::uint32_t address, std::uint32_t value) {
+    if (address == kIcmdr) refuses = (value & kStt) && !(value & kTrx);
+  };
+  chip.on_read = [&](std::uint32_t address) -> std::uint32_t {
+    return address == 0x01C21008 ? (refuses ? 0x02u : 0x38u) : 0;
+  };
+  std::uint8_t value = 0xEE;
+  EXPECT_EQ(i2c_read_register(0x5D, 0x3A, &value), I2C_NACK);
+  EXPECT_EQ(value, 0xEE) << "left alone";
+  const auto writes = chip.writes();
+  EXPECT_THAT(writes, Contains(A{'w', kIcmdr, kStp}));
+  EXPECT_EQ(writes.back(), (A{'w', kIcmdr, 0x20})) << "the controller starts anew";
+  chip.on_read = [](std::uint32_t address) -> std::uint32_t {
+    return address == 0x01C21008 ? 0x38u : address == 0x01C21018 ? 0x51u : 0;
+  };
+  chip.accesses.clear();
+  EXPECT_EQ(i2c_read_register(0x5D, 0x3A, &value), I2C_OK);
+  EXPECT_EQ(value, 0x51);
+  EXPECT_THAT(chip.writes(), Not(Contains(A{'w', kIcmdr, kStp}))) << "nothing to be given up";
 }
 
 TEST(I2cTest, ADeadBusTimesOut) {

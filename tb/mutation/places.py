@@ -1,5 +1,6 @@
 """Finds the places in C and C++ sources where one of the mutation operators applies (libclang)."""
 import dataclasses
+import os
 import re
 
 import clang.cindex
@@ -325,7 +326,8 @@ def unit_places(source, arguments, root, wanted, done):
     for node in unit.cursor.get_children():
         if node.location.file is None:
             continue
-        name = node.location.file.name
+        # A header that is included by a path with '..' is the same file as without.
+        name = os.path.normpath(node.location.file.name)
         finder = finders.get(name, False)
         if finder is False:
             finder = None

@@ -34,6 +34,28 @@ TEST(TraceFileTest, GivesBackWhatWasWritten) {
   for (unsigned s = 0; s < 3; ++s) EXPECT_EQ(read_all(file, s), made.records[s]) << s;
 }
 
+// Blocks are compressed: records that are all alike take much less than a byte each.
+TEST(TraceFileTest, EqualRecordsTakeLittleRoom) {
+  trace::TraceWriter writer(3);
+  Record r;
+  r.master = Master::kVpfe;
+  r.write = true;
+  r.bytes = 64;
+  r.at = 2'000'000;
+  writer.add(1, r);
+  r.release = trace::Release::kAfter;
+  r.back = 1;
+  r.gap = 10;
+  for (unsigned n = 1; n < 10'000; ++n) writer.add(1, r);
+  std::string bytes;
+  writer.finish(board_info(), [&](std::string_view piece) { bytes += piece; });
+  EXPECT_LT(bytes.size(), 5'000u);
+  trace::TraceFile file("t", std::move(bytes));
+  unsigned records = 0;
+  for (Record back; file.next(1, back);) ++records;
+  EXPECT_EQ(records, 10'000u);
+}
+
 TEST(TraceFileTest, StreamsCanBeReadInAnyOrder) {
   const MadeTrace made = make_trace(2, 9'000);
   TraceFile file("t", made.bytes);

@@ -296,6 +296,15 @@ TEST(ReplayPathTest, TheFiguresAddUp) {
             value.at(fmt::format("ddr.bank{}.row_misses", b)) +
             value.at(fmt::format("ddr.bank{}.row_conflicts", b));
   EXPECT_EQ(rows, 3000);
+  double read = 0, written = 0, transactions = 0;
+  for (unsigned m = 0; m < 3; ++m) {
+    read += value.at(fmt::format("bus.m{}.read_bytes", m));
+    written += value.at(fmt::format("bus.m{}.write_bytes", m));
+    transactions += value.at(fmt::format("bus.m{}.transactions", m));
+  }
+  EXPECT_EQ(read, value.at("ddr.read_bytes"));
+  EXPECT_EQ(written, value.at("ddr.write_bytes"));
+  EXPECT_EQ(transactions, 3000);
 }
 
 TEST(ReplayPathTest, TheUrgentMasterWaitsLess) {

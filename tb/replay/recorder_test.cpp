@@ -442,7 +442,8 @@ TEST(RecorderTest, ALoadRepeatsAfterTheLatestCompletion) {
 TEST(RecorderTest, APartnersCompletionIsRememberedFor32Bits) {
   for (const Picoseconds late : {0xFFFF'FFFFull, 0x1'0000'0000ull}) {
     Feed f(copy_of(Pace::kRepeating));
-    f.end(f.put(edma_write(0), true, 10'000, 64), 20'000, 30'000);
+    f.end(f.put(edma_write(0), true, 10'000, 64), 20'000, 20'000);
+    f.end(f.put(edma_write(0), true, 10'000, 64), 30'000, 30'000);
     f.end(f.put(edma_read(0), false, 30'000 + late, 64), 30'000 + late, 40'000 + late);
     const auto r = f.records(1, 10'000'000'000);
     ASSERT_EQ(r.size(), 1u);
@@ -451,6 +452,7 @@ TEST(RecorderTest, APartnersCompletionIsRememberedFor32Bits) {
       EXPECT_EQ(r[0].at, 30'000 + late);
     } else {
       EXPECT_EQ(r[0].release, Release::kWhen);
+      EXPECT_EQ(r[0].event, 1u) << "the second of the partner's";
       EXPECT_EQ(r[0].wake_gap, late);
     }
   }

@@ -125,6 +125,8 @@ TEST_F(ParamTest, UnknownKeySuggestsTheNearest) {
   EXPECT_THAT(user_error([&] { set.set("block.anlge", "90deg"); }),
               HasSubstr("did you mean 'block.angle'?"));
   EXPECT_THAT(user_error([&] { set.set("zzzzzzzzzzzzzzzz", "1"); }), HasSubstr("fovea params"));
+  EXPECT_THAT(user_error([&] { set.set("block.x", "1"); }), testing::Not(HasSubstr("did you mean")))
+      << "nothing is near a single letter";
 }
 
 TEST_F(ParamTest, ASuggestionIsNearInWhatDiffers) {

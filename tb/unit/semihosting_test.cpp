@@ -314,6 +314,12 @@ TEST_F(SemihostingTest, FeaturesSayExtendedExit) {
   const auto f = open(":semihosting-features", 0);
   EXPECT_EQ(call(0x0C, {f}), 5u);
   EXPECT_EQ(read(f, 8), std::string("SHFB\x03", 5));
+  EXPECT_EQ(call(0x0A, {f, 4}), 0u);
+  EXPECT_EQ(read(f, 8), "\x03");
+  EXPECT_EQ(call(0x0A, {f, 5}), 0u) << "the end";
+  EXPECT_EQ(read(f, 8), "");
+  EXPECT_EQ(call(0x0A, {f, 6}), kFailed);
+  EXPECT_EQ(last_errno(), std::uint32_t{EINVAL});
   EXPECT_EQ(open(":semihosting-features", 4), kFailed);
 }
 
@@ -332,6 +338,8 @@ TEST_F(SemihostingTest, BadPointersAndHandlesAreErrorsOfTheCall) {
   EXPECT_EQ(last_errno(), std::uint32_t{EFAULT});
   EXPECT_EQ(call(0x01, {0xFFFF'0000u, 0, 4}), kFailed);
   EXPECT_EQ(call(0x01, {kText, 0, 0xFFFF'FFFFu}), kFailed);
+  EXPECT_EQ(call(0x01, {kText, 0, 4097}), kFailed);
+  EXPECT_EQ(last_errno(), 91u) << "ENAMETOOLONG of newlib";
   EXPECT_EQ(call(0x01, {kText, 12, 1}), kFailed);
   const auto out = open(":tt", 4);
   EXPECT_EQ(call(0x05, {out, 0x1FFF0, 0x100}), 0x100u);

@@ -100,6 +100,27 @@ TEST_F(CaptureTest, VdintFiresAtTheStartOfItsLineOncePerField) {
   b.top_regs.write(0x0C, 7);
 }
 
+// An output follows the source that is selected, not only the source's next change.
+TEST_F(CaptureTest, AnotherSourceIsSeenAtOnce) {
+  constexpr std::uint32_t kVenc = 21, kNone = 0x1F;
+  b.no_venc.write(true);
+  b.top_regs.write(0x10, kNone << 24 | 0x1F1F1F);
+  run_for(kPsPerNs);
+  EXPECT_FALSE(b.vpssint[3].read());
+  b.top_regs.write(0x10, kVenc << 24 | 0x1F1F1F);
+  run_for(kPsPerNs);
+  EXPECT_TRUE(b.vpssint[3].read());
+  b.top_regs.write(0x10, kNone << 24 | 0x1F1F1F);
+  b.top_regs.write(0x18, kVenc);
+  run_for(kPsPerNs);
+  EXPECT_FALSE(b.vpssint[3].read());
+  EXPECT_TRUE(b.vpssint[8].read());
+  b.no_venc.write(false);
+  run_for(kPsPerNs);
+  EXPECT_FALSE(b.vpssint[8].read());
+  b.top_regs.write(0x18, kNone);
+}
+
 TEST_F(CaptureTest, VdintOneLineLaterFiresOneLineLater) {
   b.top_regs.write(0x10, 0x1F1F1F01);
   b.regs.write(VDINT1, 6);

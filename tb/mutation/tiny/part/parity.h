@@ -1,0 +1,2 @@
+#pragma once
+inline bool even(int i) { return i % 2 == 0; }
