@@ -1,4 +1,5 @@
-// The priority of each master that a register of the chip holds one for, as the firmware programs it.
+// The priority of each master that a register of the chip holds one for, as the firmware programs
+// it.
 #pragma once
 #include <deque>
 #include <string>
@@ -48,12 +49,18 @@ struct PriorityParams : ParamGroup {
  private:
   static std::string where(const MasterInfo& m) {
     switch (m.priority) {
-      case PrioritySource::kArm: return "MSTPRI0.ARM_DMAP, for both ports of the core";
-      case PrioritySource::kImcop: return "MSTPRI0.IMCOPP";
-      case PrioritySource::kVideoRead: return "BCR.RD_PRI";
-      case PrioritySource::kVideoWrite: return "BCR.WR_PRI";
-      case PrioritySource::kQueue: return "QUEPRI.Q" + std::to_string(m.unit);
-      case PrioritySource::kParameter: break;
+      case PrioritySource::kArm:
+        return "MSTPRI0.ARM_DMAP, for both ports of the core";
+      case PrioritySource::kImcop:
+        return "MSTPRI0.IMCOPP";
+      case PrioritySource::kVideoRead:
+        return "BCR.RD_PRI";
+      case PrioritySource::kVideoWrite:
+        return "BCR.WR_PRI";
+      case PrioritySource::kQueue:
+        return "QUEPRI.Q" + std::to_string(m.unit);
+      case PrioritySource::kParameter:
+        break;
     }
     return "";
   }

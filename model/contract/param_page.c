@@ -30,7 +30,8 @@ param_page_result_t param_page_check(const param_page_t *page) {
   /* The camera count is read only if it is inside the page. */
   if (page->bytes < bytes_of(1)) return PARAM_PAGE_TOO_SMALL;
   if (page->bytes > sizeof *page) return PARAM_PAGE_TOO_LARGE;
-  if (page->camera_count == 0 || page->camera_count > PARAM_CAMERAS_MAX) return PARAM_PAGE_BAD_CAMERAS;
+  if (page->camera_count == 0 || page->camera_count > PARAM_CAMERAS_MAX)
+    return PARAM_PAGE_BAD_CAMERAS;
   if (page->bytes < bytes_of(page->camera_count)) return PARAM_PAGE_TOO_SMALL;
   if (page->bytes > bytes_of(page->camera_count)) return PARAM_PAGE_TOO_LARGE;
   if (word_sum(page, page->bytes) != 0) return PARAM_PAGE_BAD_CHECKSUM;
@@ -80,9 +81,4 @@ void param_page_seal(param_page_t *page) {
   page->bytes = bytes_of(page->camera_count);
   page->checksum = 0;
   page->checksum = 0u - word_sum(page, page->bytes);
-}
-
-void lens_view_default(lens_view_t *view) {
-  *view = (lens_view_t){
-      .mapping = LENS_EQUISOLID, .fov_deg = 180.0, .in_aspect = 1.0, .out_aspect = 1.0};
 }

@@ -180,9 +180,6 @@ const char *param_page_text(param_page_result_t result);
 /** Sets magic, version, bytes and checksum. The camera count must be right. */
 void param_page_seal(param_page_t *page);
 
-/** Lens and view with defaults: equisolid, 180 degrees, square pixels, centred. */
-void lens_view_default(lens_view_t *view);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,8 +1,9 @@
 #include "sw/fovea/clock_setting.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "model/common/check.h"
 
@@ -16,7 +17,8 @@ constexpr bool less(Frequency a, Frequency b) { return a.num * b.den < b.num * a
 
 // Widths of the registers' fields: PLLM has 10 bits, each divider's ratio - 1 has 5.
 constexpr std::uint64_t kMostMultiplier = 1023, kMostDivider = 32;
-// What the outputs of the PLLs may be is not public; within what public boot loaders program they work.
+// What the outputs of the PLLs may be is not public; within what public boot loaders program they
+// work.
 constexpr auto kOutput1 = [](const ClockPreset& p) { return board::pll_output(p.setting.pll1); };
 constexpr auto kOutput2 = [](const ClockPreset& p) { return board::pll_output(p.setting.pll2); };
 constexpr Frequency lower(Frequency a, Frequency b) { return less(a, b) ? a : b; }
@@ -52,17 +54,25 @@ std::optional<param_pll_t> pll_for(Frequency output) {
   return pll;
 }
 
-/// All settings of PLL1 for an SDRAM clock: its output is 2, 4, ... times that clock, and the other ratios follow.
+/// All settings of PLL1 for an SDRAM clock: its output is 2, 4, ... times that clock, and the other
+/// ratios follow.
 std::vector<param_pll_t> first_plls(Frequency ddr) {
   std::vector<param_pll_t> out;
   for (std::uint64_t k = 1; 4 * k <= kMostDivider; ++k) {
     const Frequency output = ddr * (2 * k);
     auto pll = pll_for(output);
     if (!pll) continue;
-    // SYSCLK1 and SYSCLK8 (memory cards) near those of the presets; HDVICP, MJCP, EDMA, VPSS, encoder, SDRAM, CLKOUT.
-    const std::uint8_t dividers[9] = {code(down(output, Frequency(24'000'000))), code(2 * k), code(2 * k),
-                                      code(4 * k), code(2 * k), code(up(output, board::kEncoderClock)), code(k),
-                                      code(up(output, Frequency(108'000'000))), code(2 * k)};
+    // SYSCLK1 and SYSCLK8 (memory cards) near those of the presets; HDVICP, MJCP, EDMA, VPSS,
+    // encoder, SDRAM, CLKOUT.
+    const std::uint8_t dividers[9] = {code(down(output, Frequency(24'000'000))),
+                                      code(2 * k),
+                                      code(2 * k),
+                                      code(4 * k),
+                                      code(2 * k),
+                                      code(up(output, board::kEncoderClock)),
+                                      code(k),
+                                      code(up(output, Frequency(108'000'000))),
+                                      code(2 * k)};
     std::copy(std::begin(dividers), std::end(dividers), pll->dividers);
     out.push_back(*pll);
   }
@@ -88,8 +98,8 @@ std::vector<param_pll_t> second_plls(Frequency core) {
 
 std::string megahertz(Frequency f) { return fmt::format("{:.9g}MHz", f.hertz() * 1e-6); }
 
-/// The nearest clock below and above `wanted`, in steps of 10 kHz, for which `possible` holds: clocks that can be
-/// written down. Empty if there is none.
+/// The nearest clock below and above `wanted`, in steps of 10 kHz, for which `possible` holds:
+/// clocks that can be written down. Empty if there is none.
 template <class Possible>
 std::string nearest(Frequency wanted, Frequency most, Possible possible) {
   constexpr std::uint64_t kStep = 10'000;
@@ -116,7 +126,8 @@ std::optional<ClockSetting> find_setting(Frequency core, Frequency ddr) {
     for (const param_pll_t& pll1 : first_plls(ddr))
       for (const param_pll_t& pll2 : second_plls(core))
         if (divides(board::pll_output(first ? pll1 : pll2), board::kEncoderClock))
-          return ClockSetting{pll1, pll2, first ? board::kEncoderFromPll1 : board::kEncoderFromPll2};
+          return ClockSetting{pll1, pll2,
+                              first ? board::kEncoderFromPll1 : board::kEncoderFromPll2};
   return std::nullopt;
 }
 
@@ -129,17 +140,20 @@ ClockSetting clock_setting(const WantedClocks& wanted) {
   const auto core_fits = [&](Frequency f) { return find_setting(f, ddr).has_value(); };
   const auto ddr_fits = [&](Frequency f) { return find_setting(core, f).has_value(); };
   if (wanted.ddr && (less(ddr, kLeastDdr) || first_plls(ddr).empty()))
-    throw UserError(fmt::format("key 'clocks.ddr': {} cannot be made from the 24 MHz crystal, or is below 125 MHz; "
-                                "nearest with a core clock of {}: {}",
-                                megahertz(ddr), megahertz(core), nearest(ddr, kMostDdr, ddr_fits)));
+    throw UserError(fmt::format(
+        "key 'clocks.ddr': {} cannot be made from the 24 MHz crystal, or is below 125 MHz; "
+        "nearest with a core clock of {}: {}",
+        megahertz(ddr), megahertz(core), nearest(ddr, kMostDdr, ddr_fits)));
   if (wanted.core && second_plls(core).empty())
-    throw UserError(fmt::format("key 'clocks.arm': {} cannot be made from the 24 MHz crystal; nearest with an SDRAM "
-                                "clock of {}: {}",
-                                megahertz(core), megahertz(ddr), nearest(core, kMostCore, core_fits)));
-  throw UserError(fmt::format("key 'clocks.{}': with {} for the core and {} for the SDRAM neither PLL gives the "
-                              "display's 27 MHz; nearest for clocks.arm: {}; for clocks.ddr: {}",
-                              wanted.core ? "arm" : "ddr", megahertz(core), megahertz(ddr),
-                              nearest(core, kMostCore, core_fits), nearest(ddr, kMostDdr, ddr_fits)));
+    throw UserError(fmt::format(
+        "key 'clocks.arm': {} cannot be made from the 24 MHz crystal; nearest with an SDRAM "
+        "clock of {}: {}",
+        megahertz(core), megahertz(ddr), nearest(core, kMostCore, core_fits)));
+  throw UserError(fmt::format(
+      "key 'clocks.{}': with {} for the core and {} for the SDRAM neither PLL gives the "
+      "display's 27 MHz; nearest for clocks.arm: {}; for clocks.ddr: {}",
+      wanted.core ? "arm" : "ddr", megahertz(core), megahertz(ddr),
+      nearest(core, kMostCore, core_fits), nearest(ddr, kMostDdr, ddr_fits)));
 }
 
 DdrRegisters ddr_registers(Frequency ddr_clock) {
@@ -148,16 +162,18 @@ DdrRegisters ddr_registers(Frequency ddr_clock) {
     const std::uint64_t den = ddr_clock.den * 10'000'000'000ull;
     return static_cast<std::uint32_t>((tenths_of_ns * ddr_clock.num + den - 1) / den) - 1;
   };
-  // T_RRD is a quarter of tFAW (50 ns) instead of tRRD (10 ns): the controller has no field for tFAW, and with
-  // T_RRD >= tFAW / 4 any five activations are far enough apart.
-  constexpr std::uint64_t kRfc = 1275, kRp = 200, kRcd = 200, kWr = 150, kRas = 450, kRc = 650, kFawQuarter = 125,
-                          kWtr = 100, kXsnr = 1375, kRtp = 75;
-  // Rows stay open for 70 us at most, in refresh intervals of 7.8 us, minus 1 (TI's loader overflows this field).
+  // T_RRD is a quarter of tFAW (50 ns) instead of tRRD (10 ns): the controller has no field for
+  // tFAW, and with T_RRD >= tFAW / 4 any five activations are far enough apart.
+  constexpr std::uint64_t kRfc = 1275, kRp = 200, kRcd = 200, kWr = 150, kRas = 450, kRc = 650,
+                          kFawQuarter = 125, kWtr = 100, kXsnr = 1375, kRtp = 75;
+  // Rows stay open for 70 us at most, in refresh intervals of 7.8 us, minus 1 (TI's loader
+  // overflows this field).
   constexpr std::uint32_t kRasMax = 7, kXp = 2, kXsrd = 199, kCke = 3;
   DdrRegisters out;
-  out.sdtimr = field(kRfc) << 25 | field(kRp) << 22 | field(kRcd) << 19 | field(kWr) << 16 | field(kRas) << 11 |
-               field(kRc) << 6 | field(kFawQuarter) << 3 | field(kWtr);
-  out.sdtimr2 = kRasMax << 27 | kXp << 25 | field(kXsnr) << 16 | kXsrd << 8 | field(kRtp) << 5 | kCke;
+  out.sdtimr = field(kRfc) << 25 | field(kRp) << 22 | field(kRcd) << 19 | field(kWr) << 16 |
+               field(kRas) << 11 | field(kRc) << 6 | field(kFawQuarter) << 3 | field(kWtr);
+  out.sdtimr2 =
+      kRasMax << 27 | kXp << 25 | field(kXsnr) << 16 | kXsrd << 8 | field(kRtp) << 5 | kCke;
   out.sdrcr = static_cast<std::uint32_t>(ddr_clock.num * 78 / (ddr_clock.den * 10'000'000));
   return out;
 }

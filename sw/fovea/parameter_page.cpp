@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "sw/fovea/clock_setting.h"
+#include "sw/lens/lens.h"
 
 namespace fovea::app {
 namespace {
@@ -55,16 +56,19 @@ void fill_clocks(param_clocks_t& clocks, const board::ClockParams& params) {
   clocks.sdrcr = ddr.sdrcr;
 }
 
-void fill_priorities(std::uint8_t (&priority)[PRIORITY_COUNT], const board::PriorityParams& params) {
+void fill_priorities(std::uint8_t (&priority)[PRIORITY_COUNT],
+                     const board::PriorityParams& params) {
   std::fill(std::begin(priority), std::end(priority), std::uint8_t{PRIORITY_OF_RESET});
   for (const EnumParam& p : params.of) {
     const std::string name = p.key().substr(params.prefix().size() + 1);
     if (!p.is(board::PriorityParams::kOfReset))
-      priority[contract::code_of(contract::kMasterWords, name)] = static_cast<std::uint8_t>(std::stoul(p()));
+      priority[contract::code_of(contract::kMasterWords, name)] =
+          static_cast<std::uint8_t>(std::stoul(p()));
   }
 }
 
-void fill_view(lens_view_t& view, const board::BoardParams& params, const video::StampedSource& source) {
+void fill_view(lens_view_t& view, const board::BoardParams& params,
+               const video::StampedSource& source) {
   const board::LensParams& lens = params.lens;
   lens_view_default(&view);
   view.flags = lens.paper_literal_focal() ? PARAM_PAPER_LITERAL_FOCAL : 0u;
@@ -117,7 +121,8 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.table_builder = BUILDER_DOUBLE;
   page.flow = contract::code_of(contract::kFlows, firmware.flow());
   page.repeats = static_cast<std::uint32_t>(firmware.repeat());
-  page.flags = (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
+  page.flags =
+      (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = 1;

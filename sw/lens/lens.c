@@ -31,6 +31,11 @@ double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int p
   }
 }
 
+void lens_view_default(lens_view_t *view) {
+  *view = (lens_view_t){
+      .mapping = LENS_EQUISOLID, .fov_deg = 180.0, .in_aspect = 1.0, .out_aspect = 1.0};
+}
+
 static lens_result_t init_table(lens_t *lens, const lens_view_t *view) {
   if (view->table_count < 2 || view->table_count > PARAM_TABLE_MAX || !positive(view->theta_max))
     return LENS_BAD_TABLE;

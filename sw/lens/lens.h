@@ -49,6 +49,9 @@ typedef struct lens_point {
  * `paper_literal` is set. 0 if the mapping has no such focal length at that field of view. */
 double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int paper_literal);
 
+/** Lens and view with defaults: equisolid, 180 degrees, square pixels, centred. */
+void lens_view_default(lens_view_t *view);
+
 /** Checks `view` for a picture of width x height and derives `lens`. The view must outlive `lens`. */
 lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height);
 

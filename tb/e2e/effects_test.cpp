@@ -7,6 +7,7 @@
 #include <systemc>
 
 #include "model/board/board_params.h"
+#include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/lens/lens.h"
 

@@ -1,5 +1,5 @@
-// The parameter page and the switches on the board: what reaches the chip's registers, and what the firmware refuses.
-// Each case is a process of its own, as a simulation elaborates once.
+// The parameter page and the switches on the board: what reaches the chip's registers, and what the
+// firmware refuses. Each case is a process of its own, as a simulation elaborates once.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +29,8 @@ std::string in_child(const std::function<std::string()>& what) {
   ::close(ends[1]);
   std::string text;
   char chunk[4096];
-  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;) text.append(chunk, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;)
+    text.append(chunk, static_cast<std::size_t>(n));
   ::close(ends[0]);
   int status = 0;
   ::waitpid(child, &status, 0);
@@ -41,7 +42,8 @@ Rig& small(Rig& rig) {
   return rig.set("video.width", "64").set("video.height", "16").set("camera.stamp", "false");
 }
 
-/// What the firmware says of a page that `damage` has changed; with its state if it is not asleep in phase 7.
+/// What the firmware says of a page that `damage` has changed; with its state if it is not asleep
+/// in phase 7.
 std::string said(const std::function<void(param_page_t&)>& damage, bool sealed = true,
                  const std::function<void(board::Board&)>& also = nullptr) {
   return in_child([&] {
@@ -68,25 +70,33 @@ const auto nothing = [](param_page_t&) {};
 
 TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
   const std::string prefix = "failed: parameter page: ";
-  EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false), prefix + "there is none (unknown magic)\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false),
+            prefix + "there is none (unknown magic)\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.version = 3; }, false),
             prefix + "unknown version; this firmware reads version 2\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.bytes -= 4; }, false),
             prefix + "too small for its version and its cameras\r\n");
-  EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false), prefix + "its checksum is wrong\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false),
+            prefix + "its checksum is wrong\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.clocks.pll1.multiplier = 0; }),
             prefix + "a PLL's multiplier must be 1 to 1023, its dividers 1 to 32\r\n");
 }
 
 TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
   EXPECT_NE(said([](param_page_t& p) { p.kernel = 2; })
-                .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 plain, 1 LDM/STM\r\n"),
+                .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 "
+                      "plain, 1 LDM/STM\r\n"),
             std::string::npos);
-  EXPECT_NE(said([](param_page_t& p) { p.table_builder = 1; }).find("unknown table builder"), std::string::npos);
-  EXPECT_NE(said([](param_page_t& p) { p.camera_count = 2; }).find("several cameras; this firmware serves one\r\n"),
+  EXPECT_NE(said([](param_page_t& p) { p.table_builder = 1; }).find("unknown table builder"),
             std::string::npos);
-  const std::string other_output = said(nothing, true, [](board::Board& b) { b.dm365.gpio.set_pin(1, true); });
-  EXPECT_NE(other_output.find("failed: configuration: switches 0 and 1: camera and display must have the same standard"),
+  EXPECT_NE(said([](param_page_t& p) {
+              p.camera_count = 2;
+            }).find("several cameras; this firmware serves one\r\n"),
+            std::string::npos);
+  const std::string other_output =
+      said(nothing, true, [](board::Board& b) { b.dm365.gpio.set_pin(1, true); });
+  EXPECT_NE(other_output.find("failed: configuration: switches 0 and 1: camera and display must "
+                              "have the same standard"),
             std::string::npos)
       << other_output;
   EXPECT_EQ(other_output.find("(awake)"), std::string::npos);
@@ -97,7 +107,10 @@ TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
 TEST(PageTest, ClocksAndPrioritiesReachTheRegisters) {
   Rig rig;
   small(rig).set("clocks.arm", "135MHz").set("clocks.ddr", "162MHz");
-  rig.set("priority.arm", "3").set("priority.vpfe", "2").set("priority.vpbe", "4").set("priority.remap_engine", "6");
+  rig.set("priority.arm", "3")
+      .set("priority.vpfe", "2")
+      .set("priority.vpbe", "4")
+      .set("priority.remap_engine", "6");
   rig.set("priority.edma_tc0", "1").set("priority.edma_tc3", "5").set("edma.reset_priority", "7");
   board::Board& board = rig.build();
   rig.advance(40 * kPsPerMs);
@@ -108,16 +121,28 @@ TEST(PageTest, ClocksAndPrioritiesReachTheRegisters) {
   EXPECT_EQ(soc.arm.clk.read(), Frequency(135'000'000));
   EXPECT_EQ(soc.ddr.ddr_clk.read(), Frequency(162'000'000));
   EXPECT_EQ(soc.scr.clk.read(), Frequency(81'000'000));
-  EXPECT_NE(board.uart_text().find("boot: clocks 135000/162000 kHz\r\n"), std::string::npos) << board.uart_text();
+  EXPECT_NE(board.uart_text().find("boot: clocks 135000/162000 kHz\r\n"), std::string::npos)
+      << board.uart_text();
   const app::DdrRegisters words = app::ddr_registers(Frequency(162'000'000));
-  EXPECT_EQ(soc.ddr.regs.read(0x10, 4), words.sdtimr);
+  const struct {
+    std::uint32_t offset, word;
+  } rows[] = {{0x0C, words.sdrcr}, {0x10, words.sdtimr}, {0x14, words.sdtimr2}};
+  for (const auto& row : rows) {
+    std::uint32_t value = 0;
+    EXPECT_EQ(soc.ddr.regs.read(row.offset, 4, value), Access::kOk);
+    EXPECT_EQ(value, row.word) << row.offset;
+  }
   EXPECT_EQ(words.sdrcr, 1263u) << "7.8 us at 162 MHz";
 }
 
-// The switches' shift is that of the key, moved by 32 pixels; so is the table that the board has built.
+// The switches' shift is that of the key, moved by 32 pixels; so is the table that the board has
+// built.
 TEST(PageTest, TheShiftOfTheSwitchesMovesTheView) {
   Rig rig;
-  small(rig).set("switches.shift_x", "left").set("switches.shift_y", "down").set("lens.shift_x", "3px");
+  small(rig)
+      .set("switches.shift_x", "left")
+      .set("switches.shift_y", "down")
+      .set("lens.shift_x", "3px");
   rig.set("lens.fov", "40deg").set("run.frames", "1");
   rig.build();
   for (int i = 0; i < 400 && rig.state().magic == 0; ++i) rig.advance(kPsPerMs);
@@ -138,9 +163,15 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
   const auto mean = [](const char* key, const char* level, Master m) {
     return std::stod(in_child([&] {
       Rig rig;
-      rig.set("video.width", "320").set("video.height", "64").set("camera.stamp", "false").set("run.frames", "1000");
+      rig.set("video.width", "320")
+          .set("video.height", "64")
+          .set("camera.stamp", "false")
+          .set("run.frames", "1000");
       rig.set("load.outstanding", "12").set("load.kind", "mixed").set("load.pattern", "random");
-      rig.set("load.priority", "3").set("load.start", "300ms").set("load.base", "32MiB").set("load.gap", "3us");
+      rig.set("load.priority", "3")
+          .set("load.start", "300ms")
+          .set("load.base", "32MiB")
+          .set("load.gap", "3us");
       rig.set(key, level);
       board::Board& board = rig.build();
       rig.advance(500 * kPsPerMs);
@@ -151,7 +182,8 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
         for (const WaitTable* t : {&soc.scr.crossbar().waits, &soc.ddr.controller().waits()})
           for (std::size_t c = 0; c < kCulprits; ++c)
             ps += static_cast<double>((*t)[index(m)].read.ps[c] + (*t)[index(m)].write.ps[c]);
-        return std::pair(ps, static_cast<double>(soc.scr.crossbar().stats[stat_index(m)]->transactions.count()));
+        return std::pair(
+            ps, static_cast<double>(soc.scr.crossbar().stats[stat_index(m)]->transactions.count()));
       };
       const auto before = sums();
       rig.advance(80 * kPsPerMs);
@@ -162,7 +194,9 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
   const struct {
     const char* key;
     Master master;
-  } rows[] = {{"priority.arm", Master::kArmD}, {"priority.vpbe", Master::kVpbe}, {"priority.vpfe", Master::kVpfe}};
+  } rows[] = {{"priority.arm", Master::kArmD},
+              {"priority.vpbe", Master::kVpbe},
+              {"priority.vpfe", Master::kVpfe}};
   for (const auto& row : rows) {
     const double urgent = mean(row.key, "0", row.master), patient = mean(row.key, "7", row.master);
     std::printf("  %-14s %.0f ns at 0, %.0f ns at 7\n", row.key, urgent, patient);

@@ -11,6 +11,7 @@ extern "C" {
 #include "sw/firmware/app/config.h"
 #include "sw/firmware/app/output.h"
 #include "sw/firmware/app/overlay.h"
+#include "sw/lens/lens.h"
 // C99's restrict is no C++ word.
 #define restrict __restrict
 #include "sw/firmware/kernels/remap.h"

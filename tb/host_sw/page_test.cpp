@@ -9,6 +9,7 @@
 #include "model/contract/param_page.h"
 #include "model/contract/switches.h"
 #include "model/contract/words.h"
+#include "sw/lens/lens.h"
 
 namespace {
 

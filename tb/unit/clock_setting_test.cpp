@@ -1,4 +1,5 @@
-// What the PLLs can make of the crystal: the rules of the chip, limits at n and n + 1, and the nearest clocks.
+// What the PLLs can make of the crystal: the rules of the chip, limits at n and n + 1, and the
+// nearest clocks.
 #include "sw/fovea/clock_setting.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +21,9 @@ void expect_right(const board::ClockSetting& s, Frequency core, Frequency ddr) {
   const auto out = [](const param_pll_t& p) {
     return 48e6 * p.multiplier / (p.pre_divider + 1) / (p.post_divider + 1);
   };
-  const auto divided = [&](const param_pll_t& p, unsigned n) { return out(p) / (p.dividers[n - 1] + 1); };
+  const auto divided = [&](const param_pll_t& p, unsigned n) {
+    return out(p) / (p.dividers[n - 1] + 1);
+  };
   for (const param_pll_t* p : {&s.pll1, &s.pll2}) {
     EXPECT_GE(p->multiplier, 1);
     EXPECT_LE(p->multiplier, 1023);
@@ -40,8 +43,11 @@ TEST(ClockSettingTest, PresetsAreThoseOfTheBootLoadersAndTheRulesReachThem) {
   const struct {
     const char* name;
     double core, ddr;
-  } rows[] = {{"297/243", 297, 243}, {"297/270", 297, 270}, {"270/216", 270, 216},
-              {"216/172", 216, 172.5}, {"432/340", 432, 340}};
+  } rows[] = {{"297/243", 297, 243},
+              {"297/270", 297, 270},
+              {"270/216", 270, 216},
+              {"216/172", 216, 172.5},
+              {"432/340", 432, 340}};
   ASSERT_EQ(std::size(rows), board::kClockPresets.size());
   for (std::size_t i = 0; i < std::size(rows); ++i) {
     SCOPED_TRACE(rows[i].name);
@@ -69,7 +75,8 @@ TEST(ClockSettingTest, LimitsHoldAndOneStepBeyondDoesNot) {
   EXPECT_FALSE(find_setting(mhz(432.5), mhz(243)));
   // 270 MHz / 32, the slowest output through the largest divider.
   EXPECT_TRUE(find_setting(Frequency(270'000'000, 32), mhz(243)));
-  EXPECT_FALSE(find_setting(Frequency(268'500'000, 32), mhz(243))) << "179/32 of 48 MHz can be made";
+  EXPECT_FALSE(find_setting(Frequency(268'500'000, 32), mhz(243)))
+      << "179/32 of 48 MHz can be made";
   // 48 MHz M / N with N = 32 and, by 33, not.
   EXPECT_TRUE(find_setting(Frequency(48'000'000ull * 199, 32), mhz(243)));
   EXPECT_FALSE(find_setting(Frequency(48'000'000ull * 205, 33), mhz(243)));
@@ -84,8 +91,8 @@ TEST(ClockSettingTest, AnUnreachableClockNamesTheNearest) {
     }
     return "";
   };
-  // PLL1 at 500 MHz and PLL2 at 300 or 600 are no multiples of 27. 11 and 23 times 27 over 1 and 2 are; so are 18 and
-  // 19 times 27 over 2 for the SDRAM.
+  // PLL1 at 500 MHz and PLL2 at 300 or 600 are no multiples of 27. 11 and 23 times 27 over 1 and 2
+  // are; so are 18 and 19 times 27 over 2 for the SDRAM.
   const std::string both = error(300'000'000, 250'000'000);
   EXPECT_THAT(both, HasSubstr("key 'clocks.arm': "));
   EXPECT_THAT(both, HasSubstr("neither PLL gives the display's 27 MHz"));
@@ -103,7 +110,8 @@ TEST(ClockSettingTest, AnUnreachableClockNamesTheNearest) {
 
 // Every pair of whole megahertz is reached exactly if a search over all registers reaches it.
 TEST(ClockSettingTest, AgreesWithASearchOverAllRegisters) {
-  /// Outputs 48 M / N in MHz, times 32!-free: N up to 32 has a common multiple that fits into 64 bits.
+  /// Outputs 48 M / N in MHz, times 32!-free: N up to 32 has a common multiple that fits into 64
+  /// bits.
   const auto reachable = [](std::uint64_t output_mhz) {
     for (std::uint64_t n = 1; n <= 32; ++n)
       for (std::uint64_t m = 1; m <= 1023; ++m)

@@ -6,14 +6,20 @@
 static config_result_t read_region(config_t *c, const param_page_t *page) {
   static const struct {
     uint16_t width, height;
-  } kSizes[] = {[SWITCH_720X576] = {720, 576}, [SWITCH_720X480] = {720, 480}, [SWITCH_720X486] = {720, 486},
-                [SWITCH_640X480] = {640, 480}, [SWITCH_800X600] = {800, 600}};
+  } kSizes[] = {[SWITCH_720X576] = {720, 576},
+                [SWITCH_720X480] = {720, 480},
+                [SWITCH_720X486] = {720, 486},
+                [SWITCH_640X480] = {640, 480},
+                [SWITCH_800X600] = {800, 600}};
   const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
   if (size > SWITCH_800X600 || SWITCH_GET(c->dip, SWITCH_SIZE_OUT) != size) return CONFIG_BAD_SIZES;
   const uint32_t raster_height = c->is_625 ? 576u : 480u;
-  c->width = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].width : page->width != 0 ? page->width : 720u;
-  c->height =
-      size != SWITCH_SIZE_OF_PAGE ? kSizes[size].height : page->height != 0 ? page->height : raster_height;
+  c->width = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].width
+             : page->width != 0          ? page->width
+                                         : 720u;
+  c->height = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].height
+              : page->height != 0         ? page->height
+                                          : raster_height;
   /* With multiples of 4, the centred region begins at a whole pair and a whole line of a field. */
   if (c->width > 720u || c->width % 4u != 0 || c->height > raster_height || c->height % 4u != 0)
     return CONFIG_BAD_REGION;

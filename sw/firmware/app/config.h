@@ -13,7 +13,7 @@ typedef struct config {
   uint32_t width, height; /* of the region */
   uint32_t pitch_bytes;
   uint32_t kernel; /* enum param_kernel */
-  int serial;      /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
+  int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
   int overlay;
   int self_patch;
   uint32_t repeats; /* number of remaps of each captured frame, at least 1 */
