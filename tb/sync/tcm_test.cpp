@@ -194,7 +194,7 @@ std::string run(const Case& s) {
   add("ram", hash(ram.data(), ram.size()));
   add("clocks", arm.core().clock_count());
   add("instructions", c.instructions);
-  for (std::size_t k = 0; k < cpu::kCauses; ++k) add(cpu::kCauseNames[k], c.stall[k]);
+  for (const cpu::CauseInfo& info : cpu::kCauseTable) add(info.name, c.stall[index(info.cause)]);
   for (std::size_t k = 0; k < cpu::kStallCulprits; ++k)
     add(std::string(cpu::stall_culprit_name(k)).c_str(), c.stalls.by(cpu::Cause::kTcm, k));
   for (const StatBase* stat : dma.stats.stats())
