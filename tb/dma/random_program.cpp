@@ -37,7 +37,10 @@ class Generator {
   }
 
  private:
-  std::uint32_t random_word() { return dice_.below(0x10000) << 16 | dice_.below(0x10000); }
+  std::uint32_t random_word() {
+    const std::uint32_t high = dice_.below(0x10000) << 16;
+    return high | dice_.below(0x10000);
+  }
   /// Mostly bits of the channels in use.
   std::uint32_t mask(unsigned half) {
     std::uint32_t m = dice_.percent(20) ? random_word() : 0;
@@ -62,13 +65,20 @@ class Generator {
       put(0x1030 + 4 * half, mask(half));
       put(0x1060 + 4 * half, mask(half));
     }
-    for (unsigned q : qdma_) put(0x200 + 4 * q, dice_.of(sets_) << 5 | dice_.below(8) << 2);
+    for (unsigned q : qdma_) {
+      const unsigned set = dice_.of(sets_);
+      put(0x200 + 4 * q, set << 5 | dice_.below(8) << 2);
+    }
     for (unsigned s : sets_) program_.setup.push_back({Action::kFill, s, 0, words()});
     for (unsigned q : qdma_) put(0x108C, 1u << q);
   }
 
   unsigned count(unsigned most) { return dice_.percent(4) ? 0 : 1 + dice_.below(most); }
-  std::uint32_t pair(unsigned low, unsigned high) { return (low & 0xFFFF) | high << 16; }
+  /// The parts of a braced list are computed from left to right by every compiler.
+  struct Halves {
+    unsigned low, high;
+  };
+  std::uint32_t pair(Halves h) { return (h.low & 0xFFFF) | h.high << 16; }
   std::uint32_t place(unsigned zone, bool aligned) {
     const std::uint32_t offset = 0x1'0000 + dice_.below(0x1000);
     return zone << 28 | (aligned ? offset & ~31u : offset);
@@ -99,17 +109,17 @@ class Generator {
     if (dice_.percent(5)) {  // around the limit of joined arrays
       const unsigned a = 1u << dice_.below(3);
       w[0] = (opt & ~3u) | 4;
-      w[2] = pair(a, 1022 + dice_.below(4));
-      w[4] = pair(a, dice_.percent(50) ? a : 8);
+      w[2] = pair({a, 1022 + dice_.below(4)});
+      w[4] = pair({a, dice_.percent(50) ? a : 8});
     } else {
       const unsigned a = dice_.percent(20) ? 1u << dice_.below(7) : count(150);
-      w[2] = pair(a, count(5));
-      w[4] = pair(dice_.percent(40) ? a : index(), dice_.percent(40) ? a : index());
+      w[2] = pair({a, count(5)});
+      w[4] = pair({dice_.percent(40) ? a : index(), dice_.percent(40) ? a : index()});
     }
-    w[6] = pair(index(), index());
+    w[6] = pair({index(), index()});
     w[7] = count(3) | (dice_.percent(10) ? 0xFACE'0000 : 0);
     if (dice_.percent(3)) w[2] = w[7] = 0;
-    w[5] = pair(link(), dice_.below(5));
+    w[5] = pair({link(), dice_.below(5)});
     return w;
   }
 
@@ -178,7 +188,7 @@ class Generator {
       case 13:
         return {Action::kWrite, 0x314, dice_.below(256)};
       case 14:
-        return {Action::kWrite, 0x31C, dice_.below(16) | (dice_.percent(20) ? 0x1'0000u : 0)};
+        return {Action::kWrite, 0x31C, dice_.percent(20) ? 0x1'000Fu : dice_.below(16)};
       default:
         return {Action::kWrite, 0x320, dice_.below(2)};
     }
