@@ -119,17 +119,7 @@ void ReplayPath::check(const trace::Record& r, const Stream& s) {
 void ReplayPath::fetch(unsigned stream) {
   Stream& s = streams_[stream];
   s.valid = source_.next(stream, s.record);
-  if (s.valid && !s.record.mark) {
-    check(s.record, s);
-    // Its time is found when the record before it has its outcome.
-    if (s.record.back == 1 && s.record.release == trace::Release::kAfter) {
-      const Outcome& o = s.history[(s.number - 1) % kHistory];
-      if ((s.record.from_first ? o.first : o.last) == kNever) {
-        waits_for_[stream] = trace::kInterrupt;
-        return set_time(stream, kNever);
-      }
-    }
-  }
+  if (s.valid && !s.record.mark) check(s.record, s);
   prepare(stream);
 }
 
@@ -230,7 +220,7 @@ void ReplayPath::find_next() {
   }
 }
 
-void ReplayPath::issue(Picoseconds until) {
+void ReplayPath::issue() {
   const unsigned stream = next_stream_;
   Stream& s = streams_[stream];
   const trace::Record& r = s.record;
@@ -263,25 +253,16 @@ void ReplayPath::issue(Picoseconds until) {
     memory_.crossbar().set_priority(r.master, r.priority);
   }
   slot.in_path.priority = r.priority;
+  memory_.submit(slot);
   fetch(stream);
   find_next();
-  if (memory_only_) return memory_.submit(slot);
-  // No request is known that comes before `limit`.
-  const Picoseconds limit = std::min(next_time_, until);
-  using Attempt = memsys::MemorySystem::Attempt;
-  const Attempt attempt =
-      slot.issued < limit ? memory_.try_complete(slot, limit) : Attempt::kNotSubmitted;
-  if (attempt == Attempt::kNotSubmitted)
-    memory_.submit(slot);
-  else if (attempt == Attempt::kCompleted)
-    complete(slot);
 }
 
 bool ReplayPath::run_before(Picoseconds until) {
   for (;;) {
     if (next_time_ <= memory_.next_event()) {
       if (next_time_ >= until) break;
-      issue(until);
+      issue();
     } else if (!memory_.advance(std::min(next_time_, until)) && until <= next_time_) {
       break;
     }

@@ -103,8 +103,7 @@ class ReplayPath final : private memsys::MemoryHost {
     due_ = at == kNever ? due_ & ~bit : due_ | bit;
   }
   void find_next();
-  /// The next request goes out; `until`: as in run_before().
-  void issue(Picoseconds until);
+  void issue();
   void check(const trace::Record& r, const Stream& s);
   void complete(Slot& slot);
 

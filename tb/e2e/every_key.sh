@@ -149,7 +149,7 @@ acts edma.request_clocks 128 PROGRAM
 acts edma.reset_priority 0 PROGRAM
 acts edma.tc.burst 64B PROGRAM
 acts edma.tc.depth 1 PROGRAM
-acts edma.tc.fifo 64B PROGRAM
+acts edma.tc.fifo 128B PROGRAM
 acts edma.tc.outstanding 1 PROGRAM
 acts firmware.baud 57600
 acts firmware.elf PROGRAM run.until=time:50ms

@@ -337,5 +337,47 @@ TEST(ChainTest, IssueAndInterlockByHand) {
   EXPECT_EQ(to.instructions - from.instructions, 100u * 12 + 2);
 }
 
+/// A result that the last instructions of a line deliver late delays the first ones of the next line,
+/// wherever the line ends.
+TEST(ChainTest, InterlocksAreTheSameAcrossTheEndOfALine) {
+  for (unsigned shift = 0; shift < 8; ++shift) {
+    SCOPED_TRACE(shift);
+    Machine m;
+    std::string nops;
+    for (unsigned k = 0; k < shift; ++k) nops += "    nop\n";
+    m.execute(kBegin + R"(
+    mov r8, #2
+  1:
+    mov r7, #20
+    svc #1
+    b 2f
+    .balign 32
+)" + nops + R"(
+  2:
+    ldr r0, [r4]
+    add r1, r0, #1
+    ldrb r2, [r4]
+    add r3, r2, #1
+    ldrb r2, [r4]
+    nop
+    add r3, r2, #1
+    mul r5, r7, r7
+    add r6, r5, r5
+    ldmia r4, {r0, r1}
+    add r1, r1, #1
+    subs r7, r7, #1
+    bne 2b
+    svc #1
+    subs r8, r8, #1
+    bne 1b
+  )",
+              kMemory + 0x4000);  // cached: records of internal RAM do not rely on their neighbours
+    ASSERT_EQ(m.marks.size(), 4u);
+    // Issue 1+1+1+1+1+1+1+2+1+2+1+1+3, interlocks 1+2+1+1+1; the last bne falls through, and the
+    // marks are around one b.
+    EXPECT_EQ(m.between(2), 20u * (17 + 6) - 2 + 3);
+  }
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test
