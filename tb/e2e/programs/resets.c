@@ -22,7 +22,7 @@
 struct kept {
   uint32_t magic, boots;
 };
-#define KEPT ((volatile struct kept *)0x00006000u)
+#define KEPT ((volatile struct kept *)0x00003F00u)
 /* The same in SDRAM, behind everything else; not cached. */
 #define KEPT_SDRAM ((volatile struct kept *)0x80F00000u)
 #define WORK 0x80100000u
