@@ -23,7 +23,7 @@ class Zones {
  public:
   Zones() {
     static const Bytes start = [] {
-      Bytes b;
+      Bytes b{};
       Dice dice(1);
       for (auto& zone : b)
         for (auto& byte : zone) byte = static_cast<std::uint8_t>(dice.below(256));
@@ -32,12 +32,12 @@ class Zones {
     bytes_ = std::make_unique<Bytes>(start);
   }
   std::uint8_t& at(std::uint32_t address) {
-    return bytes_->at((address >> 28) - 8)[address & 0xFFFF];
+    return (*bytes_)[address >> 28][address & 0xFFFF];  // indices may lead out of a zone
   }
   bool operator==(const Zones& o) const { return *bytes_ == *o.bytes_; }
 
  private:
-  using Bytes = std::array<std::array<std::uint8_t, 1 << 16>, 3>;
+  using Bytes = std::array<std::array<std::uint8_t, 1 << 16>, 16>;
   std::unique_ptr<Bytes> bytes_;
 };
 
