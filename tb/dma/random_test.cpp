@@ -18,7 +18,7 @@
 namespace fovea::dma {
 namespace {
 
-/// Three zones of 64 KB; addresses wrap within a zone.
+/// Sixteen zones of 64 KB, of which programs begin in three; addresses wrap within a zone.
 class Zones {
  public:
   Zones() {
