@@ -72,12 +72,14 @@ struct EdmaTcRegs : RegBank {
 };
 
 struct EdmaTcStats : StatGroup {
-  Counter requests{*this, "requests", "1", "transfer requests completed"};
-  Counter reads{*this, "reads", "1", "bursts read"};
-  Counter writes{*this, "writes", "1", "bursts written"};
-  Counter bytes{*this, "bytes", "B", "bytes transferred"};
-  Counter errors{*this, "errors", "1", "bus errors and requests against the rules"};
-  explicit EdmaTcStats(unsigned number) : StatGroup("edma.tc" + std::to_string(number)) {}
+  const std::string who;
+  Counter requests{*this, "requests", "1", "transfer requests that " + who + " completed"};
+  Counter reads{*this, "reads", "1", "bursts that " + who + " read"};
+  Counter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
+  Counter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
+  Counter errors{*this, "errors", "1", "bus errors of " + who + ", and requests against the rules"};
+  explicit EdmaTcStats(unsigned number)
+      : StatGroup("edma.tc" + std::to_string(number)), who("TC" + std::to_string(number)) {}
 };
 
 /// A transfer controller: two masters, one that only reads and one that only writes. While its clock is

@@ -119,7 +119,7 @@ expect stopped_clock 3 'run.start_limit' 'wrote 4 bytes at 0x01c40938' -- timeou
   "$out/small.yaml" -s firmware.elf="$stopped_clock" -s run.start_limit=60ms -o "$out/run"
 expect chip_reset 3 'guest failed: chip reset: a wrong key .* at pc 0x[0-9a-f]{8} \(restart_as_linux' \
   's after power-up' -- run "$out/small.yaml" -s firmware.elf="$(dirname "$idle_loop")/foreign_sequences.elf"
-expect strict_bus_error 3 '^fovea: not modelled: bus error: EDMA3 channel controller' -- run \
+expect strict_bus_error 3 '^fovea: not modelled: bus error: EMAC' -- run \
   "$out/small.yaml" --strict -s firmware.elf="$(dirname "$idle_loop")/foreign_sequences.elf"
 expect params 0 'ddr.request_latency' 'assumed' -- "$fovea" params
 # Every figure without a source of its own is printed with its belief interval and the reason.

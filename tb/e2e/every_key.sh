@@ -110,7 +110,7 @@ acts cpu.cache_op_cycles 2cycles
 acts cpu.dcache.size 4KiB
 acts cpu.fill_latency 2cycles
 acts cpu.icache.size 4KiB
-acts cpu.invalidate_all_cycles 5cycles
+acts cpu.invalidate_all_cycles 5cycles run.until=time:60ms
 acts cpu.shifted_address_cycle false
 acts cpu.tcm.banks 1 RAM
 acts cpu.tcm.banks 1 cpu.tcm.own_conflict=1cycles
@@ -124,7 +124,7 @@ idle cpu.tcm.first dma
 acts cpu.tcm.own_conflict 1cycles
 acts cpu.tcm.wait_states 1cycles
 acts cpu.test_clean_cycles 3cycles PROGRAM
-acts cpu.walk_cycles 4cycles
+acts cpu.walk_cycles 4cycles run.until=time:60ms
 tested ddr.check dram.check
 tested ddr.clock_restart dram.rows
 acts ddr.command_fifo 1

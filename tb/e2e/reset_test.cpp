@@ -122,6 +122,7 @@ TEST_P(EachKind, WhatTheRegistersStartedHasNoEffectAfterwards) {
   c.rig.advance(20 * kPsPerUs);
   EXPECT_TRUE(c.soc.arm.core().clock().frequency() == Frequency(12'000'000));
   EXPECT_EQ(c.soc.aintc.core().pending(), std::uint64_t{1} << 47);
+  c.soc.gpio.set_pin(3, at_start.at("gpio.IN_DATA01") >> 3 & 1);
   const std::string sent = c.board.uart_text();
   c.reset(GetParam());
   EXPECT_TRUE(c.soc.arm.core().clock().frequency() == Frequency(24'000'000));
@@ -170,13 +171,13 @@ TEST_P(EachKind, MemoriesKeepOrLoseTheirContents) {
   c.board.load({0x100, {1, 2, 3, 4}, 4});  // as a program's data and cleared memory
   c.soc.internal_ram[0x100] = 99;
   c.soc.internal_ram[0x104] = 77;
-  c.soc.internal_ram[0x4000] = 55;
+  c.soc.internal_ram[0x3F00] = 55;
   *c.soc.ddr.store().at(0x12'3456) = 44;
   c.reset(GetParam());
   const bool lost = GetParam() == ResetKind::kPowerOn;
   EXPECT_EQ(c.soc.internal_ram[0x100], 1);  // the loader brings it again
   EXPECT_EQ(c.soc.internal_ram[0x104], lost ? 0 : 77);
-  EXPECT_EQ(c.soc.internal_ram[0x4000], lost ? 0 : 55);
+  EXPECT_EQ(c.soc.internal_ram[0x3F00], lost ? 0 : 55);
   EXPECT_EQ(*c.soc.ddr.store().at(0x12'3456), lost ? 0 : 44);
   EXPECT_EQ(c.soc.stats.resets.count(), 1u);
 }

@@ -69,18 +69,18 @@ std::vector<Sold> sold() {
 }
 
 // The exact clock of the trace counts unless ddr.clock, in whole hertz, is another one. 15 ns are three
-// clocks of 200 MHz, and four of any clock above.
+// clocks of up to 200 MHz and one hertz (whole hertz get that in the user's favour), and four above.
 TEST(DdrPresetTest, TheTracesClockCountsUnlessTheKeyIsAHertzAway) {
   const auto tRCD = [](Frequency recorded) {
     trace::TraceInfo info;
     info.ddr.frequency = recorded;
-    info.params = {{"ddr.clock", "200000000Hz"}};
+    info.params = {{"ddr.clock", "200000001Hz"}};
     return Keyed({"ddr.part=mt47h64m16", "ddr.grade=3", "ddr.preset=data_sheet"}, info)
         .value("ddr.tRCD");
   };
-  EXPECT_EQ(tRCD(Frequency(200'000'000)), "3 cycles");
-  EXPECT_EQ(tRCD(Frequency(400'000'001, 2)), "4 cycles") << "half a hertz above: the trace's";
-  EXPECT_EQ(tRCD(Frequency(200'000'001)), "3 cycles") << "a hertz above: the key's";
+  EXPECT_EQ(tRCD(Frequency(200'000'001)), "3 cycles");
+  EXPECT_EQ(tRCD(Frequency(400'000'003, 2)), "4 cycles") << "half a hertz above: the trace's";
+  EXPECT_EQ(tRCD(Frequency(200'000'002)), "3 cycles") << "a hertz above: the key's";
 }
 
 // A clock beyond the part's is limited where it is not set by hand, and refused where it is.

@@ -14,8 +14,6 @@ namespace {
 /// Bases of blocks that are not modelled, typed in apart from the table: Linux mach-davinci/dm365.c
 /// and devices.c, U-Boot asm/arch-davinci/hardware.h.
 const std::map<std::uint32_t, std::string> kAbsent = {
-    {0x01C1'0000, "EDMA3 transfer controller 0"},
-    {0x01C1'0C00, "EDMA3 transfer controller 3"},
     {0x01C2'0C00, "RTO"},
     {0x01C2'2000, "PWM0"},
     {0x01C2'2C00, "PWM3"},
@@ -84,8 +82,6 @@ TEST(MemoryMapTest, WhatOtherSoftwareTouchesFirstIsNamed) {
     EXPECT_NE(text.find(address), std::string::npos) << text;
     EXPECT_TRUE(text.ends_with(" is not modelled")) << text;
   }
-  EXPECT_EQ(not_modelled_at(0x01C0'0004),
-            "EDMA3 channel controller at 0x01c00000 is modelled in part only");
   EXPECT_EQ(not_modelled_at(0x01C3'0000), "");  // nothing is documented there
 }
 

@@ -88,7 +88,7 @@ TEST(Platform, DebuggerAndRegisterLogSeeEdmaAndCpld) {
   for (const auto& b : app::register_blocks(t.board->platform)) names.push_back(b.name);
   EXPECT_THAT(names, Contains("edma"));
   EXPECT_THAT(names, Contains("cpld"));
-  EXPECT_EQ(names.size(), 21u);  // 14, five timers, and these
+  EXPECT_EQ(names.size(), 25u);  // 14, five timers, four transfer controllers, and these
 }
 
 TEST(Platform, MonitorHasTheWaits) {
