@@ -133,7 +133,8 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
 
   void report(Slot& s) {
     // The slot may be taken again inside the call: hand out a copy of the data.
-    const auto data = s.bytes_;
+    auto data = s.bytes_;
+    if (s.error && !s.write) data.fill(0);  // nobody has answered
     const Completion c{s.tag,    s.write, s.error, s.address, {data.data(), s.bytes},
                        s.issued, s.first, s.last};
     --busy_;
@@ -142,11 +143,19 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     if (on_done) on_done(c);
   }
 
+  /// True if an older burst of the same direction has not been reported. Slaves of different speed may
+  /// answer in another order.
+  bool overtakes(const Slot& s) const {
+    for (const Slot& o : slots_)
+      if (o.free == kNever && o.write == s.write && o.order < s.order) return true;
+    return false;
+  }
   Slot* next_due() {
     Slot* best = nullptr;
     for (Slot& s : slots_)
       if (s.due &&
-          (!best || s.last < best->last || (s.last == best->last && s.order < best->order)))
+          (!best || s.last < best->last || (s.last == best->last && s.order < best->order)) &&
+          !overtakes(s))
         best = &s;
     return best;
   }
@@ -158,6 +167,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   void deliver() {
     while (Slot* s = next_due()) {
       if (s->last > kernel_()) break;
+      s->last = kernel_();  // later than its end if it had to wait for an older one
       report(*s);
     }
     schedule();

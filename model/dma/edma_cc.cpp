@@ -15,7 +15,13 @@ EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
   add_interrupt("ccerrint", error.out);
   add_statistics(stats);
   for (Reg* r : {static_cast<Reg*>(&regs.quetcmap), static_cast<Reg*>(&regs.quepri)})
-    r->on_write([this](std::uint32_t) { written_.soon(); });
+    r->on_write([this](std::uint32_t) {
+      written_.soon();
+      work_arrived();
+    });
+  // What waits for room in a queue, or for a transfer controller, may have another one now.
+  for (auto& r : regs.dmaqnum) r->on_write([this](std::uint32_t) { work_arrived(); });
+  regs.qdmaqnum.on_write([this](std::uint32_t) { work_arrived(); });
   SC_METHOD(update_priorities);
   sensitive << written_.event();
   SC_METHOD(work);
@@ -64,7 +70,7 @@ void EdmaCc::on_reset(ResetKind) {
 void EdmaCc::leave_reset() { in_reset_ = false; }
 
 void EdmaCc::event(unsigned channel) {
-  if (in_reset_) return;
+  if (!running()) return;  // without a clock nothing is latched
   events_.push_back({kernel_time(), static_cast<std::uint8_t>(channel)});
   work_arrived();
 }
@@ -111,7 +117,17 @@ void EdmaCc::work() {
   if (queued || requested || !events_.empty()) wake_.at(edge(now, 0));
   if (!completions_.empty()) wake_.at(completions_.top().at);
   if (const Picoseconds turn = std::max(core_.next_turn(), next_request_); turn > now) wake_.at(turn);
+  if (core_.next_turn() != kNever) wait_for_controllers(now);
   count();
+}
+
+/// A queue has entries: works again when a program register becomes free. One that is free from a known
+/// time on has said so already, but an earlier wake-up may have taken the place of that one.
+void EdmaCc::wait_for_controllers(Picoseconds now) {
+  for (const TransferPort* port : controllers_)
+    if (port)
+      if (const Picoseconds free = port->program_free(); free != kNever && free >= now)
+        wake_.at(free + 1);
 }
 
 void EdmaCc::count() {

@@ -90,6 +90,7 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   void warn(const std::string& what) override;
   void update_priorities();
   void work();
+  void wait_for_controllers(Picoseconds now);
   void count();
   void clock_changed();
   bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }

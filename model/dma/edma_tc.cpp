@@ -14,15 +14,25 @@ EdmaTcRegs::EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth)
             (static_cast<unsigned>(std::bit_width(fifo / 32)) - 1) | 1u << 4 |
                 (static_cast<unsigned>(std::bit_width(depth)) - 1) << 8) {}
 
+namespace {
+/// @throws UserError unless the size is a power of two, as TCCFG and the guides have them
+unsigned power_of_two(const IntParam& p) {
+  const auto n = static_cast<unsigned>(p());
+  if (!std::has_single_bit(n))
+    throw UserError("key '" + p.key() + "': " + p.text() + " is not allowed; allowed: powers of two");
+  return n;
+}
+}  // namespace
+
 EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams& params)
-    : WithRegs(number, static_cast<unsigned>(params.fifo()), static_cast<unsigned>(params.depth())),
+    : WithRegs(number, power_of_two(params.fifo), power_of_two(params.depth)),
       BusTarget(name, regs),
       stats(number),
       number_(number),
       params_(params),
       reads_("reads", edma_read(number), static_cast<unsigned>(params.outstanding())),
       writes_("writes", edma_write(number), static_cast<unsigned>(params.outstanding())),
-      core_(*this, {32, static_cast<unsigned>(params.fifo()),
+      core_(*this, {number == 1 ? 32 : power_of_two(params.burst), static_cast<unsigned>(params.fifo()),
                     static_cast<unsigned>(params.depth())}) {
   add_clock(clk);
   add_power_gate(lpsc);
@@ -86,14 +96,14 @@ void EdmaTc::attach(EdmaCc& channels) {
 
 /// TC1 has 32 bytes out of reset and 64 by MISC.TPTC1DBS (SPRUFG5); the others a parameter.
 unsigned EdmaTc::burst() const {
-  if (number_ != 1) return static_cast<unsigned>(params_.burst());
+  if (number_ != 1) return power_of_two(params_.burst);
   return misc.read() & kTptc1Dbs ? 64 : 32;
 }
 
 void EdmaTc::clock_changed() {
   if (clk.read() != clock_.frequency()) clock_.restart(clk.read(), kernel_time());
   if (!running()) return;
-  core_.resume();
+  core_.resume(kernel_time());
   channels_->program_free(std::max(program_free_, kernel_time()) + 1);
 }
 

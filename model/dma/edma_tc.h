@@ -83,7 +83,7 @@ struct EdmaTcStats : StatGroup {
 };
 
 /// A transfer controller: two masters, one that only reads and one that only writes. While its clock is
-/// gated it issues nothing new.
+/// gated it computes nothing new; bursts whose time was known already still go out.
 class EdmaTc : public WithRegs<EdmaTcRegs>,
                public BusTarget,
                public TransferPort, private TransferController::Host {

@@ -220,15 +220,28 @@ TEST(TransferController, ResumesWhenAPortIsKnownToBeFree) {
   m.run();
   EXPECT_TRUE(m.reads.empty());
   m.read_port = ns(100);
-  m.tc.resume();
+  m.tc.resume(0);
   m.run();
   EXPECT_EQ(m.reads, (Accesses{{256, 8, 104}}));
   EXPECT_TRUE(m.writes.empty());
   m.write_port = 0;
-  m.tc.resume();
+  m.tc.resume(0);
   m.run();
   EXPECT_EQ(m.writes, (Accesses{{1024, 8, 144}}));
   EXPECT_EQ(m.completed_at, Times{164});
+}
+
+// The port has been free for long when the clock's gate opens: nothing may be issued in the past.
+TEST(TransferController, IssuesNothingBeforeTheTimeAtWhichItResumes) {
+  Memory m({32, 128, 4});
+  m.read_port = m.write_port = kNever;
+  m.tc.submit(copy(8, 256, 1024), 0);
+  m.run();
+  m.read_port = m.write_port = 0;
+  m.tc.resume(ns(1000));
+  m.run();
+  EXPECT_EQ(m.reads, (Accesses{{256, 8, 1000}}));
+  EXPECT_EQ(m.writes, (Accesses{{1024, 8, 1040}}));
 }
 
 TEST(TransferController, ArraysAndIndices) {

@@ -2,6 +2,7 @@
 // between them. Knows no SystemC. Structure: SPRUH82C, sections "EDMA3 Transfer Controller"; sizes and
 // clocks are parameters of the owner.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -69,8 +70,12 @@ class TransferController {
   /// Outcomes, in the order in which the bursts were issued.
   void read_done(std::span<const std::uint8_t> data, bool error, Picoseconds at);
   void write_done(bool error, Picoseconds at);
-  /// Goes on after a time in which the port took nothing.
-  void resume() { advance(); }
+  /// Goes on at `now`, after a time in which the port took nothing.
+  void resume(Picoseconds now) {
+    next_read_ = std::max(next_read_, now);
+    next_write_ = std::max(next_write_, now);
+    advance();
+  }
   /// Forgets everything; bursts under way must have ended.
   void reset();
 

@@ -149,6 +149,46 @@ static void timer_event(void) {
   check("a timer's event moves data", ended && memcmp(source, target, 16) == 0 && target[16] == 0xEE);
 }
 
+/* A slow register is read first, internal RAM second: the second answer comes earlier, and the data must not
+ * be exchanged. */
+static void slow_and_fast(void) {
+  static volatile uint32_t *const ram = (volatile uint32_t *)0x00006000;
+  ram[0] = 0x11223344;
+  ram[1] = 0x55667788;
+  clear();
+  set(5, AB_SYNC, (void *)(TIMER0 + 0x18), PAIR(4, 1), target, 0, 0xFFFF, 0, 1);
+  set(6, AB_SYNC | TCINT | TCC(6), (void *)0x00016000, PAIR(8, 1), target + 64, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 3u << 5;
+  const int ended = done(6);
+  const uint32_t period = ~0u;
+  check("answers of slaves of different speed keep their order",
+        ended && memcmp(target, &period, 4) == 0 && target[4] == 0xEE &&
+            memcmp(target + 64, (void *)ram, 8) == 0);
+}
+
+/* Three requests in one queue with slow reads, of which only the last one reports. */
+static void slow_queue(void) {
+  clear();
+  for (unsigned n = 0; n < 3; ++n)
+    set(8 + n, AB_SYNC | (n == 2 ? TCINT : 0) | TCC(7), source + 128 * n, PAIR(128, 1),
+        target + 128 * n, 0, 0xFFFF, 0, 1);
+  REG(TC0 + 0x140) = 1;
+  REG(ESR) = 7u << 8;
+  check("a queue goes on when its controller is free", done(7) && memcmp(source, target, 384) == 0);
+  REG(TC0 + 0x140) = 0;
+}
+
+/* A queue that is mapped to a controller that does not exist waits until the mapping is right. */
+static void mended_mapping(void) {
+  clear();
+  REG(CC + 0x280) = 0x3214;
+  set(12, AB_SYNC | TCINT | TCC(7), source, PAIR(64, 1), target, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 12;
+  const int early = done(7);
+  REG(CC + 0x280) = 0x3210;
+  check("a queue goes on when its mapping is right", !early && done(7) && memcmp(source, target, 64) == 0);
+}
+
 static void bus_error(void) {
   set(4, AB_SYNC | TCINT | TCC(4), (void *)0x40000000, PAIR(32, 1), target, 0, 0xFFFF, 0, 1);
   REG(ESR) = 1u << 4;
@@ -179,6 +219,9 @@ int main(void) {
   gather();
   links();
   timer_event();
+  slow_and_fast();
+  slow_queue();
+  mended_mapping();
   bus_error();
   check("no other error", REG(EMR) == 0 && REG(EMR + 4) == 0 && REG(CCERR) == 0);
   return failures;
