@@ -411,7 +411,7 @@ TEST_P(RunsTest, OtherClocksOfThePllFollowTheRun) {
     // LDM waits for the later words of a line, which come with the crossbar's clock (README.md, Limits).
     const double remap = GetParam() == std::string("ldm") ? 0.025 : 0.005;
     EXPECT_LE(worst(only(to.figures, {"remap"}), replayed, what), remap);
-    // Not what capture waits, which differs by 6 %: its lines meet the display's elsewhere, as start-up
+    // Not what capture waits, which differs more: its lines meet the display's elsewhere, as start-up
     // takes another time with other clocks. That this is the reason has not been shown (README.md, Limits).
     EXPECT_LE(worst(without_p99(only(to.figures, {"arm_", "vpbe"})), replayed, what), 0.015);
     EXPECT_LE(largest_p99(only(to.figures, {"arm_", "vpbe"}), replayed), kCrossbarClock) << what;
