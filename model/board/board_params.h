@@ -74,8 +74,13 @@ struct FirmwareParams : ParamGroup {
   TextParam elf{*this, "elf", "",
                 "program to run; empty: the firmware that was built with Fovea"};
   EnumParam kernel{*this, "kernel", "plain", contract::words(contract::kKernels),
-                   "remap loop: the paper's load/load/store, or LDM/STM",
+                   "how a frame is remapped: the paper's loop (plain), loops with smaller tables, or with "
+                   "the EDMA (sw/firmware/README.md)",
                    Origin::kChoice, ""};
+  EnumParam lut{*this, "lut", "soft_float", contract::words(contract::kBuilders),
+                "how the look-up table is computed at the start: in double precision, in software, or "
+                "in fixed point",
+                Origin::kChoice, ""};
   EnumParam flow{*this, "flow", "double", contract::words(contract::kFlows),
                  "double buffering, or the paper's capture, remap, show in turn",
                  Origin::kChoice, ""};

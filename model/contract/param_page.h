@@ -40,9 +40,21 @@ enum lens_mapping { PARAM_MAPPINGS(PARAM_CONSTANT) };
   X(PAIR_CENTRE, 1, "B")
 enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
 
-#define PARAM_KERNELS(X)       \
-  X(KERNEL_PLAIN, 0, "plain")  \
-  X(KERNEL_LDM, 1, "ldm")
+/* How a frame is remapped (sw/firmware/README.md). All but `copy`, which does not correct, give the same picture.
+ * Those after `ldm` read a form of the look-up table that the firmware derives from it at the start; if the table of
+ * a lens has no such form, the firmware says so and takes another one. */
+#define PARAM_KERNELS(X)               \
+  X(KERNEL_PLAIN, 0, "plain")          \
+  X(KERNEL_LDM, 1, "ldm")              \
+  X(KERNEL_STRIPS, 2, "strips")        \
+  X(KERNEL_OFFSETS, 3, "offsets16")    \
+  X(KERNEL_DELTAS, 4, "deltas4")       \
+  X(KERNEL_CODES, 5, "codes")          \
+  X(KERNEL_STAGED, 6, "staged")        \
+  X(KERNEL_GATHER, 7, "gather")        \
+  X(KERNEL_RUNS, 8, "runs")            \
+  X(KERNEL_COPY, 9, "copy")            \
+  X(KERNEL_FASTEST, 10, "fastest")
 enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
 
 #define PARAM_FLOWS(X)         \
@@ -50,8 +62,11 @@ enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
   X(FLOW_SERIAL, 1, "serial")
 enum param_flow { PARAM_FLOWS(PARAM_CONSTANT) };
 
-/* How the look-up table is computed. */
-enum param_table_builder { BUILDER_DOUBLE = 0 /* double precision, in software on this core */ };
+/* How the look-up table is computed: in double precision, in software on this core, or in fixed point. */
+#define PARAM_BUILDERS(X)              \
+  X(BUILDER_DOUBLE, 0, "soft_float")   \
+  X(BUILDER_FIXED, 1, "fixed_point")
+enum param_table_builder { PARAM_BUILDERS(PARAM_CONSTANT) };
 
 /* The masters whose priority a register of the chip holds; words as in model/common/masters.h. */
 #define PARAM_MASTERS(X)                    \

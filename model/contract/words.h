@@ -19,6 +19,7 @@ struct Word {
 inline constexpr std::array kMappings = {PARAM_MAPPINGS(FOVEA_WORD)};
 inline constexpr std::array kPairMethods = {PARAM_PAIR_METHODS(FOVEA_WORD)};
 inline constexpr std::array kKernels = {PARAM_KERNELS(FOVEA_WORD)};
+inline constexpr std::array kBuilders = {PARAM_BUILDERS(FOVEA_WORD)};
 inline constexpr std::array kFlows = {PARAM_FLOWS(FOVEA_WORD)};
 inline constexpr std::array kMasterWords = {PARAM_MASTERS(FOVEA_WORD)};
 #undef FOVEA_WORD

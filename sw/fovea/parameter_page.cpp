@@ -118,7 +118,7 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.console = {0, firmware.baud_divisor()};
   fill_priorities(page.priority, params.priority);
   page.kernel = contract::code_of(contract::kKernels, firmware.kernel());
-  page.table_builder = BUILDER_DOUBLE;
+  page.table_builder = contract::code_of(contract::kBuilders, firmware.lut());
   page.flow = contract::code_of(contract::kFlows, firmware.flow());
   page.repeats = static_cast<std::uint32_t>(firmware.repeat());
   page.flags =

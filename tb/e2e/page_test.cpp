@@ -83,11 +83,11 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
 }
 
 TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
-  EXPECT_NE(said([](param_page_t& p) { p.kernel = 2; })
+  EXPECT_NE(said([](param_page_t& p) { p.kernel = 11; })
                 .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 "
-                      "plain, 1 LDM/STM\r\n"),
+                      "(plain) to 10 (fastest)\r\n"),
             std::string::npos);
-  EXPECT_NE(said([](param_page_t& p) { p.table_builder = 1; }).find("unknown table builder"),
+  EXPECT_NE(said([](param_page_t& p) { p.table_builder = 2; }).find("unknown table builder"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) {
               p.camera_count = 2;

@@ -58,8 +58,8 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};
   for (uint32_t i = 0; i < PRIORITY_COUNT; ++i) c->priority[i] = page->priority[i];
   if (SWITCH_GET(dip, SWITCH_STANDARD_OUT) != standard) return CONFIG_BAD_STANDARDS;
-  if (page->kernel > KERNEL_LDM) return CONFIG_BAD_KERNEL;
-  if (page->table_builder > BUILDER_DOUBLE) return CONFIG_BAD_BUILDER;
+  if (page->kernel > KERNEL_FASTEST) return CONFIG_BAD_KERNEL;
+  if (page->table_builder > BUILDER_FIXED) return CONFIG_BAD_BUILDER;
   if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
   if (page->camera_count != 1) return CONFIG_BAD_CAMERAS;
   const config_result_t result = read_region(c, page);
@@ -79,9 +79,10 @@ const char *config_result_text(config_result_t result) {
     case CONFIG_BAD_SHIFT:
       return "switches 11-12 and 13-14: 0 centred, 1 right or down, 2 left or up";
     case CONFIG_BAD_KERNEL:
-      return "parameter page: unknown kernel; this firmware has 0 plain, 1 LDM/STM";
+      return "parameter page: unknown kernel; this firmware has 0 (plain) to 10 (fastest)";
     case CONFIG_BAD_BUILDER:
-      return "parameter page: unknown table builder; this firmware has 0 double precision";
+      return "parameter page: unknown table builder; this firmware has 0 double precision, 1 fixed "
+             "point";
     case CONFIG_BAD_FLOW:
       return "parameter page: unknown flow; this firmware has 0 double buffering, 1 serial";
     case CONFIG_BAD_CAMERAS:

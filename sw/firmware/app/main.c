@@ -6,14 +6,17 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
-#include "../kernels/remap.h"
+#include "../kernels/method.h"
 #include "config.h"
 #include "overlay.h"
 #include "pipeline.h"
+#include "remapper.h"
 #include "state.h"
 #include "sw/lens/lens.h"
 
 static config_t config;
+static remap_table_t table;
+static const remap_method_t *method;
 static uint8_t overlay_value;
 
 static void print_config(void) {
@@ -25,7 +28,6 @@ static void print_config(void) {
   uart_put_uint(config.height);
   uart_puts(config.is_625 ? " in 625/50, " : " in 525/60, ");
   uart_puts(kMappings[config.view.mapping <= LENS_TABLE ? config.view.mapping : 0]);
-  uart_puts(config.kernel == KERNEL_LDM ? ", LDM/STM kernel" : ", plain kernel");
   uart_puts(config.serial ? ", serial flow" : ", double buffering");
   if (config.repeats > 1) {
     uart_puts(", each frame remapped ");
@@ -52,6 +54,27 @@ static void build_lut(void) {
   uart_puts(" ms\n");
 }
 
+static void prepare_method(void) {
+  extern uint8_t __arena_start[], __arena_end[];
+  arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
+  table = (remap_table_t){.width = config.width,
+                          .height = config.height,
+                          .pitch_bytes = config.pitch_bytes,
+                          .lut = lut};
+  const uint32_t start = timer_ticks();
+  method = remapper_prepare(config.kernel, &table, &arena);
+  uart_puts("kernel: ");
+  uart_puts(method->name);
+  if (table.encoded != NULL) {
+    uart_puts(", ");
+    uart_put_uint(table.encoded_bytes);
+    uart_puts(" bytes of tables in ");
+    uart_put_uint((timer_ticks() - start) / TIMER_TICKS_PER_MS);
+    uart_puts(" ms");
+  }
+  uart_puts("\n");
+}
+
 static void init_frames(uint32_t in_count) {
   frame_stride =
       (lens_black_offset(config.height, config.pitch_bytes) + CACHE_LINE_BYTES + 4095u) & ~4095u;
@@ -71,24 +94,13 @@ static uint32_t first_row_sum(const uint8_t *in) {
   return sum;
 }
 
-static void remap_frame(const uint8_t *in, uint8_t *out) {
-  remap_kernel_t *kernel = config.kernel == KERNEL_LDM ? remap_ldm : remap_plain;
-  const uint32_t pairs = config.width / 2u;
-  if (config.pitch_bytes == config.width * 2u) {
-    kernel((uint32_t *)out, in, lut, pairs * config.height);
-    return;
-  }
-  for (uint32_t v = 0; v < config.height; ++v)
-    kernel((uint32_t *)(out + v * config.pitch_bytes), in, lut + v * pairs, pairs);
-}
-
 static void correct(const uint8_t *in, uint8_t *out, uint32_t sequence) {
   phase_mark(PHASE_REMAP_START, sequence);
 #ifndef OMIT_D_INVALIDATE
   dcache_invalidate_range(in, config.height * config.pitch_bytes);
 #endif
   const uint32_t before = first_row_sum(in);
-  remap_frame(in, out);
+  method->run(&table, in, out);
   if (first_row_sum(in) != before) ++fw_state.torn;
   if (config.overlay && overlay_visible(sequence))
     overlay_draw(out, config.pitch_bytes, overlay_value);
@@ -122,6 +134,7 @@ int main(void) {
     fw_state.patched_value = overlay_value;
   }
   build_lut();
+  prepare_method();
 
   const uint32_t in_count = config.serial ? 1u : IN_COUNT;
   const uint32_t out_count = config.serial ? 2u : OUT_COUNT;

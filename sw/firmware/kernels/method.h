@@ -1,0 +1,31 @@
+/* A remap method: how one frame is corrected, and the form of the look-up table that it reads. */
+#ifndef FOVEA_FIRMWARE_METHOD_H
+#define FOVEA_FIRMWARE_METHOD_H
+
+#include <stdint.h>
+
+#include "arena.h"
+
+/** The table of one view. Source and result have the same size and pitch. */
+typedef struct remap_table {
+  uint32_t width, height; /* pixels; multiples of 4 */
+  uint32_t pitch_bytes;   /* of source and result; a multiple of 32 */
+  const uint32_t *lut;    /* width / 2 * height byte offsets from the start of the source, row by row;
+                             height * pitch_bytes is the offset of the black word */
+  const void *encoded;    /* the method's own form of the table; a null pointer if it reads `lut` */
+  uint32_t encoded_bytes; /* number of bytes of tables that are read for each frame */
+} remap_table_t;
+
+typedef struct remap_method {
+  const char *name; /* for messages */
+  /** Derives `encoded` from `lut`, in memory from `arena`. What was taken is lost after a refusal.
+   * @return a null pointer, or the reason why this method does not fit the lens or the picture */
+  const char *(*prepare)(remap_table_t *table, arena_t *arena);
+  /** Corrects one frame. The caller has invalidated the D-cache for the source, and cleans it for
+   * the result afterwards. */
+  void (*run)(const remap_table_t *table, const void *in, void *out);
+} remap_method_t;
+
+extern const remap_method_t method_plain, method_ldm;
+
+#endif
