@@ -10,10 +10,15 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
 set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
 
 # Optimisation across the files of the hot libraries (fovea_hot).
-set(FOVEA_LTO OFF)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release"
-   AND NOT FOVEA_SANITIZE AND NOT FOVEA_COVERAGE)
-  set(FOVEA_LTO ON)
+option(FOVEA_LTO "Link-time optimisation of the program (release builds with GCC)" ON)
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR NOT CMAKE_BUILD_TYPE STREQUAL "Release"
+   OR FOVEA_SANITIZE OR FOVEA_COVERAGE)
+  set(FOVEA_LTO OFF)
+endif()
+if(FOVEA_LTO)
+  # GCC's linker plugin optimises every program whose objects permit it, unless told otherwise. Only those that are
+  # measured ask for it.
+  add_link_options(-fno-lto)
 endif()
 
 find_program(CCACHE ccache)
@@ -42,8 +47,12 @@ if(FOVEA_PARANOID)
   add_compile_definitions(FOVEA_PARANOID)
 endif()
 
+# RE2 and GoogleTest ask for it; with one set of flags everywhere, precompiled headers fit everywhere.
+add_compile_options(-pthread)
+
 find_package(PkgConfig REQUIRED)
 find_package(GTest)
+find_package(fmt REQUIRED)
 pkg_check_modules(SYSTEMC REQUIRED IMPORTED_TARGET systemc>=2.3.4)
 
 add_library(fovea_warnings INTERFACE)
@@ -78,6 +87,7 @@ endfunction()
 # fovea_hot(NAME): a library on the path of every instruction or memory access. The program `fovea`
 # is optimised across these as a whole; tests link their ordinary code, which is quicker to build.
 function(fovea_hot name)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   if(FOVEA_LTO)
     target_compile_options(${name} PRIVATE -O3 -fno-plt -flto=auto -ffat-lto-objects)
   endif()
@@ -94,9 +104,6 @@ function(fovea_test name)
   string(REPLACE "." "_" target test_${name})
   add_executable(${target} ${A_SOURCES})
   target_link_libraries(${target} PRIVATE ${A_LIBS} GTest::gmock GTest::gtest fovea_warnings)
-  if(FOVEA_LTO)
-    target_link_options(${target} PRIVATE -fno-lto)
-  endif()
   target_compile_definitions(${target} PRIVATE ${A_DEFINES})
   add_test(NAME ${name} COMMAND ${target})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${layer};${A_LABELS}")

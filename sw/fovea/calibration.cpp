@@ -16,13 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFileBytes = 1u << 20;
 constexpr double kMaxSide = 8192;
 
 class Reader {
  public:
   explicit Reader(const fs::path& file) : file_(file) {
-    std::string text = read_file(file, kMaxFileBytes);
+    std::string text = read_file(file, kMaxSettingsBytes);
     // OpenCV's first line, "%YAML:1.0", is not a valid YAML directive.
     if (text.starts_with("%YAML")) text.erase(0, text.find('\n'));
     try {

@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kBufferBytes = 64 * 1024;
 
 /// Closes a descriptor at the end of its scope.
-struct Descriptor {
+struct OpenFile {
   int fd;
-  ~Descriptor() {
+  ~OpenFile() {
     if (fd >= 0) ::close(fd);
   }
 };
@@ -127,7 +127,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) 
     throw UserError(fmt::format("cannot read '{}': {}", one_line(path.string()), why));
   };
   // O_NONBLOCK: opening a pipe without a writer must not block before the check below.
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  const OpenFile file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.fd < 0) fail(std::strerror(errno));
   struct stat info {};
   if (::fstat(file.fd, &info) != 0) fail(std::strerror(errno));

@@ -48,6 +48,9 @@ class CheckedFile {
 void write_file(const std::filesystem::path& path, std::string_view text);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
+/// Upper limit of the size of an experiment or a calibration, in bytes.
+inline constexpr std::size_t kMaxSettingsBytes = 1u << 20;
+
 /// Reads a whole regular file of at most `max_bytes`. @throws UserError that names the file
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 

@@ -14,7 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFileBytes = 1u << 20;
 constexpr std::size_t kMaxDepth = 8;
 constexpr std::size_t kMaxIncludeDepth = 8;
 constexpr std::size_t kMaxFiles = 64;
@@ -167,7 +166,7 @@ class Flattener : public YAML::EventHandler {
 };
 
 std::vector<Entry> parse(const fs::path& file) {
-  std::istringstream text(read_file(file, kMaxFileBytes));
+  std::istringstream text(read_file(file, kMaxSettingsBytes));
   Flattener flattener(file);
   try {
     YAML::Parser parser(text);

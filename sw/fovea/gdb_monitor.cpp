@@ -10,7 +10,7 @@
 namespace fovea::app {
 namespace {
 
-constexpr unsigned kPc = 15;
+constexpr unsigned kProgramCounter = 15;
 
 /// Parses a number in C syntax; empty for anything else.
 std::optional<std::uint32_t> number(std::string_view text) {
@@ -106,9 +106,9 @@ std::string GdbSession::set_register(const std::string& what) {
 std::string GdbSession::core_line() const {
   const auto p = debug_.pending();
   std::string out =
-      failed_   ? fmt::format("core: has failed at 0x{:08x}", debug_.reg(kPc))
+      failed_   ? fmt::format("core: has failed at 0x{:08x}", debug_.reg(kProgramCounter))
       : asleep_ ? fmt::format("core: waits for {} since {} ns", waits_for_, ns_text(debug_.now()))
-                : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kPc));
+                : fmt::format("core: at the instruction at 0x{:08x}", debug_.reg(kProgramCounter));
   if (p.irq || p.fiq)
     out += fmt::format(
         "; {} asserted{}",

@@ -8,11 +8,6 @@ namespace fovea::dram {
 namespace {
 constexpr unsigned kBurst = 4;          // clocks of a BL8 on the data bus
 constexpr unsigned kLongestRule = 400;  // no rule reaches further back than this, in clocks
-unsigned log2_of(std::uint64_t n) {
-  unsigned bits = 0;
-  while (n > 1) n /= 2, ++bits;
-  return bits;
-}
 }  // namespace
 
 ReferenceController::ReferenceController(const ReferenceLimits& limits)

@@ -13,6 +13,13 @@
 
 namespace fovea::dram {
 
+/// Number of address bits of a power of two.
+inline unsigned log2_of(std::uint64_t n) {
+  unsigned bits = 0;
+  while (n > 1) n /= 2, ++bits;
+  return bits;
+}
+
 struct ReferenceConfig {
   // clocks
   unsigned CL = 5, tRFC = 31, tRP = 5, tRCD = 5, tWR = 4, tRAS = 11, tRC = 16, tRRD = 3, tWTR = 3;

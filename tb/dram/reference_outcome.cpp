@@ -4,16 +4,6 @@
 #include "tb/dram/reference_controller.h"
 
 namespace fovea::dram {
-namespace {
-
-unsigned log2_of(std::uint64_t n) {
-  unsigned bits = 0;
-  while (n > 1) n /= 2, ++bits;
-  return bits;
-}
-
-}  // namespace
-
 /// JESD209: half of the array is without the bank's upper address bit, a quarter without both, and
 /// below that the row's uppermost bits are 0 as well.
 unsigned ReferenceController::losses(std::uint32_t address) const {

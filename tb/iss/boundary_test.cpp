@@ -2,7 +2,7 @@
 // before a register changes: ARM DDI 0198D chapters 2 and 3, with expectations worked out by hand.
 #include "tb/iss/vectors.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::boundary {
 namespace {
 
 constexpr std::uint32_t kCoarse = kTables + 0x8000;
@@ -368,4 +368,4 @@ TEST(ControlFetchTest, BothComeWithoutANewFetch) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::boundary

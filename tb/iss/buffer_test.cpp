@@ -3,7 +3,7 @@
 
 #include "tb/iss/machine.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::buffer {
 namespace {
 
 using Kind = BusAccess::Kind;
@@ -253,4 +253,4 @@ TEST_F(BufferTest, FailedFillIsNotKept) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::buffer

@@ -1,7 +1,7 @@
 // System behaviour for which QEMU is not an oracle, with expectations from the architecture manual.
 #include "tb/iss/vectors.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::by_hand {
 namespace {
 
 constexpr std::uint32_t kCoarse = kTables + 0x8000, kOther = kTables + 0x1'0000;
@@ -152,4 +152,4 @@ TEST_F(ByHandTest, OddSecondHalfOfBlxIsUndefined) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::by_hand

@@ -4,7 +4,7 @@
 
 #include "tb/iss/machine.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::loops {
 namespace {
 
 /// Behind each instruction of `turn`, after the @, stand its issue clocks and, after a +, those
@@ -292,4 +292,4 @@ TEST(LoopsTest, SumOfTheFiguresIsRead) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::loops

@@ -8,7 +8,7 @@
 
 #include "tb/iss/machine.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::stalls {
 namespace {
 
 constexpr std::uint32_t kA = 0x0020'0000, kB = 0x0030'0000, kDevice = 0x0040'0000;
@@ -415,4 +415,4 @@ TEST(ActivityTest, TranslationsInInternalRamAreThoseWithTheMmuOn) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::stalls

@@ -1,7 +1,7 @@
 // Under the MMU, the physical address selects internal RAM: model/decisions/0008-internal-ram.md.
 #include "tb/iss/vectors.h"
 
-namespace fovea::cpu::test {
+namespace fovea::cpu::test::tcm_mapping {
 namespace {
 
 constexpr std::uint32_t kCoarse = kTables + 0x8000, kFine = kTables + 0xA000;
@@ -264,4 +264,4 @@ TEST_F(TcmMappingTest, ConflictsAreThoseOfThePhysicalBanks) {
 }
 
 }  // namespace
-}  // namespace fovea::cpu::test
+}  // namespace fovea::cpu::test::tcm_mapping

@@ -10,7 +10,7 @@
 #include "model/common/check.h"
 #include "tb/replay/support.h"
 
-namespace fovea::replay {
+namespace fovea::replay::refusals {
 namespace {
 
 using testing::HasSubstr;
@@ -377,4 +377,4 @@ TEST(TraceRecordTest, RoomIsOfVersionThree) {
 }
 
 }  // namespace
-}  // namespace fovea::replay
+}  // namespace fovea::replay::refusals
