@@ -77,7 +77,7 @@ struct FirmwareParams : ParamGroup {
                    "how a frame is remapped: the paper's loop (plain), loops with smaller tables, or with "
                    "the EDMA (sw/firmware/README.md)",
                    Origin::kChoice, ""};
-  EnumParam lut{*this, "lut", "soft_float", contract::words(contract::kBuilders),
+  EnumParam lut{*this, "lut", "fixed_point", contract::words(contract::kBuilders),
                 "how the look-up table is computed at the start: in double precision, in software, or "
                 "in fixed point",
                 Origin::kChoice, ""};
