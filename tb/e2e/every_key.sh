@@ -158,6 +158,7 @@ acts firmware.kernel ldm
 acts firmware.overlay true
 acts firmware.patch true
 acts firmware.repeat 2
+acts firmware.tables 2
 tested lens.calibration unit.calibration
 idle lens.calibration none.yaml
 acts pll.go_time 5us

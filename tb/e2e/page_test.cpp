@@ -72,8 +72,8 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
   const std::string prefix = "failed: parameter page: ";
   EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false),
             prefix + "there is none (unknown magic)\r\n");
-  EXPECT_EQ(said([](param_page_t& p) { p.version = 3; }, false),
-            prefix + "unknown version; this firmware reads version 2\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.version = 4; }, false),
+            prefix + "unknown version; this firmware reads version 3\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.bytes -= 4; }, false),
             prefix + "too small for its version and its cameras\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false),
@@ -88,6 +88,10 @@ TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
                       "(plain) to 10 (fastest)\r\n"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) { p.table_builder = 2; }).find("unknown table builder"),
+            std::string::npos);
+  EXPECT_NE(said([](param_page_t& p) {
+              p.tables = 5;
+            }).find("too many look-up tables; this firmware has memory for 4\r\n"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) {
               p.camera_count = 2;
