@@ -164,7 +164,7 @@ TEST(PageTest, TheShiftOfTheSwitchesMovesTheView) {
 
 // A key's priority in time: the core's reads against a synthetic load of priority 3.
 TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
-  const auto mean = [](const char* key, const char* level, Master m) {
+  const auto mean = [](const char* key, const char* level, Master m, const char* gap) {
     return std::stod(in_child([&] {
       Rig rig;
       rig.set("video.width", "320")
@@ -175,7 +175,7 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
       rig.set("load.priority", "3")
           .set("load.start", "300ms")
           .set("load.base", "32MiB")
-          .set("load.gap", "3us");
+          .set("load.gap", gap);
       rig.set(key, level);
       board::Board& board = rig.build();
       rig.advance(500 * kPsPerMs);
@@ -198,11 +198,13 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
   const struct {
     const char* key;
     Master master;
-  } rows[] = {{"priority.arm", Master::kArmD},
-              {"priority.vpbe", Master::kVpbe},
-              {"priority.vpfe", Master::kVpfe}};
+    const char* gap;  ///< of the load: at 3 us it hardly ever meets the camera's bursts
+  } rows[] = {{"priority.arm", Master::kArmD, "3us"},
+              {"priority.vpbe", Master::kVpbe, "3us"},
+              {"priority.vpfe", Master::kVpfe, "2100ns"}};
   for (const auto& row : rows) {
-    const double urgent = mean(row.key, "0", row.master), patient = mean(row.key, "7", row.master);
+    const double urgent = mean(row.key, "0", row.master, row.gap);
+    const double patient = mean(row.key, "7", row.master, row.gap);
     std::printf("  %-14s %.0f ns at 0, %.0f ns at 7\n", row.key, urgent, patient);
     EXPECT_LT(urgent * 1.01, patient) << row.key;
   }
