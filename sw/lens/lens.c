@@ -211,23 +211,23 @@ static int source_offset(const lens_t *lens, double x, double y, double *dx, dou
   return 1;
 }
 
-static double half(uint32_t side) { return ((double)side - 1.0) / 2.0; }
+double lens_output_centre(uint32_t side) { return ((double)side - 1.0) / 2.0; }
 
-static double output_x(const lens_t *lens, double u) {
-  return (u - half(lens->width) + lens->shift_x) * lens->scale_x;
+double lens_output_x(const lens_t *lens, double u) {
+  return (u - lens_output_centre(lens->width) + lens->shift_x) * lens->scale_x;
 }
 
-static double output_y(const lens_t *lens, double v) {
-  return (v - half(lens->height) + lens->shift_y) * lens->scale_y;
+double lens_output_y(const lens_t *lens, double v) {
+  return (v - lens_output_centre(lens->height) + lens->shift_y) * lens->scale_y;
 }
 
 lens_point_t lens_source(const lens_t *lens, double u, double v) {
   if (lens->mapping == LENS_NONE) return (lens_point_t){u + lens->shift_x, v + lens->shift_y, 1};
   double dx, dy;
-  if (!source_offset(lens, output_x(lens, u), output_y(lens, v), &dx, &dy))
+  if (!source_offset(lens, lens_output_x(lens, u), lens_output_y(lens, v), &dx, &dy))
     return (lens_point_t){0.0, 0.0, 0};
-  return (lens_point_t){half(lens->width) + lens->centre_x + dx,
-                        half(lens->height) + lens->centre_y + dy, 1};
+  return (lens_point_t){lens_output_centre(lens->width) + lens->centre_x + dx,
+                        lens_output_centre(lens->height) + lens->centre_y + dy, 1};
 }
 
 /* floor(x + 0.5) for a position that may be far outside the picture; -1 for all positions below 0.
@@ -260,13 +260,13 @@ void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
       lens->mapping != LENS_NONE && lens->shift_x == 0.0 && lens->pair_method_b;
   const uint32_t rows = mirror_rows ? (lens->height + 1) / 2 : lens->height;
   const uint32_t columns = mirror_columns ? (pairs + 1) / 2 : pairs;
-  const double centre_column = half(lens->width) + lens->centre_x;
-  const double centre_row = half(lens->height) + lens->centre_y;
+  const double centre_column = lens_output_centre(lens->width) + lens->centre_x;
+  const double centre_row = lens_output_centre(lens->height) + lens->centre_y;
 
   for (uint32_t v = 0; v < rows; ++v) {
     uint32_t *upper = lut + v * pairs;
     uint32_t *lower = lut + (lens->height - 1 - v) * pairs;
-    const double y = output_y(lens, (double)v);
+    const double y = lens_output_y(lens, (double)v);
     for (uint32_t i = 0; i < columns; ++i) {
       const double u = 2.0 * (double)i + first;
       if (lens->mapping == LENS_NONE) {
@@ -274,7 +274,7 @@ void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
         continue;
       }
       double dx = 0.0, dy = 0.0;
-      const int visible = source_offset(lens, output_x(lens, u), y, &dx, &dy);
+      const int visible = source_offset(lens, lens_output_x(lens, u), y, &dx, &dy);
       const lens_point_t p = {centre_column + dx, centre_row + dy, visible};
       upper[i] = lens_lut_entry(lens, p, pitch_bytes, black);
       if (mirror_rows) {

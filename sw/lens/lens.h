@@ -52,7 +52,8 @@ double lens_focal_from_fov(uint32_t mapping, double width, double fov_deg, int p
 /** Lens and view with defaults: equisolid, 180 degrees, square pixels, centred. */
 void lens_view_default(lens_view_t *view);
 
-/** Checks `view` for a picture of width x height and derives `lens`. The view must outlive `lens`. */
+/** Checks `view` for a picture of width x height and derives `lens`. The view must outlive `lens`.
+ */
 lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height);
 
 /** A sentence for a message about a result. */
@@ -70,6 +71,13 @@ double lens_gain(const lens_t *lens, double r_squared);
  * mostly with integers: on a core without floating point it takes far fewer instructions than the C
  * library's. */
 double lens_sqrt(double x);
+
+/** Middle of a side of `side` pixels: the position of its middle pixel. */
+double lens_output_centre(uint32_t side);
+
+/** Ray of the output position (u, v) in pixels: x and y for 1 along the axis. */
+double lens_output_x(const lens_t *lens, double u);
+double lens_output_y(const lens_t *lens, double v);
 
 /** Source of the output position (u, v) in pixels; u and v may be fractional. */
 lens_point_t lens_source(const lens_t *lens, double u, double v);

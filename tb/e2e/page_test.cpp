@@ -162,6 +162,55 @@ TEST(PageTest, TheShiftOfTheSwitchesMovesTheView) {
   EXPECT_EQ(rig.lut(), expected);
 }
 
+/// The table in memory, and the time that it took in ticks of 24 MHz behind it.
+std::string table_built(const char* builder) {
+  return in_child([&] {
+    Rig rig;
+    rig.load("default.yaml").set("firmware.lut", builder).set("ddr.check", "none");
+    rig.build();
+    for (int i = 0; i < 400 && rig.state().magic == 0; ++i) rig.advance(10 * kPsPerMs);
+    std::vector<std::uint32_t> words = rig.lut();
+    words.push_back(rig.state().lut_time_ticks);
+    return std::string(reinterpret_cast<const char*>(words.data()), words.size() * 4);
+  });
+}
+
+// The shipped lens in full size: each entry that the core computes, and in less than a tenth of a
+// second.
+TEST(PageTest, BothTableBuildersGiveTheSameTable) {
+  const std::string fixed = table_built("fixed_point"), exact = table_built("soft_float");
+  ASSERT_EQ(fixed.size(), (720 / 2 * 576 + 1) * 4u);
+  ASSERT_EQ(exact.size(), fixed.size());
+  const std::size_t bytes = fixed.size() - 4;
+  EXPECT_TRUE(fixed.compare(0, bytes, exact, 0, bytes) == 0);
+  const auto ticks = [bytes](const std::string& built) {
+    std::uint32_t value;
+    std::memcpy(&value, built.data() + bytes, 4);
+    return value;
+  };
+  EXPECT_LT(ticks(fixed), 24'000'000u / 10) << "0.1 s";
+  EXPECT_GT(ticks(exact), 24'000'000u) << "not computed in double precision";
+}
+
+// What does not fit into fixed point is said, and computed in double precision.
+TEST(PageTest, ATableThatIsNotInFixedPointIsReported) {
+  const auto with = [](double centre_x, std::uint32_t builder) {
+    return said([&](param_page_t& p) {
+      p.table_builder = builder;
+      p.camera[0].view.centre_x = centre_x;
+    });
+  };
+  const std::string far = with(9000, BUILDER_FIXED);
+  EXPECT_NE(far.find("LUT: not in fixed point: lens and view do not fit into 32 bits\r\n"
+                     "LUT: 512 entries in "),
+            std::string::npos)
+      << far;
+  for (const std::string& text : {with(0, BUILDER_FIXED), with(9000, BUILDER_DOUBLE)}) {
+    EXPECT_EQ(text.find("fixed point"), std::string::npos) << text;
+    EXPECT_NE(text.find("LUT: 512 entries in "), std::string::npos) << text;
+  }
+}
+
 // A key's priority in time: the core's reads against a synthetic load of priority 3.
 TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
   const auto mean = [](const char* key, const char* level, Master m, const char* gap) {

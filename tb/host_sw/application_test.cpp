@@ -259,8 +259,10 @@ TEST_F(ConfigTest, ShiftsAddToThoseOfThePage) {
 
 TEST_F(ConfigTest, EachMemberOfThePageActs) {
   ASSERT_EQ(read(0), CONFIG_OK);
-  EXPECT_FALSE(config.serial || config.overlay || config.self_patch || config.kernel);
+  EXPECT_FALSE(config.serial || config.overlay || config.self_patch || config.kernel ||
+               config.table_builder);
   page.kernel = KERNEL_LDM;
+  page.table_builder = BUILDER_FIXED;
   page.flow = FLOW_SERIAL;
   page.clocks.vpss_clk_ctrl = 0x38;
   page.priority[3] = 5;
@@ -268,6 +270,7 @@ TEST_F(ConfigTest, EachMemberOfThePageActs) {
   page.flags = PARAM_OVERLAY;
   ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_EQ(config.kernel, std::uint32_t{KERNEL_LDM});
+  EXPECT_EQ(config.table_builder, std::uint32_t{BUILDER_FIXED});
   EXPECT_TRUE(config.serial);
   EXPECT_TRUE(config.overlay);
   EXPECT_FALSE(config.self_patch);

@@ -51,6 +51,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
   *c = (config_t){.dip = dip,
                   .is_625 = standard == SWITCH_PAL,
                   .kernel = page->kernel,
+                  .table_builder = page->table_builder,
                   .serial = page->flow == FLOW_SERIAL,
                   .overlay = (page->flags & PARAM_OVERLAY) != 0,
                   .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,

@@ -12,7 +12,8 @@ typedef struct config {
   uint32_t left, top;     /* of the captured and displayed region in the raster */
   uint32_t width, height; /* of the region */
   uint32_t pitch_bytes;
-  uint32_t kernel; /* enum param_kernel */
+  uint32_t kernel;        /* enum param_kernel */
+  uint32_t table_builder; /* enum param_table_builder */
   int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
   int overlay;
   int self_patch;

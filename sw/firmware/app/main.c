@@ -12,6 +12,7 @@
 #include "pipeline.h"
 #include "remapper.h"
 #include "state.h"
+#include "sw/lens/fast_lut.h"
 #include "sw/lens/lens.h"
 
 static config_t config;
@@ -44,13 +45,29 @@ static void print_config(void) {
   uart_puts("\n");
 }
 
+/* In fixed point if the page wants that and the lens allows it. */
+static void fill_lut(const lens_t *lens, uint32_t *entries) {
+  static fast_lut_t fast;
+  if (config.table_builder == BUILDER_FIXED) {
+    const fast_lut_result_t result = fast_lut_prepare(&fast, lens);
+    if (result == FAST_LUT_OK) {
+      fast_lut_build(&fast, entries, config.pitch_bytes);
+      return;
+    }
+    uart_puts("LUT: not in fixed point: ");
+    uart_puts(fast_lut_result_text(result));
+    uart_puts("\n");
+  }
+  lens_build_lut(lens, entries, config.pitch_bytes);
+}
+
 static void build_lut(const lens_view_t *view, uint32_t *entries) {
   lens_t lens;
   const lens_result_t result = lens_init(&lens, view, config.width, config.height);
   if (result != LENS_OK) fail("lens", lens_result_text(result));
   phase_mark(PHASE_LUT, 0);
   const uint32_t start = timer_ticks();
-  lens_build_lut(&lens, entries, config.pitch_bytes);
+  fill_lut(&lens, entries);
   const uint32_t ticks = timer_ticks() - start;
   fw_state.lut_time_ticks += ticks;
   phase_mark(PHASE_IDLE, 0);
