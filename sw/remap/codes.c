@@ -59,11 +59,12 @@ static const char *encode_strip(const remap_picture_t *picture, remap_memory_t *
   uint8_t *row = remap_take(memory, picture->rows * row_bytes + 1u, 32);
   if (row == NULL) return kRemapNoMemory;
   strip->stream_at = (uint32_t)(row - memory->base);
-  uint32_t base = 0;
+  /* Rows without a visible pair above the first one that has some have the base of that one. */
+  uint32_t base = remap_first_visible(picture, strip->strip) - FIRST_STEP;
+  strip->first_base = base;
   for (uint32_t v = 0; v < picture->rows; ++v, row += row_bytes) {
     *black += remap_visible_row(picture, v, strip->strip, base + FIRST_STEP, entries);
     const uint32_t start = entries[0] - FIRST_STEP;
-    if (v == 0) strip->first_base = base = start;
     const int32_t step = (int32_t)(start - base) / 4;
     if (step != (int16_t)step) return kCodesRowStep;
     row[0] = (uint8_t)step;

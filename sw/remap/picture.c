@@ -33,6 +33,17 @@ uint32_t remap_visible_row(const remap_picture_t *picture, uint32_t row, remap_s
   return count;
 }
 
+uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip) {
+  const uint32_t black = picture->rows * picture->pitch_bytes;
+  const uint32_t first = strip.first * REMAP_GROUP;
+  const uint32_t end = first + strip.groups * REMAP_GROUP;
+  const uint32_t present = end < picture->pairs ? end : picture->pairs;
+  for (uint32_t v = 0; v < picture->rows; ++v)
+    for (uint32_t i = first; i < present; ++i)
+      if (picture->lut[v * picture->pairs + i] != black) return picture->lut[v * picture->pairs + i];
+  return 4u;
+}
+
 const remap_black_run_t *remap_list_black(const remap_picture_t *picture, uint32_t count,
                                           remap_memory_t *memory) {
   const uint32_t black = picture->rows * picture->pitch_bytes;
@@ -74,7 +85,7 @@ const remap_head_t *remap_encode(const remap_picture_t *picture, uint32_t widest
   uint8_t *form = (uint8_t *)(head + 1);
   uint32_t black_pairs = 0;
   for (uint32_t n = 0; n < count && *refusal == NULL; ++n, form += form_bytes) {
-    *(remap_strip_t *)form = remap_strip(groups, count, n);
+    *(remap_strip_t *)form = remap_strip_of(groups, count, n);
     *refusal = encode(picture, memory, form, &black_pairs);
   }
   if (*refusal != NULL) return NULL;

@@ -39,7 +39,7 @@ static inline uint32_t remap_strip_count(uint32_t groups, uint32_t widest) {
 }
 
 /** Strip n of `count`: their widths differ by one group at most. */
-static inline remap_strip_t remap_strip(uint32_t groups, uint32_t count, uint32_t n) {
+static inline remap_strip_t remap_strip_of(uint32_t groups, uint32_t count, uint32_t n) {
   const uint32_t first = n * groups / count;
   return (remap_strip_t){first, (n + 1u) * groups / count - first};
 }
@@ -50,6 +50,9 @@ static inline remap_strip_t remap_strip(uint32_t groups, uint32_t count, uint32_
  * @return the number of black pairs, without those behind the end of the row */
 uint32_t remap_visible_row(const remap_picture_t *picture, uint32_t row, remap_strip_t strip,
                            uint32_t otherwise, uint32_t *entries);
+
+/** The first entry of a strip that is not black; 4 if there is none. */
+uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip);
 
 /** Memory that an encoder fills from the beginning. Addresses are offsets from `base`, which is a
  * multiple of 32, so that a table works wherever it lies. */

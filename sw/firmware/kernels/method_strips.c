@@ -17,7 +17,7 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   const uint32_t groups = (pairs + REMAP_GROUP - 1u) / REMAP_GROUP;
   const uint32_t strips = remap_strip_count(groups, WIDEST);
   for (uint32_t n = 0; n < strips; ++n) {
-    const remap_strip_t strip = remap_strip(groups, strips, n);
+    const remap_strip_t strip = remap_strip_of(groups, strips, n);
     const uint32_t first = strip.first * REMAP_GROUP;
     const uint32_t end = first + strip.groups * REMAP_GROUP;
     const uint32_t count = (end < pairs ? end : pairs) - first;
