@@ -40,7 +40,8 @@ uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip
   const uint32_t present = end < picture->pairs ? end : picture->pairs;
   for (uint32_t v = 0; v < picture->rows; ++v)
     for (uint32_t i = first; i < present; ++i)
-      if (picture->lut[v * picture->pairs + i] != black) return picture->lut[v * picture->pairs + i];
+      if (picture->lut[v * picture->pairs + i] != black)
+        return picture->lut[v * picture->pairs + i];
   return 4u;
 }
 
