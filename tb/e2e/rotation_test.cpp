@@ -2,6 +2,7 @@
 // table and which source made a picture is predicted from the order of the remaps alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 
@@ -69,9 +70,11 @@ std::uint64_t sent_number(Rig& rig, std::uint64_t captured) {
 
 // Seven remaps for each frame, with four tables: all four take their turn on the display, and each table
 // meets several ages of sources.
-TEST(RotationTest, EachRemapFollowsTheNextTableAndReadsItsSource) {
+class RotationOfKernelTest : public testing::TestWithParam<const char*> {};
+TEST_P(RotationOfKernelTest, EachRemapFollowsTheNextTableAndReadsItsSource) {
   Rig rig;
   small(rig, "4", "7");
+  rig.set("firmware.kernel", GetParam());
   const std::vector<Result> results = run_and_keep(rig);
   ASSERT_GE(results.size(), 5u * 7);
   expect_lut_right(rig);
@@ -107,6 +110,11 @@ TEST(RotationTest, EachRemapFollowsTheNextTableAndReadsItsSource) {
   }
   expect_frames_right(rig);
 }
+
+// Kernels that keep a part of a table in internal RAM or in the EDMA must bring the right one.
+INSTANTIATE_TEST_SUITE_P(Kernels, RotationOfKernelTest,
+                         testing::Values("plain", "deltas4", "codes", "staged", "runs"),
+                         [](const auto& i) { return std::string(i.param); });
 
 // Four tables of one lens are four tables: less than one entry in twenty is the same in two of them.
 TEST(RotationTest, TablesDifferInNearlyAllEntries) {
