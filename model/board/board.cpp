@@ -201,6 +201,7 @@ FrameStats Board::frame_stats() const {
   for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
   s.remapped = s.remaps;
   s.window = static_cast<double>(to - from) * 1e-12;
+  if (to > from) s.remap_rate = static_cast<double>(s.remaps) / s.window;
   if (whole_until_ > from)
     s.rate = static_cast<double>(sums.fresh) / (static_cast<double>(whole_until_ - from) * 1e-12);
   s.latency_mean = s.latencies ? sums.latency / static_cast<double>(s.latencies) : 0;

@@ -37,6 +37,7 @@ struct FrameStats {
   std::uint64_t captured = 0, remapped = 0, displayed = 0, dropped = 0, repeated = 0;
   Picoseconds latency_min = 0, latency_max = 0, remap_min = 0, remap_max = 0;
   double latency_mean = 0, remap_mean = 0;  // ps
+  double remap_rate = 0;  ///< 1/s; remaps that ended in the window / `window`
   std::uint64_t latencies = 0, remaps = 0;
 };
 

@@ -85,8 +85,12 @@ struct FirmwareParams : ParamGroup {
                  "double buffering, or the paper's capture, remap, show in turn",
                  Origin::kChoice, ""};
   IntParam repeat{*this, "repeat", IntParam::Unit::kCount, 1, 1, 1000,
-                  "correct each captured frame so many times in a row; with 2 or more the firmware no "
+                  "remap so many times in a row for each captured frame; with 2 or more the firmware no "
                   "longer waits for the camera with a large frame, so the remap runs at full speed",
+                  Origin::kChoice, ""};
+  IntParam tables{*this, "tables", IntParam::Unit::kCount, 1, 1, PARAM_TABLES_MAX,
+                  "look-up tables that the remaps follow in turn, each of a view a little further right; "
+                  "the sources are as many captured frames, in turn (one with firmware.flow=serial)",
                   Origin::kChoice, ""};
   BoolParam overlay{*this, "overlay", false,
                     "a blinking box blended onto the picture through the cache",

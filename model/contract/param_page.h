@@ -21,7 +21,7 @@ extern "C" {
 #define PARAM_CONSTANT(constant, code, word) constant = (code),
 
 #define PARAM_PAGE_MAGIC 0x41564F46u /* bytes "FOVA" */
-#define PARAM_PAGE_VERSION 2u        /* changes with every change of the layout or of a meaning */
+#define PARAM_PAGE_VERSION 3u        /* changes with every change of the layout or of a meaning */
 #define PARAM_CAMERAS_MAX 8u
 #define PARAM_TABLE_MAX 129u
 
@@ -56,6 +56,12 @@ enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
   X(KERNEL_COPY, 9, "copy")            \
   X(KERNEL_FASTEST, 10, "fastest")
 enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
+
+/* The look-up tables of a run that measures the remap loop by itself: table k is that of the camera's view, moved to
+ * the right by k * PARAM_TABLE_STEP_PX (lens_view_t, shift_x). The step is odd, so that the first pixels of the pairs
+ * are other pixels in each neighbouring table. */
+#define PARAM_TABLES_MAX 4u
+#define PARAM_TABLE_STEP_PX 7.0
 
 #define PARAM_FLOWS(X)         \
   X(FLOW_DOUBLE, 0, "double")  \
@@ -147,11 +153,13 @@ typedef struct param_page {
   uint32_t kernel;        /* enum param_kernel */
   uint32_t table_builder; /* enum param_table_builder */
   uint32_t flow;          /* enum param_flow */
-  uint32_t repeats;       /* number of consecutive remaps of each captured frame; 0: one */
+  uint32_t repeats;       /* number of consecutive remaps for each captured frame; 0: one */
+  uint32_t tables;        /* number of look-up tables and of source frames, used in turn; 0: one */
   uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH */
   uint32_t width;         /* pixels of a centred region; 0: all. Only with SWITCH_SIZE_OF_PAGE */
   uint32_t height;        /* lines of it; 0: all */
   uint32_t camera_count;  /* 1 to PARAM_CAMERAS_MAX */
+  uint32_t reserved;
 
   param_camera_t camera[PARAM_CAMERAS_MAX];
 } param_page_t;
@@ -166,9 +174,9 @@ PARAM_ASSERT(offsetof(param_page_t, clocks) == 16);
 PARAM_ASSERT(offsetof(param_page_t, console) == 72);
 PARAM_ASSERT(offsetof(param_page_t, priority) == 80);
 PARAM_ASSERT(offsetof(param_page_t, kernel) == 96);
-PARAM_ASSERT(offsetof(param_page_t, camera_count) == 124);
-PARAM_ASSERT(offsetof(param_page_t, camera) == 128);
-PARAM_ASSERT(sizeof(param_page_t) == 128 + PARAM_CAMERAS_MAX * sizeof(param_camera_t));
+PARAM_ASSERT(offsetof(param_page_t, camera_count) == 128);
+PARAM_ASSERT(offsetof(param_page_t, camera) == 136);
+PARAM_ASSERT(sizeof(param_page_t) == 136 + PARAM_CAMERAS_MAX * sizeof(param_camera_t));
 PARAM_ASSERT(sizeof(param_page_t) <= PARAM_PAGE_BYTES);
 
 typedef enum param_page_result {

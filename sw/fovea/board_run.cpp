@@ -154,8 +154,12 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
     rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
     rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
   }
-  if (f.remaps)
+  if (f.remaps) {
+    rows.push_back(row("frame.remap_rate", f.remap_rate, "1/s",
+                       "remaps that ended in the window / its length; with firmware.repeat above 1 what the "
+                       "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
+  }
   const auto lut = board_->log.first(board::Phase::kLut);
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)

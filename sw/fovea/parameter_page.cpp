@@ -121,6 +121,7 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.table_builder = contract::code_of(contract::kBuilders, firmware.lut());
   page.flow = contract::code_of(contract::kFlows, firmware.flow());
   page.repeats = static_cast<std::uint32_t>(firmware.repeat());
+  page.tables = static_cast<std::uint32_t>(firmware.tables());
   page.flags =
       (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
   page.width = params.width();

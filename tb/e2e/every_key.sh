@@ -159,6 +159,7 @@ acts firmware.lut soft_float
 acts firmware.overlay true
 acts firmware.patch true
 acts firmware.repeat 2
+acts firmware.tables 2
 tested lens.calibration unit.calibration
 idle lens.calibration none.yaml
 acts pll.go_time 5us

@@ -8,19 +8,31 @@
 namespace fovea::e2e {
 
 void expect_lut_right(Rig& rig) {
-  const auto lut = rig.lut();
-  const oracle::Geometry g = rig.geometry();
-  ASSERT_EQ(lut.size(), std::size_t{g.width} / 2 * g.height);
-  const oracle::LutCheck c = oracle::check_lut(lut, g, 0.02);
-  EXPECT_EQ(c.wrong, 0u) << c.first_wrong->text();
-  // Two roundings that are both right may differ at a boundary, but only there.
-  EXPECT_LE(c.near_boundary, c.entries / 1000);
-  std::printf("LUT: %zu entries, %zu wrong, %zu within 0.02 px of a boundary and different\n",
-              c.entries, c.wrong, c.near_boundary);
+  for (unsigned k = 0; k < rig.params.firmware.tables(); ++k) {
+    const auto lut = rig.lut(k);
+    const oracle::Geometry g = rig.geometry(k);
+    ASSERT_EQ(lut.size(), std::size_t{g.width} / 2 * g.height);
+    const oracle::LutCheck c = oracle::check_lut(lut, g, 0.02);
+    EXPECT_EQ(c.wrong, 0u) << "table " << k << ": " << c.first_wrong->text();
+    // Two roundings that are both right may differ at a boundary, but only there.
+    EXPECT_LE(c.near_boundary, c.entries / 1000);
+    std::printf("LUT: %zu entries, %zu wrong, %zu within 0.02 px of a boundary and different\n",
+                c.entries, c.wrong, c.near_boundary);
+  }
+}
+
+unsigned view_of(Rig& rig, const Shown& s) {
+  const auto tables = static_cast<std::size_t>(rig.params.firmware.tables());
+  const auto& remaps = rig.board().log.remaps();
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < remaps.size(); ++n)
+    if (remaps[n].captured == s.record.captured) count = n + 1;
+  EXPECT_GT(count, 0u) << "frame " << s.record.index << " was not remapped";
+  return static_cast<unsigned>((count - 1) % tables);
 }
 
 std::optional<std::uint64_t> sent_as(Rig& rig, const Shown& s, std::string* difference) {
-  const auto lut = rig.lut();
+  const auto lut = rig.lut(view_of(rig, s));
   const std::uint32_t pitch = rig.geometry().pitch_bytes;
   // Which frame the camera sent is found from the pixels, near the time of the capture.
   const double period = rig.params.video.standard.is("pal") ? 0.04 : 1001.0 / 30000;

@@ -8,10 +8,15 @@
 
 namespace fovea::e2e {
 
-/// Every entry of the table in target memory must equal the oracle's. An entry within 0.02 px of a
+/// Every entry of each table in target memory must equal the oracle's. An entry within 0.02 px of a
 /// boundary, where two roundings may both be right, may be the neighbouring one (at most one in
 /// 1,000).
 void expect_lut_right(Rig& rig);
+
+/// The view whose table made the displayed picture: remap n of a run (from 0) follows table n modulo
+/// `firmware.tables`, and the last one of a captured frame is shown. Which one it was is counted on the
+/// pins.
+unsigned view_of(Rig& rig, const Shown& shown);
 
 /// The number of the camera's frame whose remap the displayed frame is; none: it is wrong, and
 /// `difference` says where it differs from the likeliest one. The frame must have been captured.

@@ -72,8 +72,8 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
   const std::string prefix = "failed: parameter page: ";
   EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false),
             prefix + "there is none (unknown magic)\r\n");
-  EXPECT_EQ(said([](param_page_t& p) { p.version = 3; }, false),
-            prefix + "unknown version; this firmware reads version 2\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.version = 4; }, false),
+            prefix + "unknown version; this firmware reads version 3\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.bytes -= 4; }, false),
             prefix + "too small for its version and its cameras\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false),
@@ -88,6 +88,10 @@ TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
                       "(plain) to 10 (fastest)\r\n"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) { p.table_builder = 2; }).find("unknown table builder"),
+            std::string::npos);
+  EXPECT_NE(said([](param_page_t& p) {
+              p.tables = 5;
+            }).find("too many look-up tables; this firmware has memory for 4\r\n"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) {
               p.camera_count = 2;
@@ -209,7 +213,7 @@ TEST(PageTest, ATableThatIsNotInFixedPointIsReported) {
 
 // A key's priority in time: the core's reads against a synthetic load of priority 3.
 TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
-  const auto mean = [](const char* key, const char* level, Master m) {
+  const auto mean = [](const char* key, const char* level, Master m, const char* gap) {
     return std::stod(in_child([&] {
       Rig rig;
       rig.set("video.width", "320")
@@ -220,7 +224,7 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
       rig.set("load.priority", "3")
           .set("load.start", "300ms")
           .set("load.base", "32MiB")
-          .set("load.gap", "3us");
+          .set("load.gap", gap);
       rig.set(key, level);
       board::Board& board = rig.build();
       rig.advance(500 * kPsPerMs);
@@ -243,11 +247,13 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
   const struct {
     const char* key;
     Master master;
-  } rows[] = {{"priority.arm", Master::kArmD},
-              {"priority.vpbe", Master::kVpbe},
-              {"priority.vpfe", Master::kVpfe}};
+    const char* gap;  ///< of the load: at 3 us it hardly ever meets the camera's bursts
+  } rows[] = {{"priority.arm", Master::kArmD, "3us"},
+              {"priority.vpbe", Master::kVpbe, "3us"},
+              {"priority.vpfe", Master::kVpfe, "2100ns"}};
   for (const auto& row : rows) {
-    const double urgent = mean(row.key, "0", row.master), patient = mean(row.key, "7", row.master);
+    const double urgent = mean(row.key, "0", row.master, row.gap);
+    const double patient = mean(row.key, "7", row.master, row.gap);
     std::printf("  %-14s %.0f ns at 0, %.0f ns at 7\n", row.key, urgent, patient);
     EXPECT_LT(urgent * 1.01, patient) << row.key;
   }

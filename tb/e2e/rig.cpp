@@ -96,16 +96,18 @@ FwState Rig::state() {
   return out;
 }
 
-std::vector<std::uint32_t> Rig::lut() {
+std::vector<std::uint32_t> Rig::lut(unsigned k) {
   const auto* s = elf_.find("lut");
   if (!s) throw std::runtime_error("no lut");
-  std::vector<std::uint32_t> out(state().lut_entries);
-  const auto bytes = board_->peek(s->address, out.size() * 4);
+  const FwState fw = state();
+  if (k >= params.firmware.tables()) throw std::runtime_error("no such table");
+  std::vector<std::uint32_t> out(fw.lut_entries);
+  const auto bytes = board_->peek(k == 0 ? s->address : fw.table_address[k], out.size() * 4);
   std::memcpy(out.data(), bytes.data(), bytes.size());
   return out;
 }
 
-oracle::Geometry Rig::geometry() const {
+oracle::Geometry Rig::geometry(unsigned k) const {
   oracle::Geometry g;
   const auto& l = params.lens;
   g.width = params.width();
@@ -119,7 +121,7 @@ oracle::Geometry Rig::geometry() const {
   g.out_focal_px = l.out_focal();
   g.centre_x = l.centre_x();
   g.centre_y = l.centre_y();
-  g.shift_x = l.shift_x();
+  g.shift_x = l.shift_x() + 7 * k;
   g.shift_y = l.shift_y();
   g.in_aspect = l.in_aspect();
   g.out_aspect = l.out_aspect();

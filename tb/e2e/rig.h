@@ -23,7 +23,8 @@ struct Shown {
 /// The members of the firmware's `fw_state` by position (sw/firmware/README.md).
 struct FwState {
   std::uint32_t magic, version, width, height, pitch_bytes, lut_entries, in_count, out_count,
-      lut_time_ticks, captured, remapped, flipped, dropped, patched_value, dip, torn, spurious;
+      lut_time_ticks, captured, remapped, flipped, dropped, patched_value, dip, torn, spurious,
+      tables, table_address[4];
 };
 
 class Rig {
@@ -50,9 +51,11 @@ class Rig {
   /// What the camera sent as frame n (rows of fields 2n and 2n + 1), limited to the captured
   /// region.
   oracle::Frame sent(std::uint64_t n);
-  std::vector<std::uint32_t> lut();
+  /// The table of view `k`, one of `firmware.tables`.
+  std::vector<std::uint32_t> lut(unsigned k = 0);
   FwState state();
-  oracle::Geometry geometry() const;
+  /// The geometry of view `k`: 7 pixels further right for each (model/contract/README.md).
+  oracle::Geometry geometry(unsigned k = 0) const;
   const app::ElfImage& elf() const { return elf_; }
   board::BoardParams params;
 

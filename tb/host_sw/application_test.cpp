@@ -81,6 +81,49 @@ TEST(CaptureTest, SerialFlowReusesTheOneBuffer) {
   EXPECT_EQ(c.dropped, 0u);
 }
 
+// Four frames are held while a remap reads them; two more buffers are enough for the camera.
+TEST(CaptureTest, HeldFramesAreNeverFilledAndTheOldestGoesFirst) {
+  capture_t c;
+  held_t held{};
+  capture_init(&c, 6);
+  std::uint32_t sequence, n = 0;
+  for (std::uint32_t round = 0; round < 9; ++round) {
+    for (std::uint32_t frames = 0; frames <= round % 3; ++frames, ++n) {
+      const int next = capture_frame_done(&c);
+      ASSERT_NE(next, CAPTURE_NONE);
+      for (std::uint32_t age = 0; age < held.count; ++age) EXPECT_NE(next, held_of_age(&held, age));
+    }
+    const int taken = capture_take(&c, &sequence);
+    EXPECT_EQ(sequence, n - 1);
+    held_add(&held, taken);
+    EXPECT_EQ(held_of_age(&held, 0), taken);
+    if (held.count < 4) continue;
+    // The camera goes on while the four are read.
+    for (std::uint32_t frames = 0; frames < 5; ++frames, ++n) {
+      const int next = capture_frame_done(&c);
+      ASSERT_NE(next, CAPTURE_NONE);
+      for (std::uint32_t age = 0; age < 4; ++age) EXPECT_NE(next, held_of_age(&held, age));
+    }
+    const int oldest = held_of_age(&held, 3), second = held_of_age(&held, 2);
+    EXPECT_EQ(held_drop(&held), oldest);
+    capture_release(&c, oldest);
+    EXPECT_EQ(held.count, 3u);
+    EXPECT_EQ(held_of_age(&held, 2), second);
+    EXPECT_EQ(held_of_age(&held, 0), taken);
+  }
+}
+
+TEST(CaptureTest, WithOneBufferLessTheCameraRunsOutOfThem) {
+  capture_t c;
+  capture_init(&c, 5);
+  std::uint32_t sequence;
+  for (int n = 0; n < 4; ++n) {
+    EXPECT_NE(capture_frame_done(&c), CAPTURE_NONE);
+    capture_take(&c, &sequence);
+  }
+  EXPECT_EQ(capture_frame_done(&c), CAPTURE_NONE);
+}
+
 TEST(OutputTest, ABufferIsNeverWrittenWhileItMayBeShown) {
   output_t o;
   output_init(&o, 4);
@@ -180,6 +223,20 @@ TEST_F(ConfigTest, RepeatsComeFromThePage) {
   EXPECT_EQ(config.repeats, 7u);
 }
 
+TEST_F(ConfigTest, TablesAndSourcesComeFromThePage) {
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.tables, 1u) << "0 stands for one";
+  EXPECT_EQ(config.sources, 1u);
+  page.tables = 4;
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.tables, 4u);
+  EXPECT_EQ(config.sources, 4u);
+  page.flow = FLOW_SERIAL;
+  ASSERT_EQ(read(0), CONFIG_OK);
+  EXPECT_EQ(config.tables, 4u);
+  EXPECT_EQ(config.sources, 1u) << "one input buffer";
+}
+
 TEST_F(ConfigTest, TheMappingOfTheSwitchesWins) {
   ASSERT_EQ(read(0), CONFIG_OK);
   EXPECT_EQ(config.view.mapping, std::uint32_t{LENS_EQUISOLID}) << "as the page says";
@@ -237,6 +294,8 @@ TEST_F(ConfigTest, UnknownCodesOfThePageAreRefused) {
   EXPECT_EQ(with(&param_page_t::kernel, KERNEL_FASTEST + 1), CONFIG_BAD_KERNEL);
   EXPECT_EQ(with(&param_page_t::table_builder, BUILDER_FIXED + 1), CONFIG_BAD_BUILDER);
   EXPECT_EQ(with(&param_page_t::flow, FLOW_SERIAL + 1), CONFIG_BAD_FLOW);
+  EXPECT_EQ(with(&param_page_t::tables, 4), CONFIG_OK);
+  EXPECT_EQ(with(&param_page_t::tables, 5), CONFIG_BAD_TABLES);
   EXPECT_EQ(with(&param_page_t::camera_count, 2), CONFIG_BAD_CAMERAS);
   std::set<std::string> seen;
   for (int r = 0; r < CONFIG_RESULTS; ++r)

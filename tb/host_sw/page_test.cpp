@@ -41,14 +41,15 @@ param_page_result_t result(param_page_t page, bool summed = true) {
 }
 
 TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
-  EXPECT_EQ(sizeof(param_page_t), 9216u);
+  EXPECT_EQ(sizeof(param_page_t), 9224u);
   EXPECT_EQ(offsetof(param_page_t, clocks.sdtimr), 60u);
   EXPECT_EQ(offsetof(param_page_t, priority), 80u);
-  EXPECT_EQ(offsetof(param_page_t, camera[1]), 128u + 1136u);
+  EXPECT_EQ(offsetof(param_page_t, tables), 112u);
+  EXPECT_EQ(offsetof(param_page_t, camera[1]), 136u + 1136u);
   const param_page_t page = good_page();
   EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
-  EXPECT_EQ(page.version, 2u);
-  EXPECT_EQ(page.bytes, 1264u);
+  EXPECT_EQ(page.version, 3u);
+  EXPECT_EQ(page.bytes, 1272u);
   EXPECT_EQ(good_page(8).bytes, sizeof(param_page_t));
 }
 
@@ -81,7 +82,7 @@ TEST(ParamPageTest, WrongMagicVersionOrSizeIsRefusedThoughTheSumFits) {
   param_page_t page = good_page();
   page.magic ^= 1;
   EXPECT_EQ(result(page), PARAM_PAGE_BAD_MAGIC);
-  for (const std::uint32_t version : {0u, 1u, 3u}) {
+  for (const std::uint32_t version : {0u, 2u, 4u}) {
     page = good_page();
     page.version = version;
     EXPECT_EQ(result(page), PARAM_PAGE_BAD_VERSION);

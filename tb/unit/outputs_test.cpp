@@ -244,6 +244,31 @@ TEST(VerdictTest, SaysWhetherTheRateWasMet) {
             "capture overflow, 2 display underflows\n");
 }
 
+/// 4 of 6 displayed frames are new.
+std::vector<StatRow> remaps_of(std::uint64_t remapped, double rate) {
+  std::vector<StatRow> rows = frames_of(25, 6, 2, 0);
+  rows.push_back({"frame.remapped", remapped, "1", ""});
+  rows.push_back({"frame.remap_rate", rate, "1/s", ""});
+  return rows;
+}
+
+// A loop that waits for the camera remaps about as many frames as are shown; three for each two new ones
+// and more are remaps in a row, whose rate is the figure.
+TEST(VerdictTest, BeginsWithTheRateOfRemapsInARow) {
+  const std::string shown =
+      "frame rate missed: 4 of 6 camera frames shown (25/s), none dropped, 2 repeated\n";
+  EXPECT_EQ(verdict(remaps_of(5, 26.5)), shown);
+  EXPECT_EQ(verdict(remaps_of(6, 37.25)), "remaps in a row: 37.25/s; " + shown);
+  const auto has_rate = [](const std::vector<StatRow>& rows) {
+    return summary_table(rows, {}).find("frame.remap_rate") != std::string::npos;
+  };
+  EXPECT_FALSE(has_rate(remaps_of(5, 26.5)));
+  EXPECT_TRUE(has_rate(remaps_of(6, 37.25)));
+  std::vector<StatRow> without = remaps_of(60, 0);
+  without.pop_back();
+  EXPECT_EQ(verdict(without), shown);
+}
+
 TEST(VerdictTest, SaysNothingWithoutFrames) {
   EXPECT_EQ(verdict({}), "");
   EXPECT_EQ(verdict(frames_of(25, 0, 0, 0)), "");

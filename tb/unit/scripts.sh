@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# scripts/run, build, test and figures over stand-ins of cmake and fovea: what they start with which
+# scripts/run, build, test, figures and kernels over stand-ins of cmake and fovea: what they start with which
 # arguments. Usage: scripts.sh SOURCE
 set -uo pipefail
 source=$1
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
-cp "$source"/scripts/{run,build,test,figures,sanitize,nightly} "$dir/tree/scripts/"
+cp "$source"/scripts/{run,build,test,figures,kernels,sanitize,nightly} "$dir/tree/scripts/"
 cp "$source/CMakeLists.txt" "$dir/tree/"
 touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
 printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
@@ -55,6 +55,10 @@ echo 'FOVEA_TESTS:BOOL=ON' >"$tree/build/release/CMakeCache.txt"
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >>"$tree/build/release/CMakeCache.txt"
 calls run_after_tests 0 "fovea run $default" -- "$tree/scripts/run"
 asked run_after_tests 'cmake --preset release'
+calls kernels 2 'fovea params' -- "$tree/scripts/kernels"
+asked kernels 'setup run'
+asked kernels 'cmake --build --preset release --target fovea fovea_firmware_all -- --quiet'
+grep -q 'has no parameter firmware.kernel' "$dir/text" || fail "kernels: $(cat "$dir/text")"
 calls build 0 'cmake --build --preset release -- --quiet' -- "$tree/scripts/build"
 asked build 'setup test'
 asked build 'cmake --preset release'

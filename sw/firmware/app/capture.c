@@ -42,3 +42,14 @@ int32_t capture_take(capture_t *c, uint32_t *sequence) {
 }
 
 void capture_release(capture_t *c, int32_t buffer) { c->busy &= ~(1u << buffer); }
+
+void held_add(held_t *h, int32_t buffer) { h->buffer[h->count++] = buffer; }
+
+int32_t held_drop(held_t *h) {
+  const int32_t oldest = h->buffer[0];
+  --h->count;
+  for (uint32_t i = 0; i < h->count; ++i) h->buffer[i] = h->buffer[i + 1];
+  return oldest;
+}
+
+int32_t held_of_age(const held_t *h, uint32_t age) { return h->buffer[h->count - 1u - age]; }

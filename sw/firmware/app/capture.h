@@ -37,4 +37,20 @@ int32_t capture_take(capture_t *capture, uint32_t *sequence);
 
 void capture_release(capture_t *capture, int32_t buffer);
 
+/* Frames that were taken and are still read, in the order in which they were taken. */
+typedef struct held {
+  uint32_t count;
+  int32_t buffer[CAPTURE_BUFFERS_MAX];
+} held_t;
+
+/** Adds the newest frame. There must be room: at most CAPTURE_BUFFERS_MAX are held. */
+void held_add(held_t *held, int32_t buffer);
+
+/** The oldest frame is no longer held. @return its buffer; at least one must be held */
+int32_t held_drop(held_t *held);
+
+/** Buffer of the frame that was taken `age` frames before the newest; `age` is less than `count`.
+ */
+int32_t held_of_age(const held_t *held, uint32_t age);
+
 #endif

@@ -56,12 +56,16 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .overlay = (page->flags & PARAM_OVERLAY) != 0,
                   .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,
                   .repeats = page->repeats != 0 ? page->repeats : 1u,
+                  .tables = page->tables != 0 ? page->tables : 1u,
                   .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};
   for (uint32_t i = 0; i < PRIORITY_COUNT; ++i) c->priority[i] = page->priority[i];
   if (SWITCH_GET(dip, SWITCH_STANDARD_OUT) != standard) return CONFIG_BAD_STANDARDS;
   if (page->kernel > KERNEL_FASTEST) return CONFIG_BAD_KERNEL;
   if (page->table_builder > BUILDER_FIXED) return CONFIG_BAD_BUILDER;
   if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
+  if (c->tables > PARAM_TABLES_MAX) return CONFIG_BAD_TABLES;
+  /* The serial flow has one input buffer. */
+  c->sources = c->serial ? 1u : c->tables;
   if (page->camera_count != 1) return CONFIG_BAD_CAMERAS;
   const config_result_t result = read_region(c, page);
   return result != CONFIG_OK ? result : read_view(c, page);
@@ -86,6 +90,8 @@ const char *config_result_text(config_result_t result) {
              "point";
     case CONFIG_BAD_FLOW:
       return "parameter page: unknown flow; this firmware has 0 double buffering, 1 serial";
+    case CONFIG_BAD_TABLES:
+      return "parameter page: too many look-up tables; this firmware has memory for 4";
     case CONFIG_BAD_CAMERAS:
       return "parameter page: several cameras; this firmware serves one";
     case CONFIG_RESULTS:

@@ -17,7 +17,9 @@ typedef struct config {
   int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
   int overlay;
   int self_patch;
-  uint32_t repeats; /* number of remaps of each captured frame, at least 1 */
+  uint32_t repeats; /* number of remaps for each captured frame, at least 1 */
+  uint32_t tables;  /* number of look-up tables, 1 to PARAM_TABLES_MAX */
+  uint32_t sources; /* number of captured frames that the remaps read in turn, at least 1 */
   uint32_t vpss_clk_ctrl;
   uint8_t priority[PRIORITY_COUNT];
   lens_view_t view; /* of the camera, modified by the switches; a copy in cached memory */
@@ -32,6 +34,7 @@ typedef enum config_result {
   CONFIG_BAD_KERNEL,
   CONFIG_BAD_BUILDER,
   CONFIG_BAD_FLOW,
+  CONFIG_BAD_TABLES,  /* more than there is memory for */
   CONFIG_BAD_CAMERAS, /* more than this firmware serves */
   CONFIG_RESULTS
 } config_result_t;

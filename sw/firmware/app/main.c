@@ -16,8 +16,10 @@
 #include "sw/lens/lens.h"
 
 static config_t config;
-static remap_table_t table;
-static const remap_method_t *method;
+static struct view { /* what the remaps use in turn */
+  remap_table_t table;
+  const remap_method_t *method;
+} views[PARAM_TABLES_MAX];
 static uint8_t overlay_value;
 
 static void print_config(void) {
@@ -31,65 +33,86 @@ static void print_config(void) {
   uart_puts(kMappings[config.view.mapping <= LENS_TABLE ? config.view.mapping : 0]);
   uart_puts(config.serial ? ", serial flow" : ", double buffering");
   if (config.repeats > 1) {
-    uart_puts(", each frame remapped ");
+    uart_puts(", ");
     uart_put_uint(config.repeats);
-    uart_puts(" times");
+    uart_puts(" remaps for each frame");
+  }
+  if (config.tables > 1) {
+    uart_puts(", ");
+    uart_put_uint(config.tables);
+    uart_puts(" tables in turn");
   }
   uart_puts("\n");
 }
 
 /* In fixed point if the page wants that and the lens allows it. */
-static void fill_lut(const lens_t *lens) {
+static void fill_lut(const lens_t *lens, uint32_t *entries) {
   static fast_lut_t fast;
   if (config.table_builder == BUILDER_FIXED) {
     const fast_lut_result_t result = fast_lut_prepare(&fast, lens);
     if (result == FAST_LUT_OK) {
-      fast_lut_build(&fast, lut, config.pitch_bytes);
+      fast_lut_build(&fast, entries, config.pitch_bytes);
       return;
     }
     uart_puts("LUT: not in fixed point: ");
     uart_puts(fast_lut_result_text(result));
     uart_puts("\n");
   }
-  lens_build_lut(lens, lut, config.pitch_bytes);
+  lens_build_lut(lens, entries, config.pitch_bytes);
 }
 
-static void build_lut(void) {
+static void build_lut(const lens_view_t *view, uint32_t *entries) {
   lens_t lens;
-  const lens_result_t result = lens_init(&lens, &config.view, config.width, config.height);
+  const lens_result_t result = lens_init(&lens, view, config.width, config.height);
   if (result != LENS_OK) fail("lens", lens_result_text(result));
   phase_mark(PHASE_LUT, 0);
   const uint32_t start = timer_ticks();
-  fill_lut(&lens);
-  fw_state.lut_time_ticks = timer_ticks() - start;
+  fill_lut(&lens, entries);
+  const uint32_t ticks = timer_ticks() - start;
+  fw_state.lut_time_ticks += ticks;
   phase_mark(PHASE_IDLE, 0);
   fw_state.lut_entries = lens_lut_entries(config.width, config.height);
   uart_puts("LUT: ");
   uart_put_uint(fw_state.lut_entries);
   uart_puts(" entries in ");
-  uart_put_uint(fw_state.lut_time_ticks / TIMER_TICKS_PER_MS);
+  uart_put_uint(ticks / TIMER_TICKS_PER_MS);
   uart_puts(" ms\n");
 }
 
-static void prepare_method(void) {
-  extern uint8_t __arena_start[], __arena_end[];
-  arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
-  table = (remap_table_t){.width = config.width,
-                          .height = config.height,
-                          .pitch_bytes = config.pitch_bytes,
-                          .lut = lut};
+static void prepare_method(struct view *view, arena_t *arena) {
   const uint32_t start = timer_ticks();
-  method = remapper_prepare(config.kernel, &table, &arena);
+  view->method = remapper_prepare(config.kernel, &view->table, arena);
   uart_puts("kernel: ");
-  uart_puts(method->name);
-  if (table.encoded != NULL) {
-    uart_puts(", ");
-    uart_put_uint(table.encoded_bytes);
-    uart_puts(" bytes of tables in ");
+  uart_puts(view->method->name);
+  uart_puts(", ");
+  uart_put_uint(view->table.encoded_bytes);
+  uart_puts(" bytes of tables");
+  if (view->table.encoded != NULL) {
+    uart_puts(" in ");
     uart_put_uint((timer_ticks() - start) / TIMER_TICKS_PER_MS);
     uart_puts(" ms");
   }
   uart_puts("\n");
+}
+
+/* Table k is that of the page's view, moved by k steps. */
+static void build_views(void) {
+  extern uint8_t __arena_start[], __arena_end[];
+  arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
+  for (uint32_t k = 0; k < config.tables; ++k) {
+    uint32_t *entries = k == 0 ? lut : arena_take(&arena, sizeof lut, 4096);
+    if (entries == NULL) fail("look-up tables", "no memory left"); /* firmware.ld rules it out */
+    lens_view_t view = config.view;
+    view.shift_x += PARAM_TABLE_STEP_PX * k;
+    build_lut(&view, entries);
+    views[k].table = (remap_table_t){.width = config.width,
+                                     .height = config.height,
+                                     .pitch_bytes = config.pitch_bytes,
+                                     .lut = entries};
+    fw_state.table_address[k] = (uint32_t)entries;
+  }
+  fw_state.tables = config.tables;
+  for (uint32_t k = 0; k < config.tables; ++k) prepare_method(&views[k], &arena);
 }
 
 static void init_frames(uint32_t in_count) {
@@ -104,21 +127,21 @@ static void init_frames(uint32_t in_count) {
 
 /* Sum of the source words of the first output row. It is the same before and after the remap unless
  * the camera has written to the frame meanwhile. */
-static uint32_t first_row_sum(const uint8_t *in) {
+static uint32_t first_row_sum(const remap_table_t *table, const uint8_t *in) {
   uint32_t sum = 0;
   for (uint32_t i = 0; i < config.width / 2u; ++i)
-    sum = sum * 31u + *(const volatile uint32_t *)(in + lut[i]);
+    sum = sum * 31u + *(const volatile uint32_t *)(in + table->lut[i]);
   return sum;
 }
 
-static void correct(const uint8_t *in, uint8_t *out, uint32_t sequence) {
+static void correct(const struct view *view, const uint8_t *in, uint8_t *out, uint32_t sequence) {
   phase_mark(PHASE_REMAP_START, sequence);
 #ifndef OMIT_D_INVALIDATE
   dcache_invalidate_range(in, config.height * config.pitch_bytes);
 #endif
-  const uint32_t before = first_row_sum(in);
-  method->run(&table, in, out);
-  if (first_row_sum(in) != before) ++fw_state.torn;
+  const uint32_t before = first_row_sum(&view->table, in);
+  view->method->run(&view->table, in, out);
+  if (first_row_sum(&view->table, in) != before) ++fw_state.torn;
   if (config.overlay && overlay_visible(sequence))
     overlay_draw(out, config.pitch_bytes, overlay_value);
 #ifndef OMIT_D_CLEAN
@@ -129,8 +152,12 @@ static void correct(const uint8_t *in, uint8_t *out, uint32_t sequence) {
   ++fw_state.remapped;
 }
 
-static void process(const uint8_t *in, uint8_t *out, uint32_t sequence) {
-  for (uint32_t n = 0; n < config.repeats; ++n) correct(in, out, sequence);
+/* Tables and sources take turns, so that no remap finds in the caches or in open rows of the SDRAM
+ * what the one before has read. The last remap, whose result is shown, reads the newest frame. */
+static void process(uint8_t *out, uint32_t sequence) {
+  for (uint32_t left = config.repeats; left-- != 0;)
+    correct(&views[fw_state.remapped % config.tables], pipeline_source(left % config.sources), out,
+            sequence);
   pipeline_done();
 }
 
@@ -150,12 +177,10 @@ int main(void) {
     overlay_value = (uint8_t)overlay_patch(OVERLAY_LUMA_PATCHED);
     fw_state.patched_value = overlay_value;
   }
-  build_lut();
-  prepare_method();
-
-  const uint32_t in_count = config.serial ? 1u : IN_COUNT;
+  const uint32_t in_count = config.serial ? 1u : config.sources + 2u;
   const uint32_t out_count = config.serial ? 2u : OUT_COUNT;
   init_frames(in_count);
+  build_views();
   dcache_clean_all();
   fw_state.version = FW_STATE_VERSION;
   fw_state.width = config.width;
@@ -169,18 +194,17 @@ int main(void) {
   pipeline_start(&config, in_count, out_count);
 
   for (;;) {
-    const uint8_t *in;
     uint8_t *out;
     uint32_t sequence;
     /* Checked with interrupts masked: an interrupt that comes after the check still ends the sleep,
      * and is handled when interrupts are unmasked. */
     const uint32_t cpsr = irq_mask();
-    const int work = pipeline_take(&in, &out, &sequence);
+    const int work = pipeline_take(&out, &sequence);
     if (!work) {
       phase_mark(PHASE_IDLE, pipeline_last_sequence());
       wait_for_interrupt();
     }
     irq_restore(cpsr);
-    if (work) process(in, out, sequence);
+    if (work) process(out, sequence);
   }
 }

@@ -39,7 +39,9 @@ static struct {
   int in_second_field; /* of the display, since second_field_start */
   uint32_t second_field_start;
   int window_on;
-  int32_t taken_in, taken_out;
+  uint32_t sources; /* number of frames that a remap may read */
+  held_t held;      /* those frames; only the main loop uses this and what follows */
+  int32_t taken_out;
   uint32_t taken_sequence;
 } pipe;
 
@@ -189,7 +191,8 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   pipe.serial = config->serial;
   pipe.passthrough = out_count == 0;
   pipe.field_ticks = config->is_625 ? 480000u : 400400u; /* 24 MHz / (50, 60000/1001) */
-  pipe.taken_in = pipe.taken_out = -1;
+  pipe.sources = config->sources;
+  pipe.taken_out = OUTPUT_NONE;
   capture_init(&pipe.capture, in_count);
   output_init(&pipe.output, out_count);
 
@@ -209,21 +212,26 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   irq_unmask();
 }
 
-int pipeline_take(const uint8_t **in, uint8_t **out, uint32_t *sequence) {
+int pipeline_take(uint8_t **out, uint32_t *sequence) {
   if (pipe.capture.ready == CAPTURE_NONE) return 0;
+  if (pipe.held.count + 1u < pipe.sources) { /* the first frames only become sources */
+    held_add(&pipe.held, capture_take(&pipe.capture, &pipe.taken_sequence));
+    return 0;
+  }
   const int32_t out_buffer = output_take(&pipe.output);
   if (out_buffer == OUTPUT_NONE) return 0;
   pipe.taken_out = out_buffer;
-  pipe.taken_in = capture_take(&pipe.capture, &pipe.taken_sequence);
-  *in = in_buffer(pipe.taken_in);
+  held_add(&pipe.held, capture_take(&pipe.capture, &pipe.taken_sequence));
   *out = shown_buffer(out_buffer);
   *sequence = pipe.taken_sequence;
   return 1;
 }
 
+const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
+
 void pipeline_done(void) {
   const uint32_t cpsr = irq_mask();
-  capture_release(&pipe.capture, pipe.taken_in);
+  capture_release(&pipe.capture, held_drop(&pipe.held));
   output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */

@@ -16,12 +16,17 @@ void pipeline_prepare(const config_t *config);
  * `in_count` (at least 5) buffers. Stops the program if a driver reports an error. */
 void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count);
 
-/** Provides the next frame and a buffer for its result. @return 0 if there is none. Call with
- * interrupts masked. */
-int pipeline_take(const uint8_t **in, uint8_t **out, uint32_t *sequence);
+/** Takes the next frame as the newest source and provides a buffer for its result. The first frames
+ * are only kept, until there are as many sources as the configuration says. @return 0 if there is
+ * no frame to correct. Call with interrupts masked. */
+int pipeline_take(uint8_t **out, uint32_t *sequence);
+
+/** The source that was taken `age` frames before the one of the last pipeline_take(); `age` is less
+ * than the number of sources. Valid until pipeline_done(). */
+const uint8_t *pipeline_source(uint32_t age);
 
 /** Ends the remap of the frame of the last pipeline_take(): it is displayed from the next possible
- * field on. */
+ * field on. The oldest source is given back to the camera. */
 void pipeline_done(void);
 
 uint32_t pipeline_last_sequence(void);

@@ -17,15 +17,18 @@ typedef struct remap_table {
 } remap_table_t;
 
 typedef struct remap_method {
-  const char *name; /* for messages */
+  const char *name; /* for messages: the word of the parameter page */
   /** Derives `encoded` from `lut`, in memory from `arena`. What was taken is lost after a refusal.
+   * Several tables may be prepared one after the other, each as if it was the only one; what a
+   * method keeps elsewhere (internal RAM, registers) belongs to one of them.
    * @return a null pointer, or the reason why this method does not fit the lens or the picture */
   const char *(*prepare)(remap_table_t *table, arena_t *arena);
-  /** Corrects one frame. The caller has invalidated the D-cache for the source, and cleans it for
-   * the result afterwards. */
+  /** Corrects one frame with any of the tables that were prepared. The caller has invalidated the
+   * D-cache for the source, and cleans it for the result afterwards. */
   void (*run)(const remap_table_t *table, const void *in, void *out);
 } remap_method_t;
 
-extern const remap_method_t method_plain, method_ldm;
+extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
+    method_codes;
 
 #endif

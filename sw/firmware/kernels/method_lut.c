@@ -27,4 +27,4 @@ static void run_ldm(const remap_table_t *table, const void *in, void *out) {
 }
 
 const remap_method_t method_plain = {"plain", prepare, run_plain};
-const remap_method_t method_ldm = {"LDM/STM", prepare, run_ldm};
+const remap_method_t method_ldm = {"ldm", prepare, run_ldm};
