@@ -171,17 +171,17 @@ TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
   EXPECT_TRUE(chip.master.fails(0x01C0'0004));   // a hole that does not answer
   EXPECT_FALSE(chip.master.fails(0x01C4'1004));  // one that does
   EXPECT_TRUE(chip.master.fails(0x01C3'0000));
-  EXPECT_TRUE(chip.master.fails(0x01C4'1000, 32));  // no bursts to registers
+  EXPECT_TRUE(chip.master.fails(0x01C3'0000, 8));  // a burst is as many accesses as it has words
   const std::map<std::pair<Kind, std::string>, std::uint64_t> expected = {
       {{Kind::kNotModelled, "bus error: EMAC at 0x01d07000 is not modelled"}, 2},
       {{Kind::kNotModelled,
         "bus error: EDMA3 channel controller at 0x01c00000 is modelled in part only"},
        1},
       {{Kind::kNotModelled, "BLOCK register at offset 0x4"}, 1},
-      {{Kind::kGuest, "bus error at 0x01c30000"}, 1},
-      {{Kind::kGuest, "bus error at 0x01c41000"}, 1}};
+      {{Kind::kGuest, "bus error at 0x01c30000"}, 2},
+      {{Kind::kGuest, "bus error at 0x01c30004"}, 1}};
   EXPECT_EQ(notes.counts(), expected);
-  EXPECT_EQ(chip.config.stats.errors.count(), 5u);
+  EXPECT_EQ(chip.config.stats.errors.count(), 6u);
 }
 
 }  // namespace
