@@ -7,6 +7,9 @@
 static const remap_method_t *const kMethods[] = {
     [KERNEL_PLAIN] = &method_plain,
     [KERNEL_LDM] = &method_ldm,
+    [KERNEL_GATHER] = &method_gather,
+    [KERNEL_RUNS] = &method_runs,
+    [KERNEL_COPY] = &method_copy,
 };
 
 enum { kMethodCount = sizeof kMethods / sizeof *kMethods };

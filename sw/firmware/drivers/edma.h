@@ -13,6 +13,7 @@
 /* Options of a set. */
 #define EDMA_AB_SYNC (1u << 2) /* a trigger moves a frame of arrays; otherwise one array */
 #define EDMA_STATIC (1u << 3)  /* the set stays as it is: neither counted down nor linked */
+#define EDMA_EARLY (1u << 11)  /* reports when a request is submitted, not when it has ended */
 #define EDMA_CODE(n) ((uint32_t)(n) << 12)
 #define EDMA_INTERRUPT (1u << 20)      /* reports code n at the end of the set's last request */
 #define EDMA_INTERRUPT_EACH (1u << 21) /* reports it at the end of each request before that */

@@ -27,5 +27,6 @@ typedef struct remap_method {
 } remap_method_t;
 
 extern const remap_method_t method_plain, method_ldm;
+extern const remap_method_t method_gather, method_runs, method_copy; /* by the EDMA alone */
 
 #endif
