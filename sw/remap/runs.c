@@ -53,21 +53,27 @@ uint32_t remap_encode_runs(const uint32_t *sources, uint32_t pairs, uint32_t des
                            uint32_t most, remap_run_t *runs) {
   reach_t reach[REMAP_PIECE_MAX + 1u];
   uint16_t rest[REMAP_PIECE_MAX + 1u]; /* runs from a pair to the end */
-  uint8_t couples[REMAP_PIECE_MAX];     /* a run of couples begins here */
+  struct {
+    uint16_t pairs, bytes; /* of the run, and of its arrays */
+  } run[REMAP_PIECE_MAX];  /* the one that begins at a pair */
   rest[pairs] = 0;
   for (uint32_t i = pairs; i-- > 0;) {
     reach[i] = reach_of(sources, pairs, i, &reach[i + 1u]);
-    const uint16_t singles = rest[i + reach[i].singles];
-    couples[i] = reach[i].couples != 0 && rest[i + reach[i].couples] < singles;
-    rest[i] = (uint16_t)(1u + (couples[i] ? rest[i + reach[i].couples] : singles));
+    const uint32_t singles = i + reach[i].singles, couples = i + reach[i].couples;
+    uint32_t end = singles;
+    run[i].bytes = PAIR_BYTES;
+    /* One pair alone leaves the next one to a couple or to a run with another step. */
+    if (rest[i + 1u] < rest[end]) end = i + 1u;
+    if (couples != i && rest[couples] < rest[end]) {
+      end = couples;
+      run[i].bytes = 2u * PAIR_BYTES;
+    }
+    run[i].pairs = (uint16_t)(end - i);
+    rest[i] = (uint16_t)(rest[end] + 1u);
   }
   if (rest[0] > most) return 0;
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < pairs;) {
-    const uint32_t length = couples[i] ? reach[i].couples : reach[i].singles;
-    runs[n++] = couples[i] ? run_at(sources, i, destination, 2u * PAIR_BYTES, length / 2u)
-                           : run_at(sources, i, destination, PAIR_BYTES, length);
-    i += length;
-  }
-  return n;
+  for (uint32_t i = 0, n = 0; i < pairs; i += run[i].pairs)
+    runs[n++] = run_at(sources, i, destination, run[i].bytes,
+                       run[i].pairs * PAIR_BYTES / run[i].bytes);
+  return rest[0];
 }

@@ -32,8 +32,8 @@ typedef struct remap_run {
 #define REMAP_PIECE_MAX 256u /* pairs of a piece that can be encoded in runs */
 
 /** Encodes a piece in runs of pairs that are equally spaced at the source, or of couples of neighbouring
- * pairs that are. Each run goes on as long as it can; among those divisions it is the one with the fewest
- * runs.
+ * pairs that are. Each run goes on as long as it can or has one pair; among those divisions it is one with
+ * the fewest runs.
  * @param sources the pairs' addresses, or offsets from any base
  * @param pairs number of pairs, 1 to REMAP_PIECE_MAX
  * @param destination where the first pair goes

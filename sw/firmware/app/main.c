@@ -133,12 +133,11 @@ int main(void) {
     overlay_value = (uint8_t)overlay_patch(OVERLAY_LUMA_PATCHED);
     fw_state.patched_value = overlay_value;
   }
-  build_lut();
-  prepare_method();
-
   const uint32_t in_count = config.serial ? 1u : IN_COUNT;
   const uint32_t out_count = config.serial ? 2u : OUT_COUNT;
   init_frames(in_count);
+  build_lut();
+  prepare_method();
   dcache_clean_all();
   fw_state.version = FW_STATE_VERSION;
   fw_state.width = config.width;

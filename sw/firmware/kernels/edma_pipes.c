@@ -77,7 +77,7 @@ void pipe_make_control(uint32_t *record, uint32_t pipe, uint32_t moves, uint32_t
   record[1] = 0;
   record[2] = 1; /* frames of the dummy set */
   record[3] = EDMA_STATIC | EDMA_AB_SYNC | EDMA_CHAIN | EDMA_CODE(channel(pipe, GATHER));
-  record[4] = sources_address;
+  record[PIPE_CONTROL_SOURCE] = sources_address;
   record[5] = EDMA_PAIR(sizeof(remap_run_t), moves);
   record[6] = EDMA_PARAM_SRC(pipe_set(pipe, 0, moves));
   record[7] = EDMA_PAIR(sizeof(remap_run_t), sizeof(edma_set_t));
@@ -85,15 +85,23 @@ void pipe_make_control(uint32_t *record, uint32_t pipe, uint32_t moves, uint32_t
 
 /* Writes lists for a source frame from lists for another one; both may be the same memory. */
 static void rebase(const pipes_t *pipes, pipes_lists_t *to, const pipes_lists_t *from, uint32_t base) {
-  const uint32_t distance = base - from->base, step = pipes->entry_words;
-  const uint32_t moved = (uint32_t)to->sources - (uint32_t)from->sources;
-  const uint32_t words = pipes->entries * step;
-  for (uint32_t n = 0; n < words; n += step) {
-    to->sources[n] = from->sources[n] + distance;
-    for (uint32_t k = 1; k < step; ++k) to->sources[n + k] = from->sources[n + k];
+  const uint32_t distance = base - from->base;
+  if (pipes->controls == 0) {
+    for (uint32_t n = 0; n < pipes->entries; ++n) to->sources[n] = from->sources[n] + distance;
+  } else {
+    const remap_run_t *run = (const remap_run_t *)from->sources;
+    remap_run_t *moved = (remap_run_t *)to->sources;
+    for (uint32_t n = 0; n < pipes->entries; ++n) {
+      remap_run_t r = run[n];
+      r.source += distance;
+      moved[n] = r;
+    }
   }
-  for (uint32_t n = 0; moved != 0 && n < pipes->controls * PIPE_CONTROL_WORDS; ++n)
-    to->control[n] = from->control[n] + (n % PIPE_CONTROL_WORDS == 4u ? moved : 0u);
+  if (to != from) {
+    const uint32_t lists = (uint32_t)to->sources - (uint32_t)from->sources;
+    for (uint32_t n = 0; n < pipes->controls * PIPE_CONTROL_WORDS; ++n)
+      to->control[n] = from->control[n] + (n % PIPE_CONTROL_WORDS == PIPE_CONTROL_SOURCE ? lists : 0u);
+  }
   to->base = base;
   to->taken = 1;
   dcache_clean_all();
@@ -126,7 +134,11 @@ void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena) {
   }
   table->encoded = pipes;
   table->encoded_bytes = sources + control + (uint32_t)sizeof pipes->ring;
-  dcache_clean_all();
+  /* A list for each source frame, so that the first frames need not wait for it. The first lists are those
+   * that the others are made from. */
+  if (frame_stride != 0)
+    for (uint32_t n = pipes->list_count; n-- > 0;)
+      rebase(pipes, &pipes->lists[n], &pipes->lists[0], (uint32_t)frame_in + n * frame_stride);
   edma_wait_prepare(channel(0, CONTROL), CHANNELS_OF_PIPE, PIPES);
 }
 

@@ -26,6 +26,7 @@ typedef struct pipes_lists {
 } pipes_lists_t;
 
 #define PIPE_CONTROL_WORDS 8u
+#define PIPE_CONTROL_SOURCE 4u /* the one that holds an address of `sources` */
 
 /** In `encoded` of a remap_table_t. */
 typedef struct pipes {
