@@ -34,9 +34,24 @@ uint32_t pipe_set(uint32_t pipe, uint32_t n, uint32_t moves) {
 uint32_t pipe_result(uint32_t pipe) { return RESULT_BASE + PIPE_PIECE_BYTES * pipe; }
 
 const char *pipes_refuse(const remap_table_t *table) {
-  if (table->height < PIPES) return "fewer than 4 rows";
-  if (table->pitch_bytes * PIPES > 0x7FFFu) return "4 rows are beyond an index of 16 bits";
-  return NULL;
+  return table->pitch_bytes > 0x7FFFu ? "a row is beyond an index of 16 bits" : NULL;
+}
+
+uint32_t pipe_row(const pipes_t *pipes, uint32_t height, uint32_t pipe) {
+  uint32_t before = 0, all = 0;
+  for (uint32_t n = 0; n < PIPES; ++n) {
+    if (n < pipe) before += pipes->shares[n];
+    all += pipes->shares[n];
+  }
+  return height * before / all;
+}
+
+/* The codes by which the pipes that have rows report their end. */
+static edma_codes_t codes_of(const pipes_t *pipes, uint32_t height) {
+  edma_codes_t codes = {channel(0, CONTROL), CHANNELS_OF_PIPE, 0};
+  for (uint32_t pipe = 0; pipe < PIPES; ++pipe)
+    if (pipe_row(pipes, height, pipe + 1u) > pipe_row(pipes, height, pipe)) codes.mask |= 1u << pipe;
+  return codes;
 }
 
 static void make_ring(edma_set_t *ring, uint32_t pipe, uint32_t moves) {
@@ -139,14 +154,15 @@ void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena) {
   if (frame_stride != 0)
     for (uint32_t n = pipes->list_count; n-- > 0;)
       rebase(pipes, &pipes->lists[n], &pipes->lists[0], (uint32_t)frame_in + n * frame_stride);
-  edma_wait_prepare(channel(0, CONTROL), CHANNELS_OF_PIPE, PIPES);
+  edma_wait_prepare(codes_of(pipes, table->height));
 }
 
 /* Writes the sets of a pipe's channels and triggers the first one. */
 static void start_pipe(const pipes_t *pipes, uint32_t pipe, const remap_table_t *table,
                        const pipes_lists_t *lists, uint32_t out) {
   const remap_pieces_t *pieces = &pipes->pieces;
-  const uint32_t rows = pipe_rows(table->height, pipe);
+  const uint32_t first_row = pipe_row(pipes, table->height, pipe);
+  const uint32_t rows = pipe_row(pipes, table->height, pipe + 1u) - first_row;
   const uint32_t feeder = channel(pipe, pipes->controls != 0 ? CONTROL : LOAD);
   for (uint32_t which = BOOT; which <= STORE; ++which) edma_map(channel(pipe, which), pipe);
 
@@ -189,10 +205,10 @@ static void start_pipe(const pipes_t *pipes, uint32_t pipe, const remap_table_t 
       .options = EDMA_CODE(feeder) | EDMA_CHAIN | EDMA_CHAIN_EACH | EDMA_EARLY,
       .source = pipe_result(pipe),
       .counts = EDMA_PAIR(4u * pieces->pairs, pieces->count),
-      .destination = out + table->pitch_bytes * pipe,
+      .destination = out + table->pitch_bytes * first_row,
       .array_steps = EDMA_PAIR(0, piece_step),
       .link = EDMA_PAIR(EDMA_NO_LINK, pieces->count),
-      .frame_steps = EDMA_PAIR(0, PIPES * table->pitch_bytes - piece_step * (pieces->count - 1u)),
+      .frame_steps = EDMA_PAIR(0, table->pitch_bytes - piece_step * (pieces->count - 1u)),
       .frames = rows};
   edma_write_set(channel(pipe, STORE), &store);
   edma_start(channel(pipe, BOOT));
@@ -203,7 +219,8 @@ void pipes_run(const remap_table_t *table, const void *in, void *out) {
   const pipes_lists_t *lists = lists_for(pipes, (uint32_t)in);
   /* The core may still have lines of an earlier result, which it has drawn on. */
   dcache_invalidate_range(out, table->height * table->pitch_bytes);
+  const edma_codes_t codes = codes_of(pipes, table->height);
   for (uint32_t pipe = 0; pipe < PIPES; ++pipe)
-    start_pipe(pipes, pipe, table, lists, (uint32_t)out);
-  edma_wait_all(channel(0, CONTROL), CHANNELS_OF_PIPE, PIPES);
+    if (codes.mask >> pipe & 1u) start_pipe(pipes, pipe, table, lists, (uint32_t)out);
+  edma_wait_all(codes);
 }

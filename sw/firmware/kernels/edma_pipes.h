@@ -1,5 +1,5 @@
 /* Four pipes, one for each transfer controller of the EDMA, through which the rows of a picture are
- * corrected without the core: each takes every fourth row, piece by piece. The pieces are encoded as
+ * corrected without the core: each takes a part of the rows, piece by piece. The pieces are encoded as
  * lists in SDRAM; README.md, "Remap by the EDMA", describes them and the channels. */
 #ifndef FOVEA_FIRMWARE_EDMA_PIPES_H
 #define FOVEA_FIRMWARE_EDMA_PIPES_H
@@ -32,6 +32,7 @@ typedef struct pipes_lists {
 typedef struct pipes {
   edma_set_t ring[PIPES][PIPE_SETS]; /* as they are loaded for each frame; first, to be aligned */
   remap_pieces_t pieces;
+  uint8_t shares[PIPES]; /* parts of the rows */
   uint32_t entries, entry_words, controls;
   uint32_t first_entry[PIPES]; /* where the pipe's part of the sources begins; without control */
   uint32_t list_count;         /* of `lists` in use */
@@ -39,10 +40,8 @@ typedef struct pipes {
   pipes_lists_t lists[IN_COUNT];
 } pipes_t;
 
-/** Rows of a pipe: `pipe`, `pipe` + PIPES and so on. */
-static inline uint32_t pipe_rows(uint32_t height, uint32_t pipe) {
-  return (height - pipe + PIPES - 1u) / PIPES;
-}
+/** The first row of a pipe; that of pipe PIPES is the height. A pipe may have no rows. */
+uint32_t pipe_row(const pipes_t *pipes, uint32_t height, uint32_t pipe);
 
 /** A picture that no pipe method takes, or a null pointer. */
 const char *pipes_refuse(const remap_table_t *table);

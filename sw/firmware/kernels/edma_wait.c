@@ -10,22 +10,23 @@
 #define INTERRUPT_PRIORITY 4u
 #define LONGEST_TICKS (2000u * TIMER_TICKS_PER_MS)
 
-void edma_wait_prepare(uint32_t first, uint32_t pitch, uint32_t count) {
+void edma_wait_prepare(edma_codes_t codes) {
   edma_init();
-  for (uint32_t n = 0; n < count; ++n) edma_open_interrupt(first + pitch * n);
+  for (uint32_t n = 0; codes.mask >> n != 0; ++n)
+    if (codes.mask >> n & 1u) edma_open_interrupt(codes.first + codes.pitch * n);
   intc_enable(IRQ_EDMA_CCINT0, INTERRUPT_PRIORITY);
 }
 
 /* Clears the codes that have been reported, and returns those still missing. All are looked at each time:
  * the interrupt comes again only when no open code is pending. */
-static uint32_t still_missing(uint32_t missing, uint32_t first, uint32_t pitch) {
-  for (uint32_t n = 0; missing >> n != 0; ++n) {
-    const uint32_t code = first + pitch * n;
-    if ((missing >> n & 1u) == 0 || !edma_done(code)) continue;
+static uint32_t still_missing(edma_codes_t codes) {
+  for (uint32_t n = 0; codes.mask >> n != 0; ++n) {
+    const uint32_t code = codes.first + codes.pitch * n;
+    if ((codes.mask >> n & 1u) == 0 || !edma_done(code)) continue;
     edma_clear(code);
-    missing &= ~(1u << n);
+    codes.mask &= ~(1u << n);
   }
-  return missing;
+  return codes.mask;
 }
 
 static void report(const char *what, uint32_t number) {
@@ -35,21 +36,21 @@ static void report(const char *what, uint32_t number) {
   uart_puts("\n");
 }
 
-void edma_wait_all(uint32_t first, uint32_t pitch, uint32_t count) {
+void edma_wait_all(edma_codes_t codes) {
   const uint32_t start = timer_ticks();
-  uint32_t missing = (1u << count) - 1u;
+  edma_codes_t missing = codes;
   for (;;) {
     /* Checked with interrupts masked: one that comes after the check still ends the sleep. */
     const uint32_t cpsr = irq_mask();
-    const uint32_t before = missing;
-    missing = still_missing(missing, first, pitch);
+    const uint32_t before = missing.mask;
+    missing.mask = still_missing(missing);
     const int late = timer_ticks() - start > LONGEST_TICKS;
-    if (missing != 0 && missing == before && !late) wait_for_interrupt();
+    if (missing.mask != 0 && missing.mask == before && !late) wait_for_interrupt();
     irq_restore(cpsr);
-    if (missing == 0 || late) break;
+    if (missing.mask == 0 || late) break;
   }
   const uint32_t errors = edma_errors();
   if (errors != 0) report("errors ", errors);
-  if (missing != 0) report("no report of ", missing);
-  if (errors != 0 || missing != 0) edma_wait_prepare(first, pitch, count);
+  if (missing.mask != 0) report("no report of ", missing.mask);
+  if (errors != 0 || missing.mask != 0) edma_wait_prepare(codes);
 }

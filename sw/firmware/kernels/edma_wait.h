@@ -4,12 +4,17 @@
 
 #include <stdint.h>
 
-/** Switches the EDMA on, and opens the interrupts of `count` codes `pitch` apart. */
-void edma_wait_prepare(uint32_t first, uint32_t pitch, uint32_t count);
+/** Completion codes `first` + n * `pitch`, for each bit n of `mask`. */
+typedef struct edma_codes {
+  uint32_t first, pitch, mask;
+} edma_codes_t;
+
+/** Switches the EDMA on, and opens the interrupts of these codes. */
+void edma_wait_prepare(edma_codes_t codes);
 
 /** Sleeps until all of these codes have been reported, and clears them. Interrupts are handled
  * meanwhile. Errors of the EDMA, or no report for two seconds, are a line on the UART; the EDMA is
  * then started anew for the next frame. */
-void edma_wait_all(uint32_t first, uint32_t pitch, uint32_t count);
+void edma_wait_all(edma_codes_t codes);
 
 #endif

@@ -8,12 +8,14 @@
 
 #define FIRST_CHANNEL 32u
 
+static const edma_codes_t kCodes = {FIRST_CHANNEL, 1, (1u << EDMA_QUEUES) - 1u};
+
 static const char *prepare(remap_table_t *table, arena_t *arena) {
   (void)arena;
   if (table->height < EDMA_QUEUES) return "fewer than 4 rows";
   if (table->pitch_bytes > 0x7FFFu) return "a row is beyond an index of 16 bits";
   table->encoded_bytes = 0;
-  edma_wait_prepare(FIRST_CHANNEL, 1, EDMA_QUEUES);
+  edma_wait_prepare(kCodes);
   return NULL;
 }
 
@@ -35,7 +37,7 @@ static void run(const remap_table_t *table, const void *in, void *out) {
     edma_write_set(channel, &set);
     edma_start(channel);
   }
-  edma_wait_all(FIRST_CHANNEL, 1, EDMA_QUEUES);
+  edma_wait_all(kCodes);
 }
 
 const remap_method_t method_copy = {"EDMA copy", prepare, run};

@@ -5,6 +5,10 @@
 #include "../drivers/cp15.h"
 #include "edma_pipes.h"
 
+#ifndef SHARES
+#define SHARES {1, 1, 1, 1}
+#endif
+
 /* Encodes the picture in pieces as pipes->pieces says, into memory from `start` to `end`: control records
  * first, then runs.
  * @return the end of what is used; 0 if there is not enough memory, or 1 if a piece has too many runs */
@@ -19,7 +23,8 @@ static uintptr_t encode(pipes_t *pipes, const remap_table_t *table, uintptr_t st
   pipes->lists[0] = (pipes_lists_t){.sources = (uint32_t *)runs, .control = control};
   for (uint32_t pipe = 0; pipe < PIPES; ++pipe) {
     pipes->first_entry[pipe] = (uint32_t)(control - pipes->lists[0].control) / PIPE_CONTROL_WORDS;
-    for (uint32_t row = pipe; row < table->height; row += PIPES)
+    const uint32_t end_row = pipe_row(pipes, table->height, pipe + 1u);
+    for (uint32_t row = pipe_row(pipes, table->height, pipe); row < end_row; ++row)
       for (uint32_t piece = 0; piece < pieces->count; ++piece) {
         if (end - (uintptr_t)runs < PIPE_MOVES * sizeof *runs) return 0;
         const uint32_t n =
@@ -41,7 +46,7 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   pipes_t *pipes = arena_take(arena, sizeof *pipes, CACHE_LINE_BYTES);
   uint8_t *start = pipes != NULL ? arena_take(arena, 0, CACHE_LINE_BYTES) : NULL;
   if (start == NULL) return "no memory";
-  *pipes = (pipes_t){.entry_words = sizeof(remap_run_t) / 4u};
+  *pipes = (pipes_t){.entry_words = sizeof(remap_run_t) / 4u, .shares = SHARES};
   /* Longer pieces cost less, but may have more runs than there are sets. Pieces that have as many pairs as
    * there are sets always fit. */
   uintptr_t used;
