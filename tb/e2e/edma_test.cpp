@@ -38,7 +38,7 @@ const Picture kPictures[] = {
     {"Overlapping_pieces", {{"video.width", "188"}, {"video.height", "12"}}},
     {"Smallest", {{"video.width", "4"}, {"video.height", "4"}}},
     {"Black_rims",
-     {{"video.width", "128"}, {"video.height", "48"}, {"lens.shift_x", "41.5"}, {"lens.shift_y", "-11"}}},
+     {{"video.width", "128"}, {"video.height", "48"}, {"lens.shift_x", "41.5px"}, {"lens.shift_y", "-11px"}}},
     {"Ntsc_method_B",
      {{"video.standard", "ntsc"}, {"video.width", "240"}, {"video.height", "20"},
       {"lens.mapping", "stereographic"}, {"lens.pair", "B"}}},
@@ -114,7 +114,7 @@ TEST(EdmaTest, ErrorsAreReportedOnceAndTheNextFramesAreRight) {
   rig.board().dm365.edma_tcs[2]->regs.errstat.set(1);
   frames_until(6);
   const std::string text = rig.board().uart_text();
-  const auto at = text.find("EDMA: errors 0x00000041\n");
+  const auto at = text.find("EDMA: errors 0x00000041");
   ASSERT_NE(at, std::string::npos) << text;
   EXPECT_EQ(text.find("EDMA: ", at + 1), std::string::npos) << text;
   EXPECT_EQ(rig.board().dm365.edma.regs.emr.get(), 0u);

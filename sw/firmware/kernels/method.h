@@ -26,7 +26,8 @@ typedef struct remap_method {
   void (*run)(const remap_table_t *table, const void *in, void *out);
 } remap_method_t;
 
-extern const remap_method_t method_plain, method_ldm;
+extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
+    method_codes;
 extern const remap_method_t method_gather, method_runs, method_copy; /* by the EDMA alone */
 
 #endif

@@ -4,9 +4,10 @@
 #include "../drivers/cp15.h"
 #include "edma_pipes.h"
 
-#ifndef SHARES
-#define SHARES {1, 1, 1, 1}
-#endif
+/* The channel controller binds, and serves the lower queue first: the pipes of the lower queues run at
+ * their full speed, and the others take what is left. With these shares all end at nearly the same time
+ * (measured). */
+#define SHARES {7, 5, 3, 1}
 
 /* Offsets in the order in which the pipes take the pairs. */
 static void fill(pipes_t *pipes, const remap_table_t *table) {
