@@ -55,6 +55,9 @@ Picoseconds ConfigBus::latency(std::uint32_t address) const {
   return b && b->speed == Speed::kSlow ? params_.slow_latency() : params_.fast_latency();
 }
 
+/// A burst to nowhere is one bus error.
+bool ConfigBus::divided(const MemRequest& r) const { return r.bytes > 4 && find(r.address); }
+
 namespace {
 /// Bytes of the access at `address`, of which `left` are wanted: a word, or what is aligned.
 unsigned access_bytes(std::uint32_t address, unsigned left) {
@@ -63,7 +66,8 @@ unsigned access_bytes(std::uint32_t address, unsigned left) {
   return bytes;
 }
 
-unsigned accesses(const MemRequest& r) {
+unsigned accesses(const MemRequest& r, bool divided) {
+  if (!divided) return 1;
   unsigned n = 0;
   for (unsigned done = 0; done < r.bytes; ++n) done += access_bytes(r.address + done, r.bytes - done);
   return n;
@@ -79,7 +83,7 @@ tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
   Picoseconds& free = free_[index(r.master)];
   const Picoseconds start = std::max(Picoseconds{kernel_time() + delay.value()}, free);
   const Picoseconds one = latency(r.address);
-  free = start + one * (r.bytes > 4 ? accesses(r) : 1);
+  free = start + one * accesses(r, divided(r));
   r.error = false;
   end_of_instant_.at(start + one, static_cast<unsigned>(index(r.master)), [this, &r] { access(r, 0); });
   return tlm::TLM_UPDATED;
@@ -98,7 +102,8 @@ void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t 
 /// The access at byte `offset` of the request, at its time. An access of a single request may be
 /// unaligned or of 3 bytes: the block says what it thinks of that.
 void ConfigBus::access(MemRequest& r, unsigned offset) {
-  const unsigned bytes = r.bytes <= 4 ? r.bytes : access_bytes(r.address + offset, r.bytes - offset);
+  const unsigned bytes =
+      divided(r) ? access_bytes(r.address + offset, r.bytes - offset) : r.bytes;
   accessing_ = r.master;
   if (!in_reset_ && !access_word(r, offset, bytes)) r.error = true;
   if (offset + bytes < r.bytes) {

@@ -84,6 +84,7 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   struct Block;
   const Block* find(std::uint64_t address) const;
   Picoseconds latency(std::uint32_t address) const;
+  bool divided(const MemRequest& r) const;
   void access(MemRequest& r, unsigned offset);
   bool access_word(MemRequest& r, unsigned offset, unsigned bytes);
   void bus_error(std::uint32_t address);
