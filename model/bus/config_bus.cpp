@@ -1,5 +1,7 @@
 #include "model/bus/config_bus.h"
 
+#include <algorithm>
+
 #include "model/common/check.h"
 
 namespace fovea::bus {
@@ -48,49 +50,86 @@ const ConfigBus::Block* ConfigBus::find(std::uint64_t address) const {
   return nullptr;
 }
 
+Picoseconds ConfigBus::latency(std::uint32_t address) const {
+  const Block* b = find(address);
+  return b && b->speed == Speed::kSlow ? params_.slow_latency() : params_.fast_latency();
+}
+
+/// A burst to nowhere is one bus error.
+bool ConfigBus::divided(const MemRequest& r) const { return r.bytes > 4 && find(r.address); }
+
+namespace {
+/// Bytes of the access at `address`, of which `left` are wanted: a word, or what is aligned.
+unsigned access_bytes(std::uint32_t address, unsigned left) {
+  unsigned bytes = 4;
+  while (bytes > left || address % bytes) bytes /= 2;
+  return bytes;
+}
+
+unsigned accesses(const MemRequest& r, bool divided) {
+  if (!divided) return 1;
+  unsigned n = 0;
+  for (unsigned done = 0; done < r.bytes; ++n) done += access_bytes(r.address + done, r.bytes - done);
+  return n;
+}
+}  // namespace
+
 tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
                                               sc_core::sc_time& delay) {
   if (phase != MemPhase::kRequest) return tlm::TLM_ACCEPTED;
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   ++(r.write ? stats.writes : stats.reads);
   (r.write ? stats.write_bytes : stats.read_bytes) += r.bytes;
-  const Block* b = find(r.address);
-  const Picoseconds latency = b && b->speed == Speed::kSlow ? params_.slow_latency()
-                                                            : params_.fast_latency();
-  end_of_instant_.at(kernel_time() + delay.value() + latency, static_cast<unsigned>(index(r.master)),
-            [this, &r] { access(r); });
+  Picoseconds& free = free_[index(r.master)];
+  const Picoseconds start = std::max(Picoseconds{kernel_time() + delay.value()}, free);
+  const Picoseconds one = latency(r.address);
+  free = start + one * accesses(r, divided(r));
+  r.error = false;
+  end_of_instant_.at(start + one, static_cast<unsigned>(index(r.master)), [this, &r] { access(r, 0); });
   return tlm::TLM_UPDATED;
 }
 
 /// The register blocks speak the base protocol.
-void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base) {
+void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base, unsigned offset,
+                     unsigned bytes) {
   gp.set_command(r.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-  gp.set_address(r.address - base);
-  gp.set_data_ptr(r.data);
-  gp.set_data_length(r.bytes);
-  gp.set_streaming_width(r.bytes);
+  gp.set_address(r.address + offset - base);
+  gp.set_data_ptr(r.data + offset);
+  gp.set_data_length(bytes);
+  gp.set_streaming_width(bytes);
 }
 
-void ConfigBus::access(MemRequest& r) {
-  const Block* b = find(r.address);
+/// The access at byte `offset` of the request, at its time. An access of a single request may be
+/// unaligned or of 3 bytes: the block says what it thinks of that.
+void ConfigBus::access(MemRequest& r, unsigned offset) {
+  const unsigned bytes =
+      divided(r) ? access_bytes(r.address + offset, r.bytes - offset) : r.bytes;
   accessing_ = r.master;
-  // Bursts to registers do not exist on this bus.
-  if (in_reset_) {
-    r.error = false;
-  } else if (!b || r.bytes > 4) {
-    r.error = true;
-    bus_error(r.address);
-  } else {
-    tlm::tlm_generic_payload gp;
-    fill(gp, r, b->base);
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    const_cast<Block*>(b)->initiator->b_transport(gp, delay);
-    r.error = gp.is_response_error();
-    if (gp.get_response_status() == tlm::TLM_ADDRESS_ERROR_RESPONSE) bus_error(r.address);
+  if (!in_reset_ && !access_word(r, offset, bytes)) r.error = true;
+  if (offset + bytes < r.bytes) {
+    end_of_instant_.at(kernel_time() + latency(r.address), static_cast<unsigned>(index(r.master)),
+                       [this, &r, next = offset + bytes] { access(r, next); });
+    return;
   }
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
   socket->nb_transport_bw(r, phase, delay);
+}
+
+/// False: a bus error.
+bool ConfigBus::access_word(MemRequest& r, unsigned offset, unsigned bytes) {
+  const std::uint32_t address = r.address + offset;
+  const Block* b = find(address);
+  if (!b) {
+    bus_error(address);
+    return false;
+  }
+  tlm::tlm_generic_payload gp;
+  fill(gp, r, b->base, offset, bytes);
+  sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+  const_cast<Block*>(b)->initiator->b_transport(gp, delay);
+  if (gp.get_response_status() == tlm::TLM_ADDRESS_ERROR_RESPONSE) bus_error(address);
+  return !gp.is_response_error();
 }
 
 /// Documented blocks are named once each, whichever of their addresses is touched.
@@ -109,7 +148,7 @@ unsigned ConfigBus::transport_dbg(MemRequest& r) {
   const Block* b = find(r.address);
   if (!b) return 0;
   tlm::tlm_generic_payload gp;
-  fill(gp, r, b->base);
+  fill(gp, r, b->base, 0, r.bytes);
   return const_cast<Block*>(b)->initiator->transport_dbg(gp);
 }
 

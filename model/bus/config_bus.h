@@ -1,5 +1,6 @@
 // The configuration bus: register accesses at their exact time.
 #pragma once
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -35,8 +36,8 @@ struct ConfigBusParams : ParamGroup {
 };
 
 struct ConfigBusStats : StatGroup {
-  Counter reads{*this, "reads", "1", "register reads"};
-  Counter writes{*this, "writes", "1", "register writes"};
+  Counter reads{*this, "reads", "1", "register reads; a burst is one"};
+  Counter writes{*this, "writes", "1", "register writes; a burst is one"};
   Counter read_bytes{*this, "read_bytes", "B", "bytes of register reads"};
   Counter write_bytes{*this, "write_bytes", "B", "bytes of register writes"};
   Counter errors{*this, "errors", "1", "register accesses to addresses where nothing answers"};
@@ -45,8 +46,11 @@ struct ConfigBusStats : StatGroup {
 
 /// Decodes register addresses, waits the latency of the block's class, and makes the access in the
 /// end-of-instant phase, so that the register is seen after everything else that happens at
-/// that time. One access at a time per master port; several masters' accesses of one instant go by
-/// master number.
+/// that time. One access at a time per master port, in the order of the requests; several masters'
+/// accesses of one instant go by master number. A burst is divided into accesses of at most a word, one
+/// after the other with the latency of each, as by the bridge to a bus of 32 bits without bursts
+/// (assumed: no public document of this chip shows it; TI's guides let the EDMA write its own
+/// parameter sets, SPRUH82C).
 class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
  public:
   enum class Speed { kFast, kSlow };
@@ -79,14 +83,19 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
  private:
   struct Block;
   const Block* find(std::uint64_t address) const;
-  void access(MemRequest& r);
+  Picoseconds latency(std::uint32_t address) const;
+  bool divided(const MemRequest& r) const;
+  void access(MemRequest& r, unsigned offset);
+  bool access_word(MemRequest& r, unsigned offset, unsigned bytes);
   void bus_error(std::uint32_t address);
-  static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base);
+  static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base, unsigned offset,
+                   unsigned bytes);
 
   const ConfigBusParams& params_;
   EndOfInstant& end_of_instant_;
   Master accessing_ = Master::kArmD;
   bool in_reset_ = false;
+  std::array<Picoseconds, kMasterCount> free_{};  // by master: when its latest request ends
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 

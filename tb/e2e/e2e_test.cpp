@@ -279,6 +279,17 @@ TEST(CoherencyTest, OverlayIsShownWithClean) {
   for (const Shown& s : rig.shown()) expect_equal(with_box(correct_frame(rig, s)), s);
 }
 
+/// The EDMA writes a result behind the cache, in which the box of an earlier frame in the same buffer is left.
+class OverlayTest : public testing::TestWithParam<const char*> {};
+TEST_P(OverlayTest, IsDrawnOnWhatTheEdmaWrote) {
+  Rig rig;
+  rig.set("firmware.kernel", GetParam()).set("cpu.dcache.size", kCacheThatHoldsEverything);
+  run_overlay(rig);
+  for (const Shown& s : rig.shown()) expect_equal(with_box(correct_frame(rig, s)), s);
+}
+INSTANTIATE_TEST_SUITE_P(Edma, OverlayTest, testing::Values("gather", "runs"),
+                         [](const auto& i) { return std::string(i.param); });
+
 // Without a clean the box stays in the cache until the next remap begins, which cleans and
 // invalidates all of it. In this flow each result is shown twice, and the next remap begins before the
 // second time: the first showing lacks the box, the second one has it.

@@ -133,6 +133,51 @@ struct Initiator : sc_core::sc_module, MemInitiatorIf {
   }
 };
 
+/// Requests of one or several masters at the same time, and when each has ended.
+struct Requests : sc_core::sc_module, MemInitiatorIf {
+  struct Ended {
+    Picoseconds after;
+    bool error;
+  };
+  MemInitiatorSocket<32> socket{"socket"};
+  std::map<const MemRequest*, Ended> ended;
+  Picoseconds start = 0;
+  explicit Requests(sc_core::sc_module_name name) : sc_module(name) { socket.bind(*this); }
+  tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase&, sc_core::sc_time&) override {
+    ended[&r] = {kernel_time() - start, r.error};
+    return tlm::TLM_COMPLETED;
+  }
+  std::vector<Ended> run(std::vector<MemRequest>& requests) {
+    ended.clear();
+    start = kernel_time();
+    for (MemRequest& r : requests) {
+      MemPhase phase = MemPhase::kRequest;
+      sc_core::sc_time delay;
+      socket->nb_transport_fw(r, phase, delay);
+    }
+    while (ended.size() < requests.size()) test::run_until(test::now() + kPsPerNs);
+    std::vector<Ended> out;
+    for (const MemRequest& r : requests) out.push_back(ended.at(&r));
+    return out;
+  }
+};
+
+/// Another bus, with the master above.
+struct BurstChip {
+  bus::ConfigBusParams params;
+  bus::ConfigBus config;
+  Block edma{"burst_edma"}, timer{"burst_timer"};
+  Requests master{"burst_master"};
+  explicit BurstChip(EndOfInstant& end_of_instant)
+      : config("burst_config", params, end_of_instant,
+               {{"edma", 0x01C0'0000, 0x1'0000, bus::ConfigBus::Speed::kFast},
+                {"timer", 0x01C2'1400, 0x400, bus::ConfigBus::Speed::kSlow}}) {
+    config.to("edma").bind(edma.reg_socket);
+    config.to("timer").bind(timer.reg_socket);
+    master.socket.bind(config.socket);
+  }
+};
+
 struct Chip {
   EndOfInstant end_of_instant{"end_of_instant"};
   bus::ConfigBusParams params;
@@ -143,6 +188,7 @@ struct Chip {
                          {"psc", 0x01C4'1000, 0x1000, bus::ConfigBus::Speed::kFast}}};
   Block edma{"edma"}, psc{"psc"};
   Initiator master{"master"};
+  BurstChip burst{end_of_instant};
   Chip() {
     // Rows in which the EDMA would be modelled in part only.
     static const Placements rows = [] {
@@ -158,8 +204,14 @@ struct Chip {
   }
 };
 
-TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
+/// A process elaborates once.
+Chip& the_chip() {
   static Chip chip;
+  return chip;
+}
+
+TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
+  Chip& chip = the_chip();
   auto& notes = Diagnostics::instance();
   using Kind = Diagnostics::Kind;
   notes.clear();
@@ -171,17 +223,79 @@ TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
   EXPECT_TRUE(chip.master.fails(0x01C0'0004));   // a hole that does not answer
   EXPECT_FALSE(chip.master.fails(0x01C4'1004));  // one that does
   EXPECT_TRUE(chip.master.fails(0x01C3'0000));
-  EXPECT_TRUE(chip.master.fails(0x01C4'1000, 32));  // no bursts to registers
+  EXPECT_TRUE(chip.master.fails(0x01C3'0000, 32));  // a burst to nowhere is one error
   const std::map<std::pair<Kind, std::string>, std::uint64_t> expected = {
       {{Kind::kNotModelled, "bus error: EMAC at 0x01d07000 is not modelled"}, 2},
       {{Kind::kNotModelled,
         "bus error: EDMA3 channel controller at 0x01c00000 is modelled in part only"},
        1},
       {{Kind::kNotModelled, "BLOCK register at offset 0x4"}, 1},
-      {{Kind::kGuest, "bus error at 0x01c30000"}, 1},
-      {{Kind::kGuest, "bus error at 0x01c41000"}, 1}};
+      {{Kind::kGuest, "bus error at 0x01c30000"}, 2}};
   EXPECT_EQ(notes.counts(), expected);
   EXPECT_EQ(chip.config.stats.errors.count(), 5u);
+}
+
+MemRequest request(Master master, std::uint32_t address, std::uint8_t* data, unsigned bytes, bool write) {
+  MemRequest r;
+  r.master = master;
+  r.address = address;
+  r.data = data;
+  r.bytes = static_cast<std::uint8_t>(bytes);
+  r.write = write;
+  return r;
+}
+
+constexpr Picoseconds kFast = 40 * kPsPerNs, kSlow = 120 * kPsPerNs;
+
+TEST(ConfigBusTest, ABurstIsItsWordsOneAfterTheOther) {
+  BurstChip& c = the_chip().burst;
+  c.edma.answers = true;
+  std::array<std::uint8_t, 64> out{}, in{};
+  for (unsigned i = 0; i < out.size(); ++i) out[i] = static_cast<std::uint8_t>(i + 1);
+  std::vector<MemRequest> one{request(Master::kEdmaTc0Write, 0x01C0'0000, out.data(), 32, true)};
+  auto ended = c.master.run(one);
+  EXPECT_EQ(ended[0].after, 8 * kFast);
+  EXPECT_FALSE(ended[0].error);
+  EXPECT_EQ(c.edma.regs.r.get(), 0x0C0B0A09u);  // the register is the third word
+  one = {request(Master::kEdmaTc0Read, 0x01C0'0004, in.data(), 12, false)};
+  ended = c.master.run(one);
+  EXPECT_EQ(ended[0].after, 3 * kFast);
+  EXPECT_EQ(in[4], 0x09);
+  EXPECT_EQ(in[7], 0x0C);
+  EXPECT_EQ(in[12], 0) << "behind the burst";
+  one = {request(Master::kEdmaTc0Write, 0x01C2'1400, out.data(), 8, true)};
+  EXPECT_EQ(c.master.run(one)[0].after, 2 * kSlow);
+  // Unaligned: a byte, a half-word, a word, a byte.
+  one = {request(Master::kEdmaTc0Read, 0x01C0'0009, in.data(), 8, false)};
+  EXPECT_EQ(c.master.run(one)[0].after, 4 * kFast);
+  EXPECT_EQ(in[0], 0x0A);
+}
+
+TEST(ConfigBusTest, AMasterHasOneAccessAtATimeAndOthersAreBesideIt) {
+  BurstChip& c = the_chip().burst;
+  c.edma.answers = true;
+  std::array<std::uint8_t, 64> a{}, b{};
+  std::vector<MemRequest> three{request(Master::kEdmaTc0Write, 0x01C0'0008, a.data(), 4, true),
+                                request(Master::kEdmaTc0Write, 0x01C0'0008, a.data(), 8, true),
+                                request(Master::kEdmaTc1Write, 0x01C0'0008, b.data(), 4, true)};
+  auto ended = c.master.run(three);
+  EXPECT_EQ(ended[0].after, kFast);
+  EXPECT_EQ(ended[1].after, 3 * kFast);
+  EXPECT_EQ(ended[2].after, kFast);
+}
+
+TEST(ConfigBusTest, AnErrorOfOneWordIsTheBurstsAndTheOthersAreMadeAllTheSame) {
+  BurstChip& c = the_chip().burst;
+  c.edma.answers = false;
+  std::array<std::uint8_t, 64> out{};
+  out[4] = 0x55;
+  std::vector<MemRequest> one{request(Master::kEdmaTc0Write, 0x01C0'0004, out.data(), 8, true)};
+  auto ended = c.master.run(one);
+  EXPECT_TRUE(ended[0].error);
+  EXPECT_EQ(ended[0].after, 2 * kFast);
+  EXPECT_EQ(c.edma.regs.r.get(), 0x55u);
+  one = {request(Master::kEdmaTc0Write, 0x01C0'0008, out.data(), 4, true)};
+  EXPECT_FALSE(c.master.run(one)[0].error) << "the next request is good";
 }
 
 }  // namespace

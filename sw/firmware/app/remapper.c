@@ -18,9 +18,9 @@ static const choice_t kChoices[] = {
     [KERNEL_DELTAS] = {&method_deltas, KERNEL_OFFSETS},
     [KERNEL_CODES] = {&method_codes, KERNEL_DELTAS},
     [KERNEL_STAGED] = {NULL, KERNEL_CODES},
-    [KERNEL_GATHER] = {NULL, KERNEL_CODES},
-    [KERNEL_RUNS] = {NULL, KERNEL_CODES},
-    [KERNEL_COPY] = {NULL, KERNEL_CODES},
+    [KERNEL_GATHER] = {&method_gather, KERNEL_CODES},
+    [KERNEL_RUNS] = {&method_runs, KERNEL_CODES},
+    [KERNEL_COPY] = {&method_copy, KERNEL_CODES},
     [KERNEL_FASTEST] = {NULL, KERNEL_CODES},
 };
 

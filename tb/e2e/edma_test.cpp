@@ -1,0 +1,145 @@
+// Remap methods in which the EDMA alone moves the pixels: each displayed picture is exact, whatever the lens and the
+// size; what the controllers report as an error appears on the UART.
+#include <gtest/gtest.h>
+
+#include <systemc>
+
+#include "model/common/check.h"
+#include "tb/e2e/expectations.h"
+#include "tb/e2e/rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+constexpr Picoseconds kLimit = 20 * kPsPerSecond;
+
+bool uart_has(Rig& rig, const std::string& text) {
+  return rig.board().uart_text().find(text) != std::string::npos;
+}
+
+void expect_good_run(Rig& rig, unsigned frames) {
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), frames) << rig.board().uart_text();
+  EXPECT_TRUE(uart_has(rig, "kernel: EDMA ")) << rig.board().uart_text();
+  EXPECT_FALSE(uart_has(rig, "EDMA: ")) << rig.board().uart_text();
+  for (const auto& [what, times] : Diagnostics::instance().counts())
+    ADD_FAILURE() << times << " times: " << what.second;
+}
+
+struct Picture {
+  const char* name;
+  std::vector<std::pair<const char*, const char*>> keys;
+};
+
+/// Widths: 80 pairs are two pieces of 40, 94 are three of 32 that overlap by one, 2 are one piece.
+/// A shift moves the view beyond the picture; what is there is black.
+const Picture kPictures[] = {
+    {"Whole_pieces", {{"video.width", "160"}, {"video.height", "64"}}},
+    {"Overlapping_pieces", {{"video.width", "188"}, {"video.height", "12"}}},
+    {"Smallest", {{"video.width", "4"}, {"video.height", "4"}}},
+    {"Black_rims",
+     {{"video.width", "128"}, {"video.height", "48"}, {"lens.shift_x", "41.5px"}, {"lens.shift_y", "-11px"}}},
+    {"Ntsc_method_B",
+     {{"video.standard", "ntsc"}, {"video.width", "240"}, {"video.height", "20"},
+      {"lens.mapping", "stereographic"}, {"lens.pair", "B"}}},
+};
+
+class EdmaTest : public testing::TestWithParam<std::tuple<const char*, Picture>> {};
+TEST_P(EdmaTest, EveryPictureIsExact) {
+  const auto& [kernel, picture] = GetParam();
+  Rig rig;
+  rig.set("firmware.kernel", kernel).set("camera.stamp", "false").set("run.frames", "4");
+  for (const auto& [key, value] : picture.keys) rig.set(key, value);
+  rig.run(kLimit);
+  expect_good_run(rig, 4);
+  expect_lut_right(rig);
+  expect_frames_right(rig);
+  // Several buffers are used, each with lists of its own.
+  EXPECT_EQ(rig.state().torn, 0u);
+  EXPECT_GE(rig.state().remapped, 3u);
+}
+INSTANTIATE_TEST_SUITE_P(All, EdmaTest,
+                         testing::Combine(testing::Values("gather", "runs"), testing::ValuesIn(kPictures)),
+                         [](const auto& i) {
+                           return std::string(std::get<0>(i.param)) + std::get<1>(i.param).name;
+                         });
+
+TEST(EdmaTest, TheBlackRimsOfTheTestAreBlack) {
+  Rig rig;
+  rig.set("firmware.kernel", "runs").set("camera.stamp", "false").set("run.frames", "1");
+  for (const auto& [key, value] : kPictures[3].keys) rig.set(key, value);
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 1u);
+  const auto lut = rig.lut();
+  const std::uint32_t black = rig.geometry().pitch_bytes * 48;
+  const auto count = std::count(lut.begin(), lut.end(), black);
+  EXPECT_GT(count, 100);
+  EXPECT_LT(count, static_cast<std::ptrdiff_t>(lut.size()));
+}
+
+TEST(EdmaTest, ACopyShowsWhatTheCameraSent) {
+  Rig rig;
+  rig.set("firmware.kernel", "copy").set("camera.stamp", "false").set("run.frames", "4");
+  rig.set("video.width", "188").set("video.height", "20");
+  rig.run(kLimit);
+  expect_good_run(rig, 4);
+  expect_lut_right(rig);
+  std::optional<std::uint64_t> last;
+  for (const Shown& s : rig.shown()) {
+    const auto guess = static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 * 25);
+    std::optional<std::uint64_t> found;
+    for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2; ++n)
+      if (!oracle::compare(rig.sent(n), s.frame)) found = n;
+    ASSERT_TRUE(found) << "frame " << s.record.index;
+    if (last) {
+      EXPECT_EQ(*found, *last + 1);
+    }
+    last = found;
+  }
+}
+
+/// As a bus error, or a missed event, would have left them.
+TEST(EdmaTest, ErrorsAreReportedOnceAndTheNextFramesAreRight) {
+  Rig rig;
+  rig.set("firmware.kernel", "gather").set("camera.stamp", "false").set("run.frames", "6");
+  rig.set("video.width", "64").set("video.height", "16");
+  rig.build();
+  const auto frames_until = [&](std::size_t n) {
+    for (unsigned ms = 0; ms < 2000 && rig.shown().size() < n; ++ms) rig.advance(kPsPerMs);
+    ASSERT_EQ(rig.shown().size(), n) << rig.board().uart_text();
+  };
+  frames_until(2);
+  EXPECT_FALSE(uart_has(rig, "EDMA: "));
+  rig.board().dm365.edma.regs.emr.set(1u << 20);
+  rig.board().dm365.edma_tcs[2]->regs.errstat.set(1);
+  frames_until(6);
+  const std::string text = rig.board().uart_text();
+  const auto at = text.find("EDMA: errors 0x00000041");
+  ASSERT_NE(at, std::string::npos) << text;
+  EXPECT_EQ(text.find("EDMA: ", at + 1), std::string::npos) << text;
+  EXPECT_EQ(rig.board().dm365.edma.regs.emr.get(), 0u);
+  EXPECT_EQ(rig.board().dm365.edma_tcs[2]->regs.errstat.get(), 0u);
+  expect_frames_right(rig);
+}
+
+class WholeFrameTest : public testing::TestWithParam<const char*> {};
+TEST_P(WholeFrameTest, NightlyWholePalFrameIsCorrectedExactly) {
+  Rig rig;
+  rig.load("default.yaml").set("firmware.kernel", GetParam());
+  rig.set("run.frames", "4").set("camera.stamp", "false");
+  rig.run(kLimit);
+  expect_good_run(rig, 4);
+  expect_lut_right(rig);
+  expect_frames_right(rig);
+  EXPECT_EQ(rig.state().dropped, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(All, WholeFrameTest, testing::Values("gather", "runs"),
+                         [](const auto& i) { return std::string(i.param); });
+
+}  // namespace
+}  // namespace fovea::e2e
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
