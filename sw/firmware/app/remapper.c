@@ -7,6 +7,7 @@
 static const remap_method_t *const kMethods[] = {
     [KERNEL_PLAIN] = &method_plain,
     [KERNEL_LDM] = &method_ldm,
+    [KERNEL_STAGED] = &method_staged,
 };
 
 enum { kMethodCount = sizeof kMethods / sizeof *kMethods };

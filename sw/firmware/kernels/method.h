@@ -26,6 +26,6 @@ typedef struct remap_method {
   void (*run)(const remap_table_t *table, const void *in, void *out);
 } remap_method_t;
 
-extern const remap_method_t method_plain, method_ldm;
+extern const remap_method_t method_plain, method_ldm, method_staged;
 
 #endif

@@ -1,0 +1,102 @@
+/* The look-up table in the form that the staged remap reads: tiles, whose part of the source is
+ * copied into fast memory before they are computed. Portable C11 without library calls; README.md
+ * explains the form. */
+#ifndef FOVEA_REMAP_TILES_H
+#define FOVEA_REMAP_TILES_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TILE_PAIRS 40u      /* width of a tile, in pairs of 4 bytes */
+#define TILE_ROWS 24u       /* height */
+#define TILE_GROUP_PAIRS 4u /* pairs that one code stands for */
+#define TILE_ROW_BYTES (4u * TILE_PAIRS)
+#define TILE_ROW_CODES (TILE_PAIRS / TILE_GROUP_PAIRS)
+#define TILE_WINDOW_ALIGN 32u /* of a window's first column and width, bytes; divides every pitch \
+                               */
+#define TILE_BANKS 2u         /* tile n is computed in bank n % 2 of the fast memory */
+
+/** What a code stands for: byte offsets of four pairs in the window from the last pair before them.
+ */
+typedef struct tile_pattern {
+  int32_t step[TILE_GROUP_PAIRS];
+} tile_pattern_t;
+
+/** A rectangle of the source. */
+typedef struct tile_window {
+  uint32_t source; /* byte offset of its first pair in the source */
+  uint32_t counts; /* bytes of a row | rows << 16; 0: no window */
+} tile_window_t;
+
+/** All that the core reads for a tile, apart from the patterns and the source: 544 bytes. */
+typedef struct tile_stream {
+  /* Addresses in the fast memory. For each row: the pattern of the first four pairs, the place from
+   * which their steps count, and the patterns of the other groups. */
+  uint16_t code[TILE_ROWS * (TILE_ROW_CODES + 1u)];
+  uint32_t destination; /* byte offset of the tile's first pair in the result */
+  tile_window_t next;   /* of the tile after the next one, which is computed in the same bank; bit 0
+                           of   `source`: that tile is the first of its strip in this bank */
+  uint32_t number;      /* 1 for the first tile: never 0 */
+} tile_stream_t;
+
+/** Place for patterns and window in a bank of the fast memory. Addresses fit into 16 bits. */
+typedef struct tile_bank {
+  uint32_t start, end; /* multiples of 64 */
+} tile_bank_t;
+
+typedef struct tile_table {
+  const uint32_t *lut; /* width / 2 * height byte offsets, row by row */
+  uint32_t width, height, pitch_bytes;
+  tile_bank_t bank[TILE_BANKS];
+  /* Derived by tiles_layout(): */
+  uint32_t strips, strip_tiles; /* strips of one tile's width; tiles of each, from top to bottom */
+  uint32_t tiles;
+  uint32_t window_pitch; /* bytes from one row of a window to the next, in all windows */
+  uint32_t window_bytes; /* of the largest window */
+  uint32_t patterns_max; /* patterns that fit into a bank beside the largest window */
+  uint32_t window_base[TILE_BANKS];
+  /* Derived by tiles_encode(): */
+  uint32_t patterns; /* of the strip that has most */
+} tile_table_t;
+
+/** Memory that tiles_encode() needs while it runs. */
+#define TILE_HASH_SIZE 1024u
+typedef struct tile_work {
+  uint16_t hash[TILE_HASH_SIZE]; /* 1 + number of a pattern; 0: free */
+} tile_work_t;
+
+/** Number of tiles of a picture; 0 if it is smaller than two tiles, one above the other. */
+uint32_t tiles_count(uint32_t width, uint32_t height, uint32_t pitch_bytes);
+
+/** Finds the windows of all tiles and the layout of the banks.
+ * @param windows tiles_count() of them
+ * @return a null pointer, or the reason why the staged remap cannot use this table */
+const char *tiles_layout(tile_table_t *table, tile_window_t *windows);
+
+/** Derives patterns and streams.
+ * @param patterns table->strips times table->patterns_max of them: each strip's list begins at a
+ * multiple of patterns_max
+ * @param streams one for each tile
+ * @return a null pointer, or the reason why the staged remap cannot use this table */
+const char *tiles_encode(tile_table_t *table, const tile_window_t *windows,
+                         tile_pattern_t *patterns, tile_stream_t *streams, tile_work_t *work);
+
+/** First pair (from the left) of a strip, first row of a tile of a strip. The last ones begin
+ * earlier than the others' distance says, if the picture is no multiple of a tile: they overlap
+ * their neighbours. */
+static inline uint32_t tile_first_pair(const tile_table_t *table, uint32_t strip) {
+  const uint32_t last = table->pitch_bytes / 4u - TILE_PAIRS;
+  return strip * TILE_PAIRS < last ? strip * TILE_PAIRS : last;
+}
+static inline uint32_t tile_first_row(const tile_table_t *table, uint32_t tile) {
+  const uint32_t last = table->height - TILE_ROWS;
+  return tile * TILE_ROWS < last ? tile * TILE_ROWS : last;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
