@@ -4,14 +4,11 @@
 
 #include <stdint.h>
 
-/** Bytes of each row of a tile that go to `ram`; the others go to `out`. */
-#define STAGED_RAM_BYTES 64u
-
 /** Computes a tile of 40 x 24 pairs (sw/remap/tiles.h) from its window.
- * @param out where the first row's pair 16 goes (a multiple of 32), minus `step`
+ * @param out where its first row goes (a multiple of 32) minus `step`; every second row follows
  * @param code tile_stream_t.code
- * @param ram where pairs 0 to 15 of all rows go, one row behind the other
- * @param step bytes from the end of a row to pair 16 of the next one */
+ * @param ram where the second row and every second one after it go, one behind the other
+ * @param step bytes from the end of a row in `out` to the next one */
 void staged_tile(uint8_t *out, const uint16_t *code, uint32_t *ram, uint32_t step);
 
 #endif
