@@ -1,5 +1,6 @@
 /* The remap in tiles that the EDMA brings into internal RAM, and of which it takes a part of the
  * results away: README.md, "The staged remap". */
+#include "../app/pipeline.h"
 #include "../drivers/cp15.h"
 #include "../drivers/edma.h"
 #include "../mmio.h"
@@ -181,35 +182,40 @@ static int wait_for(const volatile uint32_t *word, uint32_t value) {
   return 0;
 }
 
-static void run(const remap_table_t *table, const void *in, void *out) {
-  const staged_table_t *staged = table->encoded;
+/* Computes all tiles. Returns 0 if the EDMA did not bring one, or did not take its results away. */
+static int run_tiles(const staged_table_t *staged, uint32_t in, uint8_t *out) {
   const tile_table_t *tiles = &staged->tiles;
   const uint32_t step = 2u * tiles->pitch_bytes - TILE_ROW_BYTES;
-  dcache_invalidate_range(out, tiles->height * tiles->pitch_bytes);
-  edma_clear(CODE_LAST);
-  for (uint32_t b = 0; b < TILE_BANKS; ++b) {
-    open_bank(staged, b);
-    request(b, staged->windows[b].part, 1, (uint32_t)in);
-  }
+  for (uint32_t b = 0; b < TILE_BANKS; ++b) request(b, staged->windows[b].part, 1, in);
   for (uint32_t n = 0; n < tiles->tiles; ++n) {
     const uint32_t b = n % TILE_BANKS;
     inbox_t *inbox = &INBOX[b];
     const tile_stream_t *stream = &inbox->stream;
     if (!wait_for(&stream->number, n + 1u) || !wait_for(&inbox->arrived, 1) ||
         !wait_for(&inbox->drained, 1))
-      break;
-    uint8_t *to = (uint8_t *)out + stream->destination;
+      return 0;
+    uint8_t *to = out + stream->destination;
     staged_tile(to - step, stream->code, (uint32_t *)bank_base(b), step);
     inbox->drained = 0;
     if (n + 1u == tiles->tiles)
       post(EDMA_PARAM_OPT(SET_RESULTS + b),
            EDMA_AB_SYNC | EDMA_STATIC | EDMA_INTERRUPT | EDMA_CODE(CODE_LAST));
     post(EDMA_PARAM_DST(SET_RESULTS + b), (uint32_t)to + tiles->pitch_bytes);
-    if (n + TILE_BANKS < tiles->tiles)
-      request(b, stream->next, (int)stream->next_patterns, (uint32_t)in);
+    if (n + TILE_BANKS < tiles->tiles) request(b, stream->next, (int)stream->next_patterns, in);
   }
   write_buffer_drain();
-  (void)edma_wait(CODE_LAST, MOST_LOOKS);
+  return edma_wait(CODE_LAST, MOST_LOOKS);
+}
+
+static void run(const remap_table_t *table, const void *in, void *out) {
+  const staged_table_t *staged = table->encoded;
+  /* No line of the result may be in the D-cache: the EDMA writes a part of it to memory. Nor may
+   * one of the source stay there: whoever reads it afterwards wants to see what memory holds. */
+  dcache_invalidate_range(out, table->height * table->pitch_bytes);
+  edma_clear(CODE_LAST);
+  for (uint32_t b = 0; b < TILE_BANKS; ++b) open_bank(staged, b);
+  if (!run_tiles(staged, (uint32_t)in, out)) fail("EDMA", "a transfer did not end");
+  if (edma_errors() != 0) fail("EDMA", "an error register is not 0");
   edma_close_quick();
 }
 
