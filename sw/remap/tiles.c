@@ -13,16 +13,34 @@ static uint32_t row_of(divider_t d, uint32_t entry) {
 }
 
 static divider_t divider(const tile_table_t *t) {
-  return (divider_t){t->pitch_bytes, (uint32_t)(0x100000000u / t->pitch_bytes) + 1u};
+  const uint32_t pitch = t->picture.pitch_bytes;
+  return (divider_t){pitch, (uint32_t)(0x100000000u / pitch) + 1u};
 }
 
-/* Pairs of a row that the table has entries for; those up to the pitch repeat the last one. */
-static uint32_t pairs_of(const tile_table_t *t) { return t->width / 2u; }
+uint32_t tiles_count(const remap_picture_t *picture) {
+  const uint32_t pairs = remap_groups(picture) * REMAP_GROUP;
+  if (pairs < TILE_PAIRS || picture->rows <= TILE_ROWS) return 0;
+  return (pairs + TILE_PAIRS - 1u) / TILE_PAIRS * ((picture->rows + TILE_ROWS - 1u) / TILE_ROWS);
+}
 
-uint32_t tiles_count(uint32_t width, uint32_t height, uint32_t pitch_bytes) {
-  const uint32_t pairs = pitch_bytes / 4u;
-  if (width < 2u || pairs < TILE_PAIRS || height <= TILE_ROWS) return 0;
-  return (pairs + TILE_PAIRS - 1u) / TILE_PAIRS * ((height + TILE_ROWS - 1u) / TILE_ROWS);
+/* A tile's place in the result, and the entry that those of its rows get that have no visible pair.
+ */
+typedef struct spot {
+  remap_strip_t strip;
+  uint32_t row, otherwise;
+} spot_t;
+
+static spot_t spot_of(const tile_table_t *t, uint32_t n) {
+  const remap_picture_t *p = &t->picture;
+  const uint32_t x = tile_first_pair(t, n / t->strip_tiles);
+  const uint32_t y = tile_first_row(t, n % t->strip_tiles), black = p->rows * p->pitch_bytes;
+  const uint32_t end = x + TILE_PAIRS < p->pairs ? x + TILE_PAIRS : p->pairs;
+  const spot_t spot = {{x / REMAP_GROUP, TILE_PAIRS / REMAP_GROUP}, y, 0};
+  for (uint32_t v = y; v < y + TILE_ROWS; ++v)
+    for (uint32_t i = x; i < end; ++i)
+      if (p->lut[v * p->pairs + i] != black)
+        return (spot_t){spot.strip, y, p->lut[v * p->pairs + i]};
+  return spot;
 }
 
 /* Rows that are read of each column of TILE_WINDOW_ALIGN bytes; none: first > last. */
@@ -31,26 +49,24 @@ typedef struct extent {
   uint32_t first[COLUMNS_MAX], last[COLUMNS_MAX];
 } extent_t;
 
-/* Marks the rows that a tile reads. Returns 0 if one of its pairs is black. */
-static int find_extent(const tile_table_t *t, divider_t d, uint32_t x, uint32_t y, extent_t *e) {
-  const uint32_t pairs = pairs_of(t), black = t->height * t->pitch_bytes;
-  const uint32_t end = x + TILE_PAIRS < pairs ? x + TILE_PAIRS : pairs;
-  for (uint32_t c = 0; c < t->pitch_bytes / TILE_WINDOW_ALIGN; ++c) {
+/* Marks the rows that a tile reads. Returns the number of its black pairs. */
+static uint32_t find_extent(const tile_table_t *t, divider_t d, spot_t spot, extent_t *e) {
+  uint32_t black = 0;
+  for (uint32_t c = 0; c < t->picture.pitch_bytes / TILE_WINDOW_ALIGN; ++c) {
     e->first[c] = ~0u;
     e->last[c] = 0;
   }
-  if (x >= end) x = end - 1u; /* a strip of padding only */
-  for (uint32_t v = y; v < y + TILE_ROWS; ++v) {
-    const uint32_t *entry = t->lut + v * pairs;
-    for (uint32_t i = x; i < end; ++i) {
-      if (entry[i] >= black) return 0;
+  for (uint32_t v = spot.row; v < spot.row + TILE_ROWS; ++v) {
+    uint32_t entry[TILE_PAIRS];
+    black += remap_visible_row(&t->picture, v, spot.strip, spot.otherwise, entry);
+    for (uint32_t i = 0; i < TILE_PAIRS; ++i) {
       const uint32_t row = row_of(d, entry[i]);
       const uint32_t c = (entry[i] - row * d.pitch) / TILE_WINDOW_ALIGN;
       if (row < e->first[c]) e->first[c] = row;
       if (row > e->last[c]) e->last[c] = row;
     }
   }
-  return 1;
+  return black;
 }
 
 /* The smallest rectangle with all marked rows of columns `from` to `to` - 1. */
@@ -88,19 +104,17 @@ static void divide(divider_t d, const extent_t *e, uint32_t columns, tile_window
 
 const char *tiles_layout(tile_table_t *t, tile_window_t *windows) {
   const divider_t d = divider(t);
-  t->tiles = tiles_count(t->width, t->height, t->pitch_bytes);
+  t->tiles = tiles_count(&t->picture);
   if (t->tiles == 0) return "the picture is smaller than two tiles of 80 x 24 pixels";
-  t->strip_tiles = (t->height + TILE_ROWS - 1u) / TILE_ROWS;
+  t->strip_tiles = (t->picture.rows + TILE_ROWS - 1u) / TILE_ROWS;
   t->strips = t->tiles / t->strip_tiles;
-  if (t->pitch_bytes / TILE_WINDOW_ALIGN > COLUMNS_MAX) return "the picture is too wide";
+  if (t->picture.pitch_bytes / TILE_WINDOW_ALIGN > COLUMNS_MAX) return "the picture is too wide";
   uint32_t rows = 0;
-  t->window_pitch = 0;
+  t->window_pitch = t->black = 0;
   for (uint32_t n = 0; n < t->tiles; ++n) {
     extent_t extent;
-    if (!find_extent(t, d, tile_first_pair(t, n / t->strip_tiles),
-                     tile_first_row(t, n % t->strip_tiles), &extent))
-      return "pairs outside the source";
-    divide(d, &extent, t->pitch_bytes / TILE_WINDOW_ALIGN, &windows[n]);
+    t->black += find_extent(t, d, spot_of(t, n), &extent);
+    divide(d, &extent, t->picture.pitch_bytes / TILE_WINDOW_ALIGN, &windows[n]);
     for (uint32_t p = 0; p < TILE_PARTS; ++p) {
       const tile_part_t *part = &windows[n].part[p];
       const uint32_t row = row_of(d, part->source), column = part->source - row * d.pitch;
@@ -154,16 +168,15 @@ typedef struct row_code {
 /* Encodes a row of a tile. `origin` is the address of row 0, byte 0 of the source in the window,
  * each row being `shorter` bytes shorter than in the source. Returns 0 if the list of patterns is
  * full. */
-static int encode_row(const tile_table_t *t, divider_t d, uint32_t x, uint32_t v, uint32_t origin,
+static int encode_row(const tile_table_t *t, divider_t d, spot_t spot, uint32_t v, uint32_t origin,
                       uint32_t patterns_base, pattern_list_t *list, row_code_t *code) {
-  const uint32_t pairs = pairs_of(t), shorter = d.pitch - t->window_pitch;
-  const uint32_t *entry = t->lut + v * pairs;
-  uint32_t last = 0;
+  const uint32_t shorter = d.pitch - t->window_pitch;
+  uint32_t entry[TILE_PAIRS], last = 0;
+  (void)remap_visible_row(&t->picture, v, spot.strip, spot.otherwise, entry);
   for (uint32_t g = 0; g < TILE_ROW_CODES; ++g) {
     uint32_t place[TILE_GROUP_PAIRS];
     for (uint32_t k = 0; k < TILE_GROUP_PAIRS; ++k) {
-      const uint32_t i = x + g * TILE_GROUP_PAIRS + k;
-      const uint32_t e = entry[i < pairs ? i : pairs - 1u];
+      const uint32_t e = entry[g * TILE_GROUP_PAIRS + k];
       place[k] = origin + e - row_of(d, e) * shorter;
     }
     /* The commonest step before the first pair of a row makes its pattern one that others have. */
@@ -182,13 +195,12 @@ static int encode_row(const tile_table_t *t, divider_t d, uint32_t x, uint32_t v
 static int encode_tile(const tile_table_t *t, divider_t d, uint32_t n, const tile_window_t *window,
                        pattern_list_t *list, uint16_t *out) {
   const uint32_t bank = n % TILE_BANKS;
-  const uint32_t x = tile_first_pair(t, n / t->strip_tiles);
-  const uint32_t y = tile_first_row(t, n % t->strip_tiles);
+  const spot_t spot = spot_of(t, n);
   const uint32_t origin = t->window_base[bank] - window->top * t->window_pitch - window->left;
-  for (uint32_t v = y; v < y + TILE_ROWS; v += 2u) {
+  for (uint32_t v = spot.row; v < spot.row + TILE_ROWS; v += 2u) {
     row_code_t row[2];
     for (uint32_t i = 0; i < 2u; ++i)
-      if (!encode_row(t, d, x, v + i, origin, t->bank[bank].start, list, &row[i])) return 0;
+      if (!encode_row(t, d, spot, v + i, origin, t->bank[bank].start, list, &row[i])) return 0;
     *out++ = row[0].pattern[0];
     *out++ = row[0].base;
     *out++ = row[1].base;

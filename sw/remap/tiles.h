@@ -6,6 +6,8 @@
 
 #include <stdint.h>
 
+#include "picture.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -62,8 +64,7 @@ typedef struct tile_bank {
 } tile_bank_t;
 
 typedef struct tile_table {
-  const uint32_t *lut; /* width / 2 * height byte offsets, row by row */
-  uint32_t width, height, pitch_bytes;
+  remap_picture_t picture;
   tile_bank_t bank[TILE_BANKS];
   uint32_t place_offset; /* from an address in a bank to the one that `tile_part_t.place` holds */
   /* Derived by tiles_layout(): */
@@ -73,6 +74,7 @@ typedef struct tile_table {
   uint32_t window_bytes; /* of the largest window */
   uint32_t patterns_max; /* patterns that fit into a bank beside the largest window */
   uint32_t window_base[TILE_BANKS];
+  uint32_t black; /* number of black pairs */
   /* Derived by tiles_encode(): */
   uint32_t patterns; /* of the strip that has most */
 } tile_table_t;
@@ -84,7 +86,7 @@ typedef struct tile_work {
 } tile_work_t;
 
 /** Number of tiles of a picture; 0 if it is smaller than two tiles, one above the other. */
-uint32_t tiles_count(uint32_t width, uint32_t height, uint32_t pitch_bytes);
+uint32_t tiles_count(const remap_picture_t *picture);
 
 /** Finds the windows of all tiles and the layout of the banks.
  * @param windows tiles_count() of them
@@ -103,11 +105,11 @@ const char *tiles_encode(tile_table_t *table, tile_window_t *windows, tile_patte
  * earlier than the others' distance says, if the picture is no multiple of a tile: they overlap
  * their neighbours. */
 static inline uint32_t tile_first_pair(const tile_table_t *table, uint32_t strip) {
-  const uint32_t last = table->pitch_bytes / 4u - TILE_PAIRS;
+  const uint32_t last = remap_groups(&table->picture) * REMAP_GROUP - TILE_PAIRS;
   return strip * TILE_PAIRS < last ? strip * TILE_PAIRS : last;
 }
 static inline uint32_t tile_first_row(const tile_table_t *table, uint32_t tile) {
-  const uint32_t last = table->height - TILE_ROWS;
+  const uint32_t last = table->picture.rows - TILE_ROWS;
   return tile * TILE_ROWS < last ? tile * TILE_ROWS : last;
 }
 

@@ -3,25 +3,47 @@
 #include "../drivers/uart.h"
 #include "model/contract/param_page.h"
 
-/* Indexed by enum param_kernel; a null pointer: this firmware does not have it. */
-static const remap_method_t *const kMethods[] = {
-    [KERNEL_PLAIN] = &method_plain,
-    [KERNEL_LDM] = &method_ldm,
-    [KERNEL_STAGED] = &method_staged,
+/* For each kernel of the page its method and the kernel to try if the lens does not allow it. The
+ * last one of such a chain fits every lens and refers to itself. */
+typedef struct choice {
+  const remap_method_t *method; /* a null pointer: not in this firmware, or no method at all */
+  uint8_t otherwise;            /* enum param_kernel */
+} choice_t;
+
+static const choice_t kChoices[] = {
+    [KERNEL_PLAIN] = {&method_plain, KERNEL_PLAIN},
+    [KERNEL_LDM] = {&method_ldm, KERNEL_LDM},
+    [KERNEL_STRIPS] = {&method_strips, KERNEL_STRIPS},
+    [KERNEL_OFFSETS] = {&method_offsets, KERNEL_STRIPS},
+    [KERNEL_DELTAS] = {&method_deltas, KERNEL_OFFSETS},
+    [KERNEL_CODES] = {&method_codes, KERNEL_DELTAS},
+    [KERNEL_STAGED] = {&method_staged, KERNEL_CODES},
+    [KERNEL_GATHER] = {NULL, KERNEL_CODES},
+    [KERNEL_RUNS] = {NULL, KERNEL_CODES},
+    [KERNEL_COPY] = {NULL, KERNEL_CODES},
+    [KERNEL_FASTEST] = {NULL, KERNEL_CODES},
 };
 
-enum { kMethodCount = sizeof kMethods / sizeof *kMethods };
+enum { kChoiceCount = sizeof kChoices / sizeof *kChoices };
 
-const remap_method_t *remapper_prepare(uint32_t kernel, remap_table_t *table, arena_t *arena) {
-  const remap_method_t *method = kernel < kMethodCount ? kMethods[kernel] : NULL;
-  const char *refusal = method != NULL ? method->prepare(table, arena) : "not in this firmware";
-  if (refusal == NULL) return method;
+static void report(const char *name, const char *refusal) {
   uart_puts("kernel ");
-  uart_puts(method != NULL ? method->name : "of the page");
+  uart_puts(name);
   uart_puts(": ");
   uart_puts(refusal);
   uart_puts("\n");
-  table->encoded = NULL;
-  (void)method_ldm.prepare(table, arena);
-  return &method_ldm;
+}
+
+const remap_method_t *remapper_prepare(uint32_t kernel, remap_table_t *table, arena_t *arena) {
+  if (kernel >= kChoiceCount || (kChoices[kernel].method == NULL && kernel != KERNEL_FASTEST))
+    report("of the page", "not in this firmware");
+  if (kernel >= kChoiceCount) kernel = KERNEL_FASTEST;
+  for (;; kernel = kChoices[kernel].otherwise) {
+    const remap_method_t *method = kChoices[kernel].method;
+    if (method == NULL) continue;
+    table->encoded = NULL;
+    const char *refusal = method->prepare(table, arena);
+    if (refusal == NULL) return method;
+    report(method->name, refusal);
+  }
 }

@@ -26,6 +26,7 @@ typedef struct remap_method {
   void (*run)(const remap_table_t *table, const void *in, void *out);
 } remap_method_t;
 
-extern const remap_method_t method_plain, method_ldm, method_staged;
+extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
+    method_codes, method_staged;
 
 #endif

@@ -6,6 +6,7 @@
 #include "../mmio.h"
 #include "../regs.h"
 #include "internal_ram.h"
+#include "loop_ram.h"
 #include "method.h"
 #include "staged.h"
 #include "sw/remap/tiles.h"
@@ -34,6 +35,7 @@ typedef struct staged_table {
   const tile_pattern_t *patterns;
   const tile_stream_t *streams;
   const tile_window_t *windows;
+  const remap_black_run_t *black;
 } staged_table_t;
 
 /* What each channel does. Those of a bank b are at the name's number + b. */
@@ -66,12 +68,10 @@ static void post(uint32_t address, uint32_t value) { mmio_write32(posted_address
 static const char *prepare(remap_table_t *table, arena_t *arena) {
   static tile_work_t work;
   staged_table_t *staged = arena_take(arena, sizeof *staged, 32);
-  if (staged == NULL) return "no memory";
+  if (staged == NULL) return kRemapNoMemory;
   tile_table_t *tiles = &staged->tiles;
-  *tiles = (tile_table_t){.lut = table->lut,
-                          .width = table->width,
-                          .height = table->height,
-                          .pitch_bytes = table->pitch_bytes};
+  *tiles =
+      (tile_table_t){.picture = {table->width / 2u, table->height, table->pitch_bytes, table->lut}};
   /* Codes are addresses of 16 bits: those of the instruction side, which data can be read at as
    * well. */
   for (uint32_t b = 0; b < TILE_BANKS; ++b) {
@@ -79,17 +79,21 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
     tiles->bank[b] = (tile_bank_t){start + RESULT_BYTES, start + BANK_BYTES};
   }
   tiles->place_offset = INTERNAL_RAM_DATA_BASE;
-  const uint32_t count = tiles_count(table->width, table->height, table->pitch_bytes);
+  const uint32_t count = tiles_count(&tiles->picture);
   tile_window_t *windows = arena_take(arena, count * sizeof *windows, 32);
-  if (windows == NULL) return "no memory";
+  if (windows == NULL) return kRemapNoMemory;
   const char *refusal = tiles_layout(tiles, windows);
   if (refusal != NULL) return refusal;
   const uint32_t pattern_bytes = tiles->strips * tiles->patterns_max * sizeof(tile_pattern_t);
   tile_pattern_t *patterns = arena_take(arena, pattern_bytes, 64);
   tile_stream_t *streams = arena_take(arena, tiles->tiles * sizeof *streams, 64);
-  if (patterns == NULL || streams == NULL) return "no memory";
+  if (patterns == NULL || streams == NULL) return kRemapNoMemory;
   refusal = tiles_encode(tiles, windows, patterns, streams, &work);
   if (refusal != NULL) return refusal;
+  remap_memory_t rest = {(uint8_t *)arena->next, 0, arena->end - arena->next};
+  staged->black = remap_list_black(&tiles->picture, tiles->black, &rest);
+  if (staged->black == NULL) return kRemapNoMemory;
+  (void)arena_take(arena, rest.used, 1);
   staged->patterns = patterns;
   staged->streams = streams;
   staged->windows = windows;
@@ -149,11 +153,11 @@ static void open_bank(const staged_table_t *staged, uint32_t b) {
   edma_write_set(CHANNEL_ARRIVED + b, &set);
   set = copy_word(&inbox->one, &inbox->drained);
   edma_write_set(CHANNEL_DRAINED + b, &set);
-  set = followed_by(CHANNEL_STREAM + b, tiles->pitch_bytes, tiles->window_pitch);
+  set = followed_by(CHANNEL_STREAM + b, tiles->picture.pitch_bytes, tiles->window_pitch);
   edma_write_set(SET_PART0 + b, &set);
-  set = followed_by(CHANNEL_ARRIVED + b, tiles->pitch_bytes, tiles->window_pitch);
+  set = followed_by(CHANNEL_ARRIVED + b, tiles->picture.pitch_bytes, tiles->window_pitch);
   edma_write_set(SET_PART1 + b, &set);
-  set = followed_by(CHANNEL_DRAINED + b, TILE_ROW_BYTES, 2u * tiles->pitch_bytes);
+  set = followed_by(CHANNEL_DRAINED + b, TILE_ROW_BYTES, 2u * tiles->picture.pitch_bytes);
   set.source = bank_base(b);
   set.counts = EDMA_PAIR(TILE_ROW_BYTES, TILE_ROWS / 2u);
   edma_write_set(SET_RESULTS + b, &set);
@@ -185,7 +189,7 @@ static int wait_for(const volatile uint32_t *word, uint32_t value) {
 /* Computes all tiles. Returns 0 if the EDMA did not bring one, or did not take its results away. */
 static int run_tiles(const staged_table_t *staged, uint32_t in, uint8_t *out) {
   const tile_table_t *tiles = &staged->tiles;
-  const uint32_t step = 2u * tiles->pitch_bytes - TILE_ROW_BYTES;
+  const uint32_t step = 2u * tiles->picture.pitch_bytes - TILE_ROW_BYTES;
   for (uint32_t b = 0; b < TILE_BANKS; ++b) request(b, staged->windows[b].part, 1, in);
   for (uint32_t n = 0; n < tiles->tiles; ++n) {
     const uint32_t b = n % TILE_BANKS;
@@ -200,7 +204,7 @@ static int run_tiles(const staged_table_t *staged, uint32_t in, uint8_t *out) {
     if (n + 1u == tiles->tiles)
       post(EDMA_PARAM_OPT(SET_RESULTS + b),
            EDMA_AB_SYNC | EDMA_STATIC | EDMA_INTERRUPT | EDMA_CODE(CODE_LAST));
-    post(EDMA_PARAM_DST(SET_RESULTS + b), (uint32_t)to + tiles->pitch_bytes);
+    post(EDMA_PARAM_DST(SET_RESULTS + b), (uint32_t)to + tiles->picture.pitch_bytes);
     if (n + TILE_BANKS < tiles->tiles) request(b, stream->next, (int)stream->next_patterns, in);
   }
   write_buffer_drain();
@@ -217,6 +221,7 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   if (!run_tiles(staged, (uint32_t)in, out)) fail("EDMA", "a transfer did not end");
   if (edma_errors() != 0) fail("EDMA", "an error register is not 0");
   edma_close_quick();
+  if (staged->tiles.black != 0) remap_black(out, staged->black);
 }
 
 const remap_method_t method_staged = {"staged by EDMA", prepare, run};
