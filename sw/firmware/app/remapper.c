@@ -21,7 +21,7 @@ static const choice_t kChoices[] = {
     [KERNEL_GATHER] = {&method_gather, KERNEL_CODES},
     [KERNEL_RUNS] = {&method_runs, KERNEL_CODES},
     [KERNEL_COPY] = {&method_copy, KERNEL_CODES},
-    [KERNEL_FASTEST] = {NULL, KERNEL_CODES},
+    [KERNEL_FASTEST] = {NULL, KERNEL_STAGED},
 };
 
 enum { kChoiceCount = sizeof kChoices / sizeof *kChoices };
