@@ -44,10 +44,20 @@ void BusTraceRun::open() {
   opened_ = true;
 }
 
+bool BusTraceRun::uses_edma() const {
+  for (const dma::EdmaTc* tc : board_.dm365.edma_tcs)
+    if (tc->stats.reads.count() + tc->stats.writes.count() != 0) return true;
+  return false;
+}
+
 void BusTraceRun::close() {
   const trace::BusTap& tap = board_.dm365.tap;
   if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
     Diagnostics::instance().not_modelled("a clock that changes inside a bus trace");
+  if (uses_edma())
+    Diagnostics::instance().not_modelled(
+        "what the EDMA waits for outside the SDRAM, in a bus trace: a replay of this trace keeps the recorded "
+        "times of the EDMA's requests");
   recorder_->close(kernel_time());
   closed_ = true;
 }

@@ -38,6 +38,10 @@ expect without 0 -- run -o "$out/without"
 cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
 expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
 cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
+# A synthetic load on a port of the EDMA is paced by what the trace holds, the EDMA itself is not.
+said='what the EDMA waits for outside the SDRAM'
+! run -o "$out/strict" --bus-trace "$out/strict.trace" 2>&1 | grep -q "$said" || fail 'a load is taken for the EDMA'
+expect record_edma 0 "$said" -- run -o "$out/edma" -s firmware.kernel=copy --bus-trace "$out/edma.trace"
 
 # What is not a trace is not overwritten, and no link is followed.
 echo dear >"$out/letter"
