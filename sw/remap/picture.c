@@ -40,7 +40,8 @@ uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip
   const uint32_t present = end < picture->pairs ? end : picture->pairs;
   for (uint32_t v = 0; v < picture->rows; ++v)
     for (uint32_t i = first; i < present; ++i)
-      if (picture->lut[v * picture->pairs + i] != black) return picture->lut[v * picture->pairs + i];
+      if (picture->lut[v * picture->pairs + i] != black)
+        return picture->lut[v * picture->pairs + i];
   return 4u;
 }
 
@@ -61,7 +62,7 @@ const remap_black_run_t *remap_list_black(const remap_picture_t *picture, uint32
       uint32_t skip = v * pitch + start - end, words = i - start;
       count -= words;
       end = v * pitch + i;
-      while (skip > UINT16_MAX || words != 0) {
+      while (words != 0) {
         const uint32_t step = skip > UINT16_MAX ? UINT16_MAX : skip;
         skip -= step;
         *run = (remap_black_run_t){(uint16_t)step, (uint16_t)(skip != 0 ? 0 : words)};

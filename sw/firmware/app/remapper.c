@@ -6,9 +6,8 @@
 /* For each kernel of the page its method and the kernel to try if the lens does not allow it. The
  * last one of such a chain fits every lens and refers to itself. */
 typedef struct choice {
-  const remap_method_t
-      *method;       /* a null pointer: only a start of a chain, or not in this firmware */
-  uint8_t otherwise; /* enum param_kernel */
+  const remap_method_t *method; /* a null pointer: not in this firmware, or no method at all */
+  uint8_t otherwise;            /* enum param_kernel */
 } choice_t;
 
 static const choice_t kChoices[] = {

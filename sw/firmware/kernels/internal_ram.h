@@ -2,7 +2,7 @@
  * stack are no longer needed: everything from RAM_WORK_BASE to RAM_WORK_END. Below it are vectors
  * and boot code, which the handlers still use (the linker script asserts that they end there),
  * above it the exception stack. The methods share this memory: what one of them needs it loads in
- * each run().
+ * each run(). After a reset a loader has to bring the parameter page again.
  *
  * The RAM has two banks of 16 KiB; core and EDMA do not wait for each other in different banks.
  * Addresses are those of the core's data accesses; for the EDMA see internal_ram_offset(). */

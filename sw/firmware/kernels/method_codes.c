@@ -4,7 +4,7 @@
 #include "sw/remap/codes.h"
 
 static const char *prepare(remap_table_t *table, arena_t *arena) {
-  static const uint8_t kWidest[] = {15, 9, 5, 3, 0};
+  static const uint8_t kWidest[] = {12, 9, 5, 3, 0};
   return encoded_prepare(table, arena, codes_encode, kWidest);
 }
 

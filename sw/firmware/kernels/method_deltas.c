@@ -4,7 +4,7 @@
 #include "sw/remap/deltas.h"
 
 static const char *prepare(remap_table_t *table, arena_t *arena) {
-  static const uint8_t kWidest[] = {9, 5, 3, 2, 0};
+  static const uint8_t kWidest[] = {12, 9, 5, 3, 2, 0};
   return encoded_prepare(table, arena, deltas_encode, kWidest);
 }
 

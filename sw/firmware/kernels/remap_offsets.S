@@ -1,6 +1,6 @@
 /* void remap_offsets(uint32_t *out, const void *rows, loop_ram_t *ram)
  *
- * r0 out, r1 base of the row, r2 table, lr list of the frame's variables. 25 clocks for 8 pairs. */
+ * r0 out, r1 base of the row, r2 table, lr the loop's variables. 24 clocks for 8 pairs. */
 #include "strip_rows.inc"
 
     .syntax unified
