@@ -75,8 +75,7 @@ struct SystemRegs : RegBank {
                      1,     Mode::kRw,    "1: TIMER2's reset request resets the chip"};
     Field clkstp{*this,      "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass: McBSP, EDMA",
                  Modelled{0}};
-    Field tptc1_bst{*this, "TPTC1_BST", 7,
-                    1,     Mode::kRw,   "burst of TPTC1: 0 32 bytes, 1 64"};
+    Field tptc1_bst{*this, "TPTC1_BST", 7, 1, Mode::kRw, "burst of TPTC1: 0 32 bytes, 1 64"};
     Field bootst{*this, "BOOTST", 8, 2, Mode::kRw, "boot status; kept"};
   } misc{*this, "MISC", 0x38, "miscellaneous", 0x13};
   struct Mstpri0 : Reg {

@@ -3,6 +3,7 @@
 #include "model/contract/memory_map.h"
 
 #define SECTION 0xC12u /* section, full access, domain 0, uncached and unbuffered */
+#define SECTION_BUFFERED (SECTION | 0x4u)
 #define SECTION_CACHED (SECTION | 0xCu)
 #define CONTROL_M 0x0001u
 #define CONTROL_C 0x0004u
@@ -17,7 +18,8 @@ void mmu_enable(void) {
   uint32_t *table = (uint32_t *)PAGE_TABLE_BASE;
   for (uint32_t i = 0; i < 4096; ++i) table[i] = 0;
   map(table, 0x00000000u, 0x00100000u, SECTION);
-  map(table, 0x01C00000u, 0x00200000u, SECTION);
+  map(table, DEVICE_BASE, 0x00200000u, SECTION);
+  table[POSTED_BASE >> 20] = DEVICE_BASE | SECTION_BUFFERED;
   map(table, 0x20000000u, 0x00100000u, SECTION);
   map(table, DDR_BASE, FIRMWARE_DDR_BYTES - UNCACHED_BYTES, SECTION_CACHED);
   map(table, UNCACHED_BASE, UNCACHED_BYTES, SECTION);

@@ -24,6 +24,8 @@ void edma_init(void) {
     mmio_write32(REGION0(IECR) + high, 0xFFFFFFFFu);
     mmio_write32(REGION0(ICR) + high, 0xFFFFFFFFu);
   }
+  mmio_write32(EDMA_QRAE(0), 0xFFu);
+  edma_close_quick();
   for (uint32_t n = 0; n < EDMA_CHANNELS / 8u; ++n) mmio_write32(EDMA_DMAQNUM0 + 4u * n, 0);
   edma_clear_errors();
 }
@@ -44,6 +46,18 @@ void edma_write_set(uint32_t set, const edma_set_t *value) {
   mmio_write32(EDMA_PARAM_CCNT(set), value->frames);
 }
 
+void edma_open_quick(uint32_t quick_channel, uint32_t set, uint32_t word, uint32_t queue) {
+  const uint32_t shift = quick_channel * 4u;
+  mmio_write32(EDMA_QCHMAP0 + 4u * quick_channel, set * 32u | word * 4u);
+  mmio_modify32(EDMA_QDMAQNUM, 7u << shift, queue << shift);
+  mmio_write32(REGION0(QEESR), 1u << quick_channel);
+}
+
+void edma_close_quick(void) {
+  mmio_write32(REGION0(QEECR), 0xFFu);
+  mmio_write32(REGION0(QSECR), 0xFFu);
+}
+
 void edma_start(uint32_t channel) { mmio_write32(REGION0(ESR) + half(channel), bit(channel)); }
 
 int edma_done(uint32_t code) { return (mmio_read32(REGION0(IPR) + half(code)) & bit(code)) != 0; }
@@ -60,7 +74,7 @@ int edma_wait(uint32_t code, uint32_t polls) {
 }
 
 uint32_t edma_errors(void) {
-  uint32_t errors = (mmio_read32(EDMA_EMR) | mmio_read32(EDMA_EMRH)) != 0;
+  uint32_t errors = (mmio_read32(EDMA_EMR) | mmio_read32(EDMA_EMRH) | mmio_read32(EDMA_QEMR)) != 0;
   errors |= (uint32_t)(mmio_read32(EDMA_CCERR) != 0) << 1;
   for (uint32_t tc = 0; tc < EDMA_QUEUES; ++tc)
     errors |= (uint32_t)(mmio_read32(EDMA_TC0_ERRSTAT + TC_PITCH * tc) != 0) << (4u + tc);
@@ -72,6 +86,8 @@ void edma_clear_errors(void) {
     mmio_write32(EDMA_EMCR + high, 0xFFFFFFFFu);
     mmio_write32(REGION0(SECR) + high, 0xFFFFFFFFu);
   }
+  mmio_write32(EDMA_QEMCR, 0xFFu);
+  mmio_write32(REGION0(QSECR), 0xFFu);
   mmio_write32(EDMA_CCERRCLR, EDMA_CCERRCLR_TCCERR | EDMA_CCERRCLR_QTHRXCD);
   for (uint32_t tc = 0; tc < EDMA_QUEUES; ++tc)
     mmio_write32(EDMA_TC0_ERRCLR + TC_PITCH * tc,
