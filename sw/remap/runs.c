@@ -18,12 +18,14 @@ static uint32_t step_between(const uint32_t *sources, uint32_t from, uint32_t to
 /* The index of a parameter set has 16 bits with sign. */
 static int fits_index(uint32_t step) { return step + 0x8000u < 0x10000u; }
 
-/* What begins at a pair: the longest run of single pairs, and the longest one of couples (0: none). */
+/* What begins at a pair: the longest run of single pairs, and the longest one of couples (0: none).
+ */
 typedef struct reach {
   uint16_t singles, couples; /* pairs */
 } reach_t;
 
-static reach_t reach_of(const uint32_t *sources, uint32_t pairs, uint32_t i, const reach_t *behind) {
+static reach_t reach_of(const uint32_t *sources, uint32_t pairs, uint32_t i,
+                        const reach_t *behind) {
   reach_t r = {1, 0};
   if (i + 1u == pairs) return r;
   const uint32_t step = step_between(sources, i, i + 1u);
@@ -73,7 +75,7 @@ uint32_t remap_encode_runs(const uint32_t *sources, uint32_t pairs, uint32_t des
   }
   if (rest[0] > most) return 0;
   for (uint32_t i = 0, n = 0; i < pairs; i += run[i].pairs)
-    runs[n++] = run_at(sources, i, destination, run[i].bytes,
-                       run[i].pairs * PAIR_BYTES / run[i].bytes);
+    runs[n++] =
+        run_at(sources, i, destination, run[i].bytes, run[i].pairs * PAIR_BYTES / run[i].bytes);
   return rest[0];
 }

@@ -1,5 +1,6 @@
-/* Remap tables for a DMA controller: a row is divided into pieces of equal length, and the pairs of a
- * piece into runs, each of which one transfer of two dimensions moves. Portable C11 without a library. */
+/* Remap tables for a DMA controller: a row is divided into pieces of equal length, and the pairs of
+ * a piece into runs, each of which one transfer of two dimensions moves. Portable C11 without a
+ * library. */
 #ifndef FOVEA_REMAP_RUNS_H
 #define FOVEA_REMAP_RUNS_H
 
@@ -9,19 +10,19 @@
 extern "C" {
 #endif
 
-/** Equal pieces of a row: `count` pieces of `pairs` pairs each, whose starts are `step` pairs apart.
- * Together they are the row; the last ones may overlap. */
+/** Equal pieces of a row: `count` pieces of `pairs` pairs each, whose starts are `step` pairs
+ * apart. Together they are the row; the last ones may overlap. */
 typedef struct remap_pieces {
   uint32_t count, pairs, step;
 } remap_pieces_t;
 
-/** Divides a row of `pairs` pairs into as few pieces of at most `longest` pairs as possible, but into at
- * least `fewest`. All three are at least 1, and `fewest` is at most `pairs`. */
+/** Divides a row of `pairs` pairs into as few pieces of at most `longest` pairs as possible, but
+ * into at least `fewest`. All three are at least 1, and `fewest` is at most `pairs`. */
 remap_pieces_t remap_divide(uint32_t pairs, uint32_t longest, uint32_t fewest);
 
 /** One transfer: `arrays` arrays of `bytes` bytes (4 or 8), which lie one behind the other at the
- * destination, and whose starts are `step` bytes apart at the source. The members are the words SRC,
- * A_B_CNT, DST and SRC_DST_BIDX of the EDMA3's parameter set (SPRUH82C). */
+ * destination, and whose starts are `step` bytes apart at the source. The members are the words
+ * SRC, A_B_CNT, DST and SRC_DST_BIDX of the EDMA3's parameter set (SPRUH82C). */
 typedef struct remap_run {
   uint32_t source;
   uint32_t counts; /* bytes | arrays << 16 */
@@ -31,9 +32,9 @@ typedef struct remap_run {
 
 #define REMAP_PIECE_MAX 256u /* pairs of a piece that can be encoded in runs */
 
-/** Encodes a piece in runs of pairs that are equally spaced at the source, or of couples of neighbouring
- * pairs that are. Each run goes on as long as it can or has one pair; among those divisions it is one with
- * the fewest runs.
+/** Encodes a piece in runs of pairs that are equally spaced at the source, or of couples of
+ * neighbouring pairs that are. Each run goes on as long as it can or has one pair; among those
+ * divisions it is one with the fewest runs.
  * @param sources the pairs' addresses, or offsets from any base
  * @param pairs number of pairs, 1 to REMAP_PIECE_MAX
  * @param destination where the first pair goes

@@ -17,6 +17,29 @@ static divider_t divider(const tile_table_t *t) {
   return (divider_t){pitch, (uint32_t)(0x100000000u / pitch) + 1u};
 }
 
+/* The row of the entry that was looked at last: the next one is mostly in the same row, or beside
+ * it. */
+typedef struct walk {
+  divider_t d;
+  uint32_t row, start; /* start: entry of the row's first pair */
+} walk_t;
+
+/* Goes to the row of an entry. */
+static inline void walk_to(walk_t *w, uint32_t entry) {
+  const uint32_t pitch = w->d.pitch, column = entry - w->start;
+  if (column < pitch) return;
+  if (column - pitch < pitch) {
+    ++w->row;
+    w->start += pitch;
+  } else if (column + pitch < pitch) {
+    --w->row;
+    w->start -= pitch;
+  } else {
+    w->row = row_of(w->d, entry);
+    w->start = w->row * pitch;
+  }
+}
+
 uint32_t tiles_count(const remap_picture_t *picture) {
   const uint32_t pairs = remap_groups(picture) * REMAP_GROUP;
   if (pairs < TILE_PAIRS || picture->rows <= TILE_ROWS) return 0;
@@ -56,14 +79,19 @@ static uint32_t find_extent(const tile_table_t *t, divider_t d, spot_t spot, ext
     e->first[c] = ~0u;
     e->last[c] = 0;
   }
+  walk_t w = {d, 0, 0};
+  uint32_t last_row = ~0u, last_column = ~0u;
   for (uint32_t v = spot.row; v < spot.row + TILE_ROWS; ++v) {
     uint32_t entry[TILE_PAIRS];
     black += remap_visible_row(&t->picture, v, spot.strip, spot.otherwise, entry);
     for (uint32_t i = 0; i < TILE_PAIRS; ++i) {
-      const uint32_t row = row_of(d, entry[i]);
-      const uint32_t c = (entry[i] - row * d.pitch) / TILE_WINDOW_ALIGN;
-      if (row < e->first[c]) e->first[c] = row;
-      if (row > e->last[c]) e->last[c] = row;
+      walk_to(&w, entry[i]);
+      const uint32_t c = (entry[i] - w.start) / TILE_WINDOW_ALIGN;
+      if (w.row == last_row && c == last_column) continue;
+      last_row = w.row;
+      last_column = c;
+      if (w.row < e->first[c]) e->first[c] = w.row;
+      if (w.row > e->last[c]) e->last[c] = w.row;
     }
   }
   return black;
@@ -171,13 +199,15 @@ typedef struct row_code {
 static int encode_row(const tile_table_t *t, divider_t d, spot_t spot, uint32_t v, uint32_t origin,
                       uint32_t patterns_base, pattern_list_t *list, row_code_t *code) {
   const uint32_t shorter = d.pitch - t->window_pitch;
+  walk_t w = {d, 0, 0};
   uint32_t entry[TILE_PAIRS], last = 0;
   (void)remap_visible_row(&t->picture, v, spot.strip, spot.otherwise, entry);
   for (uint32_t g = 0; g < TILE_ROW_CODES; ++g) {
     uint32_t place[TILE_GROUP_PAIRS];
     for (uint32_t k = 0; k < TILE_GROUP_PAIRS; ++k) {
       const uint32_t e = entry[g * TILE_GROUP_PAIRS + k];
-      place[k] = origin + e - row_of(d, e) * shorter;
+      walk_to(&w, e);
+      place[k] = origin + e - w.row * shorter;
     }
     /* The commonest step before the first pair of a row makes its pattern one that others have. */
     if (g == 0) code->base = (uint16_t)(last = place[0] - 4u);

@@ -86,13 +86,13 @@ TEST(StagedTest, BoxInTheResultIsCoherent) {
 
 TEST(StagedTest, BlackRimIsPainted) {
   Rig rig;
-  staged(rig, 160, 64, 3);
-  rig.set("lens.theta_max", "40deg");
+  staged(rig, 256, 64, 3);
+  rig.set("lens.mapping", "rectilinear").set("lens.fov", "60deg").set("lens.out_focal", "170px");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 3u) << rig.board().uart_text();
   EXPECT_TRUE(said(rig, kUsed)) << rig.board().uart_text();
   const auto lut = rig.lut();
-  EXPECT_GT(std::count(lut.begin(), lut.end(), 64u * 320), 100);
+  EXPECT_GT(std::count(lut.begin(), lut.end(), 64u * 512), 800);
   expect_frames_right(rig);
   expect_no_warnings();
 }
@@ -101,6 +101,7 @@ struct Refused {
   const char *name, *key, *value, *why;
   unsigned width, height;
 };
+void PrintTo(const Refused& r, std::ostream* out) { *out << r.name; }
 class StagedRefusalTest : public testing::TestWithParam<Refused> {};
 TEST_P(StagedRefusalTest, AnotherKernelTakesOverAndSaysWhy) {
   const Refused& r = GetParam();

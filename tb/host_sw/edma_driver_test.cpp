@@ -38,6 +38,8 @@ TEST(EdmaTest, StartSwitchesOnTheFiveModulesAndLeavesNothingPending) {
     for (const std::uint32_t address : {both, both + 4})
       EXPECT_THAT(chip.accesses, Contains(A{'w', address, ~0u})) << std::hex << address;
   EXPECT_THAT(chip.accesses, Contains(A{'w', kCc + 0x31C, 0x1000F}));
+  for (const std::uint32_t quick : {kCc + 0x380, kCc + 0x2088, kCc + 0x2094, kCc + 0x314})
+    EXPECT_THAT(chip.accesses, Contains(A{'w', quick, 0xFF})) << std::hex << quick;
   for (unsigned tc = 0; tc < 4; ++tc)
     EXPECT_THAT(chip.accesses, Contains(A{'w', 0x01C10128 + 0x400 * tc, 13})) << tc;
 }
@@ -51,6 +53,18 @@ TEST(EdmaTest, AChannelsQueueIsOneFieldOfFourBits) {
   edma_map(63, 3);
   EXPECT_EQ(chip.values[kCc + 0x240], 0x23333331u);
   EXPECT_EQ(chip.values[kCc + 0x25C], 0x30000000u);
+}
+
+TEST(EdmaTest, AQuickChannelHasASetATriggerWordAndAQueue) {
+  RegisterRecorder chip;
+  chip.values[kCc + 0x260] = 0x33333333;
+  edma_open_quick(7, 255, 3, 2);
+  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', kCc + 0x21C, 255u << 5 | 3 << 2},
+                                         A{'w', kCc + 0x260, 0x23333333},
+                                         A{'w', kCc + 0x208C, 0x80}));
+  edma_close_quick();
+  EXPECT_THAT(chip.accesses, Contains(A{'w', kCc + 0x2088, 0xFF}));
+  EXPECT_THAT(chip.accesses, Contains(A{'w', kCc + 0x2094, 0xFF}));
 }
 
 TEST(EdmaTest, ASetIsEightWords) {
@@ -108,7 +122,7 @@ TEST(EdmaTest, EachErrorHasItsBit) {
   RegisterRecorder chip;
   EXPECT_EQ(edma_errors(), 0u);
   const std::pair<std::uint32_t, std::uint32_t> kSources[] = {
-      {kCc + 0x300, 1}, {kCc + 0x304, 1}, {kCc + 0x318, 2},   {0x01C10120, 0x10},
+      {kCc + 0x300, 1}, {kCc + 0x304, 1}, {kCc + 0x310, 1}, {kCc + 0x318, 2},   {0x01C10120, 0x10},
       {0x01C10520, 0x20}, {0x01C10920, 0x40}, {0x01C10D20, 0x80}};
   for (const auto& [address, error] : kSources) {
     chip.values[address] = 1u << 16;

@@ -11,8 +11,8 @@
 enum { BOOT, CONTROL, GATHER, LOAD, STORE };
 #define FIRST_CHANNEL 32u
 #define CHANNELS_OF_PIPE 8u
-/* Sets of the ring: what GATHER starts from in each piece, what follows the last piece, and then the
- * moves, of which the last ones are in use. */
+/* Sets of the ring: what GATHER starts from in each piece, what follows the last piece, and then
+ * the moves, of which the last ones are in use. */
 enum { ENTRY, FINISH, FIRST_MOVE };
 
 #define RESULT_BASE RAM_BANK1_BASE
@@ -23,9 +23,7 @@ static uint32_t channel(uint32_t pipe, uint32_t which) {
   return FIRST_CHANNEL + CHANNELS_OF_PIPE * pipe + which;
 }
 
-static uint32_t ring_set(uint32_t pipe, uint32_t n) {
-  return EDMA_CHANNELS + PIPE_SETS * pipe + n;
-}
+static uint32_t ring_set(uint32_t pipe, uint32_t n) { return EDMA_CHANNELS + PIPE_SETS * pipe + n; }
 
 uint32_t pipe_set(uint32_t pipe, uint32_t n, uint32_t moves) {
   return ring_set(pipe, PIPE_SETS - moves + n);
@@ -50,7 +48,8 @@ uint32_t pipe_row(const pipes_t *pipes, uint32_t height, uint32_t pipe) {
 static edma_codes_t codes_of(const pipes_t *pipes, uint32_t height) {
   edma_codes_t codes = {channel(0, CONTROL), CHANNELS_OF_PIPE, 0};
   for (uint32_t pipe = 0; pipe < PIPES; ++pipe)
-    if (pipe_row(pipes, height, pipe + 1u) > pipe_row(pipes, height, pipe)) codes.mask |= 1u << pipe;
+    if (pipe_row(pipes, height, pipe + 1u) > pipe_row(pipes, height, pipe))
+      codes.mask |= 1u << pipe;
   return codes;
 }
 
@@ -99,7 +98,8 @@ void pipe_make_control(uint32_t *record, uint32_t pipe, uint32_t moves, uint32_t
 }
 
 /* Writes lists for a source frame from lists for another one; both may be the same memory. */
-static void rebase(const pipes_t *pipes, pipes_lists_t *to, const pipes_lists_t *from, uint32_t base) {
+static void rebase(const pipes_t *pipes, pipes_lists_t *to, const pipes_lists_t *from,
+                   uint32_t base) {
   const uint32_t distance = base - from->base;
   if (pipes->controls == 0) {
     for (uint32_t n = 0; n < pipes->entries; ++n) to->sources[n] = from->sources[n] + distance;
@@ -115,7 +115,8 @@ static void rebase(const pipes_t *pipes, pipes_lists_t *to, const pipes_lists_t 
   if (to != from) {
     const uint32_t lists = (uint32_t)to->sources - (uint32_t)from->sources;
     for (uint32_t n = 0; n < pipes->controls * PIPE_CONTROL_WORDS; ++n)
-      to->control[n] = from->control[n] + (n % PIPE_CONTROL_WORDS == PIPE_CONTROL_SOURCE ? lists : 0u);
+      to->control[n] =
+          from->control[n] + (n % PIPE_CONTROL_WORDS == PIPE_CONTROL_SOURCE ? lists : 0u);
   }
   to->base = base;
   to->taken = 1;
@@ -136,8 +137,7 @@ void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena) {
   const uint32_t sources = pipes->entries * pipes->entry_words * 4u;
   const uint32_t control = pipes->controls * PIPE_CONTROL_WORDS * 4u;
   pipes->list_count = 1;
-  while (pipes->list_count < IN_COUNT &&
-         sources + control <= (arena->end - arena->next) / 2u) {
+  while (pipes->list_count < IN_COUNT && sources + control <= (arena->end - arena->next) / 2u) {
     pipes_lists_t *lists = &pipes->lists[pipes->list_count];
     *lists = (pipes_lists_t){.sources = arena_take(arena, sources, CACHE_LINE_BYTES)};
     if (lists->sources == NULL) break;
@@ -149,8 +149,8 @@ void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena) {
   }
   table->encoded = pipes;
   table->encoded_bytes = sources + control + (uint32_t)sizeof pipes->ring;
-  /* A list for each source frame, so that the first frames need not wait for it. The first lists are those
-   * that the others are made from. */
+  /* A list for each source frame, so that the first frames need not wait for it. The first lists
+   * are those that the others are made from. */
   if (frame_stride != 0)
     for (uint32_t n = pipes->list_count; n-- > 0;)
       rebase(pipes, &pipes->lists[n], &pipes->lists[0], (uint32_t)frame_in + n * frame_stride);
@@ -175,7 +175,8 @@ static void start_pipe(const pipes_t *pipes, uint32_t pipe, const remap_table_t 
   edma_write_set(channel(pipe, BOOT), &boot);
   edma_write_set(channel(pipe, GATHER), &pipes->ring[pipe][ENTRY]);
 
-  edma_set_t load = {.link = EDMA_NO_LINK, .frames = 1}; /* with control records nothing else counts */
+  edma_set_t load = {.link = EDMA_NO_LINK,
+                     .frames = 1}; /* with control records nothing else counts */
   if (pipes->controls != 0) {
     const uint32_t record = PIPE_CONTROL_WORDS * 4u;
     const edma_set_t control = {

@@ -1,6 +1,6 @@
 /* Four pipes, one for each transfer controller of the EDMA, through which the rows of a picture are
- * corrected without the core: each takes a part of the rows, piece by piece. The pieces are encoded as
- * lists in SDRAM; README.md, "Remap by the EDMA", describes them and the channels. */
+ * corrected without the core: each takes a part of the rows, piece by piece. The pieces are encoded
+ * as lists in SDRAM; README.md, "Remap by the EDMA", describes them and the channels. */
 #ifndef FOVEA_FIRMWARE_EDMA_PIPES_H
 #define FOVEA_FIRMWARE_EDMA_PIPES_H
 
@@ -12,9 +12,9 @@
 #include "sw/remap/runs.h"
 
 #define PIPES EDMA_QUEUES
-#define PIPE_SETS 48u              /* a quarter of the sets that belong to no channel */
+#define PIPE_SETS 48u               /* a quarter of the sets that belong to no channel */
 #define PIPE_MOVES (PIPE_SETS - 2u) /* transfers of a piece, at most */
-#define PIPE_PIECE_BYTES 1024u     /* internal RAM for the result of a piece */
+#define PIPE_PIECE_BYTES 1024u      /* internal RAM for the result of a piece */
 
 /** One set of lists: for one source frame, since they contain addresses. */
 typedef struct pipes_lists {
@@ -52,8 +52,8 @@ uint32_t pipe_set(uint32_t pipe, uint32_t n, uint32_t moves);
 /** Where the EDMA finds the result of the pipe's piece. */
 uint32_t pipe_result(uint32_t pipe);
 
-/** Fills `ring` except for the words that the lists bring. `moves`: transfers of each piece, or 0 if
- * the lists say that. */
+/** Fills `ring` except for the words that the lists bring. `moves`: transfers of each piece, or 0
+ * if the lists say that. */
 void pipes_make_ring(pipes_t *pipes, uint32_t moves);
 
 /** One record of `control`: how the moves of a piece get into their sets. */

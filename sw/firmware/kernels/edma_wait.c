@@ -17,8 +17,8 @@ void edma_wait_prepare(edma_codes_t codes) {
   intc_enable(IRQ_EDMA_CCINT0, INTERRUPT_PRIORITY);
 }
 
-/* Clears the codes that have been reported, and returns those still missing. All are looked at each time:
- * the interrupt comes again only when no open code is pending. */
+/* Clears the codes that have been reported, and returns those still missing. All are looked at each
+ * time: the interrupt comes again only when no open code is pending. */
 static uint32_t still_missing(edma_codes_t codes) {
   for (uint32_t n = 0; codes.mask >> n != 0; ++n) {
     const uint32_t code = codes.first + codes.pitch * n;

@@ -29,7 +29,7 @@ typedef struct remap_method {
 } remap_method_t;
 
 extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
-    method_codes;
-extern const remap_method_t method_gather, method_runs, method_copy, method_staged; /* by the EDMA; staged with the core */
+    method_codes, method_staged;
+extern const remap_method_t method_gather, method_runs, method_copy; /* by the EDMA alone */
 
 #endif

@@ -1,13 +1,15 @@
-/* Full gather: every pair of pixels is a transfer of 4 bytes of its own. The lists are source addresses. */
+/* Full gather: every pair of pixels is a transfer of 4 bytes of its own. The lists are source
+ * addresses. */
 #include <stddef.h>
 
 #include "../drivers/cp15.h"
 #include "edma_pipes.h"
 
-/* The channel controller binds, and serves the lower queue first: the pipes of the lower queues run at
- * their full speed, and the others take what is left. With these shares all end at nearly the same time
- * (measured). */
-#define SHARES {7, 5, 3, 1}
+/* The channel controller binds, and serves the lower queue first: the pipes of the lower queues run
+ * at their full speed, and the others take what is left. With these shares all end at nearly the
+ * same time (measured). */
+#define SHARES \
+  { 7, 5, 3, 1 }
 
 /* Offsets in the order in which the pipes take the pairs. */
 static void fill(pipes_t *pipes, const remap_table_t *table) {
@@ -29,7 +31,8 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   if (refusal != NULL) return refusal;
   pipes_t *pipes = arena_take(arena, sizeof *pipes, CACHE_LINE_BYTES);
   if (pipes == NULL) return "no memory";
-  *pipes = (pipes_t){.pieces = remap_divide(table->width / 2u, PIPE_MOVES, 1), .entry_words = 1, .shares = SHARES};
+  *pipes = (pipes_t){
+      .pieces = remap_divide(table->width / 2u, PIPE_MOVES, 1), .entry_words = 1, .shares = SHARES};
   pipes->entries = pipes->pieces.count * pipes->pieces.pairs * table->height;
   pipes->lists[0].sources = arena_take(arena, 4u * pipes->entries, CACHE_LINE_BYTES);
   if (pipes->lists[0].sources == NULL) return "no memory";

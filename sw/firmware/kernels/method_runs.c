@@ -1,17 +1,21 @@
-/* Run-length gather: neighbouring pairs that are equally spaced at the source are one transfer. The lists
- * are four words of each transfer's parameter set, and a control record for each piece. */
+/* Run-length gather: neighbouring pairs that are equally spaced at the source are one transfer. The
+ * lists are four words of each transfer's parameter set, and a control record for each piece. */
 #include <stddef.h>
 
 #include "../drivers/cp15.h"
 #include "edma_pipes.h"
 
-/* The lower queues are served first; with these shares all end at nearly the same time (measured). */
-#define SHARES {9, 8, 8, 7}
+/* The lower queues are served first; with these shares all end at nearly the same time (measured).
+ */
+#define SHARES \
+  { 9, 8, 8, 7 }
 
-/* Encodes the picture in pieces as pipes->pieces says, into memory from `start` to `end`: control records
- * first, then runs.
- * @return the end of what is used; 0 if there is not enough memory, or 1 if a piece has too many runs */
-static uintptr_t encode(pipes_t *pipes, const remap_table_t *table, uintptr_t start, uintptr_t end) {
+/* Encodes the picture in pieces as pipes->pieces says, into memory from `start` to `end`: control
+ * records first, then runs.
+ * @return the end of what is used; 0 if there is not enough memory, or 1 if a piece has too many
+ * runs */
+static uintptr_t encode(pipes_t *pipes, const remap_table_t *table, uintptr_t start,
+                        uintptr_t end) {
   const remap_pieces_t *pieces = &pipes->pieces;
   const uint32_t row_pairs = table->width / 2u;
   pipes->controls = table->height * pieces->count;
@@ -26,9 +30,8 @@ static uintptr_t encode(pipes_t *pipes, const remap_table_t *table, uintptr_t st
     for (uint32_t row = pipe_row(pipes, table->height, pipe); row < end_row; ++row)
       for (uint32_t piece = 0; piece < pieces->count; ++piece) {
         if (end - (uintptr_t)runs < PIPE_MOVES * sizeof *runs) return 0;
-        const uint32_t n =
-            remap_encode_runs(table->lut + row * row_pairs + piece * pieces->step, pieces->pairs,
-                              pipe_result(pipe), PIPE_MOVES, runs);
+        const uint32_t n = remap_encode_runs(table->lut + row * row_pairs + piece * pieces->step,
+                                             pieces->pairs, pipe_result(pipe), PIPE_MOVES, runs);
         if (n == 0) return 1;
         pipe_make_control(control, pipe, n, (uint32_t)runs);
         control += PIPE_CONTROL_WORDS;
@@ -46,8 +49,8 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   uint8_t *start = pipes != NULL ? arena_take(arena, 0, CACHE_LINE_BYTES) : NULL;
   if (start == NULL) return "no memory";
   *pipes = (pipes_t){.entry_words = sizeof(remap_run_t) / 4u, .shares = SHARES};
-  /* Longer pieces cost less, but may have more runs than there are sets. Pieces that have as many pairs as
-   * there are sets always fit. */
+  /* Longer pieces cost less, but may have more runs than there are sets. Pieces that have as many
+   * pairs as there are sets always fit. */
   uintptr_t used;
   uint32_t fewest = 1;
   do {
