@@ -155,7 +155,6 @@ acts firmware.baud 57600
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial
 acts firmware.kernel ldm
-acts firmware.lut fixed_point
 acts firmware.overlay true
 acts firmware.patch true
 acts firmware.repeat 2
