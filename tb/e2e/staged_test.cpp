@@ -12,7 +12,7 @@ namespace fovea::e2e {
 namespace {
 
 constexpr Picoseconds kLimit = 20 * kPsPerSecond;
-constexpr const char* kUsed = "kernel: staged by EDMA, ";
+constexpr const char* kUsed = "kernel: staged, ";
 
 void staged(Rig& rig, unsigned width, unsigned height, unsigned frames) {
   rig.set("video.width", std::to_string(width)).set("video.height", std::to_string(height));
