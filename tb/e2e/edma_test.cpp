@@ -17,10 +17,10 @@ bool uart_has(Rig& rig, const std::string& text) {
   return rig.board().uart_text().find(text) != std::string::npos;
 }
 
-void expect_good_run(Rig& rig, unsigned frames) {
+void expect_good_run(Rig& rig, const std::string& kernel, unsigned frames) {
   ASSERT_EQ(rig.board().dm365.arm.failure(), "");
   ASSERT_EQ(rig.shown().size(), frames) << rig.board().uart_text();
-  EXPECT_TRUE(uart_has(rig, "kernel: EDMA ")) << rig.board().uart_text();
+  EXPECT_TRUE(uart_has(rig, "kernel: " + kernel + ", ")) << rig.board().uart_text();
   EXPECT_FALSE(uart_has(rig, "EDMA: ")) << rig.board().uart_text();
   for (const auto& [what, times] : Diagnostics::instance().counts())
     ADD_FAILURE() << times << " times: " << what.second;
@@ -51,7 +51,7 @@ TEST_P(EdmaTest, EveryPictureIsExact) {
   rig.set("firmware.kernel", kernel).set("camera.stamp", "false").set("run.frames", "4");
   for (const auto& [key, value] : picture.keys) rig.set(key, value);
   rig.run(kLimit);
-  expect_good_run(rig, 4);
+  expect_good_run(rig, kernel, 4);
   expect_lut_right(rig);
   expect_frames_right(rig);
   // Several buffers are used, each with lists of its own.
@@ -82,7 +82,7 @@ TEST(EdmaTest, ACopyShowsWhatTheCameraSent) {
   rig.set("firmware.kernel", "copy").set("camera.stamp", "false").set("run.frames", "4");
   rig.set("video.width", "188").set("video.height", "20");
   rig.run(kLimit);
-  expect_good_run(rig, 4);
+  expect_good_run(rig, "copy", 4);
   expect_lut_right(rig);
   std::optional<std::uint64_t> last;
   for (const Shown& s : rig.shown()) {
@@ -128,7 +128,7 @@ TEST_P(WholeFrameTest, NightlyWholePalFrameIsCorrectedExactly) {
   rig.load("default.yaml").set("firmware.kernel", GetParam());
   rig.set("run.frames", "4").set("camera.stamp", "false");
   rig.run(kLimit);
-  expect_good_run(rig, 4);
+  expect_good_run(rig, GetParam(), 4);
   expect_lut_right(rig);
   expect_frames_right(rig);
   EXPECT_EQ(rig.state().dropped, 0u);
