@@ -8,14 +8,14 @@
 #define DCACHE_BYTES 8192u
 
 /** Fills the page table at PAGE_TABLE_BASE and enables MMU and both caches. Sections of 1 MiB:
- * internal RAM and devices are uncached and unbuffered (and see POSTED_BASE); DDR2 is cached and write-back, except for
- * its last MiB (UNCACHED_BASE); everything else causes an abort. To be called once, with caches
- * disabled. */
+ * internal RAM and devices are uncached and unbuffered (and see POSTED_BASE); DDR2 is cached and
+ * write-back, except for its last MiB (UNCACHED_BASE); everything else causes an abort. To be
+ * called once, with caches disabled. */
 void mmu_enable(void);
 
 /** Registers of the first MiB at DEVICE_BASE can also be written at this address: such a write goes
- * through the write buffer, in order with others, and the core goes on at once. Only for registers that
- * may be written late; read them at their own address. */
+ * through the write buffer, in order with others, and the core goes on at once. Only for registers
+ * that may be written late; read them at their own address. */
 #define DEVICE_BASE 0x01C00000u
 #define POSTED_BASE 0x01E00000u
 static inline uint32_t posted_address(uint32_t address) {

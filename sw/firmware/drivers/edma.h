@@ -47,8 +47,8 @@ void edma_map(uint32_t channel, uint32_t queue);
 /** Writes a whole set: eight register accesses. */
 void edma_write_set(uint32_t set, const edma_set_t *value);
 
-/** Lets a write to word 0 to 7 of a set trigger it: QDMA channel 0 to 7 serves it through a queue. The set
- * should have EDMA_STATIC, so that what the write does not name stays as it was. */
+/** Lets a write to word 0 to 7 of a set trigger it: QDMA channel 0 to 7 serves it through a queue.
+ * The set should have EDMA_STATIC, so that what the write does not name stays as it was. */
 void edma_open_quick(uint32_t quick_channel, uint32_t set, uint32_t word, uint32_t queue);
 void edma_close_quick(void); /* all of them */
 
