@@ -8,18 +8,24 @@
 
 #include "model/common/check.h"
 #include "model/common/mem_sockets.h"
+#include "model/common/timer.h"
 
 namespace fovea::bus {
 
-/// Forwards the requests of two initiators to one port, in the order of their calls, and each response
-/// to whom it belongs. Synthetic traffic uses it on the port of a block of the chip: both share the
-/// port's queue and its order.
+/// Forwards the requests of two initiators to one port, and each response to whom it belongs.
+/// Synthetic traffic uses it on the port of a block of the chip: both share the port's queue and
+/// its order. Requests are passed on 1 ps after they were made, those of `first` first: if both
+/// make one at the same instant, the order of the kernel's processes must not decide.
 class SharedPort : public sc_core::sc_module {
  public:
   MemTargetSocket<32> first{"first"}, second{"second"};
   MemInitiatorSocket<32> port{"port"};
 
   explicit SharedPort(sc_core::sc_module_name name) : sc_module(name) {
+    SC_HAS_PROCESS(SharedPort);
+    SC_METHOD(pass_on);
+    sensitive << due_.event();
+    dont_initialize();
     for (auto& side : sides_) side.owner = this;
     sides_[0].socket = &first;
     sides_[1].socket = &second;
@@ -35,8 +41,9 @@ class SharedPort : public sc_core::sc_module {
     MemTargetSocket<32>* socket = nullptr;
     tlm::tlm_sync_enum nb_transport_fw(MemRequest& r, MemPhase& phase,
                                        sc_core::sc_time& delay) override {
-      if (phase == MemPhase::kRequest) owner->under_way_.emplace_back(&r, this);
-      return owner->port->nb_transport_fw(r, phase, delay);
+      if (phase != MemPhase::kRequest) return owner->port->nb_transport_fw(r, phase, delay);
+      owner->take(*this, r);
+      return tlm::TLM_ACCEPTED;
     }
     unsigned transport_dbg(MemRequest& r) override { return owner->port->transport_dbg(r); }
   };
@@ -53,8 +60,38 @@ class SharedPort : public sc_core::sc_module {
       return (*side->socket)->nb_transport_bw(r, phase, delay);
     }
   };
+  struct Waiting {
+    Picoseconds at;
+    MemRequest* request;
+    Side* side;
+  };
+
+  void take(Side& side, MemRequest& r) {
+    under_way_.emplace_back(&r, &side);
+    waiting_.push_back({kernel_time() + 1, &r, &side});
+    due_.at(waiting_.front().at);
+  }
+
+  void pass_on() {
+    const Picoseconds now = kernel_time();
+    const auto end = std::find_if(waiting_.begin(), waiting_.end(),
+                                  [&](const Waiting& w) { return w.at > now; });
+    std::vector<Waiting> batch(waiting_.begin(), end);
+    waiting_.erase(waiting_.begin(), end);
+    std::stable_sort(batch.begin(), batch.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.side < b.side; });
+    for (const Waiting& w : batch) {
+      MemPhase phase = MemPhase::kRequest;
+      sc_core::sc_time delay;
+      port->nb_transport_fw(*w.request, phase, delay);
+    }
+    if (!waiting_.empty()) due_.at(waiting_.front().at);
+  }
+
   std::array<Side, 2> sides_;
   Back back_;
+  Timer due_;
+  std::vector<Waiting> waiting_;
   std::vector<std::pair<const MemRequest*, Side*>> under_way_;
 };
 
