@@ -60,6 +60,9 @@ void LoadGenerator::sdram_changed() {
 
 void LoadGenerator::fill() {
   const Picoseconds now = kernel_time();
+  for (; !copies_.empty() && copies_.front().since < now; copies_.pop_front())
+    reads_.write(copies_.front().address, copies_.front().data);
+  if (!copies_.empty()) wake_.at(copies_.front().since + 1);
   if (now < usable_from_) {
     wake_.at(usable_from_);
     return;
@@ -88,9 +91,13 @@ void LoadGenerator::issue() {
 }
 
 void LoadGenerator::done(const BurstMaster::Completion& c) {
-  if (params_.copies() && !c.write && !c.error)
-    return writes().write(c.address + static_cast<std::uint32_t>(region()), c.data);
   const Picoseconds now = kernel_time();
+  if (params_.copies() && !c.write && !c.error) {
+    const std::uint32_t to = c.address + static_cast<std::uint32_t>(region());
+    if (other_side_) return other_side_->write(to, c.data);
+    copies_.push_back({now, to, {c.data.begin(), c.data.end()}});
+    return wake_.at(now + 1);
+  }
   ready_.push(now + (c.error ? kPause : pause_));
   wake_.at(ready_.top());
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <queue>
@@ -64,7 +65,9 @@ struct LoadParams : ParamGroup {
   bool writes() const { return !kind.is("read"); }
 };
 
-/// Keeps a number of bursts under way; a copy is one from its read to its write's acknowledgement. On
+/// Keeps a number of bursts under way; a copy is one from its read to its write's acknowledgement. On a
+/// port for both directions a copy's write goes out 1 ps after its data are there: at that very instant
+/// another copy may begin, and the order on the port would be that of the kernel's processes. On
 /// the SDRAM it pauses while that is not initialised and 10 us longer, since boot loaders write
 /// registers and reset the controller after they have locked its timing. A burst refused with a bus
 /// error is tried again after 10 us.
@@ -87,6 +90,13 @@ class LoadGenerator : public sc_core::sc_module, public Block {
   BurstMaster reads_;
   std::unique_ptr<BurstMaster> other_side_;
   Picoseconds pause_;
+  /// The write of a copy on a port for both directions, of which the read has completed.
+  struct Copied {
+    Picoseconds since;
+    std::uint32_t address;
+    std::vector<std::uint8_t> data;
+  };
+  std::deque<Copied> copies_;  // in the order of their reads
   /// When each burst that is not under way may go out. What completes in an instant does so in any
   /// order, before or after fill(): a place must not depend on the others.
   std::priority_queue<Picoseconds, std::vector<Picoseconds>, std::greater<>> ready_;

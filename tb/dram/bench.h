@@ -53,6 +53,7 @@ struct Request {
   std::array<std::uint8_t, 64> data{};
   // outcome
   bool accepted = false;
+  std::optional<Master> unblocked_by;  // who made room for it; none: it did not wait
   unsigned done = 0;  // times a read was answered
   Picoseconds accepted_at = 0, first = 0, last = 0;
 };
@@ -168,7 +169,9 @@ class DdrBench {
     for (const auto& read : ddr.news().reads) done(read);
     if (const auto& accepted = ddr.news().accepted) {
       input_ = false;
-      accept(*static_cast<Request*>(accepted->request->owner), accepted->at);
+      auto& r = *static_cast<Request*>(accepted->request->owner);
+      r.unblocked_by = accepted->unblocked_by;
+      accept(r, accepted->at);
     }
     ddr.news().clear();
   }

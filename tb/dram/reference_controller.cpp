@@ -480,10 +480,11 @@ void ReferenceController::step() {
 
 void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
   passed_ = place == 0 ? 0 : passed_ + columns_of(queue_[place].request);
+  const unsigned leaving = queue_[place].request.master;
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
   if (input_ && fits(*input_)) {
     enter(*input_, std::max(input_arrived_, clock + 1));
-    accepted.push_back({input_->id, ddr_.edge(clock)});
+    accepted.push_back({input_->id, ddr_.edge(clock), leaving});
     input_.reset();
   }
   // Until the first of the queue arrives there is nobody.

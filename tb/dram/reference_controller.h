@@ -86,6 +86,7 @@ class ReferenceController {
   struct Accepted {
     std::size_t id;
     Picoseconds at;
+    unsigned unblocked_by;  // master of the request that made room
   };
 
   /// Starts with the defaults of ReferenceConfig.

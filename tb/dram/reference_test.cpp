@@ -90,7 +90,8 @@ class Production {
     for (const auto& read : ddr_.news().reads)
       reads.push_back({kRead, id(read.request), read.first, read.last});
     if (const auto& one = ddr_.news().accepted)
-      accepted.push_back({kAccepted, id(one->request), one->at, 0});
+      accepted.push_back({kAccepted, id(one->request), one->at,
+                          static_cast<std::uint64_t>(one->unblocked_by)});
     ddr_.news().clear();
   }
   void catch_up(Picoseconds at) { ddr_.catch_up(at); }
@@ -203,7 +204,8 @@ class Oracle {
       commands.push_back({kCommand, static_cast<std::uint64_t>(g.kind),
                           std::uint64_t{g.bank} << 32 | g.row, g.clock});
     }
-    for (const auto& a : controller_.accepted) accepted.push_back({kAccepted, a.id, a.at, 0});
+    for (const auto& a : controller_.accepted)
+      accepted.push_back({kAccepted, a.id, a.at, a.unblocked_by});
     for (const auto& r : controller_.reads) reads.push_back({kRead, r.id, r.first, r.last});
     controller_.accepted.clear();
     controller_.reads.clear();

@@ -262,6 +262,24 @@ TEST(FifoTest, SevenCommandsFitAndTheEighthWaitsForAColumnCommand) {
   EXPECT_EQ(all[7].done, 1u);
 }
 
+// The one that waited takes the entry that the first one leaves.
+TEST(FifoTest, RoomIsMadeByTheMasterWhoseRequestLeaves) {
+  for (const unsigned entries : {1u, 7u}) {
+    BenchOptions o = no_refresh();
+    o.params.emplace_back("command_fifo", std::to_string(entries));
+    DdrBench b(o);
+    std::vector<Request> all(entries + 1);
+    for (unsigned i = 0; i < all.size(); ++i) {
+      all[i].address = i * 16;
+      all[i].master = i < entries ? Master::kVpbe : Master::kArmD;
+      b.submit(all[i], 9);
+    }
+    b.drain();
+    for (unsigned i = 0; i < entries; ++i) EXPECT_FALSE(all[i].unblocked_by) << entries << ", " << i;
+    EXPECT_EQ(all.back().unblocked_by, Master::kVpbe) << entries << " entries";
+  }
+}
+
 TEST(FifoTest, WriteDataFifoHoldsElevenWords) {
   struct Write {
     unsigned bytes, offset;

@@ -357,10 +357,12 @@ inline void DdrController::leave_queue() {
 void DdrController::accept_waiting(std::uint64_t clock) {
   if (!fits(input_.write, input_.address, input_.bytes)) return;
   input_taken_ = input_blocked_ = false;
+  // The free entry may be the one that the departing request has left.
+  const Master unblocked_by = plan_.choice.entry->request.master;
   Entry& e = queue_.free_entry();
   e.request = input_;
   take(e, std::max(input_arrived_, clock + 1));
-  news_.accepted = {input_.origin, ddr_.edge(clock), plan_.choice.entry->request.master};
+  news_.accepted = {input_.origin, ddr_.edge(clock), unblocked_by};
   news_.any = true;
 }
 
