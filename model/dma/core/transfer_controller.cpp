@@ -95,7 +95,7 @@ RegisterSet TransferController::destination_set(unsigned n) const {
 unsigned TransferController::destination_writing() const {
   for (unsigned place = 0; place < destinations_.size(); ++place)
     if (!destinations_[place].writes.done()) return (head_ + place) % sizes_.depth;
-  return head_;
+  return static_cast<unsigned>(head_ + destinations_.size() + sizes_.depth - 1) % sizes_.depth;
 }
 
 /// From the program register to the source active and a destination register.

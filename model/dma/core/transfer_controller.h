@@ -91,7 +91,7 @@ class TransferController {
   RegisterSet destination_set(unsigned n) const;
   /// The destination register of the oldest request, or of the next one if there is none.
   unsigned destination_head() const { return head_; }
-  /// The destination register whose writes are being issued, or else the head.
+  /// The destination register whose writes are being issued, or else the one whose were issued last.
   unsigned destination_writing() const;
 
   bool idle() const { return !program_ && !source_ && destinations_.empty(); }
