@@ -157,6 +157,9 @@ TEST_F(CaptureTest, EdmaEventsFollowTheSourceThatEvtselNames) {
   b.top_regs.write(0x1C, 0x1F1F1F00 | kVenc);  // VPSS_EVT1's source is high by now
   run_for(kPsPerNs);
   EXPECT_EQ(events.rises[0].size(), 3u);
+  b.top_regs.write(0x1C, 0x1F1F0000 | kVenc);
+  run_for(kPsPerNs);
+  EXPECT_EQ(events.rises[0].size(), 3u) << "its source has not changed";
   b.no_venc.write(false);
   run_for(kPsPerNs);
   EXPECT_EQ(events.rises[0].size(), 3u) << "rising edges only";
