@@ -12,7 +12,23 @@ EdmaTcRegs::EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth)
     : RegBank("EDMATC" + std::to_string(number)),
       tccfg(*this, "TCCFG", 0x004, "configuration",
             (static_cast<unsigned>(std::bit_width(fifo / 32)) - 1) | 1u << 4 |
-                (static_cast<unsigned>(std::bit_width(depth)) - 1) << 8) {}
+                (static_cast<unsigned>(std::bit_width(depth)) - 1) << 8) {
+  for (unsigned n = 0; n < kDestinations; ++n)
+    destination.emplace_back(*this, "DF", 0x300 + 0x40 * n, "destination " + std::to_string(n),
+                             std::to_string(n));
+}
+
+EdmaTcRegs::Set::Set(RegBank& bank, const std::string& prefix, std::uint32_t offset,
+                     const std::string& of, const std::string& suffix)
+    : opt(bank, prefix + "OPT" + suffix, offset, Mode::kRo, of + ": options"),
+      src(bank, prefix + "SRC" + suffix, offset + 0x4, Mode::kRo,
+          of + (prefix == "DF" ? ": 0, not applicable" : ": source address")),
+      cnt(bank, prefix + "CNT" + suffix, offset + 0x8, Mode::kRo, of + ": BCNT and ACNT that are left"),
+      dst(bank, prefix + "DST" + suffix, offset + 0xC, Mode::kRo,
+          of + (prefix == "SA" ? ": 0, not applicable" : ": destination address")),
+      bidx(bank, prefix + "BIDX" + suffix, offset + 0x10, Mode::kRo, of + ": distances of arrays"),
+      mpprxy(bank, prefix + "MPPRXY" + suffix, offset + 0x14, Mode::kRo,
+             of + ": privilege, not modelled (0)") {}
 
 namespace {
 /// @throws UserError unless the size is a power of two, as TCCFG and the guides have them
@@ -57,7 +73,9 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
     regs.tcstat.source.set(core_.source_active());
     regs.tcstat.writes.set(writes_.outstanding() > 0);
     regs.tcstat.destinations.set(static_cast<std::uint32_t>(core_.destinations()));
+    regs.tcstat.head.set(core_.destination_head());
   });
+  show_sets();
   regs.errclr.on_write([this](std::uint32_t word) {
     regs.errstat.set(regs.errstat.get() & ~word);
     if (word & regs.errclr.bus.mask()) regs.errdet.set(0);
@@ -77,6 +95,51 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   });
   SC_METHOD(clock_changed);
   sensitive << clk << lpsc;
+}
+
+/// What does not apply to a set reads as 0: the destination of the source active, the source of a
+/// destination register.
+void EdmaTc::show_sets() {
+  const auto program = [this] { return core_.program_set(); };
+  const auto source = [this] { return core_.source_set(); };
+  show(regs.program, program);
+  regs.program.src.on_read([this] { regs.program.src.set(core_.program_set().request.source.address); });
+  regs.program.dst.on_read(
+      [this] { regs.program.dst.set(core_.program_set().request.destination.address); });
+  show(regs.source, source);
+  regs.source.src.on_read([this] {
+    const RegisterSet s = core_.source_set();
+    regs.source.src.set(s.address(s.request.source));
+  });
+  regs.sacntrld.on_read([this] { regs.sacntrld.set(core_.source_set().request.acnt); });
+  regs.sasrcbref.on_read([this] {
+    const RegisterSet s = core_.source_set();
+    regs.sasrcbref.set(s.reference(s.request.source));
+  });
+  const auto written = [this] { return core_.destination_set(core_.destination_writing()); };
+  regs.dfcntrld.on_read([this, written] { regs.dfcntrld.set(written().request.acnt); });
+  regs.dfdstbref.on_read([this, written] {
+    const RegisterSet s = written();
+    regs.dfdstbref.set(s.reference(s.request.destination));
+  });
+  for (unsigned n = 0; n < static_cast<unsigned>(params_.depth()); ++n) {
+    EdmaTcRegs::Set& d = regs.destination[n];
+    show(d, [this, n] { return core_.destination_set(n); });
+    d.dst.on_read([this, &d, n] {
+      const RegisterSet s = core_.destination_set(n);
+      d.dst.set(s.address(s.request.destination));
+    });
+  }
+}
+
+/// What all sets have.
+void EdmaTc::show(EdmaTcRegs::Set& r, std::function<RegisterSet()> set) {
+  r.opt.on_read([this, &r, set] {
+    const RegisterSet s = set();
+    r.opt.set(s.request.acnt ? s.options(channels_->priority[number_].read()) : 0);
+  });
+  r.cnt.on_read([&r, set] { r.cnt.set(set().counts()); });
+  r.bidx.on_read([&r, set] { r.bidx.set(set().indices()); });
 }
 
 /// Bursts under way are still answered; nobody waits for them.

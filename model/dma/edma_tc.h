@@ -1,6 +1,9 @@
 // EDMA3 transfer controllers at 0x01C10000, 0x400 each.
 #pragma once
 #include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
 #include <systemc>
 
 #include "model/common/burst_master.h"
@@ -26,6 +29,7 @@ struct EdmaTcRegs : RegBank {
     Field source{*this, "SRCACTV", 1, 1, Mode::kRo, "reads are being issued"};
     Field writes{*this, "WSACTV", 2, 1, Mode::kRo, "an acknowledgement of a write is outstanding"};
     Field destinations{*this, "DSTACTV", 4, 3, Mode::kRo, "destination registers in use"};
+    Field head{*this, "DFSTRTPTR", 12, 2, Mode::kRo, "destination register of the oldest request"};
   };
   struct Errors : Reg {
     using Reg::Reg;
@@ -60,6 +64,15 @@ struct EdmaTcRegs : RegBank {
     using Reg::Reg;
     Field rate{*this, "RDRATE", 0, 3, Mode::kRw, "clocks between reads: 0, 4, 8, 16 or 32"};
   };
+  /// A register set: the request in it, and what is left of it.
+  struct Set {
+    Reg opt, src, cnt, dst, bidx, mpprxy;
+    /// @param prefix "P", "SA" or "DF"; `suffix` the number of a destination register
+    Set(RegBank& bank, const std::string& prefix, std::uint32_t offset, const std::string& of,
+        const std::string& suffix = "");
+  };
+  static constexpr unsigned kDestinations = 4;
+
   Config tccfg;
   Status tcstat{*this, "TCSTAT", 0x100, "status"};
   Errors errstat{*this, "ERRSTAT", 0x120, "errors"};
@@ -68,6 +81,15 @@ struct EdmaTcRegs : RegBank {
   ErrorDetails errdet{*this, "ERRDET", 0x12C, "details of BUSERR"};
   ErrorCommand errcmd{*this, "ERRCMD", 0x130, "error interrupt"};
   ReadRate rdrate{*this, "RDRATE", 0x140, "pace of reads"};
+  Set program{*this, "P", 0x200, "program register"};
+  Set source{*this, "SA", 0x240, "source active"};
+  Reg sacntrld{*this, "SACNTRLD", 0x258, Mode::kRo, "source active: ACNT as programmed"};
+  Reg sasrcbref{*this, "SASRCBREF", 0x25C, Mode::kRo, "source active: start of the array being read"};
+  Reg sadstbref{*this, "SADSTBREF", 0x260, Mode::kRo, "0: not applicable"};
+  Reg dfcntrld{*this, "DFCNTRLD", 0x280, Mode::kRo, "destination being written: ACNT as programmed"};
+  Reg dfsrcbref{*this, "DFSRCBREF", 0x284, Mode::kRo, "0: not applicable"};
+  Reg dfdstbref{*this, "DFDSTBREF", 0x288, Mode::kRo, "start of the array being written"};
+  std::deque<Set> destination;  ///< DFOPT0 to DFMPPRXY3, at a pitch of 0x40
   EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth);
 };
 
@@ -120,6 +142,8 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   void failed(const TransferRequest& request, TransferController::Failure failure,
               Picoseconds at) override;
   void clock_changed();
+  void show_sets();
+  void show(EdmaTcRegs::Set& regs, std::function<RegisterSet()> set);
   bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
   unsigned burst() const;
 

@@ -188,6 +188,7 @@ void I2cController::next_byte() {
   } else {
     shift_ = static_cast<std::uint8_t>(regs.icdxr.get());
     set_flag(kXrdy | kXsmt);
+    if (on_transmit_event) on_transmit_event();
     begin(State::kSend, 9);
   }
 }
@@ -195,6 +196,7 @@ void I2cController::next_byte() {
 void I2cController::byte_finished() {
   received_ = shift_;
   set_flag(kRrdy);
+  if (on_receive_event) on_receive_event();
   if (!regs.icmdr.rm) --remaining_;
   if (regs.icmdr.nackmod) {
     set_flag(kNackSnt);

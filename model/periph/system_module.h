@@ -55,7 +55,8 @@ struct SystemRegs : RegBank {
   Reg bootcfg;
   Reg arm_intmux{*this, "ARM_INTMUX", 0x18, Mode::kRw,
                  "which of two blocks feeds an interrupt (interrupt_mux.h)"};
-  Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw, "alternative EDMA events", 0, Modelled{0}};
+  Reg edma_evtmux{*this, "EDMA_EVTMUX", 0x1C, Mode::kRw,
+                  "which of two blocks feeds an EDMA event (soc/edma_events.h)"};
   Reg ddr_slew{*this, "DDR_SLEW", 0x20, Mode::kRw, "DDR pad slew; bit 4 CMOS levels", 0x700};
   Reg uhpi_ctl{*this, "UHPI_CTL", 0x24, Mode::kRw, "host port; kept"};
   Reg device_id{*this, "DEVICE_ID", 0x28, Mode::kRo, "JTAG identification", 0x0B83E02F};
@@ -75,8 +76,8 @@ struct SystemRegs : RegBank {
                      1,     Mode::kRw,    "1: TIMER2's reset request resets the chip"};
     Field clkstp{*this,      "CLKSTP_BYP", 5, 2, Mode::kRw, "clock stop bypass: McBSP, EDMA",
                  Modelled{0}};
-    Field tptc1_bst{*this, "TPTC1_BST", 7,
-                    1,     Mode::kRw,   "burst of TPTC1: 0 32 bytes, 1 64"};
+    Field tptc1_bst{*this,     "TPTC1_BST", 7,
+                    1,         Mode::kRw,   "burst of TPTC1: 0 32 bytes, 1 64"};
     Field bootst{*this, "BOOTST", 8, 2, Mode::kRw, "boot status; kept"};
   } misc{*this, "MISC", 0x38, "miscellaneous", 0x13};
   struct Mstpri0 : Reg {

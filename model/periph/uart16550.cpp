@@ -50,7 +50,7 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     overrun_ = false;
   });
   auto kick = [this](std::uint32_t) { refresh(); };
-  regs.pwremu.on_write(kick);
+  regs.pwremu.on_write([this](std::uint32_t) { power_written(); });
   regs.dll.on_write(kick);
   regs.dlh.on_write(kick);
   SC_METHOD(update);
@@ -62,7 +62,7 @@ void Uart16550::on_reset(ResetKind) {
   tx_.clear();
   rx_.clear();
   shift_ = ier_ = fcr_ = last_rx_ = 0;
-  shifting_ = overrun_ = rx_timeout_ = false;
+  shifting_ = overrun_ = rx_timeout_ = transmitter_on_ = false;
   thre_event_ = true;
   done_tick_ = timeout_tick_ = kNever;
   refresh();
@@ -126,6 +126,13 @@ void Uart16550::fcr_written(std::uint32_t word) {
   refresh();
 }
 
+void Uart16550::power_written() {
+  const bool released = regs.pwremu.utrst && !transmitter_on_;
+  transmitter_on_ = regs.pwremu.utrst.get() != 0;
+  if (released && tx_.empty() && sends_events() && on_transmit_event) on_transmit_event();
+  refresh();
+}
+
 void Uart16550::receive(std::uint8_t byte) {
   if (!regs.pwremu.urrst || !clocked()) return;
   if (rx_.size() >= capacity()) {
@@ -133,17 +140,21 @@ void Uart16550::receive(std::uint8_t byte) {
     if (!fifo_mode()) rx_.front() = byte;  // 16450: the new byte replaces the unread one
   } else {
     rx_.push_back(byte);
+    if (rx_.size() == trigger_level() && sends_events() && on_receive_event) on_receive_event();
   }
   rx_timeout_ = false;
   if (fifo_mode()) timeout_tick_ = ticks() + 4 * character_ticks();
   refresh();
 }
 
-std::uint32_t Uart16550::interrupt_id() const {
+unsigned Uart16550::trigger_level() const {
   static constexpr unsigned kTrigger[] = {1, 4, 8, 14};
-  const unsigned level = fifo_mode() ? kTrigger[fcr_ >> 6] : 1;
+  return fifo_mode() ? kTrigger[fcr_ >> 6] : 1;
+}
+
+std::uint32_t Uart16550::interrupt_id() const {
   if ((ier_ & kElsi) && overrun_) return kLineStatus;
-  if ((ier_ & kErbi) && rx_.size() >= level) return kRxData;
+  if ((ier_ & kErbi) && rx_.size() >= trigger_level()) return kRxData;
   if ((ier_ & kErbi) && rx_timeout_) return kRxTimeout;
   if ((ier_ & kEtbei) && thre_event_) return kTxEmpty;
   return kNone;
@@ -153,7 +164,10 @@ void Uart16550::start_next(std::uint64_t first_tick) {
   if (shifting_ || tx_.empty() || !regs.pwremu.utrst || divisor() == 0 || !running()) return;
   shift_ = tx_.front();
   tx_.pop_front();
-  if (tx_.empty()) thre_event_ = true;
+  if (tx_.empty()) {
+    thre_event_ = true;
+    if (sends_events() && on_transmit_event) on_transmit_event();
+  }
   shifting_ = true;
   if (!regs.mcr.loop) check_pins(pins, selection_);
   done_tick_ = first_tick + character_ticks();
@@ -180,6 +194,7 @@ void Uart16550::update() {
   if (t >= timeout_tick_) {
     rx_timeout_ = !rx_.empty();
     timeout_tick_ = kNever;
+    if (rx_timeout_ && sends_events() && on_receive_event) on_receive_event();
   }
   irq.write(interrupt_id() != kNone);
   wake_.move_to(time_of(std::min(done_tick_, timeout_tick_)));

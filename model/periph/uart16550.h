@@ -52,6 +52,11 @@ struct UartRegs : RegBank {
 /// without a gap. The baud generator starts with the byte (the phase of the chip's generator is not
 /// public). The interrupt output is a level. Not modelled: parity and framing errors, break, modem
 /// lines.
+///
+/// DMA events (SPRUH82C, "DMA Event Support") are sent in FIFO mode only, and only with FCR.DMAMODE1,
+/// which the guide requires. Receive: the trigger level is reached, or a time-out occurs. Transmit: the
+/// last byte in the FIFO moves to the shift register, or UTRST releases a transmitter whose FIFO is
+/// empty.
 class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Uart16550);
@@ -72,17 +77,23 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   Picoseconds character_time() const;
   /// Called whenever can_receive() may have become true. Set by the board; may be empty.
   std::function<void()> on_ready;
+  /// The DMA events URXEVT and UTXEVT. Set by the chip; may be empty.
+  std::function<void()> on_receive_event, on_transmit_event;
   std::uint64_t transmitted() const { return transmitted_; }
 
  private:
   static constexpr unsigned kFifoBytes = 16;
+  static constexpr std::uint8_t kDmaMode = 8;  // FCR.DMAMODE1
   bool fifo_mode() const { return fcr_ & 1; }
+  bool sends_events() const { return fifo_mode() && (fcr_ & kDmaMode); }
+  unsigned trigger_level() const;
   unsigned capacity() const { return fifo_mode() ? kFifoBytes : 1; }
   std::uint32_t divisor() const { return (regs.dlh.get() & 0xFF) << 8 | (regs.dll.get() & 0xFF); }
   std::uint64_t character_ticks() const;
   void data_written(std::uint8_t byte);
   void read_data();
   void fcr_written(std::uint32_t word);
+  void power_written();
   void refresh();
   std::uint32_t interrupt_id() const;
   void start_next(std::uint64_t first_tick);
@@ -94,6 +105,7 @@ class Uart16550 : public WithRegs<UartRegs>, public ClockedTarget {
   std::deque<std::uint8_t> tx_, rx_;
   std::uint8_t shift_ = 0, ier_ = 0, fcr_ = 0, last_rx_ = 0;
   bool shifting_ = false, overrun_ = false, thre_event_ = true, rx_timeout_ = false;
+  bool transmitter_on_ = false;  // UTRST so far
   std::uint64_t done_tick_ = kNever, timeout_tick_ = kNever;
   std::uint64_t transmitted_ = 0;
   Timer wake_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/soc/edma_events.h"
 #include "model/soc/memory_map.h"
 
 namespace fovea::soc {
@@ -57,6 +58,9 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   for (auto& level : tc_priority_) sensitive << level;
   SC_METHOD(set_wait_states);
   sensitive << misc_;
+  dont_initialize();
+  SC_METHOD(edma_events_selected);
+  sensitive << edma_evtmux_;
   dont_initialize();
   SC_METHOD(watch_reset);
   sensitive << reset_asked_ << misc_;
@@ -150,6 +154,7 @@ void Dm365::wire_clocks() {
   system.mstpri0(mstpri0_);
   system.misc(misc_);
   system.arm_intmux(arm_intmux_);
+  system.edma_evtmux(edma_evtmux_);
   system.uart0_pins(uart0_pins_);
   system.uart1_pins(uart1_pins_);
   system.i2c_pins(i2c_pins_);
@@ -215,35 +220,44 @@ void Dm365::wire_memory() {
   for (unsigned tc = 0; tc < kTransferControllers; ++tc) edma.priority[tc](tc_priority_[tc]);
 }
 
-/// Events of the EDMA that a wire of an interrupt carries: TI's register header for the DM36x, Linux
-/// mach-davinci/dma.h. Those of UARTs, I2C and the video subsystem are lines of their own.
+/// Events that an interrupt's wire carries come from there; UARTs, I2C and VPSS have events of their own.
 void Dm365::wire_edma() {
-  struct Event {
-    unsigned channel;
-    Irq line;
-  };
-  constexpr bool kSecond = true;
-  static const std::vector<Event> kEvents = {
-      {0, 15}, {1, 22},                                       // TIMER3
-      {8, {13, kSecond}}, {9, 14},                            // TIMER2
-      {22, {38, kSecond}}, {23, {28, kSecond}},               // TIMER4
-      {25, 53}, {32, 44}, {33, 45}, {34, 46}, {35, 47},       // GPIO 9, 0 to 3
-      {36, 48}, {37, 49}, {38, 50}, {39, 51}, {47, 52},       // GPIO 4 to 8
-      {40, 54}, {41, 55}, {42, 56}, {43, 57}, {44, 58}, {45, 59},  // GPIO 10 to 15
-      {48, 32}, {49, 33}, {50, 34}, {51, 35},                 // TIMER0, TIMER1
-  };
-  for (const Event& e : kEvents) {
+  for (const EdmaEvent& e : kEdmaEvents) {
+    if (e.wire != EdmaEvent::Wire::kInterrupt) continue;
     sc_core::sc_spawn_options options;
     options.spawn_method();
     options.dont_initialize();
-    options.set_sensitivity(&signal_of(e.line).posedge_event());
-    sc_core::sc_spawn([this, channel = e.channel] { edma.event(channel); },
+    options.set_sensitivity(&signal_of({e.input, e.second_source_of_input}).posedge_event());
+    sc_core::sc_spawn([this, channel = e.channel] { edma_event(channel); },
                       ("edma_event" + std::to_string(e.channel)).c_str(), &options);
   }
+  const auto send = [this](unsigned channel) { return [this, channel] { edma_event(channel); }; };
+  vpss.on_event = [this](unsigned n) { edma_event(kVpssEvent1 + n - 1); };
+  uart0.on_receive_event = send(kUart0Receive);
+  uart0.on_transmit_event = send(kUart0Receive + 1);
+  uart1.on_receive_event = send(kUart1Receive);
+  uart1.on_transmit_event = send(kUart1Receive + 1);
+  i2c.on_receive_event = send(kI2cReceive);
+  i2c.on_transmit_event = send(kI2cReceive + 1);
   for (dma::EdmaTc* tc : edma_tcs) {
     tc->attach(edma);
     tc->misc(misc_);
   }
+}
+
+/// An event of the first source of a channel. All second sources are blocks that are not modelled.
+void Dm365::edma_event(unsigned channel) {
+  const EdmaEvent& e = kEdmaEvents[channel];
+  if (e.has_choice() && edma_evtmux_.read() >> e.bit & 1) return;
+  edma.event(channel);
+}
+
+void Dm365::edma_events_selected() {
+  for (const EdmaEvent& e : kEdmaEvents)
+    if (e.has_choice() && edma_evtmux_.read() >> e.bit & 1)
+      Diagnostics::instance().not_modelled("EDMA_EVTMUX bit " + std::to_string(e.bit) +
+                                           " gives EDMA event " + std::to_string(e.channel) + " to " +
+                                           std::string(e.second) + ", which is silent here");
 }
 
 void Dm365::wire_interrupts() {

@@ -155,6 +155,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   void wire_memory();
   void wire_interrupts();
   void wire_edma();
+  void edma_event(unsigned channel);
+  void edma_events_selected();
   sc_core::sc_signal<bool>& signal_of(Irq line);
   void wire_video();
 
@@ -173,7 +175,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   sc_core::sc_signal<bool> arm_irq_, arm_fiq_, venc_int_, pll1_locked_, pll2_locked_, reset_asked_;
   sc_core::sc_signal<bool> uart0_pins_, uart1_pins_, i2c_pins_;
   sc_core::sc_signal<bool> isif_gate_, isif_owns_write_buffer_, vpbe_gate_, venc_clk_sel_;
-  sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_;
+  sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_,
+      edma_evtmux_;
   std::optional<ResetKind> reset_under_way_;
   const Dm365Params& params_;
 };

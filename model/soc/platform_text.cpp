@@ -6,6 +6,7 @@
 #include <map>
 
 #include "model/memsys/memory_system.h"
+#include "model/soc/edma_events.h"
 #include "model/soc/memory_map.h"
 
 namespace fovea::soc {
@@ -163,11 +164,20 @@ std::string master_rows() {
   return out;
 }
 
+std::string event_rows() {
+  std::string out;
+  for (const EdmaEvent& e : kEdmaEvents)
+    out += "| " + std::to_string(e.channel) + " | " + std::string(e.first) + " | " +
+           (e.wire == EdmaEvent::Wire::kNone ? "not wired" : "yes") + " | " +
+           (e.has_choice() ? std::to_string(e.bit) + ": " + std::string(e.second) : "–") + " |\n";
+  return out;
+}
+
 std::string blocks_page(const Placements& rows, const std::string& block_rows) {
   std::string out = R"(# Blocks and memory masters of the DM365
 
 Printed by `platform_text BLOCKS.md` from the rows in `dm365_blocks.cpp`, the declarations of the blocks, and
-the table in `model/common/masters.h`; `soc.platform_text` fails when this file differs from what they say.
+the tables in `model/common/masters.h` and `edma_events.h`; `soc.platform_text` fails when this file differs from what they say.
 
 ## Blocks with registers
 
@@ -197,7 +207,16 @@ An access there ends in a bus error that names the block.
 | number | name | statistics | bridge | priority | requests | partner | on chip | driven by |
 |---|---|---|---|---|---|---|---|---|
 )";
-  return out + master_rows();
+  out += master_rows() + R"(
+## Events of the EDMA
+
+*Event*: number of the channel. *Wired*: the source is modelled. *Second source*: the bit of EDMA_EVTMUX that selects
+it; none of them is modelled, so that the channel gets no events then, with a warning.
+
+| event | source | wired | second source |
+|---|---|---|---|
+)";
+  return out + event_rows();
 }
 
 /// The blocks are made, but nothing runs.

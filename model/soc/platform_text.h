@@ -11,7 +11,8 @@ struct PlatformText {
   /// sw/firmware/registers.h: addresses and fields from the declarations of the blocks, power gates and
   /// interrupt numbers from their rows.
   std::string registers_h;
-  /// model/soc/BLOCKS.md: tables of the blocks, of what is not modelled, and of the memory masters.
+  /// model/soc/BLOCKS.md: tables of the blocks, of what is not modelled, of the memory masters,
+  /// and of the EDMA's events.
   std::string blocks_md;
 };
 

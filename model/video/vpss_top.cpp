@@ -10,6 +10,7 @@ VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
   // processes.
   for (VpssRegs::Select* r : {&regs.intsel1, &regs.intsel2, &regs.intsel3})
     r->on_write([this](std::uint32_t) { selection_.soon(); });
+  regs.evtsel.on_write([this](std::uint32_t) { events_selected(); });
   const auto controls = [this](std::uint32_t) { controls_.soon(); };
   regs.pccr.on_write(controls);
   regs.bcr.on_write(controls);
@@ -30,6 +31,28 @@ void VpssTop::route() {
   const VpssRegs::Select* const selects[] = {&regs.intsel1, &regs.intsel2, &regs.intsel3};
   for (unsigned k = 0; k < kOutputs; ++k)
     vpssint[k].write((level >> selects[k / 4]->fields()[k % 4]->get() & 1) != 0);
+  route_events(level);
+}
+
+/// The EDMA takes rising edges, also such as a new selection makes.
+void VpssTop::route_events(std::uint32_t level) {
+  std::uint32_t now = 0;
+  for (unsigned k = 0; k < kEvents; ++k)
+    now |= (level >> regs.evtsel.fields()[k]->get() & 1) << k;
+  for (unsigned k = 0; k < kEvents; ++k)
+    if ((now & ~event_level_) >> k & 1 && on_event) on_event(k + 1);
+  event_level_ = now;
+}
+
+void VpssTop::events_selected() {
+  for (unsigned k = 0; k < kEvents; ++k) {
+    const std::uint32_t source = regs.evtsel.fields()[k]->get();
+    if (source < isif_int.size() || source == kVencSource || source == kNoSource) continue;
+    Diagnostics::instance().not_modelled("VPSS EVTSEL gives VPSS_EVT" + std::to_string(k + 1) +
+                                         " to source " + std::to_string(source) +
+                                         ", which is silent here");
+  }
+  selection_.soon();
 }
 
 void VpssTop::drive_controls() {

@@ -1,5 +1,6 @@
 // Top level of the VPSS (video processing subsystem): interrupt routing, clock gates, priorities.
 #pragma once
+#include <functional>
 #include <systemc>
 
 #include "model/common/bus_target.h"
@@ -47,7 +48,7 @@ struct VpssRegs : RegBank {
   Select intsel1{*this, "INTSEL1", 0x10, "sources of VPSSINT0 ... 3"};
   Select intsel2{*this, "INTSEL2", 0x14, "sources of VPSSINT4 ... 7"};
   Select intsel3{*this, "INTSEL3", 0x18, "source of VPSSINT8"};
-  Reg evtsel{*this, "EVTSEL", 0x1C, Mode::kRw, "sources of the EDMA events", 0, Modelled{0}};
+  Select evtsel{*this, "EVTSEL", 0x1C, "sources of the EDMA events VPSS_EVT1 ... 4"};
   Reg ccdcmux{*this, "CCDCMUX", 0x20, Mode::kRw, "input multiplexer", 0, Modelled{0}};
   Reg mpsr{*this, "MPSR", 0x2C, Mode::kRw, "memory access of the blocks' tables; kept"};
   struct Clkctrl : Reg {
@@ -71,11 +72,11 @@ struct VpssRegs : RegBank {
 
 /// Routes events to interrupts: each VPSSINT output follows the input that its INTSEL field
 /// selects, so a pulse of an input is a rising edge at the interrupt controller. INTSTAT records
-/// rising inputs and does not gate the outputs (Linux never clears it). Modelled events: 0 to 2
-/// VDINT0 to VDINT2, 21 VENC.
+/// rising inputs and does not gate the outputs (Linux never clears it). The EDMA events VPSS_EVT1 to 4
+/// follow EVTSEL in the same way. Modelled sources: 0 to 2 VDINT0 to VDINT2, 21 VENC; 31 is none.
 class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
  public:
-  static constexpr unsigned kOutputs = 9;
+  static constexpr unsigned kOutputs = 9, kEvents = 4;
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
   sc_core::sc_vector<sc_core::sc_in<bool>> isif_int{"isif_int", 3};
   sc_core::sc_in<bool> venc_int{"venc_int"};
@@ -85,6 +86,9 @@ class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
   sc_core::sc_out<bool> vpbe_gate{"vpbe_gate"}, venc_clk_sel{"venc_clk_sel"};
   sc_core::sc_out<std::uint32_t> read_priority{"read_priority"}, write_priority{"write_priority"};
 
+  /// A rising edge of VPSS_EVTn, n = 1 .. 4, now. Set by the chip; may be empty.
+  std::function<void(unsigned n)> on_event;
+
   SC_HAS_PROCESS(VpssTop);
   explicit VpssTop(sc_core::sc_module_name name);
 
@@ -92,15 +96,17 @@ class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
   bool clocked() const override { return psc_enabled.read(); }
 
  private:
-  static constexpr unsigned kVencSource = 21;
+  static constexpr unsigned kVencSource = 21, kNoSource = 31;
   void on_reset(ResetKind) override {
     selection_.soon();
     controls_.soon();
   }
   void route();
+  void route_events(std::uint32_t level);
+  void events_selected();
   void drive_controls();
   Timer selection_, controls_;
-  std::uint32_t level_ = 0;
+  std::uint32_t level_ = 0, event_level_ = 0;
 };
 
 }  // namespace fovea::video

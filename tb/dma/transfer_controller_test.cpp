@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <map>
 #include <string>
@@ -77,12 +78,13 @@ struct Memory : TransferController::Host {
   void failed(const TransferRequest& r, Failure f, Picoseconds at) override {
     failures.push_back({f, r.tcc, in_ns(at)});
   }
+  void step() {
+    const auto next = events.begin()->second;
+    events.erase(events.begin());
+    next();
+  }
   void run() {
-    while (!events.empty()) {
-      const auto next = events.begin()->second;
-      events.erase(events.begin());
-      next();
-    }
+    while (!events.empty()) step();
   }
 };
 
@@ -189,6 +191,110 @@ TEST(TransferController, DestinationRegistersLimitTheRequestsUnderWay) {
     EXPECT_EQ(m.completed_at.back(), 88u + 60) << depth;
     EXPECT_EQ(m.completed_at.size(), depth + 1);
   }
+}
+
+/// BCNT and ACNT as xxCNT has them.
+constexpr std::uint32_t counts(std::uint32_t bcnt, std::uint32_t acnt) { return bcnt << 16 | acnt; }
+
+// Two arrays of 40 bytes, with room for 64: reads of 32, 8 | 28, 12; writes of 32, 8 | 24, 16.
+TEST(TransferController, RegisterSetsFollowTheCommands) {
+  Memory m({32, 64, 4});
+  TransferRequest r = copy(40, 256, 1024);
+  r.bcnt = 2;
+  r.source.index = 100;
+  r.destination.index = 200;
+  r.tcc = 9;
+  const auto source = [&] {
+    const RegisterSet s = m.tc.source_set();
+    return std::array{s.counts(), s.reference(r.source), s.address(r.source)};
+  };
+  const auto target = [&] {
+    const RegisterSet s = m.tc.destination_set(0);
+    return std::array{s.counts(), s.reference(r.destination), s.address(r.destination)};
+  };
+  using Set = std::array<std::uint32_t, 3>;
+  EXPECT_EQ(source(), (Set{0, 256, 256})) << "nothing yet; the reference is the argument's";
+  m.tc.submit(r, 0);
+  EXPECT_EQ(m.tc.program_set().counts(), counts(2, 40)) << "the program register is not counted down";
+  EXPECT_EQ(source(), (Set{counts(1, 40), 356, 356}));
+  EXPECT_EQ(target(), (Set{counts(2, 40), 1024, 1024}));
+  m.step();  // 32 bytes are there, and written
+  EXPECT_EQ(source(), (Set{counts(1, 40), 356, 356}));
+  EXPECT_EQ(target(), (Set{counts(2, 8), 1024, 1056}));
+  m.step();  // 8 more
+  EXPECT_EQ(target(), (Set{counts(1, 40), 1224, 1224}));
+  m.step();  // the first acknowledgement makes room for the rest
+  EXPECT_EQ(source(), (Set{0, 356, 396}));
+  EXPECT_EQ(target(), (Set{counts(1, 40), 1224, 1224}));
+  m.run();
+  EXPECT_EQ(source(), (Set{0, 356, 396}));
+  EXPECT_EQ(target(), (Set{0, 1224, 1264}));
+  EXPECT_EQ(m.tc.program_set().counts(), counts(2, 40));
+  EXPECT_EQ(m.tc.source_set().request.tcc, 9u);
+  m.tc.reset();
+  EXPECT_EQ(m.tc.source_set().request.acnt, 0u);
+  EXPECT_EQ(m.tc.destination_set(0).request.acnt, 0u);
+  EXPECT_EQ(m.tc.program_set().request.acnt, 0u);
+}
+
+TEST(TransferController, DestinationRegistersAreUsedInTurn) {
+  Memory m({32, 256, 2});
+  const auto tcc = [&](unsigned n) { return unsigned{m.tc.destination_set(n).request.tcc}; };
+  for (unsigned i = 1; i <= 3; ++i) {
+    TransferRequest r = copy(64, 256, 1024 * i);
+    r.tcc = static_cast<std::uint8_t>(i);
+    m.tc.submit(r, 0);
+    if (i == 1) {
+      EXPECT_EQ(m.tc.destination_head(), 0u);
+      EXPECT_EQ(tcc(1), 0u);
+    }
+  }
+  EXPECT_EQ(m.tc.destination_head(), 0u);
+  EXPECT_EQ(m.tc.destination_writing(), 0u);
+  EXPECT_EQ(tcc(0), 1u);
+  EXPECT_EQ(tcc(1), 2u);
+  EXPECT_EQ(m.tc.program_set().request.tcc, 3u);
+  while (m.writes.size() < 3) m.step();
+  EXPECT_EQ(m.tc.destination_head(), 0u) << "its last acknowledgement is outstanding";
+  EXPECT_EQ(m.tc.destination_writing(), 1u);
+  while (m.completed_at.empty()) m.step();
+  EXPECT_EQ(m.tc.destination_head(), 1u);
+  EXPECT_EQ(tcc(0), 3u) << "the third takes the place of the first";
+  m.run();
+  EXPECT_EQ(m.tc.destination_head(), 1u);
+  EXPECT_EQ(m.tc.destination_writing(), 0u) << "the third was the last";
+}
+
+TEST(RegisterSet, ConstantAddressingGoesRoundWithinTheWidth) {
+  TransferRequest r = copy(12, 0x100, 0x200);
+  r.source.constant = true;
+  r.fifo_bytes = 4;
+  for (const auto& [left, address] : {std::pair{12u, 0x100u}, {11u, 0x101u}, {8u, 0x100u}, {6u, 0x102u}})
+    EXPECT_EQ((RegisterSet{r, left}.address(r.source)), address) << left;
+  EXPECT_EQ((RegisterSet{r, 6}.address(r.destination)), 0x206u);
+}
+
+// SAM 0, DAM 1, PRI 6:4, FWID 10:8, TCC 17:12, TCINTEN 20, TCCHEN 22.
+TEST(RegisterSet, OptionsAndIndices) {
+  TransferRequest r = copy(4, 0, 0);
+  r.source.index = -2;
+  r.destination.index = 0x1234;
+  EXPECT_EQ((RegisterSet{r, 4}.indices()), 0x1234FFFEu);
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0u);
+  EXPECT_EQ((RegisterSet{r, 4}.options(5)), 0x50u);
+  r.tcc = 0x2A;
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0x2A000u);
+  r.tcc = 0;
+  r.interrupt = true;
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0x100000u);
+  r.chain = true;
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0x500000u);
+  r.interrupt = r.chain = false;
+  r.destination.constant = true;
+  r.fifo_bytes = 32;
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0x502u);
+  r.source.constant = true;
+  EXPECT_EQ((RegisterSet{r, 4}.options(0)), 0x503u);
 }
 
 TEST(TransferController, ReadsKeepTheirInterval) {

@@ -1,21 +1,35 @@
 #!/usr/bin/env bash
 # Random settings of memory, crossbar, core and loads: strict and default synchronisation must leave the
-# same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT SEED...
+# same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT CASE...
+# CASE: a seed, or copy_on_one_port, where a copy's write and the next read of one port met in an instant.
 set -uo pipefail
 fovea=$1 experiment=$2 out=$3
 shift 3
 mkdir -p "$out"
 
-one_of() { local words=("$@"); echo "${words[RANDOM % $#]}"; }
+# Leaves one of its arguments in ${word}. Not by $(...): bash seeds RANDOM anew in a subshell.
+one_of() { local words=("$@"); word=${words[RANDOM % $#]}; }
+load() {  # NAME PORT OUTSTANDING KIND BYTES GAP PATTERN
+  keys+=(-s "$1.port=$2" -s "$1.outstanding=$3" -s "$1.kind=$4" -s "$1.bytes=$5" -s "$1.gap=$6" -s "$1.pattern=$7")
+}
+copy_on_one_port() {
+  keys=(-s run.frames=1 -s video.width=32 -s video.height=24 -s ddr.scheduler=closed_page -s ddr.command_fifo=16
+    -s ddr.return_latency=16cycles -s firmware.kernel=ldm -s vpss.write_buffer_bursts=1
+    -s bus.arm_d.request_latency=16cycles -s bus.load.response_latency=16cycles)
+  load load load 2 copy 32B 2us sequential
+  load load.1 edma_tc1 16 mixed 4B 2us random
+  load load.2 edma_tc2 16 copy 64B 317ns sequential
+}
 settings() {  # SEED: keys in ${keys[@]}
   RANDOM=$1
   keys=(-s run.frames=1 -s video.width=$((16 * (2 + RANDOM % 4))) -s video.height=$((8 * (2 + RANDOM % 4)))
     -s ddr.check=commands)
-  local line name n port gap
-  while read -r line; do
-    read -r name n <<<"$line"
+  local name n port outstanding kind bytes gap
+  while read -r name n; do
+    ((RANDOM % 4)) && continue
     # shellcheck disable=SC2086 # the values are words
-    ((RANDOM % 4 == 0)) && keys+=(-s "$name=$(one_of $n)")
+    one_of $n
+    keys+=(-s "$name=$word")
   done <<'K'
 clocks.preset 297/243 297/270 270/216 216/172 432/340
 ddr.scheduler ti fcfs frfcfs closed_page
@@ -51,9 +65,12 @@ K
     port=edma_tc${n#load}
     port=${port/tc./tc}
     [ "$n" = load ] && port=load
-    gap=$(one_of 317ns 1us 2us)
-    keys+=(-s "$n.port=$port" -s "$n.outstanding=$(one_of 1 2 16)" -s "$n.kind=$(one_of read write mixed copy)"
-      -s "$n.bytes=$(one_of 4B 32B 64B)" -s "$n.gap=$gap" -s "$n.pattern=$(one_of sequential random)")
+    one_of 317ns 1us 2us && gap=$word
+    one_of 1 2 16 && outstanding=$word
+    one_of read write mixed copy && kind=$word
+    one_of 4B 32B 64B && bytes=$word
+    one_of sequential random
+    load "$n" "$port" "$outstanding" "$kind" "$bytes" "$gap" "$word"
   done
 }
 play() {  # MODE FOLDER
@@ -68,17 +85,17 @@ differ() {  # FOLDER FOLDER
 }
 
 failures=0
-for seed; do
-  settings "$seed"
+for case; do
+  if [[ $case == copy_on_one_port ]]; then copy_on_one_port; else settings "$case"; fi
   play strict strict
   a=$?
   play default default
   b=$?
   if [ $a -ne 0 ] || [ $b -ne 0 ]; then
-    echo "seed $seed: exit $a and $b: ${keys[*]}: $(tail -1 "$out/strict.log") / $(tail -1 "$out/default.log")"
+    echo "$case: exit $a and $b: ${keys[*]}: $(tail -1 "$out/strict.log") / $(tail -1 "$out/default.log")"
     failures=$((failures + 1))
   elif differ strict default; then
-    echo "seed $seed: differs: ${keys[*]}"
+    echo "$case: differs: ${keys[*]}"
     failures=$((failures + 1))
   fi
 done

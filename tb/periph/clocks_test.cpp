@@ -456,8 +456,8 @@ TEST(SystemModuleTest, SettingsWithoutEffectAreNamed) {
     const char* name;
   };
   for (const Setting& t :
-       {Setting{0x1C, 0, 1, "EDMA_EVTMUX"}, Setting{0x30, 0, 1, "TIMER64_CTL.GIO1_2"},
-        Setting{0x30, 0, 2, "TIMER64_CTL.GIO3_4"}, Setting{0x38, 0x393, 0xB3, "MISC.CLKSTP_BYP"},
+       {Setting{0x30, 0, 1, "TIMER64_CTL.GIO1_2"}, Setting{0x30, 0, 2, "TIMER64_CTL.GIO3_4"},
+        Setting{0x38, 0x393, 0xB3, "MISC.CLKSTP_BYP"},
         Setting{0x54, 0x1FFFFF, 0x80000000, "DEBOUNCE0.ENABLE"},
         Setting{0x70, 0x1FFFFF, 0x80000010, "DEBOUNCE7.ENABLE"}}) {
     notes.clear();

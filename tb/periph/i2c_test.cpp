@@ -92,7 +92,10 @@ struct System {
   I2cController i2c{"i2c"};
   FakeDecoder decoder{"decoder", 0x5D}, other{"other", 0x20};
   test::Bus bus{"bus"};
+  std::vector<Picoseconds> receive_events, transmit_events;
   System() {
+    i2c.on_receive_event = [this] { receive_events.push_back(now()); };
+    i2c.on_transmit_event = [this] { transmit_events.push_back(now()); };
     i2c.clk(clk);
     i2c.irq(irq);
     i2c.targets(decoder);
@@ -122,6 +125,8 @@ struct I2cTest : testing::Test {
     s.decoder.log.clear();
     s.other.log.clear();
     s.decoder.open = false;
+    s.receive_events.clear();
+    s.transmit_events.clear();
   }
   static std::uint64_t next_edge() {
     std::uint64_t k = now() * 3 / 125'000;
@@ -160,6 +165,25 @@ TEST_F(I2cTest, RegisterWriteArrivesWithItsTiming) {
   EXPECT_EQ(bus.read(kStr) & (kBb | kScd), kScd);
   EXPECT_EQ(bus.read(kMdr), kIrs | kTrx);  // MST, STT, STP cleared
   EXPECT_EQ(s.other.log, "");
+}
+
+// START and address take 10 bits, a byte 9; each event comes with the byte that it tells of.
+TEST_F(I2cTest, EachByteGivesAnEventOfItsDirection) {
+  using Times = std::vector<Picoseconds>;
+  std::uint64_t k = next_edge();
+  write_bytes({0x12, 0x34}, kStp);
+  run_until(edge(k + kBit * 29));
+  EXPECT_EQ(s.transmit_events, (Times{edge(k + kBit * 10), edge(k + kBit * 19)}));
+  EXPECT_EQ(s.receive_events, Times{});
+  s.transmit_events.clear();
+  k = next_edge();
+  bus.write(kCnt, 2);
+  bus.write(kMdr, kIrs | kMst | kStt | kStp);
+  run_until(edge(k + kBit * 20));
+  bus.read(kDrr);
+  run_until(edge(k + kBit * 29));
+  EXPECT_EQ(s.receive_events, (Times{edge(k + kBit * 19), edge(k + kBit * 28)}));
+  EXPECT_EQ(s.transmit_events, Times{});
 }
 
 TEST_F(I2cTest, DividersSetTheBitTime) {

@@ -34,12 +34,15 @@ struct System {
   test::Bus bus{"bus"};
   test::Probe probe{"probe"};
   std::vector<std::pair<std::uint8_t, Picoseconds>> sent;
+  std::vector<Picoseconds> receive_events, transmit_events;
   System() {
     uart.clk(clk);
     uart.irq(irq);
     bus.socket.bind(uart.reg_socket);
     probe.in(irq);
     uart.sink = [this](std::uint8_t b, Picoseconds t) { sent.emplace_back(b, t); };
+    uart.on_receive_event = [this] { receive_events.push_back(now()); };
+    uart.on_transmit_event = [this] { transmit_events.push_back(now()); };
   }
 };
 
@@ -65,6 +68,8 @@ struct UartTest : testing::Test {
     bus.read(kData);
     bus.read(kLsr);
     s.sent.clear();
+    s.receive_events.clear();
+    s.transmit_events.clear();
   }
   static std::uint64_t next_edge() {
     std::uint64_t k = now() * 3 / 125'000;
@@ -291,6 +296,69 @@ TEST_F(UartTest, TellsWhenItCanReceiveAndHowLongAByteTakes) {
   EXPECT_TRUE(s.uart.can_receive());
   EXPECT_GT(told, 0u);
   s.uart.on_ready = nullptr;
+}
+
+using Times = std::vector<Picoseconds>;
+
+TEST_F(UartTest, ReceiveEventComesWithTheTriggerLevelAndWithTheTimeOut) {
+  for (const auto& [bits, level] : {std::pair{0u, 1u}, {1u, 4u}, {2u, 8u}, {3u, 14u}}) {
+    bus.write(kIirFcr, 0);
+    bus.write(kIirFcr, 9 | bits << 6);
+    s.receive_events.clear();
+    for (unsigned n = 1; n < level; ++n) s.uart.receive('a');
+    EXPECT_EQ(s.receive_events, Times{}) << level;
+    s.uart.receive('b');
+    EXPECT_EQ(s.receive_events, Times{now()}) << level;
+    s.uart.receive('c');  // above the level
+    EXPECT_EQ(s.receive_events.size(), 1u) << level;
+    bus.read(kData);
+    bus.read(kData);
+    s.uart.receive('d');
+    EXPECT_EQ(s.receive_events.size(), 2u) << level << ": reached once more";
+  }
+  bus.write(kIirFcr, 0);
+  bus.write(kIirFcr, 9 | 1 << 6);
+  s.receive_events.clear();
+  s.uart.receive('x');
+  const Picoseconds end = edge(next_edge() - 1 + 4 * 2080);
+  run_until(end - 1);
+  EXPECT_EQ(s.receive_events, Times{});
+  run_until(end);
+  EXPECT_EQ(s.receive_events, Times{end});
+}
+
+TEST_F(UartTest, TransmitEventComesWhenTheFifoRunsEmptyAndWithUtrst) {
+  bus.write(kIirFcr, 9);
+  const std::uint64_t k = next_edge();
+  const Picoseconds written = now();
+  for (const char c : {'a', 'b', 'c'}) bus.write(kData, static_cast<std::uint8_t>(c));
+  run_until(edge(k + 3 * 2080));
+  // 'a' goes to the shift register at once, 'c' when 'b' has been sent.
+  EXPECT_EQ(s.transmit_events, (Times{written, edge(k + 2 * 2080)}));
+  s.transmit_events.clear();
+  bus.write(kPwremu, 0xE001);
+  EXPECT_EQ(s.transmit_events, Times{}) << "it runs already";
+  bus.write(kPwremu, 0x2001);
+  bus.write(kPwremu, 0xE001);
+  EXPECT_EQ(s.transmit_events, Times{now()});
+  bus.write(kPwremu, 0x2001);
+  bus.write(kData, 'd');
+  bus.write(kPwremu, 0xE001);
+  EXPECT_EQ(s.transmit_events.size(), 2u) << "once: when its byte leaves the FIFO";
+}
+
+TEST_F(UartTest, NoEventsWithoutFifosOrDmaMode) {
+  for (const std::uint32_t fcr : {0u, 1u, 8u}) {
+    bus.write(kIirFcr, fcr);
+    bus.write(kPwremu, 0x2001);
+    bus.write(kPwremu, 0xE001);
+    bus.write(kData, 'a');
+    s.uart.receive('b');
+    run_until(now() + 6 * edge(2080));
+    bus.read(kData);
+    EXPECT_EQ(s.receive_events, Times{}) << fcr;
+    EXPECT_EQ(s.transmit_events, Times{}) << fcr;
+  }
 }
 
 TEST_F(UartTest, LoopbackFeedsTheReceiver) {

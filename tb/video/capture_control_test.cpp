@@ -121,6 +121,63 @@ TEST_F(CaptureTest, AnotherSourceIsSeenAtOnce) {
   b.top_regs.write(0x18, kNone);
 }
 
+/// Rising edges of VPSS_EVT1 to 4 while it exists.
+struct VpssEvents {
+  explicit VpssEvents(CaptureBench& bench) : bench_(bench) {
+    bench_.top.on_event = [this](unsigned n) {
+      if (n >= 1 && n <= 4) rises[n - 1].push_back(kernel_time());
+    };
+  }
+  ~VpssEvents() {
+    bench_.top.on_event = nullptr;
+    bench_.top_regs.write(0x1C, 0);
+  }
+  std::array<std::vector<Picoseconds>, 4> rises;
+
+ private:
+  CaptureBench& bench_;
+};
+
+TEST_F(CaptureTest, EdmaEventsFollowTheSourceThatEvtselNames) {
+  constexpr std::uint32_t kVenc = 21, kNone = 0x1F;
+  VpssEvents events(b);
+  b.top_regs.write(0x1C, 0 << 24 | kVenc << 16 | kNone << 8 | 1);
+  b.regs.write(VDINT0, 0);
+  b.regs.write(VDINT1, 5);
+  capture_frame();
+  const std::vector<Picoseconds> first{line_time(3), line_time(15)}, second{line_time(7), line_time(19)};
+  EXPECT_EQ(events.rises[0], second);
+  EXPECT_TRUE(events.rises[1].empty());
+  EXPECT_TRUE(events.rises[2].empty());
+  EXPECT_EQ(events.rises[3], first);
+  b.no_venc.write(true);
+  run_for(kPsPerNs);
+  EXPECT_EQ(events.rises[2].size(), 1u);
+  EXPECT_EQ(events.rises[0].size(), 2u);
+  b.top_regs.write(0x1C, 0x1F1F1F00 | kVenc);  // VPSS_EVT1's source is high by now
+  run_for(kPsPerNs);
+  EXPECT_EQ(events.rises[0].size(), 3u);
+  b.top_regs.write(0x1C, 0x1F1F0000 | kVenc);
+  run_for(kPsPerNs);
+  EXPECT_EQ(events.rises[0].size(), 3u) << "its source has not changed";
+  b.no_venc.write(false);
+  run_for(kPsPerNs);
+  EXPECT_EQ(events.rises[0].size(), 3u) << "rising edges only";
+}
+
+TEST_F(CaptureTest, SilentSourcesOfEdmaEventsAreNamed) {
+  VpssEvents events(b);
+  auto& notes = Diagnostics::instance();
+  notes.clear();
+  b.top_regs.write(0x1C, 0x1F021500);  // 31, 2, 21, 0
+  EXPECT_TRUE(notes.counts().empty());
+  b.top_regs.write(0x1C, 0x1F1F031F);
+  ASSERT_EQ(notes.counts().size(), 1u);
+  EXPECT_EQ(notes.counts().begin()->first.second,
+            "VPSS EVTSEL gives VPSS_EVT2 to source 3, which is silent here");
+  notes.clear();
+}
+
 TEST_F(CaptureTest, VdintOneLineLaterFiresOneLineLater) {
   b.top_regs.write(0x10, 0x1F1F1F01);
   b.regs.write(VDINT1, 6);

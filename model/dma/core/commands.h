@@ -26,6 +26,8 @@ class Commands {
   /// The next command; not if done().
   Command next() const;
   void pop();
+  /// Bytes of all commands that are left.
+  std::uint32_t bytes() const { return done() ? 0 : arrays_ * length_ - offset_; }
 
  private:
   unsigned room() const;

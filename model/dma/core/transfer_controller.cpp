@@ -54,6 +54,9 @@ void TransferController::reset() {
   program_.reset();
   source_.reset();
   destinations_.clear();
+  programmed_ = read_ = {};
+  written_.assign(sizes_.depth, {});
+  head_ = 0;
   writes_.clear();
   data_.clear();
   registers_ = {};
@@ -67,6 +70,7 @@ void TransferController::reset() {
 void TransferController::submit(const TransferRequest& request, Picoseconds at) {
   FOVEA_CHECK(!program_, "the program register is taken");
   FOVEA_CHECK(request.acnt > 0 && request.bcnt > 0, "an empty transfer is none");
+  programmed_ = request;
   if (breaks_constant_rules(request.source, request) ||
       breaks_constant_rules(request.destination, request)) {
     host_.failed(request, Failure::kRequest, at);
@@ -83,12 +87,24 @@ void TransferController::advance() {
   }
 }
 
+RegisterSet TransferController::destination_set(unsigned n) const {
+  const unsigned place = (n + sizes_.depth - head_) % sizes_.depth;
+  return {written_[n], place < destinations_.size() ? destinations_[place].writes.bytes() : 0};
+}
+
+unsigned TransferController::destination_writing() const {
+  for (unsigned place = 0; place < destinations_.size(); ++place)
+    if (!destinations_[place].writes.done()) return (head_ + place) % sizes_.depth;
+  return static_cast<unsigned>(head_ + destinations_.size() + sizes_.depth - 1) % sizes_.depth;
+}
+
 /// From the program register to the source active and a destination register.
 bool TransferController::load() {
   if (!program_ || source_ || registers_.amount() == 0) return false;
   const Picoseconds free = std::max(registers_.take(1), source_free_);
   const Picoseconds at = host_.edge(std::max(program_at_, free), 1);
   const TransferRequest& r = *program_;
+  read_ = written_[(head_ + destinations_.size()) % sizes_.depth] = r;
   source_.emplace(Source{r, Commands(r, r.source, sizes_.burst)});
   destinations_.push_back({r, Commands(r, r.destination, sizes_.burst), r.bytes()});
   next_read_ = std::max(next_read_, at);
@@ -158,6 +174,7 @@ void TransferController::write_done(bool error, Picoseconds at) {
   if (w.last) {
     const TransferRequest request = destinations_.front().request;
     destinations_.pop_front();
+    head_ = (head_ + 1) % sizes_.depth;
     registers_.add(1, at);
     host_.completed(request, at);
   }

@@ -7,9 +7,11 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "model/common/units.h"
 #include "model/dma/core/commands.h"
+#include "model/dma/core/register_set.h"
 #include "model/dma/core/transfer_request.h"
 
 namespace fovea::dma {
@@ -81,6 +83,17 @@ class TransferController {
 
   bool source_active() const { return source_.has_value(); }
   std::size_t destinations() const { return destinations_.size(); }
+  /// The register sets, as far as is decided: a read or a write counts from when its time is known,
+  /// which may be a few clocks ahead. A set keeps its request when that has left.
+  RegisterSet program_set() const { return {programmed_, programmed_.bytes()}; }
+  RegisterSet source_set() const { return {read_, source_ ? source_->reads.bytes() : 0}; }
+  /// @param n number of the destination register, below Sizes::depth
+  RegisterSet destination_set(unsigned n) const;
+  /// The destination register of the oldest request, or of the next one if there is none.
+  unsigned destination_head() const { return head_; }
+  /// The destination register whose writes are being issued, or else the one whose were issued last.
+  unsigned destination_writing() const;
+
   bool idle() const { return !program_ && !source_ && destinations_.empty(); }
 
  private:
@@ -127,6 +140,9 @@ class TransferController {
   std::optional<Source> source_;
   Picoseconds source_free_ = 0;
   std::deque<Destination> destinations_;
+  TransferRequest programmed_, read_;       // the latest of the program register and the source active
+  std::vector<TransferRequest> written_;    // by destination register
+  unsigned head_ = 0;                       // destination register of destinations_.front()
   std::deque<Write> writes_;            // under way
   std::deque<std::uint8_t> data_;       // arrived, not yet written
   Supply registers_, room_, arrived_;   // destination registers, bytes of the FIFO, bytes in it
