@@ -23,6 +23,8 @@ class HazardReport {
   HazardReport(const HazardReport&) = delete;
   HazardReport& operator=(const HazardReport&) = delete;
 
+  /// Counts and reports what has happened up to `now`; see HazardChecker::settle().
+  void settle(Picoseconds now) { checker_.settle(now); }
   /// Appends `hazard.*`. They cover the whole run, not only the measured window.
   void collect(std::vector<StatRow>& rows) const;
   /// What a run with --strict fails with; empty if there was no hazard.

@@ -91,6 +91,7 @@ class HazardBench {
     }
     m.first_clock = m.core.clock().edge_after(m.port.now) - spent();
     m.run(caches ? program_.symbols.at("with_caches") : program_.symbols.at("without"));
+    if (checker) checker->settle(kNever);
     Visible out;
     const std::uint32_t words = (m.core.reg(9) - kLog) / 4;
     out.loaded.assign(tcm(kLog), tcm(kLog) + words);

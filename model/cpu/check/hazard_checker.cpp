@@ -123,9 +123,17 @@ void HazardChecker::forget_foreign(unsigned line, std::uint32_t bytes) {
   if (!f.bytes) core_.watch_line(line, false);
 }
 
-void HazardChecker::report(const Hazard& h) {
-  ++counts_[static_cast<std::size_t>(h.kind)];
-  if (places_.emplace(h.kind, h.pc, h.master).second && on_place) on_place(h);
+void HazardChecker::settle(Picoseconds t) {
+  // In which order hazards of one time are found may depend on who works ahead.
+  const auto key = [](const Hazard& h) { return std::tuple(h.after, h.kind, h.pc, h.master, h.address); };
+  std::sort(found_.begin(), found_.end(),
+            [&](const Hazard& a, const Hazard& b) { return key(a) < key(b); });
+  const auto end = std::find_if(found_.begin(), found_.end(), [t](const Hazard& h) { return h.after > t; });
+  std::for_each(found_.begin(), end, [this](const Hazard& h) {
+    ++counts_[static_cast<std::size_t>(h.kind)];
+    if (places_.emplace(h.kind, h.pc, h.master).second && on_place) on_place(h);
+  });
+  found_.erase(found_.begin(), end);
 }
 
 }  // namespace fovea::cpu

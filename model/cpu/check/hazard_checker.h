@@ -48,9 +48,12 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   HazardChecker(const HazardChecker&) = delete;
   HazardChecker& operator=(const HazardChecker&) = delete;
 
-  /// Called for the first hazard of each place: one kind, program address and master.
+  /// Called by settle() for the first hazard of each place: one kind, program address and master.
   std::function<void(const Hazard&)> on_place;
-  /// Hazards so far, places repeated.
+  /// Counts the hazards up to `t`, in the order of their times. The core and the memory may have worked
+  /// ahead of the kernel; what they found beyond `t` waits for a later call.
+  void settle(Picoseconds t);
+  /// Hazards up to the last settle(), places repeated.
   std::uint64_t count(HazardKind k) const { return counts_[static_cast<std::size_t>(k)]; }
   std::uint64_t total() const;
   std::size_t places() const { return places_.size(); }
@@ -98,7 +101,7 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   void read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void forget_foreign(unsigned line, std::uint32_t bytes);
-  void report(const Hazard& h);
+  void report(const Hazard& h) { found_.push_back(h); }
 
   Core& core_;
   const Cache& lines_;
@@ -108,6 +111,7 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   std::uint32_t filling_ = kNone;                      // line that was requested and has not come yet
   Picoseconds requested_ = 0;
   Foreign meanwhile_;                                  // written since that request arrived
+  std::vector<Hazard> found_;                          // since the last settle(), or beyond it
   std::array<std::uint64_t, kHazardKinds> counts_{};
   std::set<std::tuple<HazardKind, std::uint32_t, Master>> places_;
 };
