@@ -28,13 +28,13 @@ is double hazard.places -eq 0
 
 run stale 0 omit_d_invalidate.elf --hazards
 is stale hazard.stale_loads -gt 0
-says stale 'warning \(firmware\): coherency hazard: the load at 0x[0-9a-f]+ \([a-z_0-9.]+(\+0x[0-9a-f]+)?\) read 0x8[0-9a-f]{7} at [0-9.]+ ms from a D-cache line that was filled at [0-9.]+ ms; VPFE wrote that memory at [0-9.]+ ms'
+says stale 'warning \(firmware\): coherency hazard: the load at 0x[0-9a-f]+ \([a-z_0-9.]+(\+0x[0-9a-f]+)?\) read 0x8[0-9a-f]{7} at [0-9.]+ ms from a D-cache line that was filled at [0-9.]+ ms; vpfe wrote that memory at [0-9.]+ ms'
 run stale_strict 3 omit_d_invalidate.elf --hazards --strict
 says stale_strict 'the guest failed: [0-9]+ coherency hazards at [0-9]+ places?'
 
 run dirty 0 omit_d_clean.elf --hazards -s firmware.overlay=true
 is dirty hazard.dirty_reads -gt 0
-says dirty 'coherency hazard: VPBE read 0x8[0-9a-f]{7} at [0-9.]+ ms, but the bytes that were stored at 0x[0-9a-f]+ \([a-z_]+'
+says dirty 'coherency hazard: vpbe read 0x8[0-9a-f]{7} at [0-9.]+ ms, but the bytes that were stored at 0x[0-9a-f]+ \([a-z_]+'
 
 # Who works ahead does not matter, and without the option only its figures and warnings are missing.
 run stale_sync 0 omit_d_invalidate.elf --hazards --sync=strict
