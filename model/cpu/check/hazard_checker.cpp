@@ -26,8 +26,7 @@ template <class F>
 void HazardChecker::each_holder(std::uint32_t line_pa, F f) {
   if (!holders_[bucket(line_pa)]) return;
   for (unsigned n = 0; n < held_.size(); ++n)
-    if (held_[n].pa == line_pa && lines_.line(n).tag != 1 && lines_.line(n).pa == line_pa)
-      f(n, held_[n]);
+    if (held_[n].pa == line_pa && lines_.line(n).tag != 1) f(n, held_[n]);
 }
 
 void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
