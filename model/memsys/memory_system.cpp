@@ -28,6 +28,7 @@ Slave MemorySystem::slave_of(const MemRequest& r) const {
 
 void MemorySystem::submit(MemRequest& r) {
   FOVEA_CHECK(r.bytes > 0 && r.bytes <= kMaxBurstBytes, "bad memory request");
+  r.no_side_effects &= trusting_;
   if (bypass_) [[unlikely]] {
     undecided_ += !r.no_side_effects;
     return send_directly(r, r.issued);
@@ -105,19 +106,21 @@ inline Taken MemorySystem::forward(MemRequest& r, Picoseconds arrival) {
 inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
   const std::uint32_t offset = r.address - map_.ddr_base;
   const bool outside = std::uint64_t{offset} + r.bytes > store_.size();
-  if (!open_ || outside || controller_.input_blocked()) [[unlikely]]
+  if (!direct_ || outside || controller_.input_blocked()) [[unlikely]]
     return arrive_slowly(r, at);
   return controller_.submit_inside(r, offset, at) ? Taken::kYes : Taken::kWaits;
 }
 
-/// The SDRAM is closed, or the request is not inside the part.
+/// The SDRAM is closed, the request is not inside the part, or somebody observes.
 [[gnu::noinline]] Taken MemorySystem::arrive_slowly(MemRequest& r, Picoseconds at) {
   const std::uint32_t offset = r.address - map_.ddr_base;
-  if (admission_ && !admission_->admit(offset, r.bytes)) return refuse_in_order(r, at);
+  const bool in_question = !open_ || std::uint64_t{offset} + r.bytes > store_.size();
+  if (in_question && admission_ && !admission_->admit(offset, r.bytes)) return refuse_in_order(r, at);
   FOVEA_CHECK(admission_ || std::uint64_t{offset} + r.bytes <= store_.size(),
               "request outside the SDRAM");
   FOVEA_CHECK(controller_.running(), "request to a DDR controller without a clock");
   FOVEA_CHECK(!controller_.input_blocked(), "a request while the controller's input is taken");
+  if (arrivals_) arrivals_->arrived(r, at);
   const auto inside = offset & static_cast<std::uint32_t>(store_.size() - 1);
   return controller_.submit_inside(r, inside, at) ? Taken::kYes : Taken::kWaits;
 }

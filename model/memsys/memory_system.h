@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/bus/core/crossbar.h"
+#include "model/common/arrival_observer.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
 #include "model/contract/memory_map.h"
@@ -78,7 +79,17 @@ class MemorySystem final {
   /// Who is asked while the SDRAM is closed. None: it is always open.
   void set_admission(SdramAdmission& admission) { admission_ = &admission; }
   /// Open: requests inside the part go to the controller without a question.
-  void set_open(bool open) { open_ = open; }
+  void set_open(bool open) {
+    open_ = open;
+    direct_ = open && !arrivals_;
+  }
+  /// Sets the observer of the controller's input; null: none. While there is one, every request counts
+  /// as one with side effects, so that no agent works past an arrival that it has not seen.
+  void observe_arrivals(ArrivalObserver* observer) {
+    arrivals_ = observer;
+    trusting_ = !observer;
+    set_open(open_);
+  }
   /// The controller's clocks or registers were changed: its next event may be another one.
   void controller_changed() { host_.rescheduled(); }
   /// Takes all events at or before `now`, and brings everything that needs none up to that time, so that
@@ -145,7 +156,10 @@ class MemorySystem final {
   AddressMap map_;
   MemoryHost& host_;
   SdramAdmission* admission_ = nullptr;
+  ArrivalObserver* arrivals_ = nullptr;
   bool open_ = true;
+  bool direct_ = true;    // open and not observed
+  bool trusting_ = true;  // requests without side effects are believed to have none
   mem::BackingStore store_;
   bus::Crossbar crossbar_;
   mem::DdrController controller_;

@@ -20,6 +20,7 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/figures.h"
+#include "sw/fovea/hazard_report.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/fovea/run_end.h"
@@ -389,6 +390,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   };
 
   auto& arm = board_->dm365.arm;
+  std::optional<HazardReport> hazards;
+  if (request.hazards) hazards.emplace(arm.core(), board_->dm365.scr.memory(), symbols_);
   BoardDebugMemory debug_memory(board_->dm365);
   const auto log = register_log(register_blocks(board_->platform), board_->dm365.config, arm.core(),
                                 [this](std::uint32_t pc) { return symbols_.describe(pc); });
@@ -423,6 +426,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
                                                  kSlice, kernel_time(),
                                                  arm.core().instructions_executed()));
     take_timeline(*board_, request);
+    if (hazards) hazards->settle(board_->window_end().value_or(kernel_time()));
     const std::uint64_t executed = arm.core().instructions_executed();
     request.progress.update({kernel_time(), board_->frames_in_window(),
                              run_end.wants(EndCondition::Kind::kFrames) ? params_.run.frames() : 0,
@@ -492,6 +496,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   result.guest_failure = guest;
   result.stats = std::move(stats_);
   collect_core(result);
+  if (hazards) {
+    hazards->settle(board_->window_end().value_or(kernel_time()));
+    hazards->collect(result.stats);
+    result.hazards = hazards->failure();
+  }
   result.frames = std::move(frames_);
   result.timeline_masters = timeline_masters();
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on

@@ -41,7 +41,7 @@ struct RunOptions {
   std::string out_dir;
   bool out_given = false;
   std::string sync = "default";
-  bool strict = false;
+  bool strict = false, hazards = false;
   bool no_frames = false;
   bool mp4 = false;
   std::string bus_trace;
@@ -131,6 +131,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .strict_sync = options.sync == "strict",
+                     .hazards = options.hazards,
                      .stop = stop,
                      .progress = meter,
                      .frame = {},
@@ -180,6 +181,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (options.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (!context.out) throw UserError("the program's output cannot be written");
   if (result.complete && result.exit_code.value_or(0) != 0)
     throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
@@ -356,6 +358,7 @@ void add_run_command(CLI::App& app, RunOptions& run) {
       ->check(CLI::IsMember({"default", "strict"}))
       ->default_str("default");
   c->add_flag("--strict", run.strict, kStrict);
+  add_hazards_option(*c, run.hazards);
   c->add_flag("--no-frames", run.no_frames, "Write no pictures");
   c->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
   c->add_option("--bus-trace", run.bus_trace,

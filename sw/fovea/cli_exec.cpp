@@ -46,6 +46,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   }
   RunRequest run{.params = params,
                  .folder = {},
+                 .hazards = o.hazards,
                  .stop = request.stop,
                  .progress = *request.progress,
                  .frame = {},
@@ -67,6 +68,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
   out.registers = std::move(result.registers);
+  out.hazards = std::move(result.hazards);
   if (!result.exit_code) out.ended = std::move(result.ended);
   return out;
 }
@@ -103,6 +105,12 @@ void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
       ->capture_default_str();
 }
 
+void add_hazards_option(CLI::App& command, bool& hazards) {
+  command.add_flag("--hazards", hazards,
+                   "Warn where the core and a DMA master see different memory, because a line of the "
+                   "D-cache is stale or dirty; with --strict that is an error at the end");
+}
+
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
   if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
     throw UserError(
@@ -135,6 +143,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
   add_register_log_options(*c, o.registers);
+  add_hazards_option(*c, o.hazards);
   add_limit_options(*c, o.limits);
   c->add_flag("--strict", o.strict,
               "Stop with an error when the program uses a feature that is not modelled, or a "
@@ -222,6 +231,8 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   check_register_log(o.registers, o.gdb);
   if (o.fast_memory && !o.registers.pattern.empty())
     throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
+  if (o.hazards && !o.board)
+    throw UserError("--hazards: there is no DMA; allowed: with --board");
   if (o.console && !o.board) throw UserError("--console: there is no UART; allowed: with --board");
   if (o.board && (o.fast_memory || o.caches || !o.load.empty() || !o.entry.empty() || o.thumb))
     throw UserError(
@@ -304,6 +315,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     report_earlier(dir->commit(result.complete && result.guest_failure.empty()), context);
   }
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (lost) throw UserError("the program's output cannot be written");
   if (result.complete) return result.exit_code;
   const int signal = context.signal ? context.signal->load() : 0;

@@ -45,6 +45,7 @@ struct ExecResult {
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
   std::string registers;  ///< the register log, if requested
+  std::string hazards;    ///< with --hazards: a sentence about those found; empty: none
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
 };
 

@@ -40,6 +40,7 @@ struct RunRequest {
   /// Folder of the run (still DIR.tmp), for files that the board writes itself, such as traces.
   std::filesystem::path folder;
   bool strict_sync = false;  ///< --sync=strict
+  bool hazards = false;      ///< --hazards: check the coherency of core and DMA
   /// Set by a signal: the board ends the run soon and returns a result with complete = false.
   const std::atomic<bool>& stop;
   ProgressSink& progress;
@@ -83,6 +84,7 @@ struct RunResult {
   std::string typed;         ///< what a person typed on the console, as a file for uart0.input
   std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
   std::string registers;  ///< the register log, if requested
+  std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
 };
 
 /// A board that can run once.

@@ -62,6 +62,7 @@ expect no_registers 2 'regular expression' -- run --log-registers '(' "$programs
 expect nested 2 'not a regular expression \(missing \)' -- run --log-registers "$(printf '(%.0s' {1..9000})" "$programs/registers.elf"
 expect backtracking 0 -- timeout 20 "$fovea" exec --log-registers '(.*.*)*x$' "$programs/registers.elf"
 expect nothing_to_log 2 '--fast-memory' -- run --fast-memory --log-registers . "$programs/registers.elf"
+expect no_dma 2 '--hazards: there is no DMA; allowed: with --board' -- run --hazards "$programs/registers.elf"
 expect no_effect 0 "'ddr.scheduler' is set but has no effect with --fast-memory" -- \
   run --fast-memory -s ddr.scheduler=fcfs "$fails"
 expect no_effect_strict 2 'no effect' -- run --strict --fast-memory -s ddr.scheduler=fcfs "$fails"

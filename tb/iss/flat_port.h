@@ -36,6 +36,8 @@ class FlatPort : public BusPort {
   std::function<Picoseconds()> extra;  ///< added to the latency of each access
   Picoseconds ahb_period = 8'000;  ///< every submission must be at a multiple of it; 0: not checked
   std::vector<BusRecord> log;
+  /// Called for each access at its place in the memory's order.
+  std::function<void(const BusAccess&)> on_memory;
   Picoseconds now = 0;
 
   FlatPort(std::uint32_t base, std::size_t bytes) : base_(base), memory_(bytes) {}
@@ -124,6 +126,7 @@ class FlatPort : public BusPort {
   }
   void carry_out(BusAccess& a) {
     const std::uint32_t start = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
+    if (on_memory) on_memory(a);
     if (!mapped(start, a.bytes)) {
       a.error = true;
     } else if (a.write) {

@@ -18,6 +18,7 @@ class Cache {
     std::uint32_t pa = 0;    // physical address of the line, for write-backs
     std::uint8_t dirty = 0;  // one bit for each half of the line
     bool write_back = false;
+    bool watched = false;  // its accesses are announced, so it has no hints
   };
   unsigned sets() const { return sets_; }
   unsigned lines() const { return sets_ * kWays; }
@@ -41,7 +42,11 @@ class Cache {
   const Line& line(unsigned i) const { return lines_[i]; }
   std::uint8_t* data(unsigned i) { return data_.data() + std::size_t{i} * kLineBytes; }
   const std::uint8_t* data(unsigned i) const { return data_.data() + std::size_t{i} * kLineBytes; }
-  void invalidate(unsigned i) { lines_[i].tag = 1; lines_[i].dirty = 0; }
+  void invalidate(unsigned i) {
+    lines_[i].tag = 1;
+    lines_[i].dirty = 0;
+    lines_[i].watched = false;
+  }
   void invalidate_all() {
     for (unsigned i = 0; i < lines(); ++i) invalidate(i);
   }

@@ -179,6 +179,11 @@ class Core : public Background {
   /// them holds the address, so that memory has the current value.
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
 
+  /// Sets the observer of the D-cache's lines; null: none.
+  void observe_lines(LineWatch* watch) { data_.observe(watch); }
+  /// Whether each access to a line is announced to the observer, until the line is filled again.
+  void watch_line(unsigned line, bool on) { data_.watch_line(line, on); }
+
   // For debuggers: only at an instruction boundary or during an SWI, without simulated time.
   CoreView view() const {
     return {regs_, system_, mmu_, ram_, data_, fetch_, bus_, scoreboard_, irq_, fiq_};

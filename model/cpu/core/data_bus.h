@@ -74,6 +74,15 @@ class DataBus {
     act_time_cycle_ = kNoCycle;
   }
 
+  /// Lets all others act up to the core's time.
+  void let_others_act() { interface_.let_others_act(ledger_.cycle); }
+  /// True if the buffers hold bytes of [address, address + n) that memory has not taken yet.
+  bool unsent(std::uint32_t address, unsigned n) const {
+    if (nothing_buffered()) return false;
+    const unsigned taken = write_in_flight_ && write_access_.done ? write_access_.bytes : 0;
+    return write_is_victim_ ? writes_.overlaps(address, n, 0, taken) : writes_.overlaps(address, n, taken, 0);
+  }
+
   // What a debugger sees and changes.
   const WriteBuffer& writes() const { return writes_; }
   bool write_in_flight() const { return write_in_flight_; }

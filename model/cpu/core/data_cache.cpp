@@ -30,7 +30,7 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
                                        registers_.dlock & 15u);
   if (lines_.line(index).tag != 1) drop_hints(lines_.line(index).tag);
   bus_.run_buffers(ledger_.cycle);
-  bus_.write_back(lines_, index, true, Cause::kWriteBuffer);
+  write_back(index, true, Cause::kWriteBuffer);
   const bool good = bus_.read_line(pa, asked, Cause::kDcache);
   ++ledger_.counts.dcache_read_fills;
   Cache::Line& l = lines_.line(index);
@@ -46,9 +46,21 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
   l.pa = pa & ~31u;
   l.dirty = 0;
   l.write_back = write_back_page;
+  l.watched = false;
   fill = {mva & ~31u, (pa >> 2) & 7u, pa, ledger_.cycle,
           std::max(ledger_.cycle, bus_.last_word())};
+  if (watch_) [[unlikely]] {
+    bus_.let_others_act();  // what they did while the line came must not depend on who is ahead
+    watch_->filled(index);
+  }
   return static_cast<int>(index);
+}
+
+void DataCache::write_back(unsigned line, bool before_fill, Cause cause) {
+  const unsigned halves = lines_.line(line).dirty;
+  bus_.write_back(lines_, line, before_fill, cause);
+  if (watch_ && halves) [[unlikely]]
+    watch_->written_back(line, halves);
 }
 
 bool DataCache::store(std::uint32_t va, std::uint32_t mva, unsigned bytes, std::uint32_t value,
@@ -62,9 +74,12 @@ bool DataCache::store(std::uint32_t va, std::uint32_t mva, unsigned bytes, std::
   }
   const auto line = static_cast<unsigned>(i);
   std::memcpy(lines_.data(line) + (mva & 31u), &value, bytes);
+  if (watch_) [[unlikely]]
+    watch_->stored(line, mva & 31u, bytes);
   if (!keeps(i, write_back_page)) return false;
   lines_.line(line).dirty |= static_cast<std::uint8_t>(1u << ((mva >> 4) & 1u));
-  hint_writes(va, mva, lines_.data(line) + (mva & 16u), ledger_.counts.dcache_writes);
+  if (!lines_.line(line).watched) [[likely]]
+    hint_writes(va, mva, lines_.data(line) + (mva & 16u), ledger_.counts.dcache_writes);
   return true;
 }
 

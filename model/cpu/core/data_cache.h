@@ -6,6 +6,7 @@
 
 #include "model/cpu/core/cache.h"
 #include "model/cpu/core/data_bus.h"
+#include "model/cpu/core/line_watch.h"
 #include "model/cpu/core/mmu.h"
 #include "model/cpu/core/stall_ledger.h"
 #include "model/cpu/core/system_registers.h"
@@ -33,14 +34,18 @@ class DataCache {
 
   /// A cacheable load. @param mva address of its first byte @return host address of that byte
   [[gnu::always_inline]] const std::uint8_t* load(std::uint32_t va, std::uint32_t mva,
-                                                  const Translation& t) {
+                                                  unsigned bytes, const Translation& t) {
     ++ledger_.counts.dcache_reads;
     if (ledger_.cycle < fill.last) wait_for_fill(mva);
     int i = lines_.find(mva);
     if (i < 0) i = fill_line(mva, t.physical(mva), t.bufferable);
     std::uint8_t* const line = lines_.data(static_cast<unsigned>(i));
-    if (lines_.line(static_cast<unsigned>(i)).tag == (mva & ~31u))
+    // A watched line differs in the tag's lowest bit, so that it needs no branch of its own.
+    const Cache::Line& l = lines_.line(static_cast<unsigned>(i));
+    if ((l.tag ^ l.watched) == (mva & ~31u))
       hint_reads(va, mva, line, ledger_.counts.dcache_reads);
+    else if (l.watched)
+      watch_->loaded(static_cast<unsigned>(i), mva & 31u, bytes);
     return line + (mva & 31u);
   }
   /// A cacheable store. @return true if the line is dirty now, so that memory need not be written
@@ -55,7 +60,7 @@ class DataCache {
   bool keeps(int line, bool write_back_page) const {
     return line >= 0 && write_back_page && !(registers_.cache_debug & 4u);
   }
-  void write_back(unsigned line, Cause cause) { bus_.write_back(lines_, line, false, cause); }
+  void write_back(unsigned line, Cause cause) { write_back(line, false, cause); }
 
   /// The same as read_hints[va / kReadSpan % kHints], one host instruction shorter.
   const Hint& read_hint(std::uint32_t va) const {
@@ -95,6 +100,13 @@ class DataCache {
     lines_.invalidate_all();
     forget_hints();
   }
+  /// Sets the observer of the lines; null: none.
+  void observe(LineWatch* watch) { watch_ = watch; }
+  /// Only while there is an observer.
+  void watch_line(unsigned line, bool on) {
+    lines_.line(line).watched = on;
+    if (on) drop_hints(lines_.line(line).tag);
+  }
   Cache& lines() { return lines_; }
   const Cache& lines() const { return lines_; }
 
@@ -110,11 +122,13 @@ class DataCache {
  private:
   int fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_page);
   void drop_hints(std::uint32_t line_mva);
+  void write_back(unsigned line, bool before_fill, Cause cause);
 
   StallLedger& ledger_;
   DataBus& bus_;
   const SystemRegisters& registers_;
   Cache lines_;
+  LineWatch* watch_ = nullptr;
   bool hints_used_ = false;
 };
 

@@ -24,7 +24,7 @@ const std::uint8_t* Core::load_cached(const Instruction* i, std::uint32_t va) {
   const Translation* const t = mmu_.known_cacheable(mva, Access::kLoad, !regs_.privileged());
   if (!t || !system_.data_cached() || (mva & (kBytes - 1))) return nullptr;
   log_.note(i, va);
-  return data_.load(va, mva, *t);
+  return data_.load(va, mva, kBytes, *t);
 }
 template const std::uint8_t* Core::load_cached<1>(const Instruction*, std::uint32_t);
 template const std::uint8_t* Core::load_cached<2>(const Instruction*, std::uint32_t);
@@ -47,7 +47,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     return Result::kOk;
   }
   if (t->cacheable && system_.data_cached()) {
-    const std::uint8_t* const from = data_.load(va, a, *t);
+    const std::uint8_t* const from = data_.load(va, a, bytes, *t);
     if (bytes == 4)
       std::memcpy(&value, from, 4);
     else

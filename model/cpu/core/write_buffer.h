@@ -63,6 +63,18 @@ class WriteBuffer {
            victim_address < address + n;
   }
 
+  /// The same without what was sent: that includes the next `taken` bytes of the front entry and, if
+  /// not 0, the victim.
+  bool overlaps(std::uint32_t address, unsigned n, unsigned taken, unsigned victim_taken) const {
+    for (unsigned i = 0; i < count_; ++i) {
+      const Entry& e = entries_[(head_ + i) % kAddresses];
+      const unsigned gone = e.sent + (i == 0 ? taken : 0);
+      if (address < e.address + e.bytes && e.address + gone < address + n) return true;
+    }
+    return victim_bytes && !victim_taken && address < victim_address + victim_bytes &&
+           victim_address < address + n;
+  }
+
   /// The byte at an address after all pending writes; false if none of them covers it.
   bool find(std::uint32_t address, std::uint8_t& byte) const {
     for (unsigned i = count_; i-- > 0;) {

@@ -1,0 +1,119 @@
+// Finds places where the core and a DMA master do not see the same memory.
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "model/common/arrival_observer.h"
+#include "model/cpu/core/core.h"
+
+namespace fovea::cpu {
+
+/// What goes wrong. The ARM926EJ-S keeps no coherency between its D-cache and other masters (ARM DDI
+/// 0198D chapter 4): the program has to clean and invalidate.
+enum class HazardKind : std::uint8_t {
+  kStaleLoad,      ///< the core loads bytes of a line that memory changed since the line's fill
+  kDirtyRead,      ///< a master reads memory whose newer bytes are in a dirty line
+  kBufferedRead,   ///< a master reads memory whose newer bytes are in the write or victim buffer
+  kOverwrite,      ///< a dirty half is written back, or a buffered write goes, over a master's newer bytes
+  kCount
+};
+inline constexpr std::size_t kHazardKinds = static_cast<std::size_t>(HazardKind::kCount);
+
+struct Hazard {
+  HazardKind kind = HazardKind::kStaleLoad;
+  Master master = Master::kCount;  ///< the other one
+  std::uint32_t pc = 0;            ///< of the load, or of the first store into the dirty half; of the
+                                   ///< instruction under way for bytes in a buffer
+  std::uint32_t address = 0;       ///< physical address of the first byte concerned
+  Picoseconds before = 0;          ///< the earlier act: a line's fill, a store, or the master's write
+  Picoseconds after = 0;           ///< the later one, which is the hazard
+  /// kStaleLoad: when the line was filled (`before` is the master's write). Otherwise 0.
+  Picoseconds filled = 0;
+};
+
+/// Knows only what core and memory announce. The memory's order is that of arrivals at the controller,
+/// which serves accesses to one address in that order; the times of a master's accesses and of line fills
+/// are those of their arrival. Loads are judged by bytes, dirty halves as a whole, as the hardware writes
+/// them back.
+class HazardChecker final : public ArrivalObserver, public LineWatch {
+ public:
+  /// @param core outlives the checker, which observes its lines from now on
+  explicit HazardChecker(Core& core);
+  ~HazardChecker() override;
+  HazardChecker(const HazardChecker&) = delete;
+  HazardChecker& operator=(const HazardChecker&) = delete;
+
+  /// Called by settle() for the first hazard of each place: one kind, program address and master.
+  std::function<void(const Hazard&)> on_place;
+  /// Counts the hazards up to `t`, in the order of their times. The core and the memory may have worked
+  /// ahead of the kernel; what they found beyond `t` waits for a later call.
+  void settle(Picoseconds t);
+  /// Hazards up to the last settle(), places repeated.
+  std::uint64_t count(HazardKind k) const { return counts_[static_cast<std::size_t>(k)]; }
+  std::uint64_t total() const;
+  std::size_t places() const { return places_.size(); }
+
+  void arrived(const MemRequest& r, Picoseconds at) override;
+  void filled(unsigned line) override;
+  void loaded(unsigned line, unsigned offset, unsigned bytes) override;
+  void stored(unsigned line, unsigned offset, unsigned bytes) override;
+  void written_back(unsigned line, unsigned halves) override;
+
+ private:
+  static constexpr std::uint32_t kNone = 1;  // no line has this address
+  static constexpr std::size_t kBuckets = 4096;
+  static constexpr unsigned kLineBytes = Cache::kLineBytes, kHalfBytes = kLineBytes / 2;
+
+  /// Bytes of a line (one bit each) that a master wrote after the line's fill, and its last such write.
+  struct Foreign {
+    std::uint32_t bytes = 0;
+    Master master = Master::kCount;
+    Picoseconds at = 0;
+  };
+  struct Store {
+    std::uint32_t pc = 0;
+    Picoseconds at = 0;
+  };
+  struct Held {
+    std::uint32_t pa = kNone;
+    Picoseconds filled = 0;  // when its request arrived at the controller
+    Picoseconds there = 0;   // when the core went on with it
+    Foreign foreign;
+    std::array<Store, 2> stores{};  // the first one into each half since it was clean
+  };
+
+  /// Bits of the bytes [offset, offset + n) of a line.
+  static std::uint32_t bits(unsigned offset, unsigned n) {
+    return static_cast<std::uint32_t>(((std::uint64_t{1} << n) - 1) << offset);
+  }
+  /// Address of the lowest of a line's bytes that are set.
+  static std::uint32_t first_of(std::uint32_t line_pa, std::uint32_t bytes) {
+    return line_pa + static_cast<std::uint32_t>(std::countr_zero(bytes));
+  }
+  static std::size_t bucket(std::uint32_t line_pa) { return line_pa / kLineBytes % kBuckets; }
+  template <class F>
+  void each_holder(std::uint32_t line_pa, F f);
+  void read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
+  void written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
+  void forget_foreign(unsigned line, std::uint32_t bytes);
+  void report(const Hazard& h) { found_.push_back(h); }
+
+  Core& core_;
+  const Cache& lines_;
+  const DataBus& bus_;
+  std::vector<Held> held_;                             // by line
+  std::array<std::uint16_t, kBuckets> holders_{};      // lines in held_, by bucket
+  std::uint32_t filling_ = kNone;                      // line that was requested and has not come yet
+  Picoseconds requested_ = 0;
+  Foreign meanwhile_;                                  // written since that request arrived
+  std::vector<Hazard> found_;                          // since the last settle(), or beyond it
+  std::array<std::uint64_t, kHazardKinds> counts_{};
+  std::set<std::tuple<HazardKind, std::uint32_t, Master>> places_;
+};
+
+}  // namespace fovea::cpu

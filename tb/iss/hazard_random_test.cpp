@@ -1,0 +1,190 @@
+// Random programs of core and DMA: if anything that is visible differs from the same program executed
+// step by step on plain memory, a hazard was reported; programs with the right maintenance report none.
+#include <random>
+
+#include "tb/iss/hazard_bench.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+/// What the steps do to memory if each takes effect before the next: no caches, no buffers.
+class PlainMemory {
+ public:
+  Visible run(const std::vector<Step>& steps, Visible start) {
+    out_ = std::move(start);
+    for (const Step& s : steps) step(s);
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr std::uint32_t kSpan = 6 * 0x800;
+  std::uint8_t& at(std::uint32_t a) {
+    const std::uint32_t offset = a - kMemory;
+    return out_.memory.at((offset >> 20) * kSpan + (offset & 0xF'FFFFu));
+  }
+  void load(std::uint32_t a, unsigned bytes) {
+    std::uint32_t v = 0;
+    for (unsigned k = 0; k < bytes; ++k) v |= std::uint32_t{at(a + k)} << 8 * k;
+    out_.loaded.push_back(v);
+  }
+  void store(std::uint32_t a, unsigned bytes, std::uint32_t v) {
+    for (unsigned k = 0; k < bytes; ++k) at(a + k) = static_cast<std::uint8_t>(v >> 8 * k);
+  }
+  void step(const Step& s) {
+    switch (s.what) {
+      case Do::kLoad: return load(s.address, 4);
+      case Do::kLoadHalf: return load(s.address, 2);
+      case Do::kLoadByte: return load(s.address, 1);
+      case Do::kStore: return store(s.address, 4, s.value);
+      case Do::kStoreHalf: return store(s.address, 2, s.value);
+      case Do::kStoreByte: return store(s.address, 1, s.value);
+      case Do::kLoadFour:
+        for (unsigned k = 0; k < 4; ++k) load(s.address + 4 * k, 4);
+        return;
+      case Do::kStoreFour:
+        for (unsigned k = 0; k < 4; ++k) store(s.address + 4 * k, 4, s.value + k);
+        return;
+      case Do::kSwap:
+        load(s.address, 4);
+        return store(s.address, 4, s.value);
+      case Do::kDma:
+        for (std::uint32_t a = s.address; a < s.address + s.bytes; ++a) {
+          if (s.write) at(a) = dma_byte(s.value, a);
+          else out_.dma_read.push_back(at(a));
+        }
+        return;
+      default: return;
+    }
+  }
+  Visible out_;
+};
+
+class Generator {
+ public:
+  explicit Generator(unsigned seed) : random_(seed) {}
+  /// @param omit per cent of the transfers that lack a part of their maintenance
+  std::vector<Step> program(unsigned omit) {
+    steps_.clear();
+    for (std::uint32_t& a : lines_) {
+      const unsigned region = below(8);
+      a = line_used(region < 6 ? 0 : region - 5, below(kLinesUsed));
+    }
+    for (unsigned n = 0; n < 80; ++n) {
+      if (below(4)) access();
+      else transfer(below(100) < omit);
+    }
+    steps_.push_back({Do::kCleanAll});
+    steps_.push_back({Do::kDrain});
+    return steps_;
+  }
+
+ private:
+  unsigned below(unsigned n) { return static_cast<unsigned>(random_() % n); }
+  std::uint32_t line() { return lines_[below(std::size(lines_))]; }
+  void access() {
+    static constexpr struct { Do what; unsigned bytes; } kKinds[] = {
+        {Do::kLoad, 4}, {Do::kLoad, 4}, {Do::kStore, 4}, {Do::kStore, 4}, {Do::kLoadByte, 1},
+        {Do::kStoreByte, 1}, {Do::kLoadHalf, 2}, {Do::kStoreHalf, 2}, {Do::kLoadFour, 4},
+        {Do::kStoreFour, 4}, {Do::kSwap, 4}, {Do::kCleanLine, 4}, {Do::kCleanInvalidateLine, 4},
+        {Do::kDrain, 4}};
+    const auto kind = kKinds[below(std::size(kKinds))];
+    const std::uint32_t a = line();
+    const bool four = kind.what == Do::kLoadFour || kind.what == Do::kStoreFour;
+    const unsigned room = four ? 20 : 32;
+    steps_.push_back({kind.what, a + below(room / kind.bytes) * kind.bytes, random()});
+  }
+  std::uint32_t random() { return static_cast<std::uint32_t>(random_()); }
+  void each_line(Do what, const Step& t) {
+    for (std::uint32_t a = t.address & ~31u; a < t.address + t.bytes; a += 32) steps_.push_back({what, a});
+  }
+  /// Cleans and drains before; a transfer that writes also invalidates, before or after.
+  void transfer(bool omit) {
+    Step t{Do::kDma, line(), random()};
+    t.write = below(2);
+    const unsigned from = below(8);
+    t.bytes = 4 * (1 + below(below(2) ? 8 - from : 16 - from));
+    t.address += 4 * from;
+    t.delay = below(2) ? below(40) * 1000 : below(400) * 1000;
+    const bool after = t.write && below(2);
+    const unsigned without = omit ? below(3) : 3;
+    const bool cleans = without != 0, drains = without != 1, invalidates = without != 2;
+    if (cleans) {
+      // Before a read, or if the invalidation comes later, a clean is enough.
+      if (below(6) == 0) steps_.push_back({t.write && !after && invalidates ? Do::kCleanInvalidateAll : Do::kCleanAll});
+      else each_line(t.write && !after && invalidates ? Do::kCleanInvalidateLine : Do::kCleanLine, t);
+    }
+    if (drains) steps_.push_back({Do::kDrain});
+    steps_.push_back(t);
+    // An invalidation without the clean would lose the program's own stores, with or without DMA.
+    if (after && cleans && invalidates) each_line(Do::kInvalidateLine, t);
+  }
+
+  std::mt19937_64 random_;
+  std::array<std::uint32_t, 8> lines_{};  // that this program uses
+  std::vector<Step> steps_;
+};
+
+class HazardRandomTest : public ::testing::Test {
+ protected:
+  static constexpr unsigned kPrograms = 1200;
+  HazardBench bench;
+  unsigned differing = 0, reported = 0;
+  std::array<unsigned, kHazardKinds> kinds{};
+
+  /// How the surroundings of the core behave differs from program to program, too.
+  void vary(unsigned seed) {
+    bench.m.port.decide_late = seed & 1u;
+    bench.m.port.write_latency = seed & 2u ? 40'000 : 400'000;
+    bench.m.port.read_latency = seed & 4u ? 80'000 : 24'000;
+  }
+  bool check(unsigned seed, unsigned omit) {
+    const std::vector<Step> steps = Generator(seed).program(omit);
+    vary(seed);
+    const Visible start = initial();
+    const Visible plain = PlainMemory().run(steps, start);
+    EXPECT_TRUE(bench.run(steps, false) == plain) << "without caches, seed " << seed;
+    const Visible seen = bench.run(steps);
+    const bool differs = seen != plain;
+    const bool hazards = bench.checker->total() != 0;
+    differing += differs;
+    reported += hazards;
+    for (std::size_t k = 0; k < kHazardKinds; ++k)
+      kinds[k] += bench.count(static_cast<HazardKind>(k)) != 0;
+    EXPECT_TRUE(!differs || hazards) << "a difference without a hazard, seed " << seed;
+    EXPECT_FALSE(omit == 0 && hazards) << "a hazard in a right program, seed " << seed;
+    return !HasFailure();
+  }
+  static Visible initial() {
+    Visible v;
+    for (unsigned region = 0; region < 3; ++region)
+      for (std::uint32_t a = 0; a < 6 * 0x800; ++a) v.memory.push_back(initial_byte(kRegion[region] + a));
+    return v;
+  }
+};
+
+TEST_F(HazardRandomTest, WhatDiffersWasReported) {
+  for (unsigned seed = 0; seed < kPrograms; ++seed)
+    if (!check(seed, 40)) break;
+  std::printf("%u programs, %u end differently, %u with hazards: %u stale loads, %u dirty reads, %u "
+              "buffered reads, %u overwrites\n",
+              kPrograms, differing, reported, kinds[0], kinds[1], kinds[2], kinds[3]);
+  // The comparison has something to compare, and a hazard of each kind occurs.
+  EXPECT_GT(differing, kPrograms / 4);
+  for (const unsigned n : kinds) EXPECT_GT(n, kPrograms / 50);
+}
+
+TEST_F(HazardRandomTest, RightProgramsReportNone) {
+  for (unsigned seed = 0; seed < kPrograms; ++seed)
+    if (!check(seed, 0)) break;
+  EXPECT_EQ(differing, 0u);
+}
+
+/// One seldom omission in each program: most often a single hazard decides whether it is noticed.
+TEST_F(HazardRandomTest, ASingleOmissionIsReported) {
+  for (unsigned seed = 0; seed < kPrograms; ++seed)
+    if (!check(seed, 5)) break;
+  EXPECT_GT(differing, kPrograms / 50);
+}
+
+}  // namespace
+}  // namespace fovea::cpu::test
