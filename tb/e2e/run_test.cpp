@@ -40,7 +40,12 @@ app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = 
   set.set("firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_firmware.elf");
   for (const auto& [key, value] : keys) set.set(key, value);
   StopAt progress(stop_at);
-  app::RunRequest request{set, {}, strict, progress.stop, progress, {}};
+  app::RunRequest request{.params = set,
+                          .folder = {},
+                          .strict_sync = strict,
+                          .stop = progress.stop,
+                          .progress = progress,
+                          .frame = {}};
   return simulation->run(request);
 }
 

@@ -46,6 +46,8 @@ struct Watched {
   std::optional<Master> writes = {};  // when which of its writes was acknowledged
 };
 constexpr unsigned kFrames = 2;
+/// After so long nothing is under way any more that was before the window.
+constexpr Picoseconds kUnderWay = 10 * kPsPerUs;
 /// Every so many writes of Watched::writes.
 constexpr std::size_t kWritesApart = 10'000;
 /// A 99th percentile needs so many requests of a master and direction, a mean so many.
@@ -57,12 +59,15 @@ class Latencies : public MemObserver {
  public:
   MemObserver* before = nullptr;  // who looked on already
   bool on = false;
+  /// Earlier requests are not in the sum of times. A trace does not hold what was under way when the window
+  /// opened, so its first requests may find a memory at rest that was busy.
+  Picoseconds exact_from = 0;
   void submitted(const MemRequest& r, bool to_sdram) override {
     if (before) before->submitted(r, to_sdram);
   }
   void responded(const MemRequest& r) override {
     if (before) before->responded(r);
-    if (on)
+    if (on && r.issued >= exact_from)
       for (const Picoseconds t : {r.issued, r.first, r.last})
         times_[index(r.master)] = (times_[index(r.master)] ^ t) * 0x100'0000'01B3u;
     if (on)
@@ -144,6 +149,7 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     board.on_window_open = [&] {
       latencies.on = true;
       opened = kernel_time();
+      latencies.exact_from = opened + kUnderWay;
       mem::DdrConfig c = soc.ddr.programmed();
       if (change.CL) {
         c.timing.CL = c.read_latency = change.CL;
@@ -268,6 +274,7 @@ Figures replay(const std::string& file, const Watched& watched, const Change& ch
   app::ReplayPath path("trace", info, records, params, false);
   Latencies latencies;
   latencies.on = true;
+  latencies.exact_from = info.start + kUnderWay;
   path.observe(&latencies);
   path.run_before(kNever);
   path.finish();
@@ -352,7 +359,7 @@ TEST_P(RunsTest, ReplayFollowsTheRun) {
   ASSERT_GE(recorded.at("remaps"), 2);
   const Figures same = replay(file(), watched, {});
   EXPECT_LE(worst(recorded, same, "same"), 0.01);
-  // The window opens on a memory at rest: then nothing is lost, and all is as it was.
+  // Nothing is lost: all but what was under way when the window opened is as it was.
   EXPECT_EQ(other_times(recorded, same), 0u);
   EXPECT_GT(other_times(recorded, replay(file(), watched, {}, Lost::kNothing, 30'000)), 0u)
       << "refreshes a few clocks earlier";
