@@ -33,7 +33,7 @@ concept CrossbarHost = requires(H& host, MemRequest& request, Picoseconds arriva
   host.respond(request);
 };
 
-struct MasterStats : StatGroup {
+struct MasterStats final : StatGroup {
   Counter read_bytes{*this, "read_bytes", "B", "bytes that " + name() + " read"};
   Counter write_bytes{*this, "write_bytes", "B", "bytes that " + name() + " wrote"};
   Counter transactions{*this, "transactions", "1", "bursts and single accesses of " + name()};
