@@ -13,6 +13,9 @@ video: {width: 64, height: 16}
 Y
 "$fovea" run small.yaml -o plain --no-frames >plain.out 2>&1
 grep -q SystemC plain.out && fail "run: a message of the kernel: $(cat plain.out)"
+# Where a buffer of the firmware lies, and so many bytes behind that.
+address() { printf '0x%08x' $((0x$(arm-none-eabi-nm "$firmware" | awk -v s="$1" '$3 == s { print $1 }') + ${2-0})); }
+frames_in=$(address frame_in) frames_out=$(address frame_out)
 same() { cmp plain/stats.json "$1/stats.json" || fail "$1: other figures than without a debugger"; }
 
 # Into an interrupt handler, peripherals.
@@ -63,7 +66,7 @@ same early
 
 # Another master's access: the camera fills a buffer while the core sleeps, the display reads one.
 begin dma run small.yaml -o dma --no-frames
-debug "$firmware" <<'G'
+debug "$firmware" <<G
 break main
 continue
 monitor where
@@ -71,8 +74,8 @@ watch *(int *)&frame_in[0]
 continue
 monitor where
 delete
-monitor watch dma 0x80341000,0x200000 r vpbe
-monitor watch dma 0x80341000,0x200000 r nobody
+monitor watch dma $frames_out,0x200000 r vpbe
+monitor watch dma $frames_out,0x200000 r nobody
 monitor watch
 continue
 monitor where
@@ -83,31 +86,31 @@ monitor where
 detach
 G
 end 0 'core: at the instruction at 0x8' 'no master has a request under way' \
-  'vpfe wrote 0x80015000 at [0-9]+\.[0-9]{3} ns' 'Old value = 0' 'core: waits for an interrupt' \
-  'sdram 1: write of vpfe, 64 bytes at 0x80015000, bank' 'next command ACT for vpfe' \
-  'no such master; allowed: arm_i' '0x80341000,2097152 r vpbe' 'vpbe read 0x80341[0-9a-f]* at' \
-  'vpbe \(priority 0\):' '    read of 64 bytes at 0x80341.* ns\): ' 'irq_dispatch \(\)'
+  "vpfe wrote $frames_in"' at [0-9]+\.[0-9]{3} ns' 'Old value = 0' 'core: waits for an interrupt' \
+  "sdram 1: write of vpfe, 64 bytes at $frames_in, bank" 'next command ACT for vpfe' \
+  'no such master; allowed: arm_i' "$frames_out,2097152 r vpbe" "vpbe read ${frames_out%???}[0-9a-f]* at" \
+  'vpbe \(priority 0\):' "    read of 64 bytes at ${frames_out%???}.* ns\\): " 'irq_dispatch \(\)'
 same dma
 
 # The D-cache hides what the camera writes: no watchpoint in GDB's sense, and not silence either. Of
 # one burst's watchpoints each is told, those at one address together.
 begin hidden run small.yaml -o hidden --no-frames
-debug "$firmware" <<'G'
+debug "$firmware" <<G
 break main
 continue
 tbreak pipeline_done
 continue
 set var frame_in[0x40] = ~frame_in[0x40]
 set var frame_in[0x80] = ~frame_in[0x80]
-print $before = frame_in[0x40]
+print \$before = frame_in[0x40]
 watch frame_in[0x40]
 continue
-print $before == frame_in[0x40]
+print \$before == frame_in[0x40]
 delete
 awatch frame_in[0x80]
 awatch *(short *)&frame_in[0x80]
 awatch frame_in[0x83]
-monitor watch dma 0x800150c0,4 w
+monitor watch dma $(address frame_in 0xc0),4 w
 continue
 continue
 continue
@@ -118,19 +121,19 @@ G
 end 0 'Program received signal SIGTRAP' '= 1$'
 said() { sed -n '/^\$1 = /,$p' hidden.gdb |
   grep -E '^(vpfe wrote|the core does not|Program received)|^Hardware access .*: '; }
-want='vpfe wrote 0x80015040 at NS
+want="vpfe wrote $(address frame_in 0x40) at NS
 the core does not see it: its D-cache or buffers hold other bytes there
 Program received signal SIGTRAP, Trace/breakpoint trap.
 Hardware access (read/write) watchpoint 4: frame_in[0x80]
 Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
 Hardware access (read/write) watchpoint 6: frame_in[0x83]
-vpfe wrote 0x80015080 at NS
+vpfe wrote $(address frame_in 0x80) at NS
 Hardware access (read/write) watchpoint 4: frame_in[0x80]
 Hardware access (read/write) watchpoint 5: *(short *)&frame_in[0x80]
-vpfe wrote 0x80015083 at NS
+vpfe wrote $(address frame_in 0x83) at NS
 Hardware access (read/write) watchpoint 6: frame_in[0x83]
-vpfe wrote 0x800150c0 at NS
-Program received signal SIGTRAP, Trace/breakpoint trap.'
+vpfe wrote $(address frame_in 0xc0) at NS
+Program received signal SIGTRAP, Trace/breakpoint trap."
 [ "$(said | sed 's/ at [0-9.]* ns/ at NS/')" = "$want" ] || fail "hidden: $(cat hidden.gdb)"
 
 # Stepped through the time of the same write, the core stops at the boundary behind it.
@@ -151,7 +154,7 @@ end 0 'load read 0x82' 'Program received signal SIGTRAP' 'core: at the instructi
 stops() { grep -E '^(vpfe|vpbe|load) (wrote|read)|^[0-9.]+ ns, core|^pc ' "$1.gdb"; }
 for sync in default strict; do
   begin "sync_$sync" run small.yaml --sync=$sync -o "sync_$sync" --no-frames -s load.outstanding=2
-  debug "$firmware" <<'G'
+  debug "$firmware" <<G
 break main
 continue
 delete
@@ -165,12 +168,12 @@ continue
 monitor time
 info registers pc
 monitor watch clear
-monitor watch dma 0x80015000,4 w vpfe
+monitor watch dma $frames_in,4 w vpfe
 continue
 monitor time
 info registers pc
 monitor watch clear
-monitor watch dma 0x80341000,0x200000 r vpbe
+monitor watch dma $frames_out,0x200000 r vpbe
 continue
 monitor time
 detach
