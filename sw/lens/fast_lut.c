@@ -85,7 +85,8 @@ static fast_lut_result_t cover_until(cover_t *c, uint32_t end, double hyperbola)
     const int fits = fabs(right.gain - c->left.gain) + 8.0 * bend <= c->gain_max / 8.0;
     const double error = interpolation_error(c, &mid, &right, hyperbola);
     if (span > 1u && !(fits && error <= BUDGET)) {
-      c->step = !fits || !(error <= 8.0 * BUDGET) ? span / 2u : span - span / 4u;
+      const uint32_t shorter = span > 3u ? span - span / 4u : span - 1u;
+      c->step = !fits || !(error <= 8.0 * BUDGET) ? span / 2u : shorter;
       continue;
     }
     if (!fits) return FAST_LUT_RANGE;

@@ -83,6 +83,7 @@ const remap_head_t *remap_encode(const remap_picture_t *picture, uint32_t widest
   const uint32_t count = remap_strip_count(groups, widest);
   remap_head_t *head = remap_take(memory, sizeof *head + count * form_bytes, 32);
   *refusal = head == NULL ? kRemapNoMemory : NULL;
+  if (head == NULL) return NULL;
   uint8_t *form = (uint8_t *)(head + 1);
   uint32_t black_pairs = 0;
   for (uint32_t n = 0; n < count && *refusal == NULL; ++n, form += form_bytes) {

@@ -8,7 +8,7 @@ mkdir -p "$out"
 run() {  # NAME STATUS ELF OPTION...
   local name=$1 status=$2 elf=$3 got=0
   shift 3
-  "$fovea" run "$experiment" -s run.frames=4 -s video.width=128 -s video.height=64 -s camera.stamp=false \
+  "$fovea" run "$experiment" -s firmware.kernel=plain -s run.frames=4 -s video.width=128 -s video.height=64 -s camera.stamp=false \
     -s "firmware.elf=$firmware/$elf" -s firmware.flow=serial "$@" -o "$out/$name" --no-frames \
     >"$out/$name.out" 2>"$out/$name.err" || got=$?
   [ "$got" = "$status" ] || { echo "$name: status $got instead of $status"; cat "$out/$name.err"; exit 1; }
@@ -25,6 +25,13 @@ run right 0 fovea_firmware.elf --hazards --strict -s firmware.overlay=true -s fi
 for figure in stale_loads dirty_reads buffered_reads overwrites places; do is right "hazard.$figure" -eq 0; done
 run double 0 fovea_firmware.elf --hazards --strict -s firmware.flow=double
 is double hazard.places -eq 0
+
+# The kernels that share memory with the EDMA maintain the caches themselves.
+for kernel in codes staged gather runs copy; do
+  run "$kernel" 0 fovea_firmware.elf --hazards --strict -s firmware.kernel=$kernel -s run.frames=2
+  is "$kernel" hazard.places -eq 0
+  grep -q "kernel: $kernel," "$out/$kernel/uart.log" || { echo "$kernel: $(cat "$out/$kernel/uart.log")"; exit 1; }
+done
 
 run stale 0 omit_d_invalidate.elf --hazards
 is stale hazard.stale_loads -gt 0

@@ -77,6 +77,11 @@ TEST_P(RotationOfKernelTest, EachRemapFollowsTheNextTableAndReadsItsSource) {
   rig.set("firmware.kernel", GetParam());
   const std::vector<Result> results = run_and_keep(rig);
   ASSERT_GE(results.size(), 5u * 7);
+  const std::string used = std::string("kernel: ") + GetParam() + ", ";
+  const std::string& said = rig.board().uart_text();
+  unsigned tables = 0;
+  for (std::size_t at = said.find(used); at != std::string::npos; at = said.find(used, at + 1)) ++tables;
+  EXPECT_EQ(tables, 4u) << said;
   expect_lut_right(rig);
   std::vector<std::vector<std::uint32_t>> luts;
   for (unsigned k = 0; k < 4; ++k) luts.push_back(rig.lut(k));

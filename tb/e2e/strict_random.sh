@@ -44,7 +44,7 @@ ddr.refresh.need 0 7 32
 cpu.ahb_ratio 1 2 3 8
 cpu.dcache.size 4KiB 128KiB
 cpu.fill_latency 0cycles 8cycles
-firmware.kernel plain ldm
+firmware.kernel plain codes staged gather runs copy
 firmware.flow double serial
 firmware.overlay true false
 vpss.burst 32B 64B

@@ -421,6 +421,17 @@ TEST(FastLutTest, WhatItCannotDoIsRefused) {
     EXPECT_EQ(result(view), FAST_LUT_RANGE);
   }
 
+  // Bends so much near the axis that pieces of two and three units are not accurate enough.
+  view = view_of(LENS_TABLE, 0);
+  view.table_count = 3;
+  view.table_r[0] = 0;
+  view.table_r[1] = 0.5;
+  view.table_r[2] = 0.7;
+  view.theta_max = 0.1;
+  view.out_focal_px = 0.5;
+  view.focal_px = 0;
+  for (const Size& size : kSizes) EXPECT_NE(result(view, size), FAST_LUT_NO_LENS);
+
   // 2^13 * 31/32 px from the centre; the picture's edge is 360.5 px from it, behind the last pixel.
   view = view_of(LENS_RECTILINEAR, 90, 1);
   view.focal_px = 7935.9 / 360.5;

@@ -141,6 +141,11 @@ static void correct(const struct view *view, const uint8_t *in, uint8_t *out, ui
 #endif
   const uint32_t before = first_row_sum(&view->table, in);
   view->method->run(&view->table, in, out);
+#ifndef OMIT_D_INVALIDATE
+  /* Larger frames have driven the first row's lines out of the cache by now. */
+  if (config.height * config.pitch_bytes < DCACHE_BYTES)
+    dcache_invalidate_range(in, config.height * config.pitch_bytes);
+#endif
   if (first_row_sum(&view->table, in) != before) ++fw_state.torn;
   if (config.overlay && overlay_visible(sequence))
     overlay_draw(out, config.pitch_bytes, overlay_value);

@@ -18,8 +18,8 @@
 typedef struct inbox {
   tile_stream_t stream;
   uint32_t one;     /* what the EDMA copies to the other two */
-  uint32_t arrived; /* 1: the second part of the window is there */
-  uint32_t drained; /* 1: the results have been read */
+  volatile uint32_t arrived; /* 1: the second part of the window is there */
+  volatile uint32_t drained; /* 1: the results have been read */
   uint32_t unused[13];
 } inbox_t;
 #define INBOX ((inbox_t *)(RAM_BANK1_BASE + BANK_BYTES))
@@ -63,7 +63,13 @@ enum {
 
 static uint32_t bank_base(uint32_t b) { return b == 0 ? RAM_BANK0_BASE : RAM_BANK1_BASE; }
 
-static void post(uint32_t address, uint32_t value) { mmio_write32(posted_address(address), value); }
+/* The EDMA works on memory that this program reads and writes: no access moves across a post or a wait. */
+static void keep_order(void) { __asm__ volatile("" : : : "memory"); }
+
+static void post(uint32_t address, uint32_t value) {
+  keep_order();
+  mmio_write32(posted_address(address), value);
+}
 
 static const char *prepare(remap_table_t *table, arena_t *arena) {
   static tile_work_t work;
@@ -106,7 +112,7 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
 }
 
 /* A set that copies a word. */
-static edma_set_t copy_word(const uint32_t *from, const uint32_t *to) {
+static edma_set_t copy_word(const uint32_t *from, const volatile uint32_t *to) {
   return (edma_set_t){.options = EDMA_AB_SYNC | EDMA_STATIC,
                       .source = (uint32_t)from,
                       .counts = EDMA_PAIR(4, 1),
@@ -181,9 +187,10 @@ static void request(uint32_t b, const tile_part_t part[TILE_PARTS], int patterns
 }
 
 static int wait_for(const volatile uint32_t *word, uint32_t value) {
-  for (uint32_t looks = 0; looks < MOST_LOOKS; ++looks)
-    if (*word == value) return 1;
-  return 0;
+  uint32_t looks = 0;
+  while (*word != value && looks < MOST_LOOKS) ++looks;
+  keep_order();
+  return looks < MOST_LOOKS;
 }
 
 /* Computes all tiles. Returns 0 if the EDMA did not bring one, or did not take its results away. */
