@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The figures in README.md are those that the program gives; a README with another figure is found.
-# Usage: readme_figures.sh FOVEA SOURCE OUT
+# Usage: readme_figures.sh FOVEA SOURCE OUT [kernels]
 set -euo pipefail
 fovea=$1 source=$2 out=$3
-"$source/scripts/figures" --check "$fovea" "$out" 2>&1
+"$source/scripts/figures" --check "$fovea" "$out" ${4:+"$4"} 2>&1
 # The same comparison against one changed digit.
 sed -E '0,/^(\| remap of a frame, mean \(ms\) \| [0-9]+\.)([0-9])/s//\19\2/' "$source/README.md" >"$out/changed.md"
 if diff -q "$source/README.md" "$out/changed.md" >/dev/null; then echo "no figure was changed"; exit 1; fi
