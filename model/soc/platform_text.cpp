@@ -177,7 +177,8 @@ std::string blocks_page(const Placements& rows, const std::string& block_rows) {
   std::string out = R"(# Blocks and memory masters of the DM365
 
 Printed by `platform_text BLOCKS.md` from the rows in `dm365_blocks.cpp`, the declarations of the blocks, and
-the tables in `model/common/masters.h` and `edma_events.h`; `soc.platform_text` fails when this file differs from what they say.
+the tables in `model/common/masters.h` and `edma_events.h`; `soc.platform_text` fails when this file differs from
+what they say.
 
 ## Blocks with registers
 
