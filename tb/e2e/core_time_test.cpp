@@ -72,8 +72,3 @@ INSTANTIATE_TEST_SUITE_P(
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

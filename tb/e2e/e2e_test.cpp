@@ -10,8 +10,6 @@
 namespace fovea::e2e {
 namespace {
 
-constexpr Picoseconds kLimit = 20 * kPsPerSecond;
-
 /// A small centred region: the LUT is built in milliseconds and the caches hold all of it.
 void small(Rig& rig, unsigned width = 64, unsigned height = 16) {
   rig.set("video.width", std::to_string(width)).set("video.height", std::to_string(height));
@@ -389,8 +387,3 @@ TEST(EndToEndTest, ClockedIsifGivesFramesInTheSameTime) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

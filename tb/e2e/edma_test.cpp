@@ -11,8 +11,6 @@
 namespace fovea::e2e {
 namespace {
 
-constexpr Picoseconds kLimit = 20 * kPsPerSecond;
-
 bool uart_has(Rig& rig, const std::string& text) {
   return rig.board().uart_text().find(text) != std::string::npos;
 }
@@ -122,8 +120,8 @@ TEST(EdmaTest, ErrorsAreReportedOnceAndTheNextFramesAreRight) {
   expect_frames_right(rig);
 }
 
-class WholeFrameTest : public testing::TestWithParam<const char*> {};
-TEST_P(WholeFrameTest, NightlyWholePalFrameIsCorrectedExactly) {
+class EdmaWholeFrameTest : public testing::TestWithParam<const char*> {};
+TEST_P(EdmaWholeFrameTest, NightlyWholePalFrameIsCorrectedExactly) {
   Rig rig;
   rig.load("default.yaml").set("firmware.kernel", GetParam());
   rig.set("run.frames", "4").set("camera.stamp", "false");
@@ -133,13 +131,8 @@ TEST_P(WholeFrameTest, NightlyWholePalFrameIsCorrectedExactly) {
   expect_frames_right(rig);
   EXPECT_EQ(rig.state().dropped, 0u);
 }
-INSTANTIATE_TEST_SUITE_P(All, WholeFrameTest, testing::Values("gather", "runs"),
+INSTANTIATE_TEST_SUITE_P(All, EdmaWholeFrameTest, testing::Values("gather", "runs"),
                          [](const auto& i) { return std::string(i.param); });
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -3,9 +3,10 @@
 # something in the results must change. Where a key cannot act, a run must warn of it, and end with status 2
 # with --strict. A key that the table lacks is a failure, so is one that `fovea params` says "needs"
 # something and that has no line where it lacks that.
-# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM
+# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM [full]
+# full: every situation is a run to the first corrected frame; else EARLY and BOOTED below cut most of them short.
 set -uo pipefail
-fovea=$1 source=$2 out=$3 program=$4
+fovea=$1 source=$2 out=$3 program=$4 full=${5:-}
 rm -rf "$out"
 mkdir -p "$out"
 cd "$out" || exit 1
@@ -29,6 +30,10 @@ situation() {
   for word; do
     case $word in
       PROGRAM) keys+=(-s firmware.elf="$program" -s "run.until=[uart:finished, time:90ms]") ;;
+      # The SDRAM works from 3.4 ms on, and the firmware is in it from 5 ms on: what acts by then needs no picture.
+      EARLY) [ -n "$full" ] || keys+=(-s run.until=time:6ms) ;;
+      # By then, the firmware has set the priorities.
+      BOOTED) if [ -n "$full" ]; then keys+=(-s load.start=55ms); else keys+=(-s load.start=15ms -s run.until=time:20ms); fi ;;
       SPHERE) keys+=(-s camera.kind=sphere -s camera.file="$front" -s camera.lens=equisolid) ;;
       VIDEO) keys+=(-s camera.kind=video -s camera.file="$front") ;;
       RAM) # bursts in internal RAM
@@ -36,7 +41,7 @@ situation() {
           -s load.gap=1us) ;;
       BUSY) # bursts in SDRAM, most of them in another row than the one before
         keys+=(-s load.outstanding=8 -s load.kind=mixed -s load.pattern=random -s load.priority=0
-          -s load.gap=1us -s load.start=55ms) ;;
+          -s load.gap=1us) ;;
       *) keys+=(-s "$word") ;;
     esac
   done
@@ -64,15 +69,15 @@ acts aintc.capture level PROGRAM
 acts board.cpld true PROGRAM
 acts board.cpld_switch 0 PROGRAM board.cpld=true
 idle board.cpld_switch 0
-acts bus.arm_d.request_latency 4cycles
-acts bus.arm_d.response_latency 4cycles
-acts bus.arm_d.width 16bit
-acts bus.arm_i.request_latency 4cycles
-acts bus.arm_i.response_latency 4cycles
-acts bus.arm_i.width 16bit
-acts bus.config.fast_latency 50ns
-acts bus.config.slow_latency 130ns
-acts bus.timeline_interval 100us
+acts bus.arm_d.request_latency 4cycles EARLY
+acts bus.arm_d.response_latency 4cycles EARLY
+acts bus.arm_d.width 16bit EARLY
+acts bus.arm_i.request_latency 4cycles EARLY
+acts bus.arm_i.response_latency 4cycles EARLY
+acts bus.arm_i.width 16bit EARLY
+acts bus.config.fast_latency 50ns EARLY
+acts bus.config.slow_latency 130ns EARLY
+acts bus.timeline_interval 100us EARLY
 acts bus.vpbe.request_latency 9cycles
 acts bus.vpbe.response_latency 9cycles
 acts bus.vpbe.width 16bit
@@ -101,48 +106,48 @@ idle camera.motion_period 3
 acts camera.stamp true video.width=320 video.height=240
 acts camera.video_fov 90deg VIDEO camera.lens=equisolid
 idle camera.video_fov 90deg
-acts clocks.arm 270MHz
-acts clocks.ddr 216MHz
-acts clocks.preset 297/270
+acts clocks.arm 270MHz EARLY
+acts clocks.ddr 216MHz EARLY
+acts clocks.preset 297/270 EARLY
 idle clocks.preset 297/270 clocks.arm=270MHz clocks.ddr=216MHz
-acts cpu.ahb_ratio 3
+acts cpu.ahb_ratio 3 EARLY
 acts cpu.cache_op_cycles 2cycles
 acts cpu.dcache.size 4KiB
-acts cpu.fill_latency 2cycles
+acts cpu.fill_latency 2cycles EARLY
 acts cpu.icache.size 4KiB
-acts cpu.invalidate_all_cycles 5cycles run.until=time:60ms
+acts cpu.invalidate_all_cycles 5cycles EARLY
 acts cpu.shifted_address_cycle false
-acts cpu.tcm.banks 1 RAM
-acts cpu.tcm.banks 1 cpu.tcm.own_conflict=1cycles
+acts cpu.tcm.banks 1 RAM EARLY
+acts cpu.tcm.banks 1 cpu.tcm.own_conflict=1cycles EARLY
 idle cpu.tcm.banks 1
-acts cpu.tcm.dma_latency 3cycles RAM
+acts cpu.tcm.dma_latency 3cycles RAM EARLY
 idle cpu.tcm.dma_latency 3cycles
-acts cpu.tcm.dma_word_clocks 3cycles RAM
+acts cpu.tcm.dma_word_clocks 3cycles RAM EARLY
 idle cpu.tcm.dma_word_clocks 3cycles
-acts cpu.tcm.first dma RAM
+acts cpu.tcm.first dma RAM EARLY
 idle cpu.tcm.first dma
-acts cpu.tcm.own_conflict 1cycles
-acts cpu.tcm.wait_states 1cycles
+acts cpu.tcm.own_conflict 1cycles EARLY
+acts cpu.tcm.wait_states 1cycles EARLY
 acts cpu.test_clean_cycles 3cycles PROGRAM
-acts cpu.walk_cycles 4cycles run.until=time:60ms
+acts cpu.walk_cycles 4cycles EARLY
 tested ddr.check dram.check
 tested ddr.clock_restart dram.rows
-acts ddr.command_fifo 1
-acts ddr.grade 37e clocks.preset=432/340
-acts ddr.part mt47h32m16
-acts ddr.read_fifo 64B BUSY
-acts ddr.refresh.gap 1 BUSY
-acts ddr.refresh.must 0
-acts ddr.refresh.need 0
+acts ddr.command_fifo 1 EARLY
+acts ddr.grade 37e clocks.preset=432/340 EARLY
+acts ddr.part mt47h32m16 EARLY
+acts ddr.read_fifo 64B BUSY EARLY
+acts ddr.refresh.gap 1 BUSY EARLY
+acts ddr.refresh.must 0 EARLY
+acts ddr.refresh.need 0 EARLY
 tested ddr.refresh.release dram.refresh
-acts ddr.request_latency 9cycles
+acts ddr.request_latency 9cycles EARLY
 tested ddr.retention dram.rows
-acts ddr.return_latency 3cycles
-acts ddr.scheduler fcfs
-acts ddr.ti_open_row ready BUSY
+acts ddr.return_latency 3cycles EARLY
+acts ddr.scheduler fcfs EARLY
+acts ddr.ti_open_row ready BUSY EARLY
 idle ddr.ti_open_row ready ddr.scheduler=fcfs
 idle ddr.ti_open_row ready ddr.scheduler=frfcfs
-acts ddr.write_fifo 64B BUSY
+acts ddr.write_fifo 64B BUSY EARLY
 acts edma.completion_clocks 64 PROGRAM
 acts edma.event_clocks 64 PROGRAM
 acts edma.request_clocks 128 PROGRAM
@@ -151,7 +156,7 @@ acts edma.tc.burst 64B PROGRAM
 acts edma.tc.depth 1 PROGRAM
 acts edma.tc.fifo 128B PROGRAM
 acts edma.tc.outstanding 1 PROGRAM
-acts firmware.baud 57600
+acts firmware.baud 57600 EARLY
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial
 acts firmware.kernel ldm
@@ -162,13 +167,13 @@ acts firmware.repeat 2
 acts firmware.tables 2
 tested lens.calibration unit.calibration
 idle lens.calibration none.yaml
-acts pll.go_time 5us
-acts pll.lock_time 50us
+acts pll.go_time 5us EARLY
+acts pll.lock_time 50us EARLY
 acts pll.reset_type 2 PROGRAM
 acts priority.arm 0
 acts priority.vpbe 7
 acts priority.vpfe 7
-acts psc.transition_time 2us
+acts psc.transition_time 2us EARLY
 acts run.frames 2
 idle run.frames 2 run.until=time:60ms
 acts run.frames 2 run.until=[frames,time:10s]
@@ -181,7 +186,7 @@ acts switches.shift_x right
 acts switches.shift_y up
 acts system.bootcfg 1 PROGRAM
 tested system.reset_time e2e.reset
-acts system.vtp_time 3us
+acts system.vtp_time 3us EARLY
 acts tvp5146.crop_525 studio video.standard=ntsc
 idle tvp5146.crop_525 studio
 fails tvp5146.i2c_address 92
@@ -235,9 +240,9 @@ T
   # Synthetic loads, all alike; ports that nothing else uses.
   local load
   for load in load load.1 load.2 load.3; do
-    echo "acts $load.outstanding 1"
+    echo "acts $load.outstanding 1 EARLY"
     while read -r key value; do
-      echo "acts $load.$key $value $load.outstanding=2 $load.kind=mixed $load.pattern=random"
+      echo "acts $load.$key $value $load.outstanding=2 $load.kind=mixed $load.pattern=random EARLY"
       echo "idle $load.$key $value"
     done <<'T'
 base 33556480B
@@ -249,9 +254,9 @@ port edma_tc1
 size 64KiB
 start 50ms
 T
-    echo "acts $load.memory internal_ram $load.outstanding=1 $load.base=0B $load.size=16KiB"
+    echo "acts $load.memory internal_ram $load.outstanding=1 $load.base=0B $load.size=16KiB EARLY"
     echo "idle $load.memory internal_ram"
-    echo "acts $load.priority 0 $load.outstanding=8"
+    echo "acts $load.priority 0 $load.outstanding=8 EARLY"
     echo "idle $load.priority 0"
   done
   local port
@@ -259,10 +264,10 @@ T
     for key in request_latency response_latency width; do
       value=9cycles
       [ $key = width ] && value=16bit
-      echo "acts bus.$port.$key $value load.outstanding=1 load.port=$port"
+      echo "acts bus.$port.$key $value load.outstanding=1 load.port=$port EARLY"
       echo "idle bus.$port.$key $value"
     done
-    [ $port = load ] || echo "acts priority.$port 0 load.outstanding=8 load.port=$port load.gap=1us load.start=55ms"
+    [ $port = load ] || echo "acts priority.$port 0 load.outstanding=8 load.port=$port load.gap=1us BOOTED"
     [ $port = load ] || echo "idle priority.$port 0"
   done
 }

@@ -5,7 +5,14 @@
 #include <cstdio>
 #include <optional>
 
+#include "model/common/check.h"
+
 namespace fovea::e2e {
+
+void expect_no_warnings() {
+  for (const auto& [kind, count] : Diagnostics::instance().counts())
+    ADD_FAILURE() << "warning: " << kind.second << " (" << count << " times)";
+}
 
 void expect_lut_right(Rig& rig) {
   for (unsigned k = 0; k < rig.params.firmware.tables(); ++k) {

@@ -76,8 +76,3 @@ TEST(ForeignTest, ARestartAsLinuxDoesItAsksForAChipResetAndStopsThere) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

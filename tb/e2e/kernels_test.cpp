@@ -11,8 +11,6 @@
 namespace fovea::e2e {
 namespace {
 
-constexpr Picoseconds kLimit = 20 * kPsPerSecond;
-
 /// The lines of the UART's text that begin with "kernel".
 std::string kernel_lines(Rig& rig) {
   const std::string text = rig.board().uart_text();
@@ -136,8 +134,3 @@ INSTANTIATE_TEST_SUITE_P(Views, FastestTest,
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

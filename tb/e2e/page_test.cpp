@@ -38,7 +38,7 @@ std::string in_child(const std::function<std::string()>& what) {
   return text;
 }
 
-Rig& small(Rig& rig) {
+Rig& small_page(Rig& rig) {
   return rig.set("video.width", "64").set("video.height", "16").set("camera.stamp", "false");
 }
 
@@ -48,7 +48,7 @@ std::string said(const std::function<void(param_page_t&)>& damage, bool sealed =
                  const std::function<void(board::Board&)>& also = nullptr) {
   return in_child([&] {
     Rig rig;
-    small(rig);
+    small_page(rig);
     board::Board& board = rig.build();
     const auto bytes = board.peek(PARAM_PAGE_BASE, sizeof(param_page_t));
     param_page_t page;
@@ -110,7 +110,7 @@ TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
 // The chip's registers after the boot are those of the keys.
 TEST(PageTest, ClocksAndPrioritiesReachTheRegisters) {
   Rig rig;
-  small(rig).set("clocks.arm", "135MHz").set("clocks.ddr", "162MHz");
+  small_page(rig).set("clocks.arm", "135MHz").set("clocks.ddr", "162MHz");
   rig.set("priority.arm", "3")
       .set("priority.vpfe", "2")
       .set("priority.vpbe", "4")
@@ -143,7 +143,7 @@ TEST(PageTest, ClocksAndPrioritiesReachTheRegisters) {
 // built.
 TEST(PageTest, TheShiftOfTheSwitchesMovesTheView) {
   Rig rig;
-  small(rig)
+  small_page(rig)
       .set("switches.shift_x", "left")
       .set("switches.shift_y", "down")
       .set("lens.shift_x", "3px");
@@ -261,8 +261,3 @@ TEST(PageTest, APriorityMovesTheTimeOfItsMaster) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

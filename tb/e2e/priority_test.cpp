@@ -174,8 +174,3 @@ TEST(EdmaTest, AControllerHasThePriorityOfItsMostUrgentQueue) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -19,11 +19,11 @@ std::string name_of(ResetKind kind) {
 }
 
 /// A board whose core loops.
-struct Chip {
+struct Resettable {
   Rig rig{kIdleLoop};
   board::Board& board;
   soc::Dm365& soc;
-  Chip() : board(rig.build()), soc(board.dm365) { rig.advance(10 * kPsPerUs); }
+  Resettable() : board(rig.build()), soc(board.dm365) { rig.advance(10 * kPsPerUs); }
   void reset(ResetKind kind) {
     board.reset(kind);
     rig.advance(50 * kPsPerUs);
@@ -65,7 +65,7 @@ bool shows_a_state(const std::string& name) {
 }
 
 TEST_P(EachKind, EveryRegisterReadsItsResetValue) {
-  Chip c;
+  Resettable c;
   const auto at_start = c.all();
   std::size_t declared = 0;
   c.board.platform.each_registers([&](const std::string& block, BusTarget& target) {
@@ -95,7 +95,7 @@ TEST_P(EachKind, EveryRegisterReadsItsResetValue) {
 // The same, with time for what was written to take effect: clocks that change or stop, powered blocks,
 // interrupts, timers that run.
 TEST_P(EachKind, WhatTheRegistersStartedHasNoEffectAfterwards) {
-  Chip c;
+  Resettable c;
   const auto at_start = c.all();
   for (unsigned n = 0; n < periph::kLpscCount; ++n) c.soc.psc.regs.write(0xA00 + 4 * n, 4, 3);
   c.soc.psc.regs.write(0x120, 4, 1);
@@ -139,7 +139,7 @@ TEST_P(EachKind, WhatTheRegistersStartedHasNoEffectAfterwards) {
 // From TI's register header and boot loader for the DM36x, Linux 6.1 and U-Boot, as listed in
 // model/SOURCES.md; typed here once more.
 TEST(ResetTest, ImportantRegistersHaveTheManualsValues) {
-  Chip c;
+  Resettable c;
   c.write_all();
   c.reset(ResetKind::kWatchdog);
   struct Value {
@@ -167,7 +167,7 @@ TEST(ResetTest, ImportantRegistersHaveTheManualsValues) {
 }
 
 TEST_P(EachKind, MemoriesKeepOrLoseTheirContents) {
-  Chip c;
+  Resettable c;
   c.board.load({0x100, {1, 2, 3, 4}, 4});  // as a program's data and cleared memory
   c.soc.internal_ram[0x100] = 99;
   c.soc.internal_ram[0x104] = 77;
@@ -208,7 +208,7 @@ TEST(ResetTest, TheCoreStartsAfterTheResetTime) {
 
 // A second reset while the first is under way does not start the core earlier or twice.
 TEST(ResetTest, AResetDuringAResetIsOneOfTheLaterKind) {
-  Chip c;
+  Resettable c;
   unsigned boots = 0;
   c.soc.on_boot = [&](ResetKind kind) {
     ++boots;
@@ -260,8 +260,3 @@ TEST_P(FirmwareReset, ShowsRightFramesAgain) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -13,6 +13,9 @@
 
 namespace fovea::e2e {
 
+/// Simulated time by which a run with pictures is over.
+inline constexpr Picoseconds kLimit = 20 * kPsPerSecond;
+
 /// A frame displayed in the window, with the board's record of it.
 struct Shown {
   oracle::Frame frame;   ///< the region that the firmware displays, without the surrounding border

@@ -12,9 +12,7 @@
 namespace fovea::e2e {
 namespace {
 
-constexpr Picoseconds kLimit = 20 * kPsPerSecond;
-
-void small(Rig& rig, const std::string& tables, const std::string& repeat) {
+void small_in_turn(Rig& rig, const std::string& tables, const std::string& repeat) {
   rig.set("video.width", "160").set("video.height", "64").set("camera.stamp", "false");
   rig.set("firmware.tables", tables).set("firmware.repeat", repeat).set("run.frames", "5");
 }
@@ -73,7 +71,7 @@ std::uint64_t sent_number(Rig& rig, std::uint64_t captured) {
 class RotationOfKernelTest : public testing::TestWithParam<const char*> {};
 TEST_P(RotationOfKernelTest, EachRemapFollowsTheNextTableAndReadsItsSource) {
   Rig rig;
-  small(rig, "4", "7");
+  small_in_turn(rig, "4", "7");
   rig.set("firmware.kernel", GetParam());
   const std::vector<Result> results = run_and_keep(rig);
   ASSERT_GE(results.size(), 5u * 7);
@@ -124,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, RotationOfKernelTest,
 // Four tables of one lens are four tables: less than one entry in twenty is the same in two of them.
 TEST(RotationTest, TablesDifferInNearlyAllEntries) {
   Rig rig;
-  small(rig, "4", "1");
+  small_in_turn(rig, "4", "1");
   rig.set("run.frames", "1");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 1u) << rig.board().uart_text();
@@ -147,7 +145,7 @@ TEST(RotationTest, TablesDifferInNearlyAllEntries) {
 
 TEST(RotationTest, OneTableIsTheViewOfThePage) {
   Rig rig;
-  small(rig, "1", "3");
+  small_in_turn(rig, "1", "3");
   const std::vector<Result> results = run_and_keep(rig);
   expect_lut_right(rig);
   expect_frames_right(rig);
@@ -160,7 +158,7 @@ TEST(RotationTest, OneTableIsTheViewOfThePage) {
 
 TEST(RotationTest, TheSerialFlowHasTablesInTurnAndOneSource) {
   Rig rig;
-  small(rig, "3", "4");
+  small_in_turn(rig, "3", "4");
   rig.set("firmware.flow", "serial");
   const std::vector<Result> results = run_and_keep(rig);
   expect_lut_right(rig);
@@ -187,7 +185,7 @@ TEST(RotationTest, TheSerialFlowHasTablesInTurnAndOneSource) {
 // frame.remap_rate, from the marks on the pins.
 TEST(RotationTest, TheRateOfRemapsIsThoseThatEndedInTheWindow) {
   Rig rig;
-  small(rig, "2", "3");
+  small_in_turn(rig, "2", "3");
   rig.run(kLimit);
   board::Board& board = rig.board();
   ASSERT_TRUE(board.window_start() && board.window_end());
@@ -202,8 +200,3 @@ TEST(RotationTest, TheRateOfRemapsIsThoseThatEndedInTheWindow) {
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -11,18 +11,12 @@
 namespace fovea::e2e {
 namespace {
 
-constexpr Picoseconds kLimit = 20 * kPsPerSecond;
 constexpr const char* kUsed = "kernel: staged, ";
 
 void staged(Rig& rig, unsigned width, unsigned height, unsigned frames) {
   rig.set("video.width", std::to_string(width)).set("video.height", std::to_string(height));
   rig.set("camera.stamp", "false").set("run.frames", std::to_string(frames));
   rig.set("firmware.kernel", "staged");
-}
-
-void expect_no_warnings() {
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << times << " times: " << what.second;
 }
 
 bool said(Rig& rig, const std::string& text) {
@@ -122,8 +116,3 @@ INSTANTIATE_TEST_SUITE_P(
 
 }  // namespace
 }  // namespace fovea::e2e
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

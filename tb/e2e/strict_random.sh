@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Random settings of memory, crossbar, core and loads: strict and default synchronisation must leave the
 # same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT CASE...
+# LOAD_START: the loads of a seed begin then (default: with the SDRAM).
 # CASE: a seed, or copy_on_one_port, where a copy's write and the next read of one port met in an instant.
 set -uo pipefail
 fovea=$1 experiment=$2 out=$3
@@ -9,7 +10,8 @@ mkdir -p "$out"
 
 # Leaves one of its arguments in ${word}. Not by $(...): bash seeds RANDOM anew in a subshell.
 one_of() { local words=("$@"); word=${words[RANDOM % $#]}; }
-load() {  # NAME PORT OUTSTANDING KIND BYTES GAP PATTERN
+load() {  # NAME PORT OUTSTANDING KIND BYTES GAP PATTERN [START]
+  [ -z "${8:-}" ] || keys+=(-s "$1.start=$8")
   keys+=(-s "$1.port=$2" -s "$1.outstanding=$3" -s "$1.kind=$4" -s "$1.bytes=$5" -s "$1.gap=$6" -s "$1.pattern=$7")
 }
 copy_on_one_port() {
@@ -70,7 +72,7 @@ K
     one_of read write mixed copy && kind=$word
     one_of 4B 32B 64B && bytes=$word
     one_of sequential random
-    load "$n" "$port" "$outstanding" "$kind" "$bytes" "$gap" "$word"
+    load "$n" "$port" "$outstanding" "$kind" "$bytes" "$gap" "$word" "${LOAD_START:-}"
   done
 }
 play() {  # MODE FOLDER

@@ -137,7 +137,7 @@ Program received signal SIGTRAP, Trace/breakpoint trap."
 [ "$(said | sed 's/ at [0-9.]* ns/ at NS/')" = "$want" ] || fail "hidden: $(cat hidden.gdb)"
 
 # Stepped through the time of the same write, the core stops at the boundary behind it.
-begin awake run small.yaml -o awake --no-frames -s load.outstanding=1
+begin awake run small.yaml -o awake --no-frames -s load.outstanding=1 -s load.gap=20us
 debug "$firmware" <<'G'
 break main
 continue
@@ -153,7 +153,7 @@ end 0 'load read 0x82' 'Program received signal SIGTRAP' 'core: at the instructi
 # The kernel's own pace in every access finds the same stops at the same times.
 stops() { grep -E '^(vpfe|vpbe|load) (wrote|read)|^[0-9.]+ ns, core|^pc ' "$1.gdb"; }
 for sync in default strict; do
-  begin "sync_$sync" run small.yaml --sync=$sync -o "sync_$sync" --no-frames -s load.outstanding=2
+  begin "sync_$sync" run small.yaml --sync=$sync -o "sync_$sync" --no-frames -s load.outstanding=2 -s load.gap=20us
   debug "$firmware" <<G
 break main
 continue
