@@ -70,6 +70,17 @@ void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*dir
   }
 }
 
+std::vector<LatencyRow> ReplayPath::latency_rows() const {
+  std::vector<LatencyRow> rows;
+  for (const std::string& label : labels())
+    for (const MasterState& m : masters_)
+      if (m.label == label) {
+        add_latency_rows(rows, label, *m.latency);
+        break;
+      }
+  return rows;
+}
+
 std::vector<std::string> ReplayPath::labels() const {
   std::vector<std::string> out;
   for (const MasterState& m : masters_)

@@ -51,6 +51,10 @@ struct RunRequest {
   /// the result contains all rows. May throw UserError.
   std::function<void(const FrameRow&)> frame_row = {};
   std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
+  /// Called for each displayed frame with what the camera sent of it, woven from its two fields; not for
+  /// a frame whose picture is not kept any more (one that is shown very late).
+  std::function<void(const DisplayedFrame&)> camera = {};
+  std::filesystem::path command_trace = {};  ///< file for the SDRAM's commands in the window; empty: none
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
   /// Port on which to wait for a debugger before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
@@ -76,6 +80,7 @@ struct RunResult {
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
+  std::vector<LatencyRow> latency;
   std::string uart;  ///< everything that the firmware printed
   std::vector<std::string> notes;  ///< sentences for the user, shown below the figures
   std::string ended_by;      ///< the condition of run.until that was met; empty: none
