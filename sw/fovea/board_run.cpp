@@ -25,6 +25,7 @@
 #include "sw/fovea/hazard_report.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
+#include "sw/fovea/perfetto/perfetto_run.h"
 #include "sw/fovea/remap_time.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/simulation.h"
@@ -110,6 +111,7 @@ class BoardSimulation : public Simulation {
   Symbols symbols_;
   std::unique_ptr<BusTraceRun> trace_;
   std::unique_ptr<CommandTrace> commands_;
+  std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<RemapTime> remaps_;
   std::vector<LatencyRow> latency_;
   std::vector<StatRow> stats_;
@@ -128,6 +130,7 @@ void BoardSimulation::open_window() {
   board_->platform.each_statistics([](StatGroup& group) { group.reset(); });
   soc.arm.core().mark_window(kernel_time());
   if (trace_) trace_->open();
+  if (perfetto_) perfetto_->window_opened();
   if (commands_) commands_->begin(soc.ddr.controller(), kernel_time());
   window_wall_ = Wall::now();
   direct_at_open_ = soc.scr.memory().decided_ahead();
@@ -383,6 +386,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
   remaps_ = std::make_unique<RemapTime>(*board_);
+  if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
@@ -404,6 +408,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     // An error of a writer must not unwind through the kernel: keep it and stop.
     if (failure) return;
     try {
+      if (perfetto_) perfetto_->frame(f, r);
       if (request.frame_row)
         request.frame_row(out);
       else
@@ -522,6 +527,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (semihosting) result.exit_code = semihosting->exit_code();
   if (trace_) trace_->finish();
   if (commands_) commands_->finish();
+  if (perfetto_)
+    if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
   add_frame_stats(stats_);
   result.guest_failure = guest;
   result.stats = std::move(stats_);

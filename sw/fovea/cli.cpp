@@ -49,6 +49,7 @@ struct RunOptions {
   std::string bus_trace, command_trace;
   std::string gdb;
   RegisterLogRequest registers;
+  PerfettoOptions perfetto;
   LimitOptions limits;
   bool console = false;
 };
@@ -106,6 +107,11 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
                                 "files of a run only; choose a place beside it",
                                 one_line(options.bus_trace)));
+  const PerfettoRequest perfetto = perfetto_of(options.perfetto);
+  if (!perfetto.file.empty() && dir.covers(perfetto.file))
+    throw UserError(fmt::format("--perfetto '{}': it lies in the output folder, which holds the files of a run "
+                                "only; choose a place beside it",
+                                one_line(perfetto.file.string())));
   if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
   // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
   // tried, and a full disk is noticed before the simulation.
@@ -143,6 +149,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .stop = stop,
                      .progress = meter,
                      .frame = {},
+                     .perfetto = perfetto,
                      .command_trace = options.command_trace,
                      .bus_trace = options.bus_trace,
                      .gdb_port = {},
@@ -388,6 +395,7 @@ void add_run_command(CLI::App& app, RunOptions& run) {
                 "Write all requests to the SDRAM in the measured window to this file")
       ->type_name("FILE");
   add_command_trace_option(*c, run.command_trace);
+  add_perfetto_options(*c, run.perfetto);
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
   add_register_log_options(*c, run.registers);

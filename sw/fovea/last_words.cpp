@@ -33,7 +33,7 @@ constexpr Kind kKinds[] = {
     {"stall.drain", "the write buffer to drain"},
     {"stall.bus_sync", "clock edges of the bus"},
 };
-constexpr std::size_t kExecuting = 0, kIdle = 1;
+constexpr std::size_t kInterlocks = 2;  // behind it the words follow "waiting for"
 
 std::optional<double> real(std::span<const StatRow> stats, std::string_view name) {
   const StatRow* row = find(stats, name);
@@ -73,7 +73,7 @@ std::string listed(std::vector<Part> parts, const char* unit = "") {
 std::vector<Part> parts_of(const std::vector<std::uint64_t>& tenths) {
   std::vector<Part> out;
   for (std::size_t k = 0; k < tenths.size(); ++k) {
-    const bool wait = k != kExecuting && k != kIdle;
+    const bool wait = k > kInterlocks;
     out.push_back({(wait ? "waiting for " : "") + std::string(kKinds[k].words), tenths[k]});
   }
   return out;

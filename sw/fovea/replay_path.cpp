@@ -107,6 +107,14 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
   find_next();
 }
 
+std::vector<std::string> ReplayPath::labels() const {
+  std::vector<std::string> out;
+  for (const MasterState& m : masters_)
+    if (!m.label.empty() && std::find(out.begin(), out.end(), m.label) == out.end())
+      out.push_back(m.label);
+  return out;
+}
+
 void ReplayPath::check(const trace::Record& r, const Stream& s) {
   const auto refuse = [&](const std::string& why) {
     std::string where = source_.place(static_cast<unsigned>(&s - streams_.data()));

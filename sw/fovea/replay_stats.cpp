@@ -81,14 +81,6 @@ std::vector<LatencyRow> ReplayPath::latency_rows() const {
   return rows;
 }
 
-std::vector<std::string> ReplayPath::labels() const {
-  std::vector<std::string> out;
-  for (const MasterState& m : masters_)
-    if (!m.label.empty() && std::find(out.begin(), out.end(), m.label) == out.end())
-      out.push_back(m.label);
-  return out;
-}
-
 std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
   const bus::Timeline& from = memory_.timeline();

@@ -15,6 +15,7 @@
 #include "sw/fovea/console.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/perfetto/perfetto_request.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
@@ -54,6 +55,7 @@ struct RunRequest {
   /// Called for each displayed frame with what the camera sent of it, woven from its two fields; not for
   /// a frame whose picture is not kept any more (one that is shown very late).
   std::function<void(const DisplayedFrame&)> camera = {};
+  PerfettoRequest perfetto = {};
   std::filesystem::path command_trace = {};  ///< file for the SDRAM's commands in the window; empty: none
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
   /// Port on which to wait for a debugger before the core starts.

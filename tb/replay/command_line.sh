@@ -65,6 +65,30 @@ for key in replay.time replay.bandwidth replay.requests ddr.row_hits ddr.utilisa
   bus.arm_d.write_bytes ddr.vpbe.latency.p99 bus.edma_tc0.write_bytes ddr.edma_tc0.latency.max; do
   grep -q "\"$key\": {\"value\": [0-9]" "$out/replay/stats.json" || fail "no $key"
 done
+# The commands of a run's window and of a replay: as many of each as the statistics count, and at most one a
+# clock, in order.
+expect commands 0 -- run -o "$out/commands" --command-trace "$out/run.csv"
+cmp "$out/commands/stats.json" "$out/without/stats.json" || fail 'tracing commands changes the run'
+expect commands_strict 0 -- run -o "$out/commands" --sync=strict --command-trace "$out/strict.csv"
+cmp "$out/run.csv" "$out/strict.csv" || fail 'strict and default have different commands'
+expect commands_replay 0 -- replay "$trace" --command-trace "$out/replay.csv"
+counts() { awk -F, 'NR > 1 { n[$2]++; if ($2 != "OPEN" && $1 <= last) bad = 1; last = $1 }
+  END { print n["ACT"] + 0, n["REF"] + 0, n["RD"] + n["WR"] + 0; exit bad }' "$1" || echo "out of order: $1"; }
+figure() { grep -oE "\"$2\": \{\"value\": [0-9]+" "$1/stats.json" | grep -oE '[0-9]+$'; }
+for pair in run:commands replay:replay; do
+  folder=$out/${pair#*:}
+  want="$(figure "$folder" ddr.activates) $(figure "$folder" ddr.refreshes) $(figure "$folder" ddr.bursts)"
+  got=$(counts "$out/${pair%:*}.csv")
+  [ "$got" = "$want" ] || fail "${pair%:*}.csv has $got commands, stats.json $want"
+done
+expect commands_over 2 'command trace' -- run -o "$out/refused" --command-trace "$out/letter"
+expect commands_in_folder 2 'output folder' -- run -o "$out/refused" --command-trace "$out/refused/x.csv"
+expect commands_in_replay 2 'output folder' -- "$fovea" replay "$trace" -o "$out/refused" --command-trace "$out/refused/x.csv"
+expect commands_no_name 2 'a file name is needed' -- run -o "$out/refused" --command-trace ''
+head -1 "$out/replay/latency.csv" | grep -qx 'master,direction,beat,low_ns,high_ns,count' || fail 'latency.csv of a replay'
+beats=$(awk -F, 'NR > 1 { n[$3] += $6 } END { print n["first"], n["last"] }' "$out/replay/latency.csv")
+n=$(figure "$out/replay" replay.requests)
+[ "$beats" = "$n $n" ] || fail "latency.csv has $beats beats of $n requests"
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
 cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
 expect memory_only 0 -- replay "$trace" --memory-only
