@@ -14,7 +14,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
     target[i]->bind(targets_[i]);
   }
   for (std::size_t i = 0; i < kStatCount; ++i)
-    latency[i] = std::make_unique<LatencyStats>(std::string(kStatNames[i]));
+    latency[i] = std::make_unique<LatencyStats>(std::string(kStatNames[i]), latencies_of(i));
   for (auto& s : crossbar().stats) add_statistics(*s);
   for (auto& s : latency) add_statistics(*s);
   for (std::size_t i = 0; i < kSlaveCount; ++i) {
@@ -30,6 +30,14 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
   SC_METHOD(advance_by_kernel);
   sensitive << due_.event();
   dont_initialize();
+}
+
+/// Of all ports that statistics name so.
+std::vector<PortLatencies*> Scr::latencies_of(std::size_t stat) {
+  std::vector<PortLatencies*> out;
+  for (const MasterInfo& m : kMasters.rows)
+    if (stat_index(m.id) == stat) out.push_back(&crossbar().latencies[index(m.id)]);
+  return out;
 }
 
 void Scr::settle() {
@@ -123,8 +131,6 @@ tlm::tlm_sync_enum Scr::response(Slave slave, MemRequest& r, MemPhase phase,
 
 void Scr::completed(MemRequest& r) {
   const Picoseconds now = now_();
-  if (!r.write && r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
-    latency[stat_index(r.master)]->histogram.add(r.first - r.issued);
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = ps_time(r.first > now ? r.first - now : 0);
   (*target[index(r.master)])->nb_transport_bw(r, phase, delay);

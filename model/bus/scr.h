@@ -72,6 +72,7 @@ class Scr final : public sc_core::sc_module,
     }
   };
 
+  std::vector<PortLatencies*> latencies_of(std::size_t stat);
   void request(MemRequest& r);
   tlm::tlm_sync_enum response(Slave s, MemRequest& r, MemPhase phase, sc_core::sc_time& delay);
   unsigned debug(MemRequest& r);

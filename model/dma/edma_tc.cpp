@@ -176,6 +176,7 @@ Picoseconds EdmaTc::program_free() const {
 
 void EdmaTc::submit(const TransferRequest& request) {
   core_.set_burst(burst());
+  if (on_request) on_request(request, kernel_time());
   core_.submit(request, kernel_time());
 }
 
@@ -200,17 +201,19 @@ void EdmaTc::program_free(Picoseconds at) {
   channels_->program_free(at + 1);
 }
 
-void EdmaTc::completed(const TransferRequest& request, Picoseconds) {
+void EdmaTc::completed(const TransferRequest& request, Picoseconds at) {
   ++stats.requests;
+  if (on_ended) on_ended(request, at);
   channels_->completed(request);
 }
 
 void EdmaTc::failed(const TransferRequest& request, TransferController::Failure failure,
-                    Picoseconds) {
+                    Picoseconds at) {
   using Failure = TransferController::Failure;
   ++stats.errors;
   const std::uint32_t before = regs.errstat.get() & regs.erren.get();
   if (failure == Failure::kRequest) {
+    if (on_ended) on_ended(request, at);
     channels_->dropped(request);
     regs.errstat.request.set(1);
     Diagnostics::instance().guest(

@@ -113,6 +113,8 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   using Params = EdmaTcParams;
   SC_HAS_PROCESS(EdmaTc);
   EdmaTcStats stats;
+  /// For observers: a request enters the program register; it ended (last write acknowledged, or refused).
+  std::function<void(const TransferRequest&, Picoseconds at)> on_request, on_ended;
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
   Pulse error{"error", kInterruptPulse};  ///< TCERRINT

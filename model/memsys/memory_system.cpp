@@ -213,6 +213,7 @@ void MemorySystem::respond_directly(MemRequest& r, Picoseconds first, Picosecond
   count_decided();
   r.first = first;
   r.last = last;
+  crossbar_.count_latency(r, first);
   host_.completed(r);
 }
 

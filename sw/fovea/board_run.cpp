@@ -15,6 +15,8 @@
 #include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/bus_trace_run.h"
+#include "sw/fovea/camera_pictures.h"
+#include "sw/fovea/command_trace.h"
 #include "sw/fovea/core_semihosting.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/exec_program.h"
@@ -23,6 +25,8 @@
 #include "sw/fovea/hazard_report.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
+#include "sw/fovea/perfetto/perfetto_run.h"
+#include "sw/fovea/remap_time.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/simulation.h"
 #include "sw/fovea/stall_regions.h"
@@ -61,6 +65,17 @@ bool kernel_stopped() { return sc_core::sc_get_status() == sc_core::SC_STOPPED; 
 
 constexpr std::uint32_t kSdram = DDR_BASE;
 
+/// For people, from the phases that the pins show.
+std::string_view phase_name(const board::FrameLog& log) {
+  switch (log.phase()) {
+    case board::Phase::kReset:
+    case board::Phase::kFailed: return "";
+    case board::Phase::kBoot: return "boot";
+    case board::Phase::kLut: return "look-up table";
+    default: return log.first(board::Phase::kRemapStart) ? "frames" : "waiting for lock";
+  }
+}
+
 std::string reset_text(const std::string& cause, std::size_t before) {
   std::string text = "chip reset: " + cause;
   if (before) text += fmt::format(" (after as many resets as run.resets allows: {})", before);
@@ -95,6 +110,10 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<board::Board> board_;
   Symbols symbols_;
   std::unique_ptr<BusTraceRun> trace_;
+  std::unique_ptr<CommandTrace> commands_;
+  std::unique_ptr<PerfettoRun> perfetto_;
+  std::unique_ptr<RemapTime> remaps_;
+  std::vector<LatencyRow> latency_;
   std::vector<StatRow> stats_;
   std::vector<FrameRow> frames_;
   Wall::time_point started_, window_wall_;
@@ -111,6 +130,8 @@ void BoardSimulation::open_window() {
   board_->platform.each_statistics([](StatGroup& group) { group.reset(); });
   soc.arm.core().mark_window(kernel_time());
   if (trace_) trace_->open();
+  if (perfetto_) perfetto_->window_opened();
+  if (commands_) commands_->begin(soc.ddr.controller(), kernel_time());
   window_wall_ = Wall::now();
   direct_at_open_ = soc.scr.memory().decided_ahead();
   queued_at_open_ = soc.scr.memory().decided_at_present();
@@ -121,10 +142,13 @@ void BoardSimulation::close_window() {
   closed_ = true;
   auto& soc = board_->dm365;
   if (trace_) trace_->close();
+  if (commands_) commands_->end();
   window_wall_s_ = seconds_since(window_wall_);
   direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
   queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
   board_->platform.each_statistics([this](const StatGroup& group) { collect(group, stats_); });
+  for (std::size_t i = 0; i < kStatCount; ++i)
+    add_latency_rows(latency_, std::string(kStatNames[i]), *soc.scr.latency[i]);
   // The SDRAM's data bus: clocks with data over clocks of the window.
   const auto from = board_->window_start(), to = board_->window_end();
   if (from && to && *to > *from) {
@@ -257,6 +281,7 @@ void BoardSimulation::collect_core(RunResult& result) const {
   // The clock's first edge after power-up is number 1; a core that never ran has no clocks either.
   if (!opened_ && figures.to.cycles) --figures.to.cycles;
   collect(figures, result.stats);
+  remaps_->collect(figures.from, figures.to, result.stats);
   result.stalls = stall_rows(figures.from, figures.to, core.regions());
 }
 
@@ -340,7 +365,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   auto source = video::make_picture_source(params_.camera, std::move(footage),
                                            params_.raster_width(), params_.raster_height());
 
-  video::AheadSource camera(*source);
+  video::AheadSource ahead(*source);
+  CameraPictures pictures(ahead);
+  video::PictureSource& camera = request.camera ? static_cast<video::PictureSource&>(pictures) : ahead;
   const std::optional<ElfImage> loader = loader_of(elf, request);
   board_ = std::make_unique<board::Board>("board", params_, camera,
                                           loader ? loader->entry() : elf.entry(),
@@ -357,6 +384,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
 
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
+  if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
+  remaps_ = std::make_unique<RemapTime>(*board_);
+  if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
@@ -378,12 +408,16 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     // An error of a writer must not unwind through the kernel: keep it and stop.
     if (failure) return;
     try {
+      if (perfetto_) perfetto_->frame(f, r);
       if (request.frame_row)
         request.frame_row(out);
       else
         frames_.push_back(out);
       if (request.frame)
         request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
+      if (request.camera && r.capture_start)
+        if (const video::Picture* sent = pictures.frame(board_->decoder, *r.capture_start))
+          request.camera({r.index, sent->width, sent->height, sent->uyvy});
     } catch (...) {
       failure = std::current_exception();
     }
@@ -430,7 +464,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     const std::uint64_t executed = arm.core().instructions_executed();
     request.progress.update({kernel_time(), board_->frames_in_window(),
                              run_end.wants(EndCondition::Kind::kFrames) ? params_.run.frames() : 0,
-                             executed});
+                             executed, phase_name(board_->log)});
     const bool left = console && console->look();
     if (!arm.failure().empty()) {
       guest = failure_text(arm.failure());
@@ -492,6 +526,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   }
   if (semihosting) result.exit_code = semihosting->exit_code();
   if (trace_) trace_->finish();
+  if (commands_) commands_->finish();
+  if (perfetto_)
+    if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
   add_frame_stats(stats_);
   result.guest_failure = guest;
   result.stats = std::move(stats_);
@@ -510,6 +547,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       [&](Picoseconds start, Picoseconds end, const auto& row) {
         result.timeline.push_back(timeline_row(start, end, row));
       });
+  result.latency = std::move(latency_);
   result.uart = board_->uart_text();
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
     result.notes.push_back(reset_note(board_->resets()[i], i));

@@ -17,10 +17,12 @@
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/cli_help.h"
 #include "sw/fovea/cli_limits.h"
+#include "sw/fovea/command_trace.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/host_console.h"
+#include "sw/fovea/last_words.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/warnings.h"
@@ -44,9 +46,10 @@ struct RunOptions {
   bool strict = false, hazards = false;
   bool no_frames = false;
   bool mp4 = false;
-  std::string bus_trace;
+  std::string bus_trace, command_trace;
   std::string gdb;
   RegisterLogRequest registers;
+  PerfettoOptions perfetto;
   LimitOptions limits;
   bool console = false;
 };
@@ -56,6 +59,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   host = result.host;
   meter.add_host_rows(host);
   dir.write("stalls.csv", stalls_csv(result.stalls));
+  dir.write("latency.csv", latency_csv(result.latency));
   dir.write("uart.log", result.uart);
   if (!result.typed.empty()) dir.write("uart0.input", result.typed);
   if (log) dir.write("registers.log", result.registers);
@@ -103,6 +107,12 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
                                 "files of a run only; choose a place beside it",
                                 one_line(options.bus_trace)));
+  const PerfettoRequest perfetto = perfetto_of(options.perfetto);
+  if (!perfetto.file.empty() && dir.covers(perfetto.file))
+    throw UserError(fmt::format("--perfetto '{}': it lies in the output folder, which holds the files of a run "
+                                "only; choose a place beside it",
+                                one_line(perfetto.file.string())));
+  if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
   // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
   // tried, and a full disk is noticed before the simulation.
   dir.write("config.json",
@@ -128,6 +138,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   }
   if (options.mp4) writer_options.mp4 = dir.file("display.mp4");
   FrameWriter writer(writer_options);
+  std::optional<FrameWriter> camera_writer;
+  if (!options.no_frames)
+    camera_writer.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
+                                             .folder_fd = dir.make_folder("camera")});
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .strict_sync = options.sync == "strict",
@@ -135,6 +149,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .stop = stop,
                      .progress = meter,
                      .frame = {},
+                     .perfetto = perfetto,
+                     .command_trace = options.command_trace,
                      .bus_trace = options.bus_trace,
                      .gdb_port = {},
                      .registers = options.registers,
@@ -145,6 +161,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   if (!options.no_frames || options.mp4)
     request.frame = [&](const DisplayedFrame& f) {
       writer.push(f.index, f.width, f.height, f.uyvy);
+    };
+  if (camera_writer)
+    request.camera = [&](const DisplayedFrame& f) {
+      camera_writer->push(f.index, f.width, f.height, f.uyvy);
     };
   if (!options.gdb.empty()) {
     request.gdb_port = parse_gdb_port(options.gdb);
@@ -162,6 +182,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   raw.reset();
   meter.finish();
   writer.close();
+  if (camera_writer) camera_writer->close();
 
   std::vector<StatRow> host;
   rows.finish(result);
@@ -170,13 +191,13 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   // With --console the output stream is reserved for UART0.
   std::ostream& report = options.console ? context.err : context.out;
   context.out.flush();
-  report << summary_table(result.stats, host);
-  for (const auto& note : result.notes) report << "  " << one_line(note) << "\n";
-  if (!result.ended.empty()) report << fmt::format("  ended by {}\n", result.ended);
-  report << fmt::format("  results in {}\n", dir.folder().string());
+  report << run_words(result.stats, host);
+  for (const auto& note : result.notes) report << one_line(note) << "\n";
+  if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
+  report << fmt::format("results in {}\n", dir.folder().string());
   const StatRow* shown = find(result.stats, "frame.displayed");
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
-    report << fmt::format("  pictures in {}\n", (dir.folder() / "frames").string());
+    report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
   report << std::flush;
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
@@ -343,6 +364,15 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
   command.add_option("-s,--set", sets, kSet)->type_name("KEY=VALUE")->allow_extra_args(false);
 }
 
+void add_command_trace_option(CLI::App& command, std::string& file) {
+  command
+      .add_option("--command-trace", file,
+                  "Write the commands on the SDRAM's bus to this file: clock,command,bank,row")
+      ->type_name("FILE")
+      ->check(CLI::Validator([](const std::string& s) { return s.empty() ? "a file name is needed" : std::string(); },
+                             ""));
+}
+
 void add_run_command(CLI::App& app, RunOptions& run) {
   CLI::App* c = app.add_subcommand("run", "Simulate an experiment");
   c->add_option("experiment", run.experiment, "Experiment file (YAML)")
@@ -364,6 +394,8 @@ void add_run_command(CLI::App& app, RunOptions& run) {
   c->add_option("--bus-trace", run.bus_trace,
                 "Write all requests to the SDRAM in the measured window to this file")
       ->type_name("FILE");
+  add_command_trace_option(*c, run.command_trace);
+  add_perfetto_options(*c, run.perfetto);
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
   add_register_log_options(*c, run.registers);
@@ -382,6 +414,7 @@ void add_replay_command(CLI::App& app, ReplayOptions& replay) {
   c->add_option("-o,--out", replay.out_dir, "Folder for the results")
       ->type_name("DIR")
       ->default_str("out/TRACE");
+  add_command_trace_option(*c, replay.command_trace);
   c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
   c->add_flag("--wrap", replay.wrap,
               "Take addresses beyond the memory (ddr.part) modulo its size");

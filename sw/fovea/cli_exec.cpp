@@ -14,6 +14,7 @@
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/host_console.h"
+#include "sw/fovea/last_words.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/run_dir.h"
 #include "sw/fovea/warnings.h"
@@ -187,35 +188,6 @@ std::vector<std::string> take_program_arguments(const CLI::App& exec,
   return guest;
 }
 
-std::string core_table(std::span<const StatRow> stats, Frequency core_clock) {
-  const auto count = [&](const std::string& name) {
-    const StatRow* row = find(stats, name);
-    return row ? std::get<std::uint64_t>(row->value) : 0;
-  };
-  const std::uint64_t cycles = count("cpu.cycles"), instructions = count("cpu.instructions");
-  std::string out = fmt::format("  {:<24} {:>14}\n  {:<24} {:>14}", "cpu.instructions",
-                                instructions, "cpu.cycles", cycles);
-  if (instructions)
-    out += fmt::format("  {:.2f} an instruction",
-                       static_cast<double>(cycles) / static_cast<double>(instructions));
-  out += "\n";
-  if (!core_clock.stopped())
-    out += fmt::format("  {:<24} {:>14.6f}  s at {:.5g} MHz\n", "time",
-                       static_cast<double>(cycles) / core_clock.hertz(), core_clock.hertz() * 1e-6);
-  constexpr std::string_view kStall = "cpu.stall.";
-  for (const auto& row : stats) {
-    const bool cause =
-        row.name.starts_with(kStall) && row.name.find('.', kStall.size()) == std::string::npos;
-    const bool share = row.name == "cpu.issue" || row.name == "cpu.idle" || cause;
-    if (!share || !std::holds_alternative<std::uint64_t>(row.value)) continue;
-    const auto n = std::get<std::uint64_t>(row.value);
-    if (n == 0) continue;
-    out += fmt::format("  {:<24} {:>14}  {:.1f} %\n", row.name, n,
-                       100 * static_cast<double>(n) / static_cast<double>(cycles));
-  }
-  return out;
-}
-
 namespace {
 
 bool caches_unused(std::span<const StatRow> stats) {
@@ -297,11 +269,11 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   context.out.flush();
   const bool lost = !context.out;
   if (!o.quiet) {
-    context.err << core_table(result.stats, result.core_clock);
+    context.err << exec_words(result.stats, result.core_clock);
     if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
       context.err
-          << "  The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
-    if (!result.ended.empty()) context.err << "  ended by " << result.ended << "\n";
+          << "The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
+    if (!result.ended.empty()) context.err << "ended by " << result.ended << "\n";
     context.err << std::flush;
   }
   if (!dir) context.err << result.registers << std::flush;

@@ -41,7 +41,4 @@ std::vector<std::string> take_program_arguments(const CLI::App& exec,
 int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
                  const CliContext& context);
 
-/// A table with instructions, clocks, time and stalls, aligned, one row per line.
-std::string core_table(std::span<const StatRow> stats, Frequency core_clock);
-
 }  // namespace fovea::app

@@ -18,6 +18,15 @@ void add_ddr_shares(std::vector<StatRow>& rows, const DdrSpan& of, std::string_v
                     "clocks with data on the SDRAM's bus / clocks in which a request is queued"});
 }
 
+void add_latency_rows(std::vector<LatencyRow>& rows, const std::string& master,
+                      const bus::LatencyStats& of) {
+  of.each([&](const char* direction, const char* beat, const bus::LatencyHistogram& h) {
+    h.each_bin([&](Picoseconds low, Picoseconds high, std::uint64_t count) {
+      rows.push_back({master, direction, beat, low, high, count});
+    });
+  });
+}
+
 void add_remap_times(std::vector<StatRow>& rows, double shortest, double mean, double longest) {
   const std::string what = "time to correct (remap) one frame, ";
   rows.push_back({"frame.remap_time.min", shortest, "s", what + "shortest"});

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/bus/core/latency_stats.h"
 #include "sw/fovea/outputs.h"
 
 namespace fovea::app {
@@ -17,6 +18,10 @@ struct DdrSpan {
 /// `ddr.utilisation`, `ddr.headroom` and, if anything was queued, `ddr.efficiency`. `span` is the name
 /// of the time in the sentences, such as "the window".
 void add_ddr_shares(std::vector<StatRow>& rows, const DdrSpan& of, std::string_view span);
+
+/// The rows of latency.csv of one master.
+void add_latency_rows(std::vector<LatencyRow>& rows, const std::string& master,
+                      const bus::LatencyStats& of);
 
 /// `frame.remap_time.*`, in seconds.
 void add_remap_times(std::vector<StatRow>& rows, double shortest, double mean, double longest);

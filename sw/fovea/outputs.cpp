@@ -230,6 +230,14 @@ std::string stalls_csv(std::span<const StallRow> rows) {
   return out;
 }
 
+std::string latency_csv(std::span<const LatencyRow> rows) {
+  std::string out = "master,direction,beat,low_ns,high_ns,count\n";
+  for (const auto& r : rows)
+    out += fmt::format("{},{},{},{},{},{}\n", csv_field(r.master), r.direction, r.beat, ns_text(r.low),
+                       ns_text(r.high), r.count);
+  return out;
+}
+
 std::string human_text(const StatBase::Value& value, std::string_view unit) {
   const bool whole = std::holds_alternative<std::uint64_t>(value);
   const double v =
@@ -251,6 +259,7 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
   }
   if (unit == "x") return fmt::format("{:.2f}x real time", v);
   if (unit == "ratio") return fmt::format("{:.1f} %", 100 * v);
+  if (unit == "1/s") return fmt::format("{:.5g} a second", v);
   const std::string number =
       whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
   // Units such as "count" and "frames" are already in the name.
@@ -279,45 +288,6 @@ std::string verdict(std::span<const StatRow> stats) {
     if (const std::uint64_t n = count(name))
       out += fmt::format(", {} {}{}", n, what, n > 1 ? "s" : "");
   return out + "\n";
-}
-
-std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host) {
-  static constexpr std::array kStats{
-      "frame.rate",           "frame.captured",    "frame.remapped",       "frame.displayed",
-      "frame.dropped",        "frame.remap_rate",  "frame.remap_time.min", "frame.remap_time.mean",
-      "frame.remap_time.max", "frame.latency.min", "frame.latency.mean",   "frame.latency.max",
-      "startup.lut_time",     "capture.overflows", "display.underflows",   "ddr.utilisation",
-      "ddr.efficiency",       "ddr.headroom",      "ddr.read_bytes",       "ddr.write_bytes",
-      "replay.time",          "replay.bandwidth"};
-  static constexpr std::array kHost{"realtime_factor", "mips", "requests_per_second", "wall_time",
-                                    "peak_rss"};
-  std::vector<std::pair<std::string, std::string>> lines;
-  for (const char* name : kStats) {
-    // It says nothing new of a loop that waits for the camera.
-    if (name == std::string_view("frame.remap_rate") && !remaps_in_a_row(stats)) continue;
-    if (const auto* row = find(stats, name))
-      lines.emplace_back(name, human_text(row->value, row->unit));
-  }
-  // Bytes of each master that has transferred any.
-  std::vector<std::string> masters;
-  for (const auto& row : stats) {
-    const bool bytes = row.name.starts_with("bus.") &&
-                       (row.name.ends_with(".read_bytes") || row.name.ends_with(".write_bytes"));
-    if (bytes && row.value != StatBase::Value{std::uint64_t{0}}) masters.push_back(row.name);
-  }
-  std::sort(masters.begin(), masters.end());
-  for (const auto& name : masters) {
-    const auto* row = find(stats, name);
-    lines.emplace_back(name, human_text(row->value, row->unit));
-  }
-  for (const char* name : kHost)
-    if (const auto* row = find(host, name))
-      lines.emplace_back(name, human_text(row->value, row->unit));
-  std::string out = verdict(stats);
-  std::size_t width = 0;
-  for (const auto& line : lines) width = std::max(width, line.first.size());
-  for (const auto& [name, text] : lines) out += fmt::format("  {:<{}}  {}\n", name, width, text);
-  return out;
 }
 
 }  // namespace fovea::app

@@ -52,6 +52,14 @@ struct StallRow {
   std::uint64_t cycles = 0;
 };
 
+/// A bin of a histogram of SDRAM latencies that is not empty: `count` requests of a master took
+/// low <= t < high to a beat.
+struct LatencyRow {
+  std::string master, direction, beat;  ///< read, write; first, last
+  Picoseconds low = 0, high = 0;
+  std::uint64_t count = 0;
+};
+
 /// The shortest text that is read back as the same double, always with '.' or an exponent; "null"
 /// for infinities and NaN (a mean of nothing), which JSON does not have.
 std::string number_text(double value);
@@ -93,13 +101,12 @@ std::string frames_csv(std::span<const FrameRow> rows);
 std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);
 
 std::string stalls_csv(std::span<const StallRow> rows);
+std::string latency_csv(std::span<const LatencyRow> rows);
 
 /// A value for people: three to five digits and a suitable prefix ("40.2 ms", "165.9 MB").
 std::string human_text(const StatBase::Value& value, std::string_view unit);
 /// Whether the firmware kept up with the camera, as one line with its end; empty if no corrected
 /// frame was displayed.
 std::string verdict(std::span<const StatRow> stats);
-/// The verdict and the headline figures found in `stats` and `host`, aligned, one per line.
-std::string summary_table(std::span<const StatRow> stats, std::span<const StatRow> host);
 
 }  // namespace fovea::app

@@ -50,7 +50,10 @@ std::string ProgressMeter::line(const Sample& now) const {
   const double wall = Seconds(now.wall - last_printed_.wall).count();
   const double simulated = seconds(p.simulated) - seconds(last_printed_.progress.simulated);
   std::string text = fmt::format("simulated {:.3f} s", seconds(p.simulated));
-  if (p.frames_wanted)
+  const bool starting = !p.frames_shown && !p.phase.empty() && p.phase != "frames";
+  if (starting)
+    text += fmt::format(", {}", p.phase);
+  else if (p.frames_wanted)
     text += fmt::format(", frame {}/{}", p.frames_shown, p.frames_wanted);
   else if (p.frames_shown)
     text += fmt::format(", frame {}", p.frames_shown);

@@ -7,9 +7,11 @@
 #include <ostream>
 
 #include "model/trace/core/bounds.h"
+#include "sw/fovea/command_trace.h"
 #include "sw/fovea/ddr_presets.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/figures.h"
+#include "sw/fovea/last_words.h"
 #include "sw/fovea/open_trace.h"
 #include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_clocks.h"
@@ -80,6 +82,11 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),
              "replay");
+  std::optional<CommandTrace> commands;
+  if (!options.command_trace.empty()) {
+    check_command_trace(options.command_trace, dir);
+    commands.emplace(options.command_trace);
+  }
   // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
   std::future<Provenance> provenance = std::async(
       std::launch::async, [&] { return provenance_of(set, {{"trace", options.trace}}); });
@@ -88,6 +95,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
                                {params.ddr.size_bytes(), true});
   trace::RecordSource& source = options.wrap ? wrapped : *trace.source;
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
+  if (commands) commands->begin(path.controller(), path.start());
   // Slices only let a signal in.
   const Picoseconds slice = 10 * kPsPerMs;
   bool complete = true;
@@ -98,6 +106,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
     }
   }
   path.finish();
+  if (commands) commands->finish();
   const double wall = std::chrono::duration<double>(Wall::now() - started).count();
 
   std::vector<StatRow> stats = path.stats();
@@ -111,9 +120,10 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   dir.write("host.json", host_json(host, args, version_text()));
   dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
+  dir.write("latency.csv", latency_csv(path.latency_rows()));
   report_earlier(dir.commit(complete), context);
-  context.out << summary_table(stats, host);
-  context.out << fmt::format("  results in {}\n", dir.folder().string()) << std::flush;
+  context.out << replay_words(stats, host);
+  context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
   if (complete) return kExitDone;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was replayed\n";

@@ -13,6 +13,7 @@ struct ReplayOptions {
   std::string out_dir;
   bool out_given = false;
   bool memory_only = false;
+  std::string command_trace;  ///< file; empty: none
   bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
 };
 

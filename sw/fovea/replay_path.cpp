@@ -87,19 +87,32 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     m.write_slots_from = from.shared ? 0 : from.reads;
     m.in_turn = !from.shared && !memory_only;
     m.turn = {0, from.reads};
-    for (const MasterState& side : masters_)
-      if (&side != &m && side.label == m.label) m.latency = side.latency;
-    if (!m.latency) m.latency = std::make_shared<bus::LatencyStats>(from.label);
     for (Slot& s : m.slots) {
       s.owner = &m;
       s.master = from.id;
       s.data = s.bytes_.data();
     }
   }
+  for (const std::string& label : labels()) {
+    std::vector<bus::PortLatencies*> ports;
+    for (std::size_t i = 0; i < kMasterCount; ++i)
+      if (masters_[i].label == label) ports.push_back(&memory_.crossbar().latencies[i]);
+    const auto stats = std::make_shared<bus::LatencyStats>(label, std::move(ports));
+    for (MasterState& m : masters_)
+      if (m.label == label) m.latency = stats;
+  }
   time_.fill(kNever);
   waits_for_.fill(trace::kInterrupt);
   for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
   find_next();
+}
+
+std::vector<std::string> ReplayPath::labels() const {
+  std::vector<std::string> out;
+  for (const MasterState& m : masters_)
+    if (!m.label.empty() && std::find(out.begin(), out.end(), m.label) == out.end())
+      out.push_back(m.label);
+  return out;
 }
 
 void ReplayPath::check(const trace::Record& r, const Stream& s) {
@@ -298,7 +311,6 @@ std::vector<Picoseconds> ReplayPath::remap_times() const {
 /// The outcome is in the slot.
 void ReplayPath::complete(Slot& slot) {
   MasterState& m = *static_cast<MasterState*>(slot.owner);
-  if (!slot.write) m.latency->histogram.add(slot.first - slot.issued);
   last_ = std::max(last_, slot.last);
   slot.free = slot.last;
   streams_[m.stream].history[slot.number % kHistory] = {slot.write ? slot.came : slot.first,

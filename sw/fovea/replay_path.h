@@ -46,9 +46,13 @@ class ReplayPath final : private memsys::MemoryHost {
   /// From the recording's start to the last completion, and to the last data on the SDRAM's bus: those
   /// of a write come behind its completion.
   Picoseconds duration() const { return end() > start_ ? end() - start_ : 0; }
-  bus::LatencyStats& latency(Master m) { return *masters_[index(m)].latency; }
+  const bus::LatencyStats& latency(Master m) const { return *masters_[index(m)].latency; }
   /// Who looks on at the crossbar.
   void observe(MemObserver* observer) { memory_.crossbar().observe(observer); }
+  mem::DdrController& controller() { return memory_.controller(); }
+  /// Rows of latency.csv, of all labels.
+  std::vector<LatencyRow> latency_rows() const;
+  Picoseconds start() const { return start_; }
   const mem::DdrStats& memory() const { return ddr().stats; }
   /// Called with each record as it goes out; empty in a plain replay.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;

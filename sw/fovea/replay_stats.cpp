@@ -70,12 +70,15 @@ void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*dir
   }
 }
 
-std::vector<std::string> ReplayPath::labels() const {
-  std::vector<std::string> out;
-  for (const MasterState& m : masters_)
-    if (!m.label.empty() && std::find(out.begin(), out.end(), m.label) == out.end())
-      out.push_back(m.label);
-  return out;
+std::vector<LatencyRow> ReplayPath::latency_rows() const {
+  std::vector<LatencyRow> rows;
+  for (const std::string& label : labels())
+    for (const MasterState& m : masters_)
+      if (m.label == label) {
+        add_latency_rows(rows, label, *m.latency);
+        break;
+      }
+  return rows;
 }
 
 std::vector<TimelineRow> ReplayPath::timeline() const {

@@ -21,15 +21,15 @@ constexpr std::size_t kMaxConfigBytes = 16u << 20;
 constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
 /// The files of all commands. RunDir refuses to write files that are not listed here.
-constexpr std::array<std::string_view, 10> kFiles = {
-    "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",
+constexpr std::array<std::string_view, 11> kFiles = {
+    "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",  "latency.csv",
     "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4"};
 
 /// Folders of numbered files.
 struct Series {
   std::string_view folder, prefix, suffix;
 };
-constexpr std::array<Series, 1> kSeries = {{{"frames", "frame_", ".png"}}};
+constexpr std::array<Series, 2> kSeries = {{{"frames", "frame_", ".png"}, {"camera", "frame_", ".png"}}};
 
 bool is_series_folder(std::string_view name) {
   return std::any_of(kSeries.begin(), kSeries.end(),

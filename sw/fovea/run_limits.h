@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "model/common/units.h"
 
@@ -14,6 +15,7 @@ struct Progress {
   std::uint64_t frames_shown = 0;   ///< corrected frames that were displayed
   std::uint64_t frames_wanted = 0;  ///< 0: unknown
   std::uint64_t instructions = 0;   ///< executed by the core
+  std::string_view phase = {};      ///< what the program is at, for people; empty: unknown
 };
 
 /// Receives the progress. May be called often: the implementation decides when to print.

@@ -15,6 +15,7 @@
 #include "sw/fovea/console.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/perfetto/perfetto_request.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
@@ -51,6 +52,11 @@ struct RunRequest {
   /// the result contains all rows. May throw UserError.
   std::function<void(const FrameRow&)> frame_row = {};
   std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
+  /// Called for each displayed frame with what the camera sent of it, woven from its two fields; not for
+  /// a frame whose picture is not kept any more (one that is shown very late).
+  std::function<void(const DisplayedFrame&)> camera = {};
+  PerfettoRequest perfetto = {};
+  std::filesystem::path command_trace = {};  ///< file for the SDRAM's commands in the window; empty: none
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
   /// Port on which to wait for a debugger before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
@@ -76,6 +82,7 @@ struct RunResult {
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
+  std::vector<LatencyRow> latency;
   std::string uart;  ///< everything that the firmware printed
   std::vector<std::string> notes;  ///< sentences for the user, shown below the figures
   std::string ended_by;      ///< the condition of run.until that was met; empty: none

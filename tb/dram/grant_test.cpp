@@ -158,6 +158,14 @@ void expect_same_figures(const Side& a, const Side& b) {
   for (std::size_t m = 0; m < kMasterCount; ++m) {
     EXPECT_EQ(a.xbar.waits[m].read.ps, b.xbar.waits[m].read.ps) << kMasterNames[m];
     EXPECT_EQ(a.xbar.waits[m].write.ps, b.xbar.waits[m].write.ps) << kMasterNames[m];
+    for (const auto direction : {&bus::PortLatencies::read, &bus::PortLatencies::write})
+      for (const auto beat : {&bus::BeatLatencies::first, &bus::BeatLatencies::last}) {
+        const bus::LatencyHistogram& of_a = a.xbar.latencies[m].*direction.*beat;
+        const bus::LatencyHistogram& of_b = b.xbar.latencies[m].*direction.*beat;
+        EXPECT_EQ(of_a.count(), of_b.count()) << kMasterNames[m];
+        EXPECT_EQ(of_a.mean(), of_b.mean()) << kMasterNames[m];
+        EXPECT_EQ(of_a.max(), of_b.max()) << kMasterNames[m];
+      }
   }
   for (std::size_t s = 0; s < kStatCount; ++s) {
     EXPECT_EQ(a.xbar.stats[s]->transactions.count(), b.xbar.stats[s]->transactions.count());

@@ -149,7 +149,7 @@ if command -v script >/dev/null; then
 fi
 
 # Bare-metal programs with peripherals.
-expect board 7 '^main: 2 arguments, one two$' '^uart: 4 bytes in [0-9]+ us$' 'cpu.cycles' -- \
+expect board 7 '^main: 2 arguments, one two$' '^uart: 4 bytes in [0-9]+ us$' 'instructions in [0-9]+ clocks' -- \
   "$fovea" exec --board --max-time 1s "$board" one two
 expect board_uart 0 '^ping$' 'ended by halt after .* \(' -- "$fovea" exec --board --max-time 1s "$board" uart
 expect board_clock 7 '^PLLM of PLLC2: 0x12$' -- "$fovea" exec --board -s clocks.preset=216/172 --max-time 1s "$board" one two

@@ -11,6 +11,7 @@
 #include <systemc>
 
 #include "model/common/masters.h"
+#include "model/video/core/picture.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/simulation.h"
 
@@ -30,7 +31,23 @@ class StopAt : public app::ProgressSink {
   Picoseconds at_;
 };
 
-app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever) {
+using Pictures = std::map<std::uint64_t, video::Picture>;
+
+/// What a run displays and what the camera sent, by the displayed frame's number.
+struct Seen {
+  Pictures displayed, sent;
+  static auto into(Pictures& all) {
+    return [&all](const app::DisplayedFrame& f) {
+      video::Picture& p = all[f.index];
+      p.width = f.width;
+      p.height = f.height;
+      p.uyvy.assign(f.uyvy.begin(), f.uyvy.end());
+    };
+  }
+};
+
+app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever,
+                   Seen* seen = nullptr) {
   static auto simulation = app::make_simulation();
   static ParamSet set;
   simulation->declare(set);
@@ -46,6 +63,10 @@ app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = 
                           .stop = progress.stop,
                           .progress = progress,
                           .frame = {}};
+  if (seen) {
+    request.frame = Seen::into(seen->displayed);
+    request.camera = Seen::into(seen->sent);
+  }
   return simulation->run(request);
 }
 
@@ -103,6 +124,29 @@ TEST(RunTest, SmallPalRegionConservesCyclesAndBytes) {
   EXPECT_EQ(count(r, "bus.vpbe.read_bytes"), 320u * 64 * 2 * 10);
   // The window is 0.4 s of a 297 MHz clock, to the instruction at each end.
   EXPECT_NEAR(static_cast<double>(count(r, "cpu.cycles")), 0.4 * 297e6, 200);
+  // The clocks within the ten remaps: all of one kind each, and as many as the pins' times make.
+  std::uint64_t of_remaps = count(r, "cpu.remap.issue") + count(r, "cpu.remap.idle");
+  for (const app::StatRow& row : r.stats)
+    if (row.name.starts_with("cpu.remap.stall.")) {
+      of_remaps += std::get<std::uint64_t>(row.value);
+      EXPECT_LE(std::get<std::uint64_t>(row.value), count(r, "cpu." + row.name.substr(10))) << row.name;
+    }
+  EXPECT_EQ(count(r, "cpu.remap.cycles"), of_remaps);
+  EXPECT_EQ(count(r, "frame.remapped"), 10u);
+  EXPECT_NEAR(static_cast<double>(count(r, "cpu.remap.cycles")),
+              real(r, "frame.remap_time.mean") * 10 * 297e6, 10 * 100.0);
+  EXPECT_GT(count(r, "cpu.idle"), count(r, "cpu.remap.idle"));
+  // Every burst of the camera has one first beat and one last, but for those under way at an edge.
+  std::map<std::string, std::uint64_t> beats;
+  for (const app::LatencyRow& row : r.latency) beats[row.master + " " + row.direction + " " + row.beat] += row.count;
+  EXPECT_EQ(beats.at("vpfe write first"), beats.at("vpfe write last"));
+  EXPECT_NEAR(static_cast<double>(beats.at("vpfe write last")),
+              static_cast<double>(count(r, "bus.vpfe.transactions")), 4);
+  EXPECT_NEAR(static_cast<double>(beats.at("vpbe read last")),
+              static_cast<double>(count(r, "bus.vpbe.transactions")), 4);
+  EXPECT_EQ(beats.count("vpfe read first"), 0u);
+  EXPECT_GE(real(r, "ddr.vpbe.latency.read_last.mean"), real(r, "ddr.vpbe.latency.mean"));
+  EXPECT_GT(real(r, "ddr.vpfe.latency.write_last.mean"), real(r, "ddr.vpfe.latency.write_first.mean"));
   // One word out for each pair, and no other uncached or missing stores of that size class.
   EXPECT_GE(count(r, "cpu.dcache.write_misses"), 320u / 2 * 64 * 10);
 }
@@ -124,6 +168,37 @@ TEST(RunTest, SentencesStandAloneAndFiguresOfNothingAreNull) {
               "null");
     EXPECT_GT(real(r, std::string("ddr.vpbe.latency.") + figure), 0.0);
   }
+}
+
+/// With a kernel that only copies, the display shows the camera's own rows; the chart's bytes differ from
+/// field to field.
+void expect_camera_pictures(const Keys& keys, std::uint64_t frames, unsigned width, unsigned height) {
+  Keys all{{"firmware.kernel", "copy"}, {"video.width", std::to_string(width)},
+           {"video.height", std::to_string(height)}, {"run.frames", std::to_string(frames)}};
+  all.insert(all.end(), keys.begin(), keys.end());
+  Seen seen;
+  const auto r = run(all, false, kNever, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  ASSERT_EQ(seen.displayed.size(), frames);
+  ASSERT_EQ(seen.sent.size(), frames);
+  for (const auto& [index, shown] : seen.displayed) {
+    const video::Picture& sent = seen.sent.at(index);
+    ASSERT_EQ(sent.width, shown.width);
+    ASSERT_EQ(sent.height, shown.height);
+    const unsigned x = (shown.width - width) / 2, y = (shown.height - height) / 2;
+    for (unsigned row = y; row < y + height; ++row)
+      EXPECT_TRUE(std::equal(shown.row(row) + x * 2, shown.row(row) + (x + width) * 2, sent.row(row) + x * 2))
+          << "frame " << index << ", row " << row;
+    if (index > 0) {
+      EXPECT_NE(sent, seen.sent.at(index - 1)) << "the chart moves";
+    }
+  }
+}
+TEST(RunTest, CameraPicturesAreThoseThatTheDisplayedFramesShow) {
+  expect_camera_pictures({}, 3, 64, 16);
+}
+TEST(RunTest, CameraPicturesOfTheOtherStandard) {
+  expect_camera_pictures({{"video.standard", "ntsc"}}, 4, 64, 16);
 }
 
 TEST(RunTest, NtscWindowHasTheTelevisionRate) {

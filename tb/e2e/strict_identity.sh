@@ -9,10 +9,11 @@ shift 3
 mkdir -p "$out"
 "$fovea" run "$experiment" -s run.frames=5 -s ddr.check=commands "$@" -o "$out/default" >/dev/null 2>&1
 "$fovea" run "$experiment" -s run.frames=5 -s ddr.check=commands "$@" --sync=strict -o "$out/strict" >/dev/null 2>&1
-for f in stats.json frames.csv timeline.csv stalls.csv uart.log; do
+for f in stats.json frames.csv timeline.csv stalls.csv latency.csv uart.log; do
   cmp "$out/default/$f" "$out/strict/$f"
 done
 diff -r "$out/default/frames" "$out/strict/frames"
+diff -r "$out/default/camera" "$out/strict/camera"
 value() { grep -o "\"$2\": {\"value\": [0-9.e-]*" "$1" | sed 's/.*: //'; }
 direct=$(value "$out/strict/host.json" sync.direct)
 share=$(value "$out/default/host.json" sync.direct_share)

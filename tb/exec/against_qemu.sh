@@ -44,8 +44,8 @@ for who in board flat; do
       echo "$who: on the error stream, and not under qemu: $line"
       failures=$((failures + 1))
     }
-  done < <(grep -vE '^  (cpu\.|time  |The program ran with MMU)|^simulated [0-9.]+ s, ' "$dir/$who.err")
-  grep -q 'cpu.cycles' "$dir/$who.err" || {
+  done < <(grep -vE '^(core  |        |The program ran with MMU)|^simulated [0-9.]+ s, ' "$dir/$who.err")
+  grep -q 'instructions in [0-9]* clocks' "$dir/$who.err" || {
     echo "$who: no figures"
     failures=$((failures + 1))
   }

@@ -32,7 +32,7 @@ run() { "$fovea" exec "$@"; }
 text=
 fails=$programs/fails_arm_O2.elf
 expect help 0 'Memory:' '--fast-memory' 'passed to the program' -- run --help
-expect arm 5 '^flat$' 'cpu.cycles' -- run "$programs/flat_arm.bin" --load 0x8000 --entry 0x8000
+expect arm 5 '^flat$' 'instructions in [0-9]+ clocks' -- run "$programs/flat_arm.bin" --load 0x8000 --entry 0x8000
 expect thumb 5 '^flat$' -- run "$programs/flat_thumb.bin" --load 0x80000000 --entry 0x80000000 --thumb
 expect fast 5 '^flat$' -- run --fast-memory --load=0 --entry=0 "$programs/flat_arm.bin"
 expect no_entry 2 '--entry' -- run "$programs/flat_arm.bin" --load 0x8000

@@ -56,7 +56,7 @@ expect bus_trace_in_folder 2 'output folder' -- run -o "$out/refused" --bus-trac
 expect record_again 0 -- run -o "$out/run" --bus-trace "$trace"
 cmp "$trace" "$out/strict.trace" || fail 'a trace recorded over another differs'
 
-expect replay 0 'replay.time' 'frame.remap_time.mean' -- replay "$trace"
+expect replay 0 '^replayed [0-9]+ requests in 80 ms of simulated time' '^times   a remap' -- replay "$trace"
 moved() { awk -F, 'NR > 1 { for (i = 3; i <= NF; i++) s += $i } END { print s + 0 }' "$1"; }
 all=$(grep -oE '"bus\.[a-z_0-9]*\.(read|write)_bytes": \{"value": [0-9]+' "$out/replay/stats.json" | awk '{ s += $NF } END { print s }')
 rows=$(moved "$out/replay/timeline.csv")
@@ -65,6 +65,30 @@ for key in replay.time replay.bandwidth replay.requests ddr.row_hits ddr.utilisa
   bus.arm_d.write_bytes ddr.vpbe.latency.p99 bus.edma_tc0.write_bytes ddr.edma_tc0.latency.max; do
   grep -q "\"$key\": {\"value\": [0-9]" "$out/replay/stats.json" || fail "no $key"
 done
+# The commands of a run's window and of a replay: as many of each as the statistics count, and at most one a
+# clock, in order.
+expect commands 0 -- run -o "$out/commands" --command-trace "$out/run.csv"
+cmp "$out/commands/stats.json" "$out/without/stats.json" || fail 'tracing commands changes the run'
+expect commands_strict 0 -- run -o "$out/commands" --sync=strict --command-trace "$out/strict.csv"
+cmp "$out/run.csv" "$out/strict.csv" || fail 'strict and default have different commands'
+expect commands_replay 0 -- replay "$trace" --command-trace "$out/replay.csv"
+counts() { awk -F, 'NR > 1 { n[$2]++; if ($2 != "OPEN" && $1 <= last) bad = 1; last = $1 }
+  END { print n["ACT"] + 0, n["REF"] + 0, n["RD"] + n["WR"] + 0; exit bad }' "$1" || echo "out of order: $1"; }
+figure() { grep -oE "\"$2\": \{\"value\": [0-9]+" "$1/stats.json" | grep -oE '[0-9]+$'; }
+for pair in run:commands replay:replay; do
+  folder=$out/${pair#*:}
+  want="$(figure "$folder" ddr.activates) $(figure "$folder" ddr.refreshes) $(figure "$folder" ddr.bursts)"
+  got=$(counts "$out/${pair%:*}.csv")
+  [ "$got" = "$want" ] || fail "${pair%:*}.csv has $got commands, stats.json $want"
+done
+expect commands_over 2 'command trace' -- run -o "$out/refused" --command-trace "$out/letter"
+expect commands_in_folder 2 'output folder' -- run -o "$out/refused" --command-trace "$out/refused/x.csv"
+expect commands_in_replay 2 'output folder' -- "$fovea" replay "$trace" -o "$out/refused" --command-trace "$out/refused/x.csv"
+expect commands_no_name 2 'a file name is needed' -- run -o "$out/refused" --command-trace ''
+head -1 "$out/replay/latency.csv" | grep -qx 'master,direction,beat,low_ns,high_ns,count' || fail 'latency.csv of a replay'
+beats=$(awk -F, 'NR > 1 { n[$3] += $6 } END { print n["first"], n["last"] }' "$out/replay/latency.csv")
+n=$(figure "$out/replay" replay.requests)
+[ "$beats" = "$n $n" ] || fail "latency.csv has $beats beats of $n requests"
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
 cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
 expect memory_only 0 -- replay "$trace" --memory-only
@@ -94,7 +118,7 @@ text=$(replay "$out/fcfs.trace" 2>&1)
 grep -q 'no effect' <<<"$text" && fail "a key of the trace is said to have no effect: $text"
 
 printf '# dramtrace 1\n# master 5 window 4 left\n# master 6 window 2 right\n0 5 R 0x0 256\n0 6 W 0x40000 64\n' >"$out/good.txt"
-expect text 0 'replay.time' -- replay "$out/good.txt"
+expect text 0 '^replayed ' -- replay "$out/good.txt"
 grep -q '"bus.left.read_bytes": {"value": 256,' "$out/replay/stats.json" || fail 'no bus.left'
 [ "$(head -1 "$out/replay/timeline.csv")" = start_ns,end_ns,left.read_bytes,left.write_bytes,right.read_bytes,right.write_bytes ] ||
   fail "timeline.csv: $(head -1 "$out/replay/timeline.csv")"

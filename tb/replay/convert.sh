@@ -96,7 +96,7 @@ holds "$out/d.sim3" '0x0 WRITE 0
 0x80 READ 3
 0xc0 WRITE 17'
 expect sim3_binary 0 -- convert "$out/d.sim3" -o "$out/d.trace" --to binary --clock 1250ps
-expect sim3_replay 0 'replay.time' -- "$fovea" replay "$out/d.trace" -o "$out/replay"
+expect sim3_replay 0 '^replayed ' -- "$fovea" replay "$out/d.trace" -o "$out/replay"
 expect ram2 0 'no times; only the order' -- convert "$out/d.stl" -o "$out/d.ram2" --to ramulator2 --clock 1250ps
 holds "$out/d.ram2" 'ST 0x0
 LD 0x40

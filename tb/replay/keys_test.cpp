@@ -190,7 +190,7 @@ std::ostream& operator<<(std::ostream& os, const KeyEffect& e) { return os << e.
 double clocks(double ps) { return ps / static_cast<double>(kClock); }
 double end(Played& p) { return clocks(static_cast<double>(p.path->duration())); }
 double longest_read(Played& p) {
-  return clocks(static_cast<double>(p.path->latency(trace::TextTrace::port(0)).histogram.max()));
+  return clocks(static_cast<double>(p.path->latency(trace::TextTrace::port(0)).read_first().max()));
 }
 
 std::string record(unsigned clock, unsigned master, char direction, unsigned address,

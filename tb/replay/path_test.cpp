@@ -60,7 +60,7 @@ TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
     last = std::max(last, s.request.last);
   }
   for (unsigned m = 0; m < 3; ++m) {
-    const Histogram& got = played.path->latency(trace::TextTrace::port(m)).histogram;
+    const bus::LatencyHistogram got = played.path->latency(trace::TextTrace::port(m)).read_first();
     EXPECT_EQ(got.count(), expected[m].count());
     EXPECT_EQ(got.mean(), expected[m].mean());
     EXPECT_EQ(got.min(), expected[m].min());
@@ -81,7 +81,7 @@ class WindowTest : public testing::TestWithParam<bool> {};
 TEST_P(WindowTest, OneReadAtATimeTakesTheSumOfItsLatencies) {
   trace::TextTrace one("t", random_reads(1, 1, 500, 8));
   const Played alone(one, GetParam());
-  const Histogram& h = alone.path->latency(trace::TextTrace::port(0)).histogram;
+  const bus::LatencyHistogram h = alone.path->latency(trace::TextTrace::port(0)).read_first();
   EXPECT_EQ(h.count(), 500u);
   // Eight bytes: the first beat is the last, and the next read goes out with it.
   EXPECT_NEAR(static_cast<double>(alone.path->duration()), h.mean() * 500, 1);
@@ -94,7 +94,7 @@ TEST_P(WindowTest, TheWholeWindowIsUnderWay) {
   for (const unsigned window : {1u, 4u, 16u, 48u}) {
     trace::TextTrace text("t", random_reads(1, window, 5000, 32));
     const Played p(text, GetParam());
-    const Histogram& h = p.path->latency(trace::TextTrace::port(0)).histogram;
+    const bus::LatencyHistogram h = p.path->latency(trace::TextTrace::port(0)).read_first();
     // A latency ends with the first beat of the data, the place is free with the last.
     const double under_way = h.mean() * 5000 / static_cast<double>(p.path->duration());
     EXPECT_LE(under_way, window);
@@ -320,8 +320,8 @@ TEST(ReplayPathTest, TheUrgentMasterWaitsLess) {
         l.records[s].push_back(r);
       }
     const Played p(info, l);
-    return std::pair(p.path->latency(Master::kVpfe).histogram.mean(),
-                     p.path->latency(Master::kVpbe).histogram.mean());
+    return std::pair(p.path->latency(Master::kVpfe).read_first().mean(),
+                     p.path->latency(Master::kVpbe).read_first().mean());
   };
   const auto one = means(0, 7), two = means(7, 0);
   EXPECT_LT(one.first * 1.1, one.second);

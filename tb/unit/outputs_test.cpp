@@ -189,6 +189,14 @@ TEST(StallsCsvTest, NamesAreQuotedWhereTheyMustBe) {
   EXPECT_EQ(stalls_csv(rows), "cause,region,culprit,cycles\ndcache,\"a,b\",vpbe,3\n");
 }
 
+TEST(LatencyCsvTest, HasALineForEachBin) {
+  const std::vector<LatencyRow> rows{{"arm_d", "read", "first", 144'000, 152'000, 7},
+                                     {"a,b", "write", "last", 1, 2, 1}};
+  EXPECT_EQ(latency_csv(rows),
+            "master,direction,beat,low_ns,high_ns,count\narm_d,read,first,144.000,152.000,7\n"
+            "\"a,b\",write,last,0.001,0.002,1\n");
+}
+
 TEST(HumanTextTest, PicksAFittingPrefix) {
   EXPECT_EQ(human_text(0.0402, "s"), "40.2 ms");
   EXPECT_EQ(human_text(1.5, "s"), "1.5 s");
@@ -202,21 +210,9 @@ TEST(HumanTextTest, PicksAFittingPrefix) {
   EXPECT_EQ(human_text(0.337, "ratio"), "33.7 %");
   EXPECT_EQ(human_text(0.934, "x"), "0.93x real time");
   EXPECT_EQ(human_text(std::uint64_t{25}, "1"), "25");
-  EXPECT_EQ(human_text(25.0, "1/s"), "25 1/s");
+  EXPECT_EQ(human_text(25.0, "1/s"), "25 a second");
   EXPECT_EQ(human_text(std::uint64_t{26}, "count"), "26");
   EXPECT_EQ(human_text(std::nan(""), "s"), "-");
-}
-
-TEST(SummaryTableTest, ShowsWhatExistsAndMastersThatMovedBytes) {
-  const std::vector<StatRow> stats{{"frame.rate", 25.0, "1/s", ""},
-                                   {"bus.vpfe.write_bytes", std::uint64_t{829'440}, "bytes", ""},
-                                   {"bus.edma_tc0.read_bytes", std::uint64_t{0}, "bytes", ""},
-                                   {"cpu.cycles", std::uint64_t{9}, "cycles", ""}};
-  const std::string table = summary_table(stats, {});
-  EXPECT_THAT(table, HasSubstr("frame.rate"));
-  EXPECT_THAT(table, HasSubstr("829.4 kB"));
-  EXPECT_THAT(table, Not(HasSubstr("edma")));
-  EXPECT_THAT(table, Not(HasSubstr("cpu.cycles")));
 }
 
 std::vector<StatRow> frames_of(double rate, std::uint64_t displayed, std::uint64_t repeated,
@@ -259,11 +255,6 @@ TEST(VerdictTest, BeginsWithTheRateOfRemapsInARow) {
       "frame rate missed: 4 of 6 camera frames shown (25/s), none dropped, 2 repeated\n";
   EXPECT_EQ(verdict(remaps_of(5, 26.5)), shown);
   EXPECT_EQ(verdict(remaps_of(6, 37.25)), "remaps in a row: 37.25/s; " + shown);
-  const auto has_rate = [](const std::vector<StatRow>& rows) {
-    return summary_table(rows, {}).find("frame.remap_rate") != std::string::npos;
-  };
-  EXPECT_FALSE(has_rate(remaps_of(5, 26.5)));
-  EXPECT_TRUE(has_rate(remaps_of(6, 37.25)));
   std::vector<StatRow> without = remaps_of(60, 0);
   without.pop_back();
   EXPECT_EQ(verdict(without), shown);
@@ -272,11 +263,6 @@ TEST(VerdictTest, BeginsWithTheRateOfRemapsInARow) {
 TEST(VerdictTest, SaysNothingWithoutFrames) {
   EXPECT_EQ(verdict({}), "");
   EXPECT_EQ(verdict(frames_of(25, 0, 0, 0)), "");
-}
-
-TEST(SummaryTableTest, BeginsWithTheVerdict) {
-  EXPECT_THAT(summary_table(frames_of(25, 25, 0, 0), {}),
-              testing::StartsWith("frame rate met: 25"));
 }
 
 /// A wall clock that the test moves.
@@ -303,6 +289,23 @@ TEST(ProgressMeterTest, PrintsALineAboutEveryTenSecondsWithoutATerminal) {
   EXPECT_THAT(text, HasSubstr("simulated 5.000 s, frame 10/80, 0.50x real time"));
   // At 20 s 50 frames remain at 0.5 s each.
   EXPECT_THAT(text, HasSubstr("frame 30/80, 0.50x real time, ETA 25 s"));
+}
+
+TEST(ProgressMeterTest, NamesThePhaseUntilTheFirstFrame) {
+  FakeClock clock;
+  std::ostringstream out;
+  ProgressMeter meter(out, false, clock.reader());
+  for (const auto& [phase, shown] : {std::pair("boot", 0u), std::pair("waiting for lock", 0u), std::pair("frames", 0u),
+                                     std::pair("frames", 1u), std::pair("", 2u)}) {
+    clock.now += std::chrono::seconds(11);
+    meter.update({kPsPerSecond, shown, 80, 0, phase});
+  }
+  EXPECT_EQ(out.str(),
+            "simulated 1.000 s, boot, 0.09x real time\n"
+            "simulated 1.000 s, waiting for lock\n"
+            "simulated 1.000 s, frame 0/80\n"
+            "simulated 1.000 s, frame 1/80\n"
+            "simulated 1.000 s, frame 2/80, ETA 14:18\n");
 }
 
 TEST(ProgressMeterTest, RewritesOneLineOnATerminal) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/bus/core/crossbar_params.h"
+#include "model/bus/core/latency_histogram.h"
 #include "model/bus/core/timeline.h"
 #include "model/common/clock.h"
 #include "model/common/mem_observer.h"
@@ -117,6 +118,15 @@ class Crossbar {
   Timeline timeline;
   /// Time between issue and arrival at the SDRAM, and from there back to the port.
   WaitTable waits;
+  /// Of the requests to the SDRAM, by Master; refused ones included.
+  std::array<PortLatencies, kMasterCount> latencies;
+  /// `first`: what counts as the first beat. For requests that do not pass the crossbar.
+  [[gnu::always_inline]] void count_latency(const MemRequest& r, Picoseconds first) {
+    PortLatencies& of_port = latencies[index(r.master)];
+    BeatLatencies& l = r.write ? of_port.write : of_port.read;
+    l.first.add(first - r.issued);
+    l.last.add(r.last - r.issued);
+  }
 
   /// Snapshot of all queued requests, for debugger commands.
   struct View {
@@ -206,12 +216,15 @@ class Crossbar {
       observer_->responded(request);
     host.respond(request);
   }
+  /// Until a write has its outcome, `first` is when it was granted.
   /// A master sees its outcomes in order, also when a faster clock would have the later one pass an
   /// earlier one that was decided before the change.
   void set_outcome(MemRequest& r, Picoseconds first, Picoseconds last) {
+    const Picoseconds granted = r.first;
     Picoseconds& newest = ports_[index(r.master)].answered[r.write];
     r.first = std::max(first, newest);
     r.last = newest = std::max(last, r.first);
+    count_latency(r, r.write ? granted : r.first);
   }
   void new_head(unsigned port, std::uint64_t visible) {
     visible_[port] = visible;
@@ -292,6 +305,7 @@ template <CrossbarHost Host>
   const std::uint64_t arrival = next_edge_ + cycles;
   const Picoseconds at = scr_.edge(arrival);
   if (r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr)) {
+    r.first = next_;
     if (crossed == next_edge_)
       charge(r, Culprit::kBridge, next_ - r.issued);
     else
@@ -318,6 +332,7 @@ template <bool kWrite, CrossbarHost Host>
   SlaveState& s = slaves_[kDdr];
   r.in_path.slave = kDdr;
   r.in_path.priority = p.priority;
+  r.first = g.at;
   const std::uint64_t arrival = g.edge + (kWrite ? p.beats(r.bytes) : 1u);
   const Picoseconds at = scr_.edge(arrival);
   s.free = arrival;

@@ -134,7 +134,13 @@ class Core : public Background {
     window_.mark(t);
     interface_.attention = true;
   }
-  bool mark_done() const { return !window_.pending(); }
+  bool mark_done() const { return !window_.edge_pending(); }
+  /// Has `f` called with the counters as mark_window() copies them at time t, which must not be
+  /// before the present time. The counters' `cycles` are those of that boundary.
+  void sample_counts(Picoseconds t, MeasurementWindow::Sample f) {
+    window_.sample(t, std::move(f));
+    interface_.attention = true;
+  }
   const CoreStats& window_stats() const { return window_.stats(); }
   const Counts& counts() const { return ledger_.counts; }
   const Clock& clock() const { return interface_.clock; }

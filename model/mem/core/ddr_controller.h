@@ -42,6 +42,9 @@ class DdrController {
   /// New timing from the registers; takes effect for commands after the call's time.
   void configure(const DdrConfig& config, Picoseconds at);
   bool running() const { return running_; }
+  /// Refreshes that are owed, and requests in the FIFOs; catch_up() first.
+  unsigned refreshes_owed() const { return refresh_.owed(); }
+  unsigned requests_queued() const { return queue_.count(); }
 
   /// Catches up to `at` what needs no decision: refreshes and sleep while nothing is queued, and
   /// the columns inside a burst. They change nothing that a master can see before the next decision

@@ -2,6 +2,7 @@
 // access is prepared: its row was open, its bank was closed, another row was open.
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,15 @@ struct DdrStats : StatGroup {
   Counter row_misses{*this, "row_misses", "1", "requests that found their bank closed"};
   Counter row_conflicts{*this, "row_conflicts", "1", "requests that found another row open"};
   Counter activates{*this, "activates", "1", "ACT commands"};
+  Formula command_hit_rate{*this, "command_hit_rate", "ratio",
+                           "1 - ACT commands / column commands (RD, WR): the share of column commands "
+                           "that needed no row to be opened for them; below zero if rows are opened in vain",
+                           [this] {
+                             return bursts.count()
+                                        ? 1 - static_cast<double>(activates.count()) /
+                                                  static_cast<double>(bursts.count())
+                                        : std::numeric_limits<double>::quiet_NaN();
+                           }};
   Counter refreshes{*this, "refreshes", "1", "REF commands"};
   Maximum refresh_backlog{*this, "refresh_backlog", "1",
                           "most refreshes owed at once; JESD79-2 allows 8 to be postponed"};

@@ -1,0 +1,268 @@
+#include "sw/fovea/last_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "sw/fovea/cli_help.h"
+
+namespace fovea::app {
+namespace {
+
+/// A kind of the core's clocks: the statistic's name behind `cpu.` or `cpu.remap.`, and words for it.
+struct Kind {
+  const char* name;
+  const char* words;
+};
+constexpr Kind kKinds[] = {
+    {"issue", "executing"},
+    {"idle", "waiting for an interrupt"},
+    {"stall.interlock", "interlocks"},
+    {"stall.icache", "I-cache line fills"},
+    {"stall.dcache", "D-cache line fills"},
+    {"stall.write_buffer", "room in the write buffer"},
+    {"stall.uncached", "uncached accesses"},
+    {"stall.tlb", "page walks"},
+    {"stall.tcm", "internal RAM"},
+    {"stall.cache_op", "cache maintenance"},
+    {"stall.drain", "the write buffer to drain"},
+    {"stall.bus_sync", "clock edges of the bus"},
+};
+constexpr std::size_t kInterlocks = 2;  // behind it the words follow "waiting for"
+
+std::optional<double> real(std::span<const StatRow> stats, std::string_view name) {
+  const StatRow* row = find(stats, name);
+  if (!row) return std::nullopt;
+  const double v = std::visit([](auto x) { return static_cast<double>(x); }, row->value);
+  return std::isfinite(v) ? std::optional(v) : std::nullopt;
+}
+
+std::uint64_t count(std::span<const StatRow> stats, const std::string& name) {
+  const StatRow* row = find(stats, name);
+  const auto* n = row ? std::get_if<std::uint64_t>(&row->value) : nullptr;
+  return n ? *n : 0;
+}
+
+std::vector<std::uint64_t> clocks(std::span<const StatRow> stats, const std::string& prefix) {
+  std::vector<std::uint64_t> out;
+  for (const Kind& k : kKinds) out.push_back(count(stats, prefix + k.name));
+  return out;
+}
+
+/// "what 1.2, what 0.3": the largest first, without zeros.
+struct Part {
+  std::string what;
+  std::uint64_t tenths;
+};
+std::string listed(std::vector<Part> parts, const char* unit = "") {
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.tenths > b.tenths; });
+  std::string out;
+  for (const Part& p : parts)
+    if (p.tenths)
+      out += fmt::format("{}{} {}.{}{}", out.empty() ? "" : ", ", p.what, p.tenths / 10, p.tenths % 10,
+                         unit);
+  return out;
+}
+
+std::vector<Part> parts_of(const std::vector<std::uint64_t>& tenths) {
+  std::vector<Part> out;
+  for (std::size_t k = 0; k < tenths.size(); ++k) {
+    const bool wait = k > kInterlocks;
+    out.push_back({(wait ? "waiting for " : "") + std::string(kKinds[k].words), tenths[k]});
+  }
+  return out;
+}
+
+constexpr std::size_t kColumn = 8;
+
+/// `label` in the first column, the text in the second, wrapped.
+std::string paragraph(std::string label, const std::string& text) {
+  label.resize(kColumn, ' ');
+  return label + wrapped(text, kColumn) + "\n";
+}
+
+/// The core's clocks by what they were spent on, in percent that add up to 100.
+std::string core_line(std::span<const StatRow> stats) {
+  if (count(stats, "cpu.cycles") == 0) return "";
+  return paragraph("core", listed(parts_of(apportioned(1000, clocks(stats, "cpu."))), " %"));
+}
+
+std::string culprit_words(const std::string& name) {
+  static const std::map<std::string, std::string> kWords = {
+      {"bridge", "bridges"},
+      {"service", "own way through crossbar and SDRAM"},
+      {"row_miss", "opening rows"},
+      {"row_conflict", "closing other rows"},
+      {"turnaround", "turning the data bus"},
+      {"refresh", "refresh"},
+      {"power_down", "waking the SDRAM"},
+      {"own", "behind their own requests"}};
+  const auto found = kWords.find(name);
+  return found == kWords.end() ? "behind " + name : found->second;
+}
+
+/// The masters and directions that waited longest for the SDRAM, each with its largest parts.
+std::string wait_lines(std::span<const StatRow> stats) {
+  struct Group {
+    std::string who;
+    double total = 0;
+    std::vector<std::pair<double, std::string>> parts;
+  };
+  std::map<std::string, Group> groups;
+  constexpr std::string_view kWait = ".wait.";
+  for (const StatRow& row : stats) {
+    const auto at = row.name.find(kWait);
+    if (!row.name.starts_with("ddr.") || at == std::string::npos) continue;
+    const auto t = real(stats, row.name);
+    if (!t || *t <= 0) continue;
+    const std::string rest = row.name.substr(at + kWait.size());  // read.CULPRIT
+    const std::string direction = rest.substr(0, rest.find('.'));
+    const std::string master = row.name.substr(4, at - 4);
+    Group& g = groups[master + " " + direction];
+    g.who = master + "'s " + direction + "s";
+    g.total += *t;
+    g.parts.emplace_back(*t, culprit_words(rest.substr(rest.find('.') + 1)));
+  }
+  std::vector<Group> sorted;
+  for (auto& [key, g] : groups) sorted.push_back(std::move(g));
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Group& a, const Group& b) { return a.total > b.total; });
+  constexpr std::size_t kMasters = 3, kParts = 3;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kMasters, sorted.size()); ++i) {
+    Group& g = sorted[i];
+    std::stable_sort(g.parts.begin(), g.parts.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
+      parts.push_back(fmt::format("{} {:.0f} %", g.parts[k].second, 100 * g.parts[k].first / g.total));
+    out += paragraph(i == 0 ? "waits" : "",
+                     fmt::format("{}, {} in all: {}", g.who, human_text(g.total, "s"), fmt::join(parts, ", ")));
+  }
+  return out;
+}
+
+/// "SDRAM busy 17.2 % ...". `seconds`: of the figures.
+std::string sdram_line(std::span<const StatRow> stats, std::optional<double> seconds) {
+  std::vector<std::string> parts;
+  if (const auto busy = real(stats, "ddr.utilisation"))
+    parts.push_back(fmt::format("data bus busy {:.1f} %", 100 * *busy));
+  if (const auto idle = real(stats, "ddr.headroom"))
+    parts.push_back(fmt::format("no request queued {:.1f} %", 100 * *idle));
+  if (seconds && *seconds > 0)
+    for (const auto& [name, what] : {std::pair("ddr.read_bytes", "reads"), std::pair("ddr.write_bytes", "writes")})
+      if (const std::uint64_t bytes = count(stats, name))
+        parts.push_back(fmt::format("{} {:.1f} MB/s", what, static_cast<double>(bytes) / *seconds * 1e-6));
+  if (const auto hits = real(stats, "ddr.command_hit_rate"))
+    parts.push_back(fmt::format("{:.1f} % of the column commands needed no new row", 100 * *hits));
+  if (parts.empty()) return "";
+  return paragraph("SDRAM", fmt::format("{}", fmt::join(parts, ", ")));
+}
+
+std::string host_line(std::span<const StatRow> host) {
+  std::vector<std::string> parts;
+  for (const auto& [name, format] :
+       {std::pair("wall_time", "{}"), std::pair("realtime_factor", "{}"), std::pair("mips", "{} million instructions/s"),
+        std::pair("requests_per_second", "{} requests/s"), std::pair("peak_rss", "{} of memory")}) {
+    const StatRow* row = find(host, name);
+    if (!row) continue;
+    const std::string unit = row->unit == "1e6/s" || row->unit == "1/s" ? "" : row->unit;
+    parts.push_back(fmt::format(fmt::runtime(format), human_text(row->value, unit)));
+  }
+  return parts.empty() ? "" : paragraph("host", fmt::format("{}", fmt::join(parts, ", ")));
+}
+
+std::string milliseconds(double seconds) { return fmt::format("{:.4g}", seconds * 1e3); }
+
+/// Start-up and latency of the frames.
+std::string frame_lines(std::span<const StatRow> stats) {
+  std::vector<std::string> parts;
+  const auto add = [&](const std::string& name, const std::string& what) {
+    const auto mean = real(stats, name + ".mean"), min = real(stats, name + ".min"), max = real(stats, name + ".max");
+    if (mean && min && max)
+      parts.push_back(fmt::format("{} {} ms ({} to {})", what, milliseconds(*mean), milliseconds(*min),
+                                  milliseconds(*max)));
+  };
+  add("frame.remap_time", "a remap");
+  add("frame.latency", "capture to display");
+  if (const auto t = real(stats, "startup.lut_time"))
+    parts.push_back("look-up table built in " + milliseconds(*t) + " ms");
+  return parts.empty() ? "" : paragraph("times", fmt::format("{}", fmt::join(parts, ", ")));
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std::uint64_t> shares) {
+  using Wide = unsigned __int128;
+  Wide sum = 0;
+  for (const std::uint64_t s : shares) sum += s;
+  std::vector<std::uint64_t> out(shares.size());
+  if (sum == 0) return out;
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::uint64_t left = total;
+  for (std::size_t i = 0; i < shares.size(); ++i) left -= out[i] = static_cast<std::uint64_t>(Wide{total} * shares[i] / sum);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return Wide{total} * shares[a] % sum > Wide{total} * shares[b] % sum;
+  });
+  for (std::size_t i = 0; left > 0; ++i, --left) ++out[order[i]];
+  return out;
+}
+
+std::string frame_budget(std::span<const StatRow> stats) {
+  const auto window = real(stats, "frame.window");
+  const std::uint64_t displayed = count(stats, "frame.displayed"), cycles = count(stats, "cpu.cycles");
+  const std::uint64_t remap = count(stats, "cpu.remap.cycles"), idle = count(stats, "cpu.idle");
+  const std::uint64_t idle_inside = count(stats, "cpu.remap.idle");
+  if (!window || displayed == 0 || remap == 0 || remap > cycles || idle_inside > idle) return "";
+  const auto period =
+      static_cast<std::uint64_t>(std::llround(*window / static_cast<double>(displayed) * 1e4));
+  const std::uint64_t outside = idle - idle_inside;
+  const std::vector<std::uint64_t> parts =
+      apportioned(period, std::vector<std::uint64_t>{remap, cycles - remap - outside, outside});
+  std::string out = paragraph(
+      "budget",
+      fmt::format("{}.{} ms a displayed frame: remap {}.{}, other work {}.{}, idle {}.{}", period / 10,
+                  period % 10, parts[0] / 10, parts[0] % 10, parts[1] / 10, parts[1] % 10, parts[2] / 10,
+                  parts[2] % 10));
+  const std::string inside = listed(parts_of(apportioned(parts[0], clocks(stats, "cpu.remap."))));
+  if (inside.empty()) return out;
+  return out + paragraph("", fmt::format("remap {}.{} ms: {}", parts[0] / 10, parts[0] % 10, inside));
+}
+
+std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host) {
+  return verdict(stats) + frame_budget(stats) + frame_lines(stats) + core_line(stats) +
+         sdram_line(stats, real(stats, "frame.window")) + wait_lines(stats) + host_line(host);
+}
+
+std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host) {
+  std::string out;
+  if (const auto time = real(stats, "replay.time")) {
+    out = fmt::format("replayed {} requests in {} of simulated time", count(stats, "replay.requests"),
+                      human_text(*time, "s"));
+    if (const auto rate = real(stats, "replay.bandwidth"))
+      out += fmt::format(", {:.1f} MB/s", *rate * 1e-6);
+    out = wrapped(out, 0) + "\n";
+  }
+  return out + frame_lines(stats) + sdram_line(stats, real(stats, "replay.time")) + wait_lines(stats) +
+         host_line(host);
+}
+
+std::string exec_words(std::span<const StatRow> stats, Frequency core_clock) {
+  const std::uint64_t cycles = count(stats, "cpu.cycles"), instructions = count(stats, "cpu.instructions");
+  std::string out = fmt::format("{} instructions in {} clocks", instructions, cycles);
+  if (instructions)
+    out += fmt::format(", {:.2f} an instruction", static_cast<double>(cycles) / static_cast<double>(instructions));
+  if (!core_clock.stopped())
+    out += fmt::format(": {:.6f} s at {:.5g} MHz", static_cast<double>(cycles) / core_clock.hertz(),
+                       core_clock.hertz() * 1e-6);
+  return paragraph("core", out) + core_line(stats);
+}
+
+}  // namespace fovea::app

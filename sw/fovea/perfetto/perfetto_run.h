@@ -1,0 +1,82 @@
+// Records a board's run for Perfetto: requests of the masters, DMA transfers, interrupts, phases of the
+// firmware, frames, and counters of the SDRAM.
+#pragma once
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/board/board.h"
+#include "model/common/mem_observer.h"
+#include "sw/fovea/perfetto/perfetto_file.h"
+#include "sw/fovea/perfetto/perfetto_request.h"
+
+namespace fovea::app {
+
+class PerfettoRun final : private MemObserver {
+ public:
+  /// To be constructed before the simulation starts. The file is opened, and the expression checked.
+  /// @throws UserError
+  PerfettoRun(const PerfettoRequest& request, board::Board& board);
+  ~PerfettoRun() override;
+  PerfettoRun(const PerfettoRun&) = delete;
+  PerfettoRun& operator=(const PerfettoRun&) = delete;
+
+  /// The window opens now.
+  void window_opened();
+  /// A frame was shown.
+  void frame(const video::DisplayFrame& shown, const board::FrameRecord& record);
+  /// Writes the file. @throws UserError @return a sentence if events were dropped, or "" if the file holds
+  /// all that was asked for
+  std::string finish();
+
+ private:
+  void submitted(const MemRequest& r, bool to_sdram) override;
+  void responded(const MemRequest& r) override;
+  void register_done(const MemRequest& r) override;
+
+  void begin(Picoseconds at);
+  void end();
+  void begin_at(Picoseconds at);
+  void end_at(Picoseconds at);
+  void sample();
+  void pins(std::uint32_t levels, Picoseconds at);
+  void close_phase(Picoseconds at);
+  void watch_interrupts();
+  void watch_transfers();
+  /// The line of an interrupt rises or falls.
+  struct Line {
+    std::string name;
+    PerfettoFile::Track track;
+    std::optional<Picoseconds> since;
+  };
+  void line_changed(Line& line, bool level);
+  void request(const MemRequest& r, const char* what);
+
+  PerfettoRequest request_;
+  board::Board& board_;
+  std::unique_ptr<PerfettoFile> file_;
+  bool on_ = false, over_ = false;
+  Picoseconds from_ = 0, until_ = kNever;
+  MemObserver* next_ = nullptr;
+  std::array<std::unique_ptr<PerfettoLanes>, kMasterCount> masters_;
+  PerfettoFile::Track phases_, capture_, remap_, display_;
+  std::optional<std::pair<std::string, Picoseconds>> phase_;
+  std::deque<Line> lines_;
+  struct Transfer {
+    dma::TransferRequest request;
+    Picoseconds at;
+  };
+  std::array<std::deque<Transfer>, 4> transfers_;
+  std::array<std::unique_ptr<PerfettoLanes>, 4> controllers_;
+  // Counters, and the values that they were computed from.
+  PerfettoFile::Track queue_, owed_, hits_;
+  std::array<std::array<PerfettoFile::Track, 2>, kStatCount> bandwidth_{};
+  std::array<std::array<std::uint64_t, 2>, kStatCount> bytes_{};
+  std::uint64_t activates_ = 0, bursts_ = 0;
+};
+
+}  // namespace fovea::app

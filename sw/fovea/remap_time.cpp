@@ -1,0 +1,80 @@
+#include "sw/fovea/remap_time.h"
+
+#include <algorithm>
+#include <string>
+
+namespace fovea::app {
+namespace {
+
+/// How far the core may be past a write to the pins when they change: it waits for what its writes to
+/// registers do, so this is more than enough. From an event in its future on, its counters are the same
+/// in strict and in default mode.
+constexpr Picoseconds kAhead = kPsPerUs;
+constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
+
+}  // namespace
+
+RemapTime::RemapTime(board::Board& board) : board_(board) {
+  const auto others = board.dm365.gpio.on_output;
+  board.dm365.gpio.on_output = [this, others](unsigned bank, std::uint32_t out, Picoseconds at) {
+    others(bank, out, at);
+    if (bank != PHASE_BANK) return;
+    const board::Phase phase = board::phase_of(out);
+    if (phase == board::Phase::kRemapStart) reached(true);
+    if (phase == board::Phase::kRemapEnd) reached(false);
+  };
+}
+
+void RemapTime::reached(bool begins) {
+  const Picoseconds at = kernel_time() + kAhead;
+  board_.dm365.end_of_instant.at(at, kAfterAll, [this, begins, at] {
+    board_.dm365.arm.core().sample_counts(
+        at, [this, begins](const cpu::Counts& counts) { sampled(begins, of(counts)); });
+  });
+}
+
+RemapTime::Clocks RemapTime::of(const cpu::Counts& counts) {
+  return {counts.cycles, counts.issue, counts.idle, counts.stall};
+}
+
+void RemapTime::add(Clocks& sum, const Clocks& from, const Clocks& to) {
+  sum.cycles += to.cycles - from.cycles;
+  sum.issue += to.issue - from.issue;
+  sum.idle += to.idle - from.idle;
+  for (std::size_t k = 0; k < cpu::kCauses; ++k) sum.stall[k] += to.stall[k] - from.stall[k];
+}
+
+void RemapTime::sampled(bool begins, const Clocks& at) {
+  const cpu::CoreStats& window = board_.dm365.arm.core().window_stats();
+  const bool open = board_.window_open();
+  if (begins) {
+    if (open || !board_.window_end()) begun_ = at;
+    return;
+  }
+  if (!begun_) return;
+  // A remap that reaches over the window's end is left to collect().
+  if (board_.window_end() && at.cycles > window.to.cycles) return;
+  const Clocks opened = of(window.from);
+  if (board_.window_start() && at.cycles > opened.cycles)
+    add(sum_, begun_->cycles < opened.cycles ? opened : *begun_, at);
+  begun_.reset();
+}
+
+void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
+                        std::vector<StatRow>& rows) const {
+  Clocks all = sum_;
+  if (begun_ && begun_->cycles < to.cycles)
+    add(all, begun_->cycles < from.cycles ? of(from) : *begun_, of(to));
+  if (all.cycles == 0) return;
+  const auto row = [&](const std::string& name, std::uint64_t clocks, const std::string& sentence) {
+    rows.push_back({"cpu.remap." + name, clocks, "cycles", sentence});
+  };
+  row("cycles", all.cycles, "core clocks during remaps");
+  row("issue", all.issue, "clocks during remaps in which instructions issue");
+  row("idle", all.idle, "clocks during remaps in wait-for-interrupt");
+  for (const cpu::CauseInfo& info : cpu::kCauseTable)
+    row("stall." + std::string(info.name), all.stall[index(info.cause)],
+        "during remaps: " + std::string(info.sentence));
+}
+
+}  // namespace fovea::app

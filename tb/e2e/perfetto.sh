@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# `--perfetto`: the trace says what the run's other files say, changes no figure, stays within its size, and
+# the reader that finds so complains about a trace of another run and a damaged one.
+# Usage: perfetto.sh FOVEA PROJECT_SOURCE OUT
+set -uo pipefail
+fovea=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
+read_trace() { python3 "$source/tb/e2e/perfetto.py" "$@"; }
+cat >"$out/small.yaml" <<'Y'
+run: {frames: 3, start_limit: 2s}
+camera: {kind: chart, stamp: false}
+video: {width: 188, height: 48}
+firmware: {kernel: staged}
+Y
+run() { "$fovea" run "$out/small.yaml" --no-frames "$@" >"$out/text" 2>&1; }
+run -o "$out/run" --perfetto "$out/run.pftrace" || fail "run: $(cat "$out/text")"
+run -o "$out/without" || fail "without: $(cat "$out/text")"
+cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
+read_trace "$out/run.pftrace" "$out/run" || fail 'the trace does not say what the run says'
+run -o "$out/strict" --sync=strict --perfetto "$out/strict.pftrace"
+read_trace "$out/strict.pftrace" "$out/strict" || fail 'strict'
+
+# Another run's results, and a trace with a byte less.
+run -o "$out/other" -s bus.arm_d.request_latency=9cycles
+! read_trace "$out/run.pftrace" "$out/other" >"$out/text" || fail 'the reader finds nothing in a trace of another run'
+head -c -1 "$out/run.pftrace" >"$out/cut.pftrace"
+! read_trace "$out/cut.pftrace" "$out/run" >"$out/text" || fail 'the reader finds nothing in a damaged trace'
+
+# Selection: tracks, from, for, size.
+shape() { read_trace --shape "$1"; }
+run -o "$out/run" --perfetto "$out/tracks.pftrace" --perfetto-tracks '^frames/|/phases$'
+[ "$(shape "$out/tracks.pftrace" | cut -d' ' -f4-)" = 'firmware frames' ] || fail "tracks: $(shape "$out/tracks.pftrace")"
+run -o "$out/run" --perfetto "$out/span.pftrace" --perfetto-from 400ms --perfetto-for 2ms --perfetto-tracks '^(masters|SDRAM)/'
+read -r packets first last groups <<<"$(shape "$out/span.pftrace")"
+[ "$first" -ge 400000000 ] && [ "$last" -lt 402010000 ] && [ "$packets" -gt 100 ] && [ "$groups" = 'SDRAM masters' ] ||
+  fail "from, for: $packets $first $last $groups"
+run -o "$out/run" --perfetto "$out/ring.pftrace" --perfetto-size 1
+bytes=$(stat -c %s "$out/ring.pftrace")
+[ "$bytes" -le $((1300 * 1024)) ] && [ "$bytes" -gt $((600 * 1024)) ] || fail "ring: $bytes bytes"
+grep -q 'lacks [0-9]* older packets' "$out/text" || fail 'nothing said of what the ring lost'
+shape "$out/ring.pftrace" >/dev/null || fail 'the ring is not readable'
+# The trigger: one frame after the other is shown twice. The recording ends with the first that is.
+run -o "$out/run" --perfetto "$out/trigger.pftrace" --perfetto-trigger repeated -s firmware.flow=serial \
+  -s run.frames=8 --perfetto-tracks '^frames/'
+repeats=$(awk -F, 'NR > 1 && $11 == 1 { print int($9); exit }' "$out/run/frames.csv")
+[ -n "$repeats" ] || fail 'no frame is repeated'
+last=$(shape "$out/trigger.pftrace" | cut -d' ' -f3)
+[ "$last" = "$repeats" ] || fail "trigger: the last event is at $last ns, the repeated frame ends at $repeats"
+
+expect() { # NAME PATTERN -- OPTIONS: refused with one line
+  local name=$1 pattern=$2 text status
+  shift 3
+  text=$("$fovea" run "$out/small.yaml" -o "$out/refused" "$@" 2>&1)
+  status=$?
+  [ "$status" = 2 ] && [ "$(wc -l <<<"$text")" = 1 ] && grep -qE "$pattern" <<<"$text" || fail "$name: status $status: $text"
+}
+echo dear >"$out/letter"
+expect letter 'not a Perfetto trace' -- --perfetto "$out/letter"
+expect folder 'output folder' -- --perfetto "$out/refused/x"
+expect regex "perfetto-tracks '\\('" -- --perfetto "$out/x" --perfetto-tracks '('
+expect from 'perfetto-from' -- --perfetto "$out/x" --perfetto-from never
+expect alone 'with --perfetto FILE' -- --perfetto-size 3
+expect size 'perfetto-size' -- --perfetto "$out/x" --perfetto-size 0
+expect event 'perfetto-trigger' -- --perfetto "$out/x" --perfetto-trigger doom
+exit $((failures > 0))
