@@ -72,6 +72,8 @@ class Board : public sc_core::sc_module {
 
   /// Called for each frame shown inside the window, in order.
   std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
+  /// Called when the firmware shows another phase on its pins.
+  std::function<void(Phase, Picoseconds at)> on_phase;
   /// Called for each byte that UART0 has sent, at its last stop bit.
   std::function<void(std::uint8_t)> on_uart;
   /// Called when the window opens and when it closes (end-of-instant phase: everything of that instant has

@@ -28,6 +28,7 @@
 #include "sw/fovea/perfetto/perfetto_run.h"
 #include "sw/fovea/remap_time.h"
 #include "sw/fovea/run_end.h"
+#include "sw/fovea/run_profile.h"
 #include "sw/fovea/simulation.h"
 #include "sw/fovea/stall_regions.h"
 
@@ -98,7 +99,9 @@ class BoardSimulation : public Simulation {
   void add_host(RunResult& result, bool strict) const;
   std::string failure_text(const std::string& what) const;
   std::string reset_note(const board::ChipReset& reset, std::size_t before) const;
-  void collect_core(RunResult& result) const;
+  cpu::Counts collect_core(RunResult& result) const;
+  void collect_profile(RunResult& result, const cpu::Counts& end, const RunRequest& request,
+                       const ElfImage& program);
   std::string ended_text(const RunEnd::Met& met) const;
   SemihostingSettings semihosting_settings(const RunRequest& request) const;
   std::optional<ElfImage> loader_of(const ElfImage& program, const RunRequest& request) const;
@@ -114,6 +117,7 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<RemapTime> remaps_;
   std::vector<LatencyRow> latency_;
+  std::unique_ptr<RunProfile> profile_;
   std::vector<StatRow> stats_;
   std::vector<FrameRow> frames_;
   Wall::time_point started_, window_wall_;
@@ -129,6 +133,7 @@ void BoardSimulation::open_window() {
   opened_ = true;
   board_->platform.each_statistics([](StatGroup& group) { group.reset(); });
   soc.arm.core().mark_window(kernel_time());
+  if (profile_) profile_->window(true);
   if (trace_) trace_->open();
   if (perfetto_) perfetto_->window_opened();
   if (commands_) commands_->begin(soc.ddr.controller(), kernel_time());
@@ -159,6 +164,7 @@ void BoardSimulation::close_window() {
                    "the window");
   }
   soc.arm.core().mark_window(kernel_time());
+  if (profile_) profile_->window(false);
   if (soc.arm.asleep()) asleep_at_end_ = soc.arm.core().counts_asleep(kernel_time());
 }
 
@@ -266,7 +272,7 @@ std::string BoardSimulation::ended_text(const RunEnd::Met& met) const {
 
 /// The core's figures of the window, or of the whole run if none was opened. A core that ended, or
 /// comes to no instruction boundary any more, has what it has.
-void BoardSimulation::collect_core(RunResult& result) const {
+cpu::Counts BoardSimulation::collect_core(RunResult& result) const {
   const auto& core = board_->dm365.arm.core();
   cpu::CoreStats figures;
   if (opened_) figures.from = core.window_stats().from;
@@ -283,6 +289,19 @@ void BoardSimulation::collect_core(RunResult& result) const {
   collect(figures, result.stats);
   remaps_->collect(figures.from, figures.to, result.stats);
   result.stalls = stall_rows(figures.from, figures.to, core.regions());
+  return figures.to;
+}
+
+void BoardSimulation::collect_profile(RunResult& result, const cpu::Counts& end,
+                                      const RunRequest& request, const ElfImage& program) {
+  const ProfileData data = profile_->finish(end, program_file(params_).filename().string());
+  SourceLines lines;
+  lines.add(program);
+  if (request.symbols) lines.add(*request.symbols);
+  result.profile = profile_files(data, lines);
+  result.profile_table = profile_table(data, lines, 12);
+  if (!lines.have_lines())
+    result.notes.push_back("the program has no debug information: the profile knows functions, but no lines");
 }
 
 ExecMap BoardSimulation::hosted_map() const {
@@ -433,6 +452,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!request.registers.pattern.empty()) log->start(request.registers);
   RunEnd run_end(*board_, debug_memory, until);
   if (!run_end.wants(EndCondition::Kind::kFrames)) board_->measure_whole_run();
+  if (request.profile)
+    profile_ = std::make_unique<RunProfile>(*board_, !run_end.wants(EndCondition::Kind::kFrames));
   std::optional<CoreSemihosting> semihosting;
   if (request.semihosting && run_end.wants(EndCondition::Kind::kExit))
     semihosting.emplace(arm.core(), debug_memory, semihosting_settings(request),
@@ -532,7 +553,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   add_frame_stats(stats_);
   result.guest_failure = guest;
   result.stats = std::move(stats_);
-  collect_core(result);
+  const cpu::Counts counted = collect_core(result);
+  if (profile_) collect_profile(result, counted, request, elf);
   if (hazards) {
     hazards->settle(board_->window_end().value_or(kernel_time()));
     hazards->collect(result.stats);

@@ -43,7 +43,7 @@ struct RunOptions {
   std::string out_dir;
   bool out_given = false;
   std::string sync = "default";
-  bool strict = false, hazards = false;
+  bool strict = false, hazards = false, profile = false;
   bool no_frames = false;
   bool mp4 = false;
   std::string bus_trace, command_trace;
@@ -60,6 +60,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   meter.add_host_rows(host);
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("latency.csv", latency_csv(result.latency));
+  for (const ResultFile& f : result.profile) dir.write(f.name, f.text);
   dir.write("uart.log", result.uart);
   if (!result.typed.empty()) dir.write("uart0.input", result.typed);
   if (log) dir.write("registers.log", result.registers);
@@ -145,6 +146,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .strict_sync = options.sync == "strict",
+                     .profile = options.profile,
                      .hazards = options.hazards,
                      .stop = stop,
                      .progress = meter,
@@ -192,6 +194,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   std::ostream& report = options.console ? context.err : context.out;
   context.out.flush();
   report << run_words(result.stats, host);
+  report << result.profile_table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
   report << fmt::format("results in {}\n", dir.folder().string());
@@ -389,6 +392,7 @@ void add_run_command(CLI::App& app, RunOptions& run) {
       ->default_str("default");
   c->add_flag("--strict", run.strict, kStrict);
   add_hazards_option(*c, run.hazards);
+  add_profile_option(*c, run.profile);
   c->add_flag("--no-frames", run.no_frames, "Write no pictures");
   c->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
   c->add_option("--bus-trace", run.bus_trace,

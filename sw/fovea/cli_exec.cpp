@@ -112,6 +112,12 @@ void add_hazards_option(CLI::App& command, bool& hazards) {
                    "D-cache is stale or dirty; with --strict that is an error at the end");
 }
 
+void add_profile_option(CLI::App& command, bool& profile) {
+  command.add_flag("--profile", profile,
+                   "Say where each clock of the core went, by function, line, cause and culprit: "
+                   "profile.csv, .folded, .callgrind and .txt; changes no other result");
+}
+
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
   if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
     throw UserError(

@@ -20,13 +20,15 @@ struct ExecOptions {
   RegisterLogRequest registers;
   LimitOptions limits;
   bool thumb = false, fast_memory = false, caches = false, strict = false, quiet = false;
-  bool board = false, console = false, hazards = false;
+  bool board = false, console = false, hazards = false, profile = false;
 };
 
 /// Adds `--log-registers` and the option for its size, which `run` and `exec` share.
 void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
 /// Adds `--hazards`, which `run` and `exec` share.
 void add_hazards_option(CLI::App& command, bool& hazards);
+/// Adds `--profile`, the same.
+void add_profile_option(CLI::App& command, bool& profile);
 /// @throws UserError if a size is given although nothing can start a log
 void check_register_log(const RegisterLogRequest& request, const std::string& gdb);
 

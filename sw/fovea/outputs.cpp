@@ -76,14 +76,6 @@ void append_rows(Json& out, std::vector<StatRow> rows) {
   }
 }
 
-/// A field of a CSV file, quoted if necessary (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 Json belief_json(const Belief& belief) {
   if (belief.empty()) return nullptr;
   return {{"low", belief.low}, {"high", belief.high}, {"reason", belief.reason}};
@@ -107,6 +99,13 @@ bool remaps_in_a_row(std::span<const StatRow> stats) {
 }
 
 }  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
 
 void collect(const StatGroup& group, std::vector<StatRow>& rows) {
   for (const auto* s : group.stats())

@@ -89,6 +89,9 @@ std::string stats_json(std::vector<StatRow> rows, bool complete,
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);
 
+/// A field of a CSV file, quoted if necessary (RFC 4180).
+std::string csv_field(const std::string& text);
+
 /// The header and one line of frames.csv and timeline.csv, for files that are written during the
 /// run.
 std::string frames_csv_header();

@@ -16,6 +16,7 @@
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/perfetto/perfetto_request.h"
+#include "sw/fovea/profile_report.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
@@ -41,6 +42,7 @@ struct RunRequest {
   /// Folder of the run (still DIR.tmp), for files that the board writes itself, such as traces.
   std::filesystem::path folder;
   bool strict_sync = false;  ///< --sync=strict
+  bool profile = false;      ///< --profile: attribute the core's clocks to the program
   bool hazards = false;      ///< --hazards: check the coherency of core and DMA
   /// Set by a signal: the board ends the run soon and returns a result with complete = false.
   const std::atomic<bool>& stop;
@@ -91,6 +93,8 @@ struct RunResult {
   std::string typed;         ///< what a person typed on the console, as a file for uart0.input
   std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
   std::string registers;  ///< the register log, if requested
+  std::vector<ResultFile> profile;  ///< the files of --profile
+  std::string profile_table;  ///< the functions with most clocks, for the user
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
 };
 

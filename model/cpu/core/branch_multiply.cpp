@@ -58,28 +58,29 @@ Core::Ops::Next Core::Ops::count_zeros(Core& c, Next i, Cycle cycle) {
 /// B and BL. imm: target relative to the first byte of the line. kNear: the target is in the same
 /// line, and raw is the distance of its record in host memory, in bytes; otherwise raw is its
 /// record_offset().
-template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
+template <unsigned kCond, bool kLink, bool kThumb, bool kNear, bool kCounted>
 Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
   if constexpr (kLink) c.regs_.r[14] = c.chain_.va + i->at + 4;
+  if constexpr (kCounted) ++c.fetch_.current->tally(*i).special;
   if constexpr (kNear) {
     ++c.ledger_.counts.redirects;
     const std::intptr_t distance = static_cast<std::int32_t>(i->raw);
     c.chain_.first += distance - static_cast<std::intptr_t>(sizeof(Instruction));
     return next(c, reinterpret_cast<Next>(reinterpret_cast<const char*>(i) + distance), cycle + 3);
   } else {
-    return jump<kThumb, false>(c, i, cycle + 3, c.chain_.va + i->imm, i->raw);
+    return jump<kThumb, false, kCounted>(c, i, cycle + 3, c.chain_.va + i->imm, i->raw);
   }
 }
 
-template <bool kThumb, bool kLink>
+template <bool kThumb, bool kLink, bool kCounted>
 Core::Ops::Next Core::Ops::branch_exchange(Core& c, Next i, Cycle cycle) {
   const std::uint32_t target = c.regs_.r[i->rm];
   if constexpr (kLink) {
     const std::uint32_t pc = c.chain_.va + i->at;
     c.regs_.r[14] = kThumb ? (pc + 2) | 1u : pc + 4;
   }
-  return exchange<kThumb>(c, i, cycle + 3, target);
+  return exchange<kThumb, kCounted>(c, i, cycle + 3, target);
 }
 
 /// imm: relative to the first byte of the line.
@@ -87,19 +88,27 @@ Core::Ops::Next Core::Ops::thumb_link_prefix(Core& c, Next i, Cycle cycle) {
   c.regs_.r[14] = c.chain_.va + i->imm;
   return next(c, i + 1, cycle + 1);
 }
+template <bool kCounted>
 Core::Ops::Next Core::Ops::thumb_link_suffix(Core& c, Next i, Cycle cycle) {
   const std::uint32_t target = c.regs_.r[14] + i->imm;
   c.regs_.r[14] = (c.chain_.va + i->at + 2) | 1u;
-  return jump<true, true>(c, i, cycle + 3, target & ~1u);
+  return jump<true, true, kCounted>(c, i, cycle + 3, target & ~1u);
 }
 
 Handler Core::Ops::branch_body(Instruction& i, Context context) {
+  return context.counted ? branch_handler<true>(i, context) : branch_handler<false>(i, context);
+}
+
+template <bool kCounted>
+Handler Core::Ops::branch_handler(Instruction& i, Context context) {
   const bool thumb = i.flags & kThumbInsn;
   if (i.op == Op::kBxReg)
-    return thumb ? &branch_exchange<true, false> : &branch_exchange<false, false>;
+    return thumb ? &branch_exchange<true, false, kCounted>
+                 : &branch_exchange<false, false, kCounted>;
   if (i.op == Op::kBlxReg)
-    return thumb ? &branch_exchange<true, true> : &branch_exchange<false, true>;
-  if (i.op == Op::kThumbBlSuffix) return (i.flags & kSpsr) ? nullptr : &thumb_link_suffix;
+    return thumb ? &branch_exchange<true, true, kCounted> : &branch_exchange<false, true, kCounted>;
+  if (i.op == Op::kThumbBlSuffix)
+    return (i.flags & kSpsr) ? nullptr : &thumb_link_suffix<kCounted>;
   // From here on, imm is not relative to the pc but to the beginning of the line.
   i.imm += i.at + (thumb ? 4u : kPcDelayArm);
   i.flags = static_cast<std::uint16_t>(i.flags & ~kReadsPc);
@@ -115,9 +124,14 @@ Handler Core::Ops::branch_body(Instruction& i, Context context) {
   const bool link = i.op == Op::kBl;
   return select(i.cond, [&](auto k) -> Handler {
     constexpr auto kCond = static_cast<unsigned>(decltype(k)::value);
-    if (link) return near ? &branch<kCond, true, false, true> : &branch<kCond, true, false, false>;
-    if (thumb) return near ? &branch<kCond, false, true, true> : &branch<kCond, false, true, false>;
-    return near ? &branch<kCond, false, false, true> : &branch<kCond, false, false, false>;
+    if (link)
+      return near ? &branch<kCond, true, false, true, kCounted>
+                  : &branch<kCond, true, false, false, kCounted>;
+    if (thumb)
+      return near ? &branch<kCond, false, true, true, kCounted>
+                  : &branch<kCond, false, true, false, kCounted>;
+    return near ? &branch<kCond, false, false, true, kCounted>
+                : &branch<kCond, false, false, false, kCounted>;
   }, std::make_index_sequence<15>{});
 }
 

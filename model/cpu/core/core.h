@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -141,6 +142,20 @@ class Core : public Background {
     window_.sample(t, std::move(f));
     interface_.attention = true;
   }
+  /// Attributes every clock to an instruction from now on, in section 0 of the profile. Before the
+  /// first instruction; changes no simulated time.
+  ClockProfile& start_profile();
+  const ClockProfile* profile() const { return own_profile_.get(); }
+  /// Lets the profile's clocks after time t belong to a section; as mark_window().
+  void mark_section(Picoseconds t, std::size_t section) {
+    own_profile_->mark(t, section);
+    interface_.attention = true;
+  }
+  /// Completes the profile. The core is between two instructions, asleep, or has failed.
+  /// @param end the counters up to which clocks count, as of counts_asleep()
+  void finish_profile(const Counts& end);
+  /// Says which event has ended a sleep; called when it ends. May be empty.
+  std::function<WakeEvent()> wake_event;
   const CoreStats& window_stats() const { return window_.stats(); }
   const Counts& counts() const { return ledger_.counts; }
   const Clock& clock() const { return interface_.clock; }
@@ -241,6 +256,45 @@ class Core : public Background {
   void execute_alone(const Instruction& i);
   void enter_exception();
   void end_old_fetch();
+  // For a profile.
+  void start_counted(const Instruction* i);
+  [[gnu::noinline]] void execute_one_counted(const Instruction& i);
+  void enter_section(std::size_t section);
+  void take_marks(Picoseconds boundary);
+  bool marks_pending() const {
+    return window_.pending() || (ledger_.profile && ledger_.profile->pending());
+  }
+  Picoseconds next_mark() const {
+    const Picoseconds window = window_.pending() ? window_.at() : kNever;
+    return ledger_.profile && ledger_.profile->pending()
+               ? std::min(window, ledger_.profile->next_mark())
+               : window;
+  }
+  /// The flow comes to a record of the current line otherwise than from the one before it...
+  void starts_at(const Instruction* i) {
+    if (profile_) [[unlikely]]
+      ++fetch_.current->tally(*i).flow;
+  }
+  /// ... or ends in front of it.
+  void ends_before(const Instruction* i) {
+    if (profile_) [[unlikely]]
+      --fetch_.current->tally(*i).flow;
+  }
+  /// Calls f(), which executes an instruction outside of the flow that the tallies describe.
+  template <class F>
+  void count_alone(const Instruction& i, F f) {
+    if (!profile_) [[likely]] return f();
+    ClockProfile* const p = std::exchange(profile_, nullptr);
+    const std::uint32_t pc = regs_.pc;
+    // The handler of a branch counts all the same, if the record is of a line.
+    DecodedLine* const line = fetch_.current;
+    const std::uint32_t special = line->tally(i).special;
+    p->begin();
+    f();
+    p->end(pc);
+    if (i.op == Op::kB || i.op == Op::kBl) line->tally(i).special = special;
+    profile_ = p;
+  }
   [[gnu::noinline]] void execute_one(const Instruction& i);
   bool chain_goes_on(const Instruction* next) const;
   void execute(const Instruction& i);
@@ -379,6 +433,9 @@ class Core : public Background {
                                              h.counter);
   }
 
+  ClockProfile* profile_ = nullptr;  // null while an instruction is executed outside of the flow
+  std::unique_ptr<ClockProfile> own_profile_;
+  std::uint64_t collected_ = 0;  // clock at which the tallies were last collected
   std::uint32_t next_pc_ = 0;
   bool branched_ = false;  // the current instruction set next_pc_
   bool aborted_ = false;   // an access of the current instruction failed

@@ -208,6 +208,7 @@ Counts Core::counts_asleep(Picoseconds t) const {
   Counts c = ledger_.counts;
   c.cycles = clock.running() ? std::max(ledger_.cycle, clock.edge_after(t)) : ledger_.cycle;
   c.idle += c.cycles - ledger_.cycle;
+  c.idle_by[static_cast<std::size_t>(WakeEvent::kOther)] += c.cycles - ledger_.cycle;
   return c;
 }
 
@@ -220,14 +221,15 @@ void Core::wait_for_interrupt() {
   if ((irq_.level && irq_.since < now) || (fiq_.level && fiq_.since < now)) return;
   const Picoseconds at = interface_.port.wait_for_interrupt(now);
   const std::uint64_t wake = std::max(begin, interface_.clock.edge_after(at));
-  while (window_.pending()) {
+  const WakeEvent by = wake_event ? wake_event() : WakeEvent::kOther;
+  while (marks_pending()) {
     // The edge of the measurement window is within the sleep: split the idle time there.
-    const std::uint64_t split = std::max(begin, interface_.clock.edge_after(window_.at()));
+    const std::uint64_t split = std::max(begin, interface_.clock.edge_after(next_mark()));
     if (split > wake) break;
-    ledger_.sleep_to(split);
-    window_.take(ledger_.counts, ledger_.cycle);
+    ledger_.sleep_to(split, by);
+    take_marks(interface_.time(split));
   }
-  ledger_.sleep_to(wake);
+  ledger_.sleep_to(wake, by);
   interface_.attention = true;
 }
 

@@ -8,11 +8,21 @@
 
 namespace fovea::cpu {
 
+/// What a profile (ClockProfile) counts of a record; modulo 2^32.
+struct Tally {
+  std::uint32_t flow = 0;     ///< times that the flow came here from elsewhere than from the record
+                              ///< before, minus times that it ended in front of this record
+  std::uint32_t special = 0;  ///< B and BL: times taken; others: times the condition was not met
+  std::uint32_t waited = 0;   ///< clocks of interlocks
+  std::uint32_t unused = 0;   // a power of two of bytes
+};
+
 /// What the neighbours in a line allow a record to leave out. The default is correct anywhere.
 struct RecordContext {
   enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
   bool track = true;     // a later record may have to wait for its result
   bool in_line = false;  // the record belongs to a line that holds all its records
+  bool counted = false;  // the handlers keep the tallies of their line
 };
 
 /// Holds one more record than a line: the one after the last leads to the next line, and its
@@ -23,6 +33,11 @@ struct DecodedLine {
   std::array<Instruction, 17> records;
   DecodedLine* next = nullptr;  // where the following line was found last, perhaps not any more
   std::uint32_t va = 0;         // address of the line in the last lookup
+  std::array<Tally, 17> tallies;  // by half-word; all zero without a profile
+
+  [[gnu::always_inline]] Tally& tally(const Instruction& record) {
+    return tallies[record.at / 2];
+  }
 
   bool holds(const Instruction* record) const {
     return record >= records.data() && record < records.data() + records.size();
@@ -38,7 +53,7 @@ struct DecodedLine {
   bool stale(bool thumb) const { return valid == 0 || (valid & 1u) != thumb; }
   /// Keeps the records, but has the next use looked up.
   void look_up_again() { valid = 2u | (valid & 1u); }
-  void clear(bool thumb);
+  void clear(bool thumb, bool counted);
   void prepare_record(const Instruction& decoded, unsigned index, RecordContext context,
                       bool shifted_cycle);
   /// Keeps only the record of an instruction that belongs to no line, and ends the chain behind it.

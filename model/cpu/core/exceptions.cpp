@@ -77,7 +77,7 @@ void Core::restart(std::uint32_t entry, Picoseconds now) {
   reset(entry, now);
   const std::uint64_t cycle = std::max(ledger_.cycle, before);
   ledger_.cycle = before;
-  ledger_.sleep_to(cycle);
+  ledger_.sleep_to(cycle, WakeEvent::kOther);
 }
 
 void Core::set_cpsr(std::uint32_t value) {
@@ -118,6 +118,7 @@ void Core::take(Exception e, std::uint32_t return_address) {
                                 {0x10, CpuMode::kAbt}, {0x18, CpuMode::kIrq},
                                 {0x1C, CpuMode::kFiq}};
   note_failure(e);
+  if (ledger_.profile) ledger_.profile->begin();
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
   const std::uint32_t saved = regs_.cpsr;
   const bool was_privileged = regs_.privileged();

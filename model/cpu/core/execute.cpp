@@ -49,10 +49,11 @@ void Core::run() {
                        !fetch_.lagging() && boundary_observers_.empty();
     if (chain) {
       chain_.stop = interface_.stop_cycle;
+      if (profile_) [[unlikely]] start_counted(i);
       i = i->handler(*this, i, ledger_.cycle);
       while (i) i = i->handler(*this, i, chain_.cycle);
     } else {
-      execute_alone(*i);
+      count_alone(*i, [&] { execute_alone(*i); });
     }
     if (fetch_.lagging()) [[unlikely]] end_old_fetch();
   }
@@ -61,6 +62,7 @@ void Core::run() {
 /// Completes an exception that was not raised by an instruction.
 void Core::enter_exception() {
   regs_.pc = next_pc_;
+  if (ledger_.profile) ledger_.profile->end(regs_.pc);
   branched_ = aborted_ = false;
   if (fetch_.lagging()) end_old_fetch();
 }
@@ -68,6 +70,56 @@ void Core::enter_exception() {
 /// Called after an instruction while fetches still use older settings.
 void Core::end_old_fetch() {
   if (fetch_.instruction_done(regs_.pc, regs_.thumb())) forget_translations();
+}
+
+/// For a profile: a chain begins with record i.
+void Core::start_counted(const Instruction* i) {
+  // The tallies must be collected before they overflow.
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 30;
+  if (ledger_.cycle - collected_ >= kLongest) {
+    collected_ = ledger_.cycle;
+    fetch_.collect_tallies();
+  }
+  chain_.stop = std::min(chain_.stop, ledger_.cycle + kLongest);
+  starts_at(i);
+}
+
+/// For a profile: execute_one() in a chain, where the flow ends in front of the record.
+void Core::execute_one_counted(const Instruction& i) {
+  ends_before(&i);
+  const std::uint32_t pc = regs_.pc;
+  profile_->begin();
+  execute_one(i);
+  profile_->end(pc);
+}
+
+ClockProfile& Core::start_profile() {
+  own_profile_ = std::make_unique<ClockProfile>(regs_.pc, ledger_.counts);
+  profile_ = ledger_.profile = own_profile_.get();
+  fetch_.keep_tallies(*profile_);
+  return *profile_;
+}
+
+void Core::finish_profile(const Counts& end) {
+  ClockProfile& p = *own_profile_;
+  if (end.idle > ledger_.counts.idle) p.slept(WakeEvent::kOther, end.idle - ledger_.counts.idle);
+  enter_section(p.section());
+}
+
+void Core::take_marks(Picoseconds boundary) {
+  while (window_.due(boundary)) window_.take(ledger_.counts, ledger_.cycle);
+  while (ledger_.profile && ledger_.profile->due(boundary))
+    enter_section(ledger_.profile->take_mark());
+}
+
+/// The tallies that are counted up to here belong to the section that ends.
+void Core::enter_section(std::size_t section) {
+  const bool within = ledger_.profile->open();  // a sleep is divided within its instruction
+  ledger_.profile->end(regs_.pc);
+  fetch_.collect_tallies();
+  collected_ = ledger_.cycle;
+  ledger_.profile->enter(section);
+  if (within) ledger_.profile->begin();
 }
 
 /// An instruction whose beginning or end may depend on earlier instructions.
@@ -136,7 +188,7 @@ void Core::step_attention() {
     // Changes at an edge are visible after it, including a change of the clock.
     ledger_.stall_to(interface_.clock_floor, Cause::kBusSync);
     const Picoseconds t = time(ledger_.cycle);
-    while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
+    take_marks(t);
     if (reset_.at(t)) {
       held_ = true;
       return;
@@ -150,7 +202,7 @@ void Core::step_attention() {
     // Check the next boundary again if an interrupt is raised but not visible yet, or a mark is not
     // reached yet.
     interface_.stop_cycle =
-        interrupt_pending() || window_.pending() ? ledger_.cycle + 1 : stop;
+        interrupt_pending() || marks_pending() ? ledger_.cycle + 1 : stop;
     return;
   }
 }
@@ -162,14 +214,14 @@ Core::Boundary Core::wait_for_others(Picoseconds t) {
   interface_.port.sleep_until(t);
   const bool clock_changed = time(ledger_.cycle) != t || !interface_.clock.running();
   if (clock_changed) return Boundary::kRepeat;
-  if (!interface_.attention && !window_.pending()) {
+  if (!interface_.attention && !marks_pending()) {
     const Picoseconds horizon = interface_.port.horizon();
     interface_.stop_cycle = horizon <= t || interrupt_pending()
                                 ? ledger_.cycle + 1
                                 : interface_.first_clock_after(horizon);
     return Boundary::kExecute;
   }
-  while (window_.due(t)) window_.take(ledger_.counts, ledger_.cycle);
+  take_marks(t);
   const bool fiq = !(regs_.cpsr & kFiqMask) && fiq_.at(t);
   if (fiq || reset_.at(t) || (!(regs_.cpsr & kIrqMask) && irq_.at(t))) return Boundary::kRepeat;
   interface_.attention = false;

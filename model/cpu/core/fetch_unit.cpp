@@ -45,6 +45,11 @@ void FetchUnit::forget() {
       if (d.valid) d.look_up_again();
 }
 
+void FetchUnit::collect_tallies() {
+  for (auto* lines : {&decoded_, &ram_decoded_})
+    for (auto& d : *lines) profile_->collect(d);
+}
+
 void FetchUnit::use_new_settings() {
   process_ = registers_.process;
   if (control_ != registers_.control) buffer_pa_ = 1;
@@ -142,8 +147,11 @@ bool FetchUnit::read_ahead(std::uint32_t pa) {
 const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
                                      const FetchTarget& target, bool ram) {
   const std::uint32_t line = target.pc & ~31u;
-  if (d.stale(target.thumb) || d.va != line) log_.line_changes(d);
-  if (d.stale(target.thumb)) d.clear(target.thumb);
+  if (d.stale(target.thumb) || d.va != line) {
+    log_.line_changes(d);
+    if (profile_) profile_->collect(d);
+  }
+  if (d.stale(target.thumb)) d.clear(target.thumb, profile_);
   d.valid = key(target.pc, target.thumb);
   d.va = line;
   const unsigned at = target.index();
@@ -152,6 +160,7 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
     i = decode_at(bytes, at, target.thumb);
     RecordContext context = ram ? RecordContext{} : record_context(d, at, bytes, target.thumb);
     context.in_line = true;
+    context.counted = profile_;
     d.prepare_record(Instruction(i), at, context, shifted_cycle_);
   }
   if (current && current->va + 32 == line) current->next = &d;

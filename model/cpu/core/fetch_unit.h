@@ -9,6 +9,7 @@
 #include "model/cpu/core/access_log.h"
 #include "model/cpu/core/bus_interface.h"
 #include "model/cpu/core/cache.h"
+#include "model/cpu/core/clock_profile.h"
 #include "model/cpu/core/data_bus.h"
 #include "model/cpu/core/decoded_line.h"
 #include "model/cpu/core/stall_ledger.h"
@@ -95,6 +96,12 @@ class FetchUnit {
       ram_decoded_[line].valid = 0;
     leave_line();
   }
+  /// Lets the handlers of all instructions keep the tallies of their lines. Before the first fetch.
+  void keep_tallies(ClockProfile& profile) {
+    profile_ = &profile;
+    current = &no_line_;
+  }
+  void collect_tallies();
   DecodedLine& ram_line(std::uint32_t offset) { return ram_decoded_[offset >> 5]; }
   DecodedLine& cache_line(unsigned index) { return decoded_[index]; }
   /// The last line found is in internal RAM; current_ram_offset() is its offset there.
@@ -139,6 +146,7 @@ class FetchUnit {
   const SystemRegisters& registers_;
   unsigned fill_latency_;
   bool shifted_cycle_;
+  ClockProfile* profile_ = nullptr;
 
   Cache icache_;
   std::vector<DecodedLine> decoded_;      // one per line of the I-cache

@@ -60,6 +60,7 @@ struct Core::Ops {
   /// Ends the chain before record i.
   [[gnu::noinline]] static Next leave(Core& c, Next i, Cycle cycle) {
     c.settle(i, cycle);
+    c.ends_before(i);
     return nullptr;
   }
   /// Ends the chain after the taken branch i.
@@ -73,7 +74,10 @@ struct Core::Ops {
   /// Executes record i with settled state, for everything that is rare or calls the outside.
   [[gnu::noinline]] static Next generic(Core& c, Next i, Cycle cycle) {
     c.settle(i, cycle);
-    c.execute_one(*i);
+    if (c.profile_) [[unlikely]]
+      c.execute_one_counted(*i);
+    else
+      c.execute_one(*i);
     return resume(c, i + 1);
   }
   /// An UNPREDICTABLE form: gives a warning, then executes a separate record of it.
@@ -89,9 +93,16 @@ struct Core::Ops {
       const Cycle start = held_until(c, i, c.ledger_.cycle);
       if (start == kNever) return nullptr;
       Cycle cycle = c.ledger_.cycle;
-      if (start > cycle) stall(c, cycle, start);
+      c.starts_at(i);
+      if (start > cycle) {
+        if (c.profile_) [[unlikely]]
+          stall<true>(c, i, cycle, start);
+        else
+          stall<false>(c, i, cycle, start);
+      }
       return go(c, i, cycle);
     }
+    c.starts_at(i);
     return go(c, i, c.ledger_.cycle);
   }
   /// For records that do not know which instruction precedes them: the clock at which the operands
@@ -106,11 +117,12 @@ struct Core::Ops {
                                       target % 32 / (kThumb ? 2 : 4) * sizeof(Instruction));
   }
   /// Continues at the target of the taken branch i, without a change of state (ARM or Thumb).
-  template <bool kThumb, bool kMaybeSameLine>
+  template <bool kThumb, bool kMaybeSameLine, bool kCounted>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target) {
-    return jump<kThumb, kMaybeSameLine>(c, i, cycle, target, record_offset<kThumb>(target));
+    return jump<kThumb, kMaybeSameLine, kCounted>(c, i, cycle, target,
+                                                  record_offset<kThumb>(target));
   }
-  template <bool kThumb, bool kMaybeSameLine>
+  template <bool kThumb, bool kMaybeSameLine, bool kCounted>
   [[gnu::always_inline]] static Next jump(Core& c, Next i, Cycle cycle, std::uint32_t target,
                                           std::uint32_t offset) {
     ++c.ledger_.counts.redirects;
@@ -125,13 +137,14 @@ struct Core::Ops {
       c.fetch_.current = d;
     }
     c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i + 1);
+    if constexpr (kCounted) ++d->tallies[target % 32 / 2].flow;
     return go(c, to, cycle);
   }
   /// Branches to an address whose bit 0 is the new Thumb state.
-  template <bool kThumb>
+  template <bool kThumb, bool kCounted>
   [[gnu::always_inline]] static Next exchange(Core& c, Next i, Cycle cycle, std::uint32_t target) {
     if ((target & 1u) == kThumb) [[likely]]
-      return jump<kThumb, true>(c, i, cycle, target & (kThumb ? ~1u : ~3u));
+      return jump<kThumb, true, kCounted>(c, i, cycle, target & (kThumb ? ~1u : ~3u));
     c.regs_.cpsr ^= 0x20u;
     ++c.ledger_.counts.redirects;
     return leave_to(c, i, cycle, target & (kThumb ? ~3u : ~1u));
@@ -143,14 +156,18 @@ struct Core::Ops {
     return condition_holds(kCond, r.n >> 31, r.z == 0, r.c != 0, r.v != 0);
   }
 
-  [[gnu::always_inline]] static void stall(Core& c, Cycle& cycle, Cycle until) {
+  /// @tparam kCounted record i is of the current line, whose tallies are kept
+  template <bool kCounted>
+  [[gnu::always_inline]] static void stall(Core& c, Next i, Cycle& cycle, Cycle until) {
+    if constexpr (kCounted)
+      c.fetch_.current->tally(*i).waited += static_cast<std::uint32_t>(until - cycle);
     c.ledger_.counts.stall[index(Cause::kInterlock)] += until - cycle;
     // settle() counts all clocks since the start of the chain as issue.
     c.ledger_.counts.issue -= until - cycle;
     cycle = until;
   }
   /// Runs before the body of a record that has a condition, may wait for operands, or reads r15.
-  template <unsigned kCond, Context::Check kCheck, bool kPc>
+  template <unsigned kCond, Context::Check kCheck, bool kPc, bool kCounted>
   static Next before(Core& c, Next i, Cycle cycle);
   template <std::size_t... k>
   static constexpr std::array<Handler, sizeof...(k)> before_table(std::index_sequence<k...>);
@@ -162,11 +179,11 @@ struct Core::Ops {
   }
 
   /// Pseudo record after the last one of a line: leads to the next line.
-  template <bool kThumb>
+  template <bool kThumb, bool kCounted>
   static Next line_end(Core& c, Next i, Cycle cycle);
-  template <bool kThumb>
+  template <bool kThumb, bool kCounted>
   static Next line_end_busy(Core& c, Next i, Cycle cycle, DecodedLine& d);
-  template <bool kThumb>
+  template <bool kThumb, bool kCounted>
   static Next enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d);
 
   template <Op kOp, Form kForm, bool kSet>
@@ -176,11 +193,12 @@ struct Core::Ops {
   template <Op kOp, bool kSet>
   static Next multiply(Core& c, Next i, Cycle cycle);
   static Next count_zeros(Core& c, Next i, Cycle cycle);
-  template <unsigned kCond, bool kLink, bool kThumb, bool kNear>
+  template <unsigned kCond, bool kLink, bool kThumb, bool kNear, bool kCounted>
   static Next branch(Core& c, Next i, Cycle cycle);
-  template <bool kThumb, bool kLink>
+  template <bool kThumb, bool kLink, bool kCounted>
   static Next branch_exchange(Core& c, Next i, Cycle cycle);
   static Next thumb_link_prefix(Core& c, Next i, Cycle cycle);
+  template <bool kCounted>
   static Next thumb_link_suffix(Core& c, Next i, Cycle cycle);
   template <Op kOp, Address kAddress, Indexed kIndexed, bool kTrack>
   static Next load(Core& c, Next i, Cycle cycle);
@@ -193,7 +211,7 @@ struct Core::Ops {
   template <Op kOp, Address kAddress, Indexed kIndexed>
   static Next store_out(Core& c, Next i, Cycle cycle);
   static Next load_literal(Core& c, Next i, Cycle cycle);
-  template <bool kPc, bool kThumb, bool kLong>
+  template <bool kPc, bool kThumb, bool kLong, bool kCounted>
   static Next load_block(Core& c, Next i, Cycle cycle);
   template <bool kLong>
   static Next store_block(Core& c, Next i, Cycle cycle);
@@ -203,8 +221,10 @@ struct Core::Ops {
   static Handler data_body(Instruction& i);                  // data_processing.cpp
   static Handler multiply_body(Instruction& i);              // branch_multiply.cpp
   static Handler branch_body(Instruction& i, Context context);   // branch_multiply.cpp
+  template <bool kCounted>
+  static Handler branch_handler(Instruction& i, Context context);
   static Handler memory_body(Instruction& i, Context context);   // load_store.cpp
-  static Handler block_body(Instruction& i);                 // load_store.cpp
+  static Handler block_body(Instruction& i, Context context);    // load_store.cpp
 };
 
 }  // namespace fovea::cpu

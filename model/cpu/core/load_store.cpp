@@ -151,8 +151,10 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   // As chain_goes_on(), without the conditions that such an access cannot change.
   const Cycle cycle = c.ledger_.cycle;
   if (cycle >= c.chain_.stop || cycle >= c.interface_.stop_cycle || c.interface_.attention ||
-      !c.fetch_.current->valid || cycle < c.fetch_.fill.last)
+      !c.fetch_.current->valid || cycle < c.fetch_.fill.last) {
+    c.ends_before(i + 1);
     return nullptr;
+  }
   return go(c, i + 1, cycle);
 }
 
@@ -242,14 +244,15 @@ Handler Core::Ops::memory_body(Instruction& i, Context context) {
 /// number of registers; shift and rd: the first and the last one; raw: how many of them follow each
 /// other from the first one on, and a list of the others << 16. Most blocks lie in one line; kLong
 /// is for the others.
-template <bool kPc, bool kThumb, bool kLong>
+template <bool kPc, bool kThumb, bool kLong, bool kCounted>
 Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   const std::uint32_t base = c.regs_.r[i->rn];
   std::uint32_t va = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rm));
   const std::uint32_t last = va + 4u * i->amount - 4;
   if ((va & 3u) || cycle < c.data_.fill.last) [[unlikely]] return generic(c, i, cycle);
   if (kPc && (c.system_.control & kArmV4Loads)) [[unlikely]] return generic(c, i, cycle);
-  if (!kLong && (va ^ last) >= kReadSpan) return load_block<kPc, kThumb, true>(c, i, cycle);
+  if (!kLong && (va ^ last) >= kReadSpan) 
+    return load_block<kPc, kThumb, true, kCounted>(c, i, cycle);
   for (std::uint32_t line = va & ~(kReadSpan - 1);; line += kReadSpan) {
     if (c.data_.read_hints[line / kReadSpan % kHints].key != line) [[unlikely]]
       return generic(c, i, cycle);
@@ -286,7 +289,7 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   }
   if (i->flags & kWriteBack)
     r[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
-  if constexpr (kPc) return exchange<kThumb>(c, i, cycle + i->amount + 4, target);
+  if constexpr (kPc) return exchange<kThumb, kCounted>(c, i, cycle + i->amount + 4, target);
   if (i->amount == 1) return next(c, i + 1, cycle + 2);
   cycle += i->amount;
   track(c, i->rd, cycle + 1, Scoreboard::kLoad);
@@ -333,7 +336,7 @@ Core::Ops::Next Core::Ops::store_block(Core& c, Next i, Cycle cycle) {
   return next(c, i + 1, cycle + i->amount + (i->amount == 1 ? 1u : 0u));
 }
 
-Handler Core::Ops::block_body(Instruction& i) {
+Handler Core::Ops::block_body(Instruction& i, Context context) {
   if ((i.flags & kUserBank) || i.imm == 0 || i.rn == 15) return nullptr;
   const bool pc = i.imm & 0x8000u;
   if (i.op == Op::kStm && pc) return nullptr;
@@ -351,8 +354,10 @@ Handler Core::Ops::block_body(Instruction& i) {
   if (shape.words > 1 && i.imm >> i.rn == 1u)
     i.flags = static_cast<std::uint16_t>(i.flags & ~kWriteBack);
   const bool thumb = i.flags & kThumbInsn;
-  if (!pc) return &load_block<false, false, false>;
-  return thumb ? &load_block<true, true, false> : &load_block<true, false, false>;
+  if (!pc) return &load_block<false, false, false, false>;
+  if (context.counted)
+    return thumb ? &load_block<true, true, false, true> : &load_block<true, false, false, true>;
+  return thumb ? &load_block<true, true, false, false> : &load_block<true, false, false, false>;
 }
 
 }  // namespace fovea::cpu

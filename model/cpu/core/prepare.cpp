@@ -111,7 +111,7 @@ RecordContext record_context(const DecodedLine& d, unsigned index, const std::ui
   return context;
 }
 
-void DecodedLine::clear(bool thumb) {
+void DecodedLine::clear(bool thumb, bool counted) {
   const unsigned count = thumb ? 16 : 8;
   for (unsigned k = 0; k < count; ++k) {
     records[k] = Instruction{};
@@ -119,7 +119,10 @@ void DecodedLine::clear(bool thumb) {
     records[k].at = static_cast<std::uint8_t>(k * 32 / count);
   }
   records[count] = Instruction{};
-  records[count].handler = thumb ? &Core::Ops::line_end<true> : &Core::Ops::line_end<false>;
+  using Ops = Core::Ops;
+  records[count].handler = counted ? thumb ? &Ops::line_end<true, true> : &Ops::line_end<false, true>
+                           : thumb ? &Ops::line_end<true, false>
+                                   : &Ops::line_end<false, false>;
   records[count].at = 32;
 }
 
@@ -136,23 +139,27 @@ const Instruction* DecodedLine::hold_one(const Instruction& decoded, std::uint32
   return i;
 }
 
-template <unsigned kCond, RecordContext::Check kCheck, bool kPc>
+template <unsigned kCond, RecordContext::Check kCheck, bool kPc, bool kCounted>
 Core::Ops::Next Core::Ops::before(Core& c, Next i, Cycle cycle) {
-  if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
+  if (!passes<kCond>(c)) {
+    if constexpr (kCounted) ++c.fetch_.current->tally(*i).special;
+    return next(c, i + 1, cycle + 1);
+  }
   if constexpr (kCheck == Context::Check::kYoungest) {
-    if (cycle < c.scoreboard_.latest) stall(c, cycle, c.scoreboard_.latest);
+    if (cycle < c.scoreboard_.latest) stall<kCounted>(c, i, cycle, c.scoreboard_.latest);
   } else if constexpr (kCheck == Context::Check::kAll) {
-    if (cycle < c.scoreboard_.latest) stall(c, cycle, c.scoreboard_.operands_ready(*i, cycle));
+    if (cycle < c.scoreboard_.latest)
+      stall<kCounted>(c, i, cycle, c.scoreboard_.operands_ready(*i, cycle));
   }
   if constexpr (kPc)
     c.regs_.r[15] = pc_ahead(*i, c.chain_.va + i->at);
   return i->body(c, i, cycle);
 }
 
-/// Index of a handler: condition + check * 15 + pc * 45.
+/// Index of a handler: condition + check * 15 + pc * 45 + counted * 90.
 template <std::size_t... k>
 constexpr std::array<Handler, sizeof...(k)> Core::Ops::before_table(std::index_sequence<k...>) {
-  return {&before<k % 15, static_cast<Context::Check>(k / 15 % 3), (k / 45) != 0>...};
+  return {&before<k % 15, static_cast<Context::Check>(k / 15 % 3), k / 45 % 2 != 0, k / 90 != 0>...};
 }
 
 void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cycle) {
@@ -177,7 +184,7 @@ void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cy
         body = Ops::memory_body(i, context);
         break;
       case Op::kLdm: case Op::kStm:
-        body = Ops::block_body(i);
+        body = Ops::block_body(i, context);
         break;
       case Op::kB: case Op::kBl:
         own_condition = true;
@@ -199,12 +206,14 @@ void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cy
     i.handler = i.body;
     return;
   }
-  static constexpr auto kTable = Ops::before_table(std::make_index_sequence<90>{});
-  i.handler = kTable[cond + 15 * (static_cast<unsigned>(check) + 3 * unsigned{pc})];
+  static constexpr auto kTable = Ops::before_table(std::make_index_sequence<180>{});
+  i.handler = kTable[cond + 15 * (static_cast<unsigned>(check) +
+                                  3 * (unsigned{pc} + 2 * unsigned{context.counted}))];
 }
 
 Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   c.settle(i, cycle);
+  c.ends_before(i);
   const bool thumb = i->flags & kThumbInsn;
   c.unpredictable(isa_rows()[static_cast<std::size_t>(isa_row(i->raw, thumb))].name);
   Instruction own = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
@@ -213,40 +222,46 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   const Next record = c.unpredictable_.hold_one(own, c.regs_.pc, c.shifted_cycle_);
   c.chain_.stop = 0;  // execute one record, then return to run()
   c.chain_.first = reinterpret_cast<std::intptr_t>(record);
-  for (Next k = record->body(c, record, c.ledger_.cycle); k;)
-    k = k->handler(c, k, c.chain_.cycle);
+  c.count_alone(own, [&] {
+    for (Next k = record->body(c, record, c.ledger_.cycle); k;)
+      k = k->handler(c, k, c.chain_.cycle);
+  });
   return nullptr;
 }
 
-template <bool kThumb>
+template <bool kThumb, bool kCounted>
 Core::Ops::Next Core::Ops::enter_line(Core& c, Next i, Cycle cycle, DecodedLine& d) {
   const Next to = &d.records[0];
   c.chain_.va += 32;
   c.fetch_.current = &d;
   c.chain_.first += reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(i);
+  if constexpr (kCounted) ++d.tallies[0].flow;
   return go(c, to, cycle);
 }
 
-template <bool kThumb>
+template <bool kThumb, bool kCounted>
 Core::Ops::Next Core::Ops::line_end(Core& c, Next i, Cycle cycle) {
   const std::uint32_t va = c.chain_.va + 32;
   DecodedLine* const d = c.fetch_.current->next;
   if (d->valid != (c.fetch_.epoch | va | kThumb)) [[unlikely]] return leave(c, i, cycle);
-  if (cycle < c.scoreboard_.latest) [[unlikely]] return line_end_busy<kThumb>(c, i, cycle, *d);
-  return enter_line<kThumb>(c, i, cycle, *d);
+  if (cycle < c.scoreboard_.latest) [[unlikely]] return line_end_busy<kThumb, kCounted>(c, i, cycle, *d);
+  return enter_line<kThumb, kCounted>(c, i, cycle, *d);
 }
 
 /// The records of a line are prepared without knowing the preceding line.
-template <bool kThumb>
+template <bool kThumb, bool kCounted>
 [[gnu::noinline]] Core::Ops::Next Core::Ops::line_end_busy(Core& c, Next i, Cycle cycle,
                                                            DecodedLine& d) {
   if (!d.records[0].body) [[unlikely]] return leave(c, i, cycle);
   if (!((operands(d.records[0]) | operands(d.records[1])) & i->sources))
-    return enter_line<kThumb>(c, i, cycle, d);
+    return enter_line<kThumb, kCounted>(c, i, cycle, d);
   const Cycle start = held(c, &d.records[0], cycle);
   if (start == kNever) [[unlikely]] return leave(c, i, cycle);
-  if (start > cycle) stall(c, cycle, start);
-  return enter_line<kThumb>(c, i, cycle, d);
+  if (start > cycle) {
+    if constexpr (kCounted) d.tallies[0].waited += static_cast<std::uint32_t>(start - cycle);
+    stall<false>(c, i, cycle, start);
+  }
+  return enter_line<kThumb, kCounted>(c, i, cycle, d);
 }
 
 [[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/cpu/core/bus_port.h"
+#include "model/cpu/core/clock_profile.h"
 #include "model/cpu/core/stats.h"
 
 namespace fovea::cpu {
@@ -15,6 +16,7 @@ class StallLedger {
  public:
   std::uint64_t cycle = 0;  // number of the present clock
   Counts counts;
+  ClockProfile* profile = nullptr;  // hears of each stalled or idle clock; null: nobody does
   bool bus_waited = false;  // set when the core has waited for the bus; cleared by InternalRam
 
   /// Names for the addresses; to be set before the first instruction.
@@ -26,9 +28,12 @@ class StallLedger {
     cycle += n;
     counts.issue += n;
   }
-  /// `n` clocks up to `until` in which the core sleeps.
-  void sleep_to(std::uint64_t until) {
+  /// The clocks up to `until`, in which the core sleeps.
+  /// @param by what ends the sleep
+  void sleep_to(std::uint64_t until, WakeEvent by) {
+    if (profile) profile->slept(by, until - cycle);
     counts.idle += until - cycle;
+    counts.idle_by[static_cast<std::size_t>(by)] += until - cycle;
     cycle = until;
   }
   /// Stalls the core for a reason without an address, with the core itself as culprit.
@@ -37,6 +42,8 @@ class StallLedger {
       counts.stall[index(cause)] += until - cycle;
       if (cause != Cause::kInterlock)
         counts.stalls.add(cause, RegionMap::kNone, kCore, until - cycle);
+      if (profile) [[unlikely]]
+        profile->stalled(cause, RegionMap::kNone, kCore, until - cycle);
       cycle = until;
     }
   }
@@ -54,6 +61,8 @@ class StallLedger {
     const std::uint8_t region = regions_.find(a.address);
     const std::uint64_t end = std::max(cycle, std::min(bus, until));
     counts.stalls.split(cause, region, end - cycle, a.parts, outcome - a.issued, until - end);
+    if (profile) [[unlikely]]
+      profile->stalled(cause, region, a, end - cycle, outcome - a.issued, until - end);
     counts.stall[index(cause)] += until - cycle;
     cycle = until;
   }
@@ -62,7 +71,10 @@ class StallLedger {
   [[gnu::noinline]] void charge(std::uint64_t until, Cause cause, std::uint32_t pa,
                                 std::size_t culprit) {
     counts.stall[index(cause)] += until - cycle;
-    counts.stalls.add(cause, regions_.find(pa), culprit, until - cycle);
+    const std::uint8_t region = regions_.find(pa);
+    counts.stalls.add(cause, region, culprit, until - cycle);
+    if (profile) [[unlikely]]
+      profile->stalled(cause, region, culprit, until - cycle);
     cycle = until;
   }
 

@@ -46,6 +46,12 @@ static_assert([] {
 }());
 constexpr const char* cause_name(Cause c) { return kCauseTable[index(c)].name; }
 
+/// What ended a sleep: an interrupt of one of these.
+enum class WakeEvent : std::uint8_t { kDma, kEngine, kCapture, kDisplay, kTimer, kOther, kCount };
+inline constexpr std::size_t kWakeEvents = static_cast<std::size_t>(WakeEvent::kCount);
+inline constexpr std::array<const char*, kWakeEvents> kWakeNames = {
+    "dma", "engine", "capture", "display", "timer", "other"};
+
 /// Culprits of a stall: those of a bus transaction, and the core itself (interlocks, wait states,
 /// waiting for an edge of the AHB clock, the path from the AHB into the core).
 inline constexpr std::size_t kCore = kCulprits, kStallCulprits = kCulprits + 1;
@@ -82,7 +88,7 @@ class StallTable {
     return rounded(before + own) - rounded(before);
   }
   void add(Cause cause, std::size_t region, std::size_t culprit, std::uint64_t clocks) {
-    parts_[slot(cause, region, culprit)] += clocks << kFraction;
+    add(&parts_[slot(cause, region, 0)], culprit, clocks);
   }
   /// Splits `clocks` in proportion to the picoseconds that a transaction waited for each culprit.
   /// The part of `span` without waits, and rounding errors, are attributed to kService. `own`
@@ -90,7 +96,22 @@ class StallTable {
   [[gnu::always_inline]] void split(Cause cause, std::size_t region, std::uint64_t clocks,
                                     const RequestWaits& waits, std::uint64_t span,
                                     std::uint64_t own = 0) {
-    Parts* const row = &parts_[slot(cause, region, 0)];
+    split(&parts_[slot(cause, region, 0)], clocks, waits, span, own);
+  }
+
+  // The same for the culprits of one cause and region, for tables of other shapes.
+  using Parts = std::uint64_t;
+  using Shares = std::array<Parts, kStallCulprits>;
+  static void add(Parts* row, std::size_t culprit, std::uint64_t clocks) {
+    row[culprit] += clocks << kFraction;
+  }
+  static std::uint64_t whole(const Parts* row, std::size_t culprit) {
+    const Parts before = std::accumulate(row, row + culprit, Parts{0});
+    return rounded(before + row[culprit]) - rounded(before);
+  }
+  [[gnu::always_inline]] static void split(Parts* row, std::uint64_t clocks,
+                                           const RequestWaits& waits, std::uint64_t span,
+                                           std::uint64_t own) {
     row[kCore] += own << kFraction;
     if (clocks == 0) return;
     const std::uint64_t whole = std::max(waits.total(), span);
@@ -132,7 +153,6 @@ class StallTable {
     static const StallTable table;
     return table;
   }
-  using Parts = std::uint64_t;
   static constexpr unsigned kFraction = 24;
   static constexpr std::size_t kOfCause = RegionMap::kMax * kStallCulprits;
   static constexpr std::size_t slot(Cause cause, std::size_t region, std::size_t culprit) {

@@ -22,6 +22,7 @@ constexpr std::size_t fetch_kind(bool thumb, FetchFrom from, bool mmu) {
 struct Counts {
   std::uint64_t instructions = 0, cycles = 0, issue = 0, idle = 0;
   std::array<std::uint64_t, kCauses> stall{};
+  std::array<std::uint64_t, kWakeEvents> idle_by{};  // sums to idle
   std::uint64_t redirects = 0;  // taken branches, writes to the pc, exceptions
   std::uint64_t icache_fills = 0;
   std::uint64_t dcache_reads = 0, dcache_read_fills = 0, dcache_writes = 0,

@@ -1,0 +1,262 @@
+#include "sw/fovea/profile_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <tuple>
+
+#include "sw/fovea/outputs.h"
+
+namespace fovea::app {
+namespace {
+
+using cpu::ProfileRow;
+constexpr std::size_t kColumns = ProfileRow::kStall + cpu::kCauses;  // issue, idle, stalls
+
+std::string cause_text(std::size_t cause) {
+  if (cause == ProfileRow::kIssue) return "issue";
+  if (cause < ProfileRow::kStall)
+    return std::string("idle.") + cpu::kWakeNames[cause - ProfileRow::kIdle];
+  return cpu::cause_name(static_cast<cpu::Cause>(cause - ProfileRow::kStall));
+}
+
+/// Clocks by cause, and instructions.
+struct Sums {
+  std::array<std::uint64_t, kColumns> by_cause{};
+  std::uint64_t instructions = 0;
+  std::uint64_t clocks() const {
+    std::uint64_t n = 0;
+    for (const std::uint64_t c : by_cause) n += c;
+    return n;
+  }
+  void add(const ProfileRow& r) {
+    by_cause[r.cause] += r.clocks;
+    instructions += r.instructions;
+  }
+};
+
+template <class Key>
+using SumsBy = std::map<Key, Sums>;
+
+/// The window's sums by what key(address) says.
+template <class F>
+auto window_sums(const ProfileData& data, F key) {
+  SumsBy<decltype(key(std::uint32_t{}))> out;
+  for (const ProfilePhase& p : data.phases)
+    if (p.window)
+      for (const ProfileRow& r : p.rows) out[key(r.address)].add(r);
+  return out;
+}
+
+/// Entries with clocks, most first; equal ones by name.
+template <class Key>
+std::vector<std::pair<Key, Sums>> ranked(const SumsBy<Key>& sums) {
+  std::vector<std::pair<Key, Sums>> out;
+  for (const auto& entry : sums)
+    if (entry.second.clocks()) out.push_back(entry);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& a, const auto& b) { return a.second.clocks() > b.second.clocks(); });
+  return out;
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+/// "issue 61 %, dcache 30 %": the causes with at least 5 %, most first.
+std::string causes_text(const Sums& s) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  for (std::size_t k = 0; k < kColumns; ++k) order.emplace_back(s.by_cause[k], k);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string out;
+  for (const auto& [n, k] : order)
+    if (percent(n, s.clocks()) >= 5)
+      out += fmt::format("{}{} {:.0f} %", out.empty() ? "" : ", ", cause_text(k),
+                         percent(n, s.clocks()));
+  return out;
+}
+
+constexpr const char* kHeads = "  share      clocks  instructions  where";
+
+std::string line_of(const Sums& s, std::uint64_t all, const std::string& where) {
+  return fmt::format("{:5.1f} %  {:>10}  {:>12}  {}: {}\n", percent(s.clocks(), all), s.clocks(),
+                     s.instructions, where, causes_text(s));
+}
+
+std::uint64_t window_clocks(const ProfileData& data) {
+  std::uint64_t n = 0;
+  for (const ProfilePhase& p : data.phases)
+    if (p.window)
+      for (const ProfileRow& r : p.rows) n += r.clocks;
+  return n;
+}
+
+std::string place(const SourceFrame& f) {
+  return f.file.empty() ? f.function : fmt::format("{} ({}:{})", f.function, f.file, f.line);
+}
+
+std::string functions_text(const ProfileData& data, SourceLines& lines, std::size_t most,
+                           double least) {
+  const std::uint64_t all = window_clocks(data);
+  const auto order = ranked(window_sums(data, [&](std::uint32_t a) {
+    const SourceFrame& f = lines.at(a).front();
+    return f.file.empty() ? f.function : fmt::format("{} ({})", f.function, f.file);
+  }));
+  std::string out;
+  std::size_t shown = 0;
+  for (const auto& [name, sums] : order) {
+    if (shown == most || percent(sums.clocks(), all) < least) break;
+    out += line_of(sums, all, name);
+    ++shown;
+  }
+  if (order.size() > shown) out += fmt::format("         and {} more\n", order.size() - shown);
+  return out;
+}
+
+/// The name of a function in a stack; a semicolon would begin another one.
+std::string stack_name(std::uint32_t address, SourceLines& lines) {
+  std::string name = lines.at(address).back().function;
+  std::replace(name.begin(), name.end(), ';', ',');
+  return name;
+}
+
+}  // namespace
+
+std::string profile_csv(const ProfileData& data, SourceLines& lines) {
+  std::string out = "phase,function,file,line,cause,region,culprit,clocks,instructions\n";
+  for (const ProfilePhase& phase : data.phases) {
+    using Key = std::tuple<SourceFrame, std::uint8_t, std::uint8_t, std::uint8_t>;
+    const auto less = [](const Key& a, const Key& b) {
+      const auto flat = [](const Key& k) {
+        const SourceFrame& f = std::get<0>(k);
+        return std::tie(f.function, f.file, f.line, std::get<1>(k), std::get<2>(k), std::get<3>(k));
+      };
+      return flat(a) < flat(b);
+    };
+    std::map<Key, std::pair<std::uint64_t, std::uint64_t>, decltype(less)> sums(less);
+    for (const ProfileRow& r : phase.rows) {
+      auto& s = sums[{lines.at(r.address).front(), r.cause, r.region, r.culprit}];
+      s.first += r.clocks;
+      s.second += r.instructions;
+    }
+    for (const auto& [key, sum] : sums) {
+      if (sum.first == 0) continue;
+      const auto& [frame, cause, region, culprit] = key;
+      const bool stalled = cause >= ProfileRow::kStall;
+      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", csv_field(phase.name),
+                         csv_field(frame.function), csv_field(frame.file),
+                         frame.line ? std::to_string(frame.line) : "", cause_text(cause),
+                         stalled ? csv_field(data.regions.at(region)) : "",
+                         stalled ? csv_field(std::string(cpu::stall_culprit_name(culprit))) : "",
+                         sum.first, sum.second);
+    }
+  }
+  return out;
+}
+
+std::string profile_callgrind(const ProfileData& data, SourceLines& lines) {
+  std::string out = fmt::format(
+      "# callgrind format\nversion: 1\ncreator: fovea\ncmd: {}\npositions: instr line\n",
+      data.program);
+  out += "event: Clocks : core clocks\nevents: Clocks Instructions";
+  for (std::size_t k = 0; k < kColumns; ++k) {
+    std::string name = cause_text(k);
+    name[0] = static_cast<char>(name[0] - 'a' + 'A');
+    std::replace(name.begin(), name.end(), '.', '_');
+    out += " " + name;
+  }
+  const auto numbers = [](const Sums& s) {
+    std::string text = fmt::format("{} {}", s.clocks(), s.instructions);
+    for (const std::uint64_t n : s.by_cause) text += fmt::format(" {}", n);
+    return text;
+  };
+  const auto by_address = window_sums(data, [](std::uint32_t a) { return a; });
+  Sums all;
+  for (const ProfilePhase& p : data.phases)
+    if (p.window)
+      for (const ProfileRow& r : p.rows) all.add(r);
+  out += "\nsummary: " + numbers(all) + "\n";
+  // Functions in the order of their addresses; a call's costs follow the instruction that calls.
+  std::map<std::uint32_t, std::vector<const ProfileCall*>> calls;
+  for (const ProfileCall& c : data.calls) calls[c.from].push_back(&c);
+  std::string function, file;
+  const auto head = [&](const SourceFrame& f) {
+    const std::string of = f.file.empty() ? "(unknown)" : f.file;
+    if (f.function == function && of == file) return;
+    function = f.function;
+    file = of;
+    out += fmt::format("\nfl={}\nfn={}\n", file, function);
+  };
+  for (const auto& [address, sums] : by_address) {
+    const SourceFrame& f = lines.at(address).front();
+    head(f);
+    out += fmt::format("0x{:x} {} {}\n", address, f.line, numbers(sums));
+    for (const ProfileCall* c : calls[address]) {
+      const SourceFrame& to = lines.at(c->to).back();
+      out += fmt::format("cfi={}\ncfn={}\ncalls={} 0x{:x} {}\n0x{:x} {} {}\n",
+                         to.file.empty() ? "(unknown)" : to.file, to.function, c->count, c->to, to.line,
+                         address, f.line, c->clocks);
+    }
+  }
+  return out;
+}
+
+std::string profile_folded(const ProfileData& data, SourceLines& lines) {
+  std::map<std::string, std::uint64_t> sums;
+  for (const ProfileStack& s : data.stacks) {
+    std::string names;
+    for (const std::uint32_t f : s.functions)
+      names += (names.empty() ? "" : ";") + stack_name(f, lines);
+    if (s.clocks) sums[names.empty() ? "(unknown)" : names] += s.clocks;
+  }
+  std::string out;
+  for (const auto& [names, clocks] : sums) out += fmt::format("{} {}\n", names, clocks);
+  return out;
+}
+
+std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions) {
+  const std::uint64_t all = window_clocks(data);
+  if (all == 0) return "";
+  return fmt::format("{}\n{}", kHeads, functions_text(data, lines, functions, 0.1));
+}
+
+std::string profile_text(const ProfileData& data, SourceLines& lines) {
+  const std::uint64_t all = window_clocks(data);
+  std::string out = "Core clocks of the run by phase:\n";
+  for (const ProfilePhase& p : data.phases) {
+    Sums sums;
+    for (const ProfileRow& r : p.rows) sums.add(r);
+    if (sums.clocks())
+      out += fmt::format("  {:<8} {:>13}{}  {}\n", p.name, sums.clocks(),
+                         p.window ? " (the measured window)" : "", causes_text(sums));
+  }
+  out += fmt::format("\nFunctions of the window; an inlined function counts for itself:\n{}\n{}",
+                     kHeads, functions_text(data, lines, ~std::size_t{0}, 0.01));
+  const auto ranking = [&](const char* title, const auto& order) {
+    constexpr std::size_t kMost = 40;
+    out += fmt::format("\n{}\n{}\n", title, kHeads);
+    for (std::size_t k = 0; k < std::min(kMost, order.size()); ++k)
+      out += line_of(order[k].second, all, order[k].first);
+    if (order.size() > kMost) out += fmt::format("         and {} more\n", order.size() - kMost);
+  };
+  ranking("Source lines of the window:", ranked(window_sums(data, [&](std::uint32_t a) {
+            return place(lines.at(a).front());
+          })));
+  ranking("Instructions of the window:", ranked(window_sums(data, [&](std::uint32_t a) {
+            return fmt::format("0x{:08x} {}", a, place(lines.at(a).front()));
+          })));
+  return out;
+}
+
+std::vector<ResultFile> profile_files(const ProfileData& data, SourceLines& lines) {
+  return {{"profile.csv", profile_csv(data, lines)},
+          {"profile.folded", profile_folded(data, lines)},
+          {"profile.callgrind", profile_callgrind(data, lines)},
+          {"profile.txt", profile_text(data, lines)}};
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,62 @@
+// The files of a profile: the core's clocks by function, source line, cause, region and culprit.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/cpu/core/clock_profile.h"
+#include "sw/fovea/source_lines.h"
+
+namespace fovea::app {
+
+/// A part of the run, such as `boot`; its rows as ClockProfile gives them.
+struct ProfilePhase {
+  std::string name;
+  bool window = false;  ///< part of the measured window
+  std::vector<cpu::ProfileRow> rows;
+};
+
+/// Clocks of the window that were spent in a function that was called in this way.
+struct ProfileStack {
+  std::vector<std::uint32_t> functions;  ///< addresses of their first instructions, outermost first
+  std::uint64_t clocks = 0;
+};
+
+/// Calls of the window from one instruction to one function.
+struct ProfileCall {
+  std::uint32_t from = 0, to = 0;
+  std::uint64_t count = 0;
+  std::uint64_t clocks = 0;  ///< in the function and what it calls
+};
+
+struct ProfileData {
+  std::string program;  ///< file name
+  std::vector<ProfilePhase> phases;
+  std::vector<std::string> regions;  ///< names, by number
+  std::vector<ProfileStack> stacks;
+  std::vector<ProfileCall> calls;
+};
+
+/// A file of a run's folder.
+struct ResultFile {
+  std::string name, text;
+};
+
+/// profile.csv: `phase,function,file,line,cause,region,culprit,clocks,instructions`, a row for each
+/// combination with clocks. Instructions are counted in the rows of `issue`. Equal profiles give equal
+/// bytes.
+std::string profile_csv(const ProfileData& data, SourceLines& lines);
+/// profile.callgrind: the window by instruction, with calls, as callgrind_annotate and KCachegrind read
+/// it.
+std::string profile_callgrind(const ProfileData& data, SourceLines& lines);
+/// profile.folded: a line `a;b;c clocks` for each call stack of the window, for flame graphs.
+std::string profile_folded(const ProfileData& data, SourceLines& lines);
+/// profile.txt: functions, lines and instructions of the window for people, and the phases.
+std::string profile_text(const ProfileData& data, SourceLines& lines);
+/// The functions with most clocks of the window.
+std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions);
+
+/// All of these files.
+std::vector<ResultFile> profile_files(const ProfileData& data, SourceLines& lines);
+
+}  // namespace fovea::app
