@@ -21,9 +21,10 @@ constexpr std::size_t kMaxConfigBytes = 16u << 20;
 constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
 /// The files of all commands. RunDir refuses to write files that are not listed here.
-constexpr std::array<std::string_view, 10> kFiles = {
+constexpr std::array<std::string_view, 11> kFiles = {
     "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",
-    "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4"};
+    "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4",
+    "report.html"};
 
 /// Folders of numbered files.
 struct Series {
