@@ -28,6 +28,7 @@
 #include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/replay_params.h"
+#include "sw/fovea/report/report_command.h"
 #include "sw/fovea/row_files.h"
 #include "sw/fovea/run_dir.h"
 #include "sw/fovea/trace_command.h"
@@ -52,6 +53,7 @@ struct RunOptions {
   PerfettoOptions perfetto;
   LimitOptions limits;
   bool console = false;
+  bool report = false;
 };
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
@@ -189,6 +191,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   std::vector<StatRow> host;
   rows.finish(result);
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
+  if (options.report)
+    add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment.name());
   report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
   // With --console the output stream is reserved for UART0.
   std::ostream& report = options.console ? context.err : context.out;
@@ -201,6 +205,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   const StatRow* shown = find(result.stats, "frame.displayed");
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
     report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
+  if (options.report)
+    report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
   report << std::flush;
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
@@ -353,6 +359,7 @@ struct Options {
   ReplayOptions replay;
   ExecOptions exec;
   TraceOptions trace;
+  ReportOptions report;
   std::string pattern, shell;
   bool markdown = false, of_replay = false;
 };
@@ -404,6 +411,7 @@ void add_run_command(CLI::App& app, RunOptions& run) {
       ->type_name(":PORT");
   add_register_log_options(*c, run.registers);
   add_limit_options(*c, run.limits);
+  c->add_flag("--report", run.report, "Also make report.html: see 'fovea report'");
   c->add_flag("--console", run.console,
               "Show UART0 on the output and type the input on it; see run.until");
 }
@@ -473,6 +481,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "replay") return command_replay(o.replay, args, context);
   if (name == "run") return command_run(o.run, args, context);
   if (name == "exec") return command_exec(o.exec, args, context);
+  if (name == "report") return command_report(o.report, context);
   if (name == "trace") return command_trace(*c, o.trace, context);
   if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
@@ -502,6 +511,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   add_replay_command(app, options.replay);
   const CLI::App* const exec = add_exec_command(app, options.exec);
   add_trace_command(app, options.trace);
+  add_report_command(app, options.report);
   add_other_commands(app, options);
   if (!own.empty() && own[0] == exec->get_name())
     options.exec.arguments = take_program_arguments(*exec, own);

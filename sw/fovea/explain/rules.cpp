@@ -1,0 +1,246 @@
+#include "sw/fovea/explain/rules.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "sw/fovea/explain/words.h"
+
+namespace fovea::explain {
+namespace {
+
+/// "2 frames", "1 frame", "no frame"
+std::string counted(double n, std::string_view what) {
+  if (n == 0) return fmt::format("no {}", what);
+  return fmt::format("{:.0f} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& items) {
+  if (items.size() < 2) return items.empty() ? "" : items.front();
+  return fmt::format("{} and {}", fmt::join(items.begin(), items.end() - 1, ", "), items.back());
+}
+
+/// Causes whose clocks are spent on the way to the SDRAM and back.
+constexpr std::array<std::string_view, 6> kMemoryCauses{"dcache", "icache",   "write_buffer",
+                                                        "tlb",    "cache_op", "drain"};
+
+/// The remap's time must come from the core's clocks for an estimate out of them to make sense: a
+/// remap that the EDMA or an engine carries along waits for these, not for the core's own accesses.
+bool core_moves_the_pixels(const Run& run) {
+  double others = 0;
+  for (const auto* name : {"edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3", "remap_engine"})
+    for (const auto* way : {"read", "write"})
+      others += run.value_or_zero(fmt::format("bus.{}.{}_bytes", name, way));
+  const double core =
+      run.value_or_zero("bus.arm_d.read_bytes") + run.value_or_zero("bus.arm_d.write_bytes");
+  return others < 0.05 * core;
+}
+
+/// Seconds of a core clock, from the remap-free identity: the window has cpu.cycles clocks.
+double core_clock(const Run& run) {
+  const auto window = run.value("frame.window"), cycles = run.value("cpu.cycles");
+  return window && cycles && *cycles > 0 ? *window / *cycles : 0;
+}
+
+}  // namespace
+
+void find_rate(const Run& run, std::vector<Finding>& out) {
+  const auto displayed = run.value("frame.displayed");
+  if (!displayed || *displayed == 0 || !run.value("frame.repeated")) return;
+  const double repeated = run.value_or_zero("frame.repeated"), dropped = run.value_or_zero("frame.dropped");
+  if (repeated == 0 && dropped == 0) {
+    out.push_back({"rate",
+                   fmt::format("The board keeps up with the camera: each of the {} shows a new picture.",
+                               counted(*displayed, "displayed frame")),
+                   {"frame.displayed", "frame.repeated", "frame.dropped"}});
+  } else {
+    out.push_back({"rate",
+                   fmt::format("The board does not keep up with the camera: {} of the {} an earlier "
+                               "picture again, and {} never shown.",
+                               repeated == 1 ? "1" : fmt::format("{:.0f}", repeated),
+                               counted(*displayed, "displayed frame") + (repeated == 1 ? " shows" : " show"),
+                               counted(dropped, "captured frame") + (dropped <= 1 ? " was" : " were")),
+                   {"frame.displayed", "frame.repeated", "frame.dropped"}});
+  }
+  if (const double n = run.value_or_zero("capture.overflows"); n > 0)
+    out.push_back({"overflow",
+                   fmt::format("{} of captured data {} lost, because the memory did not take them in time.",
+                               counted(n, "burst"), n == 1 ? "was" : "were"),
+                   {"capture.overflows"}});
+  if (const double n = run.value_or_zero("display.underflows"); n > 0)
+    out.push_back({"underflow",
+                   fmt::format("{} of picture data came too late for the display.", counted(n, "burst")),
+                   {"display.underflows"}});
+}
+
+void find_budget(const Run& run, std::vector<Finding>& out) {
+  const auto remap = run.value("frame.remap_time.mean");
+  const double period = run.frame_period();
+  if (!remap || period <= 0 || run.remaps_in_a_row()) return;
+  const std::string begin =
+      fmt::format("A remap takes {}, and a frame comes every {}: ", milliseconds(*remap), milliseconds(period));
+  out.push_back({"budget",
+                 begin + (*remap <= period
+                              ? fmt::format("{} of the time is used and {} are left.",
+                                            percent(*remap / period), milliseconds(period - *remap))
+                              : fmt::format("it is {} too long for every frame.",
+                                            milliseconds(*remap - period))),
+                 {"frame.remap_time.mean", "frame.window", "frame.displayed"}});
+}
+
+void find_latency_parts(const Run& run, std::vector<Finding>& out) {
+  // Means over the frames whose four parts are known and follow one another.
+  double capture = 0, wait = 0, remap = 0, until_shown = 0;
+  std::size_t n = 0;
+  for (const auto& f : run.frames()) {
+    if (f.repeated || !f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end ||
+        !f.display_start)
+      continue;
+    const std::array times{*f.capture_start, *f.capture_end, *f.remap_start, *f.remap_end, *f.display_start};
+    if (!std::is_sorted(times.begin(), times.end())) continue;
+    const auto seconds = [&](int i) { return 1e-12 * static_cast<double>(times[i + 1] - times[i]); };
+    capture += seconds(0);
+    wait += seconds(1);
+    remap += seconds(2);
+    until_shown += seconds(3);
+    ++n;
+  }
+  if (n == 0) return;
+  const auto mean = [&](double sum) { return milliseconds(sum / static_cast<double>(n)); };
+  out.push_back({"latency",
+                 fmt::format("From a frame's first captured sample to its first displayed one {} pass "
+                             "on average: {} of capture, {} until the remap begins, {} of remap, and "
+                             "{} until the display begins with it.",
+                             mean(capture + wait + remap + until_shown), mean(capture), mean(wait),
+                             mean(remap), mean(until_shown)),
+                 {"frames.csv"}});
+}
+
+void find_largest_wait(const Run& run, std::vector<Finding>& out) {
+  const double awake = run.awake();
+  const auto causes = run.stall_causes();
+  if (awake <= 0 || causes.empty()) return;
+  const auto& [cause, clocks] = causes.front();
+  std::string text = fmt::format("Largest wait: in {} of the clocks in which it is awake, the core waits "
+                                 "for {}",
+                                 percent(clocks / awake), waits_for(cause));
+  std::vector<std::string> evidence{"cpu.stall." + cause, "cpu.cycles", "cpu.idle"};
+  std::vector<std::string> parts;
+  for (const auto& [culprit, n] : run.culprits(cause)) {
+    // Two parts say where it goes; smaller ones distract.
+    if (parts.size() == 2 || n < 0.1 * clocks) break;
+    parts.push_back(fmt::format("{} of that {}", percent(n / clocks), spent(culprit)));
+    evidence.push_back("cpu.stall." + cause + ".by." + culprit);
+  }
+  if (!parts.empty()) text += ": " + listed(parts);
+  text += ".";
+  if (const auto regions = run.regions(cause); !regions.empty() && regions.front().first != "none") {
+    std::vector<std::string> names;
+    for (const auto& [region, n] : regions) {
+      if (names.size() == 3 || n < 0.1 * clocks) break;
+      names.push_back(fmt::format("{} ({})", region, percent(n / clocks)));
+    }
+    if (!names.empty()) {
+      text += fmt::format(" By what is accessed: {}.", listed(names));
+      evidence.push_back("stalls.csv");
+    }
+  }
+  text += fmt::format(" It issues instructions in {}.", percent(run.value_or_zero("cpu.issue") / awake));
+  out.push_back({"largest_wait", text, evidence});
+}
+
+void find_other_masters(const Run& run, std::vector<Finding>& out) {
+  const double awake = run.awake();
+  if (awake <= 0) return;
+  std::vector<std::string> parts;
+  double all = 0;
+  for (const auto& [culprit, n] : run.culprits()) {
+    if (culprit.starts_with("arm_") || master(culprit).empty()) continue;
+    all += n;
+    if (n >= 0.001 * awake)
+      parts.push_back(fmt::format("{} {}", master(culprit), percent(n / awake)));
+  }
+  if (all == 0) return;
+  out.push_back({"other_masters",
+                 fmt::format("Waiting while other masters are served adds {} to the core's awake clocks{}{}.",
+                             percent(all / awake), parts.empty() ? "" : ": ", listed(parts)),
+                 {"cpu.stall.*.by.*", "cpu.cycles", "cpu.idle"}});
+}
+
+void find_rows(const Run& run, std::vector<Finding>& out) {
+  const double hits = run.value_or_zero("ddr.row_hits"), misses = run.value_or_zero("ddr.row_misses"),
+               conflicts = run.value_or_zero("ddr.row_conflicts"), all = hits + misses + conflicts;
+  if (all == 0) return;
+  std::string text = fmt::format("{} of the requests to the SDRAM find their row open, {} find another "
+                                 "row open, {} a closed bank.",
+                                 percent(hits / all), percent(conflicts / all), percent(misses / all));
+  std::vector<std::string> evidence{"ddr.row_hits", "ddr.row_conflicts", "ddr.row_misses"};
+  if (const double awake = run.awake(); awake > 0) {
+    double rows = 0;
+    for (const auto& [culprit, n] : run.culprits())
+      if (culprit.starts_with("row_")) rows += n;
+    text += fmt::format(" The core spends {} of its awake clocks on that.", percent(rows / awake));
+    evidence.push_back("cpu.stall.*.by.row_*");
+  }
+  out.push_back({"rows", text, evidence});
+}
+
+void find_sdram_use(const Run& run, std::vector<Finding>& out) {
+  const auto use = run.value("ddr.utilisation");
+  if (!use) return;
+  out.push_back({"sdram",
+                 fmt::format("The SDRAM's data bus moves data in {} of the time. That alone does not say "
+                             "whether a faster SDRAM would help.",
+                             percent(*use)),
+                 {"ddr.utilisation"}});
+}
+
+void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out) {
+  const auto request = run.number("bus.arm_d.request_latency"), response = run.number("bus.arm_d.response_latency");
+  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
+  const auto remap = run.value("frame.remap_time.mean");
+  if (!request || !response || *request < 1 || *response < 1 || frames == 0 || clock == 0 || !remap ||
+      !core_moves_the_pixels(run))
+    return;
+  double bridge = 0;
+  for (const auto cause : kMemoryCauses)
+    bridge += run.value_or_zero(fmt::format("cpu.stall.{}.by.bridge", cause));
+  // The clocks in the bridge are in proportion to its delays.
+  const double saved = bridge * 2 / (*request + *response) * clock / frames;
+  if (saved < 0.002 * *remap) return;
+  out.push_back({"shorter_bridge",
+                 fmt::format("Estimate: a bridge that is one clock shorter on each way "
+                             "(bus.arm_d.request_latency, bus.arm_d.response_latency) would save about "
+                             "{} of a remap, {}.",
+                             milliseconds(saved), percent(saved / *remap)),
+                 {"cpu.stall.*.by.bridge", "frame.remapped", "frame.remap_time.mean"},
+                 true});
+}
+
+void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
+  // The two presets differ in the clocks of SDRAM and crossbar only.
+  constexpr double kRatio = 243.0 / 270.0;
+  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
+  const auto remap = run.value("frame.remap_time.mean");
+  if (run.parameter("clocks.preset") != "297/243" || frames == 0 || clock == 0 || !remap ||
+      !core_moves_the_pixels(run))
+    return;
+  double memory = 0;
+  for (const auto cause : kMemoryCauses) {
+    memory += run.value_or_zero(fmt::format("cpu.stall.{}", cause));
+    memory -= run.value_or_zero(fmt::format("cpu.stall.{}.by.core", cause));
+  }
+  const double saved = memory * (1 - kRatio) * clock / frames;
+  if (saved < 0.002 * *remap) return;
+  out.push_back({"faster_memory",
+                 fmt::format("Estimate: with SDRAM and crossbar one step faster (clocks.preset=297/270) a "
+                             "remap would take about {} less, {}.",
+                             milliseconds(saved), percent(saved / *remap)),
+                 {"cpu.stall.*", "cpu.stall.*.by.core", "frame.remapped", "frame.remap_time.mean"},
+                 true});
+}
+
+}  // namespace fovea::explain

@@ -1,0 +1,170 @@
+#include "sw/fovea/report/chart_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace fovea::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxFrames = 2000, kMaxIntervals = 360;
+/// Frames that the detailed views show.
+constexpr std::size_t kDetailedFrames = 6;
+constexpr std::uint64_t kSmallest = 5000;
+
+Json number(const StatBase::Value& value) {
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
+  return std::get<double>(value);
+}
+
+Json ms(const std::optional<std::uint64_t>& ps) {
+  return ps ? Json(static_cast<double>(*ps) * 1e-9) : Json(nullptr);
+}
+
+Json frames_json(const std::vector<app::FrameRow>& rows) {
+  Json out = Json::array();
+  for (const auto& r : rows) {
+    if (out.size() == kMaxFrames) break;
+    out.push_back({{"frame", r.index},
+                   {"camera", r.camera},
+                   {"captured", r.captured ? Json(*r.captured) : Json(nullptr)},
+                   {"capture", {ms(r.capture_start), ms(r.capture_end)}},
+                   {"remap", {ms(r.remap_start), ms(r.remap_end)}},
+                   {"display", {ms(r.display_start), ms(r.display_end)}},
+                   {"dropped", r.dropped},
+                   {"repeated", r.repeated}});
+  }
+  return out;
+}
+
+Json bandwidth_json(const Bandwidth& b) {
+  Json edges = Json::array(), series = Json::array();
+  for (const auto e : b.edges) edges.push_back(static_cast<double>(e) * 1e-9);
+  for (std::size_t m = 0; m < b.masters.size(); ++m) {
+    Json rates = Json::array();
+    // Kilobytes per second are finer than any line of the chart.
+    for (const double r : b.rates[m]) rates.push_back(std::round(r / 1e3) / 1e3);
+    series.push_back({{"master", b.masters[m]}, {"mbps", std::move(rates)}});
+  }
+  return {{"edges_ms", std::move(edges)}, {"series", std::move(series)}};
+}
+
+/// From the first capture that is displayed to the end of some frames' display.
+std::pair<std::uint64_t, std::uint64_t> detailed_span(const std::vector<app::FrameRow>& frames) {
+  std::uint64_t from = ~std::uint64_t{0}, to = 0;
+  for (std::size_t i = 0; i < std::min(frames.size(), kDetailedFrames); ++i) {
+    const auto& f = frames[i];
+    for (const auto& t : {f.capture_start, f.remap_start, f.display_start})
+      if (t) from = std::min(from, *t);
+    for (const auto& t : {f.capture_end, f.remap_end, f.display_end})
+      if (t) to = std::max(to, *t);
+  }
+  return {from, to};
+}
+
+Json timeline_json(const Results& run) {
+  const auto& rows = run.timeline->rows;
+  Json out = Json::object();
+  if (rows.empty()) return out;
+  out["whole"] =
+      bandwidth_json(bandwidth(*run.timeline, rows.front().start, rows.back().end, kMaxIntervals));
+  if (run.frames && !run.frames->empty())
+    if (const auto [from, to] = detailed_span(*run.frames); from < to)
+      out["detail"] = bandwidth_json(bandwidth(*run.timeline, from, to, kMaxIntervals));
+  return out;
+}
+
+struct Node {
+  std::uint64_t clocks = 0;
+  std::map<std::string, Node> children;
+};
+
+Json node_json(const std::string& name, const Node& node, std::uint64_t least) {
+  Json out{{"name", name}, {"clocks", node.clocks}};
+  Json children = Json::array();
+  std::uint64_t rest = 0;
+  for (const auto& [child, sub] : node.children) {
+    if (sub.clocks < least)
+      rest += sub.clocks;
+    else
+      children.push_back(node_json(child, sub, least));
+  }
+  if (rest > 0) children.push_back({{"name", "(smaller ones)"}, {"clocks", rest}});
+  if (!children.empty()) out["children"] = std::move(children);
+  return out;
+}
+
+}  // namespace
+
+Bandwidth bandwidth(const Timeline& timeline, std::uint64_t from, std::uint64_t to,
+                    std::size_t most) {
+  Bandwidth out;
+  std::vector<const app::TimelineRow*> rows;
+  for (const auto& r : timeline.rows)
+    if (r.end > from && r.start < to && r.end > r.start) rows.push_back(&r);
+  if (rows.empty()) return out;
+  const std::size_t step = (rows.size() + most - 1) / most;
+  for (std::size_t i = 0; i < rows.size(); i += step) out.edges.push_back(rows[i]->start);
+  out.edges.push_back(rows.back()->end);
+  for (std::size_t m = 0; m < timeline.masters.size(); ++m) {
+    std::vector<double> rates;
+    double all = 0;
+    for (std::size_t i = 0; i < rows.size(); i += step) {
+      double bytes = 0;
+      for (std::size_t k = i; k < std::min(i + step, rows.size()); ++k)
+        bytes += static_cast<double>(rows[k]->read_bytes[m] + rows[k]->write_bytes[m]);
+      const std::size_t n = rates.size();
+      rates.push_back(bytes / (1e-12 * static_cast<double>(out.edges[n + 1] - out.edges[n])));
+      all += bytes;
+    }
+    if (all == 0) continue;
+    out.masters.push_back(timeline.masters[m]);
+    out.rates.push_back(std::move(rates));
+  }
+  return out;
+}
+
+Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks) {
+  Node root;
+  for (const auto& [stack, clocks] : stacks) {
+    Node* node = &root;
+    node->clocks += clocks;
+    for (std::size_t from = 0; from <= stack.size();) {
+      const std::size_t end = std::min(stack.find(';', from), stack.size());
+      node = &node->children[stack.substr(from, end - from)];
+      node->clocks += clocks;
+      from = end + 1;
+    }
+  }
+  return node_json("all", root, root.clocks / kSmallest);
+}
+
+Json chart_data(const Results& run, const std::string& label) {
+  Json out{{"label", label}, {"name", run.name}};
+  Json stats = Json::object();
+  for (const auto& s : run.stats) stats[s.name] = {number(s.value), s.unit};
+  out["stats"] = std::move(stats);
+  if (run.frames) {
+    out["frames"] = frames_json(*run.frames);
+    out["frames_in_all"] = run.frames->size();
+  }
+  if (run.timeline) out["timeline"] = timeline_json(run);
+  if (run.stalls) {
+    Json rows = Json::array();
+    for (const auto& s : *run.stalls) rows.push_back({s.cause, s.region, s.culprit, s.cycles});
+    out["stalls"] = std::move(rows);
+  }
+  if (run.latency) {
+    Json rows = Json::array();
+    for (const auto& b : *run.latency)
+      rows.push_back({b.master, b.direction, b.beat, b.low_ns, b.high_ns, b.count});
+    out["latency"] = std::move(rows);
+  }
+  if (run.stacks) out["stacks"] = stack_tree(*run.stacks);
+  return out;
+}
+
+}  // namespace fovea::report

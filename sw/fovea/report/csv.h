@@ -1,0 +1,37 @@
+// Reads the CSV files of a run, row by row.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fovea::report {
+
+/// Where a row stands, for messages.
+struct CsvPlace {
+  const std::filesystem::path& file;
+  std::size_t line = 0;
+};
+
+/// The fields of a CSV text (RFC 4180: quoted fields, "" for a quote), with the line in which each
+/// record begins. The function gets the header first.
+void each_csv_record(const std::filesystem::path& file, std::string_view text,
+                     const std::function<void(const CsvPlace&, std::span<const std::string>)>& row);
+
+/// Reads the rows of a file whose header begins with `columns`; further columns are passed on.
+/// @throws UserError with file and line: another header, a row with another number of fields, a
+/// quote without its end
+void each_csv_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
+                  const std::function<void(const CsvPlace&, std::span<const std::string>)>& row);
+
+/// Numbers as the files have them. @throws UserError with file and line
+std::uint64_t whole(const CsvPlace& place, const std::string& field);
+double number(const CsvPlace& place, const std::string& field);
+/// Nanoseconds with three decimals as ps; empty for an empty field.
+std::optional<std::uint64_t> time_ps(const CsvPlace& place, const std::string& field);
+
+}  // namespace fovea::report

@@ -1,0 +1,99 @@
+#include "sw/fovea/report/page.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/report/assets.h"
+#include "sw/fovea/report/chart_data.h"
+#include "sw/fovea/report/html.h"
+#include "sw/fovea/report/sections.h"
+
+namespace fovea::report {
+namespace {
+
+constexpr std::string_view kStart = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+                                    "<meta name=\"generator\" content=\"fovea report\">\n";
+
+/// Of 3 MB for the page; the rest is for text and charts.
+constexpr std::size_t kPictureBytes = 2'200'000;
+
+struct Section {
+  const char *id, *title;
+  std::string html;
+};
+
+std::string data_json(const std::vector<Results>& runs) {
+  nlohmann::ordered_json data{{"format", "fovea report 1"}, {"runs", nlohmann::ordered_json::array()}};
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    data["runs"].push_back(chart_data(runs[i], runs.size() == 1 ? "" : run_label(i)));
+  return script_json(data);
+}
+
+}  // namespace
+
+std::string run_label(std::size_t index) { return std::string(1, static_cast<char>('A' + index)); }
+
+bool is_report_page(std::string_view first_bytes) { return first_bytes.starts_with(kStart); }
+
+std::string report_page(const std::vector<Results>& runs) {
+  std::string title;
+  for (const auto& run : runs) title += (title.empty() ? "" : ", ") + run.name;
+  const std::vector<Section> sections{
+      {"verdict", "Verdict", verdict_section(runs)},
+      {"findings", "Findings", findings_section(runs)},
+      {"pictures", "Pictures", pictures_section(runs, choose_pictures(runs, kPictureBytes))},
+      {"frames", "Frames over time", frames_section(runs)},
+      {"bandwidth", "Bandwidth", bandwidth_section(runs)},
+      {"latency", "SDRAM latency", latency_section(runs)},
+      {"stalls", "The core's clocks", stalls_section(runs)},
+      {"banks", "SDRAM banks", banks_section(runs)},
+      {"functions", "Functions", profile_section(runs)},
+      {"configuration", "Configuration", configuration_section(runs)},
+      {"figures", "All figures", figures_section(runs)},
+      {"provenance", "Provenance", provenance_section(runs)}};
+  const std::string script(kScript);
+  std::string out = fmt::format(
+      "{}<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+      "style-src 'unsafe-inline'; script-src '{}'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<title>{} - Fovea report</title>\n<style>{}</style>\n",
+      kStart, script_digest(script), escaped(title), kStyle);
+  out += fmt::format("<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
+                     "<div id=\"controls\"></div></header>\n<nav aria-label=\"Sections\"><ul>",
+                     escaped(title));
+  for (const auto& s : sections) out += fmt::format("<li><a href=\"#{}\">{}</a></li>", s.id, s.title);
+  out += "</ul></nav>\n<main>\n<noscript><p class=\"note\">Charts need JavaScript; all figures are in the "
+         "tables.</p></noscript>\n";
+  for (const auto& s : sections)
+    out += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+                       s.id, s.title, s.html);
+  out += fmt::format("</main>\n<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n</html>\n",
+                     data_json(runs), script);
+  return out;
+}
+
+std::string report_text(const std::vector<Results>& runs) {
+  std::string out;
+  const auto list = [&](const std::vector<explain::Finding>& findings) {
+    for (const auto& f : findings) {
+      out += "- " + app::printable(f.text) + "\n    from ";
+      for (const auto& e : f.evidence) out += (&e == &f.evidence.front() ? "" : ", ") + app::printable(e);
+      out += "\n";
+    }
+  };
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    out += app::printable(title_of(runs, i)) + "\n" + app::verdict(runs[i].stats);
+    if (!runs[i].complete) out += "These results are partial.\n";
+    list(explain::explain(inputs_of(runs[i])));
+  }
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    out += fmt::format("{} against A\n", run_label(i));
+    list(explain::explain_difference(inputs_of(runs[0]), "A", inputs_of(runs[i]), run_label(i)));
+  }
+  return out;
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,115 @@
+// The core's clocks: waterfall, difference, call stacks.
+const CAUSES = {
+  issue: 'instructions issue', interlock: 'interlocks', icache: 'I-cache fills', dcache: 'D-cache fills', write_buffer: 'write buffer full',
+  uncached: 'uncached accesses', tlb: 'page walks', tcm: 'internal RAM', cache_op: 'cache maintenance', drain: 'draining writes',
+  bus_sync: 'bus clock edge', idle: 'idle (waits for an interrupt)',
+};
+
+/// [cause, clocks, {culprit: clocks}] of everything that has clocks; issue first, idle last, waits by size between.
+function clocksByCause(run) {
+  const value = (name) => (run.stats[name] ?? [0])[0];
+  const waits = Object.keys(run.stats).map((name) => /^cpu\.stall\.([^.]+)$/.exec(name)).filter(Boolean).map((m) => m[1]);
+  const parts = (cause) => Object.fromEntries(Object.keys(run.stats).filter((n) => n.startsWith(`cpu.stall.${cause}.by.`) && value(n) > 0)
+    .map((n) => [n.slice(`cpu.stall.${cause}.by.`.length), value(n)]));
+  const rows = waits.map((cause) => [cause, value(`cpu.stall.${cause}`), parts(cause)]).filter((r) => r[1] > 0).sort((a, b) => b[1] - a[1]);
+  return [['issue', value('cpu.issue'), {}], ...rows, ['idle', value('cpu.idle'), {}]].filter((r) => r[1] > 0);
+}
+
+function drawWaterfall(place, run) {
+  const all = run.stats['cpu.cycles'][0];
+  const every = clocksByCause(run);
+  // Rows that would be thinner than a line are one row, so that all still add up.
+  const rows = every.filter((r) => r[1] >= all / 1000 || r[0] === 'issue' || r[0] === 'idle'), small = every.filter((r) => !rows.includes(r));
+  if (small.length) rows.splice(rows.length - (rows[rows.length - 1][0] === 'idle' ? 1 : 0), 0, [small.length === 1 ? small[0][0] : 'others', small.reduce((s, r) => s + r[1], 0), {}]);
+  const box = {left: 190, right: 780, top: 6, bottom: 6 + 30 * rows.length};
+  const x = scale(0, all, box.left, box.right);
+  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, x, ticks(0, 1, 5).map((v) => v * all), 'share of the clocks of the window', (v) => percent(v / all)));
+  const culprits = new Set();
+  let from = 0;
+  rows.forEach(([cause, clocks, parts], row) => {
+    const y = box.top + 30 * row + 4;
+    svg.append(text(box.left - 8, y + 15, CAUSES[cause] ?? cause, {'text-anchor': 'end'}));
+    const segments = Object.entries(parts).sort((a, b) => b[1] - a[1]);
+    const known = segments.reduce((sum, s) => sum + s[1], 0);
+    if (clocks > known) segments.push([segments.length ? 'core' : cause, clocks - known]);
+    let start = from;
+    for (const [who, n] of segments) {
+      if (segments.length > 1 || who !== cause) culprits.add(who);
+      svg.append(element('rect', {x: x(start), y, width: Math.max(x(start + n) - x(start), 0.4), height: 22, fill: colour(who), class: n > all / 200 ? 'edge' : undefined},
+        element('title', {}, `${CAUSES[cause] ?? cause}${who === cause ? '' : `, ${who}`}: ${plain(n, 9)} clocks, ${percent(n / all)}`)));
+      start += n;
+    }
+    svg.append(text(x(from + clocks) + 6, y + 15, percent(clocks / all)));
+    if (row + 1 < rows.length) svg.append(element('line', {class: 'base', x1: x(from + clocks), x2: x(from + clocks), y1: y + 22, y2: y + 30}));
+    from += clocks;
+  });
+  place.append(svg, legend([...culprits]));
+}
+
+function drawWaterfallDifference(place, run, first) {
+  const perFrame = (r) => Object.fromEntries(clocksByCause(r).map(([cause, clocks]) => [cause, clocks / r.stats['frame.remapped'][0]]));
+  const a = perFrame(first), b = perFrame(run);
+  const rows = [...new Set([...Object.keys(a), ...Object.keys(b)])].map((cause) => [cause, (b[cause] ?? 0) - (a[cause] ?? 0)])
+    .filter((r) => Math.abs(r[1]) >= 1).sort((p, q) => Math.abs(q[1]) - Math.abs(p[1]));
+  if (!rows.length) {
+    place.append(element('p', {class: 'absent'}, 'No cause differs by a clock or more.'));
+    return;
+  }
+  const largest = Math.max(...rows.map((r) => Math.abs(r[1])));
+  const box = {left: 190, right: 800, top: 6, bottom: 6 + 28 * rows.length};
+  const x = scale(-largest * 1.25, largest * 1.25, box.left, box.right);
+  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, x, ticks(-largest, largest, 6), 'clocks for each corrected frame; left: fewer, right: more'));
+  rows.forEach(([cause, change], row) => {
+    const y = box.top + 28 * row + 4;
+    svg.append(text(box.left - 8, y + 15, CAUSES[cause] ?? cause, {'text-anchor': 'end'}),
+      element('rect', {x: Math.min(x(0), x(change)), y, width: Math.abs(x(change) - x(0)), height: 20, fill: change < 0 ? 'var(--c0)' : 'var(--c1)'}),
+      text(x(change) + (change < 0 ? -5 : 5), y + 15, `${change > 0 ? '+' : ''}${plain(Math.round(change), 4)}`, {'text-anchor': change < 0 ? 'end' : 'start'}));
+  });
+  svg.append(element('line', {class: 'base', x1: x(0), x2: x(0), y1: box.top, y2: box.bottom}));
+  place.append(svg);
+}
+
+/// Boxes below their caller; choosing one widens it, Escape or the outermost box shows all again.
+function drawFlame(place, run) {
+  const depth = (node) => 1 + Math.max(0, ...(node.children ?? []).map(depth));
+  const root = run.stacks, width = 880, step = 22, height = depth(root) * step;
+  const readout = element('p', {class: 'readout', 'aria-live': 'polite'}, '');
+  const holder = element('div');
+  const tell = (node) => { readout.textContent = `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)} of all`; };
+  let path = [root];
+  function show(focus) {
+    const svg = element('svg', {viewBox: `0 0 ${width} ${height}`, role: 'group', 'aria-label': 'Call stacks; choose a box to widen it'});
+    const box = (node, x, w, row, chain) => {
+      if (w < 0.7) return;
+      const inPath = chain.length < path.length;
+      const g = element('g', {class: 'box', tabindex: w > 12 ? 0 : undefined, role: w > 12 ? 'button' : undefined,
+                              'aria-label': w > 12 ? `${node.name}, ${percent(node.clocks / root.clocks)}` : undefined},
+        element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
+        element('rect', {x, y: row * step, width: w, height: step - 1, class: 'edge', fill: inPath ? 'var(--c9)' : `var(--c${[0, 4, 2, 3, 6][row % 5]})`, 'fill-opacity': 0.55}));
+      const letters = Math.floor((w - 8) / 6.6);
+      if (letters > 2) g.append(text(x + 4, row * step + 15, node.name.length > letters ? `${node.name.slice(0, letters - 1)}\u2026` : node.name));
+      const choose = () => { path = chain; tell(node); show(true); };
+      g.addEventListener('click', choose);
+      g.addEventListener('pointerenter', () => tell(node));
+      g.addEventListener('focus', () => tell(node));
+      g.addEventListener('keydown', (event) => {
+        if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); choose(); }
+        if (event.key === 'Escape') { path = [root]; show(true); }
+      });
+      svg.append(g);
+      const next = path[chain.length];
+      if (next) { box(next, 0, width, row + 1, [...chain, next]); return; }
+      let from = x;
+      for (const child of node.children ?? []) {
+        const part = (child.clocks / node.clocks) * w;
+        box(child, from, part, row + 1, [...chain, child]);
+        from += part;
+      }
+    };
+    box(root, 0, width, 0, [root]);
+    holder.replaceChildren(svg);
+    if (focus) svg.querySelectorAll('g')[path.length - 1]?.focus();
+  }
+  show(false);
+  place.append(holder, readout);
+}

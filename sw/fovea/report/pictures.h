@@ -1,0 +1,43 @@
+// The pictures of a report: which, how large, and how two of them differ.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/report/results.h"
+#include "sw/fovea/rgb_image.h"
+
+namespace fovea::report {
+
+/// A picture as the page embeds it.
+struct Picture {
+  std::string uri;    ///< data URI of a PNG
+  unsigned width = 0, height = 0;  ///< of the original
+  unsigned shrunk = 1;             ///< each pixel of the page stands for shrunk x shrunk of them
+};
+
+/// What two pictures of equal size differ in.
+struct PictureDifference {
+  std::size_t pixels = 0, all = 0;  ///< pixels that differ, and all
+  double psnr = 0;                  ///< dB over R, G and B; infinite if they are equal
+};
+
+struct RunPictures {
+  std::optional<std::uint64_t> frame;  ///< number in the files' names
+  std::optional<Picture> before;       ///< what the camera sent
+  std::optional<Picture> after;        ///< what the display showed
+  std::optional<PictureDifference> from_first;  ///< `after` against that of the first run
+};
+
+/// Of each run the first frame that has both pictures, or else the first displayed one. All
+/// pictures together take at most `budget` bytes of the page; larger ones are shrunk by averaging.
+/// @throws UserError for a damaged picture
+std::vector<RunPictures> choose_pictures(const std::vector<Results>& runs, std::size_t budget);
+
+/// @return empty if the sizes differ
+std::optional<PictureDifference> difference(const app::RgbImage& a, const app::RgbImage& b);
+/// The mean of each factor x factor pixels; what is left over at the right and below is dropped.
+app::RgbImage shrink(const app::RgbImage& image, unsigned factor);
+
+}  // namespace fovea::report

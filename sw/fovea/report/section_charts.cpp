@@ -1,0 +1,264 @@
+// Sections that consist of charts and the tables below them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "sw/fovea/explain/words.h"
+#include "sw/fovea/report/html.h"
+#include "sw/fovea/report/page.h"
+#include "sw/fovea/report/sections.h"
+
+namespace fovea::report {
+namespace {
+
+/// Functions with less are left out of the table.
+constexpr std::size_t kMaxFunctions = 40;
+
+std::string percent_cell(double part, double all) {
+  return all > 0 ? fmt::format("<data value=\"{}\">{}</data>", app::number_text(part / all),
+                               explain::percent(part / all))
+                 : "";
+}
+
+std::string clocks_cell(std::uint64_t clocks) {
+  return fmt::format("<data value=\"{0}\">{1}</data>", clocks,
+                     fmt::format(std::locale::classic(), "{}", clocks));
+}
+
+/// Masters of `prefix`MASTER`suffix` figures that have a value, in the order of the figures.
+std::vector<std::string> masters_of(const Results& run, std::string_view prefix, std::string_view suffix) {
+  std::vector<std::string> out;
+  for (const auto& s : run.stats)
+    if (s.name.starts_with(prefix) && s.name.ends_with(suffix) && s.name.size() > prefix.size() + suffix.size())
+      out.push_back(s.name.substr(prefix.size(), s.name.size() - prefix.size() - suffix.size()));
+  return out;
+}
+
+std::string rate_cell(double bytes, double seconds) {
+  return seconds > 0 ? fmt::format("<data value=\"{}\">{:.1f}</data>", app::number_text(bytes / seconds),
+                                   bytes / seconds * 1e-6)
+                     : "";
+}
+
+std::string bandwidth_table(const Results& run) {
+  const auto window = run.value("frame.window");
+  Table table("Bytes of each master in the measured window",
+              {"Master", "#Read", "#Written", "#MB/s read", "#MB/s written", "#Requests"});
+  for (const auto& m : masters_of(run, "bus.", ".transactions")) {
+    if (run.value("bus." + m + ".transactions") == 0.0) continue;
+    const auto read = run.value("bus." + m + ".read_bytes").value_or(0),
+               written = run.value("bus." + m + ".write_bytes").value_or(0);
+    table.row({escaped(m), figure_cell(app::find(run.stats, "bus." + m + ".read_bytes")),
+               figure_cell(app::find(run.stats, "bus." + m + ".write_bytes")),
+               rate_cell(read, window.value_or(0)), rate_cell(written, window.value_or(0)),
+               figure_cell(app::find(run.stats, "bus." + m + ".transactions"))});
+  }
+  return table.empty() ? "" : table.html();
+}
+
+std::string latency_table(const Results& run) {
+  Table table("Latency of reads from the SDRAM, from the request to the first data at the port",
+              {"Master", "#Mean", "#Median", "#95 %", "#99 %", "#Largest"});
+  for (const auto& m : masters_of(run, "ddr.", ".latency.mean")) {
+    std::vector<std::string> cells{escaped(m)};
+    for (const auto* which : {"mean", "p50", "p95", "p99", "max"})
+      cells.push_back(figure_cell(app::find(run.stats, fmt::format("ddr.{}.latency.{}", m, which))));
+    table.row(cells);
+  }
+  return table.empty() ? "" : table.html();
+}
+
+std::string stalls_table(const Results& run) {
+  auto rows = *run.stalls;
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.cycles > b.cycles; });
+  constexpr std::size_t kShown = 40;
+  Table table(rows.size() > kShown ? fmt::format("The {} largest of {} waits of the core", kShown, rows.size())
+                                   : "Waits of the core",
+              {"Waits for", "Cause", "Data", "Culprit", "#Clocks", "#Of all clocks"});
+  rows.resize(std::min(rows.size(), kShown));
+  for (const auto& r : rows)
+    table.row({escaped(explain::waits_for(r.cause)), escaped(r.cause), escaped(r.region), escaped(r.culprit),
+               clocks_cell(r.cycles),
+               percent_cell(static_cast<double>(r.cycles), run.value("cpu.cycles").value_or(0))});
+  return table.html();
+}
+
+struct FunctionRow {
+  std::string where;
+  std::uint64_t clocks = 0, issue = 0, instructions = 0;
+  std::map<std::string, std::uint64_t> causes;
+};
+
+/// Phase whose functions are listed: that of the frames where there is one.
+std::string phase_of(const std::vector<ProfileRow>& rows) {
+  for (const auto& r : rows)
+    if (r.phase == "frames") return r.phase;
+  return "";
+}
+
+std::map<std::string, FunctionRow> functions_of(const std::vector<ProfileRow>& rows) {
+  const std::string phase = phase_of(rows);
+  std::map<std::string, FunctionRow> out;
+  for (const auto& r : rows) {
+    if (!phase.empty() && r.phase != phase) continue;
+    FunctionRow& f = out[r.function];
+    if (f.where.empty() && !r.file.empty()) f.where = r.line.empty() ? r.file : r.file + ":" + r.line;
+    f.clocks += r.clocks;
+    f.instructions += r.instructions;
+    if (r.cause == "issue")
+      f.issue += r.clocks;
+    else
+      f.causes[r.cause] += r.clocks;
+  }
+  return out;
+}
+
+std::string function_table(const Runs& runs) {
+  std::vector<std::map<std::string, FunctionRow>> all;
+  std::map<std::string, std::uint64_t> largest;
+  std::vector<double> sums;
+  for (const auto& run : runs) {
+    all.push_back(run.profile ? functions_of(*run.profile) : std::map<std::string, FunctionRow>{});
+    double sum = 0;
+    for (const auto& [name, f] : all.back()) {
+      largest[name] = std::max(largest[name], f.clocks);
+      sum += static_cast<double>(f.clocks);
+    }
+    sums.push_back(sum);
+  }
+  std::vector<std::pair<std::string, std::uint64_t>> order(largest.begin(), largest.end());
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::string> headings{"Function"};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::string of = runs.size() == 1 ? "" : " " + run_label(i);
+    headings.insert(headings.end(), {"#Clocks" + of, "#Share" + of, "#Issue" + of});
+    if (i > 0) headings.push_back(fmt::format("#{} - A", run_label(i)));
+  }
+  headings.insert(headings.end(), {"Largest wait", "Source"});
+  const bool cut = order.size() > kMaxFunctions;
+  Table table(cut ? fmt::format("The {} largest of {} functions", kMaxFunctions, order.size()) : "Functions",
+              headings);
+  order.resize(std::min(order.size(), kMaxFunctions));
+  for (const auto& [name, n] : order) {
+    std::vector<std::string> cells{"<code>" + escaped(name) + "</code>"};
+    std::string where, wait;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const auto found = all[i].find(name);
+      const FunctionRow f = found == all[i].end() ? FunctionRow{} : found->second;
+      cells.push_back(clocks_cell(f.clocks));
+      cells.push_back(percent_cell(static_cast<double>(f.clocks), sums[i]));
+      cells.push_back(clocks_cell(f.issue));
+      if (i > 0) {
+        const auto first = all[0].find(name);
+        const auto before = first == all[0].end() ? 0 : static_cast<std::int64_t>(first->second.clocks);
+        const auto change = static_cast<std::int64_t>(f.clocks) - before;
+        cells.push_back(fmt::format("<data value=\"{0}\">{0:+}</data>", change));
+      }
+      if (where.empty()) where = f.where;
+      if (wait.empty() && !f.causes.empty())
+        wait = std::max_element(f.causes.begin(), f.causes.end(), [](const auto& a, const auto& b) {
+                 return a.second < b.second;
+               })->first;
+    }
+    cells.push_back(escaped(wait));
+    cells.push_back(escaped(where));
+    table.row(cells);
+  }
+  return table.html();
+}
+
+}  // namespace
+
+std::string frames_section(const Runs& runs) {
+  return panels(runs, [&](std::size_t i) {
+    const auto& run = runs[i];
+    if (!run.frames) return absent("This folder has no frames.csv: only 'fovea run' writes it.");
+    if (run.frames->empty()) return absent("The run displayed no frame.");
+    std::string out = chart("frames", i,
+                            "When each of the first frames was captured, remapped and displayed, in ms "
+                            "since power-up. The number is that of the displayed frame.");
+    if (run.frames->size() > 1)
+      out += chart("frame-times", i,
+                   "Time of the remap, and from the first captured to the first displayed sample, of "
+                   "each displayed frame.");
+    return out;
+  });
+}
+
+std::string bandwidth_section(const Runs& runs) {
+  return panels(runs, [&](std::size_t i) {
+    const auto& run = runs[i];
+    if (!run.timeline || run.timeline->rows.empty())
+      return absent("This folder has no rows in timeline.csv, so its bandwidth over time is not known.") +
+             bandwidth_table(run);
+    std::string out;
+    if (run.frames && !run.frames->empty())
+      out += chart("bandwidth-detail", i,
+                   "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
+                   "displayed; masters are stacked.");
+    out += chart("bandwidth-whole", i,
+                 "Bandwidth to and from the SDRAM from the begin to the end of the results; masters are stacked.");
+    return out + bandwidth_table(run);
+  });
+}
+
+std::string latency_section(const Runs& runs) {
+  return panels(runs, [&](std::size_t i) {
+    const auto& run = runs[i];
+    const std::string table = latency_table(run);
+    if (table.empty()) return absent("No master has read from the SDRAM.");
+    std::string out = chart("percentiles", i,
+                            "Latency of each master's reads: from the median to the 99th percentile as a "
+                            "bar, with the mean and the largest as marks.") +
+                      table;
+    return out + (run.latency && !run.latency->empty()
+                      ? chart("latency", i,
+                              "How many requests of each master took how long; both axes are logarithmic.")
+                      : absent("The folder has no latency.csv, so there are no histograms."));
+  });
+}
+
+std::string stalls_section(const Runs& runs) {
+  std::string out = panels(runs, [&](std::size_t i) {
+    const auto& run = runs[i];
+    if (run.value("cpu.cycles").value_or(0) == 0)
+      return absent("No core ran, so there are no clocks of it to account for.");
+    std::string inside = chart("waterfall", i,
+                               "Where all clocks of the core in the window went: each cause begins where "
+                               "the one above it ends; colours say who is to blame.");
+    if (!run.stalls) return inside + absent("The folder has no stalls.csv, so the regions are not known.");
+    return inside + "<details><summary>Show the waits as a table</summary>" + stalls_table(run) + "</details>";
+  });
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    if (runs[0].value("frame.remapped").value_or(0) > 0 && runs[i].value("frame.remapped").value_or(0) > 0)
+      out += chart("waterfall-difference", i,
+                   fmt::format("Clocks of the core for each corrected frame: {} less A, by cause.", run_label(i)));
+  return out;
+}
+
+std::string banks_section(const Runs& runs) {
+  return panels(runs, [&](std::size_t i) {
+    if (!app::find(runs[i].stats, "ddr.bank0.row_hits"))
+      return absent("The results have no figures of the SDRAM's banks.");
+    return chart("banks", i,
+                 "Requests that reached each bank of the SDRAM: with their row open, with its bank "
+                 "closed, or with another row open. Darker means more.");
+  });
+}
+
+std::string profile_section(const Runs& runs) {
+  const bool any = std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.profile.has_value(); });
+  std::string out = any ? function_table(runs)
+                        : absent("There is no profile: 'fovea run --profile' makes one, by function and source line.");
+  if (std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.stacks.has_value(); }))
+    out += panels(runs, [&](std::size_t i) {
+      if (!runs[i].stacks) return absent("This run has no profile.folded.");
+      return chart("flame", i,
+                   "Clocks by call stack: a box is as wide as the clocks of its function and of those that "
+                   "it calls. Choose a box to widen it.");
+    });
+  return out;
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,58 @@
+// The sections of the page, each as HTML. What a chart shows is drawn by the page's script; every
+// figure that a reader may quote is text here.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/explain/explain.h"
+#include "sw/fovea/report/pictures.h"
+#include "sw/fovea/report/results.h"
+
+namespace fovea::report {
+
+using Runs = std::vector<Results>;
+
+std::string verdict_section(const Runs& runs);
+std::string findings_section(const Runs& runs);
+std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures);
+std::string frames_section(const Runs& runs);
+std::string bandwidth_section(const Runs& runs);
+std::string latency_section(const Runs& runs);
+std::string stalls_section(const Runs& runs);
+std::string banks_section(const Runs& runs);
+std::string profile_section(const Runs& runs);
+std::string configuration_section(const Runs& runs);
+std::string figures_section(const Runs& runs);
+std::string provenance_section(const Runs& runs);
+
+/// What explain() gets of a run.
+explain::Inputs inputs_of(const Results& run);
+
+// Pieces that several sections use.
+
+/// "A: default"; the name alone if there is one run.
+std::string title_of(const Runs& runs, std::size_t index);
+/// <data value="exact">for people</data>; a dash for a figure without value.
+std::string figure_cell(const app::StatRow* figure);
+/// A panel for each run beside one another; `inside` gives its HTML.
+std::string panels(const Runs& runs, const std::function<std::string(std::size_t)>& inside);
+/// The place of a chart, which the script fills. `sentence` says what it shows.
+std::string chart(std::string_view kind, std::size_t run, std::string_view sentence);
+/// A sentence in place of something that a run does not have.
+std::string absent(std::string_view sentence);
+
+/// A table with a heading line; cells are HTML. Columns whose heading begins with '#' are numbers.
+class Table {
+ public:
+  Table(std::string caption, std::vector<std::string> headings);
+  void row(const std::vector<std::string>& cells);
+  bool empty() const { return rows_.empty(); }
+  std::string html() const;
+
+ private:
+  std::string caption_, rows_;
+  std::vector<std::string> headings_;
+};
+
+}  // namespace fovea::report
