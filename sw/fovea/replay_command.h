@@ -14,6 +14,7 @@ struct ReplayOptions {
   bool out_given = false;
   bool memory_only = false;
   bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
+  std::vector<std::string> without;  ///< labels of masters whose requests are left out
 };
 
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
