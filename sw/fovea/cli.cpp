@@ -23,6 +23,7 @@
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/last_words.h"
+#include "sw/fovea/limits/limits_command.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/warnings.h"
@@ -360,6 +361,7 @@ struct Options {
   ExecOptions exec;
   TraceOptions trace;
   ReportOptions report;
+  limits::LimitsOptions limits;
   std::string pattern, shell;
   bool markdown = false, of_replay = false;
 };
@@ -430,6 +432,9 @@ void add_replay_command(CLI::App& app, ReplayOptions& replay) {
   c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
   c->add_flag("--wrap", replay.wrap,
               "Take addresses beyond the memory (ddr.part) modulo its size");
+  c->add_option("--without", replay.without, "Leave out the requests of this master; may be repeated")
+      ->type_name("MASTER")
+      ->allow_extra_args(false);
 }
 
 void add_other_commands(CLI::App& app, Options& options) {
@@ -459,6 +464,7 @@ int command_completion(const CLI::App& app, const CliContext& context) {
   const auto simulation = context.make_simulation();
   simulation->declare(run);
   keys["run"] = keys_of(run);
+  keys["limits"] = keys["run"];
   ReplayParams replay_params;
   replay_params.declare(replay);
   keys["replay"] = keys_of(replay);
@@ -482,6 +488,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "run") return command_run(o.run, args, context);
   if (name == "exec") return command_exec(o.exec, args, context);
   if (name == "report") return command_report(o.report, context);
+  if (name == "limits") return limits::command_limits(o.limits, context);
   if (name == "trace") return command_trace(*c, o.trace, context);
   if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
@@ -509,6 +516,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
       "partial result.");
   add_run_command(app, options.run);
   add_replay_command(app, options.replay);
+  limits::add_limits_command(app, options.limits);
   const CLI::App* const exec = add_exec_command(app, options.exec);
   add_trace_command(app, options.trace);
   add_report_command(app, options.report);

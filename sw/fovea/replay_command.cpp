@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <future>
 #include <ostream>
+#include <set>
 
 #include "model/trace/core/bounds.h"
 #include "sw/fovea/command_trace.h"
@@ -48,6 +50,38 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
                   sum / static_cast<double>(times.size()), static_cast<double>(*max) * 1e-12);
 }
 
+/// The streams of masters that are left out. A master's requests must not hold up those of others,
+/// as the core's do, whose two ports are one stream. @throws UserError
+std::set<unsigned> streams_of(const trace::TraceInfo& info, const std::vector<std::string>& without) {
+  std::set<unsigned> out;
+  std::set<std::string> allowed;
+  for (const auto& m : info.masters)
+    if (master_info(m.id).bridge != Bridge::kCore) allowed.insert(m.label);
+  for (const std::string& label : without) {
+    if (!allowed.contains(label))
+      throw UserError(fmt::format("--without '{}': allowed here: {}", one_line(label),
+                                  fmt::join(allowed, ", ")));
+    for (const auto& m : info.masters)
+      if (m.label == label) out.insert(m.stream);
+  }
+  return out;
+}
+
+/// Hands on the records of all but some streams.
+class SomeStreams final : public trace::RecordSource {
+ public:
+  SomeStreams(trace::RecordSource& source, std::set<unsigned> without)
+      : source_(source), without_(std::move(without)) {}
+  bool next(unsigned stream, trace::Record& record) override {
+    return !without_.contains(stream) && source_.next(stream, record);
+  }
+  std::string place(unsigned stream) const override { return source_.place(stream); }
+
+ private:
+  trace::RecordSource& source_;
+  std::set<unsigned> without_;
+};
+
 }  // namespace
 
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
@@ -77,6 +111,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
     said = follow_clocks(params, *trace.info, experiment);
   warn_without_effect(set, experiment);
   params.check();
+  const std::set<unsigned> left_out = streams_of(*trace.info, options.without);
   for (const std::string& line : said) context.err << "fovea: " << one_line(line) << "\n";
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
@@ -93,7 +128,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
 
   trace::BoundedSource wrapped(one_line(options.trace), *trace.source,
                                {params.ddr.size_bytes(), true});
-  trace::RecordSource& source = options.wrap ? wrapped : *trace.source;
+  SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
   if (commands) commands->begin(path.controller(), path.start());
   // Slices only let a signal in.

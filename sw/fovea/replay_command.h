@@ -15,6 +15,7 @@ struct ReplayOptions {
   bool memory_only = false;
   std::string command_trace;  ///< file; empty: none
   bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
+  std::vector<std::string> without;  ///< labels of masters whose requests are left out
 };
 
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,

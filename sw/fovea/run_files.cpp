@@ -25,7 +25,7 @@ constexpr auto kFiles = std::to_array<std::string_view>({
     "profile.csv", "profile.folded", "profile.callgrind", "profile.txt", "interrupts.csv",
     "frame_parts.csv",
     "config.json", "stats.json", "host.json",     "frames.csv", "timeline.csv",  "latency.csv",
-    "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4"};
+    "stalls.csv",  "uart.log",   "uart0.input",   "registers.log", "display.mp4", "report.html"});
 
 /// Folders of numbered files.
 struct Series {

@@ -1,0 +1,172 @@
+#include "sw/fovea/limits/relaxations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/board/clock_presets.h"
+#include "sw/fovea/clock_setting.h"
+
+namespace fovea::limits {
+namespace {
+
+struct Setting {
+  const char* key;
+  const char* value;
+};
+/// `when` is how the name of a master begins that must have traffic; empty: always.
+struct Row {
+  const char *name, *resource, *how, *when;
+  std::vector<Setting> settings;
+};
+
+/// Relaxations by a parameter of a run. The values are the best that the parameter allows.
+const std::vector<Row>& rows_of_runs() {
+  static const std::vector<Row> rows = {
+      {"ahb_clock", "the clock of the core's AHB", "at the core's own clock", "", {{"cpu.ahb_ratio", "1"}}},
+      {"dcache", "the size of the data cache", "with 128 KiB", "", {{"cpu.dcache.size", "128KiB"}}},
+      {"icache", "the size of the instruction cache", "with 128 KiB", "", {{"cpu.icache.size", "128KiB"}}},
+      {"bridge_arm_d", "the bridge of the core's data port", "without its latency", "",
+       {{"bus.arm_d.request_latency", "0 cycles"}, {"bus.arm_d.response_latency", "0 cycles"}}},
+      {"bridge_arm_i", "the bridge of the core's instruction port", "without its latency", "",
+       {{"bus.arm_i.request_latency", "0 cycles"}, {"bus.arm_i.response_latency", "0 cycles"}}},
+      {"width_arm_d", "the width of the core's data port", "with 64 bits", "", {{"bus.arm_d.width", "64bit"}}},
+      {"bridge_vpfe", "the camera's way to the crossbar", "without its latency", "vpfe",
+       {{"bus.vpfe.request_latency", "0 cycles"}, {"bus.vpfe.response_latency", "0 cycles"}}},
+      {"bridge_vpbe", "the display's way to the crossbar", "without its latency", "vpbe",
+       {{"bus.vpbe.request_latency", "0 cycles"}, {"bus.vpbe.response_latency", "0 cycles"}}},
+      {"buffer_vpfe", "the camera's write buffer", "with 32 bursts", "vpfe", {{"vpss.write_buffer_bursts", "32"}}},
+      {"buffer_vpbe", "the display's read-ahead", "with 4 lines and 16 reads under way", "vpbe",
+       {{"vpss.read_ahead_lines", "4"}, {"vpss.read_outstanding", "16"}}},
+      {"edma_depth", "the EDMA's requests under way", "with 16", "edma_tc", {{"edma.tc.outstanding", "16"}}},
+      {"edma_start", "the EDMA's start of a transfer", "in 1 clock each", "edma_tc",
+       {{"edma.request_clocks", "1"}, {"edma.event_clocks", "1"}, {"edma.completion_clocks", "1"}}},
+      {"config_bus", "the registers' latency", "as 1 ns", "",
+       {{"bus.config.fast_latency", "1ns"}, {"bus.config.slow_latency", "1ns"}}},
+      {"ddr_latency", "the latency of the SDRAM controller", "without it", "",
+       {{"ddr.request_latency", "0 cycles"}, {"ddr.return_latency", "0 cycles"}}},
+      {"ddr_queues", "the queues of the SDRAM controller", "with 16 commands and 512 bytes each way", "",
+       {{"ddr.command_fifo", "16"}, {"ddr.read_fifo", "512B"}, {"ddr.write_fifo", "512B"}}},
+      {"ddr_scheduler", "the order of the SDRAM controller", "ready rows first, whatever the priority", "",
+       {{"ddr.scheduler", "frfcfs"}}},
+  };
+  return rows;
+}
+
+/// Relaxations by what only a replay can change.
+const std::vector<Row>& rows_of_replays() {
+  static const std::vector<Row> rows = {
+      {"row_timing", "the row timing of the SDRAM", "with rows opened and closed in 1 clock", "",
+       {{"ddr.tRP", "1 cycles"}, {"ddr.tRCD", "1 cycles"}, {"ddr.tRAS", "1 cycles"}, {"ddr.tRC", "1 cycles"},
+        {"ddr.tRRD", "1 cycles"}, {"ddr.tRTP", "1 cycles"}, {"ddr.tWR", "1 cycles"}}},
+      {"cas_latency", "the SDRAM's latency to the first data", "with CL and RL of 3 clocks", "",
+       {{"ddr.CL", "3 cycles"}, {"ddr.RL", "3 cycles"}}},
+      {"turnaround", "the SDRAM's change from writing to reading", "in 1 clock", "", {{"ddr.tWTR", "1 cycles"}}},
+      {"refresh", "the SDRAM's refresh", "without it", "", {{"ddr.tREFI", "0 cycles"}}},
+  };
+  return rows;
+}
+
+/// Masters whose traffic is left out of a replay, one at a time.
+constexpr struct {
+  const char *master, *name, *resource;
+} kInputs[] = {{"vpfe", "camera", "the camera's traffic"},
+               {"vpbe", "display", "the display's traffic"},
+               {"edma_tc0", "edma_tc0", "the traffic of EDMA controller 0"},
+               {"edma_tc1", "edma_tc1", "the traffic of EDMA controller 1"},
+               {"edma_tc2", "edma_tc2", "the traffic of EDMA controller 2"},
+               {"edma_tc3", "edma_tc3", "the traffic of EDMA controller 3"}};
+
+bool busy(const points::PointResult& plain, std::string_view master) {
+  if (master.empty()) return true;
+  return std::any_of(plain.stats.begin(), plain.stats.end(), [&](const auto& s) {
+    return s.second > 0 && s.first.starts_with("bus." + std::string(master)) &&
+           s.first.ends_with(".transactions");
+  });
+}
+
+/// The settings of a row whose keys this program has, without those that are so already.
+void add_row(const Row& row, const ParamSet* params, const points::PointResult& plain,
+             std::vector<Relaxation>& out) {
+  Relaxation r{row.name, row.resource, row.how, params == nullptr, {}, {}, {}};
+  bool known = params == nullptr;
+  for (const Setting& s : row.settings) {
+    const ParamBase* p = params ? params->find(s.key) : nullptr;
+    known = known || p;
+    if (params && (!p || p->text() == s.value)) continue;
+    r.settings.push_back(fmt::format("{}={}", s.key, s.value));
+  }
+  if (!known) return;
+  if (!busy(plain, row.when)) r.idle = "no traffic";
+  else if (r.settings.empty()) r.idle = "it is so already";
+  out.push_back(std::move(r));
+}
+
+/// The highest clock that the PLLs can give while the other one stays.
+void add_clock(const ParamSet& params, bool core, std::vector<Relaxation>& out) {
+  const auto* arm = dynamic_cast<const IntParam*>(params.find("clocks.arm"));
+  const auto* ddr = dynamic_cast<const IntParam*>(params.find("clocks.ddr"));
+  const ParamBase* preset = params.find("clocks.preset");
+  if (!arm || !ddr || !preset) return;
+  const board::ClockPreset& of = board::clock_preset(preset->text());
+  const Frequency now_core = (*arm)() ? Frequency((*arm)()) : of.core();
+  const Frequency now_ddr = (*ddr)() ? Frequency((*ddr)()) : of.ddr();
+  const Frequency most = board::most(core ? +[](const board::ClockPreset& p) { return p.core(); }
+                                          : +[](const board::ClockPreset& p) { return p.ddr(); });
+  const double now = (core ? now_core : now_ddr).hertz();
+  constexpr std::uint64_t kStep = 1'000'000;
+  std::uint64_t best = static_cast<std::uint64_t>(most.hertz()) / kStep * kStep;
+  const auto possible = [&](std::uint64_t f) {
+    return app::find_setting(core ? Frequency(f) : now_core, core ? now_ddr : Frequency(f)).has_value();
+  };
+  while (static_cast<double>(best) > now && !possible(best)) best -= kStep;
+  Relaxation r{core ? "core_clock" : "sdram_clock", core ? "the core's clock" : "the SDRAM's clock",
+               fmt::format("at {} MHz{}", best / kStep, core ? "" : ", crossbar and video clock with it"),
+               false, {fmt::format("clocks.{}={}MHz", core ? "arm" : "ddr", best / kStep)}, {}, {}};
+  if (static_cast<double>(best) <= now) {
+    r.how = "raised";
+    r.idle = "the PLLs give no higher one beside the other clock";
+  }
+  out.push_back(std::move(r));
+}
+
+void add_priorities(const ParamSet& params, const points::PointResult& plain, std::vector<Relaxation>& out) {
+  for (const ParamBase* p : params.all()) {
+    if (!p->key().starts_with("priority.")) continue;
+    const std::string master = p->key().substr(sizeof("priority.") - 1);
+    Relaxation r{"priority_" + master, fmt::format("the priority of {}", master), "as the highest",
+                 false, {p->key() + "=0"}, {}, {}};
+    if (!busy(plain, master)) r.idle = "no traffic";
+    else if (p->text() == "0") r.idle = "it is so already";
+    out.push_back(std::move(r));
+  }
+}
+
+void add_loads(const ParamSet& params, std::vector<Relaxation>& out) {
+  for (const char* group : {"load", "load.1", "load.2", "load.3"}) {
+    const auto* outstanding = dynamic_cast<const IntParam*>(params.find(std::string(group) + ".outstanding"));
+    if (!outstanding || (*outstanding)() == 0) continue;
+    out.push_back({group, fmt::format("the synthetic load '{}'", group), "without it", false,
+                   {std::string(group) + ".outstanding=0"}, {}, {}});
+  }
+}
+
+}  // namespace
+
+std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointResult& plain) {
+  std::vector<Relaxation> out;
+  add_clock(params, true, out);
+  add_clock(params, false, out);
+  for (const Row& row : rows_of_runs()) add_row(row, &params, plain, out);
+  add_priorities(params, plain, out);
+  add_loads(params, out);
+  for (const Row& row : rows_of_replays()) add_row(row, nullptr, plain, out);
+  for (const auto& input : kInputs) {
+    Relaxation r{input.name, input.resource, "without it", true, {}, {"--without", input.master}, {}};
+    if (!busy(plain, input.master)) r.idle = "no traffic";
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
+}  // namespace fovea::limits

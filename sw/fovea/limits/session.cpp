@@ -1,0 +1,71 @@
+#include "sw/fovea/limits/session.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace fovea::limits {
+namespace {
+
+constexpr const char* kTraceName = "bus.trace";
+
+}  // namespace
+
+const Settings& Session::record() {
+  static const Settings options = {"--bus-trace",
+                                   fmt::format("{}/{}", points::kFolder, kTraceName)};
+  return options;
+}
+
+void Session::run(const Settings& settings, const Settings& more, Done done, Settings options) {
+  points::Point point;
+  point.input = experiment_;
+  point.settings = settings;
+  point.settings.insert(point.settings.end(), more.begin(), more.end());
+  point.options = std::move(options);
+  point.options.push_back("--no-frames");
+  point.identity = app::identity_of(*effective(point.settings), app::program_hash());
+  point.label = more.empty() ? "as it is" : fmt::format("{}", fmt::join(more, " "));
+  runner_.add(std::move(point), std::move(done));
+}
+
+void Session::replay(const points::PointResult& recorded, const Settings& settings, Done done,
+                     Settings options) {
+  points::Point point;
+  point.command = "replay";
+  point.input = (recorded.folder / kTraceName).string();
+  point.settings = settings;
+  point.options = std::move(options);
+  point.identity = fmt::format("trace of {}\n{}\n", recorded.key, fmt::join(settings, "\n"));
+  point.label = fmt::format("replay {}{}{}", fmt::join(settings, " "),
+                            settings.empty() || point.options.empty() ? "" : " ",
+                            fmt::join(point.options, " "));
+  runner_.add(std::move(point), std::move(done));
+}
+
+void ValueSearch::start(std::function<void()> done) {
+  done_ = std::move(done);
+  ask();
+}
+
+void ValueSearch::ask() {
+  const auto value = bisection_.next();
+  if (!value) return done_();
+  session_.run(base_, make_(*value), [this, v = *value](const points::PointResult& result) {
+    const Verdict verdict = judge(result, session_.conditions());
+    tried_.emplace(v, Tried{result, verdict});
+    if (verdict.kind == Verdict::Kind::kUnknown) {
+      failure_ = verdict;
+      return done_();
+    }
+    bisection_.tell(v, verdict.good());
+    ask();
+  });
+}
+
+std::size_t ValueSearch::at_most_left() const {
+  if (failure_) return 0;
+  const std::size_t left = bisection_.at_most_left();
+  return left > 0 ? left - 1 : 0;  // one is with the runner
+}
+
+}  // namespace fovea::limits

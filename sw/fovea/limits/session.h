@@ -1,0 +1,86 @@
+// One call of `fovea limits`: the experiment, its settings, and the runner of its points.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sw/fovea/cli.h"
+#include "sw/fovea/effective.h"
+#include "sw/fovea/limits/bisection.h"
+#include "sw/fovea/limits/judge.h"
+#include "sw/fovea/points/runner.h"
+
+namespace fovea::limits {
+
+using Settings = std::vector<std::string>;
+
+class Session {
+ public:
+  using Done = points::Runner::Done;
+  Session(const app::CliContext& context, std::string experiment, points::Runner& runner,
+          std::vector<Condition> conditions, unsigned probes)
+      : context_(context), experiment_(std::move(experiment)), runner_(runner),
+        conditions_(std::move(conditions)), probes_(probes) {}
+
+  /// The parameters with these settings. @throws UserError
+  std::unique_ptr<app::EffectiveRun> effective(const Settings& settings) const {
+    return app::effective_run(context_.make_simulation, experiment_, settings);
+  }
+  /// Runs the experiment with `settings` and, after them, `more`, which is what the progress line
+  /// shows. @throws UserError for settings that are not allowed
+  void run(const Settings& settings, const Settings& more, Done done, Settings options = {});
+  /// Replays the trace that a run with the option kRecord has left.
+  void replay(const points::PointResult& recorded, const Settings& settings, Done done,
+              Settings options = {});
+  static const Settings& record();
+
+  points::Runner& runner() { return runner_; }
+  const std::vector<Condition>& conditions() const { return conditions_; }
+  unsigned probes() const { return probes_; }
+
+ private:
+  const app::CliContext& context_;
+  std::string experiment_;
+  points::Runner& runner_;
+  std::vector<Condition> conditions_;
+  unsigned probes_;
+};
+
+/// A bisection of which each value is a point.
+class ValueSearch {
+ public:
+  using Make = std::function<Settings(std::uint64_t)>;
+  /// `make` gives the settings of a value, besides `base`.
+  ValueSearch(Session& session, Settings base, std::uint64_t last, Make make)
+      : session_(session), base_(std::move(base)), make_(std::move(make)),
+        bisection_(last, session.probes()) {}
+  ValueSearch(const ValueSearch&) = delete;
+  ValueSearch& operator=(const ValueSearch&) = delete;
+
+  /// Adds the first point; `done` is called when the search is over.
+  void start(std::function<void()> done);
+  std::size_t at_most_left() const;
+
+  struct Tried {
+    const points::PointResult result;
+    Verdict verdict;
+  };
+  const Tried& at(std::uint64_t value) const { return tried_.at(value); }
+  const std::map<std::uint64_t, Tried>& tried() const { return tried_; }
+  Bisection::Outcome outcome() const { return bisection_.outcome(); }
+  /// What kept the search from an answer; null: nothing.
+  const Verdict* failure() const { return failure_ ? &*failure_ : nullptr; }
+  const Settings& base() const { return base_; }
+  Settings settings(std::uint64_t value) const { return make_(value); }
+
+ private:
+  void ask();
+  Session& session_;
+  Settings base_;
+  Make make_;
+  Bisection bisection_;
+  std::map<std::uint64_t, Tried> tried_;
+  std::optional<Verdict> failure_;
+  std::function<void()> done_;
+};
+
+}  // namespace fovea::limits

@@ -1,0 +1,63 @@
+#include "sw/fovea/points/point.h"
+
+#include <fmt/format.h>
+#include <gcrypt.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+
+namespace fovea::points {
+namespace {
+
+constexpr std::size_t kMaxStatsBytes = 64u << 20;
+
+}  // namespace
+
+std::string key_of(const Point& point) {
+  std::string text = "fovea point 1\n" + point.command + "\n";
+  for (const std::string& option : point.options) text += option + "\n";
+  text += "\n" + point.identity;
+  [[maybe_unused]] static const char* const initialised = gcry_check_version(nullptr);
+  std::array<unsigned char, 32> digest{};
+  gcry_md_hash_buffer(GCRY_MD_SHA256, digest.data(), text.data(), text.size());
+  std::string out;
+  for (const unsigned char byte : digest) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+std::string folder_name(std::string_view key) { return std::string(key.substr(0, 16)); }
+
+void read_stats(PointResult& result) {
+  const std::filesystem::path file = result.folder / "run" / "stats.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return;
+  const auto json = nlohmann::json::parse(app::read_file(file, kMaxStatsBytes), nullptr, false);
+  if (!json.is_object())
+    throw UserError(fmt::format("'{}' is not a stats.json of Fovea; remove its folder and try again",
+                                app::one_line(file.string())));
+  for (const auto& [name, row] : json.items()) {
+    if (!row.is_object() || !row.contains("value")) continue;
+    if (row["value"].is_number()) result.stats[name] = row["value"].get<double>();
+    if (row.contains("unit") && row["unit"].is_string())
+      result.units[name] = row["unit"].get<std::string>();
+  }
+}
+
+std::string reason_in(std::string_view messages) {
+  std::string last, said;
+  while (!messages.empty()) {
+    const auto end = messages.find('\n');
+    const std::string_view line = messages.substr(0, end);
+    messages.remove_prefix(end == messages.npos ? messages.size() : end + 1);
+    if (line.empty()) continue;
+    last = line;
+    // The guest's failure may have further lines, which begin otherwise.
+    if (line.starts_with("fovea: ") && !line.starts_with("fovea: warning")) said = line;
+  }
+  return app::one_line(said.empty() ? last : said.substr(sizeof("fovea: ") - 1), 1000);
+}
+
+}  // namespace fovea::points
