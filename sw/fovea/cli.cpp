@@ -23,6 +23,7 @@
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
+#include "sw/fovea/regression/regression_command.h"
 #include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/replay_params.h"
@@ -329,6 +330,7 @@ struct Options {
   ReplayOptions replay;
   ExecOptions exec;
   TraceOptions trace;
+  RegressionOptions regression;
   std::string pattern, shell;
   bool markdown = false, of_replay = false;
 };
@@ -436,6 +438,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "replay") return command_replay(o.replay, args, context);
   if (name == "run") return command_run(o.run, args, context);
   if (name == "exec") return command_exec(o.exec, args, context);
+  if (is_regression_command(name)) return command_regression(name, o.regression, context);
   if (name == "trace") return command_trace(*c, o.trace, context);
   if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
@@ -458,13 +461,14 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
                        "Print version and commit");
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done; 2 wrong input, or a result that cannot be written; 3 "
-      "the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
+      "Exit status: 0 done; 1 a comparison or check failed; 2 wrong input, or a result that cannot "
+      "be written; 3 the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
       "partial result.");
   add_run_command(app, options.run);
   add_replay_command(app, options.replay);
   const CLI::App* const exec = add_exec_command(app, options.exec);
   add_trace_command(app, options.trace);
+  add_regression_commands(app, options.regression);
   add_other_commands(app, options);
   if (!own.empty() && own[0] == exec->get_name())
     options.exec.arguments = take_program_arguments(*exec, own);
