@@ -26,6 +26,7 @@
 #include "sw/fovea/limits/limits_command.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
+#include "sw/fovea/regression/regression_command.h"
 #include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_command.h"
 #include "sw/fovea/replay_params.h"
@@ -362,6 +363,7 @@ struct Options {
   TraceOptions trace;
   ReportOptions report;
   limits::LimitsOptions limits;
+  RegressionOptions regression;
   std::string pattern, shell;
   bool markdown = false, of_replay = false;
 };
@@ -489,6 +491,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "exec") return command_exec(o.exec, args, context);
   if (name == "report") return command_report(o.report, context);
   if (name == "limits") return limits::command_limits(o.limits, context);
+  if (is_regression_command(name)) return command_regression(name, o.regression, context);
   if (name == "trace") return command_trace(*c, o.trace, context);
   if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
@@ -511,8 +514,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
                        "Print version and commit");
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done; 2 wrong input, or a result that cannot be written; 3 "
-      "the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
+      "Exit status: 0 done; 1 a comparison or check failed; 2 wrong input, or a result that cannot "
+      "be written; 3 the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
       "partial result.");
   add_run_command(app, options.run);
   add_replay_command(app, options.replay);
@@ -520,6 +523,7 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   const CLI::App* const exec = add_exec_command(app, options.exec);
   add_trace_command(app, options.trace);
   add_report_command(app, options.report);
+  add_regression_commands(app, options.regression);
   add_other_commands(app, options);
   if (!own.empty() && own[0] == exec->get_name())
     options.exec.arguments = take_program_arguments(*exec, own);

@@ -1,0 +1,42 @@
+// Where the clocks of a run's window went: rows of profile.csv, or of stalls.csv without functions.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/regression/run_figures.h"
+
+namespace fovea::regression {
+
+/// Clocks of one function, line, cause, region and culprit. Texts are empty where there is none.
+struct AttributionRow {
+  std::string phase, function, file;
+  unsigned line = 0;  ///< 0: unknown
+  std::string cause;  ///< `issue`, `idle.<event>` (or `idle`), or a stall cause
+  std::string region, culprit;
+  std::uint64_t clocks = 0, instructions = 0;
+
+  bool idle() const { return cause == "idle" || cause.starts_with("idle."); }
+};
+
+struct Attribution {
+  std::vector<AttributionRow> rows;
+  bool by_function = false;  ///< from a profile
+  double clocks = 0;         ///< cpu.cycles, which the rows should add up to
+  double seconds = 0;        ///< length of a clock; 0: unknown
+
+  double sum() const;
+};
+
+/// The attribution of a run: from profile.csv if `profile` and the run has one, else from
+/// stalls.csv, cpu.issue and cpu.idle. Without any of these it has no rows. @throws UserError if a
+/// file cannot be read, or its rows miss cpu.cycles by more than 1 %
+Attribution attribution_of(const RunFigures& run, bool profile);
+/// True if the folder has a profile.
+bool has_profile(const RunFigures& run);
+
+/// Text in the format of profile.csv.
+std::string attribution_csv(const Attribution& attribution);
+
+}  // namespace fovea::regression

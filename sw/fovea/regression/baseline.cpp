@@ -1,0 +1,256 @@
+#include "sw/fovea/regression/baseline.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/outputs.h"
+
+namespace fovea::regression {
+namespace {
+
+/// Reads a baseline and knows the file for messages.
+class BaselineReader {
+ public:
+  BaselineReader(const std::filesystem::path& file, std::string text) {
+    out_.file = file;
+    out_.text = std::move(text);
+  }
+
+  Baseline read() {
+    YAML::Node root;
+    try {
+      root = YAML::Load(out_.text);
+    } catch (const YAML::Exception& e) {
+      fail(e.mark.line, app::one_line(e.msg));
+    }
+    if (!root.IsMap()) fail(0, "not a baseline; allowed: a map with 'format: fovea baseline 1'");
+    const auto format = root["format"];
+    if (!format || !format.IsScalar() || format.Scalar() != kBaselineFormat)
+      fail(format ? format.Mark().line : 0,
+           fmt::format("not a baseline that this program reads; allowed: 'format: {}'",
+                       kBaselineFormat));
+    known(root, {"format", "experiment", "simulator", "settings", "reference", "metrics", "history"},
+          "the baseline");
+    out_.experiment = scalar(root, "experiment", root).Scalar();
+    const YAML::Node simulator = root["simulator"];
+    if (!simulator || !simulator.IsMap())
+      fail(root.Mark().line, "'simulator' is missing; allowed: {version: ..., commit: ...}");
+    known(simulator, {"version", "commit"}, "'simulator'");
+    const YAML::Node version = scalar(simulator, "version", simulator);
+    const YAML::Node commit = scalar(simulator, "commit", simulator);
+    out_.version = version.Scalar();
+    out_.commit = commit.Scalar();
+    out_.version_at = place(version);
+    out_.commit_at = place(commit);
+    if (const YAML::Node settings = root["settings"]; settings) {
+      if (!settings.IsMap()) fail(settings.Mark().line, "'settings' is not a map of parameters");
+      for (const auto& item : settings) {
+        if (!item.second.IsScalar())
+          fail(item.second.Mark().line, "a setting is a parameter and its value");
+        out_.settings[item.first.Scalar()] = item.second.Scalar();
+      }
+    }
+    if (const YAML::Node reference = root["reference"]; reference) {
+      if (!reference.IsScalar() || reference.Scalar().empty())
+        fail(reference.Mark().line, "'reference' is the name of a folder beside the baseline");
+      out_.reference = out_.file.parent_path() / reference.Scalar();
+    }
+    check_history(root);
+    read_metrics(root["metrics"], root);
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw UserError(fmt::format("{}:{}: {}", app::one_line(out_.file.string()),
+                                std::max(line, 0) + 1, what));
+  }
+
+  void known(const YAML::Node& map, const std::vector<std::string>& names, const std::string& where) {
+    std::set<std::string> seen;
+    for (const auto& item : map) {
+      const std::string& key = item.first.Scalar();
+      if (std::find(names.begin(), names.end(), key) == names.end())
+        fail(item.first.Mark().line, fmt::format("unknown key '{}' in {}; allowed: {}",
+                                                 app::one_line(key, 60), where,
+                                                 fmt::join(names, ", ")));
+      if (!seen.insert(key).second)
+        fail(item.first.Mark().line, fmt::format("'{}' occurs twice in {}", key, where));
+    }
+  }
+
+  YAML::Node scalar(const YAML::Node& map, const char* name, const YAML::Node& near) {
+    const YAML::Node node = map[name];
+    if (!node || !node.IsScalar() || node.Scalar().empty())
+      fail(near.Mark().line, fmt::format("'{}' is missing", name));
+    return node;
+  }
+
+  /// Where a scalar's text begins in the file.
+  std::size_t place(const YAML::Node& node) const {
+    const auto at = static_cast<std::size_t>(node.Mark().pos);
+    if (at > out_.text.size() || out_.text.compare(at, node.Scalar().size(), node.Scalar()) != 0)
+      fail(node.Mark().line, "a value that is to be replaced stands without quotes, in a file "
+                             "without byte order mark");
+    return at;
+  }
+
+  void check_history(const YAML::Node& root) {
+    const YAML::Node history = root["history"];
+    if (!history) return;
+    if (!history.IsSequence()) fail(history.Mark().line, "'history' is not a list");
+    for (const auto& item : root)
+      if (item.first.Mark().line > history.Mark().line)
+        fail(item.first.Mark().line, "'history' is the last part of a baseline; new entries are "
+                                     "added at the end of the file");
+  }
+
+  void read_metrics(const YAML::Node& metrics, const YAML::Node& root) {
+    if (!metrics || !metrics.IsMap() || metrics.size() == 0)
+      fail(metrics ? metrics.Mark().line : root.Mark().line,
+           "'metrics' is missing or empty; allowed: figures of stats.json with value and unit");
+    std::set<std::string> seen;
+    for (const auto& item : metrics) {
+      const std::string& name = item.first.Scalar();
+      if (!seen.insert(name).second)
+        fail(item.first.Mark().line, fmt::format("'{}' occurs twice", app::one_line(name, 60)));
+      out_.metrics.push_back(read_metric(name, item.second, item.first.Mark().line));
+    }
+  }
+
+  Expectation read_metric(const std::string& name, const YAML::Node& node, int line) {
+    const std::string where = "'" + app::one_line(name, 60) + "'";
+    if (!node.IsMap()) fail(line, where + " is not a map with value and unit");
+    known(node, {"value", "unit", "tolerance", "worse", "kind", "reason"}, where);
+    Expectation e;
+    e.name = name;
+    e.line = line + 1;
+    read_value(node["value"], line, where, e);
+    e.unit = scalar(node, "unit", node).Scalar();
+    if (const auto t = node["tolerance"]; t) {
+      if (!t.IsScalar()) fail(t.Mark().line, where + ": the tolerance is not a text");
+      e.tolerance = parse_tolerance(
+          t.Scalar(), fmt::format("{}:{}: {}", app::one_line(out_.file.string()),
+                                  t.Mark().line + 1, where));
+    }
+    e.worse = choice<Worse>(node, "worse", where, Worse::kBoth,
+                            {{"higher", Worse::kHigher}, {"lower", Worse::kLower}, {"both", Worse::kBoth}});
+    e.kind = choice<Kind>(node, "kind", where, Kind::kExact,
+                          {{"exact", Kind::kExact}, {"analytic", Kind::kAnalytic}, {"budget", Kind::kBudget}});
+    if (const auto r = node["reason"]; r) e.reason = r.Scalar();
+    if (e.kind != Kind::kExact && e.reason.empty())
+      fail(line, where + ": an analytic value and a budget need a reason");
+    if (e.kind == Kind::kBudget && (e.worse == Worse::kBoth || !e.value))
+      fail(line, where + ": a budget needs a number, and 'worse: higher' or 'worse: lower'");
+    return e;
+  }
+
+  void read_value(const YAML::Node& value, int line, const std::string& where, Expectation& e) {
+    if (!value) fail(line, where + ": 'value' is missing");
+    if (value.IsNull()) {
+      // A null that is written as nothing has no place where a number could be put.
+      e.value_at = static_cast<std::size_t>(value.Mark().pos);
+      if (out_.text.compare(e.value_at, 4, "null") != 0)
+        fail(line, where + ": 'value' is empty; allowed: a number, or null for a figure that has "
+                           "no value");
+      return;
+    }
+    double number = 0;
+    if (!value.IsScalar() || !YAML::convert<double>::decode(value, number) || !std::isfinite(number))
+      fail(value.Mark().line, where + ": the value is not a number; allowed: a number, or null for "
+                                      "a figure that has no value");
+    e.value = number;
+    e.value_at = place(value);
+  }
+
+  template <class T>
+  T choice(const YAML::Node& node, const char* key, const std::string& where, T otherwise,
+           const std::vector<std::pair<std::string, T>>& words) {
+    const auto word = node[key];
+    if (!word) return otherwise;
+    std::vector<std::string> names;
+    for (const auto& [name, value] : words) {
+      if (word.IsScalar() && word.Scalar() == name) return value;
+      names.push_back(name);
+    }
+    fail(word.Mark().line, fmt::format("{}: '{}' is not allowed; allowed: {}", where, key,
+                                       fmt::join(names, ", ")));
+  }
+
+  Baseline out_;
+};
+
+/// Figures of a first baseline, if the run has them, with the direction that is worse.
+struct Headline {
+  const char* name;
+  const char* worse;
+};
+constexpr std::array<Headline, 16> kHeadlines = {{{"frame.rate", "lower"},
+                                                  {"frame.dropped", "higher"},
+                                                  {"frame.repeated", "higher"},
+                                                  {"frame.remap_rate", "lower"},
+                                                  {"frame.remap_time.mean", "higher"},
+                                                  {"frame.remap_time.max", "higher"},
+                                                  {"frame.latency.mean", "higher"},
+                                                  {"frame.latency.max", "higher"},
+                                                  {"startup.lut_time", "higher"},
+                                                  {"capture.overflows", "higher"},
+                                                  {"display.underflows", "higher"},
+                                                  {"cpu.instructions", "both"},
+                                                  {"cpu.cycles", "higher"},
+                                                  {"cpu.idle", "lower"},
+                                                  {"ddr.bus_bytes", "higher"},
+                                                  {"ddr.row_conflicts", "higher"}}};
+
+}  // namespace
+
+std::string_view kind_name(Kind kind) {
+  return kind == Kind::kExact ? "exact" : kind == Kind::kAnalytic ? "analytic" : "budget";
+}
+
+Baseline read_baseline(const std::filesystem::path& file) {
+  return parse_baseline(file, app::read_file(file, app::kMaxSettingsBytes));
+}
+
+Baseline parse_baseline(const std::filesystem::path& file, std::string text) {
+  return BaselineReader(file, std::move(text)).read();
+}
+
+std::string commit_text(const RunFigures& run) {
+  return run.commit + (run.modified ? "-modified" : "");
+}
+
+std::string yaml_text(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+std::string new_baseline(const RunFigures& run, const std::string& reference,
+                         const std::string& why) {
+  std::string out = fmt::format(
+      "# What the figures of a run should be: 'fovea check DIR --against THIS'. Values of the kind\n"
+      "# exact come from a run and are replaced by 'fovea bless'; see 'fovea check --help'.\n"
+      "format: {}\nexperiment: {}\nsimulator:\n  version: {}\n  commit: {}\n",
+      kBaselineFormat, run.experiment, run.version, commit_text(run));
+  if (const auto frames = run.parameters.find("run.frames"); frames != run.parameters.end())
+    out += fmt::format("settings:\n  run.frames: {}\n", frames->second.value);
+  out += fmt::format("reference: {}\nmetrics:\n", reference);
+  for (const auto& [name, worse] : kHeadlines) {
+    const Metric* const m = run.metric(name);
+    if (!m) continue;
+    out += fmt::format("  {}:\n    value: {}\n    unit: {}\n    worse: {}\n    kind: exact\n", name,
+                       m->value ? exact_text(*m->value, m->whole) : "null", m->unit, worse);
+  }
+  out += fmt::format("history:\n  - commit: {}\n    why: {}\n", commit_text(run), yaml_text(why));
+  return out;
+}
+
+}  // namespace fovea::regression

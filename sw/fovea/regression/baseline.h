@@ -1,0 +1,68 @@
+// A baseline: what a run's figures should be, and how far they may lie from it.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/regression/run_figures.h"
+#include "sw/fovea/regression/tolerance.h"
+
+namespace fovea::regression {
+
+/// Which deviation is worse, and so fails.
+enum class Worse { kHigher, kLower, kBoth };
+/// Where an expected value comes from.
+enum class Kind {
+  kExact,     ///< a run: `fovea bless` replaces it
+  kAnalytic,  ///< a formula or a standard: never replaced
+  kBudget,    ///< a limit that somebody set: never replaced
+};
+std::string_view kind_name(Kind kind);
+
+struct Expectation {
+  std::string name;
+  std::optional<double> value;  ///< empty (`null`): the run's figure must have no value
+  std::string unit;
+  Tolerance tolerance;
+  Worse worse = Worse::kBoth;
+  Kind kind = Kind::kExact;
+  std::string reason;
+  std::size_t value_at = 0;  ///< of the value's text in the file
+  int line = 0;              ///< in the file, from 1 on
+};
+
+struct Baseline {
+  std::filesystem::path file;
+  std::string text;  ///< of the whole file
+  std::string experiment, version, commit;
+  std::size_t version_at = 0, commit_at = 0;  ///< of these texts in the file
+  std::map<std::string, std::string> settings;  ///< parameters that a run must have
+  std::filesystem::path reference;            ///< folder of the reference; empty: none
+  std::vector<Expectation> metrics;           ///< in the order of the file
+};
+
+inline constexpr std::string_view kBaselineFormat = "fovea baseline 1";
+
+/// @throws UserError with file and line: not YAML, an unknown key, a value that is not allowed
+Baseline read_baseline(const std::filesystem::path& file);
+/// The same from a text that may become the contents of `file`.
+Baseline parse_baseline(const std::filesystem::path& file, std::string text);
+
+/// A first baseline for a run: headline figures, exact and without tolerance.
+std::string new_baseline(const RunFigures& run, const std::string& reference, const std::string& why);
+
+/// A text as a YAML scalar in double quotes.
+std::string yaml_text(const std::string& text);
+
+/// The simulator's commit for a baseline; that of a modified source ends in "-modified".
+std::string commit_text(const RunFigures& run);
+
+/// Files that a baseline keeps of the run it was taken from: where the clocks went, parameters and
+/// figures. Names of files of the host are left out. The result maps names to texts.
+std::map<std::string, std::string> reference_files(const RunFigures& run);
+/// Reads them. @throws UserError
+RunFigures read_reference(const Baseline& baseline);
+
+}  // namespace fovea::regression

@@ -1,0 +1,274 @@
+#include "sw/fovea/regression/blame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "sw/fovea/outputs.h"
+
+namespace fovea::regression {
+namespace {
+
+using FunctionKey = std::pair<std::string, std::string>;
+using CauseKey = std::tuple<std::string, std::string, std::string>;
+
+/// One run's clocks of a function.
+struct Side {
+  std::map<CauseKey, double> causes;
+  std::map<unsigned, double> lines;
+  double clocks = 0, instructions = 0;
+  bool present = false;
+};
+
+struct Pair {
+  Side before, after;
+};
+
+void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side,
+              const Attribution& attribution, double scale, double& busy, double& idle) {
+  for (const auto& r : attribution.rows) {
+    const double amount = static_cast<double>(r.clocks) * scale;
+    if (r.idle()) {
+      idle += amount;
+      continue;
+    }
+    busy += amount;
+    Side& s = functions[{r.function, r.file}].*side;
+    s.present = true;
+    s.causes[{r.cause, r.region, r.culprit}] += amount;
+    s.lines[r.line] += amount;
+    s.clocks += amount;
+    s.instructions += static_cast<double>(r.instructions);
+  }
+}
+
+template <class T>
+void largest_first(std::vector<T>& changes) {
+  std::stable_sort(changes.begin(), changes.end(), [](const T& a, const T& b) {
+    return std::abs(a.share.change()) > std::abs(b.share.change());
+  });
+}
+
+/// Causes that depend on where code lies.
+bool of_fetches(const std::string& cause) { return cause == "icache"; }
+
+/// Aligns the lines of a function in two versions of its source, so that lines which were merely
+/// moved by an insertion above them are compared with themselves: the alignment in ascending order
+/// whose differences are least.
+std::vector<LineChange> aligned(const std::map<unsigned, double>& before,
+                                const std::map<unsigned, double>& after) {
+  const std::vector<std::pair<unsigned, double>> a(before.begin(), before.end()),
+      b(after.begin(), after.end());
+  // Beyond this a function is compared by line numbers, which takes no quadratic time.
+  constexpr std::size_t kMaxLines = 2000;
+  std::vector<LineChange> out;
+  const auto add = [&](const std::pair<unsigned, double>* x, const std::pair<unsigned, double>* y) {
+    LineChange change;
+    if (x) change.before = x->first;
+    if (y) change.after = y->first;
+    change.share = {x ? x->second : 0, y ? y->second : 0};
+    if (change.share.change() != 0) out.push_back(change);
+  };
+  bool same_lines = a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                                       [](const auto& x, const auto& y) {
+                                                         return x.first == y.first;
+                                                       });
+  if (same_lines) {
+    for (std::size_t i = 0; i < a.size(); ++i) add(&a[i], &b[i]);
+    return out;
+  }
+  if (a.size() > kMaxLines || b.size() > kMaxLines) {
+    std::set<unsigned> numbers;
+    for (const auto& x : a) numbers.insert(x.first);
+    for (const auto& y : b) numbers.insert(y.first);
+    for (const unsigned n : numbers) {
+      const auto x = before.find(n), y = after.find(n);
+      const std::pair<unsigned, double> xv{n, x == before.end() ? 0 : x->second},
+          yv{n, y == after.end() ? 0 : y->second};
+      add(x == before.end() ? nullptr : &xv, y == after.end() ? nullptr : &yv);
+    }
+    return out;
+  }
+  const std::size_t width = b.size() + 1;
+  std::vector<double> cost((a.size() + 1) * width);
+  const auto at = [&](std::size_t i, std::size_t j) -> double& { return cost[i * width + j]; };
+  for (std::size_t i = a.size() + 1; i-- > 0;)
+    for (std::size_t j = width; j-- > 0;) {
+      if (i == a.size() && j == b.size()) continue;
+      double least = INFINITY;
+      if (i < a.size() && j < b.size())
+        least = at(i + 1, j + 1) + std::abs(a[i].second - b[j].second);
+      if (i < a.size()) least = std::min(least, at(i + 1, j) + a[i].second);
+      if (j < b.size()) least = std::min(least, at(i, j + 1) + b[j].second);
+      at(i, j) = least;
+    }
+  for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
+    if (i < a.size() && j < b.size() &&
+        at(i, j) == at(i + 1, j + 1) + std::abs(a[i].second - b[j].second)) {
+      add(&a[i++], &b[j++]);
+    } else if (i < a.size() && at(i, j) == at(i + 1, j) + a[i].second) {
+      add(&a[i++], nullptr);
+    } else {
+      add(nullptr, &b[j++]);
+    }
+  }
+  return out;
+}
+
+FunctionChange change_of(const FunctionKey& key, const Pair& p, bool by_function) {
+  FunctionChange f;
+  f.function = key.first;
+  f.file = key.second;
+  f.share = {p.before.clocks, p.after.clocks};
+  f.instructions_before = p.before.instructions;
+  f.instructions_after = p.after.instructions;
+  std::map<CauseKey, Share> causes;
+  for (const auto& [cause, clocks] : p.before.causes) causes[cause].before = clocks;
+  for (const auto& [cause, clocks] : p.after.causes) causes[cause].after = clocks;
+  for (const auto& [cause, share] : causes)
+    if (share.change() != 0)
+      f.causes.push_back({std::get<0>(cause), std::get<1>(cause), std::get<2>(cause), share});
+  if (by_function) f.lines = aligned(p.before.lines, p.after.lines);
+  largest_first(f.causes);
+  largest_first(f.lines);
+  if (!p.before.present) f.kind = ChangeKind::kAdded;
+  else if (!p.after.present) f.kind = ChangeKind::kRemoved;
+  else if (f.instructions_before != f.instructions_after) f.kind = ChangeKind::kExecutes;
+  return f;
+}
+
+/// Tells layout from waiting. Where every function executes the same instructions with the same
+/// settings, nothing but addresses is left to have changed. Otherwise only fetches of unchanged
+/// functions are put down to addresses: data may also come later because of what the changed
+/// function does to caches and memory.
+void find_layout(Difference& d) {
+  if (!d.by_function || !d.program_differs) return;
+  const bool same_code = std::all_of(
+      d.functions.begin(), d.functions.end(),
+      [](const FunctionChange& f) { return f.kind == ChangeKind::kWaits; });
+  for (auto& f : d.functions) {
+    if (f.kind != ChangeKind::kWaits) continue;
+    for (const auto& c : f.causes)
+      if ((same_code && !d.settings_differ) || of_fetches(c.cause)) f.layout += c.share.change();
+    if (f.layout != 0 && std::abs(f.layout) * 2 >= std::abs(f.share.change()))
+      f.kind = ChangeKind::kLayout;
+  }
+}
+
+std::string grouped(double value) {
+  std::string digits = fmt::format("{:.0f}", std::abs(value));
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+}  // namespace
+
+std::string kind_text(ChangeKind kind, bool more) {
+  switch (kind) {
+    case ChangeKind::kAdded: return "is new";
+    case ChangeKind::kRemoved: return "is gone";
+    case ChangeKind::kExecutes: return more ? "executes more" : "executes less";
+    case ChangeKind::kLayout: return "was moved (layout)";
+    case ChangeKind::kWaits: break;
+  }
+  return "same instructions";
+}
+
+double Difference::unexplained_share() const {
+  const double whole = std::max(std::abs(total.change()), std::abs(busy.change()));
+  if (unexplained == 0) return 0;
+  return whole == 0 ? 1 : std::abs(unexplained) / whole;
+}
+
+bool Difference::none() const {
+  return total.change() == 0 && idle.change() == 0 && functions.empty();
+}
+
+Difference difference_of(const Attribution& before, const Attribution& after,
+                         const Circumstances& circumstances) {
+  Difference d;
+  d.by_function = before.by_function && after.by_function;
+  d.program_differs = circumstances.program_differs;
+  d.settings_differ = circumstances.settings_differ;
+  // Quotients of two printed figures agree to about 15 digits for equal clocks.
+  d.in_seconds = before.seconds > 0 && after.seconds > 0 &&
+                 std::abs(before.seconds - after.seconds) > 1e-6 * before.seconds;
+  const double scale_before = d.in_seconds ? before.seconds : 1;
+  const double scale_after = d.in_seconds ? after.seconds : 1;
+  std::map<FunctionKey, Pair> functions;
+  add_side(functions, &Pair::before, before, scale_before, d.busy.before, d.idle.before);
+  add_side(functions, &Pair::after, after, scale_after, d.busy.after, d.idle.after);
+  d.total = {before.clocks * scale_before, after.clocks * scale_after};
+  d.unexplained = d.total.change() - (d.busy.change() + d.idle.change());
+  // In seconds the sums are rounded.
+  if (d.in_seconds && std::abs(d.unexplained) < 1e-9 * d.total.after) d.unexplained = 0;
+  for (const auto& [key, pair] : functions) {
+    FunctionChange f = change_of(key, pair, d.by_function);
+    if (!f.causes.empty() || f.instructions_before != f.instructions_after)
+      d.functions.push_back(std::move(f));
+  }
+  find_layout(d);
+  largest_first(d.functions);
+  return d;
+}
+
+Blame blame_of(const Difference& difference, bool slower) {
+  const auto worst = [slower](const auto& changes) {
+    const auto amount = [slower](const auto& c) { return c.share.change() * (slower ? 1 : -1); };
+    const auto found = std::max_element(changes.begin(), changes.end(), [&](const auto& a, const auto& b) {
+      return amount(a) < amount(b);
+    });
+    return found != changes.end() && amount(*found) > 0 ? &*found : nullptr;
+  };
+  Blame blame;
+  blame.function = worst(difference.functions);
+  if (!blame.function) return blame;
+  blame.cause = worst(blame.function->causes);
+  blame.line = worst(blame.function->lines);
+  return blame;
+}
+
+std::string amount_text(const Difference& difference, double amount) {
+  const char* const sign = amount < 0 ? "-" : "+";
+  if (difference.in_seconds) return sign + app::human_text(std::abs(amount), "s");
+  return sign + grouped(amount) + " clocks";
+}
+
+std::string cause_text(const CauseChange& cause) {
+  std::string out = cause.cause;
+  if (!cause.region.empty() && cause.region != "none") out += ", region " + cause.region;
+  if (!cause.culprit.empty() && cause.culprit != "core") out += ", culprit " + cause.culprit;
+  return out;
+}
+
+std::string place_text(const FunctionChange& function, const LineChange* line) {
+  if (function.function.empty()) return "the program";
+  std::string place = function.file;
+  if (line && line->after.value_or(line->before.value_or(0)))
+    place += fmt::format(":{}", line->after.value_or(line->before.value_or(0)));
+  return place.empty() ? function.function : fmt::format("{} ({})", function.function, place);
+}
+
+std::string blame_text(const Difference& difference, const Blame& blame) {
+  if (!blame.function) return "";
+  const FunctionChange& f = *blame.function;
+  const double whole = difference.busy.change();
+  std::string out = place_text(f, blame.line);
+  if (difference.by_function)
+    out += " " + (f.kind == ChangeKind::kWaits
+                      ? std::string("waits with the same instructions")
+                      : kind_text(f.kind, f.instructions_after > f.instructions_before));
+  out += ": " + amount_text(difference, f.share.change());
+  if (whole != 0 && (whole > 0) == (f.share.change() > 0))
+    out += fmt::format(" ({:.0f} % of the change)", 100 * f.share.change() / whole);
+  if (blame.cause)
+    out += fmt::format(", of which {} by {}", amount_text(difference, blame.cause->share.change()),
+                       cause_text(*blame.cause));
+  return out;
+}
+
+}  // namespace fovea::regression

@@ -1,0 +1,91 @@
+// The difference of two runs' clocks, by function, line, cause and culprit, and what is to blame.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/regression/attribution.h"
+
+namespace fovea::regression {
+
+/// Why a function's clocks changed.
+enum class ChangeKind {
+  kAdded,     ///< only the second run has it
+  kRemoved,   ///< only the first run has it
+  kExecutes,  ///< it executes another number of instructions
+  kLayout,    ///< the same instructions at other addresses
+  kWaits,     ///< the same instructions, which wait for something else or longer
+};
+/// "new", "gone", "executes more", ... for a table. `more` is the sign of the instructions.
+std::string kind_text(ChangeKind kind, bool more);
+
+/// A part of a difference. Amounts are clocks, or seconds if the clocks of the cores differ.
+struct Share {
+  double before = 0, after = 0;
+  double change() const { return after - before; }
+};
+
+/// A cause with region and culprit, or a line.
+struct CauseChange {
+  std::string cause, region, culprit;
+  Share share;
+};
+struct LineChange {
+  std::optional<unsigned> before, after;  ///< numbers in the two sources; empty: not there
+  Share share;
+};
+
+/// A function; without profiles everything is one function without a name.
+struct FunctionChange {
+  std::string function, file;
+  ChangeKind kind = ChangeKind::kWaits;
+  Share share;
+  double instructions_before = 0, instructions_after = 0;
+  std::vector<CauseChange> causes;  ///< largest change first
+  std::vector<LineChange> lines;    ///< largest change first; those without a change are left out
+  double layout = 0;                ///< part of the change that comes from other addresses
+};
+
+/// What differs between two attributions. The idle clocks are kept apart: a loop that waits for a
+/// camera becomes slower by waiting less.
+struct Difference {
+  bool by_function = false;
+  bool in_seconds = false;  ///< the clocks of the two cores have other lengths
+  Share total, busy, idle;
+  std::vector<FunctionChange> functions;  ///< busy clocks; largest change first
+  double unexplained = 0;                 ///< of the change of `total`, not in any row
+  bool program_differs = false, settings_differ = false;
+
+  /// Share of the change that no row explains: 0 is all explained.
+  double unexplained_share() const;
+  bool none() const;
+};
+
+/// What is known of the circumstances, to tell moved code from code that waits.
+struct Circumstances {
+  bool program_differs = false;   ///< hashes of the programs differ
+  bool settings_differ = false;   ///< values of parameters or other inputs differ
+};
+Difference difference_of(const Attribution& before, const Attribution& after,
+                         const Circumstances& circumstances);
+
+/// The largest contribution in the direction of the whole change.
+struct Blame {
+  const FunctionChange* function = nullptr;
+  const CauseChange* cause = nullptr;
+  const LineChange* line = nullptr;
+};
+/// @param slower what became worse: more busy clocks, or fewer
+Blame blame_of(const Difference& difference, bool slower);
+
+/// One sentence: "remap_plain (remap_plain.c:42) executes more: +1,234 clocks (82 % ...), mostly
+/// dcache from lut while vpbe was served". Empty if nothing changed that way.
+std::string blame_text(const Difference& difference, const Blame& blame);
+/// "cause from region, served: culprit" in words.
+std::string cause_text(const CauseChange& cause);
+/// A number of clocks, or seconds, with its sign.
+std::string amount_text(const Difference& difference, double amount);
+/// "function (file:line)"; for the attribution without functions "the program".
+std::string place_text(const FunctionChange& function, const LineChange* line);
+
+}  // namespace fovea::regression

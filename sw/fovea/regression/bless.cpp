@@ -1,0 +1,136 @@
+// Updating a baseline so that nothing but values, simulator and history changes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/regression/check.h"
+
+namespace fovea::regression {
+
+namespace {
+
+/// The length of the plain scalar at `at`.
+std::size_t scalar_size(const std::string& text, std::size_t at) {
+  const std::size_t end = text.find_first_of(" \t\r\n,}]#", at);
+  return (end == std::string::npos ? text.size() : end) - at;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    out.push_back(text.substr(at, end == std::string::npos ? end : end - at));
+    at = end == std::string::npos ? text.size() : end + 1;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string blessed_text(const RunFigures& run, const Baseline& baseline, const std::string& why) {
+  // Replacements by position, from the end of the file on, so that earlier places stay.
+  std::map<std::size_t, std::string, std::greater<>> replacements;
+  std::string changes;
+  for (const auto& e : baseline.metrics) {
+    const Metric* const m = run.metric(e.name);
+    const std::string where = fmt::format("{}:{}", app::one_line(baseline.file.string()), e.line);
+    if (!m) {
+      const Finding f = judge(e, run);
+      throw UserError(fmt::format("{}: '{}': {}", where, app::one_line(e.name, 60), f.words));
+    }
+    if (m->unit != e.unit)
+      throw UserError(fmt::format("{}: '{}': the run's unit is {}; allowed: {}", where, e.name, m->unit,
+                                  e.unit));
+    if (e.kind != Kind::kExact || m->value == e.value) continue;
+    const std::string now = m->value ? exact_text(*m->value, m->whole) : "null";
+    const std::string before = baseline.text.substr(e.value_at, scalar_size(baseline.text, e.value_at));
+    replacements[e.value_at] = now;
+    changes += fmt::format("      {}: {} -> {}\n", e.name, before, now);
+  }
+  // Without another figure there is nothing to bless, whoever made the run.
+  if (replacements.empty()) return baseline.text;
+  replacements[baseline.version_at] = run.version;
+  replacements[baseline.commit_at] = commit_text(run);
+  std::string out = baseline.text;
+  for (const auto& [at, text] : replacements) out.replace(at, scalar_size(out, at), text);
+  if (!out.ends_with('\n')) out += '\n';
+  const bool history = baseline.text.starts_with("history:") ||
+                       baseline.text.find("\nhistory:") != std::string::npos;
+  if (!history) out += "history:\n";
+  return out + fmt::format("  - commit: {}\n    why: {}\n    changes: |\n{}", commit_text(run),
+                           yaml_text(why), changes);
+}
+
+std::string unified_diff(const std::string& name, const std::string& before,
+                         const std::string& after) {
+  const auto a = lines_of(before), b = lines_of(after);
+  // The longest common subsequence, after equal ends are taken off; baselines are small.
+  std::size_t head = 0, tail = 0;
+  while (head < a.size() && head < b.size() && a[head] == b[head]) ++head;
+  while (tail + head < a.size() && tail + head < b.size() &&
+         a[a.size() - 1 - tail] == b[b.size() - 1 - tail])
+    ++tail;
+  const std::size_t rows = a.size() - head - tail, columns = b.size() - head - tail;
+  std::vector<std::size_t> common((rows + 1) * (columns + 1));
+  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
+    return common[i * (columns + 1) + j];
+  };
+  for (std::size_t i = rows; i-- > 0;)
+    for (std::size_t j = columns; j-- > 0;)
+      at(i, j) = a[head + i] == b[head + j] ? at(i + 1, j + 1) + 1
+                                            : std::max(at(i + 1, j), at(i, j + 1));
+  struct Line {
+    char sign;
+    std::string text;
+  };
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < head; ++i) lines.push_back({' ', a[i]});
+  for (std::size_t i = 0, j = 0; i < rows || j < columns;) {
+    if (i < rows && j < columns && a[head + i] == b[head + j]) {
+      lines.push_back({' ', a[head + i]});
+      ++i, ++j;
+    } else if (i < rows && (j == columns || at(i + 1, j) >= at(i, j + 1))) {
+      lines.push_back({'-', a[head + i++]});
+    } else {
+      lines.push_back({'+', b[head + j++]});
+    }
+  }
+  for (std::size_t i = a.size() - tail; i < a.size(); ++i) lines.push_back({' ', a[i]});
+
+  constexpr std::size_t kContext = 3;
+  std::vector<bool> shown(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].sign != ' ')
+      for (std::size_t k = i < kContext ? 0 : i - kContext; k <= i + kContext && k < lines.size(); ++k)
+        shown[k] = true;
+  std::string out;
+  std::size_t in_a = 0, in_b = 0;
+  for (std::size_t i = 0; i < lines.size();) {
+    const auto step = [&](const Line& line) {
+      in_a += line.sign != '+';
+      in_b += line.sign != '-';
+    };
+    if (!shown[i]) {
+      step(lines[i++]);
+      continue;
+    }
+    const std::size_t from_a = in_a, from_b = in_b;
+    std::string hunk;
+    for (; i < lines.size() && shown[i]; ++i) {
+      hunk += lines[i].sign + lines[i].text + "\n";
+      step(lines[i]);
+    }
+    // An empty side is numbered by the line before it.
+    const auto range = [](std::size_t from, std::size_t count) {
+      return fmt::format("{},{}", count ? from + 1 : from, count);
+    };
+    out += fmt::format("@@ -{} +{} @@\n{}", range(from_a, in_a - from_a),
+                       range(from_b, in_b - from_b), hunk);
+  }
+  return out.empty() ? "" : fmt::format("--- {}\n+++ {}\n{}", name, name, out);
+}
+
+}  // namespace fovea::regression

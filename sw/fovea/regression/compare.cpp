@@ -1,0 +1,277 @@
+#include "sw/fovea/regression/compare.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/outputs.h"
+
+namespace fovea::regression {
+namespace {
+
+bool selected(const std::string& name, const std::string& only) {
+  if (only.find_first_of("*?[") != std::string::npos)
+    return ::fnmatch(only.c_str(), name.c_str(), 0) == 0;
+  return name.find(only) != std::string::npos;
+}
+
+/// Empty if the two are equal within the tolerance.
+std::optional<MetricChange> change_of_metric(const std::string& name, const Metric* before,
+                                             const Metric* after, const Tolerance& tolerance) {
+  const MetricChange change{name, before, after, before && after && before->unit != after->unit};
+  if (!before || !after || change.unit_differs) return change;
+  if (before->value.has_value() != after->value.has_value()) return change;
+  if (!before->value) return std::nullopt;
+  const bool whole = before->whole && after->whole;
+  if (deviation_of(*after->value, *before->value, tolerance, whole) == Deviation::kWithin)
+    return std::nullopt;
+  return change;
+}
+
+std::string with_sign(const std::string& text, bool negative) { return (negative ? "-" : "+") + text; }
+
+/// Rows of texts as columns; the columns of `left` are aligned to the left.
+std::string columns_text(const std::vector<std::vector<std::string>>& rows, std::size_t left) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows) {
+    width.resize(std::max(width.size(), row.size()));
+    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t c = 0; c < row.size(); ++c)
+      line += c < left ? fmt::format(" {:<{}}", row[c], width[c])
+                       : fmt::format("  {:>{}}", row[c], width[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string figure_or_dash(const Metric* m) { return m ? figure_text(*m) : "missing"; }
+
+}  // namespace
+
+std::optional<double> MetricChange::difference() const {
+  if (!before || !after || unit_differs || !before->value || !after->value) return std::nullopt;
+  return *after->value - *before->value;
+}
+
+std::optional<double> MetricChange::relative() const {
+  const auto d = difference();
+  if (!d || *before->value == 0) return std::nullopt;
+  return *d / std::abs(*before->value);
+}
+
+std::string percent_text(std::optional<double> share) {
+  if (!share) return "";
+  const double percent = 100 * *share;
+  return fmt::format("{:+.{}f} %", percent, std::abs(percent) < 0.095 ? 3 : 1);
+}
+
+std::string change_text(const MetricChange& change) {
+  const auto d = change.difference();
+  if (!d) return change.unit_differs ? "other unit" : "";
+  Metric m = *change.before;
+  m.value = std::abs(*d);
+  m.whole = change.before->whole && change.after->whole;
+  // A share of 0.5 that grows by 0.1 grows by ten points, not by 10 %.
+  if (m.unit == "ratio") return fmt::format("{:+.4g} points", 100 * *d);
+  return with_sign(figure_text(m), *d < 0);
+}
+
+bool same_simulator(const RunFigures& a, const RunFigures& b) {
+  return a.version == b.version && a.commit == b.commit && a.modified == b.modified;
+}
+
+void refuse_other_simulator(const RunFigures& a, const RunFigures& b) {
+  if (same_simulator(a, b)) return;
+  throw UserError(fmt::format("'{}' is of simulator {}, '{}' of {}; allowed: results of one "
+                              "simulator, or --across-versions, which lists what differs",
+                              app::one_line(a.folder.string()), a.simulator(),
+                              app::one_line(b.folder.string()), b.simulator()));
+}
+
+Circumstances circumstances_of(const RunFigures& before, const RunFigures& after) {
+  Circumstances out;
+  std::set<std::string> inputs;
+  for (const auto* run : {&before, &after})
+    for (const auto& [key, hash] : run->hashes) inputs.insert(key);
+  const auto hash = [](const RunFigures& run, const std::string& key) {
+    const auto found = run.hashes.find(key);
+    return found == run.hashes.end() ? std::string() : found->second;
+  };
+  for (const auto& key : inputs)
+    if (hash(before, key) != hash(after, key))
+      (key == "firmware.elf" || key == "program" ? out.program_differs : out.settings_differ) = true;
+  for (const auto& [key, p] : after.parameters) {
+    const auto other = before.parameters.find(key);
+    if (!p.path && other != before.parameters.end() && !other->second.path &&
+        other->second.value != p.value)
+      out.settings_differ = true;
+  }
+  return out;
+}
+
+std::vector<std::string> differences_of_settings(const RunFigures& before, const RunFigures& after) {
+  std::vector<std::string> out;
+  if (!same_simulator(before, after))
+    out.push_back(fmt::format("simulator: {} -> {}", before.simulator(), after.simulator()));
+  if (before.experiment != after.experiment)
+    out.push_back(fmt::format("experiment: {} -> {}", before.experiment, after.experiment));
+  std::set<std::string> keys, inputs;
+  for (const auto* run : {&before, &after}) {
+    for (const auto& [key, p] : run->parameters) keys.insert(key);
+    for (const auto& [key, hash] : run->hashes) inputs.insert(key);
+  }
+  for (const auto& key : keys) {
+    const auto a = before.parameters.find(key), b = after.parameters.find(key);
+    if (a == before.parameters.end())
+      out.push_back(fmt::format("parameter {} is new: {}", key, app::one_line(b->second.value, 60)));
+    else if (b == after.parameters.end())
+      out.push_back(fmt::format("parameter {} is gone: {}", key, app::one_line(a->second.value, 60)));
+    else if (!a->second.path && !b->second.path && a->second.value != b->second.value)
+      out.push_back(fmt::format("{}: {} -> {}{}", key, app::one_line(a->second.value, 60),
+                                app::one_line(b->second.value, 60),
+                                a->second.default_value != b->second.default_value
+                                    ? " (the default changed)"
+                                    : ""));
+  }
+  for (const auto& key : inputs) {
+    const auto a = before.hashes.find(key), b = after.hashes.find(key);
+    if (a == before.hashes.end() || b == after.hashes.end())
+      out.push_back(fmt::format("input {}: only one run read it", key));
+    else if (a->second != b->second)
+      out.push_back(fmt::format("input {}: another file (SHA-256 {:.12} -> {:.12})", key, a->second,
+                                b->second));
+  }
+  return out;
+}
+
+Comparison compare_runs(const RunFigures& before, const RunFigures& after,
+                        const Tolerance& tolerance, const std::string& only) {
+  Comparison out;
+  out.before = &before;
+  out.after = &after;
+  std::set<std::string> names;
+  for (const auto* run : {&before, &after})
+    for (const auto& [name, m] : run->metrics)
+      if (selected(name, only)) names.insert(name);
+  out.compared = names.size();
+  for (const auto& name : names)
+    if (const auto change = change_of_metric(name, before.metric(name), after.metric(name), tolerance))
+      out.changes.push_back(*change);
+  out.settings = differences_of_settings(before, after);
+  const bool profile = has_profile(before) && has_profile(after);
+  const Attribution a = attribution_of(before, profile), b = attribution_of(after, profile);
+  if (!a.rows.empty() && !b.rows.empty())
+    out.difference = difference_of(a, b, circumstances_of(before, after));
+  return out;
+}
+
+std::string difference_text(const Difference& d, std::size_t rows) {
+  const auto share = [&](const Share& s) {
+    return amount_text(d, s.change()) +
+           (s.before ? " (" + percent_text(s.change() / s.before) + ")" : "");
+  };
+  std::string out = fmt::format("where the {} went: all {}, busy {}, idle {}\n",
+                                d.in_seconds ? "time of the core" : "core's clocks",
+                                share(d.total), share(d.busy), share(d.idle));
+  if (d.in_seconds) out += "  (as time, because the clocks of the two cores have other lengths)\n";
+  struct Line {
+    const FunctionChange* f;
+    const CauseChange* c;
+  };
+  std::vector<Line> lines;
+  for (const auto& f : d.functions)
+    for (const auto& c : f.causes) lines.push_back({&f, &c});
+  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
+    return std::abs(a.c->share.change()) > std::abs(b.c->share.change());
+  });
+  std::vector<std::vector<std::string>> table = {
+      {"function", "why", "cause", "region", "culprit", d.in_seconds ? "time" : "change"}};
+  double rest = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto& [f, c] = lines[i];
+    if (i >= rows) {
+      rest += c->share.change();
+      continue;
+    }
+    table.push_back({f->function.empty() ? "-" : place_text(*f, nullptr),
+                     d.by_function ? kind_text(f->kind, f->instructions_after > f->instructions_before)
+                                   : "-",
+                     c->cause, c->region.empty() ? "-" : c->region,
+                     c->culprit.empty() ? "-" : c->culprit, amount_text(d, c->share.change())});
+  }
+  if (lines.size() > rows)
+    table.push_back({fmt::format("{} more rows", lines.size() - rows), "", "", "", "",
+                     amount_text(d, rest)});
+  if (!lines.empty()) out += columns_text(table, 5);
+  double layout = 0;
+  for (const auto& f : d.functions) layout += f.layout;
+  if (layout != 0)
+    out += fmt::format("  of this by layout (same code at other addresses): {}\n",
+                       amount_text(d, layout));
+  out += fmt::format("  unexplained: {} ({:.1f} %)\n", amount_text(d, d.unexplained),
+                     100 * d.unexplained_share());
+  if (!d.by_function)
+    out += "  by function and line: let both runs write a profile ('fovea run --profile')\n";
+  return out;
+}
+
+std::string comparison_text(const Comparison& c, const Tolerance& tolerance, bool all) {
+  std::string out = fmt::format("A  {}: {}, fovea {}\nB  {}: {}, fovea {}\n",
+                                c.before->folder.string(), c.before->experiment,
+                                c.before->simulator(), c.after->folder.string(),
+                                c.after->experiment, c.after->simulator());
+  if (!c.settings.empty()) {
+    out += "what was different:\n";
+    for (const auto& line : c.settings) out += "  " + line + "\n";
+  }
+  const std::string within =
+      tolerance.allowed(1) == 0 ? "" : fmt::format(" (tolerance {})", tolerance.text());
+  if (c.changes.empty()) {
+    out += fmt::format("equal: all {} figures{}\n", c.compared, within);
+  } else {
+    out += fmt::format("different: {} of {} figures{}\n", c.changes.size(), c.compared, within);
+    // The figures that people ask for first, then the largest changes.
+    static constexpr std::array kFirst{"frame.", "startup.", "capture.", "display.", "cpu.cycles",
+                                       "cpu.instructions", "cpu.issue", "cpu.idle", "ddr.utilisation"};
+    const auto rank = [](const MetricChange& m) {
+      for (std::size_t i = 0; i < kFirst.size(); ++i)
+        if (m.name.starts_with(kFirst[i])) return static_cast<double>(i) - 100;
+      return -std::min(50.0, std::abs(m.relative().value_or(50)));
+    };
+    std::vector<MetricChange> sorted = c.changes;
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
+      return rank(a) < rank(b);
+    });
+    constexpr std::size_t kShown = 30;
+    std::vector<std::vector<std::string>> table = {{"figure", "A", "B", "change", ""}};
+    for (std::size_t i = 0; i < sorted.size() && (all || i < kShown); ++i)
+      table.push_back({sorted[i].name, figure_or_dash(sorted[i].before),
+                       figure_or_dash(sorted[i].after), change_text(sorted[i]),
+                       percent_text(sorted[i].relative())});
+    out += columns_text(table, 1);
+    if (!all && sorted.size() > kShown)
+      out += fmt::format("  {} more figures; --all lists them\n", sorted.size() - kShown);
+  }
+  if (c.difference && !c.difference->none()) {
+    out += difference_text(*c.difference, all ? SIZE_MAX : 12);
+    const bool slower = c.difference->busy.change() >= 0;
+    const Blame blame = blame_of(*c.difference, slower);
+    if (blame.function)
+      out += fmt::format("{}: {}\n", slower ? "largest slow-down" : "largest speed-up",
+                         blame_text(*c.difference, blame));
+  }
+  return out;
+}
+
+}  // namespace fovea::regression

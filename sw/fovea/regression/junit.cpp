@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include "sw/fovea/regression/check.h"
+#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/regression/xml.h"
+
+namespace fovea::regression {
+
+std::string xml_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\n': case '\t': out += c; break;
+      default: out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return out;
+}
+
+std::string junit_xml(const CheckResult& result, const RunFigures& run, const Baseline& baseline,
+                      const std::string& when) {
+  const std::string suite = "fovea." + xml_text(run.experiment);
+  // Attributes and elements that the schema of Ant's JUnit task demands; the time of a comparison
+  // is none that anybody measures.
+  std::string out = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+      "  <testsuite package=\"fovea\" id=\"0\" name=\"{}\" timestamp=\"{}\" hostname=\"localhost\" "
+      "tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"0\">\n    <properties>\n",
+      suite, when, result.findings.size(), result.failures());
+  const auto property = [&out](std::string_view name, const std::string& value) {
+    out += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, xml_text(value));
+  };
+  property("simulator", run.simulator());
+  property("baseline", baseline.file.string());
+  property("results", run.folder.string());
+  out += "    </properties>\n";
+  for (const auto& f : result.findings) {
+    out += fmt::format("    <testcase name=\"{}\" classname=\"{}\" time=\"0\"", xml_text(f.expected->name),
+                       suite);
+    if (f.verdict != Verdict::kFail) {
+      out += "/>\n";
+      continue;
+    }
+    std::string body = f.words;
+    if (!f.expected->reason.empty()) body += "\nreason: " + f.expected->reason;
+    if (!result.blame.empty()) body += "\nblamed: " + result.blame;
+    out += fmt::format(">\n      <failure type=\"{}\" message=\"{}\">{}</failure>\n    </testcase>\n",
+                       kind_name(f.expected->kind), xml_text(f.words), xml_text(body));
+  }
+  const std::string log = check_text(result, run, baseline, true);
+  out += fmt::format("    <system-out>{}</system-out>\n    <system-err></system-err>\n"
+                     "  </testsuite>\n</testsuites>\n",
+                     xml_text(log));
+  return out;
+}
+
+}  // namespace fovea::regression

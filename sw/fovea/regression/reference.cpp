@@ -1,0 +1,67 @@
+// The files that a baseline keeps of the run it was taken from.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/regression/attribution.h"
+#include "sw/fovea/regression/baseline.h"
+#include "sw/fovea/regression/table_file.h"
+
+namespace fovea::regression {
+
+std::map<std::string, std::string> reference_files(const RunFigures& run) {
+  std::map<std::string, std::string> out;
+  // Figures that are zero are left out: they are most of them, and say nothing.
+  std::string& figures = out["figures.csv"] = table_row({"name", "value", "unit"});
+  for (const auto& [name, m] : run.metrics)
+    if (m.value && *m.value != 0) figures += table_row({name, exact_text(*m.value, m.whole), m.unit});
+  std::string& parameters = out["parameters.csv"] = table_row({"key", "value", "default"});
+  for (const auto& [key, p] : run.parameters)
+    if (!p.path) parameters += table_row({key, p.value, p.default_value});
+  std::string& inputs = out["inputs.csv"] = table_row({"key", "sha256"});
+  for (const auto& [key, hash] : run.hashes) inputs += table_row({key, hash});
+  out["profile.csv"] = attribution_csv(attribution_of(run, true));
+  return out;
+}
+
+RunFigures read_reference(const Baseline& baseline) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(baseline.reference, error))
+    throw UserError(fmt::format("{}: the folder '{}' that 'reference' names is not there",
+                                app::one_line(baseline.file.string()),
+                                app::one_line(baseline.reference.string())));
+  RunFigures run;
+  run.folder = baseline.reference;
+  run.version = baseline.version;
+  run.commit = baseline.commit;
+  constexpr std::string_view kModified = "-modified";
+  if (run.commit.ends_with(kModified)) {
+    run.modified = true;
+    run.commit.resize(run.commit.size() - kModified.size());
+  }
+  run.experiment = baseline.experiment;
+  const TableFile figures(run.folder / "figures.csv", {"name", "value", "unit"});
+  for (std::size_t i = 0; i < figures.rows(); ++i) {
+    const std::string& text = figures.text(i, "value");
+    double value = 0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failed != std::errc{} || end != text.data() + text.size())
+      throw UserError(fmt::format("'{}', row {}: '{}' is not a number",
+                                  app::one_line((run.folder / "figures.csv").string()), i + 2,
+                                  app::one_line(text, 40)));
+    run.metrics[figures.text(i, "name")] = {value, figures.text(i, "unit"),
+                                            text.find_first_of(".e") == text.npos};
+  }
+  const TableFile parameters(run.folder / "parameters.csv", {"key", "value", "default"});
+  for (std::size_t i = 0; i < parameters.rows(); ++i)
+    run.parameters[parameters.text(i, "key")] = {parameters.text(i, "value"),
+                                                 parameters.text(i, "default"), ""};
+  const TableFile inputs(run.folder / "inputs.csv", {"key", "sha256"});
+  for (std::size_t i = 0; i < inputs.rows(); ++i)
+    run.hashes[inputs.text(i, "key")] = inputs.text(i, "sha256");
+  return run;
+}
+
+}  // namespace fovea::regression

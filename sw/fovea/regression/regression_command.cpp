@@ -1,0 +1,238 @@
+#include "sw/fovea/regression/regression_command.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <ostream>
+
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/output_file.h"
+#include "sw/fovea/regression/check.h"
+#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/regression/trend.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace regression;
+
+constexpr std::array<const char*, 4> kCommands = {"compare", "check", "bless", "trend"};
+constexpr const char* kAcross = "Also take results of different simulators, and list what differs";
+
+/// Figures that a plot shows if none are asked for.
+const std::vector<std::string> kPlotted = {"frame.remap_time.mean", "frame.latency.mean", "frame.rate",
+                                           "startup.lut_time",      "cpu.cycles",         "cpu.instructions",
+                                           "ddr.utilisation",       kHostInstructions};
+
+/// Date and time of a file in UTC, as JUnit XML wants it.
+std::string time_of(const fs::path& file) {
+  struct stat info {};
+  const std::time_t seconds = ::stat(file.c_str(), &info) == 0 ? info.st_mtime : 0;
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts)};
+}
+
+int compare(const RegressionOptions& options, const CliContext& context) {
+  const auto& o = options.compare;
+  if (o.csv && o.json) throw UserError("--csv and --json exclude each other; choose one");
+  const Tolerance tolerance = parse_tolerance(o.tolerance, "--tolerance");
+  const RunFigures a = read_run(o.a), b = read_run(o.b);
+  if (!o.across_versions) refuse_other_simulator(a, b);
+  const Comparison c = compare_runs(a, b, tolerance, o.only);
+  if (c.compared == 0)
+    throw UserError(fmt::format("no figure matches --only '{}'; stats.json lists all", one_line(o.only)));
+  context.out << (o.csv    ? comparison_csv(c)
+                  : o.json ? comparison_json(c)
+                           : comparison_text(c, tolerance, o.all))
+              << std::flush;
+  return c.changes.empty() ? kExitDone : kExitCheckFailed;
+}
+
+int check(const RegressionOptions& options, const CliContext& context) {
+  const auto& o = options.check;
+  const Baseline baseline = read_baseline(o.against);
+  const RunFigures run = read_run(o.folder);
+  std::optional<OutputFile> junit;
+  if (!o.junit.empty())
+    junit.emplace(o.junit, "--junit", "JUnit XML",
+                  [](std::string_view text) { return text.find("<testsuite") != text.npos; });
+  const CheckResult result = check_run(run, baseline, o.across_versions);
+  if (junit) {
+    junit->write(junit_xml(result, run, baseline, time_of(run.folder / "stats.json")));
+    junit->commit();
+  }
+  context.out << check_text(result, run, baseline, o.all) << std::flush;
+  return result.failures() ? kExitCheckFailed : kExitDone;
+}
+
+/// Puts a complete text in place of a file, without a moment in which it is half written.
+void replace_file(const fs::path& file, const std::string& text, std::string_view mark) {
+  OutputFile out(file, "--against", "a baseline",
+                 [mark](std::string_view first) { return first.find(mark) != first.npos; });
+  out.write(text);
+  out.commit();
+}
+
+int bless(const RegressionOptions& options, const CliContext& context) {
+  const auto& o = options.bless;
+  if (o.why.find_first_not_of(" \t") == std::string::npos)
+    throw UserError("--why '': say in a sentence why the figures may change");
+  const RunFigures run = read_run(o.folder);
+  const fs::path file = o.against;
+  std::error_code error;
+  const bool is_new = !fs::exists(fs::symlink_status(file, error));
+  std::string before, after;
+  fs::path reference;
+  if (is_new) {
+    reference = file.parent_path() / file.stem();
+    after = new_baseline(run, file.stem().string(), o.why);
+  } else {
+    const Baseline baseline = read_baseline(file);
+    // The settings and the experiment must fit; the simulator may be another one.
+    CheckResult checked = check_run(run, baseline, true);
+    before = baseline.text;
+    reference = baseline.reference;
+    after = blessed_text(run, baseline, o.why);
+  }
+  const std::string diff = unified_diff(file.string(), before, after);
+  if (diff.empty()) {
+    context.out << fmt::format("{} is as this run; nothing to bless\n", file.string()) << std::flush;
+  } else {
+    // What was made must be readable, or the file stays as it was.
+    const Baseline made = parse_baseline(file, after);
+    if (!reference.empty()) {
+      fs::create_directories(reference, error);
+      for (const auto& [name, text] : reference_files(run)) write_file(reference / name, text);
+    }
+    replace_file(file, after, kBaselineFormat);
+    context.out << diff;
+    if (!reference.empty())
+      context.out << fmt::format("reference in {}\n", reference.string());
+  }
+  context.out << std::flush;
+  const Baseline now = read_baseline(file);
+  const CheckResult left = check_run(run, now, true);
+  for (const auto& f : left.findings)
+    if (f.verdict == Verdict::kFail)
+      context.err << fmt::format("fovea: {} still fails: it is of the kind {}, which is changed by "
+                                 "hand: {}\n",
+                                 f.expected->name, kind_name(f.expected->kind), f.words);
+  return left.failures() ? kExitCheckFailed : kExitDone;
+}
+
+int trend(const RegressionOptions& options, const CliContext& context) {
+  const auto& o = options.trend;
+  if (o.folders.empty() && o.plot.empty())
+    throw UserError("nothing to do; allowed: folders of results to add, --plot FILE, or both");
+  std::vector<RunFigures> runs;
+  for (const auto& folder : o.folders) runs.push_back(read_run(folder));
+  std::optional<OutputFile> plot;
+  if (!o.plot.empty())
+    plot.emplace(o.plot, "--plot", "a picture of 'fovea trend'",
+                 [](std::string_view text) { return text.find("<svg") != text.npos; });
+  std::error_code error;
+  if (runs.empty() && !fs::exists(o.database, error))
+    throw UserError(fmt::format("--database '{}': there is no such file", one_line(o.database)));
+  TrendFile file(o.database);
+  for (const auto& run : runs) {
+    TrendLine line{o.commit.empty() ? commit_text(run) : o.commit, run.experiment, run.simulator(), {},
+                   run.metrics};
+    if (o.host_instructions > 0) line.host_instructions = o.host_instructions;
+    file.add(line);
+    context.out << fmt::format("{}: {} of commit {}\n", o.database, line.experiment, line.commit);
+  }
+  if (plot) {
+    plot->write(trend_svg(file.lines(o.experiment), o.figures.empty() ? kPlotted : o.figures));
+    plot->commit();
+    context.out << fmt::format("picture in {}\n", o.plot);
+  }
+  context.out << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_regression_commands(CLI::App& app, RegressionOptions& options) {
+  auto& c = options.compare;
+  CLI::App* compare = app.add_subcommand("compare", "Show which figures of two runs differ, and why");
+  compare->add_option("a", c.a, "Folder of results")->required()->type_name("DIR");
+  compare->add_option("b", c.b, "Folder of results to compare with it")->required()->type_name("DIR");
+  compare->add_option("--tolerance", c.tolerance, "Difference that counts as equal: 1%, 2, or '1% or 2'")
+      ->type_name("TEXT")
+      ->default_str("0");
+  compare->add_option("--only", c.only, "Only figures with this part in their names, or a pattern with * and ?")
+      ->type_name("TEXT");
+  compare->add_flag("--all", c.all, "List all differences");
+  compare->add_flag("--csv", c.csv, "Print the figures that differ as CSV");
+  compare->add_flag("--json", c.json, "Print everything as JSON");
+  compare->add_flag("--across-versions", c.across_versions, kAcross);
+  compare->footer(
+      "Exit status: 0 equal within the tolerance; 1 different; 2 wrong input. With profiles in both "
+      "folders (fovea run --profile) the clocks are compared by function and line, otherwise by "
+      "cause, region and culprit.");
+
+  auto& k = options.check;
+  CLI::App* check = app.add_subcommand("check", "Compare a run with a baseline, and blame what is worse");
+  check->add_option("dir", k.folder, "Folder of results")->required()->type_name("DIR");
+  check->add_option("--against", k.against, "Baseline (YAML); 'fovea bless' makes one")
+      ->required()
+      ->type_name("FILE");
+  check->add_option("--junit", k.junit, "Also write the result as JUnit XML")->type_name("FILE");
+  check->add_flag("--all", k.all, "Also list figures that pass");
+  check->add_flag("--across-versions", k.across_versions, kAcross);
+  check->footer(
+      "Exit status: 0 passed; 1 a figure is missing or worse than its tolerance allows; 2 wrong "
+      "input. A figure of a baseline has: value; unit; tolerance (1%, 2, '1% or 2'; none: the same "
+      "number); worse (higher, lower, both): the direction that fails; kind: exact (from a run, "
+      "replaced by bless), analytic (calculated) or budget (a limit); reason.");
+
+  auto& b = options.bless;
+  CLI::App* bless = app.add_subcommand("bless", "Put the figures of a run into a baseline, or begin one");
+  bless->add_option("dir", b.folder, "Folder of results")->required()->type_name("DIR");
+  bless->add_option("--against", b.against, "Baseline (YAML); a name that is not there makes a new one")
+      ->required()
+      ->type_name("FILE");
+  bless->add_option("--why", b.why, "Reason, kept in the baseline")->required()->type_name("TEXT");
+  bless->footer("Prints the change as a diff. Comments and order stay; analytic values and budgets are "
+                "never replaced (exit status 1 if one of them fails). The reference for blame, in the "
+                "folder that the baseline names, becomes this run's.");
+
+  auto& t = options.trend;
+  CLI::App* trend = app.add_subcommand("trend", "Keep the figures of each commit, and plot them");
+  trend->add_option("dir", t.folders, "Folders of results to add")->type_name("DIR");
+  trend->add_option("--database", t.database, "SQLite file; made if it is not there")
+      ->required()
+      ->type_name("FILE");
+  trend->add_option("--commit", t.commit, "Name of the line")->type_name("TEXT")->default_str("the simulator's commit");
+  trend->add_option("--host-instructions", t.host_instructions,
+                    "The simulator's host instructions for each guest instruction")
+      ->type_name("NUMBER")
+      ->check(CLI::PositiveNumber);
+  trend->add_option("--plot", t.plot, "Write a picture of the figures over the commits (SVG)")->type_name("FILE");
+  trend->add_option("--figure", t.figures, "Figure to plot; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->default_str("headlines");
+  trend->add_option("--experiment", t.experiment, "Plot only this experiment")->type_name("NAME");
+}
+
+bool is_regression_command(const std::string& name) {
+  return std::find(kCommands.begin(), kCommands.end(), name) != kCommands.end();
+}
+
+int command_regression(const std::string& name, const RegressionOptions& options,
+                       const CliContext& context) {
+  if (name == "compare") return compare(options, context);
+  if (name == "check") return check(options, context);
+  if (name == "bless") return bless(options, context);
+  return trend(options, context);
+}
+
+}  // namespace fovea::app

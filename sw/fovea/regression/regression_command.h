@@ -1,0 +1,40 @@
+// The commands compare, check, bless and trend.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "sw/fovea/cli.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fovea::app {
+
+struct RegressionOptions {
+  struct {
+    std::string a, b, tolerance = "0", only;
+    bool csv = false, json = false, all = false, across_versions = false;
+  } compare;
+  struct {
+    std::string folder, against, junit;
+    bool all = false, across_versions = false;
+  } check;
+  struct {
+    std::string folder, against, why;
+  } bless;
+  struct {
+    std::vector<std::string> folders, figures;
+    std::string database, commit, plot, experiment;
+    double host_instructions = 0;
+  } trend;
+};
+
+void add_regression_commands(CLI::App& app, RegressionOptions& options);
+/// True if `name` is one of these commands.
+bool is_regression_command(const std::string& name);
+/// Runs it. @return 0, or 1 if a comparison failed. @throws UserError
+int command_regression(const std::string& name, const RegressionOptions& options,
+                       const CliContext& context);
+
+}  // namespace fovea::app

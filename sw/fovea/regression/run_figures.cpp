@@ -1,0 +1,151 @@
+#include "sw/fovea/regression/run_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
+#include "sw/fovea/outputs.h"
+#include "sw/fovea/run_files.h"
+
+namespace fovea::regression {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
+
+json read_object(const fs::path& file) {
+  const json value = json::parse(app::read_file(file, kMaxFileBytes), nullptr, false);
+  if (!value.is_object())
+    throw UserError(fmt::format("'{}' is not a JSON object; allowed: a file that 'fovea run' wrote",
+                                app::one_line(file.string())));
+  return value;
+}
+
+std::string text_of(const json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+void read_config(const json& config, RunFigures& run) {
+  run.version = text_of(config, "version");
+  run.commit = text_of(config, "commit");
+  run.modified = config.value("modified", json(false)) == true;
+  run.experiment = text_of(config, "experiment");
+  const json hashes = config.value("sha256", json::object());
+  for (const auto& [name, hash] : hashes.items())
+    run.hashes[name] = hash.is_string() ? hash.get<std::string>() : "";
+  const json params = config.value("params", json::object());
+  for (const auto& [key, p] : params.items()) {
+    if (!p.is_object()) continue;
+    Parameter& parameter = run.parameters[key];
+    parameter = {text_of(p, "value"), text_of(p, "default"), text_of(p, "tag")};
+    parameter.path = run.hashes.contains(key);
+  }
+}
+
+void read_stats(const json& stats, RunFigures& run) {
+  for (const auto& [name, row] : stats.items()) {
+    if (!row.is_object() || !row.contains("value") || !row.contains("unit")) continue;
+    const json& value = row["value"];
+    Metric& m = run.metrics[name];
+    m.unit = text_of(row, "unit");
+    m.whole = value.is_number_integer();
+    if (value.is_number()) m.value = value.get<double>();
+  }
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string RunFigures::simulator() const {
+  return fmt::format("{} (commit {}{})", version, commit, modified ? ", modified" : "");
+}
+
+const Metric* RunFigures::metric(const std::string& name) const {
+  const auto found = metrics.find(name);
+  return found == metrics.end() ? nullptr : &found->second;
+}
+
+double RunFigures::value(const std::string& name) const {
+  const Metric* const m = metric(name);
+  return m ? m->value.value_or(0) : 0;
+}
+
+RunFigures read_run(const fs::path& folder) {
+  const std::string name = app::one_line(folder.string());
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw UserError(fmt::format("'{}' is not a folder; allowed: a folder of results, as 'fovea run' "
+                                "writes it",
+                                name));
+  if (!app::is_run_folder(folder))
+    throw UserError(fmt::format("'{}' is not a folder of results: it has no config.json of Fovea's; "
+                                "allowed: a folder that 'fovea run' wrote",
+                                name));
+  if (!fs::exists(folder / "stats.json", error))
+    throw UserError(fmt::format("'{}' has no stats.json: its run did not end; allowed: complete "
+                                "results",
+                                name));
+  RunFigures run;
+  run.folder = folder;
+  const json stats = read_object(folder / "stats.json");
+  if (stats.value("complete", json(false)) != true)
+    throw UserError(fmt::format("'{}' holds partial results: its run was stopped or its guest "
+                                "failed; allowed: complete results",
+                                name));
+  read_config(read_object(folder / "config.json"), run);
+  read_stats(stats, run);
+  if (fs::exists(folder / "host.json", error)) {
+    const json host = read_object(folder / "host.json");
+    const json words = host.value("command", json::array());
+    for (const auto& word : words)
+      if (word.is_string()) run.command.push_back(word);
+  }
+  return run;
+}
+
+std::string nearest_metric(const RunFigures& run, const std::string& name) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const auto& [candidate, unused] : run.metrics)
+    if (const std::size_t d = edit_distance(name, candidate); d < least) {
+      least = d;
+      best = candidate;
+    }
+  return best;
+}
+
+std::string exact_text(double value, bool whole) {
+  return whole ? fmt::format("{:.0f}", value) : app::number_text(value);
+}
+
+std::string figure_text(const Metric& metric) {
+  if (!metric.value) return "no value";
+  if (metric.whole && metric.unit != "B") {
+    const std::string unit = metric.unit == "1" || metric.unit == "count" ? "" : " " + metric.unit;
+    return exact_text(*metric.value, true) + unit;
+  }
+  return app::human_text(*metric.value, metric.unit);
+}
+
+}  // namespace fovea::regression

@@ -1,0 +1,145 @@
+// The picture of `fovea trend`: plain SVG, readable on light and dark pages and in print.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/common/check.h"
+#include "sw/fovea/regression/trend.h"
+#include "sw/fovea/regression/xml.h"
+
+namespace fovea::regression {
+namespace {
+
+// All lengths in pixels.
+constexpr double kLeft = 96, kRight = 24, kTop = 46, kPanel = 110, kGap = 46, kPlot = 720, kLabel = 74;
+
+/// Colours that people with a colour deficiency can tell apart (Okabe and Ito), with marks of
+/// different shapes.
+constexpr std::array<const char*, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
+                                                 "#cc79a7", "#e69f00", "#56b4e9"};
+
+struct Point {
+  std::size_t commit;
+  double value;
+};
+
+std::optional<Metric> figure_of(const TrendLine& line, const std::string& name) {
+  if (name == kHostInstructions) {
+    if (!line.host_instructions) return std::nullopt;
+    return Metric{line.host_instructions, "per guest instruction", false};
+  }
+  const auto found = line.figures.find(name);
+  if (found == line.figures.end() || !found->second.value) return std::nullopt;
+  return found->second;
+}
+
+std::string mark(std::size_t series, double x, double y, const std::string& title) {
+  const char* const colour = kColours[series % kColours.size()];
+  const std::string what = fmt::format("<title>{}</title>", xml_text(title));
+  switch (series % 3) {
+    case 0: return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\">{}</circle>\n", x, y, colour, what);
+    case 1:
+      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" height=\"7\" fill=\"{}\">{}</rect>\n",
+                         x - 3.5, y - 3.5, colour, what);
+    default:
+      return fmt::format("<path d=\"M{:.1f} {:.1f}l4 7h-8z\" fill=\"{}\">{}</path>\n", x, y - 4, colour, what);
+  }
+}
+
+/// A commit as a label: hashes are cut as git does, names are kept.
+std::string short_name(const std::string& commit) {
+  const bool hash = commit.size() > 9 && commit.find_first_not_of("0123456789abcdef") == commit.npos;
+  return hash ? commit.substr(0, 9) : commit.size() > 14 ? commit.substr(0, 13) + "…" : commit;
+}
+
+}  // namespace
+
+std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures) {
+  std::vector<std::string> commits, experiments, shown;
+  for (const auto& line : lines) {
+    if (std::find(commits.begin(), commits.end(), line.commit) == commits.end())
+      commits.push_back(line.commit);
+    if (std::find(experiments.begin(), experiments.end(), line.experiment) == experiments.end())
+      experiments.push_back(line.experiment);
+  }
+  for (const auto& name : figures)
+    if (std::any_of(lines.begin(), lines.end(), [&](const auto& l) { return figure_of(l, name); }))
+      shown.push_back(name);
+  if (shown.empty()) throw UserError("none of the figures has a value in the database; nothing to plot");
+  const double height = kTop + static_cast<double>(shown.size()) * (kPanel + kGap) + kLabel;
+  const double width = kLeft + kPlot + kRight;
+  const auto x_of = [&](std::size_t commit) {
+    return commits.size() == 1 ? kLeft + kPlot / 2
+                               : kLeft + kPlot * static_cast<double>(commit) /
+                                             static_cast<double>(commits.size() - 1);
+  };
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+      "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\" role=\"img\" "
+      "aria-label=\"Figures over commits\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+      width, height);
+  double at = kLeft;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    out += mark(e, at, 18, experiments[e]);
+    out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, xml_text(experiments[e]));
+    at += 30 + 7.5 * static_cast<double>(experiments[e].size());
+  }
+  for (std::size_t p = 0; p < shown.size(); ++p) {
+    const double top = kTop + static_cast<double>(p) * (kPanel + kGap) + 18;
+    double low = INFINITY, high = -INFINITY;
+    std::string unit;
+    bool whole = true;
+    for (const auto& line : lines)
+      if (const auto m = figure_of(line, shown[p])) {
+        low = std::min(low, *m->value);
+        high = std::max(high, *m->value);
+        unit = m->unit;
+        whole &= m->whole;
+      }
+    // A curve that does not change is drawn in the middle, not as a line of noise.
+    const double least = std::max(std::abs(high) * 0.02, 1e-12);
+    const double centre = (low + high) / 2, half = std::max((high - low) / 2 * 1.1, least);
+    const auto y_of = [&](double value) { return top + kPanel * (0.5 - (value - centre) / (2 * half)); };
+    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-weight=\"bold\">{}</text>\n", kLeft, top - 8,
+                       xml_text(shown[p] == kHostInstructions
+                                    ? "host instructions of the simulator for each guest instruction"
+                                    : shown[p]));
+    for (const double level : {centre - half * 0.9, centre, centre + half * 0.9}) {
+      const double y = y_of(level);
+      out += fmt::format("<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#d0d0d0\"/>\n",
+                         kLeft, kLeft + kPlot, y);
+      const Metric tick{level, unit, false};
+      out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"#404040\">{}</text>\n",
+                         kLeft - 8, y + 4,
+                         xml_text(shown[p] == kHostInstructions ? fmt::format("{:.4g}", level)
+                                                                : figure_text(tick)));
+    }
+    for (std::size_t e = 0; e < experiments.size(); ++e) {
+      std::string path, marks;
+      for (std::size_t c = 0; c < commits.size(); ++c)
+        for (const auto& line : lines)
+          if (line.commit == commits[c] && line.experiment == experiments[e])
+            if (const auto m = figure_of(line, shown[p])) {
+              path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c), y_of(*m->value));
+              marks += mark(e, x_of(c), y_of(*m->value),
+                            fmt::format("{} {}: {}", line.commit, line.experiment, figure_text(*m)));
+            }
+      if (!path.empty())
+        out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n{}", path,
+                           kColours[e % kColours.size()], marks);
+    }
+  }
+  // At most as many labels as there is room for.
+  const std::size_t step = std::max<std::size_t>(1, (commits.size() + 23) / 24);
+  const double base = kTop + static_cast<double>(shown.size()) * (kPanel + kGap) - 10;
+  for (std::size_t c = 0; c < commits.size(); c += step)
+    out += fmt::format("<text transform=\"translate({:.1f} {:.0f}) rotate(-45)\" text-anchor=\"end\" "
+                       "fill=\"#404040\">{}</text>\n",
+                       x_of(c) + 4, base, xml_text(short_name(commits[c])));
+  return out + "</svg>\n";
+}
+
+}  // namespace fovea::regression

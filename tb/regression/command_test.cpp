@@ -1,0 +1,214 @@
+// The commands compare, check, bless and trend as a user gives them: words, exit statuses, files.
+#include <sqlite3.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "sw/fovea/cli.h"
+#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/regression/trend.h"
+#include "tb/regression/run_maker.h"
+
+namespace fovea::regression {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_text;
+using test::TempDir;
+using test::user_error;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class RegressionCommandTest : public testing::Test {
+ protected:
+  RegressionCommandTest() : slow(profiled()) {
+    a = profiled().write(dir, "a").string();
+    slow.figure("frame.remap_time.mean", "0.0042", "s").figure("extra", "1");
+    slow.profile.replace(slow.profile.find("vpbe,50"), 7, "vpbe,70");
+    slow.profile.replace(slow.profile.find("capture,,,300"), 13, "capture,,,280");
+    slow.figure("cpu.idle", "280", "cycles");
+    b = slow.write(dir, "b").string();
+    base = (dir / "base.yaml").string();
+  }
+  int cli(std::vector<std::string> args) {
+    out.str("");
+    err.str("");
+    const int status = app::run_cli(args, {.out = out, .err = err, .make_simulation = nullptr});
+    const std::string text = err.str();
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    return status;
+  }
+  TempDir dir;
+  RunMaker slow;
+  std::string a, b, base;
+  std::ostringstream out, err;
+};
+
+TEST_F(RegressionCommandTest, EqualRunsEndWithZeroDifferentOnesWithOne) {
+  EXPECT_EQ(cli({"compare", a, a}), 0) << err.str();
+  EXPECT_THAT(out.str(), HasSubstr("equal: all 5 figures"));
+  EXPECT_EQ(cli({"compare", a, b}), 1) << err.str();
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("different: 3 of 6 figures"), HasSubstr("+5.0 %"),
+                               HasSubstr("missing"), HasSubstr("largest slow-down: remap (remap.c:21)"),
+                               HasSubstr("unexplained: +0 clocks (0.0 %)")));
+  EXPECT_EQ(cli({"compare", a, b, "--only", "frame.*", "--tolerance", "5%"}), 0) << out.str();
+  EXPECT_EQ(cli({"compare", a, b, "--only", "frame.*", "--tolerance", "4.9%"}), 1) << out.str();
+  EXPECT_EQ(cli({"compare", a, b, "--only", "nothing"}), 2);
+}
+
+TEST_F(RegressionCommandTest, AFigureThatOnlyOneRunHasOrThatChangedItsUnitDiffers) {
+  const auto changed = [&](const std::string& value, const std::string& unit) {
+    RunMaker r = profiled();
+    r.figure("frame.remap_time.mean", value, unit);
+    return cli({"compare", a, r.write(dir, "c").string(), "--tolerance", "100%"});
+  };
+  EXPECT_EQ(changed("0.004", "s"), 0);
+  EXPECT_EQ(changed("0.004", "ms"), 1);
+  EXPECT_THAT(out.str(), HasSubstr("other unit"));
+  EXPECT_EQ(changed("null", "s"), 1);
+  EXPECT_THAT(out.str(), HasSubstr("no value"));
+  RunMaker r = profiled();
+  r.figures.erase("frame.remap_time.mean");
+  EXPECT_EQ(cli({"compare", a, r.write(dir, "c").string(), "--tolerance", "100%"}), 1);
+}
+
+TEST_F(RegressionCommandTest, CsvAndJsonHoldTheSameFigures) {
+  EXPECT_EQ(cli({"compare", a, b, "--csv"}), 1);
+  EXPECT_EQ(out.str(),
+            "figure,unit,a,b,difference,relative\ncpu.idle,cycles,300,280,-20,-0.06666666666666667\n"
+            "extra,1,,1,,\nframe.remap_time.mean,s,0.004,0.0042,0.00019999999999999966,0.04999999999999991\n");
+  EXPECT_EQ(cli({"compare", a, b, "--json"}), 1);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json["equal"], false);
+  EXPECT_EQ(json["figures"].size(), 3u);
+  EXPECT_EQ(json["clocks"]["busy"]["change"], 20);
+  EXPECT_EQ(json["clocks"]["unexplained"], 0);
+  EXPECT_EQ(json["clocks"]["functions"][0]["function"], "remap");
+  EXPECT_EQ(json["clocks"]["functions"][0]["lines"][0]["b"], 21);
+  EXPECT_EQ(cli({"compare", a, b, "--json", "--csv"}), 2);
+}
+
+TEST_F(RegressionCommandTest, FoldersThatAreNoCompleteRunAreRefusedInOneLine) {
+  const auto refused = [&](const std::string& folder, const std::string& why) {
+    for (const auto& args : {std::vector<std::string>{"compare", folder, a}, {"compare", a, folder},
+                             {"check", folder, "--against", base}, {"trend", folder, "--database", (dir / "t.db").string()}}) {
+      if (args[0] == "check") cli({"bless", a, "--against", base, "--why", "first"});
+      EXPECT_EQ(cli(args), 2) << args[0];
+      EXPECT_THAT(err.str(), HasSubstr(why)) << args[0];
+      EXPECT_EQ(out.str(), "");
+    }
+  };
+  refused((dir / "nowhere").string(), "is not a folder");
+  fs::create_directory(dir / "empty");
+  refused((dir / "empty").string(), "not a folder of results");
+  RunMaker r = profiled();
+  r.complete = false;
+  refused(r.write(dir, "partial").string(), "partial results");
+  r.no_stats = true;
+  refused(r.write(dir, "unfinished").string(), "has no stats.json");
+  profiled().write(dir, "damaged");
+  dir.write("damaged/stats.json", "{\"complete\": tr");
+  refused((dir / "damaged").string(), "not a JSON object");
+}
+
+TEST_F(RegressionCommandTest, OtherVersionsAreRefusedOrListed) {
+  slow.version = "0.2.0";
+  slow.parameters["ddr.new"] = "7";
+  slow.write(dir, "b");
+  EXPECT_EQ(cli({"compare", a, b}), 2);
+  EXPECT_THAT(err.str(), AllOf(HasSubstr("0.2.0"), HasSubstr("--across-versions")));
+  EXPECT_EQ(cli({"compare", a, b, "--across-versions"}), 1);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("simulator: 0.1.0"), HasSubstr("parameter ddr.new is new: 7")));
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "first"}), 0);
+  EXPECT_EQ(cli({"check", b, "--against", base}), 2);
+  EXPECT_EQ(cli({"check", b, "--against", base, "--across-versions"}), 1);
+  EXPECT_THAT(out.str(), HasSubstr("parameter ddr.new is new: 7"));
+}
+
+TEST_F(RegressionCommandTest, BlessCheckBlessCheck) {
+  EXPECT_EQ(cli({"check", a, "--against", base}), 2);
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", " "}), 2);
+  ASSERT_EQ(cli({"bless", a, "--against", base, "--why", "the first one"}), 0) << err.str();
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("+    why: \"the first one\""), HasSubstr("reference in")));
+  EXPECT_EQ(cli({"check", a, "--against", base}), 0) << err.str();
+  EXPECT_EQ(cli({"check", b, "--against", base, "--junit", (dir / "j.xml").string()}), 1);
+  EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21) waits"));
+  EXPECT_THAT(read_text(dir / "j.xml"), HasSubstr("blamed: remap (remap.c:21)"));
+  const std::string before = read_text(base);
+  ASSERT_EQ(cli({"bless", b, "--against", base, "--why", "more accurate"}), 0) << err.str();
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("-    value: 0.004\n+    value: 0.0042\n"), HasSubstr("why: \"more accurate\"")));
+  EXPECT_EQ(cli({"check", b, "--against", base}), 0) << out.str();
+  EXPECT_EQ(cli({"check", a, "--against", base}), 0) << "faster is not worse";
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("better"), HasSubstr("fovea bless")));
+  EXPECT_EQ(cli({"bless", b, "--against", base, "--why", "again"}), 0);
+  EXPECT_THAT(out.str(), HasSubstr("nothing to bless"));
+  EXPECT_NE(read_text(base), before);
+}
+
+TEST_F(RegressionCommandTest, BlessingLeavesALimitThatFails) {
+  dir.write("base.yaml",
+            "format: fovea baseline 1\nexperiment: tiny\nsimulator: {version: 0.1.0, commit: aaaaaaaaaaaa}\n"
+            "metrics:\n  frame.remap_time.mean: {value: 0.004, unit: s, kind: budget, worse: higher, reason: 250 Hz}\n"
+            "  cpu.idle: {value: 300, unit: cycles}\n");
+  EXPECT_EQ(cli({"bless", b, "--against", base, "--why", "slower"}), 1);
+  EXPECT_THAT(err.str(), AllOf(HasSubstr("frame.remap_time.mean still fails"), HasSubstr("budget")));
+  EXPECT_THAT(read_text(base), AllOf(HasSubstr("value: 0.004,"), HasSubstr("value: 280,")));
+}
+
+TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
+  dir.write("notes.yaml", "my: notes\n");
+  EXPECT_EQ(cli({"bless", a, "--against", (dir / "notes.yaml").string(), "--why", "x"}), 2);
+  EXPECT_EQ(read_text(dir / "notes.yaml"), "my: notes\n");
+  cli({"bless", a, "--against", base, "--why", "first"});
+  EXPECT_EQ(cli({"check", a, "--against", base, "--junit", (dir / "notes.yaml").string()}), 2);
+  EXPECT_EQ(read_text(dir / "notes.yaml"), "my: notes\n");
+  dir.write("other.db", "my: notes\n");
+  EXPECT_EQ(cli({"trend", a, "--database", (dir / "other.db").string()}), 2);
+  EXPECT_EQ(read_text(dir / "other.db"), "my: notes\n");
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open((dir / "foreign.db").c_str(), &db), SQLITE_OK);
+  sqlite3_exec(db, "CREATE TABLE theirs (x)", nullptr, nullptr, nullptr);
+  sqlite3_close(db);
+  EXPECT_EQ(cli({"trend", a, "--database", (dir / "foreign.db").string()}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("another program"));
+}
+
+TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
+  const std::string db = (dir / "t.db").string(), svg = (dir / "t.svg").string();
+  EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg}), 2);
+  EXPECT_EQ(cli({"trend", "--database", db}), 2);
+  ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "one", "--host-instructions", "90.5"}), 0) << err.str();
+  ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "two"}), 0) << err.str();
+  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
+  // A commit that was measured again keeps its place.
+  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "one", "--host-instructions", "91", "--plot", svg}), 0);
+  const auto lines = TrendFile(db).lines("");
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0].commit, "one");
+  EXPECT_EQ(lines[0].host_instructions, 91);
+  EXPECT_EQ(lines[0].figures.at("frame.remap_time.mean").value, 0.0042);
+  EXPECT_EQ(lines[1].commit, "two");
+  EXPECT_EQ(lines[1].host_instructions, std::nullopt);
+  EXPECT_EQ(lines[1].figures.at("cpu.cycles").value, 1000);
+  EXPECT_TRUE(lines[1].figures.at("cpu.cycles").whole);
+  EXPECT_EQ(lines[1].figures.at("cpu.cycles").unit, "cycles");
+  EXPECT_EQ(TrendFile(db).lines("other").size(), 0u);
+  EXPECT_THAT(read_text(svg), AllOf(HasSubstr("<svg"), HasSubstr("frame.remap_time.mean"), HasSubstr("host instructions"),
+                                    HasSubstr("three tiny: 4.2 ms")));
+  EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg, "--figure", "no.such"}), 2);
+}
+
+// The picture places values in proportion: 1, 2 and 3 lie on a straight line.
+TEST(TrendPlotTest, CurvesAreInProportion) {
+  std::vector<TrendLine> lines;
+  for (const int i : {1, 2, 3})
+    lines.push_back({"c" + std::to_string(i), "<e>", "s", {}, {{"x", {static_cast<double>(i), "1", true}}}});
+  const std::string svg = trend_svg(lines, {"x", "y"});
+  // 720 wide from 96 on; 110 high from 64 on; 10 % are left free at the ends.
+  EXPECT_THAT(svg, HasSubstr("<path d=\"M96.0 169.0L456.0 119.0L816.0 69.0\""));
+  EXPECT_THAT(svg, AllOf(HasSubstr("&lt;e&gt;"), Not(HasSubstr("<e>")), Not(HasSubstr(">y<"))));
+}
+
+}  // namespace
+}  // namespace fovea::regression

@@ -1,0 +1,76 @@
+// Small folders of results, made by hand.
+#pragma once
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/regression/run_figures.h"
+#include "tb/unit/support.h"
+
+namespace fovea::regression {
+
+/// A folder of results. The texts of values are written as they are, so that a test can write what
+/// Fovea would not.
+struct RunMaker {
+  std::string version = "0.1.0", commit = "aaaaaaaaaaaa", experiment = "tiny";
+  bool modified = false, complete = true;
+  std::string elf = "11";                         ///< hash of the program
+  std::map<std::string, std::string> parameters = {{"run.frames", "2"}, {"ddr.clock", "243MHz"}};
+  /// name -> (value, unit)
+  std::map<std::string, std::pair<std::string, std::string>> figures;
+  std::string stalls, profile;                    ///< rows without the header; empty: no file
+  bool no_stats = false;
+
+  RunMaker& figure(const std::string& name, const std::string& value, const std::string& unit = "1") {
+    figures[name] = {value, unit};
+    return *this;
+  }
+
+  std::filesystem::path write(const test::TempDir& dir, const std::string& name) const {
+    std::string config = fmt::format(
+        "{{\n  \"format\": \"fovea run 1\",\n  \"version\": \"{}\",\n  \"commit\": \"{}\",\n  \"modified\": {},\n"
+        "  \"experiment\": \"{}\",\n  \"sha256\": {{\"firmware.elf\": \"{}\"}},\n  \"params\": {{",
+        version, commit, modified, experiment, elf);
+    const char* separator = "\n";
+    for (const auto& [key, value] : parameters) {
+      config += fmt::format("{}    \"{}\": {{\"value\": \"{}\", \"default\": \"{}\", \"tag\": \"choice\"}}",
+                            separator, key, value, value);
+      separator = ",\n";
+    }
+    dir.write(name + "/config.json", config + "\n  }\n}\n");
+    std::string stats = fmt::format("{{\n  \"complete\": {},\n  \"band\": \"not run\",\n  \"warnings\": []", complete);
+    for (const auto& [metric, value] : figures)
+      stats += fmt::format(",\n  \"{}\": {{\"value\": {}, \"unit\": \"{}\", \"description\": \"d\"}}", metric,
+                           value.first, value.second);
+    if (!no_stats) dir.write(name + "/stats.json", stats + "\n}\n");
+    if (!stalls.empty()) dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n" + stalls);
+    if (!profile.empty())
+      dir.write(name + "/profile.csv",
+                "phase,function,file,line,cause,region,culprit,clocks,instructions\n" + profile);
+    return dir / name;
+  }
+};
+
+/// A run of 1,000 clocks with a loop of three lines, an interrupt handler and 300 idle clocks.
+inline RunMaker profiled() {
+  RunMaker r;
+  r.figure("cpu.cycles", "1000", "cycles").figure("cpu.issue", "300", "cycles");
+  r.figure("cpu.idle", "300", "cycles").figure("frame.remap_time.mean", "0.004", "s");
+  r.figure("cpu.instructions", "300");
+  r.stalls = "dcache,lut,bridge,150\ndcache,lut,vpbe,50\ninterlock,none,core,100\nicache,.text,bridge,100\n";
+  r.profile =
+      "frames,irq,irq.c,7,issue,,,50,50\n"
+      "frames,irq,irq.c,7,icache,.text,bridge,100,0\n"
+      "frames,remap,/src/remap.c,20,issue,,,100,100\n"
+      "frames,remap,/src/remap.c,21,issue,,,100,100\n"
+      "frames,remap,/src/remap.c,21,dcache,lut,bridge,150,0\n"
+      "frames,remap,/src/remap.c,21,dcache,lut,vpbe,50,0\n"
+      "frames,remap,/src/remap.c,22,issue,,,50,50\n"
+      "frames,remap,/src/remap.c,22,interlock,none,core,100,0\n"
+      "frames,sleep,cp15.c,3,idle.capture,,,300,0\n";
+  return r;
+}
+
+}  // namespace fovea::regression
