@@ -15,11 +15,22 @@ soc::Placements external_devices(const DevicesParams& devices) {
 
 }  // namespace
 
-Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::PictureSource& source,
-             std::uint32_t entry, bool strict)
+std::vector<video::CameraWiring> Board::wiring(const BoardParams& params,
+                                               const std::vector<video::PictureSource*>& sources) {
+  FOVEA_CHECK(sources.size() == params.camera_count(), "a source for each camera");
+  std::vector<video::CameraWiring> out;
+  for (unsigned n = 0; n < sources.size(); ++n) {
+    out.push_back(params.camera_setup(n).wiring);
+    out.back().source = sources[n];
+  }
+  return out;
+}
+
+Board::Board(sc_core::sc_module_name name, const BoardParams& params,
+             const std::vector<video::PictureSource*>& sources, std::uint32_t entry, bool strict)
     : sc_module(name),
       dm365("dm365", params.soc, entry, strict, external_devices(params.devices)),
-      decoder("tvp5146", params.decoder, source),
+      decoder("tvp5146", params.decoder, wiring(params, sources)),
       params_(params),
       wanted_(params.run.frames()) {
   dm365.osc(osc_);
@@ -45,7 +56,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params, video::Pic
     if (on_phase) on_phase(log.phase(), at);
   };
   dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
-    if (f.complete) log.capture(f.index, f.start, f.end);
+    if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
   };
   dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
   sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
@@ -75,7 +86,11 @@ void Board::set_switches() {
                              : v.standard.is("pal")    ? SWITCH_720X576
                              : v.standard.is("ntsc")   ? SWITCH_720X480
                                                        : SWITCH_640X480;
-  const std::uint32_t mapping = contract::code_of(contract::kMappings, params_.lens.mapping()) + 1;
+  // One switch cannot tell the lenses of several cameras: then the page does.
+  const std::uint32_t mapping =
+      params_.camera_count() > 1
+          ? 0
+          : contract::code_of(contract::kMappings, params_.camera_setup(0).lens->mapping()) + 1;
   const std::uint32_t pins =
       SWITCH_PUT(SWITCH_STANDARD_IN, standard) | SWITCH_PUT(SWITCH_STANDARD_OUT, standard) |
       SWITCH_PUT(SWITCH_SIZE_IN, size) | SWITCH_PUT(SWITCH_SIZE_OUT, size) |
@@ -174,6 +189,10 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
     return;
   }
   fresh += whole;
+  if (r.camera != kNoCamera) {
+    if (cameras.size() <= r.camera) cameras.resize(r.camera + 1);
+    cameras[r.camera].add(r, whole);
+  }
   stats.dropped += r.dropped;
   if (!r.capture_start) return;
   const Picoseconds t = r.display_start - *r.capture_start;
@@ -183,12 +202,45 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
   ++stats.latencies;
 }
 
+void CameraSums::add(const FrameRecord& r, bool whole) {
+  fresh += whole;
+  if (!r.capture_start) return;
+  const Picoseconds t = r.display_start - *r.capture_start;
+  latency_min = latencies ? std::min(latency_min, t) : t;
+  latency_max = std::max(latency_max, t);
+  latency += static_cast<double>(t);
+  ++latencies;
+}
+
 void FrameSums::add(const FrameLog::Remap& m) {
   const Picoseconds t = m.end - m.start;
   stats.remap_min = stats.remaps ? std::min(stats.remap_min, t) : t;
   stats.remap_max = std::max(stats.remap_max, t);
   remap += static_cast<double>(t);
   ++stats.remaps;
+}
+
+std::vector<CameraFrameStats> Board::camera_stats() const {
+  FrameSums sums = old_;
+  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  sums.cameras.resize(params_.camera_count());
+  std::vector<CameraFrameStats> out(params_.camera_count());
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const CameraSums& of = sums.cameras[n];
+    const FrameLog::Fates& fates = log.fates(n);
+    CameraFrameStats& s = out[n];
+    s.displayed = fates.displayed;
+    s.superseded = fates.superseded;
+    s.dropped = fates.dropped;
+    s.captured = fates.captured;
+    if (window_start_ && whole_until_ > *window_start_)
+      s.rate = static_cast<double>(of.fresh) /
+               (static_cast<double>(whole_until_ - *window_start_) * 1e-12);
+    s.latency_min = of.latency_min;
+    s.latency_max = of.latency_max;
+    s.latency_mean = of.latencies ? of.latency / static_cast<double>(of.latencies) : 0;
+  }
+  return out;
 }
 
 FrameStats Board::frame_stats() const {

@@ -1,4 +1,4 @@
-// The board: DM365, SDRAM, decoder and camera, monitor, DIP switches, and what a loader puts into
+// The board: DM365, SDRAM, decoder and cameras, monitor, DIP switches, and what a loader puts into
 // memory before the core starts.
 #pragma once
 #include <array>
@@ -41,6 +41,17 @@ struct FrameStats {
   std::uint64_t latencies = 0, remaps = 0;
 };
 
+/// The frames of one camera, from the first to the last one that is shown in the window: each captured
+/// frame was shown, or replaced on its way to the display by a newer one, or dropped.
+struct CameraFrameStats {
+  std::uint64_t captured = 0, displayed = 0;
+  std::uint64_t superseded = 0;  ///< corrected, but a newer frame was shown instead
+  std::uint64_t dropped = 0;     ///< not corrected
+  std::optional<double> rate;    ///< 1/s; of frames shown
+  Picoseconds latency_min = 0, latency_max = 0;
+  double latency_mean = 0;  // ps
+};
+
 /// A request of the chip to be reset.
 struct ChipReset {
   std::string cause;  ///< for people
@@ -48,11 +59,20 @@ struct ChipReset {
   std::uint32_t pc = 0;  ///< of the core at that instant
 };
 
+/// What the records of shown frames say of one camera.
+struct CameraSums {
+  std::uint64_t fresh = 0, latencies = 0;
+  Picoseconds latency_min = 0, latency_max = 0;
+  double latency = 0;
+  void add(const FrameRecord& record, bool whole);
+};
+
 /// FrameStats in the making: the sums over the entries of the frame log.
 struct FrameSums {
   FrameStats stats;
   std::uint64_t fresh = 0;
   double latency = 0, remap = 0;
+  std::vector<CameraSums> cameras;
   /// `whole`: its display frame was out before the window's end.
   void add(const FrameRecord& record, bool whole);
   void add(const FrameLog::Remap& remap);
@@ -60,9 +80,13 @@ struct FrameSums {
 
 class Board : public sc_core::sc_module {
  public:
+  /// @param sources what each camera sees, cameras.count of them
   /// @param entry first instruction; stands in for the ROM boot loader
+  Board(sc_core::sc_module_name name, const BoardParams& params,
+        const std::vector<video::PictureSource*>& sources, std::uint32_t entry, bool strict);
   Board(sc_core::sc_module_name name, const BoardParams& params, video::PictureSource& source,
-        std::uint32_t entry, bool strict);
+        std::uint32_t entry, bool strict)
+      : Board(name, params, std::vector<video::PictureSource*>{&source}, entry, strict) {}
 
   /// Puts bytes into internal RAM (0 or 0x10000) or SDRAM, now and at every boot after a reset. The
   /// caller has checked the address.
@@ -103,6 +127,8 @@ class Board : public sc_core::sc_module {
   /// Ends the window here, with the simulation over: without an end-of-instant phase.
   void close_window_now();
   FrameStats frame_stats() const;
+  /// Of each camera, in order; `rate` and latencies are those of its own frames.
+  std::vector<CameraFrameStats> camera_stats() const;
   std::uint64_t frames_in_window() const { return frames_in_window_; }
   const std::string& uart_text() const { return uart_; }
 
@@ -115,6 +141,8 @@ class Board : public sc_core::sc_module {
  private:
   void reset_asked(const std::string& cause);
   void put(const LoadImage& image, bool zeros);
+  static std::vector<video::CameraWiring> wiring(const BoardParams& params,
+                                                 const std::vector<video::PictureSource*>& sources);
   void set_switches();
   void latched(const video::Osd::Latch& latch);
   void frame_shown(const video::DisplayFrame& frame);

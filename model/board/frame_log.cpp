@@ -2,9 +2,9 @@
 
 namespace fovea::board {
 
-void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end) {
+void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera) {
   index += first_capture_;
-  captured_[index] = {start, end};
+  captured_[index] = {start, end, camera < 0 ? kNoCamera : static_cast<unsigned>(camera)};
   next_capture_ = index + 1;
   capture_ends_.push_back(end);
   // Only the recent past can still be shown; the history is in records_.
@@ -70,6 +70,18 @@ bool FrameLog::latch(std::uint32_t address, Picoseconds) {
   return showing_.has_value();
 }
 
+/// A newer frame is on show: those captured since the one before it will not be shown any more.
+void FrameLog::settle_fates(std::uint64_t shown) {
+  for (std::uint64_t n = last_shown_ ? *last_shown_ + 1 : shown; n <= shown; ++n) {
+    const auto c = captured_.find(n);
+    if (c == captured_.end() || c->second.camera == kNoCamera) continue;
+    if (fates_.size() <= c->second.camera) fates_.resize(c->second.camera + 1);
+    Fates& of = fates_[c->second.camera];
+    ++of.captured;
+    ++(n == shown ? of.displayed : remapped_.contains(n) ? of.superseded : of.dropped);
+  }
+}
+
 const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
   FrameRecord r;
   r.index = shown_++;
@@ -80,6 +92,7 @@ const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
     if (auto c = captured_.find(*showing_); c != captured_.end()) {
       r.capture_start = c->second.start;
       r.capture_end = c->second.end;
+      r.camera = c->second.camera;
     }
     if (auto m = remapped_.find(*showing_); m != remapped_.end()) {
       r.remap_start = m->second.start;
@@ -87,6 +100,7 @@ const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
     }
     r.repeated = last_shown_ == showing_;
     if (last_shown_ && *showing_ > *last_shown_ + 1) r.dropped = *showing_ - *last_shown_ - 1;
+    if (!r.repeated) settle_fates(*showing_);
     last_shown_ = showing_;
   }
   records_.push_back(r);

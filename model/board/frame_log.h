@@ -19,6 +19,9 @@ enum class Phase : std::uint8_t {
 };
 constexpr Phase phase_of(std::uint32_t pins) { return static_cast<Phase>(PHASE_OF(pins)); }
 
+/// A frame of no camera: none was locked when it was captured.
+inline constexpr unsigned kNoCamera = ~0u;
+
 /// One displayed frame and the way of the captured frame that it shows.
 struct FrameRecord {
   std::uint64_t index = 0;                       ///< displayed frame since the first corrected one
@@ -27,6 +30,7 @@ struct FrameRecord {
   Picoseconds display_start = 0, display_end = 0;
   std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
   bool repeated = false;
+  unsigned camera = 0;  ///< whose frame it shows; kNoCamera: a black one
 };
 
 /// A sequence number is the count of complete captures since the last reset, modulo 256; it is unrolled
@@ -34,7 +38,8 @@ struct FrameRecord {
 class FrameLog {
  public:
   /// @param index number of the capture since the last reset
-  void capture(std::uint64_t index, Picoseconds start, Picoseconds end);
+  /// @param camera whose picture it began with; negative: none
+  void capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera = 0);
   void pins(std::uint32_t levels, Picoseconds at);
   /// The display begins a frame and will show this buffer. True if it shows a frame that the
   /// firmware has flipped to.
@@ -57,6 +62,16 @@ class FrameLog {
     Picoseconds start, end;
   };
   const std::vector<Remap>& remaps() const { return remaps_; }
+  /// What became of a camera's frames, from the first to the last frame that was shown. Each captured
+  /// one was displayed, or corrected and superseded by a newer frame on its way to the display, or not
+  /// corrected: dropped.
+  struct Fates {
+    std::uint64_t captured = 0, displayed = 0, superseded = 0, dropped = 0;
+  };
+  const Fates& fates(std::size_t camera) const {
+    static const Fates kNone;
+    return camera < fates_.size() ? fates_[camera] : kNone;
+  }
   /// Ends of complete captures, in order; the same.
   const std::vector<Picoseconds>& captures() const { return capture_ends_; }
   /// Forgets the oldest entries of each list, all but `kept` of it, once there are twice as many.
@@ -77,13 +92,16 @@ class FrameLog {
  private:
   struct Capture {
     Picoseconds start, end;
+    unsigned camera;
   };
+  void settle_fates(std::uint64_t shown);
   std::optional<std::uint64_t> unroll(unsigned sequence) const;
 
   Phase phase_ = Phase::kReset;
   std::array<std::optional<Picoseconds>, PHASE_COUNT> first_{};
   std::map<std::uint64_t, Capture> captured_;
   std::map<std::uint64_t, Remap> remapped_;
+  std::vector<Fates> fates_;  // by camera
   std::vector<Remap> remaps_;
   std::vector<Picoseconds> capture_ends_;
   std::uint64_t first_capture_ = 0;  // since the last reset

@@ -21,7 +21,7 @@ extern "C" {
 #define PARAM_CONSTANT(constant, code, word) constant = (code),
 
 #define PARAM_PAGE_MAGIC 0x41564F46u /* bytes "FOVA" */
-#define PARAM_PAGE_VERSION 3u        /* changes with every change of the layout or of a meaning */
+#define PARAM_PAGE_VERSION 4u        /* changes with every change of the layout or of a meaning */
 #define PARAM_CAMERAS_MAX 8u
 #define PARAM_TABLE_MAX 129u
 
@@ -131,9 +131,11 @@ typedef struct lens_view {
   double table_r[PARAM_TABLE_MAX]; /* R in x-pixels of the input at theta = i * theta_max / (count - 1) */
 } lens_view_t;
 
+#define PARAM_CAMERA_GENLOCKED (1u << 0) /* its syncs are those of all cameras with this flag */
+
 typedef struct param_camera {
-  uint32_t input; /* of the video decoder */
-  uint32_t reserved;
+  uint32_t input; /* of the video decoder: a code of its register 00 */
+  uint32_t flags; /* PARAM_CAMERA_GENLOCKED */
   lens_view_t view;
 } param_camera_t;
 

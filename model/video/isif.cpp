@@ -165,6 +165,7 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
     }
     frame_.address[field_] = setup_.address;
     frame_.source_field[field_] = l.field_index;
+    frame_.source_camera[field_] = l.camera;
     if (!field_ || !frame_.complete) {
       if (on_frame_start) on_frame_start(frame_);
     }

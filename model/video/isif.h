@@ -36,6 +36,7 @@ struct CaptureFrame {
   Picoseconds end = 0;      ///< time at which all data are in memory (last write acknowledged)
   std::array<std::uint32_t, 2> address{};       ///< buffer address of each field
   std::array<std::uint64_t, 2> source_field{};  ///< the camera's field number of each field
+  std::array<int, 2> source_camera{kNoCamera, kNoCamera};  ///< whose picture the field began with
   std::uint64_t overflows = 0;                  ///< bursts lost from this frame
 };
 

@@ -141,9 +141,10 @@ struct Tvp5146Params : ParamGroup {
                          "relock_fields",
                          Unit::kCount,
                          10,
-                         2,
+                         0,
                          100,
-                         "fields until the decoder locks after power-up or a change of its input",
+                         "fields until the decoder locks after power-up or a change of its input, "
+                         "counted from the one in progress; 0: at once, as for genlocked cameras",
                          Origin::kAssumed,
                          "Linux waits 200 ms; no figure in the data manual",
                          {"2", "25", "from the next frame to half a second"}};

@@ -1,25 +1,34 @@
 // Camera and TVP5146 video decoder: takes pictures from a source, sends BT.656, has I2C registers.
 #pragma once
 #include <array>
+#include <optional>
 #include <systemc>
+#include <vector>
 
 #include "model/common/sc_ports.h"
 #include "model/common/timer.h"
+#include "model/video/camera_signal.h"
 #include "model/video/core/picture.h"
 #include "model/video/params.h"
 #include "model/video/wire.h"
 
 namespace fovea::video {
 
-/// The analogue camera and the decoder behind it, as one block. The camera runs from power-up (time
-/// 0 plus `phase`): field k begins k field periods later, whatever the decoder does. While its
+/// Rows and lines of a standard as the parameters place them.
+Placement placement_of(const Tvp5146Params& params, const EnumParam& standard);
+
+/// The cameras and the decoder behind them, as one block. Each camera runs from power-up (time 0
+/// plus its phase): its field k begins k field periods later, whatever the decoder does. While its
 /// outputs are enabled, the decoder announces every line at its first sample.
 ///
-/// Registers: a subset of TI SLES084C. STATUS1 bit 4 (lost lock) stays set until a 1 is written to
-/// bit 0 of CLEAR_LOST_LOCK. While the decoder is not locked (after power-up, after a change of
-/// register 00 or 02, or with the wrong standard in 02), it sends the same raster with black
-/// pictures (assumed). Not modelled: picture controls (kept, without effect), the two low bits of
-/// the 10-bit output, square pixels, VBI data, the time that the I2C patch takes.
+/// Registers: a subset of TI SLES084C. Register 00 selects an input; where no camera is, there is no
+/// signal (STATUS2 bit 7 = 0). STATUS1 bit 4 (lost lock) stays set until a 1 is written to bit 0 of
+/// CLEAR_LOST_LOCK. While the decoder is not locked (after power-up, after a change of register 00
+/// or 02, without a signal, or with the wrong standard in 02), it sends black pictures in the raster
+/// of the selected camera or, without a signal, in that of the last one (assumed). The raster changes
+/// between two lines: the line on the wire is completed, and the new raster goes on with its next
+/// whole line. Not modelled: picture controls (kept, without effect), the two low bits of the 10-bit
+/// output, square pixels, VBI data, the time that the I2C patch takes.
 class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz
@@ -27,6 +36,10 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   sc_core::sc_export<I2cTargetIf> i2c{"i2c"};
 
   SC_HAS_PROCESS(Tvp5146);
+  /// @param cameras at least one; the first one's raster is sent until another one is selected
+  Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params,
+          const std::vector<CameraWiring>& cameras);
+  /// One camera on the input that is selected at reset (00).
   Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, PictureSource& source);
 
   bool i2c_start(std::uint8_t address7, bool read) override;
@@ -34,13 +47,17 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint8_t i2c_read() override;
   void i2c_stop() override {}
 
-  const Standard& standard() const { return standard_; }
-  const Placement& placement() const { return placement_; }
-  /// Start of the camera's field k (its first line). k must not be before the last change of the
-  /// clock, and the simulation must have started.
-  Picoseconds field_time(std::uint64_t k) const;
-  /// First field from which the decoder is locked, provided that register 02 holds the right
-  /// standard.
+  /// Plugs or unplugs the cable of a camera, now.
+  void connect(std::size_t camera, bool connected);
+
+  const Standard& standard() const { return raster().standard(); }
+  const Placement& placement() const { return raster().placement(); }
+  const std::vector<CameraSignal>& cameras() const { return cameras_; }
+  /// Start of field k (its first line) of the camera whose raster is sent. k must not be before the
+  /// last change of the clock, and the simulation must have started.
+  Picoseconds field_time(std::uint64_t k) const { return raster().field_time(k); }
+  /// First field of the selected camera from which the decoder is locked, provided that register 02
+  /// holds the right standard; kNever without a signal.
   std::uint64_t locked_from_field() const { return locked_from_; }
   std::uint64_t lines_sent() const { return lines_sent_; }
 
@@ -53,23 +70,29 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   bool standard_ok() const;
   /// Lock state as in the status registers: powered up and locked.
   bool lock() const { return started_ && (regs_[3] & 1) == 0 && locked(present_field()); }
-  bool locked(std::uint64_t field) const { return standard_ok() && field >= locked_from_; }
+  bool locked(std::uint64_t field) const {
+    return signal_ && standard_ok() && field >= locked_from_;
+  }
   std::uint64_t present_field() const;
   void write_register(std::uint8_t index, std::uint8_t value);
   std::uint8_t read_register(std::uint8_t index) const;
   void relock();
 
+  const CameraSignal& raster() const { return cameras_[raster_]; }
+  /// The camera on the selected input, if its cable is plugged in.
+  std::optional<std::size_t> selected() const;
+  void change_input();
+
   const Tvp5146Params& params_;
-  PictureSource& source_;
-  const Standard& standard_;
-  const Placement& placement_;
-  Clock clock_;
-  std::uint64_t origin_ = 0;  // clock edge at which line 0 begins
+  std::vector<CameraSignal> cameras_;
+  std::size_t raster_ = 0;   // the camera whose raster is sent
+  bool signal_ = false;      // there is a camera on the selected input; its raster is sent
+  bool lost_lock_ = false;   // a lock was lost since the bit was last cleared
   bool started_ = false;
-  bool lost_lock_ = false;           // a lock was lost since the bit was last cleared
-  std::uint64_t next_line_ = 0;      // index of the next line to announce
-  std::uint64_t stopped_field_ = 0;  // the camera's field at the time the clock stopped
-  std::uint64_t locked_from_;
+  Frequency nominal_;
+  std::uint64_t next_line_ = 0;  // index of the next line to announce
+  Picoseconds line_end_ = 0;     // of the line that was announced last
+  std::uint64_t locked_from_ = kNever;
   std::uint64_t lines_sent_ = 0;
   Timer line_timer_;
 
@@ -77,9 +100,8 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint8_t pointer_ = 0;
   bool expect_pointer_ = false;
 
-  const Picture* picture_ = nullptr;  // picture of field picture_field_; requested from the source
-                                      // once per field
-  std::uint64_t picture_field_ = 0;
+  std::size_t line_camera_ = 0;  // whose raster the announced line is in
+  bool line_locked_ = false;
   LinePosition position_{};
   Standard::Lines fv_{};
   std::array<std::uint8_t, kActiveBytes> row_{};

@@ -18,6 +18,9 @@ class Bt656Renderer {
   virtual std::span<const std::uint8_t> render() = 0;
 };
 
+/// A line that shows no camera's picture.
+inline constexpr int kNoCamera = -1;
+
 /// A line on the wire, announced at its first sample (EAV). Sample i is on the wire from clock edge
 /// first_sample + i to the next edge.
 struct Bt656Line {
@@ -31,6 +34,7 @@ struct Bt656Line {
                                ///< lines themselves
   std::uint8_t eav_xy, sav_xy;
   Bt656Renderer* renderer;
+  int camera = kNoCamera;  ///< whose picture it shows; only for statistics and tests
   std::span<const std::uint8_t> bytes() const { return renderer->render(); }
 };
 

@@ -83,6 +83,31 @@ std::string reset_text(const std::string& cause, std::size_t before) {
   return text;
 }
 
+void add_camera_stats(std::vector<StatRow>& rows,
+                      const std::vector<board::CameraFrameStats>& cameras) {
+  for (std::size_t n = 0; n < cameras.size(); ++n) {
+    const board::CameraFrameStats& c = cameras[n];
+    const std::string name = fmt::format("camera.{}.frame.", n), whose = fmt::format(" of camera {}", n);
+    rows.push_back(row(name + "captured", c.captured, "1",
+                       "frames captured" + whose +
+                           ", from the first to the last one shown in the window: displayed, "
+                           "superseded and dropped ones"));
+    rows.push_back(row(name + "displayed", c.displayed, "1", "frames" + whose + " displayed"));
+    rows.push_back(row(name + "superseded", c.superseded, "1",
+                       "corrected frames" + whose + " that a newer frame replaced before they were shown"));
+    rows.push_back(row(name + "dropped", c.dropped, "1",
+                       "captured frames" + whose + " that were not corrected"));
+    if (c.rate)
+      rows.push_back(row(name + "rate", *c.rate, "1/s",
+                         "new frames" + whose + " displayed / time, as frame.rate"));
+    if (!c.displayed) continue;
+    const std::string what = "from capture to display" + whose + ", as frame.latency, ";
+    rows.push_back(row(name + "latency.min", to_s(c.latency_min), "s", what + "shortest"));
+    rows.push_back(row(name + "latency.mean", c.latency_mean * 1e-12, "s", what + "mean"));
+    rows.push_back(row(name + "latency.max", to_s(c.latency_max), "s", what + "longest"));
+  }
+}
+
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
@@ -191,6 +216,7 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
                        "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
   }
+  if (params_.camera_count() > 1) add_camera_stats(rows, board_->camera_stats());
   const auto lut = board_->log.first(board::Phase::kLut);
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
@@ -377,18 +403,23 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   complete_params(params_);
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
-  std::vector<RgbImage> footage = load_footage(params_, &request.stop);
   RunResult result;
-  result.notes = footage_notes(
-      params_, footage, params_.camera.kind.is("video") ? film_info(params_.camera.file()) : FilmInfo{});
-  auto source = video::make_picture_source(params_.camera, std::move(footage),
-                                           params_.raster_width(), params_.raster_height());
-
-  video::AheadSource ahead(*source);
-  CameraPictures pictures(ahead);
-  video::PictureSource& camera = request.camera ? static_cast<video::PictureSource&>(pictures) : ahead;
+  std::vector<std::unique_ptr<video::StampedSource>> views;
+  std::vector<std::unique_ptr<video::AheadSource>> ahead;
+  std::vector<std::unique_ptr<CameraPictures>> pictures;  // only if they are wanted
+  std::vector<const video::StampedSource*> sources;
+  std::vector<video::PictureSource*> cameras;
+  for (unsigned n = 0; n < params_.camera_count(); ++n) {
+    views.push_back(camera_source(params_, n, &request.stop, &result.notes));
+    ahead.push_back(std::make_unique<video::AheadSource>(*views.back()));
+    sources.push_back(views.back().get());
+    cameras.push_back(ahead.back().get());
+    if (!request.camera) continue;
+    pictures.push_back(std::make_unique<CameraPictures>(*cameras.back()));
+    cameras.back() = pictures.back().get();
+  }
   const std::optional<ElfImage> loader = loader_of(elf, request);
-  board_ = std::make_unique<board::Board>("board", params_, camera,
+  board_ = std::make_unique<board::Board>("board", params_, cameras,
                                           loader ? loader->entry() : elf.entry(),
                                           request.strict_sync);
   for (const auto& s : elf.segments()) {
@@ -399,7 +430,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   add_program_regions(regions, elf, memory_regions(params_));
   board_->dm365.arm.core().set_regions(std::move(regions));
   board_->dm365.arm.core().describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
-  load_page(elf, parameter_page(params_, *source));
+  load_page(elf, parameter_page(params_, sources));
 
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
@@ -415,6 +446,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
     FrameRow out;
     out.index = r.index;
+    out.camera = r.camera;
     out.captured = r.captured;
     out.capture_start = r.capture_start;
     out.capture_end = r.capture_end;
@@ -434,8 +466,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
         frames_.push_back(out);
       if (request.frame)
         request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
-      if (request.camera && r.capture_start)
-        if (const video::Picture* sent = pictures.frame(board_->decoder, *r.capture_start))
+      if (request.camera && r.capture_start && r.camera < pictures.size())
+        if (const video::Picture* sent =
+                pictures[r.camera]->frame(board_->decoder.cameras()[r.camera], *r.capture_start))
           request.camera({r.index, sent->width, sent->height, sent->uyvy});
     } catch (...) {
       failure = std::current_exception();

@@ -99,8 +99,13 @@ Calibration read_calibration(const fs::path& file) {
   return out;
 }
 
-void apply_calibrations(const ParamSet& params, Experiment& experiment) {
-  const auto file_of = [&](const char* key) {
+namespace {
+
+/// Of all cameras, or of one: `camera` is the group of the picture's keys, `lens_group` that of the
+/// firmware's.
+void apply_calibrations(const ParamSet& params, Experiment& experiment, const std::string& camera_group,
+                        const std::string& lens_group) {
+  const auto file_of = [&](const std::string& key) {
     const ParamBase* p = params.find(key);
     return p ? p->text() : std::string();
   };
@@ -112,23 +117,33 @@ void apply_calibrations(const ParamSet& params, Experiment& experiment) {
       Diagnostics::instance().configuration(
           fmt::format("'{0}.kb' is set ({1}) but has no effect with {2} = {3}", group,
                       experiment.origin(group + ".kb").text(), key, file));
-    if (!c.width && group == "lens" && experiment.rank("lens.kb_width") < 0)
-      throw UserError(fmt::format("calibration '{}' does not say the size of its picture; set "
-                                  "lens.kb_width and lens.kb_height",
-                                  one_line(file)));
+    if (!c.width && group == lens_group && experiment.rank(lens_group + ".kb_width") < 0)
+      throw UserError(fmt::format("calibration '{0}' does not say the size of its picture; set "
+                                  "{1}.kb_width and {1}.kb_height",
+                                  one_line(file), lens_group));
     experiment.preset(group + ".kb", fmt::format("[{}]", fmt::join(c.kb, ", ")), file);
     if (c.width) {
       experiment.preset(group + ".kb_width", fmt::format("{}px", c.width), file);
       experiment.preset(group + ".kb_height", fmt::format("{}px", c.height), file);
     }
   };
-  const std::string camera = file_of("camera.calibration"), lens = file_of("lens.calibration");
-  const int camera_rank = experiment.rank("camera.calibration");
-  if (!camera.empty()) apply("camera", "camera.calibration", camera, camera_rank);
+  const std::string camera_key = camera_group + ".calibration", lens_key = lens_group + ".calibration";
+  const std::string camera = file_of(camera_key), lens = file_of(lens_key);
+  const int camera_rank = experiment.rank(camera_key);
+  if (!camera.empty()) apply(camera_group, camera_key, camera, camera_rank);
   if (!lens.empty())
-    apply("lens", "lens.calibration", lens, experiment.rank("lens.calibration"));
-  else if (!camera.empty() && experiment.rank("lens.kb") < 0)
-    apply("lens", "camera.calibration", camera, camera_rank);
+    apply(lens_group, lens_key, lens, experiment.rank(lens_key));
+  else if (!camera.empty() && experiment.rank(lens_group + ".kb") < 0)
+    apply(lens_group, camera_key, camera, camera_rank);
+}
+
+}  // namespace
+
+void apply_calibrations(const ParamSet& params, Experiment& experiment) {
+  apply_calibrations(params, experiment, "camera", "lens");
+  for (unsigned n = 0; params.find(fmt::format("camera.{}.calibration", n)); ++n)
+    apply_calibrations(params, experiment, fmt::format("camera.{}", n),
+                       fmt::format("camera.{}.lens", n));
 }
 
 }  // namespace fovea::app

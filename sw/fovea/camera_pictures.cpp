@@ -14,18 +14,18 @@ const video::Picture& CameraPictures::field(std::uint64_t k) {
   return picture;
 }
 
-const video::Picture* CameraPictures::frame(const video::Tvp5146& decoder, Picoseconds start) {
+const video::Picture* CameraPictures::frame(const video::CameraSignal& signal, Picoseconds start) {
   if (woven_start_ == start) return &woven_;
   const auto first = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-    return kept.field && decoder.field_time(*kept.field) <= start &&
-           start < decoder.field_time(*kept.field + 1);
+    return kept.field && signal.field_time(*kept.field) <= start &&
+           start < signal.field_time(*kept.field + 1);
   });
   if (first == kept_.end()) return nullptr;
   const Kept& second = place(*first->field + 1);
   if (second.field != *first->field + 1) return nullptr;
   woven_ = first->picture;
   // Of the rows of the picture, the second field has every other one.
-  const unsigned row = decoder.placement().first_row[*second.field % 2] % 2;
+  const unsigned row = signal.placement().first_row[*second.field % 2] % 2;
   for (unsigned y = row; y < woven_.height; y += 2)
     std::copy_n(second.picture.row(y), woven_.row_bytes(), woven_.row(y));
   woven_start_ = start;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "model/video/core/picture.h"
-#include "model/video/tvp5146.h"
+#include "model/video/camera_signal.h"
 
 namespace fovea::app {
 
@@ -19,7 +19,7 @@ class CameraPictures : public video::PictureSource {
 
   /// The frame whose first field began at `start`, woven from its two fields as the decoder sends their
   /// rows; null if it is not kept any more. Valid until the next call of frame().
-  const video::Picture* frame(const video::Tvp5146& decoder, Picoseconds start);
+  const video::Picture* frame(const video::CameraSignal& signal, Picoseconds start);
 
  private:
   /// More than the fields between a frame's capture and the end of its first display. A frame that is

@@ -292,7 +292,9 @@ std::string params_table(const ParamSet& params, const std::string& pattern, boo
   for (const auto* p : params.all()) {
     const bool match = glob ? ::fnmatch(pattern.c_str(), p->key().c_str(), 0) == 0
                             : p->key().find(pattern) != std::string::npos;
-    if (match) rows.push_back(p);
+    // The keys of cameras 1 to 7 are those of camera 0: listed only to whom asks for them.
+    const bool another = pattern.empty() && is_camera_row(p->key()) && p->key()[7] != '0';
+    if (match && !another) rows.push_back(p);
   }
   if (rows.empty()) {
     const std::string near = params.nearest(pattern);

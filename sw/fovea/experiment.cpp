@@ -209,6 +209,12 @@ std::string ValueOrigin::text() const {
   return "default";
 }
 
+bool is_camera_row(std::string_view key) {
+  constexpr std::string_view kGroup = "camera.";
+  return key.size() > kGroup.size() + 1 && key.starts_with(kGroup) && key[kGroup.size()] >= '0' &&
+         key[kGroup.size()] <= '9' && key[kGroup.size() + 1] == '.';
+}
+
 bool is_path_key(const ParamBase& param) {
   if (!dynamic_cast<const TextParam*>(&param)) return false;
   const std::string& key = param.key();

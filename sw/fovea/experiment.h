@@ -70,6 +70,9 @@ class Experiment {
 /// Nor is one given for a key that a trace or a calibration sets, because the user did not choose it.
 void warn_without_effect(const ParamSet& params, const Experiment& experiment);
 
+/// True for the keys of one camera, camera.N.*.
+bool is_camera_row(std::string_view key);
+
 /// True for text parameters that name a file (the key ends in `.file`, `.elf` or `.calibration`). A
 /// relative name in an experiment file is relative to that file's folder; on the command line, to
 /// the working folder.

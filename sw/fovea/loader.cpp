@@ -18,7 +18,7 @@ constexpr std::size_t kMostFilmFrames = 250;
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
-  return built_program("fovea_firmware.elf");
+  return built_program(params.camera_count() > 1 ? "fovea_cameras.elf" : "fovea_firmware.elf");
 }
 
 std::filesystem::path built_program(const std::string& name) {
@@ -35,12 +35,13 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
 }
 
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
+                                   const video::SceneParams& camera,
                                    const std::atomic<bool>* stop) {
-  const auto& camera = params.camera;
   if (camera.kind.is("chart")) return {};
   if (camera.file().empty())
-    throw UserError("key 'camera.file': a picture or film is needed for camera.kind = " +
-                    camera.kind() + "; allowed: a file name, or camera.kind: chart");
+    throw UserError("key '" + camera.file.key() + "': a picture or film is needed for " +
+                    camera.kind.key() + " = " + camera.kind() + "; allowed: a file name, or " +
+                    camera.kind.key() + ": chart");
   if (camera.kind.is("sphere")) return {load_still(camera.file(), stop)};
   DecodeOptions options;
   options.max_frames = kMostFilmFrames;
@@ -52,10 +53,30 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
   return decode_frames(camera.file(), options);
 }
 
+std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& params,
+                                                    unsigned camera, const std::atomic<bool>* stop,
+                                                    std::vector<std::string>* notes) {
+  const board::CameraSetup setup = params.camera_setup(camera);
+  std::vector<RgbImage> footage = load_footage(params, *setup.scene, stop);
+  if (notes) {
+    const FilmInfo info =
+        setup.scene->kind.is("video") ? film_info(setup.scene->file()) : FilmInfo{};
+    for (const std::string& note : footage_notes(params, *setup.scene, footage, info))
+      notes->push_back(params.camera_count() > 1 ? fmt::format("camera {}: {}", camera, note)
+                                                 : note);
+  }
+  const EnumParam& own = params.camera_rows.at(camera).wire.standard;
+  const unsigned height = !own.user_set()      ? params.raster_height()
+                          : own.is("625/50") ? 576
+                                               : 480;
+  return video::make_picture_source(*setup.scene, std::move(footage), params.raster_width(), height,
+                                    camera);
+}
+
 std::vector<std::string> footage_notes(const board::BoardParams& params,
+                                       const video::SceneParams& camera,
                                        const std::vector<RgbImage>& frames, const FilmInfo& info) {
   std::vector<std::string> out;
-  const auto& camera = params.camera;
   if (frames.empty() || camera.kind.is("chart")) return out;
   // The frames of a video may have been scaled down when they were read.
   const unsigned width = info.width ? info.width : frames.front().width;
@@ -112,6 +133,21 @@ void check_loads(const board::BoardParams& params) {
   }
 }
 
+void check_cameras(const board::BoardParams& params) {
+  const unsigned count = params.camera_count();
+  for (unsigned n = 0; n < count; ++n)
+    for (unsigned k = 0; k < n; ++k) {
+      const EnumParam& input = params.camera_rows[n].wire.input;
+      require(input() != params.camera_rows[k].wire.input(), input.key(), input(),
+              "an input that no other camera is on");
+    }
+  if (count == 1 || !params.firmware.elf().empty()) return;
+  const auto& fw = params.firmware;
+  require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
+          "1 with several cameras, each of which has a table of its own");
+  require(fw.flow.is("double"), fw.flow.key(), fw.flow(), "double with several cameras");
+}
+
 }  // namespace
 
 void complete_params(board::BoardParams& params) {
@@ -124,6 +160,7 @@ void complete_params(board::BoardParams& params) {
     require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
             "powers of two");
   check_loads(params);
+  check_cameras(params);
   if (!params.decoder.standard.user_set())
     params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
 }

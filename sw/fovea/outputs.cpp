@@ -135,7 +135,9 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
   std::sort(sorted.begin(), sorted.end(),
             [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
   Json values = Json::object();
-  for (const auto* p : sorted)
+  for (const auto* p : sorted) {
+    // A key of one camera that is not set has the value of the key of all cameras.
+    if (is_camera_row(p->key()) && experiment.rank(p->key()) < 0) continue;
     values[p->key()] = {{"value", p->text()},
                         {"unit", p->unit()},
                         {"origin", experiment.origin(p->key()).text()},
@@ -145,6 +147,7 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
                         {"source", p->source()},
                         {"belief", belief_json(p->belief())},
                         {"description", p->sentence()}};
+  }
   return file_json({{"format", kRunFormat},
                     {"version", provenance.version},
                     {"commit", provenance.commit},
@@ -187,7 +190,8 @@ std::string frames_csv_header() {
 }
 
 std::string frames_csv_line(const FrameRow& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.camera,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index,
+                     r.camera == ~0u ? "" : std::to_string(r.camera),
                      r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
                      cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
                      cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0);

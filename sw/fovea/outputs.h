@@ -32,7 +32,7 @@ const StatRow* find(std::span<const StatRow> rows, std::string_view name);
 /// is shown without remap has no remap times).
 struct FrameRow {
   std::uint64_t index = 0;  ///< number of the displayed frame, from 0 on
-  unsigned camera = 0;
+  unsigned camera = 0;  ///< ~0u: a black frame, while no camera was locked
   std::optional<std::uint64_t> captured;  ///< number of the captured frame that it shows
   std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
   std::optional<Picoseconds> display_start, display_end;

@@ -13,8 +13,7 @@ namespace fovea::app {
 namespace {
 
 /// The firmware's calibrated lens, in pixels of the camera's raster.
-video::LensModel firmware_lens(const board::BoardParams& params) {
-  const auto& lens = params.lens;
+video::LensModel firmware_lens(const board::BoardParams& params, const board::LensParams& lens) {
   const auto& kb = lens.kb();
   return video::LensModel::kannala_brandt(kb[0], kb[1], kb[2], kb[3], {kb[4], kb[5], kb[6], kb[7]},
                                           lens.kb.key())
@@ -24,9 +23,10 @@ video::LensModel firmware_lens(const board::BoardParams& params) {
 /// Warns if only one of the two lenses was set, which gives a distorted picture and is probably a
 /// mistake. If both are set, the difference may be intended: firmware on a real board can be wrong
 /// about its lens.
-void check_same_lens(const board::BoardParams& params, const video::LensModel& firmware,
-                     const video::LensModel& camera) {
-  if (params.lens.kb.user_set() == params.camera.kb.user_set()) return;
+void check_same_lens(const board::BoardParams& params, const board::CameraSetup& setup,
+                     const video::LensModel& firmware, const video::LensModel& camera) {
+  const ListParam &of_camera = setup.scene->kb, &of_firmware = setup.lens->kb;
+  if (of_firmware.user_set() == of_camera.user_set()) return;
   const auto apart = [](double a, double b, double scale) { return std::abs(a - b) > scale / 100; };
   if (!apart(firmware.fx(), camera.fx(), camera.fx()) &&
       !apart(firmware.fy(), camera.fy(), camera.fy()) &&
@@ -36,10 +36,11 @@ void check_same_lens(const board::BoardParams& params, const video::LensModel& f
   Diagnostics::instance().configuration(fmt::format(
       "{} is set and {} is not, and they describe different lenses (optical centre {:.1f}, {:.1f} "
       "in the camera and {:.1f}, {:.1f} in the firmware, in pixels of the {}x{} raster); "
-      "camera.calibration sets both",
-      params.camera.kb.user_set() ? "camera.kb" : "lens.kb",
-      params.camera.kb.user_set() ? "lens.kb" : "camera.kb", camera.cx(), camera.cy(),
-      firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height()));
+      "{} sets both",
+      of_camera.user_set() ? of_camera.key() : of_firmware.key(),
+      of_camera.user_set() ? of_firmware.key() : of_camera.key(), camera.cx(), camera.cy(),
+      firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height(),
+      setup.scene->calibration.key()));
 }
 
 void fill_clocks(param_clocks_t& clocks, const board::ClockParams& params) {
@@ -68,8 +69,8 @@ void fill_priorities(std::uint8_t (&priority)[PRIORITY_COUNT],
 }
 
 void fill_view(lens_view_t& view, const board::BoardParams& params,
-               const video::StampedSource& source) {
-  const board::LensParams& lens = params.lens;
+               const board::CameraSetup& setup, const video::StampedSource& source) {
+  const board::LensParams& lens = *setup.lens;
   lens_view_default(&view);
   view.flags = lens.paper_literal_focal() ? PARAM_PAPER_LITERAL_FOCAL : 0u;
   view.pair_method = contract::code_of(contract::kPairMethods, lens.pair());
@@ -85,17 +86,17 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
   view.mapping = contract::code_of(contract::kMappings, lens.mapping());
   if (view.mapping == LENS_TABLE) {
     const double w = params.raster_width(), h = params.raster_height();
-    const video::LensModel model = firmware_lens(params);
+    const video::LensModel model = firmware_lens(params, lens);
     if (const auto* still = dynamic_cast<const video::SphereSource*>(&source);
-        still && params.camera.lens.is("kannala_brandt"))
-      check_same_lens(params, model, still->raster_lens());
+        still && setup.scene->lens.is("kannala_brandt"))
+      check_same_lens(params, setup, model, still->raster_lens());
     const double theta_max = lens.theta_max() * M_PI / 180;
     if (theta_max > model.theta_max() + 1e-12) {
       const double valid = model.theta_max() * 180 / M_PI;
       throw UserError(fmt::format(
-          "key 'lens.theta_max': {}, but the calibration of the lens (lens.kb) is valid only up to "
-          "{:.2f} deg; use lens.theta_max={:.0f}deg",
-          lens.theta_max.text(), valid, std::floor(valid)));
+          "key '{0}': {1}, but the calibration of the lens ({2}) is valid only up to "
+          "{3:.2f} deg; use {0}={4:.0f}deg",
+          lens.theta_max.key(), lens.theta_max.text(), lens.kb.key(), valid, std::floor(valid)));
     }
     const auto table = model.table(PARAM_TABLE_MAX, theta_max);
     view.table_count = PARAM_TABLE_MAX;
@@ -111,7 +112,7 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
 }  // namespace
 
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
-                                         const video::StampedSource& source) {
+                                         const std::vector<const video::StampedSource*>& sources) {
   const board::FirmwareParams& firmware = params.firmware;
   param_page_t page{};
   fill_clocks(page.clocks, params.clocks);
@@ -126,8 +127,13 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
       (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
   page.width = params.width();
   page.height = params.height();
-  page.camera_count = 1;
-  fill_view(page.camera[0].view, params, source);
+  page.camera_count = static_cast<std::uint32_t>(sources.size());
+  for (unsigned n = 0; n < sources.size(); ++n) {
+    const board::CameraSetup setup = params.camera_setup(n);
+    page.camera[n].input = setup.wiring.input;
+    page.camera[n].flags = setup.genlocked ? PARAM_CAMERA_GENLOCKED : 0u;
+    fill_view(page.camera[n].view, params, setup, *sources[n]);
+  }
   param_page_seal(&page);
   std::vector<std::uint8_t> bytes(page.bytes);
   std::memcpy(bytes.data(), &page, bytes.size());

@@ -11,6 +11,10 @@ namespace fovea::app {
 /// The bytes of the page (model/contract/param_page.h) that a loader puts at PARAM_PAGE_BASE.
 /// @throws UserError for clocks or a lens that cannot be
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
-                                         const video::StampedSource& source);
+                                         const std::vector<const video::StampedSource*>& sources);
+inline std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
+                                                const video::StampedSource& source) {
+  return parameter_page(params, std::vector<const video::StampedSource*>{&source});
+}
 
 }  // namespace fovea::app

@@ -48,7 +48,7 @@ TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
   EXPECT_EQ(offsetof(param_page_t, camera[1]), 136u + 1136u);
   const param_page_t page = good_page();
   EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
-  EXPECT_EQ(page.version, 3u);
+  EXPECT_EQ(page.version, 4u);
   EXPECT_EQ(page.bytes, 1272u);
   EXPECT_EQ(good_page(8).bytes, sizeof(param_page_t));
 }

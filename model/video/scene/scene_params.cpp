@@ -19,8 +19,8 @@ LensKind closed_form_kind(const EnumParam& lens) {
 
 }  // namespace
 
-SceneParams::SceneParams()
-    : ParamGroup("camera"),
+SceneParams::SceneParams(std::string prefix, bool rules)
+    : ParamGroup(std::move(prefix)),
       file(*this, "file", "",
            "still or video that the camera shows: PNG, or anything that the ffmpeg program reads"),
       kind(*this, "kind", "sphere", {"sphere", "video", "chart"},
@@ -60,6 +60,7 @@ SceneParams::SceneParams()
       calibration(*this, "calibration", "",
                   "OpenCV fisheye calibration (YAML) of the lens that took the still, in place of "
                   "camera.kb; the firmware's lens defaults to it (lens.calibration)") {
+  if (!rules) return;
   const auto sphere = [this] { return kind.is("sphere"); };
   const auto bent = [this] { return kind.is("sphere") || (kind.is("video") && video_fov() > 0); };
   file.matters_only("camera.kind = sphere or video", {&kind},
@@ -86,15 +87,15 @@ LensModel SceneParams::lens_model(unsigned width, unsigned height) const {
     return LensModel::closed_form(closed_form_kind(lens), fov(), width, height);
   const auto& v = kb();
   const LensModel lens_of_kb = LensModel::kannala_brandt(
-      v[0], v[1], v[2], v[3], std::array<double, 4>{v[4], v[5], v[6], v[7]});
+      v[0], v[1], v[2], v[3], std::array<double, 4>{v[4], v[5], v[6], v[7]}, kb.key());
   const double w = kb_width() > 0 ? kb_width() : width, h = kb_height() > 0 ? kb_height() : height;
   return w == width && h == height ? lens_of_kb : lens_of_kb.scaled(width / w, height / h);
 }
 
 void SceneParams::check_calibration(unsigned width, unsigned height) const {
   const std::string whose =
-      calibration().empty() ? "camera.kb" : "camera.calibration '" + calibration() + "'";
-  const std::string picture = "camera.file '" + file() + "' (" + std::to_string(width) + "x" +
+      calibration().empty() ? kb.key() : calibration.key() + " '" + calibration() + "'";
+  const std::string picture = file.key() + " '" + file() + "' (" + std::to_string(width) + "x" +
                               std::to_string(height) + ")";
   if (kb_width() > 0 && kb_height() > 0) {
     // The same picture in another size has the same aspect ratio, up to one pixel of rounding.
@@ -118,12 +119,12 @@ void SceneParams::check_calibration(unsigned width, unsigned height) const {
 
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
                                                    std::vector<RgbImage> frames, unsigned width,
-                                                   unsigned height) {
-  const Raster raster{width, height, params.stamp()};
+                                                   unsigned height, unsigned camera) {
+  const Raster raster{width, height, params.stamp(), camera};
   if (params.kind.is("chart")) return std::make_unique<ChartSource>(raster);
   if (frames.empty())
-    throw UserError("camera.file: '" + params.file() + "' gave no picture; camera.kind " +
-                    params.kind() + " needs a still or a video (chart needs none)");
+    throw UserError(params.file.key() + ": '" + params.file() + "' gave no picture; " +
+                    params.kind.key() + " " + params.kind() + " needs a still or a video (chart needs none)");
   if (params.kind.is("sphere") && params.lens.is("kannala_brandt"))
     params.check_calibration(frames.front().width, frames.front().height);
   if (params.kind.is("sphere"))

@@ -11,7 +11,9 @@ namespace fovea::video {
 /// What the camera looks at, and through which lens. The firmware has its own description of the
 /// lens, which may be wrong, as on a real board.
 struct SceneParams : ParamGroup {
-  SceneParams();
+  /// @param rules say which keys matter when; a row of one camera has none, as the keys that it does
+  ///        not set are those of all cameras
+  explicit SceneParams(std::string prefix = "camera", bool rules = true);
 
   TextParam file;
   EnumParam kind;
@@ -35,9 +37,9 @@ struct SceneParams : ParamGroup {
 
 /// Creates the source for a raster of width x height pixels. `frames` are the decoded frames of
 /// camera.file: one still for `sphere`, at least one frame for `video`, none needed for `chart`.
-/// @throws UserError that names the key and what is allowed
+/// `camera` is the number in the marks. @throws UserError that names the key and what is allowed
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
                                                    std::vector<RgbImage> frames, unsigned width,
-                                                   unsigned height);
+                                                   unsigned height, unsigned camera = 0);
 
 }  // namespace fovea::video

@@ -40,7 +40,7 @@ const Picture& StampedSource::field(std::uint64_t k) {
   if (!layout_) return view(k);
   if (out_field_ != k) {
     out_ = view(k);
-    stamp(out_, *layout_, k);
+    stamp(out_, *layout_, k, raster_.camera);
     out_field_ = k;
   }
   return out_;
@@ -193,6 +193,7 @@ std::array<std::uint8_t, 4> ChartSource::pair(unsigned x, unsigned y, std::uint6
 }
 
 const Picture& ChartSource::view(std::uint64_t k) {
+  k += camera() * kCameraFields;
   for (unsigned y = 0; y < height(); ++y) {
     std::uint8_t* out = current_.row(y);
     for (unsigned x = 0; x < width(); x += 2, out += 4) {

@@ -18,6 +18,7 @@ struct Raster {
   unsigned width = 720;   ///< pixels, even
   unsigned height = 576;  ///< rows
   bool stamped = true;
+  unsigned camera = 0;  ///< that the marks name
 };
 
 /// A source that draws the marks of stamp.h into its pictures.
@@ -36,6 +37,7 @@ class StampedSource : public PictureSource {
   /// Picture k without marks. May return the same object for several k, but must not change an
   /// object that it has returned before the next call.
   virtual const Picture& view(std::uint64_t k) = 0;
+  unsigned camera() const { return raster_.camera; }
 
  private:
   Raster raster_;
@@ -115,7 +117,9 @@ class VideoSource : public StampedSource {
 class ChartSource : public StampedSource {
  public:
   explicit ChartSource(const Raster& raster);
-  /// The bytes Cb Y0 Cr Y1 of pixels x, x + 1 (x even) in row y of field k, without marks.
+  /// The bytes Cb Y0 Cr Y1 of pixels x, x + 1 (x even) in row y of field k, without marks. Camera n
+  /// shows field k + n * kCameraFields of camera 0.
+  static constexpr std::uint64_t kCameraFields = std::uint64_t{1} << 40;
   static std::array<std::uint8_t, 4> pair(unsigned x, unsigned y, std::uint64_t k);
 
  protected:

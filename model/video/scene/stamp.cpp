@@ -53,9 +53,17 @@ unsigned check_bits(unsigned frame) {
   return crc;
 }
 
+/// What the check bits of a camera differ in from those of camera 0: sums modulo 2 of three patterns,
+/// none of which, nor any sum of them, is what a single wrong cell changes in the check bits. Of the
+/// 231 pairs of wrong cells, 7 turn a code into that of another camera.
+unsigned camera_bits(unsigned camera) {
+  return (camera & 1 ? 0x03u : 0) ^ (camera & 2 ? 0x34u : 0) ^ (camera & 4 ? 0x5Cu : 0);
+}
+
 /// The cells as a word, the first cell in bit 23.
-unsigned code_word(std::uint16_t counter) {
-  return unsigned{counter} << 8 | check_bits(counter >> 1) << 1 | (~counter & 1u);
+unsigned code_word(std::uint16_t counter, unsigned camera) {
+  return unsigned{counter} << 8 | (check_bits(counter >> 1) ^ camera_bits(camera)) << 1 |
+         (~counter & 1u);
 }
 
 /// Fills a rectangle without colour; each pixel sets the chroma sample that is stored with it.
@@ -153,17 +161,19 @@ MarkerPosition marker_position(const StampLayout& layout, std::uint64_t k) {
   return {layout.marker_x + across * StampLayout::kMarkerStep, layout.marker_y + down * 2};
 }
 
-void stamp(Picture& picture, const StampLayout& layout, std::uint64_t k) {
+void stamp(Picture& picture, const StampLayout& layout, std::uint64_t k, unsigned camera) {
+  FOVEA_CHECK(camera < kStampCameras, "a stamp has room for eight cameras");
   fill(picture, std::min(layout.code_x, layout.digits_x) - kQuiet, layout.code_y - kQuiet,
        kBoxWidth + 2 * kQuiet, kCodeHeight + 3 * kQuiet + kDigitHeight, kDark);
-  const unsigned word = code_word(static_cast<std::uint16_t>(k));
+  const unsigned word = code_word(static_cast<std::uint16_t>(k), camera);
   for (unsigned cell = 0; cell < kCells; ++cell) {
     if (!(word >> (kCells - 1 - cell) & 1)) continue;
     fill(picture, layout.code_x + cell % StampLayout::kCodeColumns * StampLayout::kCellPixels,
          layout.code_y + cell / StampLayout::kCodeColumns * StampLayout::kCellPixels,
          StampLayout::kCellPixels, StampLayout::kCellPixels, kBright);
   }
-  draw_digits(picture, layout.digits_x, layout.digits_y, k / 2);
+  constexpr std::uint64_t kCameraDigit = 100'000;
+  draw_digits(picture, layout.digits_x, layout.digits_y, k / 2 + camera * kCameraDigit);
 
   const MarkerPosition m = marker_position(layout, k);
   constexpr unsigned kBorder = StampLayout::kMarkerBorder;
@@ -178,13 +188,19 @@ CodeGrid::CodeGrid(const StampLayout& layout)
       cell_width(StampLayout::kCellPixels),
       cell_height(StampLayout::kCellPixels) {}
 
-std::optional<std::uint16_t> decode_counter(const Picture& picture, const CodeGrid& grid,
-                                            Rows rows) {
+std::optional<StampCode> decode_stamp(const Picture& picture, const CodeGrid& grid, Rows rows) {
   const auto word = read_cells(picture, grid, rows, kAllCells);
   if (!word) return std::nullopt;
-  const auto counter = static_cast<std::uint16_t>(*word >> 8);
-  if (code_word(counter) != *word) return std::nullopt;
-  return counter;
+  StampCode code{static_cast<std::uint16_t>(*word >> 8), 0};
+  for (; code.camera < kStampCameras; ++code.camera)
+    if (code_word(code.field, code.camera) == *word) return code;
+  return std::nullopt;
+}
+
+std::optional<std::uint16_t> decode_counter(const Picture& picture, const CodeGrid& grid,
+                                            Rows rows) {
+  const auto code = decode_stamp(picture, grid, rows);
+  return code && code->camera == 0 ? std::optional(code->field) : std::nullopt;
 }
 
 std::optional<std::uint16_t> decode_frame(const Picture& picture, const CodeGrid& grid) {

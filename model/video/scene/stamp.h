@@ -16,6 +16,10 @@ enum class Rows { kAll, kEven, kOdd };
 /// The check bits cover only bits 15 to 1, so the fields 2n and 2n+1 of a frame differ only in the
 /// two cells of bit 0, and the frame number n can be read even after a remap that mixes the rows of
 /// both.
+///
+/// The check bits also name the camera: those of cameras 1 to 7 differ from camera 0's in a pattern
+/// of their own. One wrong cell never turns a code into another one, of whatever camera. The first
+/// of the digits is the camera's number too.
 struct StampLayout {
   static constexpr unsigned kCodeColumns = 8;
   static constexpr unsigned kCodeRows = 3;
@@ -44,8 +48,12 @@ struct MarkerPosition {
 /// again from the start; 2 pixels down per field for 8 fields, then up again.
 MarkerPosition marker_position(const StampLayout& layout, std::uint64_t k);
 
-/// Draws the marks of field k, with luma levels 32 and 220 and without colour.
-void stamp(Picture& picture, const StampLayout& layout, std::uint64_t k);
+/// Number of cameras that a stamp can tell apart.
+inline constexpr unsigned kStampCameras = 8;
+
+/// Draws the marks of field k, with luma levels 32 and 220 and without colour. `camera` is less than
+/// kStampCameras.
+void stamp(Picture& picture, const StampLayout& layout, std::uint64_t k, unsigned camera = 0);
 
 /// Where to read the block code in a picture: the top left corner of the first cell and the size of
 /// a cell in pixels. Near the optical centre a remap only shifts and scales, so the code remains a
@@ -57,8 +65,18 @@ struct CodeGrid {
       : x(x0), y(y0), cell_width(w), cell_height(h) {}
 };
 
-/// Reads the field number modulo 65536 from the given rows. Empty if the code is missing or
-/// damaged, or if the rows belong to two fields.
+/// What a block code says.
+struct StampCode {
+  std::uint16_t field = 0;  ///< number modulo 65536
+  unsigned camera = 0;
+};
+
+/// Reads the code from the given rows. Empty if it is missing or damaged, or if the rows belong to
+/// two fields.
+std::optional<StampCode> decode_stamp(const Picture& picture, const CodeGrid& grid,
+                                      Rows rows = Rows::kAll);
+
+/// The field number of such a code of camera 0; empty for other cameras too.
 std::optional<std::uint16_t> decode_counter(const Picture& picture, const CodeGrid& grid,
                                             Rows rows = Rows::kAll);
 

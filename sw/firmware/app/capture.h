@@ -28,6 +28,12 @@ void capture_init(capture_t *capture, uint32_t buffer_count);
  * three free buffers). */
 int32_t capture_frame_done(capture_t *capture);
 
+/** A frame was captured that is of no use: it is dropped and counted, and its buffer is filled again. */
+static inline void capture_frame_useless(capture_t *capture) {
+  ++capture->next_sequence;
+  ++capture->dropped;
+}
+
 /** For the serial flow with one buffer: the frame becomes `ready`, and capture pauses until its
  * release. */
 void capture_single_done(capture_t *capture);

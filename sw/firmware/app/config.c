@@ -36,8 +36,8 @@ static int add_shift(double *shift, uint32_t code) {
   return code <= SWITCH_BACK;
 }
 
-static config_result_t read_view(config_t *c, const param_page_t *page) {
-  c->view = page->camera[0].view;
+static config_result_t read_view(config_t *c, const lens_view_t *view) {
+  c->view = *view;
   const uint32_t mapping = SWITCH_GET(c->dip, SWITCH_MAPPING);
   if (mapping != 0) c->view.mapping = mapping - 1u;
   if (!add_shift(&c->view.shift_x, SWITCH_GET(c->dip, SWITCH_SHIFT_X)) ||
@@ -45,6 +45,20 @@ static config_result_t read_view(config_t *c, const param_page_t *page) {
     return CONFIG_BAD_SHIFT;
   return CONFIG_OK;
 }
+
+#ifdef TIME_DIVISION
+static config_result_t read_cameras(config_t *c, const param_page_t *page) {
+  c->cameras = c->tables = page->camera_count;
+  for (uint32_t n = c->cameras; n-- != 0;) { /* the last one read is that of camera 0 */
+    const config_result_t result = read_view(c, &page->camera[n].view);
+    if (result != CONFIG_OK) return result;
+    c->views[n] = c->view;
+    c->input[n] = (uint8_t)page->camera[n].input;
+    c->genlocked[n] = (page->camera[n].flags & PARAM_CAMERA_GENLOCKED) != 0;
+  }
+  return CONFIG_OK;
+}
+#endif
 
 config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page) {
   const uint32_t standard = SWITCH_GET(dip, SWITCH_STANDARD_IN);
@@ -64,11 +78,18 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
   if (page->table_builder > BUILDER_FIXED) return CONFIG_BAD_BUILDER;
   if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
   if (c->tables > PARAM_TABLES_MAX) return CONFIG_BAD_TABLES;
+#ifdef TIME_DIVISION
+  if (c->tables != 1u || c->serial) return CONFIG_BAD_DIVISION;
+#endif
   /* The serial flow has one input buffer. */
   c->sources = c->serial ? 1u : c->tables;
-  if (page->camera_count != 1) return CONFIG_BAD_CAMERAS;
+  if (page->camera_count == 0 || page->camera_count > CAMERAS_MAX) return CONFIG_BAD_CAMERAS;
   const config_result_t result = read_region(c, page);
-  return result != CONFIG_OK ? result : read_view(c, page);
+#ifdef TIME_DIVISION
+  return result != CONFIG_OK ? result : read_cameras(c, page);
+#else
+  return result != CONFIG_OK ? result : read_view(c, &page->camera[0].view);
+#endif
 }
 
 const char *config_result_text(config_result_t result) {
@@ -94,6 +115,10 @@ const char *config_result_text(config_result_t result) {
       return "parameter page: too many look-up tables; this firmware has memory for 4";
     case CONFIG_BAD_CAMERAS:
       return "parameter page: several cameras; this firmware serves one";
+#ifdef TIME_DIVISION
+    case CONFIG_BAD_DIVISION:
+      return "parameter page: with several cameras, one table for each and double buffering";
+#endif
     case CONFIG_RESULTS:
       break;
   }

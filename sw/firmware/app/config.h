@@ -6,6 +6,13 @@
 
 #include "model/contract/param_page.h"
 
+/* Cameras that the program serves: with TIME_DIVISION, frames of several in turn. */
+#ifdef TIME_DIVISION
+#define CAMERAS_MAX PARAM_CAMERAS_MAX
+#else
+#define CAMERAS_MAX 1u
+#endif
+
 typedef struct config {
   uint32_t dip;
   int is_625;
@@ -23,6 +30,12 @@ typedef struct config {
   uint32_t vpss_clk_ctrl;
   uint8_t priority[PRIORITY_COUNT];
   lens_view_t view; /* of the camera, modified by the switches; a copy in cached memory */
+#ifdef TIME_DIVISION
+  uint32_t cameras;                 /* 1 to CAMERAS_MAX */
+  uint8_t input[CAMERAS_MAX];       /* of the decoder */
+  uint8_t genlocked[CAMERAS_MAX];   /* PARAM_CAMERA_GENLOCKED */
+  lens_view_t views[CAMERAS_MAX];   /* as `view`, of each camera */
+#endif
 } config_t;
 
 typedef enum config_result {
@@ -36,6 +49,9 @@ typedef enum config_result {
   CONFIG_BAD_FLOW,
   CONFIG_BAD_TABLES,  /* more than there is memory for */
   CONFIG_BAD_CAMERAS, /* more than this firmware serves */
+#ifdef TIME_DIVISION
+  CONFIG_BAD_DIVISION, /* several tables for a camera, or the serial flow */
+#endif
   CONFIG_RESULTS
 } config_result_t;
 

@@ -19,7 +19,7 @@ static config_t config;
 static struct view { /* what the remaps use in turn */
   remap_table_t table;
   const remap_method_t *method;
-} views[PARAM_TABLES_MAX];
+} views[TABLES_MAX];
 static uint8_t overlay_value;
 
 static void print_config(void) {
@@ -37,11 +37,17 @@ static void print_config(void) {
     uart_put_uint(config.repeats);
     uart_puts(" remaps for each frame");
   }
+#ifdef TIME_DIVISION
+  uart_puts(", ");
+  uart_put_uint(config.cameras);
+  uart_puts(" cameras in turn");
+#else
   if (config.tables > 1) {
     uart_puts(", ");
     uart_put_uint(config.tables);
     uart_puts(" tables in turn");
   }
+#endif
   uart_puts("\n");
 }
 
@@ -102,8 +108,12 @@ static void build_views(void) {
   for (uint32_t k = 0; k < config.tables; ++k) {
     uint32_t *entries = k == 0 ? lut : arena_take(&arena, sizeof lut, 4096);
     if (entries == NULL) fail("look-up tables", "no memory left"); /* firmware.ld rules it out */
+#ifdef TIME_DIVISION
+    const lens_view_t view = config.views[k];
+#else
     lens_view_t view = config.view;
     view.shift_x += PARAM_TABLE_STEP_PX * k;
+#endif
     build_lut(&view, entries);
     views[k].table = (remap_table_t){.width = config.width,
                                      .height = config.height,
@@ -160,11 +170,30 @@ static void correct(const struct view *view, const uint8_t *in, uint8_t *out, ui
 /* Tables and sources take turns, so that no remap finds in the caches or in open rows of the SDRAM
  * what the one before has read. The last remap, whose result is shown, reads the newest frame. */
 static void process(uint8_t *out, uint32_t sequence) {
+#ifdef TIME_DIVISION
+  for (uint32_t left = config.repeats; left-- != 0;)
+    correct(&views[pipeline_camera()], pipeline_source(0), out, sequence);
+#else
   for (uint32_t left = config.repeats; left-- != 0;)
     correct(&views[fw_state.remapped % config.tables], pipeline_source(left % config.sources), out,
             sequence);
+#endif
   pipeline_done();
 }
+
+#ifdef TIME_DIVISION
+static void say_events(void) {
+  uint32_t camera;
+  const char *what;
+  while (pipeline_event(&camera, &what)) {
+    uart_puts("camera ");
+    uart_put_uint(camera);
+    uart_puts(": ");
+    uart_puts(what);
+    uart_puts("\n");
+  }
+}
+#endif
 
 int main(void) {
   timer_start();
@@ -201,6 +230,9 @@ int main(void) {
   for (;;) {
     uint8_t *out;
     uint32_t sequence;
+#ifdef TIME_DIVISION
+    say_events();
+#endif
     /* Checked with interrupts masked: an interrupt that comes after the check still ends the sleep,
      * and is handled when interrupts are unmasked. */
     const uint32_t cpsr = irq_mask();

@@ -14,6 +14,10 @@
 #include "capture.h"
 #include "output.h"
 #include "state.h"
+#ifdef TIME_DIVISION
+#include "../drivers/tvp5146_inputs.h"
+#include "turns.h"
+#endif
 
 /* Minimum time before a field's start for a change of the displayed buffer by the main loop. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
@@ -43,6 +47,15 @@ static struct {
   held_t held;      /* those frames; only the main loop uses this and what follows */
   int32_t taken_out;
   uint32_t taken_sequence;
+#ifdef TIME_DIVISION
+  turns_t turns;
+  const config_t *config;
+  uint32_t standard;     /* that a camera must send, as the decoder tells it */
+  int complete;          /* the second field of the frame that is captured has ended */
+  uint32_t quiet_fields; /* of the display, since the last field of a camera */
+  uint8_t camera_of[CAPTURE_BUFFERS_MAX]; /* whose frame is in each buffer */
+  uint32_t taken_camera;
+#endif
 } pipe;
 
 void fail(const char *what, const char *why) {
@@ -96,6 +109,91 @@ static void captured_frame_done(void) {
   }
 }
 
+#ifdef TIME_DIVISION
+
+/* While no field of a camera begins for so many fields of the display, its signal is of no use. */
+#define QUIET_FIELDS 6u
+
+static signal_state_t look(void) {
+  tvp5146_state_t seen = {0};
+  if (tvp5146_look(&seen) != I2C_OK) return (signal_state_t){0};
+  return (signal_state_t){.present = seen.signal,
+                          .locked = seen.locked,
+                          .lost = seen.lost,
+                          .right_standard = seen.standard == pipe.standard};
+}
+
+/* VDINT0: the captured lines of a field are complete. The ISIF counts a frame with its second one. */
+static void capture_field_end(void) {
+  if (!pipe.capturing || !isif_second_field()) return;
+  if (pipe.complete) capture_frame_useless(&pipe.capture); /* the one before, in the same buffer */
+  pipe.complete = 1;
+}
+
+static void select_camera(uint32_t camera) {
+  /* Without an answer the next look shows no lock. */
+  i2c_result_t ignored = tvp5146_select(pipe.config->input[camera]);
+  (void)ignored;
+}
+
+/* The decoder is asked before the first active line of a frame whether this frame can be captured: a lock
+ * to the field syncs is only gained at a field's start. The capture is off meanwhile. */
+static void begin_frame(const signal_state_t *seen) {
+  if (!signal_ready(seen)) return;
+  if (seen->lost && tvp5146_clear_lost() != I2C_OK) return;
+  isif_capture();
+  if (isif_second_field()) /* the first active line has not come yet */
+    pipe.capturing = 1;
+  else
+    isif_watch();
+}
+
+/* Takes the frame over if the lock has held since its start. */
+static void end_frame(const signal_state_t *seen) {
+  pipe.capturing = 0;
+  if (pipe.complete && signal_ready(seen) && !seen->lost) {
+    pipe.camera_of[pipe.capture.filling] = (uint8_t)pipe.turns.now;
+    captured_frame_done();
+    turns_captured(&pipe.turns);
+    return;
+  }
+  if (pipe.complete) capture_frame_useless(&pipe.capture);
+  fw_state.dropped = pipe.capture.dropped;
+  turns_torn(&pipe.turns);
+}
+
+/* VDINT1, at the start of a field. Between two frames the decoder changes to the camera whose turn it is. */
+static void field_start(void) {
+  pipe.quiet_fields = 0;
+  if (!isif_second_field()) return;
+  isif_watch();
+  const uint32_t before = pipe.turns.now;
+  signal_state_t seen = look();
+  if (pipe.capturing)
+    end_frame(&seen);
+  else if (!signal_ready(&seen))
+    turns_not_ready(&pipe.turns, &seen);
+  pipe.complete = 0;
+  if (pipe.turns.now != before) {
+    select_camera(pipe.turns.now);
+    /* The lines of a camera with other syncs go on in the midst of a picture: first a frame must begin. */
+    if (!pipe.config->genlocked[before] || !pipe.config->genlocked[pipe.turns.now]) return;
+    seen = look();
+  }
+  begin_frame(&seen);
+}
+
+static void display_field_passed(void) {
+  if (++pipe.quiet_fields < QUIET_FIELDS) return;
+  pipe.quiet_fields = 0;
+  isif_watch();
+  if (pipe.capturing && pipe.complete) capture_frame_useless(&pipe.capture);
+  pipe.capturing = pipe.complete = 0;
+  select_camera(turns_no_frames(&pipe.turns));
+}
+
+#else
+
 /* VDINT0, after the last line of a field. Capture is started and stopped only here, after a second
  * field, so that frames are complete and begin with a first field. */
 static void capture_field_end(void) {
@@ -107,8 +205,12 @@ static void capture_field_end(void) {
     isif_capture();
   }
 }
+#endif
 
 static void display_field_start(void) {
+#ifdef TIME_DIVISION
+  display_field_passed();
+#endif
   pipe.in_second_field = display_second_field();
   if (pipe.in_second_field) {
     pipe.second_field_start = timer_ticks();
@@ -135,6 +237,10 @@ void irq_dispatch(void) {
     capture_field_end();
   else if (source == IRQ_VPSSINT8)
     display_field_start();
+#ifdef TIME_DIVISION
+  else if (source == IRQ_VPSSINT1)
+    field_start();
+#endif
 }
 
 void pipeline_prepare(const config_t *config) {
@@ -201,6 +307,14 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   const isif_window_t window = {config->left, config->top, config->width, config->height,
                                 config->pitch_bytes};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
+#ifdef TIME_DIVISION
+  turns_init(&pipe.turns, config->cameras);
+  pipe.config = config;
+  pipe.standard = config->is_625 ? TVP5146_PAL : TVP5146_NTSC;
+  isif_mark_fields(config->is_625);
+  if (tvp5146_autoswitch() != I2C_OK) uart_puts("decoder: no answer on I2C, going on\n");
+  select_camera(0);
+#endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
   if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
     uart_puts("decoder: no lock, going on\n");
@@ -209,6 +323,9 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 
   pipe.capture_wanted = 1;
   intc_enable(IRQ_VPSSINT8, 3);
+#ifdef TIME_DIVISION
+  intc_enable(IRQ_VPSSINT1, 2);
+#endif
   irq_unmask();
 }
 
@@ -224,8 +341,24 @@ int pipeline_take(uint8_t **out, uint32_t *sequence) {
   held_add(&pipe.held, capture_take(&pipe.capture, &pipe.taken_sequence));
   *out = shown_buffer(out_buffer);
   *sequence = pipe.taken_sequence;
+#ifdef TIME_DIVISION
+  pipe.taken_camera = pipe.camera_of[held_of_age(&pipe.held, 0)];
+#endif
   return 1;
 }
+
+#ifdef TIME_DIVISION
+uint32_t pipeline_camera(void) { return pipe.taken_camera; }
+
+int pipeline_event(uint32_t *camera, const char **what) {
+  camera_event_t event;
+  const uint32_t cpsr = irq_mask();
+  const int is_one = turns_event(&pipe.turns, camera, &event);
+  irq_restore(cpsr);
+  if (is_one) *what = camera_event_text(event);
+  return is_one;
+}
+#endif
 
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 

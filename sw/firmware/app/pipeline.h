@@ -31,6 +31,14 @@ void pipeline_done(void);
 
 uint32_t pipeline_last_sequence(void);
 
+#ifdef TIME_DIVISION
+/** The camera of the frame of the last pipeline_take(). */
+uint32_t pipeline_camera(void);
+
+/** What is to be said of a camera, oldest first. @return 0 if there is nothing more */
+int pipeline_event(uint32_t *camera, const char **what);
+#endif
+
 /** Prints the reason of a failure, marks the phase and stops. */
 void fail(const char *what, const char *why) __attribute__((noreturn));
 

@@ -16,6 +16,9 @@
 #define FRAME_STRIDE_MAX ((FRAME_WIDTH_MAX * 2u * FRAME_HEIGHT_MAX + 32u + 4095u) & ~4095u)
 
 /* As many sources as there are tables, one frame that waits and one that is being captured. */
+#ifndef TABLES_MAX
+#define TABLES_MAX PARAM_TABLES_MAX
+#endif
 #ifndef IN_COUNT
 #define IN_COUNT (PARAM_TABLES_MAX + 2u)
 #endif
@@ -41,7 +44,7 @@ typedef struct fw_state {
   uint32_t torn;                /* frames whose first source row changed during the remap */
   uint32_t spurious;            /* interrupts without a pending source */
   uint32_t tables;              /* number of look-up tables in use */
-  uint32_t table_address[PARAM_TABLES_MAX]; /* of each one; the first is `lut` */
+  uint32_t table_address[TABLES_MAX]; /* of each one; the first is `lut` */
 } fw_state_t;
 
 extern fw_state_t fw_state;

@@ -1,4 +1,4 @@
-/* I2C master with polling, at 100 kHz. */
+/* I2C master with polling, at 100 kHz; at 400 kHz if compiled with I2C_FAST. */
 #ifndef FOVEA_FIRMWARE_I2C_H
 #define FOVEA_FIRMWARE_I2C_H
 

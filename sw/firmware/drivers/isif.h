@@ -4,6 +4,9 @@
 
 #include <stdint.h>
 
+#include "../mmio.h"
+#include "../regs.h"
+
 typedef struct isif_window {
   uint32_t left, top;     /* pixels, lines of the frame; top even */
   uint32_t width, height; /* pixels, lines of the frame; both even */
@@ -37,5 +40,9 @@ void isif_capture(void);
 
 /** Returns 1 while the second field of a frame is received. */
 int isif_second_field(void);
+
+/** VDINT1 comes at the start of every field (SPRU629 table 4-2: lines 1 and 313, or 4 and 266), counted
+ * from the first active line of the field before. The next VD comes 22 lines later, 16 with 525 lines. */
+static inline void isif_mark_fields(int is_625) { mmio_write32(ISIF_VDINT1, is_625 ? 291u : 247u); }
 
 #endif

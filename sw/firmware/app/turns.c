@@ -1,0 +1,92 @@
+#include "turns.h"
+
+void turns_init(turns_t *turns, uint32_t count) { *turns = (turns_t){.count = count}; }
+
+/* Each change of a camera's state is said once. */
+static void say(turns_t *t, camera_event_t event) {
+  if (t->state[t->now] == event && event != CAMERA_LOST) return;
+  t->state[t->now] = (uint8_t)event;
+  if (t->event_count == TURNS_EVENTS) {
+    ++t->lost_events;
+    return;
+  }
+  const uint32_t at = (t->first_event + t->event_count++) % TURNS_EVENTS;
+  t->events[at].camera = (uint8_t)t->now;
+  t->events[at].event = (uint8_t)event;
+}
+
+static void boundary(turns_t *t) {
+  for (uint32_t n = 0; n < t->count; ++n)
+    if (t->rest[n] != 0) --t->rest[n];
+}
+
+/* The next camera that does not rest; if all of them do, the next one. */
+static uint32_t next(turns_t *t) {
+  t->waited = 0;
+  for (uint32_t step = 1; step <= t->count; ++step) {
+    const uint32_t n = (t->now + step) % t->count;
+    if (t->rest[n] == 0) return t->now = n;
+  }
+  return t->now = (t->now + 1u) % t->count;
+}
+
+static uint32_t leave(turns_t *t, camera_event_t why) {
+  say(t, why);
+  t->rest[t->now] = TURNS_REST_FRAMES;
+  return next(t);
+}
+
+uint32_t turns_captured(turns_t *turns) {
+  boundary(turns);
+  turns->rest[turns->now] = 0;
+  say(turns, CAMERA_FINE);
+  return next(turns);
+}
+
+void turns_torn(turns_t *turns) {
+  boundary(turns);
+  turns->waited = 0;
+  say(turns, CAMERA_LOST);
+}
+
+uint32_t turns_not_ready(turns_t *turns, const signal_state_t *seen) {
+  boundary(turns);
+  if (!seen->present) return leave(turns, CAMERA_NO_SIGNAL);
+  if (seen->locked && !seen->right_standard) return leave(turns, CAMERA_WRONG_STANDARD);
+  if (++turns->waited < TURNS_LOCK_FRAMES) return turns->now;
+  return leave(turns, CAMERA_NO_LOCK);
+}
+
+uint32_t turns_no_frames(turns_t *turns) {
+  boundary(turns);
+  return leave(turns, CAMERA_NO_FRAMES);
+}
+
+int turns_event(turns_t *turns, uint32_t *camera, camera_event_t *event) {
+  if (turns->event_count == 0) return 0;
+  *camera = turns->events[turns->first_event].camera;
+  *event = (camera_event_t)turns->events[turns->first_event].event;
+  turns->first_event = (turns->first_event + 1u) % TURNS_EVENTS;
+  --turns->event_count;
+  return 1;
+}
+
+const char *camera_event_text(camera_event_t event) {
+  switch (event) {
+    case CAMERA_FINE:
+      return "frames again";
+    case CAMERA_NO_SIGNAL:
+      return "no signal";
+    case CAMERA_NO_LOCK:
+      return "no lock";
+    case CAMERA_WRONG_STANDARD:
+      return "wrong standard";
+    case CAMERA_NO_FRAMES:
+      return "no frames";
+    case CAMERA_LOST:
+      return "lock lost, a frame is left out";
+    case CAMERA_EVENTS:
+      break;
+  }
+  return "unknown";
+}
