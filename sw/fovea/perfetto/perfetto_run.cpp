@@ -135,7 +135,6 @@ void PerfettoRun::window_opened() {
 }
 
 void PerfettoRun::window_closed() {
-  if (on_) sample();
   until_ = std::min(until_, kernel_time());
   end();
 }
