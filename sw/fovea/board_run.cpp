@@ -173,6 +173,7 @@ void BoardSimulation::close_window() {
   auto& soc = board_->dm365;
   if (trace_) trace_->close();
   if (commands_) commands_->end();
+  if (perfetto_) perfetto_->window_closed();
   window_wall_s_ = seconds_since(window_wall_);
   direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
   queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;

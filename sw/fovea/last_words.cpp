@@ -81,16 +81,26 @@ std::vector<Part> parts_of(const std::vector<std::uint64_t>& tenths) {
 
 constexpr std::size_t kColumn = 8;
 
+/// Stands for a space at which no line ends, between a number and its unit.
+constexpr char kNoBreak = '\x1f';
+
+std::string unbroken(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', kNoBreak);
+  return text;
+}
+
 /// `label` in the first column, the text in the second, wrapped.
 std::string paragraph(std::string label, const std::string& text) {
   label.resize(kColumn, ' ');
-  return label + wrapped(text, kColumn) + "\n";
+  std::string out = label + wrapped(text, kColumn) + "\n";
+  std::replace(out.begin(), out.end(), kNoBreak, ' ');
+  return out;
 }
 
 /// The core's clocks by what they were spent on, in percent that add up to 100.
 std::string core_line(std::span<const StatRow> stats) {
   if (count(stats, "cpu.cycles") == 0) return "";
-  return paragraph("core", listed(parts_of(apportioned(1000, clocks(stats, "cpu."))), " %"));
+  return paragraph("core", listed(parts_of(apportioned(1000, clocks(stats, "cpu."))), "\x1f%"));
 }
 
 std::string culprit_words(const std::string& name) {
@@ -141,9 +151,9 @@ std::string wait_lines(std::span<const StatRow> stats) {
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<std::string> parts;
     for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
-      parts.push_back(fmt::format("{} {:.0f} %", g.parts[k].second, 100 * g.parts[k].first / g.total));
+      parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, 100 * g.parts[k].first / g.total));
     out += paragraph(i == 0 ? "waits" : "",
-                     fmt::format("{}, {} in all: {}", g.who, human_text(g.total, "s"), fmt::join(parts, ", ")));
+                     fmt::format("{}, {} in all: {}", g.who, unbroken(human_text(g.total, "s")), fmt::join(parts, ", ")));
   }
   return out;
 }
@@ -152,29 +162,32 @@ std::string wait_lines(std::span<const StatRow> stats) {
 std::string sdram_line(std::span<const StatRow> stats, std::optional<double> seconds) {
   std::vector<std::string> parts;
   if (const auto busy = real(stats, "ddr.utilisation"))
-    parts.push_back(fmt::format("data bus busy {:.1f} %", 100 * *busy));
+    parts.push_back(fmt::format("data bus busy {:.1f}\x1f%", 100 * *busy));
   if (const auto idle = real(stats, "ddr.headroom"))
-    parts.push_back(fmt::format("no request queued {:.1f} %", 100 * *idle));
+    parts.push_back(fmt::format("no request queued {:.1f}\x1f%", 100 * *idle));
   if (seconds && *seconds > 0)
     for (const auto& [name, what] : {std::pair("ddr.read_bytes", "reads"), std::pair("ddr.write_bytes", "writes")})
       if (const std::uint64_t bytes = count(stats, name))
-        parts.push_back(fmt::format("{} {:.1f} MB/s", what, static_cast<double>(bytes) / *seconds * 1e-6));
+        parts.push_back(fmt::format("{} {:.1f}\x1fMB/s", what, static_cast<double>(bytes) / *seconds * 1e-6));
   if (const auto hits = real(stats, "ddr.command_hit_rate"))
-    parts.push_back(fmt::format("{:.1f} % of the column commands needed no new row", 100 * *hits));
+    parts.push_back(fmt::format("{:.1f}\x1f% of the column commands needed no new row", 100 * *hits));
   if (parts.empty()) return "";
   return paragraph("SDRAM", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
 std::string host_line(std::span<const StatRow> host) {
   std::vector<std::string> parts;
-  for (const auto& [name, format] :
-       {std::pair("wall_time", "{}"), std::pair("realtime_factor", "{}"), std::pair("mips", "{} million instructions/s"),
-        std::pair("requests_per_second", "{} requests/s"), std::pair("peak_rss", "{} of memory")}) {
-    const StatRow* row = find(host, name);
-    if (!row) continue;
-    const std::string unit = row->unit == "1e6/s" || row->unit == "1/s" ? "" : row->unit;
-    parts.push_back(fmt::format(fmt::runtime(format), human_text(row->value, unit)));
-  }
+  const auto add = [&](const char* name, double scale, const char* what) {
+    if (const auto v = real(host, name)) parts.push_back(fmt::format("{:.3g}{}{}", *v * scale, kNoBreak, what));
+  };
+  const auto add_text = [&](const char* name, const char* behind) {
+    if (const StatRow* row = find(host, name)) parts.push_back(unbroken(human_text(row->value, row->unit)) + behind);
+  };
+  add_text("wall_time", "");
+  add_text("realtime_factor", "");
+  add("mips", 1, "million instructions a second");
+  add("requests_per_second", 1e-6, "million requests a second");
+  add_text("peak_rss", " of memory");
   return parts.empty() ? "" : paragraph("host", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
@@ -186,13 +199,13 @@ std::string frame_lines(std::span<const StatRow> stats) {
   const auto add = [&](const std::string& name, const std::string& what) {
     const auto mean = real(stats, name + ".mean"), min = real(stats, name + ".min"), max = real(stats, name + ".max");
     if (mean && min && max)
-      parts.push_back(fmt::format("{} {} ms ({} to {})", what, milliseconds(*mean), milliseconds(*min),
+      parts.push_back(fmt::format("{} {}\x1fms ({} to {})", what, milliseconds(*mean), milliseconds(*min),
                                   milliseconds(*max)));
   };
   add("frame.remap_time", "a remap");
   add("frame.latency", "capture to display");
   if (const auto t = real(stats, "startup.lut_time"))
-    parts.push_back("look-up table built in " + milliseconds(*t) + " ms");
+    parts.push_back("look-up table built in " + milliseconds(*t) + "\x1fms");
   return parts.empty() ? "" : paragraph("times", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
@@ -260,7 +273,7 @@ std::string exec_words(std::span<const StatRow> stats, Frequency core_clock) {
   if (instructions)
     out += fmt::format(", {:.2f} an instruction", static_cast<double>(cycles) / static_cast<double>(instructions));
   if (!core_clock.stopped())
-    out += fmt::format(": {:.6f} s at {:.5g} MHz", static_cast<double>(cycles) / core_clock.hertz(),
+    out += fmt::format(": {:.6f}\x1fs at {:.5g}\x1fMHz", static_cast<double>(cycles) / core_clock.hertz(),
                        core_clock.hertz() * 1e-6);
   return paragraph("core", out) + core_line(stats);
 }

@@ -146,6 +146,8 @@ def check(trace, folder):
             words = name.split()
             if words[0] == "register":
                 continue
+            if words[0] == "RAM":
+                words = words[1:]
             key = (master, words[0])
             n, size = of_stat.get(key, (0, 0))
             of_stat[key] = (n + 1, size + int(words[1]))

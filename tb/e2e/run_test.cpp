@@ -261,7 +261,7 @@ std::string stopped(const Keys& keys, bool strict, Picoseconds stop_at) {
     const auto r = run(keys, strict, stop_at);
     const std::string text = app::stats_json(r.stats, r.complete, {}) + app::frames_csv(r.frames) +
                              app::timeline_csv(r.timeline_masters, r.timeline) +
-                             app::stalls_csv(r.stalls) + r.uart;
+                             app::stalls_csv(r.stalls) + app::latency_csv(r.latency) + r.uart;
     for (std::size_t done = 0; done < text.size();) {
       const auto n = ::write(ends[1], text.data() + done, text.size() - done);
       if (n <= 0) ::_exit(1);

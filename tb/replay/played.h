@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -65,11 +66,13 @@ inline trace::Record read_at(Picoseconds at, std::uint32_t address) {
   return r;
 }
 
-/// All rows of stats.json.
+/// All rows of stats.json that have a value.
 inline std::map<std::string, double> figures(const Played& p) {
   std::map<std::string, double> value;
-  for (const app::StatRow& row : p.path->stats())
-    value[row.name] = std::visit([](auto v) { return static_cast<double>(v); }, row.value);
+  for (const app::StatRow& row : p.path->stats()) {
+    const double v = std::visit([](auto x) { return static_cast<double>(x); }, row.value);
+    if (std::isfinite(v)) value[row.name] = v;
+  }
   return value;
 }
 

@@ -60,7 +60,8 @@ class CliTest : public testing::Test {
 TEST_F(CliTest, RunLeavesAllFilesOfTheContract) {
   ASSERT_EQ(run(), 0) << err.str();
   for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
-                           "stalls.csv", "uart.log", "frames/frame_000000.png", "frames/frame_000003.png"})
+                           "stalls.csv", "latency.csv", "uart.log", "frames/frame_000000.png",
+                           "frames/frame_000003.png", "camera/frame_000001.png", "camera/frame_000003.png"})
     EXPECT_TRUE(fs::is_regular_file(result / name)) << name;
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
   EXPECT_EQ(stats()["complete"], true);
@@ -71,7 +72,7 @@ TEST_F(CliTest, RunLeavesAllFilesOfTheContract) {
   EXPECT_GT(host["wall_time"]["value"], 0.0);
   EXPECT_GT(host["realtime_factor"]["value"], 0.0);
   EXPECT_EQ(host["command"][0], "run");
-  EXPECT_THAT(out.str(), AllOf(HasSubstr("frame.displayed"), HasSubstr("frames")));
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("results in "), HasSubstr("\npictures in its frames/")));
 }
 
 TEST_F(CliTest, TwoRunsAreEqualInAllButHostJson) {
@@ -122,6 +123,7 @@ TEST_F(CliTest, SetMayStandBeforeTheExperiment) {
 TEST_F(CliTest, NoFramesWritesNoPictures) {
   ASSERT_EQ(run({"--no-frames"}), 0);
   EXPECT_FALSE(fs::exists(result / "frames"));
+  EXPECT_FALSE(fs::exists(result / "camera"));
 }
 
 TEST_F(CliTest, WrongInputIsOneLineAndStatusTwo) {

@@ -52,6 +52,7 @@ class FakeBoard : public app::Simulation {
         break;
       }
       if (request.frame) request.frame({i, 32, 16, uyvy});
+      if (request.camera && i > 0) request.camera({i, 32, 16, uyvy});
       app::FrameRow row;
       row.index = i;
       row.display_start = i * 40 * kPsPerMs;
@@ -76,6 +77,7 @@ class FakeBoard : public app::Simulation {
     if (request.timeline_row) request.timeline_row(result.timeline_masters, {0, kPsPerMs, {32}, {8}});
     result.timeline = {{kPsPerMs, 2 * kPsPerMs, {64}, {0}}};
     result.stalls = {{"dcache", "lut", "vpbe", 7}};
+    result.latency = {{"arm_d", "read", "first", 1000, 2000, 3}};
     result.uart = "hello from the guest\n";
     return result;
   }

@@ -134,6 +134,11 @@ void PerfettoRun::window_opened() {
   if (request_.from == "window") begin(kernel_time());
 }
 
+void PerfettoRun::window_closed() {
+  until_ = std::min(until_, kernel_time());
+  end();
+}
+
 void PerfettoRun::begin(Picoseconds at) {
   if (on_ || over_) return;
   on_ = true;
@@ -228,7 +233,10 @@ void PerfettoRun::responded(const MemRequest& r) {
 
 void PerfettoRun::register_done(const MemRequest& r) {
   if (next_) next_->register_done(r);
-  request(r, r.write ? "register write" : "register read");
+  if (r.in_path.slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam))
+    request(r, r.write ? "RAM write" : "RAM read");
+  else
+    request(r, r.write ? "register write" : "register read");
 }
 
 std::string PerfettoRun::finish() {

@@ -25,8 +25,9 @@ class PerfettoRun final : private MemObserver {
   PerfettoRun(const PerfettoRun&) = delete;
   PerfettoRun& operator=(const PerfettoRun&) = delete;
 
-  /// The window opens now.
+  /// The window opens, or closes, now. Nothing is recorded behind it.
   void window_opened();
+  void window_closed();
   /// A frame was shown.
   void frame(const video::DisplayFrame& shown, const board::FrameRecord& record);
   /// Writes the file. @throws UserError @return a sentence if events were dropped, or "" if the file holds
