@@ -33,9 +33,8 @@ module remap_clip (
   assign y = $signed({y_i[PB-1], y_i}) + (job_i.bilinear ? 31'sd0 : 31'sh8000);
   assign column = x[PB:16];
   assign line = y[PB:16];
-  assign has_source = !out_i && !column[PB-16] && !line[PB-16] &&
-                  column[12:0] < job_i.src_width && column[13] == 1'b0 &&
-                  line[12:0] < job_i.src_height && line[13] == 1'b0;
+  assign has_source = !out_i && column[PB-16:13] == 2'b00 && column[12:0] < job_i.src_width &&
+                      line[PB-16:13] == 2'b00 && line[12:0] < job_i.src_height;
   logic [12:0] column1, line1;
   logic [29:0] word1, word2;
   logic [7:0]  frac_x1, frac_y1, frac_x2, frac_y2;
