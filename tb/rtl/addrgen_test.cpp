@@ -1,0 +1,320 @@
+// The address generator against its golden model, bit by bit, and that against the firmware's table.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cmath>
+
+#include "tb/rtl/addrgen_bench.h"
+#include "tb/rtl/lens_maps.h"
+
+namespace fovea::rtl {
+
+void PrintTo(const Beat& b, std::ostream* os) {
+  *os << "{src " << b.src << " dst " << b.dst << " frac " << b.frac_x << "," << b.frac_y
+      << (b.border ? " border" : "") << (b.bad ? " bad" : "") << (b.edge_x ? " edge_x" : "")
+      << (b.edge_y ? " edge_y" : "") << (b.odd ? " odd" : "") << (b.last ? " last" : "") << "}";
+}
+
+namespace {
+
+std::uint32_t seed() {
+  static const std::uint32_t value = [] {
+    const char* text = std::getenv("FOVEA_SEED");
+    const auto s = text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 0)) : 1u;
+    std::printf("seed %u\n", s);
+    return s;
+  }();
+  return value;
+}
+
+lens_t lens_of(lens_view_t& view, unsigned width, unsigned height) {
+  lens_t lens;
+  EXPECT_EQ(lens_init(&lens, &view, width, height), LENS_OK);
+  return lens;
+}
+
+lens_view_t view_of(unsigned mapping, double fov) {
+  lens_view_t view;
+  lens_view_default(&view);
+  view.mapping = mapping;
+  view.fov_deg = fov;
+  return view;
+}
+
+/// Compares and says where the first difference is.
+void expect_equal(const std::vector<Beat>& expected, const std::vector<Beat>& got, const Job& job) {
+  ASSERT_EQ(expected.size(), got.size());
+  for (std::size_t n = 0; n < got.size(); ++n)
+    ASSERT_EQ(expected[n], got[n]) << "pair " << n % job.pairs << " of row " << n / job.pairs << ", mode "
+                                   << static_cast<unsigned>(job.mode);
+}
+
+void run_and_compare(AddrgenBench& bench, const MappedJob& m, Pace pace = {}) {
+  ASSERT_TRUE(possible(m.job));
+  const Outcome got = bench.run(m.job, m.map, pace);
+  expect_equal(addresses(m.job, m.map), got.beats, m.job);
+  EXPECT_EQ(got.map_taken, m.map.size());
+}
+
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : random_(seed) {}
+  unsigned to(unsigned n) { return static_cast<unsigned>(random_()) % (n + 1); }  ///< 0 to n
+  std::uint32_t word() { return static_cast<std::uint32_t>(random_()); }
+  std::int32_t within(std::int32_t n) {
+    return static_cast<std::int32_t>(word() % (2u * static_cast<unsigned>(n) + 1)) - n;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Any possible job of a mode with up to about 600 pairs, and a map of any words that lead somewhere near the frame.
+MappedJob random_job(Dice& dice, Mode mode) {
+  MappedJob m;
+  Job& j = m.job;
+  j.mode = mode;
+  j.bilinear = dice.to(1);
+  j.pairs = 1 + dice.to(dice.to(1) ? 70 : 3);
+  j.rows = 1 + dice.to(600 / j.pairs);
+  j.src_width = 2 * (1 + dice.to(dice.to(1) ? 200 : 4));
+  j.src_height = 1 + dice.to(dice.to(1) ? 300 : 4);
+  j.src_pitch = j.src_width / 2 + dice.to(dice.to(1) ? 0 : 20);
+  j.dst_pitch = dice.to(8191);
+  j.src_base = dice.word() >> 2;
+  j.dst_base = dice.word() >> 2;
+  const std::int32_t width = static_cast<std::int32_t>(j.src_width), height = static_cast<std::int32_t>(j.src_height);
+  const std::int32_t pairs = static_cast<std::int32_t>(j.pairs), rows = static_cast<std::int32_t>(j.rows);
+  // Forms that cross the frame once, more or less, and are a little beyond it.
+  j.a[0] = dice.within(width << 14);
+  j.a[1] = (dice.within(width << 14) + (width << 16)) / pairs;
+  j.a[2] = dice.within(width << 14) / rows;
+  j.b[0] = dice.within(height << 14);
+  j.b[1] = dice.within(height << 14) / pairs;
+  j.b[2] = (dice.within(height << 14) + (height << 16)) / rows;
+  j.c[0] = j.b[0];
+  j.c[1] = j.b[1];
+  j.c[2] = j.b[2] + dice.within(1 << 14);
+  if (dice.to(7) == 0)  // anything at all
+    for (auto* form : {&j.a, &j.b, &j.c})
+      for (auto& k : *form) k = static_cast<std::int32_t>(dice.word());
+  switch (mode) {
+    case Mode::kTable:
+      break;
+    case Mode::kGrid:
+      j.grid_log2 = 2 + dice.to(4);
+      break;
+    case Mode::kRadial:
+      j.pieces = 1 + dice.to(127);
+      j.piece_log2 = dice.to(12);
+      if (dice.to(1)) j.radius_limit = dice.word() >> dice.to(16);
+      j.piece_log2 += 6;
+      j.centre_x = dice.within(width << 15) + (width << 14);
+      j.centre_y = dice.within(height << 15) + (height << 14);
+      break;
+    case Mode::kProject: {
+      const std::int32_t scale = 1 << dice.to(6);
+      for (auto* form : {&j.a, &j.b})
+        for (auto& k : *form) k = k / 256 * scale;
+      j.c[0] = 256 * scale + dice.within(16 * scale);
+      j.c[1] = dice.within(4 * scale);
+      j.c[2] = dice.within(4 * scale);
+      if (dice.to(3) == 0) j.c[0] = (1 << 24) - static_cast<std::int32_t>(dice.to(200));
+      break;
+    }
+  }
+  m.map.resize(map_words(j));
+  const std::uint32_t end = j.src_height * j.src_pitch * 4;
+  for (std::uint32_t& word : m.map) {
+    if (mode == Mode::kTable)
+      word = dice.to(15) ? (dice.word() % (end + 8)) & ~(dice.to(31) ? 3u : 0u)
+                         : std::array{end - 4, end, end + 4, 0xFFFFFFFCu}[dice.to(3)];
+    else if (mode == Mode::kGrid)
+      word = dice.to(15) ? (dice.word() & 0x007F007F) : dice.word();
+    else
+      word = dice.to(31) ? static_cast<std::uint32_t>(dice.within(1 << 18) + (1 << 19)) : dice.word();
+  }
+  return m;
+}
+
+TEST(AddrgenTest, RandomJobsEqualTheGoldenModelUnderAnyBackPressure) {
+  Dice dice(seed());
+  AddrgenBench bench(seed());
+  std::size_t count[4] = {}, with_source[4] = {};
+  for (unsigned n = 0; n < 400; ++n) {
+    const MappedJob m = random_job(dice, static_cast<Mode>(n % 4));
+    const Pace pace{1 + dice.to(15), 1 + dice.to(15)};
+    ASSERT_TRUE(possible(m.job));
+    const Outcome got = bench.run(m.job, m.map, pace);
+    expect_equal(addresses(m.job, m.map), got.beats, m.job);
+    if (HasFatalFailure()) FAIL() << "job " << n;
+    ASSERT_EQ(got.map_taken, m.map.size()) << "job " << n;
+    for (const Beat& b : got.beats) ++count[n % 4], with_source[n % 4] += !b.border;
+  }
+  // Neither all border nor none: the comparison has seen both.
+  for (unsigned mode = 0; mode < 4; ++mode) {
+    EXPECT_GT(with_source[mode], count[mode] / 20) << "mode " << mode;
+    EXPECT_LT(with_source[mode], count[mode] * 49 / 50) << "mode " << mode;
+  }
+}
+
+TEST(AddrgenTest, FollowsTheFirmwaresTableForEveryMappingAndSize) {
+  AddrgenBench bench;
+  const struct { unsigned width, height, mapping; double fov; } cases[] = {
+      {720, 576, LENS_EQUISOLID, 180}, {720, 480, LENS_LINEAR, 190},    {640, 480, LENS_STEREOGRAPHIC, 200},
+      {4, 4, LENS_ORTHOGRAPHIC, 170},  {2, 1, LENS_EQUISOLID, 180}, {64, 2, LENS_RECTILINEAR, 120}};
+  for (const auto& c : cases) {
+    lens_view_t view = view_of(c.mapping, c.fov);
+    view.shift_x = 3;
+    const lens_t lens = lens_of(view, c.width, c.height);
+    const MappedJob m = table_job(lens);
+    run_and_compare(bench, m);
+    // And without the golden model: the firmware's loop reads frame + entry.
+    const Outcome got = bench.run(m.job, m.map);
+    for (std::size_t n = 0; n < m.map.size(); ++n) {
+      const Beat& b = got.beats[n];
+      if (m.map[n] == lens_black_offset(c.height, c.width * 2)) {
+        ASSERT_TRUE(b.border && !b.bad);
+      } else {
+        ASSERT_EQ(b.src, m.job.src_base + m.map[n] / 4);
+      }
+      ASSERT_EQ(b.dst, m.job.dst_base + n);
+    }
+  }
+}
+
+TEST(AddrgenTest, OnePairAClockInEveryModeAfterItsStart) {
+  AddrgenBench bench;
+  lens_view_t view = view_of(LENS_EQUISOLID, 180);
+  const lens_t lens = lens_of(view, 720, 576);
+  const std::uint64_t pairs = 360 * 576;
+  // Start: 8 clocks of pipeline. Grid: two rows of 46 nodes before the first pair. Radial: the coefficients, one a
+  // clock. Project: 23 stages.
+  const MappedJob table = table_job(lens), grid = grid_job(lens, 4), radial = radial_job(lens);
+  EXPECT_LE(bench.run(table.job, table.map).clocks, pairs + 8);
+  EXPECT_LE(bench.run(grid.job, grid.map).clocks, pairs + 2 * 46 + 16);
+  EXPECT_LE(bench.run(radial.job, radial.map).clocks, pairs + radial.map.size() + 16);
+  Job project;
+  project.mode = Mode::kProject;
+  project.pairs = 360;
+  project.rows = 576;
+  project.c[0] = 1;
+  EXPECT_LE(bench.run(project, {}).clocks, pairs + 32);
+}
+
+/// Share of the pairs whose source differs from that of the firmware's table.
+double share_of_other_sources(const Outcome& got, const MappedJob& table) {
+  std::size_t other = 0;
+  for (std::size_t n = 0; n < table.map.size(); ++n) {
+    const bool black = table.map[n] == table.job.src_pitch * table.job.src_height * 4;
+    other += black ? !got.beats[n].border : got.beats[n].src != table.job.src_base + table.map[n] / 4;
+  }
+  return static_cast<double>(other) / static_cast<double>(table.map.size());
+}
+
+TEST(AddrgenTest, GridAndRadialFunctionComeCloseToTheTable) {
+  AddrgenBench bench;
+  for (const unsigned mapping : {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
+    lens_view_t view = view_of(mapping, 180);
+    view.in_aspect = 1.09;
+    const lens_t lens = lens_of(view, 720, 576);
+    const MappedJob table = table_job(lens), grid = grid_job(lens, 3), radial = radial_job(lens);
+    const Outcome by_radius = bench.run(radial.job, radial.map);
+    expect_equal(addresses(radial.job, radial.map), by_radius.beats, radial.job);
+    // Positions err by about 1/256 px, the coefficients' and the centre's rounding; an entry changes in one of two
+    // directions: twice that share at most, on both axes.
+    EXPECT_LT(share_of_other_sources(by_radius, table), 4.0 / 256);
+    // Nodes are rounded to 1/16 px: at most half of that on average on each axis.
+    const Outcome by_grid = bench.run(grid.job, grid.map);
+    expect_equal(addresses(grid.job, grid.map), by_grid.beats, grid.job);
+    EXPECT_LT(share_of_other_sources(by_grid, table), 2.0 / 32);
+    std::printf("mapping %u: other pair than the table's: radial %.3f %%, grid of 8 px %.2f %%\n", mapping,
+                100 * share_of_other_sources(by_radius, table), 100 * share_of_other_sources(by_grid, table));
+  }
+}
+
+TEST(AddrgenTest, AHomographyMapsTheCornersOfItsPlane) {
+  // x = (256 u + 40) / (256 + v): at v = 0 a picture at its own scale, at v = 256 at half of it.
+  MappedJob m;
+  Job& j = m.job;
+  j.mode = Mode::kProject;
+  j.pairs = 100;
+  j.rows = 257;
+  j.src_width = 400;
+  j.src_height = 300;
+  j.src_pitch = 200;
+  j.a[0] = 40;
+  j.a[1] = 512;
+  j.b[2] = 256;
+  j.c[0] = 256;
+  j.c[2] = 1;
+  AddrgenBench bench;
+  const Outcome got = bench.run(j, {});
+  expect_equal(addresses(j, {}), got.beats, j);
+  const auto at = [&](unsigned pair, unsigned row) { return got.beats[row * 100 + pair].src; };
+  EXPECT_EQ(at(0, 0), 0u);          // 40 / 256 px
+  EXPECT_EQ(at(99, 0), 99u);        // pixel 198.16
+  EXPECT_EQ(at(99, 256), 128u * 200 + 49);  // pixel (99.08, 128)
+}
+
+TEST(AddrgenTest, AnAbandonedJobLeavesNothingBehind) {
+  Dice dice(seed() + 1);
+  AddrgenBench bench(seed() + 1);
+  for (unsigned n = 0; n < 120; ++n) {
+    const MappedJob first = random_job(dice, static_cast<Mode>(dice.to(3)));
+    const MappedJob second = random_job(dice, static_cast<Mode>(dice.to(3)));
+    const std::size_t limit = dice.to(static_cast<unsigned>(first.job.pairs * first.job.rows - 1));
+    bench.run(first.job, first.map, {1 + dice.to(15), 1 + dice.to(15)}, limit);
+    run_and_compare(bench, second, {1 + dice.to(15), 1 + dice.to(15)});
+    if (HasFatalFailure()) FAIL() << "job " << n;
+  }
+}
+
+TEST(AddrgenTest, JobsBeyondTheLimitsAreRefusedAndThoseAtTheLimitsAreNot) {
+  AddrgenBench bench;
+  Job good;
+  good.pairs = 8;
+  good.rows = 8;
+  good.src_width = 16;
+  good.src_height = 8;
+  good.src_pitch = 8;
+  const auto check = [&](bool refused, auto change) {
+    Job job = good;
+    change(job);
+    EXPECT_EQ(bench.refused(job), refused);
+    EXPECT_EQ(possible(job), !refused);
+  };
+  check(false, [](Job&) {});
+  check(true, [](Job& j) { j.pairs = 0; });
+  check(false, [](Job& j) { j.pairs = 2048; });
+  check(true, [](Job& j) { j.pairs = 2049; });
+  check(true, [](Job& j) { j.rows = 0; });
+  check(false, [](Job& j) { j.rows = 4096; });
+  check(true, [](Job& j) { j.rows = 4097; });
+  check(true, [](Job& j) { j.src_width = 0; });
+  check(true, [](Job& j) { j.src_width = 15; });
+  check(true, [](Job& j) { j.src_width = 18; });  // wider than the pitch
+  check(false, [](Job& j) { j.src_width = 4096, j.src_pitch = 2048; });
+  check(true, [](Job& j) { j.src_width = 4098, j.src_pitch = 4095; });
+  check(true, [](Job& j) { j.src_height = 0; });
+  check(false, [](Job& j) { j.src_height = 4096; });
+  check(true, [](Job& j) { j.src_height = 4097; });
+  const auto grid = [](unsigned log2, unsigned pairs) {
+    return [=](Job& j) { j.mode = Mode::kGrid, j.grid_log2 = log2, j.pairs = pairs; };
+  };
+  check(true, grid(1, 8));
+  check(false, grid(2, 510));  // 256 nodes
+  check(true, grid(2, 511));   // 257 nodes
+  check(false, grid(6, 2048));
+  check(true, grid(7, 8));
+  const auto radial = [](unsigned pieces, unsigned log2) {
+    return [=](Job& j) { j.mode = Mode::kRadial, j.pieces = pieces, j.piece_log2 = log2; };
+  };
+  check(true, radial(0, 0));
+  check(false, radial(128, 23));
+  check(true, radial(129, 0));
+  check(true, radial(1, 24));
+}
+
+}  // namespace
+}  // namespace fovea::rtl

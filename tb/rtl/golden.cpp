@@ -1,0 +1,157 @@
+#include "tb/rtl/golden.h"
+
+#include <optional>
+
+namespace fovea::rtl {
+namespace {
+
+using Wide = __int128;
+
+std::int64_t floor_shift(std::int64_t value, unsigned bits) { return value >> bits; }
+
+bool fits(std::int64_t value, unsigned bits) {
+  const std::int64_t limit = std::int64_t{1} << (bits - 1);
+  return value >= -limit && value < limit;
+}
+
+std::int64_t wrap(std::int64_t value, unsigned bits) {
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const std::uint64_t low = static_cast<std::uint64_t>(value) & mask;
+  return low >> (bits - 1) ? static_cast<std::int64_t>(low) - (std::int64_t{1} << bits)
+                           : static_cast<std::int64_t>(low);
+}
+
+std::int64_t form(const std::int32_t (&k)[3], unsigned i, unsigned j) {
+  return wrap(k[0] + std::int64_t{k[1]} * i + std::int64_t{k[2]} * j, 36);
+}
+
+/// A source position in pixels, Q16.
+struct Position {
+  std::int64_t x, y;
+};
+
+Position node_offset(std::uint32_t node) {
+  return {static_cast<std::int16_t>(node & 0xFFFF), static_cast<std::int16_t>(node >> 16)};
+}
+
+std::optional<Position> by_grid(const Job& job, std::span<const std::uint32_t> map, unsigned i,
+                                unsigned j) {
+  const unsigned step = 1u << job.grid_log2, nodes = grid_nodes(job);
+  const unsigned u = 2 * i, g = u / step, h = j / step;
+  const std::int64_t p = u % step, q = j % step, s = step;
+  const auto at = [&](unsigned column, unsigned row) { return node_offset(map[row * nodes + column]); };
+  const Position n00 = at(g, h), n10 = at(g + 1, h), n01 = at(g, h + 1), n11 = at(g + 1, h + 1);
+  const auto blend = [&](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
+    return ((s - p) * (s - q) * a + p * (s - q) * b + (s - p) * q * c + p * q * d) *
+           (std::int64_t{1} << (12 - 2 * job.grid_log2));
+  };
+  return Position{form(job.a, i, j) + blend(n00.x, n10.x, n01.x, n11.x),
+                  form(job.b, i, j) + blend(n00.y, n10.y, n01.y, n11.y)};
+}
+
+std::optional<Position> by_radius(const Job& job, std::span<const std::uint32_t> map, unsigned i,
+                                  unsigned j) {
+  const std::int64_t x = floor_shift(form(job.a, i, j), 8), y = floor_shift(form(job.b, i, j), 8),
+                     z = floor_shift(form(job.c, i, j), 8);
+  if (!fits(x, 20) || !fits(y, 20) || !fits(z, 20)) return {};
+  const std::int64_t s = x * x + y * y;
+  const std::int64_t n = s >> (16 + job.piece_log2), t = (s >> job.piece_log2) & 0xFFFF;
+  if (n >= job.pieces || (s >> 8) > job.radius_limit) return {};
+  const auto coefficient = [&](unsigned k) {
+    return wrap(map[static_cast<std::size_t>(n) * 3 + k] & 0x3FFFFFF, 26);
+  };
+  const std::int64_t inner = coefficient(1) + floor_shift(coefficient(2) * t, 16);
+  const std::int64_t gain = coefficient(0) + floor_shift(inner * t, 16);
+  return Position{job.centre_x + floor_shift(gain * x, 12), job.centre_y + floor_shift(gain * z, 12)};
+}
+
+std::optional<Position> by_division(const Job& job, unsigned i, unsigned j) {
+  const std::int64_t a = form(job.a, i, j), b = form(job.b, i, j), c = form(job.c, i, j);
+  if (c <= 0 || c >= 1 << 24) return {};
+  const auto quotient = [&](std::int64_t n) -> std::optional<std::int64_t> {
+    const std::int64_t size = n < 0 ? -n : n;
+    if (size >= c * 8192) return {};
+    const std::int64_t q = static_cast<std::int64_t>(Wide{size} * 256 / c) * 256;
+    return n < 0 ? -q : q;
+  };
+  const auto x = quotient(a), y = quotient(b);
+  if (!x || !y) return {};
+  return Position{*x, *y};
+}
+
+void place_position(const Job& job, std::optional<Position> p, Beat& beat) {
+  beat.border = true;
+  if (!p || !fits(p->x, 30) || !fits(p->y, 30)) return;
+  const std::int64_t half = job.bilinear ? 0 : 0x8000;
+  const std::int64_t column = floor_shift(p->x + half, 16), row = floor_shift(p->y + half, 16);
+  if (column < 0 || column >= job.src_width || row < 0 || row >= job.src_height) return;
+  beat.border = false;
+  beat.edge_x = column / 2 == job.src_width / 2 - 1;
+  beat.edge_y = row == job.src_height - 1;
+  if (job.bilinear) {
+    beat.odd = column % 2 != 0;
+    beat.frac_x = (p->x >> 8) & 0xFF;
+    beat.frac_y = (p->y >> 8) & 0xFF;
+  }
+  beat.src = (job.src_base + static_cast<std::uint32_t>(row) * job.src_pitch +
+              static_cast<std::uint32_t>(column / 2)) &
+             0x3FFFFFFF;
+}
+
+void place_entry(const Job& job, std::uint32_t entry, Beat& beat) {
+  const std::uint32_t end = job.src_height * job.src_pitch * 4;
+  beat.border = entry % 4 != 0 || entry >= end;
+  beat.bad = beat.border && entry != end;
+  if (!beat.border) beat.src = (job.src_base + entry / 4) & 0x3FFFFFFF;
+}
+
+unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+unsigned grid_nodes(const Job& job) { return ceil_div(2 * job.pairs, 1u << job.grid_log2) + 1; }
+unsigned grid_rows(const Job& job) { return ceil_div(job.rows, 1u << job.grid_log2) + 1; }
+
+bool possible(const Job& job) {
+  const auto between = [](unsigned value, unsigned low, unsigned high) {
+    return value >= low && value <= high;
+  };
+  if (!between(job.pairs, 1, 2048) || !between(job.rows, 1, 4096)) return false;
+  if (!between(job.src_width, 1, 4096) || job.src_width % 2 || !between(job.src_height, 1, 4096))
+    return false;
+  if (job.src_pitch < job.src_width / 2) return false;
+  if (job.mode == Mode::kGrid) return between(job.grid_log2, 2, 6) && grid_nodes(job) <= 256;
+  if (job.mode == Mode::kRadial) return between(job.pieces, 1, 128) && job.piece_log2 <= 23;
+  return true;
+}
+
+std::size_t map_words(const Job& job) {
+  switch (job.mode) {
+    case Mode::kTable: return std::size_t{job.pairs} * job.rows;
+    case Mode::kGrid: return std::size_t{grid_nodes(job)} * grid_rows(job);
+    case Mode::kRadial: return std::size_t{job.pieces} * 3;
+    case Mode::kProject: break;
+  }
+  return 0;
+}
+
+std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map) {
+  std::vector<Beat> beats;
+  beats.reserve(std::size_t{job.pairs} * job.rows);
+  for (unsigned j = 0; j < job.rows; ++j)
+    for (unsigned i = 0; i < job.pairs; ++i) {
+      Beat beat;
+      beat.dst = (job.dst_base + j * job.dst_pitch + i) & 0x3FFFFFFF;
+      switch (job.mode) {
+        case Mode::kTable: place_entry(job, map[std::size_t{j} * job.pairs + i], beat); break;
+        case Mode::kGrid: place_position(job, by_grid(job, map, i, j), beat); break;
+        case Mode::kRadial: place_position(job, by_radius(job, map, i, j), beat); break;
+        case Mode::kProject: place_position(job, by_division(job, i, j), beat); break;
+      }
+      beats.push_back(beat);
+    }
+  if (!beats.empty()) beats.back().last = true;
+  return beats;
+}
+
+}  // namespace fovea::rtl
