@@ -251,7 +251,7 @@ std::string Table::html() const {
     head += fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"n\"" : "",
                         escaped(is_number ? h.substr(1) : h));
   }
-  return fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>"
+  return fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table>"
                      "<caption>{}</caption><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
                      escaped(caption_), escaped(caption_), head, rows_);
 }

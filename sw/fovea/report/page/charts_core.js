@@ -104,7 +104,7 @@ function drawFlame(place, run) {
       const inPath = chain.length < path.length;
       const g = element('g', {class: 'box', tabindex: w > 12 ? 0 : undefined, role: w > 12 ? 'button' : undefined,
                               'aria-label': w > 12 ? `${node.name}, ${percent(node.clocks / root.clocks)}` : undefined},
-        element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
+        w > 12 ? undefined : element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
         element('rect', {x, y: row * step, width: w, height: step - 1, class: 'edge', fill: inPath ? 'var(--c9)' : `var(--c${[0, 4, 2, 3, 6][row % 5]})`, 'fill-opacity': 0.55}));
       const letters = Math.floor((w - 8) / 6.6);
       if (letters > 2) g.append(text(x + 4, row * step + 15, node.name.length > letters ? `${node.name.slice(0, letters - 1)}\u2026` : node.name));
