@@ -253,7 +253,7 @@ TEST_F(CliTest, VersionNamesTheCommit) {
 TEST_F(CliTest, HelpFitsEightyColumnsAndShowsDefaults) {
   for (const std::vector<std::string>& args : std::vector<std::vector<std::string>>{
            {"--help"}, {"run", "--help"}, {"exec", "--help"}, {"replay", "--help"},
-           {"params", "--help"}, {"completion", "--help"},
+           {"params", "--help"}, {"report", "--help"}, {"completion", "--help"},
            {"trace", "--help"}, {"trace", "convert", "--help"}, {"trace", "info", "--help"}}) {
     ASSERT_EQ(cli(args), 0) << args[0] << err.str();
     std::istringstream lines(out.str());
@@ -288,7 +288,7 @@ TEST_F(CliTest, CompletionOffersWhatIsDeclared) {
   ASSERT_EQ(cli({"completion", "bash"}), 0) << err.str();
   const std::string script = out.str();
   const auto offer = [&](const std::string& words) { return offered(script, dir / "c.sh", words); };
-  EXPECT_EQ(offer("fovea r"), "run replay\n");
+  EXPECT_EQ(offer("fovea r"), "run replay report\n");
   EXPECT_EQ(offer("fovea run --no"), "--no-frames\n");
   EXPECT_EQ(offer("fovea run --sync s"), "strict\n");
   EXPECT_EQ(offer("fovea run --sync = s"), "strict\n");

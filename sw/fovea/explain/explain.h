@@ -20,11 +20,19 @@ struct Finding {
   bool estimate = false;  ///< says what a change would do, which this run did not try
 };
 
+/// A function's clocks in the frames of a run, from profile.csv.
+struct FunctionClocks {
+  std::string name;
+  double clocks = 0;
+  std::map<std::string, double> causes;  ///< clocks by cause; "issue" and "idle..." are among them
+};
+
 /// What the rules look at. All of it may be missing; then the rules that need it are silent.
 struct Inputs {
   std::span<const app::StatRow> stats;
   std::span<const app::StallRow> stalls;
   std::span<const app::FrameRow> frames;
+  std::span<const FunctionClocks> functions = {};
   /// Values of parameters as text ("3 cycles"); empty for an unknown key.
   std::function<std::string(std::string_view key)> parameter = {};
 };

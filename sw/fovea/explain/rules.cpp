@@ -58,17 +58,16 @@ void find_rate(const Run& run, std::vector<Finding>& out) {
                    {"frame.displayed", "frame.repeated", "frame.dropped"}});
   } else {
     out.push_back({"rate",
-                   fmt::format("The board does not keep up with the camera: {} of the {} an earlier "
-                               "picture again, and {} never shown.",
-                               repeated == 1 ? "1" : fmt::format("{:.0f}", repeated),
-                               counted(*displayed, "displayed frame") + (repeated == 1 ? " shows" : " show"),
-                               counted(dropped, "captured frame") + (dropped <= 1 ? " was" : " were")),
+                   fmt::format("The board does not keep up with the camera: {:.0f} of the {} {} an earlier "
+                               "picture again, and {:.0f} captured {} never shown.",
+                               repeated, counted(*displayed, "displayed frame"), repeated == 1 ? "shows" : "show",
+                               dropped, dropped == 1 ? "frame was" : "frames were"),
                    {"frame.displayed", "frame.repeated", "frame.dropped"}});
   }
   if (const double n = run.value_or_zero("capture.overflows"); n > 0)
     out.push_back({"overflow",
-                   fmt::format("{} of captured data {} lost, because the memory did not take them in time.",
-                               counted(n, "burst"), n == 1 ? "was" : "were"),
+                   fmt::format("{} of captured data {} lost, because the memory did not take {} in time.",
+                               counted(n, "burst"), n == 1 ? "was" : "were", n == 1 ? "it" : "them"),
                    {"capture.overflows"}});
   if (const double n = run.value_or_zero("display.underflows"); n > 0)
     out.push_back({"underflow",
@@ -132,10 +131,10 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
   for (const auto& [culprit, n] : run.culprits(cause)) {
     // Two parts say where it goes; smaller ones distract.
     if (parts.size() == 2 || n < 0.1 * clocks) break;
-    parts.push_back(fmt::format("{} of that {}", percent(n / clocks), spent(culprit)));
+    parts.push_back(fmt::format("{}{} {}", percent(n / clocks), parts.empty() ? " of that" : "", spent(culprit)));
     evidence.push_back("cpu.stall." + cause + ".by." + culprit);
   }
-  if (!parts.empty()) text += ": " + listed(parts);
+  if (!parts.empty()) text += fmt::format(" ({})", listed(parts));
   text += ".";
   if (const auto regions = run.regions(cause); !regions.empty() && regions.front().first != "none") {
     std::vector<std::string> names;
@@ -152,18 +151,52 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
   out.push_back({"largest_wait", text, evidence});
 }
 
+void find_function(const Run& run, std::vector<Finding>& out) {
+  const auto functions = run.functions();
+  if (functions.empty()) return;
+  double all = 0;
+  for (const auto& f : functions) {
+    all += f.clocks;
+    for (const auto& [cause, n] : f.causes)
+      if (cause.starts_with("idle")) all -= n;
+  }
+  const FunctionClocks* largest = nullptr;
+  double most = 0;
+  for (const auto& f : functions) {
+    double awake = f.clocks;
+    for (const auto& [cause, n] : f.causes)
+      if (cause.starts_with("idle")) awake -= n;
+    if (awake > most) {
+      most = awake;
+      largest = &f;
+    }
+  }
+  if (!largest || all <= 0) return;
+  std::string text = fmt::format("The function {} takes {} of the core's awake clocks", largest->name, percent(most / all));
+  const std::pair<const std::string, double>* wait = nullptr;
+  for (const auto& cause : largest->causes)
+    if (cause.first != "issue" && !cause.first.starts_with("idle") && (!wait || cause.second > wait->second)) wait = &cause;
+  if (wait && wait->second >= 0.01 * most)
+    text += fmt::format(", and waits in {} of these for {}", percent(wait->second / most), waits_for(wait->first));
+  out.push_back({"function", text + ".", {"profile.csv"}});
+}
+
 void find_other_masters(const Run& run, std::vector<Finding>& out) {
   const double awake = run.awake();
   if (awake <= 0) return;
-  std::vector<std::string> parts;
+  std::map<std::string, double> clocks;  // the EDMA has several ports
   double all = 0;
   for (const auto& [culprit, n] : run.culprits()) {
     if (culprit.starts_with("arm_") || master(culprit).empty()) continue;
     all += n;
-    if (n >= 0.001 * awake)
-      parts.push_back(fmt::format("{} {}", master(culprit), percent(n / awake)));
+    clocks[master(culprit)] += n;
   }
   if (all == 0) return;
+  std::vector<std::pair<std::string, double>> order(clocks.begin(), clocks.end());
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::string> parts;
+  for (const auto& [name, n] : order)
+    if (n >= 0.001 * awake) parts.push_back(fmt::format("{} {}", name, percent(n / awake)));
   out.push_back({"other_masters",
                  fmt::format("Waiting while other masters are served adds {} to the core's awake clocks{}{}.",
                              percent(all / awake), parts.empty() ? "" : ": ", listed(parts)),

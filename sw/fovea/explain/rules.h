@@ -24,6 +24,8 @@ class Run {
   std::span<const app::StallRow> stalls() const { return inputs_.stalls; }
   std::span<const app::FrameRow> frames() const { return inputs_.frames; }
 
+  std::span<const FunctionClocks> functions() const { return inputs_.functions; }
+
   /// Clocks in which the core is awake: all but cpu.idle. 0 if not known.
   double awake() const;
   /// The core's stall causes with their clocks, largest first; none without clocks.
@@ -46,6 +48,7 @@ void find_rate(const Run& run, std::vector<Finding>& out);
 void find_budget(const Run& run, std::vector<Finding>& out);
 void find_latency_parts(const Run& run, std::vector<Finding>& out);
 void find_largest_wait(const Run& run, std::vector<Finding>& out);
+void find_function(const Run& run, std::vector<Finding>& out);
 void find_other_masters(const Run& run, std::vector<Finding>& out);
 void find_rows(const Run& run, std::vector<Finding>& out);
 void find_sdram_use(const Run& run, std::vector<Finding>& out);

@@ -25,7 +25,7 @@ constexpr std::array kCauses{
 
 constexpr std::array kCulprits{
     Words{"bridge", "in the bridge between core and crossbar"},
-    Words{"service", "on the way through crossbar and SDRAM controller, which is needed anyway"},
+    Words{"service", "on the way through crossbar and SDRAM controller, others apart"},
     Words{"core", "behind other accesses of the core itself"},
     Words{"own", "behind other accesses of the core itself"},
     Words{"row_miss", "on opening rows of closed banks"},
@@ -56,7 +56,7 @@ std::string waits_for(std::string_view cause) {
 std::string master(std::string_view culprit) {
   std::string_view words = look_up(kMasters, culprit);
   if (words.empty() && culprit.starts_with("edma_tc")) words = "the EDMA";
-  return words.empty() ? "" : fmt::format("{} ({})", words, culprit);
+  return std::string(words);
 }
 
 std::string spent(std::string_view culprit) {

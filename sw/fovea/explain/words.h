@@ -7,9 +7,9 @@ namespace fovea::explain {
 
 /// What a stall cause waits for, to follow "waits for": "line fills of the D-cache".
 std::string waits_for(std::string_view cause);
-/// Where a culprit's clocks go, to follow "is spent": "in the bridges".
+/// Where a culprit's clocks go, to follow "12 %": "in the bridge between core and crossbar".
 std::string spent(std::string_view culprit);
-/// A master in words: "the display (vpbe)"; empty for culprits that are not masters.
+/// A master in words: "the display"; empty for culprits that are not masters.
 std::string master(std::string_view culprit);
 /// "43 %", "4.3 %", "less than 0.1 %".
 std::string percent(double ratio);

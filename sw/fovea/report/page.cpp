@@ -16,8 +16,8 @@ namespace {
 constexpr std::string_view kStart = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
                                     "<meta name=\"generator\" content=\"fovea report\">\n";
 
-/// Of 3 MB for the page; the rest is for text and charts.
-constexpr std::size_t kPictureBytes = 2'200'000;
+/// A page is below 3 MB; pictures get what text and charts leave, and something in any case.
+constexpr std::size_t kPageBytes = 2'900'000, kLeastPictureBytes = 400'000;
 
 struct Section {
   const char *id, *title;
@@ -40,10 +40,9 @@ bool is_report_page(std::string_view first_bytes) { return first_bytes.starts_wi
 std::string report_page(const std::vector<Results>& runs) {
   std::string title;
   for (const auto& run : runs) title += (title.empty() ? "" : ", ") + run.name;
-  const std::vector<Section> sections{
+  std::vector<Section> sections{
       {"verdict", "Verdict", verdict_section(runs)},
-      {"findings", "Findings", findings_section(runs)},
-      {"pictures", "Pictures", pictures_section(runs, choose_pictures(runs, kPictureBytes))},
+      {"pictures", "Pictures", ""},
       {"frames", "Frames over time", frames_section(runs)},
       {"bandwidth", "Bandwidth", bandwidth_section(runs)},
       {"latency", "SDRAM latency", latency_section(runs)},
@@ -53,7 +52,11 @@ std::string report_page(const std::vector<Results>& runs) {
       {"configuration", "Configuration", configuration_section(runs)},
       {"figures", "All figures", figures_section(runs)},
       {"provenance", "Provenance", provenance_section(runs)}};
-  const std::string script(kScript);
+  const std::string script(kScript), data = data_json(runs);
+  std::size_t used = script.size() + data.size() + kStyle.size();
+  for (const auto& s : sections) used += s.html.size();
+  const std::size_t left = std::max(kPageBytes - std::min(used, kPageBytes), kLeastPictureBytes);
+  sections[1].html = pictures_section(runs, choose_pictures(runs, left));
   std::string out = fmt::format(
       "{}<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
       "style-src 'unsafe-inline'; script-src '{}'\">\n"
@@ -71,7 +74,7 @@ std::string report_page(const std::vector<Results>& runs) {
     out += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
                        s.id, s.title, s.html);
   out += fmt::format("</main>\n<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n</html>\n",
-                     data_json(runs), script);
+                     data, script);
   return out;
 }
 
@@ -87,11 +90,11 @@ std::string report_text(const std::vector<Results>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     out += app::printable(title_of(runs, i)) + "\n" + app::verdict(runs[i].stats);
     if (!runs[i].complete) out += "These results are partial.\n";
-    list(explain::explain(inputs_of(runs[i])));
+    list(findings_of(runs[i]));
   }
   for (std::size_t i = 1; i < runs.size(); ++i) {
     out += fmt::format("{} against A\n", run_label(i));
-    list(explain::explain_difference(inputs_of(runs[0]), "A", inputs_of(runs[i]), run_label(i)));
+    list(differences_of(runs, i));
   }
   return out;
 }

@@ -16,15 +16,14 @@ namespace {
 constexpr std::size_t kMaxFunctions = 40;
 
 std::string percent_cell(double part, double all) {
-  return all > 0 ? fmt::format("<data value=\"{}\">{}</data>", app::number_text(part / all),
-                               explain::percent(part / all))
-                 : "";
+  if (all <= 0) return "";
+  const bool small = part > 0 && part < 0.001 * all;  // too many of them in a column for words
+  return fmt::format("<data value=\"{}\">{}</data>", app::number_text(part / all),
+                     small ? "&lt; 0.1 %" : explain::percent(part / all));
 }
 
-std::string clocks_cell(std::uint64_t clocks) {
-  return fmt::format("<data value=\"{0}\">{1}</data>", clocks,
-                     fmt::format(std::locale::classic(), "{}", clocks));
-}
+/// Clocks are whole numbers far below 2^53.
+std::string clocks_cell(double clocks) { return fmt::format("<data value=\"{0:.0f}\">{0:.0f}</data>", clocks); }
 
 /// Masters of `prefix`MASTER`suffix` figures that have a value, in the order of the figures.
 std::vector<std::string> masters_of(const Results& run, std::string_view prefix, std::string_view suffix) {
@@ -79,55 +78,51 @@ std::string stalls_table(const Results& run) {
   rows.resize(std::min(rows.size(), kShown));
   for (const auto& r : rows)
     table.row({escaped(explain::waits_for(r.cause)), escaped(r.cause), escaped(r.region), escaped(r.culprit),
-               clocks_cell(r.cycles),
+               clocks_cell(static_cast<double>(r.cycles)),
                percent_cell(static_cast<double>(r.cycles), run.value("cpu.cycles").value_or(0))});
   return table.html();
 }
 
-struct FunctionRow {
-  std::string where;
-  std::uint64_t clocks = 0, issue = 0, instructions = 0;
-  std::map<std::string, std::uint64_t> causes;
-};
-
-/// Phase whose functions are listed: that of the frames where there is one.
-std::string phase_of(const std::vector<ProfileRow>& rows) {
-  for (const auto& r : rows)
-    if (r.phase == "frames") return r.phase;
-  return "";
-}
-
-std::map<std::string, FunctionRow> functions_of(const std::vector<ProfileRow>& rows) {
-  const std::string phase = phase_of(rows);
-  std::map<std::string, FunctionRow> out;
-  for (const auto& r : rows) {
-    if (!phase.empty() && r.phase != phase) continue;
-    FunctionRow& f = out[r.function];
-    if (f.where.empty() && !r.file.empty()) f.where = r.line.empty() ? r.file : r.file + ":" + r.line;
-    f.clocks += r.clocks;
-    f.instructions += r.instructions;
-    if (r.cause == "issue")
-      f.issue += r.clocks;
-    else
-      f.causes[r.cause] += r.clocks;
-  }
+/// Where a function begins: the first place that the profile names.
+std::map<std::string, std::string> places_of(const Results& run) {
+  std::map<std::string, std::string> out;
+  if (run.profile)
+    for (const auto& r : *run.profile)
+      if (!r.file.empty()) out.emplace(r.function, r.line.empty() ? r.file : r.file + ":" + r.line);
   return out;
 }
 
+double clocks_for(const explain::FunctionClocks* f, const char* cause) {
+  if (!f) return 0;
+  const auto found = f->causes.find(cause);
+  return found == f->causes.end() ? 0 : found->second;
+}
+
+std::string largest_wait(const explain::FunctionClocks& f) {
+  std::string name;
+  double most = 0;
+  for (const auto& [cause, n] : f.causes)
+    if (cause != "issue" && n > most) {
+      most = n;
+      name = cause;
+    }
+  return name;
+}
+
 std::string function_table(const Runs& runs) {
-  std::vector<std::map<std::string, FunctionRow>> all;
-  std::map<std::string, std::uint64_t> largest;
+  std::vector<std::map<std::string, explain::FunctionClocks>> all;
+  std::map<std::string, double> largest;
   std::vector<double> sums;
   for (const auto& run : runs) {
-    all.push_back(run.profile ? functions_of(*run.profile) : std::map<std::string, FunctionRow>{});
-    double sum = 0;
-    for (const auto& [name, f] : all.back()) {
-      largest[name] = std::max(largest[name], f.clocks);
-      sum += static_cast<double>(f.clocks);
+    all.emplace_back();
+    sums.push_back(0);
+    for (auto& f : functions_of(run)) {
+      largest[f.name] = std::max(largest[f.name], f.clocks);
+      sums.back() += f.clocks;
+      all.back()[f.name] = f;
     }
-    sums.push_back(sum);
   }
-  std::vector<std::pair<std::string, std::uint64_t>> order(largest.begin(), largest.end());
+  std::vector<std::pair<std::string, double>> order(largest.begin(), largest.end());
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> headings{"Function"};
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -136,30 +131,32 @@ std::string function_table(const Runs& runs) {
     if (i > 0) headings.push_back(fmt::format("#{} - A", run_label(i)));
   }
   headings.insert(headings.end(), {"Largest wait", "Source"});
-  const bool cut = order.size() > kMaxFunctions;
-  Table table(cut ? fmt::format("The {} largest of {} functions", kMaxFunctions, order.size()) : "Functions",
+  Table table(order.size() > kMaxFunctions
+                  ? fmt::format("The {} largest of {} functions", kMaxFunctions, order.size())
+                  : "Functions, those with most clocks first",
               headings);
   order.resize(std::min(order.size(), kMaxFunctions));
+  std::vector<std::map<std::string, std::string>> places;
+  for (const auto& run : runs) places.push_back(places_of(run));
   for (const auto& [name, n] : order) {
     std::vector<std::string> cells{"<code>" + escaped(name) + "</code>"};
     std::string where, wait;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto of = [&](std::size_t i) {
       const auto found = all[i].find(name);
-      const FunctionRow f = found == all[i].end() ? FunctionRow{} : found->second;
-      cells.push_back(clocks_cell(f.clocks));
-      cells.push_back(percent_cell(static_cast<double>(f.clocks), sums[i]));
-      cells.push_back(clocks_cell(f.issue));
+      return found == all[i].end() ? nullptr : &found->second;
+    };
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const auto* f = of(i);
+      const double clocks = f ? f->clocks : 0;
+      cells.push_back(clocks_cell(clocks));
+      cells.push_back(percent_cell(clocks, sums[i]));
+      cells.push_back(clocks_cell(clocks_for(f, "issue")));
       if (i > 0) {
-        const auto first = all[0].find(name);
-        const auto before = first == all[0].end() ? 0 : static_cast<std::int64_t>(first->second.clocks);
-        const auto change = static_cast<std::int64_t>(f.clocks) - before;
-        cells.push_back(fmt::format("<data value=\"{0}\">{0:+}</data>", change));
+        const double change = clocks - (of(0) ? of(0)->clocks : 0);
+        cells.push_back(fmt::format("<data value=\"{0:.0f}\">{0:+.0f}</data>", change));
       }
-      if (where.empty()) where = f.where;
-      if (wait.empty() && !f.causes.empty())
-        wait = std::max_element(f.causes.begin(), f.causes.end(), [](const auto& a, const auto& b) {
-                 return a.second < b.second;
-               })->first;
+      if (where.empty() && places[i].contains(name)) where = places[i].at(name);
+      if (wait.empty() && f) wait = largest_wait(*f);
     }
     cells.push_back(escaped(wait));
     cells.push_back(escaped(where));
@@ -225,8 +222,8 @@ std::string stalls_section(const Runs& runs) {
     if (run.value("cpu.cycles").value_or(0) == 0)
       return absent("No core ran, so there are no clocks of it to account for.");
     std::string inside = chart("waterfall", i,
-                               "Where all clocks of the core in the window went: each cause begins where "
-                               "the one above it ends; colours say who is to blame.");
+                               "Where the clocks of the core in the window went: each cause begins where the "
+                               "one above it ends; colours say who is to blame.");
     if (!run.stalls) return inside + absent("The folder has no stalls.csv, so the regions are not known.");
     return inside + "<details><summary>Show the waits as a table</summary>" + stalls_table(run) + "</details>";
   });
@@ -243,7 +240,7 @@ std::string banks_section(const Runs& runs) {
       return absent("The results have no figures of the SDRAM's banks.");
     return chart("banks", i,
                  "Requests that reached each bank of the SDRAM: with their row open, with its bank "
-                 "closed, or with another row open. Darker means more.");
+                 "closed, or with another row open. A stronger colour means more.");
   });
 }
 

@@ -89,7 +89,7 @@ std::string origin_table(const Results& run) {
 std::string configuration_section(const Runs& runs) {
   std::string out = runs.size() > 1 ? differing_parameters(runs) : "";
   out += panels(runs, [&](std::size_t i) {
-    return changed_parameters(runs[i]) + "<details><summary>Show all parameters</summary>" +
+    return (runs.size() == 1 ? changed_parameters(runs[i]) : "") + "<details><summary>Show all parameters</summary>" +
            all_parameters(runs[i]) + "</details>";
   });
   return out;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
@@ -72,12 +73,26 @@ std::string tiles(const Results& run) {
   return out.empty() ? "" : "<div class=\"tiles\">" + out + "</div>";
 }
 
-/// "-1.2 ms (-4.1 %)"; empty cells where there is nothing to compare.
+/// A figure's change for people. Counts stay whole numbers; a ratio changes by points, so that it is
+/// not taken for the relative change.
+std::string change_text(const app::StatRow& a, const app::StatRow& b) {
+  const auto *before = std::get_if<std::uint64_t>(&a.value), *after = std::get_if<std::uint64_t>(&b.value);
+  if (before && after)
+    return *after > *before ? "+" + app::human_text(*after - *before, b.unit)
+                            : "-" + app::human_text(*before - *after, b.unit);
+  const double change = as_double(b) - as_double(a);
+  if (b.unit == "ratio") return fmt::format("{:+.3g} points", 100 * change);
+  return (change > 0 ? "+" : "-") + app::human_text(std::abs(change), b.unit);
+}
+
+/// "-1.2 ms (-4.1 %)"; empty where there is nothing to compare.
 std::string difference_cell(const app::StatRow* a, const app::StatRow* b) {
+  // A rounding error of a sum of doubles is no difference.
+  constexpr double kRounding = 1e-12;
   if (!a || !b) return "";
   const double before = as_double(*a), change = as_double(*b) - before;
-  if (change == 0) return "<data value=\"0\">same</data>";
-  std::string text = (change > 0 ? "+" : "-") + app::human_text(std::abs(change), b->unit);
+  if (std::abs(change) <= kRounding * std::abs(before)) return "<data value=\"0\">same</data>";
+  std::string text = change_text(*a, *b);
   if (before != 0) text += fmt::format(" ({:+.3g} %)", 100 * change / std::abs(before));
   return fmt::format("<data value=\"{}\">{}</data>", app::number_text(change), escaped(text));
 }
@@ -118,6 +133,19 @@ std::string finding_list(const std::vector<explain::Finding>& findings) {
   std::string out;
   for (const auto& f : findings) out += finding_item(f);
   return "<ul class=\"findings\">" + out + "</ul>";
+}
+
+/// What the figures say, in sentences: differences first.
+std::string findings(const Runs& runs) {
+  std::string out = runs.size() == 1 ? "<h3>What the figures say</h3>" : "";
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const auto found = differences_of(runs, i);
+    if (!found.empty())
+      out += fmt::format("<h3>{} against A</h3>", run_label(i)) + finding_list(found);
+  }
+  out += panels(runs, [&](std::size_t i) { return finding_list(findings_of(runs[i])); });
+  return out + "<p class=\"note\">A wait is where clocks went. Whether more speed at that place would help is "
+               "shown only by runs in which it is changed.</p>";
 }
 
 std::string picture_html(const Picture& picture, const std::string& what) {
@@ -223,13 +251,31 @@ std::string Table::html() const {
     head += fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"n\"" : "",
                         escaped(is_number ? h.substr(1) : h));
   }
-  return fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>"
+  return fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table>"
                      "<caption>{}</caption><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
                      escaped(caption_), escaped(caption_), head, rows_);
 }
 
-explain::Inputs inputs_of(const Results& run) {
-  explain::Inputs in{.stats = run.stats, .stalls = {}, .frames = {}};
+std::vector<explain::FunctionClocks> functions_of(const Results& run) {
+  if (!run.profile) return {};
+  const bool frames = std::any_of(run.profile->begin(), run.profile->end(),
+                                  [](const ProfileRow& r) { return r.phase == "frames"; });
+  std::map<std::string, explain::FunctionClocks> sums;
+  for (const auto& r : *run.profile) {
+    if (frames && r.phase != "frames") continue;
+    explain::FunctionClocks& f = sums[r.function];
+    f.name = r.function;
+    f.clocks += static_cast<double>(r.clocks);
+    f.causes[r.cause] += static_cast<double>(r.clocks);
+  }
+  std::vector<explain::FunctionClocks> out;
+  for (auto& [name, f] : sums) out.push_back(std::move(f));
+  return out;
+}
+
+/// Refers to `run` and `functions`.
+static explain::Inputs inputs_of(const Results& run, std::span<const explain::FunctionClocks> functions) {
+  explain::Inputs in{.stats = run.stats, .stalls = {}, .frames = {}, .functions = functions};
   if (run.stalls) in.stalls = *run.stalls;
   if (run.frames) in.frames = *run.frames;
   in.parameter = [&run](std::string_view key) {
@@ -239,22 +285,20 @@ explain::Inputs inputs_of(const Results& run) {
   return in;
 }
 
+std::vector<explain::Finding> findings_of(const Results& run) {
+  const auto functions = functions_of(run);
+  return explain::explain(inputs_of(run, functions));
+}
+
+std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index) {
+  return explain::explain_difference(inputs_of(runs[0], {}), run_label(0), inputs_of(runs[index], {}),
+                                     run_label(index));
+}
+
 std::string verdict_section(const Runs& runs) {
   std::string out = panels(runs, [&](std::size_t i) { return verdict_of(runs[i]); });
   if (runs.size() == 1) out += tiles(runs[0]);
-  return out + key_figures(runs);
-}
-
-std::string findings_section(const Runs& runs) {
-  std::string out;
-  for (std::size_t i = 1; i < runs.size(); ++i) {
-    const auto found = explain::explain_difference(inputs_of(runs[0]), "A", inputs_of(runs[i]), run_label(i));
-    if (!found.empty())
-      out += fmt::format("<h3>{} against A</h3>", run_label(i)) + finding_list(found);
-  }
-  out += panels(runs, [&](std::size_t i) { return finding_list(explain::explain(inputs_of(runs[i]))); });
-  return out + "<p class=\"note\">A wait is where clocks went. Whether more speed at that place would help is "
-               "shown only by runs in which it is changed.</p>";
+  return out + findings(runs) + key_figures(runs);
 }
 
 std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures) {

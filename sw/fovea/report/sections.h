@@ -13,8 +13,8 @@ namespace fovea::report {
 
 using Runs = std::vector<Results>;
 
+/// Verdict, findings and key figures.
 std::string verdict_section(const Runs& runs);
-std::string findings_section(const Runs& runs);
 std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures);
 std::string frames_section(const Runs& runs);
 std::string bandwidth_section(const Runs& runs);
@@ -26,8 +26,11 @@ std::string configuration_section(const Runs& runs);
 std::string figures_section(const Runs& runs);
 std::string provenance_section(const Runs& runs);
 
-/// What explain() gets of a run.
-explain::Inputs inputs_of(const Results& run);
+/// Clocks of each function in the frames of a run; those of the whole run if it has no frames.
+std::vector<explain::FunctionClocks> functions_of(const Results& run);
+std::vector<explain::Finding> findings_of(const Results& run);
+/// What is different in run `index` from the first one.
+std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index);
 
 // Pieces that several sections use.
 

@@ -15,55 +15,75 @@ function clocksByCause(run) {
   return [['issue', value('cpu.issue'), {}], ...rows, ['idle', value('cpu.idle'), {}]].filter((r) => r[1] > 0);
 }
 
+/// Who is to blame, in groups that colours can tell apart; the table has each one.
+const GROUPS = {
+  issue: 'instructions', itself: 'the core itself', bridge: 'bridge between core and crossbar', way: 'unloaded way through crossbar and SDRAM controller',
+  rows: "SDRAM's rows, refresh, turnaround", video: 'camera and display', copying: 'EDMA', other: 'other masters',
+};
+function group(culprit) {
+  if (culprit === 'service') return 'way';
+  if (culprit === 'bridge') return 'bridge';
+  if (/^(row_miss|row_conflict|refresh|turnaround|power_down)$/.test(culprit)) return 'rows';
+  if (/^vp[fb]e/.test(culprit)) return 'video';
+  if (culprit.startsWith('edma')) return 'copying';
+  return /^(core|own|arm_[di])$/.test(culprit) ? 'itself' : 'other';
+}
+
+/// Over the clocks in which the core is awake: an idle core would leave no room for the rest.
 function drawWaterfall(place, run) {
-  const all = run.stats['cpu.cycles'][0];
-  const every = clocksByCause(run);
+  const idle = (run.stats['cpu.idle'] ?? [0])[0], cycles = run.stats['cpu.cycles'][0], all = cycles - idle;
+  if (all <= 0) return;
+  const every = clocksByCause(run).filter((r) => r[0] !== 'idle');
   // Rows that would be thinner than a line are one row, so that all still add up.
-  const rows = every.filter((r) => r[1] >= all / 1000 || r[0] === 'issue' || r[0] === 'idle'), small = every.filter((r) => !rows.includes(r));
-  if (small.length) rows.splice(rows.length - (rows[rows.length - 1][0] === 'idle' ? 1 : 0), 0, [small.length === 1 ? small[0][0] : 'others', small.reduce((s, r) => s + r[1], 0), {}]);
-  const box = {left: 190, right: 780, top: 6, bottom: 6 + 30 * rows.length};
+  const rows = every.filter((r) => r[1] >= all / 1000), small = every.filter((r) => !rows.includes(r));
+  if (small.length) rows.push([small.length === 1 ? small[0][0] : `${small.length} others`, small.reduce((sum, r) => sum + r[1], 0), {}]);
+  const width = widthOf(place), box = {left: 142, right: width - 66, top: 6, bottom: 6 + 30 * rows.length};
   const x = scale(0, all, box.left, box.right);
-  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, x, ticks(0, 1, 5).map((v) => v * all), 'share of the clocks of the window', (v) => percent(v / all)));
-  const culprits = new Set();
+  const svg = drawing(place, width, box.bottom + 40,
+    xAxis(box, x, ticks(0, 1, width / 120).map((v) => v * all), "share of the core's awake clocks", (v) => percent(v / all)));
+  const used = new Set();
   let from = 0;
   rows.forEach(([cause, clocks, parts], row) => {
-    const y = box.top + 30 * row + 4;
-    svg.append(text(box.left - 8, y + 15, CAUSES[cause] ?? cause, {'text-anchor': 'end'}));
-    const segments = Object.entries(parts).sort((a, b) => b[1] - a[1]);
-    const known = segments.reduce((sum, s) => sum + s[1], 0);
-    if (clocks > known) segments.push([segments.length ? 'core' : cause, clocks - known]);
+    const y = box.top + 30 * row + 4, name = CAUSES[cause] ?? cause, sums = {};
+    for (const [culprit, n] of Object.entries(parts)) sums[group(culprit)] = (sums[group(culprit)] ?? 0) + n;
+    const known = Object.values(sums).reduce((sum, n) => sum + n, 0);
+    if (clocks > known) sums[cause === 'issue' ? 'issue' : 'itself'] = (sums.itself ?? 0) + clocks - known;
+    svg.append(text(box.left - 8, y + 15, name, {'text-anchor': 'end'}));
     let start = from;
-    for (const [who, n] of segments) {
-      if (segments.length > 1 || who !== cause) culprits.add(who);
-      svg.append(element('rect', {x: x(start), y, width: Math.max(x(start + n) - x(start), 0.4), height: 22, fill: colour(who), class: n > all / 200 ? 'edge' : undefined},
-        element('title', {}, `${CAUSES[cause] ?? cause}${who === cause ? '' : `, ${who}`}: ${plain(n, 9)} clocks, ${percent(n / all)}`)));
-      start += n;
+    for (const key of Object.keys(GROUPS).filter((g) => sums[g] > 0)) {
+      used.add(key);
+      svg.append(element('rect', {x: x(start), y, width: Math.max(x(start + sums[key]) - x(start), 0.4), height: 22, fill: colour(key),
+                                  class: sums[key] > all / 200 ? 'edge' : undefined},
+        element('title', {}, `${name}, ${GROUPS[key]}: ${plain(sums[key], 12)} clocks, ${percent(sums[key] / all)}`)));
+      start += sums[key];
     }
     svg.append(text(x(from + clocks) + 6, y + 15, percent(clocks / all)));
-    if (row + 1 < rows.length) svg.append(element('line', {class: 'base', x1: x(from + clocks), x2: x(from + clocks), y1: y + 22, y2: y + 30}));
+    if (row + 1 < rows.length) svg.append(element('line', {class: 'base', x1: x(from + clocks), x2: x(from + clocks), y1: y + 22, y2: y + 34}));
     from += clocks;
   });
-  place.append(svg, legend([...culprits]));
+  place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and idle, waiting for an interrupt, in ${percent(idle / cycles)}.`),
+               svg, legend(Object.keys(GROUPS).filter((g) => used.has(g)), GROUPS));
 }
 
 function drawWaterfallDifference(place, run, first) {
   const perFrame = (r) => Object.fromEntries(clocksByCause(r).map(([cause, clocks]) => [cause, clocks / r.stats['frame.remapped'][0]]));
   const a = perFrame(first), b = perFrame(run);
-  const rows = [...new Set([...Object.keys(a), ...Object.keys(b)])].map((cause) => [cause, (b[cause] ?? 0) - (a[cause] ?? 0)])
-    .filter((r) => Math.abs(r[1]) >= 1).sort((p, q) => Math.abs(q[1]) - Math.abs(p[1]));
+  const every = [...new Set([...Object.keys(a), ...Object.keys(b)])].map((cause) => [cause, (b[cause] ?? 0) - (a[cause] ?? 0)])
+    .sort((p, q) => Math.abs(q[1]) - Math.abs(p[1]));
+  const largest = Math.abs(every[0]?.[1] ?? 0), rows = every.filter((r) => Math.abs(r[1]) >= Math.max(0.5, largest / 1000));
   if (!rows.length) {
-    place.append(element('p', {class: 'absent'}, 'No cause differs by a clock or more.'));
+    place.append(element('p', {class: 'absent'}, 'No cause differs.'));
     return;
   }
-  const largest = Math.max(...rows.map((r) => Math.abs(r[1])));
-  const box = {left: 190, right: 800, top: 6, bottom: 6 + 28 * rows.length};
-  const x = scale(-largest * 1.25, largest * 1.25, box.left, box.right);
-  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, x, ticks(-largest, largest, 6), 'clocks for each corrected frame; left: fewer, right: more'));
+  const width = widthOf(place), box = {left: 142, right: width - 30, top: 6, bottom: 6 + 28 * rows.length};
+  const x = scale(-largest * 1.15, largest * 1.15, box.left, box.right);
+  const svg = drawing(place, width, box.bottom + 40,
+    xAxis(box, x, ticks(-largest, largest, width / 130), 'clocks for each corrected frame; left: fewer, right: more', short));
   rows.forEach(([cause, change], row) => {
     const y = box.top + 28 * row + 4;
-    svg.append(text(box.left - 8, y + 15, CAUSES[cause] ?? cause, {'text-anchor': 'end'}),
+    svg.append(text(box.left - 8, y + 15, (CAUSES[cause] ?? cause).replace(/ \(.*/, ''), {'text-anchor': 'end'}),
       element('rect', {x: Math.min(x(0), x(change)), y, width: Math.abs(x(change) - x(0)), height: 20, fill: change < 0 ? 'var(--c0)' : 'var(--c1)'}),
-      text(x(change) + (change < 0 ? -5 : 5), y + 15, `${change > 0 ? '+' : ''}${plain(Math.round(change), 4)}`, {'text-anchor': change < 0 ? 'end' : 'start'}));
+      text(x(0) + (change < 0 ? 6 : -6), y + 15, `${change > 0 ? '+' : ''}${short(change)}`, {'text-anchor': change < 0 ? 'start' : 'end'}));
   });
   svg.append(element('line', {class: 'base', x1: x(0), x2: x(0), y1: box.top, y2: box.bottom}));
   place.append(svg);
@@ -72,7 +92,7 @@ function drawWaterfallDifference(place, run, first) {
 /// Boxes below their caller; choosing one widens it, Escape or the outermost box shows all again.
 function drawFlame(place, run) {
   const depth = (node) => 1 + Math.max(0, ...(node.children ?? []).map(depth));
-  const root = run.stacks, width = 880, step = 22, height = depth(root) * step;
+  const root = run.stacks, width = widthOf(place), step = 22, height = depth(root) * step;
   const readout = element('p', {class: 'readout', 'aria-live': 'polite'}, '');
   const holder = element('div');
   const tell = (node) => { readout.textContent = `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)} of all`; };
@@ -84,7 +104,7 @@ function drawFlame(place, run) {
       const inPath = chain.length < path.length;
       const g = element('g', {class: 'box', tabindex: w > 12 ? 0 : undefined, role: w > 12 ? 'button' : undefined,
                               'aria-label': w > 12 ? `${node.name}, ${percent(node.clocks / root.clocks)}` : undefined},
-        element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
+        w > 12 ? undefined : element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
         element('rect', {x, y: row * step, width: w, height: step - 1, class: 'edge', fill: inPath ? 'var(--c9)' : `var(--c${[0, 4, 2, 3, 6][row % 5]})`, 'fill-opacity': 0.55}));
       const letters = Math.floor((w - 8) / 6.6);
       if (letters > 2) g.append(text(x + 4, row * step + 15, node.name.length > letters ? `${node.name.slice(0, letters - 1)}\u2026` : node.name));

@@ -5,9 +5,9 @@ function mastersWithLatency(run) {
 
 function drawPercentiles(place, run, span) {
   const masters = mastersWithLatency(run);
-  const box = {left: 110, right: 860, top: 8, bottom: 8 + 34 * masters.length};
+  const width = widthOf(place), box = {left: 110, right: width - 20, top: 8, bottom: 8 + 34 * masters.length};
   const x = logScale(span[0], span[1], box.left, box.right);
-  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, x, logTicks(span[0], span[1]), 'ns'));
+  const svg = drawing(place, width, box.bottom + 40, xAxis(box, x, logTicks(span[0], span[1]), 'ns'));
   masters.forEach((master, row) => {
     const value = (which) => (run.stats[`ddr.${master}.latency.${which}`] ?? [NaN])[0] * 1e9;
     const y = box.top + 34 * row + 17;
@@ -35,10 +35,10 @@ function drawLatency(place, run) {
   const kinds = [...new Set(rows.map((r) => `${r.direction}, ${r.beat} beat`))];
   for (const kind of kinds) {
     const of = rows.filter((r) => `${r.direction}, ${r.beat} beat` === kind);
-    const box = {left: 64, right: 860, top: 26, bottom: 166};
+    const width = widthOf(place), box = {left: 64, right: width - 20, top: 26, bottom: 166};
     const x = logScale(low, high, box.left, box.right), y = logScale(0.7, most * 1.3, box.bottom, box.top);
-    const svg = drawing(place, 880, 206, xAxis(box, x, logTicks(low, high), 'ns'),
-      yAxis(box, y, logTicks(1, most).filter((v) => Number.isInteger(Math.round(Math.log10(v) * 1e6) / 1e6)), `requests: ${kind}`));
+    const svg = drawing(place, width, 206, xAxis(box, x, logTicks(low, high), 'ns'),
+      yAxis(box, y, logTicks(1, most).filter((v) => Number.isInteger(Math.round(Math.log10(v) * 1e6) / 1e6)), `requests: ${kind}`, short));
     const masters = [...new Set(of.map((r) => r.master))];
     masters.forEach((master, i) => {
       const bins = of.filter((r) => r.master === master).sort((a, b) => a.low - b.low);
@@ -59,10 +59,10 @@ function drawLatency(place, run) {
 const BANK_ROWS = [['row_hits', 'row open'], ['row_misses', 'bank closed'], ['row_conflicts', 'another row open']];
 function drawBanks(place, run, most) {
   const banks = Object.keys(run.stats).filter((name) => /^ddr\.bank\d+\.row_hits$/.test(name)).length;
-  const box = {left: 130, top: 24}, width = Math.min(90, 740 / banks);
+  const box = {left: 112, top: 24}, width = Math.min(90, (widthOf(place) - 122) / banks);
   const svg = drawing(place, box.left + banks * width + 10, box.top + BANK_ROWS.length * 40 + 10);
   for (let bank = 0; bank < banks; ++bank)
-    svg.append(text(box.left + (bank + 0.5) * width, 16, `bank ${bank}`, {class: 'axis', 'text-anchor': 'middle'}));
+    svg.append(text(box.left + (bank + 0.5) * width, 16, width > 55 ? `bank ${bank}` : bank, {class: 'axis', 'text-anchor': 'middle'}));
   BANK_ROWS.forEach(([name, label], row) => {
     svg.append(text(box.left - 8, box.top + row * 40 + 24, label, {'text-anchor': 'end'}));
     for (let bank = 0; bank < banks; ++bank) {
@@ -70,7 +70,7 @@ function drawBanks(place, run, most) {
       const share = most ? count / most : 0;
       svg.append(element('rect', {x: box.left + bank * width + 1, y: box.top + row * 40 + 1, width: width - 2, height: 38, rx: 3,
                                   style: `fill: rgba(var(--heat), ${(0.06 + 0.6 * Math.sqrt(share)).toFixed(3)})`}),
-                 text(box.left + (bank + 0.5) * width, box.top + row * 40 + 24, plain(count, 3), {'text-anchor': 'middle'}));
+                 text(box.left + (bank + 0.5) * width, box.top + row * 40 + 24, short(count), {'text-anchor': 'middle'}));
     }
   });
   place.append(svg);

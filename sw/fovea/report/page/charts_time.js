@@ -7,22 +7,23 @@ function drawFrames(place, run) {
   const frames = run.frames.slice(0, DETAILED);
   const times = frames.flatMap((f) => LANES.flatMap((lane) => f[lane])).filter((t) => t !== null);
   if (!times.length) return;
-  const box = {left: 64, right: 860, top: 12, bottom: 12 + 46 * LANES.length};
+  const width = widthOf(place), box = {left: 64, right: width - 20, top: 12, bottom: 12 + 46 * LANES.length};
   const at = scale(Math.min(...times), Math.max(...times), box.left, box.right);
-  const svg = drawing(place, 880, box.bottom + 40, xAxis(box, at, ticks(Math.min(...times), Math.max(...times), 8), 'ms'));
+  const svg = drawing(place, width, box.bottom + 40,
+                      xAxis(box, at, ticks(Math.min(...times), Math.max(...times), width / 110), 'ms since power-up'));
   LANES.forEach((lane, row) => {
     const y = box.top + row * 46 + 6;
     svg.append(text(box.left - 8, y + 22, lane, {'text-anchor': 'end'}));
     for (const f of frames) {
       const [start, end] = f[lane];
       if (start === null || end === null || (f.repeated && lane !== 'display')) continue;
-      const width = Math.max(at(end) - at(start), 1);
+      const length = Math.max(at(end) - at(start), 1);
       const label = `frame ${f.frame}${f.repeated ? ', shown again' : ''}: ${lane} from ${plain(start, 7)} to ${plain(end, 7)} ms, ` +
         `${plain(end - start)} ms` + (f.dropped ? `; ${f.dropped} dropped before it` : '');
       svg.append(element('g', {}, element('title', {}, label),
-        element('rect', {x: at(start), y: y + (f.frame % 2) * 4, width, height: 30, rx: 2, fill: colour(lane), class: 'edge',
+        element('rect', {x: at(start), y: y + (f.frame % 2) * 4, width: length, height: 30, rx: 2, fill: colour(lane), class: 'edge',
                          'fill-opacity': f.repeated ? 0.45 : 1, 'stroke-dasharray': f.repeated ? '4 3' : undefined}),
-        width > 22 ? text(at(start) + width / 2, y + 19 + (f.frame % 2) * 4, f.repeated ? `${f.frame} again` : f.frame,
+        length > 22 ? text(at(start) + length / 2, y + 19 + (f.frame % 2) * 4, f.repeated ? `${f.frame} again` : f.frame,
                           {class: 'on', 'text-anchor': 'middle'}) : undefined,
         f.dropped && lane === 'display' ? text(at(start), y + 1, `${f.dropped} dropped`, {class: 'axis', 'text-anchor': 'middle'}) : undefined));
     }
@@ -38,12 +39,12 @@ function drawFrameTimes(place, run) {
   }));
   const values = points.flatMap((p) => [p.remap, p.latency]).filter((v) => v !== null);
   if (!values.length) return;
-  const box = {left: 64, right: 860, top: 26, bottom: 190};
+  const width = widthOf(place), box = {left: 64, right: width - 20, top: 26, bottom: 190};
   const last = run.frames[run.frames.length - 1].frame;
   const x = scale(run.frames[0].frame, Math.max(last, run.frames[0].frame + 1), box.left, box.right);
   const y = scale(0, Math.max(...values) * 1.08, box.bottom, box.top);
-  const whole = ticks(run.frames[0].frame, last, 10).filter(Number.isInteger);
-  const svg = drawing(place, 880, 230, xAxis(box, x, whole, 'displayed frame'), yAxis(box, y, ticks(0, Math.max(...values) * 1.08, 4), 'ms'));
+  const whole = ticks(run.frames[0].frame, last, width / 90).filter(Number.isInteger);
+  const svg = drawing(place, width, 230, xAxis(box, x, whole, 'displayed frame'), yAxis(box, y, ticks(0, Math.max(...values) * 1.08, 4), 'ms'));
   const names = {remap: 'remap', latency: 'capture to display'};
   for (const [key, shade, dash] of [['remap', 'remap', undefined], ['latency', 'display', '7 4']]) {
     const known = points.filter((p) => p[key] !== null);
@@ -61,10 +62,10 @@ function drawFrameTimes(place, run) {
 /// `top` is common to all runs, so that heights can be compared.
 function drawBandwidth(place, data, top) {
   if (!data || data.edges_ms.length < 2 || !data.series.length) return;
-  const box = {left: 64, right: 860, top: 26, bottom: 226};
+  const width = widthOf(place), box = {left: 64, right: width - 20, top: 26, bottom: 226};
   const edges = data.edges_ms, first = edges[0], last = edges[edges.length - 1];
   const x = scale(first, last, box.left, box.right), y = scale(0, top, box.bottom, box.top);
-  const svg = drawing(place, 880, 266, xAxis(box, x, ticks(first, last, 8), 'ms since power-up'), yAxis(box, y, ticks(0, top, 4), 'MB/s'));
+  const svg = drawing(place, width, 266, xAxis(box, x, ticks(first, last, width / 110), 'ms since power-up'), yAxis(box, y, ticks(0, top, 4), 'MB/s'));
   const base = new Array(edges.length - 1).fill(0);
   for (const {master, mbps} of data.series) {
     const upper = [], lower = [];
@@ -90,7 +91,7 @@ function drawBandwidth(place, data, top) {
   };
   svg.addEventListener('pointermove', (event) => {
     const rectangle = svg.getBoundingClientRect();
-    const t = first + (((event.clientX - rectangle.left) / rectangle.width) * 880 - box.left) / (box.right - box.left) * (last - first);
+    const t = first + (((event.clientX - rectangle.left) / rectangle.width) * width - box.left) / (box.right - box.left) * (last - first);
     show(edges.findIndex((e, i) => i + 1 === edges.length - 1 || edges[i + 1] > t));
   });
   const frame = element('div', {tabindex: 0, role: 'group', 'aria-label': 'Bandwidth; arrow keys read it'}, svg);

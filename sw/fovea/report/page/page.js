@@ -82,8 +82,7 @@ function comparison(figure) {
   });
 }
 
-function drawAll() {
-  const {runs} = JSON.parse(document.getElementById('data').textContent);
+function drawAll(runs) {
   const top = (view) => Math.max(1, ...runs.map((run) => highest(run.timeline?.[view]))) * 1.05;
   const draw = {
     'frames': drawFrames, 'frame-times': drawFrameTimes,
@@ -93,12 +92,30 @@ function drawAll() {
     'waterfall': drawWaterfall, 'waterfall-difference': (place, run) => drawWaterfallDifference(place, run, runs[0]),
     'banks': (place, run) => drawBanks(place, run, mostInBank(runs)), 'flame': drawFlame,
   };
-  for (const place of document.querySelectorAll('[data-chart]')) draw[place.dataset.chart](place, runs[Number(place.dataset.run)]);
+  for (const place of document.querySelectorAll('[data-chart]')) {
+    place.replaceChildren();
+    draw[place.dataset.chart](place, runs[Number(place.dataset.run)]);
+  }
+}
+
+/// Draws all charts, and again when the window's width has changed for good.
+function charts() {
+  const {runs} = JSON.parse(document.getElementById('data').textContent);
+  let width = innerWidth, later = 0;
+  drawAll(runs);
+  addEventListener('resize', () => {
+    clearTimeout(later);
+    later = setTimeout(() => {
+      if (innerWidth === width) return;
+      width = innerWidth;
+      drawAll(runs);
+    }, 150);
+  });
 }
 
 themeButton();
 document.querySelectorAll('figure.compare').forEach(comparison);
-drawAll();
+charts();
 document.querySelectorAll('details').forEach(searchable);
 document.querySelectorAll('table').forEach(sortable);
 document.documentElement.dataset.ready = 'true';

@@ -17,11 +17,18 @@ function drawing(place, width, height, ...children) {
   return element('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': caption.textContent}, ...children);
 }
 
+/// Units from the left to the right edge of a chart: as many as there are pixels, so that text has its size.
+const widthOf = (place) => Math.max(340, Math.min(880, place.clientWidth || 880));
+
 /// Numbers for people, with at most `digits` significant ones.
 function plain(value, digits = 4) {
   if (value === 0) return '0';
-  const rounded = Number(value.toPrecision(digits));
-  return Math.abs(rounded) >= 1e6 || Math.abs(rounded) < 1e-4 ? rounded.toExponential() : rounded.toLocaleString('en');
+  return Number(value.toPrecision(digits)).toLocaleString('en', {maximumSignificantDigits: digits});
+}
+/// 4,274,000 as "4.27 M"
+function short(value) {
+  const [size, letter] = [[1e9, ' G'], [1e6, ' M'], [1e3, ' k']].find(([s]) => Math.abs(value) >= s) ?? [1, ''];
+  return plain(value / size, 3) + letter;
 }
 const percent = (ratio) => `${plain(100 * ratio, 3)} %`;
 
@@ -68,13 +75,12 @@ function yAxis(box, at, values, name, show = plain) {
 
 /// Fixed colours, so that a master looks the same in every chart and every run.
 const COLOURS = {
-  arm_d: 0, arm_i: 5, vpfe: 2, vpbe: 1, edma_tc0: 3, edma_tc1: 4, edma_tc2: 6, edma_tc3: 8, remap_engine: 6, load: 7,
-  issue: 0, idle: 9, service: 4, bridge: 6, core: 5, row_miss: 3, row_conflict: 8, refresh: 7, turnaround: 7,
+  arm_d: 0, arm_i: 5, vpfe: 2, vpbe: 1, edma_tc0: 3, edma_tc1: 4, edma_tc2: 6, edma_tc3: 8, remap_engine: 7, load: 9,
   capture: 2, remap: 0, display: 1,
+  issue: 0, itself: 5, way: 4, bridge: 6, rows: 3, video: 2, copying: 1, other: 8,
 };
 function colour(name) {
-  const base = name.replace(/_(read|write)$/, '');
-  return `var(--c${COLOURS[base] ?? 7})`;
+  return `var(--c${COLOURS[name] ?? 7})`;
 }
 function legend(names, labels = {}) {
   return element('ul', {class: 'legend'}, ...names.map((name) => {

@@ -1,0 +1,447 @@
+// sw/fovea/report: what stands on the page, read back from it.
+#include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
+#include <set>
+
+#include "sw/fovea/report/chart_data.h"
+#include "sw/fovea/report/csv.h"
+#include "sw/fovea/report/html.h"
+#include "sw/fovea/report/page.h"
+#include "sw/fovea/report/pictures.h"
+#include "tb/report/folder.h"
+
+namespace fovea::report {
+namespace {
+
+namespace fs = std::filesystem;
+using app::RgbImage;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using test::HandMade;
+using test::TempDir;
+using test::two_frames;
+using test::user_error;
+
+json data_of(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\" id=\"data\">";
+  const auto from = page.find(begin) + begin.size();
+  return json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+std::string one_page(const fs::path& folder) { return report_page({load_results(folder, {})}); }
+
+// Reading.
+
+std::vector<std::vector<std::string>> records(const std::string& text, std::vector<std::size_t>* lines = nullptr) {
+  std::vector<std::vector<std::string>> out;
+  each_csv_record("f.csv", text, [&](const CsvPlace& at, std::span<const std::string> fields) {
+    out.emplace_back(fields.begin(), fields.end());
+    if (lines) lines->push_back(at.line);
+  });
+  return out;
+}
+
+TEST(CsvTest, QuotesCommasAndLineBreaks) {
+  std::vector<std::size_t> lines;
+  EXPECT_THAT(records("a,\"b,\"\"c\"\"\nd\",\n1,2,3\n", &lines),
+              ElementsAre(ElementsAre("a", "b,\"c\"\nd", ""), ElementsAre("1", "2", "3")));
+  EXPECT_THAT(lines, ElementsAre(1, 3));
+  EXPECT_THAT(records("last,line"), ElementsAre(ElementsAre("last", "line")));
+  EXPECT_EQ(user_error([] { records("a\nb,\"c"); }), "f.csv:2: a quote without its end");
+}
+
+TEST(CsvTest, NumbersAreWholeFields) {
+  const fs::path file = "f.csv";
+  const CsvPlace at{file, 7};
+  EXPECT_EQ(whole(at, "18446744073709551615"), 18446744073709551615u);
+  EXPECT_EQ(user_error([&] { whole(at, "18446744073709551616"); }), "f.csv:7: '18446744073709551616' is not a whole number");
+  for (const char* bad : {"", "1 ", "-1", "0x1", "1.5"}) EXPECT_THAT(user_error([&] { whole(at, bad); }), HasSubstr("f.csv:7"));
+  for (const char* bad : {"", "nan", "inf", "1e999", "1,5"}) EXPECT_THAT(user_error([&] { number(at, bad); }), HasSubstr("f.csv:7"));
+  EXPECT_EQ(number(at, "-1.5e3"), -1500.0);
+  EXPECT_EQ(time_ps(at, "2601418666.667"), 2601418666667u);
+  EXPECT_EQ(time_ps(at, ""), std::nullopt);
+  for (const char* bad : {"1", "1.2", "1.2345", ".", "a.000"}) EXPECT_THAT(user_error([&] { time_ps(at, bad); }), HasSubstr("f.csv:7"));
+}
+
+TEST(LoadTest, RefusesWhatIsNoRunInOneLine) {
+  const TempDir dir;
+  const auto error = [&](const fs::path& folder) { return user_error([&] { load_results(folder, {}); }); };
+  EXPECT_THAT(error(dir / "none"), HasSubstr("there is no such folder"));
+  dir.write("file", "x");
+  EXPECT_THAT(error(dir / "file"), HasSubstr("it is not a folder"));
+  fs::create_directory(dir / "empty");
+  EXPECT_THAT(error(dir / "empty"), HasSubstr("it is not the folder of a Fovea run"));
+  dir.write("other/config.json", "{\"format\": 7");
+  EXPECT_THAT(error(dir / "other"), HasSubstr("it is not the folder of a Fovea run"));
+  HandMade run = two_frames();
+  run.format = "fovea run 2";
+  EXPECT_THAT(error(run.write(dir, "format")), HasSubstr("its format is 'fovea run 2'; this version reads 'fovea run 1' only"));
+  fs::remove(two_frames().write(dir, "unfinished") / "stats.json");
+  EXPECT_THAT(error(dir / "unfinished"), HasSubstr("the run in it was never finished (it has no stats.json)"));
+  dir.write("unfinished/stats.json", "[1, 2]");
+  EXPECT_THAT(error(dir / "unfinished"), HasSubstr("not a file of JSON; it is damaged"));
+}
+
+TEST(LoadTest, PartialResultsAndOtherVersionsNeedTheirOption) {
+  const TempDir dir;
+  HandMade run = two_frames();
+  run.complete = false;
+  EXPECT_THAT(user_error([&] { load_results(run.write(dir), {}); }), HasSubstr("--partial makes a report of them"));
+  EXPECT_THAT(report_page({load_results(dir / "run", {.partial = true})}), HasSubstr("These results are partial"));
+  run.complete = true;
+  run.version = "9.9.9";
+  EXPECT_THAT(user_error([&] { load_results(run.write(dir), {.partial = true}); }),
+              HasSubstr("it was written by version 9.9.9 of Fovea"));
+  EXPECT_EQ(load_results(dir / "run", {.across_versions = true}).version, "9.9.9");
+}
+
+TEST(LoadTest, DamagedRowsAreNamedByFileAndLine) {
+  const TempDir dir;
+  const fs::path run = two_frames().write(dir);
+  const auto error = [&] { return user_error([&] { load_results(run, {}); }); };
+  dir.write("run/stalls.csv", "cause,region,culprit,cycles\ndcache,a,b,1\ndcache,a,b\n");
+  EXPECT_THAT(error(), HasSubstr("stalls.csv:3: 3 fields; the header has 4"));
+  dir.write("run/stalls.csv", "cause,region,clocks,culprit\n");
+  EXPECT_THAT(error(), HasSubstr("stalls.csv:1: column 3 is not 'culprit'"));
+  dir.write("run/stalls.csv", "");
+  EXPECT_THAT(error(), HasSubstr("stalls.csv:1: the header is missing"));
+  dir.write("run/stalls.csv", "cause,region,culprit,cycles\n");
+  dir.write("run/profile.folded", "main;remap 7\nmain\n");
+  EXPECT_THAT(error(), HasSubstr("profile.folded:2: no number of clocks behind the stack"));
+}
+
+// Figures.
+
+TEST(PageTest, EveryFigureIsThatOfStatsJson) {
+  const TempDir dir;
+  const fs::path folder = two_frames().write(dir);
+  test::add_other_files(dir, "run");
+  const std::string page = one_page(folder);
+  const json stats = json::parse(test::read_text(folder / "stats.json")), data = data_of(page)["runs"][0]["stats"];
+  std::size_t with_value = 0;
+  for (const auto& [name, figure] : stats.items()) {
+    if (!figure.is_object() || !figure.contains("value")) continue;
+    if (figure["value"].is_null()) {
+      EXPECT_FALSE(data.contains(name)) << name;
+      EXPECT_THAT(page, Not(HasSubstr(name)));
+      continue;
+    }
+    EXPECT_EQ(data[name][0], figure["value"]) << name;
+    EXPECT_EQ(data[name][1], figure["unit"]) << name;
+    ++with_value;
+  }
+  EXPECT_EQ(data.size(), with_value);
+  const std::regex cell("<data data-figure=\"([^\"]*)\" value=\"([^\"]*)\">([^<]*)</data>");
+  std::set<std::string> shown;
+  for (std::sregex_iterator i(page.begin(), page.end(), cell), end; i != end; ++i) {
+    const std::string name = (*i)[1];
+    if (name == "wall_time") continue;  // from host.json
+    ASSERT_TRUE(stats.contains(name)) << name;
+    EXPECT_EQ(json::parse((*i)[2].str()), stats[name]["value"]) << name;
+    const json& v = stats[name]["value"];
+    const StatBase::Value value = v.is_number_unsigned() ? StatBase::Value(v.get<std::uint64_t>()) : StatBase::Value(v.get<double>());
+    EXPECT_EQ((*i)[3], escaped(app::human_text(value, stats[name]["unit"].get<std::string>()))) << name;
+    shown.insert(name);
+  }
+  for (const auto& [name, figure] : stats.items()) {
+    if (!figure.is_object() || !figure["value"].is_number() || figure["value"] == 0) continue;
+    EXPECT_TRUE(shown.contains(name)) << name;
+  }
+}
+
+TEST(PageTest, EqualFoldersGiveEqualBytes) {
+  const TempDir dir;
+  two_frames().write(dir);
+  test::add_other_files(dir, "run");
+  EXPECT_EQ(one_page(dir / "run"), one_page(dir / "run"));
+}
+
+TEST(PageTest, MissingFilesLeaveTheirSectionsOutWithASentence) {
+  const TempDir dir;
+  const std::string bare = one_page(two_frames().write(dir));
+  test::add_other_files(dir, "run");
+  const std::string full = one_page(dir / "run");
+  const std::vector<std::pair<std::string, std::string>> expected{
+      {"no frames.csv", "frames"}, {"no rows in timeline.csv", "bandwidth-whole"}, {"no stalls.csv", ""},
+      {"no latency.csv", "latency"}, {"There is no profile", "flame"}};
+  for (const auto& [sentence, chart] : expected) {
+    EXPECT_THAT(bare, HasSubstr(sentence));
+    EXPECT_THAT(full, Not(HasSubstr(sentence)));
+    if (chart.empty()) continue;
+    EXPECT_THAT(bare, Not(HasSubstr("data-chart=\"" + chart + "\"")));
+    EXPECT_THAT(full, HasSubstr("data-chart=\"" + chart + "\""));
+  }
+  EXPECT_THAT(full, HasSubstr("This run has no pictures"));
+}
+
+TEST(PageTest, SectionsAreInOrder) {
+  const TempDir dir;
+  const std::string page = one_page(two_frames().write(dir));
+  std::size_t before = 0;
+  for (const char* id : {"verdict", "pictures", "frames", "bandwidth", "latency", "stalls", "banks", "functions",
+                         "configuration", "figures", "provenance"}) {
+    const auto at = page.find(std::string("<section id=\"") + id + "\"");
+    ASSERT_NE(at, page.npos) << id;
+    EXPECT_GT(at, before) << id;
+    before = at;
+  }
+}
+
+TEST(PageTest, FunctionsAreThoseOfTheFrames) {
+  const TempDir dir;
+  two_frames().write(dir);
+  test::add_other_files(dir, "run");
+  const std::string page = one_page(dir / "run");
+  EXPECT_THAT(page, HasSubstr("<tr><th scope=\"row\"><code>remap</code></th><td class=\"n\"><data value=\"750\">750</data></td>"
+                              "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td class=\"n\"><data value=\"250\">250</data>"
+                              "</td><td>dcache</td><td>remap.c:10</td></tr>"));
+  EXPECT_THAT(page, Not(HasSubstr("<code>start</code>")));  // of the phase boot
+}
+
+TEST(PageTest, ReachesNothingOutsideItself) {
+  const TempDir dir;
+  two_frames().write(dir);
+  test::add_other_files(dir, "run");
+  const std::string page = one_page(dir / "run");
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  const auto at = page.rfind("<script>") + 8;
+  EXPECT_THAT(page, HasSubstr("script-src '" + script_digest(page.substr(at, page.rfind("</script>") - at)) + "'"));
+  // The name of SVG's elements is not fetched.
+  EXPECT_EQ(count(page, "http"), 1u + count(page, "http-equiv"));
+  EXPECT_THAT(page, HasSubstr("http://www.w3.org/2000/svg"));
+  EXPECT_TRUE(is_report_page(page.substr(0, 4096)));
+  EXPECT_FALSE(is_report_page("<!DOCTYPE html>\n<html lang=\"en\">\n<title>mine</title>"));
+}
+
+TEST(PageTest, HostileTextsDoNothing) {
+  const TempDir dir;
+  const std::string evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>'\"&\x1b[31m";
+  HandMade run = two_frames();
+  run.experiment = "</title><script>alert(3)</script>";
+  run.warnings = {{"firmware", evil, 2}};
+  run.stats.push_back({"evil.<b>", std::uint64_t{1}, "<i>", evil});
+  run.parameters = R"x("<script>k": {"value": "</script><script>alert(4)", "unit": "", "origin": "f:1", "default": "<a>",
+    "allowed": "", "tag": "<b>", "source": "\"><b>", "belief": {"low": "<", "high": ">", "reason": "<u>"}, "description": "<p onclick=x>"})x";
+  run.command = R"x(["run", "</code><script>alert(5)</script>"])x";
+  const fs::path folder = run.write(dir, "<img src=x onerror=alert(6)>");
+  const std::string name = folder.filename().string();
+  dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n<script>,</script>,<b>,5\n");
+  dir.write(name + "/profile.csv", "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
+                                   "frames,\"f<script>(\"\"a\"\")\",<b>,1,issue,,,5,5\n");
+  dir.write(name + "/profile.folded", "a<script>;</script> 5\n");
+  const std::string page = one_page(folder);
+  EXPECT_EQ(count(page, "<script"), 2u);  // the data and the page's own
+  EXPECT_EQ(count(page, "</script"), 2u);
+  for (const char* tag : {"<img", "<b>dc", "<i>", "<p onclick", "<u>", "\x1b"}) EXPECT_THAT(page, Not(HasSubstr(tag)));
+  EXPECT_EQ(count(page, "</title>"), 1u);
+  const json data = data_of(page)["runs"][0];
+  EXPECT_EQ(data["name"], name);
+  EXPECT_EQ(data["stalls"][0][1], "</script>");
+  EXPECT_EQ(data["stacks"]["children"][0]["name"], "a<script>");
+  const std::string text = report_text({load_results(folder, {})});
+  EXPECT_THAT(text, Not(HasSubstr("\x1b")));
+}
+
+TEST(PageTest, NeverSaysWhatBinds) {
+  const TempDir dir;
+  two_frames().write(dir);
+  test::add_other_files(dir, "run");
+  const std::string page = one_page(dir / "run"), text = report_text({load_results(dir / "run", {})});
+  EXPECT_THAT(page, Not(HasSubstr("binds")));
+  EXPECT_THAT(text, Not(HasSubstr("binds")));
+  EXPECT_THAT(text, HasSubstr("frame rate met: 2 of 2 camera frames shown"));
+  EXPECT_THAT(text, HasSubstr("- Largest wait: in 50 %"));
+  EXPECT_THAT(text, HasSubstr("    from cpu.stall.dcache, cpu.cycles"));
+}
+
+// Several runs.
+
+TEST(CompareTest, ShowsEachRunAndTheDifference) {
+  const TempDir dir;
+  HandMade b = two_frames();
+  for (auto& s : b.stats) {
+    if (s.name == "frame.remap_time.mean") s.value = 0.008;
+    if (s.name == "ddr.row_hits") s.value = std::uint64_t{60};
+    if (s.name == "ddr.utilisation") s.value = 0.26;
+    if (s.name == "frame.rate") s.value = 25.000000000000004;
+  }
+  b.commit = "fedcba987654";
+  b.parameters = R"("a.key": {"value": "2", "unit": "", "origin": "command line", "default": "1", "allowed": "0 .. 2",
+    "tag": "choice", "source": "", "belief": null, "description": "a number"})";
+  two_frames().write(dir, "one");
+  b.write(dir, "two");
+  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
+  EXPECT_THAT(page, HasSubstr(">-2 ms (-20 %)</data>"));
+  EXPECT_THAT(page, HasSubstr(">-20 (-25 %)</data>"));
+  EXPECT_THAT(page, HasSubstr(">+1 points (+4 %)</data>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\"><code>a.key</code></th><td>1 <small>(default)</small></td>"
+                              "<td>2 <small>(command line)</small></td>"));
+  EXPECT_THAT(page, HasSubstr("The runs come from different states of the simulator"));
+  EXPECT_THAT(page, HasSubstr("The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less."));
+  EXPECT_THAT(page, HasSubstr("B: two"));
+  // Rounding of a sum is no difference.
+  EXPECT_THAT(page, Not(HasSubstr("e-1")));
+  EXPECT_EQ(data_of(page)["runs"].size(), 2u);
+}
+
+TEST(CompareTest, EqualParametersAreNotListed) {
+  const TempDir dir;
+  two_frames().write(dir, "one");
+  two_frames().write(dir, "two");
+  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
+  EXPECT_THAT(page, HasSubstr("The runs have the same parameters."));
+  EXPECT_THAT(page, Not(HasSubstr("different states")));
+}
+
+// Pictures.
+
+RgbImage picture(unsigned width, unsigned height, std::uint8_t value) {
+  return {.width = width, .height = height, .rgb = std::vector<std::uint8_t>(std::size_t{3} * width * height, value)};
+}
+
+TEST(PictureTest, ShrinkingTakesTheMean) {
+  RgbImage p = picture(5, 3, 10);  // the last column and row have no partner
+  p.rgb[0] = 13;                   // red of the first four pixels: 13 10 10 10
+  const RgbImage half = shrink(p, 2);
+  EXPECT_EQ(half.width, 2u);
+  EXPECT_EQ(half.height, 1u);
+  EXPECT_THAT(half.rgb, ElementsAre(11, 10, 10, 10, 10, 10));
+}
+
+TEST(PictureTest, DifferenceCountsPixelsAndErrors) {
+  const RgbImage a = picture(4, 2, 100);
+  RgbImage b = a;
+  EXPECT_EQ(difference(a, b)->pixels, 0u);
+  EXPECT_TRUE(std::isinf(difference(a, b)->psnr));
+  b.rgb[0] = 110;
+  b.rgb[1] = 90;
+  b.rgb[23] = 101;
+  const auto d = difference(a, b);
+  EXPECT_EQ(d->pixels, 2u);
+  EXPECT_EQ(d->all, 8u);
+  EXPECT_NEAR(d->psnr, 10 * std::log10(255.0 * 255.0 / (201.0 / 24)), 1e-9);
+  EXPECT_FALSE(difference(a, picture(2, 4, 100)));
+}
+
+TEST(PictureTest, BeforeAndAfterHaveTheSameNumber) {
+  const TempDir dir;
+  two_frames().write(dir);
+  fs::create_directories(dir / "run/frames");
+  fs::create_directories(dir / "run/camera");
+  app::write_png(dir / "run/frames/frame_000000.png", picture(8, 4, 1));
+  app::write_png(dir / "run/frames/frame_000003.png", picture(8, 4, 2));
+  app::write_png(dir / "run/camera/frame_000003.png", picture(16, 8, 3));
+  const auto chosen = choose_pictures({load_results(dir / "run", {})}, 1'000'000);
+  EXPECT_EQ(chosen[0].frame, 3u);
+  EXPECT_EQ(chosen[0].before->width, 16u);
+  EXPECT_EQ(chosen[0].after->width, 8u);
+  const std::string page = one_page(dir / "run");
+  EXPECT_THAT(page, HasSubstr("Frame 3: what the camera sent, and the corrected picture on the display."));
+  EXPECT_THAT(page, HasSubstr("class=\"compare\""));
+  fs::remove_all(dir / "run/camera");
+  EXPECT_THAT(one_page(dir / "run"), HasSubstr("Frame 0: the corrected picture on the display."));
+}
+
+TEST(PictureTest, RunsAreComparedPixelByPixel) {
+  const TempDir dir;
+  for (const auto& [name, value] : {std::pair("one", 7), std::pair("two", 7), std::pair("three", 9)}) {
+    two_frames().write(dir, name);
+    fs::create_directories(dir / name / "frames");
+    app::write_png(dir / name / "frames/frame_000000.png", picture(8, 4, static_cast<std::uint8_t>(value)));
+  }
+  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {}), load_results(dir / "three", {})});
+  EXPECT_THAT(page, HasSubstr("The displayed frames 0 of A: one and B: two are equal, pixel for pixel."));
+  EXPECT_THAT(page, HasSubstr("Frame 0 of A: one and C: three: 32 of 32 pixels differ (100 %), PSNR 42.1 dB."));
+}
+
+TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
+  const TempDir dir;
+  RgbImage noise = picture(720, 576, 0);
+  std::mt19937 random(1);
+  for (auto& v : noise.rgb) v = static_cast<std::uint8_t>(random());
+  std::vector<Results> runs;
+  for (std::size_t i = 0; i < kMaxRuns; ++i) {
+    const std::string name = run_label(i);
+    two_frames().write(dir, name);
+    test::add_other_files(dir, name);
+    for (const char* folder : {"/frames", "/camera"}) {
+      fs::create_directories(dir / (name + folder));
+      if (i == 0)
+        app::write_png(dir / (name + folder + "/frame_000000.png"), noise);
+      else
+        fs::copy_file(dir / (std::string("A") + folder + "/frame_000000.png"), dir / (name + folder + "/frame_000000.png"));
+    }
+    runs.push_back(load_results(dir / name, {}));
+  }
+  const std::string page = report_page(runs);
+  EXPECT_LT(page.size(), 3'000'000u);
+  EXPECT_THAT(page, HasSubstr("Shown at 1/4 of its 720 x 576 pixels."));
+  runs.resize(1);
+  const std::string alone = report_page(runs);
+  EXPECT_LT(alone.size(), 3'000'000u);
+  EXPECT_GT(alone.size(), 600'000u);  // no smaller than it must be
+}
+
+// Data of the charts.
+
+Timeline timeline(std::size_t rows) {
+  Timeline t{{"a", "idle"}, {}};
+  for (std::size_t i = 0; i < rows; ++i)
+    t.rows.push_back({i * kPsPerMs, (i + 1) * kPsPerMs, {10 * (i + 1), 0}, {1, 0}});
+  return t;
+}
+
+TEST(BandwidthTest, JoinsRowsOnlyIfThereAreTooMany) {
+  const auto four = bandwidth(timeline(4), 0, 4 * kPsPerMs, 4);
+  EXPECT_THAT(four.edges, ElementsAre(0, kPsPerMs, 2 * kPsPerMs, 3 * kPsPerMs, 4 * kPsPerMs));
+  EXPECT_THAT(four.rates[0], ElementsAre(11e3, 21e3, 31e3, 41e3));
+  const auto five = bandwidth(timeline(5), 0, 5 * kPsPerMs, 4);
+  EXPECT_THAT(five.edges, ElementsAre(0, 2 * kPsPerMs, 4 * kPsPerMs, 5 * kPsPerMs));
+  EXPECT_THAT(five.rates[0], ElementsAre(16e3, 36e3, 51e3));
+}
+
+TEST(BandwidthTest, KeepsBytesAndLeavesSilentMastersOut) {
+  for (std::size_t most = 1; most < 30; ++most) {
+    const auto b = bandwidth(timeline(23), 0, 23 * kPsPerMs, most);
+    ASSERT_LE(b.edges.size(), most + 1);
+    EXPECT_THAT(b.masters, ElementsAre("a"));
+    double bytes = 0;
+    for (std::size_t i = 0; i < b.rates[0].size(); ++i) bytes += b.rates[0][i] * 1e-12 * static_cast<double>(b.edges[i + 1] - b.edges[i]);
+    EXPECT_NEAR(bytes, 10.0 * 23 * 24 / 2 + 23, 1e-6) << most;
+  }
+}
+
+TEST(BandwidthTest, TakesRowsThatOverlapTheSpan) {
+  const auto b = bandwidth(timeline(10), 2 * kPsPerMs, 4 * kPsPerMs, 100);
+  EXPECT_THAT(b.edges, ElementsAre(2 * kPsPerMs, 3 * kPsPerMs, 4 * kPsPerMs));
+  EXPECT_TRUE(bandwidth(timeline(10), 20 * kPsPerMs, 30 * kPsPerMs, 100).edges.empty());
+}
+
+TEST(StackTreeTest, SumsChildrenAndJoinsTheSmallest) {
+  const json tree = stack_tree({{"main", 4000}, {"main;remap", 5998}, {"tick", 1}, {"tock", 1}});
+  EXPECT_EQ(tree["clocks"], 10000);
+  EXPECT_EQ(tree["children"][0]["name"], "main");
+  EXPECT_EQ(tree["children"][0]["clocks"], 9998);
+  EXPECT_EQ(tree["children"][0]["children"][0]["clocks"], 5998);
+  EXPECT_EQ(tree["children"][1]["name"], "(smaller ones)");
+  EXPECT_EQ(tree["children"][1]["clocks"], 2);
+  EXPECT_EQ(stack_tree({{"a", 9998}, {"b", 2}})["children"].size(), 2u);  // exactly 1/5000
+}
+
+TEST(HtmlTest, Base64AndDigest) {
+  const auto encoded = [](const std::string& s) { return base64(std::vector<std::uint8_t>(s.begin(), s.end())); };
+  EXPECT_EQ(encoded("") + encoded("f") + encoded("fo") + encoded("foo") + encoded("foob"), "Zg==Zm8=Zm9vZm9vYg==");  // RFC 4648
+  EXPECT_EQ(script_digest("abc"), "sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");
+}
+
+}  // namespace
+}  // namespace fovea::report
