@@ -187,6 +187,17 @@ TEST_F(ReferenceTest, ASlowerRunIsBlamedOnFunctionLineAndCause) {
   EXPECT_THAT(xml, AllOf(HasSubstr("tests=\"4\" failures=\"2\""), HasSubstr("blamed: remap (remap.c:21)")));
 }
 
+// A reference with a profile and a run without one: causes, without functions.
+TEST_F(ReferenceTest, WithoutAProfileOfTheRunTheCauseIsBlamed) {
+  RunMaker slow = profiled();
+  slow.profile.clear();
+  slow.stalls.replace(slow.stalls.find("vpbe,50"), 7, "vpbe,70");
+  slow.figure("cpu.idle", "280", "cycles");
+  const CheckResult r = check_run(read_run(slow.write(dir, "slow")), read_baseline(dir / "base.yaml"), false);
+  EXPECT_EQ(r.blame,
+            "the program: +20 clocks (100 % of the change), of which +20 clocks by dcache, region lut, culprit vpbe");
+}
+
 TEST_F(ReferenceTest, AcrossVersionsTheModelsChangesAreListed) {
   RunMaker other = profiled();
   other.version = "0.2.0";

@@ -32,6 +32,10 @@ struct CheckResult {
 /// "better".
 Finding judge(const Expectation& expected, const RunFigures& run);
 
+/// Refuses a run that the baseline is not for. @throws UserError: another experiment or other
+/// settings
+void check_circumstances(const RunFigures& run, const Baseline& baseline);
+
 /// @throws UserError: the run is of another experiment or has other settings than the baseline, or
 /// comes from another simulator (unless `across_versions`), or the reference cannot be read
 CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool across_versions);
