@@ -9,7 +9,7 @@ fovea=${FOVEA:-fovea} build=${BUILD:-build}
 cd "$(dirname "$0")"
 mkdir -p "$build"
 build=$(realpath "$build")
-make -s -C firmware BUILD="$build" FLAGS="${FLAGS-}"
+make -sB -C firmware BUILD="$build" FLAGS="${FLAGS-}"
 "$fovea" run timing.yaml -s firmware.elf="$build/app.elf" --max-time 1s --no-frames ${FOVEA_RUN_OPTIONS-} \
   -o "$build/timing" >"$build/run.log"
 case ${1-} in

@@ -10,17 +10,15 @@ mkdir -p "$out"
 for run in "$4"/{default,paper-pal,paper-vga,paper-ntsc}; do ln -s "$run" "$out/"; done
 ln -s "$5" "$out/throughput"
 "$source/scripts/baselines" --check "$fovea" "$out"
-# One digit of one figure: n fails where n - 1 passes.
-mean=$(sed -n '/frame.remap_time.mean/,/value/s/ *value: //p' "$source/traces/baselines/default.yaml")
-sed "s/value: $mean\$/value: 1$mean/" "$source/traces/baselines/default.yaml" >"$out/changed.yaml"
+# Another digit of one figure.
+sed '/frame.remap_time.mean/,/value/s/\(value: [0-9.e-]*\)\([0-9]\)$/\19\2/' "$source/traces/baselines/default.yaml" >"$out/changed.yaml"
+if cmp -s "$source/traces/baselines/default.yaml" "$out/changed.yaml"; then echo "no figure was changed"; exit 1; fi
 cp -r "$source/traces/baselines/default" "$out/reference"
 sed -i 's/^reference: .*/reference: reference/' "$out/changed.yaml"
 status=0
 "$fovea" check "$out/default" --against "$out/changed.yaml" --across-versions >"$out/changed.log" || status=$?
-if [ "$status" != 0 ]; then cat "$out/changed.log"; echo "a larger baseline than needed fails"; exit 1; fi
-sed -i "s/value: 1$mean\$/value: 0.$mean/; s/value: 0\.0\./value: 0.00/" "$out/changed.yaml"
-status=0
-"$fovea" check "$out/default" --against "$out/changed.yaml" --across-versions >"$out/changed.log" || status=$?
 if [ "$status" != 1 ] || ! grep -q 'FAILED  frame.remap_time.mean' "$out/changed.log"; then
-  cat "$out/changed.log"; echo "another figure was not found: status $status"; exit 1
+  cat "$out/changed.log"
+  echo "another figure was not found: status $status"
+  exit 1
 fi

@@ -63,6 +63,7 @@ TEST_F(CheckTest, TolerancesPassAtTheLimitAndFailBeyond) {
 TEST_F(CheckTest, ABudgetIsALimitThatTheValueItselfStillMeets) {
   EXPECT_EQ(verdict("100", "kind: budget, worse: higher, reason: r"), Verdict::kPass);
   EXPECT_EQ(verdict("101", "kind: budget, worse: higher, reason: r"), Verdict::kFail);
+  EXPECT_EQ(verdict("99", "kind: budget, worse: higher, reason: r"), Verdict::kPass);
   EXPECT_EQ(verdict("99", "kind: budget, worse: lower, reason: r"), Verdict::kFail);
 }
 
@@ -163,6 +164,13 @@ TEST_F(ReferenceTest, ANewBaselineIsReadAndPassesItsOwnRun) {
   const CheckResult r = check_run(run, b, false);
   EXPECT_EQ(r.failures(), 0u);
   EXPECT_TRUE(r.settings.empty()) << r.settings.front();
+  // Names of files differ between hosts; their hashes are compared.
+  RunMaker elsewhere = profiled();
+  elsewhere.parameters["firmware.elf"] = "/elsewhere/app.elf";
+  EXPECT_TRUE(check_run(read_run(elsewhere.write(dir, "elsewhere")), b, false).settings.empty());
+  elsewhere.elf = "22";
+  EXPECT_THAT(check_run(read_run(elsewhere.write(dir, "elsewhere")), b, false).settings,
+              testing::ElementsAre("input firmware.elf: another file (SHA-256 11 -> 22)"));
   EXPECT_THAT(check_text(r, run, b, false), testing::StartsWith("passed: tiny against"));
 }
 

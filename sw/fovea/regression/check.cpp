@@ -90,6 +90,8 @@ Finding judge(const Expectation& e, const RunFigures& run) {
   if (deviation == Deviation::kWithin) return out;
   const bool worse = e.worse == Worse::kBoth ||
                      (e.worse == Worse::kHigher) == (deviation == Deviation::kHigher);
+  // A budget that is not used up is no news.
+  if (!worse && e.kind == Kind::kBudget) return out;
   out.verdict = worse ? Verdict::kFail : Verdict::kBetter;
   out.words += "; " + allowed_text(e);
   return out;
@@ -146,7 +148,8 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
     out += "what was different from the reference:\n";
     for (const auto& line : result.settings) out += "  " + line + "\n";
   }
-  if (failures && result.difference) out += difference_text(*result.difference, 8);
+  if (failures && result.difference && !result.difference->none())
+    out += difference_text(*result.difference, 8);
   if (!result.blame.empty()) out += "blamed: " + result.blame + "\n";
   else if (failures && baseline.reference.empty())
     out += "blamed: nothing, because the baseline has no reference\n";
