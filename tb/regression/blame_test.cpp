@@ -153,6 +153,15 @@ TEST_F(BlameTest, CoresOfDifferentClocksAreComparedInSeconds) {
   EXPECT_LT(d.unexplained_share(), 1e-6);
 }
 
+// 0.1 % and two clocks of each window of 1,000: 0.5 % in all are the same clock.
+TEST_F(BlameTest, TheEdgesOfAWindowMakeNoOtherClock) {
+  before.figure("frame.window", "0.000004", "s");
+  after.figure("frame.window", "0.00000401999", "s");
+  EXPECT_FALSE(difference().in_seconds);
+  after.figure("frame.window", "0.00000402001", "s");
+  EXPECT_TRUE(difference().in_seconds);
+}
+
 TEST_F(BlameTest, WithoutProfilesTheStallsAreCompared) {
   after.figure("cpu.idle", "240", "cycles");
   replace(after.stalls, "dcache,lut,vpbe,50", "dcache,lut,vpbe,110");

@@ -63,6 +63,7 @@ TEST_F(CheckTest, TolerancesPassAtTheLimitAndFailBeyond) {
 TEST_F(CheckTest, ABudgetIsALimitThatTheValueItselfStillMeets) {
   EXPECT_EQ(verdict("100", "kind: budget, worse: higher, reason: r"), Verdict::kPass);
   EXPECT_EQ(verdict("101", "kind: budget, worse: higher, reason: r"), Verdict::kFail);
+  EXPECT_EQ(verdict("99", "kind: budget, worse: higher, reason: r"), Verdict::kPass);
   EXPECT_EQ(verdict("99", "kind: budget, worse: lower, reason: r"), Verdict::kFail);
 }
 
@@ -163,6 +164,13 @@ TEST_F(ReferenceTest, ANewBaselineIsReadAndPassesItsOwnRun) {
   const CheckResult r = check_run(run, b, false);
   EXPECT_EQ(r.failures(), 0u);
   EXPECT_TRUE(r.settings.empty()) << r.settings.front();
+  // Names of files differ between hosts; their hashes are compared.
+  RunMaker elsewhere = profiled();
+  elsewhere.parameters["firmware.elf"] = "/elsewhere/app.elf";
+  EXPECT_TRUE(check_run(read_run(elsewhere.write(dir, "elsewhere")), b, false).settings.empty());
+  elsewhere.elf = "22";
+  EXPECT_THAT(check_run(read_run(elsewhere.write(dir, "elsewhere")), b, false).settings,
+              testing::ElementsAre("input firmware.elf: another file (SHA-256 11 -> 22)"));
   EXPECT_THAT(check_text(r, run, b, false), testing::StartsWith("passed: tiny against"));
 }
 
@@ -185,6 +193,17 @@ TEST_F(ReferenceTest, ASlowerRunIsBlamedOnFunctionLineAndCause) {
                           HasSubstr("ddr.clock: 243MHz -> 216MHz"), HasSubstr("blamed: remap (remap.c:21)")));
   const std::string xml = junit_xml(r, run, b, "2026-11-23T12:00:00");
   EXPECT_THAT(xml, AllOf(HasSubstr("tests=\"4\" failures=\"2\""), HasSubstr("blamed: remap (remap.c:21)")));
+}
+
+// A reference with a profile and a run without one: causes, without functions.
+TEST_F(ReferenceTest, WithoutAProfileOfTheRunTheCauseIsBlamed) {
+  RunMaker slow = profiled();
+  slow.profile.clear();
+  slow.stalls.replace(slow.stalls.find("vpbe,50"), 7, "vpbe,70");
+  slow.figure("cpu.idle", "280", "cycles");
+  const CheckResult r = check_run(read_run(slow.write(dir, "slow")), read_baseline(dir / "base.yaml"), false);
+  EXPECT_EQ(r.blame,
+            "the program: +20 clocks (100 % of the change), of which +20 clocks by dcache, region lut, culprit vpbe");
 }
 
 TEST_F(ReferenceTest, AcrossVersionsTheModelsChangesAreListed) {

@@ -156,6 +156,24 @@ TEST_F(RegressionCommandTest, BlessingLeavesALimitThatFails) {
   EXPECT_THAT(read_text(base), AllOf(HasSubstr("value: 0.004,"), HasSubstr("value: 280,")));
 }
 
+// Written by hand, with a reference that is not there yet; then one without functions gets them.
+TEST_F(RegressionCommandTest, BlessingMakesAReferenceThatIsMissingOrPoorer) {
+  dir.write("base.yaml",
+            "format: fovea baseline 1\nexperiment: tiny\nsimulator: {version: 0.1.0, commit: aaaaaaaaaaaa}\n"
+            "reference: kept\nmetrics:\n  cpu.idle: {value: 300, unit: cycles}\n");
+  RunMaker plain = profiled();
+  plain.profile.clear();
+  EXPECT_EQ(cli({"bless", plain.write(dir, "plain").string(), "--against", base, "--why", "x"}), 0) << err.str();
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("nothing to bless"), HasSubstr("reference in")));
+  EXPECT_THAT(read_text(dir / "kept/profile.csv"), Not(HasSubstr("remap.c")));
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);
+  EXPECT_THAT(read_text(dir / "kept/profile.csv"), HasSubstr("remap.c,21"));
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);
+  EXPECT_THAT(out.str(), Not(HasSubstr("reference in")));
+  EXPECT_EQ(cli({"check", b, "--against", base}), 1);
+  EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21)"));
+}
+
 TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
   dir.write("notes.yaml", "my: notes\n");
   EXPECT_EQ(cli({"bless", a, "--against", (dir / "notes.yaml").string(), "--why", "x"}), 2);
@@ -208,6 +226,17 @@ TEST(TrendPlotTest, CurvesAreInProportion) {
   // 720 wide from 96 on; 110 high from 64 on; 10 % are left free at the ends.
   EXPECT_THAT(svg, HasSubstr("<path d=\"M96.0 169.0L456.0 119.0L816.0 69.0\""));
   EXPECT_THAT(svg, AllOf(HasSubstr("&lt;e&gt;"), Not(HasSubstr("<e>")), Not(HasSubstr(">y<"))));
+}
+
+// Several experiments: as changes. 10 -> 11 and 1,000 -> 900 are +10 % and -10 % of the same panel.
+TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
+  std::vector<TrendLine> lines;
+  for (const auto& [commit, experiment, value] :
+       {std::tuple("c1", "a", 10.0), {"c1", "b", 1000.0}, {"c2", "a", 11.0}, {"c2", "b", 900.0}})
+    lines.push_back({commit, experiment, "s", {}, {{"x", {value, "1", true}}}});
+  const std::string svg = trend_svg(lines, {"x"});
+  EXPECT_THAT(svg, AllOf(HasSubstr("change since the first commit"), HasSubstr("M96.0 119.0L816.0 69.0"),
+                         HasSubstr("M96.0 119.0L816.0 169.0"), HasSubstr("c2 b: 900")));
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ struct Pair {
 };
 
 void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side,
-              const Attribution& attribution, double scale, double& busy, double& idle) {
+              const Attribution& attribution, bool by_function, double scale, double& busy,
+              double& idle) {
   for (const auto& r : attribution.rows) {
     const double amount = static_cast<double>(r.clocks) * scale;
     if (r.idle()) {
@@ -37,7 +38,7 @@ void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side,
       continue;
     }
     busy += amount;
-    Side& s = functions[{r.function, r.file}].*side;
+    Side& s = functions[by_function ? FunctionKey(r.function, r.file) : FunctionKey()].*side;
     s.present = true;
     s.causes[{r.cause, r.region, r.culprit}] += amount;
     s.lines[r.line] += amount;
@@ -124,8 +125,10 @@ FunctionChange change_of(const FunctionKey& key, const Pair& p, bool by_function
   f.function = key.first;
   f.file = key.second;
   f.share = {p.before.clocks, p.after.clocks};
-  f.instructions_before = p.before.instructions;
-  f.instructions_after = p.after.instructions;
+  if (by_function) {
+    f.instructions_before = p.before.instructions;
+    f.instructions_after = p.after.instructions;
+  }
   std::map<CauseKey, Share> causes;
   for (const auto& [cause, clocks] : p.before.causes) causes[cause].before = clocks;
   for (const auto& [cause, clocks] : p.after.causes) causes[cause].after = clocks;
@@ -157,6 +160,16 @@ void find_layout(Difference& d) {
     if (f.layout != 0 && std::abs(f.layout) * 2 >= std::abs(f.share.change()))
       f.kind = ChangeKind::kLayout;
   }
+}
+
+/// True if the cores had different clocks. The window's edges may lie within a clock, so that its
+/// length tells a clock's only to two clocks in all; clocks that differ by less than 0.1 % count as
+/// the same.
+bool other_clock(const Attribution& a, const Attribution& b) {
+  if (a.seconds <= 0 || b.seconds <= 0) return false;
+  constexpr double kSame = 1e-3, kEdges = 2;
+  return std::abs(a.seconds - b.seconds) >
+         a.seconds * (kSame + kEdges / a.clocks + kEdges / b.clocks);
 }
 
 std::string grouped(double value) {
@@ -194,14 +207,12 @@ Difference difference_of(const Attribution& before, const Attribution& after,
   d.by_function = before.by_function && after.by_function;
   d.program_differs = circumstances.program_differs;
   d.settings_differ = circumstances.settings_differ;
-  // Quotients of two printed figures agree to about 15 digits for equal clocks.
-  d.in_seconds = before.seconds > 0 && after.seconds > 0 &&
-                 std::abs(before.seconds - after.seconds) > 1e-6 * before.seconds;
+  d.in_seconds = other_clock(before, after);
   const double scale_before = d.in_seconds ? before.seconds : 1;
   const double scale_after = d.in_seconds ? after.seconds : 1;
   std::map<FunctionKey, Pair> functions;
-  add_side(functions, &Pair::before, before, scale_before, d.busy.before, d.idle.before);
-  add_side(functions, &Pair::after, after, scale_after, d.busy.after, d.idle.after);
+  add_side(functions, &Pair::before, before, d.by_function, scale_before, d.busy.before, d.idle.before);
+  add_side(functions, &Pair::after, after, d.by_function, scale_after, d.busy.after, d.idle.after);
   d.total = {before.clocks * scale_before, after.clocks * scale_after};
   d.unexplained = d.total.change() - (d.busy.change() + d.idle.change());
   // In seconds the sums are rounded.

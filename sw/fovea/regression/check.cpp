@@ -12,24 +12,6 @@
 namespace fovea::regression {
 namespace {
 
-void check_circumstances(const RunFigures& run, const Baseline& baseline) {
-  const std::string file = app::one_line(baseline.file.string());
-  if (run.experiment != baseline.experiment)
-    throw UserError(fmt::format("'{}' is a run of the experiment '{}', {} is for '{}'",
-                                app::one_line(run.folder.string()), app::one_line(run.experiment),
-                                file, baseline.experiment));
-  for (const auto& [key, value] : baseline.settings) {
-    const auto found = run.parameters.find(key);
-    if (found == run.parameters.end())
-      throw UserError(fmt::format("{}: settings: no parameter '{}'; 'fovea params' lists all keys",
-                                  file, app::one_line(key, 60)));
-    if (found->second.value != value)
-      throw UserError(fmt::format("{} is for {} = {}; '{}' has {}", file, key, value,
-                                  app::one_line(run.folder.string()),
-                                  app::one_line(found->second.value, 60)));
-  }
-}
-
 /// The value that a limit or an expectation has, in words.
 std::string expected_text(const Expectation& e, const Metric& got) {
   Metric m{e.value, e.unit, got.whole && e.value && *e.value == std::floor(*e.value)};
@@ -48,6 +30,24 @@ std::string allowed_text(const Expectation& e) {
 }
 
 }  // namespace
+
+void check_circumstances(const RunFigures& run, const Baseline& baseline) {
+  const std::string file = app::one_line(baseline.file.string());
+  if (run.experiment != baseline.experiment)
+    throw UserError(fmt::format("'{}' is a run of the experiment '{}', {} is for '{}'",
+                                app::one_line(run.folder.string()), app::one_line(run.experiment),
+                                file, baseline.experiment));
+  for (const auto& [key, value] : baseline.settings) {
+    const auto found = run.parameters.find(key);
+    if (found == run.parameters.end())
+      throw UserError(fmt::format("{}: settings: no parameter '{}'; 'fovea params' lists all keys",
+                                  file, app::one_line(key, 60)));
+    if (found->second.value != value)
+      throw UserError(fmt::format("{} is for {} = {}; '{}' has {}", file, key, value,
+                                  app::one_line(run.folder.string()),
+                                  app::one_line(found->second.value, 60)));
+  }
+}
 
 std::size_t CheckResult::failures() const {
   return static_cast<std::size_t>(std::count_if(
@@ -90,6 +90,8 @@ Finding judge(const Expectation& e, const RunFigures& run) {
   if (deviation == Deviation::kWithin) return out;
   const bool worse = e.worse == Worse::kBoth ||
                      (e.worse == Worse::kHigher) == (deviation == Deviation::kHigher);
+  // A budget that is not used up is no news.
+  if (!worse && e.kind == Kind::kBudget) return out;
   out.verdict = worse ? Verdict::kFail : Verdict::kBetter;
   out.words += "; " + allowed_text(e);
   return out;
@@ -110,9 +112,7 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
   const RunFigures reference = read_reference(baseline);
   out.settings = differences_of_settings(reference, run);
   if (out.failures() == 0) return out;
-  // The reference's attribution may lack functions; then both are compared without them.
-  const Attribution before = attribution_of(reference, true);
-  const Attribution after = attribution_of(run, before.by_function);
+  const Attribution before = attribution_of(reference, true), after = attribution_of(run, true);
   if (before.rows.empty() || after.rows.empty()) return out;
   out.difference = difference_of(before, after, circumstances_of(reference, run));
   out.blame = blame_text(*out.difference,
@@ -148,7 +148,8 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
     out += "what was different from the reference:\n";
     for (const auto& line : result.settings) out += "  " + line + "\n";
   }
-  if (failures && result.difference) out += difference_text(*result.difference, 8);
+  if (failures && result.difference && !result.difference->none())
+    out += difference_text(*result.difference, 8);
   if (!result.blame.empty()) out += "blamed: " + result.blame + "\n";
   else if (failures && baseline.reference.empty())
     out += "blamed: nothing, because the baseline has no reference\n";

@@ -29,8 +29,12 @@ struct CheckResult {
 
 /// Compares one figure. A kind `exact` with `worse: both` fails on any deviation beyond the
 /// tolerance; otherwise only a deviation in the direction that is worse fails, the other one is
-/// "better".
+/// "better" (of a budget: passes).
 Finding judge(const Expectation& expected, const RunFigures& run);
+
+/// Refuses a run that the baseline is not for. @throws UserError: another experiment or other
+/// settings
+void check_circumstances(const RunFigures& run, const Baseline& baseline);
 
 /// @throws UserError: the run is of another experiment or has other settings than the baseline, or
 /// comes from another simulator (unless `across_versions`), or the reference cannot be read

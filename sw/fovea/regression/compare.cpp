@@ -133,11 +133,14 @@ std::vector<std::string> differences_of_settings(const RunFigures& before, const
   }
   for (const auto& key : keys) {
     const auto a = before.parameters.find(key), b = after.parameters.find(key);
+    // Of files, the hashes below matter.
+    if ((a != before.parameters.end() && a->second.path) || (b != after.parameters.end() && b->second.path))
+      continue;
     if (a == before.parameters.end())
       out.push_back(fmt::format("parameter {} is new: {}", key, app::one_line(b->second.value, 60)));
     else if (b == after.parameters.end())
       out.push_back(fmt::format("parameter {} is gone: {}", key, app::one_line(a->second.value, 60)));
-    else if (!a->second.path && !b->second.path && a->second.value != b->second.value)
+    else if (a->second.value != b->second.value)
       out.push_back(fmt::format("{}: {} -> {}{}", key, app::one_line(a->second.value, 60),
                                 app::one_line(b->second.value, 60),
                                 a->second.default_value != b->second.default_value

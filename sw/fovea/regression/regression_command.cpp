@@ -11,6 +11,7 @@
 
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/output_file.h"
+#include "sw/fovea/regression/attribution.h"
 #include "sw/fovea/regression/check.h"
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/trend.h"
@@ -72,12 +73,28 @@ int check(const RegressionOptions& options, const CliContext& context) {
   return result.failures() ? kExitCheckFailed : kExitDone;
 }
 
-/// Puts a complete text in place of a file, without a moment in which it is half written.
-void replace_file(const fs::path& file, const std::string& text, std::string_view mark) {
-  OutputFile out(file, "--against", "a baseline",
-                 [mark](std::string_view first) { return first.find(mark) != first.npos; });
+/// Puts a complete text in place of a baseline, without a moment in which it is half written.
+void replace_file(const fs::path& file, const std::string& text) {
+  OutputFile out(file, "--against", "a baseline", [](std::string_view first) {
+    return first.find(kBaselineFormat) != first.npos;
+  });
   out.write(text);
   out.commit();
+}
+
+/// Writes the reference of a baseline if it is missing, belongs to other figures, or can become one
+/// by function. @return whether it was written
+bool write_reference(const fs::path& folder, const RunFigures& run, const Baseline& baseline, bool changed) {
+  std::error_code error;
+  if (folder.empty()) return false;
+  const bool complete = fs::exists(folder / "figures.csv", error);
+  if (!changed && complete &&
+      (!has_profile(run) || attribution_of(read_reference(baseline), true).by_function))
+    return false;
+  const auto files = reference_files(run);
+  fs::create_directories(folder, error);
+  for (const auto& [name, text] : files) write_file(folder / name, text);
+  return true;
 }
 
 int bless(const RegressionOptions& options, const CliContext& context) {
@@ -87,44 +104,31 @@ int bless(const RegressionOptions& options, const CliContext& context) {
   const RunFigures run = read_run(o.folder);
   const fs::path file = o.against;
   std::error_code error;
-  const bool is_new = !fs::exists(fs::symlink_status(file, error));
   std::string before, after;
-  fs::path reference;
-  if (is_new) {
-    reference = file.parent_path() / file.stem();
-    after = new_baseline(run, file.stem().string(), o.why);
-  } else {
+  if (fs::exists(fs::symlink_status(file, error))) {
     const Baseline baseline = read_baseline(file);
-    // The settings and the experiment must fit; the simulator may be another one.
-    CheckResult checked = check_run(run, baseline, true);
+    check_circumstances(run, baseline);
     before = baseline.text;
-    reference = baseline.reference;
     after = blessed_text(run, baseline, o.why);
+  } else {
+    after = new_baseline(run, file.stem().string(), o.why);
   }
   const std::string diff = unified_diff(file.string(), before, after);
-  if (diff.empty()) {
-    context.out << fmt::format("{} is as this run; nothing to bless\n", file.string()) << std::flush;
-  } else {
-    // What was made must be readable, or the file stays as it was.
-    const Baseline made = parse_baseline(file, after);
-    if (!reference.empty()) {
-      fs::create_directories(reference, error);
-      for (const auto& [name, text] : reference_files(run)) write_file(reference / name, text);
-    }
-    replace_file(file, after, kBaselineFormat);
-    context.out << diff;
-    if (!reference.empty())
-      context.out << fmt::format("reference in {}\n", reference.string());
-  }
+  // What was made must be readable, or the file stays as it was.
+  const Baseline now = parse_baseline(file, after);
+  const bool referred = write_reference(now.reference, run, now, !diff.empty());
+  if (!diff.empty()) replace_file(file, after);
+  context.out << (diff.empty() ? fmt::format("{} is as this run; nothing to bless\n", file.string()) : diff);
+  if (referred) context.out << fmt::format("reference in {}\n", now.reference.string());
   context.out << std::flush;
-  const Baseline now = read_baseline(file);
-  const CheckResult left = check_run(run, now, true);
-  for (const auto& f : left.findings)
-    if (f.verdict == Verdict::kFail)
-      context.err << fmt::format("fovea: {} still fails: it is of the kind {}, which is changed by "
-                                 "hand: {}\n",
-                                 f.expected->name, kind_name(f.expected->kind), f.words);
-  return left.failures() ? kExitCheckFailed : kExitDone;
+  std::size_t failures = 0;
+  for (const auto& e : now.metrics)
+    if (const Finding f = judge(e, run); f.verdict == Verdict::kFail) {
+      ++failures;
+      context.err << fmt::format("fovea: {} still fails: its kind is {}, which is changed by hand: {}\n",
+                                 e.name, kind_name(e.kind), f.words);
+    }
+  return failures ? kExitCheckFailed : kExitDone;
 }
 
 int trend(const RegressionOptions& options, const CliContext& context) {

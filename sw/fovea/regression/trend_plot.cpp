@@ -48,6 +48,28 @@ std::string mark(std::size_t series, double x, double y, const std::string& titl
   }
 }
 
+std::string title_of(const std::string& figure, bool relative) {
+  return fmt::format("{}{}",
+                     figure == kHostInstructions
+                         ? "host instructions of the simulator for each guest instruction"
+                         : xml_text(figure),
+                     relative ? ", change since the first commit" : "");
+}
+
+/// A level of a panel: short, with a prefix for large counts.
+std::string tick_text(double level, const std::string& unit) {
+  constexpr std::array<std::pair<double, const char*>, 3> kPrefixes = {{{1e9, " G"}, {1e6, " M"}, {1e3, " k"}}};
+  if (unit == "s" || unit == "B" || unit == "W" || unit == "ratio") {
+    Metric m;
+    m.value = level;
+    m.unit = unit;
+    return figure_text(m);
+  }
+  for (const auto& [scale, prefix] : kPrefixes)
+    if (std::abs(level) >= scale) return fmt::format("{:.4g}{}", level / scale, prefix);
+  return fmt::format("{:.4g}{}", level, unit == "1" || unit.size() > 8 ? "" : " " + unit);
+}
+
 /// A commit as a label: hashes are cut as git does, names are kept.
 std::string short_name(const std::string& commit) {
   const bool hash = commit.size() > 9 && commit.find_first_not_of("0123456789abcdef") == commit.npos;
@@ -87,35 +109,43 @@ std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std
     out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, xml_text(experiments[e]));
     at += 30 + 7.5 * static_cast<double>(experiments[e].size());
   }
+  // Curves of several experiments differ too much in height to show a change of a few percent; they
+  // are drawn as changes since their first commit.
+  const bool relative = experiments.size() > 1;
   for (std::size_t p = 0; p < shown.size(); ++p) {
+    std::vector<double> first(experiments.size(), 0);
+    for (std::size_t e = 0; e < experiments.size(); ++e)
+      for (auto line = lines.rbegin(); line != lines.rend(); ++line)
+        if (const auto m = figure_of(*line, shown[p]); m && line->experiment == experiments[e])
+          first[e] = *m->value;
+    const auto height_of = [&](const TrendLine& line, double value) {
+      if (!relative) return value;
+      const auto e = static_cast<std::size_t>(
+          std::find(experiments.begin(), experiments.end(), line.experiment) - experiments.begin());
+      return first[e] == 0 ? (value == 0 ? 0 : 100) : 100 * (value / first[e] - 1);
+    };
     const double top = kTop + static_cast<double>(p) * (kPanel + kGap) + 18;
     double low = INFINITY, high = -INFINITY;
     std::string unit;
-    bool whole = true;
     for (const auto& line : lines)
       if (const auto m = figure_of(line, shown[p])) {
-        low = std::min(low, *m->value);
-        high = std::max(high, *m->value);
-        unit = m->unit;
-        whole &= m->whole;
+        low = std::min(low, height_of(line, *m->value));
+        high = std::max(high, height_of(line, *m->value));
+        unit = relative ? "%" : m->unit;
       }
     // A curve that does not change is drawn in the middle, not as a line of noise.
-    const double least = std::max(std::abs(high) * 0.02, 1e-12);
+    const double least = relative ? 0.5 : std::max(std::abs(high) * 0.02, 1e-12);
     const double centre = (low + high) / 2, half = std::max((high - low) / 2 * 1.1, least);
     const auto y_of = [&](double value) { return top + kPanel * (0.5 - (value - centre) / (2 * half)); };
     out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-weight=\"bold\">{}</text>\n", kLeft, top - 8,
-                       xml_text(shown[p] == kHostInstructions
-                                    ? "host instructions of the simulator for each guest instruction"
-                                    : shown[p]));
+                       title_of(shown[p], relative));
     for (const double level : {centre - half * 0.9, centre, centre + half * 0.9}) {
       const double y = y_of(level);
       out += fmt::format("<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#d0d0d0\"/>\n",
                          kLeft, kLeft + kPlot, y);
-      const Metric tick{level, unit, false};
       out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"#404040\">{}</text>\n",
                          kLeft - 8, y + 4,
-                         xml_text(shown[p] == kHostInstructions ? fmt::format("{:.4g}", level)
-                                                                : figure_text(tick)));
+                         xml_text(relative ? fmt::format("{:+.2g} %", level) : tick_text(level, unit)));
     }
     for (std::size_t e = 0; e < experiments.size(); ++e) {
       std::string path, marks;
@@ -123,8 +153,9 @@ std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std
         for (const auto& line : lines)
           if (line.commit == commits[c] && line.experiment == experiments[e])
             if (const auto m = figure_of(line, shown[p])) {
-              path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c), y_of(*m->value));
-              marks += mark(e, x_of(c), y_of(*m->value),
+              path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c),
+                                  y_of(height_of(line, *m->value)));
+              marks += mark(e, x_of(c), y_of(height_of(line, *m->value)),
                             fmt::format("{} {}: {}", line.commit, line.experiment, figure_text(*m)));
             }
       if (!path.empty())

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# The shipped experiments are as traces/baselines says; a baseline with another figure is found.
+# Usage: baselines.sh FOVEA SOURCE OUT FIGURES THROUGHPUT
+#   FIGURES     folder with the runs that the test of README.md's table made: default, paper-pal ...
+#   THROUGHPUT  a run of throughput
+set -euo pipefail
+fovea=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+for run in "$4"/{default,paper-pal,paper-vga,paper-ntsc}; do ln -s "$run" "$out/"; done
+ln -s "$5" "$out/throughput"
+"$source/scripts/baselines" --check "$fovea" "$out"
+# Another digit of one figure.
+sed '/frame.remap_time.mean/,/value/s/\(value: [0-9.e-]*\)\([0-9]\)$/\19\2/' "$source/traces/baselines/default.yaml" >"$out/changed.yaml"
+if cmp -s "$source/traces/baselines/default.yaml" "$out/changed.yaml"; then echo "no figure was changed"; exit 1; fi
+cp -r "$source/traces/baselines/default" "$out/reference"
+sed -i 's/^reference: .*/reference: reference/' "$out/changed.yaml"
+status=0
+"$fovea" check "$out/default" --against "$out/changed.yaml" --across-versions >"$out/changed.log" || status=$?
+if [ "$status" != 1 ] || ! grep -q 'FAILED  frame.remap_time.mean' "$out/changed.log"; then
+  cat "$out/changed.log"
+  echo "another figure was not found: status $status"
+  exit 1
+fi

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# From the Debian package to a verdict on a firmware of somebody else's: the recipe of scripts/ci-example with
+# the unpacked package alone. Usage: package.sh BUILD SOURCE OUT
+set -uo pipefail
+build=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
+
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$out/deb" >"$out/cpack.log" 2>&1 || { cat "$out/cpack.log"; exit 1; }
+rm -rf "$out/deb/_CPack_Packages"
+deb=$(ls "$out"/deb/fovea_*.deb)
+depends=$(dpkg-deb -f "$deb" Depends)
+for library in libc6 libsqlite3-0 libyaml-cpp; do
+  [[ $depends == *$library* ]] || fail "the package does not depend on $library: $depends"
+done
+commit=$(tr - . <"$build/fovea.commit")
+[[ $(dpkg-deb -f "$deb" Version) == *+"$commit" ]] || fail "version $(dpkg-deb -f "$deb" Version), not of commit $commit"
+
+# A machine without Fovea's sources: the package below a folder, a copy of the recipe.
+begin=$(date +%s%N)
+dpkg -x "$deb" "$out/root" || exit 1
+cp -r "$out/root/usr/share/doc/fovea/ci-example" "$out/repository"
+export FOVEA=$out/root/usr/bin/fovea BUILD=$out/app
+cd "$out/repository" || exit 1
+[ "$("$FOVEA" version)" = "$("$build/fovea" version)" ] || fail "version: $("$FOVEA" version)"
+# The example's own baseline is of the package of another commit: still right, and taken over.
+FOVEA_CHECK_OPTIONS=--across-versions ./check.sh >"$out/shipped.log" 2>&1 ||
+  fail "the shipped baseline is out of date: $(cat "$out/shipped.log")"
+./check.sh >"$out/other.log" 2>&1
+[ $? = 2 ] || fail "another commit's baseline is not refused: $(cat "$out/other.log")"
+sed -i "s/^  commit: .*/  commit: $(cat "$build/fovea.commit")/" baseline.yaml
+./check.sh >"$out/same.log" 2>&1 || fail "the same firmware: status $?: $(cat "$out/same.log")"
+FLAGS=-DSLOW ./check.sh >"$out/slow.log" 2>&1
+status=$?
+end=$(date +%s%N)
+[ "$status" = 1 ] || fail "a slower firmware: status $status: $(cat "$out/slow.log")"
+grep -q 'FAILED  cpu.cycles' "$out/slow.log" || fail "no cpu.cycles: $(cat "$out/slow.log")"
+grep -q '^blamed: ' "$out/slow.log" || fail "nothing blamed: $(cat "$out/slow.log")"
+echo "from package to three verdicts: $(((end - begin) / 1000000)) ms"
+xmllint --noout --schema "$source/tb/regression/junit.xsd" "$BUILD/timing.xml" 2>"$out/xml.log" ||
+  fail "JUnit XML: $(cat "$out/xml.log")"
+# The schema is able to complain.
+sed 's/ tests="[0-9]*"//' "$BUILD/timing.xml" >"$out/without.xml"
+xmllint --noout --schema "$source/tb/regression/junit.xsd" "$out/without.xml" 2>/dev/null && fail "the schema accepts anything"
+# The package brings firmware, experiments and footage.
+"$FOVEA" run "$out/root/usr/share/fovea/scripts/experiments/default.yaml" -s video.width=64 -s video.height=16 \
+  -s camera.stamp=false -s run.frames=1 --no-frames -o "$out/default" >"$out/default.log" 2>&1 ||
+  fail "default: $(cat "$out/default.log")"
+man=$(gzip -dcf "$out"/root/usr/share/man/man1/fovea.1*) || fail 'no manual page'
+[[ $man == *'fovea check'* ]] || fail 'the manual page lacks fovea check'
+# The servers' files start the same script.
+for file in "$source"/scripts/ci-example/{github/.github/workflows/timing.yml,gitlab/.gitlab-ci.yml}; do
+  grep -q './check.sh' "$file" || fail "$file does not run check.sh"
+done
+echo "$failures failures"
+[ "$failures" = 0 ]

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Slow-downs planted into the firmware, its settings and its layout: 'fovea check' blames each on the right function,
+# line and cause. Usage: planted.sh FOVEA BUILD SOURCE OUT CASE...
+#   CASE  load, priority, dcache, clock, poll, layout
+set -uo pipefail
+fovea=$1 build=$2 source=$3 out=$4
+shift 4
+rm -rf "$out"
+mkdir -p "$out"
+failures=0
+fail() { echo "$1"; failures=$((failures + 1)); }
+
+cat >"$out/small.yaml" <<'Y'
+run: {frames: 2, start_limit: 2s}
+camera: {kind: chart, stamp: false}
+video: {width: 128, height: 32}
+firmware: {kernel: plain}
+load: {outstanding: 2, priority: 7, base: 96MiB, size: 1MiB, start: 220ms}
+Y
+
+# run NAME [-s KEY=VALUE ...]
+run() {
+  local name=$1
+  shift
+  "$fovea" run "$out/small.yaml" --profile --no-frames "$@" -o "$out/$name" >"$out/$name.log" 2>&1 ||
+    { fail "$name: $(tail -3 "$out/$name.log")"; return 1; }
+}
+
+# The commands that built the firmware, one a line.
+ninja -C "$build" -t commands sw/firmware/fovea_firmware.elf >"$out/commands"
+# firmware NAME FILE.c 'sed program': the firmware with one source file changed
+firmware() {
+  local name=$1 file=$2 command link
+  mkdir -p "$out/$name.src"
+  sed -E "$3" "$source/sw/firmware/$file" >"$out/$name.src/$(basename "$file")"
+  cmp -s "$source/sw/firmware/$file" "$out/$name.src/$(basename "$file")" && fail "$name: nothing was planted"
+  command=$(grep -- " -c $source/sw/firmware/$file " "$out/commands" | sed 's/.*&& \([^&]*-c [^&]*\) &&.*/\1/; s/ -MD -MF [^ ]*//')
+  local object
+  object=$(sed 's/.* -o \([^ ]*\).*/\1/' <<<"$command")
+  command=${command/" -c $source/sw/firmware/$file "/" -I$source/sw/firmware/$(dirname "$file") -c $out/$name.src/$(basename "$file") "}
+  command=${command/" -o $object"/" -o $out/$name.src/$(basename "$object")"}
+  eval "$command" || fail "$name: cannot be compiled"
+  link=$(grep -- ' -o .*fovea_firmware.elf' "$out/commands" | sed 's/^[^&]*&& //')
+  link=${link//"$object"/"$out/$name.src/$(basename "$object")"}
+  eval "$(sed -E "s|-Wl,-Map=[^ ]*||; s|-o [^ ]*fovea_firmware.elf|-o $out/$name.elf|" <<<"$link")" || fail "$name: cannot be linked"
+}
+
+# blamed NAME 'function (file:line) what' 'cause'...: the baseline fails, and this is to blame
+blamed() {
+  local name=$1 text
+  shift
+  text=$("$fovea" check "$out/$name" --against "$out/baseline.yaml" --junit "$out/$name.xml")
+  [ $? = 1 ] || fail "$name: the check does not fail: $text"
+  grep '^blamed' <<<"$text"
+  for pattern; do
+    grep '^blamed: ' <<<"$text" | grep -qE "$pattern" || fail "$name: no '$pattern' in: $text"
+  done
+  grep -qE 'unexplained: [-+]0 .*\(0\.0 %\)' <<<"$text" || fail "$name: something is unexplained: $text"
+}
+
+line_of() { grep -nE -m1 "$2" "$1" | cut -d: -f1; }
+
+run base || exit 1
+"$fovea" bless "$out/base" --against "$out/baseline.yaml" --why 'before the plants' >/dev/null || fail 'no baseline'
+"$fovea" check "$out/base" --against "$out/baseline.yaml" >/dev/null || fail 'the run itself fails'
+
+for planted; do
+  case $planted in
+    load) # in the remap loop
+      firmware load kernels/remap_plain.c \
+        's/^  while \(lut != end\) (.*)$/  while (lut != end) {\n    (void)*(const volatile uint32_t *)lut;\n    \1\n  }/'
+      run load -s firmware.elf="$out/load.elf" &&
+        blamed load "^blamed: remap_plain \(remap_plain.c:$(line_of "$out/load.src/remap_plain.c" volatile)\) executes more" ;;
+    priority) # of another master
+      run priority -s load.priority=0 -s priority.arm=7 &&
+        blamed priority '^blamed: remap_plain \(remap_plain.c:8\) waits' 'culprit load' ;;
+    dcache) # off
+      firmware dcache drivers/cp15.c 's/CONTROL_M \| CONTROL_C \| CONTROL_I/CONTROL_M | CONTROL_I/'
+      run dcache -s firmware.elf="$out/dcache.elf" &&
+        blamed dcache '^blamed: remap_plain \(remap_plain.c:8\)' 'by (uncached|write_buffer|bus_sync)' ;;
+    clock) # of core and SDRAM
+      run clock -s clocks.preset=216/172 &&
+        blamed clock '^blamed: remap_plain \(remap_plain.c:8\) waits' 's by dcache' ;;
+    poll) # of the timer
+      firmware poll drivers/timer.c 's/^(uint32_t timer_ticks.void. \{).*/\1\n  (void)mmio_read32(TIMER0_TIM12);\n  return mmio_read32(TIMER0_TIM12);\n}/'
+      run poll -s firmware.elf="$out/poll.elf" && blamed poll '^blamed: timer_ticks \(timer.c:2[0-9]\) executes more' 'uncached' ;;
+    layout) # 32 bytes of nothing before the first function of .text
+      firmware layout kernels/remap_plain.c \
+        's/^void remap_plain/__asm__(".section .text.remap_plain\\n .space 32\\n .text");\n&/'
+      run layout -s firmware.elf="$out/layout.elf" && {
+        "$fovea" compare "$out/base" "$out/layout" >"$out/layout.text"
+        grep -q 'by layout (same code at other addresses)' "$out/layout.text" || fail "layout: $(cat "$out/layout.text")"
+      } ;;
+    *) fail "no case $planted" ;;
+  esac
+done
+echo "$failures failures"
+[ "$failures" = 0 ]
