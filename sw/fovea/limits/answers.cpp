@@ -111,7 +111,7 @@ std::string demand_text(const Study& study) {
 std::string settings_text(const Relaxation& r) {
   Settings all = r.settings;
   all.insert(all.end(), r.options.begin(), r.options.end());
-  return fmt::format("{}", fmt::join(all, " "));
+  return fmt::format("{}", fmt::join(all, ", "));
 }
 
 std::string binds_text(const Study& study) {
@@ -121,7 +121,7 @@ std::string binds_text(const Study& study) {
   const auto value = [&](double v) { return app::human_text(v, b.unit()); };
   std::string out = fmt::format("What binds {}{} ({}), each resource relaxed alone and run again:\n", b.metric(), at,
                                 value(*b.plain()));
-  Settings little, worse, idle;
+  Settings little, worse, idle, failed;
   bool any = false;
   for (const Binds::Row& row : b.rows()) {
     const Relaxation& r = row.relaxation;
@@ -134,13 +134,14 @@ std::string binds_text(const Study& study) {
     } else if (row.gain) {
       (*row.gain < -kBinds ? worse : little).push_back(fmt::format("{} ({:+.1f} %)", r.name, 100 * *row.gain));
     } else {
-      idle.push_back(fmt::format("{} ({})", r.name, r.idle.empty() ? row.failure : r.idle));
+      (r.idle.empty() ? failed : idle).push_back(fmt::format("{} ({})", r.name, r.idle.empty() ? row.failure : r.idle));
     }
   }
   if (!any) out += "  Nothing that was relaxed makes it more than 2 % better.\n";
   if (!little.empty()) out += fmt::format("  Does not bind: {}.\n", fmt::join(little, ", "));
   if (!worse.empty()) out += fmt::format("  Makes it worse: {}.\n", fmt::join(worse, ", "));
   if (!idle.empty()) out += fmt::format("  Not tried: {}.\n", fmt::join(idle, "; "));
+  if (!failed.empty()) out += fmt::format("  Without a figure: {}.\n", fmt::join(failed, "; "));
   if (!b.remark().empty()) out += "  " + b.remark() + "\n";
   return out;
 }
@@ -160,7 +161,7 @@ std::string answers_text(const std::vector<std::unique_ptr<Study>>& studies, con
   for (const Condition& c : conditions) all.push_back(text_of(c));
   std::string out = fmt::format("Conditions: {}.\n", joined(all));
   for (const auto& study : studies) {
-    if (!study->over().empty()) out += fmt::format("\n{}\n", joined(study->over()));
+    if (!study->over().empty()) out += fmt::format("\n{}:\n", joined(study->over()));
     if (study->find()) out += find_text(*study);
     if (study->plain() && (!question.load || !study->plain_verdict().good())) out += plain_text(*study);
     if (!study->loads().empty()) {

@@ -39,7 +39,13 @@ LoadSearch::LoadSearch(Session& session, const Settings& base, const LoadPlace& 
       before_(bytes_per_second(plain, place.port)),
       last_(static_cast<std::uint64_t>(std::ceil(shape.most / shape.step))),
       search_(std::make_unique<ValueSearch>(session, base, last_,
-                                            [this](std::uint64_t n) { return settings(n); })) {}
+                                            [this](std::uint64_t n) { return settings(n); },
+                                            [this](std::uint64_t n) { return label(n); })) {}
+
+std::string LoadSearch::label(std::uint64_t n) const {
+  if (n == 0) return "";
+  return fmt::format("{} on port {}, priority {}", rate_text(n), place_.port, place_.priority);
+}
 
 Settings LoadSearch::settings(std::uint64_t n) const {
   if (n == 0) return {};

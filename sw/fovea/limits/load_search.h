@@ -39,6 +39,7 @@ class LoadSearch {
 
  private:
   Settings settings(std::uint64_t n) const;
+  std::string label(std::uint64_t n) const;
   LoadPlace place_;
   LoadShape shape_;
   std::string group_, start_;

@@ -59,8 +59,8 @@ const std::vector<Row>& rows_of_replays() {
       {"row_timing", "the row timing of the SDRAM", "with rows opened and closed in 1 clock", "",
        {{"ddr.tRP", "1 cycles"}, {"ddr.tRCD", "1 cycles"}, {"ddr.tRAS", "1 cycles"}, {"ddr.tRC", "1 cycles"},
         {"ddr.tRRD", "1 cycles"}, {"ddr.tRTP", "1 cycles"}, {"ddr.tWR", "1 cycles"}}},
-      {"cas_latency", "the SDRAM's latency to the first data", "with CL and RL of 3 clocks", "",
-       {{"ddr.CL", "3 cycles"}, {"ddr.RL", "3 cycles"}}},
+      {"cas_latency", "the SDRAM's latency to the first data", "with CL and RL of 4 clocks", "",
+       {{"ddr.CL", "4 cycles"}, {"ddr.RL", "4 cycles"}}},
       {"turnaround", "the SDRAM's change from writing to reading", "in 1 clock", "", {{"ddr.tWTR", "1 cycles"}}},
       {"refresh", "the SDRAM's refresh", "without it", "", {{"ddr.tREFI", "0 cycles"}}},
   };

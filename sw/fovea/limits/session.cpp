@@ -16,7 +16,8 @@ const Settings& Session::record() {
   return options;
 }
 
-void Session::run(const Settings& settings, const Settings& more, Done done, Settings options) {
+void Session::run(const Settings& settings, const Settings& more, Done done, Settings options,
+                  std::string label) {
   points::Point point;
   point.input = experiment_;
   point.settings = settings;
@@ -24,7 +25,8 @@ void Session::run(const Settings& settings, const Settings& more, Done done, Set
   point.options = std::move(options);
   point.options.push_back("--no-frames");
   point.identity = app::identity_of(*effective(point.settings), app::program_hash());
-  point.label = more.empty() ? "as it is" : fmt::format("{}", fmt::join(more, " "));
+  if (label.empty()) label = more.empty() ? "as it is" : fmt::format("{}", fmt::join(more, ", "));
+  point.label = std::move(label);
   runner_.add(std::move(point), std::move(done));
 }
 
@@ -36,9 +38,9 @@ void Session::replay(const points::PointResult& recorded, const Settings& settin
   point.settings = settings;
   point.options = std::move(options);
   point.identity = fmt::format("trace of {}\n{}\n", recorded.key, fmt::join(settings, "\n"));
-  point.label = fmt::format("replay {}{}{}", fmt::join(settings, " "),
-                            settings.empty() || point.options.empty() ? "" : " ",
-                            fmt::join(point.options, " "));
+  Settings shown = point.options;
+  shown.insert(shown.end(), settings.begin(), settings.end());
+  point.label = shown.empty() ? "replay as it is" : fmt::format("replay {}", fmt::join(shown, ", "));
   runner_.add(std::move(point), std::move(done));
 }
 
@@ -59,7 +61,7 @@ void ValueSearch::ask() {
     }
     bisection_.tell(v, verdict.good());
     ask();
-  });
+  }, {}, label_(*value));
 }
 
 std::size_t ValueSearch::at_most_left() const {

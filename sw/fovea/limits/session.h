@@ -26,9 +26,10 @@ class Session {
     return app::effective_run(context_.make_simulation, experiment_, settings);
   }
   /// Runs the experiment with `settings` and, after them, `more`, which is what the progress line
-  /// shows. @throws UserError for settings that are not allowed
-  void run(const Settings& settings, const Settings& more, Done done, Settings options = {});
-  /// Replays the trace that a run with the option kRecord has left.
+  /// shows unless there is a `label`. @throws UserError for settings that are not allowed
+  void run(const Settings& settings, const Settings& more, Done done, Settings options = {},
+           std::string label = {});
+  /// Replays the trace that a run with the options record() has left.
   void replay(const points::PointResult& recorded, const Settings& settings, Done done,
               Settings options = {});
   static const Settings& record();
@@ -49,9 +50,10 @@ class Session {
 class ValueSearch {
  public:
   using Make = std::function<Settings(std::uint64_t)>;
-  /// `make` gives the settings of a value, besides `base`.
-  ValueSearch(Session& session, Settings base, std::uint64_t last, Make make)
-      : session_(session), base_(std::move(base)), make_(std::move(make)),
+  using Label = std::function<std::string(std::uint64_t)>;
+  /// `make` gives the settings of a value, besides `base`; `label` what the progress line calls it.
+  ValueSearch(Session& session, Settings base, std::uint64_t last, Make make, Label label)
+      : session_(session), base_(std::move(base)), make_(std::move(make)), label_(std::move(label)),
         bisection_(last, session.probes()) {}
   ValueSearch(const ValueSearch&) = delete;
   ValueSearch& operator=(const ValueSearch&) = delete;
@@ -77,6 +79,7 @@ class ValueSearch {
   Session& session_;
   Settings base_;
   Make make_;
+  Label label_;
   Bisection bisection_;
   std::map<std::uint64_t, Tried> tried_;
   std::optional<Verdict> failure_;

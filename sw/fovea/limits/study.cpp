@@ -22,9 +22,9 @@ Study::Study(Session& session, const Question& question, Settings settings, Sett
 
 void Study::start() {
   if (range_) {
-    find_ = std::make_unique<ValueSearch>(session_, settings_, range_->last(), [this](std::uint64_t n) {
-      return Settings{range_->setting(n)};
-    });
+    const auto setting = [this](std::uint64_t n) { return range_->setting(n); };
+    find_ = std::make_unique<ValueSearch>(
+        session_, settings_, range_->last(), [=](std::uint64_t n) { return Settings{setting(n)}; }, setting);
     find_->start([this] {
       if (question_.binds.empty() || find_->failure()) return;
       const auto outcome = find_->outcome();

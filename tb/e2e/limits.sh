@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# `fovea limits` on the real board with a small picture: three planted bottlenecks are named, and are not where
+# nothing was planted; the relaxed run confirms each; a search over the size of the picture; a replay without a
+# master. Usage: limits.sh FOVEA SOURCE OUT
+set -uo pipefail
+fovea=$1 source=$2 out=$3
+rm -rf "$out"
+mkdir -p "$out"
+cd "$out" || exit 1
+failures=0
+fail() {
+  echo "$*"
+  failures=$((failures + 1))
+}
+small=(-s run.frames=2 -s video.width=32 -s video.height=16 -s camera.kind=chart -s camera.stamp=false
+  -s firmware.kernel=plain -s tvp5146.relock_fields=2)
+# limits NAME STATUS OPTIONS...
+limits() {
+  local name=$1 status=$2 got
+  shift 2
+  timeout 120 "$fovea" limits "$source/scripts/experiments/default.yaml" "${small[@]}" "$@" -j 2 -o "$name" \
+    >"$name.out" 2>"$name.err"
+  got=$?
+  [ "$got" = "$status" ] || fail "$name: status $got, expected $status: $(tail -2 "$name.err")"
+}
+# value FILE RESOURCE COLUMN of binds.csv
+value() { awk -F, -v r="$2" -v c="$3" '$2 == r { print $c }' "$1/binds.csv"; }
+binds() { [ "$(value "$1" "$2" 3)" = "$3" ] || fail "$1: $2 binds: '$(value "$1" "$2" 3)', expected '$3'"; }
+figure() { grep -o "\"$2\": {\"value\": [^,]*" "$1/stats.json" | sed 's/.* //'; }
+# confirm NAME RESOURCE SETTING...: the relaxed run, made by hand, has the figure that binds.csv says.
+confirm() {
+  local name=$1 resource=$2
+  shift 2
+  "$fovea" run "$source/scripts/experiments/default.yaml" "${small[@]}" "$@" --no-frames -o "$name.$resource" \
+    >/dev/null 2>&1 || fail "$name: the relaxed run failed"
+  local got want
+  got=$(figure "$name.$resource" frame.remap_time.mean)
+  want=$(value "$name" "$resource" 8)
+  [ -n "$want" ] && [ "$got" = "$want" ] || fail "$name: $resource relaxed is $got, binds.csv has '$want'"
+}
+relax=bridge_arm_d,sdram_clock,bridge_vpfe
+
+# A slow bridge: taking its latency away is worth most. 16 + 16 clocks stand for 3 + 3.
+plant=(-s 'bus.arm_d.request_latency=16 cycles' -s 'bus.arm_d.response_latency=16 cycles')
+limits bridge 0 "${plant[@]}" --binds frame.remap_time.mean --relax $relax
+binds bridge bridge_arm_d yes
+binds bridge bridge_vpfe no
+[ "$(sed -n 2p bridge/binds.csv | cut -d, -f2)" = bridge_arm_d ] || fail "bridge: $(cat bridge/binds.csv)"
+confirm bridge bridge_arm_d -s 'bus.arm_d.request_latency=0 cycles' -s 'bus.arm_d.response_latency=0 cycles'
+
+# A slow SDRAM.
+plant=(-s clocks.ddr=130MHz)
+limits sdram 0 "${plant[@]}" --binds frame.remap_time.mean --relax $relax,display,refresh
+binds sdram sdram_clock yes
+binds sdram bridge_vpfe no
+binds sdram display no
+binds sdram refresh no
+[ "$(sed -n 2p sdram/binds.csv | cut -d, -f2)" = sdram_clock ] || fail "sdram: $(cat sdram/binds.csv)"
+confirm sdram sdram_clock -s clocks.ddr=340MHz
+
+# A low priority beside a load: only then does the priority bind.
+load=(-s load.outstanding=4 -s load.gap=150ns -s load.priority=1 -s load.start=130ms)
+limits priority 0 "${load[@]}" -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm,bridge_vpfe
+binds priority priority_arm yes
+binds priority bridge_vpfe no
+confirm priority priority_arm "${load[@]}" -s priority.arm=0
+limits no_load 0 -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm
+binds no_load priority_arm no
+
+# A size that the board does not allow is no answer but an error; the others all do.
+limits size 0 --find video.height=16..32:16
+grep -q 'video.height: all values that were tried from 16 to 32 meet the conditions' size.out ||
+  fail "size: $(cat size.out)"
+
+# The replay without a master has none of its requests, and the core cannot be left out.
+trace=$(echo sdram/points/*/bus.trace)
+"$fovea" replay "$trace" --without vpbe -o without >/dev/null 2>&1 || fail "replay --without vpbe failed"
+"$fovea" replay "$trace" -o with >/dev/null 2>&1 || fail "replay failed"
+[ "$(figure with bus.vpbe.read_bytes)" -gt 0 ] || fail "no display in the trace"
+[ "$(figure without bus.vpbe.read_bytes)" = 0 ] || fail "the display is still there"
+[ "$(figure without bus.vpfe.write_bytes)" = "$(figure with bus.vpfe.write_bytes)" ] || fail "the camera changed"
+"$fovea" replay "$trace" --without arm_d -o core 2>core.err
+[ $? = 2 ] && grep -q "error: --without 'arm_d': allowed here: vpbe, vpfe" core.err || fail "arm_d: $(cat core.err)"
+
+[ "$failures" = 0 ] || exit 1
+echo "three planted bottlenecks named"

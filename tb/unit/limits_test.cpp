@@ -1,0 +1,421 @@
+// `fovea limits` over a toy board: searches with a known answer, what binds, tables, failures.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "sw/fovea/limits/bisection.h"
+#include "sw/fovea/limits/judge.h"
+#include "sw/fovea/limits/value_range.h"
+#include "sw/fovea/points/child.h"
+#include "tb/unit/support.h"
+
+namespace fovea::limits {
+namespace {
+
+using test::read_text;
+using test::TempDir;
+using test::user_error;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Answer = Bisection::Answer;
+
+/// Plays a search against a rule, and counts what it asked for.
+template <class Good>
+Bisection::Outcome search(std::uint64_t last, unsigned probes, Good good, std::size_t* asked = nullptr) {
+  Bisection b(last, probes);
+  std::size_t n = 0;
+  while (const auto v = b.next()) {
+    const std::size_t most = b.at_most_left();
+    b.tell(*v, good(*v));
+    if (n++ > 200) break;
+    // A probe that moves the edge may make it longer; a rule with one edge never does.
+    EXPECT_GT(most, 0u);
+  }
+  if (asked) *asked = n;
+  EXPECT_EQ(b.at_most_left(), 0u);
+  return b.outcome();
+}
+
+TEST(BisectionTest, FindsEveryEdgeFromBothSides) {
+  for (std::uint64_t last = 1; last <= 33; ++last)
+    for (std::uint64_t edge = 0; edge < last; ++edge)
+      for (const unsigned probes : {0u, 2u}) {
+        auto o = search(last, probes, [&](auto v) { return v <= edge; });
+        EXPECT_EQ(o.answer, Answer::kLargest);
+        EXPECT_EQ(o.good, edge);
+        EXPECT_EQ(o.bad, edge + 1);
+        EXPECT_TRUE(o.monotonic);
+        o = search(last, probes, [&](auto v) { return v > edge; });
+        EXPECT_EQ(o.answer, Answer::kSmallest);
+        EXPECT_EQ(o.good, edge + 1);
+        EXPECT_EQ(o.bad, edge);
+        EXPECT_TRUE(o.monotonic);
+      }
+}
+
+TEST(BisectionTest, AsksLogarithmicallyAndForNoMoreThanItSays) {
+  for (const std::uint64_t edge : {0u, 1u, 511u, 512u, 1022u}) {
+    std::size_t asked = 0;
+    search(1023, 0, [&](auto v) { return v <= edge; }, &asked);
+    EXPECT_LE(asked, 12u);  // both ends and 10 halvings
+    EXPECT_EQ(Bisection(1023, 0).at_most_left(), 12u);
+    EXPECT_EQ(Bisection(1023, 3).at_most_left(), 15u);
+  }
+}
+
+TEST(BisectionTest, BothEndsAlike) {
+  EXPECT_EQ(search(64, 2, [](auto) { return true; }).answer, Answer::kAll);
+  EXPECT_EQ(search(64, 2, [](auto) { return false; }).answer, Answer::kNone);
+  EXPECT_TRUE(search(64, 2, [](auto) { return false; }).monotonic);
+  EXPECT_EQ(search(0, 2, [](auto) { return true; }).answer, Answer::kAll);
+}
+
+TEST(BisectionTest, SaysThatGoodAndBadAlternate) {
+  // Good again at the far end: the answer is still the first edge.
+  auto o = search(100, 2, [](auto v) { return v <= 30 || v >= 70; });
+  EXPECT_EQ(o.answer, Answer::kLargest);
+  EXPECT_EQ(o.good, 30u);
+  EXPECT_FALSE(o.monotonic);
+  EXPECT_GE(o.odd, 70u);
+  // Good again between the edge and a bad end: only a probe can see it.
+  const auto island = [](auto v) { return v <= 10 || (v >= 40 && v <= 70); };
+  o = search(100, 2, island);
+  EXPECT_FALSE(o.monotonic);
+  EXPECT_EQ(o.good, 10u);
+  // A bad value in front of the first edge that was found moves the answer.
+  const auto gap = [](auto v) { return v <= 60 && !(v >= 25 && v <= 40); };
+  o = search(100, 8, gap);
+  EXPECT_EQ(o.good, 24u);
+  EXPECT_FALSE(o.monotonic);
+  // Good only in the middle.
+  o = search(100, 2, [](auto v) { return v >= 30 && v <= 70; });
+  EXPECT_EQ(o.answer, Answer::kNone);
+  EXPECT_FALSE(o.monotonic);
+  EXPECT_EQ(o.odd, 50u);
+}
+
+points::PointResult result_of(std::map<std::string, double, std::less<>> stats) {
+  points::PointResult r;
+  for (const auto& [name, value] : stats) r.units[name] = "1";
+  r.stats = std::move(stats);
+  return r;
+}
+
+TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {
+  const std::map<std::string, double, std::less<>> good = {
+      {"frame.dropped", 0}, {"frame.repeated", 0}, {"capture.overflows", 0}, {"display.underflows", 0}};
+  EXPECT_TRUE(judge(result_of(good), default_conditions()).good());
+  for (const auto& [name, zero] : good) {
+    auto stats = good;
+    stats[name] = 1;
+    EXPECT_EQ(judge(result_of(stats), default_conditions()).kind, Verdict::Kind::kBad) << name;
+    stats.erase(name);
+    EXPECT_EQ(judge(result_of(stats), default_conditions()).kind, Verdict::Kind::kUnknown) << name;
+  }
+  auto stats = good;
+  stats["camera.2.frame.dropped"] = 2;
+  EXPECT_EQ(judge(result_of(stats), default_conditions()).why, "2 dropped frames (camera.2.frame.dropped)");
+  stats = good;
+  stats["frame.rate"] = 24.9;
+  EXPECT_TRUE(judge(result_of(stats), conditions_with({"frame.rate>=24.9"})).good());
+  EXPECT_EQ(judge(result_of(stats), conditions_with({"frame.rate>=25"})).why,
+            "frame.rate is 24.9, allowed: at least 25");
+  stats["frame.dropped"] = 2;
+  EXPECT_TRUE(judge(result_of(stats), conditions_with({"frame.dropped<=2"})).good());
+  EXPECT_FALSE(judge(result_of(stats), conditions_with({"frame.dropped<=1"})).good());
+  for (const char* wrong : {"", "frame.rate", "frame.rate>25", "frame.rate>=", ">=2", "frame.rate>=x", "a>=1x"})
+    EXPECT_THAT(user_error([&] { conditions_with({wrong}); }), HasSubstr("METRIC<=NUMBER")) << wrong;
+}
+
+/// The fake program in a folder of its own.
+class LimitsTest : public ::testing::Test {
+ protected:
+  struct Done {
+    int status;
+    std::string out, err;
+  };
+  LimitsTest() {
+    dir_.write("toy.yaml", "toy:\n  limit: 500\n");
+    ::setenv("FAKE_LIMITS_LOG", (dir_ / "log").c_str(), 1);
+  }
+  std::vector<std::string> command(const std::string& arguments, const std::string& out = "L") const {
+    std::vector<std::string> all = {FAKE_LIMITS, "limits", (dir_ / "toy.yaml").string(), "-o", (dir_ / out).string()};
+    std::istringstream words(arguments);
+    for (std::string w; words >> w;) all.push_back(w);
+    return all;
+  }
+  Done limits(const std::string& arguments, const std::string& out = "L") {
+    points::Child child(command(arguments, out), dir_ / "out.txt", dir_ / "err.txt");
+    return wait(child);
+  }
+  Done wait(points::Child& child) {
+    while (!child.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return {child.ended()->status, read_text(dir_ / "out.txt"), read_text(dir_ / "err.txt")};
+  }
+  std::size_t runs() const {
+    const std::string log = read_text(dir_ / "log");
+    return static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
+  }
+  std::string csv(const std::string& name) const { return read_text(dir_ / "L" / name); }
+  TempDir dir_;
+};
+
+TEST_F(LimitsTest, FindsTheLargestAndTheSmallestValue) {
+  // The longest remap takes 10 + 3 + 3 + 0.18 + 0.02 = 16.2 ms of 40 ms.
+  Done d = limits("--find toy.value=0..1000 -s ddr.request_latency=18cycles");
+  EXPECT_EQ(d.status, 0) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("toy.value: 500 is the largest value that meets the conditions; the longest remap "
+                               "leaves 59.5 % of a frame period. With 501: 3 dropped frames."));
+  EXPECT_THAT(csv("limits.csv"), HasSubstr("toy.value,,largest,500,,501,3 dropped frames,yes,25.0,"));
+  d = limits("--find toy.value=0..1000 -s toy.limit=2000 -s toy.floor=37", "M");
+  EXPECT_EQ(d.status, 0) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("toy.value: 37 is the smallest value"));
+  EXPECT_THAT(d.out, HasSubstr("With 36: 3 dropped frames."));
+}
+
+TEST_F(LimitsTest, StepsUnitsAndRealNumbers) {
+  Done d = limits("--find toy.clock=100MHz..1GHz:50MHz -s toy.value=7");
+  EXPECT_THAT(d.out, HasSubstr("toy.clock: 250MHz is the smallest value")) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("With 200MHz: 1 dropped frame."));
+  d = limits("--find toy.angle=0deg..90deg:0.5deg", "M");
+  EXPECT_THAT(d.out, HasSubstr("toy.angle: 30.5deg is the largest value")) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("With 31deg: "));
+}
+
+TEST_F(LimitsTest, NoLimitNoneAndAlternating) {
+  Done d = limits("--find toy.value=0..400:10");
+  EXPECT_EQ(d.status, 0);
+  EXPECT_THAT(d.out, HasSubstr("all values that were tried from 0 to 400 meet the conditions"));
+  d = limits("--find toy.value=600..900 --probes 0", "M");
+  EXPECT_EQ(d.status, 1);
+  EXPECT_THAT(d.out, HasSubstr("neither 600 (3 dropped frames) nor 900 (3 dropped frames) meets the conditions"));
+  d = limits("--find toy.value=0..1000 -s toy.limit=300 -s toy.hole=800", "N");
+  EXPECT_EQ(d.status, 0);
+  EXPECT_THAT(d.out, HasSubstr("300 is the largest"));
+  EXPECT_THAT(d.out, HasSubstr("Not monotonic: 1000 meets the conditions although a value before it does not."));
+  EXPECT_THAT(read_text(dir_ / "N" / "limits.csv"), HasSubstr(",no,"));
+}
+
+TEST_F(LimitsTest, ACamerasOwnDropCounts) {
+  const Done d = limits("--find toy.value=10..20 --probes 20");
+  EXPECT_THAT(d.out, HasSubstr("12 is the largest")) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("With 13: 1 dropped frame (camera.1.frame.dropped)."));
+}
+
+TEST_F(LimitsTest, NothingRunsTwice) {
+  EXPECT_EQ(limits("--find toy.value=0..1000").status, 0);
+  const std::size_t first = runs();
+  const std::string before = csv("limits.csv") + csv("points.csv") + csv("answer.txt");
+  Done d = limits("--find toy.value=0..1000");
+  EXPECT_EQ(runs(), first);
+  EXPECT_EQ(csv("limits.csv") + csv("points.csv") + csv("answer.txt"), before);
+  EXPECT_THAT(d.out, HasSubstr("0 runs made"));
+  // Written otherwise, it is still the same configuration; another value is another one.
+  dir_.write("toy.yaml", "toy.limit: 500\ntoy.clock: 0.1GHz\n");
+  d = limits("--find toy.value=0..1000 -s toy.clock=100000kHz");
+  EXPECT_EQ(runs(), first);
+  limits("--find toy.value=0..1000 -s toy.contention=1");
+  EXPECT_EQ(runs(), 2 * first);
+}
+
+TEST_F(LimitsTest, AFilesContentsCountAndNotItsName) {
+  const auto a = dir_.write("a.png", "one"), b = dir_.write("b.png", "one");
+  limits("--over toy.value=1 -s toy.file=" + a.string());
+  limits("--over toy.value=1 -s toy.file=" + b.string());
+  EXPECT_EQ(runs(), 1u);
+  dir_.write("b.png", "two");
+  limits("--over toy.value=1 -s toy.file=" + b.string());
+  EXPECT_EQ(runs(), 2u);
+}
+
+TEST_F(LimitsTest, EqualCombinationsShareTheirRuns) {
+  const Done d = limits("--over toy.value=5,5,6 -j 3");
+  EXPECT_EQ(d.status, 0) << d.err;
+  EXPECT_EQ(runs(), 2u);
+  const std::string table = csv("limits.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
+}
+
+TEST_F(LimitsTest, ATableOfAllCombinations) {
+  const Done d = limits("--find toy.value=0..1000 --over toy.limit=100,200 --over toy.contention=0,1");
+  EXPECT_EQ(d.status, 0) << d.err;
+  const std::string table = csv("limits.csv");
+  EXPECT_THAT(table, HasSubstr("toy.limit,toy.contention,searched,"));
+  for (const char* row : {"\n100,0,toy.value,,largest,100,,101,", "\n100,1,toy.value,,largest,100,,101,",
+                          "\n200,0,toy.value,,largest,200,,201,", "\n200,1,toy.value,,largest,200,,201,"})
+    EXPECT_THAT(table, HasSubstr(row));
+  EXPECT_THAT(d.out, HasSubstr("toy.limit=200, toy.contention=1:"));
+}
+
+TEST_F(LimitsTest, AFailedPointIsAResultWithItsMessage) {
+  Done d = limits("--over toy.mode=good,guest_failure,user_error,defect");
+  EXPECT_EQ(d.status, 4);  // the worst one
+  const std::string table = csv("limits.csv"), points = csv("points.csv");
+  EXPECT_THAT(table, HasSubstr("\ngood,as it is,,met,"));
+  EXPECT_THAT(table, HasSubstr("\nguest_failure,as it is,,not met,,,,the guest failed: PC 0x0 in nowhere,"));
+  EXPECT_THAT(table, HasSubstr("\nuser_error,as it is,,unknown,,,,a run ended with status 2: error: footage 'x' is "
+                               "missing,"));
+  EXPECT_THAT(table, HasSubstr("\ndefect,as it is,,unknown,,,,a run ended with status 4: own defect: broken,"));
+  EXPECT_THAT(points, HasSubstr(",4,unknown,"));
+  const std::size_t first = runs();
+  EXPECT_EQ(limits("--over toy.mode=good,guest_failure,user_error,defect").status, 4);
+  EXPECT_EQ(runs(), first);
+  limits("--over toy.mode=good,guest_failure,user_error,defect --retry-failed");
+  EXPECT_EQ(runs(), first + 3);
+  EXPECT_EQ(limits("--find toy.value=0..9 -s toy.mode=guest_failure", "M").status, 1);
+  EXPECT_EQ(limits("--find toy.value=0..9 -s toy.mode=user_error", "N").status, 2);
+  EXPECT_EQ(limits("--binds frame.remap_time.mean -s toy.mode=guest_failure", "O").status, 3);
+  d = limits("--over toy.mode=bare", "P");
+  EXPECT_EQ(d.status, 2);
+  EXPECT_THAT(d.out, HasSubstr("the run has no figure 'frame.dropped'"));
+}
+
+/// The line of a resource in binds.csv.
+std::string line_of(const std::string& csv, const std::string& resource) {
+  const auto at = csv.find("," + resource + ",");
+  if (at == csv.npos) return "";
+  const auto from = csv.rfind('\n', at) + 1;
+  return csv.substr(from, csv.find('\n', at) - from);
+}
+
+TEST_F(LimitsTest, NamesWhatBindsAndNothingElse) {
+  // 10 + 3 + 3 + 0.1 + 2 = 18.1 ms; the bridge is 33 % of it, the priority 11 %, the controller 0.6 %.
+  const Done d = limits("--binds frame.remap_time.mean -s toy.contention=2");
+  EXPECT_EQ(d.status, 0) << d.err;
+  const std::string table = csv("binds.csv");
+  EXPECT_THAT(line_of(table, "bridge_arm_d"), HasSubstr(",bridge_arm_d,yes,0.33149"));
+  EXPECT_THAT(line_of(table, "priority_arm"), HasSubstr(",priority_arm,yes,0.11049"));
+  EXPECT_THAT(line_of(table, "ddr_latency"), HasSubstr(",ddr_latency,no,0.0055"));
+  EXPECT_THAT(line_of(table, "priority_idle"), HasSubstr("no traffic"));
+  EXPECT_LT(table.find("bridge_arm_d"), table.find("priority_arm"));
+  EXPECT_THAT(d.out, HasSubstr("The bridge of the core's data port binds: without its latency "
+                               "(bus.arm_d.request_latency=0 cycles, bus.arm_d.response_latency=0 cycles) it is "
+                               "12.1 ms, 33.1 % better."));
+  EXPECT_THAT(d.out, HasSubstr("Does not bind: ddr_latency (+0.6 %)"));
+  // A replay of what is no trace: no figure, and that is said.
+  EXPECT_THAT(d.out, HasSubstr("Without a figure: row_timing (error: '"));
+  EXPECT_THAT(d.out, HasSubstr("bus.trace' is not a bus trace"));
+  EXPECT_THAT(d.out, Not(HasSubstr("timing of the SDRAM binds")));
+}
+
+TEST_F(LimitsTest, BindsAtTwoPercentAndJustAbove) {
+  // The plain run takes 10 + 0.1 ms and what the bridge and others cost.
+  Done d = limits("--binds frame.remap_time.mean --relax priority_arm -s toy.contention=1 "
+                  "-s bus.arm_d.request_latency=32cycles -s bus.arm_d.response_latency=6cycles");  // 1 / 49.1 = 2.04 %
+  EXPECT_THAT(csv("binds.csv"), HasSubstr("priority_arm,yes,0.0203"));
+  d = limits("--binds frame.remap_time.mean --relax priority_arm -s toy.contention=1 "
+             "-s bus.arm_d.request_latency=32cycles -s bus.arm_d.response_latency=7cycles");  // 1 / 50.1 = 1.996 %
+  EXPECT_THAT(csv("binds.csv"), HasSubstr("priority_arm,no,0.0199"));
+  EXPECT_THAT(d.out, HasSubstr("Nothing that was relaxed makes it more than 2 % better."));
+}
+
+TEST_F(LimitsTest, BindsAtTheValueThatWasFound) {
+  const Done d = limits("--find toy.value=0..600 --binds frame.remap_time.mean --relax bridge_arm_d");
+  EXPECT_EQ(d.status, 0) << d.err;
+  EXPECT_THAT(d.out, HasSubstr("What binds frame.remap_time.mean at toy.value=500 (16.1 ms)"));
+}
+
+TEST_F(LimitsTest, TheLargestLoadByPriority) {
+  const Done d = limits("--priorities 0,4 --load-step 20");
+  EXPECT_EQ(d.status, 0) << d.err;
+  // The toy bears 340 MB/s, and 10 more for each step of the priority.
+  EXPECT_THAT(d.out, HasSubstr("port load, priority 0: 340 MB/s (340.0 MB/s moved); with 360 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("port load, priority 4: 380 MB/s (380.0 MB/s moved); with 400 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it can run beside this at every port"));
+  // 4 slots of 64 bytes at 340 MB/s, from the first captured sample on.
+  EXPECT_THAT(read_text(dir_ / "L" / "points.csv"), HasSubstr("340 MB/s on port load, priority 0"));
+  bool found = false;
+  for (const auto& p : std::filesystem::directory_iterator(dir_ / "L" / "points")) {
+    const std::string entry = read_text(p.path() / "point.json");
+    found |= entry.find("load.gap=752941ps") != entry.npos && entry.find("load.start=123456ns") != entry.npos;
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST_F(LimitsTest, LoadsThatAreTooMuchOrNeverTooMuch) {
+  Done d = limits("--priorities 0 --load-step 400");
+  EXPECT_THAT(d.out, HasSubstr("priority 0: none; with 400 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it cannot run beside this"));
+  EXPECT_EQ(d.status, 0);
+  d = limits("--priorities 0 --load-most 300 --require frame.dropped<=1", "M");
+  EXPECT_THAT(d.out, HasSubstr("priority 0: as much as the port takes, 700.0 MB/s"));
+  d = limits("--priorities 0 -s toy.value=600", "N");
+  EXPECT_EQ(d.status, 1);
+  EXPECT_THAT(d.out, HasSubstr("It does not meet the conditions as it is: 3 dropped frames."));
+}
+
+TEST_F(LimitsTest, WrongUseIsOneLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--find toy.value", "allowed: KEY=LOW..HIGH or KEY=LOW..HIGH:STEP"},
+      {"--find toy.valu=0..9", "did you mean 'toy.value'?"},
+      {"--find toy.mode=0..9", "'toy.mode' has no numbers but: good, guest_failure"},
+      {"--find toy.value=0..1001", "'1001' is not allowed; allowed: 0 .. 1000"},
+      {"--find toy.clock=100..200", "a number alone lacks its unit"},
+      {"--find toy.value=9..9", "the first end must be below the second one"},
+      {"--find toy.value=0..9:10", "the step is larger than the range"},
+      {"--find toy.value=0..9:0", "a step above 0 is needed"},
+      {"--find toy.angle=0deg..9deg:1", "the step needs the unit 'deg'"},
+      {"--over toy.value", "allowed: KEY=VALUE,VALUE..."},
+      {"--over toy.value=1 --over toy.value=2", "the key is given twice"},
+      {"--over toy.valve=1", "toy.valve"},
+      {"--require x", "METRIC<=NUMBER"},
+      {"--relax dcache", "it needs --binds"},
+      {"--binds frame.remap_time.mean --relax dcach", "--relax 'dcach': allowed here: "},
+      {"--binds frame.remap", "no figure of this name"},
+      {"--binds frame.nothing", "no figure other than 0"},
+      {"--binds frame.dropped", "no figure other than 0"},
+      {"--ports nowhere", "allowed: all, or some of load, other"},
+      {"--priorities 8", "allowed: 0 to 7"},
+      {"--load-step 0", "a step above 0"},
+      {"-j 0", "--jobs"},
+      {"-s toy.limits=3", "did you mean 'toy.limit'?"},
+  };
+  for (const auto& [arguments, text] : cases) {
+    const Done d = limits(arguments);
+    EXPECT_EQ(d.status, 2) << arguments;
+    EXPECT_THAT(d.err + d.out, HasSubstr(text)) << arguments;
+  }
+  dir_.write("other/file.txt", "mine");
+  const Done d = limits("--over toy.value=1", "other");
+  EXPECT_EQ(d.status, 2);
+  EXPECT_THAT(d.err, HasSubstr("it holds something else than points of Fovea"));
+  EXPECT_EQ(read_text(dir_ / "other/file.txt"), "mine");
+}
+
+TEST_F(LimitsTest, CtrlCStopsItsChildrenAndKeepsWhatIsFinished) {
+  // The first value ends at once, the others only when they are told to.
+  points::Child child(command("--over toy.value=0,1,2 -s toy.mode=slow -j 2"), dir_ / "out.txt", dir_ / "err.txt");
+  while (runs() < 3) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  {
+    const Done other = [&] {
+      points::Child second(command("--over toy.value=0"), dir_ / "out2.txt", dir_ / "err2.txt");
+      while (!second.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      return Done{second.ended()->status, "", read_text(dir_ / "err2.txt")};
+    }();
+    EXPECT_EQ(other.status, 2);
+    EXPECT_THAT(other.err, HasSubstr("another program is running points in it now"));
+  }
+  child.ask_to_end();
+  const Done d = wait(child);
+  EXPECT_EQ(d.status, 143);
+  EXPECT_THAT(d.err, HasSubstr("stopped; 1 point is finished, and the same command goes on"));
+  std::size_t folders = 0;
+  for (const auto& p : std::filesystem::directory_iterator(dir_ / "L" / "points")) {
+    EXPECT_NE(p.path().extension(), ".tmp");
+    ++folders;
+  }
+  EXPECT_EQ(folders, 1u);
+  // The same question again, with a board that does not wait.
+  const std::size_t before = runs();
+  const Done again = limits("--over toy.value=0 -s toy.mode=slow");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_EQ(runs(), before);
+}
+
+}  // namespace
+}  // namespace fovea::limits
