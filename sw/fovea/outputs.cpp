@@ -302,6 +302,13 @@ std::string summary_table(std::span<const StatRow> stats, std::span<const StatRo
     if (const auto* row = find(stats, name))
       lines.emplace_back(name, human_text(row->value, row->unit));
   }
+  // One line for each camera of several.
+  for (unsigned n = 0;; ++n) {
+    const std::string name = fmt::format("camera.{}.frame.rate", n);
+    const auto* row = find(stats, name);
+    if (!row) break;
+    lines.emplace_back(name, human_text(row->value, row->unit));
+  }
   // Bytes of each master that has transferred any.
   std::vector<std::string> masters;
   for (const auto& row : stats) {
