@@ -139,6 +139,7 @@ class Board : public sc_core::sc_module {
   Platform platform;              ///< all blocks of the board, those of the chip included
 
  private:
+  std::unique_ptr<CameraFault> fault_;  // none: no fault is wanted
   void reset_asked(const std::string& cause);
   void put(const LoadImage& image, bool zeros);
   static std::vector<video::CameraWiring> wiring(const BoardParams& params,

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "model/board/camera_fault.h"
 #include "model/board/camera_params.h"
 #include "model/board/clock_presets.h"
 #include "model/board/lens_params.h"
@@ -162,6 +163,7 @@ struct BoardParams : ParamTree {
   Declared<PriorityParams> priority{*this};
   Declared<video::SceneParams> camera{*this};
   Declared<CamerasParams> cameras{*this};
+  Declared<FaultParams> fault{*this};
   Declared<video::Tvp5146Params> decoder{*this};
   std::array<CameraRow, kCamerasMax> camera_rows{{{*this, cameras.count, 0},
                                                   {*this, cameras.count, 1},

@@ -56,7 +56,9 @@ std::unique_ptr<Group> merged(const Group& of_all, const Group& of_one) {
 CameraWireParams::CameraWireParams(std::string prefix, std::string default_input)
     : ParamGroup(std::move(prefix)),
       input(*this, "input", std::move(default_input), input_words(),
-            "composite input of the decoder that this camera is on", Origin::kChoice, ""),
+            "composite input of the decoder that this camera is on; the firmware for one camera "
+            "selects vi_2_b",
+            Origin::kChoice, ""),
       connected(*this, "connected", true, "false: the camera's cable is unplugged", Origin::kChoice,
                 ""),
       standard(*this, "standard", "625/50", {"625/50", "525/60"},

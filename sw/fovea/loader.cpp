@@ -135,6 +135,9 @@ void check_loads(const board::BoardParams& params) {
 
 void check_cameras(const board::BoardParams& params) {
   const unsigned count = params.camera_count();
+  const auto& fault = params.fault;
+  require(fault.kind.is("none") || fault.camera() < count, fault.camera.key(), fault.camera.text(),
+          "the number of a camera, less than cameras.count");
   for (unsigned n = 0; n < count; ++n)
     for (unsigned k = 0; k < n; ++k) {
       const EnumParam& input = params.camera_rows[n].wire.input;

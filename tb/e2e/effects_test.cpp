@@ -313,6 +313,59 @@ TEST(CalibrationCheckTest, TheWrongKeyIsNotBlamed) {
             "");
 }
 
+// The row of a camera: what it does not set is that of all cameras.
+TEST(CameraRowTest, UnsetKeysAreThoseOfAllCameras) {
+  Settings s({{"cameras.count", "3"},
+              {"camera.kind", "chart"},
+              {"lens.fov", "150deg"},
+              {"lens.mapping", "linear"},
+              {"tvp5146.phase", "3ms"},
+              {"camera.1.lens.mapping", "stereographic"},
+              {"camera.1.motion_period", "7"},
+              {"camera.1.genlocked", "false"},
+              {"camera.1.clock_offset", "-12.5ppm"},
+              {"camera.2.phase", "9ms"},
+              {"camera.2.standard", "525/60"}});
+  const auto of = [&](unsigned n) { return s.params.camera_setup(n); };
+  for (unsigned n = 0; n < 3; ++n) {
+    EXPECT_TRUE(of(n).scene->kind.is("chart")) << n;
+    EXPECT_EQ(of(n).lens->fov(), 150) << n;
+    EXPECT_EQ(of(n).lens->mapping(), n == 1 ? "stereographic" : "linear");
+    EXPECT_EQ(of(n).scene->motion_period(), n == 1 ? 7u : 60u);
+    EXPECT_EQ(of(n).genlocked, n != 1);
+    EXPECT_EQ(of(n).wiring.phase, 3 * kPsPerMs) << "genlocked, or not set";
+    EXPECT_EQ(of(n).wiring.clock_offset, n == 1 ? -12.5 : 0);
+    EXPECT_EQ(of(n).wiring.is_625, n != 2);
+  }
+  EXPECT_EQ(of(0).lens->mapping.key(), "lens.mapping");
+  EXPECT_EQ(of(1).lens->mapping.key(), "camera.1.lens.mapping");
+  EXPECT_FALSE(of(0).lens->kb.user_set()) << "a default is not passed on as if it were set";
+  // Linux's tvp514x.h: INPUT_CVBS_VI2B, VI2A, VI2C.
+  EXPECT_EQ(of(0).wiring.input, 5);
+  EXPECT_EQ(of(1).wiring.input, 4);
+  EXPECT_EQ(of(2).wiring.input, 6);
+}
+
+TEST(CameraRowTest, SettingsThatCannotBeAreRefused) {
+  const auto error = [](const Keys& keys) -> std::string {
+    try {
+      Settings s(keys);
+      app::complete_params(s.params);
+    } catch (const UserError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error({{"cameras.count", "2"}}), "");
+  EXPECT_EQ(error({{"cameras.count", "2"}, {"camera.1.input", "vi_2_b"}}),
+            "key 'camera.1.input': 'vi_2_b' is not allowed; allowed: an input that no other camera is on");
+  EXPECT_EQ(error({{"camera.1.input", "vi_2_b"}}), "") << "there is no camera 1";
+  EXPECT_NE(error({{"cameras.count", "2"}, {"firmware.tables", "2"}}), "");
+  EXPECT_NE(error({{"cameras.count", "2"}, {"firmware.flow", "serial"}}), "");
+  EXPECT_NE(error({{"fault.kind", "unplugged"}, {"fault.camera", "1"}}), "");
+  EXPECT_EQ(error({{"fault.kind", "unplugged"}, {"fault.camera", "0"}}), "");
+}
+
 // Every key that declares a condition names it in a way that a sentence can end with, and its
 // deciders are keys.
 TEST(EffectsTest, DeclarationsAreComplete) {

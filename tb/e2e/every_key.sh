@@ -105,6 +105,22 @@ acts camera.motion_period 3 SPHERE camera.motion_amplitude=9deg
 idle camera.motion_period 3
 acts camera.stamp true video.width=320 video.height=240
 acts camera.video_fov 90deg VIDEO camera.lens=equisolid
+acts camera.0.input vi_4_a
+acts camera.0.connected false
+acts camera.0.genlocked false camera.0.phase=7ms
+acts camera.0.phase 7ms camera.0.genlocked=false
+acts camera.0.clock_offset 500ppm camera.0.genlocked=false
+tested camera.0.standard e2e.cameras
+tested cameras.count e2e.cameras
+tested cameras.genlocked e2e.cameras
+idle cameras.genlocked false
+acts fault.kind unplugged fault.start=50ms
+tested fault.camera e2e.cameras
+tested fault.start e2e.cameras
+tested fault.end e2e.cameras
+idle fault.camera 0
+idle fault.start 1s
+idle fault.end 2s
 idle camera.video_fov 90deg
 acts clocks.arm 270MHz EARLY
 acts clocks.ddr 216MHz EARLY
@@ -233,6 +249,14 @@ out_focal 20px
 paper_literal_focal true
 theta_max 1deg lens.mapping=kannala_brandt
 T
+  # The same keys in the row of a camera: e2e.effects (CameraRowTest), e2e.cameras.
+  for key in file kind motion_period motion_amplitude stamp lens fov kb kb_width kb_height video_fov calibration; do
+    echo "tested camera.0.$key e2e.effects"
+  done
+  for key in mapping fov focal out_focal centre_x centre_y shift_x shift_y in_aspect out_aspect kb kb_width \
+    kb_height calibration theta_max paper_literal_focal pair; do
+    echo "tested camera.0.lens.$key e2e.effects"
+  done
   echo 'acts lens.mapping linear'
   echo 'acts lens.pair B lens.shift_x=1px'
   echo 'acts lens.shift_x 7px'

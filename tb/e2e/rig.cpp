@@ -9,6 +9,7 @@
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
+#include "tb/e2e/geometry.h"
 
 namespace fovea::e2e {
 
@@ -108,8 +109,13 @@ std::vector<std::uint32_t> Rig::lut(unsigned k) {
 }
 
 oracle::Geometry Rig::geometry(unsigned k) const {
+  oracle::Geometry g = geometry_of(params, params.lens);
+  g.shift_x += 7 * k;
+  return g;
+}
+
+oracle::Geometry geometry_of(const board::BoardParams& params, const board::LensParams& l) {
   oracle::Geometry g;
-  const auto& l = params.lens;
   g.width = params.width();
   g.height = params.height();
   g.pitch_bytes = (g.width * 2 + 31) / 32 * 32;
@@ -121,7 +127,7 @@ oracle::Geometry Rig::geometry(unsigned k) const {
   g.out_focal_px = l.out_focal();
   g.centre_x = l.centre_x();
   g.centre_y = l.centre_y();
-  g.shift_x = l.shift_x() + 7 * k;
+  g.shift_x = l.shift_x();
   g.shift_y = l.shift_y();
   g.in_aspect = l.in_aspect();
   g.out_aspect = l.out_aspect();

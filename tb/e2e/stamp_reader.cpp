@@ -16,14 +16,14 @@ struct Mean {
 };
 
 /// The code drawn anew from the means of its cells, in all rows; nothing if a cell was not seen.
-std::optional<std::uint16_t> decode(const std::array<Mean, kColumns * kRows>& cells) {
+std::optional<video::StampCode> decode(const std::array<Mean, kColumns * kRows>& cells) {
   video::Picture picture(kColumns, kRows);
   for (unsigned i = 0; i < cells.size(); ++i) {
     if (cells[i].count == 0) return std::nullopt;
     picture.row(i / kColumns)[2 * (i % kColumns) + 1] =
         static_cast<std::uint8_t>(cells[i].sum / cells[i].count);
   }
-  return video::decode_counter(picture, video::CodeGrid(0, 0, 1, 1));
+  return video::decode_stamp(picture, video::CodeGrid(0, 0, 1, 1));
 }
 
 }  // namespace
@@ -48,7 +48,12 @@ ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geom
       mean.sum += shown.uyvy[(std::size_t{v} * shown.width + u) * 2 + 1];
       ++mean.count;
     }
-  return {decode(even), decode(odd)};
+  const auto first = decode(even), second = decode(odd);
+  ShownFields out;
+  if (first) out.even = first->field;
+  if (second) out.odd = second->field;
+  if (first && second && first->camera == second->camera) out.camera = first->camera;
+  return out;
 }
 
 }  // namespace fovea::e2e

@@ -13,6 +13,7 @@ namespace fovea::e2e {
 /// of the camera's picture; empty if the code cannot be read.
 struct ShownFields {
   std::optional<std::uint16_t> even, odd;
+  std::optional<unsigned> camera;  ///< that both codes name
 };
 
 /// @param shown the displayed region; `geometry` maps each of its pixels to a camera pixel

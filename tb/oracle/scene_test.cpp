@@ -233,6 +233,40 @@ TEST(SphereSourceTest, MarksAreReadableInThePicture) {
     EXPECT_EQ(decode_counter(source.field(k), CodeGrid(*source.stamps())), k);
 }
 
+TEST(StampTest, NamesTheCameraAndNoSingleWrongCellMakesAnotherCode) {
+  const StampLayout layout = StampLayout::at(480, 320, 240, 160);
+  Picture before(480, 320);
+  stamp(before, layout, 0x1234);
+  for (unsigned camera = 0; camera < kStampCameras; ++camera) {
+    Picture picture(480, 320);
+    stamp(picture, layout, 0x1234, camera);
+    EXPECT_EQ(picture == before, camera == 0) << "the marks of camera 0 are those without a number";
+    const auto code = decode_stamp(picture, CodeGrid(layout));
+    ASSERT_TRUE(code);
+    EXPECT_EQ(code->camera, camera);
+    EXPECT_EQ(code->field, 0x1234);
+    EXPECT_EQ(decode_counter(picture, CodeGrid(layout)).has_value(), camera == 0);
+    constexpr unsigned kCell = StampLayout::kCellPixels;
+    for (unsigned cell = 0; cell < StampLayout::kCodeColumns * StampLayout::kCodeRows; ++cell) {
+      Picture wrong = picture;
+      const unsigned x = layout.code_x + cell % StampLayout::kCodeColumns * kCell;
+      const unsigned y = layout.code_y + cell / StampLayout::kCodeColumns * kCell;
+      for (unsigned row = y; row < y + kCell; ++row)
+        for (unsigned i = x; i < x + kCell; ++i) {
+          std::uint8_t& luma = wrong.row(row)[2 * i + 1];
+          luma = static_cast<std::uint8_t>(252 - luma);  // 32 and 220
+        }
+      EXPECT_FALSE(decode_stamp(wrong, CodeGrid(layout))) << "camera " << camera << " cell " << cell;
+    }
+  }
+}
+
+TEST(ChartTest, EachCameraShowsAnotherOne) {
+  ChartSource first({64, 32, false, 0}), second({64, 32, false, 1});
+  EXPECT_NE(first.field(5), second.field(5));
+  EXPECT_EQ(second.field(5).row(3)[8], ChartSource::pair(4, 3, 5 + ChartSource::kCameraFields)[0]);
+}
+
 TEST(VideoSourceTest, ShowsEachFrameForTwoFieldsAndRepeats) {
   std::vector<RgbImage> frames;
   for (int i = 0; i < 3; ++i)

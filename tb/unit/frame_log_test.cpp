@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace fovea::board {
 namespace {
 
@@ -147,6 +149,29 @@ TEST(FrameLogTest, ForgetsTheOldestWhenThereAreTwiceAsMany) {
   EXPECT_EQ(gone, 5u);
   ASSERT_EQ(log.captures().size(), 5u);
   EXPECT_EQ(log.captures().front(), 550u);
+}
+
+TEST(FrameLogTest, EachCapturedFrameHasOneFate) {
+  Log log;
+  // Camera 0, 1, 0, 1 ...; frame 6 began while no camera was locked.
+  for (std::uint64_t i = 0; i < 9; ++i)
+    log.capture(i, i * 100, i * 100 + 50, i == 6 ? -1 : static_cast<int>(i % 2));
+  const auto remap = [&](unsigned n) {
+    log.show(Phase::kRemapStart, n);
+    log.show(Phase::kRemapEnd, n);
+  };
+  for (const unsigned n : {1u, 3u, 4u, 5u, 8u}) remap(n);
+  log.flipped_to(1);  // what was before the first one on show does not count
+  log.flipped_to(4);  // 2 was not corrected, 3 was
+  EXPECT_EQ(log.shown(0, 0).camera, 0u);
+  log.flipped_to(8);  // 5 was corrected, 6 is of no camera, 7 was not corrected
+  const auto fates = [&](std::size_t camera) {
+    const FrameLog::Fates& f = log.fates(camera);
+    return std::array<std::uint64_t, 4>{f.captured, f.displayed, f.superseded, f.dropped};
+  };
+  EXPECT_EQ(fates(0), (std::array<std::uint64_t, 4>{3, 2, 0, 1}));
+  EXPECT_EQ(fates(1), (std::array<std::uint64_t, 4>{4, 1, 2, 1}));
+  EXPECT_EQ(fates(2), (std::array<std::uint64_t, 4>{0, 0, 0, 0}));
 }
 
 }  // namespace

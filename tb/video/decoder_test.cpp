@@ -226,11 +226,40 @@ TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
 
 TEST(DecoderTest, ClearingWhileNotLockedForgetsTheLoss) {
   Bench& b = *bench;
-  b.i2c_write(0x00, 1);  // another input
+  EXPECT_EQ(b.i2c_read(0x3B), 0x80);
+  b.i2c_write(0x00, 1);  // another input, with nothing on it
   EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+  EXPECT_EQ(b.i2c_read(0x3B), 0) << "no signal";
+  EXPECT_EQ(b.i2c_read(0x3F), 0);
   b.i2c_write(0x39, 1);
   EXPECT_EQ(b.i2c_read(0x3A), 0) << "cleared; not locked since, so nothing was lost since";
+  const std::uint64_t sent = b.tvp->lines_sent();
+  run_for(FOVEA_RELOCK * 20 * kPsPerMs);
+  EXPECT_EQ(b.i2c_read(0x3A), 0) << "there is nothing to lock to";
+  EXPECT_GT(b.tvp->lines_sent(), sent) << "black lines go on";
+  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  b.i2c_write(0x00, 0);
+  EXPECT_EQ(b.i2c_read(0x3A), 0);
+  EXPECT_EQ(b.i2c_read(0x3B), 0x80);
   run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+TEST(DecoderTest, AnUnpluggedCableLosesTheLockAndAPluggedOneIsLockedToAnew) {
+  Bench& b = *bench;
+  b.tvp->connect(0, false);
+  EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+  EXPECT_EQ(b.i2c_read(0x3B), 0);
+  b.i2c_write(0x39, 1);
+  run_for(30 * kPsPerMs);
+  EXPECT_EQ(b.i2c_read(0x3A), 0);
+  std::uint64_t field = 0;
+  while (b.tvp->field_time(field + 1) <= kernel_time()) ++field;
+  b.tvp->connect(0, true);
+  EXPECT_EQ(b.tvp->locked_from_field(), field + FOVEA_RELOCK);
+  run_until(b.tvp->field_time(field + FOVEA_RELOCK) - kPsPerUs);
+  EXPECT_EQ(b.i2c_read(0x3A), 0);
+  run_until(b.tvp->field_time(field + FOVEA_RELOCK) + kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked);
 }
 

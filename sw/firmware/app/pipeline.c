@@ -189,7 +189,8 @@ static void display_field_passed(void) {
   isif_watch();
   if (pipe.capturing && pipe.complete) capture_frame_useless(&pipe.capture);
   pipe.capturing = pipe.complete = 0;
-  select_camera(turns_no_frames(&pipe.turns));
+  const signal_state_t seen = look();
+  select_camera(turns_no_frames(&pipe.turns, &seen));
 }
 
 #else

@@ -57,8 +57,10 @@ uint32_t turns_not_ready(turns_t *turns, const signal_state_t *seen) {
   return leave(turns, CAMERA_NO_LOCK);
 }
 
-uint32_t turns_no_frames(turns_t *turns) {
+uint32_t turns_no_frames(turns_t *turns, const signal_state_t *seen) {
   boundary(turns);
+  if (!seen->present) return leave(turns, CAMERA_NO_SIGNAL);
+  if (seen->locked && !seen->right_standard) return leave(turns, CAMERA_WRONG_STANDARD);
   return leave(turns, CAMERA_NO_FRAMES);
 }
 

@@ -57,7 +57,7 @@ void turns_torn(turns_t *turns);
 uint32_t turns_not_ready(turns_t *turns, const signal_state_t *seen);
 
 /** No frame boundary came for several frames. @return the camera whose turn it is now */
-uint32_t turns_no_frames(turns_t *turns);
+uint32_t turns_no_frames(turns_t *turns, const signal_state_t *seen);
 
 /** The oldest event that was not taken yet. @return 0 if there is none */
 int turns_event(turns_t *turns, uint32_t *camera, camera_event_t *event);

@@ -1,0 +1,135 @@
+#include "tb/e2e/cameras_rig.h"
+
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "sw/fovea/calibration.h"
+#include "sw/fovea/experiment.h"
+#include "sw/fovea/loader.h"
+#include "sw/fovea/parameter_page.h"
+#include "tb/e2e/geometry.h"
+#include "tb/e2e/rig.h"
+#include "tb/e2e/stamp_reader.h"
+
+namespace fovea::e2e {
+
+CamerasRig::CamerasRig()
+    : elf_(app::ElfImage::load(std::filesystem::path(FOVEA_FIRMWARE_DIR) / "fovea_cameras.elf")) {
+  params.declare(set_);
+}
+
+CamerasRig::~CamerasRig() = default;
+
+CamerasRig& CamerasRig::set(const std::string& key, const std::string& value) {
+  set_.set(key, value);
+  return *this;
+}
+
+CamerasRig& CamerasRig::load(const std::string& name) {
+  app::Experiment experiment(set_);
+  experiment.load(std::filesystem::path(FOVEA_EXPERIMENTS_DIR) / name);
+  app::apply_calibrations(set_, experiment);
+  return *this;
+}
+
+board::Board& CamerasRig::build() {
+  app::check_fits(elf_, app::memory_regions(params));
+  app::complete_params(params);
+  std::vector<video::PictureSource*> pictures;
+  std::vector<const video::StampedSource*> stamped;
+  for (unsigned n = 0; n < params.camera_count(); ++n) {
+    sources_.push_back(app::camera_source(params, n));
+    references_.push_back(app::camera_source(params, n));
+    pictures.push_back(sources_.back().get());
+    stamped.push_back(sources_.back().get());
+    geometry_.push_back(geometry_of(params, *params.camera_setup(n).lens));
+  }
+  board_ = std::make_unique<board::Board>("board", params, pictures, elf_.entry(), false);
+  for (const auto& s : elf_.segments())
+    board_->load({s.address, s.data, s.memory_size - s.data.size()});
+  board_->load({PARAM_PAGE_BASE, app::parameter_page(params, stamped)});
+  board_->on_frame = [this](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    const unsigned w = params.width(), h = params.height();
+    Shown s{crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), r, {}};
+    s.stamp = read_stamp(s.frame);
+    shown_.push_back(std::move(s));
+  };
+  return *board_;
+}
+
+void CamerasRig::run(Picoseconds limit) {
+  if (!board_) build();
+  while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
+    advance(kPsPerMs);
+}
+
+/// The lens decides where the marks lie, and they say whose lens it was.
+std::optional<CamerasRig::Shown::Stamp> CamerasRig::read_stamp(const oracle::Frame& frame) const {
+  const unsigned x = (params.raster_width() - params.width()) / 2;
+  const unsigned y = (params.raster_height() - params.height()) / 2;
+  for (unsigned n = 0; n < geometry_.size(); ++n) {
+    const auto& layout = sources_[n]->stamps();
+    if (!layout) continue;
+    const ShownFields f = read_stamps(frame, geometry_[n], *layout, x, y);
+    if (f.camera == n && *f.odd == *f.even + 1) return Shown::Stamp{n, *f.even / 2u};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::uint32_t> CamerasRig::table(unsigned camera) {
+  const auto* state = elf_.find("fw_state");
+  std::uint32_t address = 0;
+  const auto bytes = board_->peek(
+      state->address + offsetof(FwState, table_address) + 4 * camera, sizeof address);
+  std::memcpy(&address, bytes.data(), sizeof address);
+  const oracle::Geometry& g = geometry_.at(camera);
+  std::vector<std::uint32_t> out(std::size_t{g.width} / 2 * g.height);
+  const auto entries = board_->peek(address, out.size() * 4);
+  std::memcpy(out.data(), entries.data(), entries.size());
+  return out;
+}
+
+oracle::LutCheck CamerasRig::table_check(unsigned camera) {
+  return oracle::check_lut(table(camera), geometry_.at(camera), 0.02);
+}
+
+oracle::Frame CamerasRig::sent(unsigned camera, std::uint64_t number) {
+  const unsigned w = params.width(), h = params.height();
+  const video::Picture even = references_[camera]->field(2 * number);
+  const video::Picture odd = references_[camera]->field(2 * number + 1);
+  const unsigned x = (even.width - w) / 2, y = (even.height - h) / 2;
+  oracle::Frame f = crop(even, x, y, w, h);
+  const oracle::Frame second = crop(odd, x, y, w, h);
+  for (unsigned r = (y + 1) % 2; r < h; r += 2)
+    std::memcpy(f.uyvy.data() + std::size_t{r} * w * 2,
+                second.uyvy.data() + std::size_t{r} * w * 2, std::size_t{w} * 2);
+  return f;
+}
+
+std::string CamerasRig::wrong_picture() {
+  std::vector<std::vector<std::uint32_t>> tables;
+  for (unsigned n = 0; n < params.camera_count(); ++n) tables.push_back(table(n));
+  for (const Shown& s : shown_) {
+    const std::string which = "displayed frame " + std::to_string(s.record.index) + ": ";
+    if (!s.stamp) return which + "no stamp can be read";
+    const unsigned n = s.stamp->camera;
+    const auto d = oracle::compare(
+        oracle::remap(sent(n, s.stamp->number), tables[n], geometry_[n].pitch_bytes), s.frame);
+    if (d) return which + d->text();
+  }
+  return "";
+}
+
+std::vector<std::string> CamerasRig::said() const {
+  std::vector<std::string> out;
+  std::istringstream text(board_->uart_text());
+  for (std::string line; std::getline(text, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.starts_with("camera ")) out.push_back(line);
+  }
+  return out;
+}
+
+}  // namespace fovea::e2e

@@ -1,0 +1,64 @@
+// A board with several cameras: run it, and read from the displayed pixels which camera's frame they show.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/board/board.h"
+#include "model/common/host_time_slicer.h"
+#include "sw/fovea/elf_image.h"
+#include "tb/oracle/frame_compare.h"
+#include "tb/oracle/lens_oracle.h"
+
+namespace fovea::e2e {
+
+class CamerasRig {
+ public:
+  /// A displayed frame, and the frame number and camera in its pixels; nothing if they cannot be read.
+  struct Shown {
+    oracle::Frame frame;
+    board::FrameRecord record;
+    struct Stamp {
+      unsigned camera, number;
+    };
+    std::optional<Stamp> stamp;
+  };
+
+  CamerasRig();
+  ~CamerasRig();
+  CamerasRig& set(const std::string& key, const std::string& value);
+  /// Sets all keys of a shipped experiment, with its footage and calibrations.
+  CamerasRig& load(const std::string& experiment);
+  board::Board& build();
+  /// Runs until the window is closed or the core fails; builds the board if that was not done.
+  void run(Picoseconds limit);
+  void advance(Picoseconds duration) { slicer_.run(duration); }
+
+  board::Board& board() { return *board_; }
+  const std::vector<Shown>& shown() const { return shown_; }
+  /// What is wrong with the first displayed frame that is not, byte for byte, the host's remap of the
+  /// frame that its pixels name by that camera's table; empty: nothing.
+  std::string wrong_picture();
+  /// Entries of the camera's table in target memory that the oracle's do not confirm.
+  oracle::LutCheck table_check(unsigned camera);
+  /// The lines that the firmware has printed about its cameras.
+  std::vector<std::string> said() const;
+  board::BoardParams params;
+
+ private:
+  std::vector<std::uint32_t> table(unsigned camera);
+  oracle::Frame sent(unsigned camera, std::uint64_t number);
+  std::optional<Shown::Stamp> read_stamp(const oracle::Frame& frame) const;
+
+  ParamSet set_;
+  app::ElfImage elf_;
+  std::vector<std::unique_ptr<video::StampedSource>> sources_, references_;
+  std::vector<oracle::Geometry> geometry_;
+  std::unique_ptr<board::Board> board_;
+  std::vector<Shown> shown_;
+  HostTimeSlicer slicer_;
+};
+
+}  // namespace fovea::e2e

@@ -1,0 +1,257 @@
+// Time division between cameras: whose frames are displayed, and how often, is read from the pixels.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <systemc>
+
+#include "tb/e2e/cameras_rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+constexpr Picoseconds kLimit = 20 * kPsPerSecond;
+using Shown = CamerasRig::Shown;
+
+/// A region that is large enough for the marks, with a lens of its own for each camera.
+void small(CamerasRig& rig, unsigned cameras) {
+  rig.set("camera.kind", "chart").set("cameras.count", std::to_string(cameras));
+  rig.set("video.width", "160").set("video.height", "184").set("camera.1.lens.mapping", "linear");
+  rig.set("lens.focal", "255px");  // as of the whole raster: the marks are in the region
+  if (cameras > 2) rig.set("camera.2.lens.shift_x", "6px");
+}
+
+/// The displayed frames without repetitions.
+std::vector<Shown::Stamp> sequence(const CamerasRig& rig) {
+  std::vector<Shown::Stamp> out;
+  for (const Shown& s : rig.shown()) {
+    EXPECT_TRUE(s.stamp) << "frame " << s.record.index;
+    if (!s.stamp) continue;
+    const bool again =
+        !out.empty() && out.back().camera == s.stamp->camera && out.back().number == s.stamp->number;
+    if (!again) out.push_back(*s.stamp);
+  }
+  return out;
+}
+
+/// What the ideal time division captures after `first`, from the cameras' phases alone: at the end of
+/// a camera's frame the next camera is selected (a little later, in the vertical blanking); the decoder
+/// locks after `relock` of its fields, the one in progress counted; then its next whole frame is captured.
+std::vector<Shown::Stamp> ideal(Shown::Stamp first, std::size_t count, double relock,
+                                const std::vector<double>& phase_ms) {
+  std::vector<Shown::Stamp> out{first};
+  while (out.size() < count) {
+    const Shown::Stamp last = out.back();
+    const double end = phase_ms[last.camera] + 40.0 * (last.number + 1);
+    const unsigned next = (last.camera + 1) % static_cast<unsigned>(phase_ms.size());
+    const double in_progress = std::floor((end + 0.7 - phase_ms[next]) / 20);
+    // With no field to wait for, the frame that has begun in this instant is the one.
+    const double locked = in_progress + relock;
+    out.push_back({next, static_cast<unsigned>(std::ceil(locked / 2))});
+  }
+  return out;
+}
+
+void expect_sequence(const std::vector<Shown::Stamp>& expected, const std::vector<Shown::Stamp>& got) {
+  ASSERT_EQ(expected.size(), got.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_EQ(got[i].camera, expected[i].camera) << i;
+    EXPECT_EQ(got[i].number, expected[i].number) << i << ", camera " << expected[i].camera;
+  }
+}
+
+/// The statistics of each camera are what the displayed pixels say.
+void expect_counts(CamerasRig& rig, unsigned step) {
+  std::map<unsigned, std::vector<unsigned>> numbers;
+  for (const Shown::Stamp& s : sequence(rig)) numbers[s.camera].push_back(s.number);
+  const auto stats = rig.board().camera_stats();
+  ASSERT_EQ(stats.size(), numbers.size());
+  for (const auto& [camera, list] : numbers) {
+    const board::CameraFrameStats& s = stats[camera];
+    EXPECT_EQ(s.displayed, list.size());
+    EXPECT_EQ(s.captured, s.displayed + s.superseded + s.dropped) << "camera " << camera;
+    // One of `step` frames of the camera was captured; all of them are on show.
+    EXPECT_EQ(s.captured, (list.back() - list.front()) / step + 1) << "camera " << camera;
+  }
+}
+
+struct Division {
+  unsigned cameras, relock;
+};
+class GenlockedTest : public testing::TestWithParam<Division> {};
+TEST_P(GenlockedTest, EachCameraGivesEveryFrameThatTheDivisionAllows) {
+  const auto [n, relock] = GetParam();
+  CamerasRig rig;
+  small(rig, n);
+  rig.set("tvp5146.relock_fields", std::to_string(relock));
+  const unsigned step = n * (2 + relock) / 2;  // frames of the camera from one captured to the next
+  rig.set("run.frames", std::to_string(2 * step + n + 1));
+  rig.run(kLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const auto got = sequence(rig);
+  ASSERT_GE(got.size(), 2u * n) << rig.board().uart_text();
+  expect_sequence(ideal(got.front(), got.size(), relock, std::vector<double>(n, 0)), got);
+  expect_counts(rig, step);
+  for (unsigned c = 0; c < n; ++c) {
+    EXPECT_EQ(rig.table_check(c).wrong, 0u) << "table of camera " << c;
+    const auto stats = rig.board().camera_stats()[c];
+    EXPECT_EQ(stats.superseded + stats.dropped, 0u);
+    // 25/(N (1 + relock/2)), to within one frame of the window.
+    const double window = static_cast<double>(rig.params.run.frames()) / 25;
+    ASSERT_TRUE(stats.rate);
+    EXPECT_NEAR(*stats.rate, 25.0 / (n * (1 + relock / 2.0)), 1.001 / window) << "camera " << c;
+  }
+  EXPECT_TRUE(rig.said().empty()) << rig.said().front();
+}
+INSTANTIATE_TEST_SUITE_P(Divisions, GenlockedTest,
+                         testing::Values(Division{2, 0}, Division{2, 2}, Division{2, 10},
+                                         Division{4, 0}),
+                         [](const auto& i) {
+                           return "Of" + std::to_string(i.param.cameras) + "Relock" +
+                                  std::to_string(i.param.relock);
+                         });
+
+INSTANTIATE_TEST_SUITE_P(Nightly, GenlockedTest,
+                         testing::Values(Division{4, 2}, Division{4, 10}, Division{8, 0}),
+                         [](const auto& i) {
+                           return "Of" + std::to_string(i.param.cameras) + "Relock" +
+                                  std::to_string(i.param.relock);
+                         });
+
+class FreeRunningTest : public testing::TestWithParam<unsigned> {};
+TEST_P(FreeRunningTest, TheNextWholeFrameAfterTheLockIsShown) {
+  const unsigned relock = GetParam();
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("cameras.genlocked", "false").set("camera.1.phase", "27ms");
+  rig.set("tvp5146.relock_fields", std::to_string(relock));
+  rig.set("run.frames", std::to_string(relock < 10 ? 16 : 30));
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const auto got = sequence(rig);
+  ASSERT_GE(got.size(), 4u) << rig.board().uart_text();
+  expect_sequence(ideal(got.front(), got.size(), relock, {0, 27}), got);
+  EXPECT_TRUE(rig.said().empty()) << rig.said().front();
+}
+INSTANTIATE_TEST_SUITE_P(Relock, FreeRunningTest, testing::Values(2u, 3u),
+                         [](const auto& i) { return "Of" + std::to_string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Nightly, FreeRunningTest, testing::Values(10u),
+                         [](const auto& i) { return "Of" + std::to_string(i.param); });
+
+/// Times at which the firmware has said something, by what it said.
+std::map<std::string, Picoseconds> listen(CamerasRig& rig) {
+  std::map<std::string, Picoseconds> out;
+  std::string line;
+  rig.build().on_uart = [&](std::uint8_t byte) {
+    if (byte == '\n') {
+      if (line.starts_with("camera ")) out.emplace(line, kernel_time());
+      line.clear();
+    } else if (byte != '\r') {
+      line += static_cast<char>(byte);
+    }
+  };
+  rig.run(kLimit);
+  rig.board().on_uart = nullptr;
+  return out;
+}
+
+class UnpluggedTest : public testing::TestWithParam<unsigned> {};
+TEST_P(UnpluggedTest, TheOtherCameraGoesOnAndTheLostOneComesBack) {
+  const unsigned relock = GetParam();
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", std::to_string(relock)).set("run.frames", "50");
+  rig.set("fault.kind", "unplugged").set("fault.camera", "1");
+  rig.set("fault.start", "615ms").set("fault.end", "705ms");
+  const auto said = listen(rig);
+  ASSERT_EQ(rig.shown().size(), 50u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "") << "the last good picture stays";
+  // Said in time: a turn of each camera, a frame to look at it, and the time of the line on the UART.
+  ASSERT_TRUE(said.contains("camera 1: no signal")) << rig.board().uart_text();
+  EXPECT_LE(said.at("camera 1: no signal"), (615 + 80 * (1 + relock / 2) + 80 + 10) * kPsPerMs);
+  // Asked again after 25 frame boundaries; then a lock, and a frame.
+  ASSERT_TRUE(said.contains("camera 1: frames again")) << rig.board().uart_text();
+  EXPECT_LE(said.at("camera 1: frames again"),
+            said.at("camera 1: no signal") + (40 * (25 + 3 + relock / 2) + 10) * kPsPerMs);
+  bool before = false, behind = false;
+  for (const Shown::Stamp& s : sequence(rig)) {
+    if (s.camera != 1) continue;
+    const unsigned from = s.number * 40, to = from + 40;  // of its capture, ms
+    EXPECT_TRUE(to <= 615 || from >= 705) << "a frame of the unplugged camera: " << s.number;
+    before |= to <= 615;
+    behind |= from >= 705;
+  }
+  EXPECT_TRUE(before && behind);
+  std::uint64_t displayed = 0;
+  for (const auto& s : rig.board().camera_stats()) {
+    EXPECT_EQ(s.captured, s.displayed + s.superseded + s.dropped);
+    displayed += s.displayed;
+  }
+  EXPECT_EQ(displayed, sequence(rig).size());
+}
+INSTANTIATE_TEST_SUITE_P(Relock, UnpluggedTest, testing::Values(0u, 2u),
+                         [](const auto& i) { return "Of" + std::to_string(i.param); });
+
+TEST(CamerasTest, ACameraOfAnotherStandardIsLeftOut) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("camera.1.standard", "525/60").set("run.frames", "12");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 12u) << rig.board().uart_text();
+  EXPECT_EQ(rig.said(), std::vector<std::string>{"camera 1: wrong standard"});
+  for (const Shown::Stamp& s : sequence(rig)) EXPECT_EQ(s.camera, 0u);
+  EXPECT_EQ(rig.wrong_picture(), "");
+}
+
+TEST(CamerasTest, AnInputWithNothingOnItIsLeftOut) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "2").set("camera.0.connected", "false").set("run.frames", "12");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 12u) << rig.board().uart_text();
+  EXPECT_EQ(rig.said(), std::vector<std::string>{"camera 0: no signal"});
+  for (const Shown::Stamp& s : sequence(rig)) EXPECT_EQ(s.camera, 1u);
+}
+
+// A corrected frame that never comes on the display: with forty remaps of each frame the loop is too slow.
+TEST(CamerasTest, EachCapturedFrameIsDisplayedSupersededOrDropped) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("firmware.repeat", "40").set("run.frames", "9");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 9u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const auto shown = sequence(rig);
+  std::uint64_t captured = 0, displayed = 0, lost = 0;
+  for (const auto& s : rig.board().camera_stats()) {
+    EXPECT_EQ(s.captured, s.displayed + s.superseded + s.dropped);
+    captured += s.captured;
+    displayed += s.displayed;
+    lost += s.superseded + s.dropped;
+  }
+  // Each camera frame was captured, of one camera or the other.
+  EXPECT_EQ(displayed, shown.size());
+  EXPECT_EQ(captured, shown.back().number - shown.front().number + 1u);
+  EXPECT_GT(lost, 0u);
+}
+
+TEST(CamerasTest, NightlyTheShippedExperimentIsExact) {
+  CamerasRig rig;
+  rig.load("four-cameras-free.yaml").set("run.frames", "250");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 250u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_TRUE(rig.said().empty()) << rig.said().front();
+}
+
+}  // namespace
+}  // namespace fovea::e2e
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

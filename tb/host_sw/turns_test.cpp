@@ -1,0 +1,83 @@
+// Time division: whose turn it is, and what is said of a camera.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+extern "C" {
+#include "sw/firmware/app/turns.h"
+}
+
+namespace {
+
+constexpr signal_state_t kReady{1, 1, 0, 1}, kNoLock{1, 0, 0, 0}, kNothing{0, 0, 0, 0}, kOther{1, 1, 0, 0};
+
+struct Turns : turns_t {
+  explicit Turns(uint32_t cameras) { turns_init(this, cameras); }
+  std::vector<std::string> said() {
+    std::vector<std::string> out;
+    uint32_t camera;
+    camera_event_t event;
+    while (turns_event(this, &camera, &event))
+      out.push_back(std::to_string(camera) + " " + camera_event_text(event));
+    return out;
+  }
+};
+using Lines = std::vector<std::string>;
+
+TEST(TurnsTest, CamerasTakeTurnsAfterEachFrame) {
+  Turns t(3);
+  EXPECT_EQ(t.now, 0u);
+  for (const uint32_t next : {1u, 2u, 0u, 1u}) EXPECT_EQ(turns_captured(&t), next);
+  EXPECT_EQ(t.said(), Lines{});
+  Turns one(1);
+  EXPECT_EQ(turns_captured(&one), 0u);
+}
+
+TEST(TurnsTest, ALockIsWaitedForUpToTheLimit) {
+  Turns t(2);
+  for (unsigned n = 1; n < TURNS_LOCK_FRAMES; ++n) EXPECT_EQ(turns_not_ready(&t, &kNoLock), 0u) << n;
+  EXPECT_EQ(t.said(), Lines{});
+  EXPECT_EQ(turns_not_ready(&t, &kNoLock), 1u);
+  EXPECT_EQ(t.said(), Lines{"0 no lock"});
+}
+
+TEST(TurnsTest, WithoutASignalTheNextCameraHasItsTurnAtOnceAndTheLostOneIsAskedAgain) {
+  Turns t(2);
+  EXPECT_EQ(turns_captured(&t), 1u);
+  EXPECT_EQ(turns_not_ready(&t, &kNothing), 0u);
+  EXPECT_EQ(t.said(), Lines{"1 no signal"});
+  for (unsigned n = 1; n < TURNS_REST_FRAMES; ++n) EXPECT_EQ(turns_captured(&t), 0u) << n;
+  EXPECT_EQ(turns_captured(&t), 1u) << "after as many frame boundaries as it rests";
+  EXPECT_EQ(turns_not_ready(&t, &kNothing), 0u);
+  EXPECT_EQ(t.said(), Lines{}) << "said once";
+  for (unsigned n = 0; n < TURNS_REST_FRAMES; ++n) turns_captured(&t);
+  EXPECT_EQ(t.now, 1u);
+  EXPECT_EQ(turns_captured(&t), 0u);
+  EXPECT_EQ(t.said(), Lines{"1 frames again"});
+}
+
+TEST(TurnsTest, WhileAllRestEachIsAskedInTurn) {
+  Turns t(2);
+  for (const uint32_t next : {1u, 0u, 1u, 0u}) EXPECT_EQ(turns_not_ready(&t, &kNothing), next);
+}
+
+TEST(TurnsTest, EachFaultIsNamed) {
+  Turns t(2);
+  turns_not_ready(&t, &kOther);
+  turns_no_frames(&t, &kReady);
+  turns_torn(&t);
+  turns_torn(&t);
+  turns_no_frames(&t, &kOther);
+  EXPECT_EQ(t.said(), (Lines{"0 wrong standard", "1 no frames", "0 lock lost, a frame is left out",
+                             "0 lock lost, a frame is left out", "0 wrong standard"}));
+}
+
+TEST(TurnsTest, EventsBeyondTheRoomAreCounted) {
+  Turns t(1);
+  for (unsigned n = 0; n < TURNS_EVENTS + 2; ++n) turns_torn(&t);
+  EXPECT_EQ(t.said().size(), TURNS_EVENTS);
+  EXPECT_EQ(t.lost_events, 2u);
+}
+
+}  // namespace
