@@ -1,5 +1,7 @@
 #include "model/periph/aintc.h"
 
+#include <bit>
+
 namespace fovea::periph {
 
 Aintc::Aintc(sc_core::sc_module_name name, const AintcParams& params)
@@ -14,7 +16,10 @@ void Aintc::update() {
   std::uint64_t levels = 0;
   for (unsigned n = 0; n < kInterruptCount; ++n)
     levels |= static_cast<std::uint64_t>(source[n].read()) << n;
+  const std::uint64_t before = regs.pending();
   regs.set_sources(levels);
+  for (std::uint64_t fresh = regs.pending() & ~before; fresh; fresh &= fresh - 1)
+    latched_at_[static_cast<unsigned>(std::countr_zero(fresh))] = kernel_time();
   irq.write(regs.irq());
   fiq.write(regs.fiq());
 }

@@ -36,10 +36,13 @@ class Aintc : public WithRegs<AintcCore>, public BusTarget {
 
   Aintc(sc_core::sc_module_name name, const AintcParams& params);
   const AintcCore& core() const { return regs; }
+  /// When an input was last latched.
+  Picoseconds latched_at(unsigned input) const { return latched_at_[input]; }
 
  private:
   void on_reset(ResetKind) override { regs.reset(); }
   void update();
+  std::array<Picoseconds, kInterruptCount> latched_at_{};
   Timer written_;
 };
 

@@ -264,6 +264,7 @@ void Dm365::wire_interrupts() {
   for (unsigned i = 0; i < 64; ++i) aintc.source[i](irq_[i]);
   aintc.irq(arm_irq_);
   aintc.fiq(arm_fiq_);
+  arm.core().wake_event = [this] { return wake_event(); };
   arm.irq(arm_irq_);
   arm.fiq(arm_fiq_);
   tap.irq(arm_irq_);

@@ -119,6 +119,15 @@ class Dm365 : public sc_core::sc_module, public Block {
   /// All blocks of the chip.
   Platform platform;
 
+  /// The source of an input of the interrupt controller, as ARM_INTMUX and the VPSS select it now.
+  struct InterruptSource {
+    std::string name;  ///< block.interrupt, such as `edma.region0`
+    cpu::WakeEvent event;
+  };
+  InterruptSource interrupt_source(unsigned input) const;
+  /// What has ended the core's sleep: the source of its most urgent interrupt.
+  cpu::WakeEvent wake_event() const;
+
   /// The watchdog asks for a reset of the chip, with the cause. Whoever sets this calls reset_chip(), or
   /// ends the simulation at this instant.
   std::function<void(const std::string& cause)> on_reset_request;

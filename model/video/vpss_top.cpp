@@ -28,9 +28,7 @@ void VpssTop::route() {
   level |= std::uint32_t{venc_int.read()} << kVencSource;
   regs.intstat.set(regs.intstat.get() | (level & ~level_));
   level_ = level;
-  const VpssRegs::Select* const selects[] = {&regs.intsel1, &regs.intsel2, &regs.intsel3};
-  for (unsigned k = 0; k < kOutputs; ++k)
-    vpssint[k].write((level >> selects[k / 4]->fields()[k % 4]->get() & 1) != 0);
+  for (unsigned k = 0; k < kOutputs; ++k) vpssint[k].write((level >> source_of(k) & 1) != 0);
   route_events(level);
 }
 

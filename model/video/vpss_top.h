@@ -77,6 +77,12 @@ struct VpssRegs : RegBank {
 class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
  public:
   static constexpr unsigned kOutputs = 9, kEvents = 4;
+  static constexpr unsigned kVencSource = 21, kNoSource = 31;
+  /// The source that an output follows.
+  unsigned source_of(unsigned output) const {
+    const VpssRegs::Select* const selects[] = {&regs.intsel1, &regs.intsel2, &regs.intsel3};
+    return selects[output / 4]->fields()[output % 4]->get();
+  }
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"};
   sc_core::sc_vector<sc_core::sc_in<bool>> isif_int{"isif_int", 3};
   sc_core::sc_in<bool> venc_int{"venc_int"};
@@ -96,7 +102,6 @@ class VpssTop : public WithRegs<VpssRegs>, public BusTarget {
   bool clocked() const override { return psc_enabled.read(); }
 
  private:
-  static constexpr unsigned kVencSource = 21, kNoSource = 31;
   void on_reset(ResetKind) override {
     selection_.soon();
     controls_.soon();

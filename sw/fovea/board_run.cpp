@@ -322,13 +322,9 @@ cpu::Counts BoardSimulation::collect_core(RunResult& result) const {
 void BoardSimulation::collect_profile(RunResult& result, const cpu::Counts& end,
                                       const RunRequest& request, const ElfImage& program) {
   const ProfileData data = profile_->finish(end, program_file(params_).filename().string());
-  SourceLines lines;
-  lines.add(program);
-  if (request.symbols) lines.add(*request.symbols);
-  result.profile = profile_files(data, lines);
-  result.profile_table = profile_table(data, lines, 12);
-  if (!lines.have_lines())
-    result.notes.push_back("the program has no debug information: the profile knows functions, but no lines");
+  const ElfImage* const programs[] = {&program, request.symbols};
+  result.profile = profile_result(data, programs);
+  result.profile.files.push_back({"frame_parts.csv", profile_->frame_parts()});
 }
 
 ExecMap BoardSimulation::hosted_map() const {
@@ -459,6 +455,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     out.repeated = r.repeated;
     // An error of a writer must not unwind through the kernel: keep it and stop.
     if (failure) return;
+    if (profile_) profile_->frame(out);
     try {
       if (perfetto_) perfetto_->frame(f, r);
       if (request.frame_row)
@@ -486,8 +483,11 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!request.registers.pattern.empty()) log->start(request.registers);
   RunEnd run_end(*board_, debug_memory, until);
   if (!run_end.wants(EndCondition::Kind::kFrames)) board_->measure_whole_run();
-  if (request.profile)
-    profile_ = std::make_unique<RunProfile>(*board_, !run_end.wants(EndCondition::Kind::kFrames));
+  if (request.profile) {
+    const ElfImage* const programs[] = {&elf, request.symbols};
+    profile_ = std::make_unique<RunProfile>(*board_, !run_end.wants(EndCondition::Kind::kFrames),
+                                            programs);
+  }
   std::optional<CoreSemihosting> semihosting;
   if (request.semihosting && run_end.wants(EndCondition::Kind::kExit))
     semihosting.emplace(arm.core(), debug_memory, semihosting_settings(request),

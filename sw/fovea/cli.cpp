@@ -64,7 +64,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   meter.add_host_rows(host);
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("latency.csv", latency_csv(result.latency));
-  for (const ResultFile& f : result.profile) dir.write(f.name, f.text);
+  for (const ResultFile& f : result.profile.files) dir.write(f.name, f.text);
   dir.write("uart.log", result.uart);
   if (!result.typed.empty()) dir.write("uart0.input", result.typed);
   if (log) dir.write("registers.log", result.registers);
@@ -200,7 +200,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   std::ostream& report = options.console ? context.err : context.out;
   context.out.flush();
   report << run_words(result.stats, host);
-  report << result.profile_table;
+  report << result.profile.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
   report << fmt::format("results in {}\n", dir.folder().string());

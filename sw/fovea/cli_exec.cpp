@@ -47,6 +47,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   }
   RunRequest run{.params = params,
                  .folder = {},
+                 .profile = o.profile,
                  .hazards = o.hazards,
                  .stop = request.stop,
                  .progress = *request.progress,
@@ -69,6 +70,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
   out.registers = std::move(result.registers);
+  out.profile = std::move(result.profile);
   out.hazards = std::move(result.hazards);
   if (!result.exit_code) out.ended = std::move(result.ended);
   return out;
@@ -151,6 +153,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
       ->type_name(":PORT");
   add_register_log_options(*c, o.registers);
   add_hazards_option(*c, o.hazards);
+  add_profile_option(*c, o.profile);
   add_limit_options(*c, o.limits);
   c->add_flag("--strict", o.strict,
               "Stop with an error when the program uses a feature that is not modelled, or a "
@@ -263,6 +266,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
                             .gdb_port = gdb_port,
                             .notes = context.err,
                             .caches = o.caches,
+                            .profile = o.profile,
                             .fast_memory = o.fast_memory,
                             .console = console,
                             .stop = context.stop ? *context.stop : kNeverStops,
@@ -282,9 +286,11 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     if (!result.ended.empty()) context.err << "ended by " << result.ended << "\n";
     context.err << std::flush;
   }
+  context.err << result.profile.table;
   if (!dir) context.err << result.registers << std::flush;
   if (dir) {
     dir->write("stalls.csv", stalls_csv(result.stalls));
+    for (const ResultFile& f : result.profile.files) dir->write(f.name, f.text);
     if (!o.registers.pattern.empty()) dir->write("registers.log", result.registers);
     dir->write("host.json", host_json(result.host, args, version_text()));
     dir->write("stats.json",

@@ -47,6 +47,7 @@ ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRe
       semihosting_(core, memory, settings(request, map), request.console,
                    [this] { return over(); }) {
   core_.set_regions(exec_regions(program_, map_, registers));
+  if (request.profile) core_.start_profile().stacks.set_functions(program_functions(programs()));
 }
 
 ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
@@ -130,7 +131,23 @@ ExecResult ExecSession::result(const std::string& failure) {
                   std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
               "every clock of the core has one cause");
   out.stalls = stall_rows({}, c, core_.regions());
+  if (request_.profile) out.profile = profile();
   return out;
+}
+
+std::array<const ElfImage*, 2> ExecSession::programs() const {
+  return {program_.image(), request_.symbols};
+}
+
+ProfileResult ExecSession::profile() const {
+  core_.finish_profile(core_.counts());
+  ProfileData data;
+  data.program = program_.name();
+  data.regions = core_.regions().names();
+  data.phases = {{"run", true, core_.profile()->rows(0)}};
+  add_stacks(data, core_.profile()->stacks);
+  data.masked = core_.profile()->mask.longest();
+  return profile_result(data, programs());
 }
 
 }  // namespace fovea::app

@@ -1,5 +1,6 @@
 // A session of `fovea exec`: one program on one core, with loading, semihosting and results.
 #pragma once
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,8 @@ class ExecSession {
  private:
   std::string failure_text(const std::string& what) const;
   std::vector<StatRow> core_stats() const;
+  std::array<const ElfImage*, 2> programs() const;
+  ProfileResult profile() const;
 
   cpu::Core& core_;
   const ExecRequest& request_;

@@ -12,6 +12,7 @@
 #include "model/common/param.h"
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/profile_report.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
@@ -26,6 +27,7 @@ struct ExecRequest {
   std::optional<std::uint16_t> gdb_port;  ///< port on which to wait for a debugger before the start
   std::ostream& notes;                 ///< messages for the user
   bool caches = false;                 ///< MMU and caches are enabled when the program begins
+  bool profile = false;                ///< attribute the core's clocks to the program
   bool fast_memory = false;            ///< memory without wait states; no bus, no SDRAM
   SemihostingConsole& console;
   const std::atomic<bool>& stop;       ///< set by a signal
@@ -45,6 +47,7 @@ struct ExecResult {
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
   std::string registers;  ///< the register log, if requested
+  ProfileResult profile;  ///< if requested
   std::string hazards;    ///< with --hazards: a sentence about those found; empty: none
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
 };

@@ -126,6 +126,50 @@ std::string stack_name(std::uint32_t address, SourceLines& lines) {
 
 }  // namespace
 
+std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImage* const> programs) {
+  std::map<std::uint32_t, std::uint32_t> ends;  // by beginning
+  const auto covered = [&](std::uint32_t a) {
+    const auto above = ends.upper_bound(a);
+    return above != ends.begin() && a < std::prev(above)->second;
+  };
+  for (const ElfImage* const image : programs) {
+    if (!image) continue;
+    std::vector<const ElfSymbol*> labels;
+    for (const ElfSymbol& s : image->symbols()) {
+      if (!s.function) continue;
+      if (s.size == 0) labels.push_back(&s);
+      else if (!covered(s.address)) ends[s.address] = s.address + s.size;
+    }
+    for (std::size_t k = 0; k < labels.size(); ++k) {
+      const std::uint32_t begin = labels[k]->address;
+      if (covered(begin)) continue;
+      std::uint32_t end = begin;
+      for (const ElfSegment& s : image->segments())
+        if (begin - s.virtual_address < s.memory_size) end = s.virtual_address + s.memory_size;
+      if (const auto next = ends.upper_bound(begin); next != ends.end())
+        end = std::min(end, next->first);
+      for (std::size_t n = k + 1; n < labels.size(); ++n)
+        if (labels[n]->address > begin) {
+          end = std::min(end, labels[n]->address);
+          break;
+        }
+      ends[begin] = end;
+    }
+  }
+  std::vector<cpu::CallStacks::Function> out;
+  for (const auto& [begin, end] : ends) {
+    if (!out.empty() && out.back().end > begin) out.back().end = begin;
+    out.push_back({begin, end});
+  }
+  return out;
+}
+
+void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
+  for (const auto& p : stacks.paths()) data.stacks.push_back({p.functions, p.clocks});
+  for (const auto& c : stacks.calls()) data.calls.push_back({c.from, c.to, c.count, c.clocks});
+  data.ranges = stacks.ranges();
+}
+
 std::string profile_csv(const ProfileData& data, SourceLines& lines) {
   std::string out = "phase,function,file,line,cause,region,culprit,clocks,instructions\n";
   for (const ProfilePhase& phase : data.phases) {
@@ -218,6 +262,19 @@ std::string profile_folded(const ProfileData& data, SourceLines& lines) {
   return out;
 }
 
+std::string interrupts_csv(const ProfileData& data) {
+  std::string out = "interrupt,count,mean_ns,p99_ns,max_ns\n";
+  for (const auto& [name, unsorted] : data.interrupts) {
+    std::vector<Picoseconds> times = unsorted;
+    std::sort(times.begin(), times.end());
+    Picoseconds sum = 0;
+    for (const Picoseconds t : times) sum += t;
+    out += fmt::format("{},{},{},{},{}\n", csv_field(name), times.size(), ns_text(sum / times.size()),
+                       ns_text(times[(times.size() * 99 + 99) / 100 - 1]), ns_text(times.back()));
+  }
+  return out;
+}
+
 std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions) {
   const std::uint64_t all = window_clocks(data);
   if (all == 0) return "";
@@ -236,6 +293,17 @@ std::string profile_text(const ProfileData& data, SourceLines& lines) {
   }
   out += fmt::format("\nFunctions of the window; an inlined function counts for itself:\n{}\n{}",
                      kHeads, functions_text(data, lines, ~std::size_t{0}, 0.01));
+  if (!data.ranges.empty()) {
+    out += "\nStacks, by the values of the stack pointer at calls and returns:\n";
+    for (const auto& r : data.ranges)
+      out += fmt::format("  0x{:08x} down to 0x{:08x}: {} bytes, begun in {}\n", r.base, r.low,
+                         r.base - r.low, lines.at(r.function).back().function);
+  }
+  if (data.masked.clocks)
+    out += fmt::format("\nLongest stretch with IRQs masked, without sleep: {} clocks, from 0x{:08x} {} "
+                       "to 0x{:08x} {}\n",
+                       data.masked.clocks, data.masked.begin, place(lines.at(data.masked.begin).front()),
+                       data.masked.end, place(lines.at(data.masked.end).front()));
   const auto ranking = [&](const char* title, const auto& order) {
     constexpr std::size_t kMost = 40;
     out += fmt::format("\n{}\n{}\n", title, kHeads);
@@ -252,11 +320,20 @@ std::string profile_text(const ProfileData& data, SourceLines& lines) {
   return out;
 }
 
-std::vector<ResultFile> profile_files(const ProfileData& data, SourceLines& lines) {
-  return {{"profile.csv", profile_csv(data, lines)},
-          {"profile.folded", profile_folded(data, lines)},
-          {"profile.callgrind", profile_callgrind(data, lines)},
-          {"profile.txt", profile_text(data, lines)}};
+ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* const> programs) {
+  SourceLines lines;
+  for (const ElfImage* const p : programs)
+    if (p) lines.add(*p);
+  constexpr std::size_t kFunctions = 12;
+  std::string table = profile_table(data, lines, kFunctions);
+  if (!lines.have_lines())
+    table += "  the program has no debug information: the profile knows functions, but no lines\n";
+  return {{{"profile.csv", profile_csv(data, lines)},
+           {"profile.folded", profile_folded(data, lines)},
+           {"profile.callgrind", profile_callgrind(data, lines)},
+           {"profile.txt", profile_text(data, lines)},
+           {"interrupts.csv", interrupts_csv(data)}},
+          table};
 }
 
 }  // namespace fovea::app

@@ -1,6 +1,8 @@
 // The files of a profile: the core's clocks by function, source line, cause, region and culprit.
 #pragma once
 #include <cstdint>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,17 @@ struct ProfileData {
   std::vector<std::string> regions;  ///< names, by number
   std::vector<ProfileStack> stacks;
   std::vector<ProfileCall> calls;
+  std::vector<cpu::CallStacks::Range> ranges;  ///< of the stack pointer
+  cpu::MaskWatch::Stretch masked;              ///< the longest stretch with IRQs masked
+  /// From the latch of an interrupt to the instruction at its vector, by source, in order of time.
+  std::map<std::string, std::vector<Picoseconds>> interrupts;
 };
+
+/// The functions of programs, the first program's first, as CallStacks wants them. A label in code that
+/// lies in no function goes on to the next one.
+std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImage* const> programs);
+/// Puts what a core's profile counted of call stacks into `data`.
+void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 
 /// A file of a run's folder.
 struct ResultFile {
@@ -53,10 +65,18 @@ std::string profile_callgrind(const ProfileData& data, SourceLines& lines);
 std::string profile_folded(const ProfileData& data, SourceLines& lines);
 /// profile.txt: functions, lines and instructions of the window for people, and the phases.
 std::string profile_text(const ProfileData& data, SourceLines& lines);
+/// interrupts.csv: `interrupt,count,mean_ns,p99_ns,max_ns`, from the latch of each interrupt that the
+/// window has seen to the instruction at its vector. p99: no more than 1 % took longer.
+std::string interrupts_csv(const ProfileData& data);
 /// The functions with most clocks of the window.
 std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions);
 
-/// All of these files.
-std::vector<ResultFile> profile_files(const ProfileData& data, SourceLines& lines);
+/// What a run leaves of its profile.
+struct ProfileResult {
+  std::vector<ResultFile> files;  ///< all of these
+  std::string table;  ///< for the user: the functions with most clocks, and what is missing
+};
+/// @param programs in whose names and lines the profile speaks; null: none
+ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* const> programs);
 
 }  // namespace fovea::app

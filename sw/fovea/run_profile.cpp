@@ -2,19 +2,34 @@
 
 namespace fovea::app {
 
-RunProfile::RunProfile(board::Board& board, bool whole_run)
+RunProfile::RunProfile(board::Board& board, bool whole_run,
+                       std::span<const ElfImage* const> programs)
     : board_(board), core_(board.dm365.arm.core()), whole_run_(whole_run) {
-  core_.start_profile();
-  if (!whole_run)
-    board.on_phase = [this](board::Phase p, Picoseconds at) { phase(p, at); };
+  cpu::ClockProfile& profile = core_.start_profile();
+  profile.stacks.set_functions(program_functions(programs));
+  profile.count_stacks_of(whole_run ? kBoot : kFrames);
+  profile.on_interrupt = [this](bool, std::uint64_t cycle) { interrupt(cycle); };
+  board.on_phase = [this](board::Phase p, Picoseconds at) { phase(p, at); };
 }
 
 /// A phase is entered once: after the look-up table the firmware is idle between frames too.
 void RunProfile::phase(board::Phase phase, Picoseconds at) {
+  if (phase == board::Phase::kRemapStart || phase == board::Phase::kRemapEnd)
+    core_.mark_snapshot(at);
   const Section next = phase == board::Phase::kLut ? kLut : phase == board::Phase::kIdle ? kLock : kBoot;
-  if (next <= reached_) return;
+  if (whole_run_ || next <= reached_) return;
   reached_ = next;
   core_.mark_section(at, next);
+}
+
+/// Inputs do not change ahead of the core's time, so the controller's state is that of the boundary.
+void RunProfile::interrupt(std::uint64_t cycle) {
+  if (!core_.profile()->counts_stacks()) return;
+  const periph::Aintc& aintc = board_.dm365.aintc;
+  const auto input = aintc.core().most_urgent();
+  if (!input) return;
+  delays_[board_.dm365.interrupt_source(*input).name].push_back(core_.time(cycle) -
+                                                                aintc.latched_at(*input));
 }
 
 void RunProfile::window(bool open) {
@@ -29,6 +44,10 @@ ProfileData RunProfile::finish(const cpu::Counts& end, const std::string& progra
   data.program = program;
   data.regions = core_.regions().names();
   const cpu::ClockProfile& p = *core_.profile();
+  add_stacks(data, p.stacks);
+  data.masked = p.mask.longest();
+  data.interrupts = delays_;
+  for (const auto& s : p.snapshots()) remaps_[s.at] = s;
   if (whole_run_) {
     data.phases = {{"run", true, p.rows(kBoot)}};
     return data;

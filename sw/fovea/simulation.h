@@ -93,8 +93,7 @@ struct RunResult {
   std::string typed;         ///< what a person typed on the console, as a file for uart0.input
   std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
   std::string registers;  ///< the register log, if requested
-  std::vector<ResultFile> profile;  ///< the files of --profile
-  std::string profile_table;  ///< the functions with most clocks, for the user
+  ProfileResult profile;  ///< with --profile
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
 };
 

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "model/common/check.h"
@@ -63,24 +65,29 @@ struct SourceLines::Program {
     while (dwarf_get_units(dwarf, cu, &cu, nullptr, nullptr, &die, nullptr) == 0)
       if (dwarf_tag(&die) == DW_TAG_compile_unit) f(&die);
   }
+  /// Of the units that were compiled in the folder that most were compiled in: libraries may come from
+  /// elsewhere.
   void find_root() {
-    bool first = true;
+    std::map<std::string, std::vector<fs::path>> folders;
     if (dwarf)
       each_unit([&](Dwarf_Die* unit) {
+        Dwarf_Attribute a;
         const char* const name = dwarf_diename(unit);
-        if (!name) return;
-        const fs::path folder = absolute(unit, name).parent_path();
-        if (first) {
-          root = folder;
-        } else {
-          fs::path common;
-          for (auto a = root.begin(), b = folder.begin();
-               a != root.end() && b != folder.end() && *a == *b; ++a, ++b)
-            common /= *a;
-          root = common;
-        }
-        first = false;
+        const char* const where = dwarf_formstring(dwarf_attr(unit, DW_AT_comp_dir, &a));
+        if (name) folders[where ? where : ""].push_back(absolute(unit, name).parent_path());
       });
+    const auto most = std::max_element(folders.begin(), folders.end(), [](const auto& a, const auto& b) {
+      return a.second.size() < b.second.size();
+    });
+    if (most == folders.end()) return;
+    root = most->second.front();
+    for (const fs::path& folder : most->second) {
+      fs::path common;
+      for (auto a = root.begin(), b = folder.begin(); a != root.end() && b != folder.end() && *a == *b;
+           ++a, ++b)
+        common /= *a;
+      root = common;
+    }
   }
   std::string shown(Dwarf_Die* unit, const char* path) const {
     const fs::path whole = absolute(unit, path);

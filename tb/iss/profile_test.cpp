@@ -300,7 +300,7 @@ TEST(ProfileTest, HandCountedLoop) {
     .ltorg
   )";
   constexpr std::uint32_t at = 0;
-  const Machine::Settings no_waits = {{"cpu.tcm.wait_states", "0"}};
+  const Machine::Settings no_waits = {{"cpu.tcm.wait_states", "0 cycles"}};
   Machine m(no_waits);
   m.core.start_profile();
   m.load(assemble(text, at));

@@ -63,6 +63,7 @@ Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   if (!passes<kCond>(c)) return next(c, i + 1, cycle + 1);
   if constexpr (kLink) c.regs_.r[14] = c.chain_.va + i->at + 4;
   if constexpr (kCounted) ++c.fetch_.current->tally(*i).special;
+  if constexpr (kCounted && kLink) c.follow_call(i, cycle + 3, c.chain_.va + i->imm);
   if constexpr (kNear) {
     ++c.ledger_.counts.redirects;
     const std::intptr_t distance = static_cast<std::int32_t>(i->raw);
@@ -73,12 +74,26 @@ Core::Ops::Next Core::Ops::branch(Core& c, Next i, Cycle cycle) {
   }
 }
 
+/// A branch to another function; its condition is met. imm: as branch().
+template <bool kThumb>
+Core::Ops::Next Core::Ops::branch_away(Core& c, Next i, Cycle cycle) {
+  const std::uint32_t target = c.chain_.va + i->imm;
+  c.follow_tail_call(cycle + 3, target);
+  return jump<kThumb, true, true>(c, i, cycle + 3, target);
+}
+
 template <bool kThumb, bool kLink, bool kCounted>
 Core::Ops::Next Core::Ops::branch_exchange(Core& c, Next i, Cycle cycle) {
   const std::uint32_t target = c.regs_.r[i->rm];
   if constexpr (kLink) {
     const std::uint32_t pc = c.chain_.va + i->at;
     c.regs_.r[14] = kThumb ? (pc + 2) | 1u : pc + 4;
+  }
+  if constexpr (kCounted) {
+    if (kLink)
+      c.follow_call(i, cycle + 3, target);
+    else
+      c.follow_jump(i, cycle + 3, target);
   }
   return exchange<kThumb, kCounted>(c, i, cycle + 3, target);
 }
@@ -92,6 +107,7 @@ template <bool kCounted>
 Core::Ops::Next Core::Ops::thumb_link_suffix(Core& c, Next i, Cycle cycle) {
   const std::uint32_t target = c.regs_.r[14] + i->imm;
   c.regs_.r[14] = (c.chain_.va + i->at + 2) | 1u;
+  if constexpr (kCounted) c.follow_call(i, cycle + 3, target);
   return jump<true, true, kCounted>(c, i, cycle + 3, target & ~1u);
 }
 
@@ -113,6 +129,10 @@ Handler Core::Ops::branch_handler(Instruction& i, Context context) {
   i.imm += i.at + (thumb ? 4u : kPcDelayArm);
   i.flags = static_cast<std::uint16_t>(i.flags & ~kReadsPc);
   if (i.op == Op::kThumbBlPrefix) return &thumb_link_prefix;
+  if (kCounted && context.away) {
+    i.flags = static_cast<std::uint16_t>(i.flags | kAway);
+    return thumb ? &branch_away<true> : &branch_away<false>;
+  }
   const bool near = context.in_line && i.imm < 32;
   if (near) {
     const auto from = static_cast<std::int32_t>(i.at), to = static_cast<std::int32_t>(i.imm);

@@ -9,13 +9,17 @@
 namespace fovea::cpu {
 namespace {
 
-bool conditional_branch(const Instruction& i) { return i.op == Op::kB || i.op == Op::kBl; }
+/// B and BL, but for a branch to another function (Ops::branch_away).
+bool conditional_branch(const Instruction& i) {
+  return (i.op == Op::kB || i.op == Op::kBl) && !(i.flags & kAway);
+}
 
 /// The flow always leaves after these if their condition is met.
 bool leaves(const Instruction& i) {
   switch (i.op) {
     case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlSuffix: return true;
     case Op::kLdm: return i.imm & 0x8000u;
+    case Op::kB: return true;  // to another function
     default: return false;
   }
 }

@@ -3,12 +3,15 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <span>
+#include <functional>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "model/common/units.h"
+#include "model/cpu/core/call_stacks.h"
 #include "model/cpu/core/decoded_line.h"
+#include "model/cpu/core/mask_watch.h"
 #include "model/cpu/core/stats.h"
 
 namespace fovea::cpu {
@@ -68,15 +71,38 @@ class ClockProfile {
   /// The clocks from here on belong to a section. The caller has collected all lines.
   void enter(std::size_t section);
   std::size_t section() const { return section_; }
+  /// The section whose call stacks are counted; before the first instruction.
+  void count_stacks_of(std::size_t section) {
+    stacked_section_ = section;
+    stacks.count(0, section_ == section);
+  }
+  bool counts_stacks() const { return section_ == stacked_section_; }
+  CallStacks stacks;
+  MaskWatch mask;  ///< in the same section
+
+  /// The core's counters at some instants of the run.
+  struct Snapshot {
+    Picoseconds at = 0;
+    std::uint64_t issue = 0, idle = 0;
+    std::array<std::uint64_t, kCauses> stall{};
+  };
+  /// Keeps the counters at the first instruction boundary after t.
+  void snapshot(Picoseconds t) { marks_.push_back({t, kSnapshot}); }
+  const std::vector<Snapshot>& snapshots() const { return snapshots_; }
+  /// An IRQ or FIQ is taken: its vector's instruction begins at the clock.
+  std::function<void(bool fiq, std::uint64_t cycle)> on_interrupt;
   /// A change of section at time t, which takes effect as a mark of the measurement window does.
   void mark(Picoseconds t, std::size_t section) { marks_.push_back({t, section}); }
   bool pending() const { return !marks_.empty(); }
   Picoseconds next_mark() const { return marks_.front().at; }
   bool due(Picoseconds boundary) const { return !marks_.empty() && boundary > marks_.front().at; }
-  std::size_t take_mark() {
-    const std::size_t section = marks_.front().section;
+  /// @return the section that begins; nothing if none does
+  std::optional<std::size_t> take_mark() {
+    const Mark m = marks_.front();
     marks_.pop_front();
-    return section;
+    if (m.section != kSnapshot) return m.section;
+    snapshots_.push_back({m.at, counts_.issue, counts_.idle, counts_.stall});
+    return std::nullopt;
   }
 
   /// The rows of a section with clocks, by address, cause, region and culprit; sections without
@@ -100,6 +126,7 @@ class ClockProfile {
     Picoseconds at;
     std::size_t section;
   };
+  static constexpr std::size_t kSnapshot = ~std::size_t{0};
   static constexpr std::uint64_t stall_key(std::uint32_t pc, Cause cause, std::size_t region) {
     return std::uint64_t{pc} << 16 | index(cause) << 8 | region;
   }
@@ -111,9 +138,10 @@ class ClockProfile {
   const Counts& counts_;
   bool open_ = false;
   std::uint64_t issue_seen_ = 0, instructions_seen_ = 0;
-  std::size_t section_ = 0;
+  std::size_t section_ = 0, stacked_section_ = 0;
   std::vector<Section> sections_;
   std::deque<Mark> marks_;
+  std::vector<Snapshot> snapshots_;
   // What was found last in the current section, by address. The maps never move their elements.
   static constexpr std::size_t kFound = 1024;
   struct FoundCell {

@@ -151,6 +151,11 @@ class Core : public Background {
     own_profile_->mark(t, section);
     interface_.attention = true;
   }
+  /// Lets the profile keep the counters at time t; as mark_window().
+  void mark_snapshot(Picoseconds t) {
+    own_profile_->snapshot(t);
+    interface_.attention = true;
+  }
   /// Completes the profile. The core is between two instructions, asleep, or has failed.
   /// @param end the counters up to which clocks count, as of counts_asleep()
   void finish_profile(const Counts& end);
@@ -260,10 +265,20 @@ class Core : public Background {
   void start_counted(const Instruction* i);
   [[gnu::noinline]] void execute_one_counted(const Instruction& i);
   void enter_section(std::size_t section);
+  std::uint64_t awake() const { return ledger_.cycle - ledger_.counts.idle; }
   void take_marks(Picoseconds boundary);
   bool marks_pending() const {
     return window_.pending() || (ledger_.profile && ledger_.profile->pending());
   }
+  // For the profile's call stacks; each in a handler, with the clock at the end of its record.
+  [[gnu::noinline]] void follow_call(const Instruction* i, std::uint64_t cycle,
+                                     std::uint32_t target);
+  [[gnu::noinline]] void follow_jump(const Instruction* i, std::uint64_t cycle,
+                                     std::uint32_t target);
+  [[gnu::noinline]] void follow_tail_call(std::uint64_t cycle, std::uint32_t target);
+  [[gnu::noinline]] void follow_pop(const Instruction* i, std::uint64_t cycle, std::uint32_t target,
+                                    std::uint32_t base);
+  [[gnu::noinline]] void follow_branch(std::uint32_t target);
   Picoseconds next_mark() const {
     const Picoseconds window = window_.pending() ? window_.at() : kNever;
     return ledger_.profile && ledger_.profile->pending()
@@ -300,6 +315,11 @@ class Core : public Background {
   void execute(const Instruction& i);
   void execute_rare(const Instruction& i);
   void branch_to(std::uint32_t target) {
+    if (ledger_.profile) [[unlikely]]
+      follow_branch(target);
+    go_to(target);
+  }
+  void go_to(std::uint32_t target) {
     next_pc_ = target;
     branched_ = true;
     failure_.jumped_from = regs_.pc;
@@ -438,6 +458,7 @@ class Core : public Background {
   std::uint64_t collected_ = 0;  // clock at which the tallies were last collected
   std::uint32_t next_pc_ = 0;
   bool branched_ = false;  // the current instruction set next_pc_
+  bool exception_return_ = false;  // a branch that follows restores the mode
   bool aborted_ = false;   // an access of the current instruction failed
   Scoreboard scoreboard_;
   AccessLog log_;

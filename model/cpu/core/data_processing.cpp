@@ -121,6 +121,7 @@ void Core::data_processing(const Instruction& decoded) {
     spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);
     if ((i.flags & kSetFlags) && !(i.flags & kThumbInsn)) {
       set_cpsr(regs_.spsr());
+      exception_return_ = true;
       branch_to(value & ((regs_.cpsr & 0x20u) ? ~1u : ~3u));
       return;
     }

@@ -22,7 +22,8 @@ struct RecordContext {
   enum class Check : std::uint8_t { kNone, kYoungest, kAll } check = Check::kAll;
   bool track = true;     // a later record may have to wait for its result
   bool in_line = false;  // the record belongs to a line that holds all its records
-  bool counted = false;  // the handlers keep the tallies of their line
+  bool counted = false;  // the handlers keep the tallies of their line, and follow calls
+  bool away = false;     // the same, and a branch leads to another function
 };
 
 /// Holds one more record than a line: the one after the last leads to the next line, and its
@@ -58,7 +59,8 @@ struct DecodedLine {
                       bool shifted_cycle);
   /// Keeps only the record of an instruction that belongs to no line, and ends the chain behind it.
   /// @return the record
-  const Instruction* hold_one(const Instruction& decoded, std::uint32_t pc, bool shifted_cycle);
+  const Instruction* hold_one(const Instruction& decoded, std::uint32_t pc, RecordContext context,
+                              bool shifted_cycle);
 };
 
 /// Decodes the instruction at an index of a line.

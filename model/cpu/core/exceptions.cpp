@@ -69,6 +69,7 @@ void Core::reset(std::uint32_t entry, Picoseconds now) {
   bus_.reset();
   ledger_.cycle = interface_.clock.running() ? interface_.clock.edge_after(now) : 0;
   interface_.attention = true;
+  if (ledger_.profile) ledger_.profile->stacks.start(ledger_.cycle, regs_.pc);
   forget_translations();
 }
 
@@ -84,6 +85,7 @@ void Core::set_cpsr(std::uint32_t value) {
   const bool was_privileged = regs_.privileged();
   regs_.switch_mode(value);
   regs_.cpsr = value;
+  if (ledger_.profile) ledger_.profile->mask.set(value & kIrqMask, awake(), regs_.pc);
   if (was_privileged != regs_.privileged()) forget_translations();
   interface_.attention = true;  // interrupts may have been unmasked
 }
@@ -108,6 +110,12 @@ void Core::note_failure(Exception e) {
   throw GuestFailure(jump + failure_.by + " with no handler: its vector faults again");
 }
 
+namespace {
+std::uint32_t entries_at(std::uint32_t control) {
+  return (control & kHighVectors) ? 0xFFFF0000u : 0u;
+}
+}  // namespace
+
 void Core::take(Exception e, std::uint32_t return_address) {
   struct Entry {
     std::uint32_t vector;
@@ -118,7 +126,14 @@ void Core::take(Exception e, std::uint32_t return_address) {
                                 {0x10, CpuMode::kAbt}, {0x18, CpuMode::kIrq},
                                 {0x1C, CpuMode::kFiq}};
   note_failure(e);
-  if (ledger_.profile) ledger_.profile->begin();
+  if (ledger_.profile) {
+    ledger_.profile->begin();
+    // An SWI and an undefined instruction are over; the others come again, or were not executed.
+    const bool over = e == Exception::kSwi || e == Exception::kUndefined;
+    ledger_.profile->stacks.exception(
+        ledger_.cycle, entries_at(system_.control) + kEntries[static_cast<unsigned>(e)].vector,
+        over ? return_address : regs_.pc, regs_.r[13]);
+  }
   const Entry& entry = kEntries[static_cast<unsigned>(e)];
   const std::uint32_t saved = regs_.cpsr;
   const bool was_privileged = regs_.privileged();
@@ -126,8 +141,9 @@ void Core::take(Exception e, std::uint32_t return_address) {
   regs_.spsr() = saved;
   regs_.cpsr = (regs_.cpsr & ~kThumbState) | kIrqMask;
   if (e == Exception::kFiq || e == Exception::kReset) regs_.cpsr |= kFiqMask;
+  if (ledger_.profile) ledger_.profile->mask.set(true, awake(), regs_.pc);
   regs_.r[14] = return_address;
-  branch_to(entry.vector | ((system_.control & kHighVectors) ? 0xFFFF0000u : 0u));
+  go_to(entry.vector | entries_at(system_.control));
   failure_.jumped_to = kNoJump;
   fetch_.branched = true;
   if (!was_privileged) forget_translations();

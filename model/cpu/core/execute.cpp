@@ -102,14 +102,48 @@ ClockProfile& Core::start_profile() {
 
 void Core::finish_profile(const Counts& end) {
   ClockProfile& p = *own_profile_;
-  if (end.idle > ledger_.counts.idle) p.slept(WakeEvent::kOther, end.idle - ledger_.counts.idle);
+  const std::uint64_t asleep =
+      end.idle > ledger_.counts.idle ? end.idle - ledger_.counts.idle : 0;
+  if (asleep) p.slept(WakeEvent::kOther, asleep);
   enter_section(p.section());
+  p.stacks.count(ledger_.cycle + asleep, false);
+  p.mask.count(false, awake(), regs_.pc);
+}
+
+void Core::follow_call(const Instruction* i, std::uint64_t cycle, std::uint32_t target) {
+  ledger_.profile->stacks.call(cycle, chain_.va + i->at, target & ~1u, regs_.r[14] & ~1u,
+                               regs_.r[13]);
+}
+/// `mov lr, pc` before a branch makes a call of it.
+void Core::follow_jump(const Instruction* i, std::uint64_t cycle, std::uint32_t target) {
+  const std::uint32_t next = chain_.va + i->at + ((i->flags & kThumbInsn) ? 2u : 4u);
+  if ((regs_.r[14] & ~1u) == next) return follow_call(i, cycle, target);
+  ledger_.profile->stacks.jump(cycle, target & ~1u, regs_.r[13]);
+}
+void Core::follow_tail_call(std::uint64_t cycle, std::uint32_t target) {
+  ledger_.profile->stacks.tail_call(cycle, target);
+}
+void Core::follow_pop(const Instruction* i, std::uint64_t cycle, std::uint32_t target,
+                      std::uint32_t base) {
+  ledger_.profile->stacks.jump(cycle, target & ~1u, regs_.r[13]);
+  if (i->rn == 13) ledger_.profile->stacks.reached(base);
+}
+/// A branch of an instruction that is executed on its own.
+void Core::follow_branch(std::uint32_t target) {
+  CallStacks& stacks = ledger_.profile->stacks;
+  const std::uint32_t next = regs_.pc + (regs_.thumb() ? 2u : 4u);
+  if (std::exchange(exception_return_, false))
+    stacks.exception_return(ledger_.cycle, target, regs_.r[13]);
+  else if ((regs_.r[14] & ~1u) == next || (regs_.r[14] & ~1u) == regs_.pc + 4)
+    stacks.call(ledger_.cycle, regs_.pc, target, regs_.r[14] & ~1u, regs_.r[13]);
+  else
+    stacks.jump(ledger_.cycle, target & ~1u, regs_.r[13]);
 }
 
 void Core::take_marks(Picoseconds boundary) {
   while (window_.due(boundary)) window_.take(ledger_.counts, ledger_.cycle);
   while (ledger_.profile && ledger_.profile->due(boundary))
-    enter_section(ledger_.profile->take_mark());
+    if (const auto section = ledger_.profile->take_mark()) enter_section(*section);
 }
 
 /// The tallies that are counted up to here belong to the section that ends.
@@ -119,6 +153,8 @@ void Core::enter_section(std::size_t section) {
   fetch_.collect_tallies();
   collected_ = ledger_.cycle;
   ledger_.profile->enter(section);
+  ledger_.profile->stacks.count(ledger_.cycle, ledger_.profile->counts_stacks());
+  ledger_.profile->mask.count(ledger_.profile->counts_stacks(), awake(), regs_.pc);
   if (within) ledger_.profile->begin();
 }
 
@@ -170,6 +206,8 @@ bool Core::take_interrupt(Picoseconds at) {
   if (!fiq && !(!(regs_.cpsr & kIrqMask) && irq_.at(at))) return false;
   take(fiq ? Exception::kFiq : Exception::kIrq, regs_.pc + 4);
   enter_exception();
+  if (ledger_.profile && ledger_.profile->on_interrupt)
+    ledger_.profile->on_interrupt(fiq, ledger_.cycle);
   failure_.exceptions = 0;
   return true;
 }

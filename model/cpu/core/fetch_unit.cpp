@@ -50,6 +50,16 @@ void FetchUnit::collect_tallies() {
     for (auto& d : *lines) profile_->collect(d);
 }
 
+RecordContext FetchUnit::context(const Instruction& decoded, std::uint32_t pc) const {
+  RecordContext context;
+  if (!profile_) return context;
+  context.counted = true;
+  const std::uint32_t ahead = (decoded.flags & kThumbInsn) ? 4 : 8;
+  context.away =
+      decoded.op == Op::kB && !profile_->stacks.same_function(pc, pc + ahead + decoded.imm);
+  return context;
+}
+
 void FetchUnit::use_new_settings() {
   process_ = registers_.process;
   if (control_ != registers_.control) buffer_pa_ = 1;
@@ -160,7 +170,11 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
     i = decode_at(bytes, at, target.thumb);
     RecordContext context = ram ? RecordContext{} : record_context(d, at, bytes, target.thumb);
     context.in_line = true;
-    context.counted = profile_;
+    if (profile_) {
+      const RecordContext counting = this->context(i, target.pc);
+      context.counted = counting.counted;
+      context.away = counting.away;
+    }
     d.prepare_record(Instruction(i), at, context, shifted_cycle_);
   }
   if (current && current->va + 32 == line) current->next = &d;
@@ -175,8 +189,8 @@ const Instruction* FetchUnit::decode_uncached(std::uint32_t pa, const FetchTarge
   leave_line();
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(words_);
   log_.line_changes(uncached_);
-  return uncached_.hold_one(decode_at(bytes, (pa & 15u) >> target.shift(), target.thumb),
-                            target.pc, shifted_cycle_);
+  const Instruction decoded = decode_at(bytes, (pa & 15u) >> target.shift(), target.thumb);
+  return uncached_.hold_one(decoded, target.pc, context(decoded, target.pc), shifted_cycle_);
 }
 
 void FetchUnit::invalidate_all() {

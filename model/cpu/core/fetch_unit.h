@@ -102,6 +102,8 @@ class FetchUnit {
     current = &no_line_;
   }
   void collect_tallies();
+  /// What handlers of an instruction at `pc` must do for a profile.
+  RecordContext context(const Instruction& decoded, std::uint32_t pc) const;
   DecodedLine& ram_line(std::uint32_t offset) { return ram_decoded_[offset >> 5]; }
   DecodedLine& cache_line(unsigned index) { return decoded_[index]; }
   /// The last line found is in internal RAM; current_ram_offset() is its offset there.

@@ -195,6 +195,8 @@ struct Core::Ops {
   static Next count_zeros(Core& c, Next i, Cycle cycle);
   template <unsigned kCond, bool kLink, bool kThumb, bool kNear, bool kCounted>
   static Next branch(Core& c, Next i, Cycle cycle);
+  template <bool kThumb>
+  static Next branch_away(Core& c, Next i, Cycle cycle);
   template <bool kThumb, bool kLink, bool kCounted>
   static Next branch_exchange(Core& c, Next i, Cycle cycle);
   static Next thumb_link_prefix(Core& c, Next i, Cycle cycle);

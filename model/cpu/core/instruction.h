@@ -33,6 +33,7 @@ enum InsnFlags : std::uint16_t {
   kAlignPc = 1 << 10,   // Thumb literal: the base is pc & ~3
   kImmCarry = 1 << 11,  // a rotated immediate sets the carry flag
   kUnpredictable = 1 << 12,
+  kAway = 1 << 13,      // prepared records: a branch to another function, for a profile
 };
 
 class Core;

@@ -289,6 +289,7 @@ Core::Ops::Next Core::Ops::load_block(Core& c, Next i, Cycle cycle) {
   }
   if (i->flags & kWriteBack)
     r[i->rn] = base + 4u * static_cast<std::uint32_t>(static_cast<std::int8_t>(i->rs));
+  if constexpr (kPc && kCounted) c.follow_pop(i, cycle + i->amount + 4, target, base);
   if constexpr (kPc) return exchange<kThumb, kCounted>(c, i, cycle + i->amount + 4, target);
   if (i->amount == 1) return next(c, i + 1, cycle + 2);
   cycle += i->amount;

@@ -127,12 +127,12 @@ void DecodedLine::clear(bool thumb, bool counted) {
 }
 
 const Instruction* DecodedLine::hold_one(const Instruction& decoded, std::uint32_t pc,
-                                         bool shifted_cycle) {
+                                         RecordContext context, bool shifted_cycle) {
   const unsigned size = (decoded.flags & kThumbInsn) ? 2 : 4;
   va = pc & ~31u;
   Instruction* const i = &records[(pc & 31u) / size];
   i[0] = decoded;
-  prepare(i[0], pc & 31u, RecordContext{}, shifted_cycle);
+  prepare(i[0], pc & 31u, context, shifted_cycle);
   i[1] = Instruction{};
   i[1].at = static_cast<std::uint8_t>(i->at + size);
   i[1].handler = &Core::Ops::leave;
@@ -187,7 +187,7 @@ void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cy
         body = Ops::block_body(i, context);
         break;
       case Op::kB: case Op::kBl:
-        own_condition = true;
+        own_condition = !context.away;
         [[fallthrough]];
       case Op::kBxReg: case Op::kBlxReg: case Op::kThumbBlPrefix: case Op::kThumbBlSuffix:
         body = Ops::branch_body(i, context);
@@ -219,7 +219,8 @@ Core::Ops::Next Core::Ops::warned(Core& c, Next i, Cycle cycle) {
   Instruction own = thumb ? decode_thumb(static_cast<std::uint16_t>(i->raw)) : decode_arm(i->raw);
   own.flags = static_cast<std::uint16_t>(own.flags & ~kUnpredictable);
   c.log_.line_changes(c.unpredictable_);
-  const Next record = c.unpredictable_.hold_one(own, c.regs_.pc, c.shifted_cycle_);
+  const Next record =
+      c.unpredictable_.hold_one(own, c.regs_.pc, c.fetch_.context(own, c.regs_.pc), c.shifted_cycle_);
   c.chain_.stop = 0;  // execute one record, then return to run()
   c.chain_.first = reinterpret_cast<std::intptr_t>(record);
   c.count_alone(own, [&] {

@@ -51,6 +51,11 @@ enum class WakeEvent : std::uint8_t { kDma, kEngine, kCapture, kDisplay, kTimer,
 inline constexpr std::size_t kWakeEvents = static_cast<std::size_t>(WakeEvent::kCount);
 inline constexpr std::array<const char*, kWakeEvents> kWakeNames = {
     "dma", "engine", "capture", "display", "timer", "other"};
+constexpr const char* wake_sentence(WakeEvent e) {
+  constexpr std::array<const char*, kWakeEvents> kBlocks = {
+      "EDMA", "remap engine", "video front end", "display", "timers", "other blocks"};
+  return kBlocks[static_cast<std::size_t>(e)];
+}
 
 /// Culprits of a stall: those of a bus transaction, and the core itself (interlocks, wait states,
 /// waiting for an edge of the AHB clock, the path from the AHB into the core).

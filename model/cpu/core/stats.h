@@ -124,6 +124,7 @@ struct CoreStats : StatGroup {
   FOVEA_CPU_STAT(cycles, "cycles", "cycles", cycles, "core clocks of the window");
   FOVEA_CPU_STAT(issue, "issue", "cycles", issue, "clocks in which instructions issue");
   FOVEA_CPU_STAT(idle, "idle", "cycles", idle, "clocks in wait-for-interrupt");
+  std::vector<std::unique_ptr<Formula>> idle_by = idle_by_event();
   std::vector<std::unique_ptr<Formula>> stalls = stalls_by_cause();
   FOVEA_CPU_STAT(icache_accesses, "icache.accesses", "1", icache_accesses(),
                  "words looked up in the I-cache, with two dropped behind each change of flow");
@@ -172,6 +173,19 @@ struct CoreStats : StatGroup {
   CoreStats() : StatGroup("cpu") { add_stalls_by_culprit(); }
 
  private:
+  std::vector<std::unique_ptr<Formula>> idle_by_event() {
+    std::vector<std::unique_ptr<Formula>> out;
+    for (std::size_t k = 0; k < kWakeEvents; ++k) {
+      const std::string event = kWakeNames[k];
+      out.push_back(std::make_unique<Formula>(
+          *this, "idle." + event, "cycles",
+          event == "other" ? "clocks of cpu.idle that any other interrupt, a reset or nothing ended"
+                           : "clocks of cpu.idle that ended with an interrupt of the " +
+                                 std::string(wake_sentence(static_cast<WakeEvent>(k))),
+          [this, k] { return V(to.idle_by[k] - from.idle_by[k]); }));
+    }
+    return out;
+  }
   std::vector<std::unique_ptr<Formula>> stalls_by_cause() {
     std::vector<std::unique_ptr<Formula>> out;
     for (const CauseInfo& info : kCauseTable)

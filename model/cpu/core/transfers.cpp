@@ -134,6 +134,7 @@ void Core::load_multiple(const Instruction& i) {
   spend(4);
   if (!(i.flags & kUserBank)) return interwork(target);
   set_cpsr(regs_.spsr());
+  exception_return_ = true;
   branch_to(target & (regs_.thumb() ? ~1u : ~3u));
 }
 

@@ -63,9 +63,20 @@ void AintcCore::remap() {
 
 std::uint32_t AintcCore::entry(bool fiq) const {
   const bool raw = fiq ? regs.intctl.feraw.get() != 0 : regs.intctl.ieraw.get() != 0;
-  std::uint64_t candidates = (raw ? pending_ : active()) & (fiq ? fiq_map_ : ~fiq_map_);
+  const std::uint64_t candidates = (raw ? pending_ : active()) & (fiq ? fiq_map_ : ~fiq_map_);
   const std::uint32_t base = regs.eabase.base.get() << 3;
   if (!candidates) return base;
+  return base + (first_of(candidates) + 1) * (4u << regs.eabase.size.get());
+}
+
+std::optional<unsigned> AintcCore::most_urgent() const {
+  const std::uint64_t fiqs = active() & fiq_map_, irqs = active() & ~fiq_map_;
+  if (!fiqs && !irqs) return std::nullopt;
+  return first_of(fiqs ? fiqs : irqs);
+}
+
+/// The number with the most urgent priority; candidates must not be 0.
+unsigned AintcCore::first_of(std::uint64_t candidates) const {
   unsigned best = 0, best_priority = 8;
   for (; candidates; candidates &= candidates - 1) {
     const unsigned n = static_cast<unsigned>(std::countr_zero(candidates));
@@ -74,7 +85,7 @@ std::uint32_t AintcCore::entry(bool fiq) const {
       best_priority = priority_[n];
     }
   }
-  return base + (best + 1) * (4u << regs.eabase.size.get());
+  return best;
 }
 
 }  // namespace fovea::periph

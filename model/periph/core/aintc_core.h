@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "model/common/regbank.h"
 
@@ -67,6 +68,8 @@ class AintcCore {
   void set_sources(std::uint64_t levels);
   bool irq() const { return (active() & ~fiq_map_) != 0; }
   bool fiq() const { return (active() & fiq_map_) != 0; }
+  /// The input that drives an output and is served first, FIQs before IRQs; nothing: none does.
+  std::optional<unsigned> most_urgent() const;
   std::uint64_t pending() const { return pending_; }
 
  private:
@@ -79,6 +82,7 @@ class AintcCore {
   void enable_written();
   void remap();
   std::uint32_t entry(bool fiq) const;
+  unsigned first_of(std::uint64_t candidates) const;
 
   bool level_capture_;
   std::uint64_t levels_ = 0, pending_ = 0;

@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# `--profile` of the camera's firmware: it changes no figure, adds up to cpu.cycles, is the same with both
+# synchronisations, names the function that does the work, and callgrind_annotate reads it.
+# Usage: profile.sh FOVEA EXPERIMENT EXEC_PROGRAMS OUT
+set -euo pipefail
+fovea=$1 experiment=$2 programs=$3 out=$4
+mkdir -p "$out"
+run() {  # NAME OPTION...
+  local name=$1
+  shift
+  "$fovea" run "$experiment" -s firmware.kernel=plain -s run.frames=2 -s video.width=128 -s video.height=64 \
+    -s camera.stamp=false --no-frames "$@" -o "$out/$name" >"$out/$name.out" 2>"$out/$name.err" ||
+    { echo "$name: status $?"; cat "$out/$name.err"; exit 1; }
+}
+run off
+run on --profile
+run strict --profile --sync=strict
+run staged --profile -s firmware.kernel=staged
+cmp "$out/off/stats.json" "$out/on/stats.json"
+for file in stats.json frames.csv timeline.csv stalls.csv uart.log; do cmp "$out/off/$file" "$out/on/$file"; done
+for file in profile.csv profile.folded profile.callgrind profile.txt interrupts.csv frame_parts.csv; do
+  cmp "$out/on/$file" "$out/strict/$file"
+  [ ! -e "$out/off/$file" ] || { echo "$file without --profile"; exit 1; }
+done
+
+python3 - "$out" <<'PYTHON'
+import collections, csv, json, pathlib, sys
+out = pathlib.Path(sys.argv[1])
+
+def check(name):
+    folder = out / name
+    stats = {k: v["value"] for k, v in json.loads((folder / "stats.json").read_text()).items()
+             if isinstance(v, dict) and "value" in v}
+    rows = list(csv.DictReader((folder / "profile.csv").open()))
+    window = [r for r in rows if r["phase"] == "frames"]
+    def total(which, what="clocks"):
+        return sum(int(r[what]) for r in which)
+    def by(*keys):
+        sums = collections.Counter()
+        for r in window:
+            sums[tuple(r[k] for k in keys)] += int(r["clocks"])
+        return sums
+    assert [p for p in dict.fromkeys(r["phase"] for r in rows)] == ["boot", "lut", "lock", "frames"]
+    assert all(int(r["clocks"]) > 0 for r in rows)
+    assert total(window) == stats["cpu.cycles"], (total(window), stats["cpu.cycles"])
+    for (cause,), clocks in by("cause").items():
+        figure = "cpu.issue" if cause == "issue" else "cpu." + cause if cause.startswith("idle.") \
+            else "cpu.stall." + cause
+        assert clocks == stats[figure], (cause, clocks, stats[figure])
+    idle = sum(v for k, v in stats.items() if k.startswith("cpu.idle."))
+    assert idle == stats["cpu.idle"] and stats["cpu.idle.capture"] + stats["cpu.idle.display"] > 0
+    stalls = collections.Counter()
+    for r in csv.DictReader((folder / "stalls.csv").open()):
+        stalls[r["cause"], r["region"]] += int(r["cycles"])
+    for (cause, region), clocks in by("cause", "region").items():
+        if region:
+            assert clocks == stalls[cause, region], (cause, region, clocks)
+    assert 0 <= stats["cpu.instructions"] - total(window, "instructions") <= 1
+    folded = (folder / "profile.folded").read_text().splitlines()
+    assert sum(int(line.rsplit(" ", 1)[1]) for line in folded) == stats["cpu.cycles"]
+    # A frame's parts are its latency.
+    parts = collections.Counter()
+    for r in csv.DictReader((folder / "frame_parts.csv").open()):
+        parts[r["frame"]] += round(float(r["time_ns"]) * 1000)
+    frames = list(csv.DictReader((folder / "frames.csv").open()))
+    assert len(parts) == len(frames) == 2
+    for f in frames:
+        latency = round(float(f["display_start_ns"]) * 1000) - round(float(f["capture_start_ns"]) * 1000)
+        assert parts[f["frame"]] == latency, (f["frame"], parts[f["frame"]], latency)
+    return stats, rows, folded
+
+stats, rows, folded = check("on")
+remap = sum(int(r["instructions"]) for r in rows
+            if r["phase"] == "frames" and r["function"] == "remap_plain")
+pairs = 128 * 64 // 2
+assert remap > 2 * 10 * pairs, "the remap kernel executes more than ten instructions for each pair"
+assert any(r["file"].endswith("kernels/remap_plain.c") and int(r["line"]) > 0 for r in rows)
+assert any(";remap_plain " in line for line in folded), folded
+assert any(r["phase"] == "lut" and r["function"].startswith("__") for r in rows), "libgcc's functions"
+stats, rows, folded = check("staged")
+assert stats["cpu.idle.dma"] > 0, "the kernel waits for the EDMA"
+PYTHON
+
+callgrind_annotate --show=Clocks "$out/on/profile.callgrind" >"$out/annotated"
+total=$(grep -o '"cpu.cycles": {"value": [0-9]*' "$out/on/stats.json" | sed 's/.*: //')
+tr -d , <"$out/annotated" | grep -qE "^ *$total \(100.0%\) +PROGRAM TOTALS"
+tr -d , <"$out/annotated" | grep -q 'remap_plain.c:remap_plain'
+grep -q 'remap_plain' "$out/on.out"
+grep -q '^  frames ' "$out/on/profile.txt"
+
+# A program of `fovea exec`, with and without a result folder.
+"$fovea" exec --profile -o "$out/exec" "$programs/registers.elf" >/dev/null 2>"$out/exec.err"
+grep -q '_start' "$out/exec.err"
+clocks=$(awk -F, 'NR > 1 { n += $8 } END { print n }' "$out/exec/profile.csv")
+[ "$clocks" = "$(grep -o '"cpu.cycles": {"value": [0-9]*' "$out/exec/stats.json" | sed 's/.*: //')" ]
+"$fovea" exec --profile --fast-memory "$programs/heap_arm_O2.elf" 2>&1 >/dev/null | grep -q ' %  '

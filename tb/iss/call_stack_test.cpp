@@ -1,0 +1,366 @@
+// Call stacks of small target programs: calls and returns, tail calls, long jumps, two tasks, nested
+// interrupts. Each program is checked in full: every clock of the run is in one stack.
+#include <map>
+#include <set>
+
+#include "tb/iss/machine.h"
+#include "tb/iss/vectors.h"
+
+namespace fovea::cpu::test {
+namespace {
+
+/// A program whose functions begin at the labels called f_NAME, and end at the next one.
+struct Run {
+  Machine m;
+  std::map<std::uint32_t, std::string> names;
+  std::map<std::string, std::uint64_t> clocks;  ///< by "a;b;c"
+
+  explicit Run(const std::string& text, std::function<void(Machine&)> prepare = {}) {
+    const Program p = assemble(text, 0);
+    std::vector<CallStacks::Function> functions;
+    for (const auto& [name, address] : p.symbols)
+      if (name.starts_with("f_")) {
+        names[address] = name.substr(2);
+      }
+    for (auto f = names.begin(); f != names.end(); ++f)
+      functions.push_back({f->first, std::next(f) == names.end()
+                                         ? static_cast<std::uint32_t>(p.bytes.size())
+                                         : std::next(f)->first});
+    ClockProfile& profile = m.core.start_profile();
+    profile.stacks.set_functions(functions);
+    if (prepare) prepare(m);
+    m.load(p);
+    m.run();
+    Counts end = m.core.counts();
+    m.core.finish_profile(end);
+    std::uint64_t all = 0;
+    for (const CallStacks::Path& path : profile.stacks.paths()) {
+      std::string text_of;
+      for (const std::uint32_t f : path.functions)
+        text_of += (text_of.empty() ? "" : ";") + (names.contains(f) ? names[f] : std::to_string(f));
+      clocks[text_of] += path.clocks;
+      all += path.clocks;
+    }
+    EXPECT_EQ(all, profile.clocks(0)) << "every clock is in one stack";
+    EXPECT_EQ(all, m.core.clock_count() - 1);
+  }
+  std::set<std::string> stacks() const {
+    std::set<std::string> out;
+    for (const auto& [stack, n] : clocks) out.insert(stack);
+    return out;
+  }
+  const CallStacks& tree() const { return m.core.profile()->stacks; }
+};
+
+using Stacks = std::set<std::string>;
+
+TEST(CallStackTest, CallsAndReturns) {
+  const Run r(R"(
+  f_main:
+    mov sp, #0x4000
+    bl f_a
+    bl f_b
+    adr r0, f_thumb
+    add r0, r0, #1
+    mov lr, pc
+    bx r0
+    svc #2
+  f_a:
+    push {r4, lr}
+    bl f_leaf
+    bl f_b
+    pop {r4, pc}
+  f_b:
+    push {lr}
+    mov lr, pc
+    ldr pc, =f_leaf
+    ldr pc, [sp], #4
+    .ltorg
+  f_leaf:
+    mov r1, #10
+  1: subs r1, r1, #1
+    bne 1b
+    mov pc, lr
+    .thumb
+  f_thumb:
+    push {r4, lr}
+    bl f_small
+    pop {r4, pc}
+    .balign 4
+  f_small:
+    bx lr
+    .arm
+  )");
+  EXPECT_EQ(r.stacks(), (Stacks{"main", "main;a", "main;a;leaf", "main;a;b", "main;a;b;leaf", "main;b",
+                                "main;b;leaf", "main;thumb", "main;thumb;small"}));
+  EXPECT_EQ(r.clocks.at("main;b;leaf"), r.clocks.at("main;a;b;leaf"));
+  std::uint64_t calls = 0;
+  for (const auto& c : r.tree().calls()) {
+    calls += c.count;
+    if (r.names.at(c.to) == "a")
+      EXPECT_EQ(c.clocks, r.clocks.at("main;a") + r.clocks.at("main;a;leaf") + r.clocks.at("main;a;b") +
+                              r.clocks.at("main;a;b;leaf"));
+  }
+  EXPECT_EQ(calls, 8u);
+}
+
+TEST(CallStackTest, RecursionCountsOnce) {
+  const Run r(R"(
+  f_main:
+    mov sp, #0x4000
+    mov r0, #4
+    bl f_down
+    svc #2
+  f_down:
+    push {r4, lr}
+    subs r0, r0, #1
+    blne f_down
+    pop {r4, pc}
+  )");
+  EXPECT_EQ(r.stacks(), (Stacks{"main", "main;down", "main;down;down", "main;down;down;down",
+                                "main;down;down;down;down"}));
+  std::uint64_t all = 0;
+  for (const auto& [stack, n] : r.clocks) all += stack == "main" ? 0 : n;
+  for (const auto& c : r.tree().calls()) {
+    EXPECT_EQ(c.count, c.clocks == all ? 1u : 3u);
+    EXPECT_EQ(c.clocks, c.count == 1 ? all : all - r.clocks.at("main;down"));
+  }
+}
+
+/// A branch, and a branch to a register, out of a function: the callee returns for its caller.
+TEST(CallStackTest, TailCalls) {
+  const Run r(R"(
+  f_main:
+    mov sp, #0x4000
+    mov r5, #3
+  1: bl f_first
+    subs r5, r5, #1
+    bne 1b
+    svc #2
+  f_first:
+    push {r4, lr}
+    bl f_leaf
+    pop {r4, lr}
+    cmp r5, #2
+    beq f_second
+    ldr r3, =f_third
+    bx r3
+    .ltorg
+  f_second:
+    push {r4, lr}
+    bl f_leaf
+    pop {r4, pc}
+  f_third:
+    b f_leaf
+  f_leaf:
+    bx lr
+  )");
+  EXPECT_EQ(r.stacks(), (Stacks{"main", "main;first", "main;first;leaf", "main;second",
+                                "main;second;leaf", "main;third", "main;leaf"}));
+}
+
+/// A table of cases inside a function is no call.
+TEST(CallStackTest, TablesOfCases) {
+  const Run r(R"(
+  f_main:
+    mov sp, #0x4000
+    mov r0, #1
+    bl f_choose
+    mov r0, #0
+    bl f_choose
+    svc #2
+  f_choose:
+    push {r4, lr}
+    cmp r0, #1
+    ldrls pc, [pc, r0, lsl #2]
+    nop
+    .word 1f, 2f
+  1: mov r1, #1
+    pop {r4, pc}
+  2: bl f_leaf
+    pop {r4, pc}
+  f_leaf:
+    bx lr
+  )");
+  EXPECT_EQ(r.stacks(), (Stacks{"main", "main;choose", "main;choose;leaf"}));
+}
+
+/// From three calls deep back into the function that called setjmp, twice.
+TEST(CallStackTest, LongJump) {
+  const Run r(R"(
+  f_main:
+    mov sp, #0x4000
+    bl f_outer
+    bl f_leaf
+    svc #2
+  f_outer:
+    push {r4, lr}
+    sub sp, sp, #8
+    mov r6, #0x3000
+    bl f_setjmp
+    cmp r0, #2
+    bge 1f
+    add r4, r0, #1
+    bl f_middle
+  1: bl f_leaf
+    add sp, sp, #8
+    pop {r4, pc}
+  f_middle:
+    push {r4, lr}
+    bl f_inner
+    pop {r4, pc}
+  f_inner:
+    push {r4, lr}
+    mov r0, r4
+    bl f_longjmp
+  f_setjmp:
+    str sp, [r6]
+    str lr, [r6, #4]
+    mov r0, #0
+    bx lr
+  f_longjmp:
+    ldr sp, [r6]
+    ldr pc, [r6, #4]
+  f_leaf:
+    bx lr
+  )");
+  EXPECT_EQ(r.stacks(),
+            (Stacks{"main", "main;outer", "main;outer;setjmp", "main;outer;middle",
+                    "main;outer;middle;inner", "main;outer;middle;inner;longjmp", "main;outer;leaf",
+                    "main;leaf"}));
+}
+
+/// Two tasks with stacks of 256 bytes side by side hand over to each other from two calls deep.
+TEST(CallStackTest, TwoTasks) {
+  const Run r(R"(
+    .equ other, 0x3000
+  f_main:
+    mov sp, #0x4000
+    ldr r0, =other
+    ldr r1, =0x4100 - 40
+    str r1, [r0]
+    ldr r2, =f_second
+    str r2, [r1, #36]
+    mov r5, #6
+    bl f_first
+    svc #2
+    .ltorg
+  f_first:
+    push {r4, lr}
+  1: bl f_work
+    bl f_yield
+    subs r5, r5, #1
+    bne 1b
+    pop {r4, pc}
+  f_second:
+    bl f_chore
+    b f_second
+  f_chore:
+    push {r4, lr}
+    bl f_work
+    bl f_yield
+    bl f_work
+    pop {r4, pc}
+  f_work:
+    mov r1, #20
+  1: subs r1, r1, #1
+    bne 1b
+    bx lr
+  f_yield:
+    push {r4, lr}
+    bl f_switch
+    pop {r4, pc}
+  f_switch:
+    push {r4, r6-r12, r14}
+    push {r4}
+    ldr r0, =other
+    ldr r1, [r0]
+    str sp, [r0]
+    mov sp, r1
+    pop {r4}
+    pop {r4, r6-r12, pc}
+    .ltorg
+  )");
+  EXPECT_EQ(r.stacks(),
+            (Stacks{"main", "main;first", "main;first;work", "main;first;yield",
+                    "main;first;yield;switch", "second", "second;chore", "second;chore;work",
+                    "second;chore;yield", "second;chore;yield;switch"}));
+  // Six turns of 20 times 2 or 4 clocks and the way there and back, in each task.
+  EXPECT_EQ(r.clocks.at("main;first;work"), 6 * (1 + 19 * 4 + 2 + 3));
+  const auto ranges = r.tree().ranges();
+  ASSERT_EQ(ranges.size(), 2u);
+  EXPECT_EQ(ranges[0].base, 0x4000u);
+  EXPECT_EQ(ranges[1].base, 0x4100u);
+  for (const auto& range : ranges) {
+    EXPECT_LE(range.base - range.low, 64u);
+    EXPECT_GE(range.base - range.low, 16u);
+  }
+}
+
+/// An FIQ interrupts the handler of an IRQ, which calls functions; both return to where they came from.
+TEST(CallStackTest, NestedInterrupts) {
+  const std::string text = R"(
+  f_vectors:
+    b f_main
+    .skip 20
+    b f_irq
+  f_fiq:
+    sub lr, lr, #4
+    push {r0-r3, lr}
+    svc #5
+    bl f_work
+    ldm sp!, {r0-r3, pc}^
+  f_irq:
+    sub lr, lr, #4
+    push {r0-r3, lr}
+    svc #4
+    bl f_work
+    bl f_work
+    ldm sp!, {r0-r3, pc}^
+  f_main:
+    msr cpsr_c, #0xd1
+    mov sp, #0x3000
+    msr cpsr_c, #0xd2
+    mov sp, #0x3800
+    msr cpsr_c, #0x1f
+    mov sp, #0x4000
+    bl f_task
+    svc #2
+  f_task:
+    push {r4, lr}
+    mov r4, #40
+  1: bl f_work
+    subs r4, r4, #1
+    bne 1b
+    pop {r4, pc}
+  f_work:
+    mov r1, #20
+  1: subs r1, r1, #1
+    bne 1b
+    bx lr
+  )";
+  const Run r(text, [](Machine& m) {
+    m.on_svc = [&m](std::uint32_t n) {
+      if (n == 4) m.core.set_irq(false, m.time());
+      if (n == 5) m.core.set_fiq(false, m.time());
+    };
+    const Picoseconds at = 500 * Machine::kClock;
+    m.port.schedule(at, [&m, at] { m.core.set_irq(true, at); });
+    // While the handler works.
+    const Picoseconds later = at + 60 * Machine::kClock;
+    m.port.schedule(later, [&m, later] { m.core.set_fiq(true, later); });
+  });
+  Stacks expected{"vectors", "main", "main;task", "main;task;work", "irq", "irq;work", "fiq",
+                  "fiq;work"};
+  Stacks seen = r.stacks();
+  seen.erase("vectors");
+  expected.erase("vectors");
+  EXPECT_EQ(seen, expected);
+  const std::uint64_t work = 1 + 19 * 4 + 2 + 3;
+  EXPECT_EQ(r.clocks.at("irq;work"), 2 * work);
+  EXPECT_EQ(r.clocks.at("fiq;work"), work);
+  EXPECT_EQ(r.clocks.at("main;task;work"), 40 * work);
+}
+
+}  // namespace
+}  // namespace fovea::cpu::test

@@ -1,0 +1,216 @@
+// The files of a profile, and the functions and lines of a program's addresses.
+#include <cstdlib>
+#include <set>
+
+#include "sw/fovea/frame_parts.h"
+#include "sw/fovea/profile_report.h"
+#include "tb/unit/support.h"
+
+namespace fovea::app {
+namespace {
+
+using cpu::ProfileRow;
+using test::read_text;
+using test::TempDir;
+using test::user_error;
+using testing::HasSubstr;
+
+const std::string kInlined = FIXTURE_INLINED, kStripped = FIXTURE_STRIPPED;
+
+/// Number of the line of the fixture that has a mark.
+unsigned line_with(const std::string& mark) {
+  const std::string text = read_text(FIXTURE_SOURCE);
+  const std::size_t at = text.find("line " + mark + " *");
+  return 1 + static_cast<unsigned>(std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+}
+
+/// Addresses of the code of a function.
+std::vector<std::uint32_t> code_of(const ElfImage& image, const char* name) {
+  std::vector<std::uint32_t> out;
+  const ElfSymbol* const s = image.find(name);
+  for (std::uint32_t a = s->address; a < s->address + s->size; a += 4) out.push_back(a);
+  return out;
+}
+
+TEST(SourceLinesTest, InlinedFunctionsAreResolved) {
+  const ElfImage image = ElfImage::load(kInlined);
+  SourceLines lines;
+  lines.add(image);
+  EXPECT_TRUE(lines.have_lines());
+  std::set<std::size_t> depths;
+  for (const std::uint32_t a : code_of(image, "outer")) {
+    const auto& frames = lines.at(a);
+    depths.insert(frames.size());
+    EXPECT_EQ(frames.back().function, "outer");
+    EXPECT_EQ(frames.back().file, "inlined.c");
+    if (frames.size() < 3) continue;
+    EXPECT_EQ(frames[0], (SourceFrame{"innermost", "inlined.c", line_with("innermost")}));
+    EXPECT_EQ(frames[1], (SourceFrame{"middle", "inlined.c", line_with("middle")}));
+    EXPECT_EQ(frames[2], (SourceFrame{"outer", "inlined.c", line_with("outer")}));
+  }
+  EXPECT_TRUE(depths.contains(3)) << "the load and the product are inlined twice";
+  EXPECT_EQ(lines.at(image.entry()).front().function, "_start");
+  EXPECT_EQ(lines.function_start(code_of(image, "outer").back()), image.find("outer")->address);
+}
+
+TEST(SourceLinesTest, WithoutDebugInformationTheSymbolsAreKnown) {
+  const ElfImage image = ElfImage::load(kStripped);
+  SourceLines lines;
+  lines.add(image);
+  EXPECT_FALSE(lines.have_lines());
+  const std::uint32_t inside = image.find("outer")->address + 4;
+  EXPECT_EQ(lines.at(inside), (std::vector<SourceFrame>{{"outer", "", 0}}));
+  EXPECT_EQ(lines.at(0x10), (std::vector<SourceFrame>{{"(unknown)", "", 0}}));
+  EXPECT_EQ(lines.function_start(0x10), 0x10u);
+}
+
+TEST(SourceLinesTest, ASecondProgramNamesWhatTheFirstDoesNotHave) {
+  const ElfImage first = ElfImage::load(FIXTURE_OUTSIDE), second = ElfImage::load(kInlined);
+  SourceLines lines;
+  lines.add(first);
+  lines.add(second);
+  EXPECT_EQ(lines.at(second.find("outer")->address).back().function, "outer");
+  EXPECT_EQ(lines.at(first.entry() & ~1u).back().function, "_start");
+}
+
+TEST(SourceLinesTest, AProgramThatIsGone) {
+  TempDir dir;
+  const auto file = dir.write("p.elf", read_text(kInlined));
+  const ElfImage image = ElfImage::load(file);
+  std::filesystem::remove(file);
+  SourceLines lines;
+  EXPECT_THAT(user_error([&] { lines.add(image); }), HasSubstr("can no longer be read"));
+}
+
+constexpr std::uint8_t stall(cpu::Cause c) {
+  return static_cast<std::uint8_t>(ProfileRow::kStall + cpu::index(c));
+}
+
+class ProfileReportTest : public testing::Test {
+ protected:
+  ProfileReportTest() {
+    lines.add(image);
+    const auto outer = code_of(image, "outer");
+    // The first instruction that is innermost's.
+    for (const std::uint32_t a : outer)
+      if (!inner && lines.at(a).size() == 3) inner = a;
+    start = image.entry();
+    data.program = "inlined.elf";
+    data.regions = {"none", "other", "sdram, slow"};
+    const auto dcache = stall(cpu::Cause::kDcache);
+    data.phases = {
+        {"boot", false, {{start, ProfileRow::kIssue, 0, 0, 7, 5}}},
+        {"frames",
+         true,
+         {{start, ProfileRow::kIssue, 0, 0, 20, 10},
+          {start, ProfileRow::kIdle + 2, 0, 0, 40, 0},
+          {start + 4, ProfileRow::kIssue, 0, 0, 0, 1},  // ended in the section, without clocks
+          {inner, ProfileRow::kIssue, 0, 0, 100, 50},
+          {inner, dcache, 2, static_cast<std::uint8_t>(cpu::kService), 300, 0},
+          {inner, dcache, 2, static_cast<std::uint8_t>(cpu::kCore), 30, 0},
+          {0x10, stall(cpu::Cause::kInterlock), 0, static_cast<std::uint8_t>(cpu::kCore), 10, 0}}}};
+    data.stacks = {{{start}, 60}, {{start, image.find("outer")->address}, 430}, {{start}, 5}, {{}, 5}};
+    data.calls = {{start, image.find("outer")->address, 50, 430}};
+  }
+  ElfImage image = ElfImage::load(kInlined);
+  SourceLines lines;
+  ProfileData data;
+  std::uint32_t inner = 0, start = 0;
+};
+
+TEST_F(ProfileReportTest, RowsByFunctionLineCauseRegionAndCulprit) {
+  const std::string text = profile_csv(data, lines);
+  const std::string at = std::to_string(line_with("innermost"));
+  const auto begin_line = std::to_string(lines.at(start).front().line);
+  EXPECT_EQ(text,
+            "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
+            "boot,_start,inlined.c," + begin_line + ",issue,,,7,5\n"
+            "frames,(unknown),,,interlock,none,core,10,0\n"
+            "frames,_start,inlined.c," + begin_line + ",issue,,,20,10\n"
+            "frames,_start,inlined.c," + begin_line + ",idle.capture,,,40,0\n"
+            "frames,innermost,inlined.c," + at + ",issue,,,100,50\n"
+            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",service,300,0\n"
+            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",core,30,0\n");
+}
+
+TEST_F(ProfileReportTest, FoldedStacks) {
+  EXPECT_EQ(profile_folded(data, lines), "(unknown) 5\n_start 65\n_start;outer 430\n");
+}
+
+TEST_F(ProfileReportTest, TableNamesTheLargestCauses) {
+  const std::string text = profile_table(data, lines, 1);
+  EXPECT_THAT(text, HasSubstr(" 86.0 %         430            50  innermost (inlined.c): "
+                              "dcache 77 %, issue 23 %\n"));
+  EXPECT_THAT(text, HasSubstr("and 2 more"));
+  EXPECT_THAT(profile_text(data, lines), HasSubstr("boot                 7  issue 100 %"));
+  ProfileData nothing;
+  EXPECT_EQ(profile_table(nothing, lines, 5), "");
+}
+
+TEST_F(ProfileReportTest, InterruptsAndTheirWorstPercent) {
+  EXPECT_EQ(interrupts_csv(data), "interrupt,count,mean_ns,p99_ns,max_ns\n");
+  data.interrupts["timer0.tint12"] = {3000, 1000, 2001};
+  // One of a hundred may take longer than p99, but none of 99.
+  for (unsigned k = 1; k <= 100; ++k) data.interrupts["vpss.vpssint0"].push_back(k * 1000);
+  EXPECT_EQ(interrupts_csv(data),
+            "interrupt,count,mean_ns,p99_ns,max_ns\n"
+            "timer0.tint12,3,2.000,3.000,3.000\n"
+            "vpss.vpssint0,100,50.500,99.000,100.000\n");
+  data.interrupts["vpss.vpssint0"].pop_back();
+  EXPECT_THAT(interrupts_csv(data), HasSubstr("vpss.vpssint0,99,50.000,99.000,99.000\n"));
+}
+
+TEST_F(ProfileReportTest, MaskedStretchAndStacks) {
+  EXPECT_THAT(profile_text(data, lines), testing::Not(HasSubstr("masked")));
+  data.masked = {1234, start, inner};
+  data.ranges = {{0x4000, 0x3f00, start}};
+  const std::string text = profile_text(data, lines);
+  EXPECT_THAT(text, HasSubstr("IRQs masked, without sleep: 1234 clocks, from 0x8"));
+  EXPECT_THAT(text, HasSubstr("0x00004000 down to 0x00003f00: 256 bytes, begun in _start"));
+}
+
+TEST(FramePartsTest, PartsAddUpToTheLatency) {
+  FrameRow frame;
+  frame.index = 7;
+  frame.capture_start = 1'000;
+  frame.capture_end = 21'000;
+  frame.remap_start = 25'500;
+  frame.remap_end = 35'501;
+  frame.display_start = 40'000;
+  std::map<Picoseconds, cpu::ClockProfile::Snapshot> snapshots;
+  auto& from = snapshots[25'500];
+  auto& to = snapshots[35'501];
+  from.issue = 100;
+  from.idle = 5;
+  to = from;
+  to.issue = 101;
+  to.stall[cpu::index(cpu::Cause::kDcache)] = 2;
+  const std::string head = "frame,part,time_ns\n";
+  EXPECT_EQ(frame_parts_csv(std::vector{frame}, snapshots),
+            head + "7,capture,20.000\n7,wait_for_core,4.500\n7,remap.issue,3.333\n"
+                   "7,remap.dcache,6.668\n7,wait_for_display,4.499\n");
+  // The remap was not seen by the core, or the frame has no remap.
+  snapshots.erase(35'501);
+  EXPECT_EQ(frame_parts_csv(std::vector{frame}, snapshots), head);
+  snapshots[35'501] = from;
+  EXPECT_THAT(frame_parts_csv(std::vector{frame}, snapshots), HasSubstr("7,remap,10.001\n"));
+  frame.remap_start.reset();
+  EXPECT_EQ(frame_parts_csv(std::vector{frame}, snapshots), head);
+}
+
+/// callgrind_annotate, of Debian's valgrind, reads the file and finds the same sums.
+TEST_F(ProfileReportTest, CallgrindFileOpens) {
+  TempDir dir;
+  const auto file = dir.write("profile.callgrind", profile_callgrind(data, lines));
+  const auto out = dir.path() / "out";
+  const std::string command = "callgrind_annotate --inclusive=yes --threshold=100 --show=Clocks '" +
+                              file.string() + "' >'" + out.string() + "' 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << read_text(out);
+  const std::string text = read_text(out);
+  EXPECT_THAT(text, HasSubstr("500 (100.0%)  PROGRAM TOTALS"));
+  EXPECT_THAT(text, HasSubstr("490 (98.00%)  inlined.c:_start"));
+  EXPECT_THAT(text, HasSubstr("430 (86.00%)  inlined.c:innermost"));
+}
+
+}  // namespace
+}  // namespace fovea::app
