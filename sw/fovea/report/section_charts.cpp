@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "sw/fovea/explain/words.h"
@@ -56,15 +57,24 @@ std::string bandwidth_table(const Results& run) {
   return table.empty() ? "" : table.html();
 }
 
+/// What the figures `ddr.MASTER.latency.<prefix>mean` and their like measure.
+struct LatencyKind {
+  std::string_view prefix, requests, beat;
+};
+constexpr std::array kLatencyKinds{LatencyKind{"", "reads", "first"}, LatencyKind{"read_last.", "reads", "last"},
+                                   LatencyKind{"write_first.", "writes", "first"},
+                                   LatencyKind{"write_last.", "writes", "last"}};
+
 std::string latency_table(const Results& run) {
-  Table table("Latency of reads from the SDRAM, from the request to the first data at the port",
-              {"Master", "#Mean", "#Median", "#95 %", "#99 %", "#Largest"});
-  for (const auto& m : masters_of(run, "ddr.", ".latency.mean")) {
-    std::vector<std::string> cells{escaped(m)};
-    for (const auto* which : {"mean", "p50", "p95", "p99", "max"})
-      cells.push_back(figure_cell(app::find(run.stats, fmt::format("ddr.{}.latency.{}", m, which))));
-    table.row(cells);
-  }
+  Table table("Latency at the SDRAM, from the request on the master's port",
+              {"Master", "Requests", "To their beat", "#Mean", "#Median", "#95 %", "#99 %", "#Largest"});
+  for (const auto& kind : kLatencyKinds)
+    for (const auto& m : masters_of(run, "ddr.", fmt::format(".latency.{}mean", kind.prefix))) {
+      std::vector<std::string> cells{escaped(m), std::string(kind.requests), std::string(kind.beat)};
+      for (const auto* which : {"mean", "p50", "p95", "p99", "max"})
+        cells.push_back(figure_cell(app::find(run.stats, fmt::format("ddr.{}.latency.{}{}", m, kind.prefix, which))));
+      table.row(cells);
+    }
   return table.empty() ? "" : table.html();
 }
 
@@ -204,10 +214,11 @@ std::string latency_section(const Runs& runs) {
   return panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
     const std::string table = latency_table(run);
-    if (table.empty()) return absent("No master has read from the SDRAM.");
+    if (table.empty()) return absent("The results have no latencies of the SDRAM.");
     std::string out = chart("percentiles", i,
-                            "Latency of each master's reads: from the median to the 99th percentile as a "
-                            "bar, with the mean and the largest as marks.") +
+                            "Latency of each master's reads to their first beat and writes to their last: "
+                            "from the median to the 99th percentile as a bar, with the mean and the "
+                            "largest as marks.") +
                       table;
     return out + (run.latency && !run.latency->empty()
                       ? chart("latency", i,
