@@ -64,7 +64,7 @@ std::string verdict_of(const Results& run) {
 
 std::string tiles(const Results& run) {
   std::string out;
-  static constexpr std::array kNames{"new pictures a second", "remap of a frame, mean",
+  static constexpr std::array kNames{"new pictures on the display", "remap of a frame, mean",
                                      "from capture to display, mean", "SDRAM data bus in use"};
   for (std::size_t i = 0; i < kTiles.size(); ++i)
     if (const auto* figure = app::find(run.stats, kTiles[i]))
