@@ -87,7 +87,7 @@ TEST(ReportCommandTest, RunMakesAPageThatTheNextRunReplaces) {
   const std::string experiment = dir.write("e.yaml", "run:\n  frames: 2\n").string(), out = (dir / "out").string();
   const auto first = fovea({"run", experiment, "-o", out, "--report"});
   EXPECT_EQ(first.status, kExitDone) << first.err;
-  EXPECT_THAT(first.out, HasSubstr("  report in " + out + "/report.html\n"));
+  EXPECT_THAT(first.out, HasSubstr("report in " + out + "/report.html\n"));
   const std::string page = test::read_text(out + "/report.html");
   EXPECT_THAT(page, HasSubstr("<title>out - Fovea report</title>"));
   EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
