@@ -67,7 +67,7 @@ function drawLatency(place, run) {
 const BANK_ROWS = [['row_hits', 'row open'], ['row_misses', 'bank closed'], ['row_conflicts', 'another row open']];
 function drawBanks(place, run, most) {
   const banks = Object.keys(run.stats).filter((name) => /^ddr\.bank\d+\.row_hits$/.test(name)).length;
-  const box = {left: 112, top: 24}, width = Math.min(90, (widthOf(place) - 122) / banks);
+  const box = {left: 122, top: 24}, width = Math.min(90, (widthOf(place) - 132) / banks);
   const svg = drawing(place, box.left + banks * width + 10, box.top + BANK_ROWS.length * 40 + 10);
   for (let bank = 0; bank < banks; ++bank)
     svg.append(text(box.left + (bank + 0.5) * width, 16, width > 55 ? `bank ${bank}` : bank, {class: 'axis', 'text-anchor': 'middle'}));
