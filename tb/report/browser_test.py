@@ -8,7 +8,7 @@ from pathlib import Path
 
 from chromium import Page
 
-OUT = Path(sys.argv[1])
+OUT = Path(sys.argv[1])  # further arguments are those of unittest, such as -k keyboard
 HERE = Path(__file__).parent
 PAGES = {"one": ["default"], "all": ["all-files"], "bare": ["bare"], "two": ["default", "all-files"]}
 LOOKS = [("light", 1280, False, ""), ("dark", 1280, True, ""), ("narrow", 390, False, ""), ("print", 800, False, "print")]
@@ -147,6 +147,7 @@ class Report(unittest.TestCase):
         self.assertEqual(given, sorted(given, reverse=True))
         self.page.run("document.querySelectorAll('#functions th button')[1].focus()")
         self.page.key("Enter", text="\r")
+        self.assertEqual(self.page.run(order), sorted(given, reverse=True))
         self.page.key("Enter", text="\r")
         self.assertEqual(self.page.run(order), sorted(given))
         self.assertEqual(self.page.run("document.querySelector('#functions th[aria-sort]').getAttribute('aria-sort')"), "ascending")
@@ -200,4 +201,4 @@ class Report(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], "-v"])
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[2:]])

@@ -7,10 +7,10 @@ namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 using test::HandMade;
 using test::TempDir;
 using test::two_frames;
+using ::testing::HasSubstr;
 
 struct Outcome {
   int status = 0;
@@ -19,7 +19,9 @@ struct Outcome {
 
 Outcome fovea(const std::vector<std::string>& args) {
   std::ostringstream out, err;
-  const CliContext context{.out = out, .err = err, .make_simulation = [] { return std::make_unique<test::FakeBoard>(); }};
+  const CliContext context{.out = out, .err = err, .make_simulation = [] {
+                             return std::make_unique<test::FakeBoard>();
+                           }};
   const int status = run_cli(args, context);
   return {status, out.str(), err.str()};
 }
@@ -32,7 +34,8 @@ TEST(ReportCommandTest, WritesIntoTheRunsFolderAndReplacesItsOwnPage) {
     EXPECT_EQ(done.status, kExitDone) << done.err;
     EXPECT_EQ(done.out, "report in " + folder + "/report.html\n");
   }
-  EXPECT_THAT(test::read_text(folder + "/report.html"), HasSubstr("<title>run - Fovea report</title>"));
+  EXPECT_THAT(test::read_text(folder + "/report.html"),
+              HasSubstr("<title>run - Fovea report</title>"));
 }
 
 TEST(ReportCommandTest, RefusesToReplaceAnythingElse) {
@@ -51,7 +54,8 @@ TEST(ReportCommandTest, BadFoldersAreStatusTwoAndOneLine) {
   partial.complete = false;
   other.version = "7";
   fs::create_directory(dir / "empty");
-  for (const auto& folder : {dir / "empty", partial.write(dir, "partial"), other.write(dir, "other"), dir / "none"}) {
+  for (const auto& folder :
+       {dir / "empty", partial.write(dir, "partial"), other.write(dir, "other"), dir / "none"}) {
     const auto refused = fovea({"report", folder.string()});
     EXPECT_EQ(refused.status, kExitWrongInput) << folder;
     EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
@@ -64,7 +68,8 @@ TEST(ReportCommandTest, BadFoldersAreStatusTwoAndOneLine) {
 TEST(ReportCommandTest, EightRunsAndNoMore) {
   const TempDir dir;
   std::vector<std::string> args{"report", "-o", (dir / "all.html").string()};
-  for (int i = 0; i < 8; ++i) args.push_back(two_frames().write(dir, "run" + std::to_string(i)).string());
+  for (int i = 0; i < 8; ++i)
+    args.push_back(two_frames().write(dir, "run" + std::to_string(i)).string());
   EXPECT_EQ(fovea(args).status, kExitDone);
   args.push_back(args.back());
   const auto refused = fovea(args);
@@ -84,10 +89,11 @@ TEST(ReportCommandTest, TextGoesToTheOutput) {
 
 TEST(ReportCommandTest, RunMakesAPageThatTheNextRunReplaces) {
   const TempDir dir;
-  const std::string experiment = dir.write("e.yaml", "run:\n  frames: 2\n").string(), out = (dir / "out").string();
+  const std::string experiment = dir.write("e.yaml", "run:\n  frames: 2\n").string(),
+                    out = (dir / "out").string();
   const auto first = fovea({"run", experiment, "-o", out, "--report"});
   EXPECT_EQ(first.status, kExitDone) << first.err;
-  EXPECT_THAT(first.out, HasSubstr("  report in " + out + "/report.html\n"));
+  EXPECT_THAT(first.out, HasSubstr("report in " + out + "/report.html\n"));
   const std::string page = test::read_text(out + "/report.html");
   EXPECT_THAT(page, HasSubstr("<title>out - Fovea report</title>"));
   EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
@@ -97,7 +103,8 @@ TEST(ReportCommandTest, RunMakesAPageThatTheNextRunReplaces) {
 
 TEST(ReportCommandTest, AFailedRunHasAPageThatSaysSo) {
   const TempDir dir;
-  const std::string experiment = dir.write("e.yaml", "run:\n  mode: late_failure\n").string(), out = (dir / "out").string();
+  const std::string experiment = dir.write("e.yaml", "run:\n  mode: late_failure\n").string(),
+                    out = (dir / "out").string();
   EXPECT_EQ(fovea({"run", experiment, "-o", out, "--report"}).status, kExitGuestFailed);
   EXPECT_THAT(test::read_text(out + "/report.html"), HasSubstr("These results are partial"));
 }

@@ -22,7 +22,10 @@ class ExplainTest : public ::testing::Test {
   std::map<std::string, std::string> parameters_;
 
   Inputs inputs() {
-    return {.stats = stats_, .stalls = stalls_, .frames = frames_, .functions = functions_,
+    return {.stats = stats_,
+            .stalls = stalls_,
+            .frames = frames_,
+            .functions = functions_,
             .parameter = [this](std::string_view key) {
               const auto found = parameters_.find(std::string(key));
               return found == parameters_.end() ? std::string() : found->second;
@@ -48,13 +51,16 @@ class ExplainTest : public ::testing::Test {
 };
 
 TEST_F(ExplainTest, RateThatIsMet) {
-  EXPECT_EQ(text("rate"), "The board keeps up with the camera: each of the 2 displayed frames shows a new picture.");
+  EXPECT_EQ(
+      text("rate"),
+      "The board keeps up with the camera: each of the 2 displayed frames shows a new picture.");
 }
 
 TEST_F(ExplainTest, RateThatIsMissed) {
   set("frame.repeated", std::uint64_t{1});
-  EXPECT_EQ(text("rate"), "The board does not keep up with the camera: 1 of the 2 displayed frames shows an "
-                          "earlier picture again, and 0 captured frames were never shown.");
+  EXPECT_EQ(text("rate"),
+            "The board does not keep up with the camera: 1 of the 2 displayed frames shows an "
+            "earlier picture again, and 0 captured frames were never shown.");
 }
 
 TEST_F(ExplainTest, DroppedFramesAloneMissTheRate) {
@@ -68,16 +74,19 @@ TEST_F(ExplainTest, OverflowsAndUnderflowsAreNamedOnlyIfThereAreAny) {
   EXPECT_EQ(text("overflow"), "");
   set("capture.overflows", std::uint64_t{1});
   set("display.underflows", std::uint64_t{2});
-  EXPECT_EQ(text("overflow"), "1 burst of captured data was lost, because the memory did not take it in time.");
+  EXPECT_EQ(text("overflow"),
+            "1 burst of captured data was lost, because the memory did not take it in time.");
   EXPECT_EQ(text("underflow"), "2 bursts of picture data came too late for the display.");
 }
 
 TEST_F(ExplainTest, BudgetIsTheRemapAgainstThePeriod) {
-  EXPECT_EQ(text("budget"), "A remap takes 10.0 ms, and a frame comes every 40.0 ms: 25 % of the time is used "
-                            "and 30.0 ms are left.");
+  EXPECT_EQ(text("budget"),
+            "A remap takes 10.0 ms, and a frame comes every 40.0 ms: 25 % of the time is used "
+            "and 30.0 ms are left.");
   set("frame.remap_time.mean", 0.050);
-  EXPECT_EQ(text("budget"), "A remap takes 50.0 ms, and a frame comes every 40.0 ms: it is 10.0 ms too long for "
-                            "every frame.");
+  EXPECT_EQ(text("budget"),
+            "A remap takes 50.0 ms, and a frame comes every 40.0 ms: it is 10.0 ms too long for "
+            "every frame.");
 }
 
 TEST_F(ExplainTest, RemapsInARowHaveNoBudget) {
@@ -94,32 +103,41 @@ TEST_F(ExplainTest, LatencyIsTheSumOfItsParts) {
   f.display_start = 80 * kPsPerMs;
   frames_ = {f, f};
   frames_[1].repeated = true;  // does not count
-  EXPECT_EQ(text("latency"), "From a frame's first captured sample to its first displayed one 80.0 ms pass on "
-                             "average: 38.0 ms of capture, 1.00 ms until the remap begins, 11.0 ms of remap, and "
-                             "30.0 ms until the display begins with it.");
+  EXPECT_EQ(text("latency"),
+            "From a frame's first captured sample to its first displayed one 80.0 ms pass on "
+            "average: 38.0 ms of capture, 1.00 ms until the remap begins, 11.0 ms of remap, and "
+            "30.0 ms until the display begins with it.");
   frames_[0].remap_start = 37 * kPsPerMs;  // overlaps the capture: no parts that add up
   EXPECT_EQ(text("latency"), "");
 }
 
 TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
-  stalls_ = {{"dcache", "frame_in", "service", 240}, {"dcache", "lut", "bridge", 230}, {"dcache", "x", "core", 30},
+  stalls_ = {{"dcache", "frame_in", "service", 240},
+             {"dcache", "lut", "bridge", 230},
+             {"dcache", "x", "core", 30},
              {"interlock", "none", "core", 200}};
   EXPECT_EQ(text("largest_wait"),
-            "Largest wait: in 50 % of the clocks in which it is awake, the core waits for line fills of the D-cache "
-            "(48 % of that on the way through crossbar and SDRAM controller, others apart and 40 % in the bridge "
-            "between core and crossbar). By what is accessed: frame_in (48 %) and lut (46 %). It issues instructions "
+            "Largest wait: in 50 % of the clocks in which it is awake, the core waits for line "
+            "fills of the D-cache "
+            "(48 % of that on the way through crossbar and SDRAM controller, others apart and 40 % "
+            "in the bridge "
+            "between core and crossbar). By what is accessed: frame_in (48 %) and lut (46 %). It "
+            "issues instructions "
             "in 30 %.");
 }
 
 TEST_F(ExplainTest, AnotherLargestWaitIsFound) {
   set("cpu.stall.interlock", std::uint64_t{501});
-  EXPECT_THAT(text("largest_wait"), HasSubstr("waits for results of earlier instructions (interlocks). It issues"));
+  EXPECT_THAT(text("largest_wait"),
+              HasSubstr("waits for results of earlier instructions (interlocks). It issues"));
 }
 
 TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
-  functions_ = {{"remap", 750, {{"issue", 250}, {"dcache", 500}}}, {"main", 750, {{"idle.capture", 500}, {"issue", 250}}}};
-  EXPECT_EQ(text("function"), "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "
-                              "for line fills of the D-cache.");
+  functions_ = {{"remap", 750, {{"issue", 250}, {"dcache", 500}}},
+                {"main", 750, {{"idle.capture", 500}, {"issue", 250}}}};
+  EXPECT_EQ(text("function"),
+            "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "
+            "for line fills of the D-cache.");
 }
 
 TEST_F(ExplainTest, OtherMastersAreSummedOverTheirPorts) {
@@ -127,18 +145,22 @@ TEST_F(ExplainTest, OtherMastersAreSummedOverTheirPorts) {
   set("cpu.stall.dcache.by.edma_tc1_write", std::uint64_t{30});
   set("cpu.stall.dcache.by.arm_d", std::uint64_t{100});
   EXPECT_EQ(text("other_masters"),
-            "Waiting while other masters are served adds 8.5 % to the core's awake clocks: the EDMA 4.5 % and the "
+            "Waiting while other masters are served adds 8.5 % to the core's awake clocks: the "
+            "EDMA 4.5 % and the "
             "display 4.0 %.");
 }
 
 TEST_F(ExplainTest, RowsHaveSharesThatAddUp) {
-  EXPECT_EQ(text("rows"), "80 % of the requests to the SDRAM find their row open, 5.0 % find another row open, 15 % a "
-                          "closed bank. The core spends 2.0 % of its awake clocks on that.");
+  EXPECT_EQ(
+      text("rows"),
+      "80 % of the requests to the SDRAM find their row open, 5.0 % find another row open, 15 % a "
+      "closed bank. The core spends 2.0 % of its awake clocks on that.");
 }
 
 TEST_F(ExplainTest, EstimatesAreLabelledAndNeedTheirParameters) {
   for (const auto& f : explain(inputs())) EXPECT_FALSE(f.estimate) << f.text;
-  parameters_ = {{"bus.arm_d.request_latency", "3 cycles"}, {"bus.arm_d.response_latency", "5 cycles"},
+  parameters_ = {{"bus.arm_d.request_latency", "3 cycles"},
+                 {"bus.arm_d.response_latency", "5 cycles"},
                  {"clocks.preset", "297/243"}};
   int estimates = 0;
   for (const auto& f : explain(inputs())) {
@@ -153,13 +175,15 @@ TEST_F(ExplainTest, EstimatesAreLabelledAndNeedTheirParameters) {
 }
 
 TEST_F(ExplainTest, NoEstimateForAnotherPresetOrABridgeWithoutDelay) {
-  parameters_ = {{"bus.arm_d.request_latency", "0 cycles"}, {"bus.arm_d.response_latency", "3 cycles"},
+  parameters_ = {{"bus.arm_d.request_latency", "0 cycles"},
+                 {"bus.arm_d.response_latency", "3 cycles"},
                  {"clocks.preset", "297/270"}};
   EXPECT_EQ(text("shorter_bridge") + text("faster_memory"), "");
 }
 
 TEST_F(ExplainTest, NoEstimateFromTheCoreIfTheEdmaMovesThePixels) {
-  parameters_ = {{"bus.arm_d.request_latency", "3 cycles"}, {"bus.arm_d.response_latency", "3 cycles"},
+  parameters_ = {{"bus.arm_d.request_latency", "3 cycles"},
+                 {"bus.arm_d.response_latency", "3 cycles"},
                  {"clocks.preset", "297/243"}};
   set("bus.edma_tc0.read_bytes", std::uint64_t{39});  // 800 bytes of the core: 5 % are 40
   EXPECT_NE(text("shorter_bridge"), "");
@@ -189,8 +213,9 @@ TEST_F(ExplainTest, DifferenceNamesRemapAndLargestCause) {
   const auto found = explain_difference(a, "A", inputs(), "B");
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].text, "The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less.");
-  EXPECT_EQ(found[1].text, "The largest difference in the core's clocks for each corrected frame: B spends 10 "
-                           "thousand clocks more on waiting for line fills of the D-cache.");
+  EXPECT_EQ(found[1].text,
+            "The largest difference in the core's clocks for each corrected frame: B spends 10 "
+            "thousand clocks more on waiting for line fills of the D-cache.");
 }
 
 TEST_F(ExplainTest, EqualRunsDoNotDiffer) {

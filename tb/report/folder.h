@@ -15,7 +15,8 @@ struct HandMade {
   std::vector<app::Warning> warnings;
   std::string version = app::program_provenance().version;
   std::string format = "fovea run 1", commit = "0123456789ab", experiment = "hand-made";
-  std::string parameters = R"("a.key": {"value": "1", "unit": "", "origin": "default", "default": "1",
+  std::string parameters =
+      R"("a.key": {"value": "1", "unit": "", "origin": "default", "default": "1",
     "allowed": "0 .. 2", "tag": "choice", "source": "", "belief": null, "description": "a number"})";
   std::string command = R"(["run", "hand.yaml"])";
   bool complete = true;
@@ -23,12 +24,15 @@ struct HandMade {
   /// Writes config.json, stats.json and host.json into `name` and returns its path.
   std::filesystem::path write(const TempDir& dir, const std::string& name = "run") const {
     dir.write(name + "/config.json",
-              "{\"format\": \"" + format + "\", \"version\": \"" + version + "\", \"commit\": \"" + commit +
-                  "\", \"modified\": false, \"experiment\": \"" + experiment +
-                  "\", \"sha256\": {\"firmware.elf\": \"ab12\"}, \"params\": {" + parameters + "}}");
+              "{\"format\": \"" + format + "\", \"version\": \"" + version + "\", \"commit\": \"" +
+                  commit + "\", \"modified\": false, \"experiment\": \"" + experiment +
+                  "\", \"sha256\": {\"firmware.elf\": \"ab12\"}, \"params\": {" + parameters +
+                  "}}");
     dir.write(name + "/stats.json", app::stats_json(stats, complete, warnings));
-    dir.write(name + "/host.json", "{\"version\": \"0\", \"command\": " + command +
-                                       ", \"wall_time\": {\"value\": 2.5, \"unit\": \"s\", \"description\": \"host time\"}}");
+    dir.write(
+        name + "/host.json",
+        "{\"version\": \"0\", \"command\": " + command +
+            ", \"wall_time\": {\"value\": 2.5, \"unit\": \"s\", \"description\": \"host time\"}}");
     return dir / name;
   }
 };
@@ -80,11 +84,13 @@ inline HandMade two_frames() {
 
 /// The other files of a run, with the columns that they have.
 inline void add_other_files(const TempDir& dir, const std::string& name) {
-  dir.write(name + "/frames.csv",
-            "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
-            "display_start_ns,display_end_ns,dropped,repeated\n"
-            "0,0,0,0.000,38000000.000,39000000.000,49000000.000,80000000.000,118000000.000,0,0\n"
-            "1,0,1,40000000.000,78000000.000,79000000.000,89000000.000,120000000.000,158000000.000,0,0\n");
+  dir.write(
+      name + "/frames.csv",
+      "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+      "display_start_ns,display_end_ns,dropped,repeated\n"
+      "0,0,0,0.000,38000000.000,39000000.000,49000000.000,80000000.000,118000000.000,0,0\n"
+      "1,0,1,40000000.000,78000000.000,79000000.000,89000000.000,120000000.000,158000000.000,0,"
+      "0\n");
   dir.write(name + "/timeline.csv",
             "start_ns,end_ns,arm_d.read_bytes,arm_d.write_bytes,load.read_bytes,load.write_bytes\n"
             "0.000,1000000.000,1000,500,0,0\n1000000.000,2000000.000,3000,0,0,0\n");
@@ -92,13 +98,15 @@ inline void add_other_files(const TempDir& dir, const std::string& name) {
             "cause,region,culprit,cycles\ndcache,frame_in,service,240\ndcache,lut,bridge,200\n"
             "dcache,lut,vpbe,40\ndcache,lut,row_miss,20\ninterlock,none,core,200\n");
   dir.write(name + "/latency.csv",
-            "master,direction,beat,low_ns,high_ns,count\narm_d,read,first,128,256,7\narm_d,read,last,128,256,7\n");
-  dir.write(name + "/profile.csv",
-            "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
-            "boot,start,start.S,3,issue,,,1000,1000\n"
-            "frames,remap,remap.c,10,issue,,,250,250\nframes,remap,remap.c,11,dcache,lut,bridge,500,0\n"
-            "frames,main,main.c,5,issue,,,50,50\nframes,main,main.c,6,interlock,,,200,0\n"
-            "frames,main,main.c,7,idle.capture,,,500,0\n");
+            "master,direction,beat,low_ns,high_ns,count\narm_d,read,first,128,256,7\narm_d,read,"
+            "last,128,256,7\n");
+  dir.write(
+      name + "/profile.csv",
+      "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
+      "boot,start,start.S,3,issue,,,1000,1000\n"
+      "frames,remap,remap.c,10,issue,,,250,250\nframes,remap,remap.c,11,dcache,lut,bridge,500,0\n"
+      "frames,main,main.c,5,issue,,,50,50\nframes,main,main.c,6,interlock,,,200,0\n"
+      "frames,main,main.c,7,idle.capture,,,500,0\n");
   dir.write(name + "/profile.folded", "main 750\nmain;remap 750\n");
 }
 

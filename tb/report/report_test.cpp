@@ -17,13 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 using app::RgbImage;
 using nlohmann::json;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 using test::HandMade;
 using test::TempDir;
 using test::two_frames;
 using test::user_error;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 json data_of(const std::string& page) {
   const std::string begin = "<script type=\"application/json\" id=\"data\">";
@@ -41,7 +41,8 @@ std::string one_page(const fs::path& folder) { return report_page({load_results(
 
 // Reading.
 
-std::vector<std::vector<std::string>> records(const std::string& text, std::vector<std::size_t>* lines = nullptr) {
+std::vector<std::vector<std::string>> records(const std::string& text,
+                                              std::vector<std::size_t>* lines = nullptr) {
   std::vector<std::vector<std::string>> out;
   each_csv_record("f.csv", text, [&](const CsvPlace& at, std::span<const std::string> fields) {
     out.emplace_back(fields.begin(), fields.end());
@@ -63,18 +64,24 @@ TEST(CsvTest, NumbersAreWholeFields) {
   const fs::path file = "f.csv";
   const CsvPlace at{file, 7};
   EXPECT_EQ(whole(at, "18446744073709551615"), 18446744073709551615u);
-  EXPECT_EQ(user_error([&] { whole(at, "18446744073709551616"); }), "f.csv:7: '18446744073709551616' is not a whole number");
-  for (const char* bad : {"", "1 ", "-1", "0x1", "1.5"}) EXPECT_THAT(user_error([&] { whole(at, bad); }), HasSubstr("f.csv:7"));
-  for (const char* bad : {"", "nan", "inf", "1e999", "1,5"}) EXPECT_THAT(user_error([&] { number(at, bad); }), HasSubstr("f.csv:7"));
+  EXPECT_EQ(user_error([&] { whole(at, "18446744073709551616"); }),
+            "f.csv:7: '18446744073709551616' is not a whole number");
+  for (const char* bad : {"", "1 ", "-1", "0x1", "1.5"})
+    EXPECT_THAT(user_error([&] { whole(at, bad); }), HasSubstr("f.csv:7"));
+  for (const char* bad : {"", "nan", "inf", "1e999", "1,5"})
+    EXPECT_THAT(user_error([&] { number(at, bad); }), HasSubstr("f.csv:7"));
   EXPECT_EQ(number(at, "-1.5e3"), -1500.0);
   EXPECT_EQ(time_ps(at, "2601418666.667"), 2601418666667u);
   EXPECT_EQ(time_ps(at, ""), std::nullopt);
-  for (const char* bad : {"1", "1.2", "1.2345", ".", "a.000"}) EXPECT_THAT(user_error([&] { time_ps(at, bad); }), HasSubstr("f.csv:7"));
+  for (const char* bad : {"1", "1.2", "1.2345", ".", "a.000"})
+    EXPECT_THAT(user_error([&] { time_ps(at, bad); }), HasSubstr("f.csv:7"));
 }
 
 TEST(LoadTest, RefusesWhatIsNoRunInOneLine) {
   const TempDir dir;
-  const auto error = [&](const fs::path& folder) { return user_error([&] { load_results(folder, {}); }); };
+  const auto error = [&](const fs::path& folder) {
+    return user_error([&] { load_results(folder, {}); });
+  };
   EXPECT_THAT(error(dir / "none"), HasSubstr("there is no such folder"));
   dir.write("file", "x");
   EXPECT_THAT(error(dir / "file"), HasSubstr("it is not a folder"));
@@ -84,9 +91,11 @@ TEST(LoadTest, RefusesWhatIsNoRunInOneLine) {
   EXPECT_THAT(error(dir / "other"), HasSubstr("it is not the folder of a Fovea run"));
   HandMade run = two_frames();
   run.format = "fovea run 2";
-  EXPECT_THAT(error(run.write(dir, "format")), HasSubstr("its format is 'fovea run 2'; this version reads 'fovea run 1' only"));
+  EXPECT_THAT(error(run.write(dir, "format")),
+              HasSubstr("its format is 'fovea run 2'; this version reads 'fovea run 1' only"));
   fs::remove(two_frames().write(dir, "unfinished") / "stats.json");
-  EXPECT_THAT(error(dir / "unfinished"), HasSubstr("the run in it was never finished (it has no stats.json)"));
+  EXPECT_THAT(error(dir / "unfinished"),
+              HasSubstr("the run in it was never finished (it has no stats.json)"));
   dir.write("unfinished/stats.json", "[1, 2]");
   EXPECT_THAT(error(dir / "unfinished"), HasSubstr("not a file of JSON; it is damaged"));
 }
@@ -95,8 +104,10 @@ TEST(LoadTest, PartialResultsAndOtherVersionsNeedTheirOption) {
   const TempDir dir;
   HandMade run = two_frames();
   run.complete = false;
-  EXPECT_THAT(user_error([&] { load_results(run.write(dir), {}); }), HasSubstr("--partial makes a report of them"));
-  EXPECT_THAT(report_page({load_results(dir / "run", {.partial = true})}), HasSubstr("These results are partial"));
+  EXPECT_THAT(user_error([&] { load_results(run.write(dir), {}); }),
+              HasSubstr("--partial makes a report of them"));
+  EXPECT_THAT(report_page({load_results(dir / "run", {.partial = true})}),
+              HasSubstr("These results are partial"));
   run.complete = true;
   run.version = "9.9.9";
   EXPECT_THAT(user_error([&] { load_results(run.write(dir), {.partial = true}); }),
@@ -126,7 +137,8 @@ TEST(PageTest, EveryFigureIsThatOfStatsJson) {
   const fs::path folder = two_frames().write(dir);
   test::add_other_files(dir, "run");
   const std::string page = one_page(folder);
-  const json stats = json::parse(test::read_text(folder / "stats.json")), data = data_of(page)["runs"][0]["stats"];
+  const json stats = json::parse(test::read_text(folder / "stats.json")),
+             data = data_of(page)["runs"][0]["stats"];
   std::size_t with_value = 0;
   for (const auto& [name, figure] : stats.items()) {
     if (!figure.is_object() || !figure.contains("value")) continue;
@@ -148,8 +160,10 @@ TEST(PageTest, EveryFigureIsThatOfStatsJson) {
     ASSERT_TRUE(stats.contains(name)) << name;
     EXPECT_EQ(json::parse((*i)[2].str()), stats[name]["value"]) << name;
     const json& v = stats[name]["value"];
-    const StatBase::Value value = v.is_number_unsigned() ? StatBase::Value(v.get<std::uint64_t>()) : StatBase::Value(v.get<double>());
-    EXPECT_EQ((*i)[3], escaped(app::human_text(value, stats[name]["unit"].get<std::string>()))) << name;
+    const StatBase::Value value = v.is_number_unsigned() ? StatBase::Value(v.get<std::uint64_t>())
+                                                         : StatBase::Value(v.get<double>());
+    EXPECT_EQ((*i)[3], escaped(app::human_text(value, stats[name]["unit"].get<std::string>())))
+        << name;
     shown.insert(name);
   }
   for (const auto& [name, figure] : stats.items()) {
@@ -171,8 +185,11 @@ TEST(PageTest, MissingFilesLeaveTheirSectionsOutWithASentence) {
   test::add_other_files(dir, "run");
   const std::string full = one_page(dir / "run");
   const std::vector<std::pair<std::string, std::string>> expected{
-      {"no frames.csv", "frames"}, {"no rows in timeline.csv", "bandwidth-whole"}, {"no stalls.csv", ""},
-      {"no latency.csv", "latency"}, {"There is no profile", "flame"}};
+      {"no frames.csv", "frames"},
+      {"no rows in timeline.csv", "bandwidth-whole"},
+      {"no stalls.csv", ""},
+      {"no latency.csv", "latency"},
+      {"There is no profile", "flame"}};
   for (const auto& [sentence, chart] : expected) {
     EXPECT_THAT(bare, HasSubstr(sentence));
     EXPECT_THAT(full, Not(HasSubstr(sentence)));
@@ -187,8 +204,8 @@ TEST(PageTest, SectionsAreInOrder) {
   const TempDir dir;
   const std::string page = one_page(two_frames().write(dir));
   std::size_t before = 0;
-  for (const char* id : {"verdict", "pictures", "frames", "bandwidth", "latency", "stalls", "banks", "functions",
-                         "configuration", "figures", "provenance"}) {
+  for (const char* id : {"verdict", "pictures", "frames", "bandwidth", "latency", "stalls", "banks",
+                         "functions", "configuration", "figures", "provenance"}) {
     const auto at = page.find(std::string("<section id=\"") + id + "\"");
     ASSERT_NE(at, page.npos) << id;
     EXPECT_GT(at, before) << id;
@@ -201,8 +218,10 @@ TEST(PageTest, FunctionsAreThoseOfTheFrames) {
   two_frames().write(dir);
   test::add_other_files(dir, "run");
   const std::string page = one_page(dir / "run");
-  EXPECT_THAT(page, HasSubstr("<tr><th scope=\"row\"><code>remap</code></th><td class=\"n\"><data value=\"750\">750</data></td>"
-                              "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td class=\"n\"><data value=\"250\">250</data>"
+  EXPECT_THAT(page, HasSubstr("<tr><th scope=\"row\"><code>remap</code></th><td class=\"n\"><data "
+                              "value=\"750\">750</data></td>"
+                              "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td "
+                              "class=\"n\"><data value=\"250\">250</data>"
                               "</td><td>dcache</td><td>remap.c:10</td></tr>"));
   EXPECT_THAT(page, Not(HasSubstr("<code>start</code>")));  // of the phase boot
 }
@@ -214,7 +233,8 @@ TEST(PageTest, ReachesNothingOutsideItself) {
   const std::string page = one_page(dir / "run");
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   const auto at = page.rfind("<script>") + 8;
-  EXPECT_THAT(page, HasSubstr("script-src '" + script_digest(page.substr(at, page.rfind("</script>") - at)) + "'"));
+  EXPECT_THAT(page, HasSubstr("script-src '" +
+                              script_digest(page.substr(at, page.rfind("</script>") - at)) + "'"));
   // The name of SVG's elements is not fetched.
   EXPECT_EQ(count(page, "http"), 1u + count(page, "http-equiv"));
   EXPECT_THAT(page, HasSubstr("http://www.w3.org/2000/svg"));
@@ -224,24 +244,28 @@ TEST(PageTest, ReachesNothingOutsideItself) {
 
 TEST(PageTest, HostileTextsDoNothing) {
   const TempDir dir;
-  const std::string evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>'\"&\x1b[31m";
+  const std::string evil =
+      "</script><script>alert(1)</script><img src=x onerror=alert(2)>'\"&\x1b[31m";
   HandMade run = two_frames();
   run.experiment = "</title><script>alert(3)</script>";
   run.warnings = {{"firmware", evil, 2}};
   run.stats.push_back({"evil.<b>", std::uint64_t{1}, "<i>", evil});
-  run.parameters = R"x("<script>k": {"value": "</script><script>alert(4)", "unit": "", "origin": "f:1", "default": "<a>",
+  run.parameters =
+      R"x("<script>k": {"value": "</script><script>alert(4)", "unit": "", "origin": "f:1", "default": "<a>",
     "allowed": "", "tag": "<b>", "source": "\"><b>", "belief": {"low": "<", "high": ">", "reason": "<u>"}, "description": "<p onclick=x>"})x";
   run.command = R"x(["run", "</code><script>alert(5)</script>"])x";
   const fs::path folder = run.write(dir, "<img src=x onerror=alert(6)>");
   const std::string name = folder.filename().string();
   dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n<script>,</script>,<b>,5\n");
-  dir.write(name + "/profile.csv", "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
-                                   "frames,\"f<script>(\"\"a\"\")\",<b>,1,issue,,,5,5\n");
+  dir.write(name + "/profile.csv",
+            "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
+            "frames,\"f<script>(\"\"a\"\")\",<b>,1,issue,,,5,5\n");
   dir.write(name + "/profile.folded", "a<script>;</script> 5\n");
   const std::string page = one_page(folder);
   EXPECT_EQ(count(page, "<script"), 2u);  // the data and the page's own
   EXPECT_EQ(count(page, "</script"), 2u);
-  for (const char* tag : {"<img", "<b>dc", "<i>", "<p onclick", "<u>", "\x1b"}) EXPECT_THAT(page, Not(HasSubstr(tag)));
+  for (const char* tag : {"<img", "<b>dc", "<i>", "<p onclick", "<u>", "\x1b"})
+    EXPECT_THAT(page, Not(HasSubstr(tag)));
   EXPECT_EQ(count(page, "</title>"), 1u);
   const json data = data_of(page)["runs"][0];
   EXPECT_EQ(data["name"], name);
@@ -255,7 +279,8 @@ TEST(PageTest, NeverSaysWhatBinds) {
   const TempDir dir;
   two_frames().write(dir);
   test::add_other_files(dir, "run");
-  const std::string page = one_page(dir / "run"), text = report_text({load_results(dir / "run", {})});
+  const std::string page = one_page(dir / "run"),
+                    text = report_text({load_results(dir / "run", {})});
   EXPECT_THAT(page, Not(HasSubstr("binds")));
   EXPECT_THAT(text, Not(HasSubstr("binds")));
   EXPECT_THAT(text, HasSubstr("frame rate met: 2 of 2 camera frames shown"));
@@ -275,18 +300,22 @@ TEST(CompareTest, ShowsEachRunAndTheDifference) {
     if (s.name == "frame.rate") s.value = 25.000000000000004;
   }
   b.commit = "fedcba987654";
-  b.parameters = R"("a.key": {"value": "2", "unit": "", "origin": "command line", "default": "1", "allowed": "0 .. 2",
+  b.parameters =
+      R"("a.key": {"value": "2", "unit": "", "origin": "command line", "default": "1", "allowed": "0 .. 2",
     "tag": "choice", "source": "", "belief": null, "description": "a number"})";
   two_frames().write(dir, "one");
   b.write(dir, "two");
-  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
+  const std::string page =
+      report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
   EXPECT_THAT(page, HasSubstr(">-2 ms (-20 %)</data>"));
   EXPECT_THAT(page, HasSubstr(">-20 (-25 %)</data>"));
   EXPECT_THAT(page, HasSubstr(">+1 points (+4 %)</data>"));
-  EXPECT_THAT(page, HasSubstr("<th scope=\"row\"><code>a.key</code></th><td>1 <small>(default)</small></td>"
-                              "<td>2 <small>(command line)</small></td>"));
+  EXPECT_THAT(
+      page, HasSubstr("<th scope=\"row\"><code>a.key</code></th><td>1 <small>(default)</small></td>"
+                      "<td>2 <small>(command line)</small></td>"));
   EXPECT_THAT(page, HasSubstr("The runs come from different states of the simulator"));
-  EXPECT_THAT(page, HasSubstr("The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less."));
+  EXPECT_THAT(page,
+              HasSubstr("The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less."));
   EXPECT_THAT(page, HasSubstr("B: two"));
   // Rounding of a sum is no difference.
   EXPECT_THAT(page, Not(HasSubstr("e-1")));
@@ -297,7 +326,8 @@ TEST(CompareTest, EqualParametersAreNotListed) {
   const TempDir dir;
   two_frames().write(dir, "one");
   two_frames().write(dir, "two");
-  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
+  const std::string page =
+      report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
   EXPECT_THAT(page, HasSubstr("The runs have the same parameters."));
   EXPECT_THAT(page, Not(HasSubstr("different states")));
 }
@@ -305,7 +335,9 @@ TEST(CompareTest, EqualParametersAreNotListed) {
 // Pictures.
 
 RgbImage picture(unsigned width, unsigned height, std::uint8_t value) {
-  return {.width = width, .height = height, .rgb = std::vector<std::uint8_t>(std::size_t{3} * width * height, value)};
+  return {.width = width,
+          .height = height,
+          .rgb = std::vector<std::uint8_t>(std::size_t{3} * width * height, value)};
 }
 
 TEST(PictureTest, ShrinkingTakesTheMean) {
@@ -345,7 +377,8 @@ TEST(PictureTest, BeforeAndAfterHaveTheSameNumber) {
   EXPECT_EQ(chosen[0].before->width, 16u);
   EXPECT_EQ(chosen[0].after->width, 8u);
   const std::string page = one_page(dir / "run");
-  EXPECT_THAT(page, HasSubstr("Frame 3: what the camera sent, and the corrected picture on the display."));
+  EXPECT_THAT(
+      page, HasSubstr("Frame 3: what the camera sent, and the corrected picture on the display."));
   EXPECT_THAT(page, HasSubstr("class=\"compare\""));
   fs::remove_all(dir / "run/camera");
   EXPECT_THAT(one_page(dir / "run"), HasSubstr("Frame 0: the corrected picture on the display."));
@@ -353,14 +386,21 @@ TEST(PictureTest, BeforeAndAfterHaveTheSameNumber) {
 
 TEST(PictureTest, RunsAreComparedPixelByPixel) {
   const TempDir dir;
-  for (const auto& [name, value] : {std::pair("one", 7), std::pair("two", 7), std::pair("three", 9)}) {
+  for (const auto& [name, value] :
+       {std::pair("one", 7), std::pair("two", 7), std::pair("three", 9)}) {
     two_frames().write(dir, name);
     fs::create_directories(dir / name / "frames");
-    app::write_png(dir / name / "frames/frame_000000.png", picture(8, 4, static_cast<std::uint8_t>(value)));
+    app::write_png(dir / name / "frames/frame_000000.png",
+                   picture(8, 4, static_cast<std::uint8_t>(value)));
   }
-  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {}), load_results(dir / "three", {})});
-  EXPECT_THAT(page, HasSubstr("The displayed frames 0 of A: one and B: two are equal, pixel for pixel."));
-  EXPECT_THAT(page, HasSubstr("Frame 0 of A: one and C: three: 32 of 32 pixels differ (100 %), PSNR 42.1 dB."));
+  const std::string page =
+      report_page({load_results(dir / "one", {}), load_results(dir / "two", {}),
+                   load_results(dir / "three", {})});
+  EXPECT_THAT(page,
+              HasSubstr("The displayed frames 0 of A: one and B: two are equal, pixel for pixel."));
+  EXPECT_THAT(
+      page,
+      HasSubstr("Frame 0 of A: one and C: three: 32 of 32 pixels differ (100 %), PSNR 42.1 dB."));
 }
 
 TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
@@ -378,7 +418,8 @@ TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
       if (i == 0)
         app::write_png(dir / (name + folder + "/frame_000000.png"), noise);
       else
-        fs::copy_file(dir / (std::string("A") + folder + "/frame_000000.png"), dir / (name + folder + "/frame_000000.png"));
+        fs::copy_file(dir / (std::string("A") + folder + "/frame_000000.png"),
+                      dir / (name + folder + "/frame_000000.png"));
     }
     runs.push_back(load_results(dir / name, {}));
   }
@@ -415,7 +456,8 @@ TEST(BandwidthTest, KeepsBytesAndLeavesSilentMastersOut) {
     ASSERT_LE(b.edges.size(), most + 1);
     EXPECT_THAT(b.masters, ElementsAre("a"));
     double bytes = 0;
-    for (std::size_t i = 0; i < b.rates[0].size(); ++i) bytes += b.rates[0][i] * 1e-12 * static_cast<double>(b.edges[i + 1] - b.edges[i]);
+    for (std::size_t i = 0; i < b.rates[0].size(); ++i)
+      bytes += b.rates[0][i] * 1e-12 * static_cast<double>(b.edges[i + 1] - b.edges[i]);
     EXPECT_NEAR(bytes, 10.0 * 23 * 24 / 2 + 23, 1e-6) << most;
   }
 }
@@ -438,8 +480,11 @@ TEST(StackTreeTest, SumsChildrenAndJoinsTheSmallest) {
 }
 
 TEST(HtmlTest, Base64AndDigest) {
-  const auto encoded = [](const std::string& s) { return base64(std::vector<std::uint8_t>(s.begin(), s.end())); };
-  EXPECT_EQ(encoded("") + encoded("f") + encoded("fo") + encoded("foo") + encoded("foob"), "Zg==Zm8=Zm9vZm9vYg==");  // RFC 4648
+  const auto encoded = [](const std::string& s) {
+    return base64(std::vector<std::uint8_t>(s.begin(), s.end()));
+  };
+  EXPECT_EQ(encoded("") + encoded("f") + encoded("fo") + encoded("foo") + encoded("foob"),
+            "Zg==Zm8=Zm9vZm9vYg==");  // RFC 4648
   EXPECT_EQ(script_digest("abc"), "sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");
 }
 

@@ -118,28 +118,30 @@ std::vector<Finding> explain_difference(const Inputs& inputs_a, std::string_view
                            percent(std::abs(change) / *before), change < 0 ? "less" : "more"),
          {"frame.remap_time.mean"}});
   }
-  const double frames_a = a.value_or_zero("frame.remapped"), frames_b = b.value_or_zero("frame.remapped");
+  const double frames_a = a.value_or_zero("frame.remapped"),
+               frames_b = b.value_or_zero("frame.remapped");
   if (frames_a == 0 || frames_b == 0) return out;
   std::map<std::string, double> clocks;
   for (const auto& [cause, n] : b.stall_causes()) clocks[cause] += n / frames_b;
   for (const auto& [cause, n] : a.stall_causes()) clocks[cause] -= n / frames_a;
-  clocks["issue"] = b.value_or_zero("cpu.issue") / frames_b - a.value_or_zero("cpu.issue") / frames_a;
-  const auto largest = std::max_element(clocks.begin(), clocks.end(), [](const auto& x, const auto& y) {
-    return std::abs(x.second) < std::abs(y.second);
-  });
+  clocks["issue"] =
+      b.value_or_zero("cpu.issue") / frames_b - a.value_or_zero("cpu.issue") / frames_a;
+  const auto largest = std::max_element(
+      clocks.begin(), clocks.end(),
+      [](const auto& x, const auto& y) { return std::abs(x.second) < std::abs(y.second); });
   const double size = std::abs(largest->second);
   // Less is not worth a sentence beside a frame of some millions of clocks.
   constexpr double kFewClocks = 1000;
   if (size >= kFewClocks)
-    out.push_back({"largest_difference",
-                   fmt::format("The largest difference in the core's clocks for each corrected "
-                               "frame: {} spends {:.0f} thousand clocks {} {}.",
-                               name_b, size / 1000, largest->second < 0 ? "less" : "more",
-                               largest->first == "issue"
-                                   ? std::string("on issuing instructions")
-                                   : "on waiting for " + waits_for(largest->first)),
-                   {largest->first == "issue" ? "cpu.issue" : "cpu.stall." + largest->first,
-                    "frame.remapped"}});
+    out.push_back(
+        {"largest_difference",
+         fmt::format("The largest difference in the core's clocks for each corrected "
+                     "frame: {} spends {:.0f} thousand clocks {} {}.",
+                     name_b, size / 1000, largest->second < 0 ? "less" : "more",
+                     largest->first == "issue" ? std::string("on issuing instructions")
+                                               : "on waiting for " + waits_for(largest->first)),
+         {largest->first == "issue" ? "cpu.issue" : "cpu.stall." + largest->first,
+          "frame.remapped"}});
   return out;
 }
 

@@ -50,37 +50,43 @@ double core_clock(const Run& run) {
 void find_rate(const Run& run, std::vector<Finding>& out) {
   const auto displayed = run.value("frame.displayed");
   if (!displayed || *displayed == 0 || !run.value("frame.repeated")) return;
-  const double repeated = run.value_or_zero("frame.repeated"), dropped = run.value_or_zero("frame.dropped");
+  const double repeated = run.value_or_zero("frame.repeated"),
+               dropped = run.value_or_zero("frame.dropped");
   if (repeated == 0 && dropped == 0) {
-    out.push_back({"rate",
-                   fmt::format("The board keeps up with the camera: each of the {} shows a new picture.",
-                               counted(*displayed, "displayed frame")),
-                   {"frame.displayed", "frame.repeated", "frame.dropped"}});
+    out.push_back(
+        {"rate",
+         fmt::format("The board keeps up with the camera: each of the {} shows a new picture.",
+                     counted(*displayed, "displayed frame")),
+         {"frame.displayed", "frame.repeated", "frame.dropped"}});
   } else {
-    out.push_back({"rate",
-                   fmt::format("The board does not keep up with the camera: {:.0f} of the {} {} an earlier "
-                               "picture again, and {:.0f} captured {} never shown.",
-                               repeated, counted(*displayed, "displayed frame"), repeated == 1 ? "shows" : "show",
-                               dropped, dropped == 1 ? "frame was" : "frames were"),
-                   {"frame.displayed", "frame.repeated", "frame.dropped"}});
+    out.push_back(
+        {"rate",
+         fmt::format("The board does not keep up with the camera: {:.0f} of the {} {} an earlier "
+                     "picture again, and {:.0f} captured {} never shown.",
+                     repeated, counted(*displayed, "displayed frame"),
+                     repeated == 1 ? "shows" : "show", dropped,
+                     dropped == 1 ? "frame was" : "frames were"),
+         {"frame.displayed", "frame.repeated", "frame.dropped"}});
   }
   if (const double n = run.value_or_zero("capture.overflows"); n > 0)
-    out.push_back({"overflow",
-                   fmt::format("{} of captured data {} lost, because the memory did not take {} in time.",
-                               counted(n, "burst"), n == 1 ? "was" : "were", n == 1 ? "it" : "them"),
-                   {"capture.overflows"}});
+    out.push_back(
+        {"overflow",
+         fmt::format("{} of captured data {} lost, because the memory did not take {} in time.",
+                     counted(n, "burst"), n == 1 ? "was" : "were", n == 1 ? "it" : "them"),
+         {"capture.overflows"}});
   if (const double n = run.value_or_zero("display.underflows"); n > 0)
-    out.push_back({"underflow",
-                   fmt::format("{} of picture data came too late for the display.", counted(n, "burst")),
-                   {"display.underflows"}});
+    out.push_back(
+        {"underflow",
+         fmt::format("{} of picture data came too late for the display.", counted(n, "burst")),
+         {"display.underflows"}});
 }
 
 void find_budget(const Run& run, std::vector<Finding>& out) {
   const auto remap = run.value("frame.remap_time.mean");
   const double period = run.frame_period();
   if (!remap || period <= 0 || run.remaps_in_a_row()) return;
-  const std::string begin =
-      fmt::format("A remap takes {}, and a frame comes every {}: ", milliseconds(*remap), milliseconds(period));
+  const std::string begin = fmt::format(
+      "A remap takes {}, and a frame comes every {}: ", milliseconds(*remap), milliseconds(period));
   out.push_back({"budget",
                  begin + (*remap <= period
                               ? fmt::format("{} of the time is used and {} are left.",
@@ -98,9 +104,12 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
     if (f.repeated || !f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end ||
         !f.display_start)
       continue;
-    const std::array times{*f.capture_start, *f.capture_end, *f.remap_start, *f.remap_end, *f.display_start};
+    const std::array times{*f.capture_start, *f.capture_end, *f.remap_start, *f.remap_end,
+                           *f.display_start};
     if (!std::is_sorted(times.begin(), times.end())) continue;
-    const auto seconds = [&](int i) { return 1e-12 * static_cast<double>(times[i + 1] - times[i]); };
+    const auto seconds = [&](int i) {
+      return 1e-12 * static_cast<double>(times[i + 1] - times[i]);
+    };
     capture += seconds(0);
     wait += seconds(1);
     remap += seconds(2);
@@ -109,13 +118,14 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
   }
   if (n == 0) return;
   const auto mean = [&](double sum) { return milliseconds(sum / static_cast<double>(n)); };
-  out.push_back({"latency",
-                 fmt::format("From a frame's first captured sample to its first displayed one {} pass "
-                             "on average: {} of capture, {} until the remap begins, {} of remap, and "
-                             "{} until the display begins with it.",
-                             mean(capture + wait + remap + until_shown), mean(capture), mean(wait),
-                             mean(remap), mean(until_shown)),
-                 {"frames.csv"}});
+  out.push_back(
+      {"latency",
+       fmt::format("From a frame's first captured sample to its first displayed one {} pass "
+                   "on average: {} of capture, {} until the remap begins, {} of remap, and "
+                   "{} until the display begins with it.",
+                   mean(capture + wait + remap + until_shown), mean(capture), mean(wait),
+                   mean(remap), mean(until_shown)),
+       {"frames.csv"}});
 }
 
 void find_largest_wait(const Run& run, std::vector<Finding>& out) {
@@ -123,20 +133,23 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
   const auto causes = run.stall_causes();
   if (awake <= 0 || causes.empty()) return;
   const auto& [cause, clocks] = causes.front();
-  std::string text = fmt::format("Largest wait: in {} of the clocks in which it is awake, the core waits "
-                                 "for {}",
-                                 percent(clocks / awake), waits_for(cause));
+  std::string text = fmt::format(
+      "Largest wait: in {} of the clocks in which it is awake, the core waits "
+      "for {}",
+      percent(clocks / awake), waits_for(cause));
   std::vector<std::string> evidence{"cpu.stall." + cause, "cpu.cycles", "cpu.idle"};
   std::vector<std::string> parts;
   for (const auto& [culprit, n] : run.culprits(cause)) {
     // Two parts say where it goes; smaller ones distract.
     if (parts.size() == 2 || n < 0.1 * clocks) break;
-    parts.push_back(fmt::format("{}{} {}", percent(n / clocks), parts.empty() ? " of that" : "", spent(culprit)));
+    parts.push_back(fmt::format("{}{} {}", percent(n / clocks), parts.empty() ? " of that" : "",
+                                spent(culprit)));
     evidence.push_back("cpu.stall." + cause + ".by." + culprit);
   }
   if (!parts.empty()) text += fmt::format(" ({})", listed(parts));
   text += ".";
-  if (const auto regions = run.regions(cause); !regions.empty() && regions.front().first != "none") {
+  if (const auto regions = run.regions(cause);
+      !regions.empty() && regions.front().first != "none") {
     std::vector<std::string> names;
     for (const auto& [region, n] : regions) {
       if (names.size() == 3 || n < 0.1 * clocks) break;
@@ -147,7 +160,8 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
       evidence.push_back("stalls.csv");
     }
   }
-  text += fmt::format(" It issues instructions in {}.", percent(run.value_or_zero("cpu.issue") / awake));
+  text += fmt::format(" It issues instructions in {}.",
+                      percent(run.value_or_zero("cpu.issue") / awake));
   out.push_back({"largest_wait", text, evidence});
 }
 
@@ -172,12 +186,16 @@ void find_function(const Run& run, std::vector<Finding>& out) {
     }
   }
   if (!largest || all <= 0) return;
-  std::string text = fmt::format("The function {} takes {} of the core's awake clocks", largest->name, percent(most / all));
+  std::string text = fmt::format("The function {} takes {} of the core's awake clocks",
+                                 largest->name, percent(most / all));
   const std::pair<const std::string, double>* wait = nullptr;
   for (const auto& cause : largest->causes)
-    if (cause.first != "issue" && !cause.first.starts_with("idle") && (!wait || cause.second > wait->second)) wait = &cause;
+    if (cause.first != "issue" && !cause.first.starts_with("idle") &&
+        (!wait || cause.second > wait->second))
+      wait = &cause;
   if (wait && wait->second >= 0.01 * most)
-    text += fmt::format(", and waits in {} of these for {}", percent(wait->second / most), waits_for(wait->first));
+    text += fmt::format(", and waits in {} of these for {}", percent(wait->second / most),
+                        waits_for(wait->first));
   out.push_back({"function", text + ".", {"profile.csv"}});
 }
 
@@ -193,23 +211,27 @@ void find_other_masters(const Run& run, std::vector<Finding>& out) {
   }
   if (all == 0) return;
   std::vector<std::pair<std::string, double>> order(clocks.begin(), clocks.end());
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> parts;
   for (const auto& [name, n] : order)
     if (n >= 0.001 * awake) parts.push_back(fmt::format("{} {}", name, percent(n / awake)));
-  out.push_back({"other_masters",
-                 fmt::format("Waiting while other masters are served adds {} to the core's awake clocks{}{}.",
-                             percent(all / awake), parts.empty() ? "" : ": ", listed(parts)),
-                 {"cpu.stall.*.by.*", "cpu.cycles", "cpu.idle"}});
+  out.push_back(
+      {"other_masters",
+       fmt::format("Waiting while other masters are served adds {} to the core's awake clocks{}{}.",
+                   percent(all / awake), parts.empty() ? "" : ": ", listed(parts)),
+       {"cpu.stall.*.by.*", "cpu.cycles", "cpu.idle"}});
 }
 
 void find_rows(const Run& run, std::vector<Finding>& out) {
-  const double hits = run.value_or_zero("ddr.row_hits"), misses = run.value_or_zero("ddr.row_misses"),
+  const double hits = run.value_or_zero("ddr.row_hits"),
+               misses = run.value_or_zero("ddr.row_misses"),
                conflicts = run.value_or_zero("ddr.row_conflicts"), all = hits + misses + conflicts;
   if (all == 0) return;
-  std::string text = fmt::format("{} of the requests to the SDRAM find their row open, {} find another "
-                                 "row open, {} a closed bank.",
-                                 percent(hits / all), percent(conflicts / all), percent(misses / all));
+  std::string text = fmt::format(
+      "{} of the requests to the SDRAM find their row open, {} find another "
+      "row open, {} a closed bank.",
+      percent(hits / all), percent(conflicts / all), percent(misses / all));
   std::vector<std::string> evidence{"ddr.row_hits", "ddr.row_conflicts", "ddr.row_misses"};
   if (const double awake = run.awake(); awake > 0) {
     double rows = 0;
@@ -224,19 +246,21 @@ void find_rows(const Run& run, std::vector<Finding>& out) {
 void find_sdram_use(const Run& run, std::vector<Finding>& out) {
   const auto use = run.value("ddr.utilisation");
   if (!use) return;
-  out.push_back({"sdram",
-                 fmt::format("The SDRAM's data bus moves data in {} of the time. That alone does not say "
-                             "whether a faster SDRAM would help.",
-                             percent(*use)),
-                 {"ddr.utilisation"}});
+  out.push_back(
+      {"sdram",
+       fmt::format("The SDRAM's data bus moves data in {} of the time. That alone does not say "
+                   "whether a faster SDRAM would help.",
+                   percent(*use)),
+       {"ddr.utilisation"}});
 }
 
 void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out) {
-  const auto request = run.number("bus.arm_d.request_latency"), response = run.number("bus.arm_d.response_latency");
+  const auto request = run.number("bus.arm_d.request_latency"),
+             response = run.number("bus.arm_d.response_latency");
   const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
   const auto remap = run.value("frame.remap_time.mean");
-  if (!request || !response || *request < 1 || *response < 1 || frames == 0 || clock == 0 || !remap ||
-      !core_moves_the_pixels(run))
+  if (!request || !response || *request < 1 || *response < 1 || frames == 0 || clock == 0 ||
+      !remap || !core_moves_the_pixels(run))
     return;
   double bridge = 0;
   for (const auto cause : kMemoryCauses)
@@ -244,13 +268,14 @@ void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out) {
   // The clocks in the bridge are in proportion to its delays.
   const double saved = bridge * 2 / (*request + *response) * clock / frames;
   if (saved < 0.002 * *remap) return;
-  out.push_back({"shorter_bridge",
-                 fmt::format("Estimate: a bridge that is one clock shorter on each way "
-                             "(bus.arm_d.request_latency, bus.arm_d.response_latency) would save about "
-                             "{} of a remap, {}.",
-                             milliseconds(saved), percent(saved / *remap)),
-                 {"cpu.stall.*.by.bridge", "frame.remapped", "frame.remap_time.mean"},
-                 true});
+  out.push_back(
+      {"shorter_bridge",
+       fmt::format("Estimate: a bridge that is one clock shorter on each way "
+                   "(bus.arm_d.request_latency, bus.arm_d.response_latency) would save about "
+                   "{} of a remap, {}.",
+                   milliseconds(saved), percent(saved / *remap)),
+       {"cpu.stall.*.by.bridge", "frame.remapped", "frame.remap_time.mean"},
+       true});
 }
 
 void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
@@ -268,12 +293,13 @@ void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
   }
   const double saved = memory * (1 - kRatio) * clock / frames;
   if (saved < 0.002 * *remap) return;
-  out.push_back({"faster_memory",
-                 fmt::format("Estimate: with SDRAM and crossbar one step faster (clocks.preset=297/270) a "
-                             "remap would take about {} less, {}.",
-                             milliseconds(saved), percent(saved / *remap)),
-                 {"cpu.stall.*", "cpu.stall.*.by.core", "frame.remapped", "frame.remap_time.mean"},
-                 true});
+  out.push_back(
+      {"faster_memory",
+       fmt::format("Estimate: with SDRAM and crossbar one step faster (clocks.preset=297/270) a "
+                   "remap would take about {} less, {}.",
+                   milliseconds(saved), percent(saved / *remap)),
+       {"cpu.stall.*", "cpu.stall.*.by.core", "frame.remapped", "frame.remap_time.mean"},
+       true});
 }
 
 }  // namespace fovea::explain

@@ -11,17 +11,16 @@ namespace {
 
 using Words = std::pair<std::string_view, std::string_view>;
 
-constexpr std::array kCauses{
-    Words{"interlock", "results of earlier instructions (interlocks)"},
-    Words{"icache", "line fills of the I-cache"},
-    Words{"dcache", "line fills of the D-cache"},
-    Words{"write_buffer", "room in the write buffer"},
-    Words{"uncached", "accesses that no cache serves"},
-    Words{"tlb", "page walks"},
-    Words{"tcm", "the internal RAM"},
-    Words{"cache_op", "cache maintenance"},
-    Words{"drain", "the write buffer to drain"},
-    Words{"bus_sync", "an edge of the bus clock"}};
+constexpr std::array kCauses{Words{"interlock", "results of earlier instructions (interlocks)"},
+                             Words{"icache", "line fills of the I-cache"},
+                             Words{"dcache", "line fills of the D-cache"},
+                             Words{"write_buffer", "room in the write buffer"},
+                             Words{"uncached", "accesses that no cache serves"},
+                             Words{"tlb", "page walks"},
+                             Words{"tcm", "the internal RAM"},
+                             Words{"cache_op", "cache maintenance"},
+                             Words{"drain", "the write buffer to drain"},
+                             Words{"bus_sync", "an edge of the bus clock"}};
 
 constexpr std::array kCulprits{
     Words{"bridge", "in the bridge between core and crossbar"},

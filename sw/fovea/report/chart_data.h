@@ -25,7 +25,6 @@ nlohmann::ordered_json chart_data(const Results& run, const std::string& label);
 
 /// Folded stacks as a tree: name, clocks (with those of the children), children; sorted by name.
 /// Parts below 1/5000 of all are joined under "(smaller ones)".
-nlohmann::ordered_json stack_tree(
-    const std::vector<std::pair<std::string, std::uint64_t>>& stacks);
+nlohmann::ordered_json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks);
 
 }  // namespace fovea::report

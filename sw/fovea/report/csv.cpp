@@ -15,8 +15,7 @@ namespace {
 constexpr std::size_t kMaxBytes = 512u << 20;
 
 [[noreturn]] void refuse(const CsvPlace& place, const std::string& why) {
-  throw UserError(
-      fmt::format("{}:{}: {}", app::one_line(place.file.string()), place.line, why));
+  throw UserError(fmt::format("{}:{}: {}", app::one_line(place.file.string()), place.line, why));
 }
 
 }  // namespace
@@ -95,8 +94,8 @@ std::optional<std::uint64_t> time_ps(const CsvPlace& place, const std::string& f
   if (field.empty()) return std::nullopt;
   const auto dot = field.find('.');
   if (dot == std::string::npos || field.size() != dot + 4)
-    refuse(place, fmt::format("'{}' is not a time in ns with three decimals",
-                              app::one_line(field, 40)));
+    refuse(place,
+           fmt::format("'{}' is not a time in ns with three decimals", app::one_line(field, 40)));
   return whole(place, field.substr(0, dot) + field.substr(dot + 1));
 }
 

@@ -13,8 +13,9 @@
 namespace fovea::report {
 namespace {
 
-constexpr std::string_view kStart = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
-                                    "<meta name=\"generator\" content=\"fovea report\">\n";
+constexpr std::string_view kStart =
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+    "<meta name=\"generator\" content=\"fovea report\">\n";
 
 /// A page is below 3 MB; pictures get what text and charts leave, and something in any case.
 constexpr std::size_t kPageBytes = 2'900'000, kLeastPictureBytes = 400'000;
@@ -25,7 +26,8 @@ struct Section {
 };
 
 std::string data_json(const std::vector<Results>& runs) {
-  nlohmann::ordered_json data{{"format", "fovea report 1"}, {"runs", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json data{{"format", "fovea report 1"},
+                              {"runs", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < runs.size(); ++i)
     data["runs"].push_back(chart_data(runs[i], runs.size() == 1 ? "" : run_label(i)));
   return script_json(data);
@@ -40,18 +42,17 @@ bool is_report_page(std::string_view first_bytes) { return first_bytes.starts_wi
 std::string report_page(const std::vector<Results>& runs) {
   std::string title;
   for (const auto& run : runs) title += (title.empty() ? "" : ", ") + run.name;
-  std::vector<Section> sections{
-      {"verdict", "Verdict", verdict_section(runs)},
-      {"pictures", "Pictures", ""},
-      {"frames", "Frames over time", frames_section(runs)},
-      {"bandwidth", "Bandwidth", bandwidth_section(runs)},
-      {"latency", "SDRAM latency", latency_section(runs)},
-      {"stalls", "The core's clocks", stalls_section(runs)},
-      {"banks", "SDRAM banks", banks_section(runs)},
-      {"functions", "Functions", profile_section(runs)},
-      {"configuration", "Configuration", configuration_section(runs)},
-      {"figures", "All figures", figures_section(runs)},
-      {"provenance", "Provenance", provenance_section(runs)}};
+  std::vector<Section> sections{{"verdict", "Verdict", verdict_section(runs)},
+                                {"pictures", "Pictures", ""},
+                                {"frames", "Frames over time", frames_section(runs)},
+                                {"bandwidth", "Bandwidth", bandwidth_section(runs)},
+                                {"latency", "SDRAM latency", latency_section(runs)},
+                                {"stalls", "The core's clocks", stalls_section(runs)},
+                                {"banks", "SDRAM banks", banks_section(runs)},
+                                {"functions", "Functions", profile_section(runs)},
+                                {"configuration", "Configuration", configuration_section(runs)},
+                                {"figures", "All figures", figures_section(runs)},
+                                {"provenance", "Provenance", provenance_section(runs)}};
   const std::string script(kScript), data = data_json(runs);
   std::size_t used = script.size() + data.size() + kStyle.size();
   for (const auto& s : sections) used += s.html.size();
@@ -64,17 +65,25 @@ std::string report_page(const std::vector<Results>& runs) {
       "<meta name=\"color-scheme\" content=\"light dark\">\n"
       "<title>{} - Fovea report</title>\n<style>{}</style>\n",
       kStart, script_digest(script), escaped(title), kStyle);
-  out += fmt::format("<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
-                     "<div id=\"controls\"></div></header>\n<nav aria-label=\"Sections\"><ul>",
-                     escaped(title));
-  for (const auto& s : sections) out += fmt::format("<li><a href=\"#{}\">{}</a></li>", s.id, s.title);
-  out += "</ul></nav>\n<main>\n<noscript><p class=\"note\">Charts need JavaScript; all figures are in the "
-         "tables.</p></noscript>\n";
+  out += fmt::format(
+      "<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
+      "<div id=\"controls\"></div></header>\n<nav aria-label=\"Sections\"><ul>",
+      escaped(title));
   for (const auto& s : sections)
-    out += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
-                       s.id, s.title, s.html);
-  out += fmt::format("</main>\n<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n</html>\n",
-                     data, script);
+    out += fmt::format("<li><a href=\"#{}\">{}</a></li>", s.id, s.title);
+  out +=
+      "</ul></nav>\n<main>\n<noscript><p class=\"note\">Charts need JavaScript; all figures are in "
+      "the "
+      "tables.</p></noscript>\n";
+  for (const auto& s : sections)
+    out += fmt::format(
+        "<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 "
+        "id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+        s.id, s.title, s.html);
+  out += fmt::format(
+      "</main>\n<script type=\"application/json\" "
+      "id=\"data\">{}</script>\n<script>{}</script>\n</html>\n",
+      data, script);
   return out;
 }
 
@@ -83,7 +92,8 @@ std::string report_text(const std::vector<Results>& runs) {
   const auto list = [&](const std::vector<explain::Finding>& findings) {
     for (const auto& f : findings) {
       out += "- " + app::printable(f.text) + "\n    from ";
-      for (const auto& e : f.evidence) out += (&e == &f.evidence.front() ? "" : ", ") + app::printable(e);
+      for (const auto& e : f.evidence)
+        out += (&e == &f.evidence.front() ? "" : ", ") + app::printable(e);
       out += "\n";
     }
   };

@@ -91,8 +91,9 @@ std::optional<PictureDifference> difference(const app::RgbImage& a, const app::R
     }
     out.pixels += differs;
   }
-  out.psnr = squares == 0 ? std::numeric_limits<double>::infinity()
-                          : 10 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgb.size()) / squares);
+  out.psnr = squares == 0
+                 ? std::numeric_limits<double>::infinity()
+                 : 10 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgb.size()) / squares);
   return out;
 }
 

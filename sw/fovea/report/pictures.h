@@ -12,7 +12,7 @@ namespace fovea::report {
 
 /// A picture as the page embeds it.
 struct Picture {
-  std::string uri;    ///< data URI of a PNG
+  std::string uri;                 ///< data URI of a PNG
   unsigned width = 0, height = 0;  ///< of the original
   unsigned shrunk = 1;             ///< each pixel of the page stands for shrunk x shrunk of them
 };
@@ -24,9 +24,9 @@ struct PictureDifference {
 };
 
 struct RunPictures {
-  std::optional<std::uint64_t> frame;  ///< number in the files' names
-  std::optional<Picture> before;       ///< what the camera sent
-  std::optional<Picture> after;        ///< what the display showed
+  std::optional<std::uint64_t> frame;           ///< number in the files' names
+  std::optional<Picture> before;                ///< what the camera sent
+  std::optional<Picture> after;                 ///< what the display showed
   std::optional<PictureDifference> from_first;  ///< `after` against that of the first run
 };
 

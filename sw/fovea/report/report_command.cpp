@@ -32,13 +32,15 @@ void add_report_command(CLI::App& app, ReportOptions& o) {
       ->type_name("FILE")
       ->default_str("DIR/report.html; report.html for several");
   c->add_flag("--text", o.text, "Print verdict and findings instead of making a page");
-  c->add_flag("--partial", o.partial, "Accept partial results: of a run that was stopped or failed");
+  c->add_flag("--partial", o.partial,
+              "Accept partial results: of a run that was stopped or failed");
   c->add_flag("--across-versions", o.across_versions, "Accept results of another version of fovea");
 }
 
 int command_report(const ReportOptions& options, const CliContext& context) {
   if (options.folders.size() > report::kMaxRuns)
-    throw UserError(fmt::format("report: {} folders; allowed: 1 to {}", options.folders.size(), report::kMaxRuns));
+    throw UserError(fmt::format("report: {} folders; allowed: 1 to {}", options.folders.size(),
+                                report::kMaxRuns));
   if (options.text && !options.out.empty())
     throw UserError("report: --text prints to the output; --out does not go with it");
   std::vector<report::Results> runs;

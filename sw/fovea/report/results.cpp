@@ -46,7 +46,8 @@ bool flag(const Json& object, const char* name, bool otherwise) {
   return found != object.end() && found->is_boolean() ? found->get<bool>() : otherwise;
 }
 
-/// Members of the form {"value": number, "unit": text, "description": text}; null ones are left out.
+/// Members of the form {"value": number, "unit": text, "description": text}; null ones are left
+/// out.
 std::vector<app::StatRow> read_figures(const Json& object) {
   std::vector<app::StatRow> rows;
   for (const auto& [name, member] : object.items()) {
@@ -72,8 +73,14 @@ void read_config(Results& out, const fs::path& file) {
   if (!config.contains("params") || !config["params"].is_object())
     throw UserError(quoted(file) + ": it has no parameters; it is damaged");
   for (const auto& [key, p] : config["params"].items()) {
-    Parameter row{key,           text(p, "value"),  text(p, "origin"), text(p, "default"),
-                  text(p, "tag"), text(p, "source"), "",                text(p, "description")};
+    Parameter row{key,
+                  text(p, "value"),
+                  text(p, "origin"),
+                  text(p, "default"),
+                  text(p, "tag"),
+                  text(p, "source"),
+                  "",
+                  text(p, "description")};
     if (p.contains("belief") && p["belief"].is_object())
       row.belief = text(p["belief"], "low") + " .. " + text(p["belief"], "high");
     out.parameters.push_back(std::move(row));
@@ -87,25 +94,25 @@ void read_stats(Results& out, const fs::path& file) {
   out.stats = read_figures(stats);
   if (const auto list = stats.find("warnings"); list != stats.end() && list->is_array())
     for (const Json& w : *list)
-      out.warnings.push_back({text(w, "kind"), text(w, "what"),
-                              w.value("count", Json(0)).is_number_unsigned()
-                                  ? w["count"].get<std::uint64_t>()
-                                  : 0});
+      out.warnings.push_back(
+          {text(w, "kind"), text(w, "what"),
+           w.value("count", Json(0)).is_number_unsigned() ? w["count"].get<std::uint64_t>() : 0});
 }
 
 void read_host(Results& out, const fs::path& file) {
   const Json host = read_object(file);
   out.host = read_figures(host);
   if (const auto list = host.find("command"); list != host.end() && list->is_array())
-    for (const Json& word : *list) out.arguments.push_back(word.is_string() ? word.get<std::string>() : "");
+    for (const Json& word : *list)
+      out.arguments.push_back(word.is_string() ? word.get<std::string>() : "");
   out.command = out.arguments.empty() ? "" : out.arguments.front();
 }
 
 std::vector<app::FrameRow> read_frames(const fs::path& file) {
   static constexpr std::array<std::string_view, 11> kColumns{
-      "frame",          "camera",       "captured_frame",   "capture_start_ns",
-      "capture_end_ns", "remap_start_ns", "remap_end_ns", "display_start_ns", "display_end_ns",
-      "dropped",        "repeated"};
+      "frame",          "camera",         "captured_frame", "capture_start_ns",
+      "capture_end_ns", "remap_start_ns", "remap_end_ns",   "display_start_ns",
+      "display_end_ns", "dropped",        "repeated"};
   std::vector<app::FrameRow> rows;
   each_csv_row(file, kColumns, [&](const CsvPlace& at, std::span<const std::string> f) {
     if (at.line == 1) return;
@@ -134,8 +141,9 @@ Timeline read_timeline(const fs::path& file) {
       const std::string_view suffix = ".read_bytes";
       for (std::size_t i = 2; i + 1 < f.size(); i += 2) {
         if (!f[i].ends_with(suffix) || !f[i + 1].ends_with(".write_bytes"))
-          throw UserError(fmt::format("{}:1: columns {} and {} are not the bytes read and written of a master",
-                                      app::one_line(file.string()), i + 1, i + 2));
+          throw UserError(
+              fmt::format("{}:1: columns {} and {} are not the bytes read and written of a master",
+                          app::one_line(file.string()), i + 1, i + 2));
         out.masters.push_back(f[i].substr(0, f[i].size() - suffix.size()));
       }
       return;
@@ -249,9 +257,10 @@ Results load_results(const fs::path& folder, const LoadOptions& options) {
   read_config(out, folder / "config.json");
   const std::string own = app::program_provenance().version;
   if (out.version != own && !options.across_versions)
-    throw UserError(fmt::format("{}: it was written by version {} of Fovea, and this is {}; "
-                                "--across-versions reads it nevertheless",
-                                quoted(folder), app::one_line(out.version, 40), own));
+    throw UserError(
+        fmt::format("{}: it was written by version {} of Fovea, and this is {}; "
+                    "--across-versions reads it nevertheless",
+                    quoted(folder), app::one_line(out.version, 40), own));
   read_stats(out, folder / "stats.json");
   if (!out.complete && !options.partial)
     throw UserError(quoted(folder) +

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "sw/fovea/explain/words.h"
@@ -23,20 +24,24 @@ std::string percent_cell(double part, double all) {
 }
 
 /// Clocks are whole numbers far below 2^53.
-std::string clocks_cell(double clocks) { return fmt::format("<data value=\"{0:.0f}\">{0:.0f}</data>", clocks); }
+std::string clocks_cell(double clocks) {
+  return fmt::format("<data value=\"{0:.0f}\">{0:.0f}</data>", clocks);
+}
 
 /// Masters of `prefix`MASTER`suffix` figures that have a value, in the order of the figures.
-std::vector<std::string> masters_of(const Results& run, std::string_view prefix, std::string_view suffix) {
+std::vector<std::string> masters_of(const Results& run, std::string_view prefix,
+                                    std::string_view suffix) {
   std::vector<std::string> out;
   for (const auto& s : run.stats)
-    if (s.name.starts_with(prefix) && s.name.ends_with(suffix) && s.name.size() > prefix.size() + suffix.size())
+    if (s.name.starts_with(prefix) && s.name.ends_with(suffix) &&
+        s.name.size() > prefix.size() + suffix.size())
       out.push_back(s.name.substr(prefix.size(), s.name.size() - prefix.size() - suffix.size()));
   return out;
 }
 
 std::string rate_cell(double bytes, double seconds) {
-  return seconds > 0 ? fmt::format("<data value=\"{}\">{:.1f}</data>", app::number_text(bytes / seconds),
-                                   bytes / seconds * 1e-6)
+  return seconds > 0 ? fmt::format("<data value=\"{}\">{:.1f}</data>",
+                                   app::number_text(bytes / seconds), bytes / seconds * 1e-6)
                      : "";
 }
 
@@ -56,29 +61,43 @@ std::string bandwidth_table(const Results& run) {
   return table.empty() ? "" : table.html();
 }
 
+/// What the figures `ddr.MASTER.latency.<prefix>mean` and their like measure.
+struct LatencyKind {
+  std::string_view prefix, requests, beat;
+};
+constexpr std::array kLatencyKinds{
+    LatencyKind{"", "reads", "first"}, LatencyKind{"read_last.", "reads", "last"},
+    LatencyKind{"write_first.", "writes", "first"}, LatencyKind{"write_last.", "writes", "last"}};
+
 std::string latency_table(const Results& run) {
-  Table table("Latency of reads from the SDRAM, from the request to the first data at the port",
-              {"Master", "#Mean", "#Median", "#95 %", "#99 %", "#Largest"});
-  for (const auto& m : masters_of(run, "ddr.", ".latency.mean")) {
-    std::vector<std::string> cells{escaped(m)};
-    for (const auto* which : {"mean", "p50", "p95", "p99", "max"})
-      cells.push_back(figure_cell(app::find(run.stats, fmt::format("ddr.{}.latency.{}", m, which))));
-    table.row(cells);
-  }
+  Table table(
+      "Latency at the SDRAM, from the request on the master's port",
+      {"Master", "Requests", "To their beat", "#Mean", "#Median", "#95 %", "#99 %", "#Largest"});
+  for (const auto& kind : kLatencyKinds)
+    for (const auto& m : masters_of(run, "ddr.", fmt::format(".latency.{}mean", kind.prefix))) {
+      std::vector<std::string> cells{escaped(m), std::string(kind.requests),
+                                     std::string(kind.beat)};
+      for (const auto* which : {"mean", "p50", "p95", "p99", "max"})
+        cells.push_back(figure_cell(
+            app::find(run.stats, fmt::format("ddr.{}.latency.{}{}", m, kind.prefix, which))));
+      table.row(cells);
+    }
   return table.empty() ? "" : table.html();
 }
 
 std::string stalls_table(const Results& run) {
   auto rows = *run.stalls;
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.cycles > b.cycles; });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.cycles > b.cycles; });
   constexpr std::size_t kShown = 40;
-  Table table(rows.size() > kShown ? fmt::format("The {} largest of {} waits of the core", kShown, rows.size())
-                                   : "Waits of the core",
+  Table table(rows.size() > kShown
+                  ? fmt::format("The {} largest of {} waits of the core", kShown, rows.size())
+                  : "Waits of the core",
               {"Waits for", "Cause", "Data", "Culprit", "#Clocks", "#Of all clocks"});
   rows.resize(std::min(rows.size(), kShown));
   for (const auto& r : rows)
-    table.row({escaped(explain::waits_for(r.cause)), escaped(r.cause), escaped(r.region), escaped(r.culprit),
-               clocks_cell(static_cast<double>(r.cycles)),
+    table.row({escaped(explain::waits_for(r.cause)), escaped(r.cause), escaped(r.region),
+               escaped(r.culprit), clocks_cell(static_cast<double>(r.cycles)),
                percent_cell(static_cast<double>(r.cycles), run.value("cpu.cycles").value_or(0))});
   return table.html();
 }
@@ -123,7 +142,8 @@ std::string function_table(const Runs& runs) {
     }
   }
   std::vector<std::pair<std::string, double>> order(largest.begin(), largest.end());
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> headings{"Function"};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::string of = runs.size() == 1 ? "" : " " + run_label(i);
@@ -138,7 +158,8 @@ std::string function_table(const Runs& runs) {
   order.resize(std::min(order.size(), kMaxFunctions));
   std::vector<std::map<std::string, std::string>> places;
   for (const auto& run : runs) places.push_back(places_of(run));
-  for (const auto& [name, n] : order) {
+  for (const auto& entry : order) {
+    const std::string& name = entry.first;
     std::vector<std::string> cells{"<code>" + escaped(name) + "</code>"};
     std::string where, wait;
     const auto of = [&](std::size_t i) {
@@ -172,13 +193,15 @@ std::string frames_section(const Runs& runs) {
     const auto& run = runs[i];
     if (!run.frames) return absent("This folder has no frames.csv: only 'fovea run' writes it.");
     if (run.frames->empty()) return absent("The run displayed no frame.");
-    std::string out = chart("frames", i,
-                            "When each of the first frames was captured, remapped and displayed, in ms "
-                            "since power-up. The number is that of the displayed frame.");
+    std::string out =
+        chart("frames", i,
+              "When each of the first frames was captured, remapped and displayed, in ms "
+              "since power-up. The number is that of the displayed frame.");
     if (run.frames->size() > 1)
-      out += chart("frame-times", i,
-                   "Time of the remap, and from the first captured to the first displayed sample, of "
-                   "each displayed frame.");
+      out +=
+          chart("frame-times", i,
+                "Time of the remap, and from the first captured to the first displayed sample, of "
+                "each displayed frame.");
     return out;
   });
 }
@@ -187,15 +210,19 @@ std::string bandwidth_section(const Runs& runs) {
   return panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
     if (!run.timeline || run.timeline->rows.empty())
-      return absent("This folder has no rows in timeline.csv, so its bandwidth over time is not known.") +
+      return absent(
+                 "This folder has no rows in timeline.csv, so its bandwidth over time is not "
+                 "known.") +
              bandwidth_table(run);
     std::string out;
     if (run.frames && !run.frames->empty())
-      out += chart("bandwidth-detail", i,
-                   "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
-                   "displayed; masters are stacked.");
+      out += chart(
+          "bandwidth-detail", i,
+          "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
+          "displayed; masters are stacked.");
     out += chart("bandwidth-whole", i,
-                 "Bandwidth to and from the SDRAM from the begin to the end of the results; masters are stacked.");
+                 "Bandwidth to and from the SDRAM from the begin to the end of the results; "
+                 "masters are stacked.");
     return out + bandwidth_table(run);
   });
 }
@@ -204,15 +231,19 @@ std::string latency_section(const Runs& runs) {
   return panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
     const std::string table = latency_table(run);
-    if (table.empty()) return absent("No master has read from the SDRAM.");
-    std::string out = chart("percentiles", i,
-                            "Latency of each master's reads: from the median to the 99th percentile as a "
-                            "bar, with the mean and the largest as marks.") +
-                      table;
-    return out + (run.latency && !run.latency->empty()
-                      ? chart("latency", i,
-                              "How many requests of each master took how long; both axes are logarithmic.")
-                      : absent("The folder has no latency.csv, so there are no histograms."));
+    if (table.empty()) return absent("The results have no latencies of the SDRAM.");
+    std::string out =
+        chart("percentiles", i,
+              "Latency of each master's reads to their first beat and writes to their last: "
+              "from the median to the 99th percentile as a bar, with the mean and the "
+              "largest as marks.") +
+        table;
+    return out +
+           (run.latency && !run.latency->empty()
+                ? chart(
+                      "latency", i,
+                      "How many requests of each master took how long; both axes are logarithmic.")
+                : absent("The folder has no latency.csv, so there are no histograms."));
   });
 }
 
@@ -221,16 +252,21 @@ std::string stalls_section(const Runs& runs) {
     const auto& run = runs[i];
     if (run.value("cpu.cycles").value_or(0) == 0)
       return absent("No core ran, so there are no clocks of it to account for.");
-    std::string inside = chart("waterfall", i,
-                               "Where the clocks of the core in the window went: each cause begins where the "
-                               "one above it ends; colours say who is to blame.");
-    if (!run.stalls) return inside + absent("The folder has no stalls.csv, so the regions are not known.");
-    return inside + "<details><summary>Show the waits as a table</summary>" + stalls_table(run) + "</details>";
+    std::string inside =
+        chart("waterfall", i,
+              "Where the clocks of the core in the window went: each cause begins where the "
+              "one above it ends; colours say who is to blame.");
+    if (!run.stalls)
+      return inside + absent("The folder has no stalls.csv, so the regions are not known.");
+    return inside + "<details><summary>Show the waits as a table</summary>" + stalls_table(run) +
+           "</details>";
   });
   for (std::size_t i = 1; i < runs.size(); ++i)
-    if (runs[0].value("frame.remapped").value_or(0) > 0 && runs[i].value("frame.remapped").value_or(0) > 0)
+    if (runs[0].value("frame.remapped").value_or(0) > 0 &&
+        runs[i].value("frame.remapped").value_or(0) > 0)
       out += chart("waterfall-difference", i,
-                   fmt::format("Clocks of the core for each corrected frame: {} less A, by cause.", run_label(i)));
+                   fmt::format("Clocks of the core for each corrected frame: {} less A, by cause.",
+                               run_label(i)));
   return out;
 }
 
@@ -245,15 +281,19 @@ std::string banks_section(const Runs& runs) {
 }
 
 std::string profile_section(const Runs& runs) {
-  const bool any = std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.profile.has_value(); });
+  const bool any =
+      std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.profile.has_value(); });
   std::string out = any ? function_table(runs)
-                        : absent("There is no profile: 'fovea run --profile' makes one, by function and source line.");
+                        : absent(
+                              "There is no profile: 'fovea run --profile' makes one, by function "
+                              "and source line.");
   if (std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.stacks.has_value(); }))
     out += panels(runs, [&](std::size_t i) {
       if (!runs[i].stacks) return absent("This run has no profile.folded.");
-      return chart("flame", i,
-                   "Clocks by call stack: a box is as wide as the clocks of its function and of those that "
-                   "it calls. Choose a box to widen it.");
+      return chart(
+          "flame", i,
+          "Clocks by call stack: a box is as wide as the clocks of its function and of those that "
+          "it calls. Choose a box to widen it.");
     });
   return out;
 }

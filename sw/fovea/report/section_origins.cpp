@@ -18,7 +18,8 @@ std::string changed_parameters(const Results& run) {
   Table table("Parameters that were set", {"Key", "Value", "Set by", "Default", "Meaning"});
   for (const auto& p : run.parameters)
     if (p.changed())
-      table.row({code(p.key), escaped(p.value), escaped(p.origin), escaped(p.initial), escaped(p.description)});
+      table.row({code(p.key), escaped(p.value), escaped(p.origin), escaped(p.initial),
+                 escaped(p.description)});
   return table.empty() ? absent("Every parameter has its default.") : table.html();
 }
 
@@ -45,7 +46,8 @@ std::string differing_parameters(const Runs& runs) {
     for (const auto& run : runs) {
       const auto* p = run.parameter(key);
       values.insert(p ? "=" + p->value : "");
-      cells.push_back(p ? fmt::format("{} <small>({})</small>", escaped(p->value), escaped(p->origin)) : "");
+      cells.push_back(
+          p ? fmt::format("{} <small>({})</small>", escaped(p->value), escaped(p->origin)) : "");
       if (p) meaning = p->description;
     }
     cells.push_back(escaped(meaning));
@@ -57,7 +59,8 @@ std::string differing_parameters(const Runs& runs) {
 std::string command_text(const Results& run) {
   std::vector<std::string> words{"fovea"};
   for (const auto& word : run.arguments) {
-    const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]();&|<>~#!") == word.npos;
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]();&|<>~#!") == word.npos;
     std::string quoted = "'";
     for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
     words.push_back(plain ? word : quoted + "'");
@@ -89,8 +92,9 @@ std::string origin_table(const Results& run) {
 std::string configuration_section(const Runs& runs) {
   std::string out = runs.size() > 1 ? differing_parameters(runs) : "";
   out += panels(runs, [&](std::size_t i) {
-    return (runs.size() == 1 ? changed_parameters(runs[i]) : "") + "<details><summary>Show all parameters</summary>" +
-           all_parameters(runs[i]) + "</details>";
+    return (runs.size() == 1 ? changed_parameters(runs[i]) : "") +
+           "<details><summary>Show all parameters</summary>" + all_parameters(runs[i]) +
+           "</details>";
   });
   return out;
 }
@@ -100,11 +104,15 @@ std::string provenance_section(const Runs& runs) {
   for (const auto& run : runs) simulators.insert(simulator_text(run));
   std::string out;
   if (simulators.size() > 1)
-    out += "<p class=\"note\">The runs come from different states of the simulator: differences may be the "
-           "model's.</p>";
+    out +=
+        "<p class=\"note\">The runs come from different states of the simulator: differences may "
+        "be the "
+        "model's.</p>";
   else if (runs.size() > 1 && runs[0].modified)
-    out += "<p class=\"note\">The simulator's source was modified: the runs may come from different states of "
-           "it.</p>";
+    out +=
+        "<p class=\"note\">The simulator's source was modified: the runs may come from different "
+        "states of "
+        "it.</p>";
   return out + panels(runs, [&](std::size_t i) { return origin_table(runs[i]); });
 }
 

@@ -13,13 +13,28 @@
 namespace fovea::report {
 namespace {
 
-constexpr std::array kKeyFigures{
-    "frame.rate",           "frame.displayed",      "frame.repeated",      "frame.dropped",
-    "frame.remap_time.mean", "frame.remap_time.min", "frame.remap_time.max", "frame.latency.mean",
-    "frame.latency.min",    "frame.latency.max",    "startup.lut_time",    "capture.overflows",
-    "display.underflows",   "cpu.cycles",           "cpu.instructions",    "cpu.idle",
-    "ddr.utilisation",      "ddr.efficiency",       "ddr.read_bytes",      "ddr.write_bytes",
-    "replay.time",          "replay.bandwidth"};
+constexpr std::array kKeyFigures{"frame.rate",
+                                 "frame.displayed",
+                                 "frame.repeated",
+                                 "frame.dropped",
+                                 "frame.remap_time.mean",
+                                 "frame.remap_time.min",
+                                 "frame.remap_time.max",
+                                 "frame.latency.mean",
+                                 "frame.latency.min",
+                                 "frame.latency.max",
+                                 "startup.lut_time",
+                                 "capture.overflows",
+                                 "display.underflows",
+                                 "cpu.cycles",
+                                 "cpu.instructions",
+                                 "cpu.idle",
+                                 "ddr.utilisation",
+                                 "ddr.efficiency",
+                                 "ddr.read_bytes",
+                                 "ddr.write_bytes",
+                                 "replay.time",
+                                 "replay.bandwidth"};
 
 /// Large on top of a single run's page.
 constexpr std::array kTiles{"frame.rate", "frame.remap_time.mean", "frame.latency.mean",
@@ -34,7 +49,8 @@ double as_double(const app::StatRow& figure) {
 }
 
 bool missed(const Results& run) {
-  for (const auto* name : {"frame.repeated", "frame.dropped", "capture.overflows", "display.underflows"})
+  for (const auto* name :
+       {"frame.repeated", "frame.dropped", "capture.overflows", "display.underflows"})
     if (run.value(name).value_or(0) > 0) return true;
   return false;
 }
@@ -54,8 +70,9 @@ std::string verdict_of(const Results& run) {
                                                    : "",
                                 escaped(text));
   if (!run.complete)
-    out += "<p class=\"note\">These results are partial: the run was stopped before its end, or the "
-           "guest failed. The figures cover what was simulated.</p>";
+    out +=
+        "<p class=\"note\">These results are partial: the run was stopped before its end, or the "
+        "guest failed. The figures cover what was simulated.</p>";
   for (const auto& w : run.warnings)
     out += fmt::format("<p class=\"note\">Warning ({}){}: {}</p>", escaped(w.kind),
                        w.count > 1 ? fmt::format(", {} times", w.count) : "", escaped(w.what));
@@ -64,7 +81,7 @@ std::string verdict_of(const Results& run) {
 
 std::string tiles(const Results& run) {
   std::string out;
-  static constexpr std::array kNames{"new pictures a second", "remap of a frame, mean",
+  static constexpr std::array kNames{"new pictures on the display", "remap of a frame, mean",
                                      "from capture to display, mean", "SDRAM data bus in use"};
   for (std::size_t i = 0; i < kTiles.size(); ++i)
     if (const auto* figure = app::find(run.stats, kTiles[i]))
@@ -73,10 +90,11 @@ std::string tiles(const Results& run) {
   return out.empty() ? "" : "<div class=\"tiles\">" + out + "</div>";
 }
 
-/// A figure's change for people. Counts stay whole numbers; a ratio changes by points, so that it is
-/// not taken for the relative change.
+/// A figure's change for people. Counts stay whole numbers; a ratio changes by points, so that it
+/// is not taken for the relative change.
 std::string change_text(const app::StatRow& a, const app::StatRow& b) {
-  const auto *before = std::get_if<std::uint64_t>(&a.value), *after = std::get_if<std::uint64_t>(&b.value);
+  const auto *before = std::get_if<std::uint64_t>(&a.value),
+             *after = std::get_if<std::uint64_t>(&b.value);
   if (before && after)
     return *after > *before ? "+" + app::human_text(*after - *before, b.unit)
                             : "-" + app::human_text(*before - *after, b.unit);
@@ -144,8 +162,10 @@ std::string findings(const Runs& runs) {
       out += fmt::format("<h3>{} against A</h3>", run_label(i)) + finding_list(found);
   }
   out += panels(runs, [&](std::size_t i) { return finding_list(findings_of(runs[i])); });
-  return out + "<p class=\"note\">A wait is where clocks went. Whether more speed at that place would help is "
-               "shown only by runs in which it is changed.</p>";
+  return out +
+         "<p class=\"note\">A wait is where clocks went. Whether more speed at that place would "
+         "help is "
+         "shown only by runs in which it is changed.</p>";
 }
 
 std::string picture_html(const Picture& picture, const std::string& what) {
@@ -154,17 +174,17 @@ std::string picture_html(const Picture& picture, const std::string& what) {
 }
 
 std::string shrunk_note(const Picture& picture) {
-  return picture.shrunk == 1
-             ? ""
-             : fmt::format(" Shown at 1/{} of its {} x {} pixels.", picture.shrunk, picture.width,
-                           picture.height);
+  return picture.shrunk == 1 ? ""
+                             : fmt::format(" Shown at 1/{} of its {} x {} pixels.", picture.shrunk,
+                                           picture.width, picture.height);
 }
 
 /// Two pictures over one another, which the script's controls uncover.
 std::string compared(const std::string& id, const Picture& a, const std::string& name_a,
                      const Picture& b, const std::string& name_b, std::string_view sentence) {
   return fmt::format(
-      "<figure class=\"compare\" id=\"{}\" data-a=\"{}\" data-b=\"{}\"><figcaption>{}{}</figcaption>"
+      "<figure class=\"compare\" id=\"{}\" data-a=\"{}\" "
+      "data-b=\"{}\"><figcaption>{}{}</figcaption>"
       "<div class=\"stack\"><div class=\"one\">{}</div><div class=\"two\">{}</div></div></figure>",
       id, escaped(name_a), escaped(name_b), escaped(sentence), shrunk_note(b),
       picture_html(a, name_a), picture_html(b, name_b));
@@ -173,29 +193,37 @@ std::string compared(const std::string& id, const Picture& a, const std::string&
 std::string pictures_of(const Runs& runs, std::size_t i, const RunPictures& p) {
   const std::string id = fmt::format("pictures-{}", run_label(i));
   if (!p.after)
-    return absent("This run has no pictures (frames/): it displayed none, or --no-frames left them out.");
+    return absent(
+        "This run has no pictures (frames/): it displayed none, or --no-frames left them out.");
   const std::string frame = fmt::format("Frame {}", *p.frame);
   if (p.before)
     return compared(id, *p.before, "camera", *p.after, "display",
                     frame + ": what the camera sent, and the corrected picture on the display.");
-  return fmt::format("<figure id=\"{}\"><figcaption>{}: the corrected picture on the display.{}</figcaption>"
-                     "<div class=\"stack\"><div class=\"one\">{}</div></div></figure>",
-                     id, frame, shrunk_note(*p.after), picture_html(*p.after, "display")) +
-         absent("What the camera sent is not in this folder (camera/), so there is no comparison with it.");
+  return fmt::format(
+             "<figure id=\"{}\"><figcaption>{}: the corrected picture on the "
+             "display.{}</figcaption>"
+             "<div class=\"stack\"><div class=\"one\">{}</div></div></figure>",
+             id, frame, shrunk_note(*p.after), picture_html(*p.after, "display")) +
+         absent(
+             "What the camera sent is not in this folder (camera/), so there is no comparison with "
+             "it.");
 }
 
-std::string picture_difference(const Runs& runs, std::size_t i, const std::vector<RunPictures>& all) {
+std::string picture_difference(const Runs& runs, std::size_t i,
+                               const std::vector<RunPictures>& all) {
   const auto& p = all[i];
   if (!p.from_first || !all[0].after || !p.after) return "";
   const auto& d = *p.from_first;
   const std::string names = fmt::format("{} and {}", title_of(runs, 0), title_of(runs, i));
   if (d.pixels == 0)
-    return absent(fmt::format("The displayed frames {} of {} are equal, pixel for pixel.", *p.frame, names));
-  const std::string share = fmt::format("{:.3g}", 100.0 * static_cast<double>(d.pixels) / static_cast<double>(d.all));
+    return absent(
+        fmt::format("The displayed frames {} of {} are equal, pixel for pixel.", *p.frame, names));
+  const std::string share =
+      fmt::format("{:.3g}", 100.0 * static_cast<double>(d.pixels) / static_cast<double>(d.all));
   return compared(fmt::format("difference-{}", run_label(i)), *all[0].after, run_label(0), *p.after,
                   run_label(i),
-                  fmt::format("Frame {} of {}: {} of {} pixels differ ({} %), PSNR {:.1f} dB.", *p.frame,
-                              names, d.pixels, d.all, share, d.psnr));
+                  fmt::format("Frame {} of {}: {} of {} pixels differ ({} %), PSNR {:.1f} dB.",
+                              *p.frame, names, d.pixels, d.all, share, d.psnr));
 }
 
 }  // namespace
@@ -222,9 +250,10 @@ std::string panels(const Runs& runs, const std::function<std::string(std::size_t
 }
 
 std::string chart(std::string_view kind, std::size_t run, std::string_view sentence) {
-  return fmt::format("<figure class=\"chart\"><figcaption>{}</figcaption>"
-                     "<div data-chart=\"{}\" data-run=\"{}\"></div></figure>",
-                     escaped(sentence), kind, run);
+  return fmt::format(
+      "<figure class=\"chart\"><figcaption>{}</figcaption>"
+      "<div data-chart=\"{}\" data-run=\"{}\"></div></figure>",
+      escaped(sentence), kind, run);
 }
 
 std::string absent(std::string_view sentence) {
@@ -251,9 +280,10 @@ std::string Table::html() const {
     head += fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"n\"" : "",
                         escaped(is_number ? h.substr(1) : h));
   }
-  return fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table>"
-                     "<caption>{}</caption><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
-                     escaped(caption_), escaped(caption_), head, rows_);
+  return fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table>"
+      "<caption>{}</caption><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
+      escaped(caption_), escaped(caption_), head, rows_);
 }
 
 std::vector<explain::FunctionClocks> functions_of(const Results& run) {
@@ -274,7 +304,8 @@ std::vector<explain::FunctionClocks> functions_of(const Results& run) {
 }
 
 /// Refers to `run` and `functions`.
-static explain::Inputs inputs_of(const Results& run, std::span<const explain::FunctionClocks> functions) {
+static explain::Inputs inputs_of(const Results& run,
+                                 std::span<const explain::FunctionClocks> functions) {
   explain::Inputs in{.stats = run.stats, .stalls = {}, .frames = {}, .functions = functions};
   if (run.stalls) in.stalls = *run.stalls;
   if (run.frames) in.frames = *run.frames;
@@ -291,8 +322,8 @@ std::vector<explain::Finding> findings_of(const Results& run) {
 }
 
 std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index) {
-  return explain::explain_difference(inputs_of(runs[0], {}), run_label(0), inputs_of(runs[index], {}),
-                                     run_label(index));
+  return explain::explain_difference(inputs_of(runs[0], {}), run_label(0),
+                                     inputs_of(runs[index], {}), run_label(index));
 }
 
 std::string verdict_section(const Runs& runs) {
@@ -318,7 +349,8 @@ std::string figures_section(const Runs& runs) {
   std::vector<const app::StatRow*> rows;
   for (const auto& run : runs)
     for (const auto& s : run.stats)
-      if (as_double(s) != 0 && std::none_of(rows.begin(), rows.end(), [&](const auto* r) { return r->name == s.name; }))
+      if (as_double(s) != 0 &&
+          std::none_of(rows.begin(), rows.end(), [&](const auto* r) { return r->name == s.name; }))
         rows.push_back(&s);
   for (const auto* row : rows) {
     std::vector<std::string> cells{fmt::format("<code>{}</code>", escaped(row->name))};

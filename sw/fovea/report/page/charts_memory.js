@@ -1,19 +1,26 @@
 // SDRAM: latencies and banks.
-function mastersWithLatency(run) {
-  return Object.keys(run.stats).map((name) => /^ddr\.(.+)\.latency\.mean$/.exec(name)).filter(Boolean).map((m) => m[1]);
+/// Reads to their first beat and writes to their last: how long a master is kept waiting.
+function latencies(run) {
+  const rows = [];
+  for (const [prefix, requests] of [['', 'reads'], ['write_last.', 'writes']])
+    for (const name of Object.keys(run.stats)) {
+      const master = /^ddr\.([^.]+)\.latency\.(.*)mean$/.exec(name);
+      if (!master || master[2] !== prefix) continue;
+      const value = (which) => (run.stats[`ddr.${master[1]}.latency.${prefix}${which}`] ?? [NaN])[0] * 1e9;
+      rows.push({master: master[1], requests, ...Object.fromEntries(['p50', 'p95', 'p99', 'mean', 'max'].map((w) => [w, value(w)]))});
+    }
+  return rows;
 }
 
 function drawPercentiles(place, run, span) {
-  const masters = mastersWithLatency(run);
-  const width = widthOf(place), box = {left: 110, right: width - 20, top: 8, bottom: 8 + 34 * masters.length};
+  const rows = latencies(run);
+  const width = widthOf(place), box = {left: 142, right: width - 20, top: 8, bottom: 8 + 34 * rows.length};
   const x = logScale(span[0], span[1], box.left, box.right);
   const svg = drawing(place, width, box.bottom + 40, xAxis(box, x, logTicks(span[0], span[1]), 'ns'));
-  masters.forEach((master, row) => {
-    const value = (which) => (run.stats[`ddr.${master}.latency.${which}`] ?? [NaN])[0] * 1e9;
+  rows.forEach(({master, requests, p50, p95, p99, mean, max}, row) => {
     const y = box.top + 34 * row + 17;
-    const [p50, p95, p99, mean, max] = ['p50', 'p95', 'p99', 'mean', 'max'].map(value);
-    svg.append(text(box.left - 8, y + 4, master, {'text-anchor': 'end'}),
-      element('g', {}, element('title', {}, `${master}: median ${plain(p50)}, 95 % ${plain(p95)}, 99 % ${plain(p99)}, mean ${plain(mean)}, largest ${plain(max)} ns`),
+    svg.append(text(box.left - 8, y + 4, `${master}, ${requests}`, {'text-anchor': 'end'}),
+      element('g', {}, element('title', {}, `${master}, ${requests}: median ${plain(p50)}, 95 % ${plain(p95)}, 99 % ${plain(p99)}, mean ${plain(mean)}, largest ${plain(max)} ns`),
         element('line', {class: 'base', x1: x(p99), x2: x(max), y1: y, y2: y, 'stroke-dasharray': '2 3'}),
         element('rect', {x: x(p50), y: y - 6, width: Math.max(x(p99) - x(p50), 2), height: 12, fill: colour(master), 'fill-opacity': 0.5}),
         element('rect', {x: x(p50), y: y - 9, width: Math.max(x(p95) - x(p50), 2), height: 18, fill: colour(master)}),
@@ -23,7 +30,7 @@ function drawPercentiles(place, run, span) {
   place.append(svg, element('p', {class: 'legend'}, 'Full bar: median to 95 %; pale bar: to 99 %; triangle: mean; ring: largest.'));
 }
 function latencySpan(runs) {
-  const all = runs.flatMap((run) => mastersWithLatency(run).flatMap((m) => ['p50', 'mean', 'max'].map((w) => (run.stats[`ddr.${m}.latency.${w}`] ?? [0])[0] * 1e9))).filter((v) => v > 0);
+  const all = runs.flatMap((run) => latencies(run).flatMap((r) => [r.p50, r.mean, r.max])).filter((v) => v > 0);
   return all.length ? [Math.min(...all) / 1.25, Math.max(...all) * 1.15] : [1, 10];
 }
 
@@ -39,7 +46,8 @@ function drawLatency(place, run) {
     const x = logScale(low, high, box.left, box.right), y = logScale(0.7, most * 1.3, box.bottom, box.top);
     const svg = drawing(place, width, 206, xAxis(box, x, logTicks(low, high), 'ns'),
       yAxis(box, y, logTicks(1, most).filter((v) => Number.isInteger(Math.round(Math.log10(v) * 1e6) / 1e6)), `requests: ${kind}`, short));
-    const masters = [...new Set(of.map((r) => r.master))];
+    const requests = (master) => of.filter((r) => r.master === master).reduce((sum, r) => sum + r.count, 0);
+    const masters = [...new Set(of.map((r) => r.master))].sort((a, b) => requests(b) - requests(a));
     masters.forEach((master, i) => {
       const bins = of.filter((r) => r.master === master).sort((a, b) => a.low - b.low);
       let d = '', end = null;
@@ -48,8 +56,8 @@ function drawLatency(place, run) {
         d += `H${x(b.high)}`;
         end = b.high;
       }
-      svg.append(element('path', {d: `${d}V${box.bottom}`, fill: colour(master), 'fill-opacity': 0.18, stroke: colour(master), 'stroke-width': 1.8,
-                                  'stroke-dasharray': ['', '6 3', '2 3', '8 3 2 3'][i % 4] || undefined},
+      svg.append(element('path', {d: `${d}V${box.bottom}`, fill: colour(master), 'fill-opacity': 0.18, stroke: colour(master), 'stroke-width': 1.4,
+                                  'stroke-dasharray': ['', '7 2', '2 2', '9 2 2 2'][i % 4] || undefined},
                          element('title', {}, `${master}: ${plain(bins.reduce((sum, b) => sum + b.count, 0), 6)} requests`)));
     });
     place.append(svg, legend(masters));
@@ -59,7 +67,7 @@ function drawLatency(place, run) {
 const BANK_ROWS = [['row_hits', 'row open'], ['row_misses', 'bank closed'], ['row_conflicts', 'another row open']];
 function drawBanks(place, run, most) {
   const banks = Object.keys(run.stats).filter((name) => /^ddr\.bank\d+\.row_hits$/.test(name)).length;
-  const box = {left: 112, top: 24}, width = Math.min(90, (widthOf(place) - 122) / banks);
+  const box = {left: 122, top: 24}, width = Math.min(90, (widthOf(place) - 132) / banks);
   const svg = drawing(place, box.left + banks * width + 10, box.top + BANK_ROWS.length * 40 + 10);
   for (let bank = 0; bank < banks; ++bank)
     svg.append(text(box.left + (bank + 0.5) * width, 16, width > 55 ? `bank ${bank}` : bank, {class: 'axis', 'text-anchor': 'middle'}));

@@ -7,16 +7,20 @@ function drawFrames(place, run) {
   const frames = run.frames.slice(0, DETAILED);
   const times = frames.flatMap((f) => LANES.flatMap((lane) => f[lane])).filter((t) => t !== null);
   if (!times.length) return;
-  const width = widthOf(place), box = {left: 64, right: width - 20, top: 12, bottom: 12 + 46 * LANES.length};
+  // Cameras capture at the same time; remaps and displayed frames follow one another.
+  const cameras = [...new Set(frames.map((f) => f.camera))].sort();
+  const lanes = [...cameras.map((camera) => ({lane: 'capture', camera, name: cameras.length > 1 ? `capture ${camera}` : 'capture'})),
+                 {lane: 'remap', name: 'remap'}, {lane: 'display', name: 'display'}];
+  const width = widthOf(place), box = {left: 72, right: width - 20, top: 12, bottom: 12 + 46 * lanes.length};
   const at = scale(Math.min(...times), Math.max(...times), box.left, box.right);
   const svg = drawing(place, width, box.bottom + 40,
                       xAxis(box, at, ticks(Math.min(...times), Math.max(...times), width / 110), 'ms since power-up'));
-  LANES.forEach((lane, row) => {
+  lanes.forEach(({lane, camera, name}, row) => {
     const y = box.top + row * 46 + 6;
-    svg.append(text(box.left - 8, y + 22, lane, {'text-anchor': 'end'}));
+    svg.append(text(box.left - 8, y + 22, name, {'text-anchor': 'end'}));
     for (const f of frames) {
       const [start, end] = f[lane];
-      if (start === null || end === null || (f.repeated && lane !== 'display')) continue;
+      if (start === null || end === null || (f.repeated && lane !== 'display') || (camera ?? f.camera) !== f.camera) continue;
       const length = Math.max(at(end) - at(start), 1);
       const label = `frame ${f.frame}${f.repeated ? ', shown again' : ''}: ${lane} from ${plain(start, 7)} to ${plain(end, 7)} ms, ` +
         `${plain(end - start)} ms` + (f.dropped ? `; ${f.dropped} dropped before it` : '');
@@ -24,7 +28,7 @@ function drawFrames(place, run) {
         element('rect', {x: at(start), y: y + (f.frame % 2) * 4, width: length, height: 30, rx: 2, fill: colour(lane), class: 'edge',
                          'fill-opacity': f.repeated ? 0.45 : 1, 'stroke-dasharray': f.repeated ? '4 3' : undefined}),
         length > 22 ? text(at(start) + length / 2, y + 19 + (f.frame % 2) * 4, f.repeated ? `${f.frame} again` : f.frame,
-                          {class: 'on', 'text-anchor': 'middle'}) : undefined,
+                           {class: 'on', 'text-anchor': 'middle'}) : undefined,
         f.dropped && lane === 'display' ? text(at(start), y + 1, `${f.dropped} dropped`, {class: 'axis', 'text-anchor': 'middle'}) : undefined));
     }
   });
