@@ -23,6 +23,7 @@
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/last_words.h"
+#include "sw/fovea/perfetto/cli_perfetto.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/warnings.h"
