@@ -24,6 +24,7 @@
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/last_words.h"
 #include "sw/fovea/limits/limits_command.h"
+#include "sw/fovea/perfetto/cli_perfetto.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
 #include "sw/fovea/regression/regression_command.h"

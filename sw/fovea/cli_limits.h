@@ -18,15 +18,6 @@ struct LimitOptions {
   std::string symbols;
 };
 
-/// Options of `--perfetto`; what was given, checked.
-struct PerfettoOptions {
-  PerfettoRequest request;
-  std::string file, duration;
-};
-void add_perfetto_options(CLI::App& command, PerfettoOptions& options);
-/// @throws UserError that names the option
-PerfettoRequest perfetto_of(const PerfettoOptions& options);
-
 void add_limit_options(CLI::App& command, LimitOptions& options);
 /// @throws UserError that names the option
 RunLimits limits_of(const LimitOptions& options);
