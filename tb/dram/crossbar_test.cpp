@@ -54,6 +54,19 @@ TEST(CrossbarTest, ResponseLatencyMovesReadDataAndAcknowledgeByItsEdges) {
   }
 }
 
+// What registers answer comes back through the same bridge, a burst's last word as late as its first.
+TEST(CrossbarTest, ResponseLatencyMovesTheAnswersOfRegistersByItsEdges) {
+  for (const unsigned latency : {0u, 2u, 3u}) {
+    XbarBench b({{"bus.vpfe.response_latency", std::to_string(latency) + " cycles"}});
+    b.submit(kA, 5, false, 32, Slave::kConfig);
+    b.run();
+    b.xbar.slave_done(b, *b.sent[0], {30 * kEdge, 37 * kEdge + 1});
+    ASSERT_EQ(b.answers.size(), 1u);
+    EXPECT_EQ(b.answers[0].first, 30 + latency);
+    EXPECT_EQ(b.answers[0].last, 38 + latency);
+  }
+}
+
 TEST(CrossbarTest, WriteOccupiesTheSlaveForItsWordsAndReadForOne) {
   for (const unsigned bytes : {4u, 8u, 16u, 64u}) {
     XbarBench b;

@@ -307,6 +307,15 @@ TEST(ReplayPathTest, TheFiguresAddUp) {
   EXPECT_EQ(transactions, 3000);
 }
 
+TEST(ReplayPathTest, ATraceOfNothingHasNoRates) {
+  Listed nothing;
+  const auto value = figures(Played(board_info(), nothing));
+  EXPECT_EQ(value.at("replay.time"), 0);
+  EXPECT_EQ(value.at("replay.requests"), 0);
+  for (const char* rate : {"replay.bandwidth", "ddr.utilisation", "ddr.efficiency", "ddr.headroom"})
+    EXPECT_FALSE(value.contains(rate)) << rate;
+}
+
 TEST(ReplayPathTest, TheUrgentMasterWaitsLess) {
   const auto means = [](std::uint8_t first, std::uint8_t second) {
     trace::TraceInfo info = board_info();

@@ -169,6 +169,16 @@ TEST(DdrPresetTest, NumbersByHand) {
   EXPECT_EQ(of("mt46h32m16lf", "75", "83MHz"), "83MHz 2 2 2 2 4 6 2 2 1 2 6 647 8 4 2KiB");
 }
 
+// JESD79-2: power-down takes two clocks to leave and three at least, self-refresh 200 clocks until the DLL has
+// locked, and tRFC (127.5 ns with 1 Gb) and 10 ns to anything but a read.
+TEST(DdrPresetTest, SleepByHand) {
+  const Keyed k({"ddr.part=mt47h64m16", "ddr.preset=data_sheet"});
+  EXPECT_EQ(k.value("ddr.tXP"), "2 cycles");
+  EXPECT_EQ(k.value("ddr.tCKE"), "3 cycles");
+  EXPECT_EQ(k.value("ddr.tXSRD"), "200 cycles");
+  EXPECT_EQ(k.value("ddr.tXSNR"), "34 cycles");
+}
+
 // ddr.clock is in whole hertz; tCK is 6 ns in grade 6 and 3 ns in grade 3.
 TEST(DdrPresetTest, RoundedHertzAreTheClockOfTheGrade) {
   const auto of = [](const char* part, const char* grade, const char* clock) -> std::string {

@@ -269,6 +269,9 @@ TEST(ConfigBusTest, ABurstIsItsWordsOneAfterTheOther) {
   one = {request(Master::kEdmaTc0Read, 0x01C0'0009, in.data(), 8, false)};
   EXPECT_EQ(c.master.run(one)[0].after, 4 * kFast);
   EXPECT_EQ(in[0], 0x0A);
+  // A byte, a word, a byte.
+  one = {request(Master::kEdmaTc0Read, 0x01C0'000B, in.data(), 6, false)};
+  EXPECT_EQ(c.master.run(one)[0].after, 3 * kFast);
 }
 
 TEST(ConfigBusTest, AMasterHasOneAccessAtATimeAndOthersAreBesideIt) {

@@ -41,6 +41,12 @@ TEST(GdbFramerTest, KnownFrames) {
   EXPECT_EQ(gdb_frame("a#b"), "$a}\x03" "b#43");
 }
 
+TEST(GdbFramerTest, ChecksumsMayHaveCapitalDigits) {
+  const auto e = events("$OK#9A$Dk#AF$~q#EF");  // the sums of ASCII codes: 0x9a, 0xaf, 0xef
+  ASSERT_EQ(e.size(), 3u);
+  for (const auto& one : e) EXPECT_EQ(one.kind, Kind::kPacket);
+}
+
 TEST(GdbFramerTest, DamageIsBrokenAndTheNextPacketIsNot) {
   const std::string damaged[] = {"$OK#9b", "$OK#zz", "$O#K#9a", "$a}#7d#de", "$}#7d"};
   for (const auto& d : damaged) {
@@ -255,6 +261,9 @@ TEST_F(GdbProtocolTest, DescriptionsComeInPieces) {
     text += piece.substr(1);
   }
   EXPECT_EQ(text, target.target_xml());
+  // Each character may need an escape: a piece and its mark fill half of a packet and no more.
+  ASSERT_GT(text.size(), kGdbPacketBytes / 2);
+  EXPECT_EQ(ask("qXfer:features:read:target.xml:0,ffff").size(), kGdbPacketBytes / 2);
   EXPECT_EQ(ask("qXfer:memory-map:read::0,fff"), "lmap");
   EXPECT_EQ(ask("qXfer:memory-map:read::3,fff"), "l");
   EXPECT_EQ(ask("qXfer:memory-map:read::4,fff"), "E16");
