@@ -209,6 +209,21 @@ std::string frame_lines(std::span<const StatRow> stats) {
   return parts.empty() ? "" : paragraph("times", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
+/// What became of the frames of each of several cameras.
+std::string camera_lines(std::span<const StatRow> stats) {
+  std::vector<std::string> parts;
+  for (unsigned n = 0;; ++n) {
+    const std::string prefix = fmt::format("camera.{}.frame.", n);
+    const auto rate = real(stats, prefix + "rate");
+    if (!rate) break;
+    std::string part = fmt::format("camera {} {:.4g} frames a second", n, *rate);
+    for (const char* fate : {"dropped", "superseded"})
+      if (const std::uint64_t frames = count(stats, prefix + fate)) part += fmt::format(", {} {}", frames, fate);
+    parts.push_back(std::move(part));
+  }
+  return parts.empty() ? "" : paragraph("cameras", fmt::format("{}", fmt::join(parts, "; ")));
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std::uint64_t> shares) {
@@ -250,7 +265,7 @@ std::string frame_budget(std::span<const StatRow> stats) {
 }
 
 std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host) {
-  return verdict(stats) + frame_budget(stats) + frame_lines(stats) + core_line(stats) +
+  return verdict(stats) + frame_budget(stats) + frame_lines(stats) + camera_lines(stats) + core_line(stats) +
          sdram_line(stats, real(stats, "frame.window")) + wait_lines(stats) + host_line(host);
 }
 
