@@ -48,26 +48,27 @@ binds bridge bridge_vpfe no
 [ "$(sed -n 2p bridge/binds.csv | cut -d, -f2)" = bridge_arm_d ] || fail "bridge: $(cat bridge/binds.csv)"
 confirm bridge bridge_arm_d -s 'bus.arm_d.request_latency=0 cycles' -s 'bus.arm_d.response_latency=0 cycles'
 
-# A slow SDRAM.
-plant=(-s clocks.ddr=130MHz)
-limits sdram 0 "${plant[@]}" --binds frame.remap_time.mean --relax $relax,display,refresh
-binds sdram sdram_clock yes
-binds sdram bridge_vpfe no
-binds sdram display no
-binds sdram refresh no
-[ "$(sed -n 2p sdram/binds.csv | cut -d, -f2)" = sdram_clock ] || fail "sdram: $(cat sdram/binds.csv)"
-confirm sdram sdram_clock -s clocks.ddr=340MHz
+# A slow SDRAM controller: 32 + 16 clocks stand for 8 + 2. What is relaxed by replay is not to blame.
+plant=(-s 'ddr.request_latency=32 cycles' -s 'ddr.return_latency=16 cycles')
+limits sdram 0 "${plant[@]}" --binds frame.remap_time.mean --relax $relax,ddr_latency,display,refresh
+binds sdram ddr_latency yes
+for other in bridge_vpfe display refresh; do binds sdram $other no; done
+[ "$(sed -n 2p sdram/binds.csv | cut -d, -f2)" = ddr_latency ] || fail "sdram: $(cat sdram/binds.csv)"
+confirm sdram ddr_latency -s 'ddr.request_latency=0 cycles' -s 'ddr.return_latency=0 cycles'
+# A slow clock, which crossbar and bridges follow.
+limits clock 0 -s clocks.ddr=130MHz --binds frame.remap_time.mean --relax sdram_clock
+binds clock sdram_clock yes
+confirm clock sdram_clock -s clocks.ddr=340MHz
 
-# A low priority beside a load: only then does the priority bind.
-load=(-s load.outstanding=4 -s load.gap=150ns -s load.priority=1 -s load.start=130ms)
-limits priority 0 "${load[@]}" -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm,bridge_vpfe
+# A low priority beside a heavy load: only then does the priority bind.
+load=(-s load.outstanding=8 -s load.gap=100ns -s load.priority=0 -s load.pattern=random -s load.start=130ms)
+limits priority 0 "${load[@]}" -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm
 binds priority priority_arm yes
-binds priority bridge_vpfe no
 confirm priority priority_arm "${load[@]}" -s priority.arm=0
 limits no_load 0 -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm
 binds no_load priority_arm no
 
-# A size that the board does not allow is no answer but an error; the others all do.
+# Every size is met.
 limits size 0 --find video.height=16..32:16
 grep -q 'video.height: all values that were tried from 16 to 32 meet the conditions' size.out ||
   fail "size: $(cat size.out)"
@@ -80,7 +81,7 @@ trace=$(echo sdram/points/*/bus.trace)
 [ "$(figure without bus.vpbe.read_bytes)" = 0 ] || fail "the display is still there"
 [ "$(figure without bus.vpfe.write_bytes)" = "$(figure with bus.vpfe.write_bytes)" ] || fail "the camera changed"
 "$fovea" replay "$trace" --without arm_d -o core 2>core.err
-[ $? = 2 ] && grep -q "error: --without 'arm_d': allowed here: vpbe, vpfe" core.err || fail "arm_d: $(cat core.err)"
+[ $? = 2 ] && grep -q "error: --without 'arm_d': allowed here: .*vpbe, vpfe$" core.err || fail "arm_d: $(cat core.err)"
 
 [ "$failures" = 0 ] || exit 1
 echo "three planted bottlenecks named"
