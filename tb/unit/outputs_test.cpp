@@ -223,6 +223,25 @@ std::vector<StatRow> frames_of(double rate, std::uint64_t displayed, std::uint64
           {"capture.overflows", overflows, "1", ""}, {"display.underflows", underflows, "1", ""}};
 }
 
+TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
+  auto stats = frames_of(12.5, 16, 8, 1);
+  stats.push_back({"camera.0.frame.rate", 6.25, "1/s", ""});
+  stats.push_back({"camera.1.frame.rate", 6.25, "1/s", ""});
+  stats.push_back({"camera.1.frame.displayed", std::uint64_t{4}, "1", ""});
+  EXPECT_EQ(verdict(stats),
+            "several cameras in turn: 8 new frames in 16 displayed ones (12.5/s), 1 dropped\n");
+  EXPECT_THAT(summary_table(stats, {}), HasSubstr("camera.1.frame.rate  6.25 1/s"));
+}
+
+TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {
+  FrameRow row;
+  row.index = 3;
+  row.camera = 2;
+  EXPECT_TRUE(frames_csv_line(row).starts_with("3,2,,"));
+  row.camera = ~0u;
+  EXPECT_TRUE(frames_csv_line(row).starts_with("3,,,"));
+}
+
 TEST(VerdictTest, SaysWhetherTheRateWasMet) {
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0)),
             "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated\n");
