@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "sw/fovea/exec_caches.h"
+#include "sw/fovea/run_profile.h"
 #include "sw/fovea/stall_regions.h"
 
 namespace fovea::app {

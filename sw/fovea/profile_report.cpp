@@ -164,12 +164,6 @@ std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImag
   return out;
 }
 
-void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
-  for (const auto& p : stacks.paths()) data.stacks.push_back({p.functions, p.clocks});
-  for (const auto& c : stacks.calls()) data.calls.push_back({c.from, c.to, c.count, c.clocks});
-  data.ranges = stacks.ranges();
-}
-
 std::string profile_csv(const ProfileData& data, SourceLines& lines) {
   std::string out = "phase,function,file,line,cause,region,culprit,clocks,instructions\n";
   for (const ProfilePhase& phase : data.phases) {

@@ -46,8 +46,6 @@ struct ProfileData {
 /// The functions of programs, the first program's first, as CallStacks wants them. A label in code that
 /// lies in no function goes on to the next one.
 std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImage* const> programs);
-/// Puts what a core's profile counted of call stacks into `data`.
-void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 
 /// A file of a run's folder.
 struct ResultFile {

@@ -2,6 +2,12 @@
 
 namespace fovea::app {
 
+void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
+  for (const auto& p : stacks.paths()) data.stacks.push_back({p.functions, p.clocks});
+  for (const auto& c : stacks.calls()) data.calls.push_back({c.from, c.to, c.count, c.clocks});
+  data.ranges = stacks.ranges();
+}
+
 RunProfile::RunProfile(board::Board& board, bool whole_run,
                        std::span<const ElfImage* const> programs)
     : board_(board), core_(board.dm365.arm.core()), whole_run_(whole_run) {

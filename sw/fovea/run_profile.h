@@ -12,6 +12,9 @@
 
 namespace fovea::app {
 
+/// Puts what a core's profile counted of call stacks into `data`.
+void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
+
 /// Phases are those that the firmware shows on its pins, up to the measured window, which is the phase
 /// `frames`. If the window is the whole run, that is one phase, `run`.
 class RunProfile {

@@ -127,7 +127,14 @@ struct SourceLines::Program {
         if (dwarf_lineno(line, &number) == 0 && number > 0) here.line = static_cast<unsigned>(number);
       }
       Dwarf_Die* scopes = nullptr;
-      const int count = dwarf_getscopes(&unit, address, &scopes);
+      int count = dwarf_getscopes(&unit, address, &scopes);
+      if (count > 0) {
+        // Around an inlined function this lists where it is defined; wanted is where it is inlined.
+        Dwarf_Die innermost = scopes[0];
+        std::free(scopes);
+        scopes = nullptr;
+        count = dwarf_getscopes_die(&innermost, &scopes);
+      }
       for (int k = 0; k < count; ++k) {
         const int tag = dwarf_tag(&scopes[k]);
         if (tag != DW_TAG_inlined_subroutine && tag != DW_TAG_subprogram) continue;

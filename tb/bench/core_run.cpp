@@ -1,7 +1,8 @@
-// core_run FILE [CLOCKS]: runs a program on the core alone and prints instructions, clocks and
-// seconds.
+// core_run FILE [CLOCKS [profile]]: runs a program on the core alone, with a profile or without, and
+// prints instructions, clocks and seconds.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <exception>
 
@@ -10,10 +11,11 @@
 
 int main(int argc, char** argv) try {
   if (argc < 2) {
-    std::fprintf(stderr, "core_run FILE [CLOCKS]\n");
+    std::fprintf(stderr, "core_run FILE [CLOCKS [profile]]\n");
     return 2;
   }
   fovea::cpu::CoreRig rig(argv[1], argc > 2 ? std::strtoull(argv[2], nullptr, 0) : 0);
+  if (argc > 3 && std::strcmp(argv[3], "profile") == 0) rig.core.start_profile();
   fovea::cpu::isa_row(0, false);  // the first look-up builds the decoder's tables
   const std::clock_t begin = std::clock();
   rig.run();

@@ -10,12 +10,12 @@ namespace fovea::cpu::test {
 namespace {
 
 /// A program whose functions begin at the labels called f_NAME, and end at the next one.
-struct Run {
+struct Traced {
   Machine m;
   std::map<std::uint32_t, std::string> names;
   std::map<std::string, std::uint64_t> clocks;  ///< by "a;b;c"
 
-  explicit Run(const std::string& text, std::function<void(Machine&)> prepare = {}) {
+  explicit Traced(const std::string& text, std::function<void(Machine&)> prepare = {}) {
     const Program p = assemble(text, 0);
     std::vector<CallStacks::Function> functions;
     for (const auto& [name, address] : p.symbols)
@@ -55,7 +55,7 @@ struct Run {
 using Stacks = std::set<std::string>;
 
 TEST(CallStackTest, CallsAndReturns) {
-  const Run r(R"(
+  const Traced r(R"(
   f_main:
     mov sp, #0x4000
     bl f_a
@@ -97,15 +97,15 @@ TEST(CallStackTest, CallsAndReturns) {
   std::uint64_t calls = 0;
   for (const auto& c : r.tree().calls()) {
     calls += c.count;
-    if (r.names.at(c.to) == "a")
-      EXPECT_EQ(c.clocks, r.clocks.at("main;a") + r.clocks.at("main;a;leaf") + r.clocks.at("main;a;b") +
-                              r.clocks.at("main;a;b;leaf"));
+    if (r.names.at(c.to) != "a") continue;
+    EXPECT_EQ(c.clocks, r.clocks.at("main;a") + r.clocks.at("main;a;leaf") + r.clocks.at("main;a;b") +
+                            r.clocks.at("main;a;b;leaf"));
   }
   EXPECT_EQ(calls, 8u);
 }
 
 TEST(CallStackTest, RecursionCountsOnce) {
-  const Run r(R"(
+  const Traced r(R"(
   f_main:
     mov sp, #0x4000
     mov r0, #4
@@ -129,7 +129,7 @@ TEST(CallStackTest, RecursionCountsOnce) {
 
 /// A branch, and a branch to a register, out of a function: the callee returns for its caller.
 TEST(CallStackTest, TailCalls) {
-  const Run r(R"(
+  const Traced r(R"(
   f_main:
     mov sp, #0x4000
     mov r5, #3
@@ -161,7 +161,7 @@ TEST(CallStackTest, TailCalls) {
 
 /// A table of cases inside a function is no call.
 TEST(CallStackTest, TablesOfCases) {
-  const Run r(R"(
+  const Traced r(R"(
   f_main:
     mov sp, #0x4000
     mov r0, #1
@@ -187,7 +187,7 @@ TEST(CallStackTest, TablesOfCases) {
 
 /// From three calls deep back into the function that called setjmp, twice.
 TEST(CallStackTest, LongJump) {
-  const Run r(R"(
+  const Traced r(R"(
   f_main:
     mov sp, #0x4000
     bl f_outer
@@ -232,7 +232,7 @@ TEST(CallStackTest, LongJump) {
 
 /// Two tasks with stacks of 256 bytes side by side hand over to each other from two calls deep.
 TEST(CallStackTest, TwoTasks) {
-  const Run r(R"(
+  const Traced r(R"(
     .equ other, 0x3000
   f_main:
     mov sp, #0x4000
@@ -339,7 +339,7 @@ TEST(CallStackTest, NestedInterrupts) {
     bne 1b
     bx lr
   )";
-  const Run r(text, [](Machine& m) {
+  const Traced r(text, [](Machine& m) {
     m.on_svc = [&m](std::uint32_t n) {
       if (n == 4) m.core.set_irq(false, m.time());
       if (n == 5) m.core.set_fiq(false, m.time());

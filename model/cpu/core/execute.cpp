@@ -97,6 +97,7 @@ ClockProfile& Core::start_profile() {
   own_profile_ = std::make_unique<ClockProfile>(regs_.pc, ledger_.counts);
   profile_ = ledger_.profile = own_profile_.get();
   fetch_.keep_tallies(*profile_);
+  if (ledger_.cycle) profile_->stacks.start(ledger_.cycle, regs_.pc);
   return *profile_;
 }
 
