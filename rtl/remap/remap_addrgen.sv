@@ -1,6 +1,9 @@
 // Address generator: for each pair of output pixels of a job, where it comes from and where it goes.
 // README.md of this folder's parent defines the results bit by bit.
-module remap_addrgen (
+module remap_addrgen #(
+  parameter bit WithRadial = 1'b1,  // without: such jobs are refused
+  parameter bit WithProject = 1'b1
+) (
   input  logic              clk_i,
   input  logic              rst_ni,        // asynchronous, active low
   input  logic              clear_i,       // abandons the job
@@ -21,7 +24,7 @@ module remap_addrgen (
 
   // What can be done. The step of a grid bounds the number of its nodes.
   logic [12:0] step, cells;
-  logic size_ok, source_ok, grid_ok, radial_ok;
+  logic size_ok, source_ok, grid_ok, radial_ok, mode_ok;
   assign step = 13'd1 << job_i.grid_log2;
   assign cells = ({job_i.pairs, 1'b0} + step - 13'd1) >> job_i.grid_log2;
   assign size_ok = job_i.pairs != '0 && job_i.pairs <= 12'd2048 && job_i.rows != '0 && job_i.rows <= 13'd4096;
@@ -32,7 +35,9 @@ module remap_addrgen (
                    (job_i.grid_log2 >= 3'd2 && job_i.grid_log2 <= 3'd6 && cells < 13'd256);
   assign radial_ok = job_i.mode != remap_pkg::ModeRadial ||
                      (job_i.pieces != '0 && job_i.pieces <= 8'd128 && job_i.piece_log2 <= 5'd23);
-  assign possible = size_ok && source_ok && grid_ok && radial_ok;
+  assign mode_ok = (job_i.mode != remap_pkg::ModeRadial || WithRadial) &&
+                   (job_i.mode != remap_pkg::ModeProject || WithProject);
+  assign possible = size_ok && source_ok && grid_ok && radial_ok && mode_ok;
 
   assign job_ready_o = !busy_o && !start && !clear_i;
   assign accept = job_valid_i && job_ready_o;
@@ -76,20 +81,36 @@ module remap_addrgen (
 
   logic radial_map_ready, radial_in_ready, radial_valid, radial_ready, radial_out, radial_loaded;
   logic signed [remap_pkg::PosBits-1:0] radial_x, radial_y;
-  remap_radial u_radial (
-    .clk_i(clk_i), .rst_ni(rst_ni), .clear_i(clear_i), .start_i(start && is_radial), .job_i(job),
-    .map_valid_i(map_valid_i && is_radial), .map_ready_o(radial_map_ready), .map_i(map_i), .loaded_o(radial_loaded),
-    .valid_i(form_valid && is_radial), .ready_o(radial_in_ready), .a_i(form_a), .b_i(form_b), .c_i(form_c),
-    .valid_o(radial_valid), .ready_i(radial_ready), .x_o(radial_x), .y_o(radial_y), .out_o(radial_out)
-  );
+  generate
+    if (WithRadial) begin : gen_radial
+      remap_radial u_radial (
+        .clk_i(clk_i), .rst_ni(rst_ni), .clear_i(clear_i), .start_i(start && is_radial), .job_i(job),
+        .map_valid_i(map_valid_i && is_radial), .map_ready_o(radial_map_ready), .map_i(map_i), .loaded_o(radial_loaded),
+        .valid_i(form_valid && is_radial), .ready_o(radial_in_ready), .a_i(form_a), .b_i(form_b), .c_i(form_c),
+        .valid_o(radial_valid), .ready_i(radial_ready), .x_o(radial_x), .y_o(radial_y), .out_o(radial_out)
+      );
+    end else begin : gen_no_radial
+      assign {radial_map_ready, radial_loaded, radial_in_ready, radial_valid, radial_out} = 5'd0;
+      assign radial_x = '0;
+      assign radial_y = '0;
+    end
+  endgenerate
 
   logic project_in_ready, project_valid, project_ready, project_out;
   logic signed [remap_pkg::PosBits-1:0] project_x, project_y;
-  remap_project u_project (
-    .clk_i(clk_i), .rst_ni(rst_ni), .clear_i(clear_i),
-    .valid_i(form_valid && is_project), .ready_o(project_in_ready), .a_i(form_a), .b_i(form_b), .c_i(form_c),
-    .valid_o(project_valid), .ready_i(project_ready), .x_o(project_x), .y_o(project_y), .out_o(project_out)
-  );
+  generate
+    if (WithProject) begin : gen_project
+      remap_project u_project (
+        .clk_i(clk_i), .rst_ni(rst_ni), .clear_i(clear_i),
+        .valid_i(form_valid && is_project), .ready_o(project_in_ready), .a_i(form_a), .b_i(form_b), .c_i(form_c),
+        .valid_o(project_valid), .ready_i(project_ready), .x_o(project_x), .y_o(project_y), .out_o(project_out)
+      );
+    end else begin : gen_no_project
+      assign {project_in_ready, project_valid, project_out} = 3'd0;
+      assign project_x = '0;
+      assign project_y = '0;
+    end
+  endgenerate
 
   // One of the four leads to the addresses.
   logic pos_valid, pos_ready, pos_out, table_open;
@@ -139,5 +160,5 @@ module remap_addrgen (
     .valid_o(beat_valid_o), .ready_i(beat_ready_i), .data_o(beat_o), .count_o(held)
   );
   logic unused;
-  assign unused = ^{held, radial_loaded};
+  assign unused = ^{held, radial_loaded, radial_ready, project_ready, form_c};
 endmodule

@@ -1,5 +1,7 @@
 #include "tb/rtl/golden.h"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 
 namespace fovea::rtl {
@@ -105,6 +107,39 @@ void place_entry(const Job& job, std::uint32_t entry, Beat& beat) {
   if (!beat.border) beat.src = (job.src_base + entry / 4) & 0x3FFFFFFF;
 }
 
+/// Four pixels in a row of two neighbouring words, and the colour differences of both.
+struct Quad {
+  std::array<unsigned, 4> luma;
+  std::array<unsigned, 2> blue, red;
+};
+
+Quad quad(std::uint32_t left, std::uint32_t right, bool no_right) {
+  Quad q;
+  q.luma = {left >> 8 & 255, left >> 24, right >> 8 & 255, right >> 24};
+  q.blue = {left & 255, right & 255};
+  q.red = {left >> 16 & 255, right >> 16 & 255};
+  if (no_right) {
+    q.luma[2] = q.luma[3] = q.luma[1];
+    q.blue[1] = q.blue[0];
+    q.red[1] = q.red[0];
+  }
+  return q;
+}
+
+std::uint32_t blend(const Beat& b, const Quad& top, const Quad& bottom) {
+  const auto mix = [&](unsigned a, unsigned right, unsigned c, unsigned below_right, unsigned fraction) {
+    const unsigned upper = a * (256 - fraction) + right * fraction;
+    const unsigned lower = c * (256 - fraction) + below_right * fraction;
+    return (upper * (256 - b.frac_y) + lower * b.frac_y + 32768) / 65536;
+  };
+  const unsigned n = b.odd, half = (256 * n + b.frac_x) / 2;
+  const unsigned y0 = mix(top.luma[n], top.luma[n + 1], bottom.luma[n], bottom.luma[n + 1], b.frac_x);
+  const unsigned y1 = mix(top.luma[n + 1], top.luma[std::min(n + 2, 3u)], bottom.luma[n + 1],
+                          bottom.luma[std::min(n + 2, 3u)], b.frac_x);
+  return mix(top.blue[0], top.blue[1], bottom.blue[0], bottom.blue[1], half) | y0 << 8 |
+         mix(top.red[0], top.red[1], bottom.red[0], bottom.red[1], half) << 16 | y1 << 24;
+}
+
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
 
 }  // namespace
@@ -152,6 +187,23 @@ std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map) 
     }
   if (!beats.empty()) beats.back().last = true;
   return beats;
+}
+
+std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map, std::uint32_t border,
+                                   const std::function<std::uint32_t(std::uint32_t)>& word) {
+  std::vector<std::uint32_t> result;
+  for (const Beat& b : addresses(job, map)) {
+    if (b.border) {
+      result.push_back(border);
+    } else if (!job.bilinear) {
+      result.push_back(word(b.src));
+    } else {
+      const std::uint32_t below = b.src + (b.edge_y ? 0 : job.src_pitch);
+      const auto row = [&](std::uint32_t at) { return quad(word(at), b.edge_x ? 0 : word(at + 1), b.edge_x); };
+      result.push_back(blend(b, row(b.src), row(below)));
+    }
+  }
+  return result;
 }
 
 }  // namespace fovea::rtl

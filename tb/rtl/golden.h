@@ -2,6 +2,7 @@
 // positions are computed directly for each pair, with divisions and without increments.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -41,5 +42,9 @@ unsigned grid_nodes(const Job& job);
 unsigned grid_rows(const Job& job);
 /// All beats of a job. @pre possible(job) and map.size() == map_words(job)
 std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map);
+
+/// The words that a job writes, in the order of its beats. `word(address)` gives the word at a word address.
+std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map, std::uint32_t border,
+                                   const std::function<std::uint32_t(std::uint32_t)>& word);
 
 }  // namespace fovea::rtl

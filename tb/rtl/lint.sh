@@ -8,7 +8,7 @@ lint() {  # FOLDER TOP
   verilator --lint-only -Wall --top-module "$2" -y "$1/remap" "$rtl/lint.vlt" "$1/remap/remap_pkg.sv" \
     "$1/remap/$2.sv" >"$work/log" 2>&1
 }
-for top in remap_addrgen; do
+for top in remap_addrgen remap_engine; do
   lint "$rtl" "$top" || { cat "$work/log"; echo "lint.sh: $top is not clean"; exit 1; }
 done
 cp -r "$rtl/remap" "$work/remap"
