@@ -71,9 +71,6 @@ inline constexpr SystemDefect kSystemDefects[] = {
      "there + fill_latency_, PLANTED ? Cause::kIcache : Cause::kUncached);", "StallTest.FetchesPast*"},
     {"a jump to 0 is not noticed", "exceptions.cpp",
      "failure_.at_jump = regs_.pc == 0", "failure_.at_jump = !PLANTED && regs_.pc == 0", "MessageTest.JumpToZero*"},
-    {"buffered words of a block before one of internal RAM let no burst in", "memory.cpp",
-     "if (run.count) ledger_.bus_waited", "if (run.count && !PLANTED) ledger_.bus_waited",
-     "TcmPortTest.BufferedWords*"},
     {"a warning names no place", "exceptions.cpp",
      "address_text(regs_.pc);", "address_text(PLANTED ? 0 : regs_.pc);", "MessageTest.Unpredictable*"},
 };
