@@ -153,11 +153,13 @@ TEST_F(RunnerTest, AHalfWrittenPointRunsAgain) {
   const std::string name = folder_name(key_of(p));
   dir_.write("store/points.json", "{\"format\": \"fovea points 1\"}\n");
   dir_.write("store/points/" + name + ".tmp/run/stats.json", "{\"a\": {\"value\": 9");
+  dir_.write("store/points/" + name + ".tmp/run/left.txt", "of the interrupted run");
   const auto r = run({p});
   EXPECT_EQ(r[0].stat("a"), 2.5);
   EXPECT_EQ(log(), "good\n");
   EXPECT_FALSE(std::filesystem::exists(dir_ / ("store/points/" + name + ".tmp")));
-  EXPECT_TRUE(std::filesystem::exists(dir_ / ("store/points/" + name + "/point.json")));
+  EXPECT_TRUE(std::filesystem::exists(r[0].folder / "point.json"));
+  EXPECT_FALSE(std::filesystem::exists(r[0].folder / "run/left.txt"));
 }
 
 TEST_F(RunnerTest, AResultThatIsNotThisPointsIsRefused) {

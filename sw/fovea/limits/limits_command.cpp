@@ -147,9 +147,9 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
   c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  c->add_option("--find", o.find, "Largest or smallest value of a numeric key that meets the conditions; the step "
-                                  "is 1, or a 64th of the range")
-      ->type_name("KEY=LOW..HIGH[:STEP]");
+  c->add_option("--find", o.find, "Largest or smallest value of a numeric key that meets the conditions, in steps of "
+                                  "1, of a 64th of the range, or of S with KEY=LOW..HIGH:S")
+      ->type_name("KEY=LOW..HIGH");
   c->add_option("--binds", o.binds, "What binds this figure, such as frame.remap_time.mean; with --find, at the "
                                     "value found")
       ->type_name("FIGURE");
