@@ -166,6 +166,8 @@ const std::string kLoops = R"(
 2: ldr r7, [r3]
   add r7, r7, r5
   str r7, [r3]
+  .word 0xe8930080  @ ldmia r3, {r7}, for which the assembler has an ldr
+  .word 0xe8830080  @ stmia r3, {r7}
   ldrb r7, [r3, #1]
   mov r6, r7
   cmp r4, #0
