@@ -62,6 +62,46 @@ TEST_F(BlameTest, AnExtraLoadIsBlamedOnItsLineThoughTheClocksAreTheSame) {
             "remap (remap.c:21) executes more: +140 clocks (100 % of the change), of which +100 clocks by issue");
 }
 
+// remap executes nothing else and waits 40 clocks more for what irq, with 12 of its own, does to it. With
+// less than a quarter of the change irq would be a by-product.
+TEST_F(BlameTest, WhoeverExecutesMoreIsTheOriginOfWaits) {
+  replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,86");
+  replace(after.profile, "irq.c,7,issue,,,50,50", "irq.c,7,issue,,,62,62");
+  after.elf = "22";
+  const auto blamed = [&] {
+    const Difference d = difference();
+    const Blame b = blame_of(d, true);
+    return b.function ? b.function->function : "";
+  };
+  EXPECT_EQ(blamed(), "irq");  // 12 of 48
+  replace(after.profile, "irq.c,7,issue,,,62,62", "irq.c,7,issue,,,61,61");
+  EXPECT_EQ(blamed(), "remap");  // 11 of 47
+  replace(after.profile, "irq.c,7,issue,,,61,61", "irq.c,7,issue,,,62,62");
+  after.parameters["ddr.clock"] = "216MHz";
+  EXPECT_EQ(blamed(), "remap") << "another setting may be the origin";
+}
+
+// The cause with most clocks in all, not the largest row: 30 of dcache in two rows beside 20 of interlock.
+TEST_F(BlameTest, TheCauseWithMostClocksIsBlamed) {
+  replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,164");
+  replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,66");
+  replace(after.profile, "interlock,none,core,100", "interlock,none,core,120");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,250");
+  const Difference d = difference();
+  EXPECT_THAT(blame_text(d, blame_of(d, true)),
+              HasSubstr("+50 clocks (100 % of the change), of which +30 clocks by dcache, mostly region lut, culprit vpbe"));
+}
+
+// A load whose clocks were waits for the write buffer before.
+TEST_F(BlameTest, InstructionsWithoutClocksAreNamed) {
+  replace(after.profile, "22,issue,,,50,50", "22,issue,,,80,80");
+  replace(after.profile, "interlock,none,core,100", "interlock,none,core,70");
+  const Difference d = difference();
+  EXPECT_EQ(d.busy.change(), 0);
+  EXPECT_EQ(blame_text(d, blame_of(d, true)),
+            "remap (remap.c) executes 30 instructions more, which take no more clocks in all");
+}
+
 // The same load on a new line: those below it are compared with themselves.
 TEST_F(BlameTest, LinesThatAnInsertionMovedAreNotBlamed) {
   replace(after.profile, "remap.c,22,issue", "remap.c,23,issue");
@@ -75,6 +115,18 @@ TEST_F(BlameTest, LinesThatAnInsertionMovedAreNotBlamed) {
   EXPECT_EQ(d.functions[0].lines[0].before, std::nullopt);
   EXPECT_EQ(d.functions[0].lines[0].after, 22u);
   EXPECT_EQ(d.functions[0].lines[0].share.change(), 60);
+}
+
+// 20 is taken out: 21 and 22, which have moved up, are as they were.
+TEST_F(BlameTest, LinesThatADeletionMovedAreNotBlamed) {
+  before.profile = "frames,f,f.c,20,issue,,,495,1\nframes,f,f.c,21,issue,,,500,1\nframes,f,f.c,22,issue,,,5,1\n";
+  after.profile = "frames,f,f.c,20,issue,,,500,1\nframes,f,f.c,21,issue,,,5,1\nframes,z,,,idle,,,495,0\n";
+  const Difference d = difference();
+  ASSERT_EQ(d.functions.size(), 1u);
+  ASSERT_EQ(d.functions[0].lines.size(), 1u);
+  EXPECT_EQ(d.functions[0].lines[0].before, 20u);
+  EXPECT_EQ(d.functions[0].lines[0].after, std::nullopt);
+  EXPECT_EQ(d.functions[0].lines[0].share.change(), -495);
 }
 
 TEST_F(BlameTest, ALongerWaitIsBlamedOnItsCulprit) {
@@ -113,6 +165,26 @@ TEST_F(BlameTest, MovedCodeIsLayout) {
   EXPECT_EQ(d.functions[0].function, "irq");
   EXPECT_EQ(d.functions[0].kind, ChangeKind::kLayout);
   EXPECT_EQ(d.functions[1].kind, ChangeKind::kWaits);
+}
+
+// A loop over a cache takes another step: 3 of 3,000 instructions are no other code, 4 are; and a change of
+// more than 5 % of the busy clocks (here 6,000) is none of addresses then.
+TEST_F(BlameTest, AFewInstructionsMoreAreStillLayout) {
+  const auto kind = [&](int more, int later) {
+    before.figures["cpu.cycles"].first = "6000";
+    before.profile = "frames,clean,c.c,1,issue,,,1000,1000\nframes,f,f.c,1,issue,,,2000,2000\nframes,f,f.c,1,dcache,lut,bridge,3000,0\n";
+    after.figures["cpu.cycles"].first = std::to_string(6000 + later);
+    after.profile = fmt::format("frames,clean,c.c,1,issue,,,1000,{}\nframes,f,f.c,1,issue,,,2000,2000\n"
+                                "frames,f,f.c,1,dcache,lut,bridge,{},0\n", 1000 + more, 3000 + later);
+    after.elf = "22";
+    for (const auto& f : difference().functions)
+      if (f.function == "f") return f.kind;
+    return ChangeKind::kAdded;
+  };
+  EXPECT_EQ(kind(3, 300), ChangeKind::kLayout);
+  EXPECT_EQ(kind(4, 300), ChangeKind::kWaits);
+  EXPECT_EQ(kind(3, 301), ChangeKind::kWaits);
+  EXPECT_EQ(kind(0, 301), ChangeKind::kLayout);
 }
 
 TEST_F(BlameTest, ChangedCodeIsToldFromCodeThatItMoved) {

@@ -82,6 +82,7 @@ TEST_F(CheckTest, AnotherUnitFails) {
 TEST_F(CheckTest, AFigureWithoutValueIsNotANumber) {
   EXPECT_EQ(finding("none: {value: null, unit: s}").verdict, Verdict::kPass);
   EXPECT_EQ(finding("none: {value: 0, unit: s}").verdict, Verdict::kFail);
+  EXPECT_EQ(finding("time: {value: null, unit: 1}").words, "100, expected: no value");
   EXPECT_EQ(finding("time: {value: null, unit: 1}").verdict, Verdict::kFail);
 }
 

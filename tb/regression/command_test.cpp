@@ -105,6 +105,8 @@ TEST_F(RegressionCommandTest, FoldersThatAreNoCompleteRunAreRefusedInOneLine) {
   RunMaker r = profiled();
   r.complete = false;
   refused(r.write(dir, "partial").string(), "partial results");
+  dir.write("partial/stats.json", "{\"band\": \"not run\"}");
+  refused((dir / "partial").string(), "partial results");
   r.no_stats = true;
   refused(r.write(dir, "unfinished").string(), "has no stats.json");
   profiled().write(dir, "damaged");

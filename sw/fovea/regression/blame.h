@@ -72,17 +72,19 @@ Difference difference_of(const Attribution& before, const Attribution& after,
 /// The largest contribution in the direction of the whole change.
 struct Blame {
   const FunctionChange* function = nullptr;
-  const CauseChange* cause = nullptr;
+  const CauseChange* cause = nullptr;  ///< largest row of the cause that contributes most
+  double by_cause = 0;                 ///< of that cause, over all regions and culprits
   const LineChange* line = nullptr;
 };
 /// @param slower what became worse: more busy clocks, or fewer
 Blame blame_of(const Difference& difference, bool slower);
 
-/// One sentence: "remap_plain (remap_plain.c:42) executes more: +1,234 clocks (82 % ...), mostly
-/// dcache from lut while vpbe was served". Empty if nothing changed that way.
+/// One sentence: "remap_plain (remap_plain.c:42) executes more: +1,234 clocks (82 % of the change), of
+/// which +900 clocks by dcache, mostly region lut, culprit vpbe". If no clocks changed that way, the
+/// function that executes more is named; empty if there is none.
 std::string blame_text(const Difference& difference, const Blame& blame);
-/// "cause from region, served: culprit" in words.
-std::string cause_text(const CauseChange& cause);
+/// "dcache, region lut, culprit vpbe"; `extent` stands before the region.
+std::string cause_text(const CauseChange& cause, const std::string& extent = "");
 /// A number of clocks, or seconds, with its sign.
 std::string amount_text(const Difference& difference, double amount);
 /// "function (file:line)"; for the attribution without functions "the program".

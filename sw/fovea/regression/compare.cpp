@@ -73,6 +73,7 @@ std::optional<double> MetricChange::relative() const {
 std::string percent_text(std::optional<double> share) {
   if (!share) return "";
   const double percent = 100 * *share;
+  if (percent == 0) return "unchanged";
   return fmt::format("{:+.{}f} %", percent, std::abs(percent) < 0.095 ? 3 : 1);
 }
 

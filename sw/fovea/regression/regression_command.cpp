@@ -185,7 +185,7 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
   auto& k = options.check;
   CLI::App* check = app.add_subcommand("check", "Compare a run with a baseline, and blame what is worse");
   check->add_option("dir", k.folder, "Folder of results")->required()->type_name("DIR");
-  check->add_option("--against", k.against, "Baseline (YAML); 'fovea bless' makes one")
+  check->add_option("--against", k.against, "Baseline (YAML), required; 'fovea bless' makes one")
       ->required()
       ->type_name("FILE");
   check->add_option("--junit", k.junit, "Also write the result as JUnit XML")->type_name("FILE");
@@ -200,10 +200,10 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
   auto& b = options.bless;
   CLI::App* bless = app.add_subcommand("bless", "Put the figures of a run into a baseline, or begin one");
   bless->add_option("dir", b.folder, "Folder of results")->required()->type_name("DIR");
-  bless->add_option("--against", b.against, "Baseline (YAML); a name that is not there makes a new one")
+  bless->add_option("--against", b.against, "Baseline (YAML), required; a name that is not there makes a new one")
       ->required()
       ->type_name("FILE");
-  bless->add_option("--why", b.why, "Reason, kept in the baseline")->required()->type_name("TEXT");
+  bless->add_option("--why", b.why, "Reason, required; kept in the baseline")->required()->type_name("TEXT");
   bless->footer("Prints the change as a diff. Comments and order stay; analytic values and budgets are "
                 "never replaced (exit status 1 if one of them fails). The reference for blame, in the "
                 "folder that the baseline names, becomes this run's.");
@@ -211,7 +211,7 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
   auto& t = options.trend;
   CLI::App* trend = app.add_subcommand("trend", "Keep the figures of each commit, and plot them");
   trend->add_option("dir", t.folders, "Folders of results to add")->type_name("DIR");
-  trend->add_option("--database", t.database, "SQLite file; made if it is not there")
+  trend->add_option("--database", t.database, "SQLite file, required; made if it is not there")
       ->required()
       ->type_name("FILE");
   trend->add_option("--commit", t.commit, "Name of the line")->type_name("TEXT")->default_str("the simulator's commit");
