@@ -5,7 +5,8 @@
 
 namespace fovea::rtl {
 
-AddrgenBench::AddrgenBench(std::uint32_t seed) : dut_(std::make_unique<Vbench_top>()), random_(seed) {
+AddrgenBench::AddrgenBench(std::uint32_t seed)
+    : dut_(std::make_unique<Vbench_top>()), random_(seed) {
   dut_->rst_ni = 0;
   clock();
   clock();
@@ -84,8 +85,8 @@ Outcome AddrgenBench::run(const Job& job, std::span<const std::uint32_t> map, Pa
       clear();
       return out;
     }
-    // A word that was offered stays on offer, as the rule of the handshake says. Behind the last one there are words
-    // of something else, which must not be taken.
+    // A word that was offered stays on offer, as the rule of the handshake says. Behind the last
+    // one there are words of something else, which must not be taken.
     if (!offered) offered = random_() % 16 < pace.map;
     d.ag_map_valid_i = offered;
     d.ag_map_i = out.map_taken < map.size() ? map[out.map_taken] : 0xDEADBEEF;

@@ -1,8 +1,9 @@
-// The address generator against its golden model, bit by bit, and that against the firmware's table.
+// The address generator against its golden model, bit by bit, and that against the firmware's
+// table.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 
 #include "tb/rtl/addrgen_bench.h"
 #include "tb/rtl/lens_maps.h"
@@ -36,8 +37,8 @@ lens_view_t view_of(unsigned mapping, double fov) {
 void expect_equal(const std::vector<Beat>& expected, const std::vector<Beat>& got, const Job& job) {
   ASSERT_EQ(expected.size(), got.size());
   for (std::size_t n = 0; n < got.size(); ++n)
-    ASSERT_EQ(expected[n], got[n]) << "pair " << n % job.pairs << " of row " << n / job.pairs << ", mode "
-                                   << static_cast<unsigned>(job.mode);
+    ASSERT_EQ(expected[n], got[n]) << "pair " << n % job.pairs << " of row " << n / job.pairs
+                                   << ", mode " << static_cast<unsigned>(job.mode);
 }
 
 void run_and_compare(AddrgenBench& bench, const MappedJob& m, Pace pace = {}) {
@@ -70,9 +71,12 @@ TEST(AddrgenTest, RandomJobsEqualTheGoldenModelUnderAnyBackPressure) {
 
 TEST(AddrgenTest, FollowsTheFirmwaresTableForEveryMappingAndSize) {
   AddrgenBench bench;
-  const struct { unsigned width, height, mapping; double fov; } cases[] = {
-      {720, 576, LENS_EQUISOLID, 180}, {720, 480, LENS_LINEAR, 190},    {640, 480, LENS_STEREOGRAPHIC, 200},
-      {4, 4, LENS_ORTHOGRAPHIC, 170},  {2, 1, LENS_EQUISOLID, 180}, {64, 2, LENS_RECTILINEAR, 120}};
+  const struct {
+    unsigned width, height, mapping;
+    double fov;
+  } cases[] = {{720, 576, LENS_EQUISOLID, 180},     {720, 480, LENS_LINEAR, 190},
+               {640, 480, LENS_STEREOGRAPHIC, 200}, {4, 4, LENS_ORTHOGRAPHIC, 170},
+               {2, 1, LENS_EQUISOLID, 180},         {64, 2, LENS_RECTILINEAR, 120}};
   for (const auto& c : cases) {
     lens_view_t view = view_of(c.mapping, c.fov);
     view.shift_x = 3;
@@ -98,8 +102,8 @@ TEST(AddrgenTest, OnePairAClockInEveryModeAfterItsStart) {
   lens_view_t view = view_of(LENS_EQUISOLID, 180);
   const lens_t lens = lens_of(view, 720, 576);
   const std::uint64_t pairs = 360 * 576;
-  // Start: 8 clocks of pipeline. Grid: two rows of 46 nodes before the first pair. Radial: the coefficients, one a
-  // clock. Project: 23 stages.
+  // Start: 8 clocks of pipeline. Grid: two rows of 46 nodes before the first pair. Radial: the
+  // coefficients, one a clock. Project: 23 stages.
   const MappedJob table = table_job(lens), grid = grid_job(lens, 4), radial = radial_job(lens);
   EXPECT_LE(bench.run(table.job, table.map).clocks, pairs + 8);
   EXPECT_LE(bench.run(grid.job, grid.map).clocks, pairs + 2 * 46 + 16);
@@ -117,29 +121,32 @@ double share_of_other_sources(const Outcome& got, const MappedJob& table) {
   std::size_t other = 0;
   for (std::size_t n = 0; n < table.map.size(); ++n) {
     const bool black = table.map[n] == table.job.src_pitch * table.job.src_height * 4;
-    other += black ? !got.beats[n].border : got.beats[n].src != table.job.src_base + table.map[n] / 4;
+    other +=
+        black ? !got.beats[n].border : got.beats[n].src != table.job.src_base + table.map[n] / 4;
   }
   return static_cast<double>(other) / static_cast<double>(table.map.size());
 }
 
 TEST(AddrgenTest, GridAndRadialFunctionComeCloseToTheTable) {
   AddrgenBench bench;
-  for (const unsigned mapping : {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
+  for (const unsigned mapping :
+       {LENS_LINEAR, LENS_ORTHOGRAPHIC, LENS_EQUISOLID, LENS_STEREOGRAPHIC}) {
     lens_view_t view = view_of(mapping, 180);
     view.in_aspect = 1.09;
     const lens_t lens = lens_of(view, 720, 576);
     const MappedJob table = table_job(lens), grid = grid_job(lens, 3), radial = radial_job(lens);
     const Outcome by_radius = bench.run(radial.job, radial.map);
     expect_equal(addresses(radial.job, radial.map), by_radius.beats, radial.job);
-    // Positions err by about 1/256 px, the coefficients' and the centre's rounding; an entry changes in one of two
-    // directions: twice that share at most, on both axes.
+    // Positions err by about 1/256 px, the coefficients' and the centre's rounding; an entry
+    // changes in one of two directions: twice that share at most, on both axes.
     EXPECT_LT(share_of_other_sources(by_radius, table), 4.0 / 256);
     // Nodes are rounded to 1/16 px: at most half of that on average on each axis.
     const Outcome by_grid = bench.run(grid.job, grid.map);
     expect_equal(addresses(grid.job, grid.map), by_grid.beats, grid.job);
     EXPECT_LT(share_of_other_sources(by_grid, table), 2.0 / 32);
-    std::printf("mapping %u: other pair than the table's: radial %.3f %%, grid of 8 px %.2f %%\n", mapping,
-                100 * share_of_other_sources(by_radius, table), 100 * share_of_other_sources(by_grid, table));
+    std::printf("mapping %u: other pair than the table's: radial %.3f %%, grid of 8 px %.2f %%\n",
+                mapping, 100 * share_of_other_sources(by_radius, table),
+                100 * share_of_other_sources(by_grid, table));
   }
 }
 
@@ -162,8 +169,8 @@ TEST(AddrgenTest, AHomographyMapsTheCornersOfItsPlane) {
   const Outcome got = bench.run(j, {});
   expect_equal(addresses(j, {}), got.beats, j);
   const auto at = [&](unsigned pair, unsigned row) { return got.beats[row * 100 + pair].src; };
-  EXPECT_EQ(at(0, 0), 0u);          // 40 / 256 px
-  EXPECT_EQ(at(99, 0), 99u);        // pixel 198.16
+  EXPECT_EQ(at(0, 0), 0u);                  // 40 / 256 px
+  EXPECT_EQ(at(99, 0), 99u);                // pixel 198.16
   EXPECT_EQ(at(99, 256), 128u * 200 + 49);  // pixel (99.08, 128)
 }
 

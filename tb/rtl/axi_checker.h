@@ -28,13 +28,17 @@ struct AxiClock {
 /// @throws std::runtime_error that names the rule
 class AxiChecker {
  public:
-  AxiChecker(unsigned most_reads, unsigned most_writes) : most_reads_(most_reads), most_writes_(most_writes) {}
+  AxiChecker(unsigned most_reads, unsigned most_writes)
+      : most_reads_(most_reads), most_writes_(most_writes) {}
   void clock(const AxiClock& c) {
     request(c.ar, before_.ar, "AR");
     request(c.aw, before_.aw, "AW");
     stable(c.w.valid, before_.w.valid && !before_.w.ready,
-           c.w.data == before_.w.data && c.w.strobes == before_.w.strobes && c.w.last == before_.w.last, "W");
-    if (c.ar.valid && c.ar.ready && ++reads_ > most_reads_) fail("more reads under way than allowed");
+           c.w.data == before_.w.data && c.w.strobes == before_.w.strobes &&
+               c.w.last == before_.w.last,
+           "W");
+    if (c.ar.valid && c.ar.ready && ++reads_ > most_reads_)
+      fail("more reads under way than allowed");
     if (c.aw.valid && c.aw.ready) {
       if (++writes_ > most_writes_) fail("more writes under way than allowed");
       lengths_.push_back(c.aw.length);
@@ -64,19 +68,22 @@ class AxiChecker {
     before_ = c;
   }
   bool quiet() const {
-    return reads_ == 0 && writes_ == 0 && bursts_.empty() && lengths_.empty() && beats_of_this_ == 0 &&
-           !before_.ar.valid && !before_.aw.valid && !before_.w.valid;
+    return reads_ == 0 && writes_ == 0 && bursts_.empty() && lengths_.empty() &&
+           beats_of_this_ == 0 && !before_.ar.valid && !before_.aw.valid && !before_.w.valid;
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& what) { throw std::runtime_error("AXI: " + what); }
+  [[noreturn]] static void fail(const std::string& what) {
+    throw std::runtime_error("AXI: " + what);
+  }
   static void stable(bool valid, bool stalled, bool same, const char* channel) {
     if (stalled && !valid) fail(std::string(channel) + "VALID taken back");
     if (stalled && !same) fail(std::string(channel) + " changed while it waited");
   }
   static void request(const Request& now, const Request& before, const char* channel) {
     stable(now.valid, before.valid && !before.ready,
-           now.id == before.id && now.address == before.address && now.length == before.length, channel);
+           now.id == before.id && now.address == before.address && now.length == before.length,
+           channel);
     if (!now.valid) return;
     if (now.address % 8) fail(std::string(channel) + " not aligned to the width of the bus");
     if (now.address / 4096 != (now.address + now.length * 8 + 7) / 4096)

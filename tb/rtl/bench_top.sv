@@ -1,5 +1,5 @@
-// What the block tests see: address generator and engine, which share the ports of the job, one for each field, as C++ cannot name fields of a
-// packed structure.
+// What the block tests see: address generator and engine, which share the ports of the job, one for each field, as C++
+// cannot name fields of a packed structure.
 module bench_top (
   input  logic        clk_i,
   input  logic        rst_ni,

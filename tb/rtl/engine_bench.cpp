@@ -34,7 +34,8 @@ void EngineBench::drive(const Memory& memory) {
   d.ar_ready_i = chance(memory);
   d.aw_ready_i = chance(memory);
   d.w_ready_i = chance(memory);
-  // The oldest read of one identifier or of the other; only beats of one identifier have to be in order.
+  // The oldest read of one identifier or of the other; only beats of one identifier have to be in
+  // order.
   d.r_valid_i = 0;
   if (!reads_.empty() && chance(memory)) {
     reading_ = 0;
@@ -75,7 +76,8 @@ void EngineBench::sample(const Memory& memory) {
     answers_.pop_front();
   }
   checker_.clock(c);
-  const std::uint64_t due = now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
+  const std::uint64_t due =
+      now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
   if (c.ar.valid && c.ar.ready)
     reads_.push_back({c.ar.id, c.ar.length, c.ar.address, due,
                       memory.read_fault && *memory.read_fault / 64 == c.ar.address / 64});

@@ -1,4 +1,5 @@
-// Runs the verilated engine on a memory with random latencies; every clock goes through the protocol checker.
+// Runs the verilated engine on a memory with random latencies; every clock goes through the
+// protocol checker.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -17,10 +18,10 @@ namespace fovea::rtl {
 
 /// How the memory answers.
 struct Memory {
-  unsigned latency = 8;       ///< least clocks from a request to its first data
-  unsigned spread = 0;        ///< up to this many more, at random
-  unsigned willing = 16;      ///< how often a channel is ready or has data, in 1/16
-  bool swaps = false;         ///< answers of different identifiers overtake each other
+  unsigned latency = 8;   ///< least clocks from a request to its first data
+  unsigned spread = 0;    ///< up to this many more, at random
+  unsigned willing = 16;  ///< how often a channel is ready or has data, in 1/16
+  bool swaps = false;     ///< answers of different identifiers overtake each other
   std::optional<std::uint32_t> read_fault{}, write_fault{};  ///< bursts with this byte address fail
 };
 
@@ -37,7 +38,8 @@ class EngineBench {
   ~EngineBench();
   std::uint32_t& word(std::uint32_t word_address);
   /// @param abort_after clocks until abort_i; empty: never
-  /// @throws std::runtime_error for a broken rule of AXI, an access beyond the memory, or an engine that stands still
+  /// @throws std::runtime_error for a broken rule of AXI, an access beyond the memory, or an engine
+  /// that stands still
   Result run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory memory = {},
              std::optional<unsigned> abort_after = {});
 

@@ -1,4 +1,5 @@
-// The engine on a memory: pictures bit by bit, errors, ends before time, and what the protocol checker finds.
+// The engine on a memory: pictures bit by bit, errors, ends before time, and what the protocol
+// checker finds.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,13 +13,15 @@ namespace fovea::rtl {
 namespace {
 
 constexpr std::uint32_t kWord = EngineBench::kBase / 4;  // first word of the memory
-constexpr std::uint32_t kMap = 0x20'0000, kTarget = 0x40'0000, kSize = 0x60'0000;  // bytes from its beginning
+constexpr std::uint32_t kMap = 0x20'0000, kTarget = 0x40'0000,
+                        kSize = 0x60'0000;  // bytes from its beginning
 constexpr std::uint32_t kUntouched = 0x5A5A5A5A, kBorder = 0x10801080;
 
 /// A memory with a source of random pixels at its beginning, and everything else untouched.
 void fill(EngineBench& bench, const MappedJob& m, Dice& dice) {
   for (std::uint32_t n = 0; n < kSize / 4; ++n) bench.word(kWord + n) = kUntouched;
-  for (std::uint32_t n = 0; n < m.job.src_pitch * m.job.src_height; ++n) bench.word(kWord + n) = dice.word();
+  for (std::uint32_t n = 0; n < m.job.src_pitch * m.job.src_height; ++n)
+    bench.word(kWord + n) = dice.word();
   for (std::size_t n = 0; n < m.map.size(); ++n)
     bench.word(kWord + kMap / 4 + static_cast<std::uint32_t>(n)) = m.map[n];
 }
@@ -34,14 +37,17 @@ std::vector<std::uint32_t> expected(EngineBench& bench, const MappedJob& m) {
 }
 
 /// The words of the result, and whether nothing beside them was written.
-void expect_picture(EngineBench& bench, const MappedJob& m, const std::vector<std::uint32_t>& want) {
+void expect_picture(EngineBench& bench, const MappedJob& m,
+                    const std::vector<std::uint32_t>& want) {
   for (unsigned j = 0; j < m.job.rows; ++j)
     for (unsigned i = 0; i < m.job.pairs; ++i) {
       const std::uint32_t at = m.job.dst_base + j * m.job.dst_pitch + i;
-      ASSERT_EQ(bench.word(at), want[std::size_t{j} * m.job.pairs + i]) << "pair " << i << " of row " << j;
+      ASSERT_EQ(bench.word(at), want[std::size_t{j} * m.job.pairs + i])
+          << "pair " << i << " of row " << j;
       bench.word(at) = kUntouched;
     }
-  for (std::uint32_t n = kTarget / 4; n < kSize / 4; ++n) ASSERT_EQ(bench.word(kWord + n), kUntouched);
+  for (std::uint32_t n = kTarget / 4; n < kSize / 4; ++n)
+    ASSERT_EQ(bench.word(kWord + n), kUntouched);
 }
 
 TEST(EngineTest, RandomJobsOnRandomMemoriesMakeTheGoldenPicture) {
@@ -53,7 +59,10 @@ TEST(EngineTest, RandomJobsOnRandomMemoriesMakeTheGoldenPicture) {
     m.job.dst_pitch = m.job.pairs + dice.to(20);
     fill(bench, m, dice);
     const auto want = expected(bench, m);
-    const Memory memory{.latency = dice.to(40), .spread = dice.to(30), .willing = 2 + dice.to(14), .swaps = dice.to(1) == 1};
+    const Memory memory{.latency = dice.to(40),
+                        .spread = dice.to(30),
+                        .willing = 2 + dice.to(14),
+                        .swaps = dice.to(1) == 1};
     const Result got = bench.run(m.job, EngineBench::kBase + kMap, kBorder, memory);
     EXPECT_FALSE(got.refused || got.read_error || got.write_error || got.aborted);
     expect_picture(bench, m, want);
@@ -86,11 +95,15 @@ TEST(EngineTest, APalFrameIsTheFirmwaresPictureAndCostsWhatItMust) {
       if (!b.border) lines.push_back(b.src / 8);
     std::sort(lines.begin(), lines.end());
     const auto needed = std::unique(lines.begin(), lines.end()) - lines.begin();
-    const double least = static_cast<double>(needed) * 32 + static_cast<double>(m->map.size()) * 4 + pairs * 4;
+    const double least =
+        static_cast<double>(needed) * 32 + static_cast<double>(m->map.size()) * 4 + pairs * 4;
     const double traffic = static_cast<double>(got.read_bytes + got.written_bytes);
-    std::printf("mode %u: %.3f clocks a pair, %.0f frames/s at 121.5 MHz, traffic %.2f times the minimum\n",
-                static_cast<unsigned>(m->job.mode), got.clocks / pairs, 121.5e6 / got.clocks, traffic / least);
-    // What the engine is built for, on an idle memory: 250 frames a second with a table, 400 without.
+    std::printf(
+        "mode %u: %.3f clocks a pair, %.0f frames/s at 121.5 MHz, traffic %.2f times the minimum\n",
+        static_cast<unsigned>(m->job.mode), got.clocks / pairs, 121.5e6 / got.clocks,
+        traffic / least);
+    // What the engine is built for, on an idle memory: 250 frames a second with a table, 400
+    // without.
     EXPECT_GE(121.5e6 / got.clocks, m == &table ? 250 : 400);
     // A pair a clock, and one clock more for each burst of 16 words written.
     EXPECT_GE(got.clocks, pairs * 17 / 16);
@@ -119,13 +132,22 @@ TEST(EngineTest, ErrorsAndAnEarlyEndAreReportedAndTheNextJobIsRight) {
     for (auto& entry : m.map) entry = dice.to(m.job.src_pitch * m.job.src_height - 1) * 4;
     place(m);
     fill(bench, m, dice);
-    Memory memory{.latency = dice.to(30), .spread = dice.to(20), .willing = 4 + dice.to(12), .swaps = true};
+    Memory memory{
+        .latency = dice.to(30), .spread = dice.to(20), .willing = 4 + dice.to(12), .swaps = true};
     std::optional<unsigned> abort_after;
     switch (n % 4) {
-      case 0: memory.read_fault = EngineBench::kBase + kMap + 64 * dice.to(49); break;
-      case 1: memory.read_fault = EngineBench::kBase + m.map[dice.to(799)]; break;
-      case 2: memory.write_fault = EngineBench::kBase + kTarget + 192 * dice.to(19); break;
-      case 3: abort_after = dice.to(500); break;
+      case 0:
+        memory.read_fault = EngineBench::kBase + kMap + 64 * dice.to(49);
+        break;
+      case 1:
+        memory.read_fault = EngineBench::kBase + m.map[dice.to(799)];
+        break;
+      case 2:
+        memory.write_fault = EngineBench::kBase + kTarget + 192 * dice.to(19);
+        break;
+      case 3:
+        abort_after = dice.to(500);
+        break;
     }
     const Result got = bench.run(m.job, EngineBench::kBase + kMap, kBorder, memory, abort_after);
     EXPECT_EQ(got.read_error, n % 4 < 2) << n;
@@ -194,7 +216,8 @@ TEST(AxiCheckerTest, ComplainsOfEachRule) {
 TEST(AxiCheckerTest, AcceptsWhatIsAllowedAndKnowsWhenAllIsDone) {
   AxiChecker checker(2, 2);
   EXPECT_TRUE(checker.quiet());
-  for (const AxiClock& c : {read_of(64, 3, false), read_of(64, 3), data_of(false), data_of(true), write_of(8, 1)})
+  for (const AxiClock& c :
+       {read_of(64, 3, false), read_of(64, 3), data_of(false), data_of(true), write_of(8, 1)})
     checker.clock(c);
   EXPECT_FALSE(checker.quiet());
   checker.clock(answer(true));

@@ -41,7 +41,9 @@ std::optional<Position> by_grid(const Job& job, std::span<const std::uint32_t> m
   const unsigned step = 1u << job.grid_log2, nodes = grid_nodes(job);
   const unsigned u = 2 * i, g = u / step, h = j / step;
   const std::int64_t p = u % step, q = j % step, s = step;
-  const auto at = [&](unsigned column, unsigned row) { return node_offset(map[row * nodes + column]); };
+  const auto at = [&](unsigned column, unsigned row) {
+    return node_offset(map[row * nodes + column]);
+  };
   const Position n00 = at(g, h), n10 = at(g + 1, h), n01 = at(g, h + 1), n11 = at(g + 1, h + 1);
   const auto blend = [&](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
     return ((s - p) * (s - q) * a + p * (s - q) * b + (s - p) * q * c + p * q * d) *
@@ -64,7 +66,8 @@ std::optional<Position> by_radius(const Job& job, std::span<const std::uint32_t>
   };
   const std::int64_t inner = coefficient(1) + floor_shift(coefficient(2) * t, 16);
   const std::int64_t gain = coefficient(0) + floor_shift(inner * t, 16);
-  return Position{job.centre_x + floor_shift(gain * x, 12), job.centre_y + floor_shift(gain * z, 12)};
+  return Position{job.centre_x + floor_shift(gain * x, 12),
+                  job.centre_y + floor_shift(gain * z, 12)};
 }
 
 std::optional<Position> by_division(const Job& job, unsigned i, unsigned j) {
@@ -127,13 +130,15 @@ Quad quad(std::uint32_t left, std::uint32_t right, bool no_right) {
 }
 
 std::uint32_t blend(const Beat& b, const Quad& top, const Quad& bottom) {
-  const auto mix = [&](unsigned a, unsigned right, unsigned c, unsigned below_right, unsigned fraction) {
+  const auto mix = [&](unsigned a, unsigned right, unsigned c, unsigned below_right,
+                       unsigned fraction) {
     const unsigned upper = a * (256 - fraction) + right * fraction;
     const unsigned lower = c * (256 - fraction) + below_right * fraction;
     return (upper * (256 - b.frac_y) + lower * b.frac_y + 32768) / 65536;
   };
   const unsigned n = b.odd, half = (256 * n + b.frac_x) / 2;
-  const unsigned y0 = mix(top.luma[n], top.luma[n + 1], bottom.luma[n], bottom.luma[n + 1], b.frac_x);
+  const unsigned y0 =
+      mix(top.luma[n], top.luma[n + 1], bottom.luma[n], bottom.luma[n + 1], b.frac_x);
   const unsigned y1 = mix(top.luma[n + 1], top.luma[std::min(n + 2, 3u)], bottom.luma[n + 1],
                           bottom.luma[std::min(n + 2, 3u)], b.frac_x);
   return mix(top.blue[0], top.blue[1], bottom.blue[0], bottom.blue[1], half) | y0 << 8 |
@@ -162,10 +167,14 @@ bool possible(const Job& job) {
 
 std::size_t map_words(const Job& job) {
   switch (job.mode) {
-    case Mode::kTable: return std::size_t{job.pairs} * job.rows;
-    case Mode::kGrid: return std::size_t{grid_nodes(job)} * grid_rows(job);
-    case Mode::kRadial: return std::size_t{job.pieces} * 3;
-    case Mode::kProject: break;
+    case Mode::kTable:
+      return std::size_t{job.pairs} * job.rows;
+    case Mode::kGrid:
+      return std::size_t{grid_nodes(job)} * grid_rows(job);
+    case Mode::kRadial:
+      return std::size_t{job.pieces} * 3;
+    case Mode::kProject:
+      break;
   }
   return 0;
 }
@@ -178,10 +187,18 @@ std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map) 
       Beat beat;
       beat.dst = (job.dst_base + j * job.dst_pitch + i) & 0x3FFFFFFF;
       switch (job.mode) {
-        case Mode::kTable: place_entry(job, map[std::size_t{j} * job.pairs + i], beat); break;
-        case Mode::kGrid: place_position(job, by_grid(job, map, i, j), beat); break;
-        case Mode::kRadial: place_position(job, by_radius(job, map, i, j), beat); break;
-        case Mode::kProject: place_position(job, by_division(job, i, j), beat); break;
+        case Mode::kTable:
+          place_entry(job, map[std::size_t{j} * job.pairs + i], beat);
+          break;
+        case Mode::kGrid:
+          place_position(job, by_grid(job, map, i, j), beat);
+          break;
+        case Mode::kRadial:
+          place_position(job, by_radius(job, map, i, j), beat);
+          break;
+        case Mode::kProject:
+          place_position(job, by_division(job, i, j), beat);
+          break;
       }
       beats.push_back(beat);
     }
@@ -189,7 +206,8 @@ std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map) 
   return beats;
 }
 
-std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map, std::uint32_t border,
+std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map,
+                                   std::uint32_t border,
                                    const std::function<std::uint32_t(std::uint32_t)>& word) {
   std::vector<std::uint32_t> result;
   for (const Beat& b : addresses(job, map)) {
@@ -199,7 +217,9 @@ std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t
       result.push_back(word(b.src));
     } else {
       const std::uint32_t below = b.src + (b.edge_y ? 0 : job.src_pitch);
-      const auto row = [&](std::uint32_t at) { return quad(word(at), b.edge_x ? 0 : word(at + 1), b.edge_x); };
+      const auto row = [&](std::uint32_t at) {
+        return quad(word(at), b.edge_x ? 0 : word(at + 1), b.edge_x);
+      };
       result.push_back(blend(b, row(b.src), row(below)));
     }
   }

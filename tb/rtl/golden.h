@@ -1,5 +1,6 @@
-// Golden model of the remap engine's address generator, written from rtl/README.md and not from the SystemVerilog:
-// positions are computed directly for each pair, with divisions and without increments.
+// Golden model of the remap engine's address generator, written from rtl/README.md and not from the
+// SystemVerilog: positions are computed directly for each pair, with divisions and without
+// increments.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -14,15 +15,15 @@ enum class Mode : unsigned { kTable, kGrid, kRadial, kProject };
 struct Job {
   Mode mode = Mode::kTable;
   bool bilinear = false;
-  unsigned pairs = 1, rows = 1;                             ///< of the output
-  std::uint32_t src_base = 0, dst_base = 0;                 ///< word addresses
-  unsigned src_pitch = 1, dst_pitch = 1;                    ///< words
-  unsigned src_width = 2, src_height = 1;                   ///< pixels, rows
-  unsigned grid_log2 = 4;                                   ///< of the step in pixels
-  unsigned pieces = 1, piece_log2 = 0;                      ///< width of a piece in square pixels
-  std::uint32_t radius_limit = 0xFFFFFFFF;                  ///< square pixels, Q8
-  std::int32_t centre_x = 0, centre_y = 0;                  ///< pixels, Q16
-  std::int32_t a[3] = {}, b[3] = {}, c[3] = {};             ///< first value, step of a pair, step of a row
+  unsigned pairs = 1, rows = 1;                  ///< of the output
+  std::uint32_t src_base = 0, dst_base = 0;      ///< word addresses
+  unsigned src_pitch = 1, dst_pitch = 1;         ///< words
+  unsigned src_width = 2, src_height = 1;        ///< pixels, rows
+  unsigned grid_log2 = 4;                        ///< of the step in pixels
+  unsigned pieces = 1, piece_log2 = 0;           ///< width of a piece in square pixels
+  std::uint32_t radius_limit = 0xFFFFFFFF;       ///< square pixels, Q8
+  std::int32_t centre_x = 0, centre_y = 0;       ///< pixels, Q16
+  std::int32_t a[3] = {}, b[3] = {}, c[3] = {};  ///< first value, step of a pair, step of a row
 };
 
 /// What the address generator hands over for a pair; the fields are those of remap_pkg::beat_t.
@@ -43,8 +44,10 @@ unsigned grid_rows(const Job& job);
 /// All beats of a job. @pre possible(job) and map.size() == map_words(job)
 std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map);
 
-/// The words that a job writes, in the order of its beats. `word(address)` gives the word at a word address.
-std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map, std::uint32_t border,
+/// The words that a job writes, in the order of its beats. `word(address)` gives the word at a word
+/// address.
+std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map,
+                                   std::uint32_t border,
                                    const std::function<std::uint32_t(std::uint32_t)>& word);
 
 }  // namespace fovea::rtl

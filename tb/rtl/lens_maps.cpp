@@ -43,7 +43,8 @@ MappedJob grid_job(const lens_t& lens, unsigned grid_log2) {
       const double u = (g << grid_log2) + first_pixel(lens), v = h << grid_log2;
       const lens_point_t p = lens_source(&lens, u, v);
       const auto q4 = [](double offset) {
-        return static_cast<std::uint32_t>(std::clamp(std::lround(offset * 16), -32768L, 32767L)) & 0xFFFF;
+        return static_cast<std::uint32_t>(std::clamp(std::lround(offset * 16), -32768L, 32767L)) &
+               0xFFFF;
       };
       m.map.push_back(q4(p.column - u) | q4(p.row - v) << 16);
     }

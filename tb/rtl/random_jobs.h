@@ -33,7 +33,8 @@ class Dice {
   std::mt19937 random_;
 };
 
-/// Any possible job of a mode with up to about 600 pairs, and a map of any words that lead somewhere near the frame.
+/// Any possible job of a mode with up to about 600 pairs, and a map of any words that lead
+/// somewhere near the frame.
 inline MappedJob random_job(Dice& dice, Mode mode) {
   MappedJob m;
   Job& j = m.job;
@@ -47,8 +48,10 @@ inline MappedJob random_job(Dice& dice, Mode mode) {
   j.dst_pitch = dice.to(8191);
   j.src_base = dice.word() >> 2;
   j.dst_base = dice.word() >> 2;
-  const std::int32_t width = static_cast<std::int32_t>(j.src_width), height = static_cast<std::int32_t>(j.src_height);
-  const std::int32_t pairs = static_cast<std::int32_t>(j.pairs), rows = static_cast<std::int32_t>(j.rows);
+  const std::int32_t width = static_cast<std::int32_t>(j.src_width),
+                     height = static_cast<std::int32_t>(j.src_height);
+  const std::int32_t pairs = static_cast<std::int32_t>(j.pairs),
+                     rows = static_cast<std::int32_t>(j.rows);
   // Forms that cross the frame once, more or less, and are a little beyond it.
   j.a[0] = dice.within(width << 14);
   j.a[1] = (dice.within(width << 14) + (width << 16)) / pairs;
@@ -96,7 +99,8 @@ inline MappedJob random_job(Dice& dice, Mode mode) {
     else if (mode == Mode::kGrid)
       word = dice.to(15) ? (dice.word() & 0x007F007F) : dice.word();
     else
-      word = dice.to(31) ? static_cast<std::uint32_t>(dice.within(1 << 18) + (1 << 19)) : dice.word();
+      word =
+          dice.to(31) ? static_cast<std::uint32_t>(dice.within(1 << 18) + (1 << 19)) : dice.word();
   }
   return m;
 }
