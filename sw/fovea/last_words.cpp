@@ -79,7 +79,7 @@ std::vector<Part> parts_of(const std::vector<std::uint64_t>& tenths) {
   return out;
 }
 
-constexpr std::size_t kColumn = 8;
+constexpr std::size_t kLabelWidth = 8;
 
 /// Stands for a space at which no line ends, between a number and its unit.
 constexpr char kNoBreak = '\x1f';
@@ -91,8 +91,8 @@ std::string unbroken(std::string text) {
 
 /// `label` in the first column, the text in the second, wrapped.
 std::string paragraph(std::string label, const std::string& text) {
-  label.resize(kColumn, ' ');
-  std::string out = label + wrapped(text, kColumn) + "\n";
+  label.resize(kLabelWidth, ' ');
+  std::string out = label + wrapped(text, kLabelWidth) + "\n";
   std::replace(out.begin(), out.end(), kNoBreak, ' ');
   return out;
 }

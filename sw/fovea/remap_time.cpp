@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "sw/fovea/after_all.h"
+
 namespace fovea::app {
 namespace {
 
@@ -10,7 +12,6 @@ namespace {
 /// registers do, so this is more than enough. From an event in its future on, its counters are the same
 /// in strict and in default mode.
 constexpr Picoseconds kAhead = kPsPerUs;
-constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
 
 }  // namespace
 

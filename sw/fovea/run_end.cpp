@@ -4,13 +4,14 @@
 #include <array>
 #include <cstring>
 
+#include "sw/fovea/after_all.h"
+
 namespace fovea::app {
 namespace {
 
 /// Interval in which a halted core is searched for. If two successive checks find it at the same
 /// address, the run ends.
 constexpr Picoseconds kHaltCheck = kPsPerMs;
-constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
 
 }  // namespace
 

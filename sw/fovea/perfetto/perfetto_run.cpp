@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "model/common/check.h"
+#include "sw/fovea/after_all.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/run_until.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 /// Of the counters. Bandwidths are means over it.
 constexpr Picoseconds kSample = 100 * kPsPerUs;
-constexpr unsigned kAfterAll = static_cast<unsigned>(kMasterCount);
 
 const char* phase_text(board::Phase phase) {
   switch (phase) {
