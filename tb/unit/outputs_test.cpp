@@ -230,7 +230,9 @@ TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
   stats.push_back({"camera.1.frame.displayed", std::uint64_t{4}, "1", ""});
   EXPECT_EQ(verdict(stats),
             "several cameras in turn: 8 new frames in 16 displayed ones (12.5/s), 1 dropped\n");
-  EXPECT_THAT(summary_table(stats, {}), HasSubstr("camera.1.frame.rate  6.25 1/s"));
+  stats.push_back({"camera.1.frame.superseded", std::uint64_t{2}, "1", ""});
+  EXPECT_THAT(run_words(stats, {}),
+              HasSubstr("cameras camera 0 6.25 frames a second; camera 1 6.25 frames a second, 2\n        superseded\n"));
 }
 
 TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {
