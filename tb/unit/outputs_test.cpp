@@ -1,4 +1,5 @@
 // sw/fovea/outputs.h: contents of the text files of a run, byte by byte where tools depend on them.
+#include "sw/fovea/last_words.h"
 #include "sw/fovea/outputs.h"
 
 #include <cmath>
