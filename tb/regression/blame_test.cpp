@@ -67,11 +67,12 @@ TEST_F(BlameTest, AnExtraLoadIsBlamedOnItsLineThoughTheClocksAreTheSame) {
 TEST_F(BlameTest, WhoeverExecutesMoreIsTheOriginOfWaits) {
   replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,86");
   replace(after.profile, "irq.c,7,issue,,,50,50", "irq.c,7,issue,,,62,62");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,252");
   after.elf = "22";
   const auto blamed = [&] {
     const Difference d = difference();
-    const Blame b = blame_of(d, true);
-    return b.function ? b.function->function : "";
+    const Blame blame = blame_of(d, true);
+    return blame.function ? blame.function->function : "";
   };
   EXPECT_EQ(blamed(), "irq");  // 12 of 48
   replace(after.profile, "irq.c,7,issue,,,62,62", "irq.c,7,issue,,,61,61");
