@@ -177,7 +177,7 @@ inline constexpr TimingDefect kTimingDefects[] = {
     {{InsnClass::kThumbBlock, "loads", "transfers.cpp",
       "const bool base_last =", "if (PLANTED && (i.flags & kThumbInsn)) spend(1);\n  const bool base_last ="}},
     {{InsnClass::kThumbBranch, "BL's second half", "branch_multiply.cpp",
-      "return jump<true, true, kCounted>(c, i, cycle + 3,", "return jump<true, true>(c, i, cycle + (PLANTED ? 4 : 3),"}},
+      "return jump<true, true, kCounted>(c, i, cycle + 3,", "return jump<true, true, kCounted>(c, i, cycle + (PLANTED ? 4 : 3),"}},
     {{InsnClass::kThumbException, "four clocks to the vector", "exceptions.cpp",
       "++ledger_.counts.exceptions;", "++ledger_.counts.exceptions;\n  if (PLANTED && (saved & 0x20u)) spend(1);"}},
 };
