@@ -94,8 +94,8 @@ for planted; do
       # A loop over the D-cache takes a step more, and is blamed for its own clocks; all others were only moved.
       run layout -s firmware.elf="$out/layout.elf" && blamed layout '^blamed: dcache_clean_invalidate_all' &&
         for moved in remap_plain first_row_sum; do
-          "$fovea" check "$out/layout" --against "$out/baseline.yaml" | grep -qE "^  $moved .* was moved \(layout\)" ||
-            fail "layout: $moved was not told apart"
+          table=$("$fovea" check "$out/layout" --against "$out/baseline.yaml")
+          grep -qE "^  $moved .* was moved \(layout\)" <<<"$table" || fail "layout: $moved was not told apart: $table"
         done ;;
     *) fail "no case $planted" ;;
   esac
