@@ -157,7 +157,7 @@ expect board_limit 3 'not met within --max-time' -- "$fovea" exec --board --max-
 expect board_serial 3 'not met within --max-time' -- "$fovea" exec --board --max-time 20ms "$serial"
 out_=$(printf 'pq' | "$fovea" exec --board --console --max-time 1s "$serial" 2>/dev/null)
 [ "$out_" = "$(printf 'ready\r\np')" ] || fail "exec --board --console: '$out_'"
-expect board_start 0 'cpu.cycles' -- "$fovea" exec --board --max-time 1s "$names.start"
+expect board_start 0 'instructions in' -- "$fovea" exec --board --max-time 1s "$names.start"
 expect board_flat 2 '--board' -- "$fovea" exec --board --load 0 --entry 0 "$serial"
 expect board_fast 2 '--fast-memory' -- "$fovea" exec --board --fast-memory "$board"
 expect board_alone 2 '--console' -- "$fovea" exec --console "$board"
