@@ -277,9 +277,13 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   scr.settle();
   for (auto& m : masters)
     if (!m->finished) log.add("a master did not finish");
-  for (auto* s : ddr.controller().stats.stats())
-    log.add(text("stat %s %llu", s->name().c_str(),
-                 static_cast<unsigned long long>(std::get<std::uint64_t>(s->value()))));
+  for (auto* s : ddr.controller().stats.stats()) {
+    const StatBase::Value value = s->value();
+    if (const auto* count = std::get_if<std::uint64_t>(&value))
+      log.add(text("stat %s %llu", s->name().c_str(), static_cast<unsigned long long>(*count)));
+    else
+      log.add(text("stat %s %a", s->name().c_str(), std::get<double>(value)));
+  }
   log.add(text("memory %016llx", static_cast<unsigned long long>(hash(ddr.store().at(0), 0x20000))));
   return {log.sorted(), scr.memory().decided_ahead(), scr.memory().decided_at_present()};
 }
