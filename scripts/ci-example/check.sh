@@ -5,6 +5,7 @@
 # Usage: check.sh                what continuous integration runs
 #        check.sh --bless WHY    takes over the new timing, with a reason
 set -euo pipefail
+case "$#:${1-}" in 0: | 2:--bless) ;; *) echo 'usage: check.sh [--bless WHY]' >&2; exit 2 ;; esac
 fovea=${FOVEA:-fovea} build=${BUILD:-build}
 cd "$(dirname "$0")"
 mkdir -p "$build"

@@ -7,7 +7,7 @@ endif()
 set(private lib/fovea)
 install(TARGETS fovea RUNTIME DESTINATION ${private})
 install(FILES ${PROJECT_BINARY_DIR}/fovea.commit DESTINATION ${private})
-foreach(program fovea_firmware passthrough board_loader)
+foreach(program fovea_firmware fovea_cameras passthrough board_loader)
   install(FILES ${PROJECT_BINARY_DIR}/sw/firmware/${program}.elf DESTINATION ${private}/sw/firmware)
 endforeach()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/install)
@@ -26,7 +26,8 @@ install(FILES ${PROJECT_BINARY_DIR}/install/completion.bash
 # Experiments name their footage by a path that begins at their own folder.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/experiments DESTINATION share/fovea/scripts)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/traces/footage DESTINATION share/fovea/traces)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/ci-example DESTINATION share/doc/fovea USE_SOURCE_PERMISSIONS)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/ci-example DESTINATION share/doc/fovea USE_SOURCE_PERMISSIONS
+        PATTERN build EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/fovea)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/fovea RENAME copyright)
 

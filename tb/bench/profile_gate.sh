@@ -7,7 +7,7 @@ here=$(dirname "$0")
 most=1.30
 compare() {
   awk -v most=$most '
-    !($1 in without) { without[$1] = $6; next }
+    !($1 in without) { without[$1] = $6; ++n; next }
     {
       seen[$1] = 1
       ratio = $6 / without[$1]
@@ -16,6 +16,7 @@ compare() {
       if (ratio > most) bad = 1
     }
     END {
+      if (!n) { print "nothing was measured"; bad = 1 }
       for (name in without) if (!(name in seen)) { printf "%s: not measured with a profile\n", name; bad = 1 }
       exit bad
     }'

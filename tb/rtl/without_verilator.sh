@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# without_verilator.sh SOURCE: the project configures without Verilator and yosys, and says what it leaves out.
+# without_verilator.sh SOURCE: the project configures without Verilator, and says what it leaves out.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -85,8 +85,12 @@ std::string demand_text(const Study& study) {
   std::string out;
   for (const Demand& d : demands()) {
     Settings yes, perhaps, no;
+    bool every = true;  // port and priority that was tried has an answer
     for (const auto& load : study.loads()) {
-      if (load->search().failure()) continue;
+      if (load->search().failure()) {
+        every = false;
+        continue;
+      }
       const double most = borne(*load);
       (most >= d.high ? yes : most >= d.low ? perhaps : no)
           .push_back(fmt::format("{}/{}", load->place().port, load->place().priority));
@@ -94,8 +98,9 @@ std::string demand_text(const Study& study) {
     const std::string need = d.low == d.high ? fmt::format("{:.1f} MB/s", d.likely)
                                              : fmt::format("{:.0f} ({:.0f} to {:.0f}) MB/s", d.likely, d.low, d.high);
     out += fmt::format("  {} needs {}: ", d.name, need);
-    if (perhaps.empty() && no.empty()) out += "it can run beside this at every port and priority that was tried";
-    else if (yes.empty() && perhaps.empty()) out += "it cannot run beside this";
+    if (yes.empty() && perhaps.empty() && no.empty()) out += "no answer";
+    else if (every && perhaps.empty() && no.empty()) out += "it can run beside this at every port and priority that was tried";
+    else if (every && yes.empty() && perhaps.empty()) out += "it cannot run beside this";
     else {
       const auto list = [&](const char* word, const Settings& at) {
         return at.empty() ? std::string() : fmt::format("{} at {}; ", word, fmt::join(at, " "));

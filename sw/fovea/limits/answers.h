@@ -15,8 +15,8 @@ std::string answers_text(const std::vector<std::unique_ptr<Study>>& studies, con
 std::string limits_csv(const std::vector<std::unique_ptr<Study>>& studies);
 /// binds.csv: a row for each combination and relaxation.
 std::string binds_csv(const std::vector<std::unique_ptr<Study>>& studies);
-/// points.csv: a row for each point that was asked for.
-std::string points_csv(const std::vector<points::Runner::Entry>& entries,
+/// points.csv: a row for each point that was asked for, sorted by what it is.
+std::string points_csv(std::vector<points::Runner::Entry> entries,
                        const std::vector<Condition>& conditions);
 
 }  // namespace fovea::limits

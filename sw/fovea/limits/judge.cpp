@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
@@ -42,7 +43,7 @@ std::vector<Condition> conditions_with(const std::vector<std::string>& required)
       c.at_least = text[at] == '>';
       const char* const end = text.data() + text.size();
       const auto read = std::from_chars(text.data() + at + 2, end, c.bound);
-      good = read.ec == std::errc() && read.ptr == end;
+      good = read.ec == std::errc() && read.ptr == end && std::isfinite(c.bound);
     }
     if (!good)
       throw UserError(fmt::format("--require '{}': allowed: METRIC<=NUMBER or METRIC>=NUMBER",

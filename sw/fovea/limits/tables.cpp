@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "sw/fovea/limits/answers.h"
 #include "sw/fovea/outputs.h"
 
@@ -136,7 +139,11 @@ std::string binds_csv(const std::vector<std::unique_ptr<Study>>& studies) {
   return out;
 }
 
-std::string points_csv(const std::vector<points::Runner::Entry>& entries, const std::vector<Condition>& conditions) {
+std::string points_csv(std::vector<points::Runner::Entry> entries, const std::vector<Condition>& conditions) {
+  // Searches that run at once add their points in the order in which runs end, which depends on the host.
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.point.label, points::key_of(a.point)) < std::pair(b.point.label, points::key_of(b.point));
+  });
   std::string out = line({"folder", "command", "point", "status", "verdict", "why"});
   for (const auto& [point, result] : entries) {
     if (!result) continue;

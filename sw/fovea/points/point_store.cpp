@@ -67,7 +67,9 @@ std::optional<PointResult> PointStore::find(std::string_view key) const {
   const json entry =
       json::parse(app::read_file(result.folder / "point.json", kMaxBytes), nullptr, false);
   if (!entry.is_object() || !entry.contains("key") || entry["key"] != key ||
-      !entry.contains("status") || !entry["status"].is_number_integer())
+      !entry.contains("status") || !entry["status"].is_number_integer() ||
+      (entry.contains("message") && !entry["message"].is_string()) ||
+      (entry.contains("wall_time") && !entry["wall_time"].is_number()))
     fail(result.folder, "its point.json is not that of this point; remove it to run the point again");
   result.key = key;
   result.status = entry["status"];

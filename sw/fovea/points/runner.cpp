@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <exception>
 #include <ostream>
 #include <thread>
 
@@ -118,7 +119,15 @@ void Runner::collect() {
       still.push_back(std::move(r));
   }
   running_ = std::move(still);
-  for (auto& [running, ended] : over) finish(running, ended);
+  std::exception_ptr failed;  // the others are results nevertheless
+  for (auto& [running, ended] : over) {
+    try {
+      finish(running, ended);
+    } catch (...) {
+      if (!failed) failed = std::current_exception();
+    }
+  }
+  if (failed) std::rethrow_exception(failed);
 }
 
 void Runner::finish(Running& running, const Ended& ended) {

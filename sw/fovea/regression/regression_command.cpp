@@ -15,6 +15,7 @@
 #include "sw/fovea/regression/check.h"
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/trend.h"
+#include "sw/fovea/run_files.h"
 
 namespace fovea::app {
 namespace {
@@ -91,6 +92,10 @@ bool write_reference(const fs::path& folder, const RunFigures& run, const Baseli
   if (!changed && complete &&
       (!has_profile(run) || attribution_of(read_reference(baseline), true).by_function))
     return false;
+  if (is_run_folder(folder) || (!complete && fs::is_directory(folder, error) && !fs::is_empty(folder, error)))
+    throw UserError(fmt::format("'{}' would be the reference, but it holds something else; give the baseline another "
+                                "name, or another 'reference'",
+                                one_line(folder.string())));
   const auto files = reference_files(run);
   fs::create_directories(folder, error);
   for (const auto& [name, text] : files) write_file(folder / name, text);

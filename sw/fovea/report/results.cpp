@@ -93,10 +93,12 @@ void read_stats(Results& out, const fs::path& file) {
   out.ended_by = text(stats, "ended_by");
   out.stats = read_figures(stats);
   if (const auto list = stats.find("warnings"); list != stats.end() && list->is_array())
-    for (const Json& w : *list)
+    for (const Json& w : *list) {
+      if (!w.is_object()) throw UserError(quoted(file) + ": a warning is not an object; it is damaged");
       out.warnings.push_back(
           {text(w, "kind"), text(w, "what"),
            w.value("count", Json(0)).is_number_unsigned() ? w["count"].get<std::uint64_t>() : 0});
+    }
 }
 
 void read_host(Results& out, const fs::path& file) {

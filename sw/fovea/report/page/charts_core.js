@@ -36,7 +36,9 @@ function drawWaterfall(place, run) {
   const every = clocksByCause(run).filter((r) => r[0] !== 'idle');
   // Rows that would be thinner than a line are one row, so that all still add up.
   const rows = every.filter((r) => r[1] >= all / 1000), small = every.filter((r) => !rows.includes(r));
-  if (small.length) rows.push([small.length === 1 ? small[0][0] : `${small.length} others`, small.reduce((sum, r) => sum + r[1], 0), {}]);
+  const parts = {};
+  for (const r of small) for (const [culprit, n] of Object.entries(r[2])) parts[culprit] = (parts[culprit] ?? 0) + n;
+  if (small.length) rows.push([small.length === 1 ? small[0][0] : `${small.length} others`, small.reduce((sum, r) => sum + r[1], 0), parts]);
   const width = widthOf(place), box = {left: 142, right: width - 66, top: 6, bottom: 6 + 30 * rows.length};
   const x = scale(0, all, box.left, box.right);
   const svg = drawing(place, width, box.bottom + 40,
