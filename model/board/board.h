@@ -96,7 +96,7 @@ class Board : public sc_core::sc_module {
 
   /// Called for each frame shown inside the window, in order.
   std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
-  /// Called when the firmware shows another phase on its pins.
+  /// Called at each change of the pins that show the phase, also if the phase stays.
   std::function<void(Phase, Picoseconds at)> on_phase;
   /// Called for each byte that UART0 has sent, at its last stop bit.
   std::function<void(std::uint8_t)> on_uart;

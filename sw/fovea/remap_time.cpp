@@ -23,6 +23,7 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
     const board::Phase phase = board::phase_of(out);
     if (phase == board::Phase::kRemapStart) reached(true);
     if (phase == board::Phase::kRemapEnd) reached(false);
+    if (phase == board::Phase::kReset || phase == board::Phase::kBoot) begun_.reset();
   };
 }
 

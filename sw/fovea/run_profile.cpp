@@ -18,12 +18,20 @@ RunProfile::RunProfile(board::Board& board, bool whole_run,
   board.on_phase = [this](board::Phase p, Picoseconds at) { phase(p, at); };
 }
 
-/// A phase is entered once: after the look-up table the firmware is idle between frames too.
+/// Until the window opens; a reset begins with the first phase again.
 void RunProfile::phase(board::Phase phase, Picoseconds at) {
   if (phase == board::Phase::kRemapStart || phase == board::Phase::kRemapEnd)
     core_.mark_snapshot(at);
-  const Section next = phase == board::Phase::kLut ? kLut : phase == board::Phase::kIdle ? kLock : kBoot;
-  if (whole_run_ || next <= reached_) return;
+  if (whole_run_ || reached_ >= kFrames) return;
+  Section next;
+  switch (phase) {
+    case board::Phase::kReset:
+    case board::Phase::kBoot: next = kBoot; break;
+    case board::Phase::kLut: next = kLut; break;
+    case board::Phase::kIdle: next = kLock; break;
+    default: return;
+  }
+  if (next == reached_) return;
   reached_ = next;
   core_.mark_section(at, next);
 }
@@ -40,6 +48,7 @@ void RunProfile::interrupt(std::uint64_t cycle) {
 
 void RunProfile::window(bool open) {
   if (whole_run_ && open) return;
+  opened_ = opened_ || open;
   reached_ = open ? kFrames : kAfter;
   core_.mark_section(kernel_time(), reached_);
 }
@@ -58,7 +67,7 @@ ProfileData RunProfile::finish(const cpu::Counts& end, const std::string& progra
     data.phases = {{"run", true, p.rows(kBoot)}};
     return data;
   }
-  const bool opened = reached_ >= kFrames;
+  const bool opened = opened_;
   data.phases = {{"boot", !opened, p.rows(kBoot)},
                  {"lut", !opened, p.rows(kLut)},
                  {"lock", !opened, p.rows(kLock)},

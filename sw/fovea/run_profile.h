@@ -40,6 +40,7 @@ class RunProfile {
   cpu::Core& core_;
   bool whole_run_;
   Section reached_ = kBoot;
+  bool opened_ = false;  // the window
   std::map<std::string, std::vector<Picoseconds>> delays_;  // by source of the interrupt
   std::vector<FrameRow> frames_;
   std::map<Picoseconds, cpu::ClockProfile::Snapshot> remaps_;

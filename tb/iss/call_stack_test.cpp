@@ -127,6 +127,34 @@ TEST(CallStackTest, RecursionCountsOnce) {
   }
 }
 
+TEST(CallStackTest, RecursionThatIsUnderWay) {
+  cpu::CallStacks s;
+  s.start(0, 0x100);
+  s.count(0, true);
+  s.call(10, 0x100, 0x200, 0x104, 0x8000);
+  s.call(20, 0x200, 0x200, 0x204, 0x7FF0);
+  s.call(30, 0x200, 0x200, 0x204, 0x7FE0);
+  s.count(40, false);
+  const auto calls = s.calls();
+  ASSERT_EQ(calls.size(), 2u);
+  EXPECT_EQ(calls[0].count, 1u);
+  EXPECT_EQ(calls[0].clocks, 30u);
+  EXPECT_EQ(calls[1].count, 2u);
+  EXPECT_EQ(calls[1].clocks, 20u);
+}
+
+/// Handlers that end in another way than a return from an exception.
+TEST(CallStackTest, ExceptionsThatNeverReturn) {
+  cpu::CallStacks s;
+  s.start(0, 0x100);
+  s.count(0, true);
+  for (std::uint64_t cycle = 1; cycle <= 600; ++cycle) s.exception(cycle, 0x10, 0x100, 0x8000);
+  s.count(601, false);
+  std::uint64_t clocks = 0;
+  for (const auto& path : s.paths()) clocks += path.clocks;
+  EXPECT_EQ(clocks, 601u);
+}
+
 /// A branch, and a branch to a register, out of a function: the callee returns for its caller.
 TEST(CallStackTest, TailCalls) {
   const Traced r(R"(

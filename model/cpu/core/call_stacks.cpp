@@ -1,6 +1,7 @@
 #include "model/cpu/core/call_stacks.h"
 
 #include <algorithm>
+#include <set>
 
 namespace fovea::cpu {
 namespace {
@@ -47,7 +48,14 @@ std::size_t CallStacks::new_stack(std::uint32_t target, std::uint32_t sp, bool e
   if (at == stacks_.size()) {
     if (at >= kMostStacks) {  // the oldest one that nothing returns to
       at = 0;
-      while (at == current_ || std::count(interrupted_.begin(), interrupted_.end(), at)) ++at;
+      while (at < stacks_.size() &&
+             (at == current_ || std::count(interrupted_.begin(), interrupted_.end(), at)))
+        ++at;
+      if (at == stacks_.size()) {  // the outermost one that waits is given up
+        at = interrupted_.front() == current_ && interrupted_.size() > 1 ? interrupted_[1]
+                                                                         : interrupted_.front();
+        std::erase(interrupted_, at);
+      }
       while (!stacks_[at].frames.empty()) pop(stacks_[at]);
     } else {
       stacks_.emplace_back();
@@ -244,12 +252,14 @@ std::vector<CallStacks::Call> CallStacks::calls() const {
     if (counted.call.count == 0 && counted.call.clocks == 0) continue;
     out.push_back(counted.call);
   }
-  // Calls that have not returned.
+  // Calls that have not returned; of a recursive one the outermost, which comes first.
+  std::set<const Counted*> seen;
   for (const Stack& s : stacks_)
-    for (const Frame& f : s.frames)
+    for (const Frame& f : s.frames) {
+      if (!seen.insert(f.counted).second) continue;
       for (Call& c : out)
-        if (c.from == f.counted->call.from && c.to == f.counted->call.to && f.counted->depth == 1)
-          c.clocks += s.ran - f.ran;
+        if (c.from == f.counted->call.from && c.to == f.counted->call.to) c.clocks += s.ran - f.ran;
+    }
   std::sort(out.begin(), out.end(), [](const Call& a, const Call& b) {
     return pair(a.from, a.to) < pair(b.from, b.to);
   });

@@ -75,6 +75,7 @@ class ClockProfile {
   void count_stacks_of(std::size_t section) {
     stacked_section_ = section;
     stacks.count(0, section_ == section);
+    mask.count(section_ == section, 0, 0);
   }
   bool counts_stacks() const { return section_ == stacked_section_; }
   CallStacks stacks;

@@ -79,6 +79,7 @@ void Core::restart(std::uint32_t entry, Picoseconds now) {
   const std::uint64_t cycle = std::max(ledger_.cycle, before);
   ledger_.cycle = before;
   ledger_.sleep_to(cycle, WakeEvent::kOther);
+  if (ledger_.profile) ledger_.profile->mask.set(true, awake(), regs_.pc);
 }
 
 void Core::set_cpsr(std::uint32_t value) {

@@ -103,6 +103,7 @@ ClockProfile& Core::start_profile() {
 
 void Core::finish_profile(const Counts& end) {
   ClockProfile& p = *own_profile_;
+  if (const Instruction* const i = std::exchange(storing_, nullptr)) ends_before(i);
   const std::uint64_t asleep =
       end.idle > ledger_.counts.idle ? end.idle - ledger_.counts.idle : 0;
   if (asleep) p.slept(WakeEvent::kOther, asleep);

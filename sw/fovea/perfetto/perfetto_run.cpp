@@ -131,6 +131,7 @@ void PerfettoRun::end_at(Picoseconds at) {
 void PerfettoRun::window_opened() {
   activates_ = bursts_ = 0;  // the statistics begin anew
   bytes_ = {};
+  sampled_ = kernel_time();
   if (request_.from == "window") begin(kernel_time());
 }
 
@@ -140,7 +141,7 @@ void PerfettoRun::window_closed() {
 }
 
 void PerfettoRun::begin(Picoseconds at) {
-  if (on_ || over_) return;
+  if (on_ || over_ || at >= until_) return;
   on_ = true;
   from_ = at;
   if (request_.trigger.empty() && request_.duration != kNever) end_at(at + request_.duration);
@@ -150,7 +151,10 @@ void PerfettoRun::begin(Picoseconds at) {
 
 void PerfettoRun::end() {
   if (!on_) return;
-  close_phase(std::min(kernel_time(), until_));
+  const Picoseconds at = std::min(kernel_time(), until_);
+  close_phase(at);
+  for (const Line& l : lines_)
+    if (l.since && at > from_) file_->slice(l.track, l.name, std::max(*l.since, from_), at);
   board_.dm365.scr.crossbar().observe(next_);
   on_ = false;
   over_ = true;
@@ -168,10 +172,10 @@ void PerfettoRun::sample() {
     const bus::MasterStats& stats = *soc.scr.crossbar().stats[i];
     const std::array<std::uint64_t, 2> bytes{stats.read_bytes.count(), stats.write_bytes.count()};
     for (const unsigned write : {0u, 1u})
-      if (!first && (bytes[write] || bytes_[i][write]))
+      if (!first && now > sampled_ && (bytes[write] || bytes_[i][write]))
         file_->value(bandwidth_[i][write], now,
                      static_cast<double>(bytes[write] - std::min(bytes_[i][write], bytes[write])) /
-                         static_cast<double>(kSample) * 1e6);
+                         static_cast<double>(now - sampled_) * 1e6);
     bytes_[i] = bytes;
   }
   file_->value(queue_, now, std::int64_t{ddr.requests_queued()});
@@ -182,6 +186,7 @@ void PerfettoRun::sample() {
                                             static_cast<double>(bursts - bursts_)));
   activates_ = activates;
   bursts_ = bursts;
+  sampled_ = now;
   soc.end_of_instant.at(now + kSample, kAfterAll, [this] { sample(); });
 }
 
@@ -189,6 +194,8 @@ void PerfettoRun::pins(std::uint32_t levels, Picoseconds at) {
   close_phase(at);
   const board::Phase phase = board::phase_of(levels);
   std::string name = phase_text(phase);
+  // Between frames too.
+  if (phase == board::Phase::kIdle && board_.log.first(board::Phase::kRemapStart)) name = "idle";
   if (phase == board::Phase::kRemapStart) name += fmt::format(" {}", PHASE_SEQUENCE(levels));
   if (!name.empty()) phase_ = {name, at};
 }

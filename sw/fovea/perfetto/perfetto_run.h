@@ -77,6 +77,7 @@ class PerfettoRun final : private MemObserver {
   PerfettoFile::Track queue_, owed_, hits_;
   std::array<std::array<PerfettoFile::Track, 2>, kStatCount> bandwidth_{};
   std::array<std::array<std::uint64_t, 2>, kStatCount> bytes_{};
+  Picoseconds sampled_ = 0;  // when
   std::uint64_t activates_ = 0, bursts_ = 0;
 };
 
