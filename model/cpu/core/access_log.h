@@ -29,6 +29,10 @@ class AccessLog {
   void note(std::uint32_t pc, std::uint32_t va, unsigned bytes, bool write) {
     take() = {nullptr, va, pc, 1, static_cast<std::uint8_t>(bytes), write};
   }
+  /// The record of the newest access; null if it was noted without one.
+  const Instruction* last_record() const {
+    return ring_[(at_ / sizeof(Entry) + ring_.size() - 1) % ring_.size()].record;
+  }
   /// To be called before records of a line, or its address, change.
   void line_changes(const DecodedLine& line) {
     for (Entry& e : ring_)

@@ -454,7 +454,6 @@ class Core : public Background {
   }
 
   ClockProfile* profile_ = nullptr;  // null while an instruction is executed outside of the flow
-  const Instruction* storing_ = nullptr;  // for a profile: the chain may wait for the bus in this store
   std::unique_ptr<ClockProfile> own_profile_;
   std::uint64_t collected_ = 0;  // clock at which the tallies were last collected
   std::uint32_t next_pc_ = 0;

@@ -154,6 +154,7 @@ void DataBus::drain(Cause cause) {
 
 void DataBus::make_room(unsigned count) {
   const std::uint64_t begin = ledger_.cycle;
+  waits_for_room_ = true;
   do {
     if (!write_in_flight_) {
       wait_for_port(Cause::kWriteBuffer);
@@ -162,6 +163,7 @@ void DataBus::make_room(unsigned count) {
     wait_for_write(Cause::kWriteBuffer);
     run_buffers(ledger_.cycle);
   } while (!writes_.room(count));
+  waits_for_room_ = false;
   room_waits_ += ledger_.cycle - begin;
 }
 

@@ -92,6 +92,8 @@ class DataBus {
   /// Clocks that the core waited for room in the buffers, and how often it waited until both were
   /// empty.
   std::uint64_t room_waits() const { return room_waits_; }
+  /// The core waits for room in the write buffer.
+  bool waits_for_room() const { return waits_for_room_; }
   std::uint64_t drains() const { return drains_; }
 
  private:
@@ -149,6 +151,7 @@ class DataBus {
                                           // unknown
   mutable std::uint64_t act_time_cycle_ = kNoCycle;  // next_act(): last clock and its time
   mutable Picoseconds act_time_ = 0;
+  bool waits_for_room_ = false;
   std::uint64_t room_waits_ = 0;  // clocks waited for room in the buffers, for all causes
   std::uint64_t drains_ = 0;      // number of times that the core waited until they were empty
 };

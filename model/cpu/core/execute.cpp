@@ -103,7 +103,9 @@ ClockProfile& Core::start_profile() {
 
 void Core::finish_profile(const Counts& end) {
   ClockProfile& p = *own_profile_;
-  if (const Instruction* const i = std::exchange(storing_, nullptr)) ends_before(i);
+  // In the midst of a chain, in a store that waits for room in the write buffer.
+  if (bus_.waits_for_room())
+    if (const Instruction* const i = log_.last_record()) ends_before(i);
   const std::uint64_t asleep =
       end.idle > ledger_.counts.idle ? end.idle - ledger_.counts.idle : 0;
   if (asleep) p.slept(WakeEvent::kOther, asleep);

@@ -134,15 +134,10 @@ template <Op kOp, Address kAddress, Indexed kIndexed>
   const std::uint32_t end = moved<kAddress>(c.regs_.r, *i);
   const std::uint32_t va = kIndexed == Indexed::kPost ? c.regs_.r[i->rn] : end;
   c.settle(i, cycle);
-  if (c.profile_) [[unlikely]]
-    c.storing_ = i;
   if (c.data_.absent.key == (va & ~(kReadSpan - access_bytes(kOp))))
     c.store_absent<access_bytes(kOp)>(i, va, c.data_.absent.pa | va % kReadSpan, c.regs_.r[i->rd]);
-  else if (!c.store_beside_cache<access_bytes(kOp)>(i, va, c.regs_.r[i->rd])) {
-    c.storing_ = nullptr;
+  else if (!c.store_beside_cache<access_bytes(kOp)>(i, va, c.regs_.r[i->rd]))
     return generic(c, i, cycle);
-  }
-  c.storing_ = nullptr;
   if constexpr (kIndexed != Indexed::kOffset) c.regs_.r[i->rn] = end;
   c.spend(kAddress == Address::kLsl ? 1u + i->rs : 1u);
   return over(c, i);
