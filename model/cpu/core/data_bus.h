@@ -92,9 +92,9 @@ class DataBus {
   /// Clocks that the core waited for room in the buffers, and how often it waited until both were
   /// empty.
   std::uint64_t room_waits() const { return room_waits_; }
+  std::uint64_t drains() const { return drains_; }
   /// The core waits for room in the write buffer.
   bool waits_for_room() const { return waits_for_room_; }
-  std::uint64_t drains() const { return drains_; }
 
  private:
   static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};
