@@ -120,6 +120,27 @@ TEST(EngineTest, APalFrameIsTheFirmwaresPictureAndCostsWhatItMust) {
   }
 }
 
+/// Words that differ in one bit of their address alone, in turn: they are in one place of the cache.
+TEST(EngineTest, LinesOfOnePlaceInTheCacheAreToldApart) {
+  constexpr unsigned kFirstBit = 13, kBits = 8;  // above the 8 KiB of the cache, below the map
+  Dice dice(seed() + 1);
+  EngineBench bench(kSize);
+  MappedJob m;
+  m.job.pairs = m.job.dst_pitch = 40;
+  m.job.rows = kBits;
+  m.job.src_pitch = 512;
+  m.job.src_width = m.job.src_height = 1024;
+  static_assert(512 * 4 * 1024 == 1u << (kFirstBit + kBits) && kMap >= 512 * 4 * 1024);
+  for (unsigned bit = 0; bit < kBits; ++bit)
+    for (unsigned i = 0; i < m.job.pairs; ++i)
+      m.map.push_back(i / 2 * 4 + (i % 2 << (kFirstBit + bit)));
+  place(m);
+  fill(bench, m, dice);
+  const auto want = expected(bench, m);
+  EXPECT_EQ(bench.run(m.job, EngineBench::kBase + kMap, kBorder).bad, 0u);
+  expect_picture(bench, m, want);
+}
+
 TEST(EngineTest, ErrorsAndAnEarlyEndAreReportedAndTheNextJobIsRight) {
   Dice dice(seed() + 2);
   EngineBench bench(kSize, seed() + 2);
