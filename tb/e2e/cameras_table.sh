@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# scripts/cameras over a stand-in of `fovea limits`: how many cameras it finds, with a chip whose rate of remaps is
+# known, and how it deals with pages, failures and unknown words.
+# Usage: cameras_table.sh SOURCE OUT
+set -uo pipefail
+source=$1 out=$2
+rm -rf "$out"
+mkdir -p "$out"
+cd "$out" || exit 1
+failures=0
+fail() {
+  echo "$*"
+  failures=$((failures + 1))
+}
+# A chip that remaps RATE frames a second less one for each MB/s of load. A burst of its load takes 400 ns; the load
+# cannot move more than MOST bytes a second.
+cat >stand_in <<'P'
+#!/usr/bin/python3
+import json, os, sys
+args = sys.argv[1:]
+assert args[0] == "limits", args
+with open("calls", "a") as f:
+    f.write(" ".join(args) + "\n")
+settings = dict(args[i + 1].split("=", 1) for i, a in enumerate(args) if a == "-s")
+over = [args[i + 1].split("=", 1) for i, a in enumerate(args) if a == "--over"]
+out = args[args.index("-o") + 1]
+os.makedirs(os.path.join(out, "points", "p", "run"), exist_ok=True)
+if os.environ.get("FAIL"):
+    sys.exit(3)
+if "--binds" in args:
+    with open(os.path.join(out, "binds.csv"), "w") as f:
+        f.write("resource,binds,gain\ncore clock,yes,0.031\nSDRAM clock,no,0.02\nbridges of the core,yes,0.4\n")
+if "cameras.count" in settings:
+    with open(os.path.join(out, "limits.csv"), "w") as f:
+        f.write("firmware.kernel,tvp5146.relock_fields,searched,answer,why_bad,frame.rate,frame.remap_time.max\n")
+        for kernel in over[0][1].split(","):
+            for relock in over[1][1].split(","):
+                bad = kernel == "slow"
+                f.write(f"{kernel},{relock},as it is,{'not met' if bad else 'met'},"
+                        f"{'1 dropped frame' if bad else ''},{25 / (1 + int(relock) / 2)},{.05 if bad else .03}\n")
+    sys.exit(1)
+load = 0
+if "load.1.gap" in settings:
+    gap = float(settings["load.1.gap"].removesuffix("ns")) * 1e-9
+    load = int(settings["load.1.outstanding"]) * 64 / (gap + 400e-9)
+load = min(load, float(os.environ.get("MOST", "1e12")))
+stats = {"complete": True, "frame.window": {"value": .08}, "bus.load.write_bytes": {"value": load * .08},
+         "frame.remap_rate": {"value": float(os.environ["RATE"]) - load / 1e6}}
+with open(os.path.join(out, "points", "p", "run", "stats.json"), "w") as f:
+    json.dump(stats, f)
+with open(os.path.join(out, "limits.csv"), "w") as f:
+    f.write("firmware.kernel\nx\n")
+with open(os.path.join(out, "points.csv"), "w") as f:
+    f.write("folder,command,point,status,verdict,why\n" + "p,run,as it is,0,met,\n" * int(os.environ.get("N", "1")))
+P
+chmod +x stand_in
+# cameras NAME STATUS OPTIONS...: what it prints is in NAME.out and NAME.err, its table in NAME.csv.
+cameras() {
+  local name=$1 status=$2 got
+  shift 2
+  : >calls
+  timeout 60 "$source/scripts/cameras" --fovea ./stand_in -o "$name" --csv "$name.csv" "$@" >"$name.out" 2>"$name.err"
+  got=$?
+  [ "$got" = "$status" ] || fail "$name: status $got, expected $status: $(tail -3 "$name.err")"
+}
+rows() { # NAME ROW...: the rows below the header
+  local name=$1
+  shift
+  [ "$(tail -n +2 "$name.csv")" = "$(printf '%s\n' "$@")" ] || fail "$name: $(cat "$name.csv")"
+}
+has() { grep -qF -- "$2" "$1" || fail "$1 lacks '$2': $(cat "$1")"; }
+live=(--ways live --kernels plain --presets 297/243 --formats pal)
+
+# Two cameras need 50 remaps and a load of 20.736 MB/s, up to 2 % more: 71.2 a second leave 50.04 or more.
+RATE=71.2 cameras two 0 "${live[@]}"
+case "$(sed -n 2p two.csv)" in live,2,720x576,plain,297/243,,25.000,25.*,yes,,0.0*,) ;; *) fail "$(cat two.csv)" ;; esac
+case "$(sed -n 3p two.csv)" in live,3,*,no,*' of 75.0',-0.*) ;; *) fail "two: $(cat two.csv)" ;; esac
+# A little less is too little for two.
+RATE=70.7 cameras one 0 "${live[@]}"
+case "$(sed -n 2p one.csv)" in live,1,720x576,plain,297/243,,25.000,70.7,yes,,1.83,) ;; *) fail "$(cat one.csv)" ;; esac
+case "$(sed -n 3p one.csv)" in live,2,*,no,*' of 50.0',*) ;; *) fail "one: $(cat one.csv)" ;; esac
+# None; exactly one.
+RATE=24.9 cameras none 0 "${live[@]}"
+rows none 'live,1,720x576,plain,297/243,,25.000,24.9,no,24.9 remaps a second of 25.0,-0.00,'
+RATE=25 cameras exact 0 "${live[@]}"
+has exact.csv 'live,1,720x576,plain,297/243,,25.000,25.0,yes,,0.00,'
+has exact.csv 'live,2,'
+# NTSC: 59.94 remaps and 20.716 MB/s.
+RATE=82 cameras ntsc 0 "${live[@]}" --formats ntsc
+has ntsc.csv 'live,2,720x480,plain,297/243,,29.970,30.'
+# A memory that cannot take the frames of three cameras.
+RATE=1000 MOST=30e6 cameras full 0 "${live[@]}"
+has full.csv "live,3,720x576,plain,297/243,,25.000,,no,the memory cannot take the cameras' frames,,"
+# What binds, the largest gain first.
+RATE=60 cameras binds 0 "${live[@]}" --binds
+has binds.csv 'bridges of the core 40 %; core clock 3 %'
+has calls '--binds frame.remap_rate'
+has calls 'load.1.gap'
+
+# Taking turns: the margin is what the longest remap leaves of 40 ms.
+cameras turns 0 --ways turns --turns 2,8 --kernels plain,slow --presets 297/243 --relock 0,2
+rows turns \
+  'turns,2,720x576,plain,297/243,0,,12.500,yes,,0.25,' 'turns,2,720x576,plain,297/243,2,,6.250,yes,,0.25,' \
+  'turns,2,720x576,slow,297/243,0,,12.500,no,1 dropped frame,-0.25,' \
+  'turns,2,720x576,slow,297/243,2,,6.250,no,1 dropped frame,-0.25,' \
+  'turns,8,720x576,plain,297/243,0,,3.125,yes,,0.25,' 'turns,8,720x576,plain,297/243,2,,1.562,yes,,0.25,' \
+  'turns,8,720x576,slow,297/243,0,,3.125,no,1 dropped frame,-0.25,' \
+  'turns,8,720x576,slow,297/243,2,,1.562,no,1 dropped frame,-0.25,'
+has calls 'camera.7.file='
+
+# Pages.
+printf 'before\n<!-- cameras: begin -->\nold\n<!-- cameras: end -->\nafter\n' >page.md
+RATE=25 cameras check 1 "${live[@]}" --check page.md
+has check.err '-old'
+RATE=25 cameras write 0 "${live[@]}" --write page.md
+has page.md '| 1 | 720x576 | plain | 297/243 | 25.000 | 25.0 | yes |'
+[ "$(sed -n '1p;$p' page.md)" = $'before\nafter' ] || fail "page: $(cat page.md)"
+RATE=25 cameras again 0 "${live[@]}" --check page.md
+RATE=26 cameras other 1 "${live[@]}" --check page.md
+printf 'no table\n' >none.md
+RATE=25 cameras nowhere 1 "${live[@]}" --check none.md
+has nowhere.err 'lacks the lines'
+
+# Failures.
+FAIL=1 RATE=25 cameras failed 1 "${live[@]}"
+has failed.err 'ended with status 3'
+N=2 RATE=25 cameras points 1 "${live[@]}"
+has points.err 'has 2 points, expected one'
+cameras word 1 --formats secam
+has word.err "format 'secam' is not known; allowed: pal, ntsc, vga"
+[ $failures = 0 ]
