@@ -11,22 +11,20 @@
 
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
-#include "model/video/scene/ahead.h"
 #include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
+#include "sw/fovea/board_figures.h"
 #include "sw/fovea/bus_trace_run.h"
-#include "sw/fovea/camera_pictures.h"
+#include "sw/fovea/camera_inputs.h"
 #include "sw/fovea/command_trace.h"
 #include "sw/fovea/core_semihosting.h"
 #include "sw/fovea/elf_image.h"
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
-#include "sw/fovea/figures.h"
 #include "sw/fovea/hazard_report.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/fovea/perfetto/perfetto_run.h"
-#include "sw/fovea/remap_time.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/run_profile.h"
 #include "sw/fovea/simulation.h"
@@ -34,16 +32,6 @@
 
 namespace fovea::app {
 namespace {
-
-using Wall = std::chrono::steady_clock;
-
-double seconds_since(Wall::time_point t) {
-  return std::chrono::duration<double>(Wall::now() - t).count();
-}
-
-StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
-  return {std::move(name), value, std::move(unit), std::move(sentence)};
-}
 
 double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
 
@@ -83,31 +71,6 @@ std::string reset_text(const std::string& cause, std::size_t before) {
   return text;
 }
 
-void add_camera_stats(std::vector<StatRow>& rows,
-                      const std::vector<board::CameraFrameStats>& cameras) {
-  for (std::size_t n = 0; n < cameras.size(); ++n) {
-    const board::CameraFrameStats& c = cameras[n];
-    const std::string name = fmt::format("camera.{}.frame.", n), whose = fmt::format(" of camera {}", n);
-    rows.push_back(row(name + "captured", c.captured, "1",
-                       "frames captured" + whose +
-                           ", from the first to the last one shown in the window: displayed, "
-                           "superseded and dropped ones"));
-    rows.push_back(row(name + "displayed", c.displayed, "1", "frames" + whose + " displayed"));
-    rows.push_back(row(name + "superseded", c.superseded, "1",
-                       "corrected frames" + whose + " that a newer frame replaced before they were shown"));
-    rows.push_back(row(name + "dropped", c.dropped, "1",
-                       "captured frames" + whose + " that were not corrected"));
-    if (c.rate)
-      rows.push_back(row(name + "rate", *c.rate, "1/s",
-                         "new frames" + whose + " displayed / time, as frame.rate"));
-    if (!c.displayed) continue;
-    const std::string what = "from capture to display" + whose + ", as frame.latency, ";
-    rows.push_back(row(name + "latency.min", to_s(c.latency_min), "s", what + "shortest"));
-    rows.push_back(row(name + "latency.mean", c.latency_mean * 1e-12, "s", what + "mean"));
-    rows.push_back(row(name + "latency.max", to_s(c.latency_max), "s", what + "longest"));
-  }
-}
-
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
@@ -119,12 +82,8 @@ class BoardSimulation : public Simulation {
  private:
   void open_window();
   void close_window();
-  void collect_all(std::vector<StatRow>& rows);
-  void add_frame_stats(std::vector<StatRow>& rows) const;
-  void add_host(RunResult& result, bool strict) const;
   std::string failure_text(const std::string& what) const;
   std::string reset_note(const board::ChipReset& reset, std::size_t before) const;
-  cpu::Counts collect_core(RunResult& result) const;
   void collect_profile(RunResult& result, const cpu::Counts& end, const RunRequest& request,
                        const ElfImage& program);
   std::string ended_text(const RunEnd::Met& met) const;
@@ -140,113 +99,26 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<BusTraceRun> trace_;
   std::unique_ptr<CommandTrace> commands_;
   std::unique_ptr<PerfettoRun> perfetto_;
-  std::unique_ptr<RemapTime> remaps_;
-  std::vector<LatencyRow> latency_;
+  std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<RunProfile> profile_;
-  std::vector<StatRow> stats_;
   std::vector<FrameRow> frames_;
-  Wall::time_point started_, window_wall_;
-  double window_wall_s_ = 0;
-  std::uint64_t window_instructions_ = 0, direct_at_open_ = 0, queued_at_open_ = 0;
-  std::uint64_t direct_ = 0, queued_ = 0;
-  bool opened_ = false, closed_ = false;
-  std::optional<cpu::Counts> asleep_at_end_;  // of a core that may not wake up any more
 };
 
 void BoardSimulation::open_window() {
-  auto& soc = board_->dm365;
-  opened_ = true;
-  board_->platform.each_statistics([](StatGroup& group) { group.reset(); });
-  soc.arm.core().mark_window(kernel_time());
+  figures_->open_window();
   if (profile_) profile_->window(true);
   if (trace_) trace_->open();
   if (perfetto_) perfetto_->window_opened();
-  if (commands_) commands_->begin(soc.ddr.controller(), kernel_time());
-  window_wall_ = Wall::now();
-  direct_at_open_ = soc.scr.memory().decided_ahead();
-  queued_at_open_ = soc.scr.memory().decided_at_present();
+  if (commands_) commands_->begin(board_->dm365.ddr.controller(), kernel_time());
 }
 
 void BoardSimulation::close_window() {
-  if (closed_) return;
-  closed_ = true;
-  auto& soc = board_->dm365;
+  if (figures_->closed()) return;
   if (trace_) trace_->close();
   if (commands_) commands_->end();
   if (perfetto_) perfetto_->window_closed();
-  window_wall_s_ = seconds_since(window_wall_);
-  direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
-  queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
-  board_->platform.each_statistics([this](const StatGroup& group) { collect(group, stats_); });
-  for (std::size_t i = 0; i < kStatCount; ++i)
-    add_latency_rows(latency_, std::string(kStatNames[i]), *soc.scr.latency[i]);
-  // The SDRAM's data bus: clocks with data over clocks of the window.
-  const auto from = board_->window_start(), to = board_->window_end();
-  if (from && to && *to > *from) {
-    const mem::DdrController& ddr = soc.ddr.controller();
-    add_ddr_shares(stats_,
-                   {ddr.busy_clocks(), ddr.stats.queued_clocks.count(),
-                    to_s(*to - *from) * ddr.ddr_clock().frequency().hertz()},
-                   "the window");
-  }
-  soc.arm.core().mark_window(kernel_time());
+  figures_->close_window();
   if (profile_) profile_->window(false);
-  if (soc.arm.asleep()) asleep_at_end_ = soc.arm.core().counts_asleep(kernel_time());
-}
-
-void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
-  const board::FrameStats f = board_->frame_stats();
-  if (f.rate)
-    rows.push_back(row("frame.rate", *f.rate, "1/s",
-                       "new frames displayed / time, over the whole display frames in the window"));
-  rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
-  rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured in the window"));
-  rows.push_back(row("frame.remapped", f.remapped, "1", "frames corrected (remap finished) in the window"));
-  rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed in the window"));
-  rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never displayed"));
-  rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show a camera frame again"));
-  if (f.latencies) {
-    const std::string what = "time from a frame's first captured sample to its first displayed sample, ";
-    rows.push_back(row("frame.latency.min", to_s(f.latency_min), "s", what + "shortest"));
-    rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
-    rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
-  }
-  if (f.remaps) {
-    rows.push_back(row("frame.remap_rate", f.remap_rate, "1/s",
-                       "remaps that ended in the window / its length; with firmware.repeat above 1 what the "
-                       "remap loop manages without waiting for the camera"));
-    add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
-  }
-  if (params_.camera_count() > 1) add_camera_stats(rows, board_->camera_stats());
-  const auto lut = board_->log.first(board::Phase::kLut);
-  const auto idle = board_->log.first(board::Phase::kIdle);
-  if (lut && idle && *idle > *lut)
-    rows.push_back(row("startup.lut_time", to_s(*idle - *lut), "s",
-                       "time to build the look-up table, from phase 2 to phase 3 on the pins"));
-  if (opened_)
-    rows.push_back(row("startup.first_frame", to_s(*board_->window_start()), "s",
-                       "time from power-up to the start of the first corrected frame on the display"));
-}
-
-void BoardSimulation::add_host(RunResult& result, bool strict) const {
-  auto& h = result.host;
-  const double window = board_->frame_stats().window;
-  h.push_back(wall_time(seconds_since(started_), "the whole run"));
-  h.push_back(peak_rss());
-  if (window_wall_s_ > 0 && window > 0)
-    h.push_back(realtime_factor(window, window_wall_s_, "in the measured window"));
-  if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
-    h.push_back(
-        mips(std::get<std::uint64_t>(n->value), window_wall_s_, "in the measured window"));
-  h.push_back(row("sync.direct", direct_, "1",
-                  "SDRAM accesses decided ahead of the kernel, in the window"));
-  h.push_back(row("sync.queued", queued_, "1",
-                  "SDRAM accesses decided by a kernel event, in the window"));
-  if (direct_ + queued_ > 0)
-    h.push_back(row("sync.direct_share",
-                    static_cast<double>(direct_) / static_cast<double>(direct_ + queued_), "ratio",
-                    "share of the direct path"));
-  h.push_back(row("sync.strict", std::uint64_t{strict ? 1u : 0u}, "1", "--sync=strict"));
 }
 
 std::string BoardSimulation::failure_text(const std::string& what) const {
@@ -267,56 +139,9 @@ std::string BoardSimulation::reset_note(const board::ChipReset& reset, std::size
                      reset.cause);
 }
 
-std::vector<std::string> timeline_masters() { return {kStatNames.begin(), kStatNames.end()}; }
-
-TimelineRow timeline_row(Picoseconds start, Picoseconds end, const bus::Timeline::Row& row) {
-  TimelineRow out{start, end, std::vector<std::uint64_t>(kStatCount),
-                  std::vector<std::uint64_t>(kStatCount)};
-  for (std::size_t m = 0; m < kMasterCount; ++m) {
-    out.read_bytes[stat_index(static_cast<Master>(m))] += row.read[m];
-    out.write_bytes[stat_index(static_cast<Master>(m))] += row.write[m];
-  }
-  return out;
-}
-
-/// Hands over the rows of the timeline that are final: those of a while ago, as the window may end a
-/// little before the present time.
-void take_timeline(board::Board& board, const RunRequest& request) {
-  constexpr Picoseconds kWhile = 200 * kPsPerMs;
-  const Picoseconds now = board.window_end().value_or(kernel_time());
-  if (!request.timeline_row || now < kWhile) return;
-  static const std::vector<std::string> masters = timeline_masters();
-  board.dm365.scr.crossbar().timeline.take_until(
-      now - kWhile, [&](Picoseconds start, Picoseconds end, const auto& row) {
-        request.timeline_row(masters, timeline_row(start, end, row));
-      });
-}
-
 std::string BoardSimulation::ended_text(const RunEnd::Met& met) const {
   return fmt::format("{} after {:.6f} s, {} instructions, at pc {}", met.what, to_s(met.at),
                      board_->dm365.arm.core().instructions_executed(), symbols_.place(met.pc));
-}
-
-/// The core's figures of the window, or of the whole run if none was opened. A core that ended, or
-/// comes to no instruction boundary any more, has what it has.
-cpu::Counts BoardSimulation::collect_core(RunResult& result) const {
-  const auto& core = board_->dm365.arm.core();
-  cpu::CoreStats figures;
-  if (opened_) figures.from = core.window_stats().from;
-  if (closed_ && core.mark_done() && core.window_stats().to.cycles) {
-    figures.to = core.window_stats().to;
-  } else if (asleep_at_end_) {
-    figures.to = *asleep_at_end_;
-  } else {
-    figures.to = core.counts();
-    figures.to.cycles = core.clock_count();
-  }
-  // The clock's first edge after power-up is number 1; a core that never ran has no clocks either.
-  if (!opened_ && figures.to.cycles) --figures.to.cycles;
-  collect(figures, result.stats);
-  remaps_->collect(figures.from, figures.to, result.stats);
-  result.stalls = stall_rows(figures.from, figures.to, core.regions());
-  return figures.to;
 }
 
 void BoardSimulation::collect_profile(RunResult& result, const cpu::Counts& end,
@@ -382,7 +207,7 @@ SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& requ
 }
 
 RunResult BoardSimulation::run(const RunRequest& request) {
-  started_ = Wall::now();
+  const auto started = std::chrono::steady_clock::now();
   const ElfImage elf = ElfImage::load(program_file(params_));
   check_fits(elf, memory_regions(params_));
   symbols_ = Symbols(&elf, request.symbols);
@@ -401,22 +226,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
   RunResult result;
-  std::vector<std::unique_ptr<video::StampedSource>> views;
-  std::vector<std::unique_ptr<video::AheadSource>> ahead;
-  std::vector<std::unique_ptr<CameraPictures>> pictures;  // only if they are wanted
-  std::vector<const video::StampedSource*> sources;
-  std::vector<video::PictureSource*> cameras;
-  for (unsigned n = 0; n < params_.camera_count(); ++n) {
-    views.push_back(camera_source(params_, n, &request.stop, &result.notes));
-    ahead.push_back(std::make_unique<video::AheadSource>(*views.back()));
-    sources.push_back(views.back().get());
-    cameras.push_back(ahead.back().get());
-    if (!request.camera) continue;
-    pictures.push_back(std::make_unique<CameraPictures>(*cameras.back()));
-    cameras.back() = pictures.back().get();
-  }
+  const CameraInputs cameras(params_, static_cast<bool>(request.camera), request.stop, result.notes);
   const std::optional<ElfImage> loader = loader_of(elf, request);
-  board_ = std::make_unique<board::Board>("board", params_, cameras,
+  board_ = std::make_unique<board::Board>("board", params_, cameras.sources(),
                                           loader ? loader->entry() : elf.entry(),
                                           request.strict_sync);
   for (const auto& s : elf.segments()) {
@@ -427,12 +239,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   add_program_regions(regions, elf, memory_regions(params_));
   board_->dm365.arm.core().set_regions(std::move(regions));
   board_->dm365.arm.core().describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
-  load_page(elf, parameter_page(params_, sources));
+  load_page(elf, parameter_page(params_, cameras.views()));
 
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
-  remaps_ = std::make_unique<RemapTime>(*board_);
+  figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
@@ -464,10 +276,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
         frames_.push_back(out);
       if (request.frame)
         request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
-      if (request.camera && r.capture_start && r.camera < pictures.size())
-        if (const video::Picture* sent =
-                pictures[r.camera]->frame(board_->decoder.cameras()[r.camera], *r.capture_start))
-          request.camera({r.index, sent->width, sent->height, sent->uyvy});
+      if (const video::Picture* sent = cameras.sent(*board_, r))
+        request.camera({r.index, sent->width, sent->height, sent->uyvy});
     } catch (...) {
       failure = std::current_exception();
     }
@@ -504,7 +314,6 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     return (request.console && request.console->lost()) ||
            (request.semihosting && request.semihosting->lost());
   };
-  window_wall_ = Wall::now();
   HostTimeSlicer slicer;
   std::string guest;
   unsigned behind_end = 0;
@@ -531,8 +340,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
       if (gdb) gdb->failed(guest);
       break;
     }
-    const bool asleep = run_end.met() && asleep_at_end_;
-    if ((closed_ && (arm.core().mark_done() || asleep)) || (run_end.core_ended() && kernel_stopped()) ||
+    const bool asleep = run_end.met() && figures_->asleep_at_end();
+    if ((figures_->closed() && (arm.core().mark_done() || asleep)) || (run_end.core_ended() && kernel_stopped()) ||
         behind_end > kLooksAfterEnd)
       break;
     if (failure || request.stop.load() || left || lost() || (gdb && gdb->killed())) {
@@ -568,9 +377,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   // A stopped run closes its window a slice from here: the masters may have worked ahead of this
   // time, but not past the display's next line. The core's own part follows at its next boundary,
   // which a failed core does not reach any more.
-  if (!closed_ && !kernel_stopped()) {
+  if (!figures_->closed() && !kernel_stopped()) {
     board_->close_window(kernel_time() + kSlice);
-    for (int i = 0; i < 20 && !(closed_ && (arm.core().mark_done() || asleep_at_end_)); ++i)
+    for (int i = 0; i < 20 && !figures_->core_done(); ++i)
       slicer.run(kSlice);
   }
   board_->close_window_now();
@@ -584,10 +393,8 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (commands_) commands_->finish();
   if (perfetto_)
     if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
-  add_frame_stats(stats_);
   result.guest_failure = guest;
-  result.stats = std::move(stats_);
-  const cpu::Counts counted = collect_core(result);
+  const cpu::Counts counted = figures_->collect(result);
   if (profile_) collect_profile(result, counted, request, elf);
   if (hazards) {
     hazards->settle(board_->window_end().value_or(kernel_time()));
@@ -595,20 +402,13 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     result.hazards = hazards->failure();
   }
   result.frames = std::move(frames_);
-  result.timeline_masters = timeline_masters();
-  // Only whole intervals before the window's end: how far the path has decided beyond it depends on
-  // who played it.
-  board_->dm365.scr.crossbar().timeline.list_until(
-      board_->window_end().value_or(kernel_time()),
-      [&](Picoseconds start, Picoseconds end, const auto& row) {
-        result.timeline.push_back(timeline_row(start, end, row));
-      });
-  result.latency = std::move(latency_);
   result.uart = board_->uart_text();
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
     result.notes.push_back(reset_note(board_->resets()[i], i));
   if (!request.registers.pattern.empty()) result.registers = log->text();
-  add_host(result, request.strict_sync);
+  figures_->add_host(
+      result, std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
+      request.strict_sync);
   const bool stopped = !result.complete && guest.empty();
   if (gdb) gdb->exited(stopped ? SIGTERM : guest.empty() ? 0 : 3, stopped);
   return result;

@@ -1,0 +1,27 @@
+#include "sw/fovea/camera_inputs.h"
+
+#include "sw/fovea/loader.h"
+
+namespace fovea::app {
+
+CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
+                           const std::atomic<bool>& stop, std::vector<std::string>& notes) {
+  for (unsigned n = 0; n < params.camera_count(); ++n) {
+    own_.push_back(camera_source(params, n, &stop, &notes));
+    ahead_.push_back(std::make_unique<video::AheadSource>(*own_.back()));
+    views_.push_back(own_.back().get());
+    sources_.push_back(ahead_.back().get());
+    if (!keep_pictures) continue;
+    pictures_.push_back(std::make_unique<CameraPictures>(*sources_.back()));
+    sources_.back() = pictures_.back().get();
+  }
+}
+
+const video::Picture* CameraInputs::sent(board::Board& board,
+                                         const board::FrameRecord& record) const {
+  if (!record.capture_start || record.camera >= pictures_.size()) return nullptr;
+  return pictures_[record.camera]->frame(board.decoder.cameras()[record.camera],
+                                         *record.capture_start);
+}
+
+}  // namespace fovea::app
