@@ -78,6 +78,8 @@ void EngineBench::sample(const Memory& memory) {
   checker_.clock(c);
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
+  if (c.ar.valid && c.ar.ready) reads_asked.push_back(c.ar);
+  if (c.aw.valid && c.aw.ready) writes_asked.push_back(c.aw);
   if (c.ar.valid && c.ar.ready)
     reads_.push_back({c.ar.id, c.ar.length, c.ar.address, due,
                       memory.read_fault && *memory.read_fault / 64 == c.ar.address / 64});
@@ -104,6 +106,8 @@ Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t bo
                         std::optional<unsigned> abort_after) {
   Vbench_top& d = *dut_;
   result_ = {};
+  reads_asked.clear();
+  writes_asked.clear();
   set_job(d, job);
   d.en_map_base_i = map_base / 64;
   d.en_map_words_i = static_cast<std::uint32_t>(map_words(job));
