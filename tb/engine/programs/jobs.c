@@ -19,12 +19,14 @@ enum { kDone = 1, kRefused = 2, kReadError = 4, kAborted = 16, kDropped = 64 };
 volatile uint32_t aborts; /* data aborts so far */
 static volatile uint32_t interrupts, events;
 
+/* The line is a level and the controller keeps edges: acknowledge first, then clear events until none is left. */
 void irq_handler(void) {
-  const uint32_t now = mmio_read32(ENGINE_EVENTS);
   ++interrupts;
-  events |= now;
-  mmio_write32(ENGINE_EVENTS, now);
   mmio_write32(AINTC_IRQ0, 1u << IRQ_ENGINE);
+  for (uint32_t now; (now = mmio_read32(ENGINE_EVENTS)) != 0;) {
+    events |= now;
+    mmio_write32(ENGINE_EVENTS, now);
+  }
 }
 
 static void say(const char *name, int good, uint32_t value) {
@@ -142,7 +144,7 @@ int main(void) {
   mmio_write32(ENGINE_SUBMIT, 0x77);
   wait_for(kDone);
   say("table again", result(0), ended());
-  say("interrupts", interrupts >= 6u && interrupts <= 8u && events == 0u, events);
+  say("interrupts", interrupts >= 5u && interrupts <= 8u && events == 0u, events);
   uart_puts("finished\n");
   for (;;) {
   }
