@@ -62,7 +62,7 @@ TEST(ReportCommandTest, SaysWhatBindsFromTheAnswersAboutTheSameRun) {
   const auto text = fovea({"report", folder, "--text", "--limits", limits});
   EXPECT_EQ(text.status, kExitDone) << text.err;
   EXPECT_THAT(text.out, HasSubstr("What binds frame.remap_time.mean, as runs show in which it alone is relaxed: "
-                                  "bridge_arm_d (13 % better); 1 of the 2 resources that were relaxed change it by less.\n"
+                                  "bridge_arm_d (12 % better); 1 of the 2 resources that were relaxed change it by less.\n"
                                   "    from binds.csv"));
   EXPECT_EQ(fovea({"report", folder, "--limits", limits}).status, kExitDone);
   const std::string page = test::read_text(folder + "/report.html");

@@ -193,9 +193,9 @@ TEST_F(ExplainTest, WhereTheEdmaMovesThePixelsTheCoreSavesOnlyWhileItIsAwake) {
   EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 1.78 ms of a remap"));
   EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.33 ms less"));
   set("bus.edma_tc0.read_bytes", std::uint64_t{40});
-  EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 444 us of a remap"));  // a quarter
+  EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 0.44 ms of a remap"));  // a quarter
   // 300 clocks of sleep and 45 of waiting, a tenth less.
-  EXPECT_THAT(text("faster_memory"), HasSubstr("about 920 us less"));
+  EXPECT_THAT(text("faster_memory"), HasSubstr("about 0.92 ms less"));
   // A core that sleeps all the time, or remaps that are not known.
   set("cpu.remap.idle", std::uint64_t{400});
   EXPECT_EQ(text("shorter_bridge"), "");
