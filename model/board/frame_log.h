@@ -30,7 +30,7 @@ struct FrameRecord {
   Picoseconds display_start = 0, display_end = 0;
   std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
   bool repeated = false;
-  unsigned camera = 0;  ///< whose frame it shows; kNoCamera: a black one
+  unsigned camera = kNoCamera;  ///< whose frame it shows; kNoCamera: a black one
 };
 
 /// A sequence number is the count of complete captures since the last reset, modulo 256; it is unrolled

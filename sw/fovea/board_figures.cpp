@@ -62,6 +62,7 @@ void BoardFigures::open_window() {
   board_.platform.each_statistics([](StatGroup& group) { group.reset(); });
   soc.arm.core().mark_window(kernel_time());
   window_wall_ = Wall::now();
+  host_at_open_ = host_instructions_.count();
   direct_at_open_ = soc.scr.memory().decided_ahead();
   queued_at_open_ = soc.scr.memory().decided_at_present();
 }
@@ -71,6 +72,7 @@ void BoardFigures::close_window() {
   closed_ = true;
   auto& soc = board_.dm365;
   window_wall_s_ = std::chrono::duration<double>(Wall::now() - window_wall_).count();
+  if (const auto now = host_instructions_.count(); now && host_at_open_) host_in_window_ = *now - *host_at_open_;
   direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
   queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
   board_.platform.each_statistics([this](const StatGroup& group) { app::collect(group, stats_); });
@@ -137,6 +139,11 @@ void BoardFigures::add_host(RunResult& result, double wall_seconds, bool strict)
   if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
     h.push_back(
         mips(std::get<std::uint64_t>(n->value), window_wall_s_, "in the measured window"));
+  if (const StatRow* n = find(result.stats, "cpu.instructions"); n && host_in_window_)
+    if (const auto guest = std::get<std::uint64_t>(n->value))
+      h.push_back(row("host_instructions", static_cast<double>(*host_in_window_) / static_cast<double>(guest), "1",
+                      "instructions of the host, of the simulating thread, for each one of the core, in the "
+                      "measured window; only where the host counts them"));
   h.push_back(row("sync.direct", direct_, "1",
                   "SDRAM accesses decided ahead of the kernel, in the window"));
   h.push_back(row("sync.queued", queued_, "1",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/board/board.h"
+#include "sw/fovea/host_instructions.h"
 #include "sw/fovea/remap_time.h"
 #include "sw/fovea/simulation.h"
 
@@ -46,6 +47,8 @@ class BoardFigures {
   std::vector<LatencyRow> latency_;
   Wall::time_point window_wall_ = Wall::now();
   double window_wall_s_ = 0;
+  HostInstructions host_instructions_;
+  std::optional<std::uint64_t> host_at_open_, host_in_window_;
   std::uint64_t direct_at_open_ = 0, queued_at_open_ = 0;
   std::uint64_t direct_ = 0, queued_ = 0;
   bool opened_ = false, closed_ = false;

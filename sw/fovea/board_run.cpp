@@ -298,6 +298,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     profile_ = std::make_unique<RunProfile>(*board_, !run_end.wants(EndCondition::Kind::kFrames),
                                             programs);
   }
+  if (perfetto_ && perfetto_->wants_functions()) {
+    const ElfImage* const programs[] = {&elf, request.symbols};
+    cpu::ClockProfile& profile = request.profile ? *arm.core().profile() : arm.core().start_profile();
+    if (!request.profile) profile.stacks.set_functions(program_functions(programs));
+    perfetto_->watch_functions(profile, [this](std::uint32_t at) { return symbols_.describe(at); });
+  }
   std::optional<CoreSemihosting> semihosting;
   if (request.semihosting && run_end.wants(EndCondition::Kind::kExit))
     semihosting.emplace(arm.core(), debug_memory, semihosting_settings(request),

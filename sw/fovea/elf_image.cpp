@@ -143,7 +143,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
       const auto address = static_cast<std::uint32_t>(s.st_value);
       image.symbols_.push_back({one_line(text, std::string::npos),
                                 type == STT_FUNC ? address & ~1u : address,
-                                static_cast<std::uint32_t>(s.st_size), function});
+                                static_cast<std::uint32_t>(s.st_size), function,
+                                type == STT_FUNC && (address & 1) != 0});
     }
   }
   std::sort(image.symbols_.begin(), image.symbols_.end(), [](const auto& a, const auto& b) {

@@ -23,6 +23,7 @@ struct ElfSymbol {
   std::uint32_t address = 0;  ///< without the Thumb bit
   std::uint32_t size = 0;     ///< 0: unknown
   bool function = false;      ///< declared as a function, or a label in code
+  bool thumb = false;         ///< a function in Thumb state, as far as its declaration tells
 };
 
 /// A named part of the program that occupies memory at run time.

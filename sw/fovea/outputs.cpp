@@ -241,6 +241,12 @@ std::string latency_csv(std::span<const LatencyRow> rows) {
   return out;
 }
 
+std::string grouped(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
 std::string human_text(const StatBase::Value& value, std::string_view unit) {
   const bool whole = std::holds_alternative<std::uint64_t>(value);
   const double v =
@@ -264,7 +270,7 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
   if (unit == "ratio") return fmt::format("{:.1f} %", 100 * v);
   if (unit == "1/s") return fmt::format("{:.5g} a second", v);
   const std::string number =
-      whole ? std::to_string(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
+      whole ? grouped(std::get<std::uint64_t>(value)) : fmt::format("{:.5g}", v);
   // Units such as "count" and "frames" are already in the name.
   return unit.empty() || unit == "count" || unit == "1" ? number
                                                         : fmt::format("{} {}", number, unit);

@@ -106,6 +106,9 @@ std::string timeline_csv(std::span<const std::string> masters, std::span<const T
 std::string stalls_csv(std::span<const StallRow> rows);
 std::string latency_csv(std::span<const LatencyRow> rows);
 
+/// A count with commas between groups of three digits.
+std::string grouped(std::uint64_t value);
+
 /// A value for people: three to five digits and a suitable prefix ("40.2 ms", "165.9 MB").
 std::string human_text(const StatBase::Value& value, std::string_view unit);
 /// Whether the firmware kept up with the camera, as one line with its end; empty if no corrected

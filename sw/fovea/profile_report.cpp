@@ -6,8 +6,10 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 
+#include "sw/fovea/code_places.h"
 #include "sw/fovea/outputs.h"
 
 namespace fovea::app {
@@ -196,6 +198,41 @@ std::string profile_csv(const ProfileData& data, SourceLines& lines) {
   return out;
 }
 
+std::string functions_csv(const ProfileData& data, SourceLines& lines,
+                          std::span<const ElfImage* const> programs) {
+  // By function and file, the functions that hold its code, by address.
+  using Homes = std::map<std::uint32_t, std::pair<const ElfImage*, const ElfSymbol*>>;
+  std::map<std::pair<std::string, std::string>, Homes> places;
+  for (const ProfilePhase& phase : data.phases)
+    for (const ProfileRow& r : phase.rows) {
+      if (!phase.window || r.clocks == 0) continue;
+      const auto home = lines.function_at(r.address);
+      const SourceFrame& f = lines.at(r.address).front();
+      if (home.second) places[{f.function, f.file}][home.second->address] = home;
+    }
+  std::map<std::uint32_t, std::uint32_t> ends;  // labels have no size
+  for (const auto& f : program_functions(programs)) ends[f.begin] = f.end;
+  std::string out = "function,file,address,size,code\n";
+  std::map<const ElfSymbol*, std::string> hashes;
+  for (const auto& [function, homes] : places)
+    for (const auto& [address, home] : homes) {
+      const auto end = ends.find(address);
+      const std::uint32_t size = end == ends.end() ? home.second->size : end->second - address;
+      std::string& hash = hashes[home.second];
+      if (hash.empty()) hash = code_hash(*home.first, address, size, home.second->thumb);
+      out += fmt::format("{},{},0x{:08x},{},{}\n", csv_field(function.first), csv_field(function.second),
+                         address, size, hash);
+    }
+  for (const ElfImage* const image : programs) {
+    if (!image) continue;
+    std::uint64_t bytes = 0;
+    for (const ElfSymbol& s : image->symbols())
+      if (!s.function) bytes += s.size;
+    out += fmt::format("(data),,,{},{}\n", bytes, data_hash(*image));
+  }
+  return out;
+}
+
 std::string profile_callgrind(const ProfileData& data, SourceLines& lines) {
   std::string out = fmt::format(
       "# callgrind format\nversion: 1\ncreator: fovea\ncmd: {}\npositions: instr line\n",
@@ -326,7 +363,8 @@ ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* 
            {"profile.folded", profile_folded(data, lines)},
            {"profile.callgrind", profile_callgrind(data, lines)},
            {"profile.txt", profile_text(data, lines)},
-           {"interrupts.csv", interrupts_csv(data)}},
+           {"interrupts.csv", interrupts_csv(data)},
+           {"functions.csv", functions_csv(data, lines, programs)}},
           table};
 }
 

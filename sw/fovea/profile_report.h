@@ -66,6 +66,12 @@ std::string profile_text(const ProfileData& data, SourceLines& lines);
 /// interrupts.csv: `interrupt,count,mean_ns,p99_ns,max_ns`, from the latch of each interrupt that the
 /// window has seen to the instruction at its vector. p99: no more than 1 % took longer.
 std::string interrupts_csv(const ProfileData& data);
+/// functions.csv: `function,file,address,size,code`, for each function of profile.csv with clocks in the
+/// window where its code lies (that of an inlined one in each function that holds it) and a hash of it
+/// that does not depend on addresses (code_places.h). The row `(data)` has the bytes and the hash of all
+/// objects.
+std::string functions_csv(const ProfileData& data, SourceLines& lines,
+                          std::span<const ElfImage* const> programs);
 /// The functions with most clocks of the window.
 std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions);
 

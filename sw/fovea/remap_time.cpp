@@ -29,6 +29,7 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
 
 void RemapTime::reached(bool begins) {
   const Picoseconds at = kernel_time() + kAhead;
+  if (!begins) ending_ = at;
   board_.dm365.end_of_instant.at(at, kAfterAll, [this, begins, at] {
     board_.dm365.arm.core().sample_counts(
         at, [this, begins](const cpu::Counts& counts) { sampled(begins, of(counts)); });
@@ -49,6 +50,7 @@ void RemapTime::add(Clocks& sum, const Clocks& from, const Clocks& to) {
 void RemapTime::sampled(bool begins, const Clocks& at) {
   const cpu::CoreStats& window = board_.dm365.arm.core().window_stats();
   const bool open = board_.window_open();
+  if (!begins) ending_.reset();
   if (begins) {
     if (open || !board_.window_end()) begun_ = at;
     return;
@@ -65,8 +67,13 @@ void RemapTime::sampled(bool begins, const Clocks& at) {
 void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
                         std::vector<StatRow>& rows) const {
   Clocks all = sum_;
-  if (begun_ && begun_->cycles < to.cycles)
-    add(all, begun_->cycles < from.cycles ? of(from) : *begun_, of(to));
+  Clocks end = of(to);
+  // A core that has gone to sleep, and does not wake up any more, comes to no copy.
+  const auto& arm = board_.dm365.arm;
+  if (ending_ && arm.asleep())
+    if (const Clocks asleep = of(arm.core().counts_asleep(*ending_)); asleep.cycles < end.cycles) end = asleep;
+  if (begun_ && begun_->cycles < end.cycles)
+    add(all, begun_->cycles < from.cycles ? of(from) : *begun_, end);
   if (all.cycles == 0) return;
   const auto row = [&](const std::string& name, std::uint64_t clocks, const std::string& sentence) {
     rows.push_back({"cpu.remap." + name, clocks, "cycles", sentence});

@@ -36,6 +36,7 @@ class RemapTime {
 
   board::Board& board_;
   std::optional<Clocks> begun_;  // a remap is under way
+  std::optional<Picoseconds> ending_;  // when the counters are to be copied at its end
   Clocks sum_;                   // of those that ended
 };
 

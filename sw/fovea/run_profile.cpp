@@ -1,5 +1,10 @@
 #include "sw/fovea/run_profile.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "sw/fovea/after_all.h"
+
 namespace fovea::app {
 
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
@@ -36,14 +41,20 @@ void RunProfile::phase(board::Phase phase, Picoseconds at) {
   core_.mark_section(at, next);
 }
 
-/// Inputs do not change ahead of the core's time, so the controller's state is that of the boundary.
+/// The controller may be ahead of the core, which is at its boundary, or behind it: the interrupt is for the
+/// most urgent input of those that were latched when the handler begins.
 void RunProfile::interrupt(std::uint64_t cycle) {
-  if (!core_.profile()->counts_stacks()) return;
-  const periph::Aintc& aintc = board_.dm365.aintc;
-  const auto input = aintc.core().most_urgent();
-  if (!input) return;
-  delays_[board_.dm365.interrupt_source(*input).name].push_back(core_.time(cycle) -
-                                                                aintc.latched_at(*input));
+  if (!std::as_const(core_).profile()->counts_stacks()) return;
+  const Picoseconds begun = core_.time(cycle);
+  board_.dm365.end_of_instant.at(std::max(begun, kernel_time()), kAfterAll, [this, begun] {
+    const periph::Aintc& aintc = board_.dm365.aintc;
+    std::uint64_t latched = 0;
+    for (unsigned n = 0; n < periph::kInterruptCount; ++n)
+      if (aintc.latched_at(n) <= begun) latched |= std::uint64_t{1} << n;
+    const auto input = aintc.core().most_urgent(latched);
+    if (!input) return;
+    delays_[board_.dm365.interrupt_source(*input).name].push_back(begun - aintc.latched_at(*input));
+  });
 }
 
 void RunProfile::window(bool open) {

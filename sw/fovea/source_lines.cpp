@@ -175,10 +175,15 @@ const std::vector<SourceFrame>& SourceLines::at(std::uint32_t address) {
   return place->second;
 }
 
-std::uint32_t SourceLines::function_start(std::uint32_t address) const {
+std::pair<const ElfImage*, const ElfSymbol*> SourceLines::function_at(std::uint32_t address) const {
   for (const auto& p : programs_)
-    if (const ElfSymbol* const s = p->image.function_at(address)) return s->address;
-  return address;
+    if (const ElfSymbol* const s = p->image.function_at(address)) return {&p->image, s};
+  return {};
+}
+
+std::uint32_t SourceLines::function_start(std::uint32_t address) const {
+  const ElfSymbol* const s = function_at(address).second;
+  return s ? s->address : address;
 }
 
 bool SourceLines::have_lines() const {

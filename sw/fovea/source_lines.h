@@ -35,6 +35,8 @@ class SourceLines {
   const std::vector<SourceFrame>& at(std::uint32_t address);
   /// Beginning of the function itself, or the address if it is unknown.
   std::uint32_t function_start(std::uint32_t address) const;
+  /// The function itself and its program; null if it is unknown.
+  std::pair<const ElfImage*, const ElfSymbol*> function_at(std::uint32_t address) const;
   /// Whether any program has debug information.
   bool have_lines() const;
 

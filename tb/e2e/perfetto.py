@@ -5,10 +5,13 @@ An own reader of the wire format (https://protobuf.dev/programming-guides/encodi
 writer but the field numbers of Perfetto's schema.
 
 usage: perfetto.py TRACE RESULTS      exit 0: they agree; 1: they do not
+       perfetto.py --slices TRACK TRACE   prints the slices of a track
        perfetto.py --shape TRACE      prints groups, tracks, packets and times, and checks the slices
 """
+import collections
 import csv
 import json
+import pathlib
 import struct
 import sys
 
@@ -164,6 +167,7 @@ def check(trace, folder):
     done = sum(v for k, v in stats.items() if k.startswith("edma.tc") and k.endswith(".requests"))
     if abs(transfers - done) > 8:
         wrong.append(f"{transfers} DMA transfers, stats.json has {done}")
+    wrong += functions(trace, folder, stats)
     # Interrupts and counters.
     if not trace.slices("interrupts/IRQ of the core"):
         wrong.append("no interrupt of the core")
@@ -183,7 +187,51 @@ def check(trace, folder):
     return wrong
 
 
+def functions(trace, folder, stats):
+    """What the call stacks of the profile say of the functions; a trace lacks those below 1 us."""
+    path = pathlib.Path(folder) / "profile.folded"
+    if not path.exists():
+        return []
+    seconds = stats["frame.window"] / stats["cpu.cycles"]
+    within, handlers = collections.Counter(), 0
+    lines = [line.rsplit(" ", 1) for line in path.read_text().splitlines()]
+    for names, clocks in lines:
+        for name in set(names.split(";")):
+            within[name] += int(clocks) * seconds * 1e9
+    root = max(lines, key=lambda l: int(l[1]))[0].split(";")[0]
+    handlers = sum(int(clocks) for names, clocks in lines if names.split(";")[0] != root) * seconds * 1e9
+    levels = sorted(t for t in trace.events if t.startswith("firmware/functions "))
+    if not levels:
+        return ["no functions"]
+    wrong, above, shown = [], None, collections.Counter()
+    for level in levels:
+        slices = trace.slices(level)
+        for begin, end, name, _ in slices:
+            if end - begin < 999 and (begin, end) != (slices[0][0], slices[0][1]) and end != slices[-1][1]:
+                wrong.append(f"{level}: {name} of {end - begin} ns")
+            if above is not None and not any(b <= begin and end <= e for b, e, _, _ in above):
+                wrong.append(f"{level}: {name} at {begin} has no caller")
+            shown[name] += end - begin
+        above = slices
+    whole = sum(end - begin for begin, end, _, _ in trace.slices(levels[0]))
+    if abs(whole - stats["frame.window"] * 1e9) > 2000:
+        wrong.append(f"the outermost functions take {whole} ns of {stats['frame.window']} s")
+    for name, ns in shown.items():
+        if ns > (within[name] + handlers) * 1.001 + 5000:
+            wrong.append(f"{name}: {ns} ns, the profile has {within[name]:.0f} ns")
+    # The remap is one call for each frame.
+    kernel = max((n for n in within if n.startswith("remap_") or n.endswith("_run")), key=lambda n: within[n])
+    if shown[kernel] < within[kernel] * 0.999:
+        wrong.append(f"{kernel}: {shown[kernel]} ns, the profile has {within[kernel]:.0f} ns")
+    return wrong
+
+
 def main(arguments):
+    if arguments[:1] == ["--slices"]:
+        with open(arguments[2], "rb") as f:
+            for begin, end, name, _ in Trace(f.read()).slices(arguments[1]):
+                print(begin, end, name)
+        return 0
     shape = arguments[:1] == ["--shape"]
     with open(arguments[1 if shape else 0], "rb") as f:
         trace = Trace(f.read())

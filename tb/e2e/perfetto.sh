@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # `--perfetto`: the trace says what the run's other files say, changes no figure, stays within its size, and
 # the reader that finds so complains about a trace of another run and a damaged one.
-# Usage: perfetto.sh FOVEA PROJECT_SOURCE OUT
+# Usage: perfetto.sh FOVEA PROJECT_SOURCE PROGRAMS OUT
 set -uo pipefail
-fovea=$1 source=$2 out=$3
+fovea=$1 source=$2 programs=$3 out=$4
 rm -rf "$out"
 mkdir -p "$out"
 failures=0
@@ -16,7 +16,7 @@ video: {width: 188, height: 48}
 firmware: {kernel: staged}
 Y
 run() { "$fovea" run "$out/small.yaml" --no-frames "$@" >"$out/text" 2>&1; }
-run -o "$out/run" --perfetto "$out/run.pftrace" || fail "run: $(cat "$out/text")"
+run -o "$out/run" --profile --perfetto "$out/run.pftrace" || fail "run: $(cat "$out/text")"
 run -o "$out/without" || fail "without: $(cat "$out/text")"
 cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
 read_trace "$out/run.pftrace" "$out/run" || fail 'the trace does not say what the run says'
@@ -42,6 +42,11 @@ bytes=$(stat -c %s "$out/ring.pftrace")
 [ "$bytes" -le $((1300 * 1024)) ] && [ "$bytes" -gt $((600 * 1024)) ] || fail "ring: $bytes bytes"
 grep -q 'lacks [0-9]* older packets' "$out/text" || fail 'nothing said of what the ring lost'
 shape "$out/ring.pftrace" >/dev/null || fail 'the ring is not readable'
+# An interrupt line that is high throughout, as the core masks it, ends with the recording.
+run -o "$out/masked" --perfetto "$out/masked.pftrace" -s firmware.elf="$programs/masked_alarms.elf" -s run.until=time:8ms \
+  --perfetto-from 6ms --perfetto-for 1ms --perfetto-tracks '^interrupts/'
+[ "$(read_trace --slices 'interrupts/IRQ of the core' "$out/masked.pftrace")" = '6000000 7000000 IRQ of the core' ] ||
+  fail "masked: $(read_trace --slices 'interrupts/IRQ of the core' "$out/masked.pftrace")"
 # The trigger: one frame after the other is shown twice. The recording ends with the first that is.
 run -o "$out/run" --perfetto "$out/trigger.pftrace" --perfetto-trigger repeated -s firmware.flow=serial \
   -s run.frames=8 --perfetto-tracks '^frames/'

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # `--profile` of the camera's firmware: it changes no figure, adds up to cpu.cycles, is the same with both
 # synchronisations, names the function that does the work, and callgrind_annotate reads it.
-# Usage: profile.sh FOVEA EXPERIMENT EXEC_PROGRAMS OUT
+# Usage: profile.sh FOVEA EXPERIMENT EXEC_PROGRAMS PROGRAMS OUT
 set -euo pipefail
-fovea=$1 experiment=$2 programs=$3 out=$4
+fovea=$1 experiment=$2 programs=$3 own=$4 out=$5
 mkdir -p "$out"
 run() {  # NAME OPTION...
   local name=$1
@@ -18,7 +18,7 @@ run strict --profile --sync=strict
 run copy --profile -s firmware.kernel=copy
 cmp "$out/off/stats.json" "$out/on/stats.json"
 for file in stats.json frames.csv timeline.csv stalls.csv uart.log; do cmp "$out/off/$file" "$out/on/$file"; done
-for file in profile.csv profile.folded profile.callgrind profile.txt interrupts.csv frame_parts.csv; do
+for file in profile.csv profile.folded profile.callgrind profile.txt interrupts.csv frame_parts.csv functions.csv; do
   cmp "$out/on/$file" "$out/strict/$file"
   [ ! -e "$out/off/$file" ] || { echo "$file without --profile"; exit 1; }
 done
@@ -88,6 +88,22 @@ grep -qE "^ *$total \(100.0%\) +PROGRAM TOTALS" "$out/plain"
 grep -q 'remap_plain.c:remap_plain' "$out/plain"
 grep -q 'remap_plain' "$out/on.out"
 grep -q '^  frames ' "$out/on/profile.txt"
+
+# Two interrupts within one access of the core are told apart in the same way with both synchronisations.
+alarms=(-s firmware.elf="$own/two_alarms.elf" -s run.until=time:25ms)
+run alarms --profile "${alarms[@]}"
+run alarms_strict --profile --sync=strict "${alarms[@]}"
+cmp "$out/alarms/interrupts.csv" "$out/alarms_strict/interrupts.csv"
+awk -F, '/^timer0.tint(12|34)/ { if ($2 < 1000 || $3 <= 0 || $5 > 1000) exit 1; n++ } END { exit n != 2 }' \
+  "$out/alarms/interrupts.csv" || { cat "$out/alarms/interrupts.csv"; exit 1; }
+
+# A reset begins with the first phase again: a millisecond of the look-up table lies between two boots. No frame comes.
+status=0
+"$fovea" run "$experiment" -s camera.kind=chart -s firmware.elf="$own/phases_reset.elf" -s run.resets=1 --max-time 60ms \
+  --profile --no-frames -o "$out/phases" >"$out/phases.out" 2>&1 || status=$?
+[ "$status" = 3 ] || { echo "phases: status $status: $(cat "$out/phases.out")"; exit 1; }
+awk -F, '{ n[$1] += $8 } END { exit !(n["lut"] > 0 && n["boot"] > 10 * n["lut"] && !("lock" in n)) }' "$out/phases/profile.csv" ||
+  { awk -F, '{ n[$1] += $8 } END { for (p in n) print p, n[p] }' "$out/phases/profile.csv"; exit 1; }
 
 # A program of `fovea exec`, with and without a result folder.
 "$fovea" exec --profile -o "$out/exec" "$programs/registers.elf" >/dev/null 2>"$out/exec.err"

@@ -1,7 +1,10 @@
 // Call stacks of small target programs: calls and returns, tail calls, long jumps, two tasks, nested
 // interrupts. Each program is checked in full: every clock of the run is in one stack.
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "tb/iss/machine.h"
 #include "tb/iss/vectors.h"
@@ -388,6 +391,55 @@ TEST(CallStackTest, NestedInterrupts) {
   EXPECT_EQ(r.clocks.at("irq;work"), 2 * work);
   EXPECT_EQ(r.clocks.at("fiq;work"), work);
   EXPECT_EQ(r.clocks.at("main;task;work"), 40 * work);
+}
+
+/// What a watcher was told: clocks by path, without a gap between two stretches.
+struct Watched final : CallStacks::Watcher {
+  std::map<std::vector<std::uint32_t>, std::uint64_t> clocks;
+  std::optional<std::uint64_t> last;
+  void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) override {
+    EXPECT_EQ(begin, last.value_or(begin));
+    EXPECT_LE(begin, end);
+    last = end;
+    clocks[{functions.begin(), functions.end()}] += end - begin;
+  }
+};
+using Clocks = std::map<std::vector<std::uint32_t>, std::uint64_t>;
+
+class StacksByHandTest : public ::testing::Test {
+ protected:
+  StacksByHandTest() {
+    stacks.set_functions({{0x100, 0x200}, {0x200, 0x300}, {0x300, 0x400}});
+    stacks.watch(&watched);
+    stacks.start(10, 0x100);
+  }
+  CallStacks stacks;
+  Watched watched;
+};
+
+// main (0x100) calls 0x200 from clock 30 to 45; the handler 0x300 interrupts it from 40 to 42.
+TEST_F(StacksByHandTest, AWatcherSeesCallersAndWhatAnExceptionInterrupts) {
+  stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
+  stacks.exception(40, 0x300, 0x220, 0xff0);
+  stacks.exception_return(42, 0x220, 0xff0);
+  stacks.jump(45, 0x114, 0x1000);
+  stacks.count(50, false);
+  EXPECT_EQ(watched.clocks, (Clocks{{{0x100}, 25}, {{0x100, 0x200}, 13}, {{0x100, 0x200, 0x300}, 2}}));
+  // Also where nothing is counted.
+  stacks.call(60, 0x110, 0x200, 0x114, 0x1000);
+  EXPECT_EQ(watched.clocks.at({0x100}), 35u);
+}
+
+// The clocks up to a reset belong to the function that it ended.
+TEST_F(StacksByHandTest, AResetEndsWhatRanBefore) {
+  stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
+  stacks.start(70, 0x300);
+  stacks.count(100, false);
+  Clocks counted;
+  for (const auto& p : stacks.paths()) counted[p.functions] = p.clocks;
+  const Clocks expected{{{0x100}, 20}, {{0x100, 0x200}, 40}, {{0x300}, 30}};
+  EXPECT_EQ(counted, expected);
+  EXPECT_EQ(watched.clocks, expected);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The shipped experiments are as traces/baselines says; a baseline with another figure is found.
+# The shipped experiments are as traces/baselines says; a baseline with another figure is found, and a run that is slower
+# than a shipped baseline is blamed on function, line and cause.
 # Usage: baselines.sh FOVEA SOURCE OUT FIGURES THROUGHPUT
 #   FIGURES     folder with the runs that the test of README.md's table made: default, paper-pal ...
 #   THROUGHPUT  a run of throughput
@@ -22,3 +23,17 @@ if [ "$status" != 1 ] || ! grep -q 'FAILED  frame.remap_time.mean' "$out/changed
   echo "another figure was not found: status $status"
   exit 1
 fi
+# The run has no profile: the way to function and line is named.
+grep -q '^function and line are not known, .*: fovea run .*default.yaml .* --profile$' "$out/changed.log" ||
+  { cat "$out/changed.log"; echo "no way to the function is named"; exit 1; }
+"$fovea" run "$source/scripts/experiments/throughput.yaml" -s run.frames=2 -s firmware.repeat=5 --profile --no-frames \
+  -s bus.arm_d.request_latency=9cycles -o "$out/slow" >/dev/null 2>"$out/slow.err"
+status=0
+"$fovea" check "$out/slow" --against "$source/traces/baselines/throughput.yaml" --across-versions >"$out/slow.log" || status=$?
+if [ "$status" != 1 ] ||
+  ! grep -qE '^blamed: [a-z0-9_]+ \([a-z0-9_]+\.[a-zA-Z]+:[0-9]+\) waits .* by [a-z_]+, .*culprit ' "$out/slow.log"; then
+  cat "$out/slow.log"
+  echo "the slower bridge is not blamed on a function, line and cause: status $status"
+  exit 1
+fi
+grep '^blamed' "$out/slow.log"

@@ -205,6 +205,14 @@ TEST_F(ReferenceTest, WithoutAProfileOfTheRunTheCauseIsBlamed) {
   const CheckResult r = check_run(read_run(slow.write(dir, "slow")), read_baseline(dir / "base.yaml"), false);
   EXPECT_EQ(r.blame,
             "the program: +20 clocks (100 % of the change), of which +20 clocks by dcache, region lut, culprit vpbe");
+  EXPECT_EQ(r.advice, "function and line are not known, because the run has no profile; run it again with --profile");
+  // With the command that made it.
+  dir.write("slow/host.json", "{\"command\": [\"fovea\", \"run\", \"a b.yaml\", \"-s\", \"x=1\"]}\n");
+  const RunFigures run = read_run(dir / "slow");
+  const Baseline b = read_baseline(dir / "base.yaml");
+  const CheckResult again = check_run(run, b, false);
+  EXPECT_THAT(check_text(again, run, b, false), HasSubstr("--profile: fovea run 'a b.yaml' -s x=1 --profile\n"));
+  EXPECT_THAT(junit_xml(again, run, b, "2026-11-23T12:00:00"), HasSubstr("--profile: fovea run"));
 }
 
 TEST_F(ReferenceTest, AcrossVersionsTheModelsChangesAreListed) {

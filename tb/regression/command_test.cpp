@@ -174,6 +174,26 @@ TEST_F(RegressionCommandTest, BlessingMakesAReferenceThatIsMissingOrPoorer) {
   EXPECT_THAT(out.str(), Not(HasSubstr("reference in")));
   EXPECT_EQ(cli({"check", b, "--against", base}), 1);
   EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21)"));
+  EXPECT_THAT(read_text(dir / "kept/functions.csv"), HasSubstr("irq,irq.c,0x00000100,64,aa"));
+  // One with functions, but not where they lie.
+  std::filesystem::remove(dir / "kept/functions.csv");
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);
+  EXPECT_THAT(read_text(dir / "kept/functions.csv"), HasSubstr("irq,irq.c,0x00000100,64,aa"));
+}
+
+// The reference of a baseline may be named like a folder that has something in it.
+TEST_F(RegressionCommandTest, BlessingWritesNoReferenceIntoAnotherFolder) {
+  const std::string stats = read_text(dir / "a/stats.json");
+  for (const char* name : {"a", "full"}) {
+    dir.write("full/mine.txt", "mine\n");
+    const std::string file = (dir / (std::string(name) + ".yaml")).string();
+    EXPECT_EQ(cli({"bless", a, "--against", file, "--why", "x"}), 2) << name;
+    EXPECT_THAT(err.str(), HasSubstr("would be the reference, but it holds something else"));
+    EXPECT_FALSE(std::filesystem::exists(file)) << "a baseline without its reference";
+    EXPECT_FALSE(std::filesystem::exists(dir / (std::string(name) + "/figures.csv")));
+  }
+  EXPECT_EQ(read_text(dir / "a/stats.json"), stats);
+  EXPECT_EQ(read_text(dir / "full/mine.txt"), "mine\n");
 }
 
 TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
@@ -203,8 +223,12 @@ TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
   ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
   // A commit that was measured again keeps its place.
   ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "one", "--host-instructions", "91", "--plot", svg}), 0);
+  // Where the host counts, the run itself says it; the option has precedence.
+  dir.write("b/host.json", "{\"host_instructions\": {\"value\": 77.25, \"unit\": \"1\"}}\n");
+  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
   const auto lines = TrendFile(db).lines("");
   ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[2].host_instructions, 77.25);
   EXPECT_EQ(lines[0].commit, "one");
   EXPECT_EQ(lines[0].host_instructions, 91);
   EXPECT_EQ(lines[0].figures.at("frame.remap_time.mean").value, 0.0042);

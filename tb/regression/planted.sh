@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Slow-downs planted into the firmware, its settings and its layout: 'fovea check' blames each on the right function,
 # line and cause. Usage: planted.sh FOVEA BUILD SOURCE OUT CASE...  (FOVEA_RUN: another program for the runs)
-#   CASE  load, priority, dcache, clock, poll, layout
+#   CASE  load, priority, dcache, clock, poll, layout, layout4096
 set -uo pipefail
 fovea=$1 build=$2 source=$3 out=$4
 shift 4
@@ -87,15 +87,21 @@ for planted; do
       firmware poll drivers/timer.c 's/^(uint32_t timer_ticks.void. \{).*/\1\n  (void)*(volatile uint32_t *)TIMER0_TIM12;\n  return mmio_read32(TIMER0_TIM12);\n}/'
       run poll -s firmware.elf="$out/poll.elf" &&
         blamed poll "^blamed: timer_ticks \(timer.c:$(line_of "$out/poll.src/timer.c" 'void.\*.volatile')\) executes more" 'clocks by uncached' ;;
-    layout) # 32 bytes of nothing before the first function of .text
-      firmware layout kernels/remap_plain.c \
-        's/^void remap_plain/__asm__(".section .text.remap_plain\\n .space 32\\n .text");\n&/'
-      # A loop over the D-cache takes a step more, and is blamed for its own clocks; all others were only moved.
-      run layout -s firmware.elf="$out/layout.elf" && blamed layout '^blamed: dcache_clean_invalidate_all' &&
+    layout | layout4096) # bytes of nothing before the first function of .text
+      bytes=${planted#layout}
+      firmware "$planted" kernels/remap_plain.c \
+        "s/^void remap_plain/__asm__(\".section .text.remap_plain\\\\n .space ${bytes:-32}\\\\n .text\");\\n&/"
+      # Whatever it changes in the clocks, nothing but addresses is to blame.
+      run "$planted" -s firmware.elf="$out/$planted.elf" && {
+        table=$("$fovea" compare --all "$out/base" "$out/$planted")
+        busy=$(sed -n "s/^where the core's clocks went: .* busy \([-+0-9,]* clocks\).*/\1/p" <<<"$table")
+        layout=$(sed -n 's/^ *of this by layout (same code at other addresses): //p' <<<"$table")
+        [ -n "$busy" ] && [ "$busy" = "$layout" ] || fail "$planted: of '$busy' only '$layout' by layout: $table"
         for moved in remap_plain first_row_sum; do
-          table=$("$fovea" check "$out/layout" --against "$out/baseline.yaml")
-          grep -qE "^  $moved .* was moved \(layout\)" <<<"$table" || fail "layout: $moved was not told apart: $table"
-        done ;;
+          grep -qE "^  $moved .* was moved \(layout\)" <<<"$table" || fail "$planted: $moved was not told apart: $table"
+        done
+        echo "$planted: $busy, all by layout"
+      } ;;
     *) fail "no case $planted" ;;
   esac
 done

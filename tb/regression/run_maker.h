@@ -20,7 +20,7 @@ struct RunMaker {
   std::map<std::string, std::string> parameters = {{"run.frames", "2"}, {"ddr.clock", "243MHz"}};
   /// name -> (value, unit)
   std::map<std::string, std::pair<std::string, std::string>> figures;
-  std::string stalls, profile;                    ///< rows without the header; empty: no file
+  std::string stalls, profile, functions;         ///< rows without the header; empty: no file
   bool no_stats = false;
 
   RunMaker& figure(const std::string& name, const std::string& value, const std::string& unit = "1") {
@@ -49,6 +49,8 @@ struct RunMaker {
     if (!profile.empty())
       dir.write(name + "/profile.csv",
                 "phase,function,file,line,cause,region,culprit,clocks,instructions\n" + profile);
+    std::filesystem::remove(dir / (name + "/functions.csv"));
+    if (!functions.empty()) dir.write(name + "/functions.csv", "function,file,address,size,code\n" + functions);
     return dir / name;
   }
 };
@@ -70,6 +72,9 @@ inline RunMaker profiled() {
       "frames,remap,/src/remap.c,22,issue,,,50,50\n"
       "frames,remap,/src/remap.c,22,interlock,none,core,100,0\n"
       "frames,sleep,cp15.c,3,idle.capture,,,300,0\n";
+  r.functions =
+      "irq,irq.c,0x00000100,64,aa\nremap,/src/remap.c,0x00000200,96,bb\nsleep,cp15.c,0x00000300,8,cc\n"
+      "(data),,,4096,dd\n";
   return r;
 }
 

@@ -48,6 +48,51 @@ TEST(ReportCommandTest, RefusesToReplaceAnythingElse) {
   EXPECT_EQ(test::read_text(mine), "<html>");
 }
 
+constexpr const char* kBinds =
+    "firmware.kernel,at,resource,binds,gain,metric,plain,reference,relaxed,unit,by,settings,remark\n"
+    "plain,,bridge_arm_d,yes,0.125,frame.remap_time.mean,0.01,0.01,0.00875,s,run,bus.arm_d.request_latency=0 cycles,\n"
+    "plain,,refresh,no,0.02,frame.remap_time.mean,0.01,0.0101,0.0099,s,replay,ddr.tREFI=0 cycles,\n"
+    "plain,,edma_depth,,,frame.remap_time.mean,0.01,,,s,run,edma.tc.outstanding=16,no traffic\n"
+    "staged,,dcache,yes,0.5,frame.remap_time.mean,0.002,0.002,0.001,s,run,x=1,\n";
+
+TEST(ReportCommandTest, SaysWhatBindsFromTheAnswersAboutTheSameRun) {
+  const TempDir dir;
+  const std::string folder = two_frames().write(dir).string(), limits = (dir / "limits").string();
+  dir.write("limits/binds.csv", kBinds);
+  const auto text = fovea({"report", folder, "--text", "--limits", limits});
+  EXPECT_EQ(text.status, kExitDone) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("What binds frame.remap_time.mean, as runs show in which it alone is relaxed: "
+                                  "bridge_arm_d (12 % better); 1 of the 2 resources that were relaxed change it by less.\n"
+                                  "    from binds.csv"));
+  EXPECT_EQ(fovea({"report", folder, "--limits", limits}).status, kExitDone);
+  const std::string page = test::read_text(folder + "/report.html");
+  EXPECT_THAT(page, HasSubstr("<section id=\"binds\""));
+  EXPECT_THAT(page, HasSubstr("<data value=\"0.00875\">8.75 ms</data>"));
+  EXPECT_THAT(page, HasSubstr("no traffic"));
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("x=1"))) << "of another run";
+  EXPECT_EQ(fovea({"report", folder}).status, kExitDone);
+  EXPECT_THAT(test::read_text(folder + "/report.html"), ::testing::Not(HasSubstr("id=\"binds\"")));
+}
+
+TEST(ReportCommandTest, AnswersAboutOtherRunsAndDamagedOnesAreRefused) {
+  const TempDir dir;
+  const std::string folder = two_frames().write(dir).string();
+  const std::string all = kBinds, head = all.substr(0, all.find('\n') + 1);
+  const std::pair<std::string, const char*> cases[] = {
+      {head + all.substr(all.find("staged")), "it is about runs with frame.remap_time.mean = 0.002"},
+      {head + "plain,,x\n", "binds.csv:2: 3 fields; the header has 13"},
+      {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,\n", "binds.csv:2: 'much' is not a number"},
+      {"resource,binds\n", "there is no column 'gain'"},
+      {"", "the header is missing"}};
+  for (const auto& [contents, message] : cases) {
+    dir.write("limits/binds.csv", contents);
+    const auto refused = fovea({"report", folder, "--text", "--limits", (dir / "limits").string()});
+    EXPECT_EQ(refused.status, kExitWrongInput) << message;
+    EXPECT_THAT(refused.err, HasSubstr(message));
+  }
+  EXPECT_THAT(fovea({"report", folder, "--limits", folder}).err, HasSubstr("it has no binds.csv"));
+}
+
 TEST(ReportCommandTest, BadFoldersAreStatusTwoAndOneLine) {
   const TempDir dir;
   HandMade partial = two_frames(), other = two_frames();

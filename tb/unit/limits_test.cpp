@@ -1,4 +1,5 @@
 // `fovea limits` over a toy board: searches with a known answer, what binds, tables, failures.
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "sw/fovea/limits/answers.h"
 #include "sw/fovea/limits/bisection.h"
 #include "sw/fovea/limits/judge.h"
 #include "sw/fovea/limits/value_range.h"
@@ -128,8 +130,34 @@ TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {
   stats["frame.dropped"] = 2;
   EXPECT_TRUE(judge(result_of(stats), conditions_with({"frame.dropped<=2"})).good());
   EXPECT_FALSE(judge(result_of(stats), conditions_with({"frame.dropped<=1"})).good());
-  for (const char* wrong : {"", "frame.rate", "frame.rate>25", "frame.rate>=", ">=2", "frame.rate>=x", "a>=1x"})
+  for (const char* wrong : {"", "frame.rate", "frame.rate>25", "frame.rate>=", ">=2", "frame.rate>=x", "a>=1x", "a>=nan", "a<=inf"})
     EXPECT_THAT(user_error([&] { conditions_with({wrong}); }), HasSubstr("METRIC<=NUMBER")) << wrong;
+}
+
+// Searches that run at once add their points in the order in which runs end.
+TEST(PointsTableTest, HasTheSameOrderHoweverThePointsCame) {
+  std::vector<points::PointResult> results(3);
+  std::vector<points::Runner::Entry> entries;
+  const char* const labels[] = {"b", "a", "b"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    results[k].folder = fmt::format("F{}", k);
+    points::Point p;
+    p.label = labels[k];
+    p.identity = std::to_string(k);
+    entries.push_back({p, &results[k]});
+  }
+  std::sort(entries.begin(), entries.end(), [](const auto& x, const auto& y) { return x.point.identity < y.point.identity; });
+  const std::string expected = points_csv(entries, {});
+  std::istringstream rows(expected);
+  std::string line, order;
+  for (std::getline(rows, line); std::getline(rows, line);) order += line.substr(0, 2);
+  // By label, then by key; the keys are hashes.
+  EXPECT_EQ(order, points::key_of(entries[0].point) < points::key_of(entries[2].point) ? "F1F0F2" : "F1F2F0");
+  do {
+    EXPECT_EQ(points_csv(entries, {}), expected);
+  } while (std::next_permutation(entries.begin(), entries.end(), [](const auto& x, const auto& y) {
+    return x.point.identity < y.point.identity;
+  }));
 }
 
 /// The fake program in a folder of its own.
@@ -375,10 +403,14 @@ TEST_F(LimitsTest, WrongUseIsOneLine) {
       {"-j 0", "--jobs"},
       {"-s toy.limits=3", "did you mean 'toy.limit'?"},
   };
+  std::size_t number = 0;
   for (const auto& [arguments, text] : cases) {
-    const Done d = limits(arguments);
+    const std::string folder = fmt::format("wrong{}", number++);
+    const Done d = limits(arguments, folder);
     EXPECT_EQ(d.status, 2) << arguments;
     EXPECT_THAT(d.err + d.out, HasSubstr(text)) << arguments;
+    // Which figures there are shows in a run only; the rest is said before a folder is made.
+    EXPECT_EQ(std::filesystem::exists(dir_ / folder), std::string_view(text).starts_with("no figure")) << arguments;
   }
   dir_.write("other/file.txt", "mine");
   const Done d = limits("--over toy.value=1", "other");

@@ -26,12 +26,15 @@ case $what in
   fail*) echo "fovea: warning (model): a wish" >&2; echo "fovea: error: no such thing" >&2; exit ${what#fail} ;;
   quiet) exit 3 ;;
   shot) kill -9 $$ ;;
+  dying) until [ -e "$LOG.go" ]; do sleep 0.01; done; echo dying >> "$LOG.ended"; kill -9 $$ ;;
+  late) until [ -e "$LOG.go" ]; do sleep 0.01; done ;;
   sleep) trap 'exit 143' TERM; while :; do sleep 0.02; done ;;
   stubborn) trap '' TERM; while :; do sleep 0.02; done ;;
 esac
 mkdir -p "$dir"
 printf '{"complete": true, "a": {"value": 2.5, "unit": "s"}, "b": {"value": null, "unit": "1"}}' > "$dir/stats.json"
 echo "$@" > "$dir/arguments"
+echo "$what" >> "$LOG.ended"
 )";
 
 class RunnerTest : public ::testing::Test {
@@ -146,6 +149,26 @@ TEST_F(RunnerTest, WhatASignalEndedIsNoResultAndRunsAgain) {
   EXPECT_EQ(log(), "good\nshot\n");
   EXPECT_THAT(user_error([&] { run({point("good"), point("shot")}, 1); }), HasSubstr("signal 9"));
   EXPECT_EQ(log(), "good\nshot\nshot\n");
+}
+
+// Both end between two looks of the runner, which the callback of a third point keeps busy meanwhile.
+TEST_F(RunnerTest, WhatEndsBesideAKilledPointIsAResult) {
+  PointStore store(dir_ / "store");
+  Runner runner(store, options(3));
+  runner.add(point("quiet"), [&](const PointResult&) {
+    dir_.write("log.go", "");
+    const auto ended = [&] { return read_text(dir_ / "log.ended"); };
+    while (ended().find("late") == std::string::npos || ended().find("dying") == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  });
+  runner.add(point("dying"), [&](const PointResult&) { FAIL() << "it has no result"; });
+  runner.add(point("late"), [&](const PointResult&) { FAIL() << "the search ends with the error"; });
+  EXPECT_THAT(user_error([&] { runner.run(); }), HasSubstr("'dying' was ended by signal 9"));
+  EXPECT_FALSE(store.find(key_of(point("dying"))));
+  const auto late = store.find(key_of(point("late")));
+  ASSERT_TRUE(late);
+  EXPECT_EQ(late->stat("a"), 2.5);
 }
 
 TEST_F(RunnerTest, AHalfWrittenPointRunsAgain) {

@@ -1,7 +1,10 @@
 // The files of a profile, and the functions and lines of a program's addresses.
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <set>
 
+#include "sw/fovea/code_places.h"
 #include "sw/fovea/frame_parts.h"
 #include "sw/fovea/profile_report.h"
 #include "tb/unit/support.h"
@@ -196,6 +199,47 @@ TEST(FramePartsTest, PartsAddUpToTheLatency) {
   EXPECT_THAT(frame_parts_csv(std::vector{frame}, snapshots), HasSubstr("7,remap,10.001\n"));
   frame.remap_start.reset();
   EXPECT_EQ(frame_parts_csv(std::vector{frame}, snapshots), head);
+}
+
+/// Hashes of the functions of a variant of the fixture, and of its data as "(data)".
+std::map<std::string, std::string> hashes_of(const std::string& variant) {
+  const ElfImage image = ElfImage::load(FIXTURE_PLACES + variant + ".elf");
+  std::map<std::string, std::string> out{{"(data)", data_hash(image)}};
+  for (const char* name : {"one", "two", "small", "_start"}) {
+    const ElfSymbol* const s = image.find(name);
+    EXPECT_EQ(s->thumb, std::string_view(name) == "small");
+    out[name] = code_hash(image, s->address, s->size, s->thumb);
+  }
+  return out;
+}
+
+TEST(CodePlacesTest, CodeThatIsMovedStaysTheSame) {
+  const auto base = hashes_of("");
+  EXPECT_EQ(hashes_of("_moved"), base);
+  std::set<std::string> different;
+  for (const auto& [name, hash] : base) different.insert(hash);
+  EXPECT_EQ(different.size(), base.size());
+}
+
+TEST(CodePlacesTest, WhatIsChangedIsFoundAndNothingElse) {
+  for (const auto& [variant, changed] : {std::pair("_constant", "small"), std::pair("_entry", "(data)"),
+                                         std::pair("_callee", "small")}) {
+    const auto base = hashes_of(""), now = hashes_of(variant);
+    for (const auto& [name, hash] : base) EXPECT_EQ(now.at(name) != hash, name == changed) << variant << " " << name;
+  }
+}
+
+TEST_F(ProfileReportTest, FunctionsLieWhereTheProgramHasThem) {
+  const ElfImage* const programs[] = {&image};
+  const ElfSymbol* const outer = image.find("outer");
+  const std::string text = functions_csv(data, lines, programs);
+  EXPECT_THAT(text, testing::StartsWith("function,file,address,size,code\n"));
+  // The inlined one lies in the function that holds it; boot is not of the window, and the first rows
+  // of the window that have clocks are _start's and innermost's.
+  EXPECT_THAT(text, HasSubstr(fmt::format("\ninnermost,inlined.c,0x{:08x},{},", outer->address, outer->size)));
+  EXPECT_THAT(text, HasSubstr(fmt::format("\n_start,inlined.c,0x{:08x},", start)));
+  EXPECT_THAT(text, HasSubstr("\n(data),,,4,"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
 }
 
 /// callgrind_annotate, of Debian's valgrind, reads the file and finds the same sums.

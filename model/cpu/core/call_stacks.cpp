@@ -32,9 +32,24 @@ std::uint32_t CallStacks::child(std::uint32_t node, std::uint32_t function) {
   return place->second;
 }
 
+/// The functions of a path, outermost first.
+void CallStacks::append(std::uint32_t node) {
+  const std::size_t at = active_.size();
+  for (; node; node = nodes_[node].parent) active_.push_back(nodes_[node].function);
+  std::reverse(active_.begin() + static_cast<std::ptrdiff_t>(at), active_.end());
+}
+
+void CallStacks::tell(std::uint64_t cycle) {
+  active_.clear();
+  for (const std::size_t k : interrupted_) append(stacks_[k].node);
+  append(stacks_[current_].node);
+  watcher_->ran(active_, last_, cycle);
+}
+
 /// Stacks of the program before are forgotten, but not what was counted.
 void CallStacks::start(std::uint64_t cycle, std::uint32_t pc) {
   if (nodes_.size() == 1) last_ = cycle;
+  else elapse(cycle);
   for (Stack& s : stacks_)
     while (!s.frames.empty()) pop(s);
   stacks_.clear();

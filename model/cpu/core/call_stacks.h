@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -46,6 +47,16 @@ class CallStacks {
     elapse(cycle);
     counting_ = on;
   }
+
+  /// Is told which functions were active in each stretch between two branches.
+  class Watcher {
+   public:
+    virtual ~Watcher() = default;
+    /// @param functions outermost first, with those that an exception has interrupted
+    virtual void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) = 0;
+  };
+  /// Also while nothing is counted; null: none.
+  void watch(Watcher* watcher) { watcher_ = watcher; }
 
   struct Path {
     std::vector<std::uint32_t> functions;  ///< outermost first
@@ -104,12 +115,16 @@ class CallStacks {
   };
 
   void elapse(std::uint64_t cycle) {
+    if (watcher_) [[unlikely]]
+      tell(cycle);
     if (counting_) {
       nodes_[stacks_[current_].node].clocks += cycle - last_;
       stacks_[current_].ran += cycle - last_;
     }
     last_ = cycle;
   }
+  void tell(std::uint64_t cycle);
+  void append(std::uint32_t node);
   Function function_at(std::uint32_t address) const;
   std::uint32_t child(std::uint32_t node, std::uint32_t function);
   void pop(Stack& s);
@@ -130,6 +145,8 @@ class CallStacks {
   std::vector<std::size_t> interrupted_;  // stacks, innermost last
   std::uint64_t last_ = 0;
   bool counting_ = true;
+  Watcher* watcher_ = nullptr;
+  std::vector<std::uint32_t> active_;  // for it
 };
 
 }  // namespace fovea::cpu

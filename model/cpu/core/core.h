@@ -146,6 +146,7 @@ class Core : public Background {
   /// first instruction; changes no simulated time.
   ClockProfile& start_profile();
   const ClockProfile* profile() const { return own_profile_.get(); }
+  ClockProfile* profile() { return own_profile_.get(); }
   /// Lets the profile's clocks after time t belong to a section; as mark_window().
   void mark_section(Picoseconds t, std::size_t section) {
     own_profile_->mark(t, section);

@@ -69,8 +69,8 @@ std::uint32_t AintcCore::entry(bool fiq) const {
   return base + (first_of(candidates) + 1) * (4u << regs.eabase.size.get());
 }
 
-std::optional<unsigned> AintcCore::most_urgent() const {
-  const std::uint64_t fiqs = active() & fiq_map_, irqs = active() & ~fiq_map_;
+std::optional<unsigned> AintcCore::most_urgent(std::uint64_t among) const {
+  const std::uint64_t all = active() & among, fiqs = all & fiq_map_, irqs = all & ~fiq_map_;
   if (!fiqs && !irqs) return std::nullopt;
   return first_of(fiqs ? fiqs : irqs);
 }

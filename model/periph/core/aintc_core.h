@@ -68,8 +68,9 @@ class AintcCore {
   void set_sources(std::uint64_t levels);
   bool irq() const { return (active() & ~fiq_map_) != 0; }
   bool fiq() const { return (active() & fiq_map_) != 0; }
-  /// The input that drives an output and is served first, FIQs before IRQs; nothing: none does.
-  std::optional<unsigned> most_urgent() const;
+  /// The input that drives an output and is served first, FIQs before IRQs; nothing: none does. Bit n of
+  /// `among` counts input n.
+  std::optional<unsigned> most_urgent(std::uint64_t among = ~std::uint64_t{0}) const;
   std::uint64_t pending() const { return pending_; }
 
  private:

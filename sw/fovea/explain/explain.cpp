@@ -94,7 +94,7 @@ std::vector<Finding> explain(const Inputs& inputs) {
   std::vector<Finding> out;
   for (const auto rule : {find_rate, find_budget, find_latency_parts, find_largest_wait,
                           find_function, find_other_masters, find_rows, find_sdram_use,
-                          estimate_shorter_bridge, estimate_faster_memory})
+                          estimate_shorter_bridge, estimate_faster_memory, estimate_smaller_table})
     rule(run, out);
   return out;
 }

@@ -27,8 +27,11 @@ std::string listed(const std::vector<std::string>& items) {
 constexpr std::array<std::string_view, 6> kMemoryCauses{"dcache", "icache",   "write_buffer",
                                                         "tlb",    "cache_op", "drain"};
 
-/// The remap's time must come from the core's clocks for an estimate out of them to make sense: a
-/// remap that the EDMA or an engine carries along waits for these, not for the core's own accesses.
+/// The firmware's name for the look-up table, as stalls.csv has it.
+constexpr std::string_view kTable = "lut";
+
+/// Whether the core alone moves the pixels. A remap that the EDMA or an engine carries along also takes
+/// as long as the core sleeps in it, waiting for these.
 bool core_moves_the_pixels(const Run& run) {
   double others = 0;
   for (const auto* name : {"edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3", "remap_engine"})
@@ -37,6 +40,14 @@ bool core_moves_the_pixels(const Run& run) {
   const double core =
       run.value_or_zero("bus.arm_d.read_bytes") + run.value_or_zero("bus.arm_d.write_bytes");
   return others < 0.05 * core;
+}
+
+/// The share of its remaps in which the core does not wait for a DMA master: only there it is faster if
+/// its own accesses are.
+double core_share(const Run& run) {
+  if (core_moves_the_pixels(run)) return 1;
+  const double all = run.value_or_zero("cpu.remap.cycles");
+  return all > 0 ? 1 - run.value_or_zero("cpu.remap.idle") / all : 0;
 }
 
 /// Seconds of a core clock, from the remap-free identity: the window has cpu.cycles clocks.
@@ -260,13 +271,13 @@ void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out) {
   const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
   const auto remap = run.value("frame.remap_time.mean");
   if (!request || !response || *request < 1 || *response < 1 || frames == 0 || clock == 0 ||
-      !remap || !core_moves_the_pixels(run))
+      !remap)
     return;
   double bridge = 0;
   for (const auto cause : kMemoryCauses)
     bridge += run.value_or_zero(fmt::format("cpu.stall.{}.by.bridge", cause));
   // The clocks in the bridge are in proportion to its delays.
-  const double saved = bridge * 2 / (*request + *response) * clock / frames;
+  const double saved = bridge * 2 / (*request + *response) * clock / frames * core_share(run);
   if (saved < 0.002 * *remap) return;
   out.push_back(
       {"shorter_bridge",
@@ -283,14 +294,22 @@ void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
   constexpr double kRatio = 243.0 / 270.0;
   const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
   const auto remap = run.value("frame.remap_time.mean");
-  if (run.parameter("clocks.preset") != "297/243" || frames == 0 || clock == 0 || !remap ||
-      !core_moves_the_pixels(run))
-    return;
+  if (run.parameter("clocks.preset") != "297/243" || frames == 0 || clock == 0 || !remap) return;
+  std::vector<std::string> evidence;
   double memory = 0;
-  for (const auto cause : kMemoryCauses) {
-    memory += run.value_or_zero(fmt::format("cpu.stall.{}", cause));
-    memory -= run.value_or_zero(fmt::format("cpu.stall.{}.by.core", cause));
+  if (core_moves_the_pixels(run)) {
+    for (const auto cause : kMemoryCauses) {
+      memory += run.value_or_zero(fmt::format("cpu.stall.{}", cause));
+      memory -= run.value_or_zero(fmt::format("cpu.stall.{}.by.core", cause));
+    }
+    evidence = {"cpu.stall.*", "cpu.stall.*.by.core"};
+  } else {
+    // The core sleeps until the EDMA is done, which has the crossbar's clock.
+    memory = run.value_or_zero("cpu.remap.idle");
+    for (const auto cause : kMemoryCauses) memory += run.value_or_zero(fmt::format("cpu.remap.stall.{}", cause));
+    evidence = {"cpu.remap.idle", "cpu.remap.stall.*"};
   }
+  evidence.insert(evidence.end(), {"frame.remapped", "frame.remap_time.mean"});
   const double saved = memory * (1 - kRatio) * clock / frames;
   if (saved < 0.002 * *remap) return;
   out.push_back(
@@ -298,8 +317,25 @@ void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
        fmt::format("Estimate: with SDRAM and crossbar one step faster (clocks.preset=297/270) a "
                    "remap would take about {} less, {}.",
                    milliseconds(saved), percent(saved / *remap)),
-       {"cpu.stall.*", "cpu.stall.*.by.core", "frame.remapped", "frame.remap_time.mean"},
-       true});
+       evidence, true});
+}
+
+void estimate_smaller_table(const Run& run, std::vector<Finding>& out) {
+  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
+  const auto remap = run.value("frame.remap_time.mean");
+  if (frames == 0 || clock == 0 || !remap) return;
+  double table = 0;
+  for (const auto& row : run.stalls())
+    if (row.cause == "dcache" && row.region == kTable) table += static_cast<double>(row.cycles);
+  // A table is read once, from one end to the other: half the bytes are half the lines.
+  const double saved = table / 2 * clock / frames * core_share(run);
+  if (saved < 0.002 * *remap) return;
+  out.push_back({"smaller_table",
+                 fmt::format("Estimate: a look-up table of half as many bytes would save up to about {} of a "
+                             "remap, {}.",
+                             milliseconds(saved), percent(saved / *remap)),
+                 {"stalls.csv", "frame.remapped", "frame.remap_time.mean"},
+                 true});
 }
 
 }  // namespace fovea::explain

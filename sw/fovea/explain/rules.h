@@ -55,5 +55,6 @@ void find_sdram_use(const Run& run, std::vector<Finding>& out);
 // Estimates: what a change would do.
 void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out);
 void estimate_faster_memory(const Run& run, std::vector<Finding>& out);
+void estimate_smaller_table(const Run& run, std::vector<Finding>& out);
 
 }  // namespace fovea::explain

@@ -1,7 +1,6 @@
 #include "sw/fovea/limits/binds.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -41,15 +40,10 @@ void Binds::relax(const points::PointResult& plain) {
   }
   if (failure_) return done_();
   unit_ = plain.units.find(metric_)->second;
-  std::vector<std::string> names;
   for (Relaxation& r : relaxations(session_.effective(settings_)->params, plain)) {
-    names.push_back(r.name);
     if (only_.empty() || std::find(only_.begin(), only_.end(), r.name) != only_.end())
       rows_.push_back({.relaxation = std::move(r), .before = {}, .after = {}, .gain = {}, .failure = {}});
   }
-  for (const std::string& name : only_)
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw UserError(fmt::format("--relax '{}': allowed here: {}", app::one_line(name), fmt::join(names, ", ")));
   const auto tried = [](const Row& row) { return row.relaxation.idle.empty(); };
   left_ = static_cast<std::size_t>(std::count_if(rows_.begin(), rows_.end(), tried));
   const bool replays = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {

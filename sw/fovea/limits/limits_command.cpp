@@ -187,7 +187,7 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
 }
 
 int command_limits(const LimitsOptions& o, const app::CliContext& context) {
-  // Everything that can be wrong with the question is said before a folder is made.
+  // Everything wrong with the question that shows without a run is said before a folder is made.
   const auto plain = app::effective_run(context.make_simulation, o.experiment, o.sets);
   const Question question = question_of(o, plain->params);
   const std::vector<Settings> over = combinations(o.over);
@@ -195,6 +195,13 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
                            ? fs::path("out") / (fs::path(o.experiment).stem().string() + "-limits")
                            : fs::path(o.out_dir);
   const std::vector<Condition> conditions = conditions_with(o.require);
+  for (const Settings& s : over) {
+    Settings all = o.sets;
+    all.insert(all.end(), s.begin(), s.end());
+    check_question(question, all, [&](const Settings& settings) {
+      return app::effective_run(context.make_simulation, o.experiment, settings);
+    });
+  }
   points::PointStore store(dir);
   points::Runner runner(store, {.program = own_program(),
                                 .jobs = o.jobs ? o.jobs : std::max(1u, std::thread::hardware_concurrency()),

@@ -1,10 +1,13 @@
 #include "sw/fovea/limits/relaxations.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "model/board/clock_presets.h"
+#include "model/common/check.h"
+#include "sw/fovea/checked_file.h"
 #include "sw/fovea/clock_setting.h"
 
 namespace fovea::limits {
@@ -167,6 +170,14 @@ std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointR
     out.push_back(std::move(r));
   }
   return out;
+}
+
+void check_names(const std::vector<std::string>& names, const std::vector<Relaxation>& among) {
+  std::vector<std::string> known;
+  for (const Relaxation& r : among) known.push_back(r.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UserError(fmt::format("--relax '{}': allowed here: {}", app::one_line(name), fmt::join(known, ", ")));
 }
 
 }  // namespace fovea::limits

@@ -29,5 +29,7 @@ struct Relaxation {
 /// All relaxations of an experiment. `params` are its parameters, `plain` is its run, which tells
 /// which masters have any traffic. Keys that the program does not have are left out.
 std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointResult& plain);
+/// @throws UserError for a name of --relax that is none of these
+void check_names(const std::vector<std::string>& names, const std::vector<Relaxation>& among);
 
 }  // namespace fovea::limits

@@ -6,18 +6,25 @@ namespace fovea::limits {
 
 using Answer = Bisection::Answer;
 
+std::optional<ValueRange> check_question(const Question& question, const Settings& settings,
+                                         const Effective& effective) {
+  const auto plain = effective(settings);
+  if (question.load) free_load(plain->params);
+  if (!question.binds.empty()) check_names(question.relax, relaxations(plain->params, {}));
+  if (question.find.empty()) return std::nullopt;
+  ValueRange range(plain->params, question.find);
+  for (const std::uint64_t end : {std::uint64_t{0}, range.last()}) {
+    Settings all = settings;
+    all.push_back(range.setting(end));
+    effective(all);
+  }
+  return range;
+}
+
 Study::Study(Session& session, const Question& question, Settings settings, Settings over)
     : session_(session), question_(question), over_(std::move(over)), settings_(std::move(settings)) {
   settings_.insert(settings_.end(), over_.begin(), over_.end());
-  const auto effective = session_.effective(settings_);
-  if (question_.load) free_load(effective->params);
-  if (question_.find.empty()) return;
-  range_.emplace(effective->params, question_.find);
-  for (const std::uint64_t end : {std::uint64_t{0}, range_->last()}) {
-    Settings all = settings_;
-    all.push_back(range_->setting(end));
-    session_.effective(all);
-  }
+  range_ = check_question(question_, settings_, [this](const Settings& s) { return session_.effective(s); });
 }
 
 void Study::start() {

@@ -1,5 +1,6 @@
 // What `fovea limits` asks about one combination of --over, and the answers.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,10 +24,18 @@ struct Question {
   LoadShape shape;
 };
 
+/// The parameters that settings give. @throws UserError for settings that are not allowed
+using Effective = std::function<std::unique_ptr<app::EffectiveRun>(const Settings&)>;
+/// Says what is wrong with a question for one combination of settings, as far as no run is needed for it.
+/// @return the values of --find, if it is asked
+/// @throws UserError: settings, ends of a range or names of relaxations that are not allowed
+std::optional<ValueRange> check_question(const Question& question, const Settings& settings,
+                                         const Effective& effective);
+
 class Study {
  public:
   /// @param over the combination's own settings, which come after `settings`
-  /// @throws UserError for settings or ends of a range that are not allowed
+  /// @throws UserError as check_question()
   Study(Session& session, const Question& question, Settings settings, Settings over);
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;

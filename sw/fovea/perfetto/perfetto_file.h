@@ -26,6 +26,8 @@ class PerfettoFile {
   PerfettoFile(const std::filesystem::path& file, std::size_t ring_bytes,
                std::function<bool(const std::string&)> wanted);
 
+  /// Whether a track is recorded.
+  bool wants(const std::string& group, const std::string& name) const { return wanted_(group + "/" + name); }
   /// A track for slices and instants, in a group of tracks.
   Track track(const std::string& group, const std::string& name);
   /// A track for values in this unit.

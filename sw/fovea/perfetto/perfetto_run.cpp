@@ -69,6 +69,15 @@ PerfettoRun::PerfettoRun(const PerfettoRequest& request, board::Board& board)
 
 PerfettoRun::~PerfettoRun() { end(); }
 
+bool PerfettoRun::wants_functions() const { return file_->wants("firmware", "functions 01"); }
+
+void PerfettoRun::watch_functions(cpu::ClockProfile& profile, PerfettoFunctions::Name name) {
+  const cpu::Core& core = board_.dm365.arm.core();
+  functions_ = std::make_unique<PerfettoFunctions>(
+      *file_, std::move(name), [&core](std::uint64_t cycle) { return core.time(cycle); });
+  profile.stacks.watch(functions_.get());
+}
+
 void PerfettoRun::watch_interrupts() {
   auto& aintc = board_.dm365.aintc;
   const auto watch = [this](auto& port, const std::string& name) {
@@ -146,6 +155,7 @@ void PerfettoRun::begin(Picoseconds at) {
   from_ = at;
   if (request_.trigger.empty() && request_.duration != kNever) end_at(at + request_.duration);
   next_ = board_.dm365.scr.crossbar().observe(this);
+  if (functions_) functions_->start(at);
   sample();
 }
 
@@ -155,6 +165,7 @@ void PerfettoRun::end() {
   close_phase(at);
   for (const Line& l : lines_)
     if (l.since && at > from_) file_->slice(l.track, l.name, std::max(*l.since, from_), at);
+  if (functions_) functions_->finish(at);
   board_.dm365.scr.crossbar().observe(next_);
   on_ = false;
   over_ = true;
@@ -164,6 +175,7 @@ void PerfettoRun::sample() {
   if (!on_) return;
   auto& soc = board_.dm365;
   const Picoseconds now = kernel_time();
+  if (functions_) functions_->flush(std::min(now, until_));
   soc.scr.settle();
   soc.ddr.settle(now);
   const mem::DdrController& ddr = soc.ddr.controller();

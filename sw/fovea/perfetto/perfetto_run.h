@@ -12,6 +12,7 @@
 #include "model/board/board.h"
 #include "model/common/mem_observer.h"
 #include "sw/fovea/perfetto/perfetto_file.h"
+#include "sw/fovea/perfetto/perfetto_functions.h"
 #include "sw/fovea/perfetto/perfetto_request.h"
 
 namespace fovea::app {
@@ -28,6 +29,10 @@ class PerfettoRun final : private MemObserver {
   /// The window opens, or closes, now. Nothing is recorded behind it.
   void window_opened();
   void window_closed();
+  /// Whether functions of the firmware are among the wanted tracks.
+  bool wants_functions() const;
+  /// Records them, too; before the simulation starts. @param name of the function at an address
+  void watch_functions(cpu::ClockProfile& profile, PerfettoFunctions::Name name);
   /// A frame was shown.
   void frame(const video::DisplayFrame& shown, const board::FrameRecord& record);
   /// Writes the file. @throws UserError @return a sentence if events were dropped, or "" if the file holds
@@ -67,6 +72,7 @@ class PerfettoRun final : private MemObserver {
   PerfettoFile::Track phases_, capture_, remap_, display_;
   std::optional<std::pair<std::string, Picoseconds>> phase_;
   std::deque<Line> lines_;
+  std::unique_ptr<PerfettoFunctions> functions_;
   struct Transfer {
     dma::TransferRequest request;
     Picoseconds at;

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kProfileColumns = {"phase",  "function", "file",    "line",
                                                   "cause",  "region",   "culprit", "clocks",
                                                   "instructions"};
+const std::vector<std::string> kPlaceColumns = {"function", "file", "address", "size", "code"};
 /// The phase that the figures of a window cover.
 constexpr std::string_view kWindowPhase = "frames";
 constexpr double kAllowedGap = 0.01;
@@ -45,6 +46,15 @@ std::vector<AttributionRow> read_profile(const fs::path& file) {
     rows.push_back(std::move(r));
   }
   return rows;
+}
+
+std::map<FunctionKey, std::set<CodePlace>> read_places(const fs::path& file) {
+  const TableFile table(file, kPlaceColumns);
+  std::map<FunctionKey, std::set<CodePlace>> places;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    places[{table.text(i, "function"), fs::path(table.text(i, "file")).filename().string()}].insert(
+        {table.text(i, "address"), table.text(i, "size"), table.text(i, "code")});
+  return places;
 }
 
 std::vector<AttributionRow> read_stalls(const RunFigures& run) {
@@ -106,6 +116,8 @@ Attribution attribution_of(const RunFigures& run, bool profile) {
     keep_window(out.rows, out.clocks);
     out.by_function = std::any_of(out.rows.begin(), out.rows.end(),
                                   [](const AttributionRow& r) { return !r.function.empty(); });
+    if (fs::exists(run.folder / "functions.csv", error))
+      out.places = read_places(run.folder / "functions.csv");
   } else if (file = "stalls.csv"; fs::exists(run.folder / file, error)) {
     out.rows = read_stalls(run);
   }
@@ -123,6 +135,14 @@ std::string attribution_csv(const Attribution& attribution) {
     out += table_row({r.phase, r.function, r.file, r.line ? std::to_string(r.line) : "", r.cause,
                       r.region, r.culprit, std::to_string(r.clocks),
                       std::to_string(r.instructions)});
+  return out;
+}
+
+std::string places_csv(const Attribution& attribution) {
+  std::string out = table_row(kPlaceColumns);
+  for (const auto& [function, places] : attribution.places)
+    for (const CodePlace& p : places)
+      out += table_row({function.first, function.second, p.address, p.size, p.code});
   return out;
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sw/fovea/regression/run_figures.h"
@@ -20,8 +23,22 @@ struct AttributionRow {
   bool idle() const { return cause == "idle" || cause.starts_with("idle."); }
 };
 
+/// Name and file of a function.
+using FunctionKey = std::pair<std::string, std::string>;
+
+/// A piece of code, from functions.csv: texts that are equal or not.
+struct CodePlace {
+  std::string address, size, code;
+  auto operator<=>(const CodePlace&) const = default;
+};
+/// The name of the row that stands for all objects of the program.
+inline const FunctionKey kDataPlace{"(data)", ""};
+
 struct Attribution {
   std::vector<AttributionRow> rows;
+  /// Where the code of each function lies, that of an inlined one in each function that holds it; empty:
+  /// the run does not tell.
+  std::map<FunctionKey, std::set<CodePlace>> places;
   bool by_function = false;  ///< from a profile
   double clocks = 0;         ///< cpu.cycles, which the rows should add up to
   double seconds = 0;        ///< length of a clock; 0: unknown
@@ -36,7 +53,8 @@ Attribution attribution_of(const RunFigures& run, bool profile);
 /// True if the folder has a profile.
 bool has_profile(const RunFigures& run);
 
-/// Text in the format of profile.csv.
+/// Texts in the formats of profile.csv and functions.csv.
 std::string attribution_csv(const Attribution& attribution);
+std::string places_csv(const Attribution& attribution);
 
 }  // namespace fovea::regression

@@ -13,7 +13,6 @@
 namespace fovea::regression {
 namespace {
 
-using FunctionKey = std::pair<std::string, std::string>;
 using CauseKey = std::tuple<std::string, std::string, std::string>;
 
 /// One run's clocks of a function.
@@ -144,29 +143,49 @@ FunctionChange change_of(const FunctionKey& key, const Pair& p, bool by_function
   return f;
 }
 
-/// True if the two programs execute the same, so that with equal settings nothing but addresses is
-/// left to have changed. Loops that end by the state of a cache or a peripheral take a step more or
-/// less all the same: with up to 0.1 % of other instructions, a change of up to 5 % of the busy
-/// clocks still counts.
-bool same_code(const Difference& d, double instructions) {
-  constexpr double kOther = 1e-3, kSmall = 0.05;
-  double other = 0;
-  for (const auto& f : d.functions) other += std::abs(f.instructions_after - f.instructions_before);
-  return other == 0 || (other <= kOther * instructions &&
-                        std::abs(d.busy.change()) <= kSmall * d.busy.before);
+using Places = std::map<FunctionKey, std::set<CodePlace>>;
+
+/// A function's code in two programs.
+struct Moved {
+  bool same_code = false;   ///< whatever its addresses are
+  bool elsewhere = false;   ///< at other addresses
+};
+
+Moved moved(const Places& before, const Places& after, const FunctionKey& key) {
+  const auto a = before.find(key), b = after.find(key);
+  if (a == before.end() || b == after.end()) return {};
+  const auto codes = [](const std::set<CodePlace>& places) {
+    std::multiset<std::pair<std::string, std::string>> out;
+    for (const CodePlace& p : places) out.insert({p.size, p.code});
+    return out;
+  };
+  Moved out;
+  out.same_code = codes(a->second) == codes(b->second);
+  out.elsewhere = out.same_code && a->second != b->second;
+  return out;
 }
 
-/// Tells layout from waiting. Unless all code is the same, only fetches of unchanged functions are put
-/// down to addresses: data may also come later because of what the changed function does to caches
-/// and memory.
-void find_layout(Difference& d, double instructions) {
-  if (!d.by_function || !d.program_differs) return;
-  const bool all = !d.settings_differ && same_code(d, instructions);
+/// Tells layout from waiting, by addresses. If all code and data is the same and only lies elsewhere,
+/// nothing else is left that could have changed the clocks, also of what stayed in its place: it may
+/// meet what was moved in a cache. Otherwise only fetches of moved functions are put down to addresses,
+/// since data may come later because of what other code does to caches and memory.
+void find_layout(Difference& d, const Places& before, const Places& after) {
+  d.places_known = !before.empty() && !after.empty();
+  if (!d.by_function || !d.program_differs || !d.places_known) return;
+  bool all = !d.settings_differ, any = false;
+  for (const auto* places : {&before, &after})
+    for (const auto& [key, unused] : *places) {
+      const Moved m = moved(before, after, key);
+      all = all && m.same_code;
+      any = any || m.elsewhere;
+    }
+  all = all && any;
   for (auto& f : d.functions) {
-    if (f.kind != ChangeKind::kWaits) continue;
+    const Moved m = moved(before, after, {f.function, f.file});
+    if (!all && (!m.elsewhere || f.kind != ChangeKind::kWaits)) continue;
     for (const auto& c : f.causes)
       if (all || of_fetches(c.cause)) f.layout += c.share.change();
-    if (f.layout != 0 && std::abs(f.layout) * 2 >= std::abs(f.share.change()))
+    if (m.elsewhere && f.layout != 0 && std::abs(f.layout) * 2 >= std::abs(f.share.change()))
       f.kind = ChangeKind::kLayout;
   }
 }
@@ -181,11 +200,7 @@ bool other_clock(const Attribution& a, const Attribution& b) {
          a.seconds * (kSame + kEdges / a.clocks + kEdges / b.clocks);
 }
 
-std::string grouped(double value) {
-  std::string digits = fmt::format("{:.0f}", std::abs(value));
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-  return digits;
-}
+std::string grouped(double value) { return app::grouped(static_cast<std::uint64_t>(std::llround(std::abs(value)))); }
 
 }  // namespace
 
@@ -231,9 +246,7 @@ Difference difference_of(const Attribution& before, const Attribution& after,
     if (!f.causes.empty() || f.instructions_before != f.instructions_after)
       d.functions.push_back(std::move(f));
   }
-  double instructions = 0;
-  for (const auto& [key, pair] : functions) instructions += pair.before.instructions;
-  find_layout(d, instructions);
+  find_layout(d, before.places, after.places);
   largest_first(d.functions);
   return d;
 }

@@ -13,7 +13,7 @@ enum class ChangeKind {
   kAdded,     ///< only the second run has it
   kRemoved,   ///< only the first run has it
   kExecutes,  ///< it executes another number of instructions
-  kLayout,    ///< the same instructions at other addresses
+  kLayout,    ///< the same code at other addresses
   kWaits,     ///< the same instructions, which wait for something else or longer
 };
 /// "new", "gone", "executes more", ... for a table. `more` is the sign of the instructions.
@@ -55,6 +55,7 @@ struct Difference {
   std::vector<FunctionChange> functions;  ///< busy clocks; largest change first
   double unexplained = 0;                 ///< of the change of `total`, not in any row
   bool program_differs = false, settings_differ = false;
+  bool places_known = false;  ///< both runs tell where their code lies
 
   /// Share of the change that no row explains: 0 is all explained.
   double unexplained_share() const;

@@ -29,6 +29,21 @@ std::string allowed_text(const Expectation& e) {
   return "allowed: " + out;
 }
 
+/// What is to be done for function and line; the command is the one that made the run.
+std::string advice_text(const RunFigures& run, const Attribution& before, const Attribution& after) {
+  if (after.by_function)
+    return before.by_function ? ""
+                              : "function and line are not known, because the reference has no profile; "
+                                "'fovea bless' with a run of --profile gives it one";
+  std::string command;
+  for (const auto& word : run.command) {
+    const bool plain = word.find_first_of(" \t\n'\"\\$*?;&|<>()[]{}~#`!") == word.npos && !word.empty();
+    command += (command.empty() ? "" : " ") + (plain ? word : fmt::format("'{}'", word));
+  }
+  return "function and line are not known, because the run has no profile; run it again with --profile" +
+         (command.empty() ? "" : ": " + app::one_line(command, 1000) + " --profile");
+}
+
 }  // namespace
 
 void check_circumstances(const RunFigures& run, const Baseline& baseline) {
@@ -117,6 +132,7 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
   out.difference = difference_of(before, after, circumstances_of(reference, run));
   out.blame = blame_text(*out.difference,
                          blame_of(*out.difference, true));
+  out.advice = advice_text(run, before, after);
   return out;
 }
 
@@ -153,6 +169,7 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
   if (!result.blame.empty()) out += "blamed: " + result.blame + "\n";
   else if (failures && baseline.reference.empty())
     out += "blamed: nothing, because the baseline has no reference\n";
+  if (!result.advice.empty()) out += result.advice + "\n";
   return out;
 }
 

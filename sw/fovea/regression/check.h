@@ -23,6 +23,7 @@ struct CheckResult {
   std::vector<std::string> settings;   ///< what differs between the reference and the run
   std::optional<Difference> difference;
   std::string blame;                   ///< one sentence; empty if nothing failed or nothing is known
+  std::string advice;                  ///< how to get a blame by function and line; empty: it is one
 
   std::size_t failures() const;
 };

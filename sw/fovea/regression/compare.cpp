@@ -227,6 +227,8 @@ std::string difference_text(const Difference& d, std::size_t rows) {
                      100 * d.unexplained_share());
   if (!d.by_function)
     out += "  by function and line: let both runs write a profile ('fovea run --profile')\n";
+  else if (d.program_differs && !d.places_known)
+    out += "  moved code is not told apart: one of the profiles has no functions.csv\n";
   return out;
 }
 

@@ -24,12 +24,12 @@ std::string xml_text(std::string_view text) {
 std::string junit_xml(const CheckResult& result, const RunFigures& run, const Baseline& baseline,
                       const std::string& when) {
   const std::string suite = "fovea." + xml_text(run.experiment);
-  // Attributes and elements that the schema of Ant's JUnit task demands; the time of a comparison
-  // is none that anybody measures.
+  // Elements in the order, and attributes, that the schemas of Ant's JUnit task, Maven Surefire and
+  // Jenkins' xUnit plugin demand; the time of a comparison is none that anybody measures.
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
       "  <testsuite package=\"fovea\" id=\"0\" name=\"{}\" timestamp=\"{}\" hostname=\"localhost\" "
-      "tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"0\">\n    <properties>\n",
+      "tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\" time=\"0\">\n    <properties>\n",
       suite, when, result.findings.size(), result.failures());
   const auto property = [&out](std::string_view name, const std::string& value) {
     out += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, xml_text(value));
@@ -48,6 +48,7 @@ std::string junit_xml(const CheckResult& result, const RunFigures& run, const Ba
     std::string body = f.words;
     if (!f.expected->reason.empty()) body += "\nreason: " + f.expected->reason;
     if (!result.blame.empty()) body += "\nblamed: " + result.blame;
+    if (!result.advice.empty()) body += "\n" + result.advice;
     out += fmt::format(">\n      <failure type=\"{}\" message=\"{}\">{}</failure>\n    </testcase>\n",
                        kind_name(f.expected->kind), xml_text(f.words), xml_text(body));
   }

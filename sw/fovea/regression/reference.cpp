@@ -22,7 +22,9 @@ std::map<std::string, std::string> reference_files(const RunFigures& run) {
     if (!p.path) parameters += table_row({key, p.value, p.default_value});
   std::string& inputs = out["inputs.csv"] = table_row({"key", "sha256"});
   for (const auto& [key, hash] : run.hashes) inputs += table_row({key, hash});
-  out["profile.csv"] = attribution_csv(attribution_of(run, true));
+  const Attribution attribution = attribution_of(run, true);
+  out["profile.csv"] = attribution_csv(attribution);
+  if (!attribution.places.empty()) out["functions.csv"] = places_csv(attribution);
   return out;
 }
 

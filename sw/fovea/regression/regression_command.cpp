@@ -89,9 +89,10 @@ bool write_reference(const fs::path& folder, const RunFigures& run, const Baseli
   std::error_code error;
   if (folder.empty()) return false;
   const bool complete = fs::exists(folder / "figures.csv", error);
-  if (!changed && complete &&
-      (!has_profile(run) || attribution_of(read_reference(baseline), true).by_function))
-    return false;
+  if (!changed && complete) {
+    const Attribution had = attribution_of(read_reference(baseline), true), has = attribution_of(run, true);
+    if (had.by_function >= has.by_function && had.places.empty() <= has.places.empty()) return false;
+  }
   if (is_run_folder(folder) || (!complete && fs::is_directory(folder, error) && !fs::is_empty(folder, error)))
     throw UserError(fmt::format("'{}' would be the reference, but it holds something else; give the baseline another "
                                 "name, or another 'reference'",
@@ -151,8 +152,8 @@ int trend(const RegressionOptions& options, const CliContext& context) {
     throw UserError(fmt::format("--database '{}': there is no such file", one_line(o.database)));
   TrendFile file(o.database);
   for (const auto& run : runs) {
-    TrendLine line{o.commit.empty() ? commit_text(run) : o.commit, run.experiment, run.simulator(), {},
-                   run.metrics};
+    TrendLine line{o.commit.empty() ? commit_text(run) : o.commit, run.experiment, run.simulator(),
+                   run.host_instructions, run.metrics};
     if (o.host_instructions > 0) line.host_instructions = o.host_instructions;
     file.add(line);
     context.out << fmt::format("{}: {} of commit {}\n", o.database, line.experiment, line.commit);
@@ -221,7 +222,7 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
       ->type_name("FILE");
   trend->add_option("--commit", t.commit, "Name of the line")->type_name("TEXT")->default_str("the simulator's commit");
   trend->add_option("--host-instructions", t.host_instructions,
-                    "The simulator's host instructions for each guest instruction")
+                    "The simulator's host instructions for each guest instruction, instead of the run's own figure")
       ->type_name("NUMBER")
       ->check(CLI::PositiveNumber);
   trend->add_option("--plot", t.plot, "Write a picture of the figures over the commits (SVG)")->type_name("FILE");

@@ -120,6 +120,9 @@ RunFigures read_run(const fs::path& folder) {
     const json words = host.value("command", json::array());
     for (const auto& word : words)
       if (word.is_string()) run.command.push_back(word);
+    const json counted = host.value("host_instructions", json::object());
+    if (counted.is_object() && counted.contains("value") && counted["value"].is_number())
+      run.host_instructions = counted["value"].get<double>();
   }
   return run;
 }

@@ -32,6 +32,7 @@ struct RunFigures {
   std::map<std::string, Parameter> parameters;
   std::map<std::string, std::string> hashes;  ///< SHA-256 of the inputs, by key
   std::vector<std::string> command;           ///< empty: unknown
+  std::optional<double> host_instructions;    ///< of the simulator, for each one of the guest
 
   /// Version and commit of the simulator, as `fovea version` prints them.
   std::string simulator() const;

@@ -53,6 +53,8 @@ std::string report_page(const std::vector<Results>& runs) {
                                 {"configuration", "Configuration", configuration_section(runs)},
                                 {"figures", "All figures", figures_section(runs)},
                                 {"provenance", "Provenance", provenance_section(runs)}};
+  if (!runs.front().binds.empty())
+    sections.insert(sections.begin() + 2, {"binds", "What binds", binds_section(runs.front().binds)});
   const std::string script(kScript), data = data_json(runs);
   std::size_t used = script.size() + data.size() + kStyle.size();
   for (const auto& s : sections) used += s.html.size();

@@ -31,6 +31,7 @@ void add_report_command(CLI::App& app, ReportOptions& o) {
   c->add_option("-o,--out", o.out, "File for the page")
       ->type_name("FILE")
       ->default_str("DIR/report.html; report.html for several");
+  c->add_option("--limits", o.limits, "Folder of 'fovea limits --binds' about the first run: what binds it")->type_name("DIR");
   c->add_flag("--text", o.text, "Print verdict and findings instead of making a page");
   c->add_flag("--partial", o.partial,
               "Accept partial results: of a run that was stopped or failed");
@@ -46,6 +47,7 @@ int command_report(const ReportOptions& options, const CliContext& context) {
   std::vector<report::Results> runs;
   for (const auto& folder : options.folders)
     runs.push_back(report::load_results(folder, {options.partial, options.across_versions}));
+  if (!options.limits.empty()) runs.front().binds = report::load_binds(options.limits, runs.front());
   if (options.text) {
     context.out << report::report_text(runs) << std::flush;
     return kExitDone;

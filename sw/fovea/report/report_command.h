@@ -14,7 +14,7 @@ namespace fovea::app {
 
 struct ReportOptions {
   std::vector<std::string> folders;
-  std::string out;
+  std::string out, limits;
   bool text = false, partial = false, across_versions = false;
 };
 

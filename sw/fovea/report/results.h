@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/report/binds.h"
 
 namespace fovea::report {
 
@@ -52,6 +53,7 @@ struct Results {
   std::optional<std::vector<LatencyBin>> latency;
   std::optional<std::vector<ProfileRow>> profile;
   std::optional<std::vector<std::pair<std::string, std::uint64_t>>> stacks;  ///< profile.folded
+  std::vector<Relaxed> binds;  ///< of `fovea limits`, if it was asked for
 
   /// The value of a figure; empty if it has none.
   std::optional<double> value(std::string_view figure) const;

@@ -318,7 +318,9 @@ static explain::Inputs inputs_of(const Results& run,
 
 std::vector<explain::Finding> findings_of(const Results& run) {
   const auto functions = functions_of(run);
-  return explain::explain(inputs_of(run, functions));
+  std::vector<explain::Finding> out = explain::explain(inputs_of(run, functions));
+  for (auto& f : binds_findings(run.binds)) out.push_back(std::move(f));
+  return out;
 }
 
 std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index) {

@@ -1,0 +1,33 @@
+// What binds, from the answers of `fovea limits`, in a report.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sw/fovea/explain/explain.h"
+
+namespace fovea::report {
+
+struct Results;
+
+/// A row of binds.csv: one resource, relaxed alone.
+struct Relaxed {
+  std::string resource;
+  std::string binds;  ///< yes, no, or empty: not tried
+  std::string metric, unit, by, settings, remark;
+  std::optional<double> gain, plain, reference, relaxed;
+};
+
+/// The rows that are about this run: those whose plain run has the same figure.
+/// @param folder of `fovea limits --binds`
+/// @throws UserError: no binds.csv, a damaged one, or answers about other runs only
+std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Results& run);
+
+/// "What binds ...": the finding that runs support; no rows give none.
+std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows);
+
+/// The rows as a table.
+std::string binds_section(const std::vector<Relaxed>& rows);
+
+}  // namespace fovea::report
