@@ -141,6 +141,8 @@ typedef struct param_camera {
 
 #define PARAM_OVERLAY (1u << 0)    /* a blinking box, blended through the data cache */
 #define PARAM_SELF_PATCH (1u << 1) /* the program patches its own code once */
+#define PARAM_DISPLAY_FREE (1u << 2) /* the display starts on its own, not in step with the camera; only a program
+                                        with a console does that */
 
 typedef struct param_page {
   uint32_t magic;    /* PARAM_PAGE_MAGIC */

@@ -124,7 +124,8 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.repeats = static_cast<std::uint32_t>(firmware.repeat());
   page.tables = static_cast<std::uint32_t>(firmware.tables());
   page.flags =
-      (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
+      (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u) |
+      (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());
