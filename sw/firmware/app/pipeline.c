@@ -370,9 +370,10 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
     uart_puts("decoder: no lock, going on\n");
 #ifdef CONSOLE
-  if (config->display_free)
+  if (config->display_free) {
     isif_watch();
-  else
+    intc_enable(IRQ_VPSSINT0, 2);
+  } else
 #endif
   {
     wait_for_frame_end();
