@@ -39,7 +39,9 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   decoder.video.bind(dm365.isif.video);
   dm365.i2c.targets.bind(decoder.i2c);
   if (!params.fault.kind.is("none"))
-    fault_ = std::make_unique<CameraFault>("camera_fault", params.fault, decoder);
+    fault_ = std::make_unique<CameraFault>(
+        "camera_fault", params.fault,
+        params.camera_setup(static_cast<unsigned>(params.fault.camera())).wiring, decoder);
   set_switches();
   platform.add(dm365.platform);
   platform.add("display", sink);

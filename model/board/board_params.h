@@ -102,6 +102,15 @@ struct FirmwareParams : ParamGroup {
                     Origin::kChoice, ""};
   BoolParam patch{*this, "patch", false, "the program patches its own code once",
                   Origin::kChoice, ""};
+  EnumParam program{*this, "program", "auto", {"auto", "one_camera", "cameras"},
+                    "which of the built programs runs: the one for one camera, or the one for up to eight, "
+                    "which also watches the camera's signal and takes commands on UART0; auto: the "
+                    "second one with cameras.count above 1 or firmware.display_phase = free",
+                    Origin::kChoice, ""};
+  EnumParam display_phase{*this, "display_phase", "locked", {"locked", "free"},
+                          "the display starts in step with the camera, or on its own, before the decoder "
+                          "has locked",
+                          Origin::kChoice, ""};
   EnumParam baud{*this, "baud", "115200", {"115200", "57600", "38400", "19200", "9600"},
                  "rate of UART0 that the firmware sets", Origin::kChoice, ""};
   /// Divisor of the UART's 24 MHz / 16, rounded.
@@ -109,7 +118,9 @@ struct FirmwareParams : ParamGroup {
     const auto rate = static_cast<std::uint32_t>(std::stoul(baud()));
     return (24'000'000 / 16 + rate / 2) / rate;
   }
-  FirmwareParams() : ParamGroup("firmware") {}
+  FirmwareParams() : ParamGroup("firmware") {
+    program.matters_only("firmware.elf empty", {&elf}, [this] { return elf().empty(); });
+  }
 };
 
 /// Switches that an installer may set besides those that follow from other keys.

@@ -103,7 +103,7 @@ CameraSetup BoardParams::camera_setup(unsigned number) const {
   out.wiring.input = decoder_input(row.wire.input);
   out.wiring.connected = row.wire.connected();
   out.wiring.is_625 = standard.is("625/50");
-  out.wiring.placement = video::placement_of(decoder, standard);
+  out.wiring.placement = video::placement_of(decoder, standard.is("625/50"));
   out.genlocked =
       row.wire.genlocked.user_set() ? row.wire.genlocked() : cameras.genlocked();
   out.wiring.phase = decoder.phase();

@@ -19,6 +19,22 @@ struct CameraWiring {
   bool connected = true;     ///< false: there is nothing on the input
 };
 
+/// What is wrong with the lines that a camera sends; by default nothing.
+struct SignalFault {
+  unsigned wrong_bits = 0;  ///< in each damaged timing code: 1 or 2 of F, V, H and P3 to P0 in turn
+  unsigned every = 1;       ///< one of so many lines has damaged codes
+  unsigned lines = 0;       ///< of each field, from the middle of the picture on, that are missing or short
+  unsigned samples = 0;     ///< that each of them lacks at its end; 0: the whole line is missing
+};
+
+/// Bits that are wrong in the n-th damaged code: every one, or every pair, of the seven coded bits in turn.
+constexpr std::uint8_t wrong_bits(unsigned bits, std::uint64_t n) {
+  if (bits == 1) return static_cast<std::uint8_t>(1u << n % 7);
+  unsigned left = static_cast<unsigned>(n % 21);  // 7 * 6 / 2 pairs
+  for (unsigned high = 1;; left -= high++)
+    if (left < high) return static_cast<std::uint8_t>(1u << high | 1u << left);
+}
+
 /// The camera runs from power-up plus its phase, whatever the decoder does. Its samples are counted
 /// at 27 MHz of its own clock, which a line-locked decoder follows.
 class CameraSignal {
@@ -28,6 +44,13 @@ class CameraSignal {
 
   /// The nominal clock has changed at `now`; its first start is the camera's power-up.
   void clock_changed(Frequency nominal, Picoseconds now);
+  /// From the next edge on the camera's clock is so many parts per million off the nominal one.
+  void set_clock_offset(double ppm, Picoseconds now);
+  /// The camera sends another standard: line 1 of its next even field begins at clock edge `edge`. A
+  /// picture with more rows than the standard has shows those in the middle.
+  void set_standard(bool is_625, const Placement& placement, std::uint64_t edge, Picoseconds now);
+  /// All lines that are still to come begin so many samples earlier: some were left out.
+  void leave_out(std::uint64_t samples) { origin_ -= static_cast<std::int64_t>(samples); }
   /// Number of the field whose samples are on the wire at `now`.
   std::uint64_t field_at(Picoseconds now) const;
   /// Start of field k (its first line). k must not be before the last change of the clock.
@@ -35,25 +58,37 @@ class CameraSignal {
   /// The first line that begins at clock edge `edge` or later.
   std::uint64_t line_from(std::uint64_t edge) const;
   /// Clock edge at which a line begins.
-  std::uint64_t line_edge(std::uint64_t line) const { return origin_ + line * standard_.line_bytes; }
+  std::uint64_t line_edge(std::uint64_t line) const {
+    return static_cast<std::uint64_t>(origin_) + line * standard_->line_bytes;
+  }
+  /// Field and number of a line; the lines are counted from the last change of the standard.
+  LinePosition position(std::uint64_t line) const {
+    LinePosition p = locate(*standard_, line);
+    p.field += first_field_;
+    return p;
+  }
   /// The picture of a field, asked for once per field.
   const Picture& picture(std::uint64_t field);
 
-  const Standard& standard() const { return standard_; }
+  const Standard& standard() const { return *standard_; }
   const Placement& placement() const { return wiring_.placement; }
   const Clock& clock() const { return clock_; }
   std::uint8_t input() const { return wiring_.input; }
   unsigned width() const { return wiring_.source->width(); }
   unsigned height() const { return wiring_.source->height(); }
 
-  bool connected;  ///< a cable is plugged in
+  bool connected;      ///< a cable is plugged in
+  SignalFault fault;   ///< of the lines that are sent
 
  private:
   CameraWiring wiring_;
-  const Standard& standard_;
+  const Standard* standard_;
+  Frequency nominal_;
   Clock clock_;
   bool started_ = false;
-  std::uint64_t origin_ = 0;         // clock edge at which line 0 begins
+  std::int64_t origin_ = 0;          // clock edge at which line 0 begins; before edge 0 after lines
+                                     // were left out
+  std::uint64_t first_field_ = 0;    // of line 0; even
   std::uint64_t stopped_field_ = 0;  // the field at the time the clock stopped
   const Picture* picture_ = nullptr;
   std::uint64_t picture_field_ = 0;

@@ -131,6 +131,9 @@ void Isif::begin_field(const Bt656Line& l) {
 
 void Isif::begin_row(const Bt656Line& l, unsigned index) {
   if (setup_.bytes == 0) return;
+  // Of a short line only what came is written; memory keeps what it had of the rest.
+  const unsigned skipped = l.standard->active_offset() + setup_.sph + l.missing;
+  const unsigned came = l.standard->line_bytes > skipped ? l.standard->line_bytes - skipped : 0;
   const bool place = field_ != setup_.fiinv;
   if (index == 0)
     row_offset_ = setup_.interlaced && place ? static_cast<int>(regs.sdofst.fofst.get()) + 1 : 0;
@@ -139,7 +142,7 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
   row_address_ = setup_.address + static_cast<std::uint32_t>(row_offset_) * setup_.pitch;
   row_first_sample_ = l.first_sample + l.standard->active_offset() + setup_.sph;
   row_clock_ = l.clock;
-  row_bytes_ = setup_.bytes;
+  row_bytes_ = std::min(setup_.bytes, came & ~3u);
   row_pos_ = 0;
   last_row_ = index + 1 == setup_.lines;
 
@@ -170,6 +173,7 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
       if (on_frame_start) on_frame_start(frame_);
     }
   }
+  if (row_bytes_ == 0 && last_row_) end_field(kernel_time());
   issue(kernel_time());
 }
 

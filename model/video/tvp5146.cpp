@@ -35,11 +35,11 @@ Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, Pict
     : Tvp5146(name, params,
               std::vector<CameraWiring>{{.source = &source,
                                          .is_625 = params.standard.is("625/50"),
-                                         .placement = placement_of(params, params.standard),
+                                         .placement = placement_of(params, params.standard.is("625/50")),
                                          .phase = params.phase()}}) {}
 
-Placement placement_of(const Tvp5146Params& params, const EnumParam& standard) {
-  return standard.is("625/50")                 ? kPlacement625
+Placement placement_of(const Tvp5146Params& params, bool is_625) {
+  return is_625                                ? kPlacement625
          : params.crop_525.is("first_lines") ? kPlacement525
                                                : kPlacement525Studio;
 }
@@ -91,6 +91,28 @@ void Tvp5146::connect(std::size_t camera, bool connected) {
   if (was_locked && !lock()) lost_lock_ = true;
 }
 
+void Tvp5146::set_standard(std::size_t camera, bool is_625) {
+  CameraSignal& c = cameras_.at(camera);
+  const bool was_locked = lock();
+  const bool on_wire = camera == raster_;
+  const Picoseconds from = on_wire ? std::max(line_end_, kernel_time()) : kernel_time();
+  c.set_standard(is_625, placement_of(params_, is_625), c.clock().edge_at_or_after(from),
+                 kernel_time());
+  if (!on_wire) return;
+  relock();
+  if (was_locked && !lock()) lost_lock_ = true;
+  if (!sending()) return;
+  next_line_ = 0;
+  line_timer_.at(c.clock().edge(c.line_edge(0)));
+}
+
+void Tvp5146::set_clock_offset(std::size_t camera, double ppm) {
+  if (camera == raster_ && sending())
+    new_offset_ = ppm;
+  else
+    cameras_.at(camera).set_clock_offset(ppm, kernel_time());
+}
+
 std::uint64_t Tvp5146::present_field() const { return raster().field_at(kernel_time()); }
 
 void Tvp5146::schedule() {
@@ -103,12 +125,34 @@ void Tvp5146::schedule() {
   line_timer_.at(of.edge(raster().line_edge(next_line_)));
 }
 
+/// The line that would be sent now is the first one that is missing: the one behind them is sent instead.
+void Tvp5146::leave_lines_out() {
+  CameraSignal& camera = cameras_[raster_];
+  const SignalFault& fault = camera.fault;
+  const LinePosition at = camera.position(next_line_);
+  const Standard& s = camera.standard();
+  if (!fault.lines || fault.samples || at.line != s.middle(at.field % 2)) return;
+  next_line_ += fault.lines;
+  camera.leave_out(std::uint64_t{fault.lines} * s.line_bytes);
+}
+
 void Tvp5146::send_line() {
-  const CameraSignal& camera = raster();
+  CameraSignal& camera = cameras_[raster_];
+  if (new_offset_) camera.set_clock_offset(*new_offset_, kernel_time());
+  new_offset_.reset();
+  leave_lines_out();
   const Clock& of = camera.clock();
+  const SignalFault& fault = camera.fault;
   const std::uint64_t first = camera.line_edge(next_line_);
-  position_ = locate(camera.standard(), next_line_);
+  position_ = camera.position(next_line_);
   fv_ = camera.standard().at(position_.line);
+  wrong_bits_ = fault.wrong_bits && next_line_ % fault.every == 0
+                    ? wrong_bits(fault.wrong_bits, damaged_++)
+                    : std::uint8_t{0};
+  const unsigned middle = camera.standard().middle(position_.field % 2);
+  const bool is_short = position_.line >= middle && position_.line - middle < fault.lines;
+  const unsigned missing = is_short ? fault.samples : 0;
+  if (missing) camera.leave_out(missing);
   line_camera_ = raster_;
   line_locked_ = locked(position_.field);
   const Bt656Line line{&camera.standard(),
@@ -117,10 +161,11 @@ void Tvp5146::send_line() {
                        first,
                        position_.field,
                        position_.line,
-                       encode_xy(fv_.f, fv_.v, true),
-                       encode_xy(fv_.f, fv_.v, false),
+                       eav(),
+                       sav(),
                        this,
-                       line_locked_ ? static_cast<int>(raster_) : kNoCamera};
+                       line_locked_ ? static_cast<int>(raster_) : kNoCamera,
+                       missing};
   ++lines_sent_;
   ++next_line_;
   line_end_ = of.edge(camera.line_edge(next_line_));
@@ -135,9 +180,10 @@ std::span<const std::uint8_t> Tvp5146::render() {
     static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
     for (unsigned i = 0; i < kActiveBytes; i += 4) std::memcpy(row_.data() + i, kBlack, 4);
     // A smaller picture is centred, on lines of the same field and on whole pixel pairs.
-    const unsigned top = (camera.placement().rows - camera.height()) / 2 & ~1u;
-    const int row = camera.placement().row(fv_.f, position_.line) - static_cast<int>(top);
-    if (row >= 0 && row < static_cast<int>(camera.height()) && line_locked_) {
+    const int shown = camera.placement().row(fv_.f, position_.line);
+    const int above = static_cast<int>(camera.placement().rows) - static_cast<int>(camera.height());
+    const int row = shown - above / 4 * 2;  // above < 0: after a change of the standard
+    if (shown >= 0 && row >= 0 && row < static_cast<int>(camera.height()) && line_locked_) {
       const Picture& picture = camera.picture(position_.field);
       std::memcpy(row_.data() + (kActivePixels - picture.width) / 2 * 2,
                   picture.row(static_cast<unsigned>(row)), picture.row_bytes());
@@ -145,8 +191,7 @@ std::span<const std::uint8_t> Tvp5146::render() {
     active = row_.data();
   }
   const std::span<std::uint8_t> out(bytes_.data(), camera.standard().line_bytes);
-  compose_line(camera.standard(), encode_xy(fv_.f, fv_.v, true), encode_xy(fv_.f, fv_.v, false),
-               active, out);
+  compose_line(camera.standard(), eav(), sav(), active, out);
   return out;
 }
 

@@ -15,7 +15,7 @@
 namespace fovea::video {
 
 /// Rows and lines of a standard as the parameters place them.
-Placement placement_of(const Tvp5146Params& params, const EnumParam& standard);
+Placement placement_of(const Tvp5146Params& params, bool is_625);
 
 /// The cameras and the decoder behind them, as one block. Each camera runs from power-up (time 0
 /// plus its phase): its field k begins k field periods later, whatever the decoder does. While its
@@ -49,6 +49,14 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
 
   /// Plugs or unplugs the cable of a camera, now.
   void connect(std::size_t camera, bool connected);
+  /// From its next line on the camera sends another standard, which has to be locked to.
+  void set_standard(std::size_t camera, bool is_625);
+  /// From its next line on the camera's clock is so many parts per million off; the line-locked decoder
+  /// follows, and its lock holds.
+  void set_clock_offset(std::size_t camera, double ppm);
+  /// From its next line on the camera's lines are faulty in this way. The lock holds (assumed): the ISIF,
+  /// and with it the firmware, gets what comes.
+  void disturb(std::size_t camera, const SignalFault& fault) { cameras_.at(camera).fault = fault; }
 
   const Standard& standard() const { return raster().standard(); }
   const Placement& placement() const { return raster().placement(); }
@@ -82,6 +90,14 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   /// The camera on the selected input, if its cable is plugged in.
   std::optional<std::size_t> selected() const;
   void change_input();
+  bool sending() const { return started_ && !nominal_.stopped() && enabled(); }
+  void leave_lines_out();
+  std::uint8_t eav() const {
+    return static_cast<std::uint8_t>(encode_xy(fv_.f, fv_.v, true) ^ wrong_bits_);
+  }
+  std::uint8_t sav() const {
+    return static_cast<std::uint8_t>(encode_xy(fv_.f, fv_.v, false) ^ wrong_bits_);
+  }
 
   const Tvp5146Params& params_;
   std::vector<CameraSignal> cameras_;
@@ -96,6 +112,9 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t lines_sent_ = 0;
   Timer line_timer_;
 
+  std::optional<double> new_offset_;  // of the raster's camera, from the next line on
+  std::uint64_t damaged_ = 0;         // timing codes
+
   std::array<std::uint8_t, 256> regs_{};
   std::uint8_t pointer_ = 0;
   bool expect_pointer_ = false;
@@ -104,6 +123,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   bool line_locked_ = false;
   LinePosition position_{};
   Standard::Lines fv_{};
+  std::uint8_t wrong_bits_ = 0;  // of the announced line's codes
   std::array<std::uint8_t, kActiveBytes> row_{};
   std::array<std::uint8_t, kMaxLineBytes> bytes_{};
 };

@@ -35,6 +35,7 @@ struct Bt656Line {
   std::uint8_t eav_xy, sav_xy;
   Bt656Renderer* renderer;
   int camera = kNoCamera;  ///< whose picture it shows; only for statistics and tests
+  unsigned missing = 0;    ///< samples that it lacks at its end: the next line comes so much earlier
   std::span<const std::uint8_t> bytes() const { return renderer->render(); }
 };
 

@@ -14,11 +14,18 @@ namespace {
 /// Number of frames of a video that are used; then it starts again.
 constexpr std::size_t kMostFilmFrames = 250;
 
+/// Of the built programs it is the one for several cameras, which one camera may have as well.
+bool takes_turns(const board::BoardParams& params) {
+  const auto& fw = params.firmware;
+  if (!fw.program.is("auto")) return fw.program.is("cameras");
+  return params.camera_count() > 1 || fw.display_phase.is("free");
+}
+
 }  // namespace
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
-  return built_program(params.camera_count() > 1 ? "fovea_cameras.elf" : "fovea_firmware.elf");
+  return built_program(takes_turns(params) ? "fovea_cameras.elf" : "fovea_firmware.elf");
 }
 
 std::filesystem::path built_program(const std::string& name) {
@@ -144,11 +151,18 @@ void check_cameras(const board::BoardParams& params) {
       require(input() != params.camera_rows[k].wire.input(), input.key(), input(),
               "an input that no other camera is on");
     }
-  if (count == 1 || !params.firmware.elf().empty()) return;
   const auto& fw = params.firmware;
+  if (!fw.elf().empty()) return;
+  if (!takes_turns(params)) {
+    require(count == 1, fw.program.key(), fw.program(), "cameras, with several of them");
+    require(fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
+            "locked in the program for one camera");
+    return;
+  }
   require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
-          "1 with several cameras, each of which has a table of its own");
-  require(fw.flow.is("double"), fw.flow.key(), fw.flow(), "double with several cameras");
+          "1 in the program for several cameras, each of which has a table of its own");
+  require(fw.flow.is("double"), fw.flow.key(), fw.flow(),
+          "double in the program for several cameras");
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "tb/e2e/cameras_rig.h"
 
+#include <gtest/gtest.h>
+
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
@@ -44,7 +46,7 @@ board::Board& CamerasRig::build() {
     references_.push_back(app::camera_source(params, n));
     pictures.push_back(sources_.back().get());
     stamped.push_back(sources_.back().get());
-    geometry_.push_back(geometry_of(params, *params.camera_setup(n).lens));
+    views_.push_back({{geometry_of(params, *params.camera_setup(n).lens), {}}});
   }
   board_ = std::make_unique<board::Board>("board", params, pictures, elf_.entry(), false);
   for (const auto& s : elf_.segments())
@@ -69,11 +71,12 @@ void CamerasRig::run(Picoseconds limit) {
 std::optional<CamerasRig::Shown::Stamp> CamerasRig::read_stamp(const oracle::Frame& frame) const {
   const unsigned x = (params.raster_width() - params.width()) / 2;
   const unsigned y = (params.raster_height() - params.height()) / 2;
-  for (unsigned n = 0; n < geometry_.size(); ++n) {
+  for (unsigned n = 0; n < views_.size(); ++n) {
     const auto& layout = sources_[n]->stamps();
-    if (!layout) continue;
-    const ShownFields f = read_stamps(frame, geometry_[n], *layout, x, y);
-    if (f.camera == n && *f.odd == *f.even + 1) return Shown::Stamp{n, *f.even / 2u};
+    for (unsigned k = 0; layout && k < views_[n].size(); ++k) {
+      const ShownFields f = read_stamps(frame, views_[n][k].geometry, *layout, x, y);
+      if (f.camera == n && *f.odd == *f.even + 1) return Shown::Stamp{n, *f.even / 2u};
+    }
   }
   return std::nullopt;
 }
@@ -84,15 +87,30 @@ std::vector<std::uint32_t> CamerasRig::table(unsigned camera) {
   const auto bytes = board_->peek(
       state->address + offsetof(FwState, table_address) + 4 * camera, sizeof address);
   std::memcpy(&address, bytes.data(), sizeof address);
-  const oracle::Geometry& g = geometry_.at(camera);
+  const oracle::Geometry& g = geometry(camera);
   std::vector<std::uint32_t> out(std::size_t{g.width} / 2 * g.height);
   const auto entries = board_->peek(address, out.size() * 4);
   std::memcpy(out.data(), entries.data(), entries.size());
   return out;
 }
 
-oracle::LutCheck CamerasRig::table_check(unsigned camera) {
-  return oracle::check_lut(table(camera), geometry_.at(camera), 0.02);
+void CamerasRig::add_view(unsigned camera, const oracle::Geometry& geometry) {
+  views_.at(camera).push_back({geometry, {}});
+}
+
+void CamerasRig::keep_table(unsigned camera, unsigned k) {
+  views_.at(camera).at(k).table = table(camera);
+}
+
+void CamerasRig::keep_tables() {
+  for (unsigned n = 0; n < views_.size(); ++n)
+    for (View& v : views_[n])
+      if (v.table.empty()) v.table = table(n);
+}
+
+oracle::LutCheck CamerasRig::table_check(unsigned camera, unsigned k) {
+  keep_tables();
+  return oracle::check_lut(views_.at(camera).at(k).table, views_[camera][k].geometry, 0.02);
 }
 
 oracle::Frame CamerasRig::sent(unsigned camera, std::uint64_t number) {
@@ -109,17 +127,31 @@ oracle::Frame CamerasRig::sent(unsigned camera, std::uint64_t number) {
 }
 
 std::string CamerasRig::wrong_picture() {
-  std::vector<std::vector<std::uint32_t>> tables;
-  for (unsigned n = 0; n < params.camera_count(); ++n) tables.push_back(table(n));
+  keep_tables();
   for (const Shown& s : shown_) {
     const std::string which = "displayed frame " + std::to_string(s.record.index) + ": ";
     if (!s.stamp) return which + "no stamp can be read";
     const unsigned n = s.stamp->camera;
-    const auto d = oracle::compare(
-        oracle::remap(sent(n, s.stamp->number), tables[n], geometry_[n].pitch_bytes), s.frame);
-    if (d) return which + d->text();
+    if (shown_by(s) != ~0u) continue;
+    const View& v = views_[n].front();
+    return which + oracle::compare(oracle::remap(sent(n, s.stamp->number), v.table,
+                                                 v.geometry.pitch_bytes),
+                                   s.frame)
+                       ->text();
   }
   return "";
+}
+
+unsigned CamerasRig::shown_by(const Shown& s) {
+  keep_tables();
+  for (unsigned k = 0; s.stamp && k < views_[s.stamp->camera].size(); ++k) {
+    const View& v = views_[s.stamp->camera][k];
+    if (!oracle::compare(oracle::remap(sent(s.stamp->camera, s.stamp->number), v.table,
+                                       v.geometry.pitch_bytes),
+                         s.frame))
+      return k;
+  }
+  return ~0u;
 }
 
 std::vector<std::string> CamerasRig::said() const {
@@ -129,6 +161,42 @@ std::vector<std::string> CamerasRig::said() const {
     if (line.ends_with('\r')) line.pop_back();
     if (line.starts_with("camera ")) out.push_back(line);
   }
+  return out;
+}
+
+void small(CamerasRig& rig, unsigned cameras) {
+  rig.set("camera.kind", "chart").set("cameras.count", std::to_string(cameras));
+  rig.set("video.width", "160").set("video.height", "184");
+  if (cameras > 1) rig.set("camera.1.lens.mapping", "linear");
+  rig.set("lens.focal", "255px");  // as of the whole raster: the marks are in the region
+  if (cameras > 2) rig.set("camera.2.lens.shift_x", "6px");
+}
+
+std::vector<CamerasRig::Shown::Stamp> sequence(const CamerasRig& rig) {
+  std::vector<CamerasRig::Shown::Stamp> out;
+  for (const CamerasRig::Shown& s : rig.shown()) {
+    EXPECT_TRUE(s.stamp) << "frame " << s.record.index;
+    if (!s.stamp) continue;
+    const bool again =
+        !out.empty() && out.back().camera == s.stamp->camera && out.back().number == s.stamp->number;
+    if (!again) out.push_back(*s.stamp);
+  }
+  return out;
+}
+
+std::map<std::string, Picoseconds> listen(CamerasRig& rig, Picoseconds limit) {
+  std::map<std::string, Picoseconds> out;
+  std::string line;
+  rig.build().on_uart = [&](std::uint8_t byte) {
+    if (byte == '\n') {
+      if (line.starts_with("camera ")) out.emplace(line, kernel_time());
+      line.clear();
+    } else if (byte != '\r') {
+      line += static_cast<char>(byte);
+    }
+  };
+  rig.run(limit);
+  rig.board().on_uart = nullptr;
   return out;
 }
 

@@ -14,27 +14,6 @@ namespace {
 constexpr Picoseconds kLimit = 20 * kPsPerSecond;
 using Shown = CamerasRig::Shown;
 
-/// A region that is large enough for the marks, with a lens of its own for each camera.
-void small(CamerasRig& rig, unsigned cameras) {
-  rig.set("camera.kind", "chart").set("cameras.count", std::to_string(cameras));
-  rig.set("video.width", "160").set("video.height", "184").set("camera.1.lens.mapping", "linear");
-  rig.set("lens.focal", "255px");  // as of the whole raster: the marks are in the region
-  if (cameras > 2) rig.set("camera.2.lens.shift_x", "6px");
-}
-
-/// The displayed frames without repetitions.
-std::vector<Shown::Stamp> sequence(const CamerasRig& rig) {
-  std::vector<Shown::Stamp> out;
-  for (const Shown& s : rig.shown()) {
-    EXPECT_TRUE(s.stamp) << "frame " << s.record.index;
-    if (!s.stamp) continue;
-    const bool again =
-        !out.empty() && out.back().camera == s.stamp->camera && out.back().number == s.stamp->number;
-    if (!again) out.push_back(*s.stamp);
-  }
-  return out;
-}
-
 /// What the ideal time division captures after `first`, from the cameras' phases alone: at the end of
 /// a camera's frame the next camera is selected (a little later, in the vertical blanking); the decoder
 /// locks after `relock` of its fields, the one in progress counted; then its next whole frame is captured.
@@ -149,23 +128,6 @@ INSTANTIATE_TEST_SUITE_P(Relock, FreeRunningTest, testing::Values(Apart{0, 20}, 
 INSTANTIATE_TEST_SUITE_P(Nightly, FreeRunningTest, testing::Values(Apart{10, 27}),
                          [](const auto& i) { return "Of" + std::to_string(i.param.relock); });
 
-/// Times at which the firmware has said something, by what it said.
-std::map<std::string, Picoseconds> listen(CamerasRig& rig) {
-  std::map<std::string, Picoseconds> out;
-  std::string line;
-  rig.build().on_uart = [&](std::uint8_t byte) {
-    if (byte == '\n') {
-      if (line.starts_with("camera ")) out.emplace(line, kernel_time());
-      line.clear();
-    } else if (byte != '\r') {
-      line += static_cast<char>(byte);
-    }
-  };
-  rig.run(kLimit);
-  rig.board().on_uart = nullptr;
-  return out;
-}
-
 class UnpluggedTest : public testing::TestWithParam<unsigned> {};
 TEST_P(UnpluggedTest, TheOtherCameraGoesOnAndTheLostOneComesBack) {
   const unsigned relock = GetParam();
@@ -174,7 +136,7 @@ TEST_P(UnpluggedTest, TheOtherCameraGoesOnAndTheLostOneComesBack) {
   rig.set("tvp5146.relock_fields", std::to_string(relock)).set("run.frames", "50");
   rig.set("fault.kind", "unplugged").set("fault.camera", "1");
   rig.set("fault.start", "615ms").set("fault.end", "705ms");
-  const auto said = listen(rig);
+  const auto said = listen(rig, kLimit);
   ASSERT_EQ(rig.shown().size(), 50u) << rig.board().uart_text();
   EXPECT_EQ(rig.wrong_picture(), "") << "the last good picture stays";
   // Said in time: a turn of each camera, a frame to look at it, and the time of the line on the UART.

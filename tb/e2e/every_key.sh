@@ -118,6 +118,16 @@ acts fault.kind unplugged fault.start=50ms
 tested fault.camera e2e.cameras
 tested fault.start e2e.cameras
 tested fault.end e2e.cameras
+acts fault.wrong_bits 2 fault.kind=sync_noise fault.every=3 fault.start=50ms fault.end=5s
+acts fault.every 5 fault.kind=sync_noise fault.start=50ms fault.end=5s
+acts fault.lines 6 fault.kind=missing_lines fault.start=50ms fault.end=5s
+acts fault.samples 800 fault.kind=short_lines fault.start=50ms fault.end=5s
+acts fault.drift 900ppm fault.kind=clock_drift fault.start=50ms fault.end=5s
+idle fault.wrong_bits 2 fault.kind=short_lines
+idle fault.every 5 fault.kind=unplugged
+idle fault.lines 6 fault.kind=sync_noise
+idle fault.samples 800 fault.kind=missing_lines
+idle fault.drift 900ppm
 idle fault.camera 0
 idle fault.start 1s
 idle fault.end 2s
@@ -175,6 +185,9 @@ acts edma.tc.outstanding 1 PROGRAM
 acts firmware.baud 57600 EARLY
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial
+acts firmware.display_phase free
+acts firmware.program cameras
+idle firmware.program cameras PROGRAM
 acts firmware.kernel ldm
 acts firmware.lut soft_float
 acts firmware.overlay true

@@ -73,6 +73,59 @@ TEST(TurnsTest, EachFaultIsNamed) {
                              "0 lock lost, a frame is left out", "0 wrong standard"}));
 }
 
+TEST(TurnsTest, OnlyTheChosenCamerasHaveTurnsInTheirOrder) {
+  Turns t(3);
+  EXPECT_EQ(turns_captured(&t), 1u);
+  const uint8_t chosen[] = {2, 0, 2};
+  turns_choose(&t, chosen, 3);
+  EXPECT_EQ(t.now, 1u) << "until its turn is over";
+  for (const uint32_t next : {2u, 0u, 2u, 2u, 0u}) EXPECT_EQ(turns_captured(&t), next);
+  turns_choose(&t, chosen + 1, 1);
+  for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(turns_captured(&t), 0u);
+  const uint8_t all[] = {0, 1, 2};
+  turns_choose(&t, all, 3);
+  for (const uint32_t next : {0u, 1u, 2u, 0u}) EXPECT_EQ(turns_captured(&t), next);
+}
+
+TEST(TurnsTest, AChosenCameraIsAskedAtOnce) {
+  Turns t(2);
+  EXPECT_EQ(turns_not_ready(&t, &kNothing), 1u);
+  const uint8_t chosen[] = {1, 0};
+  turns_choose(&t, chosen, 2);
+  EXPECT_EQ(turns_captured(&t), 1u);
+  EXPECT_EQ(turns_captured(&t), 0u) << "it no longer rests";
+}
+
+TEST(TurnsTest, IrregularFramesCostATurnAndRegularOnesAreSaidAfterMany) {
+  Turns t(2);
+  EXPECT_EQ(turns_irregular(&t), 1u);
+  EXPECT_EQ(turns_captured(&t), 0u) << "it has its next turn as usual";
+  EXPECT_EQ(turns_irregular(&t), 1u);
+  EXPECT_EQ(t.said(), Lines{"0 irregular syncs, frames are left out"}) << "said once";
+  turns_captured(&t);
+  for (unsigned n = 1; n < TURNS_REGULAR_FRAMES; ++n) {
+    turns_captured(&t);
+    turns_captured(&t);
+  }
+  EXPECT_EQ(t.said(), Lines{});
+  turns_irregular(&t);
+  turns_captured(&t);
+  EXPECT_EQ(t.said(), Lines{}) << "counted anew";
+  for (unsigned n = 1; n <= TURNS_REGULAR_FRAMES; ++n) {
+    EXPECT_EQ(t.said(), Lines{}) << n;
+    turns_captured(&t);
+    turns_captured(&t);
+  }
+  EXPECT_EQ(t.said(), Lines{"0 frames again"});
+}
+
+TEST(TurnsTest, AClockThatIsOffChangesNoTurn) {
+  Turns t(2);
+  turns_note(&t, CAMERA_CLOCK_OFF);
+  EXPECT_EQ(turns_captured(&t), 1u);
+  EXPECT_EQ(t.said(), Lines{"0 clock more than 200 ppm off"});
+}
+
 TEST(TurnsTest, EventsBeyondTheRoomAreCounted) {
   Turns t(1);
   for (unsigned n = 0; n < TURNS_EVENTS + 2; ++n) turns_torn(&t);

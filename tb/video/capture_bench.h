@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "model/video/camera_signal.h"
 #include "model/video/isif.h"
 #include "model/video/vpss_top.h"
 #include "tb/video/bench.h"
@@ -40,6 +41,7 @@ class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
   sc_core::sc_port<Bt656If> video{"video"};
   Clock clock{kByteClock};
   std::function<std::uint8_t(unsigned line, std::uint8_t xy)> damage;
+  std::function<unsigned(unsigned line)> missing;  ///< samples at a line's end
   SC_HAS_PROCESS(CaptureWire);
   explicit CaptureWire(sc_core::sc_module_name name) : sc_module(name) { SC_METHOD(tick); }
   /// Start of the next line 1 strictly after now.
@@ -57,7 +59,8 @@ class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
     ++n_;
     next_trigger(ps_time(clock.edge(n_ * kSmall.line_bytes) - kernel_time()));
     video->line({&kSmall, &clock, clock.edge(first), first, locate(kSmall, n_ - 1).field, line_, xy,
-                 encode_xy(fv.f, fv.v, false), this});
+                 encode_xy(fv.f, fv.v, false), this, kNoCamera,
+                 missing ? missing(line_) : 0});
   }
   std::span<const std::uint8_t> render() override {
     const auto fv = kSmall.at(line_);

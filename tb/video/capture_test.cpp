@@ -1,6 +1,9 @@
 // What the ISIF writes: every byte in memory, bursts, windows, formats, overflows.
 #include "tb/video/capture_bench.h"
 
+#include <bit>
+#include <set>
+
 namespace fovea::video {
 namespace {
 
@@ -218,6 +221,82 @@ TEST_F(CaptureTest, SingleBitErrorsInTheCodesAreCorrected) {
   capture_frame();
   EXPECT_EQ(wrong_bytes(kBuffer), 0u);
   EXPECT_GE(b.isif.stats.corrected_codes.count() - before, 23u);
+}
+
+TEST(WrongBitsTest, EachOfTheSevenAndEachPairOfThemHasItsTurn) {
+  for (const unsigned bits : {1u, 2u}) {
+    const unsigned count = bits == 1 ? 7 : 21;
+    std::set<unsigned> seen;
+    for (unsigned n = 0; n < count; ++n) {
+      seen.insert(wrong_bits(bits, n));
+      EXPECT_EQ(wrong_bits(bits, n), wrong_bits(bits, n + count));
+    }
+    EXPECT_EQ(seen.size(), count);
+    for (const unsigned mask : seen) {
+      EXPECT_LT(mask, 0x80u) << "bit 7 is always 1";
+      EXPECT_EQ(static_cast<unsigned>(std::popcount(mask)), bits);
+    }
+  }
+}
+
+TEST_F(CaptureTest, EveryWrongBitIsCorrectedWhereverTheLineIs) {
+  for (unsigned n = 0; n < 7; ++n) {
+    const std::uint64_t before = b.isif.stats.corrected_codes.count();
+    b.wire.damage = [n](unsigned, std::uint8_t xy) {
+      return static_cast<std::uint8_t>(xy ^ wrong_bits(1, n));
+    };
+    enable();
+    std::fill(b.memory.bytes.begin(), b.memory.bytes.end(), 0xEE);
+    run_until(b.wire.next_frame() + kFrame - kPsPerUs);
+    EXPECT_EQ(wrong_bytes(kBuffer), 0u) << "bit " << n;
+    EXPECT_GE(b.isif.stats.corrected_codes.count() - before, 24u) << "bit " << n;
+  }
+}
+
+// The last good field and blanking bits hold where a code is beyond correction.
+TEST_F(CaptureTest, EveryPairOfWrongBitsIsFoundAndMattersOnlyWhereThePictureBegins) {
+  for (const unsigned at : {6u, 3u})
+    for (unsigned n = 0; n < 21; ++n) {
+      const std::uint64_t bad = b.isif.stats.bad_codes.count();
+      const std::uint64_t corrected = b.isif.stats.corrected_codes.count();
+      b.wire.damage = [=](unsigned line, std::uint8_t xy) {
+        return static_cast<std::uint8_t>(line == at ? xy ^ wrong_bits(2, n) : xy);
+      };
+      enable();
+      const Picoseconds start = b.wire.next_frame();
+      run_until(start - kPsPerUs);
+      std::fill(b.memory.bytes.begin(), b.memory.bytes.end(), 0xEE);
+      run_until(start + kFrame - kPsPerUs);
+      EXPECT_GE(b.isif.stats.bad_codes.count() - bad, 1u);
+      EXPECT_EQ(b.isif.stats.corrected_codes.count(), corrected);
+      if (at == 6) {
+        EXPECT_EQ(wrong_bytes(kBuffer), 0u) << "pair " << n;
+        continue;
+      }
+      // Line 3 is where V falls: the first field begins a line late, and its rows lie one too high.
+      for (unsigned r = 0; r + 2 < kRows; ++r)
+        EXPECT_EQ(b.memory.at(kBuffer + r * kRowBytes)[9], pattern(r % 2 ? r : r + 2, 9))
+            << "pair " << n << " row " << r;
+    }
+}
+
+TEST_F(CaptureTest, OfAShortLineOnlyWhatCameIsWritten) {
+  b.wire.missing = [](unsigned line) { return line == 5 ? kActiveBytes - 100u : 0u; };
+  capture_frame();
+  b.wire.missing = nullptr;
+  for (unsigned r = 0; r < kRows; ++r)
+    for (unsigned i = 0; i < kRowBytes; ++i)  // line 5 carries row 4
+      ASSERT_EQ(b.memory.at(kBuffer + r * kRowBytes)[i], r == 4 && i >= 100 ? 0xEE : pattern(r, i))
+          << "row " << r << " byte " << i;
+}
+
+TEST_F(CaptureTest, ALastLineOfWhichNothingCameEndsTheFrame) {
+  b.wire.missing = [](unsigned line) { return line == 22 ? kActiveBytes : 0u; };
+  capture_frame();
+  b.wire.missing = nullptr;
+  ASSERT_EQ(b.ended.size(), 1u);
+  EXPECT_TRUE(b.ended[0].complete);
+  EXPECT_EQ(b.memory.at(kBuffer + (kRows - 1) * kRowBytes)[0], 0xEE);
 }
 
 TEST_F(CaptureTest, WithoutCorrectionTheSameErrorsSpoilTheCapture) {

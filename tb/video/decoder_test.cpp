@@ -286,6 +286,70 @@ TEST(DecoderTest, PowerUpLocksAnewAfterTheConfiguredFields) {
   EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10);
 }
 
+/// Samples of 27 MHz from one captured frame to the next, after so many frames with a fault.
+std::uint64_t frame_length(const SignalFault& fault) {
+  Bench& b = *bench;
+  b.tvp->disturb(0, fault);
+  b.ended.clear();
+  while (b.ended.size() < 4) run_for(kPsPerMs);
+  const double apart = static_cast<double>(b.ended[3].start - b.ended[2].start);
+  b.tvp->disturb(0, {});
+  return static_cast<std::uint64_t>(apart * 27e-6 + 0.5);
+}
+
+TEST(DecoderTest, MissingAndShortLinesMakeFieldsShorterAndTheLockHolds) {
+  Bench& b = *bench;
+  b.i2c_write(0x39, 1);
+  const std::uint64_t whole = kStd.frame_bytes();
+  EXPECT_EQ(frame_length({}), whole);
+  EXPECT_EQ(frame_length({.lines = 1}), whole - 2 * kStd.line_bytes);
+  EXPECT_EQ(frame_length({.lines = 5}), whole - 2 * 5 * kStd.line_bytes);
+  EXPECT_EQ(frame_length({.lines = 5, .samples = 4}), whole - 2 * 5 * 4);
+  EXPECT_EQ(frame_length({.wrong_bits = 1}), whole);
+  EXPECT_EQ(frame_length({}), whole);
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked) << "locked, and no lock was lost";
+}
+
+TEST(DecoderTest, AClockThatIsOffStretchesTheFrames) {
+  Bench& b = *bench;
+  const double nominal = static_cast<double>(kStd.frame_bytes()) / 27e6 * 1e12;
+  for (const double ppm : {1000.0, -300.0, 0.0}) {
+    b.tvp->set_clock_offset(0, ppm);
+    b.ended.clear();
+    while (b.ended.size() < 4) run_for(kPsPerMs);
+    const double apart = static_cast<double>(b.ended[3].start - b.ended[2].start);
+    EXPECT_NEAR(apart, nominal / (1 + ppm * 1e-6), 2) << ppm;
+  }
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+TEST(DecoderTest, TheOtherStandardIsLockedToAnewAndSoIsTheFirstOne) {
+  Bench& b = *bench;
+  for (const bool other : {true, false}) {
+    const std::uint64_t before = b.tvp->locked_from_field();
+    b.tvp->set_standard(0, k625Here != other);
+    EXPECT_EQ(b.i2c_read(0x3A), 0x10) << "lost";
+    const std::uint64_t from = b.tvp->locked_from_field();
+    EXPECT_EQ(from % 2, FOVEA_RELOCK % 2) << "counted from an even field";
+    EXPECT_GT(from, before) << "fields go on being counted";
+    run_until(b.tvp->field_time(from) - kPsPerUs);
+    EXPECT_EQ(b.i2c_read(0x3A), 0x10);
+    EXPECT_EQ(b.i2c_read(0x3F), 0);
+    run_until(b.tvp->field_time(from) + kPsPerUs);
+    EXPECT_EQ(b.i2c_read(0x3A), 0x1E | (k625Here != other ? 0x20 : 0));
+    EXPECT_EQ(b.i2c_read(0x3F), k625Here != other ? 2 : 1);
+    run_for(100 * kPsPerMs);
+    b.i2c_write(0x39, 1);
+  }
+  b.ended.clear();
+  while (b.ended.size() < 3) run_for(kPsPerMs);
+  EXPECT_TRUE(b.ended[2].complete);
+  EXPECT_EQ(b.ended[2].source_field[0] % 2, 0u);
+  b.i2c_write(0x02, k625Here ? 1 : 2);  // the lock is lost, and comes back
+  b.i2c_write(0x02, 0);
+  run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+}
+
 TEST(DecoderTest, StoppedClockKeepsTheFieldAndTheLock) {
   Bench& b = *bench;
   b.clock.write(Frequency{});

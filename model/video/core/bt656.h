@@ -37,6 +37,8 @@ struct Standard {
                                          ///< = 0 and 1
 
   constexpr unsigned active_offset() const { return line_bytes - kActiveBytes; }
+  /// The line in the middle of a field's active lines.
+  constexpr unsigned middle(bool f) const { return active_first[f] + active_count[f] / 2; }
   constexpr unsigned frame_bytes() const { return lines * line_bytes; }
   /// 25 Hz or 30000/1001 Hz at the nominal byte clock.
   constexpr Frequency frame_rate() const { return kByteClock / frame_bytes(); }

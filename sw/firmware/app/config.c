@@ -70,6 +70,9 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .overlay = (page->flags & PARAM_OVERLAY) != 0,
                   .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,
                   .has_engine = (page->flags & PARAM_ENGINE) != 0,
+#ifdef CONSOLE
+                  .display_free = (page->flags & PARAM_DISPLAY_FREE) != 0,
+#endif
                   .repeats = page->repeats != 0 ? page->repeats : 1u,
                   .tables = page->tables != 0 ? page->tables : 1u,
                   .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};

@@ -25,6 +25,9 @@ typedef struct config {
   int overlay;
   int self_patch;
   int has_engine;   /* the chip has the remap engine */
+#ifdef CONSOLE
+  int display_free; /* the display does not start in step with the camera */
+#endif
   uint32_t repeats; /* number of remaps for each captured frame, at least 1 */
   uint32_t tables;  /* number of look-up tables, 1 to PARAM_TABLES_MAX */
   uint32_t sources; /* number of captured frames that the remaps read in turn, at least 1 */

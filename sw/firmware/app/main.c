@@ -11,16 +11,24 @@
 #include "overlay.h"
 #include "pipeline.h"
 #include "remapper.h"
+#include "say.h"
 #include "state.h"
 #include "sw/lens/fast_lut.h"
 #include "sw/lens/lens.h"
-
-static config_t config;
-static struct view { /* what the remaps use in turn */
+#ifdef CONSOLE
+#include "choices.h"
+#define SHARED
+#else
+#define SHARED static
+struct view { /* what the remaps use in turn */
   lens_view_t lens;
   remap_table_t table;
   const remap_method_t *method;
-} views[TABLES_MAX];
+};
+#endif
+
+static config_t config;
+static struct view views[TABLES_MAX];
 static uint8_t overlay_value;
 
 static void print_config(void) {
@@ -68,16 +76,24 @@ static void fill_lut(const lens_t *lens, uint32_t *entries) {
   lens_build_lut(lens, entries, config.pitch_bytes);
 }
 
-static void build_lut(const lens_view_t *view, uint32_t *entries) {
+/* The pins show frames while one is built in the background. */
+static void mark_build(uint32_t phase) {
+#ifdef CONSOLE
+  if (view_tables_busy()) return;
+#endif
+  phase_mark(phase, 0);
+}
+
+SHARED void build_lut(const lens_view_t *view, uint32_t *entries) {
   lens_t lens;
   const lens_result_t result = lens_init(&lens, view, config.width, config.height);
   if (result != LENS_OK) fail("lens", lens_result_text(result));
-  phase_mark(PHASE_LUT, 0);
+  mark_build(PHASE_LUT);
   const uint32_t start = timer_ticks();
   fill_lut(&lens, entries);
   const uint32_t ticks = timer_ticks() - start;
   fw_state.lut_time_ticks += ticks;
-  phase_mark(PHASE_IDLE, 0);
+  mark_build(PHASE_IDLE);
   fw_state.lut_entries = lens_lut_entries(config.width, config.height);
   uart_puts("LUT: ");
   uart_put_uint(fw_state.lut_entries);
@@ -86,7 +102,7 @@ static void build_lut(const lens_view_t *view, uint32_t *entries) {
   uart_puts(" ms\n");
 }
 
-static void prepare_method(struct view *view, arena_t *arena) {
+SHARED void prepare_method(struct view *view, arena_t *arena) {
   const uint32_t start = timer_ticks();
   view->method = remapper_prepare(config.kernel, &view->table, arena);
   uart_puts("kernel: ");
@@ -103,6 +119,9 @@ static void prepare_method(struct view *view, arena_t *arena) {
 }
 
 /* Table k is that of the page's view, moved by k steps. */
+#ifdef CONSOLE
+static void build_views(void) { view_tables_build(views, &config); }
+#else
 static void build_views(void) {
   extern uint8_t __arena_start[], __arena_end[];
   arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
@@ -128,6 +147,7 @@ static void build_views(void) {
   fw_state.tables = config.tables;
   for (uint32_t k = 0; k < config.tables; ++k) prepare_method(&views[k], &arena);
 }
+#endif
 
 static void init_frames(uint32_t in_count) {
   frame_stride =
@@ -185,6 +205,19 @@ static void process(uint8_t *out, uint32_t sequence) {
   pipeline_done();
 }
 
+#ifdef CONSOLE
+int correct_next_frame(void) {
+  uint8_t *out;
+  uint32_t sequence;
+  if (!pipeline_take(&out, &sequence)) return 0;
+  const uint32_t cpsr = irq_mask();
+  irq_unmask();
+  process(out, sequence);
+  irq_restore(cpsr);
+  return 1;
+}
+#endif
+
 #ifdef TIME_DIVISION
 static void say_events(void) {
   uint32_t camera;
@@ -230,12 +263,18 @@ int main(void) {
   uart_puts("running\n");
   uart_drain();
   pipeline_start(&config, in_count, out_count);
+#ifdef CONSOLE
+  choices_start(&config, views);
+#endif
 
   for (;;) {
     uint8_t *out;
     uint32_t sequence;
 #ifdef TIME_DIVISION
     say_events();
+#endif
+#ifdef CONSOLE
+    choices_work();
 #endif
     /* Checked with interrupts masked: an interrupt that comes after the check still ends the sleep,
      * and is handled when interrupts are unmasked. */

@@ -18,6 +18,10 @@
 #include "../drivers/tvp5146_inputs.h"
 #include "turns.h"
 #endif
+#ifdef CONSOLE
+#include "../drivers/uart_queue.h"
+#include "field_watch.h"
+#endif
 
 /* Minimum time before a field's start for a change of the displayed buffer by the main loop. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
@@ -56,10 +60,16 @@ static struct {
   uint8_t camera_of[CAPTURE_BUFFERS_MAX]; /* whose frame is in each buffer */
   uint32_t taken_camera;
 #endif
+#ifdef CONSOLE
+  field_watch_t watch;
+#endif
 } pipe;
 
 void fail(const char *what, const char *why) {
   phase_mark(PHASE_FAILED, 0);
+#ifdef CONSOLE
+  uart_queue_stop();
+#endif
   uart_puts("failed: ");
   uart_puts(what);
   uart_puts(": ");
@@ -130,6 +140,24 @@ static void capture_field_end(void) {
   pipe.complete = 1;
 }
 
+/* Field starts at wrong distances, and a clock that is off, while the decoder stays locked. */
+#ifdef CONSOLE
+static void watch_field(uint32_t now) {
+  const watch_event_t seen =
+      field_watch_field(&pipe.watch, pipe.turns.now, isif_second_field(), now);
+  if (seen != WATCH_NOTHING)
+    turns_note(&pipe.turns, seen == WATCH_CLOCK_OFF ? CAMERA_CLOCK_OFF : CAMERA_CLOCK_RIGHT);
+}
+static int irregular(void) { return pipe.watch.irregular; }
+static void watch_frame(void) { field_watch_frame(&pipe.watch); }
+static void watch_another(void) { field_watch_restart(&pipe.watch); }
+#else
+static void watch_field(uint32_t now) { (void)now; }
+static int irregular(void) { return 0; }
+static void watch_frame(void) {}
+static void watch_another(void) {}
+#endif
+
 static void select_camera(uint32_t camera) {
   /* Without an answer the next look shows no lock. */
   i2c_result_t ignored = tvp5146_select(pipe.config->input[camera]);
@@ -141,6 +169,7 @@ static void select_camera(uint32_t camera) {
 static void begin_frame(const signal_state_t *seen) {
   if (!signal_ready(seen)) return;
   if (seen->lost && tvp5146_clear_lost() != I2C_OK) return;
+  watch_frame();
   isif_capture();
   if (isif_second_field()) /* the first active line has not come yet */
     pipe.capturing = 1;
@@ -151,7 +180,8 @@ static void begin_frame(const signal_state_t *seen) {
 /* Takes the frame over if the lock has held since its start. */
 static void end_frame(const signal_state_t *seen) {
   pipe.capturing = 0;
-  if (pipe.complete && signal_ready(seen) && !seen->lost) {
+  const int good = signal_ready(seen) && !seen->lost;
+  if (pipe.complete && good && !irregular()) {
     pipe.camera_of[pipe.capture.filling] = (uint8_t)pipe.turns.now;
     captured_frame_done();
     turns_captured(&pipe.turns);
@@ -159,11 +189,15 @@ static void end_frame(const signal_state_t *seen) {
   }
   if (pipe.complete) capture_frame_useless(&pipe.capture);
   fw_state.dropped = pipe.capture.dropped;
-  turns_torn(&pipe.turns);
+  if (good && irregular())
+    turns_irregular(&pipe.turns);
+  else
+    turns_torn(&pipe.turns);
 }
 
 /* VDINT1, at the start of a field. Between two frames the decoder changes to the camera whose turn it is. */
 static void field_start(void) {
+  watch_field(timer_ticks());
   pipe.quiet_fields = 0;
   if (!isif_second_field()) return;
   isif_watch();
@@ -175,9 +209,13 @@ static void field_start(void) {
     turns_not_ready(&pipe.turns, &seen);
   pipe.complete = 0;
   if (pipe.turns.now != before) {
+    if (!signal_ready(&seen)) watch_another(); /* the fields so far were no camera's, or of another standard */
     select_camera(pipe.turns.now);
     /* The lines of a camera with other syncs go on in the midst of a picture: first a frame must begin. */
-    if (!pipe.config->genlocked[before] || !pipe.config->genlocked[pipe.turns.now]) return;
+    if (!pipe.config->genlocked[before] || !pipe.config->genlocked[pipe.turns.now]) {
+      watch_another();
+      return;
+    }
     seen = look();
   }
   begin_frame(&seen);
@@ -189,6 +227,7 @@ static void display_field_passed(void) {
   isif_watch();
   if (pipe.capturing && pipe.complete) capture_frame_useless(&pipe.capture);
   pipe.capturing = pipe.complete = 0;
+  watch_another();
   const signal_state_t seen = look();
   select_camera(turns_no_frames(&pipe.turns, &seen));
 }
@@ -241,6 +280,10 @@ void irq_dispatch(void) {
 #ifdef TIME_DIVISION
   else if (source == IRQ_VPSSINT1)
     field_start();
+#endif
+#ifdef CONSOLE
+  else if (source == IRQ_UART0)
+    uart_queue_interrupt();
 #endif
 }
 
@@ -310,6 +353,9 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
 #ifdef TIME_DIVISION
   turns_init(&pipe.turns, config->cameras);
+#ifdef CONSOLE
+  field_watch_init(&pipe.watch, config->is_625);
+#endif
   pipe.config = config;
   pipe.standard = config->is_625 ? TVP5146_PAL : TVP5146_NTSC;
   isif_mark_fields(config->is_625);
@@ -317,10 +363,22 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   select_camera(0);
 #endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
+#ifdef CONSOLE
+  /* The display's frames begin where they will: nothing is known of the camera's yet. */
+  if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
+#endif
   if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
     uart_puts("decoder: no lock, going on\n");
-  wait_for_frame_end();
-  if (display_start(&mode) != DISPLAY_OK) fail("display", "mode");
+#ifdef CONSOLE
+  if (config->display_free) {
+    isif_watch();
+    intc_enable(IRQ_VPSSINT0, 2);
+  } else
+#endif
+  {
+    wait_for_frame_end();
+    if (display_start(&mode) != DISPLAY_OK) fail("display", "mode");
+  }
 
   pipe.capture_wanted = 1;
   intc_enable(IRQ_VPSSINT8, 3);
@@ -347,6 +405,24 @@ int pipeline_take(uint8_t **out, uint32_t *sequence) {
 #endif
   return 1;
 }
+
+#ifdef CONSOLE
+int pipeline_frame_waits(void) { return pipe.capture.ready != CAPTURE_NONE; }
+
+void pipeline_choose(const uint8_t *cameras, uint32_t count) {
+  const uint32_t cpsr = irq_mask();
+  turns_choose(&pipe.turns, cameras, count);
+  irq_restore(cpsr);
+}
+
+int32_t pipeline_clock_ppm(uint32_t camera) { return -pipe.watch.camera[camera].ppm; }
+
+const char *pipeline_state(uint32_t camera) {
+  return pipe.turns.state[camera] == CAMERA_FINE
+             ? "frames"
+             : camera_event_text((camera_event_t)pipe.turns.state[camera]);
+}
+#endif
 
 #ifdef TIME_DIVISION
 uint32_t pipeline_camera(void) { return pipe.taken_camera; }

@@ -39,6 +39,20 @@ uint32_t pipeline_camera(void);
 int pipeline_event(uint32_t *camera, const char **what);
 #endif
 
+#ifdef CONSOLE
+/** Whether a captured frame waits for pipeline_take(). With interrupts masked. */
+int pipeline_frame_waits(void);
+
+/** The cameras that have turns from the next frame boundary on. */
+void pipeline_choose(const uint8_t *cameras, uint32_t count);
+
+/** How much too fast the camera's clock was in the last measurement; 0 before the first one. */
+int32_t pipeline_clock_ppm(uint32_t camera);
+
+/** What was last said of a camera. */
+const char *pipeline_state(uint32_t camera);
+#endif
+
 /** Prints the reason of a failure, marks the phase and stops. */
 void fail(const char *what, const char *why) __attribute__((noreturn));
 

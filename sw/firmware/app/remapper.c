@@ -2,6 +2,7 @@
 
 #include "../drivers/uart.h"
 #include "model/contract/param_page.h"
+#include "say.h"
 
 /* For each kernel of the page its method and the kernel to try if the lens does not allow it. The
  * last one of such a chain fits every lens and refers to itself. */

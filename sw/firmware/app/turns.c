@@ -1,11 +1,11 @@
 #include "turns.h"
 
-void turns_init(turns_t *turns, uint32_t count) { *turns = (turns_t){.count = count}; }
+void turns_init(turns_t *turns, uint32_t count) {
+  *turns = (turns_t){.count = count, .length = count};
+  for (uint32_t n = 0; n < count; ++n) turns->sequence[n] = (uint8_t)n;
+}
 
-/* Each change of a camera's state is said once. */
-static void say(turns_t *t, camera_event_t event) {
-  if (t->state[t->now] == event && event != CAMERA_LOST) return;
-  t->state[t->now] = (uint8_t)event;
+void turns_note(turns_t *t, camera_event_t event) {
   if (t->event_count == TURNS_EVENTS) {
     ++t->lost_events;
     return;
@@ -13,6 +13,13 @@ static void say(turns_t *t, camera_event_t event) {
   const uint32_t at = (t->first_event + t->event_count++) % TURNS_EVENTS;
   t->events[at].camera = (uint8_t)t->now;
   t->events[at].event = (uint8_t)event;
+}
+
+/* Each change of a camera's state is said once. */
+static void say(turns_t *t, camera_event_t event) {
+  if (t->state[t->now] == event && event != CAMERA_LOST) return;
+  t->state[t->now] = (uint8_t)event;
+  turns_note(t, event);
 }
 
 static void boundary(turns_t *t) {
@@ -23,11 +30,24 @@ static void boundary(turns_t *t) {
 /* The next camera that does not rest; if all of them do, the next one. */
 static uint32_t next(turns_t *t) {
   t->waited = 0;
-  for (uint32_t step = 1; step <= t->count; ++step) {
-    const uint32_t n = (t->now + step) % t->count;
-    if (t->rest[n] == 0) return t->now = n;
+  uint32_t at = (t->at + 1u) % t->length;
+  for (uint32_t step = 1; step <= t->length; ++step) {
+    const uint32_t place = (t->at + step) % t->length;
+    if (t->rest[t->sequence[place]] != 0) continue;
+    at = place;
+    break;
   }
-  return t->now = (t->now + 1u) % t->count;
+  t->at = at;
+  return t->now = t->sequence[at];
+}
+
+void turns_choose(turns_t *t, const uint8_t *cameras, uint32_t count) {
+  for (uint32_t n = 0; n < count; ++n) {
+    t->sequence[n] = cameras[n];
+    t->rest[cameras[n]] = 0;
+  }
+  t->length = count;
+  t->at = count - 1u; /* the first one is next */
 }
 
 static uint32_t leave(turns_t *t, camera_event_t why) {
@@ -38,8 +58,17 @@ static uint32_t leave(turns_t *t, camera_event_t why) {
 
 uint32_t turns_captured(turns_t *turns) {
   boundary(turns);
-  turns->rest[turns->now] = 0;
-  say(turns, CAMERA_FINE);
+  const uint32_t n = turns->now;
+  turns->rest[n] = 0;
+  if (turns->state[n] != CAMERA_IRREGULAR || ++turns->regular[n] >= TURNS_REGULAR_FRAMES)
+    say(turns, CAMERA_FINE);
+  return next(turns);
+}
+
+uint32_t turns_irregular(turns_t *turns) {
+  boundary(turns);
+  turns->regular[turns->now] = 0;
+  say(turns, CAMERA_IRREGULAR);
   return next(turns);
 }
 
@@ -87,6 +116,12 @@ const char *camera_event_text(camera_event_t event) {
       return "no frames";
     case CAMERA_LOST:
       return "lock lost, a frame is left out";
+    case CAMERA_IRREGULAR:
+      return "irregular syncs, frames are left out";
+    case CAMERA_CLOCK_OFF:
+      return "clock more than 200 ppm off";
+    case CAMERA_CLOCK_RIGHT:
+      return "clock right again";
     case CAMERA_EVENTS:
       break;
   }

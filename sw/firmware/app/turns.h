@@ -11,7 +11,10 @@
 #define TURNS_LOCK_FRAMES 50u
 /* A camera that was left out gets its turn again after so many frame boundaries. */
 #define TURNS_REST_FRAMES 25u
+/* A camera whose syncs were irregular gives frames again when so many in its turns were regular. */
+#define TURNS_REGULAR_FRAMES 25u
 #define TURNS_EVENTS 16u
+#define TURNS_SEQUENCE_MAX 16u
 
 /* What the decoder says of the selected camera. */
 typedef struct signal_state {
@@ -28,14 +31,20 @@ typedef enum camera_event {
   CAMERA_WRONG_STANDARD,
   CAMERA_NO_FRAMES,      /* no frame boundary came */
   CAMERA_LOST,           /* the lock was lost while a frame was captured; the frame is not used */
+  CAMERA_IRREGULAR,      /* fields of a wrong length: missing or short lines, or damaged timing codes */
+  CAMERA_CLOCK_OFF,      /* its clock; frames are used all the same */
+  CAMERA_CLOCK_RIGHT,
   CAMERA_EVENTS
 } camera_event_t;
 
 typedef struct turns {
   uint32_t count;  /* cameras */
   uint32_t now;    /* the one whose turn it is */
+  uint8_t sequence[TURNS_SEQUENCE_MAX]; /* of the cameras in turn; at the start all of them */
+  uint32_t length, at;                  /* of the sequence; place in it of the camera whose turn it is */
   uint32_t waited; /* frame boundaries for its lock */
   uint8_t state[PARAM_CAMERAS_MAX]; /* camera_event_t that was said of it last; CAMERA_FINE at the start */
+  uint8_t regular[PARAM_CAMERAS_MAX]; /* frames since the last irregular one */
   uint8_t rest[PARAM_CAMERAS_MAX];  /* frame boundaries until it gets a turn again */
   struct {
     uint8_t camera, event;
@@ -49,6 +58,16 @@ void turns_init(turns_t *turns, uint32_t count);
 /** A frame of the present camera was captured, and the lock held all the time: the next camera has its turn. With a
  * single camera that gives frames, it keeps its turn. @return the camera whose turn it is */
 uint32_t turns_captured(turns_t *turns);
+
+/** The cameras that have turns from the next change on, 1 to TURNS_SEQUENCE_MAX of them. */
+void turns_choose(turns_t *turns, const uint8_t *cameras, uint32_t count);
+
+/** The frame that was captured is of no use, as its fields had a wrong length. The next camera has its turn, and this
+ * one another one as usual. @return the camera whose turn it is now */
+uint32_t turns_irregular(turns_t *turns);
+
+/** Something is to be said of the present camera that does not change its state. */
+void turns_note(turns_t *turns, camera_event_t event);
 
 /** The frame that was captured is of no use, as the lock was lost. The camera keeps its turn. */
 void turns_torn(turns_t *turns);

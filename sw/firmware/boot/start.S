@@ -101,8 +101,41 @@ irq_entry:
     sub lr, lr, #4
     stmfd sp!, {r0-r3, r12, lr}
     bl irq_dispatch
+#ifdef CONSOLE
+    bl background_frame_due
+    cmp r0, #0
+    bne frames_first
+#endif
     ldmfd sp!, {r0-r3, r12, pc}^
     .size irq_entry, . - irq_entry
+
+#ifdef CONSOLE
+/* A table was being built, and a frame waits: the frame comes first. It is corrected in the mode and on the stack of
+ * the build, with interrupts open; then the build goes on. What the entry has saved moves to that stack, because the
+ * next interrupt needs its own one. */
+    .type frames_first, %function
+frames_first:
+    mrs r0, spsr
+    mov r1, sp
+    add sp, sp, #24
+    msr cpsr_c, #(MODE_SVC | NO_INTERRUPTS)
+    sub sp, sp, #24
+    ldmia r1!, {r2, r3, r12}         /* r0 to r2 of the build */
+    stmia sp, {r2, r3, r12}
+    ldmia r1, {r2, r3, r12}          /* r3, r12, pc */
+    str r2, [sp, #12]
+    str r3, [sp, #16]
+    str r12, [sp, #20]
+    stmfd sp!, {r0, r4, lr}
+    mov r4, sp
+    bic sp, sp, #7                   /* as functions expect it */
+    bl background_frames
+    mov sp, r4
+    ldmfd sp!, {r0, r4, lr}
+    msr spsr_cxsf, r0
+    ldmfd sp!, {r0-r3, r12, pc}^
+    .size frames_first, . - frames_first
+#endif
 
 /* Calls fatal_exception(kind, pc of the failing instruction), which prints a message and stops. */
     .type undefined_entry, %function

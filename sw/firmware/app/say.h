@@ -1,0 +1,11 @@
+/* Messages of the files that are in several programs: with a console they wait in its queue. Include after uart.h. */
+#ifndef FOVEA_FIRMWARE_SAY_H
+#define FOVEA_FIRMWARE_SAY_H
+
+#ifdef CONSOLE
+#include "../drivers/uart_queue.h"
+#define uart_puts(text) uart_queue_puts(text)
+#define uart_put_uint(value) uart_queue_put_uint(value)
+#endif
+
+#endif

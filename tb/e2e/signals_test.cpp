@@ -1,0 +1,247 @@
+// Faults of a camera's signal, choices on the console: found in time, said once, recovered, and what is displayed
+// stays right, by the pixels.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <systemc>
+
+#include "sw/fovea/board_console.h"
+#include "tb/e2e/cameras_rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+constexpr Picoseconds kLimit = 20 * kPsPerSecond;
+using Shown = CamerasRig::Shown;
+using Lines = std::vector<std::string>;
+
+/// One camera, and what is set of its fault.
+struct Fault {
+  const char* name;
+  std::vector<std::pair<const char*, const char*>> keys;
+  const char* said;        ///< what the firmware says of camera 0; null: nothing
+  unsigned detect_ms = 0;  ///< from the fault's start until the line is out
+  unsigned recover_ms = 0;  ///< from its end until "frames again" is out
+  unsigned frames = 30;
+};
+constexpr unsigned kStart = 445, kEnd = 565;  // ms; in the midst of frames
+
+void set(CamerasRig& rig, const Fault& fault) {
+  small(rig, 1);
+  rig.set("tvp5146.relock_fields", "2").set("run.frames", std::to_string(fault.frames));
+  rig.set("fault.start", std::to_string(kStart) + "ms").set("fault.end", std::to_string(kEnd) + "ms");
+  for (const auto& [key, value] : fault.keys) rig.set(key, value);
+}
+
+/// Each captured frame was displayed or was dropped, and the statistics say which.
+void expect_exact_counts(CamerasRig& rig) {
+  const auto stats = rig.board().camera_stats().front();
+  const auto shown = sequence(rig);
+  EXPECT_EQ(stats.displayed, shown.size());
+  EXPECT_EQ(stats.captured, stats.displayed + stats.superseded + stats.dropped);
+  EXPECT_EQ(stats.superseded, 0u);
+  std::set<unsigned> numbers;
+  for (const Shown::Stamp& s : shown) EXPECT_TRUE(numbers.insert(s.number).second) << s.number << " twice";
+  for (std::size_t i = 1; i < shown.size(); ++i) EXPECT_GT(shown[i].number, shown[i - 1].number);
+}
+
+class FaultTest : public testing::TestWithParam<Fault> {};
+TEST_P(FaultTest, IsFoundInTimeSaidOnceAndRecoveredFrom) {
+  const Fault& fault = GetParam();
+  CamerasRig rig;
+  set(rig, fault);
+  const auto said = listen(rig, kLimit);
+  ASSERT_EQ(rig.shown().size(), fault.frames) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "") << "the last good picture stays, and no other one is shown";
+  expect_exact_counts(rig);
+  if (!fault.said) {
+    EXPECT_EQ(rig.said(), Lines{});
+    return;
+  }
+  const std::string what = std::string("camera 0: ") + fault.said;
+  ASSERT_EQ(rig.said(), (fault.recover_ms ? Lines{what, "camera 0: frames again"} : Lines{what}))
+      << rig.board().uart_text();
+  EXPECT_GT(said.at(what), kStart * kPsPerMs);
+  EXPECT_LE(said.at(what), (kStart + fault.detect_ms) * kPsPerMs);
+  if (fault.recover_ms) {
+    EXPECT_GT(said.at("camera 0: frames again"), kEnd * kPsPerMs);
+    EXPECT_LE(said.at("camera 0: frames again"), (kEnd + fault.recover_ms) * kPsPerMs);
+  }
+  EXPECT_TRUE(rig.board().resets().empty());
+}
+
+// A frame that is damaged in its last field, whose end is a frame later, and the line on the UART.
+constexpr unsigned kTwoFrames = 90;
+const char* const kIrregular = "irregular syncs, frames are left out";
+const Fault kFaults[] = {
+    // Found by the absence of field starts for six fields of the display, or by the decoder's word.
+    {"WrongStandard", {{"fault.kind", "wrong_standard"}}, "wrong standard", 140 + 25, kTwoFrames + 60},
+    {"MissingLine",
+     {{"fault.kind", "missing_lines"}, {"fault.lines", "1"}},
+     kIrregular, kTwoFrames, 0},
+    // More lines than there are before the next field: no start of a field is seen any more.
+    {"ManyMissingLines",
+     {{"fault.kind", "missing_lines"}, {"fault.lines", "40"}},
+     "no frames", 140 + 25, kTwoFrames + 60},
+    {"ShortLines", {{"fault.kind", "short_lines"}}, kIrregular, kTwoFrames, 0},
+    // The codes of lines 23 and 336, at which V falls, are hit in one of three frames.
+    {"TwoWrongBits",
+     {{"fault.kind", "sync_noise"}, {"fault.wrong_bits", "2"}, {"fault.every", "3"}},
+     kIrregular, kTwoFrames + 80, 0},
+    {"TwoWrongBitsInAllCodes",
+     {{"fault.kind", "sync_noise"}, {"fault.wrong_bits", "2"}},
+     "no frames", 140 + 25, kTwoFrames + 60},
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, FaultTest, testing::ValuesIn(kFaults),
+                         [](const auto& i) { return std::string(i.param.name); });
+
+TEST(SignalsTest, OneWrongBitInEveryCodeIsCorrected) {
+  CamerasRig rig;
+  set(rig, {"", {{"fault.kind", "sync_noise"}}, nullptr});
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 30u);
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(rig.said(), Lines{});
+  const auto shown = sequence(rig);
+  EXPECT_EQ(shown.back().number - shown.front().number, 29u) << "each frame of the camera";
+  EXPECT_EQ(rig.board().dm365.isif.stats.corrected_codes.count(), (kEnd - kStart) * 1000u / 64u);
+  EXPECT_EQ(rig.board().dm365.isif.stats.bad_codes.count(), 0u);
+}
+
+// The whole way back: a second of regular frames, and a second in which the clock is measured.
+const Fault kLongFaults[] = {
+    {"MissingLinesAndBack", {{"fault.kind", "missing_lines"}}, kIrregular, kTwoFrames, 1000 + 2 * kTwoFrames, 45},
+    {"ShortLinesAndBack", {{"fault.kind", "short_lines"}}, kIrregular, kTwoFrames, 1000 + 2 * kTwoFrames, 45},
+    {"NoiseAndBack",
+     {{"fault.kind", "sync_noise"}, {"fault.wrong_bits", "2"}, {"fault.every", "7"}},
+     kIrregular, 7 * 40 + kTwoFrames, 1000 + 2 * kTwoFrames, 45},
+};
+INSTANTIATE_TEST_SUITE_P(Nightly, FaultTest, testing::ValuesIn(kLongFaults),
+                         [](const auto& i) { return std::string(i.param.name); });
+
+class DriftTest : public testing::TestWithParam<const char*> {};
+TEST_P(DriftTest, NightlyAClockThatIsOffIsSaidAndCostsNoPictureButTheDisplaysOwn) {
+  CamerasRig rig;
+  set(rig, {"", {{"fault.kind", "clock_drift"}, {"fault.drift", GetParam()}, {"fault.end", "2600ms"}}, nullptr,
+            0, 0, 125});
+  const auto said = listen(rig, kLimit);
+  ASSERT_EQ(rig.shown().size(), 125u);
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const std::string off = "camera 0: clock more than 200 ppm off", right = "camera 0: clock right again";
+  ASSERT_EQ(rig.said(), (Lines{off, right})) << rig.board().uart_text();
+  // Two measurements of 50 fields, of which the first may have begun before the fault.
+  EXPECT_LE(said.at(off), (kStart + 2000 + 10) * kPsPerMs);
+  EXPECT_LE(said.at(right), (2600 + 2000 + 10) * kPsPerMs);
+  expect_exact_counts(rig);
+  EXPECT_EQ(rig.board().camera_stats().front().dropped, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Both, DriftTest, testing::Values("400ppm", "-400ppm"),
+                         [](const auto& i) { return i.param[0] == '-' ? "Slow" : "Fast"; });
+
+/// Types on the console what the dialogue says.
+std::unique_ptr<app::BoardConsole> type(CamerasRig& rig, const std::string& dialogue) {
+  return std::make_unique<app::BoardConsole>(rig.build(), nullptr, app::Dialogue::parse("typed", dialogue));
+}
+
+class NewTableTest : public testing::TestWithParam<const char*> {};
+TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("firmware.kernel", GetParam()).set("run.frames", "16");
+  const auto console = type(rig,
+                            "at 478ms\nsend shift 0 6 -4\\r\nwait new table\nsend zoom 1 90\\r\n"
+                            "wait new table\nsend zoom 5 90\\r\nsend help\\r\n");
+  oracle::Geometry shifted = rig.geometry(0), zoomed = rig.geometry(1);
+  shifted.shift_x += 6;
+  shifted.shift_y -= 4;
+  zoomed.out_focal_px = 0.9 * 255;
+  rig.add_view(0, shifted);
+  rig.add_view(1, zoomed);
+  while (kernel_time() < 470 * kPsPerMs) rig.advance(kPsPerMs);
+  for (unsigned n = 0; n < 2; ++n) rig.keep_table(n, 0);
+  while (kernel_time() < 540 * kPsPerMs && rig.board().uart_text().find(", new table") == std::string::npos)
+    rig.advance(kPsPerMs / 10);
+  const Picoseconds built = kernel_time();
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 16u) << rig.board().uart_text();
+  EXPECT_EQ(console->open_step(), "") << rig.board().uart_text();
+  // The command was typed by 480 ms; a frame was corrected while the table was built.
+  EXPECT_TRUE(std::ranges::any_of(rig.shown(), [&](const Shown& s) {
+    return s.record.remap_start && *s.record.remap_start > 480 * kPsPerMs && *s.record.remap_end < built;
+  }));
+  for (unsigned n = 0; n < 2; ++n) {
+    EXPECT_EQ(rig.table_check(n, 0).wrong, 0u);
+    EXPECT_EQ(rig.table_check(n, 1).wrong, 0u);
+    unsigned by[2] = {}, last = 0;
+    for (const Shown& s : rig.shown()) {
+      if (!s.stamp || s.stamp->camera != n) continue;
+      const unsigned k = rig.shown_by(s);
+      ASSERT_LT(k, 2u) << "displayed frame " << s.record.index << " is of neither table";
+      EXPECT_GE(k, last) << "the old one does not come back";
+      ++by[k];
+      last = k;
+    }
+    EXPECT_GT(by[0], 0u) << "camera " << n;
+    EXPECT_GT(by[1], 0u) << "camera " << n;
+    EXPECT_EQ(rig.board().camera_stats()[n].superseded + rig.board().camera_stats()[n].dropped, 0u);
+  }
+  // Every frame of one camera or the other is on show.
+  const auto shown = sequence(rig);
+  EXPECT_EQ(shown.size(), 16u);
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    EXPECT_EQ(shown[i].number, shown[i - 1].number + 1);
+    EXPECT_NE(shown[i].camera, shown[i - 1].camera);
+  }
+  EXPECT_NE(rig.board().uart_text().find("camera 0: zoom 100 %, shift 6 -4, mapping page, new table after"),
+            std::string::npos);
+  EXPECT_NE(rig.board().uart_text().find("refused: no such camera"), std::string::npos);
+}
+INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest, testing::Values("plain", "staged"),
+                         [](const auto& i) { return std::string(i.param); });
+
+TEST(SignalsTest, TheChosenCamerasHaveTurns) {
+  CamerasRig rig;
+  small(rig, 3);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "26");
+  const auto console = type(rig, "at 420ms\nsend camera 2 0 2\\n\nat 720ms\nsend camera 1\\n\nat 960ms\nsend camera all\\n\n");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 26u) << rig.board().uart_text();
+  EXPECT_EQ(console->open_step(), "");
+  EXPECT_EQ(rig.wrong_picture(), "");
+  std::string cameras;
+  for (const Shown::Stamp& s : sequence(rig)) cameras += std::to_string(s.camera);
+  EXPECT_EQ(cameras.size(), 26u) << "no frame is lost by a choice";
+  const auto in = [&](const char* part) { return cameras.find(part) != std::string::npos; };
+  EXPECT_TRUE(cameras.starts_with("0120120")) << cameras;
+  EXPECT_TRUE(in("202202")) << cameras;
+  EXPECT_TRUE(in("11111")) << cameras;
+  EXPECT_TRUE(cameras.ends_with("1110120")) << cameras;
+  EXPECT_NE(rig.board().uart_text().find("turns: 2 0 2\r\n"), std::string::npos);
+}
+
+TEST(SignalsTest, NightlyEightTablesChangeInTurn) {
+  CamerasRig rig;
+  rig.load("eight-luts.yaml").set("run.frames", "120");
+  std::string dialogue;
+  for (unsigned n = 0; n < 8; ++n)
+    dialogue += "wait new table\nsend shift " + std::to_string(n) + " 0 8\\r\n";
+  dialogue.replace(0, std::string("wait new table").size(), "wait console");
+  const auto console = type(rig, dialogue);
+  for (unsigned n = 0; n < 8; ++n) {
+    oracle::Geometry g = rig.geometry(n);
+    g.shift_y += 8;
+    rig.add_view(n, g);
+  }
+  while (rig.board().uart_text().find("running") == std::string::npos) rig.advance(kPsPerMs);
+  for (unsigned n = 0; n < 8; ++n) rig.keep_table(n, 0);
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 120u) << rig.board().uart_text();
+  EXPECT_EQ(console->open_step(), "") << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(sequence(rig).size(), 120u) << "no frame is lost";
+  for (unsigned n = 0; n < 8; ++n) EXPECT_EQ(rig.table_check(n, 1).wrong, 0u) << n;
+}
+
+}  // namespace
+}  // namespace fovea::e2e
