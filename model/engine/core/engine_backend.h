@@ -1,0 +1,78 @@
+// What stands behind the registers and the memory port of the remap engine: a transaction-level model or the
+// verilated RTL. Knows no SystemC.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "model/common/clock.h"
+#include "model/common/units.h"
+
+namespace fovea::engine {
+
+/// Requests that are under way at once at most: 4 bursts of the map, 8 lines of the source, 4 writes.
+inline constexpr unsigned kPlaces = 16;
+enum ReadId : unsigned { kMapReads = 0, kSourceReads = 1 };
+
+/// A request on the memory port: a read, or the consecutive bytes of a write.
+struct Burst {
+  std::uint64_t tag = 0;  ///< comes back with the answer; chosen by the backend
+  bool write = false;
+  unsigned id = 0;        ///< of a read: ReadId
+  std::uint32_t address = 0;
+  unsigned bytes = 0;     ///< 4 to 64, none across a multiple of 64
+  std::span<const std::uint8_t> data{};  ///< of a write; valid during the call
+};
+
+/// The outcome of a Burst.
+struct Answer {
+  std::uint64_t tag = 0;
+  bool write = false;
+  bool error = false;  ///< nobody has answered; `data` are zeros
+  std::span<const std::uint8_t> data{};  ///< of a read; valid during the call
+  Picoseconds first = 0, last = 0;       ///< beats at the port; of a write `last` is the acknowledgement
+};
+
+/// Times. A backend has a clock, whose edges are numbered. What comes from outside at a time t (answers, their
+/// beats, accesses to registers) is seen at the first edge strictly after t. So within an instant the order of
+/// calls does not matter, except that of accesses to registers among themselves, which come last.
+///
+/// The owner calls run() when an answer has come, at the time that run() returned before, and before each access
+/// to a register.
+///
+/// The memory port. A burst on AR is one Burst of up to 64 bytes, put on the port at the edge that takes it. The
+/// 64-bit beats of an answer reach the engine spread evenly over `first` to `last`, one of all reads an edge at
+/// most; of one identifier in the order of the requests. A burst on AW is handed over at the edge at which all of
+/// it is there: a Burst for each run of bytes that the strobes leave; it is answered when all of them are. The
+/// owner takes at least kPlaces requests at once without holding any back; others wait there, in order.
+class EngineBackend {
+ public:
+  class Host {
+   public:
+    virtual ~Host() = default;
+    /// @param at an edge of the clock, now or later; not before that of an earlier call
+    virtual void issue(const Burst& burst, Picoseconds at) = 0;
+    /// The interrupt line has another level from the present call of run() or write() on.
+    virtual void interrupt(bool level) = 0;
+  };
+
+  virtual ~EngineBackend() = default;
+
+  /// Lets the edges up to `now` happen. A backend may work ahead of `now` as long as nothing from outside could
+  /// still change what it does.
+  /// @return when to call again at the latest if nothing happens outside; kNever: not at all
+  virtual Picoseconds run(Picoseconds now) = 0;
+  /// Accesses to the registers of EngineRegs, after run(now). Only words; a write to bits that are read-only has
+  /// no effect. What a write changes is visible to a read at a later edge. A backend whose own bus needs edges
+  /// for an access may have them at once, ahead of the clock. Afterwards the owner calls run(now) again.
+  virtual std::uint32_t read(std::uint32_t offset, Picoseconds now) = 0;
+  virtual void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) = 0;
+  /// An outcome, in the order of the requests of one identifier, and of the writes. A read's may be told from its
+  /// decision up to its first beat.
+  virtual void answer(const Answer& answer) = 0;
+  /// Needs edges: a job waits that may start, or one is under way.
+  virtual bool busy() const = 0;
+  /// As after power-up. The owner hands over no answers to requests from before.
+  virtual void reset() = 0;
+};
+
+}  // namespace fovea::engine

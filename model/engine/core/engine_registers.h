@@ -1,0 +1,107 @@
+// Registers of the remap engine. The block is hypothetical: the DM365 has none, and this declaration is the
+// definition. The RTL's package, the firmware's header and the tables of the documents are printed from it.
+#pragma once
+#include <cstdint>
+
+#include "model/common/regbank.h"
+
+namespace fovea::engine {
+
+inline constexpr unsigned kQueueDepth = 4;  ///< jobs that can wait
+inline constexpr std::uint32_t kIdentity = 0x52454D31;
+
+struct EngineRegs : RegBank {
+  struct Control : Reg {
+    using Reg::Reg;
+    Field enable{*this, "ENABLE", 0, 1, Mode::kRw, "takes jobs from the queue"};
+    Field abort{*this, "ABORT", 1, 1, Mode::kWo, "ends the job under way early and drops the queue"};
+  };
+  struct Status : Reg {
+    using Reg::Reg;
+    Field busy{*this, "BUSY", 0, 1, Mode::kRo, "a job is under way"};
+    Field queued{*this, "QUEUED", 4, 4, Mode::kRo, "jobs that wait, 0 to 4"};
+    Field full{*this, "FULL", 8, 1, Mode::kRo, "no other job can wait"};
+  };
+  /// The bits of a job's end and of the queue: in EVENTS, where 1 clears, and in ENABLES.
+  struct Events : Reg {
+    Events(RegBank& bank, const char* name, std::uint32_t offset, Mode mode, const char* sentence);
+    Field done, refused, read_error, write_error, aborted, overflow, dropped;
+  };
+  struct Submit : Reg {
+    using Reg::Reg;
+    Field tag{*this, "TAG", 0, 8, Mode::kWo, "returned in ENDED"};
+  };
+  struct Ended : Reg {
+    using Reg::Reg;
+    Field tag{*this, "TAG", 0, 8, Mode::kRo, "of the job that ended last"};
+    Field events{*this, "EVENTS", 8, 8, Mode::kRo, "its bits of EVENTS"};
+    Field count{*this, "COUNT", 16, 16, Mode::kRo, "jobs that ended, modulo 65536"};
+  };
+  struct JobMode : Reg {
+    using Reg::Reg;
+    Field mode{*this, "MODE", 0, 2, Mode::kRw, "0 table, 1 grid, 2 radial, 3 project"};
+    Field bilinear{*this, "BILINEAR", 2, 1, Mode::kRw, "interpolates; 0: the nearest pixel"};
+    Field grid_log2{*this, "GRID_LOG2", 8, 3, Mode::kRw, "step of the grid, 2^n pixels"};
+    Field pieces{*this, "PIECES", 16, 8, Mode::kRw, "pieces of the radial function"};
+    Field piece_log2{*this, "PIECE_LOG2", 24, 5, Mode::kRw, "width of a piece, 2^n square pixels"};
+  };
+  struct Size : Reg {
+    using Reg::Reg;
+    Field pairs{*this, "PAIRS", 0, 12, Mode::kRw, "pairs of pixels in an output row"};
+    Field rows{*this, "ROWS", 16, 13, Mode::kRw, "output rows"};
+  };
+  struct SourceSize : Reg {
+    using Reg::Reg;
+    Field width{*this, "WIDTH", 0, 13, Mode::kRw, "pixels"};
+    Field height{*this, "HEIGHT", 16, 13, Mode::kRw, "rows"};
+  };
+  /// A byte address or distance of which the low bits are 0.
+  struct Bytes : Reg {
+    Bytes(RegBank& bank, const char* name, std::uint32_t offset, unsigned lsb, unsigned width,
+          const char* sentence)
+        : Reg(bank, name, offset, sentence), value(*this, "BYTES", lsb, width, Mode::kRw, sentence) {}
+    Field value;
+  };
+  struct Words : Reg {
+    using Reg::Reg;
+    Field value{*this, "WORDS", 0, 24, Mode::kRw, "words of 32 bits"};
+  };
+
+  Reg id{*this, "ID", 0x00, Mode::kRo, "identification", kIdentity};
+  Control ctrl{*this, "CTRL", 0x04, "control"};
+  Status status{*this, "STATUS", 0x08, "status"};
+  Events events{*this, "EVENTS", 0x0C, Mode::kW1c, "what has happened; 1 clears"};
+  Events enables{*this, "ENABLES", 0x10, Mode::kRw, "events that hold the interrupt line high"};
+  Submit submit{*this, "SUBMIT", 0x14, "puts the job of MODE to C2 into the queue"};
+  Ended ended{*this, "ENDED", 0x18, "the job that ended last"};
+  Reg clocks{*this, "CLOCKS", 0x20, Mode::kRo, "clocks that the job took which ended last"};
+  Reg lines{*this, "LINES", 0x24, Mode::kRo, "lines of the source that it read"};
+  Reg writes{*this, "WRITES", 0x28, Mode::kRo, "bursts that it wrote"};
+  Reg bad{*this, "BAD", 0x2C, Mode::kRo, "entries of its table that are no addresses"};
+  JobMode mode{*this, "MODE", 0x40, "how positions follow"};
+  Size size{*this, "SIZE", 0x44, "the result's size"};
+  Bytes src_base{*this, "SRC_BASE", 0x48, 2, 30, "first byte of the source"};
+  Bytes src_pitch{*this, "SRC_PITCH", 0x4C, 2, 13, "from row to row of the source"};
+  SourceSize src_size{*this, "SRC_SIZE", 0x50, "the source's size"};
+  Bytes dst_base{*this, "DST_BASE", 0x54, 2, 30, "first byte of the result"};
+  Bytes dst_pitch{*this, "DST_PITCH", 0x58, 2, 13, "from row to row of the result"};
+  Bytes map_base{*this, "MAP_BASE", 0x5C, 6, 26, "first byte of the map"};
+  Words map_words{*this, "MAP_WORDS", 0x60, "length of the map"};
+  Reg border{*this, "BORDER", 0x64, Mode::kRw, "the word of a pair without a source"};
+  Reg radius_limit{*this, "RADIUS_LIMIT", 0x68, Mode::kRw, "largest visible square radius, Q8"};
+  Reg centre_x{*this, "CENTRE_X", 0x6C, Mode::kRw, "centre in the source, pixels, Q16"};
+  Reg centre_y{*this, "CENTRE_Y", 0x70, Mode::kRw, "centre in the source, rows, Q16"};
+  Reg a0{*this, "A0", 0x74, Mode::kRw, "linear form A: first value"};
+  Reg a1{*this, "A1", 0x78, Mode::kRw, "linear form A: step of a pair"};
+  Reg a2{*this, "A2", 0x7C, Mode::kRw, "linear form A: step of a row"};
+  Reg b0{*this, "B0", 0x80, Mode::kRw, "linear form B: first value"};
+  Reg b1{*this, "B1", 0x84, Mode::kRw, "linear form B: step of a pair"};
+  Reg b2{*this, "B2", 0x88, Mode::kRw, "linear form B: step of a row"};
+  Reg c0{*this, "C0", 0x8C, Mode::kRw, "linear form C: first value"};
+  Reg c1{*this, "C1", 0x90, Mode::kRw, "linear form C: step of a pair"};
+  Reg c2{*this, "C2", 0x94, Mode::kRw, "linear form C: step of a row"};
+
+  EngineRegs();
+};
+
+}  // namespace fovea::engine
