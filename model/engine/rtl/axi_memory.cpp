@@ -32,6 +32,7 @@ void AxiMemory::drive(Picoseconds edge, AxiWires& wires) {
   wires.r.id = r_.id;
   wires.r.data = r_.data;
   wires.r.response = r_.response;
+  wires.r.last = r_.last;
   wires.b.valid = b_.valid;
   wires.b.response = b_.response;
 }
@@ -51,7 +52,7 @@ void AxiMemory::offer_read(Picoseconds edge) {
       std::uint64_t word = 0;
       if (!r.error)
         for (unsigned n = 8; n-- > 0;) word = word << 8 | r.data[8 * r.next + n];
-      r_ = {true, false, r.id, word, r.error ? kDecodeError : kOkay};
+      r_ = {true, false, r.id, word, r.error ? kDecodeError : kOkay, r.next + 1 == r.beats};
       reading_ = r.tag;
       return;
     }

@@ -11,6 +11,7 @@ struct ReadData {
   unsigned id = 0;
   std::uint64_t data = 0;
   unsigned response = 0;
+  bool last = false;  ///< of its request
 };
 struct WriteAnswer {
   bool valid = false, ready = false;

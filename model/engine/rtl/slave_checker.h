@@ -33,12 +33,13 @@ class AxiAnswerChecker : RuleChecker {
   AxiAnswerChecker() : RuleChecker("AXI answers") {}
   void clock(const AxiWires& c) {
     stable(c.r, before_.r, c.r.id == before_.r.id && c.r.data == before_.r.data &&
-                               c.r.response == before_.r.response, "R");
+                               c.r.response == before_.r.response && c.r.last == before_.r.last, "R");
     stable(c.b, before_.b, c.b.response == before_.b.response, "B");
     // An answer on the wires belongs to a request from an earlier clock.
     if (c.r.valid) {
       if (c.r.id >= reads_.size()) fail("RID that is no identifier of the master");
       if (reads_[c.r.id].empty()) fail("read data that nobody asked for");
+      if (c.r.last != (reads_[c.r.id].front() == 1)) fail("RLAST not at the last beat");
       if (c.r.ready && reads_[c.r.id].front()-- == 1) reads_[c.r.id].pop_front();
     }
     if (c.b.valid) {
