@@ -1,0 +1,79 @@
+// The address generator of the remap engine, clock by clock: where each pair comes from, and in which clock that is
+// known. Pipelines move as a whole, as in rtl/remap; only what is valid in them is kept as bits.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "model/engine/core/remap_job.h"
+#include "model/engine/core/ring.h"
+
+namespace fovea::engine {
+
+/// A pair on its way through the engine.
+struct Pair : Place {
+  std::uint32_t dst = 0;  ///< word address
+  bool last = false;      ///< of the job
+};
+
+class AddressGenerator {
+ public:
+  /// The clock in which the unit's start signal is high.
+  void start(const Job& job);
+  void clear();
+  /// The oldest pair, if one can be taken in this clock.
+  const Pair* front() const { return held_ > 0 ? &pairs_.front() : nullptr; }
+  /// A word of the map is taken in this clock if there is one. Call before clock().
+  bool wants_map() const;
+  /// One clock. @param taken front() goes; @param map the word that is there; null: none
+  /// @return anything has moved
+  bool clock(bool taken, const std::uint32_t* map);
+  /// Whether the last clock() took the word of the map.
+  bool took_map() const { return took_map_; }
+
+ private:
+  struct Cell {
+    Edge left, right;
+  };
+  bool clip_moves() const { return held_ != 2 || !(clip_ & 4); }
+  void load(std::uint32_t word);
+  bool walk();
+  bool next_offset(bool taken);
+  bool pipelined(bool clip_moves);
+  void next_form();
+  void enter(const Place& place);
+
+  Job job_;
+  unsigned held_ = 0;          // pairs in the buffer at the end, 2 at most
+  unsigned clip_ = 0;          // valid bits of the stages that make addresses of positions, 3 of them
+  std::uint32_t stages_ = 0;   // valid bits of the radial function's or the division's pipeline
+  Ring<Pair, 64> pairs_;       // entered, in order, up to those in the buffer
+  Ring<Place, 64> positions_;  // in `stages_`
+  bool took_map_ = false;
+
+  // The forms: where the walk over the pairs is.
+  bool forms_ = false;         // a value is there
+  std::uint32_t pair_ = 0, row_ = 0;
+  std::int64_t a_ = 0, b_ = 0, c_ = 0, a_row_ = 0, b_row_ = 0, c_row_ = 0;
+  // What has entered `clip_`.
+  std::uint32_t dst_pair_ = 0, dst_row_ = 0, dst_ = 0, dst_start_ = 0;
+  std::uint64_t entries_ = 0;  // of a table, to come
+
+  // Radial function.
+  std::array<Piece, kMostPieces> pieces_{};
+  std::uint32_t coefficients_ = 0;  // loaded
+  bool loading_ = false, loaded_ = false;
+
+  // Grid: nodes of four rows, the walk over edges, cells.
+  std::array<std::array<std::uint32_t, kMostNodes>, 4> nodes_{};
+  std::uint32_t rows_there_ = 0, node_in_ = 0, node_rows_ = 0;
+  bool walking_ = false;
+  std::uint32_t walk_row_ = 0, walk_node_ = 0;
+  bool v1_ = false, v2_ = false, first1_ = false, first2_ = false;
+  Edge edge1_, edge2_, left_;
+  Ring<Cell, 8> cells_;
+  bool offset_ = false;        // of a pair is there
+  Cell cell_;
+  std::uint32_t at_ = 0, in_cell_ = 0, left_in_row_ = 0;  // pair of the cell, pairs of it, of the row behind it
+};
+
+}  // namespace fovea::engine

@@ -1,0 +1,272 @@
+#include "model/engine/core/remap_model.h"
+
+#include <algorithm>
+
+namespace fovea::engine {
+
+void RemapModel::reset() {
+  state_ = State::kIdle;
+  map_.clear();
+  addresses_.clear();
+  cache_.clear();
+  packer_.clear();
+  which_ = reads_ = 0;
+  line_asked_ = word_valid_ = blended_valid_ = sending_ = part_error_ = frozen_ = false;
+  read_arrivals_.clear();
+  write_arrivals_.clear();
+  parts_.clear();
+  done_at_ = kNoClock;
+}
+
+void RemapModel::start(const Job& job, std::uint64_t clock) {
+  reset();
+  job_ = job;
+  end_ = {};
+  accepted_ = clock;
+  now_ = clock + 1;
+  state_ = State::kBegin;
+}
+
+void RemapModel::abort(std::uint64_t clock) {
+  if (state_ != State::kBegin && state_ != State::kRun) return;
+  end_.aborted = state_ == State::kRun || job_.possible();
+  end_.refused = !end_.aborted;
+  state_ = State::kDrain;
+  now_ = std::max(now_, clock + 1);
+  frozen_ = false;
+}
+
+std::uint64_t RemapModel::run(std::uint64_t safe) {
+  while (state_ != State::kIdle) {
+    if (frozen_) {
+      const std::uint64_t event = next_event();
+      if (event == kNoClock) return kNoClock;
+      if (event > safe && waits()) return event;
+      now_ = event;
+      frozen_ = false;
+    }
+    if (now_ > safe && waits()) return now_;
+    frozen_ = !step();
+    ++now_;
+  }
+  return kNoClock;
+}
+
+/// What this clock does depends on an answer that is not known.
+bool RemapModel::waits() const {
+  if (state_ == State::kDrain) return reads_ > 0 || parts_.size() > write_arrivals_.size();
+  if (write_arrivals_.empty() && packer_.under_way() > 0 &&
+      (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_pair_.dst)))
+    return true;
+  const Access* const access = cache_.next(now_);
+  if (access && access->miss && cache_.no_line()) return true;
+  return map_.empty() && addresses_.wants_map();
+}
+
+/// When something may move again, as far as is known. @pre nothing has moved in the clock before now_
+std::uint64_t RemapModel::next_event() const {
+  std::uint64_t at = kNoClock;
+  const auto consider = [&](std::uint64_t clock) {
+    if (clock >= now_) at = std::min(at, clock);
+  };
+  if (!read_arrivals_.empty()) consider(read_arrivals_.front().clock);
+  if (!write_arrivals_.empty()) consider(write_arrivals_.front().clock);
+  if (!map_.empty()) consider(map_.there());
+  if (!cache_.no_line()) consider(cache_.line_at());
+  if (sending_) consider(packer_.sent_at());
+  return at;
+}
+
+/// From the result back to the map, so that each part sees what its neighbour had before this clock.
+bool RemapModel::step() {
+  if (state_ == State::kBegin) {
+    state_ = State::kRun;
+    if (job_.possible()) {
+      addresses_.start(job_);
+      map_.start(job_.map_base, job_.map_words);
+    } else {
+      end_.refused = true;
+      state_ = State::kDrain;
+    }
+    return true;
+  }
+  if (state_ == State::kDrain) return drain();
+  const bool finished = packer_.finished(), room = cache_.room(), may_ask = cache_.may_ask();
+  bool map_asked = false;
+  // Requests first: those of the address channel come before the write whose data end in the same clock.
+  bool moved = ask(map_asked);
+  moved |= send();
+  const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_pair_.dst, blended_pair_.last, false);
+  moved |= packer_.moved();
+  if (packer_.handed_over()) sending_ = true;
+  const bool blend_ready = packed || !blended_valid_ || !access_.final;
+  moved |= blend_words(packed);
+  moved |= data(blend_ready);
+  const Pair* const pair = addresses_.front();
+  const bool access_taken = pair && tags(room, may_ask);
+  const bool pair_taken = access_taken && which_ == 0;
+  moved |= access_taken;
+  const std::uint32_t* const word = map_.word(now_);
+  moved |= addresses_.clock(pair_taken, word);
+  moved |= map_.clock(map_asked, addresses_.took_map(), false);
+  moved |= arrivals();
+  if (finished && state_ == State::kRun) {
+    state_ = State::kDrain;
+    moved = true;
+  }
+  return moved;
+}
+
+/// Nothing new is asked for; what is under way comes in, then all is cleared.
+bool RemapModel::drain() {
+  const bool quiet = reads_ == 0 && read_arrivals_.empty() && packer_.under_way() == 0 && !line_asked_ &&
+                     !map_.asks();
+  if (quiet) {
+    end_.clocks = static_cast<std::uint32_t>(now_ - accepted_);
+    const std::uint64_t at = now_;
+    const JobEnd end = end_;
+    reset();
+    end_ = end;
+    done_at_ = at;
+    return true;
+  }
+  bool map_asked = false;
+  bool moved = ask(map_asked);
+  moved |= send();
+  if (map_asked) map_.clock(true, false, true);
+  return moved | arrivals();
+}
+
+/// One of the two readers asks, the source first.
+bool RemapModel::ask(bool& map_asked) {
+  if (line_asked_) {
+    line_asked_ = false;
+    ++end_.lines;
+    ++reads_;
+    port_.issue({0, false, kSourceReads, line_, 4 * SourceCache::kLineWords, {}}, now_);
+    return true;
+  }
+  map_asked = map_.asks();
+  if (!map_asked) return false;
+  ++reads_;
+  port_.issue({0, false, kMapReads, map_.address(), map_.length(), {}}, now_);
+  return true;
+}
+
+/// Issues a burst of the result when its last data are taken: one request for each run of words.
+bool RemapModel::send() {
+  if (!sending_ || now_ != packer_.sent_at()) return false;
+  sending_ = false;
+  const Packer::Burst& b = packer_.out();
+  unsigned parts = 0;
+  for (unsigned from = 0; from < Packer::kWords;) {
+    if (!(b.mask >> from & 1)) {
+      ++from;
+      continue;
+    }
+    unsigned to = from;
+    while (to < Packer::kWords && b.mask >> to & 1) ++to;
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(b.words.data() + from);
+    ++parts;
+    port_.issue({0, true, 0, b.address + 4 * from, 4 * (to - from), {bytes, 4 * (to - from)}}, now_);
+    from = to;
+  }
+  parts_.push(parts);
+  return true;
+}
+
+/// The words of a pair become one of the result.
+bool RemapModel::blend_words(bool taken) {
+  const bool store = word_valid_ && !access_.final;
+  bool ends = false;
+  if (!blended_valid_ || taken) {
+    ends = word_valid_ && access_.final;
+    if (ends) {
+      words_[access_.which] = word_;
+      blended_ = access_.pair.border ? job_.border : job_.bilinear ? blend(access_.pair, words_) : word_;
+      blended_pair_ = access_.pair;
+    }
+    blended_valid_ = ends;
+  }
+  if (store) words_[access_.which] = word_;
+  return store || ends;
+}
+
+/// The next access gets its word, out of the cache or of the line that has come for it.
+bool RemapModel::data(bool blend_ready) {
+  if (word_valid_ && !blend_ready) return false;
+  const Access* const access = cache_.next(now_);
+  word_valid_ = access && (!access->miss || cache_.line_there(now_));
+  if (!word_valid_) return false;
+  access_ = *access;
+  word_ = cache_.pop();
+  return true;
+}
+
+/// The next access of the pair at hand. @return it is taken; which_ == 0 then: the pair too
+bool RemapModel::tags(bool room, bool may_ask) {
+  if (!room) return false;
+  const Pair& pair = *addresses_.front();
+  Access a;
+  a.final = !job_.bilinear || pair.border || which_ == 3;
+  a.which = static_cast<std::uint8_t>(which_);
+  a.word = (pair.src + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) &
+           0x3FFF'FFFF;
+  a.miss = !pair.border && !cache_.hit(a.word);
+  if (a.miss && !may_ask) return false;
+  a.there = now_ + 1;
+  a.pair = pair;
+  if (a.miss) {
+    line_asked_ = true;
+    line_ = a.word / SourceCache::kLineWords * 4 * SourceCache::kLineWords;
+  }
+  cache_.push(a);
+  if (a.final) end_.bad += pair.bad;
+  which_ = a.final ? 0 : which_ + 1;
+  return true;
+}
+
+/// What arrives in this clock.
+bool RemapModel::arrivals() {
+  bool failed = false, moved = false;
+  while (!read_arrivals_.empty() && read_arrivals_.front().clock <= now_) {
+    failed |= read_arrivals_.front().error;
+    end_.read_error |= read_arrivals_.front().error;
+    read_arrivals_.pop();
+    moved = true;
+  }
+  while (!write_arrivals_.empty() && write_arrivals_.front().clock <= now_) {
+    failed |= write_arrivals_.front().error;
+    end_.write_error |= write_arrivals_.front().error;
+    write_arrivals_.pop();
+    parts_.pop();
+    packer_.answered();
+    ++end_.writes;
+    moved = true;
+  }
+  if (failed && state_ == State::kRun) state_ = State::kDrain;
+  return moved;
+}
+
+void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8_t> data,
+                             std::span<const std::uint64_t> beats) {
+  --reads_;
+  // What came while the model was ahead of it is new to it now.
+  const auto seen = [&](std::uint64_t clock) { return std::max(clock + 1, now_); };
+  if (error) read_arrivals_.push({std::max(beats.front(), now_), true});
+  read_arrivals_.push({std::max(beats.back(), now_), error});
+  if (state_ == State::kDrain) return;
+  if (id == kSourceReads) return cache_.arrive(data, seen(beats.back()));
+  for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.subspan(8 * n, 8), seen(beats[n]));
+}
+
+void RemapModel::answer_write(bool error, std::uint64_t clock) {
+  part_error_ |= error;
+  // The writes whose answers lie ahead are the oldest ones.
+  unsigned& parts = parts_.at(write_arrivals_.size());
+  if (--parts > 0) return;
+  write_arrivals_.push({std::max(clock, now_), part_error_});
+  part_error_ = false;
+}
+
+}  // namespace fovea::engine

@@ -1,0 +1,206 @@
+#include "model/engine/core/tlm_backend.h"
+
+#include <algorithm>
+
+#include "model/engine/core/engine_registers.h"
+
+namespace fovea::engine {
+namespace {
+
+/// Offsets and bits of EngineRegs, as constants: this is the path of every access.
+enum Offset : std::uint32_t {
+  kId = 0x00, kCtrl = 0x04, kStatus = 0x08, kEvents = 0x0C, kEnables = 0x10, kSubmit = 0x14, kEnded = 0x18,
+  kClocks = 0x20, kLines = 0x24, kWrites = 0x28, kBad = 0x2C,
+  kMode = 0x40, kSize = 0x44, kSrcBase = 0x48, kSrcPitch = 0x4C, kSrcSize = 0x50, kDstBase = 0x54,
+  kDstPitch = 0x58, kMapBase = 0x5C, kMapWords = 0x60, kBorder = 0x64, kRadiusLimit = 0x68, kCentreX = 0x6C,
+  kCentreY = 0x70, kForms = 0x74,
+};
+constexpr std::uint32_t kEnable = 1, kAbort = 2;
+constexpr std::uint32_t kDone = 1, kRefused = 2, kReadError = 4, kWriteError = 8, kAborted = 16, kOverflow = 32,
+                        kDropped = 64, kAllEvents = 127;
+
+}  // namespace
+
+void TlmBackend::reset() {
+  registers_.fill(0);
+  queue_.clear();
+  model_.reset();
+  enabled_from_ = idle_from_ = beat_free_ = answer_free_ = 0;
+  running_ = false;
+  update_interrupt();
+}
+
+bool TlmBackend::enabled() const { return value(kCtrl) & kEnable; }
+
+/// The time from which on the model may count on every answer before `clock`: that of the edge before it.
+Picoseconds TlmBackend::time_before(std::uint64_t clock) const { return clock_.edge(clock - 1); }
+
+/// The clock in which the oldest job is taken.
+std::uint64_t TlmBackend::take_at() const {
+  if (!enabled() || queue_.empty() || !model_.idle()) return RemapModel::kNoClock;
+  return std::max({queue_.front().there, enabled_from_, idle_from_});
+}
+
+/// Clocks up to that before `next` have happened.
+Picoseconds TlmBackend::run(Picoseconds now) {
+  if (!clock_.running()) return kNever;
+  const std::uint64_t next = clock_.edge_after(now);
+  for (;;) {
+    const std::uint64_t wait = model_.run(next);
+    // The registers learn of the end a clock after it; the next job may begin in that clock.
+    const bool over = running_ && model_.done_at() != RemapModel::kNoClock;
+    const std::uint64_t end = over ? model_.done_at() + 1 : RemapModel::kNoClock;
+    if (over && end < next) {
+      end_job();
+      continue;
+    }
+    const std::uint64_t begin = over ? RemapModel::kNoClock : take_at();
+    if (begin < next) {
+      take(begin);
+      continue;
+    }
+    const std::uint64_t event = std::min(end, begin);  // seen at its own edge
+    Picoseconds call = event == RemapModel::kNoClock ? kNever : clock_.edge(event);
+    if (wait != RemapModel::kNoClock) call = std::min(call, time_before(wait));
+    return call;
+  }
+}
+
+void TlmBackend::take(std::uint64_t clock) {
+  const Entry entry = queue_.front();
+  queue_.pop();
+  running_ = true;
+  tag_ = entry.tag;
+  model_.start(entry.job, clock);
+}
+
+void TlmBackend::end_job() {
+  const JobEnd& e = model_.end();
+  std::uint32_t events = e.refused * kRefused | e.read_error * kReadError | e.write_error * kWriteError |
+                         e.aborted * kAborted;
+  if (!events) events = kDone;
+  const std::uint32_t count = (value(kEnded) >> 16) + 1;
+  at(kEnded) = count << 16 | events << 8 | tag_;
+  at(kClocks) = e.clocks;
+  at(kLines) = e.lines;
+  at(kWrites) = e.writes;
+  at(kBad) = e.bad;
+  running_ = false;
+  idle_from_ = model_.done_at() + 1;
+  model_.reset();
+  raise(events);
+}
+
+void TlmBackend::raise(std::uint32_t events) {
+  at(kEvents) |= events;
+  update_interrupt();
+}
+
+void TlmBackend::update_interrupt() {
+  const bool level = value(kEvents) & value(kEnables);
+  if (level != interrupt_) host_.interrupt(level);
+  interrupt_ = level;
+}
+
+std::uint32_t TlmBackend::read(std::uint32_t offset, Picoseconds) {
+  switch (offset) {
+    case kId:
+      return kIdentity;
+    case kStatus: {
+      const auto waiting = static_cast<std::uint32_t>(queue_.size());
+      return (running_ ? 1u : 0u) | waiting << 4 | (waiting == kQueueDepth ? 1u << 8 : 0u);
+    }
+    default:
+      return offset / 4 < kRegisters ? value(offset) : 0;
+  }
+}
+
+void TlmBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
+  const std::uint64_t clock = clock_.edge_after(now);  // at whose end it takes effect
+  switch (offset) {
+    case kCtrl:
+      if (word & kAbort) abort(clock);
+      if ((word & kEnable) && !enabled()) enabled_from_ = clock + 1;
+      at(kCtrl) = word & kEnable;
+      return;
+    case kEvents:
+      at(kEvents) &= ~word;
+      return update_interrupt();
+    case kEnables:
+      at(kEnables) = word & kAllEvents;
+      return update_interrupt();
+    case kSubmit:
+      return submit(static_cast<std::uint8_t>(word), clock);
+    default:
+      if (offset >= kMode && offset / 4 < kRegisters) at(offset) = word;
+  }
+}
+
+void TlmBackend::submit(std::uint8_t tag, std::uint64_t clock) {
+  if (queue_.size() == kQueueDepth) return raise(kOverflow);
+  queue_.push({window(), tag, clock + 1});
+}
+
+void TlmBackend::abort(std::uint64_t clock) {
+  model_.abort(clock);
+  if (queue_.empty()) return;
+  queue_.clear();
+  raise(kDropped);
+}
+
+/// The job of the window; fields as in EngineRegs.
+Job TlmBackend::window() const {
+  const auto field = [this](std::uint32_t offset, unsigned lsb, unsigned bits) {
+    return value(offset) >> lsb & ((1u << bits) - 1);
+  };
+  Job job;
+  job.mode = static_cast<RemapMode>(field(kMode, 0, 2));
+  job.bilinear = field(kMode, 2, 1);
+  job.grid_log2 = field(kMode, 8, 3);
+  job.pieces = field(kMode, 16, 8);
+  job.piece_log2 = field(kMode, 24, 5);
+  job.pairs = field(kSize, 0, 12);
+  job.rows = field(kSize, 16, 13);
+  job.src_base = value(kSrcBase) >> 2;
+  job.src_pitch = field(kSrcPitch, 2, 13);
+  job.src_width = field(kSrcSize, 0, 13);
+  job.src_height = field(kSrcSize, 16, 13);
+  job.dst_base = value(kDstBase) >> 2;
+  job.dst_pitch = field(kDstPitch, 2, 13);
+  job.map_base = value(kMapBase) & ~63u;
+  job.map_words = field(kMapWords, 0, 24);
+  job.border = value(kBorder);
+  job.radius_limit = value(kRadiusLimit);
+  job.centre_x = static_cast<std::int32_t>(value(kCentreX));
+  job.centre_y = static_cast<std::int32_t>(value(kCentreY));
+  for (unsigned n = 0; n < 3; ++n) {
+    job.a[n] = static_cast<std::int32_t>(value(kForms + 4 * n));
+    job.b[n] = static_cast<std::int32_t>(value(kForms + 12 + 4 * n));
+    job.c[n] = static_cast<std::int32_t>(value(kForms + 24 + 4 * n));
+  }
+  return job;
+}
+
+/// Tags carry what an answer has to tell: the identifier of a read.
+void TlmBackend::issue(const Burst& burst, std::uint64_t clock) {
+  Burst b = burst;
+  b.tag = burst.id;
+  host_.issue(b, clock_.edge(clock));
+}
+
+void TlmBackend::answer(const Answer& a) {
+  if (a.write) {
+    answer_free_ = std::max(clock_.edge_after(a.last), answer_free_ + 1);
+    return model_.answer_write(a.error, answer_free_);
+  }
+  std::array<std::uint64_t, 8> beats;
+  const std::size_t count = a.data.size() / 8;
+  for (std::size_t n = 0; n < count; ++n) {
+    const Picoseconds t = count == 1 ? a.last : a.first + (a.last - a.first) * n / (count - 1);
+    beat_free_ = std::max(clock_.edge_after(t), beat_free_ + 1);
+    beats[n] = beat_free_;
+  }
+  model_.answer_read(static_cast<unsigned>(a.tag), a.error, a.data, {beats.data(), count});
+}
+
+}  // namespace fovea::engine
