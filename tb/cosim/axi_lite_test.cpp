@@ -17,7 +17,7 @@ struct Rig {
   }
   AxiLite lite;
   LiteWires wires;
-  LiteChecker checker;
+  RegisterPortChecker checker;
 };
 
 TEST(AxiLiteTest, AWriteEndsWithItsAnswerWhicheverPartIsTakenFirst) {

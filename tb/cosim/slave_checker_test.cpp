@@ -92,9 +92,9 @@ LiteWires answer(bool write, bool ready = true, unsigned response = 0, std::uint
   return w;
 }
 
-TEST(LiteCheckerTest, ComplainsOfEachRule) {
+TEST(RegisterPortCheckerTest, ComplainsOfEachRule) {
   const auto bad = [](const std::vector<LiteWires>& clocks, const char* text) {
-    expect_complaint<LiteChecker>(clocks, text);
+    expect_complaint<RegisterPortChecker>(clocks, text);
   };
   bad({address(true, false), LiteWires{}}, "AWVALID taken back");
   bad({address(true, false), address(true, false, 4)}, "AW changed");

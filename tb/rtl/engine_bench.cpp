@@ -1,21 +1,21 @@
 #include "tb/rtl/engine_bench.h"
 
-#include "tb/rtl/job_ports.h"
+#include "Vremap_top.h"
 
 namespace fovea::rtl {
 
 EngineBench::EngineBench(std::size_t bytes, std::uint32_t seed)
-    : dut_(std::make_unique<Vbench_top>()), random_(seed), words_(bytes / 4) {
+    : dut_(std::make_unique<Vremap_top>()), random_(seed), words_(bytes / 4) {
   dut_->rst_ni = 0;
-  clock();
-  clock();
+  tick();
+  tick();
   dut_->rst_ni = 1;
-  clock();
+  tick();
 }
 
 EngineBench::~EngineBench() = default;
 
-void EngineBench::clock() {
+void EngineBench::tick() {
   dut_->clk_i = 1;
   dut_->eval();
   dut_->clk_i = 0;
@@ -29,15 +29,15 @@ std::uint32_t& EngineBench::word(std::uint32_t word_address) {
   return words_[at];
 }
 
-void EngineBench::drive(const Memory& memory) {
-  Vbench_top& d = *dut_;
-  d.ar_ready_i = chance(memory);
-  d.aw_ready_i = chance(memory);
-  d.w_ready_i = chance(memory);
+void EngineBench::drive() {
+  Vremap_top& d = *dut_;
+  d.ar_ready_i = chance();
+  d.aw_ready_i = chance();
+  d.w_ready_i = chance();
   // The oldest read of one identifier or of the other; only beats of one identifier have to be in
   // order.
   d.r_valid_i = 0;
-  if (!reads_.empty() && chance(memory)) {
+  if (!reads_.empty() && chance()) {
     reading_ = 0;
     if (memory.swaps && random_() % 2) {
       while (reading_ < reads_.size() && reads_[reading_].id == reads_[0].id) ++reading_;
@@ -57,8 +57,8 @@ void EngineBench::drive(const Memory& memory) {
   d.eval();
 }
 
-void EngineBench::sample(const Memory& memory) {
-  Vbench_top& d = *dut_;
+void EngineBench::sample() {
+  Vremap_top& d = *dut_;
   AxiClock c;
   c.ar = {d.ar_valid_o != 0, d.ar_ready_i != 0, d.ar_id_o, d.ar_addr_o, d.ar_len_o};
   c.aw = {d.aw_valid_o != 0, d.aw_ready_i != 0, 0, d.aw_addr_o, d.aw_len_o};
@@ -76,6 +76,16 @@ void EngineBench::sample(const Memory& memory) {
     answers_.pop_front();
   }
   checker_.clock(c);
+  lite_checker_.clock({.aw = d.s_aw_valid_i && d.s_aw_ready_o,
+                       .w = d.s_w_valid_i && d.s_w_ready_o,
+                       .ar = d.s_ar_valid_i && d.s_ar_ready_o,
+                       .b_valid = d.s_b_valid_o != 0,
+                       .b_ready = d.s_b_ready_i != 0,
+                       .r_valid = d.s_r_valid_o != 0,
+                       .r_ready = d.s_r_ready_i != 0,
+                       .b_response = d.s_b_resp_o,
+                       .r_response = d.s_r_resp_o,
+                       .r_data = d.s_r_data_o});
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
   if (c.ar.valid && c.ar.ready)
@@ -100,40 +110,137 @@ void EngineBench::sample(const Memory& memory) {
   }
 }
 
-Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory memory,
-                        std::optional<unsigned> abort_after) {
-  Vbench_top& d = *dut_;
-  result_ = {};
-  set_job(d, job);
-  d.en_map_base_i = map_base / 64;
-  d.en_map_words_i = static_cast<std::uint32_t>(map_words(job));
-  d.en_border_i = border;
-  d.en_job_valid_i = 1;
-  d.eval();
-  if (!d.en_job_ready_o) throw std::runtime_error("the engine does not take a job");
-  clock();
-  d.en_job_valid_i = 0;
-  set_job(d, Job{});
-  const std::uint64_t begin = now_, most = 200'000 + std::uint64_t{job.pairs} * job.rows * 200;
-  for (bool done = false; !done;) {
-    d.en_abort_i = abort_after && now_ - begin == *abort_after;
-    drive(memory);
-    sample(memory);
-    done = d.en_done_o;
-    if (now_ - begin > most) throw std::runtime_error("the engine stands still");
-    clock();
+void EngineBench::clock() {
+  drive();
+  sample();
+  tick();
+}
+
+RegisterAnswer EngineBench::access(std::optional<RegisterWrite> write,
+                                   std::optional<unsigned> read) {
+  Vremap_top& d = *dut_;
+  RegisterAnswer answer;
+  bool address = !write, data = !write, written = !write, asked = !read, had = !read;
+  const auto soon = [this] { return random_() % 16 < bus_willing; };
+  for (unsigned n = 0; !written || !had; ++n) {
+    if (n == 10'000) throw std::runtime_error("the registers do not answer");
+    if (!address && soon()) {
+      d.s_aw_valid_i = 1;
+      d.s_aw_addr_i = write->offset;
+    }
+    if (!data && soon()) {
+      d.s_w_valid_i = 1;
+      d.s_w_data_i = write->value;
+      d.s_w_strb_i = write->strobes;
+    }
+    if (!asked && soon()) {
+      d.s_ar_valid_i = 1;
+      d.s_ar_addr_i = *read;
+    }
+    d.s_b_ready_i = !written && soon();
+    d.s_r_ready_i = !had && soon();
+    drive();
+    const bool took_address = d.s_aw_valid_i && d.s_aw_ready_o,
+               took_data = d.s_w_valid_i && d.s_w_ready_o,
+               took_read = d.s_ar_valid_i && d.s_ar_ready_o;
+    if (d.s_b_valid_o && d.s_b_ready_i) {
+      written = true;
+      answer.write_response = d.s_b_resp_o;
+    }
+    if (d.s_r_valid_o && d.s_r_ready_i) {
+      had = true;
+      answer.read_response = d.s_r_resp_o;
+      answer.data = d.s_r_data_o;
+    }
+    sample();
+    tick();
+    if (took_address) address = true, d.s_aw_valid_i = 0;
+    if (took_data) data = true, d.s_w_valid_i = 0;
+    if (took_read) asked = true, d.s_ar_valid_i = 0;
   }
-  d.ar_ready_i = d.aw_ready_i = d.w_ready_i = d.r_valid_i = d.b_valid_i = d.en_abort_i = 0;
-  d.eval();
+  d.s_b_ready_i = d.s_r_ready_i = 0;
+  return answer;
+}
+
+void EngineBench::write(unsigned offset, std::uint32_t value, unsigned strobes) {
+  if (access(RegisterWrite{offset, value, strobes}, {}).write_response != 0)
+    throw std::runtime_error("a write to a register was answered with an error");
+}
+
+std::uint32_t EngineBench::read(unsigned offset) {
+  const RegisterAnswer answer = access({}, offset);
+  if (answer.read_response != 0)
+    throw std::runtime_error("a read of a register was answered with an error");
+  return answer.data;
+}
+
+void EngineBench::submit(const Job& job, std::uint32_t map_base, std::uint32_t border,
+                         std::uint8_t tag) {
+  const std::uint32_t window[] = {
+      static_cast<unsigned>(job.mode) | (job.bilinear ? 4u : 0u) | job.grid_log2 << 8 |
+          job.pieces << 16 | job.piece_log2 << 24,
+      job.pairs | job.rows << 16,
+      job.src_base * 4,
+      job.src_pitch * 4,
+      job.src_width | job.src_height << 16,
+      job.dst_base * 4,
+      job.dst_pitch * 4,
+      map_base,
+      static_cast<std::uint32_t>(map_words(job)),
+      border,
+      job.radius_limit,
+      static_cast<std::uint32_t>(job.centre_x),
+      static_cast<std::uint32_t>(job.centre_y)};
+  unsigned offset = Offset::kMode;
+  for (const std::uint32_t value : window) {
+    write(offset, value);
+    offset += 4;
+  }
+  for (const auto* form : {&job.a, &job.b, &job.c})
+    for (const std::int32_t coefficient : *form) {
+      write(offset, static_cast<std::uint32_t>(coefficient));
+      offset += 4;
+    }
+  write(Offset::kSubmit, tag);
+}
+
+bool EngineBench::interrupt() const { return dut_->irq_o != 0; }
+bool EngineBench::busy() const { return dut_->busy_o != 0; }
+
+void EngineBench::until_interrupt(std::uint64_t most_clocks) {
+  for (const std::uint64_t begin = now_; !interrupt(); clock())
+    if (now_ - begin > most_clocks) throw std::runtime_error("the engine stands still");
+}
+
+Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory how,
+                        std::optional<unsigned> abort_after) {
+  constexpr std::uint32_t kEnable = 1, kAbort = 2;
+  result_ = {};
+  memory = {};
+  write(Offset::kCtrl, kEnable);
+  write(Offset::kEnables, 0x1F);
+  memory = how;
+  submit(job, map_base, border, 1);
+  if (abort_after) {
+    for (unsigned n = 0; n < *abort_after; ++n) clock();
+    write(Offset::kCtrl, kEnable | kAbort);
+  }
+  until_interrupt(200'000 + std::uint64_t{job.pairs} * job.rows * 200);
   if (!checker_.quiet()) throw std::runtime_error("something is under way after the end of a job");
-  result_.refused = d.en_refused_o;
-  result_.read_error = d.en_read_error_o;
-  result_.write_error = d.en_write_error_o;
-  result_.aborted = d.en_aborted_o;
-  result_.clocks = d.en_clocks_o;
-  result_.lines = d.en_lines_o;
-  result_.writes = d.en_writes_o;
-  result_.bad = d.en_bad_o;
+  const std::uint32_t events = read(Offset::kEvents);
+  if ((read(Offset::kEnded) >> 8 & 0xFF) != events)
+    throw std::runtime_error("ENDED has other events than EVENTS");
+  if (((events & 1) != 0) != ((events & 0x1E) == 0))
+    throw std::runtime_error("a job ended as it should and otherwise, or neither");
+  write(Offset::kEvents, events);
+  result_.refused = events & 2;
+  result_.read_error = events & 4;
+  result_.write_error = events & 8;
+  result_.aborted = events & 16;
+  result_.clocks = read(Offset::kClocks);
+  result_.lines = read(Offset::kLines);
+  result_.writes = read(Offset::kWrites);
+  result_.bad = read(Offset::kBad);
   return result_;
 }
 

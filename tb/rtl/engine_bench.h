@@ -1,5 +1,5 @@
-// Runs the verilated engine on a memory with random latencies; every clock goes through the
-// protocol checker.
+// Runs the verilated device, programmed through its registers, on a memory with random latencies;
+// every clock goes through the protocol checkers.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -11,8 +11,9 @@
 
 #include "model/engine/rtl/axi_checker.h"
 #include "tb/rtl/golden.h"
+#include "tb/rtl/lite_checker.h"
 
-class Vbench_top;
+class Vremap_top;
 
 namespace fovea::rtl {
 
@@ -31,17 +32,52 @@ struct Result {
   std::uint64_t read_bytes = 0, written_bytes = 0;
 };
 
+/// Byte offsets of the registers, from the table of rtl/README.md.
+struct Offset {
+  static constexpr unsigned kId = 0x00, kCtrl = 0x04, kStatus = 0x08, kEvents = 0x0C,
+                            kEnables = 0x10, kSubmit = 0x14, kEnded = 0x18, kClocks = 0x20,
+                            kLines = 0x24, kWrites = 0x28, kBad = 0x2C, kMode = 0x40;
+};
+
+struct RegisterWrite {
+  unsigned offset;
+  std::uint32_t value;
+  unsigned strobes = 15;
+};
+
+/// What the slave answered; what was not asked is 0.
+struct RegisterAnswer {
+  unsigned write_response = 0, read_response = 0;
+  std::uint32_t data = 0;
+};
+
 class EngineBench {
  public:
   static constexpr std::uint32_t kBase = 0x8000'0000;  ///< byte address of the memory
   explicit EngineBench(std::size_t bytes, std::uint32_t seed = 1);
   ~EngineBench();
   std::uint32_t& word(std::uint32_t word_address);
-  /// @param abort_after clocks until abort_i; empty: never
+  /// Runs a job and clears its events. The queue is empty before and after.
+  /// @param abort_after clocks until ABORT is written; empty: never
   /// @throws std::runtime_error for a broken rule of AXI, an access beyond the memory, or an engine
   /// that stands still
   Result run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory memory = {},
              std::optional<unsigned> abort_after = {});
+
+  /// A write, a read, or both at once, each with its channels at any distance.
+  RegisterAnswer access(std::optional<RegisterWrite> write, std::optional<unsigned> read);
+  /// @throws std::runtime_error for an answer that is an error
+  void write(unsigned offset, std::uint32_t value, unsigned strobes = 15);
+  std::uint32_t read(unsigned offset);
+  /// Writes a job into the window, and pushes it into the queue.
+  void submit(const Job& job, std::uint32_t map_base, std::uint32_t border, std::uint8_t tag);
+  void clock();  ///< one clock of device and memory
+  void until_interrupt(std::uint64_t most_clocks);
+  bool interrupt() const;
+  bool busy() const;
+  bool quiet() const { return checker_.quiet(); }  ///< nothing is under way on the memory's bus
+  Memory memory{};
+  unsigned bus_willing = 16;  ///< how soon the master of the registers gives a channel, in 1/16
 
  private:
   struct Read {
@@ -54,14 +90,15 @@ class EngineBench {
     std::uint64_t due;
     bool fault;
   };
-  void drive(const Memory& memory);
-  void sample(const Memory& memory);
-  void clock();
-  bool chance(const Memory& memory) { return random_() % 16 < memory.willing; }
-  std::unique_ptr<Vbench_top> dut_;
+  void tick();
+  void drive();
+  void sample();
+  bool chance() { return random_() % 16 < memory.willing; }
+  std::unique_ptr<Vremap_top> dut_;
   std::mt19937 random_;
   std::vector<std::uint32_t> words_;
   AxiChecker checker_{4 + 8, 4};  // four bursts of the map reader's buffer, eight lines
+  LiteChecker lite_checker_;
   std::uint64_t now_ = 0;
   std::deque<Read> reads_;
   std::size_t reading_ = 0;  ///< whose beat is on the wires

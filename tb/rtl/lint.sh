@@ -6,9 +6,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 lint() {  # FOLDER TOP
   verilator --lint-only -Wall --top-module "$2" -y "$1/remap" "$rtl/lint.vlt" "$1/remap/remap_pkg.sv" \
-    "$1/remap/$2.sv" >"$work/log" 2>&1
+    "$1/remap/remap_regs_pkg.sv" "$1/remap/$2.sv" >"$work/log" 2>&1
 }
-for top in remap_addrgen remap_engine; do
+for top in remap_addrgen remap_top; do
   lint "$rtl" "$top" || { cat "$work/log"; echo "lint.sh: $top is not clean"; exit 1; }
 done
 cp -r "$rtl/remap" "$work/remap"

@@ -45,7 +45,6 @@ void PairBackend::issued(bool twin, const Burst& b, Picoseconds at) {
   const unsigned n = stream_of(b.write, b.id);
   Stream& s = streams_[n];
   if (twin) s.asking.push_back({b.tag, b.bytes, at});
-  else open_[b.tag] = n;
   if (disturbed_ || different_) {
     ++summary_.skipped;
   } else {
@@ -53,7 +52,11 @@ void PairBackend::issued(bool twin, const Burst& b, Picoseconds at) {
         .push_back({b.address, {b.data.begin(), b.data.end()}, b.bytes, at});
     compare(n);
   }
-  if (!twin) host_.issue(b, at);
+  if (twin) return;
+  Burst out = b;
+  out.tag = ++tags_;
+  open_[out.tag] = {n, b.tag};
+  host_.issue(out, at);
 }
 
 void PairBackend::compare(unsigned stream) {
@@ -80,9 +83,12 @@ void PairBackend::compare(unsigned stream) {
 void PairBackend::answer(const Answer& a) {
   const auto open = open_.find(a.tag);
   if (open == open_.end()) return;
-  streams_[open->second].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
+  const auto [stream, tag] = open->second;
   open_.erase(open);
-  owner_->answer(a);
+  streams_[stream].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
+  Answer own = a;
+  own.tag = tag;
+  owner_->answer(own);
   if (a.error) disturb();
 }
 

@@ -97,7 +97,12 @@ class PairBackend : public engine::EngineBackend {
   Side owner_side_{*this, false}, twin_side_{*this, true};
   std::unique_ptr<EngineBackend> owner_, twin_;
   std::array<Stream, 3> streams_;
-  std::map<std::uint64_t, unsigned> open_;  // tags of the owner without an answer: their stream
+  struct Open {
+    unsigned stream;
+    std::uint64_t tag;  // the owner's own; those need not differ from each other
+  };
+  std::map<std::uint64_t, Open> open_;  // requests of the owner without an answer, by the tag that the host has
+  std::uint64_t tags_ = 0;
   bool disturbed_ = false, different_ = false;
   PairSummary summary_;
 };

@@ -31,7 +31,7 @@ constexpr std::uint32_t kSubmit = 0x14;
 struct Checkers {
   AxiChecker master{kReads, kWrites};
   AxiAnswerChecker answers;
-  LiteChecker registers;
+  RegisterPortChecker registers;
 };
 
 }  // namespace

@@ -63,9 +63,9 @@ class AxiAnswerChecker : RuleChecker {
 };
 
 /// Both sides of a register port.
-class LiteChecker : RuleChecker {
+class RegisterPortChecker : RuleChecker {
  public:
-  LiteChecker() : RuleChecker("AXI4-Lite") {}
+  RegisterPortChecker() : RuleChecker("AXI4-Lite") {}
   void clock(const LiteWires& c) {
     stable(c.aw, before_.aw, c.aw.address == before_.aw.address, "AW");
     stable(c.ar, before_.ar, c.ar.address == before_.ar.address, "AR");
