@@ -38,15 +38,23 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   // Ports that only a synthetic load drives.
   std::vector<const ParamBase*> loads;
   for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});
+  const auto load_alone = [this, loads](ParamBase& p, const std::string& name) {
+    const bool engine = name == stat_name(Master::kRemapEngine);
+    std::vector<const ParamBase*> deciders = loads;
+    if (engine) deciders.push_back(&soc.engine.kind);
+    const auto effective = [this, name, engine] {
+      return (engine && soc.engine.present()) ||
+             std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
+               return load.active() && load.port.is(name);
+             });
+    };
+    p.matters_only("a load with load.port = " + name + (engine ? ", or an engine" : ""), deciders, effective);
+  };
   for (const MasterInfo& m : kMasters.rows) {
     if (!m.spare || m.side == Side::kWrites) continue;
     const std::string name(m.statistics);
     for (ParamBase* p : soc.crossbar.ports[stat_index(m.id)]->params())
-      p->matters_only("a load with load.port = " + name, loads, [this, name] {
-        return std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
-          return load.active() && load.port.is(name);
-        });
-      });
+      load_alone(*p, name);
   }
   // Masters that nothing but a load drives.
   for (EnumParam& p : priority.of) {
@@ -54,12 +62,7 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     const bool spare = std::any_of(kMasters.rows.begin(), kMasters.rows.end(), [&](const MasterInfo& m) {
       return m.spare && priority_name(m) == name;
     });
-    if (spare)
-      p.matters_only("a load with load.port = " + name, loads, [this, name] {
-        return std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
-          return load.active() && load.port.is(name);
-        });
-      });
+    if (spare) load_alone(p, name);
   }
   // Of this project's firmware and the synthetic loads, only loads use internal RAM beside the core.
   std::vector<const ParamBase*> places;

@@ -29,6 +29,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   };
   enum class Report {
     kAtLastBeat,   ///< on_done is called in kernel time, at the burst's last beat
+    kAtFirstBeat,  ///< the same, but for a read at its first beat; its last one lies ahead then
     /// on_done is called within the memory path, when the outcome is decided; its times may lie
     /// ahead. It may issue bursts from `last` on, but notify nothing: no kernel event is spent on
     /// the burst.
@@ -154,20 +155,26 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     Slot* best = nullptr;
     for (Slot& s : slots_)
       if (s.due &&
-          (!best || s.last < best->last || (s.last == best->last && s.order < best->order)) &&
+          (!best || reported(s) < reported(*best) ||
+           (reported(s) == reported(*best) && s.order < best->order)) &&
           !overtakes(s))
         best = &s;
     return best;
   }
 
+  /// When the outcome is reported.
+  Picoseconds& reported(Slot& s) const {
+    return report_ == Report::kAtFirstBeat && !s.write ? s.first : s.last;
+  }
   void schedule() {
-    if (Slot* s = next_due()) due_.at(s->last);
+    if (Slot* s = next_due()) due_.at(reported(*s));
   }
 
   void deliver() {
     while (Slot* s = next_due()) {
-      if (s->last > kernel_()) break;
-      s->last = kernel_();  // later than its end if it had to wait for an older one
+      if (reported(*s) > kernel_()) break;
+      reported(*s) = kernel_();  // later if it had to wait for an older one
+      s->last = std::max(s->last, s->first);
       report(*s);
     }
     schedule();

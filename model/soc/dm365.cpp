@@ -21,7 +21,8 @@ cpu::RegionMap regions(const Dm365Params& params, std::size_t internal_bytes) {
   out.add("itcm", INTERNAL_RAM_BASE, internal_bytes);
   out.add("dtcm", INTERNAL_RAM_DATA_BASE, internal_bytes);
   out.add("sdram", bus::AddressMap().ddr_base, params.ddr.size_bytes());
-  for (const Placement& row : params.rows) out.add("registers", row.base, row.size);
+  for (const Placement& row : rows_present(params.rows, params.block_params))
+    out.add("registers", row.base, row.size);
   return out;
 }
 
@@ -38,8 +39,9 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), end_of_instant),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, end_of_instant, bus_blocks(joined(params.rows, external))),
-      placed(joined(params.rows, external), params.block_params, scr.memory()),
+      config("config", params.config_bus, end_of_instant, bus_blocks(joined(rows_present(params.rows, params.block_params), external))),
+      placed(joined(rows_present(params.rows, params.block_params), external), params.block_params,
+             scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);
   for (std::size_t i = 0; i < params.loads.size(); ++i)
@@ -212,7 +214,11 @@ void Dm365::wire_memory() {
   for (const MasterInfo& m : kMasters.rows) connect(m, sockets[index(m.id)]);
   for (auto& load : loads) load->sdram_initialised(ddr.initialised);
   scr.config_socket.bind(config.socket);
-  config.describe = [this](std::uint32_t address) { return not_modelled_at(address, params_.rows); };
+  config.describe = [this](std::uint32_t address) {
+    const BlockParams& params = params_.block_params;
+    const std::string absent = absent_at(address, rows_present(params_.rows, params, false));
+    return absent.empty() ? not_modelled_at(address, rows_present(params_.rows, params)) : absent;
+  };
   scr.ram_socket.bind(tcm_dma.socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(master_with(PrioritySource::kVideoWrite))]);

@@ -20,6 +20,7 @@
 #include "model/cpu/tcm_dma.h"
 #include "model/dma/edma_cc.h"
 #include "model/dma/edma_tc.h"
+#include "model/engine/engine_params.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
 #include "model/periph/clock_tree.h"
@@ -60,6 +61,7 @@ struct Dm365Params : ParamTree {
   BlockParams block_params{*this};
   mem::DdrParams& ddr = block_params.get<mem::DdrParams>();
   dma::EdmaParams& edma = block_params.get<dma::EdmaParams>();
+  engine::EngineParams& engine = block_params.get<engine::EngineParams>();
   dma::EdmaTcParams& edma_tc = block_params.get<dma::EdmaTcParams>();
   periph::PllParams& pll = block_params.get<periph::PllParams>();
   periph::PscParams& psc = block_params.get<periph::PscParams>();

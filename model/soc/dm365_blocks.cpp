@@ -5,6 +5,7 @@
 // DM365.
 #include "model/dma/edma_cc.h"
 #include "model/dma/edma_tc.h"
+#include "model/engine/remap_engine.h"
 #include "model/mem/ddr_module.h"
 #include "model/periph/aintc.h"
 #include "model/periph/gpio.h"
@@ -74,6 +75,13 @@ const Placements& dm365_blocks() {
       place<video::Osd>({"osd", "OSD", 0x01C7'1C00, 0x100, kFast, kNone, periph::kLpscVpss}),
       place<video::Venc>({"venc", "VENC", 0x01C7'1E00, 0x200, kFast, BlockClock::kVenc,
                           periph::kLpscVpss}),
+      // Hypothetical: the chip has no such block, and nothing is documented at this address. It has the
+      // priority of the imaging coprocessor (MSTPRI0.IMCOPP) and takes the interrupt input of that, which
+      // is not modelled and whose wire no multiplexer touches (IMCOPINT 11, Linux irqs.h). No power gate:
+      // none of the numbers is known to be free.
+      only_if(&engine::EngineParams::present, "key 'engine' is none",
+              place<engine::RemapEngine>({"engine", "remap engine (hypothetical)", 0x01C6'A000, 0x400, kFast,
+                                          kEdma, {}, {11}})),
   };
   return rows;
 }

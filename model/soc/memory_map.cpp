@@ -77,4 +77,14 @@ std::string not_modelled_at(std::uint32_t address, const Placements& rows) {
   return {};
 }
 
+std::string absent_at(std::uint32_t address, const Placements& rows) {
+  for (const Placement& row : rows) {
+    if (address < row.base || address - row.base >= row.size) continue;
+    char base[16];
+    std::snprintf(base, sizeof base, "0x%08x", row.base);
+    return row.title + " at " + base + " is not there: " + row.absent;
+  }
+  return {};
+}
+
 }  // namespace fovea::soc

@@ -24,5 +24,7 @@ std::vector<MapEntry> memory_map(const Placements& rows = dm365_blocks());
 /// What the map says of an address that ended in a bus error, such as "MMCSD0 at 0x01d11000 is not
 /// modelled"; empty where nothing is documented, or where all that is documented is modelled.
 std::string not_modelled_at(std::uint32_t address, const Placements& rows = dm365_blocks());
+/// The block of these rows, none of which is there, and why it is not; empty: none has the address.
+std::string absent_at(std::uint32_t address, const Placements& rows);
 
 }  // namespace fovea::soc

@@ -78,6 +78,9 @@ struct Placement : Where {
   /// Declares the parameters that the block has as `T::Params`.
   std::function<void(BlockParams&)> declare;
   std::function<std::unique_ptr<BusTarget>(const Surroundings&)> make;
+  /// Empty: the chip always has the block.
+  std::function<bool(const BlockParams&)> present = {};
+  std::string absent = {};  ///< why it is not there then, such as "key 'engine' is none"
 };
 
 /// Makes a T from its name, `args`, its `T::Params` if it has parameters, and the memory system if its
@@ -101,7 +104,7 @@ std::unique_ptr<BusTarget> make_block(const std::string& name, const Surrounding
 /// Places a block of type T (see make_block). References are passed by std::cref.
 template <class T, class... Args>
 Placement place(Where where, Args... args) {
-  Placement row{std::move(where), {}, {}};
+  Placement row{std::move(where), {}, {}, {}, {}};
   row.declare = [](BlockParams& params) {
     if constexpr (requires { typename T::Params; }) params.get<typename T::Params>();
   };
@@ -111,7 +114,23 @@ Placement place(Where where, Args... args) {
   return row;
 }
 
+/// A block that is there only with some values of its parameters; `absent`: why it is not, otherwise.
+template <class Params>
+Placement only_if(bool (Params::*condition)() const, std::string absent, Placement row) {
+  row.present = [condition](const BlockParams& params) { return (params.get<Params>().*condition)(); };
+  row.absent = std::move(absent);
+  return row;
+}
+
 using Placements = std::vector<Placement>;
+
+/// The rows whose blocks are there, with these values of the parameters; or those whose are not.
+inline Placements rows_present(const Placements& rows, const BlockParams& params, bool present = true) {
+  Placements out;
+  for (const Placement& row : rows)
+    if ((!row.present || row.present(params)) == present) out.push_back(row);
+  return out;
+}
 
 /// The blocks of the chip.
 const Placements& dm365_blocks();

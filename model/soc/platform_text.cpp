@@ -149,7 +149,9 @@ std::string block_row(const Placement& row, const BusTarget& block) {
 
 const char* driver_of(const MasterInfo& m) {
   if (!m.spare) return "a block";
-  return m.priority == PrioritySource::kQueue ? "a block, or a synthetic load too" : "a synthetic load";
+  return m.priority == PrioritySource::kQueue    ? "a block, or a synthetic load too"
+         : m.priority == PrioritySource::kImcop ? "a block with `engine`, or a synthetic load too"
+                                                : "a synthetic load";
 }
 
 std::string master_rows() {

@@ -88,6 +88,8 @@ void EngineBench::sample() {
                        .r_data = d.s_r_data_o});
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
+  if (c.ar.valid && c.ar.ready) reads_asked.push_back(c.ar);
+  if (c.aw.valid && c.aw.ready) writes_asked.push_back(c.aw);
   if (c.ar.valid && c.ar.ready)
     reads_.push_back({c.ar.id, c.ar.length, c.ar.address, due,
                       memory.read_fault && *memory.read_fault / 64 == c.ar.address / 64});
@@ -216,6 +218,8 @@ Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t bo
                         std::optional<unsigned> abort_after) {
   constexpr std::uint32_t kEnable = 1, kAbort = 2;
   result_ = {};
+  reads_asked.clear();
+  writes_asked.clear();
   memory = {};
   write(Offset::kCtrl, kEnable);
   write(Offset::kEnables, 0x1F);

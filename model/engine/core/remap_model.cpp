@@ -69,8 +69,8 @@ std::uint64_t RemapModel::next_event() const {
   const auto consider = [&](std::uint64_t clock) {
     if (clock >= now_) at = std::min(at, clock);
   };
-  if (!read_arrivals_.empty()) consider(read_arrivals_.front().clock);
-  if (!write_arrivals_.empty()) consider(write_arrivals_.front().clock);
+  if (!read_arrivals_.empty()) consider(std::max(read_arrivals_.front().clock, now_));
+  if (!write_arrivals_.empty()) consider(std::max(write_arrivals_.front().clock, now_));
   if (!map_.empty()) consider(map_.there());
   if (!cache_.no_line()) consider(cache_.line_at());
   if (sending_) consider(packer_.sent_at());
@@ -90,11 +90,12 @@ bool RemapModel::step() {
     }
     return true;
   }
-  if (state_ == State::kDrain) return drain();
+  bool moved = arrivals(now_ - 1);  // those that were not known when that clock was computed
+  if (state_ == State::kDrain) return drain() || moved;
   const bool finished = packer_.finished(), room = cache_.room(), may_ask = cache_.may_ask();
   bool map_asked = false;
   // Requests first: those of the address channel come before the write whose data end in the same clock.
-  bool moved = ask(map_asked);
+  moved |= ask(map_asked);
   moved |= send();
   const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_pair_.dst, blended_pair_.last, false);
   moved |= packer_.moved();
@@ -109,7 +110,7 @@ bool RemapModel::step() {
   const std::uint32_t* const word = map_.word(now_);
   moved |= addresses_.clock(pair_taken, word);
   moved |= map_.clock(map_asked, addresses_.took_map(), false);
-  moved |= arrivals();
+  moved |= arrivals(now_);
   if (finished && state_ == State::kRun) {
     state_ = State::kDrain;
     moved = true;
@@ -134,7 +135,7 @@ bool RemapModel::drain() {
   bool moved = ask(map_asked);
   moved |= send();
   if (map_asked) map_.clock(true, false, true);
-  return moved | arrivals();
+  return moved | arrivals(now_);
 }
 
 /// One of the two readers asks, the source first.
@@ -226,16 +227,16 @@ bool RemapModel::tags(bool room, bool may_ask) {
   return true;
 }
 
-/// What arrives in this clock.
-bool RemapModel::arrivals() {
+/// What arrives up to a clock.
+bool RemapModel::arrivals(std::uint64_t clock) {
   bool failed = false, moved = false;
-  while (!read_arrivals_.empty() && read_arrivals_.front().clock <= now_) {
+  while (!read_arrivals_.empty() && read_arrivals_.front().clock <= clock) {
     failed |= read_arrivals_.front().error;
     end_.read_error |= read_arrivals_.front().error;
     read_arrivals_.pop();
     moved = true;
   }
-  while (!write_arrivals_.empty() && write_arrivals_.front().clock <= now_) {
+  while (!write_arrivals_.empty() && write_arrivals_.front().clock <= clock) {
     failed |= write_arrivals_.front().error;
     end_.write_error |= write_arrivals_.front().error;
     write_arrivals_.pop();
@@ -253,8 +254,8 @@ void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8
   --reads_;
   // What came while the model was ahead of it is new to it now.
   const auto seen = [&](std::uint64_t clock) { return std::max(clock + 1, now_); };
-  if (error) read_arrivals_.push({std::max(beats.front(), now_), true});
-  read_arrivals_.push({std::max(beats.back(), now_), error});
+  if (error) read_arrivals_.push({beats.front(), true});
+  read_arrivals_.push({beats.back(), error});
   if (state_ == State::kDrain) return;
   if (id == kSourceReads) return cache_.arrive(data, seen(beats.back()));
   for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.subspan(8 * n, 8), seen(beats[n]));
@@ -265,7 +266,7 @@ void RemapModel::answer_write(bool error, std::uint64_t clock) {
   // The writes whose answers lie ahead are the oldest ones.
   unsigned& parts = parts_.at(write_arrivals_.size());
   if (--parts > 0) return;
-  write_arrivals_.push({std::max(clock, now_), part_error_});
+  write_arrivals_.push({clock, part_error_});
   part_error_ = false;
 }
 

@@ -59,7 +59,7 @@ class RemapModel {
   void begin();
   bool step();
   bool drain();
-  bool arrivals();
+  bool arrivals(std::uint64_t clock);
   bool pack();
   bool blend_words(bool taken);
   bool data(bool blend_ready);

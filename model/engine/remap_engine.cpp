@@ -1,0 +1,138 @@
+#include "model/engine/remap_engine.h"
+
+#include <algorithm>
+
+#include "model/engine/backends.h"
+
+namespace fovea::engine {
+namespace {
+
+constexpr unsigned kTagBits = 48;
+
+/// Bits that a read returns as they were written.
+std::uint32_t writable(const Reg& reg) {
+  std::uint32_t bits = 0;
+  for (const Field* f : reg.fields())
+    if (f->mode() == Mode::kRw) bits |= f->mask();
+  return bits;
+}
+
+}  // namespace
+
+RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& params)
+    : BusTarget(name, regs),
+      backend_(make_backend(params, clock_, *this)),
+      memory_("memory", Master::kRemapEngine, kPlaces, BurstMaster::Report::kAtFirstBeat) {
+  add_clock(clk);
+  add_interrupt("remapint", interrupt_line.out);
+  add_statistics(stats);
+  add_master(Master::kRemapEngine, memory_.socket, kPlaces);
+  memory_.on_done = [this](const BurstMaster::Completion& c) { answered(c); };
+  for (Reg* reg : regs.regs()) connect(*reg);
+  SC_METHOD(go_on);
+  sensitive << call_.event();
+  dont_initialize();
+  SC_METHOD(clock_changed);
+  sensitive << clk;
+}
+
+/// The values are the backend's; the declaration has the masks.
+void RemapEngine::connect(Reg& reg) {
+  reg.on_read([this, &reg] {
+    const Picoseconds now = kernel_time();
+    backend_->run(now);
+    reg.set(backend_->read(reg.offset(), now));
+    if (&reg == &regs.ended) count_jobs(reg.get());
+    go_on();
+  });
+  const std::uint32_t kept = writable(reg);
+  reg.on_write([this, &reg, kept](std::uint32_t word) {
+    const Picoseconds now = kernel_time();
+    backend_->run(now);
+    // A field that keeps what is written has lanes of earlier writes too; of a command only these lanes count.
+    const std::uint32_t value = reg.fields().empty() ? reg.get() : (reg.get() & kept) | (word & ~kept);
+    backend_->write(reg.offset(), value, now);
+    go_on();
+  });
+}
+
+void RemapEngine::go_on() {
+  const Picoseconds now = kernel_time();
+  call_.move_to(backend_->run(now));
+  const bool busy = backend_->busy();
+  if (was_busy_ && !busy) count_jobs(backend_->read(regs.ended.offset(), now));
+  was_busy_ = busy;
+}
+
+void RemapEngine::count_jobs(std::uint32_t ended) {
+  const auto count = static_cast<std::uint16_t>(ended >> 16);
+  stats.jobs += static_cast<std::uint16_t>(count - ended_);
+  ended_ = count;
+}
+
+void RemapEngine::clock_changed() {
+  if (clk.read() == clock_.frequency()) return;
+  const Picoseconds now = kernel_time();
+  backend_->run(now);
+  clock_.restart(clk.read(), now);
+  go_on();
+}
+
+/// Requests under way are still answered; nobody waits for them.
+void RemapEngine::on_reset(ResetKind) {
+  ++resets_;
+  waiting_.clear();
+  backend_->reset();
+  call_.cancel();
+  was_busy_ = false;
+  ended_ = 0;
+}
+
+void RemapEngine::interrupt(bool level) {
+  if (!level) return;
+  ++stats.interrupts;
+  interrupt_line.raise();
+}
+
+/// With kPlaces or fewer under way there is always a place; bursts with gaps are more requests.
+void RemapEngine::issue(const Burst& burst, Picoseconds at) {
+  if (waiting_.empty() && memory_.free_from() <= at) return put(burst, at);
+  waiting_.push_back({burst, {burst.data.begin(), burst.data.end()}, at});
+}
+
+void RemapEngine::issue_waiting() {
+  while (!waiting_.empty() && memory_.free_from() != kNever) {
+    Waiting w = std::move(waiting_.front());
+    waiting_.pop_front();
+    w.burst.data = w.data;
+    put(w.burst, std::max({w.at, memory_.free_from(), kernel_time()}));
+  }
+}
+
+void RemapEngine::put(const Burst& burst, Picoseconds at) {
+  FOVEA_CHECK(burst.tag >> kTagBits == 0, "a tag that is too long");
+  const std::uint64_t tag = burst.tag | resets_ << kTagBits;
+  if (burst.write) {
+    ++stats.writes;
+    stats.write_bytes += burst.bytes;
+    return memory_.write(burst.address, burst.data, tag, at, false);
+  }
+  const bool map = burst.id == kMapReads;
+  ++(map ? stats.map_reads : stats.source_reads);
+  (map ? stats.map_bytes : stats.source_bytes) += burst.bytes;
+  memory_.read(burst.address, burst.bytes, tag, at, false);
+}
+
+void RemapEngine::answered(const BurstMaster::Completion& c) {
+  if (c.tag >> kTagBits != resets_) return;
+  if (c.error) {
+    ++stats.errors;
+    Diagnostics::instance().guest(c.write ? "remap engine: a write that nobody answers (bus error)"
+                                          : "remap engine: a read that nobody answers (bus error)");
+  }
+  backend_->answer({c.tag & ((std::uint64_t{1} << kTagBits) - 1), c.write, c.error, c.data, c.first, c.last});
+  issue_waiting();
+  go_on();
+}
+
+}  // namespace fovea::engine

@@ -1,0 +1,77 @@
+// The remap engine on the chip: registers on the configuration bus, a master of the crossbar, an interrupt.
+#pragma once
+#include <deque>
+#include <memory>
+#include <systemc>
+#include <vector>
+
+#include "model/common/burst_master.h"
+#include "model/common/bus_target.h"
+#include "model/common/clock.h"
+#include "model/common/pulse.h"
+#include "model/common/stats.h"
+#include "model/engine/core/engine_backend.h"
+#include "model/engine/core/engine_registers.h"
+#include "model/engine/engine_params.h"
+
+namespace fovea::engine {
+
+struct EngineStats : StatGroup {
+  Counter jobs{*this, "jobs", "1", "jobs that ended, however"};
+  Counter interrupts{*this, "interrupts", "1", "rising edges of the interrupt line"};
+  Counter map_reads{*this, "map_reads", "1", "bursts of maps that were read"};
+  Counter map_bytes{*this, "map_bytes", "B", "bytes of maps that were read"};
+  Counter source_reads{*this, "source_reads", "1", "lines of sources that were read"};
+  Counter source_bytes{*this, "source_bytes", "B", "bytes of sources that were read"};
+  Counter writes{*this, "writes", "1", "bursts of results that were written"};
+  Counter write_bytes{*this, "write_bytes", "B", "bytes of results that were written"};
+  Counter errors{*this, "errors", "1", "requests that nobody answered"};
+  EngineStats() : StatGroup("engine") {}
+};
+
+/// Behind it is a backend: a model or the RTL. Its requests are put on the port at their edges; answers reach it
+/// at their first beat. A burst is handed to the bus when all its data have left the engine.
+class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private EngineBackend::Host {
+ public:
+  using Params = EngineParams;
+  SC_HAS_PROCESS(RemapEngine);
+  EngineStats stats;
+  ClockIn clk{"clk"};
+  Pulse interrupt_line{"interrupt", kPsPerNs};
+
+  RemapEngine(sc_core::sc_module_name name, const EngineParams& params);
+
+  bool idle() const override { return memory_.idle(); }
+  const EngineBackend& backend() const { return *backend_; }
+
+ protected:
+  bool holes_answer() const override { return false; }
+  void on_reset(ResetKind kind) override;
+
+ private:
+  struct Waiting {
+    Burst burst;
+    std::vector<std::uint8_t> data;
+    Picoseconds at;
+  };
+  void issue(const Burst& burst, Picoseconds at) override;
+  void interrupt(bool level) override;
+  void put(const Burst& burst, Picoseconds at);
+  void issue_waiting();
+  void answered(const BurstMaster::Completion& c);
+  void go_on();
+  void count_jobs(std::uint32_t ended);
+  void clock_changed();
+  void connect(Reg& reg);
+
+  Clock clock_;
+  std::unique_ptr<EngineBackend> backend_;
+  BurstMaster memory_;
+  Timer call_;
+  std::deque<Waiting> waiting_;  // for a place
+  std::uint64_t resets_ = 0;
+  bool was_busy_ = false;
+  std::uint16_t ended_ = 0;      // ENDED.COUNT when it was seen last
+};
+
+}  // namespace fovea::engine
