@@ -1,17 +1,26 @@
-// Prints the file that is named by its argument: registers.h or BLOCKS.md.
+// Prints the text that is named by its argument.
 #include <cstdio>
 #include <string>
 #include <systemc>
 
 #include "model/soc/platform_text.h"
+#include "model/soc/rtl_text.h"
 
 int sc_main(int argc, char** argv) {
   const std::string which = argc == 2 ? argv[1] : "";
-  if (which != "registers.h" && which != "BLOCKS.md") {
-    std::fputs("usage: platform_text registers.h | BLOCKS.md\n", stderr);
+  std::string text;
+  if (which == "registers.h") {
+    text = fovea::soc::platform_text().registers_h;
+  } else if (which == "BLOCKS.md") {
+    text = fovea::soc::platform_text().blocks_md;
+  } else if (which == "remap_regs_pkg.sv") {
+    text = fovea::soc::rtl_text().package;
+  } else if (which == "rtl-registers") {
+    text = fovea::soc::rtl_text().table;
+  } else {
+    std::fputs("usage: platform_text registers.h | BLOCKS.md | remap_regs_pkg.sv | rtl-registers\n", stderr);
     return 2;
   }
-  const fovea::soc::PlatformText text = fovea::soc::platform_text();
-  std::fputs((which == "registers.h" ? text.registers_h : text.blocks_md).c_str(), stdout);
+  std::fputs(text.c_str(), stdout);
   return 0;
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/soc/rtl_text.h"
 #include "tb/periph/bench.h"
 
 namespace fovea::soc {
@@ -34,6 +35,49 @@ TEST(PlatformText, RegisterHeaderIsFresh) {
 TEST(PlatformText, PageOfBlocksIsFresh) {
   EXPECT_EQ(file("model/soc/BLOCKS.md"), text().blocks_md)
       << "write it again: build/release/model/soc/platform_text BLOCKS.md > model/soc/BLOCKS.md";
+}
+
+TEST(PlatformText, PackageOfTheEnginesRegistersIsFresh) {
+  EXPECT_EQ(file("rtl/remap/remap_regs_pkg.sv"), rtl_text().package)
+      << "write it again: build/release/model/soc/platform_text remap_regs_pkg.sv > "
+         "rtl/remap/remap_regs_pkg.sv";
+}
+
+TEST(PlatformText, TableOfTheEnginesRegistersIsFresh) {
+  EXPECT_THAT(file("rtl/README.md"), HasSubstr("\n|---|---|---|---|\n" + rtl_text().table + "\n"))
+      << "write it again: build/release/model/soc/platform_text rtl-registers";
+}
+
+TEST(PlatformText, TextsOfRegistersSayBitsModesAndWhatIsWritable) {
+  RegBank bank("PLANTED");
+  const Reg number(bank, "NUMBER", 0x04, Mode::kRo, "a number", 7), free(bank, "FREE", 0x3FC, Mode::kRw, "anything");
+  Reg mixed(bank, "MIXED", 0x80, "some of each");
+  const Field one(mixed, "ONE", 0, 1, Mode::kRw, "first"), two(mixed, "TWO", 1, 2, Mode::kW1c, "second"),
+      three(mixed, "THREE", 8, 4, Mode::kWo, "third"), four(mixed, "FOUR", 30, 2, Mode::kRw, "fourth");
+  const RtlText text = rtl_text(bank);
+  const std::string zeros = "00000000_";
+  EXPECT_THAT(text.package, testing::EndsWith("256'h80000000_" + zeros + zeros + zeros + zeros + zeros +
+      "00000001_00000002;\n"
+      "  // 0x04 NUMBER: a number\n"
+      "  localparam logic [7:0] NUMBER_WORD = 8'd1;\n"
+      "  localparam logic [31:0] NUMBER_RESET = 32'h00000007;\n"
+      "  // 0x3FC FREE: anything\n"
+      "  localparam logic [7:0] FREE_WORD = 8'd255;\n"
+      "  localparam logic [31:0] FREE_WRITABLE = 32'hFFFFFFFF;\n"
+      "  // 0x80 MIXED: some of each\n"
+      "  localparam logic [7:0] MIXED_WORD = 8'd32;\n"
+      "  localparam logic [31:0] MIXED_WRITABLE = 32'hC0000001;\n"
+      "  localparam int unsigned MIXED_ONE_LSB = 0, MIXED_ONE_BITS = 1;\n"
+      "  localparam int unsigned MIXED_TWO_LSB = 1, MIXED_TWO_BITS = 2;\n"
+      "  localparam int unsigned MIXED_THREE_LSB = 8, MIXED_THREE_BITS = 4;\n"
+      "  localparam int unsigned MIXED_FOUR_LSB = 30, MIXED_FOUR_BITS = 2;\n"
+      "endpackage\n"));
+  EXPECT_EQ(text.table, "| 0x04 `NUMBER` | 31:0 | ro | a number |\n"
+                        "| 0x3FC `FREE` | 31:0 | rw | anything |\n"
+                        "| 0x80 `MIXED` | 0 | rw | `ONE`: first |\n"
+                        "|  | 2:1 | 1 clears | `TWO`: second |\n"
+                        "|  | 11:8 | wo | `THREE`: third |\n"
+                        "|  | 31:30 | rw | `FOUR`: fourth |\n");
 }
 
 // Addresses, masks and numbers typed in from the public drivers (Linux dm365.c, irqs.h, psc.h, TI's register
