@@ -29,7 +29,7 @@ class Packer {
   }
   /// A word is not taken although there is one, until an answer comes.
   bool waits_for_answer(bool valid, std::uint32_t dst) const {
-    return full(valid, dst) && under_way_ == kUnderWay;
+    return under_way_ == kUnderWay && full(valid, dst);
   }
   /// One clock. @param stop no new bursts
   /// @return the word is taken

@@ -14,7 +14,9 @@ void RemapModel::reset() {
   line_asked_ = word_valid_ = blended_valid_ = sending_ = part_error_ = frozen_ = false;
   read_arrivals_.clear();
   write_arrivals_.clear();
+  next_arrival_ = kNoClock;
   parts_.clear();
+  pairs_.clear();
   done_at_ = kNoClock;
 }
 
@@ -56,10 +58,12 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
 bool RemapModel::waits() const {
   if (state_ == State::kDrain) return reads_ > 0 || parts_.size() > write_arrivals_.size();
   if (write_arrivals_.empty() && packer_.under_way() > 0 &&
-      (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_pair_.dst)))
+      (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_)))
     return true;
-  const Access* const access = cache_.next(now_);
-  if (access && access->miss && cache_.no_line()) return true;
+  if (cache_.no_line()) {
+    const CacheAccess* const access = cache_.next(now_);
+    if (access && access->miss) return true;
+  }
   return map_.empty() && addresses_.wants_map();
 }
 
@@ -97,7 +101,7 @@ bool RemapModel::step() {
   // Requests first: those of the address channel come before the write whose data end in the same clock.
   moved |= ask(map_asked);
   moved |= send();
-  const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_pair_.dst, blended_pair_.last, false);
+  const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_dst_, blended_last_, false);
   moved |= packer_.moved();
   if (packer_.handed_over()) sending_ = true;
   const bool blend_ready = packed || !blended_valid_ || !access_.final;
@@ -184,8 +188,11 @@ bool RemapModel::blend_words(bool taken) {
     ends = word_valid_ && access_.final;
     if (ends) {
       words_[access_.which] = word_;
-      blended_ = access_.pair.border ? job_.border : job_.bilinear ? blend(access_.pair, words_) : word_;
-      blended_pair_ = access_.pair;
+      const Pair& pair = pairs_.front();
+      blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
+      blended_dst_ = pair.dst;
+      blended_last_ = pair.last;
+      pairs_.pop();
     }
     blended_valid_ = ends;
   }
@@ -196,7 +203,7 @@ bool RemapModel::blend_words(bool taken) {
 /// The next access gets its word, out of the cache or of the line that has come for it.
 bool RemapModel::data(bool blend_ready) {
   if (word_valid_ && !blend_ready) return false;
-  const Access* const access = cache_.next(now_);
+  const CacheAccess* const access = cache_.next(now_);
   word_valid_ = access && (!access->miss || cache_.line_there(now_));
   if (!word_valid_) return false;
   access_ = *access;
@@ -208,7 +215,7 @@ bool RemapModel::data(bool blend_ready) {
 bool RemapModel::tags(bool room, bool may_ask) {
   if (!room) return false;
   const Pair& pair = *addresses_.front();
-  Access a;
+  CacheAccess a;
   a.final = !job_.bilinear || pair.border || which_ == 3;
   a.which = static_cast<std::uint8_t>(which_);
   a.word = (pair.src + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) &
@@ -216,19 +223,23 @@ bool RemapModel::tags(bool room, bool may_ask) {
   a.miss = !pair.border && !cache_.hit(a.word);
   if (a.miss && !may_ask) return false;
   a.there = now_ + 1;
-  a.pair = pair;
   if (a.miss) {
     line_asked_ = true;
     line_ = a.word / SourceCache::kLineWords * 4 * SourceCache::kLineWords;
   }
   cache_.push(a);
-  if (a.final) end_.bad += pair.bad;
-  which_ = a.final ? 0 : which_ + 1;
+  if (!a.final) {
+    ++which_;
+    return true;
+  }
+  which_ = 0;
+  end_.bad += pair.bad;
+  pairs_.push(pair);
   return true;
 }
 
 /// What arrives up to a clock.
-bool RemapModel::arrivals(std::uint64_t clock) {
+bool RemapModel::arrive(std::uint64_t clock) {
   bool failed = false, moved = false;
   while (!read_arrivals_.empty() && read_arrivals_.front().clock <= clock) {
     failed |= read_arrivals_.front().error;
@@ -246,7 +257,13 @@ bool RemapModel::arrivals(std::uint64_t clock) {
     moved = true;
   }
   if (failed && state_ == State::kRun) state_ = State::kDrain;
+  note_arrivals();
   return moved;
+}
+
+void RemapModel::note_arrivals() {
+  next_arrival_ = std::min(read_arrivals_.empty() ? kNoClock : read_arrivals_.front().clock,
+                           write_arrivals_.empty() ? kNoClock : write_arrivals_.front().clock);
 }
 
 void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8_t> data,
@@ -256,6 +273,7 @@ void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8
   const auto seen = [&](std::uint64_t clock) { return std::max(clock + 1, now_); };
   if (error) read_arrivals_.push({beats.front(), true});
   read_arrivals_.push({beats.back(), error});
+  note_arrivals();
   if (state_ == State::kDrain) return;
   if (id == kSourceReads) return cache_.arrive(data, seen(beats.back()));
   for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.subspan(8 * n, 8), seen(beats[n]));
@@ -267,6 +285,7 @@ void RemapModel::answer_write(bool error, std::uint64_t clock) {
   unsigned& parts = parts_.at(write_arrivals_.size());
   if (--parts > 0) return;
   write_arrivals_.push({clock, part_error_});
+  note_arrivals();
   part_error_ = false;
 }
 

@@ -59,7 +59,9 @@ class RemapModel {
   void begin();
   bool step();
   bool drain();
-  bool arrivals(std::uint64_t clock);
+  bool arrivals(std::uint64_t clock) { return next_arrival_ <= clock && arrive(clock); }
+  bool arrive(std::uint64_t clock);
+  void note_arrivals();
   bool pack();
   bool blend_words(bool taken);
   bool data(bool blend_ready);
@@ -86,14 +88,17 @@ class RemapModel {
   // Between data and blending, and behind it.
   bool word_valid_ = false, blended_valid_ = false;
   std::uint32_t word_ = 0, blended_ = 0;
-  Access access_;
-  Pair blended_pair_;
+  CacheAccess access_;
+  Ring<Pair, 64> pairs_;       // whose final access is taken, and whose word is not blended
+  std::uint32_t blended_dst_ = 0;
+  bool blended_last_ = false;
   std::array<std::uint32_t, 4> words_{};
   bool sending_ = false;       // packer_.out() is not issued yet
   // Requests without an answer, and arrivals that lie ahead: of the last beat of a read, of a write's answer.
   unsigned reads_ = 0;
   Ring<Arrival, 32> read_arrivals_;
   Ring<Arrival, 8> write_arrivals_;
+  std::uint64_t next_arrival_ = kNoClock;  // the earliest of both
   Ring<unsigned, 8> parts_;    // of each write under way, without an answer
   bool part_error_ = false;
 };

@@ -6,18 +6,16 @@
 #include <cstring>
 #include <span>
 
-#include "model/engine/core/address_generator.h"
 #include "model/engine/core/ring.h"
 
 namespace fovea::engine {
 
 /// An access on its way from the tags to the data.
-struct Access {
-  bool miss = false, final = false;  ///< brings a line; the last one of its pair
-  std::uint8_t which = 0;            ///< of the pair's words
-  std::uint32_t word = 0;            ///< word address
+struct CacheAccess {
   std::uint64_t there = 0;           ///< clock from which on it can be taken
-  Pair pair;                         ///< of the final access, and of each for `border`
+  std::uint32_t word = 0;            ///< word address
+  std::uint8_t which = 0;            ///< of the pair's words
+  bool miss = false, final = false;  ///< brings a line; the last one of its pair
 };
 
 class SourceCache {
@@ -39,7 +37,7 @@ class SourceCache {
   }
   bool may_ask() const { return promised_ != kLines; }
   bool room() const { return waiting_.size() < kAhead; }
-  void push(const Access& access) {
+  void push(const CacheAccess& access) {
     if (access.miss) {
       there_[place(access.word)] = true;
       tags_[place(access.word)] = access.word / kLineWords;
@@ -52,7 +50,7 @@ class SourceCache {
   /// @name Data
   ///@{
   /// The access whose turn it is in `clock`; null: none.
-  const Access* next(std::uint64_t clock) const {
+  const CacheAccess* next(std::uint64_t clock) const {
     return !waiting_.empty() && waiting_.front().there <= clock ? &waiting_.front() : nullptr;
   }
   bool line_there(std::uint64_t clock) const { return !lines_.empty() && lines_.front().there <= clock; }
@@ -60,7 +58,7 @@ class SourceCache {
   std::uint64_t line_at() const { return lines_.front().there; }
   /// Takes next(). @return its word
   std::uint32_t pop() {
-    const Access& a = waiting_.front();
+    const CacheAccess& a = waiting_.front();
     auto& line = data_[place(a.word)];
     if (a.miss) {
       line = lines_.front().words;
@@ -90,7 +88,7 @@ class SourceCache {
   std::array<std::uint32_t, kPlaces> tags_{};
   std::array<Words, kPlaces> data_{};
   Ring<Line, kLines> lines_;
-  Ring<Access, kAhead> waiting_;
+  Ring<CacheAccess, kAhead> waiting_;
   unsigned promised_ = 0;
 };
 
