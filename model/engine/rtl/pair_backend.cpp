@@ -75,8 +75,10 @@ void PairBackend::compare(unsigned stream) {
                                      a.address + static_cast<unsigned>(x - a.data.begin()), *x, *y));
     ++s.compared;
     ++summary_.requests;
-    ++summary_.lag[static_cast<std::int64_t>(clock_.edge_at_or_after(b.at)) -
-                   static_cast<std::int64_t>(clock_.edge_at_or_after(a.at))];
+    const auto edge = [this](Picoseconds t) { return static_cast<std::int64_t>(clock_.edge_at_or_after(t)); };
+    const std::int64_t lag = edge(b.at) - edge(a.at);
+    ++summary_.lag[lag];
+    if (on_compared) on_compared(lag);
   }
 }
 

@@ -43,6 +43,8 @@ class PairBackend : public engine::EngineBackend {
   void answer(const engine::Answer& answer) override;
   bool busy() const override { return owner_->busy() || twin_->busy(); }
   void reset() override;
+  /// Called for each pair of equal requests: clocks that the twin asked later.
+  std::function<void(std::int64_t lag)> on_compared;
   const PairSummary& summary() const { return summary_; }
   /// "lag_clocks,requests" and a line for each difference in time that occurred.
   std::string table() const;
