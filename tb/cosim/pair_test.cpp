@@ -134,8 +134,8 @@ TEST(PairTest, EachKindOfDifferenceIsFoundOnce) {
   EXPECT_THAT(differences({write}, {{0x200, 1000, true, 0, 8, 2}}),
               testing::ElementsAre(HasSubstr("writes, number 0: byte 0x00000200 is 0x01; its twin's 0x02")));
   EXPECT_THAT(differences({read, other}, {read}), testing::ElementsAre(HasSubstr("1 that the twin did not ask for")));
-  EXPECT_THAT(differences({read}, {read, other}), testing::ElementsAre(HasSubstr("1 that only it asked for")));
-  EXPECT_THAT(differences({read}, {{0x100, 1000, false, 1}}), testing::ElementsAre(HasSubstr("reads of the map: 1")));
+  EXPECT_THAT(differences({read}, {read, other}), testing::ElementsAre(HasSubstr("1 that only the twin asked for")));
+  EXPECT_THAT(differences({read}, {{0x100, 1000, false, 1}}), testing::ElementsAre(HasSubstr("reads of the source: 1 that only the twin")));
 }
 
 TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {

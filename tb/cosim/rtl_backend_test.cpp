@@ -30,18 +30,14 @@ constexpr std::uint32_t kUntouched = 0x5A5A5A5A;
 struct Bench : ModelBench {
   explicit Bench(const RtlBackend::Options& options = {})
       : ModelBench(kSize, [&](const Clock& c, EngineBackend::Host& h) {
-          auto made = std::make_unique<RtlBackend>(h, c, options);
-          rtl = made.get();
-          return made;
+          return std::make_unique<RtlBackend>(h, c, options);
         }) {}
   explicit Bench(bool rtl_owns)
       : ModelBench(kSize, [&](const Clock& c, EngineBackend::Host& h) {
           const PairBackend::Maker as_rtl = [&c](EngineBackend::Host& x) { return std::make_unique<RtlBackend>(x, c); };
           const PairBackend::Maker as_tlm = [&c](EngineBackend::Host& x) { return ModelBench::tlm(c, x); };
-          auto made = std::make_unique<PairBackend>(h, c, rtl_owns ? as_rtl : as_tlm, rtl_owns ? as_tlm : as_rtl,
-                                                    [this](const std::string& text) { differences.push_back(text); });
-          pair = made.get();
-          return made;
+          return std::make_unique<PairBackend>(h, c, rtl_owns ? as_rtl : as_tlm, rtl_owns ? as_tlm : as_rtl,
+                                               [this](const std::string& text) { differences.push_back(text); });
         }) {}
   void fill(MappedJob& m, Dice& dice) {
     m.job.src_base = kWord;
@@ -66,8 +62,8 @@ struct Bench : ModelBench {
       if (word(kWord + n) != kUntouched) return false;
     return true;
   }
-  RtlBackend* rtl = nullptr;
-  PairBackend* pair = nullptr;
+  RtlBackend* const rtl = dynamic_cast<RtlBackend*>(&backend);
+  PairBackend* const pair = dynamic_cast<PairBackend*>(&backend);
   std::vector<std::string> differences;
 };
 

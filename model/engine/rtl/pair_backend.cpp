@@ -133,13 +133,18 @@ bool PairBackend::feed(Picoseconds now) {
   return any;
 }
 
-/// Both are quiet: nothing may be left over.
+/// The owner is quiet: what the twin asks for beyond it has no answer. Both are: nothing may be left over.
 void PairBackend::settle() {
   for (unsigned n = 0; n < streams_.size(); ++n) {
+    const Stream& s = streams_[n];
+    if (!disturbed_ && !s.twin.empty())
+      difference(std::string(kStreams[n]) + ": " + std::to_string(s.twin.size()) + " that only the twin asked for");
+  }
+  if (twin_->busy()) return;
+  for (unsigned n = 0; n < streams_.size(); ++n) {
     Stream& s = streams_[n];
-    if (!disturbed_ && s.owner.size() != s.twin.size())
-      difference(std::string(kStreams[n]) + ": " + std::to_string(s.owner.size()) + " that the twin did not ask for, " +
-                 std::to_string(s.twin.size()) + " that only it asked for");
+    if (!disturbed_ && !s.owner.empty())
+      difference(std::string(kStreams[n]) + ": " + std::to_string(s.owner.size()) + " that the twin did not ask for");
     const std::uint64_t compared = s.compared;
     s = {};
     s.compared = compared;
@@ -151,7 +156,7 @@ Picoseconds PairBackend::run(Picoseconds now) {
   const Picoseconds owner = owner_->run(now);
   Picoseconds twin = twin_->run(now);
   while (feed(now)) twin = twin_->run(now);
-  if (!busy()) settle();
+  if (!owner_->busy()) settle();
   return std::min(owner, twin);
 }
 
