@@ -233,6 +233,9 @@ TEST(RtlBackendTest, WaveformsBeginAtTheirTriggerAndHaveTheirLength) {
     bench.rtl->finish();
   }
   EXPECT_EQ(times_of(file).first, times_of(file).second);  // nothing recorded
+  std::ofstream(file) << "something else";
+  waves.file = file;
+  EXPECT_THROW(Bench(RtlBackend::Options{.waves = waves}), UserError);
   std::filesystem::remove(file);
   waves.file = "/nowhere/waves.fst";
   EXPECT_THROW(Bench(RtlBackend::Options{.waves = waves}), UserError);

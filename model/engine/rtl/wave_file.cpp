@@ -3,6 +3,7 @@
 #include <verilated_fst_c.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 
 #include "Vremap_top.h"
@@ -11,6 +12,20 @@
 namespace fovea::rtl {
 namespace {
 constexpr Picoseconds kMostLow = 5 * kPsPerNs;  ///< before an edge that ends a pause
+
+/// The library says nothing of a file that it cannot open, and overwrites any.
+void check_file(const std::filesystem::path& file) {
+  // An FST file begins with its header, block 0, of 329 bytes (GTKWave, fstapi.c).
+  constexpr std::array<char, 9> kHeader{0, 0, 0, 0, 0, 0, 0, 1, 73};
+  std::array<char, 9> head{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), head.size());
+  if (in.gcount() > 0 && head != kHeader)
+    throw UserError("--waves '" + file.string() + "': it exists and is not an FST file; choose another name");
+  if (!std::ofstream(file, std::ios::binary | std::ios::app))
+    throw UserError("--waves '" + file.string() + "': it cannot be written");
+}
+
 }  // namespace
 
 struct WaveFile::File {
@@ -19,9 +34,7 @@ struct WaveFile::File {
 
 WaveFile::WaveFile(const Waves& options, Vremap_top& top)
     : options_(options), file_(std::make_unique<File>()), left_(options.skip) {
-  // The library says nothing of a file that it cannot open.
-  if (!std::ofstream(options.file, std::ios::binary | std::ios::trunc))
-    throw UserError("--waves '" + options.file.string() + "': it cannot be written");
+  check_file(options.file);
   top.trace(&file_->fst, 99);
   file_->fst.set_time_unit("1ps");
   file_->fst.set_time_resolution("1ps");
