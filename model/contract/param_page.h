@@ -40,9 +40,10 @@ enum lens_mapping { PARAM_MAPPINGS(PARAM_CONSTANT) };
   X(PAIR_CENTRE, 1, "B")
 enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
 
-/* How a frame is remapped (sw/firmware/README.md). All but `copy`, which does not correct, give the same picture.
+/* How a frame is remapped (sw/firmware/README.md). All but three give the same picture: `copy` does not correct;
+ * `engine_grid` and `engine_radial` follow the lens, but not its table.
  * Those after `ldm` read a form of the look-up table that the firmware derives from it at the start; if the table of
- * a lens has no such form, the firmware says so and takes another one. */
+ * a lens has no such form, or the chip no remap engine, the firmware says so and takes another one. */
 #define PARAM_KERNELS(X)               \
   X(KERNEL_PLAIN, 0, "plain")          \
   X(KERNEL_LDM, 1, "ldm")              \
@@ -54,7 +55,10 @@ enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
   X(KERNEL_GATHER, 7, "gather")        \
   X(KERNEL_RUNS, 8, "runs")            \
   X(KERNEL_COPY, 9, "copy")            \
-  X(KERNEL_FASTEST, 10, "fastest")
+  X(KERNEL_FASTEST, 10, "fastest")     \
+  X(KERNEL_ENGINE, 11, "engine")       \
+  X(KERNEL_ENGINE_GRID, 12, "engine_grid") \
+  X(KERNEL_ENGINE_RADIAL, 13, "engine_radial")
 enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
 
 /* The look-up tables of a run that measures the remap loop by itself: table k is that of the camera's view, moved to
@@ -141,6 +145,7 @@ typedef struct param_camera {
 
 #define PARAM_OVERLAY (1u << 0)    /* a blinking box, blended through the data cache */
 #define PARAM_SELF_PATCH (1u << 1) /* the program patches its own code once */
+#define PARAM_ENGINE (1u << 2)     /* the chip has the remap engine; without, its registers are a bus error */
 
 typedef struct param_page {
   uint32_t magic;    /* PARAM_PAGE_MAGIC */
@@ -157,7 +162,7 @@ typedef struct param_page {
   uint32_t flow;          /* enum param_flow */
   uint32_t repeats;       /* number of consecutive remaps for each captured frame; 0: one */
   uint32_t tables;        /* number of look-up tables and of source frames, used in turn; 0: one */
-  uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH */
+  uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH, PARAM_ENGINE */
   uint32_t width;         /* pixels of a centred region; 0: all. Only with SWITCH_SIZE_OF_PAGE */
   uint32_t height;        /* lines of it; 0: all */
   uint32_t camera_count;  /* 1 to PARAM_CAMERAS_MAX */

@@ -123,8 +123,9 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.flow = contract::code_of(contract::kFlows, firmware.flow());
   page.repeats = static_cast<std::uint32_t>(firmware.repeat());
   page.tables = static_cast<std::uint32_t>(firmware.tables());
-  page.flags =
-      (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u);
+  page.flags = (firmware.overlay() ? PARAM_OVERLAY : 0u) |
+               (firmware.patch() ? PARAM_SELF_PATCH : 0u) |
+               (params.soc.engine.present() ? PARAM_ENGINE : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

@@ -33,6 +33,14 @@ for kernel in codes staged gather runs copy; do
   grep -q "kernel: $kernel," "$out/$kernel/uart.log" || { echo "$kernel: $(cat "$out/$kernel/uart.log")"; exit 1; }
 done
 
+# So do those of the remap engine, over results that the core has drawn on.
+for kernel in engine engine_grid; do
+  run "$kernel" 0 fovea_firmware.elf --hazards --strict -s firmware.kernel=$kernel -s run.frames=2 -s engine=tlm \
+    -s firmware.overlay=true
+  is "$kernel" hazard.places -eq 0
+  grep -q "kernel: $kernel," "$out/$kernel/uart.log" || { echo "$kernel: $(cat "$out/$kernel/uart.log")"; exit 1; }
+done
+
 run stale 0 omit_d_invalidate.elf --hazards
 is stale hazard.stale_loads -gt 0
 says stale 'warning \(firmware\): coherency hazard: the load at 0x[0-9a-f]+ \([a-z_0-9.]+(\+0x[0-9a-f]+)?\) read 0x8[0-9a-f]{7} at [0-9.]+ ms from a D-cache line that was filled at [0-9.]+ ms; vpfe wrote that memory at [0-9.]+ ms'

@@ -7,6 +7,7 @@
 
 #include "tb/e2e/expectations.h"
 #include "tb/e2e/rig.h"
+#include "tb/rtl/lens_maps.h"
 
 namespace fovea::e2e {
 namespace {
@@ -44,6 +45,7 @@ void expect_exact(Rig& rig, const std::string& method, std::size_t frames) {
 struct Kernel {
   const char* word;    ///< of firmware.kernel
   const char* method;  ///< on the UART
+  const char* engine = "none";
 };
 
 class KernelTest : public testing::TestWithParam<Kernel> {};
@@ -53,6 +55,7 @@ TEST_P(KernelTest, APictureOfSeveralStripsIsExact) {
   Rig rig;
   rig.set("video.width", "252").set("video.height", "40").set("camera.stamp", "false");
   rig.set("run.frames", "3").set("firmware.kernel", GetParam().word);
+  rig.set("engine", GetParam().engine);
   expect_exact(rig, GetParam().method, 3);
 }
 
@@ -62,6 +65,7 @@ TEST_P(KernelTest, ABlackRimIsExact) {
   rig.set("video.width", "256").set("video.height", "64").set("camera.stamp", "false");
   rig.set("lens.mapping", "rectilinear").set("lens.fov", "60deg").set("lens.out_focal", "170px");
   rig.set("run.frames", "2").set("firmware.kernel", GetParam().word);
+  rig.set("engine", GetParam().engine);
   expect_exact(rig, GetParam().method, 2);
   const auto lut = rig.lut();
   const auto black = static_cast<std::size_t>(std::count(lut.begin(), lut.end(), 64u * 512));
@@ -73,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(All, KernelTest,
                          testing::Values(Kernel{"strips", "strips"},
                                          Kernel{"offsets16", "offsets16"},
                                          Kernel{"deltas4", "deltas4"},
-                                         Kernel{"codes", "codes"}, Kernel{"fastest", "staged"}),
+                                         Kernel{"codes", "codes"}, Kernel{"fastest", "staged"},
+                                         Kernel{"engine", "engine", "tlm"}),
                          [](const auto& i) { return std::string(i.param.word); });
 
 // The shipped lens and footage in full size.
@@ -131,6 +136,73 @@ INSTANTIATE_TEST_SUITE_P(Views, FastestTest,
                          [](const auto& i) {
                            return std::string(i.param.key).substr(5) + "_" + i.param.value;
                          });
+
+// What the engine makes without the table: the golden model's picture, for the golden model's own map of the lens.
+class EngineMapTest : public testing::TestWithParam<const char*> {};
+TEST_P(EngineMapTest, ThePictureIsTheGoldenModels) {
+  constexpr unsigned kWidth = 160, kHeight = 48;  // rows without padding, as in the golden model's jobs
+  Rig rig;
+  rig.set("video.width", std::to_string(kWidth)).set("video.height", std::to_string(kHeight));
+  rig.set("camera.stamp", "false").set("lens.shift_x", "20.5px").set("run.frames", "3");
+  rig.set("engine", "tlm").set("firmware.kernel", GetParam());
+  rig.run(kLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), 3u) << rig.board().uart_text();
+  EXPECT_TRUE(is_chosen(rig, GetParam())) << kernel_lines(rig);
+  EXPECT_EQ(rig.state().torn, 0u);
+  lens_view_t view;
+  lens_view_default(&view);
+  view.shift_x = 20.5;
+  lens_t lens;
+  ASSERT_EQ(lens_init(&lens, &view, kWidth, kHeight), LENS_OK);
+  rtl::MappedJob m =
+      std::string(GetParam()) == "engine_grid" ? rtl::grid_job(lens, 4) : rtl::radial_job(lens);
+  m.job.src_base = 0;
+  const auto words_of = [](const oracle::Frame& f) {
+    std::vector<std::uint32_t> words(f.uyvy.size() / 4);
+    for (std::size_t n = 0; n < f.uyvy.size(); ++n)
+      words[n / 4] |= std::uint32_t{f.uyvy[n]} << 8 * (n % 4);
+    return words;
+  };
+  unsigned black = 0;
+  for (const Shown& s : rig.shown()) {
+    const auto guess = static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 / 0.04);
+    bool found = false;
+    for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2 && !found; ++n) {
+      const auto sent = words_of(rig.sent(n));
+      const auto want = rtl::picture(m.job, m.map, 0x10801080, [&](std::uint32_t at) { return sent.at(at); });
+      found = want == words_of(s.frame);
+      black = static_cast<unsigned>(std::count(want.begin(), want.end(), 0x10801080u));
+    }
+    EXPECT_TRUE(found) << "frame " << s.record.index << " is not the golden model's picture of a sent frame";
+  }
+  EXPECT_LT(black, kWidth * kHeight / 4);
+  for (const auto& [what, times] : Diagnostics::instance().counts())
+    ADD_FAILURE() << times << " times: " << what.second;
+}
+INSTANTIATE_TEST_SUITE_P(Maps, EngineMapTest, testing::Values("engine_grid", "engine_radial"),
+                         [](const auto& i) { return std::string(i.param); });
+
+// A chip without the engine: said, and another kernel's picture; its registers are not touched.
+TEST(EngineKernelTest, WithoutAnEngineAnotherKernelIsTaken) {
+  Rig rig;
+  rig.set("video.width", "160").set("video.height", "48").set("camera.stamp", "false");
+  rig.set("run.frames", "1").set("firmware.kernel", "engine");
+  expect_exact(rig, "staged", 1);
+  EXPECT_EQ(kernel_lines(rig).find("kernel engine: the chip has no remap engine\nkernel: staged, "), 0u)
+      << kernel_lines(rig);
+}
+
+// What a grid cannot express is refused; black beyond the largest angle is the table's.
+TEST(EngineKernelTest, AGridRefusesALargestAngle) {
+  Rig rig;
+  rig.set("video.width", "160").set("video.height", "48").set("camera.stamp", "false");
+  rig.set("lens.mapping", "kannala_brandt").set("lens.theta_max", "20deg");
+  rig.set("run.frames", "1").set("firmware.kernel", "engine_grid").set("engine", "tlm");
+  expect_exact(rig, "staged", 1);
+  EXPECT_EQ(kernel_lines(rig).find("kernel engine_grid: a grid cannot express the largest visible angle\n"), 0u)
+      << kernel_lines(rig);
+}
 
 }  // namespace
 }  // namespace fovea::e2e

@@ -85,7 +85,7 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
 TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
   EXPECT_NE(said([](param_page_t& p) { p.kernel = 11; })
                 .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 "
-                      "(plain) to 10 (fastest)\r\n"),
+                      "(plain) to 13 (engine_radial)\r\n"),
             std::string::npos);
   EXPECT_NE(said([](param_page_t& p) { p.table_builder = 2; }).find("unknown table builder"),
             std::string::npos);

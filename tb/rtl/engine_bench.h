@@ -63,7 +63,6 @@ class EngineBench {
   /// that stands still
   Result run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory memory = {},
              std::optional<unsigned> abort_after = {});
-  std::vector<Request> reads_asked, writes_asked;  ///< by the last run()
 
   /// A write, a read, or both at once, each with its channels at any distance.
   RegisterAnswer access(std::optional<RegisterWrite> write, std::optional<unsigned> read);

@@ -69,12 +69,13 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .serial = page->flow == FLOW_SERIAL,
                   .overlay = (page->flags & PARAM_OVERLAY) != 0,
                   .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,
+                  .has_engine = (page->flags & PARAM_ENGINE) != 0,
                   .repeats = page->repeats != 0 ? page->repeats : 1u,
                   .tables = page->tables != 0 ? page->tables : 1u,
                   .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};
   for (uint32_t i = 0; i < PRIORITY_COUNT; ++i) c->priority[i] = page->priority[i];
   if (SWITCH_GET(dip, SWITCH_STANDARD_OUT) != standard) return CONFIG_BAD_STANDARDS;
-  if (page->kernel > KERNEL_FASTEST) return CONFIG_BAD_KERNEL;
+  if (page->kernel > KERNEL_ENGINE_RADIAL) return CONFIG_BAD_KERNEL;
   if (page->table_builder > BUILDER_FIXED) return CONFIG_BAD_BUILDER;
   if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
   if (c->tables > PARAM_TABLES_MAX) return CONFIG_BAD_TABLES;
@@ -105,7 +106,8 @@ const char *config_result_text(config_result_t result) {
     case CONFIG_BAD_SHIFT:
       return "switches 11-12 and 13-14: 0 centred, 1 right or down, 2 left or up";
     case CONFIG_BAD_KERNEL:
-      return "parameter page: unknown kernel; this firmware has 0 (plain) to 10 (fastest)";
+      return "parameter page: unknown kernel; this firmware has 0 (plain) to 13 "
+             "(engine_radial)";
     case CONFIG_BAD_BUILDER:
       return "parameter page: unknown table builder; this firmware has 0 double precision, 1 fixed "
              "point";

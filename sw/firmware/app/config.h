@@ -24,6 +24,7 @@ typedef struct config {
   int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
   int overlay;
   int self_patch;
+  int has_engine;   /* the chip has the remap engine */
   uint32_t repeats; /* number of remaps for each captured frame, at least 1 */
   uint32_t tables;  /* number of look-up tables, 1 to PARAM_TABLES_MAX */
   uint32_t sources; /* number of captured frames that the remaps read in turn, at least 1 */

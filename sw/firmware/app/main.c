@@ -17,6 +17,7 @@
 
 static config_t config;
 static struct view { /* what the remaps use in turn */
+  lens_view_t lens;
   remap_table_t table;
   const remap_method_t *method;
 } views[TABLES_MAX];
@@ -108,17 +109,20 @@ static void build_views(void) {
   for (uint32_t k = 0; k < config.tables; ++k) {
     uint32_t *entries = k == 0 ? lut : arena_take(&arena, sizeof lut, 4096);
     if (entries == NULL) fail("look-up tables", "no memory left"); /* firmware.ld rules it out */
+    lens_view_t *view = &views[k].lens;
 #ifdef TIME_DIVISION
-    const lens_view_t view = config.views[k];
+    *view = config.views[k];
 #else
-    lens_view_t view = config.view;
-    view.shift_x += PARAM_TABLE_STEP_PX * k;
+    *view = config.view;
+    view->shift_x += PARAM_TABLE_STEP_PX * k;
 #endif
-    build_lut(&view, entries);
+    build_lut(view, entries);
     views[k].table = (remap_table_t){.width = config.width,
                                      .height = config.height,
                                      .pitch_bytes = config.pitch_bytes,
-                                     .lut = entries};
+                                     .lut = entries,
+                                     .view = view,
+                                     .has_engine = config.has_engine};
     fw_state.table_address[k] = (uint32_t)entries;
   }
   fw_state.tables = config.tables;

@@ -22,6 +22,9 @@ static const choice_t kChoices[] = {
     [KERNEL_RUNS] = {&method_runs, KERNEL_CODES},
     [KERNEL_COPY] = {&method_copy, KERNEL_CODES},
     [KERNEL_FASTEST] = {NULL, KERNEL_STAGED},
+    [KERNEL_ENGINE] = {&method_engine, KERNEL_STAGED},
+    [KERNEL_ENGINE_GRID] = {&method_engine_grid, KERNEL_STAGED},
+    [KERNEL_ENGINE_RADIAL] = {&method_engine_radial, KERNEL_STAGED},
 };
 
 enum { kChoiceCount = sizeof kChoices / sizeof *kChoices };

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "arena.h"
+#include "model/contract/param_page.h"
 
 /** The table of one view. Source and result have the same size and pitch. */
 typedef struct remap_table {
@@ -12,6 +13,8 @@ typedef struct remap_table {
   uint32_t pitch_bytes;   /* of source and result; a multiple of 32 */
   const uint32_t *lut;    /* width / 2 * height byte offsets from the start of the source, row by row;
                              height * pitch_bytes is the offset of the black word */
+  const lens_view_t *view; /* what `lut` is made of */
+  int has_engine;          /* the chip has the remap engine */
   const void *encoded;    /* the method's own form of the table; a null pointer if it reads `lut` */
   uint32_t encoded_bytes; /* number of bytes of tables that are read for each frame */
 } remap_table_t;
@@ -31,5 +34,6 @@ typedef struct remap_method {
 extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
     method_codes, method_staged;
 extern const remap_method_t method_gather, method_runs, method_copy; /* by the EDMA alone */
+extern const remap_method_t method_engine, method_engine_grid, method_engine_radial;
 
 #endif

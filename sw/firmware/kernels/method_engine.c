@@ -1,0 +1,108 @@
+/* The remap engine moves the pixels: the core hands over a job for each frame and sleeps until the
+ * engine's interrupt. Three methods, by what the engine reads to know the positions: the look-up table
+ * itself, a coarse grid, or a function of the radius. The last two are not exactly the table. */
+#include <stddef.h>
+
+#include "../drivers/cp15.h"
+#include "../drivers/engine.h"
+#include "../drivers/intc.h"
+#include "../drivers/timer.h"
+#include "../drivers/uart.h"
+#include "../regs.h"
+#include "method.h"
+
+#define INTERRUPT_PRIORITY 4u
+#define LONGEST_TICKS (2000u * TIMER_TICKS_PER_MS)
+
+static uint32_t jobs;
+
+/* What all three need. */
+static remap_engine_job_t *begin(const remap_table_t *table, arena_t *arena, const char **refusal) {
+  *refusal = "the chip has no remap engine";
+  if (!table->has_engine || !engine_init()) return NULL;
+  *refusal = "no memory";
+  return arena_take(arena, sizeof(remap_engine_job_t), CACHE_LINE_BYTES);
+}
+
+static const char *finish(remap_table_t *table, remap_engine_job_t *job, const uint32_t *map) {
+  const uint32_t bytes = 4u * job->map_words;
+  job->map_base = (uint32_t)map;
+  dcache_clean_range(map, (bytes + CACHE_LINE_BYTES - 1u) & ~(CACHE_LINE_BYTES - 1u));
+  table->encoded = job;
+  table->encoded_bytes = bytes;
+  intc_enable(IRQ_ENGINE, INTERRUPT_PRIORITY);
+  return NULL;
+}
+
+static const char *prepare_table(remap_table_t *table, arena_t *arena) {
+  const char *refusal;
+  remap_engine_job_t *job = begin(table, arena, &refusal);
+  if (job == NULL) return refusal;
+  *job = remap_engine_table(table->width, table->height, table->pitch_bytes);
+  return finish(table, job, table->lut);
+}
+
+typedef const char *make_map_t(const lens_t *lens, uint32_t pitch_bytes, remap_engine_job_t *job,
+                               uint32_t *map);
+
+static const char *prepare_lens(remap_table_t *table, arena_t *arena, uint32_t words,
+                                make_map_t *make) {
+  const char *refusal;
+  remap_engine_job_t *job = begin(table, arena, &refusal);
+  if (job == NULL) return refusal;
+  uint32_t *map = arena_take(arena, 4u * words, REMAP_ENGINE_MAP_ALIGNMENT);
+  if (map == NULL) return "no memory";
+  lens_t lens;
+  if (lens_init(&lens, table->view, table->width, table->height) != LENS_OK) return "no lens";
+  refusal = make(&lens, table->pitch_bytes, job, map);
+  return refusal != NULL ? refusal : finish(table, job, map);
+}
+
+static const char *prepare_grid(remap_table_t *table, arena_t *arena) {
+  return prepare_lens(table, arena, remap_engine_grid_words(table->width, table->height),
+                      remap_engine_grid);
+}
+
+static const char *prepare_radial(remap_table_t *table, arena_t *arena) {
+  return prepare_lens(table, arena, REMAP_ENGINE_RADIAL_WORDS_MAX, remap_engine_radial);
+}
+
+static void report(const char *what, uint32_t number) {
+  uart_puts("engine: ");
+  uart_puts(what);
+  uart_put_hex(number);
+  uart_puts("\n");
+}
+
+/* Sleeps until the job has ended. A job that has not ended as it should is a line on the UART; the
+ * engine is then started anew for the next frame. */
+static void wait_for_end(void) {
+  const uint32_t start = timer_ticks();
+  uint32_t events;
+  int late;
+  do {
+    /* Checked with interrupts masked: one that comes after the check still ends the sleep. */
+    const uint32_t cpsr = irq_mask();
+    events = engine_take_events();
+    late = timer_ticks() - start > LONGEST_TICKS;
+    if (events == 0 && !late) wait_for_interrupt();
+    irq_restore(cpsr);
+  } while (events == 0 && !late);
+  if (events == ENGINE_EVENTS_DONE) return;
+  report(events == 0 ? "no end of job " : "events ", events == 0 ? jobs : events);
+  if (!engine_init()) report("does not stop, job ", jobs);
+}
+
+static void run(const remap_table_t *table, const void *in, void *out) {
+  remap_engine_job_t job = *(const remap_engine_job_t *)table->encoded;
+  job.src_base = (uint32_t)in;
+  job.dst_base = (uint32_t)out;
+  /* The core may still have lines of an earlier result, which it has drawn on. */
+  dcache_invalidate_range(out, table->height * table->pitch_bytes);
+  engine_submit(&job, ++jobs);
+  wait_for_end();
+}
+
+const remap_method_t method_engine = {"engine", prepare_table, run};
+const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run};
+const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run};
