@@ -48,6 +48,15 @@ run both_tlm -s engine=both_tlm || fail "both_tlm: status $? $(tail -3 both_tlm.
 good both_tlm
 [ "$(value both_tlm engine.pair.requests)" -ge 40 ] || fail "engine.pair.requests is $(value both_tlm engine.pair.requests)"
 
+# The firmware: the engine makes the picture of its own loop, byte by byte.
+firmware() { # NAME arguments...
+  timeout 100 "$fovea" run small.yaml "${@:2}" -o "$1" >"$1.log" 2>&1 || fail "$1: status $? $(tail -3 "$1.log")"
+}
+firmware loop
+firmware engine -s engine=both -s firmware.kernel=engine
+[ "$(value engine engine.jobs)" -ge 1 ] || fail "the firmware gave the engine nothing to do"
+diff -r loop/frames engine/frames || fail "the engine's pictures differ"
+
 # What cannot be recorded.
 run none --waves x.fst
 [ $? = 2 ] || fail "waveforms without an engine: status $?"

@@ -14,6 +14,7 @@
 #include "model/engine/rtl/pair_backend.h"
 #include "model/common/check.h"
 #include "tb/engine/model_bench.h"
+#include "tb/rtl/engine_bench.h"
 #include "tb/rtl/random_jobs.h"
 
 namespace fovea::rtl {
@@ -28,6 +29,7 @@ constexpr std::uint32_t kUntouched = 0x5A5A5A5A;
 
 /// A bench with the RTL, or with a pair.
 struct Bench : ModelBench {
+  using Memory = ModelBench::Memory;
   explicit Bench(const RtlBackend::Options& options = {})
       : ModelBench(kSize, [&](const Clock& c, EngineBackend::Host& h) {
           return std::make_unique<RtlBackend>(h, c, options);
@@ -274,6 +276,33 @@ TEST(RtlBackendTest, TheModelBesideItAsksForTheSameInBothRoles) {
       ASSERT_TRUE(bench.differences.empty()) << bench.differences[0] << ", job " << n;
     }
   }
+}
+
+/// What adapters and checkers cost: clocks a second of the same job on the bench of tb/rtl and as a backend.
+TEST(RtlBackendTest, PrintsItsSpeedBesideThatOfABenchWithoutAdapters) {
+  Dice dice(6);
+  MappedJob m;
+  m.job.pairs = m.job.dst_pitch = m.job.src_pitch = 360;
+  m.job.rows = m.job.src_height = 100;
+  m.job.src_width = 720;
+  for (unsigned n = 0; n < 36'000; ++n) m.map.push_back(4 * n);
+  const auto rate = [](auto&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::uint64_t clocks = work();
+    return static_cast<double>(clocks) /
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  Bench backend;
+  backend.fill(m, dice);
+  EngineBench plain(kSize);
+  for (std::uint32_t n = 0; n < kSize / 4; ++n) plain.word(kWord + n) = backend.word(kWord + n);
+  const double bench = rate([&] { return plain.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 24}).clocks; });
+  const double adapted = rate([&] {
+    EXPECT_EQ(backend.make(m, {.latency = 24}), engine::kDone);
+    return backend.get(backend.regs.clocks);
+  });
+  std::printf("%.0f clocks/s on the bench of tb/rtl, %.0f as a backend\n", bench, adapted);
+  EXPECT_TRUE(backend.right(m));
 }
 
 }  // namespace
