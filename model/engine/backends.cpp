@@ -1,14 +1,48 @@
 #include "model/engine/backends.h"
 
+#include <array>
+
 #include "model/common/check.h"
 #include "model/engine/core/tlm_backend.h"
+#ifdef FOVEA_ENGINE_RTL
+#include "model/engine/rtl/pair_backend.h"
+#include "model/engine/rtl/rtl_backend.h"
+#endif
 
 namespace fovea::engine {
+#ifdef FOVEA_ENGINE_RTL
+namespace {
+
+rtl::Waves waves_of(const EngineParams& p) {
+  using Trigger = rtl::Waves::Trigger;
+  constexpr std::array kTriggers{Trigger::kBusy, Trigger::kJob, Trigger::kInterrupt, Trigger::kError};
+  const Picoseconds length = p.waves_length();
+  return {.file = p.waves_file(),
+          .trigger = kTriggers[p.waves_trigger.index()],
+          .skip = static_cast<std::uint64_t>(p.waves_skip()),
+          .from = p.waves_from(),
+          .length = length ? length : kNever};
+}
+
+}  // namespace
+#endif
 
 std::unique_ptr<EngineBackend> make_backend(const EngineParams& params, const Clock& clock,
-                                            EngineBackend::Host& host) {
+                                            EngineBackend::Host& host, OnCompared on_compared) {
+  const auto tlm = [&clock](EngineBackend::Host& h) { return std::make_unique<TlmBackend>(clock, h); };
   // Without an engine nothing runs: the block is made to print its registers.
-  if (params.kind.is("tlm") || params.kind.is("none")) return std::make_unique<TlmBackend>(clock, host);
+  if (params.kind.is("tlm") || params.kind.is("none")) return tlm(host);
+#ifdef FOVEA_ENGINE_RTL
+  const auto rtl = [&](EngineBackend::Host& h) {
+    return std::make_unique<rtl::RtlBackend>(h, clock, rtl::RtlBackend::Options{.waves = waves_of(params)});
+  };
+  if (params.kind.is("rtl")) return rtl(host);
+  std::unique_ptr<rtl::PairBackend> pair;
+  if (params.kind.is("both")) pair = std::make_unique<rtl::PairBackend>(host, clock, rtl, tlm);
+  else pair = std::make_unique<rtl::PairBackend>(host, clock, tlm, rtl);
+  pair->on_compared = std::move(on_compared);
+  return pair;
+#endif
   throw UserError("key 'engine': '" + params.kind() +
                   "' needs Verilator, which was missing when this program was built; allowed: none, tlm");
 }

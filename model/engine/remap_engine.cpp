@@ -21,11 +21,12 @@ std::uint32_t writable(const Reg& reg) {
 
 RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& params)
     : BusTarget(name, regs),
-      backend_(make_backend(params, clock_, *this)),
+      backend_(make_backend(params, clock_, *this, [this](std::int64_t lag) { pair->note(lag); })),
       memory_("memory", Master::kRemapEngine, kPlaces, BurstMaster::Report::kAtFirstBeat) {
   add_clock(clk);
   add_interrupt("remapint", interrupt_line.out);
   add_statistics(stats);
+  if (params.compares()) add_statistics(pair.emplace());
   add_master(Master::kRemapEngine, memory_.socket, kPlaces);
   memory_.on_done = [this](const BurstMaster::Completion& c) { answered(c); };
   for (Reg* reg : regs.regs()) connect(*reg);

@@ -1,7 +1,10 @@
 // The remap engine on the chip: registers on the configuration bus, a master of the crossbar, an interrupt.
 #pragma once
+#include <array>
 #include <deque>
 #include <memory>
+#include <optional>
+#include <string>
 #include <systemc>
 #include <vector>
 
@@ -29,6 +32,26 @@ struct EngineStats : StatGroup {
   EngineStats() : StatGroup("engine") {}
 };
 
+/// How far apart two compared backends were (`engine` = both, both_tlm): requests by clocks, whoever was earlier.
+struct PairStats : StatGroup {
+  static constexpr std::array<unsigned, 6> kUpTo{0, 1, 3, 7, 15, 63};
+  Counter requests{*this, "requests", "1", "requests that were compared, and equal"};
+  Maximum most{*this, "most", "1", "clocks between the same request of both, at most"};
+  std::deque<Counter> within;  ///< `within_N`: at most N clocks apart
+  PairStats() : StatGroup("engine.pair") {
+    for (const unsigned n : kUpTo)
+      within.emplace_back(*this, "within_" + std::to_string(n), "1",
+                          "of them those at most " + std::to_string(n) + " clocks apart");
+  }
+  void note(std::int64_t lag) {
+    const auto clocks = static_cast<std::uint64_t>(lag < 0 ? -lag : lag);
+    ++requests;
+    most.note(clocks);
+    for (std::size_t n = 0; n < kUpTo.size(); ++n)
+      if (clocks <= kUpTo[n]) ++within[n];
+  }
+};
+
 /// Behind it is a backend: a model or the RTL. Its requests are put on the port at their edges; answers reach it
 /// at their first beat. A burst is handed to the bus when all its data have left the engine.
 class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private EngineBackend::Host {
@@ -36,6 +59,7 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   using Params = EngineParams;
   SC_HAS_PROCESS(RemapEngine);
   EngineStats stats;
+  std::optional<PairStats> pair;
   ClockIn clk{"clk"};
   Pulse interrupt_line{"interrupt", kPsPerNs};
 

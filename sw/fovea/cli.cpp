@@ -50,7 +50,7 @@ struct RunOptions {
   bool strict = false, hazards = false, profile = false;
   bool no_frames = false;
   bool mp4 = false;
-  std::string bus_trace, command_trace;
+  std::string bus_trace, command_trace, waves;
   std::string gdb;
   RegisterLogRequest registers;
   PerfettoOptions perfetto;
@@ -89,6 +89,16 @@ void add_replay_keys(ParamSet& params) {
   }
 }
 
+/// --waves is the key waves.file, for which there must be an RTL.
+void set_waves(const std::string& file, const ParamSet& params, Experiment& experiment) {
+  experiment.override_with("waves.file=" + file);
+  const ParamBase* engine = params.find("engine");
+  if (!engine || engine->text() == "none" || engine->text() == "tlm")
+    throw UserError(fmt::format("--waves '{}': it records the RTL of the remap engine, and key 'engine' is {}; "
+                                "allowed: rtl, both, both_tlm",
+                                one_line(file), engine ? engine->text() : "unknown"));
+}
+
 int command_run(const RunOptions& options, const std::vector<std::string>& args,
                 const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
@@ -100,6 +110,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   Experiment experiment(params);
   experiment.load(options.experiment);
   for (const auto& set : options.sets) experiment.override_with(set);
+  if (!options.waves.empty()) set_waves(options.waves, params, experiment);
   const WarningScope warnings(context.err, options.strict);
   warn_without_effect(params, experiment);
   apply_calibrations(params, experiment);
@@ -113,6 +124,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
     throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
                                 "files of a run only; choose a place beside it",
                                 one_line(options.bus_trace)));
+  if (!options.waves.empty() && dir.covers(options.waves))
+    throw UserError(fmt::format("--waves '{}': it lies in the output folder, which holds the files of a run only; "
+                                "choose a place beside it",
+                                one_line(options.waves)));
   const PerfettoRequest perfetto = perfetto_of(options.perfetto);
   if (!perfetto.file.empty() && dir.covers(perfetto.file))
     throw UserError(fmt::format("--perfetto '{}': it lies in the output folder, which holds the files of a run "
@@ -412,6 +427,10 @@ void add_run_command(CLI::App& app, RunOptions& run) {
   c->add_option("--bus-trace", run.bus_trace,
                 "Write all requests to the SDRAM in the measured window to this file")
       ->type_name("FILE");
+  c->add_option("--waves", run.waves,
+                "Write the waveforms of the RTL remap engine (engine = rtl, both, both_tlm) to this FST file; "
+                "the keys waves.* choose which part")
+      ->type_name("FILE");
   add_command_trace_option(*c, run.command_trace);
   add_perfetto_options(*c, run.perfetto);
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
@@ -489,6 +508,8 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   o.replay.out_given = name == "replay" && c->get_option("--out")->count() > 0;
   if (name == "run" && c->get_option("--bus-trace")->count() > 0 && o.run.bus_trace.empty())
     throw UserError("--bus-trace '': a file name is needed");
+  if (name == "run" && c->get_option("--waves")->count() > 0 && o.run.waves.empty())
+    throw UserError("--waves '': a file name is needed");
   if (name == "replay") return command_replay(o.replay, args, context);
   if (name == "run") return command_run(o.run, args, context);
   if (name == "exec") return command_exec(o.exec, args, context);

@@ -182,6 +182,17 @@ acts edma.tc.burst 64B PROGRAM
 acts edma.tc.depth 1 PROGRAM
 acts edma.tc.fifo 128B PROGRAM
 acts edma.tc.outstanding 1 PROGRAM
+acts engine tlm EARLY
+tested waves.skip cosim.rtl
+tested waves.from cosim.rtl
+tested waves.length cosim.rtl
+tested waves.file cosim.board
+tested waves.trigger cosim.board
+idle waves.file x.fst
+idle waves.trigger job
+idle waves.skip 1
+idle waves.from 1ms
+idle waves.length 1ms
 acts firmware.baud 57600 EARLY
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial

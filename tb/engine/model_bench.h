@@ -1,9 +1,11 @@
 // Runs an EngineBackend on a memory in which every request takes the same time: the counterpart of tb/rtl's
 // engine_bench, without back-pressure. Jobs go through the registers.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
-#include <map>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -36,7 +38,12 @@ class ModelBench : private EngineBackend::Host {
     }
   };
 
-  explicit ModelBench(std::size_t bytes) : words_(bytes / 4) {}
+  using Maker = std::function<std::unique_ptr<EngineBackend>(const Clock& clock, EngineBackend::Host& host)>;
+  static std::unique_ptr<EngineBackend> tlm(const Clock& clock, EngineBackend::Host& host) {
+    return std::make_unique<TlmBackend>(clock, host);
+  }
+  explicit ModelBench(std::size_t bytes, const Maker& make = tlm)
+      : owned_(make(clock, *this)), backend(*owned_), words_(bytes / 4) {}
   std::uint32_t& word(std::uint32_t word_address) { return words_.at(word_address - kBase / 4); }
   /// Accesses at the present time, by the name of the register.
   void set(const Reg& reg, std::uint32_t value);
@@ -51,7 +58,12 @@ class ModelBench : private EngineBackend::Host {
                     std::optional<unsigned> abort_after = {});
 
   Clock clock{Frequency(kPsPerSecond / kPeriod)};
-  TlmBackend backend{clock, *this};
+
+ private:
+  std::unique_ptr<EngineBackend> owned_;
+
+ public:
+  EngineBackend& backend;
   EngineRegs regs;
   Memory memory;
   std::vector<Asked> asked;  ///< requests since the last run()
@@ -61,7 +73,7 @@ class ModelBench : private EngineBackend::Host {
  private:
   struct Pending {
     Burst burst;
-    std::vector<std::uint8_t> data;
+    std::array<std::uint8_t, 64> data;
     std::uint64_t first, last;  // clocks in which the beats arrive
     bool fault;
   };

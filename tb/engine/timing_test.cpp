@@ -116,6 +116,23 @@ TEST(TimingTest, LensesTakeTheSameTime) {
       }
 }
 
+/// One job of the lens each, for instructions.sh.
+struct CostTest : testing::Test {
+  Pair pair;
+  MappedJob job;
+  CostTest() {
+    Dice dice(1);
+    lens_view_t view;
+    lens_view_default(&view);
+    lens_t lens;
+    lens_init(&lens, &view, 192, 96);
+    job = rtl::table_job(lens);
+    pair.fill(job, dice);
+  }
+};
+TEST_F(CostTest, Model) { EXPECT_GT(pair.run_model(job, 24).clocks, 0u); }
+TEST_F(CostTest, Rtl) { EXPECT_GT(pair.run_rtl(job, 24).clocks, 0u); }
+
 TEST(TimingTest, TheComparisonComplains) {
   const Trace t{{1, 64, 32, 0, 128, 64}, {0, 256, 64}, 1000, 1, 1, 0};
   EXPECT_EQ(difference(t, t), "");

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "tb/rtl/axi_checker.h"
+#include "model/engine/rtl/axi_checker.h"
 #include "tb/rtl/golden.h"
 #include "tb/rtl/lite_checker.h"
 
