@@ -283,6 +283,19 @@ TEST_F(Queue, AbortEndsTheJobAndDropsTheOthers) {
   EXPECT_THAT(ended(), testing::ElementsAre(9, kDone, 2));
 }
 
+/// Whoever says less than a mode reads waits for ever, as in the RTL.
+TEST_F(Queue, AJobWithoutItsMapStandsStillUntilItIsAborted) {
+  bench.set(bench.regs.map_words, 798);
+  bench.set(bench.regs.ctrl, 1);
+  submit(1);
+  bench.advance(100'000);
+  EXPECT_EQ(status(), 1u);
+  bench.set(bench.regs.ctrl, 3);
+  bench.finish();
+  bench.advance(2);
+  EXPECT_THAT(ended(), testing::ElementsAre(1, kAborted, 1));
+}
+
 TEST_F(Queue, DisablingLetsTheJobUnderWayEnd) {
   bench.set(bench.regs.ctrl, 1);
   submit(1);
