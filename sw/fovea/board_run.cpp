@@ -12,6 +12,7 @@
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
 #include "model/video/scene/ahead.h"
+#include "model/video/scene/quad.h"
 #include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/bus_trace_run.h"
@@ -217,7 +218,7 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
                        "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
   }
-  if (params_.camera_count() > 1) add_camera_stats(rows, board_->camera_stats());
+  if (params_.input_count() > 1) add_camera_stats(rows, board_->camera_stats());
   const auto lut = board_->log.first(board::Phase::kLut);
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
@@ -414,6 +415,13 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (!request.camera) continue;
     pictures.push_back(std::make_unique<CameraPictures>(*cameras.back()));
     cameras.back() = pictures.back().get();
+  }
+  std::optional<video::QuadSource> quad;
+  if (params_.cameras.quad()) {
+    quad.emplace(std::array<video::PictureSource*, 4>{ahead[0].get(), ahead[1].get(), ahead[2].get(), ahead[3].get()});
+    cameras = {&*quad};
+    pictures.clear();
+    if (request.camera) cameras[0] = pictures.emplace_back(std::make_unique<CameraPictures>(*quad)).get();
   }
   const std::optional<ElfImage> loader = loader_of(elf, request);
   board_ = std::make_unique<board::Board>("board", params_, cameras,

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "model/video/scene/car_park.h"
 #include "sw/fovea/ffmpeg.h"
 
 namespace fovea::app {
@@ -18,6 +19,7 @@ constexpr std::size_t kMostFilmFrames = 250;
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
+  if (!params.firmware.view.is("single")) return built_program("fovea_views.elf");
   return built_program(params.camera_count() > 1 ? "fovea_cameras.elf" : "fovea_firmware.elf");
 }
 
@@ -37,7 +39,7 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
                                    const video::SceneParams& camera,
                                    const std::atomic<bool>* stop) {
-  if (camera.kind.is("chart")) return {};
+  if (camera.kind.is("chart") || camera.kind.is("car_park")) return {};
   if (camera.file().empty())
     throw UserError("key '" + camera.file.key() + "': a picture or film is needed for " +
                     camera.kind.key() + " = " + camera.kind() + "; allowed: a file name, or " +
@@ -52,6 +54,24 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
   options.stop = stop;
   return decode_frames(camera.file(), options);
 }
+
+namespace {
+
+std::unique_ptr<video::StampedSource> car_park(const board::BoardParams& params, const video::SceneParams& scene,
+                                               unsigned camera, unsigned height) {
+  if (camera >= params.mounts.size())
+    throw UserError("key '" + scene.kind.key() + "': car_park is seen by cameras 0 to " +
+                    std::to_string(params.mounts.size() - 1) + ", which are mounted on the car");
+  if (scene.lens.is("kannala_brandt"))
+    throw UserError("key '" + scene.lens.key() +
+                    "': a car_park is seen through linear, orthographic, equisolid or stereographic, not "
+                    "kannala_brandt");
+  const unsigned width = params.raster_width();
+  return std::make_unique<video::CarParkSource>(video::Raster{width, height, scene.stamp(), camera},
+                                                scene.lens_model(width, height), params.mounts[camera].mount());
+}
+
+}  // namespace
 
 std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& params,
                                                     unsigned camera, const std::atomic<bool>* stop,
@@ -69,6 +89,7 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
   const unsigned height = !own.user_set()      ? params.raster_height()
                           : own.is("625/50") ? 576
                                                : 480;
+  if (setup.scene->kind.is("car_park")) return car_park(params, *setup.scene, camera, height);
   return video::make_picture_source(*setup.scene, std::move(footage), params.raster_width(), height,
                                     camera);
 }
@@ -144,8 +165,18 @@ void check_cameras(const board::BoardParams& params) {
       require(input() != params.camera_rows[k].wire.input(), input.key(), input(),
               "an input that no other camera is on");
     }
-  if (count == 1 || !params.firmware.elf().empty()) return;
   const auto& fw = params.firmware;
+  require(!params.cameras.quad() || count == VIEW_CAMERAS, params.cameras.quad.key(), params.cameras.quad.text(),
+          "with cameras.count = 4");
+  for (unsigned n = 0; params.cameras.quad() && n < count; ++n)
+    require(params.camera_setup(n).genlocked, params.cameras.quad.key(), params.cameras.quad.text(),
+            "with genlocked cameras: the signals that are joined have the same syncs");
+  if (!fw.elf().empty()) return;
+  require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
+          "single, or any with cameras.count = 4");
+  require(!params.cameras.quad() || !fw.view.is("single"), params.cameras.quad.key(), params.cameras.quad.text(),
+          "with a firmware.view that is composed of quarters: four_way or birds_eye");
+  if (count == 1) return;
   require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
           "1 with several cameras, each of which has a table of its own");
   require(fw.flow.is("double"), fw.flow.key(), fw.flow(), "double with several cameras");

@@ -18,6 +18,9 @@
 #include "../drivers/tvp5146_inputs.h"
 #include "turns.h"
 #endif
+#ifdef COMPOSED_VIEW
+#include "composition.h"
+#endif
 
 /* Minimum time before a field's start for a change of the displayed buffer by the main loop. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
@@ -55,6 +58,10 @@ static struct {
   uint32_t quiet_fields; /* of the display, since the last field of a camera */
   uint8_t camera_of[CAPTURE_BUFFERS_MAX]; /* whose frame is in each buffer */
   uint32_t taken_camera;
+#endif
+#ifdef COMPOSED_VIEW
+  int32_t kept[CAMERAS_MAX]; /* buffers of the newest frames; CAPTURE_NONE before the first one */
+  const uint8_t *kept_frame[CAMERAS_MAX];
 #endif
 } pipe;
 
@@ -309,7 +316,12 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
                                 config->pitch_bytes};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
 #ifdef TIME_DIVISION
+#ifdef COMPOSED_VIEW
+  turns_init(&pipe.turns, composition_sources());
+  for (uint32_t n = 0; n < CAMERAS_MAX; ++n) pipe.kept[n] = CAPTURE_NONE;
+#else
   turns_init(&pipe.turns, config->cameras);
+#endif
   pipe.config = config;
   pipe.standard = config->is_625 ? TVP5146_PAL : TVP5146_NTSC;
   isif_mark_fields(config->is_625);
@@ -330,6 +342,19 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   irq_unmask();
 }
 
+#ifdef COMPOSED_VIEW
+/* The frame that waits takes the place of its camera's last one. */
+static void keep_frame(void) {
+  const int32_t buffer = capture_take(&pipe.capture, &pipe.taken_sequence);
+  const uint32_t camera = pipe.taken_camera = pipe.camera_of[buffer];
+  if (pipe.kept[camera] != CAPTURE_NONE) capture_release(&pipe.capture, pipe.kept[camera]);
+  pipe.kept[camera] = buffer;
+  pipe.kept_frame[camera] = in_buffer(buffer);
+}
+
+const uint8_t *const *pipeline_kept(void) { return pipe.kept_frame; }
+#endif
+
 int pipeline_take(uint8_t **out, uint32_t *sequence) {
   if (pipe.capture.ready == CAPTURE_NONE) return 0;
   if (pipe.held.count + 1u < pipe.sources) { /* the first frames only become sources */
@@ -339,10 +364,14 @@ int pipeline_take(uint8_t **out, uint32_t *sequence) {
   const int32_t out_buffer = output_take(&pipe.output);
   if (out_buffer == OUTPUT_NONE) return 0;
   pipe.taken_out = out_buffer;
+#ifdef COMPOSED_VIEW
+  keep_frame();
+#else
   held_add(&pipe.held, capture_take(&pipe.capture, &pipe.taken_sequence));
+#endif
   *out = shown_buffer(out_buffer);
   *sequence = pipe.taken_sequence;
-#ifdef TIME_DIVISION
+#if defined(TIME_DIVISION) && !defined(COMPOSED_VIEW)
   pipe.taken_camera = pipe.camera_of[held_of_age(&pipe.held, 0)];
 #endif
   return 1;
@@ -365,7 +394,9 @@ const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pip
 
 void pipeline_done(void) {
   const uint32_t cpsr = irq_mask();
+#ifndef COMPOSED_VIEW
   capture_release(&pipe.capture, held_drop(&pipe.held));
+#endif
   output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */
