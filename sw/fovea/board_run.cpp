@@ -12,6 +12,7 @@
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
 #include "model/video/scene/ahead.h"
+#include "model/video/scene/plan_score.h"
 #include "model/video/scene/quad.h"
 #include "sw/fovea/board_console.h"
 #include "sw/fovea/board_debug.h"
@@ -109,6 +110,29 @@ void add_camera_stats(std::vector<StatRow>& rows,
   }
 }
 
+/// The score of mosaics of a synthetic car park whose pictures have no marks; empty for anything else.
+std::optional<video::PlanScore> plan_score(const board::BoardParams& params) {
+  if (!params.firmware.view.is("birds_eye") || params.camera_count() != VIEW_CAMERAS) return std::nullopt;
+  for (unsigned n = 0; n < VIEW_CAMERAS; ++n) {
+    const board::CameraSetup camera = params.camera_setup(n);
+    if (!camera.scene->kind.is("car_park") || camera.scene->stamp()) return std::nullopt;
+  }
+  const board::BirdsEyeParams& ground = params.birds_eye;
+  return video::PlanScore({params.width(), params.height(), ground.width(), ground.height()}, ground.car_length(),
+                          ground.car_width());
+}
+
+void add_quality(std::vector<StatRow>& rows, const video::PlanScore::Result& score) {
+  const std::string what = "of the last displayed mosaic against the plan of the car park, without the car: ";
+  if (std::isfinite(score.psnr_y))
+    rows.push_back(row("quality.psnr_y", score.psnr_y, "dB", what + "peak signal-to-noise ratio of luma"));
+  if (score.lines)
+    rows.push_back(row("quality.line_error", score.line_error, "px",
+                       what + "distance of the marked lines from their places, root mean square"));
+  rows.push_back(row("quality.lines", score.lines, "1", what + "rows of lines that were found"));
+  rows.push_back(row("quality.lines_missed", score.missed, "1", what + "rows of lines that were not"));
+}
+
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
@@ -142,6 +166,8 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<CommandTrace> commands_;
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<RemapTime> remaps_;
+  std::optional<video::PlanScore> score_;
+  video::Picture mosaic_;  ///< the last one that was displayed, if there is a score
   std::vector<LatencyRow> latency_;
   std::unique_ptr<RunProfile> profile_;
   std::vector<StatRow> stats_;
@@ -218,7 +244,11 @@ void BoardSimulation::add_frame_stats(std::vector<StatRow>& rows) const {
                        "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
   }
-  if (params_.input_count() > 1) add_camera_stats(rows, board_->camera_stats());
+  const auto cameras = board_->camera_stats();
+  if (params_.input_count() > 1) add_camera_stats(rows, cameras);
+  // A camera that has not been shown yet leaves its part black.
+  if (score_ && std::all_of(cameras.begin(), cameras.end(), [](const auto& c) { return c.displayed > 0; }))
+    add_quality(rows, (*score_)(mosaic_));
   const auto lut = board_->log.first(board::Phase::kLut);
   const auto idle = board_->log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
@@ -442,6 +472,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
   remaps_ = std::make_unique<RemapTime>(*board_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
+  score_ = plan_score(params_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
@@ -449,6 +480,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (request.console || dialogue)
     console.emplace(*board_, request.console, std::move(dialogue));
   board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    if (score_) {
+      mosaic_ = video::Picture(params_.width(), params_.height());
+      const unsigned x = (f.picture.width - mosaic_.width) / 2, y = (f.picture.height - mosaic_.height) / 2;
+      for (unsigned v = 0; v < mosaic_.height; ++v)
+        std::copy_n(f.picture.row(y + v) + 2 * x, mosaic_.row_bytes(), mosaic_.row(v));
+    }
     FrameRow out;
     out.index = r.index;
     out.camera = r.camera;

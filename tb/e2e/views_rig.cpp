@@ -15,8 +15,6 @@ namespace fovea::e2e {
 namespace {
 
 constexpr unsigned kCameras = 4;
-/// A part may be as old as so many frames of the camera: more than a round of four cameras and the display's buffers.
-constexpr std::uint64_t kOldest = 12;
 
 oracle::Frame woven(const video::Picture& even, const video::Picture& odd, unsigned w, unsigned h) {
   const unsigned x = (even.width - w) / 2, y = (even.height - h) / 2;
@@ -109,7 +107,8 @@ const oracle::Frame& ViewsRig::sent(unsigned camera, std::uint64_t number) {
   return frame;
 }
 
-std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32_t>& lut) {
+std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32_t>& lut,
+                                  std::uint64_t oldest) {
   const std::uint32_t pitch = views_.lens[0].pitch_bytes, black = params.height() * pitch;
   const auto pair_of = [&](const oracle::Frame& f, std::size_t at) {
     std::uint32_t word = 0;
@@ -130,7 +129,7 @@ std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32
       });
     };
     unsigned fits = 0;
-    for (std::uint64_t k = newest > kOldest ? newest - kOldest : 0; k <= newest; ++k)
+    for (std::uint64_t k = newest > oldest ? newest - oldest : 0; k <= newest; ++k)
       if (shows(sent(n, k))) {
         shown.number[n] = k;
         ++fits;
@@ -140,11 +139,11 @@ std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32
   return "";
 }
 
-std::string ViewsRig::wrong_picture(const std::vector<std::uint32_t>& lut) {
+std::string ViewsRig::wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest) {
   for (Composed& s : shown_) {
     const std::string which = "displayed frame " + std::to_string(s.index) + ": ";
     s.number = {};
-    if (const std::string fault = find_frames(s, lut); !fault.empty()) return which + fault;
+    if (const std::string fault = find_frames(s, lut, oldest); !fault.empty()) return which + fault;
     std::array<const oracle::Frame*, kCameras> frames{};
     bool any = false;
     for (unsigned n = 0; n < kCameras; ++n)

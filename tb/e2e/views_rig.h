@@ -43,12 +43,14 @@ class ViewsRig {
   /// Fills `number` of each displayed picture and returns what is wrong with the first one that is not, byte for byte,
   /// the host's composition of sent frames; empty: nothing. In each part, exactly one of the frames that the camera
   /// sent shortly before must fit.
-  std::string wrong_picture(const std::vector<std::uint32_t>& lut);
+  /// @param oldest a part may be of a frame that began so many frames before the picture was displayed: more than a
+  ///        round of four cameras and the display's buffers
+  std::string wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest = 12);
   board::BoardParams params;
 
  private:
   const oracle::Frame& sent(unsigned camera, std::uint64_t number);
-  std::string find_frames(Composed& shown, const std::vector<std::uint32_t>& lut);
+  std::string find_frames(Composed& shown, const std::vector<std::uint32_t>& lut, std::uint64_t oldest);
 
   ParamSet set_;
   app::ElfImage elf_;

@@ -69,10 +69,28 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                                          View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point"}),
                          [](const auto& i) { return i.param.name; });
 
+TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", "160").set("video.height", "120");
+  rig.set("firmware.view", "four_way").set("firmware.kernel", "fastest");
+  // Four pictures are complete by then.
+  rig.set("fault.kind", "unplugged").set("fault.camera", "2").set("fault.start", "1s").set("run.frames", "40");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 40u) << rig.board().uart_text();
+  EXPECT_NE(rig.board().uart_text().find("camera 2: no signal"), std::string::npos);
+  ASSERT_EQ(rig.wrong_picture(rig.table(), 40), "");
+  const auto& last = rig.shown().back();
+  for (unsigned n = 0; n < 4; ++n) ASSERT_TRUE(last.number[n]) << n;
+  const std::uint64_t newest = *last.number[3];
+  EXPECT_LT(*last.number[2], 26u);  // sent before the cable was pulled
+  EXPECT_GT(newest, *last.number[2] + 6);
+}
+
 class ShippedViewTest : public testing::TestWithParam<const char*> {};
 TEST_P(ShippedViewTest, IsComposedOfSentFrames) {
   ViewsRig rig;
-  rig.load(GetParam());
+  rig.load(GetParam()).set("camera.stamp", "true");  // the car park alone stands still
   rig.run(kViewLimit);
   ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
   const oracle::LutCheck check = rig.table_check();

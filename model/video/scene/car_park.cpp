@@ -12,6 +12,7 @@ constexpr GroundColour kSky{170, 190, 215};
 constexpr GroundColour kWhite{225, 225, 220}, kYellow{215, 175, 40}, kBlue{45, 85, 175}, kInk{25, 25, 25};
 constexpr double kLine = 0.12;   ///< width of a marked line, m
 constexpr double kBay = 2.5;     ///< from one bay's line to the next, m
+constexpr double kBayRear = -2.9, kBayFront = 2.7;  ///< ends of the lines, m
 constexpr double kSquare = 0.4;  ///< of the chart, m
 constexpr double kFar = 60;      ///< what is further away is sky, m
 
@@ -63,10 +64,14 @@ Picture picture_of(unsigned width, unsigned height, unsigned side, Colour&& colo
 
 }  // namespace
 
+double bay_line(unsigned n) { return (n - (kBayLines - 1) / 2.0) * kBay; }
+
+bool car_park_has_bay_lines(double x) { return x > kBayRear + 0.2 && x < kBayFront - 0.2; }
+
 GroundColour car_park_colour(double x, double y) {
   // The car's own row of bays, the row across the lane, and a kerb behind.
-  if (between(x, -2.9, 2.7) && on_bay_line(y, -3.5 * kBay, 3.5 * kBay)) return kWhite;
-  if (std::abs(x + 2.9) < kLine / 2 && std::abs(y) < 3.5 * kBay + kLine / 2) return kWhite;
+  if (between(x, kBayRear, kBayFront) && on_bay_line(y, bay_line(0), bay_line(kBayLines - 1))) return kWhite;
+  if (std::abs(x - kBayRear) < kLine / 2 && std::abs(y) < 3.5 * kBay + kLine / 2) return kWhite;
   if (between(x, 7.5, 12.5) && on_bay_line(y, -4 * kBay, 4 * kBay)) return kWhite;
   if (between(x, -4.4, -4.1)) return kYellow;
   if (between(x, -2.4, 2.2) && between(y, 1.5 * kBay + 0.4, 2.5 * kBay - 0.4)) return kBlue;

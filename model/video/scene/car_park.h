@@ -13,6 +13,12 @@ struct GroundColour {
 };
 GroundColour car_park_colour(double x, double y);
 
+/// The lines between the car's row of bays, at y = bay_line(n) along the car; they run where this is true of x, which
+/// leaves out their ends.
+inline constexpr unsigned kBayLines = 8;
+double bay_line(unsigned n);
+bool car_park_has_bay_lines(double x);
+
 /// The plan as a picture: a rectangle of `metres_x` across and `metres_y` along the car, forward is up, the car in
 /// the middle. Each pixel is the mean of 16 points of its area.
 Picture car_park_plan(unsigned width, unsigned height, double metres_x, double metres_y);

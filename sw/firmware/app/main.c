@@ -42,7 +42,11 @@ static void print_config(void) {
     uart_put_uint(config.repeats);
     uart_puts(" remaps for each frame");
   }
-#ifdef TIME_DIVISION
+#if defined(COMPOSED_VIEW)
+  uart_puts(", ");
+  uart_put_uint(config.cameras);
+  uart_puts(" cameras in one picture");
+#elif defined(TIME_DIVISION)
   uart_puts(", ");
   uart_put_uint(config.cameras);
   uart_puts(" cameras in turn");
