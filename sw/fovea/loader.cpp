@@ -167,15 +167,15 @@ void check_cameras(const board::BoardParams& params) {
     }
   const auto& fw = params.firmware;
   require(!params.cameras.quad() || count == VIEW_CAMERAS, params.cameras.quad.key(), params.cameras.quad.text(),
-          "with cameras.count = 4");
+          "false, or true with cameras.count = 4");
   for (unsigned n = 0; params.cameras.quad() && n < count; ++n)
     require(params.camera_setup(n).genlocked, params.cameras.quad.key(), params.cameras.quad.text(),
-            "with genlocked cameras: the signals that are joined have the same syncs");
+            "false, or true with genlocked cameras: the signals that are joined have the same syncs");
   if (!fw.elf().empty()) return;
   require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
           "single, or any with cameras.count = 4");
   require(!params.cameras.quad() || !fw.view.is("single"), params.cameras.quad.key(), params.cameras.quad.text(),
-          "with a firmware.view that is composed of quarters: four_way or birds_eye");
+          "false, or true with firmware.view = four_way or birds_eye");
   if (count == 1) return;
   require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
           "1 with several cameras, each of which has a table of its own");

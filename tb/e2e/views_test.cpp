@@ -11,12 +11,14 @@ namespace {
 
 constexpr Picoseconds kViewLimit = 20 * kPsPerSecond;
 
+/// The tiny picture stays in the D-cache from one frame to the next, so that a missing invalidation shows.
 struct View {
   const char* name;
   const char* view;
   bool quad;
   const char* kernel;
   const char* lut;
+  const char *width = "160", *height = "120";
 };
 
 class ViewTest : public testing::TestWithParam<View> {};
@@ -24,7 +26,7 @@ TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {
   const View& p = GetParam();
   ViewsRig rig;
   rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
-  rig.set("tvp5146.relock_fields", "0").set("video.width", "160").set("video.height", "120");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", p.width).set("video.height", p.height);
   rig.set("firmware.view", p.view).set("firmware.kernel", p.kernel).set("firmware.lut", p.lut);
   rig.set("cameras.quad", p.quad ? "true" : "false");
   rig.set("camera.1.lens.mapping", "linear").set("camera.2.lens.centre_x", "5px").set("camera.3.mount.roll", "5deg");
@@ -66,6 +68,7 @@ TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {
 INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                          testing::Values(View{"FourWay", "four_way", false, "fastest", "fixed_point"},
                                          View{"BirdsEye", "birds_eye", false, "plain", "soft_float"},
+                                         View{"FourWayTiny", "four_way", false, "ldm", "fixed_point", "32", "16"},
                                          View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point"}),
                          [](const auto& i) { return i.param.name; });
 
