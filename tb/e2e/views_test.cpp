@@ -20,6 +20,7 @@ struct View {
   const char* lut;
   const char *width = "160", *height = "120";
 };
+void PrintTo(const View& v, std::ostream* out) { *out << v.name; }
 
 class ViewTest : public testing::TestWithParam<View> {};
 TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {

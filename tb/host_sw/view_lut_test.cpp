@@ -122,6 +122,7 @@ struct Case {
   unsigned width, height;
   bool birds_eye, quad, method_b, limited;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class ViewLutTest : public testing::TestWithParam<Case> {};
 TEST_P(ViewLutTest, IsTheOraclesInBothPrecisions) {
   const Case& c = GetParam();

@@ -89,7 +89,7 @@ TEST(CarPark, SkyAndGroundMeetAtTheHorizon) {
   CarParkSource source({320, 256, false, 0}, lens_of(320, 256), {0, 0, 1, 90, 0, 0});
   const Picture& p = source.field(0);
   EXPECT_GT(p.row(120)[2 * 160 + 1], 150);
-  EXPECT_LT(p.row(140)[2 * 160 + 1], 120);
+  EXPECT_LT(p.row(150)[2 * 160 + 1], 120);
 }
 
 TEST(PlanScore, IsThatOfThePlanAndOfAPlanThatIsMoved) {
