@@ -17,7 +17,7 @@ soc::Placements external_devices(const DevicesParams& devices) {
 
 std::vector<video::CameraWiring> Board::wiring(const BoardParams& params,
                                                const std::vector<video::PictureSource*>& sources) {
-  FOVEA_CHECK(sources.size() == params.camera_count(), "a source for each camera");
+  FOVEA_CHECK(sources.size() == params.input_count(), "a source for each signal");
   std::vector<video::CameraWiring> out;
   for (unsigned n = 0; n < sources.size(); ++n) {
     out.push_back(params.camera_setup(n).wiring);
@@ -227,8 +227,8 @@ void FrameSums::add(const FrameLog::Remap& m) {
 std::vector<CameraFrameStats> Board::camera_stats() const {
   FrameSums sums = old_;
   for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
-  sums.cameras.resize(params_.camera_count());
-  std::vector<CameraFrameStats> out(params_.camera_count());
+  sums.cameras.resize(params_.input_count());
+  std::vector<CameraFrameStats> out(params_.input_count());
   for (std::size_t n = 0; n < out.size(); ++n) {
     const CameraSums& of = sums.cameras[n];
     const FrameLog::Fates& fates = log.fates(n);

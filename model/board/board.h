@@ -80,7 +80,7 @@ struct FrameSums {
 
 class Board : public sc_core::sc_module {
  public:
-  /// @param sources what each camera sees, cameras.count of them
+  /// @param sources what each camera sees, input_count() of them
   /// @param entry first instruction; stands in for the ROM boot loader
   Board(sc_core::sc_module_name name, const BoardParams& params,
         const std::vector<video::PictureSource*>& sources, std::uint32_t entry, bool strict);

@@ -35,6 +35,18 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     p->matters_only("video.standard = pal", {&video.standard, &firmware.elf}, pal);
   for (ParamBase* p : {&soc.vpss.base_px_525, &soc.vpss.base_py_525})
     p->matters_only("video.standard = ntsc or vga", {&video.standard, &firmware.elf}, not_pal);
+  const auto birds_eye_shown = [this] { return firmware.view.is("birds_eye"); };
+  for (ParamBase* p : birds_eye.params())
+    p->matters_only("firmware.view = birds_eye", {&firmware.view}, birds_eye_shown);
+  for (unsigned n = 0; n < mounts.size(); ++n) {
+    const EnumParam& own = camera_rows[n].scene.kind;
+    for (ParamBase* p : mounts[n].params())
+      p->matters_only("firmware.view = birds_eye or camera.kind = car_park", {&firmware.view, &camera.kind, &own},
+                      [this, &own, birds_eye_shown] {
+                        const EnumParam& kind = own.user_set() ? own : camera.kind;
+                        return birds_eye_shown() || kind.is("car_park");
+                      });
+  }
   // Ports that only a synthetic load drives.
   std::vector<const ParamBase*> loads;
   for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});

@@ -7,6 +7,7 @@
 #include "model/board/clock_presets.h"
 #include "model/board/lens_params.h"
 #include "model/board/priority_params.h"
+#include "model/board/view_params.h"
 #include "model/contract/switches.h"
 #include "model/soc/dm365.h"
 #include "model/video/params.h"
@@ -97,6 +98,10 @@ struct FirmwareParams : ParamGroup {
                   "look-up tables that the remaps follow in turn, each of a view a little further right; "
                   "the sources are as many captured frames, in turn (one with firmware.flow=serial)",
                   Origin::kChoice, ""};
+  EnumParam view{*this, "view", "single", contract::words(kViews),
+                 "what is displayed: a camera at a time; four cameras at half width and half height; or "
+                 "the ground around the car, seen from above (birds_eye)",
+                 Origin::kChoice, ""};
   BoolParam overlay{*this, "overlay", false,
                     "a blinking box blended onto the picture through the cache",
                     Origin::kChoice, ""};
@@ -184,12 +189,16 @@ struct BoardParams : ParamTree {
                                                   {*this, cameras.count, 5},
                                                   {*this, cameras.count, 6},
                                                   {*this, cameras.count, 7}}};
+  Declared<BirdsEyeParams> birds_eye{*this};
+  std::array<Declared<MountParams>, VIEW_CAMERAS> mounts{{{*this, 0u}, {*this, 1u}, {*this, 2u}, {*this, 3u}}};
   Declared<soc::Dm365Params> soc;
   /// @param blocks of the chip
   explicit BoardParams(soc::Placements blocks = soc::dm365_blocks());
   /// Everything that is set of a camera: what its row sets, and for the rest the keys of all cameras.
   CameraSetup camera_setup(unsigned camera) const;
   unsigned camera_count() const { return static_cast<unsigned>(cameras.count()); }
+  /// Signals at the decoder: one if a quad processor joins those of the cameras.
+  unsigned input_count() const { return cameras.quad() ? 1 : camera_count(); }
   /// Size of the standard's picture, and of what is corrected and shown.
   unsigned raster_width() const { return 720; }
   unsigned raster_height() const { return video.standard.is("pal") ? 576 : 480; }

@@ -22,6 +22,10 @@ struct CamerasParams : ParamGroup {
                       "the syncs of all cameras are those of tvp5146.phase; false: each camera runs "
                       "by its own clock from its own phase",
                       Origin::kChoice, ""};
+  BoolParam quad{*this, "quad", false,
+                 "a quad processor joins the signals of four genlocked cameras to one, that of camera 0: "
+                 "each at half width and half height",
+                 Origin::kChoice, ""};
   CamerasParams() : ParamGroup("cameras") {
     genlocked.matters_only("cameras.count of 2 or more", {&count}, [this] { return count() > 1; });
   }

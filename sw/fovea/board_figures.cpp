@@ -118,7 +118,7 @@ void BoardFigures::add_frame_stats(std::vector<StatRow>& rows) const {
                        "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
   }
-  if (params_.camera_count() > 1) add_camera_stats(rows, board_.camera_stats());
+  if (params_.input_count() > 1) add_camera_stats(rows, board_.camera_stats());
   const auto lut = board_.log.first(board::Phase::kLut);
   const auto idle = board_.log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)

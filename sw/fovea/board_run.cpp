@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -23,6 +22,7 @@
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/hazard_report.h"
 #include "sw/fovea/loader.h"
+#include "sw/fovea/mosaic_score.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/fovea/perfetto/perfetto_run.h"
 #include "sw/fovea/run_end.h"
@@ -100,6 +100,7 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<CommandTrace> commands_;
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<BoardFigures> figures_;
+  std::unique_ptr<MosaicScore> mosaic_score_;
   std::unique_ptr<RunProfile> profile_;
   std::vector<FrameRow> frames_;
 };
@@ -246,6 +247,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
+  mosaic_score_ = MosaicScore::of(params_);
   std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
@@ -253,6 +255,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (request.console || dialogue)
     console.emplace(*board_, request.console, std::move(dialogue));
   board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    if (mosaic_score_) mosaic_score_->displayed(f);
     FrameRow out;
     out.index = r.index;
     out.camera = r.camera;
@@ -401,6 +404,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
   result.guest_failure = guest;
   const cpu::Counts counted = figures_->collect(result);
+  if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (profile_) collect_profile(result, counted, request, elf);
   if (hazards) {
     hazards->settle(board_->window_end().value_or(kernel_time()));

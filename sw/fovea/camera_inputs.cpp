@@ -11,9 +11,15 @@ CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
     ahead_.push_back(std::make_unique<video::AheadSource>(*own_.back()));
     views_.push_back(own_.back().get());
     sources_.push_back(ahead_.back().get());
-    if (!keep_pictures) continue;
-    pictures_.push_back(std::make_unique<CameraPictures>(*sources_.back()));
-    sources_.back() = pictures_.back().get();
+  }
+  if (params.cameras.quad()) {
+    quad_.emplace(std::array<video::PictureSource*, 4>{sources_.at(0), sources_.at(1), sources_.at(2), sources_.at(3)});
+    sources_ = {&*quad_};
+  }
+  if (!keep_pictures) return;
+  for (video::PictureSource*& source : sources_) {
+    pictures_.push_back(std::make_unique<CameraPictures>(*source));
+    source = pictures_.back().get();
   }
 }
 

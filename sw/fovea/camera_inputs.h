@@ -2,11 +2,13 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/board/board.h"
 #include "model/video/scene/ahead.h"
+#include "model/video/scene/quad.h"
 #include "model/video/scene/sources.h"
 #include "sw/fovea/camera_pictures.h"
 
@@ -23,17 +25,18 @@ class CameraInputs {
   CameraInputs(const board::BoardParams& params, bool keep_pictures, const std::atomic<bool>& stop,
                std::vector<std::string>& notes);
 
-  /// For the board, one for each camera.
+  /// For the board, one for each input of the decoder: a camera, or a quad processor with the four cameras behind it.
   const std::vector<video::PictureSource*>& sources() const { return sources_; }
   /// What the cameras see, one for each camera.
   const std::vector<const video::StampedSource*>& views() const { return views_; }
-  /// What the camera sent of the frame that `record` shows; null if it is unknown or not kept any more.
+  /// What came over the input of the frame that `record` shows; null if it is unknown or not kept any more.
   const video::Picture* sent(board::Board& board, const board::FrameRecord& record) const;
 
  private:
   std::vector<std::unique_ptr<video::StampedSource>> own_;
   std::vector<std::unique_ptr<video::AheadSource>> ahead_;
   std::vector<std::unique_ptr<CameraPictures>> pictures_;  // only if they are wanted
+  std::optional<video::QuadSource> quad_;
   std::vector<const video::StampedSource*> views_;
   std::vector<video::PictureSource*> sources_;
 };

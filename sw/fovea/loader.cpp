@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "model/video/scene/car_park.h"
 #include "sw/fovea/ffmpeg.h"
 
 namespace fovea::app {
@@ -25,6 +26,7 @@ bool takes_turns(const board::BoardParams& params) {
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
+  if (!params.firmware.view.is("single")) return built_program("fovea_views.elf");
   return built_program(takes_turns(params) ? "fovea_cameras.elf" : "fovea_firmware.elf");
 }
 
@@ -44,7 +46,7 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
                                    const video::SceneParams& camera,
                                    const std::atomic<bool>* stop) {
-  if (camera.kind.is("chart")) return {};
+  if (camera.kind.is("chart") || camera.kind.is("car_park")) return {};
   if (camera.file().empty())
     throw UserError("key '" + camera.file.key() + "': a picture or film is needed for " +
                     camera.kind.key() + " = " + camera.kind() + "; allowed: a file name, or " +
@@ -59,6 +61,24 @@ std::vector<RgbImage> load_footage(const board::BoardParams& params,
   options.stop = stop;
   return decode_frames(camera.file(), options);
 }
+
+namespace {
+
+std::unique_ptr<video::StampedSource> car_park(const board::BoardParams& params, const video::SceneParams& scene,
+                                               unsigned camera, unsigned height) {
+  if (camera >= params.mounts.size())
+    throw UserError("key '" + scene.kind.key() + "': car_park is seen by cameras 0 to " +
+                    std::to_string(params.mounts.size() - 1) + ", which are mounted on the car");
+  if (scene.lens.is("kannala_brandt"))
+    throw UserError("key '" + scene.lens.key() +
+                    "': a car_park is seen through linear, orthographic, equisolid or stereographic, not "
+                    "kannala_brandt");
+  const unsigned width = params.raster_width();
+  return std::make_unique<video::CarParkSource>(video::Raster{width, height, scene.stamp(), camera},
+                                                scene.lens_model(width, height), params.mounts[camera].mount());
+}
+
+}  // namespace
 
 std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& params,
                                                     unsigned camera, const std::atomic<bool>* stop,
@@ -76,6 +96,7 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
   const unsigned height = !own.user_set()      ? params.raster_height()
                           : own.is("625/50") ? 576
                                                : 480;
+  if (setup.scene->kind.is("car_park")) return car_park(params, *setup.scene, camera, height);
   return video::make_picture_source(*setup.scene, std::move(footage), params.raster_width(), height,
                                     camera);
 }
@@ -152,7 +173,18 @@ void check_cameras(const board::BoardParams& params) {
               "an input that no other camera is on");
     }
   const auto& fw = params.firmware;
+  require(!params.cameras.quad() || count == VIEW_CAMERAS, params.cameras.quad.key(), params.cameras.quad.text(),
+          "false, or true with cameras.count = 4");
+  for (unsigned n = 0; params.cameras.quad() && n < count; ++n)
+    require(params.camera_setup(n).genlocked, params.cameras.quad.key(), params.cameras.quad.text(),
+            "false, or true with genlocked cameras: the signals that are joined have the same syncs");
   if (!fw.elf().empty()) return;
+  require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
+          "single, or any with cameras.count = 4");
+  require(!params.cameras.quad() || !fw.view.is("single"), params.cameras.quad.key(), params.cameras.quad.text(),
+          "false, or true with firmware.view = four_way or birds_eye");
+  require(fw.view.is("single") || fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
+          "locked with firmware.view = four_way or birds_eye");
   if (!takes_turns(params)) {
     require(count == 1, fw.program.key(), fw.program(), "cameras, with several of them");
     require(fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "sw/fovea/clock_setting.h"
+#include "sw/fovea/view_page.h"
 #include "sw/lens/lens.h"
 
 namespace fovea::app {
@@ -138,6 +139,11 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   param_page_seal(&page);
   std::vector<std::uint8_t> bytes(page.bytes);
   std::memcpy(bytes.data(), &page, bytes.size());
+  if (!firmware.view.is("single")) {
+    const view_page_t view = view_page(params);
+    bytes.resize(VIEW_PAGE_OFFSET + sizeof view);
+    std::memcpy(bytes.data() + VIEW_PAGE_OFFSET, &view, sizeof view);
+  }
   return bytes;
 }
 

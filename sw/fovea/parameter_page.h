@@ -8,7 +8,8 @@
 
 namespace fovea::app {
 
-/// The bytes of the page (model/contract/param_page.h) that a loader puts at PARAM_PAGE_BASE.
+/// The bytes of the page (model/contract/param_page.h) that a loader puts at PARAM_PAGE_BASE; for a composed
+/// view, with the view page behind it.
 /// @throws UserError for clocks or a lens that cannot be
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                                          const std::vector<const video::StampedSource*>& sources);

@@ -69,6 +69,14 @@ acts aintc.capture level PROGRAM
 acts board.cpld true PROGRAM
 acts board.cpld_switch 0 PROGRAM board.cpld=true
 idle board.cpld_switch 0
+acts birds_eye.car_length 2m cameras.count=4 firmware.view=birds_eye
+idle birds_eye.car_length 2m
+acts birds_eye.car_width 6m cameras.count=4 firmware.view=birds_eye
+idle birds_eye.car_width 6m
+acts birds_eye.height 24m cameras.count=4 firmware.view=birds_eye
+idle birds_eye.height 24m
+acts birds_eye.width 8m cameras.count=4 firmware.view=birds_eye
+idle birds_eye.width 8m
 acts bus.arm_d.request_latency 4cycles EARLY
 acts bus.arm_d.response_latency 4cycles EARLY
 acts bus.arm_d.width 16bit EARLY
@@ -105,6 +113,18 @@ acts camera.motion_period 3 SPHERE camera.motion_amplitude=9deg
 idle camera.motion_period 3
 acts camera.stamp true video.width=320 video.height=240
 acts camera.video_fov 90deg VIDEO camera.lens=equisolid
+acts camera.0.mount.height 3m cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.height 3m
+acts camera.0.mount.pitch 20deg cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.pitch 20deg
+acts camera.0.mount.roll 40deg cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.roll 40deg
+acts camera.0.mount.x 0m cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.x 0m
+acts camera.0.mount.y 2m cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.y 2m
+acts camera.0.mount.yaw 40deg cameras.count=4 firmware.view=birds_eye
+idle camera.0.mount.yaw 40deg
 acts camera.0.input vi_4_a
 acts camera.0.connected false
 acts camera.0.genlocked false camera.0.phase=7ms
@@ -205,6 +225,8 @@ acts firmware.overlay true
 acts firmware.patch true
 acts firmware.repeat 2
 acts firmware.tables 2
+acts firmware.view four_way cameras.count=4
+acts cameras.quad true cameras.count=4 firmware.view=four_way
 tested lens.calibration unit.calibration
 idle lens.calibration none.yaml
 acts pll.go_time 5us EARLY

@@ -15,20 +15,27 @@
 #include "state.h"
 #include "sw/lens/fast_lut.h"
 #include "sw/lens/lens.h"
+#ifdef COMPOSED_VIEW
+#include "composition.h"
+#endif
 #ifdef CONSOLE
 #include "choices.h"
 #define SHARED
 #else
 #define SHARED static
+#endif
+
+static config_t config;
+#ifndef COMPOSED_VIEW
+#ifndef CONSOLE
 struct view { /* what the remaps use in turn */
   lens_view_t lens;
   remap_table_t table;
   const remap_method_t *method;
 };
 #endif
-
-static config_t config;
 static struct view views[TABLES_MAX];
+#endif
 static uint8_t overlay_value;
 
 static void print_config(void) {
@@ -46,7 +53,11 @@ static void print_config(void) {
     uart_put_uint(config.repeats);
     uart_puts(" remaps for each frame");
   }
-#ifdef TIME_DIVISION
+#if defined(COMPOSED_VIEW)
+  uart_puts(", ");
+  uart_put_uint(config.cameras);
+  uart_puts(" cameras in one picture");
+#elif defined(TIME_DIVISION)
   uart_puts(", ");
   uart_put_uint(config.cameras);
   uart_puts(" cameras in turn");
@@ -60,6 +71,13 @@ static void print_config(void) {
   uart_puts("\n");
 }
 
+#ifdef COMPOSED_VIEW
+static void build_views(void) {
+  extern uint8_t __arena_start[], __arena_end[];
+  arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
+  composition_build(&config, &arena);
+}
+#else
 /* In fixed point if the page wants that and the lens allows it. */
 static void fill_lut(const lens_t *lens, uint32_t *entries) {
   static fast_lut_t fast;
@@ -159,6 +177,30 @@ static void init_frames(uint32_t in_count) {
   }
 }
 
+#ifdef COMPOSED_VIEW
+/* The newest frame is in a buffer that held another one before. */
+static void process(uint8_t *out, uint32_t sequence) {
+  const uint8_t *const *sources = pipeline_kept();
+  const uint32_t bytes = config.height * config.pitch_bytes;
+  for (uint32_t left = config.repeats; left-- != 0;) {
+    phase_mark(PHASE_REMAP_START, sequence);
+    dcache_invalidate_range(sources[pipeline_camera()], bytes);
+    const uint32_t before = composition_sum(sources);
+    composition_run(sources, out);
+    /* Larger frames have driven the summed lines out of the cache by now. */
+    for (uint32_t n = 0; bytes < DCACHE_BYTES && n < composition_sources(); ++n)
+      if (sources[n] != NULL) dcache_invalidate_range(sources[n], bytes);
+    if (composition_sum(sources) != before) ++fw_state.torn;
+    if (config.overlay && overlay_visible(sequence))
+      overlay_draw(out, config.pitch_bytes, overlay_value);
+    dcache_clean_range(out, bytes);
+    write_buffer_drain();
+    phase_mark(PHASE_REMAP_END, sequence);
+    ++fw_state.remapped;
+  }
+  pipeline_done();
+}
+#else
 /* Sum of the source words of the first output row. It is the same before and after the remap unless
  * the camera has written to the frame meanwhile. */
 static uint32_t first_row_sum(const remap_table_t *table, const uint8_t *in) {
@@ -204,6 +246,7 @@ static void process(uint8_t *out, uint32_t sequence) {
 #endif
   pipeline_done();
 }
+#endif
 
 #ifdef CONSOLE
 int correct_next_frame(void) {
@@ -248,7 +291,11 @@ int main(void) {
     overlay_value = (uint8_t)overlay_patch(OVERLAY_LUMA_PATCHED);
     fw_state.patched_value = overlay_value;
   }
+#ifdef COMPOSED_VIEW
+  const uint32_t in_count = IN_COUNT; /* one for each camera, one that waits, one that is filled */
+#else
   const uint32_t in_count = config.serial ? 1u : config.sources + 2u;
+#endif
   const uint32_t out_count = config.serial ? 2u : OUT_COUNT;
   init_frames(in_count);
   build_views();

@@ -22,6 +22,9 @@
 #include "../drivers/uart_queue.h"
 #include "field_watch.h"
 #endif
+#ifdef COMPOSED_VIEW
+#include "composition.h"
+#endif
 
 /* Minimum time before a field's start for a change of the displayed buffer by the main loop. */
 #define FLIP_MARGIN_TICKS TIMER_TICKS_PER_MS
@@ -62,6 +65,10 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
+#endif
+#ifdef COMPOSED_VIEW
+  int32_t kept[CAMERAS_MAX]; /* buffers of the newest frames; CAPTURE_NONE before the first one */
+  const uint8_t *kept_frame[CAMERAS_MAX];
 #endif
 } pipe;
 
@@ -352,7 +359,12 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
                                 config->pitch_bytes};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
 #ifdef TIME_DIVISION
+#ifdef COMPOSED_VIEW
+  turns_init(&pipe.turns, composition_sources());
+  for (uint32_t n = 0; n < CAMERAS_MAX; ++n) pipe.kept[n] = CAPTURE_NONE;
+#else
   turns_init(&pipe.turns, config->cameras);
+#endif
 #ifdef CONSOLE
   field_watch_init(&pipe.watch, config->is_625);
 #endif
@@ -388,6 +400,19 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   irq_unmask();
 }
 
+#ifdef COMPOSED_VIEW
+/* The frame that waits takes the place of its camera's last one. */
+static void keep_frame(void) {
+  const int32_t buffer = capture_take(&pipe.capture, &pipe.taken_sequence);
+  const uint32_t camera = pipe.taken_camera = pipe.camera_of[buffer];
+  if (pipe.kept[camera] != CAPTURE_NONE) capture_release(&pipe.capture, pipe.kept[camera]);
+  pipe.kept[camera] = buffer;
+  pipe.kept_frame[camera] = in_buffer(buffer);
+}
+
+const uint8_t *const *pipeline_kept(void) { return pipe.kept_frame; }
+#endif
+
 int pipeline_take(uint8_t **out, uint32_t *sequence) {
   if (pipe.capture.ready == CAPTURE_NONE) return 0;
   if (pipe.held.count + 1u < pipe.sources) { /* the first frames only become sources */
@@ -397,10 +422,14 @@ int pipeline_take(uint8_t **out, uint32_t *sequence) {
   const int32_t out_buffer = output_take(&pipe.output);
   if (out_buffer == OUTPUT_NONE) return 0;
   pipe.taken_out = out_buffer;
+#ifdef COMPOSED_VIEW
+  keep_frame();
+#else
   held_add(&pipe.held, capture_take(&pipe.capture, &pipe.taken_sequence));
+#endif
   *out = shown_buffer(out_buffer);
   *sequence = pipe.taken_sequence;
-#ifdef TIME_DIVISION
+#if defined(TIME_DIVISION) && !defined(COMPOSED_VIEW)
   pipe.taken_camera = pipe.camera_of[held_of_age(&pipe.held, 0)];
 #endif
   return 1;
@@ -441,7 +470,9 @@ const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pip
 
 void pipeline_done(void) {
   const uint32_t cpsr = irq_mask();
+#ifndef COMPOSED_VIEW
   capture_release(&pipe.capture, held_drop(&pipe.held));
+#endif
   output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */

@@ -35,6 +35,12 @@ uint32_t pipeline_last_sequence(void);
 /** The camera of the frame of the last pipeline_take(). */
 uint32_t pipeline_camera(void);
 
+#ifdef COMPOSED_VIEW
+/** The newest frame of each camera, that of the last pipeline_take() included; a null pointer if there
+ * was none yet. They stay until the camera's next frame is taken. */
+const uint8_t *const *pipeline_kept(void);
+#endif
+
 /** What is to be said of a camera, oldest first. @return 0 if there is nothing more */
 int pipeline_event(uint32_t *camera, const char **what);
 #endif

@@ -1,0 +1,67 @@
+// A board that composes the pictures of four cameras: run it, and find from the displayed bytes which sent frame each
+// part of a displayed picture shows.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/board/board.h"
+#include "model/common/host_time_slicer.h"
+#include "model/video/scene/quad.h"
+#include "sw/fovea/elf_image.h"
+#include "tb/oracle/view_oracle.h"
+
+namespace fovea::e2e {
+
+class ViewsRig {
+ public:
+  /// A displayed picture, and which frame of each camera it shows; nothing: that part is black.
+  struct Composed {
+    oracle::Frame frame;
+    std::uint64_t index = 0;
+    Picoseconds start = 0;
+    std::array<std::optional<std::uint64_t>, 4> number;
+  };
+
+  ViewsRig();
+  ~ViewsRig();
+  ViewsRig& set(const std::string& key, const std::string& value);
+  ViewsRig& load(const std::string& experiment);
+  void run(Picoseconds limit);
+
+  board::Board& board() { return *board_; }
+  std::vector<Composed>& shown() { return shown_; }
+  /// The look-up table in target memory.
+  std::vector<std::uint32_t> table() const;
+  oracle::LutCheck table_check() const { return oracle::check_view(table(), views_, 0.02); }
+  const oracle::Views& views() const { return views_; }
+  /// Fills `number` of each displayed picture and returns what is wrong with the first one that is not, byte for byte,
+  /// the host's composition of sent frames; empty: nothing. In each part, exactly one of the frames that the camera
+  /// sent shortly before must fit.
+  /// @param oldest a part may be of a frame that began so many frames before the picture was displayed: more than a
+  ///        round of four cameras and the display's buffers
+  std::string wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest = 12);
+  board::BoardParams params;
+
+ private:
+  const oracle::Frame& sent(unsigned camera, std::uint64_t number);
+  std::string find_frames(Composed& shown, const std::vector<std::uint32_t>& lut, std::uint64_t oldest);
+
+  ParamSet set_;
+  app::ElfImage elf_;
+  std::vector<std::unique_ptr<video::StampedSource>> sources_, references_;
+  std::unique_ptr<video::QuadSource> quad_, quad_reference_;
+  std::unique_ptr<board::Board> board_;
+  oracle::Views views_;
+  std::vector<int> cameras_;
+  std::vector<Composed> shown_;
+  std::map<std::pair<unsigned, std::uint64_t>, oracle::Frame> sent_;
+  HostTimeSlicer slicer_;
+};
+
+}  // namespace fovea::e2e

@@ -1,0 +1,116 @@
+// Composed views: tables against the oracle, every displayed picture byte for byte the host's composition of sent
+// frames, which are found from the displayed bytes.
+#include <gtest/gtest.h>
+
+#include <systemc>
+
+#include "tb/e2e/views_rig.h"
+
+namespace fovea::e2e {
+namespace {
+
+constexpr Picoseconds kViewLimit = 20 * kPsPerSecond;
+
+/// The tiny picture stays in the D-cache from one frame to the next, so that a missing invalidation shows.
+struct View {
+  const char* name;
+  const char* view;
+  bool quad;
+  const char* kernel;
+  const char* lut;
+  const char *width = "160", *height = "120";
+};
+void PrintTo(const View& v, std::ostream* out) { *out << v.name; }
+
+class ViewTest : public testing::TestWithParam<View> {};
+TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {
+  const View& p = GetParam();
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", p.width).set("video.height", p.height);
+  rig.set("firmware.view", p.view).set("firmware.kernel", p.kernel).set("firmware.lut", p.lut);
+  rig.set("cameras.quad", p.quad ? "true" : "false");
+  rig.set("camera.1.lens.mapping", "linear").set("camera.2.lens.centre_x", "5px").set("camera.3.mount.roll", "5deg");
+  rig.set("run.frames", "7");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "") << rig.board().uart_text();
+  ASSERT_EQ(rig.shown().size(), 7u) << rig.board().uart_text();
+  const oracle::LutCheck check = rig.table_check();
+  EXPECT_EQ(check.wrong, 0u) << check.first_wrong->text();
+  EXPECT_LE(check.near_boundary, check.entries / 1000);
+  auto lut = rig.table();
+  ASSERT_EQ(rig.wrong_picture(lut), "");
+  const auto& shown = rig.shown();
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    std::vector<unsigned> renewed;
+    for (unsigned n = 0; n < 4; ++n)
+      if (shown[i].number[n] != shown[i - 1].number[n]) renewed.push_back(n);
+    if (p.quad) {
+      for (unsigned n = 0; n < 4; ++n) {
+        ASSERT_TRUE(shown[i].number[n] && shown[i - 1].number[n]) << i;
+        EXPECT_EQ(*shown[i].number[n], *shown[i - 1].number[n] + 1) << i;
+      }
+      continue;
+    }
+    // In each displayed picture one part is new: that of the camera whose turn it was.
+    ASSERT_EQ(renewed.size(), 1u) << i;
+    const auto at = renewed.front(), before = (at + 3) % 4;
+    ASSERT_TRUE(shown[i].number[at] && shown[i].number[before]) << i;
+    EXPECT_EQ(*shown[i].number[at], *shown[i].number[before] + 1) << i;
+    if (i >= 4) {
+      ASSERT_TRUE(shown[i - 4].number[at]) << i;
+      EXPECT_EQ(*shown[i].number[at], *shown[i - 4].number[at] + 4) << i;
+    }
+  }
+  // The comparison complains of a table in which one entry is another one.
+  lut[lut.size() / 3] ^= 4;
+  EXPECT_NE(rig.wrong_picture(lut), "");
+}
+INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
+                         testing::Values(View{"FourWay", "four_way", false, "fastest", "fixed_point"},
+                                         View{"BirdsEye", "birds_eye", false, "plain", "soft_float"},
+                                         View{"FourWayTiny", "four_way", false, "ldm", "fixed_point", "32", "16"},
+                                         View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point"}),
+                         [](const auto& i) { return i.param.name; });
+
+TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", "160").set("video.height", "120");
+  rig.set("firmware.view", "four_way").set("firmware.kernel", "fastest");
+  // Four pictures are complete by then.
+  rig.set("fault.kind", "unplugged").set("fault.camera", "2").set("fault.start", "1s").set("run.frames", "40");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 40u) << rig.board().uart_text();
+  EXPECT_NE(rig.board().uart_text().find("camera 2: no signal"), std::string::npos);
+  ASSERT_EQ(rig.wrong_picture(rig.table(), 40), "");
+  const auto& last = rig.shown().back();
+  for (unsigned n = 0; n < 4; ++n) ASSERT_TRUE(last.number[n]) << n;
+  const std::uint64_t newest = *last.number[3];
+  EXPECT_LT(*last.number[2], 26u);  // sent before the cable was pulled
+  EXPECT_GT(newest, *last.number[2] + 6);
+}
+
+class ShippedViewTest : public testing::TestWithParam<const char*> {};
+TEST_P(ShippedViewTest, IsComposedOfSentFrames) {
+  ViewsRig rig;
+  rig.load(GetParam()).set("camera.stamp", "true");  // the car park alone stands still
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
+  const oracle::LutCheck check = rig.table_check();
+  EXPECT_EQ(check.wrong, 0u) << check.first_wrong->text();
+  EXPECT_LE(check.near_boundary, check.entries / 1000);
+  std::printf("table: %zu entries, %zu within 0.02 px of a boundary and different\n", check.entries,
+              check.near_boundary);
+  EXPECT_EQ(rig.wrong_picture(rig.table()), "");
+}
+INSTANTIATE_TEST_SUITE_P(Nightly, ShippedViewTest,
+                         testing::Values("four-way.yaml", "birds-eye.yaml", "birds-eye-quad.yaml"),
+                         [](const auto& i) {
+                           std::string name = i.param;
+                           std::erase_if(name, [](char c) { return c == '-' || c == '.'; });
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace fovea::e2e
