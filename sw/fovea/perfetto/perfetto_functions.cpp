@@ -7,11 +7,13 @@
 namespace fovea::app {
 
 void PerfettoFunctions::ran(std::span<const std::uint32_t> functions, std::uint64_t begin,
-                            std::uint64_t) {
+                            std::uint64_t end) {
+  // The clock may be another one by the time of the next stretch.
+  const Picoseconds at = last_ ? *last_ : time_(begin);
+  last_ = time_(end);
   std::size_t same = 0;
   while (same < functions.size() && same < active_.size() && active_[same].function == functions[same]) ++same;
   if (same == functions.size() && same == active_.size()) return;
-  const Picoseconds at = time_(begin);
   for (; active_.size() > same; active_.pop_back()) {
     const Active& a = active_.back();
     if (at > from_ && at >= a.since + kShortest) over_.push_back({a.function, active_.size() - 1, a.since, at});

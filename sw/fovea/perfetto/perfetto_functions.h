@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -26,7 +27,7 @@ class PerfettoFunctions final : public cpu::CallStacks::Watcher {
   using Name = std::function<std::string(std::uint32_t address)>;
   using Time = std::function<Picoseconds(std::uint64_t cycle)>;
   /// @param name of the function that begins at an address
-  /// @param time of a clock that is not over yet, or has just passed
+  /// @param time of the core's present clock
   PerfettoFunctions(PerfettoFile& file, Name name, Time time)
       : file_(file), name_(std::move(name)), time_(std::move(time)) {}
 
@@ -56,6 +57,7 @@ class PerfettoFunctions final : public cpu::CallStacks::Watcher {
   Time time_;
   std::unordered_map<std::uint32_t, std::string> names_;
   Picoseconds from_ = kNever;
+  std::optional<Picoseconds> last_;  // the end of the stretch before
   std::vector<PerfettoFile::Track> tracks_;  // by depth
   std::vector<Active> active_;  // outermost first
   std::deque<Slice> over_;      // in the order of their ends
