@@ -83,7 +83,7 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
 }
 
 TEST(PageTest, EachFaultOfTheApplicationsPartIsNamed) {
-  EXPECT_NE(said([](param_page_t& p) { p.kernel = 11; })
+  EXPECT_NE(said([](param_page_t& p) { p.kernel = 14; })
                 .find("failed: configuration: parameter page: unknown kernel; this firmware has 0 "
                       "(plain) to 13 (engine_radial)\r\n"),
             std::string::npos);
