@@ -94,9 +94,11 @@ TEST_F(Chip, AJobRaisesItsInterrupt) {
 }
 
 TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
+  unsigned busy = 0;
   for (unsigned n = 1; n < 12; ++n) {
     copy();
-    run(n * 700 * kPsPerNs);
+    run(n * 15 * kPsPerUs);
+    busy += get(engine().regs.status) & 1;
     chip().reset_chip(ResetKind::kWarm);
     run(kPsPerMs);
     EXPECT_EQ(get(engine().regs.status), 0u) << n;
@@ -104,6 +106,8 @@ TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
     EXPECT_EQ(get(engine().regs.a1), 0u) << n;
     EXPECT_TRUE(engine().idle());
   }
+  EXPECT_GE(busy, 4u);
+  EXPECT_LE(busy, 10u);
   copy();
   run(kPsPerMs);
   EXPECT_TRUE(copied());
@@ -111,16 +115,17 @@ TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
 }
 
 /// PLLDIV4 of PLL 1 gives SYSCLK4; bit 15 enables it.
-TEST_F(Chip, TheClockMayChangeOrStopWhileItWorks) {
+TEST_F(Chip, TheClockMayChangeWhileItWorks) {
   const auto divide = [&](std::uint32_t value) {
     chip().pll1.regs.write(0x160, 4, value);
     chip().pll1.regs.write(0x138, 4, 1);
   };
   for (unsigned n = 1; n < 6; ++n) {
     copy();
-    run(n * 900 * kPsPerNs);
+    run(n * 10 * kPsPerUs);
     divide(0x8000 | n);
-    run(2 * kPsPerUs);
+    run(20 * kPsPerUs);
+    EXPECT_EQ(get(engine().regs.status), 1u);
     divide(0x8000);
     run(kPsPerMs);
     EXPECT_TRUE(copied()) << n;

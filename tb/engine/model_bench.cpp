@@ -36,7 +36,7 @@ void ModelBench::issue(const Burst& burst, Picoseconds at) {
   if (at % kPeriod || at < now_ || (!asked.empty() && at < asked.back().at))
     throw std::runtime_error("a request at a wrong time");
   asked.push_back({burst.write, burst.id, burst.address, burst.bytes, at});
-  const std::uint64_t asked_in = at / kPeriod, due = asked_in + std::max(memory.latency, 1u);
+  const std::uint64_t due = at / kPeriod + std::max(memory.latency, 1u);
   Pending p{burst, {}, 0, 0, false};
   const auto& fault = burst.write ? memory.write_fault : memory.read_fault;
   p.fault = fault && *fault / 64 == burst.address / 64;

@@ -165,6 +165,32 @@ TEST(ModelTest, LimitsOfJobsAreThoseOfTheDefinition) {
   EXPECT_TRUE(events([](auto& j) { j.mode = Mode::kRadial, j.piece_log2 = 24; }));
 }
 
+/// One pair, one pixel right of the centre: s is 1 square pixel, that is 256 in Q8 and 65536 in Q16.
+TEST(ModelTest, LimitsOfTheRadialFunctionAreThoseOfTheDefinition) {
+  const auto result = [](std::uint32_t radius_limit, unsigned pieces, unsigned piece_log2) {
+    ModelBench bench(0x1'0000);
+    rtl::Job job;
+    job.mode = Mode::kRadial;
+    job.src_width = 4;
+    job.src_pitch = 2;
+    job.src_base = kWord;
+    job.dst_base = kWord + 0x100;
+    job.a[0] = 1 << 16;
+    job.pieces = pieces;
+    job.piece_log2 = piece_log2;
+    job.radius_limit = radius_limit;
+    bench.word(kWord) = 0x1234'5678;
+    for (unsigned n = 0; n < 3 * pieces; ++n) bench.word(kWord + 0x200 + n) = n % 3 == 0 ? 1 << 20 : 0;
+    EXPECT_EQ(bench.run(job, ModelBench::kBase + 0x800, kBorder, {}), kDone);
+    return bench.word(kWord + 0x100);
+  };
+  EXPECT_EQ(result(256, 1, 8), 0x1234'5678u);
+  EXPECT_EQ(result(255, 1, 8), kBorder);
+  EXPECT_EQ(result(~0u, 1, 1), 0x1234'5678u);
+  EXPECT_EQ(result(~0u, 1, 0), kBorder);  // behind the first piece
+  EXPECT_EQ(result(~0u, 2, 0), 0x1234'5678u);
+}
+
 /// Offsets, names, bits that can be written; of the contract between engine and firmware, typed in by hand.
 TEST(RegistersTest, AreThoseOfTheTable) {
   struct Row {
