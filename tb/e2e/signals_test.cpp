@@ -109,6 +109,21 @@ TEST(SignalsTest, OneWrongBitInEveryCodeIsCorrected) {
   EXPECT_EQ(rig.board().dm365.isif.stats.bad_codes.count(), 0u);
 }
 
+TEST(SignalsTest, OnlyTheCameraWithTheFaultIsSaidAndTheOtherGivesAllItsFrames) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "16").set("fault.kind", "sync_noise");
+  rig.set("fault.wrong_bits", "2").set("fault.every", "3").set("fault.camera", "1").set("fault.start", "300ms");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 16u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(rig.said(), Lines{std::string("camera 1: ") + kIrregular});
+  const auto stats = rig.board().camera_stats();
+  EXPECT_EQ(stats[0].dropped + stats[0].superseded, 0u);
+  EXPECT_GT(stats[1].dropped, 0u);
+  EXPECT_EQ(stats[1].captured, stats[1].displayed + stats[1].dropped);
+}
+
 // The whole way back: a second of regular frames, and a second in which the clock is measured.
 const Fault kLongFaults[] = {
     {"MissingLinesAndBack", {{"fault.kind", "missing_lines"}}, kIrregular, kTwoFrames, 1000 + 2 * kTwoFrames, 45},
@@ -117,7 +132,7 @@ const Fault kLongFaults[] = {
      {{"fault.kind", "sync_noise"}, {"fault.wrong_bits", "2"}, {"fault.every", "7"}},
      kIrregular, 7 * 40 + kTwoFrames, 1000 + 2 * kTwoFrames, 45},
 };
-INSTANTIATE_TEST_SUITE_P(Nightly, FaultTest, testing::ValuesIn(kLongFaults),
+INSTANTIATE_TEST_SUITE_P(WithTheWayBack, FaultTest, testing::ValuesIn(kLongFaults),
                          [](const auto& i) { return std::string(i.param.name); });
 
 class DriftTest : public testing::TestWithParam<const char*> {};
@@ -232,7 +247,7 @@ TEST(SignalsTest, TheChosenCamerasHaveTurns) {
 
 TEST(SignalsTest, NightlyEightTablesChangeInTurn) {
   CamerasRig rig;
-  rig.load("eight-luts.yaml").set("run.frames", "120");
+  rig.load("eight-luts.yaml").set("run.frames", "56");
   std::string dialogue;
   for (unsigned n = 0; n < 8; ++n)
     dialogue += "wait new table\nsend shift " + std::to_string(n) + " 0 8\\r\n";
@@ -246,10 +261,10 @@ TEST(SignalsTest, NightlyEightTablesChangeInTurn) {
   while (rig.board().uart_text().find("running") == std::string::npos) rig.advance(kPsPerMs);
   for (unsigned n = 0; n < 8; ++n) rig.keep_table(n, 0);
   rig.run(kLimit);
-  ASSERT_EQ(rig.shown().size(), 120u) << rig.board().uart_text();
+  ASSERT_EQ(rig.shown().size(), 56u) << rig.board().uart_text();
   EXPECT_EQ(console->open_step(), "") << rig.board().uart_text();
   EXPECT_EQ(rig.wrong_picture(), "");
-  EXPECT_EQ(sequence(rig).size(), 120u) << "no frame is lost";
+  EXPECT_EQ(sequence(rig).size(), 56u) << "no frame is lost";
   for (unsigned n = 0; n < 8; ++n) EXPECT_EQ(rig.table_check(n, 1).wrong, 0u) << n;
 }
 
