@@ -81,12 +81,17 @@ std::optional<CamerasRig::Shown::Stamp> CamerasRig::read_stamp(const oracle::Fra
   return std::nullopt;
 }
 
-std::vector<std::uint32_t> CamerasRig::table(unsigned camera) {
+std::uint32_t CamerasRig::table_address(unsigned camera) {
   const auto* state = elf_.find("fw_state");
   std::uint32_t address = 0;
   const auto bytes = board_->peek(
       state->address + offsetof(FwState, table_address) + 4 * camera, sizeof address);
   std::memcpy(&address, bytes.data(), sizeof address);
+  return address;
+}
+
+std::vector<std::uint32_t> CamerasRig::table(unsigned camera) {
+  const std::uint32_t address = table_address(camera);
   const oracle::Geometry& g = geometry(camera);
   std::vector<std::uint32_t> out(std::size_t{g.width} / 2 * g.height);
   const auto entries = board_->peek(address, out.size() * 4);

@@ -50,6 +50,8 @@ class CamerasRig {
   /// Reads the camera's table from target memory now; wrong_picture() uses it for its view `table`. What was
   /// not kept is read at the end.
   void keep_table(unsigned camera, unsigned table);
+  /// Where the camera's table lies now.
+  std::uint32_t table_address(unsigned camera);
   /// Entries of the camera's table in target memory that the oracle's do not confirm.
   oracle::LutCheck table_check(unsigned camera, unsigned table = 0);
   /// The lines that the firmware has printed about its cameras.

@@ -135,6 +135,25 @@ TEST(FieldWatchTest, AFieldThatIsATickBeyondTheToleranceIsNot) {
   }
 }
 
+TEST(FieldWatchTest, AFieldStartThatCameLateDoesNotSpoilTheNextFrame) {
+  const int line = 1536;
+  Fields f(true);
+  f.next();
+  f.next(line);  // the second field of a frame
+  EXPECT_TRUE(f.watch.irregular);
+  field_watch_frame(&f.watch);
+  f.next(-line);
+  f.next();
+  EXPECT_FALSE(f.watch.irregular) << "both field starts of the next frame are where they should be";
+  // If all are short, each frame has one that is.
+  for (unsigned frame = 0; frame < 5; ++frame) {
+    field_watch_frame(&f.watch);
+    f.next(-line);
+    f.next(-line);
+    EXPECT_TRUE(f.watch.irregular) << frame;
+  }
+}
+
 TEST(FieldWatchTest, TheDistanceFromAnotherRasterIsNotJudged) {
   Fields f(true);
   f.next(123456);

@@ -38,6 +38,7 @@ watch_event_t field_watch_field(field_watch_t *w, uint32_t camera, int second, u
   }
   if (late > (int32_t)FIELD_TOLERANCE_TICKS || late < -(int32_t)FIELD_TOLERANCE_TICKS) {
     w->irregular = 1;
+    w->unknown = 1; /* which of its two ends was wrong? The next frame, or another camera's, may be right */
     return WATCH_NOTHING;
   }
   return measure(w, camera, late);

@@ -11,7 +11,7 @@
 /* A field start may be as early or as late as this: 16 us, a quarter of a line. The interrupt's own latency is
  * within 5 us, as nothing masks interrupts for longer except the looks at the decoder, which follow it. */
 #define FIELD_TOLERANCE_TICKS 384u
-/* A clock as far off as this is said to be off: ITU-R BT.470 gives line frequencies +-0.02 %. */
+/* A clock that is further off is said to be: more than two sound crystals differ by (a choice). */
 #define FIELD_DRIFT_PPM 200
 /* It is right again when it is nearer by so much; the measurement is as uncertain as an interrupt's latency in a
  * second. */
