@@ -78,7 +78,10 @@ void EngineBench::sample(const Memory& memory) {
   checker_.clock(c);
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
-  if (c.ar.valid && c.ar.ready) reads_asked.push_back(c.ar);
+  if (c.ar.valid && c.ar.ready) {
+    reads_asked.push_back(c.ar);
+    read_clocks.push_back(now_);
+  }
   if (c.aw.valid && c.aw.ready) writes_asked.push_back(c.aw);
   if (c.ar.valid && c.ar.ready)
     reads_.push_back({c.ar.id, c.ar.length, c.ar.address, due,
@@ -107,6 +110,7 @@ Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t bo
   Vbench_top& d = *dut_;
   result_ = {};
   reads_asked.clear();
+  read_clocks.clear();
   writes_asked.clear();
   set_job(d, job);
   d.en_map_base_i = map_base / 64;

@@ -43,6 +43,7 @@ class EngineBench {
   Result run(const Job& job, std::uint32_t map_base, std::uint32_t border, Memory memory = {},
              std::optional<unsigned> abort_after = {});
   std::vector<Request> reads_asked, writes_asked;  ///< by the last run()
+  std::vector<std::uint64_t> read_clocks;          ///< when reads_asked were taken
 
  private:
   struct Read {
