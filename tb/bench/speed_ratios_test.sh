@@ -16,5 +16,6 @@ expect 1 'ABOVE THE FLOOR' 'board.paper-pal 1945\n'
 expect 1 'ABOVE THE FLOOR' 'board.paper-pal 1000\nexec.remap 114.07\n'
 expect 1 'board.ntsc: NOTHING TO COMPARE' 'board.ntsc 1000\n'
 expect 1 'board.paper-pal: NOTHING TO COMPARE' 'board.paper-pal 0\n'
+expect 1 'exec.copy: NOTHING TO COMPARE' 'board.paper-pal 1000\nexec.copy 1\n'
 expect 1 'nothing measured' ''
 exit $status
