@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/common/check.h"
+#include "model/mem/core/ddr_plan.h"
 
 namespace fovea::memsys {
 
@@ -41,7 +42,7 @@ void MemorySystem::submit(MemRequest& r) {
 
 inline void MemorySystem::step_controller() {
   event_time_ = last_command_ = controller_.next_decision();
-  controller_.step();
+  controller_.take_decision();
   if (controller_.news().any) handle_news();
 }
 

@@ -230,8 +230,9 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
 
 /// Data from the crossbar to the port. A port narrower than the crossbar takes longer for each word, and
 /// begins with the next burst when it is through with the one before.
-void Crossbar::return_read(MemRequest& r, Picoseconds first, Picoseconds last,
-                           Picoseconds attributed) {
+[[gnu::always_inline]] inline void Crossbar::return_read(MemRequest& r, Picoseconds first,
+                                                         Picoseconds last,
+                                                         Picoseconds attributed) {
   const Port& p = ports_[index(r.master)];
   const std::uint64_t seen = scr_.edge_at_or_after(first) + p.response_latency;
   std::uint64_t begin = seen;

@@ -15,16 +15,15 @@ namespace fovea::bus {
 class LatencyHistogram {
  public:
   [[gnu::always_inline]] void add(Picoseconds t) {
-    const std::size_t bin = bin_of(t);
-    if (bin >= bins_.size()) [[unlikely]]
-      grow(bin);
-    ++bins_[bin];
+    if (t >= limit_) [[unlikely]]
+      grow(t);
+    ++bins_[bin_of(t)];
     sum_ += t;
     max_ = std::max(max_, t);
     min_ = std::min(min_, t);
   }
   void add(const LatencyHistogram& other) {
-    if (other.bins_.size() > bins_.size()) bins_.resize(other.bins_.size());
+    if (other.bins_.size() > bins_.size()) resize(other.bins_.size());
     for (std::size_t i = 0; i < other.bins_.size(); ++i) bins_[i] += other.bins_[i];
     sum_ += other.sum_;
     max_ = std::max(max_, other.max_);
@@ -77,11 +76,14 @@ class LatencyHistogram {
     if (bin < 2 * kSub) return bin;
     return static_cast<Picoseconds>((bin & (kSub - 1)) + kSub) << ((bin >> kSubBits) - 1);
   }
-  [[gnu::noinline]] void grow(std::size_t bin) {
-    bins_.resize(std::max(bin + 1, 2 * bins_.size()));
+  [[gnu::noinline]] void grow(Picoseconds t) { resize(std::max(bin_of(t) + 1, 2 * bins_.size())); }
+  void resize(std::size_t bins) {
+    bins_.resize(bins);
+    limit_ = low_of(bins);
   }
 
   std::vector<std::uint64_t> bins_;
+  Picoseconds limit_ = 0;  // latencies below it have a bin
   Picoseconds sum_ = 0, max_ = 0, min_ = kNever;
 };
 

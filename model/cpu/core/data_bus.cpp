@@ -105,7 +105,9 @@ void DataBus::count_whole(Picoseconds t) {
 }
 
 /// Executes the buffers' work before a clock, in order of time. Called only if there may be some.
-void DataBus::run_buffers_slow(std::uint64_t cycle) {
+void DataBus::run_buffers_slow(std::uint64_t cycle) { work_before(cycle); }
+
+[[gnu::always_inline]] inline void DataBus::work_before(std::uint64_t cycle) {
   for (;;) {
     if (write_in_flight_ && !write_access_.done && (cycle < write_floor_ || !write_is_over(cycle)))
       return;
@@ -161,7 +163,7 @@ void DataBus::make_room(unsigned count) {
       start_write(interface_.ahb(ledger_.cycle));
     }
     wait_for_write(Cause::kWriteBuffer);
-    run_buffers(ledger_.cycle);
+    if (!nothing_buffered()) work_before(ledger_.cycle);
   } while (!writes_.room(count));
   waits_for_room_ = false;
   room_waits_ += ledger_.cycle - begin;

@@ -101,6 +101,7 @@ class DataBus {
 
   bool nothing_buffered() const { return writes_.empty() && writes_.victim_bytes == 0; }
   bool busy() const { return write_in_flight_ || !nothing_buffered(); }
+  void work_before(std::uint64_t cycle);
   [[gnu::noinline]] void run_buffers_slow(std::uint64_t cycle);
   Picoseconds time_of_next_act() const;
   std::uint64_t next_act_cycle() const;

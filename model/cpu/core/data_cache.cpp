@@ -14,6 +14,13 @@ void DataCache::forget_hints() {
   absent.key = kNoHint;
 }
 
+/// To be called when a line comes into the cache. The hint is by virtual address, and FCSE may have changed
+/// the upper seven bits of one of the two: those do not count.
+void DataCache::forget_absent(std::uint32_t line_mva) {
+  constexpr std::uint32_t kKnown = 0x01FFFFE0;
+  if (((absent.key ^ line_mva) & kKnown) == 0) absent.key = kNoHint;
+}
+
 /// To be called when a line changes its contents.
 void DataCache::drop_hints(std::uint32_t line_mva) {
   // FCSE changes only address bits that do not select the hint.
@@ -41,7 +48,7 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
     return static_cast<int>(index);
   }
   std::memcpy(lines_.data(index), bus_.data(), 32);
-  absent.key = kNoHint;
+  forget_absent(mva);
   l.tag = mva & ~31u;
   l.pa = pa & ~31u;
   l.dirty = 0;

@@ -122,6 +122,7 @@ class DataCache {
  private:
   int fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_page);
   void drop_hints(std::uint32_t line_mva);
+  void forget_absent(std::uint32_t line_mva);
   void write_back(unsigned line, bool before_fill, Cause cause);
 
   StallLedger& ledger_;

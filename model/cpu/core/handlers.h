@@ -108,7 +108,8 @@ struct Core::Ops {
   /// For records that do not know which instruction precedes them: the clock at which the operands
   /// of the first one are available. kNever: it has to be executed on its own.
   static Cycle held_until(const Core& c, Next i, Cycle cycle);
-  static Cycle held(const Core& c, Next i, Cycle cycle);
+  /// @param late registers that may not be available at `cycle`
+  static Cycle held(const Core& c, Next i, Cycle cycle, std::uint32_t late);
 
   /// Distance of the record of an address from the first byte of its decoded line, in host memory.
   template <bool kThumb>

@@ -256,7 +256,7 @@ template <bool kThumb, bool kCounted>
   if (!d.records[0].body) [[unlikely]] return leave(c, i, cycle);
   if (!((operands(d.records[0]) | operands(d.records[1])) & i->sources))
     return enter_line<kThumb, kCounted>(c, i, cycle, d);
-  const Cycle start = held(c, &d.records[0], cycle);
+  const Cycle start = held(c, &d.records[0], cycle, i->sources);
   if (start == kNever) [[unlikely]] return leave(c, i, cycle);
   if (start > cycle) {
     if constexpr (kCounted) d.tallies[0].waited += static_cast<std::uint32_t>(start - cycle);
@@ -266,16 +266,16 @@ template <bool kThumb, bool kCounted>
 }
 
 [[gnu::noinline]] Core::Ops::Cycle Core::Ops::held_until(const Core& c, Next i, Cycle cycle) {
-  return held(c, i, cycle);
+  return held(c, i, cycle, ~0u);
 }
 
-[[gnu::always_inline]] inline Core::Ops::Cycle Core::Ops::held(const Core& c, Next i,
-                                                              Cycle cycle) {
-  const Cycle start = c.scoreboard_.operands_ready(*i, cycle);
+[[gnu::always_inline]] inline Core::Ops::Cycle Core::Ops::held(const Core& c, Next i, Cycle cycle,
+                                                              std::uint32_t late) {
+  const Cycle start = c.scoreboard_.operands_ready(*i, cycle, late);
   if (start > cycle && i->cond != 14) return kNever;
   // No result takes longer than two clocks.
   if (c.scoreboard_.latest > start + 1 &&
-      c.scoreboard_.any_later(operands(i[1]), start + 1))
+      c.scoreboard_.any_later(operands(i[1]) & late, start + 1))
     return kNever;
   return start;
 }

@@ -22,11 +22,13 @@ class Scoreboard {
   }
   /// Clock from `cycle` on at which all operands are available. Times count from the end of the
   /// producer's issue; store data and accumulators are read one clock later.
-  std::uint64_t operands_ready(const Instruction& i, std::uint64_t cycle) const {
+  /// @param not_yet registers that may not be available at `cycle`; all others are
+  std::uint64_t operands_ready(const Instruction& i, std::uint64_t cycle,
+                               std::uint32_t not_yet = ~0u) const {
     std::uint64_t need = cycle;
-    for (std::uint32_t s = i.sources; s; s &= s - 1)
+    for (std::uint32_t s = i.sources & not_yet; s; s &= s - 1)
       need = std::max(need, ready_[static_cast<unsigned>(std::countr_zero(s))] >> 2);
-    for (std::uint32_t s = i.stored; s; s &= s - 1) {
+    for (std::uint32_t s = i.stored & not_yet; s; s &= s - 1) {
       const std::uint64_t entry = ready_[static_cast<unsigned>(std::countr_zero(s))];
       const std::uint64_t ready = entry >> 2;
       const auto by = static_cast<Producer>(entry & 3u);

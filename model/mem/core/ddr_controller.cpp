@@ -6,7 +6,6 @@
 
 #include "model/common/check.h"
 #include "model/mem/core/ddr_plan.h"
-#include "model/mem/core/move_bytes.h"
 
 namespace fovea::mem {
 
@@ -30,46 +29,6 @@ bool DdrController::submit(MemRequest& r, std::uint32_t offset, Picoseconds at) 
   return take_in(r, offset, at);
 }
 
-bool DdrController::submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at) {
-  return take_in(request, offset, at);
-}
-
-namespace {
-
-/// Field by field: a copy of the whole, or by way of another one, would read bytes just written as
-/// wide words, for which the host has to wait.
-template <class Queued>
-[[gnu::always_inline]] inline void put(Queued& r, MemRequest& from, std::uint32_t offset) {
-  r.origin = &from;
-  r.master = from.master;
-  r.priority = from.in_path.priority;
-  r.write = from.write;
-  r.bytes = from.bytes;
-  r.address = offset;
-  r.data = from.data;
-  r.parts = from.parts;
-}
-
-}  // namespace
-
-[[gnu::always_inline]] inline bool DdrController::take_in(MemRequest& request, std::uint32_t offset,
-                                                          Picoseconds at) {
-  // Counted at the request, as the crossbar does, so that both sums agree at any instant.
-  (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
-  const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
-  if (queue_.count() != 0) return queue(request, offset, arrived);
-  if (idle_calm_ < arrived) [[unlikely]] {
-    idle(arrived);
-    wake(arrived);
-  }
-  last_arrival_ = queued_since_ = arrived;
-  Entry& e = queue_.begin_single();
-  put(e.request, request, offset);
-  fill(e, arrived);
-  plan_one(e);
-  return true;
-}
-
 bool DdrController::queue(MemRequest& request, std::uint32_t offset, std::uint64_t arrived) {
   const bool was_single = queue_.single();
   if (was_single) join_single();
@@ -90,19 +49,6 @@ bool DdrController::queue(MemRequest& request, std::uint32_t offset, std::uint64
   else
     plan_with_newest(edge);
   return true;
-}
-
-/// What follows from the entry's request.
-inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
-  const Queued& r = e.request;
-  __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
-  e.ready = arrived + request_latency_;
-  e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
-  e.row = (r.address & row_mask_) >> row_shift_;
-  e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
-  e.classified = false;
-  e.prepared = 0;
-  if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
 }
 
 /// The single request becomes the first of the queue.
@@ -154,12 +100,7 @@ inline void DdrController::issue(unsigned bank, std::uint32_t row, std::uint64_t
 template void DdrController::issue<Cmd::kPreAll>(unsigned, std::uint32_t, std::uint64_t, Picoseconds);
 template void DdrController::issue<Cmd::kRef>(unsigned, std::uint32_t, std::uint64_t, Picoseconds);
 
-void DdrController::step() {
-  count_owed(plan_.choice.at);
-  if (plan_.choice.cmd == Cmd::kWr) return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
-  if (plan_.choice.cmd == Cmd::kRd) return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
-  prepare();
-}
+void DdrController::step() { take_decision(); }
 
 /// Whatever is no column command.
 [[gnu::noinline]] void DdrController::prepare() {
@@ -284,6 +225,12 @@ void DdrController::last_column() {
   issue_last_column<kCmd>(e, clock);
   finish(clock);
 }
+
+// For take_decision().
+template void DdrController::first_column<Cmd::kRd>();
+template void DdrController::first_column<Cmd::kWr>();
+template void DdrController::last_column<Cmd::kRd>();
+template void DdrController::last_column<Cmd::kWr>();
 
 template <Cmd kCmd>
 [[gnu::always_inline]] inline void DdrController::issue_last_column(const Entry& e,

@@ -56,7 +56,8 @@ class DdrController {
   /// once. False: it waits in the input register, until the news() of a later step say that it was
   /// accepted; the caller sends no other one before.
   bool submit(MemRequest& request, std::uint32_t offset, Picoseconds at);
-  /// The same for a caller that knows that it may: the request inside the SDRAM, input_blocked() false.
+  /// The same for a caller that knows that it may: the request inside the SDRAM, input_blocked() false. In
+  /// line, in ddr_plan.h.
   bool submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at);
   /// The clock is stopped, or a request waits in the input register: no request may be submitted.
   bool input_blocked() const { return input_blocked_; }
@@ -67,6 +68,8 @@ class DdrController {
   Picoseconds next_decision() const { return next_; }
   /// Takes that decision. What it decided for others is in news().
   void step();
+  /// The same in line, in ddr_plan.h.
+  void take_decision();
 
   /// Reported with the read's first column command; with a scheduler that reorders reads later, with that
   /// of the last of its master's older reads.

@@ -1,6 +1,11 @@
-// What several files of the controller need in line: planning of the common cases, and a count.
+// What several files need in line: planning of the common cases, a count, and what every request and every
+// command goes through. The memory system includes it, so that a request is one piece of host code from the
+// crossbar's grant to its entry in the queue.
 #pragma once
+#include <algorithm>
+
 #include "model/mem/core/ddr_controller.h"
+#include "model/mem/core/move_bytes.h"
 
 namespace fovea::mem {
 
@@ -40,6 +45,62 @@ inline void DdrController::count_queued(std::uint64_t until) {
   if (until <= queued_since_) return;
   stats.queued_clocks += until - queued_since_;
   queued_since_ = until;
+}
+
+/// Field by field: a copy of the whole, or by way of another one, would read bytes just written as
+/// wide words, for which the host has to wait.
+[[gnu::always_inline]] inline void put(QueuedRequest& r, MemRequest& from, std::uint32_t offset) {
+  r.origin = &from;
+  r.master = from.master;
+  r.priority = from.in_path.priority;
+  r.write = from.write;
+  r.bytes = from.bytes;
+  r.address = offset;
+  r.data = from.data;
+  r.parts = from.parts;
+}
+
+/// What follows from the entry's request.
+inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
+  const Queued& r = e.request;
+  __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
+  e.ready = arrived + request_latency_;
+  e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
+  e.row = (r.address & row_mask_) >> row_shift_;
+  e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
+  e.classified = false;
+  e.prepared = 0;
+  if (r.write) move_bytes(e.data.data(), r.data, r.bytes);
+}
+
+[[gnu::always_inline]] inline bool DdrController::take_in(MemRequest& request, std::uint32_t offset,
+                                                          Picoseconds at) {
+  // Counted at the request, as the crossbar does, so that both sums agree at any instant.
+  (request.write ? stats.write_bytes : stats.read_bytes) += request.bytes;
+  const std::uint64_t arrived = std::max(ddr_.edge_after(at), last_arrival_);
+  if (queue_.count() != 0) return queue(request, offset, arrived);
+  if (idle_calm_ < arrived) [[unlikely]] {
+    idle(arrived);
+    wake(arrived);
+  }
+  last_arrival_ = queued_since_ = arrived;
+  Entry& e = queue_.begin_single();
+  put(e.request, request, offset);
+  fill(e, arrived);
+  plan_one(e);
+  return true;
+}
+
+inline bool DdrController::submit_inside(MemRequest& request, std::uint32_t offset,
+                                         Picoseconds at) {
+  return take_in(request, offset, at);
+}
+
+inline void DdrController::take_decision() {
+  count_owed(plan_.choice.at);
+  if (plan_.choice.cmd == Cmd::kWr) return in_burst_ ? last_column<Cmd::kWr>() : first_column<Cmd::kWr>();
+  if (plan_.choice.cmd == Cmd::kRd) return in_burst_ ? last_column<Cmd::kRd>() : first_column<Cmd::kRd>();
+  prepare();
 }
 
 }  // namespace fovea::mem

@@ -26,8 +26,8 @@ class ReturnChannel {
     Picoseconds first, last;
   };
   /// A read whose first column command is issued at `clock`; the others follow without a gap.
-  Span take(unsigned bytes, unsigned chunks, std::uint64_t clock, const Clock& ddr,
-            const Clock& crossbar) {
+  [[gnu::always_inline]] Span take(unsigned bytes, unsigned chunks, std::uint64_t clock,
+                                   const Clock& ddr, const Clock& crossbar) {
     constexpr std::uint64_t kHead = DdrTiming::kBurstClocks / 2;  // 8 bytes: 4 beats
     if (left_out_) [[unlikely]] {
       const std::uint64_t tail = bytes > 8 || chunks > 1 ? chunks * DdrTiming::kBurstClocks : kHead;
