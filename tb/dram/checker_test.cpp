@@ -223,6 +223,17 @@ TEST(CheckerStateTest, ChangedNumbersBindLaterCommandsOnly) {
   EXPECT_EQ(checker.complaints()[0].rule, "ACT on open bank");
 }
 
+// All are counted, the first hundred kept.
+TEST(CheckerStateTest, KeepsTheFirstHundredComplaints) {
+  CommandChecker checker(sheet());
+  std::uint64_t told = 0;
+  checker.on_complaint = [&](const Complaint&) { ++told; };
+  for (std::uint64_t k = 0; checker.total() < 103; ++k) checker.command(kRd, 0, 0, 1000 + 100 * k);
+  EXPECT_EQ(told, 103u);
+  ASSERT_EQ(checker.complaints().size(), 100u);
+  EXPECT_EQ(checker.complaints()[0].clock, 1000u);
+}
+
 // Eight refreshes may be postponed, so two are at most nine intervals apart (JESD79-2).
 TEST(CheckerStateTest, RefreshIsNeverMoreThanNineIntervalsLate) {
   DataSheet s = sheet();

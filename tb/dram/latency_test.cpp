@@ -49,6 +49,21 @@ void expect_only(const LatencyHistogram& h, std::vector<Picoseconds> latencies) 
   EXPECT_EQ(in_bins, latencies.size());
 }
 
+// Two ports of one master have one histogram: either may hold the least and the greatest, or nothing.
+TEST(LatencyTest, HistogramsAddUp) {
+  const std::vector<std::vector<Picoseconds>> parts[] = {
+      {{}, {}}, {{}, {70}}, {{70}, {}}, {{100, 900'000}, {50, 300}}, {{50, 300}, {100, 900'000}}};
+  for (const auto& p : parts) {
+    LatencyHistogram a, b;
+    for (const Picoseconds t : p[0]) a.add(t);
+    for (const Picoseconds t : p[1]) b.add(t);
+    a.add(b);
+    std::vector<Picoseconds> all = p[0];
+    all.insert(all.end(), p[1].begin(), p[1].end());
+    expect_only(a, all);
+  }
+}
+
 // Bridges of 2 edges each way, 64-bit ports. A's and B's writes of 8 words lie on their ports at edge 5
 // and are through the bridges at 8. A is more urgent: its words are taken at 8 to 15, it is acknowledged
 // at 16 + 2; B's are taken from 16 on and acknowledged at 26.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/bus/core/crossbar.h"
+#include "model/bus/wait_stats.h"
 #include "model/mem/core/ddr_controller.h"
 #include "tb/dram/bench.h"
 #include "tb/dram/path.h"
@@ -369,6 +370,34 @@ TEST(LoadedWaitsTest, LookingInBetweenMovesNoWait) {
     expect_equal(watched.counted, watched.table(), seed);
     expect_equal(alone.table(), watched.table(), seed);
   }
+}
+
+// Both sides of a transfer controller are one master; another one's waits are not its own. Nothing is
+// exactly 0, and a picosecond is one.
+TEST(WaitStatsTest, EachStatisticIsTheSumOfItsOwnTables) {
+  WaitTable crossbar{}, memory{};
+  bus::WaitStats stats(Master::kEdmaTc0Read, {&crossbar, &memory});
+  const auto value = [&](const std::string& name) {
+    for (const StatBase* s : stats.stats())
+      if (s->name() == "ddr.edma_tc0.wait." + name) return std::get<double>(s->value());
+    ADD_FAILURE() << "no " << name;
+    return -1.0;
+  };
+  for (const StatBase* s : stats.stats()) EXPECT_EQ(std::get<double>(s->value()), 0.0) << s->name();
+  crossbar[index(Master::kEdmaTc0Read)].read.add(Culprit::kBridge, 3);
+  memory[index(Master::kEdmaTc0Write)].read.add(Culprit::kBridge, 4);
+  memory[index(Master::kEdmaTc0Write)].write.add(Culprit::kRefresh, 1);
+  memory[index(Master::kEdmaTc0Read)].read.add(culprit(Master::kEdmaTc0Write), 20);
+  memory[index(Master::kEdmaTc0Read)].read.add(culprit(Master::kVpfe), 300);
+  memory[index(Master::kVpfe)].read.add(Culprit::kBridge, 5'000);
+  EXPECT_DOUBLE_EQ(value("read.bridge"), 7e-12);
+  EXPECT_DOUBLE_EQ(value("write.bridge"), 0.0);
+  EXPECT_DOUBLE_EQ(value("write.refresh"), 1e-12);
+  EXPECT_DOUBLE_EQ(value("read.own"), 20e-12);
+  EXPECT_DOUBLE_EQ(value("read.vpfe"), 300e-12);
+  stats.reset();
+  EXPECT_DOUBLE_EQ(value("read.bridge"), 0.0);
+  EXPECT_EQ(memory[index(Master::kVpfe)].read.ps[index(Culprit::kBridge)], 5'000u) << "another's";
 }
 
 }  // namespace

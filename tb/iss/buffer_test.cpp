@@ -73,6 +73,12 @@ TEST_F(BufferTest, StmDoesNotCrossAKilobyteInOneBurst) {
   EXPECT_EQ(traffic(), "W16@1008 W16@1024");
 }
 
+TEST_F(BufferTest, BurstsMayEndAtAKilobyte) {
+  m.execute(kStart + "add r4, r4, #0x3e0\n stmia r4, {r0-r3, r5-r8}\n add r4, r4, #0x410\n stmia r4, {r0-r3}\n" +
+            kDrain);
+  EXPECT_EQ(traffic(), "W32@992 W16@2032");
+}
+
 TEST_F(BufferTest, AdjacentStoresAreNotMerged) {
   m.execute(kStart + "str r0, [r4]\n str r0, [r4, #4]\n strb r0, [r4, #8]\n strh r0, [r4, #10]\n" +
             kDrain);

@@ -151,5 +151,28 @@ TEST_F(ByHandTest, OddSecondHalfOfBlxIsUndefined) {
   EXPECT_EQ(f[0].spsr & 0x20u, 0x20u);
 }
 
+/// ARM DDI 0198E 2.3: registers that can be written hold their value, each its own. Bits that should be zero are.
+TEST_F(ByHandTest, EachRegisterOfTheCoprocessorHoldsItsOwnValue) {
+  struct {
+    const char* name;
+    std::uint32_t value;
+  } const registers[] = {
+      {"c2, c0, 0", 0x0104'0000}, {"c3, c0, 0", 0x5566'7789}, {"c5, c0, 0", 0x35},
+      {"c5, c0, 1", 0x47},        {"c6, c0, 0", 0x0BAD'F00D}, {"c9, c0, 0", 0x5},
+      {"c9, c0, 1", 0xA},         {"c10, c0, 0", 0x1400'0001}, {"c13, c0, 0", 0x0600'0000},
+      {"c13, c0, 1", 0xC0DE'1234}};
+  std::string write, read = "ldr r12, =0x00200000\n";
+  for (const auto& r : registers) {
+    write += "ldr r0, =" + std::to_string(r.value) + "\n mcr p15, 0, r0, " + r.name + "\n";
+    read += std::string("mrc p15, 0, r0, ") + r.name + "\n str r0, [r12], #4\n";
+  }
+  m.execute(write + read);
+  std::uint32_t at = 0x20'0000;
+  for (const auto& r : registers) {
+    EXPECT_EQ(m.port.word(at), r.value) << r.name;
+    at += 4;
+  }
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test::by_hand

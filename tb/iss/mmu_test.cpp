@@ -226,6 +226,23 @@ TEST_F(MmuTest, FastContextSwitchMovesLowAddresses) {
   EXPECT_TRUE(faults().empty());
 }
 
+/// The last word below 32 MB moves, the first one above does not.
+TEST_F(MmuTest, FastContextSwitchEndsAt32Megabytes) {
+  m.section(0x09f0'0000, kPa, 0, 0);
+  m.section(0x0200'0000, kPa + 0x10'0000, 0, 0);
+  m.section(0x0800'0000, 0, 0, 0);
+  m.section(0x0a00'0000, 0x0020'0000, 1, 0);
+  m.port.set_word(kPa + 0xF'FFFC, 0x11);
+  m.port.set_word(kPa + 0x10'0000, 0x22);
+  m.load(assemble("ldr r1, =0x01fffffc\n ldr r6, =0x02000000\n ldr r0, =0x08000000\n mcr p15, 0, r0, c13, c0, 0\n"
+                  "ldr r2, [r1]\n ldr r3, [r6]\n mov r0, #0\n mcr p15, 0, r0, c13, c0, 0\n mov pc, lr\n .ltorg\n",
+                  0x0020'0000));
+  go("ldr r0, =0x0a000000\n blx r0\n");
+  EXPECT_EQ(m.core.reg(2), 0x11u);
+  EXPECT_EQ(m.core.reg(3), 0x22u);
+  EXPECT_TRUE(faults().empty());
+}
+
 TEST_F(MmuTest, AlignmentFaults) {
   m.section(kVa, kPa, 0, 0);
   go("mrc p15, 0, r0, c1, c0, 0\n orr r0, r0, #2\n mcr p15, 0, r0, c1, c0, 0\n ldr r0, [r4, #1]\n"

@@ -133,6 +133,13 @@ TEST(LensModelTest, StretchingKeepsPictureEdgesInPlace) {
   EXPECT_NEAR((331.200 + 0.5) / 640, (lens.cy() + 0.5) / 576, 1e-12);
 }
 
+TEST(LensModelTest, FocalLengthsAreAboveNothing) {
+  const std::pair<double, double> refused[] = {{0, 100}, {100, 0}, {-1, 100}, {100, -1}};
+  for (const auto& [fx, fy] : refused)
+    EXPECT_THROW(LensModel::kannala_brandt(fx, fy, 0, 0, {}), UserError) << fx << ' ' << fy;
+  EXPECT_NO_THROW(LensModel::kannala_brandt(1e-3, 1e-3, 0, 0, {}));
+}
+
 TEST(LensModelTest, ACurveThatTurnsBackEndsWhereItDoes) {
   // d/dt (t - t^3 / 3) = 1 - t^2 = 0 at 1 rad.
   const LensModel lens = LensModel::kannala_brandt(100, 100, 0, 0, {-1.0 / 3, 0, 0, 0});
@@ -355,6 +362,45 @@ TEST(SceneParamsTest, DefaultsMakeTheFrontCamera) {
   EXPECT_EQ(source->width(), 720u);
   EXPECT_EQ(source->height(), 576u);
   EXPECT_EQ(decode_counter(source->field(9), CodeGrid(*source->stamps())), 9);
+}
+
+/// A calibration of another size of the same picture is stretched to it, in each direction by itself.
+TEST(SceneParamsTest, CalibrationIsStretchedToThePicture) {
+  SceneParams params;
+  params.lens.set("kannala_brandt");
+  params.kb.set("[300, 320, 490, 330, 0, 0, 0, 0]");
+  EXPECT_EQ(params.lens_model(720, 576).fx(), 300.0) << "no size: it is this picture's";
+  params.kb_width.set("960px");
+  params.kb_height.set("640px");
+  EXPECT_EQ(params.lens_model(960, 640).fy(), 320.0);
+  EXPECT_EQ(params.lens_model(480, 640).fx(), 150.0);
+  EXPECT_EQ(params.lens_model(480, 640).fy(), 320.0);
+  EXPECT_EQ(params.lens_model(960, 320).fx(), 300.0);
+  EXPECT_EQ(params.lens_model(960, 320).fy(), 160.0);
+}
+
+/// Its shape is the picture's, up to a pixel; without a size its centre is in the middle third.
+TEST(SceneParamsTest, CalibrationThatCannotBelongToThePictureIsNamed) {
+  SceneParams params;
+  params.lens.set("kannala_brandt");
+  const auto named = [&](unsigned width, unsigned height, const char* kb) {
+    params.kb.set(kb);
+    Diagnostics::instance().clear();
+    params.check_calibration(width, height);
+    return !Diagnostics::instance().counts().empty();
+  };
+  // The middle of 61 x 31 is at 30, 15; a sixth of the sides is 10 1/6 and 5 1/6.
+  EXPECT_FALSE(named(61, 31, "[20, 20, 40.1, 15, 0, 0, 0, 0]"));
+  EXPECT_FALSE(named(61, 31, "[20, 20, 30, 9.9, 0, 0, 0, 0]"));
+  EXPECT_TRUE(named(61, 31, "[20, 20, 40.2, 15, 0, 0, 0, 0]"));
+  EXPECT_TRUE(named(61, 31, "[20, 20, 30, 9.8, 0, 0, 0, 0]"));
+  const char* const any = "[20, 20, 1, 1, 0, 0, 0, 0]";
+  params.kb_width.set("960px");
+  EXPECT_TRUE(named(480, 320, any)) << "a width alone says no shape";
+  params.kb_height.set("640px");
+  for (const unsigned height : {319u, 320u, 321u}) EXPECT_FALSE(named(480, height, any)) << height;
+  for (const unsigned height : {318u, 322u}) EXPECT_TRUE(named(480, height, any)) << height;
+  Diagnostics::instance().clear();
 }
 
 TEST(SceneParamsTest, ComplainsOfWhatCannotBe) {

@@ -180,6 +180,25 @@ TEST(TimerCounterTest, OnceStopsAtThePeriod) {
   EXPECT_EQ(c.next_match(109), kNever);
 }
 
+/// SPRUH82C, match: the counter is 0 one count after its period, also if it was put there.
+TEST(TimerCounterTest, CounterThatStartsAtThePeriodContinuesFromZero) {
+  TimerCounter c(32);
+  c.set_value(5, 0);
+  c.set_period(5, 0);
+  c.start(100, false);
+  EXPECT_EQ(c.next_match(100), 106u);
+  EXPECT_EQ(c.next_match(105), 106u);
+  EXPECT_EQ(c.next_match(106), 112u);
+  for (std::uint64_t n = 0; n < 20; ++n) EXPECT_EQ(c.value(100 + n), (5 + n) % 6) << n;
+  TimerCounter whole(64);
+  whole.set_value(~0ull, 0);
+  whole.set_period(~0ull, 0);
+  whole.start(0, false);
+  EXPECT_EQ(whole.value(0), ~0ull);
+  EXPECT_EQ(whole.value(1), 0u);
+  EXPECT_EQ(whole.next_match(0), kNever) << "in 2^64 counts";
+}
+
 TEST(TimerCounterTest, CounterAboveThePeriodRunsOverItsTop) {
   // SPRUH82C, counter overflow: from 0x10000 with period 0xFFFF up to 2^32 - 1, then to 0xFFFF.
   TimerCounter c(32);

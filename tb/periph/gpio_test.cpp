@@ -172,6 +172,37 @@ TEST_F(GpioTest, ALevelFromBeforeTheStartIsNoEdgeWhenAnotherPinChanges) {
   EXPECT_EQ(s.fresh_bus.read(reg(0, kIntstat)), 1u << 6);
 }
 
+/// Every pin is an input again and no edge is watched for, in the first bank and in the last.
+TEST_F(GpioTest, AResetMakesInputsOfAllPins) {
+  for (const unsigned bank : {0u, kGpioBanks - 1}) {
+    bus.write(reg(bank, kDir), ~2u);
+    bus.write(reg(bank, kSet), 2);
+    bus.write(reg(bank, kSetRis), 1);
+    bus.write(reg(bank, kSetFal), 1);
+  }
+  bus.write(0x08, 1);
+  run_until(now() + 1'000'000);
+  s.outputs.clear();
+  s.gpio.reset(ResetKind::kWarm);
+  run_until(now() + 1'000'000);
+  ASSERT_EQ(s.outputs.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(std::get<0>(s.outputs[i]), i == 0 ? 0u : kGpioBanks - 1);
+    EXPECT_EQ(std::get<1>(s.outputs[i]), 0u);
+  }
+  bus.write(0x08, 1);
+  for (const unsigned bank : {0u, kGpioBanks - 1}) {
+    EXPECT_EQ(bus.read(reg(bank, kDir)), ~0u) << bank;
+    s.gpio.set_pin(32 * bank, true);
+    run_until(now() + 1'000'000);
+    s.gpio.set_pin(32 * bank, false);
+    run_until(now() + 1'000'000);
+    EXPECT_EQ(bus.read(reg(bank, kSetRis)), 0u) << bank;
+    EXPECT_EQ(bus.read(reg(bank, kIntstat)), 0u) << bank;
+  }
+  EXPECT_EQ(s.probe0.rises, 0u);
+}
+
 TEST_F(GpioTest, BintenGatesTheLineButNotTheStatus) {
   bus.write(reg(0, kSetRis), 1);
   s.gpio.set_pin(0, true);

@@ -419,6 +419,9 @@ TEST_F(I2cTest, ResetInMidTransferFreesTheBus) {
   bus.write(kMdr, 0);
   EXPECT_EQ(bus.read(kStr), 0x410u);
   EXPECT_EQ(s.decoder.log, "SWwP");
+  bus.write(kMdr, kIrs);
+  bus.write(kMdr, 0);
+  EXPECT_EQ(s.decoder.log, "SWwP") << "nothing was under way";
 }
 
 }  // namespace

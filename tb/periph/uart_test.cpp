@@ -213,6 +213,23 @@ TEST_F(UartTest, NothingLeavesWhileTheTransmitterIsInReset) {
   EXPECT_EQ(s.sent[0].second, edge(k + 2080));
 }
 
+/// A divisor of 0 gives no baud clock. Either half makes one.
+TEST_F(UartTest, ByteWaitsForADivisor) {
+  for (const std::uint32_t half : {kDll, kDlh}) {
+    bus.write(kDll, 0);
+    bus.write(kDlh, 0);
+    s.sent.clear();
+    bus.write(kData, 'x');
+    run_until(now() + 200'000'000);
+    EXPECT_TRUE(s.sent.empty()) << half;
+    const std::uint64_t k = next_edge(), character = 10 * 16 * (half == kDll ? 1 : 256);
+    bus.write(half, 1);
+    run_until(edge(k + character));
+    ASSERT_EQ(s.sent.size(), 1u) << half;
+    EXPECT_EQ(s.sent[0].second, edge(k + character)) << half;
+  }
+}
+
 TEST_F(UartTest, TransmitInterruptComesWhenTheHoldingRegisterEmptiesAndGoesWithIir) {
   EXPECT_FALSE(s.irq.read());
   bus.write(kIer, 2);  // the register is empty: at once

@@ -72,6 +72,7 @@ TEST_P(BothStandards, CleanRasterGivesFramesWithoutComplaint) {
   Feed feed(*GetParam());
   feed.run(3);
   EXPECT_EQ(feed.sink.violations(), 0u);
+  EXPECT_EQ(feed.sink.broken_frames(), 0u);
   ASSERT_EQ(feed.frames.size(), 3u);
   EXPECT_EQ(feed.frames[0].picture.height, GetParam()->rows);
   EXPECT_FALSE(feed.frames[0].repeated);

@@ -33,7 +33,7 @@ std::string PartChecker::margin(std::uint64_t clocks) const {
 
 void PartChecker::complained(const Complaint& c) {
   Warning& w = warnings_[c.rule];
-  if (++w.count == 1) w.first_clock = c.clock, w.first_bank = c.bank;
+  ++w.count;
   w.worst_clocks = std::max(w.worst_clocks, c.missing);
   if (!on_warning) return;
   const bool late = c.rule == "tREFI" || c.rule == "tRASmax";

@@ -16,7 +16,6 @@ class PartChecker {
   struct Warning {
     std::uint64_t count = 0;
     std::uint64_t worst_clocks = 0;  ///< missing at the worst place
-    std::uint64_t first_clock = 0, first_bank = 0;
   };
   PartChecker(const Part& part, Frequency clock, unsigned CL);
   PartChecker(const PartChecker&) = delete;

@@ -19,8 +19,7 @@ void TimerCounter::stop(std::uint64_t now) {
 }
 
 std::uint64_t TimerCounter::counts_to_first_match() const {
-  if (base_value_ < period_) return period_ - base_value_;
-  if (base_value_ == period_) return period_ + 1;  // 0 (2^64) for a 64-bit period of the full range
+  if (base_value_ <= period_) return period_ - base_value_;  // 0: it is there, and continues from 0
   return (top_ - base_value_) + 1 + period_;
 }
 
