@@ -11,6 +11,7 @@ void PerfettoFunctions::ran(std::span<const std::uint32_t> functions, std::uint6
   // The clock may be another one by the time of the next stretch.
   const Picoseconds at = last_ ? *last_ : time_(begin);
   last_ = time_(end);
+  told_ = end;
   std::size_t same = 0;
   while (same < functions.size() && same < active_.size() && active_[same].function == functions[same]) ++same;
   if (same == functions.size() && same == active_.size()) return;
@@ -36,6 +37,8 @@ void PerfettoFunctions::flush(Picoseconds until) {
 }
 
 void PerfettoFunctions::finish(Picoseconds until) {
+  // What was active up to the last branch may have ended with it.
+  if (last_) settle_(told_);
   for (const Slice& s : over_) write(s, until);
   over_.clear();
   for (std::size_t k = active_.size(); k-- > 0;)

@@ -28,8 +28,9 @@ class PerfettoFunctions final : public cpu::CallStacks::Watcher {
   using Time = std::function<Picoseconds(std::uint64_t cycle)>;
   /// @param name of the function that begins at an address
   /// @param time of the core's present clock
-  PerfettoFunctions(PerfettoFile& file, Name name, Time time)
-      : file_(file), name_(std::move(name)), time_(std::move(time)) {}
+  /// @param settle makes the call stacks tell what is active at a clock
+  PerfettoFunctions(PerfettoFile& file, Name name, Time time, std::function<void(std::uint64_t cycle)> settle)
+      : file_(file), name_(std::move(name)), time_(std::move(time)), settle_(std::move(settle)) {}
 
   void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) override;
   /// What lies behind `from`, the present time, is recorded.
@@ -55,9 +56,11 @@ class PerfettoFunctions final : public cpu::CallStacks::Watcher {
   PerfettoFile& file_;
   Name name_;
   Time time_;
+  std::function<void(std::uint64_t)> settle_;
   std::unordered_map<std::uint32_t, std::string> names_;
   Picoseconds from_ = kNever;
-  std::optional<Picoseconds> last_;  // the end of the stretch before
+  std::uint64_t told_ = 0;           // the end of the stretch before
+  std::optional<Picoseconds> last_;  // when that was
   std::vector<PerfettoFile::Track> tracks_;  // by depth
   std::vector<Active> active_;  // outermost first
   std::deque<Slice> over_;      // in the order of their ends

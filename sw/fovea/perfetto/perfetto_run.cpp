@@ -74,7 +74,8 @@ bool PerfettoRun::wants_functions() const { return file_->wants("firmware", "fun
 void PerfettoRun::watch_functions(cpu::ClockProfile& profile, PerfettoFunctions::Name name) {
   const cpu::Core& core = board_.dm365.arm.core();
   functions_ = std::make_unique<PerfettoFunctions>(
-      *file_, std::move(name), [&core](std::uint64_t cycle) { return core.time(cycle); });
+      *file_, std::move(name), [&core](std::uint64_t cycle) { return core.time(cycle); },
+      [&profile](std::uint64_t cycle) { profile.stacks.count(cycle, profile.counts_stacks()); });
   profile.stacks.watch(functions_.get());
 }
 
