@@ -166,6 +166,7 @@ static void build_views(void) {
   for (uint32_t k = 0; k < config.tables; ++k) prepare_method(&views[k], &arena);
 }
 #endif
+#endif
 
 static void init_frames(uint32_t in_count) {
   frame_stride =
