@@ -11,7 +11,7 @@ namespace {
 
 constexpr Picoseconds kViewLimit = 20 * kPsPerSecond;
 
-/// The tiny picture stays in the D-cache from one frame to the next, so that a missing invalidation shows.
+/// The tiny picture is smaller than the D-cache, which is invalidated before and after each composition then.
 struct View {
   const char* name;
   const char* view;
