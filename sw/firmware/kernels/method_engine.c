@@ -8,6 +8,7 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
+#include "../app/say.h"
 #include "../regs.h"
 #include "method.h"
 
@@ -70,7 +71,7 @@ static const char *prepare_radial(remap_table_t *table, arena_t *arena) {
 static void report(const char *what, uint32_t number) {
   uart_puts("engine: ");
   uart_puts(what);
-  uart_put_hex(number);
+  uart_put_uint(number);
   uart_puts("\n");
 }
 
