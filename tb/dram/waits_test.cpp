@@ -384,6 +384,8 @@ TEST(WaitStatsTest, EachStatisticIsTheSumOfItsOwnTables) {
     return -1.0;
   };
   for (const StatBase* s : stats.stats()) EXPECT_EQ(std::get<double>(s->value()), 0.0) << s->name();
+  EXPECT_EQ(stats.stats()[0]->sentence(),
+            "total time that edma_tc0's reads spent between port and crossbar, both ways");
   crossbar[index(Master::kEdmaTc0Read)].read.add(Culprit::kBridge, 3);
   memory[index(Master::kEdmaTc0Write)].read.add(Culprit::kBridge, 4);
   memory[index(Master::kEdmaTc0Write)].write.add(Culprit::kRefresh, 1);

@@ -63,6 +63,39 @@ TEST_F(ParamTest, ARealNumberReachesItsLimits) {
   EXPECT_EQ(params.angle(), 220);
 }
 
+TEST_F(ParamTest, WholeNumbersAreExactUpToTheLargest) {
+  IntParam largest{params, "largest", IntParam::Unit::kCount, 0, 0, ~0ull, "a number", Origin::kChoice, ""};
+  largest.set("9007199254740993");  // 2^53 + 1, no double
+  EXPECT_EQ(largest(), 9'007'199'254'740'993u);
+  largest.set("18446744073709551615");
+  EXPECT_EQ(largest(), ~0ull);
+  EXPECT_THROW(largest.set("18446744073709551616"), UserError);
+  EXPECT_EQ(largest(), ~0ull);
+}
+
+TEST_F(ParamTest, SpaceAroundAValueIsNotPartOfIt) {
+  for (const char* text : {" 12.5 ns", "12.5ns ", "\t12.5\tns\t", "  12.5  ns  "}) {
+    set.set("block.time", "20ns");
+    set.set("block.time", text);
+    EXPECT_EQ(params.time(), 12'500u) << text;
+  }
+  set.set("block.list", " [ 10 ,\t23 ] ");
+  EXPECT_EQ(params.list(), (std::vector<double>{10, 23}));
+  set.set("block.list", "[10,20,34]");
+  EXPECT_EQ(params.list(), (std::vector<double>{10, 20, 34}));
+}
+
+/// An exponent belongs to the number, a unit that begins with e does not exist.
+TEST_F(ParamTest, ExponentsNeedADigitOnBothSides) {
+  set.set("block.time", "1.25e1ns");
+  EXPECT_EQ(params.time(), 12'500u);
+  set.set("block.time", "2E+1ns");
+  EXPECT_EQ(params.time(), 20'000u);
+  set.set("block.time", "20000e-3ns");
+  EXPECT_EQ(params.time(), 20'000u);
+  for (const char* text : {"e1ns", "1ens", "1e", "e"}) EXPECT_THROW(set.set("block.time", text), UserError) << text;
+}
+
 TEST_F(ParamTest, SizesAreBinaryAndClocksDecimal) {
   set.set("block.size", "4KiB");
   EXPECT_EQ(params.size(), 4096u);
