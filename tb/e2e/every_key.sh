@@ -172,6 +172,7 @@ acts edma.tc.burst 64B PROGRAM
 acts edma.tc.depth 1 PROGRAM
 acts edma.tc.fifo 128B PROGRAM
 acts edma.tc.outstanding 1 PROGRAM
+acts engine tlm EARLY
 acts firmware.baud 57600 EARLY
 acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial

@@ -36,7 +36,7 @@ void ModelBench::issue(const Burst& burst, Picoseconds at) {
   if (at % kPeriod || at < now_ || (!asked.empty() && at < asked.back().at))
     throw std::runtime_error("a request at a wrong time");
   asked.push_back({burst.write, burst.id, burst.address, burst.bytes, at});
-  const std::uint64_t clock = at / kPeriod, due = clock + std::max(memory.latency, 1u);
+  const std::uint64_t due = at / kPeriod + std::max(memory.latency, 1u);
   Pending p{burst, {}, 0, 0, false};
   const auto& fault = burst.write ? memory.write_fault : memory.read_fault;
   p.fault = fault && *fault / 64 == burst.address / 64;
@@ -45,14 +45,13 @@ void ModelBench::issue(const Burst& burst, Picoseconds at) {
   if (burst.write) {
     p.first = p.last = write_free_ = std::max(due, write_free_ + 1);
     if (!p.fault) std::memcpy(words, burst.data.data(), burst.bytes);
-    writes_.push_back(std::move(p));
+    writes_.push_back(p);
     return;
   }
   p.first = std::max(due, read_free_ + 1);
   p.last = read_free_ = p.first + burst.bytes / 8 - 1;
-  p.data.resize(burst.bytes);
   if (!p.fault) std::memcpy(p.data.data(), words, burst.bytes);
-  reads_.push_back(std::move(p));
+  reads_.push_back(p);
 }
 
 /// Answers are told as late as allowed: just before the clock of their first beat.
@@ -65,9 +64,9 @@ void ModelBench::go_until(Picoseconds limit) {
     now_ = std::max(now_, t);
     for (auto* queue : {&reads_, &writes_})
       while (!queue->empty() && queue->front().first * kPeriod - 1 <= now_) {
-        const Pending p = std::move(queue->front());
+        const Pending p = queue->front();
         queue->pop_front();
-        backend.answer({p.burst.tag, p.burst.write, p.fault, p.data, p.first * kPeriod - 1, p.last * kPeriod - 1});
+        backend.answer({p.burst.tag, p.burst.write, p.fault, {p.data.data(), p.burst.write ? 0 : p.burst.bytes}, p.first * kPeriod - 1, p.last * kPeriod - 1});
       }
     call_ = backend.run(now_);
     ++calls;

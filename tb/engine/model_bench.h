@@ -1,9 +1,9 @@
 // Runs an EngineBackend on a memory in which every request takes the same time: the counterpart of tb/rtl's
 // engine_bench, without back-pressure. Jobs go through the registers.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -61,7 +61,7 @@ class ModelBench : private EngineBackend::Host {
  private:
   struct Pending {
     Burst burst;
-    std::vector<std::uint8_t> data;
+    std::array<std::uint8_t, 64> data;
     std::uint64_t first, last;  // clocks in which the beats arrive
     bool fault;
   };

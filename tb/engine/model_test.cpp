@@ -104,6 +104,21 @@ TEST(ModelTest, ErrorsAndAnEarlyEndAreReportedAndTheNextJobIsRight) {
   }
 }
 
+/// Behind an error nothing new is asked for, but for what the model had asked for ahead of it.
+TEST(ModelTest, AnErrorEndsAJob) {
+  Dice dice(rtl::seed() + 10);
+  ModelBench bench(kSize);
+  const MappedJob m = small_job(dice);
+  fill(bench, m, dice);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.read_fault = ModelBench::kBase + kMap}), kReadError);
+  EXPECT_LE(bench.asked.size(), kPlaces);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.write_fault = ModelBench::kBase + kTarget}),
+            kWriteError);
+  EXPECT_LE(bench.asked.size(), 200u);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {}), kDone);
+  EXPECT_GE(bench.asked.size(), 50u + 60u);
+}
+
 /// Rows whose results lie between each other's: what is between the words of a burst stays.
 TEST(ModelTest, GapsWithin64BytesAreLeftAlone) {
   Dice dice(rtl::seed() + 9);
@@ -163,6 +178,32 @@ TEST(ModelTest, LimitsOfJobsAreThoseOfTheDefinition) {
   EXPECT_FALSE(events([](auto& j) { j.mode = Mode::kRadial, j.pieces = 128, j.piece_log2 = 23; }));
   EXPECT_TRUE(events([](auto& j) { j.mode = Mode::kRadial, j.pieces = 129; }));
   EXPECT_TRUE(events([](auto& j) { j.mode = Mode::kRadial, j.piece_log2 = 24; }));
+}
+
+/// One pair, one pixel right of the centre: s is 1 square pixel, that is 256 in Q8 and 65536 in Q16.
+TEST(ModelTest, LimitsOfTheRadialFunctionAreThoseOfTheDefinition) {
+  const auto result = [](std::uint32_t radius_limit, unsigned pieces, unsigned piece_log2) {
+    ModelBench bench(0x1'0000);
+    rtl::Job job;
+    job.mode = Mode::kRadial;
+    job.src_width = 4;
+    job.src_pitch = 2;
+    job.src_base = kWord;
+    job.dst_base = kWord + 0x100;
+    job.a[0] = 1 << 16;
+    job.pieces = pieces;
+    job.piece_log2 = piece_log2;
+    job.radius_limit = radius_limit;
+    bench.word(kWord) = 0x1234'5678;
+    for (unsigned n = 0; n < 3 * pieces; ++n) bench.word(kWord + 0x200 + n) = n % 3 == 0 ? 1 << 20 : 0;
+    EXPECT_EQ(bench.run(job, ModelBench::kBase + 0x800, kBorder, {}), kDone);
+    return bench.word(kWord + 0x100);
+  };
+  EXPECT_EQ(result(256, 1, 8), 0x1234'5678u);
+  EXPECT_EQ(result(255, 1, 8), kBorder);
+  EXPECT_EQ(result(~0u, 1, 1), 0x1234'5678u);
+  EXPECT_EQ(result(~0u, 1, 0), kBorder);  // behind the first piece
+  EXPECT_EQ(result(~0u, 2, 0), 0x1234'5678u);
 }
 
 /// Offsets, names, bits that can be written; of the contract between engine and firmware, typed in by hand.
@@ -281,6 +322,19 @@ TEST_F(Queue, AbortEndsTheJobAndDropsTheOthers) {
   bench.finish();
   bench.advance(2);
   EXPECT_THAT(ended(), testing::ElementsAre(9, kDone, 2));
+}
+
+/// Whoever says less than a mode reads waits for ever, as in the RTL.
+TEST_F(Queue, AJobWithoutItsMapStandsStillUntilItIsAborted) {
+  bench.set(bench.regs.map_words, 798);
+  bench.set(bench.regs.ctrl, 1);
+  submit(1);
+  bench.advance(100'000);
+  EXPECT_EQ(status(), 1u);
+  bench.set(bench.regs.ctrl, 3);
+  bench.finish();
+  bench.advance(2);
+  EXPECT_THAT(ended(), testing::ElementsAre(1, kAborted, 1));
 }
 
 TEST_F(Queue, DisablingLetsTheJobUnderWayEnd) {

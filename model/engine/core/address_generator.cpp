@@ -30,6 +30,7 @@ void AddressGenerator::start(const Job& job) {
 void AddressGenerator::clear() {
   held_ = clip_ = 0;
   stages_ = 0;
+  taken_ = 0;
   pairs_.clear();
   positions_.clear();
   cells_.clear();
@@ -63,7 +64,7 @@ bool AddressGenerator::clock(bool taken, const std::uint32_t* map) {
     clip_ = (clip_ << 1) & (2 * kClipEnd - 1);
   }
   if (taken) {
-    pairs_.pop();
+    ++taken_;
     --held_;
   }
   switch (job_.mode) {
@@ -134,16 +135,15 @@ void AddressGenerator::next_form() {
 
 void AddressGenerator::enter(const Place& place) {
   clip_ |= 1;
-  Pair pair;
+  Pair& pair = pairs_.push();
   static_cast<Place&>(pair) = place;
-  pair.dst = dst_ & 0x3FFF'FFFF;
-  ++dst_;
+  pair.last = false;
+  pair.dst = dst_++ & 0x3FFF'FFFF;
   if (++dst_pair_ == job_.pairs) {
     dst_pair_ = 0;
     dst_ = dst_start_ += job_.dst_pitch;
     pair.last = ++dst_row_ == job_.rows;
   }
-  pairs_.push(pair);
 }
 
 void AddressGenerator::load(std::uint32_t word) {

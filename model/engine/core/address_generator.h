@@ -20,8 +20,14 @@ class AddressGenerator {
   /// The clock in which the unit's start signal is high.
   void start(const Job& job);
   void clear();
-  /// The oldest pair, if one can be taken in this clock.
-  const Pair* front() const { return held_ > 0 ? &pairs_.front() : nullptr; }
+  /// The oldest pair that is not taken, if one can be in this clock.
+  const Pair* front() const { return held_ > 0 ? &pairs_.at(taken_) : nullptr; }
+  /// The oldest pair that was taken; it is kept until forget().
+  const Pair& oldest() const { return pairs_.front(); }
+  void forget() {
+    pairs_.pop();
+    --taken_;
+  }
   /// A word of the map is taken in this clock if there is one. Call before clock().
   bool wants_map() const;
   /// One clock. @param taken front() goes; @param map the word that is there; null: none
@@ -46,7 +52,8 @@ class AddressGenerator {
   unsigned held_ = 0;          // pairs in the buffer at the end, 2 at most
   unsigned clip_ = 0;          // valid bits of the stages that make addresses of positions, 3 of them
   std::uint32_t stages_ = 0;   // valid bits of the radial function's or the division's pipeline
-  Ring<Pair, 64> pairs_;       // entered, in order, up to those in the buffer
+  Ring<Pair, 64> pairs_;       // on their way, in order: those that were taken, in the buffer, in the stages
+  std::size_t taken_ = 0;
   Ring<Place, 64> positions_;  // in `stages_`
   bool took_map_ = false;
 

@@ -16,7 +16,6 @@ void RemapModel::reset() {
   write_arrivals_.clear();
   next_arrival_ = kNoClock;
   parts_.clear();
-  pairs_.clear();
   done_at_ = kNoClock;
 }
 
@@ -55,7 +54,7 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
 }
 
 /// What this clock does depends on an answer that is not known.
-bool RemapModel::waits() const {
+bool RemapModel::waits_for_something() const {
   if (state_ == State::kDrain) return reads_ > 0 || parts_.size() > write_arrivals_.size();
   if (write_arrivals_.empty() && packer_.under_way() > 0 &&
       (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_)))
@@ -188,11 +187,11 @@ bool RemapModel::blend_words(bool taken) {
     ends = word_valid_ && access_.final;
     if (ends) {
       words_[access_.which] = word_;
-      const Pair& pair = pairs_.front();
+      const Pair& pair = addresses_.oldest();
       blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
       blended_dst_ = pair.dst;
       blended_last_ = pair.last;
-      pairs_.pop();
+      addresses_.forget();
     }
     blended_valid_ = ends;
   }
@@ -234,7 +233,6 @@ bool RemapModel::tags(bool room, bool may_ask) {
   }
   which_ = 0;
   end_.bad += pair.bad;
-  pairs_.push(pair);
   return true;
 }
 

@@ -68,7 +68,13 @@ class RemapModel {
   bool tags(bool room, bool may_ask);
   bool ask(bool& map_asked);
   bool send();
-  bool waits() const;
+  bool waits() const {
+    // By far the most clocks: everybody has something.
+    if (state_ == State::kRun && !cache_.no_line() && !map_.empty() && packer_.under_way() < Packer::kUnderWay - 1)
+      return false;
+    return waits_for_something();
+  }
+  bool waits_for_something() const;
   std::uint64_t next_event() const;
 
   Port& port_;
@@ -89,7 +95,6 @@ class RemapModel {
   bool word_valid_ = false, blended_valid_ = false;
   std::uint32_t word_ = 0, blended_ = 0;
   CacheAccess access_;
-  Ring<Pair, 64> pairs_;       // whose final access is taken, and whose word is not blended
   std::uint32_t blended_dst_ = 0;
   bool blended_last_ = false;
   std::array<std::uint32_t, 4> words_{};

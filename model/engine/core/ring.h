@@ -16,8 +16,9 @@ class Ring {
   const T& front() const { return items_[head_]; }
   T& front() { return items_[head_]; }
   T& at(std::size_t n) { return items_[(head_ + n) % N]; }  ///< the n-th from the front
-  T& back() { return items_[(head_ + size_ - 1) % N]; }
-  void push(const T& item) { items_[(head_ + size_++) % N] = item; }
+  const T& at(std::size_t n) const { return items_[(head_ + n) % N]; }
+  void push(const T& item) { push() = item; }
+  T& push() { return items_[(head_ + size_++) % N]; }  ///< what was there before
   void pop() {
     head_ = (head_ + 1) % N;
     --size_;

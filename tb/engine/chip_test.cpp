@@ -1,0 +1,161 @@
+// The remap engine as a block of the chip: reset, clock changes and requests beyond its places, while it works.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "model/board/board.h"
+#include "model/common/host_time_slicer.h"
+#include "model/engine/remap_engine.h"
+#include "sw/fovea/loader.h"
+#include "tb/soc/reach.h"
+
+namespace fovea::engine {
+namespace {
+
+constexpr std::uint32_t kSource = 0x1000, kTarget = 0x2000, kRam = 0x1'0000;  // offsets in internal RAM; its address
+constexpr unsigned kPairs = 24, kRows = 16;
+constexpr unsigned kIrq = 11;
+
+/// A board whose core does nothing; source and result are in internal RAM, as the SDRAM is not initialised.
+struct Chip : testing::Test {
+  Chip() {
+    params.declare(set);
+    set.set("camera.kind", "chart");
+    set.set("engine", "tlm");
+    source = video::make_picture_source(params.camera, app::load_footage(params), params.raster_width(),
+                                        params.raster_height());
+    board = std::make_unique<board::Board>("board", params, *source, 0, false);
+    board->load({0, {0xFE, 0xFF, 0xFF, 0xEA}});  // b .
+    run(kPsPerUs);
+  }
+  soc::Dm365& chip() { return board->dm365; }
+  RemapEngine& engine() { return chip().placed.get<RemapEngine>("engine"); }
+  void run(Picoseconds t) { slicer.run(t); }
+  void set_register(const Reg& r, std::uint32_t v) { engine().regs.write(r.offset(), 4, v); }
+  std::uint32_t get(const Reg& r) {
+    std::uint32_t v = 0;
+    engine().regs.read(r.offset(), 4, v);
+    return v;
+  }
+  std::uint32_t& word(std::uint32_t offset) {
+    return *reinterpret_cast<std::uint32_t*>(chip().internal_ram.data() + offset);
+  }
+  /// A copy by a projection; `pitch` in words.
+  void copy(unsigned pitch = kPairs) {
+    for (std::uint32_t n = 0; n < kPairs * kRows; ++n) word(kSource + 4 * n) = n * 0x0101'0101 + 7;
+    for (std::uint32_t n = 0; n < pitch * kRows; ++n) word(kTarget + 4 * n) = 0;
+    const EngineRegs& r = engine().regs;
+    set_register(r.mode, 3);
+    set_register(r.size, kPairs | kRows << 16);
+    set_register(r.src_base, kRam + kSource);
+    set_register(r.src_pitch, kPairs * 4);
+    set_register(r.src_size, kPairs * 2 | kRows << 16);
+    set_register(r.dst_base, kRam + kTarget);
+    set_register(r.dst_pitch, pitch * 4);
+    set_register(r.a1, 2 << 8);
+    set_register(r.b2, 1 << 8);
+    set_register(r.c0, 1 << 8);
+    set_register(r.enables, 1);
+    set_register(r.ctrl, 1);
+    set_register(r.submit, 1);
+  }
+  bool copied(unsigned pitch = kPairs) {
+    for (std::uint32_t j = 0; j < kRows; ++j)
+      for (std::uint32_t i = 0; i < kPairs; ++i)
+        if (word(kTarget + 4 * (j * pitch + i)) != (j * kPairs + i) * 0x0101'0101 + 7) return false;
+    return true;
+  }
+  board::BoardParams params;
+  ParamSet set;
+  std::unique_ptr<video::PictureSource> source;
+  std::unique_ptr<board::Board> board;
+  HostTimeSlicer slicer;
+};
+
+TEST_F(Chip, AJobRaisesItsInterrupt) {
+  EXPECT_THAT(soc::unreached(board->platform), testing::IsEmpty());
+  chip().aintc.regs.regs.write(0x18, 4, 1u << kIrq);
+  const auto pending = [&] {
+    std::uint32_t irq0 = 0;
+    chip().aintc.regs.regs.read(0x08, 4, irq0);
+    return (irq0 >> kIrq & 1u) == 0;
+  };
+  copy();
+  EXPECT_FALSE(pending());
+  EXPECT_EQ(get(engine().regs.status), 0x10u);
+  run(kPsPerMs);
+  EXPECT_TRUE(copied());
+  EXPECT_TRUE(pending());
+  EXPECT_EQ(get(engine().regs.events), 1u);
+  EXPECT_EQ(engine().stats.jobs.count(), 1u);
+  EXPECT_EQ(engine().stats.write_bytes.count(), kPairs * kRows * 4u);
+  EXPECT_EQ(engine().stats.source_bytes.count(), kPairs * kRows * 4u);
+}
+
+TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
+  unsigned busy = 0;
+  for (unsigned n = 1; n < 12; ++n) {
+    copy();
+    run(n * 15 * kPsPerUs);
+    busy += get(engine().regs.status) & 1;
+    chip().reset_chip(ResetKind::kWarm);
+    run(kPsPerMs);
+    EXPECT_EQ(get(engine().regs.status), 0u) << n;
+    EXPECT_EQ(get(engine().regs.events), 0u) << n;
+    EXPECT_EQ(get(engine().regs.a1), 0u) << n;
+    EXPECT_TRUE(engine().idle());
+  }
+  EXPECT_GE(busy, 4u);
+  EXPECT_LE(busy, 10u);
+  copy();
+  run(kPsPerMs);
+  EXPECT_TRUE(copied());
+  EXPECT_EQ(get(engine().regs.ended), 0x10101u);
+}
+
+/// PLLDIV4 of PLL 1 gives SYSCLK4; bit 15 enables it.
+TEST_F(Chip, TheClockMayChangeWhileItWorks) {
+  const auto divide = [&](std::uint32_t value) {
+    chip().pll1.regs.write(0x160, 4, value);
+    chip().pll1.regs.write(0x138, 4, 1);
+  };
+  for (unsigned n = 1; n < 6; ++n) {
+    copy();
+    run(n * 10 * kPsPerUs);
+    divide(0x8000 | n);
+    run(20 * kPsPerUs);
+    EXPECT_EQ(get(engine().regs.status), 1u);
+    divide(0x8000);
+    run(kPsPerMs);
+    EXPECT_TRUE(copied()) << n;
+    EXPECT_EQ(get(engine().regs.ended) >> 16, n);
+  }
+}
+
+/// Each word of the result by itself would be a request: more than there are places.
+TEST_F(Chip, BurstsWithGapsWaitForPlaces) {
+  set_register(engine().regs.b1, 0);
+  copy(kPairs + 1);
+  run(kPsPerMs);
+  EXPECT_TRUE(copied(kPairs + 1));
+  const std::uint64_t whole = engine().stats.writes.count();
+  // Rows of one pair, every second word.
+  set_register(engine().regs.size, 1 | kRows << 16);
+  set_register(engine().regs.dst_pitch, 8);
+  for (std::uint32_t n = 0; n < 64; ++n) word(kTarget + 4 * n) = 0xEEEE'EEEE;
+  for (unsigned n = 0; n < 3; ++n) set_register(engine().regs.submit, 2);
+  run(kPsPerMs);
+  for (std::uint32_t n = 0; n < 2 * kRows; ++n)
+    EXPECT_EQ(word(kTarget + 4 * n), n % 2 ? 0xEEEE'EEEE : n / 2 * kPairs * 0x0101'0101 + 7);
+  EXPECT_EQ(engine().stats.writes.count() - whole, 3 * kRows);
+  EXPECT_EQ(get(engine().regs.writes), 2u);
+}
+
+}  // namespace
+}  // namespace fovea::engine
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleMock(&argc, argv);
+  return RUN_ALL_TESTS();
+}
