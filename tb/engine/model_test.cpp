@@ -104,6 +104,21 @@ TEST(ModelTest, ErrorsAndAnEarlyEndAreReportedAndTheNextJobIsRight) {
   }
 }
 
+/// Behind an error nothing new is asked for, but for what the model had asked for ahead of it.
+TEST(ModelTest, AnErrorEndsAJob) {
+  Dice dice(rtl::seed() + 10);
+  ModelBench bench(kSize);
+  const MappedJob m = small_job(dice);
+  fill(bench, m, dice);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.read_fault = ModelBench::kBase + kMap}), kReadError);
+  EXPECT_LE(bench.asked.size(), kPlaces);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.write_fault = ModelBench::kBase + kTarget}),
+            kWriteError);
+  EXPECT_LE(bench.asked.size(), 200u);
+  EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {}), kDone);
+  EXPECT_GE(bench.asked.size(), 50u + 60u);
+}
+
 /// Rows whose results lie between each other's: what is between the words of a burst stays.
 TEST(ModelTest, GapsWithin64BytesAreLeftAlone) {
   Dice dice(rtl::seed() + 9);

@@ -20,7 +20,8 @@ constexpr std::uint32_t kBorder = 0x10801080;
 
 /// What one of both has done.
 struct Trace {
-  std::vector<std::uint32_t> reads, writes;  // identifier, address, bytes of each, in order
+  /// Identifier, address, and bytes of each, in order; of a read the clock too, from the first one on.
+  std::vector<std::uint32_t> reads, writes;
   std::uint32_t clocks = 0, lines = 0, bursts = 0, bad = 0;
 };
 
@@ -31,7 +32,7 @@ std::string difference(const Trace& model, const Trace& rtl) {
     while (n < a.size() && n < b.size() && a[n] == b[n]) ++n;
     return n;
   };
-  if (model.reads != rtl.reads) return "read " + std::to_string(first(model.reads, rtl.reads) / 3) + " differs";
+  if (model.reads != rtl.reads) return "read " + std::to_string(first(model.reads, rtl.reads) / 4) + " differs";
   if (model.writes != rtl.writes) return "write " + std::to_string(first(model.writes, rtl.writes) / 3) + " differs";
   if (model.lines != rtl.lines || model.bursts != rtl.bursts || model.bad != rtl.bad) return "a counter differs";
   if (model.clocks != rtl.clocks) return "clocks: " + std::to_string(model.clocks) + " and " + std::to_string(rtl.clocks);
@@ -52,9 +53,14 @@ struct Pair {
   Trace run_model(const MappedJob& m, unsigned latency) {
     EXPECT_EQ(model.run(m.job, ModelBench::kBase + kMap, kBorder, {.latency = latency}), kDone);
     Trace t;
-    for (const auto& a : model.asked)
-      for (const std::uint32_t v : {std::uint32_t{a.id}, a.address, std::uint32_t{a.bytes}})
-        (a.write ? t.writes : t.reads).push_back(v);
+    std::optional<Picoseconds> first;
+    for (const auto& a : model.asked) {
+      auto& list = a.write ? t.writes : t.reads;
+      for (const std::uint32_t v : {std::uint32_t{a.id}, a.address, std::uint32_t{a.bytes}}) list.push_back(v);
+      if (a.write) continue;
+      if (!first) first = a.at;
+      list.push_back(static_cast<std::uint32_t>((a.at - *first) / ModelBench::kPeriod));
+    }
     t.clocks = model.get(model.regs.clocks);
     t.lines = model.get(model.regs.lines);
     t.bursts = model.get(model.regs.writes);
@@ -64,8 +70,11 @@ struct Pair {
   Trace run_rtl(const MappedJob& m, unsigned latency) {
     const rtl::Result r = rtl.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = latency});
     Trace t;
-    for (const auto& a : rtl.reads_asked)
-      for (const std::uint32_t v : {std::uint32_t{a.id}, a.address, 8 * (a.length + 1)}) t.reads.push_back(v);
+    for (std::size_t n = 0; n < rtl.reads_asked.size(); ++n) {
+      const auto& a = rtl.reads_asked[n];
+      const auto clock = static_cast<std::uint32_t>(rtl.read_clocks[n] - rtl.read_clocks[0]);
+      for (const std::uint32_t v : {std::uint32_t{a.id}, a.address, 8 * (a.length + 1), clock}) t.reads.push_back(v);
+    }
     for (const auto& a : rtl.writes_asked)
       for (const std::uint32_t v : {0u, a.address, 8 * (a.length + 1)}) t.writes.push_back(v);
     t.clocks = r.clocks;
@@ -134,13 +143,16 @@ TEST_F(CostTest, Model) { EXPECT_GT(pair.run_model(job, 24).clocks, 0u); }
 TEST_F(CostTest, Rtl) { EXPECT_GT(pair.run_rtl(job, 24).clocks, 0u); }
 
 TEST(TimingTest, TheComparisonComplains) {
-  const Trace t{{1, 64, 32, 0, 128, 64}, {0, 256, 64}, 1000, 1, 1, 0};
+  const Trace t{{1, 64, 32, 0, 0, 128, 64, 7}, {0, 256, 64}, 1000, 1, 1, 0};
   EXPECT_EQ(difference(t, t), "");
   Trace other = t;
-  other.reads[4] += 64;
+  other.reads[5] += 64;
   EXPECT_EQ(difference(other, t), "read 1 differs");
   other = t;
-  other.reads.resize(3);
+  ++other.reads[7];  // a clock later
+  EXPECT_EQ(difference(other, t), "read 1 differs");
+  other = t;
+  other.reads.resize(4);
   EXPECT_EQ(difference(other, t), "read 1 differs");
   other = t;
   other.writes[2] = 32;

@@ -88,7 +88,10 @@ void EngineBench::sample() {
                        .r_data = d.s_r_data_o});
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
-  if (c.ar.valid && c.ar.ready) reads_asked.push_back(c.ar);
+  if (c.ar.valid && c.ar.ready) {
+    reads_asked.push_back(c.ar);
+    read_clocks.push_back(now_);
+  }
   if (c.aw.valid && c.aw.ready) writes_asked.push_back(c.aw);
   if (c.ar.valid && c.ar.ready)
     reads_.push_back({c.ar.id, c.ar.length, c.ar.address, due,
@@ -219,6 +222,7 @@ Result EngineBench::run(const Job& job, std::uint32_t map_base, std::uint32_t bo
   constexpr std::uint32_t kEnable = 1, kAbort = 2;
   result_ = {};
   reads_asked.clear();
+  read_clocks.clear();
   writes_asked.clear();
   memory = {};
   write(Offset::kCtrl, kEnable);

@@ -77,6 +77,7 @@ class EngineBench {
   bool busy() const;
   bool quiet() const { return checker_.quiet(); }  ///< nothing is under way on the memory's bus
   std::vector<Request> reads_asked, writes_asked;  ///< on the memory's bus since run() began
+  std::vector<std::uint64_t> read_clocks;          ///< when reads_asked were taken
   Memory memory{};
   unsigned bus_willing = 16;  ///< how soon the master of the registers gives a channel, in 1/16
 
