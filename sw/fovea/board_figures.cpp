@@ -8,7 +8,6 @@
 namespace fovea::app {
 namespace {
 
-double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
 
 StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
   return {std::move(name), value, std::move(unit), std::move(sentence)};

@@ -13,6 +13,8 @@
 
 namespace fovea::app {
 
+inline double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
+
 /// To be constructed before the simulation starts, and to live as long as the board runs.
 class BoardFigures {
  public:
