@@ -8,7 +8,6 @@
 namespace fovea::app {
 namespace {
 
-
 StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
   return {std::move(name), value, std::move(unit), std::move(sentence)};
 }

@@ -33,7 +33,6 @@
 namespace fovea::app {
 namespace {
 
-
 // Slices only let the host look in; nothing in the model depends on where they end.
 constexpr Picoseconds kSlice = 5 * kPsPerMs;
 
