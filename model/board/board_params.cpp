@@ -41,10 +41,10 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   for (unsigned n = 0; n < mounts.size(); ++n) {
     const EnumParam& own = camera_rows[n].scene.kind;
     for (ParamBase* p : mounts[n].params())
-      p->matters_only("firmware.view = birds_eye or camera.kind = car_park", {&firmware.view, &camera.kind, &own},
-                      [this, &own, birds_eye_shown] {
+      p->matters_only("cameras.count above N, and firmware.view = birds_eye or camera.kind = car_park",
+                      {&cameras.count, &firmware.view, &camera.kind, &own}, [this, n, &own, birds_eye_shown] {
                         const EnumParam& kind = own.user_set() ? own : camera.kind;
-                        return birds_eye_shown() || kind.is("car_park");
+                        return n < camera_count() && (birds_eye_shown() || kind.is("car_park"));
                       });
   }
   // Ports that only a synthetic load drives.

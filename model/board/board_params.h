@@ -124,7 +124,8 @@ struct FirmwareParams : ParamGroup {
     return (24'000'000 / 16 + rate / 2) / rate;
   }
   FirmwareParams() : ParamGroup("firmware") {
-    program.matters_only("firmware.elf empty", {&elf}, [this] { return elf().empty(); });
+    program.matters_only("firmware.elf empty and firmware.view = single", {&elf, &view},
+                         [this] { return elf().empty() && view.is("single"); });
   }
 };
 

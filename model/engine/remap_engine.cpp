@@ -125,7 +125,7 @@ void RemapEngine::put(const Burst& burst, Picoseconds at) {
 }
 
 void RemapEngine::answered(const BurstMaster::Completion& c) {
-  if (c.tag >> kTagBits != resets_) return;
+  if (c.tag >> kTagBits != resets_) return issue_waiting();  // from before a reset: only its place counts
   if (c.error) {
     ++stats.errors;
     Diagnostics::instance().guest(c.write ? "remap engine: a write that nobody answers (bus error)"

@@ -74,6 +74,8 @@ void Tvp5146::change_input() {
   const auto now = selected();
   const bool other_raster = now && *now != raster_;
   signal_ = now.has_value();
+  if (other_raster && new_offset_) cameras_[raster_].set_clock_offset(*new_offset_, kernel_time());
+  if (other_raster) new_offset_.reset();
   if (now) raster_ = *now;
   relock();
   if (!other_raster || !enabled() || !started_ || nominal_.stopped()) return;

@@ -112,7 +112,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t lines_sent_ = 0;
   Timer line_timer_;
 
-  std::optional<double> new_offset_;  // of the raster's camera, from the next line on
+  std::optional<double> new_offset_;  // of the raster's camera, from the next line on, or when another camera follows
   std::uint64_t damaged_ = 0;         // timing codes
 
   std::array<std::uint8_t, 256> regs_{};

@@ -8,10 +8,6 @@
 namespace fovea::app {
 namespace {
 
-StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
-  return {std::move(name), value, std::move(unit), std::move(sentence)};
-}
-
 void add_camera_stats(std::vector<StatRow>& rows,
                       const std::vector<board::CameraFrameStats>& cameras) {
   for (std::size_t n = 0; n < cameras.size(); ++n) {

@@ -14,6 +14,9 @@
 namespace fovea::app {
 
 inline double to_s(Picoseconds ps) { return static_cast<double>(ps) * 1e-12; }
+inline StatRow row(std::string name, StatBase::Value value, std::string unit, std::string sentence) {
+  return {std::move(name), value, std::move(unit), std::move(sentence)};
+}
 
 /// To be constructed before the simulation starts, and to live as long as the board runs.
 class BoardFigures {

@@ -164,8 +164,9 @@ void check_loads(const board::BoardParams& params) {
 void check_cameras(const board::BoardParams& params) {
   const unsigned count = params.camera_count();
   const auto& fault = params.fault;
-  require(fault.kind.is("none") || fault.camera() < count, fault.camera.key(), fault.camera.text(),
-          "the number of a camera, less than cameras.count");
+  const bool quad = params.cameras.quad();
+  require(fault.kind.is("none") || fault.camera() < params.input_count(), fault.camera.key(), fault.camera.text(),
+          quad ? "0 with cameras.quad, whose signal is one" : "the number of a camera, less than cameras.count");
   for (unsigned n = 0; n < count; ++n)
     for (unsigned k = 0; k < n; ++k) {
       const EnumParam& input = params.camera_rows[n].wire.input;
@@ -173,15 +174,22 @@ void check_cameras(const board::BoardParams& params) {
               "an input that no other camera is on");
     }
   const auto& fw = params.firmware;
-  require(!params.cameras.quad() || count == VIEW_CAMERAS, params.cameras.quad.key(), params.cameras.quad.text(),
+  require(!quad || count == VIEW_CAMERAS, params.cameras.quad.key(), params.cameras.quad.text(),
           "false, or true with cameras.count = 4");
-  for (unsigned n = 0; params.cameras.quad() && n < count; ++n)
+  for (unsigned n = 0; quad && n < count; ++n) {
     require(params.camera_setup(n).genlocked, params.cameras.quad.key(), params.cameras.quad.text(),
             "false, or true with genlocked cameras: the signals that are joined have the same syncs");
+    const EnumParam& standard = params.camera_rows[n].wire.standard;
+    require(standard() == params.camera_rows[0].wire.standard(), standard.key(), standard(),
+            "that of camera 0 with cameras.quad");
+  }
   if (!fw.elf().empty()) return;
   require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
           "single, or any with cameras.count = 4");
-  require(!params.cameras.quad() || !fw.view.is("single"), params.cameras.quad.key(), params.cameras.quad.text(),
+  require(!quad || (params.width() == params.raster_width() && params.height() == params.raster_height()),
+          params.cameras.quad.key(), params.cameras.quad.text(),
+          "false, or true with the whole picture: a part of it does not hold the four cameras' pictures");
+  require(!quad || !fw.view.is("single"), params.cameras.quad.key(), params.cameras.quad.text(),
           "false, or true with firmware.view = four_way or birds_eye");
   require(fw.view.is("single") || fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
           "locked with firmware.view = four_way or birds_eye");

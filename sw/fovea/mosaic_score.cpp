@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sw/fovea/board_figures.h"
+
 namespace fovea::app {
 namespace {
 

@@ -8,7 +8,7 @@
 namespace fovea::rtl {
 namespace {
 
-struct Rig {
+struct LiteRig {
   /// The slave's wires are what the test has set.
   void edge() {
     lite.drive(wires);
@@ -22,7 +22,7 @@ struct Rig {
 
 TEST(AxiLiteTest, AWriteEndsWithItsAnswerWhicheverPartIsTakenFirst) {
   for (const bool address_first : {true, false}) {
-    Rig rig;
+    LiteRig rig;
     rig.lite.write(0x44, 0x1234'5678, 15);
     (address_first ? rig.wires.aw.ready : rig.wires.w.ready) = true;
     rig.edge();
@@ -46,7 +46,7 @@ TEST(AxiLiteTest, AWriteEndsWithItsAnswerWhicheverPartIsTakenFirst) {
 }
 
 TEST(AxiLiteTest, AReadReturnsDataAndAnErrorIsSeen) {
-  Rig rig;
+  LiteRig rig;
   rig.lite.read(0x18);
   rig.edge();
   EXPECT_TRUE(rig.wires.ar.valid);

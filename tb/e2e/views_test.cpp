@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                          testing::Values(View{"FourWay", "four_way", false, "fastest", "fixed_point"},
                                          View{"BirdsEye", "birds_eye", false, "plain", "soft_float"},
                                          View{"FourWayTiny", "four_way", false, "ldm", "fixed_point", "32", "16"},
-                                         View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point"}),
+                                         View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point", "0", "0"}),
                          [](const auto& i) { return i.param.name; });
 
 TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {

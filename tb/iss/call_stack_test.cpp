@@ -404,7 +404,7 @@ struct Watched final : CallStacks::Watcher {
     clocks[{functions.begin(), functions.end()}] += end - begin;
   }
 };
-using Clocks = std::map<std::vector<std::uint32_t>, std::uint64_t>;
+using StackClocks = std::map<std::vector<std::uint32_t>, std::uint64_t>;
 
 class StacksByHandTest : public ::testing::Test {
  protected:
@@ -424,7 +424,7 @@ TEST_F(StacksByHandTest, AWatcherSeesCallersAndWhatAnExceptionInterrupts) {
   stacks.exception_return(42, 0x220, 0xff0);
   stacks.jump(45, 0x114, 0x1000);
   stacks.count(50, false);
-  EXPECT_EQ(watched.clocks, (Clocks{{{0x100}, 25}, {{0x100, 0x200}, 13}, {{0x100, 0x200, 0x300}, 2}}));
+  EXPECT_EQ(watched.clocks, (StackClocks{{{0x100}, 25}, {{0x100, 0x200}, 13}, {{0x100, 0x200, 0x300}, 2}}));
   // Also where nothing is counted.
   stacks.call(60, 0x110, 0x200, 0x114, 0x1000);
   EXPECT_EQ(watched.clocks.at({0x100}), 35u);
@@ -435,9 +435,9 @@ TEST_F(StacksByHandTest, AResetEndsWhatRanBefore) {
   stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
   stacks.start(70, 0x300);
   stacks.count(100, false);
-  Clocks counted;
+  StackClocks counted;
   for (const auto& p : stacks.paths()) counted[p.functions] = p.clocks;
-  const Clocks expected{{{0x100}, 20}, {{0x100, 0x200}, 40}, {{0x300}, 30}};
+  const StackClocks expected{{{0x100}, 20}, {{0x100, 0x200}, 40}, {{0x300}, 30}};
   EXPECT_EQ(counted, expected);
   EXPECT_EQ(watched.clocks, expected);
 }

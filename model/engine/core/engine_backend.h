@@ -51,7 +51,8 @@ class EngineBackend {
     virtual ~Host() = default;
     /// @param at an edge of the clock, now or later; not before that of an earlier call
     virtual void issue(const Burst& burst, Picoseconds at) = 0;
-    /// The interrupt line has another level from the present call of run() or write() on.
+    /// The interrupt line has another level from the present call of run(), read() or write() on. A backend whose
+    /// accesses need edges may be up to two clocks ahead of its line.
     virtual void interrupt(bool level) = 0;
   };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "model/engine/core/engine_backend.h"
+#include "model/engine/core/engine_registers.h"
 #include "model/engine/core/remap_model.h"
 
 namespace fovea::engine {
@@ -46,8 +47,8 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
   Host& host_;
   RemapModel model_;
   std::array<std::uint32_t, kRegisters> registers_{};
-  Ring<Entry, 4> queue_;
-  std::uint64_t enabled_from_ = 0, idle_from_ = 0, beat_free_ = 0, answer_free_ = 0, tags_ = 0;
+  Ring<Entry, kQueueDepth> queue_;
+  std::uint64_t enabled_from_ = 0, idle_from_ = 0, beat_free_ = 0, answer_free_ = 0;
   bool running_ = false, interrupt_ = false;
   std::uint8_t tag_ = 0;
 };

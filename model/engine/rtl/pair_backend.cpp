@@ -87,7 +87,7 @@ void PairBackend::answer(const Answer& a) {
   if (open == open_.end()) return;
   const auto [stream, tag] = open->second;
   open_.erase(open);
-  streams_[stream].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
+  if (!disturbed_) streams_[stream].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
   Answer own = a;
   own.tag = tag;
   owner_->answer(own);

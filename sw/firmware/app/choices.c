@@ -7,6 +7,9 @@
 #include "console.h"
 #include "pipeline.h"
 
+/* At least what the longest answer takes: `status` for eight cameras. */
+#define ANSWER_BYTES 2048u
+
 static struct {
   const config_t *config;
   struct view *views;
@@ -146,12 +149,15 @@ static void obey(const char *text) {
   change_view(command.camera, &wanted);
 }
 
+/* One line a call, and only with room for its answer, so that no frame waits for the line of UART0. */
 void choices_work(void) {
   char c;
-  while (uart_queue_read(&c)) {
+  while (uart_queue_room() >= ANSWER_BYTES && uart_queue_read(&c)) {
     const int end = console_feed(&choices.line, c);
     const char echo[2] = {end ? '\n' : c, '\0'};
     uart_queue_puts(echo);
-    if (end) obey(choices.line.text);
+    if (!end) continue;
+    obey(choices.line.text);
+    return;
   }
 }

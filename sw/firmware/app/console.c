@@ -11,7 +11,7 @@ int console_feed(console_line_t *line, char c) {
     return 1;
   }
   if (c == '\b' || c == 0x7F) {
-    if (line->length != 0) --line->length;
+    if (line->length != 0 && line->length <= CONSOLE_LINE_MAX) --line->length; /* what is too long stays so */
   } else if (line->length <= CONSOLE_LINE_MAX) {
     line->text[line->length] = c;
     ++line->length;

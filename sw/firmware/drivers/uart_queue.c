@@ -11,6 +11,7 @@
 #define IER_EMPTY 2u
 #define IIR_NONE 1u
 #define LSR_DR 1u
+#define LSR_OE 2u /* the receiver had no room; reading clears it */
 
 static struct {
   char send[UART_QUEUE_SEND], receive[UART_QUEUE_RECEIVE];
@@ -36,7 +37,10 @@ static void refill(void) {
 }
 
 static void take_received(void) {
-  while ((mmio_read32(UART0_LSR) & LSR_DR) != 0) {
+  for (;;) {
+    const uint32_t status = mmio_read32(UART0_LSR);
+    if ((status & LSR_OE) != 0) queue.lost = 1;
+    if ((status & LSR_DR) == 0) return;
     char c = (char)mmio_read32(UART0_RBR_THR);
     if (queue.receive_count == UART_QUEUE_RECEIVE) {
       queue.lost = 1;
@@ -93,6 +97,13 @@ void uart_queue_put_uint(uint32_t value) {
 void uart_queue_put_int(int32_t value) {
   if (value < 0) uart_queue_puts("-");
   uart_queue_put_uint(value < 0 ? 0u - (uint32_t)value : (uint32_t)value);
+}
+
+uint32_t uart_queue_room(void) {
+  const uint32_t cpsr = irq_mask();
+  const uint32_t room = UART_QUEUE_SEND - queue.send_count;
+  irq_restore(cpsr);
+  return room;
 }
 
 int uart_queue_read(char *c) {

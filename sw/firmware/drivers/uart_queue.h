@@ -16,6 +16,9 @@ void uart_queue_puts(const char *text);
 void uart_queue_put_uint(uint32_t value);
 void uart_queue_put_int(int32_t value);
 
+/** Bytes that can be sent without waiting. */
+uint32_t uart_queue_room(void);
+
 /** The oldest received character that was not read yet. @return 0 if there is none */
 int uart_queue_read(char *c);
 

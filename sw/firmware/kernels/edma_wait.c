@@ -5,16 +5,20 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
+#include "../app/say.h" /* behind uart.h */
 #include "../regs.h"
 
 #define INTERRUPT_PRIORITY 4u
 #define LONGEST_TICKS (2000u * TIMER_TICKS_PER_MS)
 
 void edma_wait_prepare(edma_codes_t codes) {
+  /* A frame that comes while a table is built in the background must find the interrupts open. */
+  const uint32_t cpsr = irq_mask();
   edma_init();
   for (uint32_t n = 0; codes.mask >> n != 0; ++n)
     if (codes.mask >> n & 1u) edma_open_interrupt(codes.first + codes.pitch * n);
   intc_enable(IRQ_EDMA_CCINT0, INTERRUPT_PRIORITY);
+  irq_restore(cpsr);
 }
 
 /* Clears the codes that have been reported, and returns those still missing. All are looked at each
@@ -32,7 +36,7 @@ static uint32_t still_missing(edma_codes_t codes) {
 static void report(const char *what, uint32_t number) {
   uart_puts("EDMA: ");
   uart_puts(what);
-  uart_put_hex(number);
+  uart_put_uint(number);
   uart_puts("\n");
 }
 

@@ -8,7 +8,7 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
-#include "../app/say.h"
+#include "../app/say.h" /* behind uart.h */
 #include "../regs.h"
 #include "method.h"
 
@@ -20,7 +20,12 @@ static uint32_t jobs;
 /* What all three need. */
 static remap_engine_job_t *begin(const remap_table_t *table, arena_t *arena, const char **refusal) {
   *refusal = "the chip has no remap engine";
-  if (!table->has_engine || !engine_init()) return NULL;
+  if (!table->has_engine) return NULL;
+  /* A frame that comes while a table is built in the background must find the engine ready. */
+  const uint32_t cpsr = irq_mask();
+  const int good = engine_init();
+  irq_restore(cpsr);
+  if (!good) return NULL;
   *refusal = "no memory";
   return arena_take(arena, sizeof(remap_engine_job_t), CACHE_LINE_BYTES);
 }
@@ -75,7 +80,8 @@ static void report(const char *what, uint32_t number) {
   uart_puts("\n");
 }
 
-/* Sleeps until the job has ended. A job that has not ended as it should is a line on the UART; the
+/* The events are cleared before the interrupt controller is acknowledged. That loses none, as only one job is under
+ * way. Sleeps until the job has ended. A job that has not ended as it should is a line on the UART; the
  * engine is then started anew for the next frame. */
 static void wait_for_end(void) {
   const uint32_t start = timer_ticks();
