@@ -169,5 +169,19 @@ TEST(PairTest, BehindAnErrorOrAnAbortNothingIsComparedUntilBothAreQuiet) {
   }
 }
 
+// The next job begins before all of the failed one is answered: its requests do not get the old answers.
+TEST(PairTest, AnswersThatComeBehindAnErrorAreNotThoseOfTheNextJob) {
+  const std::vector<Script> both = {
+      {0x100, 1000}, {0x140, 1000, false, 0, 64}, {0x200, 9000, false, 0, 24}, {0x300, 12000, false, 0, 16}};
+  Rig rig(both, both);
+  rig.pair.run(1000);
+  rig.answer(0, 1500, true);
+  rig.pair.run(9000);
+  rig.answer(1, 9500);
+  rig.pair.run(12000);
+  ASSERT_EQ(rig.twin->bytes.size(), 4u);
+  for (std::size_t n = 0; n < both.size(); ++n) EXPECT_EQ(rig.twin->bytes[n].size(), both[n].bytes) << n;
+}
+
 }  // namespace
 }  // namespace fovea::rtl

@@ -54,7 +54,7 @@ class KernelTest : public testing::TestWithParam<Kernel> {};
 TEST_P(KernelTest, APictureOfSeveralStripsIsExact) {
   Rig rig;
   rig.set("video.width", "252").set("video.height", "40").set("camera.stamp", "false");
-  rig.set("run.frames", "3").set("firmware.kernel", GetParam().word);
+  rig.set("run.frames", "3").set("firmware.kernel", GetParam().word).set("engine", GetParam().engine);
   rig.set("engine", GetParam().engine);
   expect_exact(rig, GetParam().method, 3);
 }
@@ -96,7 +96,8 @@ TEST_P(WholeFrameTest, IsExactAndWithoutWarnings) {
     ADD_FAILURE() << times << " times: " << what.second;
 }
 INSTANTIATE_TEST_SUITE_P(Kernels, WholeFrameTest,
-                         testing::Values(Kernel{"codes", "codes"}, Kernel{"fastest", "staged"}),
+                         testing::Values(Kernel{"codes", "codes"}, Kernel{"fastest", "staged"},
+                                         Kernel{"engine", "engine", "tlm"}),
                          [](const auto& i) { return std::string(i.param.word); });
 
 /// A view of the default lens, and the fastest method that its table allows.

@@ -161,14 +161,14 @@ std::unique_ptr<app::BoardConsole> type(CamerasRig& rig, const std::string& dial
 
 /// A kernel, and when to type: 13 characters are in 1.1 ms later, and 1.4 ms after that a frame of camera 0 waits.
 struct Typed {
-  const char *kernel, *at;
+  const char *kernel, *at, *engine = "none";
 };
 class NewTableTest : public testing::TestWithParam<Typed> {};
 TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
   CamerasRig rig;
   small(rig, 2);
   rig.set("tvp5146.relock_fields", "0").set("run.frames", "16");
-  rig.set("firmware.kernel", GetParam().kernel);
+  rig.set("firmware.kernel", GetParam().kernel).set("engine", GetParam().engine);
   const auto console = type(rig,
                             std::string("at ") + GetParam().at + "\nsend shift 0 6 -4\\r\nwait new table\nsend zoom 1 90\\r\n"
                             "wait new table\nsend zoom 5 90\\r\nsend help\\r\n");
@@ -224,7 +224,7 @@ TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
             std::string::npos);
   EXPECT_NE(rig.board().uart_text().find("refused: no such camera"), std::string::npos);
 }
-INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest, testing::Values(Typed{"plain", "518ms"}, Typed{"staged", "478ms"}),
+INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest, testing::Values(Typed{"plain", "518ms"}, Typed{"staged", "478ms"}, Typed{"engine", "518ms", "tlm"}),
                          [](const auto& i) { return std::string(i.param.kernel); });
 
 TEST(SignalsTest, TheChosenCamerasHaveTurns) {

@@ -27,6 +27,7 @@ TEST(ConsoleTest, LinesEndWithEitherKeyAndBackspaceTakesBack) {
   const std::string longest(CONSOLE_LINE_MAX, 'a');
   EXPECT_EQ(typed(longest + "\r"), Lines{longest});
   EXPECT_EQ(typed(longest + "ab\rhelp\r"), (Lines{"?", "help"})) << "too long: no command";
+  EXPECT_EQ(typed(longest + "ab\b\b\rhelp\r"), (Lines{"?", "help"})) << "and it stays too long";
 }
 
 command_t parsed(const std::string& line, uint32_t cameras = 3) {
