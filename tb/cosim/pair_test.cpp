@@ -56,8 +56,8 @@ class Fake : public EngineBackend {
   int open_ = 0;
 };
 
-struct Rig : EngineBackend::Host {
-  Rig(const std::vector<Script>& a, const std::vector<Script>& b)
+struct PairRig : EngineBackend::Host {
+  PairRig(const std::vector<Script>& a, const std::vector<Script>& b)
       : pair(*this, clock,
              [&](Host& h) { return keep(owner, h, a); }, [&](Host& h) { return keep(twin, h, b); },
              [this](const std::string& text) { differences.push_back(text); }) {}
@@ -82,7 +82,7 @@ struct Rig : EngineBackend::Host {
 };
 
 TEST(PairTest, OnlyTheOwnerReachesTheHostAndTheTwinGetsACopyOfEachAnswer) {
-  Rig rig({{0x100, 1000}}, {{0x100, 2000}});
+  PairRig rig({{0x100, 1000}}, {{0x100, 2000}});
   EXPECT_EQ(rig.pair.run(1000), 2000u);
   rig.pair.run(2000);
   ASSERT_EQ(rig.issued.size(), 1u);
@@ -99,14 +99,14 @@ TEST(PairTest, OnlyTheOwnerReachesTheHostAndTheTwinGetsACopyOfEachAnswer) {
 }
 
 TEST(PairTest, ATwinThatIsLateGetsItsAnswerWhenItAsksAndOneThatIsEarlyWaits) {
-  Rig late({{0x100, 1000}}, {{0x100, 9000}});
+  PairRig late({{0x100, 1000}}, {{0x100, 9000}});
   late.pair.run(1000);
   late.answer(0, 5000);
   EXPECT_TRUE(late.twin->answers.empty());
   late.pair.run(9000);
   ASSERT_EQ(late.twin->answers.size(), 1u);
   EXPECT_EQ(late.twin->answers[0].first, 9000u);
-  Rig early({{0x100, 3000}}, {{0x100, 1000}});
+  PairRig early({{0x100, 3000}}, {{0x100, 1000}});
   early.pair.run(1000);
   EXPECT_TRUE(early.issued.empty());
   early.pair.run(3000);
@@ -117,7 +117,7 @@ TEST(PairTest, ATwinThatIsLateGetsItsAnswerWhenItAsksAndOneThatIsEarlyWaits) {
 
 /// Runs both scripts; every request is answered 10 ns later.
 std::vector<std::string> differences(const std::vector<Script>& a, const std::vector<Script>& b) {
-  Rig rig(a, b);
+  PairRig rig(a, b);
   for (Picoseconds t = 1000; t <= 20000; t += 1000) {
     rig.pair.run(t);
     while (rig.owner->answers.size() < rig.issued.size()) rig.answer(rig.owner->answers.size(), t);
@@ -139,7 +139,7 @@ TEST(PairTest, EachKindOfDifferenceIsFoundOnce) {
 }
 
 TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {
-  Rig rig({}, {});
+  PairRig rig({}, {});
   rig.pair.write(0x40, 5, 1000);
   EXPECT_EQ(rig.twin->registers[0x40], 5u);
   rig.twin->registers[0x20] = 9;  // clocks
@@ -152,7 +152,7 @@ TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {
 
 TEST(PairTest, BehindAnErrorOrAnAbortNothingIsComparedUntilBothAreQuiet) {
   for (const bool error : {true, false}) {
-    Rig rig({{0x100, 1000}, {0x900, 9000}}, {{0x100, 1000}, {0x108, 2000}, {0x900, 9000}});
+    PairRig rig({{0x100, 1000}, {0x900, 9000}}, {{0x100, 1000}, {0x108, 2000}, {0x900, 9000}});
     rig.pair.run(1000);
     if (!error) rig.pair.write(0x04, 3, 1000);
     rig.answer(0, 1500, error);
@@ -173,7 +173,7 @@ TEST(PairTest, BehindAnErrorOrAnAbortNothingIsComparedUntilBothAreQuiet) {
 TEST(PairTest, AnswersThatComeBehindAnErrorAreNotThoseOfTheNextJob) {
   const std::vector<Script> both = {
       {0x100, 1000}, {0x140, 1000, false, 0, 64}, {0x200, 9000, false, 0, 24}, {0x300, 12000, false, 0, 16}};
-  Rig rig(both, both);
+  PairRig rig(both, both);
   rig.pair.run(1000);
   rig.answer(0, 1500, true);
   rig.pair.run(9000);

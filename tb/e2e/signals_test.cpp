@@ -224,7 +224,9 @@ TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
             std::string::npos);
   EXPECT_NE(rig.board().uart_text().find("refused: no such camera"), std::string::npos);
 }
-INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest, testing::Values(Typed{"plain", "518ms"}, Typed{"staged", "478ms"}, Typed{"engine", "518ms", "tlm"}),
+INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest,
+                         testing::Values(Typed{"plain", "518ms"}, Typed{"staged", "478ms"},
+                                         Typed{"engine", "518ms", "tlm"}),
                          [](const auto& i) { return std::string(i.param.kernel); });
 
 TEST(SignalsTest, TheChosenCamerasHaveTurns) {
