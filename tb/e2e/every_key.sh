@@ -226,7 +226,7 @@ acts firmware.patch true
 acts firmware.repeat 2
 acts firmware.tables 2
 acts firmware.view four_way cameras.count=4
-acts cameras.quad true cameras.count=4 firmware.view=four_way
+acts cameras.quad true cameras.count=4 firmware.view=four_way video.width=0 video.height=0 EARLY
 tested lens.calibration unit.calibration
 idle lens.calibration none.yaml
 acts pll.go_time 5us EARLY
