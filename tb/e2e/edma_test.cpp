@@ -112,7 +112,7 @@ TEST(EdmaTest, ErrorsAreReportedOnceAndTheNextFramesAreRight) {
   rig.board().dm365.edma_tcs[2]->regs.errstat.set(1);
   frames_until(6);
   const std::string text = rig.board().uart_text();
-  const auto at = text.find("EDMA: errors 0x00000041");
+  const auto at = text.find("EDMA: errors 65");
   ASSERT_NE(at, std::string::npos) << text;
   EXPECT_EQ(text.find("EDMA: ", at + 1), std::string::npos) << text;
   EXPECT_EQ(rig.board().dm365.edma.regs.emr.get(), 0u);
