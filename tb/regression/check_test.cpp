@@ -207,7 +207,7 @@ TEST_F(ReferenceTest, WithoutAProfileOfTheRunTheCauseIsBlamed) {
             "the program: +20 clocks (100 % of the change), of which +20 clocks by dcache, region lut, culprit vpbe");
   EXPECT_EQ(r.advice, "function and line are not known, because the run has no profile; run it again with --profile");
   // With the command that made it.
-  dir.write("slow/host.json", "{\"command\": [\"fovea\", \"run\", \"a b.yaml\", \"-s\", \"x=1\"]}\n");
+  dir.write("slow/host.json", "{\"command\": [\"run\", \"a b.yaml\", \"-s\", \"x=1\"]}\n");
   const RunFigures run = read_run(dir / "slow");
   const Baseline b = read_baseline(dir / "base.yaml");
   const CheckResult again = check_run(run, b, false);

@@ -118,6 +118,7 @@ RunFigures read_run(const fs::path& folder) {
   if (fs::exists(folder / "host.json", error)) {
     const json host = read_object(folder / "host.json");
     const json words = host.value("command", json::array());
+    if (!words.empty()) run.command.push_back("fovea");  // the file has the words behind it
     for (const auto& word : words)
       if (word.is_string()) run.command.push_back(word);
     const json counted = host.value("host_instructions", json::object());
