@@ -107,6 +107,7 @@ rows turns \
   'turns,8,720x576,slow,297/243,0,,3.125,no,1 dropped frame,-0.25,' \
   'turns,8,720x576,slow,297/243,2,,1.562,no,1 dropped frame,-0.25,'
 has calls 'camera.7.file='
+has calls '--require frame.repeated<=1000000'
 
 # Pages.
 printf 'before\n<!-- cameras: begin -->\nold\n<!-- cameras: end -->\nafter\n' >page.md
