@@ -1,5 +1,5 @@
 /* One camera: its table, or up to four that take turns so that no remap finds warm what the one before
- * has read (PARAM page: `tables`). */
+ * has read. */
 #include <stddef.h>
 
 #include "../drivers/uart.h"
