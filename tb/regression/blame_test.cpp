@@ -323,6 +323,23 @@ TEST_F(BlameTest, IdleClocksByEventAreKeptApartFromTheRest) {
   EXPECT_EQ(causes, (std::map<std::string, std::uint64_t>{{"idle", 60}, {"idle.capture", 200}, {"idle.other", 40}}));
 }
 
+// A core that sleeps until the EDMA or the engine is done waits for its own work: that is to blame.
+TEST_F(BlameTest, ASleepUntilTheEdmaIsDoneIsNotIdle) {
+  for (const char* event : {"idle.dma", "idle.engine"}) {
+    RunMaker a_run = before, b_run = after;
+    replace(a_run.profile, "idle.capture,,,300", std::string("idle.capture,,,260,0\nframes,sleep,cp15.c,3,") + event + ",,,40");
+    replace(b_run.profile, "idle.capture,,,300", std::string("idle.capture,,,210,0\nframes,sleep,cp15.c,3,") + event + ",,,90");
+    a = read_run(a_run.write(dir, "a"));
+    b = read_run(b_run.write(dir, "b"));
+    const Difference d = difference_of(attribution_of(a, true), attribution_of(b, true), circumstances_of(a, b));
+    EXPECT_EQ(d.busy.change(), 50);
+    EXPECT_EQ(d.idle.change(), -50);
+    EXPECT_EQ(blame_text(d, blame_of(d, true)),
+              std::string("sleep (cp15.c:3) waits with the same instructions: +50 clocks (100 % of the change), of which "
+                          "+50 clocks by ") + event);
+  }
+}
+
 // Up to 1 % may be missing, as unexplained; a file of another run is refused.
 TEST_F(BlameTest, RowsThatDoNotAddUpAreUnexplainedOrRefused) {
   after.figure("cpu.cycles", "1010", "cycles");  // rows: 1,000
