@@ -145,6 +145,23 @@ TEST_F(BlameTest, ALongerWaitIsBlamedOnItsCulprit) {
   EXPECT_EQ(blame_of(d, false).function, nullptr);
 }
 
+// The line that is named is the one at which the named cause grew, not another that grew more by two causes.
+TEST_F(BlameTest, LineAndCauseBelongTogether) {
+  replace(after.profile, "22,interlock,none,core,100", "22,interlock,none,core,150");
+  replace(after.profile, "21,dcache,lut,bridge,150", "21,dcache,lut,bridge,180");
+  replace(after.profile, "frames,remap,/src/remap.c,22,issue", "frames,remap,/src/remap.c,21,write_buffer,lut,bridge,25,0\n"
+                                                               "frames,remap,/src/remap.c,22,issue");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,195");
+  const Difference d = difference();
+  const Blame blame = blame_of(d, true);
+  ASSERT_TRUE(blame.function && blame.cause && blame.line);
+  EXPECT_EQ(d.functions[0].lines[0].after, 21u);
+  EXPECT_EQ(d.functions[0].lines[0].causes, (std::map<std::string, double>{{"dcache", 30}, {"issue", 0}, {"write_buffer", 25}}));
+  EXPECT_EQ(blame.line->after, 22u);
+  EXPECT_THAT(blame_text(d, blame), HasSubstr("remap (remap.c:22) waits with the same instructions: +105 clocks"));
+  EXPECT_THAT(blame_text(d, blame), HasSubstr("+50 clocks by interlock"));
+}
+
 TEST_F(BlameTest, MovedCodeIsLayout) {
   replace(after.profile, "icache,.text,bridge,100", "icache,.text,bridge,140");
   replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,170");
