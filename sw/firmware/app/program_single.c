@@ -2,6 +2,7 @@
  * has read. */
 #include <stddef.h>
 
+#include "../drivers/cp15.h"
 #include "../drivers/uart.h"
 #include "pipeline.h"
 #include "program.h"
@@ -23,24 +24,57 @@ void program_print(const config_t *c) {
 
 uint32_t program_in_count(const config_t *c) { return c->serial ? 1u : c->sources + 2u; }
 
+/* Memory of the look-up tables behind `lut`: the first one lowest, so that it can be given up first. */
+static void take_tables(uint32_t *entries[], arena_t *arena) {
+  entries[0] = lut;
+  for (uint32_t k = config->tables; k-- > 1;) {
+    entries[k] = arena_take_end(arena, sizeof lut, 4096);
+    if (entries[k] == NULL) fail("look-up tables", "no memory left"); /* firmware.ld rules it out */
+  }
+}
+
+/* If less is left than the next form needs, look-up tables whose own form is there are given up, except
+ * for the first row, which shows whether a frame is torn. Only forms as large as a look-up table come to
+ * that (firmware.ld), and methods with such a form do not read the look-up table any more. */
+static void make_room(uint32_t prepared, uint32_t *entries[], size_t needed, arena_t *arena) {
+  for (uint32_t k = 1; k < prepared && arena->end - arena->next < needed; ++k) {
+    if ((uintptr_t)entries[k] != arena->end) continue; /* is given up already */
+    struct view *view = &views[k].view;
+    const size_t row = config->width / 2u * sizeof(uint32_t);
+    uint32_t *first_row = arena_take(arena, row, CACHE_LINE_BYTES);
+    if (first_row == NULL || view->table.encoded == NULL) return;
+    for (uint32_t i = 0; i < config->width / 2u; ++i) first_row[i] = entries[k][i];
+    view->table.lut = first_row;
+    fw_state.table_address[k] = 0;
+    arena->end = (uintptr_t)entries[k + 1u];
+  }
+}
+
 /* Table k is that of the page's view, moved by k steps. */
 void program_build(const config_t *used) {
   extern uint8_t __arena_start[], __arena_end[];
   arena_t arena = {(uintptr_t)__arena_start, (uintptr_t)__arena_end};
   config = used;
   view_configure(config);
+  uint32_t *entries[TABLES_MAX];
+  take_tables(entries, &arena);
   for (uint32_t k = 0; k < config->tables; ++k) {
-    uint32_t *entries = k == 0 ? lut : arena_take(&arena, sizeof lut, 4096);
-    if (entries == NULL) fail("look-up tables", "no memory left"); /* firmware.ld rules it out */
     lens_view_t *lens = &views[k].lens;
     *lens = config->view;
     lens->shift_x += PARAM_TABLE_STEP_PX * k;
-    view_build_lut(lens, entries, 1);
-    views[k].view.table = view_table(entries, lens);
-    fw_state.table_address[k] = (uint32_t)entries;
+    view_build_lut(lens, entries[k], 1);
+    views[k].view.table = view_table(entries[k], lens);
+    views[k].view.table.in_turn = config->tables > 1;
+    fw_state.table_address[k] = (uint32_t)entries[k];
   }
   fw_state.tables = config->tables;
-  for (uint32_t k = 0; k < config->tables; ++k) view_prepare_method(&views[k].view, &arena);
+  size_t form = 0; /* memory of the last one; the tables are alike, so the next one needs about as much */
+  for (uint32_t k = 0; k < config->tables; ++k) {
+    make_room(k, entries, form + form / 8u, &arena);
+    const uintptr_t before = arena.next;
+    view_prepare_method(&views[k].view, &arena);
+    form = arena.next - before;
+  }
 }
 
 void program_started(const config_t *c) { (void)c; }
