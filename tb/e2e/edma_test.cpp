@@ -2,11 +2,13 @@
 // size; what the controllers report as an error appears on the UART.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <set>
 #include <systemc>
 #include <vector>
 
 #include "model/common/check.h"
+#include "model/contract/memory_map.h"
 #include "tb/e2e/expectations.h"
 #include "tb/e2e/rig.h"
 
@@ -63,6 +65,34 @@ INSTANTIATE_TEST_SUITE_P(All, EdmaTest,
                          [](const auto& i) {
                            return std::string(std::get<0>(i.param)) + std::get<1>(i.param).name;
                          });
+
+/// The method, and whether another master reads the source.
+class TornTest : public testing::TestWithParam<const char*> {};
+// A word of the source's first row changes during the remap, as if the camera had come too soon.
+TEST_P(TornTest, AFrameThatChangesDuringItsRemapIsCounted) {
+  Rig rig;
+  rig.set("firmware.kernel", GetParam()).set("camera.stamp", "false").set("run.frames", "4");
+  rig.set("video.width", "160").set("video.height", "64");
+  board::Board& board = rig.build();
+  unsigned remaps = 0;
+  bool under_way = false;
+  board.on_phase = [&](board::Phase phase, Picoseconds) {
+    under_way = phase == board::Phase::kRemapStart;
+    remaps += under_way;
+  };
+  while (!(under_way && remaps == 2)) rig.advance(10 * kPsPerUs);
+  EXPECT_EQ(rig.state().torn, 0u);
+  rig.advance(60 * kPsPerUs);  // the first sum of 80 words has been taken
+  ASSERT_TRUE(under_way) << "the remap takes longer than that";
+  const auto stride = rig.elf().find("frame_stride"), in = rig.elf().find("frame_in");
+  std::uint32_t bytes = 0;
+  std::memcpy(&bytes, board.peek(stride->address, 4).data(), 4);
+  for (unsigned n = 0; n < 3; ++n) board.dm365.ddr.store().at(in->address - DDR_BASE + n * bytes + rig.lut()[7])[1] ^= 0xFF;
+  rig.run(kLimit);
+  EXPECT_EQ(rig.state().torn, 1u) << rig.board().uart_text();
+}
+INSTANTIATE_TEST_SUITE_P(Kernels, TornTest, testing::Values("plain", "gather", "staged"),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST(EdmaTest, TheBlackRimsOfTheTestAreBlack) {
   Rig rig;

@@ -1,10 +1,13 @@
 /* Cameras in turn, each with a table of its own, and a console (choices.h). */
+#include <stddef.h>
+
 #include "../drivers/cp15.h"
 #include "../drivers/uart.h"
 #include "camera_events.h"
 #include "choices.h"
 #include "pipeline.h"
 #include "program.h"
+#include "say.h"
 #include "state.h"
 #include "view_tables.h"
 
@@ -29,10 +32,17 @@ void program_started(const config_t *config) { choices_start(config, views); }
 
 void program_work(void) {
   camera_events_say();
+  const char *what = pipeline_display_event();
+  if (what != NULL) {
+    uart_puts("display: ");
+    uart_puts(what);
+    uart_puts("\n");
+  }
   choices_work();
 }
 
 void program_frame(uint8_t *out, uint32_t sequence) {
+  if (!pipeline_whole()) return;
   for (uint32_t left = repeats; left-- != 0;)
     view_correct(&views[pipeline_camera()], pipeline_source(0), out, sequence);
   pipeline_done();

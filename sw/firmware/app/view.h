@@ -13,6 +13,9 @@ struct view {
   const remap_method_t *method;
 };
 
+/* Ticks for which builds of tables were suspended, for frames: no part of the times that are said. */
+extern volatile uint32_t view_other_ticks;
+
 /** To be called first. `config` is kept. */
 void view_configure(const config_t *config);
 

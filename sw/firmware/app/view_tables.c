@@ -1,6 +1,7 @@
 #include "view_tables.h"
 
 #include "../drivers/cp15.h"
+#include "../drivers/timer.h"
 #include "pipeline.h"
 #include "state.h"
 
@@ -80,7 +81,9 @@ int background_frame_due(void) {
 void background_frames(void);
 void background_frames(void) {
   tables.in_frame = 1;
+  const uint32_t start = timer_ticks();
   while (correct_next_frame()) {
   }
+  view_other_ticks += timer_ticks() - start;
   tables.in_frame = 0;
 }
