@@ -6,7 +6,7 @@ source=$1
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
-cp "$source"/scripts/{run,build,test,figures,kernels,linux,sanitize,nightly,package,baselines} "$dir/tree/scripts/"
+cp "$source"/scripts/{run,build,test,figures,kernels,sanitize,nightly,package,baselines} "$dir/tree/scripts/"
 cp "$source/CMakeLists.txt" "$dir/tree/"
 touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
 printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
@@ -36,6 +36,7 @@ calls set_a_file 0 "fovea run $default -s camera.calibration=left.yaml" -- \
 calls named 0 'fovea run mine.yaml --mp4' -- "$tree/scripts/run" mine.yaml --mp4
 calls named_last 0 'fovea run -s run.frames=1 mine.yaml' -- "$tree/scripts/run" -s run.frames=1 mine.yaml
 calls misspelt 0 'fovea run none.yaml' -- "$tree/scripts/run" none.yaml
+cp "$source/scripts/linux" "$tree/scripts/"
 for script in run build test figures linux sanitize nightly package baselines; do
   calls "help_$script" 0 '' -- "$tree/scripts/$script" --help
   grep -q "Usage: scripts/$script" "$dir/text" || fail "help of $script: $(cat "$dir/text")"
