@@ -59,7 +59,7 @@ struct EdmaTcParams : ParamGroup {
                  16,
                  64,
                  "default burst size of TC0, TC2 and TC3: 16, 32 or 64; TC1 has 32, or 64 with "
-                 "MISC.TPTC1DBS (SPRUFG5)",
+                 "MISC.TPTC1_BST (TI's register header)",
                  Origin::kAssumed,
                  "TC1's reset value",
                  {"16B", "64B", "a sister chip, C642x, has 16, 32 and 64 (TI EDMA3 LLD)"}};

@@ -157,7 +157,7 @@ void EdmaTc::attach(EdmaCc& channels) {
   channels.attach(number_, *this);
 }
 
-/// TC1 has 32 bytes out of reset and 64 by MISC.TPTC1DBS (SPRUFG5); the others a parameter.
+/// TC1 has 32 bytes out of reset and 64 by MISC.TPTC1_BST (TI's register header); the others a parameter.
 unsigned EdmaTc::burst() const {
   if (number_ != 1) return power_of_two(params_.burst);
   return misc.read() & kTptc1Dbs ? 64 : 32;

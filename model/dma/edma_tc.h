@@ -118,7 +118,7 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
   Pulse error{"error", kInterruptPulse};  ///< TCERRINT
-  /// MISC of the system module: TPTC1DBS; used by number 1 only.
+  /// MISC of the system module: TPTC1_BST; used by number 1 only.
   sc_core::sc_in<std::uint32_t> misc{"misc"};
 
   EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams& params);

@@ -34,7 +34,7 @@ TEST(EdmaTest, StartSwitchesOnTheFiveModulesAndLeavesNothingPending) {
   edma_init();
   for (unsigned module = 0; module < 5; ++module)
     EXPECT_EQ(chip.values[0x01C41A00 + 4 * module], 3u) << module;
-  EXPECT_EQ(chip.values[0x01C40038], 0x93u);  // TPTC1DBS
+  EXPECT_EQ(chip.values[0x01C40038], 0x93u);  // TPTC1_BST
   EXPECT_EQ(chip.values[kCc + 0x280], 0x3210u);
   for (const std::uint32_t both : {kCc + 0x340, kCc + 0x2028, kCc + 0x2008, kCc + 0x2058,
                                    kCc + 0x2070, kCc + 0x308, kCc + 0x2040})

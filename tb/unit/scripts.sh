@@ -38,6 +38,7 @@ calls set_a_file 0 "fovea run $default -s camera.calibration=left.yaml" -- \
 calls named 0 'fovea run mine.yaml --mp4' -- "$tree/scripts/run" mine.yaml --mp4
 calls named_last 0 'fovea run -s run.frames=1 mine.yaml' -- "$tree/scripts/run" -s run.frames=1 mine.yaml
 calls misspelt 0 'fovea run none.yaml' -- "$tree/scripts/run" none.yaml
+cp "$source/scripts/linux" "$tree/scripts/"
 for script in run build test figures linux sanitize nightly package baselines; do
   calls "help_$script" 0 '' -- "$tree/scripts/$script" --help
   grep -q "Usage: scripts/$script" "$dir/text" || fail "help of $script: $(cat "$dir/text")"

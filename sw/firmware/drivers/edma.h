@@ -1,6 +1,6 @@
 /* EDMA3: transfers that software triggers, or the end of another transfer. Channel n uses parameter
  * set n; which completion code a set reports is the caller's choice. Sources: SPRUEE4A (EDMA3 of
- * the DM35x), SPRUFG5 (system module), Linux drivers/dma/ti/edma.c. */
+ * the DM35x), TI's register header cslr_sys (system module), Linux drivers/dma/ti/edma.c. */
 #ifndef FOVEA_FIRMWARE_EDMA_H
 #define FOVEA_FIRMWARE_EDMA_H
 

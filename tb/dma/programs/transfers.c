@@ -104,7 +104,7 @@ static void copies(void) {
     const uint32_t t = copy(name);
     if (tc == 1) ticks = t;
   }
-  /* MISC.TPTC1DBS (SPRUFG5): bursts of 64 bytes instead of 32. */
+  /* MISC.TPTC1_BST (TI's register header): bursts of 64 bytes instead of 32. */
   REG(DMAQNUM0) = 1;
   REG(SYSTEM_MISC) |= 1u << 7;
   check("TC1 copies faster with bursts of 64 bytes", copy("copy by TC1, bursts of 64") < ticks);
