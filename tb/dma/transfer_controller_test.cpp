@@ -146,6 +146,23 @@ TEST(TransferController, ReadsWaitForRoomInTheFifo) {
   EXPECT_EQ(m.completed_at, Times{140});
 }
 
+/// Times are computed, so a read that is issued too late in the order of calls would have the right time and yet lie in
+/// the past of the port.
+TEST(TransferController, AReadIsIssuedWithTheLastOfItsRoom) {
+  Memory exact({32, 64, 4});
+  exact.tc.submit(copy(96, 256, 1024), 0);
+  EXPECT_EQ(exact.reads, (Accesses{{256, 32, 8}, {288, 32, 16}})) << "both fill the FIFO, before anything is answered";
+  while (exact.reads.size() == 2) exact.step();
+  EXPECT_EQ(exact.writes.size(), 2u);
+  EXPECT_TRUE(exact.completed_at.empty());
+  EXPECT_EQ(exact.reads.back(), (Memory::Access{320, 32, 72})) << "with the first acknowledgement";
+  EXPECT_EQ(exact.events.size(), 2u) << "before the second one";
+  Memory less({32, 64, 4});
+  less.tc.submit(copy(33, 287, 1024), 0);  // 1 byte, then 32
+  less.tc.submit(copy(32, 512, 1024), ns(8));
+  EXPECT_EQ(less.reads, (Accesses{{287, 1, 8}, {288, 32, 16}})) << "31 bytes are left";
+}
+
 TEST(TransferController, AFifoOfOneMoreBurstLetsOneMoreReadGo) {
   Memory m({32, 96, 4});
   m.tc.submit(copy(128, 256, 1024), 0);

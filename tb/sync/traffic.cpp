@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tb/sync/edma_block.h"
 #include "tb/sync/memory_system.h"
 
 namespace fovea::sync {
@@ -59,6 +60,7 @@ TestBlock::TestBlock(sc_core::sc_module_name name, Log& log) : BusTarget(name, r
     stream_start_ = kernel_time();
     move_stream();
   });
+  regs.transfer.on_write([this](std::uint32_t random) { on_transfer(random); });
   stream.on_done = [this](const BurstMaster::Completion& c) {
     log_.add(text("%015llu stream %s %08x %llu %016llx", static_cast<unsigned long long>(c.last),
                   c.write ? "w" : "r", c.address, static_cast<unsigned long long>(c.issued),
@@ -187,7 +189,7 @@ void TrafficMaster::execute(const Program& p) {
     unsigned bytes = 4;
     std::uint32_t address;
     if (reg) {
-      address = kRegs + 4 * static_cast<std::uint32_t>(rng.below(5));
+      address = kRegs + 4 * static_cast<std::uint32_t>(rng.below(6));
       op->tx.write = rng.below(3) != 0;
     } else {
       bytes = 4u << rng.below(5);
@@ -234,7 +236,9 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   using Speed = bus::ConfigBus::Speed;
   bus::ConfigBus config("config", cp, end_of_instant,
                         {{"block", kRegs, 0x1000, Speed::kFast},
-                         {"ddr", 0x2000'0000, 0x8000, Speed::kFast}});
+                         {"ddr", 0x2000'0000, 0x8000, Speed::kFast},
+                         {"edma", EdmaBlock::kBase, 0x8000, Speed::kFast},
+                         {"edma_tc", EdmaBlock::kTcBase, 0x400, Speed::kFast}});
   mem::DdrModule ddr("ddr", dp, scr.memory());
   TestBlock block("block", log);
   ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
@@ -250,6 +254,16 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](block.priority[i]);
   block.dma.socket.bind(*scr.target[index(Master::kEdmaTc0Read)]);
   block.stream.socket.bind(*scr.target[index(Master::kLoad)]);
+
+  EdmaBlock edma(scr, config, scr_clk, on);
+  edma.on_interrupt = [&block] { block.raise(); };
+  block.on_transfer = [&edma](std::uint32_t random) { edma.start(kDdr, random); };
+  edma.tc.on_request = [&log](const dma::TransferRequest& r, Picoseconds at) {
+    log.add(text("%015llu edma begins %08x", static_cast<unsigned long long>(at), r.source.address));
+  };
+  edma.tc.on_ended = [&log](const dma::TransferRequest& r, Picoseconds at) {
+    log.add(text("%015llu edma ends %08x", static_cast<unsigned long long>(at), r.source.address));
+  };
 
   // Six masters on the remaining ports; the first has two ports, as the core does.
   std::vector<std::unique_ptr<TrafficMaster>> masters;

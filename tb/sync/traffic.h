@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -50,13 +51,14 @@ class Log {
 /// PRIORITY (write master<<8|level: a crossbar priority changes), STREAM (write address: a passive
 /// DMA master, which reacts to outcomes ahead of the kernel as the video ports do, moves twelve
 /// bursts in places of three; unless address bit 6 is set, it then interrupts: no burst of such a
-/// stream is passive, as each lets the next one follow).
+/// stream is passive, as each lets the next one follow), TRANSFER (write random bits: the EDMA copies; see EdmaBlock).
 struct TestRegs : RegBank {
   Reg timer{*this, "TIMER", 0x0, Mode::kRw, "ns until the interrupt"};
   Reg copy{*this, "COPY", 0x4, Mode::kRw, "address"};
   Reg count{*this, "COUNT", 0x8, Mode::kRo, "expiries"};
   Reg priority{*this, "PRIORITY", 0xC, Mode::kRw, "master<<8|level"};
   Reg stream{*this, "STREAM", 0x10, Mode::kRw, "address"};
+  Reg transfer{*this, "TRANSFER", 0x14, Mode::kRw, "random bits"};
   TestRegs() : RegBank("TEST") {}
 };
 
@@ -67,11 +69,13 @@ class TestBlock : public WithRegs<TestRegs>, public BusTarget {
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
   Picoseconds irq_at = 0, irq_before = 0;  // last and last-but-one interrupt
 
+  std::function<void(std::uint32_t)> on_transfer;  ///< TRANSFER is written
+
   TestBlock(sc_core::sc_module_name name, Log& log);
+  void raise();  ///< an interrupt, now
 
  private:
   void expire();
-  void raise();
   void move_stream();
   Log& log_;
   Timer due_, stream_end_;
