@@ -10,7 +10,13 @@ rm -rf "$out"
 mkdir -p "$out"
 for run in "$4"/{default,paper-pal,paper-vga,paper-ntsc}; do ln -s "$run" "$out/"; done
 ln -s "$5" "$out/throughput"
-"$source/scripts/baselines" --check "$fovea" "$out"
+"$source/scripts/baselines" --check "$fovea" "$out" >"$out/check.log" || { cat "$out/check.log"; exit 1; }
+[ "$(grep -c '^passed: ' "$out/check.log")" = 5 ] || { cat "$out/check.log"; echo "not five baselines were checked"; exit 1; }
+# A report of a default run, with its pictures, takes at most two seconds of the processor.
+TIMEFORMAT='%U %S'
+{ time "$fovea" report "$out/default" -o "$out/report.html" >/dev/null; } 2>"$out/report.time"
+grep -q 'data:image/png' "$out/report.html" || { echo "the report has no pictures"; exit 1; }
+awk '{ t = $(NF - 1) + $NF } END { printf "a report of default: %.2f s\n", t; exit !(t > 0 && t <= 2) }' "$out/report.time"
 # Another digit of one figure.
 sed '/frame.remap_time.mean/,/value/s/\(value: [0-9.e-]*\)\([0-9]\)$/\19\2/' "$source/traces/baselines/default.yaml" >"$out/changed.yaml"
 if cmp -s "$source/traces/baselines/default.yaml" "$out/changed.yaml"; then echo "no figure was changed"; exit 1; fi

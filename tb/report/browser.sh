@@ -12,6 +12,9 @@ cd "$source"
 for name in default paper-pal; do
   "$fovea" run "scripts/experiments/$name.yaml" -s run.frames=3 -o "$out/$name" >/dev/null
 done
+# A view that is composed of four cameras; pixels that the remap engine moves.
+"$fovea" run scripts/experiments/birds-eye.yaml -s run.frames=4 -o "$out/view" >/dev/null
+"$fovea" run scripts/experiments/default.yaml -s run.frames=2 -s engine=tlm -s firmware.kernel=engine --profile -o "$out/engine" >/dev/null
 python3 tb/report/fixture.py "$out/paper-pal" "$out/all-files"
 cp -r "$out/paper-pal" "$out/bare"
 rm -r "$out"/bare/{frames,frames.csv,timeline.csv,stalls.csv,host.json}
@@ -19,6 +22,7 @@ rm -r "$out"/bare/{frames,frames.csv,timeline.csv,stalls.csv,host.json}
 "$fovea" report "$out/all-files" -o "$out/all.html"
 "$fovea" report "$out/bare" -o "$out/bare.html"
 "$fovea" report "$out/default" "$out/all-files" -o "$out/two.html"
+for name in view engine; do "$fovea" report "$out/$name" -o "$out/$name.html"; done
 # A page is made in two seconds.
 start=$(date +%s%N)
 "$fovea" report "$out/default" -o "$out/one.html" >/dev/null

@@ -10,7 +10,8 @@ from chromium import Page
 
 OUT = Path(sys.argv[1])  # further arguments are those of unittest, such as -k keyboard
 HERE = Path(__file__).parent
-PAGES = {"one": ["default"], "all": ["all-files"], "bare": ["bare"], "two": ["default", "all-files"]}
+PAGES = {"one": ["default"], "all": ["all-files"], "bare": ["bare"], "two": ["default", "all-files"],
+         "view": ["view"], "engine": ["engine"]}
 LOOKS = [("light", 1280, False, ""), ("dark", 1280, True, ""), ("narrow", 390, False, ""), ("print", 800, False, "print")]
 PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 
@@ -92,6 +93,19 @@ class Report(unittest.TestCase):
         self.assertEqual(kinds, {"frames", "frame-times", "bandwidth-detail", "bandwidth-whole", "percentiles", "latency", "waterfall", "banks", "flame"})
         self.open("bare")
         self.assertGreaterEqual(self.page.run("document.querySelectorAll('.absent').length"), 4)
+
+    def test_a_composed_view_has_all_its_cameras(self):
+        self.open("view")
+        captions = self.page.run("[...document.querySelectorAll('.cameras figcaption')].map((c) => c.textContent)")
+        self.assertEqual([c.split(",")[0] for c in captions], [f"Camera {n}" for n in range(4)])
+        widths = self.page.run("[...document.querySelectorAll('.cameras img')].map((i) => i.naturalWidth)")
+        self.assertTrue(all(w > 100 for w in widths), widths)
+
+    def test_the_engine_is_named(self):
+        self.open("engine")
+        text = self.page.run("document.body.innerText")
+        self.assertIn("the core sleeps until the remap engine is done", text)
+        self.assertRegex(text, r"The interrupt that ended the sleep came from: .*the remap engine [0-9.]+ %")
 
     def test_waterfall_adds_up(self):
         self.open("all")

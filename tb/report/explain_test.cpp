@@ -248,7 +248,14 @@ TEST_F(ExplainTest, ATableOfHalfTheBytesSavesHalfOfItsLineFills) {
              {"write_buffer", "lut", "bridge", 500}};
   // 75 clocks of 53.3 us for two frames, half of them: 1 ms of 10 ms.
   EXPECT_EQ(text("smaller_table"),
-            "Estimate: a look-up table of half as many bytes would save up to about 1.00 ms of a remap, 10 %.");
+            "Estimate: a look-up table of half as many bytes would save about 1.00 ms of a remap, 10 %.");
+  // Two percent of a remap are 15 clocks.
+  stalls_ = {{"dcache", "lut", "service", 16}};
+  EXPECT_THAT(text("smaller_table"), HasSubstr("about 0.21 ms of a remap, 2.1 %"));
+  stalls_[0].cycles = 14;
+  EXPECT_EQ(text("smaller_table"), "");
+  stalls_ = {{"dcache", "lut", "service", 60}, {"dcache", "lut", "bridge", 15}};
+  EXPECT_NE(text("smaller_table"), "");
   stalls_[0].region = "arena";
   stalls_[1].region = "other";
   EXPECT_EQ(text("smaller_table"), "");
