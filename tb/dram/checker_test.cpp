@@ -223,6 +223,17 @@ TEST(CheckerStateTest, ChangedNumbersBindLaterCommandsOnly) {
   EXPECT_EQ(checker.complaints()[0].rule, "ACT on open bank");
 }
 
+// Each says where and when; `missing` is for times that are too short, by so many clocks.
+TEST(CheckerStateTest, ComplaintsNameBankAndClock) {
+  CommandChecker checker(sheet());
+  checker.command(kAct, 3, 1, 100);
+  checker.command(kSre, 0, 0, 200);
+  ASSERT_EQ(checker.total(), 1u);
+  EXPECT_EQ(checker.complaints()[0].clock, 200u);
+  EXPECT_EQ(checker.complaints()[0].bank, 3u);
+  EXPECT_EQ(checker.complaints()[0].missing, 0u);
+}
+
 // All are counted, the first hundred kept.
 TEST(CheckerStateTest, KeepsTheFirstHundredComplaints) {
   CommandChecker checker(sheet());

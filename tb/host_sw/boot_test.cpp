@@ -224,14 +224,15 @@ TEST_F(BootTest, TheSequenceIsTheLoaders) {
   const std::size_t mux = index_of_write(0x01C40048, 0x243F04FC);
   const std::size_t vtp = index_of_write(0x01C40074, 0x00182037);
   const std::size_t reset = index_of_write(0x01C41A00 + 4 * 13, 1);
+  const std::size_t enabled = index_of_write(0x01C41A00 + 4 * 13, 3, reset);
   const std::size_t phy = index_of_write(0x200000E4, 0xC5);
   const std::size_t unlock = index_of_write(0x20000008, 0x0053C832);
   const std::size_t timing = index_of_write(0x20000010, values[0x20000010]);
   const std::size_t final_bank = index_of_write(0x20000008, 0x00534A32);
   const std::size_t refresh = index_of_write(0x2000000C, 1895);
   const std::size_t second_reset = index_of_write(0x01C41A00 + 4 * 13, 1, refresh);
-  EXPECT_TRUE(pll1 < pll2 && pll2 < mux && mux < vtp && vtp < reset && reset < phy &&
-              phy < unlock && unlock < timing && timing < final_bank && final_bank < refresh &&
+  EXPECT_TRUE(pll1 < pll2 && pll2 < mux && mux < vtp && vtp < reset && reset < enabled &&
+              enabled < phy && phy < unlock && unlock < timing && timing < final_bank && final_bank < refresh &&
               refresh < second_reset);
   EXPECT_EQ(values[0x01C41800 + 4 * 13], 3u) << "DDR2 enabled at the end";
 }

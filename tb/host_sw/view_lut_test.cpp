@@ -210,6 +210,45 @@ TEST(ViewLut, WithoutALensTheQuarterIsThePictureItself) {
   for (unsigned k = 0; k < 8; ++k) EXPECT_EQ(row[k], 3 * 64u + (4 * k + 1) / 2 * 4) << k;
 }
 
+/// A camera that is turned about the vertical axis: in the row of the axis the third component of a direction is
+/// 1 + u / 2.
+TEST(ViewLut, DirectionsAreDividedByTheirDepth) {
+  const Setting s = setting(64, 32, false, false, false);
+  lens_t lens;
+  ASSERT_EQ(lens_init(&lens, &s.lens[0], s.width(), s.height()), LENS_OK);
+  view_map_t turned{}, flat{};
+  turned.lens = flat.lens = &lens;
+  const double of_turned[] = {1, 0, 0, 0, 1, 0, 0.5, 0, 1}, of_flat[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  std::copy(std::begin(of_turned), std::end(of_turned), turned.m);
+  std::copy(std::begin(of_flat), std::end(of_flat), flat.m);
+  for (const double u : {-0.4, 0.25, 0.5}) {
+    const lens_point_t got = view_map_source(&turned, u, 0), wanted = view_map_source(&flat, u / (1 + u / 2), 0);
+    ASSERT_TRUE(got.visible && wanted.visible) << u;
+    EXPECT_NEAR(got.column, wanted.column, 1e-9) << u;
+    EXPECT_NEAR(got.row, wanted.row, 1e-9) << u;
+    EXPECT_GT(std::abs(view_map_source(&flat, u, 0).column - wanted.column), 0.1) << "it makes a difference";
+  }
+}
+
+/// To the nearest unit, on both sides of 0.
+TEST(ViewLut, TheCentreOfTheLensIsRoundedToFixedPoint) {
+  const Setting s = setting(64, 32, false, false, false);
+  lens_t lens, wide;
+  static fast_lut_t fast;
+  ASSERT_EQ(lens_init(&lens, &s.lens[0], s.width(), s.height()), LENS_OK);
+  constexpr double kUnit = 1.0 / (1u << FAST_LUT_FRACTION);
+  for (const double quarters : {0.0, 0.25, 0.75}) {
+    lens.centre_x = -100 - quarters * kUnit;  // 31.5 + 0.5 before
+    lens.centre_y = 3 + quarters * kUnit;     // 15.5 + 0.5 before
+    view_map_t map{};
+    view_map_half(&map, &lens, 0, 0);
+    ASSERT_EQ(view_map_fixed_point(&map, &fast, &wide), FAST_LUT_OK);
+    const int up = quarters > 0.5;
+    EXPECT_EQ(map.centre_column, -68 * (1 << FAST_LUT_FRACTION) - up) << quarters;
+    EXPECT_EQ(map.centre_row, 19 * (1 << FAST_LUT_FRACTION) + up) << quarters;
+  }
+}
+
 TEST(ViewPage, EveryFaultIsNamed) {
   view_page_t page{};
   page.view = VIEW_BIRDS_EYE;

@@ -41,10 +41,10 @@ class Test:
         self.skip = properties.get('SKIP_RETURN_CODE')
         self.inverted = bool(properties.get('WILL_FAIL')) or 'PASS_REGULAR_EXPRESSION' in properties
 
-    def fingerprint(self, root):
-        """Changes when the test's program or script does."""
+    def fingerprint(self):
+        """Changes when the test's program, its script or a file among its arguments does."""
         digest = hashlib.sha256(json.dumps(self.command).encode())
-        for word in self.command[:1]:
+        for word in self.command:
             path = pathlib.Path(word)
             if path.is_file():
                 digest.update(path.read_bytes())
@@ -139,8 +139,9 @@ class Runs:
         """Runs every test once with no mutant on. False if the time was over before."""
         todo = []
         for name, test in self.tests.items():
-            test.print = test.fingerprint(self.tree.tree)
-            if self.state['tests'].get(name, {}).get('print') != test.print:
+            test.print = test.fingerprint()
+            known = self.state['tests'].get(name, {})
+            if known.get('print') != test.print or not known['passed']:
                 todo.append(test)
 
         def one(number, test):

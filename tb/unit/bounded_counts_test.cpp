@@ -36,6 +36,7 @@ TEST(BoundedCountsTest, NumbersAreExamplesAndNamesAreKinds) {
   EXPECT_EQ(BoundedCounts::kind_of("0x"), "0x");
   EXPECT_EQ(BoundedCounts::kind_of("0x1G 12"), "0x1G #");
   EXPECT_EQ(BoundedCounts::kind_of(""), "");
+  EXPECT_EQ(BoundedCounts::kind_of(std::string_view("x12y").substr(1, 2)), "#") << "of a part";
 }
 
 TEST(BoundedCountsTest, TheNinthExampleOfAKindIsCountedOnly) {

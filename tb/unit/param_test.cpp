@@ -110,6 +110,9 @@ TEST_F(ParamTest, MissingUnitIsRefused) {
                     HasSubstr("unit")));
   EXPECT_THAT(user_error([&] { set.set("block.cycles", "12"); }), HasSubstr("cycles"));
   EXPECT_THAT(user_error([&] { set.set("block.angle", "90"); }), HasSubstr("deg"));
+  // An exponent alone is no number that lacks its unit.
+  EXPECT_THAT(user_error([&] { set.set("block.time", "12"); }), HasSubstr("lacks its unit"));
+  EXPECT_THAT(user_error([&] { set.set("block.time", "e5"); }), testing::Not(HasSubstr("lacks its unit")));
 }
 
 TEST_F(ParamTest, RangeIsTightAtBothEnds) {
