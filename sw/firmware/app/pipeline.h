@@ -46,6 +46,14 @@ int pipeline_event(uint32_t *camera, const char **what);
 #endif
 
 #ifdef CONSOLE
+/** Checks the frame of the last pipeline_take(), if the page asks for that (PARAM_CHECK_CAPTURE). If a part of it was
+ * not captured, the frame is left out, and said; the output buffer stays free.
+ * @return 1 if the frame is to be corrected; 0 if pipeline_done() must not be called for it */
+int pipeline_whole(void);
+
+/** What is to be said of the display. @return a null pointer if there is nothing */
+const char *pipeline_display_event(void);
+
 /** Whether a captured frame waits for pipeline_take(). With interrupts masked. */
 int pipeline_frame_waits(void);
 
