@@ -27,12 +27,29 @@ rtl::Waves waves_of(const EngineParams& p) {
 }  // namespace
 #endif
 
+namespace {
+
+/// @throws UserError for sizes that the RTL is not built with
+[[maybe_unused]] void require_built_sizes(const EngineParams& params) {
+  for (const ParamBase* p : {static_cast<const ParamBase*>(&params.cache), static_cast<const ParamBase*>(&params.prefetch)})
+    if (p->text() != p->default_text())
+      throw UserError("key '" + p->key() + "': the RTL is built with " + p->default_text() + " alone; engine=tlm takes '" +
+                      p->text() + "'");
+}
+
+}  // namespace
+
 std::unique_ptr<EngineBackend> make_backend(const EngineParams& params, const Clock& clock,
                                             EngineBackend::Host& host, OnCompared on_compared) {
-  const auto tlm = [&clock](EngineBackend::Host& h) { return std::make_unique<TlmBackend>(clock, h); };
+  const Geometry geometry{.log_lines = params.log_cache_lines(),
+                          .prefetch = static_cast<unsigned>(params.prefetch())};
+  const auto tlm = [&clock, geometry](EngineBackend::Host& h) {
+    return std::make_unique<TlmBackend>(clock, h, geometry);
+  };
   // Without an engine nothing runs: the block is made to print its registers.
   if (params.kind.is("tlm") || params.kind.is("none")) return tlm(host);
 #ifdef FOVEA_ENGINE_RTL
+  require_built_sizes(params);
   const auto rtl = [&](EngineBackend::Host& h) {
     return std::make_unique<rtl::RtlBackend>(h, clock, rtl::RtlBackend::Options{.waves = waves_of(params)});
   };

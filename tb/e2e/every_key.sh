@@ -203,6 +203,10 @@ acts edma.tc.depth 1 PROGRAM
 acts edma.tc.fifo 128B PROGRAM
 acts edma.tc.outstanding 1 PROGRAM
 acts engine tlm EARLY
+tested engine.cache engine.board
+tested engine.prefetch engine.board
+idle engine.cache 1KiB
+idle engine.prefetch 1
 tested waves.skip cosim.rtl
 tested waves.from cosim.rtl
 tested waves.length cosim.rtl

@@ -37,6 +37,18 @@ done
 read_bytes=$(($(value engine.map_bytes) + $(value engine.source_bytes)))
 [ "$read_bytes" = "$(value bus.remap_engine.read_bytes)" ] || fail "the bytes read differ"
 
+# Sizes: a cache of one line reads more, one line under way at once is slower; the RTL has one cache only.
+run cache -s engine=tlm -s engine.cache=32B || fail "cache: status $?"
+source_bytes() { grep -o '"engine.source_bytes": {"value": [0-9]*' "$1/stats.json" | sed 's/.*: //'; }
+[ "$(source_bytes cache)" -gt "$(source_bytes tlm)" ] || fail "a small cache reads $(source_bytes cache) bytes"
+run prefetch -s engine=tlm -s engine.prefetch=1 || fail "prefetch: status $?"
+cmp -s prefetch/stats.json tlm/stats.json && fail "engine.prefetch changes nothing"
+for key in engine.cache=4KiB engine.prefetch=7; do
+  run rtl -s engine=rtl -s $key
+  status=$?
+  [ $status = 2 ] && grep -qE "key '(${key%=*}|engine)'" rtl.log || fail "$key for the RTL: status $status $(cat rtl.log)"
+done
+
 run none || fail "none: status $?"
 grep -q 'no engine' none/uart.log || fail "$(cat none/uart.log)"
 grep -q "remap engine (hypothetical) at 0x01c6a000 is not there: key 'engine' is none" none.log ||

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tb/engine/model_bench.h"
+#include "tb/rtl/lens_maps.h"
 #include "tb/rtl/random_jobs.h"
 
 namespace fovea::engine {
@@ -58,6 +59,74 @@ TEST(ModelTest, RandomJobsMakeTheGoldenPicture) {
     std::uint32_t bad = 0;
     for (const rtl::Beat& b : addresses(m.job, m.map)) bad += b.bad;
     EXPECT_EQ(bench.get(bench.regs.bad), bad);
+  }
+}
+
+ModelBench::Maker model_with(Geometry geometry) {
+  return [geometry](const Clock& clock, EngineBackend::Host& host) {
+    return std::make_unique<TlmBackend>(clock, host, geometry);
+  };
+}
+
+/// A lens through caches from one line to more than there are in its source.
+TEST(ModelTest, EachCacheReadsTheLinesThatItMust) {
+  Dice dice(rtl::seed() + 4);
+  lens_view_t view;
+  lens_view_default(&view);
+  lens_t lens;
+  ASSERT_EQ(lens_init(&lens, &view, 192, 96), LENS_OK);
+  MappedJob m = rtl::grid_job(lens, 4);
+  place(m);
+  const auto beats = addresses(m.job, m.map);
+  std::size_t before = ~std::size_t{0};
+  for (const unsigned log_lines : {0u, 1u, 2u, 3u, 5u, 8u, 12u}) {
+    ModelBench bench(kSize, model_with({.log_lines = log_lines}));
+    fill(bench, m, dice);
+    const auto want = expected(bench, m);
+    EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {}), kDone);
+    expect_picture(bench, m, want);
+    const std::size_t lines = bench.get(bench.regs.lines);
+    EXPECT_EQ(lines, lines_read(beats, log_lines)) << log_lines;
+    EXPECT_LE(lines, before);
+    before = lines;
+  }
+  EXPECT_EQ(before, lines_needed(beats));
+}
+
+/// A line is asked for only while fewer are under way than `prefetch`.
+TEST(ModelTest, PrefetchLimitsTheLinesUnderWay) {
+  Dice dice(rtl::seed() + 5);
+  constexpr unsigned kLatency = 40;
+  MappedJob m = rtl::random_job(dice, Mode::kProject);
+  m.job.src_width = m.job.src_height = 512;
+  m.job.src_pitch = 256;
+  m.job.bilinear = false;
+  m.job.pairs = 128;
+  m.job.rows = 2;
+  for (auto* form : {m.job.a, m.job.b, m.job.c})
+    for (unsigned n = 0; n < 3; ++n) form[n] = 0;
+  m.job.a[1] = 2 << 8;  // row after row, from the first pixel on
+  m.job.b[2] = 1 << 8;
+  m.job.c[0] = 1 << 8;
+  place(m);
+  for (const unsigned prefetch : {1u, 3u, 8u}) {
+    ModelBench bench(kSize, model_with({.prefetch = prefetch}));
+    fill(bench, m, dice);
+    EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.latency = kLatency}), kDone);
+    std::vector<Picoseconds> reads;
+    for (const auto& a : bench.asked)
+      if (!a.write) reads.push_back(a.at / ModelBench::kPeriod);
+    ASSERT_EQ(reads.size(), 2u * 128 / 8);
+    // A request's last data come `latency` + 3 clocks after it, and its place is free then; the next `prefetch`
+    // requests are no earlier. With eight the 32 accesses that wait bind before: they are those of four lines.
+    const unsigned binds = std::min(prefetch, 4u);
+    unsigned most = 0;
+    for (std::size_t n = 0; n < reads.size(); ++n) {
+      unsigned under_way = 1;
+      while (under_way <= n && reads[n] - reads[n - under_way] <= kLatency + 3) ++under_way;
+      most = std::max(most, under_way);
+    }
+    EXPECT_EQ(most, binds) << prefetch;
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <optional>
+#include <set>
 
 namespace fovea::rtl {
 namespace {
@@ -204,6 +206,31 @@ std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map) 
     }
   if (!beats.empty()) beats.back().last = true;
   return beats;
+}
+
+std::size_t lines_read(std::span<const Beat> beats, unsigned log_lines) {
+  const unsigned ways = log_lines < 2 ? 1u << log_lines : 4;
+  const unsigned log_sets = log_lines < 2 ? 0 : log_lines - 2;
+  const auto bits = [&](std::uint32_t line, unsigned from) { return line >> from & ((1u << log_sets) - 1); };
+  std::vector<std::deque<std::uint32_t>> sets(std::size_t{1} << log_sets);  // lines, the one that came first first
+  std::size_t read = 0;
+  for (const Beat& b : beats) {
+    if (b.border) continue;
+    const std::uint32_t line = b.src / 8;
+    auto& set = sets[bits(line, 0) ^ bits(line, log_sets)];
+    if (std::ranges::find(set, line) != set.end()) continue;
+    if (set.size() == ways) set.pop_front();
+    set.push_back(line);
+    ++read;
+  }
+  return read;
+}
+
+std::size_t lines_needed(std::span<const Beat> beats) {
+  std::set<std::uint32_t> lines;
+  for (const Beat& b : beats)
+    if (!b.border) lines.insert(b.src / 8);
+  return lines.size();
 }
 
 std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map,

@@ -44,6 +44,12 @@ unsigned grid_rows(const Job& job);
 /// All beats of a job. @pre possible(job) and map.size() == map_words(job)
 std::vector<Beat> addresses(const Job& job, std::span<const std::uint32_t> map);
 
+/// How many lines of 32 bytes these beats bring from the source, one access each, through the cache that rtl/README.md
+/// describes, with 2^log_lines lines; with four lines or fewer all are one set.
+std::size_t lines_read(std::span<const Beat> beats, unsigned log_lines);
+/// The lines that they need, each once.
+std::size_t lines_needed(std::span<const Beat> beats);
+
 /// The words that a job writes, in the order of its beats. `word(address)` gives the word at a word
 /// address.
 std::vector<std::uint32_t> picture(const Job& job, std::span<const std::uint32_t> map,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include "model/engine/core/ring.h"
 
@@ -23,23 +24,26 @@ struct CacheAccess {
 
 /// Sizes that the RTL has as parameters.
 struct Geometry {
-  unsigned log_lines = 8;  ///< 2^n lines of 32 bytes, 0 to 8; up to four of them are one set of four ways or fewer
+  unsigned log_lines = 8;  ///< 2^n lines of 32 bytes, 0 to 12; four or fewer are one set
   unsigned prefetch = 8;   ///< lines under way at most, 1 to 8
 };
 
 class SourceCache {
  public:
-  static constexpr unsigned kLineWords = 8, kAhead = 32, kLines = 8, kWays = 4, kMostPlaces = 256;
+  static constexpr unsigned kLineWords = 8, kAhead = 32, kLines = 8, kWays = 4;
 
   explicit SourceCache(Geometry g)
       : ways_(std::min(kWays, 1u << g.log_lines)),
         log_sets_(g.log_lines - static_cast<unsigned>(std::countr_zero(ways_))),
-        prefetch_(g.prefetch) {
+        prefetch_(g.prefetch),
+        tags_(1u << g.log_lines),
+        next_(1u << log_sets_),
+        data_(1u << g.log_lines) {
     clear();
   }
   void clear() {
-    tags_.fill(kNothing);
-    next_.fill(0);
+    std::ranges::fill(tags_, kNothing);
+    std::ranges::fill(next_, std::uint8_t{0});
     lines_.clear();
     waiting_.clear();
     promised_ = 0;
@@ -114,9 +118,9 @@ class SourceCache {
   /// Neighbours in a row and in a column of the source are in different sets.
   unsigned set_of(std::uint32_t line) const { return (line ^ line >> log_sets_) & ((1u << log_sets_) - 1); }
   unsigned ways_, log_sets_, prefetch_;
-  std::array<std::uint32_t, kMostPlaces> tags_{};  // numbers of lines
-  std::array<std::uint8_t, kMostPlaces> next_{};   // of each set, the way that is replaced next
-  std::array<Words, kMostPlaces> data_{};
+  std::vector<std::uint32_t> tags_;  // numbers of lines
+  std::vector<std::uint8_t> next_;   // of each set, the way that is replaced next
+  std::vector<Words> data_;
   Ring<Line, kLines> lines_;
   Ring<CacheAccess, kAhead> waiting_;
   unsigned promised_ = 0;
