@@ -6,6 +6,7 @@
 #include "../drivers/intc.h"
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
+#include "../kernels/engine_jobs.h"
 #include "../kernels/method.h"
 #include "config.h"
 #include "overlay.h"
@@ -178,6 +179,14 @@ static void init_frames(uint32_t in_count) {
   }
 }
 
+/* A picture that the engine has not completed is not shown. */
+static void show(void) {
+  if (engine_jobs_failed())
+    pipeline_leave_out();
+  else
+    pipeline_done();
+}
+
 #ifdef COMPOSED_VIEW
 /* The newest frame is in a buffer that held another one before. */
 static void process(uint8_t *out, uint32_t sequence) {
@@ -199,7 +208,7 @@ static void process(uint8_t *out, uint32_t sequence) {
     phase_mark(PHASE_REMAP_END, sequence);
     ++fw_state.remapped;
   }
-  pipeline_done();
+  show();
 }
 #else
 /* Sum of the source words of the first output row. It is the same before and after the remap unless
@@ -245,7 +254,7 @@ static void process(uint8_t *out, uint32_t sequence) {
     correct(&views[fw_state.remapped % config.tables], pipeline_source(left % config.sources), out,
             sequence);
 #endif
-  pipeline_done();
+  show();
 }
 #endif
 

@@ -468,11 +468,23 @@ int pipeline_event(uint32_t *camera, const char **what) {
 
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 
-void pipeline_done(void) {
-  const uint32_t cpsr = irq_mask();
+/* A composed view keeps its sources. */
+static void release_source(void) {
 #ifndef COMPOSED_VIEW
   capture_release(&pipe.capture, held_drop(&pipe.held));
 #endif
+}
+
+void pipeline_leave_out(void) {
+  const uint32_t cpsr = irq_mask();
+  release_source();
+  output_give_back(&pipe.output, pipe.taken_out);
+  irq_restore(cpsr);
+}
+
+void pipeline_done(void) {
+  const uint32_t cpsr = irq_mask();
+  release_source();
   output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */

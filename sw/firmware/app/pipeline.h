@@ -29,6 +29,9 @@ const uint8_t *pipeline_source(uint32_t age);
  * field on. The oldest source is given back to the camera. */
 void pipeline_done(void);
 
+/** As pipeline_done(), but the result is not good: what is displayed stays. */
+void pipeline_leave_out(void);
+
 uint32_t pipeline_last_sequence(void);
 
 #ifdef TIME_DIVISION
