@@ -59,8 +59,8 @@ remap_engine_job_t remap_engine_part(const engine_part_t *part, uint32_t width, 
 void remap_engine_part_map(const engine_part_t *part, const uint32_t *lut, uint32_t width,
                            uint32_t *map) {
   for (uint32_t row = 0; row < part->rows; ++row) {
-    const uint32_t *from = lut + (part->top + row * part->every) * (width / 2u) + part->left +
-                           (uint32_t)((int32_t)row * part->slant);
+    const int32_t left = (int32_t)part->left + (int32_t)row * part->slant;
+    const uint32_t *from = lut + (part->top + row * part->every) * (width / 2u) + (uint32_t)left;
     for (uint32_t i = 0; i < part->pairs; ++i) *map++ = *from++;
   }
 }
