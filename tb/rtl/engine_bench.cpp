@@ -1,6 +1,7 @@
 #include "tb/rtl/engine_bench.h"
 
 #include "Vremap_top.h"
+#include "tb/rtl/coverage.h"
 
 namespace fovea::rtl {
 
@@ -13,7 +14,7 @@ EngineBench::EngineBench(std::size_t bytes, std::uint32_t seed)
   tick();
 }
 
-EngineBench::~EngineBench() = default;
+EngineBench::~EngineBench() { keep_coverage(); }
 
 void EngineBench::tick() {
   dut_->clk_i = 1;
