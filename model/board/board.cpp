@@ -63,6 +63,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
   };
   dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
+  if (!params.video.format().is_625) sink.assembler.rows_525 = params.raster_height();
   sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
 }
 
@@ -85,11 +86,9 @@ void Board::reset(ResetKind kind) {
 
 void Board::set_switches() {
   const VideoParams& v = params_.video;
-  const std::uint32_t standard = v.standard.is("pal") ? SWITCH_PAL : SWITCH_NTSC;
-  const std::uint32_t size = v.width() || v.height()   ? SWITCH_SIZE_OF_PAGE
-                             : v.standard.is("pal")    ? SWITCH_720X576
-                             : v.standard.is("ntsc")   ? SWITCH_720X480
-                                                       : SWITCH_640X480;
+  const std::uint32_t standard = v.format().is_625 ? SWITCH_PAL : SWITCH_NTSC;
+  const bool of_page = v.width() || v.height();
+  const std::uint32_t size = of_page ? std::uint32_t{SWITCH_SIZE_OF_PAGE} : v.format().size_code;
   // One switch cannot tell the lenses of several cameras: then the page does.
   const std::uint32_t mapping =
       params_.camera_count() > 1

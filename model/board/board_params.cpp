@@ -29,12 +29,12 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                                [this] { return run.until() == "frames" || run.until() == "[frames]"; });
   // Which lines and samples the display uses is the firmware's choice; only that of this project is
   // known to follow video.standard.
-  const auto pal = [this] { return !firmware.elf().empty() || video.standard.is("pal"); };
-  const auto not_pal = [this] { return !firmware.elf().empty() || !video.standard.is("pal"); };
+  const auto pal = [this] { return !firmware.elf().empty() || video.format().is_625; };
+  const auto not_pal = [this] { return !firmware.elf().empty() || !video.format().is_625; };
   for (ParamBase* p : {&soc.vpss.base_px_625, &soc.vpss.base_py_625})
-    p->matters_only("video.standard = pal", {&video.standard, &firmware.elf}, pal);
+    p->matters_only("video.standard = pal or mt9v125", {&video.standard, &firmware.elf}, pal);
   for (ParamBase* p : {&soc.vpss.base_px_525, &soc.vpss.base_py_525})
-    p->matters_only("video.standard = ntsc or vga", {&video.standard, &firmware.elf}, not_pal);
+    p->matters_only("video.standard = ntsc, ntsc_486 or vga", {&video.standard, &firmware.elf}, not_pal);
   const auto birds_eye_shown = [this] { return firmware.view.is("birds_eye"); };
   for (ParamBase* p : birds_eye.params())
     p->matters_only("firmware.view = birds_eye", {&firmware.view}, birds_eye_shown);
@@ -97,7 +97,7 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                                 {&decoder.standard, &video.standard}, [this] {
                                   return decoder.standard.user_set()
                                              ? decoder.standard.is("525/60")
-                                             : !video.standard.is("pal");
+                                             : !video.format().is_625;
                                 });
 }
 

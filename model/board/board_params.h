@@ -1,6 +1,8 @@
 // Parameters of the board: what is soldered, switched and loaded.
 #pragma once
+#include <array>
 #include <memory>
+#include <string_view>
 
 #include "model/board/camera_fault.h"
 #include "model/board/camera_params.h"
@@ -63,11 +65,34 @@ struct ClockParams : ParamGroup {
   static constexpr std::uint64_t hertz(Frequency f) { return f.num / f.den; }
 };
 
+/// A picture that camera and display may have: the raster that carries it, and its size. The DIP switches say both.
+struct VideoFormat {
+  std::string_view name;
+  bool is_625;             ///< 625/50, otherwise 525/60
+  unsigned width, height;  ///< of what is captured, corrected and shown, in the middle of the raster's active lines
+  unsigned camera_height;  ///< of the picture that the camera sends; its width is 720
+  std::uint32_t size_code; ///< enum switch_size
+};
+/// ITU-R BT.601 and BT.656. An MT9V125 sends 25 frames a second in 625/50; the paper used 720x480 of it.
+inline constexpr std::array<VideoFormat, 5> kVideoFormats{{
+    {"pal", true, 720, 576, 576, SWITCH_720X576},
+    {"ntsc", false, 720, 480, 480, SWITCH_720X480},
+    {"vga", false, 640, 480, 480, SWITCH_640X480},
+    {"ntsc_486", false, 720, 486, 486, SWITCH_720X486},
+    {"mt9v125", true, 720, 480, 480, SWITCH_720X480},
+}};
+
 struct VideoParams : ParamGroup {
   using U = IntParam::Unit;
-  EnumParam standard{*this, "standard", "pal", {"pal", "ntsc", "vga"},
-                     "720x576 625/50, 720x480 525/60, or a 640x480 window in 525/60 (DIP switches)",
+  EnumParam standard{*this, "standard", "pal", {"pal", "ntsc", "vga", "ntsc_486", "mt9v125"},
+                     "720x576 in 625/50, 720x480 in 525/60, a 640x480 window in 525/60, 720x486 in 525/60, or "
+                     "720x480 in the middle of 625/50 (DIP switches)",
                      Origin::kChoice, ""};
+  const VideoFormat& format() const {
+    for (const VideoFormat& f : kVideoFormats)
+      if (standard.is(f.name)) return f;
+    return kVideoFormats.front();
+  }
   IntParam width{*this, "width", U::kCount, 0, 0, 720,
                  "pixels of a centred region that is captured, corrected and shown; 0: all",
                  Origin::kChoice, ""};
@@ -115,6 +140,10 @@ struct FirmwareParams : ParamGroup {
   EnumParam display_phase{*this, "display_phase", "locked", {"locked", "free"},
                           "the display starts in step with the camera, or on its own, before the decoder "
                           "has locked",
+                          Origin::kChoice, ""};
+  BoolParam check_capture{*this, "check_capture", false,
+                          "input buffers are marked before a capture, and a frame in which a mark is left, because "
+                          "a burst of it was lost, is said and left out; costs time for each frame",
                           Origin::kChoice, ""};
   EnumParam baud{*this, "baud", "115200", {"115200", "57600", "38400", "19200", "9600"},
                  "rate of UART0 that the firmware sets", Origin::kChoice, ""};
@@ -200,15 +229,14 @@ struct BoardParams : ParamTree {
   unsigned camera_count() const { return static_cast<unsigned>(cameras.count()); }
   /// Signals at the decoder: one if a quad processor joins those of the cameras.
   unsigned input_count() const { return cameras.quad() ? 1 : camera_count(); }
-  /// Size of the standard's picture, and of what is corrected and shown.
+  /// Size of the picture that the camera sends, and of what is corrected and shown.
   unsigned raster_width() const { return 720; }
-  unsigned raster_height() const { return video.standard.is("pal") ? 576 : 480; }
+  unsigned raster_height() const { return video.format().camera_height; }
   unsigned width() const {
-    if (video.width()) return static_cast<unsigned>(video.width());
-    return video.standard.is("vga") ? 640 : 720;
+    return video.width() ? static_cast<unsigned>(video.width()) : video.format().width;
   }
   unsigned height() const {
-    return video.height() ? static_cast<unsigned>(video.height()) : raster_height();
+    return video.height() ? static_cast<unsigned>(video.height()) : video.format().height;
   }
 };
 

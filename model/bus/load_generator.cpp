@@ -63,6 +63,7 @@ void LoadGenerator::fill() {
   for (; !copies_.empty() && copies_.front().since < now; copies_.pop_front())
     reads_.write(copies_.front().address, copies_.front().data);
   if (!copies_.empty()) wake_.at(copies_.front().since + 1);
+  if (params_.end() && now >= params_.end()) return;
   if (now < usable_from_) {
     wake_.at(usable_from_);
     return;

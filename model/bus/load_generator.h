@@ -43,6 +43,8 @@ struct LoadParams : ParamGroup {
                  "when the load begins; a load on the SDRAM waits until 10 us after software has "
                  "initialised that",
                  Origin::kChoice, ""};
+  IntParam end{*this, "end", U::kTime, 0, 0, 3600 * kPsPerSecond,
+               "from when on no further burst begins; 0s: never", Origin::kChoice, ""};
   EnumParam memory{*this, "memory", "sdram", {"sdram", "internal_ram"},
                    "where its region lies", Origin::kChoice, ""};
   IntParam base{*this, "base", U::kBytes, 32u << 20, 0, 255u << 20,

@@ -148,6 +148,7 @@ typedef struct param_camera {
 #define PARAM_ENGINE (1u << 2)     /* the chip has the remap engine; without, its registers are a bus error */
 #define PARAM_DISPLAY_FREE (1u << 3) /* the display starts on its own, not in step with the camera; only a program
                                         with a console does that */
+#define PARAM_CHECK_CAPTURE (1u << 4) /* frames of which a part was not written are left out; likewise */
 
 typedef struct param_page {
   uint32_t magic;    /* PARAM_PAGE_MAGIC */
@@ -164,7 +165,8 @@ typedef struct param_page {
   uint32_t flow;          /* enum param_flow */
   uint32_t repeats;       /* number of consecutive remaps for each captured frame; 0: one */
   uint32_t tables;        /* number of look-up tables and of source frames, used in turn; 0: one */
-  uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH, PARAM_ENGINE, PARAM_DISPLAY_FREE */
+  uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH, PARAM_ENGINE, PARAM_DISPLAY_FREE,
+                             PARAM_CHECK_CAPTURE */
   uint32_t width;         /* pixels of a centred region; 0: all. Only with SWITCH_SIZE_OF_PAGE */
   uint32_t height;        /* lines of it; 0: all */
   uint32_t camera_count;  /* 1 to PARAM_CAMERAS_MAX */

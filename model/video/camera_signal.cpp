@@ -21,12 +21,13 @@ Frequency with_offset(Frequency nominal, double ppm) {
 CameraSignal::CameraSignal(const CameraWiring& wiring)
     : connected(wiring.connected), wiring_(wiring), standard_(&standard_of(wiring.is_625)) {
   const PictureSource& source = *wiring.source;
-  if (source.width() > kActivePixels || source.width() % 4 || source.height() > standard_->rows ||
+  const unsigned rows = wiring.placement.rows;
+  if (source.width() > kActivePixels || source.width() % 4 || source.height() > rows ||
       source.height() % 2)
     throw UserError("camera picture of " + std::to_string(source.width()) + "x" +
                     std::to_string(source.height()) + " does not fit " +
                     std::string(standard_->name) + ": at most 720x" +
-                    std::to_string(standard_->rows) + ", width in steps of 4, height even");
+                    std::to_string(rows) + ", width in steps of 4, height even");
 }
 
 void CameraSignal::clock_changed(Frequency nominal, Picoseconds now) {

@@ -29,6 +29,10 @@ Osd::Osd(sc_core::sc_module_name name, const VpssParams& params)
   add_master(Master::kVpbe, memory.socket, static_cast<unsigned>(params.read_outstanding()));
   lines.bind(*this);
   for (Line& l : ring_) l.bursts.reserve(kActiveBytes / 32 + 8);
+  regs.miscctl.on_write([this](std::uint32_t value) {
+    if (value >> 6 & 1u && params_.miscctl_6.is("rgbwin"))
+      Diagnostics::instance().not_modelled("OSD MISCCTL.RGBWIN");
+  });
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
 }
 
@@ -157,6 +161,7 @@ DisplayLine Osd::finish() {
     else
       ++underflows;
   }
+  if (underflows && params_.miscctl_6.is("dmang")) regs.miscctl.dmang.set(1);
   if (line.swap_chroma)
     for (unsigned i = 0; i < kActiveBytes; i += 4) std::swap(out_[i], out_[i + 2]);
   return {t.standard,  t.number,    t.f,          line.start, line.end,

@@ -39,7 +39,8 @@ class OsdLineIf : public virtual sc_core::sc_interface {
 /// registers are latched at each field start (`vpss.osd_latch`), so a frame shows two buffers if
 /// the address changes between its fields. A line is fetched `vpss.read_ahead_lines` lines before
 /// it is displayed, in bursts of at most `vpss.burst` bytes. A burst whose data do not arrive
-/// strictly before its first pixel is due is displayed as black and counts as an underflow. Not
+/// strictly before its first pixel is due is displayed as black and counts as an underflow; at the
+/// end of that line MISCCTL.DMANG is set, if the chip has it (`vpss.miscctl_6`). Not
 /// modelled: window 1, bitmap windows, cursor, zoom, 4:2:0, any background but black.
 class Osd : public WithRegs<OsdRegs>, public BusTarget, public OsdLineIf {
  public:

@@ -98,7 +98,8 @@ struct OsdRegs : RegBank {
   struct Miscctl : Reg {
     using Reg::Reg;
     Field low{*this, "LOW", 0, 6, Mode::kRw, "3 busy, 4 DMA; kept"};
-    Field rgb{*this, "RGBWIN_RGBEN", 6, 2, Mode::kRw, "RGB in a video window", Modelled{0}};
+    Field dmang{*this, "DMANG", 6, 1, Mode::kW1c, "data of the display came too late (vpss.miscctl_6)"};
+    Field rgben{*this, "RGBEN", 7, 1, Mode::kRw, "RGB in a video window", Modelled{0}};
     Field middle{*this, "MIDDLE", 8, 6, Mode::kRw, "12 DM365 mode; kept"};
     Field s420d{*this, "S420D", 14, 1, Mode::kRw, "4:2:0 data", Modelled{0}};
     Field high{*this, "HIGH", 15, 1, Mode::kRw, "kept"};

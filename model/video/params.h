@@ -72,6 +72,18 @@ struct VpssParams : ParamGroup {
       "Linux names it ENC_CLK/2, yet sets it for these rasters with a clock of "
       "27 MHz, and a TI board test shows them with 0 (decision 0009)",
       {"no_effect", "no_effect", "programs for one board and clock use either value"}};
+  EnumParam miscctl_6{
+      *this,
+      "miscctl_6",
+      "dmang",
+      {"dmang", "rgbwin"},
+      "what bit 6 of the OSD's MISCCTL (0x01C71CE8) is: an error flag, set when data of the "
+      "display came too late and cleared by writing 1, or a format of a video window, which "
+      "is not modelled",
+      Origin::kAssumed,
+      "Linux's vpbe_osd_regs.h has both names for the bit; TI's register header of the DM355 "
+      "names the values of DMANG 'no error' and 'error', and Linux writes 1 to it there",
+      {"dmang", "rgbwin", "the DM365 shares its display with the DM355"}};
   IntParam base_px_625{*this,
                        "base_px_625",
                        Unit::kCount,
@@ -165,9 +177,10 @@ struct Tvp5146Params : ParamGroup {
   EnumParam crop_525{*this,
                      "crop_525",
                      "first_lines",
-                     {"first_lines", "studio"},
+                     {"first_lines", "studio", "486_lines"},
                      "lines that carry the 480 rows in 525/60: from 20 and 283 (upper field "
-                     "first), or the studio's 285 and 23 (lower field first)",
+                     "first), or the studio's 285 and 23 (lower field first); 486_lines: 486 rows "
+                     "from 20 and 283",
                      Origin::kChoice,
                      ""};
   IntParam phase{*this,

@@ -39,9 +39,10 @@ Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params, Pict
                                          .phase = params.phase()}}) {}
 
 Placement placement_of(const Tvp5146Params& params, bool is_625) {
-  return is_625                                ? kPlacement625
-         : params.crop_525.is("first_lines") ? kPlacement525
-                                               : kPlacement525Studio;
+  return is_625                              ? kPlacement625
+         : params.crop_525.is("studio")    ? kPlacement525Studio
+         : params.crop_525.is("486_lines") ? kPlacement525All
+                                             : kPlacement525;
 }
 
 void Tvp5146::clock_changed() {

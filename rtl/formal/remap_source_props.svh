@@ -6,7 +6,7 @@
   end
   always_ff @(posedge clk_i)
     if (f_past && rst_ni) begin
-      eight_at_most: assert (promised <= 4'd8);
+      eight_at_most: assert (promised <= Most);
       // Every line that was promised is on its way or in the buffer; so lines always find room.
       f_beats: assert ({2'd0, under_way} + {6'd0, beats} == {2'd0, promised - line_count, 2'b00} && line_count <= promised);
       f_asked: assert (!ar_valid_o || under_way >= 6'd4);

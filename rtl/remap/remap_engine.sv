@@ -1,7 +1,8 @@
 // Remap engine: makes a frame of a job. Reads map and source, and writes the result, as a master of an AXI4 bus with
 // 64 bits. Reads of maps have the identifier 0, those of sources 1; each expects its answers in order.
 module remap_engine #(
-  parameter int unsigned LogLines = 8  // of the source cache, 32 bytes each
+  parameter int unsigned LogLines = 8,  // of the source cache, 32 bytes each: 3 to 12
+  parameter int unsigned Prefetch = 8   // lines of the source under way at most: 1 to 8
 ) (
   input  logic              clk_i,
   input  logic              rst_ni,         // asynchronous, active low
@@ -97,7 +98,7 @@ module remap_engine #(
   logic src_busy, src_ar_valid, src_ar_ready, word_valid, word_ready;
   logic [31:0] src_ar_addr, word;
   logic [87:0] side;
-  remap_source #(.LogLines(LogLines)) u_source (
+  remap_source #(.LogLines(LogLines), .Prefetch(Prefetch)) u_source (
     .clk_i(clk_i), .rst_ni(rst_ni), .clear_i(clear), .stop_i(stop),
     .valid_i(beat_valid), .ready_o(access_ready), .none_i(beat.border), .addr_i(beat.src + right + below),
     .side_i({3'd0, which, final_access, beat}), .busy_o(src_busy),

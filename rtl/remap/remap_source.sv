@@ -1,8 +1,9 @@
-// Reads the words of the source through a small cache of lines of 32 bytes. The tags are looked up along the stream of
-// addresses, far ahead of the data; a line that is missing is asked for there. What was asked for arrives in order, and
-// is put into the cache when the access that asked for it gets its data. So no line is replaced too early.
+// Reads the words of the source through a small cache of lines of 32 bytes in four ways. The tags are looked up along
+// the stream of addresses, far ahead of the data; a line that is missing is asked for there. What was asked for arrives
+// in order, and is put into the cache when the access that asked for it gets its data. So no line is replaced too early.
 module remap_source #(
-  parameter int unsigned LogLines = 8
+  parameter int unsigned LogLines = 8,  // 2^LogLines lines, 3 to 12
+  parameter int unsigned Prefetch = 8   // lines under way at most, 1 to 8
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,     // asynchronous, active low
@@ -25,40 +26,61 @@ module remap_source #(
   output logic [87:0] side_o
 );
   localparam int unsigned Lines = 1 << LogLines;
-  localparam int unsigned TagBits = 27 - LogLines;
+  localparam int unsigned LogSets = LogLines - 2;
+  localparam int unsigned Sets = 1 << LogSets;
+  localparam int unsigned TagBits = 27 - LogSets;
+  localparam logic [3:0]  Most = Prefetch[3:0];
 
-  // Front: tags.
-  logic [TagBits-1:0]  tags [0:Lines-1];
-  logic [Lines-1:0]    there;
-  logic [LogLines-1:0] index;
+  // Front: tags. Neighbours in a row and in a column of the source are in different sets. Of a set, the way whose line
+  // came first is replaced: unlike the one used last it needs no note at each access, and for the lenses it is as good.
+  logic [LogSets-1:0]  set;
   logic [TagBits-1:0]  tag;
+  logic [3:0]          match;
+  logic [Lines-1:0]    there;
+  logic [2*Sets-1:0]   oldest;      // of each set
+  logic [1:0]          victim, way;
+  logic [LogLines-1:0] index;
   logic                hit, miss, take, space, may_ask;
-  logic [3:0]          promised;    // lines asked for and not yet in the cache; 8 at most
+  logic [3:0]          promised;    // lines asked for and not yet in the cache
   logic                filled;      // one of them goes into the cache
-  assign index = addr_i[3+:LogLines];
+  assign set = addr_i[3+:LogSets] ^ addr_i[3+LogSets+:LogSets];
   assign tag = addr_i[29-:TagBits];
-  assign hit = none_i || (there[index] && tags[index] == tag);
-  assign may_ask = !stop_i && promised != 4'd8 && (!ar_valid_o || ar_ready_i);
+  assign victim = oldest[{set, 1'b0}+:2];
+  genvar w;
+  generate
+    for (w = 0; w < 4; w = w + 1) begin : g_way
+      localparam logic [1:0] Way = w;
+      logic [TagBits-1:0] tags [0:Sets-1];
+      assign match[w] = there[{set, Way}] && tags[set] == tag;
+      always_ff @(posedge clk_i)
+        if (miss && victim == Way) tags[set] <= tag;
+    end
+  endgenerate
+  assign way = match == 4'd0 ? victim : {match[3] || match[2], match[3] || match[1]};
+  assign index = {set, way};
+  assign hit = none_i || match != 4'd0;
+  assign may_ask = !stop_i && promised != Most && (!ar_valid_o || ar_ready_i);
   assign ready_o = space && (hit || may_ask);
   assign take = valid_i && ready_o;
   assign miss = take && !hit;
-  always_ff @(posedge clk_i)
-    if (miss) tags[index] <= tag;
   logic [Lines-1:0] one;
   assign one = {{(Lines-1){1'b0}}, 1'b1} << index;
   always_ff @(posedge clk_i or negedge rst_ni)
     if (!rst_ni) begin
       there <= '0;
+      oldest <= '0;
       ar_valid_o <= 1'b0;
       ar_addr_o <= '0;
       promised <= '0;
     end else if (clear_i) begin
       there <= '0;
+      oldest <= '0;
       ar_valid_o <= 1'b0;
       promised <= '0;
     end else begin
       if (miss) begin
         there <= there | one;
+        oldest[{set, 1'b0}+:2] <= victim + 2'd1;
         ar_valid_o <= 1'b1;
         ar_addr_o <= {addr_i[29:3], 5'd0};
       end else if (ar_ready_i) begin

@@ -1,7 +1,8 @@
 // The remap engine as a device on a chip: registers behind an AXI4-Lite slave, a queue of jobs, an interrupt, and an
 // AXI4 master with 64 bits.
 module remap_top #(
-  parameter int unsigned LogLines = 8,   // of the source cache, 32 bytes each
+  parameter int unsigned LogLines = 8,   // of the source cache, 32 bytes each: 3 to 12
+  parameter int unsigned Prefetch = 8,   // lines of the source under way at most: 1 to 8
   parameter int unsigned QueueDepth = 4  // jobs that can wait: 2, 4 or 8
 ) (
   input  logic        clk_i,
@@ -65,7 +66,7 @@ module remap_top #(
     .done_i(done), .refused_i(refused), .read_error_i(read_error), .write_error_i(write_error), .aborted_i(aborted),
     .clocks_i(clocks), .lines_i(lines), .writes_i(writes), .bad_i(bad)
   );
-  remap_engine #(.LogLines(LogLines)) u_engine (
+  remap_engine #(.LogLines(LogLines), .Prefetch(Prefetch)) u_engine (
     .clk_i(clk_i), .rst_ni(rst_ni), .job_valid_i(job_valid), .job_ready_o(job_ready), .job_i(job),
     .map_base_i(map_base), .map_words_i(map_words), .border_i(border), .abort_i(abort),
     .done_o(done), .refused_o(refused), .read_error_o(read_error), .write_error_o(write_error), .aborted_o(aborted),

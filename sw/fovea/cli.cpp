@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fnmatch.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -24,6 +23,7 @@
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/last_words.h"
 #include "sw/fovea/limits/limits_command.h"
+#include "sw/fovea/params_table.h"
 #include "sw/fovea/perfetto/cli_perfetto.h"
 #include "sw/fovea/png.h"
 #include "sw/fovea/progress.h"
@@ -240,7 +240,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   return signal ? 128 + signal : kExitGuestFailed;
 }
 
-int command_params(const std::string& pattern, bool markdown, bool of_replay,
+int command_params(const std::vector<std::string>& patterns, bool markdown, bool of_replay,
                    const CliContext& context) {
   ParamSet params;
   ReplayParams replay;
@@ -249,7 +249,7 @@ int command_params(const std::string& pattern, bool markdown, bool of_replay,
     replay.declare(params);
   else
     simulation->declare(params);
-  context.out << params_table(params, pattern, markdown) << std::flush;
+  context.out << params_table(params, patterns, markdown) << std::flush;
   return kExitDone;
 }
 
@@ -276,13 +276,6 @@ std::string host_shortage(const std::exception& e) {
   return "";
 }
 
-/// Escapes '|', which would end a cell of the table.
-std::string markdown_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
-  return out;
-}
-
 std::atomic<int> g_signal{0};
 std::atomic<bool> g_stop{false};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
@@ -301,60 +294,6 @@ void report_earlier(const std::string& note, const CliContext& context) {
 }
 
 std::string version_text() { return provenance_text(program_provenance()); }
-
-std::string params_table(const ParamSet& params, const std::string& pattern, bool markdown) {
-  const bool glob = pattern.find_first_of("*?[") != std::string::npos;
-  std::vector<const ParamBase*> rows;
-  for (const auto* p : params.all()) {
-    const bool match = glob ? ::fnmatch(pattern.c_str(), p->key().c_str(), 0) == 0
-                            : p->key().find(pattern) != std::string::npos;
-    // The keys of cameras 1 to 7 are those of camera 0: listed only to whom asks for them.
-    const bool another = pattern.empty() && is_camera_row(p->key()) && p->key()[7] != '0';
-    if (match && !another) rows.push_back(p);
-  }
-  if (rows.empty()) {
-    const std::string near = params.nearest(pattern);
-    throw UserError(fmt::format(
-        "no parameter matches '{}'{}", one_line(pattern),
-        near.empty() ? "; 'fovea params' lists all keys" : "; did you mean '" + near + "'?"));
-  }
-  std::sort(rows.begin(), rows.end(),
-            [](const ParamBase* a, const ParamBase* b) { return a->key() < b->key(); });
-  std::vector<std::array<std::string, 6>> cells = {
-      {"key", "default", "allowed", "belief", "tag", "meaning"}};
-  for (const auto* p : rows) {
-    std::string tag(to_string(p->origin()));
-    if (!p->source().empty()) tag += " (" + p->source() + ")";
-    if (!p->belief().empty()) tag += "; belief: " + p->belief().reason;
-    const std::string belief =
-        p->belief().empty() ? "-" : p->belief().low + " .. " + p->belief().high;
-    const std::string value = p->default_text().empty() ? "-" : p->default_text();
-    std::string meaning = p->sentence();
-    for (const auto& effect : p->effects()) meaning += "; needs " + effect.condition;
-    cells.push_back({p->key(), value, p->allowed(), belief, tag, meaning});
-  }
-  std::string out;
-  if (markdown) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      for (const auto& cell : cells[i]) out += "| " + markdown_cell(cell) + " ";
-      out += "|\n";
-      if (i == 0) out += "|---|---|---|---|---|---|\n";
-    }
-    return out;
-  }
-  // A few long cells (lists, sources) must not widen a column beyond the screen.
-  constexpr std::size_t kMaxWidth = 44;
-  std::array<std::size_t, 6> width{};
-  for (const auto& row : cells)
-    for (std::size_t c = 0; c < row.size(); ++c)
-      width[c] = std::max(width[c], std::min(kMaxWidth, row[c].size()));
-  for (const auto& row : cells) {
-    for (std::size_t c = 0; c + 1 < row.size(); ++c)
-      out += fmt::format("{:<{}}  ", row[c], width[c]);
-    out += row.back() + "\n";
-  }
-  return out;
-}
 
 void install_signals(CliContext& context) {
   struct sigaction action {};
@@ -382,7 +321,8 @@ struct Options {
   ReportOptions report;
   limits::LimitsOptions limits;
   RegressionOptions regression;
-  std::string pattern, shell;
+  std::vector<std::string> patterns;
+  std::string shell;
   bool markdown = false, of_replay = false;
 };
 
@@ -464,7 +404,8 @@ void add_replay_command(CLI::App& app, ReplayOptions& replay) {
 void add_other_commands(CLI::App& app, Options& options) {
   CLI::App* params =
       app.add_subcommand("params", "List parameters: default, allowed values, source");
-  params->add_option("pattern", options.pattern, "Part of a key, or a pattern with * and ?")
+  params->add_option("pattern", options.patterns,
+                     "Part of a key, or a pattern with * and ?; of several, the keys of each")
       ->type_name("TEXT");
   params->add_flag("--markdown", options.markdown, "As a Markdown table");
   params->add_flag("--replay", options.of_replay, "Those of 'fovea replay'");
@@ -517,7 +458,7 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   if (name == "limits") return limits::command_limits(o.limits, context);
   if (is_regression_command(name)) return command_regression(name, o.regression, context);
   if (name == "trace") return command_trace(*c, o.trace, context);
-  if (name == "params") return command_params(o.pattern, o.markdown, o.of_replay, context);
+  if (name == "params") return command_params(o.patterns, o.markdown, o.of_replay, context);
   if (name == "completion") return command_completion(app, context);
   if (name == "man")
     context.out << man_page(app, version_text()) << std::flush;

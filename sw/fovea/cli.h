@@ -37,10 +37,6 @@ struct CliContext {
 /// the exit status
 int run_cli(const std::vector<std::string>& args, const CliContext& context);
 
-/// The table of `fovea params`. `pattern` is a part of a key or, with `*` and `?`, a pattern for
-/// the whole key; empty: all keys. @throws UserError if no key matches
-std::string params_table(const ParamSet& params, const std::string& pattern, bool markdown);
-
 /// Installs signal handlers: SIGINT and SIGTERM set the flags (a second one ends the program at
 /// once); SIGPIPE and SIGXFSZ are ignored, so that they become write errors.
 void install_signals(CliContext& context);

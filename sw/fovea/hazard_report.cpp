@@ -21,6 +21,11 @@ std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
           "coherency hazard: the load at {} read 0x{:08x} at {} from a D-cache line that was filled at {}; "
           "{} wrote that memory at {}",
           place, h.address, after, ms_text(h.filled), master, before);
+    case HazardKind::kStaleFetch:
+      return fmt::format(
+          "coherency hazard: the instruction at {}, physical 0x{:08x}, was executed at {} from an I-cache line that "
+          "was filled at {}; {} wrote that memory at {}",
+          place, h.address, after, ms_text(h.filled), master, before);
     case HazardKind::kDirtyRead:
       return fmt::format(
           "coherency hazard: {} read 0x{:08x} at {}, but the bytes that were stored at {} at {} were still in a "
@@ -69,6 +74,8 @@ void HazardReport::collect(std::vector<StatRow>& rows) const {
       "reads by another master of memory whose newer bytes waited in the core's write buffer");
   add("hazard.overwrites", checker_.count(HazardKind::kOverwrite),
       "halves of D-cache lines and buffered writes that went over newer bytes of another master");
+  add("hazard.stale_fetches", checker_.count(HazardKind::kStaleFetch),
+      "instructions executed from an I-cache line after another master had written them in memory");
   add("hazard.places", checker_.places(), "hazards that differ in kind, program address or master");
 }
 

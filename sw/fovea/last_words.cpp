@@ -21,7 +21,13 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {
     {"issue", "executing"},
-    {"idle", "waiting for an interrupt"},
+    {"idle.dma", "waiting for the EDMA"},
+    {"idle.engine", "waiting for the remap engine"},
+    {"idle.capture", "asleep until the camera's interrupt"},
+    {"idle.display", "asleep until the display's interrupt"},
+    {"idle.timer", "asleep until a timer's interrupt"},
+    {"idle.other", "asleep until another interrupt"},
+    {"idle", "waiting for an interrupt"},  // of a run that does not tell them apart
     {"stall.interlock", "interlocks"},
     {"stall.icache", "I-cache line fills"},
     {"stall.dcache", "D-cache line fills"},
@@ -33,7 +39,7 @@ constexpr Kind kKinds[] = {
     {"stall.drain", "the write buffer to drain"},
     {"stall.bus_sync", "clock edges of the bus"},
 };
-constexpr std::size_t kInterlocks = 2;  // behind it the words follow "waiting for"
+constexpr std::size_t kIdle = 7, kInterlocks = 8;  // behind these the words follow "waiting for"
 
 std::optional<double> real(std::span<const StatRow> stats, std::string_view name) {
   const StatRow* row = find(stats, name);
@@ -51,6 +57,7 @@ std::uint64_t count(std::span<const StatRow> stats, const std::string& name) {
 std::vector<std::uint64_t> clocks(std::span<const StatRow> stats, const std::string& prefix) {
   std::vector<std::uint64_t> out;
   for (const Kind& k : kKinds) out.push_back(count(stats, prefix + k.name));
+  for (std::size_t k = 1; k < kIdle; ++k) out[kIdle] -= std::min(out[kIdle], out[k]);
   return out;
 }
 

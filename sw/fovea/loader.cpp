@@ -14,6 +14,8 @@ namespace {
 
 /// Number of frames of a video that are used; then it starts again.
 constexpr std::size_t kMostFilmFrames = 250;
+/// Rows of a picture on all lines of 525/60 that are not blanked.
+constexpr unsigned kPlacementAll = video::kPlacement525All.rows;
 
 /// Of the built programs it is the one for several cameras, which one camera may have as well.
 bool takes_turns(const board::BoardParams& params) {
@@ -117,7 +119,7 @@ std::vector<std::string> footage_notes(const board::BoardParams& params,
                               100 * std::abs(change - 1),
                               change > 1 ? "wider" : "narrower"));
   if (!film) return out;
-  const double camera_rate = params.video.standard.is("pal") ? 25 : 30000.0 / 1001;
+  const double camera_rate = params.video.format().is_625 ? 25 : 30000.0 / 1001;
   if (!info.rate.stopped() && std::abs(camera_rate / info.rate.hertz() - 1) > 0.005)
     out.push_back(
         fmt::format("footage of {:.4g} frames/s is shown at {:.4g} frames/s, {:.3g} times as "
@@ -193,10 +195,14 @@ void check_cameras(const board::BoardParams& params) {
           "false, or true with firmware.view = four_way or birds_eye");
   require(fw.view.is("single") || fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
           "locked with firmware.view = four_way or birds_eye");
+  require(fw.view.is("single") || !fw.check_capture(), fw.check_capture.key(), fw.check_capture.text(),
+          "false with firmware.view = four_way or birds_eye");
   if (!takes_turns(params)) {
     require(count == 1, fw.program.key(), fw.program(), "cameras, with several of them");
     require(fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
             "locked in the program for one camera");
+    require(!fw.check_capture(), fw.check_capture.key(), fw.check_capture.text(),
+            "false in the program for one camera (firmware.program)");
     return;
   }
   require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
@@ -219,7 +225,11 @@ void complete_params(board::BoardParams& params) {
   check_loads(params);
   check_cameras(params);
   if (!params.decoder.standard.user_set())
-    params.decoder.standard.set(params.video.standard.is("pal") ? "625/50" : "525/60");
+    params.decoder.standard.set(params.video.format().is_625 ? "625/50" : "525/60");
+  const bool all_lines = params.video.format().height == kPlacementAll;
+  if (all_lines && !params.decoder.crop_525.user_set()) params.decoder.crop_525.set("486_lines");
+  require(all_lines == params.decoder.crop_525.is("486_lines"), params.decoder.crop_525.key(),
+          params.decoder.crop_525(), "486_lines with video.standard = ntsc_486, and only then");
 }
 
 }  // namespace fovea::app

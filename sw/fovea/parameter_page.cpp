@@ -126,7 +126,8 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.tables = static_cast<std::uint32_t>(firmware.tables());
   page.flags = (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u) |
                (params.soc.engine.present() ? PARAM_ENGINE : 0u) |
-               (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u);
+               (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u) |
+               (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

@@ -37,7 +37,7 @@ void RemapTime::reached(bool begins) {
 }
 
 RemapTime::Clocks RemapTime::of(const cpu::Counts& counts) {
-  return {counts.cycles, counts.issue, counts.idle, counts.stall};
+  return {counts.cycles, counts.issue, counts.idle, counts.stall, counts.idle_by};
 }
 
 void RemapTime::add(Clocks& sum, const Clocks& from, const Clocks& to) {
@@ -45,6 +45,7 @@ void RemapTime::add(Clocks& sum, const Clocks& from, const Clocks& to) {
   sum.issue += to.issue - from.issue;
   sum.idle += to.idle - from.idle;
   for (std::size_t k = 0; k < cpu::kCauses; ++k) sum.stall[k] += to.stall[k] - from.stall[k];
+  for (std::size_t k = 0; k < cpu::kWakeEvents; ++k) sum.idle_by[k] += to.idle_by[k] - from.idle_by[k];
 }
 
 void RemapTime::sampled(bool begins, const Clocks& at) {
@@ -81,6 +82,10 @@ void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
   row("cycles", all.cycles, "core clocks during remaps");
   row("issue", all.issue, "clocks during remaps in which instructions issue");
   row("idle", all.idle, "clocks during remaps in wait-for-interrupt");
+  for (std::size_t k = 0; k < cpu::kWakeEvents; ++k)
+    row(std::string("idle.") + cpu::kWakeNames[k], all.idle_by[k],
+        std::string("clocks of cpu.remap.idle that ended with an interrupt of the ") +
+            cpu::wake_sentence(static_cast<cpu::WakeEvent>(k)));
   for (const cpu::CauseInfo& info : cpu::kCauseTable)
     row("stall." + std::string(info.name), all.stall[index(info.cause)],
         "during remaps: " + std::string(info.sentence));

@@ -28,6 +28,7 @@ class RemapTime {
   struct Clocks {
     std::uint64_t cycles = 0, issue = 0, idle = 0;
     std::array<std::uint64_t, cpu::kCauses> stall{};
+    std::array<std::uint64_t, cpu::kWakeEvents> idle_by{};  // by what ended the sleep; adds up to idle
   };
   static Clocks of(const cpu::Counts& counts);
   static void add(Clocks& sum, const Clocks& from, const Clocks& to);

@@ -34,6 +34,47 @@ struct NoRegisters : sc_core::sc_module, MemTargetIf {
   }
 };
 
+/// Sends requests with annotated delays to a slave port by itself, and notes when each answer comes.
+struct DirectMaster : sc_core::sc_module, MemInitiatorIf {
+  struct Access {
+    std::uint64_t at, delay;  // ns
+    std::uint32_t address;
+    std::uint64_t answered = 0;  // ps
+    bool error = false;
+  };
+  MemInitiatorSocket<32> socket{"socket"};
+  std::vector<Access> accesses;
+
+  SC_HAS_PROCESS(DirectMaster);
+  explicit DirectMaster(sc_core::sc_module_name name) : sc_module(name) {
+    socket.bind(*this);
+    SC_THREAD(run);
+  }
+
+ private:
+  void run() {
+    requests_.resize(accesses.size());
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+      const sc_core::sc_time at(static_cast<double>(accesses[i].at), sc_core::SC_NS);
+      if (at > sc_core::sc_time_stamp()) wait(at - sc_core::sc_time_stamp());
+      requests_[i].address = accesses[i].address;
+      requests_[i].bytes = 4;
+      requests_[i].data = data_;
+      MemPhase phase = MemPhase::kRequest;
+      sc_core::sc_time delay(static_cast<double>(accesses[i].delay), sc_core::SC_NS);
+      socket->nb_transport_fw(requests_[i], phase, delay);
+    }
+  }
+  tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
+    Access& a = accesses[static_cast<std::size_t>(&r - requests_.data())];
+    if (phase == MemPhase::kResponse) a.answered = sc_core::sc_time_stamp().value();
+    a.error = r.error;
+    return tlm::TLM_ACCEPTED;
+  }
+  std::vector<MemRequest> requests_;
+  std::uint8_t data_[4] = {};
+};
+
 /// Crossbar at 100 MHz, SDRAM at 200 MHz: edges at whole 10 and 5 ns.
 struct Board {
   bus::CrossbarParams xbar_params;
@@ -45,6 +86,9 @@ struct Board {
   bus::TlmSlavePort slave{"slave"};
   foreign::AtInitiator initiator{"initiator"};
   foreign::LtTarget target{"target", kRamBytes, sc_core::sc_time(kLatency, sc_core::SC_NS)};
+  DirectMaster direct{"direct"};
+  bus::TlmSlavePort direct_slave{"direct_slave"};
+  foreign::LtTarget direct_target{"direct_target", kRamBytes, sc_core::sc_time(kLatency, sc_core::SC_NS)};
   ClockSignal ddr_clk{"ddr_clk", Frequency(200'000'000)}, scr_clk{"scr_clk", Frequency(100'000'000)};
   sc_core::sc_signal<bool> on{"on", true};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
@@ -62,6 +106,8 @@ struct Board {
     port.memory().bind(*scr.target[index(Master::kLoad)]);
     initiator.socket.bind(port.socket);
     slave.socket.bind(target.socket);
+    direct.socket.bind(direct_slave.memory);
+    direct_slave.socket.bind(direct_target.socket);
     ddr.regs.write(0x0C, 4, 1560);        // a refresh each 7.8 us
     ddr.regs.write(0x08, 4, 0x00534A32);  // as the boot loader ends the initialisation
   }
@@ -79,6 +125,8 @@ enum : unsigned { kShortWrite, kLongWrite, kOpen, kRead, kTargetRead, kTargetWai
                   kEnables, kIgnored, kTimed };
 constexpr unsigned kRandom = 400;
 
+std::vector<DirectMaster::Access> direct;
+
 /// Runs the whole program. @return a line for each transaction, then what is wrong
 std::string simulate(bool strict, std::vector<std::uint64_t>& ends, unsigned& read_clocks) {
   Board b(strict);
@@ -94,6 +142,9 @@ std::string simulate(bool strict, std::vector<std::uint64_t>& ends, unsigned& re
   b.job(7'503, kRd, kSdram, 4);
   b.initiator.jobs.back().byte_enables = true;
   b.job(7'603, tlm::TLM_IGNORE_COMMAND, kSdram, 4);
+  // The second is sent while the first is served, and comes after its end; the third comes while the second is
+  // served; the fourth is no word of the target; the fifth comes to an idle port, 5 ns after it was sent.
+  b.direct.accesses = {{1'000, 0, 0}, {1'010, 100, 4}, {1'010, 110, 8}, {1'200, 0, kRamBytes}, {1'300, 5, 0}};
   std::map<std::uint64_t, std::uint8_t> shadow;
   std::vector<std::vector<unsigned char>> expected(kTimed);
   Rng rng(7);
@@ -122,6 +173,9 @@ std::string simulate(bool strict, std::vector<std::uint64_t>& ends, unsigned& re
               std::to_string(j.status) + '\n';
     wrong += i >= kTimed && (j.status != tlm::TLM_OK_RESPONSE || j.data != expected[i]);
   }
+  direct = b.direct.accesses;
+  for (const DirectMaster::Access& a : direct)
+    record += "direct " + std::to_string(a.answered) + (a.error ? " error\n" : "\n");
   const mem::DdrConfig c = b.ddr.programmed();
   read_clocks = std::max(c.read_latency, c.timing.CL) +
                 static_cast<unsigned>(b.ddr_params.return_latency()) + 2;
@@ -174,6 +228,17 @@ TEST(ForeignTlmTest, ReadOfAnOpenRowEndsWithItsData) {
 TEST(ForeignTlmTest, TargetsLatencyCountsFromTheRequestsArrival) {
   EXPECT_EQ(ends[kTargetRead], 5'080u + 20);
   EXPECT_EQ(ends[kTargetWaits], 6'080u + 20);
+}
+
+// One request is served at a time, from its own arrival or the end of the one before, whichever is later.
+TEST(ForeignTlmTest, RequestsToASlaveAreServedInOrderAndNotBeforeTheyCome) {
+  ASSERT_EQ(direct.size(), 5u);
+  EXPECT_EQ(direct[0].answered, (1'000 + kLatency) * 1'000);
+  EXPECT_EQ(direct[1].answered, (1'110 + kLatency) * 1'000);
+  EXPECT_EQ(direct[2].answered, (1'110 + 2 * kLatency) * 1'000);
+  EXPECT_EQ(direct[3].answered, 1'200'000u) << "refused at once";
+  EXPECT_EQ(direct[4].answered, (1'305 + kLatency) * 1'000);
+  for (std::size_t i = 0; i < direct.size(); ++i) EXPECT_EQ(direct[i].error, i == 3) << i;
 }
 
 TEST(ForeignTlmTest, ErrorsAreResponsesOfTheStandard) {

@@ -91,8 +91,14 @@ has ntsc.csv 'live,2,720x480,plain,297/243,,29.970,30.'
 # A memory that cannot take the frames of three cameras.
 RATE=1000 MOST=30e6 cameras full 0 "${live[@]}"
 has full.csv "live,3,720x576,plain,297/243,,25.000,,no,the memory cannot take the cameras' frames,,"
+# Without a load there is time for 16, with it for 15; bisection asks for no number twice and for few.
+RATE=700 cameras many 0 "${live[@]}"
+case "$(sed -n 2p many.csv)" in live,15,*,yes,,*) ;; *) fail "many: $(cat many.csv)" ;; esac
+case "$(sed -n 3p many.csv)" in live,16,*,no,*) ;; *) fail "many: $(cat many.csv)" ;; esac
+for n in 1 9 13 15 16; do grep -q -- "-plain-$n-0 " calls || fail "many: $n was not asked for: $(cat calls)"; done
+[ "$(grep -c -- "-0 " calls)" = 5 ] || fail "many: $(cat calls)"
 # What binds, the largest gain first.
-RATE=60 cameras binds 0 "${live[@]}" --binds
+RATE=60 cameras binds 0 "${live[@]}" --binds pal
 has binds.csv 'bridges of the core 40 %; core clock 3 %'
 has calls '--binds frame.remap_rate'
 has calls 'load.1.gap'

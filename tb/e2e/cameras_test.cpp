@@ -128,6 +128,113 @@ INSTANTIATE_TEST_SUITE_P(Relock, FreeRunningTest, testing::Values(Apart{0, 20}, 
 INSTANTIATE_TEST_SUITE_P(Nightly, FreeRunningTest, testing::Values(Apart{10, 27}),
                          [](const auto& i) { return "Of" + std::to_string(i.param.relock); });
 
+/// From the end of a frame of camera `a` to the start of the first frame of camera `b` that is captured, in ms: the
+/// decoder counts the field in progress, and then waits for a first field.
+double change_ms(double phase_a, double phase_b, unsigned relock) {
+  const double first = std::fmod(phase_b - phase_a + 40, 40);  // to b's next first field
+  const double locked = std::fmod(first, 20) + 20.0 * relock - (relock && std::fmod(first, 20) > 0 ? 20 : 0);
+  double wait = first;
+  while (wait < locked) wait += 40;
+  return wait;
+}
+
+/// What each camera gives in ten seconds is what phases and re-lock allow, to within one frame.
+struct Rate {
+  unsigned cameras, relock;
+  bool genlocked;
+};
+class RateTest : public testing::TestWithParam<Rate> {};
+TEST_P(RateTest, NightlyTenSecondsOfEachDivision) {
+  const auto [n, relock, genlocked] = GetParam();
+  static constexpr unsigned kPhases[] = {0, 27, 13, 6};
+  CamerasRig rig;
+  small(rig, n);
+  rig.set("tvp5146.relock_fields", std::to_string(relock)).set("run.frames", "250");
+  if (!genlocked) rig.set("cameras.genlocked", "false");
+  double round = 0;  // ms, in which each camera gives one frame
+  for (unsigned c = 0; c < n; ++c) {
+    if (genlocked) {
+      round += 40 + 20.0 * relock;
+      continue;
+    }
+    if (c) rig.set("camera." + std::to_string(c) + ".phase", std::to_string(kPhases[c]) + "ms");
+    round += 40 + change_ms(kPhases[c], kPhases[(c + 1) % n], relock);
+  }
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 250u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  std::vector<unsigned> given(n);
+  for (const Shown::Stamp& s : sequence(rig)) ++given.at(s.camera);
+  for (unsigned c = 0; c < n; ++c) EXPECT_NEAR(given[c], 10'000 / round, 1.0) << "camera " << c;
+  EXPECT_TRUE(rig.said().empty()) << rig.said().front();
+}
+INSTANTIATE_TEST_SUITE_P(Divisions, RateTest,
+                         testing::Values(Rate{2, 0, true}, Rate{2, 2, true}, Rate{2, 10, true}, Rate{4, 0, true},
+                                         Rate{4, 2, true}, Rate{4, 10, true}, Rate{2, 2, false}, Rate{2, 10, false},
+                                         Rate{4, 2, false}, Rate{4, 10, false}),
+                         [](const auto& i) {
+                           return "Of" + std::to_string(i.param.cameras) + "Relock" + std::to_string(i.param.relock) +
+                                  (i.param.genlocked ? "" : "Free");
+                         });
+
+// Their phases drift apart by 4.8 ms. Each displayed picture is one whole frame of one camera.
+TEST(CamerasTest, NightlyTwoFreeRunningCamerasForAMinute) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("cameras.genlocked", "false").set("tvp5146.relock_fields", "2").set("run.frames", "1500");
+  rig.set("camera.0.clock_offset", "-30ppm").set("camera.1.clock_offset", "50ppm").set("camera.1.phase", "38ms");
+  rig.set("firmware.kernel", "fastest");
+  rig.run(80 * kPsPerSecond);
+  ASSERT_EQ(rig.shown().size(), 1500u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_TRUE(rig.said().empty()) << rig.said().front();
+  const auto shown = sequence(rig);
+  EXPECT_GT(shown.size(), 400u);
+  std::map<unsigned, unsigned> last;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (i != 0) {
+      EXPECT_NE(shown[i].camera, shown[i - 1].camera) << i;
+    }
+    const auto [at, first] = last.try_emplace(shown[i].camera, shown[i].number);
+    if (!first) {
+      EXPECT_GT(shown[i].number, at->second) << i;
+      EXPECT_LE(shown[i].number, at->second + 5) << i << ": a round takes up to five frames";
+      at->second = shown[i].number;
+    }
+  }
+}
+
+/// Other pictures than those of PAL and NTSC, byte for byte, each frame of the camera in turn.
+struct Input {
+  const char* standard;
+  unsigned width, height;
+  double period_ms;
+};
+class InputTest : public testing::TestWithParam<Input> {};
+TEST_P(InputTest, EveryFrameIsShownByteForByte) {
+  const Input& in = GetParam();
+  CamerasRig rig;
+  rig.set("camera.kind", "chart").set("video.standard", in.standard).set("tvp5146.relock_fields", "2");
+  rig.set("firmware.kernel", "fastest").set("run.frames", "3");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 3u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(rig.table_check(0).wrong, 0u);
+  const auto shown = sequence(rig);
+  ASSERT_EQ(shown.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rig.shown()[i].frame.width, in.width);
+    EXPECT_EQ(rig.shown()[i].frame.height, in.height);
+    if (i == 0) continue;
+    EXPECT_EQ(shown[i].number, shown[i - 1].number + 1);
+    const auto period = rig.shown()[i].record.display_start - rig.shown()[i - 1].record.display_start;
+    EXPECT_NEAR(static_cast<double>(period) / kPsPerMs, in.period_ms, 1e-6);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Standards, InputTest,
+                         testing::Values(Input{"ntsc_486", 720, 486, 1001 / 30.0}, Input{"mt9v125", 720, 480, 40}),
+                         [](const auto& i) { return std::string(i.param.standard); });
+
 class UnpluggedTest : public testing::TestWithParam<unsigned> {};
 TEST_P(UnpluggedTest, TheOtherCameraGoesOnAndTheLostOneComesBack) {
   const unsigned relock = GetParam();

@@ -218,6 +218,7 @@ acts firmware.elf PROGRAM run.until=time:50ms
 acts firmware.flow serial
 acts firmware.display_phase free
 acts firmware.program cameras
+acts firmware.check_capture true firmware.program=cameras
 idle firmware.program cameras PROGRAM
 acts firmware.kernel ldm
 acts firmware.lut soft_float
@@ -270,6 +271,7 @@ idle vpss.base_py_525 17
 acts vpss.base_py_625 23
 idle vpss.base_py_625 23 video.standard=ntsc
 acts vpss.burst 32B
+tested vpss.miscctl_6 video.display_625
 tested vpss.osd_latch video.display_625
 acts vpss.read_ahead_lines 2
 acts vpss.read_outstanding 1
@@ -323,6 +325,7 @@ pattern sequential
 port edma_tc1
 size 64KiB
 start 50ms
+end 4ms
 T
     echo "acts $load.memory internal_ram $load.outstanding=1 $load.base=0B $load.size=16KiB EARLY"
     echo "idle $load.memory internal_ram"

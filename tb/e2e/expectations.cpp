@@ -42,7 +42,7 @@ std::optional<std::uint64_t> sent_as(Rig& rig, const Shown& s, std::string* diff
   const auto lut = rig.lut(view_of(rig, s));
   const std::uint32_t pitch = rig.geometry().pitch_bytes;
   // Which frame the camera sent is found from the pixels, near the time of the capture.
-  const double period = rig.params.video.standard.is("pal") ? 0.04 : 1001.0 / 30000;
+  const double period = rig.params.video.format().is_625 ? 0.04 : 1001.0 / 30000;
   const auto guess =
       static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 / period);
   for (std::uint64_t n = guess > 1 ? guess - 2 : 0; n <= guess + 2; ++n) {

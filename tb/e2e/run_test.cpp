@@ -125,7 +125,13 @@ TEST(RunTest, SmallPalRegionConservesCyclesAndBytes) {
   // The window is 0.4 s of a 297 MHz clock, to the instruction at each end.
   EXPECT_NEAR(static_cast<double>(count(r, "cpu.cycles")), 0.4 * 297e6, 200);
   // The clocks within the ten remaps: all of one kind each, and as many as the pins' times make.
-  std::uint64_t of_remaps = count(r, "cpu.remap.issue") + count(r, "cpu.remap.idle");
+  std::uint64_t of_remaps = count(r, "cpu.remap.issue") + count(r, "cpu.remap.idle"), asleep = 0;
+  for (const char* event : {"dma", "engine", "capture", "display", "timer", "other"}) {
+    const std::string name = std::string("idle.") + event;
+    asleep += count(r, "cpu.remap." + name);
+    EXPECT_LE(count(r, "cpu.remap." + name), count(r, "cpu." + name)) << event;
+  }
+  EXPECT_EQ(asleep, count(r, "cpu.remap.idle"));
   for (const app::StatRow& row : r.stats)
     if (row.name.starts_with("cpu.remap.stall.")) {
       of_remaps += std::get<std::uint64_t>(row.value);

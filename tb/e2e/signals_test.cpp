@@ -154,6 +154,52 @@ TEST_P(DriftTest, NightlyAClockThatIsOffIsSaidAndCostsNoPictureButTheDisplaysOwn
 INSTANTIATE_TEST_SUITE_P(Both, DriftTest, testing::Values("400ppm", "-400ppm"),
                          [](const auto& i) { return i.param[0] == '-' ? "Slow" : "Fast"; });
 
+/// A load for 120 ms, above the capture or above the display.
+void set_storm(CamerasRig& rig, const char* capture, const char* display) {
+  small(rig, 1);
+  rig.set("tvp5146.relock_fields", "2").set("firmware.program", "cameras").set("firmware.check_capture", "true");
+  rig.set("priority.arm", "0").set("priority.vpfe", capture).set("priority.vpbe", display);
+  rig.set("load.outstanding", "16").set("load.priority", "1").set("load.pattern", "random");
+  rig.set("load.start", std::to_string(kStart) + "ms").set("load.end", std::to_string(kEnd) + "ms");
+}
+
+TEST(SignalsTest, FramesThatLackPartsAreSaidAndLeftOutUntilTheCaptureIsWholeAgain) {
+  CamerasRig rig;
+  set_storm(rig, "7", "0");
+  rig.set("run.frames", "40");
+  const auto said = listen(rig, kLimit);
+  ASSERT_EQ(rig.shown().size(), 40u) << rig.board().uart_text();
+  EXPECT_GT(rig.board().dm365.isif.stats.overflows.count(), 0u);
+  EXPECT_TRUE(rig.board().dm365.isif.overflowed());
+  EXPECT_EQ(rig.wrong_picture(), "") << "the last good picture stays, and no frame with a hole is shown";
+  expect_exact_counts(rig);
+  EXPECT_GE(rig.board().camera_stats().front().dropped, 2u);
+  const std::string lost = "camera 0: overflow, frames are left out", back = "camera 0: frames again";
+  ASSERT_EQ(rig.said(), (Lines{lost, back})) << rig.board().uart_text();
+  EXPECT_GT(said.at(lost), kStart * kPsPerMs);
+  EXPECT_LE(said.at(lost), (kStart + kTwoFrames) * kPsPerMs);
+  EXPECT_LE(said.at(back), (kEnd + 1000 + 2 * kTwoFrames) * kPsPerMs);
+  EXPECT_TRUE(rig.board().resets().empty());
+}
+
+TEST(SignalsTest, LateDataOfTheDisplayAreSaidAndItGoesOn) {
+  CamerasRig rig;
+  set_storm(rig, "0", "7");
+  rig.set("run.frames", "48");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 48u) << rig.board().uart_text();
+  const std::string& text = rig.board().uart_text();
+  const auto late = text.find("display: data come too late, parts of lines are black");
+  const auto fine = text.find("display: data in time again");
+  ASSERT_NE(late, std::string::npos) << text;
+  ASSERT_NE(fine, std::string::npos) << text;
+  EXPECT_LT(late, fine);
+  EXPECT_EQ(text.find("display: ", fine + 1), std::string::npos);
+  EXPECT_EQ(rig.said(), Lines{});
+  EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
+  EXPECT_TRUE(rig.board().resets().empty());
+}
+
 /// Types on the console what the dialogue says.
 std::unique_ptr<app::BoardConsole> type(CamerasRig& rig, const std::string& dialogue) {
   return std::make_unique<app::BoardConsole>(rig.build(), nullptr, app::Dialogue::parse("typed", dialogue));
@@ -220,6 +266,13 @@ TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
     EXPECT_EQ(shown[i].number, shown[i - 1].number + 1);
     EXPECT_NE(shown[i].camera, shown[i - 1].camera);
   }
+  // The time that is said of a table is its own, without that of the frame that came meanwhile.
+  std::vector<unsigned> ms;
+  const std::string& text = rig.board().uart_text();
+  for (std::size_t at = text.find(" entries in "); at != std::string::npos; at = text.find(" entries in ", at + 1))
+    ms.push_back(static_cast<unsigned>(std::stoul(text.substr(at + 12))));
+  ASSERT_EQ(ms.size(), 4u) << text;
+  for (unsigned n = 0; n < 2; ++n) EXPECT_LE(ms[n + 2], ms[n] + 2) << text;
   EXPECT_NE(rig.board().uart_text().find("camera 0: zoom 100 %, shift 6 -4, mapping page, new table after"),
             std::string::npos);
   EXPECT_NE(rig.board().uart_text().find("refused: no such camera"), std::string::npos);
@@ -228,6 +281,30 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest,
                          testing::Values(Typed{"plain", "518ms"}, Typed{"staged", "478ms"},
                                          Typed{"engine", "518ms", "tlm"}),
                          [](const auto& i) { return std::string(i.param.kernel); });
+
+// An answer of 700 characters takes 60 ms on the line. What is asked for meanwhile waits, but no frame does.
+TEST(SignalsTest, AnswersThatFillTheQueueDelayNoFrame) {
+  CamerasRig rig;
+  small(rig, 1);
+  rig.set("tvp5146.relock_fields", "2").set("firmware.program", "cameras").set("run.frames", "30");
+  std::string dialogue = "wait console\n";
+  for (unsigned n = 0; n < 16; ++n) dialogue += "send help\\r\n";
+  const auto console = type(rig, dialogue);
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 30u) << rig.board().uart_text();
+  EXPECT_EQ(console->open_step(), "");
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const auto shown = sequence(rig);
+  ASSERT_EQ(shown.size(), 30u);
+  for (std::size_t i = 1; i < shown.size(); ++i) EXPECT_EQ(shown[i].number, shown[i - 1].number + 1) << i;
+  EXPECT_EQ(rig.board().camera_stats().front().dropped, 0u);
+  unsigned answers = 0;
+  const std::string& text = rig.board().uart_text();
+  for (std::size_t at = text.find("A new table is built"); at != std::string::npos;
+       at = text.find("A new table is built", at + 1))
+    ++answers;
+  EXPECT_GE(answers, 10u) << "the queue was full for most of the time";
+}
 
 TEST(SignalsTest, TheChosenCamerasHaveTurns) {
   CamerasRig rig;

@@ -30,14 +30,23 @@ std::optional<video::StampCode> decode(const std::array<Mean, kColumns * kRows>&
 
 ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geometry,
                         const video::StampLayout& layout, unsigned x, unsigned y) {
+  return read_stamps(shown, layout, [&](unsigned u, unsigned v) {
+    const oracle::Position p = oracle::source_position(geometry, u, v);
+    return std::optional<oracle::Position>({p.x + x, p.y + y});
+  });
+}
+
+ShownFields read_stamps(const oracle::Frame& shown, const video::StampLayout& layout,
+                        const std::function<std::optional<oracle::Position>(unsigned, unsigned)>& position) {
   std::array<Mean, kColumns * kRows> even{}, odd{};
   for (unsigned v = 0; v < shown.height; ++v)
     for (unsigned u = 0; u < shown.width; ++u) {
       // A pixel pair moves as a whole, so the camera pixel lies up to one to the side of its exact
       // position; the middle half of a cell is far enough from its neighbours.
-      const oracle::Position p = oracle::source_position(geometry, u, v);
-      const double row = std::floor(p.y + 0.5) + y;
-      const double column = (p.x + x - layout.code_x) / kCell;
+      const std::optional<oracle::Position> p = position(u, v);
+      if (!p) continue;
+      const double row = std::floor(p->y + 0.5);
+      const double column = (p->x - layout.code_x) / kCell;
       const double line = (row - layout.code_y) / kCell;
       if (column < 0 || column >= kColumns || line < 0 || line >= kRows) continue;
       const double across = column - std::floor(column), down = line - std::floor(line);
@@ -50,8 +59,8 @@ ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geom
     }
   const auto first = decode(even), second = decode(odd);
   ShownFields out;
-  if (first) out.even = first->field;
-  if (second) out.odd = second->field;
+  if (first) out.even = first->field, out.even_camera = first->camera;
+  if (second) out.odd = second->field, out.odd_camera = second->camera;
   if (first && second && first->camera == second->camera) out.camera = first->camera;
   return out;
 }

@@ -1,6 +1,7 @@
 // Reads the camera's marks from a corrected picture, using only the oracle's geometry.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "model/video/scene/stamp.h"
@@ -14,11 +15,17 @@ namespace fovea::e2e {
 struct ShownFields {
   std::optional<std::uint16_t> even, odd;
   std::optional<unsigned> camera;  ///< that both codes name
+  std::optional<unsigned> even_camera, odd_camera;  ///< that each names
 };
 
 /// @param shown the displayed region; `geometry` maps each of its pixels to a camera pixel
 /// @param x, y  position of that region in the camera's picture, whose marks `layout` describes
 ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geometry,
                         const video::StampLayout& layout, unsigned x, unsigned y);
+
+/// The same for any picture. @param position of the camera's pixel that a displayed one shows, in the camera's whole
+/// picture; nothing if it shows another camera or none
+ShownFields read_stamps(const oracle::Frame& shown, const video::StampLayout& layout,
+                        const std::function<std::optional<oracle::Position>(unsigned u, unsigned v)>& position);
 
 }  // namespace fovea::e2e

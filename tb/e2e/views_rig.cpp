@@ -10,6 +10,7 @@
 #include "sw/fovea/parameter_page.h"
 #include "tb/e2e/geometry.h"
 #include "tb/e2e/rig.h"
+#include "tb/e2e/stamp_reader.h"
 
 namespace fovea::e2e {
 namespace {
@@ -137,6 +138,22 @@ std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32
     if (fits > 1) return "several frames of camera " + std::to_string(n) + " look the same";
   }
   return "";
+}
+
+std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned camera) const {
+  const auto& layout = sources_[camera]->stamps();
+  if (!layout) return std::nullopt;
+  const double x = (params.raster_width() - params.width()) / 2, y = (params.raster_height() - params.height()) / 2;
+  const ShownFields f = read_stamps(shown.frame, *layout, [&](unsigned u, unsigned v) {
+    const oracle::Shown at = oracle::shown_at(views_, u, v);
+    const bool mine = at.camera == static_cast<int>(camera);
+    return mine ? std::optional<oracle::Position>({at.at.x + x, at.at.y + y}) : std::nullopt;
+  });
+  // At half height the rows of one field may be the only ones that are shown.
+  const bool even = f.even_camera == camera, odd = f.odd_camera == camera;
+  if (!even && !odd) return std::nullopt;
+  if (even && odd && *f.odd != *f.even + 1) return std::nullopt;
+  return even ? *f.even / 2u : (*f.odd - 1u) / 2u;
 }
 
 std::string ViewsRig::wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest) {

@@ -46,6 +46,8 @@ class ViewsRig {
   /// @param oldest a part may be of a frame that began so many frames before the picture was displayed: more than a
   ///        round of four cameras and the display's buffers
   std::string wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest = 12);
+  /// The camera's frame number in the marks of its part of a displayed picture; nothing if they cannot be read.
+  std::optional<std::uint64_t> stamp(const Composed& shown, unsigned camera) const;
   board::BoardParams params;
 
  private:

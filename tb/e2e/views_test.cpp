@@ -2,6 +2,7 @@
 // frames, which are found from the displayed bytes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <systemc>
 
 #include "tb/e2e/views_rig.h"
@@ -77,6 +78,31 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                                          View{"BirdsEyeEngine", "birds_eye", false, "engine", "fixed_point"},
                                          View{"BirdsEyeQuadEngine", "birds_eye", true, "engine", "fixed_point", "0", "0"}),
                          [](const auto& i) { return i.param.name; });
+
+// Whose frame a part shows is in its pixels; each captured frame is displayed, so with the stamps of all parts every
+// frame of the raster is accounted for.
+TEST(ViewStamps, EachPartsMarksNameTheFrameThatItsBytesAre) {
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("tvp5146.relock_fields", "0");
+  rig.set("video.width", "240").set("video.height", "240").set("lens.focal", "255px");
+  rig.set("firmware.view", "four_way").set("firmware.kernel", "fastest").set("run.frames", "7");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 7u) << rig.board().uart_text();
+  ASSERT_EQ(rig.wrong_picture(rig.table()), "");
+  std::optional<std::uint64_t> newest;
+  for (const ViewsRig::Composed& s : rig.shown()) {
+    std::uint64_t largest = 0;
+    for (unsigned n = 0; n < 4; ++n) {
+      const auto number = rig.stamp(s, n);
+      EXPECT_EQ(number, s.number[n]) << "displayed frame " << s.index << ", camera " << n;
+      if (number) largest = std::max(largest, *number);
+    }
+    if (newest) {
+      EXPECT_EQ(largest, *newest + 1) << "no frame of the raster is missing, none comes twice";
+    }
+    newest = largest;
+  }
+}
 
 TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
   ViewsRig rig;

@@ -8,7 +8,9 @@
 
 extern "C" {
 #include "sw/firmware/app/capture.h"
+#include "sw/firmware/app/capture_check.h"
 #include "sw/firmware/app/config.h"
+#include "sw/firmware/app/display_watch.h"
 #include "sw/firmware/app/output.h"
 #include "sw/firmware/app/overlay.h"
 #include "sw/lens/lens.h"
@@ -124,6 +126,77 @@ TEST(CaptureTest, WithOneBufferLessTheCameraRunsOutOfThem) {
   EXPECT_EQ(capture_frame_done(&c), CAPTURE_NONE);
 }
 
+// What an older frame has left in a buffer cannot be told from a new one.
+TEST(CaptureTest, ABufferThatIsFilledAnewWithoutHavingBeenTakenIsKnown) {
+  capture_t c;
+  capture_init(&c, 3);
+  EXPECT_EQ(capture_frame_done(&c), 1);
+  EXPECT_EQ(c.reused, 0u);
+  EXPECT_EQ(capture_frame_done(&c), 0) << "the frame in buffer 0 is replaced";
+  EXPECT_EQ(c.reused, 1u << 0);
+  c.reused = 0;
+  capture_frame_useless(&c);
+  EXPECT_EQ(c.reused, 1u << 0) << "the one that is filled";
+  capture_t two;
+  capture_init(&two, 2);
+  std::uint32_t sequence;
+  EXPECT_EQ(capture_frame_done(&two), 1);
+  capture_take(&two, &sequence);
+  EXPECT_EQ(capture_frame_done(&two), CAPTURE_NONE);
+  EXPECT_EQ(two.reused, 1u << 1);
+}
+
+TEST(CaptureCheckTest, EachUnitThatWasNotWrittenIsCountedAndNothingElse) {
+  constexpr std::uint32_t kBytes = 72, kPitch = 96, kRows = 3;  // two whole units and a part of one
+  alignas(4) std::uint8_t frame[kPitch * kRows];
+  const auto capture = [&] {
+    for (std::uint32_t r = 0; r < kRows; ++r)
+      for (std::uint32_t i = 0; i < kBytes; ++i) frame[r * kPitch + i] = static_cast<std::uint8_t>(1 + (r + i) % 254);
+  };
+  std::memset(frame, 0x55, sizeof frame);
+  capture_check_mark(frame, kBytes, kPitch, kRows);
+  EXPECT_EQ(capture_check_lost(frame, kBytes, kPitch, kRows), 9u);
+  for (std::uint32_t r = 0; r < kRows; ++r)
+    for (std::uint32_t i = kBytes; i < kPitch; ++i) EXPECT_EQ(frame[r * kPitch + i], 0x55) << "no picture there";
+  capture();
+  EXPECT_EQ(capture_check_lost(frame, kBytes, kPitch, kRows), 0u);
+  for (std::uint32_t unit = 0; unit < 9; ++unit) {
+    capture_check_mark(frame, kBytes, kPitch, kRows);
+    std::uint8_t marked[32];
+    std::uint8_t* const lost = frame + unit / 3 * kPitch + unit % 3 * 32;
+    std::memcpy(marked, lost, sizeof marked);
+    capture();
+    std::memcpy(lost, marked, sizeof marked);
+    EXPECT_EQ(capture_check_lost(frame, kBytes, kPitch, kRows), 1u) << unit;
+  }
+}
+
+TEST(DisplayWatchTest, EachChangeIsSaidOnceAndItIsFineAfterASecond) {
+  display_watch_t w{};
+  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING);
+  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_LATE);
+  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_NOTHING);
+  for (unsigned n = 1; n < DISPLAY_FINE_FIELDS; ++n) EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING) << n;
+  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_NOTHING) << "a second anew";
+  for (unsigned n = 1; n < DISPLAY_FINE_FIELDS; ++n) EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING) << n;
+  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_FINE);
+  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING);
+  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_LATE);
+  EXPECT_EQ(w.late_fields, 4u);
+}
+
+TEST(OutputTest, ABufferThatIsGivenBackIsTakenAgain) {
+  output_t o;
+  output_init(&o, 2);
+  const int first = output_take(&o), second = output_take(&o);
+  EXPECT_EQ(output_take(&o), OUTPUT_NONE);
+  output_give_back(&o, first);
+  EXPECT_EQ(o.queued, 0u) << "it is not displayed";
+  EXPECT_EQ(output_take(&o), first);
+  output_give_back(&o, second);
+  EXPECT_EQ(output_take(&o), second);
+}
+
 TEST(OutputTest, ABufferIsNeverWrittenWhileItMayBeShown) {
   output_t o;
   output_init(&o, 4);
@@ -210,6 +283,12 @@ TEST_F(ConfigTest, StandardsAndSizesGiveTheirPictures) {
   EXPECT_EQ(config.width, 640u);
   EXPECT_EQ(config.left, 40u);
   EXPECT_EQ(config.pitch_bytes, 1280u);
+  ASSERT_EQ(read(kNtsc | size(3)), CONFIG_OK) << "all lines of 525/60";
+  EXPECT_EQ(config.height, 486u);
+  EXPECT_EQ(config.top, 0u);
+  page.height = 486;
+  EXPECT_EQ(read(kNtsc), CONFIG_BAD_REGION) << "the switches alone say so";
+  page.height = 0;
   ASSERT_EQ(read(size(2)), CONFIG_OK) << "480 lines of 576, in the middle";
   EXPECT_EQ(config.top, 48u);
 }
@@ -221,7 +300,7 @@ TEST_F(ConfigTest, WhatTheBoardCannotDoIsRefused) {
   EXPECT_EQ(read(size(6)), CONFIG_BAD_SIZES);
   EXPECT_EQ(read(size(7)), CONFIG_BAD_SIZES);
   EXPECT_EQ(read(kNtsc | size(1)), CONFIG_BAD_REGION) << "576 lines in 525/60";
-  EXPECT_EQ(read(kNtsc | size(3)), CONFIG_BAD_REGION) << "486 lines in 525/60";
+  EXPECT_EQ(read(size(3)), CONFIG_BAD_REGION) << "486 lines in 625/50";
   EXPECT_EQ(read(size(5)), CONFIG_BAD_REGION) << "800 pixels in a line of 720";
   EXPECT_EQ(read(3 << 11), CONFIG_BAD_SHIFT);
   EXPECT_EQ(read(3 << 13), CONFIG_BAD_SHIFT);

@@ -236,6 +236,23 @@ TEST_F(BootTest, TheSequenceIsTheLoaders) {
   EXPECT_EQ(values[0x01C41800 + 4 * 13], 3u) << "DDR2 enabled at the end";
 }
 
+// TENABLE, TENABLEDIV and TINITZ fall one after the other, and TENABLE rises again, as in TI's boot loader: behind
+// multiplier and pre-divider, before the dividers are taken over.
+TEST_F(BootTest, EachPllGoesThroughItsInitialisationBeforeItsDividersAct) {
+  boot(0);
+  for (const std::uint32_t base : {kPllc1, kPllc2}) {
+    SCOPED_TRACE(base);
+    std::vector<std::uint32_t> written;
+    for (const RegisterAccess& a : recorder.writes())
+      if (a.address == base + 0x108) written.push_back(a.value);
+    EXPECT_THAT(written, testing::ElementsAre(0x00470000, 0x00460000, 0x00400000, 0x00410000));
+    const std::size_t first = index_of_write(base + 0x108, 0x00470000);
+    EXPECT_LT(index_of_write(base + 0x110, values[base + 0x110]), first) << "PLLM";
+    EXPECT_LT(index_of_write(base + 0x114, values[base + 0x114]), first) << "PREDIV";
+    EXPECT_LT(index_of_write(base + 0x108, 0x00410000), index_of_write(base + 0x138, 1)) << "PLLCMD.GOSET";
+  }
+}
+
 // Power up with CLRZ low, raise it, wait for READY (bit 15); then LOCK, and the power-down bits again.
 TEST_F(BootTest, TheVtpControllerIsCalibratedAndThenLocked) {
   boot(0);

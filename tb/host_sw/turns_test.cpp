@@ -73,6 +73,24 @@ TEST(TurnsTest, EachFaultIsNamed) {
                              "0 lock lost, a frame is left out", "0 wrong standard"}));
 }
 
+TEST(TurnsTest, FramesThatLackPartsAreSaidOfTheirCameraUntilManyAreWhole) {
+  Turns t(2);
+  turns_captured(&t);
+  turns_overflow(&t, 0);
+  turns_overflow(&t, 0);
+  EXPECT_EQ(t.said(), Lines{"0 overflow, frames are left out"});
+  EXPECT_EQ(t.now, 1u) << "whose turn it is does not change";
+  for (unsigned n = 1; n < TURNS_REGULAR_FRAMES; ++n) {
+    turns_captured(&t);
+    turns_captured(&t);
+  }
+  EXPECT_EQ(t.said(), Lines{});
+  turns_captured(&t);
+  EXPECT_EQ(t.said(), Lines{}) << "that was camera 1";
+  turns_captured(&t);
+  EXPECT_EQ(t.said(), Lines{"0 frames again"});
+}
+
 TEST(TurnsTest, OnlyTheChosenCamerasHaveTurnsInTheirOrder) {
   Turns t(3);
   EXPECT_EQ(turns_captured(&t), 1u);

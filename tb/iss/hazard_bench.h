@@ -16,7 +16,7 @@ namespace fovea::cpu::test {
 enum class Do : std::uint32_t {
   kEnd, kLoad, kStore, kLoadByte, kStoreByte, kLoadHalf, kStoreHalf, kLoadFour, kStoreFour,
   kCleanLine, kInvalidateLine, kCleanInvalidateLine, kDrain, kCleanAll, kCleanInvalidateAll, kDma,
-  kSwap
+  kSwap, kCall, kInvalidateCode
 };
 
 struct Step {
@@ -25,6 +25,7 @@ struct Step {
   std::uint32_t value = 0;  ///< kStore...: the value, one more for each further word
   // kDma: the program waits until it is over.
   bool write = false;
+  bool code = false;        ///< it writes one word, code_word(value)
   unsigned bytes = 0;       ///< a multiple of 4
   Picoseconds delay = 0;    ///< from the program's start of the transfer to the access
 };
@@ -43,6 +44,13 @@ inline constexpr unsigned kLinesUsed = 12;
 inline constexpr std::uint32_t line_used(unsigned region, unsigned n) {
   return kRegion[region] + (n < 6 ? n * 0x800 : 0x40 + n * 32);
 }
+
+/// Code that the core calls: functions of two words, at even words of a line, that return a number. Six lines
+/// share a set of the I-cache.
+inline constexpr std::uint32_t kCode = kMemory + 0x30'0000;
+inline constexpr std::uint32_t code_line(unsigned n) { return kCode + (n < 6 ? n * 0x1000 : 0x40 + n * 32); }
+inline constexpr std::uint32_t code_word(std::uint32_t value) { return 0xE3A0'3000u | (value & 0xFFu); }  // mov r3, #
+inline constexpr std::uint32_t kReturn = 0xE12F'FF1E;                                                     // bx lr
 
 inline std::uint8_t initial_byte(std::uint32_t a) { return static_cast<std::uint8_t>(a * 7 + (a >> 8)); }
 /// What a DMA write puts at an address; `value`: the step's.
@@ -70,6 +78,9 @@ class HazardBench {
   Visible run(const std::vector<Step>& steps, bool caches = true) {
     for (unsigned region = 0; region < 3; ++region)
       for (std::uint32_t a = kRegion[region]; a < kRegion[region] + kSpan; ++a) *m.port.at(a) = initial_byte(a);
+    for (unsigned line = 0; line < kLinesUsed; ++line)
+      for (unsigned word = 0; word < 8; ++word)
+        m.port.set_word(code_line(line) + 4 * word, word % 2 ? kReturn : code_word(word));
     std::uint32_t* op = tcm(kOps);
     steps_ = steps;
     steps_.push_back({});
@@ -139,7 +150,8 @@ class HazardBench {
       r.master = s.write ? Master::kEdmaTc0Write : Master::kEdmaTc0Read;
       if (checker) checker->arrived(r, m.port.now);
       for (; a < end; ++a) {
-        if (s.write) *m.port.at(a) = dma_byte(s.value, a);
+        if (s.code) *m.port.at(a) = static_cast<std::uint8_t>(code_word(s.value) >> 8 * (a & 3u));
+        else if (s.write) *m.port.at(a) = dma_byte(s.value, a);
         else dma_read_.push_back(*m.port.at(a));
       }
     }
@@ -182,7 +194,8 @@ table:
                              "mrc p15, 0, r15, c7, c10, 3\n bne .-4",
                              "mrc p15, 0, r15, c7, c14, 3\n bne .-4",
                              "svc #3\n ldr r3, [r10]\n cmp r3, r2\n bne .-8",
-                             "swp r3, r2, [r1]\n str r3, [r9], #4"})
+                             "swp r3, r2, [r1]\n str r3, [r9], #4",
+                             "mov lr, pc\n bx r1\n str r3, [r9], #4", "mcr p15, 0, r1, c7, c5, 1"})
       text += " " + std::string(body) + "\n b next\n .p2align 5\n";
     return text;
   }

@@ -1,5 +1,6 @@
 // Random programs of core and DMA: if anything that is visible differs from the same program executed
 // step by step on plain memory, a hazard was reported; programs with the right maintenance report none.
+#include <map>
 #include <random>
 
 #include "tb/iss/hazard_bench.h"
@@ -47,7 +48,14 @@ class PlainMemory {
       case Do::kSwap:
         load(s.address, 4);
         return store(s.address, 4, s.value);
+      case Do::kCall:
+        out_.loaded.push_back(code_.at(s.address) & 0xFFu);
+        return;
       case Do::kDma:
+        if (s.code) {
+          code_.at(s.address) = code_word(s.value);
+          return;
+        }
         for (std::uint32_t a = s.address; a < s.address + s.bytes; ++a) {
           if (s.write) at(a) = dma_byte(s.value, a);
           else out_.dma_read.push_back(at(a));
@@ -57,6 +65,14 @@ class PlainMemory {
     }
   }
   Visible out_;
+  std::map<std::uint32_t, std::uint32_t> code_ = functions();
+
+  static std::map<std::uint32_t, std::uint32_t> functions() {
+    std::map<std::uint32_t, std::uint32_t> out;
+    for (unsigned line = 0; line < kLinesUsed; ++line)
+      for (unsigned word = 0; word < 8; word += 2) out[code_line(line) + 4 * word] = code_word(word);
+    return out;
+  }
 };
 
 class Generator {
@@ -69,9 +85,11 @@ class Generator {
       const unsigned region = below(8);
       a = line_used(region < 6 ? 0 : region - 5, below(kLinesUsed));
     }
+    for (std::uint32_t& f : functions_) f = function();
     for (unsigned n = 0; n < 80; ++n) {
       if (below(4)) access();
-      else transfer(below(100) < omit);
+      else if (below(4)) transfer(below(100) < omit);
+      else patch(below(100) < omit);
     }
     steps_.push_back({Do::kCleanAll});
     steps_.push_back({Do::kDrain});
@@ -81,7 +99,18 @@ class Generator {
  private:
   unsigned below(unsigned n) { return static_cast<unsigned>(random_() % n); }
   std::uint32_t line() { return lines_[below(std::size(lines_))]; }
+  std::uint32_t function() { return code_line(below(kLinesUsed)) + 8 * below(4); }
+  /// New code by the DMA; the line is invalidated in the I-cache before it is called again.
+  void patch(bool omit) {
+    Step t{Do::kDma, functions_[below(std::size(functions_))], random()};
+    t.write = t.code = true;
+    t.bytes = 4;
+    t.delay = below(400) * 1000;
+    steps_.push_back(t);
+    if (!omit) steps_.push_back({Do::kInvalidateCode, t.address});
+  }
   void access() {
+    if (below(6) == 0) return steps_.push_back({Do::kCall, functions_[below(std::size(functions_))]});
     static constexpr struct { Do what; unsigned bytes; } kKinds[] = {
         {Do::kLoad, 4}, {Do::kLoad, 4}, {Do::kStore, 4}, {Do::kStore, 4}, {Do::kLoadByte, 1},
         {Do::kStoreByte, 1}, {Do::kLoadHalf, 2}, {Do::kStoreHalf, 2}, {Do::kLoadFour, 4},
@@ -121,6 +150,7 @@ class Generator {
 
   std::mt19937_64 random_;
   std::array<std::uint32_t, 8> lines_{};  // that this program uses
+  std::array<std::uint32_t, 4> functions_{};
   std::vector<Step> steps_;
 };
 
@@ -166,8 +196,8 @@ TEST_F(HazardRandomTest, WhatDiffersWasReported) {
   for (unsigned seed = 0; seed < kPrograms; ++seed)
     if (!check(seed, 40)) break;
   std::printf("%u programs, %u end differently, %u with hazards: %u stale loads, %u dirty reads, %u "
-              "buffered reads, %u overwrites\n",
-              kPrograms, differing, reported, kinds[0], kinds[1], kinds[2], kinds[3]);
+              "buffered reads, %u overwrites, %u stale fetches\n",
+              kPrograms, differing, reported, kinds[0], kinds[1], kinds[2], kinds[3], kinds[4]);
   // The comparison has something to compare, and a hazard of each kind occurs.
   EXPECT_GT(differing, kPrograms / 4);
   for (const unsigned n : kinds) EXPECT_GT(n, kPrograms / 50);

@@ -24,13 +24,13 @@ class HazardTest : public ::testing::Test {
     return out;
   }
   using Counts = std::array<std::uint64_t, kHazardKinds>;
-  static constexpr Counts kNone{0, 0, 0, 0};
+  static constexpr Counts kNone{0, 0, 0, 0, 0};
   Visible visible;
 };
 
 TEST_F(HazardTest, StaleLoadNamesPlaceAndTimes) {
   EXPECT_EQ(counts({{Do::kLoad, kLine}, dma(true, kLine + 4, 4, 500'000), {Do::kLoad, kLine + 4}}),
-            (Counts{1, 0, 0, 0}));
+            (Counts{1, 0, 0, 0, 0}));
   ASSERT_EQ(bench.places.size(), 1u);
   const Hazard& h = bench.places[0];
   EXPECT_EQ(h.kind, HazardKind::kStaleLoad);
@@ -47,10 +47,10 @@ TEST_F(HazardTest, OnlyTheBytesWrittenAreStale) {
   const Step fill{Do::kLoad, kLine}, write = dma(true, kLine + 8, 4);
   EXPECT_EQ(counts({fill, write, {Do::kLoad, kLine + 4}, {Do::kLoad, kLine + 12}}), kNone);
   EXPECT_EQ(counts({fill, write, {Do::kLoadByte, kLine + 7}, {Do::kLoadByte, kLine + 12}}), kNone);
-  EXPECT_EQ(counts({fill, write, {Do::kLoadByte, kLine + 8}}), (Counts{1, 0, 0, 0}));
-  EXPECT_EQ(counts({fill, write, {Do::kLoadByte, kLine + 11}}), (Counts{1, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kLoadByte, kLine + 8}}), (Counts{1, 0, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kLoadByte, kLine + 11}}), (Counts{1, 0, 0, 0, 0}));
   // Words 1 to 4 contain word 2; words 3 to 6 do not.
-  EXPECT_EQ(counts({fill, write, {Do::kLoadFour, kLine + 4}}), (Counts{1, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kLoadFour, kLine + 4}}), (Counts{1, 0, 0, 0, 0}));
   EXPECT_EQ(counts({fill, write, {Do::kLoadFour, kLine + 12}}), kNone);
   // The whole line, and the last byte before and the first one behind it.
   EXPECT_EQ(counts({fill, dma(true, kLine - 4, 4), dma(true, kLine + 32, 4), {Do::kLoadFour, kLine},
@@ -59,7 +59,7 @@ TEST_F(HazardTest, OnlyTheBytesWrittenAreStale) {
 
 TEST_F(HazardTest, EachLoadCountsButAPlaceIsReportedOnce) {
   EXPECT_EQ(counts({{Do::kLoad, kLine}, dma(true, kLine, 32), {Do::kLoad, kLine}, {Do::kLoad, kLine},
-                    {Do::kLoad, kLine + 8}, {Do::kLoadByte, kLine}}), (Counts{4, 0, 0, 0}));
+                    {Do::kLoad, kLine + 8}, {Do::kLoadByte, kLine}}), (Counts{4, 0, 0, 0, 0}));
   EXPECT_EQ(bench.places.size(), 2u);  // the word and the byte load
   EXPECT_EQ(bench.checker->places(), 2u);
 }
@@ -70,19 +70,19 @@ TEST_F(HazardTest, AnInvalidatedOrReplacedLineIsNotStale) {
   EXPECT_EQ(counts({fill, {Do::kInvalidateLine, kLine}, write, again}), kNone);
   EXPECT_EQ(counts({fill, write, {Do::kCleanInvalidateAll}, again}), kNone);
   // A clean alone does not help.
-  EXPECT_EQ(counts({fill, write, {Do::kCleanLine, kLine}, again}), (Counts{1, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kCleanLine, kLine}, again}), (Counts{1, 0, 0, 0, 0}));
 }
 
 TEST_F(HazardTest, TheCoresOwnStoreMakesStaleBytesFresh) {
   const Step fill{Do::kLoad, kLine}, write = dma(true, kLine, 8);
   EXPECT_EQ(counts({fill, write, {Do::kStore, kLine, 1}, {Do::kLoad, kLine}}), kNone);
-  EXPECT_EQ(counts({fill, write, {Do::kStore, kLine, 1}, {Do::kLoad, kLine + 4}}), (Counts{1, 0, 0, 0}));
-  EXPECT_EQ(counts({fill, write, {Do::kStoreByte, kLine, 1}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kStore, kLine, 1}, {Do::kLoad, kLine + 4}}), (Counts{1, 0, 0, 0, 0}));
+  EXPECT_EQ(counts({fill, write, {Do::kStoreByte, kLine, 1}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0, 0}));
 }
 
 TEST_F(HazardTest, DirtyHalfUnderARead) {
   const Step fill{Do::kLoad, kLine}, store{Do::kStore, kLine + 16, 7};
-  EXPECT_EQ(counts({fill, store, dma(false, kLine, 32, 300'000)}), (Counts{0, 1, 0, 0}));
+  EXPECT_EQ(counts({fill, store, dma(false, kLine, 32, 300'000)}), (Counts{0, 1, 0, 0, 0}));
   ASSERT_EQ(bench.places.size(), 1u);
   const Hazard& h = bench.places[0];
   EXPECT_EQ(h.kind, HazardKind::kDirtyRead);
@@ -93,10 +93,10 @@ TEST_F(HazardTest, DirtyHalfUnderARead) {
   EXPECT_LT(h.after - h.before, 600'000u);
   // The other half, the neighbouring lines, and after a clean.
   EXPECT_EQ(counts({fill, store, dma(false, kLine, 16)}), kNone);
-  EXPECT_EQ(counts({fill, store, dma(false, kLine + 12, 8)}), (Counts{0, 1, 0, 0}));
+  EXPECT_EQ(counts({fill, store, dma(false, kLine + 12, 8)}), (Counts{0, 1, 0, 0, 0}));
   EXPECT_EQ(counts({fill, store, dma(false, kLine + 32, 32), dma(false, kLine - 32, 32)}), kNone);
   EXPECT_EQ(counts({fill, store, {Do::kCleanLine, kLine}, {Do::kDrain}, dma(false, kLine, 32)}), kNone);
-  EXPECT_EQ(counts({fill, store, {Do::kStore, kLine, 7}, dma(false, kLine, 32)}), (Counts{0, 2, 0, 0}));
+  EXPECT_EQ(counts({fill, store, {Do::kStore, kLine, 7}, dma(false, kLine, 32)}), (Counts{0, 2, 0, 0, 0}));
 }
 
 TEST_F(HazardTest, PendingWriteUnderARead) {
@@ -104,20 +104,20 @@ TEST_F(HazardTest, PendingWriteUnderARead) {
   bench.m.port.write_latency = 1'000'000;
   const std::uint32_t uncached = line_used(2, 6);
   const Step store{Do::kStore, uncached, 7}, stored_before{Do::kStore, uncached + 64, 7};
-  EXPECT_EQ(counts({store, dma(false, uncached, 4)}), (Counts{0, 0, 1, 0}));
-  EXPECT_EQ(counts({stored_before, store, dma(false, uncached, 4)}), (Counts{0, 0, 1, 0}));
+  EXPECT_EQ(counts({store, dma(false, uncached, 4)}), (Counts{0, 0, 1, 0, 0}));
+  EXPECT_EQ(counts({stored_before, store, dma(false, uncached, 4)}), (Counts{0, 0, 1, 0, 0}));
   EXPECT_EQ(counts({store, dma(false, uncached + 4, 4), dma(false, uncached - 4, 4)}), kNone);
   EXPECT_EQ(counts({store, {Do::kDrain}, dma(false, uncached, 4)}), kNone);
   EXPECT_EQ(counts({store, dma(false, uncached, 4, 2'000'000)}), kNone);  // it has gone by then
   // A line on its way from the victim buffer; and a line that misses is not allocated by a store.
   EXPECT_EQ(counts({{Do::kLoad, kLine}, {Do::kStore, kLine, 7}, {Do::kCleanLine, kLine}, dma(false, kLine, 4)}),
-            (Counts{0, 0, 1, 0}));
-  EXPECT_EQ(counts({{Do::kStore, kLine, 7}, dma(false, kLine, 4)}), (Counts{0, 0, 1, 0}));
+            (Counts{0, 0, 1, 0, 0}));
+  EXPECT_EQ(counts({{Do::kStore, kLine, 7}, dma(false, kLine, 4)}), (Counts{0, 0, 1, 0, 0}));
 }
 
 TEST_F(HazardTest, WriteBackOverNewerBytes) {
   const Step fill{Do::kLoad, kLine}, store{Do::kStore, kLine, 7};
-  EXPECT_EQ(counts({fill, store, dma(true, kLine + 12, 4), {Do::kCleanLine, kLine}}), (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(counts({fill, store, dma(true, kLine + 12, 4), {Do::kCleanLine, kLine}}), (Counts{0, 0, 0, 1, 0}));
   ASSERT_EQ(bench.places.size(), 1u);
   EXPECT_EQ(bench.places[0].kind, HazardKind::kOverwrite);
   EXPECT_EQ(bench.places[0].pc, bench.handler(Do::kStore));
@@ -126,7 +126,7 @@ TEST_F(HazardTest, WriteBackOverNewerBytes) {
   // The clean half is not written back.
   EXPECT_EQ(counts({fill, store, dma(true, kLine + 16, 4), {Do::kCleanLine, kLine}}), kNone);
   // The store may come after the DMA's write: the half contains stale bytes.
-  EXPECT_EQ(counts({fill, dma(true, kLine + 12, 4), store, {Do::kCleanLine, kLine}}), (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(counts({fill, dma(true, kLine + 12, 4), store, {Do::kCleanLine, kLine}}), (Counts{0, 0, 0, 1, 0}));
   EXPECT_EQ(counts({fill, dma(true, kLine, 4), store, {Do::kCleanLine, kLine}}), kNone);
   EXPECT_EQ(counts({fill, store, dma(true, kLine, 4), {Do::kInvalidateLine, kLine}}), kNone);
   // A replaced line: five others of its set.
@@ -134,14 +134,14 @@ TEST_F(HazardTest, WriteBackOverNewerBytes) {
                             dma(true, line_used(0, 0), 4)};
   for (unsigned round = 0; round < 8; ++round)
     for (unsigned n = 1; n < 6; ++n) replace.push_back({Do::kLoad, line_used(0, n)});
-  EXPECT_EQ(counts(replace), (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(counts(replace), (Counts{0, 0, 0, 1, 0}));
 }
 
 TEST_F(HazardTest, PendingWriteOverNewerBytes) {
   bench.m.port.decide_late = true;
   bench.m.port.write_latency = 1'000'000;
   const std::uint32_t uncached = line_used(2, 6);
-  EXPECT_EQ(counts({{Do::kStore, uncached, 7}, dma(true, uncached, 4)}), (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(counts({{Do::kStore, uncached, 7}, dma(true, uncached, 4)}), (Counts{0, 0, 0, 1, 0}));
   EXPECT_EQ(counts({{Do::kStore, uncached, 7}, dma(true, uncached + 4, 4)}), kNone);
 }
 
@@ -150,14 +150,53 @@ TEST_F(HazardTest, WriteDuringTheFill) {
   bench.m.port.decide_late = true;
   bench.m.port.read_latency = 1'000'000;
   bench.write_during_fill(kLine);
-  EXPECT_EQ(counts({{Do::kLoad, kLine}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0}));
+  EXPECT_EQ(counts({{Do::kLoad, kLine}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0, 0}));
+}
+
+TEST_F(HazardTest, CodeThatWasChangedInMemory) {
+  static constexpr std::uint32_t kFunction = code_line(7) + 8;
+  const auto change = [](std::uint32_t address, std::uint32_t value) {
+    Step s = dma(true, address, 4, 300'000);
+    s.code = true;
+    s.value = value;
+    return s;
+  };
+  const Step call{Do::kCall, kFunction}, neighbour{Do::kCall, kFunction + 8};
+  const Step invalidate{Do::kInvalidateCode, kFunction};
+  EXPECT_EQ(counts({call, change(kFunction, 99), call}), (Counts{0, 0, 0, 0, 1}));
+  EXPECT_EQ(visible.loaded, (std::vector<std::uint32_t>{2, 2}));
+  ASSERT_EQ(bench.places.size(), 1u);
+  const Hazard& h = bench.places[0];
+  EXPECT_EQ(h.kind, HazardKind::kStaleFetch);
+  EXPECT_EQ(h.master, Master::kEdmaTc0Write);
+  EXPECT_EQ(h.pc, kFunction);
+  EXPECT_EQ(h.address, kFunction);
+  EXPECT_LT(h.filled, h.before);
+  EXPECT_LT(h.before, h.after);
+  EXPECT_GE(h.before - h.filled, 300'000u);
+  EXPECT_LT(h.after - h.before, 300'000u);
+  EXPECT_EQ(counts({call, change(kFunction, 99), call, call}), (Counts{0, 0, 0, 0, 2}));
+  EXPECT_EQ(bench.checker->places(), 1u);
+  // Other words of the line, and the lines beside it.
+  EXPECT_EQ(counts({call, change(kFunction, 99), neighbour}), kNone);
+  EXPECT_EQ(counts({call, change(kFunction + 8, 99), call}), kNone);
+  EXPECT_EQ(counts({call, change(code_line(8), 99), change(code_line(6), 99), call}), kNone);
+  // The line is filled again, or was never held.
+  EXPECT_EQ(counts({call, change(kFunction, 99), invalidate, call}), kNone);
+  EXPECT_EQ(visible.loaded, (std::vector<std::uint32_t>{2, 99}));
+  EXPECT_EQ(counts({call, invalidate, change(kFunction, 98), call, call}), kNone);
+  EXPECT_EQ(visible.loaded, (std::vector<std::uint32_t>{2, 98, 98}));
+  EXPECT_EQ(counts({change(kFunction, 97), call, change(kFunction, 96), invalidate, call}), kNone);
+  EXPECT_EQ(visible.loaded, (std::vector<std::uint32_t>{97, 96}));
+  EXPECT_EQ(counts({neighbour, change(kFunction, 95), call}), (Counts{0, 0, 0, 0, 1}));
 }
 
 /// The checker changes nothing but the host's time.
 TEST_F(HazardTest, TimesAreThoseWithoutIt) {
   const std::vector<Step> steps{{Do::kLoad, kLine}, dma(true, kLine, 32), {Do::kLoad, kLine},
                                 {Do::kStore, kLine + 4, 9}, {Do::kStore, kLine + 8, 9}, {Do::kLoad, kLine + 4},
-                                {Do::kLoadFour, kLine + 20}, {Do::kCleanAll}, {Do::kDrain}};
+                                {Do::kLoadFour, kLine + 20}, {Do::kCall, code_line(0)},
+                                dma(true, code_line(0) + 8, 4), {Do::kCall, code_line(0)}, {Do::kCleanAll}, {Do::kDrain}};
   const auto clocks = [&](bool checked) {
     HazardBench fresh;
     fresh.checked = checked;

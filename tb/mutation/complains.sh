@@ -18,6 +18,16 @@ mutate() {
 }
 row() { grep -F "| $1 |" "$out/log" || true; }
 
+# A source without an area is refused, and a rule without a file.
+echo 'int more(void);' > "$out/tiny/more.h"
+[ "$(mutate --check)" = 2 ] || fail "a source without an area is taken"
+grep -q 'more.h: no area' "$out/log" || fail "the source without an area is not named"
+rm "$out/tiny/more.h"
+[ "$(mutate --check)" = 0 ] || fail "a project in which each source has an area is refused"
+sed "s/(strong/(stronger/; s/|part/|parted/" "$out/tiny/mutation.toml" > "$out/stale.toml"
+[ "$(mutate --check --config "$out/stale.toml")" = 2 ] || fail "an area without a file is taken"
+grep -q 'area "strong": no file' "$out/log" || fail "the area without a file is not named"
+
 [ "$(mutate)" = 1 ] || fail "status is not 1 with a weak area"
 row strong | grep -Eq '\| strong \| [0-9]+ \| 0 \| [01] \| 0 \| 100 % \|' || fail "strong tests do not kill all"
 row weak | grep -Eq '\| weak \| [0-9]+ \| [1-9][0-9]* \| 0 \| 0 \|' || fail "weak tests kill all"

@@ -7,7 +7,9 @@ import re
 import resource
 import signal
 import subprocess
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from tree import say
 
@@ -29,6 +31,7 @@ def limits(cpu):
 
 class Test:
     def __init__(self, entry):
+        self.alone = threading.Lock()  # a test's processes may write to the same files
         self.name = entry['name']
         self.command = entry.get('command', [])
         properties = {p['name']: p['value'] for p in entry.get('properties', [])}
@@ -48,7 +51,11 @@ class Test:
         return digest.hexdigest()[:16]
 
     def run(self, environment, cpu, wall):
-        """Returns passed and the processor seconds used."""
+        """Returns passed and the processor seconds used. One process of a test runs at a time."""
+        with self.alone:
+            return self.run_alone(environment, cpu, wall)
+
+    def run_alone(self, environment, cpu, wall):
         before = time.monotonic()
         full = dict(os.environ, GTEST_FAIL_FAST='1', **self.environment, **environment)
         try:
@@ -83,21 +90,34 @@ class Test:
 class Runs:
     """Results are kept after each step, so that a later call can go on."""
 
-    def __init__(self, tree, mutants, budget, only=None):
-        self.tree, self.budget = tree, budget
+    def __init__(self, tree, mutants, budget, jobs, only=None):
+        self.tree, self.budget, self.jobs = tree, budget, jobs
         self.extra = tree.config['tests']['extra_seconds']
         self.mutants = {m['id']: m for m in mutants}
         self.file = tree.out / 'results.json'
         self.state = {'tests': {}, 'mutants': {}}
         if self.file.exists():
             self.state = json.loads(self.file.read_text())
+        self.changing = threading.Lock()  # of the state
         self.save()
         self.tests = {t.name: t for t in self.listed() if not only or re.search(only, t.name)}
+        self.reached = {}
 
     def save(self):
         temporary = self.file.with_suffix('.new')
         temporary.write_text(json.dumps(self.state))
         temporary.replace(self.file)
+
+    def each(self, function, items, end):
+        """Calls function(number, item) for the items, as many at a time as there are jobs. False if the time was over
+        before the last one began."""
+        def one(numbered):
+            if time.monotonic() > end:
+                return False
+            function(*numbered)
+            return True
+        with ThreadPoolExecutor(self.jobs) as pool:
+            return all(list(pool.map(one, enumerate(items))))
 
     def listed(self):
         listing = subprocess.run(['ctest', '--test-dir', self.tree.build, '--show-only=json-v1'],
@@ -122,20 +142,21 @@ class Runs:
             test.print = test.fingerprint(self.tree.tree)
             if self.state['tests'].get(name, {}).get('print') != test.print:
                 todo.append(test)
-        map_file = self.tree.out / 'reached'
-        for number, test in enumerate(todo):
-            if time.monotonic() > end:
-                return False
+
+        def one(number, test):
+            map_file = self.tree.out / f'reached.{threading.get_ident()}'
             map_file.write_bytes(bytes(65536))
             passed, seconds = test.run({'FOVEA_MUTANT_REACHED': str(map_file)}, 1200, 1800)
             reached = [i for i, b in enumerate(map_file.read_bytes()) if b]
-            self.state['tests'][test.name] = {
-                'print': test.print, 'seconds': seconds, 'passed': passed, 'reached': reached}
+            map_file.unlink()
             note = '' if passed else ' FAILS WITH NO MUTANT ON: left out'
             say(f'reach {number + 1}/{len(todo)}: {test.name} {seconds:.1f} s, '
                 f'{len(reached)} mutants{note}')
-            self.save()
-        return True
+            with self.changing:
+                self.state['tests'][test.name] = {
+                    'print': test.print, 'seconds': seconds, 'passed': passed, 'reached': reached}
+                self.save()
+        return self.each(one, todo, end)
 
     def order(self, mutant):
         """Tests that reach the mutant: those of its own layer first, and the quick ones first."""
@@ -147,11 +168,8 @@ class Runs:
                 found.append((known['seconds'] * (1 if own.search(name) else 4), name))
         return [name for _, name in sorted(found)]
 
-    def judge(self, mutant):
+    def judge(self, mutant, record):
         """Runs tests until one fails; notes which passed."""
-        record = self.state['mutants'].setdefault(str(mutant['id']), {'passed': {}})
-        if 'killed' in record:
-            return record
         spent, record['left'] = 0.0, 0
         for name in self.order(mutant):
             test, known = self.tests[name], self.state['tests'][name]
@@ -167,25 +185,25 @@ class Runs:
             if not passed:
                 record['killed'] = name
                 record['passed'] = {}
-                break
+                return
             record['passed'][name] = test.print
-        return record
 
     def judge_all(self, ids, end):
         self.reached = {n: set(k['reached']) for n, k in self.state['tests'].items()}
-        complete = True
-        for number, i in enumerate(ids):
-            if time.monotonic() > end:
-                complete = False
-                break
+
+        def one(number, i):
             mutant, before = self.mutants[i], time.monotonic()
-            old = 'killed' in self.state['mutants'].get(str(i), {})
-            record = self.judge(mutant)
-            if not old:
-                how = f'killed by {record["killed"]}' if 'killed' in record else \
-                    f'SURVIVED {len(record["passed"])} tests'
-                say(f'{number + 1}/{len(ids)}: {i} {mutant["file"]}:{mutant["line"]} {how} '
-                    f'({time.monotonic() - before:.0f} s)')
+            with self.changing:
+                kept = self.state['mutants'].get(str(i), {'passed': {}})
+            if 'killed' in kept:
+                return
+            record = dict(kept, passed=dict(kept['passed']))
+            self.judge(mutant, record)
+            how = f'killed by {record["killed"]}' if 'killed' in record else \
+                f'SURVIVED {len(record["passed"])} tests'
+            say(f'{number + 1}/{len(ids)}: {i} {mutant["file"]}:{mutant["line"]} {how} '
+                f'({time.monotonic() - before:.0f} s)')
+            with self.changing:
+                self.state['mutants'][str(i)] = record
                 self.save()
-        self.save()
-        return complete
+        return self.each(one, ids, end)

@@ -2,6 +2,7 @@
 import hashlib
 import json
 import math
+import multiprocessing
 import os
 import pathlib
 import random
@@ -46,9 +47,20 @@ class Areas:
         self.areas = [(a['name'], re.compile(a['files']), re.compile(a['tests']))
                       for a in config['area']]
         self.names = [a[0] for a in self.areas]
+        self.outside = [(re.compile(o['files']), o['reason']) for o in config.get('outside', [])]
+        self.sources = re.compile(config.get('sources', '$^'))
 
     def of(self, file):
         return next((name for name, files, _ in self.areas if files.match(file)), None)
+
+    def gaps(self, files):
+        """What is wrong with the areas of a project with these files: sources that no area has and that are not said to
+        be outside, and rules that fit no file."""
+        sources = [f for f in files if self.sources.match(f)]
+        rules = [(f'area "{name}"', rule) for name, rule, _ in self.areas] + \
+            [(f'outside "{rule.pattern}"', rule) for rule, _ in self.outside]
+        return [f'{f}: no area' for f in sources if not any(rule.match(f) for _, rule in rules)] + \
+            [f'{name}: no file' for name, rule in rules if not any(rule.match(f) for f in files)]
 
     def own_tests(self, area):
         return next(tests for name, _, tests in self.areas if name == area)
@@ -89,6 +101,26 @@ def draw(places, areas, number, least, seed):
             mutants.append(dict(p, id=len(mutants)))
             chosen += 1
     return mutants, quota
+
+
+READER = {}  # of a process that reads sources: its project, areas and the headers that it has read
+
+
+def start_reading(root, config):
+    import places  # needs a package that the rest can do without
+    READER.update(root=root, areas=Areas(config), done=set(), places=places)
+
+
+def read_unit(entry):
+    """Places of one source and of the headers that this process has not read before."""
+    arguments = shlex.split(entry['command'])[1:]
+    for option in ('-o', '-c'):
+        if option in arguments:
+            at = arguments.index(option)
+            del arguments[at:at + 2]
+    arguments.append(f'-working-directory={entry["directory"]}')
+    return READER['places'].unit_places(entry['file'], arguments, READER['root'],
+                                        lambda n: READER['areas'].of(n) is not None, READER['done'])
 
 
 class Tree:
@@ -134,16 +166,17 @@ class Tree:
         subprocess.run(['gcc', '-O2', '-c', self.out / 'switch.c', '-o', switch], check=True)
         # A build type of its own: optimised, without optimisation across files, whose linking would take long.
         flags = '-O1 -w -Wno-narrowing -Werror=vla -fno-sanitize=all'
-        run = ['cmake', '-S', self.tree, '-B', self.build, '-G', 'Ninja',
-               '-DCMAKE_BUILD_TYPE=Mutants', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON',
-               f'-DCMAKE_C_FLAGS_MUTANTS=-O1 -w', f'-DCMAKE_CXX_FLAGS_MUTANTS={flags}',
-               f'-DCMAKE_EXE_LINKER_FLAGS={switch}']
-        done = subprocess.run(run, capture_output=True, text=True, check=False)
+        self.cmake(self.build, '-DCMAKE_UNITY_BUILD=ON', '-DCMAKE_C_FLAGS_MUTANTS=-O1 -w',
+                   f'-DCMAKE_CXX_FLAGS_MUTANTS={flags}', f'-DCMAKE_EXE_LINKER_FLAGS={switch}')
+
+    def cmake(self, folder, *options):
+        done = subprocess.run(['cmake', '-S', self.tree, '-B', folder, '-G', 'Ninja', '-DCMAKE_BUILD_TYPE=Mutants',
+                               *options], capture_output=True, text=True, check=False)
         if done.returncode:
             fail('the copy cannot be configured:\n' + done.stdout + done.stderr, 4)
 
     # --- places -----------------------------------------------------------
-    def find_places(self):
+    def find_places(self, jobs):
         """Every place of the areas' files; kept in a file, as finding them takes minutes."""
         key = hashlib.sha256((HERE / 'places.py').read_bytes() + json.dumps(
             self.config['area']).encode())
@@ -155,32 +188,27 @@ class Tree:
             old = json.loads(kept.read_text())
             if old['key'] == key.hexdigest():
                 return old['places']
-        found = self.parse()
+        found = self.parse(jobs)
         kept.write_text(json.dumps({'key': key.hexdigest(), 'places': found}))
         return found
 
-    def parse(self):
-        import places
-        commands = json.loads((self.build / 'compile_commands.json').read_text())
-        found, done, seen = [], set(), set()
-        root = str(self.tree)
-        for number, entry in enumerate(commands):
-            name = os.path.relpath(entry['file'], root)
-            if not self.areas.of(name) or name in seen:
-                continue
-            seen.add(name)
-            arguments = shlex.split(entry['command'])[1:]
-            for option in ('-o', '-c'):
-                if option in arguments:
-                    at = arguments.index(option)
-                    del arguments[at:at + 2]
-            arguments.append(f'-working-directory={entry["directory"]}')
-            new, complaints = places.unit_places(
-                entry['file'], arguments, root, lambda n: self.areas.of(n) is not None, done)
-            for text in complaints[:3]:
-                say(f'parsing: {text}')
-            found += new
-            say(f'places: {number + 1} of {len(commands)} files, {len(found)} found')
+    def parse(self, jobs):
+        """Reads each source by itself: the commands are those of a build that does not join sources."""
+        import places  # noqa: F401: a missing package shows here, not in every process
+        self.cmake(self.out / 'commands', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON')
+        commands = json.loads((self.out / 'commands' / 'compile_commands.json').read_text())
+        entries = {}
+        for entry in commands:
+            if self.areas.of(os.path.relpath(entry['file'], self.tree)):
+                entries.setdefault(entry['file'], entry)
+        found = []
+        with multiprocessing.Pool(jobs, start_reading, (str(self.tree), self.config)) as pool:
+            for number, (new, complaints) in enumerate(pool.imap_unordered(read_unit, entries.values(), 4)):
+                for text in complaints[:3]:
+                    say(f'parsing: {text}')
+                found += new
+                if number % 50 == 49 or number + 1 == len(entries):
+                    say(f'places: {number + 1} of {len(entries)} files, {len(found)} found')
         unique = {}
         for p in found:
             d = dict(vars(p), area=self.areas.of(p.file))

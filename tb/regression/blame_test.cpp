@@ -145,6 +145,23 @@ TEST_F(BlameTest, ALongerWaitIsBlamedOnItsCulprit) {
   EXPECT_EQ(blame_of(d, false).function, nullptr);
 }
 
+// The line that is named is the one at which the named cause grew, not another that grew more by two causes.
+TEST_F(BlameTest, LineAndCauseBelongTogether) {
+  replace(after.profile, "22,interlock,none,core,100", "22,interlock,none,core,150");
+  replace(after.profile, "21,dcache,lut,bridge,150", "21,dcache,lut,bridge,180");
+  replace(after.profile, "frames,remap,/src/remap.c,22,issue", "frames,remap,/src/remap.c,21,write_buffer,lut,bridge,25,0\n"
+                                                               "frames,remap,/src/remap.c,22,issue");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,195");
+  const Difference d = difference();
+  const Blame blame = blame_of(d, true);
+  ASSERT_TRUE(blame.function && blame.cause && blame.line);
+  EXPECT_EQ(d.functions[0].lines[0].after, 21u);
+  EXPECT_EQ(d.functions[0].lines[0].causes, (std::map<std::string, double>{{"dcache", 30}, {"issue", 0}, {"write_buffer", 25}}));
+  EXPECT_EQ(blame.line->after, 22u);
+  EXPECT_THAT(blame_text(d, blame), HasSubstr("remap (remap.c:22) waits with the same instructions: +105 clocks"));
+  EXPECT_THAT(blame_text(d, blame), HasSubstr("+50 clocks by interlock"));
+}
+
 TEST_F(BlameTest, MovedCodeIsLayout) {
   replace(after.profile, "icache,.text,bridge,100", "icache,.text,bridge,140");
   replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,170");
@@ -321,6 +338,23 @@ TEST_F(BlameTest, IdleClocksByEventAreKeptApartFromTheRest) {
     if (r.idle()) idle += static_cast<double>(r.clocks), causes[r.cause] = r.clocks;
   EXPECT_EQ(idle, 300);
   EXPECT_EQ(causes, (std::map<std::string, std::uint64_t>{{"idle", 60}, {"idle.capture", 200}, {"idle.other", 40}}));
+}
+
+// A core that sleeps until the EDMA or the engine is done waits for its own work: that is to blame.
+TEST_F(BlameTest, ASleepUntilTheEdmaIsDoneIsNotIdle) {
+  for (const char* event : {"idle.dma", "idle.engine"}) {
+    RunMaker a_run = before, b_run = after;
+    replace(a_run.profile, "idle.capture,,,300", std::string("idle.capture,,,260,0\nframes,sleep,cp15.c,3,") + event + ",,,40");
+    replace(b_run.profile, "idle.capture,,,300", std::string("idle.capture,,,210,0\nframes,sleep,cp15.c,3,") + event + ",,,90");
+    a = read_run(a_run.write(dir, "a"));
+    b = read_run(b_run.write(dir, "b"));
+    const Difference d = difference_of(attribution_of(a, true), attribution_of(b, true), circumstances_of(a, b));
+    EXPECT_EQ(d.busy.change(), 50);
+    EXPECT_EQ(d.idle.change(), -50);
+    EXPECT_EQ(blame_text(d, blame_of(d, true)),
+              std::string("sleep (cp15.c:3) waits with the same instructions: +50 clocks (100 % of the change), of which "
+                          "+50 clocks by ") + event);
+  }
 }
 
 // Up to 1 % may be missing, as unexplained; a file of another run is refused.

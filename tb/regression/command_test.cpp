@@ -219,7 +219,9 @@ TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
   EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg}), 2);
   EXPECT_EQ(cli({"trend", "--database", db}), 2);
   ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "one", "--host-instructions", "90.5"}), 0) << err.str();
+  EXPECT_THAT(out.str(), Not(HasSubstr("host instructions")));
   ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "two"}), 0) << err.str();
+  EXPECT_THAT(out.str(), HasSubstr("two, without the simulator's host instructions: the host did not count them"));
   ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
   // A commit that was measured again keeps its place.
   ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "one", "--host-instructions", "91", "--plot", svg}), 0);

@@ -111,6 +111,46 @@ TEST_F(ExplainTest, LatencyIsTheSumOfItsParts) {
   EXPECT_EQ(text("latency"), "");
 }
 
+TEST_F(ExplainTest, WhoMovesThePixelsWhileTheCoreSleeps) {
+  EXPECT_EQ(text("mover"), "");
+  set("cpu.remap.cycles", std::uint64_t{1000});
+  set("cpu.remap.idle.engine", std::uint64_t{49});
+  EXPECT_EQ(text("mover"), "");
+  set("cpu.remap.idle.engine", std::uint64_t{50});
+  EXPECT_EQ(text("mover"), "In 5.0 % of the clocks of its remaps the core sleeps until the remap engine is done.");
+  set("ddr.remap_engine.wait.read.own", 0.50);
+  set("ddr.remap_engine.wait.write.own", 0.14);
+  set("ddr.remap_engine.wait.read.bridge", 0.20);
+  set("ddr.remap_engine.wait.read.arm_d", 0.05);
+  set("ddr.remap_engine.wait.read.vpbe", 0.11);
+  set("ddr.remap_engine.wait.read.row_miss", std::nan(""));
+  set("ddr.arm_d.wait.read.own", 9.0);
+  EXPECT_THAT(text("mover"), testing::EndsWith(
+      "The time of its requests to the SDRAM: 64 % behind other requests of its own, 20 % in its bridge to the "
+      "crossbar and 11 % while the display is served."));
+}
+
+// What the ports of the EDMA wait for one another is its own.
+TEST_F(ExplainTest, ThePortsOfTheEdmaAreOne) {
+  set("cpu.remap.cycles", std::uint64_t{100});
+  set("cpu.remap.idle.dma", std::uint64_t{90});
+  set("ddr.edma_tc0.wait.read.edma_tc1", 0.4);
+  set("ddr.edma_tc1.wait.write.own", 0.3);
+  set("ddr.edma_tc2.wait.write.arm_d", 0.3);
+  EXPECT_EQ(text("mover"),
+            "In 90 % of the clocks of its remaps the core sleeps until the EDMA is done. The time of its requests to "
+            "the SDRAM: 70 % behind other requests of its own and 30 % while the core is served.");
+}
+
+TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {
+  stalls_ = {{"dcache", "frame_in", "service", 500}};
+  set("cpu.cycles", std::uint64_t{10'000});
+  set("cpu.idle", std::uint64_t{9'000});
+  EXPECT_THAT(text("largest_wait"), testing::StartsWith("Largest wait: in 50 %"));
+  set("cpu.idle", std::uint64_t{9'001});
+  EXPECT_THAT(text("largest_wait"), testing::StartsWith("The core is awake in only 10 % of its clocks. Largest wait: in 50 %"));
+}
+
 TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
   stalls_ = {{"dcache", "frame_in", "service", 240},
              {"dcache", "lut", "bridge", 230},

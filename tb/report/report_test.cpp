@@ -1,4 +1,6 @@
 // sw/fovea/report: what stands on the page, read back from it.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -382,6 +384,43 @@ TEST(PictureTest, BeforeAndAfterHaveTheSameNumber) {
   EXPECT_THAT(page, HasSubstr("class=\"compare\""));
   fs::remove_all(dir / "run/camera");
   EXPECT_THAT(one_page(dir / "run"), HasSubstr("Frame 0: the corrected picture on the display."));
+}
+
+// The last frame of a composed view, with what each camera sent last.
+TEST(PictureTest, AComposedViewIsShownWithAllItsCameras) {
+  const TempDir dir;
+  HandMade run = two_frames();
+  fs::create_directories(dir / "run/frames");
+  fs::create_directories(dir / "run/camera");
+  const auto with_view = [&](const std::string& view) {
+    run.parameters = R"("firmware.view": {"value": ")" + view + R"(", "unit": "", "origin": "default", "default": "single",
+      "allowed": "", "tag": "choice", "source": "", "belief": null, "description": "a view"})";
+    run.write(dir);
+    return choose_pictures({load_results(dir / "run", {})}, 1'000'000)[0];
+  };
+  std::string rows =
+      "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+      "display_start_ns,display_end_ns,dropped,repeated\n";
+  for (int n = 0; n < 5; ++n) {
+    rows += fmt::format("{},{},{},,,,,{}.000,{}.000,0,0\n", n, n % 2, n, n, n + 1);
+    const auto name = fmt::format("frame_{:06}.png", n);
+    app::write_png(dir / "run/frames" / name, picture(8, 4, static_cast<std::uint8_t>(n)));
+    if (n < 4) app::write_png(dir / "run/camera" / name, picture(16, 8, static_cast<std::uint8_t>(10 + n)));
+  }
+  dir.write("run/frames.csv", rows);
+  const RunPictures chosen = with_view("birds_eye");
+  EXPECT_EQ(chosen.frame, 4u);
+  EXPECT_FALSE(chosen.before);
+  ASSERT_EQ(chosen.cameras.size(), 2u);
+  EXPECT_EQ(chosen.cameras[0].camera, 0u);
+  EXPECT_EQ(chosen.cameras[0].frame, 2u);
+  EXPECT_EQ(chosen.cameras[1].camera, 1u);
+  EXPECT_EQ(chosen.cameras[1].frame, 3u);
+  EXPECT_NE(chosen.cameras[0].picture.uri, chosen.cameras[1].picture.uri);
+  const std::string page = one_page(dir / "run");
+  EXPECT_THAT(page, HasSubstr("Frame 4: the composed view on the display. Below it, what was sent last for each camera."));
+  EXPECT_THAT(page, HasSubstr("Camera 1, for frame 3."));
+  EXPECT_EQ(with_view("single").frame, 0u);
 }
 
 TEST(PictureTest, RunsAreComparedPixelByPixel) {

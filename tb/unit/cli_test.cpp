@@ -236,6 +236,23 @@ TEST_F(CliTest, ParamsListsAndFilters) {
   EXPECT_THAT(err.str(), HasSubstr("did you mean 'run.frames'?"));
 }
 
+TEST_F(CliTest, ParamsTakesSeveralPatterns) {
+  const auto rows = [&] {
+    const std::string text = out.str();
+    return std::count(text.begin(), text.end(), '\n') - 1;
+  };
+  EXPECT_EQ(cli({"params", "run.frames", "run.mode"}), 0);
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("run.frames"), HasSubstr("run.mode")));
+  EXPECT_EQ(rows(), 2);
+  // A key that two patterns match is listed once, in the order of the keys.
+  EXPECT_EQ(cli({"params", "run.mode", "run.frames", "*.mode"}), 0);
+  EXPECT_EQ(rows(), 2);
+  EXPECT_LT(out.str().find("run.frames"), out.str().find("run.mode"));
+  // Each pattern has to match.
+  EXPECT_EQ(cli({"params", "run.frames", "run.mod_"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("no parameter matches 'run.mod_'; did you mean 'run.mode'?"));
+}
+
 TEST_F(CliTest, VersionAndHelp) {
   EXPECT_EQ(cli({"version"}), 0);
   EXPECT_EQ(out.str(), "fovea " + version_text() + "\n");

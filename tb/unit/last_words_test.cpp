@@ -65,6 +65,24 @@ TEST(FrameBudgetTest, AddsUpToThePeriodAndTheRemap) {
             "        waiting for room in the write buffer 6.7, waiting for an interrupt 0.1\n");
 }
 
+// Sleeps are told apart by what ended them, and the sum stays.
+TEST(FrameBudgetTest, SleepsAreNamedByWhatEndsThem) {
+  auto rows = budget_rows();
+  rows.push_back(counted("cpu.remap.idle.engine", 600));
+  rows.push_back(counted("cpu.idle.engine", 600));
+  rows.push_back(counted("cpu.idle.display", 112'000));
+  rows.push_back(counted("cpu.idle.capture", 300));
+  EXPECT_EQ(frame_budget(rows),
+            "budget  40.0 ms a displayed frame: remap 28.7, other work 0.1, idle 11.2\n"
+            "        remap 28.7 ms: waiting for D-cache line fills 12.1, executing 9.8,\n"
+            "        waiting for room in the write buffer 6.7, waiting for the remap engine\n"
+            "        0.1\n");
+  EXPECT_EQ(run_words(rows, {}).substr(frame_budget(rows).size() + verdict(rows).size()),
+            "core    waiting for D-cache line fills 46.7 %, asleep until the display's\n"
+            "        interrupt 28.0 %, executing 25.0 %, waiting for the remap engine 0.2 %,\n"
+            "        asleep until the camera's interrupt 0.1 %\n");
+}
+
 TEST(FrameBudgetTest, IsLeftOutWithoutARemap) {
   auto rows = budget_rows();
   std::erase_if(rows, [](const StatRow& r) { return r.name == "cpu.remap.cycles"; });

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# scripts/run, build, test, figures and kernels over stand-ins of cmake and fovea: what they start with which
+# .ci/run and the programs in scripts over stand-ins of cmake and fovea: what they start with which
 # arguments. Usage: scripts.sh SOURCE
 set -uo pipefail
 source=$1
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
-cp "$source"/scripts/{run,build,test,figures,kernels,sanitize,nightly,package,baselines} "$dir/tree/scripts/"
+cp "$source"/scripts/{run,build,test,figures,kernels,linux,sanitize,nightly,package,baselines} "$dir/tree/scripts/"
+mkdir "$dir/tree/.ci"
+cp "$source/.ci/run" "$dir/tree/.ci/"
 cp "$source/CMakeLists.txt" "$dir/tree/"
 touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
 printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
@@ -36,7 +38,7 @@ calls set_a_file 0 "fovea run $default -s camera.calibration=left.yaml" -- \
 calls named 0 'fovea run mine.yaml --mp4' -- "$tree/scripts/run" mine.yaml --mp4
 calls named_last 0 'fovea run -s run.frames=1 mine.yaml' -- "$tree/scripts/run" -s run.frames=1 mine.yaml
 calls misspelt 0 'fovea run none.yaml' -- "$tree/scripts/run" none.yaml
-for script in run build test figures sanitize nightly package baselines; do
+for script in run build test figures linux sanitize nightly package baselines; do
   calls "help_$script" 0 '' -- "$tree/scripts/$script" --help
   grep -q "Usage: scripts/$script" "$dir/text" || fail "help of $script: $(cat "$dir/text")"
 done
@@ -71,6 +73,18 @@ calls sanitize 0 'fovea run scripts/experiments/default.yaml -s run.frames=1 -o 
   "$tree/scripts/sanitize" dram
 grep -q '^cmake --preset asan -D FOVEA_ONLY=model/common;.*sw/fovea;tb/dram;$' "$dir/calls" ||
   fail "sanitize: $(cat "$dir/calls")"
+calls sanitize_build 0 'cmake --build --preset asan -- --quiet' -- "$tree/scripts/sanitize" --build
+asked sanitize_build 'cmake --preset asan -D FOVEA_ONLY=.*;tb/unit;tb/dram;tb/exec;'
+# What every change has to pass: the layers that are named there with sanitizers, then all tests; the time of each step.
+calls ci 0 'ctest --test-dir build/release --output-on-failure -j '"$(nproc)"' -LE nightly' -- "$tree/.ci/run"
+for step in build tests 'build with sanitizers' 'tests with sanitizers' 'together'; do
+  grep -Eqx "ci: $step [0-9]+ s( of 1500 s)?" "$dir/text" || fail "ci: no time of '$step' in $(cat "$dir/text")"
+done
+asked ci "ctest --test-dir build/release --output-on-failure -j $(nproc) -LE nightly"
+asked ci "ctest --test-dir build/asan --output-on-failure -j $(nproc) -LE nightly"
+sed -i 's/^limit=.*/limit=-1/' "$tree/.ci/run"
+calls ci_limit 1 'ctest --test-dir build/release --output-on-failure -j '"$(nproc)"' -LE nightly' -- "$tree/.ci/run"
+grep -q '^ci: took longer than allowed' "$dir/text" || fail "ci_limit: $(cat "$dir/text")"
 calls no_check 1 'setup nightly' -- "$tree/scripts/nightly" unknown
 
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >"$tree/build/release/CMakeCache.txt"

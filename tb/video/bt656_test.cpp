@@ -126,6 +126,8 @@ TEST(PlacementTest, EveryRowOnOneLineAndInTheRightField) {
   };
   check(k625, kPlacement625, false);
   check(k525, kPlacement525, false);
+  check(k525, kPlacement525All, false);
+  EXPECT_EQ(kPlacement525All.rows, 486u) << "all lines that are not blanked in both fields";
   check(k525, kPlacement525Studio, true);  // the first field holds the lower rows
 }
 

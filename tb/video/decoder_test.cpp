@@ -11,6 +11,9 @@
 #ifndef FOVEA_WIDTH
 #define FOVEA_WIDTH 720
 #endif
+#ifndef FOVEA_HEIGHT
+#define FOVEA_HEIGHT kStd.rows
+#endif
 #ifndef FOVEA_RELOCK
 #define FOVEA_RELOCK 10
 #endif
@@ -27,7 +30,7 @@ namespace {
 constexpr bool k625Here = std::string_view(FOVEA_STANDARD) == "625/50";
 constexpr bool kStudio = std::string_view(FOVEA_CROP) == "studio";
 constexpr const Standard& kStd = standard_of(k625Here);
-constexpr unsigned kWidth = FOVEA_WIDTH, kHeight = kStd.rows;
+constexpr unsigned kWidth = FOVEA_WIDTH, kHeight = FOVEA_HEIGHT;
 constexpr std::uint32_t kBuffer = 0x8010'0000;
 constexpr int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
 
@@ -51,6 +54,11 @@ class Chart : public PictureSource {
   Picture picture_{kWidth, kHeight};
 };
 
+/// A wire that nobody looks at.
+struct Wire : Bt656If {
+  void line(const Bt656Line&) override {}
+};
+
 struct Bench {
   VpssParams vpss;
   Tvp5146Params tvp_params;
@@ -59,6 +67,9 @@ struct Bench {
   ClockSignal clock{"clock", kByteClock};
   sc_core::sc_vector<sc_core::sc_signal<bool>> event{"event", 3};
   std::unique_ptr<Tvp5146> tvp;
+  Tvp5146Params two_params;
+  std::unique_ptr<Tvp5146> two;  ///< with a camera on each of its inputs 0 and 1
+  Wire wire;
   Isif isif{"isif", vpss};
   FakeMemory memory{"memory"};
   RegisterPort regs{"regs"};
@@ -73,6 +84,13 @@ struct Bench {
     tvp_params.rom_version.set("35");
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
+    two_params.output_at_reset.set("true");
+    const CameraWiring camera{.source = &chart, .is_625 = k625Here, .placement = placement_of(tvp_params, k625Here)};
+    std::vector<CameraWiring> cameras(2, camera);
+    cameras[1].input = 1;
+    two = std::make_unique<Tvp5146>("two", two_params, cameras);
+    two->clock(clock);
+    two->video.bind(wire);
     tvp->video.bind(isif.video);
     isif.memory.socket.bind(memory.socket);
     regs.socket.bind(isif.reg_socket);
@@ -164,8 +182,10 @@ TEST(DecoderTest, CapturedFrameIsByteExactAndFieldsCarryTheirInstants) {
   b.regs.write(0x18, (720 - kWidth) / 2 * 2);
   b.regs.write(0x1C, kWidth * 2 - 1);
   // Studio crop: row 1 is on line 23, three lines below the first active one; row 0 on line 285.
-  b.regs.write(0x20, kStudio ? 4 : 1);
-  b.regs.write(0x24, kStudio ? 3 : 1);
+  // A picture of fewer lines is in the middle.
+  const unsigned top = k625Here ? (kStd.rows - kHeight) / 4 : 0;
+  b.regs.write(0x20, kStudio ? 4 : 1 + top);
+  b.regs.write(0x24, kStudio ? 3 : 1 + top);
   b.regs.write(0x28, kHeight / 2 - 1);
   b.regs.write(0x34, (kWidth * 2 + 31) / 32);
   b.regs.write(0x38, 0x249 | (kStudio ? 1u << 14 : 0u));
@@ -321,6 +341,30 @@ TEST(DecoderTest, AClockThatIsOffStretchesTheFrames) {
     EXPECT_NEAR(apart, nominal / (1 + ppm * 1e-6), 2) << ppm;
   }
   EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+// A new offset is due with that camera's next line, which is not sent any more.
+TEST(DecoderTest, AClockOffsetIsOfItsCameraEvenIfTheInputChangesBeforeTheNextLine) {
+  Tvp5146& tvp = *bench->two;
+  const auto second = [&](unsigned camera) {
+    const Clock& clock = tvp.cameras()[camera].clock();
+    const std::uint64_t n = clock.edge_after(kernel_time());
+    return static_cast<double>(clock.edge(n + 27'000'000) - clock.edge(n));
+  };
+  run_for(kPsPerMs);
+  tvp.set_clock_offset(0, 500);
+  EXPECT_EQ(second(0), 1e12) << "with the next line";
+  ASSERT_TRUE(tvp.i2c_start(0x5D, false));
+  tvp.i2c_write(0x00);
+  tvp.i2c_write(1);
+  tvp.i2c_stop();
+  run_for(kPsPerMs);
+  EXPECT_NEAR(second(0), 1e12 / 1.0005, 2);
+  EXPECT_EQ(second(1), 1e12);
+  tvp.set_clock_offset(1, -300);
+  run_for(kPsPerMs);
+  EXPECT_NEAR(second(1), 1e12 / 0.9997, 2);
+  EXPECT_NEAR(second(0), 1e12 / 1.0005, 2);
 }
 
 TEST(DecoderTest, TheOtherStandardIsLockedToAnewAndSoIsTheFirstOne) {

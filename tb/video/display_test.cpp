@@ -427,7 +427,7 @@ TEST_F(DisplayTest, SettingsWithoutEffectAreWarnedOfByName) {
   b.osd_regs.write(0x10, 1);
   EXPECT_EQ(names(), (Names{"OSD OSDWIN0MD.ACT", "OSD OSDWIN1MD.ACT", "OSD RECTCUR.ACT"}));
   b.osd_regs.write(0xE8, 1u << 14 | 1u << 7);
-  EXPECT_EQ(names(), (Names{"OSD MISCCTL.RGBWIN_RGBEN", "OSD MISCCTL.S420D"}));
+  EXPECT_EQ(names(), (Names{"OSD MISCCTL.RGBEN", "OSD MISCCTL.S420D"}));
   b.venc_regs.write(VMOD, kOn & ~2u);
   run_for(kPsPerNs);
   EXPECT_EQ(names(), Names{"VENC VMOD.VIE"});
@@ -493,6 +493,41 @@ TEST_F(DisplayTest, HopelessMemoryGivesBlackAndCountsEveryBurst) {
   EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
   b.venc_regs.write(VMOD, 0);
   run_for(25 * kPsPerMs);  // late answers come to nobody
+}
+
+// Bit 6 of MISCCTL.
+TEST_F(DisplayTest, LateDataSetAFlagThatStaysUntilOneIsWritten) {
+  constexpr std::uint32_t kMiscctl = 0xE8, kDmang = 1u << 6;
+  b.osd_regs.write(kMiscctl, kDmang | 0x10);
+  show(2);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u) << "none is late";
+  b.memory.latency = 5 * kPsPerMs;
+  show(1);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u | kDmang);
+  b.memory.latency = 100 * kPsPerNs;
+  run_for(10 * kPsPerMs);
+  show(2);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u | kDmang) << "it stays";
+  b.osd_regs.write(kMiscctl, 0x10);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u | kDmang) << "writing 0 does not clear it";
+  b.osd_regs.write(kMiscctl, 0x10 | kDmang);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u);
+  show(1);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u);
+  // A chip that uses the bit for something else.
+  b.params.miscctl_6.set("rgbwin");
+  b.memory.latency = 5 * kPsPerMs;
+  show(1);
+  EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u);
+  Diagnostics::instance().clear();
+  b.osd_regs.write(kMiscctl, kDmang);
+  ASSERT_EQ(Diagnostics::instance().counts().size(), 1u);
+  EXPECT_EQ(Diagnostics::instance().counts().begin()->first.second, "OSD MISCCTL.RGBWIN");
+  Diagnostics::instance().clear();
+  b.params.miscctl_6.set("dmang");
+  b.osd_regs.write(kMiscctl, kDmang);
+  b.venc_regs.write(VMOD, 0);
+  run_for(25 * kPsPerMs);
 }
 
 TEST_F(DisplayTest, WhatIsLateAlreadyIsNotRead) {

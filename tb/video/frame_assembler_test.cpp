@@ -84,6 +84,18 @@ TEST_P(BothStandards, CleanRasterGivesFramesWithoutComplaint) {
             static_cast<std::uint8_t>((GetParam()->active_first[0] + 1) * 7));
 }
 
+// The lines 262 and 525 carry the last two rows.
+TEST(FrameAssemblerTest, In525A486RowPictureHasAllLinesOfBothFields) {
+  Feed feed(k525);
+  feed.sink.rows_525 = 486;
+  feed.run(2);
+  EXPECT_EQ(feed.sink.violations() + feed.sink.broken_frames(), 0u);
+  ASSERT_EQ(feed.frames.size(), 2u);
+  ASSERT_EQ(feed.frames[0].picture.height, 486u);
+  EXPECT_EQ(feed.frames[0].picture.row(484)[0], static_cast<std::uint8_t>(262 * 7));
+  EXPECT_EQ(feed.frames[0].picture.row(485)[0], static_cast<std::uint8_t>(525 * 7));
+}
+
 TEST_P(BothStandards, MissingLineIsReportedAndBreaksTheFrame) {
   Feed feed(*GetParam());
   const unsigned lost = GetParam()->active_first[0] + 5;

@@ -8,6 +8,7 @@ namespace fovea::cpu {
 
 HazardChecker::HazardChecker(Core& core)
     : core_(core),
+      code_(core, [this](const Hazard& h) { report(h); }),
       lines_(core.view().data.lines()),
       bus_(core.view().bus),
       held_(lines_.lines()) {
@@ -30,7 +31,10 @@ void HazardChecker::each_holder(std::uint32_t line_pa, F f) {
 }
 
 void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
-  if (r.master == Master::kArmI) return;
+  if (r.master == Master::kArmI) {
+    if (r.bytes == kLineBytes) code_.requested(r.address, at);
+    return;
+  }
   if (r.master == Master::kArmD) {
     if (r.write || r.bytes != kLineBytes) return;
     filling_ = r.address;
@@ -66,6 +70,7 @@ void HazardChecker::read_by(const MemRequest& r, std::uint32_t line_pa, std::uin
 
 void HazardChecker::written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes,
                                Picoseconds at) {
+  code_.written(r.master, line_pa, bytes, at);
   const auto note = [&](Foreign& f) { f = {f.bytes | bytes, r.master, at}; };
   if (filling_ == line_pa) note(meanwhile_);
   each_holder(line_pa, [&](unsigned n, Held& held) {

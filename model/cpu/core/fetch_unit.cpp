@@ -120,6 +120,7 @@ void FetchUnit::fill_line(std::uint32_t mva, std::uint32_t pa) {
   if (access_.error) return;
   std::memcpy(icache_.data(index), access_.data, 32);
   icache_.line(index).tag = mva & ~31u;
+  icache_.line(index).pa = pa & ~31u;
   fill = {mva & ~31u, (pa >> 2) & 7u, pa, ledger_.cycle,
           std::max(ledger_.cycle,
                    interface_.clock.edge_at_or_after(access_.last) + fill_latency_)};

@@ -219,7 +219,7 @@ bool RemapModel::tags(bool room, bool may_ask) {
   a.which = static_cast<std::uint8_t>(which_);
   a.word = (pair.src + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) &
            0x3FFF'FFFF;
-  a.miss = !pair.border && !cache_.hit(a.word);
+  if (!pair.border) cache_.look_up(a);
   if (a.miss && !may_ask) return false;
   a.there = now_ + 1;
   if (a.miss) {

@@ -31,7 +31,7 @@ class RemapModel {
   };
   static constexpr std::uint64_t kNoClock = ~std::uint64_t{0};
 
-  explicit RemapModel(Port& port) : port_(port) {}
+  explicit RemapModel(Port& port, Geometry geometry = {}) : port_(port), cache_(geometry) {}
 
   void reset();
   /// @param clock in which the engine, which must be idle, takes the job

@@ -12,7 +12,8 @@ namespace fovea::engine {
 class TlmBackend : public EngineBackend, private RemapModel::Port {
  public:
   /// @param clock the engine's; whoever changes its frequency calls run() before and after
-  TlmBackend(const Clock& clock, Host& host) : clock_(clock), host_(host), model_(*this) {}
+  TlmBackend(const Clock& clock, Host& host, Geometry geometry = {})
+      : clock_(clock), host_(host), model_(*this, geometry) {}
 
   Picoseconds run(Picoseconds now) override;
   std::uint32_t read(std::uint32_t offset, Picoseconds now) override;

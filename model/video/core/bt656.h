@@ -127,6 +127,8 @@ inline constexpr Placement kPlacement625{{23, 336}, {0, 1}, 576};
 /// 525/60 from the first active line of each field: row 0 on line 20, row 1 on line 283. A capture
 /// with equal first lines (SLV0 = SLV1) interleaves the fields in this way.
 inline constexpr Placement kPlacement525{{20, 283}, {0, 1}, 480};
+/// The same with 486 rows: all lines of the second field that are not blanked, and as many of the first one.
+inline constexpr Placement kPlacement525All{{20, 283}, {0, 1}, 486};
 /// 525/60, the 480 lines of studio practice: row 0 on line 285 (field 2), row 1 on line 23, so the
 /// field that is first in time holds the odd rows.
 inline constexpr Placement kPlacement525Studio{{23, 285}, {1, 0}, 480};

@@ -63,14 +63,15 @@ void FrameAssembler::line(const DisplayLine& line) {
   check(line);
   underflows_ += line.underflows;
   const Standard& s = *line.standard;
-  const Placement& place = &s == &k625 ? kPlacement625 : kPlacement525;
+  Placement place = &s == &k625 ? kPlacement625 : kPlacement525All;
+  if (&s != &k625) place.rows = rows_525;
 
   if (!line.f && line.number == place.first_line[0]) {
     if (open_) ++broken_;
     open_ = true;
     rows_ = 0;
-    if (frame_.picture.width != kActivePixels || frame_.picture.height != s.rows)
-      frame_.picture = Picture(kActivePixels, s.rows);
+    if (frame_.picture.width != kActivePixels || frame_.picture.height != place.rows)
+      frame_.picture = Picture(kActivePixels, place.rows);
     frame_.start = line.start;
     frame_.underflows = 0;
     frame_.window = true;
@@ -88,10 +89,10 @@ void FrameAssembler::line(const DisplayLine& line) {
   frame_.window = frame_.window && line.window;
   frame_.address[line.f] = line.address;
   ++rows_;
-  if (!line.f || line.number != place.first_line[1] + s.rows / 2 - 1) return;
+  if (!line.f || line.number != place.first_line[1] + place.rows / 2 - 1) return;
 
   open_ = false;
-  if (rows_ != s.rows) {
+  if (rows_ != place.rows) {
     ++broken_;
     return;
   }

@@ -28,20 +28,21 @@ struct DisplayLine {
 struct DisplayFrame {
   std::uint64_t index;                   ///< number of frames completed before it
   Picoseconds start, end;                ///< start of its first sample and end of its last row
-  Picture picture;                       ///< 720 x 576 or 720 x 480 pixels
+  Picture picture;                       ///< 720 x 576, or 720 x 480 or 486 pixels
   std::array<std::uint32_t, 2> address;  ///< latched buffer address of each field
   bool window;                           ///< the video window was enabled in both fields
   unsigned underflows;                   ///< bursts of this frame that arrived too late
   bool repeated;  ///< window enabled, and the same addresses and pixels as the previous frame
 };
 
-/// Assembles frames of 576 or 480 rows (for 525/60 the first 240 active lines of each field).
+/// Assembles frames of 576 or 480 rows (for 525/60 the first 240 active lines of each field, or 243: `rows_525`).
 /// Checks that lines come in the order of the standard with the right field bit, that they have the
 /// right length, and that they start at the line period of a 27 MHz byte clock (within 2 ps of an
 /// uninterrupted count, because edges are rounded down).
 class FrameAssembler {
  public:
   std::function<void(const DisplayFrame&)> on_frame;
+  unsigned rows_525 = 480;  ///< rows of a picture in 525/60: 480, or the 486 of all lines that both fields have
 
   void line(const DisplayLine& line);
   /// The raster has stopped: the incomplete frame is dropped, and the next line may come at any

@@ -14,11 +14,13 @@ int32_t capture_frame_done(capture_t *c) {
   const uint32_t sequence = c->next_sequence++;
   if (c->ready != CAPTURE_NONE) {
     ++c->dropped;
+    c->reused |= 1u << c->ready;
     c->ready = CAPTURE_NONE;
   }
   const int32_t next = find_free(c, c->filling);
   if (next == CAPTURE_NONE) {
     ++c->dropped;
+    c->reused |= 1u << c->filling;
     return CAPTURE_NONE;
   }
   c->ready = c->filling;

@@ -17,6 +17,7 @@ typedef struct capture {
   int32_t ready; /* complete and waiting for the main loop */
   uint32_t ready_sequence;
   uint32_t busy; /* bit n: buffer n is used by remap or display */
+  uint32_t reused; /* bit n: buffer n is or was filled anew without having been taken, or after a frame of no use */
 } capture_t;
 
 /** Initial state: buffer 0 is being filled. */
@@ -32,6 +33,7 @@ int32_t capture_frame_done(capture_t *capture);
 static inline void capture_frame_useless(capture_t *capture) {
   ++capture->next_sequence;
   ++capture->dropped;
+  capture->reused |= 1u << capture->filling;
 }
 
 /** For the serial flow with one buffer: the frame becomes `ready`, and capture pauses until its

@@ -34,6 +34,8 @@ static struct {
 
 uint32_t composition_sources(void) { return view.page.source == VIEW_QUAD ? 1u : VIEW_CAMERAS; }
 
+int composition_by_device(void) { return view.by_engine; }
+
 static void map_of(view_map_t *map, const lens_t *lens, uint32_t camera) {
   const uint32_t width = view.config->width, height = view.config->height;
   const uint32_t right = camera % 2u, below = camera / 2u;

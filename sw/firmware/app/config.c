@@ -13,15 +13,16 @@ static config_result_t read_region(config_t *c, const param_page_t *page) {
                 [SWITCH_800X600] = {800, 600}};
   const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
   if (size > SWITCH_800X600 || SWITCH_GET(c->dip, SWITCH_SIZE_OUT) != size) return CONFIG_BAD_SIZES;
-  const uint32_t raster_height = c->is_625 ? 576u : 480u;
+  const uint32_t raster_height = c->is_625 ? 576u : size == SWITCH_720X486 ? 486u : 480u;
   c->width = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].width
              : page->width != 0          ? page->width
                                          : 720u;
   c->height = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].height
               : page->height != 0         ? page->height
                                           : raster_height;
-  /* With multiples of 4, the centred region begins at a whole pair and a whole line of a field. */
-  if (c->width > 720u || c->width % 4u != 0 || c->height > raster_height || c->height % 4u != 0)
+  /* With multiples of 4, the centred region begins at a whole pair and a whole line of a field. All lines do too. */
+  if (c->width > 720u || c->width % 4u != 0 || c->height > raster_height ||
+      (c->height % 4u != 0 && c->height != raster_height))
     return CONFIG_BAD_REGION;
   c->left = (720u - c->width) / 2u;
   c->top = (raster_height - c->height) / 2u;
@@ -72,6 +73,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .has_engine = (page->flags & PARAM_ENGINE) != 0,
 #ifdef CONSOLE
                   .display_free = (page->flags & PARAM_DISPLAY_FREE) != 0,
+                  .check_capture = (page->flags & PARAM_CHECK_CAPTURE) != 0,
 #endif
                   .repeats = page->repeats != 0 ? page->repeats : 1u,
                   .tables = page->tables != 0 ? page->tables : 1u,
@@ -105,7 +107,7 @@ const char *config_result_text(config_result_t result) {
     case CONFIG_BAD_SIZES:
       return "switches 2-4 and 5-7: camera and display must have the same size, codes 0 to 5";
     case CONFIG_BAD_REGION:
-      return "size: multiples of 4, within the raster of the standard";
+      return "size: multiples of 4 or all lines, within the raster of the standard";
     case CONFIG_BAD_SHIFT:
       return "switches 11-12 and 13-14: 0 centred, 1 right or down, 2 left or up";
     case CONFIG_BAD_KERNEL:

@@ -27,6 +27,7 @@ typedef struct config {
   int has_engine;   /* the chip has the remap engine */
 #ifdef CONSOLE
   int display_free; /* the display does not start in step with the camera */
+  int check_capture; /* frames of which a part was not written are left out (capture_check.h) */
 #endif
   uint32_t repeats; /* number of remaps for each captured frame, at least 1 */
   uint32_t tables;  /* number of look-up tables, 1 to PARAM_TABLES_MAX */

@@ -22,8 +22,10 @@ int32_t output_take(output_t *o) {
   return OUTPUT_NONE;
 }
 
+void output_give_back(output_t *o, int32_t buffer) { o->writing &= ~(1u << buffer); }
+
 void output_queue(output_t *o, int32_t buffer, uint32_t sequence) {
-  o->writing &= ~(1u << buffer);
+  output_give_back(o, buffer);
   o->queue[o->queued] = buffer;
   o->queue_sequence[o->queued] = sequence;
   ++o->queued;

@@ -26,6 +26,9 @@ void output_init(output_t *output, uint32_t buffer_count);
 /** A buffer to write to, or OUTPUT_NONE while all are in use. */
 int32_t output_take(output_t *output);
 
+/** A buffer of output_take() is not displayed after all. */
+void output_give_back(output_t *output, int32_t buffer);
+
 /** A written buffer is complete; it will be displayed after those that were queued before. */
 void output_queue(output_t *output, int32_t buffer, uint32_t sequence);
 

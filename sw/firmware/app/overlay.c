@@ -2,6 +2,7 @@
 
 #ifndef FOVEA_HOST_TEST
 #include "../drivers/cp15.h"
+#include "state.h"
 #endif
 
 void overlay_draw(uint8_t *frame, uint32_t pitch_bytes, uint8_t luma) {
@@ -28,5 +29,25 @@ uint32_t overlay_patch(uint32_t luma) {
   icache_invalidate_range((const void *)instruction, CACHE_LINE_BYTES);
 #endif
   return function();
+}
+
+static struct {
+  int drawn;
+  uint32_t pitch_bytes;
+  uint8_t luma;
+} overlay;
+
+void overlay_start(int drawn, int patched, uint32_t pitch_bytes) {
+  overlay.drawn = drawn;
+  overlay.pitch_bytes = pitch_bytes;
+  overlay.luma = OVERLAY_LUMA;
+  if (!patched) return;
+  overlay.luma = (uint8_t)overlay_patch(OVERLAY_LUMA_PATCHED);
+  fw_state.patched_value = overlay.luma;
+}
+
+void overlay_frame(uint8_t *out, uint32_t sequence) {
+  if (overlay.drawn && overlay_visible(sequence))
+    overlay_draw(out, overlay.pitch_bytes, overlay.luma);
 }
 #endif

@@ -26,4 +26,12 @@ uint32_t overlay_luma(void);
  * the function's new result. */
 uint32_t overlay_patch(uint32_t luma);
 
+/** To be called once, before overlay_frame().
+ * @param drawn the box is drawn at all
+ * @param patched its luma becomes OVERLAY_LUMA_PATCHED by overlay_patch(); `fw_state.patched_value` has the result */
+void overlay_start(int drawn, int patched, uint32_t pitch_bytes);
+
+/** Draws the box into a result, if it is drawn and this frame shows it. */
+void overlay_frame(uint8_t *out, uint32_t sequence);
+
 #endif

@@ -1,5 +1,7 @@
 #include "pipeline.h"
 
+#include <stddef.h>
+
 #include "../boot/boot.h"
 #include "../drivers/cp15.h"
 #include "../drivers/display.h"
@@ -20,6 +22,8 @@
 #endif
 #ifdef CONSOLE
 #include "../drivers/uart_queue.h"
+#include "capture_check.h"
+#include "display_watch.h"
 #include "field_watch.h"
 #endif
 #ifdef COMPOSED_VIEW
@@ -65,6 +69,8 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
+  display_watch_t display_watch;
+  display_event_t display_event; /* that was not said yet */
 #endif
 #ifdef COMPOSED_VIEW
   int32_t kept[CAMERAS_MAX]; /* buffers of the newest frames; CAPTURE_NONE before the first one */
@@ -87,6 +93,19 @@ void fail(const char *what, const char *why) {
 }
 
 static uint8_t *in_buffer(int32_t n) { return frame_in + (uint32_t)n * frame_stride; }
+
+#ifdef CONSOLE
+/* The marks of capture_check.h, in memory. The buffer must not be one that the capture fills. */
+static void mark_buffer(int32_t n) {
+  const config_t *c = pipe.config;
+  capture_check_mark(in_buffer(n), c->width * 2u, c->pitch_bytes, c->height);
+  dcache_clean_range(in_buffer(n), c->height * c->pitch_bytes);
+  write_buffer_drain();
+  const uint32_t cpsr = irq_mask();
+  pipe.capture.reused &= ~(1u << n);
+  irq_restore(cpsr);
+}
+#endif
 
 static uint8_t *shown_buffer(int32_t n) {
   return pipe.passthrough ? in_buffer(n) : frame_out + (uint32_t)n * frame_stride;
@@ -258,6 +277,10 @@ static void display_field_start(void) {
 #ifdef TIME_DIVISION
   display_field_passed();
 #endif
+#ifdef CONSOLE
+  const display_event_t seen = display_watch_field(&pipe.display_watch, display_take_late());
+  if (seen != DISPLAY_NOTHING) pipe.display_event = seen;
+#endif
   pipe.in_second_field = display_second_field();
   if (pipe.in_second_field) {
     pipe.second_field_start = timer_ticks();
@@ -376,6 +399,8 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 #endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
 #ifdef CONSOLE
+  if (config->check_capture)
+    for (uint32_t n = 0; n < in_count; ++n) mark_buffer((int32_t)n);
   /* The display's frames begin where they will: nothing is known of the camera's yet. */
   if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 #endif
@@ -436,6 +461,34 @@ int pipeline_take(uint8_t **out, uint32_t *sequence) {
 }
 
 #ifdef CONSOLE
+int pipeline_whole(void) {
+  const config_t *c = pipe.config;
+  if (!c->check_capture) return 1;
+  const int32_t buffer = held_of_age(&pipe.held, 0);
+  const uint32_t bit = 1u << buffer;
+  int reused = (pipe.capture.reused & bit) != 0; /* what is left of an older frame cannot be told from this one */
+  dcache_invalidate_range(in_buffer(buffer), c->height * c->pitch_bytes);
+  const uint32_t lost =
+      reused ? 0 : capture_check_lost(in_buffer(buffer), c->width * 2u, c->pitch_bytes, c->height);
+  if (!reused && lost == 0) return 1;
+  mark_buffer(buffer);
+  const uint32_t cpsr = irq_mask();
+  capture_release(&pipe.capture, held_drop(&pipe.held));
+  output_give_back(&pipe.output, pipe.taken_out);
+  fw_state.dropped = ++pipe.capture.dropped;
+  if (lost != 0) turns_overflow(&pipe.turns, pipe.taken_camera);
+  irq_restore(cpsr);
+  return 0;
+}
+
+const char *pipeline_display_event(void) {
+  const uint32_t cpsr = irq_mask();
+  const display_event_t event = pipe.display_event;
+  pipe.display_event = DISPLAY_NOTHING;
+  irq_restore(cpsr);
+  return event == DISPLAY_NOTHING ? NULL : display_event_text(event);
+}
+
 int pipeline_frame_waits(void) { return pipe.capture.ready != CAPTURE_NONE; }
 
 void pipeline_choose(const uint8_t *cameras, uint32_t count) {
@@ -468,24 +521,18 @@ int pipeline_event(uint32_t *camera, const char **what) {
 
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 
-/* A composed view keeps its sources. */
-static void release_source(void) {
+void pipeline_done(int good) {
+#ifdef CONSOLE
+  if (pipe.config->check_capture) mark_buffer(held_of_age(&pipe.held, 0));
+#endif
+  const uint32_t cpsr = irq_mask();
 #ifndef COMPOSED_VIEW
   capture_release(&pipe.capture, held_drop(&pipe.held));
 #endif
-}
-
-void pipeline_leave_out(void) {
-  const uint32_t cpsr = irq_mask();
-  release_source();
-  output_give_back(&pipe.output, pipe.taken_out);
-  irq_restore(cpsr);
-}
-
-void pipeline_done(void) {
-  const uint32_t cpsr = irq_mask();
-  release_source();
-  output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
+  if (good)
+    output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
+  else
+    output_give_back(&pipe.output, pipe.taken_out);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */
   if (pipe.in_second_field &&

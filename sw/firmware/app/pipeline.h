@@ -25,12 +25,9 @@ int pipeline_take(uint8_t **out, uint32_t *sequence);
  * than the number of sources. Valid until pipeline_done(). */
 const uint8_t *pipeline_source(uint32_t age);
 
-/** Ends the remap of the frame of the last pipeline_take(): it is displayed from the next possible
- * field on. The oldest source is given back to the camera. */
-void pipeline_done(void);
-
-/** As pipeline_done(), but the result is not good: what is displayed stays. */
-void pipeline_leave_out(void);
+/** Ends the remap of the frame of the last pipeline_take(). If it is good it is displayed from the next possible
+ * field on; otherwise what is displayed stays. The oldest source is given back to the camera. */
+void pipeline_done(int good);
 
 uint32_t pipeline_last_sequence(void);
 
@@ -49,6 +46,14 @@ int pipeline_event(uint32_t *camera, const char **what);
 #endif
 
 #ifdef CONSOLE
+/** Checks the frame of the last pipeline_take(), if the page asks for that (PARAM_CHECK_CAPTURE). If a part of it was
+ * not captured, the frame is left out, and said; the output buffer stays free.
+ * @return 1 if the frame is to be corrected; 0 if pipeline_done() must not be called for it */
+int pipeline_whole(void);
+
+/** What is to be said of the display. @return a null pointer if there is nothing */
+const char *pipeline_display_event(void);
+
 /** Whether a captured frame waits for pipeline_take(). With interrupts masked. */
 int pipeline_frame_waits(void);
 

@@ -44,7 +44,8 @@ typedef struct fw_state {
   uint32_t torn;                /* frames whose first source row changed during the remap */
   uint32_t spurious;            /* interrupts without a pending source */
   uint32_t tables;              /* number of look-up tables in use */
-  uint32_t table_address[TABLES_MAX]; /* of each one; the first is `lut` */
+  uint32_t table_address[TABLES_MAX]; /* of each one; the first is `lut`; 0: its memory was needed
+                                         for the forms that the kernel reads */
 } fw_state_t;
 
 extern fw_state_t fw_state;

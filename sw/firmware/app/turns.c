@@ -5,22 +5,26 @@ void turns_init(turns_t *turns, uint32_t count) {
   for (uint32_t n = 0; n < count; ++n) turns->sequence[n] = (uint8_t)n;
 }
 
-void turns_note(turns_t *t, camera_event_t event) {
+static void note(turns_t *t, uint32_t camera, camera_event_t event) {
   if (t->event_count == TURNS_EVENTS) {
     ++t->lost_events;
     return;
   }
   const uint32_t at = (t->first_event + t->event_count++) % TURNS_EVENTS;
-  t->events[at].camera = (uint8_t)t->now;
+  t->events[at].camera = (uint8_t)camera;
   t->events[at].event = (uint8_t)event;
 }
 
+void turns_note(turns_t *t, camera_event_t event) { note(t, t->now, event); }
+
 /* Each change of a camera's state is said once. */
-static void say(turns_t *t, camera_event_t event) {
-  if (t->state[t->now] == event && event != CAMERA_LOST) return;
-  t->state[t->now] = (uint8_t)event;
-  turns_note(t, event);
+static void say_of(turns_t *t, uint32_t camera, camera_event_t event) {
+  if (t->state[camera] == event && event != CAMERA_LOST) return;
+  t->state[camera] = (uint8_t)event;
+  note(t, camera, event);
 }
+
+static void say(turns_t *t, camera_event_t event) { say_of(t, t->now, event); }
 
 static void boundary(turns_t *t) {
   for (uint32_t n = 0; n < t->count; ++n)
@@ -60,7 +64,8 @@ uint32_t turns_captured(turns_t *turns) {
   boundary(turns);
   const uint32_t n = turns->now;
   turns->rest[n] = 0;
-  if (turns->state[n] != CAMERA_IRREGULAR || ++turns->regular[n] >= TURNS_REGULAR_FRAMES)
+  const int left_out = turns->state[n] == CAMERA_IRREGULAR || turns->state[n] == CAMERA_OVERFLOW;
+  if (!left_out || ++turns->regular[n] >= TURNS_REGULAR_FRAMES)
     say(turns, CAMERA_FINE);
   return next(turns);
 }
@@ -70,6 +75,11 @@ uint32_t turns_irregular(turns_t *turns) {
   turns->regular[turns->now] = 0;
   say(turns, CAMERA_IRREGULAR);
   return next(turns);
+}
+
+void turns_overflow(turns_t *turns, uint32_t camera) {
+  turns->regular[camera] = 0;
+  say_of(turns, camera, CAMERA_OVERFLOW);
 }
 
 void turns_torn(turns_t *turns) {
@@ -116,6 +126,8 @@ const char *camera_event_text(camera_event_t event) {
       return "no frames";
     case CAMERA_LOST:
       return "lock lost, a frame is left out";
+    case CAMERA_OVERFLOW:
+      return "overflow, frames are left out";
     case CAMERA_IRREGULAR:
       return "irregular syncs, frames are left out";
     case CAMERA_CLOCK_OFF:

@@ -11,7 +11,7 @@
 #define TURNS_LOCK_FRAMES 50u
 /* A camera that was left out gets its turn again after so many frame boundaries. */
 #define TURNS_REST_FRAMES 25u
-/* A camera whose syncs were irregular gives frames again when so many in its turns were regular. */
+/* A camera whose syncs were irregular, or whose frames lacked parts, gives frames again when so many in its turns were regular. */
 #define TURNS_REGULAR_FRAMES 25u
 #define TURNS_EVENTS 16u
 #define TURNS_SEQUENCE_MAX 16u
@@ -31,6 +31,7 @@ typedef enum camera_event {
   CAMERA_WRONG_STANDARD,
   CAMERA_NO_FRAMES,      /* no frame boundary came */
   CAMERA_LOST,           /* the lock was lost while a frame was captured; the frame is not used */
+  CAMERA_OVERFLOW,       /* parts of its frames were not written to memory */
   CAMERA_IRREGULAR,      /* fields of a wrong length: missing or short lines, or damaged timing codes */
   CAMERA_CLOCK_OFF,      /* its clock; frames are used all the same */
   CAMERA_CLOCK_RIGHT,
@@ -44,7 +45,7 @@ typedef struct turns {
   uint32_t length, at;                  /* of the sequence; place in it of the camera whose turn it is */
   uint32_t waited; /* frame boundaries for its lock */
   uint8_t state[PARAM_CAMERAS_MAX]; /* camera_event_t that was said of it last; CAMERA_FINE at the start */
-  uint8_t regular[PARAM_CAMERAS_MAX]; /* frames since the last irregular one */
+  uint8_t regular[PARAM_CAMERAS_MAX]; /* frames since the last one that was left out */
   uint8_t rest[PARAM_CAMERAS_MAX];  /* frame boundaries until it gets a turn again */
   struct {
     uint8_t camera, event;
@@ -65,6 +66,9 @@ void turns_choose(turns_t *turns, const uint8_t *cameras, uint32_t count);
 /** The frame that was captured is of no use, as its fields had a wrong length. The next camera has its turn, and this
  * one another one as usual. @return the camera whose turn it is now */
 uint32_t turns_irregular(turns_t *turns);
+
+/** A frame of this camera, which was captured before, is of no use, as a part of it is missing in memory. */
+void turns_overflow(turns_t *turns, uint32_t camera);
 
 /** Something is to be said of the present camera that does not change its state. */
 void turns_note(turns_t *turns, camera_event_t event);

@@ -1,6 +1,7 @@
 #include "view_tables.h"
 
 #include "../drivers/cp15.h"
+#include "../drivers/timer.h"
 #include "pipeline.h"
 #include "state.h"
 
@@ -14,18 +15,15 @@ static struct {
   slot_t slot[TABLES_MAX + 1u];
   uint8_t used_by[TABLES_MAX]; /* the slot of each view */
   uint32_t spare, slots;
-  remap_table_t shape;         /* size and pitch */
   volatile int building;
   int in_frame;                /* the tail corrects frames */
 } tables;
 
 static struct view build(uint32_t slot, const lens_view_t *view) {
-  struct view out = {.table = tables.shape};
-  out.table.lut = tables.slot[slot].lut;
-  out.table.view = view; /* read while the method is prepared */
+  struct view out = {.table = view_table(tables.slot[slot].lut, view)};
   arena_t arena = tables.slot[slot].arena; /* a copy: the slot is used again as a whole */
-  build_lut(view, tables.slot[slot].lut);
-  prepare_method(&out, &arena);
+  view_build_lut(view, tables.slot[slot].lut, !tables.building);
+  view_prepare_method(&out, &arena);
   return out;
 }
 
@@ -49,11 +47,6 @@ static void divide(uint32_t views) {
 
 void view_tables_build(struct view *views, const config_t *config) {
   const uint32_t count = config->tables;
-  tables.shape = (remap_table_t){
-      .width = config->width,
-      .height = config->height,
-      .pitch_bytes = config->pitch_bytes,
-      .has_engine = config->has_engine};
   divide(count);
   for (uint32_t k = 0; k < count; ++k) {
     views[k] = build(k, &config->views[k]);
@@ -80,8 +73,6 @@ int view_tables_rebuild(struct view *views, uint32_t k, const lens_view_t *view)
   return 1;
 }
 
-int view_tables_busy(void) { return tables.building; }
-
 int background_frame_due(void) {
   return tables.building && !tables.in_frame && pipeline_frame_waits();
 }
@@ -90,7 +81,9 @@ int background_frame_due(void) {
 void background_frames(void);
 void background_frames(void) {
   tables.in_frame = 1;
+  const uint32_t start = timer_ticks();
   while (correct_next_frame()) {
   }
+  view_other_ticks += timer_ticks() - start;
   tables.in_frame = 0;
 }

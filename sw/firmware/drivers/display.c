@@ -15,7 +15,7 @@
 #define VDAC_CONFIG_SD 0x081141CFu
 
 display_result_t display_start(const display_mode_t *m) {
-  const uint32_t raster_height = m->is_625 ? 576u : 480u;
+  const uint32_t raster_height = m->is_625 ? 576u : 486u;
   if (m->width == 0 || m->height == 0 || m->left + m->width > 720u ||
       m->top + m->height > raster_height || m->height % 2 != 0 || m->top % 2 != 0 ||
       m->pitch_bytes % 32u != 0 || m->pitch_bytes / 32u > 0x1FFu)
@@ -55,3 +55,10 @@ display_result_t display_set_address(uint32_t address, uint32_t pitch_bytes) {
 void display_enable_window(void) { mmio_write32(OSD_VIDWINMD, VIDWINMD_ACT0 | VIDWINMD_VFF0); }
 
 int display_second_field(void) { return (mmio_read32(VENC_VSTAT) & VSTAT_FIDST) != 0; }
+
+int display_take_late(void) {
+  const uint32_t flags = mmio_read32(OSD_MISCCTL);
+  if ((flags & OSD_MISCCTL_DMANG) == 0) return 0;
+  mmio_write32(OSD_MISCCTL, flags); /* writing 1 clears it */
+  return 1;
+}

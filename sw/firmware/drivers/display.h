@@ -32,4 +32,8 @@ void display_enable_window(void);
 /** Returns 1 while the second field of a frame is sent. */
 int display_second_field(void);
 
+/** Whether data of the display came too late since the last call: then parts of lines were black. 0 on a chip whose
+ * MISCCTL has no such flag. */
+int display_take_late(void);
+
 #endif

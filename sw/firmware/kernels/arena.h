@@ -18,4 +18,12 @@ static inline void *arena_take(arena_t *arena, size_t bytes, size_t alignment) {
   return (void *)start;
 }
 
+/** The same from the end, so that it can be given back while what was taken from the start stays. */
+static inline void *arena_take_end(arena_t *arena, size_t bytes, size_t alignment) {
+  const uintptr_t start = (arena->end - bytes) & ~(uintptr_t)(alignment - 1);
+  if (bytes > arena->end - arena->next || start < arena->next) return NULL;
+  arena->end = start;
+  return (void *)start;
+}
+
 #endif

@@ -137,7 +137,8 @@ void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena) {
   const uint32_t sources = pipes->entries * pipes->entry_words * 4u;
   const uint32_t control = pipes->controls * PIPE_CONTROL_WORDS * 4u;
   pipes->list_count = 1;
-  while (pipes->list_count < IN_COUNT && sources + control <= (arena->end - arena->next) / 2u) {
+  while (!table->in_turn && pipes->list_count < IN_COUNT &&
+         sources + control <= (arena->end - arena->next) / 2u) {
     pipes_lists_t *lists = &pipes->lists[pipes->list_count];
     *lists = (pipes_lists_t){.sources = arena_take(arena, sources, CACHE_LINE_BYTES)};
     if (lists->sources == NULL) break;

@@ -60,7 +60,8 @@ void pipes_make_ring(pipes_t *pipes, uint32_t moves);
 void pipe_make_control(uint32_t *record, uint32_t pipe, uint32_t moves, uint32_t sources_address);
 
 /** Takes memory for as many further lists as there may be source frames, but not more than half of
- * what is left, and switches the EDMA on. The first lists must be complete. */
+ * what is left, and none if other tables need it; switches the EDMA on. The first lists must be
+ * complete. */
 void pipes_finish(pipes_t *pipes, remap_table_t *table, arena_t *arena);
 
 /** The `run` of both methods. */

@@ -33,11 +33,13 @@ static uint32_t still_missing(edma_codes_t codes) {
   return codes.mask;
 }
 
-static void report(const char *what, uint32_t number) {
+/* One string for the number: with a console it goes through a queue, which uart_put_hex() passes by. */
+static void report(const char *what, uint32_t bits) {
+  char text[] = "0x00000000\n";
+  for (uint32_t n = 0; n < 8u; ++n) text[9u - n] = "0123456789abcdef"[bits >> 4u * n & 15u];
   uart_puts("EDMA: ");
   uart_puts(what);
-  uart_put_uint(number);
-  uart_puts("\n");
+  uart_puts(text);
 }
 
 void edma_wait_all(edma_codes_t codes) {

@@ -12,9 +12,11 @@ typedef struct remap_table {
   uint32_t width, height; /* pixels; multiples of 4 */
   uint32_t pitch_bytes;   /* of source and result; a multiple of 32 */
   const uint32_t *lut;    /* width / 2 * height byte offsets from the start of the source, row by row;
-                             height * pitch_bytes is the offset of the black word */
+                             height * pitch_bytes is the offset of the black word. Once there is an
+                             `encoded` form, perhaps only the first row. */
   const lens_view_t *view; /* what `lut` is made of */
   int has_engine;          /* the chip has the remap engine */
+  int in_turn;             /* other tables need memory of the same arena */
   const void *encoded;    /* the method's own form of the table; a null pointer if it reads `lut` */
   uint32_t encoded_bytes; /* number of bytes of tables that are read for each frame */
 } remap_table_t;
@@ -29,6 +31,7 @@ typedef struct remap_method {
   /** Corrects one frame with any of the tables that were prepared. The caller has invalidated the
    * D-cache for the source, and cleans it for the result afterwards. */
   void (*run)(const remap_table_t *table, const void *in, void *out);
+  int by_device; /* another master reads the source: the core's cache stays as it is */
 } remap_method_t;
 
 extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,

@@ -72,6 +72,22 @@ Shares Run::culprits(std::string_view cause) const {
   return sorted(sums);
 }
 
+Shares Run::waits_of(std::string_view port) const {
+  constexpr std::string_view kDdr = "ddr.", kWait = ".wait.";
+  std::map<std::string, double> sums;
+  for (const auto& row : inputs_.stats) {
+    const auto wait = row.name.find(kWait);
+    if (wait == row.name.npos || !row.name.starts_with(kDdr) || !row.name.substr(kDdr.size()).starts_with(port)) continue;
+    // Behind it comes read.CULPRIT or write.CULPRIT.
+    const auto dot = row.name.find('.', wait + kWait.size());
+    if (dot == row.name.npos) continue;
+    const std::string culprit = row.name.substr(dot + 1);
+    if (const double seconds = as_double(row.value); std::isfinite(seconds))
+      sums[culprit.starts_with(port) ? "own" : culprit] += seconds;
+  }
+  return sorted(sums);
+}
+
 Shares Run::regions(std::string_view cause) const {
   std::map<std::string, double> sums;
   for (const auto& row : inputs_.stalls)
@@ -92,7 +108,7 @@ double Run::frame_period() const {
 std::vector<Finding> explain(const Inputs& inputs) {
   const Run run(inputs);
   std::vector<Finding> out;
-  for (const auto rule : {find_rate, find_budget, find_latency_parts, find_largest_wait,
+  for (const auto rule : {find_rate, find_budget, find_latency_parts, find_mover, find_largest_wait,
                           find_function, find_other_masters, find_rows, find_sdram_use,
                           estimate_shorter_bridge, estimate_faster_memory, estimate_smaller_table})
     rule(run, out);

@@ -139,12 +139,41 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
        {"frames.csv"}});
 }
 
+void find_mover(const Run& run, std::vector<Finding>& out) {
+  const double all = run.value_or_zero("cpu.remap.cycles");
+  for (const auto& [event, port, who] : {std::array<std::string_view, 3>{"dma", "edma_tc", "the EDMA"},
+                                         {"engine", "remap_engine", "the remap engine"}}) {
+    const std::string figure = fmt::format("cpu.remap.idle.{}", event);
+    const double asleep = run.value_or_zero(figure);
+    // Less is a rest that the core waits for at the end of its own work.
+    if (asleep <= 0 || asleep < 0.05 * all) continue;
+    std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} is done.",
+                                   percent(asleep / all), who);
+    std::vector<std::string> evidence{figure, "cpu.remap.cycles"};
+    const auto parts = run.waits_of(port);
+    double whole = 0;
+    for (const auto& [culprit, seconds] : parts) whole += seconds;
+    std::vector<std::string> largest;
+    for (const auto& [culprit, seconds] : parts)
+      if (largest.size() < 3 && seconds >= 0.05 * whole)
+        largest.push_back(fmt::format("{} {}", percent(seconds / whole), spent_by_port(culprit)));
+    if (!largest.empty()) {
+      text += fmt::format(" The time of its requests to the SDRAM: {}.", listed(largest));
+      evidence.push_back(fmt::format("ddr.{}*.wait.*", port));
+    }
+    out.push_back({"mover", text, evidence});
+  }
+}
+
 void find_largest_wait(const Run& run, std::vector<Finding>& out) {
   const double awake = run.awake();
   const auto causes = run.stall_causes();
   if (awake <= 0 || causes.empty()) return;
   const auto& [cause, clocks] = causes.front();
-  std::string text = fmt::format(
+  std::string text;
+  if (const double share = awake / run.value_or_zero("cpu.cycles"); share < 0.1)
+    text = fmt::format("The core is awake in only {} of its clocks. ", percent(share));
+  text += fmt::format(
       "Largest wait: in {} of the clocks in which it is awake, the core waits "
       "for {}",
       percent(clocks / awake), waits_for(cause));

@@ -32,6 +32,9 @@ class Run {
   std::vector<std::pair<std::string, double>> stall_causes() const;
   /// Clocks by culprit, largest first, over all causes or one of them.
   std::vector<std::pair<std::string, double>> culprits(std::string_view cause = {}) const;
+  /// Time (s) of all requests of the ports whose names begin with `port`, by culprit, largest first; what
+  /// they wait for one another is `own`.
+  std::vector<std::pair<std::string, double>> waits_of(std::string_view port) const;
   /// Clocks by region of one cause, largest first, from stalls.csv.
   std::vector<std::pair<std::string, double>> regions(std::string_view cause) const;
   /// The loop remaps without waiting for the camera.
@@ -47,6 +50,7 @@ class Run {
 void find_rate(const Run& run, std::vector<Finding>& out);
 void find_budget(const Run& run, std::vector<Finding>& out);
 void find_latency_parts(const Run& run, std::vector<Finding>& out);
+void find_mover(const Run& run, std::vector<Finding>& out);
 void find_largest_wait(const Run& run, std::vector<Finding>& out);
 void find_function(const Run& run, std::vector<Finding>& out);
 void find_other_masters(const Run& run, std::vector<Finding>& out);

@@ -64,6 +64,13 @@ std::string spent(std::string_view culprit) {
   return "in " + std::string(culprit);
 }
 
+std::string spent_by_port(std::string_view culprit) {
+  if (culprit == "own") return "behind other requests of its own";
+  if (culprit == "bridge") return "in its bridge to the crossbar";
+  if (culprit == "arm_d" || culprit == "arm_i") return "while the core is served";
+  return spent(culprit);
+}
+
 std::string percent(double ratio) {
   const double p = 100 * ratio;
   if (p > 0 && p < 0.1) return "less than 0.1 %";

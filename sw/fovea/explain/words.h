@@ -9,6 +9,8 @@ namespace fovea::explain {
 std::string waits_for(std::string_view cause);
 /// Where a culprit's clocks go, to follow "12 %": "in the bridge between core and crossbar".
 std::string spent(std::string_view culprit);
+/// The same for the requests of another master than the core.
+std::string spent_by_port(std::string_view culprit);
 /// A master in words: "the display"; empty for culprits that are not masters.
 std::string master(std::string_view culprit);
 /// "43 %", "4.3 %", "less than 0.1 %".

@@ -20,7 +20,11 @@ struct AttributionRow {
   std::string region, culprit;
   std::uint64_t clocks = 0, instructions = 0;
 
-  bool idle() const { return cause == "idle" || cause.starts_with("idle."); }
+  /// The core has nothing to do. A sleep that the EDMA or the remap engine ends is not idle: the
+  /// program waits for work that it has given away.
+  bool idle() const {
+    return cause == "idle" || (cause.starts_with("idle.") && cause != "idle.dma" && cause != "idle.engine");
+  }
 };
 
 /// Name and file of a function.

@@ -19,6 +19,7 @@ using CauseKey = std::tuple<std::string, std::string, std::string>;
 struct Side {
   std::map<CauseKey, double> causes;
   std::map<unsigned, double> lines;
+  std::map<unsigned, std::map<std::string, double>> line_causes;
   double clocks = 0, instructions = 0;
   bool present = false;
 };
@@ -41,6 +42,7 @@ void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side,
     s.present = true;
     s.causes[{r.cause, r.region, r.culprit}] += amount;
     s.lines[r.line] += amount;
+    s.line_causes[r.line][r.cause] += amount;
     s.clocks += amount;
     s.instructions += static_cast<double>(r.instructions);
   }
@@ -135,6 +137,12 @@ FunctionChange change_of(const FunctionKey& key, const Pair& p, bool by_function
     if (share.change() != 0)
       f.causes.push_back({std::get<0>(cause), std::get<1>(cause), std::get<2>(cause), share});
   if (by_function) f.lines = aligned(p.before.lines, p.after.lines);
+  for (LineChange& line : f.lines) {
+    if (line.after)
+      for (const auto& [cause, clocks] : p.after.line_causes.at(*line.after)) line.causes[cause] += clocks;
+    if (line.before)
+      for (const auto& [cause, clocks] : p.before.line_causes.at(*line.before)) line.causes[cause] -= clocks;
+  }
   largest_first(f.causes);
   largest_first(f.lines);
   if (!p.before.present) f.kind = ChangeKind::kAdded;
@@ -286,6 +294,14 @@ Blame blame_of(const Difference& difference, bool slower) {
   for (const auto& c : blame.function->causes)  // the largest change comes first
     if (c.cause == most && (c.share.change() > 0) == slower && !blame.cause) blame.cause = &c;
   blame.line = worst(blame.function->lines);
+  // Rather the line at which that cause grew than one at which others did.
+  double grew = 0;
+  for (const auto& line : blame.function->lines)
+    if (const auto found = line.causes.find(most); found != line.causes.end())
+      if (const double amount = found->second * (slower ? 1 : -1); amount > grew) {
+        grew = amount;
+        blame.line = &line;
+      }
   return blame;
 }
 

@@ -1,5 +1,6 @@
 // The difference of two runs' clocks, by function, line, cause and culprit, and what is to blame.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct CauseChange {
 struct LineChange {
   std::optional<unsigned> before, after;  ///< numbers in the two sources; empty: not there
   Share share;
+  std::map<std::string, double> causes;  ///< change of each cause that changed; they add up to the share's
 };
 
 /// A function; without profiles everything is one function without a name.
@@ -47,7 +49,7 @@ struct FunctionChange {
 };
 
 /// What differs between two attributions. The idle clocks are kept apart: a loop that waits for a
-/// camera becomes slower by waiting less.
+/// camera becomes slower by waiting less. A sleep until the EDMA or the engine is done is busy.
 struct Difference {
   bool by_function = false;
   bool in_seconds = false;  ///< the clocks of the two cores have other lengths
@@ -75,7 +77,7 @@ struct Blame {
   const FunctionChange* function = nullptr;
   const CauseChange* cause = nullptr;  ///< largest row of the cause that contributes most
   double by_cause = 0;                 ///< of that cause, over all regions and culprits
-  const LineChange* line = nullptr;
+  const LineChange* line = nullptr;    ///< where that cause grew most
 };
 /// @param slower what became worse: more busy clocks, or fewer
 Blame blame_of(const Difference& difference, bool slower);

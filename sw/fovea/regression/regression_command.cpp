@@ -31,6 +31,10 @@ const std::vector<std::string> kPlotted = {"frame.remap_time.mean", "frame.laten
                                            "startup.lut_time",      "cpu.cycles",         "cpu.instructions",
                                            "ddr.utilisation",       kHostInstructions};
 
+/// Behind the line of a run whose host has no counter of instructions, as virtual machines often have none.
+constexpr const char* kNotCounted =
+    ", without the simulator's host instructions: the host did not count them; --host-instructions gives them";
+
 /// Date and time of a file in UTC, as JUnit XML wants it.
 std::string time_of(const fs::path& file) {
   struct stat info {};
@@ -156,7 +160,8 @@ int trend(const RegressionOptions& options, const CliContext& context) {
                    run.host_instructions, run.metrics};
     if (o.host_instructions > 0) line.host_instructions = o.host_instructions;
     file.add(line);
-    context.out << fmt::format("{}: {} of commit {}\n", o.database, line.experiment, line.commit);
+    context.out << fmt::format("{}: {} of commit {}{}\n", o.database, line.experiment, line.commit,
+                               line.host_instructions ? "" : kNotCounted);
   }
   if (plot) {
     plot->write(trend_svg(file.lines(o.experiment), o.figures.empty() ? kPlotted : o.figures));

@@ -34,16 +34,36 @@ std::map<std::uint64_t, fs::path> numbered(const fs::path& folder) {
   return out;
 }
 
-struct Pair {
+/// Files of a run's pictures.
+struct Files {
   std::optional<std::uint64_t> frame;
   fs::path before, after;
+  struct Camera {
+    unsigned camera = 0;
+    std::uint64_t frame = 0;
+    fs::path file;
+  };
+  std::vector<Camera> cameras;
 };
 
-Pair choose(const fs::path& folder) {
-  const auto camera = numbered(folder / "camera"), shown = numbered(folder / "frames");
+bool composed(const Results& run) {
+  const auto* view = run.parameter("firmware.view");
+  return view && view->value != "single";
+}
+
+Files choose(const Results& run) {
+  const auto camera = numbered(run.folder / "camera"), shown = numbered(run.folder / "frames");
+  if (composed(run) && run.frames && !shown.empty()) {
+    Files out{.frame = shown.rbegin()->first, .before = {}, .after = shown.rbegin()->second, .cameras = {}};
+    std::map<unsigned, std::uint64_t> last;  // frame by camera
+    for (const auto& row : *run.frames)
+      if (row.index <= out.frame && camera.contains(row.index)) last[row.camera] = row.index;
+    for (const auto& [n, frame] : last) out.cameras.push_back({n, frame, camera.at(frame)});
+    if (!out.cameras.empty()) return out;
+  }
   for (const auto& [n, after] : shown)
-    if (const auto found = camera.find(n); found != camera.end()) return {n, found->second, after};
-  if (!shown.empty()) return {shown.begin()->first, {}, shown.begin()->second};
+    if (const auto found = camera.find(n); found != camera.end()) return {n, found->second, after, {}};
+  if (!shown.empty()) return {shown.begin()->first, {}, shown.begin()->second, {}};
   return {};
 }
 
@@ -99,16 +119,18 @@ std::optional<PictureDifference> difference(const app::RgbImage& a, const app::R
 
 std::vector<RunPictures> choose_pictures(const std::vector<Results>& runs, std::size_t budget) {
   struct Loaded {
-    Pair files;
+    Files files;
     std::optional<app::RgbImage> before, after;
+    std::vector<app::RgbImage> cameras;
   };
   std::vector<Loaded> loaded;
   std::size_t pictures = 0;
   for (const auto& run : runs) {
-    Loaded one{choose(run.folder), {}, {}};
+    Loaded one{choose(run), {}, {}, {}};
     if (!one.files.before.empty()) one.before = app::read_png(one.files.before);
     if (!one.files.after.empty()) one.after = app::read_png(one.files.after);
-    pictures += one.before.has_value() + one.after.has_value();
+    for (const auto& c : one.files.cameras) one.cameras.push_back(app::read_png(c.file));
+    pictures += one.before.has_value() + one.after.has_value() + one.cameras.size();
     loaded.push_back(std::move(one));
   }
   std::vector<RunPictures> out;
@@ -127,6 +149,10 @@ std::vector<RunPictures> choose_pictures(const std::vector<Results>& runs, std::
     };
     if (one.before) chosen.before = fit(one.files.before, *one.before);
     if (one.after) chosen.after = fit(one.files.after, *one.after);
+    for (std::size_t c = 0; c < one.cameras.size(); ++c) {
+      const auto& files = one.files.cameras[c];
+      chosen.cameras.push_back({files.camera, files.frame, fit(files.file, one.cameras[c])});
+    }
     if (&one != &loaded.front() && one.after && loaded.front().after &&
         one.files.frame == loaded.front().files.frame)
       chosen.from_first = difference(*loaded.front().after, *one.after);

@@ -23,14 +23,22 @@ struct PictureDifference {
   double psnr = 0;                  ///< dB over R, G and B; infinite if they are equal
 };
 
+struct CameraPicture {
+  unsigned camera = 0;
+  std::uint64_t frame = 0;  ///< the displayed frame for which the camera sent it
+  Picture picture;
+};
+
 struct RunPictures {
   std::optional<std::uint64_t> frame;           ///< number in the files' names
   std::optional<Picture> before;                ///< what the camera sent
   std::optional<Picture> after;                 ///< what the display showed
+  std::vector<CameraPicture> cameras;           ///< of a composed view, instead of `before`
   std::optional<PictureDifference> from_first;  ///< `after` against that of the first run
 };
 
-/// Of each run the first frame that has both pictures, or else the first displayed one. All
+/// Of each run the first frame that has both pictures, or else the first displayed one; of a composed
+/// view the last frame, since the first ones still lack parts, with what each camera sent last. All
 /// pictures together take at most `budget` bytes of the page; larger ones are shrunk by averaging.
 /// @throws UserError for a damaged picture
 std::vector<RunPictures> choose_pictures(const std::vector<Results>& runs, std::size_t budget);

@@ -196,6 +196,17 @@ std::string pictures_of(const Runs& runs, std::size_t i, const RunPictures& p) {
     return absent(
         "This run has no pictures (frames/): it displayed none, or --no-frames left them out.");
   const std::string frame = fmt::format("Frame {}", *p.frame);
+  if (!p.cameras.empty()) {
+    std::string out = fmt::format(
+        "<figure id=\"{}\"><figcaption>{}: the composed view on the display. Below it, what was sent last for each "
+        "camera.{}</figcaption>"
+        "<div class=\"stack\"><div class=\"one\">{}</div></div></figure><div class=\"cameras\">",
+        id, frame, shrunk_note(*p.after), picture_html(*p.after, "display"));
+    for (const auto& c : p.cameras)
+      out += fmt::format("<figure><figcaption>Camera {}, for frame {}.{}</figcaption>{}</figure>", c.camera, c.frame,
+                         shrunk_note(c.picture), picture_html(c.picture, fmt::format("what camera {} sent", c.camera)));
+    return out + "</div>";
+  }
   if (p.before)
     return compared(id, *p.before, "camera", *p.after, "display",
                     frame + ": what the camera sent, and the corrected picture on the display.");

@@ -5,6 +5,9 @@ const CAUSES = {
   bus_sync: 'bus clock edge', idle: 'idle (waits for an interrupt)',
 };
 
+/// Whose interrupt ends a sleep.
+const EVENTS = {dma: 'the EDMA', engine: 'the remap engine', capture: 'the camera', display: 'the display', timer: 'a timer', other: 'others'};
+
 /// [cause, clocks, {culprit: clocks}] of everything that has clocks; issue first, idle last, waits by size between.
 function clocksByCause(run) {
   const value = (name) => (run.stats[name] ?? [0])[0];
@@ -18,14 +21,14 @@ function clocksByCause(run) {
 /// Who is to blame, in groups that colours can tell apart; the table has each one.
 const GROUPS = {
   issue: 'instructions', itself: 'the core itself', bridge: 'bridge between core and crossbar', way: 'unloaded way through crossbar and SDRAM controller',
-  rows: "SDRAM's rows, refresh, turnaround", video: 'camera and display', copying: 'EDMA', other: 'other masters',
+  rows: "SDRAM's rows, refresh, turnaround", video: 'camera and display', copying: 'EDMA and remap engine', other: 'other masters',
 };
 function group(culprit) {
   if (culprit === 'service') return 'way';
   if (culprit === 'bridge') return 'bridge';
   if (/^(row_miss|row_conflict|refresh|turnaround|power_down)$/.test(culprit)) return 'rows';
   if (/^vp[fb]e/.test(culprit)) return 'video';
-  if (culprit.startsWith('edma')) return 'copying';
+  if (culprit.startsWith('edma') || culprit === 'remap_engine') return 'copying';
   return /^(core|own|arm_[di])$/.test(culprit) ? 'itself' : 'other';
 }
 
@@ -63,7 +66,10 @@ function drawWaterfall(place, run) {
     if (row + 1 < rows.length) svg.append(element('line', {class: 'base', x1: x(from + clocks), x2: x(from + clocks), y1: y + 22, y2: y + 34}));
     from += clocks;
   });
-  place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and idle, waiting for an interrupt, in ${percent(idle / cycles)}.`),
+  const events = Object.entries(EVENTS).map(([event, words]) => [words, (run.stats[`cpu.idle.${event}`] ?? [0])[0]])
+    .filter(([, n]) => n > 0).sort((a, b) => b[1] - a[1]).map(([words, n]) => `${words} ${percent(n / cycles)}`);
+  const ended = events.length ? ` The interrupt that ended the sleep came from: ${events.join(', ')}.` : '';
+  place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and asleep, waiting for an interrupt, in ${percent(idle / cycles)}.${ended}`),
                svg, legend(Object.keys(GROUPS).filter((g) => used.has(g)), GROUPS));
 }
 

@@ -1,0 +1,61 @@
+/* Cameras in turn, each with a table of its own, and a console (choices.h). */
+#include <stddef.h>
+
+#include "../drivers/cp15.h"
+#include "../drivers/uart.h"
+#include "../kernels/engine_jobs.h"
+#include "camera_events.h"
+#include "choices.h"
+#include "pipeline.h"
+#include "program.h"
+#include "say.h"
+#include "state.h"
+#include "view_tables.h"
+
+static uint32_t repeats;
+static struct view views[TABLES_MAX];
+
+void program_print(const config_t *config) {
+  uart_puts(", ");
+  uart_put_uint(config->cameras);
+  uart_puts(" cameras in turn");
+}
+
+uint32_t program_in_count(const config_t *config) { return config->sources + 2u; }
+
+void program_build(const config_t *config) {
+  repeats = config->repeats;
+  view_configure(config);
+  view_tables_build(views, config);
+}
+
+void program_started(const config_t *config) { choices_start(config, views); }
+
+void program_work(void) {
+  camera_events_say();
+  const char *what = pipeline_display_event();
+  if (what != NULL) {
+    uart_puts("display: ");
+    uart_puts(what);
+    uart_puts("\n");
+  }
+  choices_work();
+}
+
+void program_frame(uint8_t *out, uint32_t sequence) {
+  if (!pipeline_whole()) return;
+  for (uint32_t left = repeats; left-- != 0;)
+    view_correct(&views[pipeline_camera()], pipeline_source(0), out, sequence);
+  pipeline_done(!engine_jobs_failed());
+}
+
+int correct_next_frame(void) {
+  uint8_t *out;
+  uint32_t sequence;
+  if (!pipeline_take(&out, &sequence)) return 0;
+  const uint32_t cpsr = irq_mask();
+  irq_unmask();
+  program_frame(out, sequence);
+  irq_restore(cpsr);
+  return 1;
+}
