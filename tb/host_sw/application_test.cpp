@@ -221,18 +221,6 @@ TEST(OutputTest, ABufferIsNeverWrittenWhileItMayBeShown) {
   EXPECT_GE(seen.size(), 2u);
 }
 
-TEST(OutputTest, ABufferThatIsGivenBackIsFreeAndNotShown) {
-  output_t o;
-  output_init(&o, 2);
-  const int a = output_take(&o), b = output_take(&o);
-  EXPECT_EQ(output_take(&o), OUTPUT_NONE);
-  output_give_back(&o, a);
-  std::uint32_t sequence;
-  EXPECT_EQ(output_next(&o, &sequence), OUTPUT_NONE);
-  EXPECT_EQ(output_take(&o), a);
-  EXPECT_EQ(output_take(&o), OUTPUT_NONE) << b;
-}
-
 TEST(OutputTest, AQueueKeepsItsOrderAndBlocksWritersWhenFull) {
   output_t o;
   output_init(&o, 3);

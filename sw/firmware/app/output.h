@@ -32,11 +32,6 @@ void output_give_back(output_t *output, int32_t buffer);
 /** A written buffer is complete; it will be displayed after those that were queued before. */
 void output_queue(output_t *output, int32_t buffer, uint32_t sequence);
 
-/** A buffer that was taken is not needed: nothing is displayed of it. */
-static inline void output_give_back(output_t *output, int32_t buffer) {
-  output->writing &= ~(1u << buffer);
-}
-
 /** During a second field: the buffer to display next, or OUTPUT_NONE if nothing changes. */
 int32_t output_next(output_t *output, uint32_t *sequence);
 
