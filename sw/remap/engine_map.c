@@ -7,7 +7,7 @@
 /* A value in the field with this mask. */
 #define FIELD(mask, value) ((uint32_t)(value) * ((mask) & (~(mask) + 1u)))
 
-enum mode { TABLE = 0, GRID = 1, RADIAL = 2 };
+enum mode { TABLE = 0, GRID = 1, RADIAL = 2, PROJECT = 3 };
 
 static const char kRange[] = "the view does not fit into the engine's numbers";
 
@@ -37,6 +37,32 @@ remap_engine_job_t remap_engine_table(uint32_t width, uint32_t height, uint32_t 
   remap_engine_job_t job = job_of(TABLE, width, height, pitch_bytes);
   job.map_words = lens_lut_entries(width, height);
   return job;
+}
+
+/* With a third form that is 0 everywhere no position has a source. */
+void remap_engine_blacken(remap_engine_job_t *job) {
+  job->mode = FIELD(ENGINE_MODE_MODE, PROJECT);
+  job->map_words = 0;
+  job->c[0] = job->c[1] = job->c[2] = 0;
+}
+
+remap_engine_job_t remap_engine_part(const engine_part_t *part, uint32_t width, uint32_t height,
+                                     uint32_t pitch_bytes) {
+  remap_engine_job_t job = remap_engine_table(width, height, pitch_bytes);
+  job.size = FIELD(ENGINE_SIZE_PAIRS, part->pairs) | FIELD(ENGINE_SIZE_ROWS, part->rows);
+  job.dst_base = part->top * pitch_bytes + part->left * 4u;
+  job.dst_pitch = part->every * pitch_bytes + (uint32_t)(part->slant * 4);
+  job.map_words = (uint32_t)part->pairs * part->rows;
+  return job;
+}
+
+void remap_engine_part_map(const engine_part_t *part, const uint32_t *lut, uint32_t width,
+                           uint32_t *map) {
+  for (uint32_t row = 0; row < part->rows; ++row) {
+    const int32_t left = (int32_t)part->left + (int32_t)row * part->slant;
+    const uint32_t *from = lut + (part->top + row * part->every) * (width / 2u) + (uint32_t)left;
+    for (uint32_t i = 0; i < part->pairs; ++i) *map++ = *from++;
+  }
 }
 
 /* The pixel of a pair whose source is looked for, relative to the pair's first one. */

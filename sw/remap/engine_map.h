@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "sw/lens/lens.h"
+#include "sw/remap/engine_parts.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,6 +31,17 @@ typedef struct remap_engine_job {
 /** The job that follows the look-up table, which is its map. Source and result have the same size, in
  * pixels, and pitch; the addresses of source, result and map are left 0, here and below. */
 remap_engine_job_t remap_engine_table(uint32_t width, uint32_t height, uint32_t pitch_bytes);
+
+/** Makes of a job one that paints its whole result in the colour of the border, and reads nothing. */
+void remap_engine_blacken(remap_engine_job_t *job);
+
+/** The job of a part of a picture (engine_parts.h), by a table; its result's address is relative to the picture's. The
+ * map has an entry for each pair of the part, row by row: remap_engine_part_map() copies them from the table of the
+ * whole picture. */
+remap_engine_job_t remap_engine_part(const engine_part_t *part, uint32_t width, uint32_t height,
+                                     uint32_t pitch_bytes);
+void remap_engine_part_map(const engine_part_t *part, const uint32_t *lut, uint32_t width,
+                           uint32_t *map);
 
 /** Number of words of a grid's map. */
 uint32_t remap_engine_grid_words(uint32_t width, uint32_t height);

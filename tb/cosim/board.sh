@@ -44,6 +44,8 @@ run both -s engine=both || fail "both: status $? $(tail -3 both.log)"
 good both
 same rtl both uart.log stalls.csv timeline.csv
 [ "$(value both engine.pair.requests)" -ge 40 ] || fail "engine.pair.requests is $(value both engine.pair.requests)"
+run both_strict -s engine=both --sync=strict || fail "both, strict: status $? $(tail -3 both_strict.log)"
+same both both_strict stats.json stalls.csv timeline.csv uart.log
 run both_tlm -s engine=both_tlm || fail "both_tlm: status $? $(tail -3 both_tlm.log)"
 good both_tlm
 [ "$(value both_tlm engine.pair.requests)" -ge 40 ] || fail "engine.pair.requests is $(value both_tlm engine.pair.requests)"

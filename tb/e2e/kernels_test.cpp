@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <systemc>
 
+#include "model/engine/remap_engine.h"
 #include "tb/e2e/expectations.h"
 #include "tb/e2e/rig.h"
 #include "tb/rtl/lens_maps.h"
@@ -206,6 +208,64 @@ TEST(EngineKernelTest, AGridRefusesALargestAngle) {
   expect_exact(rig, "staged", 1);
   EXPECT_EQ(kernel_lines(rig).find("kernel engine_grid: a grid cannot express the largest visible angle\n"), 0u)
       << kernel_lines(rig);
+}
+
+/// Jobs that the firmware did not ask for, while its own is under way: each kind of failure is said, the picture that
+/// may be wrong is left out, the one before stays, and the engine goes on.
+class EngineFailure : public testing::Test {
+ protected:
+  engine::RemapEngine& engine() { return rig.board().dm365.placed.get<engine::RemapEngine>("engine"); }
+  void put(const Reg& r, std::uint32_t value) { engine().regs.write(r.offset(), 4, value); }
+  bool busy() {
+    std::uint32_t status = 0;
+    engine().regs.read(engine().regs.status.offset(), 4, status);
+    return status & 1;
+  }
+  /// Until the firmware's next job is under way.
+  void next_job() {
+    while (busy()) rig.advance(kPsPerUs * 20);
+    while (!busy() && kernel_time() < kLimit) rig.advance(kPsPerUs * 20);
+  }
+  std::vector<std::string> said() {
+    std::vector<std::string> lines;
+    const std::string text = rig.board().uart_text(), begin = "engine: ";
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1))
+      lines.push_back(text.substr(at + begin.size(), text.find('\r', at) - at - begin.size()));
+    return lines;
+  }
+  Rig rig;
+};
+
+TEST_F(EngineFailure, EachIsSaidAndTheLastGoodPictureStays) {
+  rig.set("video.width", "160").set("video.height", "48").set("camera.stamp", "false").set("lens.fov", "150deg");
+  rig.set("run.frames", "24").set("firmware.kernel", "engine").set("engine", "tlm");
+  rig.build();
+  constexpr std::uint32_t kNowhere = 0x0300'0000;
+  const auto& r = engine().regs;
+  const auto submit = [&] { put(r.submit, 0xEE); };
+  const std::vector<std::pair<std::string, std::function<void()>>> faults = {
+      {"0x03", [&] { put(r.size, 0), submit(); }},
+      {"0x05", [&] { put(r.src_base, kNowhere), submit(); }},
+      {"0x09", [&] { put(r.dst_base, kNowhere), submit(); }},
+      {"0x10", [&] { put(r.ctrl, 3); }},
+      {"0x20", [&] { for (int n = 0; n < 5; ++n) submit(); }}};
+  next_job();
+  for (const auto& [events, fault] : faults) {
+    for (int n = 0; n < 3; ++n) next_job();
+    ASSERT_TRUE(busy());
+    fault();
+    rig.advance(60 * kPsPerMs);  // the frame that is left out, and a good one
+  }
+  rig.run(kLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), 24u) << rig.board().uart_text();
+  const auto lines = said();
+  ASSERT_EQ(lines.size(), faults.size()) << rig.board().uart_text();
+  for (std::size_t n = 0; n < lines.size(); ++n) EXPECT_EQ(lines[n], "events " + faults[n].first);
+  expect_frames_right(rig, 0);
+  unsigned repeated = 0;
+  for (const Shown& s : rig.shown()) repeated += s.record.repeated;
+  EXPECT_EQ(repeated, faults.size());
 }
 
 }  // namespace

@@ -31,11 +31,14 @@ TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {
   rig.set("tvp5146.relock_fields", "0").set("video.width", p.width).set("video.height", p.height);
   rig.set("firmware.view", p.view).set("firmware.kernel", p.kernel).set("firmware.lut", p.lut);
   rig.set("cameras.quad", p.quad ? "true" : "false");
+  const bool by_engine = p.kernel == std::string("engine");
+  if (by_engine) rig.set("engine", "tlm");
   rig.set("camera.1.lens.mapping", "linear").set("camera.2.lens.centre_x", "5px").set("camera.3.mount.roll", "5deg");
   rig.set("run.frames", "7");
   rig.run(kViewLimit);
   ASSERT_EQ(rig.board().dm365.arm.failure(), "") << rig.board().uart_text();
   ASSERT_EQ(rig.shown().size(), 7u) << rig.board().uart_text();
+  EXPECT_EQ(rig.board().uart_text().find("kernel: engine, ") != std::string::npos, by_engine);
   const oracle::LutCheck check = rig.table_check();
   EXPECT_EQ(check.wrong, 0u) << check.first_wrong->text();
   EXPECT_LE(check.near_boundary, check.entries / 1000);
@@ -71,7 +74,9 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                          testing::Values(View{"FourWay", "four_way", false, "fastest", "fixed_point"},
                                          View{"BirdsEye", "birds_eye", false, "plain", "soft_float"},
                                          View{"FourWayTiny", "four_way", false, "ldm", "fixed_point", "32", "16"},
-                                         View{"BirdsEyeQuad", "birds_eye", true, "ldm", "fixed_point", "0", "0"}),
+                                         View{"FourWayEngine", "four_way", false, "engine", "fixed_point", "32", "16"},
+                                         View{"BirdsEyeEngine", "birds_eye", false, "engine", "fixed_point"},
+                                         View{"BirdsEyeQuadEngine", "birds_eye", true, "engine", "fixed_point", "0", "0"}),
                          [](const auto& i) { return i.param.name; });
 
 // Whose frame a part shows is in its pixels; each captured frame is displayed, so with the stamps of all parts every
@@ -117,10 +122,15 @@ TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
   EXPECT_GT(newest, *last.number[2] + 6);
 }
 
-class ShippedViewTest : public testing::TestWithParam<const char*> {};
+struct ShippedView {
+  const char *file, *kernel = "fastest";
+};
+class ShippedViewTest : public testing::TestWithParam<ShippedView> {};
 TEST_P(ShippedViewTest, IsComposedOfSentFrames) {
   ViewsRig rig;
-  rig.load(GetParam()).set("camera.stamp", "true");  // the car park alone stands still
+  rig.load(GetParam().file).set("camera.stamp", "true");  // the car park alone stands still
+  const bool by_engine = GetParam().kernel == std::string("engine");
+  if (by_engine) rig.set("engine", "tlm").set("firmware.kernel", "engine");
   rig.run(kViewLimit);
   ASSERT_EQ(rig.shown().size(), rig.params.run.frames()) << rig.board().uart_text();
   const oracle::LutCheck check = rig.table_check();
@@ -131,9 +141,12 @@ TEST_P(ShippedViewTest, IsComposedOfSentFrames) {
   EXPECT_EQ(rig.wrong_picture(rig.table()), "");
 }
 INSTANTIATE_TEST_SUITE_P(Nightly, ShippedViewTest,
-                         testing::Values("four-way.yaml", "birds-eye.yaml", "birds-eye-quad.yaml"),
+                         testing::Values(ShippedView{"four-way.yaml"}, ShippedView{"birds-eye.yaml"},
+                                         ShippedView{"birds-eye-quad.yaml"}, ShippedView{"four-way.yaml", "engine"},
+                                         ShippedView{"birds-eye.yaml", "engine"},
+                                         ShippedView{"birds-eye-quad.yaml", "engine"}),
                          [](const auto& i) {
-                           std::string name = i.param;
+                           std::string name = std::string(i.param.file) + i.param.kernel;
                            std::erase_if(name, [](char c) { return c == '-' || c == '.'; });
                            return name;
                          });

@@ -93,6 +93,29 @@ TEST_F(Chip, AJobRaisesItsInterrupt) {
   EXPECT_EQ(engine().stats.source_bytes.count(), kPairs * kRows * 4u);
 }
 
+/// The configuration bus hands whole words over: which bytes are written makes no difference. What is not written is 0.
+TEST_F(Chip, AWriteToAnyBytesOfSubmitPushesAJob) {
+  set_register(engine().regs.size, 1 | 1 << 16);
+  const std::uint32_t submit = engine().regs.submit.offset();
+  const struct {
+    std::uint32_t byte;
+    unsigned bytes;
+    std::uint32_t value, tag;
+  } writes[] = {{0, 1, 0xA5, 0xA5}, {1, 1, 0xA5, 0}, {2, 2, 0xBEEF, 0}, {0, 2, 0x12C3, 0xC3}};
+  unsigned pushed = 0;
+  for (const auto& w : writes) {
+    engine().regs.write(submit + w.byte, w.bytes, w.value);
+    run(kPsPerUs);
+    EXPECT_EQ(get(engine().regs.status) >> 4 & 15, ++pushed);
+  }
+  std::uint32_t ended = 0;
+  set_register(engine().regs.enables, 0x7F);
+  set_register(engine().regs.ctrl, 1);
+  run(kPsPerMs);
+  ended = get(engine().regs.ended);
+  EXPECT_EQ(ended, 4u << 16 | 2u << 8 | 0xC3) << "a source without a row is refused; the tag of the last one";
+}
+
 TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
   unsigned busy = 0;
   for (unsigned n = 1; n < 12; ++n) {

@@ -1,15 +1,12 @@
-// The drivers of EDMA and remap engine against a recorder. Addresses and values are literals from SPRUEE4A and Linux
+// The driver of the EDMA against a recorder. Addresses and values are literals from SPRUEE4A and Linux
 // drivers/dma/ti/edma.c.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "register_recorder.h"
 
 extern "C" {
 #include "sw/firmware/drivers/edma.h"
-#include "sw/firmware/drivers/engine.h"
 
 uint32_t mmio_read32(uint32_t address) { return RegisterRecorder::current()->read(address); }
 void mmio_write32(uint32_t address, uint32_t value) {
@@ -132,61 +129,6 @@ TEST(EdmaTest, EachErrorHasItsBit) {
     EXPECT_EQ(edma_errors(), error) << std::hex << address;
     chip.values[address] = 0;
   }
-}
-
-// Offsets from the table in rtl/README.md.
-constexpr std::uint32_t kEngine = 0x01C6A000;
-
-TEST(EngineTest, AnotherIdentityIsReadAndLeftAlone) {
-  RegisterRecorder chip;
-  chip.values[kEngine] = 0x52454D30;
-  EXPECT_FALSE(engine_init());
-  EXPECT_THAT(chip.accesses, ElementsAre(A{'r', kEngine, 0x52454D30}));
-}
-
-TEST(EngineTest, StartEndsWhatIsUnderWayAndLeavesNothingPending) {
-  RegisterRecorder chip;
-  unsigned looks = 0;
-  chip.on_read = [&](std::uint32_t address) {
-    if (address == kEngine) return 0x52454D31u;
-    return address == kEngine + 8 && ++looks < 3 ? 0x101u : 0x100u;
-  };
-  EXPECT_TRUE(engine_init());
-  EXPECT_EQ(looks, 3u);
-  EXPECT_THAT(chip.writes(),
-              ElementsAre(A{'w', kEngine + 0x10, 0}, A{'w', kEngine + 4, 2}, A{'w', kEngine + 0xC, 0x7F},
-                          A{'w', kEngine + 0x10, 0x7F}, A{'w', kEngine + 4, 1}));
-  chip.on_read = [](std::uint32_t address) { return address == kEngine ? 0x52454D31u : 1u; };
-  EXPECT_FALSE(engine_init()) << "it never stops";
-}
-
-TEST(EngineTest, AJobIsTheWholeWindowThenItsTag) {
-  RegisterRecorder chip;
-  remap_engine_job_t job{};
-  job.mode = 0x40;
-  job.dst_base = 0x54;
-  job.map_base = 0x5C;
-  job.centre_y = 0x70;
-  job.a[0] = 0x74;
-  job.c[2] = 0x94;
-  engine_submit(&job, 0x1234);
-  const auto writes = chip.writes();
-  ASSERT_EQ(writes.size(), 23u);
-  for (unsigned n = 0; n < 22; ++n) {
-    EXPECT_EQ(writes[n].address, kEngine + 0x40 + 4 * n);
-    if (writes[n].value != 0) { EXPECT_EQ(writes[n].value, 0x40 + 4 * n); }
-  }
-  EXPECT_EQ(std::count_if(writes.begin(), writes.end(), [](const A& a) { return a.value != 0; }), 7);
-  EXPECT_EQ(writes.back(), (A{'w', kEngine + 0x14, 0x34}));
-}
-
-TEST(EngineTest, EventsThatAreTakenAreClearedAndNoOthers) {
-  RegisterRecorder chip;
-  EXPECT_EQ(engine_take_events(), 0u);
-  EXPECT_THAT(chip.writes(), IsEmpty());
-  chip.values[kEngine + 0xC] = 5;
-  EXPECT_EQ(engine_take_events(), 5u);
-  EXPECT_THAT(chip.writes(), ElementsAre(A{'w', kEngine + 0xC, 5}));
 }
 
 }  // namespace

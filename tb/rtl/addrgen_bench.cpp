@@ -1,6 +1,7 @@
 #include "tb/rtl/addrgen_bench.h"
 
 #include "Vbench_top.h"
+#include "tb/rtl/coverage.h"
 #include "tb/rtl/job_ports.h"
 
 namespace fovea::rtl {
@@ -14,7 +15,7 @@ AddrgenBench::AddrgenBench(std::uint32_t seed)
   clock();
 }
 
-AddrgenBench::~AddrgenBench() = default;
+AddrgenBench::~AddrgenBench() { keep_coverage(); }
 
 void AddrgenBench::clock() {
   dut_->clk_i = 1;

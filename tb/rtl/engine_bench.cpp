@@ -1,6 +1,7 @@
 #include "tb/rtl/engine_bench.h"
 
 #include "Vremap_top.h"
+#include "tb/rtl/coverage.h"
 
 namespace fovea::rtl {
 
@@ -13,7 +14,7 @@ EngineBench::EngineBench(std::size_t bytes, std::uint32_t seed)
   tick();
 }
 
-EngineBench::~EngineBench() = default;
+EngineBench::~EngineBench() { keep_coverage(); }
 
 void EngineBench::tick() {
   dut_->clk_i = 1;
@@ -76,16 +77,13 @@ void EngineBench::sample() {
     answers_.pop_front();
   }
   checker_.clock(c);
-  lite_checker_.clock({.aw = d.s_aw_valid_i && d.s_aw_ready_o,
-                       .w = d.s_w_valid_i && d.s_w_ready_o,
-                       .ar = d.s_ar_valid_i && d.s_ar_ready_o,
-                       .b_valid = d.s_b_valid_o != 0,
-                       .b_ready = d.s_b_ready_i != 0,
-                       .r_valid = d.s_r_valid_o != 0,
-                       .r_ready = d.s_r_ready_i != 0,
-                       .b_response = d.s_b_resp_o,
-                       .r_response = d.s_r_resp_o,
-                       .r_data = d.s_r_data_o});
+  LiteWires port;
+  port.aw = {d.s_aw_valid_i != 0, d.s_aw_ready_o != 0, d.s_aw_addr_i};
+  port.ar = {d.s_ar_valid_i != 0, d.s_ar_ready_o != 0, d.s_ar_addr_i};
+  port.w = {d.s_w_valid_i != 0, d.s_w_ready_o != 0, d.s_w_data_i, d.s_w_strb_i, 0};
+  port.r = {d.s_r_valid_o != 0, d.s_r_ready_i != 0, d.s_r_data_o, 0, d.s_r_resp_o};
+  port.b = {d.s_b_valid_o != 0, d.s_b_ready_i != 0, d.s_b_resp_o};
+  port_checker_.clock(port);
   const std::uint64_t due =
       now_ + memory.latency + (memory.spread ? random_() % (memory.spread + 1) : 0);
   if (c.ar.valid && c.ar.ready) {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "model/engine/rtl/axi_checker.h"
+#include "model/engine/rtl/slave_checker.h"
 #include "tb/rtl/golden.h"
-#include "tb/rtl/lite_checker.h"
 
 class Vremap_top;
 
@@ -100,7 +100,7 @@ class EngineBench {
   std::mt19937 random_;
   std::vector<std::uint32_t> words_;
   AxiChecker checker_{4 + 8, 4};  // four bursts of the map reader's buffer, eight lines
-  LiteChecker lite_checker_;
+  RegisterPortChecker port_checker_{false};  ///< the tests use addresses between words too
   std::uint64_t now_ = 0;
   std::deque<Read> reads_;
   std::size_t reading_ = 0;  ///< whose beat is on the wires

@@ -324,31 +324,5 @@ TEST(RegistersTest, TheInterruptIsTheOrOfTheEventsWhoseEnableIsSet) {
   }
 }
 
-void expect_complaint(const std::vector<LiteClock>& clocks, const char* text) {
-  LiteChecker checker;
-  for (std::size_t n = 0; n + 1 < clocks.size(); ++n) EXPECT_NO_THROW(checker.clock(clocks[n]));
-  try {
-    checker.clock(clocks.back());
-    ADD_FAILURE() << "no complaint of: " << text;
-  } catch (const std::runtime_error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr(text));
-  }
-}
-
-TEST(LiteCheckerTest, ComplainsOfEachRule) {
-  const LiteClock write{.aw = true, .w = true}, read{.ar = true}, b{.b_valid = true},
-      r{.r_valid = true};
-  expect_complaint({write, b, {}}, "BVALID taken back");
-  expect_complaint({read, r, {}}, "RVALID taken back");
-  expect_complaint({write, b, {.b_valid = true, .b_response = 2}}, "B changed");
-  expect_complaint({read, r, {.r_valid = true, .r_response = 2}}, "R changed");
-  expect_complaint({read, r, {.r_valid = true, .r_data = 1}}, "R changed");
-  expect_complaint({{.aw = true}, b}, "to no write");
-  expect_complaint({{.w = true}, b}, "to no write");
-  expect_complaint({write, {.b_valid = true, .b_ready = true}, b}, "to no write");
-  expect_complaint({r}, "to no read");
-  expect_complaint({read, {.r_valid = true, .r_ready = true}, r}, "to no read");
-}
-
 }  // namespace
 }  // namespace fovea::rtl

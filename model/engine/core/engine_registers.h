@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "model/common/regbank.h"
+#include "model/engine/core/engine_offsets.h"
 
 namespace fovea::engine {
 
@@ -67,39 +68,39 @@ struct EngineRegs : RegBank {
     Field value{*this, "WORDS", 0, 24, Mode::kRw, "words of 32 bits"};
   };
 
-  Reg id{*this, "ID", 0x00, Mode::kRo, "identification", kIdentity};
-  Control ctrl{*this, "CTRL", 0x04, "control"};
-  Status status{*this, "STATUS", 0x08, "status"};
-  Events events{*this, "EVENTS", 0x0C, Mode::kW1c, "what has happened; 1 clears"};
-  Events enables{*this, "ENABLES", 0x10, Mode::kRw, "events that hold the interrupt line high"};
-  Submit submit{*this, "SUBMIT", 0x14, "puts the job of MODE to C2 into the queue"};
-  Ended ended{*this, "ENDED", 0x18, "the job that ended last"};
-  Reg clocks{*this, "CLOCKS", 0x20, Mode::kRo, "clocks that the job took which ended last"};
-  Reg lines{*this, "LINES", 0x24, Mode::kRo, "lines of the source that it read"};
-  Reg writes{*this, "WRITES", 0x28, Mode::kRo, "bursts that it wrote"};
-  Reg bad{*this, "BAD", 0x2C, Mode::kRo, "entries of its table that are no addresses"};
-  JobMode mode{*this, "MODE", 0x40, "how positions follow"};
-  Size size{*this, "SIZE", 0x44, "the result's size"};
-  Bytes src_base{*this, "SRC_BASE", 0x48, 2, 30, "first byte of the source"};
-  Bytes src_pitch{*this, "SRC_PITCH", 0x4C, 2, 13, "from row to row of the source"};
-  SourceSize src_size{*this, "SRC_SIZE", 0x50, "the source's size"};
-  Bytes dst_base{*this, "DST_BASE", 0x54, 2, 30, "first byte of the result"};
-  Bytes dst_pitch{*this, "DST_PITCH", 0x58, 2, 13, "from row to row of the result"};
-  Bytes map_base{*this, "MAP_BASE", 0x5C, 6, 26, "first byte of the map"};
-  Words map_words{*this, "MAP_WORDS", 0x60, "length of the map"};
-  Reg border{*this, "BORDER", 0x64, Mode::kRw, "the word of a pair without a source"};
-  Reg radius_limit{*this, "RADIUS_LIMIT", 0x68, Mode::kRw, "largest visible square radius, Q8"};
-  Reg centre_x{*this, "CENTRE_X", 0x6C, Mode::kRw, "centre in the source, pixels, Q16"};
-  Reg centre_y{*this, "CENTRE_Y", 0x70, Mode::kRw, "centre in the source, rows, Q16"};
-  Reg a0{*this, "A0", 0x74, Mode::kRw, "linear form A: first value"};
-  Reg a1{*this, "A1", 0x78, Mode::kRw, "linear form A: step of a pair"};
-  Reg a2{*this, "A2", 0x7C, Mode::kRw, "linear form A: step of a row"};
-  Reg b0{*this, "B0", 0x80, Mode::kRw, "linear form B: first value"};
-  Reg b1{*this, "B1", 0x84, Mode::kRw, "linear form B: step of a pair"};
-  Reg b2{*this, "B2", 0x88, Mode::kRw, "linear form B: step of a row"};
-  Reg c0{*this, "C0", 0x8C, Mode::kRw, "linear form C: first value"};
-  Reg c1{*this, "C1", 0x90, Mode::kRw, "linear form C: step of a pair"};
-  Reg c2{*this, "C2", 0x94, Mode::kRw, "linear form C: step of a row"};
+  Reg id{*this, "ID", at::kId, Mode::kRo, "identification", kIdentity};
+  Control ctrl{*this, "CTRL", at::kCtrl, "control"};
+  Status status{*this, "STATUS", at::kStatus, "status"};
+  Events events{*this, "EVENTS", at::kEvents, Mode::kW1c, "what has happened; 1 clears"};
+  Events enables{*this, "ENABLES", at::kEnables, Mode::kRw, "events that hold the interrupt line high"};
+  Submit submit{*this, "SUBMIT", at::kSubmit, "puts the job of MODE to C2 into the queue"};
+  Ended ended{*this, "ENDED", at::kEnded, "the job that ended last"};
+  Reg clocks{*this, "CLOCKS", at::kClocks, Mode::kRo, "clocks that the job took which ended last"};
+  Reg lines{*this, "LINES", at::kLines, Mode::kRo, "lines of the source that it read"};
+  Reg writes{*this, "WRITES", at::kWrites, Mode::kRo, "bursts that it wrote"};
+  Reg bad{*this, "BAD", at::kBad, Mode::kRo, "entries of its table that are no addresses"};
+  JobMode mode{*this, "MODE", at::kMode, "how positions follow"};
+  Size size{*this, "SIZE", at::kSize, "the result's size"};
+  Bytes src_base{*this, "SRC_BASE", at::kSrcBase, 2, 30, "first byte of the source"};
+  Bytes src_pitch{*this, "SRC_PITCH", at::kSrcPitch, 2, 13, "from row to row of the source"};
+  SourceSize src_size{*this, "SRC_SIZE", at::kSrcSize, "the source's size"};
+  Bytes dst_base{*this, "DST_BASE", at::kDstBase, 2, 30, "first byte of the result"};
+  Bytes dst_pitch{*this, "DST_PITCH", at::kDstPitch, 2, 13, "from row to row of the result"};
+  Bytes map_base{*this, "MAP_BASE", at::kMapBase, 6, 26, "first byte of the map"};
+  Words map_words{*this, "MAP_WORDS", at::kMapWords, "length of the map"};
+  Reg border{*this, "BORDER", at::kBorder, Mode::kRw, "the word of a pair without a source"};
+  Reg radius_limit{*this, "RADIUS_LIMIT", at::kRadiusLimit, Mode::kRw, "largest visible square radius, Q8"};
+  Reg centre_x{*this, "CENTRE_X", at::kCentreX, Mode::kRw, "centre in the source, pixels, Q16"};
+  Reg centre_y{*this, "CENTRE_Y", at::kCentreY, Mode::kRw, "centre in the source, rows, Q16"};
+  Reg a0{*this, "A0", at::kA0, Mode::kRw, "linear form A: first value"};
+  Reg a1{*this, "A1", at::kA1, Mode::kRw, "linear form A: step of a pair"};
+  Reg a2{*this, "A2", at::kA2, Mode::kRw, "linear form A: step of a row"};
+  Reg b0{*this, "B0", at::kB0, Mode::kRw, "linear form B: first value"};
+  Reg b1{*this, "B1", at::kB1, Mode::kRw, "linear form B: step of a pair"};
+  Reg b2{*this, "B2", at::kB2, Mode::kRw, "linear form B: step of a row"};
+  Reg c0{*this, "C0", at::kC0, Mode::kRw, "linear form C: first value"};
+  Reg c1{*this, "C1", at::kC1, Mode::kRw, "linear form C: step of a pair"};
+  Reg c2{*this, "C2", at::kC2, Mode::kRw, "linear form C: step of a row"};
 
   EngineRegs();
 };

@@ -7,14 +7,9 @@
 namespace fovea::engine {
 namespace {
 
-/// Offsets and bits of EngineRegs, as constants: this is the path of every access.
-enum Offset : std::uint32_t {
-  kId = 0x00, kCtrl = 0x04, kStatus = 0x08, kEvents = 0x0C, kEnables = 0x10, kSubmit = 0x14, kEnded = 0x18,
-  kClocks = 0x20, kLines = 0x24, kWrites = 0x28, kBad = 0x2C,
-  kMode = 0x40, kSize = 0x44, kSrcBase = 0x48, kSrcPitch = 0x4C, kSrcSize = 0x50, kDstBase = 0x54,
-  kDstPitch = 0x58, kMapBase = 0x5C, kMapWords = 0x60, kBorder = 0x64, kRadiusLimit = 0x68, kCentreX = 0x6C,
-  kCentreY = 0x70, kForms = 0x74,
-};
+using namespace at;
+
+/// Bits of EngineRegs, as constants: this is the path of every access.
 constexpr std::uint32_t kEnable = 1, kAbort = 2;
 constexpr std::uint32_t kDone = 1, kRefused = 2, kReadError = 4, kWriteError = 8, kAborted = 16, kOverflow = 32,
                         kDropped = 64, kAllEvents = 127;
@@ -80,11 +75,11 @@ void TlmBackend::end_job() {
                          e.aborted * kAborted;
   if (!events) events = kDone;
   const std::uint32_t count = (value(kEnded) >> 16) + 1;
-  at(kEnded) = count << 16 | events << 8 | tag_;
-  at(kClocks) = e.clocks;
-  at(kLines) = e.lines;
-  at(kWrites) = e.writes;
-  at(kBad) = e.bad;
+  cell(kEnded) = count << 16 | events << 8 | tag_;
+  cell(kClocks) = e.clocks;
+  cell(kLines) = e.lines;
+  cell(kWrites) = e.writes;
+  cell(kBad) = e.bad;
   running_ = false;
   idle_from_ = model_.done_at() + 1;
   model_.reset();
@@ -92,7 +87,7 @@ void TlmBackend::end_job() {
 }
 
 void TlmBackend::raise(std::uint32_t events) {
-  at(kEvents) |= events;
+  cell(kEvents) |= events;
   update_interrupt();
 }
 
@@ -121,18 +116,18 @@ void TlmBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now
     case kCtrl:
       if (word & kAbort) abort(clock);
       if ((word & kEnable) && !enabled()) enabled_from_ = clock + 1;
-      at(kCtrl) = word & kEnable;
+      cell(kCtrl) = word & kEnable;
       return;
     case kEvents:
-      at(kEvents) &= ~word;
+      cell(kEvents) &= ~word;
       return update_interrupt();
     case kEnables:
-      at(kEnables) = word & kAllEvents;
+      cell(kEnables) = word & kAllEvents;
       return update_interrupt();
     case kSubmit:
       return submit(static_cast<std::uint8_t>(word), clock);
     default:
-      if (offset >= kMode && offset / 4 < kRegisters) at(offset) = word;
+      if (offset >= kMode && offset / 4 < kRegisters) cell(offset) = word;
   }
 }
 
@@ -174,9 +169,9 @@ Job TlmBackend::window() const {
   job.centre_x = static_cast<std::int32_t>(value(kCentreX));
   job.centre_y = static_cast<std::int32_t>(value(kCentreY));
   for (unsigned n = 0; n < 3; ++n) {
-    job.a[n] = static_cast<std::int32_t>(value(kForms + 4 * n));
-    job.b[n] = static_cast<std::int32_t>(value(kForms + 12 + 4 * n));
-    job.c[n] = static_cast<std::int32_t>(value(kForms + 24 + 4 * n));
+    job.a[n] = static_cast<std::int32_t>(value(kA0 + 4 * n));
+    job.b[n] = static_cast<std::int32_t>(value(kB0 + 4 * n));
+    job.c[n] = static_cast<std::int32_t>(value(kC0 + 4 * n));
   }
   return job;
 }

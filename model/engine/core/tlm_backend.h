@@ -28,10 +28,10 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
     std::uint8_t tag;
     std::uint64_t there;  ///< clock from which on it can be taken
   };
-  static constexpr std::size_t kRegisters = 0x98 / 4;
+  static constexpr std::size_t kRegisters = at::kC2 / 4 + 1;
 
   void issue(const Burst& burst, std::uint64_t clock) override;
-  std::uint32_t& at(std::uint32_t offset) { return registers_[offset / 4]; }
+  std::uint32_t& cell(std::uint32_t offset) { return registers_[offset / 4]; }
   std::uint32_t value(std::uint32_t offset) const { return registers_[offset / 4]; }
   bool enabled() const;
   std::uint64_t take_at() const;

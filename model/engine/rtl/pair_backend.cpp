@@ -4,16 +4,16 @@
 #include <cstdio>
 
 #include "model/common/check.h"
+#include "model/engine/core/engine_offsets.h"
 
 namespace fovea::rtl {
 namespace {
 
 using engine::Answer;
 using engine::Burst;
+namespace at = engine::at;
 
 constexpr std::array kStreams{"reads of the map", "reads of the source", "writes"};
-// Offsets in EngineRegs.
-constexpr std::uint32_t kControl = 0x04, kEnables = 0x10, kFirstOfJob = 0x40;
 constexpr std::uint32_t kAbort = 2;
 
 std::string text(const char* format, unsigned long long a, unsigned long long b, unsigned long long c = 0,
@@ -162,14 +162,14 @@ Picoseconds PairBackend::run(Picoseconds now) {
 
 std::uint32_t PairBackend::read(std::uint32_t offset, Picoseconds now) {
   const std::uint32_t word = owner_->read(offset, now), other = twin_->read(offset, now);
-  const bool lasting = offset == 0 || offset == kControl || offset == kEnables || offset >= kFirstOfJob;
+  const bool lasting = offset == at::kId || offset == at::kCtrl || offset == at::kEnables || offset >= at::kMode;
   if (lasting && word != other)
     difference(text("register 0x%02llx reads 0x%08llx; its twin's 0x%08llx", offset, word, other));
   return word;
 }
 
 void PairBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
-  if (offset == kControl && word & kAbort) disturb();
+  if (offset == at::kCtrl && word & kAbort) disturb();
   owner_->write(offset, word, now);
   twin_->write(offset, word, now);
 }

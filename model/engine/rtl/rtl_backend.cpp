@@ -6,7 +6,7 @@
 
 #include "Vremap_top.h"
 #include "model/common/check.h"
-#include "model/engine/core/engine_registers.h"
+#include "model/engine/core/engine_offsets.h"
 #include "model/engine/rtl/axi_checker.h"
 #include "model/engine/rtl/axi_lite.h"
 #include "model/engine/rtl/axi_memory.h"
@@ -24,9 +24,6 @@ static_assert(kReads + kWrites == engine::kPlaces);
 /// The owner of the backend holds back what its port does not take. More than there can be: a request for each
 /// run of words of each write.
 constexpr unsigned kNoLimit = kReads + 8 * kWrites;
-
-/// Offset of SUBMIT.
-constexpr std::uint32_t kSubmit = 0x14;
 
 struct Checkers {
   AxiChecker master{kReads, kWrites};
@@ -179,7 +176,7 @@ void RtlBackend::State::edge(Picoseconds at) {
 /// What the waveforms may wait for.
 WaveFile::Events RtlBackend::State::events() const {
   WaveFile::Events e;
-  e.job = registers.aw.valid && registers.aw.ready && registers.aw.address == kSubmit;
+  e.job = registers.aw.valid && registers.aw.ready && registers.aw.address == engine::at::kSubmit;
   e.interrupt = top.irq_o && !level;
   e.error = (axi.r.valid && axi.r.response & 2u) || (axi.b.valid && axi.b.response & 2u);
   return e;

@@ -5,6 +5,7 @@
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
 #include "../kernels/remap.h"
+#include "composition_engine.h"
 #include "model/contract/view_page.h"
 #include "pipeline.h"
 #include "state.h"
@@ -28,9 +29,12 @@ static struct {
   uint32_t runs;
   uint32_t first_run[VIEW_CAMERAS]; /* of each camera; its number of runs: it has none */
   remap_loop_t *loop;
+  int by_engine;
 } view;
 
 uint32_t composition_sources(void) { return view.page.source == VIEW_QUAD ? 1u : VIEW_CAMERAS; }
+
+int composition_by_device(void) { return view.by_engine; }
 
 static void map_of(view_map_t *map, const lens_t *lens, uint32_t camera) {
   const uint32_t width = view.config->width, height = view.config->height;
@@ -116,9 +120,27 @@ static void list_runs(arena_t *arena, uint32_t strip_pairs) {
   }
 }
 
+static int engine_takes_it(arena_t *arena) {
+  const engine_view_t shape = {.config = view.config, .quad = view.page.source == VIEW_QUAD, .spans = spans_of};
+  const char *refusal = engine_view_build(&shape, arena);
+  if (refusal == NULL) return 1;
+  uart_puts("kernel engine: ");
+  uart_puts(refusal);
+  uart_puts("\n");
+  return 0;
+}
+
 /* A view has no tables but the look-up table. */
 static void choose_kernel(arena_t *arena) {
-  const uint32_t kernel = view.config->kernel;
+  uint32_t kernel = view.config->kernel;
+  if (kernel == KERNEL_ENGINE) {
+    arena_t rest = *arena; /* the runs of a row are listed all the same, for composition_sum() */
+    list_runs(&rest, view.pairs);
+    view.by_engine = engine_takes_it(&rest);
+    if (view.by_engine) return;
+    view.runs = 0;
+    kernel = KERNEL_STRIPS;
+  }
   const int strips = kernel != KERNEL_PLAIN && kernel != KERNEL_LDM;
   view.loop = kernel == KERNEL_PLAIN ? remap_plain : remap_ldm;
   if (strips && kernel != KERNEL_STRIPS && kernel != KERNEL_FASTEST)
@@ -168,6 +190,10 @@ static const uint8_t *source_of(const uint8_t *const sources[], uint32_t camera)
 }
 
 void composition_run(const uint8_t *const sources[], uint8_t *out) {
+  if (view.by_engine) {
+    engine_view_run(sources, out);
+    return;
+  }
   for (uint32_t n = 0; n < view.runs; ++n) {
     const run_t *run = &view.run[n];
     const uint8_t *in = source_of(sources, run->camera);

@@ -18,6 +18,9 @@ void composition_build(const config_t *config, arena_t *arena);
  * part is black */
 void composition_run(const uint8_t *const sources[], uint8_t *out);
 
+/** Whether another device than the core reads the sources. Call after composition_build(). */
+int composition_by_device(void);
+
 /** Sum of some words of the sources. It is the same before and after composition_run() unless the
  * camera has written to them in between. */
 uint32_t composition_sum(const uint8_t *const sources[]);

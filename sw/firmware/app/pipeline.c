@@ -521,7 +521,7 @@ int pipeline_event(uint32_t *camera, const char **what) {
 
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 
-void pipeline_done(void) {
+void pipeline_done(int good) {
 #ifdef CONSOLE
   if (pipe.config->check_capture) mark_buffer(held_of_age(&pipe.held, 0));
 #endif
@@ -529,7 +529,10 @@ void pipeline_done(void) {
 #ifndef COMPOSED_VIEW
   capture_release(&pipe.capture, held_drop(&pipe.held));
 #endif
-  output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
+  if (good)
+    output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
+  else
+    output_give_back(&pipe.output, pipe.taken_out);
   /* The main loop changes the display earlier than the handler would, if enough of a second field
    * is left. */
   if (pipe.in_second_field &&

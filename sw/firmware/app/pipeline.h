@@ -25,9 +25,9 @@ int pipeline_take(uint8_t **out, uint32_t *sequence);
  * than the number of sources. Valid until pipeline_done(). */
 const uint8_t *pipeline_source(uint32_t age);
 
-/** Ends the remap of the frame of the last pipeline_take(): it is displayed from the next possible
- * field on. The oldest source is given back to the camera. */
-void pipeline_done(void);
+/** Ends the remap of the frame of the last pipeline_take(). If it is good it is displayed from the next possible
+ * field on; otherwise what is displayed stays. The oldest source is given back to the camera. */
+void pipeline_done(int good);
 
 uint32_t pipeline_last_sequence(void);
 

@@ -4,6 +4,7 @@
 #include "../drivers/cp15.h"
 #include "../drivers/gpio.h"
 #include "../drivers/uart.h"
+#include "../kernels/engine_jobs.h"
 #include "camera_events.h"
 #include "composition.h"
 #include "overlay.h"
@@ -45,8 +46,8 @@ void program_frame(uint8_t *out, uint32_t sequence) {
     dcache_invalidate_range(sources[pipeline_camera()], bytes);
     const uint32_t before = composition_sum(sources);
     composition_run(sources, out);
-    /* Larger frames have driven the summed lines out of the cache by now. */
-    for (uint32_t n = 0; bytes < DCACHE_BYTES && n < composition_sources(); ++n)
+    /* Larger frames that the core has read have driven the summed lines out of the cache by now. */
+    for (uint32_t n = 0; (bytes < DCACHE_BYTES || composition_by_device()) && n < composition_sources(); ++n)
       if (sources[n] != NULL) dcache_invalidate_range(sources[n], bytes);
     if (composition_sum(sources) != before) ++fw_state.torn;
     overlay_frame(out, sequence);
@@ -55,5 +56,5 @@ void program_frame(uint8_t *out, uint32_t sequence) {
     phase_mark(PHASE_REMAP_END, sequence);
     ++fw_state.remapped;
   }
-  pipeline_done();
+  pipeline_done(!engine_jobs_failed());
 }

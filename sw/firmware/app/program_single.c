@@ -4,6 +4,7 @@
 
 #include "../drivers/cp15.h"
 #include "../drivers/uart.h"
+#include "../kernels/engine_jobs.h"
 #include "pipeline.h"
 #include "program.h"
 #include "state.h"
@@ -87,5 +88,5 @@ void program_frame(uint8_t *out, uint32_t sequence) {
   for (uint32_t left = config->repeats; left-- != 0;)
     view_correct(&views[fw_state.remapped % config->tables].view,
                  pipeline_source(left % config->sources), out, sequence);
-  pipeline_done();
+  pipeline_done(!engine_jobs_failed());
 }

@@ -3,6 +3,7 @@
 
 #include "../drivers/cp15.h"
 #include "../drivers/uart.h"
+#include "../kernels/engine_jobs.h"
 #include "camera_events.h"
 #include "choices.h"
 #include "pipeline.h"
@@ -45,7 +46,7 @@ void program_frame(uint8_t *out, uint32_t sequence) {
   if (!pipeline_whole()) return;
   for (uint32_t left = repeats; left-- != 0;)
     view_correct(&views[pipeline_camera()], pipeline_source(0), out, sequence);
-  pipeline_done();
+  pipeline_done(!engine_jobs_failed());
 }
 
 int correct_next_frame(void) {

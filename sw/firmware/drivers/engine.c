@@ -28,7 +28,12 @@ void engine_submit(const remap_engine_job_t *job, uint32_t tag) {
 }
 
 uint32_t engine_take_events(void) {
-  const uint32_t events = mmio_read32(ENGINE_EVENTS);
-  if (events != 0) mmio_write32(ENGINE_EVENTS, events);
-  return events;
+  uint32_t all = 0, events;
+  while ((events = mmio_read32(ENGINE_EVENTS)) != 0) {
+    mmio_write32(ENGINE_EVENTS, events);
+    all |= events;
+  }
+  return all;
 }
+
+uint32_t engine_ended(void) { return mmio_read32(ENGINE_ENDED) >> 16; }

@@ -12,10 +12,16 @@
  * @return 0 if what is there is no such engine */
 int engine_init(void);
 
+#define ENGINE_QUEUE 4u /* jobs that can wait, besides the one under way (QueueDepth in rtl/README.md) */
+
 /** Hands a job over; the interrupt comes at its end. */
 void engine_submit(const remap_engine_job_t *job, uint32_t tag);
 
-/** Events (fields of ENGINE_EVENTS) that have come; they are cleared. */
+/** Events (fields of ENGINE_EVENTS) that have come; they are cleared. None is set when this returns, so that the next
+ * one is a new edge of the interrupt. */
 uint32_t engine_take_events(void);
+
+/** Number of jobs that have ended, modulo 65536. */
+uint32_t engine_ended(void);
 
 #endif

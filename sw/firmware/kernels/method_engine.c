@@ -4,28 +4,14 @@
 #include <stddef.h>
 
 #include "../drivers/cp15.h"
-#include "../drivers/engine.h"
-#include "../drivers/intc.h"
-#include "../drivers/timer.h"
-#include "../drivers/uart.h"
-#include "../app/say.h" /* behind uart.h */
-#include "../regs.h"
+#include "engine_jobs.h"
 #include "method.h"
-
-#define INTERRUPT_PRIORITY 4u
-#define LONGEST_TICKS (2000u * TIMER_TICKS_PER_MS)
-
-static uint32_t jobs;
 
 /* What all three need. */
 static remap_engine_job_t *begin(const remap_table_t *table, arena_t *arena, const char **refusal) {
   *refusal = "the chip has no remap engine";
   if (!table->has_engine) return NULL;
-  /* A frame that comes while a table is built in the background must find the engine ready. */
-  const uint32_t cpsr = irq_mask();
-  const int good = engine_init();
-  irq_restore(cpsr);
-  if (!good) return NULL;
+  if (!engine_jobs_open()) return NULL;
   *refusal = "no memory";
   return arena_take(arena, sizeof(remap_engine_job_t), CACHE_LINE_BYTES);
 }
@@ -36,7 +22,6 @@ static const char *finish(remap_table_t *table, remap_engine_job_t *job, const u
   dcache_clean_range(map, (bytes + CACHE_LINE_BYTES - 1u) & ~(CACHE_LINE_BYTES - 1u));
   table->encoded = job;
   table->encoded_bytes = bytes;
-  intc_enable(IRQ_ENGINE, INTERRUPT_PRIORITY);
   return NULL;
 }
 
@@ -73,41 +58,14 @@ static const char *prepare_radial(remap_table_t *table, arena_t *arena) {
   return prepare_lens(table, arena, REMAP_ENGINE_RADIAL_WORDS_MAX, remap_engine_radial);
 }
 
-static void report(const char *what, uint32_t number) {
-  uart_puts("engine: ");
-  uart_puts(what);
-  uart_put_uint(number);
-  uart_puts("\n");
-}
-
-/* The events are cleared before the interrupt controller is acknowledged. That loses none, as only one job is under
- * way. Sleeps until the job has ended. A job that has not ended as it should is a line on the UART; the
- * engine is then started anew for the next frame. */
-static void wait_for_end(void) {
-  const uint32_t start = timer_ticks();
-  uint32_t events;
-  int late;
-  do {
-    /* Checked with interrupts masked: one that comes after the check still ends the sleep. */
-    const uint32_t cpsr = irq_mask();
-    events = engine_take_events();
-    late = timer_ticks() - start > LONGEST_TICKS;
-    if (events == 0 && !late) wait_for_interrupt();
-    irq_restore(cpsr);
-  } while (events == 0 && !late);
-  if (events == ENGINE_EVENTS_DONE) return;
-  report(events == 0 ? "no end of job " : "events ", events == 0 ? jobs : events);
-  if (!engine_init()) report("does not stop, job ", jobs);
-}
-
 static void run(const remap_table_t *table, const void *in, void *out) {
   remap_engine_job_t job = *(const remap_engine_job_t *)table->encoded;
   job.src_base = (uint32_t)in;
   job.dst_base = (uint32_t)out;
   /* The core may still have lines of an earlier result, which it has drawn on. */
   dcache_invalidate_range(out, table->height * table->pitch_bytes);
-  engine_submit(&job, ++jobs);
-  wait_for_end();
+  engine_jobs_add(&job);
+  engine_jobs_wait();
 }
 
 const remap_method_t method_engine = {"engine", prepare_table, run, 1};
