@@ -110,6 +110,6 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   wait_for_end();
 }
 
-const remap_method_t method_engine = {"engine", prepare_table, run, 1};
-const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run, 1};
-const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run, 1};
+const remap_method_t method_engine = {"engine", prepare_table, run};
+const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run};
+const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run};
