@@ -282,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest,
                                          Typed{"engine", "518ms", "tlm"}),
                          [](const auto& i) { return std::string(i.param.kernel); });
 
-// An answer of 700 characters takes 60 ms on the line. What is asked for meanwhile waits, but no frame does.
+// The help of 600 characters takes 50 ms on the line. What is asked for meanwhile waits, but no frame does.
 TEST(SignalsTest, AnswersThatFillTheQueueDelayNoFrame) {
   CamerasRig rig;
   small(rig, 1);

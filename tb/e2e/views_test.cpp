@@ -84,7 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
 TEST(ViewStamps, EachPartsMarksNameTheFrameThatItsBytesAre) {
   ViewsRig rig;
   rig.set("cameras.count", "4").set("camera.kind", "chart").set("tvp5146.relock_fields", "0");
-  rig.set("video.width", "240").set("video.height", "240").set("lens.focal", "255px");
+  // At half height neither field's rows alone show the whole code, so the parts are enlarged by two.
+  rig.set("video.width", "240").set("video.height", "400").set("lens.focal", "255px").set("lens.out_focal", "510px");
   rig.set("firmware.view", "four_way").set("firmware.kernel", "fastest").set("run.frames", "7");
   rig.run(kViewLimit);
   ASSERT_EQ(rig.shown().size(), 7u) << rig.board().uart_text();

@@ -31,7 +31,6 @@ typedef struct remap_method {
   /** Corrects one frame with any of the tables that were prepared. The caller has invalidated the
    * D-cache for the source, and cleans it for the result afterwards. */
   void (*run)(const remap_table_t *table, const void *in, void *out);
-  int by_device; /* another master reads the source: the core's cache stays as it is */
 } remap_method_t;
 
 extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,

@@ -68,6 +68,6 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   engine_jobs_wait();
 }
 
-const remap_method_t method_engine = {"engine", prepare_table, run, 1};
-const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run, 1};
-const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run, 1};
+const remap_method_t method_engine = {"engine", prepare_table, run};
+const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run};
+const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run};

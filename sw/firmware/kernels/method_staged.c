@@ -231,4 +231,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   if (staged->tiles.black != 0) remap_black(out, staged->black);
 }
 
-const remap_method_t method_staged = {"staged", prepare, run, 1};
+const remap_method_t method_staged = {"staged", prepare, run};
