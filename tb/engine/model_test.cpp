@@ -87,6 +87,9 @@ TEST(ModelTest, EachCacheReadsTheLinesThatItMust) {
     expect_picture(bench, m, want);
     const std::size_t lines = bench.get(bench.regs.lines);
     EXPECT_EQ(lines, lines_read(beats, log_lines)) << log_lines;
+    // Nothing is left of a job.
+    EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {}), kDone);
+    EXPECT_EQ(bench.get(bench.regs.lines), lines) << log_lines;
     EXPECT_LE(lines, before);
     before = lines;
   }
