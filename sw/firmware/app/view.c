@@ -94,7 +94,8 @@ void view_correct(const struct view *view, const uint8_t *in, uint8_t *out, uint
   const uint32_t before = first_row_sum(&view->table, in);
   view->method->run(&view->table, in, out);
 #ifndef OMIT_D_INVALIDATE
-  /* Larger frames have driven the first row's lines out of the cache by now, or the method has invalidated all of it. */
+  /* Larger frames have driven the first row's lines out of the cache by now, or the method has
+   * invalidated all of it. */
   if (bytes < DCACHE_BYTES) dcache_invalidate_range(in, bytes);
 #endif
   if (first_row_sum(&view->table, in) != before) ++fw_state.torn;
