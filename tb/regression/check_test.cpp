@@ -67,6 +67,16 @@ TEST_F(CheckTest, ABudgetIsALimitThatTheValueItselfStillMeets) {
   EXPECT_EQ(verdict("99", "kind: budget, worse: lower, reason: r"), Verdict::kFail);
 }
 
+TEST_F(CheckTest, WhatIsBetterIsNoFailureInJUnitXml) {
+  const Baseline b = baseline("  time: {value: 100, unit: 1, worse: higher}\n");
+  for (const auto& [value, failures] : {std::pair("99", 0), {"101", 1}}) {
+    const RunFigures r = read_run(run.figure("time", value).write(dir, "run"));
+    const std::string xml = junit_xml(check_run(r, b, false), r, b, "2026-11-23T12:00:00");
+    EXPECT_THAT(xml, HasSubstr("failures=\"" + std::to_string(failures) + "\""));
+    EXPECT_EQ(xml.find("<failure") != xml.npos, failures == 1) << value;
+  }
+}
+
 TEST_F(CheckTest, WhatIsMissingFails) {
   const Finding f = finding("timee: {value: 100, unit: 1}");
   EXPECT_EQ(f.verdict, Verdict::kFail);
