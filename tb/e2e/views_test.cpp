@@ -39,6 +39,7 @@ TEST_P(ViewTest, EveryDisplayedPictureIsComposedOfSentFrames) {
   ASSERT_EQ(rig.board().dm365.arm.failure(), "") << rig.board().uart_text();
   ASSERT_EQ(rig.shown().size(), 7u) << rig.board().uart_text();
   EXPECT_EQ(rig.board().uart_text().find("kernel: engine, ") != std::string::npos, by_engine);
+  EXPECT_EQ(rig.board().uart_text().find("engine: events"), std::string::npos) << "a camera without a frame is read";
   const oracle::LutCheck check = rig.table_check();
   EXPECT_EQ(check.wrong, 0u) << check.first_wrong->text();
   EXPECT_LE(check.near_boundary, check.entries / 1000);

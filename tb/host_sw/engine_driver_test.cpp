@@ -118,7 +118,7 @@ struct Engine : testing::Test {
       if (address == kUart) text += static_cast<char>(value);
     };
     asleep = [this] {
-      ticks += 2400;
+      ticks += ticks_asleep;
       ++sleeps;
       if (!hangs && !waiting.empty()) end();
     };
@@ -151,7 +151,7 @@ struct Engine : testing::Test {
   std::string text;
   std::uint32_t events = 0, ended = 65530, ticks = 0xFFFFF000, bad_events = 0;
   std::size_t most = 0, bad_job = 0;
-  unsigned sleeps = 0;
+  unsigned sleeps = 0, ticks_asleep = 2400;
   bool hangs = false, stuck = false;
 };
 
@@ -190,6 +190,14 @@ TEST_F(Engine, EachFailureIsSaidDropsTheOthersAndTheEngineStartsAnew) {
     EXPECT_FALSE(engine_jobs_failed());
     EXPECT_EQ(tags.size(), 5u);
   }
+}
+
+TEST_F(Engine, JobsMayTakeMoreThanTwoSecondsTogether) {
+  ticks_asleep = 36'000'000;  // 1.5 s
+  add(6);
+  engine_jobs_wait();
+  EXPECT_EQ(tags.size(), 6u);
+  EXPECT_FALSE(engine_jobs_failed()) << text;
 }
 
 TEST_F(Engine, AJobThatNeverEndsIsGivenUpAfterTwoSecondsWithoutOne) {
