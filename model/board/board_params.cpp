@@ -47,20 +47,29 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                         return n < camera_count() && (birds_eye_shown() || kind.is("car_park"));
                       });
   }
+  // Kernels of this project's firmware in which the EDMA moves data; of other programs nothing is known.
+  const auto edma_works = [this] {
+    static constexpr const char* kKernels[] = {"staged", "gather", "runs", "copy", "fastest"};
+    return !firmware.elf().empty() || std::any_of(std::begin(kKernels), std::end(kKernels),
+                                                  [this](const char* k) { return firmware.kernel.is(k); });
+  };
   // Ports that only a synthetic load drives.
   std::vector<const ParamBase*> loads;
   for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});
-  const auto load_alone = [this, loads](ParamBase& p, const std::string& name) {
+  const auto load_alone = [this, loads, edma_works](ParamBase& p, const std::string& name) {
     const bool engine = name == stat_name(Master::kRemapEngine);
+    const bool edma = name.starts_with("edma_tc");
     std::vector<const ParamBase*> deciders = loads;
+    if (edma) deciders.insert(deciders.end(), {&firmware.kernel, &firmware.elf});
     if (engine) deciders.push_back(&soc.engine.kind);
-    const auto effective = [this, name, engine] {
-      return (engine && soc.engine.present()) ||
+    const auto effective = [this, name, engine, edma, edma_works] {
+      return (engine && soc.engine.present()) || (edma && edma_works()) ||
              std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
                return load.active() && load.port.is(name);
              });
     };
-    p.matters_only("a load with load.port = " + name + (engine ? ", or an engine" : ""), deciders, effective);
+    p.matters_only("a load with load.port = " + name + (engine ? ", or an engine" : edma ? ", or a kernel that uses the EDMA" : ""),
+                   deciders, effective);
   };
   for (const MasterInfo& m : kMasters.rows) {
     if (!m.spare || m.side == Side::kWrites) continue;
@@ -76,22 +85,22 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     });
     if (spare) load_alone(p, name);
   }
-  // Of this project's firmware and the synthetic loads, only loads use internal RAM beside the core.
+  // Masters that use internal RAM beside the core.
   std::vector<const ParamBase*> places;
   for (const auto& load : soc.loads) places.insert(places.end(), {&load.memory, &load.outstanding});
-  places.push_back(&firmware.elf);
-  const auto shared = [this] {
-    return !firmware.elf().empty() ||
+  places.insert(places.end(), {&firmware.elf, &firmware.kernel});
+  const auto shared = [this, edma_works] {
+    return edma_works() ||
            std::any_of(soc.loads.begin(), soc.loads.end(), [](const bus::LoadParams& load) {
              return load.active() && load.memory.is("internal_ram");
            });
   };
   for (ParamBase* p : std::initializer_list<ParamBase*>{&soc.cpu.tcm_dma_word_clocks,
                                                         &soc.cpu.tcm_dma_latency, &soc.cpu.tcm_first})
-    p->matters_only("a load with load.memory = internal_ram", places, shared);
+    p->matters_only("a load with load.memory = internal_ram, or a kernel that uses the EDMA", places, shared);
   places.push_back(&soc.cpu.tcm_own_conflict);
   soc.cpu.tcm_banks.matters_only(
-      "a load with load.memory = internal_ram, or cpu.tcm.own_conflict above 0 cycles", places,
+      "a load with load.memory = internal_ram, a kernel that uses the EDMA, or cpu.tcm.own_conflict above 0 cycles", places,
       [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
   decoder.crop_525.matters_only("525 lines from the camera (tvp5146.standard, video.standard)",
                                 {&decoder.standard, &video.standard}, [this] {

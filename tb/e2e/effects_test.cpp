@@ -175,6 +175,11 @@ TEST(EffectsTest, PortsWithoutALoadAreIdle) {
   const Keys load{{"load.2.port", "edma_tc1"}, {"load.2.outstanding", "1"}};
   EXPECT_TRUE(effective(load, "bus.edma_tc1.width"));
   EXPECT_FALSE(effective(load, "bus.edma_tc2.width"));
+  for (const char* kernel : {"staged", "gather", "runs", "copy", "fastest"})
+    for (const char* key : {"bus.edma_tc1.width", "cpu.tcm.dma_word_clocks", "cpu.tcm.banks", "priority.edma_tc0"})
+      EXPECT_TRUE(effective({{"firmware.kernel", kernel}}, key)) << kernel << " " << key;
+  for (const char* key : {"cpu.tcm.dma_word_clocks", "cpu.tcm.banks", "priority.edma_tc0"})
+    EXPECT_FALSE(effective({{"firmware.kernel", "codes"}}, key)) << key;
   EXPECT_TRUE(effective({}, "bus.arm_d.width"));
   EXPECT_TRUE(effective({}, "bus.vpfe.width"));
   EXPECT_FALSE(effective({{"load.2.port", "edma_tc1"}}, "load.2.gap"));
