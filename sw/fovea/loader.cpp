@@ -154,6 +154,8 @@ void check_loads(const board::BoardParams& params) {
                 (sdram ? "SDRAM" : "internal RAM of 32 KiB"));
     require(!load.copies() || load.size() % 128 == 0, load.size.key(), load.size.text(),
             "multiples of 128 B for a copy");
+    require(load.end() == 0 || load.end() > load.start(), load.end.key(), load.end.text(),
+            "0s, or later than the load's start (" + load.start.text() + ")");
     require(load.port.is("load") || !load.priority.user_set(), load.priority.key(),
             load.priority.text(), "only with port load; " + load.port() +
             " has the priority of " + (load.port.is("remap_engine") ? "MSTPRI0" : "QUEPRI"));
@@ -230,6 +232,9 @@ void complete_params(board::BoardParams& params) {
   if (all_lines && !params.decoder.crop_525.user_set()) params.decoder.crop_525.set("486_lines");
   require(all_lines == params.decoder.crop_525.is("486_lines"), params.decoder.crop_525.key(),
           params.decoder.crop_525(), "486_lines with video.standard = ntsc_486, and only then");
+  // The firmware knows the raster of 486 lines by the switch for its size.
+  for (const auto* side : {&v.width, &v.height})
+    require(!all_lines || (*side)() == 0, side->key(), side->text(), "0 with video.standard = ntsc_486");
 }
 
 }  // namespace fovea::app

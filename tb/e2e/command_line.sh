@@ -139,6 +139,10 @@ expect load_ram 2 "load.base" 'internal RAM of 32 KiB' -- run "$out/small.yaml" 
   -s load.outstanding=1 -s load.memory=internal_ram
 expect load_size 2 "load.size" '128' -- run "$out/small.yaml" -s load.outstanding=1 -s load.kind=copy \
   -s load.size=8256B
+expect load_end 2 "load.end" 'later than the load' -- run "$out/small.yaml" -s load.outstanding=1 \
+  -s load.start=2ms -s load.end=2ms
+expect region_of_486 2 "video.height" '0 with video.standard = ntsc_486' -- run "$out/small.yaml" \
+  -s video.standard=ntsc_486 -s video.width=0 -s video.height=400
 
 # A wild pointer: its warnings are counted, a few of them shown and kept.
 "$fovea" run "$out/small.yaml" -s firmware.elf="$wild_pointer" -s run.start_limit=20ms -o "$out/wild" \

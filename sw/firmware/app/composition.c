@@ -139,6 +139,7 @@ static void choose_kernel(arena_t *arena) {
     view.by_engine = engine_takes_it(&rest);
     if (view.by_engine) return;
     view.runs = 0;
+    for (uint32_t n = 0; n < VIEW_CAMERAS; ++n) view.first_run[n] = ~0u;
     kernel = KERNEL_STRIPS;
   }
   const int strips = kernel != KERNEL_PLAIN && kernel != KERNEL_LDM;
