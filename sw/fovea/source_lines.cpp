@@ -101,12 +101,26 @@ struct SourceLines::Program {
     const char* const path = dwarf_filesrc(files, number, nullptr, nullptr);
     return path ? shown(unit, path) : "";
   }
+  /// Whether the unit has a function there that the linker has dropped: such a one is described as lying at address 0.
+  bool dropped(Dwarf_Die& unit, std::uint32_t address, const ElfSymbol* symbol) {
+    Dwarf_Die* scopes = nullptr;
+    const int count = dwarf_getscopes(&unit, address, &scopes);
+    bool is = false;
+    for (int k = 0; k < count; ++k) {
+      Dwarf_Addr low = 0;
+      if (dwarf_tag(&scopes[k]) != DW_TAG_subprogram) continue;
+      is = dwarf_lowpc(&scopes[k], &low) == 0 && low == 0 && !(symbol && symbol->name == name_of(&scopes[k]));
+      break;
+    }
+    std::free(scopes);
+    return is;
+  }
   /// Not every compiler writes the index of address ranges that dwarf_addrdie() needs.
-  bool unit_at(std::uint32_t address, Dwarf_Die& unit) {
-    if (dwarf_addrdie(dwarf, address, &unit)) return true;
+  bool unit_at(std::uint32_t address, const ElfSymbol* symbol, Dwarf_Die& unit) {
+    if (dwarf_addrdie(dwarf, address, &unit) && !dropped(unit, address, symbol)) return true;
     bool found = false;
     each_unit([&](Dwarf_Die* die) {
-      if (found || dwarf_haspc(die, address) != 1) return;
+      if (found || dwarf_haspc(die, address) != 1 || dropped(*die, address, symbol)) return;
       unit = *die;
       found = true;
     });
@@ -119,7 +133,7 @@ struct SourceLines::Program {
     const ElfSymbol* const symbol = image.function_at(address);
     SourceFrame here{"", "", 0};
     Dwarf_Die unit;
-    if (dwarf && unit_at(address, unit)) {
+    if (dwarf && unit_at(address, symbol, unit)) {
       if (Dwarf_Line* const line = dwarf_getsrc_die(&unit, address)) {
         int number = 0;
         const char* const path = dwarf_linesrc(line, nullptr, nullptr);

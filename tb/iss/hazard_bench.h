@@ -121,8 +121,6 @@ class HazardBench {
     during_.write = true;
     during_.bytes = 4;
   }
-  /// The line's next fill passes a write of the DMA, which arrives directly before its request.
-  void write_passed_by_fill(std::uint32_t line) { passing_ = line; }
   std::uint64_t count(HazardKind k) const { return checker->count(k); }
 
  private:
@@ -150,38 +148,16 @@ class HazardBench {
       r.bytes = static_cast<std::uint8_t>(end - a);
       r.write = s.write;
       r.master = s.write ? Master::kEdmaTc0Write : Master::kEdmaTc0Read;
-      std::array<std::uint8_t, 64> data{};
-      for (std::uint32_t k = a; k < end; ++k) data[k - a] = written(s, k);
-      if (s.write) r.data = data.data();
       if (checker) checker->arrived(r, m.port.now);
       for (; a < end; ++a) {
-        if (s.write) *m.port.at(a) = written(s, a);
+        if (s.code) *m.port.at(a) = static_cast<std::uint8_t>(code_word(s.value) >> 8 * (a & 3u));
+        else if (s.write) *m.port.at(a) = dma_byte(s.value, a);
         else dma_read_.push_back(*m.port.at(a));
       }
     }
   }
-  static std::uint8_t written(const Step& s, std::uint32_t a) {
-    return s.code ? static_cast<std::uint8_t>(code_word(s.value) >> 8 * (a & 3u)) : dma_byte(s.value, a);
-  }
-  /// The read for a fill is served first although the DMA's write arrived before it.
-  void pass(std::uint32_t line) {
-    std::array<std::uint8_t, 4> data{};
-    for (std::uint32_t k = 0; k < 4; ++k) data[k] = dma_byte(1, line + k);
-    MemRequest r;
-    r.address = line;
-    r.bytes = 4;
-    r.write = true;
-    r.data = data.data();
-    r.master = Master::kEdmaTc0Write;
-    checker->arrived(r, m.port.now);
-    m.port.schedule(m.port.now, [this, line, data] {
-      for (std::uint32_t k = 0; k < 4; ++k) *m.port.at(line + k) = data[k];
-    });
-    passing_ = 1;
-  }
   void announce(const BusAccess& a) {
     if (!checker) return;
-    if ((a.address & ~31u) == passing_ && !a.write) pass(passing_);
     MemRequest r;
     r.address = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
     r.bytes = a.bytes;
@@ -227,7 +203,6 @@ table:
   Program program_;
   std::vector<Step> steps_;
   Step during_;
-  std::uint32_t passing_ = 1;  // no line
   std::vector<std::uint8_t> dma_read_;
 };
 

@@ -12,7 +12,6 @@ HazardChecker::HazardChecker(Core& core)
       lines_(core.view().data.lines()),
       bus_(core.view().bus),
       held_(lines_.lines()) {
-  kept_pa_.fill(kNone);
   core_.observe_lines(this);
 }
 
@@ -37,8 +36,7 @@ void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
     return;
   }
   if (r.master == Master::kArmD) {
-    if (r.write) return forget_kept(r);
-    if (r.bytes != kLineBytes) return;
+    if (r.write || r.bytes != kLineBytes) return;
     filling_ = r.address;
     requested_ = at;
     meanwhile_ = {};
@@ -48,12 +46,10 @@ void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
     const std::uint32_t line = from & ~(kLineBytes - 1u);
     const std::uint32_t to = std::min(line + kLineBytes, r.address + r.bytes);
     const std::uint32_t bytes = bits(from - line, to - from);
-    if (r.write) {
+    if (r.write)
       written_by(r, line, bytes, at);
-      keep(r, line, bytes, at);
-    } else {
+    else
       read_by(r, line, bytes, at);
-    }
     from = to;
   }
 }
@@ -85,53 +81,12 @@ void HazardChecker::written_by(const MemRequest& r, std::uint32_t line_pa, std::
     report({HazardKind::kOverwrite, r.master, core_.current_pc(), first_of(line_pa, bytes), at, at});
 }
 
-void HazardChecker::keep(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes,
-                         Picoseconds at) {
-  if (!r.data) return;
-  const unsigned n = next_kept_++ % kKept;
-  kept_pa_[n] = line_pa;
-  kept_[n].bytes = bytes;
-  kept_[n].master = r.master;
-  kept_[n].at = at;
-  for (unsigned k = 0; k < kLineBytes; ++k)
-    if (bytes >> k & 1u) kept_[n].data[k] = r.data[line_pa + k - r.address];
-}
-
-/// What the core writes afterwards is no sign of an older write that waits.
-void HazardChecker::forget_kept(const MemRequest& by_core) {
-  for (unsigned n = 0; n < kKept; ++n) {
-    const std::uint32_t line = kept_pa_[n];
-    if (line + kLineBytes <= by_core.address || line >= by_core.address + by_core.bytes) continue;
-    for (unsigned k = 0; k < kLineBytes; ++k)
-      if (line + k - by_core.address < by_core.bytes) kept_[n].bytes &= ~(1u << k);
-  }
-}
-
-/// Bytes of a new line that a write should have changed which arrived before the line's request.
-void HazardChecker::find_passed(unsigned line) {
-  Foreign& f = held_[line].foreign;
-  const std::uint32_t pa = held_[line].pa;
-  for (unsigned k = 0; k < kKept; ++k) {
-    const unsigned n = (next_kept_ + k) % kKept;  // oldest first
-    if (kept_pa_[n] != pa || kept_[n].at > held_[line].filled) continue;
-    for (unsigned b = 0; b < kLineBytes; ++b) {
-      if (!(kept_[n].bytes >> b & 1u)) continue;
-      if (lines_.data(line)[b] == kept_[n].data[b])
-        f.bytes &= ~(1u << b);
-      else
-        f = {f.bytes | 1u << b, kept_[n].master, kept_[n].at};
-    }
-  }
-}
-
 void HazardChecker::filled(unsigned line) {
   Held& held = held_[line];
   if (held.pa != kNone) --holders_[bucket(held.pa)];
   held = {lines_.line(line).pa, requested_, core_.boundary_time(), {}, {}};
   ++holders_[bucket(held.pa)];
-  find_passed(line);
-  if (filling_ == held.pa && meanwhile_.bytes)
-    held.foreign = {held.foreign.bytes | meanwhile_.bytes, meanwhile_.master, meanwhile_.at};
+  if (filling_ == held.pa) held.foreign = meanwhile_;
   filling_ = kNone;
   if (held.foreign.bytes) core_.watch_line(line, true);
 }

@@ -16,8 +16,8 @@
 namespace fovea::cpu {
 
 /// Knows only what core and memory announce. The memory's order is that of arrivals at the controller,
-/// except that a line fill may pass a master's write that still waits there: then the line differs from what
-/// was written. The times of a master's accesses and of line fills are those of their arrival. Loads are judged by bytes, dirty halves as a whole, as the hardware writes
+/// which serves accesses to one address in that order; the times of a master's accesses and of line fills
+/// are those of their arrival. Loads are judged by bytes, dirty halves as a whole, as the hardware writes
 /// them back.
 class HazardChecker final : public ArrivalObserver, public LineWatch {
  public:
@@ -80,9 +80,6 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   void read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void forget_foreign(unsigned line, std::uint32_t bytes);
-  void keep(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
-  void forget_kept(const MemRequest& by_core);
-  void find_passed(unsigned line);
   void report(const Hazard& h) { found_.push_back(h); }
 
   Core& core_;
@@ -94,17 +91,6 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   std::uint32_t filling_ = kNone;                      // line that was requested and has not come yet
   Picoseconds requested_ = 0;
   Foreign meanwhile_;                                  // written since that request arrived
-  /// The latest writes of other masters, by line: more than can wait in the controller.
-  struct Kept {
-    std::uint32_t bytes = 0;
-    Master master = Master::kCount;
-    Picoseconds at = 0;
-    std::array<std::uint8_t, kLineBytes> data{};
-  };
-  static constexpr unsigned kKept = 64;
-  std::array<std::uint32_t, kKept> kept_pa_;
-  std::array<Kept, kKept> kept_;
-  unsigned next_kept_ = 0;
   std::vector<Hazard> found_;                          // since the last settle(), or beyond it
   std::array<std::uint64_t, kHazardKinds> counts_{};
   std::set<std::tuple<HazardKind, std::uint32_t, Master>> places_;
