@@ -66,7 +66,8 @@ class AxiAnswerChecker : RuleChecker {
 class RegisterPortChecker : RuleChecker {
  public:
   /// @param words addresses are those of words; AXI4-Lite itself allows others
-  explicit RegisterPortChecker(bool words = true) : RuleChecker("AXI4-Lite"), words_(words) {}
+  RegisterPortChecker() : RegisterPortChecker(true) {}
+  explicit RegisterPortChecker(bool words) : RuleChecker("AXI4-Lite"), words_(words) {}
   void clock(const LiteWires& c) {
     stable(c.aw, before_.aw, c.aw.address == before_.aw.address, "AW");
     stable(c.ar, before_.ar, c.ar.address == before_.ar.address, "AR");
