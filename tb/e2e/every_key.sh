@@ -161,7 +161,7 @@ acts cpu.cache_op_cycles 2cycles
 acts cpu.dcache.size 4KiB
 acts cpu.fill_latency 2cycles EARLY
 acts cpu.icache.size 4KiB
-acts cpu.invalidate_all_cycles 5cycles EARLY
+acts cpu.invalidate_all_cycles 128cycles EARLY
 acts cpu.shifted_address_cycle false
 acts cpu.tcm.banks 1 RAM EARLY
 acts cpu.tcm.banks 1 cpu.tcm.own_conflict=1cycles EARLY
