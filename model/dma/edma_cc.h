@@ -37,7 +37,25 @@ struct EdmaStats : StatGroup {
   Counter links{*this, "links", "1", "parameter sets replaced by a link"};
   Counter interrupts{*this, "interrupts", "1", "pulses of completion interrupts"};
   Counter errors{*this, "errors", "1", "pulses of the error interrupt"};
-  EdmaStats() : StatGroup("edma") {}
+  // Activity of the parameter RAM. A set is eight words.
+  Formula sets_read{*this, "param_sets_read", "1", "parameter sets read to serve a channel or to link",
+                    [this] { return since(&Counts::sets_read); }};
+  Formula sets_written{*this, "param_sets_written", "1", "parameter sets updated or replaced after their service",
+                       [this] { return since(&Counts::sets_written); }};
+  Formula words_read{*this, "param_words_read", "1", "words of parameter sets read over the configuration bus",
+                     [this] { return since(&Counts::words_read); }};
+  Formula words_written{*this, "param_words_written", "1",
+                        "words of parameter sets written over the configuration bus",
+                        [this] { return since(&Counts::words_written); }};
+  /// @param counts the controller's, which outlive the statistics
+  explicit EdmaStats(const ChannelController::Counts& counts) : StatGroup("edma"), counts_(counts) {}
+
+ private:
+  using Counts = ChannelController::Counts;
+  std::uint64_t since(std::uint64_t Counts::*n) const { return counts_.*n - before_.*n; }
+  void on_reset() override { before_ = counts_; }
+  const Counts& counts_;
+  Counts before_;
 };
 
 /// Works at the edges of the EDMA's clock. What happens at a time (an event, a register access, a
@@ -48,7 +66,7 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
  public:
   using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
-  EdmaStats stats;
+  EdmaStats stats{core_.counts()};
   ClockIn clk{"clk"};
   sc_core::sc_in<bool> lpsc{"lpsc"};
   Pulse completion{"completion", kInterruptPulse};  ///< of shadow region 0 (CCINT0)

@@ -54,6 +54,8 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   add_power_gate(lpsc);
   add_interrupt("tcerrint" + std::to_string(number), error.out);
   add_statistics(stats);
+  stats.busy_until = [this](Picoseconds now) { return core_.busy(now); };
+  stats.start_count = [this](Picoseconds now) { core_.start_count(now); };
   const auto outstanding = static_cast<unsigned>(params.outstanding());
   add_master(edma_read(number), reads_.socket, outstanding);
   add_master(edma_write(number), writes_.socket, outstanding);

@@ -100,8 +100,16 @@ struct EdmaTcStats : StatGroup {
   Counter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
   Counter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
   Counter errors{*this, "errors", "1", "bus errors of " + who + ", and requests against the rules"};
+  Formula busy{*this, "busy_time", "s", "time in which " + who + " had a request",
+               [this] { return static_cast<double>(busy_until(kernel_time())) * 1e-12; }};
+  /// Both of the transfer controller, at a time: how long it was busy, and to count anew.
+  std::function<Picoseconds(Picoseconds)> busy_until = [](Picoseconds) { return Picoseconds{0}; };
+  std::function<void(Picoseconds)> start_count = [](Picoseconds) {};
   explicit EdmaTcStats(unsigned number)
       : StatGroup("edma.tc" + std::to_string(number)), who("TC" + std::to_string(number)) {}
+
+ private:
+  void on_reset() override { start_count(kernel_time()); }
 };
 
 /// A transfer controller: two masters, one that only reads and one that only writes. While its clock is

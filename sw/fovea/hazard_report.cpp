@@ -19,8 +19,9 @@ std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
     case HazardKind::kStaleLoad:
       return fmt::format(
           "coherency hazard: the load at {} read 0x{:08x} at {} from a D-cache line that was filled at {}; "
-          "{} wrote that memory at {}",
-          place, h.address, after, ms_text(h.filled), master, before);
+          "{} wrote that memory at {}{}",
+          place, h.address, after, ms_text(h.filled), master, before,
+          h.before < h.filled ? ", and the fill passed that write in the SDRAM controller" : "");
     case HazardKind::kStaleFetch:
       return fmt::format(
           "coherency hazard: the instruction at {}, physical 0x{:08x}, was executed at {} from an I-cache line that "
@@ -57,9 +58,24 @@ HazardReport::HazardReport(cpu::Core& core, memsys::MemorySystem& memory, const 
     Diagnostics::instance().guest(hazard_text(h, symbols));
   };
   memory_.observe_arrivals(&checker_);
+  checker_.follow_moves();
+  memory_.controller().set_command_hook(
+      [](void* self, mem::Cmd cmd, unsigned, std::uint32_t, std::uint64_t) {
+        static_cast<HazardReport*>(self)->command(cmd);
+      },
+      this);
 }
 
-HazardReport::~HazardReport() { memory_.observe_arrivals(nullptr); }
+HazardReport::~HazardReport() {
+  memory_.controller().set_command_hook(nullptr, this);
+  memory_.observe_arrivals(nullptr);
+}
+
+void HazardReport::command(mem::Cmd cmd) {
+  if (cmd != mem::Cmd::kRd && cmd != mem::Cmd::kWr && cmd != mem::Cmd::kRda && cmd != mem::Cmd::kWra) return;
+  if (const mem::QueueEntry* e = memory_.controller().beginning())
+    checker_.moved(e->request.master, e->request.write, memory_.map().ddr_base + e->request.address, e->request.bytes);
+}
 
 void HazardReport::collect(std::vector<StatRow>& rows) const {
   using cpu::HazardKind;

@@ -31,6 +31,7 @@ class HazardReport {
   std::string failure() const;
 
  private:
+  void command(mem::Cmd cmd);
   memsys::MemorySystem& memory_;
   cpu::HazardChecker checker_;
 };

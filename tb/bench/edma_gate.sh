@@ -1,9 +1,9 @@
 #!/bin/sh
 # Host instructions of a simulation in which the EDMA moves pixels, counted by callgrind.
-#   edma_gate.sh check FOVEA OUT   measures (minutes); exit 0: --hazards costs at most 20 % more; 1: more
+#   edma_gate.sh check FOVEA OUT   measures (some minutes, two runs at a time); exit 0: --hazards costs at most 20 % more; 1: more
 #   edma_gate.sh compare           the same of measured lines from standard input:
 #                                  hazards KERNEL COUNT COUNT COUNT COUNT   two and four frames without, then with
-#                                  remap KERNEL COUNT COUNT BYTES BYTES     few and many remaps in each of four frames
+#                                  remap KERNEL COUNT COUNT BYTES BYTES     few and many remaps in each of two frames
 # The start does not count, as two lengths are subtracted. BYTES: what core and EDMA read from and wrote to SDRAM. The
 # second part prints bytes of the SDRAM for each host instruction, and how many times those of `plain`, with which the
 # core corrects; host seconds go with host instructions.
@@ -32,27 +32,25 @@ compare() {
       exit bad
     }'
 }
-count() {  # KERNEL FRAMES REPEAT OPTION...: host instructions; the results are in $out/run
+count() {  # KERNEL FRAMES REPEAT OPTION...: host instructions; the results are in $out/KERNEL
   kernel=$1 frames=$2 repeat=$3
   shift 3
   valgrind --tool=callgrind --callgrind-out-file=/dev/null "$fovea" run "$out/small.yaml" --no-frames \
-    -s firmware.kernel="$kernel" -s run.frames="$frames" -s firmware.repeat="$repeat" -o "$out/run" "$@" 2>&1 |
+    -s firmware.kernel="$kernel" -s run.frames="$frames" -s firmware.repeat="$repeat" -o "$out/$kernel" "$@" 2>&1 |
     awk '/Collected/ { print $NF }'
 }
-bytes() {
-  grep -oE '"bus\.(arm_d|edma_tc[0-3])\.(read|write)_bytes": \{"value": [0-9]+' "$out/run/stats.json" |
+bytes() {  # KERNEL
+  grep -oE '"bus\.(arm_d|edma_tc[0-3])\.(read|write)_bytes": \{"value": [0-9]+' "$out/$1/stats.json" |
     awk '{ sum += $NF } END { print sum }'
 }
-measure() {
-  for kernel in plain staged copy gather; do
-    few=$(count $kernel 4 2)
-    few_bytes=$(bytes)
-    many=$(count $kernel 4 6)
-    many_bytes=$(bytes)
-    echo "remap $kernel $few $many $few_bytes $many_bytes"
-    case $kernel in
-      plain | staged)
-        echo "hazards $kernel $(count $kernel 2 6) $many $(count $kernel 2 6 --hazards) $(count $kernel 4 6 --hazards)" ;;
+measure() {  # KERNEL...
+  for k; do
+    few=$(count "$k" 2 2)
+    few_bytes=$(bytes "$k")
+    many=$(count "$k" 2 6)
+    echo "remap $k $few $many $few_bytes $(bytes "$k")"
+    case $k in
+      plain | staged) echo "hazards $k $many $(count "$k" 4 6) $(count "$k" 2 6 --hazards) $(count "$k" 4 6 --hazards)" ;;
     esac
   done
 }
@@ -60,8 +58,12 @@ case ${1-} in
   check)
     fovea=$2 out=$3
     mkdir -p "$out"
-    printf 'run: {start_limit: 2s}\ncamera: {kind: chart, stamp: false}\nvideo: {width: 360, height: 96}\n' >"$out/small.yaml"
-    measure | tee "$out/lines" | compare ;;
+    printf 'run: {start_limit: 2s}\ncamera: {kind: chart, stamp: false}\nvideo: {width: 240, height: 64}\nfirmware: {lut: fixed_point}\n' \
+      >"$out/small.yaml"
+    measure staged >"$out/one" &
+    measure plain copy >"$out/two"
+    wait
+    cat "$out/two" "$out/one" | tee "$out/lines" | compare ;;
   compare) compare ;;
   *) echo "usage: edma_gate.sh check|compare ..." >&2; exit 2 ;;
 esac

@@ -117,6 +117,40 @@ TEST(TransferController, TwoBurstsByTheClock) {
   EXPECT_EQ(m.bytes[1088], static_cast<std::uint8_t>(1088 * 7 + 4));  // nothing behind it
 }
 
+// The copy above takes 76 ns; one of 4 bytes at 209 ns reads at 224, writes at 264 and ends at 284.
+TEST(TransferController, BusyFromTheFirstSubmissionToTheLastAcknowledgement) {
+  Memory m({32, 128, 4});
+  EXPECT_EQ(m.tc.busy(ns(5)), 0u);
+  m.tc.submit(copy(64, 256, 1024), 0);
+  EXPECT_EQ(m.tc.busy(ns(30)), ns(30));
+  m.run();
+  EXPECT_EQ(m.tc.busy(ns(76)), ns(76));
+  EXPECT_EQ(m.tc.busy(ns(200)), ns(76)) << "idle since";
+  m.tc.submit(copy(4, 256, 1024), ns(209));
+  EXPECT_EQ(m.tc.busy(ns(219)), ns(76 + 10));
+  m.tc.start_count(ns(219));
+  EXPECT_EQ(m.tc.busy(ns(219)), 0u);
+  m.run();
+  EXPECT_EQ(m.completed_at, (Times{76, 284}));
+  EXPECT_EQ(m.tc.busy(ns(1000)), ns(284 - 219));
+}
+
+// Two requests that overlap count once: from the first one's submission to the second one's end.
+TEST(TransferController, OverlappingRequestsAreBusyOnce) {
+  Memory m({32, 128, 4});
+  m.tc.submit(copy(4, 256, 1024), 0);
+  m.tc.submit(copy(4, 260, 1028), ns(20));
+  m.run();
+  ASSERT_EQ(m.completed_at.size(), 2u);
+  ASSERT_LT(20u, m.completed_at[0]);
+  EXPECT_EQ(m.tc.busy(ns(500)), ns(m.completed_at[1]));
+  TransferRequest refused = copy(4, 256, 1024);
+  refused.source.constant = true;
+  refused.source.address = 4;
+  m.tc.submit(refused, ns(600));
+  EXPECT_EQ(m.tc.busy(ns(700)), ns(m.completed_at[1])) << "a refused request is none";
+}
+
 TEST(TransferController, SubmissionBetweenEdgesWaitsForTheNextOne) {
   Memory m({32, 128, 4});
   m.tc.submit(copy(4, 256, 1024), ns(9));

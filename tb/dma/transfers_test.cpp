@@ -48,6 +48,36 @@ TEST_F(DmaTransfers, ASyncAddsBidxWithinAFrameAndCidxToTheLastArray) {
   EXPECT_EQ(submitted.size(), 4u);
 }
 
+// Activity of the parameter RAM. A set of two arrays is filled (8 words over the bus) and served twice: read and
+// updated, read and replaced by the set that it links to, which is read too (8 more words were written there).
+TEST_F(DmaTransfers, AccessesToTheParameterRamAreCounted) {
+  fill(100, {.source = 0x9000});
+  fill(5, {.bcnt = 2, .link = 32 * 100});
+  const auto& n = core.counts();
+  EXPECT_EQ(n.words_written, 16u);
+  EXPECT_EQ(n.words_read, 0u);
+  trigger_and_run(5);
+  EXPECT_EQ(n.sets_read, 1u);
+  EXPECT_EQ(n.sets_written, 1u);
+  trigger_and_run(5);
+  EXPECT_EQ(n.sets_read, 3u);
+  EXPECT_EQ(n.sets_written, 2u);
+  words(5);
+  EXPECT_EQ(n.words_read, 8u);
+  // A static set is read only; the null set behind the last one is written without a read of another.
+  fill(5, {.opt = kStatic});
+  trigger_and_run(5);
+  EXPECT_EQ(n.sets_read, 4u);
+  EXPECT_EQ(n.sets_written, 2u);
+  fill(5, {});
+  trigger_and_run(5);
+  EXPECT_EQ(n.sets_read, 5u);
+  EXPECT_EQ(n.sets_written, 3u);
+  EXPECT_EQ(regs.write(kPaRam + 10, 2, 7), Access::kOk);  // half a word is an access
+  EXPECT_EQ(n.words_written, 33u);
+  EXPECT_EQ(n.words_read, 8u);
+}
+
 TEST_F(DmaTransfers, AbSyncAddsCidxToTheFirstArrayAndKeepsBcnt) {
   fill(5, {.opt = kAbSync,
            .source = 0x1000,

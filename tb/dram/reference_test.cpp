@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tb/dram/bench.h"
+#include "tb/dram/edma_stream.h"
 #include "tb/dram/reference_controller.h"
 #include "tb/rounds.h"
 
@@ -411,6 +412,41 @@ TEST(SameAsReferencesTest, FrfcfsIsTheSame) {
     ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
   }
   EXPECT_GT(held_seen, 125 * rounds(80)) << "decisions while a read was held";
+}
+
+// Requests that transfer controllers of the EDMA make of random transfers, as the memory's answers allow.
+template <class Controller>
+std::vector<Event> play_edma(std::uint64_t seed, unsigned requests, const Plant& plant = {}) {
+  Rng rng(seed);
+  Setup setup = random_setup(rng);
+  setup.limits.order = static_cast<ReferenceLimits::Order>(seed % 4);
+  if (plant) plant(setup);
+  Controller c(setup);
+  EdmaStream<Controller> stream(c, rng, setup.limits.size);
+  std::vector<Event> seen;
+  for (const auto& s : stream.run(requests)) seen.push_back({kTaken, s.id, s.taken, s.at});
+  while (c.next() != kNever) c.step();
+  EXPECT_EQ(stream.transfers(), requests);
+  const auto s = c.statistics();
+  seen.push_back({kSample, s[0], s[1], s[2]});
+  seen.push_back({kSample, s[3], s[4], s[5]});
+  for (auto* list : {&c.commands, &c.accepted, &c.reads}) seen.insert(seen.end(), list->begin(), list->end());
+  return seen;
+}
+
+TEST(SameAsReferencesTest, RequestsOfTheEdma) {
+  std::size_t waited = 0, commands = 0;
+  for (std::uint64_t seed = 1; seed <= rounds(20); ++seed) {
+    const auto a = play_edma<Production>(seed, 60), b = play_edma<Oracle>(seed, 60);
+    ASSERT_TRUE(a == b) << "seed " << seed << "\n" << difference(a, b);
+    for (const Event& e : a) {
+      waited += e.what == kTaken && !e.b;
+      commands += e.what == kTaken;
+    }
+  }
+  EXPECT_GT(commands, 400 * rounds(20));
+  EXPECT_GT(waited, 20 * rounds(20)) << "commands that found the FIFOs full";
+  EXPECT_FALSE(play_edma<Production>(3, 60) == play_edma<Oracle>(3, 60, [](auto& s) { ++s.config.tRP; }));
 }
 
 // Seeds that found a defect. 1322, 2055: a choice outlived the moment at which the read FIFO had room

@@ -127,6 +127,39 @@ TEST(SchedulerTest, ReadPassesOlderWriteOutsideTwoKiBOnly) {
       << "neighbours across the boundary";
 }
 
+// To one address too: the reader gets the old bytes although the writer has its acknowledgement. Whoever listens to
+// commands learns in which order the data moved.
+TEST(SchedulerTest, AReadPassesAnotherMastersWriteToTheSameAddress) {
+  DdrBench b(options());
+  std::string moved;
+  struct Listener {
+    DdrBench& bench;
+    std::string& text;
+  } listener{b, moved};
+  b.ddr.set_command_hook(
+      [](void* self, mem::Cmd c, unsigned, std::uint32_t, std::uint64_t) {
+        auto& l = *static_cast<Listener*>(self);
+        if (c != mem::Cmd::kRd && c != mem::Cmd::kWr) return;
+        if (const auto* e = l.bench.ddr.beginning())
+          l.text += std::string(e->request.write ? "W" : "R") + std::to_string(e->request.bytes) + " ";
+      },
+      &listener);
+  std::fill_n(b.store().at(0x1000), 64, std::uint8_t{1});
+  Request w = write(kA, 0x1000, 3, 64), r = read(kB, 0x1020, 3, 32), later = read(kB, 0x1020, 3, 32);
+  w.data.fill(2);
+  ASSERT_TRUE(b.submit(w, 10));
+  ASSERT_TRUE(b.submit(r, 11));
+  ASSERT_TRUE(w.accepted);
+  b.drain();
+  EXPECT_EQ(moved, "R32 W64 ");
+  EXPECT_EQ(r.data[0], 1);
+  ASSERT_TRUE(b.submit(later, 1000));
+  b.drain();
+  EXPECT_EQ(later.data[0], 2);
+  EXPECT_EQ(moved, "R32 W64 R32 ");
+  b.ddr.set_command_hook(nullptr, &listener);
+}
+
 TEST(SchedulerTest, ReadDoesNotPassOlderWriteOfHigherPriority) {
   EXPECT_EQ(Scenario({write(kA, at(1, 0), 2), read(kA, at(1, 1), 3)}).columns(), "W0 R1");
   EXPECT_EQ(Scenario({write(kA, at(1, 0), 3), read(kA, at(1, 1), 3)}).columns(), "R1 W0");

@@ -60,6 +60,20 @@ bus.arm_d.width 16bit 64bit
 bus.vpfe.width 16bit 32bit
 bus.vpbe.request_latency 0cycles 16cycles
 bus.load.response_latency 0cycles 16cycles
+edma.event_clocks 1 64
+edma.request_clocks 1 128
+edma.completion_clocks 1 64
+edma.tc.burst 16B 64B
+edma.tc.fifo 128B 512B
+edma.tc.depth 1 2
+edma.tc.outstanding 1 16
+cpu.tcm.banks 1 2
+cpu.tcm.dma_word_clocks 1cycles 8cycles
+cpu.tcm.dma_latency 0cycles 32cycles
+cpu.tcm.first core dma
+bus.edma_tc0.request_latency 0cycles 16cycles
+bus.edma_tc1.response_latency 0cycles 16cycles
+bus.edma_tc2.width 16bit 32bit
 K
   # Pauses in whole microseconds: bursts then end in the instant in which others begin.
   for n in load load.1 load.2; do

@@ -98,6 +98,7 @@ class HazardBench {
     checker.reset();
     if (caches && checked) {
       checker = std::make_unique<HazardChecker>(m.core);
+      checker->follow_moves();
       checker->on_place = [this](const Hazard& h) { places.push_back(h); };
     }
     m.first_clock = m.core.clock().edge_after(m.port.now) - spent();
@@ -120,6 +121,11 @@ class HazardBench {
     during_ = {Do::kDma, line, 1};
     during_.write = true;
     during_.bytes = 4;
+  }
+  /// The line's next fill passes that write, which arrived directly before its request.
+  void write_passed_by_fill(std::uint32_t line) {
+    write_during_fill(line);
+    passing_ = true;
   }
   std::uint64_t count(HazardKind k) const { return checker->count(k); }
 
@@ -148,7 +154,9 @@ class HazardBench {
       r.bytes = static_cast<std::uint8_t>(end - a);
       r.write = s.write;
       r.master = s.write ? Master::kEdmaTc0Write : Master::kEdmaTc0Read;
-      if (checker) checker->arrived(r, m.port.now);
+      if (checker && !passing_) checker->arrived(r, m.port.now);
+      if (checker) checker->moved(r.master, r.write, r.address, r.bytes);
+      passing_ = false;
       for (; a < end; ++a) {
         if (s.code) *m.port.at(a) = static_cast<std::uint8_t>(code_word(s.value) >> 8 * (a & 3u));
         else if (s.write) *m.port.at(a) = dma_byte(s.value, a);
@@ -163,8 +171,18 @@ class HazardBench {
     r.bytes = a.bytes;
     r.write = a.write;
     r.master = a.port == BusAccess::Port::kData ? Master::kArmD : Master::kArmI;
+    const bool hit = during_.bytes && r.address == during_.address;
+    if (hit && passing_) {
+      MemRequest w;
+      w.address = during_.address;
+      w.bytes = static_cast<std::uint8_t>(during_.bytes);
+      w.write = true;
+      w.master = Master::kEdmaTc0Write;
+      checker->arrived(w, a.issued);
+    }
     checker->arrived(r, a.issued);
-    if (!during_.bytes || r.address != during_.address) return;
+    checker->moved(r.master, r.write, r.address, r.bytes);
+    if (!hit) return;
     m.port.schedule(m.port.now, [this, s = during_] { move(s); });
     during_ = {};
   }
@@ -203,6 +221,7 @@ table:
   Program program_;
   std::vector<Step> steps_;
   Step during_;
+  bool passing_ = false;
   std::vector<std::uint8_t> dma_read_;
 };
 

@@ -153,6 +153,26 @@ TEST_F(HazardTest, WriteDuringTheFill) {
   EXPECT_EQ(counts({{Do::kLoad, kLine}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0, 0}));
 }
 
+/// The SDRAM controller may serve a fill before a write of another master that came earlier (`ddr.scheduler` = ti).
+TEST_F(HazardTest, AFillThatPassesAWrite) {
+  bench.m.port.decide_late = true;
+  bench.m.port.read_latency = 1'000'000;
+  bench.write_passed_by_fill(kLine);
+  EXPECT_EQ(counts({{Do::kLoad, kLine + 8}, {Do::kLoad, kLine + 4}}), kNone) << "other bytes of the line";
+  bench.write_passed_by_fill(kLine);
+  EXPECT_EQ(counts({{Do::kLoad, kLine + 8}, {Do::kLoad, kLine}}), (Counts{1, 0, 0, 0, 0}));
+  EXPECT_EQ(visible.loaded.back() & 0xFFu, initial_byte(kLine));
+  ASSERT_EQ(bench.places.size(), 1u);
+  EXPECT_EQ(bench.places[0].address, kLine);
+  EXPECT_EQ(bench.places[0].master, Master::kEdmaTc0Write);
+  EXPECT_LE(bench.places[0].before, bench.places[0].filled);
+  // A line that is filled after the write, or filled again, holds what memory does.
+  EXPECT_EQ(counts({dma(true, kLine, 4), {Do::kLoad, kLine + 8}, {Do::kLoad, kLine}}), kNone);
+  bench.write_passed_by_fill(kLine);
+  EXPECT_EQ(counts({{Do::kLoad, kLine + 8}, {Do::kInvalidateLine, kLine}, {Do::kLoad, kLine + 8}, {Do::kLoad, kLine}}),
+            kNone);
+}
+
 TEST_F(HazardTest, CodeThatWasChangedInMemory) {
   static constexpr std::uint32_t kFunction = code_line(7) + 8;
   const auto change = [](std::uint32_t address, std::uint32_t value) {

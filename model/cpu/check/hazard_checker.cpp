@@ -42,6 +42,7 @@ void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
     meanwhile_ = {};
     return;
   }
+  if (r.write && follows_) waiting_.push_back({r.master, r.address, r.bytes, at});
   for (std::uint32_t from = r.address; from != r.address + r.bytes;) {
     const std::uint32_t line = from & ~(kLineBytes - 1u);
     const std::uint32_t to = std::min(line + kLineBytes, r.address + r.bytes);
@@ -52,6 +53,31 @@ void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
       read_by(r, line, bytes, at);
     from = to;
   }
+}
+
+/// `ti` serves a read before another master's older write, even one to the same address.
+void HazardChecker::moved(Master master, bool write, std::uint32_t address, unsigned bytes) {
+  if (master == Master::kArmD || master == Master::kArmI) {
+    if (write || bytes != kLineBytes) return;
+    for (const Waiting& w : waiting_)
+      if (w.address < address + kLineBytes && address < w.address + w.bytes) passed(master, w, address);
+    return;
+  }
+  if (!write) return;
+  const auto w = std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& x) {
+    return x.master == master && x.address == address && x.bytes == bytes;
+  });
+  if (w != waiting_.end()) waiting_.erase(w);
+}
+
+/// The line that is being filled lacks these bytes, as if they had been written after its fill.
+void HazardChecker::passed(Master by, const Waiting& w, std::uint32_t line_pa) {
+  const std::uint32_t from = std::max(w.address, line_pa), to = std::min(w.address + w.bytes, line_pa + kLineBytes);
+  const std::uint32_t bytes = bits(from - line_pa, to - from);
+  if (by == Master::kArmI)
+    code_.written(w.master, line_pa, bytes, w.at);
+  else if (filling_ == line_pa)
+    meanwhile_ = {meanwhile_.bytes | bytes, w.master, w.at};
 }
 
 void HazardChecker::read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes,

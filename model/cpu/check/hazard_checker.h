@@ -15,9 +15,9 @@
 
 namespace fovea::cpu {
 
-/// Knows only what core and memory announce. The memory's order is that of arrivals at the controller,
-/// which serves accesses to one address in that order; the times of a master's accesses and of line fills
-/// are those of their arrival. Loads are judged by bytes, dirty halves as a whole, as the hardware writes
+/// Knows only what core and memory announce. The memory's order is that of arrivals at the controller; the times of a
+/// master's accesses and of line fills are those of their arrival. A fill may pass another master's write that waits in
+/// the controller: after follow_moves() that is seen, and the line is stale from its fill on. Loads are judged by bytes, dirty halves as a whole, as the hardware writes
 /// them back.
 class HazardChecker final : public ArrivalObserver, public LineWatch {
  public:
@@ -38,6 +38,9 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   std::size_t places() const { return places_.size(); }
 
   void arrived(const MemRequest& r, Picoseconds at) override;
+  /// From now on moved() is called for each request that arrives: its data have been read or written in memory.
+  void follow_moves() { follows_ = true; }
+  void moved(Master master, bool write, std::uint32_t address, unsigned bytes);
   void filled(unsigned line) override;
   void loaded(unsigned line, unsigned offset, unsigned bytes) override;
   void stored(unsigned line, unsigned offset, unsigned bytes) override;
@@ -77,6 +80,14 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   static std::size_t bucket(std::uint32_t line_pa) { return line_pa / kLineBytes % kBuckets; }
   template <class F>
   void each_holder(std::uint32_t line_pa, F f);
+  /// A master's write that has arrived and whose data have not moved yet.
+  struct Waiting {
+    Master master;
+    std::uint32_t address;
+    unsigned bytes;
+    Picoseconds at;
+  };
+  void passed(Master by, const Waiting& w, std::uint32_t line_pa);
   void read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void forget_foreign(unsigned line, std::uint32_t bytes);
@@ -91,6 +102,8 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   std::uint32_t filling_ = kNone;                      // line that was requested and has not come yet
   Picoseconds requested_ = 0;
   Foreign meanwhile_;                                  // written since that request arrived
+  std::vector<Waiting> waiting_;                       // oldest first, after follow_moves()
+  bool follows_ = false;
   std::vector<Hazard> found_;                          // since the last settle(), or beyond it
   std::array<std::uint64_t, kHazardKinds> counts_{};
   std::set<std::tuple<HazardKind, std::uint32_t, Master>> places_;

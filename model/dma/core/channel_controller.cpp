@@ -25,8 +25,13 @@ ChannelController::ChannelController(EdmaRegs& regs, Host& host) : regs_(regs), 
   install_global();
   for (unsigned r = 0; r < kShadowRegions; ++r) install_region(r);
   for (unsigned s = 0; s < kParamSets; ++s)
-    for (unsigned w = 0; w < kParamWords; ++w)
-      regs_.param[s].word[w]->on_write([this, s, w](std::uint32_t) { write_trigger(s, w); });
+    for (unsigned w = 0; w < kParamWords; ++w) {
+      regs_.param[s].word[w]->on_read([this] { ++counts_.words_read; });
+      regs_.param[s].word[w]->on_write([this, s, w](std::uint32_t) {
+        ++counts_.words_written;
+        write_trigger(s, w);
+      });
+    }
 }
 
 /// Registers that exist once.
@@ -303,7 +308,7 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
   const bool qdma = e.trigger == Trigger::kQdma;
   ChannelRegs& g = regs_.global;
   const unsigned index = qdma ? regs_.qchmap[e.channel]->set.get() % kParamSets : e.channel;
-  ParamSet set = regs_.load(index);
+  ParamSet set = load(index);
   const bool final = set.final();
   if (set.null()) {
     qdma ? miss_qdma(1u << e.channel) : miss(bit(e.channel));
@@ -329,10 +334,20 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
       exhausted(index);
     } else {
       set.advance();
-      regs_.store(index, set);
+      store(index, set);
     }
   }
   host_.work_arrived();
+}
+
+ParamSet ChannelController::load(unsigned set) {
+  ++counts_.sets_read;
+  return regs_.load(set);
+}
+
+void ChannelController::store(unsigned set, const ParamSet& value) {
+  ++counts_.sets_written;
+  regs_.store(set, value);
 }
 
 /// The completion code of a set that the channel controller completes by itself.
@@ -366,14 +381,14 @@ void ChannelController::exhausted(unsigned index) {
   if (old.link() != ParamSet::kNoLink) {
     const unsigned from = (old.link() & 0x3FFF) / (4 * kParamWords);
     if (from < kParamSets) {
-      next = regs_.load(from);
+      next = load(from);
       ++counts_.links;
     } else {
       host_.warn("PARAM" + std::to_string(index) + " links to set " + std::to_string(from) +
                  "; allowed: 0 to 255");
     }
   }
-  regs_.store(index, next);
+  store(index, next);
   if (old.link() == ParamSet::kNoLink) return;
   for (unsigned w = 0; w < kParamWords; ++w) write_trigger(index, w);
 }

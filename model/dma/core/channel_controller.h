@@ -54,6 +54,8 @@ class ChannelController {
 
   struct Counts {
     std::uint64_t events = 0, requests = 0, missed = 0, links = 0;
+    std::uint64_t sets_read = 0, sets_written = 0;    ///< by the controller: whole parameter sets
+    std::uint64_t words_read = 0, words_written = 0;  ///< of parameter sets, over the configuration bus
   };
   const Counts& counts() const { return counts_; }
 
@@ -83,6 +85,8 @@ class ChannelController {
   bool push(unsigned queue, Entry e);
   void show(unsigned queue);
   void serve(unsigned queue, unsigned controller);
+  ParamSet load(unsigned set);
+  void store(unsigned set, const ParamSet& value);
   void exhausted(unsigned set);
   void write_trigger(unsigned set, unsigned word);
   void report(const ParamSet& set, bool final);

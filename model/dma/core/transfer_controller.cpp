@@ -77,6 +77,7 @@ void TransferController::submit(const TransferRequest& request, Picoseconds at) 
     host_.program_free(host_.edge(at, 1));
     return;
   }
+  if (idle()) busy_since_ = at;
   program_ = request;
   program_at_ = at;
   advance();
@@ -176,6 +177,7 @@ void TransferController::write_done(bool error, Picoseconds at) {
     destinations_.pop_front();
     head_ = (head_ + 1) % sizes_.depth;
     registers_.add(1, at);
+    if (idle()) busy_ += at - busy_since_;
     host_.completed(request, at);
   }
   advance();

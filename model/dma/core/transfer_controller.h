@@ -95,6 +95,13 @@ class TransferController {
   unsigned destination_writing() const;
 
   bool idle() const { return !program_ && !source_ && destinations_.empty(); }
+  /// Time up to `now`, since start_count(), in which there was a request: from its entry into the program register to
+  /// the acknowledgement of the last write. What a reset cuts off does not count.
+  Picoseconds busy(Picoseconds now) const { return busy_ + (idle() ? 0 : now - busy_since_); }
+  void start_count(Picoseconds now) {
+    busy_ = 0;
+    busy_since_ = now;
+  }
 
  private:
   struct Source {
@@ -148,6 +155,7 @@ class TransferController {
   Supply registers_, room_, arrived_;   // destination registers, bytes of the FIFO, bytes in it
   Picoseconds next_read_ = 0, next_write_ = 0;
   unsigned read_interval_ = 1;
+  Picoseconds busy_ = 0, busy_since_ = 0;  // of the time that is over; of the present
 };
 
 }  // namespace fovea::dma

@@ -147,6 +147,9 @@ class DdrController {
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
                                std::uint64_t clock);
   void set_command_hook(CommandHook hook, void* self);
+  /// Within a hook called with a read or a write: the request whose first column that is, and whose data have just
+  /// moved; null: it is another column.
+  const QueueEntry* beginning() const { return in_burst_ ? nullptr : plan_.choice.entry; }
   /// Called when registers or clocks have changed: the commands that follow obey config().
   std::function<void(Picoseconds at)> on_change;
   const DdrConfig& config() const { return config_; }

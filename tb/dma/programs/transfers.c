@@ -243,6 +243,70 @@ static void bus_error(void) {
   check("the next transfer is good", done(4) && memcmp(source, target, 64) == 0);
 }
 
+/* TC0's error interrupt, 18 of the interrupt controller with ARM_INTMUX bit 3, where a pending one reads 0. */
+enum { TC_ERREN = 0x124, TC_ERRCMD = 0x130, ARM_INTMUX = 0x01C40018, IRQ0 = 0x01C48008, EINT0 = 0x01C48018 };
+static int interrupted(void) {
+  int pending = 0;
+  for (unsigned n = 0; n < 50; ++n) pending |= !(REG(IRQ0) >> 18 & 1);
+  REG(IRQ0) = 1u << 18;
+  return pending;
+}
+
+static int wrong_read(void) {
+  set(4, AB_SYNC | TCINT | TCC(4), (void *)0x40000000, PAIR(32, 1), target, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 4;
+  return done(4) && REG(TC0 + TC_ERRSTAT) == 1;
+}
+
+static void controller_errors(void) {
+  REG(ARM_INTMUX) |= 1u << 3;
+  REG(0x01C48038) = 0x77777777; /* priority of interrupts 16 to 23 */
+  REG(EINT0) |= 1u << 18;       /* the core masks interrupts */
+  REG(IRQ0) = 1u << 18;
+  check("no interrupt by an error that is not enabled", wrong_read() && !interrupted());
+  REG(TC0 + TC_ERREN) = 1;
+  REG(TC0 + TC_ERRCMD) = 1;
+  check("ERRCMD pulses for an enabled error that is pending", interrupted());
+  REG(TC0 + TC_ERRCMD) = 1;
+  check("as often as it is written", interrupted());
+  REG(TC0 + TC_ERRCLR) = 4;
+  check("ERRCLR clears what it names", REG(TC0 + TC_ERRSTAT) == 1);
+  REG(TC0 + TC_ERRCLR) = 1;
+  REG(TC0 + TC_ERRCMD) = 1;
+  check("ERRCMD does nothing without an error", REG(TC0 + TC_ERRSTAT) == 0 && !interrupted());
+  check("an enabled error interrupts", wrong_read() && interrupted());
+  check("once until it is cleared", wrong_read() && !interrupted());
+  REG(TC0 + TC_ERRCLR) = 1;
+  set(4, 1 | AB_SYNC | TCINT | TCC(4), source + 4, PAIR(32, 1), target, 0, 0xFFFF, 0, 1); /* SAM */
+  REG(ESR) = 1u << 4;
+  const int silent = !interrupted() && !(REG(IPR) & 1u << 4);
+  check("constant addressing at no multiple of 32 is TRERR", silent && REG(TC0 + TC_ERRSTAT) == 4);
+  REG(TC0 + TC_ERREN) = 4;
+  REG(TC0 + TC_ERRCMD) = 1;
+  const int enabled = interrupted();
+  REG(TC0 + TC_ERRCLR) = 4;
+  check("with its own enable", enabled && REG(TC0 + TC_ERRSTAT) == 0);
+  REG(TC0 + TC_ERREN) = 0;
+  REG(EINT0) &= ~(1u << 18);
+}
+
+/* A channel whose transfer controller has no clock waits until it has. */
+static void gated_controller(void) {
+  enum { TC2 = 3 };
+  clear();
+  REG(PSC + 0xA00 + 4 * TC2) = (REG(PSC + 0xA00 + 4 * TC2) & ~0x1Fu) | 2;
+  REG(PSC + 0x120) = 1;
+  while (REG(PSC + 0x128) & 1) {
+  }
+  REG(DMAQNUM0 + 4) = 2u << 24;
+  set(14, AB_SYNC | TCINT | TCC(7), source, PAIR(64, 1), target, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 14;
+  const int early = done(7);
+  enable(TC2);
+  check("a transfer waits for the clock of its controller", !early && done(7) && memcmp(source, target, 64) == 0);
+  REG(DMAQNUM0 + 4) = 0;
+}
+
 int main(void) {
   for (unsigned module = 0; module < 5; ++module) enable(module);
   enable(27); /* TIMER0: two counters of 32 bits, running */
@@ -263,6 +327,8 @@ int main(void) {
   mended_mapping();
   fetched_sets();
   bus_error();
+  controller_errors();
+  gated_controller();
   check("no other error", REG(EMR) == 0 && REG(EMR + 4) == 0 && REG(CCERR) == 0);
   return failures;
 }
