@@ -9,37 +9,27 @@
 #include <numeric>
 #include <optional>
 
+#include "model/cpu/core/stalls.h"
 #include "sw/fovea/cli_help.h"
+#include "sw/fovea/sleep.h"
 
 namespace fovea::app {
 namespace {
 
-/// A kind of the core's clocks: the statistic's name behind `cpu.` or `cpu.remap.`, and words for it.
-struct Kind {
-  const char* name;
-  const char* words;
+/// What the core is stalled for, in the order of the causes.
+constexpr const char* kStallWords[] = {
+    "interlocks",
+    "waiting for I-cache line fills",
+    "waiting for D-cache line fills",
+    "waiting for room in the write buffer",
+    "waiting for uncached accesses",
+    "waiting for page walks",
+    "waiting for internal RAM",
+    "waiting for cache maintenance",
+    "waiting for the write buffer to drain",
+    "waiting for clock edges of the bus",
 };
-constexpr Kind kKinds[] = {
-    {"issue", "executing"},
-    {"idle.dma", "waiting for the EDMA"},
-    {"idle.engine", "waiting for the remap engine"},
-    {"idle.capture", "asleep until the camera's interrupt"},
-    {"idle.display", "asleep until the display's interrupt"},
-    {"idle.timer", "asleep until a timer's interrupt"},
-    {"idle.other", "asleep until another interrupt"},
-    {"idle", "waiting for an interrupt"},  // of a run that does not tell them apart
-    {"stall.interlock", "interlocks"},
-    {"stall.icache", "I-cache line fills"},
-    {"stall.dcache", "D-cache line fills"},
-    {"stall.write_buffer", "room in the write buffer"},
-    {"stall.uncached", "uncached accesses"},
-    {"stall.tlb", "page walks"},
-    {"stall.tcm", "internal RAM"},
-    {"stall.cache_op", "cache maintenance"},
-    {"stall.drain", "the write buffer to drain"},
-    {"stall.bus_sync", "clock edges of the bus"},
-};
-constexpr std::size_t kIdle = 7, kInterlocks = 8;  // behind these the words follow "waiting for"
+static_assert(std::size(kStallWords) == cpu::kCauses);
 
 std::optional<double> real(std::span<const StatRow> stats, std::string_view name) {
   const StatRow* row = find(stats, name);
@@ -54,35 +44,73 @@ std::uint64_t count(std::span<const StatRow> stats, const std::string& name) {
   return n ? *n : 0;
 }
 
-std::vector<std::uint64_t> clocks(std::span<const StatRow> stats, const std::string& prefix) {
-  std::vector<std::uint64_t> out;
-  for (const Kind& k : kKinds) out.push_back(count(stats, prefix + k.name));
-  for (std::size_t k = 1; k < kIdle; ++k) out[kIdle] -= std::min(out[kIdle], out[k]);
-  return out;
-}
-
-/// "what 1.2, what 0.3": the largest first, without zeros.
+/// A kind of the core's clocks: words for it, and how many clocks.
 struct Part {
   std::string what;
-  std::uint64_t tenths;
+  std::uint64_t amount;
 };
-std::string listed(std::vector<Part> parts, const char* unit = "") {
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.tenths > b.tenths; });
-  std::string out;
-  for (const Part& p : parts)
-    if (p.tenths)
-      out += fmt::format("{}{} {}.{}{}", out.empty() ? "" : ", ", p.what, p.tenths / 10, p.tenths % 10,
-                         unit);
+
+/// The sleeps within remaps: waits for whom the program has given work to.
+Part wait_of_remaps(std::span<const StatRow> stats) {
+  const auto ended_by = [&](const char* event) {
+    return static_cast<double>(count(stats, std::string("cpu.remap.idle.") + event));
+  };
+  const std::string_view event = waited_for(ended_by("dma"), ended_by("engine"));
+  std::string who = "the EDMA or the remap engine";
+  for (const cpu::WakeInfo& info : cpu::kWakeTable)
+    if (event == info.name) who = info.who;
+  return {"waiting for " + who, count(stats, "cpu.remap.idle")};
+}
+
+std::vector<Part> stalls(std::span<const StatRow> stats, const std::string& prefix) {
+  std::vector<Part> out;
+  for (const cpu::CauseInfo& info : cpu::kCauseTable)
+    out.push_back({kStallWords[cpu::index(info.cause)], count(stats, prefix + "stall." + std::string(info.name))});
   return out;
 }
 
-std::vector<Part> parts_of(const std::vector<std::uint64_t>& tenths) {
-  std::vector<Part> out;
-  for (std::size_t k = 0; k < tenths.size(); ++k) {
-    const bool wait = k > kInterlocks;
-    out.push_back({(wait ? "waiting for " : "") + std::string(kKinds[k].words), tenths[k]});
+/// All clocks of the window.
+std::vector<Part> all_clocks(std::span<const StatRow> stats) {
+  std::vector<Part> out = {{"executing", count(stats, "cpu.issue")}, wait_of_remaps(stats)};
+  std::uint64_t rest = count(stats, "cpu.idle") - std::min(count(stats, "cpu.idle"), out.back().amount);
+  for (const cpu::WakeInfo& info : cpu::kWakeTable) {
+    const std::string event = std::string("idle.") + info.name;
+    const std::uint64_t clocks = count(stats, "cpu." + event) - std::min(count(stats, "cpu." + event), count(stats, "cpu.remap." + event));
+    rest -= std::min(rest, clocks);
+    const std::string words = is_idle(event) ? fmt::format("asleep until {}'s interrupt", info.who) : fmt::format("waiting for {}", info.who);
+    // Within and without remaps the same words are one part.
+    if (words == out[1].what) out[1].amount += clocks;
+    else out.push_back({words, clocks});
   }
+  out.push_back({"waiting for an interrupt", rest});  // of a run that does not tell them apart
+  for (Part& p : stalls(stats, "cpu.")) out.push_back(std::move(p));
+  return out;
+}
+
+std::vector<Part> clocks_of_remaps(std::span<const StatRow> stats) {
+  std::vector<Part> out = {{"executing", count(stats, "cpu.remap.issue")}, wait_of_remaps(stats)};
+  for (Part& p : stalls(stats, "cpu.remap.")) out.push_back(std::move(p));
+  return out;
+}
+
+/// The parts of `total` in proportion to their clocks.
+std::vector<Part> apportioned_parts(std::uint64_t total, std::vector<Part> parts) {
+  std::vector<std::uint64_t> amounts;
+  for (const Part& p : parts) amounts.push_back(p.amount);
+  amounts = apportioned(total, amounts);
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].amount = amounts[k];
+  return parts;
+}
+
+/// "what 1.2, what 0.3": the largest first, without zeros. Amounts are tenths.
+std::string listed(std::vector<Part> parts, const char* unit = "") {
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.amount > b.amount; });
+  std::string out;
+  for (const Part& p : parts)
+    if (p.amount)
+      out += fmt::format("{}{} {}.{}{}", out.empty() ? "" : ", ", p.what, p.amount / 10, p.amount % 10,
+                         unit);
   return out;
 }
 
@@ -107,7 +135,7 @@ std::string paragraph(std::string label, const std::string& text) {
 /// The core's clocks by what they were spent on, in percent that add up to 100.
 std::string core_line(std::span<const StatRow> stats) {
   if (count(stats, "cpu.cycles") == 0) return "";
-  return paragraph("core", listed(parts_of(apportioned(1000, clocks(stats, "cpu."))), "\x1f%"));
+  return paragraph("core", listed(apportioned_parts(1000, all_clocks(stats)), "\x1f%"));
 }
 
 std::string culprit_words(const std::string& name) {
@@ -253,20 +281,18 @@ std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std:
 std::string frame_budget(std::span<const StatRow> stats) {
   const auto window = real(stats, "frame.window");
   const std::uint64_t displayed = count(stats, "frame.displayed"), cycles = count(stats, "cpu.cycles");
-  const std::uint64_t remap = count(stats, "cpu.remap.cycles"), idle = count(stats, "cpu.idle");
-  const std::uint64_t idle_inside = count(stats, "cpu.remap.idle");
-  if (!window || displayed == 0 || remap == 0 || remap > cycles || idle_inside > idle) return "";
+  const std::uint64_t remap = count(stats, "cpu.remap.cycles"), spare = count(stats, "cpu.spare");
+  if (!window || displayed == 0 || remap == 0 || remap > cycles || spare > cycles - remap) return "";
   const auto period =
       static_cast<std::uint64_t>(std::llround(*window / static_cast<double>(displayed) * 1e4));
-  const std::uint64_t outside = idle - idle_inside;
   const std::vector<std::uint64_t> parts =
-      apportioned(period, std::vector<std::uint64_t>{remap, cycles - remap - outside, outside});
+      apportioned(period, std::vector<std::uint64_t>{remap, cycles - remap - spare, spare});
   std::string out = paragraph(
       "budget",
       fmt::format("{}.{} ms a displayed frame: remap {}.{}, other work {}.{}, idle {}.{}", period / 10,
                   period % 10, parts[0] / 10, parts[0] % 10, parts[1] / 10, parts[1] % 10, parts[2] / 10,
                   parts[2] % 10));
-  const std::string inside = listed(parts_of(apportioned(parts[0], clocks(stats, "cpu.remap."))));
+  const std::string inside = listed(apportioned_parts(parts[0], clocks_of_remaps(stats)));
   if (inside.empty()) return out;
   return out + paragraph("", fmt::format("remap {}.{} ms: {}", parts[0] / 10, parts[0] % 10, inside));
 }

@@ -16,12 +16,14 @@ namespace fovea::app {
 namespace {
 
 using cpu::ProfileRow;
-constexpr std::size_t kColumns = ProfileRow::kStall + cpu::kCauses;  // issue, idle, stalls
+constexpr std::size_t kColumns = ProfileRow::kStall + cpu::kCauses;  // issue, sleeps, stalls
 
 std::string cause_text(std::size_t cause) {
   if (cause == ProfileRow::kIssue) return "issue";
+  if (cause < ProfileRow::kWait)
+    return std::string("idle.") + cpu::kWakeTable[cause - ProfileRow::kIdle].name;
   if (cause < ProfileRow::kStall)
-    return std::string("idle.") + cpu::kWakeNames[cause - ProfileRow::kIdle];
+    return std::string("wait.") + cpu::kWakeTable[cause - ProfileRow::kWait].name;
   return cpu::cause_name(static_cast<cpu::Cause>(cause - ProfileRow::kStall));
 }
 

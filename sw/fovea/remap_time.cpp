@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "sw/fovea/after_all.h"
+#include "sw/fovea/sleep.h"
 
 namespace fovea::app {
 namespace {
@@ -23,7 +25,10 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
     const board::Phase phase = board::phase_of(out);
     if (phase == board::Phase::kRemapStart) reached(true);
     if (phase == board::Phase::kRemapEnd) reached(false);
-    if (phase == board::Phase::kReset || phase == board::Phase::kBoot) begun_.reset();
+    if (phase == board::Phase::kReset || phase == board::Phase::kBoot) {
+      begun_.reset();
+      given_away(kernel_time(), false);
+    }
   };
 }
 
@@ -31,9 +36,16 @@ void RemapTime::reached(bool begins) {
   const Picoseconds at = kernel_time() + kAhead;
   if (!begins) ending_ = at;
   board_.dm365.end_of_instant.at(at, kAfterAll, [this, begins, at] {
+    given_away(at, begins);
     board_.dm365.arm.core().sample_counts(
         at, [this, begins](const cpu::Counts& counts) { sampled(begins, of(counts)); });
   });
+}
+
+/// A profile tells apart which sleeps are within remaps, from the same instants on.
+void RemapTime::given_away(Picoseconds at, bool begins) {
+  cpu::Core& core = board_.dm365.arm.core();
+  if (core.profile()) core.mark_given_away(at, begins);
 }
 
 RemapTime::Clocks RemapTime::of(const cpu::Counts& counts) {
@@ -75,6 +87,17 @@ void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
     if (const Clocks asleep = of(arm.core().counts_asleep(*ending_)); asleep.cycles < end.cycles) end = asleep;
   if (begun_ && begun_->cycles < end.cycles)
     add(all, begun_->cycles < from.cycles ? of(from) : *begun_, end);
+  Clocks rest;
+  add(rest, of(from), of(to));
+  std::uint64_t spare = rest.idle - all.idle;
+  for (const cpu::WakeInfo& info : cpu::kWakeTable)
+    if (!is_idle(std::string("idle.") + info.name)) {
+      const auto k = static_cast<std::size_t>(info.event);
+      spare -= rest.idle_by[k] - all.idle_by[k];
+    }
+  rows.push_back({"cpu.spare", spare, "cycles",
+                  "clocks of cpu.idle in which the program has nothing to do: without the sleeps within remaps, and "
+                  "without those that the EDMA or the remap engine ended"});
   if (all.cycles == 0) return;
   const auto row = [&](const std::string& name, std::uint64_t clocks, const std::string& sentence) {
     rows.push_back({"cpu.remap." + name, clocks, "cycles", sentence});
@@ -83,9 +106,9 @@ void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
   row("issue", all.issue, "clocks during remaps in which instructions issue");
   row("idle", all.idle, "clocks during remaps in wait-for-interrupt");
   for (std::size_t k = 0; k < cpu::kWakeEvents; ++k)
-    row(std::string("idle.") + cpu::kWakeNames[k], all.idle_by[k],
+    row(std::string("idle.") + cpu::kWakeTable[k].name, all.idle_by[k],
         std::string("clocks of cpu.remap.idle that ended with an interrupt of the ") +
-            cpu::wake_sentence(static_cast<cpu::WakeEvent>(k)));
+            cpu::kWakeTable[k].blocks);
   for (const cpu::CauseInfo& info : cpu::kCauseTable)
     row("stall." + std::string(info.name), all.stall[index(info.cause)],
         "during remaps: " + std::string(info.sentence));

@@ -20,8 +20,8 @@ class RemapTime {
   RemapTime& operator=(const RemapTime&) = delete;
 
   /// `cpu.remap.*`: the core's clocks within both remaps and window, by what they were spent on; all
-  /// together are `cpu.remap.cycles`. No rows if there are none. `from`, `to`: the core's counters at the
-  /// window's edges.
+  /// together are `cpu.remap.cycles`. No such rows if there are none. And `cpu.spare`. `from`, `to`: the
+  /// core's counters at the window's edges.
   void collect(const cpu::Counts& from, const cpu::Counts& to, std::vector<StatRow>& rows) const;
 
  private:
@@ -33,6 +33,7 @@ class RemapTime {
   static Clocks of(const cpu::Counts& counts);
   static void add(Clocks& sum, const Clocks& from, const Clocks& to);
   void reached(bool begins);
+  void given_away(Picoseconds at, bool begins);
   void sampled(bool begins, const Clocks& at);
 
   board::Board& board_;

@@ -16,6 +16,7 @@ run off
 run on --profile
 run strict --profile --sync=strict
 run copy --profile -s firmware.kernel=copy
+run gather --profile -s firmware.kernel=gather -s video.width=320
 cmp "$out/off/stats.json" "$out/on/stats.json"
 for file in stats.json frames.csv timeline.csv stalls.csv uart.log; do cmp "$out/off/$file" "$out/on/$file"; done
 for file in profile.csv profile.folded profile.callgrind profile.txt interrupts.csv frame_parts.csv functions.csv; do
@@ -44,9 +45,18 @@ def check(name):
     assert all(int(r["clocks"]) > 0 for r in rows)
     assert total(window) == stats["cpu.cycles"], (total(window), stats["cpu.cycles"])
     for (cause,), clocks in by("cause").items():
-        figure = "cpu.issue" if cause == "issue" else "cpu." + cause if cause.startswith("idle.") \
-            else "cpu.stall." + cause
+        if cause.startswith(("idle.", "wait.")):
+            continue
+        figure = "cpu.issue" if cause == "issue" else "cpu.stall." + cause
         assert clocks == stats[figure], (cause, clocks, stats[figure])
+    # Sleeps, by what ended them: within remaps (the same clocks as in the figures) and elsewhere.
+    slept = by("cause")
+    for event in ("dma", "engine", "capture", "display", "timer", "other"):
+        within, outside = slept["wait." + event,], slept["idle." + event,]
+        assert within == stats["cpu.remap.idle." + event], (event, within, stats["cpu.remap.idle." + event])
+        assert within + outside == stats["cpu.idle." + event], (event, within, outside)
+    spare = sum(n for (cause,), n in slept.items() if cause.startswith("idle.") and cause not in ("idle.dma", "idle.engine"))
+    assert spare == stats["cpu.spare"], (spare, stats["cpu.spare"])
     idle = sum(v for k, v in stats.items() if k.startswith("cpu.idle."))
     assert idle == stats["cpu.idle"] and stats["cpu.idle.capture"] + stats["cpu.idle.display"] > 0
     stalls = collections.Counter()
@@ -79,6 +89,11 @@ assert any(";remap_plain " in line for line in folded), folded
 assert any(r["phase"] == "lut" and r["function"].startswith("__") for r in rows), "libgcc's functions"
 stats, rows, folded = check("copy")
 assert stats["cpu.idle.dma"] > 0, "the kernel waits for the EDMA"
+# A long transfer, in the midst of which the display's interrupts come: no idle time.
+stats, rows, folded = check("gather")
+cut = sum(stats["cpu.remap.idle." + event] for event in ("capture", "display"))
+assert 0 < cut < stats["cpu.remap.idle"], (cut, stats["cpu.remap.idle"])
+assert stats["cpu.spare"] == stats["cpu.idle"] - stats["cpu.remap.idle"] - (stats["cpu.idle.dma"] - stats["cpu.remap.idle.dma"])
 PYTHON
 
 callgrind_annotate --show=Clocks "$out/on/profile.callgrind" >"$out/annotated"

@@ -80,14 +80,14 @@ void expect_equal(const Clocks& profile, const Clocks& seen) {
 /// Sums of a section by cause, region and culprit against the core's own counters.
 void expect_sums(const std::vector<ProfileRow>& rows, const Counts& from, const Counts& to) {
   std::uint64_t all = 0, issue = 0, instructions = 0;
-  std::array<std::uint64_t, kWakeEvents> idle{};
+  std::array<std::uint64_t, kWakeEvents> idle{};  // with waits for work that was given away
   std::map<std::pair<unsigned, unsigned>, std::uint64_t> stalls;
   for (const ProfileRow& r : rows) {
     all += r.clocks;
     instructions += r.instructions;
     if (r.cause == ProfileRow::kIssue) issue += r.clocks;
     else if (r.stalled()) stalls[{r.cause - ProfileRow::kStall, r.region}] += r.clocks;
-    else idle[r.cause - ProfileRow::kIdle] += r.clocks;
+    else idle[(r.cause - ProfileRow::kIdle) % kWakeEvents] += r.clocks;
   }
   EXPECT_EQ(all, to.cycles - from.cycles);
   EXPECT_EQ(issue, to.issue - from.issue);
@@ -378,6 +378,7 @@ TEST(ProfileTest, SectionsAtRandomTimesAddUp) {
       m.port.schedule(at[k], [&m, k, t = at[k]] {
         m.core.mark_window(t);
         m.core.mark_section(t, k + 1);
+        m.core.mark_given_away(t, k == 0);
       });
     m.load(code);
     m.load(boot);
@@ -391,6 +392,10 @@ TEST(ProfileTest, SectionsAtRandomTimesAddUp) {
     expect_sums(profile.rows(0), start, from);
     expect_sums(profile.rows(1), from, to);
     expect_sums(profile.rows(2), to, end);
+    // The window is also when work is given away: its sleeps are waits, and no others.
+    for (unsigned section = 0; section < 3; ++section)
+      for (const ProfileRow& r : profile.rows(section))
+        EXPECT_EQ(r.cause >= ProfileRow::kWait && !r.stalled(), section == 1 && r.cause >= ProfileRow::kIdle && !r.stalled()) << section;
     within_sleep += from.idle && from.cycles == at[0] / Machine::kClock + 1;
     if (HasFailure()) FAIL() << "run " << n;
   }

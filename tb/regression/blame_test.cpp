@@ -357,6 +357,51 @@ TEST_F(BlameTest, ASleepUntilTheEdmaIsDoneIsNotIdle) {
   }
 }
 
+// The display's interrupt ends the first half of a wait for the EDMA: all of it is the wait. 20 clocks of 300.
+TEST_F(BlameTest, ASleepWithinARemapWaitsForTheEdmaWhateverEndsIt) {
+  const auto with = [](RunMaker run, int dma, int display) {
+    replace(run.profile, "idle.capture,,,300",
+            fmt::format("idle.capture,,,{},0\nframes,sleep,cp15.c,3,wait.display,,,{},0\nframes,sleep,cp15.c,3,wait.dma,,,{}",
+                        300 - dma - display, display, dma));
+    return run;
+  };
+  a = read_run(with(before, 20, 0).write(dir, "a"));
+  b = read_run(with(after, 20, 30).write(dir, "b"));
+  const Difference d = difference_of(attribution_of(a, true), attribution_of(b, true), circumstances_of(a, b));
+  EXPECT_EQ(d.busy.change(), 30);
+  EXPECT_EQ(d.idle.change(), -30);
+  EXPECT_EQ(blame_text(d, blame_of(d, true)),
+            "sleep (cp15.c:3) waits with the same instructions: +30 clocks (100 % of the change), of which +30 clocks by "
+            "wait.dma");
+  // Without a profile the figures tell the same.
+  for (RunMaker* run : {&before, &after}) run->profile.clear();
+  before.figure("cpu.idle.dma", "20", "cycles").figure("cpu.idle.display", "280", "cycles").figure("cpu.remap.idle.dma", "20", "cycles");
+  after.figure("cpu.idle.dma", "25", "cycles").figure("cpu.idle.display", "275", "cycles");
+  after.figure("cpu.remap.idle.dma", "20", "cycles").figure("cpu.remap.idle.display", "30", "cycles");
+  a = read_run(before.write(dir, "c"));
+  b = read_run(after.write(dir, "d"));
+  std::map<std::string, std::uint64_t> causes;
+  for (const auto& r : attribution_of(b, false).rows)
+    if (app::is_sleep(r.cause)) causes[r.cause] += r.clocks;
+  EXPECT_EQ(causes, (std::map<std::string, std::uint64_t>{{"idle.display", 245}, {"idle.dma", 5}, {"wait.dma", 50}}));
+  const Difference figures = difference_of(attribution_of(a, false), attribution_of(b, false), {});
+  EXPECT_EQ(figures.busy.change(), 35);
+  EXPECT_EQ(figures.idle.change(), -35);
+}
+
+// Waits for both, or for neither by name, are one cause without a name.
+TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
+  for (const char* other : {"wait.engine", "wait.timer"}) {
+    RunMaker run = after;
+    const bool both = std::string(other) == "wait.engine";
+    replace(run.profile, "idle.capture,,,300", fmt::format("{},,,100,0\nframes,sleep,cp15.c,3,{},,,200", both ? "wait.dma" : "wait.other", other));
+    std::uint64_t sum = 0;
+    for (const auto& r : attribution_of(read_run(run.write(dir, "e")), true).rows)
+      if (r.cause == "wait") sum += r.clocks;
+    EXPECT_EQ(sum, 300u) << other;
+  }
+}
+
 // Up to 1 % may be missing, as unexplained; a file of another run is refused.
 TEST_F(BlameTest, RowsThatDoNotAddUpAreUnexplainedOrRefused) {
   after.figure("cpu.cycles", "1010", "cycles");  // rows: 1,000

@@ -190,7 +190,7 @@ TEST_F(ReferenceTest, ASlowerRunIsBlamedOnFunctionLineAndCause) {
   slow.figure("frame.remap_time.mean", "0.0042", "s");
   slow.profile.replace(slow.profile.find("vpbe,50"), 7, "vpbe,70");
   slow.profile.replace(slow.profile.find("capture,,,300"), 13, "capture,,,280");
-  slow.figure("cpu.idle", "280", "cycles");
+  slow.figure("cpu.idle", "280", "cycles").figure("cpu.spare", "280", "cycles");
   slow.parameters["ddr.clock"] = "216MHz";
   const RunFigures run = read_run(slow.write(dir, "slow"));
   const Baseline b = read_baseline(dir / "base.yaml");
@@ -211,7 +211,7 @@ TEST_F(ReferenceTest, WithoutAProfileOfTheRunTheCauseIsBlamed) {
   RunMaker slow = profiled();
   slow.profile.clear();
   slow.stalls.replace(slow.stalls.find("vpbe,50"), 7, "vpbe,70");
-  slow.figure("cpu.idle", "280", "cycles");
+  slow.figure("cpu.idle", "280", "cycles").figure("cpu.spare", "280", "cycles");
   const CheckResult r = check_run(read_run(slow.write(dir, "slow")), read_baseline(dir / "base.yaml"), false);
   EXPECT_EQ(r.blame,
             "the program: +20 clocks (100 % of the change), of which +20 clocks by dcache, region lut, culprit vpbe");

@@ -47,9 +47,9 @@ class RegressionCommandTest : public testing::Test {
 
 TEST_F(RegressionCommandTest, EqualRunsEndWithZeroDifferentOnesWithOne) {
   EXPECT_EQ(cli({"compare", a, a}), 0) << err.str();
-  EXPECT_THAT(out.str(), HasSubstr("equal: all 5 figures"));
+  EXPECT_THAT(out.str(), HasSubstr("equal: all 6 figures"));
   EXPECT_EQ(cli({"compare", a, b}), 1) << err.str();
-  EXPECT_THAT(out.str(), AllOf(HasSubstr("different: 3 of 6 figures"), HasSubstr("+5.0 %"),
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("different: 3 of 7 figures"), HasSubstr("+5.0 %"),
                                HasSubstr("missing"), HasSubstr("largest slow-down: remap (remap.c:21)"),
                                HasSubstr("unexplained: +0 clocks (0.0 %)")));
   EXPECT_EQ(cli({"compare", a, b, "--only", "frame.*", "--tolerance", "5%"}), 0) << out.str();

@@ -19,7 +19,11 @@ commit=$(tr - . <"$build/fovea.commit")
 [[ $(dpkg-deb -f "$deb" Version) == *+"$commit" ]] || fail "version $(dpkg-deb -f "$deb" Version), not of commit $commit"
 
 # A machine without Fovea's sources: the package below a folder, a copy of the recipe.
+# The steps' processor time, in ms, from what `times` says of this shell's children that have ended: wall time would
+# also count what else the machine does.
+spent() { awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); printf "%d", 1e3 * (60 * (u[1] + s[1]) + u[2] + s[2]) }' "$1"; }
 begin=$(date +%s%N)
+times >"$out/times.begin"
 dpkg -x "$deb" "$out/root" || exit 1
 cp -r "$out/root/usr/share/doc/fovea/ci-example" "$out/repository"
 export FOVEA=$out/root/usr/bin/fovea BUILD=$out/app
@@ -36,12 +40,13 @@ cp "$BUILD/timing.xml" "$out/same.xml"
 FLAGS=-DSLOW ./check.sh >"$out/slow.log" 2>&1
 status=$?
 end=$(date +%s%N)
+times >"$out/times.end"
 [ "$status" = 1 ] || fail "a slower firmware: status $status: $(cat "$out/slow.log")"
 grep -q 'FAILED  cpu.cycles' "$out/slow.log" || fail "no cpu.cycles: $(cat "$out/slow.log")"
 grep -q '^blamed: ' "$out/slow.log" || fail "nothing blamed: $(cat "$out/slow.log")"
-ms=$(((end - begin) / 1000000))
-echo "from package to five verdicts: $ms ms"
-[ "$ms" -le 60000 ] || fail "from package to verdicts: $ms ms, more than a minute"
+ms=$(($(spent "$out/times.end") - $(spent "$out/times.begin")))
+echo "from package to five verdicts: $ms ms of processor time, $(((end - begin) / 1000000)) ms in all"
+[ "$ms" -gt 0 ] && [ "$ms" -le 60000 ] || fail "from package to verdicts: $ms ms of processor time, more than a minute or none"
 xmllint --noout --schema "$source/tb/regression/junit.xsd" "$BUILD/timing.xml" 2>"$out/xml.log" ||
   fail "JUnit XML: $(cat "$out/xml.log")"
 # The schema is able to complain.

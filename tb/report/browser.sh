@@ -15,6 +15,10 @@ done
 # A view that is composed of four cameras; pixels that the remap engine moves.
 "$fovea" run scripts/experiments/birds-eye.yaml -s run.frames=4 -o "$out/view" >/dev/null
 "$fovea" run scripts/experiments/default.yaml -s run.frames=2 -s engine=tlm -s firmware.kernel=engine --profile -o "$out/engine" >/dev/null
+# Several cameras in turn; a run that ended before its last frame; one without any frame.
+"$fovea" run scripts/experiments/two-cameras.yaml -s run.frames=2 -o "$out/cameras" >/dev/null
+"$fovea" run scripts/experiments/default.yaml --max-time 500ms -o "$out/partial" >/dev/null 2>&1 || [ $? = 3 ]
+"$fovea" run scripts/experiments/default.yaml -s run.until=time:100ms -o "$out/zero" >/dev/null
 python3 tb/report/fixture.py "$out/paper-pal" "$out/all-files"
 cp -r "$out/paper-pal" "$out/bare"
 rm -r "$out"/bare/{frames,frames.csv,timeline.csv,stalls.csv,host.json}
@@ -22,7 +26,8 @@ rm -r "$out"/bare/{frames,frames.csv,timeline.csv,stalls.csv,host.json}
 "$fovea" report "$out/all-files" -o "$out/all.html"
 "$fovea" report "$out/bare" -o "$out/bare.html"
 "$fovea" report "$out/default" "$out/all-files" -o "$out/two.html"
-for name in view engine; do "$fovea" report "$out/$name" -o "$out/$name.html"; done
+for name in view engine cameras zero; do "$fovea" report "$out/$name" -o "$out/$name.html"; done
+"$fovea" report --partial "$out/partial" -o "$out/partial.html"
 # A page is made in two seconds.
 start=$(date +%s%N)
 "$fovea" report "$out/default" -o "$out/one.html" >/dev/null

@@ -11,7 +11,7 @@ from chromium import Page
 OUT = Path(sys.argv[1])  # further arguments are those of unittest, such as -k keyboard
 HERE = Path(__file__).parent
 PAGES = {"one": ["default"], "all": ["all-files"], "bare": ["bare"], "two": ["default", "all-files"],
-         "view": ["view"], "engine": ["engine"]}
+         "view": ["view"], "engine": ["engine"], "cameras": ["cameras"], "partial": ["partial"], "zero": ["zero"]}
 LOOKS = [("light", 1280, False, ""), ("dark", 1280, True, ""), ("narrow", 390, False, ""), ("print", 800, False, "print")]
 PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 
@@ -105,7 +105,14 @@ class Report(unittest.TestCase):
         self.open("engine")
         text = self.page.run("document.body.innerText")
         self.assertIn("the core sleeps until the remap engine is done", text)
+        self.assertRegex(text, r"It has nothing to do in [0-9.]+ %")
         self.assertRegex(text, r"The interrupt that ended the sleep came from: .*the remap engine [0-9.]+ %")
+
+    def test_a_run_without_frames_and_a_partial_one_say_so(self):
+        self.open("zero")
+        self.assertGreaterEqual(self.page.run("document.querySelectorAll('.absent').length"), 1)
+        self.open("partial")
+        self.assertRegex(self.page.run("document.querySelector('main').innerText"), r"(?i)partial|not complete|did not complete|stopped")
 
     def test_waterfall_adds_up(self):
         self.open("all")

@@ -114,9 +114,10 @@ TEST_F(ExplainTest, LatencyIsTheSumOfItsParts) {
 TEST_F(ExplainTest, WhoMovesThePixelsWhileTheCoreSleeps) {
   EXPECT_EQ(text("mover"), "");
   set("cpu.remap.cycles", std::uint64_t{1000});
-  set("cpu.remap.idle.engine", std::uint64_t{49});
+  set("cpu.remap.idle", std::uint64_t{49});
+  set("cpu.remap.idle.engine", std::uint64_t{20});
   EXPECT_EQ(text("mover"), "");
-  set("cpu.remap.idle.engine", std::uint64_t{50});
+  set("cpu.remap.idle", std::uint64_t{50});  // others' interrupts ended 30 of these
   EXPECT_EQ(text("mover"), "In 5.0 % of the clocks of its remaps the core sleeps until the remap engine is done.");
   set("ddr.remap_engine.wait.read.own", 0.50);
   set("ddr.remap_engine.wait.write.own", 0.14);
@@ -126,20 +127,37 @@ TEST_F(ExplainTest, WhoMovesThePixelsWhileTheCoreSleeps) {
   set("ddr.remap_engine.wait.read.row_miss", std::nan(""));
   set("ddr.arm_d.wait.read.own", 9.0);
   EXPECT_THAT(text("mover"), testing::EndsWith(
-      "The time of its requests to the SDRAM: 64 % behind other requests of its own, 20 % in its bridge to the "
-      "crossbar and 11 % while the display is served."));
+      "The time of all requests that the remap engine made to the SDRAM in the whole window: 64 % behind other requests "
+      "of its own, 20 % in its bridge to the crossbar and 11 % while the display is served."));
+  // A load at its port waits there too.
+  parameters_ = {{"load.outstanding", "0"}, {"load.port", "remap_engine"}, {"load.1.outstanding", "2"}, {"load.1.port", "edma_tc0"}};
+  EXPECT_THAT(text("mover"), HasSubstr("whole window"));
+  parameters_["load.1.port"] = "remap_engine";
+  EXPECT_EQ(text("mover"), "In 5.0 % of the clocks of its remaps the core sleeps until the remap engine is done.");
+  // Sleeps that neither of them ended are no wait for them.
+  remove("cpu.remap.idle.engine");
+  EXPECT_EQ(text("mover"), "");
 }
 
 // What the ports of the EDMA wait for one another is its own.
 TEST_F(ExplainTest, ThePortsOfTheEdmaAreOne) {
   set("cpu.remap.cycles", std::uint64_t{100});
-  set("cpu.remap.idle.dma", std::uint64_t{90});
+  set("cpu.remap.idle", std::uint64_t{90});
+  set("cpu.remap.idle.dma", std::uint64_t{1});
   set("ddr.edma_tc0.wait.read.edma_tc1", 0.4);
   set("ddr.edma_tc1.wait.write.own", 0.3);
   set("ddr.edma_tc2.wait.write.arm_d", 0.3);
   EXPECT_EQ(text("mover"),
-            "In 90 % of the clocks of its remaps the core sleeps until the EDMA is done. The time of its requests to "
-            "the SDRAM: 70 % behind other requests of its own and 30 % while the core is served.");
+            "In 90 % of the clocks of its remaps the core sleeps until the EDMA is done. The time of all requests "
+            "that the EDMA made to the SDRAM in the whole window: 70 % behind other requests of its own and 30 % while the core is served.");
+}
+
+TEST_F(ExplainTest, TwoMoversAreBothNamed) {
+  set("cpu.remap.cycles", std::uint64_t{100});
+  set("cpu.remap.idle", std::uint64_t{90});
+  set("cpu.remap.idle.dma", std::uint64_t{10});
+  set("cpu.remap.idle.engine", std::uint64_t{80});
+  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA and the remap engine are done.");
 }
 
 TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {
@@ -174,7 +192,7 @@ TEST_F(ExplainTest, AnotherLargestWaitIsFound) {
 
 TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
   functions_ = {{"remap", 750, {{"issue", 250}, {"dcache", 500}}},
-                {"main", 750, {{"idle.capture", 500}, {"issue", 250}}}};
+                {"main", 750, {{"idle.capture", 400}, {"wait.dma", 100}, {"issue", 250}}}};
   EXPECT_EQ(text("function"),
             "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "
             "for line fills of the D-cache.");

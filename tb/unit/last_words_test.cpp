@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "tb/unit/support.h"
 
@@ -52,6 +53,7 @@ std::vector<StatRow> budget_rows() {
           counted("cpu.cycles", 400'000),         counted("cpu.idle", 113'000),
           counted("cpu.issue", 100'000),          counted("cpu.stall.dcache", 187'000),
           counted("cpu.remap.cycles", 286'600),   counted("cpu.remap.idle", 600),
+          counted("cpu.spare", 112'400),
           counted("cpu.remap.issue", 98'000),     counted("cpu.remap.stall.dcache", 121'000),
           counted("cpu.remap.stall.write_buffer", 67'000), counted("cpu.remap.stall.icache", 0)};
 }
@@ -62,7 +64,8 @@ TEST(FrameBudgetTest, AddsUpToThePeriodAndTheRemap) {
   EXPECT_EQ(frame_budget(budget_rows()),
             "budget  40.0 ms a displayed frame: remap 28.7, other work 0.1, idle 11.2\n"
             "        remap 28.7 ms: waiting for D-cache line fills 12.1, executing 9.8,\n"
-            "        waiting for room in the write buffer 6.7, waiting for an interrupt 0.1\n");
+            "        waiting for room in the write buffer 6.7, waiting for the EDMA or the\n"
+            "        remap engine 0.1\n");
 }
 
 // Sleeps are told apart by what ended them, and the sum stays.
@@ -81,6 +84,33 @@ TEST(FrameBudgetTest, SleepsAreNamedByWhatEndsThem) {
             "core    waiting for D-cache line fills 46.7 %, asleep until the display's\n"
             "        interrupt 28.0 %, executing 25.0 %, waiting for the remap engine 0.2 %,\n"
             "        asleep until the camera's interrupt 0.1 %\n");
+}
+
+// The display's interrupt ends the first half of a wait for the EDMA, which goes on behind it: 0.1 ms in all,
+// and no idle time. Without the remap it is the display's.
+TEST(FrameBudgetTest, AnInterruptInTheMidstOfAWaitMakesNoIdleTime) {
+  auto rows = budget_rows();
+  for (const auto& [event, all, within] : {std::tuple("dma", 350, 300), std::tuple("display", 112'650, 300)}) {
+    rows.push_back(counted(std::string("cpu.idle.") + event, static_cast<std::uint64_t>(all)));
+    rows.push_back(counted(std::string("cpu.remap.idle.") + event, static_cast<std::uint64_t>(within)));
+  }
+  // 50 clocks until the EDMA is done lie outside of remaps, where the pins do not tell what the program does.
+  for (StatRow& row : rows)
+    if (row.name == "cpu.spare") row.value = std::uint64_t{112'350};
+  EXPECT_THAT(frame_budget(rows), HasSubstr("other work 0.1, idle 11.2\n"));
+  EXPECT_THAT(frame_budget(rows), HasSubstr("write buffer 6.7, waiting for the EDMA 0.1\n"));
+  const std::string text = run_words(rows, {});
+  EXPECT_THAT(text, HasSubstr("asleep until the display's\n        interrupt 28.1 %"));
+  EXPECT_THAT(text, HasSubstr("waiting for the EDMA 0.2 %")) << "650 of 400,000";
+  EXPECT_EQ(text.find("waiting for an interrupt"), std::string::npos);
+}
+
+// Both ended sleeps within remaps: nobody can tell for whom the others were.
+TEST(FrameBudgetTest, TwoWhoAreWaitedForAreBothNamed) {
+  auto rows = budget_rows();
+  rows.push_back(counted("cpu.remap.idle.dma", 1));
+  rows.push_back(counted("cpu.remap.idle.engine", 599));
+  EXPECT_THAT(frame_budget(rows), HasSubstr("waiting for the EDMA or the\n        remap engine 0.1\n"));
 }
 
 TEST(FrameBudgetTest, IsLeftOutWithoutARemap) {

@@ -86,7 +86,8 @@ void ClockProfile::stalled(Cause cause, std::size_t region, const BusAccess& acc
 }
 
 void ClockProfile::slept(WakeEvent by, std::uint64_t clocks) {
-  cell(pc_).idle[static_cast<std::size_t>(by)] += clocks;
+  Cell& c = cell(pc_);
+  (given_away_ ? c.wait : c.idle)[static_cast<std::size_t>(by)] += clocks;
 }
 
 void ClockProfile::collect(DecodedLine& line) {
@@ -135,6 +136,8 @@ std::vector<ProfileRow> ClockProfile::rows(std::size_t section) const {
     add(address, ProfileRow::kIssue, 0, 0, c.issue, c.instructions);
     for (std::size_t k = 0; k < kWakeEvents; ++k)
       add(address, ProfileRow::kIdle + k, 0, 0, c.idle[k], 0);
+    for (std::size_t k = 0; k < kWakeEvents; ++k)
+      add(address, ProfileRow::kWait + k, 0, 0, c.wait[k], 0);
     add(address, ProfileRow::kStall + index(Cause::kInterlock), RegionMap::kNone, kCore, c.interlock,
         0);
   }

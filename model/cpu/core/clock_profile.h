@@ -1,5 +1,6 @@
 // Where the core's clocks went: by instruction, cause, region and culprit (decision 0021).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -21,13 +22,15 @@ struct BusAccess;
 /// The clocks of one instruction that have one cause, region and culprit.
 struct ProfileRow {
   std::uint32_t address = 0;
-  /// kIssue, kIdle + index of a WakeEvent, or kStall + index of a Cause.
+  /// kIssue, kIdle or kWait + index of a WakeEvent, or kStall + index of a Cause. kWait: a sleep while
+  /// the program waits for work that it has given away (mark_given_away()).
   std::uint8_t cause = 0;
   std::uint8_t region = 0, culprit = 0;  ///< of a stall; otherwise 0
   std::uint64_t clocks = 0;
   std::uint64_t instructions = 0;  ///< only with kIssue
 
-  static constexpr std::uint8_t kIssue = 0, kIdle = 1, kStall = kIdle + kWakeEvents;
+  static constexpr std::uint8_t kIssue = 0, kIdle = 1, kWait = kIdle + kWakeEvents,
+                                kStall = kWait + kWakeEvents;
   bool stalled() const { return cause >= kStall; }
   Cause stall_cause() const { return static_cast<Cause>(cause - kStall); }
 };
@@ -92,6 +95,23 @@ class ClockProfile {
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
   /// An IRQ or FIQ is taken: its vector's instruction begins at the clock.
   std::function<void(bool fiq, std::uint64_t cycle)> on_interrupt;
+  /// From time t on, sleeps are waits for work that the program has given away, or no longer.
+  void mark_given_away(Picoseconds t, bool begins) {
+    marks_.push_back({t, begins ? kGivenAway : kTakenBack});
+  }
+  /// The last sleep of a run, which nothing ends. `edge`: the clock that a time falls on.
+  template <class F>
+  void sleep_out(std::uint64_t from, std::uint64_t to, F edge) {
+    for (const Mark& m : marks_) {
+      if (m.section != kGivenAway && m.section != kTakenBack) continue;
+      const std::uint64_t split = std::max(from, edge(m.at));
+      if (split >= to) break;
+      slept(WakeEvent::kOther, split - from);
+      given_away_ = m.section == kGivenAway;
+      from = split;
+    }
+    slept(WakeEvent::kOther, to - from);
+  }
   /// A change of section at time t, which takes effect as a mark of the measurement window does.
   void mark(Picoseconds t, std::size_t section) { marks_.push_back({t, section}); }
   bool pending() const { return !marks_.empty(); }
@@ -101,6 +121,10 @@ class ClockProfile {
   std::optional<std::size_t> take_mark() {
     const Mark m = marks_.front();
     marks_.pop_front();
+    if (m.section == kGivenAway || m.section == kTakenBack) {
+      given_away_ = m.section == kGivenAway;
+      return std::nullopt;
+    }
     if (m.section != kSnapshot) return m.section;
     snapshots_.push_back({m.at, counts_.issue, counts_.idle, counts_.stall});
     return std::nullopt;
@@ -116,7 +140,7 @@ class ClockProfile {
  private:
   struct Cell {
     std::uint64_t issue = 0, instructions = 0, interlock = 0;
-    std::array<std::uint64_t, kWakeEvents> idle{};
+    std::array<std::uint64_t, kWakeEvents> idle{}, wait{};
   };
   using Shares = StallTable::Shares;
   struct Section {
@@ -127,7 +151,7 @@ class ClockProfile {
     Picoseconds at;
     std::size_t section;
   };
-  static constexpr std::size_t kSnapshot = ~std::size_t{0};
+  static constexpr std::size_t kSnapshot = ~std::size_t{0}, kGivenAway = kSnapshot - 1, kTakenBack = kSnapshot - 2;
   static constexpr std::uint64_t stall_key(std::uint32_t pc, Cause cause, std::size_t region) {
     return std::uint64_t{pc} << 16 | index(cause) << 8 | region;
   }
@@ -137,7 +161,7 @@ class ClockProfile {
 
   const std::uint32_t& pc_;
   const Counts& counts_;
-  bool open_ = false;
+  bool open_ = false, given_away_ = false;
   std::uint64_t issue_seen_ = 0, instructions_seen_ = 0;
   std::size_t section_ = 0, stacked_section_ = 0;
   std::vector<Section> sections_;

@@ -157,6 +157,12 @@ class Core : public Background {
     own_profile_->snapshot(t);
     interface_.attention = true;
   }
+  /// Lets the profile count sleeps from time t on as waits for work that the program has given away, or no
+  /// longer; as mark_window().
+  void mark_given_away(Picoseconds t, bool begins) {
+    own_profile_->mark_given_away(t, begins);
+    interface_.attention = true;
+  }
   /// Completes the profile. The core is between two instructions, asleep, or has failed.
   /// @param end the counters up to which clocks count, as of counts_asleep()
   void finish_profile(const Counts& end);

@@ -108,7 +108,9 @@ void Core::finish_profile(const Counts& end) {
     if (const Instruction* const i = log_.last_record()) ends_before(i);
   const std::uint64_t asleep =
       end.idle > ledger_.counts.idle ? end.idle - ledger_.counts.idle : 0;
-  if (asleep) p.slept(WakeEvent::kOther, asleep);
+  if (asleep)
+    p.sleep_out(ledger_.cycle, ledger_.cycle + asleep,
+                [this](Picoseconds t) { return interface_.clock.edge_after(t); });
   enter_section(p.section());
   p.stacks.count(ledger_.cycle + asleep, false);
   p.mask.count(false, awake(), regs_.pc);

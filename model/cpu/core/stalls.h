@@ -49,13 +49,24 @@ constexpr const char* cause_name(Cause c) { return kCauseTable[index(c)].name; }
 /// What ended a sleep: an interrupt of one of these.
 enum class WakeEvent : std::uint8_t { kDma, kEngine, kCapture, kDisplay, kTimer, kOther, kCount };
 inline constexpr std::size_t kWakeEvents = static_cast<std::size_t>(WakeEvent::kCount);
-inline constexpr std::array<const char*, kWakeEvents> kWakeNames = {
-    "dma", "engine", "capture", "display", "timer", "other"};
-constexpr const char* wake_sentence(WakeEvent e) {
-  constexpr std::array<const char*, kWakeEvents> kBlocks = {
-      "EDMA", "remap engine", "video front end", "display", "timers", "other blocks"};
-  return kBlocks[static_cast<std::size_t>(e)];
-}
+/// The events, in their order: the name in statistics, the blocks of the chip, and who that is for people.
+struct WakeInfo {
+  WakeEvent event;
+  const char *name, *blocks, *who;
+};
+inline constexpr std::array kWakeTable = {
+    WakeInfo{WakeEvent::kDma, "dma", "EDMA", "the EDMA"},
+    WakeInfo{WakeEvent::kEngine, "engine", "remap engine", "the remap engine"},
+    WakeInfo{WakeEvent::kCapture, "capture", "video front end", "the camera"},
+    WakeInfo{WakeEvent::kDisplay, "display", "display", "the display"},
+    WakeInfo{WakeEvent::kTimer, "timer", "timers", "a timer"},
+    WakeInfo{WakeEvent::kOther, "other", "other blocks", "another block"}};
+static_assert(kWakeTable.size() == kWakeEvents);
+static_assert([] {
+  for (std::size_t k = 0; k < kWakeEvents; ++k)
+    if (static_cast<std::size_t>(kWakeTable[k].event) != k) return false;
+  return true;
+}());
 
 /// Culprits of a stall: those of a bus transaction, and the core itself (interlocks, wait states,
 /// waiting for an edge of the AHB clock, the path from the AHB into the core).

@@ -176,12 +176,12 @@ struct CoreStats : StatGroup {
   std::vector<std::unique_ptr<Formula>> idle_by_event() {
     std::vector<std::unique_ptr<Formula>> out;
     for (std::size_t k = 0; k < kWakeEvents; ++k) {
-      const std::string event = kWakeNames[k];
+      const std::string event = kWakeTable[k].name;
       out.push_back(std::make_unique<Formula>(
           *this, "idle." + event, "cycles",
           event == "other" ? "clocks of cpu.idle that any other interrupt, a reset or nothing ended"
                            : "clocks of cpu.idle that ended with an interrupt of the " +
-                                 std::string(wake_sentence(static_cast<WakeEvent>(k))),
+                                 std::string(kWakeTable[k].blocks),
           [this, k] { return V(to.idle_by[k] - from.idle_by[k]); }));
     }
     return out;

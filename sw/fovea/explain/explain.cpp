@@ -88,6 +88,16 @@ Shares Run::waits_of(std::string_view port) const {
   return sorted(sums);
 }
 
+bool Run::loaded(std::string_view port) const {
+  // As many loads as the chip's model has: their keys are `load` and `load.N`.
+  for (unsigned n = 0;; ++n) {
+    const std::string prefix = n == 0 ? "load" : fmt::format("load.{}", n);
+    const auto outstanding = number(prefix + ".outstanding");
+    if (!outstanding) return false;
+    if (*outstanding > 0 && parameter(prefix + ".port").starts_with(port)) return true;
+  }
+}
+
 Shares Run::regions(std::string_view cause) const {
   std::map<std::string, double> sums;
   for (const auto& row : inputs_.stalls)

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "sw/fovea/explain/words.h"
+#include "sw/fovea/sleep.h"
 
 namespace fovea::explain {
 namespace {
@@ -140,29 +141,37 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
 }
 
 void find_mover(const Run& run, std::vector<Finding>& out) {
-  const double all = run.value_or_zero("cpu.remap.cycles");
-  for (const auto& [event, port, who] : {std::array<std::string_view, 3>{"dma", "edma_tc", "the EDMA"},
-                                         {"engine", "remap_engine", "the remap engine"}}) {
-    const std::string figure = fmt::format("cpu.remap.idle.{}", event);
-    const double asleep = run.value_or_zero(figure);
-    // Less is a rest that the core waits for at the end of its own work.
-    if (asleep <= 0 || asleep < 0.05 * all) continue;
-    std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} is done.",
-                                   percent(asleep / all), who);
-    std::vector<std::string> evidence{figure, "cpu.remap.cycles"};
-    const auto parts = run.waits_of(port);
+  struct Mover {
+    std::string_view event, port, who;
+  };
+  static constexpr std::array kMovers{Mover{"dma", "edma_tc", "the EDMA"}, Mover{"engine", "remap_engine", "the remap engine"}};
+  const double all = run.value_or_zero("cpu.remap.cycles"), asleep = run.value_or_zero("cpu.remap.idle");
+  // Less is a rest that the core waits for at the end of its own work.
+  if (asleep <= 0 || asleep < 0.05 * all) return;
+  std::vector<std::string> names, evidence{"cpu.remap.idle", "cpu.remap.cycles"}, sentences;
+  for (const Mover& m : kMovers) {
+    // The interrupts of others in the midst of a wait do not tell whom it is for.
+    const std::string figure = fmt::format("cpu.remap.idle.{}", m.event);
+    if (run.value_or_zero(figure) <= 0) continue;
+    names.emplace_back(m.who);
+    evidence.push_back(figure);
+    const auto parts = run.waits_of(m.port);
     double whole = 0;
     for (const auto& [culprit, seconds] : parts) whole += seconds;
     std::vector<std::string> largest;
     for (const auto& [culprit, seconds] : parts)
       if (largest.size() < 3 && seconds >= 0.05 * whole)
         largest.push_back(fmt::format("{} {}", percent(seconds / whole), spent_by_port(culprit)));
-    if (!largest.empty()) {
-      text += fmt::format(" The time of its requests to the SDRAM: {}.", listed(largest));
-      evidence.push_back(fmt::format("ddr.{}*.wait.*", port));
-    }
-    out.push_back({"mover", text, evidence});
+    // A load at these ports waits there too, and the figures do not tell its requests apart.
+    if (largest.empty() || run.loaded(m.port)) continue;
+    sentences.push_back(fmt::format(" The time of all requests that {} made to the SDRAM in the whole window: {}.", m.who, listed(largest)));
+    evidence.push_back(fmt::format("ddr.{}*.wait.*", m.port));
   }
+  if (names.empty()) return;
+  std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} {} done.",
+                                 percent(asleep / all), listed(names), names.size() == 1 ? "is" : "are");
+  for (const std::string& s : sentences) text += s;
+  out.push_back({"mover", text, evidence});
 }
 
 void find_largest_wait(const Run& run, std::vector<Finding>& out) {
@@ -212,14 +221,14 @@ void find_function(const Run& run, std::vector<Finding>& out) {
   for (const auto& f : functions) {
     all += f.clocks;
     for (const auto& [cause, n] : f.causes)
-      if (cause.starts_with("idle")) all -= n;
+      if (app::is_sleep(cause)) all -= n;
   }
   const FunctionClocks* largest = nullptr;
   double most = 0;
   for (const auto& f : functions) {
     double awake = f.clocks;
     for (const auto& [cause, n] : f.causes)
-      if (cause.starts_with("idle")) awake -= n;
+      if (app::is_sleep(cause)) awake -= n;
     if (awake > most) {
       most = awake;
       largest = &f;
@@ -230,7 +239,7 @@ void find_function(const Run& run, std::vector<Finding>& out) {
                                  largest->name, percent(most / all));
   const std::pair<const std::string, double>* wait = nullptr;
   for (const auto& cause : largest->causes)
-    if (cause.first != "issue" && !cause.first.starts_with("idle") &&
+    if (cause.first != "issue" && !app::is_sleep(cause.first) &&
         (!wait || cause.second > wait->second))
       wait = &cause;
   if (wait && wait->second >= 0.01 * most)

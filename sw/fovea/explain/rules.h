@@ -35,6 +35,8 @@ class Run {
   /// Time (s) of all requests of the ports whose names begin with `port`, by culprit, largest first; what
   /// they wait for one another is `own`.
   std::vector<std::pair<std::string, double>> waits_of(std::string_view port) const;
+  /// Whether a load generator drives a port whose name begins with `port`.
+  bool loaded(std::string_view port) const;
   /// Clocks by region of one cause, largest first, from stalls.csv.
   std::vector<std::pair<std::string, double>> regions(std::string_view cause) const;
   /// The loop remaps without waiting for the camera.

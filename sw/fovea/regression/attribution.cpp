@@ -73,16 +73,27 @@ std::vector<AttributionRow> read_stalls(const RunFigures& run) {
     add(table.text(i, "cause"), table.text(i, "region"), table.text(i, "culprit"),
         table.count(i, "cycles"));
   add("issue", "", "", static_cast<std::uint64_t>(run.value("cpu.issue")));
-  // Split by the event that ended the idle time, where the run tells.
-  double split = 0;
+  // Split by the event that ended the idle time, where the run tells; the sleeps within remaps are waits.
+  double rest = run.value("cpu.idle");
   for (const auto& [name, m] : run.metrics)
     if (name.starts_with("cpu.idle.") && m.whole) {
-      add(name.substr(4), "", "", static_cast<std::uint64_t>(*m.value));
-      split += *m.value;
+      const std::string event = name.substr(std::string_view("cpu.idle.").size());
+      const double within = run.value("cpu.remap.idle." + event), outside = std::max(0.0, *m.value - within);
+      add("idle." + event, "", "", static_cast<std::uint64_t>(outside));
+      add("wait." + event, "", "", static_cast<std::uint64_t>(within));
+      rest -= outside + within;
     }
-  add("idle", "", "",
-      static_cast<std::uint64_t>(std::max(0.0, run.value("cpu.idle") - split)));
+  add("idle", "", "", static_cast<std::uint64_t>(std::max(0.0, rest)));
   return rows;
+}
+
+/// The waits within remaps become one cause: the interrupts in their midst say nothing about them.
+void join_waits(std::vector<AttributionRow>& rows) {
+  std::map<std::string, double> events;
+  for (const AttributionRow& r : rows) events[r.cause] += static_cast<double>(r.clocks);
+  const std::string_view event = app::waited_for(events["wait.dma"], events["wait.engine"]);
+  for (AttributionRow& r : rows)
+    if (r.cause.starts_with("wait.")) r.cause = event.empty() ? "wait" : "wait." + std::string(event);
 }
 
 /// A profile may also hold what came before the window.
@@ -121,6 +132,7 @@ Attribution attribution_of(const RunFigures& run, bool profile) {
   } else if (file = "stalls.csv"; fs::exists(run.folder / file, error)) {
     out.rows = read_stalls(run);
   }
+  join_waits(out.rows);
   if (!out.rows.empty() && std::abs(out.sum() - out.clocks) > kAllowedGap * out.clocks)
     throw UserError(fmt::format("'{}' does not belong to stats.json: its rows have {:.0f} clocks, "
                                 "cpu.cycles is {:.0f}",

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sw/fovea/regression/run_figures.h"
+#include "sw/fovea/sleep.h"
 
 namespace fovea::regression {
 
@@ -16,15 +17,12 @@ namespace fovea::regression {
 struct AttributionRow {
   std::string phase, function, file;
   unsigned line = 0;  ///< 0: unknown
-  std::string cause;  ///< `issue`, `idle.<event>` (or `idle`), or a stall cause
+  /// `issue`, `idle.<event>` (or `idle`), `wait.dma` or `wait.engine` (or `wait`), or a stall cause.
+  std::string cause;
   std::string region, culprit;
   std::uint64_t clocks = 0, instructions = 0;
 
-  /// The core has nothing to do. A sleep that the EDMA or the remap engine ends is not idle: the
-  /// program waits for work that it has given away.
-  bool idle() const {
-    return cause == "idle" || (cause.starts_with("idle.") && cause != "idle.dma" && cause != "idle.engine");
-  }
+  bool idle() const { return app::is_idle(cause); }
 };
 
 /// Name and file of a function.

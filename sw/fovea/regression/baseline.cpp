@@ -205,7 +205,7 @@ constexpr std::array<Headline, 16> kHeadlines = {{{"frame.rate", "lower"},
                                                   {"display.underflows", "higher"},
                                                   {"cpu.instructions", "both"},
                                                   {"cpu.cycles", "higher"},
-                                                  {"cpu.idle", "lower"},
+                                                  {"cpu.spare", "lower"},
                                                   {"ddr.bus_bytes", "higher"},
                                                   {"ddr.row_conflicts", "higher"}}};
 

@@ -49,7 +49,7 @@ struct FunctionChange {
 };
 
 /// What differs between two attributions. The idle clocks are kept apart: a loop that waits for a
-/// camera becomes slower by waiting less. A sleep until the EDMA or the engine is done is busy.
+/// camera becomes slower by waiting less. A sleep until the EDMA or the engine is done is busy (sleep.h).
 struct Difference {
   bool by_function = false;
   bool in_seconds = false;  ///< the clocks of the two cores have other lengths

@@ -249,7 +249,7 @@ std::string comparison_text(const Comparison& c, const Tolerance& tolerance, boo
     out += fmt::format("different: {} of {} figures{}\n", c.changes.size(), c.compared, within);
     // The figures that people ask for first, then the largest changes.
     static constexpr std::array kFirst{"frame.", "startup.", "capture.", "display.", "cpu.cycles",
-                                       "cpu.instructions", "cpu.issue", "cpu.idle", "ddr.utilisation"};
+                                       "cpu.instructions", "cpu.issue", "cpu.spare", "cpu.idle", "ddr.utilisation"};
     const auto rank = [](const MetricChange& m) {
       for (std::size_t i = 0; i < kFirst.size(); ++i)
         if (m.name.starts_with(kFirst[i])) return static_cast<double>(i) - 100;

@@ -227,7 +227,8 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
       ->type_name("FILE");
   trend->add_option("--commit", t.commit, "Name of the line")->type_name("TEXT")->default_str("the simulator's commit");
   trend->add_option("--host-instructions", t.host_instructions,
-                    "The simulator's host instructions for each guest instruction, instead of the run's own figure")
+                    "The simulator's host instructions for each guest instruction, instead of the run's own figure; "
+                    "scripts/host-instructions counts them where the host cannot")
       ->type_name("NUMBER")
       ->check(CLI::PositiveNumber);
   trend->add_option("--plot", t.plot, "Write a picture of the figures over the commits (SVG)")->type_name("FILE");

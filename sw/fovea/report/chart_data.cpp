@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "model/cpu/core/stalls.h"
+
 namespace fovea::report {
 namespace {
 
@@ -147,6 +149,7 @@ Json chart_data(const Results& run, const std::string& label) {
   Json stats = Json::object();
   for (const auto& s : run.stats) stats[s.name] = {number(s.value), s.unit};
   out["stats"] = std::move(stats);
+  for (const cpu::WakeInfo& info : cpu::kWakeTable) out["events"][info.name] = info.who;
   if (run.frames) {
     out["frames"] = frames_json(*run.frames);
     out["frames_in_all"] = run.frames->size();

@@ -5,9 +5,6 @@ const CAUSES = {
   bus_sync: 'bus clock edge', idle: 'idle (waits for an interrupt)',
 };
 
-/// Whose interrupt ends a sleep.
-const EVENTS = {dma: 'the EDMA', engine: 'the remap engine', capture: 'the camera', display: 'the display', timer: 'a timer', other: 'others'};
-
 /// [cause, clocks, {culprit: clocks}] of everything that has clocks; issue first, idle last, waits by size between.
 function clocksByCause(run) {
   const value = (name) => (run.stats[name] ?? [0])[0];
@@ -66,10 +63,13 @@ function drawWaterfall(place, run) {
     if (row + 1 < rows.length) svg.append(element('line', {class: 'base', x1: x(from + clocks), x2: x(from + clocks), y1: y + 22, y2: y + 34}));
     from += clocks;
   });
-  const events = Object.entries(EVENTS).map(([event, words]) => [words, (run.stats[`cpu.idle.${event}`] ?? [0])[0]])
+  const events = Object.entries(run.events).map(([event, words]) => [words, (run.stats[`cpu.idle.${event}`] ?? [0])[0]])
     .filter(([, n]) => n > 0).sort((a, b) => b[1] - a[1]).map(([words, n]) => `${words} ${percent(n / cycles)}`);
   const ended = events.length ? ` The interrupt that ended the sleep came from: ${events.join(', ')}.` : '';
-  place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and asleep, waiting for an interrupt, in ${percent(idle / cycles)}.${ended}`),
+  // A sleep within remaps waits for work that the program has given away.
+  const spare = run.stats['cpu.spare'];
+  const free = idle && spare ? ` It has nothing to do in ${percent(spare[0] / cycles)}${spare[0] < idle ? '; the rest of its sleep waits for the EDMA or the remap engine' : ''}.` : '';
+  place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and asleep, waiting for an interrupt, in ${percent(idle / cycles)}.${free}${ended}`),
                svg, legend(Object.keys(GROUPS).filter((g) => used.has(g)), GROUPS));
 }
 
@@ -115,7 +115,10 @@ function drawFlame(place, run) {
         w > 12 ? undefined : element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
         element('rect', {x, y: row * step, width: w, height: step - 1, class: 'edge', fill: inPath ? 'var(--c9)' : `var(--c${[0, 4, 2, 3, 6][row % 5]})`, 'fill-opacity': 0.55}));
       const letters = Math.floor((w - 8) / 6.6);
-      if (letters > 2) g.append(text(x + 4, row * step + 15, node.name.length > letters ? `${node.name.slice(0, letters - 1)}\u2026` : node.name));
+      // A shortened name is for the eye alone: the box has the whole name for everybody else.
+      const whole = node.name.length <= letters;
+      if (letters > 2)
+        g.append(text(x + 4, row * step + 15, whole ? node.name : `${node.name.slice(0, letters - 1)}\u2026`, whole ? {} : {'aria-hidden': 'true'}));
       const choose = () => { path = chain; tell(node); show(true); };
       g.addEventListener('click', choose);
       g.addEventListener('pointerenter', () => tell(node));
