@@ -14,6 +14,7 @@
 #include "model/board/evm_cpld.h"
 #include "model/board/frame_log.h"
 #include "model/soc/dm365.h"
+#include "model/video/digital_camera.h"
 #include "model/video/display_sink.h"
 #include "model/video/tvp5146.h"
 
@@ -134,7 +135,8 @@ class Board : public sc_core::sc_module {
 
   FrameLog log;
   soc::Dm365 dm365;
-  video::Tvp5146 decoder;
+  video::Tvp5146 decoder;  ///< with a camera at the digital port: without cameras, and its output is not connected
+  std::unique_ptr<video::DigitalCamera> digital;  ///< null: the cameras are the decoder's
   video::DisplaySink sink{"sink"};
   Platform platform;              ///< all blocks of the board, those of the chip included
 
@@ -155,6 +157,10 @@ class Board : public sc_core::sc_module {
   const BoardParams& params_;
   ClockSignal osc_{"osc", Frequency(24'000'000)};
   ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
+  ClockSignal digital_clk_{"digital_clk"};
+  struct NoReceiver : video::Bt656If {
+    void line(const video::Bt656Line&) override {}
+  } no_receiver_;
   std::string uart_;
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;

@@ -69,6 +69,20 @@ void fill_priorities(std::uint8_t (&priority)[PRIORITY_COUNT],
   }
 }
 
+/// A camera whose picture is larger than what is shown: by default the view shows it reduced to that size.
+void scale_view(lens_view_t& view, const board::BoardParams& params) {
+  const board::VideoFormat& format = params.video.format();
+  const double x = static_cast<double>(format.width) / format.camera_width();
+  const double y = static_cast<double>(format.height) / format.camera_height;
+  if (!format.digital || (x == 1 && y == 1) || view.mapping == LENS_NONE || view.out_focal_px != 0) return;
+  const double focal = view.focal_px != 0
+                           ? view.focal_px
+                           : lens_focal_from_fov(view.mapping, format.camera_width(), view.fov_deg,
+                                                 (view.flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
+  view.out_focal_px = focal * x;
+  view.out_aspect *= y / x;
+}
+
 void fill_view(lens_view_t& view, const board::BoardParams& params,
                const board::CameraSetup& setup, const video::StampedSource& source) {
   const board::LensParams& lens = *setup.lens;
@@ -108,6 +122,7 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
     view.centre_x = model.cx() - (w - 1) / 2 + lens.centre_x();
     view.centre_y = model.cy() - (h - 1) / 2 + lens.centre_y();
   }
+  scale_view(view, params);
 }
 
 }  // namespace
@@ -127,7 +142,8 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.flags = (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u) |
                (params.soc.engine.present() ? PARAM_ENGINE : 0u) |
                (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u) |
-               (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u);
+               (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u) |
+               (params.video.format().digital ? PARAM_DIGITAL : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

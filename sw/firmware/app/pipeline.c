@@ -48,6 +48,7 @@ static struct {
   uint32_t pitch_bytes;
   uint32_t field_ticks;
   int serial;
+  int progressive; /* the camera: each of its fields is a frame */
   int passthrough;
   int capturing;       /* the current frame is written to memory */
   int capture_wanted;  /* capture starts with the next frame */
@@ -263,7 +264,7 @@ static void display_field_passed(void) {
 /* VDINT0, after the last line of a field. Capture is started and stopped only here, after a second
  * field, so that frames are complete and begin with a first field. */
 static void capture_field_end(void) {
-  if (!isif_second_field()) return;
+  if (!pipe.progressive && !isif_second_field()) return;
   if (pipe.capturing) captured_frame_done();
   if (!pipe.capturing && pipe.capture_wanted) {
     pipe.capture_wanted = 0;
@@ -320,6 +321,7 @@ void irq_dispatch(void) {
 void pipeline_prepare(const config_t *config) {
   vpss_init(config->vpss_clk_ctrl);
   priority_set(config->priority);
+  if (config->digital) return;
   i2c_init();
   uint32_t id;
   switch (tvp5146_start(config->is_625, &id)) {
@@ -357,6 +359,19 @@ static void sleep_between_looks(void) { (void)sleep_at_most(LOCK_POLL_TICKS); }
 static void wait_for_frame_end(void) {
   isif_watch();
   intc_enable(IRQ_VPSSINT0, 2);
+#ifndef TIME_DIVISION
+  /* The time between two frames is that of the camera's clock, which nobody tells. */
+  uint32_t before = 0, frames = 0;
+  while (pipe.progressive && sleep_at_most(LOCK_TIMEOUT_TICKS) == IRQ_VPSSINT0) {
+    intc_acknowledge(IRQ_VPSSINT0);
+    const uint32_t now = timer_ticks();
+    if (++frames == 2) {
+      (void)sleep_at_most(now - before - DISPLAY_LEAD_TICKS);
+      return;
+    }
+    before = now;
+  }
+#endif
   while (sleep_at_most(2u * pipe.field_ticks) == IRQ_VPSSINT0) {
     intc_acknowledge(IRQ_VPSSINT0);
     if (!isif_second_field()) {
@@ -369,6 +384,7 @@ static void wait_for_frame_end(void) {
 void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count) {
   pipe.pitch_bytes = config->pitch_bytes;
   pipe.serial = config->serial;
+  pipe.progressive = config->digital;
   pipe.passthrough = out_count == 0;
   pipe.field_ticks = config->is_625 ? 480000u : 400400u; /* 24 MHz / (50, 60000/1001) */
   pipe.sources = config->sources;
@@ -378,8 +394,8 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 
   const display_mode_t mode = {config->is_625, config->left,   config->top,
                                config->width,  config->height, config->pitch_bytes};
-  const isif_window_t window = {config->left, config->top, config->width, config->height,
-                                config->pitch_bytes};
+  const isif_window_t window = {config->source_left,   config->source_top,  config->source_width,
+                                config->source_height, config->pitch_bytes, config->digital};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
 #ifdef TIME_DIVISION
 #ifdef COMPOSED_VIEW
@@ -404,7 +420,7 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   /* The display's frames begin where they will: nothing is known of the camera's yet. */
   if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 #endif
-  if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
+  if (!config->digital && tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
     uart_puts("decoder: no lock, going on\n");
 #ifdef CONSOLE
   if (config->display_free) {
