@@ -185,6 +185,8 @@ void Board::close_window_now() {
   dm365.ddr.settle(kernel_time());
   if (!window_start_) window_start_ = whole_until_ = 0;
   window_end_ = kernel_time();
+  const video::Standard& display = video::standard_of(params_.video.format().is_625);
+  log.finish(kernel_time(), 2 * Clock(display.clock).periods(display.frame_bytes()));
   if (on_window_close) on_window_close();
 }
 
@@ -261,6 +263,7 @@ std::vector<CameraFrameStats> Board::camera_stats() const {
     s.superseded = fates.superseded;
     s.dropped = fates.dropped;
     s.captured = fates.captured;
+    s.pending = fates.pending;
     if (window_start_ && whole_until_ > *window_start_)
       s.rate = static_cast<double>(of.fresh) /
                (static_cast<double>(whole_until_ - *window_start_) * 1e-12);
@@ -282,6 +285,7 @@ FrameStats Board::frame_stats() const {
   FrameStats& s = sums.stats;
   for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
   s.remapped = s.remaps;
+  s.dropped += log.never_shown();
   s.window = static_cast<double>(to - from) * 1e-12;
   if (to > from) s.remap_rate = static_cast<double>(s.remaps) / s.window;
   if (whole_until_ > from)

@@ -42,12 +42,14 @@ struct FrameStats {
   std::uint64_t latencies = 0, remaps = 0;
 };
 
-/// The frames of one camera, from the first to the last one that is shown in the window: each captured
-/// frame was shown, or replaced on its way to the display by a newer one, or dropped.
+/// The frames of one camera, from the first one that is shown in the window on: each captured frame was shown, or
+/// replaced on its way to the display by a newer one, or dropped. Those younger than two frame periods at the window's
+/// end have no fate yet: they are pending.
 struct CameraFrameStats {
   std::uint64_t captured = 0, displayed = 0;
   std::uint64_t superseded = 0;  ///< corrected, but a newer frame was shown instead
   std::uint64_t dropped = 0;     ///< not corrected
+  std::uint64_t pending = 0;     ///< captured shortly before the window's end, and not shown by then; not in `captured`
   std::optional<double> rate;    ///< 1/s; of frames shown
   Picoseconds latency_min = 0, latency_max = 0;
   double latency_mean = 0;  // ps

@@ -125,11 +125,23 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
   scale_view(view, params);
 }
 
+/// Kernels that read a form of a look-up table know one source.
+void check_view_kernel(const board::FirmwareParams& firmware) {
+  static constexpr const char* kOfViews[] = {"plain", "ldm", "strips", "fastest", "engine"};
+  if (!firmware.elf().empty() || firmware.view.is("single") ||
+      std::ranges::any_of(kOfViews, [&](const char* k) { return firmware.kernel.is(k); }))
+    return;
+  Diagnostics::instance().configuration(fmt::format(
+      "{}={} has no form for several sources: with {}={} the program takes strips, as with fastest",
+      firmware.kernel.key(), firmware.kernel(), firmware.view.key(), firmware.view()));
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                                          const std::vector<const video::StampedSource*>& sources) {
   const board::FirmwareParams& firmware = params.firmware;
+  check_view_kernel(firmware);
   param_page_t page{};
   fill_clocks(page.clocks, params.clocks);
   page.console = {0, firmware.baud_divisor()};

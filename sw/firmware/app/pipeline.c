@@ -23,7 +23,6 @@
 #ifdef CONSOLE
 #include "../drivers/uart_queue.h"
 #include "capture_check.h"
-#include "display_watch.h"
 #include "field_watch.h"
 #endif
 #ifdef COMPOSED_VIEW
@@ -70,8 +69,9 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
+#endif
+#ifdef TIME_DIVISION
   display_watch_t display_watch;
-  display_event_t display_event; /* that was not said yet */
 #endif
 #ifdef COMPOSED_VIEW
   int32_t kept[CAMERAS_MAX]; /* buffers of the newest frames; CAPTURE_NONE before the first one */
@@ -204,6 +204,21 @@ static void begin_frame(const signal_state_t *seen) {
     isif_watch();
 }
 
+/* A frame that is being captured is of no use, whether all of it has come (`pipe.complete`) or a part. What marks its
+ * buffer had are gone: capture goes on in another one that has them, if there is one. */
+static void leave_frame_out(void) {
+  if (pipe.complete)
+    capture_frame_useless(&pipe.capture);
+  else
+    capture_frame_broken(&pipe.capture);
+  fw_state.dropped = pipe.capture.dropped;
+#ifdef CONSOLE
+  if (!pipe.config->check_capture) return;
+  const int32_t next = capture_move_on(&pipe.capture);
+  if (next != CAPTURE_NONE && isif_set_address((uint32_t)in_buffer(next)) != ISIF_OK) fail("ISIF", "buffer address");
+#endif
+}
+
 /* Takes the frame over if the lock has held since its start. */
 static void end_frame(const signal_state_t *seen) {
   pipe.capturing = 0;
@@ -214,8 +229,7 @@ static void end_frame(const signal_state_t *seen) {
     turns_captured(&pipe.turns);
     return;
   }
-  if (pipe.complete) capture_frame_useless(&pipe.capture);
-  fw_state.dropped = pipe.capture.dropped;
+  leave_frame_out();
   if (good && irregular())
     turns_irregular(&pipe.turns);
   else
@@ -252,7 +266,7 @@ static void display_field_passed(void) {
   if (++pipe.quiet_fields < QUIET_FIELDS) return;
   pipe.quiet_fields = 0;
   isif_watch();
-  if (pipe.capturing && pipe.complete) capture_frame_useless(&pipe.capture);
+  if (pipe.capturing) leave_frame_out();
   pipe.capturing = pipe.complete = 0;
   watch_another();
   const signal_state_t seen = look();
@@ -277,10 +291,7 @@ static void capture_field_end(void) {
 static void display_field_start(void) {
 #ifdef TIME_DIVISION
   display_field_passed();
-#endif
-#ifdef CONSOLE
-  const display_event_t seen = display_watch_field(&pipe.display_watch, display_take_late());
-  if (seen != DISPLAY_NOTHING) pipe.display_event = seen;
+  display_watch_field(&pipe.display_watch, display_take_late());
 #endif
   pipe.in_second_field = display_second_field();
   if (pipe.in_second_field) {
@@ -497,12 +508,16 @@ int pipeline_whole(void) {
   return 0;
 }
 
-const char *pipeline_display_event(void) {
-  const uint32_t cpsr = irq_mask();
-  const display_event_t event = pipe.display_event;
-  pipe.display_event = DISPLAY_NOTHING;
+void pipeline_mark_free(void) {
+  if (!pipe.config->check_capture) return;
+  uint32_t cpsr = irq_mask();
+  const int32_t buffer = capture_take_reused(&pipe.capture);
   irq_restore(cpsr);
-  return event == DISPLAY_NOTHING ? NULL : display_event_text(event);
+  if (buffer == CAPTURE_NONE) return;
+  mark_buffer(buffer);
+  cpsr = irq_mask();
+  capture_release(&pipe.capture, buffer);
+  irq_restore(cpsr);
 }
 
 int pipeline_frame_waits(void) { return pipe.capture.ready != CAPTURE_NONE; }
@@ -523,6 +538,14 @@ const char *pipeline_state(uint32_t camera) {
 #endif
 
 #ifdef TIME_DIVISION
+display_event_t pipeline_display_event(uint32_t *late_fields) {
+  const uint32_t cpsr = irq_mask();
+  const display_event_t event = display_watch_take(&pipe.display_watch);
+  *late_fields = pipe.display_watch.late_fields;
+  irq_restore(cpsr);
+  return event;
+}
+
 uint32_t pipeline_camera(void) { return pipe.taken_camera; }
 
 int pipeline_event(uint32_t *camera, const char **what) {
@@ -538,12 +561,14 @@ int pipeline_event(uint32_t *camera, const char **what) {
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 
 void pipeline_done(int good) {
-#ifdef CONSOLE
-  if (pipe.config->check_capture) mark_buffer(held_of_age(&pipe.held, 0));
-#endif
-  const uint32_t cpsr = irq_mask();
+  uint32_t cpsr = irq_mask();
 #ifndef COMPOSED_VIEW
-  capture_release(&pipe.capture, held_drop(&pipe.held));
+  const int32_t source = held_drop(&pipe.held);
+#ifdef CONSOLE
+  const int marked = pipe.config->check_capture;
+  if (!marked)
+#endif
+    capture_release(&pipe.capture, source);
 #endif
   if (good)
     output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
@@ -555,6 +580,14 @@ void pipeline_done(int good) {
       timer_ticks() - pipe.second_field_start < pipe.field_ticks - FLIP_MARGIN_TICKS)
     flip();
   irq_restore(cpsr);
+#ifdef CONSOLE
+  /* The result waits for nobody; its source is marked before the camera gets it. */
+  if (!marked) return;
+  mark_buffer(source);
+  cpsr = irq_mask();
+  capture_release(&pipe.capture, source);
+  irq_restore(cpsr);
+#endif
 }
 
 uint32_t pipeline_last_sequence(void) { return pipe.taken_sequence; }

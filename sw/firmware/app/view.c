@@ -28,6 +28,14 @@ remap_table_t view_table(uint32_t *entries, const lens_view_t *view) {
                          .has_engine = config->has_engine};
 }
 
+/* Time of the build that is in progress. A frame that came between the two reads would be in one of them alone. */
+static uint32_t own_ticks(void) {
+  const uint32_t cpsr = irq_mask();
+  const uint32_t ticks = timer_ticks() - view_other_ticks;
+  irq_restore(cpsr);
+  return ticks;
+}
+
 /* In fixed point if the page wants that and the lens allows it. */
 static void fill_lut(const lens_t *lens, uint32_t *entries) {
   static fast_lut_t fast;
@@ -51,10 +59,10 @@ void view_build_lut(const lens_view_t *view, uint32_t *entries, int marked) {
                       (lens_size_t){config->width, config->height});
   if (result != LENS_OK) fail("lens", lens_result_text(result));
   if (marked) phase_mark(PHASE_LUT, 0);
-  const uint32_t start = timer_ticks() - view_other_ticks;
+  const uint32_t start = own_ticks();
   fill_lut(&lens, entries);
-  const uint32_t ticks = timer_ticks() - view_other_ticks - start;
-  fw_state.lut_time_ticks += ticks;
+  const uint32_t ticks = own_ticks() - start;
+  if (marked) fw_state.lut_time_ticks += ticks; /* of the start */
   if (marked) phase_mark(PHASE_IDLE, 0);
   fw_state.lut_entries = lens_lut_entries(config->width, config->height);
   uart_puts("LUT: ");
@@ -65,7 +73,7 @@ void view_build_lut(const lens_view_t *view, uint32_t *entries, int marked) {
 }
 
 void view_prepare_method(struct view *view, arena_t *arena) {
-  const uint32_t start = timer_ticks() - view_other_ticks;
+  const uint32_t start = own_ticks();
   view->method = remapper_prepare(config->kernel, &view->table, arena);
   uart_puts("kernel: ");
   uart_puts(view->method->name);
@@ -74,7 +82,7 @@ void view_prepare_method(struct view *view, arena_t *arena) {
   uart_puts(" bytes of tables");
   if (view->table.encoded != NULL) {
     uart_puts(" in ");
-    uart_put_uint((timer_ticks() - view_other_ticks - start) / TIMER_TICKS_PER_MS);
+    uart_put_uint((own_ticks() - start) / TIMER_TICKS_PER_MS);
     uart_puts(" ms");
   }
   uart_puts("\n");
