@@ -5,6 +5,17 @@
 namespace fovea::board {
 namespace {
 
+/// For a decoder without cameras.
+class NoPicture : public video::PictureSource {
+ public:
+  unsigned width() const override { return black_.width; }
+  unsigned height() const override { return black_.height; }
+  const video::Picture& field(std::uint64_t) override { return black_; }
+
+ private:
+  const video::Picture black_{720, 480};
+};
+
 /// What lies on the asynchronous memory interface.
 soc::Placements external_devices(const DevicesParams& devices) {
   if (!devices.cpld()) return {};
@@ -22,6 +33,10 @@ std::vector<video::CameraWiring> Board::wiring(const BoardParams& params,
   for (unsigned n = 0; n < sources.size(); ++n) {
     out.push_back(params.camera_setup(n).wiring);
     out.back().source = sources[n];
+    if (!params.video.format().digital) continue;
+    static NoPicture none;
+    out.back().source = &none;
+    out.back().connected = false;
   }
   return out;
 }
@@ -36,7 +51,16 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   dm365.osc(osc_);
   dm365.display.bind(sink.lines);
   decoder.clock(decoder_clk_);
-  decoder.video.bind(dm365.isif.video);
+  if (const video::Standard* raster = params.video.format().digital) {
+    digital = std::make_unique<video::DigitalCamera>("digital_camera", *raster, *sources.front(),
+                                                     params.decoder.phase());
+    digital_clk_.write(params.video.digital_clock());
+    digital->clock(digital_clk_);
+    digital->video.bind(dm365.isif.video);
+    decoder.video.bind(no_receiver_);
+  } else {
+    decoder.video.bind(dm365.isif.video);
+  }
   dm365.i2c.targets.bind(decoder.i2c);
   if (!params.fault.kind.is("none"))
     fault_ = std::make_unique<CameraFault>(
@@ -88,7 +112,8 @@ void Board::set_switches() {
   const VideoParams& v = params_.video;
   const std::uint32_t standard = v.format().is_625 ? SWITCH_PAL : SWITCH_NTSC;
   const bool of_page = v.width() || v.height();
-  const std::uint32_t size = of_page ? std::uint32_t{SWITCH_SIZE_OF_PAGE} : v.format().size_code;
+  const std::uint32_t shown = of_page ? std::uint32_t{SWITCH_SIZE_OF_PAGE} : v.format().size_code;
+  const std::uint32_t captured = v.format().digital ? v.format().camera_size_code : shown;
   // One switch cannot tell the lenses of several cameras: then the page does.
   const std::uint32_t mapping =
       params_.camera_count() > 1
@@ -96,7 +121,7 @@ void Board::set_switches() {
           : contract::code_of(contract::kMappings, params_.camera_setup(0).lens->mapping()) + 1;
   const std::uint32_t pins =
       SWITCH_PUT(SWITCH_STANDARD_IN, standard) | SWITCH_PUT(SWITCH_STANDARD_OUT, standard) |
-      SWITCH_PUT(SWITCH_SIZE_IN, size) | SWITCH_PUT(SWITCH_SIZE_OUT, size) |
+      SWITCH_PUT(SWITCH_SIZE_IN, captured) | SWITCH_PUT(SWITCH_SIZE_OUT, shown) |
       SWITCH_PUT(SWITCH_MAPPING, mapping) |
       SWITCH_PUT(SWITCH_SHIFT_X, SwitchParams::code(params_.switches.shift_x)) |
       SWITCH_PUT(SWITCH_SHIFT_Y, SwitchParams::code(params_.switches.shift_y));
@@ -160,6 +185,8 @@ void Board::close_window_now() {
   dm365.ddr.settle(kernel_time());
   if (!window_start_) window_start_ = whole_until_ = 0;
   window_end_ = kernel_time();
+  const video::Standard& display = video::standard_of(params_.video.format().is_625);
+  log.finish(kernel_time(), 2 * Clock(display.clock).periods(display.frame_bytes()));
   if (on_window_close) on_window_close();
 }
 
@@ -236,6 +263,7 @@ std::vector<CameraFrameStats> Board::camera_stats() const {
     s.superseded = fates.superseded;
     s.dropped = fates.dropped;
     s.captured = fates.captured;
+    s.pending = fates.pending;
     if (window_start_ && whole_until_ > *window_start_)
       s.rate = static_cast<double>(of.fresh) /
                (static_cast<double>(whole_until_ - *window_start_) * 1e-12);
@@ -257,6 +285,7 @@ FrameStats Board::frame_stats() const {
   FrameStats& s = sums.stats;
   for (Picoseconds t : log.captures()) s.captured += t > from && t <= to;
   s.remapped = s.remaps;
+  s.dropped += log.never_shown();
   s.window = static_cast<double>(to - from) * 1e-12;
   if (to > from) s.remap_rate = static_cast<double>(s.remaps) / s.window;
   if (whole_until_ > from)

@@ -14,6 +14,7 @@
 #include "model/board/evm_cpld.h"
 #include "model/board/frame_log.h"
 #include "model/soc/dm365.h"
+#include "model/video/digital_camera.h"
 #include "model/video/display_sink.h"
 #include "model/video/tvp5146.h"
 
@@ -41,12 +42,14 @@ struct FrameStats {
   std::uint64_t latencies = 0, remaps = 0;
 };
 
-/// The frames of one camera, from the first to the last one that is shown in the window: each captured
-/// frame was shown, or replaced on its way to the display by a newer one, or dropped.
+/// The frames of one camera, from the first one that is shown in the window on: each captured frame was shown, or
+/// replaced on its way to the display by a newer one, or dropped. Those younger than two frame periods at the window's
+/// end have no fate yet: they are pending.
 struct CameraFrameStats {
   std::uint64_t captured = 0, displayed = 0;
   std::uint64_t superseded = 0;  ///< corrected, but a newer frame was shown instead
   std::uint64_t dropped = 0;     ///< not corrected
+  std::uint64_t pending = 0;     ///< captured shortly before the window's end, and not shown by then; not in `captured`
   std::optional<double> rate;    ///< 1/s; of frames shown
   Picoseconds latency_min = 0, latency_max = 0;
   double latency_mean = 0;  // ps
@@ -134,7 +137,8 @@ class Board : public sc_core::sc_module {
 
   FrameLog log;
   soc::Dm365 dm365;
-  video::Tvp5146 decoder;
+  video::Tvp5146 decoder;  ///< with a camera at the digital port: without cameras, and its output is not connected
+  std::unique_ptr<video::DigitalCamera> digital;  ///< null: the cameras are the decoder's
   video::DisplaySink sink{"sink"};
   Platform platform;              ///< all blocks of the board, those of the chip included
 
@@ -155,6 +159,10 @@ class Board : public sc_core::sc_module {
   const BoardParams& params_;
   ClockSignal osc_{"osc", Frequency(24'000'000)};
   ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
+  ClockSignal digital_clk_{"digital_clk"};
+  struct NoReceiver : video::Bt656If {
+    void line(const video::Bt656Line&) override {}
+  } no_receiver_;
   std::string uart_;
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;

@@ -32,9 +32,17 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   const auto pal = [this] { return !firmware.elf().empty() || video.format().is_625; };
   const auto not_pal = [this] { return !firmware.elf().empty() || !video.format().is_625; };
   for (ParamBase* p : {&soc.vpss.base_px_625, &soc.vpss.base_py_625})
-    p->matters_only("video.standard = pal or mt9v125", {&video.standard, &firmware.elf}, pal);
+    p->matters_only("video.standard = pal, mt9v125 or svga_progressive", {&video.standard, &firmware.elf}, pal);
   for (ParamBase* p : {&soc.vpss.base_px_525, &soc.vpss.base_py_525})
-    p->matters_only("video.standard = ntsc, ntsc_486 or vga", {&video.standard, &firmware.elf}, not_pal);
+    p->matters_only("video.standard = ntsc, ntsc_486, vga or vga_progressive", {&video.standard, &firmware.elf}, not_pal);
+  // A camera at the digital port is not behind the decoder, whose outputs lead nowhere then.
+  const auto behind_decoder = [this] { return video.format().digital == nullptr; };
+  std::vector<ParamBase*> of_decoder;
+  for (ParamBase* p : decoder.params())
+    if (p != &decoder.phase) of_decoder.push_back(p);
+  for (ParamBase* p : camera_rows[0].wire.params()) of_decoder.push_back(p);
+  for (ParamBase* p : of_decoder)
+    p->matters_only("no video.standard of a camera at the digital port", {&video.standard}, behind_decoder);
   const auto birds_eye_shown = [this] { return firmware.view.is("birds_eye"); };
   for (ParamBase* p : birds_eye.params())
     p->matters_only("firmware.view = birds_eye", {&firmware.view}, birds_eye_shown);

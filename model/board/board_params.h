@@ -12,6 +12,7 @@
 #include "model/board/view_params.h"
 #include "model/contract/switches.h"
 #include "model/soc/dm365.h"
+#include "model/video/core/bt656.h"
 #include "model/video/params.h"
 #include "model/video/scene/scene_params.h"
 
@@ -68,25 +69,35 @@ struct ClockParams : ParamGroup {
 /// A picture that camera and display may have: the raster that carries it, and its size. The DIP switches say both.
 struct VideoFormat {
   std::string_view name;
-  bool is_625;             ///< 625/50, otherwise 525/60
-  unsigned width, height;  ///< of what is captured, corrected and shown, in the middle of the raster's active lines
-  unsigned camera_height;  ///< of the picture that the camera sends; its width is 720
-  std::uint32_t size_code; ///< enum switch_size
+  bool is_625;             ///< the display is 625/50, otherwise 525/60; so is a camera behind the decoder
+  unsigned width, height;  ///< of what is corrected and shown, in the middle of the raster's active lines
+  unsigned camera_height;  ///< of the picture that the camera sends
+  std::uint32_t size_code; ///< enum switch_size of what is shown
+  const video::Standard* digital = nullptr;  ///< raster of a camera at the digital port; null: one behind the decoder
+  std::uint32_t camera_size_code = 0;        ///< enum switch_size of that camera
+
+  /// Of the picture that the camera sends.
+  unsigned camera_width() const { return digital ? digital->active_pixels : video::kActivePixels; }
 };
-/// ITU-R BT.601 and BT.656. An MT9V125 sends 25 frames a second in 625/50; the paper used 720x480 of it.
-inline constexpr std::array<VideoFormat, 5> kVideoFormats{{
+/// ITU-R BT.601 and BT.656. An MT9V125 sends 25 frames a second in 625/50; the paper used 720x480 of it. The last
+/// two are progressive: the first is shown as it is, in the middle of 525/60, the second is made smaller by the table.
+inline constexpr std::array<VideoFormat, 7> kVideoFormats{{
     {"pal", true, 720, 576, 576, SWITCH_720X576},
     {"ntsc", false, 720, 480, 480, SWITCH_720X480},
     {"vga", false, 640, 480, 480, SWITCH_640X480},
     {"ntsc_486", false, 720, 486, 486, SWITCH_720X486},
     {"mt9v125", true, 720, 480, 480, SWITCH_720X480},
+    {"vga_progressive", false, 640, 480, 480, SWITCH_640X480, &video::k480p, SWITCH_640X480},
+    {"svga_progressive", true, 720, 576, 600, SWITCH_720X576, &video::k600p, SWITCH_800X600},
 }};
 
 struct VideoParams : ParamGroup {
   using U = IntParam::Unit;
-  EnumParam standard{*this, "standard", "pal", {"pal", "ntsc", "vga", "ntsc_486", "mt9v125"},
-                     "720x576 in 625/50, 720x480 in 525/60, a 640x480 window in 525/60, 720x486 in 525/60, or "
-                     "720x480 in the middle of 625/50 (DIP switches)",
+  EnumParam standard{*this, "standard", "pal",
+                     {"pal", "ntsc", "vga", "ntsc_486", "mt9v125", "vga_progressive", "svga_progressive"},
+                     "720x576 in 625/50, 720x480 in 525/60, a 640x480 window in 525/60, 720x486 in 525/60, "
+                     "720x480 in the middle of 625/50; or a progressive camera at the digital port: 640x480 shown "
+                     "in 525/60, 800x600 shown as 720x576 in 625/50 (DIP switches)",
                      Origin::kChoice, ""};
   const VideoFormat& format() const {
     for (const VideoFormat& f : kVideoFormats)
@@ -98,7 +109,21 @@ struct VideoParams : ParamGroup {
                  Origin::kChoice, ""};
   IntParam height{*this, "height", U::kCount, 0, 0, 576, "lines of that region; 0: all",
                   Origin::kChoice, ""};
-  VideoParams() : ParamGroup("video") {}
+  IntParam clock{*this, "clock", U::kHertz, 0, 0, 108'000'000,
+                 "byte clock of a camera at the digital port, two periods a pixel; 0: 27 MHz with 640x480 "
+                 "(858 x 525 pixels, 29.97 frames/s), 33.1584 MHz with 800x600 (1056 x 628, 25 frames/s)",
+                 Origin::kAssumed,
+                 "a sensor's registers choose its clock; four times that of BT.656 is more than a sensor of this size "
+                 "sends",
+                 {"12MHz", "96MHz", "10 frames/s of 640x480 to 60 of 800x600, about"}};
+  /// The byte clock of the camera at the digital port.
+  Frequency digital_clock() const {
+    return clock() ? Frequency(static_cast<std::uint64_t>(clock())) : format().digital->clock;
+  }
+  VideoParams() : ParamGroup("video") {
+    clock.matters_only("video.standard = vga_progressive or svga_progressive", {&standard},
+                       [this] { return format().digital != nullptr; });
+  }
 };
 
 struct FirmwareParams : ParamGroup {
@@ -230,7 +255,7 @@ struct BoardParams : ParamTree {
   /// Signals at the decoder: one if a quad processor joins those of the cameras.
   unsigned input_count() const { return cameras.quad() ? 1 : camera_count(); }
   /// Size of the picture that the camera sends, and of what is corrected and shown.
-  unsigned raster_width() const { return 720; }
+  unsigned raster_width() const { return video.format().camera_width(); }
   unsigned raster_height() const { return video.format().camera_height; }
   unsigned width() const {
     return video.width() ? static_cast<unsigned>(video.width()) : video.format().width;

@@ -106,6 +106,7 @@ CameraSetup BoardParams::camera_setup(unsigned number) const {
   out.wiring.placement = video::placement_of(decoder, standard.is("625/50"));
   out.genlocked =
       row.wire.genlocked.user_set() ? row.wire.genlocked() : cameras.genlocked();
+  out.wiring.genlocked = out.genlocked && camera_count() > 1;
   out.wiring.phase = decoder.phase();
   if (!out.genlocked) {
     if (row.wire.phase.user_set()) out.wiring.phase = row.wire.phase();

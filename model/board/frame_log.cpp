@@ -8,7 +8,11 @@ void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, 
   next_capture_ = index + 1;
   capture_ends_.push_back(end);
   // Only the recent past can still be shown; the history is in records_.
-  while (captured_.size() > 128) captured_.erase(captured_.begin());
+  while (captured_.size() > 128) {
+    const auto oldest = captured_.begin();
+    if (settled_ && oldest->first > *settled_) settle_unshown(oldest->first, oldest->second);
+    captured_.erase(oldest);
+  }
   while (remapped_.size() > 128) remapped_.erase(remapped_.begin());
 }
 
@@ -31,6 +35,8 @@ void FrameLog::restart() {
   flipped_.reset();
   showing_.reset();
   last_shown_.reset();
+  settled_.reset();
+  never_shown_ = 0;
   address_.reset();
 }
 
@@ -72,13 +78,43 @@ bool FrameLog::latch(std::uint32_t address, Picoseconds) {
 
 /// A newer frame is on show: those captured since the one before it will not be shown any more.
 void FrameLog::settle_fates(std::uint64_t shown) {
-  for (std::uint64_t n = last_shown_ ? *last_shown_ + 1 : shown; n <= shown; ++n) {
-    const auto c = captured_.find(n);
-    if (c == captured_.end() || c->second.camera == kNoCamera) continue;
-    if (fates_.size() <= c->second.camera) fates_.resize(c->second.camera + 1);
-    Fates& of = fates_[c->second.camera];
-    ++of.captured;
-    ++(n == shown ? of.displayed : remapped_.contains(n) ? of.superseded : of.dropped);
+  for (std::uint64_t n = settled_ ? *settled_ + 1 : shown; n < shown; ++n)
+    if (const auto c = captured_.find(n); c != captured_.end()) settle_unshown(n, c->second);
+  if (const auto c = captured_.find(shown); c != captured_.end())
+    if (Fates* of = fates_of(c->second)) {
+      ++of->captured;
+      ++of->displayed;
+    }
+  settled_ = shown;
+  never_shown_ = 0;
+}
+
+FrameLog::Fates* FrameLog::fates_of(const Capture& capture) {
+  if (capture.camera == kNoCamera) return nullptr;
+  if (fates_.size() <= capture.camera) fates_.resize(capture.camera + 1);
+  return &fates_[capture.camera];
+}
+
+void FrameLog::settle_unshown(std::uint64_t number, const Capture& capture) {
+  settled_ = number;
+  ++never_shown_;
+  Fates* of = fates_of(capture);
+  if (!of) return;
+  ++of->captured;
+  ++(remapped_.contains(number) ? of->superseded : of->dropped);
+}
+
+void FrameLog::finish(Picoseconds at, Picoseconds age) {
+  if (!settled_) return;
+  for (auto c = captured_.upper_bound(*settled_); c != captured_.end(); ++c) {
+    const auto& [number, capture] = *c;
+    const auto remap = remapped_.find(number);
+    const Picoseconds since = remap == remapped_.end() ? capture.end : remap->second.end;
+    if (running_ != number && since + age < at) {
+      settle_unshown(number, capture);
+    } else if (Fates* of = fates_of(capture)) {
+      ++of->pending;
+    }
   }
 }
 

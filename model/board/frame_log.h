@@ -67,11 +67,18 @@ class FrameLog {
   /// corrected: dropped.
   struct Fates {
     std::uint64_t captured = 0, displayed = 0, superseded = 0, dropped = 0;
+    std::uint64_t pending = 0;  ///< captured too shortly before finish() to be told; not in `captured`
   };
   const Fates& fates(std::size_t camera) const {
     static const Fates kNone;
     return camera < fates_.size() ? fates_[camera] : kNone;
   }
+  /// Nothing will be displayed any more from `at` on. Of the frames that were captured since the one that was shown
+  /// last, those older than `age` have their fate: corrected ones are superseded, others dropped. The frame that is
+  /// being corrected and younger ones are pending. Without a frame that was shown, nothing is decided.
+  void finish(Picoseconds at, Picoseconds age);
+  /// Frames that were captured and will not be shown, since the frame that was shown last.
+  std::uint64_t never_shown() const { return never_shown_; }
   /// Ends of complete captures, in order; the same.
   const std::vector<Picoseconds>& captures() const { return capture_ends_; }
   /// Forgets the oldest entries of each list, all but `kept` of it, once there are twice as many.
@@ -95,6 +102,8 @@ class FrameLog {
     unsigned camera;
   };
   void settle_fates(std::uint64_t shown);
+  Fates* fates_of(const Capture& capture);
+  void settle_unshown(std::uint64_t number, const Capture& capture);
   std::optional<std::uint64_t> unroll(unsigned sequence) const;
 
   Phase phase_ = Phase::kReset;
@@ -104,6 +113,8 @@ class FrameLog {
   std::vector<Fates> fates_;  // by camera
   std::vector<Remap> remaps_;
   std::vector<Picoseconds> capture_ends_;
+  std::optional<std::uint64_t> settled_;  // captures up to this one have their fate
+  std::uint64_t never_shown_ = 0;
   std::uint64_t first_capture_ = 0;  // since the last reset
   std::uint64_t next_capture_ = 0;
   std::optional<std::uint64_t> running_, flipped_, showing_, last_shown_;

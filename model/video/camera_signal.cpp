@@ -50,6 +50,7 @@ void CameraSignal::set_standard(bool is_625, const Placement& placement, std::ui
   standard_ = &standard_of(is_625);
   wiring_.placement = placement;
   origin_ = static_cast<std::int64_t>(edge);
+  left_out_ = 0;
 }
 
 std::uint64_t CameraSignal::field_at(Picoseconds now) const {

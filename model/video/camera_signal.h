@@ -17,6 +17,7 @@ struct CameraWiring {
   Picoseconds phase = 0;     ///< start of its first field after power-up
   double clock_offset = 0;   ///< of its clock from the nominal one, in parts per million
   bool connected = true;     ///< false: there is nothing on the input
+  bool genlocked = false;    ///< it follows the syncs of others: after a fault its next frame begins with theirs
 };
 
 /// What is wrong with the lines that a camera sends; by default nothing.
@@ -50,7 +51,18 @@ class CameraSignal {
   /// picture with more rows than the standard has shows those in the middle.
   void set_standard(bool is_625, const Placement& placement, std::uint64_t edge, Picoseconds now);
   /// All lines that are still to come begin so many samples earlier: some were left out.
-  void leave_out(std::uint64_t samples) { origin_ -= static_cast<std::int64_t>(samples); }
+  void leave_out(std::uint64_t samples) {
+    origin_ -= static_cast<std::int64_t>(samples);
+    left_out_ += static_cast<std::int64_t>(samples);
+  }
+  /// What a genlocked camera does at the beginning of a frame once nothing is wrong with its lines: it waits for the
+  /// syncs that it follows (assumed: at its next frame). @return whether the lines to come begin later now
+  bool follow_again() {
+    if (!wiring_.genlocked || !left_out_ || fault.lines) return false;
+    origin_ += left_out_;
+    left_out_ = 0;
+    return true;
+  }
   /// Number of the field whose samples are on the wire at `now`.
   std::uint64_t field_at(Picoseconds now) const;
   /// Start of field k (its first line). k must not be before the last change of the clock.
@@ -88,6 +100,7 @@ class CameraSignal {
   bool started_ = false;
   std::int64_t origin_ = 0;          // clock edge at which line 0 begins; before edge 0 after lines
                                      // were left out
+  std::int64_t left_out_ = 0;        // samples, since it began with the others
   std::uint64_t first_field_ = 0;    // of line 0; even
   std::uint64_t stopped_field_ = 0;  // the field at the time the clock stopped
   const Picture* picture_ = nullptr;

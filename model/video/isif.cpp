@@ -58,7 +58,7 @@ void Isif::on_reset(ResetKind) {
   end_timer_.cancel();
 }
 
-void Isif::latch() {
+void Isif::latch(const Standard& standard) {
   setup_.write = regs.syncen.wen && regs.rec656if.r656on && regs.modeset.inpmod.get() == 2 &&
                  owns_write_buffer.read();
   setup_.interlaced = regs.modeset.ccdmd.get();
@@ -72,10 +72,11 @@ void Isif::latch() {
   setup_.invert_chroma = regs.ccdcfg.msbinvi.get() != regs.ccdcfg.msbinvo.get();
   setup_.sph = regs.sph.value.get();
   setup_.bytes = regs.lnh.value.get() + 1;
-  if (setup_.sph >= kActiveBytes || setup_.sph + setup_.bytes > kActiveBytes) {
+  const unsigned active = standard.active_bytes();
+  if (setup_.sph >= active || setup_.sph + setup_.bytes > active) {
     Diagnostics::instance().guest("ISIF window leaves the active part of the line; cut");
-    setup_.sph = std::min(setup_.sph, kActiveBytes);
-    setup_.bytes = std::min(setup_.bytes, kActiveBytes - setup_.sph);
+    setup_.sph = std::min(setup_.sph, active);
+    setup_.bytes = std::min(setup_.bytes, active - setup_.sph);
   }
   setup_.bytes &= ~3u;
   setup_.first_line[0] = regs.slv0.value.get();
@@ -117,7 +118,7 @@ void Isif::line(const Bt656Line& l) {
   for (unsigned i = 0; i < 3; ++i)
     if (lines[i]->value.get() == line_ || (vd && lines[i]->value.get() == 0)) vdint[i].raise();
 
-  if (regs.ccdcfg.vdlc) latch();
+  if (regs.ccdcfg.vdlc) latch(*l.standard);
   const unsigned first = setup_.first_line[field_];
   if (setup_.write && line_ >= first && line_ - first < setup_.lines) begin_row(l, line_ - first);
 }
@@ -125,7 +126,7 @@ void Isif::line(const Bt656Line& l) {
 void Isif::begin_field(const Bt656Line& l) {
   field_ = f_ != (regs.modeset.fipol.get() != 0);
   regs.modeset.mdfs.set(field_);
-  latch();
+  latch(*l.standard);
   if (!setup_.write) frame_open_ = false;  // the second field of this frame will not be captured
 }
 
@@ -159,17 +160,18 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
     for (unsigned i = setup_.swap ? 1 : 0; i < row_bytes_; i += 2) row_[i] ^= 0x80;
 
   if (index == 0) {
-    if (!field_ || !frame_open_) {
+    const bool begins = !field_ || !setup_.interlaced;
+    if (begins || !frame_open_) {
       frame_ = CaptureFrame{};
       frame_.index = frame_index_;
       frame_.start = row_clock_->edge(row_first_sample_);
-      frame_.complete = !field_;
+      frame_.complete = begins;
       frame_open_ = true;
     }
     frame_.address[field_] = setup_.address;
     frame_.source_field[field_] = l.field_index;
     frame_.source_camera[field_] = l.camera;
-    if (!field_ || !frame_.complete) {
+    if (begins || !frame_.complete) {
       if (on_frame_start) on_frame_start(frame_);
     }
   }
@@ -212,8 +214,9 @@ void Isif::issue(Picoseconds now) {
 /// @param due time at which the last burst of the field is issued or lost
 void Isif::end_field(Picoseconds due) {
   const Picoseconds at = tag_ <= done_tag_ ? std::max(due, done_at_) : kNever;
-  ends_.push_back({tag_, due, at, field_, frame_});
-  if (field_) {
+  const bool last = field_ || !setup_.interlaced;
+  ends_.push_back({tag_, due, at, last, frame_});
+  if (last) {
     if (frame_.complete) ++frame_index_;
     frame_open_ = false;
   }
@@ -229,7 +232,7 @@ void Isif::close_fields() {
     FieldEnd e = ends_.front();
     ends_.pop_front();
     ++stats.fields;
-    if (!e.second) continue;
+    if (!e.last) continue;
     e.frame.end = e.at;
     if (e.frame.complete) ++stats.frames;
     if (on_frame_end) on_frame_end(e.frame);

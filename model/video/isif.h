@@ -17,7 +17,7 @@
 namespace fovea::video {
 
 struct CaptureStats : StatGroup {
-  Counter frames{*this, "frames", "count", "frames captured: both fields, first one first"};
+  Counter frames{*this, "frames", "count", "frames captured: both fields, first one first; without CCDMD, fields"};
   Counter fields{*this, "fields", "count", "fields captured"};
   Counter bursts{*this, "bursts", "count", "bursts of captured data handed to memory"};
   Counter overflows{*this, "overflows", "count",
@@ -45,6 +45,8 @@ struct CaptureFrame {
 /// Counting of lines: VD is the EAV at which V falls. That line is line 1 (Linux starts the capture
 /// of a full picture at line 1), and counting continues through the blanking. VDINTn fires at the
 /// EAV of line n, or at VD for n = 0. Settings are latched at VD if VDLC = 0.
+///
+/// With CCDMD = 0 (progressive) each field is a frame, from the first row of its buffer on.
 ///
 /// Data are written in bursts. A burst is issued when its last byte has arrived, i.e. one byte
 /// clock after that byte appeared on the wire. At most `vpss.write_buffer_bursts` bursts wait for
@@ -89,13 +91,13 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
     std::uint64_t last_tag;
     Picoseconds due;  // time at which its last burst is issued or lost
     Picoseconds at;   // time at which all its data are in memory; kNever: unknown
-    bool second;
+    bool last;  // of its frame
     CaptureFrame frame;
   };
 
   void on_reset(ResetKind) override;
   void write_syncen();
-  void latch();
+  void latch(const Standard& standard);
   void begin_field(const Bt656Line& line);
   void begin_row(const Bt656Line& line, unsigned index);
   void issue(Picoseconds now);
@@ -111,7 +113,7 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
   bool field_ = false;  // true: second field (FIPOL applied)
   Setup setup_;
 
-  std::array<std::uint8_t, kActiveBytes> row_{};
+  std::array<std::uint8_t, kMaxActiveBytes> row_{};
   unsigned row_bytes_ = 0, row_pos_ = 0;
   std::uint32_t row_address_ = 0;
   int row_offset_ = 0;  // in rows from the start of the buffer

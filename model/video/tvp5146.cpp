@@ -77,6 +77,7 @@ void Tvp5146::change_input() {
   signal_ = now.has_value();
   if (other_raster && new_offset_) cameras_[raster_].set_clock_offset(*new_offset_, kernel_time());
   if (other_raster) new_offset_.reset();
+  if (other_raster) cameras_[raster_].follow_again();
   if (now) raster_ = *now;
   relock();
   if (!other_raster || !enabled() || !started_ || nominal_.stopped()) return;
@@ -143,8 +144,11 @@ void Tvp5146::send_line() {
   CameraSignal& camera = cameras_[raster_];
   if (new_offset_) camera.set_clock_offset(*new_offset_, kernel_time());
   new_offset_.reset();
-  leave_lines_out();
   const Clock& of = camera.clock();
+  // Its next frame would begin too early: nothing comes until the syncs that it follows do.
+  if (next_line_ % camera.standard().lines == 0 && camera.follow_again())
+    return line_timer_.at(of.edge(camera.line_edge(next_line_)));
+  leave_lines_out();
   const SignalFault& fault = camera.fault;
   const std::uint64_t first = camera.line_edge(next_line_);
   position_ = camera.position(next_line_);

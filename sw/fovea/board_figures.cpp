@@ -15,13 +15,15 @@ void add_camera_stats(std::vector<StatRow>& rows,
     const std::string name = fmt::format("camera.{}.frame.", n), whose = fmt::format(" of camera {}", n);
     rows.push_back(row(name + "captured", c.captured, "1",
                        "frames captured" + whose +
-                           ", from the first to the last one shown in the window: displayed, "
-                           "superseded and dropped ones"));
+                           ", from the first one shown in the window on: displayed, superseded and dropped ones"));
     rows.push_back(row(name + "displayed", c.displayed, "1", "frames" + whose + " displayed"));
     rows.push_back(row(name + "superseded", c.superseded, "1",
                        "corrected frames" + whose + " that a newer frame replaced before they were shown"));
     rows.push_back(row(name + "dropped", c.dropped, "1",
                        "captured frames" + whose + " that were not corrected"));
+    rows.push_back(row(name + "pending", c.pending, "1",
+                       "frames" + whose + " captured in the last two frame periods or in work at the window's end, "
+                       "and not shown: no part of captured"));
     if (c.rate)
       rows.push_back(row(name + "rate", *c.rate, "1/s",
                          "new frames" + whose + " displayed / time, as frame.rate"));

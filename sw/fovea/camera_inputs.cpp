@@ -6,9 +6,10 @@ namespace fovea::app {
 
 CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
                            const std::atomic<bool>& stop, std::vector<std::string>& notes) {
+  const unsigned step = params.video.format().digital ? 2 : 1;
   for (unsigned n = 0; n < params.camera_count(); ++n) {
     own_.push_back(camera_source(params, n, &stop, &notes));
-    ahead_.push_back(std::make_unique<video::AheadSource>(*own_.back()));
+    ahead_.push_back(std::make_unique<video::AheadSource>(*own_.back(), step));
     views_.push_back(own_.back().get());
     sources_.push_back(ahead_.back().get());
   }
@@ -26,6 +27,7 @@ CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
 const video::Picture* CameraInputs::sent(board::Board& board,
                                          const board::FrameRecord& record) const {
   if (!record.capture_start || record.camera >= pictures_.size()) return nullptr;
+  if (board.digital) return pictures_[0]->kept(board.digital->source_field(*record.capture_start));
   return pictures_[record.camera]->frame(board.decoder.cameras()[record.camera],
                                          *record.capture_start);
 }

@@ -17,6 +17,11 @@ class CameraPictures : public video::PictureSource {
   unsigned height() const override { return source_.height(); }
   const video::Picture& field(std::uint64_t k) override;
 
+  /// The picture of a field; null if it is not kept any more.
+  const video::Picture* kept(std::uint64_t field) {
+    const Kept& kept = place(field);
+    return kept.field == field ? &kept.picture : nullptr;
+  }
   /// The frame whose first field began at `start`, woven from its two fields as the decoder sends their
   /// rows; null if it is not kept any more. Valid until the next call of frame().
   const video::Picture* frame(const video::CameraSignal& signal, Picoseconds start);

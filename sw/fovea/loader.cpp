@@ -119,7 +119,10 @@ std::vector<std::string> footage_notes(const board::BoardParams& params,
                               100 * std::abs(change - 1),
                               change > 1 ? "wider" : "narrower"));
   if (!film) return out;
-  const double camera_rate = params.video.format().is_625 ? 25 : 30000.0 / 1001;
+  const board::VideoFormat& format = params.video.format();
+  const double camera_rate = format.digital ? params.video.digital_clock().hertz() / format.digital->frame_bytes()
+                             : format.is_625 ? 25
+                                             : 30000.0 / 1001;
   if (!info.rate.stopped() && std::abs(camera_rate / info.rate.hertz() - 1) > 0.005)
     out.push_back(
         fmt::format("footage of {:.4g} frames/s is shown at {:.4g} frames/s, {:.3g} times as "
@@ -163,6 +166,28 @@ void check_loads(const board::BoardParams& params) {
       require(!loads[k].active() || loads[k].port() != load.port(), load.port.key(), load.port(),
               "a port that no other load drives");
   }
+}
+
+/// What a camera at the digital port cannot be combined with.
+void check_digital(const board::BoardParams& params) {
+  if (!params.video.format().digital) return;
+  const std::string with = " with video.standard = " + params.video.standard();
+  const auto only = [&](const ParamBase& p, bool ok, const std::string& allowed) {
+    require(ok, p.key(), p.text(), allowed + with + ": the digital port has one camera, and the program for one serves it");
+  };
+  const auto& fw = params.firmware;
+  only(params.cameras.count, params.camera_count() == 1, "1");
+  only(params.fault.kind, params.fault.kind.is("none"), "none");
+  only(params.camera_rows[0].wire.standard, !params.camera_rows[0].wire.standard.user_set(), "not to be set");
+  only(fw.view, fw.view.is("single"), "single");
+  only(fw.program, fw.program.is("auto") || fw.program.is("one_camera"), "auto or one_camera");
+  only(fw.display_phase, fw.display_phase.is("locked"), "locked");
+  const auto& v = params.video;
+  const auto fits = [&](const IntParam& side, unsigned most) {
+    require(side() <= most, side.key(), side.text(), "up to " + std::to_string(most) + with);
+  };
+  fits(v.width, v.format().width);
+  fits(v.height, v.format().height);
 }
 
 void check_cameras(const board::BoardParams& params) {
@@ -225,6 +250,7 @@ void complete_params(board::BoardParams& params) {
     require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
             "powers of two");
   check_loads(params);
+  check_digital(params);
   check_cameras(params);
   if (!params.decoder.standard.user_set())
     params.decoder.standard.set(params.video.format().is_625 ? "625/50" : "525/60");

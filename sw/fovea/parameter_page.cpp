@@ -69,6 +69,20 @@ void fill_priorities(std::uint8_t (&priority)[PRIORITY_COUNT],
   }
 }
 
+/// A camera whose picture is larger than what is shown: by default the view shows it reduced to that size.
+void scale_view(lens_view_t& view, const board::BoardParams& params) {
+  const board::VideoFormat& format = params.video.format();
+  const double x = static_cast<double>(format.width) / format.camera_width();
+  const double y = static_cast<double>(format.height) / format.camera_height;
+  if (!format.digital || (x == 1 && y == 1) || view.mapping == LENS_NONE || view.out_focal_px != 0) return;
+  const double focal = view.focal_px != 0
+                           ? view.focal_px
+                           : lens_focal_from_fov(view.mapping, format.camera_width(), view.fov_deg,
+                                                 (view.flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
+  view.out_focal_px = focal * x;
+  view.out_aspect *= y / x;
+}
+
 void fill_view(lens_view_t& view, const board::BoardParams& params,
                const board::CameraSetup& setup, const video::StampedSource& source) {
   const board::LensParams& lens = *setup.lens;
@@ -108,6 +122,18 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
     view.centre_x = model.cx() - (w - 1) / 2 + lens.centre_x();
     view.centre_y = model.cy() - (h - 1) / 2 + lens.centre_y();
   }
+  scale_view(view, params);
+}
+
+/// Kernels that read a form of a look-up table know one source.
+void check_view_kernel(const board::FirmwareParams& firmware) {
+  static constexpr const char* kOfViews[] = {"plain", "ldm", "strips", "fastest", "engine"};
+  if (!firmware.elf().empty() || firmware.view.is("single") ||
+      std::ranges::any_of(kOfViews, [&](const char* k) { return firmware.kernel.is(k); }))
+    return;
+  Diagnostics::instance().configuration(fmt::format(
+      "{}={} has no form for several sources: with {}={} the program takes strips, as with fastest",
+      firmware.kernel.key(), firmware.kernel(), firmware.view.key(), firmware.view()));
 }
 
 }  // namespace
@@ -115,6 +141,7 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                                          const std::vector<const video::StampedSource*>& sources) {
   const board::FirmwareParams& firmware = params.firmware;
+  check_view_kernel(firmware);
   param_page_t page{};
   fill_clocks(page.clocks, params.clocks);
   page.console = {0, firmware.baud_divisor()};
@@ -127,7 +154,8 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
   page.flags = (firmware.overlay() ? PARAM_OVERLAY : 0u) | (firmware.patch() ? PARAM_SELF_PATCH : 0u) |
                (params.soc.engine.present() ? PARAM_ENGINE : 0u) |
                (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u) |
-               (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u);
+               (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u) |
+               (params.video.format().digital ? PARAM_DIGITAL : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

@@ -155,8 +155,8 @@ static fast_lut_result_t choose_scales(cover_t *c) {
   const double x_scale = TWO_32 * (double)ONE / c->gain_scale;
   f->y_scale = x_scale * lens->in_aspect;
   /* Written so that a value that is not a number does not fit. */
-  const double centre_column = lens_output_centre(lens->width) + lens->centre_x + 0.5;
-  const double centre_row = lens_output_centre(lens->height) + lens->centre_y + 0.5;
+  const double centre_column = lens_output_centre(lens->source_width) + lens->centre_x + 0.5;
+  const double centre_row = lens_output_centre(lens->source_height) + lens->centre_y + 0.5;
   if (!(x_scale * x_max < TWO_31 - 1.0 && f->y_scale * y_max < TWO_31 - 1.0 && s_max < 1e8 &&
         fabs(centre_column) < 8191.0 && fabs(centre_row) < 8191.0))
     return FAST_LUT_RANGE;
@@ -266,8 +266,8 @@ static inline __attribute__((always_inline)) void build_row(row_t *row,
   const fast_lut_t *f = row->fast;
   const lens_t *lens = f->lens;
   const uint32_t pairs = lens->width / 2u, last = lens->height - 1u - row->v;
-  const uint32_t width = lens->width << FAST_LUT_FRACTION;
-  const uint32_t height = lens->height << FAST_LUT_FRACTION;
+  const uint32_t width = lens->source_width << FAST_LUT_FRACTION;
+  const uint32_t height = lens->source_height << FAST_LUT_FRACTION;
   const uint32_t guard = f->guard, pitch = row->pitch, black = row->black;
   uint32_t i = 0;
   while (i < pairs) {
@@ -312,7 +312,7 @@ uint32_t fast_lut_build(const fast_lut_t *fast, uint32_t *lut, uint32_t pitch_by
   const uint32_t rows = mirror_rows ? (lens->height + 1u) / 2u : lens->height;
   const fast_lut_piece_t *piece = fast->piece;
   row_t row = {
-      .fast = fast, .pitch = pitch_bytes, .black = lens_black_offset(lens->height, pitch_bytes)};
+      .fast = fast, .pitch = pitch_bytes, .black = lens_black_offset(lens->source_height, pitch_bytes)};
   for (uint32_t v = 0; v < rows; ++v) {
     const uint32_t last = lens->height - 1u - v;
     set_row(&row, v);

@@ -49,15 +49,27 @@ static lens_result_t init_table(lens_t *lens, const lens_view_t *view) {
   return LENS_OK;
 }
 
+static int good_size(lens_size_t s) {
+  return s.width != 0 && s.width % 2 == 0 && s.width <= SIDE_MAX && s.height != 0 &&
+         s.height <= SIDE_MAX;
+}
+
 lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height) {
-  if (width == 0 || width % 2 != 0 || width > SIDE_MAX || height == 0 || height > SIDE_MAX)
-    return LENS_BAD_SIZE;
+  const lens_size_t size = {width, height};
+  return lens_init_sizes(lens, view, size, size);
+}
+
+lens_result_t lens_init_sizes(lens_t *lens, const lens_view_t *view, lens_size_t source,
+                              lens_size_t result) {
+  if (!good_size(source) || !good_size(result)) return LENS_BAD_SIZE;
   if (view->mapping > LENS_TABLE) return LENS_BAD_MAPPING;
   if (view->pair_method > PAIR_CENTRE) return LENS_BAD_PAIR;
 
   *lens = (lens_t){.mapping = view->mapping,
-                   .width = width,
-                   .height = height,
+                   .width = result.width,
+                   .height = result.height,
+                   .source_width = source.width,
+                   .source_height = source.height,
                    .pair_method_b = view->pair_method == PAIR_CENTRE,
                    .centre_x = view->centre_x,
                    .centre_y = view->centre_y,
@@ -75,13 +87,13 @@ lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, u
   }
   if (!positive(view->in_aspect) || !positive(view->out_aspect)) return LENS_BAD_FOCAL;
   if (view->mapping == LENS_TABLE) {
-    const lens_result_t result = init_table(lens, view);
-    if (result != LENS_OK) return result;
+    const lens_result_t table = init_table(lens, view);
+    if (table != LENS_OK) return table;
     lens->focal = view->focal_px != 0.0 ? view->focal_px : view->table_r[1] * lens->table_scale;
   } else if (view->focal_px != 0.0) {
     lens->focal = view->focal_px;
   } else {
-    lens->focal = lens_focal_from_fov(view->mapping, (double)width, view->fov_deg,
+    lens->focal = lens_focal_from_fov(view->mapping, (double)source.width, view->fov_deg,
                                       (view->flags & PARAM_PAPER_LITERAL_FOCAL) != 0);
     if (!positive(lens->focal)) return LENS_BAD_FOV;
   }
@@ -222,12 +234,14 @@ double lens_output_y(const lens_t *lens, double v) {
 }
 
 lens_point_t lens_source(const lens_t *lens, double u, double v) {
-  if (lens->mapping == LENS_NONE) return (lens_point_t){u + lens->shift_x, v + lens->shift_y, 1};
+  if (lens->mapping == LENS_NONE) /* pixel for pixel, around the middle */
+    return (lens_point_t){u + ((double)lens->source_width - (double)lens->width) / 2.0 + lens->shift_x,
+                          v + ((double)lens->source_height - (double)lens->height) / 2.0 + lens->shift_y, 1};
   double dx, dy;
   if (!source_offset(lens, lens_output_x(lens, u), lens_output_y(lens, v), &dx, &dy))
     return (lens_point_t){0.0, 0.0, 0};
-  return (lens_point_t){lens_output_centre(lens->width) + lens->centre_x + dx,
-                        lens_output_centre(lens->height) + lens->centre_y + dy, 1};
+  return (lens_point_t){lens_output_centre(lens->source_width) + lens->centre_x + dx,
+                        lens_output_centre(lens->source_height) + lens->centre_y + dy, 1};
 }
 
 /* floor(x + 0.5) for a position that may be far outside the picture; -1 for all positions below 0.
@@ -243,14 +257,15 @@ uint32_t lens_lut_entry(const lens_t *lens, lens_point_t source, uint32_t pitch_
   if (!source.visible) return black_offset;
   const int32_t column = nearest(source.column);
   const int32_t row = nearest(source.row);
-  if (column < 0 || row < 0 || column >= (int32_t)lens->width || row >= (int32_t)lens->height)
+  if (column < 0 || row < 0 || column >= (int32_t)lens->source_width ||
+      row >= (int32_t)lens->source_height)
     return black_offset;
   return (uint32_t)row * pitch_bytes + ((uint32_t)column & ~1u) * 2u;
 }
 
 void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
   const uint32_t pairs = lens->width / 2;
-  const uint32_t black = lens_black_offset(lens->height, pitch_bytes);
+  const uint32_t black = lens_black_offset(lens->source_height, pitch_bytes);
   const double first = lens->pair_method_b ? 0.5 : 0.0;
   /* Mirror images: rows v and H-1-v if the view is not shifted vertically. Columns can be mirrored
    * only with method B, whose positions 2i + 0.5 are symmetric; without it, the mirror image of a
@@ -260,8 +275,8 @@ void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes) {
       lens->mapping != LENS_NONE && lens->shift_x == 0.0 && lens->pair_method_b;
   const uint32_t rows = mirror_rows ? (lens->height + 1) / 2 : lens->height;
   const uint32_t columns = mirror_columns ? (pairs + 1) / 2 : pairs;
-  const double centre_column = lens_output_centre(lens->width) + lens->centre_x;
-  const double centre_row = lens_output_centre(lens->height) + lens->centre_y;
+  const double centre_column = lens_output_centre(lens->source_width) + lens->centre_x;
+  const double centre_row = lens_output_centre(lens->source_height) + lens->centre_y;
 
   for (uint32_t v = 0; v < rows; ++v) {
     uint32_t *upper = lut + v * pairs;

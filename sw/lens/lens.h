@@ -24,7 +24,8 @@ typedef enum lens_result {
 /** A checked lens and view, with all derived values. */
 typedef struct lens {
   uint32_t mapping;
-  uint32_t width, height; /* pixels */
+  uint32_t width, height; /* of the result, pixels */
+  uint32_t source_width, source_height;
   int pair_method_b;
   double focal;              /* of the lens, px */
   double out_focal;          /* of the corrected view, px */
@@ -55,6 +56,16 @@ void lens_view_default(lens_view_t *view);
 /** Checks `view` for a picture of width x height and derives `lens`. The view must outlive `lens`.
  */
 lens_result_t lens_init(lens_t *lens, const lens_view_t *view, uint32_t width, uint32_t height);
+
+/** The size of a picture, in pixels. */
+typedef struct lens_size {
+  uint32_t width, height;
+} lens_size_t;
+
+/** The same for a source of another size than the result. Lens, field of view and optical centre are
+ * those of the source. Both pictures have one pitch; the black word lies behind the source. */
+lens_result_t lens_init_sizes(lens_t *lens, const lens_view_t *view, lens_size_t source,
+                              lens_size_t result);
 
 /** A sentence for a message about a result. */
 const char *lens_result_text(lens_result_t result);
@@ -97,7 +108,7 @@ static inline uint32_t lens_black_offset(uint32_t height, uint32_t pitch_bytes) 
   return height * pitch_bytes;
 }
 
-/** Fills `lut` row by row, with width / 2 entries per row. Uses the symmetry of a centred view; the
+/** Fills `lut` row by row, with width / 2 entries per row of the result. Uses the symmetry of a centred view; the
  * entries are the same as if each was computed separately. */
 void lens_build_lut(const lens_t *lens, uint32_t *lut, uint32_t pitch_bytes);
 

@@ -11,7 +11,7 @@ void *remap_take(remap_memory_t *memory, size_t bytes, size_t alignment) {
 
 uint32_t remap_visible_row(const remap_picture_t *picture, uint32_t row, remap_strip_t strip,
                            uint32_t otherwise, uint32_t *entries) {
-  const uint32_t black = picture->rows * picture->pitch_bytes;
+  const uint32_t black = picture->source_rows * picture->pitch_bytes;
   const uint32_t first = strip.first * REMAP_GROUP;
   const uint32_t all = strip.groups * REMAP_GROUP;
   const uint32_t present = picture->pairs - first < all ? picture->pairs - first : all;
@@ -34,7 +34,7 @@ uint32_t remap_visible_row(const remap_picture_t *picture, uint32_t row, remap_s
 }
 
 uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip) {
-  const uint32_t black = picture->rows * picture->pitch_bytes;
+  const uint32_t black = picture->source_rows * picture->pitch_bytes;
   const uint32_t first = strip.first * REMAP_GROUP;
   const uint32_t end = first + strip.groups * REMAP_GROUP;
   const uint32_t present = end < picture->pairs ? end : picture->pairs;
@@ -47,7 +47,7 @@ uint32_t remap_first_visible(const remap_picture_t *picture, remap_strip_t strip
 
 const remap_black_run_t *remap_list_black(const remap_picture_t *picture, uint32_t count,
                                           remap_memory_t *memory) {
-  const uint32_t black = picture->rows * picture->pitch_bytes;
+  const uint32_t black = picture->source_rows * picture->pitch_bytes;
   const uint32_t pitch = picture->pitch_bytes / 4u;
   remap_black_run_t *const list = remap_take(memory, sizeof *list, sizeof *list);
   if (list == NULL) return NULL;

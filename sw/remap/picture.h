@@ -19,8 +19,8 @@ extern "C" {
 typedef struct remap_picture {
   uint32_t pairs, rows; /* of the result; pairs * 4 <= pitch_bytes */
   uint32_t pitch_bytes; /* of source and result; a multiple of 32 */
-  const uint32_t *lut;  /* pairs * rows byte offsets into the source, row by row; the entry rows *
-                           pitch_bytes stands for black */
+  const uint32_t *lut;  /* pairs * rows byte offsets into the source, row by row */
+  uint32_t source_rows; /* the entry source_rows * pitch_bytes stands for black */
 } remap_picture_t;
 
 /** Groups of 8 pairs in a row. The last group may have fewer; it ends within the pitch. */

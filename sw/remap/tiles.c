@@ -56,7 +56,7 @@ typedef struct spot {
 static spot_t spot_of(const tile_table_t *t, uint32_t n) {
   const remap_picture_t *p = &t->picture;
   const uint32_t x = tile_first_pair(t, n / t->strip_tiles);
-  const uint32_t y = tile_first_row(t, n % t->strip_tiles), black = p->rows * p->pitch_bytes;
+  const uint32_t y = tile_first_row(t, n % t->strip_tiles), black = p->source_rows * p->pitch_bytes;
   const uint32_t end = x + TILE_PAIRS < p->pairs ? x + TILE_PAIRS : p->pairs;
   const spot_t spot = {{x / REMAP_GROUP, TILE_PAIRS / REMAP_GROUP}, y, 0};
   for (uint32_t v = y; v < y + TILE_ROWS; ++v)

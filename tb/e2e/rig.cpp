@@ -1,5 +1,6 @@
 #include "tb/e2e/rig.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <numbers>
@@ -74,6 +75,10 @@ void Rig::run(Picoseconds limit) {
 }
 
 oracle::Frame Rig::sent(std::uint64_t n) {
+  if (params.video.format().digital) {  // progressive: all rows of one instant, 2 n fields later
+    const video::Picture& all = reference_->field(2 * n);
+    return crop(all, 0, 0, all.width, all.height);
+  }
   const unsigned w = params.width(), h = params.height();
   const video::Picture even = reference_->field(2 * n);
   const video::Picture odd = reference_->field(2 * n + 1);
@@ -118,7 +123,11 @@ oracle::Geometry geometry_of(const board::BoardParams& params, const board::Lens
   oracle::Geometry g;
   g.width = params.width();
   g.height = params.height();
-  g.pitch_bytes = (g.width * 2 + 31) / 32 * 32;
+  if (params.video.format().digital) {
+    g.source_width = params.raster_width();
+    g.source_height = params.raster_height();
+  }
+  g.pitch_bytes = (std::max(g.width, g.source_width) * 2 + 31) / 32 * 32;
   g.mapping = static_cast<oracle::Mapping>(l.mapping.index());
   g.method = l.pair.is("B") ? oracle::PairMethod::kPairCentre : oracle::PairMethod::kFirstPixel;
   g.paper_literal_focal = l.paper_literal_focal();

@@ -171,18 +171,66 @@ TEST(CaptureCheckTest, EachUnitThatWasNotWrittenIsCountedAndNothingElse) {
   }
 }
 
+// A frame of no use is followed by one that goes into a buffer with its marks.
+TEST(CaptureTest, CaptureMovesOnToABufferThatWasNotFilledAnew) {
+  capture_t c;
+  capture_init(&c, 4);
+  capture_frame_useless(&c);
+  EXPECT_EQ(capture_move_on(&c), 1);
+  EXPECT_EQ(c.filling, 1);
+  EXPECT_EQ(capture_take_reused(&c), 0) << "to be marked again";
+  EXPECT_EQ(capture_take_reused(&c), CAPTURE_NONE) << "it is busy meanwhile";
+  capture_frame_broken(&c);
+  EXPECT_EQ(c.dropped, 1u) << "a part of a frame is none";
+  EXPECT_EQ(capture_move_on(&c), 2);
+  EXPECT_EQ(capture_move_on(&c), 3);
+  capture_frame_broken(&c);
+  EXPECT_EQ(capture_move_on(&c), 2) << "2 was not filled";
+  c.reused |= 1u << 3 | 1u << 2;
+  EXPECT_EQ(capture_move_on(&c), CAPTURE_NONE) << "0 is busy, 1 and 3 have no marks";
+  EXPECT_EQ(c.filling, 2);
+  c.reused = 1u << 1;
+  EXPECT_EQ(capture_frame_done(&c), 3) << "not 1, whose marks are gone";
+  EXPECT_EQ(c.ready, 2);
+  capture_release(&c, 0);
+  c.busy |= 1u << 0;
+  c.reused = 1u << 1 | 1u << 3;
+  EXPECT_EQ(capture_take_reused(&c), 1) << "neither the one that is filled";
+}
+
 TEST(DisplayWatchTest, EachChangeIsSaidOnceAndItIsFineAfterASecond) {
   display_watch_t w{};
-  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING);
-  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_LATE);
-  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_NOTHING);
-  for (unsigned n = 1; n < DISPLAY_FINE_FIELDS; ++n) EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING) << n;
-  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_NOTHING) << "a second anew";
-  for (unsigned n = 1; n < DISPLAY_FINE_FIELDS; ++n) EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING) << n;
-  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_FINE);
-  EXPECT_EQ(display_watch_field(&w, 0), DISPLAY_NOTHING);
-  EXPECT_EQ(display_watch_field(&w, 1), DISPLAY_LATE);
-  EXPECT_EQ(w.late_fields, 4u);
+  const auto fine = [&](unsigned fields) {
+    for (unsigned n = 0; n < fields; ++n) display_watch_field(&w, 0);
+  };
+  fine(1);
+  EXPECT_EQ(display_watch_take(&w), DISPLAY_NOTHING);
+  display_watch_field(&w, 1);
+  EXPECT_EQ(display_watch_take(&w), DISPLAY_LATE);
+  display_watch_field(&w, 1);
+  fine(DISPLAY_FINE_FIELDS - 1);
+  display_watch_field(&w, 1);
+  fine(DISPLAY_FINE_FIELDS - 1);
+  EXPECT_EQ(display_watch_take(&w), DISPLAY_NOTHING) << "a second anew";
+  fine(1);
+  EXPECT_EQ(display_watch_take(&w), DISPLAY_FINE);
+  fine(200);
+  EXPECT_EQ(display_watch_take(&w), DISPLAY_NOTHING);
+  EXPECT_EQ(w.late_fields, 3u);
+}
+
+// The main loop may be busy for longer than a second.
+TEST(DisplayWatchTest, ChangesWaitUntilTheyAreSaid) {
+  using Said = std::vector<display_event_t>;
+  for (unsigned changes = 1; changes <= 6; ++changes) {
+    display_watch_t w{};
+    for (unsigned n = 0; n < changes; ++n)
+      for (unsigned field = 0; field < (n % 2 ? DISPLAY_FINE_FIELDS : 1u); ++field) display_watch_field(&w, n % 2 == 0);
+    Said said, want = changes % 2 ? Said{DISPLAY_LATE} : Said{};
+    if (changes > 1) want.insert(want.begin(), {DISPLAY_LATE, DISPLAY_FINE});
+    for (display_event_t e; (e = display_watch_take(&w)) != DISPLAY_NOTHING;) said.push_back(e);
+    EXPECT_EQ(said, want) << changes;
+  }
 }
 
 TEST(OutputTest, ABufferThatIsGivenBackIsTakenAgain) {
@@ -292,6 +340,38 @@ TEST_F(ConfigTest, WhatTheBoardCannotDoIsRefused) {
   EXPECT_EQ(read(size(5)), CONFIG_BAD_REGION) << "800 pixels in a line of 720";
   EXPECT_EQ(read(3 << 11), CONFIG_BAD_SHIFT);
   EXPECT_EQ(read(3 << 13), CONFIG_BAD_SHIFT);
+}
+
+TEST_F(ConfigTest, ADigitalCameraIsCapturedWholeAndShownInAnotherSize) {
+  page.flags = PARAM_DIGITAL;
+  ASSERT_EQ(read(5 << 2 | 1 << 5), CONFIG_OK) << "800x600 as 720x576";
+  EXPECT_EQ(config.source_width, 800u);
+  EXPECT_EQ(config.source_height, 600u);
+  EXPECT_EQ(config.source_left + config.source_top, 0u);
+  EXPECT_EQ(config.width, 720u);
+  EXPECT_EQ(config.height, 576u);
+  EXPECT_EQ(config.pitch_bytes, 1600u) << "of both";
+  page.width = 160;
+  page.height = 120;
+  ASSERT_EQ(read(5 << 2), CONFIG_OK) << "a region of the display alone";
+  EXPECT_EQ(config.width, 160u);
+  EXPECT_EQ(config.left, 280u);
+  EXPECT_EQ(config.source_width, 800u);
+  page.width = page.height = 0;
+  ASSERT_EQ(read(kNtsc | size(4)), CONFIG_OK);
+  EXPECT_EQ(config.source_left, 0u);
+  EXPECT_EQ(config.left, 40u);
+  EXPECT_EQ(config.pitch_bytes, 1280u);
+  ASSERT_EQ(read(4 << 2), CONFIG_OK) << "640x480 in all of 625/50";
+  EXPECT_EQ(config.pitch_bytes, 1440u) << "that of the display is longer";
+  EXPECT_EQ(read(1 << 2 | 1 << 5), CONFIG_BAD_DIGITAL);
+  EXPECT_EQ(read(5 << 2 | 5 << 5), CONFIG_BAD_REGION) << "800 pixels in a displayed line of 720";
+  EXPECT_EQ(read(5 << 2 | 6 << 5), CONFIG_BAD_SIZES);
+  page.flags = 0;
+  EXPECT_EQ(read(5 << 2 | 1 << 5), CONFIG_BAD_SIZES) << "behind the decoder there is no such camera";
+  ASSERT_EQ(read(kNtsc | size(4)), CONFIG_OK);
+  EXPECT_EQ(config.source_left, 40u);
+  EXPECT_EQ(config.source_width, 640u);
 }
 
 TEST_F(ConfigTest, RepeatsComeFromThePage) {

@@ -33,7 +33,7 @@ using A = RegisterAccess;
 
 TEST(IsifTest, PalFrameIsProgrammedAsTheLinuxDriverDoes) {
   RegisterRecorder chip;
-  const isif_window_t window = {0, 0, 720, 576, isif_pitch(720)};
+  const isif_window_t window = {0, 0, 720, 576, isif_pitch(720), 0};
   ASSERT_EQ(isif_configure(&window), ISIF_OK);
   EXPECT_THAT(chip.accesses,
               ElementsAreArray<A>({{'w', 0x01C71000, 0},       // SYNCEN: off while changing
@@ -54,7 +54,7 @@ TEST(IsifTest, PalFrameIsProgrammedAsTheLinuxDriverDoes) {
 
 TEST(IsifTest, VgaWindowStartsInTheMiddleOfTheRaster) {
   RegisterRecorder chip;
-  const isif_window_t window = {40, 20, 640, 440, isif_pitch(640)};
+  const isif_window_t window = {40, 20, 640, 440, isif_pitch(640), 0};
   ASSERT_EQ(isif_configure(&window), ISIF_OK);
   EXPECT_EQ(chip.values[0x01C71018], 80u);
   EXPECT_EQ(chip.values[0x01C7101C], 1279u);
@@ -71,10 +71,10 @@ TEST(IsifTest, PitchIsRoundedUpTo32Bytes) {
 
 TEST(IsifTest, ABadWindowWritesNothing) {
   RegisterRecorder chip;
-  const isif_window_t bad[] = {{0, 0, 721, 576, 1472}, {0, 0, 720, 575, 1440},
-                               {0, 0, 720, 576, 1439}, {0, 0, 720, 576, 1408},
-                               {0, 1, 720, 576, 1440}, {0, 0, 0, 576, 1440},
-                               {0, 0, 720, 0, 1440}};
+  const isif_window_t bad[] = {{0, 0, 721, 576, 1472, 0}, {0, 0, 720, 575, 1440, 0},
+                               {0, 0, 720, 576, 1439, 0}, {0, 0, 720, 576, 1408, 0},
+                               {0, 1, 720, 576, 1440, 0}, {0, 0, 0, 576, 1440, 0},
+                               {0, 0, 720, 0, 1440, 0}};
   for (const isif_window_t& window : bad) EXPECT_EQ(isif_configure(&window), ISIF_BAD_WINDOW);
   EXPECT_EQ(isif_set_address(0x80123450), ISIF_BAD_ADDRESS);
   EXPECT_THAT(chip.accesses, IsEmpty());
@@ -82,7 +82,7 @@ TEST(IsifTest, ABadWindowWritesNothing) {
 
 // Lines of a field count from 1; the last captured one is behind half of `top` and half of `height`.
 TEST(IsifTest, TheFieldEndsTwoLinesBehindItsLastRow) {
-  const isif_window_t whole = {0, 0, 720, 576, 1440}, middle = {40, 20, 640, 440, 1280};
+  const isif_window_t whole = {0, 0, 720, 576, 1440, 0}, middle = {40, 20, 640, 440, 1280, 0};
   EXPECT_EQ(isif_end_of_field_line(&whole), 290u);
   EXPECT_EQ(isif_end_of_field_line(&middle), 232u);
 }

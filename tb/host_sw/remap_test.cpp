@@ -46,7 +46,7 @@ Encoded encode(remap_encode_t* encoder, const Picture& p, unsigned widest, std::
   auto* const base = reinterpret_cast<std::uint8_t*>(
       (reinterpret_cast<std::uintptr_t>(raw.data()) + 31) & ~std::uintptr_t{31});
   std::memset(base, kUntouched, room + 64);
-  const remap_picture_t picture{p.pairs, p.rows, p.pitch, p.lut.data()};
+  const remap_picture_t picture{p.pairs, p.rows, p.pitch, p.lut.data(), p.rows};
   remap_memory_t memory{base, 0, room};
   const char* refusal = "not set";
   const remap_head_t* head = encoder(&picture, widest, &memory, &refusal);

@@ -20,7 +20,7 @@ struct Picture {
   unsigned width, height;
   unsigned pitch() const { return (2 * width + 31) / 32 * 32; }
   std::vector<std::uint32_t> lut;
-  remap_picture_t view() const { return {width / 2, height, pitch(), lut.data()}; }
+  remap_picture_t view() const { return {width / 2, height, pitch(), lut.data(), height}; }
   std::uint32_t black() const { return pitch() * height; }
   std::uint32_t entry(unsigned pair, unsigned row) const { return lut[row * (width / 2) + pair]; }
 };
@@ -191,7 +191,7 @@ TEST(TilesTest, LensesAndSizesDecodeToTheirTable) {
 
 TEST(TilesTest, TheSmallestPicturesAreOneTileWideAndTwoHigh) {
   const auto count = [](unsigned width, unsigned height) {
-    const remap_picture_t p = {width / 2, height, (2 * width + 31) / 32 * 32, nullptr};
+    const remap_picture_t p = {width / 2, height, (2 * width + 31) / 32 * 32, nullptr, height};
     return tiles_count(&p);
   };
   EXPECT_EQ(count(80, 25), 2u);

@@ -11,16 +11,19 @@ namespace {
 const double kPi = std::acos(-1.0);
 constexpr double kFarAway = 1e9;
 
+unsigned from_width(const Geometry& g) { return g.source_width ? g.source_width : g.width; }
+unsigned from_height(const Geometry& g) { return g.source_height ? g.source_height : g.height; }
+
 /// The pair column of a position: nearest pixel, bit 0 cleared, halved; pairs change at 2m - 0.5.
 /// Method B wants the aligned pair whose centre 2m + 0.5 is nearest: the same rounding.
 double pair_of(double x) { return std::floor((x + 0.5) / 2); }
 double row_of(double y) { return std::floor(y + 0.5); }
 
 bool is_inside(const Geometry& g, const Position& p) {
-  return p.x >= -0.5 && p.x < g.width - 0.5 && p.y >= -0.5 && p.y < g.height - 0.5;
+  return p.x >= -0.5 && p.x < from_width(g) - 0.5 && p.y >= -0.5 && p.y < from_height(g) - 0.5;
 }
 
-std::uint32_t black_entry(const Geometry& g) { return g.height * g.pitch_bytes; }
+std::uint32_t black_entry(const Geometry& g) { return from_height(g) * g.pitch_bytes; }
 
 std::uint32_t entry_at(const Geometry& g, const Position& p) {
   if (!is_inside(g, p)) return black_entry(g);
@@ -36,8 +39,8 @@ double to_grid(double v, double step, double offset) {
 
 /// How far p is from the rectangle of the picture; only for p outside.
 double to_picture(const Geometry& g, const Position& p) {
-  const double x = std::max({-0.5 - p.x, p.x - (g.width - 0.5), 0.0});
-  const double y = std::max({-0.5 - p.y, p.y - (g.height - 0.5), 0.0});
+  const double x = std::max({-0.5 - p.x, p.x - (from_width(g) - 0.5), 0.0});
+  const double y = std::max({-0.5 - p.y, p.y - (from_height(g) - 0.5), 0.0});
   return std::max(x, y);
 }
 
@@ -76,17 +79,18 @@ struct Traced {
 };
 
 Traced trace(const Geometry& g, double u, double v) {
-  if (g.mapping == Mapping::kNone) return {{u + g.shift_x, v + g.shift_y}};
+  const double from_x = (from_width(g) - 1) / 2.0, from_y = (from_height(g) - 1) / 2.0;
   const double mid_x = (g.width - 1) / 2.0, mid_y = (g.height - 1) / 2.0;
+  if (g.mapping == Mapping::kNone) return {{u - mid_x + from_x + g.shift_x, v - mid_y + from_y + g.shift_y}};
   const double focal = output_focal(g);
   const double x = (u - mid_x + g.shift_x) / focal;
   const double y = (v - mid_y + g.shift_y) / (focal * g.out_aspect);
   const double r = std::hypot(x, y);
-  if (r == 0) return {{mid_x + g.centre_x, mid_y + g.centre_y}};
+  if (r == 0) return {{from_x + g.centre_x, from_y + g.centre_y}};
   const double theta = std::atan(r);
   const double radius = radius_continued(g, theta);
   Traced t{
-      {mid_x + g.centre_x + radius * x / r, mid_y + g.centre_y + g.in_aspect * radius * y / r}};
+      {from_x + g.centre_x + radius * x / r, from_y + g.centre_y + g.in_aspect * radius * y / r}};
   if (g.theta_max > 0) t.reach = radius_continued(g, g.theta_max) - radius;
   return t;
 }
@@ -110,7 +114,7 @@ bool is_tolerable(const Geometry& g, const Traced& t, std::uint32_t entry, doubl
 double lens_focal(const Geometry& g) {
   if (g.focal_px > 0) return g.focal_px;
   const double fov = g.fov_deg * kPi / 180;
-  const double w = g.width;
+  const double w = from_width(g);
   switch (g.mapping) {
     case Mapping::kNone:
       return 1;

@@ -32,8 +32,9 @@ struct Geometry {
   Mapping mapping = Mapping::kEquisolid;
   PairMethod method = PairMethod::kFirstPixel;
   bool paper_literal_focal = false;  ///< equisolid only: f = W / (4 sin(FOV/2)), equation (10)
-  unsigned width = 720, height = 576;
-  std::uint32_t pitch_bytes = 1440;
+  unsigned width = 720, height = 576;                ///< of the result
+  unsigned source_width = 0, source_height = 0;      ///< of the camera's picture; 0: those of the result
+  std::uint32_t pitch_bytes = 1440;                  ///< of both
   double fov_deg = 180;
   double focal_px = 0;                   ///< 0: from fov_deg
   double out_focal_px = 0;               ///< 0: that of the lens

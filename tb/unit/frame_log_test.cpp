@@ -174,5 +174,48 @@ TEST(FrameLogTest, EachCapturedFrameHasOneFate) {
   EXPECT_EQ(fates(2), (std::array<std::uint64_t, 4>{0, 0, 0, 0}));
 }
 
+TEST(FrameLogTest, AtTheEndOldFramesHaveAFateAndYoungOnesArePending) {
+  Log log;
+  // Frame i is in memory at 100 i + 50. 1 is on show, 3 was corrected by 370, 5 is being corrected.
+  for (std::uint64_t i = 0; i < 9; ++i) log.capture(i, i * 100, i * 100 + 50, i == 2 ? -1 : static_cast<int>(i % 2));
+  const auto fates = [&](std::size_t camera) {
+    const FrameLog::Fates& f = log.fates(camera);
+    return std::array<std::uint64_t, 5>{f.captured, f.displayed, f.superseded, f.dropped, f.pending};
+  };
+  log.finish(10'000, 0);
+  EXPECT_EQ(fates(0), (std::array<std::uint64_t, 5>{})) << "nothing was shown";
+  log.flipped_to(1);
+  log.show(Phase::kRemapStart, 3, 360);
+  log.show(Phase::kRemapEnd, 3, 370);
+  log.show(Phase::kRemapStart, 5, 860);
+  log.finish(951, 200);  // 7 is 201 old, 8 is 101
+  EXPECT_EQ(fates(0), (std::array<std::uint64_t, 5>{2, 0, 0, 2, 1})) << "4 and 6; 8 is young";
+  EXPECT_EQ(fates(1), (std::array<std::uint64_t, 5>{3, 1, 1, 1, 1})) << "1, 3 and 7; 5 is in work";
+  EXPECT_EQ(log.never_shown(), 5u) << "2, 3, 4, 6, 7";
+}
+
+TEST(FrameLogTest, AFrameOfTheVeryAgeIsPending) {
+  Log log;
+  log.captured_up_to(2);
+  log.flipped_to(0);
+  log.finish(450, 200);  // 2 is 200 old
+  EXPECT_EQ(log.fates(0).dropped, 1u);
+  EXPECT_EQ(log.fates(0).pending, 1u);
+}
+
+TEST(FrameLogTest, FramesAreCountedThatWereForgottenBeforeAnotherOneIsShown) {
+  Log log;
+  log.captured_up_to(0);
+  log.flipped_to(0);
+  for (std::uint64_t i = 1; i < 200; ++i) log.capture(i, i * 100, i * 100 + 50);
+  EXPECT_EQ(log.never_shown(), 71u) << "1 to 71 are no longer among the latest 128";
+  EXPECT_EQ(log.fates(0).dropped, 71u);
+  log.flipped_to(199);
+  EXPECT_EQ(log.fates(0).dropped, 198u);
+  EXPECT_EQ(log.fates(0).captured, 200u);
+  EXPECT_EQ(log.records().back().dropped, 198u);
+  EXPECT_EQ(log.never_shown(), 0u);
+}
+
 }  // namespace
 }  // namespace fovea::board

@@ -78,6 +78,22 @@ TEST(StandardTest, FieldAndBlankingBitsByLine525) {
                       {283, 525, true, false}});
 }
 
+TEST(StandardTest, ProgressiveRastersHaveNoSecondField) {
+  expect_flags(k480p, {{1, 45, false, true}, {46, 525, false, false}});
+  expect_flags(k600p, {{1, 27, false, true}, {28, 627, false, false}, {628, 628, false, true}});
+  EXPECT_EQ(k480p.frame_rate(), Frequency(30000, 1001));
+  EXPECT_EQ(k600p.frame_rate(), Frequency(25));
+  EXPECT_EQ(k480p.active_offset(), 1716u - 1280u);
+  EXPECT_EQ(k600p.active_offset(), 2112u - 1600u);
+  for (const Standard* s : {&k480p, &k600p})
+    for (const std::uint64_t field : {0u, 1u, 7u}) {
+      EXPECT_EQ(first_line_of_field(*s, field), field * s->lines);
+      EXPECT_EQ(locate(*s, field * s->lines).field, field);
+      EXPECT_EQ(locate(*s, field * s->lines).line, 1u);
+      EXPECT_EQ(locate(*s, field * s->lines + s->lines - 1).line, s->lines);
+    }
+}
+
 TEST(StandardTest, WholeFrameBytesAndRates) {
   EXPECT_EQ(k625.frame_bytes(), 1'080'000u);
   EXPECT_EQ(k525.frame_bytes(), 900'900u);

@@ -125,6 +125,28 @@ TEST_F(CaptureTest, InvertedFieldIdSwapsTheFields) {
   EXPECT_TRUE(b.ended[1].complete);
 }
 
+// CCDMD = 0: the rows of a field lie one behind the other, and each field is a frame.
+TEST_F(CaptureTest, ProgressiveFieldsAreFrames) {
+  b.regs.write(MODESET, 2u << 12 | 1u << 2);
+  b.regs.write(SDOFST, 0);
+  enable();
+  run_until(line_time(12));
+  ASSERT_EQ(b.ended.size(), 1u);
+  EXPECT_TRUE(b.ended[0].complete);
+  EXPECT_EQ(b.ended[0].index, 0u);
+  for (unsigned r = 0; r < kRows / 2; ++r)
+    for (unsigned i = 0; i < kRowBytes; ++i)
+      ASSERT_EQ(b.memory.at(kBuffer + r * kRowBytes)[i], pattern(2 * r, i)) << r << ' ' << i;
+  EXPECT_EQ(b.memory.at(kBuffer + kRows / 2 * kRowBytes)[0], 0xEE) << "no row beyond";
+  set_address(kOther);
+  run_until(frame_start_ + kFrame - kPsPerUs);
+  ASSERT_EQ(b.ended.size(), 2u);
+  EXPECT_TRUE(b.ended[1].complete);
+  EXPECT_EQ(b.ended[1].index, 1u);
+  EXPECT_EQ(b.started.size(), 2u);
+  for (unsigned r = 0; r < kRows / 2; ++r) EXPECT_EQ(b.memory.at(kOther + r * kRowBytes)[5], pattern(2 * r + 1, 5));
+}
+
 TEST_F(CaptureTest, WholeLineIsAWindowAndOneSampleMoreIsCut) {
   Diagnostics& d = Diagnostics::instance();
   d.clear();

@@ -37,7 +37,7 @@ void compose_line(const Standard& standard, std::uint8_t eav_xy, std::uint8_t sa
   blank(kCodeBytes, offset - kCodeBytes);
   code(offset - kCodeBytes, sav_xy);
   if (active)
-    std::memcpy(out.data() + offset, active, kActiveBytes);
+    std::memcpy(out.data() + offset, active, standard.active_bytes());
   else
     blank(offset, standard.line_bytes);
 }

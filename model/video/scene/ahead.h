@@ -9,11 +9,11 @@
 namespace fovea::video {
 
 /// Delivers the pictures of another source unchanged: while field k is sent, a second thread
-/// renders field k + 1. That source must not be used by anybody else meanwhile. An error during
+/// renders field k + `step`. That source must not be used by anybody else meanwhile. An error during
 /// rendering is thrown by the call of field() for that picture.
 class AheadSource : public PictureSource {
  public:
-  explicit AheadSource(PictureSource& source) : source_(source) {}
+  explicit AheadSource(PictureSource& source, unsigned step = 1) : source_(source), step_(step) {}
   ~AheadSource() override {
     if (next_.valid()) next_.wait();
   }
@@ -32,8 +32,8 @@ class AheadSource : public PictureSource {
     }
     const Picture& shown = pictures_[next_index_];
     next_index_ ^= 1u;
-    next_field_ = k + 1;
-    next_ = std::async(std::launch::async, [this, index = next_index_, field = k + 1] {
+    next_field_ = k + step_;
+    next_ = std::async(std::launch::async, [this, index = next_index_, field = next_field_] {
       pictures_[index] = source_.field(field);
     });
     return shown;
@@ -41,6 +41,7 @@ class AheadSource : public PictureSource {
 
  private:
   PictureSource& source_;
+  const unsigned step_;
   std::array<Picture, 2> pictures_;
   unsigned next_index_ = 0;
   std::uint64_t next_field_ = 0;

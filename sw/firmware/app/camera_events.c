@@ -14,4 +14,15 @@ void camera_events_say(void) {
     uart_puts(what);
     uart_puts("\n");
   }
+  uint32_t late_fields;
+  display_event_t event;
+  while ((event = pipeline_display_event(&late_fields)) != DISPLAY_NOTHING) {
+    uart_puts("display: ");
+    uart_puts(display_event_text(event));
+    if (event == DISPLAY_FINE) {
+      uart_puts(", fields with late data: ");
+      uart_put_uint(late_fields);
+    }
+    uart_puts("\n");
+  }
 }

@@ -4,9 +4,30 @@ void capture_init(capture_t *capture, uint32_t buffer_count) {
   *capture = (capture_t){.buffer_count = buffer_count, .filling = 0, .ready = CAPTURE_NONE};
 }
 
-static int32_t find_free(const capture_t *c, int32_t also_used) {
+/* A buffer that is not in use, nor waits; of several, one that was not filled anew. */
+static int32_t find_free(const capture_t *c) {
+  int32_t found = CAPTURE_NONE;
+  for (uint32_t n = 0; n < c->buffer_count; ++n) {
+    if ((int32_t)n == c->filling || (int32_t)n == c->ready || (c->busy >> n & 1u) != 0) continue;
+    if ((c->reused >> n & 1u) == 0) return (int32_t)n;
+    if (found == CAPTURE_NONE) found = (int32_t)n;
+  }
+  return found;
+}
+
+int32_t capture_move_on(capture_t *c) {
+  const int32_t next = find_free(c);
+  if (next == CAPTURE_NONE || (c->reused >> next & 1u) != 0) return CAPTURE_NONE;
+  return c->filling = next;
+}
+
+int32_t capture_take_reused(capture_t *c) {
   for (uint32_t n = 0; n < c->buffer_count; ++n)
-    if ((int32_t)n != also_used && (c->busy >> n & 1u) == 0) return (int32_t)n;
+    if ((int32_t)n != c->filling && (int32_t)n != c->ready && (c->busy >> n & 1u) == 0 &&
+        (c->reused >> n & 1u) != 0) {
+      c->busy |= 1u << n;
+      return (int32_t)n;
+    }
   return CAPTURE_NONE;
 }
 
@@ -17,7 +38,7 @@ int32_t capture_frame_done(capture_t *c) {
     c->reused |= 1u << c->ready;
     c->ready = CAPTURE_NONE;
   }
-  const int32_t next = find_free(c, c->filling);
+  const int32_t next = find_free(c);
   if (next == CAPTURE_NONE) {
     ++c->dropped;
     c->reused |= 1u << c->filling;

@@ -36,6 +36,17 @@ static inline void capture_frame_useless(capture_t *capture) {
   capture->reused |= 1u << capture->filling;
 }
 
+/** Part of a frame was captured, which is not counted, and its buffer is filled again. */
+static inline void capture_frame_broken(capture_t *capture) { capture->reused |= 1u << capture->filling; }
+
+/** The next frame is to be filled into a buffer that is not `reused`, if one is free. @return that buffer, or
+ * CAPTURE_NONE: it stays as it was */
+int32_t capture_move_on(capture_t *capture);
+
+/** A free buffer with the bit `reused`, which is busy from now on until capture_release(); CAPTURE_NONE if there is
+ * none. */
+int32_t capture_take_reused(capture_t *capture);
+
 /** For the serial flow with one buffer: the frame becomes `ready`, and capture pauses until its
  * release. */
 void capture_single_done(capture_t *capture);

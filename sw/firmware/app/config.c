@@ -3,16 +3,38 @@
 #include "../drivers/isif.h"
 #include "model/contract/switches.h"
 
-static config_result_t read_region(config_t *c, const param_page_t *page) {
-  static const struct {
-    uint16_t width, height;
-  } kSizes[] = {[SWITCH_720X576] = {720, 576},
-                [SWITCH_720X480] = {720, 480},
-                [SWITCH_720X486] = {720, 486},
-                [SWITCH_640X480] = {640, 480},
-                [SWITCH_800X600] = {800, 600}};
+static const struct {
+  uint16_t width, height;
+} kSizes[] = {[SWITCH_720X576] = {720, 576},
+              [SWITCH_720X480] = {720, 480},
+              [SWITCH_720X486] = {720, 486},
+              [SWITCH_640X480] = {640, 480},
+              [SWITCH_800X600] = {800, 600}};
+
+/* What is captured: the displayed region, or all of a camera at the digital port. */
+static config_result_t read_source(config_t *c) {
   const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
-  if (size > SWITCH_800X600 || SWITCH_GET(c->dip, SWITCH_SIZE_OUT) != size) return CONFIG_BAD_SIZES;
+  c->source_left = c->left;
+  c->source_top = c->top;
+  c->source_width = c->width;
+  c->source_height = c->height;
+  c->pitch_bytes = isif_pitch(c->width);
+  if (!c->digital) return CONFIG_OK;
+#ifdef TIME_DIVISION
+  return CONFIG_BAD_DIGITAL;
+#else
+  if (size != SWITCH_640X480 && size != SWITCH_800X600) return CONFIG_BAD_DIGITAL;
+  c->source_left = c->source_top = 0;
+  c->source_width = kSizes[size].width;
+  c->source_height = kSizes[size].height;
+  if (c->source_width > c->width) c->pitch_bytes = isif_pitch(c->source_width);
+  return CONFIG_OK;
+#endif
+}
+
+static config_result_t read_region(config_t *c, const param_page_t *page) {
+  const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_OUT);
+  if (size > SWITCH_800X600 || (!c->digital && SWITCH_GET(c->dip, SWITCH_SIZE_IN) != size)) return CONFIG_BAD_SIZES;
   const uint32_t raster_height = c->is_625 ? 576u : size == SWITCH_720X486 ? 486u : 480u;
   c->width = size != SWITCH_SIZE_OF_PAGE ? kSizes[size].width
              : page->width != 0          ? page->width
@@ -26,8 +48,7 @@ static config_result_t read_region(config_t *c, const param_page_t *page) {
     return CONFIG_BAD_REGION;
   c->left = (720u - c->width) / 2u;
   c->top = (raster_height - c->height) / 2u;
-  c->pitch_bytes = isif_pitch(c->width);
-  return CONFIG_OK;
+  return read_source(c);
 }
 
 /* Returns 0 for an unused code. */
@@ -71,6 +92,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .overlay = (page->flags & PARAM_OVERLAY) != 0,
                   .self_patch = (page->flags & PARAM_SELF_PATCH) != 0,
                   .has_engine = (page->flags & PARAM_ENGINE) != 0,
+                  .digital = (page->flags & PARAM_DIGITAL) != 0,
 #ifdef CONSOLE
                   .display_free = (page->flags & PARAM_DISPLAY_FREE) != 0,
                   .check_capture = (page->flags & PARAM_CHECK_CAPTURE) != 0,
@@ -105,7 +127,7 @@ const char *config_result_text(config_result_t result) {
     case CONFIG_BAD_STANDARDS:
       return "switches 0 and 1: camera and display must have the same standard";
     case CONFIG_BAD_SIZES:
-      return "switches 2-4 and 5-7: camera and display must have the same size, codes 0 to 5";
+      return "switches 2-4 and 5-7: codes 0 to 5; without a digital camera, the same size twice";
     case CONFIG_BAD_REGION:
       return "size: multiples of 4 or all lines, within the raster of the standard";
     case CONFIG_BAD_SHIFT:
@@ -122,6 +144,8 @@ const char *config_result_text(config_result_t result) {
       return "parameter page: too many look-up tables; this firmware has memory for 4";
     case CONFIG_BAD_CAMERAS:
       return "parameter page: several cameras; this firmware serves one";
+    case CONFIG_BAD_DIGITAL:
+      return "a digital camera: 640x480 or 800x600 (switches 2-4), in the program for one camera";
 #ifdef TIME_DIVISION
     case CONFIG_BAD_DIVISION:
       return "parameter page: with several cameras, one table for each and double buffering";

@@ -16,9 +16,11 @@
 typedef struct config {
   uint32_t dip;
   int is_625;
-  uint32_t left, top;     /* of the captured and displayed region in the raster */
+  uint32_t left, top;     /* of the displayed region in the raster */
   uint32_t width, height; /* of the region */
-  uint32_t pitch_bytes;
+  int digital;            /* a progressive camera at the digital port, of which all is captured */
+  uint32_t source_left, source_top, source_width, source_height; /* what is captured of the camera's raster */
+  uint32_t pitch_bytes;   /* of captured and displayed frames */
   uint32_t kernel;        /* enum param_kernel */
   uint32_t table_builder; /* enum param_table_builder */
   int serial; /* as in Fig. 6 of the paper: capture, remap, display, then capture the next frame */
@@ -46,7 +48,7 @@ typedef struct config {
 typedef enum config_result {
   CONFIG_OK = 0,
   CONFIG_BAD_STANDARDS, /* camera and display differ */
-  CONFIG_BAD_SIZES,     /* an unused code, or sizes of camera and display that differ */
+  CONFIG_BAD_SIZES,     /* an unused code, or sizes of a camera behind the decoder and of the display that differ */
   CONFIG_BAD_REGION,    /* region larger than the raster, or a side not a multiple of 4 */
   CONFIG_BAD_SHIFT,     /* unused code */
   CONFIG_BAD_KERNEL,
@@ -54,6 +56,7 @@ typedef enum config_result {
   CONFIG_BAD_FLOW,
   CONFIG_BAD_TABLES,  /* more than there is memory for */
   CONFIG_BAD_CAMERAS, /* more than this firmware serves */
+  CONFIG_BAD_DIGITAL, /* a size that no camera at the digital port has */
 #ifdef TIME_DIVISION
   CONFIG_BAD_DIVISION, /* several tables for a camera, or the serial flow */
 #endif

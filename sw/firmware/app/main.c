@@ -22,6 +22,12 @@ static void print_config(void) {
   uart_put_uint(config.width);
   uart_puts("x");
   uart_put_uint(config.height);
+  if (config.digital) {
+    uart_puts(" of a digital camera with ");
+    uart_put_uint(config.source_width);
+    uart_puts("x");
+    uart_put_uint(config.source_height);
+  }
   uart_puts(config.is_625 ? " in 625/50, " : " in 525/60, ");
   uart_puts(kMappings[config.view.mapping <= LENS_TABLE ? config.view.mapping : 0]);
   uart_puts(config.serial ? ", serial flow" : ", double buffering");
@@ -35,11 +41,12 @@ static void print_config(void) {
 }
 
 static void init_frames(uint32_t in_count) {
-  frame_stride =
-      (lens_black_offset(config.height, config.pitch_bytes) + CACHE_LINE_BYTES + 4095u) & ~4095u;
+  const uint32_t rows = config.height > config.source_height ? config.height : config.source_height;
+  frame_stride = (lens_black_offset(rows, config.pitch_bytes) + CACHE_LINE_BYTES + 4095u) & ~4095u;
+  if (in_count * frame_stride > sizeof frame_in) fail("look-up tables", "no memory for a frame of each");
   for (uint32_t n = 0; n < in_count; ++n) {
     uint8_t *black =
-        frame_in + n * frame_stride + lens_black_offset(config.height, config.pitch_bytes);
+        frame_in + n * frame_stride + lens_black_offset(config.source_height, config.pitch_bytes);
     for (uint32_t i = 0; i < CACHE_LINE_BYTES; i += 4) *(uint32_t *)(black + i) = LENS_BLACK_WORD;
   }
 }
@@ -57,8 +64,10 @@ int main(void) {
   overlay_start(config.overlay, config.self_patch, config.pitch_bytes);
 
   const uint32_t in_count = program_in_count(&config);
-  const uint32_t out_count = config.serial ? 2u : OUT_COUNT;
   init_frames(in_count);
+  /* Of frames with a longer pitch there is room for three: shown, next, and written. */
+  const uint32_t room = sizeof frame_out / frame_stride;
+  const uint32_t out_count = config.serial ? 2u : OUT_COUNT < room ? OUT_COUNT : room;
   program_build(&config);
   dcache_clean_all();
   fw_state.version = FW_STATE_VERSION;

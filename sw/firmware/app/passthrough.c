@@ -19,6 +19,8 @@ int main(void) {
   fw_state.dip = dip;
   const config_result_t result = config_read(&config, dip, (const param_page_t *)PARAM_PAGE_BASE);
   if (result != CONFIG_OK) fail("configuration", config_result_text(result));
+  if (config.source_width != config.width || config.source_height != config.height)
+    fail("configuration", "camera and display must have the same size");
   config.serial = 0;
   pipeline_prepare(&config);
   frame_stride =

@@ -23,7 +23,6 @@
 #ifdef CONSOLE
 #include "../drivers/uart_queue.h"
 #include "capture_check.h"
-#include "display_watch.h"
 #include "field_watch.h"
 #endif
 #ifdef COMPOSED_VIEW
@@ -48,6 +47,7 @@ static struct {
   uint32_t pitch_bytes;
   uint32_t field_ticks;
   int serial;
+  int progressive; /* the camera: each of its fields is a frame */
   int passthrough;
   int capturing;       /* the current frame is written to memory */
   int capture_wanted;  /* capture starts with the next frame */
@@ -69,8 +69,9 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
+#endif
+#ifdef TIME_DIVISION
   display_watch_t display_watch;
-  display_event_t display_event; /* that was not said yet */
 #endif
 #ifdef COMPOSED_VIEW
   int32_t kept[CAMERAS_MAX]; /* buffers of the newest frames; CAPTURE_NONE before the first one */
@@ -203,6 +204,21 @@ static void begin_frame(const signal_state_t *seen) {
     isif_watch();
 }
 
+/* A frame that is being captured is of no use, whether all of it has come (`pipe.complete`) or a part. What marks its
+ * buffer had are gone: capture goes on in another one that has them, if there is one. */
+static void leave_frame_out(void) {
+  if (pipe.complete)
+    capture_frame_useless(&pipe.capture);
+  else
+    capture_frame_broken(&pipe.capture);
+  fw_state.dropped = pipe.capture.dropped;
+#ifdef CONSOLE
+  if (!pipe.config->check_capture) return;
+  const int32_t next = capture_move_on(&pipe.capture);
+  if (next != CAPTURE_NONE && isif_set_address((uint32_t)in_buffer(next)) != ISIF_OK) fail("ISIF", "buffer address");
+#endif
+}
+
 /* Takes the frame over if the lock has held since its start. */
 static void end_frame(const signal_state_t *seen) {
   pipe.capturing = 0;
@@ -213,8 +229,7 @@ static void end_frame(const signal_state_t *seen) {
     turns_captured(&pipe.turns);
     return;
   }
-  if (pipe.complete) capture_frame_useless(&pipe.capture);
-  fw_state.dropped = pipe.capture.dropped;
+  leave_frame_out();
   if (good && irregular())
     turns_irregular(&pipe.turns);
   else
@@ -251,7 +266,7 @@ static void display_field_passed(void) {
   if (++pipe.quiet_fields < QUIET_FIELDS) return;
   pipe.quiet_fields = 0;
   isif_watch();
-  if (pipe.capturing && pipe.complete) capture_frame_useless(&pipe.capture);
+  if (pipe.capturing) leave_frame_out();
   pipe.capturing = pipe.complete = 0;
   watch_another();
   const signal_state_t seen = look();
@@ -263,7 +278,7 @@ static void display_field_passed(void) {
 /* VDINT0, after the last line of a field. Capture is started and stopped only here, after a second
  * field, so that frames are complete and begin with a first field. */
 static void capture_field_end(void) {
-  if (!isif_second_field()) return;
+  if (!pipe.progressive && !isif_second_field()) return;
   if (pipe.capturing) captured_frame_done();
   if (!pipe.capturing && pipe.capture_wanted) {
     pipe.capture_wanted = 0;
@@ -276,10 +291,7 @@ static void capture_field_end(void) {
 static void display_field_start(void) {
 #ifdef TIME_DIVISION
   display_field_passed();
-#endif
-#ifdef CONSOLE
-  const display_event_t seen = display_watch_field(&pipe.display_watch, display_take_late());
-  if (seen != DISPLAY_NOTHING) pipe.display_event = seen;
+  display_watch_field(&pipe.display_watch, display_take_late());
 #endif
   pipe.in_second_field = display_second_field();
   if (pipe.in_second_field) {
@@ -320,6 +332,7 @@ void irq_dispatch(void) {
 void pipeline_prepare(const config_t *config) {
   vpss_init(config->vpss_clk_ctrl);
   priority_set(config->priority);
+  if (config->digital) return;
   i2c_init();
   uint32_t id;
   switch (tvp5146_start(config->is_625, &id)) {
@@ -357,6 +370,19 @@ static void sleep_between_looks(void) { (void)sleep_at_most(LOCK_POLL_TICKS); }
 static void wait_for_frame_end(void) {
   isif_watch();
   intc_enable(IRQ_VPSSINT0, 2);
+#ifndef TIME_DIVISION
+  /* The time between two frames is that of the camera's clock, which nobody tells. */
+  uint32_t before = 0, frames = 0;
+  while (pipe.progressive && sleep_at_most(LOCK_TIMEOUT_TICKS) == IRQ_VPSSINT0) {
+    intc_acknowledge(IRQ_VPSSINT0);
+    const uint32_t now = timer_ticks();
+    if (++frames == 2) {
+      (void)sleep_at_most(now - before - DISPLAY_LEAD_TICKS);
+      return;
+    }
+    before = now;
+  }
+#endif
   while (sleep_at_most(2u * pipe.field_ticks) == IRQ_VPSSINT0) {
     intc_acknowledge(IRQ_VPSSINT0);
     if (!isif_second_field()) {
@@ -369,6 +395,7 @@ static void wait_for_frame_end(void) {
 void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_count) {
   pipe.pitch_bytes = config->pitch_bytes;
   pipe.serial = config->serial;
+  pipe.progressive = config->digital;
   pipe.passthrough = out_count == 0;
   pipe.field_ticks = config->is_625 ? 480000u : 400400u; /* 24 MHz / (50, 60000/1001) */
   pipe.sources = config->sources;
@@ -378,8 +405,8 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 
   const display_mode_t mode = {config->is_625, config->left,   config->top,
                                config->width,  config->height, config->pitch_bytes};
-  const isif_window_t window = {config->left, config->top, config->width, config->height,
-                                config->pitch_bytes};
+  const isif_window_t window = {config->source_left,   config->source_top,  config->source_width,
+                                config->source_height, config->pitch_bytes, config->digital};
   if (isif_configure(&window) != ISIF_OK) fail("ISIF", "window");
 #ifdef TIME_DIVISION
 #ifdef COMPOSED_VIEW
@@ -404,7 +431,7 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   /* The display's frames begin where they will: nothing is known of the camera's yet. */
   if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 #endif
-  if (tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
+  if (!config->digital && tvp5146_wait_lock(LOCK_TIMEOUT_TICKS, sleep_between_looks) != I2C_OK)
     uart_puts("decoder: no lock, going on\n");
 #ifdef CONSOLE
   if (config->display_free) {
@@ -481,12 +508,16 @@ int pipeline_whole(void) {
   return 0;
 }
 
-const char *pipeline_display_event(void) {
-  const uint32_t cpsr = irq_mask();
-  const display_event_t event = pipe.display_event;
-  pipe.display_event = DISPLAY_NOTHING;
+void pipeline_mark_free(void) {
+  if (!pipe.config->check_capture) return;
+  uint32_t cpsr = irq_mask();
+  const int32_t buffer = capture_take_reused(&pipe.capture);
   irq_restore(cpsr);
-  return event == DISPLAY_NOTHING ? NULL : display_event_text(event);
+  if (buffer == CAPTURE_NONE) return;
+  mark_buffer(buffer);
+  cpsr = irq_mask();
+  capture_release(&pipe.capture, buffer);
+  irq_restore(cpsr);
 }
 
 int pipeline_frame_waits(void) { return pipe.capture.ready != CAPTURE_NONE; }
@@ -507,6 +538,14 @@ const char *pipeline_state(uint32_t camera) {
 #endif
 
 #ifdef TIME_DIVISION
+display_event_t pipeline_display_event(uint32_t *late_fields) {
+  const uint32_t cpsr = irq_mask();
+  const display_event_t event = display_watch_take(&pipe.display_watch);
+  *late_fields = pipe.display_watch.late_fields;
+  irq_restore(cpsr);
+  return event;
+}
+
 uint32_t pipeline_camera(void) { return pipe.taken_camera; }
 
 int pipeline_event(uint32_t *camera, const char **what) {
@@ -522,12 +561,14 @@ int pipeline_event(uint32_t *camera, const char **what) {
 const uint8_t *pipeline_source(uint32_t age) { return in_buffer(held_of_age(&pipe.held, age)); }
 
 void pipeline_done(int good) {
-#ifdef CONSOLE
-  if (pipe.config->check_capture) mark_buffer(held_of_age(&pipe.held, 0));
-#endif
-  const uint32_t cpsr = irq_mask();
+  uint32_t cpsr = irq_mask();
 #ifndef COMPOSED_VIEW
-  capture_release(&pipe.capture, held_drop(&pipe.held));
+  const int32_t source = held_drop(&pipe.held);
+#ifdef CONSOLE
+  const int marked = pipe.config->check_capture;
+  if (!marked)
+#endif
+    capture_release(&pipe.capture, source);
 #endif
   if (good)
     output_queue(&pipe.output, pipe.taken_out, pipe.taken_sequence);
@@ -539,6 +580,14 @@ void pipeline_done(int good) {
       timer_ticks() - pipe.second_field_start < pipe.field_ticks - FLIP_MARGIN_TICKS)
     flip();
   irq_restore(cpsr);
+#ifdef CONSOLE
+  /* The result waits for nobody; its source is marked before the camera gets it. */
+  if (!marked) return;
+  mark_buffer(source);
+  cpsr = irq_mask();
+  capture_release(&pipe.capture, source);
+  irq_restore(cpsr);
+#endif
 }
 
 uint32_t pipeline_last_sequence(void) { return pipe.taken_sequence; }

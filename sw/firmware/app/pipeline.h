@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "config.h"
+#include "display_watch.h"
 
 /** Starts video clocks and decoder, with messages on the UART. A decoder that does not answer is
  * reported and otherwise ignored. To be called early, since the decoder needs time to lock. */
@@ -41,6 +42,10 @@ uint32_t pipeline_camera(void);
 const uint8_t *const *pipeline_kept(void);
 #endif
 
+/** What is to be said of the display, oldest first; DISPLAY_NOTHING if there is nothing.
+ * @param late_fields receives how many fields lacked data since the start */
+display_event_t pipeline_display_event(uint32_t *late_fields);
+
 /** What is to be said of a camera, oldest first. @return 0 if there is nothing more */
 int pipeline_event(uint32_t *camera, const char **what);
 #endif
@@ -51,8 +56,8 @@ int pipeline_event(uint32_t *camera, const char **what);
  * @return 1 if the frame is to be corrected; 0 if pipeline_done() must not be called for it */
 int pipeline_whole(void);
 
-/** What is to be said of the display. @return a null pointer if there is nothing */
-const char *pipeline_display_event(void);
+/** Marks a buffer that the camera may get next and whose marks are gone, if the page asks for marks. */
+void pipeline_mark_free(void);
 
 /** Whether a captured frame waits for pipeline_take(). With interrupts masked. */
 int pipeline_frame_waits(void);

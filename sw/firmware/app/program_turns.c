@@ -21,7 +21,8 @@ void program_print(const config_t *config) {
   uart_puts(" cameras in turn");
 }
 
-uint32_t program_in_count(const config_t *config) { return config->sources + 2u; }
+/* Of frames that are checked one buffer more, so that one with marks is free after a frame of no use. */
+uint32_t program_in_count(const config_t *config) { return config->sources + 2u + (config->check_capture ? 1u : 0u); }
 
 void program_build(const config_t *config) {
   repeats = config->repeats;
@@ -33,12 +34,7 @@ void program_started(const config_t *config) { choices_start(config, views); }
 
 void program_work(void) {
   camera_events_say();
-  const char *what = pipeline_display_event();
-  if (what != NULL) {
-    uart_puts("display: ");
-    uart_puts(what);
-    uart_puts("\n");
-  }
+  pipeline_mark_free();
   choices_work();
 }
 

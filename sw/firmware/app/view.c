@@ -20,10 +20,20 @@ void view_configure(const config_t *used) { config = used; }
 remap_table_t view_table(uint32_t *entries, const lens_view_t *view) {
   return (remap_table_t){.width = config->width,
                          .height = config->height,
+                         .source_width = config->source_width,
+                         .source_height = config->source_height,
                          .pitch_bytes = config->pitch_bytes,
                          .lut = entries,
                          .view = view,
                          .has_engine = config->has_engine};
+}
+
+/* Time of the build that is in progress. A frame that came between the two reads would be in one of them alone. */
+static uint32_t own_ticks(void) {
+  const uint32_t cpsr = irq_mask();
+  const uint32_t ticks = timer_ticks() - view_other_ticks;
+  irq_restore(cpsr);
+  return ticks;
 }
 
 /* In fixed point if the page wants that and the lens allows it. */
@@ -44,13 +54,15 @@ static void fill_lut(const lens_t *lens, uint32_t *entries) {
 
 void view_build_lut(const lens_view_t *view, uint32_t *entries, int marked) {
   lens_t lens;
-  const lens_result_t result = lens_init(&lens, view, config->width, config->height);
+  const lens_result_t result =
+      lens_init_sizes(&lens, view, (lens_size_t){config->source_width, config->source_height},
+                      (lens_size_t){config->width, config->height});
   if (result != LENS_OK) fail("lens", lens_result_text(result));
   if (marked) phase_mark(PHASE_LUT, 0);
-  const uint32_t start = timer_ticks() - view_other_ticks;
+  const uint32_t start = own_ticks();
   fill_lut(&lens, entries);
-  const uint32_t ticks = timer_ticks() - view_other_ticks - start;
-  fw_state.lut_time_ticks += ticks;
+  const uint32_t ticks = own_ticks() - start;
+  if (marked) fw_state.lut_time_ticks += ticks; /* of the start */
   if (marked) phase_mark(PHASE_IDLE, 0);
   fw_state.lut_entries = lens_lut_entries(config->width, config->height);
   uart_puts("LUT: ");
@@ -61,7 +73,7 @@ void view_build_lut(const lens_view_t *view, uint32_t *entries, int marked) {
 }
 
 void view_prepare_method(struct view *view, arena_t *arena) {
-  const uint32_t start = timer_ticks() - view_other_ticks;
+  const uint32_t start = own_ticks();
   view->method = remapper_prepare(config->kernel, &view->table, arena);
   uart_puts("kernel: ");
   uart_puts(view->method->name);
@@ -70,7 +82,7 @@ void view_prepare_method(struct view *view, arena_t *arena) {
   uart_puts(" bytes of tables");
   if (view->table.encoded != NULL) {
     uart_puts(" in ");
-    uart_put_uint((timer_ticks() - view_other_ticks - start) / TIMER_TICKS_PER_MS);
+    uart_put_uint((own_ticks() - start) / TIMER_TICKS_PER_MS);
     uart_puts(" ms");
   }
   uart_puts("\n");
@@ -86,7 +98,7 @@ static uint32_t first_row_sum(const remap_table_t *table, const uint8_t *in) {
 }
 
 void view_correct(const struct view *view, const uint8_t *in, uint8_t *out, uint32_t sequence) {
-  const uint32_t bytes = view->table.height * view->table.pitch_bytes;
+  const uint32_t bytes = view->table.source_height * view->table.pitch_bytes;
   phase_mark(PHASE_REMAP_START, sequence);
 #ifndef OMIT_D_INVALIDATE
   dcache_invalidate_range(in, bytes);
@@ -101,7 +113,7 @@ void view_correct(const struct view *view, const uint8_t *in, uint8_t *out, uint
   if (first_row_sum(&view->table, in) != before) ++fw_state.torn;
   overlay_frame(out, sequence);
 #ifndef OMIT_D_CLEAN
-  dcache_clean_range(out, bytes);
+  dcache_clean_range(out, view->table.height * view->table.pitch_bytes);
 #endif
   write_buffer_drain();
   phase_mark(PHASE_REMAP_END, sequence);

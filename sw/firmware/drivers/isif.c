@@ -9,18 +9,18 @@ isif_result_t isif_configure(const isif_window_t *w) {
     return ISIF_BAD_WINDOW;
   mmio_write32(ISIF_SYNCEN, 0);
   mmio_write32(ISIF_REC656IF, 3); /* embedded syncs, with error correction */
-  mmio_write32(ISIF_MODESET, MODESET_INPUT_YC8 | MODESET_INTERLACED | MODESET_VD_NEGATIVE);
+  mmio_write32(ISIF_MODESET, MODESET_INPUT_YC8 | MODESET_VD_NEGATIVE | (w->progressive ? 0u : MODESET_INTERLACED));
   mmio_write32(ISIF_CCDCFG, CCDCFG_PACK8 | CCDCFG_YC_IN_SWAP | CCDCFG_Y8POS);
   mmio_write32(ISIF_CULH, 0xFFFF);
   mmio_write32(ISIF_CULV, 0xFF);
   mmio_write32(ISIF_SPH, w->left * 2u);
   mmio_write32(ISIF_LNH, w->width * 2u - 1u);
-  mmio_write32(ISIF_SLV0, w->top / 2u + 1u);
-  mmio_write32(ISIF_SLV1, w->top / 2u + 1u);
-  mmio_write32(ISIF_LNV, w->height / 2u - 1u);
+  mmio_write32(ISIF_SLV0, isif_first_line(w));
+  mmio_write32(ISIF_SLV1, isif_first_line(w));
+  mmio_write32(ISIF_LNV, isif_field_lines(w) - 1u);
   mmio_write32(ISIF_VDINT0, isif_end_of_field_line(w));
   mmio_write32(ISIF_HSIZE, w->pitch_bytes / 32u);
-  mmio_write32(ISIF_SDOFST, SDOFST_WEAVE);
+  mmio_write32(ISIF_SDOFST, w->progressive ? 0u : SDOFST_WEAVE); /* 0: each line behind the one before */
   return ISIF_OK;
 }
 

@@ -1,4 +1,5 @@
-/* BT.656 capture by the ISIF: both fields are interleaved into one UYVY frame. */
+/* Capture by the ISIF, with the timing codes of BT.656: both fields of an interlaced camera are interleaved into
+ * one UYVY frame; a progressive one has a field for each frame. */
 #ifndef FOVEA_FIRMWARE_ISIF_H
 #define FOVEA_FIRMWARE_ISIF_H
 
@@ -11,7 +12,17 @@ typedef struct isif_window {
   uint32_t left, top;     /* pixels, lines of the frame; top even */
   uint32_t width, height; /* pixels, lines of the frame; both even */
   uint32_t pitch_bytes;   /* multiple of 32 */
+  int progressive;
 } isif_window_t;
+
+/** Lines of the window in each field. */
+static inline uint32_t isif_field_lines(const isif_window_t *w) {
+  return w->progressive ? w->height : w->height / 2u;
+}
+/** The line of a field at which the window begins, counted from the first one that is not blanked. */
+static inline uint32_t isif_first_line(const isif_window_t *w) {
+  return (w->progressive ? w->top : w->top / 2u) + 1u;
+}
 
 typedef enum isif_result { ISIF_OK = 0, ISIF_BAD_WINDOW, ISIF_BAD_ADDRESS } isif_result_t;
 
@@ -23,7 +34,7 @@ static inline uint32_t isif_pitch(uint32_t width) { return (width * 2u + 31u) & 
  * the interrupt comes two lines after the last captured line, when its last burst has been issued.
  */
 static inline uint32_t isif_end_of_field_line(const isif_window_t *w) {
-  return w->top / 2u + 1u + w->height / 2u + 1u;
+  return isif_first_line(w) + isif_field_lines(w) + 1u;
 }
 
 /** Programs the window; capture stays off. Nothing is written if the window is refused. */

@@ -5,7 +5,7 @@
 const char *encoded_prepare(remap_table_t *table, arena_t *arena, remap_encode_t *encode,
                             const uint8_t *widest) {
   const remap_picture_t picture = {table->width / 2u, table->height, table->pitch_bytes,
-                                   table->lut};
+                                   table->lut, table->source_height};
   const char *refusal = kRemapNoMemory;
   for (; *widest != 0; ++widest) {
     arena_t trial = *arena;

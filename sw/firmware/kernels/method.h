@@ -7,12 +7,13 @@
 #include "arena.h"
 #include "model/contract/param_page.h"
 
-/** The table of one view. Source and result have the same size and pitch. */
+/** The table of one view. Source and result have the same pitch. */
 typedef struct remap_table {
-  uint32_t width, height; /* pixels; multiples of 4 */
+  uint32_t width, height; /* of the result, pixels; width a multiple of 4, height even */
+  uint32_t source_width, source_height;
   uint32_t pitch_bytes;   /* of source and result; a multiple of 32 */
   const uint32_t *lut;    /* width / 2 * height byte offsets from the start of the source, row by row;
-                             height * pitch_bytes is the offset of the black word. Once there is an
+                             source_height * pitch_bytes is that of the black word. Once there is an
                              `encoded` form, perhaps only the first row. */
   const lens_view_t *view; /* what `lut` is made of */
   int has_engine;          /* the chip has the remap engine */
@@ -20,6 +21,12 @@ typedef struct remap_table {
   const void *encoded;    /* the method's own form of the table; a null pointer if it reads `lut` */
   uint32_t encoded_bytes; /* number of bytes of tables that are read for each frame */
 } remap_table_t;
+
+/* Why methods that know one size alone refuse a table. */
+#define REMAP_TWO_SIZES "camera and display have different sizes"
+static inline int remap_two_sizes(const remap_table_t *table) {
+  return table->source_width != table->width || table->source_height != table->height;
+}
 
 typedef struct remap_method {
   const char *name; /* for messages: the word of the parameter page */

@@ -12,6 +12,7 @@ static const edma_codes_t kCodes = {FIRST_CHANNEL, 1, (1u << EDMA_QUEUES) - 1u};
 
 static const char *prepare(remap_table_t *table, arena_t *arena) {
   (void)arena;
+  if (remap_two_sizes(table)) return REMAP_TWO_SIZES;
   if (table->height < EDMA_QUEUES) return "fewer than 4 rows";
   if (table->pitch_bytes > 0x7FFFu) return "a row is beyond an index of 16 bits";
   table->encoded_bytes = 0;

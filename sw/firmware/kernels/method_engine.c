@@ -11,6 +11,8 @@
 static remap_engine_job_t *begin(const remap_table_t *table, arena_t *arena, const char **refusal) {
   *refusal = "the chip has no remap engine";
   if (!table->has_engine) return NULL;
+  *refusal = REMAP_TWO_SIZES;
+  if (remap_two_sizes(table)) return NULL;
   if (!engine_jobs_open()) return NULL;
   *refusal = "no memory";
   return arena_take(arena, sizeof(remap_engine_job_t), CACHE_LINE_BYTES);

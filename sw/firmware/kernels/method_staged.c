@@ -77,7 +77,8 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   if (staged == NULL) return kRemapNoMemory;
   tile_table_t *tiles = &staged->tiles;
   *tiles =
-      (tile_table_t){.picture = {table->width / 2u, table->height, table->pitch_bytes, table->lut}};
+      (tile_table_t){.picture = {table->width / 2u, table->height, table->pitch_bytes, table->lut,
+                                 table->source_height}};
   /* Codes are addresses of 16 bits: those of the instruction side, which data can be read at as
    * well. */
   for (uint32_t b = 0; b < TILE_BANKS; ++b) {

@@ -56,7 +56,12 @@ static void make_picture(remap_table_t *table) {
   }
   for (uint32_t i = 0; i < black / 4u; ++i) source[i] = random_below(0xFFFFFFFFu);
   source[black / 4u] = LENS_BLACK_WORD;
-  *table = (remap_table_t){.width = 2u * pairs, .height = rows, .pitch_bytes = pitch, .lut = lut};
+  *table = (remap_table_t){.width = 2u * pairs,
+                           .height = rows,
+                           .source_width = 2u * pairs,
+                           .source_height = rows,
+                           .pitch_bytes = pitch,
+                           .lut = lut};
 }
 
 static int right(const remap_table_t *table, const char *name, int whole_groups) {
