@@ -112,10 +112,7 @@ struct VideoParams : ParamGroup {
   IntParam clock{*this, "clock", U::kHertz, 0, 0, 108'000'000,
                  "byte clock of a camera at the digital port, two periods a pixel; 0: 27 MHz with 640x480 "
                  "(858 x 525 pixels, 29.97 frames/s), 33.1584 MHz with 800x600 (1056 x 628, 25 frames/s)",
-                 Origin::kAssumed,
-                 "a sensor's registers choose its clock; four times that of BT.656 is more than a sensor of this size "
-                 "sends",
-                 {"12MHz", "96MHz", "10 frames/s of 640x480 to 60 of 800x600, about"}};
+                 Origin::kChoice, "a sensor's registers choose its clock"};
   /// The byte clock of the camera at the digital port.
   Frequency digital_clock() const {
     return clock() ? Frequency(static_cast<std::uint64_t>(clock())) : format().digital->clock;

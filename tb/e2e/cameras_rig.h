@@ -25,6 +25,7 @@ class CamerasRig {
       unsigned camera, number;
     };
     std::optional<Stamp> stamp;
+    unsigned underflows = 0;
   };
 
   CamerasRig();

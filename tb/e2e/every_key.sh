@@ -263,6 +263,8 @@ acts tvp5146.relock_fields 11
 acts tvp5146.rom_version 1 PROGRAM
 acts tvp5146.standard 625/50 video.standard=ntsc
 acts uart0.input typed.txt PROGRAM
+acts video.clock 30MHz video.standard=vga_progressive
+idle video.clock 30MHz
 acts video.height 24
 acts video.standard ntsc
 acts video.width 64

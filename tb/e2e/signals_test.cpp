@@ -186,7 +186,14 @@ TEST(SignalsTest, LateDataOfTheDisplayAreSaidAndItGoesOn) {
   CamerasRig rig;
   set_storm(rig, "0", "7");
   rig.set("run.frames", "48");
+  Picoseconds late_at = 0;
+  std::string line;
+  rig.build().on_uart = [&](std::uint8_t byte) {
+    line = byte == '\n' ? "" : line + static_cast<char>(byte);
+    if (!late_at && line.find("parts of lines are black") != std::string::npos) late_at = kernel_time();
+  };
   rig.run(kLimit);
+  rig.board().on_uart = nullptr;
   ASSERT_EQ(rig.shown().size(), 48u) << rig.board().uart_text();
   const std::string& text = rig.board().uart_text();
   const auto late = text.find("display: data come too late, parts of lines are black");
@@ -194,10 +201,56 @@ TEST(SignalsTest, LateDataOfTheDisplayAreSaidAndItGoesOn) {
   ASSERT_NE(late, std::string::npos) << text;
   ASSERT_NE(fine, std::string::npos) << text;
   EXPECT_LT(late, fine);
+  // Each field with late data is counted in the firmware, of those in which an underflow was.
+  const unsigned fields = static_cast<unsigned>(std::stoul(text.substr(text.find("late data: ", fine) + 11)));
+  EXPECT_GE(fields, 1u);
+  EXPECT_LE(fields, (kEnd - kStart) / 20 + 2);
+  unsigned underflows = 0;
+  for (const Shown& s : rig.shown()) underflows += s.underflows;
+  EXPECT_GT(underflows, 0u);
+  ASSERT_GT(late_at, kStart * kPsPerMs);
+  EXPECT_LE(late_at, (kStart + 40 + 6) * kPsPerMs) << "two fields, and the line";
   EXPECT_EQ(text.find("display: ", fine + 1), std::string::npos);
   EXPECT_EQ(rig.said(), Lines{});
   EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
   EXPECT_TRUE(rig.board().resets().empty());
+}
+
+// Each useless frame takes the marks of its buffer: the other camera's next one is filled into another buffer.
+TEST(SignalsTest, ACheckedCameraWithAFaultCostsTheOtherOneNoFrame) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "24").set("firmware.check_capture", "true");
+  rig.set("fault.kind", "sync_noise").set("fault.wrong_bits", "2").set("fault.every", "3").set("fault.start", "400ms");
+  rig.set("fault.end", "3s");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 24u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(rig.said(), Lines{std::string("camera 0: ") + kIrregular});
+  std::vector<unsigned> of_one;
+  for (const Shown::Stamp& s : sequence(rig))
+    if (s.camera == 1) of_one.push_back(s.number);
+  ASSERT_GE(of_one.size(), 10u);
+  for (std::size_t i = 1; i < of_one.size(); ++i) EXPECT_EQ(of_one[i], of_one[i - 1] + 2) << "every other frame";
+  EXPECT_EQ(rig.board().camera_stats()[1].dropped, 0u);
+}
+
+// The lines that camera 1 has left out make it early. Genlocked, it begins with the others again when the fault is
+// over; without that its frames, and each change to it, stay irregular.
+TEST(SignalsTest, AGenlockedCameraThatLeftLinesOutIsInStepAgain) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "24").set("fault.kind", "missing_lines");
+  rig.set("fault.lines", "4").set("fault.camera", "1").set("fault.start", "300ms").set("fault.end", "450ms");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 24u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  const auto shown = sequence(rig);
+  ASSERT_GE(shown.size(), 10u);
+  for (std::size_t i = shown.size() - 8; i < shown.size(); ++i) {
+    EXPECT_EQ(shown[i].camera, 1 - shown[i - 1].camera) << i;
+    EXPECT_EQ(shown[i].number, shown[i - 1].number + 1) << i << ": in step, a frame each";
+  }
 }
 
 /// Types on the console what the dialogue says.

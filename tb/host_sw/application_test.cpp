@@ -132,8 +132,10 @@ TEST(CaptureTest, ABufferThatIsFilledAnewWithoutHavingBeenTakenIsKnown) {
   capture_init(&c, 3);
   EXPECT_EQ(capture_frame_done(&c), 1);
   EXPECT_EQ(c.reused, 0u);
-  EXPECT_EQ(capture_frame_done(&c), 0) << "the frame in buffer 0 is replaced";
+  EXPECT_EQ(capture_frame_done(&c), 2) << "the frame in buffer 0 is replaced, and 2 is free without that";
   EXPECT_EQ(c.reused, 1u << 0);
+  EXPECT_EQ(capture_frame_done(&c), 0) << "no other one is free";
+  EXPECT_EQ(c.reused, 1u << 0 | 1u << 1);
   c.reused = 0;
   capture_frame_useless(&c);
   EXPECT_EQ(c.reused, 1u << 0) << "the one that is filled";

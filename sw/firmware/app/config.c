@@ -13,7 +13,6 @@ static const struct {
 
 /* What is captured: the displayed region, or all of a camera at the digital port. */
 static config_result_t read_source(config_t *c) {
-  const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
   c->source_left = c->left;
   c->source_top = c->top;
   c->source_width = c->width;
@@ -23,6 +22,7 @@ static config_result_t read_source(config_t *c) {
 #ifdef TIME_DIVISION
   return CONFIG_BAD_DIGITAL;
 #else
+  const uint32_t size = SWITCH_GET(c->dip, SWITCH_SIZE_IN);
   if (size != SWITCH_640X480 && size != SWITCH_800X600) return CONFIG_BAD_DIGITAL;
   c->source_left = c->source_top = 0;
   c->source_width = kSizes[size].width;
