@@ -16,7 +16,7 @@ run off
 run on --profile
 run strict --profile --sync=strict
 run copy --profile -s firmware.kernel=copy
-run gather --profile -s firmware.kernel=gather -s video.width=320
+run gather --profile -s firmware.kernel=gather -s video.width=320 -s firmware.repeat=32
 cmp "$out/off/stats.json" "$out/on/stats.json"
 for file in stats.json frames.csv timeline.csv stalls.csv uart.log; do cmp "$out/off/$file" "$out/on/$file"; done
 for file in profile.csv profile.folded profile.callgrind profile.txt interrupts.csv frame_parts.csv functions.csv; do
@@ -89,7 +89,7 @@ assert any(";remap_plain " in line for line in folded), folded
 assert any(r["phase"] == "lut" and r["function"].startswith("__") for r in rows), "libgcc's functions"
 stats, rows, folded = check("copy")
 assert stats["cpu.idle.dma"] > 0, "the kernel waits for the EDMA"
-# A long transfer, in the midst of which the display's interrupts come: no idle time.
+# Remaps in a row, in the midst of which the interrupts of camera and display come: no idle time.
 stats, rows, folded = check("gather")
 cut = sum(stats["cpu.remap.idle." + event] for event in ("capture", "display"))
 assert 0 < cut < stats["cpu.remap.idle"], (cut, stats["cpu.remap.idle"])
