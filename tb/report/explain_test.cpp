@@ -191,7 +191,7 @@ TEST_F(ExplainTest, AnotherLargestWaitIsFound) {
 }
 
 TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
-  functions_ = {{"remap", 750, {{"issue", 250}, {"dcache", 500}}},
+  functions_ = {{"remap", 1350, {{"issue", 250}, {"dcache", 500}, {"wait.dma", 600}}},
                 {"main", 750, {{"idle.capture", 400}, {"wait.dma", 100}, {"issue", 250}}}};
   EXPECT_EQ(text("function"),
             "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "

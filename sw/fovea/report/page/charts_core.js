@@ -115,10 +115,9 @@ function drawFlame(place, run) {
         w > 12 ? undefined : element('title', {}, `${node.name}: ${plain(node.clocks, 9)} clocks, ${percent(node.clocks / root.clocks)}`),
         element('rect', {x, y: row * step, width: w, height: step - 1, class: 'edge', fill: inPath ? 'var(--c9)' : `var(--c${[0, 4, 2, 3, 6][row % 5]})`, 'fill-opacity': 0.55}));
       const letters = Math.floor((w - 8) / 6.6);
-      // A shortened name is for the eye alone: the box has the whole name for everybody else.
-      const whole = node.name.length <= letters;
-      if (letters > 2)
-        g.append(text(x + 4, row * step + 15, whole ? node.name : `${node.name.slice(0, letters - 1)}\u2026`, whole ? {} : {'aria-hidden': 'true'}));
+      // Beside the box, not in it: a shortened name is for the eye alone, and the box has its whole name.
+      const shown = node.name.length > letters ? `${node.name.slice(0, letters - 1)}\u2026` : node.name;
+      const label = letters > 2 ? text(x + 4, row * step + 15, shown, {'aria-hidden': 'true', 'pointer-events': 'none'}) : undefined;
       const choose = () => { path = chain; tell(node); show(true); };
       g.addEventListener('click', choose);
       g.addEventListener('pointerenter', () => tell(node));
@@ -128,6 +127,7 @@ function drawFlame(place, run) {
         if (event.key === 'Escape') { path = [root]; show(true); }
       });
       svg.append(g);
+      if (label) svg.append(label);
       const next = path[chain.length];
       if (next) { box(next, 0, width, row + 1, [...chain, next]); return; }
       let from = x;
