@@ -95,7 +95,8 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
                                                  : note);
   }
   const EnumParam& own = params.camera_rows.at(camera).wire.standard;
-  const unsigned height = !own.user_set()      ? params.raster_height()
+  const unsigned height = !own.user_set() || params.video.format().digital
+                              ? params.raster_height()
                           : own.is("625/50") ? 576
                                                : 480;
   if (setup.scene->kind.is("car_park")) return car_park(params, *setup.scene, camera, height);
@@ -178,7 +179,6 @@ void check_digital(const board::BoardParams& params) {
   const auto& fw = params.firmware;
   only(params.cameras.count, params.camera_count() == 1, "1");
   only(params.fault.kind, params.fault.kind.is("none"), "none");
-  only(params.camera_rows[0].wire.standard, !params.camera_rows[0].wire.standard.user_set(), "not to be set");
   only(fw.view, fw.view.is("single"), "single");
   only(fw.program, fw.program.is("auto") || fw.program.is("one_camera"), "auto or one_camera");
   only(fw.display_phase, fw.display_phase.is("locked"), "locked");

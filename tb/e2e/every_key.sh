@@ -126,11 +126,17 @@ idle camera.0.mount.y 2m
 acts camera.0.mount.yaw 40deg cameras.count=4 firmware.view=birds_eye
 idle camera.0.mount.yaw 40deg
 acts camera.0.input vi_4_a
+idle camera.0.input vi_4_a video.standard=vga_progressive EARLY
 acts camera.0.connected false
+idle camera.0.connected false video.standard=vga_progressive EARLY
 acts camera.0.genlocked false camera.0.phase=7ms
+idle camera.0.genlocked false video.standard=vga_progressive EARLY
 acts camera.0.phase 7ms camera.0.genlocked=false
+idle camera.0.phase 7ms video.standard=vga_progressive EARLY
 acts camera.0.clock_offset 500ppm camera.0.genlocked=false
+idle camera.0.clock_offset 500ppm video.standard=vga_progressive EARLY
 tested camera.0.standard e2e.cameras
+idle camera.0.standard 525/60 video.standard=vga_progressive EARLY
 tested cameras.count e2e.cameras
 tested cameras.genlocked e2e.cameras
 idle cameras.genlocked false
@@ -257,11 +263,16 @@ acts system.vtp_time 3us EARLY
 acts tvp5146.crop_525 studio video.standard=ntsc
 idle tvp5146.crop_525 studio
 fails tvp5146.i2c_address 92
+idle tvp5146.i2c_address 92 video.standard=vga_progressive EARLY
 acts tvp5146.output_at_reset true PROGRAM
+idle tvp5146.output_at_reset true video.standard=vga_progressive EARLY
 acts tvp5146.phase 1ms
 acts tvp5146.relock_fields 11
+idle tvp5146.relock_fields 11 video.standard=vga_progressive EARLY
 acts tvp5146.rom_version 1 PROGRAM
+idle tvp5146.rom_version 1 video.standard=vga_progressive EARLY
 acts tvp5146.standard 625/50 video.standard=ntsc
+idle tvp5146.standard 625/50 video.standard=vga_progressive EARLY
 acts uart0.input typed.txt PROGRAM
 acts video.clock 30MHz video.standard=vga_progressive
 idle video.clock 30MHz

@@ -129,7 +129,7 @@ int sc_main(int argc, char** argv) {
   Chart other(k480p);
   try {
     DigitalCamera wrong("wrong", k600p, other, 0);
-  } catch (const UserError&) {
+  } catch (const fovea::UserError&) {
     refused_other_size = true;
   }
   bench[0] = new Bench("vga", k480p);
