@@ -8,11 +8,7 @@ namespace fovea::rtl {
 
 AddrgenBench::AddrgenBench(std::uint32_t seed)
     : dut_(std::make_unique<Vbench_top>()), random_(seed) {
-  dut_->rst_ni = 0;
-  clock();
-  clock();
-  dut_->rst_ni = 1;
-  clock();
+  reset();
 }
 
 AddrgenBench::~AddrgenBench() { keep_coverage(); }
@@ -22,6 +18,17 @@ void AddrgenBench::clock() {
   dut_->eval();
   dut_->clk_i = 0;
   dut_->eval();
+}
+
+/// Asserted between two clock edges.
+void AddrgenBench::reset() {
+  dut_->rst_ni = 0;
+  dut_->eval();
+  if (dut_->ag_busy_o || dut_->ag_beat_valid_o) throw std::runtime_error("busy in reset");
+  clock();
+  clock();
+  dut_->rst_ni = 1;
+  clock();
 }
 
 void AddrgenBench::clear() {
@@ -75,7 +82,7 @@ Beat AddrgenBench::beat() const {
 }
 
 Outcome AddrgenBench::run(const Job& job, std::span<const std::uint32_t> map, Pace pace,
-                          std::size_t limit) {
+                          std::size_t limit, End end) {
   Vbench_top& d = *dut_;
   Outcome out;
   offer(job);
@@ -83,7 +90,7 @@ Outcome AddrgenBench::run(const Job& job, std::span<const std::uint32_t> map, Pa
   Beat before;
   for (unsigned idle = 0; idle < 10'000; ++idle) {
     if (out.beats.size() == limit) {
-      clear();
+      end == End::kReset ? reset() : clear();
       return out;
     }
     // A word that was offered stays on offer, as the rule of the handshake says. Behind the last

@@ -28,10 +28,11 @@ class AddrgenBench {
  public:
   explicit AddrgenBench(std::uint32_t seed = 1);
   ~AddrgenBench();
-  /// Runs a job to its last beat, or abandons it with clear_i after `limit` beats.
+  enum class End { kClear, kReset };
+  /// Runs a job to its last beat, or abandons it with clear_i, or the reset, after `limit` beats.
   /// @throws std::runtime_error if a stalled beat changes or nothing happens for 10,000 clocks
   Outcome run(const Job& job, std::span<const std::uint32_t> map, Pace pace = {},
-              std::size_t limit = ~std::size_t{0});
+              std::size_t limit = ~std::size_t{0}, End end = End::kClear);
   /// Offers a job and says whether it was refused.
   bool refused(const Job& job);
 
@@ -39,6 +40,7 @@ class AddrgenBench {
   void offer(const Job& job);
   void clock();
   void clear();
+  void reset();
   Beat beat() const;
   std::unique_ptr<Vbench_top> dut_;
   std::mt19937 random_;

@@ -7,7 +7,7 @@
 
 #include "tb/rtl/addrgen_bench.h"
 #include "tb/rtl/lens_maps.h"
-#include "tb/rtl/random_jobs.h"
+#include "tb/rtl/wide_jobs.h"
 
 namespace fovea::rtl {
 
@@ -66,6 +66,77 @@ TEST(AddrgenTest, RandomJobsEqualTheGoldenModelUnderAnyBackPressure) {
   for (unsigned mode = 0; mode < 4; ++mode) {
     EXPECT_GT(with_source[mode], count[mode] / 20) << "mode " << mode;
     EXPECT_LT(with_source[mode], count[mode] * 49 / 50) << "mode " << mode;
+  }
+}
+
+TEST(AddrgenTest, RandomJobsOfAllWidthsEqualTheGoldenModel) {
+  Dice dice(seed() + 2);
+  AddrgenBench bench(seed() + 2);
+  std::size_t count[4] = {}, with_source[4] = {};
+  for (unsigned n = 0; n < 600; ++n) {
+    const MappedJob m = wide_job(dice, static_cast<Mode>(n % 4), 600);
+    const Pace pace{8 + dice.to(8), 8 + dice.to(8)};
+    ASSERT_TRUE(possible(m.job));
+    const Outcome got = bench.run(m.job, m.map, pace);
+    expect_equal(addresses(m.job, m.map), got.beats, m.job);
+    if (HasFatalFailure()) FAIL() << "job " << n;
+    ASSERT_EQ(got.map_taken, m.map.size()) << "job " << n;
+    for (const Beat& b : got.beats) ++count[n % 4], with_source[n % 4] += !b.border;
+  }
+  for (unsigned mode = 0; mode < 4; ++mode) {
+    std::printf("mode %u: %zu pairs, %zu with a source\n", mode, count[mode], with_source[mode]);
+    EXPECT_GT(with_source[mode], count[mode] / 20) << "mode " << mode;
+    EXPECT_LT(with_source[mode], count[mode] * 49 / 50) << "mode " << mode;
+  }
+}
+
+// Counters, and where they end: the widest row, the tallest column, the most nodes, the largest frame.
+TEST(AddrgenTest, JobsAtTheLimitsEqualTheGoldenModel) {
+  Dice dice(seed() + 3);
+  AddrgenBench bench;
+  const auto run = [&](unsigned pairs, unsigned rows, Mode mode, unsigned grid_log2 = 2) {
+    MappedJob m;
+    Job& j = m.job;
+    j.mode = mode;
+    j.pairs = pairs;
+    j.rows = rows;
+    j.grid_log2 = grid_log2;
+    j.src_width = j.src_height = 4096;
+    j.src_pitch = j.dst_pitch = 8191;
+    j.a[1] = (4096 << 16) / static_cast<int>(pairs);
+    j.b[2] = (4096 << 16) / static_cast<int>(rows);
+    j.c[0] = 1 << 16;
+    j.pieces = 128;
+    j.piece_log2 = 17;
+    m.map.resize(map_words(j));
+    for (auto& word : m.map) word = mode == Mode::kTable ? dice.to(4096 * 8191 - 1) * 4 : dice.word() & 0x00FF'00FF;
+    run_and_compare(bench, m);
+  };
+  for (const Mode mode : {Mode::kTable, Mode::kGrid, Mode::kRadial, Mode::kProject}) {
+    const bool grid = mode == Mode::kGrid;
+    run(grid ? 510 : 2048, 5, mode);   // with a step of 4 pixels, 256 nodes
+    run(2048, 3, mode, 6);
+    run(1, 4096, mode);
+    run(2, 4095, mode, 6);
+    if (HasFatalFailure()) FAIL() << "mode " << static_cast<unsigned>(mode);
+  }
+  // The forms wrap at 36 bits: here at -2^35, the number whose size has one bit more.
+  MappedJob m;
+  m.job.mode = Mode::kProject;
+  m.job.pairs = 20;
+  m.job.rows = 2;
+  m.job.c[0] = (1 << 24) - 1;
+  for (auto* form : {&m.job.a, &m.job.b}) (*form)[0] = (*form)[1] = (*form)[2] = -0x7FFF'FFFF - 1;
+  run_and_compare(bench, m);
+  // The largest square radius: both X and Y are -2^19.
+  m.job.mode = Mode::kRadial;
+  m.job.pairs = m.job.rows = 1;
+  for (const unsigned log2 : {0u, 23u}) {
+    m.job.piece_log2 = log2;
+    m.job.pieces = 128;
+    m.map.assign(map_words(m.job), 0x0200'0000);
+    m.job.a[0] = m.job.b[0] = m.job.c[0] = -(1 << 27);
+    run_and_compare(bench, m);
   }
 }
 
@@ -231,6 +302,23 @@ TEST(AddrgenTest, JobsBeyondTheLimitsAreRefusedAndThoseAtTheLimitsAreNot) {
   check(false, radial(128, 23));
   check(true, radial(129, 0));
   check(true, radial(1, 24));
+  Dice dice(seed() + 4);
+  for (unsigned n = 0; n < 2000; ++n) {
+    const Job job = any_job(dice);
+    ASSERT_EQ(bench.refused(job), !possible(job)) << "job " << n;
+  }
+}
+
+TEST(AddrgenTest, AJobAfterAResetInItsMiddleIsRight) {
+  Dice dice(seed() + 5);
+  AddrgenBench bench(seed() + 5);
+  for (unsigned n = 0; n < 40; ++n) {
+    const MappedJob first = random_job(dice, static_cast<Mode>(n % 4)), second = random_job(dice, static_cast<Mode>(n / 4 % 4));
+    const std::size_t limit = dice.to(static_cast<unsigned>(first.job.pairs * first.job.rows - 1));
+    bench.run(first.job, first.map, {1 + dice.to(15), 1 + dice.to(15)}, limit, AddrgenBench::End::kReset);
+    run_and_compare(bench, second);
+    if (HasFatalFailure()) FAIL() << "job " << n;
+  }
 }
 
 }  // namespace

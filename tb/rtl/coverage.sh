@@ -58,6 +58,9 @@ coverage too_many 1 --counts short --list all.toml
 entry toggle "$first" 'absent' 'a point that is not there' >unused.toml
 coverage unused 1 --counts good --list unused.toml
 says unused.err 'not needed'
+entry toggle '' 'bit.[456].' 'a point that is reached is not constant' >reached.toml
+coverage reached 1 --counts good --list reached.toml
+says reached.err 'reached, but excluded: remap_fifo.sv:6: toggle bit[5]'
 entry line 'no such text' '.*' 'a line that is not there' >nowhere.toml
 coverage nowhere 2 --list nowhere.toml --check-list
 entry branch "$first" '.*' 'a kind that is not there' >kind.toml

@@ -23,6 +23,7 @@ struct Memory {
   unsigned spread = 0;    ///< up to this many more, at random
   unsigned willing = 16;  ///< how often a channel is ready or has data, in 1/16
   bool swaps = false;     ///< answers of different identifiers overtake each other
+  unsigned writes_from = 0;  ///< for so many clocks of the job no write is taken
   std::optional<std::uint32_t> read_fault{}, write_fault{};  ///< bursts with this byte address fail
 };
 
@@ -56,7 +57,10 @@ class EngineBench {
   static constexpr std::uint32_t kBase = 0x8000'0000;  ///< byte address of the memory
   explicit EngineBench(std::size_t bytes, std::uint32_t seed = 1);
   ~EngineBench();
+  /// @throws std::runtime_error for an address beyond the memory, unless it `repeats`
   std::uint32_t& word(std::uint32_t word_address);
+  bool repeats = false;  ///< all of the address space is copies of the memory
+  std::uint32_t more_map_words = 0;  ///< in MAP_WORDS beyond what the job reads
   /// Runs a job and clears its events. The queue is empty before and after.
   /// @param abort_after clocks until ABORT is written; empty: never
   /// @throws std::runtime_error for a broken rule of AXI, an access beyond the memory, or an engine
@@ -72,6 +76,8 @@ class EngineBench {
   /// Writes a job into the window, and pushes it into the queue.
   void submit(const Job& job, std::uint32_t map_base, std::uint32_t border, std::uint8_t tag);
   void clock();  ///< one clock of device and memory
+  /// The reset of device and memory, asserted between two edges for `clocks` clocks: what was under way is forgotten.
+  void reset(unsigned clocks = 2);
   void until_interrupt(std::uint64_t most_clocks);
   bool interrupt() const;
   bool busy() const;
@@ -101,7 +107,7 @@ class EngineBench {
   std::vector<std::uint32_t> words_;
   AxiChecker checker_{4 + 8, 4};  // four bursts of the map reader's buffer, eight lines
   RegisterPortChecker port_checker_{false};  ///< the tests use addresses between words too
-  std::uint64_t now_ = 0;
+  std::uint64_t now_ = 0, writes_from_ = 0;
   std::deque<Read> reads_;
   std::size_t reading_ = 0;  ///< whose beat is on the wires
   std::deque<Request> addresses_;

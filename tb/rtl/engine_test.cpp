@@ -7,7 +7,7 @@
 
 #include "tb/oracle/frame_compare.h"
 #include "tb/rtl/engine_bench.h"
-#include "tb/rtl/random_jobs.h"
+#include "tb/rtl/wide_jobs.h"
 
 namespace fovea::rtl {
 namespace {
@@ -204,6 +204,119 @@ TEST(EngineTest, ErrorsAndAnEarlyEndAreReportedAndTheNextJobIsRight) {
   Job impossible;
   impossible.src_width = 3;
   EXPECT_TRUE(bench.run(impossible, EngineBench::kBase, kBorder).refused);
+}
+
+/// The memory appears at every 8 MiB of the address space; source, map and result are anywhere in it, each in a quarter
+/// of its own of what they repeat.
+TEST(EngineTest, JobsWithAddressesOfAllBitsMakeTheGoldenPicture) {
+  constexpr std::uint32_t kWords = 0x20'0000, kQuarter = kWords / 4;
+  Dice dice(seed() + 10);
+  EngineBench bench(kWords * 4, seed() + 10);
+  bench.repeats = true;
+  for (std::uint32_t n = 0; n < kWords; ++n) bench.word(n) = n < kQuarter ? dice.word() : kUntouched;
+  for (unsigned n = 0; n < 100; ++n) {
+    MappedJob m = wide_job(dice, static_cast<Mode>(n % 4), 400);
+    Job& j = m.job;
+    // Source and result have to be within a quarter: with all rows, and a row and a word more.
+    while (j.src_pitch * (j.src_height + 1) > kQuarter / 2) j.src_height > 1 ? j.src_height /= 2 : j.src_pitch /= 2;
+    while (j.dst_pitch * j.rows > kQuarter / 2) j.dst_pitch /= 2;
+    j.dst_pitch = std::max(j.dst_pitch, j.pairs);
+    j.src_width = std::min(j.src_width, j.src_pitch * 2);
+    const auto anywhere = [&](unsigned quarter) {
+      return (dice.word() >> 2 & ~(kWords - 1)) + quarter * kQuarter + dice.to(kQuarter / 2 - 4096);
+    };
+    j.src_base = anywhere(0);
+    j.dst_base = anywhere(2);
+    const std::uint32_t map = (anywhere(1) & ~15u) * 4, border = dice.word();
+    if (j.mode == Mode::kTable)
+      for (auto& word : m.map) word = dice.to(j.src_pitch * j.src_height - 1) * 4;
+    for (std::size_t k = 0; k < m.map.size(); ++k) bench.word(map / 4 + static_cast<std::uint32_t>(k)) = m.map[k];
+    bench.more_map_words = dice.to(1) ? 0 : dice.word() >> 8 & 0x7F'FFFF;
+    const auto want = picture(j, m.map, border, [&](std::uint32_t at) { return bench.word(at); });
+    const Result got = bench.run(j, map, border, {.latency = dice.to(20), .spread = dice.to(20)});
+    ASSERT_FALSE(got.refused || got.read_error || got.write_error || got.aborted) << n;
+    for (unsigned row = 0; row < j.rows; ++row)
+      for (unsigned i = 0; i < j.pairs; ++i) {
+        std::uint32_t& word = bench.word(j.dst_base + row * j.dst_pitch + i);
+        ASSERT_EQ(word, want[std::size_t{row} * j.pairs + i]) << "job " << n << ", pair " << i << " of row " << row;
+        word = kUntouched;
+      }
+    EXPECT_EQ(got.written_bytes, 4u * j.pairs * j.rows) << n;
+  }
+}
+
+/// Writes that are not taken for long: everything before them fills up, eight lines wait, and nothing is lost.
+TEST(EngineTest, AJobWhoseWritesAreHeldUpIsRight) {
+  Dice dice(seed() + 11);
+  EngineBench bench(kSize);
+  const MappedJob m = table_of(64, 8, [&](unsigned, unsigned) { return dice.to(512 * 1024 - 1) * 4; });
+  fill(bench, m, dice);
+  const auto want = expected(bench, m);
+  const Result got = bench.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 4, .writes_from = 2000});
+  EXPECT_GE(got.clocks, 2000u);
+  // Lines of the first burst of 16 words, of the next one, which is collected, of the words behind it, and eight.
+  EXPECT_LE(std::ranges::count_if(bench.read_clocks, [&](std::uint64_t t) { return t < bench.read_clocks[0] + 1900; }),
+            4 + 16 + 16 + 3 + 8 + 4);
+  expect_picture(bench, m, want);
+}
+
+TEST(EngineTest, AResetInMidJobForgetsItAndTheNextJobIsRight) {
+  Dice dice(seed() + 12);
+  EngineBench bench(kSize, seed() + 12);
+  for (unsigned n = 0; n < 60; ++n) {
+    MappedJob m = random_job(dice, static_cast<Mode>(n % 4));
+    place(m, dice.to(40));
+    m.job.dst_pitch = m.job.pairs + dice.to(20);
+    fill(bench, m, dice);
+    bench.memory = {.latency = dice.to(30), .spread = dice.to(20), .willing = 4 + dice.to(12)};
+    bench.write(Offset::kCtrl, 1);
+    bench.write(Offset::kEnables, 0x7F);
+    bench.submit(m.job, EngineBench::kBase + kMap, kBorder, 0xFF);
+    for (unsigned k = dice.to(n % 2 ? 2000 : 100); k > 0; --k) bench.clock();
+    bench.reset(1 + dice.to(3));
+    for (unsigned offset = Offset::kCtrl; offset <= 0x94; offset += 4)
+      if (offset != 0x1C && (offset < 0x30 || offset >= Offset::kMode)) {
+        ASSERT_EQ(bench.read(offset), 0u) << offset;
+      }
+    for (unsigned k = 0; k < 100; ++k) bench.clock();
+    ASSERT_FALSE(bench.busy() || bench.interrupt());
+    fill(bench, m, dice);
+    const auto want = expected(bench, m);
+    bench.run(m.job, EngineBench::kBase + kMap, kBorder);
+    expect_picture(bench, m, want);
+    if (HasFatalFailure()) FAIL() << "job " << n;
+  }
+}
+
+/// What needs more clocks than CI has: with RTL_LONG in the environment, as scripts/rtl-coverage
+/// runs it.
+TEST(EngineTest, CountersCountBeyondAMillion) {
+  if (!std::getenv("RTL_LONG")) GTEST_SKIP() << "only with RTL_LONG";
+  EngineBench bench(0x40'0000);
+  bench.repeats = true;
+  MappedJob m;
+  m.job.pairs = m.job.dst_pitch = 2048;
+  m.job.rows = 520;
+  m.job.src_base = kWord;
+  m.job.dst_base = kWord;
+  const auto fill_with = [&](std::uint32_t entry) {
+    for (std::uint32_t n = 0; n < 0x10'0000; ++n) bench.word(kWord + n) = entry;
+  };
+  // Each entry is bad: nothing of the source is read. The results are as bad as the entries, wherever they go.
+  fill_with(1);
+  const Result bad = bench.run(m.job, EngineBench::kBase, 1, {.latency = 2});
+  EXPECT_EQ(bad.bad, 2048u * 520);
+  EXPECT_EQ(bad.writes, 2048u * 520 / 16);
+  EXPECT_EQ(bad.lines, 0u);
+  EXPECT_GE(bad.clocks, 2048u * 520 * 17 / 16);
+  // 2^18 pairs, each of another line.
+  m.job.rows = 128;
+  m.job.src_width = 4096;
+  m.job.src_height = 4096;
+  m.job.src_pitch = 2048;
+  m.job.dst_base = kWord + 0x8'0000;
+  for (std::uint32_t n = 0; n < 2048 * 128; ++n) bench.word(kWord + n) = n * 32 % (2048 * 4096 * 4);
+  EXPECT_EQ(bench.run(m.job, EngineBench::kBase, 1, {.latency = 2}).lines, 2048u * 128);
 }
 
 AxiClock read_of(std::uint32_t address, unsigned length, bool ready = true) {

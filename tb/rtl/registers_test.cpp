@@ -285,6 +285,20 @@ TEST(RegistersTest, ARefusedJobEndsAtOnceAndTheNextStarts) {
   EXPECT_TRUE(right(bench, good));
 }
 
+TEST(RegistersTest, TheNumberOfJobsIsCountedModulo65536) {
+  const bool all = std::getenv("RTL_LONG") != nullptr;
+  const unsigned jobs = all ? 65'537 : 300;
+  EngineBench bench(64);
+  bench.write(Offset::kCtrl, kEnable);
+  for (unsigned n = 1; n <= jobs; ++n) {  // refused, as the window is empty
+    bench.write(Offset::kSubmit, n & 0xFF);
+    while (bench.busy()) bench.clock();
+    if (n % 256 == 1 || n % 4096 == 0) {
+      ASSERT_EQ(bench.read(Offset::kEnded), (n & 0xFFFF) << 16 | kRefused << 8 | (n & 0xFF));
+    }
+  }
+}
+
 /// Brings about one event.
 void cause(EngineBench& bench, const MappedJob& m, std::uint32_t event) {
   MappedJob job = m;
