@@ -101,6 +101,7 @@ function(fovea_precompile_target target)
       # Macros that a library wants are part of what is compiled.
       foreach(library ${fovea_libraries_${kind}})
         target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
+        target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_OPTIONS>)
       endforeach()
     endif()
   endforeach()

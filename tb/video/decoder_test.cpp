@@ -4,35 +4,21 @@
 #include "model/video/isif.h"
 #include "model/video/tvp5146.h"
 #include "tb/video/bench.h"
-
-#ifndef FOVEA_STANDARD
-#define FOVEA_STANDARD "625/50"
-#endif
-#ifndef FOVEA_WIDTH
-#define FOVEA_WIDTH 720
-#endif
-#ifndef FOVEA_HEIGHT
-#define FOVEA_HEIGHT kStd.rows
-#endif
-#ifndef FOVEA_RELOCK
-#define FOVEA_RELOCK 10
-#endif
-#ifndef FOVEA_PHASE
-#define FOVEA_PHASE "0s"
-#endif
-#ifndef FOVEA_CROP
-#define FOVEA_CROP "first_lines"
-#endif
+#include "tb/video/setting.h"
 
 namespace fovea::video {
 namespace {
 
-constexpr bool k625Here = std::string_view(FOVEA_STANDARD) == "625/50";
-constexpr bool kStudio = std::string_view(FOVEA_CROP) == "studio";
-constexpr const Standard& kStd = standard_of(k625Here);
-constexpr unsigned kWidth = FOVEA_WIDTH, kHeight = FOVEA_HEIGHT;
+// The story is the same for each standard, size and placement of the rows: CMakeLists.txt lists them.
+const std::string kStandard = setting("FOVEA_STANDARD", "625/50");
+const std::string kCrop = setting("FOVEA_CROP", "first_lines");
+const bool k625Here = kStandard == "625/50";
+const bool kStudio = kCrop == "studio";
+const Standard& kStd = standard_of(k625Here);
+const unsigned kWidth = setting("FOVEA_WIDTH", 720u), kHeight = setting("FOVEA_HEIGHT", kStd.rows);
+const unsigned kRelock = setting("FOVEA_RELOCK", 10u);
 constexpr std::uint32_t kBuffer = 0x8010'0000;
-constexpr int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
+const int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
 
 std::uint8_t pattern(std::uint64_t k, unsigned row, unsigned i) {
   return static_cast<std::uint8_t>(1 + (k * 91 + row * 37 + i * 5 + (row * i >> 4)) % 254);
@@ -77,10 +63,10 @@ struct Bench {
   std::vector<CaptureFrame> ended;
 
   Bench() {
-    tvp_params.standard.set(FOVEA_STANDARD);
-    tvp_params.crop_525.set(FOVEA_CROP);
-    tvp_params.relock_fields.set(std::to_string(FOVEA_RELOCK));
-    tvp_params.phase.set(FOVEA_PHASE);
+    tvp_params.standard.set(kStandard);
+    tvp_params.crop_525.set(kCrop);
+    tvp_params.relock_fields.set(std::to_string(kRelock));
+    tvp_params.phase.set(setting("FOVEA_PHASE", "0s"));
     tvp_params.rom_version.set("35");
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
@@ -165,7 +151,7 @@ TEST(DecoderTest, NothingIsSentBeforeTheOutputsAreEnabled) {
 TEST(DecoderTest, LocksAfterTheConfiguredFields) {
   Bench& b = *bench;
   const std::uint64_t from = b.tvp->locked_from_field();
-  EXPECT_EQ(from, std::uint64_t{FOVEA_RELOCK});
+  EXPECT_EQ(from, std::uint64_t{kRelock});
   run_until(b.tvp->field_time(from) - kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
   EXPECT_EQ(b.i2c_read(0x3F), 0);
@@ -254,7 +240,7 @@ TEST(DecoderTest, ClearingWhileNotLockedForgetsTheLoss) {
   b.i2c_write(0x39, 1);
   EXPECT_EQ(b.i2c_read(0x3A), 0) << "cleared; not locked since, so nothing was lost since";
   const std::uint64_t sent = b.tvp->lines_sent();
-  run_for(FOVEA_RELOCK * 20 * kPsPerMs);
+  run_for(kRelock * 20 * kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A), 0) << "there is nothing to lock to";
   EXPECT_GT(b.tvp->lines_sent(), sent) << "black lines go on";
   EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
@@ -276,10 +262,10 @@ TEST(DecoderTest, AnUnpluggedCableLosesTheLockAndAPluggedOneIsLockedToAnew) {
   std::uint64_t field = 0;
   while (b.tvp->field_time(field + 1) <= kernel_time()) ++field;
   b.tvp->connect(0, true);
-  EXPECT_EQ(b.tvp->locked_from_field(), field + FOVEA_RELOCK);
-  run_until(b.tvp->field_time(field + FOVEA_RELOCK) - kPsPerUs);
+  EXPECT_EQ(b.tvp->locked_from_field(), field + kRelock);
+  run_until(b.tvp->field_time(field + kRelock) - kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), 0);
-  run_until(b.tvp->field_time(field + FOVEA_RELOCK) + kPsPerUs);
+  run_until(b.tvp->field_time(field + kRelock) + kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked);
 }
 
@@ -299,10 +285,10 @@ TEST(DecoderTest, PowerUpLocksAnewAfterTheConfiguredFields) {
   std::uint64_t field = b.tvp->locked_from_field();  // find the camera's field now
   while (b.tvp->field_time(field + 1) <= kernel_time()) ++field;
   b.i2c_write(0x03, 0);
-  EXPECT_EQ(b.tvp->locked_from_field(), field + FOVEA_RELOCK);
-  run_until(b.tvp->field_time(field + FOVEA_RELOCK) - kPsPerUs);
+  EXPECT_EQ(b.tvp->locked_from_field(), field + kRelock);
+  run_until(b.tvp->field_time(field + kRelock) - kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), 0x10);
-  run_until(b.tvp->field_time(field + FOVEA_RELOCK) + kPsPerUs);
+  run_until(b.tvp->field_time(field + kRelock) + kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked | 0x10);
 }
 
@@ -374,7 +360,7 @@ TEST(DecoderTest, TheOtherStandardIsLockedToAnewAndSoIsTheFirstOne) {
     b.tvp->set_standard(0, k625Here != other);
     EXPECT_EQ(b.i2c_read(0x3A), 0x10) << "lost";
     const std::uint64_t from = b.tvp->locked_from_field();
-    EXPECT_EQ(from % 2, FOVEA_RELOCK % 2) << "counted from an even field";
+    EXPECT_EQ(from % 2, kRelock % 2) << "counted from an even field";
     EXPECT_GT(from, before) << "fields go on being counted";
     run_until(b.tvp->field_time(from) - kPsPerUs);
     EXPECT_EQ(b.i2c_read(0x3A), 0x10);

@@ -5,22 +5,16 @@
 #include "model/video/osd.h"
 #include "model/video/venc.h"
 #include "tb/video/bench.h"
-
-#ifndef FOVEA_AHEAD
-#define FOVEA_AHEAD 1
-#endif
-#ifndef FOVEA_OUTSTANDING
-#define FOVEA_OUTSTANDING 4
-#endif
-#ifndef FOVEA_625
-#define FOVEA_625 1
-#endif
+#include "tb/video/setting.h"
 
 namespace fovea::video {
 namespace {
 
-constexpr const Standard& kStd = standard_of(FOVEA_625);
-constexpr unsigned kRows = kStd.rows, kPitch = 1440;
+// Standard, lines read ahead and bursts outstanding: CMakeLists.txt lists what is tried.
+const bool k625 = setting("FOVEA_625", 1u) != 0;
+const unsigned kAhead = setting("FOVEA_AHEAD", 1u), kOutstanding = setting("FOVEA_OUTSTANDING", 4u);
+const Standard& kStd = standard_of(k625);
+const unsigned kRows = kStd.rows, kPitch = 1440;
 constexpr std::uint32_t kBuffer = 0x8010'0000, kOther = 0x8020'0000;
 
 std::uint8_t pattern(unsigned row, unsigned i) {
@@ -50,8 +44,8 @@ class Tap : public sc_core::sc_module, public DisplayLineIf {
 
 struct Params : VpssParams {
   Params() {
-    read_ahead_lines.set(std::to_string(FOVEA_AHEAD));
-    read_outstanding.set(std::to_string(FOVEA_OUTSTANDING));
+    read_ahead_lines.set(std::to_string(kAhead));
+    read_outstanding.set(std::to_string(kOutstanding));
   }
 };
 
@@ -107,8 +101,8 @@ enum : std::uint32_t {
   CLKCTL = 0x140,
   VSTAT = 0xB8
 };
-constexpr std::uint32_t kOn = FOVEA_625 ? 0x43 : 0x03;
-constexpr Picoseconds kField = kPsPerSecond / (FOVEA_625 ? 50 : 59);
+const std::uint32_t kOn = k625 ? 0x43 : 0x03;
+const Picoseconds kField = kPsPerSecond / (k625 ? 50 : 59);
 
 class DisplayTest : public testing::Test {
  protected:
@@ -124,8 +118,8 @@ class DisplayTest : public testing::Test {
     b.osd_regs.write(VIDWINMD, 3);
     b.osd_regs.write(VIDWIN0OFST, 0x1000 | kPitch / 32);
     set_address(kBuffer);
-    b.osd_regs.write(BASEPX, FOVEA_625 ? 0x7E : 0x79);
-    b.osd_regs.write(BASEPY, FOVEA_625 ? 0x16 : 0x10);
+    b.osd_regs.write(BASEPX, k625 ? 0x7E : 0x79);
+    b.osd_regs.write(BASEPY, k625 ? 0x16 : 0x10);
     b.osd_regs.write(XP, 0);
     b.osd_regs.write(YP, 0);
     b.osd_regs.write(XL, 720);
@@ -172,9 +166,9 @@ TEST_F(DisplayTest, MemoryPictureEqualsWhatTheDisplayReceives) {
 TEST_F(DisplayTest, FirstFieldShowsTheUpperRows) {
   show(1);
   ASSERT_GE(b.tap.firsts.size(), 2u);
-  EXPECT_EQ(b.tap.firsts[0].number, FOVEA_625 ? 23u : 20u);
+  EXPECT_EQ(b.tap.firsts[0].number, k625 ? 23u : 20u);
   EXPECT_EQ(b.tap.firsts[0].byte, pattern(0, 0));
-  EXPECT_EQ(b.tap.firsts[1].number, FOVEA_625 ? 336u : 283u);
+  EXPECT_EQ(b.tap.firsts[1].number, k625 ? 336u : 283u);
   EXPECT_EQ(b.tap.firsts[1].byte, pattern(1, 0));
 }
 
@@ -207,9 +201,9 @@ TEST_F(DisplayTest, WithoutFieldModeBothFieldsShowTheSameRows) {
 }
 
 TEST_F(DisplayTest, FrameRateIsExact) {
-  const unsigned n = FOVEA_625 ? 25 : 30;
+  const unsigned n = k625 ? 25 : 30;
   show(n + 1);
-  const Picoseconds expected = FOVEA_625 ? kPsPerSecond : 1'001'000'000'000;
+  const Picoseconds expected = k625 ? kPsPerSecond : 1'001'000'000'000;
   const Picoseconds measured = b.frames[n].start - b.frames[0].start;
   EXPECT_LE(measured > expected ? measured - expected : expected - measured, 1u);
 }
@@ -219,12 +213,12 @@ TEST_F(DisplayTest, RasterInterruptsAndStatusComeAtTheFieldStarts) {
   const std::uint64_t origin = clock.edge_after(kernel_time());
   show(1);
   // Field 1 of the raster begins with the raster; field 2 where F changes.
-  const unsigned lines = FOVEA_625 ? 312 : 262;
+  const unsigned lines = k625 ? 312 : 262;
   ASSERT_GE(b.edges.rises.size(), 2u);
   EXPECT_EQ(b.edges.rises[0], clock.edge(origin));
   EXPECT_EQ(b.edges.rises[1], clock.edge(origin + std::uint64_t{lines} * kStd.line_bytes));
   EXPECT_EQ(b.frames[0].start,
-            clock.edge(origin + (FOVEA_625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
+            clock.edge(origin + (k625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
   b.edges.rises.clear();
   while (b.edges.rises.size() < 1) run_for(kPsPerUs);
   EXPECT_EQ(b.venc_regs.read(VSTAT) >> 4 & 1, b.latches.back().f ? 1u : 0u);
@@ -275,14 +269,14 @@ TEST_F(DisplayTest, WindowOriginMovesThePictureByItsPixelsAndLines) {
 }
 
 TEST_F(DisplayTest, BasepxOnePairFurtherMovesThePictureByOnePair) {
-  b.osd_regs.write(BASEPX, (FOVEA_625 ? 0x7E : 0x79) + 2);
+  b.osd_regs.write(BASEPX, (k625 ? 0x7E : 0x79) + 2);
   show(1);
   EXPECT_EQ(b.frames[0].picture.row(0)[0], 0x80);
   EXPECT_EQ(b.frames[0].picture.row(0)[4], pattern(0, 0));
 }
 
 TEST_F(DisplayTest, WindowThatBeginsLeftOfThePictureIsCutThere) {
-  b.osd_regs.write(BASEPX, (FOVEA_625 ? 0x7E : 0x79) - 6);
+  b.osd_regs.write(BASEPX, (k625 ? 0x7E : 0x79) - 6);
   show(1);
   const Picture& p = b.frames[0].picture;
   // Six pixels of each row lie left of the first active one; the row ends six pixels early.
@@ -374,14 +368,14 @@ TEST_F(DisplayTest, OtherStandardIsTakenWhileTheEncoderRuns) {
   b.venc_regs.write(VMOD, kOn ^ 0x40);
   const Clock clock(kByteClock);
   const std::uint64_t origin = clock.edge_after(kernel_time());
-  const Standard& other = standard_of(!FOVEA_625);
+  const Standard& other = standard_of(!k625);
   while (b.tap.firsts.size() < first + 2) run_for(kPsPerMs);
   // A new raster begins at once, with the other standard's first field.
   EXPECT_EQ(b.tap.firsts[first].number, other.active_first[0]);
   EXPECT_FALSE(b.tap.firsts[first].f);
   EXPECT_EQ(
       b.tap.firsts[first].start,
-      clock.edge(origin + (FOVEA_625 ? 16u : 22u) * other.line_bytes + other.active_offset()));
+      clock.edge(origin + (k625 ? 16u : 22u) * other.line_bytes + other.active_offset()));
   EXPECT_EQ(b.tap.firsts[first + 1].number, other.active_first[1]);
   b.venc_regs.write(VMOD, 0);
   run_for(kPsPerUs);
@@ -456,9 +450,9 @@ TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
   show(1);
   ASSERT_GE(b.memory.log.size(), std::size_t{23} * kRows);
   const Picoseconds ahead =
-      clock.edge(origin + ((FOVEA_625 ? 22u : 16u) - FOVEA_AHEAD) * kStd.line_bytes);
+      clock.edge(origin + ((k625 ? 22u : 16u) - kAhead) * kStd.line_bytes);
   EXPECT_EQ(b.memory.log[0].time, ahead);
-  constexpr unsigned kAtOnce = FOVEA_OUTSTANDING;
+  const unsigned kAtOnce = kOutstanding;
   EXPECT_EQ(b.memory.log[kAtOnce - 1].time, ahead);
   EXPECT_EQ(b.memory.log[kAtOnce].time, ahead + b.memory.latency);
   EXPECT_EQ(b.memory.log[0].bytes, 64u);
@@ -466,11 +460,11 @@ TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
 }
 
 TEST_F(DisplayTest, DataDueAtTheirArrivalAreTooLateAndOnePicosecondEarlierAreNot) {
-  // 64 bytes a line, read FOVEA_AHEAD lines before its own start: due after these and the blanking.
+  // 64 bytes a line, read kAhead lines before its own start: due after these and the blanking.
   // Rows of 1440 bytes: the upper field's are one burst of 64, the lower field's two of 32.
   b.osd_regs.write(XL, 32);
   const Clock clock(kByteClock);
-  const Picoseconds due = clock.edge(FOVEA_AHEAD * kStd.line_bytes + kStd.active_offset());
+  const Picoseconds due = clock.edge(kAhead * kStd.line_bytes + kStd.active_offset());
   b.memory.latency = due - 2;  // edges round down: the interval may be shorter by 1 ps
   show(1);
   EXPECT_EQ(underflows(), 0u);
@@ -533,10 +527,10 @@ TEST_F(DisplayTest, LateDataSetAFlagThatStaysUntilOneIsWritten) {
 TEST_F(DisplayTest, WhatIsLateAlreadyIsNotRead) {
   const Clock clock(kByteClock);
   const std::uint64_t origin = clock.edge_after(kernel_time());
-  b.memory.latency = 300 * kPsPerUs;  // almost five lines; places for FOVEA_OUTSTANDING bursts
+  b.memory.latency = 300 * kPsPerUs;  // almost five lines; places for kOutstanding bursts
   show(1);
   EXPECT_GT(underflows(), 0u);
-  const std::uint64_t first[2] = {FOVEA_625 ? 22u : 16u, FOVEA_625 ? 335u : 279u};
+  const std::uint64_t first[2] = {k625 ? 22u : 16u, k625 ? 335u : 279u};
   std::size_t reads = 0;
   for (const auto& r : b.memory.log) {
     if (r.time >= b.frames[0].end) break;
@@ -584,7 +578,7 @@ TEST_F(DisplayTest, ChangedClockMovesTheLineUnderWay) {
   while (b.edges.rises.empty()) run_for(kPsPerUs);
   // In the middle of the line before the second field the clock becomes ten times slower: the rest
   // of that line, which ends with the interrupt, lasts ten times as long.
-  const unsigned lines = FOVEA_625 ? 312 : 262;
+  const unsigned lines = k625 ? 312 : 262;
   const std::uint64_t half = kStd.line_bytes / 2;
   const Clock clock(kByteClock, b.edges.rises[0]);
   run_until(clock.edge((lines - 1) * kStd.line_bytes + half));
