@@ -35,6 +35,18 @@ void write(mem::DdrRegs& regs, const Words& w) {
   for (const auto& [offset, value] : writes)
     EXPECT_EQ(regs.write(offset, 4, value), Access::kOk) << offset;
 }
+// Only PBBPR's value after reset is public; of any other that is not 0 its description says that it is assumed.
+TEST(RegisterTest, ResetValuesWithoutASourceAreSaidToBeAssumed) {
+  const mem::DdrRegs regs;
+  std::size_t assumed = 0;
+  for (const Reg* r : regs.regs()) {
+    const bool said = r->sentence().find("reset value assumed") != std::string::npos;
+    EXPECT_EQ(said, r->reset_value() != 0 && r->name() != "PBBPR" && r->offset() > 4) << r->name();
+    assumed += said;
+  }
+  EXPECT_EQ(assumed, 5u);
+}
+
 mem::DdrConfig decoded(const Words& w) {
   mem::DdrRegs regs;
   write(regs, w);

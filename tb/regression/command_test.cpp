@@ -246,6 +246,12 @@ TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
 }
 
 // The picture places values in proportion: 1, 2 and 3 lie on a straight line.
+std::size_t occurrences(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != text.npos; at = text.find(what, at + what.size())) ++n;
+  return n;
+}
+
 TEST(TrendPlotTest, CurvesAreInProportion) {
   std::vector<TrendLine> lines;
   for (const int i : {1, 2, 3})
@@ -265,6 +271,14 @@ TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
   const std::string svg = trend_svg(lines, {"x"});
   EXPECT_THAT(svg, AllOf(HasSubstr("change since the first commit"), HasSubstr("M96.0 119.0L816.0 69.0"),
                          HasSubstr("M96.0 119.0L816.0 169.0"), HasSubstr("c2 b: 900")));
+  // The legend: each experiment once, 30 and 7.5 for each letter apart.
+  EXPECT_THAT(svg, AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
+  EXPECT_EQ(occurrences(svg, "y=\"22\""), 2u);
+}
+
+TEST(TrendPlotTest, ASingleCommitStandsInTheMiddle) {
+  const std::string svg = trend_svg({{"c1", "e", "s", {}, {{"x", {5.0, "1", true}}}}}, {"x"});
+  EXPECT_THAT(svg, HasSubstr("<circle cx=\"456.0\""));  // 96 and half of 720
 }
 
 }  // namespace

@@ -177,6 +177,12 @@ TEST(DdrPresetTest, SleepByHand) {
   EXPECT_EQ(k.value("ddr.tCKE"), "3 cycles");
   EXPECT_EQ(k.value("ddr.tXSRD"), "200 cycles");
   EXPECT_EQ(k.value("ddr.tXSNR"), "34 cycles");
+  // Mobile DDR at 6 ns: 25 ns, two clocks, 200 ns; there is no DLL that has to lock.
+  const Keyed mobile({"ddr.part=mt46h64m16lf", "ddr.grade=6", "ddr.preset=data_sheet", "ddr.clock=166666666Hz"});
+  EXPECT_EQ(mobile.value("ddr.tXP"), "5 cycles");
+  EXPECT_EQ(mobile.value("ddr.tCKE"), "2 cycles");
+  EXPECT_EQ(mobile.value("ddr.tXSRD"), "1 cycles");
+  EXPECT_EQ(mobile.value("ddr.tXSNR"), "34 cycles");
 }
 
 // ddr.clock is in whole hertz; tCK is 6 ns in grade 6 and 3 ns in grade 3.
@@ -195,6 +201,9 @@ TEST(DdrPresetTest, RoundedHertzAreTheClockOfTheGrade) {
             "166666667Hz 3 3 3 3 7 10 2 3 1 2 21 1300 8 4 2KiB");
   EXPECT_THAT(of("mt46h64m16lf", "6", "166666668Hz"), HasSubstr("has no CL for it"));
   EXPECT_EQ(of("mt47h64m16", "3", "333333334Hz").substr(0, 19), "333333334Hz 5 5 5 5");
+  // 5 ns is a whole number of hertz: one more is the same clock, two are not.
+  EXPECT_EQ(of("mt47h64m16", "3", "200000001Hz").substr(0, 13), "200000001Hz 3");
+  EXPECT_EQ(of("mt47h64m16", "3", "200000002Hz").substr(0, 13), "200000002Hz 4");
   EXPECT_THAT(of("mt47h64m16", "3", "333333335Hz"), HasSubstr("has no CL for it"));
 }
 

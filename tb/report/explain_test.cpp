@@ -306,6 +306,16 @@ TEST_F(ExplainTest, DifferenceNamesRemapAndLargestCause) {
             "thousand clocks more on waiting for line fills of the D-cache.");
 }
 
+TEST_F(ExplainTest, EqualTimesOfInstructionsAreNoDifferenceHoweverLong) {
+  set("cpu.issue", std::uint64_t{1'000'000'000});
+  const std::vector<StatRow> before = stats_;
+  set("frame.remap_time.mean", 0.008);
+  set("cpu.stall.dcache", std::uint64_t{20'500});
+  const auto found = explain_difference({.stats = before, .stalls = {}, .frames = {}}, "A", inputs(), "B");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NE(found[1].text.find("waiting for line fills of the D-cache"), std::string::npos) << found[1].text;
+}
+
 TEST_F(ExplainTest, EqualRunsDoNotDiffer) {
   const auto found = explain_difference(inputs(), "A", inputs(), "B");
   ASSERT_EQ(found.size(), 1u);

@@ -141,6 +141,8 @@ TEST(PageTest, EveryFigureIsThatOfStatsJson) {
   const std::string page = one_page(folder);
   const json stats = json::parse(test::read_text(folder / "stats.json")),
              data = data_of(page)["runs"][0]["stats"];
+  EXPECT_THAT(page, HasSubstr("<span>new pictures on the display</span></div>"));
+  EXPECT_THAT(page, HasSubstr("<span>remap of a frame, mean</span></div>"));
   std::size_t with_value = 0;
   for (const auto& [name, figure] : stats.items()) {
     if (!figure.is_object() || !figure.contains("value")) continue;
