@@ -244,6 +244,7 @@ TEST(SignalsTest, AGenlockedCameraThatLeftLinesOutIsInStepAgain) {
   rig.set("fault.lines", "4").set("fault.camera", "1").set("fault.start", "300ms").set("fault.end", "450ms");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 24u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
   const auto shown = sequence(rig);
   ASSERT_GE(shown.size(), 10u);
   for (std::size_t i = shown.size() - 8; i < shown.size(); ++i) {
