@@ -235,8 +235,8 @@ TEST(SignalsTest, ACheckedCameraWithAFaultCostsTheOtherOneNoFrame) {
   EXPECT_EQ(rig.board().camera_stats()[1].dropped, 0u);
 }
 
-// Not asserted: every shown picture is a whole one. The frame in whose second field the fault begins is shown, with the
-// rows of that field's lower half too high (sw/firmware/README.md, Limits).
+// Not asserted: that every shown picture is whole. The frame in whose second field the fault begins is shown
+// (sw/firmware/README.md, Limits).
 // The lines that camera 1 has left out make it early. Genlocked, it begins with the others again when the fault is
 // over; without that its frames, and each change to it, stay irregular.
 TEST(SignalsTest, AGenlockedCameraThatLeftLinesOutIsInStepAgain) {

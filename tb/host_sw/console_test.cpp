@@ -155,21 +155,6 @@ TEST(FieldWatchTest, AFieldStartThatCameLateDoesNotSpoilTheNextFrame) {
   }
 }
 
-// A camera leaves out lines at the end of its frame, and the decoder goes on with another one that did not: its
-// picture begins so many lines too low.
-TEST(FieldWatchTest, AFrameThatBeginsTooLowAfterMissingLinesIsIrregular) {
-  const int line = 1536;
-  for (const int after : {4 * line, 0}) {
-    Fields f(true);
-    f.next();
-    f.next(-4 * line);  // the second field of a frame
-    EXPECT_TRUE(f.watch.irregular);
-    field_watch_frame(&f.watch);
-    f.next(after);
-    EXPECT_EQ(f.watch.irregular, after != 0);
-  }
-}
-
 TEST(FieldWatchTest, TheDistanceFromAnotherRasterIsNotJudged) {
   Fields f(true);
   f.next(123456);

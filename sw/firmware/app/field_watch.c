@@ -38,10 +38,7 @@ watch_event_t field_watch_field(field_watch_t *w, uint32_t camera, int second, u
   }
   if (late > (int32_t)FIELD_TOLERANCE_TICKS || late < -(int32_t)FIELD_TOLERANCE_TICKS) {
     w->irregular = 1;
-    /* A start that is noticed late, as its line's timing codes were damaged, makes the next distance short although
-     * the next frame is right. A start that comes early is where lines are missing: whether the frame after it, maybe
-     * another camera's, begins at the right line is known by the next distance. */
-    w->unknown = late > 0;
+    w->unknown = 1; /* which of its two ends was wrong? The next frame, or another camera's, may be right */
     return WATCH_NOTHING;
   }
   return measure(w, camera, late);
