@@ -53,7 +53,8 @@ constexpr Row kRows[] = {
 };
 
 /// Interrupts of the events that come with one, typed from Linux' arch/arm/mach-davinci/irqs.h (DM365 and the numbers
-/// that it shares with the DM355).
+/// that it shares with the DM355); TINT8, TINT9 and GPIO10 to GPIO15 are not in it, but in headers of boot programs for
+/// the chip. TINT4, GPIO8 and GPIO9 were found in neither: TINT5 follows TINT4, GPIO9 shares a line with the EMAC.
 struct Interrupt {
   unsigned channel, number;
 };
