@@ -26,12 +26,16 @@ judge() {
 }
 failures=0
 goal() { judge "$@" || failures=$((failures + 1)); }
-undisturbed() {  # FOLDER
-  local figure
-  for figure in capture.overflows display.underflows frame.dropped; do
+# undisturbed FOLDER [repeated]: `repeated` if a camera frame is remapped for longer than a frame period, so that others
+# are dropped on purpose.
+undisturbed() {
+  local figure figures=(capture.overflows display.underflows)
+  [ -n "${2-}" ] || figures+=(frame.dropped)
+  for figure in "${figures[@]}"; do
     [ "$(value "$1" $figure)" = 0 ] || { echo "$1: $figure is $(value "$1" $figure), not 0"; failures=$((failures + 1)); }
   done
-  [ "$(value "$1" frame.rate)" = 25.0 ] || { echo "$1: $(value "$1" frame.rate) frames a second"; failures=$((failures + 1)); }
+  [ -n "${2-}" ] || [ "$(value "$1" frame.rate)" = 25.0 ] ||
+    { echo "$1: $(value "$1" frame.rate) frames a second"; failures=$((failures + 1)); }
 }
 kernel_is() {  # FOLDER KERNEL
   grep -q "^kernel: $2, " "$1/uart.log" || { echo "$1: not $2"; failures=$((failures + 1)); }
@@ -48,6 +52,7 @@ goal 'core asleep at 25 frames a second by EDMA' \
 goal 'tables of the default lens' "$(sed -nE 's/^LUT: .* in ([0-9]+) ms.*/\1/p; s/^kernel: .* in ([0-9]+) ms.*/\1/p' \
   "$out/default/uart.log" | awk '{ ms += $1 + 1; n++ } END { if (n == 2) print ms / 1000 }')" most 0.15 s
 
+repeated=
 if [ -n "$throughput" ]; then
   play codes throughput -s run.frames=1 -s firmware.repeat=6 -s firmware.kernel=codes
   alone=$(inverse "$(value "$out/codes" frame.remap_time.mean)")
@@ -55,12 +60,12 @@ if [ -n "$throughput" ]; then
 else
   play codes throughput -s run.frames=5 -s firmware.kernel=codes
   play staged throughput -s run.frames=5
-  throughput=$out/staged
+  throughput=$out/staged repeated=yes
   alone=$(value "$out/codes" frame.remap_rate)
   staged=$(value "$throughput" frame.remap_rate)
 fi
-undisturbed "$out/codes"
-undisturbed "$throughput"
+undisturbed "$out/codes" $repeated
+undisturbed "$throughput" $repeated
 kernel_is "$out/codes" codes
 kernel_is "$throughput" staged
 [ "$(value "$out/codes" edma.requests)" = 0 ] || { echo 'codes used the EDMA'; failures=$((failures + 1)); }
