@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "model/board/board.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/loader.h"
@@ -14,32 +17,64 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
 struct TestBoard {
-  explicit TestBoard(bool cpld = true) {
+  explicit TestBoard(const Settings& more = {}, bool cpld = true) {
     params.declare(set);
     set.set("camera.kind", "chart");
     if (cpld) set.set("board.cpld", "true");
     set.set("load.outstanding", "1");
     set.set("load.1.outstanding", "1");
     set.set("load.1.port", "edma_tc0");
-    source = video::make_picture_source(params.camera, app::load_footage(params),
-                                        params.raster_width(), params.raster_height());
-    board = std::make_unique<board::Board>("board", params, *source, 0, false);
+    for (const auto& [key, value] : more) set.set(key, value);
+    std::vector<video::PictureSource*> pictures;
+    for (unsigned n = 0; n < params.camera_count(); ++n) {
+      sources.push_back(app::camera_source(params, n));
+      pictures.push_back(sources.back().get());
+    }
+    board = std::make_unique<board::Board>("board", params, pictures, 0, false);
   }
   board::BoardParams params;
   ParamSet set;
-  std::unique_ptr<video::PictureSource> source;
+  std::vector<std::unique_ptr<video::StampedSource>> sources;
   std::unique_ptr<board::Board> board;
 };
 
-TEST(Platform, WalkReachesEveryBlockBankAndStatistic) {
-  TestBoard t;
-  EXPECT_THAT(unreached(t.board->platform), IsEmpty());
+// What only some boards have: the engine as each of its models, several cameras behind the decoder's inputs or a
+// multiplexer, a camera at the digital port.
+const Settings kBoards[] = {
+    {},
+    {{"engine", "tlm"}},
+#ifdef FOVEA_WITH_RTL
+    {{"engine", "rtl"}},
+    {{"engine", "both"}},
+    {{"engine", "both_tlm"}},
+#endif
+    {{"cameras.count", "4"}},
+    {{"cameras.count", "8"}, {"engine", "tlm"}},
+    {{"video.standard", "vga_progressive"}},
+};
+
+std::string board_name(const testing::TestParamInfo<Settings>& info) {
+  std::string name = "plain";
+  if (!info.param.empty()) name.clear();
+  for (const auto& [key, value] : info.param) name += (name.empty() ? "" : "_") + key + "_" + value;
+  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
 }
 
-TEST(Platform, EveryParameterIsDeclared) {
-  TestBoard t;
+struct PlatformOf : testing::TestWithParam<Settings> {};
+INSTANTIATE_TEST_SUITE_P(Boards, PlatformOf, testing::ValuesIn(kBoards), board_name);
+
+TEST_P(PlatformOf, WalkReachesEveryBlockBankAndStatistic) {
+  TestBoard t(GetParam());
+  EXPECT_THAT(unreached(t.board->platform), IsEmpty());
   EXPECT_THAT(undeclared(t.set), IsEmpty());
+}
+
+TEST(Platform, AParameterThatIsNotDeclaredIsFound) {
+  TestBoard t;
   struct Forgotten : ParamGroup {
     IntParam p{*this, "p", IntParam::Unit::kCount, 1, 0, 2, "a parameter", Origin::kChoice, ""};
     Forgotten() : ParamGroup("forgotten") {}
