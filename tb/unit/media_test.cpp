@@ -294,12 +294,12 @@ void make(const std::string& arguments) {
 }
 
 TEST_F(FfmpegTest, SoundWithoutPicturesIsAnErrorOfOurOwn) {
-  for (const auto& [name, message] : {std::pair("tone.mp4", "has no pictures (only sound?)"),
-                                      std::pair("tone.wav", "its format is not allowed")}) {
+  const auto refuses = [this](const char* name, const char* message) {
     make("-f lavfi -i sine=d=0.1 '" + (dir / name).string() + "'");
-    EXPECT_THAT(user_error([&] { decode_frames(dir / name, {}); }),
-                AllOf(HasSubstr(name), HasSubstr(message)));
-  }
+    EXPECT_THAT(user_error([&] { decode_frames(dir / name, {}); }), AllOf(HasSubstr(name), HasSubstr(message)));
+  };
+  refuses("tone.mp4", "has no pictures (only sound?)");
+  refuses("tone.wav", "its format is not allowed");
 }
 
 TEST_F(FfmpegTest, TenBitFilmsAndSixteenBitPicturesAreReadAsEight) {

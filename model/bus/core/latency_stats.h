@@ -13,7 +13,7 @@ namespace fovea::bus {
 
 /// `ddr.<master>.latency.*`: reads to their first beat; with `read_last`, `write_first` and `write_last`
 /// before the figure's name the others (BeatLatencies). Without a request there is no figure (null).
-class LatencyStats : public StatGroup {
+class LatencyStats final : public StatGroup {
  public:
   /// @param ports the master's own, which outlive this: both sides of a transfer controller are one
   LatencyStats(const std::string& master, std::vector<PortLatencies*> ports)
