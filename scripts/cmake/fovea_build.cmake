@@ -45,22 +45,6 @@ if(FOVEA_COVERAGE)
   add_link_options(--coverage)
 endif()
 
-# Optimisation by a recorded profile (scripts/guided). The counts lie beside the objects, so both builds use one folder.
-# Helper threads count without locks; GCC is told that the sums need not agree, and that tests have no profile.
-set(FOVEA_PROFILE "" CACHE STRING "'record': the program writes a profile of its run; 'use': it is optimised by it")
-set_property(CACHE FOVEA_PROFILE PROPERTY STRINGS "" record use)
-if(FOVEA_PROFILE AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  message(FATAL_ERROR "FOVEA_PROFILE needs GCC")
-elseif(FOVEA_PROFILE STREQUAL "record")
-  add_compile_options(-fprofile-generate)
-  add_link_options(-fprofile-generate)
-elseif(FOVEA_PROFILE STREQUAL "use")
-  add_compile_options(-fprofile-use -fprofile-correction -Wno-missing-profile)
-  add_link_options(-fprofile-use -fprofile-correction -Wno-missing-profile)
-elseif(FOVEA_PROFILE)
-  message(FATAL_ERROR "FOVEA_PROFILE is '${FOVEA_PROFILE}'; it can be 'record', 'use' or empty")
-endif()
-
 if(FOVEA_PARANOID)
   add_compile_definitions(FOVEA_PARANOID)
 endif()

@@ -10,11 +10,6 @@
 
 #include "sw/fovea/cli.h"
 
-#ifdef FOVEA_WRITES_COUNTS
-/// Writes the counts of a build for coverage or for a profile (libgcov).
-extern "C" void __gcov_dump();
-#endif
-
 namespace {
 
 /// Opens standard streams that were closed when the program was started. Otherwise a result file
@@ -55,9 +50,6 @@ int sc_main(int argc, char** argv) {
   // All files are closed by now.
   std::cerr.flush();
   std::fflush(nullptr);
-#ifdef FOVEA_WRITES_COUNTS
-  __gcov_dump();
-#endif
   std::quick_exit(status);
 }
 
