@@ -34,6 +34,7 @@
 #include "sw/fovea/report/report_command.h"
 #include "sw/fovea/row_files.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/run_until.h"
 #include "sw/fovea/trace_command.h"
 
 namespace fovea::app {
@@ -112,6 +113,8 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   for (const auto& set : options.sets) experiment.override_with(set);
   if (!options.waves.empty()) set_waves(options.waves, params, experiment);
   const WarningScope warnings(context.err, options.strict);
+  // A condition that is refused has nothing to say about keys that need it.
+  if (const ParamBase* until = params.find("run.until")) check_run_until(until->text());
   warn_without_effect(params, experiment);
   apply_calibrations(params, experiment);
   const RunLimits limits = limits_of(options.limits);

@@ -62,7 +62,8 @@ std::optional<std::uint32_t> number(std::string_view text) {
 }
 
 /// The address of "0x8000", "main" or "main+0x10".
-std::uint32_t address_of(const std::string& item, std::string_view text, const Symbols& symbols) {
+/// @param symbols null: a name is taken for one of the program's
+std::uint32_t address_of(const std::string& item, std::string_view text, const Symbols* symbols) {
   if (const auto value = number(text)) return *value & ~1u;
   std::uint32_t offset = 0;
   if (const auto plus = text.rfind('+'); plus != std::string_view::npos) {
@@ -71,14 +72,15 @@ std::uint32_t address_of(const std::string& item, std::string_view text, const S
     offset = *value;
     text = text.substr(0, plus);
   }
-  const auto symbol = symbols.find(text);
+  if (!symbols) return 0;
+  const auto symbol = symbols->find(text);
   if (!symbol)
     refuse(item, fmt::format("names no symbol of the program or of --symbols ('{}')",
                              one_line(std::string(text))));
   return (*symbol + offset) & ~1u;
 }
 
-EndCondition condition_of(const std::string& item, const Symbols& symbols) {
+EndCondition condition_of(const std::string& item, const Symbols* symbols) {
   using Kind = EndCondition::Kind;
   EndCondition c;
   c.written = item;
@@ -121,8 +123,12 @@ std::string Symbols::place(std::uint32_t address) const {
 
 std::vector<EndCondition> parse_run_until(const std::string& text, const Symbols& symbols) {
   std::vector<EndCondition> out;
-  for (const auto& item : items_of(text)) out.push_back(condition_of(item, symbols));
+  for (const auto& item : items_of(text)) out.push_back(condition_of(item, &symbols));
   return out;
+}
+
+void check_run_until(const std::string& text) {
+  for (const auto& item : items_of(text)) condition_of(item, nullptr);
 }
 
 Picoseconds parse_time(const std::string& what, const std::string& text) {

@@ -37,6 +37,10 @@ inline constexpr std::string_view kEndConditionsAllowed =
 /// UserError that says what is allowed
 std::vector<EndCondition> parse_run_until(const std::string& text, const Symbols& symbols);
 
+/// Refuses what parse_run_until() would refuse whatever the program's symbols are, before a program is read.
+/// @throws UserError
+void check_run_until(const std::string& text);
+
 /// Parses a duration with its unit, for example of `--max-time`. @throws UserError
 Picoseconds parse_time(const std::string& what, const std::string& text);
 

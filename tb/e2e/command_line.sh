@@ -90,6 +90,9 @@ if [ -e "$out/run.tmp" ]; then
 fi
 expect empty_out 2 "output folder ''" -- "$fovea" run "$out/small.yaml" -o ''
 expect version 0 '^fovea [0-9.]+ \(commit [0-9a-f]{12}(, modified)?\)$' -- "$fovea" --version
+expect bad_until 2 "^fovea: error: key 'run.until': 'uartt:x' is not a condition" -- \
+  run "$out/small.yaml" -s run.until=uartt:x -s run.frames=2
+run "$out/small.yaml" -s run.until=uartt:x -s run.frames=2 2>&1 | grep warning && fail 'a warning before run.until is refused'
 
 # Keys without effect, and calibrations: OpenCV's file for camera and firmware, of another picture.
 expect no_effect 0 "warning \(configuration\): 'lens.fov' is set \(command line\) but has no effect with lens.mapping = kannala" \

@@ -56,6 +56,12 @@ TEST(RunUntil, WhatIsWrongIsSaidWithWhatIsAllowed) {
   EXPECT_THAT(refused("pc:main"), HasSubstr("--symbols"));
 }
 
+TEST(RunUntil, WithoutAProgramOnlyItsSymbolsAreLeftOpen) {
+  EXPECT_NO_THROW(check_run_until("[frames, pc:main, pc:main+0x10, time:2s]"));
+  for (const char* text : {"frame", "pc:", "pc:main+x", "[exit,,halt]"})
+    EXPECT_THROW(check_run_until(text), UserError) << text;
+}
+
 TEST(Escapes, AreTheirOwnReverse) {
   std::string all;
   for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
