@@ -66,7 +66,7 @@ put("stalls.csv", "cause,region,culprit,cycles\nuncached,registers,core,300\nunc
     "uncached,.stacks,core,7000\ndcache,registers,core,9000\n")
 def belief(value, low, high):
     return {"value": value, "belief": {"low": low, "high": high}}
-put("config.json", json.dumps({"params": {
+put("config.json", json.dumps({"params": {"run.frames": {"value": "26", "belief": None},
     "bus.arm_d.width": belief("32bit", "32bit", "64bit"), "bus.load.w": belief("2", "1", "3"),
     "bus.edma_tc0.w": belief("2", "1", "2"), "bus.edma_tc1.w": belief("2", "1", "2"),
     "cpu.x": belief("5", "1", "9"), "cpu.same": belief("5", "5", "5"), "cpu.none": {"value": "5", "belief": None},
@@ -109,10 +109,20 @@ measure spread 0 mine.yaml --fovea ./stand_in --kernels one,three --csv spread.c
 rows spread.csv "${one}60.0,cpu.x=9,120.0,bus.arm_d.width=64bit," \
   "${three}48.0,edma.z=2,240.0,bus.edma_tcN.w=1,"
 [ "$(wc -l <calls)" = 12 ] || fail "other runs: $(cat calls)"
-[ "$(grep -c 'run.frames=10' calls)" = 10 ] || fail "other windows: $(cat calls)"
+# The window of 0.104 s has 26 displayed frames of 4 ms; in one remap of 1 / 96 s after the other, eight take 20.8.
+[ "$(grep -c 'run.frames=21' calls)" = 10 ] || fail "other windows: $(cat calls)"
 grep -E 'bus\.load|retention|pll|cpu\.(same|none)' calls && fail 'these cannot matter'
 [ "$(wc -l <spread/spread.csv)" = 9 ] || fail "spread.csv: $(cat spread/spread.csv)"
 has spread/spread.csv '^one,cpu.x=1,76\.8$'
+rm calls
+measure chosen 0 mine.yaml --fovea ./stand_in --kernels one,three --csv chosen.csv --spread --spread-keys 'edma|pll' \
+  --spread-frames 3
+rows chosen.csv "${one},,,," "${three}48.0,edma.z=2,48.0,edma.z=2,"
+[ "$(wc -l <calls)" = 4 ] || fail "runs of keys that were not chosen: $(cat calls)"
+[ "$(grep -c 'run.frames=3' calls)" = 2 ] || fail "other windows: $(cat calls)"
+measure no_key 2 mine.yaml --fovea ./stand_in --kernels one --csv no_key.csv --spread --spread-keys ddr.z
+has no_key.err "no key with a belief interval that can matter begins like 'ddr.z'"
+rows no_key.csv "${one},,,,"
 measure hole 3 mine.yaml --fovea ./stand_in --kernels six,one --csv hole.csv --spread
 rows hole.csv "${one//one/six}76.8,cpu.x=1,120.0,bus.arm_d.width=64bit,no spread with cpu.x=9: fovea: the guest failed" \
   "${one}60.0,cpu.x=9,120.0,bus.arm_d.width=64bit,"
@@ -124,6 +134,8 @@ has unknown.err "unknown kernel 'simd'; allowed: one, two, three, four, five, si
 measure twice 2 mine.yaml --fovea ./stand_in -s firmware.kernel=one
 measure nowhere 2 mine.yaml --fovea ./stand_in --csv no/such/folder.csv
 measure jobs 2 mine.yaml --fovea ./stand_in -j 0
+measure regex 2 mine.yaml --fovea ./stand_in --spread --spread-keys '('
+measure no_spread 2 mine.yaml --fovea ./stand_in --spread-keys ddr
 measure program 2 mine.yaml --fovea ./no_such_program
 [ ! -e calls ] || fail "runs with wrong input: $(cat calls)"
 measure help 0 --help

@@ -26,7 +26,10 @@ struct Step {
   // kDma: the program waits until it is over.
   bool write = false;
   bool code = false;        ///< it writes one word, code_word(value)
-  unsigned bytes = 0;       ///< a multiple of 4
+  /// Its write waits in the memory's controller, where reads pass it, although the program sees it complete. It takes
+  /// effect with the next step kDma, or before the core's next write to the same bytes; each line by itself.
+  bool waits = false;
+  unsigned bytes = 0;       ///< a multiple of 4; 0: nothing but what waits
   Picoseconds delay = 0;    ///< from the program's start of the transfer to the access
 };
 
@@ -65,6 +68,8 @@ class HazardBench {
   std::unique_ptr<HazardChecker> checker;
   std::vector<Hazard> places;  ///< of the last run
   bool checked = true;         ///< false: no checker observes
+  bool follows = true;         ///< the checker is told when bytes move
+  unsigned passes = 0;         ///< line fills of the last run that passed a waiting write
 
   HazardBench() {
     m.section(kRegion[1], kRegion[1], 1, 0);
@@ -86,6 +91,8 @@ class HazardBench {
     steps_.push_back({});
     dma_read_.clear();
     places.clear();
+    waiting_.clear();
+    passes = 0;
     for (std::uint32_t n = 0; n < steps_.size(); ++n) {
       const Step& s = steps_[n];
       *op++ = static_cast<std::uint32_t>(s.what);
@@ -98,7 +105,7 @@ class HazardBench {
     checker.reset();
     if (caches && checked) {
       checker = std::make_unique<HazardChecker>(m.core);
-      checker->follow_moves();
+      if (follows) checker->follow_moves();
       checker->on_place = [this](const Hazard& h) { places.push_back(h); };
     }
     m.first_clock = m.core.clock().edge_after(m.port.now) - spent();
@@ -140,37 +147,61 @@ class HazardBench {
     const std::uint32_t id = m.core.reg(2);
     const Step& s = steps_[id - 1];
     m.port.schedule(m.core.boundary_time() + s.delay, [this, &s, id] {
+      for (const Part& p : waiting_) take_effect(p);
+      waiting_.clear();
       move(s);
       *tcm(kFlag) = id;
     });
     m.core.disturb();
   }
-  /// In bursts that cross no multiple of 64 bytes.
+  /// A burst of a step.
+  struct Part {
+    Step step;
+    MemRequest request;
+  };
+  static bool overlap(const MemRequest& a, const MemRequest& b) {
+    return a.address < b.address + b.bytes && b.address < a.address + a.bytes;
+  }
+  /// In bursts that cross no multiple of 64 bytes, or of 32 if they wait.
   void move(const Step& s) {
     for (std::uint32_t a = s.address; a < s.address + s.bytes;) {
-      const std::uint32_t end = std::min((a | 63u) + 1, s.address + s.bytes);
+      const std::uint32_t end = std::min((a | (s.waits ? 31u : 63u)) + 1, s.address + s.bytes);
       MemRequest r;
       r.address = a;
       r.bytes = static_cast<std::uint8_t>(end - a);
       r.write = s.write;
       r.master = s.write ? Master::kEdmaTc0Write : Master::kEdmaTc0Read;
       if (checker && !passing_) checker->arrived(r, m.port.now);
-      if (checker) checker->moved(r.master, r.write, r.address, r.bytes);
       passing_ = false;
-      for (; a < end; ++a) {
-        if (s.code) *m.port.at(a) = static_cast<std::uint8_t>(code_word(s.value) >> 8 * (a & 3u));
-        else if (s.write) *m.port.at(a) = dma_byte(s.value, a);
-        else dma_read_.push_back(*m.port.at(a));
-      }
+      if (s.waits) waiting_.push_back({s, r});
+      else take_effect({s, r});
+      a = end;
+    }
+  }
+  void take_effect(const Part& p) {
+    const MemRequest& r = p.request;
+    if (checker) checker->moved(r.master, r.write, r.address, r.bytes);
+    for (std::uint32_t a = r.address; a < r.address + r.bytes; ++a) {
+      if (p.step.code) *m.port.at(a) = static_cast<std::uint8_t>(code_word(p.step.value) >> 8 * (a & 3u));
+      else if (r.write) *m.port.at(a) = dma_byte(p.step.value, a);
+      else dma_read_.push_back(*m.port.at(a));
     }
   }
   void announce(const BusAccess& a) {
-    if (!checker) return;
     MemRequest r;
     r.address = a.kind == BusAccess::Kind::kWrap8 ? a.address & ~31u : a.address;
     r.bytes = a.bytes;
     r.write = a.write;
     r.master = a.port == BusAccess::Port::kData ? Master::kArmD : Master::kArmI;
+    const auto waits = [&](const Part& p) { return overlap(p.request, r); };
+    if (r.write) {
+      for (const Part& p : waiting_)
+        if (waits(p)) take_effect(p);
+      std::erase_if(waiting_, waits);
+    } else if (a.kind == BusAccess::Kind::kWrap8) {
+      passes += std::any_of(waiting_.begin(), waiting_.end(), waits);
+    }
+    if (!checker) return;
     const bool hit = during_.bytes && r.address == during_.address;
     if (hit && passing_) {
       MemRequest w;
@@ -222,6 +253,7 @@ table:
   std::vector<Step> steps_;
   Step during_;
   bool passing_ = false;
+  std::vector<Part> waiting_;  // oldest first
   std::vector<std::uint8_t> dma_read_;
 };
 
