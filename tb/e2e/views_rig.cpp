@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "model/contract/view_page.h"
 #include "sw/fovea/calibration.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/loader.h"
@@ -87,6 +88,30 @@ void ViewsRig::run(Picoseconds limit) {
   };
   while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
     slicer_.run(kPsPerMs);
+}
+
+ViewsRig::Runs ViewsRig::runs() const {
+  // `view` and `run_t` of sw/firmware/app/composition.c, as the target's compiler lays them out.
+  struct View {
+    std::uint32_t config, alignment;
+    view_page_t page;
+    std::uint32_t pairs, rows, run, runs;
+    std::array<std::uint32_t, 4> first_run;
+  };
+  struct Run {
+    std::uint32_t out, first;
+    std::uint16_t camera, pairs;
+  };
+  View view{};
+  const auto bytes = board_->peek(elf_.find("view")->address, sizeof view);
+  std::memcpy(&view, bytes.data(), sizeof view);
+  std::vector<Run> list(view.runs);
+  const auto entries = board_->peek(view.run, list.size() * sizeof(Run));
+  std::memcpy(list.data(), entries.data(), entries.size());
+  Runs out;
+  out.first = view.first_run;
+  for (const Run& r : list) out.camera.push_back(r.camera);
+  return out;
 }
 
 std::vector<std::uint32_t> ViewsRig::table() const {

@@ -36,6 +36,12 @@ class ViewsRig {
 
   board::Board& board() { return *board_; }
   std::vector<Composed>& shown() { return shown_; }
+  /// The program's runs, and for each camera the number of the first one that it believes to be that camera's.
+  struct Runs {
+    std::vector<unsigned> camera;
+    std::array<std::uint32_t, 4> first{};
+  };
+  Runs runs() const;
   /// The look-up table in target memory.
   std::vector<std::uint32_t> table() const;
   oracle::LutCheck table_check() const { return oracle::check_view(table(), views_, 0.02); }

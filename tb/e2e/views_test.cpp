@@ -163,6 +163,25 @@ TEST(ViewStamps, EachMosaicIsComposedOfTheSentFramesThatItsMarksName) {
   EXPECT_EQ(fault.find("displayed frame 8: pixel "), 0u) << fault;
 }
 
+// Where the engine's kernel is asked for and there is no engine, the runs are listed a second time, in strips. The sum
+// that notices a camera writing into a frame reads the first run of each camera.
+TEST(ViewFailures, WithoutTheEngineEachCamerasFirstRunIsThatOfTheStrips) {
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", "320").set("video.height", "120");
+  rig.set("firmware.view", "birds_eye").set("firmware.kernel", "engine").set("run.frames", "2");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 2u) << rig.board().uart_text();
+  ASSERT_NE(rig.board().uart_text().find("kernel engine: "), std::string::npos) << rig.board().uart_text();
+  ASSERT_NE(rig.board().uart_text().find("kernel: strips, "), std::string::npos) << rig.board().uart_text();
+  const ViewsRig::Runs runs = rig.runs();
+  for (unsigned n = 0; n < 4; ++n) {
+    const auto first = std::find(runs.camera.begin(), runs.camera.end(), n);
+    ASSERT_NE(first, runs.camera.end()) << n;
+    EXPECT_EQ(runs.first[n], static_cast<std::uint32_t>(first - runs.camera.begin())) << n;
+  }
+}
+
 TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
   ViewsRig rig;
   rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
