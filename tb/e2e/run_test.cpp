@@ -12,6 +12,7 @@
 
 #include "model/common/masters.h"
 #include "model/video/core/picture.h"
+#include "model/video/scene/plan_score.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/simulation.h"
 
@@ -308,6 +309,50 @@ INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 41
 
 // A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the
 // guest is not blamed for it.
+/// A small mosaic of the car park, by cameras whose lenses are those of the tables.
+app::RunResult run_mosaic(unsigned frames, Seen* seen) {
+  return run({{"firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_views.elf"},
+              {"cameras.count", "4"},
+              {"camera.kind", "car_park"},
+              {"camera.lens", "equisolid"},
+              {"camera.fov", "180deg"},
+              {"lens.mapping", "equisolid"},
+              {"lens.fov", "180deg"},
+              {"tvp5146.relock_fields", "0"},
+              {"firmware.view", "birds_eye"},
+              {"firmware.lut", "fixed_point"},
+              {"run.frames", std::to_string(frames)}},
+             false, kNever, seen);
+}
+
+// The mosaic fills 720x576 of the raster; the ground and the car are those of the keys' defaults.
+TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
+  Seen seen;
+  const app::RunResult r = run_mosaic(6, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  const video::PlanScore score({720, 576, 16, 12}, 4.8, 2);
+  const auto last = score(seen.displayed.at(5));
+  EXPECT_EQ(real(r, "quality.psnr_y"), last.psnr_y);
+  EXPECT_EQ(real(r, "quality.line_error"), last.line_error);
+  EXPECT_EQ(count(r, "quality.lines"), last.lines);
+  EXPECT_EQ(count(r, "quality.lines_missed"), last.missed);
+  // The first mosaic has one camera's part, so another mosaic's score would be another one.
+  const auto first = score(seen.displayed.at(0));
+  EXPECT_LT(first.lines, last.lines / 2);
+  EXPECT_LT(first.psnr_y, last.psnr_y - 3);
+  // Lines of the car park are where they are in the plan: pairs move as a whole, by up to a pixel.
+  EXPECT_GT(last.lines, 100u);
+  EXPECT_LT(last.line_error, 1.5);
+}
+
+TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
+  Seen seen;
+  const app::RunResult r = run_mosaic(3, &seen);
+  EXPECT_EQ(seen.displayed.size(), 3u);
+  for (const char* name : {"psnr_y", "line_error", "lines", "lines_missed"})
+    EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
+}
+
 TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
   const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"},
                       {"load.outstanding", "1"}});

@@ -1,9 +1,11 @@
 #include "tb/e2e/views_rig.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
+#include "model/contract/view_page.h"
 #include "sw/fovea/calibration.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/loader.h"
@@ -88,6 +90,30 @@ void ViewsRig::run(Picoseconds limit) {
     slicer_.run(kPsPerMs);
 }
 
+ViewsRig::Runs ViewsRig::runs() const {
+  // `view` and `run_t` of sw/firmware/app/composition.c, as the target's compiler lays them out.
+  struct View {
+    std::uint32_t config, alignment;
+    view_page_t page;
+    std::uint32_t pairs, rows, run, runs;
+    std::array<std::uint32_t, 4> first_run;
+  };
+  struct Run {
+    std::uint32_t out, first;
+    std::uint16_t camera, pairs;
+  };
+  View view{};
+  const auto bytes = board_->peek(elf_.find("view")->address, sizeof view);
+  std::memcpy(&view, bytes.data(), sizeof view);
+  std::vector<Run> list(view.runs);
+  const auto entries = board_->peek(view.run, list.size() * sizeof(Run));
+  std::memcpy(list.data(), entries.data(), entries.size());
+  Runs out;
+  out.first = view.first_run;
+  for (const Run& r : list) out.camera.push_back(r.camera);
+  return out;
+}
+
 std::vector<std::uint32_t> ViewsRig::table() const {
   const auto* symbol = elf_.find("lut");
   std::vector<std::uint32_t> out(std::size_t{params.width()} / 2 * params.height());
@@ -144,10 +170,17 @@ std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned cam
   const auto& layout = sources_[camera]->stamps();
   if (!layout) return std::nullopt;
   const double x = (params.raster_width() - params.width()) / 2, y = (params.raster_height() - params.height()) / 2;
-  const ShownFields f = read_stamps(shown.frame, *layout, [&](unsigned u, unsigned v) {
-    const oracle::Shown at = oracle::shown_at(views_, u, v);
-    const bool mine = at.camera == static_cast<int>(camera);
-    return mine ? std::optional<oracle::Position>({at.at.x + x, at.at.y + y}) : std::nullopt;
+  const bool by_centre = views_.lens[0].method == oracle::PairMethod::kPairCentre;
+  const ShownFields f = read_stamps(shown.frame, *layout, [&](unsigned u, unsigned v) -> std::optional<oracle::Position> {
+    if (!views_.birds_eye) {
+      const oracle::Shown at = oracle::shown_at(views_, u, v);
+      if (at.camera != static_cast<int>(camera)) return std::nullopt;
+      return oracle::Position{at.at.x + x, at.at.y + y};
+    }
+    // A camera may be turned by any angle: of a pair only the pixel for which it was looked up is in its place.
+    const oracle::Shown at = oracle::shown_at(views_, u / 2 * 2 + (by_centre ? 0.5 : 0), v);
+    if (at.camera != static_cast<int>(camera)) return std::nullopt;
+    return oracle::Position{std::floor(std::floor(at.at.x + 0.5) / 2) * 2 + u % 2 + x, std::floor(at.at.y + 0.5) + y};
   });
   // At half height the rows of one field may be the only ones that are shown.
   const bool even = f.even_camera == camera, odd = f.odd_camera == camera;
@@ -156,21 +189,34 @@ std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned cam
   return even ? *f.even / 2u : (*f.odd - 1u) / 2u;
 }
 
+std::string ViewsRig::wrong_composition(const Composed& s, const std::vector<std::uint32_t>& lut) {
+  std::array<const oracle::Frame*, kCameras> frames{};
+  bool any = false;
+  for (unsigned n = 0; n < kCameras; ++n)
+    if (s.number[n]) {
+      frames[n] = &sent(n, *s.number[n]);
+      any = true;
+    }
+  if (!any) return "no part is that of a sent frame";
+  const auto d = oracle::compare(oracle::compose(frames, lut, cameras_, views_.lens[0].pitch_bytes), s.frame);
+  return d ? d->text() : "";
+}
+
+std::string ViewsRig::wrong_by_stamps(const std::vector<std::uint32_t>& lut) {
+  for (Composed& s : shown_) {
+    for (unsigned n = 0; n < kCameras; ++n) s.number[n] = stamp(s, n);
+    if (const std::string fault = wrong_composition(s, lut); !fault.empty())
+      return "displayed frame " + std::to_string(s.index) + ": " + fault;
+  }
+  return "";
+}
+
 std::string ViewsRig::wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest) {
   for (Composed& s : shown_) {
     const std::string which = "displayed frame " + std::to_string(s.index) + ": ";
     s.number = {};
     if (const std::string fault = find_frames(s, lut, oldest); !fault.empty()) return which + fault;
-    std::array<const oracle::Frame*, kCameras> frames{};
-    bool any = false;
-    for (unsigned n = 0; n < kCameras; ++n)
-      if (s.number[n]) {
-        frames[n] = &sent(n, *s.number[n]);
-        any = true;
-      }
-    if (!any) return which + "no part is that of a sent frame";
-    if (const auto d = oracle::compare(oracle::compose(frames, lut, cameras_, views_.lens[0].pitch_bytes), s.frame))
-      return which + d->text();
+    if (const std::string fault = wrong_composition(s, lut); !fault.empty()) return which + fault;
   }
   return "";
 }

@@ -36,6 +36,12 @@ class ViewsRig {
 
   board::Board& board() { return *board_; }
   std::vector<Composed>& shown() { return shown_; }
+  /// The program's runs, and for each camera the number of the first one that it believes to be that camera's.
+  struct Runs {
+    std::vector<unsigned> camera;
+    std::array<std::uint32_t, 4> first{};
+  };
+  Runs runs() const;
   /// The look-up table in target memory.
   std::vector<std::uint32_t> table() const;
   oracle::LutCheck table_check() const { return oracle::check_view(table(), views_, 0.02); }
@@ -46,12 +52,15 @@ class ViewsRig {
   /// @param oldest a part may be of a frame that began so many frames before the picture was displayed: more than a
   ///        round of four cameras and the display's buffers
   std::string wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest = 12);
+  /// The same, where the marks of each part name the frame that it shows; nothing else is asked which frame that may be.
+  std::string wrong_by_stamps(const std::vector<std::uint32_t>& lut);
   /// The camera's frame number in the marks of its part of a displayed picture; nothing if they cannot be read.
   std::optional<std::uint64_t> stamp(const Composed& shown, unsigned camera) const;
   board::BoardParams params;
 
  private:
   const oracle::Frame& sent(unsigned camera, std::uint64_t number);
+  std::string wrong_composition(const Composed& shown, const std::vector<std::uint32_t>& lut);
   std::string find_frames(Composed& shown, const std::vector<std::uint32_t>& lut, std::uint64_t oldest);
 
   ParamSet set_;

@@ -106,6 +106,82 @@ TEST(ViewStamps, EachPartsMarksNameTheFrameThatItsBytesAre) {
   }
 }
 
+/// Cameras that look straight down, so that their marks, above the middle of their pictures, are in their parts of the
+/// mosaic: 80 px of a camera's picture to a metre of ground (255 px / 3.19 m), and 100 of the mosaic.
+void look_down(ViewsRig& rig) {
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("tvp5146.relock_fields", "0");
+  rig.set("video.width", "480").set("video.height", "400").set("lens.focal", "255px");
+  rig.set("firmware.view", "birds_eye").set("birds_eye.width", "4.8m").set("birds_eye.height", "4m");
+  rig.set("birds_eye.car_length", "0.1m").set("birds_eye.car_width", "0.1m");
+  const struct {
+    const char *x, *y, *yaw;
+  } sides[] = {{"0.2m", "0m", "0deg"}, {"0m", "-0.2m", "-90deg"}, {"-0.2m", "0m", "180deg"}, {"0m", "0.2m", "90deg"}};
+  for (unsigned n = 0; n < 4; ++n) {
+    const std::string mount = "camera." + std::to_string(n) + ".mount.";
+    rig.set(mount + "x", sides[n].x).set(mount + "y", sides[n].y).set(mount + "yaw", sides[n].yaw);
+    rig.set(mount + "height", "3.19m").set(mount + "pitch", "90deg").set(mount + "roll", "0deg");
+  }
+}
+
+TEST(ViewStamps, EachMosaicIsComposedOfTheSentFramesThatItsMarksName) {
+  ViewsRig rig;
+  look_down(rig);
+  rig.set("firmware.kernel", "fastest").set("run.frames", "9");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 9u) << rig.board().uart_text();
+  const oracle::LutCheck check = rig.table_check();
+  EXPECT_EQ(check.wrong, 0u) << check.first_wrong->text();
+  const auto lut = rig.table();
+  ASSERT_EQ(rig.wrong_by_stamps(lut), "");
+  const auto& shown = rig.shown();
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    // Genlocked cameras in turn: each mosaic has one frame that the one before had not, the next of the raster.
+    unsigned seen = 0, renewed = 0;
+    for (unsigned n = 0; n < 4; ++n) {
+      seen += shown[i].number[n].has_value();
+      if (i == 0 || shown[i].number[n] == shown[i - 1].number[n]) continue;
+      ++renewed;
+      ASSERT_TRUE(shown[i].number[n]) << i;
+      const auto before = shown[i - 1].number[(n + 3) % 4];
+      ASSERT_TRUE(before) << i;
+      EXPECT_EQ(*shown[i].number[n], *before + 1) << i;
+    }
+    EXPECT_EQ(seen, std::min<std::size_t>(i + 1, 4)) << i;
+    EXPECT_EQ(renewed, i == 0 ? 0u : 1u) << i;
+  }
+  // It complains of a wrong table: the row with the marks of camera 0, moved by a pair.
+  auto wrong = lut;
+  for (std::size_t i = 0; i < 240; ++i) wrong[100 * 240 + i] ^= 4;
+  EXPECT_NE(rig.wrong_by_stamps(wrong), "");
+  // And of a part that is older than its marks say: here the digits below them are of the round before.
+  auto& last = rig.shown().back().frame.uyvy;
+  const auto& older = rig.shown()[shown.size() - 5].frame.uyvy;
+  for (std::size_t v = 135; v < 165; ++v)
+    std::copy_n(older.begin() + static_cast<std::ptrdiff_t>((v * 480 + 200) * 2), 160,
+                last.begin() + static_cast<std::ptrdiff_t>((v * 480 + 200) * 2));
+  const std::string fault = rig.wrong_by_stamps(lut);
+  EXPECT_EQ(fault.find("displayed frame 8: pixel "), 0u) << fault;
+}
+
+// Where the engine's kernel is asked for and there is no engine, the runs are listed a second time, in strips. The sum
+// that notices a camera writing into a frame reads the first run of each camera.
+TEST(ViewFailures, WithoutTheEngineEachCamerasFirstRunIsThatOfTheStrips) {
+  ViewsRig rig;
+  rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");
+  rig.set("tvp5146.relock_fields", "0").set("video.width", "320").set("video.height", "120");
+  rig.set("firmware.view", "birds_eye").set("firmware.kernel", "engine").set("run.frames", "2");
+  rig.run(kViewLimit);
+  ASSERT_EQ(rig.shown().size(), 2u) << rig.board().uart_text();
+  ASSERT_NE(rig.board().uart_text().find("kernel engine: "), std::string::npos) << rig.board().uart_text();
+  ASSERT_NE(rig.board().uart_text().find("kernel: strips, "), std::string::npos) << rig.board().uart_text();
+  const ViewsRig::Runs runs = rig.runs();
+  for (unsigned n = 0; n < 4; ++n) {
+    const auto first = std::find(runs.camera.begin(), runs.camera.end(), n);
+    ASSERT_NE(first, runs.camera.end()) << n;
+    EXPECT_EQ(runs.first[n], static_cast<std::uint32_t>(first - runs.camera.begin())) << n;
+  }
+}
+
 TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
   ViewsRig rig;
   rig.set("cameras.count", "4").set("camera.kind", "chart").set("camera.stamp", "false");

@@ -11,6 +11,7 @@ extern "C" {
 #include "sw/firmware/app/capture_check.h"
 #include "sw/firmware/app/config.h"
 #include "sw/firmware/app/display_watch.h"
+#include "sw/firmware/app/open_frame.h"
 #include "sw/firmware/app/output.h"
 #include "sw/firmware/app/overlay.h"
 #include "sw/lens/lens.h"
@@ -198,6 +199,44 @@ TEST(CaptureTest, CaptureMovesOnToABufferThatWasNotFilledAnew) {
   c.busy |= 1u << 0;
   c.reused = 1u << 1 | 1u << 3;
   EXPECT_EQ(capture_take_reused(&c), 1) << "neither the one that is filled";
+}
+
+TEST(CaptureTest, AnOpenFrameWaitsForItsJudgementWhileTheNextOneIsFilled) {
+  capture_t c;
+  capture_init(&c, 4);
+  open_frame_t open{CAPTURE_NONE, 0};
+  EXPECT_EQ(open_frame_begin(&open, &c), 1);
+  EXPECT_EQ(c.ready, CAPTURE_NONE) << "nobody takes it yet";
+  open_frame_good(&open, &c);
+  EXPECT_EQ(c.ready, 0);
+  EXPECT_EQ(c.ready_sequence, 0u);
+  EXPECT_EQ(open.buffer, CAPTURE_NONE);
+  // The frame that waits is not touched before the open one is known to be good.
+  EXPECT_EQ(open_frame_begin(&open, &c), 2);
+  EXPECT_EQ(c.ready, 0);
+  EXPECT_EQ(c.ready_sequence, 0u);
+  open_frame_useless(&open, &c);
+  EXPECT_EQ(c.ready, 0);
+  EXPECT_EQ(c.dropped, 1u);
+  EXPECT_EQ(c.reused, 1u << 1) << "its marks are gone";
+  EXPECT_EQ(open_frame_begin(&open, &c), 3);
+  open_frame_good(&open, &c);
+  EXPECT_EQ(c.ready, 2);
+  EXPECT_EQ(c.ready_sequence, 2u);
+  EXPECT_EQ(c.dropped, 2u) << "the frame that waited";
+  EXPECT_EQ(c.reused, 1u << 1 | 1u << 0);
+  // One in work, one that waits, one open: the fourth one is filled, and there is no fifth.
+  uint32_t sequence = 0;
+  EXPECT_EQ(capture_take(&c, &sequence), 2);
+  EXPECT_EQ(open_frame_begin(&open, &c), 0);
+  open_frame_good(&open, &c);
+  EXPECT_EQ(open_frame_begin(&open, &c), 1);
+  EXPECT_EQ(c.busy, 1u << 2 | 1u << 0) << "in work, and open";
+  open_frame_t fifth{CAPTURE_NONE, 0};
+  EXPECT_EQ(open_frame_begin(&fifth, &c), CAPTURE_NONE);
+  EXPECT_EQ(fifth.buffer, CAPTURE_NONE);
+  EXPECT_EQ(c.ready, 3) << "still waiting";
+  EXPECT_EQ(c.dropped, 3u);
 }
 
 TEST(DisplayWatchTest, EachChangeIsSaidOnceAndItIsFineAfterASecond) {

@@ -94,6 +94,7 @@ struct Fields {
   field_watch_t watch;
   double at = 4.29e9;  // the counter wraps soon
   bool is_625, second = false;
+  uint32_t camera = 0;
   /// The first field start is over.
   explicit Fields(bool standard_625) : is_625(standard_625) {
     field_watch_init(&watch, standard_625);
@@ -105,7 +106,7 @@ struct Fields {
     // From the first active line of the first field to that of the second one, and back.
     const unsigned there = is_625 ? 336 - 23 : 283 - 20, all = is_625 ? 625 : 525;
     at += (second ? there : all - there) * line * (1 + ppm * 1e-6) + late;
-    const auto event = field_watch_field(&watch, 0, second, static_cast<uint32_t>(static_cast<uint64_t>(at)));
+    const auto event = field_watch_field(&watch, camera, second, static_cast<uint32_t>(static_cast<uint64_t>(at)));
     second = !second;
     return event;
   }
@@ -165,6 +166,84 @@ TEST(FieldWatchTest, TheDistanceFromAnotherRasterIsNotJudged) {
   EXPECT_FALSE(f.watch.irregular);
   f.next(-54321);
   EXPECT_TRUE(f.watch.irregular);
+}
+
+/// Cameras 0 and 1 in turn, a frame each; camera 1 is next.
+struct TwoInTurn : Fields {
+  explicit TwoInTurn(bool standard_625) : Fields(standard_625) {
+    frame();
+    frame();
+  }
+  /// A frame of the camera that is next, whose fields begin late. @return what was said at them
+  std::pair<watch_event_t, watch_event_t> frame(int late_first = 0, int late_second = 0) {
+    camera = 1 - camera;
+    field_watch_frame(&watch);
+    second = false;
+    const auto first = next(late_first);
+    return {first, next(late_second)};
+  }
+};
+constexpr std::pair kNothingSaid{WATCH_NOTHING, WATCH_NOTHING};
+
+// What is early after a change began early; what is late may have followed a field that ended early.
+TEST(FieldWatchTest, AFieldThatLacksLinesIsNotTheFaultOfTheCameraThatFollows) {
+  const int line = 1536;
+  for (const bool is_625 : {true, false})
+    for (const int lines : {1, 4, 100}) {
+      TwoInTurn f(is_625);
+      EXPECT_EQ(f.frame(), kNothingSaid);
+      EXPECT_EQ(f.camera, 1u);
+      EXPECT_EQ(f.frame(lines * line), std::pair(WATCH_NOTHING, WATCH_SUSPECT_SHORT));
+      EXPECT_EQ(f.watch.suspect, 1u);
+      EXPECT_FALSE(f.watch.irregular) << "camera 0's frame is as it should be";
+      EXPECT_EQ(f.frame(), kNothingSaid);
+      EXPECT_FALSE(f.watch.irregular);
+      // A first line that was missed is late itself, and what follows is early.
+      EXPECT_EQ(f.frame(lines * line, -lines * line), kNothingSaid);
+      EXPECT_TRUE(f.watch.irregular);
+      EXPECT_EQ(f.frame(), kNothingSaid);
+      EXPECT_FALSE(f.watch.irregular) << "nor is the next one to blame";
+      EXPECT_EQ(f.frame(-lines * line), kNothingSaid) << "camera 0 is out of step";
+      EXPECT_TRUE(f.watch.irregular);
+    }
+}
+
+TEST(FieldWatchTest, OfOneCameraALateFieldIsItsOwnFault) {
+  Fields f(true);
+  f.next();
+  f.next();
+  f.next(1536);
+  EXPECT_TRUE(f.watch.irregular);
+  // So it is in the second field after a change: a first field was not seen.
+  TwoInTurn other(true);
+  other.camera = 0;
+  other.next();
+  other.second = true;
+  other.camera = 1;
+  field_watch_frame(&other.watch);
+  other.next(1536);
+  EXPECT_TRUE(other.watch.irregular);
+}
+
+// ITU-R BT.656: a frame ends with line 625 (525/60: line 3), and line 23 (20) is the first active one.
+TEST(FieldWatchTest, TheFirstLineAfterAFrameTellsWhetherItsLastFieldWasWhole) {
+  for (const bool is_625 : {true, false}) {
+    Fields f(is_625);
+    f.next();
+    f.next();
+    const double line = (is_625 ? 1728 : 1716) * 24.0 / 27.0;
+    const auto whole = [&](double lines_late, int ticks = 0) {
+      const auto gap = static_cast<uint32_t>((is_625 ? 23 - 1 : 20 - 4) * line + lines_late * line) + ticks;
+      return field_watch_whole(&f.watch, f.watch.last + gap) != 0;
+    };
+    const int most = static_cast<int>(FIELD_TOLERANCE_TICKS);
+    EXPECT_TRUE(whole(0));
+    EXPECT_TRUE(whole(0, -most));
+    EXPECT_FALSE(whole(0, -most - 1));
+    EXPECT_FALSE(whole(-1));
+    EXPECT_FALSE(whole(is_625 ? -20 : -15));
+    EXPECT_TRUE(whole(1)) << "a code of the next frame was missed";
+  }
 }
 
 /// How often the watch says something in so many fields, and what it said last.

@@ -199,6 +199,8 @@ TEST(VpssTest, RoutesLikeLinuxAndOpensTheGates) {
   EXPECT_EQ(chip.values[0x01C70010], 0x0B1F0100u);
   EXPECT_EQ(chip.values[0x01C70014], 0x1F0A0F1Fu);
   EXPECT_EQ(chip.values[0x01C70018], 0x15u);
+  vpss_route_vdint2();
+  EXPECT_EQ(chip.values[0x01C70010], 0x0B020100u);
 }
 
 TEST(IntcTest, AtFirstEverySourceIsClosedAndNothingIsPending) {

@@ -91,6 +91,17 @@ TEST(TurnsTest, FramesThatLackPartsAreSaidOfTheirCameraUntilManyAreWhole) {
   EXPECT_EQ(t.said(), Lines{"0 frames again"});
 }
 
+TEST(TurnsTest, AFieldThatWasTooShortIsSaidOfItsCameraAfterItsTurn) {
+  Turns t(2);
+  turns_captured(&t);
+  turns_short(&t, 0);
+  turns_short(&t, 0);
+  EXPECT_EQ(t.said(), Lines{"0 irregular syncs, frames are left out"});
+  EXPECT_EQ(t.now, 1u) << "whose turn it is does not change";
+  for (unsigned n = 0; n < 2 * TURNS_REGULAR_FRAMES; ++n) turns_captured(&t);
+  EXPECT_EQ(t.said(), Lines{"0 frames again"});
+}
+
 TEST(TurnsTest, OnlyTheChosenCamerasHaveTurnsInTheirOrder) {
   Turns t(3);
   EXPECT_EQ(turns_captured(&t), 1u);

@@ -19,12 +19,21 @@
 /* Fields for a measurement of the clock: a second of them. */
 #define FIELD_DRIFT_FIELDS 50u
 
-typedef enum watch_event { WATCH_NOTHING = 0, WATCH_CLOCK_OFF, WATCH_CLOCK_RIGHT } watch_event_t;
+typedef enum watch_event {
+  WATCH_NOTHING = 0,
+  WATCH_CLOCK_OFF,
+  WATCH_CLOCK_RIGHT,
+  WATCH_SUSPECT_SHORT /* the frame of the camera before, `suspect`, was too short */
+} watch_event_t;
 
 typedef struct field_watch {
   uint32_t nominal[2]; /* from a field's start to the next one: the ends of first and second fields */
   uint32_t last;       /* time of the last field start */
+  uint32_t gap;        /* from a frame's end to the first active line of the next one */
   uint32_t unknown;    /* so many of the next distances say nothing */
+  uint32_t before;     /* camera of the last field start */
+  int suspected;       /* the last distance was too long, to another camera */
+  uint32_t suspect;    /* the camera before that one */
   int irregular;       /* a distance was wrong since the last field_watch_frame() */
   struct {
     int32_t ticks; /* sum of what regular distances were too long by */
@@ -43,10 +52,19 @@ void field_watch_restart(field_watch_t *watch);
 /** A frame begins: whether it is regular is counted from here. */
 void field_watch_frame(field_watch_t *watch);
 
-/** A field of a camera has ended, and the next one begins.
+/** A field of a camera has ended, and the next one begins. Between two cameras a distance that is too long is the fault
+ * of either: the frame of the one before lacked lines, so that its end came early, or the first field of the other one
+ * began late. The next distance tells. One that is too short is the fault of the other camera.
  * @param second the field that has ended is the second one of its frame
  * @param now ticks
- * @return whether its clock is found to be off now, or to be right again */
+ * @return whether its clock is found to be off now, or to be right again, or the suspected camera to be guilty */
 watch_event_t field_watch_field(field_watch_t *watch, uint32_t camera, int second, uint32_t now);
+
+/** The first active line after a frame begins, of the same camera. Only now can lines be noticed that the frame's
+ * second field lacked, since its end is found by counting lines: the line comes too early then. It comes too late if a
+ * code of the next frame was damaged.
+ * @param now ticks
+ * @return whether the second field was as long as it should be */
+int field_watch_whole(const field_watch_t *watch, uint32_t now);
 
 #endif

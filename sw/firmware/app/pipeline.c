@@ -24,6 +24,7 @@
 #include "../drivers/uart_queue.h"
 #include "capture_check.h"
 #include "field_watch.h"
+#include "open_frame.h"
 #endif
 #ifdef COMPOSED_VIEW
 #include "composition.h"
@@ -69,6 +70,8 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
+  open_frame_t open;
+  int select_later;   /* the decoder changes to the camera whose turn it is at the next first line */
 #endif
 #ifdef TIME_DIVISION
   display_watch_t display_watch;
@@ -135,7 +138,12 @@ static void captured_frame_done(void) {
     pipe.capturing = 0;
     return;
   }
+#ifdef CONSOLE
+  const int32_t next = pipe.config->check_capture ? open_frame_begin(&pipe.open, &pipe.capture)
+                                                  : capture_frame_done(&pipe.capture);
+#else
   const int32_t next = capture_frame_done(&pipe.capture);
+#endif
   fw_state.dropped = pipe.capture.dropped;
   if (next == CAPTURE_NONE) return;
   if (isif_set_address((uint32_t)in_buffer(next)) != ISIF_OK) fail("ISIF", "buffer address");
@@ -172,20 +180,34 @@ static void capture_field_end(void) {
 static void watch_field(uint32_t now) {
   const watch_event_t seen =
       field_watch_field(&pipe.watch, pipe.turns.now, isif_second_field(), now);
-  if (seen != WATCH_NOTHING)
+  if (seen == WATCH_SUSPECT_SHORT)
+    turns_short(&pipe.turns, pipe.watch.suspect);
+  else if (seen != WATCH_NOTHING)
     turns_note(&pipe.turns, seen == WATCH_CLOCK_OFF ? CAMERA_CLOCK_OFF : CAMERA_CLOCK_RIGHT);
 }
 static int irregular(void) { return pipe.watch.irregular; }
+static void close_frame(int good) {
+  if (pipe.open.buffer == CAPTURE_NONE) return;
+  if (good)
+    open_frame_good(&pipe.open, &pipe.capture);
+  else
+    open_frame_useless(&pipe.open, &pipe.capture);
+  fw_state.dropped = pipe.capture.dropped;
+}
 static void watch_frame(void) { field_watch_frame(&pipe.watch); }
 static void watch_another(void) { field_watch_restart(&pipe.watch); }
 #else
 static void watch_field(uint32_t now) { (void)now; }
 static int irregular(void) { return 0; }
+static void close_frame(int good) { (void)good; }
 static void watch_frame(void) {}
 static void watch_another(void) {}
 #endif
 
 static void select_camera(uint32_t camera) {
+#ifdef CONSOLE
+  pipe.select_later = 0;
+#endif
   /* Without an answer the next look shows no lock. */
   i2c_result_t ignored = tvp5146_select(pipe.config->input[camera]);
   (void)ignored;
@@ -236,6 +258,21 @@ static void end_frame(const signal_state_t *seen) {
     turns_torn(&pipe.turns);
 }
 
+/* A frame that is open is judged by the next line of its camera. Nobody sees that line if a camera with the same syncs
+ * follows at once. */
+#ifdef CONSOLE
+static int waits_for_first_line(uint32_t before) {
+  const uint8_t *genlocked = pipe.config->genlocked;
+  if (genlocked[before] && genlocked[pipe.turns.now]) close_frame(1);
+  return pipe.select_later = pipe.open.buffer != CAPTURE_NONE;
+}
+#else
+static int waits_for_first_line(uint32_t before) {
+  (void)before;
+  return 0;
+}
+#endif
+
 /* VDINT1, at the start of a field. Between two frames the decoder changes to the camera whose turn it is. */
 static void field_start(void) {
   watch_field(timer_ticks());
@@ -251,6 +288,7 @@ static void field_start(void) {
   pipe.complete = 0;
   if (pipe.turns.now != before) {
     if (!signal_ready(&seen)) watch_another(); /* the fields so far were no camera's, or of another standard */
+    if (waits_for_first_line(before)) return;
     select_camera(pipe.turns.now);
     /* The lines of a camera with other syncs go on in the midst of a picture: first a frame must begin. */
     if (!pipe.config->genlocked[before] || !pipe.config->genlocked[pipe.turns.now]) {
@@ -262,10 +300,26 @@ static void field_start(void) {
   begin_frame(&seen);
 }
 
+#ifdef CONSOLE
+/* VDINT2, at the first active line of a field. Only where frames are checked: is the one that is complete whole? */
+static void first_line(void) {
+  const uint32_t now = timer_ticks();
+  if (pipe.open.buffer != CAPTURE_NONE) {
+    const int whole = field_watch_whole(&pipe.watch, now);
+    if (!whole) turns_short(&pipe.turns, pipe.camera_of[pipe.open.buffer]);
+    close_frame(whole);
+  }
+  if (!pipe.select_later) return;
+  select_camera(pipe.turns.now);
+  watch_another();
+}
+#endif
+
 static void display_field_passed(void) {
   if (++pipe.quiet_fields < QUIET_FIELDS) return;
   pipe.quiet_fields = 0;
   isif_watch();
+  close_frame(0);
   if (pipe.capturing) leave_frame_out();
   pipe.capturing = pipe.complete = 0;
   watch_another();
@@ -324,6 +378,8 @@ void irq_dispatch(void) {
     field_start();
 #endif
 #ifdef CONSOLE
+  else if (source == IRQ_VPSSINT2)
+    first_line();
   else if (source == IRQ_UART0)
     uart_queue_interrupt();
 #endif
@@ -417,6 +473,7 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 #endif
 #ifdef CONSOLE
   field_watch_init(&pipe.watch, config->is_625);
+  pipe.open.buffer = CAPTURE_NONE;
 #endif
   pipe.config = config;
   pipe.standard = config->is_625 ? TVP5146_PAL : TVP5146_NTSC;
@@ -426,8 +483,11 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 #endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
 #ifdef CONSOLE
-  if (config->check_capture)
+  if (config->check_capture) {
     for (uint32_t n = 0; n < in_count; ++n) mark_buffer((int32_t)n);
+    isif_mark_first_lines();
+    vpss_route_vdint2();
+  }
   /* The display's frames begin where they will: nothing is known of the camera's yet. */
   if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 #endif
@@ -448,6 +508,9 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   intc_enable(IRQ_VPSSINT8, 3);
 #ifdef TIME_DIVISION
   intc_enable(IRQ_VPSSINT1, 2);
+#endif
+#ifdef CONSOLE
+  if (config->check_capture) intc_enable(IRQ_VPSSINT2, 2);
 #endif
   irq_unmask();
 }

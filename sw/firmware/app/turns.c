@@ -82,6 +82,13 @@ void turns_overflow(turns_t *turns, uint32_t camera) {
   say_of(turns, camera, CAMERA_OVERFLOW);
 }
 
+#ifdef CONSOLE /* the views keep their code, and with it their times */
+void turns_short(turns_t *turns, uint32_t camera) {
+  turns->regular[camera] = 0;
+  say_of(turns, camera, CAMERA_IRREGULAR);
+}
+#endif
+
 void turns_torn(turns_t *turns) {
   boundary(turns);
   turns->waited = 0;

@@ -70,6 +70,9 @@ uint32_t turns_irregular(turns_t *turns);
 /** A frame of this camera, which was captured before, is of no use, as a part of it is missing in memory. */
 void turns_overflow(turns_t *turns, uint32_t camera);
 
+/** The same, as its last field lacked lines. For the program with the watch over the fields. */
+void turns_short(turns_t *turns, uint32_t camera);
+
 /** Something is to be said of the present camera that does not change its state. */
 void turns_note(turns_t *turns, camera_event_t event);
 
