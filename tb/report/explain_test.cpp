@@ -157,7 +157,7 @@ TEST_F(ExplainTest, TwoMoversAreBothNamed) {
   set("cpu.remap.idle", std::uint64_t{90});
   set("cpu.remap.idle.dma", std::uint64_t{10});
   set("cpu.remap.idle.engine", std::uint64_t{80});
-  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA and the remap engine are done.");
+  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA or the remap engine is done.");
 }
 
 TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {

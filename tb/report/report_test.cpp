@@ -226,7 +226,7 @@ TEST(PageTest, FunctionsAreThoseOfTheFrames) {
                               "value=\"750\">750</data></td>"
                               "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td "
                               "class=\"n\"><data value=\"250\">250</data>"
-                              "</td><td>dcache</td><td>remap.c:10</td></tr>"));
+                              "</td><td>line fills of the D-cache</td><td>remap.c:10</td></tr>"));
   EXPECT_THAT(page, Not(HasSubstr("<code>start</code>")));  // of the phase boot
 }
 
@@ -319,7 +319,7 @@ TEST(CompareTest, ShowsEachRunAndTheDifference) {
                       "<td>2 <small>(command line)</small></td>"));
   EXPECT_THAT(page, HasSubstr("The runs come from different states of the simulator"));
   EXPECT_THAT(page,
-              HasSubstr("The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less."));
+              HasSubstr("The remap of B takes 8.00&nbsp;ms instead of the 10.0&nbsp;ms of A: 20&nbsp;% less."));
   EXPECT_THAT(page, HasSubstr("B: two"));
   // Rounding of a sum is no difference.
   EXPECT_THAT(page, Not(HasSubstr("e-1")));
