@@ -389,7 +389,7 @@ TEST_F(BlameTest, ASleepWithinARemapWaitsForTheEdmaWhateverEndsIt) {
   EXPECT_EQ(figures.idle.change(), -35);
 }
 
-// Waits for both, or for neither by name, are one cause without a name.
+// Waits for both are one cause, and so are those for neither by name.
 TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
   for (const char* other : {"wait.engine", "wait.timer"}) {
     RunMaker run = after;
@@ -397,7 +397,7 @@ TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
     replace(run.profile, "idle.capture,,,300", fmt::format("{},,,100,0\nframes,sleep,cp15.c,3,{},,,200", both ? "wait.dma" : "wait.other", other));
     std::uint64_t sum = 0;
     for (const auto& r : attribution_of(read_run(run.write(dir, "e")), true).rows)
-      if (r.cause == "wait") sum += r.clocks;
+      if (r.cause == (both ? "wait.dma_or_engine" : "wait")) sum += r.clocks;
     EXPECT_EQ(sum, 300u) << other;
   }
 }
