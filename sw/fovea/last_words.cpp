@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -11,6 +12,7 @@
 
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/cli_help.h"
+#include "sw/fovea/explain/words.h"
 #include "sw/fovea/sleep.h"
 
 namespace fovea::app {
@@ -138,6 +140,11 @@ std::string core_line(std::span<const StatRow> stats) {
   return paragraph("core", listed(apportioned_parts(1000, all_clocks(stats)), "\x1f%"));
 }
 
+/// "the display" for `vpbe`; empty for masters of which a chip has several, which their names tell apart.
+std::string master_words(std::string_view name) {
+  return name.starts_with("edma_tc") ? "" : explain::master(name);
+}
+
 std::string culprit_words(const std::string& name) {
   static const std::map<std::string, std::string> kWords = {
       {"bridge", "bridges"},
@@ -149,7 +156,9 @@ std::string culprit_words(const std::string& name) {
       {"power_down", "waking the SDRAM"},
       {"own", "behind their own requests"}};
   const auto found = kWords.find(name);
-  return found == kWords.end() ? "behind " + name : found->second;
+  if (found != kWords.end()) return found->second;
+  const std::string who = master_words(name);
+  return "behind " + (who.empty() ? name : who);
 }
 
 /// The masters and directions that waited longest for the SDRAM, each with its largest parts.
@@ -170,7 +179,8 @@ std::string wait_lines(std::span<const StatRow> stats) {
     const std::string direction = rest.substr(0, rest.find('.'));
     const std::string master = row.name.substr(4, at - 4);
     Group& g = groups[master + " " + direction];
-    g.who = master + "'s " + direction + "s";
+    const std::string words = master_words(master);
+    g.who = fmt::format("{}'s {}s{}", master, direction, words.empty() ? "" : " (" + words + ")");
     g.total += *t;
     g.parts.emplace_back(*t, culprit_words(rest.substr(rest.find('.') + 1)));
   }
@@ -186,7 +196,8 @@ std::string wait_lines(std::span<const StatRow> stats) {
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<std::string> parts;
     for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
-      parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, 100 * g.parts[k].first / g.total));
+      if (const double percent = 100 * g.parts[k].first / g.total; percent >= 0.5)  // as shown not zero
+        parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, percent));
     out += paragraph(i == 0 ? "waits" : "",
                      fmt::format("{}, {} in all: {}", g.who, unbroken(human_text(g.total, "s")), fmt::join(parts, ", ")));
   }
@@ -251,7 +262,8 @@ std::string camera_lines(std::span<const StatRow> stats) {
     const std::string prefix = fmt::format("camera.{}.frame.", n);
     const auto rate = real(stats, prefix + "rate");
     if (!rate) break;
-    std::string part = fmt::format("camera {} {:.4g} frames a second", n, *rate);
+    std::string part = *rate > 0 ? fmt::format("camera {} {:.4g} frames a second", n, *rate)
+                                 : fmt::format("camera {} no frame", n);
     for (const char* fate : {"dropped", "superseded"})
       if (const std::uint64_t frames = count(stats, prefix + fate)) part += fmt::format(", {} {}", frames, fate);
     parts.push_back(std::move(part));
@@ -287,11 +299,12 @@ std::string frame_budget(std::span<const StatRow> stats) {
       static_cast<std::uint64_t>(std::llround(*window / static_cast<double>(displayed) * 1e4));
   const std::vector<std::uint64_t> parts =
       apportioned(period, std::vector<std::uint64_t>{remap, cycles - remap - spare, spare});
-  std::string out = paragraph(
-      "budget",
-      fmt::format("{}.{} ms a displayed frame: remap {}.{}, other work {}.{}, idle {}.{}", period / 10,
-                  period % 10, parts[0] / 10, parts[0] % 10, parts[1] / 10, parts[1] % 10, parts[2] / 10,
-                  parts[2] % 10));
+  std::string divided;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (parts[k])
+      divided += fmt::format("{}{} {}.{}", divided.empty() ? "" : ", ", std::array{"remap", "other work", "idle"}[k],
+                             parts[k] / 10, parts[k] % 10);
+  std::string out = paragraph("budget", fmt::format("{}.{} ms a displayed frame: {}", period / 10, period % 10, divided));
   const std::string inside = listed(apportioned_parts(parts[0], clocks_of_remaps(stats)));
   if (inside.empty()) return out;
   return out + paragraph("", fmt::format("remap {}.{} ms: {}", parts[0] / 10, parts[0] % 10, inside));

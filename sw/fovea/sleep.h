@@ -19,10 +19,11 @@ inline bool is_idle(std::string_view cause) {
 }
 
 /// For whom the sleeps within remaps wait, if they were ended by the EDMA or the engine for so many clocks:
-/// `dma`, `engine`, or, if by both or neither, empty.
+/// `dma`, `engine`, `dma_or_engine` if by both, as nothing tells for which of them the core slept, or, if by neither,
+/// empty.
 inline std::string_view waited_for(double dma, double engine) {
-  if ((dma > 0) == (engine > 0)) return "";
-  return dma > 0 ? "dma" : "engine";
+  if (dma > 0 && engine > 0) return "dma_or_engine";
+  return dma > 0 ? "dma" : engine > 0 ? "engine" : "";
 }
 
 }  // namespace fovea::app

@@ -7,6 +7,7 @@ writer but the field numbers of Perfetto's schema.
 usage: perfetto.py TRACE RESULTS      exit 0: they agree; 1: they do not
        perfetto.py --slices TRACK TRACE   prints the slices of a track
        perfetto.py --shape TRACE      prints groups, tracks, packets and times, and checks the slices
+       perfetto.py --counters TRACE RESULTS COMMANDS   exit 0: the SDRAM's counters say what the command trace says
 """
 import collections
 import csv
@@ -147,9 +148,7 @@ def check(trace, folder):
             master = master[:len("edma_tc0")]
         for _, _, name, _ in trace.slices(track):
             words = name.split()
-            if words[0] == "register":
-                continue
-            if words[0] == "RAM":
+            if words[0] in ("RAM", "register"):
                 words = words[1:]
             key = (master, words[0])
             n, size = of_stat.get(key, (0, 0))
@@ -171,12 +170,19 @@ def check(trace, folder):
     # Interrupts and counters.
     if not trace.slices("interrupts/IRQ of the core"):
         wrong.append("no interrupt of the core")
+    lines = {t.split(" ", 1)[1]: len(trace.slices(t)) for t in trace.of_group("interrupts") if t.split("/")[1][:2].isdigit()}
+    taken = pathlib.Path(folder) / "interrupts.csv"
+    for row in csv.DictReader(taken.read_text().splitlines()) if taken.exists() else []:
+        # One may be under way at each edge.
+        if abs(lines.get(row["interrupt"], -9) - int(row["count"])) > 1:
+            wrong.append(f"{row['interrupt']} rises {lines.get(row['interrupt'])} times, interrupts.csv has {row['count']}")
     values = {t: [e["value"] for e in trace.events.get(t, [])] for t in trace.events}
     for track in ("SDRAM/queue", "SDRAM/refreshes owed", "SDRAM/column commands without a new row"):
         if len(values.get(track, [])) < 100:
             wrong.append(f"{track}: {len(values.get(track, []))} values")
     if max(values.get("SDRAM/refreshes owed", [99])) > stats["ddr.refresh_backlog"]:
         wrong.append("more refreshes owed than the backlog of stats.json")
+    wrong += empty_queue([(0, v) for v in values["SDRAM/queue"]], stats)
     seconds = stats["frame.window"]
     for way in ("reads", "writes"):
         rates = values.get(f"bandwidth/{'vpbe' if way == 'reads' else 'vpfe'} {way}", [])
@@ -185,6 +191,47 @@ def check(trace, folder):
         if abs(got - want) > 0.02 * want + 0.01:
             wrong.append(f"bandwidth of {way}: mean {got} MB/s, expected {want}")
     return wrong
+
+
+def counters(trace, folder, commands):
+    """The samples of the SDRAM's counters, from the commands on its bus. A window that begins with open rows is needed."""
+    with open(f"{folder}/stats.json") as f:
+        stats = {k: v["value"] for k, v in json.load(f).items() if isinstance(v, dict) and "value" in v}
+    values = {t: [(e["at"], e["value"]) for e in trace.events.get("SDRAM/" + t, [])]
+              for t in ("queue", "refreshes owed", "column commands without a new row")}
+    begin = values["queue"][0][0]
+    clocks_a_ns = round(stats["ddr.queued_clocks"] / (1 - stats["ddr.headroom"]) / stats["frame.window"]) * 1e-9
+    # Of each sample's interval: ACT, column commands, refreshes.
+    counts, start = collections.defaultdict(lambda: [0, 0, 0]), None
+    with open(commands) as f:
+        for line in f.readlines()[1:]:
+            clock, command = line.split(",")[:2]
+            start = int(clock) if start is None else start
+            kind = {"ACT": 0, "RD": 1, "WR": 1, "RDA": 1, "WRA": 1, "REF": 2}.get(command)
+            if kind is not None:
+                counts[int((int(clock) - start) / clocks_a_ns / 100_000)][kind] += 1
+    wrong = []
+    for at, value in values["column commands without a new row"]:
+        acts, columns, _ = counts[round((at - begin) / 100_000) - 1]
+        if abs(value - 100 * (1 - acts / columns)) > 100 * 3 / columns:  # as many may lie on the other side of its edges
+            wrong.append(f"at {at}: {value} % without a new row, {acts} ACT for {columns} column commands")
+    # Refreshes fall due at a constant rate.
+    owed = [v for _, v in values["refreshes owed"]]
+    done = [sum(counts[i][2] for i in range(n)) for n in range(len(owed))]
+    rate = (done[-1] + owed[-1] - owed[0]) / (len(owed) - 1)
+    for n, v in enumerate(owed):
+        if abs(owed[0] + rate * n - done[n] - v) > 2:
+            wrong.append(f"sample {n}: {v} refreshes owed, {owed[0] + rate * n - done[n]:.1f} by the commands")
+    if max(owed) - min(owed) < 3:
+        wrong.append("hardly a refresh is put off: nothing is tested")
+    return wrong + empty_queue(values["queue"], stats)
+
+
+def empty_queue(samples, stats):
+    idle = sum(v == 0 for _, v in samples) / len(samples)
+    if abs(idle - stats["ddr.headroom"]) > 0.05:
+        return [f"the queue is empty in {idle} of the samples, ddr.headroom is {stats['ddr.headroom']}"]
+    return []
 
 
 def functions(trace, folder, stats):
@@ -236,6 +283,11 @@ def main(arguments):
             for begin, end, name, _ in Trace(f.read()).slices(arguments[1]):
                 print(begin, end, name)
         return 0
+    if arguments[:1] == ["--counters"]:
+        with open(arguments[1], "rb") as f:
+            wrong = counters(Trace(f.read()), arguments[2], arguments[3])
+        print("\n".join(wrong[:20]))
+        return 1 if wrong else 0
     shape = arguments[:1] == ["--shape"]
     with open(arguments[1 if shape else 0], "rb") as f:
         trace = Trace(f.read())

@@ -23,6 +23,14 @@ read_trace "$out/run.pftrace" "$out/run" || fail 'the trace does not say what th
 run -o "$out/strict" --sync=strict --perfetto "$out/strict.pftrace"
 read_trace "$out/strict.pftrace" "$out/strict" || fail 'strict'
 
+# The SDRAM's counters, against the commands on its bus: a load of high priority puts refreshes off.
+run -o "$out/loaded" --perfetto "$out/loaded.pftrace" --perfetto-tracks '^SDRAM/' --command-trace "$out/loaded.csv" -s run.frames=1 \
+  -s load.outstanding=4 -s load.base=96MiB -s load.size=1MiB -s load.priority=0 -s load.start=220ms
+read_trace --counters "$out/loaded.pftrace" "$out/loaded" "$out/loaded.csv" || fail 'the counters do not say what the commands say'
+# One command in nine is lost: the reader complains.
+sed '2,$ { 0~9d }' "$out/loaded.csv" >"$out/fewer.csv"
+! read_trace --counters "$out/loaded.pftrace" "$out/loaded" "$out/fewer.csv" >/dev/null || fail 'the reader finds nothing in other commands'
+
 # Another run's results, and a trace with a byte less.
 run -o "$out/other" -s bus.arm_d.request_latency=9cycles
 ! read_trace "$out/run.pftrace" "$out/other" >"$out/text" || fail 'the reader finds nothing in a trace of another run'

@@ -389,7 +389,7 @@ TEST_F(BlameTest, ASleepWithinARemapWaitsForTheEdmaWhateverEndsIt) {
   EXPECT_EQ(figures.idle.change(), -35);
 }
 
-// Waits for both, or for neither by name, are one cause without a name.
+// Waits for both are one cause, and so are those for neither by name.
 TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
   for (const char* other : {"wait.engine", "wait.timer"}) {
     RunMaker run = after;
@@ -397,7 +397,7 @@ TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
     replace(run.profile, "idle.capture,,,300", fmt::format("{},,,100,0\nframes,sleep,cp15.c,3,{},,,200", both ? "wait.dma" : "wait.other", other));
     std::uint64_t sum = 0;
     for (const auto& r : attribution_of(read_run(run.write(dir, "e")), true).rows)
-      if (r.cause == "wait") sum += r.clocks;
+      if (r.cause == (both ? "wait.dma_or_engine" : "wait")) sum += r.clocks;
     EXPECT_EQ(sum, 300u) << other;
   }
 }
@@ -427,6 +427,175 @@ TEST_F(BlameTest, DamagedTablesAreNamedWithTheirRow) {
   EXPECT_THAT(user_error([&] { difference(); }), testing::AllOf(HasSubstr("row 11"), HasSubstr("2 fields")));
   after.profile = "\"a\"\"b,c\n";
   EXPECT_THAT(user_error([&] { difference(); }), HasSubstr("row 2"));
+}
+
+// The table has as many rows as were asked for, the largest change of either sign first; the rest is added up.
+TEST_F(BlameTest, RowsThatAreNotShownAreAddedUp) {
+  replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,50");
+  replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,90");
+  replace(after.profile, "interlock,none,core,100", "interlock,none,core,103");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,357");
+  const std::string text = difference_text(difference(), 1);
+  EXPECT_THAT(text, HasSubstr("-100 clocks\n"));
+  EXPECT_THAT(text, HasSubstr("2 more rows"));
+  EXPECT_THAT(text, HasSubstr("+43 clocks\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("vpbe")));
+}
+
+// What becomes faster by other addresses is layout too.
+TEST_F(BlameTest, GainsByLayoutAreSaid) {
+  replace(after.profile, "icache,.text,bridge,100", "icache,.text,bridge,60");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,340");
+  replace(after.functions, "0x00000100", "0x00000120");
+  after.elf = "22";
+  EXPECT_THAT(difference_text(difference(), 9), HasSubstr("by layout (same code at other addresses): -40 clocks"));
+}
+
+// With other settings only fetches of moved code that executes the same are layout, and half of a change is its reason.
+TEST_F(BlameTest, LayoutIsTheReasonFromHalfOfAChangeOn) {
+  after.elf = "22";
+  after.parameters["ddr.clock"] = "216MHz";
+  replace(after.functions, "0x00000100", "0x00000120");
+  replace(after.profile, "icache,.text,bridge,100,0\n",
+          "icache,.text,bridge,140,0\nframes,irq,irq.c,7,uncached,registers,bridge,40,0\n");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,220");
+  Difference d = difference();
+  EXPECT_EQ(d.functions[0].layout, 40);
+  EXPECT_EQ(d.functions[0].kind, ChangeKind::kLayout);
+  replace(after.profile, "uncached,registers,bridge,40", "uncached,registers,bridge,41");
+  replace(after.profile, "idle.capture,,,220", "idle.capture,,,219");
+  EXPECT_EQ(difference().functions[0].kind, ChangeKind::kWaits);
+  replace(after.profile, "irq.c,7,issue,,,50,50", "irq.c,7,issue,,,50,51");
+  d = difference();
+  EXPECT_EQ(d.functions[0].layout, 0);
+  EXPECT_EQ(d.functions[0].kind, ChangeKind::kExecutes);
+}
+
+// As WhoeverExecutesMoreIsTheOriginOfWaits, with a function that was not there: 12 of 48 clocks.
+TEST_F(BlameTest, ANewFunctionIsTheOriginOfWaits) {
+  replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,86");
+  after.profile += "frames,poll,poll.c,3,issue,,,12,12\n";
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,252");
+  after.elf = "22";
+  const Difference d = difference();
+  const Blame blame = blame_of(d, true);
+  ASSERT_TRUE(blame.function);
+  EXPECT_EQ(blame.function->function, "poll");
+}
+
+// Of a speed-up the line is named at which the cause shrank most, though another line became faster in all and the
+// same cause grew at a third: 60 clocks of dcache less at 20, 5 more at 21, and 40 of interlock less at 22.
+TEST_F(BlameTest, ASpeedUpHasTheLineOfItsCause) {
+  before.profile = "frames,f,f.c,20,dcache,lut,bridge,400,0\nframes,f,f.c,20,issue,,,100,1\n"
+                   "frames,f,f.c,21,dcache,lut,bridge,100,0\nframes,f,f.c,22,interlock,none,core,400,0\n";
+  after.profile = "frames,f,f.c,20,dcache,lut,bridge,340,0\nframes,f,f.c,20,issue,,,150,1\n"
+                  "frames,f,f.c,21,dcache,lut,bridge,105,0\nframes,f,f.c,22,interlock,none,core,360,0\n"
+                  "frames,sleep,cp15.c,3,idle.capture,,,45,0\n";
+  const Difference d = difference();
+  const Blame blame = blame_of(d, false);
+  ASSERT_TRUE(blame.function && blame.cause && blame.line);
+  EXPECT_EQ(blame.cause->cause, "dcache");
+  EXPECT_EQ(blame.line->after, 20u);
+}
+
+// A cause grows by 10 clocks, though its largest row shrinks by 20: the row that is named grew.
+TEST_F(BlameTest, TheRowThatIsNamedGrew) {
+  replace(after.profile, "dcache,lut,bridge,150,0\n", "dcache,lut,bridge,130,0\nframes,remap,/src/remap.c,21,dcache,lut,service,15,0\n");
+  replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,65");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,290");
+  const Difference d = difference();
+  const Blame blame = blame_of(d, true);
+  ASSERT_TRUE(blame.cause);
+  EXPECT_EQ(d.functions[0].causes[0].culprit, "bridge");
+  EXPECT_NE(blame.cause->culprit, "bridge");
+  EXPECT_EQ(blame.cause->share.change(), 15);
+  EXPECT_EQ(blame.by_cause, 10);
+}
+
+// irq waits 30 clocks more, all others 50 less: 30 are no share of -20.
+TEST_F(BlameTest, AgainstTheWholeChangeThereIsNoShareOfIt) {
+  replace(after.profile, "icache,.text,bridge,100", "icache,.text,bridge,130");
+  replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,100");
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,320");
+  const Difference d = difference();
+  EXPECT_EQ(blame_text(d, blame_of(d, true)),
+            "irq (irq.c:7) waits with the same instructions: +30 clocks, of which +30 clocks by icache, region .text, "
+            "culprit bridge");
+}
+
+// 1,000 clocks as before, in rows that have 5 more, or 140 more of which the idle ones explain 135.
+TEST_F(BlameTest, WhatNoRowExplainsIsAShareOfTheLargerChange) {
+  replace(after.profile, "idle.capture,,,300", "idle.capture,,,305");
+  EXPECT_EQ(difference().unexplained, -5);
+  EXPECT_EQ(difference().unexplained_share(), 1) << "of no change at all";
+  replace(after.profile, "22,issue,,,50,50", "22,issue,,,190,50");
+  replace(after.profile, "idle.capture,,,305", "idle.capture,,,165");
+  EXPECT_EQ(difference().unexplained, -5);
+  EXPECT_DOUBLE_EQ(difference().unexplained_share(), 5.0 / 140);
+}
+
+TEST_F(BlameTest, OtherInstructionsInAsManyClocksAreADifference) {
+  replace(after.profile, "22,issue,,,50,50", "22,issue,,,50,40");
+  Difference d = difference();
+  ASSERT_EQ(d.functions.size(), 1u);
+  EXPECT_EQ(d.functions[0].kind, ChangeKind::kExecutes);
+  EXPECT_EQ(blame_text(d, blame_of(d, true)), "") << "fewer are no reason";
+  replace(after.profile, "22,issue,,,50,40", "22,issue,,,50,51");
+  d = difference();
+  EXPECT_EQ(blame_text(d, blame_of(d, true)),
+            "remap (remap.c) executes 1 instructions more, which take no more clocks in all");
+}
+
+// A profile by other phases that misses cpu.cycles by less than its rows of `frames` alone.
+TEST_F(BlameTest, ThePhaseOfFramesIsTheWindowOnlyIfItsClocksAre) {
+  after.profile = "frames,f,f.c,1,issue,,,500,500\nrun,f,f.c,1,issue,,,505,505\n";
+  EXPECT_EQ(attribution_of(read_run(after.write(dir, "b")), true).sum(), 1005);
+}
+
+TEST(CircumstancesTest, ProgramsAndSettingsAreToldApart) {
+  RunFigures a, b;
+  a.hashes["program"] = "1";
+  b.hashes["program"] = "2";
+  EXPECT_TRUE(circumstances_of(a, b).program_differs);
+  EXPECT_FALSE(circumstances_of(a, b).settings_differ);
+  a.hashes = b.hashes = {};
+  a.hashes["camera.file"] = "1";
+  EXPECT_FALSE(circumstances_of(a, b).program_differs);
+  EXPECT_TRUE(circumstances_of(a, b).settings_differ);
+  // The names of files differ between hosts, and one of two versions may not know that a key names a file.
+  a.hashes = {};
+  a.parameters["x"].value = "/a";
+  b.parameters["x"].value = "/b";
+  EXPECT_TRUE(circumstances_of(a, b).settings_differ);
+  b.parameters["x"].path = true;
+  EXPECT_FALSE(circumstances_of(a, b).settings_differ);
+  EXPECT_FALSE(circumstances_of(b, a).settings_differ);
+}
+
+TEST(ComparisonTest, WithoutRowsOfEitherRunNoClocksAreCompared) {
+  const TempDir dir;
+  RunMaker bare = profiled();
+  bare.stalls.clear();
+  bare.profile.clear();
+  const RunFigures with = read_run(profiled().write(dir, "with")), without = read_run(bare.write(dir, "without"));
+  EXPECT_TRUE(compare_runs(with, with, {}, "").difference);
+  EXPECT_FALSE(compare_runs(with, without, {}, "").difference);
+  EXPECT_FALSE(compare_runs(without, with, {}, "").difference);
+}
+
+// What only one run has comes before a change of 49 %. As many clocks in all, in another function: a slow-down of it.
+TEST(ComparisonTest, TheLargestChangesComeFirst) {
+  const TempDir dir;
+  RunMaker before = profiled(), after = profiled();
+  before.figure("x.a", "100").figure("x.b", "100");
+  after.figure("x.a", "149").figure("x.b", "150").figure("x.c", "1");
+  replace(after.profile, "icache,.text,bridge,100", "icache,.text,bridge,130");
+  replace(after.profile, "dcache,lut,bridge,150", "dcache,lut,bridge,120");
+  const RunFigures a = read_run(before.write(dir, "a")), b = read_run(after.write(dir, "b"));
+  const std::string text = comparison_text(compare_runs(a, b, {}, ""), {}, false);
+  EXPECT_LT(text.find("x.c"), text.find("x.b"));
+  EXPECT_LT(text.find("x.b"), text.find("x.a"));
+  EXPECT_THAT(text, HasSubstr("largest slow-down: irq (irq.c:7)"));
 }
 
 }  // namespace

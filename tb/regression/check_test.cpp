@@ -101,6 +101,9 @@ TEST_F(CheckTest, CountsAndDecimalsAreComparedAsTheyAre) {
   EXPECT_EQ(finding("share: {value: 0.5000000000000001, unit: ratio}").verdict, Verdict::kFail);
   EXPECT_EQ(finding("time: {value: 1e2, unit: 1}").verdict, Verdict::kPass);
   EXPECT_EQ(finding("time: {value: 100.5, unit: 1}").verdict, Verdict::kFail);
+  // 1 - 1.1 is -0.10000000000000009 in double precision, at a limit of 0.1: a calculated value makes no count.
+  run.figure("time", "1");
+  EXPECT_EQ(finding("time: {value: 1.1, unit: 1, tolerance: 0.1}").verdict, Verdict::kPass);
 }
 
 TEST_F(CheckTest, EveryFaultOfABaselineIsNamedWithItsLine) {
@@ -183,6 +186,51 @@ TEST_F(ReferenceTest, ANewBaselineIsReadAndPassesItsOwnRun) {
   EXPECT_THAT(check_run(read_run(elsewhere.write(dir, "elsewhere")), b, false).settings,
               testing::ElementsAre("input firmware.elf: another file (SHA-256 11 -> 22)"));
   EXPECT_THAT(check_text(r, run, b, false), testing::StartsWith("passed: tiny against"));
+  EXPECT_FALSE(r.difference) << "who passed is not searched for blame";
+  EXPECT_THAT(check_text(r, run, b, false), Not(HasSubstr("  ok ")));
+  EXPECT_THAT(check_text(r, run, b, true), HasSubstr("  ok      frame.remap_time.mean  4 ms, baseline 4 ms\n"));
+}
+
+// One figure is worse, another better: nothing that is to be kept. The run has no clocks by cause.
+TEST_F(ReferenceTest, ARunThatFailsIsNotAdvisedToBless) {
+  RunMaker mixed = profiled();
+  mixed.figure("frame.remap_time.mean", "0.0039", "s").figure("cpu.spare", "280", "cycles");
+  mixed.stalls.clear();
+  mixed.profile.clear();
+  const RunFigures run = read_run(mixed.write(dir, "mixed"));
+  const Baseline b = read_baseline(dir / "base.yaml");
+  const std::string text = check_text(check_run(run, b, false), run, b, false);
+  EXPECT_THAT(text, AllOf(HasSubstr("FAILED  cpu.spare"), HasSubstr("better  frame.remap_time.mean")));
+  EXPECT_THAT(text, Not(HasSubstr("fovea bless")));
+  EXPECT_THAT(text, Not(HasSubstr("has no reference"))) << "it has one";
+}
+
+TEST_F(CheckTest, WithoutAReferenceNothingIsBlamed) {
+  const Baseline b = baseline("  time: {value: 99, unit: 1, worse: higher}\n");
+  const RunFigures r = read_run(run.write(dir, "run"));
+  EXPECT_THAT(check_text(check_run(r, b, false), r, b, false),
+              HasSubstr("blamed: nothing, because the baseline has no reference\n"));
+}
+
+TEST_F(CheckTest, OnlyExactValuesAreOfTheBaseline) {
+  EXPECT_THAT(finding("time: {value: 99, unit: 1}").words, HasSubstr("baseline 99"));
+  EXPECT_THAT(finding("time: {value: 99, unit: 1, kind: analytic, reason: r}").words, HasSubstr("by calculation 99"));
+}
+
+// Equal figures of another simulator: its name, and no history. A comment is no history either, and the last line may
+// lack its end.
+TEST_F(CheckTest, BlessingTakesOverTheSimulatorAndBeginsAHistory) {
+  const std::string text = std::string(kHead) + "# history: none yet\nmetrics:\n  time: {value: 100, unit: 1}";
+  RunMaker now = run;
+  now.commit = "bbbbbbbbbbbb";
+  std::string want = text;
+  want.replace(want.find("aaaaaaaaaaaa"), 12, "bbbbbbbbbbbb");
+  const Baseline b = read_baseline(dir.write("b.yaml", text));
+  EXPECT_EQ(blessed_text(read_run(now.write(dir, "now")), b, "why"), want);
+  now.figure("time", "101");
+  want.replace(want.find("value: 100"), 10, "value: 101");
+  want += "\nhistory:\n  - commit: bbbbbbbbbbbb\n    why: \"why\"\n    changes: |\n      time: 100 -> 101\n";
+  EXPECT_EQ(blessed_text(read_run(now.write(dir, "now")), b, "why"), want);
 }
 
 TEST_F(ReferenceTest, ASlowerRunIsBlamedOnFunctionLineAndCause) {

@@ -64,6 +64,11 @@ TEST_F(RegressionCommandTest, AFigureThatOnlyOneRunHasOrThatChangedItsUnitDiffer
     return cli({"compare", a, r.write(dir, "c").string(), "--tolerance", "100%"});
   };
   EXPECT_EQ(changed("0.004", "s"), 0);
+  // A count and a number with decimals: 1.1 - 1 is 0.10000000000000009 in double precision.
+  RunMaker one = profiled(), decimal = profiled();
+  one.figure("extra", "1");
+  decimal.figure("extra", "1.1");
+  EXPECT_EQ(cli({"compare", one.write(dir, "one").string(), decimal.write(dir, "decimal").string(), "--tolerance", "0.1"}), 0);
   EXPECT_EQ(changed("0.004", "ms"), 1);
   EXPECT_THAT(out.str(), HasSubstr("other unit"));
   EXPECT_EQ(changed("null", "s"), 1);
@@ -120,6 +125,9 @@ TEST_F(RegressionCommandTest, OtherVersionsAreRefusedOrListed) {
   slow.write(dir, "b");
   EXPECT_EQ(cli({"compare", a, b}), 2);
   EXPECT_THAT(err.str(), AllOf(HasSubstr("0.2.0"), HasSubstr("--across-versions")));
+  RunMaker modified = profiled();
+  modified.modified = true;
+  EXPECT_EQ(cli({"compare", a, modified.write(dir, "modified").string()}), 2) << "a commit with changes is another simulator";
   EXPECT_EQ(cli({"compare", a, b, "--across-versions"}), 1);
   EXPECT_THAT(out.str(), AllOf(HasSubstr("simulator: 0.1.0"), HasSubstr("parameter ddr.new is new: 7")));
   EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "first"}), 0);
@@ -140,6 +148,7 @@ TEST_F(RegressionCommandTest, BlessCheckBlessCheck) {
   const std::string before = read_text(base);
   ASSERT_EQ(cli({"bless", b, "--against", base, "--why", "more accurate"}), 0) << err.str();
   EXPECT_THAT(out.str(), AllOf(HasSubstr("-    value: 0.004\n+    value: 0.0042\n"), HasSubstr("why: \"more accurate\"")));
+  EXPECT_THAT(read_text(dir / "base/profile.csv"), HasSubstr("vpbe,70")) << "the reference is the new run's";
   EXPECT_EQ(cli({"check", b, "--against", base}), 0) << out.str();
   EXPECT_EQ(cli({"check", a, "--against", base}), 0) << "faster is not worse";
   EXPECT_THAT(out.str(), AllOf(HasSubstr("better"), HasSubstr("fovea bless")));
@@ -168,6 +177,12 @@ TEST_F(RegressionCommandTest, BlessingMakesAReferenceThatIsMissingOrPoorer) {
   EXPECT_EQ(cli({"bless", plain.write(dir, "plain").string(), "--against", base, "--why", "x"}), 0) << err.str();
   EXPECT_THAT(out.str(), AllOf(HasSubstr("nothing to bless"), HasSubstr("reference in")));
   EXPECT_THAT(read_text(dir / "kept/profile.csv"), Not(HasSubstr("remap.c")));
+  RunMaker placeless = profiled();
+  placeless.functions.clear();
+  EXPECT_EQ(cli({"bless", placeless.write(dir, "placeless").string(), "--against", base, "--why", "x"}), 0);
+  EXPECT_THAT(read_text(dir / "kept/profile.csv"), HasSubstr("remap.c,21")) << "functions, though not where they lie";
+  EXPECT_EQ(cli({"bless", (dir / "plain").string(), "--against", base, "--why", "x"}), 0);
+  EXPECT_THAT(read_text(dir / "kept/profile.csv"), HasSubstr("remap.c,21")) << "a poorer one takes nothing away";
   EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);
   EXPECT_THAT(read_text(dir / "kept/profile.csv"), HasSubstr("remap.c,21"));
   EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);

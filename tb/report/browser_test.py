@@ -211,6 +211,19 @@ class Report(unittest.TestCase):
         self.page.run("document.querySelector('main img').removeAttribute('alt')")
         self.assertTrue(any(v.startswith("image-alt") for v in self.axe()))
 
+    def test_paper_has_no_heading_without_content_and_no_table_beyond_its_edge(self):
+        self.page.look(720, medium="print")  # of a page in pixels of CSS
+        for name in PAGES:
+            self.open(name)
+            bare = self.page.run("""[...document.querySelectorAll('main section')].filter((s) => s.getBoundingClientRect().height > 0 &&
+                ![...s.children].some((c) => c.tagName !== 'H2' && c.getBoundingClientRect().height > 0)).map((s) => s.id)""")
+            self.assertEqual(bare, [], name)
+            self.assertGreater(self.page.run("document.querySelector('#verdict').getBoundingClientRect().height"), 100)
+            self.assertLessEqual(self.page.run("Math.max(...[...document.querySelectorAll('table, svg, img')].map((e) => e.getBoundingClientRect().right))"), 720, name)
+        # What the reader has opened is printed.
+        self.page.run("document.querySelector('#figures details').open = true")
+        self.assertGreater(self.page.run("document.querySelector('#figures table').getBoundingClientRect().height"), 100)
+
     def test_screenshots(self):
         for name in PAGES:
             for look, width, dark, medium in LOOKS:

@@ -89,6 +89,11 @@ TEST_F(ExplainTest, BudgetIsTheRemapAgainstThePeriod) {
             "every frame.");
 }
 
+TEST_F(ExplainTest, ARemapOfAWholePeriodIsNotTooLong) {
+  set("frame.remap_time.mean", 0.040);
+  EXPECT_THAT(text("budget"), testing::EndsWith("100 % of the time is used and 0.0 us are left."));
+}
+
 TEST_F(ExplainTest, RemapsInARowHaveNoBudget) {
   set("frame.remapped", std::uint64_t{3});  // 3 for 2 new frames
   EXPECT_EQ(text("budget"), "");
@@ -157,7 +162,7 @@ TEST_F(ExplainTest, TwoMoversAreBothNamed) {
   set("cpu.remap.idle", std::uint64_t{90});
   set("cpu.remap.idle.dma", std::uint64_t{10});
   set("cpu.remap.idle.engine", std::uint64_t{80});
-  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA and the remap engine are done.");
+  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA or the remap engine is done.");
 }
 
 TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {
@@ -184,6 +189,12 @@ TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
             "in 30 %.");
 }
 
+// 240, 200 and 60 of 500: two culprits say where it goes.
+TEST_F(ExplainTest, TheThirdCulpritIsLeftOut) {
+  set("cpu.stall.dcache.by.vpbe", std::uint64_t{60});
+  EXPECT_THAT(text("largest_wait"), AllOf(HasSubstr("40 % in the bridge between core and crossbar)"), Not(HasSubstr("display"))));
+}
+
 TEST_F(ExplainTest, AnotherLargestWaitIsFound) {
   set("cpu.stall.interlock", std::uint64_t{501});
   EXPECT_THAT(text("largest_wait"),
@@ -196,6 +207,14 @@ TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
   EXPECT_EQ(text("function"),
             "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "
             "for line fills of the D-cache.");
+}
+
+TEST_F(ExplainTest, AFunctionsWaitIsNamedFromOnePercentOn) {
+  functions_ = {{"f", 1000, {{"issue", 990}, {"dcache", 10}}}};
+  EXPECT_EQ(text("function"),
+            "The function f takes 100 % of the core's awake clocks, and waits in 1.0 % of these for line fills of the D-cache.");
+  functions_ = {{"f", 1000, {{"issue", 991}, {"dcache", 9}}}};
+  EXPECT_EQ(text("function"), "The function f takes 100 % of the core's awake clocks.");
 }
 
 TEST_F(ExplainTest, OtherMastersAreSummedOverTheirPorts) {
@@ -230,6 +249,13 @@ TEST_F(ExplainTest, EstimatesAreLabelledAndNeedTheirParameters) {
   EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 1.33 ms of a remap, 13 %."));
   // 500 clocks of waiting for memory, a tenth less.
   EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.33 ms less, 13 %."));
+}
+
+// 100 of the 500 clocks pass within the core, which a faster memory does not shorten.
+TEST_F(ExplainTest, FasterMemoryDoesNotShortenWhatTheCoreItselfTakes) {
+  parameters_ = {{"clocks.preset", "297/243"}};
+  set("cpu.stall.dcache.by.core", std::uint64_t{100});
+  EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.07 ms less, 11 %."));
 }
 
 TEST_F(ExplainTest, NoEstimateForAnotherPresetOrABridgeWithoutDelay) {
@@ -316,10 +342,35 @@ TEST_F(ExplainTest, EqualTimesOfInstructionsAreNoDifferenceHoweverLong) {
   EXPECT_NE(found[1].text.find("waiting for line fills of the D-cache"), std::string::npos) << found[1].text;
 }
 
+// From a thousandth of the remap on, and from a thousand clocks of a frame on.
+TEST_F(ExplainTest, SmallDifferencesAreNotMentioned) {
+  const std::vector<StatRow> before = stats_;
+  const auto found = [&] { return explain_difference({.stats = before, .stalls = {}, .frames = {}}, "A", inputs(), "B"); };
+  set("frame.remap_time.mean", 0.010009);
+  EXPECT_THAT(found()[0].text, HasSubstr("takes as long as"));
+  set("frame.remap_time.mean", 0.010011);
+  EXPECT_EQ(found()[0].text, "The remap of B takes 10.0 ms instead of the 10.0 ms of A: 0.1 % more.");
+  set("cpu.stall.dcache", std::uint64_t{2'498});
+  EXPECT_EQ(found().size(), 1u);
+  set("cpu.stall.dcache", std::uint64_t{2'500});
+  ASSERT_EQ(found().size(), 2u);
+  EXPECT_THAT(found()[1].text, HasSubstr("B spends 1 thousand clocks more on waiting for line fills of the D-cache."));
+}
+
 TEST_F(ExplainTest, EqualRunsDoNotDiffer) {
   const auto found = explain_difference(inputs(), "A", inputs(), "B");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].text, "The remap of B takes as long as that of A: 10.0 ms.");
+}
+
+TEST(WordsTest, SleepsSayForWhom) {
+  EXPECT_EQ(waits_or_sleeps_for("dcache"), "line fills of the D-cache");
+  EXPECT_EQ(waits_or_sleeps_for("idle.display"), "the display's interrupt, asleep");
+  EXPECT_EQ(waits_or_sleeps_for("idle"), "an interrupt, asleep");
+  EXPECT_EQ(waits_or_sleeps_for("idle.dma"), "the EDMA");
+  EXPECT_EQ(waits_or_sleeps_for("wait.engine"), "the remap engine");
+  EXPECT_EQ(waits_or_sleeps_for("wait.display"), "the EDMA or the remap engine");
+  EXPECT_EQ(waits_or_sleeps_for("wait.dma_or_engine"), "the EDMA or the remap engine");
 }
 
 TEST(WordsTest, PercentAndTimesKeepThreeDigits) {

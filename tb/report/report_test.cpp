@@ -226,8 +226,71 @@ TEST(PageTest, FunctionsAreThoseOfTheFrames) {
                               "value=\"750\">750</data></td>"
                               "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td "
                               "class=\"n\"><data value=\"250\">250</data>"
-                              "</td><td>dcache</td><td>remap.c:10</td></tr>"));
+                              "</td><td>line fills of the D-cache</td><td>remap.c:10</td></tr>"));
   EXPECT_THAT(page, Not(HasSubstr("<code>start</code>")));  // of the phase boot
+}
+
+/// Whether `parts` stand in the text one behind the other.
+bool in_order(const std::string& text, const std::vector<std::string>& parts) {
+  std::size_t at = 0;
+  for (const auto& part : parts) {
+    at = text.find(part, at);
+    if (at == text.npos) return false;
+    at += part.size();
+  }
+  return true;
+}
+
+TEST(PageTest, AnyFaultOfTheFramesMissesTheVerdict) {
+  for (const char* fault : {"", "frame.repeated", "frame.dropped", "capture.overflows", "display.underflows"}) {
+    const TempDir dir;
+    HandMade run = two_frames();
+    std::erase_if(run.stats, [&](const auto& s) { return s.name == fault; });
+    if (*fault) run.stats.push_back({fault, std::uint64_t{1}, "1", ""});
+    const std::string page = one_page(run.write(dir));
+    EXPECT_EQ(count(page, "class=\"verdict missed\""), *fault ? 1u : 0u) << fault;
+    EXPECT_EQ(count(page, "class=\"verdict met\""), *fault ? 0u : 1u) << fault;
+  }
+}
+
+// 8 MB in 80 ms are 100 MB/s; who moved nothing is left out.
+TEST(PageTest, TablesHaveTheirFiguresInTheirPlaces) {
+  const TempDir dir;
+  HandMade run = two_frames();
+  for (auto& s : run.stats)
+    if (s.name == "bus.arm_d.read_bytes") s.value = std::uint64_t{8'000'000};
+  run.stats.push_back({"net", -2.0, "s", "below zero"});
+  run.write(dir);
+  test::add_other_files(dir, "run");
+  dir.write("run/profile.csv",
+            "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
+            "frames,small,s.c,1,issue,,,1,1\nframes,busy,b.c,1,issue,,,1200,1200\nframes,busy,b.c,2,dcache,lut,bridge,299,0\n");
+  const std::string page = one_page(dir / "run");
+  EXPECT_THAT(page, HasSubstr("<td class=\"n\"><data value=\"100000000.0\">100.0</data></td>"));
+  EXPECT_THAT(page, Not(HasSubstr("<th scope=\"row\">edma_tc0</th>")));
+  EXPECT_TRUE(in_order(page, {"<th scope=\"row\">arm_d</th><td>reads</td><td>first</td>", "latency.mean", "latency.p50", "latency.p95",
+                              "latency.p99", "latency.max", "</tr>"}));
+  EXPECT_THAT(page, HasSubstr("data-figure=\"net\""));
+  // Largest first.
+  EXPECT_TRUE(in_order(page, {"<td>frame_in</td>", "<td>bridge</td>", "<td>vpbe</td>", "<td>row_miss</td>"}));
+  EXPECT_TRUE(in_order(page, {"<code>busy</code>", "line fills of the D-cache", "<code>small</code>"}));
+  EXPECT_THAT(page, HasSubstr("<data value=\"1200\">1,200</data>"));
+}
+
+// 750 clocks become 700, and a function is new: 50 of 750.
+TEST(PageTest, FunctionsOfTwoRunsHaveTheirDifference) {
+  const TempDir dir;
+  for (const char* name : {"one", "two"}) {
+    two_frames().write(dir, name);
+    dir.write(std::string(name) + "/profile.csv",
+              std::string("phase,function,file,line,cause,region,culprit,clocks,instructions\n") +
+                  (name == std::string("one") ? "frames,f,f.c,1,issue,,,750,750\n"
+                                              : "frames,f,f.c,1,issue,,,700,700\nframes,g,g.c,1,issue,,,50,50\n"));
+  }
+  const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
+  EXPECT_THAT(page, HasSubstr("<td class=\"n\"><data value=\"-50\">-50</data></td>"));
+  EXPECT_TRUE(in_order(page, {"<code>g</code>", "<data value=\"0\">0</data>", "<data value=\"0.0\">0.0 %</data>", "<data value=\"50\">50</data>",
+                              "6.7 %", "<data value=\"50\">+50</data>"}));
 }
 
 TEST(PageTest, ReachesNothingOutsideItself) {
@@ -319,7 +382,7 @@ TEST(CompareTest, ShowsEachRunAndTheDifference) {
                       "<td>2 <small>(command line)</small></td>"));
   EXPECT_THAT(page, HasSubstr("The runs come from different states of the simulator"));
   EXPECT_THAT(page,
-              HasSubstr("The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less."));
+              HasSubstr("The remap of B takes 8.00&nbsp;ms instead of the 10.0&nbsp;ms of A: 20&nbsp;% less."));
   EXPECT_THAT(page, HasSubstr("B: two"));
   // Rounding of a sum is no difference.
   EXPECT_THAT(page, Not(HasSubstr("e-1")));
@@ -442,6 +505,19 @@ TEST(PictureTest, RunsAreComparedPixelByPixel) {
   EXPECT_THAT(
       page,
       HasSubstr("Frame 0 of A: one and C: three: 32 of 32 pixels differ (100 %), PSNR 42.1 dB."));
+}
+
+TEST(PictureTest, TheShareOfPixelsIsOfAll) {
+  const TempDir dir;
+  RgbImage second = picture(8, 4, 7);
+  for (int i = 0; i < 8; ++i) second.rgb[static_cast<std::size_t>(3 * i)] = 9;
+  for (const auto& [name, shown] : {std::pair("one", picture(8, 4, 7)), std::pair("two", second)}) {
+    two_frames().write(dir, name);
+    fs::create_directories(dir / name / "frames");
+    app::write_png(dir / name / "frames/frame_000000.png", shown);
+  }
+  EXPECT_THAT(report_page({load_results(dir / "one", {}), load_results(dir / "two", {})}),
+              HasSubstr("8 of 32 pixels differ (25 %)"));
 }
 
 TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {

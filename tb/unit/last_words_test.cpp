@@ -105,6 +105,14 @@ TEST(FrameBudgetTest, AnInterruptInTheMidstOfAWaitMakesNoIdleTime) {
   EXPECT_EQ(text.find("waiting for an interrupt"), std::string::npos);
 }
 
+// 0.04 ms of other work in a frame of 40 ms are 0.0: not a word about it.
+TEST(FrameBudgetTest, PartsThatRoundToZeroAreLeftOut) {
+  auto rows = budget_rows();
+  for (StatRow& row : rows)
+    if (row.name == "cpu.spare") row.value = std::uint64_t{400'000 - 286'600 - 400};
+  EXPECT_THAT(frame_budget(rows), StartsWith("budget  40.0 ms a displayed frame: remap 28.7, idle 11.3\n"));
+}
+
 // Both ended sleeps within remaps: nobody can tell for whom the others were.
 TEST(FrameBudgetTest, TwoWhoAreWaitedForAreBothNamed) {
   auto rows = budget_rows();
@@ -193,10 +201,20 @@ TEST(RunWordsTest, LargestWaitsComeFirst) {
       {"ddr.arm_d.wait.write.own", 0.0, "s", ""},
   };
   EXPECT_EQ(run_words(rows, {}),
-            "waits   arm_d's reads, 200 ms in all: own way through crossbar and SDRAM 60 %,\n"
-            "        bridges 30 %, behind their own requests 10 %\n"
-            "        vpbe's reads, 4 ms in all: own way through crossbar and SDRAM 75 %,\n"
-            "        behind vpfe 25 %\n");
+            "waits   arm_d's reads (the core's data), 200 ms in all: own way through crossbar\n"
+            "        and SDRAM 60 %, bridges 30 %, behind their own requests 10 %\n"
+            "        vpbe's reads (the display), 4 ms in all: own way through crossbar and\n"
+            "        SDRAM 75 %, behind the camera 25 %\n");
+}
+
+// 0.5 % is shown as 1, less as nothing. A transfer controller has its name, as there are four.
+TEST(RunWordsTest, PartsThatRoundToZeroAreLeftOut) {
+  const auto words = [](double part) {
+    return run_words(std::vector<StatRow>{{"ddr.edma_tc2.wait.write.bridge", 1 - part, "s", ""},
+                                          {"ddr.edma_tc2.wait.write.edma_tc0", part, "s", ""}}, {});
+  };
+  EXPECT_EQ(words(0.00501), "waits   edma_tc2's writes, 1 s in all: bridges 99 %, behind edma_tc0 1 %\n");
+  EXPECT_EQ(words(0.00499), "waits   edma_tc2's writes, 1 s in all: bridges 100 %\n");
 }
 
 TEST(ReplayWordsTest, BeginWithWhatWasReplayed) {

@@ -232,6 +232,9 @@ TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
   EXPECT_EQ(verdict(stats),
             "several cameras in turn: 8 new frames in 16 displayed ones (12.5/s), 1 dropped\n");
   stats.push_back({"camera.1.frame.superseded", std::uint64_t{2}, "1", ""});
+  auto silent = stats;
+  silent.push_back({"camera.2.frame.rate", 0.0, "1/s", ""});
+  EXPECT_THAT(run_words(silent, {}), HasSubstr("superseded; camera 2 no frame\n"));
   EXPECT_THAT(run_words(stats, {}),
               HasSubstr("cameras camera 0 6.25 frames a second; camera 1 6.25 frames a second, 2\n        superseded\n"));
 }

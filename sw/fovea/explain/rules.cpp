@@ -168,8 +168,9 @@ void find_mover(const Run& run, std::vector<Finding>& out) {
     evidence.push_back(fmt::format("ddr.{}*.wait.*", m.port));
   }
   if (names.empty()) return;
-  std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} {} done.",
-                                 percent(asleep / all), listed(names), names.size() == 1 ? "is" : "are");
+  // If both ended sleeps, the figures do not tell for which of them the core slept.
+  std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} is done.", percent(asleep / all),
+                                 names.size() == 1 ? names.front() : "the EDMA or the remap engine");
   for (const std::string& s : sentences) text += s;
   out.push_back({"mover", text, evidence});
 }

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "model/cpu/core/stalls.h"
+#include "sw/fovea/sleep.h"
+
 namespace fovea::explain {
 namespace {
 
@@ -50,6 +53,17 @@ std::string_view look_up(const std::array<Words, N>& table, std::string_view key
 std::string waits_for(std::string_view cause) {
   const auto words = look_up(kCauses, cause);
   return std::string(words.empty() ? cause : words);
+}
+
+std::string waits_or_sleeps_for(std::string_view cause) {
+  if (!app::is_sleep(cause)) return waits_for(cause);
+  const auto dot = cause.find('.');
+  const std::string_view event = dot == cause.npos ? std::string_view() : cause.substr(dot + 1);
+  std::string who;
+  for (const cpu::WakeInfo& info : cpu::kWakeTable)
+    if (event == info.name) who = info.who;
+  if (!app::is_idle(cause)) return event == "dma" || event == "engine" ? who : "the EDMA or the remap engine";
+  return who.empty() ? "an interrupt, asleep" : who + "'s interrupt, asleep";
 }
 
 std::string master(std::string_view culprit) {

@@ -7,6 +7,8 @@ namespace fovea::explain {
 
 /// What a stall cause waits for, to follow "waits for": "line fills of the D-cache".
 std::string waits_for(std::string_view cause);
+/// The same for each cause of profile.csv but `issue`: also the sleeps, "the display's interrupt, asleep", "the EDMA".
+std::string waits_or_sleeps_for(std::string_view cause);
 /// Where a culprit's clocks go, to follow "12 %": "in the bridge between core and crossbar".
 std::string spent(std::string_view culprit);
 /// The same for the requests of another master than the core.

@@ -81,8 +81,8 @@ void PerfettoRun::watch_functions(cpu::ClockProfile& profile, PerfettoFunctions:
 
 void PerfettoRun::watch_interrupts() {
   auto& aintc = board_.dm365.aintc;
-  const auto watch = [this](auto& port, const std::string& name) {
-    Line& line = lines_.emplace_back(Line{name, file_->track("interrupts", name), std::nullopt});
+  const auto watch = [this](auto& port, const std::string& name, unsigned input) {
+    Line& line = lines_.emplace_back(Line{name, input, std::nullopt});
     sc_core::sc_spawn_options options;
     options.spawn_method();
     options.set_sensitivity(&port);
@@ -90,19 +90,28 @@ void PerfettoRun::watch_interrupts() {
     sc_core::sc_spawn([this, &line, &port] { line_changed(line, port.read()); },
                       sc_core::sc_gen_unique_name("perfetto"), &options);
   };
-  watch(aintc.irq, "IRQ of the core");
-  watch(aintc.fiq, "FIQ of the core");
-  for (std::size_t i = 0; i < aintc.source.size(); ++i) watch(aintc.source[i], fmt::format("source {:02}", i));
+  watch(aintc.irq, "IRQ of the core", 0);
+  watch(aintc.fiq, "FIQ of the core", 0);
+  for (std::size_t i = 0; i < aintc.source.size(); ++i) watch(aintc.source[i], "", static_cast<unsigned>(i));
 }
 
 void PerfettoRun::line_changed(Line& line, bool level) {
   const Picoseconds now = kernel_time();
   if (level) {
     line.since = now;
+    line.what = line.name.empty() ? board_.dm365.interrupt_source(line.input).name : line.name;
+    const std::string track = line.name.empty() ? fmt::format("{:02} {}", line.input, line.what) : line.name;
+    const auto [found, unknown] = line_tracks_.try_emplace(track, PerfettoFile::kNone);
+    if (unknown) found->second = file_->track("interrupts", track);
+    line.track = found->second;
   } else if (line.since) {
-    if (on_) file_->slice(line.track, line.name, std::max(*line.since, from_), now);
+    if (on_) line_slice(line, now);
     line.since.reset();
   }
+}
+
+void PerfettoRun::line_slice(const Line& line, Picoseconds end) {
+  file_->slice(line.track, line.what, std::max(*line.since, from_), end);
 }
 
 /// A request is under way from the program register on until its last write is acknowledged; those of a
@@ -165,7 +174,7 @@ void PerfettoRun::end() {
   const Picoseconds at = std::min(kernel_time(), until_);
   close_phase(at);
   for (const Line& l : lines_)
-    if (l.since && at > from_) file_->slice(l.track, l.name, std::max(*l.since, from_), at);
+    if (l.since && at > from_) line_slice(l, at);
   if (functions_) functions_->finish(at);
   board_.dm365.scr.crossbar().observe(next_);
   on_ = false;

@@ -53,12 +53,16 @@ class PerfettoRun final : private MemObserver {
   void close_phase(Picoseconds at);
   void watch_interrupts();
   void watch_transfers();
-  /// The line of an interrupt rises or falls.
+  /// The line of an interrupt. An input of the interrupt controller has the name of what it is connected to when it
+  /// rises, and a track from then on.
   struct Line {
-    std::string name;
-    PerfettoFile::Track track;
+    std::string name;               ///< of the line; empty: an input
+    unsigned input = 0;
     std::optional<Picoseconds> since;
+    std::string what = {};          ///< the name of the slice that began then
+    PerfettoFile::Track track = PerfettoFile::kNone;
   };
+  void line_slice(const Line& line, Picoseconds end);
   void line_changed(Line& line, bool level);
   void request(const MemRequest& r, const char* what);
 
@@ -72,6 +76,7 @@ class PerfettoRun final : private MemObserver {
   PerfettoFile::Track phases_, capture_, remap_, display_;
   std::optional<std::pair<std::string, Picoseconds>> phase_;
   std::deque<Line> lines_;
+  std::map<std::string, PerfettoFile::Track> line_tracks_;
   std::unique_ptr<PerfettoFunctions> functions_;
   struct Transfer {
     dma::TransferRequest request;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "sw/fovea/explain/words.h"
@@ -24,8 +25,10 @@ std::string percent_cell(double part, double all) {
 }
 
 /// Clocks are whole numbers far below 2^53.
+std::string clocks_text(double clocks) { return app::grouped(static_cast<std::uint64_t>(std::llround(std::abs(clocks)))); }
+
 std::string clocks_cell(double clocks) {
-  return fmt::format("<data value=\"{0:.0f}\">{0:.0f}</data>", clocks);
+  return fmt::format("<data value=\"{:.0f}\">{}</data>", clocks, clocks_text(clocks));
 }
 
 /// Masters of `prefix`MASTER`suffix` figures that have a value, in the order of the figures.
@@ -150,7 +153,7 @@ std::string function_table(const Runs& runs) {
     headings.insert(headings.end(), {"#Clocks" + of, "#Share" + of, "#Issue" + of});
     if (i > 0) headings.push_back(fmt::format("#{} - A", run_label(i)));
   }
-  headings.insert(headings.end(), {"Largest wait", "Source"});
+  headings.insert(headings.end(), {"Waits most for", "Source"});
   Table table(order.size() > kMaxFunctions
                   ? fmt::format("The {} largest of {} functions", kMaxFunctions, order.size())
                   : "Functions, those with most clocks first",
@@ -174,12 +177,12 @@ std::string function_table(const Runs& runs) {
       cells.push_back(clocks_cell(clocks_for(f, "issue")));
       if (i > 0) {
         const double change = clocks - (of(0) ? of(0)->clocks : 0);
-        cells.push_back(fmt::format("<data value=\"{0:.0f}\">{0:+.0f}</data>", change));
+        cells.push_back(fmt::format("<data value=\"{:.0f}\">{}{}</data>", change, change < 0 ? "-" : "+", clocks_text(change)));
       }
       if (where.empty() && places[i].contains(name)) where = places[i].at(name);
       if (wait.empty() && f) wait = largest_wait(*f);
     }
-    cells.push_back(escaped(wait));
+    cells.push_back(wait.empty() ? "" : escaped(explain::waits_or_sleeps_for(wait)));
     cells.push_back(escaped(where));
     table.row(cells);
   }
@@ -221,7 +224,7 @@ std::string bandwidth_section(const Runs& runs) {
           "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
           "displayed; masters are stacked.");
     out += chart("bandwidth-whole", i,
-                 "Bandwidth to and from the SDRAM from the begin to the end of the results; "
+                 "Bandwidth to and from the SDRAM from the beginning to the end of the results; "
                  "masters are stacked.");
     return out + bandwidth_table(run);
   });

@@ -139,11 +139,24 @@ std::string key_figures(const Runs& runs) {
   return table.html();
 }
 
+/// Escaped, and no line ends between a number and its unit.
+std::string sentence(std::string_view text) {
+  std::string out = escaped(text);
+  for (std::size_t i = 1; i + 1 < out.size(); ++i)
+    if (out[i] == ' ' && out[i - 1] >= '0' && out[i - 1] <= '9')
+      for (const std::string_view unit : {"%", "ms", "us"})
+        if (std::string_view(out).substr(i + 1).starts_with(unit)) {
+          out.replace(i, 1, "&nbsp;");
+          break;
+        }
+  return out;
+}
+
 std::string finding_item(const explain::Finding& f) {
   std::string evidence;
   for (const auto& e : f.evidence) evidence += fmt::format("<code>{}</code> ", escaped(e));
   return fmt::format("<li{}>{}<span class=\"evidence\">from {}</span></li>",
-                     f.estimate ? " class=\"estimate\"" : "", escaped(f.text), evidence);
+                     f.estimate ? " class=\"estimate\"" : "", sentence(f.text), evidence);
 }
 
 std::string finding_list(const std::vector<explain::Finding>& findings) {
