@@ -216,6 +216,9 @@ An access there ends in a bus error that names the block.
 *Event*: number of the channel. *Wired*: the source is modelled. *Second source*: the bit of EDMA_EVTMUX that selects
 it; none of them is modelled, so that the channel gets no events then, with a warning.
 
+Assumed: the inputs of the interrupt controller with which the events 8 (TINT4), 25 (GPIO9) and 47 (GPIO8) come. No
+public list names them; ARM_INTMUX and the numbers of their neighbours leave one choice (`edma_events.h`).
+
 | event | source | wired | second source |
 |---|---|---|---|
 )";

@@ -307,6 +307,59 @@ static void gated_controller(void) {
   REG(DMAQNUM0 + 4) = 0;
 }
 
+/* What a program gets wrong, and that the channel works again afterwards. ERRDET: the code of the error in bits 3 to
+ * 0 (1: read address, 9: write address), the completion code and TCINTEN of its request. */
+static int reports(uint32_t src, uint32_t dst, uint32_t error) {
+  set(4, AB_SYNC | TCINT | TCC(4), (void *)src, PAIR(32, 1), (void *)dst, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 4;
+  const int ended = done(4), status = REG(TC0 + TC_ERRSTAT) == 1;
+  const uint32_t detail = REG(TC0 + TC_ERRDET);
+  REG(TC0 + TC_ERRCLR) = 1;
+  clear();
+  return ended && status && detail == (error | 4u << 8 | 1u << 16);
+}
+
+static int copies_again(unsigned channel) {
+  memset(target, 0, 64);
+  set(channel, AB_SYNC | TCINT | TCC(4), source, PAIR(64, 1), target, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << channel;
+  return done(4) && memcmp(source, target, 64) == 0;
+}
+
+static void bad_input(void) {
+  enum { UART1_DLL = 0x01D06020, NO_BLOCK = 0x01D30000, NOWHERE = 0x40000000, READ = 1, WRITE = 9 };
+  clear();
+  check("a write to an unmapped address is a bus error", reports((uint32_t)source, NOWHERE, WRITE));
+  check("a write to registers that nobody has", reports((uint32_t)source, NO_BLOCK, WRITE));
+  check("a read of them", reports(NO_BLOCK, (uint32_t)target, READ));
+  /* A module without clock answers as it does to the core: reads give 0, writes are lost, with a remark. */
+  clear();
+  set(4, AB_SYNC | TCINT | TCC(4), (void *)UART1_DLL, PAIR(4, 1), target, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 4;
+  check("a read of a module without clock", done(4) && *(uint32_t *)target == 0 && target[4] == 0xEE);
+  set(4, AB_SYNC | TCINT | TCC(4), source + 4, PAIR(4, 1), (void *)UART1_DLL, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 4;
+  const int lost = done(4) && REG(TC0 + TC_ERRSTAT) == 0;
+  enable(20);
+  REG(0x01D06030) = 0x6001; /* out of reset */
+  check("a write to it is lost", lost && REG(UART1_DLL) == 0);
+  set(4, AB_SYNC | TCINT | TCC(4), source + 4, PAIR(4, 1), (void *)UART1_DLL, 0, 0xFFFF, 0, 1);
+  REG(ESR) = 1u << 4;
+  check("with a clock it is not", done(4) && (REG(UART1_DLL) & 0xFF) == source[4]);
+  check("a copy after all of these", copies_again(4));
+  clear();
+  set(4, AB_SYNC | TCINT | TCC(4), source, PAIR(64, 1), target, 0, 0x4000 + 32 * 256, 0, 1); /* no such set */
+  REG(ESR) = 1u << 4;
+  const int first = done(4);
+  REG(ICR) = 1u << 4;
+  REG(ESR) = 1u << 4;
+  const int second = done(4), missed = REG(EMR) == 1u << 4;
+  REG(EMCR) = 1u << 4;
+  REG(SECR) = 1u << 4;
+  check("a link to nowhere ends the transfer, and the next trigger finds a null set", first && !second && missed);
+  check("a copy after it", copies_again(4) && REG(EMR) == 0);
+}
+
 int main(void) {
   for (unsigned module = 0; module < 5; ++module) enable(module);
   enable(27); /* TIMER0: two counters of 32 bits, running */
@@ -329,6 +382,7 @@ int main(void) {
   bus_error();
   controller_errors();
   gated_controller();
+  bad_input();
   check("no other error", REG(EMR) == 0 && REG(EMR + 4) == 0 && REG(CCERR) == 0);
   return failures;
 }
