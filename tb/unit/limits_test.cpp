@@ -400,6 +400,7 @@ TEST_F(LimitsTest, WrongUseIsOneLine) {
       {"--ports nowhere", "allowed: all, or some of load, other"},
       {"--priorities 8", "allowed: 0 to 7"},
       {"--load-step 0", "a step above 0"},
+      {"--load-bytes 12", "--load-bytes '12': allowed: 4, 8, 16, 32 or 64"},
       {"-j 0", "--jobs"},
       {"-s toy.limits=3", "did you mean 'toy.limit'?"},
   };

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <bit>
 #include <ostream>
 #include <thread>
 
@@ -99,6 +100,8 @@ Question question_of(const LimitsOptions& o, const ParamSet& params) {
   q.relax = o.relax;
   if (!(o.load_step > 0) || !(o.load_most >= o.load_step) || o.load_most / o.load_step > 1e6)
     throw UserError("--load-step, --load-most: a step above 0, and at least one of them up to the most, are needed");
+  if (!std::has_single_bit(o.load_bytes))
+    throw UserError("--load-bytes '" + std::to_string(o.load_bytes) + "': allowed: 4, 8, 16, 32 or 64");
   if (!o.relax.empty() && o.binds.empty()) throw UserError("--relax: it needs --binds");
   q.shape = {o.load_bytes, o.load_slots, o.load_pattern, o.load_kind, o.load_step, o.load_most};
   if (q.load) q.places = places(o, params);
@@ -153,7 +156,8 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
   c->add_option("--binds", o.binds, "What binds this figure, such as frame.remap_time.mean; with --find, at the "
                                     "value found")
       ->type_name("FIGURE");
-  c->add_flag("--load", o.load, "Largest additional load on a port of the crossbar");
+  c->add_flag("--load", o.load, "Largest additional load on a port of the crossbar, and whether a USB port or an H.264 "
+                                "encoder can run beside the experiment");
   c->add_option("--over", o.over, "All of it for each of these values; may be repeated, for every combination")
       ->type_name("KEY=A,B")
       ->allow_extra_args(false);
@@ -170,7 +174,7 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
       ->type_name("A,B")->delimiter(',')->default_str("load");
   c->add_option("--priorities", o.priorities, "Priorities of the load, 0 highest")
       ->type_name("A,B")->delimiter(',')->default_str("0,1,2,3,4,5,6,7");
-  c->add_option("--load-bytes", o.load_bytes, "Bytes of a burst of the load")
+  c->add_option("--load-bytes", o.load_bytes, "Bytes of a burst of the load, a power of two")
       ->type_name("N")->check(CLI::Range(4u, 64u))->capture_default_str();
   c->add_option("--load-slots", o.load_slots, "Bursts of the load under way at once")
       ->type_name("N")->check(CLI::Range(1u, 16u))->capture_default_str();
