@@ -123,6 +123,9 @@ awk -F, '{ n[$1] += $8 } END { exit !(n["lut"] > 0 && n["boot"] > 10 * n["lut"] 
 # A program of `fovea exec`, with and without a result folder.
 "$fovea" exec --profile -o "$out/exec" "$programs/registers.elf" >/dev/null 2>"$out/exec.err"
 grep -q '_start' "$out/exec.err"
+# It has no debug information, which one line says; the board's firmware has it.
+[ "$(grep -c 'no debug information' "$out/exec.err")" = 1 ] || { cat "$out/exec.err"; exit 1; }
+if grep 'no debug information' "$out/on.out"; then exit 1; fi
 clocks=$(awk -F, 'NR > 1 { n += $8 } END { print n }' "$out/exec/profile.csv")
 [ "$clocks" = "$(grep -o '"cpu.cycles": {"value": [0-9]*' "$out/exec/stats.json" | sed 's/.*: //')" ]
 "$fovea" exec --profile --fast-memory "$programs/heap_arm_O2.elf" >/dev/null 2>"$out/flat.err"
