@@ -171,7 +171,7 @@ std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned cam
   if (!layout) return std::nullopt;
   const double x = (params.raster_width() - params.width()) / 2, y = (params.raster_height() - params.height()) / 2;
   const bool by_centre = views_.lens[0].method == oracle::PairMethod::kPairCentre;
-  const ShownFields f = read_stamps(shown.frame, *layout, [&](unsigned u, unsigned v) -> std::optional<oracle::Position> {
+  const auto position = [&](unsigned u, unsigned v) -> std::optional<oracle::Position> {
     if (!views_.birds_eye) {
       const oracle::Shown at = oracle::shown_at(views_, u, v);
       if (at.camera != static_cast<int>(camera)) return std::nullopt;
@@ -181,7 +181,8 @@ std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned cam
     const oracle::Shown at = oracle::shown_at(views_, u / 2 * 2 + (by_centre ? 0.5 : 0), v);
     if (at.camera != static_cast<int>(camera)) return std::nullopt;
     return oracle::Position{std::floor(std::floor(at.at.x + 0.5) / 2) * 2 + u % 2 + x, std::floor(at.at.y + 0.5) + y};
-  });
+  };
+  const ShownFields f = read_stamps(shown.frame, *layout, position);
   // At half height the rows of one field may be the only ones that are shown.
   const bool even = f.even_camera == camera, odd = f.odd_camera == camera;
   if (!even && !odd) return std::nullopt;

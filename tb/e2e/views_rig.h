@@ -52,7 +52,7 @@ class ViewsRig {
   /// @param oldest a part may be of a frame that began so many frames before the picture was displayed: more than a
   ///        round of four cameras and the display's buffers
   std::string wrong_picture(const std::vector<std::uint32_t>& lut, std::uint64_t oldest = 12);
-  /// The same, where the marks of each part name the frame that it shows; nothing else is asked which frame that may be.
+  /// The same, where the marks of each part name the frame that it shows, and nothing else does.
   std::string wrong_by_stamps(const std::vector<std::uint32_t>& lut);
   /// The camera's frame number in the marks of its part of a displayed picture; nothing if they cannot be read.
   std::optional<std::uint64_t> stamp(const Composed& shown, unsigned camera) const;

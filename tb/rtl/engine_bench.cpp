@@ -180,6 +180,66 @@ RegisterAnswer EngineBench::access(std::optional<RegisterWrite> write,
   return answer;
 }
 
+std::array<RegisterAnswer, 2> EngineBench::read_two(unsigned first, unsigned second, unsigned hold) {
+  Vremap_top& d = *dut_;
+  std::array<RegisterAnswer, 2> answers;
+  unsigned asked = 0, had = 0, held = 0;
+  for (unsigned n = 0; had < 2; ++n) {
+    if (n == 1'000 + hold) throw std::runtime_error("the registers do not answer");
+    d.s_ar_valid_i = asked < 2;
+    d.s_ar_addr_i = asked == 0 ? first : second;
+    d.s_r_ready_i = had == 1 || held == hold;
+    drive();
+    const bool took = d.s_ar_valid_i && d.s_ar_ready_o;
+    if (d.s_r_valid_o) {
+      RegisterAnswer& answer = answers.at(had);
+      if (had == 0 && held > 0 && (answer.data != d.s_r_data_o || answer.read_response != d.s_r_resp_o))
+        throw std::runtime_error("an answer changed before it was taken");
+      answer.data = d.s_r_data_o;
+      answer.read_response = d.s_r_resp_o;
+      had += d.s_r_ready_i != 0;
+      held += d.s_r_ready_i == 0;
+    }
+    sample();
+    tick();
+    asked += took;
+  }
+  d.s_ar_valid_i = d.s_r_ready_i = 0;
+  return answers;
+}
+
+std::array<RegisterAnswer, 2> EngineBench::write_two(const RegisterWrite& first, const RegisterWrite& second,
+                                                     unsigned hold) {
+  Vremap_top& d = *dut_;
+  std::array<RegisterAnswer, 2> answers;
+  unsigned sent = 0, had = 0, held = 0;
+  for (unsigned n = 0; had < 2; ++n) {
+    if (n == 1'000 + hold) throw std::runtime_error("the registers do not answer");
+    const RegisterWrite& w = sent == 0 ? first : second;
+    d.s_aw_valid_i = d.s_w_valid_i = sent < 2;
+    d.s_aw_addr_i = w.offset;
+    d.s_w_data_i = w.value;
+    d.s_w_strb_i = w.strobes;
+    d.s_b_ready_i = had == 1 || held == hold;
+    drive();
+    const bool took = d.s_aw_valid_i && d.s_aw_ready_o;
+    if (took != (d.s_w_valid_i && d.s_w_ready_o)) throw std::runtime_error("an address is taken without its data");
+    if (d.s_b_valid_o) {
+      RegisterAnswer& answer = answers.at(had);
+      if (had == 0 && held > 0 && answer.write_response != d.s_b_resp_o)
+        throw std::runtime_error("an answer changed before it was taken");
+      answer.write_response = d.s_b_resp_o;
+      had += d.s_b_ready_i != 0;
+      held += d.s_b_ready_i == 0;
+    }
+    sample();
+    tick();
+    sent += took;
+  }
+  d.s_aw_valid_i = d.s_w_valid_i = d.s_b_ready_i = 0;
+  return answers;
+}
+
 void EngineBench::write(unsigned offset, std::uint32_t value, unsigned strobes) {
   if (access(RegisterWrite{offset, value, strobes}, {}).write_response != 0)
     throw std::runtime_error("a write to a register was answered with an error");
