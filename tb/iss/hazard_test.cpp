@@ -211,6 +211,52 @@ TEST_F(HazardTest, CodeThatWasChangedInMemory) {
   EXPECT_EQ(counts({neighbour, change(kFunction, 95), call}), (Counts{0, 0, 0, 0, 1}));
 }
 
+/// Watches a line from its fill to its second load.
+struct Listener : LineWatch {
+  explicit Listener(Core& c) : core(c) {}
+  bool is_it(unsigned line) const { return core.view().data.lines().line(line).pa == address; }
+  void filled(unsigned line) override {
+    if (!is_it(line)) return;
+    ++fills;
+    core.watch_line(line, true);
+  }
+  void loaded(unsigned line, unsigned offset, unsigned) override {
+    if (!is_it(line)) return;
+    loads.push_back(offset);
+    if (loads.size() == 2) core.watch_line(line, false);
+  }
+  void stored(unsigned, unsigned, unsigned) override { ++stores; }
+  void written_back(unsigned, unsigned halves) override { written.push_back(halves); }
+  Core& core;
+  std::uint32_t address = 0;
+  std::vector<unsigned> loads, written;
+  unsigned fills = 0, stores = 0;
+};
+
+/// Another observer neither takes the checker's place nor ends what the checker still watches.
+TEST_F(HazardTest, SeveralObserversSeeTheSameLines) {
+  const std::vector<Step> steps{{Do::kLoad, kLine}, dma(true, kLine, 32), {Do::kLoad, kLine + 4},
+                                {Do::kLoad, kLine + 8}, {Do::kStore, kLine + 20, 9}, {Do::kCleanAll}};
+  Listener first(bench.m.core), second(bench.m.core);
+  first.address = second.address = kLine;
+  Subscription first_on = bench.m.core.observe_lines(first);
+  const Subscription second_on = bench.m.core.observe_lines(second);
+  EXPECT_EQ(counts(steps), (Counts{2, 0, 0, 1, 0}));
+  for (const Listener* l : {&first, &second}) {
+    EXPECT_EQ(l->fills, 1u);
+    EXPECT_EQ(l->loads, (std::vector<unsigned>{0, 4, 8}));  // the checker still watches for the third
+    EXPECT_EQ(l->stores, 1u);
+    EXPECT_EQ(l->written, (std::vector<unsigned>{2}));  // the upper half
+  }
+  first_on.reset();
+  second.loads.clear();
+  EXPECT_EQ(counts(steps), (Counts{2, 0, 0, 1, 0}));
+  EXPECT_EQ(first.fills, 1u);
+  EXPECT_EQ(first.loads.size(), 3u);
+  EXPECT_EQ(second.fills, 2u);
+  EXPECT_EQ(second.loads, (std::vector<unsigned>{0, 4, 8}));
+}
+
 /// The checker changes nothing but the host's time.
 TEST_F(HazardTest, TimesAreThoseWithoutIt) {
   const std::vector<Step> steps{{Do::kLoad, kLine}, dma(true, kLine, 32), {Do::kLoad, kLine},

@@ -8,14 +8,16 @@ namespace fovea::cpu {
 
 HazardChecker::HazardChecker(Core& core)
     : core_(core),
+      observing_(core.observe_lines(*this)),
       code_(core, [this](const Hazard& h) { report(h); }),
       lines_(core.view().data.lines()),
       bus_(core.view().bus),
-      held_(lines_.lines()) {
-  core_.observe_lines(this);
-}
+      held_(lines_.lines()) {}
 
-HazardChecker::~HazardChecker() { core_.observe_lines(nullptr); }
+HazardChecker::~HazardChecker() {
+  for (unsigned n = 0; n < held_.size(); ++n)
+    if (held_[n].foreign.bytes && lines_.line(n).tag != 1) core_.watch_line(n, false);
+}
 
 std::uint64_t HazardChecker::total() const {
   return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
@@ -100,8 +102,8 @@ void HazardChecker::written_by(const MemRequest& r, std::uint32_t line_pa, std::
   const auto note = [&](Foreign& f) { f = {f.bytes | bytes, r.master, at}; };
   if (filling_ == line_pa) note(meanwhile_);
   each_holder(line_pa, [&](unsigned n, Held& held) {
+    if (!held.foreign.bytes) core_.watch_line(n, true);
     note(held.foreign);
-    core_.watch_line(n, true);
   });
   if (bus_.unsent(first_of(line_pa, bytes), static_cast<unsigned>(std::popcount(bytes))))
     report({HazardKind::kOverwrite, r.master, core_.current_pc(), first_of(line_pa, bytes), at, at});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/common/arrival_observer.h"
+#include "model/common/observers.h"
 #include "model/cpu/check/hazard.h"
 #include "model/cpu/check/stale_code.h"
 #include "model/cpu/core/core.h"
@@ -94,6 +95,7 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   void report(const Hazard& h) { found_.push_back(h); }
 
   Core& core_;
+  Subscription observing_;
   StaleCode code_;
   const Cache& lines_;
   const DataBus& bus_;

@@ -18,7 +18,7 @@ class Cache {
     std::uint32_t pa = 0;    // physical address of the line, for write-backs
     std::uint8_t dirty = 0;  // one bit for each half of the line
     bool write_back = false;
-    bool watched = false;  // its accesses are announced, so it has no hints
+    std::uint8_t watched = 0;  // by how many observers, at most 31; its accesses are announced, so it has no hints
   };
   unsigned sets() const { return sets_; }
   unsigned lines() const { return sets_ * kWays; }
@@ -45,7 +45,7 @@ class Cache {
   void invalidate(unsigned i) {
     lines_[i].tag = 1;
     lines_[i].dirty = 0;
-    lines_[i].watched = false;
+    lines_[i].watched = 0;
   }
   void invalidate_all() {
     for (unsigned i = 0; i < lines(); ++i) invalidate(i);

@@ -212,9 +212,10 @@ class Core : public Background {
   /// them holds the address, so that memory has the current value.
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
 
-  /// Sets the observer of the D-cache's lines; null: none.
-  void observe_lines(LineWatch* watch) { data_.observe(watch); }
-  /// Whether each access to a line is announced to the observer, until the line is filled again.
+  /// Calls the observer for what happens to the D-cache's lines, until the subscription ends.
+  Subscription observe_lines(LineWatch& observer) { return data_.observe(observer); }
+  /// Whether each access to a line is announced to the observers, until the line is filled again. An
+  /// observer calls this once when it begins to need that, and once when it no longer does.
   void watch_line(unsigned line, bool on) { data_.watch_line(line, on); }
 
   // For debuggers: only at an instruction boundary or during an SWI, without simulated time.

@@ -53,12 +53,12 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
   l.pa = pa & ~31u;
   l.dirty = 0;
   l.write_back = write_back_page;
-  l.watched = false;
+  l.watched = 0;
   fill = {mva & ~31u, (pa >> 2) & 7u, pa, ledger_.cycle,
           std::max(ledger_.cycle, bus_.last_word())};
-  if (watch_) [[unlikely]] {
+  if (!observers_.empty()) [[unlikely]] {
     bus_.let_others_act();  // what they did while the line came must not depend on who is ahead
-    watch_->filled(index);
+    observers_.each([index](LineWatch* w) { w->filled(index); });
   }
   return static_cast<int>(index);
 }
@@ -66,8 +66,22 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
 void DataCache::write_back(unsigned line, bool before_fill, Cause cause) {
   const unsigned halves = lines_.line(line).dirty;
   bus_.write_back(lines_, line, before_fill, cause);
-  if (watch_ && halves) [[unlikely]]
-    watch_->written_back(line, halves);
+  if (halves && !observers_.empty()) [[unlikely]]
+    observers_.each([=](LineWatch* w) { w->written_back(line, halves); });
+}
+
+void DataCache::announce_load(unsigned line, unsigned offset, unsigned bytes) {
+  observers_.each([=](LineWatch* w) { w->loaded(line, offset, bytes); });
+}
+
+void DataCache::watch_line(unsigned line, bool on) {
+  Cache::Line& l = lines_.line(line);
+  if (on) {
+    ++l.watched;
+    drop_hints(l.tag);
+  } else if (l.watched) {
+    --l.watched;
+  }
 }
 
 bool DataCache::store(std::uint32_t va, std::uint32_t mva, unsigned bytes, std::uint32_t value,
@@ -81,8 +95,8 @@ bool DataCache::store(std::uint32_t va, std::uint32_t mva, unsigned bytes, std::
   }
   const auto line = static_cast<unsigned>(i);
   std::memcpy(lines_.data(line) + (mva & 31u), &value, bytes);
-  if (watch_) [[unlikely]]
-    watch_->stored(line, mva & 31u, bytes);
+  if (!observers_.empty()) [[unlikely]]
+    observers_.each([=](LineWatch* w) { w->stored(line, mva & 31u, bytes); });
   if (!keeps(i, write_back_page)) return false;
   lines_.line(line).dirty |= static_cast<std::uint8_t>(1u << ((mva >> 4) & 1u));
   if (!lines_.line(line).watched) [[likely]]

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "model/common/observers.h"
 #include "model/cpu/core/cache.h"
 #include "model/cpu/core/data_bus.h"
 #include "model/cpu/core/line_watch.h"
@@ -40,12 +41,12 @@ class DataCache {
     int i = lines_.find(mva);
     if (i < 0) i = fill_line(mva, t.physical(mva), t.bufferable);
     std::uint8_t* const line = lines_.data(static_cast<unsigned>(i));
-    // A watched line differs in the tag's lowest bit, so that it needs no branch of its own.
+    // A watched line differs in one of the tag's five lowest bits, so that it needs no branch of its own.
     const Cache::Line& l = lines_.line(static_cast<unsigned>(i));
     if ((l.tag ^ l.watched) == (mva & ~31u))
       hint_reads(va, mva, line, ledger_.counts.dcache_reads);
     else if (l.watched)
-      watch_->loaded(static_cast<unsigned>(i), mva & 31u, bytes);
+      announce_load(static_cast<unsigned>(i), mva & 31u, bytes);
     return line + (mva & 31u);
   }
   /// A cacheable store. @return true if the line is dirty now, so that memory need not be written
@@ -100,13 +101,10 @@ class DataCache {
     lines_.invalidate_all();
     forget_hints();
   }
-  /// Sets the observer of the lines; null: none.
-  void observe(LineWatch* watch) { watch_ = watch; }
-  /// Only while there is an observer.
-  void watch_line(unsigned line, bool on) {
-    lines_.line(line).watched = on;
-    if (on) drop_hints(lines_.line(line).tag);
-  }
+  Subscription observe(LineWatch& watch) { return observers_.add(&watch); }
+  /// Only for observers. A line is watched until as many calls have ended it as have begun it, or until
+  /// it is filled again.
+  void watch_line(unsigned line, bool on);
   Cache& lines() { return lines_; }
   const Cache& lines() const { return lines_; }
 
@@ -124,12 +122,13 @@ class DataCache {
   void drop_hints(std::uint32_t line_mva);
   void forget_absent(std::uint32_t line_mva);
   void write_back(unsigned line, bool before_fill, Cause cause);
+  void announce_load(unsigned line, unsigned offset, unsigned bytes);
 
   StallLedger& ledger_;
   DataBus& bus_;
   const SystemRegisters& registers_;
   Cache lines_;
-  LineWatch* watch_ = nullptr;
+  Observers<LineWatch*> observers_;
   bool hints_used_ = false;
 };
 

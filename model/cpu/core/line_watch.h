@@ -5,7 +5,7 @@ namespace fovea::cpu {
 
 /// Lines are numbered as in Cache. Accesses that hit a hint are not announced, which is why a hit costs
 /// nothing: whoever wants to hear about every access to a line watches it (Core::watch_line), so that it
-/// has no hints. An observer changes nothing else.
+/// has no hints. Loads are announced to all observers, whoever watches the line. An observer changes nothing else.
 class LineWatch {
  public:
   virtual ~LineWatch() = default;
