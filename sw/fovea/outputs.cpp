@@ -288,15 +288,15 @@ std::string verdict(std::span<const StatRow> stats) {
   const StatRow* remap_rate = find(stats, "frame.remap_rate");
   std::string out;
   if (remap_rate && remaps_in_a_row(stats))
-    out = fmt::format("remaps in a row: {:.4g}/s; ", std::get<double>(remap_rate->value));
+    out = fmt::format("remaps in a row: {:.4g} a second; ", std::get<double>(remap_rate->value));
   // Several cameras share the display: a repeated frame is no fault then.
   if (find(stats, "camera.1.frame.displayed"))
-    out += fmt::format("several cameras in turn: {} new frames in {} displayed ones ({:.4g}/s), {} dropped",
+    out += fmt::format("several cameras in turn: {} new frames in {} displayed ones ({:.4g} a second), {} dropped",
                        fresh, displayed, std::get<double>(rate->value), some(dropped));
   else
-    out += fmt::format("{}: {} of {} camera frames shown ({:.4g}/s), {} dropped, {} repeated",
-                     repeated || dropped ? "frame rate missed" : "frame rate met", fresh, displayed,
-                     std::get<double>(rate->value), some(dropped), some(repeated));
+    out += fmt::format("{}: {} of {} camera frames shown ({:.4g} a second), {} dropped, {} repeated",
+                       repeated || dropped ? "frame rate missed" : "frame rate met", fresh, displayed,
+                       std::get<double>(rate->value), some(dropped), some(repeated));
   for (const auto& [name, what] : {std::pair("capture.overflows", "capture overflow"),
                                    std::pair("display.underflows", "display underflow")})
     if (const std::uint64_t n = count(name))

@@ -230,7 +230,7 @@ TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
   stats.push_back({"camera.1.frame.rate", 6.25, "1/s", ""});
   stats.push_back({"camera.1.frame.displayed", std::uint64_t{4}, "1", ""});
   EXPECT_EQ(verdict(stats),
-            "several cameras in turn: 8 new frames in 16 displayed ones (12.5/s), 1 dropped\n");
+            "several cameras in turn: 8 new frames in 16 displayed ones (12.5 a second), 1 dropped\n");
   stats.push_back({"camera.1.frame.superseded", std::uint64_t{2}, "1", ""});
   auto silent = stats;
   silent.push_back({"camera.2.frame.rate", 0.0, "1/s", ""});
@@ -250,18 +250,18 @@ TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {
 
 TEST(VerdictTest, SaysWhetherTheRateWasMet) {
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0)),
-            "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated\n");
+            "frame rate met: 25 of 25 camera frames shown (25 a second), none dropped, none repeated\n");
   EXPECT_EQ(
       verdict(frames_of(30000.0 / 1001, 25, 0, 0)),
-      "frame rate met: 25 of 25 camera frames shown (29.97/s), none dropped, none repeated\n");
+      "frame rate met: 25 of 25 camera frames shown (29.97 a second), none dropped, none repeated\n");
   EXPECT_EQ(verdict(frames_of(12.5, 16, 8, 0)),
-            "frame rate missed: 8 of 16 camera frames shown (12.5/s), none dropped, 8 repeated\n");
+            "frame rate missed: 8 of 16 camera frames shown (12.5 a second), none dropped, 8 repeated\n");
   EXPECT_EQ(verdict(frames_of(24, 25, 0, 1)),
-            "frame rate missed: 25 of 25 camera frames shown (24/s), 1 dropped, none repeated\n");
+            "frame rate missed: 25 of 25 camera frames shown (24 a second), 1 dropped, none repeated\n");
   EXPECT_EQ(verdict(frames_of(25, 25, 1, 0)),
-            "frame rate missed: 24 of 25 camera frames shown (25/s), none dropped, 1 repeated\n");
+            "frame rate missed: 24 of 25 camera frames shown (25 a second), none dropped, 1 repeated\n");
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0, 1, 2)),
-            "frame rate met: 25 of 25 camera frames shown (25/s), none dropped, none repeated, 1 "
+            "frame rate met: 25 of 25 camera frames shown (25 a second), none dropped, none repeated, 1 "
             "capture overflow, 2 display underflows\n");
 }
 
@@ -277,9 +277,9 @@ std::vector<StatRow> remaps_of(std::uint64_t remapped, double rate) {
 // and more are remaps in a row, whose rate is the figure.
 TEST(VerdictTest, BeginsWithTheRateOfRemapsInARow) {
   const std::string shown =
-      "frame rate missed: 4 of 6 camera frames shown (25/s), none dropped, 2 repeated\n";
+      "frame rate missed: 4 of 6 camera frames shown (25 a second), none dropped, 2 repeated\n";
   EXPECT_EQ(verdict(remaps_of(5, 26.5)), shown);
-  EXPECT_EQ(verdict(remaps_of(6, 37.25)), "remaps in a row: 37.25/s; " + shown);
+  EXPECT_EQ(verdict(remaps_of(6, 37.25)), "remaps in a row: 37.25 a second; " + shown);
   std::vector<StatRow> without = remaps_of(60, 0);
   without.pop_back();
   EXPECT_EQ(verdict(without), shown);
