@@ -294,7 +294,7 @@ std::string verdict(std::span<const StatRow> stats) {
     out += fmt::format("several cameras in turn: {} new frames in {} displayed ones ({:.4g} a second), {} dropped",
                        fresh, displayed, std::get<double>(rate->value), some(dropped));
   else
-    out += fmt::format("{}: {} of {} camera frames shown ({:.4g} a second), {} dropped, {} repeated",
+    out += fmt::format("{}: {} of {} frames shown ({:.4g} a second), {} dropped, {} repeated",
                        repeated || dropped ? "frame rate missed" : "frame rate met", fresh, displayed,
                        std::get<double>(rate->value), some(dropped), some(repeated));
   for (const auto& [name, what] : {std::pair("capture.overflows", "capture overflow"),

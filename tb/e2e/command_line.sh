@@ -68,7 +68,7 @@ expect no_such_clock 2 "key 'clocks.arm'.*297MHz and 310.5MHz.*243MHz and 256.5M
 expect clock_beyond 2 "clocks.ddr.*340MHz" -- run "$out/small.yaml" -s clocks.ddr=341MHz
 expect free_clocks 0 -- run "$out/small.yaml" -s clocks.arm=135MHz -s clocks.ddr=162MHz --strict
 grep -q 'boot: clocks 135000/162000 kHz' "$out/run/uart.log" || fail 'uart.log lacks the clocks'
-expect good 0 '^frame rate met: 2 of 2 camera frames shown' '^budget  40.0 ms a displayed frame: remap 0.[0-9](, other work 0.[1-9])?, idle 39.[0-9]$' -- run "$out/small.yaml"
+expect good 0 '^frame rate met: 2 of 2 frames shown' '^budget  40.0 ms a displayed frame: remap 0.[0-9](, other work 0.[1-9])?, idle 39.[0-9]$' -- run "$out/small.yaml"
 expect unknown_key 2 'key.yaml:2' 'frame' 'did you mean .run.frames' -- run "$out/key.yaml"
 expect missing_unit 2 'unit.yaml:2' 'request_latency' 'cycles.*; a number alone lacks its unit' -- \
   run "$out/unit.yaml"

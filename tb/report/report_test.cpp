@@ -350,7 +350,7 @@ TEST(PageTest, NeverSaysWhatBinds) {
                     text = report_text({load_results(dir / "run", {})});
   EXPECT_THAT(page, Not(HasSubstr("binds")));
   EXPECT_THAT(text, Not(HasSubstr("binds")));
-  EXPECT_THAT(text, HasSubstr("frame rate met: 2 of 2 camera frames shown"));
+  EXPECT_THAT(text, HasSubstr("frame rate met: 2 of 2 frames shown"));
   EXPECT_THAT(text, HasSubstr("- Largest wait: in 50 %"));
   EXPECT_THAT(text, HasSubstr("    from cpu.stall.dcache, cpu.cycles"));
 }

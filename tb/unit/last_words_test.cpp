@@ -167,7 +167,7 @@ void expect_one_screen(const std::string& text, std::size_t lines_below) {
 TEST(RunWordsTest, FitOneScreen) {
   const std::string text = run_words(full_run(), kHost);
   expect_one_screen(text, 4);
-  EXPECT_THAT(text, StartsWith("frame rate met: 10 of 10 camera frames shown (25 a second)"));
+  EXPECT_THAT(text, StartsWith("frame rate met: 10 of 10 frames shown (25 a second)"));
   EXPECT_THAT(text, HasSubstr("\nbudget  40.0 ms"));
   EXPECT_THAT(text, HasSubstr("\ntimes   a remap 28.66 ms (28.66 to 28.66), capture to display 28.66 ms"));
   EXPECT_THAT(text, HasSubstr("\nSDRAM   data bus busy 17.2 %, no request queued 66.1 %, reads 158.5 MB/s"));

@@ -250,18 +250,18 @@ TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {
 
 TEST(VerdictTest, SaysWhetherTheRateWasMet) {
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0)),
-            "frame rate met: 25 of 25 camera frames shown (25 a second), none dropped, none repeated\n");
+            "frame rate met: 25 of 25 frames shown (25 a second), none dropped, none repeated\n");
   EXPECT_EQ(
       verdict(frames_of(30000.0 / 1001, 25, 0, 0)),
-      "frame rate met: 25 of 25 camera frames shown (29.97 a second), none dropped, none repeated\n");
+      "frame rate met: 25 of 25 frames shown (29.97 a second), none dropped, none repeated\n");
   EXPECT_EQ(verdict(frames_of(12.5, 16, 8, 0)),
-            "frame rate missed: 8 of 16 camera frames shown (12.5 a second), none dropped, 8 repeated\n");
+            "frame rate missed: 8 of 16 frames shown (12.5 a second), none dropped, 8 repeated\n");
   EXPECT_EQ(verdict(frames_of(24, 25, 0, 1)),
-            "frame rate missed: 25 of 25 camera frames shown (24 a second), 1 dropped, none repeated\n");
+            "frame rate missed: 25 of 25 frames shown (24 a second), 1 dropped, none repeated\n");
   EXPECT_EQ(verdict(frames_of(25, 25, 1, 0)),
-            "frame rate missed: 24 of 25 camera frames shown (25 a second), none dropped, 1 repeated\n");
+            "frame rate missed: 24 of 25 frames shown (25 a second), none dropped, 1 repeated\n");
   EXPECT_EQ(verdict(frames_of(25, 25, 0, 0, 1, 2)),
-            "frame rate met: 25 of 25 camera frames shown (25 a second), none dropped, none repeated, 1 "
+            "frame rate met: 25 of 25 frames shown (25 a second), none dropped, none repeated, 1 "
             "capture overflow, 2 display underflows\n");
 }
 
@@ -277,7 +277,7 @@ std::vector<StatRow> remaps_of(std::uint64_t remapped, double rate) {
 // and more are remaps in a row, whose rate is the figure.
 TEST(VerdictTest, BeginsWithTheRateOfRemapsInARow) {
   const std::string shown =
-      "frame rate missed: 4 of 6 camera frames shown (25 a second), none dropped, 2 repeated\n";
+      "frame rate missed: 4 of 6 frames shown (25 a second), none dropped, 2 repeated\n";
   EXPECT_EQ(verdict(remaps_of(5, 26.5)), shown);
   EXPECT_EQ(verdict(remaps_of(6, 37.25)), "remaps in a row: 37.25 a second; " + shown);
   std::vector<StatRow> without = remaps_of(60, 0);
