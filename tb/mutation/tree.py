@@ -68,9 +68,8 @@ class Areas:
 
 def draw(places, areas, number, least, seed):
     """Mutants of each area in the order in which they are used. Every operator is equally likely, then
-    every place of it; none overlaps another."""
-    generator = random.Random(seed)
-
+    every place of it; none overlaps another. Each area has a generator of its own, so that a change in one leaves the
+    draw of the others as it is."""
     def below(n):  # the standard's generator, our own reduction: the same draw with every Python
         return generator.getrandbits(32) * n >> 32
 
@@ -84,7 +83,7 @@ def draw(places, areas, number, least, seed):
         quota[a] = min(len(v), quota[a] + rest * len(v) // max(1, total))
     mutants, taken = [], {}
     for a in areas:
-        kinds = {}
+        generator, kinds = random.Random(f'{seed} {a}'), {}
         for p in sorted(by_area[a], key=lambda p: (p['file'], p['start'], p['end'], p['change'])):
             kinds.setdefault(p['kind'], []).append(p)
         chosen, wanted = 0, math.ceil(quota[a] * SPARE)
