@@ -191,22 +191,30 @@ class Tree:
         kept.write_text(json.dumps({'key': key.hexdigest(), 'places': found}))
         return found
 
+    def sources_of(self, entry):
+        """The project's sources that a command compiles: one, or those that CMake has joined."""
+        path = pathlib.Path(entry['file'])
+        joined = re.findall(r'^#include "(.+)"$', path.read_text(), re.M) if 'Unity' in path.parts else [str(path)]
+        return [os.path.relpath(file, self.tree) for file in joined]
+
     def parse(self, jobs):
-        """Reads each source by itself: the commands are those of a build that does not join sources."""
+        """Reads the sources as they are built, several joined in one: their headers are most of the work."""
         import places  # noqa: F401: a missing package shows here, not in every process
-        self.cmake(self.out / 'commands', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON')
+        self.cmake(self.out / 'commands', '-DCMAKE_UNITY_BUILD=ON', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON')
         commands = json.loads((self.out / 'commands' / 'compile_commands.json').read_text())
-        entries = {}
+        entries, seen = {}, set()
         for entry in commands:
-            if self.areas.of(os.path.relpath(entry['file'], self.tree)):
+            sources = {name for name in self.sources_of(entry) if self.areas.of(name)}
+            if sources - seen:
                 entries.setdefault(entry['file'], entry)
+                seen |= sources
         found = []
         with multiprocessing.Pool(jobs, start_reading, (str(self.tree), self.config)) as pool:
             for number, (new, complaints) in enumerate(pool.imap_unordered(read_unit, entries.values(), 4)):
                 for text in complaints[:3]:
                     say(f'parsing: {text}')
                 found += new
-                if number % 50 == 49 or number + 1 == len(entries):
+                if number % 10 == 9 or number + 1 == len(entries):
                     say(f'places: {number + 1} of {len(entries)} files, {len(found)} found')
         unique = {}
         for p in found:
