@@ -194,8 +194,10 @@ class Tree:
     def sources_of(self, entry):
         """The project's sources that a command compiles: one, or those that CMake has joined."""
         path = pathlib.Path(entry['file'])
-        joined = re.findall(r'^#include "(.+)"$', path.read_text(), re.M) if 'Unity' in path.parts else [str(path)]
-        return [os.path.relpath(file, self.tree) for file in joined]
+        if path.parent.name not in ('joined', 'Unity'):
+            return [os.path.relpath(path, self.tree)]
+        joined = re.findall(r'^#include "(.+)"$', path.read_text(), re.M)
+        return [os.path.relpath(self.tree / name, self.tree) for name in joined]
 
     def parse(self, jobs):
         """Reads the sources as they are built, several joined in one: their headers are most of the work."""
