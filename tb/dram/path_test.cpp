@@ -12,7 +12,7 @@
 namespace fovea::dram {
 namespace {
 
-constexpr Master kA = Master::kVpfe, kB = Master::kVpbe, kC = Master::kRemapEngine;
+constexpr Master kCamera = Master::kVpfe, kDisplay = Master::kVpbe;
 
 // A lone 32-byte read through both cores. DDR 250 MHz, crossbar 125 MHz (8 ns): submitted at 0,
 // seen at edge 1, arbitrated at 3, at the controller at edge 4 = 32 ns = DDR edge 8; seen at 9, ACT
@@ -22,7 +22,7 @@ TEST(PathTest, UnloadedReadLatency) {
   Path path;
   std::array<std::uint8_t, 32> data;
   PathRequest r;
-  r.master = kA;
+  r.master = kCamera;
   r.bytes = 32;
   r.data = data.data();
   path.submit(r, 0);
@@ -139,8 +139,8 @@ class WaitsTest : public testing::Test {
     return r;
   }
   WaitsTest() {
-    path.xbar.set_priority(kA, 0);
-    path.xbar.set_priority(kB, 1);
+    path.xbar.set_priority(kCamera, 0);
+    path.xbar.set_priority(kDisplay, 1);
   }
   static constexpr Picoseconds kLater = 1'000'000;
   const mem::DdrTiming t;  // the controller's default
@@ -154,14 +154,14 @@ class WaitsTest : public testing::Test {
 TEST_F(WaitsTest, QueuedClocksAndBanksOfLoneReads) {
   const mem::DdrParams p;
   const std::uint64_t hit = p.request_latency() + 1;  // from its arrival to behind its column
-  go(kA, false, at(1, 0, 0), 16, 0);
+  go(kCamera, false, at(1, 0, 0), 16, 0);
   path.drain();
   EXPECT_EQ(path.ddr.stats.queued_clocks.count(), hit + t.nRCD);
-  go(kA, false, at(1, 0, 16), 16, kLater);
+  go(kCamera, false, at(1, 0, 16), 16, kLater);
   path.drain();
   EXPECT_EQ(path.ddr.stats.queued_clocks.count(), 2 * hit + t.nRCD);
-  go(kA, false, at(2, 3, 16), 16, 2 * kLater);
-  go(kA, false, at(2, 0, 16), 16, 3 * kLater);
+  go(kCamera, false, at(2, 3, 16), 16, 2 * kLater);
+  go(kCamera, false, at(2, 0, 16), 16, 3 * kLater);
   path.drain();
   const auto& bank = path.ddr.stats.bank;
   EXPECT_EQ(bank[0].row_misses, 1u);
@@ -184,56 +184,56 @@ TEST_F(WaitsTest, SleepIsCountedUpToWhereSomebodyLooks) {
 }
 
 TEST_F(WaitsTest, ClosedBankCostsTheActivation) {
-  go(kA, false, at(1, 0, 0), 32, 0);
+  go(kCamera, false, at(1, 0, 0), 32, 0);
   path.drain();
-  EXPECT_EQ(clocks(path, kA, Culprit::kRowMiss), t.nRCD);
-  go(kA, false, at(1, 0, 64), 32, kLater);
+  EXPECT_EQ(clocks(path, kCamera, Culprit::kRowMiss), t.nRCD);
+  go(kCamera, false, at(1, 0, 64), 32, kLater);
   path.drain();
-  EXPECT_EQ(clocks(path, kA, Culprit::kRowMiss), t.nRCD) << "the row is open now";
-  EXPECT_EQ(path.ddr.waits()[index(kA)].read.ps[index(Culprit::kRowConflict)], 0u);
+  EXPECT_EQ(clocks(path, kCamera, Culprit::kRowMiss), t.nRCD) << "the row is open now";
+  EXPECT_EQ(path.ddr.waits()[index(kCamera)].read.ps[index(Culprit::kRowConflict)], 0u);
 }
 
 TEST_F(WaitsTest, OtherRowCostsPrechargeAndActivation) {
-  go(kA, false, at(1, 0, 0), 32, 0);
-  go(kB, false, at(2, 0, 0), 32, kLater);
+  go(kCamera, false, at(1, 0, 0), 32, 0);
+  go(kDisplay, false, at(2, 0, 0), 32, kLater);
   path.drain();
-  EXPECT_EQ(clocks(path, kB, Culprit::kRowConflict), t.nRP + t.nRCD);
-  EXPECT_EQ(clocks(path, kB, Culprit::kRowMiss), 0u);
+  EXPECT_EQ(clocks(path, kDisplay, Culprit::kRowConflict), t.nRP + t.nRCD);
+  EXPECT_EQ(clocks(path, kDisplay, Culprit::kRowMiss), 0u);
 }
 
 TEST_F(WaitsTest, ReadBehindAnothersBurstWaitsForThatMaster) {
-  go(kA, false, at(1, 0, 0), 4, 0);
+  go(kCamera, false, at(1, 0, 0), 4, 0);
   path.drain();
-  // Both cross in a clock of 8 ns each; A's columns are at c, c + 4, c + 8, c + 12; B is ready at c + 2.
-  go(kA, false, at(1, 0, 0), 64, kLater);
-  go(kB, false, at(1, 0, 64), 16, kLater);
+  // Both cross in a clock of 8 ns each; the camera's columns are at c, c + 4, c + 8, c + 12; the display's request is ready at c + 2.
+  go(kCamera, false, at(1, 0, 0), 64, kLater);
+  go(kDisplay, false, at(1, 0, 64), 16, kLater);
   path.drain();
-  EXPECT_EQ(clocks(path, kB, culprit(kA)), 4u * 4 - 2);
-  EXPECT_EQ(clocks(path, kA, culprit(kB)), 0u);
+  EXPECT_EQ(clocks(path, kDisplay, culprit(kCamera)), 4u * 4 - 2);
+  EXPECT_EQ(clocks(path, kCamera, culprit(kDisplay)), 0u);
 }
 
 TEST_F(WaitsTest, ReadAfterAnothersWriteWaitsForBurstAndTurnaround) {
-  go(kA, false, at(1, 0, 0), 4, 0);
+  go(kCamera, false, at(1, 0, 0), 4, 0);
   path.drain();
-  go(kA, true, at(1, 0, 0), 4, kLater);
-  go(kB, false, at(1, 0, 64), 16, kLater);
+  go(kCamera, true, at(1, 0, 0), 4, kLater);
+  go(kDisplay, false, at(1, 0, 64), 16, kLater);
   path.drain();
-  // WR at w; its data end at w + WL + 4; RD at w + WL + 4 + tWTR. B is ready at w + 2.
-  EXPECT_EQ(clocks(path, kB, culprit(kA)), t.WL() + 4u - 2);
-  EXPECT_EQ(clocks(path, kB, Culprit::kTurnaround), t.nWTR);
+  // WR at w; its data end at w + WL + 4; RD at w + WL + 4 + tWTR. the display's request is ready at w + 2.
+  EXPECT_EQ(clocks(path, kDisplay, culprit(kCamera)), t.WL() + 4u - 2);
+  EXPECT_EQ(clocks(path, kDisplay, Culprit::kTurnaround), t.nWTR);
 }
 
 TEST_F(WaitsTest, ReadOfASleepingMemoryWaitsForItsWaking) {
   mem::DdrConfig c;
   c.low_power = mem::LowPower::kSelfRefresh;
   path.ddr.configure(c, 0);
-  go(kA, false, at(1, 0, 0), 16, kLater);
+  go(kCamera, false, at(1, 0, 0), 16, kLater);
   path.drain();
   // CKE rises at the arrival; the pipeline's clocks run meanwhile.
   const mem::DdrParams p;
-  EXPECT_EQ(clocks(path, kA, Culprit::kPowerDown) + clocks(path, kA, Culprit::kRowMiss),
+  EXPECT_EQ(clocks(path, kCamera, Culprit::kPowerDown) + clocks(path, kCamera, Culprit::kRowMiss),
             std::max(c.timing.nXSNR + c.timing.nRCD, c.timing.nXSRD) - p.request_latency());
-  EXPECT_GE(clocks(path, kA, Culprit::kPowerDown), c.timing.nXSNR - p.request_latency());
+  EXPECT_GE(clocks(path, kCamera, Culprit::kPowerDown), c.timing.nXSNR - p.request_latency());
 }
 
 TEST_F(WaitsTest, ReadDuringARefreshWaitsForIt) {
@@ -243,14 +243,14 @@ TEST_F(WaitsTest, ReadDuringARefreshWaitsForIt) {
   // The interval ends at clock 500, when nothing is queued: PREA is not needed, REF at once. The read
   // is ready some clocks later.
   const Picoseconds when = 500 * 4'000 - 3 * 8'000;
-  PathRequest& r = go(kA, false, at(1, 0, 0), 16, when);
+  PathRequest& r = go(kCamera, false, at(1, 0, 0), 16, when);
   path.drain();
-  const std::uint64_t refresh = clocks(path, kA, Culprit::kRefresh);
+  const std::uint64_t refresh = clocks(path, kCamera, Culprit::kRefresh);
   EXPECT_GT(refresh, 0u);
   EXPECT_LT(refresh, c.timing.nRFC);
   Path calm;
   PathRequest same;
-  same.master = kA;
+  same.master = kCamera;
   same.address = at(1, 0, 0);
   same.bytes = 16;
   std::array<std::uint8_t, 16> data{};

@@ -15,9 +15,9 @@
 namespace fovea::video {
 
 // Standard, lines read ahead and bursts outstanding: CMakeLists.txt lists what is tried.
-inline const bool k625 = setting("FOVEA_625", 1u) != 0;
+inline const bool kIs625 = setting("FOVEA_625", 1u) != 0;
 inline const unsigned kAhead = setting("FOVEA_AHEAD", 1u), kOutstanding = setting("FOVEA_OUTSTANDING", 4u);
-inline const Standard& kStd = standard_of(k625);
+inline const Standard& kStd = standard_of(kIs625);
 inline const unsigned kRows = kStd.rows, kPitch = 1440;
 inline constexpr std::uint32_t kBuffer = 0x8010'0000, kOther = 0x8020'0000;
 
@@ -105,8 +105,8 @@ enum : std::uint32_t {
   CLKCTL = 0x140,
   VSTAT = 0xB8
 };
-inline const std::uint32_t kOn = k625 ? 0x43 : 0x03;
-inline const Picoseconds kField = kPsPerSecond / (k625 ? 50 : 59);
+inline const std::uint32_t kOn = kIs625 ? 0x43 : 0x03;
+inline const Picoseconds kField = kPsPerSecond / (kIs625 ? 50 : 59);
 
 class DisplayTest : public testing::Test {
  protected:
@@ -122,8 +122,8 @@ class DisplayTest : public testing::Test {
     b.osd_regs.write(VIDWINMD, 3);
     b.osd_regs.write(VIDWIN0OFST, 0x1000 | kPitch / 32);
     set_address(kBuffer);
-    b.osd_regs.write(BASEPX, k625 ? 0x7E : 0x79);
-    b.osd_regs.write(BASEPY, k625 ? 0x16 : 0x10);
+    b.osd_regs.write(BASEPX, kIs625 ? 0x7E : 0x79);
+    b.osd_regs.write(BASEPY, kIs625 ? 0x16 : 0x10);
     b.osd_regs.write(XP, 0);
     b.osd_regs.write(YP, 0);
     b.osd_regs.write(XL, 720);

@@ -12,7 +12,7 @@ TEST_F(DisplayTest, ReadsAreBurstsOf64TheConfiguredLinesAhead) {
   show(1);
   ASSERT_GE(b.memory.log.size(), std::size_t{23} * kRows);
   const Picoseconds ahead =
-      clock.edge(origin + ((k625 ? 22u : 16u) - kAhead) * kStd.line_bytes);
+      clock.edge(origin + ((kIs625 ? 22u : 16u) - kAhead) * kStd.line_bytes);
   EXPECT_EQ(b.memory.log[0].time, ahead);
   const unsigned kAtOnce = kOutstanding;
   EXPECT_EQ(b.memory.log[kAtOnce - 1].time, ahead);
@@ -92,7 +92,7 @@ TEST_F(DisplayTest, WhatIsLateAlreadyIsNotRead) {
   b.memory.latency = 300 * kPsPerUs;  // almost five lines; places for kOutstanding bursts
   show(1);
   EXPECT_GT(underflows(), 0u);
-  const std::uint64_t first[2] = {k625 ? 22u : 16u, k625 ? 335u : 279u};
+  const std::uint64_t first[2] = {kIs625 ? 22u : 16u, kIs625 ? 335u : 279u};
   std::size_t reads = 0;
   for (const auto& r : b.memory.log) {
     if (r.time >= b.frames[0].end) break;
@@ -140,7 +140,7 @@ TEST_F(DisplayTest, ChangedClockMovesTheLineUnderWay) {
   while (b.edges.rises.empty()) run_for(kPsPerUs);
   // In the middle of the line before the second field the clock becomes ten times slower: the rest
   // of that line, which ends with the interrupt, lasts ten times as long.
-  const unsigned lines = k625 ? 312 : 262;
+  const unsigned lines = kIs625 ? 312 : 262;
   const std::uint64_t half = kStd.line_bytes / 2;
   const Clock clock(kByteClock, b.edges.rises[0]);
   run_until(clock.edge((lines - 1) * kStd.line_bytes + half));

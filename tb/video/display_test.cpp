@@ -19,9 +19,9 @@ TEST_F(DisplayTest, MemoryPictureEqualsWhatTheDisplayReceives) {
 TEST_F(DisplayTest, FirstFieldShowsTheUpperRows) {
   show(1);
   ASSERT_GE(b.tap.firsts.size(), 2u);
-  EXPECT_EQ(b.tap.firsts[0].number, k625 ? 23u : 20u);
+  EXPECT_EQ(b.tap.firsts[0].number, kIs625 ? 23u : 20u);
   EXPECT_EQ(b.tap.firsts[0].byte, pattern(0, 0));
-  EXPECT_EQ(b.tap.firsts[1].number, k625 ? 336u : 283u);
+  EXPECT_EQ(b.tap.firsts[1].number, kIs625 ? 336u : 283u);
   EXPECT_EQ(b.tap.firsts[1].byte, pattern(1, 0));
 }
 
@@ -54,9 +54,9 @@ TEST_F(DisplayTest, WithoutFieldModeBothFieldsShowTheSameRows) {
 }
 
 TEST_F(DisplayTest, FrameRateIsExact) {
-  const unsigned n = k625 ? 25 : 30;
+  const unsigned n = kIs625 ? 25 : 30;
   show(n + 1);
-  const Picoseconds expected = k625 ? kPsPerSecond : 1'001'000'000'000;
+  const Picoseconds expected = kIs625 ? kPsPerSecond : 1'001'000'000'000;
   const Picoseconds measured = b.frames[n].start - b.frames[0].start;
   EXPECT_LE(measured > expected ? measured - expected : expected - measured, 1u);
 }
@@ -66,12 +66,12 @@ TEST_F(DisplayTest, RasterInterruptsAndStatusComeAtTheFieldStarts) {
   const std::uint64_t origin = clock.edge_after(kernel_time());
   show(1);
   // Field 1 of the raster begins with the raster; field 2 where F changes.
-  const unsigned lines = k625 ? 312 : 262;
+  const unsigned lines = kIs625 ? 312 : 262;
   ASSERT_GE(b.edges.rises.size(), 2u);
   EXPECT_EQ(b.edges.rises[0], clock.edge(origin));
   EXPECT_EQ(b.edges.rises[1], clock.edge(origin + std::uint64_t{lines} * kStd.line_bytes));
   EXPECT_EQ(b.frames[0].start,
-            clock.edge(origin + (k625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
+            clock.edge(origin + (kIs625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
   b.edges.rises.clear();
   while (b.edges.rises.size() < 1) run_for(kPsPerUs);
   EXPECT_EQ(b.venc_regs.read(VSTAT) >> 4 & 1, b.latches.back().f ? 1u : 0u);
@@ -122,14 +122,14 @@ TEST_F(DisplayTest, WindowOriginMovesThePictureByItsPixelsAndLines) {
 }
 
 TEST_F(DisplayTest, BasepxOnePairFurtherMovesThePictureByOnePair) {
-  b.osd_regs.write(BASEPX, (k625 ? 0x7E : 0x79) + 2);
+  b.osd_regs.write(BASEPX, (kIs625 ? 0x7E : 0x79) + 2);
   show(1);
   EXPECT_EQ(b.frames[0].picture.row(0)[0], 0x80);
   EXPECT_EQ(b.frames[0].picture.row(0)[4], pattern(0, 0));
 }
 
 TEST_F(DisplayTest, WindowThatBeginsLeftOfThePictureIsCutThere) {
-  b.osd_regs.write(BASEPX, (k625 ? 0x7E : 0x79) - 6);
+  b.osd_regs.write(BASEPX, (kIs625 ? 0x7E : 0x79) - 6);
   show(1);
   const Picture& p = b.frames[0].picture;
   // Six pixels of each row lie left of the first active one; the row ends six pixels early.
@@ -221,14 +221,14 @@ TEST_F(DisplayTest, OtherStandardIsTakenWhileTheEncoderRuns) {
   b.venc_regs.write(VMOD, kOn ^ 0x40);
   const Clock clock(kByteClock);
   const std::uint64_t origin = clock.edge_after(kernel_time());
-  const Standard& other = standard_of(!k625);
+  const Standard& other = standard_of(!kIs625);
   while (b.tap.firsts.size() < first + 2) run_for(kPsPerMs);
   // A new raster begins at once, with the other standard's first field.
   EXPECT_EQ(b.tap.firsts[first].number, other.active_first[0]);
   EXPECT_FALSE(b.tap.firsts[first].f);
   EXPECT_EQ(
       b.tap.firsts[first].start,
-      clock.edge(origin + (k625 ? 16u : 22u) * other.line_bytes + other.active_offset()));
+      clock.edge(origin + (kIs625 ? 16u : 22u) * other.line_bytes + other.active_offset()));
   EXPECT_EQ(b.tap.firsts[first + 1].number, other.active_first[1]);
   b.venc_regs.write(VMOD, 0);
   run_for(kPsPerUs);
