@@ -204,7 +204,8 @@ TEST_F(WaitsTest, OtherRowCostsPrechargeAndActivation) {
 TEST_F(WaitsTest, ReadBehindAnothersBurstWaitsForThatMaster) {
   go(kCamera, false, at(1, 0, 0), 4, 0);
   path.drain();
-  // Both cross in a clock of 8 ns each; the camera's columns are at c, c + 4, c + 8, c + 12; the display's request is ready at c + 2.
+  // Both cross in a clock of 8 ns each; the columns of the first are at c, c + 4, c + 8, c + 12; the second is
+  // ready at c + 2.
   go(kCamera, false, at(1, 0, 0), 64, kLater);
   go(kDisplay, false, at(1, 0, 64), 16, kLater);
   path.drain();
