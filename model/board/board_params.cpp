@@ -34,7 +34,8 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   for (ParamBase* p : {&soc.vpss.base_px_625, &soc.vpss.base_py_625})
     p->matters_only("video.standard = pal, mt9v125 or svga_progressive", {&video.standard, &firmware.elf}, pal);
   for (ParamBase* p : {&soc.vpss.base_px_525, &soc.vpss.base_py_525})
-    p->matters_only("video.standard = ntsc, ntsc_486, vga or vga_progressive", {&video.standard, &firmware.elf}, not_pal);
+    p->matters_only("video.standard = ntsc, ntsc_486, vga or vga_progressive", {&video.standard, &firmware.elf},
+                    not_pal);
   // A camera at the digital port is not behind the decoder, whose outputs lead nowhere then.
   const auto behind_decoder = [this] { return video.format().digital == nullptr; };
   std::vector<ParamBase*> of_decoder;
@@ -61,7 +62,7 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     return !firmware.elf().empty() || std::any_of(std::begin(kKernels), std::end(kKernels),
                                                   [this](const char* k) { return firmware.kernel.is(k); });
   };
-  // Ports that only a synthetic load drives.
+  // Ports that a synthetic load may use, most of them beside the block that drives them.
   std::vector<const ParamBase*> loads;
   for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});
   const auto load_alone = [this, loads, edma_works](ParamBase& p, const std::string& name) {
@@ -76,7 +77,10 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                return load.active() && load.port.is(name);
              });
     };
-    p.matters_only("a load with load.port = " + name + (engine ? ", or an engine" : edma ? ", or a kernel that uses the EDMA" : ""),
+    p.matters_only("a load with load.port = " + name +
+                       (engine ? ", or an engine"
+                        : edma ? ", or a kernel that uses the EDMA"
+                               : ""),
                    deciders, effective);
   };
   for (const MasterInfo& m : kMasters.rows) {
@@ -85,7 +89,7 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     for (ParamBase* p : soc.crossbar.ports[stat_index(m.id)]->params())
       load_alone(*p, name);
   }
-  // Masters that nothing but a load drives.
+  // The priorities of these ports.
   for (EnumParam& p : priority.of) {
     const std::string name = p.key().substr(p.key().find('.') + 1);
     const bool spare = std::any_of(kMasters.rows.begin(), kMasters.rows.end(), [&](const MasterInfo& m) {
@@ -108,8 +112,8 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
     p->matters_only("a load with load.memory = internal_ram, or a kernel that uses the EDMA", places, shared);
   places.push_back(&soc.cpu.tcm_own_conflict);
   soc.cpu.tcm_banks.matters_only(
-      "a load with load.memory = internal_ram, a kernel that uses the EDMA, or cpu.tcm.own_conflict above 0 cycles", places,
-      [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
+      "a load with load.memory = internal_ram, a kernel that uses the EDMA, or cpu.tcm.own_conflict above 0 cycles",
+      places, [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
   decoder.crop_525.matters_only("525 lines from the camera (tvp5146.standard, video.standard)",
                                 {&decoder.standard, &video.standard}, [this] {
                                   return decoder.standard.user_set()

@@ -67,7 +67,7 @@ class FrameLog {
   /// corrected: dropped.
   struct Fates {
     std::uint64_t captured = 0, displayed = 0, superseded = 0, dropped = 0;
-    std::uint64_t pending = 0;  ///< captured too shortly before finish() to be told; not in `captured`
+    std::uint64_t pending = 0;  ///< captured so shortly before finish() that its fate is open; not in `captured`
   };
   const Fates& fates(std::size_t camera) const {
     static const Fates kNone;

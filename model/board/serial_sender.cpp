@@ -22,7 +22,7 @@ void SerialSender::run() {
     uart_.receive(*on_line_);
     on_line_.reset();
   }
-  if (!uart_.can_receive()) return;  // on_ready tells
+  if (!uart_.can_receive()) return;  // on_ready will call
   on_line_ = input_.next(now);
   if (on_line_) {
     over_.at(now + uart_.character_time());

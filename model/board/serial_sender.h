@@ -16,7 +16,7 @@ class SerialInput {
   /// The next byte, if there is one to send at this simulated time. May block the host, but not
   /// simulated time.
   virtual std::optional<std::uint8_t> next(Picoseconds now) = 0;
-  /// After next() had nothing: when to ask again without being told; kNever: only after kick().
+  /// After next() had nothing: when to ask again by itself; kNever: only after kick().
   virtual Picoseconds ask_again() const { return kNever; }
 };
 

@@ -25,7 +25,8 @@ bits 19:16 and d bits 15:12, also where the manual names them otherwise (the res
 sign, `<shift>` a shift of the last operand, if there is one.
 
 *Defined if*: otherwise the instruction is UNPREDICTABLE; `W:` only with write-back. Clauses about
-operands that a row lacks do not count. Such instructions have the reactions of the last section, and are counted and warned of.
+operands that a row lacks do not count. Such instructions have the reactions of the last section,
+and are counted and warned of.
 
 *Clocks*: issue with everything hit (`iss.timing` compares the first figure with the core); *then*:
 so many more before the next instruction can use the result without waiting; *n* registers. A

@@ -17,7 +17,7 @@ class DdrCheck {
   ~DdrCheck();
   DdrCheck(const DdrCheck&) = delete;
 
-  /// The commands from `at` on are held against these numbers; what the controller is told itself
+  /// The commands from `at` on are held against these numbers; what reaches the controller itself
   /// needs no call.
   void expect(const DdrConfig& config, Frequency clock, Picoseconds at);
   /// A warning about each value that the part's data sheet does not allow.

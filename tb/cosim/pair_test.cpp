@@ -66,7 +66,9 @@ struct PairRig : EngineBackend::Host {
     where = made.get();
     return made;
   }
-  void issue(const Burst& b, Picoseconds at) override { issued.push_back({b.tag, b.write, b.id, b.address, b.bytes, {}}); }
+  void issue(const Burst& b, Picoseconds at) override {
+    issued.push_back({b.tag, b.write, b.id, b.address, b.bytes, {}});
+  }
   void interrupt(bool) override { ++interrupts; }
   void answer(std::size_t n, Picoseconds at, bool error = false) {
     const std::vector<std::uint8_t> data(issued[n].write ? 0 : issued[n].bytes, 7);
@@ -128,14 +130,16 @@ std::vector<std::string> differences(const std::vector<Script>& a, const std::ve
 TEST(PairTest, EachKindOfDifferenceIsFoundOnce) {
   const Script read{0x100, 1000}, other{0x108, 2000}, write{0x200, 1000, true, 0, 8, 1};
   EXPECT_TRUE(differences({read, other, write}, {write, read, other}).empty());
-  EXPECT_THAT(differences({read}, {{0x110, 1000}}), testing::ElementsAre(HasSubstr("0x00000100, 8 bytes; its twin 0x00000110")));
+  EXPECT_THAT(differences({read}, {{0x110, 1000}}),
+              testing::ElementsAre(HasSubstr("0x00000100, 8 bytes; its twin 0x00000110")));
   EXPECT_THAT(differences({read}, {{0x100, 1000, false, 0, 16}}), testing::ElementsAre(HasSubstr("16 bytes")));
   EXPECT_THAT(differences({read, other}, {other, read}), testing::ElementsAre(HasSubstr("reads of the map, number 0")));
   EXPECT_THAT(differences({write}, {{0x200, 1000, true, 0, 8, 2}}),
               testing::ElementsAre(HasSubstr("writes, number 0: byte 0x00000200 is 0x01; its twin's 0x02")));
   EXPECT_THAT(differences({read, other}, {read}), testing::ElementsAre(HasSubstr("1 that the twin did not ask for")));
   EXPECT_THAT(differences({read}, {read, other}), testing::ElementsAre(HasSubstr("1 that only the twin asked for")));
-  EXPECT_THAT(differences({read}, {{0x100, 1000, false, 1}}), testing::ElementsAre(HasSubstr("reads of the source: 1 that only the twin")));
+  EXPECT_THAT(differences({read}, {{0x100, 1000, false, 1}}),
+              testing::ElementsAre(HasSubstr("reads of the source: 1 that only the twin")));
 }
 
 TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {
@@ -147,7 +151,8 @@ TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {
   EXPECT_TRUE(rig.differences.empty());
   rig.twin->registers[0x40] = 6;
   rig.pair.read(0x40, 3000);
-  EXPECT_THAT(rig.differences, testing::ElementsAre(HasSubstr("register 0x40 reads 0x00000005; its twin's 0x00000006")));
+  EXPECT_THAT(rig.differences,
+              testing::ElementsAre(HasSubstr("register 0x40 reads 0x00000005; its twin's 0x00000006")));
 }
 
 TEST(PairTest, BehindAnErrorOrAnAbortNothingIsComparedUntilBothAreQuiet) {

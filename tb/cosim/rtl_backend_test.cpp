@@ -181,7 +181,8 @@ TEST(RtlBackendTest, AResetInMidFrameForgetsTheJobAndEverythingElse) {
   EXPECT_EQ(rtl.read(0x18, 61'000), 0x0001'0209u);
   rtl.reset();
   EXPECT_FALSE(host.line);
-  for (const std::uint32_t offset : {0x04u, 0x0Cu, 0x10u, 0x18u, 0x44u}) EXPECT_EQ(rtl.read(offset, 90'000), 0u) << offset;
+  for (const std::uint32_t offset : {0x04u, 0x0Cu, 0x10u, 0x18u, 0x44u})
+    EXPECT_EQ(rtl.read(offset, 90'000), 0u) << offset;
   EXPECT_EQ(rtl.read(0, 95'000), engine::kIdentity);
   // And with reads under way.
   set(0x50, 80 | 20 << 16, 100'000);
@@ -296,7 +297,8 @@ TEST(RtlBackendTest, PrintsItsSpeedBesideThatOfABenchWithoutAdapters) {
   backend.fill(m, dice);
   EngineBench plain(kSize);
   for (std::uint32_t n = 0; n < kSize / 4; ++n) plain.word(kWord + n) = backend.word(kWord + n);
-  const double bench = rate([&] { return plain.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 24}).clocks; });
+  const double bench =
+      rate([&] { return plain.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 24}).clocks; });
   const double adapted = rate([&] {
     EXPECT_EQ(backend.make(m, {.latency = 24}), engine::kDone);
     return backend.get(backend.regs.clocks);

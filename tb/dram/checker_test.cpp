@@ -237,10 +237,10 @@ TEST(CheckerStateTest, ComplaintsNameBankAndClock) {
 // All are counted, the first hundred kept.
 TEST(CheckerStateTest, KeepsTheFirstHundredComplaints) {
   CommandChecker checker(sheet());
-  std::uint64_t told = 0;
-  checker.on_complaint = [&](const Complaint&) { ++told; };
+  std::uint64_t reported = 0;
+  checker.on_complaint = [&](const Complaint&) { ++reported; };
   for (std::uint64_t k = 0; checker.total() < 103; ++k) checker.command(kRd, 0, 0, 1000 + 100 * k);
-  EXPECT_EQ(told, 103u);
+  EXPECT_EQ(reported, 103u);
   ASSERT_EQ(checker.complaints().size(), 100u);
   EXPECT_EQ(checker.complaints()[0].clock, 1000u);
 }

@@ -174,8 +174,8 @@ TEST_F(ModuleTest, SlowRegisterBlocksAnswerLaterThanFastOnes) {
   EXPECT_LE(slow, fast + more + edge);
 }
 
-// A timer tick of Linux waits 27 us for registers here and takes 63 to 112 us on the DM365 EVM (README of model/bus): the
-// intervals of belief reach the factor that would be missing if all of its time went there.
+// A timer tick of Linux waits 27 us for registers here and takes 63 to 112 us on the DM365 EVM (README of model/bus):
+// the intervals of belief reach the factor that would be missing if all of its time went there.
 TEST_F(ModuleTest, BeliefInRegisterLatenciesReachesTheTickOfTheEvm) {
   const auto high = [](const IntParam& p) {
     ParamGroup group("high");

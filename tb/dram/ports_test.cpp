@@ -14,8 +14,8 @@ namespace {
 
 constexpr Master kA = Master::kVpfe, kB = Master::kVpbe;
 
-// 64 bits a clock is the lane's own width. A narrower port holds the lane longer for its writes.
-TEST(PortsTest, NarrowPortHoldsTheLaneForEachOfItsBeats) {
+// 64 bits a clock is the width of the slave's data bus. A narrower port occupies it longer for its writes.
+TEST(PortsTest, NarrowPortOccupiesTheDataBusForEachOfItsBeats) {
   for (const unsigned bits : {16u, 32u, 64u})
     for (const unsigned bytes : {1u, 4u, 8u, 12u, 32u, 64u}) {
       XbarBench b({{"bus.vpfe.width", std::to_string(bits) + "bit"}});
@@ -29,7 +29,7 @@ TEST(PortsTest, NarrowPortHoldsTheLaneForEachOfItsBeats) {
     }
 }
 
-// Eight words of 8 bytes are on the lane from 30 to 37, two edges from the port.
+// Eight words of 8 bytes are on the return channel from 30 to 37, two edges from the port.
 TEST(PortsTest, NarrowPortTakesLongerForReadData) {
   const auto last = [](unsigned bits, unsigned bytes, std::uint64_t from, std::uint64_t to) {
     XbarBench b({{"bus.vpfe.width", std::to_string(bits) + "bit"}});

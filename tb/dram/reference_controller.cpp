@@ -18,7 +18,7 @@ void ReferenceController::set_clocks(Frequency ddr, Frequency scr, Picoseconds a
   if (!(ddr == ddr_.frequency())) ddr_.restart(ddr, at);
   if (!(scr == scr_.frequency())) scr_.restart(scr, at);
   not_before_ = ddr_.edge_after(at);
-  lane_start_ = scr_.edge_at_or_after(scr_.start());
+  channel_start_ = scr_.edge_at_or_after(scr_.start());
 }
 
 void ReferenceController::configure(const ReferenceConfig& config, Picoseconds at) {
@@ -495,7 +495,7 @@ void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
   wake(arrival);
 }
 
-/// The way of a read's data: PHY, read FIFO, and a lane of 8 bytes a crossbar clock.
+/// The way of a read's data: PHY, read FIFO, and a return channel of 8 bytes a crossbar clock.
 void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock) {
   const std::uint64_t latency =
       std::max(config().read_latency, config().CL) + limits_.return_latency;
@@ -504,14 +504,14 @@ void ReferenceController::answer(const ReferenceRequest& r, std::uint64_t clock)
   const std::uint64_t here = scr_.edge_after(ddr_.edge(clock + head));
   const std::uint64_t all_here =
       scr_.edge_after(ddr_.edge(clock + latency + columns_of(r) * kBurst));
-  const std::uint64_t start = std::max(here, lane_free_);
+  const std::uint64_t start = std::max(here, channel_free_);
   std::uint64_t end = start;
   if (words > 1 || columns_of(r) > 1) end = std::max(start + words - 1, all_here);
-  lane_free_ = end + 1;
-  // With more than this many words before the lane, 64 bytes of another read find no room.
+  channel_free_ = end + 1;
+  // With more than this many words before the channel, 64 bytes of another read find no room.
   const std::uint64_t held = limits_.read_fifo / 8 - 8;
-  if (lane_free_ > lane_start_ + held && lane_free_ - held >= here) {
-    const std::uint64_t room = ddr_.edge_at_or_after(scr_.edge(lane_free_ - held));
+  if (channel_free_ > channel_start_ + held && channel_free_ - held >= here) {
+    const std::uint64_t room = ddr_.edge_at_or_after(scr_.edge(channel_free_ - held));
     read_room_ = room > head ? room - head : 0;
   }
   if (limits_.order == ReferenceLimits::Order::kFrFcfs)

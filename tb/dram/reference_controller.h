@@ -188,7 +188,7 @@ class ReferenceController {
   Picoseconds asleep_at_ = 0;
   ReferenceConfig::Sleep asleep_ = ReferenceConfig::Sleep::kNever;
   std::uint64_t clock_runs_from_ = 0;  // again, after a stop
-  std::uint64_t lane_free_ = 0, lane_start_ = 0, read_room_ = 0;
+  std::uint64_t channel_free_ = 0, channel_start_ = 0, read_room_ = 0;
 };
 
 }  // namespace fovea::dram

@@ -212,7 +212,7 @@ class Oracle {
     controller_.reads.clear();
   }
   ReferenceController controller_;
-  std::map<std::uint32_t, unsigned> losses_;  // those told of
+  std::map<std::uint32_t, unsigned> losses_;  // those reported
   std::size_t seen_ = 0;
   std::array<std::uint64_t, 12> count_{};
 };

@@ -186,7 +186,7 @@ TEST(SchedulerTest, OldCountPromotesTheOldestCommand) {
   EXPECT_EQ(reads_before_write(8, 64), 12u);
 }
 
-// The read FIFO is 17 words; a lane of 8 clocks a word empties it slower than the DDR fills it.
+// The read FIFO is 17 words; a return channel of 8 clocks a word empties it slower than the DDR fills it.
 TEST(SchedulerTest, WriteGoesFirstWhileTheReadFifoIsFull) {
   const auto reads_before_write = [](Frequency scr) {
     BenchOptions o = options();
@@ -197,11 +197,11 @@ TEST(SchedulerTest, WriteGoesFirstWhileTheReadFifoIsFull) {
   };
   EXPECT_EQ(reads_before_write(Frequency(250'000'000)), 20u) << "as fast as the bus: never full";
   EXPECT_EQ(reads_before_write(Frequency(125'000'000)), 20u);
-  // The first two reads' 16 words fit; the third must wait for the lane.
+  // The first two reads' 16 words fit; the third must wait for the channel.
   EXPECT_EQ(reads_before_write(Frequency(31'250'000)), 8u);
 }
 
-// Latency on the way is not occupancy: a fast lane never lets the FIFO fill.
+// Latency on the way is not occupancy: a fast return channel never lets the FIFO fill.
 TEST(SchedulerTest, ReturnLatencyDoesNotThrottleReads) {
   for (const char* latency : {"0 cycles", "16 cycles"}) {
     BenchOptions o = options();
@@ -499,7 +499,7 @@ TEST(OtherSchedulersTest, FrfcfsTellsTheReadsOfOneMasterInOrder) {
   EXPECT_EQ(after(kFrom + 34), Items{});
   EXPECT_EQ(b.ddr.newest_read(kA), nullptr);
   EXPECT_EQ(b.read_order, (std::vector<Request*>{&all[2], &all[0], &all[1], &all[3]}));
-  // Data come CL + 2 after the RD and are on the lane an edge after their fourth beat.
+  // Data come CL + 2 after the RD and are on the return channel an edge after their fourth beat.
   EXPECT_EQ(all[2].first, (kFrom + 16 + 5 + 2 + 2 + 1) * kTck) << "at once";
   EXPECT_EQ(all[0].first, (kFrom + 34 + 5 + 2 + 2 + 1) * kTck);
   EXPECT_EQ(all[1].first, all[0].last + kTck);

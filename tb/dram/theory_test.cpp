@@ -323,9 +323,9 @@ TEST(FifoTest, RequestInTheInputRegisterIsNotSeenBeforeItsArrival) {
 }
 
 // Of n words, 8 are kept for the read that comes: its first beats are in when at most n - 8 others still
-// wait for the lane, which takes the 16 of the two reads before it one an edge.
+// wait for the return channel, which takes the 16 of the two reads before it one an edge.
 TEST(FifoTest, ReadDataFifoHoldsSeventeenWords) {
-  const auto third_read = [](unsigned words) {  // edges after the first word on the lane
+  const auto third_read = [](unsigned words) {  // edges after the first word on the channel
     BenchOptions o = no_refresh();
     o.scr = Frequency(31'250'000);
     if (words) o.params.emplace_back("read_fifo", std::to_string(8 * words) + " B");
@@ -345,10 +345,10 @@ TEST(FifoTest, ReadDataFifoHoldsSeventeenWords) {
   for (const unsigned words : {13u, 16u, 17u, 18u}) EXPECT_EQ(third_read(words), 16.0 - (words - 8));
 }
 
-// Two reads share the return lane: one word an edge, the second behind the first.
-TEST(FifoTest, ReturnLaneCarriesOneWordAnEdge) {
+// Two reads share the return channel: one word an edge, the second after the first.
+TEST(FifoTest, ReturnChannelCarriesOneWordAnEdge) {
   BenchOptions o = no_refresh();
-  o.scr = Frequency(31'250'000);  // an edge every 8 DDR clocks: the lane is the bottleneck
+  o.scr = Frequency(31'250'000);  // an edge every 8 DDR clocks: the channel is the bottleneck
   const Picoseconds edge = 8 * kTck;
   DdrBench b(o);
   Request one, two;

@@ -452,7 +452,7 @@ TEST(TimingTest, MobilePartsHaveTheirOwnRelations) {
   EXPECT_EQ(run(true, write_close), 24u + 1 + 4 + 9);
 }
 
-// A read is announced before its first beat, whatever the latencies: nobody can be told too late.
+// A read is announced before its first beat, whatever the latencies: the outcome is never reported too late.
 TEST(TimingTest, ReadsAreAnnouncedBeforeTheirFirstBeat) {
   BenchOptions o = base();
   o.config.timing.CL = 2;

@@ -28,10 +28,10 @@ void expect_equal(const WaitTable& counted, const WaitTable& table, std::uint64_
 }
 
 /// A crossbar before a slave that is busy at times. Edges have 10 ns.
-class Lanes {
+class BusyBus {
  public:
   static constexpr Picoseconds kEdge = 10'000;
-  explicit Lanes(std::uint64_t seed) : rng_(seed), xbar_(params_) {
+  explicit BusyBus(std::uint64_t seed) : rng_(seed), xbar_(params_) {
     xbar_.set_clock(Frequency(100'000'000), 0);
   }
   /// Four masters in turn with up to four requests each: none waits for more grants than are kept.
@@ -70,8 +70,8 @@ class Lanes {
     const std::uint64_t crossed = r.issued / kEdge + 1 + latency;
     w.add(Culprit::kBridge, crossed * kEdge - r.issued);
     for (std::uint64_t edge = crossed; edge < granted_; ++edge) {
-      const auto lane = had_lane_.find(edge);
-      w.add(culprit(lane == had_lane_.end() ? r.master : lane->second), kEdge);
+      const auto had = had_bus_.find(edge);
+      w.add(culprit(had == had_bus_.end() ? r.master : had->second), kEdge);
     }
   }
 
@@ -80,7 +80,7 @@ class Lanes {
   Taken forward(MemRequest& r, Picoseconds arrival) {
     count(r);
     at_input_ = &r;
-    for (std::uint64_t edge = granted_; edge < arrival / kEdge; ++edge) had_lane_[edge] = r.master;
+    for (std::uint64_t edge = granted_; edge < arrival / kEdge; ++edge) had_bus_[edge] = r.master;
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
     w.add(Culprit::kService, arrival - granted_ * kEdge);
     blocked_from_ = arrival / kEdge;
@@ -102,7 +102,7 @@ class Lanes {
     MemRequest& r = *at_input_;
     const auto unblocked_by = static_cast<Master>(rng_.below(kMasterCount));
     const std::uint64_t taken = at / kEdge + 1;
-    for (std::uint64_t edge = blocked_from_; edge < taken; ++edge) had_lane_[edge] = r.master;
+    for (std::uint64_t edge = blocked_from_; edge < taken; ++edge) had_bus_[edge] = r.master;
     Waits& w = r.write ? counted[index(r.master)].write : counted[index(r.master)].read;
     w.add(culprit(unblocked_by), (taken - blocked_from_) * kEdge);
     xbar_.slave_accepted(*this, r, at, unblocked_by);
@@ -121,7 +121,7 @@ class Lanes {
   bus::CrossbarParams params_;
   bus::Crossbar xbar_;
   std::vector<std::unique_ptr<MemRequest>> requests_;
-  std::map<std::uint64_t, Master> had_lane_;  // by edge
+  std::map<std::uint64_t, Master> had_bus_;  // by edge
   std::array<unsigned, kMasterCount> outstanding_{};
   std::uint64_t granted_ = 0, blocked_from_ = 0;
   MemRequest* at_input_ = nullptr;
@@ -129,12 +129,12 @@ class Lanes {
   unsigned answered_ = 0;
 };
 
-TEST(LoadedWaitsTest, CrossbarTagsEachEdgeWithWhoHadTheLane) {
+TEST(LoadedWaitsTest, CrossbarTagsEachEdgeWithWhoHadTheDataBus) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Lanes lanes(seed);
-    lanes.run(400);
-    expect_equal(lanes.counted, lanes.table(), seed);
-    EXPECT_GT(lanes.counted[4].read.ps[index(culprit(Master::kEdmaTc0Read))], 0u);
+    BusyBus bus(seed);
+    bus.run(400);
+    expect_equal(bus.counted, bus.table(), seed);
+    EXPECT_GT(bus.counted[4].read.ps[index(culprit(Master::kEdmaTc0Read))], 0u);
   }
 }
 

@@ -109,7 +109,7 @@ TEST(GdbMastersTest, WhatTheMemoryDoesForItselfIsNamed) {
   EXPECT_TRUE(refresh);
 }
 
-TEST(GdbMastersTest, AFullQueueIsSeenAtItsDoor) {
+TEST(GdbMastersTest, AFullQueueIsSeenAtTheInputRegister) {
   Bench b;
   for (unsigned k = 0; k < 30; ++k)
     b.submit(Master::kVpfe, true, k % 2 ? 0x1000 + 64 * k : 0x1000 + kRow + 64 * k, 1'000);

@@ -35,7 +35,7 @@ struct RegisterLogTest : testing::Test {
 };
 
 TEST_F(RegisterLogTest, NamesFieldsAndWarnings) {
-  EXPECT_EQ(seen_one, nullptr) << "nobody looks on before the start";
+  EXPECT_EQ(seen_one, nullptr) << "no observer before the start";
   log.start({.pattern = "."});
   access(0, 4, true, 0x8000'0701);
   access(1, 1, true, 0x0D);

@@ -177,7 +177,9 @@ TEST(ViewLut, SeamsBeginAtTheCorners) {
   // Pairs at u = 0, 2, ... 18; the car covers u from 6 to 12 and v from 4 to 8.
   const view_rectangle_t car{6, 4, 12, 8};
   view_span_t spans[VIEW_SPANS_MAX];
-  const auto row = [&](unsigned v, bool b = false) { return cameras_in(view_birds_eye_row(&car, b, 10, v, spans), spans); };
+  const auto row = [&](unsigned v, bool b = false) {
+    return cameras_in(view_birds_eye_row(&car, b, 10, v, spans), spans);
+  };
   using V = std::vector<unsigned>;
   const unsigned F = VIEW_FRONT, R = VIEW_RIGHT, B = VIEW_REAR, L = VIEW_LEFT, N = VIEW_NO_CAMERA;
   EXPECT_EQ(row(4), (V{L, L, L, F, F, F, F, R, R, R}));  // on the car's edge, and on the corners

@@ -259,10 +259,18 @@ TEST_F(HazardTest, SeveralObserversSeeTheSameLines) {
 
 /// The checker changes nothing but the host's time.
 TEST_F(HazardTest, TimesAreThoseWithoutIt) {
-  const std::vector<Step> steps{{Do::kLoad, kLine}, dma(true, kLine, 32), {Do::kLoad, kLine},
-                                {Do::kStore, kLine + 4, 9}, {Do::kStore, kLine + 8, 9}, {Do::kLoad, kLine + 4},
-                                {Do::kLoadFour, kLine + 20}, {Do::kCall, code_line(0)},
-                                dma(true, code_line(0) + 8, 4), {Do::kCall, code_line(0)}, {Do::kCleanAll}, {Do::kDrain}};
+  const std::vector<Step> steps{{Do::kLoad, kLine},
+                                dma(true, kLine, 32),
+                                {Do::kLoad, kLine},
+                                {Do::kStore, kLine + 4, 9},
+                                {Do::kStore, kLine + 8, 9},
+                                {Do::kLoad, kLine + 4},
+                                {Do::kLoadFour, kLine + 20},
+                                {Do::kCall, code_line(0)},
+                                dma(true, code_line(0) + 8, 4),
+                                {Do::kCall, code_line(0)},
+                                {Do::kCleanAll},
+                                {Do::kDrain}};
   const auto clocks = [&](bool checked) {
     HazardBench fresh;
     fresh.checked = checked;

@@ -395,7 +395,9 @@ TEST(ProfileTest, SectionsAtRandomTimesAddUp) {
     // The window is also when work is given away: its sleeps are waits, and no others.
     for (unsigned section = 0; section < 3; ++section)
       for (const ProfileRow& r : profile.rows(section))
-        EXPECT_EQ(r.cause >= ProfileRow::kWait && !r.stalled(), section == 1 && r.cause >= ProfileRow::kIdle && !r.stalled()) << section;
+        EXPECT_EQ(r.cause >= ProfileRow::kWait && !r.stalled(),
+                  section == 1 && r.cause >= ProfileRow::kIdle && !r.stalled())
+            << section;
     within_sleep += from.idle && from.cycles == at[0] / Machine::kClock + 1;
     if (HasFailure()) FAIL() << "run " << n;
   }

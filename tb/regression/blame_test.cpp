@@ -89,8 +89,9 @@ TEST_F(BlameTest, TheCauseWithMostClocksIsBlamed) {
   replace(after.profile, "interlock,none,core,100", "interlock,none,core,120");
   replace(after.profile, "idle.capture,,,300", "idle.capture,,,250");
   const Difference d = difference();
-  EXPECT_THAT(blame_text(d, blame_of(d, true)),
-              HasSubstr("+50 clocks (100 % of the change), of which +30 clocks by dcache, mostly region lut, culprit vpbe"));
+  EXPECT_THAT(
+      blame_text(d, blame_of(d, true)),
+      HasSubstr("+50 clocks (100 % of the change), of which +30 clocks by dcache, mostly region lut, culprit vpbe"));
 }
 
 // A load whose clocks were waits for the write buffer before.
@@ -149,14 +150,16 @@ TEST_F(BlameTest, ALongerWaitIsBlamedOnItsCulprit) {
 TEST_F(BlameTest, LineAndCauseBelongTogether) {
   replace(after.profile, "22,interlock,none,core,100", "22,interlock,none,core,150");
   replace(after.profile, "21,dcache,lut,bridge,150", "21,dcache,lut,bridge,180");
-  replace(after.profile, "frames,remap,/src/remap.c,22,issue", "frames,remap,/src/remap.c,21,write_buffer,lut,bridge,25,0\n"
-                                                               "frames,remap,/src/remap.c,22,issue");
+  replace(after.profile, "frames,remap,/src/remap.c,22,issue",
+          "frames,remap,/src/remap.c,21,write_buffer,lut,bridge,25,0\n"
+          "frames,remap,/src/remap.c,22,issue");
   replace(after.profile, "idle.capture,,,300", "idle.capture,,,195");
   const Difference d = difference();
   const Blame blame = blame_of(d, true);
   ASSERT_TRUE(blame.function && blame.cause && blame.line);
   EXPECT_EQ(d.functions[0].lines[0].after, 21u);
-  EXPECT_EQ(d.functions[0].lines[0].causes, (std::map<std::string, double>{{"dcache", 30}, {"issue", 0}, {"write_buffer", 25}}));
+  EXPECT_EQ(d.functions[0].lines[0].causes,
+            (std::map<std::string, double>{{"dcache", 30}, {"issue", 0}, {"write_buffer", 25}}));
   EXPECT_EQ(blame.line->after, 22u);
   EXPECT_THAT(blame_text(d, blame), HasSubstr("remap (remap.c:22) waits with the same instructions: +105 clocks"));
   EXPECT_THAT(blame_text(d, blame), HasSubstr("+50 clocks by interlock"));
@@ -344,16 +347,20 @@ TEST_F(BlameTest, IdleClocksByEventAreKeptApartFromTheRest) {
 TEST_F(BlameTest, ASleepUntilTheEdmaIsDoneIsNotIdle) {
   for (const char* event : {"idle.dma", "idle.engine"}) {
     RunMaker a_run = before, b_run = after;
-    replace(a_run.profile, "idle.capture,,,300", std::string("idle.capture,,,260,0\nframes,sleep,cp15.c,3,") + event + ",,,40");
-    replace(b_run.profile, "idle.capture,,,300", std::string("idle.capture,,,210,0\nframes,sleep,cp15.c,3,") + event + ",,,90");
+    replace(a_run.profile, "idle.capture,,,300",
+            std::string("idle.capture,,,260,0\nframes,sleep,cp15.c,3,") + event + ",,,40");
+    replace(b_run.profile, "idle.capture,,,300",
+            std::string("idle.capture,,,210,0\nframes,sleep,cp15.c,3,") + event + ",,,90");
     a = read_run(a_run.write(dir, "a"));
     b = read_run(b_run.write(dir, "b"));
     const Difference d = difference_of(attribution_of(a, true), attribution_of(b, true), circumstances_of(a, b));
     EXPECT_EQ(d.busy.change(), 50);
     EXPECT_EQ(d.idle.change(), -50);
-    EXPECT_EQ(blame_text(d, blame_of(d, true)),
-              std::string("sleep (cp15.c:3) waits with the same instructions: +50 clocks (100 % of the change), of which "
-                          "+50 clocks by ") + event);
+    EXPECT_EQ(
+        blame_text(d, blame_of(d, true)),
+        std::string("sleep (cp15.c:3) waits with the same instructions: +50 clocks (100 % of the change), of which "
+                    "+50 clocks by ") +
+            event);
   }
 }
 
@@ -361,8 +368,9 @@ TEST_F(BlameTest, ASleepUntilTheEdmaIsDoneIsNotIdle) {
 TEST_F(BlameTest, ASleepWithinARemapWaitsForTheEdmaWhateverEndsIt) {
   const auto with = [](RunMaker run, int dma, int display) {
     replace(run.profile, "idle.capture,,,300",
-            fmt::format("idle.capture,,,{},0\nframes,sleep,cp15.c,3,wait.display,,,{},0\nframes,sleep,cp15.c,3,wait.dma,,,{}",
-                        300 - dma - display, display, dma));
+            fmt::format(
+                "idle.capture,,,{},0\nframes,sleep,cp15.c,3,wait.display,,,{},0\nframes,sleep,cp15.c,3,wait.dma,,,{}",
+                300 - dma - display, display, dma));
     return run;
   };
   a = read_run(with(before, 20, 0).write(dir, "a"));
@@ -370,12 +378,15 @@ TEST_F(BlameTest, ASleepWithinARemapWaitsForTheEdmaWhateverEndsIt) {
   const Difference d = difference_of(attribution_of(a, true), attribution_of(b, true), circumstances_of(a, b));
   EXPECT_EQ(d.busy.change(), 30);
   EXPECT_EQ(d.idle.change(), -30);
-  EXPECT_EQ(blame_text(d, blame_of(d, true)),
-            "sleep (cp15.c:3) waits with the same instructions: +30 clocks (100 % of the change), of which +30 clocks by "
-            "wait.dma");
+  EXPECT_EQ(
+      blame_text(d, blame_of(d, true)),
+      "sleep (cp15.c:3) waits with the same instructions: +30 clocks (100 % of the change), of which +30 clocks by "
+      "wait.dma");
   // Without a profile the figures tell the same.
   for (RunMaker* run : {&before, &after}) run->profile.clear();
-  before.figure("cpu.idle.dma", "20", "cycles").figure("cpu.idle.display", "280", "cycles").figure("cpu.remap.idle.dma", "20", "cycles");
+  before.figure("cpu.idle.dma", "20", "cycles")
+      .figure("cpu.idle.display", "280", "cycles")
+      .figure("cpu.remap.idle.dma", "20", "cycles");
   after.figure("cpu.idle.dma", "25", "cycles").figure("cpu.idle.display", "275", "cycles");
   after.figure("cpu.remap.idle.dma", "20", "cycles").figure("cpu.remap.idle.display", "30", "cycles");
   a = read_run(before.write(dir, "c"));
@@ -394,7 +405,8 @@ TEST_F(BlameTest, WaitsForTwoAreNotDivided) {
   for (const char* other : {"wait.engine", "wait.timer"}) {
     RunMaker run = after;
     const bool both = std::string(other) == "wait.engine";
-    replace(run.profile, "idle.capture,,,300", fmt::format("{},,,100,0\nframes,sleep,cp15.c,3,{},,,200", both ? "wait.dma" : "wait.other", other));
+    replace(run.profile, "idle.capture,,,300",
+            fmt::format("{},,,100,0\nframes,sleep,cp15.c,3,{},,,200", both ? "wait.dma" : "wait.other", other));
     std::uint64_t sum = 0;
     for (const auto& r : attribution_of(read_run(run.write(dir, "e")), true).rows)
       if (r.cause == (both ? "wait.dma_or_engine" : "wait")) sum += r.clocks;
@@ -500,7 +512,8 @@ TEST_F(BlameTest, ASpeedUpHasTheLineOfItsCause) {
 
 // A cause grows by 10 clocks, though its largest row shrinks by 20: the row that is named grew.
 TEST_F(BlameTest, TheRowThatIsNamedGrew) {
-  replace(after.profile, "dcache,lut,bridge,150,0\n", "dcache,lut,bridge,130,0\nframes,remap,/src/remap.c,21,dcache,lut,service,15,0\n");
+  replace(after.profile, "dcache,lut,bridge,150,0\n",
+          "dcache,lut,bridge,130,0\nframes,remap,/src/remap.c,21,dcache,lut,service,15,0\n");
   replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,65");
   replace(after.profile, "idle.capture,,,300", "idle.capture,,,290");
   const Difference d = difference();

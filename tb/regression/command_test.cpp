@@ -68,7 +68,9 @@ TEST_F(RegressionCommandTest, AFigureThatOnlyOneRunHasOrThatChangedItsUnitDiffer
   RunMaker one = profiled(), decimal = profiled();
   one.figure("extra", "1");
   decimal.figure("extra", "1.1");
-  EXPECT_EQ(cli({"compare", one.write(dir, "one").string(), decimal.write(dir, "decimal").string(), "--tolerance", "0.1"}), 0);
+  EXPECT_EQ(
+      cli({"compare", one.write(dir, "one").string(), decimal.write(dir, "decimal").string(), "--tolerance", "0.1"}),
+      0);
   EXPECT_EQ(changed("0.004", "ms"), 1);
   EXPECT_THAT(out.str(), HasSubstr("other unit"));
   EXPECT_EQ(changed("null", "s"), 1);
@@ -96,8 +98,10 @@ TEST_F(RegressionCommandTest, CsvAndJsonHoldTheSameFigures) {
 
 TEST_F(RegressionCommandTest, FoldersThatAreNoCompleteRunAreRefusedInOneLine) {
   const auto refused = [&](const std::string& folder, const std::string& why) {
-    for (const auto& args : {std::vector<std::string>{"compare", folder, a}, {"compare", a, folder},
-                             {"check", folder, "--against", base}, {"trend", folder, "--database", (dir / "t.db").string()}}) {
+    for (const auto& args : {std::vector<std::string>{"compare", folder, a},
+                             {"compare", a, folder},
+                             {"check", folder, "--against", base},
+                             {"trend", folder, "--database", (dir / "t.db").string()}}) {
       if (args[0] == "check") cli({"bless", a, "--against", base, "--why", "first"});
       EXPECT_EQ(cli(args), 2) << args[0];
       EXPECT_THAT(err.str(), HasSubstr(why)) << args[0];
@@ -127,7 +131,8 @@ TEST_F(RegressionCommandTest, OtherVersionsAreRefusedOrListed) {
   EXPECT_THAT(err.str(), AllOf(HasSubstr("0.2.0"), HasSubstr("--across-versions")));
   RunMaker modified = profiled();
   modified.modified = true;
-  EXPECT_EQ(cli({"compare", a, modified.write(dir, "modified").string()}), 2) << "a commit with changes is another simulator";
+  EXPECT_EQ(cli({"compare", a, modified.write(dir, "modified").string()}), 2)
+      << "a commit with changes is another simulator";
   EXPECT_EQ(cli({"compare", a, b, "--across-versions"}), 1);
   EXPECT_THAT(out.str(), AllOf(HasSubstr("simulator: 0.1.0"), HasSubstr("parameter ddr.new is new: 7")));
   EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "first"}), 0);
@@ -147,7 +152,8 @@ TEST_F(RegressionCommandTest, BlessCheckBlessCheck) {
   EXPECT_THAT(read_text(dir / "j.xml"), HasSubstr("blamed: remap (remap.c:21)"));
   const std::string before = read_text(base);
   ASSERT_EQ(cli({"bless", b, "--against", base, "--why", "more accurate"}), 0) << err.str();
-  EXPECT_THAT(out.str(), AllOf(HasSubstr("-    value: 0.004\n+    value: 0.0042\n"), HasSubstr("why: \"more accurate\"")));
+  EXPECT_THAT(out.str(),
+              AllOf(HasSubstr("-    value: 0.004\n+    value: 0.0042\n"), HasSubstr("why: \"more accurate\"")));
   EXPECT_THAT(read_text(dir / "base/profile.csv"), HasSubstr("vpbe,70")) << "the reference is the new run's";
   EXPECT_EQ(cli({"check", b, "--against", base}), 0) << out.str();
   EXPECT_EQ(cli({"check", a, "--against", base}), 0) << "faster is not worse";
@@ -255,8 +261,8 @@ TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
   EXPECT_TRUE(lines[1].figures.at("cpu.cycles").whole);
   EXPECT_EQ(lines[1].figures.at("cpu.cycles").unit, "cycles");
   EXPECT_EQ(TrendFile(db).lines("other").size(), 0u);
-  EXPECT_THAT(read_text(svg), AllOf(HasSubstr("<svg"), HasSubstr("frame.remap_time.mean"), HasSubstr("host instructions"),
-                                    HasSubstr("three tiny: 4.2 ms")));
+  EXPECT_THAT(read_text(svg), AllOf(HasSubstr("<svg"), HasSubstr("frame.remap_time.mean"),
+                                    HasSubstr("host instructions"), HasSubstr("three tiny: 4.2 ms")));
   EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg, "--figure", "no.such"}), 2);
 }
 
@@ -287,7 +293,8 @@ TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
   EXPECT_THAT(svg, AllOf(HasSubstr("change since the first commit"), HasSubstr("M96.0 119.0L816.0 69.0"),
                          HasSubstr("M96.0 119.0L816.0 169.0"), HasSubstr("c2 b: 900")));
   // The legend: each experiment once, 30 and 7.5 for each letter apart.
-  EXPECT_THAT(svg, AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
+  EXPECT_THAT(svg,
+              AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
   EXPECT_EQ(occurrences(svg, "y=\"22\""), 2u);
 }
 

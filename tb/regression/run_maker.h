@@ -59,7 +59,9 @@ struct RunMaker {
 inline RunMaker profiled() {
   RunMaker r;
   r.figure("cpu.cycles", "1000", "cycles").figure("cpu.issue", "300", "cycles");
-  r.figure("cpu.idle", "300", "cycles").figure("cpu.spare", "300", "cycles").figure("frame.remap_time.mean", "0.004", "s");
+  r.figure("cpu.idle", "300", "cycles")
+      .figure("cpu.spare", "300", "cycles")
+      .figure("frame.remap_time.mean", "0.004", "s");
   r.figure("cpu.instructions", "300");
   r.stalls = "dcache,lut,bridge,150\ndcache,lut,vpbe,50\ninterlock,none,core,100\nicache,.text,bridge,100\n";
   r.profile =

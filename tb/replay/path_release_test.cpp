@@ -214,7 +214,7 @@ TEST(ReplayPathTest, RecordsThatWaitForEachOtherAreAnError) {
 }
 
 // A write that waits in the memory's input register is acknowledged when it goes through, not before.
-TEST(ReplayPathTest, AWriteIsAcknowledgedAtTheDoor) {
+TEST(ReplayPathTest, AWriteIsAcknowledgedWhenItLeavesTheInputRegister) {
   trace::TraceInfo info = board_info();
   info.streams[0] = {};  // counts picoseconds
   for (auto& m : info.masters) m.writes = m.reads = 24;
@@ -246,9 +246,9 @@ TEST(ReplayPathTest, AWriteIsAcknowledgedAtTheDoor) {
             static_cast<double>(p.issued[0].back() - info.start));
 }
 
-// The write FIFO of 88 bytes takes a burst of 64; the next one waits at the door, and behind it another
-// master's word. When the burst goes in there is room for the word too: both are acknowledged then.
-TEST(ReplayPathTest, AWordBehindTheDoorIsAcknowledgedWhenTheDoorOpens) {
+// The write FIFO of 88 bytes takes a burst of 64; the next one waits in the input register, and behind it
+// another master's word. When the burst goes in there is room for the word too: both are acknowledged then.
+TEST(ReplayPathTest, AWordBehindAFullInputRegisterIsAcknowledgedWhenThatIsFree) {
   trace::TraceInfo info = board_info();
   info.streams[0] = {};  // counts picoseconds
   Listed l;

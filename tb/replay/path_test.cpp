@@ -232,9 +232,9 @@ TEST(ReplayPathTest, MemoryOnlyHasNoFigureOfTheCrossbar) {
   EXPECT_EQ(one, all("1GHz", "64B"));
 }
 
-// Eight masters with a bank each keep the data bus busy however many requests wait at the door: equals
+// Eight masters with a bank each keep the data bus busy however many requests wait at the controller: equals
 // take turns there as in the crossbar (TheoryTest has the formula).
-TEST(ReplayPathTest, EqualsTakeTurnsAtTheDoor) {
+TEST(ReplayPathTest, EqualsTakeTurnsAtTheController) {
   for (const unsigned window : {2u, 4u, 8u, 48u}) {
     constexpr unsigned kEach = 500;
     std::string text = master_lines(8, window);
@@ -248,25 +248,23 @@ TEST(ReplayPathTest, EqualsTakeTurnsAtTheDoor) {
   }
 }
 
-// A slow crossbar announces requests long before they arrive: rows that are due are closed meanwhile,
-// or the checker of the commands (Played) ends the test.
-// The door by itself: the most urgent request goes first, equals in turn behind the master that went last, and one
+// The bypass by itself: the most urgent request goes first, equals in turn after the master that went last, and one
 // master's requests in their order.
 TEST(BypassTest, TheMostUrgentGoesFirstAndEqualsTakeTurns) {
-  memsys::Bypass door(kPsPerUs);
+  memsys::Bypass bypass(kPsPerUs);
   std::deque<MemRequest> requests;
   const auto wait = [&](unsigned master, unsigned priority) {
     MemRequest& r = requests.emplace_back();
     r.master = static_cast<Master>(master);
     r.in_path.priority = static_cast<std::uint8_t>(priority);
     r.bytes = 8;
-    door.wait(r);
+    bypass.wait(r);
   };
   const auto all = [&] {
     std::vector<std::size_t> order;  // by place in `requests`
-    while (door.any_waits() && order.size() < 20) {
-      MemRequest& r = door.next();
-      door.count(r, 0);
+    while (bypass.any_waits() && order.size() < 20) {
+      MemRequest& r = bypass.next();
+      bypass.count(r, 0);
       for (std::size_t i = 0; i < requests.size(); ++i)
         if (&requests[i] == &r) order.push_back(i);
     }
@@ -276,14 +274,16 @@ TEST(BypassTest, TheMostUrgentGoesFirstAndEqualsTakeTurns) {
   using V = std::vector<std::size_t>;
   constexpr unsigned kLast = kMasterCount - 1;
   for (const unsigned m : {1u, 0u, kLast, 2u}) wait(m, 3);
-  EXPECT_EQ(all(), (V{0, 3, 2, 1})) << "behind master 0";
+  EXPECT_EQ(all(), (V{0, 3, 2, 1})) << "after master 0";
   for (const unsigned m : {0u, 0u, 1u, 0u}) wait(m, 3);
-  EXPECT_EQ(all(), (V{2, 0, 1, 3})) << "behind master 0 again";
+  EXPECT_EQ(all(), (V{2, 0, 1, 3})) << "after master 0 again";
   wait(1, 7);
   wait(kLast, 6);
   EXPECT_EQ(all(), (V{1, 0})) << "a step of priority is more than all turns";
 }
 
+// A slow crossbar announces requests long before they arrive: rows that are due are closed meanwhile,
+// or the checker of the commands (Played) ends the test.
 TEST(ReplayPathTest, RowsAreClosedInTimeBehindASlowCrossbar) {
   Rng rng(6);
   std::string text = master_lines(2, 4);

@@ -61,9 +61,10 @@ TEST(ReportCommandTest, SaysWhatBindsFromTheAnswersAboutTheSameRun) {
   dir.write("limits/binds.csv", kBinds);
   const auto text = fovea({"report", folder, "--text", "--limits", limits});
   EXPECT_EQ(text.status, kExitDone) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("What binds frame.remap_time.mean, as runs show in which it alone is relaxed: "
-                                  "bridge_arm_d (12 % better); 1 of the 2 resources that were relaxed change it by less.\n"
-                                  "    from binds.csv"));
+  EXPECT_THAT(text.out,
+              HasSubstr("What binds frame.remap_time.mean, as runs show in which it alone is relaxed: "
+                        "bridge_arm_d (12 % better); 1 of the 2 resources that were relaxed change it by less.\n"
+                        "    from binds.csv"));
   EXPECT_EQ(fovea({"report", folder, "--limits", limits}).status, kExitDone);
   const std::string page = test::read_text(folder + "/report.html");
   EXPECT_THAT(page, HasSubstr("<section id=\"binds\""));
@@ -81,7 +82,8 @@ TEST(ReportCommandTest, AnswersAboutOtherRunsAndDamagedOnesAreRefused) {
   const std::pair<std::string, const char*> cases[] = {
       {head + all.substr(all.find("staged")), "it is about runs with frame.remap_time.mean = 0.002"},
       {head + "plain,,x\n", "binds.csv:2: 3 fields; the header has 13"},
-      {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,\n", "binds.csv:2: 'much' is not a number"},
+      {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,\n",
+       "binds.csv:2: 'much' is not a number"},
       {"resource,binds\n", "there is no column 'gain'"},
       {"", "the header is missing"}};
   for (const auto& [contents, message] : cases) {

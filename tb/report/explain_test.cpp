@@ -131,11 +131,15 @@ TEST_F(ExplainTest, WhoMovesThePixelsWhileTheCoreSleeps) {
   set("ddr.remap_engine.wait.read.vpbe", 0.11);
   set("ddr.remap_engine.wait.read.row_miss", std::nan(""));
   set("ddr.arm_d.wait.read.own", 9.0);
-  EXPECT_THAT(text("mover"), testing::EndsWith(
-      "The time of all requests that the remap engine made to the SDRAM in the whole window: 64 % behind other requests "
-      "of its own, 20 % in its bridge to the crossbar and 11 % while the display is served."));
+  EXPECT_THAT(text("mover"),
+              testing::EndsWith("The time of all requests that the remap engine made to the SDRAM in the whole window: "
+                                "64 % behind other requests of its own, 20 % in its bridge to the crossbar and 11 % "
+                                "while the display is served."));
   // A load at its port waits there too.
-  parameters_ = {{"load.outstanding", "0"}, {"load.port", "remap_engine"}, {"load.1.outstanding", "2"}, {"load.1.port", "edma_tc0"}};
+  parameters_ = {{"load.outstanding", "0"},
+                 {"load.port", "remap_engine"},
+                 {"load.1.outstanding", "2"},
+                 {"load.1.port", "edma_tc0"}};
   EXPECT_THAT(text("mover"), HasSubstr("whole window"));
   parameters_["load.1.port"] = "remap_engine";
   EXPECT_EQ(text("mover"), "In 5.0 % of the clocks of its remaps the core sleeps until the remap engine is done.");
@@ -154,7 +158,8 @@ TEST_F(ExplainTest, ThePortsOfTheEdmaAreOne) {
   set("ddr.edma_tc2.wait.write.arm_d", 0.3);
   EXPECT_EQ(text("mover"),
             "In 90 % of the clocks of its remaps the core sleeps until the EDMA is done. The time of all requests "
-            "that the EDMA made to the SDRAM in the whole window: 70 % behind other requests of its own and 30 % while the core is served.");
+            "that the EDMA made to the SDRAM in the whole window: 70 % behind other requests of its own and 30 % while "
+            "the core is served.");
 }
 
 TEST_F(ExplainTest, TwoMoversAreBothNamed) {
@@ -162,7 +167,8 @@ TEST_F(ExplainTest, TwoMoversAreBothNamed) {
   set("cpu.remap.idle", std::uint64_t{90});
   set("cpu.remap.idle.dma", std::uint64_t{10});
   set("cpu.remap.idle.engine", std::uint64_t{80});
-  EXPECT_EQ(text("mover"), "In 90 % of the clocks of its remaps the core sleeps until the EDMA or the remap engine is done.");
+  EXPECT_EQ(text("mover"),
+            "In 90 % of the clocks of its remaps the core sleeps until the EDMA or the remap engine is done.");
 }
 
 TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {
@@ -171,7 +177,8 @@ TEST_F(ExplainTest, ACoreThatSleepsIsSaidToSleep) {
   set("cpu.idle", std::uint64_t{9'000});
   EXPECT_THAT(text("largest_wait"), testing::StartsWith("Largest wait: in 50 %"));
   set("cpu.idle", std::uint64_t{9'001});
-  EXPECT_THAT(text("largest_wait"), testing::StartsWith("The core is awake in only 10 % of its clocks. Largest wait: in 50 %"));
+  EXPECT_THAT(text("largest_wait"),
+              testing::StartsWith("The core is awake in only 10 % of its clocks. Largest wait: in 50 %"));
 }
 
 TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
@@ -192,7 +199,8 @@ TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
 // 240, 200 and 60 of 500: two culprits say where it goes.
 TEST_F(ExplainTest, TheThirdCulpritIsLeftOut) {
   set("cpu.stall.dcache.by.vpbe", std::uint64_t{60});
-  EXPECT_THAT(text("largest_wait"), AllOf(HasSubstr("40 % in the bridge between core and crossbar)"), Not(HasSubstr("display"))));
+  EXPECT_THAT(text("largest_wait"),
+              AllOf(HasSubstr("40 % in the bridge between core and crossbar)"), Not(HasSubstr("display"))));
 }
 
 TEST_F(ExplainTest, AnotherLargestWaitIsFound) {
@@ -212,7 +220,8 @@ TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
 TEST_F(ExplainTest, AFunctionsWaitIsNamedFromOnePercentOn) {
   functions_ = {{"f", 1000, {{"issue", 990}, {"dcache", 10}}}};
   EXPECT_EQ(text("function"),
-            "The function f takes 100 % of the core's awake clocks, and waits in 1.0 % of these for line fills of the D-cache.");
+            "The function f takes 100 % of the core's awake clocks, and waits in 1.0 % of these for line fills of the "
+            "D-cache.");
   functions_ = {{"f", 1000, {{"issue", 991}, {"dcache", 9}}}};
   EXPECT_EQ(text("function"), "The function f takes 100 % of the core's awake clocks.");
 }
@@ -345,7 +354,9 @@ TEST_F(ExplainTest, EqualTimesOfInstructionsAreNoDifferenceHoweverLong) {
 // From a thousandth of the remap on, and from a thousand clocks of a frame on.
 TEST_F(ExplainTest, SmallDifferencesAreNotMentioned) {
   const std::vector<StatRow> before = stats_;
-  const auto found = [&] { return explain_difference({.stats = before, .stalls = {}, .frames = {}}, "A", inputs(), "B"); };
+  const auto found = [&] {
+    return explain_difference({.stats = before, .stalls = {}, .frames = {}}, "A", inputs(), "B");
+  };
   set("frame.remap_time.mean", 0.010009);
   EXPECT_THAT(found()[0].text, HasSubstr("takes as long as"));
   set("frame.remap_time.mean", 0.010011);

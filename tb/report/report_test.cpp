@@ -264,12 +264,13 @@ TEST(PageTest, TablesHaveTheirFiguresInTheirPlaces) {
   test::add_other_files(dir, "run");
   dir.write("run/profile.csv",
             "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
-            "frames,small,s.c,1,issue,,,1,1\nframes,busy,b.c,1,issue,,,1200,1200\nframes,busy,b.c,2,dcache,lut,bridge,299,0\n");
+            "frames,small,s.c,1,issue,,,1,1\nframes,busy,b.c,1,issue,,,1200,1200\n"
+            "frames,busy,b.c,2,dcache,lut,bridge,299,0\n");
   const std::string page = one_page(dir / "run");
   EXPECT_THAT(page, HasSubstr("<td class=\"n\"><data value=\"100000000.0\">100.0</data></td>"));
   EXPECT_THAT(page, Not(HasSubstr("<th scope=\"row\">edma_tc0</th>")));
-  EXPECT_TRUE(in_order(page, {"<th scope=\"row\">arm_d</th><td>reads</td><td>first</td>", "latency.mean", "latency.p50", "latency.p95",
-                              "latency.p99", "latency.max", "</tr>"}));
+  EXPECT_TRUE(in_order(page, {"<th scope=\"row\">arm_d</th><td>reads</td><td>first</td>", "latency.mean", "latency.p50",
+                              "latency.p95", "latency.p99", "latency.max", "</tr>"}));
   EXPECT_THAT(page, HasSubstr("data-figure=\"net\""));
   // Largest first.
   EXPECT_TRUE(in_order(page, {"<td>frame_in</td>", "<td>bridge</td>", "<td>vpbe</td>", "<td>row_miss</td>"}));
@@ -289,8 +290,8 @@ TEST(PageTest, FunctionsOfTwoRunsHaveTheirDifference) {
   }
   const std::string page = report_page({load_results(dir / "one", {}), load_results(dir / "two", {})});
   EXPECT_THAT(page, HasSubstr("<td class=\"n\"><data value=\"-50\">-50</data></td>"));
-  EXPECT_TRUE(in_order(page, {"<code>g</code>", "<data value=\"0\">0</data>", "<data value=\"0.0\">0.0 %</data>", "<data value=\"50\">50</data>",
-                              "6.7 %", "<data value=\"50\">+50</data>"}));
+  EXPECT_TRUE(in_order(page, {"<code>g</code>", "<data value=\"0\">0</data>", "<data value=\"0.0\">0.0 %</data>",
+                              "<data value=\"50\">50</data>", "6.7 %", "<data value=\"50\">+50</data>"}));
 }
 
 TEST(PageTest, ReachesNothingOutsideItself) {
@@ -319,7 +320,8 @@ TEST(PageTest, HostileTextsDoNothing) {
   run.stats.push_back({"evil.<b>", std::uint64_t{1}, "<i>", evil});
   run.parameters =
       R"x("<script>k": {"value": "</script><script>alert(4)", "unit": "", "origin": "f:1", "default": "<a>",
-    "allowed": "", "tag": "<b>", "source": "\"><b>", "belief": {"low": "<", "high": ">", "reason": "<u>"}, "description": "<p onclick=x>"})x";
+    "allowed": "", "tag": "<b>", "source": "\"><b>", "belief": {"low": "<", "high": ">", "reason": "<u>"},
+    "description": "<p onclick=x>"})x";
   run.command = R"x(["run", "</code><script>alert(5)</script>"])x";
   const fs::path folder = run.write(dir, "<img src=x onerror=alert(6)>");
   const std::string name = folder.filename().string();
@@ -458,7 +460,8 @@ TEST(PictureTest, AComposedViewIsShownWithAllItsCameras) {
   fs::create_directories(dir / "run/frames");
   fs::create_directories(dir / "run/camera");
   const auto with_view = [&](const std::string& view) {
-    run.parameters = R"("firmware.view": {"value": ")" + view + R"(", "unit": "", "origin": "default", "default": "single",
+    run.parameters =
+        R"("firmware.view": {"value": ")" + view + R"(", "unit": "", "origin": "default", "default": "single",
       "allowed": "", "tag": "choice", "source": "", "belief": null, "description": "a view"})";
     run.write(dir);
     return choose_pictures({load_results(dir / "run", {})}, 1'000'000)[0];
@@ -483,7 +486,8 @@ TEST(PictureTest, AComposedViewIsShownWithAllItsCameras) {
   EXPECT_EQ(chosen.cameras[1].frame, 3u);
   EXPECT_NE(chosen.cameras[0].picture.uri, chosen.cameras[1].picture.uri);
   const std::string page = one_page(dir / "run");
-  EXPECT_THAT(page, HasSubstr("Frame 4: the composed view on the display. Below it, what was sent last for each camera."));
+  EXPECT_THAT(page,
+              HasSubstr("Frame 4: the composed view on the display. Below it, what was sent last for each camera."));
   EXPECT_THAT(page, HasSubstr("Camera 1, for frame 3."));
   EXPECT_EQ(with_view("single").frame, 0u);
 }

@@ -64,7 +64,8 @@ constexpr Interrupt kInterrupts[] = {{0, 15},  {1, 22},  {8, 13},  {9, 14},  {22
                                      {50, 34}, {51, 35}};
 
 /// EDMA_EVTMUX, by bit (TI's register header for the DM36x).
-constexpr unsigned kChoices[] = {2, 3, 12, 18, 19, 26, 40, 41, 42, 43, 44, 45, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+constexpr unsigned kChoices[] = {2,  3,  12, 18, 19, 26, 40, 41, 42, 43, 44, 45,
+                                 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
 
 TEST(EdmaEvents, EachChannelHasItsSource) {
   ASSERT_EQ(std::size(kRows), kEdmaEvents.size());

@@ -97,7 +97,8 @@ TEST(PlatformText, HeaderHasAddressesFieldsGatesAndInterrupts) {
 // The same for the page, once for each kind of row.
 TEST(PlatformText, PageHasBlocksGapsAndMasters) {
   for (const char* line :
-       {"\n| `edma` | EDMA3 channel controller | 0x01C00000 | 0x10000 | fast | SYSCLK4 | 0 | ccint0 16, ccerrint 17 (second) | ",
+       {"\n| `edma` | EDMA3 channel controller | 0x01C00000 | 0x10000 | fast | SYSCLK4 | 0 | ccint0 16, ccerrint 17 "
+        "(second) | ",
         "\n| `timer2` | TIMER2 (watchdog) | 0x01C21C00 | 0x400 | slow | AUXCLK | – | tint12 13 (second), tint34 14 | ",
         "\n| 0x01D11000 | 0x800 | MMCSD0 |\n",
         "\n| 6 | `vpfe` | `vpfe` | video | BCR.WR_PRI | 32 | – | yes | a block |\n"})

@@ -130,7 +130,8 @@ TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {
   stats["frame.dropped"] = 2;
   EXPECT_TRUE(judge(result_of(stats), conditions_with({"frame.dropped<=2"})).good());
   EXPECT_FALSE(judge(result_of(stats), conditions_with({"frame.dropped<=1"})).good());
-  for (const char* wrong : {"", "frame.rate", "frame.rate>25", "frame.rate>=", ">=2", "frame.rate>=x", "a>=1x", "a>=nan", "a<=inf"})
+  for (const char* wrong :
+       {"", "frame.rate", "frame.rate>25", "frame.rate>=", ">=2", "frame.rate>=x", "a>=1x", "a>=nan", "a<=inf"})
     EXPECT_THAT(user_error([&] { conditions_with({wrong}); }), HasSubstr("METRIC<=NUMBER")) << wrong;
 }
 
@@ -146,7 +147,8 @@ TEST(PointsTableTest, HasTheSameOrderHoweverThePointsCame) {
     p.identity = std::to_string(k);
     entries.push_back({p, &results[k]});
   }
-  std::sort(entries.begin(), entries.end(), [](const auto& x, const auto& y) { return x.point.identity < y.point.identity; });
+  std::sort(entries.begin(), entries.end(),
+            [](const auto& x, const auto& y) { return x.point.identity < y.point.identity; });
   const std::string expected = points_csv(entries, {});
   std::istringstream rows(expected);
   std::string line, order;

@@ -235,8 +235,9 @@ TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
   auto silent = stats;
   silent.push_back({"camera.2.frame.rate", 0.0, "1/s", ""});
   EXPECT_THAT(run_words(silent, {}), HasSubstr("superseded; camera 2 no frame\n"));
-  EXPECT_THAT(run_words(stats, {}),
-              HasSubstr("cameras camera 0 6.25 frames a second; camera 1 6.25 frames a second, 2\n        superseded\n"));
+  EXPECT_THAT(
+      run_words(stats, {}),
+      HasSubstr("cameras camera 0 6.25 frames a second; camera 1 6.25 frames a second, 2\n        superseded\n"));
 }
 
 TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {

@@ -23,8 +23,8 @@ inline constexpr std::size_t kHazardKinds = static_cast<std::size_t>(HazardKind:
 struct Hazard {
   HazardKind kind = HazardKind::kStaleLoad;
   Master master = Master::kCount;  ///< the other one
-  std::uint32_t pc = 0;            ///< of the load or the instruction, or of the first store into the dirty half; of the
-                                   ///< instruction under way for bytes in a buffer
+  std::uint32_t pc = 0;            ///< of the load or the instruction, or of the first store into the dirty half;
+                                   ///< of the instruction under way for bytes in a buffer
   std::uint32_t address = 0;       ///< physical address of the first byte concerned
   Picoseconds before = 0;          ///< the earlier act: a line's fill, a store, or the master's write
   Picoseconds after = 0;           ///< the later one, which is the hazard

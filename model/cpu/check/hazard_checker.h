@@ -18,8 +18,8 @@ namespace fovea::cpu {
 
 /// Knows only what core and memory announce. The memory's order is that of arrivals at the controller; the times of a
 /// master's accesses and of line fills are those of their arrival. A fill may pass another master's write that waits in
-/// the controller: after follow_moves() that is seen, and the line is stale from its fill on. Loads are judged by bytes,
-/// dirty halves as a whole, as the hardware writes them back.
+/// the controller: after follow_moves() that is seen, and the line is stale from its fill on. Loads are judged by
+/// bytes, dirty halves as a whole, as the hardware writes them back.
 class HazardChecker final : public ArrivalObserver, public LineWatch {
  public:
   /// @param core outlives the checker, which observes its lines from now on

@@ -1,5 +1,5 @@
-// Which addresses a load, store or swap uses (ARM DDI 0100, A5.2 to A5.4): the one definition for
-// execution, for the fast handlers and for watchpoints.
+// Which addresses a load, store or swap uses (ARM DDI 0100, A5.2 to A5.4): the definition for execution, for the
+// fast handlers of blocks and for watchpoints. Those of single registers have a specialised one, moved().
 #pragma once
 #include <algorithm>
 #include <array>

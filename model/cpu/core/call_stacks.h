@@ -48,7 +48,7 @@ class CallStacks {
     counting_ = on;
   }
 
-  /// Is told which functions were active in each stretch between two branches.
+  /// Receives which functions were active in each stretch between two branches.
   class Watcher {
    public:
     virtual ~Watcher() = default;

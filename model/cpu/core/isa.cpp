@@ -241,25 +241,38 @@ constexpr IsaKind kTTrap{C::kThumbException, "", "", "", "", "3", k9ejsUnread};
   {NAME " shift reg", "cccc 000" BITS "1 nnnn ---- ssss 0tt1 mmmm", NAME "<c> <n>, <m>, <t> <s>", OP, kCompareLate}
 #define FOVEA_TRANSFER(NAME, B, L, OP, KIND) \
   {NAME " imm pre", "cccc 0101 U" B "W" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n><pre>]<W>", OP, KIND.pre}, \
-  {NAME " imm post", "cccc 0100 U" B "0" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n>], <offset>", OP, KIND.post}, \
+  {NAME " imm post", "cccc 0100 U" B "0" L " nnnn dddd iiii iiii iiii", NAME "<c> <d>, [<n>], <offset>", \
+   OP, KIND.post}, \
   {NAME "t imm", "cccc 0100 U" B "1" L " nnnn dddd iiii iiii iiii", NAME "t<c> <d>, [<n>], <offset>", OP, KIND.user}, \
-  {NAME " reg pre", "cccc 0111 U" B "W" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", OP, KIND.pre_reg}, \
-  {NAME " reg post", "cccc 0110 U" B "0" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>], <reg>", OP, KIND.post_reg}, \
+  {NAME " reg pre", "cccc 0111 U" B "W" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", \
+   OP, KIND.pre_reg}, \
+  {NAME " reg post", "cccc 0110 U" B "0" L " nnnn dddd aaaa att0 mmmm", NAME "<c> <d>, [<n>], <reg>", \
+   OP, KIND.post_reg}, \
   {NAME "t reg", "cccc 0110 U" B "1" L " nnnn dddd aaaa att0 mmmm", NAME "t<c> <d>, [<n>], <reg>", OP, KIND.user_reg}
 #define FOVEA_NARROW(NAME, L, SH, RD, OP, KIND) \
   {NAME " imm pre", "cccc 0001 U1W" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n><pre>]<W>", OP, KIND.pre}, \
-  {NAME " imm post", "cccc 0000 U1-" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n>], <offset>", OP, KIND.post}, \
-  {NAME " reg pre", "cccc 0001 U0W" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", OP, KIND.pre_reg}, \
-  {NAME " reg post", "cccc 0000 U0-" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>], <reg>", OP, KIND.post_reg}
+  {NAME " imm post", "cccc 0000 U1-" L " nnnn " RD " iiii 1" SH "1 iiii", NAME "<c> <d>, [<n>], <offset>", \
+   OP, KIND.post}, \
+  {NAME " reg pre", "cccc 0001 U0W" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>, <reg>]<W>", \
+   OP, KIND.pre_reg}, \
+  {NAME " reg post", "cccc 0000 U0-" L " nnnn " RD " ---- 1" SH "1 mmmm", NAME "<c> <d>, [<n>], <reg>", \
+   OP, KIND.post_reg}
 // Instructions of coprocessors that this chip does not have; CC is the condition or 1111.
 #define FOVEA_ABSENT(NAME, CC, COND) \
-  {"cdp" NAME, CC " 1110 oooo CCCC DDDD pppp qqq0 MMMM", "cdp" NAME COND " <p>, <o>, <D>, <C>, <M>, <q>", Op::kCoprocessor, kAbsent}, \
-  {"ldc" NAME " pre", CC " 1101 ULW1 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
-  {"ldc" NAME " post", CC " 1100 UL11 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
-  {"ldc" NAME " option", CC " 1100 1L01 nnnn DDDD pppp kkkk kkkk", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", Op::kCoprocessor, kAbsent}, \
-  {"stc" NAME " pre", CC " 1101 ULW0 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
-  {"stc" NAME " post", CC " 1100 UL10 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
-  {"stc" NAME " option", CC " 1100 1L00 nnnn DDDD pppp kkkk kkkk", "stc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", Op::kCoprocessor, kAbsent}
+  {"cdp" NAME, CC " 1110 oooo CCCC DDDD pppp qqq0 MMMM", "cdp" NAME COND " <p>, <o>, <D>, <C>, <M>, <q>", \
+   Op::kCoprocessor, kAbsent}, \
+  {"ldc" NAME " pre", CC " 1101 ULW1 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", \
+   Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
+  {"ldc" NAME " post", CC " 1100 UL11 nnnn DDDD pppp iiii iiii", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", \
+   Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
+  {"ldc" NAME " option", CC " 1100 1L01 nnnn DDDD pppp kkkk kkkk", "ldc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", \
+   Op::kCoprocessor, kAbsent}, \
+  {"stc" NAME " pre", CC " 1101 ULW0 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n><pre>]<W>", \
+   Op::kCoprocessor, kAbsentPre, 0, "", 2}, \
+  {"stc" NAME " post", CC " 1100 UL10 nnnn DDDD pppp iiii iiii", "stc" NAME "<L>" COND " <p>, <D>, [<n>], <offset>", \
+   Op::kCoprocessor, kAbsentPost, 0, "", 2}, \
+  {"stc" NAME " option", CC " 1100 1L00 nnnn DDDD pppp kkkk kkkk", "stc" NAME "<L>" COND " <p>, <D>, [<n>], {<k>}", \
+   Op::kCoprocessor, kAbsent}
 
 constexpr IsaRow kRows[] = {
   // Data processing.
@@ -317,7 +330,8 @@ constexpr IsaRow kRows[] = {
   {"ldm", "cccc 100P U0W1 nnnn 0lll llll llll llll", "ldm<mode><c> <n><W>, <l>", Op::kLdm, kLdmKind},
   {"ldm pc", "cccc 100P U0W1 nnnn 1lll llll llll llll", "ldm<mode><c> <n><W>, <l>", Op::kLdm, kLdmPc, 0, "", 0, 0x8000},
   {"ldm user", "cccc 100P U1W1 nnnn 0lll llll llll llll", "ldm<mode><c> <n><W>, <l>^", Op::kLdm, kLdmUser},
-  {"ldm return", "cccc 100P U1W1 nnnn 1lll llll llll llll", "ldm<mode><c> <n><W>, <l>^", Op::kLdm, kLdmReturn, 0, "", 0, 0x8000},
+  {"ldm return", "cccc 100P U1W1 nnnn 1lll llll llll llll", "ldm<mode><c> <n><W>, <l>^",
+   Op::kLdm, kLdmReturn, 0, "", 0, 0x8000},
   {"stm", "cccc 100P U0W0 nnnn llll llll llll llll", "stm<mode><c> <n><W>, <l>", Op::kStm, kStmKind},
   {"stm user", "cccc 100P U1W0 nnnn llll llll llll llll", "stm<mode><c> <n><W>, <l>^", Op::kStm, kStmUser},
   {"swp", "cccc 0001 0000 nnnn dddd ---- 1001 mmmm", "swp<c> <d>, <m>, [<n>]", Op::kSwp, kSwpKind},
@@ -343,7 +357,8 @@ constexpr IsaRow kRows[] = {
   {"mrrc", "cccc 1100 0101 nnnn dddd pppp oooo MMMM", "mrrc<c> <p>, <o>, <d>, <n>, <M>", Op::kCoprocessor, kAbsentMrrc},
   FOVEA_ABSENT("", "cccc", "<c>"),
   FOVEA_ABSENT("2", "1111", ""),
-  {"mcr2", "1111 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr2 <p>, <o>, <d>, <C>, <M>, <q>", Op::kCoprocessor, kAbsentMove},
+  {"mcr2", "1111 1110 ooo0 CCCC dddd pppp qqq1 MMMM", "mcr2 <p>, <o>, <d>, <C>, <M>, <q>",
+   Op::kCoprocessor, kAbsentMove},
   {"mrc2", "1111 1110 ooo1 CCCC dddd pppp qqq1 MMMM", "mrc2 <p>, <o>, <d>, <C>, <M>, <q>", Op::kCoprocessor, kAbsent},
 
   // Thumb.

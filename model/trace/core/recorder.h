@@ -14,7 +14,7 @@
 
 namespace fovea::trace {
 
-/// What the core tells of itself, in core clocks since its start.
+/// What the core reports of itself, in core clocks since its start.
 struct CoreState {
   std::uint64_t idle = 0;        ///< asleep, waiting for an interrupt
   std::uint64_t room_waits = 0;  ///< waiting for room in the write and victim buffers

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Markdown pages: width of the lines, headings of READMEs, links to files and headings. Usage: pages.py SOURCE"""
+import os
+import re
+import sys
+from pathlib import Path
+
+WIDTH = 120
+HEADINGS = ("Purpose", "Concepts|Use", "How it works", "Limits")
+# Folders without code of their own, and the page of the whole project.
+FREE = {"README.md", "model/howto/README.md", "traces/pictures/README.md", "tb/report/axe-core/README.md"}
+
+
+def pages(source):
+    for folder, inner, files in os.walk(source):
+        top = Path(folder) == source
+        inner[:] = [d for d in inner if not d.startswith(".") and not (top and d in ("build", "out"))]
+        yield from (Path(folder) / f for f in files if f.endswith(".md"))
+
+
+def prose(text):
+    """The lines outside blocks of code, with their numbers."""
+    code = False
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.lstrip().startswith("```"):
+            code = not code
+        elif not code:
+            yield number, line
+
+
+def anchors(page):
+    """As GitHub makes them of headings."""
+    for _, line in prose(page.read_text(encoding="utf-8")):
+        if heading := re.match(r"#+ (.*)", line):
+            words = re.sub(r"[^\w\- ]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading[1]).lower())
+            yield words.replace(" ", "-")
+
+
+def complaints(source):
+    for page in sorted(pages(source)):
+        name, text = page.relative_to(source).as_posix(), page.read_text(encoding="utf-8")
+        for number, line in enumerate(text.split("\n"), 1):
+            if len(line) > WIDTH and not line.lstrip().startswith("|"):
+                yield f"{name}:{number}: {len(line)} columns; at most {WIDTH}, rows of tables excepted"
+        if page.name == "README.md" and name not in FREE:
+            for heading in HEADINGS:
+                if not re.search(rf"^## ({heading})$", text, re.M):
+                    yield f"{name}: no heading '## {heading}'"
+        for number, line in prose(text):
+            for link in re.findall(r"\]\(([^) ]+)\)", re.sub(r"`[^`]*`", "", line)):
+                target, _, anchor = link.partition("#")
+                file = page if not target else page.parent / target
+                if "://" in link:
+                    continue
+                if not file.exists():
+                    yield f"{name}:{number}: no file for the link {link}"
+                elif anchor and anchor not in anchors(file):
+                    yield f"{name}:{number}: no heading for the link {link}"
+
+
+found = list(complaints(Path(sys.argv[1])))
+print("\n".join(found) or "pages: nothing found")
+sys.exit(bool(found))
