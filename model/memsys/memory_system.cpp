@@ -23,8 +23,8 @@ MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrPa
 
 Slave MemorySystem::slave_of(const MemRequest& r) const {
   if (r.address >= map_.ddr_base) return Slave::kDdr;
-  const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
-  return !core && r.address - map_.ram_base < map_.ram_size ? Slave::kInternalRam : Slave::kConfig;
+  const bool in_ram = r.address - map_.ram_base < map_.ram_size;
+  return in_ram && !is_core(r.master) ? Slave::kInternalRam : Slave::kConfig;
 }
 
 void MemorySystem::submit(MemRequest& r) {

@@ -68,9 +68,8 @@ void GdbMasters::done(const MemRequest& r) {
 }
 
 void GdbMasters::check_watches(const MemRequest& r) const {
-  const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
   for (const Watch& w : watches) {
-    if (w.only ? *w.only != r.master : core) continue;
+    if (w.only ? *w.only != r.master : is_core(r.master)) continue;
     if (w.kind != Kind::kAccess && (w.kind == Kind::kWrite) != r.write) continue;
     const std::uint64_t from = std::max(r.address, w.pa);
     const std::uint64_t to =

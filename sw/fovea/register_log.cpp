@@ -72,8 +72,7 @@ bool RegisterLog::wanted(const RegisterAccess& access) {
 void RegisterLog::accessed(const RegisterAccess& access) {
   if (!wanted(access)) return;
   const Master master = sources_.master();
-  const bool core = master == Master::kArmD || master == Master::kArmI;
-  const Record r{sources_.now(), core ? sources_.pc() : 0, master, access};
+  const Record r{sources_.now(), is_core(master) ? sources_.pc() : 0, master, access};
   if (ring_.size() < kept_) {
     ring_.push_back(r);
   } else {
@@ -90,7 +89,7 @@ std::string RegisterLog::line(const Record& r) const {
   const std::uint32_t lanes = (a.bytes == 4 ? ~0u : (1u << 8 * a.bytes) - 1u) << shift;
   const std::uint32_t word = (a.value << shift) & lanes;
   std::string out = fmt::format("{} ns  ", ns_text(r.at));
-  if (r.master == Master::kArmD || r.master == Master::kArmI) {
+  if (is_core(r.master)) {
     out += fmt::format("pc 0x{:08x} ", r.pc);
     const std::string where = sources_.describe ? sources_.describe(r.pc) : "";
     if (!where.empty()) out += "(" + where + ") ";
