@@ -85,7 +85,7 @@ tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
   const Picoseconds one = latency(r.address);
   free = start + one * accesses(r, divided(r));
   r.error = false;
-  end_of_instant_.at(start + one, static_cast<unsigned>(index(r.master)), [this, &r] { access(r, 0); });
+  end_of_instant_.at(start + one, instant_rank(r.master), [this, &r] { access(r, 0); });
   return tlm::TLM_UPDATED;
 }
 
@@ -107,7 +107,7 @@ void ConfigBus::access(MemRequest& r, unsigned offset) {
   accessing_ = r.master;
   if (!in_reset_ && !access_word(r, offset, bytes)) r.error = true;
   if (offset + bytes < r.bytes) {
-    end_of_instant_.at(kernel_time() + latency(r.address), static_cast<unsigned>(index(r.master)),
+    end_of_instant_.at(kernel_time() + latency(r.address), instant_rank(r.master),
                        [this, &r, next = offset + bytes] { access(r, next); });
     return;
   }

@@ -294,12 +294,8 @@ void Dm365::watch_reset() {
     on_reset_request(timers[2]->reset_cause());
 }
 
-namespace {
-constexpr unsigned kAfterRegisters = static_cast<unsigned>(kMasterCount) + 1;
-}
-
 void Dm365::reset_chip(ResetKind kind) {
-  end_of_instant.at(kernel_time(), kAfterRegisters, [this, kind] { begin_reset(kind); });
+  end_of_instant.at(kernel_time(), InstantRank::kReset, [this, kind] { begin_reset(kind); });
 }
 
 void Dm365::begin_reset(ResetKind kind) {
@@ -308,14 +304,15 @@ void Dm365::begin_reset(ResetKind kind) {
   ++stats.resets;
   for (const Platform::Entry& e : platform.blocks()) e.block->reset(kind);
   if (!already)
-    end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters, [this] { end_reset(); });
+    end_of_instant.at(kernel_time() + params_.system.reset_time(), InstantRank::kReset,
+                      [this] { end_reset(); });
 }
 
 void Dm365::end_reset() {
   for (const Platform::Entry& e : platform.blocks())
     if (!e.block->idle())
-      return end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters,
-                      [this] { end_reset(); });
+      return end_of_instant.at(kernel_time() + params_.system.reset_time(), InstantRank::kReset,
+                               [this] { end_reset(); });
   const ResetKind kind = *std::exchange(reset_under_way_, std::nullopt);
   if (kind == ResetKind::kPowerOn) {
     internal_ram.fill(0);

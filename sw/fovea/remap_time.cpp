@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "sw/fovea/after_all.h"
 #include "sw/fovea/sleep.h"
 
 namespace fovea::app {
@@ -35,7 +34,7 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
 void RemapTime::reached(bool begins) {
   const Picoseconds at = kernel_time() + kAhead;
   if (!begins) ending_ = at;
-  board_.dm365.end_of_instant.at(at, kAfterAll, [this, begins, at] {
+  board_.dm365.end_of_instant.at(at, InstantRank::kObservers, [this, begins, at] {
     given_away(at, begins);
     board_.dm365.arm.core().sample_counts(
         at, [this, begins](const cpu::Counts& counts) { sampled(begins, of(counts)); });

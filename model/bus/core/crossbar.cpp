@@ -105,8 +105,7 @@ inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
 bool Crossbar::goes_first(unsigned a, const SlaveState& of_a, unsigned b,
                           const SlaveState& of_b) const {
   const auto rank = [this](unsigned m, const SlaveState& s) {
-    const auto turn = static_cast<unsigned>((m + kMasterCount - s.last - 1) % kMasterCount);
-    return (ports_[m].priority * 64u + turn) * 64u + m;
+    return (ports_[m].priority * 64u + turns_after(s.last, m)) * 64u + m;
   };
   return rank(a, of_a) < rank(b, of_b);
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "model/common/check.h"
-#include "sw/fovea/after_all.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/run_until.h"
 
@@ -139,12 +138,12 @@ void PerfettoRun::watch_transfers() {
 }
 
 void PerfettoRun::begin_at(Picoseconds at) {
-  board_.dm365.end_of_instant.at(at, kAfterAll, [this, at] { begin(at); });
+  board_.dm365.end_of_instant.at(at, InstantRank::kObservers, [this, at] { begin(at); });
 }
 
 void PerfettoRun::end_at(Picoseconds at) {
   until_ = std::min(until_, at);
-  board_.dm365.end_of_instant.at(std::max(at, kernel_time()), kAfterAll, [this] { end(); });
+  board_.dm365.end_of_instant.at(std::max(at, kernel_time()), InstantRank::kObservers, [this] { end(); });
 }
 
 void PerfettoRun::window_opened() {
@@ -209,7 +208,7 @@ void PerfettoRun::sample() {
   activates_ = activates;
   bursts_ = bursts;
   sampled_ = now;
-  soc.end_of_instant.at(now + kSample, kAfterAll, [this] { sample(); });
+  soc.end_of_instant.at(now + kSample, InstantRank::kObservers, [this] { sample(); });
 }
 
 void PerfettoRun::pins(std::uint32_t levels, Picoseconds at) {
