@@ -60,26 +60,26 @@ class BusTarget : public sc_core::sc_module, public Block {
   void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
     const auto offset = static_cast<std::uint32_t>(gp.get_address());
     const unsigned bytes = gp.get_data_length();
+    Reg* const r = bank_.register_at(offset);
     std::uint32_t word = 0;
     if (!clocked()) {
       Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated");
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
       if (observer_) [[unlikely]]
-        observer_->accessed({&bank_, offset, bytes, gp.is_write(), true, word});
+        observer_->accessed({&bank_, r, offset, bytes, gp.is_write(), true, word});
       gp.set_response_status(tlm::TLM_OK_RESPONSE);
       return;
     }
     Access a;
     if (gp.is_write()) {
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
-      const Reg* const r = bank_.register_at(offset);
       if (r && ((word << 8 * (offset & 3u)) & r->reserved())) reserved_written(*r);
-      a = bank_.write(offset, bytes, word);
+      a = RegBank::write(r, offset, bytes, word);
       if (a == Access::kOk && r->limited()) [[unlikely]]
         warn_not_modelled(*r, offset, bytes);
     } else {
-      a = bank_.read(offset, bytes, word);
+      a = RegBank::read(r, offset, bytes, word);
       std::memcpy(gp.get_data_ptr(), &word, bytes <= 4 ? bytes : 4);
     }
     if (a == Access::kNoRegister && !holes_answer()) {
@@ -96,7 +96,7 @@ class BusTarget : public sc_core::sc_module, public Block {
       a = Access::kOk;
     }
     if (observer_ && a == Access::kOk) [[unlikely]]
-      observer_->accessed({&bank_, offset, bytes, gp.is_write(), false, word});
+      observer_->accessed({&bank_, r, offset, bytes, gp.is_write(), false, word});
     gp.set_response_status(a == Access::kOk ? tlm::TLM_OK_RESPONSE : tlm::TLM_BURST_ERROR_RESPONSE);
   }
 

@@ -61,7 +61,7 @@ const std::string& RegisterLog::block_name(const RegBank* bank) const {
 
 /// Offsets without a register match by the name of their block alone.
 bool RegisterLog::wanted(const RegisterAccess& access) {
-  const Reg* const reg = access.bank->register_at(access.offset);
+  const Reg* const reg = access.reg;
   if (!reg) return re2::RE2::PartialMatch(block_name(access.bank) + ".", *pattern_);
   const auto [place, fresh] = matches_.try_emplace(reg, false);
   if (fresh)
@@ -84,7 +84,7 @@ void RegisterLog::accessed(const RegisterAccess& access) {
 
 std::string RegisterLog::line(const Record& r) const {
   const RegisterAccess& a = r.access;
-  const Reg* const reg = a.bank->register_at(a.offset);
+  const Reg* const reg = a.reg;
   const unsigned shift = 8 * (a.offset & 3u);
   const std::uint32_t lanes = (a.bytes == 4 ? ~0u : (1u << 8 * a.bytes) - 1u) << shift;
   const std::uint32_t word = (a.value << shift) & lanes;
