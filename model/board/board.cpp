@@ -78,11 +78,11 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     uart_.push_back(static_cast<char>(byte));
     if (on_uart) on_uart(byte);
   };
-  dm365.gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds at) {
+  pins_ = dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank != PHASE_BANK) return;
     log.pins(out, at);
     if (on_phase) on_phase(log.phase(), at);
-  };
+  });
   dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
     if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
   };

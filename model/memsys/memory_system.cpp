@@ -121,7 +121,7 @@ inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
               "request outside the SDRAM");
   FOVEA_CHECK(controller_.running(), "request to a DDR controller without a clock");
   FOVEA_CHECK(!controller_.input_blocked(), "a request while the controller's input is taken");
-  if (arrivals_) arrivals_->arrived(r, at);
+  arrivals_.each([&](ArrivalObserver* o) { o->arrived(r, at); });
   const auto inside = offset & static_cast<std::uint32_t>(store_.size() - 1);
   return controller_.submit_inside(r, inside, at) ? Taken::kYes : Taken::kWaits;
 }

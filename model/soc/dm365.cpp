@@ -342,7 +342,7 @@ void Dm365::wire_video() {
   venc.display(display);
 }
 
-std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
+Dm365::Recording Dm365::record_bus() {
   const auto ratio = static_cast<unsigned>(params_.cpu.ahb_ratio());
   std::vector<trace::BusRecorder::MasterSetup> masters;
   for (const Platform::Entry& e : platform.blocks())
@@ -373,9 +373,8 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
         }
         return s;
       });
-  scr.crossbar().observe(recorder.get());
-  tap.attach(recorder.get());
-  return recorder;
+  trace::BusRecorder& to = *recorder;
+  return {std::move(recorder), scr.crossbar().observe(to), tap.attach(to)};
 }
 
 /// Drives the priorities that come from the system module, the EDMA and parameters; the video

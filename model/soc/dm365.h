@@ -143,7 +143,13 @@ class Dm365 : public sc_core::sc_module, public Block {
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
   /// chip.
-  std::unique_ptr<trace::BusRecorder> make_recorder();
+  /// A recorder of the bus traffic, which gets requests and interrupts as long as it lives.
+  struct Recording {
+    std::unique_ptr<trace::BusRecorder> recorder;
+    Subscription requests, interrupts;
+    trace::BusRecorder* operator->() const { return recorder.get(); }
+  };
+  Recording record_bus();
 
   /// Ports that a synthetic load shares with a block of the chip.
   std::vector<std::unique_ptr<bus::SharedPort>> shared_ports;

@@ -59,7 +59,7 @@ bool BoardDebugMemory::debug_write(std::uint32_t pa, std::span<const std::uint8_
 
 RegisterBlock register_block(const std::string& name, BusTarget& block) {
   return {name, &block.bank(), [&block] { return block.gated(); },
-          [&block](RegisterObserver* o) { block.observe(o); }};
+          [&block](RegisterObserver& o) { return block.observe(o); }};
 }
 
 std::vector<RegisterBlock> register_blocks(const Platform& platform) {

@@ -33,14 +33,12 @@ void RegisterLog::start(const RegisterLogRequest& request) {
   oldest_ = 0;
   count_ = 0;
   for (const auto& b : blocks_)
-    if (b.observe) b.observe(this);
+    if (b.observe) observing_.push_back(b.observe(*this));
   running_ = true;
 }
 
 void RegisterLog::stop() {
-  if (!running_) return;
-  for (const auto& b : blocks_)
-    if (b.observe) b.observe(nullptr);
+  observing_.clear();
   running_ = false;
 }
 

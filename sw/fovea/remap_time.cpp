@@ -17,9 +17,7 @@ constexpr Picoseconds kAhead = kPsPerUs;
 }  // namespace
 
 RemapTime::RemapTime(board::Board& board) : board_(board) {
-  const auto others = board.dm365.gpio.on_output;
-  board.dm365.gpio.on_output = [this, others](unsigned bank, std::uint32_t out, Picoseconds at) {
-    others(bank, out, at);
+  pins_ = board.dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds) {
     if (bank != PHASE_BANK) return;
     const board::Phase phase = board::phase_of(out);
     if (phase == board::Phase::kRemapStart) reached(true);
@@ -28,7 +26,7 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
       begun_.reset();
       given_away(kernel_time(), false);
     }
-  };
+  });
 }
 
 void RemapTime::reached(bool begins) {

@@ -22,10 +22,16 @@ struct RegisterLogTest : testing::Test {
   Bank one, two;
   RegisterObserver* seen_one = nullptr;
   RegisterObserver* seen_two = nullptr;
+  static auto seen_by(RegisterObserver*& one) {
+    return [&one](RegisterObserver& o) {
+      one = &o;
+      return Subscription([&one] { one = nullptr; });
+    };
+  }
   Picoseconds now = 0;
   Master master = Master::kArmD;
-  RegisterLog log{{{"one", &one, nullptr, [this](RegisterObserver* o) { seen_one = o; }},
-                   {"two", &two, nullptr, [this](RegisterObserver* o) { seen_two = o; }}},
+  RegisterLog log{{{"one", &one, nullptr, seen_by(seen_one)},
+                   {"two", &two, nullptr, seen_by(seen_two)}},
                   {[this] { return now += 1'000; }, [this] { return master; },
                    [] { return 0x8000u; }, [](std::uint32_t) { return std::string("main+0x4"); }}};
   void access(std::uint32_t offset, unsigned bytes, bool write, std::uint32_t value,

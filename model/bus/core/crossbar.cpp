@@ -67,8 +67,8 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.in_path.slave = static_cast<std::uint8_t>(slave);
-  if (observer_) [[unlikely]]
-    observer_->submitted(request, slave == Slave::kDdr);
+  if (observed()) [[unlikely]]
+    report_request(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
   SlaveState& s = slaves_[request.in_path.slave];
@@ -90,6 +90,15 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   next_edge_ = edge;
   next_port_ = static_cast<std::uint8_t>(index(request.master));
   next_ = scr_.edge(edge);
+}
+
+[[gnu::noinline]] void Crossbar::report_request(const MemRequest& r, bool to_sdram) {
+  observers_.each([&](MemObserver* o) { o->submitted(r, to_sdram); });
+}
+
+[[gnu::noinline]] void Crossbar::report_outcome(const MemRequest& r) {
+  const bool sdram = r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr);
+  observers_.each([&](MemObserver* o) { sdram ? o->responded(r) : o->register_done(r); });
 }
 
 /// Of the ports in `set` the one of the highest priority, then the next one after the last winner.
@@ -273,8 +282,8 @@ void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) 
     slaves_[request.in_path.slave].open_to = ~0u;
     plan();
   }
-  if (observer_) [[unlikely]]
-    ddr ? observer_->responded(request) : observer_->register_done(request);
+  if (observed()) [[unlikely]]
+    report_outcome(request);
 }
 
 }  // namespace fovea::bus
