@@ -22,7 +22,7 @@ struct RegisterLogTest : testing::Test {
   Bank one, two;
   RegisterObserver* seen_one = nullptr;
   RegisterObserver* seen_two = nullptr;
-  static auto seen_by(RegisterObserver*& one) {
+  static std::function<Subscription(RegisterObserver&)> seen_by(RegisterObserver*& one) {
     return [&one](RegisterObserver& o) {
       one = &o;
       return Subscription([&one] { one = nullptr; });

@@ -84,7 +84,7 @@ cpu::WakeEvent expected_event(const BusTarget& block) {
 }
 
 TEST(Platform, EachInterruptIsCountedAsItsBlock) {
-  TestBoard t({{"engine", "tlm"}});
+  TestBoard t(Settings{{"engine", "tlm"}});
   const Dm365& chip = t.board->dm365;
   unsigned sources = 0;
   for (std::size_t k = 0; k < chip.placed.size(); ++k) {
