@@ -32,6 +32,7 @@ void MemorySystem::submit(MemRequest& r) {
   r.no_side_effects &= trusting_;
   if (bypass_) [[unlikely]] {
     undecided_ += !r.no_side_effects;
+    r.in_path.priority = crossbar_.priority(r.master);
     return send_directly(r, r.issued);
   }
   const Slave slave = slave_of(r);

@@ -54,6 +54,7 @@ class Crossbar {
   void set_clock(Frequency scr, Picoseconds at);
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
+  std::uint8_t priority(Master m) const { return ports_[index(m)].priority; }
 
   /// Adds an observer of all requests, which must outlive the subscription.
   Subscription observe(MemObserver& observer) { return observers_.add(&observer); }
