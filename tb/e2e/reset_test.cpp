@@ -124,10 +124,14 @@ TEST_P(EachKindOnEachBoard, EveryRegisterReadsItsResetValue) {
   EXPECT_EQ(blocks.contains("cpld"), !GetParam().keys.empty());
   c.write_all();
   std::size_t changed = 0;
-  for (const auto& [name, value] : c.all()) changed += value != at_start.at(name);
+  const auto written = c.all();
+  for (const auto& [name, value] : written) changed += value != at_start.at(name);
   EXPECT_GT(changed, 250u);
   c.reset(GetParam().kind);
   auto expected = at_start;
+  if (GetParam().kind == ResetKind::kWatchdog)  // it does not leave the chip (decision 0015)
+    for (const auto& [name, value] : written)
+      if (name.starts_with("cpld.")) expected[name] = value;
   expected["pll1.RSTYPE"] = expected["pll2.RSTYPE"] =
       GetParam().kind == ResetKind::kPowerOn ? 1 : GetParam().kind == ResetKind::kWarm ? 2 : 4;
   for (const auto& [name, value] : c.all()) EXPECT_EQ(value, expected[name]) << name;

@@ -79,7 +79,7 @@ struct Chip : sync::MemorySystem {
 std::map<std::string, StatBase::Value> values(const Chip& chip) {
   std::map<std::string, StatBase::Value> out;
   const auto add = [&](const StatGroup& g) {
-    for (const StatBase* s : g.stats()) out[g.prefix() + "." + s->name()] = s->value();
+    for (const StatBase* s : g.stats()) out[s->name()] = s->value();
   };
   for (const StatGroup* g : chip.scr.statistics()) add(*g);
   add(chip.waits);
