@@ -78,11 +78,11 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     uart_.push_back(static_cast<char>(byte));
     if (on_uart) on_uart(byte);
   };
-  dm365.gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds at) {
+  pins_ = dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank != PHASE_BANK) return;
     log.pins(out, at);
     if (on_phase) on_phase(log.phase(), at);
-  };
+  });
   dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
     if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
   };
@@ -156,7 +156,7 @@ void Board::latched(const video::Osd::Latch& latch) {
   if (latch.f) return;  // frames begin with the first field
   if (shows && !window_start_ && !opening_) {
     opening_ = true;
-    dm365.end_of_instant.at(kernel_time(), kMasterCount, [this] {
+    dm365.end_of_instant.at(kernel_time(), InstantRank::kObservers, [this] {
       dm365.scr.settle();
       dm365.ddr.settle(kernel_time());
       window_start_ = whole_until_ = kernel_time();
@@ -176,7 +176,7 @@ void Board::measure_whole_run() {
 
 void Board::close_window(Picoseconds at) {
   if (window_end_) return;
-  dm365.end_of_instant.at(at, kMasterCount, [this] { close_window_now(); });
+  dm365.end_of_instant.at(at, InstantRank::kObservers, [this] { close_window_now(); });
 }
 
 void Board::close_window_now() {

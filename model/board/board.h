@@ -171,6 +171,7 @@ class Board : public sc_core::sc_module {
   std::vector<ChipReset> resets_;
   std::vector<LoadImage> boot_images_;
   std::optional<Picoseconds> window_start_, window_end_;
+  Subscription pins_;
   Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
   FrameSums old_;            ///< of what the log has forgotten
 };

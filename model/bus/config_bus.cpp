@@ -21,6 +21,7 @@ struct ConfigBus::Block : tlm::tlm_bw_transport_if<> {
     return tlm::TLM_ACCEPTED;
   }
   void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
+  bool has(std::uint32_t address) const { return address >= base && address - base < size; }
 };
 
 ConfigBus::ConfigBus(sc_core::sc_module_name name, const ConfigBusParams& params,
@@ -44,19 +45,15 @@ tlm::tlm_initiator_socket<32>& ConfigBus::to(const std::string& name) {
   FOVEA_CHECK(false, "no register block named " + name);
 }
 
-const ConfigBus::Block* ConfigBus::find(std::uint64_t address) const {
+ConfigBus::Block* ConfigBus::find(std::uint32_t address) {
   for (const auto& b : blocks_)
-    if (address >= b->base && address - b->base < b->size) return b.get();
+    if (b->has(address)) return b.get();
   return nullptr;
 }
 
-Picoseconds ConfigBus::latency(std::uint32_t address) const {
-  const Block* b = find(address);
+Picoseconds ConfigBus::latency(const Block* b) const {
   return b && b->speed == Speed::kSlow ? params_.slow_latency() : params_.fast_latency();
 }
-
-/// A burst to nowhere is one bus error.
-bool ConfigBus::divided(const MemRequest& r) const { return r.bytes > 4 && find(r.address); }
 
 namespace {
 /// Bytes of the access at `address`, of which `left` are wanted: a word, or what is aligned.
@@ -66,8 +63,7 @@ unsigned access_bytes(std::uint32_t address, unsigned left) {
   return bytes;
 }
 
-unsigned accesses(const MemRequest& r, bool divided) {
-  if (!divided) return 1;
+unsigned accesses(const MemRequest& r) {
   unsigned n = 0;
   for (unsigned done = 0; done < r.bytes; ++n) done += access_bytes(r.address + done, r.bytes - done);
   return n;
@@ -80,12 +76,15 @@ tlm::tlm_sync_enum ConfigBus::nb_transport_fw(MemRequest& r, MemPhase& phase,
   // Counted at the request, as the crossbar does, so that both sums agree at any instant.
   ++(r.write ? stats.writes : stats.reads);
   (r.write ? stats.write_bytes : stats.read_bytes) += r.bytes;
-  Picoseconds& free = free_[index(r.master)];
-  const Picoseconds start = std::max(Picoseconds{kernel_time() + delay.value()}, free);
-  const Picoseconds one = latency(r.address);
-  free = start + one * accesses(r, divided(r));
+  Port& port = ports_[index(r.master)];
+  const Picoseconds start = std::max(Picoseconds{kernel_time() + delay.value()}, port.free);
+  Block* const block = find(r.address);
+  const bool divided = r.bytes > 4 && block;  // a burst to nowhere is one bus error
+  const Picoseconds one = latency(block);
+  port.free = start + one * (divided ? accesses(r) : 1u);
   r.error = false;
-  end_of_instant_.at(start + one, static_cast<unsigned>(index(r.master)), [this, &r] { access(r, 0); });
+  port.under_way.push_back({&r, block, divided, 0});
+  end_of_instant_.at(start + one, instant_rank(r.master), [this, &port] { access(port); });
   return tlm::TLM_UPDATED;
 }
 
@@ -99,35 +98,37 @@ void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t 
   gp.set_streaming_width(bytes);
 }
 
-/// The access at byte `offset` of the request, at its time. An access of a single request may be
+/// The next access of the port's oldest request, at its time. An access of a single request may be
 /// unaligned or of 3 bytes: the block says what it thinks of that.
-void ConfigBus::access(MemRequest& r, unsigned offset) {
+void ConfigBus::access(Port& port) {
+  UnderWay& next = port.under_way.front();
+  MemRequest& r = *next.request;
   const unsigned bytes =
-      divided(r) ? access_bytes(r.address + offset, r.bytes - offset) : r.bytes;
+      next.divided ? access_bytes(r.address + next.offset, r.bytes - next.offset) : r.bytes;
   accessing_ = r.master;
-  if (!in_reset_ && !access_word(r, offset, bytes)) r.error = true;
-  if (offset + bytes < r.bytes) {
-    end_of_instant_.at(kernel_time() + latency(r.address), static_cast<unsigned>(index(r.master)),
-                       [this, &r, next = offset + bytes] { access(r, next); });
-    return;
-  }
+  if (!in_reset_ && !access_word(next, bytes)) r.error = true;
+  next.offset += bytes;
+  if (next.offset < r.bytes)
+    return end_of_instant_.at(kernel_time() + latency(next.block), instant_rank(r.master),
+                              [this, &port] { access(port); });
+  port.under_way.pop_front();
   MemPhase phase = MemPhase::kResponse;
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
   socket->nb_transport_bw(r, phase, delay);
 }
 
-/// False: a bus error.
-bool ConfigBus::access_word(MemRequest& r, unsigned offset, unsigned bytes) {
-  const std::uint32_t address = r.address + offset;
-  const Block* b = find(address);
+/// False: a bus error. The block was found at the request; a burst may go beyond its end.
+bool ConfigBus::access_word(const UnderWay& next, unsigned bytes) {
+  const std::uint32_t address = next.request->address + next.offset;
+  Block* const b = next.block && next.block->has(address) ? next.block : find(address);
   if (!b) {
     bus_error(address);
     return false;
   }
   tlm::tlm_generic_payload gp;
-  fill(gp, r, b->base, offset, bytes);
+  fill(gp, *next.request, b->base, next.offset, bytes);
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-  const_cast<Block*>(b)->initiator->b_transport(gp, delay);
+  b->initiator->b_transport(gp, delay);
   if (gp.get_response_status() == tlm::TLM_ADDRESS_ERROR_RESPONSE) bus_error(address);
   return !gp.is_response_error();
 }
@@ -145,11 +146,11 @@ bool ConfigBus::access_word(MemRequest& r, unsigned offset, unsigned bytes) {
 }
 
 unsigned ConfigBus::transport_dbg(MemRequest& r) {
-  const Block* b = find(r.address);
+  Block* const b = find(r.address);
   if (!b) return 0;
   tlm::tlm_generic_payload gp;
   fill(gp, r, b->base, 0, r.bytes);
-  return const_cast<Block*>(b)->initiator->transport_dbg(gp);
+  return b->initiator->transport_dbg(gp);
 }
 
 }  // namespace fovea::bus

@@ -1,6 +1,7 @@
 // The configuration bus: register accesses at their exact time.
 #pragma once
 #include <array>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -82,11 +83,21 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
 
  private:
   struct Block;
-  const Block* find(std::uint64_t address) const;
-  Picoseconds latency(std::uint32_t address) const;
-  bool divided(const MemRequest& r) const;
-  void access(MemRequest& r, unsigned offset);
-  bool access_word(MemRequest& r, unsigned offset, unsigned bytes);
+  /// A request between its arrival and its answer.
+  struct UnderWay {
+    MemRequest* request;
+    Block* block;  // at its address; null: none
+    bool divided;
+    unsigned offset;  // of the next access
+  };
+  struct Port {
+    Picoseconds free = 0;  // when its latest request ends
+    std::deque<UnderWay> under_way;  // in order
+  };
+  Block* find(std::uint32_t address);
+  Picoseconds latency(const Block* block) const;
+  void access(Port& port);
+  bool access_word(const UnderWay& next, unsigned bytes);
   void bus_error(std::uint32_t address);
   static void fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t base, unsigned offset,
                    unsigned bytes);
@@ -95,7 +106,7 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   EndOfInstant& end_of_instant_;
   Master accessing_ = Master::kArmD;
   bool in_reset_ = false;
-  std::array<Picoseconds, kMasterCount> free_{};  // by master: when its latest request ends
+  std::array<Port, kMasterCount> ports_;  // by master
   std::vector<std::unique_ptr<Block>> blocks_;
 };
 

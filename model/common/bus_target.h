@@ -8,6 +8,7 @@
 
 #include "model/common/block.h"
 #include "model/common/check.h"
+#include "model/common/observers.h"
 #include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
 
@@ -38,8 +39,8 @@ class BusTarget : public sc_core::sc_module, public Block {
     bank_.reset();
     on_reset(kind);
   }
-  /// Reports every access over the bus to `observer`; null removes the observer.
-  void observe(RegisterObserver* observer) { observer_ = observer; }
+  /// Adds an observer of every access over the bus, which must outlive the subscription.
+  Subscription observe(RegisterObserver& observer) { return observers_.add(&observer); }
 
  protected:
   BusTarget(sc_core::sc_module_name name, RegBank& regs) : sc_module(name), bank_(regs) {
@@ -60,26 +61,26 @@ class BusTarget : public sc_core::sc_module, public Block {
   void b_transport(tlm::tlm_generic_payload& gp, sc_core::sc_time&) {
     const auto offset = static_cast<std::uint32_t>(gp.get_address());
     const unsigned bytes = gp.get_data_length();
+    Reg* const r = bank_.register_at(offset);
     std::uint32_t word = 0;
     if (!clocked()) {
       Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated");
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
-      if (observer_) [[unlikely]]
-        observer_->accessed({&bank_, offset, bytes, gp.is_write(), true, word});
+      if (!observers_.empty()) [[unlikely]]
+        report({&bank_, r, offset, bytes, gp.is_write(), true, word});
       gp.set_response_status(tlm::TLM_OK_RESPONSE);
       return;
     }
     Access a;
     if (gp.is_write()) {
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
-      const Reg* const r = bank_.register_at(offset);
       if (r && ((word << 8 * (offset & 3u)) & r->reserved())) reserved_written(*r);
-      a = bank_.write(offset, bytes, word);
+      a = RegBank::write(r, offset, bytes, word);
       if (a == Access::kOk && r->limited()) [[unlikely]]
         warn_not_modelled(*r, offset, bytes);
     } else {
-      a = bank_.read(offset, bytes, word);
+      a = RegBank::read(r, offset, bytes, word);
       std::memcpy(gp.get_data_ptr(), &word, bytes <= 4 ? bytes : 4);
     }
     if (a == Access::kNoRegister && !holes_answer()) {
@@ -95,9 +96,13 @@ class BusTarget : public sc_core::sc_module, public Block {
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       a = Access::kOk;
     }
-    if (observer_ && a == Access::kOk) [[unlikely]]
-      observer_->accessed({&bank_, offset, bytes, gp.is_write(), false, word});
+    if (!observers_.empty() && a == Access::kOk) [[unlikely]]
+      report({&bank_, r, offset, bytes, gp.is_write(), false, word});
     gp.set_response_status(a == Access::kOk ? tlm::TLM_OK_RESPONSE : tlm::TLM_BURST_ERROR_RESPONSE);
+  }
+
+  [[gnu::noinline]] void report(const RegisterAccess& access) {
+    observers_.each([&](RegisterObserver* o) { o->accessed(access); });
   }
 
   [[gnu::noinline]] void reserved_written(const Reg& r) const {
@@ -124,7 +129,7 @@ class BusTarget : public sc_core::sc_module, public Block {
   }
 
   RegBank& bank_;
-  RegisterObserver* observer_ = nullptr;
+  Observers<RegisterObserver*> observers_;
 };
 
 }  // namespace fovea

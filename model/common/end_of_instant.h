@@ -6,14 +6,22 @@
 #include <systemc>
 #include <utility>
 
+#include "model/common/masters.h"
 #include "model/common/timer.h"
 
 namespace fovea {
 
-/// Runs callbacks at a time T after all other activity of T, in the order given by `order`, then by
-/// request. One such object serves a whole simulation: two would wait for each other. Register
-/// accesses and the edges of the measured window use it, so that they see the same state whatever
-/// the order of processes within T.
+/// The order of acts of one instant: first those of the masters, by their numbers.
+enum class InstantRank : std::uint8_t {
+  kObservers = kMasterCount,  ///< edges of the measured window, debuggers, and who else looks at the instant
+  kReset,                     ///< the chip's reset begins or ends
+};
+constexpr InstantRank instant_rank(Master m) { return static_cast<InstantRank>(index(m)); }
+
+/// Runs callbacks at a time T after all other activity of T, by rank, then in the order of the calls.
+/// One such object serves a whole simulation: two would wait for each other. Register accesses and the
+/// edges of the measured window use it, so that they see the same state whatever the order of processes
+/// within T.
 class EndOfInstant : public sc_core::sc_module {
  public:
   explicit EndOfInstant(sc_core::sc_module_name name) : sc_module(name) {
@@ -24,15 +32,15 @@ class EndOfInstant : public sc_core::sc_module {
   }
 
   /// `at` >= now.
-  void at(Picoseconds at, unsigned order, std::function<void()> f) {
-    queue_.emplace(Key{at, order, ++serial_}, std::move(f));
+  void at(Picoseconds at, InstantRank rank, std::function<void()> f) {
+    queue_.emplace(Key{at, rank, ++serial_}, std::move(f));
     due_.at(queue_.begin()->first.at);
   }
 
  private:
   struct Key {
     Picoseconds at;
-    unsigned order;
+    InstantRank rank;
     std::uint64_t serial;
     auto operator<=>(const Key&) const = default;
   };

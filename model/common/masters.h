@@ -7,9 +7,10 @@
 
 namespace fovea {
 
-/// A master's number. Equal priorities take turns in this order, and bus traces hold the numbers, so a
-/// new master goes to the end. All else about a master is its row in kMasters; no other code computes
-/// with these numbers.
+/// A master's number. Equal priorities take turns in this order (turns_after), acts of one instant go
+/// by it (end_of_instant.h), culprits of waits begin with it (waits.h), and bus traces hold it, so a new
+/// master goes to the end. Everywhere else it is an index or a bit of a set. All else about a master is
+/// its row in kMasters.
 enum class Master : std::uint8_t {
   kArmI, kArmD,
   kEdmaTc0Read, kEdmaTc1Read, kEdmaTc2Read, kEdmaTc3Read,
@@ -20,6 +21,10 @@ enum class Master : std::uint8_t {
 };
 inline constexpr std::size_t kMasterCount = static_cast<std::size_t>(Master::kCount);
 constexpr std::size_t index(Master m) { return static_cast<std::size_t>(m); }
+/// Among masters of equal priority: how many have their turn before this one's, after the turn of `last`.
+constexpr unsigned turns_after(std::size_t last, std::size_t master) {
+  return static_cast<unsigned>((master + kMasterCount - last - 1) % kMasterCount);
+}
 
 /// What lies between a master and the crossbar; decides the defaults of the port's parameters.
 enum class Bridge : std::uint8_t {
@@ -54,6 +59,7 @@ struct MasterInfo {
   Master id{};
   std::string_view name;        ///< of the port, in traces and debugger output
   std::string_view statistics;  ///< in statistics and parameters; two sides of a block share it
+  std::string_view who;         ///< for people, "while ... is served"; the same for parts of one block
   Bridge bridge = Bridge::kDma;
   PrioritySource priority = PrioritySource::kParameter;
   unsigned unit = 0;              ///< number within its kind, such as that of a transfer controller
@@ -65,6 +71,8 @@ struct MasterInfo {
   bool on_chip = true;
   /// A synthetic load may use it (`load.port`), alone or together with the block that drives it.
   bool spare = false;
+  /// Synthetic traffic for experiments, which moves nothing for the program.
+  bool synthetic = false;
 };
 
 /// More than any port queues (bus/core/crossbar.h, trace::kMaxWindow).
@@ -99,7 +107,7 @@ struct MasterTable {
     for (std::size_t i = 0; i < N; ++i) {
       const MasterInfo& r = rows[i];
       if (index(r.id) != i) return "a row is missing or out of order";
-      if (r.name.empty() || r.statistics.empty()) return "a master without a name";
+      if (r.name.empty() || r.statistics.empty() || r.who.empty()) return "a master without a name";
       if (r.most_outstanding == 0 || r.most_outstanding > kMostOutstanding)
         return "a master with no requests, or with more than a port queues";
       if (r.on_chip && r.priority == PrioritySource::kParameter)
@@ -129,21 +137,21 @@ struct MasterTable {
 };
 
 namespace masters {
-constexpr MasterInfo arm(Master id, std::string_view name) {
-  return {.id = id, .name = name, .statistics = name, .bridge = Bridge::kCore,
+constexpr MasterInfo arm(Master id, std::string_view name, std::string_view who) {
+  return {.id = id, .name = name, .statistics = name, .who = who, .bridge = Bridge::kCore,
           .priority = PrioritySource::kArm, .most_outstanding = 1, .pace = Pace::kCore};
 }
 constexpr MasterInfo edma(Master id, std::string_view name, std::string_view statistics,
                           unsigned controller, Side side, Master partner) {
-  return {.id = id, .name = name, .statistics = statistics,
+  return {.id = id, .name = name, .statistics = statistics, .who = "the EDMA",
           .priority = PrioritySource::kQueue, .unit = controller, .most_outstanding = 16,
           .side = side, .partner = partner, .spare = true};
 }
 }  // namespace masters
 
 inline constexpr MasterTable<kMasterCount> kMasters{{
-    masters::arm(Master::kArmI, "arm_i"),
-    masters::arm(Master::kArmD, "arm_d"),
+    masters::arm(Master::kArmI, "arm_i", "the core's fetches"),
+    masters::arm(Master::kArmD, "arm_d", "the core's data"),
     masters::edma(Master::kEdmaTc0Read, "edma_tc0_read", "edma_tc0", 0, Side::kReads,
                   Master::kEdmaTc0Write),
     masters::edma(Master::kEdmaTc1Read, "edma_tc1_read", "edma_tc1", 1, Side::kReads,
@@ -152,16 +160,19 @@ inline constexpr MasterTable<kMasterCount> kMasters{{
                   Master::kEdmaTc2Write),
     masters::edma(Master::kEdmaTc3Read, "edma_tc3_read", "edma_tc3", 3, Side::kReads,
                   Master::kEdmaTc3Write),
-    {.id = Master::kVpfe, .name = "vpfe", .statistics = "vpfe", .bridge = Bridge::kVideo,
-     .priority = PrioritySource::kVideoWrite, .most_outstanding = 32, .pace = Pace::kSampled},
-    {.id = Master::kVpbe, .name = "vpbe", .statistics = "vpbe", .bridge = Bridge::kVideo,
-     .priority = PrioritySource::kVideoRead, .most_outstanding = 32, .pace = Pace::kLines},
+    {.id = Master::kVpfe, .name = "vpfe", .statistics = "vpfe", .who = "the camera",
+     .bridge = Bridge::kVideo, .priority = PrioritySource::kVideoWrite, .most_outstanding = 32,
+     .pace = Pace::kSampled},
+    {.id = Master::kVpbe, .name = "vpbe", .statistics = "vpbe", .who = "the display",
+     .bridge = Bridge::kVideo, .priority = PrioritySource::kVideoRead, .most_outstanding = 32,
+     .pace = Pace::kLines},
     // No part of the chip: it has the priority of MJCP, the imaging coprocessor (assumed).
     {.id = Master::kRemapEngine, .name = "remap_engine", .statistics = "remap_engine",
-     .priority = PrioritySource::kImcop, .most_outstanding = 16, .on_chip = false, .spare = true},
+     .who = "the remap engine", .priority = PrioritySource::kImcop, .most_outstanding = 16,
+     .on_chip = false, .spare = true},
     {.id = Master::kLoad, .name = "load", .statistics = "load",
-     .priority = PrioritySource::kParameter, .most_outstanding = 16, .on_chip = false,
-     .spare = true},
+     .who = "the load generator", .priority = PrioritySource::kParameter, .most_outstanding = 16,
+     .on_chip = false, .spare = true, .synthetic = true},
     masters::edma(Master::kEdmaTc0Write, "edma_tc0_write", "edma_tc0", 0, Side::kWrites,
                   Master::kEdmaTc0Read),
     masters::edma(Master::kEdmaTc1Write, "edma_tc1_write", "edma_tc1", 1, Side::kWrites,
@@ -174,6 +185,19 @@ inline constexpr MasterTable<kMasterCount> kMasters{{
 static_assert(kMasters.defect() == nullptr, "see MasterTable::defect");
 
 constexpr const MasterInfo& master_info(Master m) { return kMasters.of(m); }
+
+/// The ports of the core, one bit each.
+inline constexpr std::uint32_t kCorePorts = [] {
+  std::uint32_t set = 0;
+  for (const MasterInfo& r : kMasters.rows)
+    if (r.bridge == Bridge::kCore) set |= std::uint32_t{1} << index(r.id);
+  return set;
+}();
+constexpr bool is_core(Master m) { return kCorePorts >> index(m) & 1u; }
+/// A DMA master that moves data for the program, beside the core.
+constexpr bool moves_data(const MasterInfo& row) {
+  return row.bridge == Bridge::kDma && !row.synthetic;
+}
 
 /// Name of each port.
 inline constexpr std::array<std::string_view, kMasterCount> kMasterNames = [] {

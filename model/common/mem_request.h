@@ -20,7 +20,9 @@ struct PathState {
 };
 
 /// Owned by the master, which keeps it and the data alive until the outcome. Knows no SystemC: crossbar
-/// and controller pass it by reference. Its halves: what the master sets and reads, and `in_path`.
+/// and controller pass it by reference. Its halves: what the master sets and reads, and `in_path`. Of
+/// the master's half the path changes the outcome, clears `no_side_effects` where it does not hold, and
+/// makes `address` an offset while the request is at internal RAM.
 struct MemRequest {
   // What the master asks for.
   std::uint32_t address = 0;

@@ -39,15 +39,24 @@ class [[nodiscard]] Subscription {
 template <class T>
 class Observers {
  public:
+  /// `changed` is called when the first observer has come, and when the last one has gone.
+  explicit Observers(std::function<void()> changed = {}) : changed_(std::move(changed)) {
+    list_->owner = this;
+  }
+  ~Observers() { list_->owner = nullptr; }
+  Observers(const Observers&) = delete;
+  Observers& operator=(const Observers&) = delete;
+
   Subscription add(T observer) {
     const std::uint64_t id = ++list_->last_id;
     list_->entries.push_back({id, std::move(observer)});
-    ++list_->count;
+    list_->count_is(list_->count + 1);
     return Subscription([list = std::weak_ptr<List>(list_), id] {
       if (const auto l = list.lock()) l->remove(id);
     });
   }
-  bool empty() const { return list_->count == 0; }
+  /// A look at one byte of this object, so that hot paths may ask.
+  bool empty() const { return empty_; }
   /// Calls f(observer) for each observer until a call returns true.
   /// @return true if one did
   template <class F>
@@ -82,6 +91,7 @@ class Observers {
     T observer;
   };
   struct List {
+    Observers* owner;  // null: it has ended
     std::vector<Entry> entries;
     std::size_t count = 0;
     unsigned rounds = 0;  // calls of any() that are under way
@@ -91,13 +101,22 @@ class Observers {
                                   [id](const Entry& entry) { return entry.id == id; });
       if (e == entries.end()) return;
       e->id = 0;
-      --count;
       if (rounds == 0) tidy();
+      count_is(count - 1);
+    }
+    void count_is(std::size_t n) {
+      count = n;
+      if (owner && owner->empty_ != (n == 0)) {
+        owner->empty_ = n == 0;
+        if (owner->changed_) owner->changed_();
+      }
     }
     void tidy() {
       std::erase_if(entries, [](const Entry& entry) { return entry.id == 0; });
     }
   };
+  bool empty_ = true;
+  std::function<void()> changed_;
   std::shared_ptr<List> list_ = std::make_shared<List>();
 };
 

@@ -4,10 +4,12 @@
 
 namespace fovea {
 
+class Reg;
 class RegBank;
 
 struct RegisterAccess {
   const RegBank* bank = nullptr;
+  const Reg* reg = nullptr;  ///< null: no register at the offset
   std::uint32_t offset = 0;
   unsigned bytes = 0;
   bool write = false;

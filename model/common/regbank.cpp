@@ -86,14 +86,8 @@ void RegBank::add(Reg& reg) {
   regs_.push_back(&reg);
 }
 
-Reg* RegBank::find(std::uint32_t offset) const {
-  const std::size_t word = offset / 4;
-  return word < by_word_.size() ? by_word_[word] : nullptr;
-}
-
-Access RegBank::read(std::uint32_t offset, unsigned bytes, std::uint32_t& value) {
+Access RegBank::read(Reg* r, std::uint32_t offset, unsigned bytes, std::uint32_t& value) {
   if (bytes > 4 || bytes == 3 || bytes == 0 || offset % bytes) return Access::kMisaligned;
-  Reg* r = find(offset);
   if (!r) return Access::kNoRegister;
   if (r->on_read_) r->on_read_();
   const std::uint32_t lanes = bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u;
@@ -101,9 +95,8 @@ Access RegBank::read(std::uint32_t offset, unsigned bytes, std::uint32_t& value)
   return Access::kOk;
 }
 
-Access RegBank::write(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
+Access RegBank::write(Reg* r, std::uint32_t offset, unsigned bytes, std::uint32_t value) {
   if (bytes > 4 || bytes == 3 || bytes == 0 || offset % bytes) return Access::kMisaligned;
-  Reg* r = find(offset);
   if (!r) return Access::kNoRegister;
   const unsigned shift = 8 * (offset & 3u);
   const std::uint32_t lanes = (bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u) << shift;
@@ -116,7 +109,7 @@ Access RegBank::write(std::uint32_t offset, unsigned bytes, std::uint32_t value)
 }
 
 Access RegBank::peek(std::uint32_t offset, std::uint32_t& value) const {
-  const Reg* r = find(offset);
+  const Reg* r = register_at(offset);
   if (!r) return Access::kNoRegister;
   value = r->value_ & ~r->wo_;
   return Access::kOk;

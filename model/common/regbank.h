@@ -119,20 +119,33 @@ class RegBank : public Census<RegBank> {
   RegBank(const RegBank&) = delete;
   RegBank& operator=(const RegBank&) = delete;
 
-  Access read(std::uint32_t offset, unsigned bytes, std::uint32_t& value);
-  Access write(std::uint32_t offset, unsigned bytes, std::uint32_t value);
+  Access read(std::uint32_t offset, unsigned bytes, std::uint32_t& value) {
+    return read(register_at(offset), offset, bytes, value);
+  }
+  Access write(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
+    return write(register_at(offset), offset, bytes, value);
+  }
+  /// The same for a caller that has found the register already: `reg` is register_at(offset).
+  static Access read(Reg* reg, std::uint32_t offset, unsigned bytes, std::uint32_t& value);
+  static Access write(Reg* reg, std::uint32_t offset, unsigned bytes, std::uint32_t value);
   /// Reads a word without side effects, for debuggers and tests.
   Access peek(std::uint32_t offset, std::uint32_t& value) const;
   void reset();
   const std::string& name() const { return name_; }
   const std::vector<Reg*>& regs() const { return regs_; }
   /// The register at an offset in the block, or null.
-  const Reg* register_at(std::uint32_t offset) const { return find(offset); }
+  Reg* register_at(std::uint32_t offset) {
+    const std::size_t word = offset / 4;
+    return word < by_word_.size() ? by_word_[word] : nullptr;
+  }
+  const Reg* register_at(std::uint32_t offset) const {
+    const std::size_t word = offset / 4;
+    return word < by_word_.size() ? by_word_[word] : nullptr;
+  }
 
  private:
   friend class Reg;
   void add(Reg& reg);
-  Reg* find(std::uint32_t offset) const;
   std::string name_;
   std::vector<Reg*> regs_;
   std::vector<Reg*> by_word_;

@@ -26,12 +26,24 @@ inline constexpr std::size_t kCulprits = static_cast<std::size_t>(Culprit::kCoun
 constexpr Culprit culprit(Master m) { return static_cast<Culprit>(index(m)); }
 constexpr std::size_t index(Culprit c) { return static_cast<std::size_t>(c); }
 /// Names as they appear in statistics; masters have theirs.
-constexpr std::string_view culprit_name(Culprit c) {
-  constexpr std::string_view kNames[] = {"bridge",     "service", "row_miss",  "row_conflict",
-                                         "turnaround", "refresh", "power_down"};
-  static_assert(kMasterCount + std::size(kNames) == kCulprits);
-  return index(c) < kMasterCount ? kMasterNames[index(c)] : kNames[index(c) - kMasterCount];
-}
+inline constexpr std::array<std::string_view, kCulprits> kCulpritNames = [] {
+  std::array<std::string_view, kCulprits> names;
+  for (const MasterInfo& r : kMasters.rows) names[index(culprit(r.id))] = r.name;
+  names[index(Culprit::kBridge)] = "bridge";
+  names[index(Culprit::kService)] = "service";
+  names[index(Culprit::kRowMiss)] = "row_miss";
+  names[index(Culprit::kRowConflict)] = "row_conflict";
+  names[index(Culprit::kTurnaround)] = "turnaround";
+  names[index(Culprit::kRefresh)] = "refresh";
+  names[index(Culprit::kPowerDown)] = "power_down";
+  return names;
+}();
+static_assert([] {
+  for (const std::string_view name : kCulpritNames)
+    if (name.empty()) return false;
+  return true;
+}());
+constexpr std::string_view culprit_name(Culprit c) { return kCulpritNames[index(c)]; }
 
 /// In `ddr.<label>.wait.<direction>.<name>` taken already: no label of a master in a trace.
 constexpr bool is_culprit_name(std::string_view name) {

@@ -27,8 +27,8 @@ tlm::tlm_sync_enum TcmDma::nb_transport_fw(MemRequest& r, MemPhase& phase,
 
 void TcmDma::at(Picoseconds t) {
   const Picoseconds when = std::max(t, kernel_time());
-  const unsigned order = static_cast<unsigned>(index(queue_.front().request->master));
-  end_of_instant_.at(when, order, [this, plan = ++plan_] {
+  const InstantRank rank = instant_rank(queue_.front().request->master);
+  end_of_instant_.at(when, rank, [this, plan = ++plan_] {
     if (plan == plan_) act();
   });
 }

@@ -94,6 +94,7 @@ struct DdrCheck::Stream {
   bool used = false;  // before its first ACT the part holds nothing, however it is programmed
   bool in_reset = false;
   std::map<std::string, std::string> said;  // kind of warning: with the time of its first
+  Subscription listening;
 
   Stream(DdrController& c, const check::Part& of)
       : controller(c), programmed(rules({})), part(of) {
@@ -104,7 +105,7 @@ struct DdrCheck::Stream {
                              std::to_string(complaint.missing) + " clocks, at " +
                              seconds(controller.ddr_clock().edge(complaint.clock)));
     };
-    controller.set_command_hook(
+    listening = controller.observe_commands(
         [](void* self, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           auto& s = *static_cast<Stream*>(self);
           s.programmed.command(word(cmd), bank, row, clock);
@@ -118,7 +119,6 @@ struct DdrCheck::Stream {
         },
         this);
   }
-  ~Stream() { controller.set_command_hook(nullptr, this); }
 
   void begin_sheet() {
     sheet.emplace(part, Frequency(243'000'000), DdrConfig{}.timing.CL);

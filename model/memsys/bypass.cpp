@@ -8,8 +8,7 @@ MemRequest& Bypass::next() {
   unsigned best = 0, best_rank = ~0u;
   for (std::uint32_t set = masters_; set; set &= set - 1) {
     const auto m = static_cast<unsigned>(std::countr_zero(set));
-    const auto turn = static_cast<unsigned>((m + kMasterCount - last_ - 1) % kMasterCount);
-    const unsigned rank = waiting_[m].front()->in_path.priority * 64u + turn;
+    const unsigned rank = waiting_[m].front()->in_path.priority * 64u + turns_after(last_, m);
     if (rank < best_rank) best = m, best_rank = rank;
   }
   MemRequest& r = *waiting_[best].front();

@@ -23,8 +23,8 @@ MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrPa
 
 Slave MemorySystem::slave_of(const MemRequest& r) const {
   if (r.address >= map_.ddr_base) return Slave::kDdr;
-  const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
-  return !core && r.address - map_.ram_base < map_.ram_size ? Slave::kInternalRam : Slave::kConfig;
+  const bool in_ram = r.address - map_.ram_base < map_.ram_size;
+  return in_ram && !is_core(r.master) ? Slave::kInternalRam : Slave::kConfig;
 }
 
 void MemorySystem::submit(MemRequest& r) {
@@ -32,6 +32,7 @@ void MemorySystem::submit(MemRequest& r) {
   r.no_side_effects &= trusting_;
   if (bypass_) [[unlikely]] {
     undecided_ += !r.no_side_effects;
+    r.in_path.priority = crossbar_.priority(r.master);
     return send_directly(r, r.issued);
   }
   const Slave slave = slave_of(r);
@@ -121,7 +122,7 @@ inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
               "request outside the SDRAM");
   FOVEA_CHECK(controller_.running(), "request to a DDR controller without a clock");
   FOVEA_CHECK(!controller_.input_blocked(), "a request while the controller's input is taken");
-  if (arrivals_) arrivals_->arrived(r, at);
+  arrivals_.each([&](ArrivalObserver* o) { o->arrived(r, at); });
   const auto inside = offset & static_cast<std::uint32_t>(store_.size() - 1);
   return controller_.submit_inside(r, inside, at) ? Taken::kYes : Taken::kWaits;
 }

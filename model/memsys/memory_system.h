@@ -10,6 +10,7 @@
 #include "model/common/arrival_observer.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
+#include "model/common/observers.h"
 #include "model/contract/memory_map.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/ddr_controller.h"
@@ -81,15 +82,11 @@ class MemorySystem final {
   /// Open: requests inside the part go to the controller without a question.
   void set_open(bool open) {
     open_ = open;
-    direct_ = open && !arrivals_;
+    direct_ = open && arrivals_.empty();
   }
-  /// Sets the observer of the controller's input; null: none. While there is one, every request counts
-  /// as one with side effects, so that no agent works past an arrival that it has not seen.
-  void observe_arrivals(ArrivalObserver* observer) {
-    arrivals_ = observer;
-    trusting_ = !observer;
-    set_open(open_);
-  }
+  /// Adds an observer of the controller's input. While there is one, every request counts as one with
+  /// side effects, so that no agent works past an arrival that it has not seen.
+  Subscription observe_arrivals(ArrivalObserver& observer) { return arrivals_.add(&observer); }
   /// The controller's clocks or registers were changed: its next event may be another one.
   void controller_changed() { host_.rescheduled(); }
   /// Takes all events at or before `now`, and brings everything that needs none up to that time, so that
@@ -156,7 +153,10 @@ class MemorySystem final {
   AddressMap map_;
   MemoryHost& host_;
   SdramAdmission* admission_ = nullptr;
-  ArrivalObserver* arrivals_ = nullptr;
+  Observers<ArrivalObserver*> arrivals_{[this] {
+    trusting_ = arrivals_.empty();
+    set_open(open_);
+  }};
   bool open_ = true;
   bool direct_ = true;    // open and not observed
   bool trusting_ = true;  // requests without side effects are believed to have none

@@ -91,7 +91,7 @@ void Gpio::output_written(unsigned bank) {
   const std::uint32_t out = regs.banks[bank].out_data.get() & ~regs.banks[bank].dir.get();
   if (out == s.shown) return;
   s.shown = out;
-  if (on_output) on_output(bank, out, kernel_time());
+  outputs_.each([&](OutputObserver& observer) { observer(bank, out, kernel_time()); });
 }
 
 void Gpio::levels_changed(unsigned bank) {

@@ -34,9 +34,10 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
  public:
   SC_HAS_PROCESS(Gpio);
   sc_core::sc_vector<OptionalOut<bool>> irq{"irq", kGpioDirectIrqs};
-  /// Called with the levels that a bank drives after a change: OUT_DATA of the output pins, 0
-  /// elsewhere.
-  std::function<void(unsigned bank, std::uint32_t out, Picoseconds)> on_output;
+  using OutputObserver = std::function<void(unsigned bank, std::uint32_t out, Picoseconds)>;
+  /// The observer is called with the levels that a bank drives after a change: OUT_DATA of the output
+  /// pins, 0 elsewhere.
+  Subscription observe_outputs(OutputObserver observer) { return outputs_.add(std::move(observer)); }
 
   explicit Gpio(sc_core::sc_module_name name);
   /// Sets the level that the board drives on a pin. Before the simulation starts, this is no edge.
@@ -55,8 +56,9 @@ class Gpio : public WithRegs<GpioRegs>, public ClockedTarget {
     std::uint32_t driven = 0;  // levels driven by the board
     std::uint32_t last = 0;    // levels at the last call, for the detection of edges
     std::uint32_t rising = 0, falling = 0;
-    std::uint32_t shown = 0;  // value last passed to on_output
+    std::uint32_t shown = 0;  // value last passed to the observers
   };
+  Observers<OutputObserver> outputs_;
   std::array<State, kGpioBanks> state_;
   std::array<std::uint64_t, kGpioDirectIrqs> off_;  // tick at which the pulse ends
   std::uint32_t fired_ = 0;                         // pins 0 to 15 whose pulse begins now

@@ -294,12 +294,8 @@ void Dm365::watch_reset() {
     on_reset_request(timers[2]->reset_cause());
 }
 
-namespace {
-constexpr unsigned kAfterRegisters = static_cast<unsigned>(kMasterCount) + 1;
-}
-
 void Dm365::reset_chip(ResetKind kind) {
-  end_of_instant.at(kernel_time(), kAfterRegisters, [this, kind] { begin_reset(kind); });
+  end_of_instant.at(kernel_time(), InstantRank::kReset, [this, kind] { begin_reset(kind); });
 }
 
 void Dm365::begin_reset(ResetKind kind) {
@@ -308,14 +304,15 @@ void Dm365::begin_reset(ResetKind kind) {
   ++stats.resets;
   for (const Platform::Entry& e : platform.blocks()) e.block->reset(kind);
   if (!already)
-    end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters, [this] { end_reset(); });
+    end_of_instant.at(kernel_time() + params_.system.reset_time(), InstantRank::kReset,
+                      [this] { end_reset(); });
 }
 
 void Dm365::end_reset() {
   for (const Platform::Entry& e : platform.blocks())
     if (!e.block->idle())
-      return end_of_instant.at(kernel_time() + params_.system.reset_time(), kAfterRegisters,
-                      [this] { end_reset(); });
+      return end_of_instant.at(kernel_time() + params_.system.reset_time(), InstantRank::kReset,
+                               [this] { end_reset(); });
   const ResetKind kind = *std::exchange(reset_under_way_, std::nullopt);
   if (kind == ResetKind::kPowerOn) {
     internal_ram.fill(0);
@@ -345,7 +342,7 @@ void Dm365::wire_video() {
   venc.display(display);
 }
 
-std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
+Dm365::Recording Dm365::record_bus() {
   const auto ratio = static_cast<unsigned>(params_.cpu.ahb_ratio());
   std::vector<trace::BusRecorder::MasterSetup> masters;
   for (const Platform::Entry& e : platform.blocks())
@@ -376,9 +373,8 @@ std::unique_ptr<trace::BusRecorder> Dm365::make_recorder() {
         }
         return s;
       });
-  scr.crossbar().observe(recorder.get());
-  tap.attach(recorder.get());
-  return recorder;
+  trace::BusRecorder& to = *recorder;
+  return {std::move(recorder), scr.crossbar().observe(to), tap.attach(to)};
 }
 
 /// Drives the priorities that come from the system module, the EDMA and parameters; the video

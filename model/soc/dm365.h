@@ -16,6 +16,7 @@
 #include "model/bus/wait_stats.h"
 #include "model/common/block.h"
 #include "model/common/end_of_instant.h"
+#include "model/contract/memory_map.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
 #include "model/dma/edma_cc.h"
@@ -82,7 +83,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   sc_core::sc_port<video::DisplayLineIf> display{"display"};
 
   /// The 32 KB internal RAM behind both TCM ports.
-  std::array<std::uint8_t, 32 * 1024> internal_ram{};
+  std::array<std::uint8_t, INTERNAL_RAM_BYTES> internal_ram{};
 
   EndOfInstant end_of_instant{"end_of_instant"};
   cpu::Arm926 arm;
@@ -143,7 +144,13 @@ class Dm365 : public sc_core::sc_module, public Block {
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
   /// chip.
-  std::unique_ptr<trace::BusRecorder> make_recorder();
+  /// A recorder of the bus traffic, which gets requests and interrupts as long as it lives.
+  struct Recording {
+    std::unique_ptr<trace::BusRecorder> recorder;
+    Subscription requests, interrupts;
+    trace::BusRecorder* operator->() const { return recorder.get(); }
+  };
+  Recording record_bus();
 
   /// Ports that a synthetic load shares with a block of the chip.
   std::vector<std::unique_ptr<bus::SharedPort>> shared_ports;

@@ -31,35 +31,36 @@ const Placements& dm365_blocks() {
   constexpr auto kAux = BlockClock::kAux;
   constexpr auto kEdma = BlockClock::kEdma;
   constexpr bool kSecond = true;
+  using enum cpu::WakeEvent;
   static const Placements rows = {
       place<mem::DdrModule>({"ddr", "DDR2/mDDR controller", 0x2000'0000, 0x8000, kFast, kNone,
                              periph::kLpscDdr}),
       place<dma::EdmaCc>({"edma", "EDMA3 channel controller", 0x01C0'0000, 0x1'0000, kFast, kEdma,
-                          periph::kLpscTpcc, {16, {17, kSecond}}}),
+                          periph::kLpscTpcc, {16, {17, kSecond}}, kDma}),
       place<dma::EdmaTc>({"edma_tc0", "EDMA3 transfer controller 0", 0x01C1'0000, 0x400, kFast, kEdma,
-                          periph::kLpscTptc0, {{18, kSecond}}}, 0u),
+                          periph::kLpscTptc0, {{18, kSecond}}, kDma}, 0u),
       place<dma::EdmaTc>({"edma_tc1", "EDMA3 transfer controller 1", 0x01C1'0400, 0x400, kFast, kEdma,
-                          periph::kLpscTptc1, {{19, kSecond}}}, 1u),
+                          periph::kLpscTptc1, {{19, kSecond}}, kDma}, 1u),
       place<dma::EdmaTc>({"edma_tc2", "EDMA3 transfer controller 2", 0x01C1'0800, 0x400, kFast, kEdma,
-                          periph::kLpscTptc2, {{61, kSecond}}}, 2u),
+                          periph::kLpscTptc2, {{61, kSecond}}, kDma}, 2u),
       place<dma::EdmaTc>({"edma_tc3", "EDMA3 transfer controller 3", 0x01C1'0C00, 0x400, kFast, kEdma,
-                          periph::kLpscTptc3, {{62, kSecond}}}, 3u),
+                          periph::kLpscTptc3, {{62, kSecond}}, kDma}, 3u),
       place<periph::PllController>({"pll1", "PLL controller 1", 0x01C4'0800, 0x400}, "PLLC1", 9u),
       place<periph::PllController>({"pll2", "PLL controller 2", 0x01C4'0C00, 0x400}, "PLLC2", 5u),
       place<periph::Psc>({"psc", "power and sleep controller", 0x01C4'1000, 0x1000}),
       place<periph::SystemModule>({"system", "system module", 0x01C4'0000, 0x800}),
       place<periph::Aintc>({"aintc", "interrupt controller", 0x01C4'8000, 0x400}),
       place<Timer64>({"timer0", "TIMER0", 0x01C2'1400, 0x400, kSlow, kAux, periph::kLpscTimer0,
-                      {32, 33}}),
+                      {32, 33}, kTimer}),
       place<Timer64>({"timer1", "TIMER1", 0x01C2'1800, 0x400, kSlow, kAux, periph::kLpscTimer1,
-                      {34, 35}}),
+                      {34, 35}, kTimer}),
       // Without a power gate: public code never disables LPSC 29 (Linux psc-dm365.c).
       place<Timer64>({"timer2", "TIMER2 (watchdog)", 0x01C2'1C00, 0x400, kSlow, kAux, {},
-                      {{13, kSecond}, 14}}),
+                      {{13, kSecond}, 14}, kTimer}),
       place<Timer64>({"timer3", "TIMER3", 0x01C2'0800, 0x400, kSlow, kAux, periph::kLpscTimer3,
-                      {15, 22}}),
+                      {15, 22}, kTimer}),
       place<Timer64>({"timer4", "TIMER4", 0x01C2'3800, 0x400, kSlow, kAux, periph::kLpscTimer4,
-                      {{38, kSecond}, {28, kSecond}}}),
+                      {{38, kSecond}, {28, kSecond}}, kTimer}),
       place<periph::Uart16550>({"uart0", "UART0", 0x01C2'0000, 0x400, kSlow, kAux,
                                 periph::kLpscUart0, {40}}, "PINMUX3 bit 19 = 1"),
       place<periph::Uart16550>({"uart1", "UART1", 0x01D0'6000, 0x400, kFast, BlockClock::kUart1,
@@ -81,7 +82,7 @@ const Placements& dm365_blocks() {
       // none of the numbers is known to be free.
       only_if(&engine::EngineParams::present, "key 'engine' is none",
               place<engine::RemapEngine>({"engine", "remap engine (hypothetical)", 0x01C6'A000, 0x400, kFast,
-                                          kEdma, {}, {11}})),
+                                          kEdma, {}, {11}, kEngine})),
   };
   return rows;
 }

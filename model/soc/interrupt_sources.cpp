@@ -12,13 +12,6 @@ cpu::WakeEvent vpss_event(unsigned source) {
   return source < video::VpssTop::kVencSource ? cpu::WakeEvent::kCapture : cpu::WakeEvent::kOther;
 }
 
-cpu::WakeEvent block_event(const std::string& block) {
-  if (block.starts_with("edma")) return cpu::WakeEvent::kDma;
-  if (block.starts_with("timer")) return cpu::WakeEvent::kTimer;
-  if (block.starts_with("remap") || block.starts_with("engine")) return cpu::WakeEvent::kEngine;
-  return cpu::WakeEvent::kOther;
-}
-
 }  // namespace
 
 Dm365::InterruptSource Dm365::interrupt_source(unsigned input) const {
@@ -29,9 +22,9 @@ Dm365::InterruptSource Dm365::interrupt_source(unsigned input) const {
     const Placement& row = placed.row(k);
     for (std::size_t i = 0; i < row.irqs.size(); ++i) {
       if (row.irqs[i].input != input || row.irqs[i].second != second) continue;
-      const bool video = row.name == "vpss";
+      const bool video = &placed.block(k) == &vpss;
       return {row.name + "." + std::string(placed.block(k).interrupts()[i].name),
-              video ? vpss_event(vpss.source_of(static_cast<unsigned>(i))) : block_event(row.name)};
+              video ? vpss_event(vpss.source_of(static_cast<unsigned>(i))) : row.wakes};
     }
   }
   return {"input" + std::to_string(input), cpu::WakeEvent::kOther};

@@ -14,6 +14,7 @@
 #include "model/bus/config_bus.h"
 #include "model/common/bus_target.h"
 #include "model/common/param.h"
+#include "model/cpu/core/stalls.h"
 #include "model/memsys/memory_system.h"
 
 namespace fovea::soc {
@@ -39,6 +40,9 @@ struct Where {
   BlockClock clock = BlockClock::kNone;
   std::optional<unsigned> lpsc = {};  ///< number of its power and sleep controller; none: always on
   std::vector<Irq> irqs = {};
+  /// Whose interrupts these are in the statistics of the core's sleep. Those of the video subsystem go by
+  /// the source that is routed to each (interrupt_sources.cpp).
+  cpu::WakeEvent wakes = cpu::WakeEvent::kOther;
   /// Only some of its registers are modelled; an access to another one is a bus error.
   bool partly = false;
 };

@@ -2,8 +2,9 @@
 #pragma once
 #include <systemc>
 
-#include "model/common/timer.h"
+#include "model/common/observers.h"
 #include "model/common/sc_ports.h"
+#include "model/common/timer.h"
 #include "model/trace/core/recorder.h"
 
 namespace fovea::trace {
@@ -21,7 +22,8 @@ class BusTap : public sc_core::sc_module {
     sensitive << irq << fiq;
   }
 
-  void attach(BusRecorder* recorder) { recorder_ = recorder; }
+  /// The recorder gets interrupts as long as the subscription lives.
+  Subscription attach(BusRecorder& recorder) { return recorders_.add(&recorder); }
   const ClockInfo& core() const { return core_; }
   const ClockInfo& scr() const { return scr_; }
   const ClockInfo& ddr() const { return ddr_; }
@@ -36,10 +38,11 @@ class BusTap : public sc_core::sc_module {
     if (!(clk.read() == c.frequency)) c = {clk.read(), kernel_time()};
   }
   void interrupt_changed() {
-    if (recorder_ && (irq.read() || fiq.read())) recorder_->interrupt(kernel_time());
+    if (irq.read() || fiq.read())
+      recorders_.each([](BusRecorder* r) { r->interrupt(kernel_time()); });
   }
 
-  BusRecorder* recorder_ = nullptr;
+  Observers<BusRecorder*> recorders_;
   ClockInfo core_, scr_, ddr_;
 };
 

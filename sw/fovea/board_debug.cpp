@@ -59,7 +59,7 @@ bool BoardDebugMemory::debug_write(std::uint32_t pa, std::span<const std::uint8_
 
 RegisterBlock register_block(const std::string& name, BusTarget& block) {
   return {name, &block.bank(), [&block] { return block.gated(); },
-          [&block](RegisterObserver* o) { block.observe(o); }};
+          [&block](RegisterObserver& o) { return block.observe(o); }};
 }
 
 std::vector<RegisterBlock> register_blocks(const Platform& platform) {
@@ -87,7 +87,7 @@ void join_bus(GdbViews& v, bus::Scr& scr, mem::DdrModule& ddr, cpu::Arm926& arm,
   v.at_next_event = [&end_of_instant](std::function<void()> act) {
     const Picoseconds now = kernel_time(), next = kernel_horizon();
     const Picoseconds at = next == kNever ? now : next;
-    end_of_instant.at(at, static_cast<unsigned>(kMasterCount), std::move(act));
+    end_of_instant.at(at, InstantRank::kObservers, std::move(act));
     return at;
   };
   v.catch_up = [&arm] { arm.catch_up(); };

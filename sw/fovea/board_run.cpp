@@ -91,6 +91,24 @@ class BoardSimulation : public Simulation {
   void load_page(const ElfImage& program, std::vector<std::uint8_t> page);
   ExecMap hosted_map() const;
 
+  // The steps of run(), in their order.
+  struct Session;
+  std::vector<EndCondition> end_conditions(const RunRequest& request) const;
+  void build_board(const ElfImage& elf, const CameraInputs& cameras, const RunRequest& request);
+  void open_outputs(const RunRequest& request);
+  void take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
+                  const board::FrameRecord& r);
+  void attach_profile(Session& s);
+  void attach_host(Session& s);
+  Picoseconds next_slice(Session& s) const;
+  bool guest_failed(Session& s) const;
+  bool ended(const Session& s) const;
+  bool firmware_gave_up(Session& s) const;
+  bool simulate(Session& s);
+  void state_end(Session& s, RunResult& result) const;
+  void end_window(Session& s);
+  void collect(Session& s, RunResult& result);
+
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
   Symbols symbols_;
@@ -205,12 +223,47 @@ SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& requ
   return s;
 }
 
-RunResult BoardSimulation::run(const RunRequest& request) {
-  const auto started = std::chrono::steady_clock::now();
-  const ElfImage elf = ElfImage::load(program_file(params_));
-  check_fits(elf, memory_regions(params_));
-  symbols_ = Symbols(&elf, request.symbols);
-  const std::vector<EndCondition> until = parse_run_until(params_.run.until(), symbols_);
+/// What is attached to the board for one run, in the order in which it is made.
+struct BoardSimulation::Session {
+  Session(board::Board& board, const RunRequest& run, const ElfImage& elf,
+          const std::vector<EndCondition>& until, const Symbols& symbols)
+      : request(run), program(elf), debug_memory(board.dm365), run_end(board, debug_memory, until) {
+    auto& soc = board.dm365;
+    if (run.hazards) hazards.emplace(soc.arm.core(), soc.scr.memory(), symbols);
+    log = register_log(register_blocks(board.platform), soc.config, soc.arm.core(),
+                       [&symbols](std::uint32_t pc) { return symbols.describe(pc); });
+    log->keep(run.registers.kept);
+    if (!run.registers.pattern.empty()) log->start(run.registers);
+  }
+  bool wants_frames() const { return run_end.wants(EndCondition::Kind::kFrames); }
+  /// The output that the program writes to has gone.
+  bool lost() const {
+    return (request.console && request.console->lost()) ||
+           (request.semihosting && request.semihosting->lost());
+  }
+  void guest_fails(std::string why) {
+    guest = std::move(why);
+    if (gdb) gdb->failed(guest);
+  }
+
+  const RunRequest& request;
+  const ElfImage& program;
+  std::exception_ptr failure;  ///< of a writer: it must not unwind through the kernel
+  std::string guest;           ///< why the guest failed
+  std::optional<BoardConsole> console;
+  std::optional<HazardReport> hazards;
+  BoardDebugMemory debug_memory;
+  std::unique_ptr<RegisterLog> log;
+  RunEnd run_end;
+  std::optional<CoreSemihosting> semihosting;
+  std::unique_ptr<GdbSession> gdb;
+  HostTimeSlicer slicer;
+  unsigned behind_end = 0;  ///< slices since an end condition was met
+};
+
+/// When the run is to end. @throws UserError for a condition that does not go with the request
+std::vector<EndCondition> BoardSimulation::end_conditions(const RunRequest& request) const {
+  std::vector<EndCondition> until = parse_run_until(params_.run.until(), symbols_);
   const auto wanted = [&](EndCondition::Kind kind) {
     return std::any_of(until.begin(), until.end(), [&](const auto& c) { return c.kind == kind; });
   };
@@ -219,13 +272,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (!request.bus_trace.empty() && !wanted(EndCondition::Kind::kFrames))
     throw UserError("--bus-trace records the window of displayed frames; allowed: with frames in "
                     "'run.until'");
-  std::optional<Dialogue> dialogue;
-  if (!params_.uart0.input().empty()) dialogue = Dialogue::load(params_.uart0.input());
-  complete_params(params_);
-  sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
-                                          sc_core::SC_DO_NOTHING);
-  RunResult result;
-  const CameraInputs cameras(params_, static_cast<bool>(request.camera), request.stop, result.notes);
+  return until;
+}
+
+/// The board with everything that is in its memories at power-up.
+void BoardSimulation::build_board(const ElfImage& elf, const CameraInputs& cameras,
+                                  const RunRequest& request) {
   const std::optional<ElfImage> loader = loader_of(elf, request);
   board_ = std::make_unique<board::Board>("board", params_, cameras.sources(),
                                           loader ? loader->entry() : elf.entry(),
@@ -234,191 +286,241 @@ RunResult BoardSimulation::run(const RunRequest& request) {
     board_->load({s.address, s.data, s.memory_size - s.data.size()});
   }
   if (loader) load_loader(*loader, elf, request);
-  cpu::RegionMap regions = board_->dm365.arm.core().regions();
+  cpu::Core& core = board_->dm365.arm.core();
+  cpu::RegionMap regions = core.regions();
   add_program_regions(regions, elf, memory_regions(params_));
-  board_->dm365.arm.core().set_regions(std::move(regions));
-  board_->dm365.arm.core().describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
+  core.set_regions(std::move(regions));
+  core.describe = [this](std::uint32_t pc) { return symbols_.describe(pc); };
   load_page(elf, parameter_page(params_, cameras.views()));
+}
 
+/// What is written beside the figures, and what opens and closes with the window.
+void BoardSimulation::open_outputs(const RunRequest& request) {
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   mosaic_score_ = MosaicScore::of(params_);
-  std::exception_ptr failure;
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
-  std::optional<BoardConsole> console;
-  if (request.console || dialogue)
-    console.emplace(*board_, request.console, std::move(dialogue));
-  board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
-    if (mosaic_score_) mosaic_score_->displayed(f);
-    FrameRow out;
-    out.index = r.index;
-    out.camera = r.camera;
-    out.captured = r.captured;
-    out.capture_start = r.capture_start;
-    out.capture_end = r.capture_end;
-    out.remap_start = r.remap_start;
-    out.remap_end = r.remap_end;
-    out.display_start = r.display_start;
-    out.display_end = r.display_end;
-    out.dropped = r.dropped;
-    out.repeated = r.repeated;
-    // An error of a writer must not unwind through the kernel: keep it and stop.
-    if (failure) return;
-    if (profile_) profile_->frame(out);
-    try {
-      if (perfetto_) perfetto_->frame(f, r);
-      if (request.frame_row)
-        request.frame_row(out);
-      else
-        frames_.push_back(out);
-      if (request.frame)
-        request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
-      if (const video::Picture* sent = cameras.sent(*board_, r))
-        request.camera({r.index, sent->width, sent->height, sent->uyvy});
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  };
+}
 
-  auto& arm = board_->dm365.arm;
-  std::optional<HazardReport> hazards;
-  if (request.hazards) hazards.emplace(arm.core(), board_->dm365.scr.memory(), symbols_);
-  BoardDebugMemory debug_memory(board_->dm365);
-  const auto log = register_log(register_blocks(board_->platform), board_->dm365.config, arm.core(),
-                                [this](std::uint32_t pc) { return symbols_.describe(pc); });
-  log->keep(request.registers.kept);
-  if (!request.registers.pattern.empty()) log->start(request.registers);
-  RunEnd run_end(*board_, debug_memory, until);
-  if (!run_end.wants(EndCondition::Kind::kFrames)) board_->measure_whole_run();
-  if (request.profile) {
-    const ElfImage* const programs[] = {&elf, request.symbols};
-    profile_ = std::make_unique<RunProfile>(*board_, !run_end.wants(EndCondition::Kind::kFrames),
-                                            programs);
+/// A displayed frame goes to whoever wants it. An error of a writer is kept and stops the run.
+void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
+                                 const board::FrameRecord& r) {
+  if (mosaic_score_) mosaic_score_->displayed(f);
+  FrameRow out;
+  out.index = r.index;
+  out.camera = r.camera;
+  out.captured = r.captured;
+  out.capture_start = r.capture_start;
+  out.capture_end = r.capture_end;
+  out.remap_start = r.remap_start;
+  out.remap_end = r.remap_end;
+  out.display_start = r.display_start;
+  out.display_end = r.display_end;
+  out.dropped = r.dropped;
+  out.repeated = r.repeated;
+  if (s.failure) return;
+  if (profile_) profile_->frame(out);
+  try {
+    if (perfetto_) perfetto_->frame(f, r);
+    if (s.request.frame_row)
+      s.request.frame_row(out);
+    else
+      frames_.push_back(out);
+    if (s.request.frame)
+      s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
+    if (const video::Picture* sent = cameras.sent(*board_, r))
+      s.request.camera({r.index, sent->width, sent->height, sent->uyvy});
+  } catch (...) {
+    s.failure = std::current_exception();
   }
-  if (perfetto_ && perfetto_->wants_functions()) {
-    const ElfImage* const programs[] = {&elf, request.symbols};
-    cpu::ClockProfile& profile = request.profile ? *arm.core().profile() : arm.core().start_profile();
-    if (!request.profile) profile.stacks.set_functions(program_functions(programs));
-    perfetto_->watch_functions(profile, [this](std::uint32_t at) { return symbols_.describe(at); });
-  }
-  std::optional<CoreSemihosting> semihosting;
-  if (request.semihosting && run_end.wants(EndCondition::Kind::kExit))
-    semihosting.emplace(arm.core(), debug_memory, semihosting_settings(request),
-                        *request.semihosting, [&] {
-                          if (semihosting->exit_code()) run_end.program_exited();
-                          return run_end.core_ended() || request.semihosting->lost();
-                        });
-  std::unique_ptr<GdbSession> gdb;
+}
+
+void BoardSimulation::attach_profile(Session& s) {
+  const RunRequest& request = s.request;
+  const ElfImage* const programs[] = {&s.program, request.symbols};
+  if (request.profile)
+    profile_ = std::make_unique<RunProfile>(*board_, !s.wants_frames(), programs);
+  if (!perfetto_ || !perfetto_->wants_functions()) return;
+  cpu::Core& core = board_->dm365.arm.core();
+  cpu::ClockProfile& profile = request.profile ? *core.profile() : core.start_profile();
+  if (!request.profile) profile.stacks.set_functions(program_functions(programs));
+  perfetto_->watch_functions(profile, [this](std::uint32_t at) { return symbols_.describe(at); });
+}
+
+/// Semihosting and the debugger.
+void BoardSimulation::attach_host(Session& s) {
+  const RunRequest& request = s.request;
+  cpu::Core& core = board_->dm365.arm.core();
+  if (request.semihosting && s.run_end.wants(EndCondition::Kind::kExit))
+    s.semihosting.emplace(core, s.debug_memory, semihosting_settings(request), *request.semihosting, [&s] {
+      if (s.semihosting->exit_code()) s.run_end.program_exited();
+      return s.run_end.core_ended() || s.request.semihosting->lost();
+    });
   if (request.gdb_port)
-    gdb = std::make_unique<GdbSession>(*request.gdb_port, arm.core(), debug_memory,
-                                       board_views(*board_, request.params, log.get()),
-                                       request.stop, *request.notes);
-  const auto lost = [&] {
-    return (request.console && request.console->lost()) ||
-           (request.semihosting && request.semihosting->lost());
-  };
-  HostTimeSlicer slicer;
-  std::string guest;
-  unsigned behind_end = 0;
-  for (;;) {
-    slicer.run(run_end.met()                    ? after_end(behind_end++)
-               : gdb && gdb->hit_pending() ? kPsPerUs
-                                           : request.limits.next_slice(
-                                                 kSlice, kernel_time(),
-                                                 arm.core().instructions_executed()));
-    take_timeline(*board_, request);
-    if (hazards) hazards->settle(board_->window_end().value_or(kernel_time()));
-    const std::uint64_t executed = arm.core().instructions_executed();
-    request.progress.update({kernel_time(), board_->frames_in_window(),
-                             run_end.wants(EndCondition::Kind::kFrames) ? params_.run.frames() : 0,
-                             executed, phase_name(board_->log)});
-    const bool left = console && console->look();
-    if (!arm.failure().empty()) {
-      guest = failure_text(arm.failure());
-      if (gdb) gdb->failed(guest);
-      break;
-    }
-    if (board_->chip_reset() && !run_end.met()) {
-      guest = failure_text(reset_text(board_->chip_reset()->cause, board_->resets().size()));
-      if (gdb) gdb->failed(guest);
-      break;
-    }
-    const bool asleep = run_end.met() && figures_->asleep_at_end();
-    if ((figures_->closed() && (arm.core().mark_done() || asleep)) || (run_end.core_ended() && kernel_stopped()) ||
-        behind_end > kLooksAfterEnd)
-      break;
-    if (failure || request.stop.load() || left || lost() || (gdb && gdb->killed())) {
-      result.complete = false;
-      break;
-    }
-    if (gdb) gdb->look(arm.asleep());
-    if (const auto option = request.limits.reached(kernel_time(), executed); !option.empty())
-      run_end.limit(option);
-    if (run_end.wants(EndCondition::Kind::kFrames) && board_->log.phase() == board::Phase::kFailed &&
-        arm.asleep() && !run_end.met()) {
-      guest = failure_text("the firmware stopped: " + last_line(board_->uart_text()));
-      break;
-    }
-    if (run_end.only_frames() && !board_->window_start() &&
-        kernel_time() > params_.run.start_limit()) {
-      guest = failure_text(fmt::format("the firmware showed no frame within {} of simulated time "
+    s.gdb = std::make_unique<GdbSession>(*request.gdb_port, core, s.debug_memory,
+                                         board_views(*board_, request.params, s.log.get()), request.stop,
+                                         *request.notes);
+}
+
+Picoseconds BoardSimulation::next_slice(Session& s) const {
+  if (s.run_end.met()) return after_end(s.behind_end++);
+  if (s.gdb && s.gdb->hit_pending()) return kPsPerUs;
+  return s.request.limits.next_slice(kSlice, kernel_time(),
+                                     board_->dm365.arm.core().instructions_executed());
+}
+
+/// The core stands for good, or the chip was reset and does not boot again.
+bool BoardSimulation::guest_failed(Session& s) const {
+  const auto& arm = board_->dm365.arm;
+  if (!arm.failure().empty()) {
+    s.guest_fails(failure_text(arm.failure()));
+    return true;
+  }
+  if (board_->chip_reset() && !s.run_end.met()) {
+    s.guest_fails(failure_text(reset_text(board_->chip_reset()->cause, board_->resets().size())));
+    return true;
+  }
+  return false;
+}
+
+/// The run has ended, and the core's counters are those of its end, as far as they will be.
+bool BoardSimulation::ended(const Session& s) const {
+  const bool asleep = s.run_end.met() && figures_->asleep_at_end();
+  return (figures_->closed() && (board_->dm365.arm.core().mark_done() || asleep)) ||
+         (s.run_end.core_ended() && kernel_stopped()) || s.behind_end > kLooksAfterEnd;
+}
+
+/// The firmware has stopped by itself, or shows no frame.
+bool BoardSimulation::firmware_gave_up(Session& s) const {
+  if (s.wants_frames() && board_->log.phase() == board::Phase::kFailed && board_->dm365.arm.asleep() &&
+      !s.run_end.met()) {
+    s.guest = failure_text("the firmware stopped: " + last_line(board_->uart_text()));
+    return true;
+  }
+  if (s.run_end.only_frames() && !board_->window_start() && kernel_time() > params_.run.start_limit()) {
+    s.guest = failure_text(fmt::format("the firmware showed no frame within {} of simulated time "
                                        "(run.start_limit); it stands",
                                        params_.run.start_limit.text()));
-      break;
-    }
+    return true;
   }
-  if (failure) std::rethrow_exception(failure);
-  if (run_end.met() && run_end.met()->limit)
-    guest = failure_text(fmt::format("run.until = {} not met within {}", params_.run.until(),
-                                     run_end.met()->what));
-  else if (run_end.met())
-    result.ended = ended_text(*run_end.met());
-  if (result.complete && guest.empty())
-    result.ended_by = run_end.met() ? run_end.met()->what : "frames";
+  return false;
+}
+
+/// False: it was stopped before its end.
+bool BoardSimulation::simulate(Session& s) {
+  const RunRequest& request = s.request;
+  auto& arm = board_->dm365.arm;
+  for (;;) {
+    s.slicer.run(next_slice(s));
+    take_timeline(*board_, request);
+    if (s.hazards) s.hazards->settle(board_->window_end().value_or(kernel_time()));
+    const std::uint64_t executed = arm.core().instructions_executed();
+    request.progress.update({kernel_time(), board_->frames_in_window(),
+                             s.wants_frames() ? params_.run.frames() : 0, executed,
+                             phase_name(board_->log)});
+    const bool left = s.console && s.console->look();
+    if (guest_failed(s) || ended(s)) return true;
+    if (s.failure || request.stop.load() || left || s.lost() || (s.gdb && s.gdb->killed())) return false;
+    if (s.gdb) s.gdb->look(arm.asleep());
+    if (const auto option = request.limits.reached(kernel_time(), executed); !option.empty())
+      s.run_end.limit(option);
+    if (firmware_gave_up(s)) return true;
+  }
+}
+
+/// Why the run is over, and whether that is the end that was wanted.
+void BoardSimulation::state_end(Session& s, RunResult& result) const {
+  const auto& met = s.run_end.met();
+  if (met && met->limit)
+    s.guest = failure_text(
+        fmt::format("run.until = {} not met within {}", params_.run.until(), met->what));
+  else if (met)
+    result.ended = ended_text(*met);
+  if (result.complete && s.guest.empty())
+    result.ended_by = met ? met->what : "frames";
   else
     result.complete = false;
-  // A stopped run closes its window a slice from here: the masters may have worked ahead of this
-  // time, but not past the display's next line. The core's own part follows at its next boundary,
-  // which a failed core does not reach any more.
+}
+
+/// A stopped run closes its window a slice from here: the masters may have worked ahead of this time,
+/// but not past the display's next line. The core's own part follows at its next boundary, which a
+/// failed core does not reach any more.
+void BoardSimulation::end_window(Session& s) {
   if (!figures_->closed() && !kernel_stopped()) {
     board_->close_window(kernel_time() + kSlice);
-    for (int i = 0; i < 20 && !figures_->core_done(); ++i)
-      slicer.run(kSlice);
+    for (int i = 0; i < 20 && !figures_->core_done(); ++i) s.slicer.run(kSlice);
   }
   board_->close_window_now();
-  if (console) {
-    console->look();
-    result.typed = console->typed();
-    result.untyped = console->open_step();
+}
+
+/// What the console and the writers have, and the figures of the window.
+void BoardSimulation::collect(Session& s, RunResult& result) {
+  if (s.console) {
+    s.console->look();
+    result.typed = s.console->typed();
+    result.untyped = s.console->open_step();
   }
-  if (semihosting) result.exit_code = semihosting->exit_code();
+  if (s.semihosting) result.exit_code = s.semihosting->exit_code();
   if (trace_) trace_->finish();
   if (commands_) commands_->finish();
   if (perfetto_)
     if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
-  result.guest_failure = guest;
+  result.guest_failure = s.guest;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
-  if (profile_) collect_profile(result, counted, request, elf);
-  if (hazards) {
-    hazards->settle(board_->window_end().value_or(kernel_time()));
-    hazards->collect(result.stats);
-    result.hazards = hazards->failure();
+  if (profile_) collect_profile(result, counted, s.request, s.program);
+  if (s.hazards) {
+    s.hazards->settle(board_->window_end().value_or(kernel_time()));
+    s.hazards->collect(result.stats);
+    result.hazards = s.hazards->failure();
   }
   result.frames = std::move(frames_);
   result.uart = board_->uart_text();
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
     result.notes.push_back(reset_note(board_->resets()[i], i));
-  if (!request.registers.pattern.empty()) result.registers = log->text();
+  if (!s.request.registers.pattern.empty()) result.registers = s.log->text();
+}
+
+RunResult BoardSimulation::run(const RunRequest& request) {
+  const auto started = std::chrono::steady_clock::now();
+  const ElfImage elf = ElfImage::load(program_file(params_));
+  check_fits(elf, memory_regions(params_));
+  symbols_ = Symbols(&elf, request.symbols);
+  const std::vector<EndCondition> until = end_conditions(request);
+  std::optional<Dialogue> dialogue;
+  if (!params_.uart0.input().empty()) dialogue = Dialogue::load(params_.uart0.input());
+  complete_params(params_);
+  sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
+                                          sc_core::SC_DO_NOTHING);
+  RunResult result;
+  const CameraInputs cameras(params_, static_cast<bool>(request.camera), request.stop, result.notes);
+  build_board(elf, cameras, request);
+  open_outputs(request);
+  Session session(*board_, request, elf, until, symbols_);
+  if (request.console || dialogue)
+    session.console.emplace(*board_, request.console, std::move(dialogue));
+  board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
+    take_frame(session, cameras, f, r);
+  };
+  if (!session.wants_frames()) board_->measure_whole_run();
+  attach_profile(session);
+  attach_host(session);
+
+  result.complete = simulate(session);
+  if (session.failure) std::rethrow_exception(session.failure);
+  state_end(session, result);
+  end_window(session);
+  collect(session, result);
   figures_->add_host(
       result, std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
       request.strict_sync);
-  const bool stopped = !result.complete && guest.empty();
-  if (gdb) gdb->exited(stopped ? SIGTERM : guest.empty() ? 0 : 3, stopped);
+  const bool stopped = !result.complete && session.guest.empty();
+  if (session.gdb)
+    session.gdb->exited(stopped ? SIGTERM : session.guest.empty() ? 0 : 3, stopped);
   return result;
 }
 

@@ -21,18 +21,10 @@ BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& para
     : file_(file, "--bus-trace", "a bus trace", is_trace),
       params_(params),
       board_(board),
-      recorder_(board.dm365.make_recorder()) {
-  const auto pins = board.dm365.gpio.on_output;
-  board.dm365.gpio.on_output = [this, pins](unsigned bank, std::uint32_t out, Picoseconds at) {
-    pins(bank, out, at);
-    if (bank == 2) recorder_->mark(out, at);
-  };
-}
-
-BusTraceRun::~BusTraceRun() {
-  board_.dm365.scr.crossbar().observe(nullptr);
-  board_.dm365.tap.attach(nullptr);
-}
+      recorder_(board.dm365.record_bus()),
+      pins_(board.dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
+        if (bank == PHASE_BANK) recorder_->mark(out, at);
+      })) {}
 
 void BusTraceRun::open() {
   const trace::BusTap& tap = board_.dm365.tap;

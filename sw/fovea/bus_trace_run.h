@@ -15,7 +15,6 @@ namespace fovea::app {
 class BusTraceRun {
  public:
   BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
-  ~BusTraceRun();
   void open();
   void close();
   /// @throws UserError if the file cannot be written
@@ -28,7 +27,8 @@ class BusTraceRun {
   OutputFile file_;
   const ParamSet& params_;
   board::Board& board_;
-  std::unique_ptr<trace::BusRecorder> recorder_;
+  soc::Dm365::Recording recorder_;
+  Subscription pins_;
   trace::ClockInfo core_, scr_, ddr_;
   Picoseconds refresh_ = 0;
   bool opened_ = false, closed_ = false;

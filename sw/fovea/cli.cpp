@@ -100,6 +100,112 @@ void set_waves(const std::string& file, const ParamSet& params, Experiment& expe
                                 one_line(file), engine ? engine->text() : "unknown"));
 }
 
+/// Loads the experiment and the overrides of the command line into `params`.
+void load_experiment(const RunOptions& options, ParamSet& params, Experiment& experiment) {
+  experiment.load(options.experiment);
+  for (const auto& set : options.sets) experiment.override_with(set);
+  if (!options.waves.empty()) set_waves(options.waves, params, experiment);
+}
+
+/// A file that is kept apart from the results must not lie among them. @throws UserError
+void refuse_inside(const RunDir& dir, const char* option, const fs::path& file) {
+  if (file.empty() || !dir.covers(file)) return;
+  throw UserError(fmt::format("{} '{}': it lies in the output folder, which holds the files of a run only; "
+                              "choose a place beside it",
+                              option, one_line(file.string())));
+}
+
+/// Standard input and output as the board's UART0, with --console.
+struct RunConsole {
+  RunConsole(const RunOptions& options, const std::atomic<bool>& stop, const CliContext& context) {
+    if (!options.console) return;
+    stream.emplace(context.out, STDIN_FILENO, stop);
+    if (!stream->interactive()) return;
+    context.err << kConsoleHelp << std::flush;
+    raw.emplace(STDIN_FILENO);
+  }
+  std::optional<ConsoleStream> stream;
+  std::optional<RawTerminal> raw;
+};
+
+/// The pictures that a run writes: what was displayed, and what the camera sent of it.
+class PictureFiles {
+ public:
+  PictureFiles(const RunOptions& options, RunDir& dir)
+      : wanted_(!options.no_frames || options.mp4), displayed_(displayed(options, dir)) {
+    if (!options.no_frames)
+      sent_.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
+                                       .folder_fd = dir.make_folder("camera")});
+  }
+  void attach(RunRequest& request) {
+    if (wanted_) request.frame = [this](const DisplayedFrame& f) { push(displayed_, f); };
+    if (sent_) request.camera = [this](const DisplayedFrame& f) { push(*sent_, f); };
+  }
+  void close() {
+    displayed_.close();
+    if (sent_) sent_->close();
+  }
+
+ private:
+  static FrameWriterOptions displayed(const RunOptions& options, RunDir& dir) {
+    FrameWriterOptions out;
+    if (!options.no_frames) {
+      out.folder = dir.folder() / "frames";
+      out.folder_fd = dir.make_folder("frames");
+    }
+    if (options.mp4) out.mp4 = dir.file("display.mp4");
+    return out;
+  }
+  static void push(FrameWriter& writer, const DisplayedFrame& f) {
+    writer.push(f.index, f.width, f.height, f.uyvy);
+  }
+
+  bool wanted_;
+  FrameWriter displayed_;
+  std::optional<FrameWriter> sent_;
+};
+
+/// What is said at the end of a run.
+void report_run(const RunOptions& options, const RunResult& result, const std::vector<StatRow>& host,
+                const RunDir& dir, std::ostream& report) {
+  report << run_words(result.stats, host);
+  report << result.profile.table;
+  for (const auto& note : result.notes) report << one_line(note) << "\n";
+  if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
+  report << fmt::format("results in {}\n", dir.folder().string());
+  const StatRow* shown = find(result.stats, "frame.displayed");
+  if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
+    report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
+  if (options.report)
+    report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
+  report << std::flush;
+}
+
+/// The exit status of a run whose results are written. @throws GuestFailure, UserError
+int run_status(const RunOptions& options, const RunResult& result, bool quit, const CliContext& context) {
+  if (!result.untyped.empty())
+    context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
+  if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (options.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
+  if (!context.out) throw UserError("the program's output cannot be written");
+  if (result.complete && result.exit_code.value_or(0) != 0)
+    throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
+  if (result.complete) return kExitDone;
+  const int signal = context.signal ? context.signal->load() : 0;
+  context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
+  if (quit) return 128 + SIGINT;
+  return signal ? 128 + signal : kExitGuestFailed;
+}
+
+RunResult run_simulation(Simulation& simulation, const RunRequest& request, ProgressMeter& meter) {
+  try {
+    return simulation.run(request);
+  } catch (...) {
+    meter.finish();
+    throw;
+  }
+}
+
 int command_run(const RunOptions& options, const std::vector<std::string>& args,
                 const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
@@ -109,9 +215,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   simulation->declare(params);
   add_replay_keys(params);
   Experiment experiment(params);
-  experiment.load(options.experiment);
-  for (const auto& set : options.sets) experiment.override_with(set);
-  if (!options.waves.empty()) set_waves(options.waves, params, experiment);
+  load_experiment(options, params, experiment);
   const WarningScope warnings(context.err, options.strict);
   // A condition that is refused has nothing to say about keys that need it.
   if (const ParamBase* until = params.find("run.until")) check_run_until(until->text());
@@ -123,19 +227,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / experiment.name(),
              "run");
-  if (!options.bus_trace.empty() && dir.covers(options.bus_trace))
-    throw UserError(fmt::format("--bus-trace '{}': it lies in the output folder, which holds the "
-                                "files of a run only; choose a place beside it",
-                                one_line(options.bus_trace)));
-  if (!options.waves.empty() && dir.covers(options.waves))
-    throw UserError(fmt::format("--waves '{}': it lies in the output folder, which holds the files of a run only; "
-                                "choose a place beside it",
-                                one_line(options.waves)));
+  refuse_inside(dir, "--bus-trace", options.bus_trace);
+  refuse_inside(dir, "--waves", options.waves);
   const PerfettoRequest perfetto = perfetto_of(options.perfetto);
-  if (!perfetto.file.empty() && dir.covers(perfetto.file))
-    throw UserError(fmt::format("--perfetto '{}': it lies in the output folder, which holds the files of a run "
-                                "only; choose a place beside it",
-                                one_line(perfetto.file.string())));
+  refuse_inside(dir, "--perfetto", perfetto.file);
   if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
   // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
   // tried, and a full disk is noticed before the simulation.
@@ -144,28 +239,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
 
   const auto& stop = context.stop ? *context.stop : kNeverStops;
   HostConsole semihosting(context.out, context.err, context.stop);
-  std::optional<ConsoleStream> console;
-  std::optional<RawTerminal> raw;
-  if (options.console) {
-    console.emplace(context.out, STDIN_FILENO, stop);
-    if (console->interactive()) {
-      context.err << kConsoleHelp << std::flush;
-      raw.emplace(STDIN_FILENO);
-    }
-  }
+  RunConsole console(options, stop, context);
   // A progress line that is updated in place would overwrite the console's output.
   ProgressMeter meter(context.err, context.terminal && !options.console);
-  FrameWriterOptions writer_options;
-  if (!options.no_frames) {
-    writer_options.folder = dir.folder() / "frames";
-    writer_options.folder_fd = dir.make_folder("frames");
-  }
-  if (options.mp4) writer_options.mp4 = dir.file("display.mp4");
-  FrameWriter writer(writer_options);
-  std::optional<FrameWriter> camera_writer;
-  if (!options.no_frames)
-    camera_writer.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
-                                             .folder_fd = dir.make_folder("camera")});
+  PictureFiles pictures(options, dir);
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .strict_sync = options.sync == "strict",
@@ -181,33 +258,19 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
                      .registers = options.registers,
                      .limits = limits,
                      .symbols = symbols ? &*symbols : nullptr,
-                     .console = console ? &*console : nullptr,
+                     .console = console.stream ? &*console.stream : nullptr,
                      .semihosting = &semihosting};
-  if (!options.no_frames || options.mp4)
-    request.frame = [&](const DisplayedFrame& f) {
-      writer.push(f.index, f.width, f.height, f.uyvy);
-    };
-  if (camera_writer)
-    request.camera = [&](const DisplayedFrame& f) {
-      camera_writer->push(f.index, f.width, f.height, f.uyvy);
-    };
+  pictures.attach(request);
   if (!options.gdb.empty()) {
     request.gdb_port = parse_gdb_port(options.gdb);
     request.notes = &context.err;
   }
   RowFiles rows(dir);
   rows.attach(request);
-  RunResult result;
-  try {
-    result = simulation->run(request);
-  } catch (...) {
-    meter.finish();
-    throw;
-  }
-  raw.reset();
+  RunResult result = run_simulation(*simulation, request, meter);
+  console.raw.reset();
   meter.finish();
-  writer.close();
-  if (camera_writer) camera_writer->close();
+  pictures.close();
 
   std::vector<StatRow> host;
   rows.finish(result);
@@ -215,32 +278,10 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   if (options.report)
     add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment.name());
   report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
-  // With --console the output stream is reserved for UART0.
-  std::ostream& report = options.console ? context.err : context.out;
   context.out.flush();
-  report << run_words(result.stats, host);
-  report << result.profile.table;
-  for (const auto& note : result.notes) report << one_line(note) << "\n";
-  if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
-  report << fmt::format("results in {}\n", dir.folder().string());
-  const StatRow* shown = find(result.stats, "frame.displayed");
-  if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
-    report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
-  if (options.report)
-    report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
-  report << std::flush;
-  if (!result.untyped.empty())
-    context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
-  if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
-  if (options.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
-  if (!context.out) throw UserError("the program's output cannot be written");
-  if (result.complete && result.exit_code.value_or(0) != 0)
-    throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
-  if (result.complete) return kExitDone;
-  const int signal = context.signal ? context.signal->load() : 0;
-  context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
-  if (console && console->quit()) return 128 + SIGINT;
-  return signal ? 128 + signal : kExitGuestFailed;
+  // With --console the output stream is reserved for UART0.
+  report_run(options, result, host, dir, options.console ? context.err : context.out);
+  return run_status(options, result, console.stream && console.stream->quit(), context);
 }
 
 int command_params(const std::vector<std::string>& patterns, bool markdown, bool of_replay,

@@ -204,11 +204,8 @@ bool caches_unused(std::span<const StatRow> stats) {
   return row && row->value == StatBase::Value{std::uint64_t{0}};
 }
 
-}  // namespace
-
-int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
-                 const CliContext& context) {
-  static const std::atomic<bool> kNeverStops{false};
+/// Options that do not go together. @throws UserError
+void refuse_combinations(const ExecOptions& o) {
   check_register_log(o.registers, o.gdb);
   if (o.fast_memory && !o.registers.pattern.empty())
     throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
@@ -219,6 +216,67 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
     throw UserError(
         "--board: not with --fast-memory or --caches, nor with a flat binary; allowed: an ELF "
         "file");
+}
+
+/// The keys that a program sets by running on the board, and those of the command line.
+void set_keys(const ExecOptions& o, Experiment& experiment) {
+  if (o.board) {
+    experiment.preset("camera.kind", "chart", "exec --board");
+    experiment.preset("camera.stamp", "false", "exec --board");
+    experiment.preset("run.until", "[exit, halt]", "exec --board");
+  }
+  for (const auto& set : o.sets) experiment.override_with(set);
+  if (o.board) experiment.preset("firmware.elf", o.program, "command line");
+}
+
+void warn_of_fast_memory(const ParamSet& params, const Experiment& experiment) {
+  for (const auto* p : params.all())
+    if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
+        (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
+      Diagnostics::instance().configuration(fmt::format(
+          "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM",
+          p->key()));
+}
+
+/// What is said after a program has ended.
+void report_program(const ExecOptions& o, const ExecResult& result, std::ostream& err) {
+  err << exec_words(result.stats, result.core_clock);
+  if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
+    err << "The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
+  if (!result.ended.empty()) err << "ended by " << result.ended << "\n";
+  err << std::flush;
+}
+
+void write_program_results(const ExecOptions& o, const ExecResult& result, const std::vector<std::string>& args,
+                           RunDir& dir, const CliContext& context) {
+  dir.write("stalls.csv", stalls_csv(result.stalls));
+  for (const ResultFile& f : result.profile.files) dir.write(f.name, f.text);
+  if (!o.registers.pattern.empty()) dir.write("registers.log", result.registers);
+  dir.write("host.json", host_json(result.host, args, version_text()));
+  dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
+                                     collect_warnings(Diagnostics::instance())));
+  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
+}
+
+/// The exit status. `lost`: the program's output could not be written. @throws GuestFailure, UserError
+int program_status(const ExecOptions& o, const ExecResult& result, bool lost, const CliContext& context) {
+  if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
+  if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
+  if (lost) throw UserError("the program's output cannot be written");
+  if (result.complete) return result.exit_code;
+  const int signal = context.signal ? context.signal->load() : 0;
+  context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
+                             result.killed && !signal ? "by the debugger" : "before the end");
+  if (result.left) return 128 + SIGINT;
+  return signal ? 128 + signal : kExitGuestFailed;
+}
+
+}  // namespace
+
+int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
+                 const CliContext& context) {
+  static const std::atomic<bool> kNeverStops{false};
+  refuse_combinations(o);
   const auto executor = context.make_executor();
   const auto board = context.make_simulation();
   ParamSet params;
@@ -227,25 +285,13 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   else
     executor->declare(params);
   Experiment experiment(params);
-  if (o.board) {
-    experiment.preset("camera.kind", "chart", "exec --board");
-    experiment.preset("camera.stamp", "false", "exec --board");
-    experiment.preset("run.until", "[exit, halt]", "exec --board");
-  }
-  for (const auto& set : o.sets) experiment.override_with(set);
-  if (o.board) experiment.preset("firmware.elf", o.program, "command line");
+  set_keys(o, experiment);
   const RunLimits limits = limits_of(o.limits);
   const std::optional<ElfImage> symbols = symbols_of(o.limits);
   std::ostream nowhere(nullptr);
   const WarningScope warnings(o.quiet ? nowhere : context.err, o.strict);
   warn_without_effect(params, experiment);
-  if (o.fast_memory)
-    for (const auto* p : params.all())
-      if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
-          (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
-        Diagnostics::instance().configuration(fmt::format(
-            "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM",
-            p->key()));
+  if (o.fast_memory) warn_of_fast_memory(params, experiment);
   const ExecProgram program = program_of(o);
   std::optional<std::uint16_t> gdb_port;
   if (!o.gdb.empty()) gdb_port = parse_gdb_port(o.gdb);
@@ -278,35 +324,11 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
       o.board ? run_on_board(*board, params, o, request, context) : executor->run(request);
   context.out.flush();
   const bool lost = !context.out;
-  if (!o.quiet) {
-    context.err << exec_words(result.stats, result.core_clock);
-    if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
-      context.err
-          << "The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
-    if (!result.ended.empty()) context.err << "ended by " << result.ended << "\n";
-    context.err << std::flush;
-  }
+  if (!o.quiet) report_program(o, result, context.err);
   context.err << result.profile.table;
   if (!dir) context.err << result.registers << std::flush;
-  if (dir) {
-    dir->write("stalls.csv", stalls_csv(result.stalls));
-    for (const ResultFile& f : result.profile.files) dir->write(f.name, f.text);
-    if (!o.registers.pattern.empty()) dir->write("registers.log", result.registers);
-    dir->write("host.json", host_json(result.host, args, version_text()));
-    dir->write("stats.json",
-               stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                          collect_warnings(Diagnostics::instance())));
-    report_earlier(dir->commit(result.complete && result.guest_failure.empty()), context);
-  }
-  if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
-  if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
-  if (lost) throw UserError("the program's output cannot be written");
-  if (result.complete) return result.exit_code;
-  const int signal = context.signal ? context.signal->load() : 0;
-  context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
-                             result.killed && !signal ? "by the debugger" : "before the end");
-  if (result.left) return 128 + SIGINT;
-  return signal ? 128 + signal : kExitGuestFailed;
+  if (dir) write_program_results(o, result, args, *dir, context);
+  return program_status(o, result, lost, context);
 }
 
 }  // namespace fovea::app

@@ -48,19 +48,15 @@ CommandTrace::CommandTrace(const std::filesystem::path& file)
 }
 
 void CommandTrace::begin(mem::DdrController& controller, Picoseconds at) {
-  controller_ = &controller;
   const mem::DdrDevice& device = controller.device();
   const std::uint64_t next = controller.running() ? controller.ddr_clock().edge_after(at) : 0;
   for (unsigned bank = 0; bank < mem::DdrDevice::kMaxBanks; ++bank)
     if (device.row(bank) != mem::DdrDevice::kClosed)
       line(next ? next - 1 : 0, "OPEN", true, bank, true, device.row(bank));
-  controller.set_command_hook(&CommandTrace::hook, this);
+  listening_ = controller.observe_commands(&CommandTrace::hook, this);
 }
 
-void CommandTrace::end() {
-  if (controller_) controller_->set_command_hook(nullptr, this);
-  controller_ = nullptr;
-}
+void CommandTrace::end() { listening_.reset(); }
 
 void CommandTrace::finish() {
   end();

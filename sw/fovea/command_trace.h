@@ -25,7 +25,6 @@ class CommandTrace {
 
   /// Opens the file. @throws UserError
   explicit CommandTrace(const std::filesystem::path& file);
-  ~CommandTrace() { end(); }
   CommandTrace(const CommandTrace&) = delete;
   CommandTrace& operator=(const CommandTrace&) = delete;
 
@@ -42,7 +41,7 @@ class CommandTrace {
   static void hook(void* self, mem::Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock);
 
   OutputFile file_;
-  mem::DdrController* controller_ = nullptr;
+  Subscription listening_;
   std::exception_ptr failure_;  // an error must not unwind through the simulation
 };
 

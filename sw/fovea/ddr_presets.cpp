@@ -118,89 +118,127 @@ Frequency in_force(Frequency recorded, std::uint64_t hertz) {
   return same ? recorded : wanted;
 }
 
+/// The settings of a data sheet, each where the user has not set the key. They are made in this order:
+/// later ones follow from earlier ones.
+class SheetSettings {
+ public:
+  SheetSettings(const ReplayParams& params, Frequency recorded, Experiment& experiment)
+      : ddr_(params.ddr),
+        r_(params.registers),
+        part_(part_of(ddr_)),
+        grade_(grade_of(ddr_)),
+        recorded_(recorded),
+        experiment_(experiment),
+        sheet_(fmt::format("ddr.preset: {}, grade {}", part_.word, kGradeWords[grade_])) {}
+
+  void apply() {
+    if (!of_user("ddr.clock")) set_clock();
+    clock_ = in_force(recorded_, r_.clock());
+    set_latencies();
+    set_timings();
+    set_sleep();
+    set_refresh();
+    set("banks", std::to_string(ddr_.banks()));
+    set("page", fmt::format("{}B", kPageBytes), ddr_.mobile());
+  }
+
+ private:
+  bool of_user(const std::string& key) const {
+    return experiment_.origin(key).kind == ValueOrigin::Kind::kCommandLine;
+  }
+  void set(std::string_view name, const std::string& value, bool assumed = false) {
+    const std::string key = "ddr." + std::string(name);
+    if (!of_user(key)) experiment_.preset(key, value, sheet_ + (assumed ? " (assumed)" : ""));
+  }
+  void cycles(std::string_view name, std::uint64_t n, bool assumed = false) {
+    set(name, fmt::format("{}cycles", n), assumed);
+  }
+
+  /// The recorded clock, unless the part is too slow for it.
+  void set_clock() {
+    Picoseconds shortest = 0;
+    for (const ShortestPeriod& p : kPeriods) {
+      const Picoseconds of_CL = p.period[grade_];
+      if (of_CL == 0 || (of_user("ddr.CL") && p.CL != r_.CL())) continue;
+      if (shortest == 0 || of_CL < shortest) shortest = of_CL;
+    }
+    const Frequency now = in_force(recorded_, r_.clock());
+    if (shortest != 0 && !no_faster(now, shortest))
+      set("clock", fmt::format("{}Hz", kPsPerSecond / shortest));
+    else if (!ddr_.mobile() && r_.clock() < kPsPerSecond / kLongestPeriod)
+      set("clock", fmt::format("{}Hz", kPsPerSecond / kLongestPeriod));
+  }
+
+  void set_latencies() {
+    const std::uint64_t beyond_CL = r_.RL() > r_.CL() ? r_.RL() - r_.CL() : 0;
+    if (!of_user("ddr.CL")) {
+      const auto fits = std::find_if(std::begin(kPeriods), std::end(kPeriods), [&](const auto& p) {
+        return p.period[grade_] != 0 && no_faster(clock_, p.period[grade_]);
+      });
+      if (fits == std::end(kPeriods))
+        throw UserError(
+            fmt::format("key 'ddr.clock': {} is not allowed; ddr.part = {} in grade {} "
+                        "has no CL for it",
+                        r_.clock.text(), part_.word, kGradeWords[grade_]));
+      cycles("CL", fits->CL);
+    }
+    // The PHY adds clocks that depend on the board: keep that difference.
+    cycles("RL", r_.CL() + beyond_CL);
+  }
+
+  void set_timings() {
+    for (const Timing& t : kTimings) {
+      std::uint64_t n = rounded_up(t.least[grade_], clock_);
+      // TI's controller has no tFAW: make sure that four times tRRD covers it.
+      if (t.name == "tRRD" && ddr_.banks() == 8)
+        n = std::max(n, (rounded_up(kFourActivates[grade_], clock_) + 3) / 4);
+      if (t.name == "tWTR") n = std::max<std::uint64_t>(n, kWriteToReadClocks[grade_]);
+      // If a timing was set by the user to a longer value, the timings that include it follow.
+      if (t.name == "tRAS") n = std::max(n, r_.tRCD());
+      if (t.name == "tRC") n = std::max(n, r_.tRAS() + r_.tRP() - 1);
+      if (n != 0) cycles(t.name, n, t.assumed == kGradeWords[grade_]);
+    }
+  }
+
+  /// Power-down and self-refresh. DDR2 [S2 S3]. Mobile DDR [S11 S13]: the longest figure if
+  /// manufacturers differ; there is no DLL that has to lock.
+  void set_sleep() {
+    if (ddr_.mobile()) {
+      cycles("tXP", std::max<std::uint64_t>(rounded_up(25'000, clock_), 1), true);
+      cycles("tCKE", 2, true);
+      cycles("tXSNR", rounded_up(200'000, clock_), true);
+      cycles("tXSRD", 1);
+    } else {
+      cycles("tXP", 2);
+      cycles("tCKE", 3);
+      cycles("tXSNR", rounded_up(part_.tRFC + 10'000, clock_));
+      cycles("tXSRD", 200);
+    }
+  }
+
+  void set_refresh() {
+    // With a slow clock both would be rounded up to one clock, but a refresh opens and closes a row.
+    cycles("tRFC", std::max(rounded_up(part_.tRFC, clock_), r_.tRP() + 1), part_.assumed);
+    const std::uint64_t interval = rounded_down(kRefresh, clock_);
+    cycles("tREFI", interval);
+    const std::uint64_t open =
+        rounded_down(kOpenAtMost, clock_) / std::max<std::uint64_t>(r_.tREFI(), 1);
+    set("row_intervals", std::to_string(std::clamp<std::uint64_t>(open, 1, 16)));
+  }
+
+  const mem::DdrParams& ddr_;
+  const DdrRegisterParams& r_;
+  const OfPart& part_;
+  std::size_t grade_;
+  Frequency recorded_, clock_;
+  Experiment& experiment_;
+  std::string sheet_;
+};
+
 }  // namespace
 
 void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment& experiment) {
-  const DdrRegisterParams& r = params.registers;
-  if (!r.preset.is("data_sheet")) return;
-  const mem::DdrParams& ddr = params.ddr;
-  const OfPart& part = part_of(ddr);
-  const std::size_t grade = grade_of(ddr);
-  const std::string sheet =
-      fmt::format("ddr.preset: {}, grade {}", part.word, kGradeWords[grade]);
-  const auto of_user = [&](const std::string& key) {
-    return experiment.origin(key).kind == ValueOrigin::Kind::kCommandLine;
-  };
-  const auto set = [&](std::string_view name, const std::string& value, bool assumed = false) {
-    const std::string key = "ddr." + std::string(name);
-    if (!of_user(key)) experiment.preset(key, value, sheet + (assumed ? " (assumed)" : ""));
-  };
-  const auto cycles = [&](std::string_view name, std::uint64_t n, bool assumed = false) {
-    set(name, fmt::format("{}cycles", n), assumed);
-  };
-
-  if (!of_user("ddr.clock")) {
-    Picoseconds shortest = 0;
-    for (const ShortestPeriod& p : kPeriods) {
-      const Picoseconds of_CL = p.period[grade];
-      if (of_CL == 0 || (of_user("ddr.CL") && p.CL != r.CL())) continue;
-      if (shortest == 0 || of_CL < shortest) shortest = of_CL;
-    }
-    const Frequency now = in_force(recorded, r.clock());
-    if (shortest != 0 && !no_faster(now, shortest))
-      set("clock", fmt::format("{}Hz", kPsPerSecond / shortest));
-    else if (!ddr.mobile() && r.clock() < kPsPerSecond / kLongestPeriod)
-      set("clock", fmt::format("{}Hz", kPsPerSecond / kLongestPeriod));
-  }
-  const Frequency clock = in_force(recorded, r.clock());
-
-  const std::uint64_t beyond_CL = r.RL() > r.CL() ? r.RL() - r.CL() : 0;
-  if (!of_user("ddr.CL")) {
-    const auto fits = std::find_if(std::begin(kPeriods), std::end(kPeriods), [&](const auto& p) {
-      return p.period[grade] != 0 && no_faster(clock, p.period[grade]);
-    });
-    if (fits == std::end(kPeriods))
-      throw UserError(fmt::format("key 'ddr.clock': {} is not allowed; ddr.part = {} in grade {} "
-                                  "has no CL for it",
-                                  r.clock.text(), part.word, kGradeWords[grade]));
-    cycles("CL", fits->CL);
-  }
-  // The PHY adds clocks that depend on the board: keep that difference.
-  cycles("RL", r.CL() + beyond_CL);
-
-  for (const Timing& t : kTimings) {
-    std::uint64_t n = rounded_up(t.least[grade], clock);
-    // TI's controller has no tFAW: make sure that four times tRRD covers it.
-    if (t.name == "tRRD" && ddr.banks() == 8)
-      n = std::max(n, (rounded_up(kFourActivates[grade], clock) + 3) / 4);
-    if (t.name == "tWTR") n = std::max<std::uint64_t>(n, kWriteToReadClocks[grade]);
-    // If a timing was set by the user to a longer value, the timings that include it follow.
-    if (t.name == "tRAS") n = std::max(n, r.tRCD());
-    if (t.name == "tRC") n = std::max(n, r.tRAS() + r.tRP() - 1);
-    if (n != 0) cycles(t.name, n, t.assumed == kGradeWords[grade]);
-  }
-  // Power-down and self-refresh. DDR2 [S2 S3]. Mobile DDR [S11 S13]: the longest figure if
-  // manufacturers differ; there is no DLL that has to lock.
-  if (ddr.mobile()) {
-    cycles("tXP", std::max<std::uint64_t>(rounded_up(25'000, clock), 1), true);
-    cycles("tCKE", 2, true);
-    cycles("tXSNR", rounded_up(200'000, clock), true);
-    cycles("tXSRD", 1);
-  } else {
-    cycles("tXP", 2);
-    cycles("tCKE", 3);
-    cycles("tXSNR", rounded_up(part.tRFC + 10'000, clock));
-    cycles("tXSRD", 200);
-  }
-  // With a slow clock both would be rounded up to one clock, but a refresh opens and closes a row.
-  cycles("tRFC", std::max(rounded_up(part.tRFC, clock), r.tRP() + 1), part.assumed);
-  const std::uint64_t interval = rounded_down(kRefresh, clock);
-  cycles("tREFI", interval);
-  const std::uint64_t open =
-      rounded_down(kOpenAtMost, clock) / std::max<std::uint64_t>(r.tREFI(), 1);
-  set("row_intervals", std::to_string(std::clamp<std::uint64_t>(open, 1, 16)));
-  set("banks", std::to_string(ddr.banks()));
-  set("page", fmt::format("{}B", kPageBytes), ddr.mobile());
+  if (params.registers.preset.is("data_sheet")) SheetSettings(params, recorded, experiment).apply();
 }
 
 }  // namespace fovea::app

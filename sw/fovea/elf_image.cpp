@@ -46,106 +46,139 @@ std::string range(std::uint64_t base, std::uint64_t size) {
   return fmt::format("0x{:08x}..0x{:08x}", base, base + size - 1);
 }
 
+/// A program's file. Everything that is not as the core needs it is a UserError with the file's name.
+class ElfFile {
+ public:
+  explicit ElfFile(const std::filesystem::path& path)
+      : name_(one_line(path.string())), bytes_(read_file(path, kMaxElfBytes)) {
+    if (bytes_.size() < EI_NIDENT || std::memcmp(bytes_.data(), ELFMAG, SELFMAG) != 0)
+      fail(fmt::format("it is not an ELF file; {}", kAllowed));
+    FOVEA_CHECK(elf_version(EV_CURRENT) != EV_NONE, "libelf knows the current ELF version");
+    elf_.reset(elf_memory(bytes_.data(), bytes_.size()));
+    if (!elf_ || elf_kind(elf_.get()) != ELF_K_ELF) fail(kCut);
+  }
+  Elf* elf() const { return elf_.get(); }
+
+  /// The entry of an executable for this core.
+  std::uint32_t checked_entry() const {
+    GElf_Ehdr header{};
+    if (!gelf_getehdr(elf(), &header)) fail(kCut);
+    // Checked first: for a program built for the host, "ELF64" would not be a helpful message.
+    if (header.e_machine != EM_ARM)
+      fail(fmt::format("it is for {}; {}", machine_name(header.e_machine), kAllowed));
+    if (header.e_ident[EI_CLASS] != ELFCLASS32)
+      fail(fmt::format("it is no ELF32 file; {}", kAllowed));
+    if (header.e_ident[EI_DATA] != ELFDATA2LSB)
+      fail(fmt::format("it is big-endian; {}", kAllowed));
+    if (header.e_type != ET_EXEC)
+      fail(fmt::format("it is {}, not linked to fixed addresses; {}",
+                       header.e_type == ET_REL ? "an object file" : "no executable", kAllowed));
+    if (const std::string why = unfit_flags(header.e_flags); !why.empty())
+      fail(fmt::format("{}; {}", why, kAllowedTarget));
+    return static_cast<std::uint32_t>(header.e_entry);
+  }
+
+  /// What is to be loaded, in the file's order.
+  std::vector<ElfSegment> segments() const {
+    std::vector<ElfSegment> out;
+    std::size_t count = 0;
+    if (elf_getphdrnum(elf(), &count) != 0) fail(kCut);
+    for (std::size_t i = 0; i < count; ++i) {
+      GElf_Phdr p{};
+      if (!gelf_getphdr(elf(), static_cast<int>(i), &p)) fail(kCut);
+      if (p.p_type != PT_LOAD || p.p_memsz == 0) continue;
+      if (p.p_filesz > p.p_memsz)
+        fail(fmt::format("segment {} is longer in file than in memory", i));
+      if (p.p_offset > bytes_.size() || p.p_filesz > bytes_.size() - p.p_offset)
+        fail(fmt::format("{}: segment {} ends behind the end of the file", kCut, i));
+      if (p.p_paddr + p.p_memsz > (std::uint64_t{1} << 32))
+        fail(fmt::format("segment {} runs over the end of the 32-bit addresses", i));
+      const auto* data = reinterpret_cast<const std::uint8_t*>(bytes_.data()) + p.p_offset;
+      out.push_back({static_cast<unsigned>(i),
+                     static_cast<std::uint32_t>(p.p_paddr),
+                     static_cast<std::uint32_t>(p.p_vaddr),
+                     static_cast<std::uint32_t>(p.p_memsz),
+                     {data, data + p.p_filesz}});
+    }
+    if (out.empty()) fail("it has no segments to load");
+    refuse_overlaps(out);
+    return out;
+  }
+
+  void check_attributes(Elf_Scn* section) const {
+    const Elf_Data* data = elf_rawdata(section, nullptr);
+    if (!data) fail(fmt::format("{}: its attributes", kCut));
+    const std::string why =
+        unfit_attributes({static_cast<const std::uint8_t*>(data->d_buf), data->d_size});
+    if (!why.empty()) fail(fmt::format("{}; {}", why, kAllowedTarget));
+  }
+
+  void add_symbols(Elf_Scn* section, const GElf_Shdr& table, std::vector<ElfSymbol>& out) const {
+    Elf_Data* data = elf_getdata(section, nullptr);
+    if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", kCut));
+    for (std::size_t i = 0; i < table.sh_size / table.sh_entsize; ++i) {
+      GElf_Sym s{};
+      if (!gelf_getsym(data, static_cast<int>(i), &s)) fail(fmt::format("{}: symbol {}", kCut, i));
+      const char* text = elf_strptr(elf(), table.sh_link, s.st_name);
+      const unsigned type = GELF_ST_TYPE(s.st_info);
+      // '$a', '$t' and '$d' mark instruction sets and data inside a section; they are not symbols.
+      if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
+      if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
+      const auto address = static_cast<std::uint32_t>(s.st_value);
+      out.push_back({one_line(text, std::string::npos),
+                     type == STT_FUNC ? address & ~1u : address,
+                     static_cast<std::uint32_t>(s.st_size), type == STT_FUNC || labels_code(s),
+                     type == STT_FUNC && (address & 1) != 0});
+    }
+  }
+
+ private:
+  static constexpr const char* kCut = "the ELF file is damaged or cut short";
+
+  [[noreturn]] void fail(const std::string& why) const {
+    throw UserError(fmt::format("program '{}': {}", name_, why));
+  }
+  void refuse_overlaps(std::vector<ElfSegment> sorted) const {
+    std::sort(sorted.begin(), sorted.end(),
+              [](const auto& a, const auto& b) { return a.address < b.address; });
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+      if (std::uint64_t{sorted[i - 1].address} + sorted[i - 1].memory_size > sorted[i].address)
+        fail(fmt::format("segments {} and {} overlap", sorted[i - 1].index, sorted[i].index));
+  }
+  /// A symbol without a type, as of an assembler's label, in a section of code.
+  bool labels_code(const GElf_Sym& s) const {
+    if (GELF_ST_TYPE(s.st_info) != STT_NOTYPE || s.st_shndx >= SHN_LORESERVE) return false;
+    GElf_Shdr home{};
+    Elf_Scn* where = elf_getscn(elf(), s.st_shndx);
+    return where && gelf_getshdr(where, &home) && (home.sh_flags & SHF_EXECINSTR) != 0;
+  }
+
+  std::string name_, bytes_;
+  std::unique_ptr<Elf, ElfEnd> elf_;
+};
+
 }  // namespace
 
 ElfImage ElfImage::load(const std::filesystem::path& path) {
   ElfImage image;
   image.file_ = path.string();
-  const std::string name = one_line(image.file_);
-  const auto fail = [&](const std::string& why) {
-    throw UserError(fmt::format("program '{}': {}", name, why));
-  };
-  std::string bytes = read_file(path, kMaxElfBytes);
-  if (bytes.size() < EI_NIDENT || std::memcmp(bytes.data(), ELFMAG, SELFMAG) != 0)
-    fail(fmt::format("it is not an ELF file; {}", kAllowed));
-
-  FOVEA_CHECK(elf_version(EV_CURRENT) != EV_NONE, "libelf knows the current ELF version");
-  const std::unique_ptr<Elf, ElfEnd> elf(elf_memory(bytes.data(), bytes.size()));
-  const std::string cut = "the ELF file is damaged or cut short";
-  if (!elf || elf_kind(elf.get()) != ELF_K_ELF) fail(cut);
-  GElf_Ehdr header{};
-  if (!gelf_getehdr(elf.get(), &header)) fail(cut);
-  // Checked first: for a program built for the host, "ELF64" would not be a helpful message.
-  if (header.e_machine != EM_ARM)
-    fail(fmt::format("it is for {}; {}", machine_name(header.e_machine), kAllowed));
-  if (header.e_ident[EI_CLASS] != ELFCLASS32)
-    fail(fmt::format("it is no ELF32 file; {}", kAllowed));
-  if (header.e_ident[EI_DATA] != ELFDATA2LSB) fail(fmt::format("it is big-endian; {}", kAllowed));
-  if (header.e_type != ET_EXEC)
-    fail(fmt::format("it is {}, not linked to fixed addresses; {}",
-                     header.e_type == ET_REL ? "an object file" : "no executable", kAllowed));
-  image.entry_ = static_cast<std::uint32_t>(header.e_entry);
-  if (const std::string why = unfit_flags(header.e_flags); !why.empty())
-    fail(fmt::format("{}; {}", why, kAllowedTarget));
-
-  std::size_t count = 0;
-  if (elf_getphdrnum(elf.get(), &count) != 0) fail(cut);
-  for (std::size_t i = 0; i < count; ++i) {
-    GElf_Phdr p{};
-    if (!gelf_getphdr(elf.get(), static_cast<int>(i), &p)) fail(cut);
-    if (p.p_type != PT_LOAD || p.p_memsz == 0) continue;
-    if (p.p_filesz > p.p_memsz) fail(fmt::format("segment {} is longer in file than in memory", i));
-    if (p.p_offset > bytes.size() || p.p_filesz > bytes.size() - p.p_offset)
-      fail(fmt::format("{}: segment {} ends behind the end of the file", cut, i));
-    if (p.p_paddr + p.p_memsz > (std::uint64_t{1} << 32))
-      fail(fmt::format("segment {} runs over the end of the 32-bit addresses", i));
-    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data()) + p.p_offset;
-    image.segments_.push_back({static_cast<unsigned>(i),
-                               static_cast<std::uint32_t>(p.p_paddr),
-                               static_cast<std::uint32_t>(p.p_vaddr),
-                               static_cast<std::uint32_t>(p.p_memsz),
-                               {data, data + p.p_filesz}});
-  }
-  if (image.segments_.empty()) fail("it has no segments to load");
-  auto sorted = image.segments_;
-  std::sort(sorted.begin(), sorted.end(),
-            [](const auto& a, const auto& b) { return a.address < b.address; });
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (std::uint64_t{sorted[i - 1].address} + sorted[i - 1].memory_size > sorted[i].address)
-      fail(fmt::format("segments {} and {} overlap", sorted[i - 1].index, sorted[i].index));
-
+  const ElfFile file(path);
+  image.entry_ = file.checked_entry();
+  image.segments_ = file.segments();
   std::size_t section_names = 0;
-  const bool named = elf_getshdrstrndx(elf.get(), &section_names) == 0;
-  for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf.get(), section));) {
+  const bool named = elf_getshdrstrndx(file.elf(), &section_names) == 0;
+  for (Elf_Scn* section = nullptr; (section = elf_nextscn(file.elf(), section));) {
     GElf_Shdr table{};
     if (!gelf_getshdr(section, &table)) continue;
     if ((table.sh_flags & SHF_ALLOC) != 0 && table.sh_size > 0 && named) {
-      const char* text = elf_strptr(elf.get(), section_names, table.sh_name);
+      const char* text = elf_strptr(file.elf(), section_names, table.sh_name);
       if (text && *text)
         image.sections_.push_back({one_line(text, std::string::npos),
                                    static_cast<std::uint32_t>(table.sh_addr),
                                    static_cast<std::uint32_t>(table.sh_size)});
     }
-    if (table.sh_type == SHT_ARM_ATTRIBUTES) {
-      const Elf_Data* data = elf_rawdata(section, nullptr);
-      if (!data) fail(fmt::format("{}: its attributes", cut));
-      const std::string why =
-          unfit_attributes({static_cast<const std::uint8_t*>(data->d_buf), data->d_size});
-      if (!why.empty()) fail(fmt::format("{}; {}", why, kAllowedTarget));
-    }
-    if (table.sh_type != SHT_SYMTAB) continue;
-    Elf_Data* data = elf_getdata(section, nullptr);
-    if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", cut));
-    for (std::size_t i = 0; i < table.sh_size / table.sh_entsize; ++i) {
-      GElf_Sym s{};
-      if (!gelf_getsym(data, static_cast<int>(i), &s)) fail(fmt::format("{}: symbol {}", cut, i));
-      const char* text = elf_strptr(elf.get(), table.sh_link, s.st_name);
-      const unsigned type = GELF_ST_TYPE(s.st_info);
-      // '$a', '$t' and '$d' mark instruction sets and data inside a section; they are not symbols.
-      if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
-      if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
-      bool function = type == STT_FUNC;
-      if (type == STT_NOTYPE && s.st_shndx < SHN_LORESERVE) {
-        GElf_Shdr home{};
-        Elf_Scn* where = elf_getscn(elf.get(), s.st_shndx);
-        function = where && gelf_getshdr(where, &home) && (home.sh_flags & SHF_EXECINSTR) != 0;
-      }
-      const auto address = static_cast<std::uint32_t>(s.st_value);
-      image.symbols_.push_back({one_line(text, std::string::npos),
-                                type == STT_FUNC ? address & ~1u : address,
-                                static_cast<std::uint32_t>(s.st_size), function,
-                                type == STT_FUNC && (address & 1) != 0});
-    }
+    if (table.sh_type == SHT_ARM_ATTRIBUTES) file.check_attributes(section);
+    if (table.sh_type == SHT_SYMTAB) file.add_symbols(section, table, image.symbols_);
   }
   std::sort(image.symbols_.begin(), image.symbols_.end(), [](const auto& a, const auto& b) {
     // At one address a symbol with a size comes first; then by name, so that the result is
@@ -153,8 +186,8 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     return std::tuple(a.address, b.size, std::string_view(a.name)) <
            std::tuple(b.address, a.size, std::string_view(b.name));
   });
-  for (std::size_t i = 0; i < image.symbols_.size(); ++i)
-    if (image.symbols_[i].function) image.functions_.push_back(i);
+  for (std::size_t k = 0; k < image.symbols_.size(); ++k)
+    if (image.symbols_[k].function) image.functions_.push_back(k);
   return image;
 }
 

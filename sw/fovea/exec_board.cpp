@@ -39,11 +39,19 @@ ExecBoard::ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params
   ddr.scr_clk(scr_clk_);
   ddr.enabled(on_);
   arm.path(scr.path);
-  arm.sockets[cpu::Arm926::kInstructionPort]->bind(*scr.target[index(Master::kArmI)]);
-  arm.sockets[cpu::Arm926::kDataPort]->bind(*scr.target[index(Master::kArmD)]);
+  for (const MasterPort& p : arm.masters()) {
+    p.socket->bind(*scr.target[index(p.id)]);
+    add_statistics(*waits_.emplace_back(std::make_unique<bus::WaitStats>(
+        p.id, std::vector<WaitTable*>{&scr.crossbar().waits, &ddr.controller().waits()})));
+  }
   scr.config_socket.bind(config.socket);
   config.to("ddr").bind(ddr.reg_socket);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
+  platform.add("arm", arm);
+  platform.add("scr", scr);
+  platform.add("waits", *this);
+  platform.add("config", config);
+  platform.add("ddr", ddr);
   program_controller(clocks.ddr);
   SC_METHOD(beat);
 }
@@ -58,13 +66,14 @@ std::vector<MemoryRegion> ExecBoard::register_regions() {
 void ExecBoard::program_controller(Frequency ddr_clock) {
   const DdrRegisters words = ddr_registers(ddr_clock);
   auto& r = ddr.regs;
-  r.write(0x08, 4, 0x0053'CA32);  // TIMUNLOCK
-  r.write(0x10, 4, words.sdtimr);
-  r.write(0x14, 4, words.sdtimr2);
-  r.write(0x0C, 4, words.sdrcr);
-  r.write(0xE4, 4, 0xC5);
-  r.write(0x20, 4, 0xFE);
-  r.write(0x08, 4, 0x0053'4A32);
+  const auto write = [&r](const Reg& reg, std::uint32_t value) { r.write(reg.offset(), 4, value); };
+  write(r.sdbcr, 0x0053'CA32);  // TIMUNLOCK
+  write(r.sdtimr, words.sdtimr);
+  write(r.sdtimr2, words.sdtimr2);
+  write(r.sdrcr, words.sdrcr);
+  write(r.ddrphycr, 0xC5);
+  write(r.pbbpr, 0xFE);
+  write(r.sdbcr, 0x0053'4A32);
 }
 
 /// A pending event bounds how far the core runs ahead; a program in a loop would never come back.

@@ -8,7 +8,10 @@
 
 #include "model/bus/config_bus.h"
 #include "model/bus/scr.h"
+#include "model/bus/wait_stats.h"
+#include "model/common/block.h"
 #include "model/common/end_of_instant.h"
+#include "model/contract/memory_map.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/core/debug.h"
 #include "model/mem/ddr_module.h"
@@ -26,7 +29,7 @@ struct ExecBoardParams {
 
 /// Clocks run and the SDRAM controller is programmed from the start, as the boot loader leaves
 /// them. Only the controller's registers answer on the configuration bus.
-class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
+class ExecBoard : public sc_core::sc_module, public Block, public cpu::DebugMemory {
  public:
   ExecBoard(sc_core::sc_module_name name, const ExecBoardParams& params, const ExecMap& map,
             const ExecClocks& clocks, std::uint32_t entry);
@@ -39,7 +42,7 @@ class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
   static std::vector<MemoryRegion> register_regions();
 
  private:
-  std::array<std::uint8_t, 32 * 1024> internal_ram_{};
+  std::array<std::uint8_t, INTERNAL_RAM_BYTES> internal_ram_{};
   std::span<std::uint8_t> tcm_;
   std::uint32_t ram_base_;
 
@@ -49,6 +52,8 @@ class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
   bus::Scr scr;
   bus::ConfigBus config;
   mem::DdrModule ddr;
+  /// All of them; the waits of the masters are this block's own statistics.
+  Platform platform;
 
  private:
   void program_controller(Frequency ddr_clock);
@@ -57,6 +62,7 @@ class ExecBoard : public sc_core::sc_module, public cpu::DebugMemory {
     return pa >= ram_base_ && pa - ram_base_ + std::uint64_t{bytes} <= ddr_size_;
   }
 
+  std::vector<std::unique_ptr<bus::WaitStats>> waits_;
   std::uint64_t ddr_size_;
   ClockSignal arm_clk_, ddr_clk_, scr_clk_;
   sc_core::sc_signal<bool> on_{"on", true}, irq_{"irq"}, fiq_{"fiq"};

@@ -30,7 +30,8 @@ class BoardExecutor final : public Executor {
   void declare(ParamSet& set) override {
     set.add(cpu_);
     set.add_alone(crossbar_);
-    for (const auto m : {Master::kArmI, Master::kArmD}) set.add(*crossbar_.ports[stat_index(m)]);
+    for (const MasterInfo& m : kMasters.rows)
+      if (is_core(m.id)) set.add(*crossbar_.ports[stat_index(m.id)]);
     set.add(config_bus_);
     set.add(ddr_);
     set.add(clocks_);
@@ -64,7 +65,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
                                           sc_core::SC_DO_NOTHING);
   ExecSession session(arm.core(), *board_, request, map, ExecBoard::register_regions());
   session.load(board_->ram(), board_->tcm());
-  const std::vector<RegisterBlock> blocks = {register_block("ddr", board_->ddr)};
+  const std::vector<RegisterBlock> blocks = register_blocks(board_->platform);
   const auto log = register_log(blocks, board_->config, arm.core(),
                                 [&](std::uint32_t pc) { return session.describe(pc); });
   log->keep(request.registers.kept);
@@ -111,11 +112,7 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
 }
 
 void BoardExecutor::collect_memory(std::vector<StatRow>& rows) const {
-  for (const auto m : {Master::kArmI, Master::kArmD}) {
-    collect(*board_->scr.crossbar().stats[stat_index(m)], rows);
-    collect(*board_->scr.latency[stat_index(m)], rows);
-  }
-  collect(board_->ddr.controller().stats, rows);
+  board_->platform.each_statistics([&](const StatGroup& group) { collect(group, rows); });
 }
 
 ExecResult BoardExecutor::run(const ExecRequest& request) {

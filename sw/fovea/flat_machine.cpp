@@ -47,7 +47,7 @@ bool FlatMemoryPort::debug_write(std::uint32_t pa, std::span<const std::uint8_t>
 
 ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, const ExecMap& map,
                     Frequency core_clock) {
-  std::array<std::uint8_t, 32 * 1024> internal_ram{};
+  std::array<std::uint8_t, INTERNAL_RAM_BYTES> internal_ram{};
   const auto tcm = std::span(internal_ram).first(map.tcm ? internal_ram.size() : 0);
   FlatMemoryPort port(map.ram_base, map.ram_size);
   cpu::Core core(params, port, tcm);

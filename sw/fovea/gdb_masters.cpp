@@ -35,14 +35,9 @@ std::string until(Picoseconds t) { return fmt::format("until {} ns", ns_text(t))
 
 GdbMasters::GdbMasters(bus::Crossbar& crossbar, const mem::DdrController& ddr,
                        std::uint32_t ddr_base)
-    : crossbar_(crossbar), ddr_(ddr), ddr_base_(ddr_base), before_(crossbar.observe(nullptr)) {
-  crossbar_.observe(this);
-}
-
-GdbMasters::~GdbMasters() { crossbar_.observe(before_); }
+    : crossbar_(crossbar), ddr_(ddr), ddr_base_(ddr_base), observing_(crossbar.observe(*this)) {}
 
 void GdbMasters::submitted(const MemRequest& r, bool to_sdram) {
-  if (before_) before_->submitted(r, to_sdram);
   auto& list = under_way_[index(r.master)];
   // Remove requests that were decided long ago. Masters may be ahead of the time at which where()
   // is called, so some decided requests are kept.
@@ -55,7 +50,6 @@ void GdbMasters::submitted(const MemRequest& r, bool to_sdram) {
 
 void GdbMasters::done(const MemRequest& r) {
   const bool to_sdram = r.in_path.slave == static_cast<std::uint8_t>(bus::Slave::kDdr);
-  if (before_) to_sdram ? before_->responded(r) : before_->register_done(r);
   auto& list = under_way_[index(r.master)];
   const auto found = std::find_if(list.rbegin(), list.rend(),
                                   [&](const Request& o) { return o.request == &r && !o.decided; });
@@ -68,9 +62,8 @@ void GdbMasters::done(const MemRequest& r) {
 }
 
 void GdbMasters::check_watches(const MemRequest& r) const {
-  const bool core = r.master == Master::kArmI || r.master == Master::kArmD;
   for (const Watch& w : watches) {
-    if (w.only ? *w.only != r.master : core) continue;
+    if (w.only ? *w.only != r.master : is_core(r.master)) continue;
     if (w.kind != Kind::kAccess && (w.kind == Kind::kWrite) != r.write) continue;
     const std::uint64_t from = std::max(r.address, w.pa);
     const std::uint64_t to =

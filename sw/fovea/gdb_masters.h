@@ -37,7 +37,6 @@ class GdbMasters final : public MemObserver {
 
   /// @param ddr_base address of the SDRAM on the crossbar
   GdbMasters(bus::Crossbar& crossbar, const mem::DdrController& ddr, std::uint32_t ddr_base);
-  ~GdbMasters() override;
   GdbMasters(const GdbMasters&) = delete;
   GdbMasters& operator=(const GdbMasters&) = delete;
 
@@ -73,7 +72,7 @@ class GdbMasters final : public MemObserver {
   bus::Crossbar& crossbar_;
   const mem::DdrController& ddr_;
   std::uint32_t ddr_base_;
-  MemObserver* before_;
+  Subscription observing_;
   std::array<std::vector<Request>, kMasterCount> under_way_;
 };
 

@@ -57,18 +57,13 @@ HazardReport::HazardReport(cpu::Core& core, memsys::MemorySystem& memory, const 
   checker_.on_place = [&symbols](const cpu::Hazard& h) {
     Diagnostics::instance().guest(hazard_text(h, symbols));
   };
-  memory_.observe_arrivals(&checker_);
+  arrivals_ = memory_.observe_arrivals(checker_);
   checker_.follow_moves();
-  memory_.controller().set_command_hook(
+  commands_ = memory_.controller().observe_commands(
       [](void* self, mem::Cmd cmd, unsigned, std::uint32_t, std::uint64_t) {
         static_cast<HazardReport*>(self)->command(cmd);
       },
       this);
-}
-
-HazardReport::~HazardReport() {
-  memory_.controller().set_command_hook(nullptr, this);
-  memory_.observe_arrivals(nullptr);
 }
 
 void HazardReport::command(mem::Cmd cmd) {

@@ -19,7 +19,6 @@ class HazardReport {
  public:
   /// All three outlive it.
   HazardReport(cpu::Core& core, memsys::MemorySystem& memory, const Symbols& symbols);
-  ~HazardReport();
   HazardReport(const HazardReport&) = delete;
   HazardReport& operator=(const HazardReport&) = delete;
 
@@ -34,6 +33,7 @@ class HazardReport {
   void command(mem::Cmd cmd);
   memsys::MemorySystem& memory_;
   cpu::HazardChecker checker_;
+  Subscription arrivals_, commands_;
 };
 
 }  // namespace fovea::app

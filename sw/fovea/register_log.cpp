@@ -33,14 +33,12 @@ void RegisterLog::start(const RegisterLogRequest& request) {
   oldest_ = 0;
   count_ = 0;
   for (const auto& b : blocks_)
-    if (b.observe) b.observe(this);
+    if (b.observe) observing_.push_back(b.observe(*this));
   running_ = true;
 }
 
 void RegisterLog::stop() {
-  if (!running_) return;
-  for (const auto& b : blocks_)
-    if (b.observe) b.observe(nullptr);
+  observing_.clear();
   running_ = false;
 }
 
@@ -61,7 +59,7 @@ const std::string& RegisterLog::block_name(const RegBank* bank) const {
 
 /// Offsets without a register match by the name of their block alone.
 bool RegisterLog::wanted(const RegisterAccess& access) {
-  const Reg* const reg = access.bank->register_at(access.offset);
+  const Reg* const reg = access.reg;
   if (!reg) return re2::RE2::PartialMatch(block_name(access.bank) + ".", *pattern_);
   const auto [place, fresh] = matches_.try_emplace(reg, false);
   if (fresh)
@@ -72,8 +70,7 @@ bool RegisterLog::wanted(const RegisterAccess& access) {
 void RegisterLog::accessed(const RegisterAccess& access) {
   if (!wanted(access)) return;
   const Master master = sources_.master();
-  const bool core = master == Master::kArmD || master == Master::kArmI;
-  const Record r{sources_.now(), core ? sources_.pc() : 0, master, access};
+  const Record r{sources_.now(), is_core(master) ? sources_.pc() : 0, master, access};
   if (ring_.size() < kept_) {
     ring_.push_back(r);
   } else {
@@ -85,12 +82,12 @@ void RegisterLog::accessed(const RegisterAccess& access) {
 
 std::string RegisterLog::line(const Record& r) const {
   const RegisterAccess& a = r.access;
-  const Reg* const reg = a.bank->register_at(a.offset);
+  const Reg* const reg = a.reg;
   const unsigned shift = 8 * (a.offset & 3u);
   const std::uint32_t lanes = (a.bytes == 4 ? ~0u : (1u << 8 * a.bytes) - 1u) << shift;
   const std::uint32_t word = (a.value << shift) & lanes;
   std::string out = fmt::format("{} ns  ", ns_text(r.at));
-  if (r.master == Master::kArmD || r.master == Master::kArmI) {
+  if (is_core(r.master)) {
     out += fmt::format("pc 0x{:08x} ", r.pc);
     const std::string where = sources_.describe ? sources_.describe(r.pc) : "";
     if (!where.empty()) out += "(" + where + ") ";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/common/masters.h"
+#include "model/common/observers.h"
 #include "model/common/reg_observer.h"
 #include "model/common/regbank.h"
 #include "model/common/units.h"
@@ -23,7 +24,7 @@ struct RegisterBlock {
   std::string name;
   RegBank* registers = nullptr;
   std::function<bool()> gated;  ///< true while its clock is gated, so that accesses have no effect
-  std::function<void(RegisterObserver*)> observe;
+  std::function<Subscription(RegisterObserver&)> observe;
 };
 
 inline constexpr std::size_t kRegisterLogMost = 100'000'000;
@@ -71,6 +72,7 @@ class RegisterLog final : private RegisterObserver {
   const std::string& block_name(const RegBank* bank) const;
 
   std::vector<RegisterBlock> blocks_;
+  std::vector<Subscription> observing_;
   Sources sources_;
   std::unique_ptr<re2::RE2> pattern_;
   std::unordered_map<const Reg*, bool> matches_;

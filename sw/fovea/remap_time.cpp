@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "sw/fovea/after_all.h"
 #include "sw/fovea/sleep.h"
 
 namespace fovea::app {
@@ -18,9 +17,7 @@ constexpr Picoseconds kAhead = kPsPerUs;
 }  // namespace
 
 RemapTime::RemapTime(board::Board& board) : board_(board) {
-  const auto others = board.dm365.gpio.on_output;
-  board.dm365.gpio.on_output = [this, others](unsigned bank, std::uint32_t out, Picoseconds at) {
-    others(bank, out, at);
+  pins_ = board.dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds) {
     if (bank != PHASE_BANK) return;
     const board::Phase phase = board::phase_of(out);
     if (phase == board::Phase::kRemapStart) reached(true);
@@ -29,13 +26,13 @@ RemapTime::RemapTime(board::Board& board) : board_(board) {
       begun_.reset();
       given_away(kernel_time(), false);
     }
-  };
+  });
 }
 
 void RemapTime::reached(bool begins) {
   const Picoseconds at = kernel_time() + kAhead;
   if (!begins) ending_ = at;
-  board_.dm365.end_of_instant.at(at, kAfterAll, [this, begins, at] {
+  board_.dm365.end_of_instant.at(at, InstantRank::kObservers, [this, begins, at] {
     given_away(at, begins);
     board_.dm365.arm.core().sample_counts(
         at, [this, begins](const cpu::Counts& counts) { sampled(begins, of(counts)); });

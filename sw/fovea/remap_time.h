@@ -40,6 +40,7 @@ class RemapTime {
   std::optional<Clocks> begun_;  // a remap is under way
   std::optional<Picoseconds> ending_;  // when the counters are to be copied at its end
   Clocks sum_;                   // of those that ended
+  Subscription pins_;
 };
 
 }  // namespace fovea::app

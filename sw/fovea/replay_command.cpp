@@ -82,6 +82,33 @@ class SomeStreams final : public trace::RecordSource {
   std::set<unsigned> without_;
 };
 
+/// The keys of the trace, then those of the command line, then what follows from them.
+/// @return what is to be said about it @throws UserError
+std::vector<std::string> set_replay_keys(const ReplayOptions& options, const trace::TraceInfo& info,
+                                         ReplayParams& params, Experiment& experiment) {
+  for (const auto& [key, value] : info.params)
+    if (!ReplayParams::without_effect(key)) experiment.preset(key, value, options.trace);
+  for (const auto& s : options.sets) {
+    const std::string key = s.substr(0, s.find('='));
+    if (ReplayParams::without_effect(key))
+      throw UserError(
+          fmt::format("key '{}' has no effect in a replay, which plays no contents", key));
+    experiment.override_with(s);
+  }
+  apply_clock_preset(params, experiment);
+  apply_ddr_preset(params, info.ddr.frequency, experiment);
+  return options.memory_only ? without_crossbar(options.sets) : follow_clocks(params, info, experiment);
+}
+
+/// False: a signal has ended it.
+bool replay_to_end(ReplayPath& path, Picoseconds start, const CliContext& context) {
+  // Slices only let a signal in.
+  const Picoseconds slice = 10 * kPsPerMs;
+  for (Picoseconds until = start + slice; !path.run_before(until); until += slice)
+    if (context.stop && context.stop->load()) return false;
+  return true;
+}
+
 }  // namespace
 
 int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
@@ -93,22 +120,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   ParamSet set;
   params.declare(set);
   Experiment experiment(set);
-  for (const auto& [key, value] : trace.info->params)
-    if (!ReplayParams::without_effect(key)) experiment.preset(key, value, options.trace);
-  for (const auto& s : options.sets) {
-    const std::string key = s.substr(0, s.find('='));
-    if (ReplayParams::without_effect(key))
-      throw UserError(
-          fmt::format("key '{}' has no effect in a replay, which plays no contents", key));
-    experiment.override_with(s);
-  }
-  apply_clock_preset(params, experiment);
-  apply_ddr_preset(params, trace.info->ddr.frequency, experiment);
-  std::vector<std::string> said;
-  if (options.memory_only)
-    said = without_crossbar(options.sets);
-  else
-    said = follow_clocks(params, *trace.info, experiment);
+  const std::vector<std::string> said = set_replay_keys(options, *trace.info, params, experiment);
   warn_without_effect(set, experiment);
   params.check();
   const std::set<unsigned> left_out = streams_of(*trace.info, options.without);
@@ -131,15 +143,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
   if (commands) commands->begin(path.controller(), path.start());
-  // Slices only let a signal in.
-  const Picoseconds slice = 10 * kPsPerMs;
-  bool complete = true;
-  for (Picoseconds until = trace.info->start + slice; !path.run_before(until); until += slice) {
-    if (context.stop && context.stop->load()) {
-      complete = false;
-      break;
-    }
-  }
+  const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
   if (commands) commands->finish();
   const double wall = std::chrono::duration<double>(Wall::now() - started).count();

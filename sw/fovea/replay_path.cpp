@@ -265,7 +265,6 @@ void ReplayPath::issue() {
     m.priority = r.priority;
     memory_.crossbar().set_priority(r.master, r.priority);
   }
-  slot.in_path.priority = r.priority;
   memory_.submit(slot);
   fetch(stream);
   find_next();

@@ -47,8 +47,8 @@ class ReplayPath final : private memsys::MemoryHost {
   /// of a write come behind its completion.
   Picoseconds duration() const { return end() > start_ ? end() - start_ : 0; }
   const bus::LatencyStats& latency(Master m) const { return *masters_[index(m)].latency; }
-  /// Who looks on at the crossbar.
-  void observe(MemObserver* observer) { memory_.crossbar().observe(observer); }
+  /// Adds an observer of the requests on the crossbar.
+  Subscription observe(MemObserver& observer) { return memory_.crossbar().observe(observer); }
   mem::DdrController& controller() { return memory_.controller(); }
   /// Rows of latency.csv, of all labels.
   std::vector<LatencyRow> latency_rows() const;

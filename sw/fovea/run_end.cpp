@@ -4,7 +4,6 @@
 #include <array>
 #include <cstring>
 
-#include "sw/fovea/after_all.h"
 
 namespace fovea::app {
 namespace {
@@ -23,7 +22,7 @@ RunEnd::RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCon
   auto& soc = board_.dm365;
   for (const auto& c : conditions_) {
     if (c.kind == Kind::kTime)
-      soc.end_of_instant.at(c.time, kAfterAll, [this, &c] { end(c.written, false, c.time); });
+      soc.end_of_instant.at(c.time, InstantRank::kObservers, [this, &c] { end(c.written, false, c.time); });
     if (c.kind == Kind::kPc) {
       if (!control_) control_.emplace(soc.arm.core(), debug_);
       control_->set_breakpoint(c.address);
@@ -85,7 +84,7 @@ void RunEnd::uart_sent(std::uint8_t) {
 }
 
 void RunEnd::check_for_halt() {
-  board_.dm365.end_of_instant.at(kernel_time() + kHaltCheck, kAfterAll, [this] {
+  board_.dm365.end_of_instant.at(kernel_time() + kHaltCheck, InstantRank::kObservers, [this] {
     if (met_) return;
     const std::uint32_t pc = board_.dm365.arm.core().current_pc();
     const bool now = halted();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "sw/fovea/after_all.h"
 
 namespace fovea::app {
 
@@ -46,7 +45,7 @@ void RunProfile::phase(board::Phase phase, Picoseconds at) {
 void RunProfile::interrupt(std::uint64_t cycle) {
   if (!std::as_const(core_).profile()->counts_stacks()) return;
   const Picoseconds begun = core_.time(cycle);
-  board_.dm365.end_of_instant.at(std::max(begun, kernel_time()), kAfterAll, [this, begun] {
+  board_.dm365.end_of_instant.at(std::max(begun, kernel_time()), InstantRank::kObservers, [this, begun] {
     const periph::Aintc& aintc = board_.dm365.aintc;
     std::uint64_t latched = 0;
     for (unsigned n = 0; n < periph::kInterruptCount; ++n)

@@ -125,7 +125,7 @@ class DdrBench {
         store_(params_.size_bytes()),
         ddr(params_, store_),
         checker(with_faw(sheet_of(o.config), o.tFAW)) {
-    ddr.set_command_hook(&DdrBench::hook, this);
+    listening = ddr.observe_commands(&DdrBench::hook, this);
     ddr.set_clocks(o.ddr, o.scr, 0);
     ddr.configure(o.config, 0);
   }
@@ -236,6 +236,7 @@ class DdrBench {
  public:
   mem::DdrController ddr;
   CommandChecker checker;
+  Subscription listening;  ///< reset(): the controller has no observer
 };
 
 /// Byte address of a row and bank with the default map (row : bank : column, 2 KiB rows).

@@ -35,7 +35,7 @@ TEST(PathTest, RequestsAndBytesAreConserved) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Path path;
     CommandChecker checker(sheet_of(mem::DdrConfig{}));
-    path.ddr.set_command_hook(
+    const Subscription checking = path.ddr.observe_commands(
         [](void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           static_cast<CommandChecker*>(self)->command(translate(c), bank, row, clock);
         },

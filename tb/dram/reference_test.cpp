@@ -37,7 +37,7 @@ class Production {
  public:
   explicit Production(const Setup& s)
       : params_(s), store_(params_.size_bytes()), ddr_(params_, store_) {
-    ddr_.set_command_hook(
+    listening_ = ddr_.observe_commands(
         [](void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           static_cast<Production*>(self)->command(c, bank, row, clock);
         },
@@ -155,6 +155,7 @@ class Production {
   std::array<std::uint8_t, 64> data_{};
   std::deque<MemRequest> requests_;
   mem::DdrController ddr_;
+  Subscription listening_;
 };
 
 class Oracle {

@@ -136,7 +136,7 @@ TEST(SchedulerTest, AReadPassesAnotherMastersWriteToTheSameAddress) {
     DdrBench& bench;
     std::string& text;
   } listener{b, moved};
-  b.ddr.set_command_hook(
+  const Subscription listening = b.ddr.observe_commands(
       [](void* self, mem::Cmd c, unsigned, std::uint32_t, std::uint64_t) {
         auto& l = *static_cast<Listener*>(self);
         if (c != mem::Cmd::kRd && c != mem::Cmd::kWr) return;
@@ -157,7 +157,6 @@ TEST(SchedulerTest, AReadPassesAnotherMastersWriteToTheSameAddress) {
   b.drain();
   EXPECT_EQ(later.data[0], 2);
   EXPECT_EQ(moved, "R32 W64 R32 ");
-  b.ddr.set_command_hook(nullptr, &listener);
 }
 
 TEST(SchedulerTest, ReadDoesNotPassOlderWriteOfHigherPriority) {

@@ -151,7 +151,7 @@ class Banks {
     config.refresh_interval = 400;
     ddr_.configure(config, 0);
     write_clocks_ = config.timing.WL() + mem::DdrTiming::kBurstClocks;
-    ddr_.set_command_hook(
+    listening_ = ddr_.observe_commands(
         [](void* self, mem::Cmd c, unsigned bank, std::uint32_t, std::uint64_t clock) {
           static_cast<Banks*>(self)->command(c, bank, clock);
         },
@@ -254,6 +254,7 @@ class Banks {
   mem::DdrParams params_;
   mem::BackingStore store_;
   mem::DdrController ddr_;
+  Subscription listening_;
   std::map<std::uint64_t, Given> given_;  // by clock
   std::array<Request, 8> requests_;
   Request* input_ = nullptr;

@@ -222,9 +222,9 @@ TEST_P(WaitStatesTest, ArmWaitstCostsAClockAFetch) {
   if (GetParam()) rig.strict();
   auto& soc = rig.build().dm365;
   std::vector<Picoseconds> shown;
-  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+  const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == 2 && out) shown.push_back(at);
-  };
+  });
   rig.advance(2 * kPsPerMs);
   ASSERT_EQ(shown.size(), 12u);
   const auto sled = [&](unsigned n) {  // 400 instructions: the longer stretch less the shorter one
@@ -244,9 +244,9 @@ TEST(WaitStatesKeyTest, TheKeyComesOnTopOfTheRegister) {
   rig.set("cpu.tcm.wait_states", "2 cycles");
   auto& soc = rig.build().dm365;
   std::vector<Picoseconds> shown;
-  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+  const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == 2 && out) shown.push_back(at);
-  };
+  });
   rig.advance(4 * kPsPerMs);
   ASSERT_EQ(shown.size(), 12u);
   const auto took = [&](unsigned i) { return static_cast<double>(shown[i + 1] - shown[i]); };

@@ -76,12 +76,12 @@ std::vector<Shown> run(const cpu::test::Program& program, bool strict, Picosecon
     auto& board = rig.build();
     board.load({0, program.bytes});
     bool over = false, ok = true;
-    board.dm365.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+    const Subscription pins = board.dm365.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
       if (bank != 2) return;
       const Shown s{out, at};
       ok &= ::write(ends[1], &s, sizeof s) == sizeof s;
       over = out == kLast;
-    };
+    });
     while (!over && kernel_time() < 50 * kPsPerMs) rig.advance(look);
     ::_exit(ok && over ? 0 : 1);
   }

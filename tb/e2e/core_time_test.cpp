@@ -13,9 +13,9 @@ TEST(AlarmTest, ItComesToTheClockWithNothingElsePending) {
   Rig rig(PROGRAM_DIR "/alarms.elf");
   auto& soc = rig.build().dm365;
   std::vector<std::pair<std::uint32_t, Picoseconds>> shown;
-  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+  const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == 2 && out) shown.emplace_back(out, at);
-  };
+  });
   rig.advance(kPsPerMs);
   ASSERT_EQ(shown.size(), 4u);
   for (unsigned k = 0; k < 4; ++k) ASSERT_EQ(shown[k].first, k + 1);
@@ -49,9 +49,9 @@ TEST_P(ClockChangeTest, TheChangeComesWhenItIsDue) {
   if (c.strict) rig.strict();
   auto& soc = rig.build().dm365;
   std::vector<Picoseconds> shown;
-  soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
+  const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == 2 && out) shown.push_back(at);
-  };
+  });
   rig.advance(3 * kPsPerMs);
   EXPECT_EQ(soc.arm.failure(), "");
   ASSERT_EQ(shown.size(), 48u);

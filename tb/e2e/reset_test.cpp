@@ -18,12 +18,21 @@ std::string name_of(ResetKind kind) {
   return kind == ResetKind::kPowerOn ? "PowerOn" : kind == ResetKind::kWarm ? "Warm" : "Watchdog";
 }
 
+/// Keys of a board.
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
 /// A board whose core loops.
 struct Resettable {
   Rig rig{kIdleLoop};
   board::Board& board;
   soc::Dm365& soc;
-  Resettable() : board(rig.build()), soc(board.dm365) { rig.advance(10 * kPsPerUs); }
+  explicit Resettable(const Keys& keys = {}) : board(build(keys)), soc(board.dm365) {
+    rig.advance(10 * kPsPerUs);
+  }
+  board::Board& build(const Keys& keys) {
+    for (const auto& [key, value] : keys) rig.set(key, value);
+    return rig.build();
+  }
   void reset(ResetKind kind) {
     board.reset(kind);
     rig.advance(50 * kPsPerUs);
@@ -59,14 +68,39 @@ struct Resettable {
 class EachKind : public testing::TestWithParam<ResetKind> {};
 INSTANTIATE_TEST_SUITE_P(Reset, EachKind, kKinds, [](const auto& i) { return name_of(i.param); });
 
-/// Registers that show the levels which the board drives.
-bool shows_a_state(const std::string& name) {
-  return name.find("IN_DATA") != std::string::npos;
+/// The pins that a register of the GPIO shows, "gpio.IN_DATA01" those from 0 on; none if it shows none.
+std::optional<unsigned> first_pin(const std::string& name) {
+  constexpr std::string_view kName = "gpio.IN_DATA";
+  if (!name.starts_with(kName)) return std::nullopt;
+  return 16 * static_cast<unsigned>(name[kName.size()] - '0');
 }
 
-TEST_P(EachKind, EveryRegisterReadsItsResetValue) {
-  Resettable c;
+/// A level for each pin that is neither the reset value nor its complement.
+constexpr bool driven(unsigned pin) { return pin * pin % 7 < 3; }
+
+/// The blocks of the default board, and those that only some boards have.
+struct ResetCase {
+  ResetKind kind;
+  const char* board;
+  Keys keys;
+};
+void PrintTo(const ResetCase& c, std::ostream* out) { *out << name_of(c.kind) << c.board; }
+class EachKindOnEachBoard : public testing::TestWithParam<ResetCase> {};
+const Keys kAll = {{"engine", "tlm"}, {"board.cpld", "true"}};
+INSTANTIATE_TEST_SUITE_P(Reset, EachKindOnEachBoard,
+                         testing::Values(ResetCase{ResetKind::kPowerOn, "", {}},
+                                         ResetCase{ResetKind::kWarm, "", {}},
+                                         ResetCase{ResetKind::kWatchdog, "", {}},
+                                         ResetCase{ResetKind::kPowerOn, "WithEngineAndCpld", kAll},
+                                         ResetCase{ResetKind::kWarm, "WithEngineAndCpld", kAll},
+                                         ResetCase{ResetKind::kWatchdog, "WithEngineAndCpld", kAll}),
+                         [](const auto& i) { return name_of(i.param.kind) + i.param.board; });
+
+TEST_P(EachKindOnEachBoard, EveryRegisterReadsItsResetValue) {
+  Resettable c(GetParam().keys);
+  for (unsigned pin = 0; pin < periph::kGpioPins; ++pin) c.soc.gpio.set_pin(pin, driven(pin));
   const auto at_start = c.all();
+  std::set<std::string> blocks;
   std::size_t declared = 0;
   c.board.platform.each_registers([&](const std::string& block, BusTarget& target) {
     for (const Reg* r : target.bank().regs()) {
@@ -74,21 +108,32 @@ TEST_P(EachKind, EveryRegisterReadsItsResetValue) {
       std::uint32_t write_only = 0;
       for (const Field* f : r->fields())
         if (f->mode() == Mode::kWo) write_only |= f->mask();
-      // Software cannot tell the two apart, except where a register shows the board's levels.
-      if (shows_a_state(name)) continue;
-      EXPECT_EQ(at_start.at(name), r->reset_value() & ~write_only) << name;
+      std::uint32_t expected = r->reset_value() & ~write_only;  // software cannot tell the two apart
+      if (const auto pin = first_pin(name)) {  // the board's levels
+        expected = 0;
+        for (unsigned k = *pin; k < std::min(*pin + 32, periph::kGpioPins); ++k)
+          expected |= std::uint32_t{driven(k)} << (k - *pin);
+      }
+      EXPECT_EQ(at_start.at(name), expected) << name;
       ++declared;
     }
+    blocks.insert(block);
   });
   EXPECT_GT(declared, 300u);
+  EXPECT_EQ(blocks.contains("engine"), !GetParam().keys.empty());
+  EXPECT_EQ(blocks.contains("cpld"), !GetParam().keys.empty());
   c.write_all();
   std::size_t changed = 0;
-  for (const auto& [name, value] : c.all()) changed += value != at_start.at(name);
+  const auto written = c.all();
+  for (const auto& [name, value] : written) changed += value != at_start.at(name);
   EXPECT_GT(changed, 250u);
-  c.reset(GetParam());
+  c.reset(GetParam().kind);
   auto expected = at_start;
+  if (GetParam().kind == ResetKind::kWatchdog)  // it does not leave the chip (decision 0015)
+    for (const auto& [name, value] : written)
+      if (name.starts_with("cpld.")) expected[name] = value;
   expected["pll1.RSTYPE"] = expected["pll2.RSTYPE"] =
-      GetParam() == ResetKind::kPowerOn ? 1 : GetParam() == ResetKind::kWarm ? 2 : 4;
+      GetParam().kind == ResetKind::kPowerOn ? 1 : GetParam().kind == ResetKind::kWarm ? 2 : 4;
   for (const auto& [name, value] : c.all()) EXPECT_EQ(value, expected[name]) << name;
 }
 

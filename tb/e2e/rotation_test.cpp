@@ -45,13 +45,10 @@ std::vector<oracle::Frame> output_buffers(Rig& rig) {
 std::vector<Result> run_and_keep(Rig& rig) {
   std::vector<Result> results;
   board::Board& board = rig.build();
-  auto& on_output = board.dm365.gpio.on_output;
-  const auto log = on_output;
-  on_output = [&, log](unsigned bank, std::uint32_t out, Picoseconds at) {
-    log(bank, out, at);
+  const Subscription pins = board.dm365.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds) {
     if (bank != PHASE_BANK || board::phase_of(out) != board::Phase::kRemapEnd) return;
     results.push_back({board.log.remaps().back().captured, output_buffers(rig)});
-  };
+  });
   rig.run(kLimit);
   EXPECT_EQ(rig.shown().size(), rig.params.run.frames()) << board.uart_text();
   return results;

@@ -133,6 +133,13 @@ for program in heap_arm_O2 heap_thumb_O2; do
     failures=$((failures + 1))
 done
 count() { sed -n 's/.*"'"$2"'": {"value": \([0-9]*\).*/\1/p' "$out/$1/stats.json"; }
+# What all blocks of the machine count is there, as on the board.
+for key in bus.arm_d.transactions bus.config.reads ddr.activates ddr.arm_d.wait.read.service; do
+  grep -q "\"$key\": " "$out/off/stats.json" || {
+    echo "stats.json of a program has no $key"
+    failures=$((failures + 1))
+  }
+done
 [ "$(count off cpu.icache.accesses)" = 0 ] && [ "$(count on cpu.icache.accesses)" -gt 0 ] &&
   [ "$(count on cpu.dcache.reads)" -gt 0 ] &&
   [ "$(count on cpu.cycles)" -lt "$(($(count off cpu.cycles) / 3))" ] || {

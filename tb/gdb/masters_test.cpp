@@ -200,12 +200,12 @@ struct Counter : MemObserver {
   void responded(const MemRequest&) override { ++out; }
 };
 
-/// Looking changes nothing, and whoever looked on before still does.
+/// Looking changes nothing, and who looked on before still does, meanwhile and afterwards.
 TEST(GdbMastersTest, NothingChangesByLooking) {
   const auto play = [](bool look) {
     Path path;
     Counter counter;
-    path.xbar.observe(&counter);
+    const Subscription counting = path.xbar.observe(counter);
     std::optional<GdbMasters> masters;
     if (look) masters.emplace(path.xbar, path.ddr, 0);
     std::deque<PathRequest> requests;
@@ -226,9 +226,16 @@ TEST(GdbMastersTest, NothingChangesByLooking) {
     path.drain();
     for (const auto& r : requests) out += std::to_string(r.last) + " ";
     masters.reset();
-    EXPECT_EQ(path.xbar.observe(nullptr), &counter);
     EXPECT_EQ(counter.in, 500u);
     EXPECT_EQ(counter.out, 500u);
+    PathRequest& last = requests.emplace_back();
+    last.master = Master::kVpbe;
+    last.bytes = 64;
+    last.data = data.data();
+    path.submit(last, 1000 * 200'000);
+    path.drain();
+    EXPECT_EQ(counter.in, 501u);
+    EXPECT_EQ(counter.out, 501u);
     return out;
   };
   EXPECT_EQ(play(true), play(false));

@@ -22,15 +22,21 @@ struct RegisterLogTest : testing::Test {
   Bank one, two;
   RegisterObserver* seen_one = nullptr;
   RegisterObserver* seen_two = nullptr;
+  static std::function<Subscription(RegisterObserver&)> seen_by(RegisterObserver*& one) {
+    return [&one](RegisterObserver& o) {
+      one = &o;
+      return Subscription([&one] { one = nullptr; });
+    };
+  }
   Picoseconds now = 0;
   Master master = Master::kArmD;
-  RegisterLog log{{{"one", &one, nullptr, [this](RegisterObserver* o) { seen_one = o; }},
-                   {"two", &two, nullptr, [this](RegisterObserver* o) { seen_two = o; }}},
+  RegisterLog log{{{"one", &one, nullptr, seen_by(seen_one)},
+                   {"two", &two, nullptr, seen_by(seen_two)}},
                   {[this] { return now += 1'000; }, [this] { return master; },
                    [] { return 0x8000u; }, [](std::uint32_t) { return std::string("main+0x4"); }}};
   void access(std::uint32_t offset, unsigned bytes, bool write, std::uint32_t value,
               bool gated = false) {
-    seen_one->accessed({&one, offset, bytes, write, gated, value});
+    seen_one->accessed({&one, one.register_at(offset), offset, bytes, write, gated, value});
   }
 };
 
@@ -59,7 +65,7 @@ TEST_F(RegisterLogTest, TakesWhatMatches) {
   log.start({.pattern = "^one\\.D|two"});
   access(0, 4, true, 1);
   access(8, 4, true, 2);
-  seen_two->accessed({&two, 0, 4, true, false, 3});
+  seen_two->accessed({&two, &two.ctrl, 0, 4, true, false, 3});
   EXPECT_EQ(log.text(),
             "1.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000002\n"
             "2.000 ns  pc 0x00008000 (main+0x4) arm_d wrote two.CTRL = 0x00000003 GO=1 "

@@ -410,12 +410,23 @@ class StacksByHandTest : public ::testing::Test {
  protected:
   StacksByHandTest() {
     stacks.set_functions({{0x100, 0x200}, {0x200, 0x300}, {0x300, 0x400}});
-    stacks.watch(&watched);
+    watching = stacks.watch(watched);
     stacks.start(10, 0x100);
   }
   CallStacks stacks;
   Watched watched;
+  Subscription watching;
 };
+
+TEST_F(StacksByHandTest, TheEndOfOneWatcherLeavesTheOther) {
+  Watched other;
+  Subscription others = stacks.watch(other);
+  stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
+  others.reset();
+  stacks.jump(45, 0x114, 0x1000);
+  EXPECT_EQ(other.clocks, (StackClocks{{{0x100}, 20}}));
+  EXPECT_EQ(watched.clocks, (StackClocks{{{0x100}, 20}, {{0x100, 0x200}, 15}}));
+}
 
 // main (0x100) calls 0x200 from clock 30 to 45; the handler 0x300 interrupts it from 40 to 42.
 TEST_F(StacksByHandTest, AWatcherSeesCallersAndWhatAnExceptionInterrupts) {

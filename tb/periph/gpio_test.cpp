@@ -36,6 +36,7 @@ struct System {
   test::Bus bus{"bus"}, fresh_bus{"fresh_bus"};
   test::Probe probe0{"probe0"}, probe5{"probe5"};
   std::vector<std::tuple<unsigned, std::uint32_t, Picoseconds>> outputs;
+  Subscription watching;
   System() {
     gpio.clk(clk);
     gpio.irq[0](irq0);
@@ -43,9 +44,9 @@ struct System {
     probe0.in(irq0);
     probe5.in(irq5);
     bus.socket.bind(gpio.reg_socket);
-    gpio.on_output = [this](unsigned bank, std::uint32_t out, Picoseconds t) {
+    watching = gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds t) {
       outputs.emplace_back(bank, out, t);
-    };
+    });
     gpio.set_pin(97, true);  // a DIP switch, set before the run starts
     fresh.clk(clk);
     fresh_bus.socket.bind(fresh.reg_socket);
@@ -80,16 +81,20 @@ TEST_F(GpioTest, AnObserverSeesWhatWasReadAndWritten) {
   struct Seen : RegisterObserver {
     std::vector<RegisterAccess> all;
     void accessed(const RegisterAccess& a) override { all.push_back(a); }
-  } seen;
+  } seen, longer;
   bus.write(reg(1, kOut), 0x1234'5678);
-  s.gpio.observe(&seen);
+  const Subscription to_the_end = s.gpio.observe(longer);
+  Subscription observing = s.gpio.observe(seen);
   EXPECT_EQ(bus.read(reg(1, kOut)), 0x1234'5678u);
   EXPECT_EQ(bus.read(reg(1, kOut) + 2, 2), 0x1234u);
   bus.write(reg(1, kOut) + 3, 0xFF, 1);
   EXPECT_EQ(bus.read(0xF00), 0u) << "a hole";
-  s.gpio.observe(nullptr);
+  observing.reset();
   EXPECT_EQ(bus.read(reg(1, kOut)), 0xFF34'5678u);
   ASSERT_EQ(seen.all.size(), 4u);
+  ASSERT_EQ(longer.all.size(), 5u) << "the end of one leaves the other";
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(std::tuple(longer.all[i].offset, longer.all[i].value), std::tuple(seen.all[i].offset, seen.all[i].value));
   const std::array<std::tuple<std::uint32_t, unsigned, bool, std::uint32_t>, 4> expected{
       {{reg(1, kOut), 4, false, 0x1234'5678},
        {reg(1, kOut) + 2, 2, false, 0x1234},

@@ -361,7 +361,7 @@ TEST_F(TimerTest, WhoLooksOnSeesAccessesAndWarningsAreCounted) {
   };
   notes.clear();
   Watcher watcher;
-  s.timer.observe(&watcher);
+  Subscription watching = s.timer.observe(watcher);
   bus.write(kPrd12, 0x1234);
   EXPECT_EQ(bus.read(kPrd12, 2), 0x1234u);
   EXPECT_EQ(count("reserved bits"), 0u);
@@ -376,7 +376,7 @@ TEST_F(TimerTest, WhoLooksOnSeesAccessesAndWarningsAreCounted) {
   s.gate.write(true);
   test::settle();
   EXPECT_EQ(count("while its clock is gated"), 1u);
-  s.timer.observe(nullptr);
+  watching.reset();
   bus.read(kPrd12);
   ASSERT_EQ(watcher.seen.size(), 7u);
   EXPECT_EQ(watcher.seen[0].offset, kPrd12);

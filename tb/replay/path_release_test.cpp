@@ -174,7 +174,7 @@ TEST(ReplayPathTest, ACompletionElsewhereReleasesARecord) {
   app::ReplayParams params;
   app::ReplayPath path("t", info, l, params, false);
   Outcomes o;
-  path.observe(&o);
+  const Subscription observing = path.observe(o);
   EXPECT_TRUE(path.run_before(kNever));
   ASSERT_EQ(o.last[1].size(), kCount);
   for (unsigned n = 0; n < kCount; ++n) {

@@ -57,16 +57,12 @@ constexpr std::size_t kForP99 = 1'000, kForMean = 100;
 /// first beat, a write's with its acknowledgement.
 class Latencies : public MemObserver {
  public:
-  MemObserver* before = nullptr;  // who looked on already
   bool on = false;
   /// Earlier requests are not in the sum of times. A trace does not hold what was under way when the window
   /// opened, so its first requests may find a memory at rest that was busy.
   Picoseconds exact_from = 0;
-  void submitted(const MemRequest& r, bool to_sdram) override {
-    if (before) before->submitted(r, to_sdram);
-  }
+  void submitted(const MemRequest&, bool) override {}
   void responded(const MemRequest& r) override {
-    if (before) before->responded(r);
     if (on && r.issued >= exact_from)
       for (const Picoseconds t : {r.issued, r.first, r.last})
         times_[index(r.master)] = (times_[index(r.master)] ^ t) * 0x100'0000'01B3u;
@@ -138,14 +134,12 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     if (!trace.empty()) recording = std::make_unique<app::BusTraceRun>(trace, keys, board);
     Figures f;
     Latencies latencies;
-    latencies.before = soc.scr.crossbar().observe(&latencies);
+    const Subscription observing = soc.scr.crossbar().observe(latencies);
     Picoseconds opened = 0;
     std::vector<Picoseconds> remap_ends;
-    const auto pins = soc.gpio.on_output;
-    soc.gpio.on_output = [&](unsigned bank, std::uint32_t out, Picoseconds at) {
-      pins(bank, out, at);
+    const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
       if (bank == 2 && latencies.on && ends_a_remap(out)) remap_ends.push_back(at);
-    };
+    });
     board.on_window_open = [&] {
       latencies.on = true;
       opened = kernel_time();
@@ -275,7 +269,7 @@ Figures replay(const std::string& file, const Watched& watched, const Change& ch
   Latencies latencies;
   latencies.on = true;
   latencies.exact_from = info.start + kUnderWay;
-  path.observe(&latencies);
+  const Subscription observing = path.observe(latencies);
   path.run_before(kNever);
   path.finish();
   Figures f;

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "model/board/board.h"
+#include "model/engine/remap_engine.h"
 #include "sw/fovea/board_debug.h"
 #include "sw/fovea/loader.h"
 #include "tb/soc/reach.h"
@@ -71,6 +72,34 @@ TEST_P(PlatformOf, WalkReachesEveryBlockBankAndStatistic) {
   TestBoard t(GetParam());
   EXPECT_THAT(unreached(t.board->platform), IsEmpty());
   EXPECT_THAT(undeclared(t.set), IsEmpty());
+}
+
+/// What a sleep that this block's interrupt ends is counted as; the VPSS goes by the source.
+cpu::WakeEvent expected_event(const BusTarget& block) {
+  if (dynamic_cast<const dma::EdmaCc*>(&block) || dynamic_cast<const dma::EdmaTc*>(&block))
+    return cpu::WakeEvent::kDma;
+  if (dynamic_cast<const periph::Timer64*>(&block)) return cpu::WakeEvent::kTimer;
+  if (dynamic_cast<const engine::RemapEngine*>(&block)) return cpu::WakeEvent::kEngine;
+  return cpu::WakeEvent::kOther;
+}
+
+TEST(Platform, EachInterruptIsCountedAsItsBlock) {
+  TestBoard t(Settings{{"engine", "tlm"}});
+  const Dm365& chip = t.board->dm365;
+  unsigned sources = 0;
+  for (std::size_t k = 0; k < chip.placed.size(); ++k) {
+    const Placement& row = chip.placed.row(k);
+    if (row.name == "vpss") continue;
+    EXPECT_EQ(row.wakes, expected_event(chip.placed.block(k))) << row.name;
+    for (std::size_t i = 0; i < row.irqs.size(); ++i) {
+      if (row.irqs[i].second) continue;  // ARM_INTMUX selects the first source out of reset
+      const auto source = chip.interrupt_source(row.irqs[i].input);
+      EXPECT_TRUE(source.name.starts_with(row.name + ".")) << source.name;
+      EXPECT_EQ(source.event, row.wakes) << source.name;
+      ++sources;
+    }
+  }
+  EXPECT_GT(sources, 20u);
 }
 
 TEST(Platform, AParameterThatIsNotDeclaredIsFound) {

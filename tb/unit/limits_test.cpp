@@ -12,6 +12,7 @@
 #include "sw/fovea/limits/answers.h"
 #include "sw/fovea/limits/bisection.h"
 #include "sw/fovea/limits/judge.h"
+#include "sw/fovea/limits/relaxations.h"
 #include "sw/fovea/limits/value_range.h"
 #include "sw/fovea/points/child.h"
 #include "tb/unit/support.h"
@@ -106,6 +107,26 @@ points::PointResult result_of(std::map<std::string, double, std::less<>> stats) 
   for (const auto& [name, value] : stats) r.units[name] = "1";
   r.stats = std::move(stats);
   return r;
+}
+
+// Which masters a replay can do without, typed in apart from their table.
+TEST(RelaxationsTest, AReplayLeavesOutEachMasterButTheCoreAndLoads) {
+  const ParamSet none;
+  std::vector<std::string> masters, busy;
+  for (const Relaxation& r : relaxations(none, result_of({{"bus.remap_engine.transactions", 3}}))) {
+    if (!r.replay || r.options.empty()) continue;
+    EXPECT_EQ(r.options.front(), "--without");
+    masters.push_back(fmt::format("{}: {} ({})", r.name, r.resource, r.options.back()));
+    if (r.idle.empty()) busy.push_back(r.name);
+  }
+  EXPECT_THAT(masters, testing::UnorderedElementsAre(
+                           "camera: the camera's traffic (vpfe)", "display: the display's traffic (vpbe)",
+                           "edma_tc0: the traffic of EDMA controller 0 (edma_tc0)",
+                           "edma_tc1: the traffic of EDMA controller 1 (edma_tc1)",
+                           "edma_tc2: the traffic of EDMA controller 2 (edma_tc2)",
+                           "edma_tc3: the traffic of EDMA controller 3 (edma_tc3)",
+                           "remap_engine: the remap engine's traffic (remap_engine)"));
+  EXPECT_THAT(busy, testing::ElementsAre("remap_engine"));
 }
 
 TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {

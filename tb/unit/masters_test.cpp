@@ -45,6 +45,28 @@ TEST(MasterTableTest, TransferControllersAndWidePorts) {
   EXPECT_EQ(kMasters.find("usb", true), nullptr);
 }
 
+TEST(MasterTableTest, TheCoreAndWhoMovesDataBesideIt) {
+  std::string core, data;
+  for (const MasterInfo& r : kMasters.rows) {
+    if (is_core(r.id)) core += std::string(r.name) + " ";
+    if (moves_data(r)) data += std::string(r.name) + " ";
+  }
+  EXPECT_EQ(core, "arm_i arm_d ");
+  EXPECT_EQ(data, "edma_tc0_read edma_tc1_read edma_tc2_read edma_tc3_read remap_engine "
+                  "edma_tc0_write edma_tc1_write edma_tc2_write edma_tc3_write ");
+}
+
+TEST(MasterTableTest, EqualsTakeTurnsInTheirOrder) {
+  for (std::size_t last = 0; last < kMasterCount; ++last) {
+    std::size_t m = last;
+    for (unsigned turn = 0; turn < kMasterCount; ++turn) {
+      m = m + 1 == kMasterCount ? 0 : m + 1;
+      EXPECT_EQ(turns_after(last, m), turn);
+    }
+    EXPECT_EQ(m, last) << "the last of all to have another turn";
+  }
+}
+
 /// The table with one more master at its end, as a new block would add it.
 constexpr MasterTable<kMasterCount + 1> with(MasterInfo row) {
   MasterTable<kMasterCount + 1> t;
@@ -53,7 +75,7 @@ constexpr MasterTable<kMasterCount + 1> with(MasterInfo row) {
   return t;
 }
 constexpr MasterInfo kUsb{.id = Master::kCount, .name = "usb", .statistics = "usb",
-                          .most_outstanding = 4, .on_chip = false};
+                          .who = "the USB controller", .most_outstanding = 4, .on_chip = false};
 
 TEST(MasterTableTest, ANewRowAtTheEndHasItsOwnStatisticsAndMovesNoOther) {
   constexpr auto table = with(kUsb);
@@ -82,6 +104,9 @@ TEST(MasterTableTest, EachDefectIsNamed) {
   EXPECT_EQ(defect_with(row), "a master without a name");
   row = kUsb;
   row.statistics = "";
+  EXPECT_EQ(defect_with(row), "a master without a name");
+  row = kUsb;
+  row.who = "";
   EXPECT_EQ(defect_with(row), "a master without a name");
   row = kUsb;
   row.name = "vpfe";

@@ -58,6 +58,24 @@ TEST_F(ObserversTest, AMovedSubscriptionKeepsTheEntryAndAnAssignedOneReleasesIts
   EXPECT_EQ(calls, "ab");
 }
 
+TEST(ObserversChangeTest, TheFirstAndTheLastOneChangeWhetherAnybodyObserves) {
+  std::string changes;
+  Observers<int*> list{[&] { changes += list.empty() ? '-' : '+'; }};
+  int x = 0;
+  EXPECT_TRUE(list.empty());
+  Subscription a = list.add(&x), b = list.add(&x);
+  EXPECT_FALSE(list.empty());
+  EXPECT_EQ(changes, "+");
+  a.reset();
+  EXPECT_FALSE(list.empty()) << "the end of one is not the end of both";
+  EXPECT_EQ(changes, "+");
+  b.reset();
+  EXPECT_TRUE(list.empty());
+  EXPECT_EQ(changes, "+-");
+  b = list.add(&x);
+  EXPECT_EQ(changes, "+-+");
+}
+
 TEST_F(ObserversTest, AnObserverMayRemoveItselfAndOthersWhileItIsCalled) {
   Subscription a, b, c;
   a = list.add([&] {

@@ -67,8 +67,8 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   Port& p = ports_[index(request.master)];
   FOVEA_CHECK(p.tail - p.head < kQueue, "a master exceeds the crossbar's queue");
   request.in_path.slave = static_cast<std::uint8_t>(slave);
-  if (observer_) [[unlikely]]
-    observer_->submitted(request, slave == Slave::kDdr);
+  if (observed()) [[unlikely]]
+    report_request(request, slave == Slave::kDdr);
   const bool head = p.empty();
   Port::Item& item = p.queue[p.tail++ % kQueue];
   SlaveState& s = slaves_[request.in_path.slave];
@@ -92,6 +92,15 @@ void Crossbar::submit(MemRequest& request, Slave slave) {
   next_ = scr_.edge(edge);
 }
 
+[[gnu::noinline]] void Crossbar::report_request(const MemRequest& r, bool to_sdram) {
+  observers_.each([&](MemObserver* o) { o->submitted(r, to_sdram); });
+}
+
+[[gnu::noinline]] void Crossbar::report_outcome(const MemRequest& r) {
+  const bool sdram = r.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr);
+  observers_.each([&](MemObserver* o) { sdram ? o->responded(r) : o->register_done(r); });
+}
+
 /// Of the ports in `set` the one of the highest priority, then the next one after the last winner.
 inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
   std::uint32_t equals = 0;
@@ -105,8 +114,7 @@ inline unsigned Crossbar::winner(const SlaveState& s, std::uint32_t set) const {
 bool Crossbar::goes_first(unsigned a, const SlaveState& of_a, unsigned b,
                           const SlaveState& of_b) const {
   const auto rank = [this](unsigned m, const SlaveState& s) {
-    const auto turn = static_cast<unsigned>((m + kMasterCount - s.last - 1) % kMasterCount);
-    return (ports_[m].priority * 64u + turn) * 64u + m;
+    return (ports_[m].priority * 64u + turns_after(s.last, m)) * 64u + m;
   };
   return rank(a, of_a) < rank(b, of_b);
 }
@@ -274,8 +282,8 @@ void Crossbar::settle_outcome(MemRequest& request, const SlaveOutcome& outcome) 
     slaves_[request.in_path.slave].open_to = ~0u;
     plan();
   }
-  if (observer_) [[unlikely]]
-    ddr ? observer_->responded(request) : observer_->register_done(request);
+  if (observed()) [[unlikely]]
+    report_outcome(request);
 }
 
 }  // namespace fovea::bus

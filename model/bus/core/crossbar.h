@@ -15,6 +15,7 @@
 #include "model/common/clock.h"
 #include "model/common/mem_observer.h"
 #include "model/common/mem_request.h"
+#include "model/common/observers.h"
 #include "model/common/stats.h"
 #include "model/common/waits.h"
 
@@ -53,20 +54,20 @@ class Crossbar {
   void set_clock(Frequency scr, Picoseconds at);
   /// 0 highest .. 7; takes effect for arbitration strictly after the call's time.
   void set_priority(Master m, unsigned priority);
+  std::uint8_t priority(Master m) const { return ports_[index(m)].priority; }
 
-  /// Sets the observer of all requests; null: none. @return the one before
-  MemObserver* observe(MemObserver* observer) { return std::exchange(observer_, observer); }
+  /// Adds an observer of all requests, which must outlive the subscription.
+  Subscription observe(MemObserver& observer) { return observers_.add(&observer); }
 
   /// Puts a request on its master's port at request.issued: not before the master's earlier ones,
   /// and before any decision later than that was taken. It stays where it is until its response.
   void submit(MemRequest& request, Slave slave);
   /// The next arbitration, kNever if there is nothing to arbitrate.
   Picoseconds next_decision() const { return next_; }
-  const Picoseconds* next_decision_place() const { return &next_; }
   template <CrossbarHost Host>
   void step(Host& host);
 
-  bool observed() const { return observer_; }
+  bool observed() const { return !observers_.empty(); }
   /// The grant of a request to the SDRAM whose port has not been called, if it comes before the
   /// next one planned: its time is known at once. `at` is kNever if somebody else has a say.
   struct UncontendedGrant {
@@ -76,7 +77,7 @@ class Crossbar {
   UncontendedGrant uncontended_grant(const MemRequest& r) const {
     const SlaveState& s = slaves_[static_cast<std::size_t>(Slave::kDdr)];
     UncontendedGrant g;
-    if (waiting_ >> index(r.master) & 1u || observer_ || r.locked || s.blocked ||
+    if (waiting_ >> index(r.master) & 1u || observed() || r.locked || s.blocked ||
         s.open_to != ~0u || !scr_.running())
       return g;
     g.crossed = scr_.edge_after(r.issued) + ports_[index(r.master)].request_latency;
@@ -199,6 +200,8 @@ class Crossbar {
     std::uint32_t candidates() const { return blocked ? 0 : heads & open_to; }
   };
 
+  void report_request(const MemRequest& r, bool to_sdram);
+  void report_outcome(const MemRequest& r);
   void plan();
   template <CrossbarHost Host>
   void grant(Host& host, MemRequest& request, std::uint64_t crossed, std::uint32_t grants);
@@ -212,8 +215,8 @@ class Crossbar {
     set_outcome(request, at, at);
     request.error = false;
     charge(request, Culprit::kBridge, request.first - request.in_path.accepted_at);
-    if (observer_) [[unlikely]]
-      observer_->responded(request);
+    if (observed()) [[unlikely]]
+      report_outcome(request);
     host.respond(request);
   }
   /// Until a write has its outcome, `first` is when it was granted.
@@ -243,7 +246,7 @@ class Crossbar {
     if (r.parts) r.parts->add(c, t);
   }
 
-  MemObserver* observer_ = nullptr;
+  Observers<MemObserver*> observers_;
   Clock scr_;
   std::array<Port, kMasterCount> ports_;
   std::array<SlaveState, kSlaveCount> slaves_;

@@ -47,7 +47,6 @@ struct MasterPortParams : ParamGroup {
               "not remap the 25 PAL frames a second that were reported for a DM365"};
     return {"1 cycles", "4 cycles", "from a register stage to a clock-crossing bridge"};
   }
-  static bool is_core(Master m) { return master_info(m).bridge == Bridge::kCore; }
   static bool is_video(Master m) { return master_info(m).bridge == Bridge::kVideo; }
   /// log2 of the bytes of a beat.
   unsigned beat_log2() const { return 1 + static_cast<unsigned>(width.index()); }

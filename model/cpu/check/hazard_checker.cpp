@@ -59,7 +59,7 @@ void HazardChecker::arrived(const MemRequest& r, Picoseconds at) {
 
 /// `ti` serves a read before another master's older write, even one to the same address.
 void HazardChecker::moved(Master master, bool write, std::uint32_t address, unsigned bytes) {
-  if (master == Master::kArmD || master == Master::kArmI) {
+  if (is_core(master)) {
     if (write || bytes != kLineBytes) return;
     for (const Waiting& w : waiting_)
       if (w.address < address + kLineBytes && address < w.address + w.bytes) passed(master, w, address);

@@ -43,7 +43,7 @@ void CallStacks::tell(std::uint64_t cycle) {
   active_.clear();
   for (const std::size_t k : interrupted_) append(stacks_[k].node);
   append(stacks_[current_].node);
-  watcher_->ran(active_, last_, cycle);
+  watchers_.each([&](Watcher* w) { w->ran(active_, last_, cycle); });
 }
 
 /// Stacks of the program before are forgotten, but not what was counted.

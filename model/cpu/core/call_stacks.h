@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "model/common/observers.h"
+
 namespace fovea::cpu {
 
 /// Follows calls, returns and everything that is neither, for each of the program's stacks: the clocks
@@ -55,8 +57,8 @@ class CallStacks {
     /// @param functions outermost first, with those that an exception has interrupted
     virtual void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) = 0;
   };
-  /// Also while nothing is counted; null: none.
-  void watch(Watcher* watcher) { watcher_ = watcher; }
+  /// Also while nothing is counted. The watcher must outlive the subscription.
+  Subscription watch(Watcher& watcher) { return watchers_.add(&watcher); }
 
   struct Path {
     std::vector<std::uint32_t> functions;  ///< outermost first
@@ -115,7 +117,7 @@ class CallStacks {
   };
 
   void elapse(std::uint64_t cycle) {
-    if (watcher_) [[unlikely]]
+    if (!watchers_.empty()) [[unlikely]]
       tell(cycle);
     if (counting_) {
       nodes_[stacks_[current_].node].clocks += cycle - last_;
@@ -145,7 +147,7 @@ class CallStacks {
   std::vector<std::size_t> interrupted_;  // stacks, innermost last
   std::uint64_t last_ = 0;
   bool counting_ = true;
-  Watcher* watcher_ = nullptr;
+  Observers<Watcher*> watchers_;
   std::vector<std::uint32_t> active_;  // for it
 };
 

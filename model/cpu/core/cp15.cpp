@@ -104,7 +104,7 @@ void Core::set_ram_region(bool data, std::uint32_t value) {
   if ((value & 0xFFFFF000u) != (region & 0xFFFFF000u))
     Diagnostics::instance().not_modelled("moving a TCM region by CP15 c9,c1");
   region = (region & ~1u) | (value & 1u);
-  const std::uint32_t bytes = (value & 1u) ? 32 * 1024 : 0;
+  const std::uint32_t bytes = (value & 1u) ? ram_.size() : 0;
   data ? ram_.set_dtcm(bytes) : ram_.set_itcm(bytes);
   forget_translations();
 }

@@ -61,8 +61,8 @@ void Core::reset(std::uint32_t entry, Picoseconds now) {
   const bool ram = !ram_.empty();
   system_.itcm_region = ram ? 6u << 2 | 1u : 0;
   system_.dtcm_region = ram ? InternalRam::kDtcmBase | 6u << 2 | 1u : 0;
-  ram_.set_itcm(ram ? 32 * 1024 : 0);
-  ram_.set_dtcm(ram ? 32 * 1024 : 0);
+  ram_.set_itcm(ram_.size());
+  ram_.set_dtcm(ram_.size());
   mmu_.reset();
   data_.reset();
   fetch_.reset();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "model/contract/memory_map.h"
 #include "model/cpu/core/bus_interface.h"
 #include "model/cpu/core/params.h"
 #include "model/cpu/core/stall_ledger.h"
@@ -17,7 +18,7 @@ namespace fovea::cpu {
 /// before that. Between these two, each access of the core is checked in access().
 class InternalRam {
  public:
-  static constexpr std::uint32_t kDtcmBase = 0x0001'0000;
+  static constexpr std::uint32_t kDtcmBase = INTERNAL_RAM_DATA_BASE;
 
   InternalRam(const CpuParams& params, BusInterface& interface, StallLedger& ledger,
               std::span<std::uint8_t> bytes)

@@ -75,17 +75,8 @@ void DdrController::configure(const DdrConfig& config, Picoseconds at) {
   plan_anew();
 }
 
-void DdrController::set_command_hook(CommandHook hook, void* self) {
-  std::erase_if(listeners_, [&](const auto& l) { return l.second == self; });
-  if (hook) listeners_.emplace_back(hook, self);
-  hook_ = nullptr;
-  hook_self_ = this;
-  if (listeners_.size() == 1) std::tie(hook_, hook_self_) = listeners_.front();
-  if (listeners_.size() < 2) return;
-  hook_ = [](void* all, Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
-    for (const auto& [one, its_self] : static_cast<DdrController*>(all)->listeners_)
-      one(its_self, cmd, bank, row, clock);
-  };
+void DdrController::call_hooks(Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
+  hooks_.each([&](const Hook& hook) { hook.call(hook.self, cmd, bank, row, clock); });
 }
 
 }  // namespace fovea::mem

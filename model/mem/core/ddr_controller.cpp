@@ -217,9 +217,9 @@ void DdrController::last_column() {
   const Entry& e = *plan_.choice.entry;
   const std::uint64_t clock = plan_.choice.at;
   stats.bursts += columns_left_;
-  if (hook_) [[unlikely]] {
+  if (!hooks_.empty()) [[unlikely]] {
     for (; columns_left_ > 1; --columns_left_, next_column_ += DdrTiming::kBurstClocks)
-      hook_(hook_self_, kCmd, e.bank, e.row, next_column_);
+      call_hooks(kCmd, e.bank, e.row, next_column_);
   }
   issue_last_column<kCmd>(e, clock);
   in_burst_ = false;

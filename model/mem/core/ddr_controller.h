@@ -11,6 +11,7 @@
 #include "model/common/clock.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
+#include "model/common/observers.h"
 #include "model/common/waits.h"
 #include "model/mem/core/backing_store.h"
 #include "model/mem/core/command_queue.h"
@@ -142,11 +143,10 @@ class DdrController {
   const Clock& ddr_clock() const { return ddr_; }
   /// A refresh interval counts from the first edge after this time, at or before `t`; 0: none does.
   Picoseconds interval_start(Picoseconds t) const;
-  /// Called with each DRAM command, for checkers and traces. Several may listen, each with its own
-  /// `self`; null: this one no more.
+  /// Called with each DRAM command, for checkers and traces, as long as the subscription lives.
   using CommandHook = void (*)(void* self, Cmd, unsigned bank, std::uint32_t row,
                                std::uint64_t clock);
-  void set_command_hook(CommandHook hook, void* self);
+  Subscription observe_commands(CommandHook hook, void* self) { return hooks_.add({hook, self}); }
   /// Within a hook called with a read or a write: the request whose first column that is, and whose data have just
   /// moved; null: it is another column.
   const QueueEntry* beginning() const { return in_burst_ ? nullptr : plan_.choice.entry; }
@@ -183,9 +183,10 @@ class DdrController {
   template <Cmd kCmd>
   void note(std::uint64_t clock, Picoseconds at, unsigned burst = 0);
   void call_hook(Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock) {
-    if (hook_) [[unlikely]]
-      hook_(hook_self_, cmd, bank, row, clock);
+    if (!hooks_.empty()) [[unlikely]]
+      call_hooks(cmd, bank, row, clock);
   }
+  void call_hooks(Cmd cmd, unsigned bank, std::uint32_t row, std::uint64_t clock);
   /// `at`: of the clock; a decision's is next_.
   template <Cmd kCmd>
   void issue(unsigned bank, std::uint32_t row, std::uint64_t clock, Picoseconds at);
@@ -292,9 +293,11 @@ class DdrController {
   std::uint64_t calm_until_ = 0;         // and no refresh is urgent
   std::uint64_t idle_calm_ = 0;          // nothing to do before this edge while nothing is queued
 
-  std::vector<std::pair<CommandHook, void*>> listeners_;
-  CommandHook hook_ = nullptr;  // the only listener, or one that calls all
-  void* hook_self_ = nullptr;
+  struct Hook {
+    CommandHook call;
+    void* self;
+  };
+  Observers<Hook> hooks_;
 };
 
 }  // namespace fovea::mem

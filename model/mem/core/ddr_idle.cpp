@@ -59,7 +59,7 @@ namespace fovea::mem {
 /// come as they fall due, one an interval, and leave nothing but their number.
 void DdrController::pass_over_refreshes(std::uint64_t until) {
   const std::uint64_t interval = refresh_.interval(), expiry = refresh_.next_expiry();
-  if (hook_ || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
+  if (!hooks_.empty() || interval <= config_.timing.nRFC || config_.low_power != LowPower::kOff) return;
   if (until < expiry || until - expiry < 2 * WaitAttribution::kHistory * interval) return;
   if (!device_.all_closed() || expiry < std::max(command_free_, device_.earliest_refresh()))
     return;

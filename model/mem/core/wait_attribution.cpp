@@ -5,10 +5,15 @@
 namespace fovea::mem {
 namespace {
 
-constexpr Culprit culprit_of(std::size_t cause) {
-  constexpr std::array kRest = {Culprit::kTurnaround, Culprit::kRefresh, Culprit::kPowerDown};
-  return cause < kMasterCount ? static_cast<Culprit>(cause) : kRest[cause - kMasterCount];
-}
+constexpr std::array<Culprit, WaitAttribution::kCauses> kCulpritOf = [] {
+  std::array<Culprit, WaitAttribution::kCauses> of{};
+  for (const MasterInfo& r : kMasters.rows) of[index(r.id)] = culprit(r.id);
+  of[WaitAttribution::kTurned] = Culprit::kTurnaround;
+  of[WaitAttribution::kRefreshed] = Culprit::kRefresh;
+  of[WaitAttribution::kAsleep] = Culprit::kPowerDown;
+  return of;
+}();
+constexpr Culprit culprit_of(std::size_t cause) { return kCulpritOf[cause]; }
 
 }  // namespace
 
@@ -89,8 +94,6 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
 [[gnu::always_inline]] inline void WaitAttribution::attribute_by_totals(
     const QueueEntry& e, const Baseline& baseline, std::uint64_t ready, const Division& newest,
     Picoseconds at) {
-  static_assert(index(culprit_of(kTurned)) + 1 == index(culprit_of(kRefreshed)) &&
-                index(culprit_of(kTurned)) + 2 == index(culprit_of(kAsleep)));
   const std::uint64_t end = issued_;
   const std::uint64_t oldest = end - std::min<std::uint64_t>(end, kHistory - 1);
   Picoseconds row = 0;
@@ -105,13 +108,13 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
   std::optional<Waits> before;
   if (e.request.parts) before = w;
   w.add_masters(totals_.data(), baseline.totals.data());
-  constexpr std::size_t kRest = index(culprit_of(kTurned));
-  store_pair(&w.ps[kRest], load_pair(&w.ps[kRest]) + (load_pair(&totals_[kTurned]) -
-                                                      load_pair(&baseline.totals[kTurned])));
-  w.ps[kRest + 2] += totals_[kAsleep] - baseline.totals[kAsleep];
+  const auto since = [&](Cause c) { return totals_[c] - baseline.totals[c]; };
+  const Picoseconds turned = since(kTurned), refreshed = since(kRefreshed), asleep = since(kAsleep);
+  w.add(Culprit::kRefresh, refreshed);
+  w.add(Culprit::kPowerDown, asleep);
   w.add(culprit_of(late_cause_), late_.itself);
   w.add(culprit_of(command(end - 1).cause), newest.itself);
-  w.add(Culprit::kTurnaround, late_.turned + newest.turned);
+  w.add(Culprit::kTurnaround, turned + late_.turned + newest.turned);
   w.take_back(culprit(e.request.master), row);
   w.add(closed_other ? Culprit::kRowConflict : Culprit::kRowMiss, row);
   if (!before) return;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/common/masters.h"
 #include "sw/fovea/explain/words.h"
 #include "sw/fovea/sleep.h"
 
@@ -35,9 +36,11 @@ constexpr std::string_view kTable = "lut";
 /// as long as the core sleeps in it, waiting for these.
 bool core_moves_the_pixels(const Run& run) {
   double others = 0;
-  for (const auto* name : {"edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3", "remap_engine"})
+  for (std::size_t stat = 0; stat < kStatCount; ++stat) {
+    if (!moves_data(master_info(master_of_stat(stat)))) continue;
     for (const auto* way : {"read", "write"})
-      others += run.value_or_zero(fmt::format("bus.{}.{}_bytes", name, way));
+      others += run.value_or_zero(fmt::format("bus.{}.{}_bytes", kStatNames[stat], way));
+  }
   const double core =
       run.value_or_zero("bus.arm_d.read_bytes") + run.value_or_zero("bus.arm_d.write_bytes");
   return others < 0.05 * core;

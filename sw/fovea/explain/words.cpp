@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model/common/masters.h"
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/sleep.h"
 
@@ -36,16 +37,18 @@ constexpr std::array kCulprits{
     Words{"turnaround", "on turning the data bus between reads and writes"},
     Words{"power_down", "on waking the SDRAM"}};
 
-constexpr std::array kMasters{
-    Words{"vpbe", "the display"},         Words{"vpfe", "the camera"},
-    Words{"load", "the load generator"},  Words{"remap_engine", "the remap engine"},
-    Words{"arm_i", "the core's fetches"}, Words{"arm_d", "the core's data"}};
-
 template <std::size_t N>
 std::string_view look_up(const std::array<Words, N>& table, std::string_view key) {
   for (const auto& [name, words] : table)
     if (name == key) return words;
   return {};
+}
+
+/// The row of a culprit that is a master, by the name of its port or by that in the statistics.
+const MasterInfo* master_row(std::string_view culprit) {
+  for (const MasterInfo& r : kMasters.rows)
+    if (r.name == culprit || r.statistics == culprit) return &r;
+  return nullptr;
 }
 
 }  // namespace
@@ -67,9 +70,8 @@ std::string waits_or_sleeps_for(std::string_view cause) {
 }
 
 std::string master(std::string_view culprit) {
-  std::string_view words = look_up(kMasters, culprit);
-  if (words.empty() && culprit.starts_with("edma_tc")) words = "the EDMA";
-  return std::string(words);
+  const MasterInfo* row = master_row(culprit);
+  return row ? std::string(row->who) : "";
 }
 
 std::string spent(std::string_view culprit) {
@@ -81,7 +83,7 @@ std::string spent(std::string_view culprit) {
 std::string spent_by_port(std::string_view culprit) {
   if (culprit == "own") return "behind other requests of its own";
   if (culprit == "bridge") return "in its bridge to the crossbar";
-  if (culprit == "arm_d" || culprit == "arm_i") return "while the core is served";
+  if (const MasterInfo* row = master_row(culprit); row && is_core(row->id)) return "while the core is served";
   return spent(culprit);
 }
 

@@ -7,6 +7,7 @@
 
 #include "model/board/clock_presets.h"
 #include "model/common/check.h"
+#include "model/common/masters.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/clock_setting.h"
 
@@ -69,16 +70,6 @@ const std::vector<Row>& rows_of_replays() {
   };
   return rows;
 }
-
-/// Masters whose traffic is left out of a replay, one at a time.
-constexpr struct {
-  const char *master, *name, *resource;
-} kInputs[] = {{"vpfe", "camera", "the camera's traffic"},
-               {"vpbe", "display", "the display's traffic"},
-               {"edma_tc0", "edma_tc0", "the traffic of EDMA controller 0"},
-               {"edma_tc1", "edma_tc1", "the traffic of EDMA controller 1"},
-               {"edma_tc2", "edma_tc2", "the traffic of EDMA controller 2"},
-               {"edma_tc3", "edma_tc3", "the traffic of EDMA controller 3"}};
 
 bool busy(const points::PointResult& plain, std::string_view master) {
   if (master.empty()) return true;
@@ -154,6 +145,32 @@ void add_loads(const ParamSet& params, std::vector<Relaxation>& out) {
   }
 }
 
+/// "the remap engine" without its article.
+std::string noun(std::string_view who) {
+  constexpr std::string_view kThe = "the ";
+  return std::string(who.starts_with(kThe) ? who.substr(kThe.size()) : who);
+}
+
+/// Each master but the core, whose traffic is left out of a replay: by what people call it, or by its own
+/// name where several are called the same. Synthetic loads have relaxations by parameter.
+void add_masters(const points::PointResult& plain, std::vector<Relaxation>& out) {
+  for (std::size_t stat = 0; stat < kStatCount; ++stat) {
+    const MasterInfo& row = master_info(master_of_stat(stat));
+    if (is_core(row.id) || row.synthetic) continue;
+    const bool shared = std::any_of(kMasters.rows.begin(), kMasters.rows.end(), [&](const MasterInfo& r) {
+      return r.who == row.who && r.statistics != row.statistics;
+    });
+    std::string name = shared ? std::string(row.statistics) : noun(row.who);
+    std::replace(name.begin(), name.end(), ' ', '_');
+    Relaxation r{name,
+                 shared ? fmt::format("the traffic of {} controller {}", noun(row.who), row.unit)
+                        : fmt::format("{}'s traffic", row.who),
+                 "without it", true, {}, {"--without", std::string(row.statistics)}, {}};
+    if (!busy(plain, row.statistics)) r.idle = "no traffic";
+    out.push_back(std::move(r));
+  }
+}
+
 }  // namespace
 
 std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointResult& plain) {
@@ -164,11 +181,7 @@ std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointR
   add_priorities(params, plain, out);
   add_loads(params, out);
   for (const Row& row : rows_of_replays()) add_row(row, nullptr, plain, out);
-  for (const auto& input : kInputs) {
-    Relaxation r{input.name, input.resource, "without it", true, {}, {"--without", input.master}, {}};
-    if (!busy(plain, input.master)) r.idle = "no traffic";
-    out.push_back(std::move(r));
-  }
+  add_masters(plain, out);
   return out;
 }
 

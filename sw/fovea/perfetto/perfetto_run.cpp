@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "model/common/check.h"
-#include "sw/fovea/after_all.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/run_until.h"
 
@@ -57,11 +56,9 @@ PerfettoRun::PerfettoRun(const PerfettoRequest& request, board::Board& board)
     for (const unsigned write : {0u, 1u})
       bandwidth_[i][write] = file_->counter(
           "bandwidth", fmt::format("{} {}", kStatNames[i], write ? "writes" : "reads"), "MB/s");
-  const auto others = board.dm365.gpio.on_output;
-  board.dm365.gpio.on_output = [this, others](unsigned bank, std::uint32_t out, Picoseconds at) {
-    others(bank, out, at);
+  outputs_ = board.dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank == PHASE_BANK) pins(out, at);
-  };
+  });
   watch_interrupts();
   watch_transfers();
   if (from) begin_at(*from);
@@ -76,7 +73,7 @@ void PerfettoRun::watch_functions(cpu::ClockProfile& profile, PerfettoFunctions:
   functions_ = std::make_unique<PerfettoFunctions>(
       *file_, std::move(name), [&core](std::uint64_t cycle) { return core.time(cycle); },
       [&profile](std::uint64_t cycle) { profile.stacks.count(cycle, profile.counts_stacks()); });
-  profile.stacks.watch(functions_.get());
+  watching_ = profile.stacks.watch(*functions_);
 }
 
 void PerfettoRun::watch_interrupts() {
@@ -139,12 +136,12 @@ void PerfettoRun::watch_transfers() {
 }
 
 void PerfettoRun::begin_at(Picoseconds at) {
-  board_.dm365.end_of_instant.at(at, kAfterAll, [this, at] { begin(at); });
+  board_.dm365.end_of_instant.at(at, InstantRank::kObservers, [this, at] { begin(at); });
 }
 
 void PerfettoRun::end_at(Picoseconds at) {
   until_ = std::min(until_, at);
-  board_.dm365.end_of_instant.at(std::max(at, kernel_time()), kAfterAll, [this] { end(); });
+  board_.dm365.end_of_instant.at(std::max(at, kernel_time()), InstantRank::kObservers, [this] { end(); });
 }
 
 void PerfettoRun::window_opened() {
@@ -164,7 +161,7 @@ void PerfettoRun::begin(Picoseconds at) {
   on_ = true;
   from_ = at;
   if (request_.trigger.empty() && request_.duration != kNever) end_at(at + request_.duration);
-  next_ = board_.dm365.scr.crossbar().observe(this);
+  requests_ = board_.dm365.scr.crossbar().observe(*this);
   if (functions_) functions_->start(at);
   sample();
 }
@@ -176,7 +173,7 @@ void PerfettoRun::end() {
   for (const Line& l : lines_)
     if (l.since && at > from_) line_slice(l, at);
   if (functions_) functions_->finish(at);
-  board_.dm365.scr.crossbar().observe(next_);
+  requests_.reset();
   on_ = false;
   over_ = true;
 }
@@ -209,7 +206,7 @@ void PerfettoRun::sample() {
   activates_ = activates;
   bursts_ = bursts;
   sampled_ = now;
-  soc.end_of_instant.at(now + kSample, kAfterAll, [this] { sample(); });
+  soc.end_of_instant.at(now + kSample, InstantRank::kObservers, [this] { sample(); });
 }
 
 void PerfettoRun::pins(std::uint32_t levels, Picoseconds at) {
@@ -244,10 +241,6 @@ void PerfettoRun::frame(const video::DisplayFrame& shown, const board::FrameReco
     end_at(kernel_time() + (request_.duration == kNever ? 0 : request_.duration));
 }
 
-void PerfettoRun::submitted(const MemRequest& r, bool to_sdram) {
-  if (next_) next_->submitted(r, to_sdram);
-}
-
 void PerfettoRun::request(const MemRequest& r, const char* what) {
   if (r.issued < from_ || r.issued >= until_) return;
   char text[48];
@@ -256,12 +249,10 @@ void PerfettoRun::request(const MemRequest& r, const char* what) {
 }
 
 void PerfettoRun::responded(const MemRequest& r) {
-  if (next_) next_->responded(r);
   request(r, r.write ? "write" : "read");
 }
 
 void PerfettoRun::register_done(const MemRequest& r) {
-  if (next_) next_->register_done(r);
   if (r.in_path.slave == static_cast<std::uint8_t>(bus::Slave::kInternalRam))
     request(r, r.write ? "RAM write" : "RAM read");
   else

@@ -40,7 +40,7 @@ class PerfettoRun final : private MemObserver {
   std::string finish();
 
  private:
-  void submitted(const MemRequest& r, bool to_sdram) override;
+  void submitted(const MemRequest&, bool) override {}
   void responded(const MemRequest& r) override;
   void register_done(const MemRequest& r) override;
 
@@ -71,13 +71,14 @@ class PerfettoRun final : private MemObserver {
   std::unique_ptr<PerfettoFile> file_;
   bool on_ = false, over_ = false;
   Picoseconds from_ = 0, until_ = kNever;
-  MemObserver* next_ = nullptr;
+  Subscription requests_, outputs_;
   std::array<std::unique_ptr<PerfettoLanes>, kMasterCount> masters_;
   PerfettoFile::Track phases_, capture_, remap_, display_;
   std::optional<std::pair<std::string, Picoseconds>> phase_;
   std::deque<Line> lines_;
   std::map<std::string, PerfettoFile::Track> line_tracks_;
   std::unique_ptr<PerfettoFunctions> functions_;
+  Subscription watching_;
   struct Transfer {
     dma::TransferRequest request;
     Picoseconds at;

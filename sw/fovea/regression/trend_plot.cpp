@@ -76,101 +76,137 @@ std::string short_name(const std::string& commit) {
   return hash ? commit.substr(0, 9) : commit.size() > 14 ? commit.substr(0, 13) + "…" : commit;
 }
 
+/// A panel for each figure, one above the other, over the commits from left to right.
+class TrendPlot {
+ public:
+  TrendPlot(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures) : lines_(lines) {
+    for (const auto& line : lines) {
+      if (std::find(commits_.begin(), commits_.end(), line.commit) == commits_.end())
+        commits_.push_back(line.commit);
+      if (std::find(experiments_.begin(), experiments_.end(), line.experiment) == experiments_.end())
+        experiments_.push_back(line.experiment);
+    }
+    for (const auto& name : figures)
+      if (std::any_of(lines.begin(), lines.end(), [&](const auto& l) { return figure_of(l, name); }))
+        shown_.push_back(name);
+    if (shown_.empty()) throw UserError("none of the figures has a value in the database; nothing to plot");
+    relative_ = experiments_.size() > 1;
+  }
+
+  std::string svg() const {
+    const double height = kTop + static_cast<double>(shown_.size()) * (kPanel + kGap) + kLabel;
+    const double width = kLeft + kPlot + kRight;
+    std::string out = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\" role=\"img\" "
+        "aria-label=\"Figures over commits\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+        width, height);
+    out += legend();
+    for (std::size_t p = 0; p < shown_.size(); ++p)
+      out += panel(shown_[p], kTop + static_cast<double>(p) * (kPanel + kGap) + 18);
+    return out + commit_labels() + "</svg>\n";
+  }
+
+ private:
+  double x_of(std::size_t commit) const {
+    return commits_.size() == 1 ? kLeft + kPlot / 2
+                                : kLeft + kPlot * static_cast<double>(commit) /
+                                              static_cast<double>(commits_.size() - 1);
+  }
+  std::string legend() const {
+    std::string out;
+    double at = kLeft;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      out += mark(e, at, 18, experiments_[e]);
+      out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, xml_text(experiments_[e]));
+      at += 30 + 7.5 * static_cast<double>(experiments_[e].size());
+    }
+    return out;
+  }
+  /// Of each experiment, the value of a figure at its first commit.
+  std::vector<double> first_values(const std::string& figure) const {
+    std::vector<double> first(experiments_.size(), 0);
+    for (std::size_t e = 0; e < experiments_.size(); ++e)
+      for (auto line = lines_.rbegin(); line != lines_.rend(); ++line)
+        if (const auto m = figure_of(*line, figure); m && line->experiment == experiments_[e])
+          first[e] = *m->value;
+    return first;
+  }
+
+  std::string panel(const std::string& figure, double top) const {
+    const std::vector<double> first = first_values(figure);
+    const auto height_of = [&](const TrendLine& line, double value) {
+      if (!relative_) return value;
+      const auto e = static_cast<std::size_t>(
+          std::find(experiments_.begin(), experiments_.end(), line.experiment) - experiments_.begin());
+      return first[e] == 0 ? (value == 0 ? 0 : 100) : 100 * (value / first[e] - 1);
+    };
+    double low = INFINITY, high = -INFINITY;
+    std::string unit;
+    for (const auto& line : lines_)
+      if (const auto m = figure_of(line, figure)) {
+        low = std::min(low, height_of(line, *m->value));
+        high = std::max(high, height_of(line, *m->value));
+        unit = relative_ ? "%" : m->unit;
+      }
+    // A curve that does not change is drawn in the middle, not as a line of noise.
+    const double least = relative_ ? 0.5 : std::max(std::abs(high) * 0.02, 1e-12);
+    const double centre = (low + high) / 2, half = std::max((high - low) / 2 * 1.1, least);
+    const auto y_of = [&](double value) { return top + kPanel * (0.5 - (value - centre) / (2 * half)); };
+    std::string out = fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-weight=\"bold\">{}</text>\n", kLeft, top - 8,
+                                  title_of(figure, relative_));
+    for (const double level : {centre - half * 0.9, centre, centre + half * 0.9})
+      out += grid_line(y_of(level), relative_ ? fmt::format("{:+.2g} %", level) : tick_text(level, unit));
+    for (std::size_t e = 0; e < experiments_.size(); ++e)
+      out += curve(e, figure, [&](const TrendLine& line, double value) { return y_of(height_of(line, value)); });
+    return out;
+  }
+  static std::string grid_line(double y, const std::string& label) {
+    return fmt::format("<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#d0d0d0\"/>\n",
+                       kLeft, kLeft + kPlot, y) +
+           fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"#404040\">{}</text>\n",
+                       kLeft - 8, y + 4, xml_text(label));
+  }
+  template <class HeightOf>
+  std::string curve(std::size_t experiment, const std::string& figure, HeightOf y_of) const {
+    std::string path, marks;
+    for (std::size_t c = 0; c < commits_.size(); ++c)
+      for (const auto& line : lines_)
+        if (line.commit == commits_[c] && line.experiment == experiments_[experiment])
+          if (const auto m = figure_of(line, figure)) {
+            const double y = y_of(line, *m->value);
+            path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c), y);
+            marks += mark(experiment, x_of(c), y,
+                          fmt::format("{} {}: {}", line.commit, line.experiment, figure_text(*m)));
+          }
+    if (path.empty()) return "";
+    return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n{}", path,
+                       kColours[experiment % kColours.size()], marks);
+  }
+  /// At most as many as there is room for.
+  std::string commit_labels() const {
+    std::string out;
+    const std::size_t step = std::max<std::size_t>(1, (commits_.size() + 23) / 24);
+    const double base = kTop + static_cast<double>(shown_.size()) * (kPanel + kGap) - 10;
+    for (std::size_t c = 0; c < commits_.size(); c += step)
+      out += fmt::format("<text transform=\"translate({:.1f} {:.0f}) rotate(-45)\" text-anchor=\"end\" "
+                         "fill=\"#404040\">{}</text>\n",
+                         x_of(c) + 4, base, xml_text(short_name(commits_[c])));
+    return out;
+  }
+
+  const std::vector<TrendLine>& lines_;
+  std::vector<std::string> commits_, experiments_, shown_;
+  /// Curves of several experiments differ too much in height to show a change of a few percent; they
+  /// are drawn as changes since their first commit.
+  bool relative_ = false;
+};
+
 }  // namespace
 
 std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures) {
-  std::vector<std::string> commits, experiments, shown;
-  for (const auto& line : lines) {
-    if (std::find(commits.begin(), commits.end(), line.commit) == commits.end())
-      commits.push_back(line.commit);
-    if (std::find(experiments.begin(), experiments.end(), line.experiment) == experiments.end())
-      experiments.push_back(line.experiment);
-  }
-  for (const auto& name : figures)
-    if (std::any_of(lines.begin(), lines.end(), [&](const auto& l) { return figure_of(l, name); }))
-      shown.push_back(name);
-  if (shown.empty()) throw UserError("none of the figures has a value in the database; nothing to plot");
-  const double height = kTop + static_cast<double>(shown.size()) * (kPanel + kGap) + kLabel;
-  const double width = kLeft + kPlot + kRight;
-  const auto x_of = [&](std::size_t commit) {
-    return commits.size() == 1 ? kLeft + kPlot / 2
-                               : kLeft + kPlot * static_cast<double>(commit) /
-                                             static_cast<double>(commits.size() - 1);
-  };
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-      "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\" role=\"img\" "
-      "aria-label=\"Figures over commits\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      width, height);
-  double at = kLeft;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    out += mark(e, at, 18, experiments[e]);
-    out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, xml_text(experiments[e]));
-    at += 30 + 7.5 * static_cast<double>(experiments[e].size());
-  }
-  // Curves of several experiments differ too much in height to show a change of a few percent; they
-  // are drawn as changes since their first commit.
-  const bool relative = experiments.size() > 1;
-  for (std::size_t p = 0; p < shown.size(); ++p) {
-    std::vector<double> first(experiments.size(), 0);
-    for (std::size_t e = 0; e < experiments.size(); ++e)
-      for (auto line = lines.rbegin(); line != lines.rend(); ++line)
-        if (const auto m = figure_of(*line, shown[p]); m && line->experiment == experiments[e])
-          first[e] = *m->value;
-    const auto height_of = [&](const TrendLine& line, double value) {
-      if (!relative) return value;
-      const auto e = static_cast<std::size_t>(
-          std::find(experiments.begin(), experiments.end(), line.experiment) - experiments.begin());
-      return first[e] == 0 ? (value == 0 ? 0 : 100) : 100 * (value / first[e] - 1);
-    };
-    const double top = kTop + static_cast<double>(p) * (kPanel + kGap) + 18;
-    double low = INFINITY, high = -INFINITY;
-    std::string unit;
-    for (const auto& line : lines)
-      if (const auto m = figure_of(line, shown[p])) {
-        low = std::min(low, height_of(line, *m->value));
-        high = std::max(high, height_of(line, *m->value));
-        unit = relative ? "%" : m->unit;
-      }
-    // A curve that does not change is drawn in the middle, not as a line of noise.
-    const double least = relative ? 0.5 : std::max(std::abs(high) * 0.02, 1e-12);
-    const double centre = (low + high) / 2, half = std::max((high - low) / 2 * 1.1, least);
-    const auto y_of = [&](double value) { return top + kPanel * (0.5 - (value - centre) / (2 * half)); };
-    out += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-weight=\"bold\">{}</text>\n", kLeft, top - 8,
-                       title_of(shown[p], relative));
-    for (const double level : {centre - half * 0.9, centre, centre + half * 0.9}) {
-      const double y = y_of(level);
-      out += fmt::format("<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#d0d0d0\"/>\n",
-                         kLeft, kLeft + kPlot, y);
-      out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"#404040\">{}</text>\n",
-                         kLeft - 8, y + 4,
-                         xml_text(relative ? fmt::format("{:+.2g} %", level) : tick_text(level, unit)));
-    }
-    for (std::size_t e = 0; e < experiments.size(); ++e) {
-      std::string path, marks;
-      for (std::size_t c = 0; c < commits.size(); ++c)
-        for (const auto& line : lines)
-          if (line.commit == commits[c] && line.experiment == experiments[e])
-            if (const auto m = figure_of(line, shown[p])) {
-              path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c),
-                                  y_of(height_of(line, *m->value)));
-              marks += mark(e, x_of(c), y_of(height_of(line, *m->value)),
-                            fmt::format("{} {}: {}", line.commit, line.experiment, figure_text(*m)));
-            }
-      if (!path.empty())
-        out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n{}", path,
-                           kColours[e % kColours.size()], marks);
-    }
-  }
-  // At most as many labels as there is room for.
-  const std::size_t step = std::max<std::size_t>(1, (commits.size() + 23) / 24);
-  const double base = kTop + static_cast<double>(shown.size()) * (kPanel + kGap) - 10;
-  for (std::size_t c = 0; c < commits.size(); c += step)
-    out += fmt::format("<text transform=\"translate({:.1f} {:.0f}) rotate(-45)\" text-anchor=\"end\" "
-                       "fill=\"#404040\">{}</text>\n",
-                       x_of(c) + 4, base, xml_text(short_name(commits[c])));
-  return out + "</svg>\n";
+  return TrendPlot(lines, figures).svg();
 }
 
 }  // namespace fovea::regression
