@@ -89,15 +89,6 @@ Place place(const Job& job, const Position& position) {
   return out;
 }
 
-Place place(const Job& job, std::uint32_t entry) {
-  Place out;
-  const std::uint32_t word = entry / 4, end = job.src_height * job.src_pitch;
-  out.border = entry % 4 != 0 || word >= end;
-  out.bad = out.border && (entry % 4 != 0 || word != end);
-  if (!out.border) out.src = (job.src_base + word) & 0x3FFF'FFFF;
-  return out;
-}
-
 std::uint32_t blend(const Place& p, const std::array<std::uint32_t, 4>& words) {
   // Bytes of a word: Cb, Y0, Cr, Y1. Beyond the last word of a row its last pixel is repeated.
   const auto byte = [](std::uint32_t w, unsigned n) { return w >> 8 * n & 0xFF; };

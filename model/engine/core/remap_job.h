@@ -66,7 +66,16 @@ Edge grid_edge(std::uint32_t above, std::uint32_t below, std::uint32_t step, std
 Position grid_position(const Job& job, Edge left, Edge right, std::uint32_t column, std::int64_t a,
                        std::int64_t b);
 Place place(const Job& job, const Position& position);
-Place place(const Job& job, std::uint32_t entry);
+inline Place place(const Job& job, std::uint32_t entry) {
+  Place out;
+  const std::uint32_t word = entry / 4, end = job.src_height * job.src_pitch;
+  out.border = entry % 4 != 0 || word >= end;
+  if (!out.border)
+    out.src = (job.src_base + word) & 0x3FFF'FFFF;
+  else
+    out.bad = entry % 4 != 0 || word != end;
+  return out;
+}
 
 /// The pair's word out of those at, right of, below, and right below its source word.
 std::uint32_t blend(const Place& place, const std::array<std::uint32_t, 4>& words);

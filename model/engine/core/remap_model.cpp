@@ -54,16 +54,14 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
 }
 
 /// What this clock does depends on an answer that is not known.
-bool RemapModel::waits_for_something() const {
-  if (state_ == State::kDrain) return reads_ > 0 || parts_.size() > write_arrivals_.size();
-  if (write_arrivals_.empty() && packer_.under_way() > 0 &&
-      (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_)))
-    return true;
-  if (cache_.no_line()) {
-    const CacheAccess* const access = cache_.next(now_);
-    if (access && access->miss) return true;
-  }
-  return map_.empty() && addresses_.wants_map();
+inline bool RemapModel::waits_in_run() const {
+  if (cache_.wants_line() || (map_.empty() && addresses_.wants_map())) return true;
+  return write_arrivals_.empty() && packer_.under_way() > 0 &&
+         (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_));
+}
+
+bool RemapModel::waits_in_drain() const {
+  return state_ == State::kDrain && (reads_ > 0 || parts_.size() > write_arrivals_.size());
 }
 
 /// When something may move again, as far as is known. @pre nothing has moved in the clock before now_
@@ -80,21 +78,33 @@ std::uint64_t RemapModel::next_event() const {
   return at;
 }
 
-/// From the result back to the map, so that each part sees what its neighbour had before this clock.
 bool RemapModel::step() {
-  if (state_ == State::kBegin) {
-    state_ = State::kRun;
-    if (job_.possible()) {
-      addresses_.start(job_);
-      map_.start(job_.map_base, job_.map_words);
-    } else {
-      end_.refused = true;
-      state_ = State::kDrain;
-    }
-    return true;
+  if (state_ == State::kRun) [[likely]]
+    return run_clock();
+  if (state_ == State::kDrain) {
+    const bool moved = arrivals(now_ - 1);  // those that were not known when that clock was computed
+    return drain() || moved;
   }
+  begin();
+  return true;
+}
+
+void RemapModel::begin() {
+  state_ = State::kRun;
+  if (job_.possible()) {
+    addresses_.start(job_);
+    map_.start(job_.map_base, job_.map_words);
+  } else {
+    end_.refused = true;
+    state_ = State::kDrain;
+  }
+}
+
+/// From the result back to the map, so that each part sees what its neighbour had before this clock.
+[[gnu::always_inline]] inline bool RemapModel::run_clock() {
   bool moved = arrivals(now_ - 1);  // those that were not known when that clock was computed
-  if (state_ == State::kDrain) return drain() || moved;
+  if (state_ != State::kRun) [[unlikely]]
+    return drain() || moved;
   const bool finished = packer_.finished(), room = cache_.room(), may_ask = cache_.may_ask();
   bool map_asked = false;
   // Requests first: those of the address channel come before the write whose data end in the same clock.
@@ -102,19 +112,18 @@ bool RemapModel::step() {
   moved |= send();
   const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_dst_, blended_last_, false);
   moved |= packer_.moved();
-  if (packer_.handed_over()) sending_ = true;
+  sending_ |= packer_.handed_over();
   const bool blend_ready = packed || !blended_valid_ || !access_.final;
   moved |= blend_words(packed);
   moved |= data(blend_ready);
   const Pair* const pair = addresses_.front();
-  const bool access_taken = pair && tags(room, may_ask);
+  const bool access_taken = pair && room && tags(*pair, may_ask);
   const bool pair_taken = access_taken && which_ == 0;
   moved |= access_taken;
-  const std::uint32_t* const word = map_.word(now_);
-  moved |= addresses_.clock(pair_taken, word);
+  moved |= addresses_.clock(pair_taken, map_.word(now_));
   moved |= map_.clock(map_asked, addresses_.took_map(), false);
   moved |= arrivals(now_);
-  if (finished && state_ == State::kRun) {
+  if (finished && state_ == State::kRun) [[unlikely]] {
     state_ = State::kDrain;
     moved = true;
   }
@@ -142,12 +151,13 @@ bool RemapModel::drain() {
 }
 
 /// One of the two readers asks, the source first.
-bool RemapModel::ask(bool& map_asked) {
+inline bool RemapModel::ask(bool& map_asked) {
   if (line_asked_) {
     line_asked_ = false;
     ++end_.lines;
     ++reads_;
-    port_.issue({0, false, kSourceReads, line_, 4 * SourceCache::kLineWords, {}}, now_);
+    const std::uint32_t address = line_ * 4 * SourceCache::kLineWords;
+    port_.issue({0, false, kSourceReads, address, 4 * SourceCache::kLineWords, {}}, now_);
     return true;
   }
   map_asked = map_.asks();
@@ -157,9 +167,14 @@ bool RemapModel::ask(bool& map_asked) {
   return true;
 }
 
-/// Issues a burst of the result when its last data are taken: one request for each run of words.
-bool RemapModel::send() {
+inline bool RemapModel::send() {
   if (!sending_ || now_ != packer_.sent_at()) return false;
+  send_burst();
+  return true;
+}
+
+/// Issues a burst of the result when its last data are taken: one request for each run of words.
+void RemapModel::send_burst() {
   sending_ = false;
   const Packer::Burst& b = packer_.out();
   unsigned parts = 0;
@@ -176,33 +191,35 @@ bool RemapModel::send() {
     from = to;
   }
   parts_.push(parts);
-  return true;
 }
 
 /// The words of a pair become one of the result.
-bool RemapModel::blend_words(bool taken) {
-  const bool store = word_valid_ && !access_.final;
-  bool ends = false;
-  if (!blended_valid_ || taken) {
-    ends = word_valid_ && access_.final;
-    if (ends) {
-      words_[access_.which] = word_;
-      const Pair& pair = addresses_.oldest();
-      blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
-      blended_dst_ = pair.dst;
-      blended_last_ = pair.last;
-      addresses_.forget();
-    }
-    blended_valid_ = ends;
+[[gnu::always_inline]] inline bool RemapModel::blend_words(bool taken) {
+  const bool free = !blended_valid_ || taken;
+  if (!word_valid_) {
+    blended_valid_ = !free;
+    return false;
   }
-  if (store) words_[access_.which] = word_;
-  return store || ends;
+  if (access_.final && !free) return false;
+  if (job_.bilinear) [[unlikely]]
+    words_[access_.which] = word_;
+  if (!access_.final) {
+    blended_valid_ = !free;
+    return true;
+  }
+  const Pair& pair = addresses_.oldest();
+  blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
+  blended_dst_ = pair.dst;
+  blended_last_ = pair.last;
+  blended_valid_ = true;
+  addresses_.forget();
+  return true;
 }
 
 /// The next access gets its word, out of the cache or of the line that has come for it.
-bool RemapModel::data(bool blend_ready) {
+[[gnu::always_inline]] inline bool RemapModel::data(bool blend_ready) {
   if (word_valid_ && !blend_ready) return false;
-  const CacheAccess* const access = cache_.next(now_);
+  const CacheAccess* const access = cache_.next();
   word_valid_ = access && (!access->miss || cache_.line_there(now_));
   if (!word_valid_) return false;
   access_ = *access;
@@ -211,20 +228,19 @@ bool RemapModel::data(bool blend_ready) {
 }
 
 /// The next access of the pair at hand. @return it is taken; which_ == 0 then: the pair too
-bool RemapModel::tags(bool room, bool may_ask) {
-  if (!room) return false;
-  const Pair& pair = *addresses_.front();
+[[gnu::always_inline]] inline bool RemapModel::tags(const Pair& pair, bool may_ask) {
   CacheAccess a;
   a.final = !job_.bilinear || pair.border || which_ == 3;
   a.which = static_cast<std::uint8_t>(which_);
-  a.word = (pair.src + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) &
-           0x3FFF'FFFF;
-  if (!pair.border) cache_.look_up(a);
-  if (a.miss && !may_ask) return false;
-  a.there = now_ + 1;
+  std::uint32_t word = pair.src;
+  if (which_ != 0) [[unlikely]]
+    word = (word + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) & 0x3FFF'FFFF;
+  if (!pair.border) cache_.look_up(a, word);
   if (a.miss) {
+    if (!may_ask) return false;
     line_asked_ = true;
-    line_ = a.word / SourceCache::kLineWords * 4 * SourceCache::kLineWords;
+    line_ = word / SourceCache::kLineWords;
+    cache_.replace(a, line_);
   }
   cache_.push(a);
   if (!a.final) {

@@ -58,6 +58,7 @@ class RemapModel {
 
   void begin();
   bool step();
+  bool run_clock();
   bool drain();
   bool arrivals(std::uint64_t clock) { return next_arrival_ <= clock && arrive(clock); }
   bool arrive(std::uint64_t clock);
@@ -65,16 +66,13 @@ class RemapModel {
   bool pack();
   bool blend_words(bool taken);
   bool data(bool blend_ready);
-  bool tags(bool room, bool may_ask);
+  bool tags(const Pair& pair, bool may_ask);
   bool ask(bool& map_asked);
   bool send();
-  bool waits() const {
-    // By far the most clocks: everybody has something.
-    if (state_ == State::kRun && !cache_.no_line() && !map_.empty() && packer_.under_way() < Packer::kUnderWay - 1)
-      return false;
-    return waits_for_something();
-  }
-  bool waits_for_something() const;
+  void send_burst();
+  bool waits() const { return state_ == State::kRun ? waits_in_run() : waits_in_drain(); }
+  bool waits_in_run() const;
+  bool waits_in_drain() const;
   std::uint64_t next_event() const;
 
   Port& port_;
@@ -90,7 +88,7 @@ class RemapModel {
   Packer packer_;
   unsigned which_ = 0;         // access of the pair at hand
   bool line_asked_ = false;    // the port has the request for a line
-  std::uint32_t line_ = 0;     // its address
+  std::uint32_t line_ = 0;     // its number
   // Between data and blending, and behind it.
   bool word_valid_ = false, blended_valid_ = false;
   std::uint32_t word_ = 0, blended_ = 0;
