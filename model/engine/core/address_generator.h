@@ -48,7 +48,7 @@ class AddressGenerator {
     }
     if (job_.mode != RemapMode::kTable) return position(moves, map) || moved;
     if (took_map_) {
-      enter(place(job_, *map));
+      enter(*map);
       --entries_;
     }
     return moved;
@@ -69,13 +69,23 @@ class AddressGenerator {
   bool next_offset(bool taken);
   bool pipelined(bool clip_moves);
   void next_form();
-  void enter(const Place& place) {
+  void enter(const Place& place) { static_cast<Place&>(enter()) = place; }
+  void enter(std::uint32_t entry) {
+    Pair& pair = enter();
+    const std::uint32_t word = entry / 4;
+    if (entry % 4 == 0 && word < job_.end()) [[likely]]
+      pair.src = (job_.src_base + word) & 0x3FFF'FFFF;
+    else
+      static_cast<Place&>(pair) = place(job_, entry);
+  }
+  /// A pair without its place.
+  Pair& enter() {
     clip_ |= 1;
     Pair& pair = pairs_.push();
-    static_cast<Place&>(pair) = place;
-    pair.last = false;
+    pair = {};
     pair.dst = dst_++ & 0x3FFF'FFFF;
     if (++dst_pair_ == job_.pairs) next_row(pair);
+    return pair;
   }
   void next_row(Pair& last);
 

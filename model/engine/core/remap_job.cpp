@@ -89,6 +89,15 @@ Place place(const Job& job, const Position& position) {
   return out;
 }
 
+Place place(const Job& job, std::uint32_t entry) {
+  Place out;
+  const std::uint32_t word = entry / 4;
+  out.border = entry % 4 != 0 || word >= job.end();
+  out.bad = out.border && (entry % 4 != 0 || word != job.end());
+  if (!out.border) out.src = (job.src_base + word) & 0x3FFF'FFFF;
+  return out;
+}
+
 std::uint32_t blend(const Place& p, const std::array<std::uint32_t, 4>& words) {
   // Bytes of a word: Cb, Y0, Cr, Y1. Beyond the last word of a row its last pixel is repeated.
   const auto byte = [](std::uint32_t w, unsigned n) { return w >> 8 * n & 0xFF; };

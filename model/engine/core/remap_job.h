@@ -25,6 +25,7 @@ struct Job {
 
   std::uint32_t step() const { return 1u << grid_log2; }  ///< of the grid, pixels
   std::uint32_t cells() const { return (2 * pairs + step() - 1) >> grid_log2; }  ///< in a row of the grid
+  std::uint32_t end() const { return src_height * src_pitch; }  ///< of the source, words behind its base
   /// False: the engine refuses the job.
   bool possible() const;
 };
@@ -66,16 +67,7 @@ Edge grid_edge(std::uint32_t above, std::uint32_t below, std::uint32_t step, std
 Position grid_position(const Job& job, Edge left, Edge right, std::uint32_t column, std::int64_t a,
                        std::int64_t b);
 Place place(const Job& job, const Position& position);
-inline Place place(const Job& job, std::uint32_t entry) {
-  Place out;
-  const std::uint32_t word = entry / 4, end = job.src_height * job.src_pitch;
-  out.border = entry % 4 != 0 || word >= end;
-  if (!out.border)
-    out.src = (job.src_base + word) & 0x3FFF'FFFF;
-  else
-    out.bad = entry % 4 != 0 || word != end;
-  return out;
-}
+Place place(const Job& job, std::uint32_t entry);
 
 /// The pair's word out of those at, right of, below, and right below its source word.
 std::uint32_t blend(const Place& place, const std::array<std::uint32_t, 4>& words);

@@ -47,7 +47,10 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
       frozen_ = false;
     }
     if (now_ > safe && waits()) return now_;
-    frozen_ = !step();
+    if (state_ == State::kRun && flows())
+      flow();
+    else
+      frozen_ = !step();
     ++now_;
   }
   return kNoClock;
@@ -115,19 +118,39 @@ void RemapModel::begin() {
   sending_ |= packer_.handed_over();
   const bool blend_ready = packed || !blended_valid_ || !access_.final;
   moved |= blend_words(packed);
-  moved |= data(blend_ready);
-  const Pair* const pair = addresses_.front();
-  const bool access_taken = pair && room && tags(*pair, may_ask);
-  const bool pair_taken = access_taken && which_ == 0;
-  moved |= access_taken;
-  moved |= addresses_.clock(pair_taken, map_.word(now_));
-  moved |= map_.clock(map_asked, addresses_.took_map(), false);
+  if (!word_valid_ || blend_ready) moved |= fetch();
+  moved |= feed(room, may_ask, map_asked);
   moved |= arrivals(now_);
   if (finished && state_ == State::kRun) [[unlikely]] {
     state_ = State::kDrain;
     moved = true;
   }
   return moved;
+}
+
+/// What is in front of the data: tags, addresses, the map. @return anything has moved
+[[gnu::always_inline]] inline bool RemapModel::feed(bool room, bool may_ask, bool map_asked) {
+  const Pair* const pair = addresses_.front();
+  const bool access_taken = pair && room && tags(*pair, may_ask);
+  const bool pair_taken = access_taken && which_ == 0;
+  const bool moved = addresses_.clock(pair_taken, map_.word(now_));
+  return map_.clock(map_asked, addresses_.took_map(), false) || moved || access_taken;
+}
+
+/// By far the most clocks of a job without interpolation: each unit behind the cache hands its word on, and nobody
+/// outside is concerned.
+[[gnu::always_inline]] inline bool RemapModel::flows() const {
+  return word_valid_ && blended_valid_ && !job_.bilinear && now_ < next_arrival_ && !line_asked_ && !map_.asks() &&
+         !(sending_ && now_ == packer_.sent_at()) && packer_.takes(blended_dst_);
+}
+
+/// The same as run_clock() then.
+[[gnu::always_inline]] inline void RemapModel::flow() {
+  const bool room = cache_.room(), may_ask = cache_.may_ask();
+  packer_.take(blended_, blended_dst_, blended_last_);
+  blend_last();
+  fetch();
+  feed(room, may_ask, false);
 }
 
 /// Nothing new is asked for; what is under way comes in, then all is cleared.
@@ -157,13 +180,13 @@ inline bool RemapModel::ask(bool& map_asked) {
     ++end_.lines;
     ++reads_;
     const std::uint32_t address = line_ * 4 * SourceCache::kLineWords;
-    port_.issue({0, false, kSourceReads, address, 4 * SourceCache::kLineWords, {}}, now_);
+    port_.issue({kSourceReads, false, kSourceReads, address, 4 * SourceCache::kLineWords, {}}, now_);
     return true;
   }
   map_asked = map_.asks();
   if (!map_asked) return false;
   ++reads_;
-  port_.issue({0, false, kMapReads, map_.address(), map_.length(), {}}, now_);
+  port_.issue({kMapReads, false, kMapReads, map_.address(), map_.length(), {}}, now_);
   return true;
 }
 
@@ -207,18 +230,22 @@ void RemapModel::send_burst() {
     blended_valid_ = !free;
     return true;
   }
+  blend_last();
+  return true;
+}
+
+/// The last word of a pair is there.
+[[gnu::always_inline]] inline void RemapModel::blend_last() {
   const Pair& pair = addresses_.oldest();
   blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
   blended_dst_ = pair.dst;
   blended_last_ = pair.last;
   blended_valid_ = true;
   addresses_.forget();
-  return true;
 }
 
 /// The next access gets its word, out of the cache or of the line that has come for it.
-[[gnu::always_inline]] inline bool RemapModel::data(bool blend_ready) {
-  if (word_valid_ && !blend_ready) return false;
+[[gnu::always_inline]] inline bool RemapModel::fetch() {
   const CacheAccess* const access = cache_.next();
   word_valid_ = access && (!access->miss || cache_.line_there(now_));
   if (!word_valid_) return false;
@@ -248,7 +275,8 @@ void RemapModel::send_burst() {
     return true;
   }
   which_ = 0;
-  end_.bad += pair.bad;
+  if (pair.bad) [[unlikely]]
+    ++end_.bad;
   return true;
 }
 
@@ -280,17 +308,24 @@ void RemapModel::note_arrivals() {
                            write_arrivals_.empty() ? kNoClock : write_arrivals_.front().clock);
 }
 
-void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8_t> data,
-                             std::span<const std::uint64_t> beats) {
+void RemapModel::note_read(bool error, std::uint64_t first, std::uint64_t last) {
   --reads_;
-  // What came while the model was ahead of it is new to it now.
-  const auto seen = [&](std::uint64_t clock) { return std::max(clock + 1, now_); };
-  if (error) read_arrivals_.push({beats.front(), true});
-  read_arrivals_.push({beats.back(), error});
+  if (error) read_arrivals_.push({first, true});
+  read_arrivals_.push({last, error});
   note_arrivals();
+}
+
+// What came while the model was ahead of it is new to it now.
+void RemapModel::answer_line(bool error, std::span<const std::uint8_t> data, std::uint64_t first,
+                             std::uint64_t last) {
+  note_read(error, first, last);
+  if (state_ != State::kDrain) cache_.arrive(data, std::max(last + 1, now_));
+}
+
+void RemapModel::answer_map(bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats) {
+  note_read(error, beats.front(), beats.back());
   if (state_ == State::kDrain) return;
-  if (id == kSourceReads) return cache_.arrive(data, seen(beats.back()));
-  for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.subspan(8 * n, 8), seen(beats[n]));
+  for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.data() + 8 * n, std::max(beats[n] + 1, now_));
 }
 
 void RemapModel::answer_write(bool error, std::uint64_t clock) {

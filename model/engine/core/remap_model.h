@@ -43,7 +43,9 @@ class RemapModel {
   /// @return the clock that has to be safe before it can go on; kNoClock: only an answer helps
   std::uint64_t run(std::uint64_t safe);
   /// Outcomes, in the order in which their beats arrive. @param beats the clock of each beat of 8 bytes
-  void answer_read(unsigned id, bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats);
+  void answer_map(bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats);
+  /// @param first, last the clocks of the line's first and last beat
+  void answer_line(bool error, std::span<const std::uint8_t> data, std::uint64_t first, std::uint64_t last);
   void answer_write(bool error, std::uint64_t clock);
   /// The clock in which the job ended (done_o); kNoClock: it is under way.
   std::uint64_t done_at() const { return done_at_; }
@@ -59,13 +61,18 @@ class RemapModel {
   void begin();
   bool step();
   bool run_clock();
+  bool flows() const;
+  void flow();
+  bool feed(bool room, bool may_ask, bool map_asked);
+  bool fetch();
+  void blend_last();
   bool drain();
   bool arrivals(std::uint64_t clock) { return next_arrival_ <= clock && arrive(clock); }
   bool arrive(std::uint64_t clock);
+  void note_read(bool error, std::uint64_t first, std::uint64_t last);
   void note_arrivals();
   bool pack();
   bool blend_words(bool taken);
-  bool data(bool blend_ready);
   bool tags(const Pair& pair, bool may_ask);
   bool ask(bool& map_asked);
   bool send();

@@ -170,25 +170,28 @@ Job TlmBackend::window() const {
 }
 
 /// Tags carry what an answer has to tell: the identifier of a read.
-void TlmBackend::issue(const Burst& burst, std::uint64_t clock) {
-  Burst b = burst;
-  b.tag = burst.id;
-  host_.issue(b, clock_.edge(clock));
-}
+void TlmBackend::issue(const Burst& burst, std::uint64_t clock) { host_.issue(burst, clock_.edge(clock)); }
 
 void TlmBackend::answer(const Answer& a) {
   if (a.write) {
     answer_free_ = std::max(clock_.edge_after(a.last), answer_free_ + 1);
     return model_.answer_write(a.error, answer_free_);
   }
-  std::array<std::uint64_t, 8> beats;
   const std::size_t count = a.data.size() / 8;
-  for (std::size_t n = 0; n < count; ++n) {
-    const Picoseconds t = count == 1 ? a.last : a.first + (a.last - a.first) * n / (count - 1);
-    beat_free_ = std::max(clock_.edge_after(t), beat_free_ + 1);
-    beats[n] = beat_free_;
+  const std::uint64_t begin = count == 1 ? clock_.edge_after(a.last) : clock_.edge_after(a.first);
+  if (a.tag == kSourceReads) {
+    // Of evenly spread beats, no more than one an edge, either the first decides when the last one comes, or that one
+    // itself, or the answer before.
+    const std::uint64_t first = std::max(begin, beat_free_ + 1);
+    beat_free_ = std::max({begin + count - 1, clock_.edge_after(a.last), beat_free_ + count});
+    return model_.answer_line(a.error, a.data, first, beat_free_);
   }
-  model_.answer_read(static_cast<unsigned>(a.tag), a.error, a.data, {beats.data(), count});
+  std::array<std::uint64_t, 8> beats;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint64_t edge = n == 0 ? begin : clock_.edge_after(a.first + (a.last - a.first) * n / (count - 1));
+    beats[n] = beat_free_ = std::max(edge, beat_free_ + 1);
+  }
+  model_.answer_map(a.error, a.data, {beats.data(), count});
 }
 
 }  // namespace fovea::engine
