@@ -15,6 +15,7 @@ void RemapModel::reset() {
   read_arrivals_.clear();
   write_arrivals_.clear();
   next_arrival_ = kNoClock;
+  read_from_ = write_from_ = 0;
   parts_.clear();
   done_at_ = kNoClock;
 }
@@ -42,11 +43,11 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
     if (frozen_) {
       const std::uint64_t event = next_event();
       if (event == kNoClock) return kNoClock;
-      if (event > safe && waits()) return event;
+      if (event > safe && waits(event)) return event;
       now_ = event;
       frozen_ = false;
     }
-    if (now_ > safe && waits()) return now_;
+    if (now_ > safe && waits(now_)) return now_;
     if (state_ == State::kRun && flows())
       flow();
     else
@@ -56,15 +57,16 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
   return kNoClock;
 }
 
-/// What this clock does depends on an answer that is not known.
-inline bool RemapModel::waits_in_run() const {
-  if (cache_.wants_line() || (map_.empty() && addresses_.wants_map())) return true;
-  return write_arrivals_.empty() && packer_.under_way() > 0 &&
+/// What `clock` does depends on an answer that is not known.
+inline bool RemapModel::waits_in_run(std::uint64_t clock) const {
+  if (clock > read_from_ && (cache_.wants_line() || (map_.empty() && addresses_.wants_map()))) return true;
+  return clock > write_from_ && write_arrivals_.empty() && packer_.under_way() > 0 &&
          (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_));
 }
 
-bool RemapModel::waits_in_drain() const {
-  return state_ == State::kDrain && (reads_ > 0 || parts_.size() > write_arrivals_.size());
+bool RemapModel::waits_in_drain(std::uint64_t clock) const {
+  if (state_ != State::kDrain) return false;
+  return (clock > read_from_ && reads_ > 0) || (clock > write_from_ && parts_.size() > write_arrivals_.size());
 }
 
 /// When something may move again, as far as is known. @pre nothing has moved in the clock before now_
@@ -312,6 +314,7 @@ void RemapModel::note_read(bool error, std::uint64_t first, std::uint64_t last) 
   --reads_;
   if (error) read_arrivals_.push({first, true});
   read_arrivals_.push({last, error});
+  read_from_ = last + 1;
   note_arrivals();
 }
 
@@ -330,6 +333,7 @@ void RemapModel::answer_map(bool error, std::span<const std::uint8_t> data, std:
 
 void RemapModel::answer_write(bool error, std::uint64_t clock) {
   part_error_ |= error;
+  write_from_ = clock + 1;
   // The writes whose answers lie ahead are the oldest ones.
   unsigned& parts = parts_.at(write_arrivals_.size());
   if (--parts > 0) return;

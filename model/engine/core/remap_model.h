@@ -77,9 +77,11 @@ class RemapModel {
   bool ask(bool& map_asked);
   bool send();
   void send_burst();
-  bool waits() const { return state_ == State::kRun ? waits_in_run() : waits_in_drain(); }
-  bool waits_in_run() const;
-  bool waits_in_drain() const;
+  bool waits(std::uint64_t clock) const {
+    return state_ == State::kRun ? waits_in_run(clock) : waits_in_drain(clock);
+  }
+  bool waits_in_run(std::uint64_t clock) const;
+  bool waits_in_drain(std::uint64_t clock) const;
   std::uint64_t next_event() const;
 
   Port& port_;
@@ -109,6 +111,8 @@ class RemapModel {
   Ring<Arrival, 32> read_arrivals_;
   Ring<Arrival, 8> write_arrivals_;
   std::uint64_t next_arrival_ = kNoClock;  // the earliest of both
+  // Answers come in order: what is not known arrives in these clocks at the earliest.
+  std::uint64_t read_from_ = 0, write_from_ = 0;
   Ring<unsigned, 8> parts_;    // of each write under way, without an answer
   bool part_error_ = false;
 };
