@@ -67,9 +67,12 @@ void Scr::advance_by_kernel() {
   if (held_) return;
   const Picoseconds now = now_();
   memory_.set_present(now);
+  // Who is called within may have more requests. The event that they need is set once, at the end: set within, it
+  // would be the next horizon itself.
+  held_ = true;
   for (Horizon horizon;;) {
     const Picoseconds t = memory_.next_event();
-    if (t == kNever) return;
+    if (t == kNever) break;
     Picoseconds limit = now + 1;
     if (t > now) {
       if (strict_) break;
@@ -78,6 +81,7 @@ void Scr::advance_by_kernel() {
     }
     memory_.advance(limit);
   }
+  held_ = false;
   arm();
 }
 

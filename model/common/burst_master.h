@@ -34,6 +34,9 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     /// ahead. It may issue bursts from `last` on, but notify nothing: no kernel event is spent on
     /// the burst.
     kWhenDecided,
+    /// The same, in the order in which the bursts of a direction were issued, also if slaves of different speed answer
+    /// in another one: with the times of kAtFirstBeat.
+    kInOrderWhenDecided,
   };
   MemInitiatorSocket<32> socket{"socket"};
   std::function<void(const Completion&)> on_done;
@@ -64,7 +67,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   }
   /// No burst is under way at the present time, whatever was decided ahead of it.
   bool idle() const { return taken_at(kernel_time() + 1) == 0; }
-  /// Bursts not yet reported; with kWhenDecided those undecided.
+  /// Bursts not yet reported; if they are when decided, those undecided.
   unsigned outstanding() const { return busy_; }
 
   /// `at`: when the burst is put on the port, now or later; a slot must be free from then on. The
@@ -127,7 +130,10 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
       report(s);
     } else {
       s.due = true;
-      schedule();
+      if (report_ == Report::kInOrderWhenDecided)
+        report_decided();
+      else
+        schedule();
     }
     return tlm::TLM_COMPLETED;
   }
@@ -164,7 +170,16 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
 
   /// When the outcome is reported.
   Picoseconds& reported(Slot& s) const {
-    return report_ == Report::kAtFirstBeat && !s.write ? s.first : s.last;
+    const bool at_first = report_ == Report::kAtFirstBeat || report_ == Report::kInOrderWhenDecided;
+    return at_first && !s.write ? s.first : s.last;
+  }
+  void report_decided() {
+    while (Slot* s = next_due()) {
+      Picoseconds& latest = latest_[s->write];
+      latest = reported(*s) = std::max(reported(*s), latest);
+      s->last = std::max(s->last, s->first);
+      report(*s);
+    }
   }
   void schedule() {
     if (Slot* s = next_due()) due_.at(reported(*s));
@@ -186,6 +201,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   std::vector<Slot> slots_;
   Timer due_;
   Picoseconds newest_ = 0;  // when the latest burst is put on the port
+  std::array<Picoseconds, 2> latest_{};  // kInOrderWhenDecided: time of the latest report of reads, of writes
   unsigned busy_ = 0;
   std::uint64_t issued_count_ = 0;
 };

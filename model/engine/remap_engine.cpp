@@ -22,7 +22,10 @@ std::uint32_t writable(const Reg& reg) {
 RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& params)
     : BusTarget(name, regs),
       backend_(make_backend(params, clock_, *this, [this](std::int64_t lag) { pair->note(lag); })),
-      memory_("memory", Master::kRemapEngine, kPlaces, BurstMaster::Report::kAtFirstBeat) {
+      memory_("memory", Master::kRemapEngine, kPlaces,
+              backend_->takes_answers_ahead() ? BurstMaster::Report::kInOrderWhenDecided
+                                              : BurstMaster::Report::kAtFirstBeat),
+      ahead_(backend_->takes_answers_ahead()) {
   add_clock(clk);
   add_interrupt("remapint", interrupt_line.out);
   add_statistics(stats);
@@ -30,8 +33,14 @@ RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& param
   add_master(Master::kRemapEngine, memory_.socket, kPlaces);
   memory_.on_done = [this](const BurstMaster::Completion& c) { answered(c); };
   for (Reg* reg : regs.regs()) connect(*reg);
-  SC_METHOD(go_on);
+  SC_METHOD(call);
   sensitive << call_.event();
+  dont_initialize();
+  SC_METHOD(place_free);
+  sensitive << place_free_.event();
+  dont_initialize();
+  SC_METHOD(report_errors);
+  sensitive << failed_.event();
   dont_initialize();
   SC_METHOD(clock_changed);
   sensitive << clk;
@@ -58,11 +67,16 @@ void RemapEngine::connect(Reg& reg) {
 }
 
 void RemapEngine::go_on() {
-  const Picoseconds now = kernel_time();
-  call_.move_to(backend_->run(now));
+  const Picoseconds now = kernel_time(), next = backend_->run(now);
+  if (next != next_call_) call_.move_to(next_call_ = next);
   const bool busy = backend_->busy();
   if (was_busy_ && !busy) count_jobs(backend_->read(regs.ended.offset(), now));
   was_busy_ = busy;
+}
+
+void RemapEngine::call() {
+  next_call_ = kNever;
+  go_on();
 }
 
 void RemapEngine::count_jobs(std::uint32_t ended) {
@@ -83,8 +97,10 @@ void RemapEngine::clock_changed() {
 void RemapEngine::on_reset(ResetKind) {
   ++resets_;
   waiting_.clear();
+  failures_.clear();
   backend_->reset();
   call_.cancel();
+  next_call_ = kNever;
   was_busy_ = false;
   ended_ = 0;
 }
@@ -101,39 +117,58 @@ void RemapEngine::issue(const Burst& burst, Picoseconds at) {
   waiting_.push_back({burst, {burst.data.begin(), burst.data.end()}, at});
 }
 
+/// Ahead of its time it is not certain which place is free first.
 void RemapEngine::issue_waiting() {
-  while (!waiting_.empty() && memory_.free_from() != kNever) {
-    Waiting w = std::move(waiting_.front());
-    waiting_.pop_front();
-    w.burst.data = w.data;
-    put(w.burst, std::max({w.at, memory_.free_from(), kernel_time()}));
-  }
+  if (waiting_.empty()) return;
+  if (ahead_) return place_free_.at(memory_.free_from());
+  while (!waiting_.empty() && memory_.free_from() != kNever) issue_first_waiting();
+}
+
+void RemapEngine::place_free() {
+  while (!waiting_.empty() && memory_.can_issue()) issue_first_waiting();
+  issue_waiting();
+}
+
+void RemapEngine::issue_first_waiting() {
+  Waiting w = std::move(waiting_.front());
+  waiting_.pop_front();
+  w.burst.data = w.data;
+  put(w.burst, std::max({w.at, memory_.free_from(), kernel_time()}));
 }
 
 void RemapEngine::put(const Burst& burst, Picoseconds at) {
   FOVEA_CHECK(burst.tag >> kTagBits == 0, "a tag that is too long");
   const std::uint64_t tag = burst.tag | resets_ << kTagBits;
   if (burst.write) {
-    ++stats.writes;
-    stats.write_bytes += burst.bytes;
+    stats.writes.add(at, 1);
+    stats.write_bytes.add(at, burst.bytes);
     return memory_.write(burst.address, burst.data, tag, at, false);
   }
   const bool map = burst.id == kMapReads;
-  ++(map ? stats.map_reads : stats.source_reads);
-  (map ? stats.map_bytes : stats.source_bytes) += burst.bytes;
+  (map ? stats.map_reads : stats.source_reads).add(at, 1);
+  (map ? stats.map_bytes : stats.source_bytes).add(at, burst.bytes);
   memory_.read(burst.address, burst.bytes, tag, at, false);
 }
 
 void RemapEngine::answered(const BurstMaster::Completion& c) {
   if (c.tag >> kTagBits != resets_) return issue_waiting();  // from before a reset: only its place counts
   if (c.error) {
-    ++stats.errors;
-    Diagnostics::instance().guest(c.write ? "remap engine: a write that nobody answers (bus error)"
-                                          : "remap engine: a read that nobody answers (bus error)");
+    failures_.emplace_back(c.write ? c.last : c.first, c.write);
+    failed_.at(failures_.front().first);
   }
   backend_->answer({c.tag & ((std::uint64_t{1} << kTagBits) - 1), c.write, c.error, c.data, c.first, c.last});
   issue_waiting();
   go_on();
+}
+
+void RemapEngine::report_errors() {
+  for (; !failures_.empty() && failures_.front().first <= kernel_time(); failures_.pop_front()) {
+    ++stats.errors;
+    Diagnostics::instance().guest(failures_.front().second
+                                      ? "remap engine: a write that nobody answers (bus error)"
+                                      : "remap engine: a read that nobody answers (bus error)");
+  }
+  if (!failures_.empty()) failed_.at(failures_.front().first);
 }
 
 }  // namespace fovea::engine

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <systemc>
+#include <utility>
 #include <vector>
 
 #include "model/common/burst_master.h"
@@ -13,21 +14,50 @@
 #include "model/common/clock.h"
 #include "model/common/pulse.h"
 #include "model/common/stats.h"
+#include "model/common/timer.h"
 #include "model/engine/core/engine_backend.h"
 #include "model/engine/core/engine_registers.h"
 #include "model/engine/engine_params.h"
 
 namespace fovea::engine {
 
+/// Counts what has a time of its own, which may lie ahead, from that time on.
+class TimedCounter : public StatBase {
+ public:
+  using StatBase::StatBase;
+  /// @param at not before that of an earlier call
+  void add(Picoseconds at, std::uint64_t n) {
+    settle();
+    ahead_.emplace_back(at, n);
+  }
+  std::uint64_t count() const {
+    settle();
+    return count_;
+  }
+  Value value() const override { return count(); }
+  void reset() override {
+    settle();
+    count_ = 0;
+  }
+
+ private:
+  void settle() const {
+    for (; !ahead_.empty() && ahead_.front().first <= now_(); ahead_.pop_front()) count_ += ahead_.front().second;
+  }
+  KernelNow now_;
+  mutable std::uint64_t count_ = 0;
+  mutable std::deque<std::pair<Picoseconds, std::uint64_t>> ahead_;
+};
+
 struct EngineStats : StatGroup {
   Counter jobs{*this, "jobs", "1", "jobs that ended, however"};
   Counter interrupts{*this, "interrupts", "1", "rising edges of the interrupt line"};
-  Counter map_reads{*this, "map_reads", "1", "bursts of maps that were read"};
-  Counter map_bytes{*this, "map_bytes", "B", "bytes of maps that were read"};
-  Counter source_reads{*this, "source_reads", "1", "lines of sources that were read"};
-  Counter source_bytes{*this, "source_bytes", "B", "bytes of sources that were read"};
-  Counter writes{*this, "writes", "1", "bursts of results that were written"};
-  Counter write_bytes{*this, "write_bytes", "B", "bytes of results that were written"};
+  TimedCounter map_reads{*this, "map_reads", "1", "bursts of maps that were read"};
+  TimedCounter map_bytes{*this, "map_bytes", "B", "bytes of maps that were read"};
+  TimedCounter source_reads{*this, "source_reads", "1", "lines of sources that were read"};
+  TimedCounter source_bytes{*this, "source_bytes", "B", "bytes of sources that were read"};
+  TimedCounter writes{*this, "writes", "1", "bursts of results that were written"};
+  TimedCounter write_bytes{*this, "write_bytes", "B", "bytes of results that were written"};
   Counter errors{*this, "errors", "1", "requests that nobody answered"};
   EngineStats() : StatGroup("engine") {}
 };
@@ -52,8 +82,10 @@ struct PairStats : StatGroup {
   }
 };
 
-/// Behind it is a backend: a model or the RTL. Its requests are put on the port at their edges; answers reach it
-/// at their first beat. A burst is handed to the bus when all its data have left the engine.
+/// Behind it is a backend: a model or the RTL. Its requests are put on the port at their edges. A burst is handed to
+/// the bus when all its data have left the engine. Answers reach the RTL in kernel time, at their first beat; the model
+/// takes them within the memory path, as soon as they are decided, and so costs an event of the kernel only where
+/// somebody could see what it does, or where it has to know that an answer did not come.
 class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private EngineBackend::Host {
  public:
   using Params = EngineParams;
@@ -82,6 +114,10 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   void interrupt(bool level) override;
   void put(const Burst& burst, Picoseconds at);
   void issue_waiting();
+  void issue_first_waiting();
+  void place_free();
+  void call();
+  void report_errors();
   void answered(const BurstMaster::Completion& c);
   void go_on();
   void count_jobs(std::uint32_t ended);
@@ -91,8 +127,11 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   Clock clock_;
   std::unique_ptr<EngineBackend> backend_;
   BurstMaster memory_;
-  Timer call_;
+  const bool ahead_;             // answers are reported when they are decided
+  Timer call_, place_free_, failed_;
+  Picoseconds next_call_ = kNever;  // to which `call_` is set
   std::deque<Waiting> waiting_;  // for a place
+  std::deque<std::pair<Picoseconds, bool>> failures_;  // times of errors that lie ahead, and whether of a write
   std::uint64_t resets_ = 0;
   bool was_busy_ = false;
   std::uint16_t ended_ = 0;      // ENDED.COUNT when it was seen last

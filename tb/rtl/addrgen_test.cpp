@@ -295,6 +295,9 @@ TEST(AddrgenTest, JobsBeyondTheLimitsAreRefusedAndThoseAtTheLimitsAreNot) {
   check(true, grid(2, 511));   // 257 nodes
   check(false, grid(6, 2048));
   check(true, grid(7, 8));
+  for (const unsigned log2 : {2u, 3u})  // each number of nodes near the limit
+    for (unsigned pairs = 200 << (log2 - 1); pairs < 260 << (log2 - 1); ++pairs)
+      check(2 * pairs > 255u << log2, grid(log2, pairs));
   const auto radial = [](unsigned pieces, unsigned log2) {
     return [=](Job& j) { j.mode = Mode::kRadial, j.pieces = pieces, j.piece_log2 = log2; };
   };
@@ -307,6 +310,38 @@ TEST(AddrgenTest, JobsBeyondTheLimitsAreRefusedAndThoseAtTheLimitsAreNot) {
     const Job job = any_job(dice);
     ASSERT_EQ(bench.refused(job), !possible(job)) << "job " << n;
   }
+}
+
+/// One pair on the x axis, whose square radius in Q8 is as large as the limit, or larger by one of its bits.
+TEST(AddrgenTest, EachBitOfTheRadiusLimitDecides) {
+  Dice dice(seed() + 6);
+  AddrgenBench bench;
+  MappedJob m;
+  Job& j = m.job;
+  j.mode = Mode::kRadial;
+  j.src_width = j.src_height = 4096;
+  j.src_pitch = 2048;
+  j.pieces = 128;
+  j.piece_log2 = 23;
+  m.map.assign(3 * 128, 0);
+  for (unsigned n = 0; n < 128; ++n) m.map[3 * n] = 1 << 20;  // gain 1
+  std::uint32_t bits = 0;
+  for (unsigned n = 0; n < 60; ++n) {
+    const std::uint32_t x = n == 0 ? 0x7'FFFF : dice.word() >> (13 + n % 12);  // Q8
+    const auto square = static_cast<std::uint32_t>(std::uint64_t{x} * x >> 8);
+    j.a[0] = static_cast<std::int32_t>(x << 8);
+    bits |= square;
+    j.radius_limit = square;
+    EXPECT_FALSE(addresses(j, m.map).at(0).border);
+    run_and_compare(bench, m);
+    for (unsigned bit = 0; bit < 32; ++bit)
+      if (square >> bit & 1) {
+        j.radius_limit = square & ~(1u << bit);
+        EXPECT_TRUE(addresses(j, m.map).at(0).border);
+        run_and_compare(bench, m);
+      }
+  }
+  EXPECT_EQ(bits, (1u << 30) - 1);
 }
 
 TEST(AddrgenTest, AJobAfterAResetInItsMiddleIsRight) {

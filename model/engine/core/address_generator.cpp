@@ -5,7 +5,6 @@
 namespace fovea::engine {
 namespace {
 
-constexpr unsigned kBuffer = 2, kClipEnd = 1u << 2;
 constexpr unsigned kRadialStages = 6, kProjectStages = 22;
 constexpr unsigned kNodeRows = 4;      // kept
 constexpr std::size_t kCells = 4;      // of the buffer of cells
@@ -40,39 +39,25 @@ void AddressGenerator::clear() {
   entries_ = 0;
 }
 
-bool AddressGenerator::wants_map() const {
+/// Of the modes that load all or some of their map before they use it.
+bool AddressGenerator::wants_load() const {
   switch (job_.mode) {
-    case RemapMode::kTable:
-      return entries_ > 0 && clip_moves();
     case RemapMode::kGrid:
       return loading_ && rows_there_ < (walk_row_ >> job_.grid_log2) + kNodeRows;
     case RemapMode::kRadial:
       return loading_;
+    case RemapMode::kTable:
     case RemapMode::kProject:
       break;
   }
   return false;
 }
 
-/// From the last stage to the first, so that each sees what its neighbour had before this clock.
-bool AddressGenerator::clock(bool taken, const std::uint32_t* map) {
-  took_map_ = map && wants_map();
-  const bool moves = clip_moves();
-  bool moved = taken || took_map_ || (moves && clip_);
-  if (moves) {
-    held_ += (clip_ & kClipEnd) != 0;
-    clip_ = (clip_ << 1) & (2 * kClipEnd - 1);
-  }
-  if (taken) {
-    ++taken_;
-    --held_;
-  }
+/// What is before `clip_`, in the modes that compute positions. @return anything has moved
+bool AddressGenerator::position(bool moves, const std::uint32_t* map) {
+  bool moved = false;
   switch (job_.mode) {
     case RemapMode::kTable:
-      if (took_map_) {
-        enter(place(job_, *map));
-        --entries_;
-      }
       break;
     case RemapMode::kGrid: {
       const bool out = moves && forms_ && offset_;
@@ -82,7 +67,7 @@ bool AddressGenerator::clock(bool taken, const std::uint32_t* map) {
       }
       // The walk looks at the buffer of cells before next_offset() takes one of them.
       const bool full = cells_.size() == kCells;
-      moved |= next_offset(out);
+      moved = next_offset(out);
       const std::uint32_t* const word = took_map_ ? map : nullptr;
       moved |= !(v2_ && !first2_ && full) && walk();
       if (word) load(*word);
@@ -90,7 +75,7 @@ bool AddressGenerator::clock(bool taken, const std::uint32_t* map) {
     }
     case RemapMode::kRadial:
     case RemapMode::kProject:
-      moved |= pipelined(moves);
+      moved = pipelined(moves);
       if (took_map_) load(*map);
       break;
   }
@@ -133,17 +118,10 @@ void AddressGenerator::next_form() {
   c_ = c_row_ += job_.c[2];
 }
 
-void AddressGenerator::enter(const Place& place) {
-  clip_ |= 1;
-  Pair& pair = pairs_.push();
-  static_cast<Place&>(pair) = place;
-  pair.last = false;
-  pair.dst = dst_++ & 0x3FFF'FFFF;
-  if (++dst_pair_ == job_.pairs) {
-    dst_pair_ = 0;
-    dst_ = dst_start_ += job_.dst_pitch;
-    pair.last = ++dst_row_ == job_.rows;
-  }
+void AddressGenerator::next_row(Pair& last) {
+  dst_pair_ = 0;
+  dst_ = dst_start_ += job_.dst_pitch;
+  last.last = ++dst_row_ == job_.rows;
 }
 
 void AddressGenerator::load(std::uint32_t word) {

@@ -11,9 +11,10 @@ namespace fovea::engine {
 
 /// A pair on its way through the engine.
 struct Pair : Place {
-  std::uint32_t dst = 0;  ///< word address
   bool last = false;      ///< of the job
+  std::uint32_t dst = 0;  ///< word address
 };
+static_assert(sizeof(Pair) == 16, "many are moved");
 
 class AddressGenerator {
  public:
@@ -29,10 +30,29 @@ class AddressGenerator {
     --taken_;
   }
   /// A word of the map is taken in this clock if there is one. Call before clock().
-  bool wants_map() const;
-  /// One clock. @param taken front() goes; @param map the word that is there; null: none
+  bool wants_map() const { return job_.mode == RemapMode::kTable ? entries_ > 0 && clip_moves() : wants_load(); }
+  /// One clock, from the last stage to the first, so that each sees what its neighbour had before.
+  /// @param taken front() goes; @param map the word that is there; null: none
   /// @return anything has moved
-  bool clock(bool taken, const std::uint32_t* map);
+  bool clock(bool taken, const std::uint32_t* map) {
+    took_map_ = map && wants_map();
+    const bool moves = clip_moves();
+    const bool moved = taken || took_map_ || (moves && clip_);
+    if (moves) {
+      held_ += (clip_ & kClipEnd) != 0;
+      clip_ = (clip_ << 1) & (2 * kClipEnd - 1);
+    }
+    if (taken) {
+      ++taken_;
+      --held_;
+    }
+    if (job_.mode != RemapMode::kTable) return position(moves, map) || moved;
+    if (took_map_) {
+      enter(*map);
+      --entries_;
+    }
+    return moved;
+  }
   /// Whether the last clock() took the word of the map.
   bool took_map() const { return took_map_; }
 
@@ -40,13 +60,34 @@ class AddressGenerator {
   struct Cell {
     Edge left, right;
   };
-  bool clip_moves() const { return held_ != 2 || !(clip_ & 4); }
+  static constexpr unsigned kBuffer = 2, kClipEnd = 1u << 2;
+  bool clip_moves() const { return held_ != kBuffer || !(clip_ & kClipEnd); }
+  bool wants_load() const;
+  bool position(bool clip_moves, const std::uint32_t* map);
   void load(std::uint32_t word);
   bool walk();
   bool next_offset(bool taken);
   bool pipelined(bool clip_moves);
   void next_form();
-  void enter(const Place& place);
+  void enter(const Place& place) { static_cast<Place&>(enter()) = place; }
+  void enter(std::uint32_t entry) {
+    Pair& pair = enter();
+    const std::uint32_t word = entry / 4;
+    if (entry % 4 == 0 && word < job_.end()) [[likely]]
+      pair.src = (job_.src_base + word) & 0x3FFF'FFFF;
+    else
+      static_cast<Place&>(pair) = place(job_, entry);
+  }
+  /// A pair without its place.
+  Pair& enter() {
+    clip_ |= 1;
+    Pair& pair = pairs_.push();
+    pair = {};
+    pair.dst = dst_++ & 0x3FFF'FFFF;
+    if (++dst_pair_ == job_.pairs) next_row(pair);
+    return pair;
+  }
+  void next_row(Pair& last);
 
   Job job_;
   unsigned held_ = 0;          // pairs in the buffer at the end, 2 at most

@@ -70,6 +70,9 @@ class EngineBackend {
   /// An outcome, in the order of the requests of one identifier, and of the writes. A read's may be told from its
   /// decision up to its first beat.
   virtual void answer(const Answer& answer) = 0;
+  /// A write's may be told from its decision on too. Otherwise it is told at the acknowledgement, and a read's best at
+  /// its first beat.
+  virtual bool takes_answers_ahead() const { return false; }
   /// Needs edges: a job waits that may start, or one is under way.
   virtual bool busy() const = 0;
   /// As after power-up. The owner hands over no answers to requests from before.

@@ -1,4 +1,5 @@
-// Offsets of the remap engine's registers, as constants for switches; EngineRegs declares what is there.
+// Where the remap engine's registers and their fields are, as constants for the model's hot paths; EngineRegs declares
+// with them what is there.
 #pragma once
 #include <cstdint>
 
@@ -16,3 +17,31 @@ inline constexpr std::uint32_t kA0 = 0x74, kA1 = 0x78, kA2 = 0x7C, kB0 = 0x80, k
                                kC1 = 0x90, kC2 = 0x94;
 
 }  // namespace fovea::engine::at
+
+namespace fovea::engine {
+
+/// Some bits of a register.
+struct Bits {
+  unsigned lsb, width;
+  constexpr std::uint32_t low() const { return width == 32 ? ~0u : (1u << width) - 1; }
+  constexpr std::uint32_t mask() const { return low() << lsb; }
+  constexpr std::uint32_t of(std::uint32_t word) const { return word >> lsb & low(); }
+  constexpr std::uint32_t put(std::uint32_t value) const { return (value & low()) << lsb; }
+};
+
+namespace bits {
+
+inline constexpr Bits kEnable{0, 1}, kAbort{1, 1};                                      // CTRL
+inline constexpr Bits kBusy{0, 1}, kQueued{4, 4}, kFull{8, 1};                          // STATUS
+inline constexpr Bits kDone{0, 1}, kRefused{1, 1}, kReadError{2, 1}, kWriteError{3, 1}, kAborted{4, 1},
+    kOverflow{5, 1}, kDropped{6, 1}, kAllEvents{0, 7};                                  // EVENTS, ENABLES
+inline constexpr Bits kTag{0, 8};                                                       // SUBMIT
+inline constexpr Bits kEndedTag{0, 8}, kEndedEvents{8, 8}, kEndedCount{16, 16};         // ENDED
+inline constexpr Bits kRemapMode{0, 2}, kBilinear{2, 1}, kGridLog2{8, 3}, kPieces{16, 8}, kPieceLog2{24, 5};  // MODE
+inline constexpr Bits kPairs{0, 12}, kRows{16, 13};                                     // SIZE
+inline constexpr Bits kWidth{0, 13}, kHeight{16, 13};                                   // SRC_SIZE
+inline constexpr Bits kBase{2, 30}, kPitch{2, 13}, kMapBase{6, 26};  // of the registers with addresses and pitches
+inline constexpr Bits kMapWords{0, 24};                                                 // MAP_WORDS
+
+}  // namespace bits
+}  // namespace fovea::engine

@@ -11,61 +11,66 @@ namespace fovea::engine {
 inline constexpr unsigned kQueueDepth = 4;  ///< jobs that can wait
 inline constexpr std::uint32_t kIdentity = 0x52454D31;
 
+/// A field whose place is one of `bits`.
+struct FieldAt : Field {
+  FieldAt(Reg& reg, const char* name, Bits where, Mode mode, const char* sentence)
+      : Field(reg, name, where.lsb, where.width, mode, sentence) {}
+};
+
 struct EngineRegs : RegBank {
   struct Control : Reg {
     using Reg::Reg;
-    Field enable{*this, "ENABLE", 0, 1, Mode::kRw, "takes jobs from the queue"};
-    Field abort{*this, "ABORT", 1, 1, Mode::kWo, "ends the job under way early and drops the queue"};
+    FieldAt enable{*this, "ENABLE", bits::kEnable, Mode::kRw, "takes jobs from the queue"};
+    FieldAt abort{*this, "ABORT", bits::kAbort, Mode::kWo, "ends the job under way early and drops the queue"};
   };
   struct Status : Reg {
     using Reg::Reg;
-    Field busy{*this, "BUSY", 0, 1, Mode::kRo, "a job is under way"};
-    Field queued{*this, "QUEUED", 4, 4, Mode::kRo, "jobs that wait, 0 to 4"};
-    Field full{*this, "FULL", 8, 1, Mode::kRo, "no other job can wait"};
+    FieldAt busy{*this, "BUSY", bits::kBusy, Mode::kRo, "a job is under way"};
+    FieldAt queued{*this, "QUEUED", bits::kQueued, Mode::kRo, "jobs that wait, 0 to 4"};
+    FieldAt full{*this, "FULL", bits::kFull, Mode::kRo, "no other job can wait"};
   };
   /// The bits of a job's end and of the queue: in EVENTS, where 1 clears, and in ENABLES.
   struct Events : Reg {
     Events(RegBank& bank, const char* name, std::uint32_t offset, Mode mode, const char* sentence);
-    Field done, refused, read_error, write_error, aborted, overflow, dropped;
+    FieldAt done, refused, read_error, write_error, aborted, overflow, dropped;
   };
   struct Submit : Reg {
     using Reg::Reg;
-    Field tag{*this, "TAG", 0, 8, Mode::kWo, "returned in ENDED"};
+    FieldAt tag{*this, "TAG", bits::kTag, Mode::kWo, "returned in ENDED"};
   };
   struct Ended : Reg {
     using Reg::Reg;
-    Field tag{*this, "TAG", 0, 8, Mode::kRo, "of the job that ended last"};
-    Field events{*this, "EVENTS", 8, 8, Mode::kRo, "its bits of EVENTS"};
-    Field count{*this, "COUNT", 16, 16, Mode::kRo, "jobs that ended, modulo 65536"};
+    FieldAt tag{*this, "TAG", bits::kEndedTag, Mode::kRo, "of the job that ended last"};
+    FieldAt events{*this, "EVENTS", bits::kEndedEvents, Mode::kRo, "its bits of EVENTS"};
+    FieldAt count{*this, "COUNT", bits::kEndedCount, Mode::kRo, "jobs that ended, modulo 65536"};
   };
   struct JobMode : Reg {
     using Reg::Reg;
-    Field mode{*this, "MODE", 0, 2, Mode::kRw, "0 table, 1 grid, 2 radial, 3 project"};
-    Field bilinear{*this, "BILINEAR", 2, 1, Mode::kRw, "interpolates; 0: the nearest pixel"};
-    Field grid_log2{*this, "GRID_LOG2", 8, 3, Mode::kRw, "step of the grid, 2^n pixels"};
-    Field pieces{*this, "PIECES", 16, 8, Mode::kRw, "pieces of the radial function"};
-    Field piece_log2{*this, "PIECE_LOG2", 24, 5, Mode::kRw, "width of a piece, 2^n square pixels"};
+    FieldAt mode{*this, "MODE", bits::kRemapMode, Mode::kRw, "0 table, 1 grid, 2 radial, 3 project"};
+    FieldAt bilinear{*this, "BILINEAR", bits::kBilinear, Mode::kRw, "interpolates; 0: the nearest pixel"};
+    FieldAt grid_log2{*this, "GRID_LOG2", bits::kGridLog2, Mode::kRw, "step of the grid, 2^n pixels"};
+    FieldAt pieces{*this, "PIECES", bits::kPieces, Mode::kRw, "pieces of the radial function"};
+    FieldAt piece_log2{*this, "PIECE_LOG2", bits::kPieceLog2, Mode::kRw, "width of a piece, 2^n square pixels"};
   };
   struct Size : Reg {
     using Reg::Reg;
-    Field pairs{*this, "PAIRS", 0, 12, Mode::kRw, "pairs of pixels in an output row"};
-    Field rows{*this, "ROWS", 16, 13, Mode::kRw, "output rows"};
+    FieldAt pairs{*this, "PAIRS", bits::kPairs, Mode::kRw, "pairs of pixels in an output row"};
+    FieldAt rows{*this, "ROWS", bits::kRows, Mode::kRw, "output rows"};
   };
   struct SourceSize : Reg {
     using Reg::Reg;
-    Field width{*this, "WIDTH", 0, 13, Mode::kRw, "pixels"};
-    Field height{*this, "HEIGHT", 16, 13, Mode::kRw, "rows"};
+    FieldAt width{*this, "WIDTH", bits::kWidth, Mode::kRw, "pixels"};
+    FieldAt height{*this, "HEIGHT", bits::kHeight, Mode::kRw, "rows"};
   };
   /// A byte address or distance of which the low bits are 0.
   struct Bytes : Reg {
-    Bytes(RegBank& bank, const char* name, std::uint32_t offset, unsigned lsb, unsigned width,
-          const char* sentence)
-        : Reg(bank, name, offset, sentence), value(*this, "BYTES", lsb, width, Mode::kRw, sentence) {}
-    Field value;
+    Bytes(RegBank& bank, const char* name, std::uint32_t offset, Bits where, const char* sentence)
+        : Reg(bank, name, offset, sentence), value(*this, "BYTES", where, Mode::kRw, sentence) {}
+    FieldAt value;
   };
   struct Words : Reg {
     using Reg::Reg;
-    Field value{*this, "WORDS", 0, 24, Mode::kRw, "words of 32 bits"};
+    FieldAt value{*this, "WORDS", bits::kMapWords, Mode::kRw, "words of 32 bits"};
   };
 
   Reg id{*this, "ID", at::kId, Mode::kRo, "identification", kIdentity};
@@ -81,12 +86,12 @@ struct EngineRegs : RegBank {
   Reg bad{*this, "BAD", at::kBad, Mode::kRo, "entries of its table that are no addresses"};
   JobMode mode{*this, "MODE", at::kMode, "how positions follow"};
   Size size{*this, "SIZE", at::kSize, "the result's size"};
-  Bytes src_base{*this, "SRC_BASE", at::kSrcBase, 2, 30, "first byte of the source"};
-  Bytes src_pitch{*this, "SRC_PITCH", at::kSrcPitch, 2, 13, "from row to row of the source"};
+  Bytes src_base{*this, "SRC_BASE", at::kSrcBase, bits::kBase, "first byte of the source"};
+  Bytes src_pitch{*this, "SRC_PITCH", at::kSrcPitch, bits::kPitch, "from row to row of the source"};
   SourceSize src_size{*this, "SRC_SIZE", at::kSrcSize, "the source's size"};
-  Bytes dst_base{*this, "DST_BASE", at::kDstBase, 2, 30, "first byte of the result"};
-  Bytes dst_pitch{*this, "DST_PITCH", at::kDstPitch, 2, 13, "from row to row of the result"};
-  Bytes map_base{*this, "MAP_BASE", at::kMapBase, 6, 26, "first byte of the map"};
+  Bytes dst_base{*this, "DST_BASE", at::kDstBase, bits::kBase, "first byte of the result"};
+  Bytes dst_pitch{*this, "DST_PITCH", at::kDstPitch, bits::kPitch, "from row to row of the result"};
+  Bytes map_base{*this, "MAP_BASE", at::kMapBase, bits::kMapBase, "first byte of the map"};
   Words map_words{*this, "MAP_WORDS", at::kMapWords, "length of the map"};
   Reg border{*this, "BORDER", at::kBorder, Mode::kRw, "the word of a pair without a source"};
   Reg radius_limit{*this, "RADIUS_LIMIT", at::kRadiusLimit, Mode::kRw, "largest visible square radius, Q8"};

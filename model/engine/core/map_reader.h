@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <span>
 
 #include "model/engine/core/ring.h"
 
@@ -40,12 +39,12 @@ class MapReader {
   /// @param asked the burst was taken; @param taken word() was
   /// @return anything has moved
   bool clock(bool asked, bool taken, bool stop) {
-    const bool offer = !offered_ && !stop && left_ > 0 && promised_ <= kBeats - kBurstBeats;
+    bool moved = asked || taken;
     if (asked) {
       offered_ = false;
       promised_ += offered_beats_;
-    } else if (offer) {
-      offered_ = true;
+    } else if (promised_ <= kBeats - kBurstBeats && !offered_ && left_ > 0 && !stop) {
+      offered_ = moved = true;
       address_ = next_;
       offered_beats_ = std::min(left_, kBurstBeats);
       next_ += 8 * kBurstBeats;
@@ -56,13 +55,13 @@ class MapReader {
       if (high_) beats_.pop();
       high_ = !high_;
     }
-    return asked || offer || taken;
+    return moved;
   }
   /// A beat that can be taken from clock `there` on.
-  void arrive(std::span<const std::uint8_t> bytes, std::uint64_t there) {
-    Beat beat{{}, there};
-    std::memcpy(beat.words, bytes.data(), sizeof beat.words);
-    beats_.push(beat);
+  void arrive(const std::uint8_t* bytes, std::uint64_t there) {
+    Beat& beat = beats_.push();
+    std::memcpy(beat.words, bytes, sizeof beat.words);
+    beat.there = there;
   }
 
  private:

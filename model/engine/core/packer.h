@@ -45,12 +45,17 @@ class Packer {
       return false;
     }
     if (!valid) return false;
-    gather_.address = dst / kWords * 4 * kWords;
+    take(word, dst, last);
+    return moved_ = true;
+  }
+  /// A word is taken if there is one.
+  bool takes(std::uint32_t dst) const { return !full(true, dst); }
+  /// @pre takes(dst)
+  void take(std::uint32_t word, std::uint32_t dst, bool last) {
+    gather_.address = block(dst);
     gather_.words[dst % kWords] = word;
     gather_.mask |= 1u << dst % kWords;
     ended_ = last;
-    moved_ = true;
-    return true;
   }
   bool moved() const { return moved_; }
   bool handed_over() const { return handed_over_; }
@@ -64,9 +69,10 @@ class Packer {
   bool finished_but_for_answers() const { return ended_ && gather_.mask == 0; }
 
  private:
+  static std::uint32_t block(std::uint32_t dst) { return dst / kWords * 4 * kWords; }
   bool full(bool valid, std::uint32_t dst) const {
     return gather_.mask != 0 && (ended_ || gather_.mask >> (kWords - 1) ||
-                                 (valid && gather_.address != dst / kWords * 4 * kWords));
+                                 (valid && gather_.address != block(dst)));
   }
   Burst gather_, out_;
   bool ended_ = false, moved_ = false, handed_over_ = false;

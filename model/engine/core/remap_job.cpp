@@ -91,9 +91,9 @@ Place place(const Job& job, const Position& position) {
 
 Place place(const Job& job, std::uint32_t entry) {
   Place out;
-  const std::uint32_t word = entry / 4, end = job.src_height * job.src_pitch;
-  out.border = entry % 4 != 0 || word >= end;
-  out.bad = out.border && (entry % 4 != 0 || word != end);
+  const std::uint32_t word = entry / 4;
+  out.border = entry % 4 != 0 || word >= job.end();
+  out.bad = out.border && (entry % 4 != 0 || word != job.end());
   if (!out.border) out.src = (job.src_base + word) & 0x3FFF'FFFF;
   return out;
 }

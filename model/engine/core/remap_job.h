@@ -25,6 +25,7 @@ struct Job {
 
   std::uint32_t step() const { return 1u << grid_log2; }  ///< of the grid, pixels
   std::uint32_t cells() const { return (2 * pairs + step() - 1) >> grid_log2; }  ///< in a row of the grid
+  std::uint32_t end() const { return src_height * src_pitch; }  ///< of the source, words behind its base
   /// False: the engine refuses the job.
   bool possible() const;
 };

@@ -15,6 +15,7 @@ void RemapModel::reset() {
   read_arrivals_.clear();
   write_arrivals_.clear();
   next_arrival_ = kNoClock;
+  read_from_ = write_from_ = 0;
   parts_.clear();
   done_at_ = kNoClock;
 }
@@ -42,28 +43,30 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
     if (frozen_) {
       const std::uint64_t event = next_event();
       if (event == kNoClock) return kNoClock;
-      if (event > safe && waits()) return event;
+      if (event > safe && waits(event)) return event;
       now_ = event;
       frozen_ = false;
     }
-    if (now_ > safe && waits()) return now_;
-    frozen_ = !step();
+    if (now_ > safe && waits(now_)) return now_;
+    if (state_ == State::kRun && flows())
+      flow();
+    else
+      frozen_ = !step();
     ++now_;
   }
   return kNoClock;
 }
 
-/// What this clock does depends on an answer that is not known.
-bool RemapModel::waits_for_something() const {
-  if (state_ == State::kDrain) return reads_ > 0 || parts_.size() > write_arrivals_.size();
-  if (write_arrivals_.empty() && packer_.under_way() > 0 &&
-      (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_)))
-    return true;
-  if (cache_.no_line()) {
-    const CacheAccess* const access = cache_.next(now_);
-    if (access && access->miss) return true;
-  }
-  return map_.empty() && addresses_.wants_map();
+/// What `clock` does depends on an answer that is not known.
+inline bool RemapModel::waits_in_run(std::uint64_t clock) const {
+  if (clock > read_from_ && (cache_.wants_line() || (map_.empty() && addresses_.wants_map()))) return true;
+  return clock > write_from_ && write_arrivals_.empty() && packer_.under_way() > 0 &&
+         (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_));
+}
+
+bool RemapModel::waits_in_drain(std::uint64_t clock) const {
+  if (state_ != State::kDrain) return false;
+  return (clock > read_from_ && reads_ > 0) || (clock > write_from_ && parts_.size() > write_arrivals_.size());
 }
 
 /// When something may move again, as far as is known. @pre nothing has moved in the clock before now_
@@ -80,21 +83,33 @@ std::uint64_t RemapModel::next_event() const {
   return at;
 }
 
-/// From the result back to the map, so that each part sees what its neighbour had before this clock.
 bool RemapModel::step() {
-  if (state_ == State::kBegin) {
-    state_ = State::kRun;
-    if (job_.possible()) {
-      addresses_.start(job_);
-      map_.start(job_.map_base, job_.map_words);
-    } else {
-      end_.refused = true;
-      state_ = State::kDrain;
-    }
-    return true;
+  if (state_ == State::kRun) [[likely]]
+    return run_clock();
+  if (state_ == State::kDrain) {
+    const bool moved = arrivals(now_ - 1);  // those that were not known when that clock was computed
+    return drain() || moved;
   }
+  begin();
+  return true;
+}
+
+void RemapModel::begin() {
+  state_ = State::kRun;
+  if (job_.possible()) {
+    addresses_.start(job_);
+    map_.start(job_.map_base, job_.map_words);
+  } else {
+    end_.refused = true;
+    state_ = State::kDrain;
+  }
+}
+
+/// From the result back to the map, so that each part sees what its neighbour had before this clock.
+[[gnu::always_inline]] inline bool RemapModel::run_clock() {
   bool moved = arrivals(now_ - 1);  // those that were not known when that clock was computed
-  if (state_ == State::kDrain) return drain() || moved;
+  if (state_ != State::kRun) [[unlikely]]
+    return drain() || moved;
   const bool finished = packer_.finished(), room = cache_.room(), may_ask = cache_.may_ask();
   bool map_asked = false;
   // Requests first: those of the address channel come before the write whose data end in the same clock.
@@ -102,23 +117,42 @@ bool RemapModel::step() {
   moved |= send();
   const bool packed = packer_.clock(now_, blended_valid_, blended_, blended_dst_, blended_last_, false);
   moved |= packer_.moved();
-  if (packer_.handed_over()) sending_ = true;
+  sending_ |= packer_.handed_over();
   const bool blend_ready = packed || !blended_valid_ || !access_.final;
   moved |= blend_words(packed);
-  moved |= data(blend_ready);
-  const Pair* const pair = addresses_.front();
-  const bool access_taken = pair && tags(room, may_ask);
-  const bool pair_taken = access_taken && which_ == 0;
-  moved |= access_taken;
-  const std::uint32_t* const word = map_.word(now_);
-  moved |= addresses_.clock(pair_taken, word);
-  moved |= map_.clock(map_asked, addresses_.took_map(), false);
+  if (!word_valid_ || blend_ready) moved |= fetch();
+  moved |= feed(room, may_ask, map_asked);
   moved |= arrivals(now_);
-  if (finished && state_ == State::kRun) {
+  if (finished && state_ == State::kRun) [[unlikely]] {
     state_ = State::kDrain;
     moved = true;
   }
   return moved;
+}
+
+/// What is in front of the data: tags, addresses, the map. @return anything has moved
+[[gnu::always_inline]] inline bool RemapModel::feed(bool room, bool may_ask, bool map_asked) {
+  const Pair* const pair = addresses_.front();
+  const bool access_taken = pair && room && tags(*pair, may_ask);
+  const bool pair_taken = access_taken && which_ == 0;
+  const bool moved = addresses_.clock(pair_taken, map_.word(now_));
+  return map_.clock(map_asked, addresses_.took_map(), false) || moved || access_taken;
+}
+
+/// By far the most clocks of a job without interpolation: each unit behind the cache hands its word on, and nobody
+/// outside is concerned.
+[[gnu::always_inline]] inline bool RemapModel::flows() const {
+  return word_valid_ && blended_valid_ && !job_.bilinear && now_ < next_arrival_ && !line_asked_ && !map_.asks() &&
+         !(sending_ && now_ == packer_.sent_at()) && packer_.takes(blended_dst_);
+}
+
+/// The same as run_clock() then.
+[[gnu::always_inline]] inline void RemapModel::flow() {
+  const bool room = cache_.room(), may_ask = cache_.may_ask();
+  packer_.take(blended_, blended_dst_, blended_last_);
+  blend_last();
+  fetch();
+  feed(room, may_ask, false);
 }
 
 /// Nothing new is asked for; what is under way comes in, then all is cleared.
@@ -142,24 +176,30 @@ bool RemapModel::drain() {
 }
 
 /// One of the two readers asks, the source first.
-bool RemapModel::ask(bool& map_asked) {
+inline bool RemapModel::ask(bool& map_asked) {
   if (line_asked_) {
     line_asked_ = false;
     ++end_.lines;
     ++reads_;
-    port_.issue({0, false, kSourceReads, line_, 4 * SourceCache::kLineWords, {}}, now_);
+    const std::uint32_t address = line_ * 4 * SourceCache::kLineWords;
+    port_.issue({kSourceReads, false, kSourceReads, address, 4 * SourceCache::kLineWords, {}}, now_);
     return true;
   }
   map_asked = map_.asks();
   if (!map_asked) return false;
   ++reads_;
-  port_.issue({0, false, kMapReads, map_.address(), map_.length(), {}}, now_);
+  port_.issue({kMapReads, false, kMapReads, map_.address(), map_.length(), {}}, now_);
+  return true;
+}
+
+inline bool RemapModel::send() {
+  if (!sending_ || now_ != packer_.sent_at()) return false;
+  send_burst();
   return true;
 }
 
 /// Issues a burst of the result when its last data are taken: one request for each run of words.
-bool RemapModel::send() {
-  if (!sending_ || now_ != packer_.sent_at()) return false;
+void RemapModel::send_burst() {
   sending_ = false;
   const Packer::Burst& b = packer_.out();
   unsigned parts = 0;
@@ -176,33 +216,39 @@ bool RemapModel::send() {
     from = to;
   }
   parts_.push(parts);
-  return true;
 }
 
 /// The words of a pair become one of the result.
-bool RemapModel::blend_words(bool taken) {
-  const bool store = word_valid_ && !access_.final;
-  bool ends = false;
-  if (!blended_valid_ || taken) {
-    ends = word_valid_ && access_.final;
-    if (ends) {
-      words_[access_.which] = word_;
-      const Pair& pair = addresses_.oldest();
-      blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
-      blended_dst_ = pair.dst;
-      blended_last_ = pair.last;
-      addresses_.forget();
-    }
-    blended_valid_ = ends;
+[[gnu::always_inline]] inline bool RemapModel::blend_words(bool taken) {
+  const bool free = !blended_valid_ || taken;
+  if (!word_valid_) {
+    blended_valid_ = !free;
+    return false;
   }
-  if (store) words_[access_.which] = word_;
-  return store || ends;
+  if (access_.final && !free) return false;
+  if (job_.bilinear) [[unlikely]]
+    words_[access_.which] = word_;
+  if (!access_.final) {
+    blended_valid_ = !free;
+    return true;
+  }
+  blend_last();
+  return true;
+}
+
+/// The last word of a pair is there.
+[[gnu::always_inline]] inline void RemapModel::blend_last() {
+  const Pair& pair = addresses_.oldest();
+  blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
+  blended_dst_ = pair.dst;
+  blended_last_ = pair.last;
+  blended_valid_ = true;
+  addresses_.forget();
 }
 
 /// The next access gets its word, out of the cache or of the line that has come for it.
-bool RemapModel::data(bool blend_ready) {
-  if (word_valid_ && !blend_ready) return false;
-  const CacheAccess* const access = cache_.next(now_);
+[[gnu::always_inline]] inline bool RemapModel::fetch() {
+  const CacheAccess* const access = cache_.next();
   word_valid_ = access && (!access->miss || cache_.line_there(now_));
   if (!word_valid_) return false;
   access_ = *access;
@@ -211,20 +257,19 @@ bool RemapModel::data(bool blend_ready) {
 }
 
 /// The next access of the pair at hand. @return it is taken; which_ == 0 then: the pair too
-bool RemapModel::tags(bool room, bool may_ask) {
-  if (!room) return false;
-  const Pair& pair = *addresses_.front();
+[[gnu::always_inline]] inline bool RemapModel::tags(const Pair& pair, bool may_ask) {
   CacheAccess a;
   a.final = !job_.bilinear || pair.border || which_ == 3;
   a.which = static_cast<std::uint8_t>(which_);
-  a.word = (pair.src + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) &
-           0x3FFF'FFFF;
-  if (!pair.border) cache_.look_up(a);
-  if (a.miss && !may_ask) return false;
-  a.there = now_ + 1;
+  std::uint32_t word = pair.src;
+  if (which_ != 0) [[unlikely]]
+    word = (word + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) & 0x3FFF'FFFF;
+  if (!pair.border) cache_.look_up(a, word);
   if (a.miss) {
+    if (!may_ask) return false;
     line_asked_ = true;
-    line_ = a.word / SourceCache::kLineWords * 4 * SourceCache::kLineWords;
+    line_ = word / SourceCache::kLineWords;
+    cache_.replace(a, line_);
   }
   cache_.push(a);
   if (!a.final) {
@@ -232,7 +277,8 @@ bool RemapModel::tags(bool room, bool may_ask) {
     return true;
   }
   which_ = 0;
-  end_.bad += pair.bad;
+  if (pair.bad) [[unlikely]]
+    ++end_.bad;
   return true;
 }
 
@@ -264,21 +310,30 @@ void RemapModel::note_arrivals() {
                            write_arrivals_.empty() ? kNoClock : write_arrivals_.front().clock);
 }
 
-void RemapModel::answer_read(unsigned id, bool error, std::span<const std::uint8_t> data,
-                             std::span<const std::uint64_t> beats) {
+void RemapModel::note_read(bool error, std::uint64_t first, std::uint64_t last) {
   --reads_;
-  // What came while the model was ahead of it is new to it now.
-  const auto seen = [&](std::uint64_t clock) { return std::max(clock + 1, now_); };
-  if (error) read_arrivals_.push({beats.front(), true});
-  read_arrivals_.push({beats.back(), error});
+  if (error) read_arrivals_.push({first, true});
+  read_arrivals_.push({last, error});
+  read_from_ = last + 1;
   note_arrivals();
+}
+
+// What came while the model was ahead of it is new to it now.
+void RemapModel::answer_line(bool error, std::span<const std::uint8_t> data, std::uint64_t first,
+                             std::uint64_t last) {
+  note_read(error, first, last);
+  if (state_ != State::kDrain) cache_.arrive(data, std::max(last + 1, now_));
+}
+
+void RemapModel::answer_map(bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats) {
+  note_read(error, beats.front(), beats.back());
   if (state_ == State::kDrain) return;
-  if (id == kSourceReads) return cache_.arrive(data, seen(beats.back()));
-  for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.subspan(8 * n, 8), seen(beats[n]));
+  for (std::size_t n = 0; n < beats.size(); ++n) map_.arrive(data.data() + 8 * n, std::max(beats[n] + 1, now_));
 }
 
 void RemapModel::answer_write(bool error, std::uint64_t clock) {
   part_error_ |= error;
+  write_from_ = clock + 1;
   // The writes whose answers lie ahead are the oldest ones.
   unsigned& parts = parts_.at(write_arrivals_.size());
   if (--parts > 0) return;

@@ -43,7 +43,9 @@ class RemapModel {
   /// @return the clock that has to be safe before it can go on; kNoClock: only an answer helps
   std::uint64_t run(std::uint64_t safe);
   /// Outcomes, in the order in which their beats arrive. @param beats the clock of each beat of 8 bytes
-  void answer_read(unsigned id, bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats);
+  void answer_map(bool error, std::span<const std::uint8_t> data, std::span<const std::uint64_t> beats);
+  /// @param first, last the clocks of the line's first and last beat
+  void answer_line(bool error, std::span<const std::uint8_t> data, std::uint64_t first, std::uint64_t last);
   void answer_write(bool error, std::uint64_t clock);
   /// The clock in which the job ended (done_o); kNoClock: it is under way.
   std::uint64_t done_at() const { return done_at_; }
@@ -58,23 +60,28 @@ class RemapModel {
 
   void begin();
   bool step();
+  bool run_clock();
+  bool flows() const;
+  void flow();
+  bool feed(bool room, bool may_ask, bool map_asked);
+  bool fetch();
+  void blend_last();
   bool drain();
   bool arrivals(std::uint64_t clock) { return next_arrival_ <= clock && arrive(clock); }
   bool arrive(std::uint64_t clock);
+  void note_read(bool error, std::uint64_t first, std::uint64_t last);
   void note_arrivals();
   bool pack();
   bool blend_words(bool taken);
-  bool data(bool blend_ready);
-  bool tags(bool room, bool may_ask);
+  bool tags(const Pair& pair, bool may_ask);
   bool ask(bool& map_asked);
   bool send();
-  bool waits() const {
-    // By far the most clocks: everybody has something.
-    if (state_ == State::kRun && !cache_.no_line() && !map_.empty() && packer_.under_way() < Packer::kUnderWay - 1)
-      return false;
-    return waits_for_something();
+  void send_burst();
+  bool waits(std::uint64_t clock) const {
+    return state_ == State::kRun ? waits_in_run(clock) : waits_in_drain(clock);
   }
-  bool waits_for_something() const;
+  bool waits_in_run(std::uint64_t clock) const;
+  bool waits_in_drain(std::uint64_t clock) const;
   std::uint64_t next_event() const;
 
   Port& port_;
@@ -90,7 +97,7 @@ class RemapModel {
   Packer packer_;
   unsigned which_ = 0;         // access of the pair at hand
   bool line_asked_ = false;    // the port has the request for a line
-  std::uint32_t line_ = 0;     // its address
+  std::uint32_t line_ = 0;     // its number
   // Between data and blending, and behind it.
   bool word_valid_ = false, blended_valid_ = false;
   std::uint32_t word_ = 0, blended_ = 0;
@@ -104,6 +111,8 @@ class RemapModel {
   Ring<Arrival, 32> read_arrivals_;
   Ring<Arrival, 8> write_arrivals_;
   std::uint64_t next_arrival_ = kNoClock;  // the earliest of both
+  // Answers come in order: what is not known arrives in these clocks at the earliest.
+  std::uint64_t read_from_ = 0, write_from_ = 0;
   Ring<unsigned, 8> parts_;    // of each write under way, without an answer
   bool part_error_ = false;
 };

@@ -13,11 +13,10 @@
 
 namespace fovea::engine {
 
-/// An access on its way from the tags to the data.
+/// An access on its way from the tags to the data. What is looked up in a clock can be taken from the next one on:
+/// data come before tags in a clock's order.
 struct CacheAccess {
-  std::uint64_t there = 0;           ///< clock from which on it can be taken
-  std::uint32_t word = 0;            ///< word address
-  std::uint16_t place = 0;           ///< its line in the cache
+  std::uint16_t word = 0;            ///< its place in the cache, in words
   std::uint8_t which = 0;            ///< of the pair's words
   bool miss = false, final = false;  ///< brings a line; the last one of its pair
 };
@@ -36,14 +35,18 @@ class SourceCache {
       : ways_(std::min(kWays, 1u << g.log_lines)),
         log_sets_(g.log_lines - static_cast<unsigned>(std::countr_zero(ways_))),
         prefetch_(g.prefetch),
-        tags_(1u << g.log_lines),
+        tags_(1u << log_sets_),
         next_(1u << log_sets_),
-        data_(1u << g.log_lines) {
+        data_(kLineWords << g.log_lines) {
+    static_assert(kLineWords << 12 <= 1u << 16, "CacheAccess::word");
     clear();
   }
   void clear() {
-    std::ranges::fill(tags_, kNothing);
+    Tags none;
+    none.fill(kNothing);
+    std::ranges::fill(tags_, none);
     std::ranges::fill(next_, std::uint8_t{0});
+    latest_ = kNothing;
     lines_.clear();
     waiting_.clear();
     promised_ = 0;
@@ -51,76 +54,84 @@ class SourceCache {
 
   /// @name Tags
   ///@{
-  /// Looks a word up: where it is, or which line it will replace (`place`), and whether it is missing (`miss`).
-  void look_up(CacheAccess& access) const {
-    const std::uint32_t line = access.word / kLineWords;
-    const unsigned set = set_of(line), first = set * ways_;
-    for (unsigned way = 0; way < ways_; ++way)
-      if (tags_[first + way] == line) {
-        access.place = static_cast<std::uint16_t>(first + way);
-        access.miss = false;
-        return;
-      }
-    access.place = static_cast<std::uint16_t>(first + next_[set]);
-    access.miss = true;
+  /// Looks a word of the source up: where it is, or which line it will replace, and whether it is missing (`miss`).
+  void look_up(CacheAccess& access, std::uint32_t word) {
+    const std::uint32_t line = word / kLineWords;
+    std::uint32_t words = latest_words_;
+    // Most accesses are to the line of the one before, which is there: only a later one replaces it.
+    if (line != latest_) {
+      const unsigned set = set_of(line);
+      const Tags& tags = tags_[set];
+      unsigned way = 0;
+      while (way < kWays && tags[way] != line) ++way;
+      access.miss = way == kWays;
+      words = (set * ways_ + (access.miss ? next_[set] : way)) * kLineWords;
+      if (!access.miss) remember(line, words);
+    }
+    access.word = static_cast<std::uint16_t>(words + word % kLineWords);
   }
   bool may_ask() const { return promised_ != prefetch_; }
   bool room() const { return waiting_.size() < kAhead; }
-  void push(const CacheAccess& access) {
-    if (access.miss) {
-      const std::uint32_t line = access.word / kLineWords;
-      tags_[access.place] = line;
-      std::uint8_t& next = next_[set_of(line)];
-      next = static_cast<std::uint8_t>((next + 1) % ways_);
-      ++promised_;
-    }
-    waiting_.push(access);
+  /// The line of a miss is asked for.
+  void replace(const CacheAccess& miss, std::uint32_t line) {
+    const unsigned set = set_of(line);
+    std::uint8_t& next = next_[set];
+    tags_[set][next] = line;
+    remember(line, miss.word / kLineWords * kLineWords);
+    next = static_cast<std::uint8_t>((next + 1) % ways_);
+    ++promised_;
   }
+  void push(const CacheAccess& access) { waiting_.push(access); }
   ///@}
 
   /// @name Data
   ///@{
-  /// The access whose turn it is in `clock`; null: none.
-  const CacheAccess* next(std::uint64_t clock) const {
-    return !waiting_.empty() && waiting_.front().there <= clock ? &waiting_.front() : nullptr;
-  }
+  /// The access whose turn it is; null: none.
+  const CacheAccess* next() const { return waiting_.empty() ? nullptr : &waiting_.front(); }
+  /// It needs a line of which nothing is known.
+  bool wants_line() const { return lines_.empty() && !waiting_.empty() && waiting_.front().miss; }
   bool line_there(std::uint64_t clock) const { return !lines_.empty() && lines_.front().there <= clock; }
   bool no_line() const { return lines_.empty(); }
   std::uint64_t line_at() const { return lines_.front().there; }
   /// Takes next(). @return its word
   std::uint32_t pop() {
     const CacheAccess& a = waiting_.front();
-    auto& line = data_[a.place];
     if (a.miss) {
-      line = lines_.front().words;
+      std::memcpy(&data_[a.word / kLineWords * kLineWords], lines_.front().words.data(), 4 * kLineWords);
       lines_.pop();
       --promised_;
     }
-    const std::uint32_t word = line[a.word % kLineWords];
     waiting_.pop();
-    return word;
+    return data_[a.word];
   }
   /// A line that can be taken from clock `there` on.
   void arrive(std::span<const std::uint8_t> bytes, std::uint64_t there) {
-    Line line{{}, there};
+    Line& line = lines_.push();
     std::memcpy(line.words.data(), bytes.data(), sizeof line.words);
-    lines_.push(line);
+    line.there = there;
   }
   ///@}
 
  private:
-  using Words = std::array<std::uint32_t, kLineWords>;
   struct Line {
-    Words words;
+    std::array<std::uint32_t, kLineWords> words;
     std::uint64_t there;
   };
   static constexpr std::uint32_t kNothing = ~0u;  // no line's number
+  /// Numbers of a set's lines; behind `ways_` nothing.
+  using Tags = std::array<std::uint32_t, kWays>;
+  void remember(std::uint32_t line, std::uint32_t words) {
+    latest_ = line;
+    latest_words_ = words;
+  }
   /// Neighbours in a row and in a column of the source are in different sets.
   unsigned set_of(std::uint32_t line) const { return (line ^ line >> log_sets_) & ((1u << log_sets_) - 1); }
   unsigned ways_, log_sets_, prefetch_;
-  std::vector<std::uint32_t> tags_;  // numbers of lines
-  std::vector<std::uint8_t> next_;   // of each set, the way that is replaced next
-  std::vector<Words> data_;
+  std::vector<Tags> tags_;
+  std::vector<std::uint8_t> next_;      // of each set, the way that is replaced next
+  std::vector<std::uint32_t> data_;
+  std::uint32_t latest_ = kNothing;     // line that was looked up last and is there,
+  std::uint32_t latest_words_ = 0;      // and its place
   Ring<Line, kLines> lines_;
   Ring<CacheAccess, kAhead> waiting_;
   unsigned promised_ = 0;

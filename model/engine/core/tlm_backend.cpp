@@ -9,11 +9,6 @@ namespace {
 
 using namespace at;
 
-/// Bits of EngineRegs, as constants: this is the path of every access.
-constexpr std::uint32_t kEnable = 1, kAbort = 2;
-constexpr std::uint32_t kDone = 1, kRefused = 2, kReadError = 4, kWriteError = 8, kAborted = 16, kOverflow = 32,
-                        kDropped = 64, kAllEvents = 127;
-
 }  // namespace
 
 void TlmBackend::reset() {
@@ -25,7 +20,7 @@ void TlmBackend::reset() {
   update_interrupt();
 }
 
-bool TlmBackend::enabled() const { return value(kCtrl) & kEnable; }
+bool TlmBackend::enabled() const { return bits::kEnable.of(value(kCtrl)); }
 
 /// The time from which on the model may count on every answer before `clock`: that of the edge before it.
 Picoseconds TlmBackend::time_before(std::uint64_t clock) const { return clock_.edge(clock - 1); }
@@ -71,11 +66,11 @@ void TlmBackend::take(std::uint64_t clock) {
 
 void TlmBackend::end_job() {
   const JobEnd& e = model_.end();
-  std::uint32_t events = e.refused * kRefused | e.read_error * kReadError | e.write_error * kWriteError |
-                         e.aborted * kAborted;
-  if (!events) events = kDone;
-  const std::uint32_t count = (value(kEnded) >> 16) + 1;
-  cell(kEnded) = count << 16 | events << 8 | tag_;
+  std::uint32_t events = bits::kRefused.put(e.refused) | bits::kReadError.put(e.read_error) |
+                         bits::kWriteError.put(e.write_error) | bits::kAborted.put(e.aborted);
+  if (!events) events = bits::kDone.mask();
+  const std::uint32_t count = bits::kEndedCount.of(value(kEnded)) + 1;
+  cell(kEnded) = bits::kEndedCount.put(count) | bits::kEndedEvents.put(events) | bits::kEndedTag.put(tag_);
   cell(kClocks) = e.clocks;
   cell(kLines) = e.lines;
   cell(kWrites) = e.writes;
@@ -103,7 +98,7 @@ std::uint32_t TlmBackend::read(std::uint32_t offset, Picoseconds) {
       return kIdentity;
     case kStatus: {
       const auto waiting = static_cast<std::uint32_t>(queue_.size());
-      return (running_ ? 1u : 0u) | waiting << 4 | (waiting == kQueueDepth ? 1u << 8 : 0u);
+      return bits::kBusy.put(running_) | bits::kQueued.put(waiting) | bits::kFull.put(waiting == kQueueDepth);
     }
     default:
       return offset / 4 < kRegisters ? value(offset) : 0;
@@ -114,25 +109,25 @@ void TlmBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now
   const std::uint64_t clock = clock_.edge_after(now);  // at whose end it takes effect
   switch (offset) {
     case kCtrl:
-      if (word & kAbort) abort(clock);
-      if ((word & kEnable) && !enabled()) enabled_from_ = clock + 1;
-      cell(kCtrl) = word & kEnable;
+      if (bits::kAbort.of(word)) abort(clock);
+      if (bits::kEnable.of(word) && !enabled()) enabled_from_ = clock + 1;
+      cell(kCtrl) = word & bits::kEnable.mask();
       return;
     case kEvents:
       cell(kEvents) &= ~word;
       return update_interrupt();
     case kEnables:
-      cell(kEnables) = word & kAllEvents;
+      cell(kEnables) = word & bits::kAllEvents.mask();
       return update_interrupt();
     case kSubmit:
-      return submit(static_cast<std::uint8_t>(word), clock);
+      return submit(static_cast<std::uint8_t>(bits::kTag.of(word)), clock);
     default:
       if (offset >= kMode && offset / 4 < kRegisters) cell(offset) = word;
   }
 }
 
 void TlmBackend::submit(std::uint8_t tag, std::uint64_t clock) {
-  if (queue_.size() == kQueueDepth) return raise(kOverflow);
+  if (queue_.size() == kQueueDepth) return raise(bits::kOverflow.mask());
   queue_.push({window(), tag, clock + 1});
 }
 
@@ -140,30 +135,28 @@ void TlmBackend::abort(std::uint64_t clock) {
   model_.abort(clock);
   if (queue_.empty()) return;
   queue_.clear();
-  raise(kDropped);
+  raise(bits::kDropped.mask());
 }
 
-/// The job of the window; fields as in EngineRegs.
+/// The job of the window.
 Job TlmBackend::window() const {
-  const auto field = [this](std::uint32_t offset, unsigned lsb, unsigned bits) {
-    return value(offset) >> lsb & ((1u << bits) - 1);
-  };
+  const auto field = [this](std::uint32_t offset, Bits b) { return b.of(value(offset)); };
   Job job;
-  job.mode = static_cast<RemapMode>(field(kMode, 0, 2));
-  job.bilinear = field(kMode, 2, 1);
-  job.grid_log2 = field(kMode, 8, 3);
-  job.pieces = field(kMode, 16, 8);
-  job.piece_log2 = field(kMode, 24, 5);
-  job.pairs = field(kSize, 0, 12);
-  job.rows = field(kSize, 16, 13);
-  job.src_base = value(kSrcBase) >> 2;
-  job.src_pitch = field(kSrcPitch, 2, 13);
-  job.src_width = field(kSrcSize, 0, 13);
-  job.src_height = field(kSrcSize, 16, 13);
-  job.dst_base = value(kDstBase) >> 2;
-  job.dst_pitch = field(kDstPitch, 2, 13);
-  job.map_base = value(kMapBase) & ~63u;
-  job.map_words = field(kMapWords, 0, 24);
+  job.mode = static_cast<RemapMode>(field(kMode, bits::kRemapMode));
+  job.bilinear = field(kMode, bits::kBilinear);
+  job.grid_log2 = field(kMode, bits::kGridLog2);
+  job.pieces = field(kMode, bits::kPieces);
+  job.piece_log2 = field(kMode, bits::kPieceLog2);
+  job.pairs = field(kSize, bits::kPairs);
+  job.rows = field(kSize, bits::kRows);
+  job.src_base = field(kSrcBase, bits::kBase);
+  job.src_pitch = field(kSrcPitch, bits::kPitch);
+  job.src_width = field(kSrcSize, bits::kWidth);
+  job.src_height = field(kSrcSize, bits::kHeight);
+  job.dst_base = field(kDstBase, bits::kBase);
+  job.dst_pitch = field(kDstPitch, bits::kPitch);
+  job.map_base = value(kMapBase) & bits::kMapBase.mask();
+  job.map_words = field(kMapWords, bits::kMapWords);
   job.border = value(kBorder);
   job.radius_limit = value(kRadiusLimit);
   job.centre_x = static_cast<std::int32_t>(value(kCentreX));
@@ -177,25 +170,28 @@ Job TlmBackend::window() const {
 }
 
 /// Tags carry what an answer has to tell: the identifier of a read.
-void TlmBackend::issue(const Burst& burst, std::uint64_t clock) {
-  Burst b = burst;
-  b.tag = burst.id;
-  host_.issue(b, clock_.edge(clock));
-}
+void TlmBackend::issue(const Burst& burst, std::uint64_t clock) { host_.issue(burst, clock_.edge(clock)); }
 
 void TlmBackend::answer(const Answer& a) {
   if (a.write) {
     answer_free_ = std::max(clock_.edge_after(a.last), answer_free_ + 1);
     return model_.answer_write(a.error, answer_free_);
   }
-  std::array<std::uint64_t, 8> beats;
   const std::size_t count = a.data.size() / 8;
-  for (std::size_t n = 0; n < count; ++n) {
-    const Picoseconds t = count == 1 ? a.last : a.first + (a.last - a.first) * n / (count - 1);
-    beat_free_ = std::max(clock_.edge_after(t), beat_free_ + 1);
-    beats[n] = beat_free_;
+  const std::uint64_t begin = count == 1 ? clock_.edge_after(a.last) : clock_.edge_after(a.first);
+  if (a.tag == kSourceReads) {
+    // Of evenly spread beats, no more than one an edge, either the first decides when the last one comes, or that one
+    // itself, or the answer before.
+    const std::uint64_t first = std::max(begin, beat_free_ + 1);
+    beat_free_ = std::max({begin + count - 1, clock_.edge_after(a.last), beat_free_ + count});
+    return model_.answer_line(a.error, a.data, first, beat_free_);
   }
-  model_.answer_read(static_cast<unsigned>(a.tag), a.error, a.data, {beats.data(), count});
+  std::array<std::uint64_t, 8> beats;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint64_t edge = n == 0 ? begin : clock_.edge_after(a.first + (a.last - a.first) * n / (count - 1));
+    beats[n] = beat_free_ = std::max(edge, beat_free_ + 1);
+  }
+  model_.answer_map(a.error, a.data, {beats.data(), count});
 }
 
 }  // namespace fovea::engine

@@ -19,6 +19,7 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
   std::uint32_t read(std::uint32_t offset, Picoseconds now) override;
   void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) override;
   void answer(const Answer& answer) override;
+  bool takes_answers_ahead() const override { return true; }
   bool busy() const override { return running_ || (enabled() && !queue_.empty()); }
   void reset() override;
 

@@ -14,7 +14,6 @@ using engine::Burst;
 namespace at = engine::at;
 
 constexpr std::array kStreams{"reads of the map", "reads of the source", "writes"};
-constexpr std::uint32_t kAbort = 2;
 
 std::string text(const char* format, unsigned long long a, unsigned long long b, unsigned long long c = 0,
                  unsigned long long d = 0) {
@@ -169,7 +168,7 @@ std::uint32_t PairBackend::read(std::uint32_t offset, Picoseconds now) {
 }
 
 void PairBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
-  if (offset == at::kCtrl && word & kAbort) disturb();
+  if (offset == at::kCtrl && engine::bits::kAbort.of(word)) disturb();
   owner_->write(offset, word, now);
   twin_->write(offset, word, now);
 }
