@@ -279,33 +279,40 @@ TEST(RtlBackendTest, TheModelBesideItAsksForTheSameInBothRoles) {
   }
 }
 
-/// What adapters and checkers cost: clocks a second of the same job on the bench of tb/rtl and as a backend.
-TEST(RtlBackendTest, PrintsItsSpeedBesideThatOfABenchWithoutAdapters) {
-  Dice dice(6);
-  MappedJob m;
-  m.job.pairs = m.job.dst_pitch = m.job.src_pitch = 360;
-  m.job.rows = m.job.src_height = 100;
-  m.job.src_width = 720;
-  for (unsigned n = 0; n < 36'000; ++n) m.map.push_back(4 * n);
-  const auto rate = [](auto&& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    const std::uint64_t clocks = work();
-    return static_cast<double>(clocks) /
-           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+/// What adapters and checkers cost: the same job on the bench of tb/rtl and as a backend.
+struct CostTest : testing::Test {
   Bench backend;
-  backend.fill(m, dice);
-  EngineBench plain(kSize);
-  for (std::uint32_t n = 0; n < kSize / 4; ++n) plain.word(kWord + n) = backend.word(kWord + n);
-  const double bench =
-      rate([&] { return plain.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 24}).clocks; });
-  const double adapted = rate([&] {
+  EngineBench plain{kSize};
+  MappedJob m;
+  CostTest() {
+    Dice dice(6);
+    m.job.pairs = m.job.dst_pitch = m.job.src_pitch = 360;
+    m.job.rows = m.job.src_height = 100;
+    m.job.src_width = 720;
+    for (unsigned n = 0; n < 36'000; ++n) m.map.push_back(4 * n);
+    backend.fill(m, dice);
+    for (std::uint32_t n = 0; n < kSize / 4; ++n) plain.word(kWord + n) = backend.word(kWord + n);
+  }
+  unsigned on_bench() { return plain.run(m.job, EngineBench::kBase + kMap, kBorder, {.latency = 24}).clocks; }
+  unsigned as_backend() {
     EXPECT_EQ(backend.make(m, {.latency = 24}), engine::kDone);
     return backend.get(backend.regs.clocks);
-  });
+  }
+};
+
+TEST_F(CostTest, PrintsItsSpeedBesideThatOfABenchWithoutAdapters) {
+  const auto rate = [](auto&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    const unsigned clocks = work();
+    return clocks / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const double bench = rate([&] { return on_bench(); }), adapted = rate([&] { return as_backend(); });
   std::printf("%.0f clocks/s on the bench of tb/rtl, %.0f as a backend\n", bench, adapted);
   EXPECT_TRUE(backend.right(m));
 }
+// For instructions.sh.
+TEST_F(CostTest, Bench) { std::printf("clocks: %u\n", on_bench()); }
+TEST_F(CostTest, Backend) { std::printf("clocks: %u\n", as_backend()); }
 
 }  // namespace
 }  // namespace fovea::rtl

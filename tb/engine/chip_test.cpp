@@ -175,6 +175,46 @@ TEST_F(Chip, BurstsWithGapsWaitForPlaces) {
   EXPECT_EQ(get(engine().regs.writes), 2u);
 }
 
+/// The model works ahead of the kernel; what it asks for counts when it is asked for.
+TEST_F(Chip, RequestsCountFromTheirTimeOn) {
+  struct Group : StatGroup {
+    TimedCounter bytes{*this, "bytes", "B", "of a test"};
+    Group() : StatGroup("test") {}
+  } group;
+  const Picoseconds now = kernel_time();
+  group.bytes.add(now, 1);
+  group.bytes.add(now + 1000, 2);
+  group.bytes.add(now + 3000, 4);
+  EXPECT_EQ(group.bytes.count(), 1u);
+  run(999);
+  EXPECT_EQ(group.bytes.count(), 1u);
+  run(1);
+  EXPECT_EQ(group.bytes.count(), 3u);
+  run(500);
+  group.bytes.reset();
+  EXPECT_EQ(group.bytes.count(), 0u);
+  run(1500);
+  EXPECT_EQ(group.bytes.count(), 4u);
+}
+
+/// An access to a register in the middle of a job does not find the job ended, whatever the model knows already.
+TEST_F(Chip, TheEndOfAJobIsSeenAtItsTime) {
+  copy();
+  Picoseconds busy = 0;
+  while (get(engine().regs.status) != 0 && busy < kPsPerMs) {
+    EXPECT_EQ(get(engine().regs.ended), 0u);
+    EXPECT_EQ(engine().stats.interrupts.count(), 0u);
+    run(100 * kPsPerNs);
+    busy += 100 * kPsPerNs;
+  }
+  EXPECT_TRUE(copied());
+  EXPECT_EQ(engine().stats.interrupts.count(), 1u);
+  EXPECT_EQ(get(engine().regs.ended), 0x10101u);
+  // The job is taken a clock or two behind SUBMIT, and its end is seen a clock later.
+  const Clock clock(engine().clk.read());
+  EXPECT_NEAR(get(engine().regs.clocks), static_cast<double>(clock.edge_after(busy)), 6);
+}
+
 }  // namespace
 }  // namespace fovea::engine
 

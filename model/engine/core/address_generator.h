@@ -35,8 +35,8 @@ class AddressGenerator {
   /// @param taken front() goes; @param map the word that is there; null: none
   /// @return anything has moved
   bool clock(bool taken, const std::uint32_t* map) {
-    took_map_ = map && wants_map();
-    const bool moves = clip_moves();
+    const bool moves = clip_moves(), table = job_.mode == RemapMode::kTable;
+    took_map_ = map && (table ? entries_ > 0 && moves : wants_load());
     const bool moved = taken || took_map_ || (moves && clip_);
     if (moves) {
       held_ += (clip_ & kClipEnd) != 0;
@@ -46,7 +46,7 @@ class AddressGenerator {
       ++taken_;
       --held_;
     }
-    if (job_.mode != RemapMode::kTable) return position(moves, map) || moved;
+    if (!table) return position(moves, map) || moved;
     if (took_map_) {
       enter(*map);
       --entries_;

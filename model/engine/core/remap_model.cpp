@@ -47,11 +47,9 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
       now_ = event;
       frozen_ = false;
     }
+    if (state_ == State::kRun && word_valid_ && blended_valid_ && !job_.bilinear) flow(std::max(safe, read_from_));
     if (now_ > safe && waits(now_)) return now_;
-    if (state_ == State::kRun && flows())
-      flow();
-    else
-      frozen_ = !step();
+    frozen_ = !step();
     ++now_;
   }
   return kNoClock;
@@ -59,7 +57,7 @@ std::uint64_t RemapModel::run(std::uint64_t safe) {
 
 /// What `clock` does depends on an answer that is not known.
 inline bool RemapModel::waits_in_run(std::uint64_t clock) const {
-  if (clock > read_from_ && (cache_.wants_line() || (map_.empty() && addresses_.wants_map()))) return true;
+  if (clock > read_from_ && wants_read()) return true;
   return clock > write_from_ && write_arrivals_.empty() && packer_.under_way() > 0 &&
          (packer_.finished_but_for_answers() || packer_.waits_for_answer(blended_valid_, blended_dst_));
 }
@@ -121,7 +119,7 @@ void RemapModel::begin() {
   const bool blend_ready = packed || !blended_valid_ || !access_.final;
   moved |= blend_words(packed);
   if (!word_valid_ || blend_ready) moved |= fetch();
-  moved |= feed(room, may_ask, map_asked);
+  moved |= feed<false>(room, may_ask, map_asked);
   moved |= arrivals(now_);
   if (finished && state_ == State::kRun) [[unlikely]] {
     state_ = State::kDrain;
@@ -131,28 +129,32 @@ void RemapModel::begin() {
 }
 
 /// What is in front of the data: tags, addresses, the map. @return anything has moved
+template <bool kNearest>
 [[gnu::always_inline]] inline bool RemapModel::feed(bool room, bool may_ask, bool map_asked) {
   const Pair* const pair = addresses_.front();
-  const bool access_taken = pair && room && tags(*pair, may_ask);
-  const bool pair_taken = access_taken && which_ == 0;
+  const bool access_taken = pair && room && tags<kNearest>(*pair, may_ask);
+  const bool pair_taken = access_taken && (kNearest || which_ == 0);
   const bool moved = addresses_.clock(pair_taken, map_.word(now_));
   return map_.clock(map_asked, addresses_.took_map(), false) || moved || access_taken;
 }
 
-/// By far the most clocks of a job without interpolation: each unit behind the cache hands its word on, and nobody
-/// outside is concerned.
-[[gnu::always_inline]] inline bool RemapModel::flows() const {
-  return word_valid_ && blended_valid_ && !job_.bilinear && now_ < next_arrival_ && !line_asked_ && !map_.asks() &&
-         !(sending_ && now_ == packer_.sent_at()) && packer_.takes(blended_dst_);
-}
-
-/// The same as run_clock() then.
-[[gnu::always_inline]] inline void RemapModel::flow() {
-  const bool room = cache_.room(), may_ask = cache_.may_ask();
-  packer_.take(blended_, blended_dst_, blended_last_);
-  blend_last();
-  fetch();
-  feed(room, may_ask, false);
+/// By far the most clocks of a job without interpolation, as long as they follow each other: each unit behind the cache
+/// hands its word on, and nobody outside is concerned. Each of them is the same as run_clock().
+/// @param reads no read that is not known arrives before this clock
+void RemapModel::flow(std::uint64_t reads) {
+  const std::uint64_t until = sending_ ? std::min(next_arrival_, packer_.sent_at()) : next_arrival_;
+  for (; now_ < until && !line_asked_ && !map_.asks() && packer_.takes(blended_dst_); ++now_) {
+    if (now_ > reads && wants_read()) return;
+    const bool room = cache_.room(), may_ask = cache_.may_ask();
+    packer_.take(blended_, blended_dst_, blended_last_);
+    blend_last<true>();
+    const bool there = fetch();
+    feed<true>(room, may_ask, false);
+    if (!there) {
+      ++now_;
+      return;
+    }
+  }
 }
 
 /// Nothing new is asked for; what is under way comes in, then all is cleared.
@@ -232,14 +234,15 @@ void RemapModel::send_burst() {
     blended_valid_ = !free;
     return true;
   }
-  blend_last();
+  blend_last<false>();
   return true;
 }
 
 /// The last word of a pair is there.
+template <bool kNearest>
 [[gnu::always_inline]] inline void RemapModel::blend_last() {
   const Pair& pair = addresses_.oldest();
-  blended_ = pair.border ? job_.border : job_.bilinear ? blend(pair, words_) : word_;
+  blended_ = pair.border ? job_.border : !kNearest && job_.bilinear ? blend(pair, words_) : word_;
   blended_dst_ = pair.dst;
   blended_last_ = pair.last;
   blended_valid_ = true;
@@ -257,12 +260,13 @@ void RemapModel::send_burst() {
 }
 
 /// The next access of the pair at hand. @return it is taken; which_ == 0 then: the pair too
+template <bool kNearest>
 [[gnu::always_inline]] inline bool RemapModel::tags(const Pair& pair, bool may_ask) {
   CacheAccess a;
-  a.final = !job_.bilinear || pair.border || which_ == 3;
-  a.which = static_cast<std::uint8_t>(which_);
+  a.final = kNearest || !job_.bilinear || pair.border || which_ == 3;
+  if (!kNearest) a.which = static_cast<std::uint8_t>(which_);
   std::uint32_t word = pair.src;
-  if (which_ != 0) [[unlikely]]
+  if (!kNearest && which_ != 0) [[unlikely]]
     word = (word + (which_ % 2 && !pair.edge_x) + (which_ / 2 && !pair.edge_y ? job_.src_pitch : 0)) & 0x3FFF'FFFF;
   if (!pair.border) cache_.look_up(a, word);
   if (a.miss) {
@@ -276,7 +280,7 @@ void RemapModel::send_burst() {
     ++which_;
     return true;
   }
-  which_ = 0;
+  if (!kNearest) which_ = 0;
   if (pair.bad) [[unlikely]]
     ++end_.bad;
   return true;

@@ -61,10 +61,11 @@ class RemapModel {
   void begin();
   bool step();
   bool run_clock();
-  bool flows() const;
-  void flow();
+  void flow(std::uint64_t reads);
+  template <bool kNearest>
   bool feed(bool room, bool may_ask, bool map_asked);
   bool fetch();
+  template <bool kNearest>
   void blend_last();
   bool drain();
   bool arrivals(std::uint64_t clock) { return next_arrival_ <= clock && arrive(clock); }
@@ -73,6 +74,7 @@ class RemapModel {
   void note_arrivals();
   bool pack();
   bool blend_words(bool taken);
+  template <bool kNearest>
   bool tags(const Pair& pair, bool may_ask);
   bool ask(bool& map_asked);
   bool send();
@@ -81,6 +83,7 @@ class RemapModel {
     return state_ == State::kRun ? waits_in_run(clock) : waits_in_drain(clock);
   }
   bool waits_in_run(std::uint64_t clock) const;
+  bool wants_read() const { return cache_.wants_line() || (map_.empty() && addresses_.wants_map()); }
   bool waits_in_drain(std::uint64_t clock) const;
   std::uint64_t next_event() const;
 
