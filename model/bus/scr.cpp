@@ -62,14 +62,15 @@ void Scr::release() {
 void Scr::arm() { due_.at(memory_.next_event()); }
 
 /// The kernel's turn: takes the events that are due, and in default mode those before the next event of
-/// anybody else.
+/// anybody else. Requests that come meanwhile set no timer: it would end the turn at the path's own event.
 void Scr::advance_by_kernel() {
   if (held_) return;
   const Picoseconds now = now_();
   memory_.set_present(now);
+  held_ = true;
   for (Horizon horizon;;) {
     const Picoseconds t = memory_.next_event();
-    if (t == kNever) return;
+    if (t == kNever) break;
     Picoseconds limit = now + 1;
     if (t > now) {
       if (strict_) break;
@@ -78,6 +79,7 @@ void Scr::advance_by_kernel() {
     }
     memory_.advance(limit);
   }
+  held_ = false;
   arm();
 }
 
