@@ -30,9 +30,9 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   enum class Report {
     kAtLastBeat,   ///< on_done is called in kernel time, at the burst's last beat
     kAtFirstBeat,  ///< the same, but for a read at its first beat; its last one lies ahead then
-    /// on_done is called within the memory path, when the outcome is decided; its times may lie
-    /// ahead. It may issue bursts from `last` on, but notify nothing: no kernel event is spent on
-    /// the burst.
+    /// on_done is called within the memory path, when the outcome is decided (and those of older
+    /// bursts of the direction); its times may lie ahead. It may issue bursts from `last` on. No kernel
+    /// event is spent on the burst; on_done of one without side effects must set no Timer either.
     kWhenDecided,
   };
   MemInitiatorSocket<32> socket{"socket"};
@@ -55,6 +55,8 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     for (const Slot& s : slots_) t = std::min(t, s.free);
     return t;
   }
+  /// Before the first burst. Whoever shares the port with others needs kernel time: see bus/shared_port.h.
+  void set_report(Report report) { report_ = report; }
   bool can_issue() const { return free_from() <= kernel_time(); }
   /// Slots not free strictly before t, as far as is known.
   unsigned taken_at(Picoseconds t) const {
@@ -91,6 +93,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     Picoseconds free = 0;  // from when on it can be taken; kNever: not known
     bool due = false;      // decided, but not yet reported
     std::uint64_t order = 0;
+    std::uint64_t turn = 0;  // its number within the direction
   };
 
   void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag,
@@ -104,6 +107,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     s->free = kNever;
     s->tag = tag;
     s->order = ++issued_count_;
+    s->turn = issued_[data != nullptr]++;
     ++busy_;
     if (data) std::memcpy(s->bytes_.data(), data, bytes);
     s->address = address;
@@ -123,13 +127,35 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
     if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
     auto& s = static_cast<Slot&>(r);
-    if (report_ == Report::kWhenDecided) {
-      report(s);
-    } else {
-      s.due = true;
+    s.due = true;
+    if (report_ == Report::kWhenDecided)
+      report_in_turn(s);
+    else
       schedule();
-    }
     return tlm::TLM_COMPLETED;
+  }
+
+  /// Slaves of different speed may answer in another order: a burst waits for the older ones of its
+  /// direction, and ends no sooner than they do.
+  void report_in_turn(Slot& s) {
+    const bool write = s.write;
+    if (s.turn != reported_[write]) {
+      ++held_back_;
+      return;
+    }
+    for (Slot* next = &s; next; next = held_back_ > 0 ? take_held_back(write) : nullptr) {
+      ++reported_[write];
+      next->last = ended_[write] = std::max(next->last, ended_[write]);
+      report(*next);
+    }
+  }
+  Slot* take_held_back(bool write) {
+    for (Slot& s : slots_)
+      if (s.due && s.write == write && s.turn == reported_[write]) {
+        --held_back_;
+        return &s;
+      }
+    return nullptr;
   }
 
   void report(Slot& s) {
@@ -188,6 +214,10 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   Picoseconds newest_ = 0;  // when the latest burst is put on the port
   unsigned busy_ = 0;
   std::uint64_t issued_count_ = 0;
+  // Of reads and of writes: bursts issued and reported, and with kWhenDecided the end of the latest one.
+  std::array<std::uint64_t, 2> issued_{}, reported_{};
+  std::array<Picoseconds, 2> ended_{};
+  unsigned held_back_ = 0;  // bursts with an outcome, behind an older one without
 };
 
 }  // namespace fovea
