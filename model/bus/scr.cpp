@@ -62,13 +62,11 @@ void Scr::release() {
 void Scr::arm() { due_.at(memory_.next_event()); }
 
 /// The kernel's turn: takes the events that are due, and in default mode those before the next event of
-/// anybody else.
+/// anybody else. Requests that come meanwhile set no timer: it would end the turn at the path's own event.
 void Scr::advance_by_kernel() {
   if (held_) return;
   const Picoseconds now = now_();
   memory_.set_present(now);
-  // Who is called within may have more requests. The event that they need is set once, at the end: set within, it
-  // would be the next horizon itself.
   held_ = true;
   for (Horizon horizon;;) {
     const Picoseconds t = memory_.next_event();

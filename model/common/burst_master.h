@@ -30,13 +30,12 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   enum class Report {
     kAtLastBeat,   ///< on_done is called in kernel time, at the burst's last beat
     kAtFirstBeat,  ///< the same, but for a read at its first beat; its last one lies ahead then
-    /// on_done is called within the memory path, when the outcome is decided; its times may lie
-    /// ahead. It may issue bursts from `last` on, but notify nothing: no kernel event is spent on
-    /// the burst.
+    /// on_done is called within the memory path, when the outcome is decided (and those of older
+    /// bursts of the direction); its times may lie ahead. It may issue bursts from `last` on. No kernel
+    /// event is spent on the burst; on_done of one without side effects must set no Timer either.
     kWhenDecided,
-    /// The same, in the order in which the bursts of a direction were issued, also if slaves of different speed answer
-    /// in another one: with the times of kAtFirstBeat.
-    kInOrderWhenDecided,
+    /// The same, but what is in order among reads is their first beats: with the times of kAtFirstBeat.
+    kFirstBeatWhenDecided,
   };
   MemInitiatorSocket<32> socket{"socket"};
   std::function<void(const Completion&)> on_done;
@@ -58,6 +57,8 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     for (const Slot& s : slots_) t = std::min(t, s.free);
     return t;
   }
+  /// Before the first burst. Whoever shares the port with others needs kernel time: see bus/shared_port.h.
+  void set_report(Report report) { report_ = report; }
   bool can_issue() const { return free_from() <= kernel_time(); }
   /// Slots not free strictly before t, as far as is known.
   unsigned taken_at(Picoseconds t) const {
@@ -94,6 +95,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     Picoseconds free = 0;  // from when on it can be taken; kNever: not known
     bool due = false;      // decided, but not yet reported
     std::uint64_t order = 0;
+    std::uint64_t turn = 0;  // its number within the direction
   };
 
   void issue(std::uint32_t address, unsigned bytes, const std::uint8_t* data, std::uint64_t tag,
@@ -107,6 +109,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     s->free = kNever;
     s->tag = tag;
     s->order = ++issued_count_;
+    s->turn = issued_[data != nullptr]++;
     ++busy_;
     if (data) std::memcpy(s->bytes_.data(), data, bytes);
     s->address = address;
@@ -126,16 +129,37 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   tlm::tlm_sync_enum nb_transport_bw(MemRequest& r, MemPhase& phase, sc_core::sc_time&) override {
     if (phase != MemPhase::kResponse) return tlm::TLM_ACCEPTED;
     auto& s = static_cast<Slot&>(r);
-    if (report_ == Report::kWhenDecided) {
-      report(s);
-    } else {
-      s.due = true;
-      if (report_ == Report::kInOrderWhenDecided)
-        report_decided();
-      else
-        schedule();
-    }
+    s.due = true;
+    if (report_ == Report::kWhenDecided || report_ == Report::kFirstBeatWhenDecided)
+      report_in_turn(s);
+    else
+      schedule();
     return tlm::TLM_COMPLETED;
+  }
+
+  /// Slaves of different speed may answer in another order: a burst waits for the older ones of its
+  /// direction, and ends no sooner than they do.
+  void report_in_turn(Slot& s) {
+    const bool write = s.write;
+    if (s.turn != reported_[write]) {
+      ++held_back_;
+      return;
+    }
+    for (Slot* next = &s; next; next = held_back_ > 0 ? take_held_back(write) : nullptr) {
+      ++reported_[write];
+      Picoseconds& at = reported(*next);
+      at = ended_[write] = std::max(at, ended_[write]);
+      next->last = std::max(next->last, next->first);
+      report(*next);
+    }
+  }
+  Slot* take_held_back(bool write) {
+    for (Slot& s : slots_)
+      if (s.due && s.write == write && s.turn == reported_[write]) {
+        --held_back_;
+        return &s;
+      }
+    return nullptr;
   }
 
   void report(Slot& s) {
@@ -170,16 +194,8 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
 
   /// When the outcome is reported.
   Picoseconds& reported(Slot& s) const {
-    const bool at_first = report_ == Report::kAtFirstBeat || report_ == Report::kInOrderWhenDecided;
+    const bool at_first = report_ == Report::kAtFirstBeat || report_ == Report::kFirstBeatWhenDecided;
     return at_first && !s.write ? s.first : s.last;
-  }
-  void report_decided() {
-    while (Slot* s = next_due()) {
-      Picoseconds& latest = latest_[s->write];
-      latest = reported(*s) = std::max(reported(*s), latest);
-      s->last = std::max(s->last, s->first);
-      report(*s);
-    }
   }
   void schedule() {
     if (Slot* s = next_due()) due_.at(reported(*s));
@@ -201,9 +217,12 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   std::vector<Slot> slots_;
   Timer due_;
   Picoseconds newest_ = 0;  // when the latest burst is put on the port
-  std::array<Picoseconds, 2> latest_{};  // kInOrderWhenDecided: time of the latest report of reads, of writes
   unsigned busy_ = 0;
   std::uint64_t issued_count_ = 0;
+  // Of reads and of writes: bursts issued and reported, and time of the latest report that was made when decided.
+  std::array<std::uint64_t, 2> issued_{}, reported_{};
+  std::array<Picoseconds, 2> ended_{};
+  unsigned held_back_ = 0;  // bursts with an outcome, behind an older one without
 };
 
 }  // namespace fovea

@@ -54,6 +54,9 @@ class BusTarget : public sc_core::sc_module, public Block {
   /// as in the chip's peripherals. False: a bus error, for a block of which so little is modelled
   /// that software has to notice.
   virtual bool holes_answer() const { return true; }
+  /// An access to an offset without a register, where holes answer. True: the block has noted it as the
+  /// chip's does, and said so.
+  virtual bool hole_accessed(std::uint32_t) { return false; }
   /// Resets what the block keeps beside its registers, which have their reset values by now.
   virtual void on_reset(ResetKind) {}
 
@@ -90,9 +93,11 @@ class BusTarget : public sc_core::sc_module, public Block {
     if (a == Access::kNoRegister) {
       // The chip's peripherals answer such an offset with 0; only the configuration bus reports
       // errors.
-      char where[16];
-      std::snprintf(where, sizeof where, "0x%x", offset);
-      Diagnostics::instance().not_modelled(bank_.name() + " register at offset " + where);
+      if (!hole_accessed(offset)) {
+        char where[16];
+        std::snprintf(where, sizeof where, "0x%x", offset);
+        Diagnostics::instance().not_modelled(bank_.name() + " register at offset " + where);
+      }
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       a = Access::kOk;
     }

@@ -75,12 +75,12 @@ void EdmaCc::event(unsigned channel) {
   work_arrived();
 }
 
-void EdmaCc::completed(const TransferRequest& request) {
+void EdmaCc::completed(const TransferRequest& request, Picoseconds ended) {
   if (in_reset_) return;
   if (!request.interrupt && !request.chain) return;
   const auto clocks = static_cast<std::uint64_t>(params_.completion_clocks()) - 1;
-  const Picoseconds at = running() ? edge(kernel_time(), clocks) : kernel_time();
-  completions_.push({at, ++completion_count_, request});
+  const Picoseconds at = running() ? edge(ended, clocks) : ended;
+  completions_.push({at, ended, ++completion_count_, request});
   wake_.at(at);
 }
 

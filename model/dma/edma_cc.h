@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <queue>
 #include <systemc>
+#include <tuple>
 #include <vector>
 
 #include "model/common/bus_target.h"
@@ -80,9 +81,11 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   /// A rising edge of a hardware event, 0 .. 63, now.
   void event(unsigned channel);
   /// From a transfer controller: its program register is free from `at` on.
-  void program_free(Picoseconds at) { wake_.at(at); }
-  /// From a transfer controller: the request ends now.
-  void completed(const TransferRequest& request);
+  void program_free(Picoseconds at) {
+    if (core_.next_turn() != kNever) wake_.at(at);  // nobody else waits for it
+  }
+  /// From a transfer controller: the request ends at `at`, now or later.
+  void completed(const TransferRequest& request, Picoseconds at);
   /// From a transfer controller: it has dropped the request, whose completion code never arrives.
   void dropped(const TransferRequest& request);
   void leave_reset() override;
@@ -93,15 +96,17 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
 
  private:
   struct Completion {
-    Picoseconds at;
+    Picoseconds at;     // when the code arrives
+    Picoseconds ended;  // the last acknowledgement
     std::uint64_t order;
     TransferRequest request;
     bool operator>(const Completion& o) const {
-      return at != o.at ? at > o.at : order > o.order;
+      return std::tie(at, ended, order) > std::tie(o.at, o.ended, o.order);
     }
   };
   bool can_submit(unsigned controller) const override;
   void submit(unsigned controller, const TransferRequest& request) override;
+  bool forms_request() const override { return kernel_time() < next_request_; }
   void pulse_completion(unsigned region) override;
   void pulse_error() override;
   void work_arrived() override;

@@ -1,6 +1,8 @@
 #include "model/dma/edma_tc.h"
 
+#include <array>
 #include <bit>
+#include <cstdio>
 
 namespace fovea::dma {
 namespace {
@@ -46,8 +48,10 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
       stats(number),
       number_(number),
       params_(params),
-      reads_("reads", edma_read(number), static_cast<unsigned>(params.outstanding())),
-      writes_("writes", edma_write(number), static_cast<unsigned>(params.outstanding())),
+      reads_("reads", edma_read(number), static_cast<unsigned>(params.outstanding()),
+             BurstMaster::Report::kWhenDecided),
+      writes_("writes", edma_write(number), static_cast<unsigned>(params.outstanding()),
+              BurstMaster::Report::kWhenDecided),
       core_(*this, {number == 1 ? 32 : power_of_two(params.burst), static_cast<unsigned>(params.fifo()),
                     static_cast<unsigned>(params.depth())}) {
   add_clock(clk);
@@ -61,30 +65,19 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   add_master(edma_write(number), writes_.socket, outstanding);
   reads_.on_done = [this](const BurstMaster::Completion& c) {
     if (in_reset_) return;
-    ++stats.reads;
+    stats.reads.add(1, c.last);
     core_.read_done(c.data, c.error, c.last);
   };
   writes_.on_done = [this](const BurstMaster::Completion& c) {
     if (in_reset_) return;
-    ++stats.writes;
-    stats.bytes += c.data.size();
+    stats.writes.add(1, c.last);
+    stats.bytes.add(c.data.size(), c.last);
     core_.write_done(c.error, c.last);
   };
-  regs.tcstat.on_read([this] {
-    regs.tcstat.program.set(core_.program_busy());
-    regs.tcstat.source.set(core_.source_active());
-    regs.tcstat.writes.set(writes_.outstanding() > 0);
-    regs.tcstat.destinations.set(static_cast<std::uint32_t>(core_.destinations()));
-    regs.tcstat.head.set(core_.destination_head());
-  });
+  show_status();
+  show_interrupts();
+  show_errors();
   show_sets();
-  regs.errclr.on_write([this](std::uint32_t word) {
-    regs.errstat.set(regs.errstat.get() & ~word);
-    if (word & regs.errclr.bus.mask()) regs.errdet.set(0);
-  });
-  regs.errcmd.on_write([this](std::uint32_t word) {
-    if ((word & 1) && (regs.errstat.get() & regs.erren.get())) error.raise();
-  });
   regs.rdrate.on_write([this](std::uint32_t) {
     static constexpr std::array<unsigned, 5> kClocks{1, 4, 8, 16, 32};
     const std::uint32_t rate = regs.rdrate.rate.get();
@@ -97,28 +90,88 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   });
   SC_METHOD(clock_changed);
   sensitive << clk << lpsc;
+  SC_METHOD(act);
+  sensitive << due_timer_.event();
+  dont_initialize();
+}
+
+void EdmaTc::ports_are_shared() {
+  in_kernel_time_ = true;
+  reads_.set_report(BurstMaster::Report::kAtLastBeat);
+  writes_.set_report(BurstMaster::Report::kAtLastBeat);
+}
+
+void EdmaTc::show_status() {
+  regs.tcstat.on_read([this] {
+    const Picoseconds now = kernel_time();
+    regs.tcstat.program.set(core_.program_taken(now));
+    regs.tcstat.source.set(core_.source_active(now));
+    regs.tcstat.writes.set(core_.writing(now));
+    regs.tcstat.destinations.set(static_cast<std::uint32_t>(core_.destinations(now)));
+    regs.tcstat.head.set(core_.destination_head(now));
+  });
+}
+
+/// Counted, so that what is decided ahead of the present is not seen before its time.
+void EdmaTc::show_interrupts() {
+  regs.intstat.on_read([this] {
+    regs.intstat.program.set(core_.loaded(kernel_time()) > loads_cleared_);
+    regs.intstat.done.set(core_.ended(kernel_time()) > ends_cleared_);
+  });
+  regs.intclr.on_write([this](std::uint32_t word) {
+    if (word & regs.intclr.program.mask()) loads_cleared_ = core_.loaded(kernel_time());
+    if (word & regs.intclr.done.mask()) ends_cleared_ = core_.ended(kernel_time());
+  });
+  const auto warn = [this](std::uint32_t word) {
+    if (word & 3u)
+      Diagnostics::instance().guest("the interrupt of " + regs.name() +
+                                    " (INTEN, INTCMD) is not connected on this chip");
+  };
+  regs.inten.on_write(warn);
+  regs.intcmd.on_write(warn);
+}
+
+void EdmaTc::show_errors() {
+  regs.errclr.on_write([this](std::uint32_t word) {
+    regs.errstat.set(regs.errstat.get() & ~word);
+    if (word & regs.errclr.bus.mask()) regs.errdet.set(0);
+  });
+  regs.errcmd.on_write([this](std::uint32_t word) {
+    if ((word & 1) && (regs.errstat.get() & regs.erren.get())) error.raise();
+  });
+}
+
+/// The identification register is there on the chip, with a value that is not known.
+bool EdmaTc::hole_accessed(std::uint32_t offset) {
+  if (offset < 4) return false;
+  set_error(regs.errstat.address);
+  char text[96];
+  std::snprintf(text, sizeof text, "access to a reserved address of %s, offset 0x%x",
+                regs.name().c_str(), offset);
+  Diagnostics::instance().guest(text);
+  return true;
 }
 
 /// What does not apply to a set reads as 0: the destination of the source active, the source of a
 /// destination register.
 void EdmaTc::show_sets() {
   const auto program = [this] { return core_.program_set(); };
-  const auto source = [this] { return core_.source_set(); };
+  const auto source = [this] { return core_.source_set(kernel_time()); };
   show(regs.program, program);
   regs.program.src.on_read([this] { regs.program.src.set(core_.program_set().request.source.address); });
   regs.program.dst.on_read(
       [this] { regs.program.dst.set(core_.program_set().request.destination.address); });
   show(regs.source, source);
   regs.source.src.on_read([this] {
-    const RegisterSet s = core_.source_set();
+    const RegisterSet s = core_.source_set(kernel_time());
     regs.source.src.set(s.address(s.request.source));
   });
-  regs.sacntrld.on_read([this] { regs.sacntrld.set(core_.source_set().request.acnt); });
+  regs.sacntrld.on_read([this] { regs.sacntrld.set(core_.source_set(kernel_time()).request.acnt); });
   regs.sasrcbref.on_read([this] {
-    const RegisterSet s = core_.source_set();
+    const RegisterSet s = core_.source_set(kernel_time());
     regs.sasrcbref.set(s.reference(s.request.source));
   });
-  const auto written = [this] { return core_.destination_set(core_.destination_writing()); };
+  const auto written = [this] { return core_.destination_set(core_.destination_writing(kernel_time()), kernel_time()); };
   regs.dfcntrld.on_read([this, written] { regs.dfcntrld.set(written().request.acnt); });
   regs.dfdstbref.on_read([this, written] {
     const RegisterSet s = written();
@@ -126,9 +179,9 @@ void EdmaTc::show_sets() {
   });
   for (unsigned n = 0; n < static_cast<unsigned>(params_.depth()); ++n) {
     EdmaTcRegs::Set& d = regs.destination[n];
-    show(d, [this, n] { return core_.destination_set(n); });
+    show(d, [this, n] { return core_.destination_set(n, kernel_time()); });
     d.dst.on_read([this, &d, n] {
-      const RegisterSet s = core_.destination_set(n);
+      const RegisterSet s = core_.destination_set(n, kernel_time());
       d.dst.set(s.address(s.request.destination));
     });
   }
@@ -148,6 +201,9 @@ void EdmaTc::show(EdmaTcRegs::Set& r, std::function<RegisterSet()> set) {
 void EdmaTc::on_reset(ResetKind) {
   in_reset_ = true;
   core_.reset();
+  loads_cleared_ = ends_cleared_ = 0;
+  due_.clear();
+  for (PresentCounter* c : {&stats.requests, &stats.reads, &stats.writes, &stats.bytes}) c->drop_ahead();
   core_.set_read_interval(1);
   program_free_ = 0;
 }
@@ -204,35 +260,59 @@ void EdmaTc::program_free(Picoseconds at) {
 }
 
 void EdmaTc::completed(const TransferRequest& request, Picoseconds at) {
-  ++stats.requests;
-  if (on_ended) on_ended(request, at);
-  channels_->completed(request);
+  stats.requests.add(1, at);
+  if (on_ended) at_its_time(at, [this, request, at] { on_ended(request, at); });
+  channels_->completed(request, at);
+}
+
+/// Calls f in kernel time.
+void EdmaTc::at_its_time(Picoseconds at, std::function<void()> f) {
+  if (in_kernel_time_) return f();
+  due_.emplace(at, std::move(f));
+  due_timer_.at(at);
+}
+
+void EdmaTc::act() {
+  while (!due_.empty() && due_.begin()->first <= kernel_time()) {
+    const std::function<void()> f = std::move(due_.begin()->second);
+    due_.erase(due_.begin());
+    f();
+  }
+  if (!due_.empty()) due_timer_.at(due_.begin()->first);
 }
 
 void EdmaTc::failed(const TransferRequest& request, TransferController::Failure failure,
                     Picoseconds at) {
   using Failure = TransferController::Failure;
+  if (failure != Failure::kRequest)
+    return at_its_time(at, [this, request, failure] { report_bus_error(request, failure == Failure::kRead); });
+  // As soon as it is submitted.
+  if (on_ended) on_ended(request, at);
+  channels_->dropped(request);
   ++stats.errors;
-  const std::uint32_t before = regs.errstat.get() & regs.erren.get();
-  if (failure == Failure::kRequest) {
-    if (on_ended) on_ended(request, at);
-    channels_->dropped(request);
-    regs.errstat.request.set(1);
-    Diagnostics::instance().guest(
-        "EDMA: a request with constant addressing whose address or index is no multiple of 32");
-  } else {
-    // The details are those of the first error.
-    if (!regs.errstat.bus.get()) {
-      regs.errdet.status.set(failure == Failure::kRead ? 1 : 9);
-      regs.errdet.tcc.set(request.tcc);
-      regs.errdet.interrupt.set(request.interrupt);
-      regs.errdet.chain.set(request.chain);
-    }
-    regs.errstat.bus.set(1);
-    Diagnostics::instance().guest(failure == Failure::kRead
-                                      ? "EDMA: a read that nobody answers (bus error)"
-                                      : "EDMA: a write that nobody answers (bus error)");
+  set_error(regs.errstat.request);
+  Diagnostics::instance().guest(
+      "EDMA: a request with constant addressing whose address or index is no multiple of 32");
+}
+
+/// The details are those of the first error.
+void EdmaTc::report_bus_error(const TransferRequest& request, bool read) {
+  if (!regs.errstat.bus.get()) {
+    regs.errdet.status.set(read ? 1 : 9);
+    regs.errdet.tcc.set(request.tcc);
+    regs.errdet.interrupt.set(request.interrupt);
+    regs.errdet.chain.set(request.chain);
   }
+  ++stats.errors;
+  set_error(regs.errstat.bus);
+  Diagnostics::instance().guest(read ? "EDMA: a read that nobody answers (bus error)"
+                                     : "EDMA: a write that nobody answers (bus error)");
+}
+
+/// The interrupt is raised with the first enabled error.
+void EdmaTc::set_error(Field& which) {
+  const std::uint32_t before = regs.errstat.get() & regs.erren.get();
+  which.set(1);
   if (!before && (regs.errstat.get() & regs.erren.get())) error.raise();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <string>
 #include <systemc>
 
@@ -15,7 +16,8 @@
 
 namespace fovea::dma {
 
-/// Offsets and fields: SPRUH82C, "EDMA3 Transfer Controller Registers".
+/// Offsets and fields: SPRUH82C, "EDMA3 Transfer Controller Registers"; INTSTAT to INTCMD: TI's register
+/// header of the transfer controller (cslr_tptc.h).
 struct EdmaTcRegs : RegBank {
   struct Config : Reg {
     using Reg::Reg;
@@ -30,6 +32,26 @@ struct EdmaTcRegs : RegBank {
     Field writes{*this, "WSACTV", 2, 1, Mode::kRo, "an acknowledgement of a write is outstanding"};
     Field destinations{*this, "DSTACTV", 4, 3, Mode::kRo, "destination registers in use"};
     Field head{*this, "DFSTRTPTR", 12, 2, Mode::kRo, "destination register of the oldest request"};
+  };
+  struct Interrupts : Reg {
+    using Reg::Reg;
+    Field program{*this, "PROGEMPTY", 0, 1, Mode::kRo, "the program register has become empty"};
+    Field done{*this, "TRDONE", 1, 1, Mode::kRo, "the last write of a request was acknowledged"};
+  };
+  struct InterruptEnables : Reg {
+    using Reg::Reg;
+    Field program{*this, "PROGEMPTY", 0, 1, Mode::kRw, "interrupt on PROGEMPTY, not connected"};
+    Field done{*this, "TRDONE", 1, 1, Mode::kRw, "interrupt on TRDONE, not connected"};
+  };
+  struct InterruptClear : Reg {
+    using Reg::Reg;
+    Field program{*this, "PROGEMPTY", 0, 1, Mode::kWo, "clears PROGEMPTY"};
+    Field done{*this, "TRDONE", 1, 1, Mode::kWo, "clears TRDONE"};
+  };
+  struct InterruptCommand : Reg {
+    using Reg::Reg;
+    Field eval{*this, "EVAL", 0, 1, Mode::kWo, "pulses the interrupt if an enabled one is pending"};
+    Field set{*this, "SET", 1, 1, Mode::kWo, "pulses the interrupt"};
   };
   struct Errors : Reg {
     using Reg::Reg;
@@ -75,6 +97,10 @@ struct EdmaTcRegs : RegBank {
 
   Config tccfg;
   Status tcstat{*this, "TCSTAT", 0x100, "status"};
+  Interrupts intstat{*this, "INTSTAT", 0x104, "what has happened"};
+  InterruptEnables inten{*this, "INTEN", 0x108, "enabled interrupts"};
+  InterruptClear intclr{*this, "INTCLR", 0x10C, "clears INTSTAT"};
+  InterruptCommand intcmd{*this, "INTCMD", 0x110, "interrupt"};
   Errors errstat{*this, "ERRSTAT", 0x120, "errors"};
   ErrorEnables erren{*this, "ERREN", 0x124, "enabled errors"};
   ErrorClear errclr{*this, "ERRCLR", 0x128, "clears errors"};
@@ -93,12 +119,48 @@ struct EdmaTcRegs : RegBank {
   EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth);
 };
 
+/// Counts what happens up to the present; it may be told ahead, in the order of the times.
+class PresentCounter : public StatBase {
+ public:
+  using StatBase::StatBase;
+  void add(std::uint64_t n, Picoseconds at) {
+    if (!ahead_.empty()) settle();
+    ahead_.push_back({at, n});
+  }
+  std::uint64_t count() const {
+    settle();
+    return count_;
+  }
+  Value value() const override { return count(); }
+  void reset() override {
+    settle();
+    count_ = 0;
+  }
+  /// What was told ahead does not happen.
+  void drop_ahead() {
+    settle();
+    ahead_.clear();
+  }
+
+ private:
+  struct Ahead {
+    Picoseconds at;
+    std::uint64_t n;
+  };
+  void settle() const {
+    const Picoseconds now = kernel_time();
+    for (; !ahead_.empty() && ahead_.front().at <= now; ahead_.pop_front()) count_ += ahead_.front().n;
+  }
+  mutable std::deque<Ahead> ahead_;
+  mutable std::uint64_t count_ = 0;
+};
+
 struct EdmaTcStats : StatGroup {
   const std::string who;
-  Counter requests{*this, "requests", "1", "transfer requests that " + who + " completed"};
-  Counter reads{*this, "reads", "1", "bursts that " + who + " read"};
-  Counter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
-  Counter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
+  PresentCounter requests{*this, "requests", "1", "transfer requests that " + who + " completed"};
+  PresentCounter reads{*this, "reads", "1", "bursts that " + who + " read"};
+  PresentCounter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
+  PresentCounter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
   Counter errors{*this, "errors", "1", "bus errors of " + who + ", and requests against the rules"};
   Formula busy{*this, "busy_time", "s", "time in which " + who + " had a request",
                [this] { return static_cast<double>(busy_until(kernel_time())) * 1e-12; }};
@@ -114,6 +176,10 @@ struct EdmaTcStats : StatGroup {
 
 /// A transfer controller: two masters, one that only reads and one that only writes. While its clock is
 /// gated it computes nothing new; bursts whose time was known already still go out.
+///
+/// Outcomes of bursts are reported to it as soon as they are decided, and it issues what follows from them
+/// ahead. The kernel has an event only for what others see: a completion code, the freeing of a program
+/// register that is waited for, a bus error.
 class EdmaTc : public WithRegs<EdmaTcRegs>,
                public BusTarget,
                public TransferPort, private TransferController::Host {
@@ -134,12 +200,16 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
 
   Picoseconds program_free() const override;
   void submit(const TransferRequest& request) override;
-  bool idle() const override { return reads_.outstanding() == 0 && writes_.outstanding() == 0; }
+  bool idle() const override { return reads_.idle() && writes_.idle(); }
+  /// A load has a share in one of its ports. Its bursts queue behind those that are issued already, so
+  /// none must be issued earlier than in kernel time, when what it follows from has happened.
+  void ports_are_shared();
   void leave_reset() override;
 
  protected:
   bool clocked() const override { return lpsc.read(); }
   void on_reset(ResetKind kind) override;
+  bool hole_accessed(std::uint32_t offset) override;
 
  private:
   Picoseconds edge(Picoseconds t, unsigned clocks) const override;
@@ -151,7 +221,14 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   void completed(const TransferRequest& request, Picoseconds at) override;
   void failed(const TransferRequest& request, TransferController::Failure failure,
               Picoseconds at) override;
+  void set_error(Field& which);
+  void report_bus_error(const TransferRequest& request, bool read);
+  void at_its_time(Picoseconds at, std::function<void()> f);
+  void act();
   void clock_changed();
+  void show_status();
+  void show_interrupts();
+  void show_errors();
   void show_sets();
   void show(EdmaTcRegs::Set& regs, std::function<RegisterSet()> set);
   bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
@@ -164,7 +241,12 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   TransferController core_;
   EdmaCc* channels_ = nullptr;
   Picoseconds program_free_ = 0;
+  bool in_kernel_time_ = false;                           // outcomes are reported at their times
+  std::multimap<Picoseconds, std::function<void()>> due_;  // of few requests: errors, observers
+  Timer due_timer_;
   bool in_reset_ = false;
+  // Requests that had left the program register, and that had ended, when INTSTAT was cleared.
+  std::uint64_t loads_cleared_ = 0, ends_cleared_ = 0;
 };
 
 }  // namespace fovea::dma

@@ -23,7 +23,7 @@ RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& param
     : BusTarget(name, regs),
       backend_(make_backend(params, clock_, *this, [this](std::int64_t lag) { pair->note(lag); })),
       memory_("memory", Master::kRemapEngine, kPlaces,
-              backend_->takes_answers_ahead() ? BurstMaster::Report::kInOrderWhenDecided
+              backend_->takes_answers_ahead() ? BurstMaster::Report::kFirstBeatWhenDecided
                                               : BurstMaster::Report::kAtFirstBeat),
       ahead_(backend_->takes_answers_ahead()) {
   add_clock(clk);

@@ -212,6 +212,9 @@ void Dm365::wire_memory() {
   std::array<std::vector<MemInitiatorSocket<32>*>, kMasterCount> sockets;
   platform.each_master([&](const MasterPort& p) { sockets[index(p.id)].push_back(p.socket); });
   for (const MasterInfo& m : kMasters.rows) connect(m, sockets[index(m.id)]);
+  const auto shared = [&sockets](Master m) { return sockets[index(m)].size() > 1; };
+  for (unsigned n = 0; n < kTransferControllers; ++n)
+    if (shared(edma_read(n)) || shared(edma_write(n))) edma_tcs[n]->ports_are_shared();
   for (auto& load : loads) load->sdram_initialised(ddr.initialised);
   scr.config_socket.bind(config.socket);
   config.describe = [this](std::uint32_t address) {

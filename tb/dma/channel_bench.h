@@ -116,6 +116,8 @@ struct ChannelBench : testing::Test, ChannelController::Host {
   void submit(unsigned controller, const TransferRequest& r) override {
     submitted.push_back({controller, r});
   }
+  bool forms = false;  // CCSTAT.TRACTV
+  bool forms_request() const override { return forms; }
   void pulse_completion(unsigned region) override { ++completion_pulses.at(region); }
   void pulse_error() override { ++error_pulses; }
   void work_arrived() override { ++wakes; }

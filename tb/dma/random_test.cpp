@@ -157,6 +157,7 @@ class Execution : ChannelController::Host {
                          r.destination.constant, r.fifo_bytes, r.tcc, r.interrupt, r.chain});
     ports_[controller]->tc.submit(r, now_);
   }
+  bool forms_request() const override { return false; }
   void pulse_completion(unsigned region) override { ++region_pulses_[region]; }
   void pulse_error() override { ++error_pulses_; }
   void work_arrived() override {}

@@ -213,6 +213,10 @@ TEST_F(DmaRegisters, StatusTellsWhatIsPending) {
   fill(5, {.opt = kTcinten});
   run();
   EXPECT_EQ(read(kCcstat), 1u << 8 | 1u << 4);
+  core.completed(last());
+  EXPECT_EQ(read(kCcstat), 0u);
+  forms = true;
+  EXPECT_EQ(read(kCcstat), 1u << 2 | 1u << 4);
 }
 
 TEST_F(DmaRegisters, ResetForgetsQueuesAndCodes) {

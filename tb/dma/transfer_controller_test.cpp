@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -41,6 +42,7 @@ struct Memory : TransferController::Host {
   Picoseconds read_port = 0, write_port = 0;
   std::uint32_t bad_read = ~0u, bad_write = ~0u;  // addresses that nobody answers
   std::multimap<Picoseconds, std::function<void()>> events;
+  unsigned ahead = 0;  // ns: outcomes are reported so much before their times, at most 20
   TransferController tc;
 
   explicit Memory(Sizes sizes) : tc(*this, sizes) {
@@ -58,7 +60,7 @@ struct Memory : TransferController::Host {
   Picoseconds write_free() const override { return write_port; }
   void read(Command c, Picoseconds at) override {
     reads.push_back({c.address, c.bytes, in_ns(at)});
-    events.emplace(at + ns(40), [this, c, at] {
+    events.emplace(at + ns(40 - ahead), [this, c, at] {
       const std::vector<std::uint8_t> data(bytes.begin() + c.address,
                                            bytes.begin() + c.address + c.bytes);
       tc.read_done(data, c.address == bad_read, at + ns(40));
@@ -67,7 +69,7 @@ struct Memory : TransferController::Host {
   void write(Command c, std::span<const std::uint8_t> data, Picoseconds at) override {
     writes.push_back({c.address, c.bytes, in_ns(at)});
     std::copy(data.begin(), data.end(), bytes.begin() + c.address);
-    events.emplace(at + ns(20),
+    events.emplace(at + ns(20 - ahead),
                    [this, c, at] { tc.write_done(c.address == bad_write, at + ns(20)); });
   }
   void program_free(Picoseconds at) override { program_free_at.push_back(in_ns(at)); }
@@ -85,6 +87,9 @@ struct Memory : TransferController::Host {
   }
   void run() {
     while (!events.empty()) step();
+  }
+  void run_to(Picoseconds now) {
+    while (!events.empty() && events.begin()->first <= now) step();
   }
 };
 
@@ -314,6 +319,66 @@ TEST(TransferController, DestinationRegistersAreUsedInTurn) {
   m.run();
   EXPECT_EQ(m.tc.destination_head(), 1u);
   EXPECT_EQ(m.tc.destination_writing(), 0u) << "the third was the last";
+}
+
+/// What software would see at `now`.
+std::string seen(const TransferController& tc, Picoseconds now, unsigned depth) {
+  std::string s;
+  const auto add = [&s](std::uint64_t n) { s += std::to_string(n) + " "; };
+  const auto add_set = [&](const RegisterSet& set) {
+    add(set.request.tcc);
+    add(set.counts());
+  };
+  add(tc.program_taken(now));
+  add(tc.source_active(now));
+  add(tc.writing(now));
+  add(tc.destinations(now));
+  add(tc.destination_head(now));
+  add(tc.destination_writing(now));
+  add(tc.loaded(now));
+  add(tc.ended(now));
+  add(tc.busy(now));
+  add_set(tc.source_set(now));
+  for (unsigned n = 0; n < depth; ++n) add_set(tc.destination_set(n, now));
+  return s;
+}
+
+/// Requests of growing size, each submitted as soon as the program register is free, then one after a pause; the
+/// count of busy time begins anew in between. What is seen after each nanosecond, and the accesses.
+std::string followed(Sizes sizes, unsigned ahead) {
+  Memory m(sizes);
+  m.ahead = ahead;
+  std::string out;
+  unsigned submitted = 0;
+  for (unsigned t = 0; t < 2500; ++t) {
+    m.run_to(ns(t));
+    const bool pause = submitted == 8 && t < 1800;
+    if (submitted < 10 && !pause && !m.tc.program_taken(ns(t)) &&
+        (m.program_free_at.empty() || m.program_free_at.back() < t)) {
+      TransferRequest r = copy(4 + 23 * submitted, 256 + 8 * submitted, 2048 + 12 * submitted);
+      r.tcc = static_cast<std::uint8_t>(++submitted);
+      m.tc.submit(r, ns(t));
+    }
+    if (t == 333) m.tc.start_count(ns(t));
+    out += seen(m.tc, ns(t), sizes.depth) + "at " + std::to_string(t) + "\n";
+  }
+  EXPECT_EQ(m.completed_at.size(), 10u);
+  for (const Accesses* a : {&m.reads, &m.writes})
+    for (const Memory::Access& x : *a) out += std::to_string(x.address) + " at " + std::to_string(x.at) + "\n";
+  for (const Times* times : {&m.program_free_at, &m.completed_at})
+    for (const unsigned t : *times) out += std::to_string(t) + "\n";
+  return out;
+}
+
+// The same accesses at the same times, and at each nanosecond the same is seen.
+TEST(TransferController, OutcomesReportedAheadOfTheirTimesChangeNothing) {
+  for (const Sizes& sizes : {Sizes{32, 256, 4}, Sizes{16, 128, 1}, Sizes{64, 128, 2}, Sizes{32, 128, 3}})
+    for (const unsigned ahead : {1u, 7u, 19u}) {
+      const std::string want = followed(sizes, 0), got = followed(sizes, ahead);
+      const auto differs = std::mismatch(want.begin(), want.end(), got.begin(), got.end()).first - want.begin();
+      EXPECT_TRUE(want == got) << sizes.burst << " bytes, " << ahead << " ns ahead, from: "
+                               << want.substr(want.rfind('\n', static_cast<std::size_t>(differs)) + 1, 200);
+    }
 }
 
 TEST(RegisterSet, ConstantAddressingGoesRoundWithinTheWidth) {

@@ -399,8 +399,9 @@ std::uint32_t ChannelController::status() const {
   for (unsigned q = 0; q < kQueues; ++q) queues |= (queues_[q].count > 0) << q;
   const std::uint32_t events = ((g.er.get() & g.eer.get()) | g.cer.get() | g.esr.get()) != 0;
   const std::uint32_t qdma = (g.qer.get() & g.qeer.get()) != 0;
-  const std::uint32_t active = events || qdma || queues || outstanding_codes_;
-  return events | qdma << 1 | active << 4 | (outstanding_codes_ & 0x3F) << 8 | queues << 16;
+  const std::uint32_t forming = host_.forms_request();
+  const std::uint32_t active = events || qdma || forming || queues || outstanding_codes_;
+  return events | qdma << 1 | forming << 2 | active << 4 | (outstanding_codes_ & 0x3F) << 8 | queues << 16;
 }
 
 }  // namespace fovea::dma

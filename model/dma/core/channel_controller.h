@@ -21,6 +21,8 @@ class ChannelController {
     /// The transfer controller's program register is free.
     virtual bool can_submit(unsigned controller) const = 0;
     virtual void submit(unsigned controller, const TransferRequest& request) = 0;
+    /// The logic that reads a set and submits its request is at work now.
+    virtual bool forms_request() const = 0;
     /// One pulse of a shadow region's completion interrupt, or of the error interrupt.
     virtual void pulse_completion(unsigned region) = 0;
     virtual void pulse_error() = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "model/common/check.h"
 #include "model/common/mem_request.h"
@@ -56,7 +57,10 @@ void TransferController::reset() {
   destinations_.clear();
   programmed_ = read_ = {};
   written_.assign(sizes_.depth, {});
-  head_ = 0;
+  loaded_ = 0;
+  loaded_at_ = 0;
+  read_before_ = written_before_ = {};
+  reads_ = written_bursts_ = acknowledged_ = ends_ = {};
   writes_.clear();
   data_.clear();
   registers_ = {};
@@ -77,7 +81,7 @@ void TransferController::submit(const TransferRequest& request, Picoseconds at) 
     host_.program_free(host_.edge(at, 1));
     return;
   }
-  if (idle()) busy_since_ = at;
+  if (idle()) busy_since_ = std::max(at, busy_until_);
   program_ = request;
   program_at_ = at;
   advance();
@@ -88,15 +92,48 @@ void TransferController::advance() {
   }
 }
 
-RegisterSet TransferController::destination_set(unsigned n) const {
-  const unsigned place = (n + sizes_.depth - head_) % sizes_.depth;
-  return {written_[n], place < destinations_.size() ? destinations_[place].writes.bytes() : 0};
+RegisterSet TransferController::source_set(Picoseconds now) const {
+  const std::uint64_t n = loaded(now);
+  if (n == 0) return {};
+  const std::uint32_t ahead = reads_.bytes_after(now, n - 1);
+  if (n < loaded_) return {read_before_, ahead};
+  return {read_, ahead + (source_ ? source_->reads.bytes() : 0)};
 }
 
-unsigned TransferController::destination_writing() const {
-  for (unsigned place = 0; place < destinations_.size(); ++place)
-    if (!destinations_[place].writes.done()) return (head_ + place) % sizes_.depth;
-  return static_cast<unsigned>(head_ + destinations_.size() + sizes_.depth - 1) % sizes_.depth;
+RegisterSet TransferController::destination_set(unsigned n, Picoseconds now) const {
+  const std::uint64_t loads = loaded(now);
+  const bool ahead = loads < loaded_ && loads % sizes_.depth == n;
+  const TransferRequest& request = ahead ? written_before_ : written_[n];
+  if (loads <= n) return {request, 0};
+  return {request, left_to_write(loads - 1 - (loads - 1 - n) % sizes_.depth, now)};
+}
+
+std::uint32_t TransferController::left_to_write(std::uint64_t request, Picoseconds now) const {
+  const std::uint64_t place = request - ends_.count();  // large if it has ended
+  return written_bursts_.bytes_after(now, request) +
+         (place < destinations_.size() ? destinations_[place].writes.bytes() : 0);
+}
+
+unsigned TransferController::destination_writing(Picoseconds now) const {
+  const std::uint64_t loads = loaded(now);
+  for (std::uint64_t n = ended(now); n < loads; ++n)
+    if (left_to_write(n, now) > 0) return static_cast<unsigned>(n % sizes_.depth);
+  return static_cast<unsigned>((loads + sizes_.depth - 1) % sizes_.depth);
+}
+
+bool TransferController::writing(Picoseconds now) const {
+  return written_bursts_.count(now) > acknowledged_.count(now);
+}
+
+Picoseconds TransferController::busy(Picoseconds now) const {
+  if (idle()) return busy_ - (busy_until_ > now ? busy_until_ - now : 0);
+  return busy_ + now - busy_since_;  // busy_ is large enough where busy_since_ lies ahead
+}
+
+void TransferController::start_count(Picoseconds now) {
+  busy_ = idle() && busy_until_ > now ? busy_until_ - now : 0;
+  busy_since_ = now;
+  if (!idle()) busy_until_ = now;
 }
 
 /// From the program register to the source active and a destination register.
@@ -105,7 +142,11 @@ bool TransferController::load() {
   const Picoseconds free = std::max(registers_.take(1), source_free_);
   const Picoseconds at = host_.edge(std::max(program_at_, free), 1);
   const TransferRequest& r = *program_;
-  read_ = written_[(head_ + destinations_.size()) % sizes_.depth] = r;
+  read_before_ = read_;
+  written_before_ = std::exchange(written_[loaded_ % sizes_.depth], r);
+  read_ = r;
+  ++loaded_;
+  loaded_at_ = at;
   source_.emplace(Source{r, Commands(r, r.source, sizes_.burst)});
   destinations_.push_back({r, Commands(r, r.destination, sizes_.burst), r.bytes()});
   next_read_ = std::max(next_read_, at);
@@ -126,20 +167,22 @@ bool TransferController::issue_read() {
     source_free_ = host_.edge(at, 1);
     source_.reset();
   }
+  reads_.add({at, loaded_ - 1, c.bytes});
   host_.read(c, at);
   return true;
 }
 
-/// The oldest request with writes left to issue.
-TransferController::Destination* TransferController::writing() {
-  for (Destination& d : destinations_)
-    if (!d.writes.done()) return &d;
-  return nullptr;
+/// Place of the oldest request with writes left to issue; that behind the last one if there is none.
+std::size_t TransferController::oldest_to_write() const {
+  std::size_t place = 0;
+  while (place < destinations_.size() && destinations_[place].writes.done()) ++place;
+  return place;
 }
 
 bool TransferController::issue_write() {
-  Destination* const d = writing();
-  if (!d) return false;
+  const std::size_t place = oldest_to_write();
+  if (place == destinations_.size()) return false;
+  Destination* const d = &destinations_[place];
   const Command c = d->writes.next();
   const Picoseconds port = host_.write_free();
   if (arrived_.amount() < c.bytes || port == kNever) return false;
@@ -150,6 +193,7 @@ bool TransferController::issue_write() {
   std::array<std::uint8_t, kMaxBurstBytes> bytes;
   std::copy_n(data_.begin(), c.bytes, bytes.begin());
   data_.erase(data_.begin(), data_.begin() + c.bytes);
+  written_bursts_.add({at, ends_.count() + place, c.bytes});
   host_.write(c, {bytes.data(), c.bytes}, at);
   return true;
 }
@@ -171,13 +215,17 @@ void TransferController::write_done(bool error, Picoseconds at) {
   const Write w = writes_.front();
   writes_.pop_front();
   room_.add(w.bytes, at);
+  acknowledged_.add({at, 0, 0});
   if (error) host_.failed(destinations_.front().request, Failure::kWrite, at);
   if (w.last) {
     const TransferRequest request = destinations_.front().request;
     destinations_.pop_front();
-    head_ = (head_ + 1) % sizes_.depth;
+    ends_.add({at, 0, 0});
     registers_.add(1, at);
-    if (idle()) busy_ += at - busy_since_;
+    if (idle()) {
+      busy_ += at - busy_since_;
+      busy_until_ = at;
+    }
     host_.completed(request, at);
   }
   advance();

@@ -3,12 +3,14 @@
 // clocks are parameters of the owner.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "model/common/masters.h"
 #include "model/common/units.h"
 #include "model/dma/core/commands.h"
 #include "model/dma/core/register_set.h"
@@ -23,7 +25,9 @@ namespace fovea::dma {
 /// with its acknowledgement.
 ///
 /// All times are given by the caller or computed from them: the controller never asks for the present
-/// time, so outcomes may be reported to it as soon as they are decided.
+/// time, so outcomes may be reported to it as soon as they are decided, ahead of their times. Its state
+/// may thus lie ahead of the present. What software sees is asked for at a time: kNever stands for the
+/// end of all that is decided, any other time must be the present.
 class TransferController {
  public:
   enum class Failure : std::uint8_t {
@@ -81,27 +85,37 @@ class TransferController {
   /// Forgets everything; bursts under way must have ended.
   void reset();
 
-  bool source_active() const { return source_.has_value(); }
-  std::size_t destinations() const { return destinations_.size(); }
-  /// The register sets, as far as is decided: a read or a write counts from when its time is known,
-  /// which may be a few clocks ahead. A set keeps its request when that has left.
+  /// The state at `now`. A request is in the program register until it is loaded; the source active
+  /// reads until its last read is on its port.
+  bool program_taken(Picoseconds now) const { return program_ || loaded_at_ > now; }
+  bool source_active(Picoseconds now = kNever) const { return source_set(now).left > 0; }
+  /// Requests since the reset that have left the program register, and those that have ended.
+  std::uint64_t loaded(Picoseconds now) const { return loaded_ - (loaded_at_ > now); }
+  std::uint64_t ended(Picoseconds now) const { return ends_.count(now); }
+  /// A write is on its port whose acknowledgement has not arrived.
+  bool writing(Picoseconds now) const;
+  std::size_t destinations(Picoseconds now = kNever) const {
+    return static_cast<std::size_t>(loaded(now) - ended(now));
+  }
+  /// The register sets: a read or a write counts from when it is put on its port. A set keeps its
+  /// request when that has left.
   RegisterSet program_set() const { return {programmed_, programmed_.bytes()}; }
-  RegisterSet source_set() const { return {read_, source_ ? source_->reads.bytes() : 0}; }
+  RegisterSet source_set(Picoseconds now = kNever) const;
   /// @param n number of the destination register, below Sizes::depth
-  RegisterSet destination_set(unsigned n) const;
+  RegisterSet destination_set(unsigned n, Picoseconds now = kNever) const;
   /// The destination register of the oldest request, or of the next one if there is none.
-  unsigned destination_head() const { return head_; }
+  unsigned destination_head(Picoseconds now = kNever) const {
+    return static_cast<unsigned>(ended(now) % sizes_.depth);
+  }
   /// The destination register whose writes are being issued, or else the one whose were issued last.
-  unsigned destination_writing() const;
+  unsigned destination_writing(Picoseconds now = kNever) const;
 
   bool idle() const { return !program_ && !source_ && destinations_.empty(); }
-  /// Time up to `now`, since start_count(), in which there was a request: from its entry into the program register to
-  /// the acknowledgement of the last write. What a reset cuts off does not count.
-  Picoseconds busy(Picoseconds now) const { return busy_ + (idle() ? 0 : now - busy_since_); }
-  void start_count(Picoseconds now) {
-    busy_ = 0;
-    busy_since_ = now;
-  }
+  /// Time up to `now`, since start_count(), in which there was a request: from its entry into the program
+  /// register to the acknowledgement of the last write. What a reset cuts off does not count. `now` may lie
+  /// before the end of the latest request, but not before a call to submit().
+  Picoseconds busy(Picoseconds now) const;
+  void start_count(Picoseconds now);
 
  private:
   struct Source {
@@ -116,6 +130,35 @@ class TransferController {
   struct Write {
     unsigned bytes;
     bool last;  // of its request
+  };
+  /// The latest of a kind of happenings, as their times may lie ahead of the present. Of bursts under way
+  /// there are no more than a port has places, of ends no more than there are destination registers.
+  class Recent {
+   public:
+    struct Entry {
+      Picoseconds at = 0;
+      std::uint64_t request = 0;  ///< number of the request, from 0
+      unsigned bytes = 0;
+    };
+    void add(Entry e) { entries_[count_++ % entries_.size()] = e; }
+    std::uint64_t count() const { return count_; }
+    /// How many came up to `now`.
+    std::uint64_t count(Picoseconds now) const {
+      std::uint64_t n = count_;
+      for (const Entry& e : entries_) n -= e.at > now;
+      return n;
+    }
+    /// Bytes of a request that are still to come after `now`.
+    std::uint32_t bytes_after(Picoseconds now, std::uint64_t request) const {
+      std::uint32_t sum = 0;
+      for (const Entry& e : entries_)
+        if (e.at > now && e.request == request) sum += e.bytes;
+      return sum;
+    }
+
+   private:
+    std::array<Entry, kMostOutstanding> entries_{};
+    std::uint64_t count_ = 0;
   };
   /// Something that becomes available in pieces, each at its time, and is used in that order.
   class Supply {
@@ -138,7 +181,8 @@ class TransferController {
   bool load();
   bool issue_read();
   bool issue_write();
-  Destination* writing();
+  std::size_t oldest_to_write() const;
+  std::uint32_t left_to_write(std::uint64_t request, Picoseconds now) const;
 
   Host& host_;
   Sizes sizes_;
@@ -147,15 +191,21 @@ class TransferController {
   std::optional<Source> source_;
   Picoseconds source_free_ = 0;
   std::deque<Destination> destinations_;
-  TransferRequest programmed_, read_;       // the latest of the program register and the source active
-  std::vector<TransferRequest> written_;    // by destination register
-  unsigned head_ = 0;                       // destination register of destinations_.front()
+  /// Requests are numbered as they are loaded; number n has the destination register n % depth. At most one
+  /// was loaded ahead of the present, as the next one enters the program register in the present.
+  std::uint64_t loaded_ = 0;
+  Picoseconds loaded_at_ = 0;                   // the latest
+  TransferRequest programmed_, read_;           // the latest of the program register and the source active
+  TransferRequest read_before_, written_before_;  // what the latest one that was loaded has replaced
+  std::vector<TransferRequest> written_;        // by destination register
+  Recent reads_, written_bursts_, acknowledged_, ends_;
   std::deque<Write> writes_;            // under way
   std::deque<std::uint8_t> data_;       // arrived, not yet written
   Supply registers_, room_, arrived_;   // destination registers, bytes of the FIFO, bytes in it
   Picoseconds next_read_ = 0, next_write_ = 0;
   unsigned read_interval_ = 1;
-  Picoseconds busy_ = 0, busy_since_ = 0;  // of the time that is over; of the present
+  Picoseconds busy_ = 0;                   // up to busy_since_ or, when idle, busy_until_
+  Picoseconds busy_since_ = 0, busy_until_ = 0;
 };
 
 }  // namespace fovea::dma
