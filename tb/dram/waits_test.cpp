@@ -275,6 +275,37 @@ TEST(LoadedWaitsTest, ControllerTagsEachClockWithTheCommandBefore) {
   EXPECT_GT(turned, 0u);
 }
 
+// A read that nobody else is beside: from the commands that are seen, whenever it comes.
+TEST(LoneWaitsTest, ARefreshUnderWayIsWhatItWaitsFor) {
+  constexpr Master kReader = Master::kVpbe;
+  BenchOptions o;
+  o.config.refresh_interval = 400;
+  o.params = {{"request_latency", "0 cycles"}};
+  unsigned behind_refresh = 0;
+  for (unsigned k = 0; k < 400; ++k) {
+    DdrBench b(o);
+    Request r;
+    r.master = kReader;
+    r.address = at(1, 1);
+    b.submit(r, 2000 + k);
+    b.drain();
+    const std::uint64_t ready = 2000 + k + 1;
+    std::uint64_t refresh = 0, act = 0, column = 0;
+    for (const Logged& l : b.log) {
+      if (l.cmd == mem::Cmd::kRef && act == 0) refresh = l.clock;
+      if (l.cmd == mem::Cmd::kAct) act = l.clock;
+      if (l.cmd == mem::Cmd::kRd && column == 0) column = l.clock;
+    }
+    if (refresh > ready || act == ready) continue;  // it does not wait for one that was under way
+    ++behind_refresh;
+    const Waits& w = b.ddr.waits()[index(kReader)].read;
+    EXPECT_EQ(w.ps[index(Culprit::kRefresh)], (act - ready) * kTck) << k;
+    EXPECT_EQ(w.ps[index(Culprit::kRowMiss)], (column - act) * kTck) << k;
+    EXPECT_EQ(w.ps[index(Culprit::kTurnaround)], 0u) << k;
+  }
+  EXPECT_GT(behind_refresh, 20u);
+}
+
 /// Four masters with up to six requests each on crossbar and controller.
 struct Crowd {
   Path path;
