@@ -79,7 +79,7 @@ struct Rig {
     tc->misc(misc);
     tc->attach(*cc);
     for (const MasterPort& p : tc->masters()) p.socket->bind(*scr->target[index(p.id)]);
-    if (in_kernel_time) tc->ports_are_shared();
+    if (in_kernel_time) tc->report_in_kernel_time();
     cc->regs.write(0x240, 4, kTc << 4 * kChannel);  // DMAQNUM0
     cc->regs.write(0x340, 4, 1u << kChannel);       // DRAE0
     cc->regs.write(0x2060, 4, 1u << kChannel);      // IESR
