@@ -52,10 +52,10 @@ struct Rig {
     for (const auto& [key, value] : settings) set(key, value);
     scr = std::make_unique<bus::Scr>("scr", xbar_params, ddr_params, bus::AddressMap{}, strict);
     using Speed = bus::ConfigBus::Speed;
-    config = std::make_unique<bus::ConfigBus>("config", config_params, end_of_instant,
-                                              std::vector<bus::ConfigBus::BlockSpec>{{"ddr", 0x2000'0000, 0x8000, Speed::kFast},
-                                                                          {"edma", 0x01E0'0000, 0x8000, Speed::kFast},
-                                                                          {"tc", 0x01E1'0000, 0x400, Speed::kFast}});
+    const std::vector<bus::ConfigBus::BlockSpec> blocks{{"ddr", 0x2000'0000, 0x8000, Speed::kFast},
+                                                        {"edma", 0x01E0'0000, 0x8000, Speed::kFast},
+                                                        {"tc", 0x01E1'0000, 0x400, Speed::kFast}};
+    config = std::make_unique<bus::ConfigBus>("config", config_params, end_of_instant, blocks);
     ddr = std::make_unique<mem::DdrModule>("ddr", ddr_params, scr->memory());
     scr->clk(scr_clk);
     for (std::size_t i = 0; i < kMasterCount; ++i) scr->priority[i](priority[i]);
@@ -191,8 +191,11 @@ std::string record(const std::map<std::string, std::string>& settings, bool in_k
 
 using Settings = std::map<std::string, std::string>;
 const std::vector<Settings> kSizes = {
-    {}, {{"edma.tc.outstanding", "1"}}, {{"edma.tc.outstanding", "16"}, {"edma.tc.depth", "2"}, {"edma.tc.fifo", "256B"}},
-    {{"edma.tc.burst", "64B"}, {"edma.tc.depth", "1"}}, {{"edma.tc.burst", "16B"}, {"edma.completion_clocks", "1"}}};
+    {},
+    {{"edma.tc.outstanding", "1"}},
+    {{"edma.tc.outstanding", "16"}, {"edma.tc.depth", "2"}},
+    {{"edma.tc.burst", "64B"}, {"edma.tc.depth", "1"}},
+    {{"edma.tc.burst", "16B"}, {"edma.completion_clocks", "1"}}};
 
 // In kernel time each burst is reported at its last beat, so the state cannot lie ahead of the present.
 TEST(EdmaBlockTest, SoftwareSeesTheSameAtEachNanosecondWhenOutcomesAreReportedAhead) {
