@@ -95,7 +95,7 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   dont_initialize();
 }
 
-void EdmaTc::ports_are_shared() {
+void EdmaTc::report_in_kernel_time() {
   in_kernel_time_ = true;
   reads_.set_report(BurstMaster::Report::kAtLastBeat);
   writes_.set_report(BurstMaster::Report::kAtLastBeat);

@@ -201,9 +201,10 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   Picoseconds program_free() const override;
   void submit(const TransferRequest& request) override;
   bool idle() const override { return reads_.idle() && writes_.idle(); }
-  /// A load has a share in one of its ports. Its bursts queue behind those that are issued already, so
-  /// none must be issued earlier than in kernel time, when what it follows from has happened.
-  void ports_are_shared();
+  /// From now on each outcome is reported at its time, and a burst issued when what it follows from has
+  /// happened: for a load on one of the ports, whose bursts queue behind those that are issued already,
+  /// and for a bus trace, which notes what has ended before. Before the first burst.
+  void report_in_kernel_time();
   void leave_reset() override;
 
  protected:

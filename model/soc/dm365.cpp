@@ -214,7 +214,7 @@ void Dm365::wire_memory() {
   for (const MasterInfo& m : kMasters.rows) connect(m, sockets[index(m.id)]);
   const auto shared = [&sockets](Master m) { return sockets[index(m)].size() > 1; };
   for (unsigned n = 0; n < kTransferControllers; ++n)
-    if (shared(edma_read(n)) || shared(edma_write(n))) edma_tcs[n]->ports_are_shared();
+    if (shared(edma_read(n)) || shared(edma_write(n))) edma_tcs[n]->report_in_kernel_time();
   for (auto& load : loads) load->sdram_initialised(ddr.initialised);
   scr.config_socket.bind(config.socket);
   config.describe = [this](std::uint32_t address) {
@@ -346,6 +346,7 @@ void Dm365::wire_video() {
 }
 
 Dm365::Recording Dm365::record_bus() {
+  for (dma::EdmaTc* tc : edma_tcs) tc->report_in_kernel_time();
   const auto ratio = static_cast<unsigned>(params_.cpu.ahb_ratio());
   std::vector<trace::BusRecorder::MasterSetup> masters;
   for (const Platform::Entry& e : platform.blocks())

@@ -52,10 +52,10 @@ struct Rig {
     for (const auto& [key, value] : settings) set(key, value);
     scr = std::make_unique<bus::Scr>("scr", xbar_params, ddr_params, bus::AddressMap{}, strict);
     using Speed = bus::ConfigBus::Speed;
-    config = std::make_unique<bus::ConfigBus>("config", config_params, end_of_instant,
-                                              std::vector<bus::ConfigBus::BlockSpec>{{"ddr", 0x2000'0000, 0x8000, Speed::kFast},
-                                                                          {"edma", 0x01E0'0000, 0x8000, Speed::kFast},
-                                                                          {"tc", 0x01E1'0000, 0x400, Speed::kFast}});
+    const std::vector<bus::ConfigBus::BlockSpec> blocks{{"ddr", 0x2000'0000, 0x8000, Speed::kFast},
+                                                        {"edma", 0x01E0'0000, 0x8000, Speed::kFast},
+                                                        {"tc", 0x01E1'0000, 0x400, Speed::kFast}};
+    config = std::make_unique<bus::ConfigBus>("config", config_params, end_of_instant, blocks);
     ddr = std::make_unique<mem::DdrModule>("ddr", ddr_params, scr->memory());
     scr->clk(scr_clk);
     for (std::size_t i = 0; i < kMasterCount; ++i) scr->priority[i](priority[i]);
@@ -79,7 +79,7 @@ struct Rig {
     tc->misc(misc);
     tc->attach(*cc);
     for (const MasterPort& p : tc->masters()) p.socket->bind(*scr->target[index(p.id)]);
-    if (in_kernel_time) tc->ports_are_shared();
+    if (in_kernel_time) tc->report_in_kernel_time();
     cc->regs.write(0x240, 4, kTc << 4 * kChannel);  // DMAQNUM0
     cc->regs.write(0x340, 4, 1u << kChannel);       // DRAE0
     cc->regs.write(0x2060, 4, 1u << kChannel);      // IESR
@@ -100,7 +100,7 @@ struct Rig {
     for (unsigned w = 0; w < 8; ++w) cc->regs.write(0x4000 + 32 * kChannel + 4 * w, 4, words[w]);
     cc->regs.write(0x2010, 4, 1u << kChannel);  // ESR
   }
-  void at_end_of(Picoseconds at, std::function<void()> f) { end_of_instant.at(at, 0, std::move(f)); }
+  void at_end_of(Picoseconds at, std::function<void()> f) { end_of_instant.at(at, InstantRank{}, std::move(f)); }
   /// An access over the bus, now. @return the word read
   std::uint32_t access(std::uint32_t offset, bool write, std::uint32_t word = 0) {
     tlm::tlm_generic_payload gp;
@@ -191,8 +191,11 @@ std::string record(const std::map<std::string, std::string>& settings, bool in_k
 
 using Settings = std::map<std::string, std::string>;
 const std::vector<Settings> kSizes = {
-    {}, {{"edma.tc.outstanding", "1"}}, {{"edma.tc.outstanding", "16"}, {"edma.tc.depth", "2"}, {"edma.tc.fifo", "256B"}},
-    {{"edma.tc.burst", "64B"}, {"edma.tc.depth", "1"}}, {{"edma.tc.burst", "16B"}, {"edma.completion_clocks", "1"}}};
+    {},
+    {{"edma.tc.outstanding", "1"}},
+    {{"edma.tc.outstanding", "16"}, {"edma.tc.depth", "2"}},
+    {{"edma.tc.burst", "64B"}, {"edma.tc.depth", "1"}},
+    {{"edma.tc.burst", "16B"}, {"edma.completion_clocks", "1"}}};
 
 // In kernel time each burst is reported at its last beat, so the state cannot lie ahead of the present.
 TEST(EdmaBlockTest, SoftwareSeesTheSameAtEachNanosecondWhenOutcomesAreReportedAhead) {
