@@ -67,6 +67,7 @@ class Equivalence(unittest.TestCase):
 
     def test_what_goes_into_state_and_modules_counts(self):
         self.assertFalse(self.proven('inv', 'ff_0', 'D', 1))
+        self.assertFalse(self.proven('inv', 'ff_0', 'ARST', 0))
         self.assertFalse(self.proven('inv', 'store', 'WR_DATA', 0))
         self.assertFalse(self.proven('const0', 'store', 'RD_ADDR', 3))
         self.assertFalse(self.proven('inv', 'u_kept', 'a', 1))
