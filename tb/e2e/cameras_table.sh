@@ -69,7 +69,7 @@ rows() { # NAME ROW...: the rows below the header
   [ "$(tail -n +2 "$name.csv")" = "$(printf '%s\n' "$@")" ] || fail "$name: $(cat "$name.csv")"
 }
 has() { grep -qF -- "$2" "$1" || fail "$1 lacks '$2': $(cat "$1")"; }
-live=(--ways live --kernels plain --presets 297/243 --formats pal)
+live=(--ways live --kernels plain --presets 297/243 --formats pal --binds -)
 
 # Two cameras need 50 remaps and a load of 20.736 MB/s, up to 2 % more: 71.2 a second leave 50.04 or more.
 RATE=71.2 cameras two 0 "${live[@]}"
@@ -100,8 +100,15 @@ for n in 1 9 13 15 16; do grep -q -- "-plain-$n-0 " calls || fail "many: $n was 
 # What binds, the largest gain first.
 RATE=60 cameras binds 0 "${live[@]}" --binds pal
 has binds.csv 'bridges of the core 40 %; core clock 3 %'
-has calls '--binds frame.remap_rate'
+has calls '--binds frame.remap_time.mean'
 has calls 'load.1.gap'
+# At further presets the first format and kernel alone are asked, and not what binds.
+RATE=60 cameras presets 0 --ways live --kernels plain,fast --presets 297/243,216/172 --formats pal,vga --binds pal,vga
+[ "$(cut -d, -f3,5 presets.csv | tail -n +2 | sort | uniq -c | tr -s ' ')" = \
+  $' 4 640x480,297/243\n 2 720x576,216/172\n 4 720x576,297/243' ] || fail "presets: $(cat presets.csv)"
+[ "$(grep -c -- '--binds' calls)" = 2 ] || fail "presets: $(cat calls)"
+[ "$(grep -c 'core 40 %' presets.csv)" = 2 ] || fail "presets: $(cat presets.csv)"
+[ "$(grep -c 'fast,216/172' presets.csv)" = 0 ] || fail "presets: $(cat presets.csv)"
 
 # Taking turns: the margin is what the longest remap leaves of 40 ms.
 cameras turns 0 --ways turns --turns 2,8 --kernels plain,slow --presets 297/243 --relock 0,2
@@ -113,6 +120,10 @@ rows turns \
   'turns,8,720x576,slow,297/243,0,,3.125,no,1 dropped frame,-0.25,' \
   'turns,8,720x576,slow,297/243,2,,1.562,no,1 dropped frame,-0.25,'
 has calls 'camera.7.file='
+# At further presets the first number of fields alone is asked.
+cameras turns_presets 0 --ways turns --turns 2 --kernels plain --presets 297/243,216/172 --relock 2,0
+rows turns_presets 'turns,2,720x576,plain,297/243,2,,6.250,yes,,0.25,' 'turns,2,720x576,plain,297/243,0,,12.500,yes,,0.25,' \
+  'turns,2,720x576,plain,216/172,2,,6.250,yes,,0.25,'
 has calls '--require frame.repeated<=1000000'
 
 # Pages.
@@ -127,11 +138,11 @@ RATE=26 cameras other 1 "${live[@]}" --check page.md
 # What a page was made with is on it, and is what it is compared with if nothing else is asked for.
 RATE=60 cameras made 0 "${live[@]}" --presets 297/243,432/340 --binds pal --write page.md
 has page.md 'Made with `scripts/cameras --ways live --kernels plain --presets 297/243,432/340 --formats pal'
-has page.md ' --binds pal`.'
+has page.md ' --formats pal`.'
 has page.md '| 432/340 |'
 RATE=60 cameras same 0 --check page.md
 has calls 'clocks.preset=432/340'
-has calls '--binds frame.remap_rate'
+has calls '--binds frame.remap_time.mean'
 RATE=60 cameras fewer 1 "${live[@]}" --check page.md
 RATE=61 cameras differs 1 --check page.md
 printf 'no table\n' >none.md
