@@ -1,5 +1,5 @@
 // The driver of the remap engine against a recorder, and its queue of jobs against an engine that ends a job for each
-// sleep of the core. Offsets and bits are those of the tables in rtl/README.md.
+// sleep of the core; the waits for the EDMA too, as both share the core's masks and sleep. Offsets and bits are those of the tables in rtl/README.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 
 extern "C" {
 #include "sw/firmware/drivers/engine.h"
+#include "sw/firmware/kernels/edma_wait.h"
 #include "sw/firmware/kernels/engine_jobs.h"
 
 uint32_t irq_mask(void);
@@ -114,13 +115,14 @@ struct Engine : testing::Test {
     chip.on_write = [this](std::uint32_t address, std::uint32_t value) {
       if (address == kEngine + 0x0C) events &= ~value;
       if (address == kEngine + 0x04 && (value & 2)) waiting.clear();
+      if (address == kEngine + 0x04) enabled = value == 1;
       if (address == kEngine + 0x14) submit(value);
       if (address == kUart) text += static_cast<char>(value);
     };
     asleep = [this] {
       ticks += ticks_asleep;
       ++sleeps;
-      if (!hangs && !waiting.empty()) end();
+      if (!hangs && enabled && !waiting.empty()) end();
     };
     EXPECT_TRUE(engine_jobs_open());
     (void)engine_jobs_failed();
@@ -152,8 +154,38 @@ struct Engine : testing::Test {
   std::uint32_t events = 0, ended = 65530, ticks = 0xFFFFF000, bad_events = 0;
   std::size_t most = 0, bad_job = 0;
   unsigned sleeps = 0, ticks_asleep = 2400;
-  bool hangs = false, stuck = false;
+  bool hangs = false, stuck = false, enabled = false;
 };
+
+// A table is built in the background, and prepares its kernel; a frame may come at each access with open interrupts.
+TEST_F(Engine, AFrameThatComesWhileTheEngineIsOpenedAnewFindsItReady) {
+  const auto read = chip.on_read;
+  const auto write = chip.on_write;
+  bool in_frame = false;
+  unsigned frames = 0;
+  const auto frame = [&] {
+    if (masked || in_frame) return;
+    in_frame = true;
+    ++frames;
+    add(2);
+    engine_jobs_wait();
+    EXPECT_FALSE(engine_jobs_failed());
+    in_frame = false;
+  };
+  chip.on_read = [&](std::uint32_t address) {
+    frame();
+    return read(address);
+  };
+  chip.on_write = [&](std::uint32_t address, std::uint32_t value) {
+    frame();
+    write(address, value);
+  };
+  EXPECT_TRUE(engine_jobs_open());
+  EXPECT_GT(frames, 0u) << "when the interrupt controller is set";
+  EXPECT_EQ(tags.size(), 2 * frames);
+  EXPECT_EQ(text, "");
+  EXPECT_EQ(masked, 0);
+}
 
 TEST_F(Engine, JobsWaitInTheQueueAndTheCoreSleeps) {
   add(12);  // the count of jobs that ended passes 65535
@@ -212,6 +244,56 @@ TEST_F(Engine, AJobThatNeverEndsIsGivenUpAfterTwoSecondsWithoutOne) {
   stuck = true;
   engine_jobs_wait();
   EXPECT_EQ(text, "engine: no end of a job, events 0x00\r\nengine: does not stop\r\n");
+}
+
+/// Interrupts of the EDMA's completion codes, as opened in the ARM's region (SPRUEE4A), and the interrupt controller's.
+struct Edma : testing::Test {
+  static constexpr std::uint32_t kCc = 0x01C00000, kAintc = 0x01C48000, kTimer = 0x01C21410, kPsc = 0x01C41000;
+  static constexpr edma_codes_t kCodes = {3, 9, 0xB};  // 3, 12 and 30
+  Edma() {
+    chip.on_read = [this](std::uint32_t address) -> std::uint32_t {
+      seen();
+      return address == kCc + 0x2068 ? pending : address == kTimer ? ticks : chip.values[address];
+    };
+    chip.on_write = [this](std::uint32_t address, std::uint32_t value) {
+      seen();
+      if (address == kCc + 0x2058) open &= ~value;
+      if (address == kCc + 0x2060) open |= value;
+      if (address == kCc + 0x2070) pending &= ~value;
+      if (address >= kPsc + 0xA00 && address < kPsc + 0xB00) chip.values[address - 0x200] = value & 0x1F;
+    };
+    edma_wait_prepare(kCodes);
+    chip.accesses.clear();
+  }
+  void seen() {
+    if (watched && masked == 0 && !ready()) ++not_ready;
+  }
+  bool ready() { return open == kBits && (chip.values[kAintc + 0x18] >> 16 & 1); }
+  static constexpr std::uint32_t kBits = 1u << 3 | 1u << 12 | 1u << 30;
+  RegisterRecorder chip;
+  std::uint32_t open = 0, pending = 0, ticks = 0;
+  unsigned not_ready = 0;
+  bool watched = false;
+};
+
+TEST_F(Edma, AFrameThatComesWhileItIsPreparedAnewFindsItsInterruptsOpen) {
+  ASSERT_TRUE(ready());
+  watched = true;
+  edma_wait_prepare(kCodes);
+  EXPECT_GT(chip.accesses.size(), 20u) << "all of it is done again";
+  EXPECT_EQ(not_ready, 0u);
+  EXPECT_TRUE(ready());
+  EXPECT_EQ(masked, 0);
+}
+
+TEST_F(Edma, AllCodesAreWaitedForAsleepAndACodeThatComesBetweenCheckAndSleepIsNotMissed) {
+  unsigned sleeps = 0;
+  asleep = [&] { pending |= ++sleeps == 1 ? 1u << 12 : sleeps == 2 ? 1u << 3 | 1u << 5 : 1u << 30; };
+  edma_wait_all(kCodes);
+  EXPECT_EQ(sleeps, 3u);
+  EXPECT_EQ(pending, 1u << 5) << "that of nobody here is left";
+  EXPECT_EQ(masked, 0);
+  EXPECT_TRUE(ready());
 }
 
 }  // namespace
