@@ -160,6 +160,27 @@ struct Tvp5146Params : ParamGroup {
                          Origin::kAssumed,
                          "Linux waits 200 ms; no figure in the data manual",
                          {"2", "25", "from the next frame to half a second"}};
+  IntParam count_lines{*this,
+                       "count_lines",
+                       Unit::kCount,
+                       3,
+                       0,
+                       100,
+                       "lines from the start of a first field until registers 9A and 9B can capture how many "
+                       "the frame before had",
+                       Origin::kAssumed,
+                       "the data manual says: of the previous frame",
+                       {"1", "4", "the broad pulses, by which a field's start is known, take 2.5 or 3 lines"}};
+  IntParam count_capture{*this,
+                         "count_capture",
+                         Unit::kTime,
+                         100 * kPsPerUs,
+                         0,
+                         kPsPerSecond,
+                         "from a request in register 97 until registers 9A and 9B hold the number of lines",
+                         Origin::kAssumed,
+                         "the data manual of the TVP5147M1: not immediate, done by the internal processor",
+                         {"10us", "1ms", "from a pass of a short loop to that of a long one"}};
   IntParam rom_version{*this,
                        "rom_version",
                        Unit::kCount,

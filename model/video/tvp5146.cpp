@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint8_t kInputSelect = 0x00, kVideoStandard = 0x02, kOperationMode = 0x03,
                        kFormatter2 = 0x34, kClearLostLock = 0x39, kStatus1 = 0x3A, kStatus2 = 0x3B,
-                       kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81;
+                       kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81, kStatusRequest = 0x97,
+                       kLineCountLow = 0x9A, kLineCountHigh = 0x9B;
 constexpr std::uint8_t kFormatter2Enables = 0x11;  // enables the data and clock outputs
 
 }  // namespace
@@ -160,6 +161,7 @@ void Tvp5146::send_line() {
   const bool is_short = position_.line >= middle && position_.line - middle < fault.lines;
   const unsigned missing = is_short ? fault.samples : 0;
   if (missing) camera.leave_out(missing);
+  count_line();
   line_camera_ = raster_;
   line_locked_ = locked(position_.field);
   const Bt656Line line{&camera.standard(),
@@ -178,6 +180,30 @@ void Tvp5146::send_line() {
   line_end_ = of.edge(camera.line_edge(next_line_));
   line_timer_.at(line_end_);
   video->line(line);
+}
+
+/// The line at position_ is sent. The number of lines of a frame is known some lines after its end.
+void Tvp5146::count_line() {
+  const Standard& s = raster().standard();
+  if (position_.line == s.field_start[0]) {
+    counted_[0] = lines_in_frame_;
+    lines_in_frame_ = 0;
+  }
+  if (lines_in_frame_++ != static_cast<unsigned>(params_.count_lines())) return;
+  finish_capture();
+  counted_[2] = counted_[1];
+  counted_[1] = counted_[0];
+  counted_at_ = kernel_time();
+}
+
+/// A capture that is due gets what was there before it was: no order of events at one time matters.
+void Tvp5146::finish_capture() {
+  if (!capture_at_ || kernel_time() <= *capture_at_) return;
+  const unsigned lines = counted_at_ < *capture_at_ ? counted_[1] : counted_[2];
+  regs_[kLineCountLow] = static_cast<std::uint8_t>(lines);
+  regs_[kLineCountHigh] = static_cast<std::uint8_t>(lines >> 8 & 3);
+  regs_[kStatusRequest] = 0;
+  capture_at_.reset();
 }
 
 std::span<const std::uint8_t> Tvp5146::render() {
@@ -218,7 +244,10 @@ bool Tvp5146::i2c_write(std::uint8_t byte) {
   return true;
 }
 
-std::uint8_t Tvp5146::i2c_read() { return read_register(pointer_++); }
+std::uint8_t Tvp5146::i2c_read() {
+  finish_capture();
+  return read_register(pointer_++);
+}
 
 void Tvp5146::relock() {
   locked_from_ = signal_ ? present_field() + params_.relock_fields() : kNever;
@@ -227,7 +256,14 @@ void Tvp5146::relock() {
 void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {
   const bool was_enabled = enabled(), was_locked = lock();
   const std::uint8_t old = regs_[index];
+  if (index == kLineCountLow || index == kLineCountHigh) return;
+  finish_capture();
   regs_[index] = value;
+  if (index == kStatusRequest) {
+    regs_[index] = value & 1;
+    capture_at_.reset();
+    if (value & 1) capture_at_ = kernel_time() + params_.count_capture();
+  }
   if (index == kInputSelect && old != value) change_input();
   if (index == kVideoStandard && old != value) relock();
   if (index == kOperationMode && (old & 1) && !(value & 1)) relock();

@@ -27,8 +27,10 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// or 02, without a signal, or with the wrong standard in 02), it sends black pictures in the raster
 /// of the selected camera or, without a signal, in that of the last one (assumed). The raster changes
 /// between two lines: the line on the wire is completed, and the new raster goes on with its next
-/// whole line. Not modelled: picture controls (kept, without effect), the two low bits of the 10-bit
-/// output, square pixels, VBI data, the time that the I2C patch takes.
+/// whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before into 9A and 9B
+/// (low and high part), and the bit is 0 again when that is done. What is counted are the lines that are sent, from
+/// one start of a first field to the next, also across a change of the input. Not modelled: picture controls (kept,
+/// without effect), the two low bits of the 10-bit output, square pixels, VBI data, the time that the I2C patch takes.
 class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz
@@ -85,6 +87,8 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void write_register(std::uint8_t index, std::uint8_t value);
   std::uint8_t read_register(std::uint8_t index) const;
   void relock();
+  void count_line();
+  void finish_capture();
 
   const CameraSignal& raster() const { return cameras_[raster_]; }
   /// The camera on the selected input, if its cable is plugged in.
@@ -114,6 +118,11 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
 
   std::optional<double> new_offset_;  // of the raster's camera, from the next line on, or when another camera follows
   std::uint64_t damaged_ = 0;         // timing codes
+
+  unsigned lines_in_frame_ = 0;                 // sent since the last start of a first field
+  std::array<unsigned, 3> counted_{};           // frames before: whole now, whole last, the one before that
+  Picoseconds counted_at_ = 0;                  // when counted_[1] could be captured first
+  std::optional<Picoseconds> capture_at_;       // requested, and not in registers 9A and 9B yet
 
   std::array<std::uint8_t, 256> regs_{};
   std::uint8_t pointer_ = 0;

@@ -60,7 +60,6 @@
 /* Interrupts */
 #define IRQ_VPSSINT0 IRQ_VPSS_VPSSINT0
 #define IRQ_VPSSINT1 IRQ_VPSS_VPSSINT1
-#define IRQ_VPSSINT2 IRQ_VPSS_VPSSINT2
 #define IRQ_VPSSINT8 IRQ_VPSS_VPSSINT8
 #define IRQ_TINT0_34 IRQ_TIMER0_TINT34
 
@@ -110,7 +109,6 @@
 /* Clock selector, written as Linux does for 525 and 625 lines. */
 #define VPSS_CLKCTL_VENC_SEL VPSS_VPSS_CLK_CTRL_VENC_CLK_SEL
 #define ISP5_SOURCE_ISIF_INT0 0u
-#define ISP5_SOURCE_VDINT2 2u
 #define ISP5_SOURCE_VENC 21u
 
 /* ISIF (capture) */

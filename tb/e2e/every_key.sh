@@ -260,6 +260,10 @@ acts switches.shift_y up
 acts system.bootcfg 1 PROGRAM
 tested system.reset_time e2e.reset
 acts system.vtp_time 3us EARLY
+acts tvp5146.count_capture 10ms firmware.program=cameras
+idle tvp5146.count_capture 10ms video.standard=vga_progressive EARLY
+tested tvp5146.count_lines video.decoder_625
+idle tvp5146.count_lines 4 video.standard=vga_progressive EARLY
 acts tvp5146.crop_525 studio video.standard=ntsc
 idle tvp5146.crop_525 studio
 fails tvp5146.i2c_address 92

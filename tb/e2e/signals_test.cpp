@@ -254,24 +254,23 @@ TEST(SignalsTest, AGenlockedCameraThatLeftLinesOutIsInStepAgain) {
   EXPECT_EQ(rig.board().camera_stats()[0].dropped, 0u);
 }
 
-/// What follows a frame must be a line of its camera, so genlocked cameras in turn are not here: README, Limits.
 /// Lines that are missing from the middle of a second field on: line 480 of a frame, 30.7 ms after its begin. Frames
 /// begin every 40 ms; so a fault that begins 22 to 30 ms after one has its first effect in a second field.
 struct SecondField {
   const char* name;
   unsigned cameras, start_ms, lines;
-  const char *camera = "0", *standard = "pal";
+  const char *camera = "0", *standard = "pal", *checked = "true", *genlocked = "false";
 };
 void PrintTo(const SecondField& f, std::ostream* out) { *out << f.name; }
 class SecondFieldTest : public testing::TestWithParam<SecondField> {};
-TEST_P(SecondFieldTest, ACheckedFrameWhoseLastFieldLacksLinesIsNotShownAndNobodyElseIsToBlame) {
+TEST_P(SecondFieldTest, AFrameWhoseLastFieldLacksLinesIsNotShownAndNobodyElseIsToBlame) {
   const SecondField& p = GetParam();
   CamerasRig rig;
   small(rig, p.cameras);
   rig.set("video.standard", p.standard).set("tvp5146.relock_fields", "0").set("run.frames", "20");
-  rig.set("firmware.check_capture", "true");
+  rig.set("firmware.check_capture", p.checked);
   if (p.cameras > 1)
-    rig.set("cameras.genlocked", "false");
+    rig.set("cameras.genlocked", p.genlocked);
   else
     rig.set("firmware.program", "cameras");
   rig.set("fault.kind", "missing_lines").set("fault.lines", std::to_string(p.lines)).set("fault.camera", p.camera);
@@ -296,14 +295,23 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SecondFieldTest,
                          testing::Values(SecondField{"Alone", 1, 465, 4}, SecondField{"AloneOneLine", 1, 465, 1},
                                          SecondField{"AloneTwentyLines", 1, 465, 20},
                                          SecondField{"AloneNtsc", 1, 420, 4, "0", "ntsc"},
-                                         SecondField{"Free", 2, 505, 4, "1"}),
+                                         SecondField{"AloneUnchecked", 1, 465, 4, "0", "pal", "false"},
+                                         SecondField{"Free", 2, 505, 4, "1"},
+                                         SecondField{"InTurn", 2, 505, 4, "0", "pal", "false", "true"},
+                                         SecondField{"InTurnSecond", 2, 545, 4, "1", "pal", "false", "true"},
+                                         SecondField{"InTurnOneLine", 2, 505, 1, "0", "pal", "false", "true"},
+                                         SecondField{"InTurnTwentyLines", 2, 505, 20, "0", "pal", "false", "true"},
+                                         SecondField{"InTurnNtsc", 2, 420, 4, "1", "ntsc", "false", "true"},
+                                         SecondField{"InTurnChecked", 2, 505, 4, "0", "pal", "true", "true"},
+                                         SecondField{"FourInTurn", 4, 505, 4, "1", "pal", "false", "true"}),
                          [](const auto& i) { return std::string(i.param.name); });
 
-// What the last field lacks is noticed at the first active line of the next frame.
-TEST(SignalsTest, OfAHealthyCameraEachCheckedFrameIsShownAndNoFieldLater) {
+// What the last field lacks is known from the decoder, before the first active line of the next frame.
+class HealthyTest : public testing::TestWithParam<const char*> {};
+TEST_P(HealthyTest, EachFrameIsShownAndHandedOnBeforeTheNextOneBegins) {
   CamerasRig rig;
   small(rig, 1);
-  rig.set("firmware.program", "cameras").set("run.frames", "12").set("firmware.check_capture", "true");
+  rig.set("firmware.program", "cameras").set("run.frames", "12").set("firmware.check_capture", GetParam());
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 12u) << rig.board().uart_text();
   EXPECT_EQ(rig.wrong_picture(), "");
@@ -314,11 +322,14 @@ TEST(SignalsTest, OfAHealthyCameraEachCheckedFrameIsShownAndNoFieldLater) {
   // The 184 rows in the middle begin 98 lines behind the first active one, with the samples behind EAV (BT.656).
   const Picoseconds line = 64 * kPsPerUs, to_next = (625 - 98) * line - 288 * kPsPerSecond / 27'000'000;
   for (const Shown& s : rig.shown()) {
-    const Picoseconds next_line = *s.record.capture_start + to_next;
-    EXPECT_GE(*s.record.remap_start, next_line) << s.record.index;
-    EXPECT_LT(*s.record.remap_start, next_line + 2 * kPsPerMs) << "with the time to look at the frame's marks";
+    const Picoseconds end = *s.record.capture_start + to_next - 22 * line;  // line 1 of the next frame
+    EXPECT_GE(*s.record.remap_start, end) << s.record.index;
+    EXPECT_LT(*s.record.remap_start, end + 22 * line) << "with the time to look at the frame's marks";
+    if (std::string(GetParam()) == "false") EXPECT_LT(*s.record.remap_start, end + kPsPerMs) << s.record.index;
   }
 }
+INSTANTIATE_TEST_SUITE_P(Checked, HealthyTest, testing::Values("false", "true"),
+                         [](const auto& i) { return std::string(i.param) == "true" ? "Checked" : "Unchecked"; });
 
 /// Types on the console what the dialogue says.
 std::unique_ptr<app::BoardConsole> type(CamerasRig& rig, const std::string& dialogue) {

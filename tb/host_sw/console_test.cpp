@@ -225,27 +225,6 @@ TEST(FieldWatchTest, OfOneCameraALateFieldIsItsOwnFault) {
   EXPECT_TRUE(other.watch.irregular);
 }
 
-// ITU-R BT.656: a frame ends with line 625 (525/60: line 3), and line 23 (20) is the first active one.
-TEST(FieldWatchTest, TheFirstLineAfterAFrameTellsWhetherItsLastFieldWasWhole) {
-  for (const bool is_625 : {true, false}) {
-    Fields f(is_625);
-    f.next();
-    f.next();
-    const double line = (is_625 ? 1728 : 1716) * 24.0 / 27.0;
-    const auto whole = [&](double lines_late, int ticks = 0) {
-      const auto gap = static_cast<uint32_t>((is_625 ? 23 - 1 : 20 - 4) * line + lines_late * line) + ticks;
-      return field_watch_whole(&f.watch, f.watch.last + gap) != 0;
-    };
-    const int most = static_cast<int>(FIELD_TOLERANCE_TICKS);
-    EXPECT_TRUE(whole(0));
-    EXPECT_TRUE(whole(0, -most));
-    EXPECT_FALSE(whole(0, -most - 1));
-    EXPECT_FALSE(whole(-1));
-    EXPECT_FALSE(whole(is_625 ? -20 : -15));
-    EXPECT_TRUE(whole(1)) << "a code of the next frame was missed";
-  }
-}
-
 /// How often the watch says something in so many fields, and what it said last.
 std::pair<unsigned, watch_event_t> said(Fields& f, unsigned fields, double ppm) {
   std::pair<unsigned, watch_event_t> out{0, WATCH_NOTHING};

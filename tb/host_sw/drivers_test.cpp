@@ -12,7 +12,7 @@ extern "C" {
 #include "sw/firmware/drivers/isif.h"
 #include "sw/firmware/drivers/psc.h"
 #include "sw/firmware/drivers/timer.h"
-#include "sw/firmware/drivers/tvp5146.h"
+#include "sw/firmware/drivers/tvp5146_inputs.h"
 #include "sw/firmware/drivers/uart.h"
 #include "sw/firmware/drivers/vpss.h"
 
@@ -199,8 +199,6 @@ TEST(VpssTest, RoutesLikeLinuxAndOpensTheGates) {
   EXPECT_EQ(chip.values[0x01C70010], 0x0B1F0100u);
   EXPECT_EQ(chip.values[0x01C70014], 0x1F0A0F1Fu);
   EXPECT_EQ(chip.values[0x01C70018], 0x15u);
-  vpss_route_vdint2();
-  EXPECT_EQ(chip.values[0x01C70010], 0x0B020100u);
 }
 
 TEST(IntcTest, AtFirstEverySourceIsClosedAndNothingIsPending) {
@@ -402,6 +400,47 @@ TEST(Tvp5146Test, AnAbsentDecoderIsNotWaitedFor) {
   RegisterRecorder chip;
   FakeI2c bus(chip, false);
   EXPECT_EQ(tvp5146_wait_lock(24'000'000, [] { FAIL() << "a pause"; }), I2C_NACK);
+}
+
+// Registers 97 (request), 9A and 9B (count): Linux, tvp514x_regs.h; data manual of the TVP5147M1 (TI SLES140).
+TEST(Tvp5146Test, TheLinesOfAFrameAreAskedForAndReadWhenTheDecoderHasThem) {
+  RegisterRecorder chip;
+  FakeI2c bus(chip, true);
+  EXPECT_EQ(tvp5146_keep_line_count(), I2C_OK);
+  EXPECT_THAT(bus.sent, ElementsAre(0x97, 1));
+  struct Case {
+    std::uint32_t expected;
+    std::uint8_t low;
+    std::int32_t more;
+  };
+  // 625 is 0x271 and 525 is 0x20D.
+  for (const Case& c : {Case{625, 0x71, 0}, Case{625, 0x70, -1}, Case{625, 0x0D, -100}, Case{625, 0x75, 4},
+                        Case{525, 0x0D, 0}, Case{525, 0xFC, -17}, Case{525, 0x71, 100}}) {
+    bus.sent.clear();
+    bus.reads = {0xFF, 0x01, 0xFE, c.low};
+    bus.next_read = 0;
+    std::int32_t more = 77;
+    EXPECT_EQ(tvp5146_line_count(c.expected, &more), I2C_OK);
+    EXPECT_EQ(more, c.more) << c.expected << ' ' << +c.low;
+    EXPECT_THAT(bus.sent, ElementsAre(0x97, 0x97, 0x97, 0x9A));
+  }
+}
+
+TEST(Tvp5146Test, ADecoderWithoutALineCountIsNotWaitedForForever) {
+  RegisterRecorder chip;
+  FakeI2c bus(chip, true);
+  bus.reads.assign(100, 1);
+  std::int32_t more = 77;
+  EXPECT_EQ(tvp5146_line_count(625, &more), I2C_TIMEOUT);
+  EXPECT_EQ(bus.next_read, 8u) << "a millisecond";
+  bus.reads = {1, 1, 1, 1, 1, 1, 1, 0, 0x71};
+  bus.next_read = 0;
+  EXPECT_EQ(tvp5146_line_count(624, &more), I2C_OK) << "just in time";
+  EXPECT_EQ(more, 1);
+  FakeI2c absent(chip, false);
+  more = 77;
+  EXPECT_EQ(tvp5146_line_count(625, &more), I2C_NACK);
+  EXPECT_EQ(more, 77) << "left alone";
 }
 
 // The device takes its address and the register's number, and then refuses to be read.

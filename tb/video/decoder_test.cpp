@@ -71,6 +71,7 @@ struct Bench {
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
     two_params.output_at_reset.set("true");
+    two_params.relock_fields.set("0");
     const CameraWiring camera{.source = &chart, .is_625 = k625Here, .placement = placement_of(tvp_params, k625Here)};
     std::vector<CameraWiring> cameras(2, camera);
     cameras[1].input = 1;
@@ -89,20 +90,22 @@ struct Bench {
     }
     isif.on_frame_end = [this](const CaptureFrame& f) { ended.push_back(f); };
   }
-  void i2c_write(std::uint8_t reg, std::uint8_t value) {
-    ASSERT_TRUE(tvp->i2c_start(0x5D, false));
-    tvp->i2c_write(reg);
-    tvp->i2c_write(value);
-    tvp->i2c_stop();
+  static void i2c_write(Tvp5146& to, std::uint8_t reg, std::uint8_t value) {
+    ASSERT_TRUE(to.i2c_start(0x5D, false));
+    to.i2c_write(reg);
+    to.i2c_write(value);
+    to.i2c_stop();
   }
-  std::uint8_t i2c_read(std::uint8_t reg) {
-    EXPECT_TRUE(tvp->i2c_start(0x5D, false));
-    tvp->i2c_write(reg);
-    EXPECT_TRUE(tvp->i2c_start(0x5D, true));
-    const std::uint8_t v = tvp->i2c_read();
-    tvp->i2c_stop();
+  static std::uint8_t i2c_read(Tvp5146& from, std::uint8_t reg) {
+    EXPECT_TRUE(from.i2c_start(0x5D, false));
+    from.i2c_write(reg);
+    EXPECT_TRUE(from.i2c_start(0x5D, true));
+    const std::uint8_t v = from.i2c_read();
+    from.i2c_stop();
     return v;
   }
+  void i2c_write(std::uint8_t reg, std::uint8_t value) { i2c_write(*tvp, reg, value); }
+  std::uint8_t i2c_read(std::uint8_t reg) { return i2c_read(*tvp, reg); }
 };
 Bench* bench = nullptr;
 
@@ -314,6 +317,81 @@ TEST(DecoderTest, MissingAndShortLinesMakeFieldsShorterAndTheLockHolds) {
   EXPECT_EQ(frame_length({.wrong_bits = 1}), whole);
   EXPECT_EQ(frame_length({}), whole);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked) << "locked, and no lock was lost";
+}
+
+/// The number of lines in registers 9A and 9B.
+unsigned count_in(const Bench& b, Tvp5146& tvp) { return b.i2c_read(tvp, 0x9A) + 256u * b.i2c_read(tvp, 0x9B); }
+/// Asks at `at`; the parameters' default says when the decoder has it.
+unsigned count_at(Bench& b, Tvp5146& tvp, Picoseconds at) {
+  run_until(at);
+  b.i2c_write(tvp, 0x97, 0xFF);
+  EXPECT_EQ(b.i2c_read(tvp, 0x97), 1);
+  run_for(100 * kPsPerUs + kPsPerNs);
+  EXPECT_EQ(b.i2c_read(tvp, 0x97), 0);
+  return count_in(b, tvp);
+}
+Picoseconds lines_time(double lines) { return static_cast<Picoseconds>(lines * kStd.line_bytes / 27e6 * 1e12); }
+/// The start of the next first field.
+Picoseconds next_frame(const Tvp5146& tvp, unsigned camera = 0) {
+  std::uint64_t k = tvp.cameras()[camera].field_at(kernel_time()) / 2 * 2;
+  while (tvp.field_time(k) <= kernel_time()) k += 2;
+  return tvp.field_time(k);
+}
+
+TEST(DecoderTest, TheLinesOfTheFrameBeforeAreCountedAndKeptOnRequest) {
+  Bench& b = *bench;
+  Tvp5146& tvp = *b.tvp;
+  EXPECT_EQ(count_in(b, tvp), 0u) << "nothing was asked for yet";
+  const Picoseconds whole = next_frame(tvp);
+  EXPECT_EQ(count_at(b, tvp, whole + lines_time(5)), kStd.lines);
+  b.i2c_write(tvp, 0x9A, 9);
+  EXPECT_EQ(count_in(b, tvp), kStd.lines) << "read only";
+  tvp.disturb(0, {.lines = 3});
+  run_until(whole + lines_time(kStd.lines / 2.0));  // the first field's are gone by then, the second one's are not
+  tvp.disturb(0, {});
+  Picoseconds next = next_frame(tvp);
+  EXPECT_NEAR(static_cast<double>(next - whole), static_cast<double>(lines_time(kStd.lines - 3)), 2);
+  // Known three lines after the field's start, and then for a frame.
+  EXPECT_EQ(count_at(b, tvp, next + lines_time(3) - 101 * kPsPerUs), kStd.lines) << "not yet";
+  EXPECT_EQ(count_at(b, tvp, next + lines_time(3) - 99 * kPsPerUs), kStd.lines - 3);
+  run_until(next + lines_time(kStd.lines + 10));
+  EXPECT_EQ(count_in(b, tvp), kStd.lines - 3) << "as long as nobody asks again";
+  b.i2c_write(tvp, 0x97, 0);
+  run_for(kPsPerMs);
+  EXPECT_EQ(count_in(b, tvp), kStd.lines - 3) << "no request";
+  EXPECT_EQ(count_at(b, tvp, kernel_time()), kStd.lines);
+  // Asked for in one frame and read in the third one after.
+  b.i2c_write(tvp, 0x97, 1);
+  tvp.disturb(0, {.lines = 2});
+  for (unsigned n = 0; n < 3; ++n) run_until(next_frame(tvp) + lines_time(10));
+  tvp.disturb(0, {});
+  EXPECT_EQ(count_in(b, tvp), kStd.lines);
+  EXPECT_EQ(count_at(b, tvp, kernel_time()), kStd.lines - 4);
+}
+
+TEST(DecoderTest, ShortLinesAreLinesToo) {
+  Bench& b = *bench;
+  run_until(next_frame(*b.tvp));
+  b.tvp->disturb(0, {.lines = 4, .samples = 200});
+  run_for(80 * kPsPerMs);
+  EXPECT_EQ(count_at(b, *b.tvp, kernel_time()), kStd.lines);
+  b.tvp->disturb(0, {});
+}
+
+TEST(DecoderTest, ACameraThatIsEarlyMakesTheNextOnesFrameLonger) {
+  Bench& b = *bench;
+  Tvp5146& two = *b.two;
+  Picoseconds next = next_frame(two);
+  run_until(next + kPsPerUs);
+  two.disturb(0, {.lines = 4});
+  run_until(next + lines_time(kStd.lines / 2.0));
+  two.disturb(0, {});
+  next = next_frame(two);
+  EXPECT_EQ(count_at(b, two, next + lines_time(4)), kStd.lines - 4);
+  b.i2c_write(two, 0x00, 1);  // whose frame has begun four lines behind that of camera 0
+  EXPECT_EQ(count_at(b, two, next_frame(two, 1) + lines_time(4)), kStd.lines + 4);
+  EXPECT_EQ(count_at(b, two, next_frame(two, 1) + lines_time(4)), kStd.lines);
+  b.i2c_write(two, 0x00, 0);
 }
 
 TEST(DecoderTest, AClockThatIsOffStretchesTheFrames) {

@@ -3,8 +3,7 @@
 void field_watch_init(field_watch_t *w, int is_625) {
   /* From the first active line of a field, at which the lines are counted, to that of the other one: 313 lines from
    * line 23 to 336 and 312 back, 263 from 20 to 283 and 262 back. A line has 1728 or 1716 periods of 27 MHz. */
-  *w = (field_watch_t){.nominal = {is_625 ? 312u * 1536u : 399637u, is_625 ? 313u * 1536u : 401163u},
-                       .gap = is_625 ? 22u * 1536u : 24405u}; /* from line 1 to 23, or 4 to 20 */
+  *w = (field_watch_t){.nominal = {is_625 ? 312u * 1536u : 399637u, is_625 ? 313u * 1536u : 401163u}};
   field_watch_restart(w);
 }
 
@@ -64,8 +63,4 @@ watch_event_t field_watch_field(field_watch_t *w, uint32_t camera, int second, u
     return WATCH_NOTHING;
   }
   return measure(w, camera, late);
-}
-
-int field_watch_whole(const field_watch_t *w, uint32_t now) {
-  return (int32_t)(now - w->last - w->gap) >= -(int32_t)FIELD_TOLERANCE_TICKS;
 }

@@ -29,7 +29,6 @@ typedef enum watch_event {
 typedef struct field_watch {
   uint32_t nominal[2]; /* from a field's start to the next one: the ends of first and second fields */
   uint32_t last;       /* time of the last field start */
-  uint32_t gap;        /* from a frame's end to the first active line of the next one */
   uint32_t unknown;    /* so many of the next distances say nothing */
   uint32_t before;     /* camera of the last field start */
   int suspected;       /* the last distance was too long, to another camera */
@@ -59,12 +58,5 @@ void field_watch_frame(field_watch_t *watch);
  * @param now ticks
  * @return whether its clock is found to be off now, or to be right again, or the suspected camera to be guilty */
 watch_event_t field_watch_field(field_watch_t *watch, uint32_t camera, int second, uint32_t now);
-
-/** The first active line after a frame begins, of the same camera. Only now can lines be noticed that the frame's
- * second field lacked, since its end is found by counting lines: the line comes too early then. It comes too late if a
- * code of the next frame was damaged.
- * @param now ticks
- * @return whether the second field was as long as it should be */
-int field_watch_whole(const field_watch_t *watch, uint32_t now);
 
 #endif

@@ -25,6 +25,7 @@
 #include "capture_check.h"
 #include "field_watch.h"
 #include "open_frame.h"
+#include "view.h"
 #endif
 #ifdef COMPOSED_VIEW
 #include "composition.h"
@@ -70,8 +71,7 @@ static struct {
 #endif
 #ifdef CONSOLE
   field_watch_t watch;
-  open_frame_t open;
-  int select_later;   /* the decoder changes to the camera whose turn it is at the next first line */
+  open_frame_t open;  /* only within the handler */
 #endif
 #ifdef TIME_DIVISION
   display_watch_t display_watch;
@@ -139,8 +139,7 @@ static void captured_frame_done(void) {
     return;
   }
 #ifdef CONSOLE
-  const int32_t next = pipe.config->check_capture ? open_frame_begin(&pipe.open, &pipe.capture)
-                                                  : capture_frame_done(&pipe.capture);
+  const int32_t next = open_frame_begin(&pipe.open, &pipe.capture);
 #else
   const int32_t next = capture_frame_done(&pipe.capture);
 #endif
@@ -186,12 +185,25 @@ static void watch_field(uint32_t now) {
     turns_note(&pipe.turns, seen == WATCH_CLOCK_OFF ? CAMERA_CLOCK_OFF : CAMERA_CLOCK_RIGHT);
 }
 static int irregular(void) { return pipe.watch.irregular; }
-static void close_frame(int good) {
+/* The end of a frame is found by counting lines, so it does not come early if the second field lacked some. What the
+ * decoder has counted tells. It is asked as long as the frame's camera is selected, and answers when the next frame is
+ * on its way, for which there is no time to lose. Without an answer the frame is taken for whole. A count that is too
+ * high is the fault of another camera, which was too early when the input changed from it. */
+static void keep_line_count(void) {
+  i2c_result_t ignored = tvp5146_keep_line_count();
+  (void)ignored;
+}
+static void judge_frame(void) {
   if (pipe.open.buffer == CAPTURE_NONE) return;
-  if (good)
-    open_frame_good(&pipe.open, &pipe.capture);
-  else
+  int32_t more = 0;
+  i2c_result_t ignored = tvp5146_line_count(pipe.config->is_625 ? 625u : 525u, &more);
+  (void)ignored;
+  if (more < 0) {
+    turns_short(&pipe.turns, pipe.camera_of[pipe.open.buffer]);
     open_frame_useless(&pipe.open, &pipe.capture);
+  } else {
+    open_frame_good(&pipe.open, &pipe.capture);
+  }
   fw_state.dropped = pipe.capture.dropped;
 }
 static void watch_frame(void) { field_watch_frame(&pipe.watch); }
@@ -199,15 +211,13 @@ static void watch_another(void) { field_watch_restart(&pipe.watch); }
 #else
 static void watch_field(uint32_t now) { (void)now; }
 static int irregular(void) { return 0; }
-static void close_frame(int good) { (void)good; }
+static void keep_line_count(void) {}
+static void judge_frame(void) {}
 static void watch_frame(void) {}
 static void watch_another(void) {}
 #endif
 
 static void select_camera(uint32_t camera) {
-#ifdef CONSOLE
-  pipe.select_later = 0;
-#endif
   /* Without an answer the next look shows no lock. */
   i2c_result_t ignored = tvp5146_select(pipe.config->input[camera]);
   (void)ignored;
@@ -248,6 +258,7 @@ static void end_frame(const signal_state_t *seen) {
   if (pipe.complete && good && !irregular()) {
     pipe.camera_of[pipe.capture.filling] = (uint8_t)pipe.turns.now;
     captured_frame_done();
+    keep_line_count();
     turns_captured(&pipe.turns);
     return;
   }
@@ -257,21 +268,6 @@ static void end_frame(const signal_state_t *seen) {
   else
     turns_torn(&pipe.turns);
 }
-
-/* A frame that is open is judged by the next line of its camera. Nobody sees that line if a camera with the same syncs
- * follows at once. */
-#ifdef CONSOLE
-static int waits_for_first_line(uint32_t before) {
-  const uint8_t *genlocked = pipe.config->genlocked;
-  if (genlocked[before] && genlocked[pipe.turns.now]) close_frame(1);
-  return pipe.select_later = pipe.open.buffer != CAPTURE_NONE;
-}
-#else
-static int waits_for_first_line(uint32_t before) {
-  (void)before;
-  return 0;
-}
-#endif
 
 /* VDINT1, at the start of a field. Between two frames the decoder changes to the camera whose turn it is. */
 static void field_start(void) {
@@ -288,30 +284,25 @@ static void field_start(void) {
   pipe.complete = 0;
   if (pipe.turns.now != before) {
     if (!signal_ready(&seen)) watch_another(); /* the fields so far were no camera's, or of another standard */
-    if (waits_for_first_line(before)) return;
     select_camera(pipe.turns.now);
     /* The lines of a camera with other syncs go on in the midst of a picture: first a frame must begin. */
     if (!pipe.config->genlocked[before] || !pipe.config->genlocked[pipe.turns.now]) {
       watch_another();
+      judge_frame();
       return;
     }
     seen = look();
   }
   begin_frame(&seen);
+  judge_frame();
 }
 
 #ifdef CONSOLE
-/* VDINT2, at the first active line of a field. Only where frames are checked: is the one that is complete whole? */
-static void first_line(void) {
-  const uint32_t now = timer_ticks();
-  if (pipe.open.buffer != CAPTURE_NONE) {
-    const int whole = field_watch_whole(&pipe.watch, now);
-    if (!whole) turns_short(&pipe.turns, pipe.camera_of[pipe.open.buffer]);
-    close_frame(whole);
-  }
-  if (!pipe.select_later) return;
-  select_camera(pipe.turns.now);
-  watch_another();
+/* A millisecond with the decoder is not the time of a table that is built meanwhile. */
+static void timed_field_start(void) {
+  const uint32_t start = timer_ticks();
+  field_start();
+  view_other_ticks += timer_ticks() - start;
 }
 #endif
 
@@ -319,7 +310,6 @@ static void display_field_passed(void) {
   if (++pipe.quiet_fields < QUIET_FIELDS) return;
   pipe.quiet_fields = 0;
   isif_watch();
-  close_frame(0);
   if (pipe.capturing) leave_frame_out();
   pipe.capturing = pipe.complete = 0;
   watch_another();
@@ -373,13 +363,14 @@ void irq_dispatch(void) {
     capture_field_end();
   else if (source == IRQ_VPSSINT8)
     display_field_start();
-#ifdef TIME_DIVISION
+#if defined(CONSOLE)
+  else if (source == IRQ_VPSSINT1)
+    timed_field_start();
+#elif defined(TIME_DIVISION)
   else if (source == IRQ_VPSSINT1)
     field_start();
 #endif
 #ifdef CONSOLE
-  else if (source == IRQ_VPSSINT2)
-    first_line();
   else if (source == IRQ_UART0)
     uart_queue_interrupt();
 #endif
@@ -483,11 +474,7 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
 #endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
 #ifdef CONSOLE
-  if (config->check_capture) {
-    for (uint32_t n = 0; n < in_count; ++n) mark_buffer((int32_t)n);
-    isif_mark_first_lines();
-    vpss_route_vdint2();
-  }
+  for (uint32_t n = 0; config->check_capture && n < in_count; ++n) mark_buffer((int32_t)n);
   /* The display's frames begin where they will: nothing is known of the camera's yet. */
   if (config->display_free && display_start(&mode) != DISPLAY_OK) fail("display", "mode");
 #endif
@@ -508,9 +495,6 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   intc_enable(IRQ_VPSSINT8, 3);
 #ifdef TIME_DIVISION
   intc_enable(IRQ_VPSSINT1, 2);
-#endif
-#ifdef CONSOLE
-  if (config->check_capture) intc_enable(IRQ_VPSSINT2, 2);
 #endif
   irq_unmask();
 }

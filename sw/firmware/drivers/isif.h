@@ -56,7 +56,4 @@ int isif_second_field(void);
  * from the first active line of the field before. The next VD comes 22 lines later, 16 with 525 lines. */
 static inline void isif_mark_fields(int is_625) { mmio_write32(ISIF_VDINT1, is_625 ? 291u : 247u); }
 
-/** VDINT2 comes with every VD. */
-static inline void isif_mark_first_lines(void) { mmio_write32(ISIF_VDINT2, 0); }
-
 #endif

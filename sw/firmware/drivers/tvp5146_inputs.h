@@ -25,4 +25,13 @@ __attribute__((warn_unused_result)) i2c_result_t tvp5146_look(tvp5146_state_t *s
 
 __attribute__((warn_unused_result)) i2c_result_t tvp5146_clear_lost(void);
 
+/** Asks the decoder to keep the number of lines that it has counted in the frame before, for tvp5146_line_count(). */
+__attribute__((warn_unused_result)) i2c_result_t tvp5146_keep_line_count(void);
+
+/** Reads the number that was asked for: about 0.25 ms at 400 kHz, up to 1 ms if the decoder takes its time.
+ * @param expected the number of lines of a whole frame
+ * @param more so many lines more than that, from -128 to 127; unchanged without a result
+ * @return I2C_TIMEOUT if the decoder has not got it by then */
+__attribute__((warn_unused_result)) i2c_result_t tvp5146_line_count(uint32_t expected, int32_t *more);
+
 #endif

@@ -11,9 +11,4 @@
  * VPSSINT0 and the encoder's field interrupt to VPSSINT8. */
 void vpss_init(uint32_t vpss_clk_ctrl);
 
-/** Routes VDINT2 to VPSSINT2, to which the public drivers route nothing. */
-static inline void vpss_route_vdint2(void) {
-  mmio_modify32(ISP5_INTSEL1, VPSS_INTSEL1_N2, ISP5_SOURCE_VDINT2 << 16);
-}
-
 #endif
