@@ -25,6 +25,7 @@
 #include "capture_check.h"
 #include "field_watch.h"
 #include "open_frame.h"
+#include "view.h"
 #endif
 #ifdef COMPOSED_VIEW
 #include "composition.h"
@@ -296,6 +297,15 @@ static void field_start(void) {
   judge_frame();
 }
 
+#ifdef CONSOLE
+/* A millisecond with the decoder is not the time of a table that is built meanwhile. */
+static void timed_field_start(void) {
+  const uint32_t start = timer_ticks();
+  field_start();
+  view_other_ticks += timer_ticks() - start;
+}
+#endif
+
 static void display_field_passed(void) {
   if (++pipe.quiet_fields < QUIET_FIELDS) return;
   pipe.quiet_fields = 0;
@@ -353,7 +363,10 @@ void irq_dispatch(void) {
     capture_field_end();
   else if (source == IRQ_VPSSINT8)
     display_field_start();
-#ifdef TIME_DIVISION
+#if defined(CONSOLE)
+  else if (source == IRQ_VPSSINT1)
+    timed_field_start();
+#elif defined(TIME_DIVISION)
   else if (source == IRQ_VPSSINT1)
     field_start();
 #endif

@@ -81,9 +81,9 @@ int background_frame_due(void) {
 void background_frames(void);
 void background_frames(void) {
   tables.in_frame = 1;
-  const uint32_t start = timer_ticks();
+  const uint32_t start = timer_ticks(), other = view_other_ticks;
   while (correct_next_frame()) {
   }
-  view_other_ticks += timer_ticks() - start;
+  view_other_ticks = other + timer_ticks() - start; /* interrupts among it are not counted twice */
   tables.in_frame = 0;
 }
