@@ -55,13 +55,14 @@ class UsbController : public sc_core::sc_module, public Block {
 /// Crossbar and SDRAM with the new master and the display beside it, bound by what the blocks declare.
 struct Chip : sync::MemorySystem {
   UsbController usb{"usb"};
-  BurstMaster display{"display", Master::kVpbe, 2};
+  BurstMaster display{"display", Master::kVpbe, 4};
   bus::WaitStats waits{Master::kUsb, {&scr.crossbar().waits, &ddr.controller().waits()}};
   Timer end;
 
   Chip() : MemorySystem({}, false, Frequency(243'000'000), Frequency(121'500'000)) {
     for (const MasterPort& p : usb.masters()) p.socket->bind(*scr.target[index(p.id)]);
     display.socket.bind(*scr.target[index(Master::kVpbe)]);
+    priority[index(Master::kUsb)].write(7);  // the display goes first
     display.on_done = [this](const BurstMaster::Completion&) { refresh_picture(); };
   }
   void refresh_picture() {
@@ -109,7 +110,7 @@ TEST(NewMasterTest, ItsRowGivesItParametersStatisticsWaitsAndAStreamInTraces) {
   recorder.open(kernel_time(), Frequency(243'000'000), 0);
   chip.refresh_picture();
   chip.usb.start();
-  chip.run(100 * kPsPerUs);
+  chip.run(kPsPerMs);
   recorder.close(kernel_time());
   ASSERT_EQ(chip.usb.written, kBursts);
   ASSERT_EQ(chip.usb.read, kBursts);
