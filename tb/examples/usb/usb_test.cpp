@@ -129,14 +129,14 @@ TEST(NewMasterTest, ItsRowGivesItParametersStatisticsWaitsAndAStreamInTraces) {
       EXPECT_EQ(count(stats, "bus." + std::string(name) + ".transactions"), 0u) << name;
     }
 
-  // Every picosecond of its requests has a culprit, and the display is one of them.
+  // Every picosecond of its requests has a culprit, and the display is one of those of its writes.
   for (const bool write : {false, true}) {
     const auto direction = write ? &MasterWaits::write : &MasterWaits::read;
     Picoseconds sum = 0;
     for (std::size_t c = 0; c < kCulprits; ++c) sum += chip.waits.total(direction, static_cast<Culprit>(c));
     EXPECT_EQ(sum, chip.usb.took[write]) << write;
-    EXPECT_GT(chip.waits.total(direction, culprit(Master::kVpbe)), 0u) << write;
   }
+  EXPECT_GT(chip.waits.total(&MasterWaits::write, culprit(Master::kVpbe)), 0u);
   EXPECT_TRUE(stats.contains("ddr.usb.wait.read.vpbe"));
   EXPECT_EQ(culprit_name(culprit(Master::kUsb)), "usb");
 
