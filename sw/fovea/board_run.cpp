@@ -325,9 +325,9 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   std::string guest;
   unsigned behind_end = 0;
   for (;;) {
-    slicer.run(run_end.met() || figures_->closed() ? after_end(behind_end++)
-               : gdb && gdb->hit_pending()         ? kPsPerUs
-                                                   : request.limits.next_slice(
+    slicer.run(run_end.met()                    ? after_end(behind_end++)
+               : gdb && gdb->hit_pending() ? kPsPerUs
+                                           : request.limits.next_slice(
                                                  kSlice, kernel_time(),
                                                  arm.core().instructions_executed()));
     take_timeline(*board_, request);

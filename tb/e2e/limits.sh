@@ -67,10 +67,6 @@ confirm priority priority_arm "${load[@]}" -s priority.arm=0
 limits no_load 0 -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm
 binds no_load priority_arm no
 
-# A load that leaves nobody else a turn: the core comes to the end of no instruction, and the run ends all the same.
-limits starved 0 --load --priorities 0 --load-slots 16 --load-kind mixed --load-pattern random --load-step 700 --probes 0
-grep -q 'as much as the port takes' starved/limits.csv starved.out || fail "starved: $(cat starved.out)"
-
 # Every size is met.
 limits size 0 --find video.height=16..32:16
 grep -q 'video.height: all values that were tried from 16 to 32 meet the conditions' size.out ||
