@@ -50,7 +50,6 @@ function(fovea_join_target target)
     list(APPEND sources ${joined})
   endforeach()
   set_target_properties(${target} PROPERTIES SOURCES "${sources}" UNITY_BUILD OFF)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
 endfunction()
 
 # Of fovea_join_target: writes what has been gathered, unless it is there already, and begins anew.

@@ -367,7 +367,7 @@ void BoardSimulation::attach_host(Session& s) {
 }
 
 Picoseconds BoardSimulation::next_slice(Session& s) const {
-  if (s.run_end.met() || figures_->closed()) return after_end(s.behind_end++);
+  if (s.run_end.met()) return after_end(s.behind_end++);
   if (s.gdb && s.gdb->hit_pending()) return kPsPerUs;
   return s.request.limits.next_slice(kSlice, kernel_time(),
                                      board_->dm365.arm.core().instructions_executed());
