@@ -76,7 +76,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   };
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
     uart_.push_back(static_cast<char>(byte));
-    if (on_uart) on_uart(byte);
+    uart_observers_.each([byte](const UartObserver& f) { f(byte); });
   };
   pins_ = dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
     if (bank != PHASE_BANK) return;

@@ -13,6 +13,7 @@
 #include "model/board/board_params.h"
 #include "model/board/evm_cpld.h"
 #include "model/board/frame_log.h"
+#include "model/common/observers.h"
 #include "model/soc/dm365.h"
 #include "model/video/digital_camera.h"
 #include "model/video/display_sink.h"
@@ -102,7 +103,8 @@ class Board : public sc_core::sc_module {
   /// Called at each change of the pins that show the phase, also if the phase stays.
   std::function<void(Phase, Picoseconds at)> on_phase;
   /// Called for each byte that UART0 has sent, at its last stop bit.
-  std::function<void(std::uint8_t)> on_uart;
+  using UartObserver = std::function<void(std::uint8_t)>;
+  Subscription observe_uart(UartObserver observer) { return uart_observers_.add(std::move(observer)); }
   /// Called when the window opens and when it closes (end-of-instant phase: everything of that instant has
   /// happened).
   std::function<void()> on_window_open, on_window_close;
@@ -164,6 +166,7 @@ class Board : public sc_core::sc_module {
     void line(const video::Bt656Line&) override {}
   } no_receiver_;
   std::string uart_;
+  Observers<UartObserver> uart_observers_;
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;

@@ -7,13 +7,13 @@ namespace fovea::app {
 BoardConsole::BoardConsole(board::Board& board, ConsoleStream* stream,
                            std::optional<Dialogue> dialogue)
     : stream_(stream), dialogue_(std::move(dialogue)) {
-  board.on_uart = [this](std::uint8_t byte) {
+  sent_ = board.observe_uart([this](std::uint8_t byte) {
     if (stream_) stream_->show(byte);
     if (!dialogue_) return;
     const bool before = dialogue_->over();
     dialogue_->received(byte);
     if (!before) sender_->kick();
-  };
+  });
   sender_ = std::make_unique<board::SerialSender>("uart0_input", board.dm365.uart0, *this);
 }
 

@@ -8,6 +8,7 @@
 
 #include "model/board/board.h"
 #include "model/board/serial_sender.h"
+#include "model/common/observers.h"
 #include "sw/fovea/console.h"
 #include "sw/fovea/dialogue.h"
 
@@ -42,6 +43,7 @@ class BoardConsole : public board::SerialInput {
   std::string typed_;
   std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
   Picoseconds simulated_ = 0;
+  Subscription sent_;
 };
 
 }  // namespace fovea::app

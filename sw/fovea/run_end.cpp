@@ -4,7 +4,6 @@
 #include <array>
 #include <cstring>
 
-
 namespace fovea::app {
 namespace {
 
@@ -43,13 +42,7 @@ RunEnd::RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCon
   if (wants(Kind::kHalt)) check_for_halt();
   if (wants(Kind::kReset))
     board_.on_chip_reset = [this](const board::ChipReset&) { meet(Kind::kReset); };
-  if (wants(Kind::kUart)) {
-    auto others = std::move(board_.on_uart);
-    board_.on_uart = [this, others = std::move(others)](std::uint8_t byte) {
-      if (others) others(byte);
-      uart_sent(byte);
-    };
-  }
+  if (wants(Kind::kUart)) uart_ = board_.observe_uart([this](std::uint8_t) { uart_sent(); });
 }
 
 bool RunEnd::wants(EndCondition::Kind kind) const {
@@ -77,7 +70,7 @@ void RunEnd::program_exited() {
     if (c.kind == EndCondition::Kind::kExit) end(c.written, false, core.boundary_time());
 }
 
-void RunEnd::uart_sent(std::uint8_t) {
+void RunEnd::uart_sent() {
   for (const auto& c : conditions_)
     if (c.kind == EndCondition::Kind::kUart && board_.uart_text().ends_with(c.text))
       return end(c.written, false, kernel_time());

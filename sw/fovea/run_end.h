@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/board/board.h"
+#include "model/common/observers.h"
 #include "model/cpu/core/debug_control.h"
 #include "sw/fovea/run_until.h"
 
@@ -40,7 +41,7 @@ class RunEnd {
   void end(const std::string& what, bool limit, Picoseconds at);
   void check_for_halt();
   bool halted();
-  void uart_sent(std::uint8_t byte);
+  void uart_sent();
 
   board::Board& board_;
   std::vector<EndCondition> conditions_;
@@ -49,6 +50,7 @@ class RunEnd {
   std::optional<Met> met_;
   bool core_ended_ = false;
   std::optional<std::uint32_t> halted_at_;
+  Subscription uart_;
 };
 
 }  // namespace fovea::app

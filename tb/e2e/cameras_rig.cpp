@@ -192,16 +192,15 @@ std::vector<CamerasRig::Shown::Stamp> sequence(const CamerasRig& rig) {
 std::map<std::string, Picoseconds> listen(CamerasRig& rig, Picoseconds limit) {
   std::map<std::string, Picoseconds> out;
   std::string line;
-  rig.build().on_uart = [&](std::uint8_t byte) {
+  const Subscription listening = rig.build().observe_uart([&](std::uint8_t byte) {
     if (byte == '\n') {
       if (line.starts_with("camera ")) out.emplace(line, kernel_time());
       line.clear();
     } else if (byte != '\r') {
       line += static_cast<char>(byte);
     }
-  };
+  });
   rig.run(limit);
-  rig.board().on_uart = nullptr;
   return out;
 }
 

@@ -188,12 +188,11 @@ TEST(SignalsTest, LateDataOfTheDisplayAreSaidAndItGoesOn) {
   rig.set("run.frames", "48");
   Picoseconds late_at = 0;
   std::string line;
-  rig.build().on_uart = [&](std::uint8_t byte) {
+  const Subscription listening = rig.build().observe_uart([&](std::uint8_t byte) {
     line = byte == '\n' ? "" : line + static_cast<char>(byte);
     if (!late_at && line.find("parts of lines are black") != std::string::npos) late_at = kernel_time();
-  };
+  });
   rig.run(kLimit);
-  rig.board().on_uart = nullptr;
   ASSERT_EQ(rig.shown().size(), 48u) << rig.board().uart_text();
   const std::string& text = rig.board().uart_text();
   const auto late = text.find("display: data come too late, parts of lines are black");
