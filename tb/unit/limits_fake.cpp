@@ -1,6 +1,7 @@
 // A program with the command line of `fovea` over a toy board, whose figures are simple functions of its
 // parameters. FAKE_LIMITS_LOG names a file that gets a line for each run.
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
