@@ -65,13 +65,13 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
   add_master(edma_write(number), writes_.socket, outstanding);
   reads_.on_done = [this](const BurstMaster::Completion& c) {
     if (in_reset_) return;
-    stats.reads.add(1, c.last);
+    stats.reads.add(c.last, 1);
     core_.read_done(c.data, c.error, c.last);
   };
   writes_.on_done = [this](const BurstMaster::Completion& c) {
     if (in_reset_) return;
-    stats.writes.add(1, c.last);
-    stats.bytes.add(c.data.size(), c.last);
+    stats.writes.add(c.last, 1);
+    stats.bytes.add(c.last, c.data.size());
     core_.write_done(c.error, c.last);
   };
   show_status();
@@ -171,7 +171,9 @@ void EdmaTc::show_sets() {
     const RegisterSet s = core_.source_set(kernel_time());
     regs.sasrcbref.set(s.reference(s.request.source));
   });
-  const auto written = [this] { return core_.destination_set(core_.destination_writing(kernel_time()), kernel_time()); };
+  const auto written = [this] {
+    return core_.destination_set(core_.destination_writing(kernel_time()), kernel_time());
+  };
   regs.dfcntrld.on_read([this, written] { regs.dfcntrld.set(written().request.acnt); });
   regs.dfdstbref.on_read([this, written] {
     const RegisterSet s = written();
@@ -203,7 +205,7 @@ void EdmaTc::on_reset(ResetKind) {
   core_.reset();
   loads_cleared_ = ends_cleared_ = 0;
   due_.clear();
-  for (PresentCounter* c : {&stats.requests, &stats.reads, &stats.writes, &stats.bytes}) c->drop_ahead();
+  for (TimedCounter* c : {&stats.requests, &stats.reads, &stats.writes, &stats.bytes}) c->drop_ahead();
   core_.set_read_interval(1);
   program_free_ = 0;
 }
@@ -260,7 +262,7 @@ void EdmaTc::program_free(Picoseconds at) {
 }
 
 void EdmaTc::completed(const TransferRequest& request, Picoseconds at) {
-  stats.requests.add(1, at);
+  stats.requests.add(at, 1);
   if (on_ended) at_its_time(at, [this, request, at] { on_ended(request, at); });
   channels_->completed(request, at);
 }

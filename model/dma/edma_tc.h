@@ -10,6 +10,7 @@
 #include "model/common/burst_master.h"
 #include "model/common/bus_target.h"
 #include "model/common/clock.h"
+#include "model/common/timed_counter.h"
 #include "model/dma/core/transfer_controller.h"
 #include "model/dma/edma_cc.h"
 #include "model/dma/edma_params.h"
@@ -119,48 +120,12 @@ struct EdmaTcRegs : RegBank {
   EdmaTcRegs(unsigned number, unsigned fifo, unsigned depth);
 };
 
-/// Counts what happens up to the present; it may be told ahead, in the order of the times.
-class PresentCounter : public StatBase {
- public:
-  using StatBase::StatBase;
-  void add(std::uint64_t n, Picoseconds at) {
-    if (!ahead_.empty()) settle();
-    ahead_.push_back({at, n});
-  }
-  std::uint64_t count() const {
-    settle();
-    return count_;
-  }
-  Value value() const override { return count(); }
-  void reset() override {
-    settle();
-    count_ = 0;
-  }
-  /// What was told ahead does not happen.
-  void drop_ahead() {
-    settle();
-    ahead_.clear();
-  }
-
- private:
-  struct Ahead {
-    Picoseconds at;
-    std::uint64_t n;
-  };
-  void settle() const {
-    const Picoseconds now = kernel_time();
-    for (; !ahead_.empty() && ahead_.front().at <= now; ahead_.pop_front()) count_ += ahead_.front().n;
-  }
-  mutable std::deque<Ahead> ahead_;
-  mutable std::uint64_t count_ = 0;
-};
-
 struct EdmaTcStats : StatGroup {
   const std::string who;
-  PresentCounter requests{*this, "requests", "1", "transfer requests that " + who + " completed"};
-  PresentCounter reads{*this, "reads", "1", "bursts that " + who + " read"};
-  PresentCounter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
-  PresentCounter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
+  TimedCounter requests{*this, "requests", "1", "transfer requests that " + who + " completed"};
+  TimedCounter reads{*this, "reads", "1", "bursts that " + who + " read"};
+  TimedCounter writes{*this, "writes", "1", "bursts that " + who + " wrote"};
+  TimedCounter bytes{*this, "bytes", "B", "bytes that " + who + " transferred"};
   Counter errors{*this, "errors", "1", "bus errors of " + who + ", and requests against the rules"};
   Formula busy{*this, "busy_time", "s", "time in which " + who + " had a request",
                [this] { return static_cast<double>(busy_until(kernel_time())) * 1e-12; }};

@@ -14,40 +14,13 @@
 #include "model/common/clock.h"
 #include "model/common/pulse.h"
 #include "model/common/stats.h"
+#include "model/common/timed_counter.h"
 #include "model/common/timer.h"
 #include "model/engine/core/engine_backend.h"
 #include "model/engine/core/engine_registers.h"
 #include "model/engine/engine_params.h"
 
 namespace fovea::engine {
-
-/// Counts what has a time of its own, which may lie ahead, from that time on.
-class TimedCounter : public StatBase {
- public:
-  using StatBase::StatBase;
-  /// @param at not before that of an earlier call
-  void add(Picoseconds at, std::uint64_t n) {
-    settle();
-    ahead_.emplace_back(at, n);
-  }
-  std::uint64_t count() const {
-    settle();
-    return count_;
-  }
-  Value value() const override { return count(); }
-  void reset() override {
-    settle();
-    count_ = 0;
-  }
-
- private:
-  void settle() const {
-    for (; !ahead_.empty() && ahead_.front().first <= now_(); ahead_.pop_front()) count_ += ahead_.front().second;
-  }
-  KernelNow now_;
-  mutable std::uint64_t count_ = 0;
-  mutable std::deque<std::pair<Picoseconds, std::uint64_t>> ahead_;
-};
 
 struct EngineStats : StatGroup {
   Counter jobs{*this, "jobs", "1", "jobs that ended, however"};

@@ -195,6 +195,12 @@ TEST_F(Chip, RequestsCountFromTheirTimeOn) {
   EXPECT_EQ(group.bytes.count(), 0u);
   run(1500);
   EXPECT_EQ(group.bytes.count(), 4u);
+  // A reset of the block: what has happened stays in the count, what lies ahead does not come.
+  group.bytes.add(kernel_time(), 8);
+  group.bytes.add(kernel_time() + 1, 16);
+  group.bytes.drop_ahead();
+  run(1);
+  EXPECT_EQ(group.bytes.count(), 12u);
 }
 
 /// An access to a register in the middle of a job does not find the job ended, whatever the model knows already.
