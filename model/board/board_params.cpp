@@ -27,6 +27,13 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                           [this] { return ends_by_frames(run.until()); });
   run.start_limit.matters_only("run.until = frames", {&run.until},
                                [this] { return run.until() == "frames" || run.until() == "[frames]"; });
+  link_video();
+  link_views();
+  link_ports();
+  link_internal_ram();
+}
+
+void BoardParams::link_video() {
   // Which lines and samples the display uses is the firmware's choice; only that of this project is
   // known to follow video.standard.
   const auto pal = [this] { return !firmware.elf().empty() || video.format().is_625; };
@@ -44,6 +51,15 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   for (ParamBase* p : camera_rows[0].wire.params()) of_decoder.push_back(p);
   for (ParamBase* p : of_decoder)
     p->matters_only("no video.standard of a camera at the digital port", {&video.standard}, behind_decoder);
+  decoder.crop_525.matters_only("525 lines from the camera (tvp5146.standard, video.standard)",
+                                {&decoder.standard, &video.standard}, [this] {
+                                  return decoder.standard.user_set()
+                                             ? decoder.standard.is("525/60")
+                                             : !video.format().is_625;
+                                });
+}
+
+void BoardParams::link_views() {
   const auto birds_eye_shown = [this] { return firmware.view.is("birds_eye"); };
   for (ParamBase* p : birds_eye.params())
     p->matters_only("firmware.view = birds_eye", {&firmware.view}, birds_eye_shown);
@@ -56,70 +72,66 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
                         return n < camera_count() && (birds_eye_shown() || kind.is("car_park"));
                       });
   }
-  // Kernels of this project's firmware in which the EDMA moves data; of other programs nothing is known.
-  const auto edma_works = [this] {
-    static constexpr const char* kKernels[] = {"staged", "gather", "runs", "copy", "fastest"};
-    return !firmware.elf().empty() || std::any_of(std::begin(kKernels), std::end(kKernels),
-                                                  [this](const char* k) { return firmware.kernel.is(k); });
-  };
-  // Ports that a synthetic load may use, most of them beside the block that drives them.
-  std::vector<const ParamBase*> loads;
-  for (const auto& load : soc.loads) loads.insert(loads.end(), {&load.outstanding, &load.port});
-  const auto load_alone = [this, loads, edma_works](ParamBase& p, const std::string& name) {
-    const bool engine = name == stat_name(Master::kRemapEngine);
-    const bool edma = name.starts_with("edma_tc");
-    std::vector<const ParamBase*> deciders = loads;
-    if (edma) deciders.insert(deciders.end(), {&firmware.kernel, &firmware.elf});
-    if (engine) deciders.push_back(&soc.engine.kind);
-    const auto effective = [this, name, engine, edma, edma_works] {
-      return (engine && soc.engine.present()) || (edma && edma_works()) ||
-             std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
+}
+
+bool BoardParams::edma_moves_pixels() const {
+  static constexpr const char* kKernels[] = {"staged", "gather", "runs", "copy", "fastest"};
+  return !firmware.elf().empty() || std::any_of(std::begin(kKernels), std::end(kKernels),
+                                                [this](const char* k) { return firmware.kernel.is(k); });
+}
+
+BoardParams::PortUse BoardParams::block_at(const MasterInfo& port) {
+  switch (port.priority) {
+    case PrioritySource::kQueue:
+      return {"a kernel that uses the EDMA", {&firmware.kernel, &firmware.elf}, [this] { return edma_moves_pixels(); }};
+    case PrioritySource::kImcop:
+      return {"an engine", {&soc.engine.kind}, [this] { return soc.engine.present(); }};
+    default:
+      return {"", {}, [] { return false; }};  // loads alone
+  }
+}
+
+void BoardParams::link_ports() {
+  std::vector<const ParamBase*> of_loads;
+  for (const auto& load : soc.loads) of_loads.insert(of_loads.end(), {&load.outstanding, &load.port});
+  const auto link = [this, of_loads](ParamBase& p, const MasterInfo& port) {
+    const PortUse block = block_at(port);
+    std::vector<const ParamBase*> deciders = of_loads;
+    deciders.insert(deciders.end(), block.deciders.begin(), block.deciders.end());
+    const std::string name(port.statistics);
+    std::string condition = "a load with load.port = " + name;
+    if (!block.condition.empty()) condition += ", or " + block.condition;
+    p.matters_only(condition, deciders, [this, name, block] {
+      return block.used() || std::any_of(soc.loads.begin(), soc.loads.end(), [&](const bus::LoadParams& load) {
                return load.active() && load.port.is(name);
              });
-    };
-    p.matters_only("a load with load.port = " + name +
-                       (engine ? ", or an engine"
-                        : edma ? ", or a kernel that uses the EDMA"
-                               : ""),
-                   deciders, effective);
-  };
-  for (const MasterInfo& m : kMasters.rows) {
-    if (!m.spare || m.side == Side::kWrites) continue;
-    const std::string name(m.statistics);
-    for (ParamBase* p : soc.crossbar.ports[stat_index(m.id)]->params())
-      load_alone(*p, name);
-  }
-  // The priorities of these ports.
-  for (EnumParam& p : priority.of) {
-    const std::string name = p.key().substr(p.key().find('.') + 1);
-    const bool spare = std::any_of(kMasters.rows.begin(), kMasters.rows.end(), [&](const MasterInfo& m) {
-      return m.spare && priority_name(m) == name;
     });
-    if (spare) load_alone(p, name);
+  };
+  for (const MasterInfo& port : kMasters.rows) {
+    if (!port.load_allowed || port.side == Side::kWrites) continue;
+    for (ParamBase* p : soc.crossbar.ports[stat_index(port.id)]->params()) link(*p, port);
+    for (EnumParam& p : priority.of)
+      if (p.key() == priority.prefix() + "." + std::string(priority_name(port))) link(p, port);
   }
-  // Masters that use internal RAM beside the core.
-  std::vector<const ParamBase*> places;
-  for (const auto& load : soc.loads) places.insert(places.end(), {&load.memory, &load.outstanding});
-  places.insert(places.end(), {&firmware.elf, &firmware.kernel});
-  const auto shared = [this, edma_works] {
-    return edma_works() ||
+}
+
+void BoardParams::link_internal_ram() {
+  std::vector<const ParamBase*> deciders;
+  for (const auto& load : soc.loads) deciders.insert(deciders.end(), {&load.memory, &load.outstanding});
+  deciders.insert(deciders.end(), {&firmware.elf, &firmware.kernel});
+  const auto shared = [this] {
+    return edma_moves_pixels() ||
            std::any_of(soc.loads.begin(), soc.loads.end(), [](const bus::LoadParams& load) {
              return load.active() && load.memory.is("internal_ram");
            });
   };
   for (ParamBase* p : std::initializer_list<ParamBase*>{&soc.cpu.tcm_dma_word_clocks,
                                                         &soc.cpu.tcm_dma_latency, &soc.cpu.tcm_first})
-    p->matters_only("a load with load.memory = internal_ram, or a kernel that uses the EDMA", places, shared);
-  places.push_back(&soc.cpu.tcm_own_conflict);
+    p->matters_only("a load with load.memory = internal_ram, or a kernel that uses the EDMA", deciders, shared);
+  deciders.push_back(&soc.cpu.tcm_own_conflict);
   soc.cpu.tcm_banks.matters_only(
       "a load with load.memory = internal_ram, a kernel that uses the EDMA, or cpu.tcm.own_conflict above 0 cycles",
-      places, [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
-  decoder.crop_525.matters_only("525 lines from the camera (tvp5146.standard, video.standard)",
-                                {&decoder.standard, &video.standard}, [this] {
-                                  return decoder.standard.user_set()
-                                             ? decoder.standard.is("525/60")
-                                             : !video.format().is_625;
-                                });
+      deciders, [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
 }
 
 }  // namespace fovea::board

@@ -1,8 +1,11 @@
 // Parameters of the board: what is soldered, switched and loaded.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/board/camera_fault.h"
 #include "model/board/camera_params.h"
@@ -10,6 +13,7 @@
 #include "model/board/lens_params.h"
 #include "model/board/priority_params.h"
 #include "model/board/view_params.h"
+#include "model/common/masters.h"
 #include "model/contract/switches.h"
 #include "model/soc/dm365.h"
 #include "model/video/core/bt656.h"
@@ -260,6 +264,22 @@ struct BoardParams : ParamTree {
   unsigned height() const {
     return video.height() ? static_cast<unsigned>(video.height()) : video.format().height;
   }
+
+ private:
+  /// The block of the model that drives a port which synthetic loads may use too; none: an empty condition.
+  struct PortUse {
+    std::string condition;  ///< for people: when the block uses its port
+    std::vector<const ParamBase*> deciders;
+    std::function<bool()> used;
+  };
+  PortUse block_at(const MasterInfo& port);
+  /// Whether the firmware lets the EDMA move pixels; true also for a program of which that is not known.
+  bool edma_moves_pixels() const;
+  // Each says of some parameters when they matter.
+  void link_video();
+  void link_views();
+  void link_ports();
+  void link_internal_ram();
 };
 
 }  // namespace fovea::board

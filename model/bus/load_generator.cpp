@@ -15,7 +15,7 @@ constexpr std::uint32_t kSdram = DDR_BASE, kInternalRam = INTERNAL_RAM_DATA_BASE
 std::vector<std::string> LoadParams::ports() {
   std::vector<std::string> words{std::string(stat_name(Master::kLoad))};
   for (const MasterInfo& m : kMasters.rows)
-    if (m.spare && m.id != Master::kLoad && m.side != Side::kWrites)
+    if (m.load_allowed && m.id != Master::kLoad && m.side != Side::kWrites)
       words.emplace_back(m.statistics);
   return words;
 }

@@ -58,7 +58,7 @@ struct LoadParams : ParamGroup {
   }
   bool active() const { return outstanding() > 0; }
   bool copies() const { return kind.is("copy"); }
-  /// The ports that no block of the model uses.
+  /// Names of the ports that a load may use (MasterInfo::load_allowed), its own first.
   static std::vector<std::string> ports();
   /// Where its reads and its writes go out.
   Master reader() const;

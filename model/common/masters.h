@@ -70,7 +70,7 @@ struct MasterInfo {
   std::optional<Master> partner = {};
   bool on_chip = true;
   /// A synthetic load may use it (`load.port`), alone or together with the block that drives it.
-  bool spare = false;
+  bool load_allowed = false;
   /// Synthetic traffic for experiments, which moves nothing for the program.
   bool synthetic = false;
 };
@@ -145,7 +145,7 @@ constexpr MasterInfo edma(Master id, std::string_view name, std::string_view sta
                           unsigned controller, Side side, Master partner) {
   return {.id = id, .name = name, .statistics = statistics, .who = "the EDMA",
           .priority = PrioritySource::kQueue, .unit = controller, .most_outstanding = 16,
-          .side = side, .partner = partner, .spare = true};
+          .side = side, .partner = partner, .load_allowed = true};
 }
 }  // namespace masters
 
@@ -169,10 +169,10 @@ inline constexpr MasterTable<kMasterCount> kMasters{{
     // No part of the chip: it has the priority of MJCP, the imaging coprocessor (assumed).
     {.id = Master::kRemapEngine, .name = "remap_engine", .statistics = "remap_engine",
      .who = "the remap engine", .priority = PrioritySource::kImcop, .most_outstanding = 16,
-     .on_chip = false, .spare = true},
+     .on_chip = false, .load_allowed = true},
     {.id = Master::kLoad, .name = "load", .statistics = "load",
      .who = "the load generator", .priority = PrioritySource::kParameter, .most_outstanding = 16,
-     .on_chip = false, .spare = true, .synthetic = true},
+     .on_chip = false, .load_allowed = true, .synthetic = true},
     masters::edma(Master::kEdmaTc0Write, "edma_tc0_write", "edma_tc0", 0, Side::kWrites,
                   Master::kEdmaTc0Read),
     masters::edma(Master::kEdmaTc1Write, "edma_tc1_write", "edma_tc1", 1, Side::kWrites,

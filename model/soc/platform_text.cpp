@@ -148,7 +148,7 @@ std::string block_row(const Placement& row, const BusTarget& block) {
 }
 
 const char* driver_of(const MasterInfo& m) {
-  if (!m.spare) return "a block";
+  if (!m.load_allowed) return "a block";
   return m.priority == PrioritySource::kQueue    ? "a block, or a synthetic load too"
          : m.priority == PrioritySource::kImcop ? "a block with `engine`, or a synthetic load too"
                                                 : "a synthetic load";
