@@ -511,10 +511,19 @@ int run_command(const CLI::App& app, Options& o, const std::vector<std::string>&
   return kExitDone;
 }
 
-}  // namespace
+/// CLI11's own message would be that a command is missing.
+void check_command(const CLI::App& app, const std::vector<std::string>& args) {
+  if (args.empty() || args[0].starts_with("-")) return;
+  std::vector<std::string> names;
+  for (const auto* c : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (c->check_name(args[0])) return;
+    names.push_back(c->get_name());
+  }
+  throw UserError(
+      fmt::format("unknown command '{}'; allowed: {}", one_line(args[0]), fmt::join(names, ", ")));
+}
 
-int run_cli(const std::vector<std::string>& args, const CliContext& context) {
-  std::vector<std::string> own = args;
+int parse_and_run(const std::vector<std::string>& args, const CliContext& context) {
   Options options;
   CLI::App app("Co-simulation of a fish-eye correction system: DM365 board and its firmware",
                "fovea");
@@ -534,26 +543,23 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
   add_report_command(app, options.report);
   add_regression_commands(app, options.regression);
   add_other_commands(app, options);
+  std::vector<std::string> own = args;
   if (!own.empty() && own[0] == exec->get_name())
     options.exec.arguments = take_program_arguments(*exec, own);
-
+  check_command(app, args);
   try {
-    // CLI11's own message would be that a command is missing.
-    const auto commands = app.get_subcommands([](CLI::App*) { return true; });
-    std::vector<std::string> names;
-    for (const auto* c : commands) names.push_back(c->get_name());
-    if (!args.empty() && !args[0].starts_with("-") &&
-        std::none_of(commands.begin(), commands.end(),
-                     [&](CLI::App* c) { return c->check_name(args[0]); }))
-      throw UserError(fmt::format("unknown command '{}'; allowed: {}", one_line(args[0]),
-                                  fmt::join(names, ", ")));
-    try {
-      app.parse(std::vector<std::string>(own.rbegin(), own.rend()));
-    } catch (const CLI::ParseError& e) {
-      if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
-      throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
-    }
-    return run_command(app, options, args, context);
+    app.parse(std::vector<std::string>(own.rbegin(), own.rend()));
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e, context.out, context.err);
+    throw UserError(one_line(e.what()) + "; 'fovea --help' shows the commands");
+  }
+  return run_command(app, options, args, context);
+}
+
+/// Says what the exception that is being handled means to the user. Returns the exit status.
+int report_failure(const CliContext& context) {
+  try {
+    throw;
   } catch (const UserError& e) {
     context.err << "fovea: error: " << one_line(e.what(), 2000) << std::endl;
     return kExitWrongInput;
@@ -578,6 +584,16 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context) {
     }
     context.err << "fovea: own defect: " << printable(e.what()) << std::endl;
     return kExitOwnDefect;
+  }
+}
+
+}  // namespace
+
+int run_cli(const std::vector<std::string>& args, const CliContext& context) {
+  try {
+    return parse_and_run(args, context);
+  } catch (...) {
+    return report_failure(context);
   }
 }
 

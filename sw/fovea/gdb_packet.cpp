@@ -19,6 +19,41 @@ int digit(char c) {
 
 }  // namespace
 
+void GdbFramer::start_packet() {
+  state_ = State::kPayload;
+  payload_.clear();
+  sum_ = 0;
+  broken_ = escaped_ = false;
+}
+
+void GdbFramer::take_payload(char c) {
+  if (c == '#') {
+    if (escaped_) broken_ = true;
+    state_ = State::kSum1;
+    return;
+  }
+  if (c == '$') {  // the previous packet was truncated
+    start_packet();
+    return;
+  }
+  sum_ = static_cast<std::uint8_t>(sum_ + static_cast<std::uint8_t>(c));
+  if (state_ == State::kSkip) return;
+  if (escaped_) {
+    payload_ += static_cast<char>(c ^ kFlip);
+    escaped_ = false;
+  } else if (c == kEscape) {
+    escaped_ = true;
+  } else {
+    payload_ += c;
+  }
+  if (payload_.size() > kGdbPacketBytes) {
+    broken_ = true;
+    escaped_ = false;
+    payload_.clear();
+    state_ = State::kSkip;
+  }
+}
+
 std::optional<GdbFramer::Event> GdbFramer::next() {
   using Kind = Event::Kind;
   while (at_ < input_.size()) {
@@ -26,10 +61,7 @@ std::optional<GdbFramer::Event> GdbFramer::next() {
     switch (state_) {
       case State::kIdle:
         if (c == '$') {
-          state_ = State::kPayload;
-          payload_.clear();
-          sum_ = 0;
-          broken_ = escaped_ = false;
+          start_packet();
         } else if (c == '+') {
           return Event{Kind::kAck, {}};
         } else if (c == '-') {
@@ -40,34 +72,7 @@ std::optional<GdbFramer::Event> GdbFramer::next() {
         break;
       case State::kPayload:
       case State::kSkip:
-        if (c == '#') {
-          if (escaped_) broken_ = true;
-          state_ = State::kSum1;
-          break;
-        }
-        if (c == '$') {  // the previous packet was truncated
-          payload_.clear();
-          sum_ = 0;
-          broken_ = escaped_ = false;
-          state_ = State::kPayload;
-          break;
-        }
-        sum_ = static_cast<std::uint8_t>(sum_ + static_cast<std::uint8_t>(c));
-        if (state_ == State::kSkip) break;
-        if (escaped_) {
-          payload_ += static_cast<char>(c ^ kFlip);
-          escaped_ = false;
-        } else if (c == kEscape) {
-          escaped_ = true;
-        } else {
-          payload_ += c;
-        }
-        if (payload_.size() > kGdbPacketBytes) {
-          broken_ = true;
-          escaped_ = false;
-          payload_.clear();
-          state_ = State::kSkip;
-        }
+        take_payload(c);
         break;
       case State::kSum1:
         first_digit_ = digit(c);

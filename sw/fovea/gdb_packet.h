@@ -32,6 +32,9 @@ class GdbFramer {
   std::uint8_t sum_ = 0;
   int first_digit_ = 0;
   bool broken_ = false, escaped_ = false;
+  void start_packet();
+  /// A character between '$' and '#'; a payload that is too long is skipped to its end.
+  void take_payload(char c);
 };
 
 /// `$payload#checksum`, with characters escaped as necessary.

@@ -62,6 +62,54 @@ void encode(const Record& r, CodeState& s, std::string& out) {
   }
 }
 
+namespace {
+
+/// Master, attributes and address of a request; each is coded against the last one of its kind.
+void decode_request(ByteReader& in, std::uint8_t head, CodeState& s, Record& r) {
+  if (head & kOtherMaster) {
+    const std::uint64_t master = in.number();
+    if (master >= kMasterCount) throw BadTrace("unknown master");
+    s.master = static_cast<Master>(master);
+  }
+  r.master = s.master;
+  CodeState::Kind& kind = s.kinds[index(r.master)][r.write];
+  if (head & kAttributes) {
+    const std::uint64_t bytes = in.number(), rest = in.number();
+    if (bytes == 0 || bytes > kMaxBurstBytes || rest > 15) throw BadTrace("a burst of no size");
+    kind.bytes = static_cast<std::uint8_t>(bytes);
+    kind.priority = rest & 7u;
+    kind.locked = rest & 8u;
+  }
+  if (kind.bytes == 0) throw BadTrace("a burst without a size");
+  if (head & kCritical) {
+    const std::uint64_t critical = in.number();
+    if (critical >= kind.bytes) throw BadTrace("a critical word outside its burst");
+    r.critical = static_cast<std::uint8_t>(critical);
+  }
+  const std::uint64_t address = kind.address + unzigzag(in.number());
+  if (address > ~std::uint32_t{0}) throw BadTrace("an address beyond 4 GiB");
+  kind.address = static_cast<std::uint32_t>(address);
+  r.address = kind.address;
+  r.bytes = kind.bytes;
+  r.priority = kind.priority;
+  r.locked = kind.locked;
+}
+
+/// What a request waits for that an event releases.
+void decode_event(ByteReader& in, CodeState& s, Record& r, unsigned version) {
+  const std::uint64_t source = version == 1 ? 0 : in.number();
+  if (source > kMasterCount) throw BadTrace("an unknown stream");
+  r.source = source == 0 ? kInterrupt : static_cast<std::uint8_t>(source - 1);
+  std::uint64_t& last = s.event(r.source);
+  last += unzigzag(in.number());
+  const std::uint64_t gap = in.number();
+  if (last >> 40 || gap > ~std::uint32_t{0}) throw BadTrace("an event too far");
+  r.event = last;
+  r.wake_gap = static_cast<std::uint32_t>(gap);
+}
+
+}  // namespace
+
 void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   r = Record{};
   const std::uint8_t head = in.byte();
@@ -76,33 +124,7 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
     if (value > ~std::uint32_t{0}) throw BadTrace("a mark is too large");
     r.address = static_cast<std::uint32_t>(value);
   } else {
-    if (head & kOtherMaster) {
-      const std::uint64_t master = in.number();
-      if (master >= kMasterCount) throw BadTrace("unknown master");
-      s.master = static_cast<Master>(master);
-    }
-    r.master = s.master;
-    CodeState::Kind& kind = s.kinds[index(r.master)][r.write];
-    if (head & kAttributes) {
-      const std::uint64_t bytes = in.number(), rest = in.number();
-      if (bytes == 0 || bytes > kMaxBurstBytes || rest > 15) throw BadTrace("a burst of no size");
-      kind.bytes = static_cast<std::uint8_t>(bytes);
-      kind.priority = rest & 7u;
-      kind.locked = rest & 8u;
-    }
-    if (kind.bytes == 0) throw BadTrace("a burst without a size");
-    if (head & kCritical) {
-      const std::uint64_t critical = in.number();
-      if (critical >= kind.bytes) throw BadTrace("a critical word outside its burst");
-      r.critical = static_cast<std::uint8_t>(critical);
-    }
-    const std::uint64_t address = kind.address + unzigzag(in.number());
-    if (address > ~std::uint32_t{0}) throw BadTrace("an address beyond 4 GiB");
-    kind.address = static_cast<std::uint32_t>(address);
-    r.address = kind.address;
-    r.bytes = kind.bytes;
-    r.priority = kind.priority;
-    r.locked = kind.locked;
+    decode_request(in, head, s, r);
   }
   r.release = static_cast<Release>(release);
   if (r.release == Release::kAt) {
@@ -118,17 +140,7 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
     if (room > kMaxBack) throw BadTrace("a reference too far back");
     r.room = static_cast<std::uint32_t>(room);
   }
-  if (r.release == Release::kWhen) {
-    const std::uint64_t source = version == 1 ? 0 : in.number();
-    if (source > kMasterCount) throw BadTrace("an unknown stream");
-    r.source = source == 0 ? kInterrupt : static_cast<std::uint8_t>(source - 1);
-    std::uint64_t& last = s.event(r.source);
-    last += unzigzag(in.number());
-    const std::uint64_t gap = in.number();
-    if (last >> 40 || gap > ~std::uint32_t{0}) throw BadTrace("an event too far");
-    r.event = last;
-    r.wake_gap = static_cast<std::uint32_t>(gap);
-  }
+  if (r.release == Release::kWhen) decode_event(in, s, r, version);
 }
 
 }  // namespace fovea::trace

@@ -26,11 +26,28 @@ struct Quantity : ParamGroup {
   RealParam real;
 };
 
+}  // namespace
+
 struct UnitName {
   const char* name;
   IntParam::Unit unit;
   const char* smallest;
 };
+
+namespace {
+
+constexpr const char* kOrder = "the first end must be below the second one";
+constexpr const char* kNoStep = "a step above 0 is needed";
+
+template <class Param>
+void read_step(const std::string& text, Param& value, const std::string& step) {
+  try {
+    value.set(step);
+  } catch (const UserError& e) {
+    refuse(text, fmt::format("step: {}", e.what()));
+  }
+}
+
 constexpr UnitName kUnits[] = {{"count", IntParam::Unit::kCount, ""},
                                {"cycles", IntParam::Unit::kCycles, "cycles"},
                                {"bytes", IntParam::Unit::kBytes, "B"},
@@ -66,61 +83,56 @@ ValueRange::ValueRange(const ParamSet& params, const std::string& text) {
   const auto* const real = dynamic_cast<const RealParam*>(param);
   if (!whole && !real)
     refuse(text, fmt::format("'{}' has no numbers but: {}; --over tries words", key_, param->allowed()));
-  const std::string before = param->text();
-  const auto read = [&](const std::string& end, auto get) {
+  whole_ = whole != nullptr;
+  const auto end = [&, before = param->text()](const std::string& value, auto& typed) {
     try {
-      param->set(end);
+      param->set(value);
     } catch (const UserError& e) {
       refuse(text, fmt::format("key '{}': {}", key_, e.what()));
     }
-    const auto value = get();
+    const auto read = typed();
     param->set(before);
-    return value;
+    return read;
   };
-  whole_ = whole != nullptr;
-  const auto order = [&](auto a, auto b) {
-    if (!(a < b)) refuse(text, "the first end must be below the second one");
-  };
-  if (whole_) {
-    unit_ = unit_of(param->unit()).smallest;
-    low_ = read(low, [&] { return (*whole)(); });
-    const std::uint64_t top = read(high, [&] { return (*whole)(); });
-    order(low_, top);
-    const bool by_one = unit_.empty() || unit_ == "cycles";
-    step_ = by_one ? 1 : std::max<std::uint64_t>(1, (top - low_) / kSteps);
-    if (!step.empty()) {
-      Quantity q(unit_of(param->unit()).unit);
-      try {
-        q.whole.set(step);
-      } catch (const UserError& e) {
-        refuse(text, fmt::format("step: {}", e.what()));
-      }
-      step_ = q.whole();
-    }
-    if (step_ == 0) refuse(text, "a step above 0 is needed");
-    last_ = (top - low_) / step_;
-  } else {
-    unit_ = param->unit();
-    real_low_ = read(low, [&] { return (*real)(); });
-    const double top = read(high, [&] { return (*real)(); });
-    order(real_low_, top);
-    real_step_ = (top - real_low_) / kSteps;
-    if (!step.empty()) {
-      if (!step.ends_with(unit_)) refuse(text, fmt::format("the step needs the unit '{}'", unit_));
-      Quantity q(IntParam::Unit::kCount);
-      try {
-        q.real.set(step.substr(0, step.size() - unit_.size()));
-      } catch (const UserError& e) {
-        refuse(text, fmt::format("step: {}", e.what()));
-      }
-      real_step_ = q.real();
-    }
-    if (!(real_step_ > 0)) refuse(text, "a step above 0 is needed");
-    const double steps = std::floor((top - real_low_) / real_step_ * (1 + 1e-12));
-    if (steps > 1e9) refuse(text, "more than 1e9 steps");
-    last_ = static_cast<std::uint64_t>(steps);
-  }
+  if (whole_)
+    set_whole(text, unit_of(param->unit()), end(low, *whole), end(high, *whole), step);
+  else
+    set_real(text, param->unit(), end(low, *real), end(high, *real), step);
   if (last_ == 0) refuse(text, "the step is larger than the range");
+}
+
+void ValueRange::set_whole(const std::string& text, const UnitName& unit, std::uint64_t low, std::uint64_t high,
+                           const std::string& step) {
+  if (!(low < high)) refuse(text, kOrder);
+  unit_ = unit.smallest;
+  low_ = low;
+  const bool by_one = unit_.empty() || unit_ == "cycles";
+  step_ = by_one ? 1 : std::max<std::uint64_t>(1, (high - low) / kSteps);
+  if (!step.empty()) {
+    Quantity q(unit.unit);
+    read_step(text, q.whole, step);
+    step_ = q.whole();
+  }
+  if (step_ == 0) refuse(text, kNoStep);
+  last_ = (high - low) / step_;
+}
+
+void ValueRange::set_real(const std::string& text, const std::string& unit, double low, double high,
+                          const std::string& step) {
+  if (!(low < high)) refuse(text, kOrder);
+  unit_ = unit;
+  real_low_ = low;
+  real_step_ = (high - low) / kSteps;
+  if (!step.empty()) {
+    if (!step.ends_with(unit_)) refuse(text, fmt::format("the step needs the unit '{}'", unit_));
+    Quantity q(IntParam::Unit::kCount);
+    read_step(text, q.real, step.substr(0, step.size() - unit_.size()));
+    real_step_ = q.real();
+  }
+  if (!(real_step_ > 0)) refuse(text, kNoStep);
+  const double steps = std::floor((high - low) / real_step_ * (1 + 1e-12));
+  if (steps > 1e9) refuse(text, "more than 1e9 steps");
+  last_ = static_cast<std::uint64_t>(steps);
 }
 
 std::string ValueRange::format(std::uint64_t whole, double real) const {

@@ -7,6 +7,8 @@
 
 namespace fovea::limits {
 
+struct UnitName;
+
 class ValueRange {
  public:
   /// `text` is KEY=LOW..HIGH or KEY=LOW..HIGH:STEP, each with its unit. Without a step, counts and
@@ -31,6 +33,11 @@ class ValueRange {
   double real_low_ = 0, real_step_ = 0;
   std::uint64_t last_ = 0;
   std::string format(std::uint64_t whole, double real) const;
+  /// @throws UserError that cites `text` if the ends are out of order or the step fits no value
+  void set_whole(const std::string& text, const UnitName& unit, std::uint64_t low, std::uint64_t high,
+                 const std::string& step);
+  void set_real(const std::string& text, const std::string& unit, double low, double high,
+                const std::string& step);
 };
 
 }  // namespace fovea::limits
