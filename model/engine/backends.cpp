@@ -31,10 +31,11 @@ namespace {
 
 /// @throws UserError for sizes that the RTL is not built with
 [[maybe_unused]] void require_built_sizes(const EngineParams& params) {
-  for (const ParamBase* p : {static_cast<const ParamBase*>(&params.cache), static_cast<const ParamBase*>(&params.prefetch)})
+  for (const ParamBase* p :
+       {static_cast<const ParamBase*>(&params.cache), static_cast<const ParamBase*>(&params.prefetch)})
     if (p->text() != p->default_text())
-      throw UserError("key '" + p->key() + "': the RTL is built with " + p->default_text() + " alone; engine=tlm takes '" +
-                      p->text() + "'");
+      throw UserError("key '" + p->key() + "': the RTL is built with " + p->default_text() +
+                      " alone; engine=tlm takes '" + p->text() + "'");
 }
 
 }  // namespace

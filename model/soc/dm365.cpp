@@ -33,15 +33,15 @@ Placements joined(Placements rows, const Placements& more) {
 
 }  // namespace
 
-Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry,
-             bool strict, const Placements& external)
+Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict,
+             const Placements& external)
     : sc_module(name),
       arm("arm", params.cpu, internal_ram, entry),
       tcm_dma("tcm_dma", arm.core(), end_of_instant),
       scr("scr", params.crossbar, params.ddr, address_map(internal_ram.size()), strict),
-      config("config", params.config_bus, end_of_instant, bus_blocks(joined(rows_present(params.rows, params.block_params), external))),
-      placed(joined(rows_present(params.rows, params.block_params), external), params.block_params,
-             scr.memory()),
+      config("config", params.config_bus, end_of_instant,
+             bus_blocks(joined(rows_present(params.rows, params.block_params), external))),
+      placed(joined(rows_present(params.rows, params.block_params), external), params.block_params, scr.memory()),
       params_(params) {
   SC_HAS_PROCESS(Dm365);
   for (std::size_t i = 0; i < params.loads.size(); ++i)

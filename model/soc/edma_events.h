@@ -1,8 +1,8 @@
 // The hardware events of the EDMA's channels, and EDMA_EVTMUX. Sources: TI's register header for the DM36x
 // and the Linux port of its camera kit (mach-davinci/include/mach/edma.h), which agree on the channels. The inputs of
 // the interrupt controller with which events come are those of Linux' irqs.h and of boot programs for the chip; of
-// TINT4 (13), GPIO8 (52) and GPIO9 (53) both lack it, and it is assumed from ARM_INTMUX (periph/interrupt_mux.h) and the
-// neighbours: TINT5 and TINT6 are 14 and 15, GPIO7 and GPIO10 are 51 and 54.
+// TINT4 (13), GPIO8 (52) and GPIO9 (53) both lack it, and it is assumed from ARM_INTMUX (periph/interrupt_mux.h) and
+// the neighbours: TINT5 and TINT6 are 14 and 15, GPIO7 and GPIO10 are 51 and 54.
 #pragma once
 #include <array>
 #include <string_view>

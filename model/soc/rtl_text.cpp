@@ -85,7 +85,8 @@ RtlText rtl_text(RegBank& fresh) {
   }
   out.package =
       "// Registers of the remap engine. Printed by `platform_text remap_regs_pkg.sv` from\n"
-      "// model/engine/core/engine_registers.h; do not edit. WORD: number of the register's word; WRITABLE: bits that keep\n"
+      "// model/engine/core/engine_registers.h; do not edit. WORD: number of the register's word; WRITABLE: bits that "
+      "keep\n"
       "// what is written.\n"
       "package remap_regs_pkg;\n"
       "  // Bit n: word n is a register.\n"

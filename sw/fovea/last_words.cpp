@@ -77,9 +77,11 @@ std::vector<Part> all_clocks(std::span<const StatRow> stats) {
   std::uint64_t rest = count(stats, "cpu.idle") - std::min(count(stats, "cpu.idle"), out.back().amount);
   for (const cpu::WakeInfo& info : cpu::kWakeTable) {
     const std::string event = std::string("idle.") + info.name;
-    const std::uint64_t clocks = count(stats, "cpu." + event) - std::min(count(stats, "cpu." + event), count(stats, "cpu.remap." + event));
+    const std::uint64_t clocks =
+        count(stats, "cpu." + event) - std::min(count(stats, "cpu." + event), count(stats, "cpu.remap." + event));
     rest -= std::min(rest, clocks);
-    const std::string words = is_idle(event) ? fmt::format("asleep until {}'s interrupt", info.who) : fmt::format("waiting for {}", info.who);
+    const std::string words =
+        is_idle(event) ? fmt::format("asleep until {}'s interrupt", info.who) : fmt::format("waiting for {}", info.who);
     // Within and without remaps the same words are one part.
     if (words == out[1].what) out[1].amount += clocks;
     else out.push_back({words, clocks});
@@ -198,8 +200,8 @@ std::string wait_lines(std::span<const StatRow> stats) {
     for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
       if (const double percent = 100 * g.parts[k].first / g.total; percent >= 0.5)  // as shown not zero
         parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, percent));
-    out += paragraph(i == 0 ? "waits" : "",
-                     fmt::format("{}, {} in all: {}", g.who, unbroken(human_text(g.total, "s")), fmt::join(parts, ", ")));
+    out += paragraph(i == 0 ? "waits" : "", fmt::format("{}, {} in all: {}", g.who, unbroken(human_text(g.total, "s")),
+                                                        fmt::join(parts, ", ")));
   }
   return out;
 }
@@ -282,7 +284,8 @@ std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std:
   std::vector<std::size_t> order(shares.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::uint64_t left = total;
-  for (std::size_t i = 0; i < shares.size(); ++i) left -= out[i] = static_cast<std::uint64_t>(Wide{total} * shares[i] / sum);
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    left -= out[i] = static_cast<std::uint64_t>(Wide{total} * shares[i] / sum);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return Wide{total} * shares[a] % sum > Wide{total} * shares[b] % sum;
   });
@@ -304,7 +307,8 @@ std::string frame_budget(std::span<const StatRow> stats) {
     if (parts[k])
       divided += fmt::format("{}{} {}.{}", divided.empty() ? "" : ", ", std::array{"remap", "other work", "idle"}[k],
                              parts[k] / 10, parts[k] % 10);
-  std::string out = paragraph("budget", fmt::format("{}.{} ms a displayed frame: {}", period / 10, period % 10, divided));
+  std::string out =
+      paragraph("budget", fmt::format("{}.{} ms a displayed frame: {}", period / 10, period % 10, divided));
   const std::string inside = listed(apportioned_parts(parts[0], clocks_of_remaps(stats)));
   if (inside.empty()) return out;
   return out + paragraph("", fmt::format("remap {}.{} ms: {}", parts[0] / 10, parts[0] % 10, inside));

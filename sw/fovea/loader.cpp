@@ -174,7 +174,8 @@ void check_digital(const board::BoardParams& params) {
   if (!params.video.format().digital) return;
   const std::string with = " with video.standard = " + params.video.standard();
   const auto only = [&](const ParamBase& p, bool ok, const std::string& allowed) {
-    require(ok, p.key(), p.text(), allowed + with + ": the digital port has one camera, and the program for one serves it");
+    require(ok, p.key(), p.text(),
+            allowed + with + ": the digital port has one camera, and the program for one serves it");
   };
   const auto& fw = params.firmware;
   only(params.cameras.count, params.camera_count() == 1, "1");

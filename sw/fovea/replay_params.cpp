@@ -54,7 +54,8 @@ void ReplayParams::check() const {
   const auto at_least = [&](const IntParam& p, std::uint64_t least, const char* what) {
     if (p() < least) refuse(p, fmt::format("{} cycles or more ({})", least, what));
   };
-  // What no part of this kind does at all, with 1 Hz for the rounding of ddr.clock; what a single part forbids is a warning (mem::DdrCheck).
+  // What no part of this kind does at all, with 1 Hz for the rounding of ddr.clock; what a single part forbids is a
+  // warning (mem::DdrCheck).
   const auto within = [&](const IntParam& p, std::uint64_t least, std::uint64_t most,
                           const char* range) {
     if (p() < least || p() > most)

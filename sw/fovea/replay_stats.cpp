@@ -11,7 +11,8 @@ std::vector<StatRow> ReplayPath::stats() {
   std::vector<StatRow> rows;
   collect(ddr().stats, rows);
   const double seconds = static_cast<double>(duration()) * 1e-12;
-  rows.push_back({"replay.time", seconds, "s", "from the trace's start to the last completion or, if that is later, the SDRAM's last data"});
+  rows.push_back({"replay.time", seconds, "s",
+                  "from the trace's start to the last completion or, if that is later, the SDRAM's last data"});
   rows.push_back({"replay.requests", requests_, "1", "requests played"});
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",

@@ -333,7 +333,8 @@ TEST(EdmaBlockTest, TrdoneComesWithTheLastAcknowledgement) {
   const Picoseconds at = std::stoull(end);
   const std::string seen = one_transfer([at](Rig& r, std::string& out) {
     for (const Picoseconds t : {at - 1, at})
-      r.at_end_of(t, [&] { out += text("%x%x ", read(r.tc->regs, kIntstat) >> 1, read(r.tc->regs, kTcstat) >> 4 & 7); });
+      r.at_end_of(t,
+                  [&] { out += text("%x%x ", read(r.tc->regs, kIntstat) >> 1, read(r.tc->regs, kTcstat) >> 4 & 7); });
   });
   EXPECT_EQ(seen, "01 10 ") << "TRDONE, and DSTACTV";
 }

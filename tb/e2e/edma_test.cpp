@@ -87,7 +87,8 @@ TEST_P(TornTest, AFrameThatChangesDuringItsRemapIsCounted) {
   const auto stride = rig.elf().find("frame_stride"), in = rig.elf().find("frame_in");
   std::uint32_t bytes = 0;
   std::memcpy(&bytes, board.peek(stride->address, 4).data(), 4);
-  for (unsigned n = 0; n < 3; ++n) board.dm365.ddr.store().at(in->address - DDR_BASE + n * bytes + rig.lut()[7])[1] ^= 0xFF;
+  for (unsigned n = 0; n < 3; ++n)
+    board.dm365.ddr.store().at(in->address - DDR_BASE + n * bytes + rig.lut()[7])[1] ^= 0xFF;
   rig.run(kLimit);
   EXPECT_EQ(rig.state().torn, 1u) << rig.board().uart_text();
 }

@@ -345,9 +345,9 @@ TEST_P(NewTableTest, TakesTheOldOnesPlaceBetweenTwoFramesAndNoFrameIsLost) {
   small(rig, 2);
   rig.set("tvp5146.relock_fields", "0").set("run.frames", "16");
   rig.set("firmware.kernel", GetParam().kernel).set("engine", GetParam().engine);
-  const auto console = type(rig,
-                            std::string("at ") + GetParam().at + "\nsend shift 0 6 -4\\r\nwait new table\nsend zoom 1 90\\r\n"
-                            "wait new table\nsend zoom 5 90\\r\nsend help\\r\n");
+  const auto console = type(rig, std::string("at ") + GetParam().at +
+                                     "\nsend shift 0 6 -4\\r\nwait new table\nsend zoom 1 90\\r\n"
+                                     "wait new table\nsend zoom 5 90\\r\nsend help\\r\n");
   oracle::Geometry shifted = rig.geometry(0), zoomed = rig.geometry(1);
   shifted.shift_x += 6;
   shifted.shift_y -= 4;
@@ -440,7 +440,8 @@ TEST(SignalsTest, TheChosenCamerasHaveTurns) {
   CamerasRig rig;
   small(rig, 3);
   rig.set("tvp5146.relock_fields", "0").set("run.frames", "26");
-  const auto console = type(rig, "at 420ms\nsend camera 2 0 2\\n\nat 720ms\nsend camera 1\\n\nat 960ms\nsend camera all\\n\n");
+  const auto console =
+      type(rig, "at 420ms\nsend camera 2 0 2\\n\nat 720ms\nsend camera 1\\n\nat 960ms\nsend camera all\\n\n");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 26u) << rig.board().uart_text();
   EXPECT_EQ(console->open_step(), "");

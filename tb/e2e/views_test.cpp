@@ -77,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(Small, ViewTest,
                                          View{"FourWayTiny", "four_way", false, "ldm", "fixed_point", "32", "16"},
                                          View{"FourWayEngine", "four_way", false, "engine", "fixed_point", "32", "16"},
                                          View{"BirdsEyeEngine", "birds_eye", false, "engine", "fixed_point"},
-                                         View{"BirdsEyeQuadEngine", "birds_eye", true, "engine", "fixed_point", "0", "0"}),
+                                         View{"BirdsEyeQuadEngine", "birds_eye", true, "engine", "fixed_point", "0",
+                                              "0"}),
                          [](const auto& i) { return i.param.name; });
 
 // Whose frame a part shows is in its pixels; each captured frame is displayed, so with the stamps of all parts every

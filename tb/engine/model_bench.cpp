@@ -66,7 +66,12 @@ void ModelBench::go_until(Picoseconds limit) {
       while (!queue->empty() && queue->front().first * kPeriod - 1 <= now_) {
         const Pending p = queue->front();
         queue->pop_front();
-        backend.answer({p.burst.tag, p.burst.write, p.fault, {p.data.data(), p.burst.write ? 0 : p.burst.bytes}, p.first * kPeriod - 1, p.last * kPeriod - 1});
+        backend.answer({p.burst.tag,
+                        p.burst.write,
+                        p.fault,
+                        {p.data.data(), p.burst.write ? 0 : p.burst.bytes},
+                        p.first * kPeriod - 1,
+                        p.last * kPeriod - 1});
       }
     call_ = backend.run(now_);
     ++calls;

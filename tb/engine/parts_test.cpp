@@ -84,7 +84,8 @@ TEST(EngineParts, ARectangleIsOnePart) {
 
 TEST(EngineParts, AParallelogramIsTwo) {
   Spans spans(31);
-  for (unsigned v = 0; v < 31; ++v) spans[v] = {static_cast<std::uint16_t>(v / 2), static_cast<std::uint16_t>(v / 2 + 5)};
+  for (unsigned v = 0; v < 31; ++v)
+    spans[v] = {static_cast<std::uint16_t>(v / 2), static_cast<std::uint16_t>(v / 2 + 5)};
   const auto parts = cover(spans);
   EXPECT_EQ(parts.size(), 2u);
   expect_exact(spans, 20, parts);

@@ -35,7 +35,8 @@ std::string difference(const Trace& model, const Trace& rtl) {
   if (model.reads != rtl.reads) return "read " + std::to_string(first(model.reads, rtl.reads) / 4) + " differs";
   if (model.writes != rtl.writes) return "write " + std::to_string(first(model.writes, rtl.writes) / 3) + " differs";
   if (model.lines != rtl.lines || model.bursts != rtl.bursts || model.bad != rtl.bad) return "a counter differs";
-  if (model.clocks != rtl.clocks) return "clocks: " + std::to_string(model.clocks) + " and " + std::to_string(rtl.clocks);
+  if (model.clocks != rtl.clocks)
+    return "clocks: " + std::to_string(model.clocks) + " and " + std::to_string(rtl.clocks);
   return "";
 }
 

@@ -21,7 +21,11 @@ struct Machine {
   mem::DdrParams ddr;
   board::ClockParams clocks;
   ExecMap map{.ram_base = 0x8000'0000, .ram_size = ddr.size_bytes()};
-  ExecBoard board{"exec", {cpu, crossbar, config_bus, ddr}, map, ExecClocks::of({clocks.preset(), clocks.arm(), clocks.ddr()}), 0x8000'0000};
+  ExecBoard board{"exec",
+                  {cpu, crossbar, config_bus, ddr},
+                  map,
+                  ExecClocks::of({clocks.preset(), clocks.arm(), clocks.ddr()}),
+                  0x8000'0000};
 };
 
 struct LooseStats : StatGroup {

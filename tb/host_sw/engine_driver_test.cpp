@@ -1,5 +1,6 @@
 // The driver of the remap engine against a recorder, and its queue of jobs against an engine that ends a job for each
-// sleep of the core; the waits for the EDMA too, as both share the core's masks and sleep. Offsets and bits are those of the tables in rtl/README.md.
+// sleep of the core; the waits for the EDMA too, as both share the core's masks and sleep. Offsets and bits are those
+// of the tables in rtl/README.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -348,7 +348,8 @@ TEST(AddrgenTest, AJobAfterAResetInItsMiddleIsRight) {
   Dice dice(seed() + 5);
   AddrgenBench bench(seed() + 5);
   for (unsigned n = 0; n < 40; ++n) {
-    const MappedJob first = random_job(dice, static_cast<Mode>(n % 4)), second = random_job(dice, static_cast<Mode>(n / 4 % 4));
+    const MappedJob first = random_job(dice, static_cast<Mode>(n % 4)),
+                    second = random_job(dice, static_cast<Mode>(n / 4 % 4));
     const std::size_t limit = dice.to(static_cast<unsigned>(first.job.pairs * first.job.rows - 1));
     bench.run(first.job, first.map, {1 + dice.to(15), 1 + dice.to(15)}, limit, AddrgenBench::End::kReset);
     run_and_compare(bench, second);

@@ -70,8 +70,8 @@ class EngineBench {
 
   /// A write, a read, or both at once, each with its channels at any distance.
   RegisterAnswer access(std::optional<RegisterWrite> write, std::optional<unsigned> read);
-  /// Two writes, or two reads, that are offered together from the first clock on, one behind the other. The first answer
-  /// is left on the bus for `hold` clocks, in which it must not change. @throws std::runtime_error if it does
+  /// Two writes, or two reads, that are offered together from the first clock on, one behind the other. The first
+  /// answer is left on the bus for `hold` clocks, in which it must not change. @throws std::runtime_error if it does
   std::array<RegisterAnswer, 2> read_two(unsigned first, unsigned second, unsigned hold);
   std::array<RegisterAnswer, 2> write_two(const RegisterWrite& first, const RegisterWrite& second, unsigned hold);
   /// @throws std::runtime_error for an answer that is an error

@@ -139,7 +139,8 @@ std::uint32_t of_one_set(unsigned n) { return n << 11 | (n % 64) << 5; }
 TEST(EngineTest, LinesOfOneSetAreToldApart) {
   Dice dice(seed() + 1);
   EngineBench bench(kSize);
-  const MappedJob m = table_of(40, 10, [](unsigned bit, unsigned i) { return of_one_set(i % 2 << bit) + i / 2 % 8 * 4; });
+  const MappedJob m =
+      table_of(40, 10, [](unsigned bit, unsigned i) { return of_one_set(i % 2 << bit) + i / 2 % 8 * 4; });
   fill(bench, m, dice);
   const auto want = expected(bench, m);
   const Result got = bench.run(m.job, EngineBench::kBase + kMap, kBorder);

@@ -5,8 +5,8 @@
 
 namespace fovea::engine::at {
 
-inline constexpr std::uint32_t kId = 0x00, kCtrl = 0x04, kStatus = 0x08, kEvents = 0x0C, kEnables = 0x10, kSubmit = 0x14,
-                               kEnded = 0x18;
+inline constexpr std::uint32_t kId = 0x00, kCtrl = 0x04, kStatus = 0x08, kEvents = 0x0C, kEnables = 0x10,
+                               kSubmit = 0x14, kEnded = 0x18;
 inline constexpr std::uint32_t kClocks = 0x20, kLines = 0x24, kWrites = 0x28, kBad = 0x2C;
 /// The job window: from kMode to kC2.
 inline constexpr std::uint32_t kMode = 0x40, kSize = 0x44, kSrcBase = 0x48, kSrcPitch = 0x4C, kSrcSize = 0x50,

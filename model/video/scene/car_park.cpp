@@ -26,7 +26,9 @@ bool on_bay_line(double v, double first, double last) {
 
 /// Asphalt: grain of 5 cm, as a hash of the place.
 GroundColour asphalt(double x, double y) {
-  const auto cell = [](double v) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(v / 0.05))); };
+  const auto cell = [](double v) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(v / 0.05)));
+  };
   std::uint32_t h = cell(x) * 0x9e37'79b1u ^ cell(y) * 0x85eb'ca77u;
   h = (h ^ h >> 15) * 0x2c1b'3c6du;
   h ^= h >> 13;

@@ -21,8 +21,8 @@ void program_print(const config_t *config) {
   uart_puts(" cameras in turn");
 }
 
-/* One that waits, one that is filled, and one for the frame that is judged meanwhile (open_frame.h). The last one is also
- * what the next frame is filled into after a frame of no use, if frames are checked. */
+/* One that waits, one that is filled, and one for the frame that is judged meanwhile (open_frame.h). The last one is
+ * also what the next frame is filled into after a frame of no use, if frames are checked. */
 uint32_t program_in_count(const config_t *config) { return config->sources + 3u; }
 
 void program_build(const config_t *config) {

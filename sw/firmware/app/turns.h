@@ -11,7 +11,8 @@
 #define TURNS_LOCK_FRAMES 50u
 /* A camera that was left out gets its turn again after so many frame boundaries. */
 #define TURNS_REST_FRAMES 25u
-/* A camera whose syncs were irregular, or whose frames lacked parts, gives frames again when so many in its turns were regular. */
+/* A camera whose syncs were irregular, or whose frames lacked parts, gives frames again when so many in its turns were
+ * regular. */
 #define TURNS_REGULAR_FRAMES 25u
 #define TURNS_EVENTS 16u
 #define TURNS_SEQUENCE_MAX 16u

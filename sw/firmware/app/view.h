@@ -13,7 +13,8 @@ struct view {
   const remap_method_t *method;
 };
 
-/* Ticks for which builds of tables were suspended, for frames and for the decoder: no part of the times that are said. */
+/* Ticks for which builds of tables were suspended, for frames and for the decoder: no part of the times that are said.
+ */
 extern volatile uint32_t view_other_ticks;
 
 /** To be called first. `config` is kept. */

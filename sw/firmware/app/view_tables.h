@@ -21,8 +21,8 @@ int background_frame_due(void);
 
 /* What the program provides. */
 
-/** Corrects the frame that waits, if there is one, and has what it needs. To be called with interrupts masked, and returns
- * with them masked; they are open meanwhile. @return 0 if there was nothing to do */
+/** Corrects the frame that waits, if there is one, and has what it needs. To be called with interrupts masked, and
+ * returns with them masked; they are open meanwhile. @return 0 if there was nothing to do */
 int correct_next_frame(void);
 
 #endif

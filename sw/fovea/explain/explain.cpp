@@ -77,7 +77,8 @@ Shares Run::waits_of(std::string_view port) const {
   std::map<std::string, double> sums;
   for (const auto& row : inputs_.stats) {
     const auto wait = row.name.find(kWait);
-    if (wait == row.name.npos || !row.name.starts_with(kDdr) || !row.name.substr(kDdr.size()).starts_with(port)) continue;
+    if (wait == row.name.npos || !row.name.starts_with(kDdr) || !row.name.substr(kDdr.size()).starts_with(port))
+      continue;
     // Behind it comes read.CULPRIT or write.CULPRIT.
     const auto dot = row.name.find('.', wait + kWait.size());
     if (dot == row.name.npos) continue;

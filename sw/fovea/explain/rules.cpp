@@ -147,7 +147,8 @@ void find_mover(const Run& run, std::vector<Finding>& out) {
   struct Mover {
     std::string_view event, port, who;
   };
-  static constexpr std::array kMovers{Mover{"dma", "edma_tc", "the EDMA"}, Mover{"engine", "remap_engine", "the remap engine"}};
+  static constexpr std::array kMovers{Mover{"dma", "edma_tc", "the EDMA"},
+                                      Mover{"engine", "remap_engine", "the remap engine"}};
   const double all = run.value_or_zero("cpu.remap.cycles"), asleep = run.value_or_zero("cpu.remap.idle");
   // Less is a rest that the core waits for at the end of its own work.
   if (asleep <= 0 || asleep < 0.05 * all) return;
@@ -167,13 +168,15 @@ void find_mover(const Run& run, std::vector<Finding>& out) {
         largest.push_back(fmt::format("{} {}", percent(seconds / whole), spent_by_port(culprit)));
     // A load at these ports waits there too, and the figures do not tell its requests apart.
     if (largest.empty() || run.loaded(m.port)) continue;
-    sentences.push_back(fmt::format(" The time of all requests that {} made to the SDRAM in the whole window: {}.", m.who, listed(largest)));
+    sentences.push_back(fmt::format(" The time of all requests that {} made to the SDRAM in the whole window: {}.",
+                                    m.who, listed(largest)));
     evidence.push_back(fmt::format("ddr.{}*.wait.*", m.port));
   }
   if (names.empty()) return;
   // If both ended sleeps, the figures do not tell for which of them the core slept.
-  std::string text = fmt::format("In {} of the clocks of its remaps the core sleeps until {} is done.", percent(asleep / all),
-                                 names.size() == 1 ? names.front() : "the EDMA or the remap engine");
+  std::string text =
+      fmt::format("In {} of the clocks of its remaps the core sleeps until {} is done.", percent(asleep / all),
+                  names.size() == 1 ? names.front() : "the EDMA or the remap engine");
   for (const std::string& s : sentences) text += s;
   out.push_back({"mover", text, evidence});
 }

@@ -99,7 +99,8 @@ std::string demand_text(const Study& study) {
                                              : fmt::format("{:.0f} ({:.0f} to {:.0f}) MB/s", d.likely, d.low, d.high);
     out += fmt::format("  {} needs {}: ", d.name, need);
     if (yes.empty() && perhaps.empty() && no.empty()) out += "no answer";
-    else if (every && perhaps.empty() && no.empty()) out += "it can run beside this at every port and priority that was tried";
+    else if (every && perhaps.empty() && no.empty())
+      out += "it can run beside this at every port and priority that was tried";
     else if (every && yes.empty() && perhaps.empty()) out += "it cannot run beside this";
     else {
       const auto list = [&](const char* word, const Settings& at) {

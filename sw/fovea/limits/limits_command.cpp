@@ -168,8 +168,11 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
       ->type_name("N")
       ->check(CLI::Range(0u, 1000u))
       ->capture_default_str();
-  c->add_option("--relax", o.relax, "Only these resources, by their names in binds.csv")->type_name("A,B")->delimiter(',');
-  c->add_flag("--larger-is-better", o.larger_is_better, "A larger figure of --binds is the better one (known of rates)");
+  c->add_option("--relax", o.relax, "Only these resources, by their names in binds.csv")
+      ->type_name("A,B")
+      ->delimiter(',');
+  c->add_flag("--larger-is-better", o.larger_is_better,
+              "A larger figure of --binds is the better one (known of rates)");
   c->add_option("--ports", o.ports, "Ports of the load; all: every port that a load may use")
       ->type_name("A,B")->delimiter(',')->default_str("load");
   c->add_option("--priorities", o.priorities, "Priorities of the load, 0 highest")
@@ -182,11 +185,18 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
       ->type_name("WORD")->check(CLI::IsMember({"read", "write", "mixed", "copy"}))->capture_default_str();
   c->add_option("--load-pattern", o.load_pattern, "Addresses of the load")
       ->type_name("WORD")->check(CLI::IsMember({"sequential", "random"}))->capture_default_str();
-  c->add_option("--load-step", o.load_step, "Distance of two loads, in 10^6 bytes/s")->type_name("MB/s")->capture_default_str();
+  c->add_option("--load-step", o.load_step, "Distance of two loads, in 10^6 bytes/s")
+      ->type_name("MB/s")
+      ->capture_default_str();
   c->add_option("--load-most", o.load_most, "From there on the load has no pauses, in 10^6 bytes/s")
       ->type_name("MB/s")->capture_default_str();
-  c->add_option("-o,--out", o.out_dir, "Folder for points and answers")->type_name("DIR")->default_str("out/EXPERIMENT-limits");
-  c->add_option("-j,--jobs", o.jobs, "Runs at once")->type_name("N")->check(CLI::Range(1u, 1024u))->default_str("processors");
+  c->add_option("-o,--out", o.out_dir, "Folder for points and answers")
+      ->type_name("DIR")
+      ->default_str("out/EXPERIMENT-limits");
+  c->add_option("-j,--jobs", o.jobs, "Runs at once")
+      ->type_name("N")
+      ->check(CLI::Range(1u, 1024u))
+      ->default_str("processors");
   c->add_flag("--retry-failed", o.retry_failed, "Run points again that an earlier call found to fail");
 }
 

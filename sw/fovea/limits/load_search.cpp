@@ -87,7 +87,8 @@ const std::vector<Demand>& demands() {
   // 1.5 bytes a pixel in 4:2:0 for each pass over the picture.
   static const double pass = 720.0 * 576 * 25 * 1.5 / kMega;
   static const std::vector<Demand> all = {
-      {"USB 2.0 at high speed, bulk", 53.248, 53.248, 53.248, "USB 2.0 specification 5.8.4: 13 x 512 bytes a microframe"},
+      {"USB 2.0 at high speed, bulk", 53.248, 53.248, 53.248,
+       "USB 2.0 specification 5.8.4: 13 x 512 bytes a microframe"},
       {"H.264 encoder, 720x576 at 25/s", 3 * pass, 5 * pass, 8 * pass,
        "assumed, no public figure: 5 passes over the picture of 1.5 bytes a pixel; belief: 3 (source read, "
        "reference read and reconstruction written once) to 8 (references read several times)"}};

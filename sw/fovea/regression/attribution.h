@@ -17,7 +17,8 @@ namespace fovea::regression {
 struct AttributionRow {
   std::string phase, function, file;
   unsigned line = 0;  ///< 0: unknown
-  /// `issue`, `idle.<event>` (or `idle`), `wait.dma`, `wait.engine` or `wait.dma_or_engine` (or `wait`), or a stall cause.
+  /// `issue`, `idle.<event>` (or `idle`), `wait.dma`, `wait.engine` or `wait.dma_or_engine` (or `wait`), or a stall
+  /// cause.
   std::string cause;
   std::string region, culprit;
   std::uint64_t clocks = 0, instructions = 0;

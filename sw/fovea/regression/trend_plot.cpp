@@ -39,7 +39,8 @@ std::string mark(std::size_t series, double x, double y, const std::string& titl
   const char* const colour = kColours[series % kColours.size()];
   const std::string what = fmt::format("<title>{}</title>", xml_text(title));
   switch (series % 3) {
-    case 0: return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\">{}</circle>\n", x, y, colour, what);
+    case 0:
+      return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\">{}</circle>\n", x, y, colour, what);
     case 1:
       return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" height=\"7\" fill=\"{}\">{}</rect>\n",
                          x - 3.5, y - 3.5, colour, what);

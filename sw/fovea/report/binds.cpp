@@ -35,32 +35,44 @@ std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Resul
   const std::string name = app::one_line(folder.string());
   std::error_code error;
   if (!std::filesystem::exists(file, error))
-    throw UserError(fmt::format("--limits '{}': it has no binds.csv; allowed: a folder of 'fovea limits --binds'", name));
+    throw UserError(
+        fmt::format("--limits '{}': it has no binds.csv; allowed: a folder of 'fovea limits --binds'", name));
   std::map<std::string, std::size_t> columns;
   std::vector<Relaxed> out;
   std::optional<std::pair<std::string, double>> other;  // a figure of another run
-  each_csv_record(file, app::read_file(file, kMaxBytes), [&](const CsvPlace& place, std::span<const std::string> fields) {
-    const auto refuse = [&](const std::string& why) {
-      throw UserError(fmt::format("{}:{}: {}", app::one_line(file.string()), place.line, why));
-    };
-    if (columns.empty()) {
-      for (std::size_t i = 0; i < fields.size(); ++i) columns[fields[i]] = i;
-      for (const char* column : {"resource", "binds", "gain", "metric", "plain", "reference", "relaxed", "unit", "by",
-                                 "settings", "remark"})
-        if (!columns.contains(column)) refuse(fmt::format("there is no column '{}'", column));
-      return;
-    }
-    if (fields.size() != columns.size())
-      refuse(fmt::format("{} fields; the header has {}", fields.size(), columns.size()));
-    const auto text = [&](const char* column) { return fields[columns.at(column)]; };
-    Relaxed r{text("resource"), text("binds"), text("metric"), text("unit"), text("by"), text("settings"),
-              text("remark"), number_or_nothing(place, text("gain")), number_or_nothing(place, text("plain")),
-              number_or_nothing(place, text("reference")), number_or_nothing(place, text("relaxed"))};
-    if (!r.plain) return;
-    const auto own = run.value(r.metric);
-    if (own && same(*r.plain, *own)) out.push_back(std::move(r));
-    else other = {r.metric, *r.plain};
-  });
+  each_csv_record(file, app::read_file(file, kMaxBytes),
+                  [&](const CsvPlace& place, std::span<const std::string> fields) {
+                    const auto refuse = [&](const std::string& why) {
+                      throw UserError(fmt::format("{}:{}: {}", app::one_line(file.string()), place.line, why));
+                    };
+                    if (columns.empty()) {
+                      for (std::size_t i = 0; i < fields.size(); ++i) columns[fields[i]] = i;
+                      for (const char* column : {"resource", "binds", "gain", "metric", "plain", "reference", "relaxed",
+                                                 "unit", "by", "settings", "remark"})
+                        if (!columns.contains(column)) refuse(fmt::format("there is no column '{}'", column));
+                      return;
+                    }
+                    if (fields.size() != columns.size())
+                      refuse(fmt::format("{} fields; the header has {}", fields.size(), columns.size()));
+                    const auto text = [&](const char* column) { return fields[columns.at(column)]; };
+                    Relaxed r{text("resource"),
+                              text("binds"),
+                              text("metric"),
+                              text("unit"),
+                              text("by"),
+                              text("settings"),
+                              text("remark"),
+                              number_or_nothing(place, text("gain")),
+                              number_or_nothing(place, text("plain")),
+                              number_or_nothing(place, text("reference")),
+                              number_or_nothing(place, text("relaxed"))};
+                    if (!r.plain) return;
+                    const auto own = run.value(r.metric);
+                    if (own && same(*r.plain, *own))
+                      out.push_back(std::move(r));
+                    else
+                      other = {r.metric, *r.plain};
+                  });
   if (columns.empty()) throw UserError(fmt::format("{}:1: the header is missing", app::one_line(file.string())));
   if (out.empty() && other) {
     const auto own = run.value(other->first);
@@ -81,17 +93,20 @@ std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows) {
     std::size_t tried = 0;
     for (const Relaxed* r : of) {
       tried += r->gain.has_value();
-      if (r->binds == "yes" && r->gain) binding.push_back(fmt::format("{} ({} better)", r->resource, explain::percent(*r->gain)));
+      if (r->binds == "yes" && r->gain)
+        binding.push_back(fmt::format("{} ({} better)", r->resource, explain::percent(*r->gain)));
     }
     if (tried == 0) continue;
     const std::string others = fmt::format("{} of the {} resources that were relaxed", tried - binding.size(), tried);
-    out.push_back({"binds",
-                   binding.empty()
-                       ? fmt::format("Nothing binds {}: none of the {} resources makes it more than 2 % better if it "
-                                     "is relaxed alone.", metric, tried)
-                       : fmt::format("What binds {}, as runs show in which it alone is relaxed: {}; {} change it by less.",
-                                     metric, fmt::join(binding, ", "), others),
-                   {"binds.csv"}});
+    out.push_back(
+        {"binds",
+         binding.empty()
+             ? fmt::format("Nothing binds {}: none of the {} resources makes it more than 2 % better if it "
+                           "is relaxed alone.",
+                           metric, tried)
+             : fmt::format("What binds {}, as runs show in which it alone is relaxed: {}; {} change it by less.",
+                           metric, fmt::join(binding, ", "), others),
+         {"binds.csv"}});
   }
   return out;
 }

@@ -31,7 +31,8 @@ void add_report_command(CLI::App& app, ReportOptions& o) {
   c->add_option("-o,--out", o.out, "File for the page")
       ->type_name("FILE")
       ->default_str("DIR/report.html; report.html for several");
-  c->add_option("--limits", o.limits, "Folder of 'fovea limits --binds' about the first run: what binds it")->type_name("DIR");
+  c->add_option("--limits", o.limits, "Folder of 'fovea limits --binds' about the first run: what binds it")
+      ->type_name("DIR");
   c->add_flag("--text", o.text, "Print verdict and findings instead of making a page");
   c->add_flag("--partial", o.partial,
               "Accept partial results: of a run that was stopped or failed");

@@ -25,7 +25,9 @@ std::string percent_cell(double part, double all) {
 }
 
 /// Clocks are whole numbers far below 2^53.
-std::string clocks_text(double clocks) { return app::grouped(static_cast<std::uint64_t>(std::llround(std::abs(clocks)))); }
+std::string clocks_text(double clocks) {
+  return app::grouped(static_cast<std::uint64_t>(std::llround(std::abs(clocks))));
+}
 
 std::string clocks_cell(double clocks) {
   return fmt::format("<data value=\"{:.0f}\">{}</data>", clocks, clocks_text(clocks));
@@ -177,7 +179,8 @@ std::string function_table(const Runs& runs) {
       cells.push_back(clocks_cell(clocks_for(f, "issue")));
       if (i > 0) {
         const double change = clocks - (of(0) ? of(0)->clocks : 0);
-        cells.push_back(fmt::format("<data value=\"{:.0f}\">{}{}</data>", change, change < 0 ? "-" : "+", clocks_text(change)));
+        cells.push_back(
+            fmt::format("<data value=\"{:.0f}\">{}{}</data>", change, change < 0 ? "-" : "+", clocks_text(change)));
       }
       if (where.empty() && places[i].contains(name)) where = places[i].at(name);
       if (wait.empty() && f) wait = largest_wait(*f);

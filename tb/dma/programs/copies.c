@@ -58,7 +58,8 @@ static void measure(const char *name, uintptr_t from, unsigned from_step, uintpt
   memset(target, 0xEE, sizeof target);
   const uint32_t many = ticks(from, from_step, to, to_step, LONG);
   for (unsigned n = 0; to != RAM && n < LONG; ++n)
-    failures += memcmp((void *)(to + n * to_step), (void *)(from - (from == RAM ? RAM : 0) + n * from_step), ARRAY) != 0;
+    failures +=
+        memcmp((void *)(to + n * to_step), (void *)(from - (from == RAM ? RAM : 0) + n * from_step), ARRAY) != 0;
   printf("%s %u %u\n", name, (LONG - SHORT) * ARRAY, (unsigned)(many - few));
 }
 

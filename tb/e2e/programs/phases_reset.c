@@ -1,5 +1,5 @@
-/* Shows the phases of a look-up table until the watchdog resets the chip; then it stays in the first phase. It starts in
- * internal RAM by foreign_start.S.
+/* Shows the phases of a look-up table until the watchdog resets the chip; then it stays in the first phase. It starts
+ * in internal RAM by foreign_start.S.
  */
 #include <stdint.h>
 

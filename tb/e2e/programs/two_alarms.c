@@ -1,6 +1,6 @@
-/* Both halves of TIMER0 raise interrupts with periods that differ by a clock of the timer, while the core loads from the
- * SDRAM and stores there through the write buffer: each rises in every position of an access, and both at once. It starts
- * in internal RAM by foreign_start.S.
+/* Both halves of TIMER0 raise interrupts with periods that differ by a clock of the timer, while the core loads from
+ * the SDRAM and stores there through the write buffer: each rises in every position of an access, and both at once. It
+ * starts in internal RAM by foreign_start.S.
  */
 #include <stdint.h>
 
