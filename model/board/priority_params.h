@@ -48,21 +48,10 @@ struct PriorityParams : ParamGroup {
 
  private:
   static std::string where(const MasterInfo& m) {
-    switch (m.priority) {
-      case PrioritySource::kArm:
-        return "MSTPRI0.ARM_DMAP, for both ports of the core";
-      case PrioritySource::kImcop:
-        return "MSTPRI0.IMCOPP";
-      case PrioritySource::kVideoRead:
-        return "BCR.RD_PRI";
-      case PrioritySource::kVideoWrite:
-        return "BCR.WR_PRI";
-      case PrioritySource::kQueue:
-        return "QUEPRI.Q" + std::to_string(m.unit);
-      case PrioritySource::kParameter:
-        break;
-    }
-    return "";
+    std::string text(priority_register(m.priority));
+    if (m.priority == PrioritySource::kQueue) text += ".Q" + std::to_string(m.unit);
+    if (m.priority == PrioritySource::kArm) text += ", for both ports of the core";
+    return text;
   }
 };
 

@@ -42,6 +42,18 @@ enum class PrioritySource : std::uint8_t {
   kQueue,       ///< QUEPRI of the EDMA, through QUETCMAP; `unit` is the transfer controller
   kParameter,   ///< no register: a parameter of the block
 };
+/// The register's name in the chip's manuals; empty without one. QUEPRI has a field for each queue.
+constexpr std::string_view priority_register(PrioritySource source) {
+  switch (source) {
+    case PrioritySource::kArm: return "MSTPRI0.ARM_DMAP";
+    case PrioritySource::kImcop: return "MSTPRI0.IMCOPP";
+    case PrioritySource::kVideoRead: return "BCR.RD_PRI";
+    case PrioritySource::kVideoWrite: return "BCR.WR_PRI";
+    case PrioritySource::kQueue: return "QUEPRI";
+    case PrioritySource::kParameter: break;
+  }
+  return "";
+}
 
 /// How a master's requests are released in a bus trace.
 enum class Pace : std::uint8_t {
@@ -166,7 +178,7 @@ inline constexpr MasterTable<kMasterCount> kMasters{{
     {.id = Master::kVpbe, .name = "vpbe", .statistics = "vpbe", .who = "the display",
      .bridge = Bridge::kVideo, .priority = PrioritySource::kVideoRead, .most_outstanding = 32,
      .pace = Pace::kLines},
-    // No part of the chip: it has the priority of MJCP, the imaging coprocessor (assumed).
+    // No part of the chip: it has the priority of the imaging coprocessor (assumed).
     {.id = Master::kRemapEngine, .name = "remap_engine", .statistics = "remap_engine",
      .who = "the remap engine", .priority = PrioritySource::kImcop, .most_outstanding = 16,
      .on_chip = false, .load_allowed = true},

@@ -87,7 +87,7 @@ enum param_table_builder { PARAM_BUILDERS(PARAM_CONSTANT) };
   X(PRIORITY_EDMA_TC3, 4, "edma_tc3")       \
   X(PRIORITY_VPFE, 5, "vpfe")               \
   X(PRIORITY_VPBE, 6, "vpbe")               \
-  X(PRIORITY_MJCP, 7, "remap_engine")
+  X(PRIORITY_IMCOP, 7, "remap_engine")
 enum param_master { PARAM_MASTERS(PARAM_CONSTANT) PRIORITY_COUNT = 16 };
 #define PRIORITY_LOWEST 7u
 #define PRIORITY_OF_RESET 0xFFu /* the register keeps its reset value */

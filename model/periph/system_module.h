@@ -84,7 +84,7 @@ struct SystemRegs : RegBank {
     using Reg::Reg;
     Field arm_dma{*this, "ARM_DMAP", 0, 3, Mode::kRw, "priority of the ARM's DMA port"};
     Field arm_cfg{*this, "ARM_CFGP", 4, 3, Mode::kRw, "priority of the ARM's configuration port"};
-    Field mjcp{*this, "IMCOPP", 16, 3, Mode::kRw, "priority of MJCP"};
+    Field mjcp{*this, "IMCOPP", 16, 3, Mode::kRw, "priority of the imaging coprocessor"};
     Field hdvicp{*this, "KALEIDOP", 20, 3, Mode::kRw, "priority of HDVICP"};
   } mstpri0{*this, "MSTPRI0", 0x3C, "master priorities, 0 highest", 0x00550011};
   struct Mstpri1 : Reg {

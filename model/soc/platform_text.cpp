@@ -102,16 +102,9 @@ const char* name_of(Bridge bridge) {
   return "DMA";
 }
 
-const char* name_of(PrioritySource source) {
-  switch (source) {
-    case PrioritySource::kArm: return "MSTPRI0.ARM_DMAP";
-    case PrioritySource::kImcop: return "MSTPRI0.IMCOPP";
-    case PrioritySource::kVideoRead: return "BCR.RD_PRI";
-    case PrioritySource::kVideoWrite: return "BCR.WR_PRI";
-    case PrioritySource::kQueue: return "QUEPRI";
-    case PrioritySource::kParameter: break;
-  }
-  return "a parameter";
+std::string name_of(PrioritySource source) {
+  const std::string_view name = priority_register(source);
+  return name.empty() ? "a parameter" : std::string(name);
 }
 
 std::string in_hex(const char* format, std::uint32_t v) {

@@ -18,7 +18,7 @@
 #define SYS_PLL1_CONFIG SYSTEM_PLL1_CONFIG
 
 #define MSTPRI0_ARM 0u   /* lowest bits of fields of three bits */
-#define MSTPRI0_MJCP 16u
+#define MSTPRI0_IMCOP 16u
 #define PLL_CONFIG_LOCK 0x07000000u
 #define VTPIOCR_PWRDN SYSTEM_VTPIOCR_PWRDN
 #define VTPIOCR_LOCK SYSTEM_VTPIOCR_LOCK

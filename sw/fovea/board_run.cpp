@@ -36,8 +36,9 @@ namespace {
 // Slices only let the host look in; nothing in the model depends on where they end.
 constexpr Picoseconds kSlice = 5 * kPsPerMs;
 
-// Once the run has ended the core is let to its next instruction boundary: short slices first, long
-// ones for a core that hardly runs, and an end for one that does not run at all.
+// Once the run or its window has ended, the core is let to its next instruction boundary: short slices first, long
+// ones for a core that hardly runs, and an end for one that does not run at all, such as one that a load of the
+// highest priority leaves no access to the SDRAM.
 constexpr unsigned kShortLooks = 20, kLooksAfterEnd = 40;
 Picoseconds after_end(unsigned looks) { return looks < kShortLooks ? kPsPerUs : kSlice; }
 
@@ -258,7 +259,7 @@ struct BoardSimulation::Session {
   std::optional<CoreSemihosting> semihosting;
   std::unique_ptr<GdbSession> gdb;
   HostTimeSlicer slicer;
-  unsigned behind_end = 0;  ///< slices since an end condition was met
+  unsigned behind_end = 0;  ///< slices since an end condition was met or the window was closed
 };
 
 /// When the run is to end. @throws UserError for a condition that does not go with the request
@@ -367,7 +368,7 @@ void BoardSimulation::attach_host(Session& s) {
 }
 
 Picoseconds BoardSimulation::next_slice(Session& s) const {
-  if (s.run_end.met()) return after_end(s.behind_end++);
+  if (s.run_end.met() || figures_->closed()) return after_end(s.behind_end++);
   if (s.gdb && s.gdb->hit_pending()) return kPsPerUs;
   return s.request.limits.next_slice(kSlice, kernel_time(),
                                      board_->dm365.arm.core().instructions_executed());

@@ -67,6 +67,11 @@ confirm priority priority_arm "${load[@]}" -s priority.arm=0
 limits no_load 0 -s priority.arm=7 --binds frame.remap_time.mean --relax priority_arm
 binds no_load priority_arm no
 
+# A load of the highest priority without pauses keeps the firmware from showing a frame: the search ends all the same,
+# after two runs of the load that are a second longer than the plain one.
+limits starved 0 --load --priorities 0 --load-slots 16 --load-kind mixed --load-pattern random --load-step 700 --probes 0
+grep -q 'the firmware showed no frame' starved/limits.csv || fail "starved: $(cat starved/limits.csv starved.out)"
+
 # Every size is met.
 limits size 0 --find video.height=16..32:16
 grep -q 'video.height: all values that were tried from 16 to 32 meet the conditions' size.out ||

@@ -153,7 +153,7 @@ TEST_F(BootTest, PrioritiesGoIntoTheirFieldsAndNowhereElse) {
   priority[PRIORITY_ARM] = 6;
   priority_set(priority);
   EXPECT_EQ(values[0x01C4003C], 0x00550016u);
-  priority[PRIORITY_MJCP] = 2;
+  priority[PRIORITY_IMCOP] = 2;
   priority[PRIORITY_EDMA_TC0] = 1;
   priority[PRIORITY_EDMA_TC1] = 0;
   priority[PRIORITY_EDMA_TC2] = 3;

@@ -46,6 +46,12 @@ struct Priority : ParamGroup {
   Priority() : ParamGroup("priority") {}
 };
 
+struct Run : ParamGroup {
+  IntParam start_limit{*this, "start_limit", U::kTime, 30 * kPsPerSecond, kPsPerMs, 3600 * kPsPerSecond, "limit",
+                       Origin::kChoice, ""};
+  Run() : ParamGroup("run") {}
+};
+
 struct Load : ParamGroup {
   EnumParam port{*this, "port", "load", {"load", "other"}, "port", Origin::kChoice, ""};
   IntParam outstanding{*this, "outstanding", U::kCount, 0, 0, 16, "bursts", Origin::kChoice, ""};
@@ -69,7 +75,7 @@ class ToyBoard : public app::Simulation {
   void declare(ParamSet& params) override {
     for (ParamGroup* g : {static_cast<ParamGroup*>(&toy_), static_cast<ParamGroup*>(&bridge_),
                           static_cast<ParamGroup*>(&memory_), static_cast<ParamGroup*>(&priority_),
-                          static_cast<ParamGroup*>(&load_)})
+                          static_cast<ParamGroup*>(&load_), static_cast<ParamGroup*>(&run_)})
       params.add(*g);
   }
 
@@ -103,6 +109,7 @@ class ToyBoard : public app::Simulation {
     count("bus.load.write_bytes", 0);
     result.stats.push_back({"frame.rate", 25.0, "1/s", "rate"});
     result.stats.push_back({"frame.window", 1.0, "s", "window"});
+    result.stats.push_back({"startup.first_frame", 0.25, "s", "first frame"});
     result.stats.push_back({"frame.nothing", std::nan(""), "s", "a mean of nothing"});
     result.stats.push_back({"frame.remap_time.mean", ms * 1e-3, "s", "time"});
     result.stats.push_back({"frame.remap_time.max", ms * 1e-3, "s", "time"});
@@ -118,6 +125,7 @@ class ToyBoard : public app::Simulation {
   Memory memory_;
   Priority priority_;
   Load load_;
+  Run run_;
 };
 
 }  // namespace

@@ -213,6 +213,16 @@ class LimitsTest : public ::testing::Test {
     return static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
   }
   std::string csv(const std::string& name) const { return read_text(dir_ / "L" / name); }
+  /// Number of points whose description contains every one of the texts.
+  int points_with(const std::vector<std::string>& texts, const std::string& out = "L") const {
+    int n = 0;
+    for (const auto& p : std::filesystem::directory_iterator(dir_ / out / "points")) {
+      const std::string entry = read_text(p.path() / "point.json");
+      n += std::all_of(texts.begin(), texts.end(),
+                       [&](const std::string& t) { return entry.find('"' + t + '"') != entry.npos; });
+    }
+    return n;
+  }
   TempDir dir_;
 };
 
@@ -380,12 +390,19 @@ TEST_F(LimitsTest, TheLargestLoadByPriority) {
   EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it can run beside this at every port"));
   // 4 slots of 64 bytes at 340 MB/s, from the first captured sample on.
   EXPECT_THAT(read_text(dir_ / "L" / "points.csv"), HasSubstr("340 MB/s on port load, priority 0"));
-  bool found = false;
-  for (const auto& p : std::filesystem::directory_iterator(dir_ / "L" / "points")) {
-    const std::string entry = read_text(p.path() / "point.json");
-    found |= entry.find("load.gap=752941ps") != entry.npos && entry.find("load.start=123456ns") != entry.npos;
-  }
-  EXPECT_TRUE(found);
+  EXPECT_EQ(points_with({"load.gap=752941ps", "load.start=123456ns"}), 1);
+}
+
+TEST_F(LimitsTest, ALoadThatLetsNoFrameBeShownIsWaitedForASecondLongerThanThePlainRun) {
+  // The toy's first frame comes after 250 ms. The plain run has the experiment's own limit.
+  ASSERT_EQ(limits("--priorities 0 --load-step 400").status, 0);
+  EXPECT_GE(points_with({"load.priority=0"}), 2);
+  EXPECT_EQ(points_with({"load.priority=0"}), points_with({"run.start_limit=1250ms"}));
+  ASSERT_EQ(limits("--priorities 0 --load-step 400 -s run.start_limit=1251ms", "M").status, 0);
+  EXPECT_EQ(points_with({"load.priority=0"}, "M"), points_with({"run.start_limit=1250ms"}, "M"));
+  ASSERT_EQ(limits("--priorities 0 --load-step 400 -s run.start_limit=1249ms", "N").status, 0);
+  EXPECT_GE(points_with({"load.priority=0"}, "N"), 2);
+  EXPECT_EQ(points_with({"run.start_limit=1250ms"}, "N"), 0);
 }
 
 TEST_F(LimitsTest, LoadsThatAreTooMuchOrNeverTooMuch) {

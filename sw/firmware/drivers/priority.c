@@ -15,7 +15,7 @@ static const struct {
     [PRIORITY_EDMA_TC3] = {EDMA_QUEPRI, 12},
     [PRIORITY_VPFE] = {ISP5_BCR, BCR_WRITE_PRIORITY},
     [PRIORITY_VPBE] = {ISP5_BCR, BCR_READ_PRIORITY},
-    [PRIORITY_MJCP] = {SYS_MSTPRI0, MSTPRI0_MJCP},
+    [PRIORITY_IMCOP] = {SYS_MSTPRI0, MSTPRI0_IMCOP},
 };
 
 void priority_set(const uint8_t priority[PRIORITY_COUNT]) {

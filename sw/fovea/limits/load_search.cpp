@@ -24,6 +24,17 @@ std::string first_capture(const points::PointResult& plain) {
   return "0ns";
 }
 
+/// A load may keep the firmware from showing any frame. Such a run need not wait for the experiment's own limit:
+/// until this time after power-up, one second after the plain run's first frame. Empty: the experiment's own limit
+/// is earlier, or there is nothing to go by.
+std::string start_limit(const points::PointResult& plain, const ParamSet& params) {
+  constexpr double kLater = 1;
+  const auto* own = dynamic_cast<const IntParam*>(params.find("run.start_limit"));
+  const auto first = plain.stat("startup.first_frame");
+  if (!own || !first || static_cast<double>((*own)()) * 1e-12 <= *first + kLater) return "";
+  return fmt::format("run.start_limit={:.0f}ms", (*first + kLater) * 1e3);
+}
+
 double bytes_per_second(const points::PointResult& r, const std::string& port) {
   const double window = r.stat("frame.window").value_or(0);
   const double bytes = r.stat("bus." + port + ".read_bytes").value_or(0) +
@@ -34,9 +45,10 @@ double bytes_per_second(const points::PointResult& r, const std::string& port) {
 }  // namespace
 
 LoadSearch::LoadSearch(Session& session, const Settings& base, const LoadPlace& place,
-                       const LoadShape& shape, const std::string& group, const points::PointResult& plain)
+                       const LoadShape& shape, const std::string& group, const points::PointResult& plain,
+                       const ParamSet& params)
     : place_(place), shape_(shape), group_(group), start_(first_capture(plain)),
-      before_(bytes_per_second(plain, place.port)),
+      start_limit_(start_limit(plain, params)), before_(bytes_per_second(plain, place.port)),
       last_(static_cast<std::uint64_t>(std::ceil(shape.most / shape.step))),
       search_(std::make_unique<ValueSearch>(session, base, last_,
                                             [this](std::uint64_t n) { return settings(n); },
@@ -62,6 +74,7 @@ Settings LoadSearch::settings(std::uint64_t n) const {
   for (auto& s : {set("bytes", fmt::format("{}B", shape_.bytes)), set("pattern", shape_.pattern),
                   set("kind", shape_.kind), set("start", start_)})
     out.push_back(s);
+  if (!start_limit_.empty()) out.push_back(start_limit_);
   return out;
 }
 

@@ -22,11 +22,12 @@ struct LoadPlace {
 };
 
 /// Rate n is n * step; the last one has no pauses and so is as much as the port takes. The load begins
-/// with the first captured sample of the first displayed frame, so that start-up is as it was.
+/// with the first captured sample of the first displayed frame, so that start-up is as it was. A run that shows
+/// no frame within a second after the time of the plain run's first one is a bad value.
 class LoadSearch {
  public:
   LoadSearch(Session& session, const Settings& base, const LoadPlace& place, const LoadShape& shape,
-             const std::string& group, const points::PointResult& plain);
+             const std::string& group, const points::PointResult& plain, const ParamSet& params);
 
   ValueSearch& search() { return *search_; }
   const ValueSearch& search() const { return *search_; }
@@ -43,6 +44,7 @@ class LoadSearch {
   LoadPlace place_;
   LoadShape shape_;
   std::string group_, start_;
+  std::string start_limit_;  ///< as a setting
   double before_ = 0;  ///< bytes a second on that port without the load
   std::uint64_t last_;
   std::unique_ptr<ValueSearch> search_;

@@ -62,9 +62,11 @@ void Study::start_binds(const Settings& more) {
 }
 
 void Study::start_loads() {
-  const std::string group = free_load(session_.effective(settings_)->params);
+  const auto effective = session_.effective(settings_);
+  const std::string group = free_load(effective->params);
   for (const LoadPlace& place : question_.places)
-    loads_.push_back(std::make_unique<LoadSearch>(session_, settings_, place, question_.shape, group, *plain_));
+    loads_.push_back(std::make_unique<LoadSearch>(session_, settings_, place, question_.shape, group, *plain_,
+                                                  effective->params));
   for (const auto& load : loads_) load->search().start([] {});
 }
 
