@@ -50,7 +50,7 @@ ViewsRig& ViewsRig::load(const std::string& name) {
   return *this;
 }
 
-void ViewsRig::run(Picoseconds limit) {
+board::Board& ViewsRig::build() {
   app::check_fits(elf_, app::memory_regions(params));
   app::complete_params(params);
   std::vector<video::PictureSource*> pictures, references;
@@ -86,6 +86,11 @@ void ViewsRig::run(Picoseconds limit) {
     shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), r.index,
                       r.display_start, {}});
   };
+  return *board_;
+}
+
+void ViewsRig::run(Picoseconds limit) {
+  if (!board_) build();
   while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
     slicer_.run(kPsPerMs);
 }

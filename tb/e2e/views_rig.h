@@ -32,6 +32,8 @@ class ViewsRig {
   ~ViewsRig();
   ViewsRig& set(const std::string& key, const std::string& value);
   ViewsRig& load(const std::string& experiment);
+  board::Board& build();
+  /// Runs until the window is closed or the core fails; builds the board if that was not done.
   void run(Picoseconds limit);
 
   board::Board& board() { return *board_; }

@@ -390,7 +390,7 @@ TEST_F(LimitsTest, TheLargestLoadByPriority) {
   EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it can run beside this at every port"));
   // 4 slots of 64 bytes at 340 MB/s, from the first captured sample on.
   EXPECT_THAT(read_text(dir_ / "L" / "points.csv"), HasSubstr("340 MB/s on port load, priority 0"));
-  EXPECT_EQ(points_with({"load.gap=752941ps", "load.start=123456ns"}), 1);
+  EXPECT_EQ(points_with({"load.priority=0", "load.gap=752941ps", "load.start=123456ns"}), 1);
 }
 
 TEST_F(LimitsTest, ALoadThatLetsNoFrameBeShownIsWaitedForASecondLongerThanThePlainRun) {
