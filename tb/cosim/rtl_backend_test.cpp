@@ -279,6 +279,45 @@ TEST(RtlBackendTest, TheModelBesideItAsksForTheSameInBothRoles) {
   }
 }
 
+/// Reads with their times, of three jobs: one is submitted and then enabled, one is submitted behind it while it is at
+/// work, and one later to the idle engine. The bench's memory answers the RTL and the model after the same times.
+std::vector<std::pair<std::uint32_t, Picoseconds>> reads_of_three_jobs(ModelBench& b, const MappedJob& m) {
+  b.asked.clear();
+  b.window(m.job, ModelBench::kBase + kMap, static_cast<std::uint32_t>(map_words(m.job)), kBorder);
+  b.advance(200);  // a write of the RTL's registers takes more than a clock
+  b.set(b.regs.submit, 1);
+  b.advance(30);
+  b.set(b.regs.ctrl, 1);
+  b.advance(40);
+  b.set(b.regs.submit, 2);
+  b.finish();
+  b.advance(5);
+  b.set(b.regs.submit, 3);
+  b.finish();
+  b.advance(1);
+  EXPECT_EQ(b.get(b.regs.ended) >> 16, 3u);
+  b.set(b.regs.ctrl, 0);
+  std::vector<std::pair<std::uint32_t, Picoseconds>> out;
+  for (const auto& a : b.asked)
+    if (!a.write) out.emplace_back(a.address, a.at);
+  return out;
+}
+
+TEST(RtlBackendTest, TheModelBeginsEachJobInTheSameClock) {
+  for (const unsigned latency : {1u, 8u, 40u}) {
+    Dice dice(seed() + latency);
+    Bench rtl;
+    ModelBench model(kSize);
+    MappedJob m = table_of(dice);
+    rtl.fill(m, dice);
+    for (std::uint32_t n = 0; n < kSize / 4; ++n) model.word(kWord + n) = rtl.word(kWord + n);
+    rtl.memory.latency = model.memory.latency = latency;
+    const auto asked = reads_of_three_jobs(rtl, m);
+    EXPECT_GT(asked.size(), 3u * 50);  // 800 entries in bursts of 64 bytes
+    EXPECT_EQ(reads_of_three_jobs(model, m), asked) << "latency " << latency;
+  }
+}
+
 /// What adapters and checkers cost: the same job on the bench of tb/rtl and as a backend.
 struct CostTest : testing::Test {
   Bench backend;

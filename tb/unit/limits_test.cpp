@@ -144,6 +144,14 @@ TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {
   stats["camera.2.frame.dropped"] = 2;
   EXPECT_EQ(judge(result_of(stats), default_conditions()).why, "2 dropped frames (camera.2.frame.dropped)");
   stats = good;
+  stats["frame.rate"] = 25;
+  stats["frame.remap_time.mean"] = 0.04;
+  EXPECT_TRUE(judge(result_of(stats), default_conditions()).good());
+  stats["frame.remap_time.mean"] = 0.0404;
+  EXPECT_EQ(judge(result_of(stats), default_conditions()).kind, Verdict::Kind::kBad);
+  EXPECT_EQ(judge(result_of(stats), default_conditions()).why,
+            "a remap takes 1.0 % more than a frame period on average, so that frames will be dropped");
+  stats = good;
   stats["frame.rate"] = 24.9;
   EXPECT_TRUE(judge(result_of(stats), conditions_with({"frame.rate>=24.9"})).good());
   EXPECT_EQ(judge(result_of(stats), conditions_with({"frame.rate>=25"})).why,
@@ -385,8 +393,9 @@ TEST_F(LimitsTest, TheLargestLoadByPriority) {
   const Done d = limits("--priorities 0,4 --load-step 20");
   EXPECT_EQ(d.status, 0) << d.err;
   // The toy bears 340 MB/s, and 10 more for each step of the priority.
-  EXPECT_THAT(d.out, HasSubstr("port load, priority 0: 340 MB/s (340.0 MB/s moved); with 360 MB/s: 1 dropped frame"));
-  EXPECT_THAT(d.out, HasSubstr("port load, priority 4: 380 MB/s (380.0 MB/s moved); with 400 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("port load, priority 0: 340 MB/s (340.0 MB/s moved); the longest remap leaves 59.7 % of a frame "
+                               "period. With 360 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("priority 4: 380 MB/s (380.0 MB/s moved); the longest remap leaves"));
   EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it can run beside this at every port"));
   // 4 slots of 64 bytes at 340 MB/s, from the first captured sample on.
   EXPECT_THAT(read_text(dir_ / "L" / "points.csv"), HasSubstr("340 MB/s on port load, priority 0"));

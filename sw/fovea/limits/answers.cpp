@@ -64,13 +64,13 @@ std::string load_text(const LoadSearch& load) {
   const auto o = s.outcome();
   if (o.answer == Answer::kAll) {
     const std::uint64_t last = load.last();
-    return out + fmt::format("{}, {:.1f} MB/s\n", name(last), load.moved(last));
+    return out + fmt::format("{}, {:.1f} MB/s{}\n", name(last), load.moved(last), slack_text(s.at(last).result));
   }
   if (o.answer != Answer::kLargest) return out + "none\n";
   if (o.good == 0) return out + fmt::format("none; with {}: {}\n", name(o.bad), s.at(o.bad).verdict.why);
   return out +
-         fmt::format("{} ({:.1f} MB/s moved); with {}: {}\n", name(o.good), load.moved(o.good), name(o.bad),
-                     s.at(o.bad).verdict.why) +
+         fmt::format("{} ({:.1f} MB/s moved){}. With {}: {}\n", name(o.good), load.moved(o.good),
+                     slack_text(s.at(o.good).result), name(o.bad), s.at(o.bad).verdict.why) +
          odd_text(o, name);
 }
 

@@ -23,6 +23,15 @@ std::string failed_words(const Condition& c, const std::string& name, double val
   return fmt::format("{} {}{}{}", number(value), c.words, value == 1 ? "" : "s", whose);
 }
 
+/// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner or
+/// later, even if buffers have hidden it in a short window. Empty: it does not, or the run does not say.
+std::string slow_remaps(const points::PointResult& r) {
+  const auto rate = r.stat("frame.rate"), mean = r.stat("frame.remap_time.mean");
+  if (!rate || !mean || *rate * *mean <= 1) return "";
+  return fmt::format("a remap takes {:.1f} % more than a frame period on average, so that frames will be dropped",
+                     100 * (*rate * *mean - 1));
+}
+
 }  // namespace
 
 std::vector<Condition> default_conditions() {
@@ -87,6 +96,8 @@ Verdict judge(const points::PointResult& result, const std::vector<Condition>& c
     // A figure without a value: a rate or a mean of nothing.
     failed.push_back(c.metric + " has no value");
   }
+  if (failed.empty())
+    if (std::string slow = slow_remaps(result); !slow.empty()) failed.push_back(std::move(slow));
   return {failed.empty() ? Kind::kGood : Kind::kBad, fmt::format("{}", fmt::join(failed, ", "))};
 }
 

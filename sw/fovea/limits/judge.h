@@ -38,6 +38,7 @@ struct Verdict {
   bool good() const { return kind == Kind::kGood; }
 };
 
+/// Good if all conditions are met and a remap takes no longer than a frame period on average.
 Verdict judge(const points::PointResult& result, const std::vector<Condition>& conditions);
 
 }  // namespace fovea::limits
