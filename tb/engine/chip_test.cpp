@@ -137,6 +137,22 @@ TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
   EXPECT_EQ(get(engine().regs.ended), 0x10101u);
 }
 
+/// A reset of the engine alone, so that a job can begin while requests from before it are still under way.
+TEST_F(Chip, AnswersFromBeforeAResetAreNotThoseOfTheNextJob) {
+  for (unsigned n = 0; n < 200; ++n) {
+    copy();
+    run(20 * kPsPerUs + n * 20 * kPsPerNs);
+    ASSERT_EQ(get(engine().regs.status), 1u);
+    engine().reset(ResetKind::kWarm);
+    EXPECT_EQ(get(engine().regs.status), 0u);
+    copy();
+    run(kPsPerMs / 5);
+    ASSERT_TRUE(copied()) << n;
+    ASSERT_EQ(get(engine().regs.ended), 0x10101u) << n;
+    engine().reset(ResetKind::kWarm);
+  }
+}
+
 /// PLLDIV4 of PLL 1 gives SYSCLK4; bit 15 enables it.
 TEST_F(Chip, TheClockMayChangeWhileItWorks) {
   const auto divide = [&](std::uint32_t value) {
