@@ -23,10 +23,10 @@ SceneParams::SceneParams(std::string prefix, bool rules)
     : ParamGroup(std::move(prefix)),
       file(*this, "file", "",
            "still or video that the camera shows: PNG, or anything that the ffmpeg program reads"),
-      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park"},
+      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park", "lines"},
            "sphere: a still on a swaying view sphere; video: frames as they are; chart: a test "
            "pattern in which every byte tells its place and field; car_park: marked ground, seen by "
-           "a camera on a car (camera.N.mount)",
+           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical axis",
            Origin::kChoice, ""),
       motion_period(*this, "motion_period", IntParam::Unit::kCount, 60, 1, 600,
                     "fields until the sway of a still repeats; each is kept as a picture",
@@ -64,16 +64,16 @@ SceneParams::SceneParams(std::string prefix, bool rules)
   if (!rules) return;
   const auto sphere = [this] { return kind.is("sphere"); };
   const auto bent = [this] {
-    return kind.is("sphere") || kind.is("car_park") || (kind.is("video") && video_fov() > 0);
+    return kind.is("sphere") || kind.is("car_park") || kind.is("lines") || (kind.is("video") && video_fov() > 0);
   };
   file.matters_only("camera.kind = sphere or video", {&kind},
-                    [this] { return !kind.is("chart") && !kind.is("car_park"); });
+                    [this] { return kind.is("sphere") || kind.is("video"); });
   motion_amplitude.matters_only("camera.kind = sphere", {&kind}, sphere);
   motion_period.matters_only("camera.kind = sphere", {&kind}, sphere);
   motion_period.matters_only("a camera.motion_amplitude above 0deg", {&motion_amplitude},
                              [this] { return motion_amplitude() > 0; });
   video_fov.matters_only("camera.kind = video", {&kind}, [this] { return kind.is("video"); });
-  const char* const kBent = "camera.kind = sphere or car_park, or video with a camera.video_fov above 0deg";
+  const char* const kBent = "camera.kind = sphere, car_park or lines, or video with a camera.video_fov above 0deg";
   lens.matters_only(kBent, {&kind, &video_fov}, bent);
   fov.matters_only(kBent, {&kind, &video_fov}, bent);
   fov.matters_only("a camera.lens other than kannala_brandt", {&lens},
