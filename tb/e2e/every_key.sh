@@ -271,6 +271,8 @@ idle tvp5146.i2c_address 92 video.standard=vga_progressive EARLY
 acts tvp5146.output_at_reset true PROGRAM
 idle tvp5146.output_at_reset true video.standard=vga_progressive EARLY
 acts tvp5146.phase 1ms
+acts tvp5146.unlocked_output noise camera.0.connected=false
+idle tvp5146.unlocked_output noise video.standard=vga_progressive EARLY
 acts tvp5146.relock_fields 11
 idle tvp5146.relock_fields 11 video.standard=vga_progressive EARLY
 acts tvp5146.rom_version 1 PROGRAM

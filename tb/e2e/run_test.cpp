@@ -13,6 +13,7 @@
 
 #include "model/common/masters.h"
 #include "model/video/core/picture.h"
+#include "model/video/scene/bars.h"
 #include "model/video/scene/line_score.h"
 #include "model/video/scene/plan_score.h"
 #include "sw/fovea/outputs.h"
@@ -438,6 +439,14 @@ TEST(RunTest, PicturesWithAnOverlayHaveNoScore) { expect_no_score(run_lines({{"f
 
 TEST(RunTest, TheChartOfLinesIsSeenThroughALensThatIsAFormula) {
   EXPECT_THROW(run_lines({{"camera.lens", "kannala_brandt"}}), UserError);
+}
+
+TEST(RunTest, ColourBarsComeToTheDisplayAsTheyAreSent) {
+  Seen seen;
+  const app::RunResult r = run({{"camera.kind", "bars"}, {"firmware.kernel", "copy"}, {"run.frames", "2"}}, false,
+                               kNever, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_EQ(seen.displayed.at(1), video::BarsSource({720, 576, false, 0}).field(0));
 }
 
 // A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the

@@ -17,7 +17,9 @@ const bool kStudio = kCrop == "studio";
 const Standard& kStd = standard_of(k625Here);
 const unsigned kWidth = setting("FOVEA_WIDTH", 720u), kHeight = setting("FOVEA_HEIGHT", kStd.rows);
 const unsigned kRelock = setting("FOVEA_RELOCK", 10u);
+const std::string kUnlocked = setting("FOVEA_UNLOCKED", "black");
 constexpr std::uint32_t kBuffer = 0x8010'0000;
+const unsigned kPitch = (kWidth * 2 + 31) / 32 * 32;
 const int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
 
 std::uint8_t pattern(std::uint64_t k, unsigned row, unsigned i) {
@@ -68,6 +70,7 @@ struct Bench {
     tvp_params.relock_fields.set(std::to_string(kRelock));
     tvp_params.phase.set(setting("FOVEA_PHASE", "0s"));
     tvp_params.rom_version.set("35");
+    tvp_params.unlocked_output.set(kUnlocked);
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
     two_params.output_at_reset.set("true");
@@ -108,6 +111,37 @@ struct Bench {
   std::uint8_t i2c_read(std::uint8_t reg) { return i2c_read(*tvp, reg); }
 };
 Bench* bench = nullptr;
+
+/// Bytes of a captured frame that are not those of the camera's two fields.
+unsigned wrong_bytes(const CaptureFrame& f) {
+  unsigned wrong = 0;
+  for (unsigned r = 0; r < kHeight; ++r) {
+    const bool second = (r % 2 != 0) != kStudio;
+    for (unsigned i = 0; i < kWidth * 2; ++i)
+      wrong += bench->memory.at(kBuffer + r * kPitch)[i] != pattern(f.source_field[second], r, i);
+  }
+  return wrong;
+}
+
+/// What a frame that is captured from now on shows.
+std::string captured() {
+  bench->ended.clear();
+  while (bench->ended.size() < 3) run_for(kPsPerMs);
+  std::array<unsigned, 256> luma{};
+  unsigned colour = 0;
+  for (unsigned r = 0; r < kHeight; ++r)
+    for (unsigned i = 0; i < kWidth * 2; i += 2) {
+      colour += bench->memory.at(kBuffer + r * kPitch)[i] != 0x80;
+      ++luma[bench->memory.at(kBuffer + r * kPitch)[i + 1]];
+    }
+  if (!colour && luma[16] == kWidth * kHeight) return "black";
+  if (wrong_bytes(bench->ended[2]) == 0) return "picture";
+  // Each of the 220 levels of BT.601 has its share, to within a half, and no other one comes.
+  const double share = kWidth * kHeight / 220.0;
+  for (unsigned level = 0; level < luma.size(); ++level)
+    if (level < 16 || level > 235 ? luma[level] != 0 : std::abs(luma[level] - share) > share / 2) return "other";
+  return colour ? "colour" : "noise";
+}
 
 TEST(DecoderTest, PictureThatDoesNotFitIsAUserError) {
   struct Wide : Chart {
@@ -187,14 +221,7 @@ TEST(DecoderTest, CapturedFrameIsByteExactAndFieldsCarryTheirInstants) {
   ASSERT_TRUE(f.complete);
   EXPECT_EQ(f.overflows, 0u);
   EXPECT_EQ(f.source_field[1], f.source_field[0] + 1);
-  unsigned wrong = 0;
-  const unsigned pitch = (kWidth * 2 + 31) / 32 * 32;
-  for (unsigned r = 0; r < kHeight; ++r) {
-    const bool second = (r % 2 != 0) != kStudio;
-    for (unsigned i = 0; i < kWidth * 2; ++i)
-      wrong += b.memory.at(kBuffer + r * pitch)[i] != pattern(f.source_field[second], r, i);
-  }
-  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(wrong_bytes(f), 0u);
   EXPECT_LE(b.chart.asked - asked, 2 * b.ended.size() + 4) << "the source is asked once per field";
 }
 
@@ -220,7 +247,7 @@ TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
   while (b.ended.size() < 2) run_for(kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
   EXPECT_EQ(b.memory.at(kBuffer)[0], 0x80);
-  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  EXPECT_EQ(captured(), kUnlocked);
   b.i2c_write(0x02, 0);
   const std::uint64_t from = b.tvp->locked_from_field();
   run_until(b.tvp->field_time(from) - kPsPerUs);
@@ -245,8 +272,8 @@ TEST(DecoderTest, ClearingWhileNotLockedForgetsTheLoss) {
   const std::uint64_t sent = b.tvp->lines_sent();
   run_for(kRelock * 20 * kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A), 0) << "there is nothing to lock to";
-  EXPECT_GT(b.tvp->lines_sent(), sent) << "black lines go on";
-  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  EXPECT_GT(b.tvp->lines_sent(), sent) << "lines go on";
+  EXPECT_EQ(captured(), kUnlocked);
   b.i2c_write(0x00, 0);
   EXPECT_EQ(b.i2c_read(0x3A), 0);
   EXPECT_EQ(b.i2c_read(0x3B), 0x80);
@@ -270,6 +297,29 @@ TEST(DecoderTest, AnUnpluggedCableLosesTheLockAndAPluggedOneIsLockedToAnew) {
   EXPECT_EQ(b.i2c_read(0x3A), 0);
   run_until(b.tvp->field_time(field + kRelock) + kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+TEST(DecoderTest, TheBlackScreenBitsDecideWhatIsSent) {
+  Bench& b = *bench;
+  const auto with = [&](std::uint8_t formatter2) {
+    b.i2c_write(0x34, formatter2);
+    return captured();
+  };
+  EXPECT_EQ(with(0x11), "picture");
+  EXPECT_EQ(with(0x15), "picture") << "black only without a lock";
+  EXPECT_EQ(with(0x19), "black");
+  EXPECT_EQ(b.ended[2].source_camera[0], kNoCamera) << "nothing of the camera is shown";
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked) << "and the lock holds";
+  EXPECT_EQ(with(0x1D), "black");
+  b.tvp->connect(0, false);
+  EXPECT_EQ(with(0x11), kUnlocked);
+  EXPECT_EQ(with(0x15), "black");
+  EXPECT_EQ(with(0x19), "black");
+  EXPECT_EQ(with(0x11), kUnlocked) << "again";
+  b.tvp->connect(0, true);
+  run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+  EXPECT_EQ(with(0x11), "picture");
+  b.i2c_write(0x39, 1);
 }
 
 TEST(DecoderTest, PowerDownStopsTheStreamAndLosesTheLock) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "model/video/scene/bars.h"
+
 namespace fovea::video {
 namespace {
 
@@ -23,10 +25,10 @@ SceneParams::SceneParams(std::string prefix, bool rules)
     : ParamGroup(std::move(prefix)),
       file(*this, "file", "",
            "still or video that the camera shows: PNG, or anything that the ffmpeg program reads"),
-      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park", "lines"},
+      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park", "lines", "bars"},
            "sphere: a still on a swaying view sphere; video: frames as they are; chart: a test "
            "pattern in which every byte tells its place and field; car_park: marked ground, seen by "
-           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical axis",
+           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical axis; bars: colour bars (100/0/75/0)",
            Origin::kChoice, ""),
       motion_period(*this, "motion_period", IntParam::Unit::kCount, 60, 1, 600,
                     "fields until the sway of a still repeats; each is kept as a picture",
@@ -125,9 +127,10 @@ std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
                                                    unsigned height, unsigned camera) {
   const Raster raster{width, height, params.stamp(), camera};
   if (params.kind.is("chart")) return std::make_unique<ChartSource>(raster);
+  if (params.kind.is("bars")) return std::make_unique<BarsSource>(raster);
   if (frames.empty())
     throw UserError(params.file.key() + ": '" + params.file() + "' gave no picture; " +
-                    params.kind.key() + " " + params.kind() + " needs a still or a video (chart needs none)");
+                    params.kind.key() + " " + params.kind() + " needs a still or a video (chart and bars need none)");
   if (params.kind.is("sphere") && params.lens.is("kannala_brandt"))
     params.check_calibration(frames.front().width, frames.front().height);
   if (params.kind.is("sphere"))
