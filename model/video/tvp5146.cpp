@@ -69,7 +69,7 @@ bool Tvp5146::standard_ok() const {
 
 std::optional<std::size_t> Tvp5146::selected() const {
   for (std::size_t n = 0; n < cameras_.size(); ++n)
-    if (cameras_[n].connected && cameras_[n].input() == regs_[kInputSelect]) return n;
+    if (cameras_[n].connected && cameras_[n].led && cameras_[n].input() == regs_[kInputSelect]) return n;
   return std::nullopt;
 }
 
@@ -94,6 +94,15 @@ void Tvp5146::connect(std::size_t camera, bool connected) {
   const bool was_locked = lock();
   cameras_.at(camera).connected = connected;
   if (cameras_[camera].input() != regs_[kInputSelect]) return;
+  change_input();
+  if (was_locked && !lock()) lost_lock_ = true;
+}
+
+void Tvp5146::route(std::size_t camera) {
+  const bool was_locked = lock();
+  const auto before = selected();
+  for (std::size_t n = 0; n < cameras_.size(); ++n) cameras_[n].led = n == camera;
+  if (selected() == before) return;
   change_input();
   if (was_locked && !lock()) lost_lock_ = true;
 }

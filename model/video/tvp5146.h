@@ -53,6 +53,9 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
 
   /// Plugs or unplugs the cable of a camera, now.
   void connect(std::size_t camera, bool connected);
+  /// An external multiplexer leads this camera to its input from now on, and no other one; none, if there is no such
+  /// camera. What the decoder sees is what it would see after a change of register 00.
+  void route(std::size_t camera);
   /// From its next line on the camera sends another standard, which has to be locked to.
   void set_standard(std::size_t camera, bool is_625);
   /// From its next line on the camera's clock is so many parts per million off; the line-locked decoder
@@ -93,7 +96,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void finish_capture();
 
   const CameraSignal& raster() const { return cameras_[raster_]; }
-  /// The camera on the selected input, if its cable is plugged in.
+  /// The camera on the selected input, if its cable is plugged in and it is led there.
   std::optional<std::size_t> selected() const;
   void change_input();
   bool sending() const { return started_ && !nominal_.stopped() && enabled(); }

@@ -209,7 +209,7 @@ void check_cameras(const board::BoardParams& params) {
   const bool quad = params.cameras.quad();
   require(fault.kind.is("none") || fault.camera() < params.input_count(), fault.camera.key(), fault.camera.text(),
           quad ? "0 with cameras.quad, whose signal is one" : "the number of a camera, less than cameras.count");
-  for (unsigned n = 0; n < count; ++n)
+  for (unsigned n = 0; !params.multiplexed() && n < count; ++n)
     for (unsigned k = 0; k < n; ++k) {
       const EnumParam& input = params.camera_rows[n].wire.input;
       require(input() != params.camera_rows[k].wire.input(), input.key(), input(),
@@ -225,7 +225,12 @@ void check_cameras(const board::BoardParams& params) {
     require(standard() == params.camera_rows[0].wire.standard(), standard.key(), standard(),
             "that of camera 0 with cameras.quad");
   }
+  const EnumParam& multiplexer = params.cameras.multiplexer;
+  require(!quad || !params.multiplexed(), multiplexer.key(), multiplexer(),
+          "decoder with cameras.quad, which joins the cameras to one signal");
   if (!fw.elf().empty()) return;
+  require(fw.view.is("single") || !params.multiplexed(), multiplexer.key(), multiplexer(),
+          "decoder with firmware.view = four_way or birds_eye, whose program changes the decoder's input");
   require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
           "single, or any with cameras.count = 4");
   require(!quad || (params.width() == params.raster_width() && params.height() == params.raster_height()),

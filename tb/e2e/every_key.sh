@@ -140,6 +140,8 @@ idle camera.0.standard 525/60 video.standard=vga_progressive EARLY
 tested cameras.count e2e.cameras
 tested cameras.genlocked e2e.cameras
 idle cameras.genlocked false
+acts cameras.multiplexer gpio cameras.count=2
+idle cameras.multiplexer gpio
 acts fault.kind unplugged fault.start=50ms
 tested fault.camera e2e.cameras
 tested fault.start e2e.cameras

@@ -1,6 +1,10 @@
 // Decoder and ISIF in full size: I2C, lock, rates, every byte of captured frames.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "model/video/isif.h"
 #include "model/video/tvp5146.h"
 #include "tb/video/bench.h"
@@ -57,6 +61,9 @@ struct Bench {
   std::unique_ptr<Tvp5146> tvp;
   Tvp5146Params two_params;
   std::unique_ptr<Tvp5146> two;  ///< with a camera on each of its inputs 0 and 1
+  /// Two cameras whose syncs are apart: on two inputs, and on one behind a multiplexer.
+  Tvp5146Params apart_params;
+  std::unique_ptr<Tvp5146> by_input, by_multiplexer;
   Wire wire;
   Isif isif{"isif", vpss};
   FakeMemory memory{"memory"};
@@ -81,6 +88,17 @@ struct Bench {
     two = std::make_unique<Tvp5146>("two", two_params, cameras);
     two->clock(clock);
     two->video.bind(wire);
+    apart_params.output_at_reset.set("true");
+    apart_params.relock_fields.set(std::to_string(kRelock));
+    cameras[1].phase = 7 * kPsPerMs;
+    by_input = std::make_unique<Tvp5146>("by_input", apart_params, cameras);
+    cameras[1].input = 0;
+    by_multiplexer = std::make_unique<Tvp5146>("by_multiplexer", apart_params, cameras);
+    by_multiplexer->route(0);
+    for (Tvp5146* decoder : {by_input.get(), by_multiplexer.get()}) {
+      decoder->clock(clock);
+      decoder->video.bind(wire);
+    }
     tvp->video.bind(isif.video);
     isif.memory.socket.bind(memory.socket);
     regs.socket.bind(isif.reg_socket);
@@ -506,6 +524,44 @@ TEST(DecoderTest, TheOtherStandardIsLockedToAnewAndSoIsTheFirstOne) {
   b.i2c_write(0x02, k625Here ? 1 : 2);  // the lock is lost, and comes back
   b.i2c_write(0x02, 0);
   run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+}
+
+/// What can be read of a decoder's state.
+std::vector<std::uint64_t> state_of(Tvp5146& decoder) {
+  std::vector<std::uint64_t> out{decoder.lines_sent(), decoder.locked_from_field()};
+  for (const std::uint8_t reg : {0x3A, 0x3B, 0x3F}) out.push_back(bench->i2c_read(decoder, reg));
+  return out;
+}
+
+TEST(DecoderTest, AMultiplexerInFrontOfAnInputIsLikeAChangeOfTheInput) {
+  Tvp5146 &input = *bench->by_input, &multiplexer = *bench->by_multiplexer;
+  const auto change = [&](std::uint8_t to) {
+    bench->i2c_write(input, 0x00, to);
+    multiplexer.route(to);
+  };
+  const auto expect_same = [&](const char* when) { EXPECT_EQ(state_of(multiplexer), state_of(input)) << when; };
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked) << "the first camera, long ago";
+  expect_same("locked");
+  for (const std::uint8_t camera : {1, 0, 1}) {
+    change(camera);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10) << "another camera: the lock is lost";
+    expect_same("another camera");
+    const std::uint64_t from = multiplexer.locked_from_field();
+    run_until(multiplexer.field_time(from) - kPsPerUs);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10);
+    expect_same("not yet locked");
+    run_until(multiplexer.field_time(from) + kPsPerUs);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked | 0x10);
+    expect_same("locked again");
+    for (Tvp5146* decoder : {&input, &multiplexer}) bench->i2c_write(*decoder, 0x39, 1);
+  }
+  change(1);
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked) << "the same camera is no change";
+  change(2);  // nothing is there
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10);
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3B), 0);
+  run_for(100 * kPsPerMs);
+  expect_same("no signal");
 }
 
 TEST(DecoderTest, StoppedClockKeepsTheFieldAndTheLock) {

@@ -28,7 +28,8 @@ SceneParams::SceneParams(std::string prefix, bool rules)
       kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park", "lines", "bars"},
            "sphere: a still on a swaying view sphere; video: frames as they are; chart: a test "
            "pattern in which every byte tells its place and field; car_park: marked ground, seen by "
-           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical axis; bars: colour bars (100/0/75/0)",
+           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical "
+           "axis; bars: colour bars (100/0/75/0)",
            Origin::kChoice, ""),
       motion_period(*this, "motion_period", IntParam::Unit::kCount, 60, 1, 600,
                     "fields until the sway of a still repeats; each is kept as a picture",
