@@ -66,6 +66,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     fault_ = std::make_unique<CameraFault>(
         "camera_fault", params.fault,
         params.camera_setup(static_cast<unsigned>(params.fault.camera())).wiring, decoder);
+  if (params.multiplexed()) place_multiplexer();
   set_switches();
   platform.add(dm365.platform);
   platform.add("display", sink);
@@ -79,6 +80,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     uart_observers_.each([byte](const UartObserver& f) { f(byte); });
   };
   pins_ = dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
+    if (bank == MULTIPLEXER_BANK && multiplexer) multiplexer->select(MULTIPLEXER_CHANNEL(out));
     if (bank != PHASE_BANK) return;
     log.pins(out, at);
     if (on_phase) on_phase(log.phase(), at);
@@ -106,6 +108,12 @@ void Board::reset_asked(const std::string& cause) {
 void Board::reset(ResetKind kind) {
   log.restart();
   dm365.reset_chip(kind);
+}
+
+/// All cameras are on the same input of the decoder, but the multiplexer leads only one of them there.
+void Board::place_multiplexer() {
+  multiplexer = std::make_unique<AnalogueMultiplexer>([this](unsigned channel) { decoder.route(channel); });
+  decoder.route(multiplexer->channel());
 }
 
 void Board::set_switches() {

@@ -10,6 +10,7 @@
 #include <systemc>
 #include <vector>
 
+#include "model/board/analogue_multiplexer.h"
 #include "model/board/board_params.h"
 #include "model/board/evm_cpld.h"
 #include "model/board/frame_log.h"
@@ -141,6 +142,7 @@ class Board : public sc_core::sc_module {
   soc::Dm365 dm365;
   video::Tvp5146 decoder;  ///< with a camera at the digital port: without cameras, and its output is not connected
   std::unique_ptr<video::DigitalCamera> digital;  ///< null: the cameras are the decoder's
+  std::unique_ptr<AnalogueMultiplexer> multiplexer;  ///< null: the decoder's inputs are the cameras' multiplexer
   video::DisplaySink sink{"sink"};
   Platform platform;              ///< all blocks of the board, those of the chip included
 
@@ -150,6 +152,7 @@ class Board : public sc_core::sc_module {
   void put(const LoadImage& image, bool zeros);
   static std::vector<video::CameraWiring> wiring(const BoardParams& params,
                                                  const std::vector<video::PictureSource*>& sources);
+  void place_multiplexer();
   void set_switches();
   void latched(const video::Osd::Latch& latch);
   void frame_shown(const video::DisplayFrame& frame);

@@ -28,6 +28,7 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
   run.start_limit.matters_only("run.until = frames", {&run.until},
                                [this] { return run.until() == "frames" || run.until() == "[frames]"; });
   link_video();
+  link_cameras();
   link_views();
   link_ports();
   link_internal_ram();
@@ -57,6 +58,14 @@ void BoardParams::link_video() {
                                              ? decoder.standard.is("525/60")
                                              : !video.format().is_625;
                                 });
+}
+
+void BoardParams::link_cameras() {
+  cameras.multiplexer.matters_only("cameras.count of 2 or more", {&cameras.count},
+                                   [this] { return camera_count() > 1; });
+  for (unsigned n = 1; n < camera_rows.size(); ++n)
+    camera_rows[n].wire.input.matters_only("cameras.multiplexer = decoder", {&cameras.multiplexer},
+                                           [this] { return cameras.multiplexer.is("decoder"); });
 }
 
 void BoardParams::link_views() {

@@ -253,6 +253,8 @@ struct BoardParams : ParamTree {
   /// Everything that is set of a camera: what its row sets, and for the rest the keys of all cameras.
   CameraSetup camera_setup(unsigned camera) const;
   unsigned camera_count() const { return static_cast<unsigned>(cameras.count()); }
+  /// Whether an analogue multiplexer leads one of several cameras to one input of the decoder.
+  bool multiplexed() const { return cameras.multiplexer.is("gpio") && camera_count() > 1; }
   /// Signals at the decoder: one if a quad processor joins those of the cameras.
   unsigned input_count() const { return cameras.quad() ? 1 : camera_count(); }
   /// Size of the picture that the camera sends, and of what is corrected and shown.
@@ -277,6 +279,7 @@ struct BoardParams : ParamTree {
   bool edma_moves_pixels() const;
   // Each says of some parameters when they matter.
   void link_video();
+  void link_cameras();
   void link_views();
   void link_ports();
   void link_internal_ram();

@@ -100,7 +100,7 @@ CameraSetup BoardParams::camera_setup(unsigned number) const {
   out.lens = merged<LensParams>(lens, row.lens);
   const EnumParam& standard =
       row.wire.standard.user_set() ? row.wire.standard : decoder.standard;
-  out.wiring.input = decoder_input(row.wire.input);
+  out.wiring.input = decoder_input(multiplexed() ? camera_rows[0].wire.input : row.wire.input);
   out.wiring.connected = row.wire.connected();
   out.wiring.is_625 = standard.is("625/50");
   out.wiring.placement = video::placement_of(decoder, standard.is("625/50"));

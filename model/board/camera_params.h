@@ -26,6 +26,11 @@ struct CamerasParams : ParamGroup {
                  "a quad processor joins the signals of four genlocked cameras to one, that of camera 0: "
                  "each at half width and half height",
                  Origin::kChoice, ""};
+  EnumParam multiplexer{*this, "multiplexer", "decoder", {"decoder", "gpio"},
+                        "what changes between several cameras: the decoder, on whose inputs they are; or an analogue "
+                        "multiplexer in front of it, whose select lines are GPIO pins 40 to 42 and whose output is on "
+                        "the input of camera 0",
+                        Origin::kChoice, ""};
   CamerasParams() : ParamGroup("cameras") {
     genlocked.matters_only("cameras.count of 2 or more", {&count}, [this] { return count() > 1; });
   }

@@ -149,6 +149,8 @@ typedef struct param_camera {
 #define PARAM_DISPLAY_FREE (1u << 3) /* the display starts on its own, not in step with the camera; only a program
                                         with a console does that */
 #define PARAM_CHECK_CAPTURE (1u << 4) /* frames of which a part was not written are left out; likewise */
+#define PARAM_MULTIPLEXER (1u << 6) /* an analogue multiplexer under GPIO leads one of the cameras to the decoder's
+                                       input of camera 0 (multiplexer.h); only a program with a console knows it */
 #define PARAM_DIGITAL (1u << 5) /* the camera is a progressive one at the digital port, without a decoder; its size is
                                    that of SWITCH_SIZE_IN, all of which is captured */
 
@@ -168,7 +170,7 @@ typedef struct param_page {
   uint32_t repeats;       /* number of consecutive remaps for each captured frame; 0: one */
   uint32_t tables;        /* number of look-up tables and of source frames, used in turn; 0: one */
   uint32_t flags;         /* PARAM_OVERLAY, PARAM_SELF_PATCH, PARAM_ENGINE, PARAM_DISPLAY_FREE,
-                             PARAM_CHECK_CAPTURE, PARAM_DIGITAL */
+                             PARAM_CHECK_CAPTURE, PARAM_DIGITAL, PARAM_MULTIPLEXER */
   uint32_t width;         /* pixels of a centred region; 0: all. Only with SWITCH_SIZE_OF_PAGE of the display */
   uint32_t height;        /* lines of it; 0: all */
   uint32_t camera_count;  /* 1 to PARAM_CAMERAS_MAX */

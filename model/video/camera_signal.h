@@ -90,6 +90,7 @@ class CameraSignal {
   unsigned height() const { return wiring_.source->height(); }
 
   bool connected;      ///< a cable is plugged in
+  bool led = true;     ///< to the decoder's input; false: an external multiplexer leads another camera there
   SignalFault fault;   ///< of the lines that are sent
 
  private:

@@ -160,6 +160,15 @@ struct Tvp5146Params : ParamGroup {
                          Origin::kAssumed,
                          "Linux waits 200 ms; no figure in the data manual",
                          {"2", "25", "from the next frame to half a second"}};
+  EnumParam unlocked_output{*this,
+                            "unlocked_output",
+                            "black",
+                            {"black", "noise"},
+                            "what the decoder sends while it is not locked, as long as the black-screen bits of "
+                            "register 34 are 0: black, or noise as of an open input",
+                            Origin::kAssumed,
+                            "the data manual says only how to switch black on",
+                            {"black", "noise", "a decoder that goes on sampling shows the noise of its input"}};
   IntParam count_lines{*this,
                        "count_lines",
                        Unit::kCount,

@@ -13,6 +13,8 @@ constexpr std::uint8_t kInputSelect = 0x00, kVideoStandard = 0x02, kOperationMod
                        kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81, kStatusRequest = 0x97,
                        kLineCountLow = 0x9A, kLineCountHigh = 0x9B;
 constexpr std::uint8_t kFormatter2Enables = 0x11;  // enables the data and clock outputs
+// Bits 3 and 2 of the same register.
+constexpr unsigned kBlackScreenOff = 0, kBlackScreenUnlocked = 1;
 
 }  // namespace
 
@@ -67,7 +69,7 @@ bool Tvp5146::standard_ok() const {
 
 std::optional<std::size_t> Tvp5146::selected() const {
   for (std::size_t n = 0; n < cameras_.size(); ++n)
-    if (cameras_[n].connected && cameras_[n].input() == regs_[kInputSelect]) return n;
+    if (cameras_[n].connected && cameras_[n].led && cameras_[n].input() == regs_[kInputSelect]) return n;
   return std::nullopt;
 }
 
@@ -92,6 +94,15 @@ void Tvp5146::connect(std::size_t camera, bool connected) {
   const bool was_locked = lock();
   cameras_.at(camera).connected = connected;
   if (cameras_[camera].input() != regs_[kInputSelect]) return;
+  change_input();
+  if (was_locked && !lock()) lost_lock_ = true;
+}
+
+void Tvp5146::route(std::size_t camera) {
+  const bool was_locked = lock();
+  const auto before = selected();
+  for (std::size_t n = 0; n < cameras_.size(); ++n) cameras_[n].led = n == camera;
+  if (selected() == before) return;
   change_input();
   if (was_locked && !lock()) lost_lock_ = true;
 }
@@ -163,7 +174,7 @@ void Tvp5146::send_line() {
   if (missing) camera.leave_out(missing);
   count_line();
   line_camera_ = raster_;
-  line_locked_ = locked(position_.field);
+  line_shows_ = shows(locked(position_.field));
   const Bt656Line line{&camera.standard(),
                        &of,
                        of.edge(first),
@@ -173,7 +184,7 @@ void Tvp5146::send_line() {
                        eav(),
                        sav(),
                        this,
-                       line_locked_ ? static_cast<int>(raster_) : kNoCamera,
+                       line_shows_ == Shows::kPicture ? static_cast<int>(raster_) : kNoCamera,
                        missing};
   ++lines_sent_;
   ++next_line_;
@@ -206,17 +217,35 @@ void Tvp5146::finish_capture() {
   capture_at_.reset();
 }
 
+Tvp5146::Shows Tvp5146::shows(bool is_locked) const {
+  const unsigned black = regs_[kFormatter2] >> 2 & 3;
+  if (black > kBlackScreenUnlocked) return Shows::kBlack;
+  if (is_locked) return Shows::kPicture;
+  return black == kBlackScreenOff && params_.unlocked_output.is("noise") ? Shows::kNoise : Shows::kBlack;
+}
+
+/// Luma of the whole range, and no colour: a function of the number of lines sent.
+void Tvp5146::fill_with_noise() {
+  auto state = static_cast<std::uint32_t>(lines_sent_) * 0x9e37'79b1u + 1;
+  for (unsigned i = 1; i < kActiveBytes; i += 2) {
+    state = state * 1'664'525u + 1'013'904'223u;
+    row_[i] = static_cast<std::uint8_t>(16 + (state >> 16) * 220 / 65536);
+  }
+}
+
 std::span<const std::uint8_t> Tvp5146::render() {
   const std::uint8_t* active = nullptr;
   CameraSignal& camera = cameras_[line_camera_];
   if (!fv_.v) {
     static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
     for (unsigned i = 0; i < kActiveBytes; i += 4) std::memcpy(row_.data() + i, kBlack, 4);
+    if (line_shows_ == Shows::kNoise) fill_with_noise();
     // A smaller picture is centred, on lines of the same field and on whole pixel pairs.
     const int shown = camera.placement().row(fv_.f, position_.line);
     const int above = static_cast<int>(camera.placement().rows) - static_cast<int>(camera.height());
     const int row = shown - above / 4 * 2;  // above < 0: after a change of the standard
-    if (shown >= 0 && row >= 0 && row < static_cast<int>(camera.height()) && line_locked_) {
+    if (shown >= 0 && row >= 0 && row < static_cast<int>(camera.height()) &&
+        line_shows_ == Shows::kPicture) {
       const Picture& picture = camera.picture(position_.field);
       std::memcpy(row_.data() + (kActivePixels - picture.width) / 2 * 2,
                   picture.row(static_cast<unsigned>(row)), picture.row_bytes());

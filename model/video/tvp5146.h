@@ -24,8 +24,10 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// Registers: a subset of TI SLES084C. Register 00 selects an input; where no camera is, there is no
 /// signal (STATUS2 bit 7 = 0). STATUS1 bit 4 (lost lock) stays set until a 1 is written to bit 0 of
 /// CLEAR_LOST_LOCK. While the decoder is not locked (after power-up, after a change of register 00
-/// or 02, without a signal, or with the wrong standard in 02), it sends black pictures in the raster
-/// of the selected camera or, without a signal, in that of the last one (assumed). The raster changes
+/// or 02, without a signal, or with the wrong standard in 02), it sends black pictures or noise in the raster
+/// of the selected camera or, without a signal, in that of the last one (assumed). Bits 3 and 2 of register 34
+/// (black screen) decide: 0 what `unlocked_output` says, 1 black, and 2 black also while it is locked; 3 is reserved,
+/// and taken for 2 (assumed). The raster changes
 /// between two lines: the line on the wire is completed, and the new raster goes on with its next
 /// whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before into 9A and 9B
 /// (low and high part), and the bit is 0 again when that is done. What is counted are the lines that are sent, from
@@ -51,6 +53,9 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
 
   /// Plugs or unplugs the cable of a camera, now.
   void connect(std::size_t camera, bool connected);
+  /// An external multiplexer leads this camera to its input from now on, and no other one; none, if there is no such
+  /// camera. What the decoder sees is what it would see after a change of register 00.
+  void route(std::size_t camera);
   /// From its next line on the camera sends another standard, which has to be locked to.
   void set_standard(std::size_t camera, bool is_625);
   /// From its next line on the camera's clock is so many parts per million off; the line-locked decoder
@@ -91,7 +96,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void finish_capture();
 
   const CameraSignal& raster() const { return cameras_[raster_]; }
-  /// The camera on the selected input, if its cable is plugged in.
+  /// The camera on the selected input, if its cable is plugged in and it is led there.
   std::optional<std::size_t> selected() const;
   void change_input();
   bool sending() const { return started_ && !nominal_.stopped() && enabled(); }
@@ -128,8 +133,12 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint8_t pointer_ = 0;
   bool expect_pointer_ = false;
 
+  enum class Shows : std::uint8_t { kBlack, kNoise, kPicture };
+  Shows shows(bool locked) const;
+  void fill_with_noise();
+
   std::size_t line_camera_ = 0;  // whose raster the announced line is in
-  bool line_locked_ = false;
+  Shows line_shows_ = Shows::kBlack;
   LinePosition position_{};
   Standard::Lines fv_{};
   std::uint8_t wrong_bits_ = 0;  // of the announced line's codes

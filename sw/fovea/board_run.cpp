@@ -21,6 +21,7 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/hazard_report.h"
+#include "sw/fovea/line_picture_score.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/mosaic_score.h"
 #include "sw/fovea/parameter_page.h"
@@ -118,6 +119,7 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
+  std::unique_ptr<LinePictureScore> line_score_;
   std::unique_ptr<RunProfile> profile_;
   std::vector<FrameRow> frames_;
 };
@@ -303,6 +305,7 @@ void BoardSimulation::open_outputs(const RunRequest& request) {
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   mosaic_score_ = MosaicScore::of(params_);
+  line_score_ = LinePictureScore::of(params_);
   board_->on_window_open = [this] { open_window(); };
   board_->on_window_close = [this] { close_window(); };
 }
@@ -311,6 +314,7 @@ void BoardSimulation::open_outputs(const RunRequest& request) {
 void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
                                  const board::FrameRecord& r) {
   if (mosaic_score_) mosaic_score_->displayed(f);
+  if (line_score_) line_score_->displayed(f, r.camera);
   FrameRow out;
   out.index = r.index;
   out.camera = r.camera;
@@ -473,6 +477,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
   result.guest_failure = s.guest;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
+  if (line_score_) line_score_->add(result.stats);
   if (profile_) collect_profile(result, counted, s.request, s.program);
   if (s.hazards) {
     s.hazards->settle(board_->window_end().value_or(kernel_time()));

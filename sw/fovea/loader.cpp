@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/video/scene/car_park.h"
+#include "model/video/scene/line_chart.h"
 #include "sw/fovea/ffmpeg.h"
 
 namespace fovea::app {
@@ -48,7 +49,7 @@ std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {
 std::vector<RgbImage> load_footage(const board::BoardParams& params,
                                    const video::SceneParams& camera,
                                    const std::atomic<bool>* stop) {
-  if (camera.kind.is("chart") || camera.kind.is("car_park")) return {};
+  if (!camera.kind.is("sphere") && !camera.kind.is("video")) return {};
   if (camera.file().empty())
     throw UserError("key '" + camera.file.key() + "': a picture or film is needed for " +
                     camera.kind.key() + " = " + camera.kind() + "; allowed: a file name, or " +
@@ -71,13 +72,24 @@ std::unique_ptr<video::StampedSource> car_park(const board::BoardParams& params,
   if (camera >= params.mounts.size())
     throw UserError("key '" + scene.kind.key() + "': car_park is seen by cameras 0 to " +
                     std::to_string(params.mounts.size() - 1) + ", which are mounted on the car");
-  if (scene.lens.is("kannala_brandt"))
-    throw UserError("key '" + scene.lens.key() +
-                    "': a car_park is seen through linear, orthographic, equisolid or stereographic, not "
-                    "kannala_brandt");
   const unsigned width = params.raster_width();
   return std::make_unique<video::CarParkSource>(video::Raster{width, height, scene.stamp(), camera},
                                                 scene.lens_model(width, height), params.mounts[camera].mount());
+}
+
+/// A scene that is a formula is seen through a lens that is one; null for any other kind.
+std::unique_ptr<video::StampedSource> synthetic_scene(const board::BoardParams& params,
+                                                      const video::SceneParams& scene, unsigned camera,
+                                                      unsigned height) {
+  if (!scene.kind.is("car_park") && !scene.kind.is("lines")) return nullptr;
+  if (scene.lens.is("kannala_brandt"))
+    throw UserError(fmt::format(
+        "key '{}': {} = {} is seen through linear, orthographic, equisolid or stereographic, not kannala_brandt",
+        scene.lens.key(), scene.kind.key(), scene.kind()));
+  if (scene.kind.is("car_park")) return car_park(params, scene, camera, height);
+  const unsigned width = params.raster_width();
+  return std::make_unique<video::LineChartSource>(video::Raster{width, height, scene.stamp(), camera},
+                                                  scene.lens_model(width, height));
 }
 
 }  // namespace
@@ -99,7 +111,7 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
                               ? params.raster_height()
                           : own.is("625/50") ? 576
                                                : 480;
-  if (setup.scene->kind.is("car_park")) return car_park(params, *setup.scene, camera, height);
+  if (auto scene = synthetic_scene(params, *setup.scene, camera, height)) return scene;
   return video::make_picture_source(*setup.scene, std::move(footage), params.raster_width(), height,
                                     camera);
 }
@@ -197,7 +209,7 @@ void check_cameras(const board::BoardParams& params) {
   const bool quad = params.cameras.quad();
   require(fault.kind.is("none") || fault.camera() < params.input_count(), fault.camera.key(), fault.camera.text(),
           quad ? "0 with cameras.quad, whose signal is one" : "the number of a camera, less than cameras.count");
-  for (unsigned n = 0; n < count; ++n)
+  for (unsigned n = 0; !params.multiplexed() && n < count; ++n)
     for (unsigned k = 0; k < n; ++k) {
       const EnumParam& input = params.camera_rows[n].wire.input;
       require(input() != params.camera_rows[k].wire.input(), input.key(), input(),
@@ -213,7 +225,12 @@ void check_cameras(const board::BoardParams& params) {
     require(standard() == params.camera_rows[0].wire.standard(), standard.key(), standard(),
             "that of camera 0 with cameras.quad");
   }
+  const EnumParam& multiplexer = params.cameras.multiplexer;
+  require(!quad || !params.multiplexed(), multiplexer.key(), multiplexer(),
+          "decoder with cameras.quad, which joins the cameras to one signal");
   if (!fw.elf().empty()) return;
+  require(fw.view.is("single") || !params.multiplexed(), multiplexer.key(), multiplexer(),
+          "decoder with firmware.view = four_way or birds_eye, whose program changes the decoder's input");
   require(fw.view.is("single") || count == VIEW_CAMERAS, fw.view.key(), fw.view(),
           "single, or any with cameras.count = 4");
   require(!quad || (params.width() == params.raster_width() && params.height() == params.raster_height()),

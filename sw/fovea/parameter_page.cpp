@@ -155,7 +155,7 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                (params.soc.engine.present() ? PARAM_ENGINE : 0u) |
                (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u) |
                (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u) |
-               (params.video.format().digital ? PARAM_DIGITAL : 0u);
+               (params.video.format().digital ? PARAM_DIGITAL : 0u) | (params.multiplexed() ? PARAM_MULTIPLEXER : 0u);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

@@ -140,6 +140,8 @@ idle camera.0.standard 525/60 video.standard=vga_progressive EARLY
 tested cameras.count e2e.cameras
 tested cameras.genlocked e2e.cameras
 idle cameras.genlocked false
+acts cameras.multiplexer gpio cameras.count=2
+idle cameras.multiplexer gpio
 acts fault.kind unplugged fault.start=50ms
 tested fault.camera e2e.cameras
 tested fault.start e2e.cameras
@@ -271,6 +273,8 @@ idle tvp5146.i2c_address 92 video.standard=vga_progressive EARLY
 acts tvp5146.output_at_reset true PROGRAM
 idle tvp5146.output_at_reset true video.standard=vga_progressive EARLY
 acts tvp5146.phase 1ms
+acts tvp5146.unlocked_output noise camera.0.connected=false
+idle tvp5146.unlocked_output noise video.standard=vga_progressive EARLY
 acts tvp5146.relock_fields 11
 idle tvp5146.relock_fields 11 video.standard=vga_progressive EARLY
 acts tvp5146.rom_version 1 PROGRAM

@@ -23,4 +23,6 @@ refused cameras.quad 'with the whole picture' -s video.height=572
 refused cameras.quad 'cameras.count = 4' -s cameras.count=3
 refused cameras.quad 'genlocked' -s camera.2.genlocked=false
 refused cameras.quad 'four_way or birds_eye' -s firmware.view=single
+refused cameras.multiplexer 'decoder with cameras.quad' -s cameras.multiplexer=gpio
+refused cameras.multiplexer 'decoder with firmware.view' -s cameras.quad=false -s cameras.multiplexer=gpio
 [ $failures = 0 ]

@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <systemc>
 
 #include "model/common/masters.h"
 #include "model/video/core/picture.h"
+#include "model/video/scene/bars.h"
+#include "model/video/scene/line_score.h"
 #include "model/video/scene/plan_score.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/simulation.h"
@@ -307,8 +310,6 @@ TEST_P(StoppedRunTest, StrictAndDefaultLeaveTheSame) {
 // Frames are shown every 40 ms from about 0.35 s.
 INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 415));
 
-// A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the
-// guest is not blamed for it.
 /// A small mosaic of the car park, by cameras whose lenses are those of the tables.
 app::RunResult run_mosaic(unsigned frames, Seen* seen) {
   return run({{"firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_views.elf"},
@@ -353,6 +354,103 @@ TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
     EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
 }
 
+/// A picture of the chart of lines, seen by an equisolid lens of 180 degrees, which is also the one that is corrected
+/// if `keys` do not say otherwise.
+app::RunResult run_lines(Keys keys, Seen* seen = nullptr) {
+  const Keys lens{{"camera.kind", "lines"},     {"camera.lens", "equisolid"}, {"camera.fov", "180deg"},
+                  {"lens.mapping", "equisolid"}, {"lens.fov", "180deg"},       {"firmware.lut", "fixed_point"},
+                  {"run.frames", "2"}};
+  keys.insert(keys.begin(), lens.begin(), lens.end());
+  return run(keys, false, kNever, seen);
+}
+
+/// Focal length of an equisolid lens of 180 degrees across 720 pixels, by its definition.
+const double kLinesFocal = 720 / (4 * std::sin(M_PI / 4));
+
+// The root mean square of a pair's rounding, 1/√3 px, magnified by the farthest corner of the view (unit.scene,
+// LineChart, has the derivation).
+double lines_bound() {
+  const double theta = std::atan(std::hypot(360, 288) / kLinesFocal);
+  return std::sqrt(1 / 3.0) / (std::cos(theta / 2) * std::cos(theta) * std::cos(theta));
+}
+
+TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
+  Seen seen;
+  const app::RunResult r = run_lines({}, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  const auto last = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(seen.displayed.at(1));
+  EXPECT_EQ(real(r, "quality.straightness"), last.straightness);
+  EXPECT_NEAR(real(r, "quality.psnr_y"), last.psnr_y, 1e-9);
+  EXPECT_NEAR(real(r, "quality.ssim_y"), last.ssim_y, 1e-9);
+  EXPECT_EQ(count(r, "quality.places"), last.places);
+  EXPECT_EQ(count(r, "quality.places_missed"), last.missed);
+  EXPECT_LT(last.straightness, lines_bound());
+  EXPECT_GT(last.places, 6500u);
+  EXPECT_GT(last.psnr_y, 20);
+}
+
+// The firmware believes in another lens than the camera has; the view that is displayed is the same.
+TEST(RunTest, WithAWrongLensTheLinesAreBent) {
+  const app::RunResult r = run_lines({{"lens.fov", "150deg"}, {"lens.out_focal", std::to_string(kLinesFocal) + "px"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_GT(real(r, "quality.straightness"), 1.5 * lines_bound());
+  EXPECT_LT(real(r, "quality.psnr_y"), 15);
+}
+
+TEST(RunTest, WithoutACorrectionTheLinesAreBentMost) {
+  const app::RunResult r = run_lines({{"firmware.kernel", "copy"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_GT(real(r, "quality.straightness"), 2.5 * lines_bound());
+}
+
+// Where the meant view is wrong, the picture is no more like the pin-hole camera's than a wrong lens's: below 15 dB.
+struct LinesView {
+  const char* name;
+  Keys keys;
+};
+class LinesViewTest : public testing::TestWithParam<LinesView> {};
+TEST_P(LinesViewTest, IsTheOneThatTheKeysMean) {
+  const app::RunResult r = run_lines(GetParam().keys);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_GT(real(r, "quality.psnr_y"), 18);
+  EXPECT_LT(real(r, "quality.straightness"), lines_bound());
+}
+INSTANTIATE_TEST_SUITE_P(
+    Run, LinesViewTest,
+    testing::Values(LinesView{"Shifted",
+                              {{"lens.shift_x", "41px"}, {"switches.shift_y", "down"}, {"lens.shift_y", "-9px"}}},
+                    LinesView{"OfAnotherScale", {{"lens.out_focal", "200px"}, {"lens.out_aspect", "1.2"}}},
+                    LinesView{"ByTheFocalLength",
+                              {{"lens.focal", std::to_string(kLinesFocal) + "px"}, {"lens.fov", "100deg"}}},
+                    LinesView{"OfAPart",
+                              {{"video.width", "480"},
+                               {"video.height", "384"},
+                               {"lens.focal", std::to_string(kLinesFocal) + "px"}}},
+                    LinesView{"OfADigitalCamera", {{"video.standard", "svga_progressive"}}}),
+    [](const auto& param) { return param.param.name; });
+
+void expect_no_score(const app::RunResult& r) {
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  for (const char* name : {"psnr_y", "ssim_y", "straightness", "places", "places_missed"})
+    EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
+}
+TEST(RunTest, PicturesWithMarksHaveNoScore) { expect_no_score(run_lines({{"camera.stamp", "true"}})); }
+TEST(RunTest, PicturesWithAnOverlayHaveNoScore) { expect_no_score(run_lines({{"firmware.overlay", "true"}})); }
+
+TEST(RunTest, TheChartOfLinesIsSeenThroughALensThatIsAFormula) {
+  EXPECT_THROW(run_lines({{"camera.lens", "kannala_brandt"}}), UserError);
+}
+
+TEST(RunTest, ColourBarsComeToTheDisplayAsTheyAreSent) {
+  Seen seen;
+  const app::RunResult r = run({{"camera.kind", "bars"}, {"firmware.kernel", "copy"}, {"run.frames", "2"}}, false,
+                               kNever, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_EQ(seen.displayed.at(1), video::BarsSource({720, 576, false, 0}).field(0));
+}
+
+// A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the
+// guest is not blamed for it.
 TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
   const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"},
                       {"load.outstanding", "1"}});

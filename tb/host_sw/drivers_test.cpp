@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <vector>
+
 #include "register_recorder.h"
 
 extern "C" {
@@ -10,6 +13,7 @@ extern "C" {
 #include "sw/firmware/drivers/i2c.h"
 #include "sw/firmware/drivers/intc.h"
 #include "sw/firmware/drivers/isif.h"
+#include "sw/firmware/drivers/multiplexer.h"
 #include "sw/firmware/drivers/psc.h"
 #include "sw/firmware/drivers/timer.h"
 #include "sw/firmware/drivers/tvp5146_inputs.h"
@@ -336,6 +340,22 @@ TEST(Tvp5146Test, OutputIsEnabledAfterTheStandard) {
   EXPECT_EQ(id, 0x5146u);
   EXPECT_EQ(bus.device, 0x5Du);
   EXPECT_THAT(bus.sent, ElementsAre(0x80, 0x81, 0x02, 2, 0x00, 5, 0x33, 0, 0x03, 0, 0x34, 0x11));
+}
+
+// Select lines on pins 40 to 42: DIR23 is at 0x01C67038 and OUT_DATA23 at 0x01C6703C.
+TEST(MultiplexerTest, AllSelectLinesChangeInOneWrite) {
+  RegisterRecorder chip;
+  std::map<std::uint32_t, std::uint32_t> registers{{0x01C67038, 0xFFFFFFFF}, {0x01C6703C, 0x12345678}};
+  chip.on_read = [&](std::uint32_t address) { return registers.at(address); };
+  std::vector<std::uint32_t> out;
+  chip.on_write = [&](std::uint32_t address, std::uint32_t value) {
+    if (address == 0x01C6703C) out.push_back(value);
+    registers.at(address) = value;
+  };
+  multiplexer_start();
+  EXPECT_EQ(registers.at(0x01C67038), 0xFFFFF8FFu) << "three outputs";
+  for (const std::uint32_t camera : {1u, 2u, 7u, 0u}) multiplexer_select(camera);
+  EXPECT_THAT(out, ElementsAre(0x12345078u, 0x12345178u, 0x12345278u, 0x12345778u, 0x12345078u));
 }
 
 TEST(Tvp5146Test, AnAbsentDecoderIsReported) {

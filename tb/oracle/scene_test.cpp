@@ -8,6 +8,7 @@
 
 #include "model/common/check.h"
 #include "model/video/scene/ahead.h"
+#include "model/video/scene/bars.h"
 #include "model/video/scene/scene_params.h"
 
 namespace fovea::video {
@@ -465,6 +466,29 @@ TEST(SphereSourceTest, PrintsItsCost) {
   const double fresh = run(0), cached = run(20);
   std::printf("picture 720x576: new %.2f ms, cached %.3f ms\n", fresh, cached);
   EXPECT_LT(cached, fresh);
+}
+
+// ITU-R BT.601: Y = 16 + 219 E'Y, C = 128 + 224 E'C, with E'Y = 0.299 R + 0.587 G + 0.114 B, E'Cb = (B - E'Y) / 1.772
+// and E'Cr = (R - E'Y) / 1.402, each to the nearest level.
+TEST(Bars, HaveTheLevelsOfBt601) {
+  for (const unsigned width : {640u, 720u, 800u}) {
+    BarsSource source({width, 16, false, 0});
+    const Picture p = source.field(0);
+    ASSERT_EQ(p.width, width);
+    for (unsigned x = 0; x < width; ++x) {
+      const unsigned bar = x / (width / 8);
+      // Of the bars, blue goes off after each, red after two, green after four.
+      const double level = bar == 0 ? 1 : 0.75;
+      const double r = bar & 2 ? 0 : level, g = bar & 4 ? 0 : level, b = bar & 1 ? 0 : level;
+      const double y = 0.299 * r + 0.587 * g + 0.114 * b;
+      for (const unsigned row : {0u, 15u}) {
+        EXPECT_EQ(p.row(row)[2 * x + 1], std::lround(16 + 219 * y)) << x;
+        const double c = x % 2 ? (r - y) / 1.402 : (b - y) / 1.772;
+        EXPECT_EQ(p.row(row)[2 * x], std::lround(128 + 224 * c)) << x;
+      }
+    }
+    EXPECT_EQ(source.field(3), p) << "a still";
+  }
 }
 
 }  // namespace

@@ -1,6 +1,10 @@
 // Decoder and ISIF in full size: I2C, lock, rates, every byte of captured frames.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "model/video/isif.h"
 #include "model/video/tvp5146.h"
 #include "tb/video/bench.h"
@@ -17,7 +21,9 @@ const bool kStudio = kCrop == "studio";
 const Standard& kStd = standard_of(k625Here);
 const unsigned kWidth = setting("FOVEA_WIDTH", 720u), kHeight = setting("FOVEA_HEIGHT", kStd.rows);
 const unsigned kRelock = setting("FOVEA_RELOCK", 10u);
+const std::string kUnlocked = setting("FOVEA_UNLOCKED", "black");
 constexpr std::uint32_t kBuffer = 0x8010'0000;
+const unsigned kPitch = (kWidth * 2 + 31) / 32 * 32;
 const int kLocked = k625Here ? 0x2E : 0x0E;  // STATUS1 without the lost-lock bit
 
 std::uint8_t pattern(std::uint64_t k, unsigned row, unsigned i) {
@@ -55,6 +61,9 @@ struct Bench {
   std::unique_ptr<Tvp5146> tvp;
   Tvp5146Params two_params;
   std::unique_ptr<Tvp5146> two;  ///< with a camera on each of its inputs 0 and 1
+  /// Two cameras whose syncs are apart: on two inputs, and on one behind a multiplexer.
+  Tvp5146Params apart_params;
+  std::unique_ptr<Tvp5146> by_input, by_multiplexer;
   Wire wire;
   Isif isif{"isif", vpss};
   FakeMemory memory{"memory"};
@@ -68,6 +77,7 @@ struct Bench {
     tvp_params.relock_fields.set(std::to_string(kRelock));
     tvp_params.phase.set(setting("FOVEA_PHASE", "0s"));
     tvp_params.rom_version.set("35");
+    tvp_params.unlocked_output.set(kUnlocked);
     tvp = std::make_unique<Tvp5146>("tvp", tvp_params, chart);
     tvp->clock(clock);
     two_params.output_at_reset.set("true");
@@ -78,6 +88,17 @@ struct Bench {
     two = std::make_unique<Tvp5146>("two", two_params, cameras);
     two->clock(clock);
     two->video.bind(wire);
+    apart_params.output_at_reset.set("true");
+    apart_params.relock_fields.set(std::to_string(kRelock));
+    cameras[1].phase = 7 * kPsPerMs;
+    by_input = std::make_unique<Tvp5146>("by_input", apart_params, cameras);
+    cameras[1].input = 0;
+    by_multiplexer = std::make_unique<Tvp5146>("by_multiplexer", apart_params, cameras);
+    by_multiplexer->route(0);
+    for (Tvp5146* decoder : {by_input.get(), by_multiplexer.get()}) {
+      decoder->clock(clock);
+      decoder->video.bind(wire);
+    }
     tvp->video.bind(isif.video);
     isif.memory.socket.bind(memory.socket);
     regs.socket.bind(isif.reg_socket);
@@ -108,6 +129,37 @@ struct Bench {
   std::uint8_t i2c_read(std::uint8_t reg) { return i2c_read(*tvp, reg); }
 };
 Bench* bench = nullptr;
+
+/// Bytes of a captured frame that are not those of the camera's two fields.
+unsigned wrong_bytes(const CaptureFrame& f) {
+  unsigned wrong = 0;
+  for (unsigned r = 0; r < kHeight; ++r) {
+    const bool second = (r % 2 != 0) != kStudio;
+    for (unsigned i = 0; i < kWidth * 2; ++i)
+      wrong += bench->memory.at(kBuffer + r * kPitch)[i] != pattern(f.source_field[second], r, i);
+  }
+  return wrong;
+}
+
+/// What a frame that is captured from now on shows.
+std::string captured() {
+  bench->ended.clear();
+  while (bench->ended.size() < 3) run_for(kPsPerMs);
+  std::array<unsigned, 256> luma{};
+  unsigned colour = 0;
+  for (unsigned r = 0; r < kHeight; ++r)
+    for (unsigned i = 0; i < kWidth * 2; i += 2) {
+      colour += bench->memory.at(kBuffer + r * kPitch)[i] != 0x80;
+      ++luma[bench->memory.at(kBuffer + r * kPitch)[i + 1]];
+    }
+  if (!colour && luma[16] == kWidth * kHeight) return "black";
+  if (wrong_bytes(bench->ended[2]) == 0) return "picture";
+  // Each of the 220 levels of BT.601 has its share, to within a half, and no other one comes.
+  const double share = kWidth * kHeight / 220.0;
+  for (unsigned level = 0; level < luma.size(); ++level)
+    if (level < 16 || level > 235 ? luma[level] != 0 : std::abs(luma[level] - share) > share / 2) return "other";
+  return colour ? "colour" : "noise";
+}
 
 TEST(DecoderTest, PictureThatDoesNotFitIsAUserError) {
   struct Wide : Chart {
@@ -187,14 +239,7 @@ TEST(DecoderTest, CapturedFrameIsByteExactAndFieldsCarryTheirInstants) {
   ASSERT_TRUE(f.complete);
   EXPECT_EQ(f.overflows, 0u);
   EXPECT_EQ(f.source_field[1], f.source_field[0] + 1);
-  unsigned wrong = 0;
-  const unsigned pitch = (kWidth * 2 + 31) / 32 * 32;
-  for (unsigned r = 0; r < kHeight; ++r) {
-    const bool second = (r % 2 != 0) != kStudio;
-    for (unsigned i = 0; i < kWidth * 2; ++i)
-      wrong += b.memory.at(kBuffer + r * pitch)[i] != pattern(f.source_field[second], r, i);
-  }
-  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(wrong_bytes(f), 0u);
   EXPECT_LE(b.chart.asked - asked, 2 * b.ended.size() + 4) << "the source is asked once per field";
 }
 
@@ -220,7 +265,7 @@ TEST(DecoderTest, ChangeOfStandardLosesLockAndBlackens) {
   while (b.ended.size() < 2) run_for(kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A) & 0x0E, 0);
   EXPECT_EQ(b.memory.at(kBuffer)[0], 0x80);
-  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  EXPECT_EQ(captured(), kUnlocked);
   b.i2c_write(0x02, 0);
   const std::uint64_t from = b.tvp->locked_from_field();
   run_until(b.tvp->field_time(from) - kPsPerUs);
@@ -245,8 +290,8 @@ TEST(DecoderTest, ClearingWhileNotLockedForgetsTheLoss) {
   const std::uint64_t sent = b.tvp->lines_sent();
   run_for(kRelock * 20 * kPsPerMs);
   EXPECT_EQ(b.i2c_read(0x3A), 0) << "there is nothing to lock to";
-  EXPECT_GT(b.tvp->lines_sent(), sent) << "black lines go on";
-  EXPECT_EQ(b.memory.at(kBuffer)[1], 0x10);
+  EXPECT_GT(b.tvp->lines_sent(), sent) << "lines go on";
+  EXPECT_EQ(captured(), kUnlocked);
   b.i2c_write(0x00, 0);
   EXPECT_EQ(b.i2c_read(0x3A), 0);
   EXPECT_EQ(b.i2c_read(0x3B), 0x80);
@@ -270,6 +315,29 @@ TEST(DecoderTest, AnUnpluggedCableLosesTheLockAndAPluggedOneIsLockedToAnew) {
   EXPECT_EQ(b.i2c_read(0x3A), 0);
   run_until(b.tvp->field_time(field + kRelock) + kPsPerUs);
   EXPECT_EQ(b.i2c_read(0x3A), kLocked);
+}
+
+TEST(DecoderTest, TheBlackScreenBitsDecideWhatIsSent) {
+  Bench& b = *bench;
+  const auto with = [&](std::uint8_t formatter2) {
+    b.i2c_write(0x34, formatter2);
+    return captured();
+  };
+  EXPECT_EQ(with(0x11), "picture");
+  EXPECT_EQ(with(0x15), "picture") << "black only without a lock";
+  EXPECT_EQ(with(0x19), "black");
+  EXPECT_EQ(b.ended[2].source_camera[0], kNoCamera) << "nothing of the camera is shown";
+  EXPECT_EQ(b.i2c_read(0x3A), kLocked) << "and the lock holds";
+  EXPECT_EQ(with(0x1D), "black");
+  b.tvp->connect(0, false);
+  EXPECT_EQ(with(0x11), kUnlocked);
+  EXPECT_EQ(with(0x15), "black");
+  EXPECT_EQ(with(0x19), "black");
+  EXPECT_EQ(with(0x11), kUnlocked) << "again";
+  b.tvp->connect(0, true);
+  run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+  EXPECT_EQ(with(0x11), "picture");
+  b.i2c_write(0x39, 1);
 }
 
 TEST(DecoderTest, PowerDownStopsTheStreamAndLosesTheLock) {
@@ -456,6 +524,44 @@ TEST(DecoderTest, TheOtherStandardIsLockedToAnewAndSoIsTheFirstOne) {
   b.i2c_write(0x02, k625Here ? 1 : 2);  // the lock is lost, and comes back
   b.i2c_write(0x02, 0);
   run_until(b.tvp->field_time(b.tvp->locked_from_field()) + kPsPerUs);
+}
+
+/// What can be read of a decoder's state.
+std::vector<std::uint64_t> state_of(Tvp5146& decoder) {
+  std::vector<std::uint64_t> out{decoder.lines_sent(), decoder.locked_from_field()};
+  for (const std::uint8_t reg : {0x3A, 0x3B, 0x3F}) out.push_back(bench->i2c_read(decoder, reg));
+  return out;
+}
+
+TEST(DecoderTest, AMultiplexerInFrontOfAnInputIsLikeAChangeOfTheInput) {
+  Tvp5146 &input = *bench->by_input, &multiplexer = *bench->by_multiplexer;
+  const auto change = [&](std::uint8_t to) {
+    bench->i2c_write(input, 0x00, to);
+    multiplexer.route(to);
+  };
+  const auto expect_same = [&](const char* when) { EXPECT_EQ(state_of(multiplexer), state_of(input)) << when; };
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked) << "the first camera, long ago";
+  expect_same("locked");
+  for (const std::uint8_t camera : {1, 0, 1}) {
+    change(camera);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10) << "another camera: the lock is lost";
+    expect_same("another camera");
+    const std::uint64_t from = multiplexer.locked_from_field();
+    run_until(multiplexer.field_time(from) - kPsPerUs);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10);
+    expect_same("not yet locked");
+    run_until(multiplexer.field_time(from) + kPsPerUs);
+    EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked | 0x10);
+    expect_same("locked again");
+    for (Tvp5146* decoder : {&input, &multiplexer}) bench->i2c_write(*decoder, 0x39, 1);
+  }
+  change(1);
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), kLocked) << "the same camera is no change";
+  change(2);  // nothing is there
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3A), 0x10);
+  EXPECT_EQ(bench->i2c_read(multiplexer, 0x3B), 0);
+  run_for(100 * kPsPerMs);
+  expect_same("no signal");
 }
 
 TEST(DecoderTest, StoppedClockKeepsTheFieldAndTheLock) {

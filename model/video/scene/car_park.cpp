@@ -1,15 +1,12 @@
 #include "model/video/scene/car_park.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "model/video/scene/colour.h"
 
 namespace fovea::video {
 namespace {
 
-constexpr GroundColour kSky{170, 190, 215};
-constexpr GroundColour kWhite{225, 225, 220}, kYellow{215, 175, 40}, kBlue{45, 85, 175}, kInk{25, 25, 25};
+constexpr SceneColour kSky{170, 190, 215};
+constexpr SceneColour kWhite{225, 225, 220}, kYellow{215, 175, 40}, kBlue{45, 85, 175}, kInk{25, 25, 25};
 constexpr double kLine = 0.12;   ///< width of a marked line, m
 constexpr double kBay = 2.5;     ///< from one bay's line to the next, m
 constexpr double kBayRear = -2.9, kBayFront = 2.7;  ///< ends of the lines, m
@@ -25,7 +22,7 @@ bool on_bay_line(double v, double first, double last) {
 }
 
 /// Asphalt: grain of 5 cm, as a hash of the place.
-GroundColour asphalt(double x, double y) {
+SceneColour asphalt(double x, double y) {
   const auto cell = [](double v) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(v / 0.05)));
   };
@@ -36,41 +33,13 @@ GroundColour asphalt(double x, double y) {
   return {grey, grey, grey + 4};
 }
 
-template <class Colour>
-GroundColour mean(unsigned side, Colour&& colour) {
-  GroundColour sum;
-  for (unsigned j = 0; j < side; ++j)
-    for (unsigned i = 0; i < side; ++i) {
-      const GroundColour c = colour((i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5);
-      sum.r += c.r;
-      sum.g += c.g;
-      sum.b += c.b;
-    }
-  const double n = side * side;
-  return {sum.r / n, sum.g / n, sum.b / n};
-}
-
-/// A picture of such means; `colour` takes a position in pixels.
-template <class Colour>
-Picture picture_of(unsigned width, unsigned height, unsigned side, Colour&& colour) {
-  RgbImage image{width, height, {}};
-  image.rgb.reserve(std::size_t{width} * height * 3);
-  for (unsigned v = 0; v < height; ++v)
-    for (unsigned u = 0; u < width; ++u) {
-      const GroundColour c = mean(side, [&](double du, double dv) { return colour(u + du, v + dv); });
-      for (const double level : {c.r, c.g, c.b})
-        image.rgb.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L)));
-    }
-  return to_picture(image);
-}
-
 }  // namespace
 
 double bay_line(unsigned n) { return (n - (kBayLines - 1) / 2.0) * kBay; }
 
 bool car_park_has_bay_lines(double x) { return x > kBayRear + 0.2 && x < kBayFront - 0.2; }
 
-GroundColour car_park_colour(double x, double y) {
+SceneColour car_park_colour(double x, double y) {
   // The car's own row of bays, the row across the lane, and a kerb behind.
   if (between(x, kBayRear, kBayFront) && on_bay_line(y, bay_line(0), bay_line(kBayLines - 1))) return kWhite;
   if (std::abs(x - kBayRear) < kLine / 2 && std::abs(y) < 3.5 * kBay + kLine / 2) return kWhite;
@@ -89,7 +58,7 @@ GroundColour car_park_colour(double x, double y) {
 }
 
 Picture car_park_plan(unsigned width, unsigned height, double metres_x, double metres_y) {
-  return picture_of(width, height, 4, [&](double u, double v) {
+  return mean_picture(width, height, 4, [&](double u, double v) {
     return car_park_colour(((height - 1) / 2.0 - v) * metres_y / height, ((width - 1) / 2.0 - u) * metres_x / width);
   });
 }
@@ -97,10 +66,10 @@ Picture car_park_plan(unsigned width, unsigned height, double metres_x, double m
 CarParkSource::CarParkSource(const Raster& raster, const LensModel& lens, const Mount& mount)
     : StampedSource(raster, {lens.cx(), lens.cy()}) {
   const MountAxes axes = axes_of(mount);
-  picture_ = picture_of(raster.width, raster.height, 3, [&](double u, double v) {
+  picture_ = mean_picture(raster.width, raster.height, 3, [&](double u, double v) {
     Ray ray;
     Point at;
-    if (!lens.unproject({u, v}, ray)) return GroundColour{};
+    if (!lens.unproject({u, v}, ray)) return SceneColour{};
     if (!meets_ground(mount, axes, ray, at) || std::hypot(at.x, at.y) > kFar) return kSky;
     return car_park_colour(at.x, at.y);
   });

@@ -2,16 +2,14 @@
 #pragma once
 #include <cstdint>
 
+#include "model/video/scene/mean_picture.h"
 #include "model/video/scene/mount.h"
 #include "model/video/scene/sources.h"
 
 namespace fovea::video {
 
 /// The plan: colour of the ground at (x, y), in ground coordinates of mount.h.
-struct GroundColour {
-  double r = 0, g = 0, b = 0;  ///< 0 to 255
-};
-GroundColour car_park_colour(double x, double y);
+SceneColour car_park_colour(double x, double y);
 
 /// The lines between the car's row of bays, at y = bay_line(n) along the car; they run where this is true of x, which
 /// leaves out their ends.

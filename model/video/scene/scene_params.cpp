@@ -4,6 +4,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "model/video/scene/bars.h"
+
 namespace fovea::video {
 namespace {
 
@@ -23,10 +25,11 @@ SceneParams::SceneParams(std::string prefix, bool rules)
     : ParamGroup(std::move(prefix)),
       file(*this, "file", "",
            "still or video that the camera shows: PNG, or anything that the ffmpeg program reads"),
-      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park"},
+      kind(*this, "kind", "sphere", {"sphere", "video", "chart", "car_park", "lines", "bars"},
            "sphere: a still on a swaying view sphere; video: frames as they are; chart: a test "
            "pattern in which every byte tells its place and field; car_park: marked ground, seen by "
-           "a camera on a car (camera.N.mount)",
+           "a camera on a car (camera.N.mount); lines: squares on a wall at right angles to the optical "
+           "axis; bars: colour bars (100/0/75/0)",
            Origin::kChoice, ""),
       motion_period(*this, "motion_period", IntParam::Unit::kCount, 60, 1, 600,
                     "fields until the sway of a still repeats; each is kept as a picture",
@@ -64,16 +67,16 @@ SceneParams::SceneParams(std::string prefix, bool rules)
   if (!rules) return;
   const auto sphere = [this] { return kind.is("sphere"); };
   const auto bent = [this] {
-    return kind.is("sphere") || kind.is("car_park") || (kind.is("video") && video_fov() > 0);
+    return kind.is("sphere") || kind.is("car_park") || kind.is("lines") || (kind.is("video") && video_fov() > 0);
   };
   file.matters_only("camera.kind = sphere or video", {&kind},
-                    [this] { return !kind.is("chart") && !kind.is("car_park"); });
+                    [this] { return kind.is("sphere") || kind.is("video"); });
   motion_amplitude.matters_only("camera.kind = sphere", {&kind}, sphere);
   motion_period.matters_only("camera.kind = sphere", {&kind}, sphere);
   motion_period.matters_only("a camera.motion_amplitude above 0deg", {&motion_amplitude},
                              [this] { return motion_amplitude() > 0; });
   video_fov.matters_only("camera.kind = video", {&kind}, [this] { return kind.is("video"); });
-  const char* const kBent = "camera.kind = sphere or car_park, or video with a camera.video_fov above 0deg";
+  const char* const kBent = "camera.kind = sphere, car_park or lines, or video with a camera.video_fov above 0deg";
   lens.matters_only(kBent, {&kind, &video_fov}, bent);
   fov.matters_only(kBent, {&kind, &video_fov}, bent);
   fov.matters_only("a camera.lens other than kannala_brandt", {&lens},
@@ -125,9 +128,10 @@ std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,
                                                    unsigned height, unsigned camera) {
   const Raster raster{width, height, params.stamp(), camera};
   if (params.kind.is("chart")) return std::make_unique<ChartSource>(raster);
+  if (params.kind.is("bars")) return std::make_unique<BarsSource>(raster);
   if (frames.empty())
     throw UserError(params.file.key() + ": '" + params.file() + "' gave no picture; " +
-                    params.kind.key() + " " + params.kind() + " needs a still or a video (chart needs none)");
+                    params.kind.key() + " " + params.kind() + " needs a still or a video (chart and bars need none)");
   if (params.kind.is("sphere") && params.lens.is("kannala_brandt"))
     params.check_calibration(frames.front().width, frames.front().height);
   if (params.kind.is("sphere"))

@@ -95,6 +95,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .digital = (page->flags & PARAM_DIGITAL) != 0,
 #ifdef CONSOLE
                   .display_free = (page->flags & PARAM_DISPLAY_FREE) != 0,
+                  .multiplexer = (page->flags & PARAM_MULTIPLEXER) != 0,
                   .check_capture = (page->flags & PARAM_CHECK_CAPTURE) != 0,
 #endif
                   .repeats = page->repeats != 0 ? page->repeats : 1u,

@@ -29,6 +29,7 @@ typedef struct config {
   int has_engine;   /* the chip has the remap engine */
 #ifdef CONSOLE
   int display_free; /* the display does not start in step with the camera */
+  int multiplexer;  /* an analogue multiplexer under GPIO changes between the cameras, not the decoder */
   int check_capture; /* frames of which a part was not written are left out (capture_check.h) */
 #endif
   uint32_t repeats; /* number of remaps for each captured frame, at least 1 */

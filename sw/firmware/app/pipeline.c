@@ -21,6 +21,7 @@
 #include "turns.h"
 #endif
 #ifdef CONSOLE
+#include "../drivers/multiplexer.h"
 #include "../drivers/uart_queue.h"
 #include "capture_check.h"
 #include "field_watch.h"
@@ -218,6 +219,12 @@ static void watch_another(void) {}
 #endif
 
 static void select_camera(uint32_t camera) {
+#ifdef CONSOLE
+  if (pipe.config->multiplexer) {
+    multiplexer_select(camera);
+    return;
+  }
+#endif
   /* Without an answer the next look shows no lock. */
   i2c_result_t ignored = tvp5146_select(pipe.config->input[camera]);
   (void)ignored;
@@ -470,6 +477,13 @@ void pipeline_start(const config_t *config, uint32_t in_count, uint32_t out_coun
   pipe.standard = config->is_625 ? TVP5146_PAL : TVP5146_NTSC;
   isif_mark_fields(config->is_625);
   if (tvp5146_autoswitch() != I2C_OK) uart_puts("decoder: no answer on I2C, going on\n");
+#ifdef CONSOLE
+  /* The decoder's input is that of the multiplexer from here on. */
+  if (config->multiplexer) {
+    multiplexer_start();
+    if (tvp5146_select(config->input[0]) != I2C_OK) uart_puts("decoder: no answer on I2C, going on\n");
+  }
+#endif
   select_camera(0);
 #endif
   if (isif_set_address((uint32_t)in_buffer(0)) != ISIF_OK) fail("ISIF", "buffer address");
