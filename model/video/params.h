@@ -167,7 +167,7 @@ struct Tvp5146Params : ParamGroup {
                             "what the decoder sends while it is not locked, as long as the black-screen bits of "
                             "register 34 are 0: black, or noise as of an open input",
                             Origin::kAssumed,
-                            "the data manual says only how to switch black on",
+                            "no public figure or sentence was found",
                             {"black", "noise", "a decoder that goes on sampling shows the noise of its input"}};
   IntParam count_lines{*this,
                        "count_lines",

@@ -26,9 +26,8 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// CLEAR_LOST_LOCK. While the decoder is not locked (after power-up, after a change of register 00
 /// or 02, without a signal, or with the wrong standard in 02), it sends black pictures or noise in the raster
 /// of the selected camera or, without a signal, in that of the last one (assumed). Bits 3 and 2 of register 34
-/// (black screen) decide: 0 what `unlocked_output` says, 1 black, and 2 black also while it is locked; 3 is reserved,
-/// and taken for 2 (assumed). The raster changes
-/// between two lines: the line on the wire is completed, and the new raster goes on with its next
+/// (black screen; place and codes assumed) decide: 0 what `unlocked_output` says, 1 black, and 2 or 3 black also while
+/// it is locked. The raster changes between two lines: the line on the wire is completed, and the new raster goes on with its next
 /// whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before into 9A and 9B
 /// (low and high part), and the bit is 0 again when that is done. What is counted are the lines that are sent, from
 /// one start of a first field to the next, also across a change of the input. Not modelled: picture controls (kept,

@@ -45,6 +45,11 @@ struct Chip : testing::Test {
   void copy(unsigned pitch = kPairs) {
     for (std::uint32_t n = 0; n < kPairs * kRows; ++n) word(kSource + 4 * n) = n * 0x0101'0101 + 7;
     for (std::uint32_t n = 0; n < pitch * kRows; ++n) word(kTarget + 4 * n) = 0;
+    job(pitch);
+    set_register(engine().regs.submit, 1);
+  }
+  /// Describes it, and enables the engine.
+  void job(unsigned pitch = kPairs) {
     const EngineRegs& r = engine().regs;
     set_register(r.mode, 3);
     set_register(r.size, kPairs | kRows << 16);
@@ -58,7 +63,6 @@ struct Chip : testing::Test {
     set_register(r.c0, 1 << 8);
     set_register(r.enables, 1);
     set_register(r.ctrl, 1);
-    set_register(r.submit, 1);
   }
   bool copied(unsigned pitch = kPairs) {
     for (std::uint32_t j = 0; j < kRows; ++j)
@@ -135,6 +139,47 @@ TEST_F(Chip, ResetAtAnyTimeForgetsTheJob) {
   run(kPsPerMs);
   EXPECT_TRUE(copied());
   EXPECT_EQ(get(engine().regs.ended), 0x10101u);
+}
+
+/// Bytes that an access does not write keep their value: in registers with fields and in those without.
+TEST_F(Chip, AWriteOfSomeBytesKeepsTheOthers) {
+  const EngineRegs& r = engine().regs;
+  const auto write = [&](const Reg& reg, unsigned byte, unsigned bytes, std::uint32_t value) {
+    engine().regs.write(reg.offset() + byte, bytes, value);
+  };
+  set_register(r.mode, 2 | 3 << 8 | 5 << 16 | 7 << 24);
+  write(r.mode, 1, 1, 4);
+  EXPECT_EQ(get(r.mode), 2u | 4 << 8 | 5 << 16 | 7 << 24);
+  set_register(r.size, 0x0123'0456);
+  write(r.size, 2, 2, 0x0234);
+  EXPECT_EQ(get(r.size), 0x0234'0456u);
+  set_register(r.border, 0x1122'3344);
+  write(r.border, 3, 1, 0x55);
+  EXPECT_EQ(get(r.border), 0x5522'3344u);
+}
+
+/// Which of both was not answered is said, and each is counted and said once at its time.
+TEST_F(Chip, ABusErrorIsNamedByItsDirection) {
+  constexpr std::uint32_t kNowhere = 0x0700'0000;
+  std::vector<std::string> said;
+  Diagnostics::instance().set_sink([&](Diagnostics::Kind, const std::string& text) { said.push_back(text); });
+  const auto make = [&](const Reg& base) {
+    engine().reset(ResetKind::kWarm);
+    said.clear();
+    job();
+    set_register(base, kNowhere);
+    set_register(engine().regs.submit, 1);
+    run(kPsPerMs);
+  };
+  make(engine().regs.src_base);
+  ASSERT_FALSE(said.empty());
+  for (const std::string& text : said) EXPECT_THAT(text, testing::HasSubstr("a read that nobody answers"));
+  EXPECT_EQ(get(engine().regs.ended) >> 8 & 0xFF, 4u);
+  make(engine().regs.dst_base);
+  ASSERT_FALSE(said.empty());
+  for (const std::string& text : said) EXPECT_THAT(text, testing::HasSubstr("a write that nobody answers"));
+  EXPECT_EQ(get(engine().regs.ended) >> 8 & 0xFF, 8u);
+  Diagnostics::instance().set_sink({});
 }
 
 /// A reset of the engine alone, so that a job can begin while requests from before it are still under way.
