@@ -27,11 +27,12 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// or 02, without a signal, or with the wrong standard in 02), it sends black pictures or noise in the raster
 /// of the selected camera or, without a signal, in that of the last one (assumed). Bits 3 and 2 of register 34
 /// (black screen; place and codes assumed) decide: 0 what `unlocked_output` says, 1 black, and 2 or 3 black also while
-/// it is locked. The raster changes between two lines: the line on the wire is completed, and the new raster goes on with its next
-/// whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before into 9A and 9B
-/// (low and high part), and the bit is 0 again when that is done. What is counted are the lines that are sent, from
-/// one start of a first field to the next, also across a change of the input. Not modelled: picture controls (kept,
-/// without effect), the two low bits of the 10-bit output, square pixels, VBI data, the time that the I2C patch takes.
+/// it is locked. The raster changes between two lines: the line on the wire is completed, and the new raster goes on
+/// with its next whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before
+/// into 9A and 9B (low and high part), and the bit is 0 again when that is done. What is counted are the lines that
+/// are sent, from one start of a first field to the next, also across a change of the input. Not modelled: picture
+/// controls (kept, without effect), the two low bits of the 10-bit output, square pixels, VBI data, the time that the
+/// I2C patch takes.
 class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz

@@ -16,10 +16,10 @@
 namespace fovea::e2e {
 
 /// Looks at every load and store of a run, and so finds what this run executes, whether or not an interrupt came at the
-/// worst moment. What runs in IRQ mode is the handler, all else is the program. Of memory that the handler has stored to
-/// before, a store of the program is safe if IRQs are masked, and have been since the program loaded it last. A register
-/// that both write may also be stored to with interrupts open, if the program has not loaded it. Loads of several words
-/// that belong together are not looked at.
+/// worst moment. What runs in IRQ mode is the handler, all else is the program. Of memory that the handler has stored
+/// to before, a store of the program is safe if IRQs are masked, and have been since the program loaded it last. A
+/// register that both write may also be stored to with interrupts open, if the program has not loaded it. Loads of
+/// several words that belong together are not looked at.
 class InterruptRaces : private cpu::BoundaryObserver {
  public:
   InterruptRaces(board::Board& board, const app::ElfImage& program);

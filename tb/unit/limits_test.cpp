@@ -393,8 +393,8 @@ TEST_F(LimitsTest, TheLargestLoadByPriority) {
   const Done d = limits("--priorities 0,4 --load-step 20");
   EXPECT_EQ(d.status, 0) << d.err;
   // The toy bears 340 MB/s, and 10 more for each step of the priority.
-  EXPECT_THAT(d.out, HasSubstr("port load, priority 0: 340 MB/s (340.0 MB/s moved); the longest remap leaves 59.7 % of a frame "
-                               "period. With 360 MB/s: 1 dropped frame"));
+  EXPECT_THAT(d.out, HasSubstr("port load, priority 0: 340 MB/s (340.0 MB/s moved); the longest remap leaves 59.7 % of "
+                               "a frame period. With 360 MB/s: 1 dropped frame"));
   EXPECT_THAT(d.out, HasSubstr("priority 4: 380 MB/s (380.0 MB/s moved); the longest remap leaves"));
   EXPECT_THAT(d.out, HasSubstr("USB 2.0 at high speed, bulk needs 53.2 MB/s: it can run beside this at every port"));
   // 4 slots of 64 bytes at 340 MB/s, from the first captured sample on.

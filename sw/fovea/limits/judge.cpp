@@ -23,8 +23,8 @@ std::string failed_words(const Condition& c, const std::string& name, double val
   return fmt::format("{} {}{}{}", number(value), c.words, value == 1 ? "" : "s", whose);
 }
 
-/// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner or
-/// later, even if buffers have hidden it in a short window. Empty: it does not, or the run does not say.
+/// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner
+/// or later, even if buffers have hidden it in a short window. Empty: it does not, or the run does not say.
 std::string slow_remaps(const points::PointResult& r) {
   const auto rate = r.stat("frame.rate"), mean = r.stat("frame.remap_time.mean");
   if (!rate || !mean || *rate * *mean <= 1) return "";
