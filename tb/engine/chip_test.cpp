@@ -162,7 +162,9 @@ TEST_F(Chip, AWriteOfSomeBytesKeepsTheOthers) {
 TEST_F(Chip, ABusErrorIsNamedByItsDirection) {
   constexpr std::uint32_t kNowhere = 0x0700'0000;
   std::vector<std::string> said;
-  Diagnostics::instance().set_sink([&](Diagnostics::Kind, const std::string& text) { said.push_back(text); });
+  Diagnostics::instance().set_sink([&](Diagnostics::Kind, const std::string& text) {
+    if (text.starts_with("remap engine")) said.push_back(text);  // the bus says its own
+  });
   const auto make = [&](const Reg& base) {
     engine().reset(ResetKind::kWarm);
     said.clear();
