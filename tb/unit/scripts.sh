@@ -82,6 +82,11 @@ calls ci 0 "$every" -- "$tree/.ci/run"
 for step in build tests together; do
   grep -Eqx "ci: $step [0-9]+ s( of 1500 s)?" "$dir/text" || fail "ci: no time of '$step' in $(cat "$dir/text")"
 done
+asked ci 'cmake --build --preset asan -- --quiet'
+sed -i 's/^most_build=.*/most_build=-1/' "$tree/.ci/run"
+calls ci_slow 0 "$every" -- "$tree/.ci/run"
+grep -q '^ci: sanitizers left out' "$dir/text" || fail "ci_slow: $(cat "$dir/text")"
+! grep -q asan "$dir/calls" || fail "ci_slow: $(cat "$dir/calls")"
 sed -i 's/^limit=.*/limit=-1/' "$tree/.ci/run"
 calls ci_limit 1 "$every" -- "$tree/.ci/run"
 grep -q '^ci: took longer than allowed' "$dir/text" || fail "ci_limit: $(cat "$dir/text")"
