@@ -2,24 +2,7 @@
 
 #include <algorithm>
 
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/asan_interface.h>
-#endif
-
 namespace fovea::cpu {
-namespace {
-
-/// AddressSanitizer does not know the stack of a SystemC thread, so the marks of the frames that an exception
-/// has left stay there and are taken for an error when later calls use the same bytes (google/sanitizers
-/// issue 189). This clears them: 256 KiB below the caller's frame, of a stack of 1 MiB.
-[[gnu::noinline]] void clear_marks_of_left_frames() {
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t kBytes = 256 << 10;
-  __asan_unpoison_memory_region(static_cast<char*>(__builtin_frame_address(0)) - kBytes, kBytes);
-#endif
-}
-
-}  // namespace
 
 Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
                std::span<std::uint8_t> tcm, std::uint32_t entry)
@@ -53,7 +36,6 @@ void Arm926::run() {
   } catch (const NotModelled& e) {
     failure_ = e.what();
   }
-  if (!failure_.empty()) clear_marks_of_left_frames();
   leave();
   sc_core::sc_stop();
 }
