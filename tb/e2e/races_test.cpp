@@ -2,8 +2,13 @@
 // masked, in each of its programs. Where a mask is taken out of the program, the loss is found.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
 #include <systemc>
+#include <vector>
 
 #include "sw/fovea/board_console.h"
 #include "tb/e2e/cameras_rig.h"
