@@ -147,9 +147,12 @@ void EdmaCc::submit(unsigned controller, const TransferRequest& request) {
   controllers_[controller]->submit(request);
 }
 
-/// Only region 0 has an interrupt of the ARM; the others' are not connected.
+/// Only region 0 has an interrupt of the ARM. Where the others' lead to is in no public list.
 void EdmaCc::pulse_completion(unsigned region) {
-  if (region != 0) return;
+  if (region != 0) {
+    warn("the interrupt of shadow region " + std::to_string(region) + " is not connected on this chip");
+    return;
+  }
   ++stats.interrupts;
   completion.raise();
 }

@@ -356,6 +356,30 @@ TEST(EdmaBlockTest, AnEnabledInterruptOfATransferControllerIsSaidToBeUnconnected
   EXPECT_EQ(warned(kIntcmd, 2), "1");
 }
 
+// The region's bit of DRAE decides, and IER; the interrupt of region 0 comes all the same.
+TEST(EdmaBlockTest, AnInterruptOfAShadowRegionThatLeadsNowhereIsSaidToBeUnconnected) {
+  const auto seen = [](unsigned region, bool allowed, bool enabled) {
+    return one_transfer([&](Rig& r, std::string& out) {
+      r.cc->regs.write(0x340 + 8 * region, 4, allowed ? 1u << kChannel : 0);  // DRAE
+      r.cc->regs.write(enabled ? 0x1060 : 0x1058, 4, 1u << kChannel);         // IESR or IECR
+      r.at_end_of(4 * kPsPerUs, [&r, &out, region] {
+        const std::string warning = "shadow region " + std::to_string(region) + " is not connected";
+        unsigned warnings = 0;
+        for (const auto& [what, n] : Diagnostics::instance().counts())
+          if (what.second.find(warning) != std::string::npos) ++warnings;
+        out = text("%u %u", warnings, static_cast<unsigned>(r.cc->stats.interrupts.count()));
+      });
+    });
+  };
+  for (unsigned region = 1; region < kShadowRegions; ++region) {
+    EXPECT_EQ(seen(region, true, true), "1 1") << region;
+    EXPECT_EQ(seen(region, false, true), "0 1") << region;
+    EXPECT_EQ(seen(region, true, false), "0 0") << region;
+  }
+  EXPECT_EQ(seen(0, true, true), "0 1");
+  EXPECT_EQ(seen(0, false, true), "0 0");
+}
+
 // SPRUH82C, "Error Generation": accesses to reserved addresses.
 TEST(EdmaBlockTest, ReservedAddressesSetMmraerr) {
   const std::string seen = one_transfer([](Rig& r, std::string& out) {
