@@ -7,7 +7,7 @@
 namespace fovea::bus {
 namespace {
 
-constexpr unsigned kPlaces = 16;  // LoadParams::outstanding
+constexpr unsigned kSlots = 16;  // LoadParams::outstanding
 constexpr Picoseconds kPause = 10 * kPsPerUs;  // after an error, or while the SDRAM is set up
 constexpr std::uint32_t kSdram = DDR_BASE, kInternalRam = INTERNAL_RAM_DATA_BASE;
 }  // namespace
@@ -25,10 +25,10 @@ Master LoadParams::writer() const { return kMasters.find(port(), true)->id; }
 LoadGenerator::LoadGenerator(sc_core::sc_module_name name, const LoadParams& params)
     : sc_module(name),
       params_(params),
-      reads_("memory", params.reader(), kPlaces),
+      reads_("memory", params.reader(), kSlots),
       pause_(params.gap()) {
   if (params.writer() != params.reader())
-    other_side_ = std::make_unique<BurstMaster>("writes", params.writer(), kPlaces);
+    other_side_ = std::make_unique<BurstMaster>("writes", params.writer(), kSlots);
   const auto report = [this](const BurstMaster::Completion& c) { done(c); };
   reads_.on_done = report;
   if (other_side_) other_side_->on_done = report;

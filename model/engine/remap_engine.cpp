@@ -22,7 +22,7 @@ std::uint32_t writable(const Reg& reg) {
 RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& params)
     : BusTarget(name, regs),
       backend_(make_backend(params, clock_, *this, [this](std::int64_t lag) { pair->note(lag); })),
-      memory_("memory", Master::kRemapEngine, kPlaces,
+      memory_("memory", Master::kRemapEngine, kSlots,
               backend_->takes_answers_ahead() ? BurstMaster::Report::kFirstBeatWhenDecided
                                               : BurstMaster::Report::kAtFirstBeat),
       ahead_(backend_->takes_answers_ahead()) {
@@ -30,14 +30,14 @@ RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& param
   add_interrupt("remapint", interrupt_line.out);
   add_statistics(stats);
   if (params.compares()) add_statistics(pair.emplace());
-  add_master(Master::kRemapEngine, memory_.socket, kPlaces);
+  add_master(Master::kRemapEngine, memory_.socket, kSlots);
   memory_.on_done = [this](const BurstMaster::Completion& c) { answered(c); };
   for (Reg* reg : regs.regs()) connect(*reg);
   SC_METHOD(call);
   sensitive << call_.event();
   dont_initialize();
-  SC_METHOD(place_free);
-  sensitive << place_free_.event();
+  SC_METHOD(slot_free);
+  sensitive << slot_free_.event();
   dont_initialize();
   SC_METHOD(report_errors);
   sensitive << failed_.event();
@@ -111,20 +111,20 @@ void RemapEngine::interrupt(bool level) {
   interrupt_line.raise();
 }
 
-/// With kPlaces or fewer under way there is always a place; bursts with gaps are more requests.
+/// With kSlots or fewer under way there is always a free slot; bursts with gaps are more requests.
 void RemapEngine::issue(const Burst& burst, Picoseconds at) {
   if (waiting_.empty() && memory_.free_from() <= at) return put(burst, at);
   waiting_.push_back({burst, {burst.data.begin(), burst.data.end()}, at});
 }
 
-/// Ahead of its time it is not certain which place is free first.
+/// Ahead of its time it is not certain which slot is free first.
 void RemapEngine::issue_waiting() {
   if (waiting_.empty()) return;
-  if (ahead_) return place_free_.at(memory_.free_from());
+  if (ahead_) return slot_free_.at(memory_.free_from());
   while (!waiting_.empty() && memory_.free_from() != kNever) issue_first_waiting();
 }
 
-void RemapEngine::place_free() {
+void RemapEngine::slot_free() {
   while (!waiting_.empty() && memory_.can_issue()) issue_first_waiting();
   issue_waiting();
 }
@@ -151,7 +151,7 @@ void RemapEngine::put(const Burst& burst, Picoseconds at) {
 }
 
 void RemapEngine::answered(const BurstMaster::Completion& c) {
-  if (c.tag >> kTagBits != resets_) return issue_waiting();  // from before a reset: only its place counts
+  if (c.tag >> kTagBits != resets_) return issue_waiting();  // from before a reset: only its slot matters
   if (c.error) {
     failures_.emplace_back(c.write ? c.last : c.first, c.write);
     failed_.at(failures_.front().first);

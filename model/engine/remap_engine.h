@@ -88,7 +88,7 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   void put(const Burst& burst, Picoseconds at);
   void issue_waiting();
   void issue_first_waiting();
-  void place_free();
+  void slot_free();
   void call();
   void report_errors();
   void answered(const BurstMaster::Completion& c);
@@ -101,9 +101,9 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   std::unique_ptr<EngineBackend> backend_;
   BurstMaster memory_;
   const bool ahead_;             // answers are reported when they are decided
-  Timer call_, place_free_, failed_;
+  Timer call_, slot_free_, failed_;
   Picoseconds next_call_ = kNever;  // to which `call_` is set
-  std::deque<Waiting> waiting_;  // for a place
+  std::deque<Waiting> waiting_;  // for a free slot
   std::deque<std::pair<Picoseconds, bool>> failures_;  // times of errors that lie ahead, and whether of a write
   std::uint64_t resets_ = 0;
   bool was_busy_ = false;

@@ -15,7 +15,7 @@ bus::AddressMap address_map(std::size_t internal_bytes) {
   return map;
 }
 
-/// Names for the core's stalls. All register blocks are one.
+/// The regions by which the core's stalls are counted. All register blocks of the chip share one name.
 cpu::RegionMap regions(const Dm365Params& params, std::size_t internal_bytes) {
   cpu::RegionMap out;
   out.add("itcm", INTERNAL_RAM_BASE, internal_bytes);

@@ -21,7 +21,7 @@ struct CaptureStats : StatGroup {
   Counter fields{*this, "fields", "count", "fields captured"};
   Counter bursts{*this, "bursts", "count", "bursts of captured data handed to memory"};
   Counter overflows{*this, "overflows", "count",
-                    "bursts lost because the write buffer had no free place"};
+                    "bursts lost because the write buffer was full"};
   Counter corrected_codes{*this, "corrected_codes", "count",
                           "timing codes with one wrong bit, corrected"};
   Counter bad_codes{*this, "bad_codes", "count", "timing codes beyond correction"};

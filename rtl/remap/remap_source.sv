@@ -1,6 +1,7 @@
 // Reads the words of the source through a small cache of lines of 32 bytes in four ways. The tags are looked up along
 // the stream of addresses, far ahead of the data; a line that is missing is asked for there. What was asked for arrives
-// in order, and is put into the cache when the access that asked for it gets its data. So no line is replaced too early.
+// in order, and is put into the cache when the access that asked for it gets its data, so that no line is replaced too
+// early.
 module remap_source #(
   parameter int unsigned LogLines = 8,  // 2^LogLines lines, 3 to 12
   parameter int unsigned Prefetch = 8   // lines under way at most, 1 to 8

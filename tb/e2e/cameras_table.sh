@@ -151,7 +151,8 @@ cameras unmeasured 0 --ways turns --turns 2 --kernels late --presets 297/243 --r
 rows unmeasured 'turns,2,720x576,late,297/243,10,,2.083,no,no whole remap in the window,,'
 # At further presets the first number of fields alone is asked.
 cameras turns_presets 0 --ways turns --turns 2 --kernels plain --presets 297/243,216/172 --relock 2,0
-X,,12.500,yes,,0.25,' \
+rows turns_presets 'turns,2,720x576,plain,297/243,2,,6.250,yes,,0.25,' \
+  'turns,2,720x576,plain,297/243,0,,12.500,yes,,0.25,' \
   'turns,2,720x576,plain,216/172,2,,6.250,yes,,0.25,'
 has calls '--require frame.repeated<=1000000'
 

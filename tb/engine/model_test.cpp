@@ -183,7 +183,7 @@ TEST(ModelTest, AnErrorEndsAJob) {
   const MappedJob m = small_job(dice);
   fill(bench, m, dice);
   EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.read_fault = ModelBench::kBase + kMap}), kReadError);
-  EXPECT_LE(bench.asked.size(), kPlaces);
+  EXPECT_LE(bench.asked.size(), kSlots);
   EXPECT_EQ(bench.run(m.job, ModelBench::kBase + kMap, kBorder, {.write_fault = ModelBench::kBase + kTarget}),
             kWriteError);
   EXPECT_LE(bench.asked.size(), 200u);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Markdown pages: width of the lines, headings of READMEs, links to files and headings. Usage: pages.py SOURCE"""
+"""Markdown pages: width of the lines, headings of READMEs, links to files and headings. C, C++ and
+SystemVerilog: width of the lines. Usage: pages.py SOURCE"""
 import os
 import re
 import sys
@@ -11,11 +12,14 @@ HEADINGS = ("Purpose", "Concepts|Use", "How it works", "Limits")
 FREE = {"README.md", "model/howto/README.md", "traces/pictures/README.md", "tb/report/axe-core/README.md"}
 
 
-def pages(source):
+CODE = (".h", ".cpp", ".c", ".S", ".sv")
+
+
+def files_of(source, endings):
     for folder, inner, files in os.walk(source):
         top = Path(folder) == source
         inner[:] = [d for d in inner if not d.startswith(".") and not (top and d in ("build", "out"))]
-        yield from (Path(folder) / f for f in files if f.endswith(".md"))
+        yield from (Path(folder) / f for f in files if f.endswith(endings))
 
 
 def prose(text):
@@ -37,7 +41,12 @@ def anchors(page):
 
 
 def complaints(source):
-    for page in sorted(pages(source)):
+    for file in sorted(files_of(source, CODE)):
+        name = file.relative_to(source).as_posix()
+        for number, line in enumerate(file.read_text(encoding="utf-8").split("\n"), 1):
+            if len(line) > WIDTH:
+                yield f"{name}:{number}: {len(line)} columns; at most {WIDTH}"
+    for page in sorted(files_of(source, ".md")):
         name, text = page.relative_to(source).as_posix(), page.read_text(encoding="utf-8")
         for number, line in enumerate(text.split("\n"), 1):
             if len(line) > WIDTH and not line.lstrip().startswith("|"):

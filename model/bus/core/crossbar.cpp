@@ -217,7 +217,7 @@ inline void Crossbar::sum_grants(SlaveState& s) {
     if (const Picoseconds t = w.ps[m] - before->ps[m]) r.parts->add(static_cast<Culprit>(m), t);
 }
 
-/// The slave's input is free again. @return the edge at which the request is in the slave's hands
+/// The slave's input is free again. @return the edge at which the slave takes the request
 std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblocked_by) {
   SlaveState& s = slaves_[request.in_path.slave];
   s.blocked = false;

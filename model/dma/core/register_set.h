@@ -1,5 +1,5 @@
 // What a register set of a transfer controller shows of a request (SPRUH82C, SPRUH73H: "EDMA3TC Channel
-// Registers"). For people and programs that look on; the transfer controller itself does not use it.
+// Registers"). For software and debuggers that read it; the transfer controller itself does not use it.
 #pragma once
 #include <bit>
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace fovea::engine {
 
 /// Requests that are under way at once at most: 4 bursts of the map, 8 lines of the source, 4 writes.
-inline constexpr unsigned kPlaces = 16;
+inline constexpr unsigned kSlots = 16;
 enum ReadId : unsigned { kMapReads = 0, kSourceReads = 1 };
 
 /// A request on the memory port: a read, or the consecutive bytes of a write.
@@ -43,7 +43,7 @@ struct Answer {
 /// 64-bit beats of an answer reach the engine spread evenly over `first` to `last`, one of all reads an edge at
 /// most; of one identifier in the order of the requests. A burst on AW is handed over at the edge at which all of
 /// it is there: a Burst for each run of bytes that the strobes leave; it is answered when all of them are. The
-/// owner takes at least kPlaces requests at once without holding any back; others wait there, in order.
+/// owner takes at least kSlots requests at once without holding any back; others wait there, in order.
 class EngineBackend {
  public:
   class Host {
@@ -67,11 +67,11 @@ class EngineBackend {
   /// for an access may have them at once, ahead of the clock. Afterwards the owner calls run(now) again.
   virtual std::uint32_t read(std::uint32_t offset, Picoseconds now) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) = 0;
-  /// An outcome, in the order of the requests of one identifier, and of the writes. A read's may be told from its
+  /// An outcome, in the order of the requests of one identifier, and of the writes. A read's may be reported from its
   /// decision up to its first beat.
   virtual void answer(const Answer& answer) = 0;
-  /// A write's may be told from its decision on too. Otherwise it is told at the acknowledgement, and a read's best at
-  /// its first beat.
+  /// A write's may be reported from its decision on too. Otherwise it is reported at the acknowledgement, and a
+  /// read's at its first beat at the earliest.
   virtual bool takes_answers_ahead() const { return false; }
   /// Needs edges: a job waits that may start, or one is under way.
   virtual bool busy() const = 0;

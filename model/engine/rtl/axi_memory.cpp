@@ -6,8 +6,8 @@
 
 namespace fovea::rtl {
 
-AxiMemory::AxiMemory(unsigned places, Issue issue) : places_(places), issue_(std::move(issue)) {
-  FOVEA_CHECK(places > 0, "a memory port without a place");
+AxiMemory::AxiMemory(unsigned slots, Issue issue) : slots_(slots), issue_(std::move(issue)) {
+  FOVEA_CHECK(slots > 0, "a memory port without a slot");
 }
 
 void AxiMemory::reset() {
@@ -21,9 +21,9 @@ void AxiMemory::reset() {
 }
 
 void AxiMemory::drive(Picoseconds edge, AxiWires& wires) {
-  std::erase_if(taken_, [edge](const Place& p) { return p.free < edge; });
+  std::erase_if(taken_, [edge](const Slot& p) { return p.free < edge; });
   const bool room = waiting_.empty();
-  wires.ar.ready = room && taken_.size() < places_;
+  wires.ar.ready = room && taken_.size() < slots_;
   wires.aw.ready = room && writes_.size() < kWrites;
   wires.w.ready = beats_.size() < kWrites * kMaxBurstBytes / 8;
   if (!r_.valid) offer_read(edge);
@@ -128,7 +128,7 @@ void AxiMemory::collect_write(Picoseconds edge) {
 }
 
 void AxiMemory::issue_waiting(Picoseconds edge) {
-  while (!waiting_.empty() && taken_.size() < places_) {
+  while (!waiting_.empty() && taken_.size() < slots_) {
     const Part p = std::move(waiting_.front());
     waiting_.pop_front();
     taken_.push_back({p.tag, kNever});
@@ -138,7 +138,7 @@ void AxiMemory::issue_waiting(Picoseconds edge) {
 
 void AxiMemory::answered(std::uint64_t tag, bool error, std::span<const std::uint8_t> data,
                          Picoseconds first, Picoseconds last) {
-  for (Place& p : taken_)
+  for (Slot& p : taken_)
     if (p.tag == tag) p.free = last;
   for (Read& r : reads_)
     if (r.tag == tag) {

@@ -13,14 +13,14 @@
 namespace fovea::rtl {
 
 /// Times: what comes from memory at t is on the wires at the first clock edge strictly after t, and a
-/// place of the memory port that is free from t on is used at edges strictly after t (decision 0001). So
+/// slot of the memory port that is free from t on is used at edges strictly after t (decision 0001). So
 /// it does not matter whether an answer is reported ahead of its time or at it.
 ///
 /// - A burst on AR is one request. Its beats come as they reach the memory port, one a clock at most;
 ///   beats of one identifier in the order of its requests, the oldest request first.
 /// - A burst on AW is handed over when all its data are there: one request for each run of bytes that
 ///   its strobes leave, in the order of addresses. It is answered when all of them are.
-/// - Back-pressure: ARREADY and AWREADY are low while requests wait for a place of the memory port, and
+/// - Back-pressure: ARREADY and AWREADY are low while requests wait for a slot of the memory port, and
 ///   AWREADY while kWrites bursts are unanswered.
 /// - Nobody answers an address: DECERR.
 class AxiMemory {
@@ -37,8 +37,8 @@ class AxiMemory {
   using Issue = std::function<void(const Burst&, Picoseconds at)>;
 
   static constexpr unsigned kWrites = 4;
-  /// @param places requests that the memory port has under way at most, at least 1
-  AxiMemory(unsigned places, Issue issue);
+  /// @param slots requests that the memory port has under way at most, at least 1
+  AxiMemory(unsigned slots, Issue issue);
 
   /// What the memory side drives before the edge.
   void drive(Picoseconds edge, AxiWires& wires);
@@ -76,7 +76,7 @@ class AxiMemory {
     bool error = false;
     Picoseconds last = 0;
   };
-  struct Place {
+  struct Slot {
     std::uint64_t tag;
     Picoseconds free;  // kNever: not known
   };
@@ -87,11 +87,11 @@ class AxiMemory {
   void collect_write(Picoseconds edge);
   void issue_waiting(Picoseconds edge);
 
-  const unsigned places_;
+  const unsigned slots_;
   const Issue issue_;
   std::uint64_t tags_ = 0;
-  std::deque<Part> waiting_;   // for a place
-  std::vector<Place> taken_;
+  std::deque<Part> waiting_;   // for a free slot
+  std::vector<Slot> taken_;
   std::deque<Read> reads_;     // unanswered, in the order of the requests
   std::deque<Write> writes_;   // the same
   std::deque<WriteData> beats_;

@@ -20,7 +20,7 @@ using engine::Burst;
 
 /// Bursts of the map, lines of the source; writes (rtl/README.md).
 constexpr unsigned kReads = 4 + 8, kWrites = AxiMemory::kWrites;
-static_assert(kReads + kWrites == engine::kPlaces);
+static_assert(kReads + kWrites == engine::kSlots);
 /// The owner of the backend holds back what its port does not take. More than there can be: a request for each
 /// run of words of each write.
 constexpr unsigned kNoLimit = kReads + 8 * kWrites;

@@ -132,7 +132,7 @@ void BusRecorder::release_core(Stream& s, Pending& p, const MemRequest& r) {
   const Outcome* read = outcome(s, s.blocking_read);
   const Outcome* latest = outcome(s, s.latest);
   const std::uint64_t number = s.next - 1;
-  // The core's last sign of life: the word that it waited for, or the write that it had to see out.
+  // The last event that the core is known to have waited for: the first word of a read, or the end of a write.
   const Outcome* anchor = waited_for_writes || !read ? latest : read;
   if (anchor && !anchor->done) anchor = nullptr;
   const bool first = anchor && !anchor->write;
@@ -220,8 +220,8 @@ void BusRecorder::note_room(Stream& s, Pending& p, const MemRequest& r, const Co
   while (bursts_.size() > kBufferedWords + kBufferedStores) bursts_.pop_front();
 }
 
-/// A display puts as many bursts of a line on its port as there are places, and each further one in
-/// the place of one that ends.
+/// A display puts as many bursts of a line on its port as the port takes, and each further one when one of
+/// these ends.
 void BusRecorder::release_line(Stream& s, Pending& p, Picoseconds at) {
   const std::uint64_t number = s.next - 1;
   for (std::uint64_t n = number > 2 * s.reads ? number - 2 * s.reads : 0; n < number; ++n) {

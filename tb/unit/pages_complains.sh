@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# pages.py complains of each kind of defect, and of nothing in a source without one. Usage: pages_complains.sh SOURCE
+set -uo pipefail
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+mkdir "$folder/part" "$folder/build"
+columns() { printf "%0$1d" 0; } # COUNT
+headings='## Purpose\n\n## Use\n\n## How it works\n\n## Limits\n'
+printf "# Part\n\n$headings" >"$folder/part/README.md"
+printf '# Page\n\n[Part](part/README.md#how-it-works)\n\n%s\n| %s |\n```\n[code](nowhere)\n```\n' \
+  "$(columns 120)" "$(columns 200)" >"$folder/page.md"
+printf '// %s\n' "$(columns 117)" >"$folder/part/a.cpp"
+columns 300 >"$folder/build/b.cpp"
+check() { "$1/tb/unit/pages.py" "$folder"; }
+said=$(check "$1") || { echo "complaints of a source without defects: $said"; exit 1; }
+
+printf '\n[a](part/none.md) [b](part/README.md#none)\n%s\n' "$(columns 121)" >>"$folder/page.md"
+printf '# Part\n\n## Purpose\n\n## Limits\n' >"$folder/part/README.md"
+for file in a.cpp b.h c.c d.sv e.S; do printf '// %s\n' "$(columns 118)" >"$folder/part/$file"; done
+said=$(check "$1") && { echo 'defects are not found'; exit 1; }
+expected="page.md:3: no heading for the link part/README.md#how-it-works
+page.md:11: no file for the link part/none.md
+page.md:11: no heading for the link part/README.md#none
+page.md:12: 121 columns; at most 120, rows of tables excepted
+part/README.md: no heading '## Concepts|Use'
+part/README.md: no heading '## How it works'
+$(for file in a.cpp b.h c.c d.sv e.S; do echo "part/$file:1: 121 columns; at most 120"; done)"
+diff <(sort <<<"$expected") <(sort <<<"$said")
