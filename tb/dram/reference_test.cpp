@@ -12,19 +12,13 @@
 #include "tb/dram/bench.h"
 #include "tb/dram/edma_stream.h"
 #include "tb/dram/reference_controller.h"
+#include "tb/dram/reference_events.h"
 #include "tb/rounds.h"
 
 namespace fovea::dram {
 namespace {
 
 using Kind = ReferenceController::Kind;
-
-/// What an observer sees of a run.
-struct Event {
-  std::uint64_t what, a, b, c;
-  friend bool operator==(const Event&, const Event&) = default;
-};
-enum What : std::uint64_t { kCommand, kAccepted, kRead, kTaken, kSample };
 
 struct Setup {
   ReferenceConfig config;
@@ -448,6 +442,46 @@ TEST(SameAsReferencesTest, RequestsOfTheEdma) {
   EXPECT_GT(commands, 400 * rounds(20));
   EXPECT_GT(waited, 20 * rounds(20)) << "commands that found the FIFOs full";
   EXPECT_FALSE(play_edma<Production>(3, 60) == play_edma<Oracle>(3, 60, [](auto& s) { ++s.config.tRP; }));
+}
+
+TEST(SameAsReferencesTest, CommandsOfTheEdmaAreLegal) {
+  std::uint64_t commands = 0, too_early = 0;
+  for (std::uint64_t seed = 1; seed <= rounds(20); ++seed) {
+    Rng rng(seed);
+    const auto setup = random_setup(rng);
+    const auto seen = play_edma<Production>(seed, 60);
+    const DataSheet sheet = sheet_of(setup.config, setup.limits);
+    CommandChecker checker(sheet);
+    commands += feed(checker, seen);
+    ASSERT_EQ(checker.total(), 0u) << "seed " << seed << "\n" << checker.text();
+    for (unsigned DataSheet::*const number : {&DataSheet::tRCD, &DataSheet::tRP, &DataSheet::tWTR}) {
+      DataSheet slow = sheet;
+      ++(slow.*number);
+      CommandChecker strict(slow);
+      feed(strict, seen);
+      too_early += strict.total() != 0;
+    }
+  }
+  EXPECT_GT(commands, 1000 * rounds(20));
+  EXPECT_GT(too_early, 2 * rounds(20)) << "of three numbers for each seed";
+}
+
+// At the timing for 243 MHz, with tRRD one clock longer than the part's: the controller knows no tFAW (50 ns).
+TEST(SameAsReferencesTest, ThePartAcceptsCommandsOfTheEdma) {
+  for (std::uint64_t seed = 1; seed <= rounds(20); ++seed) {
+    const Part sold = find_part("mt47h64m16");
+    PartChecker part(sold, Frequency(243'000'000), 5), faster(sold, Frequency(400'000'000), 5);
+    const auto seen = play_edma<Production>(seed, 60, [](auto& s) {
+      s.config = {};
+      s.config.tRRD = 4;
+      s.limits.size = 128u << 20;
+      s.ddr = Frequency(243'000'000);
+    });
+    EXPECT_GT(feed(part, seen), 400u);
+    EXPECT_TRUE(part.warnings().empty()) << "seed " << seed << "\n" << part.text();
+    feed(faster, seen);
+    EXPECT_TRUE(faster.warnings().contains("tRCD")) << faster.text();
+  }
 }
 
 // Seeds that found a defect. 1322, 2055: a choice outlived the moment at which the read FIFO had room

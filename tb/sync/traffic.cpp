@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "tb/sync/edma_block.h"
+#include "tb/sync/flat_ram.h"
 #include "tb/sync/memory_system.h"
 
 namespace fovea::sync {
@@ -23,6 +24,7 @@ std::string text(const char* format, auto... values) {
 
 constexpr std::uint32_t kRegs = 0x01C0'0000;
 constexpr std::uint32_t kDdr = 0x8000'0000;
+constexpr std::uint32_t kRam = 0x1'0000, kRamBytes = 0x4000;
 constexpr Picoseconds kMeeting = 64 * kPsPerNs;  // timers and masters meet at multiples of it
 constexpr Picoseconds kSlot = 60 * kPsPerUs;  // time set aside for one program
 
@@ -232,13 +234,16 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   bus::ConfigBusParams cp;
   mem::DdrParams dp;
   dp.check.set("commands");
-  bus::Scr scr("scr", xp, dp, {}, strict);
+  bus::AddressMap map;
+  map.ram_size = kRamBytes;
+  bus::Scr scr("scr", xp, dp, map, strict);
   using Speed = bus::ConfigBus::Speed;
   bus::ConfigBus config("config", cp, end_of_instant,
                         {{"block", kRegs, 0x1000, Speed::kFast},
                          {"ddr", 0x2000'0000, 0x8000, Speed::kFast},
                          {"edma", EdmaBlock::kBase, 0x8000, Speed::kFast},
-                         {"edma_tc", EdmaBlock::kTcBase, 0x400, Speed::kFast}});
+                         {"edma_tc2", EdmaBlock::kTcBase, EdmaBlock::kTcPitch, Speed::kFast},
+                         {"edma_tc3", EdmaBlock::kTcBase + EdmaBlock::kTcPitch, EdmaBlock::kTcPitch, Speed::kFast}});
   mem::DdrModule ddr("ddr", dp, scr.memory());
   TestBlock block("block", log);
   ClockSignal ddr_clk{"ddr_clk", Frequency(243'000'000)};
@@ -256,19 +261,25 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   block.stream.socket.bind(*scr.target[index(Master::kLoad)]);
 
   EdmaBlock edma(scr, config, scr_clk, on);
+  FlatRam ram("ram", kRamBytes, end_of_instant);
+  scr.ram_socket.bind(ram.socket);
   edma.on_interrupt = [&block] { block.raise(); };
-  block.on_transfer = [&edma](std::uint32_t random) { edma.start(kDdr, random); };
-  edma.tc.on_request = [&log](const dma::TransferRequest& r, Picoseconds at) {
-    log.add(text("%015llu edma begins %08x", static_cast<unsigned long long>(at), r.source.address));
-  };
-  edma.tc.on_ended = [&log](const dma::TransferRequest& r, Picoseconds at) {
-    log.add(text("%015llu edma ends %08x", static_cast<unsigned long long>(at), r.source.address));
-  };
+  block.on_transfer = [&edma](std::uint32_t random) { edma.start(kDdr, kRam, random); };
+  for (unsigned n = 0; n < edma.tcs.size(); ++n) {
+    const auto note = [&log, n](const char* what) {
+      return [&log, n, what](const dma::TransferRequest& r, Picoseconds at) {
+        log.add(text("%015llu tc%u %s %08x to %08x", static_cast<unsigned long long>(at), n + 2, what,
+                     r.source.address, r.destination.address));
+      };
+    };
+    edma.tcs[n]->on_request = note("begins");
+    edma.tcs[n]->on_ended = note("ends");
+  }
 
   // Six masters on the remaining ports; the first has two ports, as the core does.
   std::vector<std::unique_ptr<TrafficMaster>> masters;
   const std::vector<std::vector<Master>> ports = {
-      {Master::kArmI, Master::kArmD}, {Master::kEdmaTc1Read}, {Master::kEdmaTc2Read},
+      {Master::kArmI, Master::kArmD}, {Master::kEdmaTc1Read}, {Master::kEdmaTc1Write},
       {Master::kVpfe}, {Master::kVpbe}, {Master::kRemapEngine}};
   for (unsigned i = 0; i < ports.size(); ++i) {
     masters.push_back(std::make_unique<TrafficMaster>(
@@ -299,6 +310,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
       log.add(text("stat %s %a", s->name().c_str(), std::get<double>(value)));
   }
   log.add(text("memory %016llx", static_cast<unsigned long long>(hash(ddr.store().at(0), 0x20000))));
+  log.add(text("ram %016llx", static_cast<unsigned long long>(hash(ram.bytes.data(), ram.bytes.size()))));
   return {log.sorted(), scr.memory().decided_ahead(), scr.memory().decided_at_present()};
 }
 

@@ -28,6 +28,8 @@ class ChannelController {
     virtual void pulse_error() = 0;
     /// An event waits that prioritise() or process() may take now.
     virtual void work_arrived() = 0;
+    /// Software has enabled these hardware events, one bit each.
+    virtual void events_enabled(std::uint64_t events) = 0;
     /// What a programmer should learn, in one line.
     virtual void warn(const std::string& what) = 0;
   };
@@ -47,6 +49,8 @@ class ChannelController {
   bool process(Picoseconds now);
   /// The earliest time at which the turn of a queue's head comes; kNever: all queues are empty.
   Picoseconds next_turn() const;
+  /// The same among the turns that come behind `now`: heads whose turn has come may wait for their controllers.
+  Picoseconds next_turn_after(Picoseconds now) const;
   /// A transfer controller has ended a request that reports: its code arrives here.
   void completed(const TransferRequest& request);
   /// A transfer controller has dropped a request (TRERR): no code arrives for it.
@@ -91,6 +95,7 @@ class ChannelController {
   void store(unsigned set, const ParamSet& value);
   void exhausted(unsigned set);
   void write_trigger(unsigned set, unsigned word);
+  void check_width(unsigned index, const ParamSet& set);
   void report(const ParamSet& set, bool final);
   std::uint64_t pending() const;
   bool errors() const;
