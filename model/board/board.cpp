@@ -62,11 +62,11 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     decoder.video.bind(dm365.isif.video);
   }
   dm365.i2c.targets.bind(decoder.i2c);
+  if (params.multiplexed()) place_multiplexer();
   if (!params.fault.kind.is("none"))
     fault_ = std::make_unique<CameraFault>(
         "camera_fault", params.fault,
-        params.camera_setup(static_cast<unsigned>(params.fault.camera())).wiring, decoder);
-  if (params.multiplexed()) place_multiplexer();
+        params.camera_setup(static_cast<unsigned>(params.fault.camera())).wiring, decoder, multiplexer.get());
   set_switches();
   platform.add(dm365.platform);
   platform.add("display", sink);

@@ -161,7 +161,7 @@ struct FirmwareParams : ParamGroup {
   EnumParam program{*this, "program", "auto", {"auto", "one_camera", "cameras"},
                     "which of the built programs runs: the one for one camera, or the one for up to eight, "
                     "which also watches the camera's signal and takes commands on UART0; auto: the "
-                    "second one with cameras.count above 1 or firmware.display_phase = free",
+                    "second one with cameras.count above 1, firmware.display_phase = free or a fault.kind",
                     Origin::kChoice, ""};
   EnumParam display_phase{*this, "display_phase", "locked", {"locked", "free"},
                           "the display starts in step with the camera, or on its own, before the decoder "

@@ -1,13 +1,18 @@
 #include "model/board/camera_fault.h"
 
+#include "model/common/check.h"
+
 namespace fovea::board {
 
 FaultParams::FaultParams() : ParamGroup("fault") {
   const auto only = [this](ParamBase& p, const char* condition, auto... words) {
     p.matters_only(condition, {&kind}, [this, words...] { return (kind.is(words) || ...); });
   };
-  for (ParamBase* p : std::initializer_list<ParamBase*>{&camera, &start, &end})
+  for (ParamBase* p : std::initializer_list<ParamBase*>{&start, &end})
     p->matters_only("a fault.kind other than none", {&kind}, [this] { return !kind.is("none"); });
+  camera.matters_only("a fault.kind other than none and stuck_select", {&kind}, [this] { return of_camera(); });
+  for (ParamBase* p : std::initializer_list<ParamBase*>{&select_line, &select_level})
+    only(*p, "fault.kind = stuck_select", "stuck_select");
   only(wrong_bits, "fault.kind = sync_noise", "sync_noise");
   only(every, "fault.kind = sync_noise", "sync_noise");
   only(lines, "fault.kind = missing_lines or short_lines", "missing_lines", "short_lines");
@@ -28,13 +33,18 @@ video::SignalFault FaultParams::of_lines() const {
 }
 
 CameraFault::CameraFault(sc_core::sc_module_name name, const FaultParams& params,
-                         const video::CameraWiring& wiring, video::Tvp5146& decoder)
-    : sc_module(name), params_(params), wiring_(wiring), decoder_(decoder) {
+                         const video::CameraWiring& wiring, video::Tvp5146& decoder,
+                         AnalogueMultiplexer* multiplexer)
+    : sc_module(name), params_(params), wiring_(wiring), decoder_(decoder), multiplexer_(multiplexer) {
+  FOVEA_CHECK(multiplexer || !params.kind.is("stuck_select"), "a select line of no multiplexer is stuck");
   SC_METHOD(step);
   sensitive << timer_.event();
 }
 
 void CameraFault::apply(bool present) {
+  if (params_.kind.is("stuck_select"))
+    return multiplexer_->stick(static_cast<unsigned>(params_.select_line()),
+                               present ? std::optional(params_.select_level() != 0) : std::nullopt);
   const auto camera = static_cast<std::size_t>(params_.camera());
   if (params_.kind.is("unplugged"))
     decoder_.connect(camera, !present && wiring_.connected);

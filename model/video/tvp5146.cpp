@@ -4,26 +4,32 @@
 
 #include "model/common/burst_master.h"
 #include "model/common/check.h"
+#include "model/video/tvp5146_settings.h"
 
 namespace fovea::video {
 namespace {
 
 constexpr std::uint8_t kInputSelect = 0x00, kVideoStandard = 0x02, kOperationMode = 0x03,
-                       kFormatter2 = 0x34, kClearLostLock = 0x39, kStatus1 = 0x3A, kStatus2 = 0x3B,
+                       kFormatter1 = 0x33, kFormatter2 = 0x34, kClearLostLock = 0x39, kStatus1 = 0x3A, kStatus2 = 0x3B,
                        kDetected = 0x3F, kRomVersion = 0x70, kIdHigh = 0x80, kIdLow = 0x81, kStatusRequest = 0x97,
                        kLineCountLow = 0x9A, kLineCountHigh = 0x9B;
 constexpr std::uint8_t kFormatter2Enables = 0x11;  // enables the data and clock outputs
 // Bits 3 and 2 of the same register.
 constexpr unsigned kBlackScreenOff = 0, kBlackScreenUnlocked = 1;
 
+void warn(std::uint8_t index, std::uint8_t value) {
+  for (const std::string& what : decoder_not_modelled(index, value)) Diagnostics::instance().not_modelled(what);
+}
+
 }  // namespace
 
 Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params,
                  const std::vector<CameraWiring>& cameras)
-    : sc_module(name), params_(params), cameras_(cameras.begin(), cameras.end()) {
+    : sc_module(name),
+      params_(params),
+      cameras_(cameras.begin(), cameras.end()),
+      regs_(decoder_reset_values()) {
   FOVEA_CHECK(!cameras.empty(), "a decoder needs the raster of a camera");
-  regs_[0x01] = 0x0F;
-  regs_[0x09] = regs_[0x0A] = regs_[0x0B] = 0x80;
   if (params.output_at_reset()) regs_[kFormatter2] = kFormatter2Enables;
   change_input();
   i2c.bind(*this);
@@ -299,6 +305,8 @@ void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {
   if (was_locked && !lock()) lost_lock_ = true;
   if (index == kClearLostLock && (value & 1)) lost_lock_ = false;
   if (enabled() != was_enabled) schedule();
+  warn(index, value);
+  if (enabled() && !was_enabled) warn(kFormatter1, regs_[kFormatter1]);  // a program may have left it as it was
 }
 
 std::uint8_t Tvp5146::read_register(std::uint8_t index) const {

@@ -30,9 +30,9 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// it is locked. The raster changes between two lines: the line on the wire is completed, and the new raster goes on
 /// with its next whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before
 /// into 9A and 9B (low and high part), and the bit is 0 again when that is done. What is counted are the lines that
-/// are sent, from one start of a first field to the next, also across a change of the input. Not modelled: picture
-/// controls (kept, without effect), the two low bits of the 10-bit output, square pixels, VBI data, the time that the
-/// I2C patch takes.
+/// are sent, from one start of a first field to the next, also across a change of the input. Not modelled, with a
+/// warning (tvp5146_settings.h): picture controls, other output formats than BT.656, square pixels. Not modelled: the two
+/// low bits of the 10-bit output, VBI data, the time that the I2C patch takes.
 class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz
@@ -129,7 +129,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   Picoseconds counted_at_ = 0;                  // when counted_[1] could be captured first
   std::optional<Picoseconds> capture_at_;       // requested, and not in registers 9A and 9B yet
 
-  std::array<std::uint8_t, 256> regs_{};
+  std::array<std::uint8_t, 256> regs_;
   std::uint8_t pointer_ = 0;
   bool expect_pointer_ = false;
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "model/common/check.h"
 #include "model/video/scene/car_park.h"
 #include "model/video/scene/line_chart.h"
 #include "sw/fovea/ffmpeg.h"
@@ -22,7 +23,7 @@ constexpr unsigned kPlacementAll = video::kPlacement525All.rows;
 bool takes_turns(const board::BoardParams& params) {
   const auto& fw = params.firmware;
   if (!fw.program.is("auto")) return fw.program.is("cameras");
-  return params.camera_count() > 1 || fw.display_phase.is("free");
+  return params.camera_count() > 1 || fw.display_phase.is("free") || !params.fault.kind.is("none");
 }
 
 }  // namespace
@@ -203,11 +204,23 @@ void check_digital(const board::BoardParams& params) {
   fits(v.height, v.format().height);
 }
 
+/// The run goes on: what a fault does to a program that does not look for it may be what is asked for.
+void warn_of_unwatched_fault(const board::BoardParams& params) {
+  const auto& kind = params.fault.kind;
+  if (kind.is("none")) return;
+  Diagnostics::instance().configuration("key '" + kind.key() + "': '" + kind() + "' is not looked for by " +
+                                        params.firmware.program.key() +
+                                        " = one_camera, which shows what comes and says nothing; the program that "
+                                        "does: cameras, or auto");
+}
+
 void check_cameras(const board::BoardParams& params) {
   const unsigned count = params.camera_count();
   const auto& fault = params.fault;
   const bool quad = params.cameras.quad();
-  require(fault.kind.is("none") || fault.camera() < params.input_count(), fault.camera.key(), fault.camera.text(),
+  require(!fault.kind.is("stuck_select") || params.multiplexed(), fault.kind.key(), fault.kind(),
+          "that of a camera, or any with cameras.multiplexer = gpio and cameras.count of 2 or more");
+  require(!fault.of_camera() || fault.camera() < params.input_count(), fault.camera.key(), fault.camera.text(),
           quad ? "0 with cameras.quad, whose signal is one" : "the number of a camera, less than cameras.count");
   for (unsigned n = 0; !params.multiplexed() && n < count; ++n)
     for (unsigned k = 0; k < n; ++k) {
@@ -248,12 +261,16 @@ void check_cameras(const board::BoardParams& params) {
             "locked in the program for one camera");
     require(!fw.check_capture(), fw.check_capture.key(), fw.check_capture.text(),
             "false in the program for one camera (firmware.program)");
+    warn_of_unwatched_fault(params);
     return;
   }
+  const std::string watched = fault.kind.is("none") || !fw.program.is("auto") || count > 1
+                                  ? ""
+                                  : "; fault.kind asks for it, unless firmware.program = one_camera";
   require(fw.tables() == 1, fw.tables.key(), fw.tables.text(),
-          "1 in the program for several cameras, each of which has a table of its own");
+          "1 in the program for several cameras, each of which has a table of its own" + watched);
   require(fw.flow.is("double"), fw.flow.key(), fw.flow(),
-          "double in the program for several cameras");
+          "double in the program for several cameras" + watched);
 }
 
 }  // namespace

@@ -371,6 +371,56 @@ TEST(CameraRowTest, SettingsThatCannotBeAreRefused) {
   EXPECT_EQ(error({{"fault.kind", "unplugged"}, {"fault.camera", "0"}}), "");
 }
 
+/// A fault of one camera: the program that `fovea run` takes and the warnings about keys, or the refusal.
+std::string fault_of_one(const Keys& keys) {
+  Diagnostics::instance().clear();
+  try {
+    Settings s(keys);
+    app::complete_params(s.params);
+    std::string out = app::program_file(s.params).filename().string();
+    for (const auto& [kind, count] : Diagnostics::instance().counts()) out += "; " + kind.second;
+    return out;
+  } catch (const UserError& e) {
+    return e.what();
+  }
+}
+
+TEST(FaultTest, OfOneCameraIsRunByTheProgramThatLooksForIt) {
+  EXPECT_EQ(fault_of_one({}), "fovea_firmware.elf");
+  for (const char* kind :
+       {"unplugged", "wrong_standard", "sync_noise", "missing_lines", "short_lines", "clock_drift"}) {
+    EXPECT_EQ(fault_of_one({{"fault.kind", kind}}), "fovea_cameras.elf") << kind;
+    EXPECT_EQ(fault_of_one({{"fault.kind", kind}, {"firmware.program", "cameras"}}), "fovea_cameras.elf") << kind;
+    EXPECT_EQ(fault_of_one({{"fault.kind", kind}, {"firmware.program", "one_camera"}}),
+              "fovea_firmware.elf; key 'fault.kind': '" + std::string(kind) +
+                  "' is not looked for by firmware.program = one_camera, which shows what comes and says nothing; the "
+                  "program that does: cameras, or auto");
+  }
+  EXPECT_EQ(fault_of_one({{"fault.kind", "unplugged"}, {"firmware.elf", "other.elf"}}), "other.elf");
+  EXPECT_EQ(fault_of_one({{"fault.kind", "unplugged"}, {"firmware.view", "four_way"}, {"cameras.count", "4"}}),
+            "fovea_views.elf");
+  EXPECT_EQ(fault_of_one({{"fault.kind", "unplugged"}, {"firmware.flow", "serial"}}),
+            "key 'firmware.flow': 'serial' is not allowed; allowed: double in the program for several cameras; "
+            "fault.kind asks for it, unless firmware.program = one_camera");
+  EXPECT_EQ(fault_of_one({{"firmware.flow", "serial"}}), "fovea_firmware.elf");
+}
+
+TEST(FaultTest, OfTheMultiplexerNeedsOne) {
+  const std::string refused =
+      "key 'fault.kind': 'stuck_select' is not allowed; allowed: that of a camera, or any with cameras.multiplexer = "
+      "gpio and cameras.count of 2 or more";
+  Keys keys{{"fault.kind", "stuck_select"}};
+  EXPECT_EQ(fault_of_one(keys), refused);
+  keys["cameras.multiplexer"] = "gpio";
+  EXPECT_EQ(fault_of_one(keys), refused) << "a camera alone";
+  keys["cameras.count"] = "2";
+  EXPECT_EQ(fault_of_one(keys), "fovea_cameras.elf");
+  keys["cameras.multiplexer"] = "decoder";
+  EXPECT_EQ(fault_of_one(keys), refused);
+  EXPECT_NE(fault_of_one({{"fault.select_line", "3"}}), "fovea_firmware.elf") << "there are three";
+  EXPECT_NE(fault_of_one({{"fault.select_level", "2"}}), "fovea_firmware.elf");
+}
+
 // Every key that declares a condition names it in a way that a sentence can end with, and its
 // deciders are keys.
 TEST(EffectsTest, DeclarationsAreComplete) {

@@ -142,7 +142,7 @@ tested cameras.genlocked e2e.cameras
 idle cameras.genlocked false
 acts cameras.multiplexer gpio cameras.count=2
 idle cameras.multiplexer gpio
-acts fault.kind unplugged fault.start=50ms
+acts fault.kind unplugged firmware.program=cameras fault.start=50ms
 tested fault.camera e2e.cameras
 tested fault.start e2e.cameras
 tested fault.end e2e.cameras
@@ -151,6 +151,11 @@ acts fault.every 5 fault.kind=sync_noise fault.start=50ms fault.end=5s
 acts fault.lines 6 fault.kind=missing_lines fault.start=50ms fault.end=5s
 acts fault.samples 800 fault.kind=short_lines fault.start=50ms fault.end=5s
 acts fault.drift 900ppm fault.kind=clock_drift fault.start=50ms fault.end=5s
+acts fault.select_line 1 fault.kind=stuck_select fault.select_level=1 cameras.count=4 cameras.multiplexer=gpio fault.start=50ms fault.end=5s
+acts fault.select_level 1 fault.kind=stuck_select cameras.count=4 cameras.multiplexer=gpio fault.start=50ms fault.end=5s
+idle fault.select_line 1 fault.kind=unplugged
+idle fault.select_level 1
+idle fault.camera 0 fault.kind=stuck_select cameras.count=4 cameras.multiplexer=gpio
 idle fault.wrong_bits 2 fault.kind=short_lines
 idle fault.every 5 fault.kind=unplugged
 idle fault.lines 6 fault.kind=sync_noise
