@@ -63,6 +63,10 @@ void BoardParams::link_video() {
 void BoardParams::link_cameras() {
   cameras.multiplexer.matters_only("cameras.count of 2 or more", {&cameras.count},
                                    [this] { return camera_count() > 1; });
+  firmware.watchdog.matters_only(
+      "a program for several cameras (firmware.program, firmware.view, cameras.count or firmware.elf)",
+      {&firmware.elf, &firmware.program, &firmware.view, &firmware.display_phase, &cameras.count},
+      [this] { return !firmware.elf().empty() || !firmware.view.is("single") || takes_turns(); });
   for (unsigned n = 1; n < camera_rows.size(); ++n)
     camera_rows[n].wire.input.matters_only("cameras.multiplexer = decoder", {&cameras.multiplexer},
                                            [this] { return cameras.multiplexer.is("decoder"); });

@@ -171,6 +171,10 @@ struct FirmwareParams : ParamGroup {
                           "input buffers are marked before a capture, and a frame in which a mark is left, because "
                           "a burst of it was lost, is said and left out; costs time for each frame",
                           Origin::kChoice, ""};
+  IntParam watchdog{*this, "watchdog", IntParam::Unit::kTime, 5 * kPsPerSecond, 0, 60 * kPsPerSecond,
+                    "if the program for several cameras or for composed views makes no progress for so long, the "
+                    "watchdog resets the chip (run.resets); after half of it the program says so; 0: off",
+                    Origin::kChoice, ""};
   EnumParam baud{*this, "baud", "115200", {"115200", "57600", "38400", "19200", "9600"},
                  "rate of UART0 that the firmware sets", Origin::kChoice, ""};
   /// Divisor of the UART's 24 MHz / 16, rounded.
@@ -257,6 +261,11 @@ struct BoardParams : ParamTree {
   bool multiplexed() const { return cameras.multiplexer.is("gpio") && camera_count() > 1; }
   /// Signals at the decoder: one if a quad processor joins those of the cameras.
   unsigned input_count() const { return cameras.quad() ? 1 : camera_count(); }
+  /// Of the built programs it is the one for several cameras in turn, which one camera may have as well.
+  bool takes_turns() const {
+    if (!firmware.program.is("auto")) return firmware.program.is("cameras");
+    return camera_count() > 1 || firmware.display_phase.is("free") || !fault.kind.is("none");
+  }
   /// Size of the picture that the camera sends, and of what is corrected and shown.
   unsigned raster_width() const { return video.format().camera_width(); }
   unsigned raster_height() const { return video.format().camera_height; }

@@ -51,7 +51,7 @@ const char *param_page_text(param_page_result_t result) {
     case PARAM_PAGE_BAD_MAGIC:
       return "there is none (unknown magic)";
     case PARAM_PAGE_BAD_VERSION:
-      return "unknown version; this firmware reads version 4";
+      return "unknown version; this firmware reads version 5";
     case PARAM_PAGE_TOO_SMALL:
       return "too small for its version and its cameras";
     case PARAM_PAGE_TOO_LARGE:
@@ -72,7 +72,7 @@ const char *param_page_text(param_page_result_t result) {
   return "unknown";
 }
 
-PARAM_ASSERT(PARAM_PAGE_VERSION == 4);
+PARAM_ASSERT(PARAM_PAGE_VERSION == 5);
 PARAM_ASSERT(PARAM_CAMERAS_MAX == 8);
 
 void param_page_seal(param_page_t *page) {

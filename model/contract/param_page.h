@@ -21,7 +21,7 @@ extern "C" {
 #define PARAM_CONSTANT(constant, code, word) constant = (code),
 
 #define PARAM_PAGE_MAGIC 0x41564F46u /* bytes "FOVA" */
-#define PARAM_PAGE_VERSION 4u        /* changes with every change of the layout or of a meaning */
+#define PARAM_PAGE_VERSION 5u        /* changes with every change of the layout or of a meaning */
 #define PARAM_CAMERAS_MAX 8u
 #define PARAM_TABLE_MAX 129u
 
@@ -148,7 +148,8 @@ typedef struct param_camera {
 #define PARAM_ENGINE (1u << 2)     /* the chip has the remap engine; without, its registers are a bus error */
 #define PARAM_DISPLAY_FREE (1u << 3) /* the display starts on its own, not in step with the camera; only a program
                                         with a console does that */
-#define PARAM_CHECK_CAPTURE (1u << 4) /* frames of which a part was not written are left out; likewise */
+#define PARAM_CHECK_CAPTURE (1u << 4) /* frames of which a part was not written are left out; only a program for
+                                         several cameras does that */
 #define PARAM_MULTIPLEXER (1u << 6) /* an analogue multiplexer under GPIO leads one of the cameras to the decoder's
                                        input of camera 0 (multiplexer.h); only a program with a console knows it */
 #define PARAM_DIGITAL (1u << 5) /* the camera is a progressive one at the digital port, without a decoder; its size is
@@ -174,7 +175,7 @@ typedef struct param_page {
   uint32_t width;         /* pixels of a centred region; 0: all. Only with SWITCH_SIZE_OF_PAGE of the display */
   uint32_t height;        /* lines of it; 0: all */
   uint32_t camera_count;  /* 1 to PARAM_CAMERAS_MAX */
-  uint32_t reserved;
+  uint32_t watchdog_us;   /* period of the watchdog; 0: off. Only a program for several cameras uses it */
 
   param_camera_t camera[PARAM_CAMERAS_MAX];
 } param_page_t;

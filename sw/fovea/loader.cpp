@@ -19,19 +19,12 @@ constexpr std::size_t kMostFilmFrames = 250;
 /// Rows of a picture on all lines of 525/60 that are not blanked.
 constexpr unsigned kPlacementAll = video::kPlacement525All.rows;
 
-/// Of the built programs it is the one for several cameras, which one camera may have as well.
-bool takes_turns(const board::BoardParams& params) {
-  const auto& fw = params.firmware;
-  if (!fw.program.is("auto")) return fw.program.is("cameras");
-  return params.camera_count() > 1 || fw.display_phase.is("free") || !params.fault.kind.is("none");
-}
-
 }  // namespace
 
 std::filesystem::path program_file(const board::BoardParams& params) {
   if (!params.firmware.elf().empty()) return params.firmware.elf();
   if (!params.firmware.view.is("single")) return built_program("fovea_views.elf");
-  return built_program(takes_turns(params) ? "fovea_cameras.elf" : "fovea_firmware.elf");
+  return built_program(params.takes_turns() ? "fovea_cameras.elf" : "fovea_firmware.elf");
 }
 
 std::filesystem::path built_program(const std::string& name) {
@@ -253,9 +246,9 @@ void check_cameras(const board::BoardParams& params) {
           "false, or true with firmware.view = four_way or birds_eye");
   require(fw.view.is("single") || fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
           "locked with firmware.view = four_way or birds_eye");
-  require(fw.view.is("single") || !fw.check_capture(), fw.check_capture.key(), fw.check_capture.text(),
-          "false with firmware.view = four_way or birds_eye");
-  if (!takes_turns(params)) {
+  const auto period = fw.watchdog();
+  require(period % kPsPerUs == 0, fw.watchdog.key(), fw.watchdog.text(), "whole microseconds, 0 for off");
+  if (!params.takes_turns()) {
     require(count == 1, fw.program.key(), fw.program(), "cameras, with several of them");
     require(fw.display_phase.is("locked"), fw.display_phase.key(), fw.display_phase(),
             "locked in the program for one camera");

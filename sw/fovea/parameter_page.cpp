@@ -156,6 +156,7 @@ std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                (firmware.display_phase.is("free") ? PARAM_DISPLAY_FREE : 0u) |
                (firmware.check_capture() ? PARAM_CHECK_CAPTURE : 0u) |
                (params.video.format().digital ? PARAM_DIGITAL : 0u) | (params.multiplexed() ? PARAM_MULTIPLEXER : 0u);
+  page.watchdog_us = static_cast<std::uint32_t>(firmware.watchdog() / kPsPerUs);
   page.width = params.width();
   page.height = params.height();
   page.camera_count = static_cast<std::uint32_t>(sources.size());

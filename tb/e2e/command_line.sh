@@ -58,7 +58,7 @@ printf '\x00\x00\x00\x50\x00\x00\x00\x50' |
 
 run() { "$fovea" run "$@" -o "$out/run"; }
 # What the firmware refuses is the guest's failure, with its sentence, and not after run.start_limit only.
-expect old_page 3 'the firmware stopped: failed: parameter page: unknown version; this firmware reads version 4 at pc .*, 0\.0[0-9]+ s' -- \
+expect old_page 3 'the firmware stopped: failed: parameter page: unknown version; this firmware reads version 5 at pc .*, 0\.0[0-9]+ s' -- \
   run "$out/small.yaml" -s run.start_limit=60s -s firmware.elf="$firmware/old_page.elf"
 expect bad_lens 3 'the firmware stopped: failed: lens: field of view outside' -- \
   run "$out/small.yaml" -s run.start_limit=60s -s lens.mapping=orthographic -s lens.fov=190deg

@@ -236,6 +236,8 @@ acts firmware.flow serial
 acts firmware.display_phase free
 acts firmware.program cameras
 acts firmware.check_capture true firmware.program=cameras
+acts firmware.watchdog 0s firmware.program=cameras
+idle firmware.watchdog 1s
 idle firmware.program cameras PROGRAM
 acts firmware.kernel ldm
 acts firmware.lut soft_float

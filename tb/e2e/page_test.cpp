@@ -72,8 +72,8 @@ TEST(PageTest, EachFaultOfThePageStopsTheBootWithASentence) {
   const std::string prefix = "failed: parameter page: ";
   EXPECT_EQ(said([](param_page_t& p) { p.magic = 0; }, false),
             prefix + "there is none (unknown magic)\r\n");
-  EXPECT_EQ(said([](param_page_t& p) { p.version = 5; }, false),
-            prefix + "unknown version; this firmware reads version 4\r\n");
+  EXPECT_EQ(said([](param_page_t& p) { p.version = 6; }, false),
+            prefix + "unknown version; this firmware reads version 5\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.bytes -= 4; }, false),
             prefix + "too small for its version and its cameras\r\n");
   EXPECT_EQ(said([](param_page_t& p) { p.repeats += 1; }, false),

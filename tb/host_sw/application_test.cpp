@@ -11,6 +11,7 @@ extern "C" {
 #include "sw/firmware/app/capture_check.h"
 #include "sw/firmware/app/config.h"
 #include "sw/firmware/app/display_watch.h"
+#include "sw/firmware/app/loop_watch.h"
 #include "sw/firmware/app/open_frame.h"
 #include "sw/firmware/app/output.h"
 #include "sw/firmware/app/overlay.h"
@@ -523,6 +524,21 @@ TEST_F(ConfigTest, ARegionThatDoesNotFitIsRefused) {
   EXPECT_EQ(read(0), CONFIG_BAD_REGION);
   page.width = 358;
   EXPECT_EQ(read(0), CONFIG_BAD_REGION);
+}
+
+TEST(LoopWatchTest, AStallIsSaidOnceAfterThePatienceAndEndsWithProgress) {
+  constexpr std::uint32_t start = 0xFFFF'FF00;  // the counter wraps
+  loop_watch_t w;
+  loop_watch_init(&w, 1000, start);
+  EXPECT_EQ(loop_watch_look(&w, start + 1000), 0);
+  EXPECT_EQ(loop_watch_progress(&w, start + 1000), 0u) << "nothing was said";
+  EXPECT_EQ(loop_watch_look(&w, start + 2000), 0);
+  EXPECT_EQ(loop_watch_look(&w, start + 2001), 1);
+  EXPECT_EQ(loop_watch_look(&w, start + 9000), 0) << "once";
+  EXPECT_EQ(loop_watch_progress(&w, start + 9500), 8500u);
+  EXPECT_EQ(loop_watch_progress(&w, start + 9600), 0u);
+  EXPECT_EQ(loop_watch_look(&w, start + 10600), 0);
+  EXPECT_EQ(loop_watch_look(&w, start + 10601), 1) << "and again";
 }
 
 TEST(OverlayTest, HalvesTowardsItsLumaInsideTheBoxOnly) {

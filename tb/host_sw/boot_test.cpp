@@ -122,7 +122,7 @@ TEST_F(BootTest, ABadPageIsRefusedWithASentence) {
   param_page_seal(&page);
   page.version = 1;
   EXPECT_EQ(boot(page), PARAM_PAGE_BAD_VERSION);
-  EXPECT_EQ(sent, "failed: parameter page: unknown version; this firmware reads version 4\r\n");
+  EXPECT_EQ(sent, "failed: parameter page: unknown version; this firmware reads version 5\r\n");
   EXPECT_EQ(values[0x01C67064], 7u) << "phase pins: failed";
   for (const RegisterAccess& a : recorder.writes()) {
     EXPECT_FALSE(a.address >= kPllc1 && a.address < kPllc2 + 0x400) << a;

@@ -19,6 +19,7 @@ extern "C" {
 #include "sw/firmware/drivers/tvp5146_inputs.h"
 #include "sw/firmware/drivers/uart.h"
 #include "sw/firmware/drivers/vpss.h"
+#include "sw/firmware/drivers/watchdog.h"
 
 uint32_t mmio_read32(uint32_t address) { return RegisterRecorder::current()->read(address); }
 void mmio_write32(uint32_t address, uint32_t value) {
@@ -261,6 +262,28 @@ TEST(TimerTest, TheAlarmIsTim34OnceAndLeavesTim12Running) {
   EXPECT_THAT(chip.writes(), ElementsAre(A{'w', 0x01C21420, 0x80}, A{'w', 0x01C21414, 0},
                                          A{'w', 0x01C2141C, 240'000}, A{'w', 0x01C21424, 0x07},
                                          A{'w', 0x01C21420, 0x00400080}));
+}
+
+// The keys, their order and the mode are those of Linux' davinci_wdt.c.
+TEST(WatchdogTest, IsStartedWithItsPeriodAndServedByTwoKeys) {
+  RegisterRecorder chip;
+  watchdog_start(300'000'000);  // 7.2e9 ticks of 24 MHz: more than one half holds
+  EXPECT_THAT(chip.writes(),
+              ElementsAre(A{'w', 0x01C21C20, 0}, A{'w', 0x01C21C24, 0}, A{'w', 0x01C21C24, 0xB}, A{'w', 0x01C21C10, 0},
+                          A{'w', 0x01C21C14, 0}, A{'w', 0x01C21C18, 0xAD27'4800}, A{'w', 0x01C21C1C, 1},
+                          A{'w', 0x01C21C20, 0x80}, A{'w', 0x01C21C28, 0xA5C6'4000}, A{'w', 0x01C21C28, 0xDA7E'4000}));
+  chip.accesses.clear();
+  watchdog_serve();
+  EXPECT_THAT(chip.accesses, ElementsAre(A{'w', 0x01C21C28, 0xA5C6'4000}, A{'w', 0x01C21C28, 0xDA7E'4000}));
+}
+
+// Decision 0015: 1 power-on, 2 warm, 4 watchdog.
+TEST(WatchdogTest, OnlyItsOwnResetIsSaidToBeItsOwn) {
+  RegisterRecorder chip;
+  for (const auto& [type, own] : {std::pair{0u, 0}, {1u, 0}, {2u, 0}, {3u, 0}, {4u, 1}}) {
+    chip.values[0x01C408E4] = type;
+    EXPECT_EQ(watchdog_has_reset(), own) << type;
+  }
 }
 
 TEST(UartTest, DivisorFormatAndText) {

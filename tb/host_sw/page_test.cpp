@@ -45,10 +45,11 @@ TEST(ParamPageTest, LayoutIsTheDocumentedOne) {
   EXPECT_EQ(offsetof(param_page_t, clocks.sdtimr), 60u);
   EXPECT_EQ(offsetof(param_page_t, priority), 80u);
   EXPECT_EQ(offsetof(param_page_t, tables), 112u);
+  EXPECT_EQ(offsetof(param_page_t, watchdog_us), 132u);
   EXPECT_EQ(offsetof(param_page_t, camera[1]), 136u + 1136u);
   const param_page_t page = good_page();
   EXPECT_EQ(0, memcmp(&page.magic, "FOVA", 4));
-  EXPECT_EQ(page.version, 4u);
+  EXPECT_EQ(page.version, 5u);
   EXPECT_EQ(page.bytes, 1272u);
   EXPECT_EQ(good_page(8).bytes, sizeof(param_page_t));
 }
@@ -82,7 +83,7 @@ TEST(ParamPageTest, WrongMagicVersionOrSizeIsRefusedThoughTheSumFits) {
   param_page_t page = good_page();
   page.magic ^= 1;
   EXPECT_EQ(result(page), PARAM_PAGE_BAD_MAGIC);
-  for (const std::uint32_t version : {0u, 3u, 5u}) {
+  for (const std::uint32_t version : {0u, 4u, 6u}) {
     page = good_page();
     page.version = version;
     EXPECT_EQ(result(page), PARAM_PAGE_BAD_VERSION);

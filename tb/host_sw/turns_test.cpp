@@ -155,6 +155,29 @@ TEST(TurnsTest, AClockThatIsOffChangesNoTurn) {
   EXPECT_EQ(t.said(), Lines{"0 clock more than 200 ppm off"});
 }
 
+// For the watchdog: a program without frames has got on if that is the camera's doing.
+TEST(TurnsTest, WhatASignalOfNoUseCostsIsCounted) {
+  Turns t(1);
+  turns_captured(&t);
+  turns_overflow(&t, 0);
+  turns_note(&t, CAMERA_CLOCK_OFF);
+  EXPECT_EQ(t.given_up, 0u);
+  std::uint32_t expected = 0;
+  const auto one_more = [&](const char* what) { EXPECT_EQ(t.given_up, ++expected) << what; };
+  turns_irregular(&t);
+  one_more("irregular");
+  turns_short(&t, 0);
+  one_more("short");
+  turns_torn(&t);
+  one_more("torn");
+  turns_not_ready(&t, &kNoLock);
+  one_more("waiting for the lock");
+  turns_not_ready(&t, &kNothing);
+  one_more("no signal");
+  turns_no_frames(&t, &kReady);
+  one_more("no frames");
+}
+
 TEST(TurnsTest, EventsBeyondTheRoomAreCounted) {
   Turns t(1);
   for (unsigned n = 0; n < TURNS_EVENTS + 2; ++n) turns_torn(&t);

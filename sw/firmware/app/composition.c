@@ -8,6 +8,7 @@
 #include "composition_engine.h"
 #include "model/contract/view_page.h"
 #include "pipeline.h"
+#include "progress.h"
 #include "state.h"
 #include "sw/lens/view_lut.h"
 
@@ -169,6 +170,7 @@ void composition_build(const config_t *config, arena_t *arena) {
   for (uint32_t camera = 0; camera < VIEW_CAMERAS; ++camera) {
     view.first_run[camera] = ~0u;
     build_part(camera);
+    progress_made();
   }
   build_black();
   fw_state.lut_time_ticks = timer_ticks() - start;

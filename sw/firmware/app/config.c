@@ -96,7 +96,10 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
 #ifdef CONSOLE
                   .display_free = (page->flags & PARAM_DISPLAY_FREE) != 0,
                   .multiplexer = (page->flags & PARAM_MULTIPLEXER) != 0,
+#endif
+#ifdef TIME_DIVISION
                   .check_capture = (page->flags & PARAM_CHECK_CAPTURE) != 0,
+                  .watchdog_us = page->watchdog_us,
 #endif
                   .repeats = page->repeats != 0 ? page->repeats : 1u,
                   .tables = page->tables != 0 ? page->tables : 1u,

@@ -30,7 +30,10 @@ typedef struct config {
 #ifdef CONSOLE
   int display_free; /* the display does not start in step with the camera */
   int multiplexer;  /* an analogue multiplexer under GPIO changes between the cameras, not the decoder */
+#endif
+#ifdef TIME_DIVISION
   int check_capture; /* frames of which a part was not written are left out (capture_check.h) */
+  uint32_t watchdog_us; /* the period of the watchdog; 0: off */
 #endif
   uint32_t repeats; /* number of remaps for each captured frame, at least 1 */
   uint32_t tables;  /* number of look-up tables, 1 to PARAM_TABLES_MAX */

@@ -10,6 +10,9 @@
 #include "overlay.h"
 #include "pipeline.h"
 #include "program.h"
+#ifdef TIME_DIVISION
+#include "progress.h"
+#endif
 #include "state.h"
 #include "sw/lens/lens.h"
 
@@ -60,6 +63,9 @@ int main(void) {
   const config_result_t result = config_read(&config, dip, (const param_page_t *)PARAM_PAGE_BASE);
   if (result != CONFIG_OK) fail("configuration", config_result_text(result));
   print_config();
+#ifdef TIME_DIVISION
+  progress_start(config.watchdog_us);
+#endif
   pipeline_prepare(&config);
   overlay_start(config.overlay, config.self_patch, config.pitch_bytes);
 

@@ -37,9 +37,10 @@ uint32_t pipeline_last_sequence(void);
 uint32_t pipeline_camera(void);
 
 #ifdef COMPOSED_VIEW
-/** The newest frame of each camera, that of the last pipeline_take() included; a null pointer if there
- * was none yet. They stay until the camera's next frame is taken. */
-const uint8_t *const *pipeline_kept(void);
+/** The frame of the last pipeline_take() takes the place of its camera's last one.
+ * @return the newest frame of each camera, that one included; a null pointer if there was none yet. They stay until the
+ * camera's next frame is kept. */
+const uint8_t *const *pipeline_keep(void);
 #endif
 
 /** What is to be said of the display, oldest first; DISPLAY_NOTHING if there is nothing.
@@ -48,9 +49,10 @@ display_event_t pipeline_display_event(uint32_t *late_fields);
 
 /** What is to be said of a camera, oldest first. @return 0 if there is nothing more */
 int pipeline_event(uint32_t *camera, const char **what);
-#endif
 
-#ifdef CONSOLE
+/** Counts the frames, and the waits for one, that came to nothing, as a camera's signal was of no use. */
+uint32_t pipeline_given_up(void);
+
 /** Checks the frame of the last pipeline_take(), if the page asks for that (PARAM_CHECK_CAPTURE). If a part of it was
  * not captured, the frame is left out, and said; the output buffer stays free.
  * @return 1 if the frame is to be corrected; 0 if pipeline_done() must not be called for it */
@@ -58,7 +60,9 @@ int pipeline_whole(void);
 
 /** Marks a buffer that the camera may get next and whose marks are gone, if the page asks for marks. */
 void pipeline_mark_free(void);
+#endif
 
+#ifdef CONSOLE
 /** Whether a captured frame waits for pipeline_take(). With interrupts masked. */
 int pipeline_frame_waits(void);
 

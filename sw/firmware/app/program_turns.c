@@ -8,6 +8,7 @@
 #include "choices.h"
 #include "pipeline.h"
 #include "program.h"
+#include "progress.h"
 #include "say.h"
 #include "state.h"
 #include "view_tables.h"
@@ -35,13 +36,17 @@ void program_started(const config_t *config) { choices_start(config, views); }
 
 void program_work(void) {
   camera_events_say();
+  progress_without_frames(pipeline_given_up());
   pipeline_mark_free();
   choices_work();
 }
 
 void program_frame(uint8_t *out, uint32_t sequence) {
-  if (!pipeline_whole()) return;
-  for (uint32_t left = repeats; left-- != 0;)
+  if (!pipeline_whole()) {
+    progress_made();
+    return;
+  }
+  for (uint32_t left = repeats; left-- != 0; progress_made())
     view_correct(&views[pipeline_camera()], pipeline_source(0), out, sequence);
   pipeline_done(!engine_jobs_failed());
 }

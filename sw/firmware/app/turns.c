@@ -72,6 +72,7 @@ uint32_t turns_captured(turns_t *turns) {
 
 uint32_t turns_irregular(turns_t *turns) {
   boundary(turns);
+  ++turns->given_up;
   turns->regular[turns->now] = 0;
   say(turns, CAMERA_IRREGULAR);
   return next(turns);
@@ -82,21 +83,22 @@ void turns_overflow(turns_t *turns, uint32_t camera) {
   say_of(turns, camera, CAMERA_OVERFLOW);
 }
 
-#ifdef CONSOLE /* the views keep their code, and with it their times */
 void turns_short(turns_t *turns, uint32_t camera) {
+  ++turns->given_up;
   turns->regular[camera] = 0;
   say_of(turns, camera, CAMERA_IRREGULAR);
 }
-#endif
 
 void turns_torn(turns_t *turns) {
   boundary(turns);
+  ++turns->given_up;
   turns->waited = 0;
   say(turns, CAMERA_LOST);
 }
 
 uint32_t turns_not_ready(turns_t *turns, const signal_state_t *seen) {
   boundary(turns);
+  ++turns->given_up;
   if (!seen->present) return leave(turns, CAMERA_NO_SIGNAL);
   if (seen->locked && !seen->right_standard) return leave(turns, CAMERA_WRONG_STANDARD);
   if (++turns->waited < TURNS_LOCK_FRAMES) return turns->now;
@@ -105,6 +107,7 @@ uint32_t turns_not_ready(turns_t *turns, const signal_state_t *seen) {
 
 uint32_t turns_no_frames(turns_t *turns, const signal_state_t *seen) {
   boundary(turns);
+  ++turns->given_up;
   if (!seen->present) return leave(turns, CAMERA_NO_SIGNAL);
   if (seen->locked && !seen->right_standard) return leave(turns, CAMERA_WRONG_STANDARD);
   return leave(turns, CAMERA_NO_FRAMES);

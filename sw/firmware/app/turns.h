@@ -44,6 +44,7 @@ typedef struct turns {
   uint32_t now;    /* the one whose turn it is */
   uint8_t sequence[TURNS_SEQUENCE_MAX]; /* of the cameras in turn; at the start all of them */
   uint32_t length, at;                  /* of the sequence; place in it of the camera whose turn it is */
+  uint32_t given_up; /* frames, or waits for one, that came to nothing, as the signal was of no use */
   uint32_t waited; /* frame boundaries for its lock */
   uint8_t state[PARAM_CAMERAS_MAX]; /* camera_event_t that was said of it last; CAMERA_FINE at the start */
   uint8_t regular[PARAM_CAMERAS_MAX]; /* frames since the last one that was left out */
@@ -71,7 +72,7 @@ uint32_t turns_irregular(turns_t *turns);
 /** A frame of this camera, which was captured before, is of no use, as a part of it is missing in memory. */
 void turns_overflow(turns_t *turns, uint32_t camera);
 
-/** The same, as its last field lacked lines. For the program with the watch over the fields. */
+/** The same, as its last field lacked lines. */
 void turns_short(turns_t *turns, uint32_t camera);
 
 /** Something is to be said of the present camera that does not change its state. */

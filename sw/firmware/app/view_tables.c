@@ -3,6 +3,7 @@
 #include "../drivers/cp15.h"
 #include "../drivers/timer.h"
 #include "pipeline.h"
+#include "progress.h"
 #include "state.h"
 
 /* A look-up table, and memory for the form of it that the kernel reads. */
@@ -50,6 +51,7 @@ void view_tables_build(struct view *views, const config_t *config) {
   divide(count);
   for (uint32_t k = 0; k < count; ++k) {
     views[k] = build(k, &config->views[k]);
+    progress_made();
     tables.used_by[k] = (uint8_t)k;
     fw_state.table_address[k] = (uint32_t)(uintptr_t)views[k].table.lut;
   }
