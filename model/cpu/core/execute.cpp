@@ -289,7 +289,7 @@ void Core::interwork(std::uint32_t target) {
 }
 
 void Core::execute(const Instruction& i) {
-  if (i.op <= Op::kMvn) return data_processing(i);
+  if (is_data_processing(i.op)) return data_processing(i);
   switch (i.op) {
     case Op::kLdr: case Op::kLdrb: case Op::kStr: case Op::kStrb: case Op::kLdrh:
     case Op::kLdrsb: case Op::kLdrsh: case Op::kStrh: case Op::kLdrd: case Op::kStrd:
