@@ -212,8 +212,7 @@ bool Core::take_interrupt(Picoseconds at) {
   if (!fiq && !(!(regs_.cpsr & kIrqMask) && irq_.at(at))) return false;
   take(fiq ? Exception::kFiq : Exception::kIrq, regs_.pc + 4);
   enter_exception();
-  if (ledger_.profile && ledger_.profile->on_interrupt)
-    ledger_.profile->on_interrupt(fiq, ledger_.cycle);
+  if (ledger_.profile) ledger_.profile->interrupted(fiq, ledger_.cycle);
   failure_.exceptions = 0;
   return true;
 }
