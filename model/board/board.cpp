@@ -72,9 +72,9 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   platform.add("display", sink);
 
   dm365.on_reset_request = [this](const std::string& cause) { reset_asked(cause); };
-  dm365.on_boot = [this](ResetKind) {
+  boot_ = dm365.observe_boot([this](ResetKind) {
     for (const LoadImage& image : boot_images_) put(image, false);
-  };
+  });
   dm365.uart0.sink = [this](std::uint8_t byte, Picoseconds) {
     uart_.push_back(static_cast<char>(byte));
     uart_observers_.each([byte](const UartObserver& f) { f(byte); });
@@ -83,7 +83,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     if (bank == MULTIPLEXER_BANK && multiplexer) multiplexer->select(MULTIPLEXER_CHANNEL(out));
     if (bank != PHASE_BANK) return;
     log.pins(out, at);
-    if (on_phase) on_phase(log.phase(), at);
+    phase_observers_.each([&](const PhaseObserver& f) { f(log.phase(), at); });
   });
   dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
     if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
@@ -101,7 +101,7 @@ void Board::reset_asked(const std::string& cause) {
     return reset(ResetKind::kWatchdog);
   }
   chip_reset_ = request;
-  if (on_chip_reset) on_chip_reset(*chip_reset_);
+  reset_observers_.each([this](const ResetObserver& f) { f(*chip_reset_); });
   sc_core::sc_pause();
 }
 
@@ -168,7 +168,7 @@ void Board::latched(const video::Osd::Latch& latch) {
       dm365.scr.settle();
       dm365.ddr.settle(kernel_time());
       window_start_ = whole_until_ = kernel_time();
-      if (on_window_open) on_window_open();
+      window_observers_.each([](const WindowObserver& f) { f(true); });
     });
   } else if (window_open()) {
     whole_until_ = kernel_time();
@@ -195,14 +195,14 @@ void Board::close_window_now() {
   window_end_ = kernel_time();
   const video::Standard& display = video::standard_of(params_.video.format().is_625);
   log.finish(kernel_time(), 2 * Clock(display.clock).periods(display.frame_bytes()));
-  if (on_window_close) on_window_close();
+  window_observers_.each([](const WindowObserver& f) { f(false); });
 }
 
 void Board::frame_shown(const video::DisplayFrame& frame) {
   if (!window_open() || frame.start < *window_start_) return;
   const FrameRecord& r = log.shown(frame.start, frame.end);
   ++frames_in_window_;
-  if (on_frame) on_frame(frame, r);
+  frame_observers_.each([&](const FrameObserver& f) { f(frame, r); });
   forget_old_frames();
 }
 

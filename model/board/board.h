@@ -100,21 +100,25 @@ class Board : public sc_core::sc_module {
   std::vector<std::uint8_t> peek(std::uint32_t address, std::size_t bytes);
 
   /// Called for each frame shown inside the window, in order.
-  std::function<void(const video::DisplayFrame&, const FrameRecord&)> on_frame;
+  using FrameObserver = std::function<void(const video::DisplayFrame&, const FrameRecord&)>;
+  Subscription observe_frames(FrameObserver observer) { return frame_observers_.add(std::move(observer)); }
   /// Called at each change of the pins that show the phase, also if the phase stays.
-  std::function<void(Phase, Picoseconds at)> on_phase;
+  using PhaseObserver = std::function<void(Phase, Picoseconds at)>;
+  Subscription observe_phases(PhaseObserver observer) { return phase_observers_.add(std::move(observer)); }
   /// Called for each byte that UART0 has sent, at its last stop bit.
   using UartObserver = std::function<void(std::uint8_t)>;
   Subscription observe_uart(UartObserver observer) { return uart_observers_.add(std::move(observer)); }
   /// Called when the window opens and when it closes (end-of-instant phase: everything of that instant has
   /// happened).
-  std::function<void()> on_window_open, on_window_close;
+  using WindowObserver = std::function<void(bool open)>;
+  Subscription observe_window(WindowObserver observer) { return window_observers_.add(std::move(observer)); }
 
   /// The chip's first request to be reset that is not carried out (`run.resets`). The simulation pauses
   /// at its instant: whoever runs it ends the run there.
   const std::optional<ChipReset>& chip_reset() const { return chip_reset_; }
   /// Called at that instant, before the pause.
-  std::function<void(const ChipReset&)> on_chip_reset;
+  using ResetObserver = std::function<void(const ChipReset&)>;
+  Subscription observe_chip_reset(ResetObserver observer) { return reset_observers_.add(std::move(observer)); }
   /// The requests that were carried out: the chip has booted again.
   const std::vector<ChipReset>& resets() const { return resets_; }
   /// Resets the chip from outside.
@@ -170,6 +174,10 @@ class Board : public sc_core::sc_module {
   } no_receiver_;
   std::string uart_;
   Observers<UartObserver> uart_observers_;
+  Observers<FrameObserver> frame_observers_;
+  Observers<PhaseObserver> phase_observers_;
+  Observers<WindowObserver> window_observers_;
+  Observers<ResetObserver> reset_observers_;
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
@@ -177,7 +185,7 @@ class Board : public sc_core::sc_module {
   std::vector<ChipReset> resets_;
   std::vector<LoadImage> boot_images_;
   std::optional<Picoseconds> window_start_, window_end_;
-  Subscription pins_;
+  Subscription pins_, boot_;
   Picoseconds whole_until_ = 0;  ///< start of the latest display frame in the window
   FrameSums old_;            ///< of what the log has forgotten
 };

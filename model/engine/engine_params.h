@@ -36,8 +36,8 @@ struct EngineParams : ParamGroup {
   bool has_rtl() const { return present() && !kind.is("tlm"); }
   /// The cache has 2^n lines of 32 bytes.
   unsigned log_cache_lines() const {
-    const auto n = static_cast<unsigned>(cache.index());
-    return n == 0 ? 0 : n + 2;
+    static constexpr unsigned kLogLines[] = {0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};  // in the order of the words
+    return kLogLines[cache.index()];
   }
   EngineParams() : ParamGroup("") {
     for (ParamBase* p : std::initializer_list<ParamBase*>{&cache, &prefetch})

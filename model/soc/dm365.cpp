@@ -332,7 +332,7 @@ void Dm365::end_reset() {
     internal_ram.fill(0);
     ddr.store().clear();
   }
-  if (on_boot) on_boot(kind);
+  boot_observers_.each([kind](const BootObserver& f) { f(kind); });
   for (const Platform::Entry& e : platform.blocks()) e.block->leave_reset();
 }
 

@@ -16,6 +16,7 @@
 #include "model/bus/wait_stats.h"
 #include "model/common/block.h"
 #include "model/common/end_of_instant.h"
+#include "model/common/observers.h"
 #include "model/contract/memory_map.h"
 #include "model/cpu/arm926.h"
 #include "model/cpu/tcm_dma.h"
@@ -139,7 +140,8 @@ class Dm365 : public sc_core::sc_module, public Block {
   void reset_chip(ResetKind kind);
   /// Called just before the core starts again: whoever stands in for the ROM boot loader loads the
   /// program.
-  std::function<void(ResetKind kind)> on_boot;
+  using BootObserver = std::function<void(ResetKind kind)>;
+  Subscription observe_boot(BootObserver observer) { return boot_observers_.add(std::move(observer)); }
   ChipStats stats;
 
   /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
@@ -197,6 +199,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   sc_core::sc_signal<std::uint32_t> mstpri0_, vpss_clk_ctrl_, peri_clk_ctrl_, misc_, arm_intmux_,
       edma_evtmux_;
   std::optional<ResetKind> reset_under_way_;
+  Observers<BootObserver> boot_observers_;
   const Dm365Params& params_;
 };
 

@@ -31,8 +31,8 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// with its next whole line. A 1 in bit 0 of STATUS_REQUEST (97) captures the number of lines of the frame before
 /// into 9A and 9B (low and high part), and the bit is 0 again when that is done. What is counted are the lines that
 /// are sent, from one start of a first field to the next, also across a change of the input. Not modelled, with a
-/// warning (tvp5146_settings.h): picture controls, other output formats than BT.656, square pixels. Not modelled: the two
-/// low bits of the 10-bit output, VBI data, the time that the I2C patch takes.
+/// warning (tvp5146_settings.h): picture controls, other output formats than BT.656, square pixels. Not modelled: the
+/// two low bits of the 10-bit output, VBI data, the time that the I2C patch takes.
 class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz

@@ -113,6 +113,7 @@ class BoardSimulation : public Simulation {
 
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
+  Subscription window_;
   Symbols symbols_;
   std::unique_ptr<BusTraceRun> trace_;
   std::unique_ptr<CommandTrace> commands_;
@@ -306,8 +307,7 @@ void BoardSimulation::open_outputs(const RunRequest& request) {
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   mosaic_score_ = MosaicScore::of(params_);
   line_score_ = LinePictureScore::of(params_);
-  board_->on_window_open = [this] { open_window(); };
-  board_->on_window_close = [this] { close_window(); };
+  window_ = board_->observe_window([this](bool open) { open ? open_window() : close_window(); });
 }
 
 /// A displayed frame goes to whoever wants it. An error of a writer is kept and stops the run.
@@ -509,9 +509,10 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   Session session(*board_, request, elf, until, symbols_);
   if (request.console || dialogue)
     session.console.emplace(*board_, request.console, std::move(dialogue));
-  board_->on_frame = [&](const video::DisplayFrame& f, const board::FrameRecord& r) {
-    take_frame(session, cameras, f, r);
-  };
+  const Subscription frames =
+      board_->observe_frames([&](const video::DisplayFrame& f, const board::FrameRecord& r) {
+        take_frame(session, cameras, f, r);
+      });
   if (!session.wants_frames()) board_->measure_whole_run();
   attach_profile(session);
   attach_host(session);

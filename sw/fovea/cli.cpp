@@ -206,6 +206,42 @@ RunResult run_simulation(Simulation& simulation, const RunRequest& request, Prog
   }
 }
 
+/// Folder, `config.json` first, so that an unfinished folder can be recognised as Fovea's and shows what was tried,
+/// and a full disk is noticed before the simulation.
+void begin_folder(RunDir& dir, const RunOptions& options, const PerfettoRequest& perfetto,
+                  std::string_view config) {
+  refuse_inside(dir, "--bus-trace", options.bus_trace);
+  refuse_inside(dir, "--waves", options.waves);
+  refuse_inside(dir, "--perfetto", perfetto.file);
+  if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
+  dir.write("config.json", config);
+}
+
+/// Writes the results and makes the folder the valid one. @return what was measured of the host
+std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& meter,
+                               const std::vector<std::string>& args, const RunOptions& options,
+                               const std::string& experiment, const CliContext& context) {
+  std::vector<StatRow> host;
+  write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
+  if (options.report)
+    add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
+  context.out.flush();
+  return host;
+}
+
+void take_options(RunRequest& request, const RunOptions& options, const CliContext& context) {
+  request.strict_sync = options.sync == "strict";
+  request.profile = options.profile;
+  request.hazards = options.hazards;
+  request.command_trace = options.command_trace;
+  request.bus_trace = options.bus_trace;
+  request.registers = options.registers;
+  if (options.gdb.empty()) return;
+  request.gdb_port = parse_gdb_port(options.gdb);
+  request.notes = &context.err;
+}
+
 int command_run(const RunOptions& options, const std::vector<std::string>& args,
                 const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
@@ -227,15 +263,9 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / experiment.name(),
              "run");
-  refuse_inside(dir, "--bus-trace", options.bus_trace);
-  refuse_inside(dir, "--waves", options.waves);
   const PerfettoRequest perfetto = perfetto_of(options.perfetto);
-  refuse_inside(dir, "--perfetto", perfetto.file);
-  if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
-  // Written first, so that an unfinished folder can be recognised as Fovea's and shows what was
-  // tried, and a full disk is noticed before the simulation.
-  dir.write("config.json",
-            config_json(params, experiment, provenance_of(params, simulation->input_files())));
+  begin_folder(dir, options, perfetto,
+               config_json(params, experiment, provenance_of(params, simulation->input_files())));
 
   const auto& stop = context.stop ? *context.stop : kNeverStops;
   HostConsole semihosting(context.out, context.err, context.stop);
@@ -245,26 +275,16 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   PictureFiles pictures(options, dir);
   RunRequest request{.params = params,
                      .folder = dir.folder(),
-                     .strict_sync = options.sync == "strict",
-                     .profile = options.profile,
-                     .hazards = options.hazards,
                      .stop = stop,
                      .progress = meter,
                      .frame = {},
                      .perfetto = perfetto,
-                     .command_trace = options.command_trace,
-                     .bus_trace = options.bus_trace,
-                     .gdb_port = {},
-                     .registers = options.registers,
                      .limits = limits,
                      .symbols = symbols ? &*symbols : nullptr,
                      .console = console.stream ? &*console.stream : nullptr,
                      .semihosting = &semihosting};
+  take_options(request, options, context);
   pictures.attach(request);
-  if (!options.gdb.empty()) {
-    request.gdb_port = parse_gdb_port(options.gdb);
-    request.notes = &context.err;
-  }
   RowFiles rows(dir);
   rows.attach(request);
   RunResult result = run_simulation(*simulation, request, meter);
@@ -272,13 +292,9 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   meter.finish();
   pictures.close();
 
-  std::vector<StatRow> host;
   rows.finish(result);
-  write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
-  if (options.report)
-    add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment.name());
-  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
-  context.out.flush();
+  const std::vector<StatRow> host =
+      write_run(dir, result, meter, args, options, experiment.name(), context);
   // With --console the output stream is reserved for UART0.
   report_run(options, result, host, dir, options.console ? context.err : context.out);
   return run_status(options, result, console.stream && console.stream->quit(), context);

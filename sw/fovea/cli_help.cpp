@@ -140,39 +140,53 @@ std::string HelpFormatter::make_footer(const CLI::App* app) const {
   return footer.empty() ? "" : wrapped(footer, 0) + "\n";
 }
 
+namespace {
+
+/// What completes a subcommand: its options and words, and those of its parts.
+std::string completion_case(const CLI::App& c, const std::map<std::string, std::vector<std::string>>& keys) {
+  std::string names, words;
+  const auto add_names = [&names](const CLI::App& of) {
+    for (const auto* o : options_of(of, false))
+      for (const auto& name : names_of(*o))
+        if ((" " + names + " ").find(" " + name + " ") == std::string::npos)
+          names += (names.empty() ? "" : " ") + name;
+  };
+  add_names(c);
+  for (const auto* part : commands_of(c)) {
+    words += (words.empty() ? "" : " ") + part->get_name();
+    add_names(*part);
+  }
+  for (const auto* o : options_of(c, true))
+    if (const auto list = words_of(*o); !list.empty()) words = fmt::format("{}", fmt::join(list, " "));
+  std::string out = fmt::format("    {}) options='{}' words='{}'", c.get_name(), names, words);
+  if (const auto k = keys.find(c.get_name()); k != keys.end())
+    out += fmt::format(" keys='{}'", fmt::join(k->second, " "));
+  return out + " ;;\n";
+}
+
+/// What completes the value of each option that allows certain words only.
+std::string completion_values(const CLI::App& c) {
+  std::string out;
+  auto options = options_of(c, false);
+  for (const auto* part : commands_of(c))
+    for (const auto* o : options_of(*part, false)) options.push_back(o);
+  for (const auto* o : options)
+    if (const auto list = words_of(*o); !list.empty())
+      for (const auto& name : names_of(*o))
+        out += fmt::format("    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n",
+                           c.get_name(), name, fmt::join(list, " "));
+  return out;
+}
+
+}  // namespace
+
 std::string bash_completion(const CLI::App& app,
                             const std::map<std::string, std::vector<std::string>>& keys) {
   std::string commands, cases, values;
   for (const auto* c : commands_of(app)) {
     commands += (commands.empty() ? "" : " ") + c->get_name();
-    std::string names, words;
-    const auto add_names = [&names](const CLI::App& of) {
-      for (const auto* o : options_of(of, false))
-        for (const auto& name : names_of(*o))
-          if ((" " + names + " ").find(" " + name + " ") == std::string::npos)
-            names += (names.empty() ? "" : " ") + name;
-    };
-    add_names(*c);
-    for (const auto* part : commands_of(*c)) {
-      words += (words.empty() ? "" : " ") + part->get_name();
-      add_names(*part);
-    }
-    for (const auto* o : options_of(*c, true))
-      if (const auto list = words_of(*o); !list.empty())
-        words = fmt::format("{}", fmt::join(list, " "));
-    cases += fmt::format("    {}) options='{}' words='{}'", c->get_name(), names, words);
-    if (const auto k = keys.find(c->get_name()); k != keys.end())
-      cases += fmt::format(" keys='{}'", fmt::join(k->second, " "));
-    cases += " ;;\n";
-    auto options = options_of(*c, false);
-    for (const auto* part : commands_of(*c))
-      for (const auto* o : options_of(*part, false)) options.push_back(o);
-    for (const auto* o : options)
-      if (const auto list = words_of(*o); !list.empty())
-        for (const auto& name : names_of(*o))
-          values += fmt::format(
-              "    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n",
-              c->get_name(), name, fmt::join(list, " "));
+    cases += completion_case(*c, keys);
+    values += completion_values(*c);
   }
   return "# Completion for bash: source it, or put it into /etc/bash_completion.d.\n"
          "_fovea() {\n"

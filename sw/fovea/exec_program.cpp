@@ -90,12 +90,9 @@ std::optional<std::uint32_t> parse_ram_base(const std::string& text, std::uint64
   return base;
 }
 
-ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base,
-                         bool caches) const {
-  ExecMap m;
-  m.ram_size = ram_size;
-  // The lowest segment outside internal RAM determines the window. If all segments are loaded there
-  // (flash at 0), it is the lowest of those that the program moves out of it.
+/// The lowest segment outside internal RAM determines the window. If all segments are loaded there (flash at 0), it is
+/// the lowest of those that the program moves out of it.
+std::uint32_t ExecProgram::window_base(std::uint64_t ram_size) const {
   std::optional<std::uint32_t> lowest, moved;
   for (const auto& s : segments_) {
     if (!in_internal_ram(s)) lowest = std::min(lowest.value_or(s.address), s.address);
@@ -103,28 +100,41 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
       moved = std::min(moved.value_or(run.address), run.address);
   }
   if (!lowest) lowest = moved;
-  if (ram_base)
-    m.ram_base = *ram_base;
-  else
-    m.ram_base = lowest ? static_cast<std::uint32_t>(*lowest / ram_size * ram_size) : kChipSdram;
-  m.tcm = m.ram_base != 0;
+  return lowest ? static_cast<std::uint32_t>(*lowest / ram_size * ram_size) : kChipSdram;
+}
+
+void ExecProgram::check_inside(const ExecMap& m) const {
   for (const auto& s : segments_) {
-    if (inside(s, m.ram_base, ram_size) || (m.tcm && in_internal_ram(s))) continue;
+    if (inside(s, m.ram_base, m.ram_size) || (m.tcm && in_internal_ram(s))) continue;
     throw UserError(fmt::format(
         "program '{}': segment {} (0x{:08x}, {} bytes) lies outside memory; allowed: RAM from "
         "0x{:08x} to 0x{:08x}{}; 'ddr.part' sets its size, "
         "'exec.ram_base' its place",
-        one_line(name_), s.index, s.address, s.memory_size, m.ram_base, m.ram_base + (ram_size - 1),
+        one_line(name_), s.index, s.address, s.memory_size, m.ram_base, m.ram_base + (m.ram_size - 1),
         m.tcm ? ", or internal RAM at 0x0 and 0x10000" : ""));
   }
-  // Find the largest gap between the segments in the window.
+}
+
+/// What the program's segments, and the vectors at 0, take of the window: ranges by their starts.
+std::vector<std::pair<std::uint64_t, std::uint64_t>> ExecProgram::used_in(const ExecMap& m) const {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> used = {
       {m.ram_base, m.ram_base + (m.ram_base == 0 ? kVectorBytes : 0)}};
   for (const auto& s : segments_)
     for (const std::uint64_t from : {s.address, s.virtual_address})
-      if (from >= m.ram_base && from + s.memory_size <= m.ram_base + ram_size)
+      if (from >= m.ram_base && from + s.memory_size <= m.ram_base + m.ram_size)
         used.emplace_back(from, from + s.memory_size);
   std::sort(used.begin(), used.end());
+  return used;
+}
+
+ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ram_base,
+                         bool caches) const {
+  ExecMap m;
+  m.ram_size = ram_size;
+  m.ram_base = ram_base ? *ram_base : window_base(ram_size);
+  m.tcm = m.ram_base != 0;
+  check_inside(m);
+  auto used = used_in(m);
   // The very last address cannot be the end of a stack.
   const std::uint64_t top =
       std::min<std::uint64_t>(m.ram_base + ram_size, (std::uint64_t{1} << 32) - kHeapAlignment);
@@ -138,6 +148,7 @@ ExecMap ExecProgram::map(std::uint64_t ram_size, std::optional<std::uint32_t> ra
                         one_line(name_), ExecMap::kTableBytes));
   }
   used.emplace_back(caches ? m.table : top, top);
+  // Stack and heap get the largest gap.
   std::uint64_t free_from = used.front().second, best = 0;
   for (const auto& [from, to] : used) {
     const std::uint64_t aligned =

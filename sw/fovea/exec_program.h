@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sw/fovea/elf_image.h"
@@ -52,6 +53,10 @@ class ExecProgram {
               bool caches = false) const;
 
  private:
+  std::uint32_t window_base(std::uint64_t ram_size) const;
+  void check_inside(const ExecMap& map) const;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> used_in(const ExecMap& map) const;
+
   std::string name_;
   std::uint32_t entry_ = 0;
   std::vector<ElfSegment> segments_;

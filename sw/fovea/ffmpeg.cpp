@@ -111,8 +111,9 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
                            const std::string& purpose, int stdin_fd) {
+  std::vector<std::string> words = command;  // posix_spawnp() takes words that are not const
   std::vector<char*> argv;
-  for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   // A socket instead of a pipe, because send() can be told not to raise SIGPIPE.
   std::array<int, 2> stream{}, errors{};
@@ -251,19 +252,22 @@ static DecodeOptions reduced(DecodeOptions options, unsigned width, unsigned hei
   return options;
 }
 
-std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
-                                    const DecodeOptions& options) {
-  const std::string name = one_line(file.string());
-  const auto fail = [&](const std::string& why) {
-    throw UserError(fmt::format("cannot read the footage '{}': {}", name, why));
-  };
-  // ffmpeg's own message for a missing file is long; this one is the same for all readers.
+[[noreturn]] static void refuse_footage(const std::filesystem::path& file, const std::string& why) {
+  throw UserError(fmt::format("cannot read the footage '{}': {}", one_line(file.string()), why));
+}
+
+/// ffmpeg's own message for a missing file is long; this one is the same for all readers.
+static int open_footage(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) fail("no such file");
-  if (!std::filesystem::is_regular_file(file, error)) fail("it is not a regular file");
-  Descriptor footage(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (footage.get() < 0) fail(std::strerror(errno));
-  // Errors in the data end the decoding (-xerror) instead of being concealed.
+  if (!std::filesystem::exists(file, error)) refuse_footage(file, "no such file");
+  if (!std::filesystem::is_regular_file(file, error)) refuse_footage(file, "it is not a regular file");
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) refuse_footage(file, std::strerror(errno));
+  return fd;
+}
+
+/// Errors in the data end the decoding (-xerror) instead of being concealed.
+static std::vector<std::string> decode_command(const DecodeOptions& options) {
   std::vector<std::string> command = {options.program,
                                       "-nostdin",
                                       "-hide_banner",
@@ -291,9 +295,32 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   for (const char* word : {"-vsync", "passthrough", "-f", "image2pipe", "-c:v", "ppm", "-pix_fmt",
                            "rgb24", "pipe:1"})
     command.push_back(word);
+  return command;
+}
 
-  ChildProcess child(command, ChildProcess::Stream::kOutput,
-                     fmt::format("cannot read the footage '{}'", name), footage.get());
+/// Refuses what ffmpeg has complained of, and an end within a frame.
+static void check_decoded(const std::filesystem::path& file, int status, const std::string& messages,
+                          bool ends_within_frame) {
+  std::string words = last_line(messages);
+  if (messages.find("ormat not on whitelist") != std::string::npos)
+    refuse_footage(file,
+                   "its format is not allowed; allowed: one film or picture, and no playlist, list of files "
+                   "or text");
+  if (const auto at = words.find(kFootage); at != std::string::npos)
+    words.replace(at, std::string_view(kFootage).size(), "the file");
+  if (messages.find("matches no streams") != std::string::npos)
+    refuse_footage(file, "it has no pictures (only sound?); allowed: a picture or a film");
+  if (status != 0)
+    refuse_footage(file, fmt::format("ffmpeg ended with status {}{}", status, words.empty() ? "" : ": " + words));
+  if (ends_within_frame) refuse_footage(file, "ffmpeg's output ends within a frame");
+  if (!messages.empty()) refuse_footage(file, "it is damaged or cut short: " + words);
+}
+
+std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
+                                    const DecodeOptions& options) {
+  Descriptor footage(open_footage(file));
+  ChildProcess child(decode_command(options), ChildProcess::Stream::kOutput,
+                     fmt::format("cannot read the footage '{}'", one_line(file.string())), footage.get());
   footage.close();
   std::vector<RgbImage> frames;
   std::string buffer;
@@ -308,26 +335,14 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   } catch (const Stopped&) {
     throw;
   } catch (const std::runtime_error& e) {
-    fail(e.what());
+    refuse_footage(file, e.what());
   }
   const int status = child.finish(options.stop);
-  std::string words = last_line(child.messages());
-  if (child.messages().find("ormat not on whitelist") != std::string::npos)
-    fail(
-        "its format is not allowed; allowed: one film or picture, and no playlist, list of files "
-        "or text");
-  if (const auto at = words.find(kFootage); at != std::string::npos)
-    words.replace(at, std::string_view(kFootage).size(), "the file");
-  if (child.messages().find("matches no streams") != std::string::npos)
-    fail("it has no pictures (only sound?); allowed: a picture or a film");
-  if (status != 0)
-    fail(fmt::format("ffmpeg ended with status {}{}", status, words.empty() ? "" : ": " + words));
-  if (!buffer.empty()) fail("ffmpeg's output ends within a frame");
-  if (!child.messages().empty()) fail("it is damaged or cut short: " + words);
-  if (frames.empty()) fail("it has no frames");
+  check_decoded(file, status, child.messages(), !buffer.empty());
+  if (frames.empty()) refuse_footage(file, "it has no frames");
   for (const auto& f : frames)
     if (f.width != frames[0].width || f.height != frames[0].height)
-      fail("its frames differ in size");
+      refuse_footage(file, "its frames differ in size");
   return frames;
 }
 

@@ -95,30 +95,30 @@ GdbProtocol::Answer GdbProtocol::handle(std::string_view packet) {
     case 'k': a.resume = GdbResume{.kind = GdbResume::Kind::kKill}; break;
     case 'v': return v_packet(packet);
     case 'Q':
-      if (packet == "QStartNoAckMode") {
-        no_ack_ = true;
-        a.payload = kOk;
-      } else {
-        a.payload = "";
-      }
+      if (packet == "QStartNoAckMode") no_ack_ = true;
+      a.payload = packet == "QStartNoAckMode" ? kOk : "";
       break;
     case 'q':
-      if (packet.starts_with("qRcmd,")) {
-        const auto command = from_hex(packet.substr(6));
-        if (!command) {
-          a.payload = kBadPacket;
-          break;
-        }
-        const std::string text = target_.monitor({command->begin(), command->end()});
-        for (std::size_t i = 0; i < text.size(); i += kOutputBytes)
-          a.output.push_back(console(std::string_view(text).substr(i, kOutputBytes)));
-        a.payload = kOk;
-      } else {
-        a.payload = query(packet);
-      }
+      if (packet.starts_with("qRcmd,")) return command(packet.substr(6));
+      a.payload = query(packet);
       break;
     default: a.payload = "";  // unknown packets are answered with an empty one
   }
+  return a;
+}
+
+/// A command of the user, whose answer is text for the console.
+GdbProtocol::Answer GdbProtocol::command(std::string_view hex) {
+  Answer a;
+  const auto command = from_hex(hex);
+  if (!command) {
+    a.payload = kBadPacket;
+    return a;
+  }
+  const std::string text = target_.monitor({command->begin(), command->end()});
+  for (std::size_t i = 0; i < text.size(); i += kOutputBytes)
+    a.output.push_back(console(std::string_view(text).substr(i, kOutputBytes)));
+  a.payload = kOk;
   return a;
 }
 

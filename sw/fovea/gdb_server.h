@@ -89,6 +89,7 @@ class GdbProtocol {
   std::string write_memory(std::string_view arguments, bool binary);
   std::string point(std::string_view arguments, bool set);
   std::optional<GdbResume> resume(std::string_view packet);
+  Answer command(std::string_view hex);
   Answer v_packet(std::string_view packet);
 
   GdbTarget& target_;

@@ -67,6 +67,26 @@ class FileBytes final : public trace::ByteSource {
   std::uint64_t size_ = 0;
 };
 
+constexpr TraceFormat kAllFormats[] = {
+    TraceFormat::kBinary,    TraceFormat::kText,       TraceFormat::kDramsysStl, TraceFormat::kDramsysRstl,
+    TraceFormat::kRamulator, TraceFormat::kRamulator2, TraceFormat::kDramsim3};
+static_assert(std::size(kAllFormats) == std::size(kTraceFormats));
+
+constexpr struct {
+  TraceFormat format;
+  trace::ForeignFormat foreign;
+} kForeign[] = {{TraceFormat::kDramsysStl, trace::ForeignFormat::kDramsysStl},
+                {TraceFormat::kDramsysRstl, trace::ForeignFormat::kDramsysRstl},
+                {TraceFormat::kRamulator, trace::ForeignFormat::kRamulator},
+                {TraceFormat::kRamulator2, trace::ForeignFormat::kRamulator2},
+                {TraceFormat::kDramsim3, trace::ForeignFormat::kDramsim3}};
+
+TraceFormat format_of(trace::ForeignFormat foreign) {
+  for (const auto& row : kForeign)
+    if (row.foreign == foreign) return row.format;
+  FOVEA_CHECK(false, "a foreign format without a name");
+}
+
 std::string first_bytes_of(const std::string& file) {
   const auto bytes = open_bytes(file);
   std::string first(kFirstBytes, '\0');
@@ -76,10 +96,16 @@ std::string first_bytes_of(const std::string& file) {
 
 }  // namespace
 
+std::optional<TraceFormat> trace_format(std::string_view name) {
+  for (const TraceFormat f : kAllFormats)
+    if (name_of(f) == name) return f;
+  return std::nullopt;
+}
+
 std::optional<trace::ForeignFormat> foreign(TraceFormat f) {
-  if (f < TraceFormat::kDramsysStl) return std::nullopt;
-  return static_cast<trace::ForeignFormat>(static_cast<int>(f) -
-                                           static_cast<int>(TraceFormat::kDramsysStl));
+  for (const auto& row : kForeign)
+    if (row.format == f) return row.foreign;
+  return std::nullopt;
 }
 
 std::unique_ptr<trace::ByteSource> open_bytes(const std::filesystem::path& file) {
@@ -100,8 +126,7 @@ TraceFormat format_of(const std::string& file) {
     throw UserError(fmt::format("'{}' has none of the known trace formats; allowed: {}",
                                 one_line(file), fmt::join(kTraceFormats, ", ")));
   if (*found != trace::ForeignFormat::kDramsysStl)
-    return static_cast<TraceFormat>(static_cast<int>(TraceFormat::kDramsysStl) +
-                                    static_cast<int>(*found));
+    return format_of(*found);
   const auto suffix = std::filesystem::path(file).extension();
   if (suffix == ".stl") return TraceFormat::kDramsysStl;
   if (suffix == ".rstl") return TraceFormat::kDramsysRstl;

@@ -11,7 +11,7 @@
 
 namespace fovea::app {
 
-/// Formats of trace files. The foreign ones are in the order of trace::ForeignFormat.
+/// Formats of trace files.
 enum class TraceFormat : std::uint8_t {
   kBinary,
   kText,
@@ -26,6 +26,8 @@ inline constexpr std::string_view kTraceFormats[] = {
 inline std::string_view name_of(TraceFormat f) {
   return kTraceFormats[static_cast<std::size_t>(f)];
 }
+/// The format of that name; none if there is none.
+std::optional<TraceFormat> trace_format(std::string_view name);
 /// The foreign format; none for Fovea's own.
 std::optional<trace::ForeignFormat> foreign(TraceFormat f);
 

@@ -3,8 +3,24 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <string_view>
+#include <utility>
 
 namespace fovea::app {
+namespace {
+
+mem::LowPower low_power_named(std::string_view name) {
+  static constexpr std::pair<std::string_view, mem::LowPower> kModes[] = {
+      {"off", mem::LowPower::kOff},
+      {"self_refresh", mem::LowPower::kSelfRefresh},
+      {"power_down", mem::LowPower::kPowerDown},
+      {"clock_stop", mem::LowPower::kClockStop}};
+  for (const auto& [word, mode] : kModes)
+    if (word == name) return mode;
+  FOVEA_CHECK(false, "no such mode: " + std::string(name));
+}
+
+}  // namespace
 
 void ReplayParams::declare(ParamSet& set) {
   set.add(crossbar);
@@ -35,7 +51,7 @@ mem::DdrConfig ReplayParams::config() const {
   c.timing.nXSNR = value(r.tXSNR);
   c.timing.nXSRD = value(r.tXSRD);
   c.timing.nCKE = value(r.tCKE);
-  c.low_power = static_cast<mem::LowPower>(r.low_power.index());
+  c.low_power = low_power_named(r.low_power());
   c.read_latency = value(r.RL);
   c.refresh_interval = value(r.tREFI);
   c.row_intervals = value(r.row_intervals);

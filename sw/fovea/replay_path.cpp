@@ -34,6 +34,17 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       memory_(params.crossbar, params.ddr, {.ddr_base = 0}, *this,
               memory_only ? memsys::Route::kBypass : memsys::Route::kCrossbar),
       check_(params.ddr, memory_.controller()) {
+  set_up_memory(params);
+  set_up_streams();
+  set_up_masters();
+  time_.fill(kNever);
+  waits_for_.fill(trace::kInterrupt);
+  for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
+  find_next();
+}
+
+/// Clocks and registers as they are at the start of the trace, or as the parameters have them.
+void ReplayPath::set_up_memory(const ReplayParams& params) {
   // The file's clock is exact, a parameter's in whole hertz: it counts only if it was changed.
   const auto clock = [](const trace::ClockInfo& file, const IntParam& param) {
     const Frequency wanted(param());
@@ -41,51 +52,56 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
                       std::abs(file.frequency.hertz() - wanted.hertz()) < 1.0;
     return same ? file.frequency : wanted;
   };
-  const Frequency ddr_clock = clock(info.ddr, params.registers.clock);
-  Frequency scr = clock(info.scr, params.clocks.clock);
+  const Frequency ddr_clock = clock(info_.ddr, params.registers.clock);
+  Frequency scr = clock(info_.scr, params.clocks.clock);
   // Half of the SDRAM's clock is so exactly, whatever whole hertz its key has.
   const bool of_one_pll = std::abs(2 * scr.hertz() - ddr_clock.hertz()) < 2.0;
-  if (of_one_pll && !(scr == info.scr.frequency)) scr = board::ClockSetting::half(ddr_clock);
-  const bool other = !info.ddr.frequency.stopped() && !(ddr_clock == info.ddr.frequency);
-  const bool both = other && !(scr == info.scr.frequency);
-  const Picoseconds scr_start = start_near(info.scr, info.start);
+  if (of_one_pll && !(scr == info_.scr.frequency)) scr = board::ClockSetting::half(ddr_clock);
+  const bool other = !info_.ddr.frequency.stopped() && !(ddr_clock == info_.ddr.frequency);
+  const bool both = other && !(scr == info_.scr.frequency);
+  const Picoseconds scr_start = start_near(info_.scr, info_.start);
   // Both clocks come from one PLL (SYSCLK7 = 2 x SYSCLK4): another clock of the SDRAM starts with an
   // edge of the crossbar's. That has the edges that it would have if the PLL had been programmed so
   // when it was started; what it is to the core's clock on the board is not known.
-  Picoseconds begins = info.start;
-  if (!memory_only) begins = Clock(scr, scr_start).next_edge_at_or_after(begins);
+  Picoseconds begins = info_.start;
+  if (!memory_only_) begins = Clock(scr, scr_start).next_edge_at_or_after(begins);
   mem::DdrController& controller = memory_.controller();
   memory_.crossbar().set_clock(scr, both ? begins : scr_start);
-  const Frequency scr_before = both ? info.scr.frequency : scr;
+  const Frequency scr_before = both ? info_.scr.frequency : scr;
   controller.set_clocks({}, scr_before, scr_start);
-  controller.set_clocks(other ? info.ddr.frequency : ddr_clock, scr_before, start_near(info.ddr, info.start));
+  controller.set_clocks(other ? info_.ddr.frequency : ddr_clock, scr_before, start_near(info_.ddr, info_.start));
   mem::DdrConfig config = params.config();
   const unsigned interval = std::exchange(config.refresh_interval, 0);
   controller.configure(config, 0);
   config.refresh_interval = interval;  // counts from here
-  controller.configure(config, info.refresh ? info.refresh : info.start);
-  controller.catch_up(info.start);  // the refreshes before
+  controller.configure(config, info_.refresh ? info_.refresh : info_.start);
+  controller.catch_up(info_.start);  // the refreshes before
   if (other) controller.set_clocks(ddr_clock, scr, begins);
   controller.stats.reset();
-  memory_.timeline().begin(info.start);
+  memory_.timeline().begin(info_.start);
+}
 
-  streams_.resize(info.streams.size());
+void ReplayPath::set_up_streams() {
+  streams_.resize(info_.streams.size());
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const trace::StreamInfo& from = info.streams[i];
+    const trace::StreamInfo& from = info_.streams[i];
     streams_[i].clock = Clock(from.clock, from.clock_start);
     streams_[i].align = from.align;
     streams_[i].phase = from.phase;
-    streams_[i].earliest = info.start;
+    streams_[i].earliest = info_.start;
     streams_[i].history.resize(kHistory);
   }
-  for (const trace::MasterInfo& from : info.masters) {
+}
+
+void ReplayPath::set_up_masters() {
+  for (const trace::MasterInfo& from : info_.masters) {
     MasterState& m = masters_[index(from.id)];
     m.label = from.label;
     m.stream = from.stream;
     m.slots = std::vector<Slot>(from.shared ? from.reads : from.reads + from.writes);
     m.read_slots_to = from.reads;
     m.write_slots_from = from.shared ? 0 : from.reads;
-    m.in_turn = !from.shared && !memory_only;
+    m.in_turn = !from.shared && !memory_only_;
     m.turn = {0, from.reads};
     for (Slot& s : m.slots) {
       s.owner = &m;
@@ -101,10 +117,6 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
     for (MasterState& m : masters_)
       if (m.label == label) m.latency = stats;
   }
-  time_.fill(kNever);
-  waits_for_.fill(trace::kInterrupt);
-  for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
-  find_next();
 }
 
 std::vector<std::string> ReplayPath::labels() const {

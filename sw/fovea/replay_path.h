@@ -91,6 +91,9 @@ class ReplayPath final : private memsys::MemoryHost {
     std::vector<Outcome> history;
   };
 
+  void set_up_memory(const ReplayParams& params);
+  void set_up_streams();
+  void set_up_masters();
   Picoseconds end() const;
   void add_wait_rows(const std::string& label, Waits MasterWaits::*direction, const char* name,
                      std::vector<StatRow>& rows) const;

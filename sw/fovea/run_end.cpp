@@ -41,7 +41,7 @@ RunEnd::RunEnd(board::Board& board, cpu::DebugMemory& memory, std::vector<EndCon
     };
   if (wants(Kind::kHalt)) check_for_halt();
   if (wants(Kind::kReset))
-    board_.on_chip_reset = [this](const board::ChipReset&) { meet(Kind::kReset); };
+    reset_ = board_.observe_chip_reset([this](const board::ChipReset&) { meet(Kind::kReset); });
   if (wants(Kind::kUart)) uart_ = board_.observe_uart([this](std::uint8_t) { uart_sent(); });
 }
 

@@ -50,7 +50,7 @@ class RunEnd {
   std::optional<Met> met_;
   bool core_ended_ = false;
   std::optional<std::uint32_t> halted_at_;
-  Subscription uart_;
+  Subscription uart_, reset_;
 };
 
 }  // namespace fovea::app

@@ -18,8 +18,8 @@ RunProfile::RunProfile(board::Board& board, bool whole_run,
   cpu::ClockProfile& profile = core_.start_profile();
   profile.stacks.set_functions(program_functions(programs));
   profile.count_stacks_of(whole_run ? kBoot : kFrames);
-  profile.on_interrupt = [this](bool, std::uint64_t cycle) { interrupt(cycle); };
-  board.on_phase = [this](board::Phase p, Picoseconds at) { phase(p, at); };
+  interrupts_ = profile.observe_interrupts([this](bool, std::uint64_t cycle) { interrupt(cycle); });
+  phases_ = board.observe_phases([this](board::Phase p, Picoseconds at) { phase(p, at); });
 }
 
 /// Until the window opens; a reset begins with the first phase again.

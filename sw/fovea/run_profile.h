@@ -38,6 +38,7 @@ class RunProfile {
 
   board::Board& board_;
   cpu::Core& core_;
+  Subscription interrupts_, phases_;
   bool whole_run_;
   Section reached_ = kBoot;
   bool opened_ = false;  // the window

@@ -85,28 +85,26 @@ Semihosting::File* Semihosting::file(std::uint32_t handle) {
   return f.kind == File::Kind::kFree ? nullptr : &f;
 }
 
+/// Number of words in the parameter block of each operation that has one.
+unsigned Semihosting::words_of(std::uint32_t operation) {
+  switch (operation) {
+    case kClose: case kIsError: case kIsTty: case kFlen: return 1;
+    case kSeek: case kRemove: case kSystem: case kGetCmdLine: case kExitExtended: return 2;
+    case kOpen: case kWrite: case kRead: case kTmpNam: return 3;
+    case kRename: return 4;
+    default: return 0;
+  }
+}
+
 std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation,
                                    std::uint32_t parameter) {
-  // Number of words in the parameter block of each operation that has one.
-  const auto words = [operation]() -> unsigned {
-    switch (operation) {
-      case kClose: case kIsError: case kIsTty: case kFlen: return 1;
-      case kSeek: case kRemove: case kSystem: case kGetCmdLine: case kExitExtended: return 2;
-      case kOpen: case kWrite: case kRead: case kTmpNam: return 3;
-      case kRename: return 4;
-      default: return 0;
-    }
-  }();
   Arguments a{};
+  const unsigned words = words_of(operation);
   if (words && !arguments(t, parameter, words, a)) return failed(EFAULT);
   switch (operation) {
     case kOpen: return open(t, a);
     case kClose: return close(a[0]);
-    case kWriteC: {
-      std::uint8_t c;
-      if (!t.read(parameter, {&c, 1})) return failed(EFAULT);
-      return console_.write(false, {reinterpret_cast<const char*>(&c), 1}) ? 0 : failed(EIO);
-    }
+    case kWriteC: return write_character(t, parameter);
     case kWrite0: return write_text(t, parameter);
     case kWrite: return write(t, a);
     case kRead: return read(t, a);
@@ -115,26 +113,12 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
       return console_.read({&c, 1}) == 1 ? c : kError;
     }
     case kIsError: return static_cast<std::int32_t>(a[0]) < 0;
-    case kIsTty: {
-      const File* f = file(a[0]);
-      if (!f) return failed(EBADF);
-      return f->kind != File::Kind::kHost && f->kind != File::Kind::kFeatures;
-    }
+    case kIsTty: return is_terminal(a[0]);
     case kSeek: return seek(a);
     case kFlen: return length(a[0]);
     case kTmpNam: return temporary_name(t, a);
-    case kRemove: {
-      std::string name;
-      if (!text(t, a[0], a[1], name)) return failed(EFAULT);
-      const int status = files_.remove(name);
-      return status == 0 ? 0 : failed(-status);
-    }
-    case kRename: {
-      std::string from, to;
-      if (!text(t, a[0], a[1], from) || !text(t, a[2], a[3], to)) return failed(EFAULT);
-      const int status = files_.rename(from, to);
-      return status == 0 ? 0 : failed(-status);
-    }
+    case kRemove: return remove(t, a);
+    case kRename: return rename(t, a);
     case kClock: return static_cast<std::uint32_t>(t.now() / (kPsPerSecond / 100));
     case kTime: return static_cast<std::uint32_t>(t.now() / kPsPerSecond);
     case kSystem:
@@ -149,18 +133,46 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
     case kExitExtended:
       exit_code_ = a[0] == kApplicationExit ? static_cast<int>(a[1] & 0xFFu) : 1;
       return 0;
-    case kElapsed: {
-      const std::uint64_t ticks = t.now() / (kPsPerSecond / kTicksPerSecond);
-      std::array<std::uint8_t, 8> bytes;
-      std::memcpy(bytes.data(), &ticks, 8);
-      return t.write(parameter, bytes) ? 0 : failed(EFAULT);
-    }
+    case kElapsed: return elapsed(t, parameter);
     case kTickFreq: return kTicksPerSecond;
     default:
       Diagnostics::instance().not_modelled(
           fmt::format("semihosting operation 0x{:x}", operation));
       return failed(ENOSYS);
   }
+}
+
+std::uint32_t Semihosting::write_character(SemihostingTarget& t, std::uint32_t address) {
+  std::uint8_t c;
+  if (!t.read(address, {&c, 1})) return failed(EFAULT);
+  return console_.write(false, {reinterpret_cast<const char*>(&c), 1}) ? 0 : failed(EIO);
+}
+
+std::uint32_t Semihosting::is_terminal(std::uint32_t handle) {
+  const File* f = file(handle);
+  if (!f) return failed(EBADF);
+  return f->kind != File::Kind::kHost && f->kind != File::Kind::kFeatures;
+}
+
+std::uint32_t Semihosting::remove(SemihostingTarget& t, const Arguments& a) {
+  std::string name;
+  if (!text(t, a[0], a[1], name)) return failed(EFAULT);
+  const int status = files_.remove(name);
+  return status == 0 ? 0 : failed(-status);
+}
+
+std::uint32_t Semihosting::rename(SemihostingTarget& t, const Arguments& a) {
+  std::string from, to;
+  if (!text(t, a[0], a[1], from) || !text(t, a[2], a[3], to)) return failed(EFAULT);
+  const int status = files_.rename(from, to);
+  return status == 0 ? 0 : failed(-status);
+}
+
+std::uint32_t Semihosting::elapsed(SemihostingTarget& t, std::uint32_t address) {
+  const std::uint64_t ticks = t.now() / (kPsPerSecond / kTicksPerSecond);
+  std::array<std::uint8_t, 8> bytes;
+  std::memcpy(bytes.data(), &ticks, 8);
+  return t.write(address, bytes) ? 0 : failed(EFAULT);
 }
 
 std::uint32_t Semihosting::open(SemihostingTarget& t, const Arguments& a) {

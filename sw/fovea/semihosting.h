@@ -76,6 +76,12 @@ class Semihosting {
   };
   bool refused_ = false;  ///< a refused file was already reported
   std::uint32_t operate(SemihostingTarget& t, std::uint32_t operation, std::uint32_t parameter);
+  static unsigned words_of(std::uint32_t operation);
+  std::uint32_t write_character(SemihostingTarget& t, std::uint32_t address);
+  std::uint32_t is_terminal(std::uint32_t handle);
+  std::uint32_t remove(SemihostingTarget& t, const Arguments& a);
+  std::uint32_t rename(SemihostingTarget& t, const Arguments& a);
+  std::uint32_t elapsed(SemihostingTarget& t, std::uint32_t address);
   std::uint32_t open(SemihostingTarget& t, const Arguments& a);
   std::uint32_t close(std::uint32_t handle);
   std::uint32_t write(SemihostingTarget& t, const Arguments& a);

@@ -30,9 +30,9 @@ constexpr unsigned kDefaultBytes = 64;
 bool has_cycles(TraceFormat f) { return foreign(f) && trace::has_cycles(*foreign(f)); }
 
 TraceFormat format_named(std::string_view name) {
-  const auto* const at = std::find(std::begin(kTraceFormats), std::end(kTraceFormats), name);
-  FOVEA_CHECK(at != std::end(kTraceFormats), "a format that the command line let through");
-  return static_cast<TraceFormat>(at - std::begin(kTraceFormats));
+  const auto format = trace_format(name);
+  FOVEA_CHECK(format, "a format that the command line let through");
+  return *format;
 }
 
 /// Quantities of the command line, parsed as those of experiments are.

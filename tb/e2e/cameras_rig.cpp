@@ -52,12 +52,12 @@ board::Board& CamerasRig::build() {
   for (const auto& s : elf_.segments())
     board_->load({s.address, s.data, s.memory_size - s.data.size()});
   board_->load({PARAM_PAGE_BASE, app::parameter_page(params, stamped)});
-  board_->on_frame = [this](const video::DisplayFrame& f, const board::FrameRecord& r) {
+  frames_ = board_->observe_frames([this](const video::DisplayFrame& f, const board::FrameRecord& r) {
     const unsigned w = params.width(), h = params.height();
     Shown s{crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), r, {}, f.underflows};
     s.stamp = read_stamp(s.frame);
     shown_.push_back(std::move(s));
-  };
+  });
   return *board_;
 }
 

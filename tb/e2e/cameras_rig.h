@@ -74,6 +74,7 @@ class CamerasRig {
   std::vector<std::unique_ptr<video::StampedSource>> sources_, references_;
   std::vector<std::vector<View>> views_;  // of each camera
   std::unique_ptr<board::Board> board_;
+  Subscription frames_;
   std::vector<Shown> shown_;
   HostTimeSlicer slicer_;
 };

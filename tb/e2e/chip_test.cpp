@@ -175,10 +175,10 @@ TEST_F(WatchdogTest, ItsExpiryAsksForAChipResetToTheClock) {
   const std::uint64_t edges = kernel_time() * 3 / 125'000;  // of 24 MHz; now is none of them
   start(24'000);
   unsigned told = 0;
-  board.on_chip_reset = [&](const board::ChipReset& r) {
+  const Subscription resets = board.observe_chip_reset([&](const board::ChipReset& r) {
     ++told;
     EXPECT_EQ(r.at, kernel_time());
-  };
+  });
   c.rig.run(10 * kPsPerMs);
   ASSERT_TRUE(board.chip_reset().has_value());
   EXPECT_EQ(board.chip_reset()->cause, "the watchdog expired");

@@ -76,10 +76,10 @@ TEST_P(TornTest, AFrameThatChangesDuringItsRemapIsCounted) {
   board::Board& board = rig.build();
   unsigned remaps = 0;
   bool under_way = false;
-  board.on_phase = [&](board::Phase phase, Picoseconds) {
+  const Subscription phases = board.observe_phases([&](board::Phase phase, Picoseconds) {
     under_way = phase == board::Phase::kRemapStart;
     remaps += under_way;
-  };
+  });
   while (!(under_way && remaps == 2)) rig.advance(10 * kPsPerUs);
   EXPECT_EQ(rig.state().torn, 0u);
   rig.advance(60 * kPsPerUs);  // the first sum of 80 words has been taken

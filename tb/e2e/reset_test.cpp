@@ -234,12 +234,10 @@ TEST(ResetTest, TheCoreStartsAfterTheResetTime) {
   board::Board& board = rig.build();
   rig.advance(10 * kPsPerUs);
   Picoseconds booted = 0;
-  auto load = board.dm365.on_boot;
-  board.dm365.on_boot = [&](ResetKind kind) {
+  const Subscription boot = board.dm365.observe_boot([&](ResetKind kind) {
     booted = kernel_time();
     EXPECT_EQ(kind, ResetKind::kWarm);
-    load(kind);
-  };
+  });
   board.reset(ResetKind::kWarm);
   rig.advance(37 * kPsPerUs);  // without what happens at its last picosecond
   EXPECT_EQ(booted, 0u);
@@ -255,10 +253,10 @@ TEST(ResetTest, TheCoreStartsAfterTheResetTime) {
 TEST(ResetTest, AResetDuringAResetIsOneOfTheLaterKind) {
   Resettable c;
   unsigned boots = 0;
-  c.soc.on_boot = [&](ResetKind kind) {
+  const Subscription boot = c.soc.observe_boot([&](ResetKind kind) {
     ++boots;
     EXPECT_EQ(kind, ResetKind::kPowerOn);
-  };
+  });
   c.board.reset(ResetKind::kWarm);
   c.rig.advance(3 * kPsPerUs);
   c.board.reset(ResetKind::kPowerOn);

@@ -69,6 +69,7 @@ class Rig {
   std::unique_ptr<video::StampedSource> source_;
   std::unique_ptr<video::StampedSource> reference_;  // a separate source for sent()
   std::unique_ptr<board::Board> board_;
+  Subscription frames_;
   std::vector<Shown> shown_;
   HostTimeSlicer slicer_;
 };

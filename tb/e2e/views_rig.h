@@ -70,6 +70,7 @@ class ViewsRig {
   std::vector<std::unique_ptr<video::StampedSource>> sources_, references_;
   std::unique_ptr<video::QuadSource> quad_, quad_reference_;
   std::unique_ptr<board::Board> board_;
+  Subscription frames_;
   oracle::Views views_;
   std::vector<int> cameras_;
   std::vector<Composed> shown_;

@@ -140,8 +140,10 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     const Subscription pins = soc.gpio.observe_outputs([&](unsigned bank, std::uint32_t out, Picoseconds at) {
       if (bank == 2 && latencies.on && ends_a_remap(out)) remap_ends.push_back(at);
     });
-    board.on_window_open = [&] {
-      latencies.on = true;
+    const Subscription window = board.observe_window([&](bool open) {
+      latencies.on = open;
+      if (!open && recording) recording->close();
+      if (!open) return;
       opened = kernel_time();
       latencies.exact_from = opened + kUnderWay;
       mem::DdrConfig c = soc.ddr.programmed();
@@ -157,11 +159,7 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
         soc.ddr.controller().set_clocks(Frequency(change.ddr_hertz), soc.scr.clk.read(),
                                         kernel_time());
       if (recording) recording->open();
-    };
-    board.on_window_close = [&] {
-      if (recording) recording->close();
-      latencies.on = false;
-    };
+    });
     rig.run(10 * kPsPerSecond);
     if (watched.latencies) latencies.add_to(f);
     latencies.add_times_to(f);

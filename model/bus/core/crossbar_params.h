@@ -49,7 +49,7 @@ struct MasterPortParams : ParamGroup {
   }
   static bool is_video(Master m) { return master_info(m).bridge == Bridge::kVideo; }
   /// log2 of the bytes of a beat.
-  unsigned beat_log2() const { return 1 + static_cast<unsigned>(width.index()); }
+  unsigned beat_log2() const { return width.is("16bit") ? 1 : width.is("32bit") ? 2 : 3; }
 };
 
 struct CrossbarParams : ParamGroup {

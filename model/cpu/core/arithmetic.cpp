@@ -25,7 +25,7 @@ std::uint32_t saturate(std::int64_t v, bool& q) {
 
 void Core::dsp(const Instruction& i) {
   bool q = false;
-  if (i.op <= Op::kSmlalxy) ++ledger_.counts.multiplies;
+  if (is_multiplication(i.op)) ++ledger_.counts.multiplies;
   const auto s = [this](unsigned r) { return std::int64_t{static_cast<std::int32_t>(regs_.r[r])}; };
   unsigned cycles = 1;
   switch (i.op) {

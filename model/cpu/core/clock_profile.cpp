@@ -28,7 +28,7 @@ bool leaves(const Instruction& i) {
 
 unsigned issue_clocks(const Instruction& i) {
   const bool set = i.flags & kSetFlags;
-  if (i.op <= Op::kMvn) return i.operand == Operand::kShiftReg ? 2 : 1;
+  if (is_data_processing(i.op)) return i.operand == Operand::kShiftReg ? 2 : 1;
   switch (i.op) {
     case Op::kMul: case Op::kMla: return set ? 4 : 2;
     case Op::kUmull: case Op::kUmlal: case Op::kSmull: case Op::kSmlal: return set ? 5 : 3;

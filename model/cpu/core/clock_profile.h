@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "model/common/observers.h"
 #include "model/common/units.h"
 #include "model/cpu/core/call_stacks.h"
 #include "model/cpu/core/decoded_line.h"
@@ -93,8 +94,12 @@ class ClockProfile {
   /// Keeps the counters at the first instruction boundary after t.
   void snapshot(Picoseconds t) { marks_.push_back({t, kSnapshot}); }
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
-  /// An IRQ or FIQ is taken: its vector's instruction begins at the clock.
-  std::function<void(bool fiq, std::uint64_t cycle)> on_interrupt;
+  /// Called when an IRQ or FIQ is taken: its vector's instruction begins at the clock.
+  using InterruptObserver = std::function<void(bool fiq, std::uint64_t cycle)>;
+  Subscription observe_interrupts(InterruptObserver observer) { return interrupts_.add(std::move(observer)); }
+  void interrupted(bool fiq, std::uint64_t cycle) {
+    interrupts_.each([=](const InterruptObserver& f) { f(fiq, cycle); });
+  }
   /// From time t on, sleeps are waits for work that the program has given away, or no longer.
   void mark_given_away(Picoseconds t, bool begins) {
     marks_.push_back({t, begins ? kGivenAway : kTakenBack});
@@ -167,6 +172,7 @@ class ClockProfile {
   std::vector<Section> sections_;
   std::deque<Mark> marks_;
   std::vector<Snapshot> snapshots_;
+  Observers<InterruptObserver> interrupts_;
   // What was found last in the current section, by address. The maps never move their elements.
   static constexpr std::size_t kFound = 1024;
   struct FoundCell {

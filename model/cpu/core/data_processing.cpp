@@ -10,7 +10,7 @@ constexpr bool logical(Op op) {
   return op == Op::kAnd || op == Op::kEor || op == Op::kTst || op == Op::kTeq || op == Op::kOrr ||
          op == Op::kMov || op == Op::kBic || op == Op::kMvn;
 }
-constexpr bool writes(Op op) { return op < Op::kTst || op > Op::kCmn; }
+constexpr bool writes(Op op) { return op != Op::kTst && op != Op::kTeq && op != Op::kCmp && op != Op::kCmn; }
 
 // The flags are separate results and not members of a struct with the value: compilers pack such
 // members into one register, which takes longer than the addition.
@@ -80,23 +80,28 @@ Core::Ops::Next Core::Ops::data(Core& c, Next i, Cycle cycle) {
     if constexpr (!logical(kOp)) c.regs_.v = overflow;
   }
   if constexpr (writes(kOp)) c.regs_.r[i->rd] = value;
-  return next(c, i + 1, cycle + (kForm >= Form::kLslReg ? 2 : 1));
+  return next(c, i + 1, cycle + (shifts_by_register(kForm) ? 2 : 1));
 }
 
-/// Index of a handler: operation + form * 16 + S * 16 * kForms.
-template <std::size_t... k>
-constexpr std::array<Handler, sizeof...(k)> Core::Ops::data_table(std::index_sequence<k...>) {
-  return {&data<static_cast<Op>(k % 16), static_cast<Form>(k / 16 % kForms),
-                (k / 16 / kForms) != 0>...};
+/// Handlers of one form and S bit, by operation.
+template <Form kForm, bool kSet, std::size_t... op>
+constexpr Core::Ops::DataRow Core::Ops::data_row(std::index_sequence<op...>) {
+  return {&data<static_cast<Op>(op), kForm, kSet>...};
+}
+/// By form.
+template <bool kSet, std::size_t... form>
+constexpr std::array<Core::Ops::DataRow, sizeof...(form)> Core::Ops::data_rows(std::index_sequence<form...>) {
+  return {data_row<static_cast<Form>(form), kSet>(std::make_index_sequence<kDataOps>{})...};
 }
 
 Handler Core::Ops::data_body(Instruction& i) {
-  static constexpr auto kTable = data_table(std::make_index_sequence<32 * kForms>{});
+  static constexpr auto kKeepsFlags = data_rows<false>(std::make_index_sequence<kForms>{});
+  static constexpr auto kSetsFlags = data_rows<true>(std::make_index_sequence<kForms>{});
   if (writes(i.op) && i.rd == 15) return nullptr;
   // With a shift by register, r15 reads 12 bytes ahead, because it is read one clock later.
   if (i.operand == Operand::kShiftReg && (i.flags & kReadsPc)) return nullptr;
-  const auto form = static_cast<unsigned>(form_of(i));
-  return kTable[static_cast<unsigned>(i.op) + 16 * (form + kForms * (i.flags & kSetFlags))];
+  const auto& rows = (i.flags & kSetFlags) ? kSetsFlags : kKeepsFlags;
+  return rows[static_cast<std::size_t>(form_of(i))][static_cast<std::size_t>(i.op)];
 }
 
 /// Instructions without a handler: writes to the pc, and operands that read the pc one clock later.
@@ -115,7 +120,7 @@ void Core::data_processing(const Instruction& decoded) {
   const std::uint32_t value = select(
       static_cast<unsigned>(i.op),
       [](auto op) { return &compute<static_cast<Op>(decltype(op)::value)>; },
-      std::make_index_sequence<16>{})(r[i.rn], b, (regs_.cpsr & kC) != 0, carry, overflow);
+      std::make_index_sequence<Ops::kDataOps>{})(r[i.rn], b, (regs_.cpsr & kC) != 0, carry, overflow);
   if (writes(i.op) && i.rd == 15) {
     // For this, RSC behaves like the logical operations.
     spend(logical(i.op) || i.op == Op::kRsc || shifted_operand ? 4 : 3);

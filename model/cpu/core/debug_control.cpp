@@ -119,7 +119,7 @@ std::optional<CoreControl::Stop> CoreControl::report_touched(std::uint32_t pc) {
 std::vector<CoreControl::Touched> CoreControl::watched(std::uint32_t pc) const {
   std::vector<Touched> out;
   const auto decoded = debug_.instruction(pc);
-  if (!decoded || decoded->op < Op::kLdr || decoded->op > Op::kSwpb) return out;
+  if (!decoded || !accesses_data(decoded->op)) return out;
   const Instruction& i = *decoded;
   if (!condition_holds(i.cond, core_.cpsr())) return out;
   auto registers = core_.view().registers.r;

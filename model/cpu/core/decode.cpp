@@ -160,7 +160,7 @@ Instruction decode(std::uint32_t w, bool thumb) {
     case Immediate::kUnsigned: i.imm = v[kNumber] << p.scale; break;
     case Immediate::kRotated:
       i.imm = std::rotr(v[kNumber], static_cast<int>(2 * v[kRotate]));
-      if (i.op <= Op::kMvn && v[kRotate]) flags |= kImmCarry;
+      if (is_data_processing(i.op) && v[kRotate]) flags |= kImmCarry;
       break;
     case Immediate::kList:
       i.imm = v[kNumber] | p.also;

@@ -212,8 +212,7 @@ bool Core::take_interrupt(Picoseconds at) {
   if (!fiq && !(!(regs_.cpsr & kIrqMask) && irq_.at(at))) return false;
   take(fiq ? Exception::kFiq : Exception::kIrq, regs_.pc + 4);
   enter_exception();
-  if (ledger_.profile && ledger_.profile->on_interrupt)
-    ledger_.profile->on_interrupt(fiq, ledger_.cycle);
+  if (ledger_.profile) ledger_.profile->interrupted(fiq, ledger_.cycle);
   failure_.exceptions = 0;
   return true;
 }
@@ -289,7 +288,7 @@ void Core::interwork(std::uint32_t target) {
 }
 
 void Core::execute(const Instruction& i) {
-  if (i.op <= Op::kMvn) return data_processing(i);
+  if (is_data_processing(i.op)) return data_processing(i);
   switch (i.op) {
     case Op::kLdr: case Op::kLdrb: case Op::kStr: case Op::kStrb: case Op::kLdrh:
     case Op::kLdrsb: case Op::kLdrsh: case Op::kStrh: case Op::kLdrd: case Op::kStrd:

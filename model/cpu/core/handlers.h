@@ -189,8 +189,12 @@ struct Core::Ops {
 
   template <Op kOp, Form kForm, bool kSet>
   static Next data(Core& c, Next i, Cycle cycle);
-  template <std::size_t... k>
-  static constexpr std::array<Handler, sizeof...(k)> data_table(std::index_sequence<k...>);
+  static constexpr std::size_t kDataOps = 16;
+  using DataRow = std::array<Handler, kDataOps>;
+  template <Form kForm, bool kSet, std::size_t... op>
+  static constexpr DataRow data_row(std::index_sequence<op...>);
+  template <bool kSet, std::size_t... form>
+  static constexpr std::array<DataRow, sizeof...(form)> data_rows(std::index_sequence<form...>);
   template <Op kOp, bool kSet>
   static Next multiply(Core& c, Next i, Cycle cycle);
   static Next count_zeros(Core& c, Next i, Cycle cycle);

@@ -16,6 +16,39 @@ enum class Op : std::uint8_t {
   kMrs, kMsr, kSwi, kBkpt, kMcr, kMrc, kCoprocessor, kUndefined,
 };
 
+constexpr bool is_data_processing(Op op) {
+  switch (op) {
+    case Op::kAnd: case Op::kEor: case Op::kSub: case Op::kRsb: case Op::kAdd: case Op::kAdc: case Op::kSbc:
+    case Op::kRsc: case Op::kTst: case Op::kTeq: case Op::kCmp: case Op::kCmn: case Op::kOrr: case Op::kMov:
+    case Op::kBic: case Op::kMvn:
+      return true;
+    default: return false;
+  }
+}
+/// Multiplications with and without accumulation, the halfword ones included.
+constexpr bool is_multiplication(Op op) {
+  switch (op) {
+    case Op::kMul: case Op::kMla: case Op::kUmull: case Op::kUmlal: case Op::kSmull: case Op::kSmlal:
+    case Op::kSmulxy: case Op::kSmlaxy: case Op::kSmulwy: case Op::kSmlawy: case Op::kSmlalxy:
+      return true;
+    default: return false;
+  }
+}
+/// What has a result and neither moves data nor changes the flow.
+constexpr bool calculates(Op op) {
+  return is_data_processing(op) || is_multiplication(op) || op == Op::kQadd || op == Op::kQsub || op == Op::kQdadd ||
+         op == Op::kQdsub || op == Op::kClz;
+}
+/// Loads, stores and swaps; not PLD.
+constexpr bool accesses_data(Op op) {
+  switch (op) {
+    case Op::kLdr: case Op::kLdrb: case Op::kStr: case Op::kStrb: case Op::kLdrh: case Op::kLdrsb: case Op::kLdrsh:
+    case Op::kStrh: case Op::kLdrd: case Op::kStrd: case Op::kLdm: case Op::kStm: case Op::kSwp: case Op::kSwpb:
+      return true;
+    default: return false;
+  }
+}
+
 /// How the second operand or the offset is formed.
 enum class Operand : std::uint8_t { kImm, kReg, kShiftImm, kShiftReg };
 

@@ -46,7 +46,7 @@ std::uint16_t perhaps_late(const Instruction& i) {
       return 0;
     default: break;
   }
-  if (i.op <= Op::kMvn) return 0;
+  if (is_data_processing(i.op)) return 0;
   const std::uint32_t known = late_results(i).registers;
   return static_cast<std::uint16_t>(known ? known : 0xFFFFu);
 }
@@ -170,7 +170,7 @@ void prepare(Instruction& i, unsigned at, RecordContext context, bool shifted_cy
   bool own_condition = false;
   if (i.flags & kUnpredictable) {
     body = &Ops::warned;
-  } else if (i.op <= Op::kMvn) {
+  } else if (is_data_processing(i.op)) {
     body = Ops::data_body(i);
   } else {
     switch (i.op) {

@@ -35,7 +35,7 @@ class Scoreboard {
       // These operands are read one clock later. But loads do not forward to this port (their
       // latency is one clock more), and a multiply forwards only to the accumulator input, not to
       // store data.
-      const bool late = by == kLoad || (by == kMultiply && i.op >= Op::kLdr);
+      const bool late = by == kLoad || (by == kMultiply && !calculates(i.op));
       need = std::max(need, late || ready == 0 ? ready : ready - 1);
     }
     return need;

@@ -14,6 +14,14 @@ enum class Form : std::uint8_t {
   kImm, kImmCarry, kReg, kLsl, kLsr, kAsr, kRor, kRrx, kLslReg, kLsrReg, kAsrReg, kRorReg, kCount
 };
 
+constexpr bool shifts_by_register(Form form) {
+  return form == Form::kLslReg || form == Form::kLsrReg || form == Form::kAsrReg || form == Form::kRorReg;
+}
+
+/// By Instruction::shift: an immediate distance, or one in a register.
+inline constexpr Form kShifts[] = {Form::kLsl, Form::kLsr, Form::kAsr, Form::kRor};
+inline constexpr Form kRegisterShifts[] = {Form::kLslReg, Form::kLsrReg, Form::kAsrReg, Form::kRorReg};
+
 /// The form of a decoded record. Also rewrites the distance of an immediate shift as described
 /// above, so it must be called only once for each record.
 inline Form form_of(Instruction& i) {
@@ -23,8 +31,8 @@ inline Form form_of(Instruction& i) {
     case Operand::kShiftImm:
       if (i.shift == 3 && i.amount == 0) return Form::kRrx;
       if (i.amount == 0) i.amount = 32;
-      return static_cast<Form>(static_cast<unsigned>(Form::kLsl) + i.shift);
-    default: return static_cast<Form>(static_cast<unsigned>(Form::kLslReg) + i.shift);
+      return kShifts[i.shift];
+    default: return kRegisterShifts[i.shift];
   }
 }
 
@@ -81,7 +89,7 @@ template <Form kForm>
     return i.imm;
   } else if constexpr (kForm == Form::kReg) {
     return r[i.rm];
-  } else if constexpr (kForm < Form::kLslReg) {
+  } else if constexpr (!shifts_by_register(kForm)) {
     return shifted<kForm>(r[i.rm], i.amount, carry);
   } else {
     return shifted_by_register<kForm>(r[i.rm], r[i.rs] & 0xFFu, carry);

@@ -1,5 +1,8 @@
 // Parameters of the DDR2 controller and of the memory behind it.
 #pragma once
+#include <string_view>
+
+#include "model/common/check.h"
 #include "model/common/param.h"
 
 namespace fovea::mem {
@@ -86,9 +89,26 @@ struct DdrParams : ParamGroup {
                              [this] { return scheduler.is("ti") || scheduler.is("closed_page"); });
   }
 
-  std::uint64_t size_bytes() const { return (std::uint64_t{64} << 20) << part.index() % 3; }
-  bool mobile() const { return part.index() >= 3; }
-  unsigned banks() const { return mobile() || part.index() == 0 ? 4 : 8; }
+  std::uint64_t size_bytes() const { return std::uint64_t{row().mebibytes} << 20; }
+  bool mobile() const { return row().mobile; }
+  unsigned banks() const { return row().banks; }
+
+ private:
+  struct Part {
+    std::string_view name;
+    unsigned mebibytes, banks;
+    bool mobile;
+  };
+  static constexpr Part kParts[] = {{"mt47h32m16", 64, 4, false},
+                                    {"mt47h64m16", 128, 8, false},
+                                    {"mt47h128m16", 256, 8, false},
+                                    {"mt46h32m16lf", 64, 4, true},
+                                    {"mt46h64m16lf", 128, 4, true}};
+  const Part& row() const {
+    for (const Part& p : kParts)
+      if (part.is(p.name)) return p;
+    FOVEA_CHECK(false, "no such part: " + part());
+  }
 };
 
 }  // namespace fovea::mem

@@ -41,8 +41,9 @@ namespace {
 
 Child::Child(const std::vector<std::string>& arguments, const std::filesystem::path& output,
              const std::filesystem::path& messages) {
+  std::vector<std::string> copies = arguments;  // execv() takes words that are not const
   std::vector<char*> pointers;
-  for (const std::string& a : arguments) pointers.push_back(const_cast<char*>(a.c_str()));
+  for (std::string& a : copies) pointers.push_back(a.data());
   pointers.push_back(nullptr);
   const pid_t parent = ::getpid();
   pid_ = ::fork();

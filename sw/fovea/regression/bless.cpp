@@ -65,10 +65,15 @@ std::string blessed_text(const RunFigures& run, const Baseline& baseline, const 
                            yaml_text(why), changes);
 }
 
-std::string unified_diff(const std::string& name, const std::string& before,
-                         const std::string& after) {
-  const auto a = lines_of(before), b = lines_of(after);
-  // The longest common subsequence, after equal ends are taken off; baselines are small.
+namespace {
+
+struct DiffLine {
+  char sign;  // of a unified diff
+  std::string text;
+};
+
+/// All lines of both texts, by the longest common subsequence after equal ends are taken off; baselines are small.
+std::vector<DiffLine> aligned_lines(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   std::size_t head = 0, tail = 0;
   while (head < a.size() && head < b.size() && a[head] == b[head]) ++head;
   while (tail + head < a.size() && tail + head < b.size() &&
@@ -83,11 +88,7 @@ std::string unified_diff(const std::string& name, const std::string& before,
     for (std::size_t j = columns; j-- > 0;)
       at(i, j) = a[head + i] == b[head + j] ? at(i + 1, j + 1) + 1
                                             : std::max(at(i + 1, j), at(i, j + 1));
-  struct Line {
-    char sign;
-    std::string text;
-  };
-  std::vector<Line> lines;
+  std::vector<DiffLine> lines;
   for (std::size_t i = 0; i < head; ++i) lines.push_back({' ', a[i]});
   for (std::size_t i = 0, j = 0; i < rows || j < columns;) {
     if (i < rows && j < columns && a[head + i] == b[head + j]) {
@@ -100,17 +101,30 @@ std::string unified_diff(const std::string& name, const std::string& before,
     }
   }
   for (std::size_t i = a.size() - tail; i < a.size(); ++i) lines.push_back({' ', a[i]});
+  return lines;
+}
 
+/// Which lines a diff shows: those that differ, with three lines around them.
+std::vector<bool> shown_lines(const std::vector<DiffLine>& lines) {
   constexpr std::size_t kContext = 3;
   std::vector<bool> shown(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (lines[i].sign != ' ')
       for (std::size_t k = i < kContext ? 0 : i - kContext; k <= i + kContext && k < lines.size(); ++k)
         shown[k] = true;
+  return shown;
+}
+
+}  // namespace
+
+std::string unified_diff(const std::string& name, const std::string& before,
+                         const std::string& after) {
+  const std::vector<DiffLine> lines = aligned_lines(lines_of(before), lines_of(after));
+  const std::vector<bool> shown = shown_lines(lines);
   std::string out;
   std::size_t in_a = 0, in_b = 0;
   for (std::size_t i = 0; i < lines.size();) {
-    const auto step = [&](const Line& line) {
+    const auto step = [&](const DiffLine& line) {
       in_a += line.sign != '+';
       in_b += line.sign != '-';
     };

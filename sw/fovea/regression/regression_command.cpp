@@ -172,10 +172,7 @@ int trend(const RegressionOptions& options, const CliContext& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-void add_regression_commands(CLI::App& app, RegressionOptions& options) {
-  auto& c = options.compare;
+void add_compare(CLI::App& app, RegressionOptions::Compare& c) {
   CLI::App* compare = app.add_subcommand("compare", "Show which figures of two runs differ, and why");
   compare->add_option("a", c.a, "Folder of results")->required()->type_name("DIR");
   compare->add_option("b", c.b, "Folder of results to compare with it")->required()->type_name("DIR");
@@ -192,8 +189,9 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
       "Exit status: 0 equal within the tolerance; 1 different; 2 wrong input. With profiles in both "
       "folders (fovea run --profile) the clocks are compared by function and line, otherwise by "
       "cause, region and culprit.");
+}
 
-  auto& k = options.check;
+void add_check(CLI::App& app, RegressionOptions::Check& k) {
   CLI::App* check = app.add_subcommand("check", "Compare a run with a baseline, and blame what is worse");
   check->add_option("dir", k.folder, "Folder of results")->required()->type_name("DIR");
   check->add_option("--against", k.against, "Baseline (YAML), required; 'fovea bless' makes one")
@@ -207,8 +205,9 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
       "input. A figure of a baseline has: value; unit; tolerance (1%, 2, '1% or 2'; none: the same "
       "number); worse (higher, lower, both): the direction that fails; kind: exact (from a run, "
       "replaced by bless), analytic (calculated) or budget (a limit); reason.");
+}
 
-  auto& b = options.bless;
+void add_bless(CLI::App& app, RegressionOptions::Bless& b) {
   CLI::App* bless = app.add_subcommand("bless", "Put the figures of a run into a baseline, or begin one");
   bless->add_option("dir", b.folder, "Folder of results")->required()->type_name("DIR");
   bless->add_option("--against", b.against, "Baseline (YAML), required; a name that is not there makes a new one")
@@ -218,8 +217,9 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
   bless->footer("Prints the change as a diff. Comments and order stay; analytic values and budgets are "
                 "never replaced (exit status 1 if one of them fails). The reference for blame, in the "
                 "folder that the baseline names, becomes this run's.");
+}
 
-  auto& t = options.trend;
+void add_trend(CLI::App& app, RegressionOptions::Trend& t) {
   CLI::App* trend = app.add_subcommand("trend", "Keep the figures of each commit, and plot them");
   trend->add_option("dir", t.folders, "Folders of results to add")->type_name("DIR");
   trend->add_option("--database", t.database, "SQLite file, required; made if it is not there")
@@ -237,6 +237,15 @@ void add_regression_commands(CLI::App& app, RegressionOptions& options) {
       ->allow_extra_args(false)
       ->default_str("headlines");
   trend->add_option("--experiment", t.experiment, "Plot only this experiment")->type_name("NAME");
+}
+
+}  // namespace
+
+void add_regression_commands(CLI::App& app, RegressionOptions& options) {
+  add_compare(app, options.compare);
+  add_check(app, options.check);
+  add_bless(app, options.bless);
+  add_trend(app, options.trend);
 }
 
 bool is_regression_command(const std::string& name) {

@@ -12,18 +12,18 @@ class App;
 namespace fovea::app {
 
 struct RegressionOptions {
-  struct {
+  struct Compare {
     std::string a, b, tolerance = "0", only;
     bool csv = false, json = false, all = false, across_versions = false;
   } compare;
-  struct {
+  struct Check {
     std::string folder, against, junit;
     bool all = false, across_versions = false;
   } check;
-  struct {
+  struct Bless {
     std::string folder, against, why;
   } bless;
-  struct {
+  struct Trend {
     std::vector<std::string> folders, figures;
     std::string database, commit, plot, experiment;
     double host_instructions = 0;
