@@ -4,7 +4,7 @@
 #   edma_gate.sh compare           the same of measured lines from standard input:
 #                                  hazards KERNEL COUNT COUNT COUNT COUNT   two and four frames without, then with
 #                                  remap KERNEL COUNT COUNT BYTES BYTES     few and many remaps in each of two frames
-#                                  seconds KERNEL SECONDS SECONDS BYTES BYTES   the same with very many, without callgrind
+#                                  seconds KERNEL SECONDS SECONDS BYTES BYTES   few and very many, without callgrind
 #   edma_gate.sh speed FOVEA OUT   the lines `seconds` alone (a minute), and what `compare` says of them
 # The start does not count, as two lengths are subtracted. BYTES: what core and EDMA read from and wrote to SDRAM. The
 # second part prints bytes of the SDRAM for each host instruction and for each second of the host's processor, and how
@@ -85,8 +85,8 @@ time_all() {
 prepare() {  # FOVEA OUT
   fovea=$1 out=$2
   mkdir -p "$out"
-  printf 'run: {start_limit: 2s}\ncamera: {kind: chart, stamp: false}\nvideo: {width: 240, height: 64}\nfirmware: {lut: fixed_point}\n' \
-    >"$out/small.yaml"
+  printf '%s\n' 'run: {start_limit: 2s}' 'camera: {kind: chart, stamp: false}' 'video: {width: 240, height: 64}' \
+    'firmware: {lut: fixed_point}' >"$out/small.yaml"
 }
 case ${1-} in
   check)
