@@ -1,5 +1,6 @@
 #include "sw/fovea/board_debug.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace fovea::app {
@@ -9,6 +10,8 @@ constexpr std::uint32_t kSdram = DDR_BASE;
 constexpr std::uint64_t kInternal = INTERNAL_RAM_BYTES, kDataWindow = INTERNAL_RAM_DATA_BASE;
 
 /// Gives the simulation back to its caller at a time. Made before the simulation starts.
+/// Masters and memory may act in the same instant, and would then go on up to the next event of somebody else; an event
+/// right behind the pause keeps them at its time.
 class Pause : public sc_core::sc_module {
  public:
   explicit Pause(sc_core::sc_module_name name) : sc_module(name) {
@@ -19,11 +22,12 @@ class Pause : public sc_core::sc_module {
   }
   void at(Picoseconds t) {
     due_.move_to(t);  // the core may have met the cause of an earlier one already
+    fence_.move_to(t == kNever ? kNever : std::max(t, kernel_time()) + 1);
   }
 
  private:
   void pause() { sc_core::sc_pause(); }
-  Timer due_;
+  Timer due_, fence_;
 };
 
 }  // namespace

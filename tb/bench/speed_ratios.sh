@@ -1,11 +1,13 @@
 #!/bin/sh
 # Speed of the simulator itself against an earlier state, in host instructions of the main thread, which callgrind
 # counts: they are the same on each run of one build. The reference is speed_reference.txt.
-#   speed_ratios.sh BUILD [exec|replay|board]...  measures (default: all; minutes) and prints the ratios
-#   speed_ratios.sh FOVEA [replay|board]...       the same for a program of any build
+#   speed_ratios.sh BUILD [exec|replay|board|default]...  measures (default: all; minutes) and prints the ratios
+#   speed_ratios.sh FOVEA [replay|board|default]...       the same for a program of any build
 #   speed_ratios.sh compare                       ratios of lines "NAME COUNT" from standard input
 # Exit 1: something costs more than its floor, or was not measured.
 # board: the last displayed frame of paper-pal, within which one frame is remapped: 720 x 576 / 2 pairs.
+# default: a frame of default.yaml with the kernel $KERNEL (plain, its former one), as the difference of runs with three
+# frames and with one.
 set -eu
 here=$(dirname "$0")
 compare() {
@@ -28,7 +30,7 @@ compare() {
 [ "${1-}" = compare ] && { compare; exit; }
 what=${1:?usage: speed_ratios.sh BUILD|FOVEA [exec|replay|board]...}
 shift
-[ $# -gt 0 ] || set -- exec replay board
+[ $# -gt 0 ] || set -- exec replay board default
 if [ -d "$what" ]; then build=$what fovea=$what/fovea; else build= fovea=$what; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -67,12 +69,22 @@ board() {
   last=$(ls "$work"/board.*-01 | sort -V | tail -n 1)
   awk '/^totals:/ { printf "board.paper-pal %.0f\n", $2 / (720 * 576 / 2) }' "$last"
 }
+default_frames() {  # FRAMES
+  count "$fovea" run "$here/../../scripts/experiments/default.yaml" -s firmware.kernel="${KERNEL:-plain}" \
+    -s run.frames="$1" --no-frames -o "$work/out"
+}
+default_board() {
+  one=$(default_frames 1)
+  three=$(default_frames 3)
+  echo "board.default $(((three - one) / (2 * 720 * 576 / 2)))"
+}
 for part in "$@"; do
   case $part in
     exec) exec_programs ;;
     replay) replays ;;
     board) board ;;
-    *) echo "speed_ratios.sh: '$part' is not known: exec, replay, board" >&2; exit 2 ;;
+    default) default_board ;;
+    *) echo "speed_ratios.sh: '$part' is not known: exec, replay, board, default" >&2; exit 2 ;;
   esac
 done >"$work/lines"
 compare <"$work/lines"

@@ -14,6 +14,8 @@ expect 0 'floor met' 'board.paper-pal 1459\n'
 expect 0 'floor met' 'board.paper-pal 1944\n'       # 80 %
 expect 1 'ABOVE THE FLOOR' 'board.paper-pal 1945\n'
 expect 1 'ABOVE THE FLOOR' 'board.paper-pal 1000\nexec.remap 114.07\n'
+expect 0 'floor met' 'board.default 2601\n'         # 101 % of 2576
+expect 1 'ABOVE THE FLOOR' 'board.default 2602\n'
 expect 1 'board.ntsc: NOTHING TO COMPARE' 'board.ntsc 1000\n'
 expect 1 'board.paper-pal: NOTHING TO COMPARE' 'board.paper-pal 0\n'
 expect 1 'exec.copy: NOTHING TO COMPARE' 'board.paper-pal 1000\nexec.copy 1\n'

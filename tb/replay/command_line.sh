@@ -41,7 +41,12 @@ cmp "$trace" "$out/strict.trace" || fail 'strict and default record different tr
 # A synthetic load on a port of the EDMA is paced by what the trace holds, the EDMA itself is not.
 said='what the EDMA waits for outside the SDRAM'
 ! run -o "$out/strict" --bus-trace "$out/strict.trace" 2>&1 | grep -q "$said" || fail 'a load is taken for the EDMA'
-expect record_edma 0 "$said" -- run -o "$out/edma" -s firmware.kernel=copy --bus-trace "$out/edma.trace"
+expect record_edma 0 "$said" -- run -o "$out/edma" -s firmware.kernel=copy --bus-trace "$out/edma.trace" \
+  -s load.outstanding=0 -s load.1.outstanding=0
+expect replay_edma 0 '^replayed [0-9]+ requests' -- replay "$out/edma.trace"
+bytes() { grep -oE '"bus\.(edma_tc[0-3]|vp[bf]e)\.(read|write)_bytes": \{"value": [1-9][0-9]*' "$1/stats.json"; }
+[ "$(bytes "$out/edma" | grep -c edma_tc)" = 8 ] || fail "the controllers copy nothing: $(bytes "$out/edma")"
+diff <(bytes "$out/edma") <(bytes "$out/replay") || fail 'other bytes of the EDMA in the replay than in the run'
 
 # What is not a trace is not overwritten, and no link is followed.
 echo dear >"$out/letter"

@@ -511,6 +511,43 @@ TEST_F(CopyTest, SidesOfATransferControllerFollowEachOther) {
   }
 }
 
+/// What the EDMA waits for outside the SDRAM is not in the trace, so its requests go when they went. On the same memory
+/// that is exact for all masters.
+class EdmaRunsTest : public CopyTest {
+ protected:
+  Figures record(const std::string& kernel) {
+    const Figures f = run_board({{"firmware.kernel", kernel},
+                                 {"firmware.lut", "fixed_point"},
+                                 {"video.width", "320"},
+                                 {"video.height", "240"}},
+                                {}, {}, file());
+    for (const char* master : {"edma_tc0_read", "edma_tc1_read", "edma_tc2_write"})
+      EXPECT_EQ(f.count(std::string("times.") + master), 1u) << master;
+    return f;
+  }
+};
+TEST_F(EdmaRunsTest, ACopyIsServedAsInTheRun) {
+  const Figures recorded = record("copy");
+  ASSERT_GE(recorded.at("remaps"), 2);
+  const Figures same = replay(file(), {}, {});
+  EXPECT_EQ(same.size(), recorded.size());
+  EXPECT_LE(worst(recorded, same, "same"), 0.0001);
+  EXPECT_EQ(other_times(recorded, same), 0u);
+  EXPECT_GT(other_times(recorded, replay(file(), {}, {}, Lost::kNothing, 30'000)), 0u)
+      << "refreshes a few clocks earlier";
+}
+
+/// The core's stores wait behind its posted writes to registers of the EDMA, which are not in the trace either
+/// (README.md, Limits).
+TEST_F(EdmaRunsTest, AStagedRemapFollowsTheRun) {
+  const Figures recorded = record("staged");
+  ASSERT_GE(recorded.at("remaps"), 2);
+  const Figures same = replay(file(), {}, {});
+  EXPECT_EQ(same.size(), recorded.size());
+  EXPECT_LE(worst(only(recorded, {"remap", "vpfe", "vpbe"}), same, "same"), 0.01);
+  EXPECT_LE(worst(without_p99(recorded), same, "same"), 0.15);
+}
+
 // Recorded with a memory that goes to sleep whenever it is idle and takes tXSRD to give data again.
 class SleepTest : public CopyTest {};
 TEST_F(SleepTest, ASleepingMemoryIsPlayedAsOne) {
