@@ -13,7 +13,6 @@
 #include "sw/fovea/parameter_page.h"
 #include "tb/e2e/geometry.h"
 #include "tb/e2e/rig.h"
-#include "tb/e2e/stamp_reader.h"
 
 namespace fovea::e2e {
 
@@ -37,6 +36,7 @@ CamerasRig& CamerasRig::load(const std::string& name) {
 }
 
 board::Board& CamerasRig::build() {
+  if (board_) return *board_;
   app::check_fits(elf_, app::memory_regions(params));
   app::complete_params(params);
   std::vector<video::PictureSource*> pictures;
@@ -62,7 +62,7 @@ board::Board& CamerasRig::build() {
 }
 
 void CamerasRig::run(Picoseconds limit) {
-  if (!board_) build();
+  build();
   while (!board_->window_end() && board_->dm365.arm.failure().empty() && kernel_time() < limit)
     advance(kPsPerMs);
 }
@@ -79,6 +79,13 @@ std::optional<CamerasRig::Shown::Stamp> CamerasRig::read_stamp(const oracle::Fra
     }
   }
   return std::nullopt;
+}
+
+ShownFields CamerasRig::read_stamp(const oracle::Frame& frame, unsigned camera) const {
+  const auto& layout = sources_.at(camera)->stamps();
+  const unsigned x = (params.raster_width() - params.width()) / 2;
+  const unsigned y = (params.raster_height() - params.height()) / 2;
+  return layout ? read_stamps(frame, views_[camera].front().geometry, *layout, x, y) : ShownFields{};
 }
 
 std::uint32_t CamerasRig::table_address(unsigned camera) {

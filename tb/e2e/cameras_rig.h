@@ -10,6 +10,7 @@
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
 #include "sw/fovea/elf_image.h"
+#include "tb/e2e/stamp_reader.h"
 #include "tb/oracle/frame_compare.h"
 #include "tb/oracle/lens_oracle.h"
 
@@ -33,6 +34,7 @@ class CamerasRig {
   CamerasRig& set(const std::string& key, const std::string& value);
   /// Sets all keys of a shipped experiment, with its footage and calibrations.
   CamerasRig& load(const std::string& experiment);
+  /// Builds the board, once.
   board::Board& build();
   /// Runs until the window is closed or the core fails; builds the board if that was not done.
   void run(Picoseconds limit);
@@ -45,6 +47,8 @@ class CamerasRig {
   std::string wrong_picture();
   /// Which view's table, byte for byte, made the displayed frame; ~0: none.
   unsigned shown_by(const Shown& shown);
+  /// What the marks of a frame say that is corrected by the table of `camera`, whose frame it may not be.
+  ShownFields read_stamp(const oracle::Frame& frame, unsigned camera) const;
   /// A further view that the camera has, later in the run: frames are looked for in it too.
   void add_view(unsigned camera, const oracle::Geometry& geometry);
   const oracle::Geometry& geometry(unsigned camera) const { return views_.at(camera).front().geometry; }

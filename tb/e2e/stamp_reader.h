@@ -28,4 +28,18 @@ ShownFields read_stamps(const oracle::Frame& shown, const oracle::Geometry& geom
 ShownFields read_stamps(const oracle::Frame& shown, const video::StampLayout& layout,
                         const std::function<std::optional<oracle::Position>(unsigned u, unsigned v)>& position);
 
+/// Where a displayed pixel comes from.
+struct SourcePixel {
+  oracle::Position at;  ///< in the camera's whole picture
+  bool second = false;  ///< of the frame's second field
+};
+/// A frame's number, modulo 32768, and its camera.
+struct ShownFrame {
+  unsigned number = 0, camera = 0;
+};
+/// The same from the rows of both fields together, for a picture that is made smaller, in which neither field shows
+/// all cells. Nothing if a cell is in no row, or if the rows of the two fields contradict each other.
+std::optional<ShownFrame> read_frame(const oracle::Frame& shown, const video::StampLayout& layout,
+                                     const std::function<std::optional<SourcePixel>(unsigned u, unsigned v)>& source);
+
 }  // namespace fovea::e2e

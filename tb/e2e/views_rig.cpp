@@ -12,7 +12,6 @@
 #include "sw/fovea/parameter_page.h"
 #include "tb/e2e/geometry.h"
 #include "tb/e2e/rig.h"
-#include "tb/e2e/stamp_reader.h"
 
 namespace fovea::e2e {
 namespace {
@@ -171,28 +170,30 @@ std::string ViewsRig::find_frames(Composed& shown, const std::vector<std::uint32
   return "";
 }
 
+std::optional<SourcePixel> ViewsRig::source_pixel(unsigned camera, unsigned u, unsigned v) const {
+  // A camera in the bird's-eye view may be turned by any angle: of a pair only the pixel for which it was looked up is
+  // in its place.
+  const bool by_centre = views_.lens[0].method == oracle::PairMethod::kPairCentre;
+  const oracle::Shown s = oracle::shown_at(views_, views_.birds_eye ? u / 2 * 2 + (by_centre ? 0.5 : 0) : u, v);
+  if (s.camera != static_cast<int>(camera)) return std::nullopt;
+  const double x = (params.raster_width() - params.width()) / 2, y = (params.raster_height() - params.height()) / 2;
+  const double column = std::floor(s.at.x + 0.5), row = std::floor(s.at.y + 0.5) + y;
+  const auto in_pair = [&](double of) { return std::floor(of / 2) * 2 + u % 2; };
+  if (!views_.quad)
+    return SourcePixel{{(views_.birds_eye ? in_pair(column) : column) + x, row}, std::fmod(row, 2) != 0};
+  // A pixel of the quad's picture is the mean of two by two of the camera's, all of one field.
+  const double half_row = std::floor(row / 2), half = std::floor(column / 2);
+  return SourcePixel{{2 * (views_.birds_eye ? in_pair(half) : half) + 0.5, 2 * half_row + 0.5},
+                     std::fmod(half_row, 2) != 0};
+}
+
 std::optional<std::uint64_t> ViewsRig::stamp(const Composed& shown, unsigned camera) const {
   const auto& layout = sources_[camera]->stamps();
   if (!layout) return std::nullopt;
-  const double x = (params.raster_width() - params.width()) / 2, y = (params.raster_height() - params.height()) / 2;
-  const bool by_centre = views_.lens[0].method == oracle::PairMethod::kPairCentre;
-  const auto position = [&](unsigned u, unsigned v) -> std::optional<oracle::Position> {
-    if (!views_.birds_eye) {
-      const oracle::Shown at = oracle::shown_at(views_, u, v);
-      if (at.camera != static_cast<int>(camera)) return std::nullopt;
-      return oracle::Position{at.at.x + x, at.at.y + y};
-    }
-    // A camera may be turned by any angle: of a pair only the pixel for which it was looked up is in its place.
-    const oracle::Shown at = oracle::shown_at(views_, u / 2 * 2 + (by_centre ? 0.5 : 0), v);
-    if (at.camera != static_cast<int>(camera)) return std::nullopt;
-    return oracle::Position{std::floor(std::floor(at.at.x + 0.5) / 2) * 2 + u % 2 + x, std::floor(at.at.y + 0.5) + y};
-  };
-  const ShownFields f = read_stamps(shown.frame, *layout, position);
-  // At half height the rows of one field may be the only ones that are shown.
-  const bool even = f.even_camera == camera, odd = f.odd_camera == camera;
-  if (!even && !odd) return std::nullopt;
-  if (even && odd && *f.odd != *f.even + 1) return std::nullopt;
-  return even ? *f.even / 2u : (*f.odd - 1u) / 2u;
+  const auto f = read_frame(shown.frame, *layout,
+                            [&](unsigned u, unsigned v) { return source_pixel(camera, u, v); });
+  if (!f || f->camera != camera) return std::nullopt;
+  return f->number;
 }
 
 std::string ViewsRig::wrong_composition(const Composed& s, const std::vector<std::uint32_t>& lut) {

@@ -14,6 +14,7 @@
 #include "model/common/host_time_slicer.h"
 #include "model/video/scene/quad.h"
 #include "sw/fovea/elf_image.h"
+#include "tb/e2e/stamp_reader.h"
 #include "tb/oracle/view_oracle.h"
 
 namespace fovea::e2e {
@@ -62,6 +63,8 @@ class ViewsRig {
 
  private:
   const oracle::Frame& sent(unsigned camera, std::uint64_t number);
+  /// The camera's pixel that a displayed one shows, from the oracle's geometry; nothing if it shows another camera.
+  std::optional<SourcePixel> source_pixel(unsigned camera, unsigned u, unsigned v) const;
   std::string wrong_composition(const Composed& shown, const std::vector<std::uint32_t>& lut);
   std::string find_frames(Composed& shown, const std::vector<std::uint32_t>& lut, std::uint64_t oldest);
 
