@@ -162,6 +162,7 @@ std::vector<std::uint8_t> Board::peek(std::uint32_t address, std::size_t bytes) 
 void Board::latched(const video::Osd::Latch& latch) {
   const bool shows = latch.window && log.latch(latch.address, latch.time);
   if (latch.f) return;  // frames begin with the first field
+  if (!digital) log.decoder(decoder.synced_at());
   if (shows && !window_start_ && !opening_) {
     opening_ = true;
     dm365.end_of_instant.at(kernel_time(), InstantRank::kObservers, [this] {
@@ -224,6 +225,7 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
   ++stats.displayed;
   if (r.repeated || !r.captured) {
     ++stats.repeated;
+    stats.repeated_relock += r.relock;
     return;
   }
   fresh += whole;

@@ -38,6 +38,7 @@ struct FrameStats {
   std::optional<double> rate;
   double window = 0;
   std::uint64_t captured = 0, remapped = 0, displayed = 0, dropped = 0, repeated = 0;
+  std::uint64_t repeated_relock = 0;  ///< of the repeated ones, those for which the decoder had to find the syncs
   Picoseconds latency_min = 0, latency_max = 0, remap_min = 0, remap_max = 0;
   double latency_mean = 0, remap_mean = 0;  // ps
   double remap_rate = 0;  ///< 1/s; remaps that ended in the window / `window`

@@ -1,5 +1,7 @@
 #include "model/board/frame_log.h"
 
+#include <iterator>
+
 namespace fovea::board {
 
 void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera) {
@@ -118,6 +120,19 @@ void FrameLog::finish(Picoseconds at, Picoseconds age) {
   }
 }
 
+/// Whether the decoder's search for the syncs is the reason that the display frame from `start` on shows a frame again.
+/// After it the next whole frame begins within one frame period and takes another one. Until it is on show, there
+/// is one newer frame; a second one means that the chip is late.
+bool FrameLog::awaits_syncs(Picoseconds start) const {
+  const auto showing = captured_.find(*showing_);
+  if (records_.empty() || showing == captured_.end() || synced_ <= showing->second.start) return false;
+  unsigned newer = 0;
+  for (auto c = std::next(showing); c != captured_.end(); ++c)
+    newer += c->second.end <= start && c->second.camera != kNoCamera;
+  const Picoseconds period = start - records_.back().display_start;
+  return newer == 1 || (newer == 0 && start <= synced_ + 2 * period);
+}
+
 const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
   FrameRecord r;
   r.index = shown_++;
@@ -135,6 +150,7 @@ const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
       r.remap_end = m->second.end;
     }
     r.repeated = last_shown_ == showing_;
+    r.relock = r.repeated && awaits_syncs(start);
     if (last_shown_ && *showing_ > *last_shown_ + 1) r.dropped = *showing_ - *last_shown_ - 1;
     if (!r.repeated) settle_fates(*showing_);
     last_shown_ = showing_;

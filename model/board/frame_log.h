@@ -30,6 +30,7 @@ struct FrameRecord {
   Picoseconds display_start = 0, display_end = 0;
   std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
   bool repeated = false;
+  bool relock = false;  ///< repeated, but no newer frame could be on show yet: the decoder had to find the syncs
   unsigned camera = kNoCamera;  ///< whose frame it shows; kNoCamera: a black one
 };
 
@@ -44,6 +45,8 @@ class FrameLog {
   /// The display begins a frame and will show this buffer. True if it shows a frame that the
   /// firmware has flipped to.
   bool latch(std::uint32_t address, Picoseconds at);
+  /// The display begins a frame; the decoder had found the present syncs at that time (Tvp5146::synced_at()).
+  void decoder(Picoseconds synced_at) { synced_ = synced_at; }
   /// The chip is reset: capture and firmware count from 0 again. What is in the log stays.
   void restart();
   /// The frame whose latch was the last one is out.
@@ -101,6 +104,7 @@ class FrameLog {
     Picoseconds start, end;
     unsigned camera;
   };
+  bool awaits_syncs(Picoseconds start) const;
   void settle_fates(std::uint64_t shown);
   Fates* fates_of(const Capture& capture);
   void settle_unshown(std::uint64_t number, const Capture& capture);
@@ -119,7 +123,7 @@ class FrameLog {
   std::uint64_t next_capture_ = 0;
   std::optional<std::uint64_t> running_, flipped_, showing_, last_shown_;
   std::optional<std::uint32_t> address_;
-  Picoseconds remap_start_ = 0;
+  Picoseconds remap_start_ = 0, synced_ = 0;
   std::vector<FrameRecord> records_;
   std::uint64_t shown_ = 0;
 };

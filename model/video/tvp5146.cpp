@@ -83,12 +83,13 @@ std::optional<std::size_t> Tvp5146::selected() const {
 void Tvp5146::change_input() {
   const auto now = selected();
   const bool other_raster = now && *now != raster_;
+  const bool other_syncs = other_raster && started_ && !in_step(*now, raster_);
   signal_ = now.has_value();
   if (other_raster && new_offset_) cameras_[raster_].set_clock_offset(*new_offset_, kernel_time());
   if (other_raster) new_offset_.reset();
   if (other_raster) cameras_[raster_].follow_again();
   if (now) raster_ = *now;
-  relock();
+  relock(other_syncs);
   if (!other_raster || !enabled() || !started_ || nominal_.stopped()) return;
   // What is on the wire goes on to the end of its line.
   const Clock& of = raster().clock();
@@ -284,8 +285,18 @@ std::uint8_t Tvp5146::i2c_read() {
   return read_register(pointer_++);
 }
 
-void Tvp5146::relock() {
+/// Whether both cameras' present fields end at the same time, and are both first or both second ones.
+bool Tvp5146::in_step(std::size_t camera, std::size_t other) const {
+  const CameraSignal &a = cameras_[camera], &b = cameras_[other];
+  const std::uint64_t of_a = a.field_at(kernel_time()) + 1, of_b = b.field_at(kernel_time()) + 1;
+  return of_a % 2 == of_b % 2 && a.field_time(of_a) == b.field_time(of_b);
+}
+
+void Tvp5146::relock(bool other_syncs) {
   locked_from_ = signal_ ? present_field() + params_.relock_fields() : kNever;
+  // A later change of the clock would move the start of a field that is over.
+  if (signal_ && started_ && (other_syncs || params_.relock_fields() > 0))
+    synced_at_ = std::max(kernel_time(), field_time(locked_from_));
 }
 
 void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {

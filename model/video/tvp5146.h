@@ -74,6 +74,9 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   /// First field of the selected camera from which the decoder is locked, provided that register 02
   /// holds the right standard; kNever without a signal.
   std::uint64_t locked_from_field() const { return locked_from_; }
+  /// When it had found the present syncs: now, if it is not locked. Another camera's syncs have to be found too, in no
+  /// time with relock_fields = 0, unless they are in step with those before. 0: it has been locked from the start.
+  Picoseconds synced_at() const { return lock() ? synced_at_ : kernel_time(); }
   std::uint64_t lines_sent() const { return lines_sent_; }
 
  private:
@@ -91,7 +94,8 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t present_field() const;
   void write_register(std::uint8_t index, std::uint8_t value);
   std::uint8_t read_register(std::uint8_t index) const;
-  void relock();
+  void relock(bool other_syncs = false);
+  bool in_step(std::size_t camera, std::size_t other) const;
   void count_line();
   void finish_capture();
 
@@ -118,6 +122,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t next_line_ = 0;  // index of the next line to announce
   Picoseconds line_end_ = 0;     // of the line that was announced last
   std::uint64_t locked_from_ = kNever;
+  Picoseconds synced_at_ = 0;  // start of that field, if its syncs had to be found
   std::uint64_t lines_sent_ = 0;
   Timer line_timer_;
 

@@ -102,6 +102,10 @@ void BoardFigures::add_frame_stats(std::vector<StatRow>& rows) const {
   rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed in the window"));
   rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never displayed"));
   rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show a camera frame again"));
+  if (!board_.digital)
+    rows.push_back(row("frame.repeated_relock", f.repeated_relock, "1",
+                       "of the repeated frames, those for which no newer one could be on show yet, because the decoder "
+                       "had to find a camera's syncs"));
   if (f.latencies) {
     const std::string what = "time from a frame's first captured sample to its first displayed sample, ";
     rows.push_back(row("frame.latency.min", to_s(f.latency_min), "s", what + "shortest"));

@@ -12,11 +12,11 @@
 #include <ostream>
 #include <system_error>
 
-#include "sw/fovea/calibration.h"
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/cli_help.h"
 #include "sw/fovea/cli_limits.h"
 #include "sw/fovea/command_trace.h"
+#include "sw/fovea/effective.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/gdb_server.h"
@@ -225,7 +225,7 @@ std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& me
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   if (options.report)
     add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
-  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
+  say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
   context.out.flush();
   return host;
 }
@@ -256,7 +256,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   // A condition that is refused has nothing to say about keys that need it.
   if (const ParamBase* until = params.find("run.until")) check_run_until(until->text());
   warn_without_effect(params, experiment);
-  apply_calibrations(params, experiment);
+  say_note(complete_experiment(params, experiment), context);
   const RunLimits limits = limits_of(options.limits);
   const std::optional<ElfImage> symbols = symbols_of(options.limits);
 
@@ -349,7 +349,7 @@ void on_signal(int signal) {
 
 }  // namespace
 
-void report_earlier(const std::string& note, const CliContext& context) {
+void say_note(const std::string& note, const CliContext& context) {
   if (!note.empty()) context.err << "fovea: " << note << std::endl;
 }
 

@@ -41,8 +41,8 @@ int run_cli(const std::vector<std::string>& args, const CliContext& context);
 /// once); SIGPIPE and SIGXFSZ are ignored, so that they become write errors.
 void install_signals(CliContext& context);
 
-/// Prints the sentence of RunDir::commit() about results that were in the folder before.
-void report_earlier(const std::string& note, const CliContext& context);
+/// Prints a sentence about what a command did of its own accord; nothing if it is empty.
+void say_note(const std::string& note, const CliContext& context);
 
 std::string version_text();
 

@@ -255,7 +255,7 @@ void write_program_results(const ExecOptions& o, const ExecResult& result, const
   dir.write("host.json", host_json(result.host, args, version_text()));
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
                                      collect_warnings(Diagnostics::instance())));
-  report_earlier(dir.commit(result.complete && result.guest_failure.empty()), context);
+  say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
 }
 
 /// The exit status. `lost`: the program's output could not be written. @throws GuestFailure, UserError

@@ -4,8 +4,14 @@
 
 #include "sw/fovea/calibration.h"
 #include "sw/fovea/provenance.h"
+#include "sw/fovea/shared_pictures.h"
 
 namespace fovea::app {
+
+std::string complete_experiment(const ParamSet& params, Experiment& experiment) {
+  apply_calibrations(params, experiment);
+  return share_pictures(params, experiment);
+}
 
 std::unique_ptr<EffectiveRun> effective_run(
     const std::function<std::unique_ptr<Simulation>()>& make_simulation,
@@ -15,7 +21,7 @@ std::unique_ptr<EffectiveRun> effective_run(
   out->simulation->declare(out->params);
   out->experiment.load(experiment);
   for (const std::string& s : settings) out->experiment.override_with(s);
-  apply_calibrations(out->params, out->experiment);
+  out->shared = complete_experiment(out->params, out->experiment);
   return out;
 }
 

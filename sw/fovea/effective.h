@@ -16,9 +16,14 @@ struct EffectiveRun {
   std::unique_ptr<Simulation> simulation;
   ParamSet params;
   Experiment experiment{params};
+  std::string shared;  ///< what share_pictures() says
 };
 
-/// Reads the experiment, applies the settings and the calibrations. @throws UserError
+/// What follows from the keys that are set: calibrations, and pictures that cameras share.
+/// @return what share_pictures() says @throws UserError
+std::string complete_experiment(const ParamSet& params, Experiment& experiment);
+
+/// Reads the experiment, applies the settings and completes it. @throws UserError
 std::unique_ptr<EffectiveRun> effective_run(
     const std::function<std::unique_ptr<Simulation>()>& make_simulation,
     const std::string& experiment, const std::vector<std::string>& settings);

@@ -203,6 +203,8 @@ std::string ValueOrigin::text() const {
       return line ? at(file, line) : one_line(file);
     case Kind::kCommandLine:
       return "command line";
+    case Kind::kOtherKey:
+      return "as " + file;
     case Kind::kDefault:
       break;
   }
@@ -315,6 +317,12 @@ void Experiment::preset(std::string_view key, std::string_view value, const std:
   }
   origins_[std::string(key)] = {ValueOrigin::Kind::kFile, file, 0};
   ranks_[std::string(key)] = 0;
+}
+
+void Experiment::take_over(const std::string& key, const std::string& from) {
+  params_.set(key, params_.find(from)->text());
+  origins_[key] = {ValueOrigin::Kind::kOtherKey, from, 0};
+  ranks_[key] = 0;
 }
 
 void Experiment::override_with(std::string_view assignment) {

@@ -12,13 +12,13 @@ namespace fovea::app {
 
 /// Where the value of a parameter was given.
 struct ValueOrigin {
-  enum class Kind { kDefault, kFile, kCommandLine };
+  enum class Kind { kDefault, kFile, kCommandLine, kOtherKey };
   Kind kind = Kind::kDefault;
-  std::string file;   ///< as the user named it; empty unless kFile
+  std::string file;   ///< as the user named it, or the key whose value it is; empty unless kFile or kOtherKey
   unsigned line = 0;  ///< from 1 on; 0 unless kFile, or if the file has no lines
-  /// True if the value comes from a file without lines, such as a trace or a calibration.
-  bool preset() const { return kind == Kind::kFile && line == 0; }
-  /// "default", "command line", "file:line" or "file".
+  /// True if the value comes from a file without lines, such as a trace or a calibration, or from another key.
+  bool preset() const { return (kind == Kind::kFile && line == 0) || kind == Kind::kOtherKey; }
+  /// "default", "command line", "file:line", "file" or "as KEY".
   std::string text() const;
 };
 
@@ -40,6 +40,8 @@ class Experiment {
   void load(const std::filesystem::path& file);
   /// Sets a key from a file without lines (a trace, a calibration). @throws UserError
   void preset(std::string_view key, std::string_view value, const std::string& file);
+  /// Sets a key to the value of another one. @throws UserError
+  void take_over(const std::string& key, const std::string& from);
   /// Applies one `key=value` from the command line. @throws UserError
   void override_with(std::string_view assignment);
 

@@ -160,7 +160,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.write("latency.csv", latency_csv(path.latency_rows()));
-  report_earlier(dir.commit(complete), context);
+  say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host);
   context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
   if (complete) return kExitDone;

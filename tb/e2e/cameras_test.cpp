@@ -124,6 +124,10 @@ TEST_P(FreeRunningTest, TheNextWholeFrameAfterTheLockIsShown) {
   const auto got = sequence(rig);
   ASSERT_GE(got.size(), 4u) << rig.board().uart_text();
   expect_sequence(ideal(got.front(), got.size(), relock, {0, 1.0 * phase}), got);
+  // No frame is shown again for another reason than the syncs.
+  const board::FrameStats f = rig.board().frame_stats();
+  EXPECT_EQ(f.repeated, rig.shown().size() - got.size());
+  EXPECT_EQ(f.repeated_relock, f.repeated);
   EXPECT_TRUE(rig.said().empty()) << rig.said().front();
 }
 INSTANTIATE_TEST_SUITE_P(Relock, FreeRunningTest, testing::Values(Apart{0, 20}, Apart{2, 27}, Apart{3, 27}),
@@ -447,6 +451,8 @@ TEST(CamerasTest, EachCapturedFrameIsDisplayedSupersededOrDropped) {
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 9u) << rig.board().uart_text();
   EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_GT(rig.board().frame_stats().repeated, 0u);
+  EXPECT_EQ(rig.board().frame_stats().repeated_relock, 0u) << "the syncs of both are the same";
   const auto shown = sequence(rig);
   std::uint64_t captured = 0, displayed = 0, lost = 0, pending = 0;
   for (const auto& s : rig.board().camera_stats()) {

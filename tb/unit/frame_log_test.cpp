@@ -136,6 +136,77 @@ TEST(FrameLogTest, APhasesFirstTimeAndARemapsDurationAreKept) {
   EXPECT_EQ(log.remaps()[0].end, 80u);
 }
 
+/// A display of 40 units a frame that shows frame 0, captured from 0 to 38, from 80 on; the decoder had found
+/// its syncs at a given time when the display began each frame.
+struct Display : FrameLog {
+  Display() {
+    capture(0, 0, 38);
+    flip(0);
+    frame(0);
+  }
+  void flip(unsigned n) {
+    pins(static_cast<std::uint32_t>(Phase::kFlip) | n << 4, 0);
+    latch(address += 0x100, 0);
+  }
+  /// Shows a frame; whether it is one that the decoder is to blame for.
+  bool frame(Picoseconds synced_at) {
+    decoder(synced_at);
+    const FrameRecord& r = shown(now, now + 38);
+    now += 40;
+    EXPECT_TRUE(r.repeated || !r.relock);
+    return r.relock;
+  }
+  std::uint32_t address = 0x8000'0000;
+  Picoseconds now = 80;
+};
+
+TEST(FrameLogTest, AFrameIsShownAgainForTheDecodersSakeUntilAFrameAfterTheLockIsThere) {
+  Display d;
+  EXPECT_TRUE(d.frame(120)) << "still searching";
+  EXPECT_TRUE(d.frame(140)) << "locked";
+  EXPECT_TRUE(d.frame(140)) << "a frame that begins a period after the lock is not yet there";
+  d.capture(1, 179, 217);
+  EXPECT_TRUE(d.frame(140)) << "it is being corrected";
+  d.capture(2, 219, 257);
+  EXPECT_FALSE(d.frame(140)) << "another one has come meanwhile";
+  d.flip(2);
+  EXPECT_FALSE(d.frame(140)) << "a new frame";
+  EXPECT_FALSE(d.frame(140)) << "the lock has held since";
+  EXPECT_FALSE(d.frame(219)) << "up to its start";
+  EXPECT_TRUE(d.frame(400)) << "and was lost then";
+}
+
+TEST(FrameLogTest, ADecoderThatHasLockedExcusesTwoFramePeriods) {
+  Display at, behind;
+  EXPECT_TRUE(at.frame(40)) << "80 before";
+  EXPECT_FALSE(behind.frame(39));
+}
+
+TEST(FrameLogTest, ADecoderThatWasAlwaysLockedExcusesNothing) {
+  Display d;
+  EXPECT_FALSE(d.frame(0));
+  d.capture(1, 79, 117);
+  EXPECT_FALSE(d.frame(0));
+}
+
+TEST(FrameLogTest, WhatIsCapturedWithoutALockIsNoNewerFrame) {
+  Display d;
+  d.capture(1, 39, 77, -1);
+  d.capture(2, 79, 117, -1);
+  EXPECT_TRUE(d.frame(120));
+  d.capture(3, 119, 157);
+  EXPECT_TRUE(d.frame(120));
+}
+
+TEST(FrameLogTest, AFrameThatEndsBehindTheDisplaysStartIsNotThereYet) {
+  for (const Picoseconds end : {120u, 121u}) {
+    Display d;
+    d.capture(1, 60, 98);
+    d.capture(2, 100, end);
+    EXPECT_EQ(d.frame(59), end > 120) << end;
+  }
+}
+
 TEST(FrameLogTest, ForgetsTheOldestWhenThereAreTwiceAsMany) {
   Log log;
   unsigned gone = 0;

@@ -143,6 +143,17 @@ TEST(JudgeTest, EachConditionAtItsBoundAndBeyond) {
   auto stats = good;
   stats["camera.2.frame.dropped"] = 2;
   EXPECT_EQ(judge(result_of(stats), default_conditions()).why, "2 dropped frames (camera.2.frame.dropped)");
+  // What is shown again while the decoder locks does not count; any other frame does.
+  stats = good;
+  stats["frame.repeated"] = 3;
+  stats["frame.repeated_relock"] = 3;
+  EXPECT_TRUE(judge(result_of(stats), default_conditions()).good());
+  stats["frame.repeated_relock"] = 2;
+  EXPECT_EQ(judge(result_of(stats), default_conditions()).why, "1 repeated frame");
+  EXPECT_FALSE(judge(result_of(stats), conditions_with({"frame.repeated<=2"})).good());
+  stats["frame.repeated_relock"] = 3;
+  EXPECT_FALSE(judge(result_of(stats), conditions_with({"frame.repeated<=2"})).good()) << "what was asked for";
+  EXPECT_EQ(text_of(default_conditions().at(1)), "frame.repeated - frame.repeated_relock <= 0");
   stats = good;
   stats["frame.rate"] = 25;
   stats["frame.remap_time.mean"] = 0.04;

@@ -36,7 +36,7 @@ std::string slow_remaps(const points::PointResult& r) {
 
 std::vector<Condition> default_conditions() {
   return {{"frame.dropped", false, 0, "dropped frame"},
-          {"frame.repeated", false, 0, "repeated frame"},
+          {"frame.repeated", false, 0, "repeated frame", "frame.repeated_relock"},
           {"capture.overflows", false, 0, "capture overflow"},
           {"display.underflows", false, 0, "display underflow"}};
 }
@@ -68,7 +68,8 @@ std::vector<Condition> conditions_with(const std::vector<std::string>& required)
 }
 
 std::string text_of(const Condition& c) {
-  return fmt::format("{} {} {}", c.metric, c.at_least ? ">=" : "<=", number(c.bound));
+  return fmt::format("{}{} {} {}", c.metric, c.without.empty() ? "" : " - " + c.without, c.at_least ? ">=" : "<=",
+                     number(c.bound));
 }
 
 Verdict judge(const points::PointResult& result, const std::vector<Condition>& conditions) {
@@ -80,10 +81,11 @@ Verdict judge(const points::PointResult& result, const std::vector<Condition>& c
   std::vector<std::string> failed;
   for (const Condition& c : conditions) {
     bool found = false;
-    for (const auto& [name, value] : result.stats) {
+    for (const auto& [name, figure] : result.stats) {
       if (name != c.metric && !(name.starts_with("camera.") && name.ends_with("." + c.metric)))
         continue;
       found = true;
+      const double value = name == c.metric ? figure - result.stat(c.without).value_or(0) : figure;
       if (c.at_least ? value < c.bound : value > c.bound)
         failed.push_back(failed_words(c, name, value));
     }

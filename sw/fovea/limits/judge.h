@@ -16,9 +16,11 @@ struct Condition {
   double bound = 0;
   /// What more than the bound is, in words, such as "frame(s) dropped"; empty: the metric's name.
   std::string words = {};
+  /// A figure that is taken from `metric` first, where a run has it; empty: none.
+  std::string without = {};
 };
 
-/// No frame dropped or shown again, no capture overflow, no display underflow.
+/// No frame dropped, none shown again but for the syncs' sake, no capture overflow, no display underflow.
 std::vector<Condition> default_conditions();
 /// The same with those that the user asked for, "METRIC<=NUMBER" or "METRIC>=NUMBER". One on a metric
 /// that has a condition by default takes its place. @throws UserError

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <ostream>
+#include <set>
 #include <thread>
 
 #include "sw/fovea/checked_file.h"
@@ -19,9 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFooter =
-    "Conditions: no frame is dropped or shown again, no capture overflow, no display underflow in the window "
-    "(run.frames frames); --require adds others. Without --find, --binds and --over it searches the largest "
-    "additional load.\n"
+    "Conditions: no frame is dropped, none is shown again unless the decoder has to find a camera's syncs, no capture "
+    "overflow, no display underflow in the window (run.frames frames); --require adds others. Without --find, --binds "
+    "and --over it searches the largest additional load.\n"
     "A resource binds if relaxing it alone improves the figure by more than 2 %; each is run again for that.\n"
     "DIR keeps every run (points/), limits.csv, binds.csv, points.csv and answer.txt. The same command goes on "
     "where it was interrupted, and runs nothing twice.\n"
@@ -209,13 +210,17 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
                            ? fs::path("out") / (fs::path(o.experiment).stem().string() + "-limits")
                            : fs::path(o.out_dir);
   const std::vector<Condition> conditions = conditions_with(o.require);
+  std::set<std::string> shared;
   for (const Settings& s : over) {
     Settings all = o.sets;
     all.insert(all.end(), s.begin(), s.end());
     check_question(question, all, [&](const Settings& settings) {
-      return app::effective_run(context.make_simulation, o.experiment, settings);
+      auto run = app::effective_run(context.make_simulation, o.experiment, settings);
+      shared.insert(run->shared);
+      return run;
     });
   }
+  for (const std::string& note : shared) app::say_note(note, context);
   points::PointStore store(dir);
   points::Runner runner(store, {.program = own_program(),
                                 .jobs = o.jobs ? o.jobs : std::max(1u, std::thread::hardware_concurrency()),
