@@ -74,6 +74,8 @@ void BoardParams::link_cameras() {
 
 void BoardParams::link_views() {
   const auto birds_eye_shown = [this] { return firmware.view.is("birds_eye"); };
+  lens.roi.matters_only("a firmware.view other than birds_eye", {&firmware.view},
+                        [birds_eye_shown] { return !birds_eye_shown(); });
   for (ParamBase* p : birds_eye.params())
     p->matters_only("firmware.view = birds_eye", {&firmware.view}, birds_eye_shown);
   for (unsigned n = 0; n < mounts.size(); ++n) {

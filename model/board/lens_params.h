@@ -30,6 +30,10 @@ struct LensParams : ParamGroup {
                     Origin::kChoice, ""};
   RealParam shift_y{*this, "shift_y", "px", 0, -576, 576, "shift of the corrected view",
                     Origin::kChoice, ""};
+  ListParam roi{*this, "roi", {0, 0, 0, 0}, {4},
+                "region of interest: left, top, width, height in pixels of the corrected picture; it is enlarged "
+                "to the display, grown about its centre to the display's shape; all 0: the whole picture",
+                Origin::kChoice, ""};
   RealParam in_aspect{*this, "in_aspect", "", 1, 0.1, 10, "y scale / x scale of the lens image",
                       Origin::kChoice, ""};
   RealParam out_aspect{*this, "out_aspect", "", 1, 0.1, 10,
@@ -60,7 +64,7 @@ struct LensParams : ParamGroup {
     const auto any = [this] { return !mapping.is("none"); };
     const auto closed = [this] { return !mapping.is("none") && !mapping.is("kannala_brandt"); };
     const auto table = [this] { return mapping.is("kannala_brandt"); };
-    for (ParamBase* p : {&out_focal, &centre_x, &centre_y, &out_aspect})
+    for (ParamBase* p : std::initializer_list<ParamBase*>{&out_focal, &centre_x, &centre_y, &out_aspect, &roi})
       p->matters_only("a lens.mapping other than none", {&mapping}, any);
     const char* const kClosed = "a lens.mapping other than none and kannala_brandt";
     focal.matters_only(kClosed, {&mapping}, closed);

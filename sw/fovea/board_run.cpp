@@ -21,11 +21,11 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/hazard_report.h"
-#include "sw/fovea/line_picture_score.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/mosaic_score.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/fovea/perfetto/perfetto_run.h"
+#include "sw/fovea/picture_score.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/run_profile.h"
 #include "sw/fovea/simulation.h"
@@ -97,7 +97,7 @@ class BoardSimulation : public Simulation {
   struct Session;
   std::vector<EndCondition> end_conditions(const RunRequest& request) const;
   void build_board(const ElfImage& elf, const CameraInputs& cameras, const RunRequest& request);
-  void open_outputs(const RunRequest& request);
+  void open_outputs(const CameraInputs& cameras, const RunRequest& request);
   void take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
                   const board::FrameRecord& r);
   void attach_profile(Session& s);
@@ -120,7 +120,7 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
-  std::unique_ptr<LinePictureScore> line_score_;
+  std::unique_ptr<PictureScore> picture_score_;
   std::unique_ptr<RunProfile> profile_;
   std::vector<FrameRow> frames_;
 };
@@ -299,14 +299,14 @@ void BoardSimulation::build_board(const ElfImage& elf, const CameraInputs& camer
 }
 
 /// What is written beside the figures, and what opens and closes with the window.
-void BoardSimulation::open_outputs(const RunRequest& request) {
+void BoardSimulation::open_outputs(const CameraInputs& cameras, const RunRequest& request) {
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   mosaic_score_ = MosaicScore::of(params_);
-  line_score_ = LinePictureScore::of(params_);
+  picture_score_ = PictureScore::of(params_, cameras.views());
   window_ = board_->observe_window([this](bool open) { open ? open_window() : close_window(); });
 }
 
@@ -314,7 +314,8 @@ void BoardSimulation::open_outputs(const RunRequest& request) {
 void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
                                  const board::FrameRecord& r) {
   if (mosaic_score_) mosaic_score_->displayed(f);
-  if (line_score_) line_score_->displayed(f, r.camera);
+  const CameraInputs::Sent sent = cameras.sent(*board_, r);
+  if (picture_score_) picture_score_->displayed(f, r.camera, sent);
   FrameRow out;
   out.index = r.index;
   out.camera = r.camera;
@@ -337,8 +338,8 @@ void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const 
       frames_.push_back(out);
     if (s.request.frame)
       s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
-    if (const video::Picture* sent = cameras.sent(*board_, r))
-      s.request.camera({r.index, sent->width, sent->height, sent->uyvy});
+    if (s.request.camera && sent.picture)
+      s.request.camera({r.index, sent.picture->width, sent.picture->height, sent.picture->uyvy});
   } catch (...) {
     s.failure = std::current_exception();
   }
@@ -477,7 +478,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
   result.guest_failure = s.guest;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
-  if (line_score_) line_score_->add(result.stats);
+  if (picture_score_) picture_score_->add(result.stats);
   if (profile_) collect_profile(result, counted, s.request, s.program);
   if (s.hazards) {
     s.hazards->settle(board_->window_end().value_or(kernel_time()));
@@ -503,9 +504,10 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
   RunResult result;
-  const CameraInputs cameras(params_, static_cast<bool>(request.camera), request.stop, result.notes);
+  const bool keep = request.camera || PictureScore::possible(params_);
+  const CameraInputs cameras(params_, keep, request.stop, result.notes);
   build_board(elf, cameras, request);
-  open_outputs(request);
+  open_outputs(cameras, request);
   Session session(*board_, request, elf, until, symbols_);
   if (request.console || dialogue)
     session.console.emplace(*board_, request.console, std::move(dialogue));

@@ -24,12 +24,15 @@ CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
   }
 }
 
-const video::Picture* CameraInputs::sent(board::Board& board,
-                                         const board::FrameRecord& record) const {
-  if (!record.capture_start || record.camera >= pictures_.size()) return nullptr;
-  if (board.digital) return pictures_[0]->kept(board.digital->source_field(*record.capture_start));
-  return pictures_[record.camera]->frame(board.decoder.cameras()[record.camera],
-                                         *record.capture_start);
+CameraInputs::Sent CameraInputs::sent(board::Board& board, const board::FrameRecord& record) const {
+  if (!record.capture_start || record.camera >= pictures_.size()) return {nullptr, 0};
+  if (board.digital) {
+    const std::uint64_t field = board.digital->source_field(*record.capture_start);
+    return {pictures_[0]->kept(field), field};
+  }
+  CameraPictures& pictures = *pictures_[record.camera];
+  const video::Picture* frame = pictures.frame(board.decoder.cameras()[record.camera], *record.capture_start);
+  return {frame, pictures.first_field()};
 }
 
 }  // namespace fovea::app

@@ -29,8 +29,13 @@ class CameraInputs {
   const std::vector<video::PictureSource*>& sources() const { return sources_; }
   /// What the cameras see, one for each camera.
   const std::vector<const video::StampedSource*>& views() const { return views_; }
-  /// What came over the input of the frame that `record` shows; null if it is unknown or not kept any more.
-  const video::Picture* sent(board::Board& board, const board::FrameRecord& record) const;
+  /// What came over an input of a frame.
+  struct Sent {
+    const video::Picture* picture;  ///< null if it is unknown or not kept any more
+    std::uint64_t field;            ///< of its source; the first one of a frame of two
+  };
+  /// The frame that `record` shows.
+  Sent sent(board::Board& board, const board::FrameRecord& record) const;
 
  private:
   std::vector<std::unique_ptr<video::StampedSource>> own_;

@@ -29,6 +29,7 @@ const video::Picture* CameraPictures::frame(const video::CameraSignal& signal, P
   for (unsigned y = row; y < woven_.height; y += 2)
     std::copy_n(second.picture.row(y), woven_.row_bytes(), woven_.row(y));
   woven_start_ = start;
+  woven_first_ = *first->field;
   return &woven_;
 }
 

@@ -25,6 +25,8 @@ class CameraPictures : public video::PictureSource {
   /// The frame whose first field began at `start`, woven from its two fields as the decoder sends their
   /// rows; null if it is not kept any more. Valid until the next call of frame().
   const video::Picture* frame(const video::CameraSignal& signal, Picoseconds start);
+  /// The first field of the frame that frame() gave last.
+  std::uint64_t first_field() const { return woven_first_; }
 
  private:
   /// More than the fields between a frame's capture and the end of its first display. A frame that is
@@ -39,6 +41,7 @@ class CameraPictures : public video::PictureSource {
   video::PictureSource& source_;
   std::array<Kept, kFields> kept_;
   std::optional<Picoseconds> woven_start_;
+  std::uint64_t woven_first_ = 0;
   video::Picture woven_;
 };
 

@@ -1,7 +1,6 @@
 #include "sw/fovea/mosaic_score.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sw/fovea/board_figures.h"
 
@@ -10,8 +9,8 @@ namespace {
 
 void add_quality(std::vector<StatRow>& rows, const video::PlanScore::Result& score) {
   const std::string what = "of the last displayed mosaic against the plan of the car park, without the car: ";
-  if (std::isfinite(score.psnr_y))
-    rows.push_back(row("quality.psnr_y", score.psnr_y, "dB", what + "peak signal-to-noise ratio of luma"));
+  rows.push_back(row("quality.psnr_y", score.psnr_y, "dB", what + "peak signal-to-noise ratio of luma"));
+  rows.push_back(row("quality.ssim_y", score.ssim_y, "1", what + "structural similarity of luma"));
   if (score.lines)
     rows.push_back(row("quality.line_error", score.line_error, "px",
                        what + "distance of the marked lines from their places, root mean square"));

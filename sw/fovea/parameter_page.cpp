@@ -9,6 +9,7 @@
 #include "sw/fovea/clock_setting.h"
 #include "sw/fovea/view_page.h"
 #include "sw/lens/lens.h"
+#include "sw/lens/region.h"
 
 namespace fovea::app {
 namespace {
@@ -83,6 +84,32 @@ void scale_view(lens_view_t& view, const board::BoardParams& params) {
   view.out_aspect *= y / x;
 }
 
+/// The region of interest as scale and shift of the view, which is all that the firmware needs to know of it.
+void show_region(lens_view_t& view, const board::BoardParams& params, const board::LensParams& lens) {
+  const auto& roi = lens.roi();
+  if (std::ranges::all_of(roi, [](double x) { return x == 0; })) return;
+  if (view.mapping == LENS_NONE || params.firmware.view.is("birds_eye")) {
+    // Of the keys of all cameras their declaration says so.
+    if (lens.prefix() != params.lens.prefix())
+      Diagnostics::instance().configuration(fmt::format(
+          "{} has no effect: it needs a lens.mapping other than none and a firmware.view other than birds_eye",
+          lens.roi.key()));
+    return;
+  }
+  const lens_region_t region{roi[0], roi[1], roi[2], roi[3]};
+  if (!lens_region_fits(&region, params.width(), params.height()))
+    throw UserError(fmt::format("key '{}': '{}' is not allowed; allowed: [left, top, width, height] within the {}x{} "
+                                "pixels of the picture, at least {} wide or {} high",
+                                lens.roi.key(), lens.roi.text(), params.width(), params.height(),
+                                params.width() / LENS_REGION_SCALE_MAX, params.height() / LENS_REGION_SCALE_MAX));
+  const bool digital = params.video.format().digital;
+  const lens_size_t shown{params.width(), params.height()};
+  const lens_size_t source = digital ? lens_size_t{params.raster_width(), params.raster_height()} : shown;
+  lens_t derived;
+  // A lens that cannot be is the firmware's to refuse.
+  if (lens_init_sizes(&derived, &view, source, shown) == LENS_OK) lens_show_region(&view, &derived, &region);
+}
+
 void fill_view(lens_view_t& view, const board::BoardParams& params,
                const board::CameraSetup& setup, const video::StampedSource& source) {
   const board::LensParams& lens = *setup.lens;
@@ -123,6 +150,7 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
     view.centre_y = model.cy() - (h - 1) / 2 + lens.centre_y();
   }
   scale_view(view, params);
+  show_region(view, params, lens);
 }
 
 /// Kernels that read a form of a look-up table know one source.

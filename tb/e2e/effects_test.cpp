@@ -98,6 +98,7 @@ TEST(EffectsTest, LensKeysAreIdleWhereDeclared) {
   expect_declared({{"lens.shift_x", "1px"}, {"lens.fov", "150deg"}}, bases,
                   {{"lens.fov", "140deg"},
                    {"lens.out_focal", "250px"},
+                   {"lens.roi", "[100, 50, 360, 300]"},
                    {"lens.centre_x", "20px"},
                    {"lens.centre_y", "20px"},
                    {"lens.shift_x", "21px"},
@@ -419,6 +420,42 @@ TEST(FaultTest, OfTheMultiplexerNeedsOne) {
   EXPECT_EQ(fault_of_one(keys), refused);
   EXPECT_NE(fault_of_one({{"fault.select_line", "3"}}), "fovea_firmware.elf") << "there are three";
   EXPECT_NE(fault_of_one({{"fault.select_level", "2"}}), "fovea_firmware.elf");
+}
+
+// The picture's edge, and one pixel beyond; a quarter of a side, and one pixel less.
+TEST(RegionTest, LiesInThePicture) {
+  const auto error = [](Keys keys, const std::string& roi) -> std::string {
+    keys["lens.roi"] = roi;
+    try {
+      Settings(keys).lut();
+    } catch (const UserError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const Keys whole{{"lens.mapping", "linear"}}, part{{"lens.mapping", "linear"}, {"video.width", "320"}};
+  EXPECT_EQ(error(whole, "[360, 288, 360, 288]"), "");
+  EXPECT_EQ(error(whole, "[361, 288, 360, 288]"),
+            "key 'lens.roi': '[361, 288, 360, 288]' is not allowed; allowed: [left, top, width, height] within the "
+            "720x576 pixels of the picture, at least 180 wide or 144 high");
+  for (const char* roi : {"[360, 289, 360, 288]", "[0, 0, 179, 143]", "[-1, 0, 360, 288]", "[5, 5, 0, 0]"})
+    EXPECT_NE(error(whole, roi), "") << roi;
+  for (const char* roi : {"[0, 0, 180, 1]", "[0, 0, 1, 144]", "[0, 0, 0, 0]", "[0.5, 0, 360.5, 288]"})
+    EXPECT_EQ(error(whole, roi), "") << roi;
+  EXPECT_EQ(error(part, "[160, 0, 160, 288]"), "");
+  EXPECT_NE(error(part, "[161, 0, 160, 288]"), "") << "the picture is that of video.width";
+}
+
+TEST(RegionTest, WithoutALensTheRowOfACameraIsWarnedOf) {
+  Diagnostics::instance().clear();
+  Settings s({{"lens.mapping", "none"}, {"camera.0.lens.roi", "[100, 50, 360, 300]"}});
+  EXPECT_EQ(s.lut(), Settings({{"lens.mapping", "none"}}).lut());
+  const auto said = Diagnostics::instance().counts();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said.begin()->first.second,
+            "camera.0.lens.roi has no effect: it needs a lens.mapping other than none and a firmware.view other than "
+            "birds_eye");
+  Diagnostics::instance().clear();
 }
 
 // Every key that declares a condition names it in a way that a sentence can end with, and its

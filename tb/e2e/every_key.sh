@@ -326,6 +326,7 @@ kb_height 600px lens.mapping=kannala_brandt
 kb_width 800px lens.mapping=kannala_brandt
 out_aspect 1.5
 out_focal 20px
+roi [8,2,24,12]
 paper_literal_focal true
 theta_max 1deg lens.mapping=kannala_brandt
 T
@@ -333,7 +334,7 @@ T
   for key in file kind motion_period motion_amplitude stamp lens fov kb kb_width kb_height video_fov calibration; do
     echo "tested camera.0.$key e2e.effects"
   done
-  for key in mapping fov focal out_focal centre_x centre_y shift_x shift_y in_aspect out_aspect kb kb_width \
+  for key in mapping fov focal out_focal roi centre_x centre_y shift_x shift_y in_aspect out_aspect kb kb_width \
     kb_height calibration theta_max paper_literal_focal pair; do
     echo "tested camera.0.lens.$key e2e.effects"
   done

@@ -119,6 +119,14 @@ oracle::Geometry Rig::geometry(unsigned k) const {
   return g;
 }
 
+void show_region(oracle::Geometry& g, double left, double top, double width, double height) {
+  // The region's middle, in pixels right of and below the picture's, is to be in the middle of the enlarged view.
+  const double zoom = width * g.height > height * g.width ? g.width / width : g.height / height;
+  g.out_focal_px = oracle::output_focal(g) * zoom;
+  g.shift_x = zoom * (g.shift_x + (left + left + width - g.width) / 2);
+  g.shift_y = zoom * (g.shift_y + (top + top + height - g.height) / 2);
+}
+
 oracle::Geometry geometry_of(const board::BoardParams& params, const board::LensParams& l) {
   oracle::Geometry g;
   g.width = params.width();
@@ -154,6 +162,7 @@ oracle::Geometry geometry_of(const board::BoardParams& params, const board::Lens
     g.centre_x = (kb[2] + 0.5) * sx - 0.5 - (params.raster_width() - 1) / 2.0;
     g.centre_y = (kb[3] + 0.5) * sy - 0.5 - (params.raster_height() - 1) / 2.0;
   }
+  if (l.roi()[2] > 0) show_region(g, l.roi()[0], l.roi()[1], l.roi()[2], l.roi()[3]);
   return g;
 }
 

@@ -14,8 +14,11 @@
 #include "model/common/masters.h"
 #include "model/video/core/picture.h"
 #include "model/video/scene/bars.h"
+#include "model/video/scene/film_score.h"
 #include "model/video/scene/line_score.h"
+#include "model/video/scene/picture_quality.h"
 #include "model/video/scene/plan_score.h"
+#include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/simulation.h"
 
@@ -334,6 +337,7 @@ TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
   const video::PlanScore score({720, 576, 16, 12}, 4.8, 2);
   const auto last = score(seen.displayed.at(5));
   EXPECT_EQ(real(r, "quality.psnr_y"), last.psnr_y);
+  EXPECT_EQ(real(r, "quality.ssim_y"), last.ssim_y);
   EXPECT_EQ(real(r, "quality.line_error"), last.line_error);
   EXPECT_EQ(count(r, "quality.lines"), last.lines);
   EXPECT_EQ(count(r, "quality.lines_missed"), last.missed);
@@ -350,7 +354,7 @@ TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
   Seen seen;
   const app::RunResult r = run_mosaic(3, &seen);
   EXPECT_EQ(seen.displayed.size(), 3u);
-  for (const char* name : {"psnr_y", "line_error", "lines", "lines_missed"})
+  for (const char* name : {"psnr_y", "ssim_y", "line_error", "lines", "lines_missed"})
     EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
 }
 
@@ -387,6 +391,24 @@ TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
   EXPECT_LT(last.straightness, lines_bound());
   EXPECT_GT(last.places, 6500u);
   EXPECT_GT(last.psnr_y, 20);
+  // Beside it, what a remap of each pixel by itself would have shown: by the definition of the lens.
+  const video::Picture& sent = seen.sent.at(1);
+  video::Picture pixels(720, 576);
+  for (unsigned v = 0; v < 576; ++v)
+    for (unsigned u = 0; u < 720; ++u) {
+      const double x = u - 359.5, y = v - 287.5, across = std::hypot(x, y);
+      const double stretch = 2 * kLinesFocal * std::sin(std::atan(across / kLinesFocal) / 2) / across;
+      const auto column = static_cast<unsigned>(std::lround(359.5 + stretch * x));
+      pixels.row(v)[2 * u + 1] = sent.row(static_cast<unsigned>(std::lround(287.5 + stretch * y)))[2 * column + 1];
+    }
+  EXPECT_NEAR(real(r, "quality.pair_psnr_y"), video::psnr_y(seen.displayed.at(1), pixels), 1e-9);
+  EXPECT_NEAR(real(r, "quality.pair_ssim_y"), video::ssim_y(seen.displayed.at(1), pixels), 1e-9);
+  const auto by_pixels = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(pixels);
+  EXPECT_NEAR(real(r, "quality.pixel_psnr_y"), by_pixels.psnr_y, 1e-9);
+  EXPECT_NEAR(real(r, "quality.pixel_ssim_y"), by_pixels.ssim_y, 1e-9);
+  EXPECT_NEAR(real(r, "quality.pixel_straightness"), by_pixels.straightness, 1e-9);
+  EXPECT_GT(by_pixels.psnr_y, last.psnr_y + 2);
+  EXPECT_LT(by_pixels.straightness, last.straightness);
 }
 
 // The firmware believes in another lens than the camera has; the view that is displayed is the same.
@@ -426,8 +448,79 @@ INSTANTIATE_TEST_SUITE_P(
                               {{"video.width", "480"},
                                {"video.height", "384"},
                                {"lens.focal", std::to_string(kLinesFocal) + "px"}}},
+                    LinesView{"OfARegion", {{"lens.roi", "[200, 150, 432, 300]"}, {"lens.shift_x", "9px"}}},
                     LinesView{"OfADigitalCamera", {{"video.standard", "svga_progressive"}}}),
     [](const auto& param) { return param.param.name; });
+
+// Pixel for pixel nothing is lost by moving pairs.
+TEST(RunTest, WithoutALensPairsAndPixelsAreTheSame) {
+  const auto r = run({{"lens.mapping", "none"}, {"lens.shift_x", "4px"}, {"video.width", "64"}, {"video.height", "16"},
+                      {"run.frames", "2"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_EQ(app::number_text(app::find(r.stats, "quality.pair_psnr_y")->value), "null") << "an infinite ratio";
+  EXPECT_NEAR(real(r, "quality.pair_ssim_y"), 1, 1e-12);
+  EXPECT_FALSE(app::find(r.stats, "quality.pixel_psnr_y")) << "the chart's scene has no truth";
+}
+
+// A copy corrects nothing; with several tables the last one is not that of the keys.
+class NoPairsTest : public testing::TestWithParam<std::pair<const char*, Keys>> {};
+TEST_P(NoPairsTest, PicturesThatAreNotRemappedByTheKeysHaveNoScoreOfPairs) {
+  Keys keys{{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"}};
+  keys.insert(keys.end(), GetParam().second.begin(), GetParam().second.end());
+  const auto r = run(keys);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  for (const app::StatRow& row : r.stats) EXPECT_FALSE(row.name.starts_with("quality.")) << row.name;
+}
+INSTANTIATE_TEST_SUITE_P(RunTest, NoPairsTest,
+                         testing::Values(std::pair<const char*, Keys>{"Copy", {{"firmware.kernel", "copy"}}},
+                                         std::pair<const char*, Keys>{"Tables", {{"firmware.tables", "2"}}},
+                                         std::pair<const char*, Keys>{"Overlay", {{"firmware.overlay", "true"}}},
+                                         std::pair<const char*, Keys>{"LowerThanAWindow", {{"video.height", "8"}}}),
+                         [](const auto& param) { return std::string(param.param.first); });
+
+// The series of the equisolid lens, as a calibration, and a region of interest: the reference is of the same view, or
+// it would be as far from the picture as a wrong lens's.
+TEST(RunTest, ThePixelsOfACalibratedLensAreThoseOfItsPairs) {
+  const auto r = run_lines({{"lens.mapping", "kannala_brandt"},
+                            {"lens.kb", "[254.558, 254.558, 359.5, 287.5, -0.0416667, 0.000520833, 0, 0]"},
+                            {"lens.kb_width", "720px"},
+                            {"lens.kb_height", "576px"},
+                            {"lens.theta_max", "89deg"},
+                            {"lens.roi", "[100, 130, 400, 300]"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_GT(real(r, "quality.pair_psnr_y"), 18);
+  EXPECT_GT(real(r, "quality.pixel_psnr_y"), real(r, "quality.psnr_y") + 1);
+  EXPECT_GT(real(r, "quality.psnr_y"), 15);
+}
+
+// A flat film, bent into the lens that is corrected. Of all frames around, the one that the score is made with is the
+// one that fits best.
+TEST(RunTest, ARoadFilmIsScoredAgainstItsFlatFrame) {
+  Seen seen;
+  const app::RunResult r = run_lines(
+      {{"camera.kind", "video"}, {"camera.file", FOVEA_ROAD_FILM}, {"camera.video_fov", "130deg"}}, &seen);
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  app::DecodeOptions options;
+  options.max_frames = 16;  // the first frames are shown in the first half second
+  options.most_width = 1440;
+  options.most_height = 1152;
+  const video::FilmScore score(130, {720, 576, kLinesFocal, 1, 0, 0});
+  video::FilmScore::Result best{};
+  const auto film = app::decode_frames(FOVEA_ROAD_FILM, options);
+  std::size_t which = 0;
+  for (std::size_t n = 8; n < film.size(); ++n) {
+    const auto s = score(seen.displayed.at(1), film[n]);
+    if (s.psnr_y > best.psnr_y) best = s, which = n;
+  }
+  EXPECT_TRUE(which > 8 && which < 15) << "frames on both sides were looked at: " << which;
+  EXPECT_EQ(real(r, "quality.psnr_y"), best.psnr_y);
+  EXPECT_EQ(real(r, "quality.ssim_y"), best.ssim_y);
+  EXPECT_GT(best.psnr_y, 20);
+  EXPECT_GT(real(r, "quality.pixel_psnr_y"), best.psnr_y + 1);
+  EXPECT_GT(real(r, "quality.pixel_ssim_y"), best.ssim_y);
+  EXPECT_GT(real(r, "quality.pair_psnr_y"), 20);
+  EXPECT_FALSE(app::find(r.stats, "quality.straightness"));
+}
 
 void expect_no_score(const app::RunResult& r) {
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;

@@ -441,7 +441,41 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest,
                                          Typed{"engine", "518ms", "tlm"}),
                          [](const auto& i) { return std::string(i.param.kernel); });
 
-// The help of 600 characters takes 50 ms on the line. What is asked for meanwhile waits, but no frame does.
+// Camera 1 has a region by its key, camera 0 gets one on the console: 128 x 100 pixels are enlarged by 160 / 128, and
+// their middle lies 6 pixels left of and 2 above the picture's.
+TEST(SignalsTest, ARegionOfInterestIsAnEnlargedAndShiftedView) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "24").set("camera.1.lens.roi", "[16, 30, 128, 140]");
+  const auto console = type(rig, "wait console\nsend roi 0 10 40 128 100\\r\nwait new table\n"
+                                 "send roi 0 33 40 128 100\\r\nwait refused\nsend status\\r\nwait roi 10\n"
+                                 "send mapping 0 none\\r\nwait refused\nsend zoom 1 100\\r\nwait new table\n");
+  oracle::Geometry enlarged = rig.geometry(0), whole = rig.geometry(1);
+  enlarged.out_focal_px = 1.25 * 255;
+  enlarged.shift_x = -6 * 1.25;
+  enlarged.shift_y = -2 * 1.25;
+  EXPECT_NE(whole.out_focal_px, 0) << "a region by its key";
+  rig.add_view(0, enlarged);
+  while (rig.board().uart_text().find("console:") == std::string::npos) rig.advance(kPsPerMs);
+  for (unsigned n = 0; n < 2; ++n) rig.keep_table(n, 0);
+  rig.run(kLimit);
+  const std::string& text = rig.board().uart_text();
+  ASSERT_EQ(rig.shown().size(), 24u) << text;
+  EXPECT_EQ(console->open_step(), "") << text;
+  EXPECT_EQ(rig.wrong_picture(), "") << "byte for byte the host's remap";
+  EXPECT_EQ(rig.table_check(1, 0).wrong, 0u);
+  for (unsigned k = 0; k < 2; ++k) EXPECT_EQ(rig.table_check(0, k).wrong, 0u) << k;
+  bool by_region = false;
+  for (const Shown& s : rig.shown()) by_region = by_region || (s.stamp && s.stamp->camera == 0 && rig.shown_by(s) == 1);
+  EXPECT_TRUE(by_region);
+  for (const char* said : {"camera 0: roi 10 40 128 100, mapping page, new table after",
+                           "refused: roi is within the 160x184 pixels of the picture, at least a quarter as wide or as "
+                           "high",
+                           "refused: mapping none has no scale; only with zoom 100 and no roi"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << "\n" << text;
+}
+
+// The help of 750 characters takes 50 ms on the line. What is asked for meanwhile waits, but no frame does.
 TEST(SignalsTest, AnswersThatFillTheQueueDelayNoFrame) {
   CamerasRig rig;
   small(rig, 1);

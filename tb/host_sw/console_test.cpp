@@ -61,6 +61,10 @@ TEST(ConsoleTest, CommandsMeanWhatTheHelpSays) {
   EXPECT_EQ(c.camera, 2u);
   EXPECT_EQ(c.value[0], -1000);
   EXPECT_EQ(c.value[1], 1000);
+  c = parsed("roi 1 20 0 80 92");
+  EXPECT_EQ(c.kind, COMMAND_ROI);
+  EXPECT_EQ(c.camera, 1u);
+  EXPECT_EQ((std::vector<int32_t>{c.value, c.value + 4}), (std::vector<int32_t>{20, 0, 80, 92}));
   c = parsed("mapping 1 linear");
   EXPECT_EQ(c.kind, COMMAND_MAPPING);
   EXPECT_EQ(c.mapping, unsigned{LENS_LINEAR});
@@ -74,7 +78,8 @@ TEST(ConsoleTest, WhatIsWrongIsSaid) {
   EXPECT_EQ(refusal("zom 0 100"), "unknown; help lists the commands");
   EXPECT_EQ(refusal("helpme"), "unknown; help lists the commands");
   EXPECT_EQ(refusal("help me"), "unknown; help lists the commands");
-  for (const char* line : {"camera 3", "camera 0 3", "camera -1", "camera x", "zoom 3 100", "zoom", "mapping"})
+  for (const char* line : {"camera 3", "camera 0 3", "camera -1", "camera x", "zoom 3 100", "zoom", "mapping", "roi",
+                           "roi 3 0 0 8 8"})
     EXPECT_EQ(refusal(line), "no such camera") << line;
   EXPECT_EQ(refusal("camera"), "camera needs numbers, or all");
   std::string most = "camera";
@@ -85,6 +90,8 @@ TEST(ConsoleTest, WhatIsWrongIsSaid) {
     EXPECT_EQ(refusal(line), "zoom is 25 to 400 percent") << line;
   for (const char* line : {"shift 0 1", "shift 0 1001 0", "shift 0 0 -1001", "shift 0 1 2 3", "shift 0 9999999 0"})
     EXPECT_EQ(refusal(line), "shift is -1000 to 1000 pixels, twice") << line;
+  for (const char* line : {"roi 0", "roi 0 1 2 3", "roi 0 1 2 3 4 5", "roi 0 1 2 3 x", "roi 0 1 2 3 4000000"})
+    EXPECT_EQ(refusal(line), "roi is left, top, width and height in pixels") << line;
   EXPECT_EQ(refusal("mapping 0 fisheye"), "no such mapping");
   EXPECT_EQ(refusal("mapping 0 linear 1"), "no such mapping");
 }

@@ -97,6 +97,7 @@ TEST(PlanScore, IsThatOfThePlanAndOfAPlanThatIsMoved) {
   const Picture plan = car_park_plan(kGround.width, kGround.height, kGround.metres_across, kGround.metres_along);
   const auto same = score(plan);
   EXPECT_TRUE(std::isinf(same.psnr_y));
+  EXPECT_NEAR(same.ssim_y, 1, 1e-12);
   EXPECT_EQ(same.line_error, 0);
   EXPECT_EQ(same.missed, 0u);
   Picture moved = plan;
@@ -104,10 +105,23 @@ TEST(PlanScore, IsThatOfThePlanAndOfAPlanThatIsMoved) {
   const auto by_two = score(moved);
   EXPECT_NEAR(by_two.line_error, 2, 0.2);
   EXPECT_LT(by_two.psnr_y, 30);
+  EXPECT_LT(by_two.ssim_y, 0.95);
+  // Of the car in the middle, 128 rows of 56 pixels, nothing counts.
+  Picture repainted = plan;
+  for (unsigned v = 64; v < 192; ++v)
+    for (unsigned u = 134; u < 186; ++u) repainted.row(v)[2 * u + 1] = 77;
+  EXPECT_TRUE(std::isinf(score(repainted).psnr_y));
+  EXPECT_NEAR(score(repainted).ssim_y, 1, 1e-12);
+  repainted.row(63)[2 * 160 + 1] = 77;
+  EXPECT_FALSE(std::isinf(score(repainted).psnr_y));
+  EXPECT_LT(score(repainted).ssim_y, 1);
   // One level in all samples: 20 log10(255).
   Picture brighter = plan;
   for (std::size_t i = 1; i < brighter.uyvy.size(); i += 2) ++brighter.uyvy[i];
   EXPECT_NEAR(score(brighter).psnr_y, 20 * std::log10(255.0), 1e-9);
+  // By the definition of the index, of a plan that is brighter by 1.
+  EXPECT_GT(score(brighter).ssim_y, 0.99);
+  EXPECT_LT(score(brighter).ssim_y, 1);
   const auto none = score(Picture(kGround.width, kGround.height));
   EXPECT_EQ(none.lines, 0u);
   EXPECT_EQ(none.missed, same.lines);

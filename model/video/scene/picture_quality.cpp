@@ -10,7 +10,6 @@
 namespace fovea::video {
 namespace {
 
-constexpr unsigned kWindow = 11;
 constexpr double kSigma = 1.5;
 constexpr double kC1 = 0.01 * 255 * 0.01 * 255, kC2 = 0.03 * 255 * 0.03 * 255;
 
@@ -19,11 +18,16 @@ void check_sizes(const Picture& a, const Picture& b) {
     throw UserError("two pictures of different sizes cannot be compared");
 }
 
-std::array<double, kWindow> window_weights() {
-  std::array<double, kWindow> w{};
+void check_mask(const Picture& a, const PictureMask& mask) {
+  if (mask.size() != std::size_t{a.width} * a.height)
+    throw UserError("a mask of another size than the pictures that are compared");
+}
+
+std::array<double, kSsimWindow> window_weights() {
+  std::array<double, kSsimWindow> w{};
   double sum = 0;
-  for (unsigned i = 0; i < kWindow; ++i) {
-    const double d = static_cast<double>(i) - kWindow / 2;
+  for (unsigned i = 0; i < kSsimWindow; ++i) {
+    const double d = static_cast<double>(i) - kSsimWindow / 2;
     sum += w[i] = std::exp(-d * d / (2 * kSigma * kSigma));
   }
   for (double& x : w) x /= sum;
@@ -47,6 +51,64 @@ double similarity(const Moments& m) {
   return (2 * m.a * m.b + kC1) * (2 * cov + kC2) / ((m.a * m.a + m.b * m.b + kC1) * (var_a + var_b + kC2));
 }
 
+/// Whether all pixels of the windows of a row are compared, for each window; by sums of those that are not.
+class WholeWindows {
+ public:
+  WholeWindows(const Picture& a, const PictureMask& mask) : width_(a.width), left_out_(a.width), mask_(mask) {
+    for (unsigned v = 0; v < kSsimWindow - 1; ++v) count(v, 1);
+  }
+  /// The row of windows that begins at row v; to be called for each row in turn.
+  std::vector<bool> row(unsigned v) {
+    count(v + kSsimWindow - 1, 1);
+    std::vector<bool> whole(width_ - kSsimWindow + 1);
+    unsigned sum = 0;
+    for (unsigned u = 0; u < width_; ++u) {
+      sum += left_out_[u];
+      if (u >= kSsimWindow) sum -= left_out_[u - kSsimWindow];
+      if (u + 1 >= kSsimWindow) whole[u + 1 - kSsimWindow] = sum == 0;
+    }
+    count(v, -1);
+    return whole;
+  }
+
+ private:
+  void count(unsigned v, int by) {
+    for (unsigned u = 0; u < width_; ++u)
+      if (!mask_[std::size_t{v} * width_ + u]) left_out_[u] += static_cast<unsigned>(by);
+  }
+  unsigned width_;
+  std::vector<unsigned> left_out_;  // of each column, in the rows of the window
+  const PictureMask& mask_;
+};
+
+/// The mean over the windows that `row(v)` names.
+template <class Rows>
+double mean_similarity(const Picture& a, const Picture& b, Rows&& row) {
+  const auto weights = window_weights();
+  const unsigned columns = a.width - kSsimWindow + 1, rows = a.height - kSsimWindow + 1;
+  // Row by row: sums along each row first, then down the columns.
+  std::vector<Moments> along(std::size_t{a.height} * columns);
+  for (unsigned v = 0; v < a.height; ++v)
+    for (unsigned u = 0; u < columns; ++u)
+      for (unsigned i = 0; i < kSsimWindow; ++i) {
+        const double x = a.row(v)[2 * (u + i) + 1], y = b.row(v)[2 * (u + i) + 1];
+        along[std::size_t{v} * columns + u].add(weights[i], {x, y, x * x, y * y, x * y});
+      }
+  double sum = 0;
+  std::uint64_t count = 0;
+  for (unsigned v = 0; v < rows; ++v) {
+    const std::vector<bool> counted = row(v);
+    for (unsigned u = 0; u < columns; ++u) {
+      if (!counted[u]) continue;
+      Moments m;
+      for (unsigned i = 0; i < kSsimWindow; ++i) m.add(weights[i], along[std::size_t{v + i} * columns + u]);
+      sum += similarity(m);
+      ++count;
+    }
+  }
+  return count ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 double psnr_y(const Picture& a, const Picture& b) {
@@ -60,27 +122,36 @@ double psnr_y(const Picture& a, const Picture& b) {
   return 10 * std::log10(255.0 * 255.0 * a.width * a.height / sum);
 }
 
+double psnr_y(const Picture& a, const Picture& b, const PictureMask& mask) {
+  check_sizes(a, b);
+  check_mask(a, mask);
+  double sum = 0;
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!mask[i]) continue;
+    const double d = a.uyvy[2 * i + 1] - b.uyvy[2 * i + 1];
+    sum += d * d;
+    ++count;
+  }
+  if (!count) return std::numeric_limits<double>::quiet_NaN();
+  const double mean = sum / static_cast<double>(count);
+  return mean > 0 ? 10 * std::log10(255 * 255 / mean) : std::numeric_limits<double>::infinity();
+}
+
 double ssim_y(const Picture& a, const Picture& b) {
   check_sizes(a, b);
-  if (a.width < kWindow || a.height < kWindow) throw UserError("a picture is smaller than the window of its score");
-  const auto weights = window_weights();
-  const unsigned columns = a.width - kWindow + 1, rows = a.height - kWindow + 1;
-  // Row by row: sums along each row first, then down the columns.
-  std::vector<Moments> along(std::size_t{a.height} * columns);
-  for (unsigned v = 0; v < a.height; ++v)
-    for (unsigned u = 0; u < columns; ++u)
-      for (unsigned i = 0; i < kWindow; ++i) {
-        const double x = a.row(v)[2 * (u + i) + 1], y = b.row(v)[2 * (u + i) + 1];
-        along[std::size_t{v} * columns + u].add(weights[i], {x, y, x * x, y * y, x * y});
-      }
-  double sum = 0;
-  for (unsigned v = 0; v < rows; ++v)
-    for (unsigned u = 0; u < columns; ++u) {
-      Moments m;
-      for (unsigned i = 0; i < kWindow; ++i) m.add(weights[i], along[std::size_t{v + i} * columns + u]);
-      sum += similarity(m);
-    }
-  return sum / (static_cast<double>(rows) * columns);
+  if (a.width < kSsimWindow || a.height < kSsimWindow)
+    throw UserError("a picture is smaller than the window of its score");
+  const std::vector<bool> all(a.width - kSsimWindow + 1, true);
+  return mean_similarity(a, b, [&](unsigned) { return all; });
+}
+
+double ssim_y(const Picture& a, const Picture& b, const PictureMask& mask) {
+  check_sizes(a, b);
+  check_mask(a, mask);
+  if (a.width < kSsimWindow || a.height < kSsimWindow) return std::numeric_limits<double>::quiet_NaN();
+  WholeWindows windows(a, mask);
+  return mean_similarity(a, b, [&](unsigned v) { return windows.row(v); });
 }
 
 }  // namespace fovea::video

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "model/common/check.h"
@@ -36,7 +35,17 @@ PlanScore::PlanScore(const GroundPicture& ground, double car_length, double car_
     : ground_(ground),
       car_length_(car_length),
       car_width_(car_width),
-      plan_(car_park_plan(ground.width, ground.height, ground.metres_across, ground.metres_along)) {}
+      plan_(car_park_plan(ground.width, ground.height, ground.metres_across, ground.metres_along)),
+      mask_(std::size_t{ground.width} * ground.height) {
+  const double run = ground_.metres_across / ground_.width, rise = ground_.metres_along / ground_.height;
+  for (unsigned v = 0; v < ground.height; ++v)
+    for (unsigned u = 0; u < ground.width; ++u) {
+      const double x = ((ground.height - 1) / 2.0 - v) * rise;
+      // A pair may lie half within the car.
+      mask_[std::size_t{v} * ground.width + u] = !in_car(x, ((ground.width - 1) / 2.0 - (u & ~1u)) * run) &&
+                                                 !in_car(x, ((ground.width - 1) / 2.0 - (u | 1u)) * run);
+    }
+}
 
 bool PlanScore::in_car(double x, double y) const {
   return std::abs(x) <= car_length_ / 2 && std::abs(y) <= car_width_ / 2;
@@ -48,17 +57,11 @@ PlanScore::Result PlanScore::operator()(const Picture& shown) const {
   const double run = ground_.metres_across / ground_.width, rise = ground_.metres_along / ground_.height;
   const auto width = static_cast<int>(ground_.width), height = static_cast<int>(ground_.height);
   Result out;
-  double sum = 0, error = 0;
-  std::uint64_t count = 0;
+  out.psnr_y = psnr_y(shown, plan_, mask_);
+  out.ssim_y = ssim_y(shown, plan_, mask_);
+  double error = 0;
   for (int v = 0; v < height; ++v) {
     const double x = ((height - 1) / 2.0 - v) * rise;
-    for (int u = 0; u < width; ++u) {
-      // A pair may lie half within the car.
-      if (in_car(x, ((width - 1) / 2.0 - (u & ~1)) * run) || in_car(x, ((width - 1) / 2.0 - (u | 1)) * run)) continue;
-      const double d = luma(shown, u, v) - luma(plan_, u, v);
-      sum += d * d;
-      ++count;
-    }
     if (!car_park_has_bay_lines(x)) continue;
     for (unsigned n = 0; n < kBayLines; ++n) {
       const double y = bay_line(n);
@@ -74,8 +77,6 @@ PlanScore::Result PlanScore::operator()(const Picture& shown) const {
       ++out.lines;
     }
   }
-  const double mean = count ? sum / static_cast<double>(count) : 0;
-  out.psnr_y = mean > 0 ? 10 * std::log10(255 * 255 / mean) : std::numeric_limits<double>::infinity();
   out.line_error = out.lines ? std::sqrt(error / out.lines) : 0;
   return out;
 }

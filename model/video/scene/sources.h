@@ -98,6 +98,8 @@ class VideoSource : public StampedSource {
  public:
   /// @throws UserError if there are no frames or their sizes differ
   VideoSource(std::vector<RgbImage> frames, const Raster& raster, std::optional<Warp> warp = {});
+  /// The flat frame that fields 2n and 2n + 1 show.
+  const RgbImage& flat_frame(std::uint64_t n) const { return frames_[n % frames_.size()]; }
 
  protected:
   const Picture& view(std::uint64_t k) override;

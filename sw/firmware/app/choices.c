@@ -6,6 +6,7 @@
 #include "../drivers/uart_queue.h"
 #include "console.h"
 #include "pipeline.h"
+#include "sw/lens/region.h"
 
 /* At least what the longest answer takes: `status` for eight cameras. */
 #define ANSWER_BYTES 2048u
@@ -15,7 +16,8 @@ static struct {
   struct view *views;
   console_line_t line;
   struct choice {
-    int32_t zoom, shift_x, shift_y; /* percent, pixels */
+    int32_t zoom, shift_x, shift_y; /* percent, pixels; 100 and 0 with a region of interest */
+    int32_t roi[4];                 /* left, top, width, height; a width of 0: none */
     uint32_t mapping;
   } camera[CAMERAS_MAX];
   uint8_t sequence[TURNS_SEQUENCE_MAX];
@@ -39,6 +41,27 @@ static void refuse(const char *why) {
   uart_queue_puts("\n");
 }
 
+static lens_region_t region_of(const int32_t roi[4]) {
+  return (lens_region_t){(double)roi[0], (double)roi[1], (double)roi[2], (double)roi[3]};
+}
+
+/* Takes a region of interest into what is wanted. @return 0 for one that cannot be, which is said */
+static int choose_roi(struct choice *wanted, const int32_t roi[4]) {
+  const uint32_t width = choices.config->width, height = choices.config->height;
+  const lens_region_t region = region_of(roi);
+  if (!lens_region_fits(&region, width, height)) {
+    uart_queue_puts("refused: roi is within the ");
+    uart_queue_put_uint(width);
+    uart_queue_puts("x");
+    uart_queue_put_uint(height);
+    uart_queue_puts(" pixels of the picture, at least a quarter as wide or as high\n");
+    return 0;
+  }
+  *wanted = (struct choice){.zoom = 100, .mapping = wanted->mapping};
+  for (unsigned i = 0; i < 4u; ++i) wanted->roi[i] = roi[i];
+  return 1;
+}
+
 /* The page's view with what was chosen. @return a null pointer, or why that is no lens */
 static const char *chosen_view(uint32_t camera, const struct choice *c, lens_view_t *view) {
   *view = choices.config->views[camera];
@@ -47,8 +70,14 @@ static const char *chosen_view(uint32_t camera, const struct choice *c, lens_vie
   view->shift_y += c->shift_y;
   lens_t lens;
   lens_result_t result = lens_init(&lens, view, choices.config->width, choices.config->height);
-  if (result == LENS_OK && c->zoom != 100) {
-    view->out_focal_px = lens.out_focal * c->zoom / 100.0;
+  const int region = c->roi[2] != 0;
+  if (result == LENS_OK && (region || c->zoom != 100)) {
+    if (view->mapping == LENS_NONE) return "mapping none has no scale; only with zoom 100 and no roi";
+    const lens_region_t roi = region_of(c->roi);
+    if (region)
+      lens_show_region(view, &lens, &roi);
+    else
+      view->out_focal_px = lens.out_focal * c->zoom / 100.0;
     result = lens_init(&lens, view, choices.config->width, choices.config->height);
   }
   return result == LENS_OK ? NULL : lens_result_text(result);
@@ -56,12 +85,20 @@ static const char *chosen_view(uint32_t camera, const struct choice *c, lens_vie
 
 static void say_view(uint32_t camera) {
   const struct choice *c = &choices.camera[camera];
-  uart_queue_puts("zoom ");
-  uart_queue_put_int(c->zoom);
-  uart_queue_puts(" %, shift ");
-  uart_queue_put_int(c->shift_x);
-  uart_queue_puts(" ");
-  uart_queue_put_int(c->shift_y);
+  if (c->roi[2] != 0) {
+    uart_queue_puts("roi");
+    for (unsigned i = 0; i < 4u; ++i) {
+      uart_queue_puts(" ");
+      uart_queue_put_int(c->roi[i]);
+    }
+  } else {
+    uart_queue_puts("zoom ");
+    uart_queue_put_int(c->zoom);
+    uart_queue_puts(" %, shift ");
+    uart_queue_put_int(c->shift_x);
+    uart_queue_puts(" ");
+    uart_queue_put_int(c->shift_y);
+  }
   uart_queue_puts(", mapping ");
   uart_queue_puts(console_mapping_word(c->mapping));
 }
@@ -137,10 +174,15 @@ static void obey(const char *text) {
       return;
     case COMMAND_ZOOM:
       wanted.zoom = command.value[0];
+      wanted.roi[2] = 0;
       break;
     case COMMAND_SHIFT:
       wanted.shift_x = command.value[0];
       wanted.shift_y = command.value[1];
+      wanted.roi[2] = 0;
+      break;
+    case COMMAND_ROI:
+      if (!choose_roi(&wanted, command.value)) return;
       break;
     case COMMAND_MAPPING:
       wanted.mapping = command.mapping;

@@ -26,6 +26,8 @@ const char *console_help(void) {
          "camera N [N ...]     only these, in this order, up to 16\n"
          "zoom N PERCENT       camera N's view, 25 to 400; 100 as the parameter page says\n"
          "shift N X Y          its view to the right and down, up to 1000 pixels either way\n"
+         "roi N X Y W H        instead of both: this rectangle of the picture at zoom 100, shift 0 0,\n"
+         "                     enlarged until it fills the display in one direction\n"
          "mapping N WORD       its lens: page (as the parameter page says), none, rectilinear, linear,\n"
          "                     orthographic, equisolid, stereographic, kannala_brandt\n"
          "A new table is built between the frames, and used from a whole frame on.\n";
@@ -106,6 +108,22 @@ static const char *parse_mapping(const char *p, command_t *c) {
   return "no such mapping";
 }
 
+static const char *parse_shift(const char *p, command_t *c) {
+  c->kind = COMMAND_SHIFT;
+  for (unsigned i = 0; i < 2u; ++i)
+    if (!number(&p, &c->value[i]) || c->value[i] < -CONSOLE_SHIFT_MAX || c->value[i] > CONSOLE_SHIFT_MAX)
+      return "shift is -1000 to 1000 pixels, twice";
+  return at_end(p) ? NULL : "shift is -1000 to 1000 pixels, twice";
+}
+
+/* Whether it is in the picture is not known here. */
+static const char *parse_roi(const char *p, command_t *c) {
+  c->kind = COMMAND_ROI;
+  for (unsigned i = 0; i < 4u; ++i)
+    if (!number(&p, &c->value[i])) return "roi is left, top, width and height in pixels";
+  return at_end(p) ? NULL : "roi is left, top, width and height in pixels";
+}
+
 const char *command_parse(const char *line, uint32_t cameras, command_t *c) {
   *c = (command_t){.kind = COMMAND_NOTHING};
   const char *p = line;
@@ -120,7 +138,8 @@ const char *command_parse(const char *line, uint32_t cameras, command_t *c) {
   }
   if (word(&p, "camera")) return parse_cameras(p, cameras, c);
   const int zoom = word(&p, "zoom"), shift = !zoom && word(&p, "shift");
-  if (!zoom && !shift && !word(&p, "mapping")) return "unknown; help lists the commands";
+  const int roi = !zoom && !shift && word(&p, "roi");
+  if (!zoom && !shift && !roi && !word(&p, "mapping")) return "unknown; help lists the commands";
   if (!camera_number(&p, cameras, &c->camera)) return "no such camera";
   if (zoom) {
     c->kind = COMMAND_ZOOM;
@@ -129,10 +148,5 @@ const char *command_parse(const char *line, uint32_t cameras, command_t *c) {
       return "zoom is 25 to 400 percent";
     return NULL;
   }
-  if (!shift) return parse_mapping(p, c);
-  c->kind = COMMAND_SHIFT;
-  for (unsigned i = 0; i < 2u; ++i)
-    if (!number(&p, &c->value[i]) || c->value[i] < -CONSOLE_SHIFT_MAX || c->value[i] > CONSOLE_SHIFT_MAX)
-      return "shift is -1000 to 1000 pixels, twice";
-  return at_end(p) ? NULL : "shift is -1000 to 1000 pixels, twice";
+  return shift ? parse_shift(p, c) : roi ? parse_roi(p, c) : parse_mapping(p, c);
 }

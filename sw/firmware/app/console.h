@@ -29,6 +29,7 @@ typedef enum command_kind {
   COMMAND_CAMERAS, /* list */
   COMMAND_ZOOM,    /* camera, value[0] in percent */
   COMMAND_SHIFT,   /* camera, value[0] and value[1] in pixels */
+  COMMAND_ROI,     /* camera, value[0] to value[3]: left, top, width, height in pixels */
   COMMAND_MAPPING  /* camera, mapping */
 } command_kind_t;
 
@@ -37,7 +38,7 @@ typedef struct command {
   uint32_t camera;
   uint32_t count; /* of `list` */
   uint8_t list[TURNS_SEQUENCE_MAX];
-  int32_t value[2];
+  int32_t value[4];
   uint32_t mapping; /* enum lens_mapping, or CONSOLE_MAPPING_OF_PAGE */
 } command_t;
 
