@@ -116,7 +116,8 @@ void EdmaCc::work() {
     next_request_ = edge(now, static_cast<std::uint64_t>(params_.request_clocks()) - 1);
   if (queued || requested || !events_.empty()) wake_.at(edge(now, 0));
   if (!completions_.empty()) wake_.at(completions_.top().at);
-  if (const Picoseconds turn = std::max(core_.next_turn(), next_request_); turn > now) wake_.at(turn);
+  for (const Picoseconds turn : {core_.next_turn(), core_.next_turn_after(now)})
+    if (turn != kNever && std::max(turn, next_request_) > now) wake_.at(std::max(turn, next_request_));
   if (core_.next_turn() != kNever) wait_for_controllers(now);
   count();
 }

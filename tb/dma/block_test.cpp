@@ -425,6 +425,18 @@ TEST(EdmaBlockTest, MmraerrInterruptsIfItIsEnabled) {
   }
 }
 
+// Whoever waits at the head of a more urgent queue, here for a transfer controller that is not there.
+TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
+  const auto end = [](bool other_waits) {
+    return one_transfer([other_waits](Rig& r, std::string& out) {
+      r.tc->on_ended = [&out](const TransferRequest&, Picoseconds at) { out = std::to_string(at); };
+      if (other_waits) r.at_end_of(kPsPerUs / 2, [&r] { r.cc->regs.write(0x1010, 4, 1u << 9); });  // ESR: of queue 0
+    });
+  };
+  EXPECT_NE(end(false), "");
+  EXPECT_EQ(end(true), end(false));
+}
+
 }  // namespace
 }  // namespace fovea::dma
 

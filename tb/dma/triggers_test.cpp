@@ -228,6 +228,9 @@ TEST_F(Queues, AQueueEntryIsServedNoEarlierThanItsTurn) {
   ASSERT_TRUE(core.prioritise(2000));
   ASSERT_TRUE(core.prioritise(1000));
   EXPECT_EQ(core.next_turn(), 1000u);
+  EXPECT_EQ(core.next_turn_after(999), 1000u);
+  EXPECT_EQ(core.next_turn_after(1000), 2000u);
+  EXPECT_EQ(core.next_turn_after(2000), kNever);
   EXPECT_FALSE(core.process(999));
   EXPECT_TRUE(core.process(1000));
   EXPECT_FALSE(core.process(1999));

@@ -280,6 +280,13 @@ Picoseconds ChannelController::next_turn() const {
   return t;
 }
 
+Picoseconds ChannelController::next_turn_after(Picoseconds now) const {
+  Picoseconds t = kNever;
+  for (const Queue& q : queues_)
+    if (q.count > 0 && q.entry[q.head].ready > now) t = std::min(t, q.entry[q.head].ready);
+  return t;
+}
+
 bool ChannelController::process(Picoseconds now) {
   if (outstanding_codes_ == kMostCodes) return false;
   for (unsigned q = 0; q < kQueues; ++q) {

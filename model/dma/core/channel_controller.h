@@ -47,6 +47,8 @@ class ChannelController {
   bool process(Picoseconds now);
   /// The earliest time at which the turn of a queue's head comes; kNever: all queues are empty.
   Picoseconds next_turn() const;
+  /// The same among the turns that come behind `now`: heads whose turn has come may wait for their controllers.
+  Picoseconds next_turn_after(Picoseconds now) const;
   /// A transfer controller has ended a request that reports: its code arrives here.
   void completed(const TransferRequest& request);
   /// A transfer controller has dropped a request (TRERR): no code arrives for it.
