@@ -4,6 +4,10 @@
 #include <utility>
 
 namespace fovea::dma {
+namespace {
+void tell(const std::string& what) { Diagnostics::instance().guest("EDMA: " + what); }
+}  // namespace
+
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
     : WithRegs(static_cast<unsigned>(params.reset_priority())),
       BusTarget(name, regs),
@@ -63,6 +67,7 @@ void EdmaCc::on_reset(ResetKind) {
   events_.clear();
   completions_ = {};
   next_request_ = 0;
+  waits_for_clock_ = 0;
   wake_.cancel();
   written_.soon();
 }
@@ -70,7 +75,9 @@ void EdmaCc::on_reset(ResetKind) {
 void EdmaCc::leave_reset() { in_reset_ = false; }
 
 void EdmaCc::event(unsigned channel) {
-  if (!running()) return;  // without a clock nothing is latched
+  if (!has_clock() && (regs.global.eer.get() >> channel & 1))
+    warn("event " + std::to_string(channel) + " is lost: the channel controller has no clock");
+  if (!running()) return;  // nothing is latched
   events_.push_back({kernel_time(), static_cast<std::uint8_t>(channel)});
   work_arrived();
 }
@@ -141,10 +148,15 @@ void EdmaCc::count() {
 
 bool EdmaCc::can_submit(unsigned controller) const {
   const TransferPort* const port = controllers_[controller];
+  if (port && !port->has_clock() && !(waits_for_clock_ >> controller & 1)) {
+    waits_for_clock_ |= 1u << controller;
+    tell("a request waits for transfer controller " + std::to_string(controller) + ", which has no clock");
+  }
   return port && port->program_free() < kernel_time();
 }
 
 void EdmaCc::submit(unsigned controller, const TransferRequest& request) {
+  waits_for_clock_ &= ~(1u << controller);
   controllers_[controller]->submit(request);
 }
 
@@ -163,6 +175,10 @@ void EdmaCc::pulse_error() {
   error.raise();
 }
 
-void EdmaCc::warn(const std::string& what) { Diagnostics::instance().guest("EDMA: " + what); }
+void EdmaCc::events_enabled(std::uint64_t events) {
+  if (on_events_enabled) on_events_enabled(events);
+}
+
+void EdmaCc::warn(const std::string& what) { tell(what); }
 
 }  // namespace fovea::dma

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <queue>
 #include <systemc>
 #include <tuple>
@@ -28,6 +29,7 @@ class TransferPort {
   virtual ~TransferPort() = default;
   /// From when on its program register is free; kNever while that is not known.
   virtual Picoseconds program_free() const = 0;
+  virtual bool has_clock() const = 0;
   virtual void submit(const TransferRequest& request) = 0;
 };
 
@@ -74,6 +76,8 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   Pulse error{"error", kInterruptPulse};            ///< CCERRINT
   /// Priority of each transfer controller, for its read and its write port.
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
+  /// Software has enabled these hardware events, one bit each.
+  std::function<void(std::uint64_t events)> on_events_enabled;
 
   EdmaCc(sc_core::sc_module_name name, const EdmaParams& params);
 
@@ -110,13 +114,15 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   void pulse_completion(unsigned region) override;
   void pulse_error() override;
   void work_arrived() override;
+  void events_enabled(std::uint64_t events) override;
   void warn(const std::string& what) override;
   void update_priorities();
   void work();
   void wait_for_controllers(Picoseconds now);
   void count();
   void clock_changed();
-  bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
+  bool has_clock() const { return clock_.running() && lpsc.read(); }
+  bool running() const { return has_clock() && !in_reset_; }
   Picoseconds edge(Picoseconds t, std::uint64_t clocks) const;
 
   const EdmaParams& params_;
@@ -131,6 +137,8 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   std::priority_queue<Completion, std::vector<Completion>, std::greater<>> completions_;
   std::uint64_t completion_count_ = 0;
   Picoseconds next_request_ = 0;
+  /// Transfer controllers without a clock for which a request waits, one bit each: told once for each wait.
+  mutable std::uint32_t waits_for_clock_ = 0;
   bool in_reset_ = false;
   ChannelController::Counts reported_;
   Timer wake_, written_;

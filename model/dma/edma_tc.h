@@ -17,8 +17,8 @@
 
 namespace fovea::dma {
 
-/// Offsets and fields: SPRUH82C, "EDMA3 Transfer Controller Registers"; INTSTAT to INTCMD: TI's register
-/// header of the transfer controller (cslr_tptc.h).
+/// Offsets and fields: SPRUH82C, "EDMA3 Transfer Controller Registers"; the place of TCSTAT.DFSTRTPTR: SPRUH73, as
+/// SPRUH82C has it at 12:11; INTSTAT to INTCMD: TI's register header of the transfer controller (cslr_tptc.h).
 struct EdmaTcRegs : RegBank {
   struct Config : Reg {
     using Reg::Reg;
@@ -164,6 +164,7 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   void attach(EdmaCc& channels);
 
   Picoseconds program_free() const override;
+  bool has_clock() const override { return clock_.running() && lpsc.read(); }
   void submit(const TransferRequest& request) override;
   bool idle() const override { return reads_.idle() && writes_.idle(); }
   /// From now on each outcome is reported at its time, and a burst issued when what it follows from has
@@ -197,7 +198,7 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   void show_errors();
   void show_sets();
   void show(EdmaTcRegs::Set& regs, std::function<RegisterSet()> set);
-  bool running() const { return clock_.running() && lpsc.read() && !in_reset_; }
+  bool running() const { return has_clock() && !in_reset_; }
   unsigned burst() const;
 
   const unsigned number_;

@@ -248,6 +248,7 @@ void Dm365::wire_edma() {
   uart1.on_transmit_event = send(kUart1Receive + 1);
   i2c.on_receive_event = send(kI2cReceive);
   i2c.on_transmit_event = send(kI2cReceive + 1);
+  edma.on_events_enabled = [this](std::uint64_t events) { edma_events_enabled(events); };
   for (dma::EdmaTc* tc : edma_tcs) {
     tc->attach(edma);
     tc->misc(misc_);
@@ -267,6 +268,16 @@ void Dm365::edma_events_selected() {
       Diagnostics::instance().not_modelled("EDMA_EVTMUX bit " + std::to_string(e.bit) +
                                            " gives EDMA event " + std::to_string(e.channel) + " to " +
                                            std::string(e.second) + ", which is silent here");
+}
+
+/// An event whose source is not modelled never comes.
+void Dm365::edma_events_enabled(std::uint64_t events) {
+  for (const EdmaEvent& e : kEdmaEvents) {
+    const bool second = e.has_choice() && edma_evtmux_.read() >> e.bit & 1;
+    if (!(events >> e.channel & 1) || (e.wire != EdmaEvent::Wire::kNone && !second)) continue;
+    Diagnostics::instance().not_modelled("EESR enables EDMA event " + std::to_string(e.channel) + " of " +
+                                         std::string(second ? e.second : e.first) + ", which is silent here");
+  }
 }
 
 void Dm365::wire_interrupts() {

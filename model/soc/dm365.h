@@ -175,6 +175,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   void wire_edma();
   void edma_event(unsigned channel);
   void edma_events_selected();
+  void edma_events_enabled(std::uint64_t events);
   sc_core::sc_signal<bool>& signal_of(Irq line);
   void wire_video();
 

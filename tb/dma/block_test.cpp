@@ -69,12 +69,12 @@ struct Rig {
     config->to("edma").bind(cc->reg_socket);
     config->to("tc").bind(tc->reg_socket);
     cc->clk(scr_clk);
-    cc->lpsc(on);
+    cc->lpsc(cc_on);
     cc->completion.out(completion);
     cc->error.out(error);
     for (unsigned n = 0; n < kTransferControllers; ++n) cc->priority[n](tc_priority[n]);
     tc->clk(scr_clk);
-    tc->lpsc(on);
+    tc->lpsc(tc_on);
     tc->error.out(tc_error);
     tc->misc(misc);
     tc->attach(*cc);
@@ -121,7 +121,8 @@ struct Rig {
   EdmaParams params;
   EdmaTcParams tc_params;
   ClockSignal ddr_clk{"ddr_clk", Frequency(250'000'000)}, scr_clk{"scr_clk", Frequency(125'000'000)};
-  sc_core::sc_signal<bool> on{"on", true}, completion{"completion"}, error{"error"}, tc_error{"tc_error"};
+  sc_core::sc_signal<bool> on{"on", true}, cc_on{"cc_on", true}, tc_on{"tc_on", true};
+  sc_core::sc_signal<bool> completion{"completion"}, error{"error"}, tc_error{"tc_error"};
   sc_core::sc_signal<std::uint32_t> misc{"misc"};
   sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount},
       tc_priority{"tc_priority", kTransferControllers};
@@ -425,6 +426,38 @@ TEST(EdmaBlockTest, MmraerrInterruptsIfItIsEnabled) {
   }
 }
 
+/// How often a warning that contains `words` came.
+std::uint64_t warned(const std::string& words) {
+  std::uint64_t times = 0;
+  for (const auto& [what, n] : Diagnostics::instance().counts())
+    if (what.second.find(words) != std::string::npos) times += n;
+  return times;
+}
+
+// Each wait counts once, however often the queue is looked at.
+TEST(EdmaBlockTest, ARequestThatWaitsForAControllerWithoutClockIsSaidToWait) {
+  const std::string seen = one_transfer([](Rig& r, std::string& out) {
+    const auto look = [&r, &out] {
+      out += text("%u:%u ", static_cast<unsigned>(warned("EDMA: a request waits for transfer controller 3, which has no "
+                                                         "clock")),
+                  read(r.cc->regs, 0x2068) >> kChannel & 1);  // IPR
+    };
+    r.at_end_of(kPsPerUs / 2, [&r] { r.tc_on.write(false); });
+    r.at_end_of(2 * kPsPerUs, look);
+    r.at_end_of(3 * kPsPerUs, [&r] { r.cc->regs.write(0x1010, 4, 1u << 9); });  // one more look
+    r.at_end_of(4 * kPsPerUs, look);
+    r.at_end_of(5 * kPsPerUs, [&r] { r.tc_on.write(true); });
+    r.at_end_of(7 * kPsPerUs, [&r, look] {
+      look();
+      r.tc_on.write(false);
+    });
+    r.at_end_of(8 * kPsPerUs, look);
+    r.at_end_of(9 * kPsPerUs, [&r] { r.start(kSdram, kSdram + 0x10000, 64, 1, 0); });
+    r.at_end_of(10 * kPsPerUs, look);
+  });
+  EXPECT_EQ(seen, "1:0 1:0 1:1 1:1 2:1 ");
+}
+
 // Whoever waits at the head of a more urgent queue, here for a transfer controller that is not there.
 TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
   const auto end = [](bool other_waits) {
@@ -435,6 +468,37 @@ TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
   };
   EXPECT_NE(end(false), "");
   EXPECT_EQ(end(true), end(false));
+}
+
+// Events that nobody has enabled are lost without a word: timers have them all the time.
+TEST(EdmaBlockTest, AnEnabledEventWithoutClockIsSaidToBeLost) {
+  const std::string seen = one_transfer([](Rig& r, std::string& out) {
+    const auto look = [&r, &out] {
+      out += text("%u:%x ", static_cast<unsigned>(warned("EDMA: event 5 is lost: the channel controller has no clock")),
+                  read(r.cc->regs, 0x1000) | read(r.cc->regs, 0x1038));  // ER, SER
+    };
+    const auto gated = [&r](unsigned channel) {
+      r.cc_on.write(false);
+      r.at_end_of(kernel_time() + kClock, [&r, channel] { r.cc->event(channel); });
+      r.at_end_of(kernel_time() + 2 * kClock, [&r] { r.cc_on.write(true); });
+    };
+    r.at_end_of(3 * kPsPerUs, [gated] { gated(5); });
+    r.at_end_of(4 * kPsPerUs, look);
+    r.at_end_of(5 * kPsPerUs, [&r, gated] {
+      r.cc->regs.write(0x1030, 4, 1u << 5);  // EESR
+      gated(5);
+    });
+    r.at_end_of(6 * kPsPerUs, look);
+    r.at_end_of(7 * kPsPerUs, [gated] { gated(6); });
+    r.at_end_of(8 * kPsPerUs, look);
+    r.at_end_of(9 * kPsPerUs, [gated] { gated(5); });
+    r.at_end_of(10 * kPsPerUs, [&r, look] {
+      look();
+      r.cc->event(5);
+    });
+    r.at_end_of(10 * kPsPerUs + kClock, look);
+  });
+  EXPECT_EQ(seen, "0:0 1:0 1:0 2:0 2:20 ");
 }
 
 }  // namespace

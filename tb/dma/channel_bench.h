@@ -121,6 +121,8 @@ struct ChannelBench : testing::Test, ChannelController::Host {
   void pulse_completion(unsigned region) override { ++completion_pulses.at(region); }
   void pulse_error() override { ++error_pulses; }
   void work_arrived() override { ++wakes; }
+  std::uint64_t enabled = 0;  // events, since the test cleared it
+  void events_enabled(std::uint64_t events) override { enabled |= events; }
   void warn(const std::string& what) override { warnings.push_back(what); }
 
   void write(std::uint32_t offset, std::uint32_t value) {

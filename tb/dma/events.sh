@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The program of the hardware events: every scenario is good, and each source that the multiplexer selects
-# and that is not modelled is named. Usage: events.sh FOVEA PROGRAM
+# The program of the hardware events: every scenario is good, and each source that is not modelled is named when
+# the multiplexer selects it and when its event is enabled. Usage: events.sh FOVEA PROGRAM
 set -uo pipefail
 fail() {
   echo "$*"
@@ -14,3 +14,8 @@ for source in '3 gives EDMA event 18 to SPI3XEVT' '4 gives EDMA event 19 to SPI3
   '6 gives EDMA event 40 to EMAC RXTHRESH' '11 gives EDMA event 45 to SPI4REVT'; do
   grep -q "EDMA_EVTMUX bit $source, which is silent here" <<<"$text" || fail "no warning: $source"
 done
+for event in '26 of MMC0RXEVT' '45 of SPI4REVT' '52 of PWM0'; do
+  grep -q "EESR enables EDMA event $event, which is silent here" <<<"$text" || fail "no warning: $event"
+done
+grep -q 'EESR enables EDMA event 28' <<<"$text" && fail 'a warning about a source that is modelled'
+exit 0

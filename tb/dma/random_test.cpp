@@ -161,6 +161,7 @@ class Execution : ChannelController::Host {
   void pulse_completion(unsigned region) override { ++region_pulses_[region]; }
   void pulse_error() override { ++error_pulses_; }
   void work_arrived() override {}
+  void events_enabled(std::uint64_t) override {}
   void warn(const std::string&) override {}
 
   void write(std::uint32_t offset, std::uint32_t value) {

@@ -329,5 +329,25 @@ TEST_F(Empty, DummySetChains) {
   EXPECT_EQ(last().source.address, 0x9000u);
 }
 
+/// SPRUH82C, OPT: FWID is 0 to 5, 8 to 256 bits, and acts with constant addressing only.
+TEST_F(DmaTransfers, AReservedWidthIsReportedWhereItActs) {
+  for (unsigned width = 0; width < 8; ++width)
+    for (const std::uint32_t constant : {0u, std::uint32_t{kSam}, std::uint32_t{kDam}, kSam | kDam}) {
+      warnings.clear();
+      submitted.clear();
+      fill(5, {.opt = fwid(width) | constant, .acnt = 64});
+      trigger_and_run(5);
+      ASSERT_EQ(submitted.size(), 1u);
+      EXPECT_EQ(last().fifo_bytes, width < 5 ? 1u << width : 32u);
+      if (width < 6 || !constant) {
+        EXPECT_TRUE(warnings.empty()) << width;
+        continue;
+      }
+      ASSERT_EQ(warnings.size(), 1u) << width << ' ' << constant;
+      EXPECT_EQ(warnings[0], "PARAM5 has OPT.FWID " + std::to_string(width) +
+                                 ", which is reserved and taken as 256 bits; allowed: 0 to 5");
+    }
+}
+
 }  // namespace
 }  // namespace fovea::dma

@@ -287,6 +287,21 @@ TEST_F(Queues, AThresholdIsThatOfItsQueue) {
   EXPECT_EQ(read(kQstat0) >> 24, 0u);
 }
 
+TEST_F(Queues, WhoeverEnablesEventsIsHeard) {
+  put(kEesr, 1u << 7);
+  put(kEesr + 4, 1u << 2);
+  EXPECT_EQ(enabled, 1ull << 7 | 1ull << 34);
+  enabled = 0;
+  write(kDrae0, 1u << 5);
+  write(kShadow0 + kEesr, 3u << 5);
+  EXPECT_EQ(enabled, 1ull << 5) << "DRAE hides the other one";
+  enabled = 0;
+  put(kEecr, 1u << 7);
+  put(kEsr, 1u << 8);
+  put(kIesr, 1u << 9);
+  EXPECT_EQ(enabled, 0u);
+}
+
 TEST_F(Queues, AQueueThatDoesNotExistIsReportedAndItsLowBitsCount) {
   write(kDmaqnum0, 5);
   trigger_and_run(0);
@@ -311,6 +326,21 @@ TEST_F(Queues, AControllerThatDoesNotExistIsReportedAndOtherQueuesGoOn) {
 struct Qdma : ChannelBench {
   void word(unsigned set, unsigned w, std::uint32_t v) { write(kPaRam + 32 * set + 4 * w, v); }
 };
+
+TEST_F(Qdma, OnlyTheSetsThatExistTrigger) {
+  fill(255, {.acnt = 8});
+  write(kQchmap0 + 4, 255 << 5);
+  EXPECT_TRUE(warnings.empty());
+  write(kQchmap0 + 8, 256 << 5);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("QCHMAP2 names set 256"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("allowed: 0 to 255"), std::string::npos) << warnings[0];
+  put(kQeesr, 3u << 1);
+  word(255, 0, 0);
+  word(0, 0, 0);
+  run();
+  EXPECT_EQ(submitted.size(), 1u) << "of channel 1";
+}
 
 TEST_F(Qdma, TheTriggerWordTriggersAndNoOtherDoes) {
   for (unsigned trigger_word = 0; trigger_word < 8; ++trigger_word) {

@@ -57,6 +57,12 @@ void ChannelController::install_global() {
     if ((word & 1) && errors()) host_.pulse_error();
   });
   regs_.ccstat.on_read([this] { regs_.ccstat.set(status()); });
+  for (auto& map : regs_.qchmap)
+    map->on_write([this, &map = *map](std::uint32_t) {
+      if (map.set.get() >= kParamSets)
+        host_.warn(map.name() + " names set " + std::to_string(map.set.get()) +
+                   ", whose writes trigger nothing; allowed: 0 to 255");
+    });
 }
 
 void ChannelController::install_region(unsigned region) {
@@ -101,6 +107,7 @@ void ChannelController::install(ChannelRegs& view, std::function<std::uint64_t()
   on_write(view.eecr, [=, &g](std::uint64_t bits) { clear(g.eer, bits & mask()); });
   on_write(view.eesr, [=, this, &g](std::uint64_t bits) {
     set(g.eer, bits & mask());
+    host_.events_enabled(bits & mask());
     host_.work_arrived();
   });
   on_write(view.secr, [=, this, &g](std::uint64_t bits) {
@@ -325,6 +332,7 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
   if (set.null() || set.dummy()) {
     report(set, final);
   } else {
+    check_width(index, set);
     TransferRequest r = set.request();
     ++counts_.requests;
     if (set.opt(ParamSet::kEarly)) {
@@ -345,6 +353,14 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
     }
   }
   host_.work_arrived();
+}
+
+/// FWID acts on a side with constant addressing only.
+void ChannelController::check_width(unsigned index, const ParamSet& set) {
+  constexpr std::uint32_t kConstant = ParamSet::kSourceConstant | ParamSet::kDestinationConstant;
+  if (set.opt(kConstant) && set.width() > ParamSet::kWidest)
+    host_.warn("PARAM" + std::to_string(index) + " has OPT.FWID " + std::to_string(set.width()) +
+               ", which is reserved and taken as 256 bits; allowed: 0 to 5");
 }
 
 ParamSet ChannelController::load(unsigned set) {

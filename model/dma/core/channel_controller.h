@@ -28,6 +28,8 @@ class ChannelController {
     virtual void pulse_error() = 0;
     /// An event waits that prioritise() or process() may take now.
     virtual void work_arrived() = 0;
+    /// Software has enabled these hardware events, one bit each.
+    virtual void events_enabled(std::uint64_t events) = 0;
     /// What a programmer should learn, in one line.
     virtual void warn(const std::string& what) = 0;
   };
@@ -93,6 +95,7 @@ class ChannelController {
   void store(unsigned set, const ParamSet& value);
   void exhausted(unsigned set);
   void write_trigger(unsigned set, unsigned word);
+  void check_width(unsigned index, const ParamSet& set);
   void report(const ParamSet& set, bool final);
   std::uint64_t pending() const;
   bool errors() const;

@@ -1,5 +1,7 @@
 #include "model/dma/core/param_set.h"
 
+#include <algorithm>
+
 namespace fovea::dma {
 namespace {
 
@@ -10,15 +12,12 @@ std::int32_t high_index(std::uint32_t word) { return static_cast<std::int16_t>(w
 }  // namespace
 
 TransferRequest ParamSet::request() const {
-  constexpr std::uint32_t kSourceConstant = 1, kDestinationConstant = 2;
   TransferRequest r;
   r.source = {word[kSrc], low_index(word[kBidx]), opt(kSourceConstant)};
   r.destination = {word[kDst], high_index(word[kBidx]), opt(kDestinationConstant)};
   r.acnt = static_cast<std::uint16_t>(acnt());
   r.bcnt = static_cast<std::uint16_t>(opt(kSyncAb) ? bcnt() : 1);
-  // FWID: 8, 16, 32, 64, 128 or 256 bits; 6 and 7 are reserved.
-  const unsigned width = word[kOpt] >> 8 & 7;
-  r.fifo_bytes = static_cast<std::uint8_t>(1u << (width < 6 ? width : 5));
+  r.fifo_bytes = static_cast<std::uint8_t>(1u << std::min(width(), kWidest));
   r.tcc = static_cast<std::uint8_t>(tcc());
   r.interrupt = opt(final() ? kFinalInterrupt : kIntermediateInterrupt);
   r.chain = opt(final() ? kFinalChain : kIntermediateChain);

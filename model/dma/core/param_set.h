@@ -15,12 +15,16 @@ enum ParamWord : unsigned { kOpt, kSrc, kAbCnt, kDst, kBidx, kLinkReload, kCidx,
 struct ParamSet {
   std::array<std::uint32_t, kParamWords> word{};
 
+  static constexpr std::uint32_t kSourceConstant = 1u << 0, kDestinationConstant = 1u << 1;
   static constexpr std::uint32_t kSyncAb = 1u << 2, kStatic = 1u << 3, kEarly = 1u << 11;
   static constexpr std::uint32_t kFinalInterrupt = 1u << 20, kIntermediateInterrupt = 1u << 21,
                                  kFinalChain = 1u << 22, kIntermediateChain = 1u << 23;
   static constexpr std::uint32_t kNoLink = 0xFFFF;
 
+  static constexpr unsigned kWidest = 5;  ///< largest FWID: 256 bits; 6 and 7 are reserved
+
   bool opt(std::uint32_t bit) const { return word[kOpt] & bit; }
+  unsigned width() const { return word[kOpt] >> 8 & 7; }  ///< FWID: 8 << n bits
   unsigned tcc() const { return word[kOpt] >> 12 & 0x3F; }
   std::uint32_t acnt() const { return word[kAbCnt] & 0xFFFF; }
   std::uint32_t bcnt() const { return word[kAbCnt] >> 16; }

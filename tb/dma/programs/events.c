@@ -2,7 +2,8 @@
  * while the multiplexer in front of the channel is set to another source. Then the registers that show what a
  * transfer controller works on. Registers only, no model of them. Prints one line for each scenario; the
  * status is the number of those that failed. Register addresses: Linux drivers/dma/ti/edma.c,
- * arch/arm/mach-davinci/dm365.c and drivers/i2c/busses/i2c-davinci.c; events: SPRUH82C. */
+ * arch/arm/mach-davinci/dm365.c and drivers/i2c/busses/i2c-davinci.c; events: SPRUH82C; their numbers: TI's register
+ * header for the DM36x. */
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,6 +36,7 @@ enum {
   VPSS = 0x01C70000,
   VENC = 0x01C71E00,
 };
+enum { TIMER_TIM12 = 0x10, TIMER_PRD12 = 0x18, TIMER_TCR = 0x20, TIMER_TGCR = 0x24 };
 enum { AB_SYNC = 1 << 2, TCINT = 1 << 20, TCCHAIN = 1 << 22 };
 #define TCC(n) ((uint32_t)(n) << 12)
 #define PAIR(low, high) ((uint32_t)(uint16_t)(low) | (uint32_t)(uint16_t)(high) << 16)
@@ -229,16 +231,87 @@ static int pin_moves(unsigned pin, unsigned channel) {
   return ended && memcmp(source, target, 4) == 0;
 }
 
+/* That the events which have arrived are those of one channel, whoever is enabled. */
+static void forget_events(void) {
+  REG(ECR) = ~0u;
+  REG(ECR + 4) = ~0u;
+}
+static int only_event(unsigned channel) {
+  const uint32_t low = REG(SHADOW0), high = REG(SHADOW0 + 4); /* ER, ERH */
+  return low == (channel < 32 ? 1u << channel : 0) && high == (channel < 32 ? 0 : 1u << (channel - 32));
+}
+
+static int pin_is_alone(unsigned pin, unsigned channel) {
+  REG(GPIO01 + 0x14) = 1u << pin;
+  forget_events();
+  REG(GPIO01 + 0x08) = 1u << pin;
+  for (unsigned n = 0; n < 20; ++n) (void)REG(SHADOW0);
+  const int good = only_event(channel);
+  REG(GPIO01 + 0x0C) = 1u << pin;
+  REG(GPIO01 + 0x18) = 1u << pin;
+  return good;
+}
+
 static void pins(void) {
-  check("GPIO10's event moves data", pin_moves(10, 40));
-  check("GPIO8's event moves data", pin_moves(8, 47));
+  static const uint8_t channels[16] = {32, 33, 34, 35, 36, 37, 38, 39, 47, 25, 40, 41, 42, 43, 44, 45};
+  for (unsigned pin = 0; pin < 16; ++pin) {
+    char name[64];
+    sprintf(name, "GPIO%u's event moves data", pin);
+    check(name, pin_moves(pin, channels[pin]) && pin_is_alone(pin, channels[pin]));
+  }
   REG(EVTMUX) = 0x3Fu << 6;
   int silent = 1;
   for (unsigned pin = 10; pin < 16; ++pin) silent &= !pin_moves(pin, 30 + pin);
   check("no events of GPIO10 to 15 while the multiplexer has EMAC and SPI4", silent);
   check("GPIO8 has no multiplexer", pin_moves(8, 47));
   REG(EVTMUX) = 0;
-  check("GPIO15's event moves data", pin_moves(15, 45));
+  check("GPIO15 again", pin_moves(15, 45));
+}
+
+/* Each timer has two counters: TINT 2n and 2n+1 are those of TIMER n. */
+static int timer_moves(uint32_t timer, unsigned upper, unsigned channel) {
+  const uint32_t mode = TIMER_TCR + timer, count = TIMER_TIM12 + 4 * upper + timer,
+                 period = TIMER_PRD12 + 4 * upper + timer, shift = 6 + 16 * upper;
+  memset(target, 0xEE, sizeof target);
+  REG(timer + TIMER_TGCR) = 0;
+  REG(timer + TIMER_TGCR) = 7; /* two counters of 32 bits, out of reset */
+  REG(count) = 0;
+  REG(period) = 240; /* 10 us */
+  set(channel, TCINT | TCC(5), (uintptr_t)source, PAIR(4, 3), (uintptr_t)target, PAIR(4, 4), 1);
+  listen(channel);
+  REG(mode) = 2u << shift;
+  const int ended = done(5, 2000);
+  REG(mode) = 0;
+  stop(channel);
+  const int moved = ended && memcmp(source, target, 12) == 0 && target[12] == 0xEE;
+  forget_events();
+  REG(count) = 0;
+  REG(mode) = 1u << shift; /* once */
+  for (unsigned n = 0; n < 300; ++n) (void)REG(count);
+  const int alone = only_event(channel);
+  REG(mode) = 0;
+  forget_events();
+  return moved && alone;
+}
+
+static void timers(void) {
+  static const uint32_t bases[5] = {0x01C21400, 0x01C21800, 0x01C21C00, 0x01C20800, 0x01C23800};
+  static const uint8_t channels[10] = {48, 49, 50, 51, 8, 9, 0, 1, 22, 23}; /* of TINT0 to TINT9 */
+  for (unsigned n = 0; n < 10; ++n) {
+    char name[64];
+    sprintf(name, "the event of TINT%u moves data", n);
+    check(name, timer_moves(bases[n / 2], n % 2, channels[n]));
+  }
+}
+
+/* Channels whose source is not modelled; one is of the second source of the multiplexer. */
+static void silent_sources(void) {
+  REG(EESR) = 1u << 26 | 1u << 28;
+  REG(EVTMUX) = 1u << 11;
+  REG(EESR + 4) = 1u << (45 - 32) | 1u << (52 - 32);
+  REG(EVTMUX) = 0;
+  REG(EECR) = 1u << 26 | 1u << 28;
+  REG(EECR + 4) = 1u << (45 - 32) | 1u << (52 - 32);
 }
 
 /* The encoder's interrupt, source 21, comes once a field; source 0, the capture's, does not come. */
@@ -346,7 +419,7 @@ static void enable_instruction_cache(void) {
 int main(void) {
   enable_instruction_cache(); /* or else a transfer is over before the program has looked twice */
   for (unsigned module = 0; module < 5; ++module) enable(module);
-  static const unsigned modules[] = {18, 19, 20, 26, 47}; /* I2C, UARTs, GPIO, VPSS */
+  static const unsigned modules[] = {5, 17, 18, 19, 20, 26, 27, 28, 47}; /* timers, I2C, UARTs, GPIO, VPSS */
   for (unsigned n = 0; n < sizeof modules / sizeof *modules; ++n) enable(modules[n]);
   for (unsigned i = 0; i < sizeof source; ++i) source[i] = (uint8_t)(i * 7 + (i >> 8) + 1);
   REG(BINTEN) = 1;
@@ -359,6 +432,8 @@ int main(void) {
   uart_levels();
   i2c();
   pins();
+  timers();
+  silent_sources();
   video();
   register_sets();
   check("no event was missed", missed == 0 && REG(EMR) == 0 && REG(EMR + 4) == 0);

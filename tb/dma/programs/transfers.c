@@ -243,12 +243,34 @@ static void bus_error(void) {
   check("the next transfer is good", done(4) && memcmp(source, target, 64) == 0);
 }
 
-/* TC0's error interrupt, 18 of the interrupt controller with ARM_INTMUX bit 3, where a pending one reads 0. */
-enum { TC_ERREN = 0x124, TC_ERRCMD = 0x130, ARM_INTMUX = 0x01C40018, IRQ0 = 0x01C48008, EINT0 = 0x01C48018 };
-static int interrupted(void) {
+/* Inputs of the interrupt controller, where a pending one reads 0, and the bit of ARM_INTMUX that selects the EDMA for
+ * it. The core masks interrupts. */
+enum {
+  TC_ERREN = 0x124,
+  TC_ERRCMD = 0x130,
+  ARM_INTMUX = 0x01C40018,
+  IRQ0 = 0x01C48008,
+  EINT0 = 0x01C48018,
+  INTPRI0 = 0x01C48030,
+};
+static const struct {
+  unsigned input, choice;
+} CCERRINT = {17, 2}, TCERRINT[4] = {{18, 3}, {19, 4}, {61, 22}, {62, 23}};
+
+static void listen(unsigned input, unsigned choice) {
+  REG(ARM_INTMUX) |= 1u << choice;
+  REG(INTPRI0 + input / 8 * 4) |= 7u << input % 8 * 4;
+  REG(EINT0 + input / 32 * 4) |= 1u << input % 32;
+  REG(IRQ0 + input / 32 * 4) = 1u << input % 32;
+}
+
+static void listen_no_more(unsigned input) { REG(EINT0 + input / 32 * 4) &= ~(1u << input % 32); }
+
+static int interrupted(unsigned input) {
+  const uint32_t status = IRQ0 + input / 32 * 4;
   int pending = 0;
-  for (unsigned n = 0; n < 50; ++n) pending |= !(REG(IRQ0) >> 18 & 1);
-  REG(IRQ0) = 1u << 18;
+  for (unsigned n = 0; n < 50; ++n) pending |= !(REG(status) >> input % 32 & 1);
+  REG(status) = 1u << input % 32;
   return pending;
 }
 
@@ -259,35 +281,117 @@ static int wrong_read(void) {
 }
 
 static void controller_errors(void) {
-  REG(ARM_INTMUX) |= 1u << 3;
-  REG(0x01C48038) = 0x77777777; /* priority of interrupts 16 to 23 */
-  REG(EINT0) |= 1u << 18;       /* the core masks interrupts */
-  REG(IRQ0) = 1u << 18;
-  check("no interrupt by an error that is not enabled", wrong_read() && !interrupted());
+  listen(TCERRINT[0].input, TCERRINT[0].choice);
+  check("no interrupt by an error that is not enabled", wrong_read() && !interrupted(18));
   REG(TC0 + TC_ERREN) = 1;
   REG(TC0 + TC_ERRCMD) = 1;
-  check("ERRCMD pulses for an enabled error that is pending", interrupted());
+  check("ERRCMD pulses for an enabled error that is pending", interrupted(18));
   REG(TC0 + TC_ERRCMD) = 1;
-  check("as often as it is written", interrupted());
+  check("as often as it is written", interrupted(18));
   REG(TC0 + TC_ERRCLR) = 4;
   check("ERRCLR clears what it names", REG(TC0 + TC_ERRSTAT) == 1);
   REG(TC0 + TC_ERRCLR) = 1;
   REG(TC0 + TC_ERRCMD) = 1;
-  check("ERRCMD does nothing without an error", REG(TC0 + TC_ERRSTAT) == 0 && !interrupted());
-  check("an enabled error interrupts", wrong_read() && interrupted());
-  check("once until it is cleared", wrong_read() && !interrupted());
+  check("ERRCMD does nothing without an error", REG(TC0 + TC_ERRSTAT) == 0 && !interrupted(18));
+  check("an enabled error interrupts", wrong_read() && interrupted(18));
+  check("once until it is cleared", wrong_read() && !interrupted(18));
   REG(TC0 + TC_ERRCLR) = 1;
   set(4, 1 | AB_SYNC | TCINT | TCC(4), source + 4, PAIR(32, 1), target, 0, 0xFFFF, 0, 1); /* SAM */
   REG(ESR) = 1u << 4;
-  const int silent = !interrupted() && !(REG(IPR) & 1u << 4);
+  const int silent = !interrupted(18) && !(REG(IPR) & 1u << 4);
   check("constant addressing at no multiple of 32 is TRERR", silent && REG(TC0 + TC_ERRSTAT) == 4);
   REG(TC0 + TC_ERREN) = 4;
   REG(TC0 + TC_ERRCMD) = 1;
-  const int enabled = interrupted();
+  const int enabled = interrupted(18);
   REG(TC0 + TC_ERRCLR) = 4;
   check("with its own enable", enabled && REG(TC0 + TC_ERRSTAT) == 0);
   REG(TC0 + TC_ERREN) = 0;
-  REG(EINT0) &= ~(1u << 18);
+  listen_no_more(18);
+}
+
+/* An error of each transfer controller reaches its own input and no other one. */
+static void errors_of_all(void) {
+  for (unsigned n = 0; n < 4; ++n) {
+    listen(TCERRINT[n].input, TCERRINT[n].choice);
+    REG(TC0 + 0x400 * n + TC_ERREN) = 1;
+  }
+  for (unsigned tc = 0; tc < 4; ++tc) {
+    REG(DMAQNUM0) = tc << 16;
+    set(4, AB_SYNC | TCINT | TCC(4), (void *)0x40000000, PAIR(32, 1), target, 0, 0xFFFF, 0, 1);
+    REG(ESR) = 1u << 4;
+    int good = done(4);
+    for (unsigned n = 0; n < 4; ++n) {
+      good &= REG(TC0 + 0x400 * n + TC_ERRSTAT) == (n == tc);
+      good &= interrupted(TCERRINT[n].input) == (n == tc);
+    }
+    REG(TC0 + 0x400 * tc + TC_ERRCLR) = 1;
+    char name[64];
+    sprintf(name, "an error of TC%u is interrupt %u", tc, TCERRINT[tc].input);
+    check(name, good);
+  }
+  REG(DMAQNUM0) = 0;
+  for (unsigned n = 0; n < 4; ++n) {
+    REG(TC0 + 0x400 * n + TC_ERREN) = 0;
+    listen_no_more(TCERRINT[n].input);
+  }
+}
+
+/* CCERRINT comes with the first error and not again until all are cleared; EEVAL asks for it once more. */
+static void null_sets_interrupt(void) {
+  enum { EEVAL = CC + 0x320, ONE = 1 << 12, TWO = 1 << 13 };
+  static uint8_t nothing[1];
+  for (unsigned n = 12; n < 14; ++n) set(n, 0, nothing, 0, nothing, 0, 0xFFFF, 0, 0);
+  REG(EEVAL) = 1;
+  check("no interrupt without an error", REG(EMR) == 0 && !interrupted(CCERRINT.input));
+  REG(ESR) = ONE;
+  check("a null set interrupts", interrupted(CCERRINT.input) && REG(EMR) == ONE);
+  REG(ESR) = TWO;
+  check("a second error does not", !interrupted(CCERRINT.input) && REG(EMR) == (ONE | TWO));
+  REG(EMCR) = ONE;
+  REG(EEVAL) = 1;
+  check("EEVAL does while one is pending", interrupted(CCERRINT.input) && REG(EMR) == TWO);
+  REG(EMCR) = TWO;
+  REG(EEVAL) = 1;
+  check("and not when none is", !interrupted(CCERRINT.input) && REG(EMR) == 0);
+  REG(SECR) = ONE | TWO;
+}
+
+/* A timer's event 48: the first waits in its queue, which has no controller, the second in ER, the third is missed. */
+static void missed_events_interrupt(void) {
+  const uint32_t bit = 1u << 16;
+  clear();
+  set(48, TCC(3) | TCINT, source, PAIR(4, 4), target, PAIR(4, 4), 0xFFFF, 0, 1);
+  REG(CC + 0x280) = 0x3214; /* QUETCMAP */
+  REG(TIMER0 + 0x20) = 0;
+  REG(SHADOW0 + 0x08 + 4) = bit; /* ECRH */
+  REG(EESR + 4) = bit;
+  REG(TIMER0 + 0x10) = 0;
+  REG(TIMER0 + 0x18) = 240; /* 10 us */
+  REG(TIMER0 + 0x20) = 2u << 6;
+  int missed = 0;
+  for (unsigned n = 0; n < 1000 && !missed; ++n) missed = REG(EMR + 4) == bit;
+  const int waiting = (REG(SHADOW0 + 0x38 + 4) & bit) && (REG(SHADOW0 + 4) & bit) && target[0] == 0xEE;
+  check("a missed event interrupts", missed && waiting && interrupted(CCERRINT.input));
+  check("once until it is cleared", !interrupted(CCERRINT.input));
+  REG(EECR + 4) = bit;
+  REG(EMCR + 4) = bit;
+  check("cleared", REG(EMR + 4) == 0 && !interrupted(CCERRINT.input));
+  REG(CC + 0x280) = 0x3210;
+  REG(EESR + 4) = bit;
+  check("the events that were kept move data, and those behind them", done(3) && memcmp(source, target, 16) == 0);
+  REG(EECR + 4) = bit;
+  REG(EMCR + 4) = bit;
+  REG(SECR + 4) = bit;
+  REG(TIMER0 + 0x20) = 0;
+  REG(TIMER0 + 0x18) = ~0u;
+  REG(TIMER0 + 0x20) = 2u << 6;
+}
+
+static void channel_errors(void) {
+  listen(CCERRINT.input, CCERRINT.choice);
+  null_sets_interrupt();
+  missed_events_interrupt();
+  listen_no_more(CCERRINT.input);
 }
 
 /* A channel whose transfer controller has no clock waits until it has. */
@@ -381,6 +485,8 @@ int main(void) {
   fetched_sets();
   bus_error();
   controller_errors();
+  errors_of_all();
+  channel_errors();
   gated_controller();
   bad_input();
   check("no other error", REG(EMR) == 0 && REG(EMR + 4) == 0 && REG(CCERR) == 0);
