@@ -9,6 +9,14 @@ std::string ms_text(Picoseconds t) {
   return fmt::format("{}.{:06} ms", t / kPsPerMs, t % kPsPerMs / 1000);
 }
 
+/// Of bytes in a buffer: the store that made them, or else where the core was.
+std::string store_text(const cpu::Hazard& h, const std::string& place) {
+  return h.stored ? fmt::format(", stored at {} at {},", place, ms_text(h.stored)) : "";
+}
+std::string core_text(const cpu::Hazard& h, const std::string& place) {
+  return h.stored ? "" : fmt::format("; the core was at {}", place);
+}
+
 }  // namespace
 
 std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
@@ -33,16 +41,14 @@ std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
           "dirty D-cache line",
           master, h.address, after, place, before);
     case HazardKind::kBufferedRead:
-      return fmt::format(
-          "coherency hazard: {} read 0x{:08x} at {}, but newer bytes waited in the core's write buffer; the "
-          "core was at {}",
-          master, h.address, after, place);
+      return fmt::format("coherency hazard: {} read 0x{:08x} at {}, but newer bytes{} waited in the core's write buffer{}",
+                         master, h.address, after, store_text(h, place), core_text(h, place));
     case HazardKind::kOverwrite:
       if (h.before == h.after)
         return fmt::format(
-            "coherency hazard: {} wrote 0x{:08x} at {}, and older bytes that waited in the core's write buffer "
-            "go over them; the core was at {}",
-            master, h.address, after, place);
+            "coherency hazard: {} wrote 0x{:08x} at {}, and older bytes{} that waited in the core's write buffer go "
+            "over them{}",
+            master, h.address, after, store_text(h, place), core_text(h, place));
       return fmt::format(
           "coherency hazard: a D-cache line, dirty since the store at {}, was written back at {} over 0x{:08x}, "
           "which {} wrote at {}",

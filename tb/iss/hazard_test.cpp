@@ -115,6 +115,43 @@ TEST_F(HazardTest, PendingWriteUnderARead) {
   EXPECT_EQ(counts({{Do::kStore, kLine, 7}, dma(false, kLine, 4)}), (Counts{0, 0, 1, 0, 0}));
 }
 
+/// Bytes in a buffer that a line held: the store's place and time. Others: where the core is, and no time.
+TEST_F(HazardTest, PendingWritesNameTheStoreThatALineHeld) {
+  bench.m.port.decide_late = true;
+  bench.m.port.write_latency = 1'000'000;
+  const std::uint32_t through = line_used(1, 6), uncached = line_used(2, 6);
+  const Step clean{Do::kCleanLine, kLine};
+  const auto place = [&](const std::vector<Step>& steps) {
+    counts(steps);
+    EXPECT_EQ(bench.places.size(), 1u);
+    return bench.places.empty() ? Hazard{} : bench.places[0];
+  };
+  const auto is_store = [&](const Hazard& h, Do what, unsigned into = 0) {
+    EXPECT_EQ(h.pc, bench.handler(what) + into);
+    EXPECT_LT(h.stored, h.after);
+    EXPECT_GT(h.stored, h.after - 600'000);
+    EXPECT_EQ(h.before, h.after);
+  };
+  // The victim buffer: the first store into the half, whatever the other half has.
+  is_store(place({{Do::kLoad, kLine}, {Do::kStoreByte, kLine + 20, 7}, {Do::kStore, kLine, 7}, clean,
+                  dma(false, kLine + 20, 4)}), Do::kStoreByte);
+  is_store(place({{Do::kLoad, kLine}, {Do::kStore, kLine, 7}, clean, dma(false, kLine + 12, 8)}), Do::kStore);
+  is_store(place({{Do::kLoad, kLine}, {Do::kStore, kLine, 7}, clean, dma(true, kLine, 4)}), Do::kStore);
+  // A line that is written through: the store into the word that waits.
+  const Step fill{Do::kLoad, through};
+  is_store(place({fill, {Do::kStore, through, 7}, {Do::kStoreByte, through + 4, 7}, dma(false, through + 4, 4)}),
+           Do::kStoreByte);
+  is_store(place({fill, {Do::kStoreFour, through, 7}, dma(false, through + 12, 4)}), Do::kStoreFour, 12);
+  is_store(place({fill, {Do::kStoreHalf, through + 2, 7}, dma(true, through, 4)}), Do::kStoreHalf);
+  // No line: the core was waiting for the DMA.
+  for (const std::uint32_t address : {uncached, kLine, through}) {
+    const Hazard h = place({{Do::kStore, address, 7}, dma(false, address, 4)});
+    EXPECT_EQ(h.stored, 0u);
+    EXPECT_GE(h.pc, bench.handler(Do::kDma));
+    EXPECT_LT(h.pc, bench.handler(Do::kSwap));
+  }
+}
+
 TEST_F(HazardTest, WriteBackOverNewerBytes) {
   const Step fill{Do::kLoad, kLine}, store{Do::kStore, kLine, 7};
   EXPECT_EQ(counts({fill, store, dma(true, kLine + 12, 4), {Do::kCleanLine, kLine}}), (Counts{0, 0, 0, 1, 0}));

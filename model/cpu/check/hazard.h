@@ -24,12 +24,15 @@ struct Hazard {
   HazardKind kind = HazardKind::kStaleLoad;
   Master master = Master::kCount;  ///< the other one
   std::uint32_t pc = 0;            ///< of the load or the instruction, or of the first store into the dirty half;
-                                   ///< of the instruction under way for bytes in a buffer
+                                   ///< for bytes in a buffer see `stored`
   std::uint32_t address = 0;       ///< physical address of the first byte concerned
   Picoseconds before = 0;          ///< the earlier act: a line's fill, a store, or the master's write
   Picoseconds after = 0;           ///< the later one, which is the hazard
   /// kStaleLoad, kStaleFetch: when the line was filled (`before` is the master's write). Otherwise 0.
   Picoseconds filled = 0;
+  /// Bytes in a buffer (kBufferedRead, and kOverwrite with before == after): when the store at `pc` made them. 0: no
+  /// line of the D-cache held them, and `pc` is that of the instruction under way at the master's access.
+  Picoseconds stored = 0;
 };
 
 }  // namespace fovea::cpu

@@ -92,8 +92,32 @@ void HazardChecker::read_by(const MemRequest& r, std::uint32_t line_pa, std::uin
       report({HazardKind::kDirtyRead, r.master, s.pc, first_of(line_pa, hit), s.at, at});
     }
   });
-  if (bus_.unsent(first_of(line_pa, bytes), static_cast<unsigned>(std::popcount(bytes))))
-    report({HazardKind::kBufferedRead, r.master, core_.current_pc(), first_of(line_pa, bytes), at, at});
+  in_buffer(HazardKind::kBufferedRead, r, line_pa, bytes, at);
+}
+
+/// A hazard if the core's buffers hold some of these bytes.
+void HazardChecker::in_buffer(HazardKind kind, const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes,
+                              Picoseconds at) {
+  if (!bus_.unsent(first_of(line_pa, bytes), static_cast<unsigned>(std::popcount(bytes)))) return;
+  const Store s = waiting_store(line_pa, bytes);
+  report({kind, r.master, s.at ? s.pc : core_.current_pc(), first_of(line_pa, bytes), at, at, 0, s.at});
+}
+
+/// The store of the first of these bytes that waits in a buffer; none if no line held it. Stores that miss the D-cache
+/// are not announced, as that would cost each of them time.
+HazardChecker::Store HazardChecker::waiting_store(std::uint32_t line_pa, std::uint32_t bytes) {
+  const WriteBuffer& w = bus_.writes();
+  Store found;
+  for (unsigned word = 0; word < kLineBytes / 4 && !found.at; ++word) {
+    const std::uint32_t hit = bytes & bits(4 * word, 4);
+    if (!hit || !bus_.unsent(first_of(line_pa, hit), static_cast<unsigned>(std::popcount(hit)))) continue;
+    const std::uint32_t address = line_pa + 4 * word;
+    if (victim_.pa == line_pa && address - w.victim_address < w.victim_bytes)
+      found = victim_.stores[4 * word / kHalfBytes];
+    else
+      each_holder(line_pa, [&](unsigned, const Held& held) { found = held.through[word]; });
+  }
+  return found;
 }
 
 void HazardChecker::written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes,
@@ -105,14 +129,13 @@ void HazardChecker::written_by(const MemRequest& r, std::uint32_t line_pa, std::
     if (!held.foreign.bytes) core_.watch_line(n, true);
     note(held.foreign);
   });
-  if (bus_.unsent(first_of(line_pa, bytes), static_cast<unsigned>(std::popcount(bytes))))
-    report({HazardKind::kOverwrite, r.master, core_.current_pc(), first_of(line_pa, bytes), at, at});
+  in_buffer(HazardKind::kOverwrite, r, line_pa, bytes, at);
 }
 
 void HazardChecker::filled(unsigned line) {
   Held& held = held_[line];
   if (held.pa != kNone) --holders_[bucket(held.pa)];
-  held = {lines_.line(line).pa, requested_, core_.boundary_time(), {}, {}};
+  held = {lines_.line(line).pa, requested_, core_.boundary_time(), {}, {}, {}};
   ++holders_[bucket(held.pa)];
   if (filling_ == held.pa) held.foreign = meanwhile_;
   filling_ = kNone;
@@ -132,13 +155,16 @@ void HazardChecker::loaded(unsigned line, unsigned offset, unsigned bytes) {
 void HazardChecker::stored(unsigned line, unsigned offset, unsigned bytes) {
   Held& held = held_[line];
   const unsigned half = offset / kHalfBytes;
-  if (!(lines_.line(line).dirty >> half & 1u))
-    held.stores[half] = {core_.current_pc(), core_.boundary_time()};
+  const Store now{core_.current_pc(), core_.boundary_time()};
+  if (!(lines_.line(line).dirty >> half & 1u)) held.stores[half] = now;
+  if (!lines_.line(line).write_back)
+    for (unsigned word = offset / 4; word <= (offset + bytes - 1) / 4; ++word) held.through[word] = now;
   forget_foreign(line, bits(offset, bytes));
 }
 
 void HazardChecker::written_back(unsigned line, unsigned halves) {
   Held& held = held_[line];
+  victim_ = held;
   for (unsigned half = 0; half < 2; ++half) {
     const std::uint32_t whole = bits(half * kHalfBytes, kHalfBytes), hit = held.foreign.bytes & whole;
     if (!hit || !(halves >> half & 1u)) continue;

@@ -68,6 +68,7 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
     Picoseconds there = 0;   // when the core went on with it
     Foreign foreign;
     std::array<Store, 2> stores{};  // the first one into each half since it was clean
+    std::array<Store, kLineBytes / 4> through{};  // the last one into each word, if memory is written too
   };
 
   /// Bits of the bytes [offset, offset + n) of a line.
@@ -89,6 +90,8 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
     Picoseconds at;
   };
   void passed(Master by, const Waiting& w, std::uint32_t line_pa);
+  void in_buffer(HazardKind kind, const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
+  Store waiting_store(std::uint32_t line_pa, std::uint32_t bytes);
   void read_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void written_by(const MemRequest& r, std::uint32_t line_pa, std::uint32_t bytes, Picoseconds at);
   void forget_foreign(unsigned line, std::uint32_t bytes);
@@ -100,6 +103,7 @@ class HazardChecker final : public ArrivalObserver, public LineWatch {
   const Cache& lines_;
   const DataBus& bus_;
   std::vector<Held> held_;                             // by line
+  Held victim_;                                        // the line that was moved to the victim buffer last
   std::array<std::uint16_t, kBuckets> holders_{};      // lines in held_, by bucket
   std::uint32_t filling_ = kNone;                      // line that was requested and has not come yet
   Picoseconds requested_ = 0;
