@@ -444,7 +444,7 @@ TEST(EdmaBlockTest, ARequestThatWaitsForAControllerWithoutClockIsSaidToWait) {
     };
     r.at_end_of(kPsPerUs / 2, [&r] { r.tc_on.write(false); });
     r.at_end_of(2 * kPsPerUs, look);
-    r.at_end_of(3 * kPsPerUs, [&r] { r.cc->regs.write(0x1010, 4, 1u << 9); });  // one more look
+    r.at_end_of(3 * kPsPerUs, [&r] { r.cc->regs.write(0x244, 4, 0); });  // DMAQNUM1: one more look
     r.at_end_of(4 * kPsPerUs, look);
     r.at_end_of(5 * kPsPerUs, [&r] { r.tc_on.write(true); });
     r.at_end_of(7 * kPsPerUs, [&r, look] {

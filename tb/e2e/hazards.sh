@@ -41,6 +41,17 @@ for kernel in engine engine_grid; do
   grep -q "kernel: $kernel," "$out/$kernel/uart.log" || { echo "$kernel: $(cat "$out/$kernel/uart.log")"; exit 1; }
 done
 
+# The firmware for several cameras, with kernels for the core and for the EDMA, and the one for views of them.
+several=(--hazards --strict -s firmware.flow=double -s tvp5146.relock_fields=0)
+for kernel in plain staged; do
+  run "cameras_$kernel" 0 fovea_cameras.elf "${several[@]}" -s cameras.count=2 -s firmware.kernel=$kernel
+  is "cameras_$kernel" hazard.places -eq 0
+  grep -q '2 cameras in turn' "$out/cameras_$kernel/uart.log" || { cat "$out/cameras_$kernel/uart.log"; exit 1; }
+done
+run views 0 fovea_views.elf "${several[@]}" -s cameras.count=4 -s firmware.view=four_way
+is views hazard.places -eq 0
+grep -q '4 cameras in one picture' "$out/views/uart.log" || { cat "$out/views/uart.log"; exit 1; }
+
 run stale 0 omit_d_invalidate.elf --hazards
 is stale hazard.stale_loads -gt 0
 says stale 'warning \(firmware\): coherency hazard: the load at 0x[0-9a-f]+ \([a-z_0-9.]+(\+0x[0-9a-f]+)?\) read 0x8[0-9a-f]{7} at [0-9.]+ ms from a D-cache line that was filled at [0-9.]+ ms; vpfe wrote that memory at [0-9.]+ ms'
