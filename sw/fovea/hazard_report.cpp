@@ -41,8 +41,9 @@ std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
           "dirty D-cache line",
           master, h.address, after, place, before);
     case HazardKind::kBufferedRead:
-      return fmt::format("coherency hazard: {} read 0x{:08x} at {}, but newer bytes{} waited in the core's write buffer{}",
-                         master, h.address, after, store_text(h, place), core_text(h, place));
+      return fmt::format(
+          "coherency hazard: {} read 0x{:08x} at {}, but newer bytes{} waited in the core's write buffer{}", master,
+          h.address, after, store_text(h, place), core_text(h, place));
     case HazardKind::kOverwrite:
       if (h.before == h.after)
         return fmt::format(

@@ -438,9 +438,8 @@ std::uint64_t warned(const std::string& words) {
 TEST(EdmaBlockTest, ARequestThatWaitsForAControllerWithoutClockIsSaidToWait) {
   const std::string seen = one_transfer([](Rig& r, std::string& out) {
     const auto look = [&r, &out] {
-      out += text("%u:%u ", static_cast<unsigned>(warned("EDMA: a request waits for transfer controller 3, which has no "
-                                                         "clock")),
-                  read(r.cc->regs, 0x2068) >> kChannel & 1);  // IPR
+      const std::uint64_t times = warned("EDMA: a request waits for transfer controller 3, which has no clock");
+      out += text("%u:%u ", static_cast<unsigned>(times), read(r.cc->regs, 0x2068) >> kChannel & 1);  // IPR
     };
     r.at_end_of(kPsPerUs / 2, [&r] { r.tc_on.write(false); });
     r.at_end_of(2 * kPsPerUs, look);

@@ -24,8 +24,8 @@ TEST(HazardTextTest, NamesPlaceAndTimes) {
             "coherency hazard: edma_tc1_read read 0x81234560 at 2.000000 ms, but the bytes that were stored at "
             "0x80001234 at 1.000500 ms were still in a dirty D-cache line");
   EXPECT_EQ(text(HazardKind::kOverwrite, kOne),
-            "coherency hazard: a D-cache line, dirty since the store at 0x80001234, was written back at 2.000000 ms over "
-            "0x81234560, which edma_tc1_read wrote at 1.000500 ms");
+            "coherency hazard: a D-cache line, dirty since the store at 0x80001234, was written back at 2.000000 ms "
+            "over 0x81234560, which edma_tc1_read wrote at 1.000500 ms");
 }
 
 TEST(HazardTextTest, BytesInTheWriteBufferHaveTheirStore) {
@@ -39,11 +39,11 @@ TEST(HazardTextTest, BytesInTheWriteBufferHaveTheirStore) {
 
 TEST(HazardTextTest, OrThePlaceOfTheCore) {
   EXPECT_EQ(text(HazardKind::kBufferedRead, kTwo),
-            "coherency hazard: edma_tc1_read read 0x81234560 at 2.000000 ms, but newer bytes waited in the core's write "
-            "buffer; the core was at 0x80001234");
+            "coherency hazard: edma_tc1_read read 0x81234560 at 2.000000 ms, but newer bytes waited in the core's "
+            "write buffer; the core was at 0x80001234");
   EXPECT_EQ(text(HazardKind::kOverwrite, kTwo),
-            "coherency hazard: edma_tc1_read wrote 0x81234560 at 2.000000 ms, and older bytes that waited in the core's "
-            "write buffer go over them; the core was at 0x80001234");
+            "coherency hazard: edma_tc1_read wrote 0x81234560 at 2.000000 ms, and older bytes that waited in the "
+            "core's write buffer go over them; the core was at 0x80001234");
 }
 
 }  // namespace

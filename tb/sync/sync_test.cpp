@@ -36,8 +36,8 @@ TEST(TimeRuleTest, RandomProgramsAreIdenticalInStrictAndDefaultMode) {
     const Outcome fast = programs(1 + i, kPerProcess, false, 0);
     ASSERT_GT(strict.record.size(), 1000u);
     ASSERT_EQ(strict.record.find("did not finish"), std::string::npos);
-    for (const char* what : {" stream r ", " stream w ", " dma r ", " irq", " tc2 ends 8", " tc3 ends 8", " tc2 ends 0001", " tc3 ends 0001",
-                             " to 0001"})
+    for (const char* what : {" stream r ", " stream w ", " dma r ", " irq", " tc2 ends 8", " tc3 ends 8",
+                             " tc2 ends 0001", " tc3 ends 0001", " to 0001"})
       ASSERT_NE(strict.record.find(what), std::string::npos) << what;
     if (const char* folder = std::getenv("FOVEA_SYNC_DUMP"); folder && strict.record != fast.record) {
       std::ofstream(std::string(folder) + "/strict.txt") << strict.record;
