@@ -36,6 +36,7 @@ class ViewsRig {
   board::Board& build();
   /// Runs until the window is closed or the core fails; builds the board if that was not done.
   void run(Picoseconds limit);
+  void advance(Picoseconds duration) { slicer_.run(duration); }
 
   board::Board& board() { return *board_; }
   std::vector<Composed>& shown() { return shown_; }

@@ -1,6 +1,7 @@
 #include "pipeline_turns.h"
 
 #include "../drivers/cp15.h"
+#include "../drivers/display.h"
 #include "../drivers/isif.h"
 #include "../drivers/timer.h"
 #include "../drivers/tvp5146.h"
