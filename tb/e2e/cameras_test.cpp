@@ -221,8 +221,10 @@ TEST_P(StickingTest, InTheMidstOfAFrameIsSeenByTheLockAlone) {
     EXPECT_EQ(seen->odd, 0u);
   }
   EXPECT_EQ(mixed, relock == 0);
+  // The frames that come again are those of camera 0.
   EXPECT_EQ(rig.said(), relock == 0 ? std::vector<std::string>{}
-                                    : std::vector<std::string>{"camera 2: lock lost, a frame is left out"});
+                                    : std::vector<std::string>{"camera 2: lock lost, a frame is left out",
+                                                               "camera 2: frames again"});
 }
 INSTANTIATE_TEST_SUITE_P(Relock, StickingTest, testing::Values(0u, 2u),
                          [](const auto& i) { return "Of" + std::to_string(i.param); });
@@ -408,15 +410,21 @@ TEST_P(UnpluggedTest, TheOtherCameraGoesOnAndTheLostOneComesBack) {
     behind |= from >= 705;
   }
   EXPECT_TRUE(before && behind);
-  std::map<unsigned, unsigned> shown;
-  for (const Shown::Stamp& s : sequence(rig)) ++shown[s.camera];
-  // What the decoder sends without a signal is no camera's frame, so none is dropped.
+  std::map<unsigned, unsigned> shown, first;
+  for (const Shown::Stamp& s : sequence(rig)) {
+    ++shown[s.camera];
+    first.try_emplace(s.camera, s.number);
+  }
+  // What the decoder sends without a signal is no camera's frame. So one is dropped if the cable is pulled while it is
+  // captured: frame 15, from 600 ms on and with its rows from 608 ms on, if that is in the turn of camera 1.
+  const bool in_turn = (15 - first.at(1)) % (2 + relock) == 0;
   for (unsigned n = 0; n < 2; ++n) {
     const board::CameraFrameStats s = rig.board().camera_stats()[n];
+    const unsigned dropped = n == 1 && in_turn ? 1 : 0;
     EXPECT_EQ(s.displayed, shown[n]) << n;
-    EXPECT_EQ(s.dropped, 0u) << n;
+    EXPECT_EQ(s.dropped, dropped) << n;
     EXPECT_EQ(s.superseded, 0u) << n;
-    EXPECT_EQ(s.captured, shown[n]) << n;
+    EXPECT_EQ(s.captured, shown[n] + dropped) << n;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Relock, UnpluggedTest, testing::Values(0u, 2u),

@@ -317,7 +317,9 @@ TEST_P(SecondFieldTest, AFrameWhoseLastFieldLacksLinesIsNotShownAndNobodyElseIsT
     displayed += static_cast<unsigned>(stats[n].displayed);
   }
   EXPECT_EQ(displayed, shown.size());
-  if (p.cameras == 1 && p.standard == std::string("pal")) expect_exact_counts(rig);
+  // With twenty lines less in each field the frames come so early that the time of a correction decides in which
+  // display frame they are.
+  if (p.cameras == 1 && p.lines <= 4 && p.standard == std::string("pal")) expect_exact_counts(rig);
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, SecondFieldTest,
                          testing::Values(SecondField{"Alone", 1, 465, 4}, SecondField{"AloneOneLine", 1, 465, 1},
