@@ -448,7 +448,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NewTableTest,
 TEST(SignalsTest, ARegionOfInterestIsAnEnlargedAndShiftedView) {
   CamerasRig rig;
   small(rig, 2);
-  rig.set("tvp5146.relock_fields", "0").set("run.frames", "24").set("camera.1.lens.roi", "[16, 30, 128, 140]");
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "24").set("camera.1.lens.roi", "[8, 12, 144, 150]");
   const auto console = type(rig, "wait console\nsend roi 0 10 40 128 100\\r\nwait new table\n"
                                  "send roi 0 33 40 128 100\\r\nwait refused\nsend status\\r\nwait roi 10\n"
                                  "send mapping 0 none\\r\nwait refused\nsend zoom 1 100\\r\nwait new table\n");
