@@ -98,9 +98,10 @@ struct TimingDefect : Defect {
 // clang-format off
 inline constexpr TimingDefect kTimingDefects[] = {
     {{InsnClass::kData, "all forms but those shifted by a register", "data_processing.cpp",
-      "cycle + (kForm", "cycle + (PLANTED && writes(kOp) && kForm < Form::kLslReg ? 1u : 0u) + (kForm"}},
+      "cycle + (shifts_by_register(kForm)",
+      "cycle + (PLANTED && writes(kOp) && !shifts_by_register(kForm) ? 1u : 0u) + (shifts_by_register(kForm)"}},
     {{InsnClass::kDataShiftReg, "three clocks", "data_processing.cpp",
-      ">= Form::kLslReg ? 2 :", ">= Form::kLslReg ? (PLANTED ? 3 : 2) :"}},
+      "? 2 : 1));", "? (PLANTED ? 3 : 2) : 1));"}},
     {{InsnClass::kCompare, "two clocks", "data_processing.cpp",
       "if constexpr (writes(kOp)) c.regs_.r[i->rd] = value;",
       "if constexpr (writes(kOp)) c.regs_.r[i->rd] = value; else if (PLANTED) ++cycle;"}},
@@ -167,7 +168,7 @@ inline constexpr TimingDefect kTimingDefects[] = {
       "bool carry = c.regs_.c, overflow = false;\n  if (PLANTED && (i->flags & kThumbInsn)) ++cycle;"}},
     {{InsnClass::kThumbShift, "by a register", "data_processing.cpp",
       "// Immediates and plain registers leave the carry of a logical operation alone.",
-      "if (PLANTED && kForm >= Form::kLslReg && (i->flags & kThumbInsn)) ++cycle;"}},
+      "if (PLANTED && shifts_by_register(kForm) && (i->flags & kThumbInsn)) ++cycle;"}},
     {{InsnClass::kThumbMultiply, "five clocks", "branch_multiply.cpp",
       "return next(c, i + 1, cycle + 4);", "return next(c, i + 1, cycle + (PLANTED ? 5 : 4));"}},
     {{InsnClass::kThumbHigh, "two clocks", "data_processing.cpp",
