@@ -152,7 +152,7 @@ void look_down(ViewsRig& rig) {
   }
 }
 
-TEST(ViewStamps, EachMosaicIsComposedOfTheSentFramesThatItsMarksName) {
+TEST(ViewStamps, EachMosaicIsComposedOfTheSentFramesThatItsMarksOrBytesName) {
   ViewsRig rig;
   look_down(rig);
   rig.set("firmware.kernel", "fastest").set("run.frames", "9");
@@ -235,7 +235,7 @@ struct ShippedView {
 class ShippedViewTest : public testing::TestWithParam<ShippedView> {};
 TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
   ViewsRig rig;
-  rig.load(GetParam().file).set("camera.stamp", "true");  // which all these views show, in some rows of either field
+  rig.load(GetParam().file).set("camera.stamp", "true");
   const bool by_engine = GetParam().kernel == std::string("engine");
   if (by_engine) rig.set("engine", "tlm").set("firmware.kernel", "engine");
   rig.run(kViewLimit);
@@ -246,6 +246,13 @@ TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
   std::printf("table: %zu entries, %zu within 0.02 px of a boundary and different\n", check.entries,
               check.near_boundary);
   const auto lut = rig.table();
+  if (!rig.views().birds_eye) {
+    // The code of no camera can be read in the quarters of four-way.yaml: they are half as high, and of other lenses.
+    for (unsigned n = 0; n < 4; ++n) EXPECT_FALSE(rig.stamp(rig.shown().front(), n)) << "now it can: read it";
+    EXPECT_EQ(rig.wrong_picture(lut), "");
+    return;
+  }
+  // The marks of all four are in the bird's-eye views, in rows of one field or the other.
   ASSERT_EQ(rig.wrong_by_stamps(lut), "");
   const auto& shown = rig.shown();
   for (unsigned n = 0; n < 4; ++n) EXPECT_TRUE(shown.back().number[n]) << n;
