@@ -1,6 +1,7 @@
 // A board with several cameras: run it, and read from the displayed pixels which camera's frame they show.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,6 +42,8 @@ class CamerasRig {
   void advance(Picoseconds duration) { slicer_.run(duration); }
 
   board::Board& board() { return *board_; }
+  /// Displayed frames for which it returns false are not in shown(). Empty: all are.
+  std::function<bool(const board::FrameRecord&)> keep;
   const std::vector<Shown>& shown() const { return shown_; }
   /// What is wrong with the first displayed frame that is not, byte for byte, the host's remap of the
   /// frame that its pixels name by that camera's table; empty: nothing.

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -39,6 +40,8 @@ class ViewsRig {
   void advance(Picoseconds duration) { slicer_.run(duration); }
 
   board::Board& board() { return *board_; }
+  /// Displayed frames for which it returns false are not in shown(). Empty: all are.
+  std::function<bool(const board::FrameRecord&)> keep;
   std::vector<Composed>& shown() { return shown_; }
   /// The program's runs, and for each camera the number of the first one that it believes to be that camera's.
   struct Runs {

@@ -66,14 +66,14 @@ const std::string kReset = "reset by the watchdog: the program had stalled";
 
 /// Keeps from the rig, and counts, what the display shows around the reset: the frame that it cuts, and black ones from
 /// the display's start until the first picture.
-void leave_out_the_dark(board::Board& board, unsigned& dark) {
-  board.on_frame = [&board, &dark, take = board.on_frame](const video::DisplayFrame& f, const board::FrameRecord& r) {
+template <class AnyRig>
+void leave_out_the_dark(AnyRig& rig, unsigned& dark) {
+  rig.keep = [&board = rig.board(), &dark](const board::FrameRecord& r) {
     const bool is_cut = !board.resets().empty() && r.display_start <= board.resets().front().at &&
                         board.resets().front().at < r.display_end;
-    if (is_cut || !r.captured)
-      ++dark;
-    else
-      take(f, r);
+    const bool kept = !is_cut && r.captured.has_value();
+    if (!kept) ++dark;
+    return kept;
   };
 }
 
@@ -121,7 +121,7 @@ TEST_P(HangTest, IsSaidEndsInAResetAndPicturesComeAgain) {
   ProgramHang program(rig.build(), elf);
   Listener heard(rig.board());
   unsigned dark = 0;
-  leave_out_the_dark(rig.board(), dark);
+  leave_out_the_dark(rig, dark);
   const Picoseconds since = hang(rig, program, GetParam().function, GetParam().masked);
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size() + dark, 40u) << rig.board().uart_text();
@@ -171,7 +171,7 @@ TEST(WatchdogViewsTest, AComposedViewThatHangsIsResetAndShownAgain) {
   ProgramHang program(rig.build(), elf);
   Listener heard(rig.board());
   unsigned dark = 0;
-  leave_out_the_dark(rig.board(), dark);
+  leave_out_the_dark(rig, dark);
   const Picoseconds since = hang(rig, program, "remap_ldm", false);
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size() + dark, 24u) << rig.board().uart_text();
