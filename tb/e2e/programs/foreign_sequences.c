@@ -38,7 +38,7 @@ static void write_byte(uint32_t address, uint8_t value) { *(volatile uint8_t *)a
 /* --- drivers/i2c/busses/i2c-davinci.c: i2c_davinci_xfer_msg and its handler ------------------ */
 
 #define DECODER 0x5Du
-#define BRIGHTNESS 0x09u
+#define OUTPUT_FORMATTER5 0x37u
 #define IRQ_I2C 39u
 #define ICIVR 0x01C21028u
 enum { VECTOR_NACK = 2, VECTOR_ARDY = 3, VECTOR_XRDY = 5, VECTOR_SCD = 6 };
@@ -111,11 +111,11 @@ static void i2c_write_of_two_bytes(void) {
   mmio_write32(I2C_ICIMR, ICSTR_AL | ICSTR_NACK | ICSTR_ARDY | ICSTR_SCD);
   mmio_write32(AINTC_EINT1, 1u << (IRQ_I2C - 32u));
   __asm__ volatile("msr cpsr_c, #0x53" : : : "memory"); /* interrupts on */
-  static const uint8_t bytes[2] = {BRIGHTNESS, 0xA5};
+  static const uint8_t bytes[2] = {OUTPUT_FORMATTER5, 0xA5};
   write_as_linux(bytes, 2);
   __asm__ volatile("msr cpsr_c, #0xD3" : : : "memory");
   mmio_write32(AINTC_EINT1, 0);
-  const uint32_t got = read_decoder(BRIGHTNESS);
+  const uint32_t got = read_decoder(OUTPUT_FORMATTER5);
   verdict("i2c write of two bytes", transfer_ended == VECTOR_SCD && got == 0xA5u,
           transfer_ended << 16 | got);
 }
