@@ -33,9 +33,10 @@ has six.out 'With 5: camera.0.frame.rate is 5, allowed: at least 6'
 runs six 5
 has six.err 'take that of another one: 4 that of 0, 5 that of 1, 6 that of 2, 7 that of 3'
 five=$(grep -l '"cameras.count": {"value": "5"' four-cameras/points/*/run/config.json)
-has "${five:-none}" '"camera.4.file": {"value": '
-has "${five:-none}" '"origin": "as camera.0.file"'
-if grep -q '"camera.5.file"' "${five:-none}"; then fail "a camera that is not there has a picture"; fi
+[ -n "$five" ] || { echo "no run of five cameras"; exit 1; }
+has "$five" '"camera.4.file": {"value": '
+has "$five" '"origin": "as camera.0.file"'
+if grep -q '"camera.5.file"' "$five"; then fail "a camera that is not there has a picture"; fi
 # The same again, with one point missing, and when every number or none is enough.
 cp six.out first
 limits six four-cameras 0 "${find[@]}" --require 'frame.rate>=6'
