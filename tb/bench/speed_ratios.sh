@@ -62,9 +62,9 @@ replays() {
   done
 }
 board() {
-  valgrind --tool=callgrind --separate-threads=yes --dump-before='fovea::board::Board::frame_shown*' \
+  valgrind --tool=callgrind --separate-threads=yes --dump-before='fovea::board::FrameLog::shown*' \
     --callgrind-out-file="$work/board" "$fovea" run "${EXPERIMENT:-$here/../../scripts/experiments/paper-pal.yaml}" \
-    -s run.frames=1 -s firmware.lut=fixed_point --no-frames -o "$work/out" >"$work/log" 2>&1 ||
+    -s run.frames=2 -s firmware.lut=fixed_point --no-frames -o "$work/out" >"$work/log" 2>&1 ||
     { cat "$work/log" >&2; exit 1; }
   last=$(ls "$work"/board.*-01 | sort -V | tail -n 1)
   awk '/^totals:/ { printf "board.paper-pal %.0f\n", $2 / (720 * 576 / 2) }' "$last"
