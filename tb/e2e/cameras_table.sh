@@ -141,7 +141,6 @@ rows turns \
   'turns,8,720x576,plain,297/243,0,,3.125,yes,,0.25,' 'turns,8,720x576,plain,297/243,2,,1.562,yes,,0.25,' \
   'turns,8,720x576,slow,297/243,0,,3.125,no,1 dropped frame,-0.25,' \
   'turns,8,720x576,slow,297/243,2,,1.562,no,1 dropped frame,-0.25,'
-has calls 'camera.7.file='
 # Each camera has three turns, with the frames in which the decoder searches.
 for n in 2-297-243-0:6 2-297-243-2:12 8-297-243-0:24 8-297-243-2:48; do
   grep -q -- "turns-${n%:*} .*run.frames=${n#*:} .*relock_fields=${n:10:1} " calls || fail "turns: $n: $(cat calls)"
@@ -154,7 +153,6 @@ cameras turns_presets 0 --ways turns --turns 2 --kernels plain --presets 297/243
 rows turns_presets 'turns,2,720x576,plain,297/243,2,,6.250,yes,,0.25,' \
   'turns,2,720x576,plain,297/243,0,,12.500,yes,,0.25,' \
   'turns,2,720x576,plain,216/172,2,,6.250,yes,,0.25,'
-has calls '--require frame.repeated<=1000000'
 
 # Pages.
 printf 'before\n<!-- cameras: begin -->\nold\n<!-- cameras: end -->\nafter\n' >page.md
