@@ -87,6 +87,11 @@ rows none 'live,1,720x576,plain,297/243,,25.000,24.9,no,24.9 remaps a second of 
 RATE=25 cameras exact 0 "${live[@]}"
 has exact.csv 'live,1,720x576,plain,297/243,,25.000,25.0,yes,,0.00,'
 has exact.csv 'live,2,'
+# A part in 10^12 less is the window's rounding; one in 10^6 is too little.
+RATE=24.99999999997 cameras rounded 0 "${live[@]}"
+has rounded.csv 'live,1,720x576,plain,297/243,,25.000,25.0,yes,,-0.00,'
+RATE=24.99997 cameras just_less 0 "${live[@]}"
+has just_less.csv 'live,1,720x576,plain,297/243,,25.000,25.0,no,'
 # NTSC: 59.94 remaps and 20.716 MB/s.
 RATE=82 cameras ntsc 0 "${live[@]}" --formats ntsc
 has ntsc.csv 'live,2,720x480,plain,297/243,,29.970,30.'
