@@ -1,10 +1,14 @@
 // A BusPort for flat memory with fixed latencies and a list of events at given times.
 #pragma once
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <map>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,6 +26,28 @@ struct BusRecord {
   unsigned bytes;
   bool write, buffered, locked;
   Picoseconds at, last;
+};
+
+/// Zeros. A page comes into being when it is touched, so that a machine of 16 MiB costs no more than what it uses.
+class ZeroedMemory {
+ public:
+  explicit ZeroedMemory(std::size_t bytes) : memory_(mapped(bytes), Unmap{bytes}), bytes_(bytes) {}
+  std::uint8_t* data() const { return memory_.get(); }
+  std::size_t size() const { return bytes_; }
+
+ private:
+  struct Unmap {
+    std::size_t bytes;
+    void operator()(std::uint8_t* memory) const { ::munmap(memory, bytes); }
+  };
+  static std::uint8_t* mapped(std::size_t bytes) {
+    void* const memory =
+        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    return static_cast<std::uint8_t*>(memory);
+  }
+  std::unique_ptr<std::uint8_t, Unmap> memory_;
+  std::size_t bytes_;
 };
 
 /// Reads deliver their first word `read_latency` after submission and each further word one `beat`
@@ -156,7 +182,7 @@ class FlatPort : public BusPort {
   }
 
   std::uint32_t base_;
-  std::vector<std::uint8_t> memory_;
+  ZeroedMemory memory_;
   std::multimap<Picoseconds, std::function<void()>> events_;
   Background* background_ = nullptr;
   BusAccess* under_way_[2] = {};
