@@ -36,7 +36,8 @@ void CameraSignal::clock_changed(Frequency nominal, Picoseconds now) {
   clock_.restart(with_offset(nominal, wiring_.clock_offset), now);
   if (!clock_.running() || started_) return;
   started_ = true;
-  origin_ = static_cast<std::int64_t>(clock_.edge_at_or_after(now + wiring_.phase));
+  first_edge_ = clock_.edge_at_or_after(now + wiring_.phase);
+  origin_ = static_cast<std::int64_t>(first_edge_);
 }
 
 void CameraSignal::set_clock_offset(double ppm, Picoseconds now) {
@@ -49,6 +50,10 @@ void CameraSignal::set_standard(bool is_625, const Placement& placement, std::ui
   first_field_ = stopped_field_ = (field_at(now) + 2) & ~std::uint64_t{1};
   standard_ = &standard_of(is_625);
   wiring_.placement = placement;
+  if (wiring_.genlocked && is_625 == wiring_.is_625 && started_ && edge > first_edge_) {
+    const std::uint64_t frame = standard_->frame_bytes();
+    edge = first_edge_ + (edge - first_edge_ + frame - 1) / frame * frame;
+  }
   origin_ = static_cast<std::int64_t>(edge);
   left_out_ = 0;
 }

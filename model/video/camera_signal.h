@@ -47,7 +47,8 @@ class CameraSignal {
   void clock_changed(Frequency nominal, Picoseconds now);
   /// From the next edge on the camera's clock is so many parts per million off the nominal one.
   void set_clock_offset(double ppm, Picoseconds now);
-  /// The camera sends another standard: line 1 of its next even field begins at clock edge `edge`. A
+  /// The camera sends another standard: line 1 of its next even field begins at clock edge `edge`, or, if a genlocked
+  /// camera returns to the standard that it had at first, where the next frame of those that it follows begins. A
   /// picture with more rows than the standard has shows those in the middle.
   void set_standard(bool is_625, const Placement& placement, std::uint64_t edge, Picoseconds now);
   /// All lines that are still to come begin so many samples earlier: some were left out.
@@ -102,6 +103,7 @@ class CameraSignal {
   std::int64_t origin_ = 0;          // clock edge at which line 0 begins; before edge 0 after lines
                                      // were left out
   std::int64_t left_out_ = 0;        // samples, since it began with the others
+  std::uint64_t first_edge_ = 0;     // at which its first line began
   std::uint64_t first_field_ = 0;    // of line 0; even
   std::uint64_t stopped_field_ = 0;  // the field at the time the clock stopped
   const Picture* picture_ = nullptr;

@@ -133,6 +133,23 @@ TEST(SignalsTest, OnlyTheCameraWithTheFaultIsSaidAndTheOtherGivesAllItsFrames) {
   EXPECT_EQ(stats[1].superseded, 0u);
 }
 
+// Of two genlocked cameras, one has another standard for a while, from and to the midst of a frame. Its frames would
+// be out of step with the other's for good if it did not wait for the syncs that both follow.
+class OtherStandardTest : public testing::TestWithParam<unsigned> {};
+TEST_P(OtherStandardTest, AGenlockedCameraIsInStepWithTheOtherAgain) {
+  CamerasRig rig;
+  small(rig, 2);
+  rig.set("tvp5146.relock_fields", "0").set("run.frames", "45").set("fault.kind", "wrong_standard");
+  rig.set("fault.camera", "1").set("fault.start", std::to_string(GetParam()) + "ms");
+  rig.set("fault.end", std::to_string(GetParam() + 600) + "ms");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 45u) << rig.board().uart_text();
+  EXPECT_EQ(rig.wrong_picture(), "");
+  EXPECT_EQ(rig.said(), (Lines{"camera 1: wrong standard", "camera 1: frames again"}));
+  EXPECT_EQ(rig.board().camera_stats()[0].dropped, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(StartMs, OtherStandardTest, testing::Values(407u, 429u), testing::PrintToStringParamName());
+
 // The whole way back: a second of regular frames, and a second in which the clock is measured.
 const Fault kLongFaults[] = {
     {"MissingLinesAndBack", {{"fault.kind", "missing_lines"}}, kIrregular, kTwoFrames, 1000 + 2 * kTwoFrames, 45},
