@@ -539,7 +539,8 @@ TEST(CameraSignalTest, AGenlockedCameraReturnsToItsStandardWithAFrameOfTheOthers
       camera.clock_changed(Frequency(27'000'000), 0);
       const Clock& clock = camera.clock();
       EXPECT_EQ(camera.line_edge(0), kFirst);
-      camera.set_standard(!k625Here, placement_of(Tvp5146Params{}, !k625Here), kFirst + 5 * kFrame / 2, clock.edge(kFirst + 2 * kFrame));
+      camera.set_standard(!k625Here, placement_of(Tvp5146Params{}, !k625Here), kFirst + 5 * kFrame / 2,
+                          clock.edge(kFirst + 2 * kFrame));
       EXPECT_EQ(camera.line_edge(0), kFirst + 5 * kFrame / 2) << "another standard follows nobody";
       const std::uint64_t edge = kFirst + 9 * kFrame + late;
       camera.set_standard(k625Here, placement_of(Tvp5146Params{}, k625Here), edge, clock.edge(edge));
