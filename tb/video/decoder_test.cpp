@@ -534,16 +534,16 @@ TEST(CameraSignalTest, AGenlockedCameraReturnsToItsStandardWithAFrameOfTheOthers
     // Edges at which it returns, from the start of one of the others' frames on, and where it begins.
     for (const auto& [late, then] :
          {std::pair<std::uint64_t, std::uint64_t>{0, 0}, {1, kFrame}, {kFrame - 1, kFrame}, {kFrame, kFrame}}) {
-      CameraSignal camera({.source = &chart, .is_625 = k625Here, .placement = placement_of(Tvp5146Params{}, k625Here),
+      CameraSignal camera({.source = &chart, .is_625 = k625Here, .placement = placement_of(bench->tvp_params, k625Here),
                            .phase = 7 * kPsPerMs, .genlocked = genlocked});
       camera.clock_changed(Frequency(27'000'000), 0);
       const Clock& clock = camera.clock();
       EXPECT_EQ(camera.line_edge(0), kFirst);
-      camera.set_standard(!k625Here, placement_of(Tvp5146Params{}, !k625Here), kFirst + 5 * kFrame / 2,
+      camera.set_standard(!k625Here, placement_of(bench->tvp_params, !k625Here), kFirst + 5 * kFrame / 2,
                           clock.edge(kFirst + 2 * kFrame));
       EXPECT_EQ(camera.line_edge(0), kFirst + 5 * kFrame / 2) << "another standard follows nobody";
       const std::uint64_t edge = kFirst + 9 * kFrame + late;
-      camera.set_standard(k625Here, placement_of(Tvp5146Params{}, k625Here), edge, clock.edge(edge));
+      camera.set_standard(k625Here, placement_of(bench->tvp_params, k625Here), edge, clock.edge(edge));
       EXPECT_EQ(camera.line_edge(0), genlocked ? kFirst + 9 * kFrame + then : edge) << genlocked << ", " << late;
       EXPECT_EQ(camera.field_at(clock.edge(edge)) % 2, 0u);
     }
