@@ -3,10 +3,11 @@
 # something in the results must change. Where a key cannot act, a run must warn of it, and end with status 2
 # with --strict. A key that the table lacks is a failure, so is one that `fovea params` says "needs"
 # something and that has no line where it lacks that.
-# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM [full]
+# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM [full|quick]
 # full: every situation is a run to the first corrected frame; else EARLY and BOOTED below cut most of them short.
+# quick: of the keys that act, only those with EARLY, BOOTED or PROGRAM, whose runs need no picture.
 set -uo pipefail
-fovea=$1 source=$2 out=$3 program=$4 full=${5:-}
+fovea=$1 source=$2 out=$3 program=$4 mode=${5:-}
 rm -rf "$out"
 mkdir -p "$out"
 cd "$out" || exit 1
@@ -31,9 +32,9 @@ situation() {
     case $word in
       PROGRAM) keys+=(-s firmware.elf="$program" -s "run.until=[uart:finished, time:90ms]") ;;
       # The SDRAM works from 3.4 ms on, and the firmware is in it from 5 ms on: what acts by then needs no picture.
-      EARLY) [ -n "$full" ] || keys+=(-s run.until=time:6ms) ;;
+      EARLY) [ "$mode" = full ] || keys+=(-s run.until=time:6ms) ;;
       # By then, the firmware has set the priorities.
-      BOOTED) if [ -n "$full" ]; then keys+=(-s load.start=55ms); else keys+=(-s load.start=15ms -s run.until=time:20ms); fi ;;
+      BOOTED) if [ "$mode" = full ]; then keys+=(-s load.start=55ms); else keys+=(-s load.start=15ms -s run.until=time:20ms); fi ;;
       SPHERE) keys+=(-s camera.kind=sphere -s camera.file="$front" -s camera.lens=equisolid) ;;
       VIDEO) keys+=(-s camera.kind=video -s camera.file="$front") ;;
       RAM) # bursts in internal RAM
@@ -383,6 +384,7 @@ number=0
 while read -r what key value rest; do
   listed[$key]=1
   [ "$what" = tested ] && continue
+  [ "$mode $what" = 'quick acts' ] && [[ ! $rest =~ EARLY|BOOTED|PROGRAM ]] && continue
   rest=${rest/FRONT/$front}
   [ "$key $value" = 'camera.file chess' ] && value=${front%front.png}left.png
   [ "$key" = firmware.elf ] && value=$program rest=${rest/PROGRAM/}
