@@ -187,8 +187,8 @@ struct Value {
   std::uint32_t offset, value;
 };
 
-/// Those that do not read 0. From TI's register header and boot loader for the DM36x, its guides of sister chips, Linux 6.1
-/// and U-Boot, as listed in model/SOURCES.md; typed here once more.
+/// Those that do not read 0. From TI's register header and boot loader for the DM36x, its guides of sister
+/// chips, Linux 6.1 and U-Boot, as listed in model/SOURCES.md; typed here once more.
 std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> values_of_the_manuals() {
   std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> out;
   for (const Value& v : {
