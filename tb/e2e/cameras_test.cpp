@@ -480,14 +480,21 @@ TEST(CamerasTest, EachCapturedFrameIsDisplayedSupersededOrDropped) {
   EXPECT_GT(lost, 0u);
 }
 
-TEST(CamerasTest, NightlyTheShippedExperimentIsExact) {
+class ShippedFreeTest : public testing::TestWithParam<const char*> {};
+TEST_P(ShippedFreeTest, IsExact) {
   CamerasRig rig;
-  rig.load("four-cameras-free.yaml").set("run.frames", "250");
+  rig.load(GetParam() + std::string("-free.yaml")).set("run.frames", "250");
   rig.run(kLimit);
   ASSERT_EQ(rig.shown().size(), 250u) << rig.board().uart_text();
   EXPECT_EQ(rig.wrong_picture(), "");
   EXPECT_TRUE(rig.said().empty()) << rig.said().front();
 }
+INSTANTIATE_TEST_SUITE_P(Nightly, ShippedFreeTest, testing::Values("two-cameras", "four-cameras", "eight-luts"),
+                         [](const auto& i) {
+                           std::string name = i.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace fovea::e2e

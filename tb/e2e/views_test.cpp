@@ -232,6 +232,27 @@ TEST(ViewFailures, ACameraThatIsUnpluggedKeepsItsLastPicture) {
 struct ShippedView {
   const char *file, *kernel = "fastest";
 };
+/// Cameras with clocks of their own: a picture shows a newer frame of the next camera in turn, or what the one
+/// before it did while the decoder finds the syncs.
+void expect_parts_renewed_in_turn(ViewsRig& rig) {
+  const auto& shown = rig.shown();
+  std::optional<unsigned> last;
+  unsigned renewals = 0;
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    std::vector<unsigned> renewed;
+    for (unsigned n = 0; n < 4; ++n)
+      if (shown[i].number[n] != shown[i - 1].number[n]) renewed.push_back(n);
+    ASSERT_LE(renewed.size(), 1u) << i;
+    if (renewed.empty()) continue;
+    const unsigned n = renewed[0];
+    if (last) EXPECT_EQ(n, (*last + 1) % 4) << i;
+    if (shown[i - 1].number[n]) EXPECT_GT(*shown[i].number[n], *shown[i - 1].number[n]) << i;
+    last = n;
+    ++renewals;
+  }
+  EXPECT_GE(renewals, 8u) << "each camera twice";
+}
+
 class ShippedViewTest : public testing::TestWithParam<ShippedView> {};
 TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
   ViewsRig rig;
@@ -256,6 +277,7 @@ TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
   ASSERT_EQ(rig.wrong_by_stamps(lut), "");
   const auto& shown = rig.shown();
   for (unsigned n = 0; n < 4; ++n) EXPECT_TRUE(shown.back().number[n]) << n;
+  if (!rig.params.cameras.genlocked()) return expect_parts_renewed_in_turn(rig);
   for (std::size_t i = 1; i < shown.size(); ++i) {
     unsigned renewed = 0;
     for (unsigned n = 0; n < 4; ++n) {
@@ -272,7 +294,8 @@ TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
 }
 INSTANTIATE_TEST_SUITE_P(Nightly, ShippedViewTest,
                          testing::Values(ShippedView{"four-way.yaml"}, ShippedView{"birds-eye.yaml"},
-                                         ShippedView{"birds-eye-quad.yaml"}, ShippedView{"four-way.yaml", "engine"},
+                                         ShippedView{"birds-eye-quad.yaml"}, ShippedView{"birds-eye-free.yaml"},
+                                         ShippedView{"four-way.yaml", "engine"},
                                          ShippedView{"birds-eye.yaml", "engine"},
                                          ShippedView{"birds-eye-quad.yaml", "engine"}),
                          [](const auto& i) {
