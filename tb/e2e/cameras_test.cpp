@@ -451,6 +451,24 @@ TEST(CamerasTest, AnInputWithNothingOnItIsLeftOut) {
   for (const Shown::Stamp& s : sequence(rig)) EXPECT_EQ(s.camera, 1u);
 }
 
+// 32 pixels, in addition to what the page says of each camera.
+TEST(CamerasTest, TheSwitchesShiftTheViewOfEachCamera) {
+  CamerasRig rig;
+  small(rig, 3);
+  rig.set("switches.shift_x", "right").set("switches.shift_y", "up").set("run.frames", "6");
+  rig.run(kLimit);
+  ASSERT_EQ(rig.shown().size(), 6u) << rig.board().uart_text();
+  for (unsigned c = 0; c < 3; ++c) {
+    oracle::Geometry shifted = rig.geometry(c);  // as the page says
+    shifted.shift_x += 32;
+    shifted.shift_y -= 32;
+    rig.add_view(c, shifted);
+    rig.keep_table(c, 1);
+    EXPECT_EQ(rig.table_check(c, 1).wrong, 0u) << c;
+    EXPECT_GT(rig.table_check(c, 0).wrong, 0u) << c;
+  }
+}
+
 // A corrected frame that never comes on the display: with forty remaps of each frame the loop is too slow.
 TEST(CamerasTest, EachCapturedFrameIsDisplayedSupersededOrDropped) {
   CamerasRig rig;
