@@ -13,6 +13,12 @@ cp "$source/CMakeLists.txt" "$dir/tree/"
 touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
 printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
 for name in cmake ctest ffmpeg; do printf '#!/bin/sh\necho "%s $*" >>"%s/calls"\n' $name "$dir" >"$dir/bin/$name"; done
+cat >>"$dir/bin/ctest" <<'E'
+[ -z "$CTEST_SLEEPS" ] || [ "$2" != build/asan ] || sleep "$CTEST_SLEEPS"
+printf '1/1 Test of %s\n\n100%% tests passed, 0 tests failed out of 1\n\nTotal Test time (real) = 1 sec\n' "$2"
+[ "$CTEST_FAILS" != "$2" ]
+E
+export CTEST_SLEEPS='' CTEST_FAILS=''
 printf '#!/bin/sh\necho "fovea $*" >>"%s/calls"\n' "$dir" >"$dir/tree/build/release/fovea"
 chmod +x "$dir/bin/"* "$dir/tree/scripts/"* "$dir/tree/build/release/fovea"
 export PATH=$dir/bin:$PATH
@@ -76,20 +82,29 @@ grep -q '^cmake --preset asan -D FOVEA_ONLY=model/common;.*sw/fovea;tb/dram;$' "
   fail "sanitize: $(cat "$dir/calls")"
 calls sanitize_build 0 'cmake --build --preset asan -- --quiet' -- "$tree/scripts/sanitize" --build
 asked sanitize_build 'cmake --preset asan -D FOVEA_ONLY=.*;tb/unit;tb/dram;tb/exec;'
-# What every change has to pass, and the time of each step.
+# What every change has to pass, and the time of each step. The output ends with the sum of the tests.
+last_asan='fovea run scripts/experiments/default.yaml -s run.frames=1 -o build/asan/board'
 every="ctest --test-dir build/release --output-on-failure -j $(nproc) -LE nightly"
-calls ci 0 "$every" -- "$tree/.ci/run"
-for step in build tests together; do
+calls ci 0 "$last_asan" -- "$tree/.ci/run"
+for step in 'first run' build tests sanitizers together; do
   grep -Eqx "ci: $step [0-9]+ s( of 1500 s)?" "$dir/text" || fail "ci: no time of '$step' in $(cat "$dir/text")"
 done
+asked ci "$every"
+asked ci 'fovea run .*/scripts/experiments/default.yaml -s run.frames=1 -o build/first-run'
 asked ci 'cmake --build --preset asan -- --quiet'
-sed -i 's/^most_build=.*/most_build=-1/' "$tree/.ci/run"
+[ "$(grep -v '^ci: ' "$dir/text" | tail -4 | tr '\n' ';')" = \
+  'Of the tests of the release build:;100% tests passed, 0 tests failed out of 1;;Total Test time (real) = 1 sec;' ] ||
+  fail "ci: the output does not end with the tests' sum: $(cat "$dir/text")"
+CTEST_FAILS=build/release calls ci_test_fails 1 "$every" -- "$tree/.ci/run"
+CTEST_FAILS=build/asan calls ci_sanitizer_fails 1 "$last_asan" -- "$tree/.ci/run"
+# Sanitizers that have too little time, or take too long.
+sed -i 's/^limit=.*/limit=259/' "$tree/.ci/run"
 calls ci_slow 0 "$every" -- "$tree/.ci/run"
 grep -q '^ci: sanitizers left out' "$dir/text" || fail "ci_slow: $(cat "$dir/text")"
 ! grep -q asan "$dir/calls" || fail "ci_slow: $(cat "$dir/calls")"
-sed -i 's/^limit=.*/limit=-1/' "$tree/.ci/run"
-calls ci_limit 1 "$every" -- "$tree/.ci/run"
-grep -q '^ci: took longer than allowed' "$dir/text" || fail "ci_limit: $(cat "$dir/text")"
+sed -i 's/^limit=.*/limit=24/; s/^least_left=[0-9]*/least_left=1/' "$tree/.ci/run"
+CTEST_SLEEPS=30 calls ci_stopped 0 "${every/release/asan} -E ^exec\\.heap\\..*\\.O0\$|^exec\\.command_line\$" -- "$tree/.ci/run"
+grep -Eq '^ci: sanitizers stopped after the [1-4] s' "$dir/text" || fail "ci_stopped: $(cat "$dir/text")"
 calls no_check 1 'setup nightly' -- "$tree/scripts/nightly" unknown
 
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >"$tree/build/release/CMakeCache.txt"
