@@ -105,6 +105,9 @@ grep -q '^ci: sanitizers left out' "$dir/text" || fail "ci_slow: $(cat "$dir/tex
 sed -i 's/^limit=.*/limit=24/; s/^least_left=[0-9]*/least_left=1/' "$tree/.ci/run"
 CTEST_SLEEPS=30 calls ci_stopped 0 "${every/release/asan} -E ^exec\\.heap\\..*\\.O0\$|^exec\\.command_line\$" -- "$tree/.ci/run"
 grep -Eq '^ci: sanitizers stopped after the [1-4] s' "$dir/text" || fail "ci_stopped: $(cat "$dir/text")"
+sed -i 's/^limit=.*/limit=-1/' "$tree/.ci/run"
+calls ci_limit 1 "$every" -- "$tree/.ci/run"
+grep -q '^ci: took longer than allowed' "$dir/text" || fail "ci_limit: $(cat "$dir/text")"
 calls no_check 1 'setup nightly' -- "$tree/scripts/nightly" unknown
 
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$tree" >"$tree/build/release/CMakeCache.txt"
