@@ -123,7 +123,8 @@ expect no_symbols 2 'nowhere.elf' -- until_ abort exit --symbols "$out/nowhere.e
 if command -v script >/dev/null; then
   terminal() {  # NAME HOW [keys]
     local name=$1 how=$2 typed=$3
-    { sleep 1; printf "$typed"; sleep 2; } |
+    rm -f "$out/$name.after"
+    { sleep 1; printf "$typed"; for _ in {1..100}; do [ -s "$out/$name.after" ] && break; sleep 0.1; done; } |
       script -qec "bash -c 'stty -g >$out/$name.before; $how; echo \$? >$out/$name.status; stty -g >$out/$name.after'" \
         /dev/null >"$out/$name.screen" 2>&1
     cmp -s "$out/$name.before" "$out/$name.after" || fail "$name: the terminal is not as it was"
