@@ -26,7 +26,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
   path.bind(*this);
   SC_METHOD(inputs_changed);
   sensitive << clk;
-  for (auto& p : priority) sensitive << p;
+  for (std::size_t i = 0; i < priority.size(); ++i) sensitive << priority[i];
   SC_METHOD(advance_by_kernel);
   sensitive << due_.event();
   dont_initialize();

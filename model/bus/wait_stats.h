@@ -12,7 +12,7 @@ namespace fovea::bus {
 
 /// `ddr.<master>.wait.<read|write>.<culprit>`: sums over the requests of the window. All culprits of a
 /// direction together are the time from issue to first beat (read) or acknowledgement (write).
-class WaitStats : public StatGroup {
+class WaitStats final : public StatGroup {
  public:
   /// `tables`: the parts, to be added; they outlive this. A transfer controller's two sides, named by
   /// either, are one.

@@ -27,8 +27,7 @@ void Field::set(std::uint32_t value) {
 
 Reg::Reg(RegBank& bank, std::string name, std::uint32_t offset, std::string sentence,
          std::uint32_t reset)
-    : bank_(bank),
-      name_(std::move(name)),
+    : name_(std::move(name)),
       sentence_(std::move(sentence)),
       offset_(offset),
       reset_(reset),

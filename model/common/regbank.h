@@ -98,7 +98,6 @@ class Reg {
   };
   void add(Field& field);
   void add(Limit limit);
-  RegBank& bank_;
   std::string name_, sentence_;
   std::uint32_t offset_, reset_, value_;
   std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0, limited_ = 0;

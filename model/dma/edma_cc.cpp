@@ -11,8 +11,8 @@ void tell(const std::string& what) { Diagnostics::instance().guest("EDMA: " + wh
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
     : WithRegs(static_cast<unsigned>(params.reset_priority())),
       BusTarget(name, regs),
-      params_(params),
-      core_(regs, *this) {
+      core_(regs, *this),
+      params_(params) {
   add_clock(clk);
   add_power_gate(lpsc);
   add_interrupt("ccint0", completion.out);

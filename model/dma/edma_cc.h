@@ -66,6 +66,8 @@ struct EdmaStats : StatGroup {
 /// not matter. A transfer controller has the priority of the queue that is mapped to it; if several
 /// are, the most urgent of them; if none is, the lowest priority.
 class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelController::Host {
+  ChannelController core_;  // before the statistics, which refer to its counts
+
  public:
   using Params = EdmaParams;
   SC_HAS_PROCESS(EdmaCc);
@@ -128,7 +130,6 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   const EdmaParams& params_;
   std::array<TransferPort*, kTransferControllers> controllers_{};
   Clock clock_;
-  ChannelController core_;
   struct Latched {
     Picoseconds at;
     std::uint8_t channel;

@@ -36,7 +36,7 @@ struct EngineStats : StatGroup {
 };
 
 /// How far apart two compared backends were (`engine` = both, both_tlm): requests by clocks, whoever was earlier.
-struct PairStats : StatGroup {
+struct PairStats final : StatGroup {
   static constexpr std::array<unsigned, 6> kUpTo{0, 1, 3, 7, 15, 63};
   Counter requests{*this, "requests", "1", "requests that were compared, and equal"};
   Maximum most{*this, "most", "1", "clocks between the same request of both, at most"};

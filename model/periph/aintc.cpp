@@ -9,7 +9,7 @@ Aintc::Aintc(sc_core::sc_module_name name, const AintcParams& params)
   regs.on_change = [this] { written_.soon(); };
   SC_METHOD(update);
   sensitive << written_.event();
-  for (auto& s : source) sensitive << s;
+  for (std::size_t i = 0; i < source.size(); ++i) sensitive << source[i];
 }
 
 void Aintc::update() {

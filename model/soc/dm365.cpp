@@ -57,7 +57,7 @@ Dm365::Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint3
   wire_video();
   SC_METHOD(route_priorities);
   sensitive << mstpri0_;
-  for (auto& level : tc_priority_) sensitive << level;
+  for (std::size_t i = 0; i < tc_priority_.size(); ++i) sensitive << tc_priority_[i];
   SC_METHOD(set_wait_states);
   sensitive << misc_;
   dont_initialize();

@@ -16,7 +16,7 @@ VpssTop::VpssTop(sc_core::sc_module_name name) : BusTarget(name, regs) {
   regs.bcr.on_write(controls);
   regs.clkctrl.on_write(controls);
   SC_METHOD(route);
-  for (auto& i : isif_int) sensitive << i;
+  for (std::size_t i = 0; i < isif_int.size(); ++i) sensitive << isif_int[i];
   sensitive << venc_int << selection_.event();
   SC_METHOD(drive_controls);
   sensitive << controls_.event();

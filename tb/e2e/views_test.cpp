@@ -245,8 +245,12 @@ void expect_parts_renewed_in_turn(ViewsRig& rig) {
     ASSERT_LE(renewed.size(), 1u) << i;
     if (renewed.empty()) continue;
     const unsigned n = renewed[0];
-    if (last) EXPECT_EQ(n, (*last + 1) % 4) << i;
-    if (shown[i - 1].number[n]) EXPECT_GT(*shown[i].number[n], *shown[i - 1].number[n]) << i;
+    if (last) {
+      EXPECT_EQ(n, (*last + 1) % 4) << i;
+    }
+    if (shown[i - 1].number[n]) {
+      EXPECT_GT(*shown[i].number[n], *shown[i - 1].number[n]) << i;
+    }
     last = n;
     ++renewals;
   }
@@ -290,7 +294,9 @@ TEST_P(ShippedViewTest, IsComposedOfTheSentFramesThatItsMarksName) {
     EXPECT_EQ(renewed, rig.views().quad ? 4u : 1u) << i;
   }
   // By the bytes alone no other frame fits, for which the marks are not needed.
-  if (!by_engine) EXPECT_EQ(rig.wrong_picture(lut), "");
+  if (!by_engine) {
+    EXPECT_EQ(rig.wrong_picture(lut), "");
+  }
 }
 INSTANTIATE_TEST_SUITE_P(Nightly, ShippedViewTest,
                          testing::Values(ShippedView{"four-way.yaml"}, ShippedView{"birds-eye.yaml"},

@@ -101,12 +101,12 @@ TEST(ResetTest, TakesEffectAtTheFirstBoundaryAfterIt) {
     Machine m;
     m.load(assemble("1: add r0, r0, #1\n add r0, r0, #1\n b 1b\n", 0));
     m.core.reset(0, 0);
-    constexpr Picoseconds kStart = 400'000;
-    m.port.schedule(kStart + delay, [&] { m.core.set_reset(true, m.port.now); });
+    constexpr Picoseconds kBegin = 400'000;
+    m.port.schedule(kBegin + delay, [&] { m.core.set_reset(true, m.port.now); });
     m.core.run();
     EXPECT_TRUE(m.core.held());
-    EXPECT_GT(m.core.boundary_time(), kStart + delay);
-    EXPECT_LE(m.core.boundary_time(), kStart + delay + 3 * Machine::kClock);
+    EXPECT_GT(m.core.boundary_time(), kBegin + delay);
+    EXPECT_LE(m.core.boundary_time(), kBegin + delay + 3 * Machine::kClock);
     const std::uint64_t instructions = m.core.instructions_executed(), issue = m.core.counts().issue;
     m.core.set_reset(false, m.port.now);
     m.port.now += 1'000'000;

@@ -89,6 +89,13 @@ TEST(TextTraceTest, ErrorsNameTheLineAndWhatIsAllowed) {
     EXPECT_THAT(error_of(head + record + declared), HasSubstr("'t':3: master 1 was not declared"));
     EXPECT_EQ(error_of(head + declared + record), "");
   }
+  // Lines are counted by the hundred before a declaration.
+  for (const unsigned n : {254u, 255u, 256u, 257u, 600u}) {
+    const std::string empty(n, '\n'), record = "0 1 R 0x0 4\n", declared = "# master 1 window 1 b\n";
+    EXPECT_THAT(error_of(head + empty + record + declared),
+                HasSubstr("'t':" + std::to_string(3 + n) + ": master 1 was not declared"));
+    EXPECT_EQ(error_of(head + empty + declared + record), "");
+  }
   EXPECT_THAT(error_of(head + "0 0 X 0x0 4\n"), HasSubstr("allowed: R, W"));
   EXPECT_THAT(error_of(head + "0 0 R 100 4\n"), HasSubstr("hexadecimal"));
   EXPECT_THAT(error_of(head + "0 0 R 0x0 0\n"), HasSubstr("allowed: 1 to 4096"));

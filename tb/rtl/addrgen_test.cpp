@@ -296,7 +296,7 @@ TEST(AddrgenTest, JobsBeyondTheLimitsAreRefusedAndThoseAtTheLimitsAreNot) {
   check(false, grid(6, 2048));
   check(true, grid(7, 8));
   for (const unsigned log2 : {2u, 3u})  // each number of nodes near the limit
-    for (unsigned pairs = 200 << (log2 - 1); pairs < 260 << (log2 - 1); ++pairs)
+    for (unsigned pairs = 200 << (log2 - 1); pairs < 260u << (log2 - 1); ++pairs)
       check(2 * pairs > 255u << log2, grid(log2, pairs));
   const auto radial = [](unsigned pieces, unsigned log2) {
     return [=](Job& j) { j.mode = Mode::kRadial, j.pieces = pieces, j.piece_log2 = log2; };

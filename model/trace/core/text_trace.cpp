@@ -38,6 +38,19 @@ constexpr std::array<std::uint8_t, 256> kHexDigits = [] {
   return value;
 }();
 
+/// Line feeds in a text. Sums of one byte each are what compilers turn into vector instructions: std::count, whose sums
+/// have eight, takes ten times as many.
+std::uint64_t count_lines(const char* begin, const char* end) {
+  std::uint64_t lines = 0;
+  while (begin != end) {
+    const char* const stop = begin + std::min<std::ptrdiff_t>(end - begin, 255);
+    std::uint8_t some = 0;
+    for (; begin != stop; ++begin) some = static_cast<std::uint8_t>(some + (*begin == '\n'));
+    lines += some;
+  }
+  return lines;
+}
+
 /// Takes 1 to `most` decimal digits. @return false if there are none or more
 template <std::ptrdiff_t most>
 inline bool take_decimal(const char*& at, std::uint64_t& v) {
@@ -114,12 +127,12 @@ void TextTrace::find_masters() {
       if (line.find_first_not_of(kBlank) != static_cast<std::size_t>(mark - begin)) continue;
       const Words words = split(line);
       if (!declares_master(words)) continue;
-      lines.line += static_cast<std::uint64_t>(std::count(counted, begin, '\n'));
+      lines.line += count_lines(counted, begin);
       counted = begin;
       line_ = lines.line + 1;
       declare(words);
     }
-    lines.line += static_cast<std::uint64_t>(std::count(counted, lines.end, '\n'));
+    lines.line += count_lines(counted, lines.end);
     lines.at = lines.end;
   }
 }
