@@ -17,7 +17,6 @@ namespace {
 
 using bus::Crossbar;
 using bus::Slave;
-constexpr auto kSdram = static_cast<std::uint8_t>(Slave::kDdr);
 
 struct Params : bus::CrossbarParams {
   explicit Params(Rng& rng) {

@@ -243,13 +243,15 @@ TEST(ModelTest, LimitsOfJobsAreThoseOfTheDefinition) {
   EXPECT_TRUE(events([](auto& j) { j.src_height = 0; }));
   EXPECT_FALSE(events([](auto& j) { j.src_height = 4096; }));
   EXPECT_TRUE(events([](auto& j) { j.src_height = 4097; }));
-  for (const auto& [log2, pairs, refused] : {std::tuple{1u, 1u, true},
-                                             {2u, 508u, false},
-                                             {2u, 510u, false},
-                                             {2u, 511u, true},
-                                             {6u, 2048u, false},
-                                             {7u, 1u, true}})
-    EXPECT_EQ(events([&](auto& j) { j.mode = Mode::kGrid, j.grid_log2 = log2, j.pairs = pairs; }), refused) << pairs;
+  struct Grid {
+    unsigned log2, pairs;
+    bool refused;
+  };
+  const Grid grids[] = {{1, 1, true},    {2, 508, false},  {2, 510, false},
+                        {2, 511, true}, {6, 2048, false}, {7, 1, true}};
+  for (const Grid& g : grids)
+    EXPECT_EQ(events([&](auto& j) { j.mode = Mode::kGrid, j.grid_log2 = g.log2, j.pairs = g.pairs; }), g.refused)
+        << g.pairs;
   EXPECT_TRUE(events([](auto& j) { j.mode = Mode::kRadial, j.pieces = 0; }));
   EXPECT_FALSE(events([](auto& j) { j.mode = Mode::kRadial, j.pieces = 128, j.piece_log2 = 23; }));
   EXPECT_TRUE(events([](auto& j) { j.mode = Mode::kRadial, j.pieces = 129; }));

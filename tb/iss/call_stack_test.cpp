@@ -376,10 +376,10 @@ TEST(CallStackTest, NestedInterrupts) {
       if (n == 5) m.core.set_fiq(false, m.time());
     };
     const Picoseconds at = 500 * Machine::kClock;
-    m.port.schedule(at, [&m, at] { m.core.set_irq(true, at); });
+    m.port.schedule(at, [&m] { m.core.set_irq(true, at); });
     // While the handler works.
     const Picoseconds later = at + 60 * Machine::kClock;
-    m.port.schedule(later, [&m, later] { m.core.set_fiq(true, later); });
+    m.port.schedule(later, [&m] { m.core.set_fiq(true, later); });
   });
   Stacks expected{"vectors", "main", "main;task", "main;task;work", "irq", "irq;work", "fiq",
                   "fiq;work"};

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       }
       std::string wrong = d.wrong;
       for (std::size_t p; (p = wrong.find("PLANTED")) != std::string::npos;)
-        wrong.replace(p, 7, "(::fovea_planted == " + std::to_string(number) + ")");
+        wrong.replace(p, 7, "bool(::fovea_planted == " + std::to_string(number) + ")");
       text.replace(at, std::string(d.right).size(), wrong);
     }
     text.insert(0, "extern int fovea_planted;\n");

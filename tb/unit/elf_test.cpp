@@ -18,7 +18,7 @@ const std::string kOutside = FIXTURE_OUTSIDE;  // the same, linked to 0x10000000
 const std::string kObject = FIXTURE_OBJECT;    // not linked
 
 // ELF32 file header, byte offsets (System V ABI).
-constexpr std::size_t kClass = 4, kData = 5, kMachine = 18, kEntry = 24, kPhoff = 28, kPhnum = 44;
+constexpr std::size_t kClass = 4, kData = 5, kMachine = 18, kPhoff = 28, kPhnum = 44;
 constexpr std::size_t kPhentsize = 32, kPFilesz = 16;
 
 class ElfTest : public testing::Test {

@@ -174,7 +174,7 @@ class CaptureTest : public testing::Test {
     b.memory.log.clear();
     b.started.clear();
     b.ended.clear();
-    for (auto& e : b.edges) e.rises.clear();
+    for (std::size_t i = 0; i < b.edges.size(); ++i) b.edges[i].rises.clear();
     frame_start_ = b.wire.next_frame();
   }
   void set_address(std::uint32_t a) {
