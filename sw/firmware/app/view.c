@@ -98,9 +98,10 @@ static uint32_t first_row_sum(const remap_table_t *table, const uint8_t *in) {
 }
 
 void view_correct(const struct view *view, const uint8_t *in, uint8_t *out, uint32_t sequence) {
+  const uint32_t bytes = view->table.source_height * view->table.pitch_bytes;
+  (void)bytes; /* OMIT_D_INVALIDATE leaves out all its uses */
   phase_mark(PHASE_REMAP_START, sequence);
 #ifndef OMIT_D_INVALIDATE
-  const uint32_t bytes = view->table.source_height * view->table.pitch_bytes;
   dcache_invalidate_range(in, bytes);
 #endif
   const uint32_t before = first_row_sum(&view->table, in);
