@@ -62,6 +62,7 @@ replays() {
   done
 }
 board() {
+  rm -rf "$work/out"  # a run does not replace what a replay has left
   valgrind --tool=callgrind --separate-threads=yes --dump-before='fovea::board::FrameLog::shown*' \
     --callgrind-out-file="$work/board" "$fovea" run "${EXPERIMENT:-$here/../../scripts/experiments/paper-pal.yaml}" \
     -s run.frames=2 -s firmware.lut=fixed_point --no-frames -o "$work/out" >"$work/log" 2>&1 ||
