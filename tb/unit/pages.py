@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Markdown pages: width of the lines, headings of READMEs, links to files and headings. C, C++ and
-SystemVerilog: width of the lines. Usage: pages.py SOURCE"""
+SystemVerilog: width of the lines. In a git checkout: what is tracked at the top. Usage: pages.py SOURCE"""
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -10,8 +11,9 @@ WIDTH = 120
 HEADINGS = ("Purpose", "Concepts|Use", "How it works", "Limits")
 # Folders without code of their own, and the page of the whole project.
 FREE = {"README.md", "model/howto/README.md", "traces/pictures/README.md", "tb/report/axe-core/README.md"}
-
-
+# The top level is fixed; files whose names begin with a dot may be added.
+TOP = {"CMakeLists.txt", "CMakePresets.json", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "README.md",
+       "model", "rtl", "scripts", "sw", "tb", "traces"}
 CODE = (".h", ".cpp", ".c", ".S", ".sv")
 
 
@@ -40,7 +42,16 @@ def anchors(page):
             yield words.replace(" ", "-")
 
 
+def strays(source):
+    """Results of runs and the like, added by accident."""
+    git = subprocess.run(["git", "-C", source, "ls-files", "-z"], capture_output=True, text=True)
+    for name in sorted({file.split("/")[0] for file in git.stdout.split("\0") if file}):
+        if name not in TOP and not name.startswith("."):
+            yield f"{name}: does not belong at the top, where only {', '.join(sorted(TOP))} and files with a dot are"
+
+
 def complaints(source):
+    yield from strays(source)
     for file in sorted(files_of(source, CODE)):
         name = file.relative_to(source).as_posix()
         for number, line in enumerate(file.read_text(encoding="utf-8").split("\n"), 1):

@@ -12,13 +12,21 @@ printf '# Page\n\n[Part](part/README.md#how-it-works)\n\n%s\n| %s |\n```\n[code]
 printf '// %s\n' "$(columns 117)" >"$folder/part/a.cpp"
 columns 300 >"$folder/build/b.cpp"
 check() { "$1/tb/unit/pages.py" "$folder"; }
+git -C "$folder" init -q
+touch "$folder/.dot" "$folder/LICENSE" "$folder/not_tracked"
+git -C "$folder" add .dot LICENSE
 said=$(check "$1") || { echo "complaints of a source without defects: $said"; exit 1; }
 
 printf '\n[a](part/none.md) [b](part/README.md#none)\n%s\n' "$(columns 121)" >>"$folder/page.md"
 printf '# Part\n\n## Purpose\n\n## Limits\n' >"$folder/part/README.md"
 for file in a.cpp b.h c.c d.sv e.S; do printf '// %s\n' "$(columns 118)" >"$folder/part/$file"; done
-said=$(check "$1") && { echo 'defects are not found'; exit 1; }
-expected="page.md:3: no heading for the link part/README.md#how-it-works
+mkdir "$folder/run"
+touch "$folder/run/stats.json"
+git -C "$folder" add run/stats.json not_tracked
+said=$(check "$1" | sed 's/\(at the top\),.*/\1/'; exit "${PIPESTATUS[0]}") && { echo 'defects are not found'; exit 1; }
+expected="not_tracked: does not belong at the top
+run: does not belong at the top
+page.md:3: no heading for the link part/README.md#how-it-works
 page.md:11: no file for the link part/none.md
 page.md:11: no heading for the link part/README.md#none
 page.md:12: 121 columns; at most 120, rows of tables excepted

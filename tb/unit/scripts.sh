@@ -14,6 +14,7 @@ touch "$dir/tree/scripts/experiments/default.yaml" "$dir/elsewhere/mine.yaml"
 printf '#!/bin/sh\necho "setup $*" >>"%s/calls"\n' "$dir" >"$dir/tree/scripts/setup"
 for name in cmake ctest ffmpeg; do printf '#!/bin/sh\necho "%s $*" >>"%s/calls"\n' $name "$dir" >"$dir/bin/$name"; done
 cat >>"$dir/bin/ctest" <<'E'
+[ "$CTEST_FAILS" != "$2" ] || echo '1/1 Test #1: unit.common ......***Failed    0.01 sec'
 [ -z "$CTEST_SLEEPS" ] || [ "$2" != build/asan ] || sleep "$CTEST_SLEEPS"
 printf '1/1 Test of %s\n\n100%% tests passed, 0 tests failed out of 1\n\nTotal Test time (real) = 1 sec\n' "$2"
 [ "$CTEST_FAILS" != "$2" ]
@@ -105,6 +106,8 @@ grep -q '^ci: sanitizers left out' "$dir/text" || fail "ci_slow: $(cat "$dir/tex
 sed -i 's/^limit=.*/limit=24/; s/^least_left=[0-9]*/least_left=1/' "$tree/.ci/run"
 CTEST_SLEEPS=30 calls ci_stopped 0 "${every/release/asan} -E ^exec\\.heap\\..*\\.O0\$|^exec\\.command_line\$" -- "$tree/.ci/run"
 grep -Eq '^ci: sanitizers stopped after the [1-4] s' "$dir/text" || fail "ci_stopped: $(cat "$dir/text")"
+CTEST_FAILS=build/asan CTEST_SLEEPS=30 calls ci_stopped_late 1 "$(tail -1 "$dir/calls")" -- "$tree/.ci/run"
+grep -q '^ci: a test failed before the sanitizers were stopped' "$dir/text" || fail "ci_stopped_late: $(cat "$dir/text")"
 sed -i 's/^limit=.*/limit=-1/' "$tree/.ci/run"
 calls ci_limit 1 "$every" -- "$tree/.ci/run"
 grep -q '^ci: took longer than allowed' "$dir/text" || fail "ci_limit: $(cat "$dir/text")"
