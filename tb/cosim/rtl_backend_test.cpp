@@ -236,6 +236,23 @@ TEST(RtlBackendTest, WaveformsBeginAtTheirTriggerAndHaveTheirLength) {
     bench.rtl->finish();
   }
   EXPECT_EQ(times_of(file).first, times_of(file).second);  // nothing recorded
+  // From the edge of the job's own begin on, and from a picosecond later.
+  waves.trigger = Waves::Trigger::kJob;
+  const auto first_from = [&](Picoseconds at) {
+    waves.from = at;
+    {
+      Bench bench(RtlBackend::Options{.waves = waves});
+      bench.fill(m, dice);
+      bench.make(m, {});
+      bench.rtl->finish();
+    }
+    return times_of(file);
+  };
+  const Picoseconds begin = first_from(0).first;
+  EXPECT_EQ(first_from(begin).first, begin);
+  const auto [late, over] = first_from(begin + 1);
+  EXPECT_EQ(late, over);  // nothing recorded
+  waves.from = 0;
   std::ofstream(file) << "something else";
   waves.file = file;
   EXPECT_THROW(Bench(RtlBackend::Options{.waves = waves}), UserError);

@@ -348,5 +348,13 @@ TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
   EXPECT_EQ(b.xbar.next_decision(), (100 + 2) * kEdge) << "edge 6 comes at 100, 8 at 102";
 }
 
+TEST(CrossbarTest, StatisticsSayWhoseTheyAre) {
+  const bus::MasterStats stats(Master::kVpfe);
+  EXPECT_EQ(stats.prefix(), "bus.vpfe");
+  EXPECT_EQ(stats.read_bytes.sentence(), "bytes that vpfe read");
+  EXPECT_EQ(stats.write_bytes.sentence(), "bytes that vpfe wrote");
+  EXPECT_EQ(stats.transactions.sentence(), "bursts and single accesses of vpfe");
+}
+
 }  // namespace
 }  // namespace fovea::dram

@@ -61,6 +61,26 @@ std::vector<std::string> invalid_register_values(const Words& w, const char* par
   return mem::invalid_register_values(regs, params);
 }
 
+/// Two refreshes apart at least, and time for a row to be closed, refreshed, opened and used.
+TEST(DdrRegistersTest, ARefreshIntervalLeavesRequestsTheirTurn) {
+  const auto interval = [](unsigned rate, unsigned nRFC, unsigned nRC, unsigned ibank) {
+    Words w;
+    w.sdbcr = (w.sdbcr & ~0x70u) | ibank << 4;
+    w.sdrcr = rate;
+    w.sdtimr = (nRFC - 1) << 25 | 4u << 22 | 4u << 19 | 5u << 16 | 14u << 11 | (nRC - 1) << 6 | 2u << 3 | 2u;
+    return decoded(w).refresh_interval;
+  };
+  // nRAS 15, nRP 5 and with 8 banks one more, nRFC 10; then nRRD 3, nRCD 5 and 2.
+  EXPECT_EQ(interval(1, 10, 20, 3), 41u);
+  EXPECT_EQ(interval(41, 10, 20, 3), 41u);
+  EXPECT_EQ(interval(42, 10, 20, 3), 42u);
+  EXPECT_EQ(interval(1, 10, 20, 2), 40u) << "four banks";
+  EXPECT_EQ(interval(1, 10, 31, 3), 41u);
+  EXPECT_EQ(interval(1, 10, 32, 3), 42u) << "nRC is longer";
+  EXPECT_EQ(interval(1, 42, 20, 3), 84u) << "two refreshes";
+  EXPECT_EQ(interval(0, 10, 20, 3), 0u) << "no refreshes are wanted";
+}
+
 TEST(DdrRegistersTest, ShippedWordsMeanTheirClocks) {
   const mem::DdrConfig c = decoded({});
   const mem::DdrTiming& t = c.timing;

@@ -160,6 +160,17 @@ TEST(RunTest, SmallPalRegionConservesCyclesAndBytes) {
   EXPECT_EQ(beats.count("vpfe read first"), 0u);
   EXPECT_GE(real(r, "ddr.vpbe.latency.read_last.mean"), real(r, "ddr.vpbe.latency.mean"));
   EXPECT_GT(real(r, "ddr.vpfe.latency.write_last.mean"), real(r, "ddr.vpfe.latency.write_first.mean"));
+  // Each access of the SDRAM in the window was decided in one of two ways, but for those under way at its edges.
+  const auto decided = [&](const char* name) {
+    return static_cast<double>(std::get<std::uint64_t>(app::find(r.host, name)->value));
+  };
+  double accesses = 0;
+  for (auto name : kStatNames)
+    accesses += static_cast<double>(count(r, "bus." + std::string(name) + ".transactions"));
+  accesses -= static_cast<double>(count(r, "bus.config.read_bytes") + count(r, "bus.config.write_bytes")) / 4;
+  EXPECT_NEAR(decided("sync.direct") + decided("sync.queued"), accesses, 20);
+  EXPECT_DOUBLE_EQ(std::get<double>(app::find(r.host, "sync.direct_share")->value),
+                   decided("sync.direct") / (decided("sync.direct") + decided("sync.queued")));
   // One word out for each pair, and no other uncached or missing stores of that size class.
   EXPECT_GE(count(r, "cpu.dcache.write_misses"), 320u / 2 * 64 * 10);
 }

@@ -77,6 +77,24 @@ struct Chip : testing::Test {
   HostTimeSlicer slicer;
 };
 
+// The engine has the place of the imaging coprocessor: its priority is MSTPRI0.IMCOPP, bits 18 to 16.
+TEST_F(Chip, ItsPriorityIsTheImagingCoprocessors) {
+  const auto priority = [&] { return chip().scr.crossbar().priority(Master::kRemapEngine); };
+  EXPECT_EQ(priority(), 5u) << "after a reset";
+  for (const unsigned p : {0u, 3u, 7u}) {
+    chip().system.regs.write(0x3C, 4, 0x0050'0011 | p << 16);
+    run(kPsPerUs);
+    EXPECT_EQ(priority(), p);
+  }
+}
+
+TEST_F(Chip, WhoLooksIntoMemorySeesItFromItsFirstByteOn) {
+  std::memcpy(chip().ddr.store().at(0), "sdram", 5);
+  word(0) = 0x7265'7469;
+  EXPECT_THAT(board->peek(0x8000'0000, 5), testing::ElementsAre('s', 'd', 'r', 'a', 'm'));
+  EXPECT_THAT(board->peek(kRam, 4), testing::ElementsAre('i', 't', 'e', 'r'));
+}
+
 TEST_F(Chip, AJobRaisesItsInterrupt) {
   EXPECT_THAT(soc::unreached(board->platform), testing::IsEmpty());
   chip().aintc.regs.regs.write(0x18, 4, 1u << kIrq);

@@ -113,5 +113,25 @@ TEST(EngineMaps, LensesThatTheEngineCannotExpressAreRefused) {
   EXPECT_EQ(refusals(view_of(LENS_EQUISOLID, 180, 1687)).second, "the view does not fit into the engine's numbers");
 }
 
+// A centre is a number of 32 bits with 16 behind the point. Neither end of their range is used.
+TEST(EngineMaps, NumbersAreWithinTheirBits) {
+  std::vector<std::uint32_t> map(4096);
+  const auto refusal = [&](double centre) -> std::string {
+    lens_t lens;
+    const lens_view_t view = view_of(LENS_EQUISOLID, 180);
+    EXPECT_EQ(lens_init(&lens, &view, 720, 576), LENS_OK);
+    lens.centre_x = centre - 359.5;
+    remap_engine_job_t job;
+    const char* why = remap_engine_radial(&lens, 1440, &job, map.data());
+    return why ? why : std::to_string(static_cast<std::int32_t>(job.centre_x));
+  };
+  constexpr double kLast = 1.0 / 65536;
+  const char* const does_not_fit = "the view does not fit into the engine's numbers";
+  EXPECT_EQ(refusal(-32768), does_not_fit);
+  EXPECT_EQ(refusal(-32768 + kLast), "-2147483647");
+  EXPECT_EQ(refusal(32768 - 2 * kLast), "2147483646");
+  EXPECT_EQ(refusal(32768 - kLast), does_not_fit);
+}
+
 }  // namespace
 }  // namespace fovea::engine

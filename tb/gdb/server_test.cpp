@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 #include <random>
 #include <thread>
 
+#include "model/common/check.h"
 #include "tb/unit/gdb_fake_target.h"
 
 namespace fovea::app {
@@ -90,6 +92,23 @@ TEST_F(GdbServerTest, ASecondDebuggerIsRefusedAndTheFirstGoesOn) {
   EXPECT_EQ(second.ask(kWhy, "#"), "");
   EXPECT_TRUE(second.closed);
   EXPECT_NE(first.ask(kWhy, "#").find(kStopped), std::string::npos);
+}
+
+TEST_F(GdbServerTest, APortThatIsTakenIsSaidAndLeavesNothingOpen) {
+  const auto open_files = [] {
+    const auto begin = std::filesystem::directory_iterator("/proc/self/fd");
+    return std::distance(begin, std::filesystem::directory_iterator());
+  };
+  const auto before = open_files();
+  try {
+    GdbServer second(server.port(), target, stop);
+    FAIL() << "two servers on one port";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find(std::to_string(server.port()) + ": Address already in use"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(open_files(), before);
 }
 
 TEST_F(GdbServerTest, TheNextOneComesWhenTheFirstIsGone) {

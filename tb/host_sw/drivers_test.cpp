@@ -381,6 +381,24 @@ TEST(MultiplexerTest, AllSelectLinesChangeInOneWrite) {
   EXPECT_THAT(out, ElementsAre(0x12345078u, 0x12345178u, 0x12345278u, 0x12345778u, 0x12345078u));
 }
 
+// A wait for the bus or for a status bit ends after 20 ms of the 24 MHz timer: 480,000 ticks are waited for, one more
+// are not. The status that is waited for comes at the second look.
+TEST(I2cTest, WaitsEndAfterTwentyMilliseconds) {
+  constexpr std::uint32_t kBusy = 0x1000, kReady = 0x38;
+  for (const std::uint32_t first : {kBusy | kReady, 0u}) {  // the bus is taken, the transmitter is not ready
+    for (const std::uint32_t ticks : {480'000u, 480'001u}) {
+      RegisterRecorder chip;
+      unsigned looks = 0, times = 0;
+      chip.on_read = [&](std::uint32_t address) -> std::uint32_t {
+        if (address == 0x01C21008) return looks++ < (first == 0 ? 2 : 1) ? first : kReady;
+        if (address == 0x01C21410) return times++ == 0 ? 0xFFFFFFFF : (first == 0 && times == 2 ? 0xFFFFFFFF : ticks - 1);
+        return 0;
+      };
+      EXPECT_EQ(i2c_write_register(0x5D, 1, 2), ticks == 480'000 ? I2C_OK : I2C_TIMEOUT) << first << " " << ticks;
+    }
+  }
+}
+
 TEST(Tvp5146Test, AnAbsentDecoderIsReported) {
   RegisterRecorder chip;
   FakeI2c bus(chip, false);

@@ -119,6 +119,8 @@ TEST(ParamPageTest, ClocksConsoleAndPrioritiesAtTheirLimits) {
   EXPECT_EQ(with([](auto& p) { p.clocks.pll2.pre_divider = 31; }), PARAM_PAGE_OK);
   EXPECT_EQ(with([](auto& p) { p.clocks.pll2.pre_divider = 32; }), PARAM_PAGE_BAD_CLOCKS);
   EXPECT_EQ(with([](auto& p) { p.clocks.pll1.post_divider = 32; }), PARAM_PAGE_BAD_CLOCKS);
+  EXPECT_EQ(with([](auto& p) { p.clocks.pll1.dividers[0] = 31; }), PARAM_PAGE_OK);
+  EXPECT_EQ(with([](auto& p) { p.clocks.pll1.dividers[0] = 32; }), PARAM_PAGE_BAD_CLOCKS);
   EXPECT_EQ(with([](auto& p) { p.clocks.pll1.dividers[8] = 31; }), PARAM_PAGE_OK);
   EXPECT_EQ(with([](auto& p) { p.clocks.pll1.dividers[8] = 32; }), PARAM_PAGE_BAD_CLOCKS);
   EXPECT_EQ(with([](auto& p) { p.console.uart = 1; }), PARAM_PAGE_BAD_CONSOLE);

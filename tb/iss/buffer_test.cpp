@@ -53,6 +53,12 @@ TEST_F(BufferTest, FifthScatteredStoreWaitsForTheFirstAcknowledge) {
   EXPECT_EQ(m.stall(Cause::kWriteBuffer), out + 10 - (first + 4));
 }
 
+/// A drain counts if there was something to wait for.
+TEST_F(BufferTest, DrainsThatWaitedAreCounted) {
+  m.execute(kStart + kDrain + "str r0, [r4]\n" + kDrain + kDrain + "str r0, [r4]\n str r0, [r4, #64]\n" + kDrain);
+  EXPECT_EQ(m.core.drains(), 2u);
+}
+
 TEST_F(BufferTest, SixteenWordsFillIt) {
   // Two STM of eight words fit, a third store waits although addresses are free.
   m.execute(kStart +

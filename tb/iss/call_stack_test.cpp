@@ -453,5 +453,15 @@ TEST_F(StacksByHandTest, AResetEndsWhatRanBefore) {
   EXPECT_EQ(watched.clocks, expected);
 }
 
+// Between the end of one function and the begin of the next there is none.
+TEST(CallStackTest, AFunctionEndsBeforeItsEnd) {
+  CallStacks stacks;
+  stacks.set_functions({{0x10, 0x20}, {0x30, 0x40}});
+  EXPECT_TRUE(stacks.same_function(0x1c, 0x10));
+  EXPECT_FALSE(stacks.same_function(0x1c, 0x20));
+  EXPECT_TRUE(stacks.same_function(0x20, 0x24)) << "both in no function";
+  EXPECT_FALSE(stacks.same_function(0x30, 0x24));
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test

@@ -215,5 +215,20 @@ TEST(ConservationTest, ClockChangeInTheMiddle) {
   }
 }
 
+/// A mark that is made while an instruction is executed is taken at its end, although no event is due.
+TEST(ConservationTest, MarkWithinAnInstruction) {
+  Machine m;
+  std::vector<std::uint64_t> at;
+  m.on_svc = [&](std::uint32_t) {
+    at.push_back(m.core.clock_count());
+    m.core.mark_window(m.time());
+  };
+  m.execute("mov r0, #100\n svc #3\n1: subs r0, r0, #1\n bne 1b\n svc #4\n mov r0, #100\n2: subs r0, r0, #1\n bne 2b");
+  ASSERT_EQ(at.size(), 2u);
+  ASSERT_TRUE(m.core.mark_done());
+  EXPECT_EQ(m.core.window_stats().from.cycles, at[0] + 3);
+  EXPECT_EQ(m.core.window_stats().to.cycles, at[1] + 3);
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test

@@ -52,31 +52,37 @@ TEST(CoreDebugTest, SeesPendingWriteAndIsNotUndoneByIt) {
   EXPECT_EQ(m.port.word(kData + 64), 0x33u);
 }
 
-/// Replaces an instruction that has already run from where it is kept.
-void expect_patched(const std::string& start, std::uint32_t base) {
+/// Replaces an instruction that has already run twice, from where it is kept.
+/// @param cached the second time from the instruction cache
+void expect_patched(const std::string& start, std::uint32_t base, bool cached) {
   DebugMachine m;
   std::uint32_t patched = 0;
-  m.on_svc = [&](std::uint32_t) { m.put(patched, 0xE3A05002u); };  // mov r5, #2
+  m.on_svc = [&](std::uint32_t) {
+    EXPECT_EQ(m.core.counts().icache_fills > 0, cached);
+    m.put(patched, 0xE3A05002u);  // mov r5, #2
+  };
   const std::string text = start + R"(
-    mov r6, #2
+    mov r6, #3
     again:
     mov r5, #1
     cmp r6, #1
     beq done
-    svc #3
+    cmp r6, #2
+    svceq #3
     sub r6, r6, #1
     b again
     done:
   )";
   patched = assemble(text + "\n svc #2\n .ltorg\n", base).symbols.at("again");
+  EXPECT_NE(patched % 32, 0u) << "not at the begin of a line";
   m.execute(text, base);
   EXPECT_EQ(m.core.reg(5), 2u);
 }
 
 TEST(CoreDebugTest, PatchesCodeInTcmInCacheAndInMemory) {
-  expect_patched("", 0);
-  expect_patched(kCachesOn, kCode);
-  expect_patched("", kCode);
+  expect_patched("", 0, false);
+  expect_patched(kCachesOn, kCode, true);
+  expect_patched("", kCode, false);
 }
 
 TEST(CoreDebugTest, TranslatesByTlbAndByTables) {

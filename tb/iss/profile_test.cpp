@@ -404,5 +404,46 @@ TEST(ProfileTest, SectionsAtRandomTimesAddUp) {
   EXPECT_GT(within_sleep, 0u) << "some marks must fall into a sleep";
 }
 
+/// A run may end within a sleep. Its clocks up to there are the sleep's.
+TEST(ProfileTest, EndsInASleep) {
+  Machine m;
+  const ClockProfile& profile = m.core.start_profile();
+  std::uint64_t asleep = 0;
+  m.port.schedule(400'001, [&] {
+    Counts end = ended(m.core);
+    asleep = 101 - m.core.clock_count();
+    end.idle += asleep;
+    m.core.finish_profile(end);
+  });
+  m.port.schedule(800'000, [&] {
+    m.core.set_irq(true, 800'000);
+    m.port.interrupt_at(800'000);
+    std::uint64_t idle = 0, all = 0;
+    for (const ProfileRow& r : profile.rows(0)) {
+      all += r.clocks;
+      if (r.cause >= ProfileRow::kIdle && !r.stalled()) idle += r.clocks;
+    }
+    EXPECT_EQ(idle, asleep);
+    EXPECT_EQ(all, 100u);
+  });
+  m.execute("mov r0, #0\n mcr p15, 0, r0, c7, c0, 4\n nop");
+  EXPECT_GT(asleep, 80u);
+}
+
+TEST(MaskWatchTest, KeepsTheFirstOfEquallyLongStretches) {
+  MaskWatch w;  // IRQs are masked after a reset
+  w.set(false, 5, 0x10);
+  w.set(true, 10, 0x20);
+  w.set(false, 15, 0x30);
+  EXPECT_EQ(w.longest().clocks, 5u);
+  EXPECT_EQ(w.longest().begin, 0u);
+  EXPECT_EQ(w.longest().end, 0x10u);
+  w.set(true, 20, 0x40);
+  w.set(false, 26, 0x50);
+  EXPECT_EQ(w.longest().clocks, 6u);
+  EXPECT_EQ(w.longest().begin, 0x40u);
+  EXPECT_EQ(w.longest().end, 0x50u);
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test

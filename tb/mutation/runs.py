@@ -14,8 +14,10 @@ from concurrent.futures import ThreadPoolExecutor
 from tree import say
 
 # A test with a mutant on may take so many times the processor time of the same test without, and the
-# configuration's `extra_seconds`.
+# configuration's `extra_seconds`; and so many times its time by the clock and a minute: one that waits for what never
+# comes uses none.
 TIMES = 4
+WALL_TIMES = 5
 MEMORY = 8 << 30   # bytes of address space
 FILE_SIZE = 1 << 30
 
@@ -51,7 +53,8 @@ class Test:
         return digest.hexdigest()[:16]
 
     def run(self, environment, cpu, wall):
-        """Returns passed and the processor seconds used. One process of a test runs at a time."""
+        """Returns passed, and the seconds used of the processor and by the clock. One process of a test runs at a
+        time."""
         with self.alone:
             return self.run_alone(environment, cpu, wall)
 
@@ -65,7 +68,7 @@ class Test:
                 preexec_fn=limits(cpu))
         except OSError as error:
             say(f'{self.name}: {error}')
-            return False, 0.0
+            return False, 0.0, 0.0
         deadline = time.monotonic() + wall
         usage = None
         while usage is None:
@@ -84,7 +87,7 @@ class Test:
             _, _, usage = os.wait4(process.pid, 0)
             code = -signal.SIGKILL
         process.returncode = code
-        return code == 0, usage.ru_utime + usage.ru_stime
+        return code == 0, usage.ru_utime + usage.ru_stime, time.monotonic() - before
 
 
 class Runs:
@@ -147,7 +150,7 @@ class Runs:
         def one(number, test):
             map_file = self.tree.out / f'reached.{threading.get_ident()}'
             map_file.write_bytes(bytes(65536))
-            passed, seconds = test.run({'FOVEA_MUTANT_REACHED': str(map_file)}, 1200, 1800)
+            passed, seconds, wall = test.run({'FOVEA_MUTANT_REACHED': str(map_file)}, 1200, 1800)
             reached = [i for i, b in enumerate(map_file.read_bytes()) if b]
             map_file.unlink()
             note = '' if passed else ' FAILS WITH NO MUTANT ON: left out'
@@ -155,18 +158,19 @@ class Runs:
                 f'{len(reached)} mutants{note}')
             with self.changing:
                 self.state['tests'][test.name] = {
-                    'print': test.print, 'seconds': seconds, 'passed': passed, 'reached': reached}
+                    'print': test.print, 'seconds': seconds, 'wall': wall, 'passed': passed, 'reached': reached}
                 self.save()
         return self.each(one, todo, end)
 
     def order(self, mutant):
-        """Tests that reach the mutant: those of its own layer first, and the quick ones first."""
+        """Tests that reach the mutant, the quick ones first; those of its own layer as if they took a thirtieth: they
+        are the likely ones, and what is left when the budget is spent should be others."""
         own = self.tree.areas.own_tests(mutant['area'])
         found = []
         for name in self.tests:
             known = self.state['tests'].get(name)
             if known and known['passed'] and mutant['id'] in self.reached[name]:
-                found.append((known['seconds'] * (1 if own.search(name) else 4), name))
+                found.append((known['seconds'] * (1 if own.search(name) else 30), name))
         return [name for _, name in sorted(found)]
 
     def judge(self, mutant, record):
@@ -181,7 +185,8 @@ class Runs:
                 record['left'] += 1
                 continue
             cpu = int(self.extra + TIMES * known['seconds'])
-            passed, seconds = test.run({'FOVEA_MUTANT': str(mutant['id'])}, cpu, 60 + 10 * cpu)
+            passed, seconds, _ = test.run({'FOVEA_MUTANT': str(mutant['id'])}, cpu,
+                                          60 + WALL_TIMES * max(known.get('wall', 0), known['seconds']))
             spent += seconds
             if not passed:
                 record['killed'] = name

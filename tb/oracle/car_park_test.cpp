@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "model/common/check.h"
+#include "model/video/scene/car_park.h"
 #include "model/video/scene/plan_score.h"
 #include "model/video/scene/quad.h"
 #include "tb/oracle/view_oracle.h"
@@ -82,6 +83,14 @@ TEST(CarPark, SeenByMountedCamerasItIsThePlan) {
   const auto off = score(mosaic(seen, views_of(wrong)));
   EXPECT_GT(off.line_error, 2 * right.line_error);
   EXPECT_LT(off.psnr_y, right.psnr_y - 1);
+}
+
+// The lines of the bays reach from -2.9 to 2.7 m; near their ends, where other lines cross them, they are not scored.
+TEST(CarPark, ItsBayLinesAreScoredAwayFromTheirEnds) {
+  EXPECT_FALSE(car_park_has_bay_lines(-2.9 + 0.2));
+  EXPECT_TRUE(car_park_has_bay_lines(std::nextafter(-2.9 + 0.2, 0)));
+  EXPECT_TRUE(car_park_has_bay_lines(std::nextafter(2.7 - 0.2, 0)));
+  EXPECT_FALSE(car_park_has_bay_lines(2.7 - 0.2));
 }
 
 TEST(CarPark, SkyAndGroundMeetAtTheHorizon) {

@@ -170,6 +170,26 @@ TEST(LineScore, TellsTheDistanceOfABentLine) {
   EXPECT_NEAR(std::sqrt(upright / (same.places / 2.0)), 0.5, 0.05);
 }
 
+// A line is looked for up to four pixels beside its continuation. Here each is five wide, with its middle in the middle of
+// a pixel: moved by six, it begins four beside.
+TEST(LineScore, FollowsALineThatIsAFewPixelsBeside) {
+  PinholeView thin = view();
+  thin.focal = 165;
+  thin.shift_x = thin.shift_y = 0.5;
+  const LineScore score(thin);
+  const Picture ideal = line_chart_view(thin);
+  EXPECT_EQ(score(ideal).missed, 0u);
+  for (const unsigned pixels : {6u, 8u}) {
+    Picture step = ideal;
+    for (unsigned v = kHeight / 2; v < kHeight; ++v)
+      std::memmove(step.row(v) + 2 * pixels, ideal.row(v), ideal.row_bytes() - 2 * pixels);
+    if (pixels == 6)
+      EXPECT_LT(score(step).missed, 100u);
+    else
+      EXPECT_GT(score(step).missed, 1000u);
+  }
+}
+
 TEST(LineScore, CountsWhatIsNotThere) {
   const LineScore score(view());
   const auto same = score(line_chart_view(view()));
@@ -195,6 +215,18 @@ TEST(LineScore, CountsWhatIsNotThere) {
   EXPECT_NO_THROW(LineScore{aside});
   aside.shift_x = 359.5;
   EXPECT_THROW(LineScore{aside}, UserError);
+}
+
+// A line counts if two pixels and one more are free on each side of it. The left side of square 5 is 3 pixels wide and
+// 188 long here: from the middle, at row 287.5, 94 in each direction.
+TEST(LineScore, ExpectsLinesThatAreWhollyInside) {
+  const auto missed = [](double middle_of_line) {
+    PinholeView aside = view();
+    aside.focal = 100;
+    aside.shift_x = 359.5 - 100 - middle_of_line;
+    return LineScore(aside)(Picture(kWidth, kHeight)).missed;
+  };
+  EXPECT_EQ(missed(4.5), missed(4.5 - 1e-9) + 188);
 }
 
 TEST(PictureQuality, FollowsItsFormulas) {

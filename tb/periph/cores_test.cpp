@@ -130,6 +130,10 @@ TEST_F(AintcTest, PrioritiesZeroAndOneAreFiq) {
   EXPECT_TRUE(core.fiq());
   write(0x00, ~0u);
   EXPECT_FALSE(core.fiq());
+  pulse(2);
+  write(0x30, 0x77777270);  // source 2: now an IRQ, also one that is pending
+  EXPECT_FALSE(core.fiq());
+  EXPECT_TRUE(core.irq());
 }
 
 TEST_F(AintcTest, EntryIsBasePlusNumberPlusOneTimesSize) {

@@ -116,6 +116,18 @@ TEST_F(GpioTest, InputsReadTheBoardAndSwitchesHoldFromTheStart) {
   s.gpio.set_pin(40, false);
 }
 
+// For who stands beside the chip: the level on the wire, whoever drives it.
+TEST_F(GpioTest, APinHasTheLevelOfWhoDrivesIt) {
+  s.gpio.set_pin(40, true);
+  for (const unsigned pin : {8u, 39u, 41u, 72u}) EXPECT_FALSE(s.gpio.pin(pin)) << pin;
+  EXPECT_TRUE(s.gpio.pin(40));
+  bus.write(reg(1, kDir), ~(1u << 8));
+  EXPECT_FALSE(s.gpio.pin(40)) << "an output, which is low";
+  bus.write(reg(1, kSet), 1u << 8);
+  s.gpio.set_pin(40, false);
+  EXPECT_TRUE(s.gpio.pin(40));
+}
+
 TEST_F(GpioTest, OutputsReachTheObserverOnceAChangeWithTheirTime) {
   bus.write(reg(2, kSet), 0x50);
   EXPECT_TRUE(s.outputs.empty());  // still inputs

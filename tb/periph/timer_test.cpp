@@ -176,6 +176,23 @@ TEST_F(TimerTest, SixtyFourBitModeCarriesAndLatchesTheUpperHalf) {
   EXPECT_EQ(s.probe12.last_rise, edge(k + 21));
 }
 
+TEST_F(TimerTest, SixtyFourBitModeNeedsBothHalvesOutOfResetAndEnamode12) {
+  struct Case {
+    std::uint32_t tgcr, tcr;
+    bool counts;
+  };
+  for (const Case& c : {Case{0x1, 2u << 6, false}, Case{0x2, 2u << 6, false}, Case{0x3, 0, false},
+                        Case{0x3, 2u << 22, false}, Case{0x3, 2u << 6, true}}) {
+    SetUp();
+    bus.write(kPrd12, 0xFFFFFFFF);
+    bus.write(kPrd34, 0xFFFFFFFF);
+    bus.write(kTgcr, c.tgcr);
+    bus.write(kTcr, c.tcr);
+    run_until(now() + 1'000'000);
+    EXPECT_EQ(bus.read(kTim12) > 0, c.counts) << c.tgcr << " " << c.tcr;
+  }
+}
+
 TEST_F(TimerTest, ChainedModeDividesByPrd34PlusOne) {
   bus.write(kPrd34, 9);
   bus.write(kPrd12, 4);

@@ -135,6 +135,9 @@ TEST_F(CheckTest, EveryFaultOfABaselineIsNamedWithItsLine) {
   EXPECT_THAT(error(head + "history: []\nmetrics:\n  a: {value: 1, unit: s}\n"), HasSubstr("last part"));
   EXPECT_THAT(error("format: fovea baseline 1\nexperiment: tiny\nmetrics:\n  a: {value: 1, unit: s}\n"),
               HasSubstr("'simulator' is missing"));
+  for (const char* history : {"history: []\n", "history:\n  - commit: c\n    why: w\n"})
+    EXPECT_NO_THROW(read_baseline(dir.write("b.yaml", head + "metrics:\n  a: {value: 1, unit: s}\n" + history)))
+        << history;
 }
 
 TEST_F(CheckTest, OtherCircumstancesAreRefused) {
@@ -328,6 +331,23 @@ TEST_F(ReferenceTest, BlessingRefusesWhatItWouldHide) {
   };
   EXPECT_THAT(error("cpu.cycle: {value: 1, unit: cycles}"), AllOf(HasSubstr("own.yaml:5"), HasSubstr("cpu.cycles?")));
   EXPECT_THAT(error("cpu.cycles: {value: 1, unit: s}"), HasSubstr("unit"));
+}
+
+// A third of the letters may be wrong, and two of a short name.
+TEST(NearestMetricTest, IsTheOneWithTheFewestChanges) {
+  const auto nearest = [](const std::string& name, const std::vector<std::string>& names) {
+    RunFigures run;
+    for (const auto& n : names) run.metrics[n] = {};
+    return nearest_metric(run, name);
+  };
+  EXPECT_EQ(nearest("abcdef", {"abcdXY"}), "abcdXY");
+  EXPECT_EQ(nearest("abcdef", {"abcXYZ"}), "");
+  EXPECT_EQ(nearest("abcdefghi", {"abcdefXYZ"}), "abcdefXYZ");
+  EXPECT_EQ(nearest("abcdefghi", {"abcdeVXYZ"}), "");
+  EXPECT_EQ(nearest("abcdef", {"abcd"}), "abcd");
+  EXPECT_EQ(nearest("abcd", {"abcdef"}), "abcdef");
+  EXPECT_EQ(nearest("abcd", {"abcdefg"}), "");
+  EXPECT_EQ(nearest("abcdef", {"abXYef", "abcdeX", "abcXYf"}), "abcdeX");
 }
 
 TEST(UnifiedDiffTest, IsWhatDiffWouldPrint) {

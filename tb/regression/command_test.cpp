@@ -57,6 +57,40 @@ TEST_F(RegressionCommandTest, EqualRunsEndWithZeroDifferentOnesWithOne) {
   EXPECT_EQ(cli({"compare", a, b, "--only", "nothing"}), 2);
 }
 
+TEST_F(RegressionCommandTest, ThirtyFiguresAreShownAndTheOthersCounted) {
+  for (const unsigned figures : {30u, 31u, 33u}) {
+    RunMaker one = profiled(), two = profiled();
+    for (unsigned n = 0; n < figures; ++n) {
+      one.figure(fmt::format("f.{:02}", n), "1");
+      two.figure(fmt::format("f.{:02}", n), "2");
+    }
+    const std::vector<std::string> words = {"compare", one.write(dir, "one").string(), two.write(dir, "two").string()};
+    EXPECT_EQ(cli(words), 1);
+    EXPECT_THAT(out.str(), HasSubstr(fmt::format("different: {} of", figures)));
+    const std::string rest = fmt::format("\n  {} more figures; --all lists them\n", figures - 30);
+    EXPECT_THAT(out.str(), figures > 30 ? testing::Matcher<std::string>(HasSubstr(rest))
+                                        : Not(HasSubstr("more figures")));
+    auto all = words;
+    all.push_back("--all");
+    EXPECT_EQ(cli(all), 1);
+    EXPECT_THAT(out.str(), AllOf(Not(HasSubstr("more figures")), HasSubstr("f.29")));
+  }
+}
+
+TEST_F(RegressionCommandTest, AFieldThatIsNoNumberIsShownByItsBegin) {
+  RunMaker damaged = profiled();
+  const std::string field = std::string(39, '1') + "x" + std::string(10, '2');
+  damaged.stalls = "dcache,lut,bridge," + field + "\n";
+  damaged.profile.clear();
+  EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("stalls.csv', row 2: '" + field.substr(0, 40) + "...' is not a whole number (cycles)"));
+  for (const char* wrong : {"12x", "x12", "18446744073709551616"}) {
+    damaged.stalls = std::string("dcache,lut,bridge,") + wrong + "\n";
+    EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2) << wrong;
+    EXPECT_THAT(err.str(), HasSubstr(std::string("'") + wrong + "' is not a whole number"));
+  }
+}
+
 TEST_F(RegressionCommandTest, AFigureThatOnlyOneRunHasOrThatChangedItsUnitDiffers) {
   const auto changed = [&](const std::string& value, const std::string& unit) {
     RunMaker r = profiled();
@@ -296,6 +330,19 @@ TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
   EXPECT_THAT(svg,
               AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
   EXPECT_EQ(occurrences(svg, "y=\"22\""), 2u);
+}
+
+// Hashes are cut as git does; of other names 14 letters fit.
+TEST(TrendPlotTest, LongNamesOfCommitsAreCut) {
+  const auto label = [](const std::string& commit) {
+    const std::string svg = trend_svg({{commit, "e", "s", {}, {{"x", {5.0, "1", true}}}}}, {"x"});
+    const auto end = svg.rfind("</text>"), begin = svg.rfind('>', end - 1) + 1;
+    return svg.substr(begin, end - begin);
+  };
+  EXPECT_EQ(label("0123456789abcdef"), "012345678");
+  EXPECT_EQ(label("abcdef012"), "abcdef012");
+  EXPECT_EQ(label("fourteen-chars"), "fourteen-chars");
+  EXPECT_EQ(label("fifteen-letters"), "fifteen-lette…");
 }
 
 TEST(TrendPlotTest, ASingleCommitStandsInTheMiddle) {

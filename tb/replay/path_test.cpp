@@ -202,6 +202,22 @@ TEST(ReplayPathTest, ChangedClocksAreThoseOfOnePll) {
   }
 }
 
+// Keys have whole hertz: one that is less than a hertz from the recorded clock means that one.
+TEST(ReplayPathTest, AKeyThatIsAHertzAwayIsAnotherClock) {
+  const auto duration = [](const Frequency& recorded, const char* key) {
+    trace::TraceInfo info = board_info();
+    info.ddr.frequency = recorded;
+    Listed l;
+    l.records[1] = {read_at(50'000'000'000, 0)};  // where the edges of two clocks a hertz apart are 200 ps apart
+    l.records[1][0].master = Master::kVpfe;
+    return Played(info, l, true, {{"ddr.clock", key}, {"ddr.tREFI", "0cycles"}}).path->duration();
+  };
+  const Frequency whole(243'000'000), half(486'000'001, 2);
+  EXPECT_NE(duration(whole, "243000001Hz"), duration(whole, "243MHz"));
+  EXPECT_NE(duration(whole, "242999999Hz"), duration(whole, "243MHz"));
+  EXPECT_EQ(duration(half, "243000001Hz"), duration(half, "243MHz"));
+}
+
 // Without the crossbar nothing but the SDRAM's bus moves the data: four bytes a clock and edge of it.
 TEST(ReplayPathTest, MemoryOnlyReadsAtTheRateOfTheSdram) {
   for (const char* scheduler : {"ti", "fcfs", "frfcfs"})

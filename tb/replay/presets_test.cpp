@@ -235,6 +235,11 @@ TEST(DdrPresetTest, WhoSetWhatIsKept) {
   const Keyed mobile({"ddr.preset=data_sheet", "ddr.part=mt46h64m16lf"}, info);
   EXPECT_EQ(mobile.origin("ddr.tRFC"), "ddr.preset: mt46h64m16lf, grade 6 (assumed)");
   EXPECT_EQ(mobile.origin("ddr.tRP"), "ddr.preset: mt46h64m16lf, grade 6");
+  for (const char* key : {"ddr.tXP", "ddr.tCKE", "ddr.tXSNR"}) {
+    EXPECT_EQ(mobile.origin(key), "ddr.preset: mt46h64m16lf, grade 6 (assumed)") << key;
+    EXPECT_EQ(s.origin(key), "ddr.preset: mt47h64m16, grade 3") << key;
+  }
+  EXPECT_EQ(mobile.origin("ddr.tXSRD"), "ddr.preset: mt46h64m16lf, grade 6");
   // The trace's clock is exact where its key is not: 15 ns are four clocks of 3.75 ns, not five.
   info.ddr.frequency = Frequency(800'000'000, 3);
   info.params[0].second = "266666667Hz";

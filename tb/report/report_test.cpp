@@ -553,7 +553,44 @@ TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
   EXPECT_GT(alone.size(), 600'000u);  // no smaller than it must be
 }
 
+// With no room at all a picture is shrunk until its shorter side has fewer than four pixels.
+TEST(PictureTest, ShrinkingEndsAtAFewPixels) {
+  for (const auto& [width, height, shrunk] : {std::tuple{32u, 64u, 16u}, {64u, 32u, 16u}, {64u, 64u, 32u}, {63u, 64u, 16u}}) {
+    const TempDir dir;
+    two_frames().write(dir);
+    fs::create_directories(dir / "run/frames");
+    app::write_png(dir / "run/frames/frame_000000.png", picture(width, height, 1));
+    const auto chosen = choose_pictures({load_results(dir / "run", {})}, 1);
+    ASSERT_TRUE(chosen[0].after);
+    EXPECT_EQ(chosen[0].after->shrunk, shrunk) << width << " x " << height;
+    EXPECT_EQ(chosen[0].after->width, width);
+    EXPECT_EQ(chosen[0].after->height, height);
+  }
+}
+
 // Data of the charts.
+
+TEST(FramesTest, AreThoseOfTheFileUpToTwoThousand) {
+  const TempDir dir;
+  const HandMade run = two_frames();
+  const auto frames = [&](std::size_t rows) {
+    std::string text =
+        "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+        "display_start_ns,display_end_ns,dropped,repeated\n"
+        "7,1,9,1000000.000,2000000.000,3000000.000,4000000.000,5000000.000,6500000.000,2,1\n";
+    for (std::size_t n = 1; n < rows; ++n) text += "8,0,,,,,,,,0,0\n";
+    run.write(dir);
+    dir.write("run/frames.csv", text);
+    return json(chart_data(load_results(dir / "run", {}), "")["frames"]);
+  };
+  EXPECT_EQ(frames(2), json::parse(R"([
+      {"frame": 7, "camera": 1, "captured": 9, "capture": [1.0, 2.0], "remap": [3.0, 4.0], "display": [5.0, 6.5],
+       "dropped": 2, "repeated": true},
+      {"frame": 8, "camera": 0, "captured": null, "capture": [null, null], "remap": [null, null],
+       "display": [null, null], "dropped": 0, "repeated": false}])"));
+  EXPECT_EQ(frames(2000).size(), 2000u);
+  EXPECT_EQ(frames(2001).size(), 2000u);
+}
 
 Timeline timeline(std::size_t rows) {
   Timeline t{{"a", "idle"}, {}};

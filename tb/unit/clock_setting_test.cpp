@@ -60,6 +60,39 @@ TEST(ClockSettingTest, PresetsAreThoseOfTheBootLoadersAndTheRulesReachThem) {
   EXPECT_EQ(clock_setting({"297/243"}).pll1.multiplier, 0x51);
 }
 
+// Not any setting with the same clocks: that of the boot loader, to the last divider.
+TEST(ClockSettingTest, APresetIsTakenAsItIs) {
+  const auto all = [](const board::ClockSetting& s) {
+    std::vector<unsigned> out{s.vpss_clk_ctrl};
+    for (const param_pll_t* p : {&s.pll1, &s.pll2}) {
+      out.insert(out.end(), {p->multiplier, p->pre_divider, p->post_divider});
+      out.insert(out.end(), std::begin(p->dividers), std::end(p->dividers));
+    }
+    return out;
+  };
+  unsigned differ = 0;
+  for (const auto& preset : board::kClockPresets) {
+    const std::string name(preset.name);
+    EXPECT_EQ(all(clock_setting({name})), all(preset.setting)) << name;
+    const auto plain = all(preset.setting);
+    differ += all(*find_setting(clock_setting({name}).core(), clock_setting({name}).ddr())) != plain;
+  }
+  EXPECT_GT(differ, 0u) << "some are not what would be found for their clocks";
+}
+
+// Clocks of each time, rounded up and less one: tRFC 127.5 ns, tRP and tRCD 20, tWR 15, tRAS 45, tRC 65, a quarter of
+// tFAW 12.5, tWTR 10; tXSNR 137.5, tRTP 7.5; a refresh each 7.8 us. In clocks: tRASMAX 8 intervals, tXP 3, tXSRD 200,
+// tCKE 4.
+TEST(ClockSettingTest, RegistersOfTheSdramHoldThePartsTimes) {
+  const DdrRegisters slow = ddr_registers(mhz(243)), fast = ddr_registers(mhz(340));
+  EXPECT_EQ(slow.sdtimr, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 | 3u << 3 | 2u);
+  EXPECT_EQ(slow.sdtimr2, 7u << 27 | 2u << 25 | 33u << 16 | 199u << 8 | 1u << 5 | 3u);
+  EXPECT_EQ(slow.sdrcr, 1895u);
+  EXPECT_EQ(fast.sdtimr, 43u << 25 | 6u << 22 | 6u << 19 | 5u << 16 | 15u << 11 | 22u << 6 | 4u << 3 | 3u);
+  EXPECT_EQ(fast.sdtimr2, 7u << 27 | 2u << 25 | 46u << 16 | 199u << 8 | 2u << 5 | 3u);
+  EXPECT_EQ(fast.sdrcr, 2652u);
+}
+
 TEST(ClockSettingTest, OneKeyAloneKeepsTheOtherOfThePreset) {
   expect_right(clock_setting({"297/243", 135'000'000, 0}), mhz(135), mhz(243));
   expect_right(clock_setting({"297/243", 0, 162'000'000}), mhz(297), mhz(162));

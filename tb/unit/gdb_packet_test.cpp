@@ -242,9 +242,19 @@ TEST_F(GdbProtocolTest, StopsSayWhy) {
   EXPECT_EQ(ask("?"), "T05watch:1234;thread:1;");
   protocol.stopped({GdbStop::Reason::kSoftware, 0});
   EXPECT_EQ(ask("?"), "T05thread:1;");  // not before GDB says that it knows
+  protocol.stopped({GdbStop::Reason::kHardware, 0});
+  EXPECT_EQ(ask("?"), "T05thread:1;");
+  EXPECT_NE(ask("qSupported:multiprocess+;hwbreak+").find("PacketSize=4000"), std::string::npos);
+  EXPECT_EQ(ask("?"), "T05hwbreak:;thread:1;");
+  protocol.stopped({GdbStop::Reason::kSoftware, 0});
+  EXPECT_EQ(ask("?"), "T05thread:1;");
   EXPECT_NE(ask("qSupported:multiprocess+;swbreak+;hwbreak+").find("PacketSize=4000"),
             std::string::npos);
   EXPECT_EQ(ask("?"), "T05swbreak:;thread:1;");
+  protocol.stopped({GdbStop::Reason::kRead, 0x20});
+  EXPECT_EQ(ask("?"), "T05rwatch:20;thread:1;");
+  protocol.stopped({GdbStop::Reason::kAccess, 0x30});
+  EXPECT_EQ(ask("?"), "T05awatch:30;thread:1;");
   protocol.stopped({});
   EXPECT_EQ(ask("?"), "T02thread:1;");
   protocol.stopped({GdbStop::Reason::kFailed, 0});

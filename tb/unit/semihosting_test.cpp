@@ -282,6 +282,7 @@ TEST_F(SemihostingTest, CommandLineAndHeapAreThoseOfTheSettings) {
   EXPECT_STREQ(reinterpret_cast<char*>(machine.memory.data()) + kData,
                "prog \"two words\" 'say \"hi\"'");
   EXPECT_EQ(machine.word(kBlock + 4), 27u);
+  EXPECT_EQ(call(0x15, {kData, 28}), 0u) << "27 and the 0 behind them";
   EXPECT_EQ(call(0x15, {kData, 27}), kFailed);
   EXPECT_EQ(call(0x16, {kData}), 0u);
   for (std::uint32_t k = 0; k < 4; ++k) EXPECT_EQ(machine.word(kData + 4 * k), k + 1);

@@ -4,6 +4,38 @@
 namespace fovea::video {
 namespace {
 
+/// Settings that would change the picture and do nothing here are named when capture is switched on, and only then.
+TEST_F(CaptureTest, SettingsThatAreNotModelledAreNamed) {
+  constexpr std::uint32_t CULH = 0x2C, CULV = 0x30;
+  struct Setting {
+    std::uint32_t offset, word, usual;
+    const char* text;
+  };
+  auto& notes = Diagnostics::instance();
+  for (const Setting& s : {Setting{REC656IF, 0, 3, "ISIF without BT.656 embedded syncs"},
+                           Setting{MODESET, 1u << 12 | 1u << 7 | 1u << 2, 2u << 12 | 1u << 7 | 1u << 2,
+                                   "ISIF input other than 8-bit YC"},
+                           Setting{CCDCFG, kUyvy & ~2u, kUyvy, "ISIF packing other than 8 bit"},
+                           Setting{CULH, 0xFF7F, 0xFFFF, "ISIF culling"}, Setting{CULV, 0x7F, 0xFF, "ISIF culling"},
+                           Setting{HSIZE, 1u << 12 | kRowBytes / 32, kRowBytes / 32, "ISIF addresses going down"},
+                           Setting{MODESET, 2u << 12 | 1u << 7 | 1u << 2 | 1, 2u << 12 | 1u << 7 | 1u << 2,
+                                   "ISIF as HD/VD master"}}) {
+    b.regs.write(s.offset, s.word);
+    notes.clear();
+    b.regs.write(SYNCEN, 1);
+    const auto counts = notes.counts();
+    ASSERT_EQ(counts.size(), 1u) << s.text;
+    EXPECT_EQ(counts.begin()->first.first, Diagnostics::Kind::kNotModelled);
+    EXPECT_EQ(counts.begin()->first.second, s.text);
+    b.regs.write(SYNCEN, 0);
+    b.regs.write(s.offset, s.usual);
+    notes.clear();
+    b.regs.write(SYNCEN, 1);
+    EXPECT_TRUE(notes.counts().empty()) << s.text;
+    b.regs.write(SYNCEN, 0);
+  }
+}
+
 TEST_F(CaptureTest, CaptureSwitchedOffInTheLastRowEndsNoFrame) {
   // In a memory that takes the row at once, and in one that never gives it a place.
   for (const Picoseconds latency : {100 * kPsPerNs, 10 * kLine}) {

@@ -484,6 +484,11 @@ TEST(DecoderTest, AClockOffsetIsOfItsCameraEvenIfTheInputChangesBeforeTheNextLin
     return static_cast<double>(clock.edge(n + 27'000'000) - clock.edge(n));
   };
   run_for(kPsPerMs);
+  tvp.set_clock_offset(1, 200);
+  EXPECT_NEAR(second(1), 1e12 / 1.0002, 2) << "at once: that camera is not sent";
+  run_for(kPsPerMs);
+  EXPECT_EQ(second(0), 1e12);
+  tvp.set_clock_offset(1, 0);
   tvp.set_clock_offset(0, 500);
   EXPECT_EQ(second(0), 1e12) << "with the next line";
   ASSERT_TRUE(tvp.i2c_start(0x5D, false));
