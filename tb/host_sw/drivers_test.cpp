@@ -385,16 +385,16 @@ TEST(MultiplexerTest, AllSelectLinesChangeInOneWrite) {
 // are not. The status that is waited for comes at the second look.
 TEST(I2cTest, WaitsEndAfterTwentyMilliseconds) {
   constexpr std::uint32_t kBusy = 0x1000, kReady = 0x38;
-  for (const std::uint32_t first : {kBusy | kReady, 0u}) {  // the bus is taken, the transmitter is not ready
+  for (const bool busy : {true, false}) {  // the bus is taken; the bus is free, but the transmitter is not ready
     for (const std::uint32_t ticks : {480'000u, 480'001u}) {
       RegisterRecorder chip;
       unsigned looks = 0, times = 0;
       chip.on_read = [&](std::uint32_t address) -> std::uint32_t {
-        if (address == 0x01C21008) return looks++ < (first == 0 ? 2 : 1) ? first : kReady;
-        if (address == 0x01C21410) return times++ == 0 ? 0xFFFFFFFF : (first == 0 && times == 2 ? 0xFFFFFFFF : ticks - 1);
-        return 0;
+        if (address == 0x01C21008) return looks++ < (busy ? 1 : 2) ? (busy ? kBusy | kReady : 0) : kReady;
+        if (address != 0x01C21410) return 0;
+        return times++ < (busy ? 1 : 2) ? 0xFFFFFFFF : ticks - 1;  // each wait begins with a look at the timer
       };
-      EXPECT_EQ(i2c_write_register(0x5D, 1, 2), ticks == 480'000 ? I2C_OK : I2C_TIMEOUT) << first << " " << ticks;
+      EXPECT_EQ(i2c_write_register(0x5D, 1, 2), ticks == 480'000 ? I2C_OK : I2C_TIMEOUT) << busy << " " << ticks;
     }
   }
 }

@@ -170,8 +170,8 @@ TEST(LineScore, TellsTheDistanceOfABentLine) {
   EXPECT_NEAR(std::sqrt(upright / (same.places / 2.0)), 0.5, 0.05);
 }
 
-// A line is looked for up to four pixels beside its continuation. Here each is five wide, with its middle in the middle of
-// a pixel: moved by six, it begins four beside.
+// A line is looked for up to four pixels beside its continuation. Here each is five wide, with its middle in the
+// middle of a pixel: moved by six, it begins four beside.
 TEST(LineScore, FollowsALineThatIsAFewPixelsBeside) {
   PinholeView thin = view();
   thin.focal = 165;

@@ -83,7 +83,8 @@ TEST_F(RegressionCommandTest, AFieldThatIsNoNumberIsShownByItsBegin) {
   damaged.stalls = "dcache,lut,bridge," + field + "\n";
   damaged.profile.clear();
   EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2);
-  EXPECT_THAT(err.str(), HasSubstr("stalls.csv', row 2: '" + field.substr(0, 40) + "...' is not a whole number (cycles)"));
+  EXPECT_THAT(err.str(),
+              HasSubstr("stalls.csv', row 2: '" + field.substr(0, 40) + "...' is not a whole number (cycles)"));
   for (const char* wrong : {"12x", "x12", "18446744073709551616"}) {
     damaged.stalls = std::string("dcache,lut,bridge,") + wrong + "\n";
     EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2) << wrong;

@@ -555,7 +555,8 @@ TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
 
 // With no room at all a picture is shrunk until its shorter side has fewer than four pixels.
 TEST(PictureTest, ShrinkingEndsAtAFewPixels) {
-  for (const auto& [width, height, shrunk] : {std::tuple{32u, 64u, 16u}, {64u, 32u, 16u}, {64u, 64u, 32u}, {63u, 64u, 16u}}) {
+  for (const auto& [width, height, shrunk] :
+       {std::tuple{32u, 64u, 16u}, {64u, 32u, 16u}, {64u, 64u, 32u}, {63u, 64u, 16u}}) {
     const TempDir dir;
     two_frames().write(dir);
     fs::create_directories(dir / "run/frames");
