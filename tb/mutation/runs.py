@@ -163,14 +163,14 @@ class Runs:
         return self.each(one, todo, end)
 
     def order(self, mutant):
-        """Tests that reach the mutant, the quick ones first; those of its own layer as if they took a thirtieth: they
+        """Tests that reach the mutant, the quick ones first; those of its own layer as if they took a hundredth: they
         are the likely ones, and what is left when the budget is spent should be others."""
         own = self.tree.areas.own_tests(mutant['area'])
         found = []
         for name in self.tests:
             known = self.state['tests'].get(name)
             if known and known['passed'] and mutant['id'] in self.reached[name]:
-                found.append((known['seconds'] * (1 if own.search(name) else 30), name))
+                found.append((known['seconds'] * (1 if own.search(name) else 100), name))
         return [name for _, name in sorted(found)]
 
     def judge(self, mutant, record):
