@@ -348,6 +348,17 @@ TEST(CrossbarTest, RequestSurvivesAStoppedClock) {
   EXPECT_EQ(b.xbar.next_decision(), (100 + 2) * kEdge) << "edge 6 comes at 100, 8 at 102";
 }
 
+TEST(CrossbarTest, LatenciesOfABridgeAreSixteenEdgesAtMost) {
+  bus::CrossbarParams params;
+  ParamSet set;
+  set.add(params);
+  for (const char* key : {"bus.vpfe.request_latency", "bus.vpfe.response_latency", "bus.arm_d.request_latency"}) {
+    EXPECT_NO_THROW(set.set(key, "0 cycles")) << key;
+    EXPECT_NO_THROW(set.set(key, "16 cycles")) << key;
+    EXPECT_THROW(set.set(key, "17 cycles"), UserError) << key;
+  }
+}
+
 TEST(CrossbarTest, StatisticsSayWhoseTheyAre) {
   const bus::MasterStats stats(Master::kVpfe);
   EXPECT_EQ(stats.prefix(), "bus.vpfe");

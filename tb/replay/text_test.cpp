@@ -123,6 +123,12 @@ TEST(TextTraceTest, LimitsAreWhereTheReadmeHasThem) {
   };
   EXPECT_EQ(labelled(32), "");
   EXPECT_THAT(labelled(33), HasSubstr("a master is declared as"));
+  const auto with = [](char c) {
+    return error_of("# dramtrace 1\n# master 0 window 1 x" + std::string(1, c) + "\n0 0 R 0x0 4\n");
+  };
+  for (const char c : {'a', 'z', 'A', 'Z', '0', '9', '_', '-'}) EXPECT_EQ(with(c), "") << c;
+  for (const char c : {'`', '{', '@', '[', '/', ':', '^', '.', ','})
+    EXPECT_THAT(with(c), HasSubstr("a master is declared as")) << c;
   EXPECT_EQ(error_of(head + "0 0 R 0xFFFFFFFE 2\n"), "");
   EXPECT_THAT(error_of(head + "0 0 R 0xFFFFFFFE 3\n"), HasSubstr("beyond 4 GiB"));
   EXPECT_THAT(error_of(head + "0 0 R 0x100000000 1\n"), HasSubstr("address '0x100000000'"));
