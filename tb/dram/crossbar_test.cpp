@@ -248,6 +248,18 @@ TEST(CrossbarTest, LockedReadKeepsTheSlaveUntilItsMastersNextRequest) {
   }
 }
 
+// The same where the slave takes the read and finds the error later.
+TEST(CrossbarTest, LockedReadThatFailsLateGivesTheSlaveFree) {
+  XbarBench b;
+  b.submit(kA, 5, false, 4, Slave::kConfig, true);
+  b.submit(kB, 6, false, 4, Slave::kConfig);
+  b.run();
+  ASSERT_EQ(winners(b), "A");
+  b.xbar.slave_done(b, *b.sent[0], {40 * kEdge, 40 * kEdge, 0, true});
+  b.run();
+  EXPECT_EQ(winners(b), "AB");
+}
+
 // The read of an SWP that ends in a bus error is not followed by a write: the slave is free for others.
 TEST(CrossbarTest, LockedReadThatFailsGivesTheSlaveFree) {
   XbarBench b;

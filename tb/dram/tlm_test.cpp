@@ -182,6 +182,21 @@ std::string simulate(bool strict, std::vector<std::uint64_t>& ends, unsigned& re
   record += "ended " + std::to_string(b.initiator.ended) + " open " +
             std::to_string(b.initiator.not_released) + " protocol errors " +
             std::to_string(b.initiator.protocol_errors) + " wrong data " + std::to_string(wrong) + '\n';
+  // Without time, over the bounds of bursts; then beyond the end of the memory.
+  std::vector<unsigned char> data(150), back(150);
+  for (unsigned k = 0; k < data.size(); ++k) data[k] = static_cast<unsigned char>(k + 1);
+  const auto debug = [&b](tlm::tlm_command command, std::uint32_t address, std::vector<unsigned char>& bytes) {
+    tlm::tlm_generic_payload p;
+    p.set_command(command);
+    p.set_address(address);
+    p.set_data_ptr(bytes.data());
+    p.set_data_length(static_cast<unsigned>(bytes.size()));
+    return std::to_string(b.initiator.socket->transport_dbg(p)) + ' ';
+  };
+  record += "debug " + debug(kWr, kSdram + 0x9003, data);
+  record += debug(kRd, kSdram + 0x9003, back);
+  record += back == data ? "equal " : "different ";
+  record += debug(kRd, kSdram + (1u << 31) - 16, back) + '\n';
   return record;
 }
 
@@ -203,6 +218,10 @@ TEST(ForeignTlmTest, DataArriveAndPhasesFollowTheStandard) {
   EXPECT_NE(records[0].find("ended " + n + " open 0 protocol errors 0 wrong data 0\n"),
             std::string::npos)
       << records[0].substr(records[0].find("ended"));
+}
+
+TEST(ForeignTlmTest, DebugTransportMovesAllBytes) {
+  EXPECT_EQ(records[0].substr(records[0].find("debug")), "debug 150 150 equal 0 \n");
 }
 
 TEST(ForeignTlmTest, StrictAndDefaultSynchronisationGiveTheSameTimes) {

@@ -191,7 +191,10 @@ TEST(GdbMastersTest, WatchesNameMasterTimeAndPlace) {
   std::sort(hits.begin(), hits.end(), [](auto& x, auto& y) { return x.pa < y.pa; });
   EXPECT_EQ(hits[0].master, Master::kVpbe);
   EXPECT_EQ(hits[0].pa, 0x103Fu);
+  EXPECT_EQ(hits[0].bytes, 1u);
   EXPECT_EQ(hits[1].master, Master::kArmD);
+  EXPECT_EQ(hits[1].pa, 0x1080u);
+  EXPECT_EQ(hits[1].va, 0x1080u) << "as far into the range as the access";
 }
 
 struct Counter : MemObserver {

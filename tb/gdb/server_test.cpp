@@ -1,6 +1,7 @@
 // The GDB server over real connections: one debugger, acknowledgements, and anything else that may
 // arrive.
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -92,6 +93,21 @@ TEST_F(GdbServerTest, ASecondDebuggerIsRefusedAndTheFirstGoesOn) {
   EXPECT_EQ(second.ask(kWhy, "#"), "");
   EXPECT_TRUE(second.closed);
   EXPECT_NE(first.ask(kWhy, "#").find(kStopped), std::string::npos);
+}
+
+// Programs that Fovea starts (ffmpeg, children of a study) must not keep the port or a debugger's connection.
+TEST_F(GdbServerTest, ItsSocketsEndWithAnExec) {
+  Client client(server.port());
+  EXPECT_NE(client.ask(kWhy, "#").find(kStopped), std::string::npos);
+  unsigned sockets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (std::filesystem::read_symlink(entry, gone).string().starts_with("socket:")) {
+      ++sockets;
+      EXPECT_TRUE(::fcntl(std::stoi(entry.path().filename()), F_GETFD) & FD_CLOEXEC) << entry;
+    }
+  }
+  EXPECT_GE(sockets, 3u) << "the listener's, the connection's, and the client's here";
 }
 
 TEST_F(GdbServerTest, APortThatIsTakenIsSaidAndLeavesNothingOpen) {

@@ -61,6 +61,8 @@ set var $spsr = 0x10
 print/x $spsr
 set var $far = 0x1234
 print/x $far
+set var $control = $control | 0x4000
+print/x $control & 0x4000
 print/x $sp_svc == $sp
 set var $sp_irq = 0x4000
 print/x $sp_irq
@@ -72,8 +74,8 @@ print watched
 continue
 G
   # 1 + 4 + 7 + 10 + 13 + 16, and leaf(100) for leaf(6); the status is its low seven bits.
-  end 96 '\$1 = 6' '\$2 = 100' 'Old value' '\$3 = 0x10' '\$4 = 0x1234' '\$5 = 0x1' \
-    '\$6 = 0x4000' '\$7 = 452'
+  end 96 '\$1 = 6' '\$2 = 100' 'Old value' '\$3 = 0x10' '\$4 = 0x1234' '\$5 = 0x4000' \
+    '\$6 = 0x1' '\$7 = 0x4000' '\$8 = 452'
   grep -q 'sum 352 watched 452 limit 7' "patch$memory.out" || fail "patch: $(cat "patch$memory.out")"
 done
 

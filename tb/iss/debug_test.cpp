@@ -366,6 +366,21 @@ TEST(CoreControlTest, TwoToolsWatchOneCoreAndEachIsReleasedAlone) {
   EXPECT_EQ(seen, (std::vector<std::uint32_t>{loop, loop})) << "gone before the third round";
 }
 
+TEST(CoreControlTest, ClearEndsWatchpointsAndBreakpoints) {
+  ControlledMachine m;
+  const auto p = assemble(std::string(kLoop) + "\n svc #2\n .ltorg\n", 0);
+  m.control.on_stop = [&](const CoreControl::Stop& s) {
+    m.pcs.push_back(m.core.reg(15));
+    m.addresses.push_back(s.address);
+    m.control.clear();
+  };
+  m.control.set_watch(kData, 12, CoreControl::Watch::kRead);
+  m.control.set_breakpoint(p.symbols.at("here"));
+  m.execute(kLoop);
+  EXPECT_EQ(m.pcs, std::vector<std::uint32_t>{p.symbols.at("loop")}) << "not at the second word, nor at the breakpoint";
+  EXPECT_EQ(m.addresses, std::vector<std::uint32_t>{kData});
+}
+
 TEST(SwiTest, HandlersOfSwisAreAskedInOrderUntilOneAnswers) {
   DebugMachine m;
   m.svc_handling.reset();

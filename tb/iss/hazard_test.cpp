@@ -91,6 +91,10 @@ TEST_F(HazardTest, DirtyHalfUnderARead) {
   EXPECT_EQ(h.pc, bench.handler(Do::kStore));
   EXPECT_GE(h.after - h.before, 300'000u);
   EXPECT_LT(h.after - h.before, 600'000u);
+  // Named is the store that made the half dirty, not a later one of the same or of the other half.
+  EXPECT_EQ(counts({fill, store, {Do::kStoreByte, kLine + 20, 1}, {Do::kStoreByte, kLine + 16, 1},
+                    dma(false, kLine + 16, 16, 300'000)}), (Counts{0, 1, 0, 0, 0}));
+  EXPECT_EQ(bench.places.back().pc, bench.handler(Do::kStore));
   // The other half, the neighbouring lines, and after a clean.
   EXPECT_EQ(counts({fill, store, dma(false, kLine, 16)}), kNone);
   EXPECT_EQ(counts({fill, store, dma(false, kLine + 12, 8)}), (Counts{0, 1, 0, 0, 0}));

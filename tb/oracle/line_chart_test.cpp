@@ -217,6 +217,30 @@ TEST(LineScore, CountsWhatIsNotThere) {
   EXPECT_THROW(LineScore{aside}, UserError);
 }
 
+// Two dark pixels within a line are bridged, from whichever side it is met. Here lines are six wide, and every second row
+// of the upright ones lacks two pixels: of one the middle ones; of another those right of the left three, which moves
+// the centre of these rows by half a pixel.
+TEST(LineScore, BridgesTwoDarkPixelsWithinALine) {
+  PinholeView wide = view();
+  wide.focal = 200;
+  const LineScore score(wide);
+  const Picture ideal = line_chart_view(wide);
+  const std::uint8_t dark = ideal.row(kHeight / 2)[2 * (kWidth / 2) + 1];
+  for (const int right : {0, 1}) {
+    Picture holed = ideal;
+    for (int n = -7; n <= 7; ++n) {
+      if (n == 0) continue;
+      const double half = (std::abs(n) * 0.2 - 0.06) * 200 - 3;
+      for (unsigned v = 1; v < kHeight; v += 2)
+        if (std::abs(v - (kHeight - 1) / 2.0) < half)
+          for (const int u : {359 + 40 * n + right, 360 + 40 * n + right}) holed.row(v)[2 * u + 1] = dark;
+    }
+    const auto bridged = score(holed);
+    EXPECT_EQ(bridged.places, score(ideal).places);
+    EXPECT_LT(bridged.straightness, right == 0 ? 0.05 : 0.26);
+  }
+}
+
 // A line counts if two pixels and one more are free on each side of it. The left side of square 5 is 3 pixels wide and
 // 188 long here: from the middle, at row 287.5, 94 in each direction.
 TEST(LineScore, ExpectsLinesThatAreWhollyInside) {

@@ -312,6 +312,10 @@ TEST_F(UartTest, TellsWhenItCanReceiveAndHowLongAByteTakes) {
   bus.write(kPwremu, 0x6001);
   EXPECT_TRUE(s.uart.can_receive());
   EXPECT_GT(told, 0u);
+  for (const std::uint32_t divisor : {0u, 1u, 2u}) {
+    bus.write(0x20, divisor);
+    EXPECT_EQ(s.uart.can_receive(), divisor != 0) << divisor;
+  }
   s.uart.on_ready = nullptr;
 }
 

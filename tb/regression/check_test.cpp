@@ -89,6 +89,18 @@ TEST_F(CheckTest, AnotherUnitFails) {
   EXPECT_EQ(f.words, "the unit is 1, in the baseline s");
 }
 
+TEST_F(CheckTest, AFailureSaysWhatIsAllowed) {
+  EXPECT_THAT(finding("time: {value: 99, unit: 1}").words, testing::EndsWith("allowed: no deviation"));
+  EXPECT_THAT(finding("time: {value: 99, unit: 1, worse: higher}").words,
+              testing::EndsWith("allowed: no deviation upwards"));
+  EXPECT_THAT(finding("time: {value: 101, unit: 1, worse: lower}").words,
+              testing::EndsWith("allowed: no deviation downwards"));
+  EXPECT_THAT(finding("time: {value: 90, unit: 1, tolerance: 5%, worse: higher}").words,
+              testing::EndsWith("allowed: 5.0 % higher"));
+  EXPECT_THAT(finding("time: {value: 110, unit: 1, tolerance: 1% or 2, worse: lower}").words,
+              testing::EndsWith("allowed: 1.0 % or 2.0 lower"));
+}
+
 TEST_F(CheckTest, AFigureWithoutValueIsNotANumber) {
   EXPECT_EQ(finding("none: {value: null, unit: s}").verdict, Verdict::kPass);
   EXPECT_EQ(finding("none: {value: 0, unit: s}").verdict, Verdict::kFail);

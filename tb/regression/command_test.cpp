@@ -316,6 +316,10 @@ TEST(TrendPlotTest, CurvesAreInProportion) {
   // 720 wide from 96 on; 110 high from 64 on; 10 % are left free at the ends.
   EXPECT_THAT(svg, HasSubstr("<path d=\"M96.0 169.0L456.0 119.0L816.0 69.0\""));
   EXPECT_THAT(svg, AllOf(HasSubstr("&lt;e&gt;"), Not(HasSubstr("<e>")), Not(HasSubstr(">y<"))));
+  EXPECT_THAT(svg, Not(HasSubstr("change since"))) << "one experiment: values";
+  // The middle, 2, stands at half of 110; letters stand on a line 4 below.
+  EXPECT_THAT(svg, AllOf(HasSubstr("y1=\"119.0\" y2=\"119.0\""),
+                         HasSubstr("<text x=\"88\" y=\"123.0\" text-anchor=\"end\" fill=\"#404040\">2</text>")));
 }
 
 // Several experiments: as changes. 10 -> 11 and 1,000 -> 900 are +10 % and -10 % of the same panel.
@@ -331,6 +335,15 @@ TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
   EXPECT_THAT(svg,
               AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
   EXPECT_EQ(occurrences(svg, "y=\"22\""), 2u);
+}
+
+// What hardly changes is drawn in the middle: the panel then has half a per cent to each side, of which 90 % are named.
+TEST(TrendPlotTest, CurvesThatDoNotChangeAreDrawnInTheMiddle) {
+  std::vector<TrendLine> lines;
+  for (const char* commit : {"c1", "c2"})
+    for (const char* experiment : {"a", "b"}) lines.push_back({commit, experiment, "s", {}, {{"x", {7.0, "1", true}}}});
+  const std::string svg = trend_svg(lines, {"x"});
+  EXPECT_THAT(svg, AllOf(HasSubstr("M96.0 119.0L816.0 119.0"), HasSubstr(">+0.45 %<"), HasSubstr(">-0.45 %<")));
 }
 
 // Hashes are cut as git does; of other names 14 letters fit.

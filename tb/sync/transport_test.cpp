@@ -91,6 +91,7 @@ class SlowSlave : public sc_core::sc_module, public MemTargetIf {
   static constexpr Picoseconds kBusy = 400'000, kAnswer = 3'000'000;
   MemTargetSocket<32> socket{"socket"};
   std::string came;
+  bool fails = false;  ///< each request ends in an error, a read with something in its data
   explicit SlowSlave(sc_core::sc_module_name name) : sc_module(name) {
     socket.bind(*this);
     SC_HAS_PROCESS(SlowSlave);
@@ -121,6 +122,8 @@ class SlowSlave : public sc_core::sc_module, public MemTargetIf {
     MemRequest& r = *requests_.front().first;
     requests_.pop_front();
     if (!requests_.empty()) answer_.at(requests_.front().second);
+    r.error = fails;
+    if (fails && !r.write) std::fill_n(r.data, r.bytes, std::uint8_t{0xEE});
     MemPhase phase = MemPhase::kResponse;
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
     socket->nb_transport_bw(r, phase, delay);
@@ -152,6 +155,64 @@ std::string at_a_slow_slave(bool strict) {
   two.read(kRegisters + 4, 4);
   sc_core::sc_start(ps_time(10 * kPsPerUs));
   return slave.came + done;
+}
+
+/// What a master gets of a read and of a write that fail.
+std::string failed_data() {
+  bus::CrossbarParams params;
+  mem::DdrParams ddr;
+  bus::Scr scr("scr", params, ddr, {}, true);
+  ClockSignal clock("clock", Frequency(125'000'000));
+  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority("priority", kMasterCount);
+  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
+  scr.clk(clock);
+  SlowSlave slave("slave");
+  slave.fails = true;
+  scr.config_socket.bind(slave.socket);
+  BurstMaster reader("reader", Master::kEdmaTc0Read, 1), writer("writer", Master::kEdmaTc0Write, 1);
+  reader.socket.bind(*scr.target[index(Master::kEdmaTc0Read)]);
+  writer.socket.bind(*scr.target[index(Master::kEdmaTc0Write)]);
+  std::string done;
+  const auto note = [&](const BurstMaster::Completion& c) {
+    done += c.write ? " written" : " read";
+    for (const std::uint8_t byte : c.data) done += " " + std::to_string(byte);
+    if (c.error) done += " error";
+  };
+  reader.on_done = writer.on_done = note;
+  const std::array<std::uint8_t, 4> data{1, 2, 3, 4};
+  sc_core::sc_start(ps_time(100'000));
+  reader.read(kRegisters, 4);
+  writer.write(kRegisters + 4, data);
+  sc_core::sc_start(ps_time(10 * kPsPerUs));
+  return done;
+}
+
+// A slave may have put something there before it found the error.
+TEST(TransportTest, AReadThatFailsHasZerosForData) {
+  EXPECT_EQ(in_child(0, failed_data), " read 0 0 0 0 error written 1 2 3 4 error");
+}
+
+/// Decisions that are left when all up to the present time were asked for, at the time of the next one.
+std::string settled() {
+  MemorySystem system({}, true, Frequency(250'000'000), Frequency(125'000'000));
+  BurstMaster one("one", Master::kEdmaTc0Read, 1);
+  one.socket.bind(*system.scr.target[index(Master::kEdmaTc0Read)]);
+  sc_core::sc_start(ps_time(100'000));
+  one.read(kSdram, 16);
+  unsigned times = 0, wrong = 0;
+  for (Picoseconds next; times < 20 && (next = system.scr.memory().next_event()) != kNever; ++times) {
+    if (next > kernel_time()) sc_core::sc_start(ps_time(next - kernel_time()));
+    system.scr.settle();
+    wrong += system.scr.memory().next_event() <= kernel_time();
+  }
+  return std::to_string(wrong) + " of " + std::to_string(times);
+}
+
+// What is decided at the present time is part of the figures of the present time.
+TEST(TransportTest, SettlingTakesTheDecisionsOfThePresentTime) {
+  const std::string result = in_child(0, settled);
+  EXPECT_TRUE(result.starts_with("0 of ")) << result;
+  EXPECT_NE(result, "0 of 0");
 }
 
 // The second request follows when the slave has room, not when it has answered the first.

@@ -110,6 +110,8 @@ TEST(ClockSettingTest, LimitsHoldAndOneStepBeyondDoesNot) {
   EXPECT_TRUE(find_setting(Frequency(270'000'000, 32), mhz(243)));
   EXPECT_FALSE(find_setting(Frequency(268'500'000, 32), mhz(243)))
       << "179/32 of 48 MHz can be made";
+  // The largest pre-divider, where no multiple of the clock can be the output: 771 MHz are too many.
+  EXPECT_TRUE(find_setting(Frequency(48'000'000ull * 257, 32), mhz(243)));
   // 48 MHz M / N with N = 32 and, by 33, not.
   EXPECT_TRUE(find_setting(Frequency(48'000'000ull * 199, 32), mhz(243)));
   EXPECT_FALSE(find_setting(Frequency(48'000'000ull * 205, 33), mhz(243)));

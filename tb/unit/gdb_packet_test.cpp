@@ -261,6 +261,17 @@ TEST_F(GdbProtocolTest, StopsSayWhy) {
   EXPECT_EQ(ask("?"), "T06thread:1;");
 }
 
+TEST_F(GdbProtocolTest, FeaturesAreWholeWords) {
+  protocol.stopped({GdbStop::Reason::kSoftware, 0});
+  for (const auto& [features, known] : {std::pair{"swbreak+", true}, {"xml=arm;swbreak+", true}, {"swbreak-", false},
+                                        {"swbreak", false}, {"noswbreak+", false}, {"wbreak+", false}}) {
+    ask("qSupported:" + std::string(features));
+    EXPECT_EQ(ask("?"), known ? "T05swbreak:;thread:1;" : "T05thread:1;") << features;
+  }
+  ask("qSupported:");
+  EXPECT_EQ(ask("?"), "T05thread:1;");
+}
+
 TEST_F(GdbProtocolTest, DescriptionsComeInPieces) {
   std::string text;
   for (bool more = true; more;) {

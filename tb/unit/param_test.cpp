@@ -44,6 +44,22 @@ class ParamTest : public testing::Test {
   ParamSet set;
 };
 
+// Of a key's last part a third of the letters may be wrong, and two of a short one; other parts that are right do not
+// count.
+TEST_F(ParamTest, TheNearestKeyIsTheOneWithTheFewestChanges) {
+  struct Group : ParamGroup {
+    Group() : ParamGroup("bridge") {}
+    IntParam a{*this, "abcdefghi", IntParam::Unit::kCount, 3, 0, 10, "a", Origin::kChoice, ""};
+    IntParam b{*this, "vwxyz", IntParam::Unit::kCount, 3, 0, 10, "b", Origin::kChoice, ""};
+  } group;
+  set.add(group);
+  EXPECT_EQ(set.nearest("bridge.abcdefXYZ"), "bridge.abcdefghi");
+  EXPECT_EQ(set.nearest("bridge.abcdeWXYZ"), "");
+  EXPECT_EQ(set.nearest("bridge.vwxAB"), "bridge.vwxyz");
+  EXPECT_EQ(set.nearest("bridge.vwABC"), "");
+  EXPECT_EQ(set.nearest("bridg.vwxyz"), "bridge.vwxyz");
+}
+
 TEST_F(ParamTest, TimeIsKeptInPicoseconds) {
   set.set("block.time", "12.5ns");
   EXPECT_EQ(params.time(), 12'500u);

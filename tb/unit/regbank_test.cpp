@@ -55,6 +55,13 @@ TEST_F(RegBankTest, WriteOnlyBitsReachTheCallbackAndReadAsZero) {
   EXPECT_EQ(read(0) & 0x0100'0000u, 0u);
 }
 
+TEST_F(RegBankTest, AReadOfAPartHasOnlyItsBytes) {
+  write(8, 0xFFFF'FFFF);
+  for (const std::uint32_t at : {8u, 9u, 10u, 11u}) EXPECT_EQ(read(at, 1), 0xFFu) << at;
+  for (const std::uint32_t at : {8u, 10u}) EXPECT_EQ(read(at, 2), 0xFFFFu) << at;
+  EXPECT_EQ(read(8, 4), 0xFFFF'FFFFu);
+}
+
 TEST_F(RegBankTest, ByteLanesAreMergedAndShifted) {
   write(0x0a, 0xaa, 1);
   EXPECT_EQ(read(8), 0x11aa'3344u);
