@@ -217,9 +217,9 @@ TEST(LineScore, CountsWhatIsNotThere) {
   EXPECT_THROW(LineScore{aside}, UserError);
 }
 
-// Two dark pixels within a line are bridged, from whichever side it is met. Here lines are six wide, and every second row
-// of the upright ones lacks two pixels: of one the middle ones; of another those right of the left three, which moves
-// the centre of these rows by half a pixel.
+// Two dark pixels within a line are bridged, from whichever side it is met. Here lines are six wide, and every second
+// row of the upright ones lacks two pixels: of one the middle ones; of another those right of the left three, which
+// moves the centre of these rows by half a pixel.
 TEST(LineScore, BridgesTwoDarkPixelsWithinALine) {
   PinholeView wide = view();
   wide.focal = 200;
