@@ -169,6 +169,8 @@ idle camera.video_fov 90deg
 acts clocks.arm 270MHz EARLY
 acts clocks.ddr 216MHz EARLY
 acts clocks.preset 297/270 EARLY
+acts clocks.preset 270/216 clocks.ddr=162MHz EARLY
+acts clocks.preset 297/270 clocks.arm=270MHz EARLY
 idle clocks.preset 297/270 clocks.arm=270MHz clocks.ddr=216MHz
 acts cpu.ahb_ratio 3 EARLY
 acts cpu.cache_op_cycles 2cycles

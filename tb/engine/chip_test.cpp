@@ -93,6 +93,9 @@ TEST_F(Chip, WhoLooksIntoMemorySeesItFromItsFirstByteOn) {
   word(0) = 0x7265'7469;
   EXPECT_THAT(board->peek(0x8000'0000, 5), testing::ElementsAre('s', 'd', 'r', 'a', 'm'));
   EXPECT_THAT(board->peek(kRam, 4), testing::ElementsAre('i', 't', 'e', 'r'));
+  board->load({0x8000'0000, {'i', 'm', 'a', 'g', 'e'}});
+  EXPECT_THAT(board->peek(0x8000'0000, 5), testing::ElementsAre('i', 'm', 'a', 'g', 'e'));
+  EXPECT_THAT(board->peek(kRam, 4), testing::ElementsAre('i', 't', 'e', 'r'));
 }
 
 TEST_F(Chip, AJobRaisesItsInterrupt) {

@@ -288,7 +288,11 @@ TEST(WatchdogTest, OnlyItsOwnResetIsSaidToBeItsOwn) {
 
 TEST(UartTest, DivisorFormatAndText) {
   RegisterRecorder chip;
+  chip.values[0x01C20004] = 0xF;     // interrupts of whoever used it before
+  chip.values[0x01C20010] = 0x10;    // its loopback
   uart_init(UART_DIVISOR_115200);
+  EXPECT_EQ(chip.values[0x01C20004], 0u);
+  EXPECT_EQ(chip.values[0x01C20010], 0u);
   EXPECT_EQ(chip.values[0x01C20020], 13u);  // 24 MHz / 16 / 13 = 115385
   EXPECT_EQ(chip.values[0x01C2000C], 3u);
   EXPECT_EQ(chip.values[0x01C20030], 0x6001u);

@@ -593,6 +593,24 @@ TEST(FramesTest, AreThoseOfTheFileUpToTwoThousand) {
   EXPECT_EQ(frames(2001).size(), 2000u);
 }
 
+// The detailed view begins with the first capture, remap or display of the first frames and ends with their last.
+TEST(FramesTest, TheDetailedViewIsOfTheFirstFrames) {
+  const TempDir dir;
+  two_frames().write(dir);
+  std::string frames =
+      "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+      "display_start_ns,display_end_ns,dropped,repeated\n"
+      "0,0,0,2000000.000,3000000.000,3000000.000,4000000.000,4000000.000,5000000.000,0,0\n"
+      "1,0,,,,,,6000000.000,7000000.000,0,1\n",
+              timeline = "start_ns,end_ns,vpfe.read_bytes,vpfe.write_bytes\n";
+  for (int ms = 0; ms < 10; ++ms) timeline += fmt::format("{0}000000.000,{1}000000.000,0,{0}\n", ms, ms + 1);
+  dir.write("run/frames.csv", frames);
+  dir.write("run/timeline.csv", timeline);
+  const auto data = chart_data(load_results(dir / "run", {}), "")["timeline"];
+  EXPECT_EQ(data["whole"]["edges_ms"].size(), 11u);
+  EXPECT_EQ(json(data["detail"]["edges_ms"]), json::parse("[2.0, 3.0, 4.0, 5.0, 6.0, 7.0]"));
+}
+
 Timeline timeline(std::size_t rows) {
   Timeline t{{"a", "idle"}, {}};
   for (std::size_t i = 0; i < rows; ++i)

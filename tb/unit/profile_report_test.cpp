@@ -229,6 +229,22 @@ TEST(CodePlacesTest, WhatIsChangedIsFoundAndNothingElse) {
   }
 }
 
+// Also where one begins at the end of another.
+TEST(ProgramFunctionsTest, EachFunctionOfTheSymbolTableIsOne) {
+  const ElfImage image = ElfImage::load(FIXTURE_PLACES ".elf");
+  const ElfImage* const programs[] = {&image};
+  std::map<std::uint32_t, std::uint32_t> ends, expected;
+  for (const auto& f : program_functions(programs)) ends[f.begin] = f.end;
+  unsigned adjacent = 0;
+  for (const ElfSymbol& s : image.symbols())
+    if (s.function && s.size) expected[s.address] = s.address + s.size;
+  for (const auto& [begin, end] : expected) {
+    EXPECT_EQ(ends[begin], end) << std::hex << begin;
+    adjacent += expected.contains(end);
+  }
+  EXPECT_GT(adjacent, 0u) << "the fixture must have functions side by side";
+}
+
 TEST_F(ProfileReportTest, FunctionsLieWhereTheProgramHasThem) {
   const ElfImage* const programs[] = {&image};
   const ElfSymbol* const outer = image.find("outer");

@@ -60,7 +60,10 @@ TEST(ExecRegionsTest, HeapAndStackOfTheMemoryMap) {
   const ExecMap map = program.map(128u << 20);
   const RegionMap regions = exec_regions(program, map, std::vector<MemoryRegion>{{"registers", 0x2000'0000, 0x8000}});
   EXPECT_EQ(name_at(regions, map.free_end - 4), "stack");
+  EXPECT_NE(name_at(regions, map.free_end), "stack");
+  EXPECT_EQ(name_at(regions, map.heap_limit()), "stack");
   EXPECT_EQ(name_at(regions, map.heap_limit() - 4), "heap");
+  EXPECT_EQ(name_at(regions, map.free_base), "heap");
   EXPECT_EQ(name_at(regions, 0x100), "itcm");
   EXPECT_EQ(name_at(regions, 0x1'0100), "dtcm");
   EXPECT_EQ(name_at(regions, 0x2000'0004), "registers");
