@@ -97,6 +97,9 @@ expect bad_until 2 "^fovea: error: key 'run.until': 'uartt:x' is not a condition
 run "$out/small.yaml" -s run.until=uartt:x -s run.frames=2 2>&1 | grep warning && fail 'a warning before run.until is refused'
 
 # Keys without effect, and calibrations: OpenCV's file for camera and firmware, of another picture.
+# Camera 0 is on that input; of one camera, a second one's is no matter.
+expect idle_input 0 "'camera.1.input' is set \(command line\) but has no effect" -- \
+  run "$out/small.yaml" -s camera.1.input=vi_2_b
 expect no_effect 0 "warning \(configuration\): 'lens.fov' is set \(command line\) but has no effect with lens.mapping = kannala" \
   -- run "$out/small.yaml" -s lens.mapping=kannala_brandt -s lens.fov=10deg
 grep -q '"kind": "configuration", "what": "'"'lens.fov'" "$out/run/stats.json" || fail 'no warning in stats.json'

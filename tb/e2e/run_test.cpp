@@ -567,6 +567,16 @@ TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
   }
 }
 
+// A run that ends by something else than frames is measured from its start on, the firmware's own start included.
+TEST(RunTest, ARunUntilATimeIsMeasuredAsAWhole) {
+  const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.until", "time:400ms"}});
+  ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
+  EXPECT_NEAR(real(r, "frame.window"), 0.4, 1e-9);
+  // All of it at 297 MHz, but for some milliseconds of 24 MHz at the beginning.
+  EXPECT_GT(count(r, "cpu.cycles"), 297'000'000u * 39 / 100);
+  EXPECT_LE(count(r, "cpu.cycles"), 297'000'000u * 40 / 100 + 100);
+}
+
 TEST(RunTest, StoppedRunHasTheRateOfItsWholeFrames) {
   const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "1000"}}, false,
                      510 * kPsPerMs);

@@ -83,6 +83,9 @@ holds "$out/e.stl" '0: write 0x0
 3: read 0x40
 3: (32) read 0x80
 17: write 0xc0'
+said='cannot hold priorities, locks, critical words'
+convert "$out/d.txt" -o "$out/e.stl" --to dramsys-stl --clock 300MHz 2>&1 | grep -q "$said" && fail 'it has none'
+expect lost 0 "$said" -- convert "$source/traces/bus/paper-pal.trace" -o "$out/p.stl" --to dramsys-stl --clock 300MHz
 expect rstl 0 -- convert "$out/e.stl" -o "$out/e.rstl" --to dramsys-rstl --clock 300MHz
 holds "$out/e.rstl" '0: write 0x0
 3: read 0x40

@@ -171,6 +171,8 @@ TEST(RunWordsTest, FitOneScreen) {
   EXPECT_THAT(text, HasSubstr("\nbudget  40.0 ms"));
   EXPECT_THAT(text, HasSubstr("\ntimes   a remap 28.66 ms (28.66 to 28.66), capture to display 28.66 ms"));
   EXPECT_THAT(text, HasSubstr("\nSDRAM   data bus busy 17.2 %, no request queued 66.1 %, reads 158.5 MB/s"));
+  EXPECT_THAT(text, HasSubstr("83.1 % of the"));
+  EXPECT_THAT(text, HasSubstr("needed no new row"));
   EXPECT_THAT(text, HasSubstr("\nhost    12.35 s, 0.93x real time, 41.2 million instructions a second, 566 MB of"));
   EXPECT_THAT(text, Not(HasSubstr("binds")));
 }
