@@ -15,6 +15,7 @@
 #include "tb/iss/assembler.h"
 #include "tb/sync/in_child.h"
 #include "tb/sync/memory_system.h"
+#include "tb/sync/reader.h"
 
 namespace fovea::sync {
 namespace {
@@ -112,35 +113,6 @@ TEST(HorizonLimitTest, TheCoreSeesAnInterruptAtTheFirstBoundaryStrictlyBehindIt)
   }
   EXPECT_GE(boundaries, 3u);
 }
-
-/// Reads once, at a given time.
-class Reader : public bus::LookaheadInitiator<Reader> {
- public:
-  Picoseconds first = 0;
-  Reader(sc_core::sc_module_name name, std::uint32_t address, Picoseconds at)
-      : LookaheadInitiator(name, 1), address_(address), at_(at) {
-    SC_HAS_PROCESS(Reader);
-    SC_THREAD(run);
-  }
-
- private:
-  friend bus::LookaheadInitiator<Reader>;
-  void run() {
-    enter();
-    sleep_until(at_);
-    std::array<std::uint8_t, 16> data{};
-    Transaction tx;
-    tx.address = address_;
-    tx.data = data.data();
-    tx.bytes = static_cast<std::uint8_t>(data.size());
-    submit(tx, at_);
-    finish(tx);
-    first = tx.first;
-    leave();
-  }
-  std::uint32_t address_;
-  Picoseconds at_;
-};
 
 constexpr Picoseconds kScrPeriod = 8000;  // 125 MHz
 constexpr std::uint32_t kSdram = 0x8000'0000;

@@ -9,39 +9,12 @@
 #include "model/common/burst_master.h"
 #include "tb/sync/in_child.h"
 #include "tb/sync/memory_system.h"
+#include "tb/sync/reader.h"
 
 namespace fovea::sync {
 namespace {
 
 constexpr std::uint32_t kSdram = 0x8000'0000, kRegisters = 0x01C0'0000;
-
-/// Reads once, at a given time; asks for it so much earlier.
-class Reader : public bus::LookaheadInitiator<Reader> {
- public:
-  Picoseconds first = 0;
-  Reader(sc_core::sc_module_name name, Picoseconds at, Picoseconds early)
-      : LookaheadInitiator(name, 1), at_(at), early_(early) {
-    SC_HAS_PROCESS(Reader);
-    SC_THREAD(run);
-  }
-
- private:
-  friend bus::LookaheadInitiator<Reader>;
-  void run() {
-    enter();
-    sleep_until(at_ - early_);
-    std::array<std::uint8_t, 16> data{};
-    Transaction tx;
-    tx.address = kSdram;
-    tx.data = data.data();
-    tx.bytes = static_cast<std::uint8_t>(data.size());
-    submit(tx, at_);
-    finish(tx);
-    first = tx.first;
-    leave();
-  }
-  Picoseconds at_, early_;
-};
 
 /// Passes requests on and notes when they were put on the port and what was said of their time.
 class Between : public sc_core::sc_module, public MemTargetIf, public MemInitiatorIf {
@@ -68,7 +41,7 @@ class Between : public sc_core::sc_module, public MemTargetIf, public MemInitiat
 /// when it is there.
 std::string transported(Picoseconds at, Picoseconds early) {
   MemorySystem system({}, false, Frequency(250'000'000), Frequency(125'000'000));
-  Reader reader("reader", at, early);
+  Reader reader("reader", kSdram, at, early);
   Between between("between");
   reader.path(system.scr.path);
   reader.sockets[0]->bind(between.in);
@@ -133,20 +106,27 @@ class SlowSlave : public sc_core::sc_module, public MemTargetIf {
   Timer accept_, answer_;
 };
 
-/// When the slave got the requests of two masters, in nanoseconds.
-std::string at_a_slow_slave(bool strict) {
+/// A crossbar with the slow slave where the registers are.
+struct SlowBoard {
+  explicit SlowBoard(bool strict) : scr("scr", params, ddr, {}, strict) {
+    for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
+    scr.clk(clock);
+    scr.config_socket.bind(slave.socket);
+  }
   bus::CrossbarParams params;
   mem::DdrParams ddr;
-  bus::Scr scr("scr", params, ddr, {}, strict);
-  ClockSignal clock("clock", Frequency(125'000'000));
-  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority("priority", kMasterCount);
-  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
-  scr.clk(clock);
-  SlowSlave slave("slave");
-  scr.config_socket.bind(slave.socket);
+  bus::Scr scr;
+  ClockSignal clock{"clock", Frequency(125'000'000)};
+  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority{"priority", kMasterCount};
+  SlowSlave slave{"slave"};
+};
+
+/// When the slave got the requests of two masters, in nanoseconds.
+std::string at_a_slow_slave(bool strict) {
+  SlowBoard board(strict);
   BurstMaster one("one", Master::kEdmaTc0Read, 1), two("two", Master::kEdmaTc1Read, 1);
-  one.socket.bind(*scr.target[index(Master::kEdmaTc0Read)]);
-  two.socket.bind(*scr.target[index(Master::kEdmaTc1Read)]);
+  one.socket.bind(*board.scr.target[index(Master::kEdmaTc0Read)]);
+  two.socket.bind(*board.scr.target[index(Master::kEdmaTc1Read)]);
   std::string done;
   one.on_done = [&](const auto& c) { done += " one " + std::to_string(c.last / 1000); };
   two.on_done = [&](const auto& c) { done += " two " + std::to_string(c.last / 1000); };
@@ -154,24 +134,16 @@ std::string at_a_slow_slave(bool strict) {
   one.read(kRegisters, 4);
   two.read(kRegisters + 4, 4);
   sc_core::sc_start(ps_time(10 * kPsPerUs));
-  return slave.came + done;
+  return board.slave.came + done;
 }
 
 /// What a master gets of a read and of a write that fail.
 std::string failed_data() {
-  bus::CrossbarParams params;
-  mem::DdrParams ddr;
-  bus::Scr scr("scr", params, ddr, {}, true);
-  ClockSignal clock("clock", Frequency(125'000'000));
-  sc_core::sc_vector<sc_core::sc_signal<std::uint32_t>> priority("priority", kMasterCount);
-  for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority[i]);
-  scr.clk(clock);
-  SlowSlave slave("slave");
-  slave.fails = true;
-  scr.config_socket.bind(slave.socket);
+  SlowBoard board(true);
+  board.slave.fails = true;
   BurstMaster reader("reader", Master::kEdmaTc0Read, 1), writer("writer", Master::kEdmaTc0Write, 1);
-  reader.socket.bind(*scr.target[index(Master::kEdmaTc0Read)]);
-  writer.socket.bind(*scr.target[index(Master::kEdmaTc0Write)]);
+  reader.socket.bind(*board.scr.target[index(Master::kEdmaTc0Read)]);
+  writer.socket.bind(*board.scr.target[index(Master::kEdmaTc0Write)]);
   std::string done;
   const auto note = [&](const BurstMaster::Completion& c) {
     done += c.write ? " written" : " read";
