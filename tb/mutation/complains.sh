@@ -73,3 +73,27 @@ grep -q 'by hand, killed: own weak.c:' "$out/log" || fail "a change by hand is n
 sed -i 's/0 => 1/0 => 7/' "$out/tiny/equivalent.toml"
 [ "$(mutate --continue)" = 2 ] || fail "a stale entry of equivalent.toml is taken"
 grep -q 'no such place' "$out/log" || fail "a stale entry of equivalent.toml is not named"
+
+# A test that waits ends at its time by the clock, and tests of the own layer come before others of a hundredth of
+# their time.
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/tb/mutation python3 > "$out/log" 2>&1 <<'PYEND' || fail "runs.py"
+import types
+from runs import Runs, Test
+
+passed, _, wall = Test({'name': 'waits', 'command': ['sleep', '60']}).run({}, 10, 1)
+assert not passed and 1 <= wall < 20, (passed, wall)
+passed, _, wall = Test({'name': 'ends', 'command': ['sleep', '1']}).run({}, 10, 20)
+assert passed and 1 <= wall < 20, (passed, wall)
+
+def order(own, other):
+    runs = Runs.__new__(Runs)
+    runs.tests = dict.fromkeys(('own.a', 'other.a'))
+    runs.state = {'tests': {'own.a': {'passed': True, 'seconds': own}, 'other.a': {'passed': True, 'seconds': other}}}
+    runs.reached = dict.fromkeys(runs.tests, {7})
+    areas = types.SimpleNamespace(own_tests=lambda area: __import__('re').compile('^own'))
+    runs.tree = types.SimpleNamespace(areas=areas)
+    return runs.order({'id': 7, 'area': 'x'})
+
+assert order(4.9, 0.05) == ['own.a', 'other.a']
+assert order(5.1, 0.05) == ['other.a', 'own.a']
+PYEND
