@@ -74,8 +74,8 @@ sed -i 's/0 => 1/0 => 7/' "$out/tiny/equivalent.toml"
 [ "$(mutate --continue)" = 2 ] || fail "a stale entry of equivalent.toml is taken"
 grep -q 'no such place' "$out/log" || fail "a stale entry of equivalent.toml is not named"
 
-# A test that waits ends at its time by the clock, and tests of the own layer come before others of a hundredth of
-# their time.
+# A test that waits ends at its time by the clock, which follows from its usual one; tests of the own layer come before
+# others of a hundredth of their time.
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/tb/mutation python3 > "$out/log" 2>&1 <<'PYEND' || fail "runs.py"
 import types
 from runs import Runs, Test
@@ -94,6 +94,10 @@ def order(own, other):
     runs.tree = types.SimpleNamespace(areas=areas)
     return runs.order({'id': 7, 'area': 'x'})
 
+runs = Runs.__new__(Runs)
+runs.extra = 10
+assert runs.most({'seconds': 4, 'wall': 8}) == (26, 100), runs.most({'seconds': 4, 'wall': 8})
+assert runs.most({'seconds': 4, 'wall': 2})[1] == 80  # several processes
 assert order(4.9, 0.05) == ['own.a', 'other.a']
 assert order(5.1, 0.05) == ['other.a', 'own.a']
 PYEND

@@ -173,6 +173,11 @@ class Runs:
                 found.append((known['seconds'] * (1 if own.search(name) else 100), name))
         return [name for _, name in sorted(found)]
 
+    def most(self, known):
+        """Seconds of the processor and by the clock that a test may take with a mutant on."""
+        return (int(self.extra + TIMES * known['seconds']),
+                60 + WALL_TIMES * max(known.get('wall', 0), known['seconds']))
+
     def judge(self, mutant, record):
         """Runs tests until one fails; notes which passed."""
         spent, record['left'] = 0.0, 0
@@ -184,9 +189,7 @@ class Runs:
             if spent and spent + known['seconds'] > self.budget:
                 record['left'] += 1
                 continue
-            cpu = int(self.extra + TIMES * known['seconds'])
-            passed, seconds, _ = test.run({'FOVEA_MUTANT': str(mutant['id'])}, cpu,
-                                          60 + WALL_TIMES * max(known.get('wall', 0), known['seconds']))
+            passed, seconds, _ = test.run({'FOVEA_MUTANT': str(mutant['id'])}, *self.most(known))
             spent += seconds
             if not passed:
                 record['killed'] = name
