@@ -78,6 +78,8 @@ class ConfigBus : public sc_core::sc_module, public Block, public MemTargetIf {
   /// Accesses that are under way at a reset of the chip are answered without effect.
   void reset(ResetKind) override { in_reset_ = true; }
   void leave_reset() override { in_reset_ = false; }
+  /// What an access of a word to a register takes from its arrival here.
+  Picoseconds latency_at(std::uint32_t address) { return latency(find(address)); }
   /// Whose access is, or was last, at its register.
   Master accessing() const { return accessing_; }
 

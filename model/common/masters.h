@@ -62,6 +62,7 @@ enum class Pace : std::uint8_t {
   kLines,      ///< bursts of a line at a time, those without a slot after the burst they replace
   kRepeating,  ///< after a completion, of its own or of the partner's records
   kData,       ///< each with the last beat of a read of its partner, in order
+  kTransfers,  ///< they follow from transfer requests (common/transfer_request.h)
 };
 
 /// Which direction of a block a master is.
@@ -157,7 +158,7 @@ constexpr MasterInfo edma(Master id, std::string_view name, std::string_view sta
                           unsigned controller, Side side, Master partner) {
   return {.id = id, .name = name, .statistics = statistics, .who = "the EDMA",
           .priority = PrioritySource::kQueue, .unit = controller, .most_outstanding = 16,
-          .side = side, .partner = partner, .load_allowed = true};
+          .pace = Pace::kTransfers, .side = side, .partner = partner, .load_allowed = true};
 }
 }  // namespace masters
 

@@ -110,11 +110,11 @@ void EdmaCc::work() {
                                       [&](const Latched& e) { return e.at >= now; });
   std::vector<Latched> latched(events_.begin(), first_new);
   events_.erase(events_.begin(), first_new);
-  for (const Latched& e : latched) core_.event(e.channel);
+  for (const Latched& e : latched) core_.event(e.channel, e.at);
   while (!completions_.empty() && completions_.top().at <= now) {
-    const TransferRequest r = completions_.top().request;
+    const Completion c = completions_.top();
     completions_.pop();
-    core_.completed(r);
+    core_.completed(c.request, c.ended);
   }
   const bool queued =
       core_.prioritise(edge(now, static_cast<std::uint64_t>(params_.event_clocks()) - 1));
@@ -160,6 +160,26 @@ void EdmaCc::submit(unsigned controller, const TransferRequest& request) {
   controllers_[controller]->submit(request);
 }
 
+TransferTrigger EdmaCc::trigger() const {
+  return {.kind = TransferTrigger::Kind::kWrite, .writer = accessing(), .at = kernel_time()};
+}
+
+void EdmaCc::trigger_written() {
+  if (observers_.empty()) return;
+  observers_.each([&](TransferObserver* o) { o->trigger_written(accessing(), kernel_time()); });
+}
+
+void EdmaCc::requested(const TransferRequest& request, const TransferTrigger& by, Picoseconds ready) {
+  if (observers_.empty()) return;
+  const unsigned burst = controllers_[request.controller]->burst();
+  observers_.each([&](TransferObserver* o) { o->requested(request, by, burst, ready, kernel_time()); });
+}
+
+void EdmaCc::coded(const TransferTrigger& by) {
+  if (observers_.empty()) return;
+  observers_.each([&](TransferObserver* o) { o->coded(by, kernel_time()); });
+}
+
 /// Only region 0 has an interrupt of the ARM. Where the others' lead to is in no public list.
 void EdmaCc::pulse_completion(unsigned region) {
   if (region != 0) {
@@ -167,6 +187,7 @@ void EdmaCc::pulse_completion(unsigned region) {
     return;
   }
   ++stats.interrupts;
+  observers_.each([&](TransferObserver* o) { o->completion_pulsed(kernel_time()); });
   completion.raise();
 }
 

@@ -11,6 +11,7 @@
 #include "model/common/bus_target.h"
 #include "model/common/clock.h"
 #include "model/common/masters.h"
+#include "model/common/observers.h"
 #include "model/common/pulse.h"
 #include "model/common/stats.h"
 #include "model/common/timer.h"
@@ -30,6 +31,8 @@ class TransferPort {
   /// From when on its program register is free; kNever while that is not known.
   virtual Picoseconds program_free() const = 0;
   virtual bool has_clock() const = 0;
+  /// Default burst size of the next request, bytes.
+  virtual unsigned burst() const = 0;
   virtual void submit(const TransferRequest& request) = 0;
 };
 
@@ -80,6 +83,10 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   sc_core::sc_vector<sc_core::sc_out<std::uint32_t>> priority{"priority", kTransferControllers};
   /// Software has enabled these hardware events, one bit each.
   std::function<void(std::uint64_t events)> on_events_enabled;
+  /// Whose access is at a register, for observers of transfers.
+  std::function<Master()> accessing = [] { return Master::kCount; };
+  /// Adds an observer of all transfers.
+  Subscription observe(TransferObserver& observer) { return observers_.add(&observer); }
 
   EdmaCc(sc_core::sc_module_name name, const EdmaParams& params);
 
@@ -118,6 +125,10 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   void work_arrived() override;
   void events_enabled(std::uint64_t events) override;
   void warn(const std::string& what) override;
+  TransferTrigger trigger() const override;
+  void trigger_written() override;
+  void requested(const TransferRequest&, const TransferTrigger&, Picoseconds ready) override;
+  void coded(const TransferTrigger&) override;
   void update_priorities();
   void work();
   void wait_for_controllers(Picoseconds now);
@@ -142,6 +153,7 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   mutable std::uint32_t waits_for_clock_ = 0;
   bool in_reset_ = false;
   ChannelController::Counts reported_;
+  Observers<TransferObserver*> observers_;
   Timer wake_, written_;
 };
 

@@ -165,6 +165,7 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
 
   Picoseconds program_free() const override;
   bool has_clock() const override { return clock_.running() && lpsc.read(); }
+  unsigned burst() const override;
   void submit(const TransferRequest& request) override;
   bool idle() const override { return reads_.idle() && writes_.idle(); }
   /// From now on each outcome is reported at its time, and a burst issued when what it follows from has
@@ -199,7 +200,6 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   void show_sets();
   void show(EdmaTcRegs::Set& regs, std::function<RegisterSet()> set);
   bool running() const { return has_clock() && !in_reset_; }
-  unsigned burst() const;
 
   const unsigned number_;
   const EdmaTcParams& params_;

@@ -366,7 +366,7 @@ Dm365::Recording Dm365::record_bus() {
       const auto shared = std::find_if(masters.begin(), masters.end(),
                                        [&](const auto& m) { return m.id == p.id; });
       if (shared != masters.end()) {  // a load on the port of a block
-        shared->pace = p.pace;
+        if (p.pace != Pace::kTransfers) shared->pace = p.pace;
         shared->reads = shared->writes = std::min(shared->reads + p.outstanding, kMostOutstanding);
         continue;
       }
@@ -376,20 +376,40 @@ Dm365::Recording Dm365::record_bus() {
       for (const MasterPort& other : e.block->masters())
         if (other.outstanding > 0 && master_info(p.id).partner == other.id) setup.partner = other.id;
     }
+  // A load on one side of a transfer controller: neither side's requests are those of its transfers alone.
+  for (auto& m : masters) {
+    const auto partner = std::find_if(masters.begin(), masters.end(), [&](const auto& o) { return m.partner == o.id; });
+    if (m.pace == Pace::kTransfers && (partner == masters.end() || partner->pace != Pace::kTransfers))
+      m.pace = Pace::kRepeating;
+  }
+  edma.accessing = [this] { return config.accessing(); };
   auto recorder = std::make_unique<trace::BusRecorder>(
       masters, ratio, [this](const MemRequest* r) {
         const cpu::Core& core = arm.core();
         trace::CoreState s{core.counts().idle, core.room_waits(), core.drains()};
         s.origin = core.clock().edge_at_or_after(0);
+        s.woke = core.woke();
         if (r) {
           const cpu::BusAccess& a = cpu::Arm926::access_of(*r);
           s.asked = a.asked;
           s.victim = r->write && a.victim;
         }
         return s;
-      });
+      },
+      transfer_surroundings());
   trace::BusRecorder& to = *recorder;
-  return {std::move(recorder), scr.crossbar().observe(to), tap.attach(to)};
+  arm.core().watch_ram(&to);
+  return {std::move(recorder), scr.crossbar().observe(to), tap.attach(to), edma.observe(to),
+          Subscription([this] { arm.core().watch_ram(nullptr); })};
+}
+
+trace::Surroundings Dm365::transfer_surroundings() {
+  const auto whole = [](const IntParam& p) { return static_cast<unsigned>(p()); };
+  return {{whole(params_.edma.request_clocks), whole(params_.edma_tc.fifo), whole(params_.edma_tc.depth),
+           whole(params_.cpu.tcm_dma_latency), whole(params_.cpu.tcm_dma_word_clocks),
+           params_.config_bus.fast_latency()},
+          [this](std::uint32_t address) { return config.latency_at(address); },
+          [this](Master m) { return scr.crossbar().priority(m); }};
 }
 
 /// Drives the priorities that come from the system module, the EDMA and parameters; the video

@@ -144,12 +144,11 @@ class Dm365 : public sc_core::sc_module, public Block {
   Subscription observe_boot(BootObserver observer) { return boot_observers_.add(std::move(observer)); }
   ChipStats stats;
 
-  /// A recorder of all requests to the SDRAM from now on; it must be closed or live as long as the
-  /// chip.
-  /// A recorder of the bus traffic, which gets requests and interrupts as long as it lives.
+  /// A recorder of the bus traffic, which gets requests, interrupts, transfers and what the core sees of them as
+  /// long as it lives.
   struct Recording {
     std::unique_ptr<trace::BusRecorder> recorder;
-    Subscription requests, interrupts;
+    Subscription requests, interrupts, transfers, ram;
     trace::BusRecorder* operator->() const { return recorder.get(); }
   };
   Recording record_bus();
@@ -165,6 +164,7 @@ class Dm365 : public sc_core::sc_module, public Block {
   void connect(Irq line, InterruptOut& source);
   void connect(const MasterInfo& m, const std::vector<MemInitiatorSocket<32>*>& sockets);
   ClockSignal& signal_of(BlockClock clock);
+  trace::Surroundings transfer_surroundings();
   void route_priorities();
   std::uint32_t load_priority(Master m) const;
   void set_wait_states();

@@ -32,24 +32,14 @@ void BusTraceRun::open() {
   scr_ = tap.scr();
   ddr_ = tap.ddr();
   refresh_ = board_.dm365.ddr.controller().interval_start(kernel_time());
-  recorder_->open(kernel_time(), core_.frequency, core_.start);
+  recorder_->open(kernel_time(), core_.frequency, core_.start, scr_);
   opened_ = true;
-}
-
-bool BusTraceRun::uses_edma() const {
-  for (const dma::EdmaTc* tc : board_.dm365.edma_tcs)
-    if (tc->stats.reads.count() + tc->stats.writes.count() != 0) return true;
-  return false;
 }
 
 void BusTraceRun::close() {
   const trace::BusTap& tap = board_.dm365.tap;
   if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
     Diagnostics::instance().not_modelled("a clock that changes inside a bus trace");
-  if (uses_edma())
-    Diagnostics::instance().not_modelled(
-        "what the EDMA waits for outside the SDRAM, in a bus trace: a replay of this trace keeps the recorded "
-        "times of the EDMA's requests");
   recorder_->close(kernel_time());
   closed_ = true;
 }

@@ -21,9 +21,6 @@ class BusTraceRun {
   void finish();
 
  private:
-  /// Whether a transfer controller has moved data in the measurement window, which is that of the trace.
-  bool uses_edma() const;
-
   OutputFile file_;
   const ParamSet& params_;
   board::Board& board_;

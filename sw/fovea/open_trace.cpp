@@ -6,9 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "model/common/check.h"
 #include "model/trace/core/text_trace.h"
@@ -156,6 +159,17 @@ OpenTrace open_trace(const std::string& file, TraceFormat format, trace::Foreign
     keep(std::make_unique<trace::ForeignTrace>(name, std::move(bytes), reading));
   }
   return out;
+}
+
+std::string words_of_kept(const trace::TraceInfo& info) {
+  std::vector<std::string> labels;
+  for (const trace::MasterInfo& m : info.masters)
+    if (trace::keeps_times(info, m.id) && std::find(labels.begin(), labels.end(), m.label) == labels.end())
+      labels.push_back(m.label);
+  if (labels.empty()) return {};
+  return fmt::format("requests of {} keep their recorded times, because the trace does not hold what they wait for: "
+                     "with other settings, figures that depend on them do not follow a run",
+                     fmt::join(labels, ", "));
 }
 
 OpenTrace open_own_trace(const std::string& file) {

@@ -47,6 +47,9 @@ struct OpenTrace {
   const trace::TraceInfo* info = nullptr;  ///< part of `source`
 };
 
+/// One sentence about the masters whose requests keep their recorded times; empty: all follow what they wait for.
+std::string words_of_kept(const trace::TraceInfo& info);
+
 /// Opens a trace in one of Fovea's own formats. @throws UserError for any other file
 OpenTrace open_own_trace(const std::string& file);
 /// Opens a trace of any format. `reading` is for foreign formats. @throws UserError

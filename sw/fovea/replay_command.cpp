@@ -50,17 +50,22 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
                   sum / static_cast<double>(times.size()), static_cast<double>(*max) * 1e-12);
 }
 
-/// The streams of masters that are left out. A master's requests must not hold up those of others,
-/// as the core's do, whose two ports are one stream. @throws UserError
+/// The streams of masters that are left out. A master's requests must not hold up those of others, as the core's do,
+/// whose two ports are one stream, and transfers do, whose ends the core waits for. @throws UserError
 std::set<unsigned> streams_of(const trace::TraceInfo& info, const std::vector<std::string>& without) {
   std::set<unsigned> out;
   std::set<std::string> allowed;
+  const auto holds_up = [&](const trace::MasterInfo& m) {
+    return master_info(m.id).bridge == Bridge::kCore ||
+           (info.edma.request_clocks != 0 && master_info(m.id).pace == Pace::kTransfers &&
+            !trace::keeps_times(info, m.id));
+  };
   for (const auto& m : info.masters)
-    if (master_info(m.id).bridge != Bridge::kCore) allowed.insert(m.label);
+    if (!holds_up(m)) allowed.insert(m.label);
   for (const std::string& label : without) {
     if (!allowed.contains(label))
-      throw UserError(fmt::format("--without '{}': allowed here: {}", one_line(label),
-                                  fmt::join(allowed, ", ")));
+      throw UserError(fmt::format("--without '{}': allowed here, as no other master waits for them: {}",
+                                  one_line(label), fmt::join(allowed, ", ")));
     for (const auto& m : info.masters)
       if (m.label == label) out.insert(m.stream);
   }
@@ -125,6 +130,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   params.check();
   const std::set<unsigned> left_out = streams_of(*trace.info, options.without);
   for (const std::string& line : said) context.err << "fovea: " << one_line(line) << "\n";
+  if (const std::string kept = words_of_kept(*trace.info); !kept.empty())
+    context.err << "fovea: warning: " << kept << "\n";
 
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),

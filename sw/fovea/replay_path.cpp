@@ -31,12 +31,13 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       memory_only_(memory_only),
       start_(info.start),
       last_(info.start),
-      memory_(params.crossbar, params.ddr, {.ddr_base = 0}, *this,
+      memory_(params.crossbar, params.ddr, {.ram_size = INTERNAL_RAM_BYTES}, *this,
               memory_only ? memsys::Route::kBypass : memsys::Route::kCrossbar),
       check_(params.ddr, memory_.controller()) {
   set_up_memory(params);
   set_up_streams();
   set_up_masters();
+  set_up_transfers();
   time_.fill(kNever);
   waits_for_.fill(trace::kInterrupt);
   for (unsigned i = 0; i < streams_.size(); ++i) fetch(i);
@@ -67,6 +68,7 @@ void ReplayPath::set_up_memory(const ReplayParams& params) {
   if (!memory_only_) begins = Clock(scr, scr_start).next_edge_at_or_after(begins);
   mem::DdrController& controller = memory_.controller();
   memory_.crossbar().set_clock(scr, both ? begins : scr_start);
+  scr_ = Clock(scr, both ? begins : scr_start);
   const Frequency scr_before = both ? info_.scr.frequency : scr;
   controller.set_clocks({}, scr_before, scr_start);
   controller.set_clocks(other ? info_.ddr.frequency : ddr_clock, scr_before, start_near(info_.ddr, info_.start));
@@ -98,6 +100,7 @@ void ReplayPath::set_up_masters() {
     MasterState& m = masters_[index(from.id)];
     m.label = from.label;
     m.stream = from.stream;
+    m.bursts = from.reads;
     m.slots = std::vector<Slot>(from.shared ? from.reads : from.reads + from.writes);
     m.read_slots_to = from.reads;
     m.write_slots_from = from.shared ? 0 : from.reads;
@@ -127,6 +130,30 @@ std::vector<std::string> ReplayPath::labels() const {
   return out;
 }
 
+void ReplayPath::set_up_transfers() {
+  const trace::EdmaInfo& edma = info_.edma;
+  if (edma.request_clocks == 0) return;
+  for (unsigned n = 0; n < kTransferControllers; ++n) {
+    const MasterState &read = masters_[index(edma_read(n))], &write = masters_[index(edma_write(n))];
+    if (read.label.empty() || write.label.empty() || read.stream != write.stream) continue;
+    const unsigned stream = read.stream;
+    streams_[stream].controller = n;
+    streams_[stream].clock = scr_;
+    pipes_[n] = std::make_unique<ReplayPipe>(
+        edma_read(n), edma_write(n), read.bursts, dma::TransferController::Sizes{64, edma.fifo, edma.depth}, scr_,
+        ReplayPipe::Events{
+            .submit = [this](ReplayPipe::Burst& b) { send(b); },
+            .ended =
+                [this, stream](std::uint64_t number, Picoseconds at, Picoseconds delivered) {
+                  Outcome& o = streams_[stream].history[number % kHistory];
+                  o.last = at;
+                  o.delivered = delivered;
+                  wake_those_behind(stream);
+                },
+            .program_free = [this, stream] { wake(stream); }});
+  }
+}
+
 void ReplayPath::check(const trace::Record& r, const Stream& s) {
   const auto refuse = [&](const std::string& why) {
     std::string where = source_.place(static_cast<unsigned>(&s - streams_.data()));
@@ -144,7 +171,7 @@ void ReplayPath::check(const trace::Record& r, const Stream& s) {
 void ReplayPath::fetch(unsigned stream) {
   Stream& s = streams_[stream];
   s.valid = source_.next(stream, s.record);
-  if (s.valid && !s.record.mark) check(s.record, s);
+  if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
   prepare(stream);
 }
 
@@ -161,11 +188,24 @@ inline ReplayPath::Slot* ReplayPath::place(MasterState& m, bool write) {
 
 /// When what a record waits for outside its stream comes; kNever while that is not known.
 Picoseconds ReplayPath::event(const trace::Record& r) const {
-  if (r.source == trace::kInterrupt) return info_.interrupts[r.event];
-  const Stream& other = streams_[r.source];
-  if (r.event >= other.number) return kNever;
-  if (r.event + kHistory <= other.number) return start_;  // long done
-  return other.history[r.event % kHistory].last;
+  if (r.source != trace::kInterrupt) return moment(r.source, r.event, r.point);
+  const trace::Interrupt& i = info_.interrupts[r.event];
+  if (i.source == trace::kInterrupt) return i.at;
+  const Picoseconds cause = moment(i.source, i.event, i.point);
+  return cause == kNever ? kNever : cause + i.after;
+}
+
+Picoseconds ReplayPath::moment(std::uint8_t stream, std::uint64_t number, trace::Point point) const {
+  const Stream& other = streams_[stream];
+  if (number >= other.number) return kNever;
+  if (number + kHistory <= other.number) return start_;  // long done
+  const Outcome& o = other.history[number % kHistory];
+  switch (point) {
+    case trace::Point::kEnd: return o.last;
+    case trace::Point::kSubmitted: return o.first;
+    case trace::Point::kDelivered: return o.delivered;
+  }
+  return kNever;
 }
 
 /// The first edge of the stream's bus clock at or after one of its clock.
@@ -197,41 +237,149 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
   return s.clock.edge(edge);
 }
 
+/// Of a wait for another stream, which one; for an interrupt that of the transfer behind it.
+std::uint8_t ReplayPath::awaited(const trace::Record& r) const {
+  if (r.release != trace::Release::kWhen) return trace::kInterrupt;
+  return r.source != trace::kInterrupt ? r.source : info_.interrupts[r.event].source;
+}
+
 /// The time of the stream's next request, if it is known.
 void ReplayPath::prepare(unsigned stream) {
   Stream& s = streams_[stream];
   set_time(stream, kNever);
   for (;;) {
     if (!s.valid) return;
-    if (!s.record.mark) {
-      s.slot = place(masters_[index(s.record.master)], s.record.write);
+    const trace::Record& r = s.record;
+    if (r.on_bus()) {
+      s.slot = place(masters_[index(r.master)], r.write);
       if (s.slot->free == kNever) return;
     }
     Picoseconds at = released(s);
-    waits_for_[stream] = at == kNever && s.record.release == trace::Release::kWhen
-                             ? s.record.source
-                             : trace::kInterrupt;
+    waits_for_[stream] = at == kNever ? awaited(r) : trace::kInterrupt;
     cross_ |= waits_for_[stream] != trace::kInterrupt;
     if (at == kNever) return;
+    if (r.kind == trace::Kind::kTransfer) {
+      at = turn_of_transfer(s, at);
+      if (at != kNever) set_time(stream, at);
+      return;
+    }
     s.came = at;
-    bool off_edge = s.align > 1 && s.record.release != trace::Release::kAt;
-    if (!s.record.mark && s.slot->free > at) {
+    bool off_edge = s.align > 1 && r.release != trace::Release::kAt && r.kind != trace::Kind::kStep;
+    if (r.on_bus() && s.slot->free > at) {
       at = s.slot->free;
       off_edge = s.align > 1;
     }
     if (off_edge) at = s.clock.edge(aligned(s, s.clock.edge_at_or_after(at)));
     at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
-    if (!s.record.mark) {
+    if (r.on_bus()) {
       set_time(stream, at);
       return;
     }
-    marks_.push_back({s.record.address, at});
+    if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
     if (on_issue) on_issue(stream, at);
     s.history[s.number++ % kHistory] = {at, at};
+    if (cross_) wake_those_behind(stream);
     s.valid = source_.next(stream, s.record);
-    if (s.valid && !s.record.mark) check(s.record, s);
+    if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
   }
+}
+
+/// When the channel controller submits a transfer whose turn comes at `ready`: at an edge of its clock, once its
+/// transfer controller's program register is free and the request before is formed.
+Picoseconds ReplayPath::turn_of_transfer(const Stream& s, Picoseconds ready) const {
+  const Picoseconds free = pipes_[s.controller]->program_free_from();
+  if (free == kNever) return kNever;
+  const Picoseconds from = std::max({ready, next_request_, free + 1, s.earliest});
+  return scr_.edge(scr_.edge_at_or_after(from));
+}
+
+/// The record is the stream's next one, and its time has come.
+void ReplayPath::submit_transfer(unsigned stream) {
+  Stream& s = streams_[stream];
+  const Picoseconds now = next_time_;
+  TransferRequest request = s.record.transfer;
+  request.number = s.number;
+  const bool moves = request.bytes() != 0;
+  s.history[s.number++ % kHistory] = {now, moves ? kNever : now, moves ? kNever : now};
+  s.earliest = now;
+  next_request_ = scr_.edge(scr_.edge_after(now) + info_.edma.request_clocks - 1);
+  if (on_issue) on_issue(stream, now);
+  for (const Master m : {edma_read(s.controller), edma_write(s.controller)}) {
+    if (masters_[index(m)].priority == s.record.priority) continue;
+    masters_[index(m)].priority = s.record.priority;
+    memory_.crossbar().set_priority(m, s.record.priority);
+  }
+  const unsigned burst = s.record.burst;
+  set_time(stream, kNever);
+  if (moves) pipes_[s.controller]->submit(request, burst, now);
+  fetch(stream);
+  wake_those_behind(stream);
+  for (unsigned i = 0; i < streams_.size(); ++i)
+    if (i != stream && streams_[i].controller != kTransferControllers && time_[i] < next_request_) prepare(i);
+  find_next();
+}
+
+/// Puts a burst on its port, or where there is no crossbar hands it to its slave.
+void ReplayPath::send(ReplayPipe::Burst& burst) {
+  const bool sdram = burst.address >= memory_.map().ddr_base;
+  if (sdram) {
+    MasterState& m = masters_[index(burst.master)];
+    if (std::uint64_t{burst.address - memory_.map().ddr_base} + burst.bytes > memory_.store().size())
+      throw UserError(fmt::format("trace '{}': a transfer of {}: {} bytes at 0x{:08x}: outside the SDRAM of {} MiB "
+                                  "(ddr.part)", name_, m.label, burst.bytes,
+                                  burst.address - memory_.map().ddr_base, memory_.store().size() >> 20));
+    ++requests_;
+    ++m.transactions;
+    bytes_ += burst.bytes;
+    (burst.write ? m.write_bytes : m.read_bytes) += burst.bytes;
+  }
+  if (sdram || !memory_only_) return memory_.submit(burst);
+  serve(burst, memory_.slave_of(burst), burst.issued);
+}
+
+/// The internal RAM takes one burst at a time, registers one word of a master at a time.
+void ReplayPath::serve(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
+  const trace::EdmaInfo& edma = info_.edma;
+  Picoseconds done = 0;
+  if (slave == bus::Slave::kInternalRam) {
+    const Clock& core = streams_[0].clock;
+    const std::uint64_t words = ((r.address & 3u) + r.bytes + 3) / 4;
+    const std::uint64_t begin = core.edge_after(std::max(arrival, ram_free_));
+    done = ram_free_ = core.edge(begin + edma.ram_latency + words * edma.ram_word_clocks - 1);
+  } else {
+    Picoseconds& free = registers_free_[index(r.master)];
+    const bool aside = is_core(r.master);
+    const Picoseconds one = aside ? static_cast<Slot&>(r).service : edma.register_latency;
+    done = free = std::max(arrival, free) + one * (aside ? 1u : (r.bytes + 3u) / 4);
+  }
+  if (!is_core(r.master)) static_cast<ReplayPipe::Burst&>(r).delivered = done;
+  const auto place = std::upper_bound(served_.begin(), served_.end(), done,
+                                      [](Picoseconds t, const Served& s) { return t < s.at; });
+  served_.insert(place, {&r, done});
+  served_at_ = served_.front().at;
+}
+
+Taken ReplayPath::deliver(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
+  serve(r, slave, arrival);
+  return Taken::kYes;
+}
+
+void ReplayPath::finish_served() {
+  const Served first = served_.front();
+  served_.erase(served_.begin());
+  served_at_ = served_.empty() ? kNever : served_.front().at;
+  if (!memory_only_) return memory_.slave_done(*first.request, first.at, false);
+  first.request->first = first.request->last = first.at;
+  completed(*first.request);
+}
+
+void ReplayPath::completed(MemRequest& r) {
+  if (streams_[masters_[index(r.master)].stream].controller == kTransferControllers)
+    return complete(static_cast<Slot&>(r));
+  auto& burst = static_cast<ReplayPipe::Burst&>(r);
+  last_ = std::max(last_, burst.last);
+  static_cast<ReplayPipe*>(burst.owner)->completed(burst);
 }
 
 void ReplayPath::find_next() {
@@ -249,6 +397,7 @@ void ReplayPath::issue() {
   const unsigned stream = next_stream_;
   Stream& s = streams_[stream];
   const trace::Record& r = s.record;
+  if (r.kind == trace::Kind::kTransfer) return submit_transfer(stream);
   Slot& slot = *s.slot;
   MasterState& m = masters_[index(r.master)];
   if (m.in_turn) {
@@ -258,7 +407,9 @@ void ReplayPath::issue() {
   }
   slot.free = kNever;
   slot.number = s.number;
-  slot.address = r.address;
+  const bool aside = r.kind == trace::Kind::kAside;
+  slot.address = aside ? r.address : memory_.map().ddr_base + r.address;
+  slot.service = r.service;
   slot.critical = r.critical;
   slot.issued = next_time_;
   slot.write = r.write;
@@ -269,29 +420,39 @@ void ReplayPath::issue() {
   s.earliest = next_time_;
   if (on_issue) [[unlikely]]
     on_issue(stream, next_time_);
-  ++requests_;
-  ++m.transactions;
-  bytes_ += r.bytes;
-  (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
+  if (!aside) {
+    ++requests_;
+    ++m.transactions;
+    bytes_ += r.bytes;
+    (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
+  }
   if (m.priority != r.priority) {
     m.priority = r.priority;
     memory_.crossbar().set_priority(r.master, r.priority);
   }
-  memory_.submit(slot);
+  if (aside && memory_only_)
+    serve(slot, bus::Slave::kConfig, slot.issued);
+  else
+    memory_.submit(slot);
   fetch(stream);
   find_next();
 }
 
 bool ReplayPath::run_before(Picoseconds until) {
   for (;;) {
-    if (next_time_ <= memory_.next_event()) {
+    const Picoseconds event = memory_.next_event();
+    if (served_at_ < std::min(next_time_, event)) [[unlikely]] {  // after all else of its instant
+      if (served_at_ >= until) break;
+      finish_served();
+    } else if (next_time_ <= event) {
       if (next_time_ >= until) break;
       issue();
-    } else if (!memory_.advance(std::min(next_time_, until)) && until <= next_time_) {
+    } else if (!memory_.advance(std::min({next_time_, until, served_at_ == kNever ? kNever : served_at_ + 1})) &&
+               until <= next_time_ && until <= served_at_) {
       break;
     }
   }
-  if (std::min(next_time_, memory_.next_event()) != kNever) return false;
+  if (std::min(next_time_, next_event()) != kNever) return false;
   for (const Stream& s : streams_)
     if (s.valid)  // a locked read without its write keeps all others out
       throw UserError(fmt::format("trace '{}': it stops before its end", name_));
@@ -328,8 +489,13 @@ void ReplayPath::complete(Slot& slot) {
                                                           slot.last};
   if (time_[m.stream] == kNever) wake(m.stream);
   if (cross_) [[unlikely]]
-    for (unsigned i = 0; i < streams_.size(); ++i)
-      if (waits_for_[i] == m.stream) wake(i);
+    wake_those_behind(m.stream);
+}
+
+/// Those that wait for something of the stream.
+void ReplayPath::wake_those_behind(unsigned stream) {
+  for (unsigned i = 0; i < streams_.size(); ++i)
+    if (waits_for_[i] == stream && time_[i] == kNever) wake(i);
 }
 
 void ReplayPath::wake(unsigned stream) {

@@ -12,6 +12,7 @@
 #include "model/trace/core/trace.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_params.h"
+#include "sw/fovea/replay_pipe.h"
 
 namespace fovea::app {
 
@@ -56,6 +57,8 @@ class ReplayPath final : private memsys::MemoryHost {
   const mem::DdrStats& memory() const { return ddr().stats; }
   /// Called with each record as it goes out; empty in a plain replay.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;
+  /// No request will go out before that time any more.
+  Picoseconds progress() const { return std::min(next_time_, next_event()); }
 
  private:
   static constexpr std::size_t kHistory = trace::kMaxBack + 1;
@@ -63,11 +66,13 @@ class ReplayPath final : private memsys::MemoryHost {
     Picoseconds free = 0;  // kNever: taken, and its end is not known
     std::uint64_t number = 0;
     Picoseconds came = 0;  // when its record was released, whether or not its port was free
+    Picoseconds service = 0;  // of a register
     alignas(16) std::array<std::uint8_t, kMaxBurstBytes> bytes_{};
   };
   struct MasterState {
     std::string label;
     std::vector<Slot> slots;
+    unsigned bursts = 0;  // of each direction
     unsigned write_slots_from = 0, read_slots_to = 0;
     bool in_turn = false;  // each direction has slots of its own, and they end in order
     std::array<unsigned, 2> turn{};  // reads, writes: the slot that ended first, or will
@@ -76,8 +81,10 @@ class ReplayPath final : private memsys::MemoryHost {
     std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
     std::shared_ptr<bus::LatencyStats> latency;  // with others of this label
   };
+  /// Of a transfer: when it was submitted, when it ended.
   struct Outcome {
     Picoseconds first, last;
+    Picoseconds delivered = kNever;  // of a transfer: the last write is in internal RAM
   };
   struct Stream {
     trace::Record record;
@@ -89,17 +96,33 @@ class ReplayPath final : private memsys::MemoryHost {
     Slot* slot = nullptr;   // for it
     Picoseconds came = 0;   // when it was released
     std::vector<Outcome> history;
+    unsigned controller = kTransferControllers;  // whose transfers it holds; kTransferControllers: none's
+  };
+  /// A request to a slave that is no part of the memory system.
+  struct Served {
+    MemRequest* request;
+    Picoseconds at;
   };
 
   void set_up_memory(const ReplayParams& params);
   void set_up_streams();
   void set_up_masters();
+  void set_up_transfers();
   Picoseconds end() const;
   void add_wait_rows(const std::string& label, Waits MasterWaits::*direction, const char* name,
                      std::vector<StatRow>& rows) const;
   void fetch(unsigned stream);
   void prepare(unsigned stream);
   Picoseconds event(const trace::Record& r) const;
+  Picoseconds moment(std::uint8_t stream, std::uint64_t number, trace::Point point) const;
+  std::uint8_t awaited(const trace::Record& r) const;
+  Picoseconds turn_of_transfer(const Stream& s, Picoseconds ready) const;
+  void submit_transfer(unsigned stream);
+  void send(ReplayPipe::Burst& burst);
+  void serve(MemRequest& r, bus::Slave slave, Picoseconds arrival);
+  void finish_served();
+  Picoseconds next_event() const { return std::min(memory_.next_event(), served_at_); }
+  void wake_those_behind(unsigned stream);
   Picoseconds released(const Stream& s) const;
   static std::uint64_t aligned(const Stream& s, std::uint64_t edge);
   void wake(unsigned stream);
@@ -114,8 +137,8 @@ class ReplayPath final : private memsys::MemoryHost {
   void check(const trace::Record& r, const Stream& s);
   void complete(Slot& slot);
 
-  void completed(MemRequest& r) override { complete(static_cast<Slot&>(r)); }
-  Taken deliver(MemRequest&, bus::Slave, Picoseconds) override { return Taken::kRefused; }
+  void completed(MemRequest& r) override;
+  Taken deliver(MemRequest& r, bus::Slave slave, Picoseconds arrival) override;
   const mem::DdrController& ddr() const { return memory_.controller(); }
 
   std::string name_;
@@ -128,6 +151,13 @@ class ReplayPath final : private memsys::MemoryHost {
   std::uint32_t due_ = 0;                         // streams whose time is known
   std::array<std::uint8_t, kMasterCount> waits_for_{};  // stream that holds up each, by kWhen
   bool cross_ = false;  // a record of one stream has waited for another
+  std::array<std::unique_ptr<ReplayPipe>, kTransferControllers> pipes_;
+  Clock scr_;                          // of the transfers
+  Picoseconds next_request_ = 0;       // when the channel controller takes the next request
+  std::vector<Served> served_;         // by time
+  Picoseconds served_at_ = kNever;     // of the first one
+  Picoseconds ram_free_ = 0;
+  std::array<Picoseconds, kMasterCount> registers_free_{};
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;

@@ -6,11 +6,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
-#include <deque>
+#include <map>
 #include <ostream>
+#include <tuple>
 #include <vector>
 
 #include "model/common/check.h"
+#include "model/contract/memory_map.h"
+#include "model/dma/core/commands.h"
 #include "model/trace/core/bounds.h"
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
@@ -131,16 +134,32 @@ void in_order(const trace::TraceInfo& info, trace::RecordSource& source, const E
   }
 }
 
+/// Adds the bursts of a transfer to the masters of its stream.
+void count_transfer(const trace::TraceInfo& info, const trace::Record& r, unsigned stream,
+                    std::vector<Census::Count>& masters) {
+  if (r.transfer.bytes() == 0) return;
+  for (std::size_t i = 0; i < masters.size(); ++i) {
+    if (info.masters[i].stream != stream) continue;
+    const bool write = master_info(info.masters[i].id).side == Side::kWrites;
+    dma::Commands commands(r.transfer, write ? r.transfer.destination : r.transfer.source, r.burst);
+    for (; !commands.done(); commands.pop()) {
+      const dma::Command c = commands.next();
+      if (c.address < DDR_BASE) continue;
+      ++masters[i].requests[write];
+      masters[i].bytes[write] += c.bytes;
+    }
+  }
+}
+
 Census take_census(const trace::TraceInfo& info, trace::RecordSource& source) {
   Census c;
   c.masters.resize(info.masters.size());
-  in_order(info, source, [&](unsigned, const trace::Record& r, Picoseconds) {
-    c.timed &= r.release == trace::Release::kAt && !r.mark;
+  in_order(info, source, [&](unsigned stream, const trace::Record& r, Picoseconds) {
+    c.timed &= r.release == trace::Release::kAt && r.kind == trace::Kind::kRequest;
     if (r.release == trace::Release::kAt) c.last = std::max(c.last, r.at);
-    if (r.mark) {
-      ++c.marks;
-      return;
-    }
+    c.marks += r.kind == trace::Kind::kMark;
+    if (r.kind == trace::Kind::kTransfer) count_transfer(info, r, stream, c.masters);
+    if (r.kind != trace::Kind::kRequest) return;
     c.plain &= r.priority == trace::Record{}.priority && !r.locked && r.critical == 0;
     Census::Count& m = c.masters[master_of(info, r)];
     ++m.requests[r.write];
@@ -149,36 +168,41 @@ Census take_census(const trace::TraceInfo& info, trace::RecordSource& source) {
   return c;
 }
 
-/// Plays a recorded trace with the recorded parameters; `each` gets the records as they go out.
+/// Plays a recorded trace with the recorded parameters; `each` gets the requests in the order of their times, those
+/// of a time in that of the masters.
 template <typename Each>
 void in_played_order(const std::string& file, const trace::TraceInfo& info,
                      trace::RecordSource& source, const CliContext& context, const Each& each) {
-  /// Keeps what the player has fetched and not yet sent.
-  struct Kept final : trace::RecordSource {
-    explicit Kept(trace::RecordSource& s, std::size_t streams) : from(s), records(streams) {}
-    bool next(unsigned stream, trace::Record& r) override {
-      if (!from.next(stream, r)) return false;
-      records[stream].push_back(r);
-      return true;
+  struct Sent final : MemObserver {
+    void submitted(const MemRequest& r, bool to_sdram) override {
+      if (!to_sdram) return;
+      trace::Record record;
+      record.write = r.write;
+      record.bytes = r.bytes;
+      record.master = r.master;
+      record.address = r.address - DDR_BASE;
+      requests.emplace(std::tuple(r.issued, r.master, ++number), record);
     }
-    std::string place(unsigned stream) const override { return from.place(stream); }
-    trace::RecordSource& from;
-    std::vector<std::deque<trace::Record>> records;
-  } kept(source, info.streams.size());
+    void responded(const MemRequest&) override {}
+    std::map<std::tuple<Picoseconds, Master, std::uint64_t>, trace::Record> requests;
+    std::uint64_t number = 0;
+  } sent;
   RecordedParams recorded(&info, file);
   recorded.params.check();
-  ReplayPath path(one_line(file), info, kept, recorded.params, false);
-  // Marks that nothing held up are gone already, and nobody was told.
-  for (auto& records : kept.records)
-    while (records.size() > 1) records.pop_front();
-  path.on_issue = [&](unsigned stream, Picoseconds at) {
-    const trace::Record r = kept.records[stream].front();
-    kept.records[stream].pop_front();
-    if (!r.mark) each(stream, r, at);
+  ReplayPath path(one_line(file), info, source, recorded.params, false);
+  const Subscription observing = path.observe(sent);
+  const auto hand_on = [&](Picoseconds until) {
+    while (!sent.requests.empty() && std::get<0>(sent.requests.begin()->first) < until) {
+      const auto first = sent.requests.extract(sent.requests.begin());
+      each(first.mapped(), std::get<0>(first.key()));
+    }
   };
-  const Picoseconds slice = 10 * kPsPerMs;
-  for (Picoseconds until = info.start + slice; !path.run_before(until); until += slice)
+  const Picoseconds slice = kPsPerMs;
+  for (Picoseconds until = info.start + slice; !path.run_before(until); until += slice) {
+    hand_on(path.progress());
     if (context.stop && context.stop->load()) throw Stopped();
+  }
+  hand_on(kNever);
 }
 
 /// Labels as a text trace has them: both sides of a transfer controller have one in a recording.
@@ -285,7 +309,7 @@ class Conversion {
                     const LineWriter::Put& put) {
     trace::TraceWriter writer(static_cast<unsigned>(info.streams.size()));
     in_order(info, source, [&](unsigned stream, const trace::Record& r, Picoseconds) {
-      requests_ += !r.mark;
+      requests_ += r.kind == trace::Kind::kRequest;
       writer.add(stream, r);
     });
     if (from_ != TraceFormat::kBinary) info.end = census.last;
@@ -324,7 +348,7 @@ class Conversion {
                [&](unsigned, const trace::Record& r, Picoseconds ready) { add(r, r.at, ready); });
     else
       in_played_order(o_.in, info, source, context_,
-                      [&](unsigned, const trace::Record& r, Picoseconds at) { add(r, at, at); });
+                      [&](const trace::Record& r, Picoseconds at) { add(r, at, at); });
     writer.end();
     if (!census.timed)
       say(fmt::format("{} has times only: requests that wait for others have the times of a replay",
@@ -375,6 +399,7 @@ void print_info(const TraceOptions& options, std::ostream& out) {
   else
     out << fmt::format("requests up to {}\n", milliseconds(c.last));
   if (!c.timed) out << "requests wait for others\n";
+  if (const std::string kept = words_of_kept(info); !kept.empty()) out << kept << "\n";
   if (!info.scr.frequency.stopped())
     out << fmt::format("crossbar {:.6g} MHz, SDRAM {:.6g} MHz\n", info.scr.frequency.hertz() * 1e-6,
                        info.ddr.frequency.hertz() * 1e-6);

@@ -75,8 +75,8 @@ class EdmaStream {
     void read(dma::Command c, Picoseconds at) override { s.issue(*this, c, at, false); }
     void write(dma::Command c, std::span<const std::uint8_t>, Picoseconds at) override { s.issue(*this, c, at, true); }
     void program_free(Picoseconds) override {}
-    void completed(const dma::TransferRequest&, Picoseconds) override { ++s.ended_; }
-    void failed(const dma::TransferRequest&, dma::TransferController::Failure, Picoseconds) override {}
+    void completed(const TransferRequest&, Picoseconds) override { ++s.ended_; }
+    void failed(const TransferRequest&, dma::TransferController::Failure, Picoseconds) override {}
   };
   struct Waiting {
     ReferenceRequest request;
@@ -91,7 +91,7 @@ class EdmaStream {
   }
   /// Two regions whose rows meet in the banks; arrays of all lengths and alignments.
   void offer(Tc& tc, Picoseconds at) {
-    dma::TransferRequest r;
+    TransferRequest r;
     r.acnt = static_cast<std::uint16_t>(below(3) ? 1u << below(8) : 1 + below(200));
     r.bcnt = static_cast<std::uint16_t>(1 + below(6));
     const int step = static_cast<int>(below(4) ? r.acnt : below(4'000));

@@ -132,7 +132,7 @@ std::array<std::vector<Picoseconds>, 2> ends_at_the_input(std::array<std::uint8_
       r.bytes = 64;
       l.records[s].push_back(r);
       Record mark = read_at(0, 0);
-      mark.mark = true;
+      mark.kind = trace::Kind::kMark;
       mark.release = Release::kWhen;
       mark.source = static_cast<std::uint8_t>(s);
       mark.event = n;

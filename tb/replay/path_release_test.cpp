@@ -140,7 +140,7 @@ TEST(ReplayPathTest, AnInterruptReleasesASleeper) {
     l.records[0] = {read_at(2'000'000, 0x1000), r};
     return core.edge_at_or_after(Played(info, l).issued[0].at(1));
   };
-  const std::uint64_t wake = core.edge_at_or_after(info.interrupts[1]) + 20;
+  const std::uint64_t wake = core.edge_at_or_after(info.interrupts[1].at) + 20;
   EXPECT_EQ(issued(10), wake + (wake % 2 == 0));  // asleep long before
   EXPECT_GT(issued(2'000), wake + 1'000);         // still at work when it came
 }
@@ -227,7 +227,7 @@ TEST(ReplayPathTest, AWriteIsAcknowledgedWhenItLeavesTheInputRegister) {
     w.bytes = 64;
     l.records[1].push_back(w);
     Record mark = read_at(0, 0);
-    mark.mark = true;
+    mark.kind = trace::Kind::kMark;
     mark.release = Release::kWhen;
     mark.source = 1;
     mark.event = n;
@@ -265,7 +265,7 @@ TEST(ReplayPathTest, AWordBehindAFullInputRegisterIsAcknowledgedWhenThatIsFree) 
   // Marks that wait for the first burst, the word, the second burst.
   for (const auto& [stream, n] : {std::pair{1, 0}, {2, 0}, {1, 1}}) {
     Record mark = read_at(0, 0);
-    mark.mark = true;
+    mark.kind = trace::Kind::kMark;
     mark.release = Release::kWhen;
     mark.source = static_cast<std::uint8_t>(stream);
     mark.event = static_cast<unsigned>(n);
@@ -284,7 +284,7 @@ TEST(ReplayPathTest, MarksKeepTheirPlace) {
   const trace::TraceInfo info = board_info();
   Listed l;
   Record begin = after(1, true, 100, 0x4 | 7 << 4), end = after(2, true, 100, 0x5 | 7 << 4);
-  begin.mark = end.mark = true;
+  begin.kind = end.kind = trace::Kind::kMark;
   end.back = 1;
   l.records[0] = {read_at(2'000'000, 0x1000), begin, after(2, false, 200, 0x9000), end};
   const Played p(info, l);

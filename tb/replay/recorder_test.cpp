@@ -381,7 +381,7 @@ TEST(RecorderTest, InterruptsAreThoseOfTheRecording) {
   Feed f(Picoseconds{1'000});
   f.recorder().interrupt(1'999);
   f.recorder().interrupt(2'000);
-  EXPECT_EQ(f.info(2'000).interrupts, std::vector<Picoseconds>{1'999});
+  EXPECT_EQ(f.info(2'000).interrupts, std::vector<Interrupt>{{1'999}});
 }
 
 // A display has two places: what goes out when another's last beat comes has taken its place.

@@ -39,7 +39,7 @@ inline trace::TraceInfo board_info() {
                   {Master::kArmD, "arm_d", 0, 1, 1, true},
                   {Master::kVpfe, "vpfe", 1, 4, 4, true},
                   {Master::kVpbe, "vpbe", 2, 4, 4, true}};
-  info.interrupts = {2'000'000, 5'000'000, 90'000'000};
+  info.interrupts = {{2'000'000}, {5'000'000}, {90'000'000}};
   info.params = {{"ddr.CL", "4 cycles"}};
   return info;
 }
@@ -49,10 +49,10 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   using trace::Release;
   trace::Record r;
   const std::uint64_t kind = rng.below(10);
-  r.mark = stream == 0 && rng.below(20) == 0;
+  if (stream == 0 && rng.below(20) == 0) r.kind = Kind::kMark;
   r.master = stream == 0 ? static_cast<Master>(rng.below(2))
                          : (stream == 1 ? Master::kVpfe : Master::kVpbe);
-  if (r.mark) {
+  if (r.kind == Kind::kMark) {
     r.master = Master::kArmD;
     r.address = static_cast<std::uint32_t>(rng.below(256));
   } else {
@@ -72,7 +72,7 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   r.back = static_cast<std::uint32_t>(1 + rng.below(std::min<std::uint64_t>(number, 9)));
   r.from_first = rng.below(2);
   r.gap = rng.below(40);
-  if (r.write && !r.mark && r.release == Release::kAfter)
+  if (r.write && r.on_bus() && r.release == Release::kAfter)
     r.room = static_cast<std::uint32_t>(rng.below(std::min<std::uint64_t>(number, 9) + 1));
   if (r.release == Release::kWhen) {
     if (stream == 0) {

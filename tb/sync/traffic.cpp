@@ -267,7 +267,7 @@ Outcome run_programs(std::uint64_t first_seed, unsigned programs, bool strict) {
   block.on_transfer = [&edma](std::uint32_t random) { edma.start(kDdr, kRam, random); };
   for (unsigned n = 0; n < edma.tcs.size(); ++n) {
     const auto note = [&log, n](const char* what) {
-      return [&log, n, what](const dma::TransferRequest& r, Picoseconds at) {
+      return [&log, n, what](const TransferRequest& r, Picoseconds at) {
         log.add(text("%015llu tc%u %s %08x to %08x", static_cast<unsigned long long>(at), n + 2, what,
                      r.source.address, r.destination.address));
       };

@@ -13,6 +13,7 @@
 #include "model/common/check.h"
 #include "model/common/clock.h"
 #include "model/common/observers.h"
+#include "model/common/ram_watch.h"
 #include "model/cpu/core/access_log.h"
 #include "model/cpu/core/addressing.h"
 #include "model/cpu/core/bus_interface.h"
@@ -208,6 +209,13 @@ class Core : public Background {
   Picoseconds tcm_burst_over() const { return interface_.time(ram_.port().end() - 1); }
   void tcm_burst_ends(bool write, std::uint8_t* data);
   const TcmPort& tcm_port() const { return ram_.port(); }
+  /// Tells `watch` of loads from internal RAM and of bursts to it from now on; null: nobody.
+  void watch_ram(RamWatch* watch) {
+    ram_watch_ = watch;
+    forget_translations();
+  }
+  /// Clock at which the latest sleep ended; 0 before the first.
+  std::uint64_t woke() const { return woke_; }
   /// Reads internal RAM, the D-cache and the buffers without side effects. Returns false if none of
   /// them holds the address, so that memory has the current value.
   bool peek(std::uint32_t address, std::uint8_t& byte) const;
@@ -447,6 +455,7 @@ class Core : public Background {
     return true;
   }
   void ram_access(std::uint32_t pa, TcmPort::Side side);
+  [[gnu::noinline]] void tell_load(std::uint32_t pa, unsigned bytes);
   /// To be called when translations or permissions may have changed.
   void forget_translations() {
     mmu_.forget();
@@ -480,6 +489,8 @@ class Core : public Background {
   DataCache data_;
   FetchUnit fetch_;
   std::uint64_t insertions_seen_ = 0;
+  RamWatch* ram_watch_ = nullptr;
+  std::uint64_t woke_ = 0;
 
   InterruptLine irq_, fiq_, reset_;
   bool held_ = false;  // at a boundary that has seen the reset

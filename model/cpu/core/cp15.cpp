@@ -230,6 +230,7 @@ void Core::wait_for_interrupt() {
     take_marks(interface_.time(split));
   }
   ledger_.sleep_to(wake, by);
+  woke_ = wake;
   interface_.attention = true;
 }
 

@@ -42,7 +42,9 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     ram_access(pa, TcmPort::Side::kData);
     std::memcpy(&value, ram_.at(pa), bytes);
     ++ram_.reads_of(pa);
-    if (ram_.quick())
+    if (ram_watch_) [[unlikely]]
+      tell_load(pa, bytes);
+    else if (ram_.quick())
       data_.hint_reads(va, mva, ram_.at(pa & ~(DataCache::kReadSpan - 1)), ram_.reads_of(pa));
     return Result::kOk;
   }
@@ -59,6 +61,13 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   if (bus_.read_uncached(pa, bytes, swapping_, value)) return Result::kOk;
   mmu_.fault(Access::kLoad, page.bus_fault(), page.domain, mva);
   return Result::kAbort;
+}
+
+/// What the buffers do before this load comes first, so that an observer learns of things in the order of
+/// their times.
+void Core::tell_load(std::uint32_t pa, unsigned bytes) {
+  bus_.run_buffers(ledger_.cycle);
+  ram_watch_->loaded(ram_.offset(pa), bytes, ledger_.cycle, bus_.room_waits());
 }
 
 void Core::store_to_ram(std::uint32_t va, std::uint32_t pa, unsigned bytes, std::uint32_t value) {
@@ -268,6 +277,8 @@ void Core::tcm_burst_ends(bool write, std::uint8_t* data) {
   }
   std::memcpy(bytes.data(), data, bytes.size());
   fetch_.drop_ram(offset, static_cast<std::uint32_t>(bytes.size()));
+  if (ram_watch_)
+    ram_watch_->written(offset, static_cast<unsigned>(bytes.size()), ram_.port().burst().master, tcm_burst_over());
 }
 
 }  // namespace fovea::cpu

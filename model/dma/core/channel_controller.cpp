@@ -29,7 +29,7 @@ ChannelController::ChannelController(EdmaRegs& regs, Host& host) : regs_(regs), 
       regs_.param[s].word[w]->on_read([this] { ++counts_.words_read; });
       regs_.param[s].word[w]->on_write([this, s, w](std::uint32_t) {
         ++counts_.words_written;
-        write_trigger(s, w);
+        write_trigger(s, w, host_.trigger());
       });
     }
 }
@@ -185,11 +185,12 @@ void ChannelController::change_interrupts(Change change) {
 /// that waits for service; pending events of a channel that is not enabled wait for no service, or the
 /// timers' events would report errors on every unused channel (assumed: the guides speak of an event
 /// that "is being processed").
-void ChannelController::event(unsigned channel) {
+void ChannelController::event(unsigned channel, Picoseconds at) {
   ChannelRegs& g = regs_.global;
   const std::uint64_t e = bit(channel);
   if (g.er.get() & g.eer.get() & e) return miss(e);
   g.er.set(g.er.get() | e);
+  by(Trigger::kEvent, channel) = {.at = at};
   if (g.eer.get() & e) host_.work_arrived();
 }
 
@@ -197,26 +198,34 @@ void ChannelController::set_manual(std::uint64_t bits) {
   ChannelRegs& g = regs_.global;
   miss(g.esr.get() & bits);
   g.esr.set(g.esr.get() | bits);
-  if (bits) host_.work_arrived();
+  if (!bits) return;
+  host_.trigger_written();
+  for (std::uint64_t left = bits; left; left &= left - 1)
+    by(Trigger::kManual, static_cast<unsigned>(std::countr_zero(left))) = host_.trigger();
+  host_.work_arrived();
 }
 
-void ChannelController::set_chained(unsigned channel) {
+void ChannelController::set_chained(unsigned channel, const TransferTrigger& by_whom) {
   ChannelRegs& g = regs_.global;
   miss(g.cer.get() & bit(channel));
   g.cer.set(g.cer.get() | bit(channel));
+  by(Trigger::kChain, channel) = by_whom;
   host_.work_arrived();
 }
 
 /// A write to the trigger word of a QDMA channel's set, by software or by a link.
-void ChannelController::write_trigger(unsigned set, unsigned word) {
+void ChannelController::write_trigger(unsigned set, unsigned word, const TransferTrigger& by_whom) {
   ChannelRegs& g = regs_.global;
   for (unsigned c = 0; c < kQdmaChannels; ++c) {
     const EdmaRegs::QdmaMap& map = *regs_.qchmap[c];
     if (map.set.get() != set || map.trigger.get() != word || !(g.qeer.get() >> c & 1)) continue;
-    if (g.qer.get() >> c & 1)
+    if (by_whom.kind == TransferTrigger::Kind::kWrite) host_.trigger_written();
+    if (g.qer.get() >> c & 1) {
       miss_qdma(1u << c);
-    else
+    } else {
       g.qer.set(g.qer.get() | 1u << c);
+      by(Trigger::kQdma, c) = by_whom;
+    }
     host_.work_arrived();
   }
 }
@@ -235,7 +244,7 @@ bool ChannelController::prioritise(Picoseconds ready) {
     const auto c = static_cast<unsigned>(std::countr_zero(left));
     const bool event = g.er.get() & g.eer.get() & bit(c), chain = g.cer.get() & bit(c);
     const Trigger trigger = event ? Trigger::kEvent : chain ? Trigger::kChain : Trigger::kManual;
-    if (!push(regs_.queue_of(c), {trigger, static_cast<std::uint8_t>(c), ready})) continue;
+    if (!push(regs_.queue_of(c), {trigger, static_cast<std::uint8_t>(c), ready, by(trigger, c)})) continue;
     RegPair& source = event ? g.er : chain ? g.cer : g.esr;
     source.set(source.get() & ~bit(c));
     g.ser.set(g.ser.get() | bit(c));
@@ -243,7 +252,9 @@ bool ChannelController::prioritise(Picoseconds ready) {
   }
   for (unsigned c = 0; c < kQdmaChannels; ++c) {
     if (!((g.qer.get() & g.qeer.get() & ~g.qser.get()) >> c & 1)) continue;
-    if (!push(regs_.queue_of_qdma(c), {Trigger::kQdma, static_cast<std::uint8_t>(c), ready})) continue;
+    if (!push(regs_.queue_of_qdma(c),
+              {Trigger::kQdma, static_cast<std::uint8_t>(c), ready, by(Trigger::kQdma, c)}))
+      continue;
     g.qer.set(g.qer.get() & ~(1u << c));
     g.qser.set(g.qser.get() | 1u << c);
     return true;
@@ -251,7 +262,7 @@ bool ChannelController::prioritise(Picoseconds ready) {
   return false;
 }
 
-bool ChannelController::push(unsigned queue, Entry e) {
+bool ChannelController::push(unsigned queue, const Entry& e) {
   if (queue >= kQueues) {
     host_.warn("DMAQNUM or QDMAQNUM names event queue " + std::to_string(queue) +
                "; allowed: 0 to 3");
@@ -305,7 +316,7 @@ bool ChannelController::process(Picoseconds now) {
       continue;
     }
     if (!host_.can_submit(controller)) continue;
-    serve(q, controller);
+    serve(q, controller, now);
     return true;
   }
   return false;
@@ -313,7 +324,7 @@ bool ChannelController::process(Picoseconds now) {
 
 /// The head of a queue: a null set is an error and blocks its channel; a dummy set completes here; any
 /// other is submitted. Then the set moves on, or is replaced by the one it links to.
-void ChannelController::serve(unsigned queue, unsigned controller) {
+void ChannelController::serve(unsigned queue, unsigned controller, Picoseconds now) {
   Queue& q = queues_[queue];
   const Entry e = q.entry[q.head];
   q.head = (q.head + 1) % kQueueDepth;
@@ -329,14 +340,20 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
   } else {
     qdma ? g.qser.set(g.qser.get() & ~(1u << e.channel)) : g.ser.set(g.ser.get() & ~bit(e.channel));
   }
-  if (set.null() || set.dummy()) {
-    report(set, final);
+  const bool moves = !set.null() && !set.dummy();
+  TransferRequest r = moves ? set.request() : TransferRequest{};
+  r.controller = static_cast<std::uint8_t>(controller);
+  r.number = requested_[controller]++;
+  host_.requested(r, e.by, e.ready);
+  const TransferTrigger submitted{.kind = TransferTrigger::Kind::kSubmitted, .controller = r.controller,
+                                  .number = r.number, .at = now};
+  if (!moves) {
+    report(set, final, submitted);
   } else {
     check_width(index, set);
-    TransferRequest r = set.request();
     ++counts_.requests;
     if (set.opt(ParamSet::kEarly)) {
-      report(set, final);
+      report(set, final, submitted);
       r.interrupt = r.chain = false;
     }
     if (r.interrupt || r.chain) {
@@ -346,7 +363,7 @@ void ChannelController::serve(unsigned queue, unsigned controller) {
   }
   if (!set.opt(ParamSet::kStatic)) {
     if (final) {
-      exhausted(index);
+      exhausted(index, submitted);
     } else {
       set.advance();
       store(index, set);
@@ -374,31 +391,37 @@ void ChannelController::store(unsigned set, const ParamSet& value) {
 }
 
 /// The completion code of a set that the channel controller completes by itself.
-void ChannelController::report(const ParamSet& set, bool final) {
+void ChannelController::report(const ParamSet& set, bool final, const TransferTrigger& by_whom) {
   const bool interrupt =
       set.opt(final ? ParamSet::kFinalInterrupt : ParamSet::kIntermediateInterrupt);
   const bool chain = set.opt(final ? ParamSet::kFinalChain : ParamSet::kIntermediateChain);
-  if (interrupt)
+  if (interrupt) {
+    host_.coded(by_whom);
     change_interrupts(
         [&] { regs_.global.ipr.set(regs_.global.ipr.get() | bit(set.tcc())); });
-  if (chain) set_chained(set.tcc());
+  }
+  if (chain) set_chained(set.tcc(), by_whom);
 }
 
 void ChannelController::dropped(const TransferRequest& r) {
   if (r.interrupt || r.chain) --outstanding_codes_;
 }
 
-void ChannelController::completed(const TransferRequest& r) {
+void ChannelController::completed(const TransferRequest& r, Picoseconds ended) {
   if (!r.interrupt && !r.chain) return;
   --outstanding_codes_;
-  if (r.interrupt)
+  const TransferTrigger end{.kind = TransferTrigger::Kind::kEnded, .controller = r.controller,
+                            .number = r.number, .at = ended};
+  if (r.interrupt) {
+    host_.coded(end);
     change_interrupts([&] { regs_.global.ipr.set(regs_.global.ipr.get() | bit(r.tcc)); });
-  if (r.chain) set_chained(r.tcc);
+  }
+  if (r.chain) set_chained(r.tcc, end);
 }
 
 /// Links an exhausted set. LINK is the address of a set; its bits 15:14 and 4:0 are ignored, so that
 /// offsets from the block and from the parameter RAM mean the same.
-void ChannelController::exhausted(unsigned index) {
+void ChannelController::exhausted(unsigned index, const TransferTrigger& by_whom) {
   const ParamSet old = regs_.load(index);
   ParamSet next = ParamSet::unlinked();
   if (old.link() != ParamSet::kNoLink) {
@@ -413,7 +436,7 @@ void ChannelController::exhausted(unsigned index) {
   }
   store(index, next);
   if (old.link() == ParamSet::kNoLink) return;
-  for (unsigned w = 0; w < kParamWords; ++w) write_trigger(index, w);
+  for (unsigned w = 0; w < kParamWords; ++w) write_trigger(index, w, by_whom);
 }
 
 std::uint32_t ChannelController::status() const {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <string>
 
+#include "model/common/transfer_request.h"
 #include "model/common/units.h"
 #include "model/dma/core/edma_registers.h"
-#include "model/dma/core/transfer_request.h"
 
 namespace fovea::dma {
 
@@ -32,6 +32,16 @@ class ChannelController {
     virtual void events_enabled(std::uint64_t events) = 0;
     /// What a programmer should learn, in one line.
     virtual void warn(const std::string& what) = 0;
+
+    // For a recorder of traffic.
+    /// What is happening in the channel controller's registers now, as what it may start.
+    virtual TransferTrigger trigger() const { return {}; }
+    /// A write sets a trigger.
+    virtual void trigger_written() {}
+    /// A request leaves its queue, whose turn came at `ready`; submit() follows if it moves anything.
+    virtual void requested(const TransferRequest&, const TransferTrigger&, Picoseconds /*ready*/) {}
+    /// A completion code is set.
+    virtual void coded(const TransferTrigger&) {}
   };
 
   /// Installs the behaviour of the registers, which must outlive it.
@@ -39,8 +49,8 @@ class ChannelController {
   ChannelController(const ChannelController&) = delete;
   ChannelController& operator=(const ChannelController&) = delete;
 
-  /// A hardware event, 0 .. 63.
-  void event(unsigned channel);
+  /// A hardware event, 0 .. 63, that came at `at`.
+  void event(unsigned channel, Picoseconds at = 0);
   /// Moves the most urgent event that waits into its queue, where its turn comes at `ready` at the
   /// earliest. False: there is none, or its queue is full.
   bool prioritise(Picoseconds ready);
@@ -51,8 +61,8 @@ class ChannelController {
   Picoseconds next_turn() const;
   /// The same among the turns that come behind `now`: heads whose turn has come may wait for their controllers.
   Picoseconds next_turn_after(Picoseconds now) const;
-  /// A transfer controller has ended a request that reports: its code arrives here.
-  void completed(const TransferRequest& request);
+  /// A transfer controller has ended a request that reports, at `ended`: its code arrives here.
+  void completed(const TransferRequest& request, Picoseconds ended = 0);
   /// A transfer controller has dropped a request (TRERR): no code arrives for it.
   void dropped(const TransferRequest& request);
   /// Back to the state after a hardware reset. The registers are reset by their owner.
@@ -71,6 +81,7 @@ class ChannelController {
     Trigger trigger;
     std::uint8_t channel;
     Picoseconds ready;
+    TransferTrigger by;
   };
   struct Queue {
     std::array<Entry, kQueueDepth> entry{};
@@ -82,21 +93,21 @@ class ChannelController {
   void install(ChannelRegs& regs, std::function<std::uint64_t()> mask,
                std::function<std::uint32_t()> qdma_mask);
   void set_manual(std::uint64_t bits);
-  void set_chained(unsigned channel);
+  void set_chained(unsigned channel, const TransferTrigger& by);
   void miss(std::uint64_t bits);
   void miss_qdma(std::uint32_t bits);
   void set_error(std::uint32_t threshold, bool codes);
   template <class Change>
   void change_interrupts(Change change);
-  bool push(unsigned queue, Entry e);
+  bool push(unsigned queue, const Entry& e);
   void show(unsigned queue);
-  void serve(unsigned queue, unsigned controller);
+  void serve(unsigned queue, unsigned controller, Picoseconds now);
   ParamSet load(unsigned set);
   void store(unsigned set, const ParamSet& value);
-  void exhausted(unsigned set);
-  void write_trigger(unsigned set, unsigned word);
+  void exhausted(unsigned set, const TransferTrigger& by);
+  void write_trigger(unsigned set, unsigned word, const TransferTrigger& by);
   void check_width(unsigned index, const ParamSet& set);
-  void report(const ParamSet& set, bool final);
+  void report(const ParamSet& set, bool final, const TransferTrigger& by);
   std::uint64_t pending() const;
   bool errors() const;
   std::uint32_t status() const;
@@ -106,6 +117,12 @@ class ChannelController {
   std::array<Queue, kQueues> queues_{};
   unsigned outstanding_codes_ = 0;
   Counts counts_;
+  /// What set the pending bit of each channel, by Trigger.
+  std::array<std::array<TransferTrigger, 64>, 4> by_{};
+  TransferTrigger& by(Trigger trigger, unsigned channel) {
+    return by_[static_cast<std::size_t>(trigger)][channel];
+  }
+  std::array<std::uint64_t, kTransferControllers> requested_{};  // of each transfer controller, since the start
 };
 
 }  // namespace fovea::dma

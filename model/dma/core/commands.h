@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "model/dma/core/transfer_request.h"
+#include "model/common/transfer_request.h"
 
 namespace fovea::dma {
 

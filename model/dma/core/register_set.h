@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "model/dma/core/transfer_request.h"
+#include "model/common/transfer_request.h"
 
 namespace fovea::dma {
 

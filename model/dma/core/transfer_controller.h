@@ -14,7 +14,7 @@
 #include "model/common/units.h"
 #include "model/dma/core/commands.h"
 #include "model/dma/core/register_set.h"
-#include "model/dma/core/transfer_request.h"
+#include "model/common/transfer_request.h"
 
 namespace fovea::dma {
 

@@ -18,7 +18,7 @@ std::string Bounds::refusal(std::uint64_t address, std::uint64_t bytes) const {
 
 bool BoundedSource::next(unsigned stream, Record& record) {
   if (!source_.next(stream, record)) return false;
-  if (record.mark) return true;
+  if (record.kind != Kind::kRequest) return true;
   if (bounds_.wrap) record.address &= static_cast<std::uint32_t>(bounds_.size - 1);
   if (!bounds_.holds(record.address, record.bytes)) {
     std::string place = source_.place(stream);

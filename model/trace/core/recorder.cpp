@@ -11,28 +11,38 @@ namespace {
 constexpr unsigned kNoStream = ~0u;
 constexpr unsigned kSdramBase = DDR_BASE;  // the masters' view
 
+/// The two sides of a transfer controller share one.
 unsigned count_streams(const std::vector<BusRecorder::MasterSetup>& masters) {
   unsigned n = 1;
-  for (const auto& m : masters) n += m.pace != Pace::kCore;
+  for (const auto& m : masters)
+    n += m.pace != Pace::kCore && (m.pace != Pace::kTransfers || master_info(m.id).side == Side::kReads);
   return n;
 }
 
 }  // namespace
 
 BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
-                         std::function<CoreState(const MemRequest*)> core)
+                         std::function<CoreState(const MemRequest*)> core, Surroundings surroundings)
     : masters_(masters),
       streams_(count_streams(masters)),
       core_(std::move(core)),
       align_(core_align),
+      surroundings_(std::move(surroundings)),
       writer_(count_streams(masters)) {
   stream_of_.fill(kNoStream);
   unsigned next = 1;
   for (const auto& m : masters_) {
+    if (m.pace == Pace::kTransfers && master_info(m.id).side != Side::kReads) continue;
     const unsigned s = m.pace == Pace::kCore ? 0 : next++;
     stream_of_[index(m.id)] = s;
     streams_[s].pace = m.pace;
     streams_[s].reads = m.reads;
+  }
+  for (const auto& m : masters_) {
+    if (m.pace != Pace::kTransfers) continue;
+    of_transfers_ |= 1u << index(m.id);
+    if (m.partner) stream_of_[index(m.id)] = stream_of_[index(std::min(m.id, *m.partner))];
+    controllers_[master_info(m.id).unit].stream = stream_of_[index(m.id)];
   }
   for (const auto& m : masters_)
     if (m.partner)
@@ -41,7 +51,9 @@ BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_
   for (Stream& s : streams_) s.history.resize(kHistory);
 }
 
-void BusRecorder::open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start) {
+void BusRecorder::open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start, const ClockInfo& scr) {
+  scr_ = Clock(scr.frequency, scr.start);
+  scr_start_ = scr.start;
   start_ = start;
   open_ = true;
   interrupts_.clear();
@@ -74,10 +86,12 @@ BusRecorder::Pending& BusRecorder::append(Stream& s, Picoseconds issued) {
 void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
   const unsigned stream = stream_of_[index(r.master)];
   if (stream == kNoStream) return;
+  if (of_transfers_ >> index(r.master) & 1u) return submit_of_transfer(r, to_sdram);
   if (!to_sdram) {
-    register_access_ |= stream == 0;
+    if (stream == 0) submit_aside(r);
     return;
   }
+  if (r.master == Master::kArmD) register_looks_ = {};
   Stream& s = streams_[stream];
   const std::uint64_t number = s.next;
   Pending& p = append(s, r.issued);
@@ -96,10 +110,13 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
     case Pace::kLines:
       return release_line(s, p, r.issued);
     case Pace::kRepeating:
+      // What starts a block that works for the program, and who waits for it, is not told.
+      if (master_info(r.master).priority == PrioritySource::kImcop) not_followed_ |= 1u << index(r.master);
       return release_repeating(s, p, r.issued);
     case Pace::kData:
       return release_by_data(s, p, r.issued);
     case Pace::kSampled:
+    case Pace::kTransfers:
       return;
   }
 }
@@ -139,10 +156,11 @@ void BusRecorder::release_core(Stream& s, Pending& p, const MemRequest& r) {
   const std::uint64_t from =
       anchor ? clock_.edge_at_or_after(first ? anchor->first : anchor->last) : 0;
 
-  if (idle > 0 && !interrupts_.empty() && interrupts_.back() <= at) {
-    const std::uint64_t wake = clock_.edge_at_or_after(interrupts_.back());
+  const std::size_t woken_by = interrupt_before(now.woke ? now.woke - now.origin : to);
+  if (idle > 0 && woken_by < interrupts_.size() && interrupts_[woken_by].at <= at) {
+    const std::uint64_t wake = clock_.edge_at_or_after(interrupts_[woken_by].at);
     p.record.release = Release::kWhen;
-    p.record.event = interrupts_.size() - 1;
+    p.record.event = woken_by;
     p.record.wake_gap = static_cast<std::uint32_t>(came - std::min(wake, came));
     if (anchor) {
       p.reference = anchor->number;
@@ -278,7 +296,9 @@ void BusRecorder::release_by_data(Stream& s, Pending& p, Picoseconds at) {
   }
 }
 
-void BusRecorder::responded(const MemRequest& r) {
+void BusRecorder::responded(const MemRequest& r) { end_flight(r); }
+
+void BusRecorder::end_flight(const MemRequest& r) {
   auto& flights = flights_[index(r.master)];
   const auto found = std::find_if(flights.begin(), flights.end(),
                                   [&](const Flight& f) { return f.request == &r; });
@@ -303,21 +323,26 @@ void BusRecorder::responded(const MemRequest& r) {
 
 void BusRecorder::mark(std::uint32_t value, Picoseconds at) {
   if (!open_ || at < start_) return;
+  note_sleep();
   Stream& s = streams_[0];
   Pending& p = append(s, at);
   p.done = true;
-  p.record.mark = true;
+  p.record.kind = Kind::kMark;
   p.record.address = value;
-  // The core has seen out all before it touches a pin.
-  if (const Outcome* o = outcome(s, s.latest); o && o->done) {
-    p.record.release = Release::kAfter;
-    p.record.from_first = !o->write;
-    p.reference = o->number;
-    const std::uint64_t from = clock_.edge_at_or_after(o->write ? o->last : o->first);
-    const std::uint64_t to = clock_.edge_at_or_after(at);
-    // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
-    p.record.gap = (to - std::min(from, to)) / align_ * align_;
-  }
+  // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
+  release_behind_latest(s, p, at, align_);
+}
+
+/// The core has seen out all before it touches a register.
+void BusRecorder::release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align) {
+  const Outcome* o = outcome(s, s.latest);
+  if (!o || !o->done) return;
+  p.record.release = Release::kAfter;
+  p.record.from_first = !o->write;
+  p.reference = o->number;
+  const std::uint64_t from = clock_.edge_at_or_after(o->write ? o->last : o->first);
+  const std::uint64_t to = clock_.edge_at_or_after(at);
+  p.record.gap = (to - std::min(from, to)) / align * align;
 }
 
 void BusRecorder::write_out(Stream& s, unsigned index, std::size_t keep) {
@@ -329,8 +354,16 @@ bool BusRecorder::write_up_to(std::uint8_t index, std::uint64_t number) {
   Stream& s = streams_[index];
   while (!s.pending.empty() && s.pending.front().done && s.next - s.pending.size() <= number)
     write_one(s, index);
+  return place_of(index, number) != kNone;
+}
+
+/// None is left out of the middle of a stream of transfers.
+std::uint64_t BusRecorder::place_of(std::uint8_t index, std::uint64_t number) {
+  Stream& s = streams_[index];
+  if (s.pace == Pace::kTransfers)
+    return s.first != kNone && number >= s.first && number - s.first < s.written ? number - s.first : kNone;
   const Outcome* o = outcome(s, number);
-  return o && o->place != kNone;
+  return o ? o->place : kNone;
 }
 
 void BusRecorder::write_one(Stream& s, unsigned index) {
@@ -341,13 +374,15 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   Record& r = p.record;
   if (p.event != kNone) {
     if (write_up_to(r.source, p.event)) {
-      r.event = outcome(streams_[r.source], p.event)->place;
-    } else {
+      r.event = place_of(r.source, p.event);
+    } else {  // what it waited for is not in the recording
       r.release = Release::kAt;
       r.source = kInterrupt;
+      r.point = Point::kEnd;
       r.wake_gap = 0;
     }
-  } else if (r.release != Release::kAt) {
+  }
+  if (r.release != Release::kAt && (p.event == kNone || p.reference != kNone)) {
     const Outcome* o = outcome(s, p.reference);
     // An outcome is forgotten before it lies further back than kMaxBack.
     if (o && o->place != kNone) {
@@ -361,8 +396,13 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
       r.gap = 0;
     }
   }
-  r.at = r.release == Release::kAt ? p.issued : 0;
+  if (r.release == Release::kAt) {
+    r.from_first = false;
+    r.gap = 0;
+  }
+  r.at = r.release != Release::kAt ? 0 : r.kind == Kind::kTransfer ? p.ready : p.issued;
   if (Outcome* o = outcome(s, number)) o->place = s.written;
+  if (s.first == kNone) s.first = number;
   ++s.written;
   writer_.add(index, r);
 }
@@ -372,15 +412,21 @@ void BusRecorder::finish(TraceInfo info,
   FOVEA_CHECK(open_ && end_ != kNever, "a recording that was not opened and closed");
   info.start = start_;
   info.end = end_;
-  for (const Picoseconds t : interrupts_)
-    if (t < end_) info.interrupts.push_back(t);
   info.streams.resize(streams_.size());
   info.streams[0] = core_info_;
+  for (const Stream& s : streams_)
+    if (s.pace == Pace::kTransfers) {
+      info.streams[static_cast<std::size_t>(&s - streams_.data())] = {scr_.frequency(), scr_start_, 1, 0};
+      info.edma = surroundings_.edma;
+    }
   for (const auto& m : masters_)
     info.masters.push_back({m.id, std::string(stat_name(m.id)),
                             stream_of_[index(m.id)], m.reads, m.writes, m.shared});
   for (unsigned i = 0; i < streams_.size(); ++i)
     while (!streams_[i].pending.empty()) write_one(streams_[i], i);
+  list_interrupts(info);
+  for (const auto& m : masters_)
+    if (not_followed_ >> index(m.id) & 1u) info.kept.push_back(m.id);
   writer_.finish(info, put);
 }
 

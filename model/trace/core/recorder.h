@@ -10,6 +10,8 @@
 #include "model/common/clock.h"
 #include "model/common/masters.h"
 #include "model/common/mem_observer.h"
+#include "model/common/ram_watch.h"
+#include "model/common/transfer_request.h"
 #include "model/trace/core/trace_file.h"
 
 namespace fovea::trace {
@@ -24,12 +26,21 @@ struct CoreState {
   std::uint64_t asked = 0;
   bool victim = false;           ///< a write from the victim buffer
   std::uint64_t origin = 0;      ///< of `asked`: the clock at which the core's clock started
+  std::uint64_t woke = 0;        ///< when its latest sleep ended, counted as `asked`; 0: not known
+};
+
+/// What surrounds the masters, for the transfers of the EDMA.
+struct Surroundings {
+  EdmaInfo edma;
+  /// What a word's access to a register takes.
+  std::function<Picoseconds(std::uint32_t address)> register_latency;
+  std::function<unsigned(Master)> priority;
 };
 
 /// The core's write buffer (ARM DDI 0198D ch. 6).
 inline constexpr unsigned kBufferedStores = 4, kBufferedWords = 16;
 
-class BusRecorder : public MemObserver {
+class BusRecorder : public MemObserver, public TransferObserver, public RamWatch {
  public:
   struct MasterSetup {
     Master id;
@@ -40,18 +51,33 @@ class BusRecorder : public MemObserver {
   };
   /// @param core asked at each of the core's requests, and without one when the recording begins
   BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
-              std::function<CoreState(const MemRequest*)> core);
+              std::function<CoreState(const MemRequest*)> core, Surroundings surroundings = {});
 
-  /// Recording covers [start, end): requests put on their port in it. The clock is the core's.
-  void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start);
+  /// Recording covers [start, end): requests put on their port in it. The clock is the core's, `scr` the crossbar's.
+  void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start, const ClockInfo& scr = {});
   void close(Picoseconds end);
   /// An interrupt line of the core rises.
-  void interrupt(Picoseconds at) { interrupts_.push_back(at); }
+  void interrupt(Picoseconds at);
   /// The program shows a phase.
   void mark(std::uint32_t value, Picoseconds at);
 
   void submitted(const MemRequest& r, bool to_sdram) override;
   void responded(const MemRequest& r) override;
+  void register_done(const MemRequest& r) override;
+
+  void trigger_written(Master writer, Picoseconds at) override;
+  void requested(const TransferRequest& request, const TransferTrigger& by, unsigned burst, Picoseconds ready,
+                 Picoseconds at) override;
+  void coded(const TransferTrigger& by, Picoseconds) override {
+    code_ = by;
+    code_seen_ = false;
+  }
+  void completion_pulsed(Picoseconds at) override {
+    pulse_ = code_;
+    pulsed_at_ = at;
+  }
+  void loaded(std::uint32_t offset, unsigned bytes, std::uint64_t clock, std::uint64_t room_waits) override;
+  void written(std::uint32_t offset, unsigned bytes, Master master, Picoseconds at) override;
 
   /// After close(). `info` has the parameters and the clocks of crossbar and SDRAM; the rest is
   /// filled in.
@@ -69,7 +95,8 @@ class BusRecorder : public MemObserver {
     Picoseconds issued = 0;
     std::uint64_t reference = kNone;  // number of the record that releases it
     std::uint64_t room = kNone;       // number of the write whose end makes room for it
-    std::uint64_t event = kNone;      // kWhen of another stream: number of the record there
+    std::uint64_t event = kNone;      // kWhen of a stream: number of the record there
+    Picoseconds ready = 0;            // of a transfer: when its turn came
     bool done = false, failed = false;
   };
   struct Outcome {
@@ -86,6 +113,7 @@ class BusRecorder : public MemObserver {
     Pace pace = Pace::kSampled;
     unsigned reads = 1;
     std::uint8_t partner = kInterrupt;  // its stream
+    std::uint64_t first = kNone;        // number of the first record in the recording
   };
   /// A request of the core whose place in the program is known.
   struct Step {
@@ -102,6 +130,46 @@ class BusRecorder : public MemObserver {
     const MemRequest* request;
     std::uint64_t number;
   };
+  /// A transfer as a record's number in the stream of its controller.
+  struct Transfer {
+    std::uint8_t stream = kInterrupt;
+    std::uint64_t number = kNone;
+  };
+  struct Controller {
+    unsigned stream = ~0u;          // ~0: its transfers are not followed
+    std::uint64_t base = kNone;     // of its requests' numbers: that of record 0
+    struct Left {
+      std::uint64_t number;
+      std::uint32_t bytes;
+    };
+    std::deque<Left> to_write;      // transfers with writes that are not on the port yet
+    struct Write {
+      std::uint32_t address;
+      std::uint64_t number;
+      bool last;
+    };
+    std::deque<Write> elsewhere;    // writes under way that do not go to the SDRAM
+  };
+  /// A word of internal RAM that the program looks at again and again.
+  struct Flag {
+    std::uint32_t word = ~0u;
+    bool written = false;           // by a transfer, and not seen since
+    bool last = false;              // with its last write
+    Transfer by;
+    Picoseconds at = 0;
+  };
+  /// The program looks at one place again and again.
+  struct Looks {
+    std::uint32_t place = 0;
+    std::uint64_t first = 0, latest = 0;  // clocks of the core, counted as those of the recording
+    unsigned count = 0;
+  };
+  /// What a wait ended with.
+  struct WaitEnd {
+    Transfer by;
+    Point point = Point::kEnd;
+    Picoseconds at = 0;
+  };
 
   Outcome* outcome(Stream& s, std::uint64_t number) {
     if (number == kNone) return nullptr;
@@ -109,6 +177,17 @@ class BusRecorder : public MemObserver {
     return o.number == number ? &o : nullptr;
   }
   Pending& append(Stream& s, Picoseconds issued);
+  Pending& append_step(Picoseconds at);
+  void note_step(std::uint64_t room_waits, std::uint64_t asked);
+  void note_sleep();
+  void note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end);
+  void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
+  std::size_t interrupt_before(std::uint64_t woke) const;
+  void submit_aside(const MemRequest& r);
+  void submit_of_transfer(const MemRequest& r, bool to_sdram);
+  void release_transfer(Pending& p, const TransferTrigger& by, Picoseconds ready);
+  Transfer transfer_of(const TransferTrigger& by) const;
+  void end_flight(const MemRequest& r);
   void release_core(Stream& s, Pending& p, const MemRequest& r);
   void release_in_program(Stream& s, Pending& p, std::uint64_t asked);
   void note_room(Stream& s, Pending& p, const MemRequest& r, const CoreState& now);
@@ -117,12 +196,15 @@ class BusRecorder : public MemObserver {
   void release_by_data(Stream& s, Pending& p, Picoseconds at);
   const Outcome* latest_done(Stream& s, Picoseconds at);
   bool write_up_to(std::uint8_t index, std::uint64_t number);
+  std::uint64_t place_of(std::uint8_t index, std::uint64_t number);
+  void list_interrupts(TraceInfo& info);
   void drop_early(Stream& s);
   void write_out(Stream& s, unsigned index, std::size_t keep);
   void write_one(Stream& s, unsigned index);
 
   std::vector<MasterSetup> masters_;
   std::array<unsigned, kMasterCount> stream_of_{};
+  std::uint32_t of_transfers_ = 0;  // masters, one bit each
   std::vector<Stream> streams_;
   std::array<std::vector<Flight>, kMasterCount> flights_;
   std::function<CoreState(const MemRequest*)> core_;
@@ -140,7 +222,29 @@ class BusRecorder : public MemObserver {
   StreamInfo core_info_;
   unsigned align_;
   bool phase_known_ = false;
-  std::vector<Picoseconds> interrupts_;
+  struct Risen {
+    Picoseconds at;
+    TransferTrigger by;
+    Picoseconds pulsed;  // 0: not by a completion code
+  };
+  std::vector<Risen> interrupts_;
+  Surroundings surroundings_;
+  Clock scr_;
+  Picoseconds scr_start_ = 0;
+  std::array<Controller, kTransferControllers> controllers_{};
+  std::deque<const MemRequest*> posted_;  // buffered writes to registers under way, oldest first
+  struct Written {
+    Picoseconds at;
+    std::uint64_t number;
+  };
+  std::deque<Written> triggers_;          // the last of the core's writes that set one, by the record of it
+  TransferTrigger code_, pulse_;          // what set the last completion code; what caused the last interrupt by one
+  Picoseconds pulsed_at_ = 0;
+  bool code_seen_ = true;
+  std::array<Flag, 32> flags_{};
+  std::size_t next_flag_ = 0;
+  Looks ram_looks_, register_looks_;
+  std::uint32_t not_followed_ = 0;        // masters, one bit each, some of whose records keep their times
   bool open_ = false;
   Picoseconds start_ = 0, end_ = kNever;
   TraceWriter writer_;

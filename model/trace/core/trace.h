@@ -1,5 +1,6 @@
 // What a bus trace holds: requests of the masters to the SDRAM, and what releases each of them.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
+#include "model/common/transfer_request.h"
 #include "model/common/units.h"
 
 namespace fovea::trace {
@@ -19,12 +21,29 @@ enum class Release : std::uint8_t {
   kWhen,   ///< an event that its master slept or waited for, and a gap after it
 };
 
-/// What kWhen waits for: an interrupt of the core, or the last beat of a record of another stream.
+/// What kWhen waits for: an interrupt of the core, or a record of another stream.
 inline constexpr std::uint8_t kInterrupt = 0xFF;
+
+/// What a record stands for.
+enum class Kind : std::uint8_t {
+  kRequest,   ///< a request to the SDRAM
+  kAside,     ///< a request of the core's write buffer to a register, which keeps the port from others
+  kMark,      ///< no request: the program shows `address` on its phase pins
+  kStep,      ///< no request: the program has waited for others, or writes a register that starts a transfer
+  kTransfer,  ///< a request to a transfer controller of the EDMA, whose bursts follow from it
+};
+
+/// Which moment of a record kWhen waits for.
+enum class Point : std::uint8_t {
+  kEnd,        ///< the last beat; of a transfer the acknowledgement of its last write
+  kSubmitted,  ///< a transfer goes to its transfer controller
+  kDelivered,  ///< the last write of a transfer has changed the internal RAM
+};
+inline constexpr std::uint8_t kPoints = 3;
 
 struct Record {
   Release release = Release::kAt;
-  bool mark = false;        ///< no request: the program shows `address` on its phase pins
+  Kind kind = Kind::kRequest;
   bool write = false, locked = false;
   /// kAfter, kWhen: from that record's first beat, or from the time at which a write was released,
   /// whether or not its port was free; else from its last beat.
@@ -33,16 +52,24 @@ struct Record {
   std::uint8_t critical = 0;
   std::uint8_t priority = 0;
   Master master = Master::kArmD;
-  std::uint32_t address = 0;    ///< byte offset in the SDRAM, start of the burst
+  /// Start of the burst: byte offset in the SDRAM, or of kAside the address of a register. kMark: the value.
+  std::uint32_t address = 0;
   std::uint32_t back = 0;       ///< kAfter, kWhen: that many records before this one; 0: none
   /// kAfter, write: its program goes on only when the write so many records before has ended, which
   /// makes room for it in a buffer; 0: there is room.
   std::uint32_t room = 0;
   std::uint64_t gap = 0;        ///< kAfter: clocks; kWhen: clocks of work before the sleep
   std::uint8_t source = kInterrupt;  ///< kWhen: that, or the number of the stream
+  Point point = Point::kEnd;    ///< kWhen of a record
   std::uint64_t event = 0;      ///< kWhen: number in TraceInfo::interrupts, or of the record there
   std::uint32_t wake_gap = 0;   ///< kWhen: clocks from the event to the request
   Picoseconds at = 0;           ///< kAt
+  Picoseconds service = 0;      ///< kAside: what the register takes from the request's arrival on
+  /// kTransfer: it leaves its queue when it is released, the queue's turn has come, and its transfer
+  /// controller takes it. Addresses are the masters'. One without bytes moves nothing.
+  TransferRequest transfer;
+  std::uint8_t burst = 0;       ///< kTransfer: default burst size, bytes
+  bool on_bus() const { return kind == Kind::kRequest || kind == Kind::kAside; }
   friend bool operator==(const Record&, const Record&) = default;
 };
 
@@ -70,6 +97,25 @@ struct MasterInfo {
   friend bool operator==(const MasterInfo&, const MasterInfo&) = default;
 };
 
+/// An interrupt line of the core rises: at a time, or since a transfer has ended.
+struct Interrupt {
+  Picoseconds at = 0;
+  std::uint8_t source = kInterrupt;  ///< stream of the transfer; kInterrupt: at that time
+  Point point = Point::kEnd;
+  std::uint64_t event = 0;           ///< number of the transfer there
+  Picoseconds after = 0;             ///< from that to the interrupt
+  friend bool operator==(const Interrupt&, const Interrupt&) = default;
+};
+
+/// What is not a matter of crossbar and SDRAM and decides how transfers go.
+struct EdmaInfo {
+  unsigned request_clocks = 0;        ///< of the crossbar, between two requests; 0: the trace has no transfers
+  unsigned fifo = 0, depth = 0;       ///< bytes; destination registers
+  unsigned ram_latency = 0, ram_word_clocks = 0;  ///< internal RAM, clocks of the core
+  Picoseconds register_latency = 0;   ///< each word of a burst to registers
+  friend bool operator==(const EdmaInfo&, const EdmaInfo&) = default;
+};
+
 struct ClockInfo {
   Frequency frequency;
   Picoseconds start = 0;  ///< when it last started
@@ -84,8 +130,17 @@ struct TraceInfo {
   ClockInfo scr, ddr;  ///< crossbar, SDRAM; a stopped one is the parameters' matter
   std::vector<StreamInfo> streams;
   std::vector<MasterInfo> masters;
-  std::vector<Picoseconds> interrupts;
+  std::vector<Interrupt> interrupts;
+  EdmaInfo edma;
+  /// Masters some of whose requests keep their recorded times, although on the chip they wait for others: a replay does
+  /// not follow a run with other settings.
+  std::vector<Master> kept;
 };
+
+/// Whether the master is among TraceInfo::kept.
+inline bool keeps_times(const TraceInfo& info, Master m) {
+  return std::find(info.kept.begin(), info.kept.end(), m) != info.kept.end();
+}
 
 /// Records of several streams, each read from its beginning to its end.
 class RecordSource {

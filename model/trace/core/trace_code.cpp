@@ -4,11 +4,23 @@ namespace fovea::trace {
 namespace {
 
 // First byte of a record.
-constexpr std::uint8_t kWrite = 1, kReleaseShift = 1, kMark = 3 << kReleaseShift, kFromFirst = 8,
+constexpr std::uint8_t kWrite = 1, kReleaseShift = 1, kNoRequest = 3 << kReleaseShift, kFromFirst = 8,
                        kCritical = 16, kAttributes = 32, kBackOne = 64, kOtherMaster = 128;
+// Second byte without a request: the release, and from there on the kind.
+constexpr unsigned kKindShift = 2;
+// Of a master's number: the request goes aside. Of a source: from there on the point.
+constexpr unsigned kAsideBit = 32, kPointShift = 4;
+static_assert(kMasterCount < kAsideBit && kMasterCount + 1 < 1u << kPointShift);
+// What of a transfer differs from the one before.
+constexpr std::uint8_t kIndices = 1, kCounts = 2, kModes = 4;
 
 /// Of version 3 on.
-bool has_room(const Record& r) { return r.write && !r.mark && r.release == Release::kAfter; }
+bool has_room(const Record& r) { return r.write && r.on_bus() && r.release == Release::kAfter; }
+
+std::uint64_t modes(const TransferRequest& t, unsigned burst, unsigned priority) {
+  return t.source.constant | t.destination.constant << 1 | std::uint64_t{t.fifo_bytes} << 2 | burst << 10 |
+         priority << 18;
+}
 
 }  // namespace
 
@@ -17,33 +29,75 @@ void put_number(std::string& out, std::uint64_t v) {
   out.push_back(static_cast<char>(v));
 }
 
+namespace {
+
+void encode_request(const Record& r, std::uint8_t head, CodeState& s, std::string& out) {
+  CodeState::Kind& kind = s.kind_of(r);
+  if (head & kOtherMaster) {
+    s.master = r.master;
+    s.aside = r.kind == Kind::kAside;
+    put_number(out, index(r.master) + (s.aside ? kAsideBit : 0u));
+  }
+  if (head & kAttributes) {
+    put_number(out, r.bytes);
+    put_number(out, r.priority | (r.locked ? 8u : 0u));
+    kind.bytes = r.bytes;
+    kind.priority = r.priority;
+    kind.locked = r.locked;
+  }
+  if (r.critical) put_number(out, r.critical);
+  put_number(out, zigzag(std::uint64_t{r.address} - kind.address));
+  kind.address = r.address;
+  if (r.kind == Kind::kAside) put_number(out, r.service);
+}
+
+void encode_transfer(const Record& r, CodeState& s, std::string& out) {
+  const TransferRequest &t = r.transfer, &last = s.transfer;
+  const auto difference = [](auto now, auto before) {
+    return zigzag(static_cast<std::uint64_t>(static_cast<std::int64_t>(now) - static_cast<std::int64_t>(before)));
+  };
+  std::uint8_t changed = 0;
+  if (t.source.index != last.source.index || t.destination.index != last.destination.index) changed |= kIndices;
+  if (t.acnt != last.acnt || t.bcnt != last.bcnt) changed |= kCounts;
+  if (modes(t, r.burst, r.priority) != modes(last, s.burst, s.transfer_priority)) changed |= kModes;
+  out.push_back(static_cast<char>(changed));
+  put_number(out, difference(t.source.address, last.source.address));
+  put_number(out, difference(t.destination.address, last.destination.address));
+  if (changed & kIndices) {
+    put_number(out, difference(t.source.index, 0));
+    put_number(out, difference(t.destination.index, 0));
+  }
+  if (changed & kCounts) {
+    put_number(out, t.acnt);
+    put_number(out, t.bcnt);
+  }
+  if (changed & kModes) put_number(out, modes(t, r.burst, r.priority));
+  s.transfer = t;
+  s.burst = r.burst;
+  s.transfer_priority = r.priority;
+}
+
+}  // namespace
+
 void encode(const Record& r, CodeState& s, std::string& out) {
-  CodeState::Kind& kind = s.kinds[index(r.master)][r.write];
+  const CodeState::Kind& kind = s.kind_of(r);
   const bool attributes =
-      !r.mark && (kind.bytes != r.bytes || kind.priority != r.priority || kind.locked != r.locked);
+      r.on_bus() && (kind.bytes != r.bytes || kind.priority != r.priority || kind.locked != r.locked);
   std::uint8_t head = r.write ? kWrite : 0;
-  head |= r.mark ? kMark : static_cast<std::uint8_t>(r.release) << kReleaseShift;
+  head |= r.on_bus() ? static_cast<std::uint8_t>(r.release) << kReleaseShift : kNoRequest;
   if (r.from_first) head |= kFromFirst;
   if (r.critical) head |= kCritical;
   if (attributes) head |= kAttributes;
   if (r.back == 1) head |= kBackOne;
-  if (!r.mark && r.master != s.master) head |= kOtherMaster;
+  if (r.on_bus() && (r.master != s.master || (r.kind == Kind::kAside) != s.aside)) head |= kOtherMaster;
   out.push_back(static_cast<char>(head));
-  if (r.mark) {
-    put_number(out, static_cast<std::uint64_t>(r.release));
-    put_number(out, r.address);
+  if (r.on_bus()) {
+    encode_request(r, head, s, out);
   } else {
-    if (head & kOtherMaster) put_number(out, index(s.master = r.master));
-    if (attributes) {
-      put_number(out, r.bytes);
-      put_number(out, r.priority | (r.locked ? 8u : 0u));
-      kind.bytes = r.bytes;
-      kind.priority = r.priority;
-      kind.locked = r.locked;
-    }
-    if (r.critical) put_number(out, r.critical);
-    put_number(out, zigzag(std::uint64_t{r.address} - kind.address));
-    kind.address = r.address;
+    const unsigned kind_number = static_cast<unsigned>(r.kind) - static_cast<unsigned>(Kind::kMark);
+    put_number(out, static_cast<unsigned>(r.release) | kind_number << kKindShift);
+    if (r.kind == Kind::kMark) put_number(out, r.address);
+    if (r.kind == Kind::kTransfer) encode_transfer(r, s, out);
   }
   if (r.release == Release::kAt) {
     put_number(out, zigzag(r.at - s.at));
@@ -54,7 +108,8 @@ void encode(const Record& r, CodeState& s, std::string& out) {
   put_number(out, r.gap);
   if (has_room(r)) put_number(out, r.room);
   if (r.release == Release::kWhen) {
-    put_number(out, r.source == kInterrupt ? 0 : r.source + 1u);
+    put_number(out, r.source == kInterrupt ? 0
+                                           : (r.source + 1u) | static_cast<unsigned>(r.point) << kPointShift);
     std::uint64_t& last = s.event(r.source);
     put_number(out, zigzag(r.event - last));
     put_number(out, r.wake_gap);
@@ -65,14 +120,17 @@ void encode(const Record& r, CodeState& s, std::string& out) {
 namespace {
 
 /// Master, attributes and address of a request; each is coded against the last one of its kind.
-void decode_request(ByteReader& in, std::uint8_t head, CodeState& s, Record& r) {
+void decode_request(ByteReader& in, std::uint8_t head, CodeState& s, Record& r, unsigned version) {
   if (head & kOtherMaster) {
     const std::uint64_t master = in.number();
-    if (master >= kMasterCount) throw BadTrace("unknown master");
-    s.master = static_cast<Master>(master);
+    s.aside = version >= 4 && master & kAsideBit;
+    const std::uint64_t number = s.aside ? master - kAsideBit : master;
+    if (number >= kMasterCount) throw BadTrace("unknown master");
+    s.master = static_cast<Master>(number);
   }
   r.master = s.master;
-  CodeState::Kind& kind = s.kinds[index(r.master)][r.write];
+  if (s.aside) r.kind = Kind::kAside;
+  CodeState::Kind& kind = s.kind_of(r);
   if (head & kAttributes) {
     const std::uint64_t bytes = in.number(), rest = in.number();
     if (bytes == 0 || bytes > kMaxBurstBytes || rest > 15) throw BadTrace("a burst of no size");
@@ -93,13 +151,55 @@ void decode_request(ByteReader& in, std::uint8_t head, CodeState& s, Record& r) 
   r.bytes = kind.bytes;
   r.priority = kind.priority;
   r.locked = kind.locked;
+  if (r.kind != Kind::kAside) return;
+  r.service = in.number();
+  if (!r.write || r.service > kPsPerMs) throw BadTrace("an impossible access to a register");
+}
+
+/// A transfer request; what has not changed is that of the one before.
+void decode_transfer(ByteReader& in, CodeState& s, Record& r) {
+  TransferRequest& t = s.transfer;
+  const auto signed_number = [&in] { return static_cast<std::int64_t>(unzigzag(in.number())); };
+  const std::uint8_t changed = in.byte();
+  for (TransferRequest::Side* side : {&t.source, &t.destination})
+    side->address = static_cast<std::uint32_t>(side->address + static_cast<std::uint64_t>(signed_number()));
+  if (changed & kIndices)
+    for (TransferRequest::Side* side : {&t.source, &t.destination}) {
+      const std::int64_t index = signed_number();
+      if (index < -32768 || index > 32767) throw BadTrace("an impossible transfer");
+      side->index = static_cast<std::int32_t>(index);
+    }
+  if (changed & kCounts)
+    for (std::uint16_t* count : {&t.acnt, &t.bcnt}) {
+      const std::uint64_t n = in.number();
+      if (n > 0xFFFF) throw BadTrace("an impossible transfer");
+      *count = static_cast<std::uint16_t>(n);
+    }
+  if (changed & kModes) {
+    const std::uint64_t word = in.number();
+    t.source.constant = word & 1u;
+    t.destination.constant = word >> 1 & 1u;
+    t.fifo_bytes = static_cast<std::uint8_t>(word >> 2);
+    s.burst = static_cast<std::uint8_t>(word >> 10);
+    s.transfer_priority = word >> 18 & 7u;
+    const auto power_of_two = [](unsigned n, unsigned most) { return n != 0 && n <= most && (n & (n - 1)) == 0; };
+    if (word >> 21 || !power_of_two(t.fifo_bytes, 32) || !power_of_two(s.burst, kMaxBurstBytes))
+      throw BadTrace("an impossible transfer");
+  }
+  if (s.burst == 0) throw BadTrace("an impossible transfer");
+  r.transfer = t;
+  r.burst = s.burst;
+  r.priority = s.transfer_priority;
 }
 
 /// What a request waits for that an event releases.
 void decode_event(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   const std::uint64_t source = version == 1 ? 0 : in.number();
-  if (source > kMasterCount) throw BadTrace("an unknown stream");
-  r.source = source == 0 ? kInterrupt : static_cast<std::uint8_t>(source - 1);
+  const std::uint64_t stream = version >= 4 ? source & ((1u << kPointShift) - 1) : source;
+  const std::uint64_t point = version >= 4 ? source >> kPointShift : 0;
+  if (stream > kMasterCount || point >= kPoints) throw BadTrace("an unknown stream");
+  r.source = stream == 0 ? kInterrupt : static_cast<std::uint8_t>(stream - 1);
+  r.point = static_cast<Point>(point);
   std::uint64_t& last = s.event(r.source);
   last += unzigzag(in.number());
   const std::uint64_t gap = in.number();
@@ -115,16 +215,22 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   const std::uint8_t head = in.byte();
   r.write = head & kWrite;
   r.from_first = head & kFromFirst;
-  r.mark = (head & kMark) == kMark;
   std::uint64_t release = head >> kReleaseShift & 3u;
-  if (r.mark) {
-    release = in.number();
-    if (release > 2) throw BadTrace("unknown release");
-    const std::uint64_t value = in.number();
-    if (value > ~std::uint32_t{0}) throw BadTrace("a mark is too large");
-    r.address = static_cast<std::uint32_t>(value);
+  if ((head & kNoRequest) == kNoRequest) {
+    const std::uint64_t word = in.number();
+    release = word & ((1u << kKindShift) - 1);
+    const std::uint64_t kind = (word >> kKindShift) + static_cast<unsigned>(Kind::kMark);
+    if (release > 2 || kind > static_cast<unsigned>(version >= 4 ? Kind::kTransfer : Kind::kMark))
+      throw BadTrace("unknown release");
+    r.kind = static_cast<Kind>(kind);
+    if (r.kind == Kind::kMark) {
+      const std::uint64_t value = in.number();
+      if (value > ~std::uint32_t{0}) throw BadTrace("a mark is too large");
+      r.address = static_cast<std::uint32_t>(value);
+    }
+    if (r.kind == Kind::kTransfer) decode_transfer(in, s, r);
   } else {
-    decode_request(in, head, s, r);
+    decode_request(in, head, s, r, version);
   }
   r.release = static_cast<Release>(release);
   if (r.release == Release::kAt) {

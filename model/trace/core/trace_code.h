@@ -59,8 +59,12 @@ struct CodeState {
     std::uint8_t bytes = 0, priority = 0;
     bool locked = false;
   };
-  std::array<std::array<Kind, 2>, kMasterCount> kinds{};  // by master; read, write
+  std::array<std::array<Kind, 3>, kMasterCount> kinds{};  // by master; read, write, aside
+  Kind& kind_of(const Record& r) { return kinds[index(r.master)][r.kind == trace::Kind::kAside ? 2 : r.write]; }
   Master master = Master::kArmI;
+  bool aside = false;
+  TransferRequest transfer;
+  std::uint8_t burst = 0, transfer_priority = 0;
   Picoseconds at = 0;
   std::uint64_t interrupt = 0;
   std::array<std::uint64_t, kMasterCount> completion{};  // by stream
@@ -70,7 +74,8 @@ struct CodeState {
 };
 
 void encode(const Record& record, CodeState& state, std::string& out);
-/// `version` is the file's: in 1, each `when` is an interrupt; `room` exists from 3 on.
+/// `version` is the file's: in 1, each `when` is an interrupt; `room` exists from 3 on, what concerns transfers
+/// from 4 on.
 /// @throws BadTrace
 void decode(ByteReader& in, CodeState& state, Record& record, unsigned version);
 

@@ -13,12 +13,12 @@
 namespace fovea::trace {
 namespace {
 
-constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n", "3\n"};
+constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n", "3\n", "4\n"};
 constexpr std::uint32_t kBlockRecords = 8192;
 // No record needs more; a block that claims more is not ours.
 constexpr std::uint32_t kMaxRecordBytes = 64, kMaxInfoBytes = 64u << 20;
 constexpr std::size_t kHeadBytes = 20;
-enum Kind : std::uint8_t { kInfo = 'I', kRecords = 'R', kEnd = 'E' };
+enum BlockKind : std::uint8_t { kInfo = 'I', kRecords = 'R', kEnd = 'E' };
 
 void put32(std::string& out, std::uint32_t v) {
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(v >> 8 * i));
@@ -36,7 +36,7 @@ std::uint32_t checksum(const void* data, std::size_t n, std::uint32_t from = 0) 
 
 /// kind, stream, 2 x 0, records, raw bytes, packed bytes, CRC-32 of all before it and of the packed
 /// bytes; then those.
-std::string make_block(Kind kind, unsigned stream, std::uint32_t count, std::string_view raw) {
+std::string make_block(BlockKind kind, unsigned stream, std::uint32_t count, std::string_view raw) {
   uLongf size = ::compressBound(static_cast<uLong>(raw.size()));
   std::string packed(size, '\0');
   const int result = ::compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
@@ -67,10 +67,17 @@ std::string info_text(const TraceInfo& info) {
         << m.shared << ' ' << m.label << "\n";
   for (const auto& [key, value] : info.params) out << "param " << key << ' ' << value << "\n";
   Picoseconds last = 0;
-  for (const Picoseconds t : info.interrupts) {
-    out << "interrupt " << t - last << "\n";
-    last = t;
+  for (const Interrupt& i : info.interrupts) {
+    out << "interrupt " << i.at - last;
+    last = i.at;
+    if (i.source != kInterrupt)
+      out << ' ' << unsigned{i.source} << ' ' << static_cast<unsigned>(i.point) << ' ' << i.event << ' ' << i.after;
+    out << "\n";
   }
+  if (const EdmaInfo& e = info.edma; e.request_clocks != 0)
+    out << "edma " << e.request_clocks << ' ' << e.fifo << ' ' << e.depth << ' ' << e.ram_latency << ' '
+        << e.ram_word_clocks << ' ' << e.register_latency << "\n";
+  for (const Master m : info.kept) out << "kept " << index(m) << "\n";
   return out.str();
 }
 
@@ -129,7 +136,7 @@ TraceFile::TraceFile(std::string name, std::unique_ptr<ByteSource> bytes)
   if (!recognises(begin)) bad("it is not a bus trace");
   for (unsigned v = 0; v < std::size(kVersions); ++v)
     if (begin.substr(kMagic.size()) == kVersions[v]) version_ = v + 1;
-  if (version_ == 0) bad("its version is not known; allowed: versions 1 to 3");
+  if (version_ == 0) bad("its version is not known; allowed: versions 1 to 4");
   std::uint64_t at = begin.size();
   bool ended = false, informed = false;
   while (at < size) {
@@ -157,6 +164,9 @@ TraceFile::TraceFile(std::string name, std::unique_ptr<ByteSource> bytes)
       streams_.resize(info_.streams.size());
       for (std::size_t i = 0; i < streams_.size(); ++i)
         streams_[i].longest_gap = info_.streams[i].clock.num / info_.streams[i].clock.den * 3600;
+      if (info_.edma.request_clocks != 0)
+        for (const MasterInfo& m : info_.masters)
+          streams_[m.stream].transfers |= master_info(m.id).priority == PrioritySource::kQueue;
       informed = true;
     } else if (kind == kRecords && stream < streams_.size()) {
       streams_[stream].blocks.push_back(b);
@@ -219,7 +229,7 @@ void TraceFile::read_info(std::string_view text) {
 }
 
 void TraceFile::info_line(const std::string& key, std::string_view rest) {
-  std::array<std::uint64_t, 5> v{};
+  std::array<std::uint64_t, 6> v{};
   const auto numbers = [&](std::size_t n) {
     for (std::size_t i = 0; i < n; ++i)
       if (!take_number(rest, v[i])) bad("it is corrupted: '" + key + "' in its description");
@@ -252,8 +262,27 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
                               rest.substr(std::min(space + 1, rest.size())));
   } else if (key == "interrupt") {
     numbers(1);
-    info_.interrupts.push_back(v[0] +
-                               (info_.interrupts.empty() ? 0 : info_.interrupts.back()));
+    Interrupt i{v[0] + (info_.interrupts.empty() ? 0 : info_.interrupts.back().at)};
+    if (!rest.empty()) {
+      numbers(4);
+      if (v[0] >= kMasterCount || v[1] >= kPoints || v[2] >> 40) bad("it is corrupted: an interrupt by an impossible event");
+      i.source = static_cast<std::uint8_t>(v[0]);
+      i.point = static_cast<Point>(v[1]);
+      i.event = v[2];
+      i.after = v[3];
+    }
+    info_.interrupts.push_back(i);
+  } else if (key == "edma") {
+    numbers(6);
+    const bool sizes = v[0] != 0 && v[0] <= 1024 && v[1] >= 2 * kMaxBurstBytes && v[1] <= 4096 && v[2] != 0 &&
+                       v[2] <= 32 && v[3] <= 1024 && v[4] != 0 && v[4] <= 1024 && v[5] <= kPsPerMs;
+    if (!sizes) bad("it is corrupted: an impossible EDMA");
+    info_.edma = {static_cast<unsigned>(v[0]), static_cast<unsigned>(v[1]), static_cast<unsigned>(v[2]),
+                  static_cast<unsigned>(v[3]), static_cast<unsigned>(v[4]), v[5]};
+  } else if (key == "kept") {
+    numbers(1);
+    if (v[0] >= kMasterCount) bad("it is corrupted: an unknown master");
+    info_.kept.push_back(static_cast<Master>(v[0]));
   } else {
     bad("it is corrupted: '" + key + "' in its description");
   }
@@ -271,7 +300,8 @@ void TraceFile::check_info() {
     const double hertz = s.clock.hertz();
     ok = ok && time_ok(s.clock_start) && hertz >= 1e3 && hertz <= 1e12 && s.clock.den <= 1'000'000;
   }
-  for (const Picoseconds t : info_.interrupts) ok = ok && time_ok(t);
+  for (const Interrupt& i : info_.interrupts)
+    ok = ok && time_ok(i.at) && i.after <= i.at && (i.source == kInterrupt || i.source < info_.streams.size());
   std::array<bool, kMasterCount> seen{};
   for (const auto& m : info_.masters) {
     ok = ok && m.stream < info_.streams.size() && !seen[index(m.id)] && !m.label.empty() &&
@@ -280,6 +310,10 @@ void TraceFile::check_info() {
     stream_of_[index(m.id)] = m.stream;
   }
   if (!ok) bad("it is corrupted: an impossible description");
+  // Before version 4 nothing was noted of what the EDMA waits for.
+  if (version_ < 4)
+    for (const MasterInfo& m : info_.masters)
+      if (master_info(m.id).pace == Pace::kTransfers) info_.kept.push_back(m.id);
 }
 
 void TraceFile::open_block(Stream& s) {
@@ -299,18 +333,20 @@ bool TraceFile::next(unsigned stream, Record& record) {
   --s.left;
   try {
     decode(s.in, s.state, record, version_);
-    if (!record.mark && stream_of_[index(record.master)] != stream)
+    if (record.on_bus() && stream_of_[index(record.master)] != stream)
       throw BadTrace("a master in another's stream");
+    if (record.kind == Kind::kTransfer && !s.transfers) throw BadTrace("a transfer in another's stream");
     if (record.gap > s.longest_gap || record.wake_gap > s.longest_gap)
       throw BadTrace("a gap of hours");
     if (record.back > s.read || record.room > s.read) throw BadTrace("a reference to before the first record");
     if (record.release == Release::kWhen) {
       const bool interrupt = record.source == kInterrupt;
-      if (!interrupt && (record.source >= streams_.size() || record.source == stream))
-        throw BadTrace("an unknown stream");
-      if (record.event >=
-          (interrupt ? info_.interrupts.size() : streams_[record.source].records))
-        throw BadTrace("an event that never came");
+      const bool own = record.source == stream && record.kind != Kind::kTransfer;
+      if (!interrupt && (record.source >= streams_.size() || own)) throw BadTrace("an unknown stream");
+      const std::uint64_t events = interrupt                 ? info_.interrupts.size()
+                                   : record.source == stream ? s.read
+                                                             : streams_[record.source].records;
+      if (record.event >= events) throw BadTrace("an event that never came");
     }
     if (record.release == Release::kAt && record.at > info_.end + kPsPerSecond)
       throw BadTrace("a time after its end");

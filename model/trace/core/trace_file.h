@@ -46,7 +46,7 @@ class TraceFile : public RecordSource {
   /// True if the bytes begin as a trace does, of whatever version.
   static bool recognises(std::string_view bytes);
   const TraceInfo& info() const { return info_; }
-  /// Version of the format, 1 to 3.
+  /// Version of the format, 1 to 4.
   unsigned version() const { return version_; }
   std::uint64_t records() const { return records_; }
   bool next(unsigned stream, Record& record) override;
@@ -60,6 +60,7 @@ class TraceFile : public RecordSource {
     std::vector<Block> blocks;
     std::size_t next_block = 0;
     std::uint32_t left = 0;
+    bool transfers = false;  // it may have them
     std::uint64_t records = 0, read = 0, longest_gap = 0;
     std::vector<std::uint8_t> raw;
     ByteReader in;

@@ -117,10 +117,10 @@ void PerfettoRun::watch_transfers() {
   for (std::size_t i = 0; i < controllers_.size(); ++i) {
     controllers_[i] = std::make_unique<PerfettoLanes>(*file_, "DMA", fmt::format("TC{}", i));
     dma::EdmaTc& tc = *board_.dm365.edma_tcs[i];
-    tc.on_request = [this, i](const dma::TransferRequest& r, Picoseconds at) {
+    tc.on_request = [this, i](const TransferRequest& r, Picoseconds at) {
       transfers_[i].push_back({r, at});
     };
-    tc.on_ended = [this, i](const dma::TransferRequest& r, Picoseconds at) {
+    tc.on_ended = [this, i](const TransferRequest& r, Picoseconds at) {
       auto& list = transfers_[i];
       const auto t = std::find_if(list.begin(), list.end(), [&](const Transfer& other) {
         const auto& o = other.request;

@@ -80,7 +80,7 @@ class PerfettoRun final : private MemObserver {
   std::unique_ptr<PerfettoFunctions> functions_;
   Subscription watching_;
   struct Transfer {
-    dma::TransferRequest request;
+    TransferRequest request;
     Picoseconds at;
   };
   std::array<std::deque<Transfer>, 4> transfers_;

@@ -1,0 +1,286 @@
+// Of the recorder: what the transfers of the EDMA and the core wait for from each other. The rules and their
+// reasons: model/decisions/0006-trace.md.
+#include <algorithm>
+#include <iterator>
+
+#include "model/contract/memory_map.h"
+#include "model/trace/core/recorder.h"
+
+namespace fovea::trace {
+namespace {
+
+constexpr std::size_t kTriggersKept = 64;
+/// So many looks at a word make it one that the program waits at, and so far apart (clocks of the core) they are one
+/// loop.
+constexpr unsigned kLooksOfALoop = 3;
+constexpr std::uint64_t kClocksOfALoop = 64;
+/// From a completion code's pulse to the core's interrupt line.
+constexpr Picoseconds kToTheLine = kPsPerUs;
+
+}  // namespace
+
+/// A register access of the core: of its write buffer, or one that it waits for.
+void BusRecorder::submit_aside(const MemRequest& r) {
+  if (!r.write || core_(&r).asked == 0) {
+    register_access_ = true;
+    const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
+    if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
+      register_looks_ = {r.address, now, now, 0};
+    register_looks_.latest = now;
+    ++register_looks_.count;
+    return;
+  }
+  posted_.push_back(&r);
+  Stream& s = streams_[0];
+  const std::uint64_t number = s.next;
+  Pending& p = append(s, r.issued);
+  p.record.kind = Kind::kAside;
+  p.record.write = true;
+  p.record.bytes = r.bytes;
+  p.record.master = r.master;
+  p.record.address = r.address;
+  if (surroundings_.register_latency) p.record.service = surroundings_.register_latency(r.address);
+  s.history[number % kHistory].write = true;
+  flights_[index(r.master)].push_back({&r, number});
+  if (open_ && r.issued >= start_) release_core(s, p, r);
+}
+
+/// A burst of a transfer, which follows from its record. Which of them changes a word that the program looks at
+/// is noted.
+void BusRecorder::submit_of_transfer(const MemRequest& r, bool to_sdram) {
+  if (!r.write) return;
+  Controller& c = controllers_[master_info(r.master).unit];
+  if (c.to_write.empty()) return;  // of a request from before the recorder
+  Controller::Left& left = c.to_write.front();
+  left.bytes -= std::min<std::uint32_t>(left.bytes, r.bytes);
+  if (!to_sdram) c.elsewhere.push_back({r.address, left.number, left.bytes == 0});
+  if (left.bytes == 0) c.to_write.pop_front();
+}
+
+void BusRecorder::register_done(const MemRequest& r) {
+  if (of_transfers_ >> index(r.master) & 1u) {
+    auto& under_way = controllers_[master_info(r.master).unit].elsewhere;
+    const auto it = std::find_if(under_way.begin(), under_way.end(),
+                                 [&](const Controller::Write& w) { return w.address == r.address; });
+    if (r.write && it != under_way.end()) under_way.erase(it);
+    return;
+  }
+  if (stream_of_[index(r.master)] != 0) return;
+  if (const auto it = std::find(posted_.begin(), posted_.end(), &r); it != posted_.end()) {
+    posted_.erase(it);
+    return end_flight(r);
+  }
+  // A loop that looks at a register sees the code that was set since its look before.
+  if (r.write || register_looks_.count < 2 || code_seen_) return;
+  code_seen_ = true;
+  note_wait(register_looks_.first, clock_.edge_at_or_after(r.last), core_(nullptr).room_waits - room_waits_at_open_,
+            {transfer_of(code_), code_.kind == TransferTrigger::Kind::kEnded ? Point::kEnd : Point::kSubmitted,
+             code_.at});
+}
+
+void BusRecorder::trigger_written(Master writer, Picoseconds at) {
+  if (stream_of_[index(writer)] != 0) return;
+  if (posted_.empty()) {
+    if (!open_ || at < start_) return;
+    note_sleep();
+    Pending& p = append_step(at);
+    release_behind_latest(streams_[0], p, at, 1);
+    triggers_.push_back({at, streams_[0].next - 1});
+  } else {
+    const auto& flights = flights_[index(writer)];
+    const auto it = std::find_if(flights.begin(), flights.end(),
+                                 [&](const Flight& f) { return f.request == posted_.front(); });
+    if (it != flights.end()) triggers_.push_back({at, it->number});
+  }
+  if (triggers_.size() > kTriggersKept) triggers_.pop_front();
+}
+
+void BusRecorder::requested(const TransferRequest& request, const TransferTrigger& by, unsigned burst,
+                            Picoseconds ready, Picoseconds at) {
+  Controller& c = controllers_[request.controller];
+  if (c.stream == ~0u) {  // a load shares its ports, whose requests are not told apart
+    if (open_ && at >= start_)
+      not_followed_ |= 1u << index(edma_read(request.controller)) | 1u << index(edma_write(request.controller));
+    return;
+  }
+  Stream& s = streams_[c.stream];
+  if (c.base == kNone) c.base = request.number - s.next;
+  const std::uint64_t number = s.next;
+  Pending& p = append(s, at);
+  p.done = true;
+  p.ready = ready;
+  p.record.kind = Kind::kTransfer;
+  p.record.transfer = request;
+  TransferRequest& t = p.record.transfer;
+  t.tcc = t.controller = 0;
+  t.interrupt = t.chain = false;
+  t.number = 0;
+  p.record.burst = static_cast<std::uint8_t>(burst);
+  if (surroundings_.priority)
+    p.record.priority = static_cast<std::uint8_t>(surroundings_.priority(edma_read(request.controller)));
+  if (request.bytes() != 0) c.to_write.push_back({number, request.bytes()});
+  if (!open_ || at < start_) return;
+  release_transfer(p, by, ready);
+  write_out(s, c.stream, kHeldBack);
+}
+
+BusRecorder::Transfer BusRecorder::transfer_of(const TransferTrigger& by) const {
+  const Controller& c = controllers_[by.controller];
+  if (c.stream == ~0u || c.base == kNone) return {};
+  return {static_cast<std::uint8_t>(c.stream), by.number - c.base};
+}
+
+void BusRecorder::release_transfer(Pending& p, const TransferTrigger& by, Picoseconds ready) {
+  Transfer source;
+  Point point = Point::kEnd;
+  switch (by.kind) {
+    case TransferTrigger::Kind::kEvent:
+      return;  // at its time
+    case TransferTrigger::Kind::kWrite: {
+      const auto it = std::find_if(triggers_.rbegin(), triggers_.rend(), [&](const Written& w) { return w.at == by.at; });
+      if (it != triggers_.rend()) source = {0, it->number};
+      break;
+    }
+    case TransferTrigger::Kind::kSubmitted:
+      source = transfer_of(by);
+      point = Point::kSubmitted;
+      break;
+    case TransferTrigger::Kind::kEnded:
+      source = transfer_of(by);
+      break;
+  }
+  if (source.stream == kInterrupt) {
+    if (by.at >= start_) not_followed_ |= 1u << index(edma_read(p.record.transfer.controller));
+    return;
+  }
+  p.record.release = Release::kWhen;
+  p.record.source = source.stream;
+  p.record.point = point;
+  p.event = source.number;
+  const std::uint64_t to = scr_.edge_at_or_after(ready), from = scr_.edge_at_or_after(by.at);
+  p.record.wake_gap = static_cast<std::uint32_t>(to - std::min(from, to));
+}
+
+BusRecorder::Pending& BusRecorder::append_step(Picoseconds at) {
+  Stream& s = streams_[0];
+  Pending& p = append(s, at);
+  p.done = true;
+  p.record.kind = Kind::kStep;
+  s.history[(s.next - 1) % kHistory] = {s.next - 1, kNone, at, at, true, false};
+  return p;
+}
+
+/// What follows in the program counts from the step just appended.
+void BusRecorder::note_step(std::uint64_t room_waits, std::uint64_t asked) {
+  Stream& s = streams_[0];
+  const std::uint64_t number = s.next - 1;
+  steps_[next_step_++ % kSteps] = {number, asked, room_waits, false, true};
+  s.blocking_read = number;
+  const Outcome* latest = outcome(s, s.latest);
+  if (!latest || (latest->done && latest->last <= s.history[number % kHistory].first)) s.latest = number;
+}
+
+std::size_t BusRecorder::interrupt_before(std::uint64_t woke) const {
+  std::size_t n = interrupts_.size();
+  while (n > 0 && clock_.edge_at_or_after(interrupts_[n - 1].at) > woke) --n;
+  return n > 0 ? n - 1 : interrupts_.size();
+}
+
+/// The core has slept since its last request: what it does next, a register access, depends on what woke it.
+void BusRecorder::note_sleep() {
+  const CoreState now = core_(nullptr);
+  const std::uint64_t idle = now.idle - core_before_.idle;
+  if (idle == 0 || now.woke == 0) return;
+  const std::uint64_t woke = now.woke - now.origin;
+  const std::size_t by = interrupt_before(woke);
+  if (by == interrupts_.size()) return;
+  core_before_.idle = now.idle;
+  Stream& s = streams_[0];
+  const Outcome* anchor = outcome(s, s.latest);
+  if (anchor && !anchor->done) anchor = nullptr;
+  const std::uint64_t before = anchor ? anchor->number : kNone;
+  const bool first = anchor && !anchor->write;
+  const std::uint64_t from = anchor ? clock_.edge_at_or_after(first ? anchor->first : anchor->last) : woke;
+  Pending& p = append_step(clock_.edge(woke));
+  p.record.release = Release::kWhen;
+  p.record.event = by;
+  const std::uint64_t risen = clock_.edge_at_or_after(interrupts_[by].at);
+  p.record.wake_gap = static_cast<std::uint32_t>(woke - std::min(risen, woke));
+  if (before != kNone) {
+    p.reference = before;
+    p.record.from_first = first;
+    p.record.gap = woke > from + idle ? woke - from - idle : 0;
+  }
+  const std::uint64_t room_waits = now.room_waits - room_waits_at_open_;
+  note_step(room_waits, woke - std::min(room_waits, woke));
+}
+
+/// The program has waited in a loop from `began` on and has `seen` the end, all in clocks of the core; without a
+/// wait both are one.
+void BusRecorder::note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end) {
+  if (!open_ || end.by.stream == kInterrupt || clock_.edge(seen) < start_ || end.at < start_) return;
+  note_sleep();
+  Stream& s = streams_[0];
+  Pending& p = append_step(clock_.edge(seen));
+  release_in_program(s, p, began - std::min(room_waits, began));
+  p.record.release = Release::kWhen;
+  p.record.source = end.by.stream;
+  p.record.point = end.point;
+  p.event = end.by.number;
+  const std::uint64_t at = clock_.edge_at_or_after(end.at);
+  p.record.wake_gap = static_cast<std::uint32_t>(seen - std::min(at, seen));
+  note_step(room_waits, seen - std::min(room_waits, seen));
+}
+
+void BusRecorder::loaded(std::uint32_t offset, unsigned, std::uint64_t clock, std::uint64_t room_waits) {
+  const std::uint32_t word = offset & ~3u;
+  if (ram_looks_.count == 0 || ram_looks_.place != word || clock - ram_looks_.latest > kClocksOfALoop)
+    ram_looks_ = {word, clock, clock, 0};
+  ram_looks_.latest = clock;
+  ++ram_looks_.count;
+  const auto flag = std::find_if(flags_.begin(), flags_.end(), [&](const Flag& f) { return f.word == word; });
+  if (flag == flags_.end()) {
+    if (ram_looks_.count == kLooksOfALoop) flags_[next_flag_++ % flags_.size()] = {.word = word, .by = {}};
+    return;
+  }
+  if (!std::exchange(flag->written, false) || !flag->last || !open_) return;
+  const std::uint64_t origin = core_(nullptr).origin;
+  note_wait(ram_looks_.first - origin, clock - origin, room_waits - room_waits_at_open_,
+            {flag->by, Point::kDelivered, flag->at});
+  ram_looks_ = {};
+}
+
+void BusRecorder::written(std::uint32_t offset, unsigned bytes, Master master, Picoseconds at) {
+  if (!(of_transfers_ >> index(master) & 1u)) return;
+  const Controller& c = controllers_[master_info(master).unit];
+  const auto it = std::find_if(c.elsewhere.begin(), c.elsewhere.end(), [&](const Controller::Write& w) {
+    return w.address - INTERNAL_RAM_DATA_BASE == offset;
+  });
+  if (it == c.elsewhere.end()) return;
+  for (Flag& f : flags_)
+    if (f.word - offset < bytes)
+      f = {f.word, true, it->last, {static_cast<std::uint8_t>(c.stream), it->number}, at};
+}
+
+void BusRecorder::interrupt(Picoseconds at) {
+  const bool by_code = pulsed_at_ != 0 && at >= pulsed_at_ && at - pulsed_at_ <= kToTheLine;
+  interrupts_.push_back({at, pulse_, by_code ? pulsed_at_ : 0});
+  if (by_code) pulsed_at_ = 0;
+}
+
+void BusRecorder::list_interrupts(TraceInfo& info) {
+  for (const Risen& i : interrupts_) {
+    if (i.at >= end_) continue;
+    Interrupt& out = info.interrupts.emplace_back(Interrupt{.at = i.at});
+    if (i.pulsed == 0) continue;
+    const Transfer by = transfer_of(i.by);
+    const std::uint64_t place = by.stream == kInterrupt ? kNone : place_of(by.stream, by.number);
+    if (place == kNone) continue;
+    out.source = by.stream;
+    out.point = i.by.kind == TransferTrigger::Kind::kEnded ? Point::kEnd : Point::kSubmitted;
+    out.event = place;
+    out.after = i.at - i.by.at;
+  }
+}
+
+}  // namespace fovea::trace
