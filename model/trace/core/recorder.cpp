@@ -362,6 +362,8 @@ std::uint64_t BusRecorder::place_of(std::uint8_t index, std::uint64_t number) {
   Stream& s = streams_[index];
   if (s.pace == Pace::kTransfers)
     return s.first != kNone && number >= s.first && number - s.first < s.written ? number - s.first : kNone;
+  if (index == 0)
+    if (const auto it = places_.find(number); it != places_.end()) return it->second;
   const Outcome* o = outcome(s, number);
   return o ? o->place : kNone;
 }
@@ -375,6 +377,7 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   if (p.event != kNone) {
     if (write_up_to(r.source, p.event)) {
       r.event = place_of(r.source, p.event);
+      if (r.source == 0) places_.erase(p.event);
     } else {  // what it waited for is not in the recording
       r.release = Release::kAt;
       r.source = kInterrupt;
@@ -402,6 +405,8 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   }
   r.at = r.release != Release::kAt ? 0 : r.kind == Kind::kTransfer ? p.ready : p.issued;
   if (Outcome* o = outcome(s, number)) o->place = s.written;
+  if (index == 0)
+    if (const auto it = places_.find(number); it != places_.end()) it->second = s.written;
   if (s.first == kNone) s.first = number;
   ++s.written;
   writer_.add(index, r);

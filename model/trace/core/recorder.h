@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -237,6 +238,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     Picoseconds at;
     std::uint64_t number;
   };
+  /// Places of the core's records that transfers wait for; they may be written long before the transfers.
+  std::map<std::uint64_t, std::uint64_t> places_;
   std::deque<Written> triggers_;          // the last of the core's writes that set one, by the record of it
   TransferTrigger code_, pulse_;          // what set the last completion code; what caused the last interrupt by one
   Picoseconds pulsed_at_ = 0;

@@ -27,7 +27,8 @@ void BusRecorder::submit_aside(const MemRequest& r) {
     if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
       register_looks_ = {r.address, now, now, 0};
     register_looks_.latest = now;
-    ++register_looks_.count;
+    // A code from before the first look is seen without a wait.
+    if (++register_looks_.count == 1) code_seen_ = true;
     return;
   }
   posted_.push_back(&r);
@@ -86,11 +87,14 @@ void BusRecorder::trigger_written(Master writer, Picoseconds at) {
     Pending& p = append_step(at);
     release_behind_latest(streams_[0], p, at, 1);
     triggers_.push_back({at, streams_[0].next - 1});
+    places_.emplace(streams_[0].next - 1, kNone);
   } else {
     const auto& flights = flights_[index(writer)];
     const auto it = std::find_if(flights.begin(), flights.end(),
                                  [&](const Flight& f) { return f.request == posted_.front(); });
-    if (it != flights.end()) triggers_.push_back({at, it->number});
+    if (it == flights.end()) return;
+    triggers_.push_back({at, it->number});
+    places_.emplace(it->number, kNone);
   }
   if (triggers_.size() > kTriggersKept) triggers_.pop_front();
 }
@@ -227,8 +231,8 @@ void BusRecorder::note_wait(std::uint64_t began, std::uint64_t seen, std::uint64
   p.record.source = end.by.stream;
   p.record.point = end.point;
   p.event = end.by.number;
-  const std::uint64_t at = clock_.edge_at_or_after(end.at);
-  p.record.wake_gap = static_cast<std::uint32_t>(seen - std::min(at, seen));
+  const std::uint64_t waited_until = std::max(clock_.edge_at_or_after(end.at), began);
+  p.record.wake_gap = static_cast<std::uint32_t>(seen - std::min(waited_until, seen));
   note_step(room_waits, seen - std::min(room_waits, seen));
 }
 
