@@ -377,7 +377,6 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   if (p.event != kNone) {
     if (write_up_to(r.source, p.event)) {
       r.event = place_of(r.source, p.event);
-      if (r.source == 0) places_.erase(p.event);
     } else {  // what it waited for is not in the recording
       r.release = Release::kAt;
       r.source = kInterrupt;
