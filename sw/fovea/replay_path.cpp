@@ -271,6 +271,7 @@ void ReplayPath::prepare(unsigned stream) {
     }
     if (off_edge) at = s.clock.edge(aligned(s, s.clock.edge_at_or_after(at)));
     at = std::max(at, s.earliest);
+    if (r.kind == trace::Kind::kStep) at += r.service;
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
     if (r.on_bus()) {
       set_time(stream, at);

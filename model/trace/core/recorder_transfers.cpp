@@ -85,7 +85,11 @@ void BusRecorder::trigger_written(Master writer, Picoseconds at) {
     if (!open_ || at < start_) return;
     note_sleep();
     Pending& p = append_step(at);
-    release_behind_latest(streams_[0], p, at, 1);
+    // A register is written between two edges of the core's clock.
+    std::uint64_t edge = clock_.edge_at_or_after(at);
+    if (edge > 0 && clock_.edge(edge) > at) --edge;
+    release_behind_latest(streams_[0], p, clock_.edge(edge), 1);
+    if (p.record.release == Release::kAfter) p.record.service = at - clock_.edge(edge);
     triggers_.push_back({at, streams_[0].next - 1});
     places_.emplace(streams_[0].next - 1, kNone);
   } else {

@@ -64,7 +64,8 @@ struct Record {
   std::uint64_t event = 0;      ///< kWhen: number in TraceInfo::interrupts, or of the record there
   std::uint32_t wake_gap = 0;   ///< kWhen: clocks from the event to the request
   Picoseconds at = 0;           ///< kAt
-  Picoseconds service = 0;      ///< kAside: what the register takes from the request's arrival on
+  /// kAside: what the register takes from the request's arrival on. kStep: from its clock's edge to it.
+  Picoseconds service = 0;
   /// kTransfer: it leaves its queue when it is released, the queue's turn has come, and its transfer
   /// controller takes it. Addresses are the masters'. One without bytes moves nothing.
   TransferRequest transfer;

@@ -97,6 +97,7 @@ void encode(const Record& r, CodeState& s, std::string& out) {
     const unsigned kind_number = static_cast<unsigned>(r.kind) - static_cast<unsigned>(Kind::kMark);
     put_number(out, static_cast<unsigned>(r.release) | kind_number << kKindShift);
     if (r.kind == Kind::kMark) put_number(out, r.address);
+    if (r.kind == Kind::kStep) put_number(out, r.service);
     if (r.kind == Kind::kTransfer) encode_transfer(r, s, out);
   }
   if (r.release == Release::kAt) {
@@ -228,6 +229,7 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
       if (value > ~std::uint32_t{0}) throw BadTrace("a mark is too large");
       r.address = static_cast<std::uint32_t>(value);
     }
+    if (r.kind == Kind::kStep && (r.service = in.number()) > kPsPerMs) throw BadTrace("a step too far");
     if (r.kind == Kind::kTransfer) decode_transfer(in, s, r);
   } else {
     decode_request(in, head, s, r, version);
