@@ -192,7 +192,8 @@ TEST(EffectsTest, PortsWithoutALoadAreIdle) {
 
 // `fovea exec --board`: the program may use what it likes.
 TEST(EffectsTest, NothingIsKnownOfAProgramThatIsBrought) {
-  Settings s({{"firmware.kernel", "plain"}});
+  const Keys plain{{"firmware.kernel", "plain"}};
+  Settings s(plain);
   const char* const keys[] = {"bus.edma_tc1.width", "cpu.tcm.banks", "vpss.base_px_525", "firmware.watchdog"};
   for (const char* key : keys) EXPECT_FALSE(declared_effective(*s.set.find(key))) << key;
   s.params.hosted = true;

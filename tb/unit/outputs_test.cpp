@@ -90,11 +90,13 @@ TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
 }
 
 TEST(StatsJsonTest, HasOneLineForEachStatisticAndEachWarning) {
-  EXPECT_EQ(stats_json(some_rows(), true, {{"model", "a [{b}]\n", 2}}, "frames"),
+  EXPECT_EQ(stats_json(some_rows(), true, {{"model", "a [{b}]\n", 2}},
+                       {.ended_by = "frames", .kernel = "staged"}),
             "{\n"
             "  \"complete\": true,\n"
             "  \"band\": \"not run\",\n"
             "  \"ended_by\": \"frames\",\n"
+            "  \"kernel\": \"staged\",\n"
             "  \"warnings\": [\n"
             "    {\"kind\": \"model\", \"what\": \"a [{b}]\\n\", \"count\": 2}\n"
             "  ],\n"
