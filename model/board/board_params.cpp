@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "model/contract/words.h"
+
 namespace fovea::board {
 namespace {
+
+const std::string kEdmaKernel = "a kernel that uses the EDMA or may fall back to one that does";
 
 /// Whether `frames` is among the conditions of run.until, one or a list in brackets.
 bool ends_by_frames(std::string_view until) {
@@ -37,8 +41,8 @@ BoardParams::BoardParams(soc::Placements blocks) : soc(*this, std::move(blocks))
 void BoardParams::link_video() {
   // Which lines and samples the display uses is the firmware's choice; only that of this project is
   // known to follow video.standard.
-  const auto pal = [this] { return !firmware.elf().empty() || video.format().is_625; };
-  const auto not_pal = [this] { return !firmware.elf().empty() || !video.format().is_625; };
+  const auto pal = [this] { return !own_program() || video.format().is_625; };
+  const auto not_pal = [this] { return !own_program() || !video.format().is_625; };
   for (ParamBase* p : {&soc.vpss.base_px_625, &soc.vpss.base_py_625})
     p->matters_only("video.standard = pal, mt9v125 or svga_progressive", {&video.standard, &firmware.elf}, pal);
   for (ParamBase* p : {&soc.vpss.base_px_525, &soc.vpss.base_py_525})
@@ -66,7 +70,7 @@ void BoardParams::link_cameras() {
   firmware.watchdog.matters_only(
       "a program for several cameras (firmware.program, firmware.view, cameras.count or firmware.elf)",
       {&firmware.elf, &firmware.program, &firmware.view, &firmware.display_phase, &cameras.count},
-      [this] { return !firmware.elf().empty() || !firmware.view.is("single") || takes_turns(); });
+      [this] { return !own_program() || !firmware.view.is("single") || takes_turns(); });
   for (unsigned n = 1; n < camera_rows.size(); ++n)
     camera_rows[n].wire.input.matters_only("cameras.multiplexer = decoder", {&cameras.multiplexer},
                                            [this] { return cameras.multiplexer.is("decoder"); });
@@ -90,15 +94,13 @@ void BoardParams::link_views() {
 }
 
 bool BoardParams::edma_moves_pixels() const {
-  static constexpr const char* kKernels[] = {"staged", "gather", "runs", "copy", "fastest"};
-  return !firmware.elf().empty() || std::any_of(std::begin(kKernels), std::end(kKernels),
-                                                [this](const char* k) { return firmware.kernel.is(k); });
+  return !own_program() || contract::may_use_edma(contract::code_of(contract::kKernels, firmware.kernel()));
 }
 
 BoardParams::PortUse BoardParams::block_at(const MasterInfo& port) {
   switch (port.priority) {
     case PrioritySource::kQueue:
-      return {"a kernel that uses the EDMA", {&firmware.kernel, &firmware.elf}, [this] { return edma_moves_pixels(); }};
+      return {kEdmaKernel, {&firmware.kernel, &firmware.elf}, [this] { return edma_moves_pixels(); }};
     case PrioritySource::kImcop:
       return {"an engine", {&soc.engine.kind}, [this] { return soc.engine.present(); }};
     default:
@@ -125,8 +127,7 @@ void BoardParams::link_ports() {
   for (const MasterInfo& port : kMasters.rows) {
     if (!port.load_allowed || port.side == Side::kWrites) continue;
     for (ParamBase* p : soc.crossbar.ports[stat_index(port.id)]->params()) link(*p, port);
-    for (EnumParam& p : priority.of)
-      if (p.key() == priority.prefix() + "." + std::string(priority_name(port))) link(p, port);
+    // Not the priority: the firmware writes its register at the start, for which it may have to switch on the block.
   }
 }
 
@@ -142,10 +143,10 @@ void BoardParams::link_internal_ram() {
   };
   for (ParamBase* p : std::initializer_list<ParamBase*>{&soc.cpu.tcm_dma_word_clocks,
                                                         &soc.cpu.tcm_dma_latency, &soc.cpu.tcm_first})
-    p->matters_only("a load with load.memory = internal_ram, or a kernel that uses the EDMA", deciders, shared);
+    p->matters_only("a load with load.memory = internal_ram, or " + kEdmaKernel, deciders, shared);
   deciders.push_back(&soc.cpu.tcm_own_conflict);
   soc.cpu.tcm_banks.matters_only(
-      "a load with load.memory = internal_ram, a kernel that uses the EDMA, or cpu.tcm.own_conflict above 0 cycles",
+      "a load with load.memory = internal_ram, " + kEdmaKernel + ", or cpu.tcm.own_conflict above 0 cycles",
       deciders, [this, shared] { return shared() || soc.cpu.tcm_own_conflict() > 0; });
 }
 

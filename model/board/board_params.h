@@ -256,6 +256,9 @@ struct BoardParams : ParamTree {
   explicit BoardParams(soc::Placements blocks = soc::dm365_blocks());
   /// Everything that is set of a camera: what its row sets, and for the rest the keys of all cameras.
   CameraSetup camera_setup(unsigned camera) const;
+  /// False if another program than this project's firmware runs, of which nothing is known.
+  bool own_program() const { return !hosted && firmware.elf().empty(); }
+  bool hosted = false;  ///< `fovea exec` brings the program
   unsigned camera_count() const { return static_cast<unsigned>(cameras.count()); }
   /// Whether an analogue multiplexer leads one of several cameras to one input of the decoder.
   bool multiplexed() const { return cameras.multiplexer.is("gpio") && camera_count() > 1; }

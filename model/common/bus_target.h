@@ -35,6 +35,8 @@ class BusTarget : public sc_core::sc_module, public Block {
   RegBank& bank() { return bank_; }
   BusTarget* registers() final { return this; }
   bool gated() const { return !clocked(); }
+  /// What gates its clock, for the warning.
+  void set_gate(std::string name) { gate_ = std::move(name); }
   void reset(ResetKind kind) override {
     bank_.reset();
     on_reset(kind);
@@ -67,7 +69,8 @@ class BusTarget : public sc_core::sc_module, public Block {
     Reg* const r = bank_.register_at(offset);
     std::uint32_t word = 0;
     if (!clocked()) {
-      Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated");
+      Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated" +
+                                    (gate_.empty() ? "" : " (" + gate_ + ")"));
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
       if (!observers_.empty()) [[unlikely]]
@@ -134,6 +137,7 @@ class BusTarget : public sc_core::sc_module, public Block {
   }
 
   RegBank& bank_;
+  std::string gate_;  // what gates the clock; empty: not known
   Observers<RegisterObserver*> observers_;
 };
 

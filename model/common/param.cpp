@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -325,6 +326,26 @@ ParamBase* ParamSet::find(std::string_view key) const {
   return nullptr;
 }
 
+namespace {
+
+/// The keys that have this word, or words, between dots or at their beginning: `kernel`, `dcache`, `priority.edma`. The
+/// shortest three; none of numbered copies.
+std::vector<std::string> with_word(const std::vector<ParamBase*>& all, std::string_view word) {
+  std::vector<std::string> out;
+  if (word.size() < 3) return out;
+  for (const auto* p : all) {
+    const std::string key = "." + p->key();
+    if (key.find("." + std::string(word)) == std::string::npos) continue;
+    if (std::none_of(key.begin(), key.end() - 1, [&](const char& c) { return c == '.' && std::isdigit(*(&c + 1)); }))
+      out.push_back(p->key());
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (out.size() > 3) out.resize(3);
+  return out;
+}
+
+}  // namespace
+
 std::string ParamSet::nearest(std::string_view key) const {
   std::string best;
   std::size_t best_distance = ~std::size_t{0};
@@ -347,10 +368,15 @@ void ParamSet::set(std::string_view key, std::string_view text) {
   if (!p) {
     const std::string near = nearest(key);
     const auto foreign = foreign_.find(near);
+    if (foreign != foreign_.end() && near == key) throw UserError("key '" + near + "' " + foreign->second);
     std::string hint = near.empty() ? "; 'fovea params' lists all keys"
                                     : "; did you mean '" + near + "'?";
-    if (foreign != foreign_.end()) {
-      if (near == key) throw UserError("key '" + near + "' " + foreign->second);
+    if (const auto words = with_word(all_, key); !words.empty()) {
+      hint = "; did you mean ";
+      for (std::size_t i = 0; i < words.size(); ++i)
+        hint += (i == 0 ? "'" : i + 1 < words.size() ? ", '" : " or '") + words[i] + "'";
+      hint += "?";
+    } else if (foreign != foreign_.end()) {
       hint = "; did you mean '" + near + "'? It " + foreign->second;
     }
     throw UserError("unknown key '" + std::string(key) + "'" + hint);

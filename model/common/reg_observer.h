@@ -15,6 +15,7 @@ struct RegisterAccess {
   bool write = false;
   bool gated = false;       ///< the block's clock is off: nothing happened
   std::uint32_t value = 0;  ///< read or written, from bit 0 on
+  friend bool operator==(const RegisterAccess&, const RegisterAccess&) = default;
 };
 
 /// Called after each access that came over the bus, in kernel time. An observer changes nothing.

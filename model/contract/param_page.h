@@ -61,6 +61,26 @@ enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
   X(KERNEL_ENGINE_RADIAL, 13, "engine_radial")
 enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
 
+/* The kernel that the firmware takes in place of one that the lens or the chip does not allow, for a single view: X(it,
+ * the other). The last one of such a chain fits every lens and refers to itself. */
+#define PARAM_KERNEL_FALLBACKS(X)        \
+  X(KERNEL_PLAIN, KERNEL_PLAIN)          \
+  X(KERNEL_LDM, KERNEL_LDM)              \
+  X(KERNEL_STRIPS, KERNEL_STRIPS)        \
+  X(KERNEL_OFFSETS, KERNEL_STRIPS)       \
+  X(KERNEL_DELTAS, KERNEL_OFFSETS)       \
+  X(KERNEL_CODES, KERNEL_DELTAS)         \
+  X(KERNEL_STAGED, KERNEL_CODES)         \
+  X(KERNEL_GATHER, KERNEL_CODES)         \
+  X(KERNEL_RUNS, KERNEL_CODES)           \
+  X(KERNEL_COPY, KERNEL_CODES)           \
+  X(KERNEL_FASTEST, KERNEL_STAGED)       \
+  X(KERNEL_ENGINE, KERNEL_STAGED)        \
+  X(KERNEL_ENGINE_GRID, KERNEL_STAGED)   \
+  X(KERNEL_ENGINE_RADIAL, KERNEL_STAGED)
+#define PARAM_KERNEL_OTHERWISE(kernel, otherwise) kernel##_OTHERWISE = otherwise,
+enum param_kernel_otherwise { PARAM_KERNEL_FALLBACKS(PARAM_KERNEL_OTHERWISE) };
+
 /* The look-up tables of a run that measures the remap loop by itself: table k is that of the camera's view, moved to
  * the right by k * PARAM_TABLE_STEP_PX (lens_view_t, shift_x). The step is odd, so that the first pixels of the pairs
  * are other pixels in each neighbouring table. */

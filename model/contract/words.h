@@ -24,6 +24,30 @@ inline constexpr std::array kFlows = {PARAM_FLOWS(FOVEA_WORD)};
 inline constexpr std::array kMasterWords = {PARAM_MASTERS(FOVEA_WORD)};
 #undef FOVEA_WORD
 
+/// The kernel that is taken in place of this one; itself at the end of a chain.
+constexpr std::uint32_t fallback_of(std::uint32_t kernel) {
+  constexpr std::uint32_t kTaken[][2] = {
+#define FOVEA_FALLBACK(one, otherwise) {one, otherwise},
+      PARAM_KERNEL_FALLBACKS(FOVEA_FALLBACK)
+#undef FOVEA_FALLBACK
+  };
+  for (const auto& row : kTaken)
+    if (row[0] == kernel) return row[1];
+  return kernel;
+}
+/// Kernels whose pixels the remap engine computes, and ones in which the EDMA moves pixels.
+constexpr bool needs_engine(std::uint32_t kernel) {
+  return kernel == KERNEL_ENGINE || kernel == KERNEL_ENGINE_GRID || kernel == KERNEL_ENGINE_RADIAL;
+}
+constexpr bool uses_edma(std::uint32_t kernel) {
+  return kernel == KERNEL_STAGED || kernel == KERNEL_GATHER || kernel == KERNEL_RUNS || kernel == KERNEL_COPY;
+}
+/// Whether the EDMA may move pixels if this kernel is asked for.
+constexpr bool may_use_edma(std::uint32_t kernel) {
+  for (;; kernel = fallback_of(kernel))
+    if (uses_edma(kernel) || fallback_of(kernel) == kernel) return uses_edma(kernel);
+}
+
 /// The words alone, for a parameter that takes them.
 template <std::size_t N>
 std::vector<std::string> words(const std::array<Word, N>& table) {

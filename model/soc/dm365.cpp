@@ -89,8 +89,10 @@ void Dm365::connect(const Placement& row, BusTarget& block) {
   FOVEA_CHECK(block.clocks().empty() || row.clock != BlockClock::kNone,
               "no clock in the row of " + row.name);
   for (ClockIn* port : block.clocks()) (*port)(signal_of(row.clock));
-  if (row.lpsc)
+  if (row.lpsc) {
     for (PowerGateIn* port : block.power_gates()) (*port)(lpsc_[*row.lpsc]);
+    block.set_gate("PSC module " + std::to_string(*row.lpsc) + ", " + row.title);
+  }
   FOVEA_CHECK(row.irqs.size() == block.interrupts().size(),
               "the row of " + row.name + " has another number of interrupts than the block");
   for (std::size_t i = 0; i < row.irqs.size(); ++i)

@@ -21,6 +21,7 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/hazard_report.h"
+#include "sw/fovea/kernel_choice.h"
 #include "sw/fovea/loader.h"
 #include "sw/fovea/mosaic_score.h"
 #include "sw/fovea/parameter_page.h"
@@ -33,6 +34,11 @@
 
 namespace fovea::app {
 namespace {
+
+/// The active samples of either television standard, 720x576 or 720x480, fill a screen of 4:3.
+PixelShape pixel_on_screen(const board::VideoParams& video) {
+  return video.format().is_625 ? PixelShape{16, 15} : PixelShape{8, 9};
+}
 
 // Slices only let the host look in; nothing in the model depends on where they end.
 constexpr Picoseconds kSlice = 5 * kPsPerMs;
@@ -74,6 +80,10 @@ std::string reset_text(const std::string& cause, std::size_t before) {
 class BoardSimulation : public Simulation {
  public:
   void declare(ParamSet& set) override { params_.declare(set); }
+  void declare_for_program(ParamSet& set) override {
+    params_.hosted = true;
+    declare(set);
+  }
   std::vector<std::pair<std::string, std::filesystem::path>> input_files() const override {
     return {{params_.firmware.elf.key(), program_file(params_)}};
   }
@@ -337,9 +347,10 @@ void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const 
     else
       frames_.push_back(out);
     if (s.request.frame)
-      s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy});
+      s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy, pixel_on_screen(params_.video)});
     if (s.request.camera && sent.picture)
-      s.request.camera({r.index, sent.picture->width, sent.picture->height, sent.picture->uyvy});
+      s.request.camera({r.index, sent.picture->width, sent.picture->height, sent.picture->uyvy,
+                        params_.video.format().digital ? PixelShape{} : pixel_on_screen(params_.video)});
   } catch (...) {
     s.failure = std::current_exception();
   }
@@ -487,6 +498,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
   }
   result.frames = std::move(frames_);
   result.uart = board_->uart_text();
+  result.kernel = kernel_that_ran(params_, result.uart);
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
     result.notes.push_back(reset_note(board_->resets()[i], i));
   if (!s.request.registers.pattern.empty()) result.registers = s.log->text();

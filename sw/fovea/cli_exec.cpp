@@ -281,7 +281,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   const auto board = context.make_simulation();
   ParamSet params;
   if (o.board)
-    board->declare(params);
+    board->declare_for_program(params);
   else
     executor->declare(params);
   Experiment experiment(params);

@@ -44,7 +44,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   dir.write("host.json", host_json(host, args, version_text()));
   // Written last: if stats.json exists, all other files do.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_warnings(Diagnostics::instance()), result.ended_by));
+                                     collect_warnings(Diagnostics::instance()), {result.ended_by, result.kernel}));
 }
 
 /// Adds the keys that only `fovea replay` has, so that an error message can say so.
@@ -56,9 +56,11 @@ void add_replay_keys(ParamSet& params) {
     if (params.find(p->key())) continue;
     const bool clock = p->key() == "ddr.clock" || p->key() == "bus.clock";
     params.add_foreign(p->key(), std::string("is a key of 'fovea replay'; here ") +
-                                     (clock ? "clocks.preset sets the clocks"
+                                     (clock ? "clocks.ddr sets the SDRAM's clock, and the crossbar has half of it"
                                             : "the firmware programs it"));
   }
+  for (const char* core : {"cpu.clock", "arm.clock", "core.clock"})
+    params.add_foreign(core, "does not exist; the core's clock is clocks.arm");
 }
 
 /// --waves is the key waves.file, for which there must be an RTL.
@@ -128,7 +130,7 @@ class PictureFiles {
     return out;
   }
   static void push(FrameWriter& writer, const DisplayedFrame& f) {
-    writer.push(f.index, f.width, f.height, f.uyvy);
+    writer.push(f.index, f.width, f.height, f.uyvy, f.pixel);
   }
 
   bool wanted_;

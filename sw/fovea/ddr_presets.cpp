@@ -237,6 +237,21 @@ class SheetSettings {
 
 }  // namespace
 
+std::vector<std::string> choose_ddr_preset(const ReplayParams& params, bool recorded, Experiment& experiment) {
+  const auto of_user = [&](const ParamBase& p) {
+    return experiment.origin(p.key()).kind == ValueOrigin::Kind::kCommandLine;
+  };
+  const DdrRegisterParams& r = params.registers;
+  const std::initializer_list<const ParamBase*> deciders{&params.ddr.part, &params.ddr.grade, &r.clock,
+                                                         &params.chip_clocks.preset};
+  const bool other = std::ranges::any_of(deciders, [&](const ParamBase* p) { return of_user(*p); });
+  if (!other || of_user(r.preset)) return {};
+  if (recorded)
+    return {"the timings stay as recorded, in clocks; ddr.preset=data_sheet takes the part's at this clock"};
+  experiment.preset(r.preset.key(), "data_sheet", "a trace without recorded settings");
+  return {"ddr.preset=data_sheet, as the trace has no recorded timings: they are those of ddr.part at ddr.clock"};
+}
+
 void apply_ddr_preset(const ReplayParams& params, Frequency recorded, Experiment& experiment) {
   if (params.registers.preset.is("data_sheet")) SheetSettings(params, recorded, experiment).apply();
 }

@@ -398,7 +398,7 @@ RgbImage load_still(const std::filesystem::path& file, const std::atomic<bool>* 
 }
 
 Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate,
-                     const std::string& program)
+                     PixelShape pixel, const std::string& program)
     : file_(std::move(file)),
       width_(width),
       height_(height),
@@ -410,6 +410,7 @@ Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height
               "-s",           fmt::format("{}x{}", width, height),
               "-r",           fmt::format("{}/{}", rate.num, rate.den),
               "-i",           "pipe:0",
+              "-vf",          fmt::format("setsar={}/{}", pixel.width, pixel.height),
               "-c:v",         "libx264",
               "-preset",      "veryfast",
               "-crf",         "18",

@@ -89,7 +89,7 @@ class ChildProcess {
 class Mp4Writer {
  public:
   /// @throws UserError if ffmpeg is not installed
-  Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate,
+  Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate, PixelShape pixel = {},
             const std::string& program = "ffmpeg");
   /// @throws UserError with ffmpeg's message if it stopped reading
   void write(const RgbImage& image);

@@ -42,6 +42,11 @@ class FileBytes final : public trace::ByteSource {
       fail(why);
     }
     size_ = static_cast<std::uint64_t>(info.st_size);
+    std::string mark(kMark.size(), '\0');
+    if (read(0, mark.data(), mark.size()) == mark.size() && mark == kMark) {
+      skipped_ = kMark.size();
+      size_ -= skipped_;
+    }
   }
   ~FileBytes() override { ::close(fd_); }
   FileBytes(const FileBytes&) = delete;
@@ -52,7 +57,7 @@ class FileBytes final : public trace::ByteSource {
     std::size_t done = 0;
     while (done < bytes && offset + done < size_) {
       const std::size_t left = std::min<std::uint64_t>(bytes - done, size_ - offset - done);
-      const ssize_t n = ::pread(fd_, to + done, left, static_cast<off_t>(offset + done));
+      const ssize_t n = ::pread(fd_, to + done, left, static_cast<off_t>(skipped_ + offset + done));
       if (n < 0 && errno == EINTR) continue;
       if (n < 0) fail(std::strerror(errno));
       if (n == 0) fail("it became shorter while it was read");
@@ -62,12 +67,14 @@ class FileBytes final : public trace::ByteSource {
   }
 
  private:
+  static constexpr std::string_view kMark = "\xef\xbb\xbf";
   [[noreturn]] void fail(const std::string& why) const {
     throw UserError(fmt::format("cannot read '{}': {}", name_, why));
   }
   std::string name_;
   int fd_ = -1;
   std::uint64_t size_ = 0;
+  std::uint64_t skipped_ = 0;  // of the file, before what is offered
 };
 
 constexpr TraceFormat kAllFormats[] = {
@@ -88,6 +95,13 @@ TraceFormat format_of(trace::ForeignFormat foreign) {
   for (const auto& row : kForeign)
     if (row.foreign == foreign) return row.format;
   FOVEA_CHECK(false, "a foreign format without a name");
+}
+
+/// Why a file that begins so is no foreign trace.
+std::string refused(const std::string& file, std::string_view first_bytes) {
+  const trace::ForeignRefusal why = trace::refuse_foreign(first_bytes);
+  const std::string line = why.line ? fmt::format(":{}", why.line) : "";
+  return one_line(fmt::format("'{}'{}: it is {}", file, line, why.what));
 }
 
 std::string first_bytes_of(const std::string& file) {
@@ -126,8 +140,7 @@ TraceFormat format_of(const std::string& file) {
   if (trace::TextTrace::recognises(first)) return TraceFormat::kText;
   const auto found = trace::recognise_foreign(first);
   if (!found)
-    throw UserError(fmt::format("'{}' has none of the known trace formats; allowed: {}",
-                                one_line(file), fmt::join(kTraceFormats, ", ")));
+    throw UserError(fmt::format("{}; formats: {}", refused(file, first), fmt::join(kTraceFormats, ", ")));
   if (*found != trace::ForeignFormat::kDramsysStl)
     return format_of(*found);
   const auto suffix = std::filesystem::path(file).extension();
@@ -156,7 +169,9 @@ OpenTrace open_trace(const std::string& file, TraceFormat format, trace::Foreign
     keep(std::make_unique<trace::TextTrace>(name, std::move(bytes)));
   } else {
     reading.format = *foreign(format);
-    keep(std::make_unique<trace::ForeignTrace>(name, std::move(bytes), reading));
+    auto source = std::make_unique<trace::ForeignTrace>(name, std::move(bytes), reading);
+    out.foreign = source.get();
+    keep(std::move(source));
   }
   return out;
 }
@@ -176,14 +191,13 @@ OpenTrace open_own_trace(const std::string& file) {
   const std::string first = first_bytes_of(file);
   if (trace::TraceFile::recognises(first)) return open_trace(file, TraceFormat::kBinary, {});
   if (trace::TextTrace::recognises(first)) return open_trace(file, TraceFormat::kText, {});
-  const char* const advice =
+  const std::string what =
       trace::recognise_foreign(first)
-          ? "; it looks like a trace of another simulator, which 'fovea trace convert' reads"
-          : "";
-  throw UserError(fmt::format(
-      "'{}' is not a bus trace; allowed: a file of 'fovea run --bus-trace', or text that begins "
-      "with '{}'{}",
-      one_line(file), trace::TextTrace::kHeader, advice));
+          ? fmt::format("'{}' looks like a trace of another simulator, which 'fovea trace convert' reads",
+                        one_line(file))
+          : refused(file, first);
+  throw UserError(fmt::format("{}; a replay takes a file of 'fovea run --bus-trace', or text that begins with '{}'",
+                              what, trace::TextTrace::kHeader));
 }
 
 }  // namespace fovea::app

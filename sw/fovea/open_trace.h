@@ -31,7 +31,7 @@ std::optional<TraceFormat> trace_format(std::string_view name);
 /// The foreign format; none for Fovea's own.
 std::optional<trace::ForeignFormat> foreign(TraceFormat f);
 
-/// A regular file that is read piece by piece.
+/// A regular file that is read piece by piece, without the mark of UTF-8 that some programs put in front of text.
 std::unique_ptr<trace::ByteSource> open_bytes(const std::filesystem::path& file);
 
 /// The format of a file, by its first bytes; the name's suffix, `.stl` or `.rstl`, tells DRAMSys'
@@ -45,6 +45,7 @@ struct OpenTrace {
   unsigned version = 0;  ///< of the binary format
   std::unique_ptr<trace::RecordSource> source;
   const trace::TraceInfo* info = nullptr;  ///< part of `source`
+  const trace::ForeignTrace* foreign = nullptr;  ///< `source`, if it is one
 };
 
 /// One sentence about the masters whose requests keep their recorded times; empty: all follow what they wait for.

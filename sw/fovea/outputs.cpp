@@ -167,9 +167,10 @@ std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool repla
 }
 
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Warning>& warnings, std::string_view ended_by) {
+                       const std::vector<Warning>& warnings, const RunWords& words) {
   Json out = {{"complete", complete}, {"band", "not run"}};
-  if (!ended_by.empty()) out["ended_by"] = ended_by;
+  if (!words.ended_by.empty()) out["ended_by"] = words.ended_by;
+  if (!words.kernel.empty()) out["kernel"] = words.kernel;
   Json& list = out["warnings"] = Json::array();
   for (const Warning& w : warnings)
     list.push_back({{"kind", w.kind}, {"what", w.what}, {"count", w.count}});
@@ -186,15 +187,20 @@ std::string host_json(std::vector<StatRow> rows, std::span<const std::string> co
 
 std::string frames_csv_header() {
   return "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
-         "display_start_ns,display_end_ns,dropped,repeated\n";
+         "display_start_ns,display_end_ns,dropped,repeated,remap_ns,latency_ns\n";
 }
 
 std::string frames_csv_line(const FrameRow& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.index,
+  using Time = std::optional<Picoseconds>;
+  const auto between = [](Time from, Time to) { return from && to ? Time(*to - *from) : Time(); };
+  // As frame.latency counts them: a frame that is shown again has none.
+  const Time latency = r.repeated || !r.captured ? Time() : between(r.capture_start, r.display_start);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.index,
                      r.camera == ~0u ? "" : std::to_string(r.camera),
                      r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
                      cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
-                     cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0);
+                     cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0,
+                     cell(between(r.remap_start, r.remap_end)), cell(latency));
 }
 
 std::string frames_csv(std::span<const FrameRow> rows) {

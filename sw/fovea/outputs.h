@@ -80,11 +80,16 @@ struct Warning {
 };
 std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay = false);
 
+/// What a run says of itself in words; empty: nothing.
+struct RunWords {
+  std::string_view ended_by = {};  ///< the condition of run.until that was met
+  std::string_view kernel = {};    ///< the remap kernels that ran
+};
+
 /// Sorted by name, one value per line, so that equal runs give equal bytes. `complete` is false for
-/// a run that was stopped early; `ended_by` is the condition of run.until that was met. A name that
-/// occurs twice is a defect of Fovea (FOVEA_CHECK).
+/// a run that was stopped early. A name that occurs twice is a defect of Fovea (FOVEA_CHECK).
 std::string stats_json(std::vector<StatRow> rows, bool complete,
-                       const std::vector<Warning>& warnings = {}, std::string_view ended_by = {});
+                       const std::vector<Warning>& warnings = {}, const RunWords& words = {});
 /// Like stats.json but without the state of the run; for values that differ from run to run.
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);

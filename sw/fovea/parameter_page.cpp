@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "sw/fovea/clock_setting.h"
+#include "sw/fovea/kernel_choice.h"
 #include "sw/fovea/view_page.h"
 #include "sw/lens/lens.h"
 #include "sw/lens/region.h"
@@ -43,6 +44,25 @@ void check_same_lens(const board::BoardParams& params, const board::CameraSetup&
       of_camera.user_set() ? of_firmware.key() : of_camera.key(), camera.cx(), camera.cy(),
       firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height(),
       setup.scene->calibration.key()));
+}
+
+/// Warns if the firmware corrects another kind of lens than the camera has.
+void check_same_mapping(const board::CameraSetup& setup) {
+  const video::SceneParams& scene = *setup.scene;
+  const board::LensParams& lens = *setup.lens;
+  if (!scene.bends() || lens.mapping.is("none")) return;
+  auto& diagnostics = Diagnostics::instance();
+  if (scene.lens() != lens.mapping()) {
+    diagnostics.configuration(fmt::format("{} = {}, but the firmware corrects {} = {}: the picture stays distorted",
+                                          scene.lens.key(), scene.lens(), lens.mapping.key(), lens.mapping()));
+  } else if (!lens.mapping.is("kannala_brandt") && lens.focal() == 0 && scene.fov.user_set() != lens.fov.user_set() &&
+             std::abs(scene.fov() - lens.fov()) > scene.fov() / 100) {
+    const bool of_camera = scene.fov.user_set();
+    const ParamBase &set = of_camera ? scene.fov : lens.fov, &other = of_camera ? lens.fov : scene.fov;
+    diagnostics.configuration(fmt::format("{} is set ({}) and {} is not ({}): the firmware corrects another lens than "
+                                          "the camera has",
+                                          set.key(), set.text(), other.key(), other.text()));
+  }
 }
 
 void fill_clocks(param_clocks_t& clocks, const board::ClockParams& params) {
@@ -126,6 +146,7 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
   view.in_aspect = lens.in_aspect();
   view.out_aspect = lens.out_aspect();
   view.mapping = contract::code_of(contract::kMappings, lens.mapping());
+  if (params.own_program()) check_same_mapping(setup);
   if (view.mapping == LENS_TABLE) {
     const double w = params.raster_width(), h = params.raster_height();
     const video::LensModel model = firmware_lens(params, lens);
@@ -153,23 +174,12 @@ void fill_view(lens_view_t& view, const board::BoardParams& params,
   show_region(view, params, lens);
 }
 
-/// Kernels that read a form of a look-up table know one source.
-void check_view_kernel(const board::FirmwareParams& firmware) {
-  static constexpr const char* kOfViews[] = {"plain", "ldm", "strips", "fastest", "engine"};
-  if (!firmware.elf().empty() || firmware.view.is("single") ||
-      std::ranges::any_of(kOfViews, [&](const char* k) { return firmware.kernel.is(k); }))
-    return;
-  Diagnostics::instance().configuration(fmt::format(
-      "{}={} has no form for several sources: with {}={} the program takes strips, as with fastest",
-      firmware.kernel.key(), firmware.kernel(), firmware.view.key(), firmware.view()));
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> parameter_page(const board::BoardParams& params,
                                          const std::vector<const video::StampedSource*>& sources) {
   const board::FirmwareParams& firmware = params.firmware;
-  check_view_kernel(firmware);
+  check_kernel(params);
   param_page_t page{};
   fill_clocks(page.clocks, params.clocks);
   page.console = {0, firmware.baud_divisor()};

@@ -21,6 +21,14 @@ std::string markdown_cell(const std::string& text) {
   return out;
 }
 
+constexpr const char* kOrigins = R"(
+origin   where the default is from: sourced, a document about this chip; family,
+         one about a sister chip only; calibrated, fitted to a measurement;
+         assumed, no public figure; choice, nobody's but the user's
+belief   of family and assumed: between which values the chip's own figure is
+         believed to lie
+)";
+
 bool matches(const std::string& key, const std::string& pattern) {
   const bool glob = pattern.find_first_of("*?[") != std::string::npos;
   return glob ? ::fnmatch(pattern.c_str(), key.c_str(), 0) == 0
@@ -53,19 +61,19 @@ std::vector<const ParamBase*> rows_of(const ParamSet& params,
 
 std::string params_table(const ParamSet& params, const std::vector<std::string>& patterns,
                          bool markdown) {
-std::vector<std::array<std::string, 6>> cells = {
-      {"key", "default", "allowed", "belief", "tag", "meaning"}};
+  std::vector<std::array<std::string, 6>> cells = {
+      {"key", "default", "allowed", "belief", "origin", "meaning"}};
   const auto rows = rows_of(params, patterns.empty() ? std::vector<std::string>{""} : patterns);
   for (const auto* p : rows) {
-    std::string tag(to_string(p->origin()));
-    if (!p->source().empty()) tag += " (" + p->source() + ")";
-    if (!p->belief().empty()) tag += "; belief: " + p->belief().reason;
+    std::string origin(to_string(p->origin()));
+    if (!p->source().empty()) origin += " (" + p->source() + ")";
+    if (!p->belief().empty()) origin += "; belief: " + p->belief().reason;
     const std::string belief =
         p->belief().empty() ? "-" : p->belief().low + " .. " + p->belief().high;
     const std::string value = p->default_text().empty() ? "-" : p->default_text();
     std::string meaning = p->sentence();
     for (const auto& effect : p->effects()) meaning += "; needs " + effect.condition;
-    cells.push_back({p->key(), value, p->allowed(), belief, tag, meaning});
+    cells.push_back({p->key(), value, p->allowed(), belief, origin, meaning});
   }
   std::string out;
   if (markdown) {
@@ -87,7 +95,7 @@ std::vector<std::array<std::string, 6>> cells = {
       out += fmt::format("{:<{}}  ", row[c], width[c]);
     out += row.back() + "\n";
   }
-  return out;
+  return out + kOrigins;
 }
 
 }  // namespace fovea::app

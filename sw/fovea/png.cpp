@@ -91,7 +91,7 @@ RgbImage read_png(const std::filesystem::path& file) {
   return image;
 }
 
-std::vector<std::uint8_t> encode_png(const RgbImage& image, int level) {
+std::vector<std::uint8_t> encode_png(const RgbImage& image, int level, PixelShape pixel) {
   FOVEA_CHECK(image.rgb.size() == std::size_t{3} * image.width * image.height,
               "picture and size differ");
   const Context context(spng_ctx_new(SPNG_CTX_ENCODER));
@@ -108,6 +108,12 @@ std::vector<std::uint8_t> encode_png(const RgbImage& image, int level) {
   // Use one filter for all rows: choosing it for each row takes more time than it saves bytes.
   if (level <= 3) check(spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB));
   check(spng_set_ihdr(context.get(), &header));
+  if (pixel.width != pixel.height) {
+    spng_phys shape{};  // pixels per unit; without a unit only their ratio counts
+    shape.ppu_x = pixel.height;
+    shape.ppu_y = pixel.width;
+    check(spng_set_phys(context.get(), &shape));
+  }
   check(spng_encode_image(context.get(), image.rgb.data(), image.rgb.size(), SPNG_FMT_PNG,
                           SPNG_ENCODE_FINALIZE));
   std::size_t size = 0;
@@ -135,8 +141,8 @@ std::string FrameWriter::file_name(std::uint64_t index) {
 }
 
 void FrameWriter::push(std::uint64_t index, unsigned width, unsigned height,
-                       std::span<const std::uint8_t> uyvy) {
-  Job job{index, width, height, {uyvy.begin(), uyvy.end()}};
+                       std::span<const std::uint8_t> uyvy, PixelShape pixel) {
+  Job job{index, width, height, {uyvy.begin(), uyvy.end()}, pixel};
   std::unique_lock lock(mutex_);
   FOVEA_CHECK(!closing_, "frame pushed after close");
   changed_.wait(lock, [this] { return queue_.size() < options_.queue_frames || error_; });
@@ -186,12 +192,12 @@ void FrameWriter::encode(const Job& job) {
   if (!options_.folder.empty()) {
     const auto file = options_.folder / file_name(job.index);
     auto out = options_.folder_fd < 0 ? CheckedFile(file) : CheckedFile(file, options_.folder_fd);
-    out.write(encode_png(image, options_.png_level));
+    out.write(encode_png(image, options_.png_level, job.pixel));
     out.close();
   }
   if (options_.mp4.empty()) return;
   if (!mp4_)
-    mp4_ = std::make_unique<Mp4Writer>(options_.mp4, image.width, image.height, options_.mp4_rate);
+    mp4_ = std::make_unique<Mp4Writer>(options_.mp4, image.width, image.height, options_.mp4_rate, job.pixel);
   mp4_->write(image);
 }
 

@@ -23,7 +23,8 @@ namespace fovea::app {
 RgbImage read_png(const std::filesystem::path& file);
 
 /// @param level zlib compression level 0 to 9. Equal pictures give equal bytes.
-std::vector<std::uint8_t> encode_png(const RgbImage& image, int level);
+/// @param pixel is written (pHYs) unless it is square
+std::vector<std::uint8_t> encode_png(const RgbImage& image, int level, PixelShape pixel = {});
 /// @throws UserError if the file cannot be written
 void write_png(const std::filesystem::path& file, const RgbImage& image, int level = 1);
 
@@ -52,7 +53,7 @@ class FrameWriter {
 
   /// Copies `uyvy`; `index` is the number in the file's name. @throws the encoder's error
   void push(std::uint64_t index, unsigned width, unsigned height,
-            std::span<const std::uint8_t> uyvy);
+            std::span<const std::uint8_t> uyvy, PixelShape pixel = {});
   /// Waits until all frames are written. @throws the encoder's error
   void close();
   /// Name of the file of frame `index`, without folder.
@@ -63,6 +64,7 @@ class FrameWriter {
     std::uint64_t index;
     unsigned width, height;
     std::vector<std::uint8_t> uyvy;
+    PixelShape pixel;
   };
   void run();
   void encode(const Job& job);

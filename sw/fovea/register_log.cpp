@@ -1,6 +1,7 @@
 #include "sw/fovea/register_log.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <re2/re2.h>
 
 #include <algorithm>
@@ -25,8 +26,14 @@ void RegisterLog::start(const RegisterLogRequest& request) {
         fmt::format("'{}' is not a regular expression ({}); it is looked for in "
                     "BLOCK.REGISTER, as in '^timer[01]\\.|PSC'",
                     one_line(request.pattern), one_line(pattern->error())));
+  std::swap(pattern, pattern_);
+  try {
+    check_matches(request.pattern);
+  } catch (const UserError&) {
+    std::swap(pattern, pattern_);
+    throw;
+  }
   stop();
-  pattern_ = std::move(pattern);
   matches_.clear();
   ring_.clear();
   kept_ = request.kept;
@@ -35,6 +42,20 @@ void RegisterLog::start(const RegisterLogRequest& request) {
   for (const auto& b : blocks_)
     if (b.observe) observing_.push_back(b.observe(*this));
   running_ = true;
+}
+
+/// @throws UserError if there is nothing that the pattern could find
+void RegisterLog::check_matches(const std::string& pattern) const {
+  std::vector<std::string> names;
+  for (const auto& b : blocks_) {
+    names.push_back(b.name);
+    if (re2::RE2::PartialMatch(b.name + ".", *pattern_)) return;
+    for (const Reg* reg : b.registers->regs())
+      if (re2::RE2::PartialMatch(b.name + "." + reg->name(), *pattern_)) return;
+  }
+  std::ranges::sort(names);
+  throw UserError(fmt::format("'{}' matches no register; names are BLOCK.REGISTER, and the blocks are {}",
+                              one_line(pattern), fmt::join(names, ", ")));
 }
 
 void RegisterLog::stop() {
@@ -71,13 +92,19 @@ void RegisterLog::accessed(const RegisterAccess& access) {
   if (!wanted(access)) return;
   const Master master = sources_.master();
   const Record r{sources_.now(), is_core(master) ? sources_.pc() : 0, master, access};
+  ++count_;
+  if (!ring_.empty())
+    if (Record& before = newest(); before.pc == r.pc && before.master == master && before.access == access) {
+      ++before.times;
+      before.last = r.at;
+      return;
+    }
   if (ring_.size() < kept_) {
     ring_.push_back(r);
   } else {
     ring_[oldest_] = r;
     oldest_ = (oldest_ + 1) % kept_;
   }
-  ++count_;
 }
 
 std::string RegisterLog::line(const Record& r) const {
@@ -99,24 +126,29 @@ std::string RegisterLog::line(const Record& r) const {
     out += fmt::format(" byte {}{}", a.offset & 3u,
                        a.bytes == 2 ? fmt::format("-{}", (a.offset & 3u) + 1) : "");
   out += fmt::format(" = 0x{:0{}x}", a.value, 2 * a.bytes);
-  if (a.gated) return out + "  clock gated\n";
-  if (!reg) return out + "\n";
-  if (reg->fields().size() > 0)
+  if (a.gated) {
+    out += "  clock gated";
+  } else if (reg) {
     for (const Field* f : reg->fields())
       if (f->mask() & lanes)
         out += fmt::format(" {}={}", f->name(), (word & f->mask()) >> f->lsb());
-  if (const std::uint32_t lost = word & reg->reserved(); a.write && lost)
-    out += fmt::format("  reserved bits 0x{:08x}", lost);
+    if (const std::uint32_t lost = word & reg->reserved(); a.write && lost)
+      out += fmt::format("  reserved bits 0x{:08x}", lost);
+  }
+  if (r.times > 1) out += fmt::format("  {} times, the last at {} ns", r.times, ns_text(r.last));
   return out + "\n";
 }
 
 std::string RegisterLog::text(std::size_t most) const {
   const std::size_t n = std::min(most, ring_.size());
   std::string out;
-  if (count_ > n) out = fmt::format("({} earlier accesses are not shown)\n", count_ - n);
-  for (std::size_t i = ring_.size() - n; i < ring_.size(); ++i)
-    out += line(ring_[(oldest_ + i) % ring_.size()]);
-  return out;
+  std::uint64_t shown = 0;
+  for (std::size_t i = ring_.size() - n; i < ring_.size(); ++i) {
+    const Record& r = ring_[(oldest_ + i) % ring_.size()];
+    shown += r.times;
+    out += line(r);
+  }
+  return count_ > shown ? fmt::format("({} earlier accesses are not shown)\n", count_ - shown) + out : out;
 }
 
 }  // namespace fovea::app

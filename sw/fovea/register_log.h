@@ -1,4 +1,5 @@
-// A log of the last register accesses: master, time, code address, register and value.
+// A log of the last register accesses: master, time, code address, register and value. What follows itself, as in a
+// loop that waits for a register, is one entry with a count.
 #pragma once
 #include <functional>
 #include <memory>
@@ -32,7 +33,7 @@ inline constexpr std::size_t kRegisterLogMost = 100'000'000;
 /// The request of `--log-registers`.
 struct RegisterLogRequest {
   std::string pattern;      ///< RE2 regular expression on part of "block.REGISTER"; empty: no log
-  std::size_t kept = 4096;  ///< at least 1
+  std::size_t kept = 4096;  ///< entries, at least 1
 };
 
 class RegisterLog final : private RegisterObserver {
@@ -48,15 +49,14 @@ class RegisterLog final : private RegisterObserver {
   RegisterLog(const RegisterLog&) = delete;
   RegisterLog& operator=(const RegisterLog&) = delete;
 
-  /// Clears the log and starts it. @throws UserError if the pattern is not a regular expression
+  /// Clears the log and starts it. @throws UserError if the pattern is not a regular expression, or matches no register
   void start(const RegisterLogRequest& request);
   void stop();
-  /// Sets the number of accesses to keep, including those already logged; also for later starts.
+  /// Sets the number of entries to keep, including those already logged; also for later starts.
   void keep(std::size_t most);
   std::size_t kept() const { return kept_; }
   bool running() const { return running_; }
-  /// The last `most` accesses, oldest first, one per line, preceded by the number of those left
-  /// out.
+  /// The last `most` entries, oldest first, one per line, preceded by the number of accesses left out.
   std::string text(std::size_t most = ~std::size_t{0}) const;
 
  private:
@@ -65,9 +65,13 @@ class RegisterLog final : private RegisterObserver {
     std::uint32_t pc;
     Master master;
     RegisterAccess access;
+    std::uint64_t times = 1;
+    Picoseconds last = 0;  ///< of them
   };
   void accessed(const RegisterAccess& access) override;
+  void check_matches(const std::string& pattern) const;
   bool wanted(const RegisterAccess& access);
+  Record& newest() { return ring_[(oldest_ + ring_.size() - 1) % ring_.size()]; }
   std::string line(const Record& r) const;
   const std::string& block_name(const RegBank* bank) const;
 

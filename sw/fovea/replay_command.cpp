@@ -101,8 +101,11 @@ std::vector<std::string> set_replay_keys(const ReplayOptions& options, const tra
     experiment.override_with(s);
   }
   apply_clock_preset(params, experiment);
+  std::vector<std::string> lines = choose_ddr_preset(params, !info.params.empty(), experiment);
   apply_ddr_preset(params, info.ddr.frequency, experiment);
-  return options.memory_only ? without_crossbar(options.sets) : follow_clocks(params, info, experiment);
+  std::ranges::copy(options.memory_only ? without_crossbar(options.sets) : follow_clocks(params, info, experiment),
+                    std::back_inserter(lines));
+  return lines;
 }
 
 /// False: a signal has ended it.

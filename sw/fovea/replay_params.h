@@ -45,7 +45,7 @@ struct DdrRegisterParams : ParamGroup {
   IntParam tWR = timing("tWR", 4, 1, 8, "write recovery to PRE");
   IntParam tRAS = timing("tRAS", 11, 1, 32, "ACT to PRE");
   IntParam tRC = timing("tRC", 16, 1, 32, "ACT to ACT, same bank");
-  IntParam tRRD = timing("tRRD", 3, 1, 8, "ACT to ACT, other bank");
+  IntParam tRRD = timing("tRRD", 4, 1, 8, "ACT to ACT, other bank");
   IntParam tWTR = timing("tWTR", 3, 1, 8, "write to read");
   IntParam tRTP = timing("tRTP", 2, 1, 8, "RD to PRE");
   IntParam tREFI = timing("tREFI", 1895, 0, 65535, "SDRCR.RR, refresh interval; 0: no refresh");
@@ -56,11 +56,11 @@ struct DdrRegisterParams : ParamGroup {
   IntParam tXP = timing("tXP", 3, 1, 8, "end of power-down to a command");
   IntParam tXSNR = timing("tXSNR", 34, 1, 128, "end of self-refresh to a command");
   IntParam tXSRD = timing("tXSRD", 200, 1, 256, "end of self-refresh to RD");
-  IntParam tCKE = timing("tCKE", 3, 1, 8, "CKE low, or high, at least");
+  IntParam tCKE = timing("tCKE", 4, 1, 8, "CKE low, or high, at least");
   IntParam row_intervals{*this, "row_intervals", U::kCount, 8, 1, 16,
                          "SDTIMR2.T_RASMAX + 1, refresh intervals that a row may be open",
                          Origin::kChoice, ""};
-  IntParam old_count{*this, "old_count", U::kCount, 0xFF, 0, 0xFF,
+  IntParam old_count{*this, "old_count", U::kCount, 0xFE, 0, 0xFF,
                      "PBBPR.PR_OLD_COUNT, transfers after which the oldest command is raised; 255 "
                      "never",
                      Origin::kChoice, ""};

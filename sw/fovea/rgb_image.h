@@ -15,6 +15,11 @@ using video::RgbImage;
 /// small enough that a damaged header cannot request all memory.
 inline constexpr unsigned kMaxPictureSide = 8192;
 
+/// Shape of a pixel on the screen, as a ratio.
+struct PixelShape {
+  unsigned width = 1, height = 1;
+};
+
 /// Converts 4:2:2 video (bytes Cb Y0 Cr Y1, even width, no padding) to RGB.
 ///
 /// BT.601 with limited range (Y 16 to 235, C 16 to 240), in integers with 16 fraction bits,

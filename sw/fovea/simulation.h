@@ -18,6 +18,7 @@
 #include "sw/fovea/perfetto/perfetto_request.h"
 #include "sw/fovea/profile_report.h"
 #include "sw/fovea/register_log.h"
+#include "sw/fovea/rgb_image.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
 
@@ -28,6 +29,7 @@ struct DisplayedFrame {
   std::uint64_t index = 0;
   unsigned width = 0, height = 0;
   std::span<const std::uint8_t> uyvy;
+  PixelShape pixel = {};
 };
 
 /// A program that is run by `fovea exec --board` instead of the camera's firmware.
@@ -88,6 +90,7 @@ struct RunResult {
   std::string uart;  ///< everything that the firmware printed
   std::vector<std::string> notes;  ///< sentences for the user, shown below the figures
   std::string ended_by;      ///< the condition of run.until that was met; empty: none
+  std::string kernel;        ///< the remap kernels that the camera's firmware says it runs; empty: it said nothing
   std::string ended;         ///< a sentence about that for the user
   std::optional<int> exit_code = {};  ///< the program's own, if it ended by a semihosting call
   std::string typed;         ///< what a person typed on the console, as a file for uart0.input
@@ -103,6 +106,8 @@ class Simulation {
   virtual ~Simulation() = default;
   /// Adds all parameters of the board; called once, before the other functions.
   virtual void declare(ParamSet& params) = 0;
+  /// The same for a program that the caller brings: what is known of the camera's firmware does not hold.
+  virtual void declare_for_program(ParamSet& params) { declare(params); }
   /// Files that a run reads by default, with the parameter that could name another one.
   virtual std::vector<std::pair<std::string, std::filesystem::path>> input_files() const {
     return {};

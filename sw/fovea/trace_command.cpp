@@ -9,6 +9,7 @@
 #include <map>
 #include <ostream>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "model/common/check.h"
@@ -31,6 +32,9 @@ namespace {
 constexpr unsigned kDefaultBytes = 64;
 
 bool has_cycles(TraceFormat f) { return foreign(f) && trace::has_cycles(*foreign(f)); }
+
+/// DRAMSys takes a request for a block of its size, so that one here may become several.
+bool has_sizes(TraceFormat f) { return f == TraceFormat::kDramsysStl || f == TraceFormat::kDramsysRstl; }
 
 TraceFormat format_named(std::string_view name) {
   const auto format = trace_format(name);
@@ -97,7 +101,7 @@ struct Census {
   };
   std::vector<Count> masters;
   std::uint64_t marks = 0;
-  Picoseconds last = 0;  // latest of the times
+  Picoseconds first = 0, last = 0;  // earliest of what can go out, latest of the times
   bool timed = true;     // each record has a time, and none depends on another
   bool plain = true;     // nothing that text cannot say: priority, lock, critical word
 };
@@ -154,7 +158,9 @@ void count_transfer(const trace::TraceInfo& info, const trace::Record& r, unsign
 Census take_census(const trace::TraceInfo& info, trace::RecordSource& source) {
   Census c;
   c.masters.resize(info.masters.size());
-  in_order(info, source, [&](unsigned stream, const trace::Record& r, Picoseconds) {
+  bool begun = false;
+  in_order(info, source, [&](unsigned stream, const trace::Record& r, Picoseconds ready) {
+    if (!std::exchange(begun, true)) c.first = ready;
     c.timed &= r.release == trace::Release::kAt && r.kind == trace::Kind::kRequest;
     if (r.release == trace::Release::kAt) c.last = std::max(c.last, r.at);
     c.marks += r.kind == trace::Kind::kMark;
@@ -229,6 +235,7 @@ class Conversion {
     Census census;
     OpenTrace counted = open(true);
     census = take_census(*counted.info, *counted.source);
+    const std::uint64_t aligned = counted.foreign ? counted.foreign->aligned() : 0;
     counted = {};
     OutputFile file(o_.out, "-o", "a trace", is_any_trace);
     OpenTrace trace = open(false);
@@ -239,6 +246,10 @@ class Conversion {
     else
       write_lines(*trace.info, source, census, put);
     file.commit();
+    if (aligned != 0)
+      say(fmt::format("{} addresses are no multiples of the request's size: their low bits do not count, as in the "
+                      "program that {} is of",
+                      aligned, name_of(from_)));
     context_.out << fmt::format("{} requests, {} to {}, in {}\n", requests_, name_of(from_),
                                 name_of(to_), one_line(o_.out))
                  << std::flush;
@@ -276,10 +287,10 @@ class Conversion {
     };
     in_range("--window", o_.window, trace::TextTrace::kMaxReads);
     in_range("--bytes", o_.bytes, trace::TextTrace::kMaxBytes);
-    if (foreign(to_) && o_.bytes && !std::has_single_bit(*o_.bytes))
+    if (o_.bytes && !std::has_single_bit(*o_.bytes))
       throw UserError(
           fmt::format("--bytes {} is not allowed for {}; allowed: powers of two up to {}",
-                      *o_.bytes, name_of(to_), trace::TextTrace::kMaxBytes));
+                      *o_.bytes, name_of(in_foreign ? from_ : to_), trace::TextTrace::kMaxBytes));
     bounds_.wrap = o_.wrap;
   }
 
@@ -305,6 +316,19 @@ class Conversion {
 
   void say(const std::string& line) const { context_.err << "fovea: " << line << "\n"; }
 
+  /// A text trace is played with the defaults.
+  void say_lost_settings(const trace::TraceInfo& info) const {
+    const RecordedParams recorded(&info, o_.in), plain(nullptr, o_.in);
+    std::vector<std::string> differ;
+    for (const ParamBase* p : recorded.set.all())
+      if (std::string text = p->text(); text != plain.set.find(p->key())->text()) {
+        std::erase(text, ' ');
+        differ.push_back(p->key() + "=" + text);
+      }
+    if (!differ.empty())
+      say(fmt::format("text has no settings: to play it as recorded takes -s {}", fmt::join(differ, " -s ")));
+  }
+
   void write_binary(trace::TraceInfo info, trace::RecordSource& source, const Census& census,
                     const LineWriter::Put& put) {
     trace::TraceWriter writer(static_cast<unsigned>(info.streams.size()));
@@ -312,7 +336,10 @@ class Conversion {
       requests_ += r.kind == trace::Kind::kRequest;
       writer.add(stream, r);
     });
-    if (from_ != TraceFormat::kBinary) info.end = census.last;
+    if (from_ != TraceFormat::kBinary) {
+      info.start = census.first;
+      info.end = census.last;
+    }
     writer.finish(info, put);
   }
 
@@ -351,8 +378,10 @@ class Conversion {
                       [&](const trace::Record& r, Picoseconds at) { add(r, at, at); });
     writer.end();
     if (!census.timed)
-      say(fmt::format("{} has times only: requests that wait for others have the times of a replay",
+      say(fmt::format("dependences are lost: {} has none, and the times are those of a replay with the recorded "
+                      "settings",
                       name_of(to_)));
+    if (from_ == TraceFormat::kBinary && is_text) say_lost_settings(info);
     const bool plain = census.plain && (same_windows || !is_text);
     if (!plain)
       say(
@@ -362,7 +391,10 @@ class Conversion {
     if (!is_text && masters.size() > 1)
       say(fmt::format("{} does not tell masters apart: the {} of the trace became one",
                       name_of(to_), masters.size()));
-    if (writer.resized() != 0)
+    if (writer.resized() != 0 && has_sizes(to_))
+      say(fmt::format("{} has blocks of a power of two only: {} requests became {}", name_of(to_), writer.resized(),
+                      writer.pieces()));
+    else if (writer.resized() != 0)
       say(fmt::format("{} has no sizes: {} requests became {} of {} bytes", name_of(to_),
                       writer.resized(), writer.pieces(), o_.bytes.value_or(kDefaultBytes)));
     const bool times_lost = foreign(to_) && !has_cycles(to_) && census.last != 0;
@@ -397,7 +429,7 @@ void print_info(const TraceOptions& options, std::ostream& out) {
   if (info.end > info.start)
     out << fmt::format("{} of simulated time\n", milliseconds(info.end - info.start));
   else
-    out << fmt::format("requests up to {}\n", milliseconds(c.last));
+    out << fmt::format("requests from {} to {}\n", milliseconds(c.first), milliseconds(c.last));
   if (!c.timed) out << "requests wait for others\n";
   if (const std::string kept = words_of_kept(info); !kept.empty()) out << kept << "\n";
   if (!info.scr.frequency.stopped())

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 
 #include "model/trace/core/text_trace.h"
@@ -36,19 +37,23 @@ void LineWriter::add_foreign(const TimedRequest& r, std::uint64_t cycle) {
   const std::uint64_t since = cycle - std::min(cycle, cycle_);
   cycle_ = std::max(cycle, cycle_);
   const char* const word = r.write ? "write" : "read";
+  const std::uint64_t end = std::uint64_t{r.address} + r.bytes;
+  unsigned pieces = 0;
   if (settings_.format == TraceFormat::kDramsysStl ||
       settings_.format == TraceFormat::kDramsysRstl) {
     const bool relative = settings_.format == TraceFormat::kDramsysRstl;
-    fmt::format_to(out, "{}: ", relative ? since : cycle);
-    if (r.bytes != settings_.bytes) fmt::format_to(out, "({}) ", r.bytes);
-    fmt::format_to(out, "{} 0x{:x}\n", word, r.address);
+    for (std::uint64_t at = r.address, size; at < end; at += size, ++pieces) {
+      size = std::bit_floor(end - at);
+      if (at != 0) size = std::min(size, at & (~at + 1));
+      fmt::format_to(out, "{}: ", !relative ? cycle : pieces == 0 ? since : 0);
+      if (size != settings_.bytes) fmt::format_to(out, "({}) ", size);
+      fmt::format_to(out, "{} 0x{:x}\n", word, at);
+    }
+    count(pieces, pieces == 1);
     return;
   }
   // One access for each block of that size which the request touches.
-  const std::uint32_t mask = ~(settings_.bytes - 1);
-  const std::uint64_t last = std::uint64_t{r.address} + r.bytes - 1;
-  unsigned pieces = 0;
-  for (std::uint64_t at = r.address; at <= last; at = (at & mask) + settings_.bytes, ++pieces)
+  for (std::uint64_t at = r.address & ~(settings_.bytes - 1); at < end; at += settings_.bytes, ++pieces)
     switch (settings_.format) {
       case TraceFormat::kRamulator:
         fmt::format_to(out, "0x{:x} {}\n", at, r.write ? 'W' : 'R');
@@ -59,7 +64,11 @@ void LineWriter::add_foreign(const TimedRequest& r, std::uint64_t cycle) {
       default:
         fmt::format_to(out, "0x{:x} {} {}\n", at, r.write ? "WRITE" : "READ", cycle);
     }
-  if (pieces == 1 && r.bytes == settings_.bytes) return;
+  count(pieces, pieces == 1 && r.bytes == settings_.bytes);
+}
+
+void LineWriter::count(unsigned pieces, bool as_it_was) {
+  if (as_it_was) return;
   ++resized_;
   pieces_ += pieces;
 }

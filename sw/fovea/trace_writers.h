@@ -37,12 +37,14 @@ class LineWriter {
   void begin(const std::vector<std::pair<std::string, unsigned>>& masters);
   void add(const TimedRequest& request);
   void end() { flush(); }
-  /// Requests that went as others of WriterSettings::bytes, and how many these were.
+  /// Requests that went as others: of WriterSettings::bytes, or of a power of two each, at a multiple of it, where
+  /// the format says sizes. And how many these were.
   std::uint64_t resized() const { return resized_; }
   std::uint64_t pieces() const { return pieces_; }
 
  private:
   void add_foreign(const TimedRequest& r, std::uint64_t cycle);
+  void count(unsigned pieces, bool as_it_was);
   void flush();
 
   WriterSettings settings_;

@@ -176,16 +176,28 @@ TEST(EffectsTest, PortsWithoutALoadAreIdle) {
   const Keys load{{"load.2.port", "edma_tc1"}, {"load.2.outstanding", "1"}};
   EXPECT_TRUE(effective(load, "bus.edma_tc1.width"));
   EXPECT_FALSE(effective(load, "bus.edma_tc2.width"));
-  for (const char* kernel : {"staged", "gather", "runs", "copy", "fastest"})
-    for (const char* key : {"bus.edma_tc1.width", "cpu.tcm.dma_word_clocks", "cpu.tcm.banks", "priority.edma_tc0"})
+  // The last three fall back to `staged` without an engine.
+  for (const char* kernel : {"staged", "gather", "runs", "copy", "fastest", "engine", "engine_grid", "engine_radial"})
+    for (const char* key : {"bus.edma_tc1.width", "cpu.tcm.dma_word_clocks", "cpu.tcm.banks"})
       EXPECT_TRUE(effective({{"firmware.kernel", kernel}}, key)) << kernel << " " << key;
-  for (const char* key : {"cpu.tcm.dma_word_clocks", "cpu.tcm.banks", "priority.edma_tc0"})
+  EXPECT_TRUE(effective({}, "priority.edma_tc0")) << "the firmware switches the EDMA on to write it";
+  for (const char* key : {"cpu.tcm.dma_word_clocks", "cpu.tcm.banks"})
     EXPECT_FALSE(effective({{"firmware.kernel", "codes"}}, key)) << key;
   EXPECT_TRUE(effective({}, "bus.arm_d.width"));
   EXPECT_TRUE(effective({}, "bus.vpfe.width"));
   EXPECT_FALSE(effective({{"load.2.port", "edma_tc1"}}, "load.2.gap"));
   EXPECT_TRUE(effective(load, "load.2.gap"));
   EXPECT_FALSE(effective(load, "load.gap"));
+}
+
+// `fovea exec --board`: the program may use what it likes.
+TEST(EffectsTest, NothingIsKnownOfAProgramThatIsBrought) {
+  const Keys plain{{"firmware.kernel", "plain"}};
+  Settings s(plain);
+  const char* const keys[] = {"bus.edma_tc1.width", "cpu.tcm.banks", "vpss.base_px_525", "firmware.watchdog"};
+  for (const char* key : keys) EXPECT_FALSE(declared_effective(*s.set.find(key))) << key;
+  s.params.hosted = true;
+  for (const char* key : keys) EXPECT_TRUE(declared_effective(*s.set.find(key))) << key;
 }
 
 TEST(EffectsTest, TheDisplaysLinesFollowTheStandardOfOurFirmware) {

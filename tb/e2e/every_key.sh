@@ -3,9 +3,11 @@
 # something in the results must change. Where a key cannot act, a run must warn of it, and end with status 2
 # with --strict. A key that the table lacks is a failure, so is one that `fovea params` says "needs"
 # something and that has no line where it lacks that.
-# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM [full|quick]
+# Usage: every_key.sh FOVEA SOURCE OUT PROGRAM [full|quick|idle [COUNT SEED]]
 # full: every situation is a run to the first corrected frame; else EARLY and BOOTED below cut most of them short.
 # quick: of the keys that act, only those with EARLY, BOOTED or PROGRAM, whose runs need no picture.
+# idle: each key that needs something is set in each of the situations of elsewhere(), or drawn pairs of both until COUNT
+# runs say that the key has no effect. The results of these must be those without the key.
 set -uo pipefail
 fovea=$1 source=$2 out=$3 program=$4 mode=${5:-}
 rm -rf "$out"
@@ -36,6 +38,8 @@ situation() {
       # By then, the firmware has set the priorities.
       BOOTED) if [ "$mode" = full ]; then keys+=(-s load.start=55ms); else keys+=(-s load.start=15ms -s run.until=time:20ms); fi ;;
       SPHERE) keys+=(-s camera.kind=sphere -s camera.file="$front" -s camera.lens=equisolid) ;;
+      LARGER) # the EDMA's kernels take no smaller picture
+        keys+=(-s video.width=320 -s video.height=96 -s firmware.lut=fixed_point) ;;
       VIDEO) keys+=(-s camera.kind=video -s camera.file="$front") ;;
       RAM) # bursts in internal RAM
         keys+=(-s load.outstanding=1 -s load.memory=internal_ram -s load.base=0B -s load.size=32KiB
@@ -53,6 +57,8 @@ play() {  # NAME OPTIONS...
   timeout 60 "$fovea" run base.yaml "$@" -o "$name" >"$name.out" 2>"$name.err"
   echo $? >"$name.status"
 }
+# Without the warnings, to which a key without effect adds one.
+figures() { python3 -c 'import json, sys; d = json.load(open(sys.argv[1])); del d["warnings"]; print(d)' "$1/stats.json"; }
 differ() {
   local f
   for f in stats.json frames.csv timeline.csv stalls.csv uart.log; do
@@ -377,12 +383,76 @@ T
       echo "idle bus.$port.$key $value"
     done
     [ $port = load ] || echo "acts priority.$port 0 load.outstanding=8 load.port=$port load.gap=1us BOOTED"
-    [ $port = load ] || echo "idle priority.$port 0"
   done
+}
+
+elsewhere() {
+  cat <<'T'
+
+PROGRAM
+SPHERE lens.mapping=equisolid
+VIDEO lens.mapping=linear
+video.standard=ntsc
+video.standard=mt9v125
+video.standard=svga_progressive
+cameras.count=2
+cameras.count=4 firmware.view=four_way
+firmware.program=cameras
+fault.kind=sync_noise fault.start=50ms
+lens.mapping=none
+load.3.outstanding=2 load.3.port=edma_tc1
+load.3.outstanding=2 load.3.memory=internal_ram load.3.base=0B load.3.size=32KiB load.3.gap=1us
+clocks.arm=270MHz clocks.ddr=216MHz
+ddr.scheduler=closed_page
+T
+  local kernel
+  for kernel in plain ldm strips offsets16 deltas4 codes staged gather runs copy fastest engine engine_grid engine_radial; do
+    echo "LARGER firmware.kernel=$kernel"
+    [[ $kernel != engine* ]] || echo "LARGER firmware.kernel=$kernel engine=tlm"
+  done
+}
+
+# unchanged KEY VALUE SITUATION...: says whether the run said that the key has no effect.
+unchanged() {
+  local key=$1 value=$2 rest=${*:3} base
+  situation "${@:3}"
+  base=${bases["=$rest"]:-}
+  if [ -z "$base" ]; then
+    base=base$number
+    number=$((number + 1))
+    bases["=$rest"]=$base
+    play "$base" "${keys[@]}"
+    [ "$(cat "$base.status")" = 0 ] || fail "the situation ($rest) fails: $(tail -1 "$base.err")"
+    figures "$base" >"$base.figures"
+  fi
+  rm -rf changed
+  play changed "${keys[@]}" -s "$key=$value"
+  grep -q "'$key' is set .* but has no effect" changed.err || return 1
+  [ "$(cat changed.status)" = 0 ] || return 1  # refused, by name, such as a file that is not there
+  figures changed >changed.figures
+  if ! cmp -s "$base.figures" changed.figures || ! diff -rq "$base/frames" changed/frames >/dev/null ||
+    ! cmp -s "$base/frames.csv" changed/frames.csv || ! cmp -s "$base/stalls.csv" changed/stalls.csv; then
+    fail "$key=$value ($rest) is said to have no effect, and changes the results"
+  fi
 }
 
 declare -A listed bases idle
 number=0
+if [ "$mode" = idle ]; then
+  mapfile -t changes < <(table | sed -n 's/^idle \(\S* \S*\).*/\1/p' | grep -v '^load\(\.[12]\)\?\.' | sort -u)
+  mapfile -t situations < <(elsewhere)
+  all=$((${#changes[@]} * ${#situations[@]})) count=${6:-} tried=0 said=0
+  RANDOM=${7:-1}
+  while [ "$tried" -lt "$all" ] && [ "$said" -lt "${count:-$all}" ]; do
+    number_of=$((count ? (RANDOM * 32768 + RANDOM) % all : tried))
+    tried=$((tried + 1))
+    # shellcheck disable=SC2086 # words
+    unchanged ${changes[number_of / ${#situations[@]}]} ${situations[number_of % ${#situations[@]}]} && said=$((said + 1))
+  done
+  echo "$tried keys in a situation, $said said to have no effect, $failures failures"
+  [ "$said" -gt 0 ] || failures=1
+  exit $((failures > 0))
+fi
 while read -r what key value rest; do
   listed[$key]=1
   [ "$what" = tested ] && continue
@@ -423,7 +493,7 @@ while read -r what key value rest; do
 done < <(table | { if [ -n "${ONLY:-}" ]; then grep -E "$ONLY"; else cat; fi; })
 
 # No key is forgotten, and none that is gone is listed.
-"$fovea" params | tail -n +2 >params.txt
+"$fovea" params | sed '1d; /^$/,$d' >params.txt
 while read -r key line; do
   [ -n "${listed[$key]:-}" ] || fail "$key is in no line of the table"
   [[ $line != *'; needs '* ]] || [ -n "${idle[$key]:-}" ] || fail "$key needs something, and no line lacks it"

@@ -47,9 +47,24 @@ read -r packets first last groups <<<"$(shape "$out/span.pftrace")"
   fail "from, for: $packets $first $last $groups"
 run -o "$out/run" --perfetto "$out/ring.pftrace" --perfetto-size 1
 bytes=$(stat -c %s "$out/ring.pftrace")
-[ "$bytes" -le $((1300 * 1024)) ] && [ "$bytes" -gt $((600 * 1024)) ] || fail "ring: $bytes bytes"
-grep -q 'lacks [0-9]* older packets' "$out/text" || fail 'nothing said of what the ring lost'
-shape "$out/ring.pftrace" >/dev/null || fail 'the ring is not readable'
+[ "$bytes" -le $((1300 * 1024)) ] && [ "$bytes" -gt $((600 * 1024)) ] || fail "size: $bytes bytes"
+grep -qE 'lacks requests, transfers and functions from [0-9.]+ s on .*--perfetto-size [0-9]+ holds all' "$out/text" ||
+  fail "nothing said of what the size left out: $(cat "$out/text")"
+# What is full keeps the beginning, and tracks of few events go on; the size that is named holds all.
+read -r packets first last groups <<<"$(shape "$out/run.pftrace")"
+read -r some begin end rest <<<"$(shape "$out/ring.pftrace")"
+[ "$some" -lt "$packets" ] && [ "$begin" = "$first" ] && [ "$end" = "$last" ] && [ "$rest" = "$groups" ] ||
+  fail "size: $some packets from $begin to $end of $rest, in all $packets from $first to $last of $groups"
+frames() { read_trace --slices 'frames/3 display' "$1"; }
+[ -n "$(frames "$out/run.pftrace")" ] || fail 'no displayed frame in the trace'
+diff <(frames "$out/run.pftrace") <(frames "$out/ring.pftrace") || fail 'size: the displayed frames end early'
+enough=$(grep -oE 'size [0-9]+ holds all' "$out/text" | grep -oE '[0-9]+')
+run -o "$out/run" --perfetto "$out/ring.pftrace" --perfetto-size "$enough"
+grep -q lacks "$out/text" && fail "--perfetto-size $enough does not hold all"
+run -o "$out/run" --perfetto "$out/newest.pftrace" --perfetto-size 1 --perfetto-trigger dropped
+grep -qE 'lacks [0-9]+ older packets, up to' "$out/text" || fail "with a trigger: $(cat "$out/text")"
+read -r some begin end rest <<<"$(shape "$out/newest.pftrace")"
+[ "$some" -lt "$packets" ] && [ "$end" = "$last" ] || fail "with a trigger: $some of $packets packets, up to $end of $last"
 # An interrupt line that is high throughout, as the core masks it, ends with the recording.
 run -o "$out/masked" --perfetto "$out/masked.pftrace" -s firmware.elf="$programs/masked_alarms.elf" -s run.until=time:8ms \
   --perfetto-from 6ms --perfetto-for 1ms --perfetto-tracks '^interrupts/'

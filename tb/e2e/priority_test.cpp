@@ -133,7 +133,9 @@ TEST(EdmaTest, ItsConfigurationIsTrueAndTheClockGateHolds) {
   said.clear();
   using Kind = Diagnostics::Kind;
   EXPECT_EQ(access(soc, false, 0x284, 0), 0u);
-  EXPECT_EQ(said.counts().at({Kind::kGuest, "access to EDMACC while its clock is gated"}), 1u);
+  EXPECT_EQ(said.counts().at({Kind::kGuest, "access to EDMACC while its clock is gated (PSC module 0, EDMA3 channel "
+                                            "controller)"}),
+            1u);
   ASSERT_EQ(soc.psc.regs.write(0xA00, 4, 0x103), Access::kOk);  // LPSC 0 on
   ASSERT_EQ(soc.psc.regs.write(0x120, 4, 1), Access::kOk);
   rig.advance(10 * kPsPerUs);

@@ -89,6 +89,42 @@ TEST_F(RegisterLogTest, TheRingKeepsTheLast) {
             "8.000 ns  pc 0x00008000 (main+0x4) arm_d wrote one.DATA = 0x00000007\n");
 }
 
+// A loop that waits: one entry, whatever a handler did in between is one of its own.
+TEST_F(RegisterLogTest, WhatFollowsItselfIsOneLine) {
+  log.start({.pattern = ".", .kept = 3});
+  for (int i = 0; i < 1000; ++i) access(8, 4, false, 0);
+  access(8, 4, false, 1);
+  access(8, 4, false, 0);
+  access(8, 4, false, 0, true);
+  access(8, 4, false, 0, true);
+  EXPECT_EQ(log.text(),
+            "(1000 earlier accesses are not shown)\n"
+            "1001.000 ns  pc 0x00008000 (main+0x4) arm_d read one.DATA = 0x00000001\n"
+            "1002.000 ns  pc 0x00008000 (main+0x4) arm_d read one.DATA = 0x00000000\n"
+            "1003.000 ns  pc 0x00008000 (main+0x4) arm_d read one.DATA = 0x00000000  clock gated  2 times, the last at "
+            "1004.000 ns\n");
+  log.start({.pattern = "."});
+  for (int i = 0; i < 3; ++i) access(8, 4, false, 0);
+  master = Master::kEdmaTc0Read;
+  access(8, 4, false, 0);
+  EXPECT_EQ(log.text(1), "(3 earlier accesses are not shown)\n1008.000 ns  edma_tc0_read read one.DATA = 0x00000000\n");
+}
+
+TEST_F(RegisterLogTest, APatternThatMatchesNothingIsRefused) {
+  log.start({.pattern = "DATA"});
+  for (const char* nothing : {"^ONE", "nosuch", "one\\.CTRLS", "^one\\.0x8$"}) {
+    try {
+      log.start({.pattern = nothing});
+      ADD_FAILURE() << nothing;
+    } catch (const UserError& e) {
+      EXPECT_EQ(e.what(), "'" + std::string(nothing) +
+                              "' matches no register; names are BLOCK.REGISTER, and the blocks are one, two");
+    }
+  }
+  access(8, 4, false, 0);
+  EXPECT_EQ(log.text().find("1.000 ns"), 0u) << "what ran before runs on";
+}
+
 TEST_F(RegisterLogTest, TheRingsSizeChangesWithWhatItHolds) {
   const auto values = [this] {
     std::string out, text = log.text();

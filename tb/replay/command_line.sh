@@ -140,7 +140,7 @@ text=$(run -o "$out/run" --bus-trace "$out/full" 2>&1)
 grep -q 'No space left' <<<"$text" || fail "a full disk is not named: $text"
 [ -L "$out/full" ] || fail 'a device that takes no trace is removed'
 expect no_file 2 'missing.trace' -- replay "$out/missing.trace"
-expect not_a_trace 2 'is not a bus trace' -- replay "$out/small.yaml"
+expect not_a_trace 2 'none of the known trace formats; a replay takes a file of .fovea run --bus-trace' -- replay "$out/small.yaml"
 head -c 900 "$trace" >"$out/cut.trace"
 expect truncated 2 'cut off' -- replay "$out/cut.trace"
 { head -c 700 "$trace"; printf 'XXXX'; tail -c +705 "$trace"; } >"$out/bad.trace"
@@ -156,7 +156,24 @@ expect part_timing 0 'fovea: warning \(configuration\): SDTIMR T_RFC: 31 clocks 
 grep -q '"kind": "configuration", "what": "SDTIMR T_RFC: 31 clocks' "$out/replay/stats.json" || fail 'no warning in stats.json'
 expect part_cl 2 'ddr.CL' 'more cycles at' -- replay "$trace" -s ddr.CL=3cycles
 expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
-expect part_alone 2 'ddr.preset=data_sheet' -- replay "$out/good.txt" -s ddr.part=mt46h32m16lf
+expect part_alone 2 'ddr.preset=data_sheet' -- replay "$trace" -s ddr.part=mt46h32m16lf
+expect stays 0 'fovea: the timings stay as recorded, in clocks; ddr.preset=data_sheet takes the part' -- replay "$trace" -s ddr.clock=270MHz
+# No replay of a text trace warns of what nobody has set, whatever part, grade and clock it is for.
+quiet() {
+  replay "$out/good.txt" "$@" 2>"$out/quiet.err" >/dev/null || fail "$*: $(cat "$out/quiet.err")"
+  grep -q 'warning' "$out/quiet.err" && fail "$* warns of defaults: $(cat "$out/quiet.err")"
+}
+quiet
+for part in mt47h32m16 mt47h64m16 mt47h128m16 mt46h32m16lf mt46h64m16lf; do
+  case $part in mt46*) grades='5 6 75' ;; *) grades='37e 3 25e 25' ;; esac
+  for grade in default $grades; do quiet -s ddr.part=$part -s ddr.grade=$grade; done
+done
+for clock in 162MHz 270MHz; do quiet -s ddr.clock=$clock; done
+quiet -s clocks.preset=297/270
+expect chosen 0 'ddr.preset=data_sheet, as the trace has no recorded timings' -- replay "$out/good.txt" -s ddr.clock=270MHz
+grep -q '"ddr.preset": {"value": "data_sheet", .*"origin": "a trace without recorded settings"' "$out/replay/config.json" ||
+  fail 'config.json: ddr.preset of a text trace'
+expect kept_default 0 'warning .*T_RFC' -- replay "$out/good.txt" -s ddr.clock=270MHz -s ddr.preset=as_recorded
 expect preset 0 -- replay "$out/good.txt" -s ddr.part=mt46h32m16lf -s ddr.preset=data_sheet
 grep -q '"ddr.clock": {"value": "166666666Hz", .*"origin": "ddr.preset: mt46h32m16lf, grade 6"' "$out/replay/config.json" ||
   fail 'config.json: ddr.clock by preset'

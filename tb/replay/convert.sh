@@ -62,12 +62,31 @@ cmp "$out/a.trace" "$out/c.trace" || fail 'text, binary, text, binary: two binar
 # A recorded trace through the binary format is the same file; as text it has the times of a replay.
 expect recorded 0 -- convert "$source/traces/bus/paper-pal.trace" -o "$out/p.trace" --to binary
 cmp "$source/traces/bus/paper-pal.trace" "$out/p.trace" || fail 'binary to binary changes a trace'
-expect played 0 'the times of a replay' 'priorities' -- \
+expect played 0 'dependences are lost: text has none, and the times are those of a replay with the recorded settings' 'priorities' -- \
   convert "$source/traces/bus/paper-pal.trace" -o "$out/p.txt" --to text
 requests=$("$fovea" replay "$source/traces/bus/paper-pal.trace" -o "$out/replay" >/dev/null &&
   grep -oE '"replay.requests": \{"value": [0-9]+' "$out/replay/stats.json" | grep -oE '[0-9]+$')
 [ "$(grep -vc '^#' "$out/p.txt")" = "$requests" ] || fail "text has not the $requests requests"
 sort -cns "$out/p.txt" 2>/dev/null || fail 'times of a replay do not rise'
+# The window begins with the first request, not with power-up: rates are those of the recording, to 1 in 1000.
+figures() { "$fovea" replay "$1" -o "$out/replay" >/dev/null && python3 - "$out/replay/stats.json" <<'P'
+import json, sys
+stats = json.load(open(sys.argv[1]))
+print(*(stats[k]["value"] for k in ("replay.time", "replay.bandwidth", "ddr.utilisation", "ddr.headroom")))
+P
+}
+within() { awk '{ for (i = 1; i <= 4; i++) if ($i <= 0 || $i / $(i + 4) > 1.001 || $i / $(i + 4) < 0.999) exit 1 } END { exit NF != 8 }' <<<"$1"; }
+both="$(figures "$out/p.txt") $(figures "$source/traces/bus/paper-pal.trace")"
+within "$both" || fail "text and recording: $both"
+# Whatever the time of the first request is; also in the binary format.
+awk '/^#/ { print; next } { $1 += 1e12; printf "%.0f", $1; $1 = ""; print }' "$out/b.txt" >"$out/late.txt"
+expect late_binary 0 -- convert "$out/late.txt" -o "$out/late.trace" --to binary
+[ "$(stats "$out/b.txt")" = "$(stats "$out/late.txt")" ] || fail 'requests 1 s later have other figures'
+[ "$(stats "$out/b.txt")" = "$(stats "$out/late.trace")" ] || fail 'requests 1 s later have other figures in the binary format'
+expect late_info 0 '^requests from 1000.000000 ms to 1000.000007 ms' -- "$fovea" trace info "$out/late.txt"
+# Settings that differ from the defaults of a replay are named.
+"$fovea" trace convert "$source/traces/bus/paper-pal.trace" -o "$out/p.txt" --to text 2>&1 | grep -q 'has no settings' &&
+  fail 'settings of the recording are said to be lost, and are the defaults'
 
 # Foreign formats there and back.
 printf '0:\twrite\t0x0\n3:\tread\t0x40\n3: (32) read 0x80\n17: write 0xc0\n' >"$out/d.stl"
@@ -110,6 +129,32 @@ expect ram_back 0 -- convert "$out/d.ram" -o "$out/e.ram2" --to ramulator2
 cmp "$out/d.ram2" "$out/e.ram2" || fail 'Ramulator and Ramulator 2 differ'
 expect played_foreign 0 'does not tell masters apart' -- convert "$source/traces/bus/paper-pal.trace" -o "$out/p.sim3" --to dramsim3 --clock 243MHz
 
+# Byte addresses are the same requests as those of their blocks, which is said.
+printf '0x8 R\n0x47 W\nfff R\n' >"$out/bytes.ram"
+printf '0x0 R\n0x40 W\nfc0 R\n' >"$out/blocks.ram"
+expect bytes 0 '3 addresses are no multiples of the request.s size: their low bits do not count' -- \
+  convert "$out/bytes.ram" -o "$out/bytes.txt" --to text
+expect blocks 0 -- convert "$out/blocks.ram" -o "$out/blocks.txt" --to text
+cmp "$out/bytes.txt" "$out/blocks.txt" || fail 'byte addresses are other requests than those of their blocks'
+# A mark of UTF-8 in front.
+for file in blocks.ram b.txt; do
+  { printf '\xef\xbb\xbf'; cat "$out/$file"; } >"$out/marked.txt"
+  expect "marked_$file" 0 -- convert "$out/marked.txt" -o "$out/unmarked.txt" --to text
+  cmp "$out/unmarked.txt" "$out/${file/ram/txt}" || fail "$file with a mark is another trace"
+done
+expect marked_replay 0 '^replayed ' -- "$fovea" replay "$out/marked.txt" -o "$out/replay"
+# What is not read is refused by its name, or by its line.
+printf '3 20734016\n1 20846400\n' >"$out/cpu.trace"
+expect cpu 2 "cpu.trace':1: it is a line of a CPU trace of Ramulator" -- convert "$out/cpu.trace" -o "$out/x" --to text
+expect cpu_replay 2 'CPU trace of Ramulator' -- "$fovea" replay "$out/cpu.trace" -o "$out/replay"
+printf 'gem5\x12\x0a' >"$out/packets"
+gzip -nk "$out/packets"
+for file in packets packets.gz; do
+  expect "gem5_$file" 2 "$file': it is a packet trace of gem5" -- convert "$out/$file" -o "$out/x" --to text
+done
+gzip -nk "$out/blocks.ram"
+expect packed 2 'packed by gzip; unpack it first' -- convert "$out/blocks.ram.gz" -o "$out/x" --to text
+
 # Addresses beyond the memory.
 printf '0x8000040 R\n0x12345680 W\n' >"$out/far.ram"
 expect beyond 2 ':1: 64 bytes at 0x08000040 are outside the memory of 128 MiB' '--wrap' -- convert "$out/far.ram" -o "$out/x" --to text
@@ -128,7 +173,7 @@ cp "$out/replay/stats.json" "$out/wrapped.json"
 expect no_command 2 -- "$fovea" trace
 expect no_to 2 '--to is required' -- convert "$out/a.txt" -o "$out/x"
 expect bad_to 2 'dramsim3' -- convert "$out/a.txt" -o "$out/x" --to dramsim4
-expect unknown 2 'none of the known trace formats; allowed: binary, text, dramsys-stl' -- convert "$source/LICENSE" -o "$out/x" --to text
+expect unknown 2 "LICENSE':2: it is 'Apache License', a line of none of the known trace formats; formats: binary, text" -- convert "$source/LICENSE" -o "$out/x" --to text
 cp "$out/d.stl" "$out/d.unclear"
 expect unclear 2 'dramsys-rstl' -- convert "$out/d.unclear" -o "$out/x" --to text --clock 1GHz
 expect clear 0 -- convert "$out/d.unclear" -o "$out/unclear.txt" --to text --clock 1GHz --from dramsys-rstl

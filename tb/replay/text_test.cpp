@@ -156,6 +156,20 @@ TEST(TextTraceTest, APieceKnowsItsLine) {
   EXPECT_FALSE(t.next(0, r));
 }
 
+// The earliest of what can go out: the first record of a master holds up those behind it.
+TEST(TextTraceTest, ItStartsWithTheFirstRequest) {
+  const std::string head = "# dramtrace 1\n# master 0 window 1 a\n# master 1 window 1 b\n";
+  const auto start = [&](const std::string& lines) { return TextTrace("t", head + lines).info().start; };
+  EXPECT_EQ(start("70 0 R 0x0 4\n"), 70u);
+  EXPECT_EQ(start("70 0 R 0x0 4\n5 0 R 0x0 4\n"), 70u);
+  EXPECT_EQ(start("70 0 R 0x0 4\n5 1 R 0x0 4\n"), 5u);
+  EXPECT_EQ(start("0 0 R 0x0 4\n5 1 R 0x0 4\n"), 0u);
+  // The other master comes behind more records than are read at a time.
+  std::string late;
+  for (int i = 0; i < 2'000; ++i) late += "900 0 R 0x0 4\n";
+  EXPECT_EQ(start(late + "30 1 R 0x0 4\n"), 30u);
+}
+
 TEST(TextTraceTest, NoTextCrashesIt) {
   Rng rng(11);
   for (int n = 0; n < 20'000; ++n) {

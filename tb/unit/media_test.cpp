@@ -50,6 +50,16 @@ TEST(PngTest, EqualPicturesGiveEqualBytes) {
   EXPECT_EQ(encode_png(pattern(64, 48), 1), encode_png(pattern(64, 48), 1));
 }
 
+TEST(PngTest, ThePixelsShapeIsInTheFile) {
+  using namespace std::string_literals;
+  const std::string square = as_text(encode_png(pattern(4, 4), 1));
+  EXPECT_EQ(square.find("pHYs"), std::string::npos);
+  // PNG specification 11.3.5.3: pixels per unit along x, along y, no unit. A pixel 16 wide and 15 high.
+  const std::string pal = as_text(encode_png(pattern(4, 4), 1, {16, 15}));
+  EXPECT_NE(pal.find("\0\0\0\x09pHYs\0\0\0\x0f\0\0\0\x10\0"s), std::string::npos);
+  EXPECT_EQ(as_text(encode_png(pattern(4, 4), 1, {2, 2})), square);
+}
+
 /// The 1x1 PNGs below are written out by hand: signature, IHDR, IDAT with one zlib block, IEND.
 std::string png_1x1(char depth, char colour, const std::string& idat, const std::string& idat_crc,
                     const std::string& ihdr_crc) {
@@ -234,6 +244,14 @@ TEST_F(FfmpegTest, FilmGivesItsFramesInOrder) {
     EXPECT_NEAR(frames[i].rgb[3 * (64 * 24 + 32)], 255.0 * (24 + 20 * i) / 219, 4) << i;
   }
   EXPECT_EQ(decode_frames(file, {.max_frames = 100}).size(), 8u);
+}
+
+TEST_F(FfmpegTest, AFilmHasThePixelsShape) {
+  EXPECT_EQ(film_info(clip(1)).pixel_aspect, 1);
+  FrameWriter writer({.folder = "", .mp4 = dir / "pal.mp4", .mp4_rate = {25}});
+  writer.push(0, 64, 48, grey_frame(64, 48, 100), {16, 15});
+  writer.close();
+  EXPECT_DOUBLE_EQ(film_info(dir / "pal.mp4").pixel_aspect, 16.0 / 15);
 }
 
 TEST_F(FfmpegTest, FramesAreScaledToTheSizeAskedFor) {

@@ -90,11 +90,13 @@ TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
 }
 
 TEST(StatsJsonTest, HasOneLineForEachStatisticAndEachWarning) {
-  EXPECT_EQ(stats_json(some_rows(), true, {{"model", "a [{b}]\n", 2}}, "frames"),
+  EXPECT_EQ(stats_json(some_rows(), true, {{"model", "a [{b}]\n", 2}},
+                       {.ended_by = "frames", .kernel = "staged"}),
             "{\n"
             "  \"complete\": true,\n"
             "  \"band\": \"not run\",\n"
             "  \"ended_by\": \"frames\",\n"
+            "  \"kernel\": \"staged\",\n"
             "  \"warnings\": [\n"
             "    {\"kind\": \"model\", \"what\": \"a [{b}]\\n\", \"count\": 2}\n"
             "  ],\n"
@@ -166,9 +168,21 @@ TEST(FramesCsvTest, UnknownTimesAreEmptyCells) {
   a.repeated = true;
   const std::vector<FrameRow> rows{a};
   const std::string csv = frames_csv(rows);
-  EXPECT_EQ(csv.substr(csv.find('\n') + 1), "3,1,7,1.500,,,,40000.000,,2,1\n");
+  EXPECT_EQ(csv.substr(csv.find('\n') + 1), "3,1,7,1.500,,,,40000.000,,2,1,,\n") << "shown again";
   const std::string header = csv.substr(0, csv.find('\n'));
-  EXPECT_EQ(std::count(header.begin(), header.end(), ','), 10);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), 12);
+}
+
+TEST(FramesCsvTest, DurationsAreThoseOfTheFigures) {
+  FrameRow row;
+  row.captured = 7;
+  row.capture_start = 1'500;
+  row.remap_start = 20'000;
+  row.remap_end = 30'001;
+  row.display_start = 40'000;
+  EXPECT_THAT(frames_csv_line(row), testing::EndsWith(",0,0,10.001,38.500\n"));
+  row.capture_start.reset();
+  EXPECT_THAT(frames_csv_line(row), testing::EndsWith(",0,0,10.001,\n"));
 }
 
 TEST(TimelineCsvTest, HasAPairOfColumnsPerMaster) {

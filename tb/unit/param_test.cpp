@@ -181,6 +181,13 @@ TEST_F(ParamTest, UnknownKeySuggestsTheNearest) {
       << "nothing is near a single letter";
 }
 
+TEST_F(ParamTest, AWordOfKeysSuggestsThem) {
+  EXPECT_EQ(user_error([&] { set.set("clock", "1MHz"); }), "unknown key 'clock'; did you mean 'block.clock'?");
+  EXPECT_EQ(user_error([&] { set.set("angl", "1"); }), "unknown key 'angl'; did you mean 'block.angle'?");
+  EXPECT_THAT(user_error([&] { set.set("lock", "1"); }), testing::Not(HasSubstr("did you mean"))) << "within a word";
+  EXPECT_THAT(user_error([&] { set.set("cl", "1"); }), testing::Not(HasSubstr("did you mean"))) << "two letters";
+}
+
 TEST_F(ParamTest, ASuggestionIsNearInWhatDiffers) {
   // Three letters of five differ: 'block.' in common does not make 'block.clock' near.
   EXPECT_THAT(user_error([&] { set.set("block.checks", "1"); }),

@@ -106,6 +106,15 @@ TextTrace::TextTrace(std::string name, std::unique_ptr<ByteSource> bytes,
     line_ = front_.line;
     bad("no record; 't_ps master R|W 0xaddress bytes' is one");
   }
+  find_start();
+}
+
+/// What comes before the first request is no part of the trace. The records of a master go out in order, so the first
+/// one of each is enough.
+void TextTrace::find_start() {
+  info_.start = kLatest;
+  for (Stream& s : streams_)
+    if (!s.lines.empty() || refill(s)) info_.start = std::min(info_.start, s.lines.front().at);
 }
 
 /// Looks for the declarations of masters in the whole file, as the player has to know all of them

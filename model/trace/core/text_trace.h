@@ -67,6 +67,7 @@ class TextTrace : public RecordSource {
 
   [[noreturn]] void bad(std::string what) const;
   void find_masters();
+  void find_start();
   void read_carefully();
   void declare(const Words& words);
   bool read_line(std::string_view line, Line& l, unsigned& stream);

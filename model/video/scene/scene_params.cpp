@@ -66,9 +66,7 @@ SceneParams::SceneParams(std::string prefix, bool rules)
                   "camera.kb; the firmware's lens defaults to it (lens.calibration)") {
   if (!rules) return;
   const auto sphere = [this] { return kind.is("sphere"); };
-  const auto bent = [this] {
-    return kind.is("sphere") || kind.is("car_park") || kind.is("lines") || (kind.is("video") && video_fov() > 0);
-  };
+  const auto bent = [this] { return bends(); };
   file.matters_only("camera.kind = sphere or video", {&kind},
                     [this] { return kind.is("sphere") || kind.is("video"); });
   motion_amplitude.matters_only("camera.kind = sphere", {&kind}, sphere);
@@ -86,6 +84,10 @@ SceneParams::SceneParams(std::string prefix, bool rules)
     p->matters_only("camera.lens = kannala_brandt", {&lens},
                     [this] { return lens.is("kannala_brandt"); });
   }
+}
+
+bool SceneParams::bends() const {
+  return kind.is("sphere") || kind.is("car_park") || kind.is("lines") || (kind.is("video") && video_fov() > 0);
 }
 
 LensModel SceneParams::lens_model(unsigned width, unsigned height) const {

@@ -27,6 +27,8 @@ struct SceneParams : ParamGroup {
   RealParam video_fov;
   TextParam calibration;
 
+  /// Whether `lens` takes part in the picture.
+  bool bends() const;
   /// The lens of a still or flat video of this size, in that picture's pixels. @throws UserError
   LensModel lens_model(unsigned width, unsigned height) const;
   /// Warns about a calibration that cannot belong to a still of this size: one made with a picture

@@ -4,28 +4,27 @@
 #include "model/contract/param_page.h"
 #include "say.h"
 
-/* For each kernel of the page its method and the kernel to try if the lens does not allow it. The
- * last one of such a chain fits every lens and refers to itself. */
+/* For each kernel of the page its method and the kernel to try if the lens or the chip does not allow it. */
 typedef struct choice {
   const remap_method_t *method; /* a null pointer: not in this firmware, or no method at all */
   uint8_t otherwise;            /* enum param_kernel */
 } choice_t;
 
 static const choice_t kChoices[] = {
-    [KERNEL_PLAIN] = {&method_plain, KERNEL_PLAIN},
-    [KERNEL_LDM] = {&method_ldm, KERNEL_LDM},
-    [KERNEL_STRIPS] = {&method_strips, KERNEL_STRIPS},
-    [KERNEL_OFFSETS] = {&method_offsets, KERNEL_STRIPS},
-    [KERNEL_DELTAS] = {&method_deltas, KERNEL_OFFSETS},
-    [KERNEL_CODES] = {&method_codes, KERNEL_DELTAS},
-    [KERNEL_STAGED] = {&method_staged, KERNEL_CODES},
-    [KERNEL_GATHER] = {&method_gather, KERNEL_CODES},
-    [KERNEL_RUNS] = {&method_runs, KERNEL_CODES},
-    [KERNEL_COPY] = {&method_copy, KERNEL_CODES},
-    [KERNEL_FASTEST] = {NULL, KERNEL_STAGED},
-    [KERNEL_ENGINE] = {&method_engine, KERNEL_STAGED},
-    [KERNEL_ENGINE_GRID] = {&method_engine_grid, KERNEL_STAGED},
-    [KERNEL_ENGINE_RADIAL] = {&method_engine_radial, KERNEL_STAGED},
+    [KERNEL_PLAIN] = {&method_plain, KERNEL_PLAIN_OTHERWISE},
+    [KERNEL_LDM] = {&method_ldm, KERNEL_LDM_OTHERWISE},
+    [KERNEL_STRIPS] = {&method_strips, KERNEL_STRIPS_OTHERWISE},
+    [KERNEL_OFFSETS] = {&method_offsets, KERNEL_OFFSETS_OTHERWISE},
+    [KERNEL_DELTAS] = {&method_deltas, KERNEL_DELTAS_OTHERWISE},
+    [KERNEL_CODES] = {&method_codes, KERNEL_CODES_OTHERWISE},
+    [KERNEL_STAGED] = {&method_staged, KERNEL_STAGED_OTHERWISE},
+    [KERNEL_GATHER] = {&method_gather, KERNEL_GATHER_OTHERWISE},
+    [KERNEL_RUNS] = {&method_runs, KERNEL_RUNS_OTHERWISE},
+    [KERNEL_COPY] = {&method_copy, KERNEL_COPY_OTHERWISE},
+    [KERNEL_FASTEST] = {NULL, KERNEL_FASTEST_OTHERWISE},
+    [KERNEL_ENGINE] = {&method_engine, KERNEL_ENGINE_OTHERWISE},
+    [KERNEL_ENGINE_GRID] = {&method_engine_grid, KERNEL_ENGINE_GRID_OTHERWISE},
+    [KERNEL_ENGINE_RADIAL] = {&method_engine_radial, KERNEL_ENGINE_RADIAL_OTHERWISE},
 };
 
 enum { kChoiceCount = sizeof kChoices / sizeof *kChoices };

@@ -31,7 +31,9 @@ void add_perfetto_options(CLI::App& command, PerfettoOptions& o) {
                   "End the recording with the first displayed frame of this kind")
       ->type_name("EVENT")
       ->check(CLI::IsMember({"dropped", "repeated", "underflow"}));
-  command.add_option("--perfetto-size", o.request.megabytes, "Keep the newest events, in MiB")
+  command.add_option("--perfetto-size", o.request.megabytes,
+                     "Largest size in MiB; requests and functions end when it is full, with "
+                     "--perfetto-trigger the newest events are kept")
       ->type_name("MIB")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();

@@ -24,15 +24,16 @@ constexpr char kFirstByte = 0x0A;
 
 }  // namespace
 
-PerfettoFile::PerfettoFile(const std::filesystem::path& file, std::size_t ring_bytes,
+PerfettoFile::PerfettoFile(const std::filesystem::path& file, std::size_t bytes, Keep keep,
                            std::function<bool(const std::string&)> wanted)
     : file_(file, "--perfetto", "a Perfetto trace",
             [](std::string_view first) { return first.starts_with(kFirstByte); }),
-      ring_bytes_(ring_bytes),
+      most_(bytes),
+      keep_(keep),
       wanted_(std::move(wanted)) {}
 
 PerfettoFile::Track PerfettoFile::declare(const std::string& group, const std::string& name,
-                                          const std::string* unit) {
+                                          const std::string* unit, Events events) {
   const std::string full = group + "/" + name;
   names_.push_back(full);
   if (!wanted_(full)) return kNone;
@@ -43,6 +44,7 @@ PerfettoFile::Track PerfettoFile::declare(const std::string& group, const std::s
     pbf_builder<TrackDescriptor> track(packet, TracePacket::kTrackDescriptor);
     track.add_uint64(TrackDescriptor::kUuid, ++last_);
     track.add_string(TrackDescriptor::kName, label);
+    many_.push_back(events == Events::kMany);
     if (parent) track.add_uint64(TrackDescriptor::kParentUuid, parent);
     if (of_unit) {
       pbf_builder<CounterDescriptor> counter(track, TrackDescriptor::kCounter);
@@ -58,13 +60,34 @@ PerfettoFile::Track PerfettoFile::declare(const std::string& group, const std::s
   return describe(name, parent->second, unit);
 }
 
-PerfettoFile::Track PerfettoFile::track(const std::string& group, const std::string& name) {
-  return declare(group, name, nullptr);
+PerfettoFile::Track PerfettoFile::track(const std::string& group, const std::string& name, Events events) {
+  return declare(group, name, nullptr, events);
 }
 
 PerfettoFile::Track PerfettoFile::counter(const std::string& group, const std::string& name,
                                           const std::string& unit) {
-  return declare(group, name, &unit);
+  return declare(group, name, &unit, Events::kFew);
+}
+
+/// With kOldest, what is full stays so.
+bool PerfettoFile::has_room(Track track, Picoseconds at, unsigned packets) {
+  if (keep_ == Keep::kNewest || bytes_ < (many_[track] ? most_ - most_ / 4 : most_)) return true;
+  dropped_at_ = dropped_ == 0 ? at : std::min(dropped_at_, at);
+  dropped_ += packets;
+  return false;
+}
+
+void PerfettoFile::drop_oldest() {
+  bytes_ -= chunks_.front().packets.size();
+  dropped_ += chunks_.front().count;
+  kept_ -= chunks_.front().count;
+  dropped_at_ = std::max(dropped_at_, chunks_.front().newest);
+  chunks_.pop_front();
+}
+
+std::size_t PerfettoFile::bytes_wanted() const {
+  return kept_ == 0 ? 0 : static_cast<std::size_t>(static_cast<double>(bytes_) / static_cast<double>(kept_) *
+                                                   static_cast<double>(kept_ + dropped_));
 }
 
 template <class F>
@@ -91,18 +114,14 @@ void PerfettoFile::event(Track track, Picoseconds at, int type, F fill) {
   pbf_builder<Trace>(chunk.packets).add_message(Trace::kPacket, packet_);
   bytes_ += chunk.packets.size() - before;
   ++chunk.count;
+  ++kept_;
   chunk.newest = std::max(chunk.newest, at);
-  while (bytes_ > ring_bytes_ && chunks_.size() > 1) {
-    bytes_ -= chunks_.front().packets.size();
-    dropped_ += chunks_.front().count;
-    dropped_until_ = std::max(dropped_until_, chunks_.front().newest);
-    chunks_.pop_front();
-  }
+  while (keep_ == Keep::kNewest && bytes_ > most_ && chunks_.size() > 1) drop_oldest();
 }
 
 void PerfettoFile::slice(Track track, std::string_view name, Picoseconds begin, Picoseconds end,
                          std::uint64_t flow) {
-  if (track == kNone) return;
+  if (track == kNone || !has_room(track, begin, 2)) return;
   event(track, begin, static_cast<int>(TrackEventType::kSliceBegin), [&](pbf_builder<TrackEvent>& e) {
     e.add_string(TrackEvent::kName, name.data(), name.size());
     if (flow) e.add_fixed64(TrackEvent::kFlowIds, flow);
@@ -111,21 +130,21 @@ void PerfettoFile::slice(Track track, std::string_view name, Picoseconds begin, 
 }
 
 void PerfettoFile::instant(Track track, std::string_view name, Picoseconds at) {
-  if (track == kNone) return;
+  if (track == kNone || !has_room(track, at, 1)) return;
   event(track, at, static_cast<int>(TrackEventType::kInstant), [&](pbf_builder<TrackEvent>& e) {
     e.add_string(TrackEvent::kName, name.data(), name.size());
   });
 }
 
 void PerfettoFile::value(Track track, Picoseconds at, std::int64_t value) {
-  if (track == kNone) return;
+  if (track == kNone || !has_room(track, at, 1)) return;
   event(track, at, static_cast<int>(TrackEventType::kCounter), [&](pbf_builder<TrackEvent>& e) {
     e.add_int64(TrackEvent::kCounterValue, value);
   });
 }
 
 void PerfettoFile::value(Track track, Picoseconds at, double value) {
-  if (track == kNone) return;
+  if (track == kNone || !has_room(track, at, 1)) return;
   event(track, at, static_cast<int>(TrackEventType::kCounter), [&](pbf_builder<TrackEvent>& e) {
     e.add_double(TrackEvent::kDoubleCounterValue, value);
   });
@@ -141,7 +160,7 @@ void PerfettoLanes::slice(std::string_view name, Picoseconds begin, Picoseconds 
   auto lane = std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane& l) { return l.free <= begin; });
   if (lane == lanes_.end()) {
     const std::string number = lanes_.empty() ? "" : " (" + std::to_string(lanes_.size() + 1) + ")";
-    lanes_.push_back({file_.track(group_, name_ + number), 0});
+    lanes_.push_back({file_.track(group_, name_ + number, PerfettoFile::Events::kMany), 0});
     lane = lanes_.end() - 1;
   }
   lane->free = end;

@@ -26,7 +26,8 @@ void PerfettoFunctions::write(const Slice& s, Picoseconds until) {
   const Picoseconds begin = std::max(s.begin, from_), end = std::min(s.end, until);
   if (begin >= end || s.depth >= kDeepest) return;
   while (tracks_.size() <= s.depth)
-    tracks_.push_back(file_.track("firmware", fmt::format("functions {:02}", tracks_.size() + 1)));
+    tracks_.push_back(file_.track("firmware", fmt::format("functions {:02}", tracks_.size() + 1),
+                                  PerfettoFile::Events::kMany));
   std::string& name = names_[s.function];
   if (name.empty()) name = name_(s.function);
   file_.slice(tracks_[s.depth], name, begin, end);

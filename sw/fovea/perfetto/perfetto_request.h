@@ -18,7 +18,7 @@ struct PerfettoRequest {
   /// displayed frame that was dropped before, repeated, or had an underflow: the file then holds what led
   /// there.
   std::string trigger = "";
-  std::uint64_t megabytes = 64;     ///< of the newest events that are kept
+  std::uint64_t megabytes = 64;     ///< of events that are kept: the first ones, with a trigger the newest
 };
 
 }  // namespace fovea::app

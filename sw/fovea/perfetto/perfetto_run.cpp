@@ -42,7 +42,9 @@ PerfettoRun::PerfettoRun(const PerfettoRequest& request, board::Board& board)
     : request_(request), board_(board) {
   std::optional<Picoseconds> from;
   if (request.from != "window") from = parse_time("--perfetto-from", request.from);
-  file_ = std::make_unique<PerfettoFile>(request.file, request.megabytes << 20, matcher(request.tracks));
+  file_ = std::make_unique<PerfettoFile>(
+      request.file, request.megabytes << 20,
+      request.trigger.empty() ? PerfettoFile::Keep::kOldest : PerfettoFile::Keep::kNewest, matcher(request.tracks));
   capture_ = file_->track("frames", "1 capture");
   remap_ = file_->track("frames", "2 remap");
   display_ = file_->track("frames", "3 display");
@@ -264,9 +266,14 @@ std::string PerfettoRun::finish() {
   file_->finish();
   if (!over_) return "the Perfetto trace is empty: the recording never began (--perfetto-from)";
   if (!file_->dropped()) return "";
-  return fmt::format(
-      "the Perfetto trace lacks {} older packets, up to {:.6f} s: --perfetto-size keeps the newest {} MiB",
-      file_->dropped(), static_cast<double>(file_->dropped_until()) * 1e-12, request_.megabytes);
+  const double at = static_cast<double>(file_->dropped_at()) * 1e-12;
+  const std::string lacks =
+      request_.trigger.empty()
+          ? fmt::format("requests, transfers and functions from {:.6f} s on ({} packets)", at, file_->dropped())
+          : fmt::format("{} older packets, up to {:.6f} s", file_->dropped(), at);
+  return fmt::format("the Perfetto trace lacks {}; about --perfetto-size {} holds all, --perfetto-for 100ms a part, "
+                     "and --perfetto-tracks '^frames/|^firmware/phases|^interrupts/' is small",
+                     lacks, (file_->bytes_wanted() >> 20) + 1);
 }
 
 }  // namespace fovea::app

@@ -91,6 +91,7 @@ void read_stats(Results& out, const fs::path& file) {
   const Json stats = read_object(file);
   out.complete = flag(stats, "complete", true);
   out.ended_by = text(stats, "ended_by");
+  out.kernel = text(stats, "kernel");
   out.stats = read_figures(stats);
   if (const auto list = stats.find("warnings"); list != stats.end() && list->is_array())
     for (const Json& w : *list) {
@@ -111,6 +112,7 @@ void read_host(Results& out, const fs::path& file) {
 }
 
 std::vector<app::FrameRow> read_frames(const fs::path& file) {
+  // What follows is computed from these.
   static constexpr std::array<std::string_view, 11> kColumns{
       "frame",          "camera",         "captured_frame", "capture_start_ns",
       "capture_end_ns", "remap_start_ns", "remap_end_ns",   "display_start_ns",

@@ -40,7 +40,7 @@ struct Timeline {
 struct Results {
   std::filesystem::path folder;
   std::string name;  ///< as a reader of the report knows it
-  std::string command, version, commit, experiment, ended_by;
+  std::string command, version, commit, experiment, ended_by, kernel;
   bool modified = false, complete = true;
   std::vector<std::string> arguments;                       ///< of the command, from host.json
   std::vector<std::pair<std::string, std::string>> hashes;  ///< SHA-256 by key; empty: not known

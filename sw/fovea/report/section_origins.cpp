@@ -78,6 +78,7 @@ std::string origin_table(const Results& run) {
   table.row({"Experiment", escaped(run.experiment)});
   if (!run.arguments.empty()) table.row({"Command", code(command_text(run))});
   table.row({"Simulator", escaped(simulator_text(run))});
+  if (!run.kernel.empty()) table.row({"Remap kernel", code(run.kernel)});
   if (!run.ended_by.empty()) table.row({"Ended by", code(run.ended_by)});
   for (const auto& [key, hash] : run.hashes)
     table.row({fmt::format("SHA-256 of {}", code(key)), hash.empty() ? "not known" : code(hash)});
