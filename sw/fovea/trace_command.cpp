@@ -327,7 +327,9 @@ class Conversion {
                       [&](unsigned, const trace::Record& r, Picoseconds at) { add(r, at, at); });
     writer.end();
     if (!census.timed)
-      say(fmt::format("{} has times only: requests that wait for others have the times of a replay",
+      say(
+          fmt::format("{} has times only: which request waits for which other one is lost; the times are those of a "
+                      "replay with the recorded settings",
                       name_of(to_)));
     const bool plain = census.plain && (same_windows || !is_text);
     if (!plain)

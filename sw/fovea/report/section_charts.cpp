@@ -1,5 +1,6 @@
 // Sections that consist of charts and the tables below them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -7,6 +8,7 @@
 #include <map>
 
 #include "sw/fovea/explain/words.h"
+#include "sw/fovea/report/chart_data.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
@@ -88,6 +90,34 @@ std::string latency_table(const Results& run) {
       table.row(cells);
     }
   return table.empty() ? "" : table.html();
+}
+
+/// "bridge 24.7 ns, behind edma_tc2 49.4 ns, ...", step by step.
+std::string steps_text(const app::SlowestRow& row) {
+  std::vector<std::string> out;
+  for (const auto& s : row.steps)
+    out.push_back(fmt::format("{} {} {:.1f}", s.place, s.culprit, static_cast<double>(s.to - s.from) * 1e-3));
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+std::string slowest_table(const Results& run) {
+  Table table(
+      "The slowest request of each master and direction: reads to their first beat, writes to their acknowledgement",
+      {"Master", "Requests", "#us", "#At (ms since power-up)", "Row", "Address",
+       "Where, for whom, and how many ns, step by step"});
+  for (const auto& r : *run.slowest)
+    table.row({escaped(r.master), escaped(r.direction),
+               fmt::format("<data value=\"{}\">{:.3f}</data>", app::number_text(static_cast<double>(r.latency) * 1e-12),
+                           static_cast<double>(r.latency) * 1e-6),
+               fmt::format("{}.{:06}", r.issued / kPsPerMs, r.issued % kPsPerMs / kPsPerNs), escaped(r.row_state),
+               fmt::format("<code>0x{:08x}</code>", r.address), escaped(steps_text(r))});
+  if (table.empty()) return absent("No master made a request to the SDRAM.");
+  const auto each = app::slowest_of_each(*run.slowest);
+  const std::string command = around_command_of(run, each.front());
+  return table.html() + (command.empty() ? ""
+                                         : fmt::format("<p class=\"note\">The requests around the slowest one, seen "
+                                                       "again: <code>{}</code> writes them to requests.csv.</p>",
+                                                       escaped(command)));
 }
 
 std::string stalls_table(const Results& run) {
@@ -194,6 +224,15 @@ std::string function_table(const Runs& runs) {
 
 }  // namespace
 
+std::string slowest_sentence(const app::SlowestRow& row) {
+  const std::string who = explain::master(row.master);
+  std::vector<std::string> parts;
+  for (const auto& [culprit, time] : app::slowest_parts(row))
+    parts.push_back(fmt::format("{:.3f} us {}", static_cast<double>(time) * 1e-6, explain::spent_by_port(culprit)));
+  return fmt::format("Slowest {} of {}{}: {}: {}.", row.direction, row.master, who.empty() ? "" : " (" + who + ")",
+                     app::slowest_when(row), fmt::join(parts, ", "));
+}
+
 std::string frames_section(const Runs& runs) {
   return panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
@@ -206,8 +245,8 @@ std::string frames_section(const Runs& runs) {
     if (run.frames->size() > 1)
       out +=
           chart("frame-times", i,
-                "Time of the remap, and from the first captured to the first displayed sample, of "
-                "each displayed frame.");
+                "Time of the remap (above), and from the first captured to the first displayed sample (below), of each "
+                "displayed frame. Each has its own axis, which does not begin at zero.");
     return out;
   });
 }
@@ -226,9 +265,13 @@ std::string bandwidth_section(const Runs& runs) {
           "bandwidth-detail", i,
           "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
           "displayed; masters are stacked.");
-    out += chart("bandwidth-whole", i,
-                 "Bandwidth to and from the SDRAM from the beginning to the end of the results; "
-                 "masters are stacked.");
+    out += chart(
+        "bandwidth-whole", i,
+        run.frames && frame_period(*run.frames)
+            ? "Bandwidth to and from the SDRAM from the beginning to the end of the results: the mean of each "
+              "frame period, or of several where there are many, so that equal frames look equal; masters are "
+              "stacked."
+            : "Bandwidth to and from the SDRAM from the beginning to the end of the results; masters are stacked.");
     return out + bandwidth_table(run);
   });
 }
@@ -243,7 +286,9 @@ std::string latency_section(const Runs& runs) {
               "Latency of each master's reads to their first beat and writes to their last: "
               "from the median to the 99th percentile as a bar, with the mean and the "
               "largest as marks.") +
-        table;
+        table +
+        (run.slowest ? slowest_table(run)
+                     : absent("The folder has no slowest.csv: what the slowest requests waited for is not known."));
     return out +
            (run.latency && !run.latency->empty()
                 ? chart(
