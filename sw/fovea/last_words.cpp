@@ -212,7 +212,11 @@ std::string slowest_lines(std::span<const SlowestRow> rows) {
         fmt::format("{:{}}{} of {}: {}", i == 0 ? "slowest" : "", kLabelWidth, r.direction, r.master, slowest_when(r));
     const char* separator = "; ";
     for (const auto& [culprit, time] : slowest_parts(r)) {
-      const std::string words = culprit == "service" ? "own way" : culprit == "own" ? "queue" : culprit_words(culprit);
+      const bool master = !explain::master(culprit).empty();
+      const std::string words = culprit == "service" ? "own way"
+                                : culprit == "own"   ? "queue"
+                                : master             ? "behind " + culprit
+                                                     : culprit_words(culprit);
       const std::string part = fmt::format("{}{} {:.2f}", separator, words, static_cast<double>(time) * 1e-6);
       if (line.size() + part.size() > kLine) break;
       line += part;

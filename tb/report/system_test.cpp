@@ -1,4 +1,6 @@
 // What the page says of the system that ran, of several runs of one name, and of the slowest requests.
+#include <fmt/format.h>
+
 #include "sw/fovea/explain/command.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
@@ -116,12 +118,29 @@ TEST(SystemTest, TheSlowestRequestsHaveTheirStepsAndACommand) {
   const std::string page = report_page({results}), text = report_text({results});
   EXPECT_THAT(
       text,
-      HasSubstr("Slowest read of arm_d (the core's data): 1.250 us at 80.153412 ms: 1.000 us while the display is "
-                "served, 0.225 us on the unhindered way through crossbar and SDRAM controller, 0.025 us in "
-                "its bridge to the crossbar.\n"));
+      HasSubstr(
+          "Slowest read of arm_d (the core's data): 1.250 us at 80.153412 ms: 1.000 us while vpbe (the display) is "
+          "served, 0.225 us on the unhindered way through crossbar and SDRAM controller, 0.025 us in "
+          "its bridge to the crossbar.\n"));
   EXPECT_THAT(text, HasSubstr("Slowest write of vpbe (the display): 0.008 us at 0.001000 ms"));
   EXPECT_THAT(page, HasSubstr("port bridge 24.7, controller vpbe 1000.0, return service 225.3"));
   EXPECT_THAT(page, HasSubstr("fovea run e/hand-made.yaml -s ddr.tRP=20ns --around 80.153412345ms"));
+  // Neighbours of one kind are one; what is longer than a line or two has its sums.
+  std::string rows =
+      "master,direction,port,issued_ns,latency_ns,address,bytes,bank,row,row_state,step,place,culprit,begin_ns,time_"
+      "ns\n";
+  const auto step = [&](int n, const char* culprit) {
+    rows += fmt::format("vpfe,write,vpfe,0.000,99.000,0x80000000,8,0,0,,{},crossbar,{},{}.000,2.500\n", n, culprit, n);
+  };
+  for (int n = 1; n <= 3; ++n) step(n, n == 2 ? "vpbe" : "arm_d");
+  step(4, "arm_d");
+  dir.write("run/slowest.csv", rows);
+  EXPECT_THAT(report_page({load_results(dir / "run", {})}),
+              HasSubstr("<td>crossbar arm_d 2.5, crossbar vpbe 2.5, crossbar arm_d 5.0 (2 times)</td>"));
+  for (int n = 5; n <= 14; ++n) step(n, n % 2 ? "vpbe" : "arm_d");
+  dir.write("run/slowest.csv", rows);
+  EXPECT_THAT(report_page({load_results(dir / "run", {})}),
+              HasSubstr("<td>arm_d 20.0, vpbe 15.0; 14 steps in slowest.csv</td>"));
   dir.write("run/slowest.csv",
             "master,direction,port,issued_ns,latency_ns,address,bytes,bank,row,row_state,step,place,culprit,"
             "begin_ns,time_ns\na,read,a,1.000,1.000,12,8,0,0,,1,port,bridge,1.000,1.000\n");
