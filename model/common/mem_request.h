@@ -16,6 +16,7 @@ inline constexpr unsigned kMaxBurstBytes = 64;
 struct PathState {
   std::uint8_t priority = 0;    ///< 0 highest ... 7 lowest; as of the grant
   std::uint8_t slave = 0;       ///< bus::Slave
+  std::uint8_t unblocked_by = 0;  ///< Master whose request made room, if it waited at the slave's input
   Picoseconds accepted_at = 0;  ///< when the slave accepted it
 };
 

@@ -16,6 +16,7 @@ MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrPa
       store_(ddr.size_bytes()),
       crossbar_(crossbar),
       controller_(ddr, store_) {
+  crossbar_.set_teller(*this);
   if (route != Route::kBypass) return;
   bypass_.emplace(crossbar.timeline_interval());
   controller_.leave_out_return_channel();
@@ -180,9 +181,16 @@ inline void MemorySystem::handle_read(const mem::DdrController::ReadOutcome& rea
   if (bypass_) [[unlikely]]
     return respond_directly(*read.request, read.first, read.last);
   Link link{*this};
+  read_ = &read;
   crossbar_.slave_done(link, *read.request, {read.first, read.last, read.attributed, false});
+  read_ = nullptr;
   if (!refused_.empty()) [[unlikely]]
     refuse_after(read.request, read.last);
+}
+
+void MemorySystem::tell(SlowRequest& s) const {
+  controller_.tell_place(s.address - map_.ddr_base, s);
+  if (read_) controller_.tell_waits(read_->column, s);
 }
 
 void MemorySystem::handle_acceptance(const mem::DdrController::Acceptance& accepted) {
@@ -215,7 +223,7 @@ void MemorySystem::respond_directly(MemRequest& r, Picoseconds first, Picosecond
   count_decided();
   r.first = first;
   r.last = last;
-  crossbar_.count_latency(r, first);
+  if (crossbar_.count_latency(r, first)) crossbar_.note_slowest(r);
   host_.completed(r);
 }
 

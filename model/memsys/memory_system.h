@@ -36,7 +36,7 @@ enum class Route {
 
 /// A passive state machine: it has events (arbitrations, DRAM commands) at times of its own, and takes
 /// them when a user advances it to a time before which that user knows all requests.
-class MemorySystem final {
+class MemorySystem final : private SlowRequestTeller {
  public:
   MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr, const AddressMap& map,
                MemoryHost& host, Route route = Route::kCrossbar);
@@ -146,6 +146,7 @@ class MemorySystem final {
   void send_directly(MemRequest& r, Picoseconds at);
   void send_waiting();
   void respond_directly(MemRequest& r, Picoseconds first, Picoseconds last);
+  void tell(SlowRequest& s) const override;
   void handle_news();
   void handle_read(const mem::DdrController::ReadOutcome& read);
   void handle_acceptance(const mem::DdrController::Acceptance& accepted);
@@ -171,6 +172,7 @@ class MemorySystem final {
     Picoseconds at;
   };
   std::vector<Refused> refused_;
+  const mem::DdrController::ReadOutcome* read_ = nullptr;  // whose outcome is being handled
   std::uint64_t host_calls_ = 0;
   unsigned undecided_ = 0;
   Picoseconds event_time_ = 0, last_command_ = 0, present_ = 0;

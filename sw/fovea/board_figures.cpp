@@ -72,8 +72,11 @@ void BoardFigures::close_window() {
   direct_ = soc.scr.memory().decided_ahead() - direct_at_open_;
   queued_ = soc.scr.memory().decided_at_present() - queued_at_open_;
   board_.platform.each_statistics([this](const StatGroup& group) { app::collect(group, stats_); });
-  for (std::size_t i = 0; i < kStatCount; ++i)
-    add_latency_rows(latency_, std::string(kStatNames[i]), *soc.scr.latency[i]);
+  for (std::size_t i = 0; i < kStatCount; ++i) {
+    const std::string name(kStatNames[i]);
+    add_latency_rows(latency_, name, *soc.scr.latency[i]);
+    add_slowest_rows(slowest_, name, *soc.scr.latency[i], [](Master m) { return std::string(stat_name(m)); });
+  }
   // The SDRAM's data bus: clocks with data over clocks of the window.
   const auto from = board_.window_start(), to = board_.window_end();
   if (from && to && *to > *from) {
@@ -181,6 +184,7 @@ cpu::Counts BoardFigures::collect(RunResult& result) {
   add_frame_stats(stats_);
   result.stats = std::move(stats_);
   result.latency = std::move(latency_);
+  result.slowest = std::move(slowest_);
   result.timeline_masters = timeline_masters();
   // Only whole intervals before the window's end: how far the path has decided beyond it depends on
   // who played it.

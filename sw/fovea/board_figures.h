@@ -50,6 +50,7 @@ class BoardFigures {
   RemapTime remaps_;
   std::vector<StatRow> stats_;
   std::vector<LatencyRow> latency_;
+  std::vector<SlowestRow> slowest_;
   Wall::time_point window_wall_ = Wall::now();
   double window_wall_s_ = 0;
   HostInstructions host_instructions_;

@@ -127,6 +127,8 @@ class BoardSimulation : public Simulation {
   Symbols symbols_;
   std::unique_ptr<BusTraceRun> trace_;
   std::unique_ptr<CommandTrace> commands_;
+  std::unique_ptr<RequestsAround> around_;
+  Subscription observing_;
   std::unique_ptr<PerfettoRun> perfetto_;
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
@@ -313,6 +315,10 @@ void BoardSimulation::open_outputs(const CameraInputs& cameras, const RunRequest
   if (!request.bus_trace.empty())
     trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
   if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
+  if (request.around) {
+    around_ = std::make_unique<RequestsAround>(*request.around, [](Master m) { return std::string(stat_name(m)); });
+    observing_ = board_->dm365.scr.crossbar().observe(*around_);
+  }
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
   if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
   mosaic_score_ = MosaicScore::of(params_);
@@ -484,6 +490,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
   if (s.semihosting) result.exit_code = s.semihosting->exit_code();
   if (trace_) trace_->finish();
   if (commands_) commands_->finish();
+  if (around_) result.around = around_->csv();
   if (perfetto_)
     if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
   result.guest_failure = s.guest;

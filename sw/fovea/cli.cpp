@@ -126,6 +126,15 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
   command.add_option("-s,--set", sets, kSet)->type_name("KEY=VALUE")->allow_extra_args(false);
 }
 
+void add_around_option(CLI::App& command, std::string& time) {
+  command
+      .add_option("--around", time,
+                  "List all requests to the SDRAM within 2 us of this time (\"80.153412ms\", as slowest.csv has it) in "
+                  "requests.csv")
+      ->type_name("TIME")
+      ->check(CLI::Validator([](const std::string& s) { return s.empty() ? "a time is needed" : std::string(); }, ""));
+}
+
 void add_command_trace_option(CLI::App& command, std::string& file) {
   command
       .add_option("--command-trace", file,
@@ -162,6 +171,7 @@ void add_run_command(CLI::App& app, RunOptions& run) {
                 "the keys waves.* choose which part")
       ->type_name("FILE");
   add_command_trace_option(*c, run.command_trace);
+  add_around_option(*c, run.around);
   add_perfetto_options(*c, run.perfetto);
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
@@ -183,6 +193,7 @@ void add_replay_command(CLI::App& app, ReplayOptions& replay) {
       ->type_name("DIR")
       ->default_str("out/TRACE");
   add_command_trace_option(*c, replay.command_trace);
+  add_around_option(*c, replay.around);
   c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
   c->add_flag("--wrap", replay.wrap,
               "Take addresses beyond the memory (ddr.part) modulo its size");

@@ -14,6 +14,7 @@
 #include "sw/fovea/command_trace.h"
 #include "sw/fovea/effective.h"
 #include "sw/fovea/experiment.h"
+#include "sw/fovea/explain/command.h"
 #include "sw/fovea/gdb_server.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/last_words.h"
@@ -37,6 +38,8 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   meter.add_host_rows(host);
   dir.write("stalls.csv", stalls_csv(result.stalls));
   dir.write("latency.csv", latency_csv(result.latency));
+  dir.write("slowest.csv", slowest_csv(result.slowest));
+  if (!result.around.empty()) dir.write("requests.csv", result.around);
   for (const ResultFile& f : result.profile.files) dir.write(f.name, f.text);
   dir.write("uart.log", result.uart);
   if (!result.typed.empty()) dir.write("uart0.input", result.typed);
@@ -141,7 +144,9 @@ class PictureFiles {
 /// What is said at the end of a run.
 void report_run(const RunOptions& options, const RunResult& result, const std::vector<StatRow>& host,
                 const RunDir& dir, std::ostream& report) {
-  report << run_words(result.stats, host);
+  report << run_words(result.stats, host, result.slowest);
+  if (find(result.stats, "frame.remap_time.mean"))
+    report << fmt::format("what binds: {}\n", explain::binds_command(options.experiment, options.sets));
   report << result.profile.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
@@ -210,6 +215,7 @@ void take_options(RunRequest& request, const RunOptions& options, const CliConte
   request.command_trace = options.command_trace;
   request.bus_trace = options.bus_trace;
   request.registers = options.registers;
+  if (!options.around.empty()) request.around = parse_time("--around", options.around);
   if (options.gdb.empty()) return;
   request.gdb_port = parse_gdb_port(options.gdb);
   request.notes = &context.err;

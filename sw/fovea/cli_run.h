@@ -18,7 +18,7 @@ struct RunOptions {
   bool strict = false, hazards = false, profile = false;
   bool no_frames = false;
   bool mp4 = false;
-  std::string bus_trace, command_trace, waves;
+  std::string bus_trace, command_trace, waves, around;
   std::string gdb;
   RegisterLogRequest registers;
   PerfettoOptions perfetto;

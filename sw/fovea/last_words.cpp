@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/cli_help.h"
@@ -148,23 +149,23 @@ std::string master_words(std::string_view name) {
 }
 
 std::string culprit_words(const std::string& name) {
-  static const std::map<std::string, std::string> kWords = {
-      {"bridge", "bridges"},
-      {"service", "own way through crossbar and SDRAM"},
-      {"row_miss", "opening rows"},
-      {"row_conflict", "closing other rows"},
-      {"turnaround", "turning the data bus"},
-      {"refresh", "refresh"},
-      {"power_down", "waking the SDRAM"},
-      {"own", "behind their own requests"}};
+  static const std::map<std::string, std::string> kWords = {{"bridge", "bridges"},
+                                                            {"service", "own way through crossbar and SDRAM"},
+                                                            {"not_known", "not known"},
+                                                            {"row_miss", "closed banks"},
+                                                            {"row_conflict", "row conflicts"},
+                                                            {"turnaround", "turning the data bus"},
+                                                            {"refresh", "refresh"},
+                                                            {"power_down", "waking the SDRAM"},
+                                                            {"own", "queued behind the same master"}};
   const auto found = kWords.find(name);
   if (found != kWords.end()) return found->second;
   const std::string who = master_words(name);
   return "behind " + (who.empty() ? name : who);
 }
 
-/// The masters and directions that waited longest for the SDRAM, each with its largest parts.
-std::string wait_lines(std::span<const StatRow> stats) {
+/// The master and direction whose requests took longest at the SDRAM, all together, with the largest parts.
+std::string wait_line(std::span<const StatRow> stats) {
   struct Group {
     std::string who;
     double total = 0;
@@ -182,28 +183,62 @@ std::string wait_lines(std::span<const StatRow> stats) {
     const std::string master = row.name.substr(4, at - 4);
     Group& g = groups[master + " " + direction];
     const std::string words = master_words(master);
-    g.who = fmt::format("{}'s {}s{}", master, direction, words.empty() ? "" : " (" + words + ")");
+    g.who = fmt::format("all {}s of {}{}", direction, master, words.empty() ? "" : " (" + words + ")");
     g.total += *t;
     g.parts.emplace_back(*t, culprit_words(rest.substr(rest.find('.') + 1)));
   }
-  std::vector<Group> sorted;
-  for (auto& [key, g] : groups) sorted.push_back(std::move(g));
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Group& a, const Group& b) { return a.total > b.total; });
-  constexpr std::size_t kMasters = 3, kParts = 3;
+  const auto most = std::max_element(groups.begin(), groups.end(),
+                                     [](const auto& a, const auto& b) { return a.second.total < b.second.total; });
+  if (most == groups.end()) return "";
+  Group& g = most->second;
+  std::stable_sort(g.parts.begin(), g.parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  constexpr std::size_t kParts = 3;
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
+    if (const double percent = 100 * g.parts[k].first / g.total; percent >= 0.5)  // as shown not zero
+      parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, percent));
+  return paragraph("waits", fmt::format("{} take {} together: {}", g.who, unbroken(human_text(g.total, "s")),
+                                        fmt::join(parts, ", ")));
+}
+
+/// A line for each master: its slowest request, and as many of its parts as find room.
+std::string slowest_lines(std::span<const SlowestRow> rows) {
+  constexpr std::size_t kMasters = 5, kLine = 80;
   std::string out;
-  for (std::size_t i = 0; i < std::min(kMasters, sorted.size()); ++i) {
-    Group& g = sorted[i];
-    std::stable_sort(g.parts.begin(), g.parts.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<std::string> parts;
-    for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
-      if (const double percent = 100 * g.parts[k].first / g.total; percent >= 0.5)  // as shown not zero
-        parts.push_back(fmt::format("{} {:.0f}\x1f%", g.parts[k].second, percent));
-    out += paragraph(i == 0 ? "waits" : "", fmt::format("{}, {} in all: {}", g.who, unbroken(human_text(g.total, "s")),
-                                                        fmt::join(parts, ", ")));
+  const auto each = slowest_of_each(rows);
+  for (std::size_t i = 0; i < std::min(kMasters, each.size()); ++i) {
+    const SlowestRow& r = each[i];
+    std::string line =
+        fmt::format("{:{}}{} of {}: {}", i == 0 ? "slowest" : "", kLabelWidth, r.direction, r.master, slowest_when(r));
+    const char* separator = "; ";
+    for (const auto& [culprit, time] : slowest_parts(r)) {
+      const bool master = !explain::master(culprit).empty();
+      const std::string words = culprit == "service" ? "own way"
+                                : culprit == "own"   ? "queue"
+                                : master             ? "behind " + culprit
+                                                     : culprit_words(culprit);
+      const std::string part = fmt::format("{}{} {:.2f}", separator, words, static_cast<double>(time) * 1e-6);
+      if (line.size() + part.size() > kLine) break;
+      line += part;
+      separator = ", ";
+    }
+    out += line + "\n";
   }
   return out;
+}
+
+/// How near the displayed pictures are to ideal ones, where they are compared.
+std::string quality_line(std::span<const StatRow> stats) {
+  std::vector<std::string> parts;
+  for (const auto& [name, what, digits, unit] :
+       {std::tuple("psnr_y", "PSNR", 1,
+                   "\x1f"
+                   "dB"),
+        std::tuple("ssim_y", "SSIM", 3, ""), std::tuple("straightness", "straight lines bend by", 2, "\x1fpixels"),
+        std::tuple("line_error", "lines are off by", 2, "\x1fpixels")})
+    if (const auto v = real(stats, std::string("quality.") + name))
+      parts.push_back(fmt::format("{} {:.{}f}{}", what, *v, digits, unit));
+  return parts.empty() ? "" : paragraph("quality", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
 /// "SDRAM busy 17.2 % ...". `seconds`: of the figures.
@@ -217,8 +252,9 @@ std::string sdram_line(std::span<const StatRow> stats, std::optional<double> sec
     for (const auto& [name, what] : {std::pair("ddr.read_bytes", "reads"), std::pair("ddr.write_bytes", "writes")})
       if (const std::uint64_t bytes = count(stats, name))
         parts.push_back(fmt::format("{} {:.1f}\x1fMB/s", what, static_cast<double>(bytes) / *seconds * 1e-6));
-  if (const auto hits = real(stats, "ddr.command_hit_rate"))
-    parts.push_back(fmt::format("{:.1f}\x1f% of the column commands needed no new row", 100 * *hits));
+  const std::uint64_t hits = count(stats, "ddr.row_hits");
+  if (const std::uint64_t all = hits + count(stats, "ddr.row_misses") + count(stats, "ddr.row_conflicts"))
+    parts.push_back(fmt::format("row hits {:.1f}\x1f%", 100 * static_cast<double>(hits) / static_cast<double>(all)));
   if (parts.empty()) return "";
   return paragraph("SDRAM", fmt::format("{}", fmt::join(parts, ", ")));
 }
@@ -314,12 +350,15 @@ std::string frame_budget(std::span<const StatRow> stats) {
   return out + paragraph("", fmt::format("remap {}.{} ms: {}", parts[0] / 10, parts[0] % 10, inside));
 }
 
-std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host) {
-  return verdict(stats) + frame_budget(stats) + frame_lines(stats) + camera_lines(stats) + core_line(stats) +
-         sdram_line(stats, real(stats, "frame.window")) + wait_lines(stats) + host_line(host);
+std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host,
+                      std::span<const SlowestRow> slowest) {
+  return verdict(stats) + frame_budget(stats) + frame_lines(stats) + camera_lines(stats) + quality_line(stats) +
+         core_line(stats) + sdram_line(stats, real(stats, "frame.window")) + wait_line(stats) + slowest_lines(slowest) +
+         host_line(host);
 }
 
-std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host) {
+std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host,
+                         std::span<const SlowestRow> slowest) {
   std::string out;
   if (const auto time = real(stats, "replay.time")) {
     out = fmt::format("replayed {} requests in {} of simulated time", count(stats, "replay.requests"),
@@ -328,8 +367,8 @@ std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow
       out += fmt::format(", {:.1f} MB/s", *rate * 1e-6);
     out = wrapped(out, 0) + "\n";
   }
-  return out + frame_lines(stats) + sdram_line(stats, real(stats, "replay.time")) + wait_lines(stats) +
-         host_line(host);
+  return out + frame_lines(stats) + sdram_line(stats, real(stats, "replay.time")) + wait_line(stats) +
+         slowest_lines(slowest) + host_line(host);
 }
 
 std::string exec_words(std::span<const StatRow> stats, Frequency core_clock) {

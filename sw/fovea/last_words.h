@@ -7,14 +7,17 @@
 
 #include "model/common/units.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/slowest.h"
 
 namespace fovea::app {
 
 /// `fovea run`: the verdict, the frame's budget, the largest waits, the SDRAM and the host. What has no
 /// figure is left out. Ends with a line end, as the others do.
-std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host);
+std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host,
+                      std::span<const SlowestRow> slowest = {});
 /// `fovea replay`.
-std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host);
+std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host,
+                         std::span<const SlowestRow> slowest = {});
 /// `fovea exec`: the core alone. @param core_clock stopped: unknown
 std::string exec_words(std::span<const StatRow> stats, Frequency core_clock);
 

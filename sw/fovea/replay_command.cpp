@@ -1,9 +1,10 @@
 #include "sw/fovea/replay_command.h"
 
-#include <algorithm>
-#include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
 #include <future>
 #include <ostream>
 #include <set>
@@ -15,10 +16,11 @@
 #include "sw/fovea/figures.h"
 #include "sw/fovea/last_words.h"
 #include "sw/fovea/open_trace.h"
-#include "sw/fovea/warnings.h"
 #include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/run_until.h"
+#include "sw/fovea/warnings.h"
 
 namespace fovea::app {
 namespace {
@@ -153,6 +155,12 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
   if (commands) commands->begin(path.controller(), path.start());
+  std::optional<RequestsAround> around;
+  Subscription observing;
+  if (!options.around.empty()) {
+    around.emplace(parse_time("--around", options.around), [&path](Master m) { return path.label(m); });
+    observing = path.observe(*around);
+  }
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
   if (commands) commands->finish();
@@ -170,8 +178,11 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.write("latency.csv", latency_csv(path.latency_rows()));
+  const std::vector<SlowestRow> slowest = path.slowest_rows();
+  dir.write("slowest.csv", slowest_csv(slowest));
+  if (around) dir.write("requests.csv", around->csv());
   say_note(dir.commit(complete), context);
-  context.out << replay_words(stats, host);
+  context.out << replay_words(stats, host, slowest);
   context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
   if (complete) return kExitDone;
   const int signal = context.signal ? context.signal->load() : 0;

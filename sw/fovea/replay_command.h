@@ -14,6 +14,7 @@ struct ReplayOptions {
   bool out_given = false;
   bool memory_only = false;
   std::string command_trace;  ///< file; empty: none
+  std::string around;         ///< a time, for requests.csv; empty: none
   bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
   std::vector<std::string> without;  ///< labels of masters whose requests are left out
 };

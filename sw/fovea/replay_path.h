@@ -13,6 +13,7 @@
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/replay_pipe.h"
+#include "sw/fovea/slowest.h"
 
 namespace fovea::app {
 
@@ -53,6 +54,10 @@ class ReplayPath final : private memsys::MemoryHost {
   mem::DdrController& controller() { return memory_.controller(); }
   /// Rows of latency.csv, of all labels.
   std::vector<LatencyRow> latency_rows() const;
+  /// Rows of slowest.csv, of all labels.
+  std::vector<SlowestRow> slowest_rows() const;
+  /// What the figures call a port; empty for one that the trace does not name.
+  const std::string& label(Master m) const { return masters_[index(m)].label; }
   Picoseconds start() const { return start_; }
   const mem::DdrStats& memory() const { return ddr().stats; }
   /// Called with each record as it goes out; empty in a plain replay.

@@ -82,6 +82,17 @@ std::vector<LatencyRow> ReplayPath::latency_rows() const {
   return rows;
 }
 
+std::vector<SlowestRow> ReplayPath::slowest_rows() const {
+  std::vector<SlowestRow> rows;
+  for (const std::string& label : labels())
+    for (const MasterState& m : masters_)
+      if (m.label == label) {
+        add_slowest_rows(rows, label, *m.latency, [this](Master of) { return masters_[index(of)].label; });
+        break;
+      }
+  return rows;
+}
+
 std::vector<TimelineRow> ReplayPath::timeline() const {
   const std::vector<std::string> names = labels();
   const bus::Timeline& from = memory_.timeline();

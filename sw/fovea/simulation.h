@@ -21,6 +21,7 @@
 #include "sw/fovea/rgb_image.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
+#include "sw/fovea/slowest.h"
 
 namespace fovea::app {
 
@@ -61,6 +62,7 @@ struct RunRequest {
   std::function<void(const DisplayedFrame&)> camera = {};
   PerfettoRequest perfetto = {};
   std::filesystem::path command_trace = {};  ///< file for the SDRAM's commands in the window; empty: none
+  std::optional<Picoseconds> around = {};    ///< --around: list the SDRAM requests near this time; empty: do not
   std::filesystem::path bus_trace = {};  ///< file for the bus trace of the window; empty: none
   /// Port on which to wait for a debugger before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
@@ -87,6 +89,8 @@ struct RunResult {
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
   std::vector<LatencyRow> latency;
+  std::vector<SlowestRow> slowest;
+  std::string around;  ///< for requests.csv; empty: not asked for
   std::string uart;  ///< everything that the firmware printed
   std::vector<std::string> notes;  ///< sentences for the user, shown below the figures
   std::string ended_by;      ///< the condition of run.until that was met; empty: none

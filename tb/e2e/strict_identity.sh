@@ -9,7 +9,7 @@ shift 3
 mkdir -p "$out"
 "$fovea" run "$experiment" -s run.frames=3 -s ddr.check=commands "$@" -o "$out/default" >/dev/null 2>&1
 "$fovea" run "$experiment" -s run.frames=3 -s ddr.check=commands "$@" --sync=strict -o "$out/strict" >/dev/null 2>&1
-for f in stats.json frames.csv timeline.csv stalls.csv latency.csv uart.log; do
+for f in stats.json frames.csv timeline.csv stalls.csv latency.csv slowest.csv uart.log; do
   cmp "$out/default/$f" "$out/strict/$f"
 done
 diff -r "$out/default/frames" "$out/strict/frames"

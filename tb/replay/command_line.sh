@@ -94,6 +94,15 @@ head -1 "$out/replay/latency.csv" | grep -qx 'master,direction,beat,low_ns,high_
 beats=$(awk -F, 'NR > 1 { n[$3] += $6 } END { print n["first"], n["last"] }' "$out/replay/latency.csv")
 n=$(figure "$out/replay" replay.requests)
 [ "$beats" = "$n $n" ] || fail "latency.csv has $beats beats of $n requests"
+# The slowest read of a label, seen again: the replay is the same, and lists it once.
+slow=$(awk -F, '$2 == "read" { print $1 " " $4 " " $5; exit }' "$out/replay/slowest.csv")
+cp "$out/replay/stats.json" "$out/before.json"
+expect around 0 -- replay "$trace" --around "$(awk '{ printf "%sns", $2 }' <<<"$slow")"
+cmp "$out/before.json" "$out/replay/stats.json" || fail '--around changes a replay'
+awk -F, -v slow="$slow" '
+  { end = $2 == "read" ? $7 : $8; if ($1 " " $6 " " sprintf("%.3f", end - $6) == slow && $2 == "read") ++n }
+  END { exit n != 1 }' "$out/replay/requests.csv" || fail "requests.csv does not have '$slow' once"
+expect around_what 2 "--around 'soon'" -- replay "$trace" --around soon
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
 cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
 expect memory_only 0 -- replay "$trace" --memory-only

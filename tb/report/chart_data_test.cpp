@@ -52,7 +52,8 @@ TEST(FramesTest, TheDetailedViewIsOfTheFirstFrames) {
   dir.write("run/frames.csv", frames);
   dir.write("run/timeline.csv", timeline);
   const auto data = chart_data(load_results(dir / "run", {}), "")["timeline"];
-  EXPECT_EQ(data["whole"]["edges_ms"].size(), 11u);
+  // Of whole frames: their displays begin at 4 and 6 ms.
+  EXPECT_EQ(json(data["whole"]["edges_ms"]), json::parse("[0.0, 2.0, 4.0, 6.0, 8.0, 10.0]"));
   EXPECT_EQ(json(data["detail"]["edges_ms"]), json::parse("[2.0, 3.0, 4.0, 5.0, 6.0, 7.0]"));
 }
 
@@ -88,6 +89,70 @@ TEST(BandwidthTest, TakesRowsThatOverlapTheSpan) {
   const auto b = bandwidth(timeline(10), 2 * kPsPerMs, 4 * kPsPerMs, 100);
   EXPECT_THAT(b.edges, ElementsAre(2 * kPsPerMs, 3 * kPsPerMs, 4 * kPsPerMs));
   EXPECT_TRUE(bandwidth(timeline(10), 20 * kPsPerMs, 30 * kPsPerMs, 100).edges.empty());
+}
+
+/// Pulses of 3 ms that begin 5 ms into each frame of `period` us, 1000 bytes a ms, in rows of 1 ms.
+Timeline pulses(std::uint64_t period_us, std::uint64_t rows) {
+  Timeline t{{"a"}, {}};
+  for (std::uint64_t ms = 0; ms < rows; ++ms) {
+    std::uint64_t bytes = 0;
+    for (std::uint64_t us = 0; us < 1000; ++us) bytes += (ms * 1000 + us + period_us - 5000) % period_us < 3000;
+    t.rows.push_back({ms * kPsPerMs, (ms + 1) * kPsPerMs, {bytes}, {0}});
+  }
+  return t;
+}
+
+// 3000 bytes in each frame, whose periods are no whole number of rows: what one row more or less holds is a
+// thirtieth. Intervals of 4 rows differ by all and nothing.
+TEST(BandwidthTest, EqualFramesLookEqual) {
+  constexpr std::uint64_t kFrame = 33'367;
+  const Timeline t = pulses(kFrame, 1000);
+  const Periods p = periods(0, 1000 * kPsPerMs, {kFrame * kPsPerUs, kFrame * kPsPerUs}, 360);
+  EXPECT_EQ(p.frames_each, 1u);
+  const Bandwidth b = mean_bandwidth(t, p);
+  ASSERT_EQ(b.rates[0].size(), 29u);
+  const double mean = 3000 / (kFrame * 1e-6);
+  for (const double rate : b.rates[0]) EXPECT_NEAR(rate, mean, mean / 30);
+  const Bandwidth rows = bandwidth(t, 0, 1000 * kPsPerMs, 250);
+  EXPECT_EQ(*std::min_element(rows.rates[0].begin(), rows.rates[0].end()), 0.0);
+  EXPECT_GT(*std::max_element(rows.rates[0].begin(), rows.rates[0].end()), 5 * mean);
+}
+
+TEST(BandwidthTest, ManyFramesAreJoinedToWholeOnes) {
+  for (const auto& [most, each] : {std::pair{360u, 1u}, {26u, 1u}, {25u, 2u}, {13u, 2u}, {12u, 3u}}) {
+    const Periods p = periods(3, 1000, {123, 40}, most);  // 24 periods fit, 26 may be touched
+    EXPECT_EQ(p.frames_each, each) << most;
+    ASSERT_GT(p.edges.size(), 1u);
+    EXPECT_LE(p.edges.size() - 1, most);
+    EXPECT_GE(p.edges.front(), 3u);
+    EXPECT_LE(p.edges.back(), 1000u);
+    for (std::size_t i = 0; i < p.edges.size(); ++i) {
+      EXPECT_EQ((p.edges[i] + 40 * each - 123 % (40 * each)) % (40 * each), 0u);
+      if (i == 0) continue;
+      EXPECT_EQ(p.edges[i] - p.edges[i - 1], 40 * each);
+    }
+  }
+  EXPECT_EQ(periods(200, 1000, {123, 40}, 100).edges.front(), 203u);
+  EXPECT_TRUE(periods(10, 10, {123, 40}, 100).edges.empty());
+}
+
+TEST(BandwidthTest, ARowInTwoIntervalsIsShared) {
+  Timeline t{{"a"}, {{0, 10, {100}, {0}}, {10, 20, {0}, {50}}}};
+  const Bandwidth b = mean_bandwidth(t, {.edges = {0, 4, 16, 20}});
+  EXPECT_THAT(b.rates[0], ElementsAre(40 / 4e-12, 90 / 12e-12, 20 / 4e-12));
+}
+
+TEST(FramePeriodTest, IsTheMeanFromTheFirstToTheLastDisplay) {
+  std::vector<app::FrameRow> frames(4);
+  EXPECT_FALSE(frame_period(frames));
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].index = 10 + 2 * i;
+  frames[1].display_start = 1000;
+  EXPECT_FALSE(frame_period(frames));
+  frames[3].display_start = 1402;
+  const auto p = frame_period(frames);
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->anchor, 1000u);
+  EXPECT_EQ(p->length, 100u);
 }
 
 TEST(StackTreeTest, SumsChildrenAndJoinsTheSmallest) {

@@ -189,7 +189,7 @@ TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
   EXPECT_EQ(text("largest_wait"),
             "Largest wait: in 50 % of the clocks in which it is awake, the core waits for line "
             "fills of the D-cache "
-            "(48 % of that on the way through crossbar and SDRAM controller, others apart and 40 % "
+            "(48 % of that on the unhindered way through crossbar and SDRAM controller and 40 % "
             "in the bridge "
             "between core and crossbar). By what is accessed: frame_in (48 %) and lut (46 %). It "
             "issues instructions "
@@ -240,78 +240,18 @@ TEST_F(ExplainTest, RowsHaveSharesThatAddUp) {
   EXPECT_EQ(
       text("rows"),
       "80 % of the requests to the SDRAM find their row open, 5.0 % find another row open, 15 % a "
-      "closed bank. The core spends 2.0 % of its awake clocks on that.");
+      "closed bank. Waiting until rows are opened takes 2.0 % of the core's awake clocks.");
 }
 
-TEST_F(ExplainTest, EstimatesAreLabelledAndNeedTheirParameters) {
-  for (const auto& f : explain(inputs())) EXPECT_FALSE(f.estimate) << f.text;
+// What a change would save, only a run with the change shows.
+TEST_F(ExplainTest, NothingIsSaidAboutRunsThatWereNotMade) {
   parameters_ = {{"bus.arm_d.request_latency", "3 cycles"},
                  {"bus.arm_d.response_latency", "5 cycles"},
                  {"clocks.preset", "297/243"}};
-  int estimates = 0;
-  for (const auto& f : explain(inputs())) {
-    EXPECT_EQ(f.estimate, f.text.starts_with("Estimate: ")) << f.text;
-    estimates += f.estimate;
-  }
-  EXPECT_EQ(estimates, 2);
-  // 200 clocks of 53.3 us in the bridge for two frames; 2 of its 8 clocks less.
-  EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 1.33 ms of a remap, 13 %."));
-  // 500 clocks of waiting for memory, a tenth less.
-  EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.33 ms less, 13 %."));
-}
-
-// 100 of the 500 clocks pass within the core, which a faster memory does not shorten.
-TEST_F(ExplainTest, FasterMemoryDoesNotShortenWhatTheCoreItselfTakes) {
-  parameters_ = {{"clocks.preset", "297/243"}};
-  set("cpu.stall.dcache.by.core", std::uint64_t{100});
-  EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.07 ms less, 11 %."));
-}
-
-TEST_F(ExplainTest, NoEstimateForAnotherPresetOrABridgeWithoutDelay) {
-  parameters_ = {{"bus.arm_d.request_latency", "0 cycles"},
-                 {"bus.arm_d.response_latency", "3 cycles"},
-                 {"clocks.preset", "297/270"}};
-  EXPECT_EQ(text("shorter_bridge") + text("faster_memory"), "");
-}
-
-// 200 clocks of 53.3 us in the bridge for two frames, of which a third is saved: 1.78 ms.
-TEST_F(ExplainTest, WhereTheEdmaMovesThePixelsTheCoreSavesOnlyWhileItIsAwake) {
-  parameters_ = {{"bus.arm_d.request_latency", "3 cycles"},
-                 {"bus.arm_d.response_latency", "3 cycles"},
-                 {"clocks.preset", "297/243"}};
-  set("cpu.remap.cycles", std::uint64_t{400});
-  set("cpu.remap.idle", std::uint64_t{300});
-  set("cpu.remap.stall.dcache", std::uint64_t{45});
-  set("bus.edma_tc0.read_bytes", std::uint64_t{39});  // 800 bytes of the core: 5 % are 40
-  EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 1.78 ms of a remap"));
-  EXPECT_THAT(text("faster_memory"), HasSubstr("about 1.33 ms less"));
-  set("bus.edma_tc0.read_bytes", std::uint64_t{40});
-  EXPECT_THAT(text("shorter_bridge"), HasSubstr("would save about 0.44 ms of a remap"));  // a quarter
-  // 300 clocks of sleep and 45 of waiting, a tenth less.
-  EXPECT_THAT(text("faster_memory"), HasSubstr("about 0.92 ms less"));
-  // A core that sleeps all the time, or remaps that are not known.
-  set("cpu.remap.idle", std::uint64_t{400});
-  EXPECT_EQ(text("shorter_bridge"), "");
-  remove("cpu.remap.cycles");
-  EXPECT_EQ(text("shorter_bridge"), "");
-}
-
-TEST_F(ExplainTest, ATableOfHalfTheBytesSavesHalfOfItsLineFills) {
-  stalls_ = {{"dcache", "lut", "service", 60}, {"dcache", "lut", "bridge", 15}, {"dcache", "frame_in", "bridge", 90},
-             {"write_buffer", "lut", "bridge", 500}};
-  // 75 clocks of 53.3 us for two frames, half of them: 1 ms of 10 ms.
-  EXPECT_EQ(text("smaller_table"),
-            "Estimate: a look-up table of half as many bytes would save about 1.00 ms of a remap, 10 %.");
-  // Two percent of a remap are 15 clocks.
-  stalls_ = {{"dcache", "lut", "service", 16}};
-  EXPECT_THAT(text("smaller_table"), HasSubstr("about 0.21 ms of a remap, 2.1 %"));
-  stalls_[0].cycles = 14;
-  EXPECT_EQ(text("smaller_table"), "");
-  stalls_ = {{"dcache", "lut", "service", 60}, {"dcache", "lut", "bridge", 15}};
-  EXPECT_NE(text("smaller_table"), "");
-  stalls_[0].region = "arena";
-  stalls_[1].region = "other";
-  EXPECT_EQ(text("smaller_table"), "");
+  stalls_ = {{"dcache", "lut", "service", 500}};
+  ASSERT_FALSE(explain(inputs()).empty());
+  for (const auto& f : explain(inputs()))
+    EXPECT_THAT(f.text, AllOf(Not(HasSubstr("would save")), Not(HasSubstr("would take")), Not(HasSubstr("Estimate"))));
 }
 
 TEST_F(ExplainTest, UseAloneNeverSaysWhatBinds) {

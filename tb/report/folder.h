@@ -101,6 +101,15 @@ inline void add_other_files(const TempDir& dir, const std::string& name) {
             "master,direction,beat,low_ns,high_ns,count\narm_d,read,first,128,256,7\narm_d,read,"
             "last,128,256,7\n");
   dir.write(
+      name + "/slowest.csv",
+      "master,direction,port,issued_ns,latency_ns,address,bytes,bank,row,row_state,step,place,culprit,begin_ns,time_"
+      "ns\n"
+      "arm_d,read,arm_d,80153412.345,1250.000,0x80123440,32,5,1170,conflict,1,port,bridge,80153412.345,24.700\n"
+      "arm_d,read,arm_d,80153412.345,1250.000,0x80123440,32,5,1170,conflict,2,controller,vpbe,80153437.045,1000.000\n"
+      "arm_d,read,arm_d,80153412.345,1250.000,0x80123440,32,5,1170,conflict,3,return,service,80154437.045,225.300\n"
+      "vpbe,write,vpbe,1000.000,8.000,0x80000000,8,0,0,,1,port,bridge,1000.000,8.000\n");
+  dir.write(name + "/uart.log", "boot\npicture 720x576 in 625/50, table\nkernel: staged, 7 bytes of tables\n");
+  dir.write(
       name + "/profile.csv",
       "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
       "boot,start,start.S,3,issue,,,1000,1000\n"

@@ -61,7 +61,7 @@ class CliTest : public testing::Test {
 TEST_F(CliTest, RunLeavesAllFilesOfTheContract) {
   ASSERT_EQ(run(), 0) << err.str();
   for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
-                           "stalls.csv", "latency.csv", "uart.log", "frames/frame_000000.png",
+                           "stalls.csv", "latency.csv", "slowest.csv", "uart.log", "frames/frame_000000.png",
                            "frames/frame_000003.png", "camera/frame_000001.png", "camera/frame_000003.png"})
     EXPECT_TRUE(fs::is_regular_file(result / name)) << name;
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));

@@ -233,6 +233,7 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
   if (request.in_path.slave == static_cast<std::uint8_t>(Slave::kDdr))
     charge(request, culprit(unblocked_by), taken - request.in_path.accepted_at);
   request.in_path.accepted_at = taken;
+  request.in_path.unblocked_by = static_cast<std::uint8_t>(unblocked_by);
   return s.free;
 }
 
@@ -251,7 +252,8 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
     const unsigned last_word = std::min<unsigned>(r.bytes, 1u << kBusLog2);
     end = std::max(end + p.beats(last_word), begin + p.beats(r.bytes)) - 1;
   }
-  set_outcome(r, scr_.edge(begin), scr_.edge(end));
+  const Picoseconds granted = r.first;
+  const bool slowest = set_outcome(r, scr_.edge(begin), scr_.edge(end));
   const Picoseconds free = begin == seen ? r.first : scr_.edge(seen);
   Waits& w = waits[index(r.master)].read;
   RequestWaits* const parts = r.parts;
@@ -262,6 +264,8 @@ std::uint64_t Crossbar::reopen(MemRequest& request, Picoseconds at, Master unblo
   add(Culprit::kBridge, free - first);
   if (r.first != free) add(culprit(r.master), r.first - free);
   add(Culprit::kService, first - r.in_path.accepted_at - attributed);
+  if (slowest) [[unlikely]]
+    note_slowest(r, granted, first, free);
 }
 
 /// Everything about an outcome but the call that reports it.

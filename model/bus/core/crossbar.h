@@ -68,6 +68,8 @@ class Crossbar {
   void step(Host& host);
 
   bool observed() const { return !observers_.empty(); }
+  /// Who knows what passed at the SDRAM; outlives the crossbar. None: these steps are left out.
+  void set_teller(const SlowRequestTeller& teller) { teller_ = &teller; }
   /// The grant of a request to the SDRAM whose port has not been called, if it comes before the
   /// next one planned: its time is known at once. `at` is kNever if somebody else has a say.
   struct UncontendedGrant {
@@ -121,13 +123,19 @@ class Crossbar {
   WaitTable waits;
   /// Of the requests to the SDRAM, by Master; refused ones included.
   std::array<PortLatencies, kMasterCount> latencies;
-  /// `first`: what counts as the first beat. For requests that do not pass the crossbar.
-  [[gnu::always_inline]] void count_latency(const MemRequest& r, Picoseconds first) {
+  /// `first`: what counts as the first beat.
+  /// @return none of its master and direction was as slow: note_slowest() is to be called
+  [[gnu::always_inline]] bool count_latency(const MemRequest& r, Picoseconds first) {
     PortLatencies& of_port = latencies[index(r.master)];
     BeatLatencies& l = r.write ? of_port.write : of_port.read;
-    l.first.add(first - r.issued);
-    l.last.add(r.last - r.issued);
+    const Picoseconds to_first = first - r.issued, to_last = r.last - r.issued;
+    const bool slowest = r.write ? to_last > l.last.max() : to_first > l.first.max();
+    l.first.add(to_first);
+    l.last.add(to_last);
+    return slowest;
   }
+  /// For requests that do not pass the crossbar.
+  void note_slowest(const MemRequest& r);
 
   /// Snapshot of all queued requests, for debugger commands.
   struct View {
@@ -212,8 +220,7 @@ class Crossbar {
   template <CrossbarHost Host>
   void acknowledge_write(Host& host, MemRequest& request, std::uint64_t edge) {
     const Picoseconds at = scr_.edge(edge + ports_[index(request.master)].response_latency);
-    set_outcome(request, at, at);
-    request.error = false;
+    set_write_outcome(request, at);
     charge(request, Culprit::kBridge, request.first - request.in_path.accepted_at);
     if (observed()) [[unlikely]]
       report_outcome(request);
@@ -222,13 +229,22 @@ class Crossbar {
   /// Until a write has its outcome, `first` is when it was granted.
   /// A master sees its outcomes in order, also when a faster clock would have the later one pass an
   /// earlier one that was decided before the change.
-  void set_outcome(MemRequest& r, Picoseconds first, Picoseconds last) {
+  [[gnu::always_inline]] bool set_outcome(MemRequest& r, Picoseconds first, Picoseconds last) {
     const Picoseconds granted = r.first;
     Picoseconds& newest = ports_[index(r.master)].answered[r.write];
     r.first = std::max(first, newest);
     r.last = newest = std::max(last, r.first);
-    count_latency(r, r.write ? granted : r.first);
+    return count_latency(r, r.write ? granted : r.first);
   }
+  void set_write_outcome(MemRequest& r, Picoseconds at) {
+    const Picoseconds granted = r.first;
+    r.error = false;
+    if (set_outcome(r, at, at)) [[unlikely]]
+      note_slowest(r, granted, r.in_path.accepted_at, r.first);
+  }
+  /// Of the newest outcome. `granted`: its turn; `on_crossbar`: a read's data; `at_port`: across the bridge.
+  void note_slowest(const MemRequest& r, Picoseconds granted, Picoseconds on_crossbar, Picoseconds at_port);
+  void tell_way_to_sdram(const MemRequest& r, Picoseconds granted, SlowRequest& out);
   void new_head(unsigned port, std::uint64_t visible) {
     visible_[port] = visible;
     slaves_[ports_[port].front().request->in_path.slave].heads |= 1u << port;
@@ -247,6 +263,7 @@ class Crossbar {
   }
 
   Observers<MemObserver*> observers_;
+  const SlowRequestTeller* teller_ = nullptr;
   Clock scr_;
   std::array<Port, kMasterCount> ports_;
   std::array<SlaveState, kSlaveCount> slaves_;
@@ -362,9 +379,7 @@ template <bool kWrite, CrossbarHost Host>
     else
       slave_done(host, r, {at, at, 0, true});
   } else if (kWrite) {
-    const Picoseconds acknowledged = scr_.edge(arrival + p.response_latency);
-    set_outcome(r, acknowledged, acknowledged);
-    r.error = false;
+    set_write_outcome(r, scr_.edge(arrival + p.response_latency));
     charge(r, Culprit::kBridge, r.first - at);
     over = true;
   }

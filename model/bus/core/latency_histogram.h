@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/common/slow_request.h"
 #include "model/common/units.h"
 
 namespace fovea::bus {
@@ -95,6 +96,7 @@ struct BeatLatencies {
 };
 struct PortLatencies {
   BeatLatencies read, write;
+  SlowRequest slowest_read, slowest_write;  ///< the earliest of the slowest: to its first beat; to its last
 };
 
 }  // namespace fovea::bus

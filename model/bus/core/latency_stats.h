@@ -38,6 +38,16 @@ class LatencyStats final : public StatGroup {
   LatencyHistogram read_first() const {
     return histogram(&PortLatencies::read, &BeatLatencies::first);
   }
+  /// The slowest request of a direction, over the ports; among equals the one issued first. Null: there was none.
+  const SlowRequest* slowest(bool write) const {
+    const SlowRequest* out = nullptr;
+    for (const PortLatencies* p : ports_) {
+      const SlowRequest& s = write ? p->slowest_write : p->slowest_read;
+      if (s.latency == 0) continue;
+      if (!out || s.latency > out->latency || (s.latency == out->latency && s.issued < out->issued)) out = &s;
+    }
+    return out;
+  }
   /// Calls f(direction, beat, histogram) with their names, for the four of them.
   template <class F>
   void each(F f) const {

@@ -166,6 +166,7 @@ void DdrController::first_column() {
     ++stats.row_hits;
     ++stats.bank[e.bank].row_hits;
   }
+  const WaitAttribution::Column column{e.ready, clock, e.prepared, attribution_.count()};
   if constexpr (kCmd == Cmd::kRd) {
     attribution_.waited = 0;
     if (clock > e.ready) attribution_.attribute(e, clock, next_, !queue_.single());
@@ -178,10 +179,10 @@ void DdrController::first_column() {
   } else {
     move_bytes(r.data, store_.at(r.address), r.bytes);
     if (returns_.reorders()) [[unlikely]] {
-      send_in_order(e, clock);
+      send_in_order(e, column);
     } else {
       const ReturnChannel::Span data = returns_.send(e, clock);
-      news_.reads.add({r.origin, data.first, data.last, attribution_.waited});
+      news_.reads.add({r.origin, data.first, data.last, attribution_.waited, column});
       news_.any = true;
     }
   }
@@ -200,13 +201,13 @@ void DdrController::first_column() {
 }
 
 /// The data of this read may come before those of older reads of its master.
-[[gnu::noinline]] void DdrController::send_in_order(const Entry& e, std::uint64_t clock) {
+[[gnu::noinline]] void DdrController::send_in_order(const Entry& e, const WaitAttribution::Column& column) {
   const QueuePositions& order = queue_.order();
   Positions older = order.of_master(e.request.master) & ~order.writes() &
                     ((1u << plan_.choice.position) - 1);
   std::uint32_t slots = 0;
   for (; older; older &= older - 1) slots |= 1u << order.slot(oldest(older));
-  returns_.send_in_order(e, 1u << queue_.slot_of(e), slots, clock, news_.reads);
+  returns_.send_in_order(e, 1u << queue_.slot_of(e), slots, column, news_.reads);
   news_.any |= news_.reads.size() != 0;
 }
 

@@ -96,6 +96,14 @@ class DdrController {
   };
   News& news() { return news_; }
 
+  /// The bank and row of a byte of the SDRAM, as the address map in effect has them.
+  void tell_place(std::uint32_t offset, SlowRequest& s) const {
+    s.bank = bank_of(offset);
+    s.row = row_of(offset);
+  }
+  /// How a read found its row, and the steps up to its first column command.
+  void tell_waits(const WaitAttribution::Column& c, SlowRequest& s) const { attribution_.tell(c, s); }
+
   /// A master's newest read that has no outcome yet; null: there is none.
   const MemRequest* newest_read(Master master) const;
 
@@ -165,6 +173,10 @@ class DdrController {
   bool take_in(MemRequest& request, std::uint32_t offset, Picoseconds at);
   [[gnu::noinline]] bool queue(MemRequest& request, std::uint32_t offset, std::uint64_t arrived);
   void fill(Entry& e, std::uint64_t arrived) const;
+  std::uint8_t bank_of(std::uint32_t offset) const {
+    return static_cast<std::uint8_t>((offset >> bank_shift_) & bank_mask_);
+  }
+  std::uint32_t row_of(std::uint32_t offset) const { return (offset & row_mask_) >> row_shift_; }
   void join_single();
   [[gnu::noinline]] void take(Entry& e, std::uint64_t arrived);
   /// Room for a request in the FIFOs.
@@ -173,7 +185,7 @@ class DdrController {
            !(write && queue_.write_words_held() + write_words(address, bytes) > write_fifo_words_);
   }
   void accept_waiting(std::uint64_t clock);
-  void send_in_order(const Entry& e, std::uint64_t clock);
+  void send_in_order(const Entry& e, const WaitAttribution::Column& column);
   void finish(std::uint64_t clock);
   void finish_queued(std::uint64_t clock);
   void leave_queue();

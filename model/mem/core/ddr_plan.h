@@ -65,8 +65,8 @@ inline void DdrController::fill(Entry& e, std::uint64_t arrived) const {
   const Queued& r = e.request;
   __builtin_prefetch(store_.at(r.address));  // the host's own memory is slow as well
   e.ready = arrived + request_latency_;
-  e.bank = static_cast<std::uint8_t>((r.address >> bank_shift_) & bank_mask_);
-  e.row = (r.address & row_mask_) >> row_shift_;
+  e.bank = bank_of(r.address);
+  e.row = row_of(r.address);
   e.chunks = static_cast<std::uint8_t>(((r.address & 15u) + r.bytes + 15u) / 16u);
   e.classified = false;
   e.prepared = 0;

@@ -4,14 +4,13 @@
 
 namespace fovea::mem {
 
-[[gnu::noinline]] void ReadReturn::send_in_order(const QueueEntry& e, std::uint32_t slot,
-                                                 std::uint32_t older_slots, std::uint64_t clock,
-                                                 ReadOutcomes& outcomes) {
-  const ReturnChannel::Span data = send(e, clock);
+[[gnu::noinline]] void ReadReturn::send_in_order(const QueueEntry& e, std::uint32_t slot, std::uint32_t older_slots,
+                                                 const WaitAttribution::Column& column, ReadOutcomes& outcomes) {
+  const ReturnChannel::Span data = send(e, column.clock);
   const Clock& bus = this->clock();
-  const OutOfOrderRead mine{
-      e.request, older_slots, data.first,
-      bus.edge_at_or_after(data.last) - bus.edge_at_or_after(data.first), attribution_.waited};
+  const OutOfOrderRead mine{e.request,           older_slots,
+                            data.first,          bus.edge_at_or_after(data.last) - bus.edge_at_or_after(data.first),
+                            attribution_.waited, column};
   // A read that waits for this one is younger; the others of this master that wait are older.
   const auto younger = std::find_if(waiting_.begin(), waiting_.end(),
                                     [&](const OutOfOrderRead& h) { return h.behind & slot; });
@@ -36,7 +35,7 @@ void ReadReturn::report(const OutOfOrderRead& h, ReadOutcomes& outcomes) {
   const Picoseconds first = std::max(h.first, bus.next_edge_after(reported));
   reported = bus.edge(bus.edge_at_or_after(first) + h.edges);
   if (first > h.first) attribution_.charge(r, culprit(r.master), first - h.first);
-  outcomes.add({r.origin, first, reported, h.waited + (first - h.first)});
+  outcomes.add({r.origin, first, reported, h.waited + (first - h.first), h.column});
 }
 
 const MemRequest* ReadReturn::newest_behind(unsigned slot) const {

@@ -17,6 +17,7 @@ struct ReadOutcome {
   MemRequest* request;
   Picoseconds first, last;
   Picoseconds attributed;  ///< the part of its time that the attribution of waits explains
+  WaitAttribution::Column column;
 };
 
 /// The outcomes of one step of the controller, in their order: mostly one.
@@ -61,7 +62,7 @@ class ReadReturn {
   /// older reads are, which are in `older_slots` of the queue; then follow the younger ones that waited
   /// only for this one.
   void send_in_order(const QueueEntry& e, std::uint32_t slot, std::uint32_t older_slots,
-                     std::uint64_t clock, ReadOutcomes& outcomes);
+                     const WaitAttribution::Column& column, ReadOutcomes& outcomes);
   /// The newest read that waits for the queue's read in this slot; null: none does.
   const MemRequest* newest_behind(unsigned slot) const;
 
@@ -72,6 +73,7 @@ class ReadReturn {
     Picoseconds first = 0;     ///< its own data on the return channel
     std::uint64_t edges = 0;   ///< of the crossbar, from there to the last
     Picoseconds waited = 0;
+    WaitAttribution::Column column;
   };
   /// Each master's oldest first.
   const std::vector<OutOfOrderRead>& waiting() const { return waiting_; }

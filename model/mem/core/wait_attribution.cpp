@@ -49,45 +49,67 @@ void WaitAttribution::restart_clock(std::uint64_t first_edge) {
   find_next_without_baseline();
 }
 
-/// The waits since `ready`, by the commands one by one: for a few, or where there is no baseline. The
-/// read's own ACT and PRE are no wait behind an earlier request.
-[[gnu::noinline]] void WaitAttribution::attribute_each(const QueueEntry& e, std::uint64_t ready,
-                                                       Picoseconds from, std::uint64_t clock,
-                                                       Picoseconds at) {
-  const Culprit own = culprit(e.request.master);
-  const std::uint64_t end = issued_;
-  const std::uint64_t oldest = end - std::min<std::uint64_t>(end, kHistory - 1);
+/// Calls charge(culprit, time, end of it) for the waits since `c.ready`, which is at `from`, up to the column
+/// command at `at`, by the commands one by one. The read's own ACT and PRE are no wait behind an earlier request.
+/// What is remembered no more is `forgotten`.
+template <class Charge>
+[[gnu::always_inline]] inline void WaitAttribution::each_wait(const Column& c, Picoseconds from, Picoseconds at,
+                                                              Culprit forgotten, Charge charge) const {
+  const std::uint64_t end = c.commands;
+  const std::uint64_t oldest = issued_ - std::min<std::uint64_t>(issued_, kHistory - 1);
+  if (end <= oldest) return charge(forgotten, at - from, at);
   std::uint64_t n = end - 1;  // the last command at or before `ready`, or the oldest that is known
-  while (n > oldest && command(n).clock > ready) --n;
+  while (n > oldest && command(n).clock > c.ready) --n;
   std::uint64_t prepared = 0;  // bit i: the command i before `end`
   Culprit row = Culprit::kRowMiss;
-  for (std::uint64_t p = e.prepared; p > n; p = command(p - 1).before) {
-    const IssuedCommand& c = command(p - 1);
-    if (c.clock < ready) break;
+  for (std::uint64_t p = c.prepared; p > n; p = command(p - 1).before) {
+    const IssuedCommand& own = command(p - 1);
+    if (own.clock < c.ready) break;
     prepared |= std::uint64_t{1} << (end - p);
-    if (c.cmd == Cmd::kPre) row = Culprit::kRowConflict;
+    if (own.cmd == Cmd::kPre) row = Culprit::kRowConflict;
   }
-  std::uint64_t reached = ready;
-  const auto until = [&](std::uint64_t next, Picoseconds to, Culprit c) {
+  std::uint64_t reached = c.ready;
+  const auto until = [&](std::uint64_t next, Picoseconds to, Culprit culprit) {
     if (next <= reached) return;
-    charge(e.request, c, to - from);
+    charge(culprit, to - from, to);
     reached = next;
     from = to;
   };
-  until(command(n).clock, command(n).at, own);  // what is not known is its own
+  until(command(n).clock, command(n).at, forgotten);
   for (; n < end; ++n) {
-    const IssuedCommand& c = command(n);
+    const IssuedCommand& before = command(n);
     const bool newest = n + 1 == end;
-    const std::uint64_t next = newest ? clock : command(n + 1).clock;
+    const std::uint64_t next = newest ? c.clock : command(n + 1).clock;
     const Picoseconds next_at = newest ? at : command(n + 1).at;
-    if (c.cmd == Cmd::kWr) {
-      const std::uint64_t over = std::min(next, c.clock + c.burst + write_clocks_);
-      if (over > reached) until(over, ddr_.edge(over), culprit_of(c.cause));
+    if (before.cmd == Cmd::kWr) {
+      const std::uint64_t over = std::min(next, before.clock + before.burst + write_clocks_);
+      if (over > reached) until(over, ddr_.edge(over), culprit_of(before.cause));
       until(next, next_at, Culprit::kTurnaround);
     } else {
-      until(next, next_at, prepared >> (end - n - 1) & 1u ? row : culprit_of(c.cause));
+      until(next, next_at, prepared >> (end - n - 1) & 1u ? row : culprit_of(before.cause));
     }
   }
+}
+
+/// For a few commands, or where there is no baseline. What is not known is its own.
+[[gnu::noinline]] void WaitAttribution::attribute_each(const QueueEntry& e, std::uint64_t ready, Picoseconds from,
+                                                       std::uint64_t clock, Picoseconds at) {
+  each_wait({ready, clock, e.prepared, issued_}, from, at, culprit(e.request.master),
+            [&](Culprit c, Picoseconds t, Picoseconds) { charge(e.request, c, t); });
+}
+
+void WaitAttribution::tell(const Column& c, SlowRequest& s) const {
+  Column seen = c;
+  seen.ready = std::max(c.ready, first_edge_);
+  const std::uint64_t oldest = issued_ - std::min<std::uint64_t>(issued_, kHistory - 1);
+  s.found = c.prepared == 0 ? FoundRow::kOpen : c.prepared > oldest ? FoundRow::kClosed : FoundRow::kNotKnown;
+  for (std::uint64_t p = c.prepared; p > oldest; p = command(p - 1).before)
+    if (command(p - 1).cmd == Cmd::kPre) s.found = FoundRow::kOther;
+  const Picoseconds from = ddr_.edge(seen.ready);
+  s.until(from, RequestPlace::kController, Culprit::kService);
+  if (seen.clock <= seen.ready) return;
+  each_wait(seen, from, ddr_.edge(seen.clock), Culprit::kCount,
+            [&](Culprit culprit, Picoseconds, Picoseconds to) { s.until(to, RequestPlace::kController, culprit); });
 }
 
 /// The same by totals, however many commands there were. `newest`: what the newest one adds.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "model/common/clock.h"
+#include "model/common/slow_request.h"
 #include "model/common/waits.h"
 #include "model/mem/core/command_queue.h"
 #include "model/mem/core/ddr_timing.h"
@@ -31,6 +32,12 @@ class WaitAttribution {
     std::uint8_t cause = kRefreshed;
   };
   static constexpr std::size_t kHistory = 64;  // commands that are remembered
+  /// A read at its first column command, for whoever asks afterwards what it waited for.
+  struct Column {
+    std::uint64_t ready = 0, clock = 0;  ///< edges: the scheduler saw it, the command
+    std::uint64_t prepared = 0;          ///< as QueueEntry::prepared
+    std::uint64_t commands = 0;          ///< before this one
+  };
 
   /// Both refer to the controller's own.
   WaitAttribution(const Clock& ddr, const CommandQueue& queue) : ddr_(ddr), queue_(queue) {}
@@ -72,6 +79,9 @@ class WaitAttribution {
     if (r.parts) r.parts->add(c, t);
   }
 
+  /// How the read found its row, and its steps up to the column command, out of what is remembered now.
+  void tell(const Column& c, SlowRequest& s) const;
+
   WaitTable waits;
   /// Sum of the waits of the read that was attributed last.
   Picoseconds waited = 0;
@@ -99,6 +109,8 @@ class WaitAttribution {
   Division divide(const IssuedCommand& c, std::uint64_t clock, Picoseconds at) const;
   void attribute_each(const QueueEntry& e, std::uint64_t ready, Picoseconds from,
                       std::uint64_t clock, Picoseconds at);
+  template <class Charge>
+  void each_wait(const Column& c, Picoseconds from, Picoseconds at, Culprit forgotten, Charge charge) const;
   void attribute_by_totals(const QueueEntry& e, const Baseline& baseline, std::uint64_t ready,
                            const Division& newest, Picoseconds at);
 

@@ -119,9 +119,8 @@ double Run::frame_period() const {
 std::vector<Finding> explain(const Inputs& inputs) {
   const Run run(inputs);
   std::vector<Finding> out;
-  for (const auto rule : {find_rate, find_budget, find_latency_parts, find_mover, find_largest_wait,
-                          find_function, find_other_masters, find_rows, find_sdram_use,
-                          estimate_shorter_bridge, estimate_faster_memory, estimate_smaller_table})
+  for (const auto rule : {find_rate, find_budget, find_latency_parts, find_mover, find_largest_wait, find_function,
+                          find_other_masters, find_rows, find_sdram_use})
     rule(run, out);
   return out;
 }

@@ -17,7 +17,6 @@ struct Finding {
   std::string rule;  ///< name of the rule that found it, such as "largest_wait"
   std::string text;
   std::vector<std::string> evidence;  ///< figures and files that show it, such as "cpu.cycles"
-  bool estimate = false;              ///< says what a change would do, which this run did not try
 };
 
 /// A function's clocks in the frames of a run, from profile.csv.

@@ -25,41 +25,6 @@ std::string listed(const std::vector<std::string>& items) {
   return fmt::format("{} and {}", fmt::join(items.begin(), items.end() - 1, ", "), items.back());
 }
 
-/// Causes whose clocks are spent on the way to the SDRAM and back.
-constexpr std::array<std::string_view, 6> kMemoryCauses{"dcache", "icache",   "write_buffer",
-                                                        "tlb",    "cache_op", "drain"};
-
-/// The firmware's name for the look-up table, as stalls.csv has it.
-constexpr std::string_view kTable = "lut";
-
-/// Whether the core alone moves the pixels. A remap that the EDMA or an engine carries along also takes
-/// as long as the core sleeps in it, waiting for these.
-bool core_moves_the_pixels(const Run& run) {
-  double others = 0;
-  for (std::size_t stat = 0; stat < kStatCount; ++stat) {
-    if (!moves_data(master_info(master_of_stat(stat)))) continue;
-    for (const auto* way : {"read", "write"})
-      others += run.value_or_zero(fmt::format("bus.{}.{}_bytes", kStatNames[stat], way));
-  }
-  const double core =
-      run.value_or_zero("bus.arm_d.read_bytes") + run.value_or_zero("bus.arm_d.write_bytes");
-  return others < 0.05 * core;
-}
-
-/// The share of its remaps in which the core does not wait for a DMA master: only there it is faster if
-/// its own accesses are.
-double core_share(const Run& run) {
-  if (core_moves_the_pixels(run)) return 1;
-  const double all = run.value_or_zero("cpu.remap.cycles");
-  return all > 0 ? 1 - run.value_or_zero("cpu.remap.idle") / all : 0;
-}
-
-/// Seconds of a core clock, from the remap-free identity: the window has cpu.cycles clocks.
-double core_clock(const Run& run) {
-  const auto window = run.value("frame.window"), cycles = run.value("cpu.cycles");
-  return window && cycles && *cycles > 0 ? *window / *cycles : 0;
-}
-
 }  // namespace
 
 void find_rate(const Run& run, std::vector<Finding>& out) {
@@ -293,7 +258,7 @@ void find_rows(const Run& run, std::vector<Finding>& out) {
     double rows = 0;
     for (const auto& [culprit, n] : run.culprits())
       if (culprit.starts_with("row_")) rows += n;
-    text += fmt::format(" The core spends {} of its awake clocks on that.", percent(rows / awake));
+    text += fmt::format(" Waiting until rows are opened takes {} of the core's awake clocks.", percent(rows / awake));
     evidence.push_back("cpu.stall.*.by.row_*");
   }
   out.push_back({"rows", text, evidence});
@@ -308,80 +273,6 @@ void find_sdram_use(const Run& run, std::vector<Finding>& out) {
                    "whether a faster SDRAM would help.",
                    percent(*use)),
        {"ddr.utilisation"}});
-}
-
-void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out) {
-  const auto request = run.number("bus.arm_d.request_latency"),
-             response = run.number("bus.arm_d.response_latency");
-  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
-  const auto remap = run.value("frame.remap_time.mean");
-  if (!request || !response || *request < 1 || *response < 1 || frames == 0 || clock == 0 ||
-      !remap)
-    return;
-  double bridge = 0;
-  for (const auto cause : kMemoryCauses)
-    bridge += run.value_or_zero(fmt::format("cpu.stall.{}.by.bridge", cause));
-  // The clocks in the bridge are in proportion to its delays.
-  const double saved = bridge * 2 / (*request + *response) * clock / frames * core_share(run);
-  if (saved < 0.002 * *remap) return;
-  out.push_back(
-      {"shorter_bridge",
-       fmt::format("Estimate: a bridge that is one clock shorter on each way "
-                   "(bus.arm_d.request_latency, bus.arm_d.response_latency) would save about "
-                   "{} of a remap, {}.",
-                   milliseconds(saved), percent(saved / *remap)),
-       {"cpu.stall.*.by.bridge", "frame.remapped", "frame.remap_time.mean"},
-       true});
-}
-
-void estimate_faster_memory(const Run& run, std::vector<Finding>& out) {
-  // The two presets differ in the clocks of SDRAM and crossbar only.
-  constexpr double kRatio = 243.0 / 270.0;
-  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
-  const auto remap = run.value("frame.remap_time.mean");
-  if (run.parameter("clocks.preset") != "297/243" || frames == 0 || clock == 0 || !remap) return;
-  std::vector<std::string> evidence;
-  double memory = 0;
-  if (core_moves_the_pixels(run)) {
-    for (const auto cause : kMemoryCauses) {
-      memory += run.value_or_zero(fmt::format("cpu.stall.{}", cause));
-      memory -= run.value_or_zero(fmt::format("cpu.stall.{}.by.core", cause));
-    }
-    evidence = {"cpu.stall.*", "cpu.stall.*.by.core"};
-  } else {
-    // The core sleeps until the EDMA is done, which has the crossbar's clock.
-    memory = run.value_or_zero("cpu.remap.idle");
-    for (const auto cause : kMemoryCauses) memory += run.value_or_zero(fmt::format("cpu.remap.stall.{}", cause));
-    evidence = {"cpu.remap.idle", "cpu.remap.stall.*"};
-  }
-  evidence.insert(evidence.end(), {"frame.remapped", "frame.remap_time.mean"});
-  const double saved = memory * (1 - kRatio) * clock / frames;
-  if (saved < 0.002 * *remap) return;
-  out.push_back(
-      {"faster_memory",
-       fmt::format("Estimate: with SDRAM and crossbar one step faster (clocks.preset=297/270) a "
-                   "remap would take about {} less, {}.",
-                   milliseconds(saved), percent(saved / *remap)),
-       evidence, true});
-}
-
-void estimate_smaller_table(const Run& run, std::vector<Finding>& out) {
-  const double frames = run.value_or_zero("frame.remapped"), clock = core_clock(run);
-  const auto remap = run.value("frame.remap_time.mean");
-  if (frames == 0 || clock == 0 || !remap) return;
-  double table = 0;
-  for (const auto& row : run.stalls())
-    if (row.cause == "dcache" && row.region == kTable) table += static_cast<double>(row.cycles);
-  // A table is read once, from one end to the other: half the bytes are half the lines.
-  const double saved = table / 2 * clock / frames * core_share(run);
-  // A kernel that does not read this table leaves little: the firmware also sums a row of it.
-  if (saved < 0.02 * *remap) return;
-  out.push_back({"smaller_table",
-                 fmt::format("Estimate: a look-up table of half as many bytes would save about {} of a "
-                             "remap, {}.",
-                             milliseconds(saved), percent(saved / *remap)),
-                 {"stalls.csv", "frame.remapped", "frame.remap_time.mean"},
-                 true});
 }
 
 }  // namespace fovea::explain

@@ -58,9 +58,5 @@ void find_function(const Run& run, std::vector<Finding>& out);
 void find_other_masters(const Run& run, std::vector<Finding>& out);
 void find_rows(const Run& run, std::vector<Finding>& out);
 void find_sdram_use(const Run& run, std::vector<Finding>& out);
-// Estimates: what a change would do.
-void estimate_shorter_bridge(const Run& run, std::vector<Finding>& out);
-void estimate_faster_memory(const Run& run, std::vector<Finding>& out);
-void estimate_smaller_table(const Run& run, std::vector<Finding>& out);
 
 }  // namespace fovea::explain

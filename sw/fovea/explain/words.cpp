@@ -26,16 +26,16 @@ constexpr std::array kCauses{Words{"interlock", "results of earlier instructions
                              Words{"drain", "the write buffer to drain"},
                              Words{"bus_sync", "an edge of the bus clock"}};
 
-constexpr std::array kCulprits{
-    Words{"bridge", "in the bridge between core and crossbar"},
-    Words{"service", "on the way through crossbar and SDRAM controller, others apart"},
-    Words{"core", "behind other accesses of the core itself"},
-    Words{"own", "behind other accesses of the core itself"},
-    Words{"row_miss", "on opening rows of closed banks"},
-    Words{"row_conflict", "on closing one row and opening another"},
-    Words{"refresh", "on refreshes"},
-    Words{"turnaround", "on turning the data bus between reads and writes"},
-    Words{"power_down", "on waking the SDRAM"}};
+constexpr std::array kCulprits{Words{"bridge", "in the bridge between core and crossbar"},
+                               Words{"service", "on the unhindered way through crossbar and SDRAM controller"},
+                               Words{"not_known", "on what is not remembered"},
+                               Words{"core", "behind other accesses of the core itself"},
+                               Words{"own", "behind other accesses of the core itself"},
+                               Words{"row_miss", "on opening rows of closed banks"},
+                               Words{"row_conflict", "on closing one row and opening another"},
+                               Words{"refresh", "on refreshes"},
+                               Words{"turnaround", "on turning the data bus between reads and writes"},
+                               Words{"power_down", "on waking the SDRAM"}};
 
 template <std::size_t N>
 std::string_view look_up(const std::array<Words, N>& table, std::string_view key) {

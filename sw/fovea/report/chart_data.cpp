@@ -71,8 +71,11 @@ Json timeline_json(const Results& run) {
   const auto& rows = run.timeline->rows;
   Json out = Json::object();
   if (rows.empty()) return out;
-  out["whole"] =
-      bandwidth_json(bandwidth(*run.timeline, rows.front().start, rows.back().end, kMaxIntervals));
+  const std::uint64_t start = rows.front().start, end = rows.back().end;
+  const auto period = run.frames ? frame_period(*run.frames) : std::nullopt;
+  const Periods whole = period ? periods(start, end, *period, kMaxIntervals) : Periods();
+  out["whole"] = bandwidth_json(whole.edges.size() > 1 ? mean_bandwidth(*run.timeline, whole)
+                                                       : bandwidth(*run.timeline, start, end, kMaxIntervals));
   if (run.frames && !run.frames->empty())
     if (const auto [from, to] = detailed_span(*run.frames); from < to)
       out["detail"] = bandwidth_json(bandwidth(*run.timeline, from, to, kMaxIntervals));
@@ -121,6 +124,60 @@ Bandwidth bandwidth(const Timeline& timeline, std::uint64_t from, std::uint64_t 
       const std::size_t n = rates.size();
       rates.push_back(bytes / (1e-12 * static_cast<double>(out.edges[n + 1] - out.edges[n])));
       all += bytes;
+    }
+    if (all == 0) continue;
+    out.masters.push_back(timeline.masters[m]);
+    out.rates.push_back(std::move(rates));
+  }
+  return out;
+}
+
+std::optional<FramePeriod> frame_period(const std::vector<app::FrameRow>& frames) {
+  std::optional<std::uint64_t> first, last;
+  std::uint64_t index_of_first = 0, index_of_last = 0;
+  for (const auto& f : frames) {
+    if (!f.display_start) continue;
+    if (!first) first = f.display_start, index_of_first = f.index;
+    last = f.display_start;
+    index_of_last = f.index;
+  }
+  if (!first || index_of_last <= index_of_first || *last <= *first) return std::nullopt;
+  return FramePeriod{*first, (*last - *first) / (index_of_last - index_of_first)};
+}
+
+Periods periods(std::uint64_t from, std::uint64_t to, FramePeriod of, std::size_t most) {
+  Periods out;
+  if (of.length == 0 || to <= from) return out;
+  const std::uint64_t frames = (to - from) / of.length + 2;
+  out.frames_each = (frames + most - 1) / most;
+  const std::uint64_t length = of.length * out.frames_each;
+  // The grid goes through a frame's beginning; what is not whole at both ends is left out.
+  std::uint64_t at = of.anchor > from ? of.anchor - (of.anchor - from) / length * length
+                                      : of.anchor + (from - of.anchor + length - 1) / length * length;
+  for (; at <= to; at += length) out.edges.push_back(at);
+  return out;
+}
+
+Bandwidth mean_bandwidth(const Timeline& timeline, const Periods& periods) {
+  Bandwidth out;
+  if (periods.edges.size() < 2) return out;
+  out.edges = periods.edges;
+  for (std::size_t m = 0; m < timeline.masters.size(); ++m) {
+    std::vector<double> rates(out.edges.size() - 1);
+    double all = 0;
+    for (const auto& r : timeline.rows) {
+      if (r.end <= r.start) continue;
+      const auto bytes = static_cast<double>(r.read_bytes[m] + r.write_bytes[m]);
+      // The first interval that ends behind the row's beginning.
+      const auto behind = std::upper_bound(out.edges.begin(), out.edges.end(), r.start);
+      for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(behind - out.edges.begin() - 1, 0));
+           i + 1 < out.edges.size() && out.edges[i] < r.end; ++i) {
+        const std::uint64_t from = std::max(r.start, out.edges[i]), to = std::min(r.end, out.edges[i + 1]);
+        if (to <= from) continue;
+        const double share = bytes * static_cast<double>(to - from) / static_cast<double>(r.end - r.start);
+        rates[i] += share / (1e-12 * static_cast<double>(out.edges[i + 1] - out.edges[i]));
+        all += share;
+      }
     }
     if (all == 0) continue;
     out.masters.push_back(timeline.masters[m]);

@@ -1,6 +1,7 @@
 // What the page's charts are drawn from.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,23 @@ struct Bandwidth {
 /// Bytes are kept: the rates times the intervals' lengths add up to the rows' bytes.
 Bandwidth bandwidth(const Timeline& timeline, std::uint64_t from, std::uint64_t to,
                     std::size_t most);
+
+/// From the beginning of one displayed frame to that of the next, in ps; `anchor` is such a beginning.
+struct FramePeriod {
+  std::uint64_t anchor = 0, length = 0;
+};
+/// The mean over the displayed frames; empty with fewer than two.
+std::optional<FramePeriod> frame_period(const std::vector<app::FrameRow>& frames);
+
+/// Whole frame periods between two times, or so many together that there are at most `most` intervals.
+struct Periods {
+  std::vector<std::uint64_t> edges;
+  std::uint64_t frames_each = 1;
+};
+Periods periods(std::uint64_t from, std::uint64_t to, FramePeriod of, std::size_t most);
+/// The mean of each interval. A row of the timeline that lies in two of them counts in each by its share of the
+/// time. Intervals of whole frames show equal frames alike; others would beat with them.
+Bandwidth mean_bandwidth(const Timeline& timeline, const Periods& periods);
 
 /// One run for the script of the page: figures, frames, bandwidth, stalls, latencies, stacks.
 nlohmann::ordered_json chart_data(const Results& run, const std::string& label);

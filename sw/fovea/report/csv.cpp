@@ -81,6 +81,16 @@ std::uint64_t whole(const CsvPlace& place, const std::string& field) {
   return value;
 }
 
+std::uint64_t hexadecimal(const CsvPlace& place, const std::string& field) {
+  std::uint64_t value = 0;
+  const char* end = field.data() + field.size();
+  const bool prefixed = field.starts_with("0x");
+  const auto [stop, error] = std::from_chars(field.data() + (prefixed ? 2 : 0), end, value, 16);
+  if (!prefixed || error != std::errc{} || stop != end)
+    refuse(place, fmt::format("'{}' is not a hexadecimal number", app::one_line(field, 40)));
+  return value;
+}
+
 double number(const CsvPlace& place, const std::string& field) {
   double value = 0;
   const char* end = field.data() + field.size();

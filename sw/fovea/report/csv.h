@@ -30,6 +30,8 @@ void each_csv_row(const std::filesystem::path& file, std::span<const std::string
 
 /// Numbers as the files have them. @throws UserError with file and line
 std::uint64_t whole(const CsvPlace& place, const std::string& field);
+/// "0x805b4134"
+std::uint64_t hexadecimal(const CsvPlace& place, const std::string& field);
 double number(const CsvPlace& place, const std::string& field);
 /// Nanoseconds with three decimals as ps; empty for an empty field.
 std::optional<std::uint64_t> time_ps(const CsvPlace& place, const std::string& field);

@@ -41,9 +41,10 @@ bool is_report_page(std::string_view first_bytes) { return first_bytes.starts_wi
 
 std::string report_page(const std::vector<Results>& runs) {
   std::string title;
-  for (const auto& run : runs) title += (title.empty() ? "" : ", ") + run.name;
+  for (const auto& run : runs) title += (title.empty() ? "" : "; ") + run.name;
   std::vector<Section> sections{{"verdict", "Verdict", verdict_section(runs)},
                                 {"pictures", "Pictures", ""},
+                                {"key", "Key figures", key_figures_section(runs)},
                                 {"frames", "Frames over time", frames_section(runs)},
                                 {"bandwidth", "Bandwidth", bandwidth_section(runs)},
                                 {"latency", "SDRAM latency", latency_section(runs)},
@@ -69,8 +70,8 @@ std::string report_page(const std::vector<Results>& runs) {
       kStart, script_digest(script), escaped(title), kStyle);
   out += fmt::format(
       "<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
-      "<div id=\"controls\"></div></header>\n<nav aria-label=\"Sections\"><ul>",
-      escaped(title));
+      "<div id=\"controls\"></div></header>\n{}<nav aria-label=\"Sections\"><ul>",
+      escaped(title), system_section(runs));
   for (const auto& s : sections)
     out += fmt::format("<li><a href=\"#{}\">{}</a></li>", s.id, s.title);
   out +=
@@ -100,9 +101,15 @@ std::string report_text(const std::vector<Results>& runs) {
     }
   };
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    out += app::printable(title_of(runs, i)) + "\n" + app::verdict(runs[i].stats);
+    out += app::printable(title_of(runs, i)) + "\n";
+    if (const std::string text = system_text(runs[i]); !text.empty()) out += app::printable(text) + "\n";
+    out += app::verdict(runs[i].stats);
     if (!runs[i].complete) out += "These results are partial.\n";
     list(findings_of(runs[i]));
+    if (runs[i].slowest)
+      for (const auto& r : app::slowest_of_each(*runs[i].slowest)) out += app::printable(slowest_sentence(r)) + "\n";
+    if (const std::string command = binds_command_of(runs[i]); !command.empty())
+      out += "What makes its remaps faster is found by runs: " + app::printable(command) + "\n";
   }
   for (std::size_t i = 1; i < runs.size(); ++i) {
     out += fmt::format("{} against A\n", run_label(i));

@@ -8,6 +8,7 @@
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/output_file.h"
 #include "sw/fovea/report/page.h"
+#include "sw/fovea/report/sections.h"
 
 namespace fovea::app {
 namespace {
@@ -48,6 +49,7 @@ int command_report(const ReportOptions& options, const CliContext& context) {
   std::vector<report::Results> runs;
   for (const auto& folder : options.folders)
     runs.push_back(report::load_results(folder, {options.partial, options.across_versions}));
+  report::name_apart(runs);
   if (!options.limits.empty()) runs.front().binds = report::load_binds(options.limits, runs.front());
   if (options.text) {
     context.out << report::report_text(runs) << std::flush;

@@ -184,6 +184,37 @@ std::vector<LatencyBin> read_latency(const fs::path& file) {
   return rows;
 }
 
+/// Steps of one request follow one another.
+std::vector<app::SlowestRow> read_slowest(const fs::path& file) {
+  static constexpr std::array<std::string_view, 15> kColumns{
+      "master", "direction", "port", "issued_ns", "latency_ns", "address",  "bytes",  "bank",
+      "row",    "row_state", "step", "place",     "culprit",    "begin_ns", "time_ns"};
+  std::vector<app::SlowestRow> rows;
+  each_csv_row(file, kColumns, [&](const CsvPlace& at, std::span<const std::string> f) {
+    if (at.line == 1) return;
+    if (rows.empty() || rows.back().master != f[0] || rows.back().direction != f[1]) {
+      app::SlowestRow r{f[0], f[1], f[2], f[9], time_ps(at, f[3]).value_or(0), time_ps(at, f[4]).value_or(0), 0,
+                        0,    0,    0,    {}};
+      r.address = static_cast<std::uint32_t>(hexadecimal(at, f[5]));
+      r.bytes = static_cast<unsigned>(whole(at, f[6]));
+      r.bank = static_cast<unsigned>(whole(at, f[7]));
+      r.row = static_cast<std::uint32_t>(whole(at, f[8]));
+      rows.push_back(std::move(r));
+    }
+    const Picoseconds from = time_ps(at, f[13]).value_or(0);
+    rows.back().steps.push_back({f[11], f[12], from, from + time_ps(at, f[14]).value_or(0)});
+  });
+  return rows;
+}
+
+/// What the firmware says of itself: the value behind `key`, up to a comma; empty if it says nothing.
+std::string said(const std::string& log, std::string_view key) {
+  const auto at = log.rfind(std::string("\n") + std::string(key));
+  if (at == std::string::npos) return "";
+  const auto from = at + 1 + key.size();
+  return app::printable(log.substr(from, std::min(log.find_first_of(",\r\n", from), from + 60) - from));
+}
+
 std::vector<ProfileRow> read_profile(const fs::path& file) {
   static constexpr std::array<std::string_view, 9> kColumns{
       "phase", "function", "file", "line", "cause", "region", "culprit", "clocks", "instructions"};
@@ -275,6 +306,11 @@ Results load_results(const fs::path& folder, const LoadOptions& options) {
   if (is_there(folder / "timeline.csv")) out.timeline = read_timeline(folder / "timeline.csv");
   if (is_there(folder / "stalls.csv")) out.stalls = read_stalls(folder / "stalls.csv");
   if (is_there(folder / "latency.csv")) out.latency = read_latency(folder / "latency.csv");
+  if (is_there(folder / "slowest.csv")) out.slowest = read_slowest(folder / "slowest.csv");
+  if (is_there(folder / "uart.log")) {
+    const std::string log = app::read_file(folder / "uart.log", kMaxStacksBytes);
+    out.picture = said(log, "picture ");
+  }
   if (is_there(folder / "profile.csv")) out.profile = read_profile(folder / "profile.csv");
   if (is_there(folder / "profile.folded")) out.stacks = read_stacks(folder / "profile.folded");
   return out;

@@ -9,6 +9,7 @@
 
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/report/binds.h"
+#include "sw/fovea/slowest.h"
 
 namespace fovea::report {
 
@@ -41,6 +42,7 @@ struct Results {
   std::filesystem::path folder;
   std::string name;  ///< as a reader of the report knows it
   std::string command, version, commit, experiment, ended_by, kernel;
+  std::string picture;  ///< as the firmware names it in uart.log; empty: not known
   bool modified = false, complete = true;
   std::vector<std::string> arguments;                       ///< of the command, from host.json
   std::vector<std::pair<std::string, std::string>> hashes;  ///< SHA-256 by key; empty: not known
@@ -51,6 +53,7 @@ struct Results {
   std::optional<Timeline> timeline;
   std::optional<std::vector<app::StallRow>> stalls;
   std::optional<std::vector<LatencyBin>> latency;
+  std::optional<std::vector<app::SlowestRow>> slowest;
   std::optional<std::vector<ProfileRow>> profile;
   std::optional<std::vector<std::pair<std::string, std::uint64_t>>> stacks;  ///< profile.folded
   std::vector<Relaxed> binds;  ///< of `fovea limits`, if it was asked for

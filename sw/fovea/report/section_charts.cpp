@@ -1,5 +1,6 @@
 // Sections that consist of charts and the tables below them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -7,6 +8,7 @@
 #include <map>
 
 #include "sw/fovea/explain/words.h"
+#include "sw/fovea/report/chart_data.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
@@ -88,6 +90,55 @@ std::string latency_table(const Results& run) {
       table.row(cells);
     }
   return table.empty() ? "" : table.html();
+}
+
+/// "port bridge 24.7, crossbar vpbe 107.0 (3 times), ...": in the order of time, where that is short enough to be
+/// read; else the sums by what they were spent on.
+std::string steps_text(const app::SlowestRow& row) {
+  struct Stretch {
+    std::string what;
+    Picoseconds time;
+    unsigned times;
+  };
+  constexpr std::size_t kReadable = 12;
+  std::vector<Stretch> stretches;
+  for (const auto& s : row.steps) {
+    const std::string what = s.place + " " + s.culprit;
+    if (stretches.empty() || stretches.back().what != what) stretches.push_back({what, 0, 0});
+    stretches.back().time += s.to - s.from;
+    ++stretches.back().times;
+  }
+  const auto ns = [](Picoseconds t) { return static_cast<double>(t) * 1e-3; };
+  std::vector<std::string> out;
+  if (stretches.size() <= kReadable)
+    for (const auto& s : stretches)
+      out.push_back(
+          fmt::format("{} {:.1f}{}", s.what, ns(s.time), s.times > 1 ? fmt::format(" ({} times)", s.times) : ""));
+  else
+    for (const auto& [culprit, time] : app::slowest_parts(row))
+      out.push_back(fmt::format("{} {:.1f}", culprit, ns(time)));
+  return fmt::format(
+      "{}{}", fmt::join(out, ", "),
+      stretches.size() <= kReadable ? std::string() : fmt::format("; {} steps in slowest.csv", row.steps.size()));
+}
+
+std::string slowest_table(const Results& run) {
+  Table table(
+      "The slowest request of each master and direction: reads to their first beat, writes to their acknowledgement",
+      {"Master", "Requests", "#us", "#At (ms since power-up)", "Row", "Address", "Where, for whom, and how many ns"});
+  for (const auto& r : *run.slowest)
+    table.row({escaped(r.master), escaped(r.direction),
+               fmt::format("<data value=\"{}\">{:.3f}</data>", app::number_text(static_cast<double>(r.latency) * 1e-12),
+                           static_cast<double>(r.latency) * 1e-6),
+               fmt::format("{}.{:06}", r.issued / kPsPerMs, r.issued % kPsPerMs / kPsPerNs), escaped(r.row_state),
+               fmt::format("<code>0x{:08x}</code>", r.address), escaped(steps_text(r))});
+  if (table.empty()) return absent("No master made a request to the SDRAM.");
+  const auto each = app::slowest_of_each(*run.slowest);
+  const std::string command = around_command_of(run, each.front());
+  return table.html() + (command.empty() ? ""
+                                         : fmt::format("<p class=\"note\">The requests around the slowest one, seen "
+                                                       "again: <code>{}</code> writes them to requests.csv.</p>",
+                                                       escaped(command)));
 }
 
 std::string stalls_table(const Results& run) {
@@ -194,6 +245,20 @@ std::string function_table(const Runs& runs) {
 
 }  // namespace
 
+std::string slowest_sentence(const app::SlowestRow& row) {
+  const std::string who = explain::master(row.master);
+  std::vector<std::string> parts;
+  for (const auto& [culprit, time] : app::slowest_parts(row)) {
+    // A chip has several transfer controllers, which their names tell apart.
+    const std::string served = explain::master(culprit);
+    const std::string how =
+        served.empty() ? explain::spent_by_port(culprit) : fmt::format("while {} ({}) is served", culprit, served);
+    parts.push_back(fmt::format("{:.3f} us {}", static_cast<double>(time) * 1e-6, how));
+  }
+  return fmt::format("Slowest {} of {}{}: {}: {}.", row.direction, row.master, who.empty() ? "" : " (" + who + ")",
+                     app::slowest_when(row), fmt::join(parts, ", "));
+}
+
 std::string frames_section(const Runs& runs) {
   return panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
@@ -206,8 +271,8 @@ std::string frames_section(const Runs& runs) {
     if (run.frames->size() > 1)
       out +=
           chart("frame-times", i,
-                "Time of the remap, and from the first captured to the first displayed sample, of "
-                "each displayed frame.");
+                "Time of the remap (above), and from the first captured to the first displayed sample (below), of each "
+                "displayed frame. Each has its own axis, which does not begin at zero.");
     return out;
   });
 }
@@ -226,9 +291,13 @@ std::string bandwidth_section(const Runs& runs) {
           "bandwidth-detail", i,
           "Bandwidth to and from the SDRAM while the first frames were captured, remapped and "
           "displayed; masters are stacked.");
-    out += chart("bandwidth-whole", i,
-                 "Bandwidth to and from the SDRAM from the beginning to the end of the results; "
-                 "masters are stacked.");
+    out += chart(
+        "bandwidth-whole", i,
+        run.frames && frame_period(*run.frames)
+            ? "Bandwidth to and from the SDRAM from the beginning to the end of the results: the mean of each "
+              "frame period, or of several where there are many, so that equal frames look equal; masters are "
+              "stacked."
+            : "Bandwidth to and from the SDRAM from the beginning to the end of the results; masters are stacked.");
     return out + bandwidth_table(run);
   });
 }
@@ -243,7 +312,9 @@ std::string latency_section(const Runs& runs) {
               "Latency of each master's reads to their first beat and writes to their last: "
               "from the median to the 99th percentile as a bar, with the mean and the "
               "largest as marks.") +
-        table;
+        table +
+        (run.slowest ? slowest_table(run)
+                     : absent("The folder has no slowest.csv: what the slowest requests waited for is not known."));
     return out +
            (run.latency && !run.latency->empty()
                 ? chart(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "sw/fovea/explain/command.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
@@ -14,20 +15,22 @@ namespace {
 
 std::string code(std::string_view text) { return "<code>" + escaped(text) + "</code>"; }
 
+/// A page is passed on: files have their names, and not the folders of whoever made it.
+std::string shown(std::string_view text) { return escaped(explain::without_folders(text)); }
+
 std::string changed_parameters(const Results& run) {
   Table table("Parameters that were set", {"Key", "Value", "Set by", "Default", "Meaning"});
   for (const auto& p : run.parameters)
     if (p.changed())
-      table.row({code(p.key), escaped(p.value), escaped(p.origin), escaped(p.initial),
-                 escaped(p.description)});
+      table.row({code(p.key), shown(p.value), shown(p.origin), escaped(p.initial), escaped(p.description)});
   return table.empty() ? absent("Every parameter has its default.") : table.html();
 }
 
 std::string all_parameters(const Results& run) {
   Table table("All parameters", {"Key", "Value", "Set by", "Tag", "Source", "Belief", "Meaning"});
   for (const auto& p : run.parameters)
-    table.row({code(p.key), escaped(p.value), escaped(p.origin), escaped(p.tag), escaped(p.source),
-               escaped(p.belief), escaped(p.description)});
+    table.row({code(p.key), shown(p.value), shown(p.origin), escaped(p.tag), escaped(p.source), escaped(p.belief),
+               escaped(p.description)});
   return table.html();
 }
 
@@ -46,8 +49,7 @@ std::string differing_parameters(const Runs& runs) {
     for (const auto& run : runs) {
       const auto* p = run.parameter(key);
       values.insert(p ? "=" + p->value : "");
-      cells.push_back(
-          p ? fmt::format("{} <small>({})</small>", escaped(p->value), escaped(p->origin)) : "");
+      cells.push_back(p ? fmt::format("{} <small>({})</small>", shown(p->value), shown(p->origin)) : "");
       if (p) meaning = p->description;
     }
     cells.push_back(escaped(meaning));
@@ -58,13 +60,7 @@ std::string differing_parameters(const Runs& runs) {
 
 std::string command_text(const Results& run) {
   std::vector<std::string> words{"fovea"};
-  for (const auto& word : run.arguments) {
-    const bool plain =
-        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]();&|<>~#!") == word.npos;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    words.push_back(plain ? word : quoted + "'");
-  }
+  for (const auto& word : run.arguments) words.push_back(explain::shell_word(explain::without_folders(word)));
   return fmt::format("{}", fmt::join(words, " "));
 }
 

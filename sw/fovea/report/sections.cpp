@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "sw/fovea/explain/command.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 
@@ -74,8 +75,9 @@ std::string verdict_of(const Results& run) {
         "<p class=\"note\">These results are partial: the run was stopped before its end, or the "
         "guest failed. The figures cover what was simulated.</p>";
   for (const auto& w : run.warnings)
-    out += fmt::format("<p class=\"note\">Warning ({}){}: {}</p>", escaped(w.kind),
-                       w.count > 1 ? fmt::format(", {} times", w.count) : "", escaped(w.what));
+    out +=
+        fmt::format("<p class=\"note\">Warning ({}){}: {}</p>", escaped(w.kind),
+                    w.count > 1 ? fmt::format(", {} times", w.count) : "", escaped(explain::without_folders(w.what)));
   return out;
 }
 
@@ -115,30 +117,6 @@ std::string difference_cell(const app::StatRow* a, const app::StatRow* b) {
   return fmt::format("<data value=\"{}\">{}</data>", app::number_text(change), escaped(text));
 }
 
-std::string key_figures(const Runs& runs) {
-  std::vector<std::string> headings{"Figure"};
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    headings.push_back("#" + (runs.size() == 1 ? "Value" : title_of(runs, i)));
-    if (i > 0) headings.push_back(fmt::format("#{} - A", run_label(i)));
-  }
-  headings.push_back("Meaning");
-  Table table("Key figures of the measured window", headings);
-  for (const char* name : kKeyFigures) {
-    const app::StatRow* first = nullptr;
-    std::vector<std::string> cells{fmt::format("<code>{}</code>", name)};
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const auto* figure = app::find(runs[i].stats, name);
-      if (!first) first = figure;
-      cells.push_back(figure_cell(figure));
-      if (i > 0) cells.push_back(difference_cell(app::find(runs[0].stats, name), figure));
-    }
-    if (!first) continue;
-    cells.push_back(escaped(first->description));
-    table.row(cells);
-  }
-  return table.html();
-}
-
 /// Escaped, and no line ends between a number and its unit.
 std::string sentence(std::string_view text) {
   std::string out = escaped(text);
@@ -155,8 +133,7 @@ std::string sentence(std::string_view text) {
 std::string finding_item(const explain::Finding& f) {
   std::string evidence;
   for (const auto& e : f.evidence) evidence += fmt::format("<code>{}</code> ", escaped(e));
-  return fmt::format("<li{}>{}<span class=\"evidence\">from {}</span></li>",
-                     f.estimate ? " class=\"estimate\"" : "", sentence(f.text), evidence);
+  return fmt::format("<li>{}<span class=\"evidence\">from {}</span></li>", sentence(f.text), evidence);
 }
 
 std::string finding_list(const std::vector<explain::Finding>& findings) {
@@ -175,10 +152,12 @@ std::string findings(const Runs& runs) {
       out += fmt::format("<h3>{} against A</h3>", run_label(i)) + finding_list(found);
   }
   out += panels(runs, [&](std::size_t i) { return finding_list(findings_of(runs[i])); });
-  return out +
-         "<p class=\"note\">A wait is where clocks went. Whether more speed at that place would "
-         "help is "
-         "shown only by runs in which it is changed.</p>";
+  const std::string command = binds_command_of(runs.front());
+  if (command.empty()) return out;
+  return out + fmt::format(
+                   "<p class=\"note\">A wait is where clocks went. Whether more speed at that place makes the remap "
+                   "faster, runs show in which only that is changed: <code>{}</code></p>",
+                   escaped(command));
 }
 
 std::string picture_html(const Picture& picture, const std::string& what) {
@@ -355,7 +334,31 @@ std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index
 std::string verdict_section(const Runs& runs) {
   std::string out = panels(runs, [&](std::size_t i) { return verdict_of(runs[i]); });
   if (runs.size() == 1) out += tiles(runs[0]);
-  return out + findings(runs) + key_figures(runs);
+  return out + findings(runs);
+}
+
+std::string key_figures_section(const Runs& runs) {
+  std::vector<std::string> headings{"Figure"};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    headings.push_back("#" + (runs.size() == 1 ? "Value" : title_of(runs, i)));
+    if (i > 0) headings.push_back(fmt::format("#{} - A", run_label(i)));
+  }
+  headings.push_back("Meaning");
+  Table table("Key figures of the measured window", headings);
+  for (const char* name : kKeyFigures) {
+    const app::StatRow* first = nullptr;
+    std::vector<std::string> cells{fmt::format("<code>{}</code>", name)};
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const auto* figure = app::find(runs[i].stats, name);
+      if (!first) first = figure;
+      cells.push_back(figure_cell(figure));
+      if (i > 0) cells.push_back(difference_cell(app::find(runs[0].stats, name), figure));
+    }
+    if (!first) continue;
+    cells.push_back(escaped(first->description));
+    table.row(cells);
+  }
+  return table.html();
 }
 
 std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures) {

@@ -13,8 +13,9 @@ namespace fovea::report {
 
 using Runs = std::vector<Results>;
 
-/// Verdict, findings and key figures.
+/// Verdict and findings.
 std::string verdict_section(const Runs& runs);
+std::string key_figures_section(const Runs& runs);
 std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures);
 std::string frames_section(const Runs& runs);
 std::string bandwidth_section(const Runs& runs);
@@ -31,6 +32,18 @@ std::vector<explain::FunctionClocks> functions_of(const Results& run);
 std::vector<explain::Finding> findings_of(const Results& run);
 /// What is different in run `index` from the first one.
 std::vector<explain::Finding> differences_of(const Runs& runs, std::size_t index);
+
+/// Which system ran, in a sentence or two; empty if the results do not say.
+std::string system_text(const Results& run);
+std::string system_section(const Runs& runs);
+/// Gives runs whose folders have the same name those of the settings in which they differ.
+void name_apart(Runs& runs);
+/// "Slowest read of vpbe (the display): 1.924 us at 80.153412 ms: 1.100 us behind ...".
+std::string slowest_sentence(const app::SlowestRow& row);
+/// The command that runs it again and lists the requests around this one; empty for a replay.
+std::string around_command_of(const Results& run, const app::SlowestRow& slowest);
+/// The command that finds what binds the remaps of a run; empty for a run without remaps.
+std::string binds_command_of(const Results& run);
 
 // Pieces that several sections use.
 

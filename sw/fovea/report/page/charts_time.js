@@ -35,30 +35,39 @@ function drawFrames(place, run) {
   place.append(svg);
 }
 
+/// An axis for values that differ little: from below the smallest to above the largest, at least 1 % of it wide.
+function around(values) {
+  const low = Math.min(...values), high = Math.max(...values), pad = Math.max((high - low) * 0.15, high * 0.005);
+  return [Math.max(0, low - pad), high + pad];
+}
+
 function drawFrameTimes(place, run) {
   const points = run.frames.filter((f) => !f.repeated).map((f) => ({
     frame: f.frame,
     remap: f.remap[0] === null || f.remap[1] === null ? null : f.remap[1] - f.remap[0],
     latency: f.capture[0] === null || f.display[0] === null ? null : f.display[0] - f.capture[0],
   }));
-  const values = points.flatMap((p) => [p.remap, p.latency]).filter((v) => v !== null);
-  if (!values.length) return;
-  const width = widthOf(place), box = {left: 64, right: width - 20, top: 26, bottom: 190};
-  const last = run.frames[run.frames.length - 1].frame;
-  const x = scale(run.frames[0].frame, Math.max(last, run.frames[0].frame + 1), box.left, box.right);
-  const y = scale(0, Math.max(...values) * 1.08, box.bottom, box.top);
-  const whole = ticks(run.frames[0].frame, last, width / 90).filter(Number.isInteger);
-  const svg = drawing(place, width, 230, xAxis(box, x, whole, 'displayed frame'), yAxis(box, y, ticks(0, Math.max(...values) * 1.08, 4), 'ms'));
-  const names = {remap: 'remap', latency: 'capture to display'};
-  for (const [key, shade, dash] of [['remap', 'remap', undefined], ['latency', 'display', '7 4']]) {
-    const known = points.filter((p) => p[key] !== null);
+  const parts = [['remap', 'remap', 'remap'], ['latency', 'display', 'capture to display']]
+    .map(([key, shade, name]) => ({key, shade, name, known: points.filter((p) => p[key] !== null)})).filter((p) => p.known.length);
+  if (!parts.length) return;
+  const width = widthOf(place), height = 110, gap = 34, left = 64, right = width - 20, top = 26;
+  const first = run.frames[0].frame, last = run.frames[run.frames.length - 1].frame;
+  const x = scale(first, Math.max(last, first + 1), left, right);
+  const whole = ticks(first, last, width / 90).filter(Number.isInteger);
+  const svg = drawing(place, width, top + parts.length * (height + gap) + 6);
+  parts.forEach(({key, shade, name, known}, n) => {
+    const box = {left, right, top: top + n * (height + gap), bottom: top + n * (height + gap) + height};
+    const [low, high] = around(known.map((p) => p[key]));
+    const y = scale(low, high, box.bottom, box.top);
+    svg.append(yAxis(box, y, ticks(low, high, 4), `${name}, ms`, (v) => plain(v, 6)));
+    if (n + 1 === parts.length) svg.append(xAxis(box, x, whole, 'displayed frame'));
     svg.append(element('polyline', {points: known.map((p) => `${x(p.frame)},${y(p[key])}`).join(' '), fill: 'none',
-                                    stroke: colour(shade), 'stroke-width': 2, 'stroke-dasharray': dash}));
+                                    stroke: colour(shade), 'stroke-width': 2}));
     for (const p of known.length <= 60 ? known : [])
       svg.append(element('circle', {cx: x(p.frame), cy: y(p[key]), r: 3.5, fill: colour(shade)},
-                         element('title', {}, `frame ${p.frame}: ${names[key]} ${plain(p[key])} ms`)));
-  }
-  place.append(svg, legend(['remap', 'display'], {remap: 'remap', display: 'from capture to display (dashed)'}));
+                         element('title', {}, `frame ${p.frame}: ${name} ${plain(p[key], 6)} ms`)));
+  });
+  place.append(svg);
   if (run.frames.length < run.frames_in_all)
     place.append(element('p', {class: 'absent'}, `The first ${run.frames.length} of ${run.frames_in_all} frames.`));
 }
